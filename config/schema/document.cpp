@@ -1,0 +1,137 @@
+#include "config/schema/document.h"
+
+#include <algorithm>
+#include <fstream>
+#include <numeric>
+#include <sstream>
+
+#include "config/schema/error.h"
+#include "config/schema/toml_reader.h"
+
+namespace config::schema {
+
+struct Document::Data {
+  std::string name;
+  std::filesystem::path folder;
+  toml::table table;
+};
+
+namespace {
+
+toml::table parse_toml(std::string_view text, const std::string& name) {
+  try {
+    return toml::parse(text, name);
+  } catch (const toml::parse_error& e) {
+    throw bad_config(name + ":" + std::to_string(e.source().begin.line),
+                     "is not TOML: " + std::string(e.description()));
+  }
+}
+
+/// The value of an assignment: TOML if it parses, else a bare string.
+toml::table parse_value(const std::string& key, const std::string& value) {
+  try {
+    return toml::parse(key + " = " + value);
+  } catch (const toml::parse_error&) {
+    toml::table table;
+    table.insert_or_assign(key, value);
+    return table;
+  }
+}
+
+}  // namespace
+
+Document::Document(std::shared_ptr<Data> data) : data_(std::move(data)) {}
+
+Document Document::load(const std::filesystem::path& file) {
+  std::error_code ignored;
+  std::ifstream in(file);
+  if (!in || std::filesystem::is_directory(file, ignored)) {
+    throw bad_config(file.string(), "cannot be read", "a TOML file");
+  }
+  std::ostringstream text;
+  text << in.rdbuf();
+  Document document = parse(text.str(), file.string());
+  document.data_->folder = file.parent_path();
+  return document;
+}
+
+Document Document::parse(std::string_view text, std::string name) {
+  auto data = std::make_shared<Data>();
+  data->table = parse_toml(text, name);
+  data->name = std::move(name);
+  return Document(std::move(data));
+}
+
+void Document::set(std::string_view assignment) {
+  const std::size_t equals = assignment.find('=');
+  const std::string path(assignment.substr(0, equals));
+  if (equals == std::string_view::npos || path.empty() || path.front() == '.' ||
+      path.back() == '.') {
+    throw Error(ExitCode::usage,
+                "--set " + std::string(assignment) + ": is no assignment; allowed: table.key=value");
+  }
+  toml::node* node = &data_->table;
+  std::size_t begin = 0;
+  for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', begin)) {
+    const std::string part = path.substr(begin, dot - begin);
+    begin = dot + 1;
+    if (toml::array* array = node->as_array()) {
+      std::size_t index = array->size();
+      std::istringstream(part) >> index;
+      if (index >= array->size()) {
+        throw bad_config("--set " + path, "no element " + part,
+                         "0 to " + std::to_string(array->size()) + " less one");
+      }
+      node = array->get(index);
+    } else if (toml::table* table = node->as_table()) {
+      node = table->insert(part, toml::table{}).first->second.is_table() ||
+                     table->get(part)->is_array()
+                 ? table->get(part)
+                 : throw bad_config("--set " + path, part + " is no table");
+    }
+  }
+  const std::string key = path.substr(begin);
+  toml::table value = parse_value(key, std::string(assignment.substr(equals + 1)));
+  if (!node->is_table() || value.get(key) == nullptr) {
+    throw bad_config("--set " + path, "is no table.key");
+  }
+  node->as_table()->insert_or_assign(key, std::move(*value.get(key)));
+}
+
+void Document::read(const Visitor::Body& visit) const {
+  TomlReader reader(data_->table, "", data_->name);
+  std::int64_t version = 0;
+  reader.integer({"schema_version", "the layout version, 1", true}, version,
+                 {kSchemaVersion, kSchemaVersion});
+  visit(reader);
+  reader.refuse_unknown_keys();
+}
+
+const std::string& Document::name() const noexcept { return data_->name; }
+
+std::filesystem::path Document::folder() const { return data_->folder; }
+
+std::string nearest(std::string_view typed, const std::vector<std::string>& names) {
+  std::string best;
+  std::size_t best_distance = std::max<std::size_t>(2, typed.size() / 3) + 1;
+  for (const std::string& name : names) {
+    std::vector<std::size_t> row(name.size() + 1);
+    std::iota(row.begin(), row.end(), 0U);
+    for (std::size_t i = 0; i < typed.size(); ++i) {
+      std::size_t diagonal = row[0];
+      row[0] = i + 1;
+      for (std::size_t j = 0; j < name.size(); ++j) {
+        const std::size_t substitute = diagonal + (typed[i] == name[j] ? 0U : 1U);
+        diagonal = row[j + 1];
+        row[j + 1] = std::min({substitute, row[j] + 1, row[j + 1] + 1});
+      }
+    }
+    if (row.back() < best_distance) {
+      best_distance = row.back();
+      best = name;
+    }
+  }
+  return best;
+}
+
+}  // namespace config::schema

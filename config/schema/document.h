@@ -1,0 +1,47 @@
+// A TOML file as declared structures read it, and the text that prints them back.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "config/schema/visitor.h"
+
+namespace config::schema {
+
+/// The layout version that every configuration and model file states as `schema_version`.
+inline constexpr std::int64_t kSchemaVersion = 1;
+
+class Document {
+ public:
+  /// Throws Error (exit 78) when the file is missing, unreadable or no TOML.
+  static Document load(const std::filesystem::path& file);
+  /// `name` stands for the file in messages.
+  static Document parse(std::string_view text, std::string name);
+
+  /// Replaces one value, "table.key=value" (the value as TOML, or else as a bare string; [[list]]
+  /// elements by index: "band.0.high=2.1e-4"). Throws Error with "--set" as the place.
+  void set(std::string_view assignment);
+
+  /// Fills the fields that `visit` lists. Throws Error (exit 78) for an unknown key, a wrong type,
+  /// a value out of range, a missing required key, or another schema_version.
+  void read(const Visitor::Body& visit) const;
+
+  [[nodiscard]] const std::string& name() const noexcept;
+  /// The folder that relative paths inside the file are meant from.
+  [[nodiscard]] std::filesystem::path folder() const;
+
+ private:
+  struct Data;
+  explicit Document(std::shared_ptr<Data> data);
+  std::shared_ptr<Data> data_;
+};
+
+/// TOML text of the effective values, schema_version first; read back it gives the same values.
+[[nodiscard]] std::string print_toml(const Visitor::Body& visit);
+
+/// The nearest of `names` to a mistyped one, or "" when none is near (edit distance).
+[[nodiscard]] std::string nearest(std::string_view typed, const std::vector<std::string>& names);
+
+}  // namespace config::schema

@@ -1,0 +1,70 @@
+// How a declared structure tells its fields: each lists them once, in a `visit(Visitor&)`, with key,
+// range and meaning. A reader fills them from TOML, a printer writes the effective values; both see
+// the same list, so nothing can be read that is not printed or the other way round.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <initializer_list>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace config::schema {
+
+/// A field's name in the file, its meaning in one phrase, and whether it must be given.
+struct Key {
+  Key(const char* name_, const char* what_ = "", bool required_ = false)
+      : name(name_), what(what_), required(required_) {}
+  std::string_view name;
+  std::string_view what;
+  bool required;
+};
+
+/// Closed interval of allowed values, in the field's own unit.
+struct Range {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+};
+struct IntRange {
+  std::int64_t min = std::numeric_limits<std::int64_t>::min();
+  std::int64_t max = std::numeric_limits<std::int64_t>::max();
+};
+
+class Visitor {
+ public:
+  using Body = std::function<void(Visitor&)>;
+
+  virtual ~Visitor() = default;
+
+  virtual void boolean(Key key, bool& value) = 0;
+  virtual void integer(Key key, std::int64_t& value, IntRange range = {}) = 0;
+  /// NaN stands for "not given" and is not printed; infinities are allowed where the range is.
+  virtual void number(Key key, double& value, Range range = {}) = 0;
+  virtual void text(Key key, std::string& value) = 0;
+  virtual void choice(Key key, std::string& value,
+                      std::initializer_list<std::string_view> allowed) = 0;
+  virtual void numbers(Key key, std::vector<double>& value, Range range = {}) = 0;
+  virtual void texts(Key key, std::vector<std::string>& value) = 0;
+
+  /// A sub-table that is always there: its fields keep their defaults when it is absent.
+  virtual void table(Key key, const Body& body) = 0;
+  /// A sub-table whose presence means something; `body` runs only when it is present.
+  virtual void optional_table(Key key, bool& present, const Body& body) = 0;
+  /// An array of tables: returns how many there are (for a printer: `size`), then call `element`.
+  virtual std::size_t list(Key key, std::size_t size) = 0;
+  virtual void element(Key key, std::size_t index, const Body& body) = 0;
+};
+
+/// Visits a vector of structures that each have `visit(Visitor&)`.
+template <class T>
+void visit_list(Visitor& v, Key key, std::vector<T>& items) {
+  items.resize(v.list(key, items.size()));
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    v.element(key, i, [&](Visitor& e) { items[i].visit(e); });
+  }
+}
+
+}  // namespace config::schema

@@ -1,0 +1,17 @@
+# Third-party libraries, all Debian packages (scripts/install-packages lists them).
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(GTest REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(Boost 1.74 REQUIRED)
+find_package(tomlplusplus REQUIRED)
+include(GoogleTest)
+
+# LCM: Debian's lcm.pc asks for glib's headers, so header, library and generator are found directly.
+find_path(LCM_INCLUDE_DIR lcm/lcm-cpp.hpp REQUIRED)
+find_library(LCM_LIBRARY lcm REQUIRED)
+find_program(LCM_GEN lcm-gen REQUIRED)
+add_library(spoolwatch_lcm INTERFACE)
+target_include_directories(spoolwatch_lcm SYSTEM INTERFACE "${LCM_INCLUDE_DIR}")
+target_link_libraries(spoolwatch_lcm INTERFACE "${LCM_LIBRARY}")

@@ -1,0 +1,61 @@
+# How every target of this project is built, and the three ways to declare one.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
+
+option(SPOOLWATCH_BENCH "Build the benchmarks (scripts/bench)" OFF)
+set(SPOOLWATCH_SANITIZE "" CACHE STRING "Sanitizers, as in -fsanitize=")
+
+find_program(CCACHE ccache)
+if(CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE}")
+endif()
+
+add_library(spoolwatch_options INTERFACE)
+target_include_directories(spoolwatch_options INTERFACE "${CMAKE_SOURCE_DIR}")
+target_compile_options(spoolwatch_options INTERFACE -Wall -Wextra -Wshadow -Wconversion
+  -Wno-sign-conversion -Wnon-virtual-dtor -Wold-style-cast -Werror)
+if(SPOOLWATCH_SANITIZE)
+  target_compile_options(spoolwatch_options INTERFACE -fsanitize=${SPOOLWATCH_SANITIZE}
+    -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(spoolwatch_options INTERFACE -fsanitize=${SPOOLWATCH_SANITIZE})
+endif()
+
+# spoolwatch_library(name SOURCES... [LIBS...]): a static library; name = folder with _ for /.
+function(spoolwatch_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBS" ${ARGN})
+  if(ARG_SOURCES)
+    add_library(${name} STATIC ${ARG_SOURCES})
+    target_link_libraries(${name} PUBLIC spoolwatch_options ${ARG_LIBS})
+  else()
+    add_library(${name} INTERFACE)
+    target_link_libraries(${name} INTERFACE spoolwatch_options ${ARG_LIBS})
+  endif()
+endfunction()
+
+# spoolwatch_program(name SOURCES... LIBS...): an executable in build/<preset>/bin.
+function(spoolwatch_program name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE spoolwatch_options ${ARG_LIBS})
+endfunction()
+
+# spoolwatch_test(name SOURCES... LIBS... [LABELS...] [TIMEOUT s]): a GoogleTest program; each of
+# its tests becomes a ctest.
+function(spoolwatch_test name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LIBS;LABELS" ${ARGN})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 120)
+  endif()
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE spoolwatch_options ${ARG_LIBS} GTest::gmock_main)
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
+  target_compile_definitions(${name} PRIVATE
+    SPOOLWATCH_SOURCE_DIR="${CMAKE_SOURCE_DIR}"
+    SPOOLWATCH_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60
+    PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
+endfunction()
