@@ -17,7 +17,7 @@ std::string shown(double value) {
   return text;
 }
 
-std::string quoted(const std::string& text) {
+std::string toml_string(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') out += '\\';
@@ -43,9 +43,9 @@ class Printer final : public Visitor {
   void number(Key key, double& value, Range) override {
     if (!std::isnan(value)) field(key, shown(value));
   }
-  void text(Key key, std::string& value) override { field(key, quoted(value)); }
+  void text(Key key, std::string& value) override { field(key, toml_string(value)); }
   void choice(Key key, std::string& value, std::initializer_list<std::string_view>) override {
-    field(key, quoted(value));
+    field(key, toml_string(value));
   }
   void numbers(Key key, std::vector<double>& value, Range) override {
     std::string items;
@@ -54,7 +54,7 @@ class Printer final : public Visitor {
   }
   void texts(Key key, std::vector<std::string>& value) override {
     std::string items;
-    for (const std::string& item : value) items += (items.empty() ? "" : ", ") + quoted(item);
+    for (const std::string& item : value) items += (items.empty() ? "" : ", ") + toml_string(item);
     field(key, "[" + items + "]");
   }
   void table(Key key, const Body& body) override {

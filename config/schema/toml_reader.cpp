@@ -14,14 +14,10 @@ std::string join(std::string_view path, std::string_view key) {
 }
 
 std::string shown(const toml::node& node) {
+  if (node.is_table()) return "a table";
+  if (node.is_array()) return "an array";
   std::ostringstream out;
-  node.visit([&](auto&& value) {
-    if constexpr (toml::is_value<decltype(value)>) {
-      out << toml::node_view<const toml::node>(value);
-    } else {
-      out << (value.is_table() ? "a table" : "an array");
-    }
-  });
+  out << toml::node_view<const toml::node>{node};
   return out.str();
 }
 

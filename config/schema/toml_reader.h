@@ -1,8 +1,8 @@
 // The Visitor that reads: one table at a time, remembering which keys were asked for.
 #pragma once
 
-#include <set>
 #include <toml++/toml.h>
+#include <set>
 
 #include "config/schema/visitor.h"
 

@@ -1,0 +1,169 @@
+#include "config/schema/document.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "config/schema/error.h"
+
+namespace config::schema {
+namespace {
+
+using testing::HasSubstr;
+
+struct Pump {
+  std::string name;
+  double pressure_Pa = 1e6;
+  void visit(Visitor& v) {
+    v.text({"name", "what it is called", true}, name);
+    v.number("pressure_Pa", pressure_Pa, {0.0, 3e7});
+  }
+};
+
+struct Stand {
+  bool enabled = false;
+  std::int64_t rate_Hz = 200;
+  double optional_m = NAN;
+  std::string mode = "monitor";
+  std::vector<double> levels{1.0, 2.5};
+  std::vector<std::string> files;
+  bool has_effect = false;
+  double coulomb_N = 0.1;
+  std::vector<Pump> pumps;
+
+  void visit(Visitor& v) {
+    v.boolean("enabled", enabled);
+    v.table("loop", [this](Visitor& t) {
+      t.integer("rate_Hz", rate_Hz, {1, 1000});
+      t.choice("mode", mode, {"monitor", "control"});
+      t.number("optional_m", optional_m);
+    });
+    v.numbers("levels", levels, {0.0, 10.0});
+    v.texts("files", files);
+    v.optional_table("effect", has_effect, [this](Visitor& t) {
+      t.number("coulomb_N", coulomb_N, {0.0, 1e5});
+    });
+    visit_list(v, "pump", pumps);
+  }
+};
+
+Stand read(const std::string& text, const std::vector<std::string>& sets = {}) {
+  Document document = Document::parse("schema_version = 1\n" + text, "stand.toml");
+  for (const std::string& set : sets) document.set(set);
+  Stand stand;
+  document.read([&](Visitor& v) { stand.visit(v); });
+  return stand;
+}
+
+std::string message(const std::string& text, const std::vector<std::string>& sets = {}) {
+  try {
+    read(text, sets);
+  } catch (const Error& e) {
+    EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos) << "must be one line";
+    return std::to_string(e.exit_code()) + " " + e.what();
+  }
+  return "no error";
+}
+
+TEST(Document, FillsEveryKindOfFieldAndKeepsDefaultsOfAbsentOnes) {
+  const Stand stand = read(
+      "enabled = true\nlevels = [3, 4.5]\nfiles = [\"a\", \"b\"]\n[loop]\nmode = \"control\"\n"
+      "[effect]\ncoulomb_N = 150\n[[pump]]\nname = \"p1\"\n[[pump]]\nname = \"p2\"\n"
+      "pressure_Pa = 2e6\n");
+  EXPECT_TRUE(stand.enabled);
+  EXPECT_EQ(stand.rate_Hz, 200);
+  EXPECT_EQ(stand.mode, "control");
+  EXPECT_EQ(stand.levels, (std::vector<double>{3.0, 4.5}));
+  EXPECT_EQ(stand.files, (std::vector<std::string>{"a", "b"}));
+  EXPECT_TRUE(stand.has_effect);
+  EXPECT_EQ(stand.coulomb_N, 150.0);
+  ASSERT_EQ(stand.pumps.size(), 2U);
+  EXPECT_EQ(stand.pumps[0].pressure_Pa, 1e6);
+  EXPECT_EQ(stand.pumps[1].pressure_Pa, 2e6);
+  EXPECT_TRUE(std::isnan(stand.optional_m));
+}
+
+TEST(Document, PrintsValuesThatReadBackTheSame) {
+  Stand stand =
+      read("levels = [0.1, 0.3]\n[loop]\noptional_m = 1e-7\n[[pump]]\nname = \"a \\\"b\\\"\"\n");
+  const std::string text = print_toml([&](Visitor& v) { stand.visit(v); });
+  Stand again;
+  Document::parse(text, "printed").read([&](Visitor& v) { again.visit(v); });
+  EXPECT_EQ(print_toml([&](Visitor& v) { again.visit(v); }), text);
+  EXPECT_EQ(again.levels, stand.levels);
+  EXPECT_EQ(again.optional_m, 1e-7);
+  EXPECT_EQ(again.pumps.at(0).name, "a \"b\"");
+  EXPECT_FALSE(again.has_effect);
+}
+
+TEST(Document, NamesFileLineTableKeyAndAllowedValues) {
+  EXPECT_EQ(message("[loop]\nrate_Hz = 5000\n"),
+            "78 stand.toml:3: [loop] rate_Hz: is 5000, out of range; allowed: 1 to 1000");
+  EXPECT_EQ(message("[loop]\nmode = \"fast\"\n"),
+            "78 stand.toml:3: [loop] mode: is 'fast'; allowed: monitor, control");
+  EXPECT_EQ(message("[loop]\nrate_Hz = 20.5\n"),
+            "78 stand.toml:3: [loop] rate_Hz: is 20.5; allowed: a whole number");
+  EXPECT_EQ(message("[[pump]]\npressure_Pa = 1\n"),
+            "78 stand.toml: [pump.0] name: is missing; allowed: what it is called");
+  EXPECT_EQ(message("[loop]\nrate_hz = 100\n"),
+            "78 stand.toml:3: [loop] rate_hz: is unknown, did you mean rate_Hz?; allowed: mode, "
+            "optional_m, rate_Hz");
+  EXPECT_THAT(message("levels = [1, 20]\n"), HasSubstr("[] levels: is 20, out of range"));
+  EXPECT_THAT(message("levels = 1\n"), HasSubstr("an array of numbers"));
+  EXPECT_THAT(message("pump = 1\n"), HasSubstr("an array of tables"));
+  EXPECT_THAT(message("loop = 1\n"), HasSubstr("a table"));
+}
+
+TEST(Document, RefusesNotANumberWhereANumberIsMeant) {
+  EXPECT_THAT(message("[loop]\noptional_m = nan\n"), HasSubstr("is nan, out of range"));
+}
+
+TEST(Document, RefusesTextThatIsNoTomlAndAnotherSchemaVersion) {
+  EXPECT_THAT(message("enabled = \n"), HasSubstr("78 stand.toml:2: is not TOML"));
+  Stand stand;
+  const auto visit = [&](Visitor& v) { stand.visit(v); };
+  EXPECT_THROW(Document::parse("schema_version = 2", "x").read(visit), Error);
+  EXPECT_THROW(Document::parse("enabled = true", "x").read(visit), Error);
+}
+
+TEST(Document, SaysThatAMissingFileCannotBeRead) {
+  try {
+    Document::load("/nowhere/at/all.toml");
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.exit_code(), 78);
+    EXPECT_STREQ(e.what(), "/nowhere/at/all.toml: cannot be read; allowed: a TOML file");
+  }
+  EXPECT_THROW(Document::load("/tmp"), Error);
+}
+
+TEST(Document, AssignsSingleValuesFromTheCommandLine) {
+  const Stand stand =
+      read("[[pump]]\nname = \"p\"\n", {"loop.rate_Hz=100", "loop.mode=control", "enabled=true",
+                                        "pump.0.pressure_Pa=5", "levels=[7]", "pump.0.name=q 1"});
+  EXPECT_EQ(stand.rate_Hz, 100);
+  EXPECT_EQ(stand.mode, "control");
+  EXPECT_TRUE(stand.enabled);
+  EXPECT_EQ(stand.pumps.at(0).pressure_Pa, 5.0);
+  EXPECT_EQ(stand.pumps.at(0).name, "q 1");
+  EXPECT_EQ(stand.levels, std::vector<double>{7.0});
+}
+
+TEST(Document, RefusesAssignmentsThatNameNothing) {
+  EXPECT_THAT(message("", {"loop.rate_Hz"}), HasSubstr("2 --set"));
+  EXPECT_THAT(message("", {"=1"}), HasSubstr("2 --set"));
+  EXPECT_THAT(message("enabled = true", {"enabled.x=1"}), HasSubstr("78 --set enabled.x"));
+  EXPECT_THAT(message("[[pump]]\nname='p'\n", {"pump.3.name=x"}), HasSubstr("78 --set pump.3"));
+  EXPECT_THAT(message("", {"lop.rate_Hz=1"}), HasSubstr("did you mean loop?"));
+  EXPECT_THAT(message("", {"loop.rate_Hz=a b"}), HasSubstr("a whole number"));
+}
+
+TEST(Nearest, FindsOneTypoAndLeavesStrangersAlone) {
+  const std::vector<std::string> names{"friction", "deadband", "null_bias"};
+  EXPECT_EQ(nearest("fricton", names), "friction");
+  EXPECT_EQ(nearest("nul_bias", names), "null_bias");
+  EXPECT_EQ(nearest("zzz", names), "");
+}
+
+}  // namespace
+}  // namespace config::schema

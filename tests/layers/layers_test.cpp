@@ -1,0 +1,154 @@
+// Which folder may include what: arrows point down only. The table below is the rule; this test
+// reads every include line of the product against it.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Layer {
+  std::string folder;                  ///< the rule of the longest matching folder counts
+  std::vector<std::string> own;        ///< project folders it may include, besides itself
+  std::vector<std::string> libraries;  ///< third-party headers it may include
+};
+
+// The standard library and POSIX are open to all, save for the real-time parts named in kGuarded.
+const std::vector<Layer> kLayers{
+    {"config/schema", {}, {"toml++"}},
+    {"config/record", {"config/schema"}, {"lcm", "spoolwatch"}},
+    {"plant_sim", {"config/schema"}, {}},
+    {"estimator", {"config/schema"}, {"Eigen", "ceres"}},
+    {"estimator/fdi", {"config/schema", "estimator"}, {"Eigen"}},
+    {"hal", {"config/schema", "hal/sim", "hal/replay"}, {}},
+    {"hal/sim", {"config/schema", "hal", "plant_sim"}, {}},
+    {"hal/replay", {"config/schema", "config/record", "hal"}, {}},
+    {"daemon/control", {"config/schema"}, {}},
+    {"daemon/rt",
+     {"config", "estimator", "estimator/fdi", "hal", "hal/sim", "hal/replay", "plant_sim",
+      "daemon/control", "daemon/io"},
+     {"boost"}},
+    {"daemon/io",
+     {"config", "estimator", "estimator/fdi", "hal", "hal/sim", "hal/replay", "plant_sim",
+      "daemon/control"},
+     {"boost", "lcm", "spoolwatch", "systemd"}},
+    {"daemon",
+     {"config", "estimator", "estimator/fdi", "hal", "hal/sim", "hal/replay", "plant_sim",
+      "daemon/control", "daemon/rt", "daemon/io"},
+     {"boost", "lcm", "spoolwatch", "systemd", "CLI"}},
+    {"workbench",
+     {"config", "estimator", "estimator/fdi", "plant_sim", "daemon/control"},
+     {"CLI", "nlohmann", "lcm", "spoolwatch", "ncurses", "ceres", "Eigen", "muParser"}},
+};
+
+// Headers of third parties: whoever includes one must have it in its row.
+const std::vector<std::string> kGuarded{"toml++", "Eigen",   "ceres",     "lcm",      "spoolwatch",
+                                        "boost",  "systemd", "CLI",       "nlohmann", "ncurses",
+                                        "modbus", "gpiod",   "comedilib", "muParser"};
+const std::vector<std::string> kProject{"config", "plant_sim", "estimator",
+                                        "hal",    "daemon",    "workbench"};
+
+bool below(const std::string& path, const std::string& folder) {
+  return path.rfind(folder, 0) == 0 &&
+         (path.size() == folder.size() || path[folder.size()] == '/' || path[folder.size()] == '.');
+}
+
+const Layer* layer_of(const std::string& file) {
+  const Layer* found = nullptr;
+  for (const Layer& layer : kLayers) {
+    if (below(file, layer.folder) && (!found || layer.folder.size() > found->folder.size())) {
+      found = &layer;
+    }
+  }
+  return found;
+}
+
+bool allowed(const Layer& layer, const std::string& file, const std::string& header) {
+  const auto matches = [&](const std::string& folder) { return below(header, folder); };
+  if (std::any_of(kProject.begin(), kProject.end(), matches)) {
+    if (fs::path(header).parent_path() == fs::path(file).parent_path()) return true;
+    const Layer* target = layer_of(header);
+    if (target == &layer) return true;
+    // A name with a row of its own opens that row's files; one without ("config") all below it.
+    return std::any_of(layer.own.begin(), layer.own.end(), [&](const std::string& own) {
+      const bool has_row = std::any_of(kLayers.begin(), kLayers.end(),
+                                       [&](const Layer& row) { return row.folder == own; });
+      return has_row ? target != nullptr && target->folder == own : below(header, own);
+    });
+  }
+  if (std::any_of(kGuarded.begin(), kGuarded.end(), matches)) {
+    return std::any_of(layer.libraries.begin(), layer.libraries.end(), matches);
+  }
+  return true;
+}
+
+/// "file:line includes header" for every include that the table does not allow.
+std::vector<std::string> violations(const fs::path& root) {
+  static const std::regex include(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
+  std::vector<std::string> found;
+  for (const std::string& top : kProject) {
+    if (!fs::exists(root / top)) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+      const std::string ending = entry.path().extension().string();
+      if (ending != ".h" && ending != ".cpp") continue;
+      const std::string file = fs::relative(entry.path(), root).string();
+      const Layer* layer = layer_of(file);
+      if (layer == nullptr) {
+        found.push_back(file + " stands in no layer");
+        continue;
+      }
+      std::ifstream in(entry.path());
+      std::string line;
+      for (int number = 1; std::getline(in, line); ++number) {
+        std::smatch match;
+        if (std::regex_search(line, match, include) && !allowed(*layer, file, match[1])) {
+          found.push_back(file + ":" + std::to_string(number) + " includes " + match[1].str());
+        }
+      }
+    }
+  }
+  return found;
+}
+
+void write(const fs::path& file, const std::string& text) {
+  fs::create_directories(file.parent_path());
+  std::ofstream(file) << text;
+}
+
+TEST(Layers, NoFileOfTheProductIncludesUpwards) {
+  EXPECT_THAT(violations(SPOOLWATCH_SOURCE_DIR), testing::IsEmpty());
+}
+
+TEST(Layers, EveryRowNamesAFolderThatExists) {
+  for (const Layer& layer : kLayers) {
+    EXPECT_TRUE(fs::is_directory(fs::path(SPOOLWATCH_SOURCE_DIR) / layer.folder)) << layer.folder;
+  }
+}
+
+TEST(Layers, PlantedViolationsAreFound) {
+  const fs::path root = fs::path(testing::TempDir()) / "layers_planted";
+  fs::remove_all(root);
+  write(root / "plant_sim/plant.cpp", "#include <cmath>\n#include \"estimator/batch.h\"\n");
+  write(root / "estimator/batch.h", "#include <Eigen/Dense>\n#include <lcm/lcm-cpp.hpp>\n");
+  write(root / "estimator/fdi/pipeline.h", "#include \"estimator/batch.h\"\n");
+  write(root / "daemon/control/arming.h", "  #  include \"daemon/rt/loop.h\"\n");
+  write(root / "hal/sim/rig.h", "#include \"plant_sim/plant.h\"\n#include \"hal/replay/x.h\"\n");
+  write(root / "hal/replay/x.h", "#include \"plant_sim/plant.h\"\n");
+  write(root / "workbench/fit.cpp", "#include \"daemon/io/recorder.h\"\n");
+  EXPECT_THAT(violations(root),
+              testing::UnorderedElementsAre("plant_sim/plant.cpp:2 includes estimator/batch.h",
+                                            "estimator/batch.h:2 includes lcm/lcm-cpp.hpp",
+                                            "daemon/control/arming.h:1 includes daemon/rt/loop.h",
+                                            "hal/sim/rig.h:2 includes hal/replay/x.h",
+                                            "hal/replay/x.h:1 includes plant_sim/plant.h",
+                                            "workbench/fit.cpp:1 includes daemon/io/recorder.h"));
+  fs::remove_all(root);
+}
+
+}  // namespace
