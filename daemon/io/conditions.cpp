@@ -1,0 +1,34 @@
+#include "daemon/io/conditions.h"
+
+#include <cstring>
+#include <string>
+
+namespace monitor::io {
+
+using estimator::fdi::Severity;
+
+void Conditions::report(const PublisherStatus& publisher, const RecorderStatus& recorder,
+                        std::int64_t tick, estimator::fdi::AlarmBook& book,
+                        const std::function<void(const estimator::fdi::Alarm&)>& changed) {
+  const auto set = [&](const char* source, const char* name, Severity severity, bool active,
+                       const std::string& reason) {
+    if (const auto* alarm = book.set_condition(source, name, severity, active, reason, tick)) {
+      changed(*alarm);
+    }
+  };
+  const std::string why = recorder.error == 0 ? "" : std::strerror(recorder.error);
+  set("recorder", "disk_full", Severity::minor, recorder.disk_full,
+      recorder.disk_full ? why + "; the newest data is kept in memory" : "");
+  set("recorder", "write_failed", Severity::minor, recorder.write_failed,
+      recorder.write_failed ? why + "; the newest data is kept in memory" : "");
+  const std::int64_t dropped = recorder.dropped_records - dropped_before_;
+  set("recorder", "dropping", Severity::minor, dropped > 0,
+      dropped > 0 ? "the queue to the recorder was full; messages are missing in the log" : "");
+  const std::int64_t failures = publisher.send_failures - failures_before_;
+  set("lcm", "send_failed", Severity::minor, failures > 0,
+      failures > 0 ? "LCM could not send messages; is the network up?" : "");
+  dropped_before_ = recorder.dropped_records;
+  failures_before_ = publisher.send_failures;
+}
+
+}  // namespace monitor::io

@@ -1,0 +1,19 @@
+// From the detector's samples, estimates and alarms to the LCM types; run_id, seq and stamp are the
+// publisher's. Strings and arrays of the target are used again, so their memory is kept.
+#pragma once
+
+#include "estimator/fdi/alarm_book.h"
+#include "estimator/fdi/pipeline.h"
+#include "estimator/fdi/sample.h"
+#include "spoolwatch/alarm_t.hpp"
+#include "spoolwatch/estimate_t.hpp"
+#include "spoolwatch/sample_t.hpp"
+
+namespace monitor::io {
+
+void fill(spoolwatch::sample_t& message, const estimator::fdi::Sample& sample,
+          double sample_time_s);
+void fill(spoolwatch::estimate_t& message, const estimator::fdi::EstimateEvent& event);
+void fill(spoolwatch::alarm_t& message, const estimator::fdi::Alarm& alarm, bool repeat);
+
+}  // namespace monitor::io

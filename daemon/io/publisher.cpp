@@ -1,0 +1,90 @@
+#include "daemon/io/publisher.h"
+
+#include <span>
+
+#include "config/messages/connect.h"
+#include "daemon/io/messages.h"
+#include "daemon/io/recorder.h"
+#include "spoolwatch/health_t.hpp"
+
+namespace monitor::io {
+namespace {
+
+// More than the largest message of an ordinary configuration; grows once if one is larger.
+constexpr std::size_t kBufferBytes = 16 << 10;
+
+}  // namespace
+
+struct Publisher::Messages {
+  spoolwatch::sample_t sample{};
+  spoolwatch::estimate_t estimate{};
+  spoolwatch::alarm_t alarm{};
+};
+
+void PublisherConfig::visit(config::schema::Visitor& v) {
+  v.text({"url", "where messages go, as LCM writes it; empty: nowhere"}, url);
+  v.text({"prefix", "of the channel names"}, prefix);
+}
+
+Publisher::Publisher(const PublisherConfig& config, std::int64_t run_id, double sample_time_s,
+                     Recorder* recorder)
+    : lcm_(config.url.empty() ? nullptr : config::messages::connect(config.url)),
+      messages_(std::make_unique<Messages>()),
+      recorder_(recorder),
+      run_id_(run_id),
+      sample_time_s_(sample_time_s),
+      sample_{config.prefix + "_SAMPLE"},
+      estimate_{config.prefix + "_ESTIMATE"},
+      alarm_{config.prefix + "_ALARM"},
+      health_{config.prefix + "_HEALTH"},
+      buffer_(kBufferBytes) {}
+
+Publisher::~Publisher() = default;
+
+void Publisher::sample(const estimator::fdi::Sample& sample) {
+  fill(messages_->sample, sample, sample_time_s_);
+  send(sample_, messages_->sample, {sample.utc_us, sample.t_read_ns});
+}
+
+void Publisher::estimate(const estimator::fdi::EstimateEvent& event, Stamp stamp) {
+  fill(messages_->estimate, event);
+  send(estimate_, messages_->estimate, stamp);
+}
+
+void Publisher::alarm(const estimator::fdi::Alarm& alarm, bool repeat, Stamp stamp) {
+  fill(messages_->alarm, alarm, repeat);
+  send(alarm_, messages_->alarm, stamp);
+}
+
+void Publisher::health(spoolwatch::health_t& message, Stamp stamp) {
+  send(health_, message, stamp);
+}
+
+PublisherStatus Publisher::status() const noexcept {
+  return {sent_.load(std::memory_order_relaxed), failures_.load(std::memory_order_relaxed),
+          failing_.load(std::memory_order_relaxed)};
+}
+
+template <class Message>
+void Publisher::send(Channel& channel, Message& message, Stamp stamp) {
+  message.run_id = run_id_;
+  message.seq = channel.seq++;
+  message.utc_us = stamp.utc_us;
+  message.mono_ns = stamp.mono_ns;
+  const int size = message.getEncodedSize();
+  if (static_cast<std::size_t>(size) > buffer_.size())
+    buffer_.resize(static_cast<std::size_t>(size));
+  message.encode(buffer_.data(), 0, size);
+  if (lcm_) {
+    const bool failed =
+        lcm_->publish(channel.name, buffer_.data(), static_cast<unsigned>(size)) != 0;
+    (failed ? failures_ : sent_).fetch_add(1, std::memory_order_relaxed);
+    failing_.store(failed, std::memory_order_relaxed);
+  }
+  if (recorder_ != nullptr) {
+    recorder_->record(channel.name, std::span(buffer_).first(static_cast<std::size_t>(size)),
+                      stamp.utc_us);
+  }
+}
+
+}  // namespace monitor::io

@@ -1,0 +1,97 @@
+// Sends what the daemon finds out over LCM and hands the same bytes to the recorder.
+//
+// Channels PREFIX_SAMPLE, PREFIX_ESTIMATE, PREFIX_ALARM, PREFIX_HEALTH (types: config/messages).
+// Each message is encoded once, into a buffer made in advance. A message that LCM cannot send is
+// still recorded; failures are counted and shown by status(). All calls come from one thread.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "config/schema/visitor.h"
+
+namespace lcm {
+class LCM;
+}
+namespace spoolwatch {
+class health_t;
+}
+namespace estimator::fdi {
+struct Alarm;
+struct EstimateEvent;
+struct Sample;
+}  // namespace estimator::fdi
+
+namespace monitor::io {
+
+class Recorder;
+
+inline constexpr const char* kDefaultLcmUrl = "udpm://239.255.76.67:7667?ttl=0";
+
+struct PublisherConfig {
+  std::string url = kDefaultLcmUrl;  // "" sends nothing (records only)
+  std::string prefix = "SPOOLWATCH";
+
+  /// Fields of the table [lcm].
+  void visit(config::schema::Visitor& v);
+};
+
+/// When a message was made: wall clock, and the sender's monotonic clock (virtual: both virtual).
+struct Stamp {
+  std::int64_t utc_us = 0;
+  std::int64_t mono_ns = 0;
+};
+
+struct PublisherStatus {
+  std::int64_t sent = 0;
+  std::int64_t send_failures = 0;
+  bool failing = false;  // the newest message could not be sent
+};
+
+class Publisher {
+ public:
+  /// `recorder` may be null. Throws config::schema::Error when LCM cannot be started on `url`.
+  Publisher(const PublisherConfig& config, std::int64_t run_id, double sample_time_s,
+            Recorder* recorder);
+  ~Publisher();
+  Publisher(const Publisher&) = delete;
+  Publisher& operator=(const Publisher&) = delete;
+
+  /// A sample carries its own stamp (utc_us, t_read_ns).
+  void sample(const estimator::fdi::Sample& sample);
+  void estimate(const estimator::fdi::EstimateEvent& event, Stamp stamp);
+  /// `repeat`: an active alarm sent again, not a change.
+  void alarm(const estimator::fdi::Alarm& alarm, bool repeat, Stamp stamp);
+  /// Fills run_id, seq and stamp; the rest is the caller's.
+  void health(spoolwatch::health_t& message, Stamp stamp);
+
+  /// Any thread.
+  [[nodiscard]] PublisherStatus status() const noexcept;
+
+ private:
+  struct Channel {
+    std::string name;
+    std::int64_t seq = 0;
+  };
+  template <class Message>
+  void send(Channel& channel, Message& message, Stamp stamp);
+
+  struct Messages;  // one of each type, used again and again
+
+  std::unique_ptr<lcm::LCM> lcm_;
+  std::unique_ptr<Messages> messages_;
+  Recorder* recorder_;
+  std::int64_t run_id_;
+  double sample_time_s_;
+  Channel sample_, estimate_, alarm_, health_;
+  std::vector<std::uint8_t> buffer_;
+  std::atomic<std::int64_t> sent_{0};
+  std::atomic<std::int64_t> failures_{0};
+  std::atomic<bool> failing_{false};
+};
+
+}  // namespace monitor::io

@@ -1,0 +1,91 @@
+// Writes every published message to rotating LCM event logs that any LCM tool can read and replay.
+//
+// record() copies the encoded bytes into a bounded lock-free queue and returns; a thread of the
+// recorder's own writes them. A full queue drops the newest and counts it. In virtual time
+// (`background` false) record() writes at once, so the same input gives the same bytes.
+// When the disk is full or fails, the newest messages stay in a bounded memory backlog (the oldest
+// are overwritten and counted as lost) and are written when space returns; a file never ends with
+// part of an event. Files: FOLDER/spoolwatch-RUNID-NNNNN.lcmlog, at most `files` of them in FOLDER.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "config/schema/visitor.h"
+
+namespace monitor::io {
+
+class EventLog;
+class ByteBacklog;
+class ByteQueue;
+
+struct RecorderConfig {
+  std::string folder;                  // "" records nothing: no Recorder is made
+  std::int64_t file_bytes = 64 << 20;  // cap of one file
+  std::int64_t files = 16;             // logs kept in the folder, oldest removed first
+  std::int64_t queue_bytes = 512 << 10;
+  std::int64_t backlog_bytes = 4 << 20;  // newest kept in memory while the disk is full
+
+  /// Fields of the table [recorder].
+  void visit(config::schema::Visitor& v);
+};
+
+/// What the recorder can tell; every figure counts from its start.
+struct RecorderStatus {
+  std::int64_t written_records = 0;
+  std::int64_t dropped_records = 0;  // queue full
+  std::int64_t lost_records = 0;     // overwritten in memory while the disk was full
+  bool disk_full = false;            // no space, quota or file-size limit
+  bool write_failed = false;         // any other reason
+  int error = 0;                     // errno of the failure that still lasts
+};
+
+class Recorder {
+ public:
+  /// Opens the first file. Throws config::schema::Error when the folder cannot be made or written;
+  /// a full disk is no error but a condition. `config.folder` must not be empty.
+  Recorder(const RecorderConfig& config, std::int64_t run_id, bool background);
+  /// Writes what is queued, as far as the disk takes it, and closes the file.
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  /// One message; `utc_us` is its time in the log. Call from one thread only. Does not block and
+  /// does not allocate when in the background.
+  void record(std::string_view channel, std::span<const std::uint8_t> data,
+              std::int64_t utc_us) noexcept;
+
+  /// Any thread.
+  [[nodiscard]] RecorderStatus status() const noexcept;
+
+ private:
+  void run();
+  void drain();
+  void flush_backlog();
+
+  std::unique_ptr<EventLog> log_;
+  std::unique_ptr<ByteQueue> queue_;      // one producer (record), one consumer (run)
+  std::unique_ptr<ByteBacklog> backlog_;  // of the writing thread
+  std::vector<std::uint8_t> record_;      // of the writing thread
+  const bool background_;
+  int retry_in_ = 0;  // drains until the next attempt after a failure
+  std::atomic<std::int64_t> written_{0};
+  std::atomic<std::int64_t> dropped_{0};
+  std::atomic<std::int64_t> lost_{0};
+  std::atomic<int> error_{0};
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  bool stop_ = false;  // under mutex_
+  std::thread thread_;
+};
+
+}  // namespace monitor::io

@@ -1,0 +1,25 @@
+// One command of the program `spoolwatch`: a name, a phrase for the help text, and a function that
+// declares its options and its callback. Each command lives in its own file (listen.cpp, ...) and
+// has two lines elsewhere: its declaration here and its row of the table in main.cpp.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace workbench {
+
+/// Declares options on `command` and sets its callback, which writes what the program shall return
+/// to `exit_code` (0 when it does not). Errors that prevent a start are config::schema::Error.
+using Setup = void (*)(CLI::App& command, int& exit_code);
+
+struct Command {
+  const char* name;
+  const char* what;
+  Setup setup;
+};
+
+void add_export(CLI::App& command, int& exit_code);
+void add_listen(CLI::App& command, int& exit_code);
+
+}  // namespace workbench

@@ -1,0 +1,40 @@
+// spoolwatch: the engineer's tool. One line per command; every error that prevents a start is
+// caught here, once, and printed as one line.
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+
+#include "config/schema/error.h"
+#include "workbench/command.h"
+
+namespace {
+
+constexpr workbench::Command kCommands[] = {
+    {"listen", "print alarms and estimates as they arrive", workbench::add_listen},
+    {"export", "write an LCM log as CSV", workbench::add_export},
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int exit_code = 0;
+  CLI::App app{"Spoolwatch: watch a servo-hydraulic test stand, and find what its model misses"};
+  app.require_subcommand(1);
+  for (const auto& command : kCommands) {
+    command.setup(*app.add_subcommand(command.name, command.what), exit_code);
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const bool asked_for_help = error.get_exit_code() == 0;
+    app.exit(error);
+    return asked_for_help ? 0 : static_cast<int>(config::schema::ExitCode::usage);
+  } catch (const config::schema::Error& error) {
+    std::cerr << "spoolwatch: " << error.what() << '\n';
+    return error.exit_code();
+  } catch (const std::exception& error) {
+    std::cerr << "spoolwatch: " << error.what() << '\n';
+    return static_cast<int>(config::schema::ExitCode::failed);
+  }
+  return exit_code;
+}
