@@ -1,0 +1,61 @@
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+
+#include "config/record/record.h"
+#include "config/schema/error.h"
+
+namespace config::record {
+namespace {
+
+void append(std::string& text, double value) {
+  if (std::isnan(value)) return;  // a missing value is an empty field
+  char buffer[32];
+  const auto result = std::to_chars(std::begin(buffer), std::end(buffer), value);
+  text.append(std::begin(buffer), result.ptr);
+}
+
+std::string csv_text(const Record& record) {
+  std::string text = "t_s,u_V,y_m";
+  for (const auto& [name, values] : record.further) text += "," + name;
+  text += '\n';
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    append(text, record.t_s[i]);
+    text += ',';
+    append(text, record.u_V[i]);
+    text += ',';
+    append(text, record.y_m[i]);
+    for (const auto& [name, values] : record.further) {
+      text += ',';
+      append(text, values[i]);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace
+
+void write_csv(const Record& record, const std::filesystem::path& file) {
+  std::filesystem::path temporary = file;
+  temporary += ".part" + std::to_string(getpid());
+  const std::string text = csv_text(record);
+  errno = 0;
+  std::ofstream out(temporary, std::ios::binary);
+  out.write(text.data(), static_cast<std::streamsize>(text.size()));
+  out.close();
+  std::error_code renamed;
+  if (out) std::filesystem::rename(temporary, file, renamed);
+  if (!out || renamed) {
+    const std::string why = renamed ? renamed.message() : std::strerror(errno);
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    throw schema::Error(schema::ExitCode::failed, file.string() + ": cannot be written: " + why);
+  }
+}
+
+}  // namespace config::record

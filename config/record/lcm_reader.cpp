@@ -1,0 +1,135 @@
+#include "config/record/lcm_reader.h"
+
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <lcm/lcm-cpp.hpp>
+#include <map>
+
+#include "config/record/time_grid.h"
+#include "config/schema/error.h"
+#include "spoolwatch/sample_t.hpp"
+
+namespace config::record {
+namespace {
+
+using schema::bad_data;
+using spoolwatch::sample_t;
+
+constexpr std::string_view kSyncWord = "\xED\xA1\xDA\x01";
+constexpr std::int8_t kBadQuality = 3;
+
+bool is_sample(const lcm::LogEvent& event) {
+  std::int64_t hash = 0;
+  return __int64_t_decode_array(event.data, 0, event.datalen, &hash, 1) > 0 &&
+         hash == sample_t::getHash();
+}
+
+/// The channel to read: the one named, or the only one of the right type.
+std::string choose_channel(const std::string& file, std::string_view wanted) {
+  lcm::LogFile log(file, "r");
+  if (!log.good()) throw bad_data(file, "cannot be read");
+  std::map<std::string, bool> channels;  // whether its first event is a sample
+  while (const lcm::LogEvent* event = log.readNextEvent()) {
+    if (event->channel == wanted) return std::string(wanted);
+    channels.emplace(event->channel, is_sample(*event));
+  }
+  std::string found;
+  std::string names;
+  int fitting = 0;
+  for (const auto& [name, fits] : channels) {
+    names += (names.empty() ? "" : ", ") + name;
+    if (fits) {
+      found = name;
+      ++fitting;
+    }
+  }
+  if (fitting == 1) return found;
+  throw bad_data(file,
+                 std::string(fitting == 0 ? "has no events of type spoolwatch::sample_t"
+                                          : "has samples on several channels"),
+                 "channel " + std::string(wanted) +
+                     "; it has: " + (names.empty() ? std::string("no complete event") : names));
+}
+
+struct Builder {
+  Record record;
+  std::size_t bad = 0;
+
+  explicit Builder(const std::string& name) {
+    record.name = name;
+    for (const char* column : {"reference_m", "u_requested_V", "quality", "state", "saturated"}) {
+      record.further.emplace_back(column, std::vector<double>{});
+    }
+  }
+
+  void add(const sample_t& s) {
+    if (s.quality == kBadQuality || !std::isfinite(s.y_m) || !std::isfinite(s.u_applied_V)) {
+      ++bad;
+      return;
+    }
+    record.t_s.push_back(static_cast<double>(s.tick) * s.sample_time_s);
+    record.u_V.push_back(s.u_applied_V);
+    record.y_m.push_back(s.y_m);
+    std::size_t column = 0;
+    for (const double value : {s.reference_m, s.u_requested_V, static_cast<double>(s.quality),
+                               static_cast<double>(s.state), s.saturated != 0 ? 1.0 : 0.0}) {
+      record.further[column++].second.push_back(value);
+    }
+  }
+};
+
+}  // namespace
+
+bool is_lcm_log(std::string_view head) noexcept { return head.starts_with(kSyncWord); }
+
+Record read_lcm_log(const std::string& file, std::string_view wanted) {
+  const std::string channel = choose_channel(file, wanted);
+  lcm::LogFile log(file, "r");
+  if (!log.good()) throw bad_data(file, "cannot be read");
+  Builder builder(file);
+  Record& record = builder.record;
+  sample_t first{};
+  std::vector<std::int64_t> events;  // number of the event behind each row
+  std::int64_t complete = 0;         // end of the last complete event, bytes
+  while (const lcm::LogEvent* event = log.readNextEvent()) {
+    complete = std::ftell(log.getFilePtr());
+    if (event->channel != channel) continue;
+    const std::string where = file + ": event " + std::to_string(event->eventnum);
+    sample_t sample{};
+    if (sample.decode(event->data, 0, event->datalen) != event->datalen) {
+      throw bad_data(where, "on " + channel + " is of another type",
+                     "spoolwatch::sample_t in this version's layout");
+    }
+    if (!(sample.sample_time_s > 0.0) || !std::isfinite(sample.sample_time_s)) {
+      throw bad_data(where, "has no sample time");
+    }
+    if (record.t_s.empty() && builder.bad == 0) first = sample;
+    if (sample.sample_time_s != first.sample_time_s || sample.run_id != first.run_id) {
+      throw bad_data(where, "belongs to another run than the first sample", "one run in a log");
+    }
+    builder.add(sample);
+    if (events.size() < record.size()) events.push_back(event->eventnum);
+  }
+  if (record.t_s.empty()) {
+    throw bad_data(file, "has no sample with a good position and command on " + channel);
+  }
+  const TimeGrid grid = find_grid(
+      record.t_s, [&](std::size_t i) { return file + ": event " + std::to_string(events[i]); });
+  if (std::abs(grid.sample_time_s - first.sample_time_s) > 1e-6 * first.sample_time_s) {
+    throw bad_data(file, "has ticks that skip regularly", "consecutive ticks");
+  }
+  record.sample_time_s = first.sample_time_s;
+  record.gaps = grid.gaps;
+  if (builder.bad > 0) {
+    record.notes.push_back(std::to_string(builder.bad) +
+                           " samples without a good position and command left out");
+  }
+  if (complete < static_cast<std::int64_t>(std::filesystem::file_size(file))) {
+    record.notes.push_back("cut off after byte " + std::to_string(complete) +
+                           ": the complete events are used");
+  }
+  return std::move(record);
+}
+
+}  // namespace config::record

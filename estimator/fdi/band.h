@@ -1,0 +1,68 @@
+// A band on a named quantity, as declared and as learned.
+//
+// The alarm comes when the quantity has been outside [low, high] for on_delay_s, and goes when it
+// has been inside [low + hysteresis, high - hysteresis] for off_delay_s. Units of low, high and
+// hysteresis are the quantity's own.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "config/schema/visitor.h"
+#include "estimator/fdi/alarm_book.h"
+
+namespace estimator::fdi {
+
+/// TOML [[band]].
+struct BandConfig {
+  std::string id;
+  std::string quantity;  ///< "ESTIMATOR.b1", "sample.y_m", ...: see quantity.h
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  double hysteresis = 0.0;
+  double on_delay_s = 0.0;
+  double off_delay_s = 0.0;
+  /// How long the quantity may be missing or untrustworthy before the alarm becomes INVALID; until
+  /// then the last state stands.
+  double invalid_delay_s = 0.0;
+  std::string severity = "major";
+  std::string parameter;
+  std::vector<std::string> ambiguity_group;
+  std::string guidance;
+
+  void visit(config::schema::Visitor& v);
+};
+
+/// The time behaviour of one band: a state machine on (value, time), without a name or a book.
+class BandState {
+ public:
+  explicit BandState(const BandConfig& config);
+
+  struct Result {
+    Severity severity = Severity::ok;
+    int direction = 0;  ///< -1 below, +1 above, 0 neither
+  };
+  /// A value at time t_s; NaN cannot be trusted.
+  Result update(double value, double t_s) noexcept;
+  /// A value that cannot be trusted at time t_s.
+  Result update_invalid(double t_s) noexcept;
+  void reset() noexcept;
+
+ private:
+  [[nodiscard]] int wanted(double value) const noexcept;
+  [[nodiscard]] Result result() const noexcept;
+
+  double low_, high_, hysteresis_;
+  double on_delay_s_, off_delay_s_, invalid_delay_s_;
+  Severity alarm_;
+  bool invalid_ = false;
+  int direction_ = 0;  ///< kept while invalid
+  int pending_ = 0;    ///< direction that the value asks for, if another
+  double pending_since_s_ = 0.0;
+  bool missing_ = false;
+  double missing_since_s_ = 0.0;
+};
+
+}  // namespace estimator::fdi

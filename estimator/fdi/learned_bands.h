@@ -1,0 +1,37 @@
+// Bands learned from a healthy record: the file that `spoolwatch calibrate` writes and that a
+// configuration names as bands_file.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "config/schema/visitor.h"
+
+namespace estimator::fdi {
+
+/// TOML [[learned]]: limits of one quantity, in its own unit.
+struct LearnedBand {
+  std::string quantity;
+  std::string structure;  ///< of its estimator, "arx111"
+  std::string estimator;  ///< EstimatorConfig::fingerprint() of its estimator
+  double low = 0.0;
+  double high = 0.0;
+  double hysteresis = 0.0;
+  double centre = 0.0;         ///< mean of the healthy estimates
+  std::int64_t estimates = 0;  ///< how many there were
+  double block_s = 0.0;        ///< length of the blocks whose extremes were fitted
+
+  void visit(config::schema::Visitor& v);
+};
+
+struct LearnedBands {
+  double sample_time_s = 0.0;
+  std::string source;  ///< the healthy record
+  double false_alarm_time_s = 0.0;
+  std::vector<LearnedBand> bands;
+
+  void visit(config::schema::Visitor& v);
+};
+
+}  // namespace estimator::fdi

@@ -1,0 +1,132 @@
+// Fault detection, sample by sample: estimators over windows of (u, y), and bands on what they
+// find. No thread, no message, no device: the daemon, tests and off-line replay run this same code.
+//
+//   Pipeline pipeline(config, sample_time_s);
+//   for (const Sample& s : record) pipeline.process(s, events);
+//
+// process() does not allocate once every window has been filled once.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "config/schema/visitor.h"
+#include "estimator/fdi/alarm_book.h"
+#include "estimator/fdi/band.h"
+#include "estimator/fdi/quantity.h"
+#include "estimator/fdi/sample.h"
+
+namespace estimator::fdi {
+
+/// TOML [[estimator]]. Order of treatment: offset, filter, decimation, increments, de-trend.
+struct EstimatorConfig {
+  std::string id;
+  std::string structure = "arx111";  ///< "arx211", "arx(2,1,1)"
+  std::string method = "batch";      ///< batch (a tumbling window), sliding, recursive
+  bool constant = false;             ///< estimate a constant term
+  /// y minus its previous value takes the place of y: with structure arx011 the integrator's pole
+  /// is fixed at 1 instead of estimated, which short windows need.
+  bool increments = false;
+  double window_s = 2.0;         ///< of recursive: over which excitation and gaps are judged
+  double stride_s = 0.02;        ///< between estimates, of sliding and recursive
+  double offset_m = 0.0;         ///< subtracted from y
+  std::string detrend = "none";  ///< none, mean, linear: of each batch window, u and y alike
+  std::string filter = "none";   ///< none, low, high, band: of u and y alike, before all else
+  double filter_low_Hz = 0.0;    ///< lower edge, of high and band
+  double filter_high_Hz = 0.0;   ///< upper edge, of low and band
+  std::int64_t decimation = 1;   ///< keep one of so many samples, low-passed before
+  double forgetting = 0.998;     ///< of recursive, per sample
+  double prior_variance = 1e6;   ///< of recursive, P(0) = C I
+  double first_batch_s = 0.0;    ///< of recursive: a first batch that starts it warm
+  double warmup_s = 0.0;         ///< from the first sample: no band acts before
+  double min_u_rms_V = 0.0;      ///< a window with less command than this is not excited
+  double max_condition = 1e8;    ///< of the scaled regressors; beyond it INVALID
+  double max_saturated = 0.1;    ///< greatest share of saturated samples in a window
+  double max_missing = 0.05;     ///< greatest share of missing samples in a window
+
+  void visit(config::schema::Visitor& v);
+  /// One line with every setting that the values of the estimates depend on.
+  [[nodiscard]] std::string fingerprint() const;
+};
+
+/// TOML: [[estimator]], [[band]] and bands_file.
+struct PipelineConfig {
+  std::vector<EstimatorConfig> estimators;
+  std::vector<BandConfig> bands;
+  std::string bands_file;  ///< learned bands, "" for none; relative to the configuration's folder
+
+  void visit(config::schema::Visitor& v);
+  /// Reads bands_file (relative to `folder`; nothing to do when it is ""): its limits go to the
+  /// bands on the same quantity that give none, or else make a band of their own. They must have
+  /// been learned at this sample time and with the same estimators: else schema::Error, exit 78.
+  /// Call once, before Pipeline.
+  void load_bands(const std::filesystem::path& folder, double sample_time_s);
+};
+
+/// One number of an estimate.
+struct NamedValue {
+  std::string_view name;  ///< a1, b1, constant, residual_rms_m, ...
+  double value;
+  double std_error;  ///< NaN where there is none
+  double low;        ///< band, NaN where none is set
+  double high;
+};
+
+/// What one estimator found; the pointers hold until the next call of process().
+struct EstimateEvent {
+  std::size_t estimator;    ///< number in PipelineConfig::estimators
+  std::string_view source;  ///< its id
+  std::int64_t tick;        ///< newest sample in it
+  std::int64_t utc_us;
+  bool valid;
+  bool warming_up;          ///< within warmup_s or the first window: no band acts on it
+  std::string_view reason;  ///< why not valid, "" when it is
+  double condition;         ///< 2-norm condition number of the scaled regressors
+  int samples;              ///< regressor rows used
+  const NamedValue* begin_values;
+  const NamedValue* end_values;
+  [[nodiscard]] const NamedValue* begin() const noexcept { return begin_values; }
+  [[nodiscard]] const NamedValue* end() const noexcept { return end_values; }
+  [[nodiscard]] std::size_t size() const noexcept {
+    return static_cast<std::size_t>(end_values - begin_values);
+  }
+  /// NaN when there is no such value.
+  [[nodiscard]] double value(std::string_view name) const noexcept;
+};
+
+/// Receives what process() finds, on the calling thread.
+class Events {
+ public:
+  virtual ~Events() = default;
+  virtual void on_estimate(const EstimateEvent& event) = 0;
+  /// An alarm's severity or direction changed.
+  virtual void on_alarm(const Alarm& alarm) = 0;
+};
+
+class Pipeline {
+ public:
+  /// Throws schema::Error (exit 78) for an unknown structure, quantity, double id, ...
+  Pipeline(const PipelineConfig& config, double sample_time_s);
+  ~Pipeline();
+  Pipeline(Pipeline&&) noexcept;
+  Pipeline& operator=(Pipeline&&) noexcept;
+
+  void process(const Sample& sample, Events& events);
+  /// Forgets all samples, as at a start; alarms go back to OK without an event.
+  void reset();
+
+  /// Bands are in it from the start; conditions from elsewhere are set by the caller.
+  [[nodiscard]] AlarmBook& alarms() noexcept;
+  [[nodiscard]] const AlarmBook& alarms() const noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace estimator::fdi

@@ -1,0 +1,38 @@
+// Named quantities that a band can watch.
+//
+//   ESTIMATOR.a1 .b1 .constant .residual_rms_m .condition    of the estimator with that id
+//   sample.y_m .u_V .reference_m .following_error_m          of every sample; the following error
+//                                                            is reference minus position
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "estimator/fdi/sample.h"
+#include "estimator/structure.h"
+
+namespace estimator::fdi {
+
+inline constexpr std::string_view kSampleSource = "sample";
+
+/// "period.b1" taken apart at its last dot.
+struct QuantityName {
+  std::string_view source;
+  std::string_view name;
+};
+[[nodiscard]] QuantityName split_quantity(std::string_view quantity) noexcept;
+
+/// Names of an estimate's values in their order: coefficients, residual_rms_m, condition.
+[[nodiscard]] std::vector<std::string> estimate_names(const Structure& structure);
+
+enum class SampleQuantity { y, u, reference, following_error };
+/// Throws schema::Error (exit 78) at `where` for an unknown name.
+[[nodiscard]] SampleQuantity parse_sample_quantity(std::string_view name, const std::string& where);
+/// NaN when it is missing, or its quality stale or bad.
+[[nodiscard]] double value_of(SampleQuantity quantity, const Sample& sample) noexcept;
+
+/// Position that may be used: good or uncertain; NaN otherwise.
+[[nodiscard]] double usable_y_m(const Sample& sample) noexcept;
+
+}  // namespace estimator::fdi
