@@ -1,0 +1,34 @@
+// Arming: whether the law may drive the valve. Pure state machine, no time, no device.
+//
+//   MONITOR    nothing is ever written (no valve, or a record is replayed); no event leaves it
+//   DISARMED   null is written                      arm -> ARMED
+//   ARMED      null is written                      start -> RUN, disarm -> DISARMED
+//   RUN        the law is written                   stop -> ARMED, disarm -> DISARMED
+//   LATCHED    null is written, after a trip        reset -> DISARMED
+//
+// A trip leads from every state but MONITOR to LATCHED.
+#pragma once
+
+#include <cstdint>
+
+namespace monitor::control {
+
+enum class State : std::uint8_t { monitor, disarmed, armed, run, latched };
+enum class Event : std::uint8_t { arm, disarm, start, stop, reset, trip };
+
+class Arming {
+ public:
+  explicit Arming(bool monitor_only) noexcept
+      : state_(monitor_only ? State::monitor : State::disarmed) {}
+
+  [[nodiscard]] State state() const noexcept { return state_; }
+  /// Returns whether the event was allowed where the machine stood.
+  bool apply(Event event) noexcept;
+
+ private:
+  State state_;
+};
+
+[[nodiscard]] const char* name(State state) noexcept;
+
+}  // namespace monitor::control

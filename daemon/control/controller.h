@@ -1,0 +1,49 @@
+// Proportional position controller with a limit of range and of slew.
+//
+//   u = null + Kp (r - y), then |u - null| <= limit, then |u_k - u_{k-1}| <= slew Ts
+//
+// u, null, limit in V; Kp in V/m; slew in V/s. A start begins at null, so that the slew limit makes
+// it free of jumps.
+#pragma once
+
+#include <limits>
+
+#include "config/schema/visitor.h"
+
+namespace monitor::control {
+
+struct ControllerConfig {
+  double kp_V_per_m = 100.0;
+  void visit(config::schema::Visitor& v);
+};
+
+struct ValveLimits {
+  double null_V = 0.0;
+  double limit_V = 10.0;
+  double slew_V_per_s = std::numeric_limits<double>::infinity();
+};
+
+struct Command {
+  double requested_V = 0.0;  ///< by the law, before limits
+  double limited_V = 0.0;    ///< to be written
+  bool saturated = false;    ///< a limit of range or slew was active
+};
+
+class Controller {
+ public:
+  Controller(const ControllerConfig& config, const ValveLimits& limits,
+             double sample_time_s) noexcept;
+
+  /// From null, as after a start.
+  void reset() noexcept { last_V_ = limits_.null_V; }
+  /// `periods` >= 1: since the last call, so that the slew limit counts time, not calls.
+  Command update(double reference_m, double y_m, int periods = 1) noexcept;
+
+ private:
+  double kp_V_per_m_;
+  ValveLimits limits_;
+  double step_V_;  ///< slew allowance of one period
+  double last_V_;
+};
+
+}  // namespace monitor::control

@@ -1,0 +1,50 @@
+#include "daemon/control/reference.h"
+
+#include "daemon/control/reference_kinds.h"
+
+namespace monitor::control {
+
+void ReferenceConfig::visit(config::schema::Visitor& v) {
+  v.choice({"kind", "shape of the motion"}, kind,
+           {"sine", "multisine", "steps", "chirp", "prbs", "file"});
+  if (kind == "file") {
+    v.text({"file", "CSV with the columns t_s,reference_m", true}, file);
+    return;
+  }
+  v.number({"centre_m", "middle of the motion"}, centre_m, {-100.0, 100.0});
+  v.number({"amplitude_m", "greatest distance from the middle"}, amplitude_m, {0.0, 100.0});
+  if (kind == "sine" || kind == "chirp") {
+    v.number({"frequency_Hz", "frequency; of a chirp, the first"}, frequency_Hz, {0.0, 1000.0});
+  }
+  if (kind == "chirp") {
+    v.number({"frequency_end_Hz", "last frequency of the sweep"}, frequency_end_Hz, {0.0, 1000.0});
+    v.number({"sweep_s", "duration of one sweep"}, sweep_s, {1e-3, 1e6});
+  }
+  if (kind == "multisine") {
+    v.numbers({"frequencies_Hz", "frequencies of the sines"}, frequencies_Hz, {1e-4, 1000.0});
+  }
+  if (kind == "steps" || kind == "prbs") {
+    v.number({"hold_s", "duration of one level"}, hold_s, {1e-3, 1e6});
+    v.integer({"seed", "which sequence"}, seed, {0, std::numeric_limits<std::int64_t>::max()});
+  }
+  if (kind == "steps") {
+    v.number({"rise_s", "duration of the change of level, at most hold_s"}, rise_s, {0.0, hold_s});
+  }
+  if (kind == "prbs") {
+    v.integer({"register_bits", "length of the shift register"}, register_bits, {3, 16});
+  }
+}
+
+std::unique_ptr<Reference> make_reference(const ReferenceConfig& config,
+                                          const std::filesystem::path& folder) {
+  if (config.kind == "multisine") {
+    return std::make_unique<Multisine>(config.centre_m, config.amplitude_m, config.frequencies_Hz);
+  }
+  if (config.kind == "steps") return std::make_unique<Steps>(config);
+  if (config.kind == "chirp") return std::make_unique<Chirp>(config);
+  if (config.kind == "prbs") return std::make_unique<Prbs>(config);
+  if (config.kind == "file") return std::make_unique<FileReference>(folder / config.file);
+  return std::make_unique<Sine>(config.centre_m, config.amplitude_m, config.frequency_Hz);
+}
+
+}  // namespace monitor::control

@@ -1,0 +1,73 @@
+#include "daemon/daemon_config.h"
+
+#include <algorithm>
+
+#include "config/schema/document.h"
+#include "config/schema/error.h"
+
+namespace monitor {
+namespace {
+
+using config::schema::Visitor;
+
+/// Keys whose values are paths that start from the configuration's folder.
+constexpr const char* kPathKeys[] = {"sim.model", "replay.record", "reference.file", "bands_file"};
+
+/// "key=value" with the value made absolute where the key names a file.
+std::string from_here(const std::string& assignment) {
+  const std::size_t equals = assignment.find('=');
+  const std::string key = assignment.substr(0, equals);
+  if (equals == std::string::npos ||
+      std::find(std::begin(kPathKeys), std::end(kPathKeys), key) == std::end(kPathKeys)) {
+    return assignment;
+  }
+  std::string path = assignment.substr(equals + 1);
+  if (path.size() >= 2 && path.front() == '"' && path.back() == '"') {
+    path = path.substr(1, path.size() - 2);
+  }
+  return key + "=\"" + (path.empty() ? "" : std::filesystem::absolute(path).string()) + '"';
+}
+
+}  // namespace
+
+void DaemonConfig::visit_what_determines_the_data(Visitor& v) {
+  v.table({"rig", "which rig this is"}, [this](Visitor& t) {
+    t.text({"id", "its name in messages"}, rig_id);
+  });
+  v.table({"loop", "the control loop"}, [this](Visitor& t) { loop.visit(t); });
+  rig.visit(v);
+  if (drives_valve()) {
+    v.table({"reference", "the motion"}, [this](Visitor& t) { reference.visit(t); });
+    v.table({"controller", "the control law"}, [this](Visitor& t) { controller.visit(t); });
+  }
+  pipeline.visit(v);
+}
+
+void DaemonConfig::visit(Visitor& v) {
+  visit_what_determines_the_data(v);
+  v.table({"lcm", "where messages go"}, [this](Visitor& t) { lcm.visit(t); });
+  v.table({"recorder", "where logs go"}, [this](Visitor& t) { recorder.visit(t); });
+}
+
+void load(const std::filesystem::path& file, const std::vector<std::string>& assignments,
+          DaemonConfig& config) {
+  config::schema::Document document = config::schema::Document::load(file);
+  for (const std::string& assignment : assignments) document.set(from_here(assignment));
+  document.read([&](Visitor& v) { config.visit(v); });
+  config.file = document.name();
+  config.folder = document.folder();
+  if (config.loop.auto_arm && !config.rig.harmless()) {
+    throw config::schema::bad_config(config.file + ": [loop] auto_arm",
+                                     "is true on a rig that moves something real", "false");
+  }
+}
+
+std::uint64_t hash(DaemonConfig& config) {
+  const std::string text =
+      config::schema::print_toml([&](Visitor& v) { config.visit_what_determines_the_data(v); });
+  std::uint64_t h = 0xcbf29ce484222325U;
+  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+  return h;
+}
+
+}  // namespace monitor

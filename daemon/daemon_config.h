@@ -1,0 +1,48 @@
+// The configuration of spoolwatchd as it stands in its TOML file.
+//
+// Tables: [rig], [loop], [rod], [valve], one for each backend used, [reference] and [controller]
+// (only where a valve is driven), [[estimator]], [[band]], bands_file, [lcm], [recorder].
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "daemon/control/controller.h"
+#include "daemon/control/reference.h"
+#include "daemon/io/publisher.h"
+#include "daemon/io/recorder.h"
+#include "daemon/rt/loop.h"
+#include "estimator/fdi/pipeline.h"
+#include "hal/rig.h"
+
+namespace monitor {
+
+struct DaemonConfig {
+  std::string file;              ///< where it was read from, for messages
+  std::filesystem::path folder;  ///< relative paths in it start here
+  std::string rig_id = "rig";
+  rt::LoopConfig loop;
+  hal::Rig rig;
+  control::ReferenceConfig reference;
+  control::ControllerConfig controller;
+  estimator::fdi::PipelineConfig pipeline;
+  io::PublisherConfig lcm;
+  io::RecorderConfig recorder;
+
+  void visit(config::schema::Visitor& v);
+  /// All of it but what is done with the results ([lcm], [recorder]).
+  void visit_what_determines_the_data(config::schema::Visitor& v);
+  [[nodiscard]] bool drives_valve() const { return rig.valve().backend != "none"; }
+};
+
+/// Reads the file and applies "table.key=value" assignments; their relative paths start from the
+/// caller's folder. Throws config::schema::Error (exit 78, 2).
+void load(const std::filesystem::path& file, const std::vector<std::string>& assignments,
+          DaemonConfig& config);
+
+/// FNV-1a of everything that determines the data: the same data come from the same hash.
+[[nodiscard]] std::uint64_t hash(DaemonConfig& config);
+
+}  // namespace monitor

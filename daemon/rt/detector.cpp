@@ -1,0 +1,136 @@
+#include "daemon/rt/detector.h"
+
+namespace monitor::rt {
+
+using estimator::fdi::Alarm;
+using estimator::fdi::Sample;
+using estimator::fdi::Severity;
+
+namespace {
+
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+
+double us(std::int64_t time_ns) { return static_cast<double>(time_ns) * 1e-3; }
+
+const char* text(Trip trip) {
+  switch (trip) {
+    case Trip::overrun:
+      return "too many lost periods: reset, then arm again";
+    case Trip::reading:
+      return "position missing: reset, then arm again";
+    case Trip::write:
+      return "valve not written: reset, then arm again";
+    case Trip::none:
+      break;
+  }
+  return "";
+}
+
+}  // namespace
+
+Detector::Detector(const Parts& parts, const Identity& identity)
+    : parts_(parts),
+      changed_([this](const Alarm& alarm) { publish(alarm, false); }),
+      next_second_ns_(parts.clock.now_ns() + kSecond_ns) {
+  health_.rig_id = identity.rig_id;
+  health_.config_hash = identity.config_hash;
+  health_.privileges = identity.privileges;
+  health_.device = {"rod." + identity.rod};
+  if (!identity.valve.empty()) health_.device.push_back("valve." + identity.valve);
+  health_.device_count = static_cast<std::int32_t>(health_.device.size());
+  health_.device_good.resize(health_.device.size());
+  health_.device_bad.resize(health_.device.size());
+}
+
+void Detector::poll() {
+  Sample sample;
+  while (parts_.samples.pop(sample)) process(sample);
+  if (parts_.clock.now_ns() < next_second_ns_) return;
+  once_a_second();
+  next_second_ns_ += kSecond_ns;
+  if (next_second_ns_ <= parts_.clock.now_ns())
+    next_second_ns_ = parts_.clock.now_ns() + kSecond_ns;
+}
+
+void Detector::finish() {
+  poll();
+  once_a_second();
+}
+
+void Detector::process(const Sample& sample) {
+  tick_ = sample.tick;
+  parts_.publisher.sample(sample);
+  if (sample.state != state_) {
+    state_ = sample.state;
+    watch_state();
+  }
+  parts_.pipeline.process(sample, *this);
+}
+
+void Detector::on_estimate(const estimator::fdi::EstimateEvent& event) {
+  parts_.publisher.estimate(event, stamp());
+}
+
+void Detector::on_alarm(const Alarm& alarm) { publish(alarm, false); }
+
+void Detector::publish(const Alarm& alarm, bool repeat) {
+  parts_.publisher.alarm(alarm, repeat, stamp());
+}
+
+void Detector::condition(const char* source, const char* name, Severity severity, bool active,
+                         std::string_view reason) {
+  const Alarm* alarm = parts_.pipeline.alarms().set_condition(source, name, severity, active,
+                                                              active ? reason : "", tick_);
+  if (alarm != nullptr) publish(*alarm, false);
+}
+
+void Detector::watch_state() {
+  const bool latched = state_ == static_cast<std::uint8_t>(control::State::latched);
+  condition("loop", "latched", Severity::major, latched,
+            text(parts_.stats.trip.load(std::memory_order_relaxed)));
+}
+
+void Detector::once_a_second() {
+  const std::int64_t overruns = parts_.stats.overruns.value();
+  const std::int64_t dropped = parts_.stats.dropped_samples.value();
+  condition("loop", "overrun", Severity::minor, overruns > overruns_before_,
+            "periods were lost in the last second");
+  condition("loop", "dropping", Severity::invalid, dropped > dropped_before_,
+            "the detector does not keep up: samples were dropped in the last second");
+  overruns_before_ = overruns;
+  dropped_before_ = dropped;
+  conditions_.report(parts_.publisher.status(),
+                     parts_.recorder != nullptr ? parts_.recorder->status() : io::RecorderStatus{},
+                     tick_, parts_.pipeline.alarms(), changed_);
+  parts_.pipeline.alarms().for_each_active([this](const Alarm& alarm) { publish(alarm, true); });
+  health();
+}
+
+void Detector::health() {
+  const LoopStats& stats = parts_.stats;
+  health_.state = static_cast<std::int8_t>(stats.state.load(std::memory_order_relaxed));
+  health_.ticks = stats.ticks.value();
+  health_.overruns = stats.overruns.value();
+  health_.skipped_periods = stats.skipped_periods.value();
+  health_.dropped_samples = stats.dropped_samples.value();
+  const io::RecorderStatus recorder =
+      parts_.recorder != nullptr ? parts_.recorder->status() : io::RecorderStatus{};
+  health_.dropped_records = recorder.dropped_records;
+  health_.lost_records = recorder.lost_records;
+  health_.lateness_p50_us = us(stats.lateness.quantile_ns(0.5));
+  health_.lateness_p999_us = us(stats.lateness.quantile_ns(0.999));
+  health_.lateness_max_us = us(stats.lateness.max_ns());
+  health_.read_p999_us = us(stats.read.quantile_ns(0.999));
+  health_.control_p999_us = us(stats.control.quantile_ns(0.999));
+  health_.write_p999_us = us(stats.write.quantile_ns(0.999));
+  health_.active_alarms = static_cast<std::int32_t>(parts_.pipeline.alarms().active_count());
+  health_.device_good[0] = stats.rod_good.value();
+  health_.device_bad[0] = stats.rod_bad.value();
+  if (health_.device.size() > 1) {
+    health_.device_good[1] = stats.valve_good.value();
+    health_.device_bad[1] = stats.valve_bad.value();
+  }
+  parts_.publisher.health(health_, stamp());
+}
+
+}  // namespace monitor::rt

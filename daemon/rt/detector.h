@@ -1,0 +1,73 @@
+// What happens to samples off the loop: publish, estimate, raise alarms, and once a second report
+// on the daemon itself. One thread calls poll() again and again; in virtual time the driver does so
+// after every tick.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "daemon/io/conditions.h"
+#include "daemon/io/publisher.h"
+#include "daemon/io/recorder.h"
+#include "daemon/rt/clock.h"
+#include "daemon/rt/loop_stats.h"
+#include "daemon/rt/queues.h"
+#include "estimator/fdi/pipeline.h"
+#include "spoolwatch/health_t.hpp"
+
+namespace monitor::rt {
+
+class Detector final : private estimator::fdi::Events {
+ public:
+  /// What it works with; all of it outlives the detector. `recorder` may be null.
+  struct Parts {
+    Clock& clock;
+    SampleQueue& samples;
+    const LoopStats& stats;
+    estimator::fdi::Pipeline& pipeline;
+    io::Publisher& publisher;
+    const io::Recorder* recorder;
+  };
+  /// Constant fields of health_t.
+  struct Identity {
+    std::string rig_id;
+    std::string config_hash;
+    std::string privileges;
+    std::string rod;
+    std::string valve;  ///< "" when none is driven
+  };
+
+  Detector(const Parts& parts, const Identity& identity);
+
+  /// Handles all samples queued; once a second the conditions, active alarms again, and health.
+  void poll();
+  /// The last samples and a last health message.
+  void finish();
+
+ private:
+  void on_estimate(const estimator::fdi::EstimateEvent& event) override;
+  void on_alarm(const estimator::fdi::Alarm& alarm) override;
+
+  void process(const estimator::fdi::Sample& sample);
+  void publish(const estimator::fdi::Alarm& alarm, bool repeat);
+  void condition(const char* source, const char* name, estimator::fdi::Severity severity,
+                 bool active, std::string_view reason);
+  void watch_state();
+  void once_a_second();
+  void health();
+  [[nodiscard]] io::Stamp stamp() const noexcept {
+    return {parts_.clock.utc_us(), parts_.clock.now_ns()};
+  }
+
+  Parts parts_;
+  std::function<void(const estimator::fdi::Alarm&)> changed_;
+  io::Conditions conditions_;
+  spoolwatch::health_t health_;
+  std::int64_t next_second_ns_;
+  std::int64_t tick_ = 0;
+  std::uint8_t state_ = 0;
+  std::int64_t overruns_before_ = 0;
+  std::int64_t dropped_before_ = 0;
+};
+
+}  // namespace monitor::rt

@@ -1,0 +1,80 @@
+#include "daemon/rt/run.h"
+
+#include <cstring>
+#include <exception>
+
+namespace monitor::rt {
+namespace {
+
+/// Virtual ticks between two looks at the signals.
+constexpr int kTicksBetweenLooks = 256;
+/// How often the detector looks at its queue: small against any alarm's delay, cheap as a wake-up.
+constexpr std::int64_t kPoll_ns = 10'000'000;
+/// A loop that has not ended this long after it was told to is stuck in a device.
+constexpr std::chrono::milliseconds kStuck{1000};
+
+void detect(Detector& detector, const std::atomic<bool>& loop_ended, std::atomic<bool>& failed,
+            Outcome& outcome) {
+  try {
+    MonotonicClock clock;
+    while (!loop_ended.load(std::memory_order_acquire)) {
+      detector.poll();
+      clock.sleep_until_ns(clock.now_ns() + kPoll_ns);
+    }
+    detector.finish();
+  } catch (const std::exception& e) {
+    outcome = std::string("detector: ") + e.what();
+    failed.store(true, std::memory_order_release);
+  }
+}
+
+}  // namespace
+
+Outcome run_virtual(Run& run, Detector& detector, std::atomic<bool>& stop,
+                    const std::function<bool()>& stop_asked) {
+  for (int n = 0; run.step(); ++n) {
+    detector.poll();
+    if (n % kTicksBetweenLooks == 0 && stop_asked()) stop.store(true, std::memory_order_relaxed);
+  }
+  detector.finish();
+  return {};
+}
+
+Outcome run_realtime(Run& run, Detector& detector, const ThreadOptions& loop_thread,
+                     std::atomic<bool>& stop, hal::ValveDrive* valve,
+                     const std::function<bool()>& wait_stop_asked) {
+  std::atomic<bool> loop_ended{false};
+  std::atomic<bool> detector_failed{false};
+  Outcome outcome;
+  Thread detecting;
+  Thread looping;
+  int error = detecting.start("detector", {},
+                              [&] { detect(detector, loop_ended, detector_failed, outcome); });
+  if (error == 0) {
+    error = looping.start("loop", loop_thread, [&] {
+      prepare_loop_thread();
+      while (run.step()) {
+      }
+      loop_ended.store(true, std::memory_order_release);
+    });
+  }
+  if (error != 0) {
+    loop_ended.store(true, std::memory_order_release);
+    detecting.join();
+    return std::string("cannot start a thread: ") + std::strerror(error);
+  }
+  while (!loop_ended.load(std::memory_order_acquire)) {
+    if (wait_stop_asked() || detector_failed.load(std::memory_order_acquire)) {
+      stop.store(true, std::memory_order_relaxed);
+      break;
+    }
+  }
+  if (!looping.join_for(kStuck)) {
+    if (valve != nullptr) valve->go_null();
+    std::_Exit(static_cast<int>(1));  // no destructor may wait for the stuck thread
+  }
+  detecting.join();
+  return outcome;
+}
+
+}  // namespace monitor::rt

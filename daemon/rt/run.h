@@ -1,0 +1,62 @@
+// Runs a loop from its first tick to the last, which commands null: in virtual time on the calling
+// thread, or in real time on threads of its own. The steps are the same code.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "daemon/rt/detector.h"
+#include "daemon/rt/loop.h"
+#include "daemon/rt/privileges.h"
+
+namespace monitor::rt {
+
+inline constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
+
+/// The life of one loop. Whatever way it ends, the last thing written is null.
+class Run {
+ public:
+  /// `ticks`: periods of the grid before the closing one; `valve` may be null.
+  Run(Loop& loop, const Grid& grid, Clock& clock, hal::ValveDrive* valve, std::int64_t ticks,
+      const std::atomic<bool>& stop) noexcept
+      : loop_(loop), grid_(grid), clock_(clock), valve_(valve), ticks_(ticks), stop_(stop) {}
+  ~Run() {
+    if (valve_ != nullptr) valve_->go_null();
+  }
+  Run(const Run&) = delete;
+  Run& operator=(const Run&) = delete;
+
+  /// Waits for the next period and runs it; false after the last.
+  bool step() noexcept {
+    const Period period = grid_.next(clock_);
+    const bool last = stop_.load(std::memory_order_relaxed) || period.tick.index >= ticks_;
+    if (last && valve_ == nullptr) return false;
+    if (last) loop_.close();
+    return loop_.tick(period) && !last;
+  }
+
+ private:
+  Loop& loop_;
+  Grid grid_;
+  Clock& clock_;
+  hal::ValveDrive* valve_;
+  std::int64_t ticks_;
+  const std::atomic<bool>& stop_;
+};
+
+/// How a run ended: "" as it was meant to, else what went wrong, in one line.
+using Outcome = std::string;
+
+/// `stop_asked` is called now and then; once it says so, the next tick is the last.
+Outcome run_virtual(Run& run, Detector& detector, std::atomic<bool>& stop,
+                    const std::function<bool()>& stop_asked);
+
+/// `wait_stop_asked` waits up to 100 ms and says whether to stop.
+Outcome run_realtime(Run& run, Detector& detector, const ThreadOptions& loop_thread,
+                     std::atomic<bool>& stop, hal::ValveDrive* valve,
+                     const std::function<bool()>& wait_stop_asked);
+
+}  // namespace monitor::rt

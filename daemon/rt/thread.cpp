@@ -1,0 +1,59 @@
+#include "daemon/rt/thread.h"
+
+#include <sched.h>
+
+#include <ctime>
+
+namespace monitor::rt {
+
+Thread::~Thread() { join(); }
+
+int Thread::start(const char* name, const ThreadOptions& options, std::function<void()> body) {
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  pthread_attr_setstacksize(&attributes, kThreadStack_bytes);
+  if (options.priority > 0) {
+    sched_param parameters{};
+    parameters.sched_priority = options.priority;
+    pthread_attr_setinheritsched(&attributes, PTHREAD_EXPLICIT_SCHED);
+    pthread_attr_setschedpolicy(&attributes, SCHED_FIFO);
+    pthread_attr_setschedparam(&attributes, &parameters);
+  }
+  if (options.cpu >= 0) {
+    cpu_set_t cpus;
+    CPU_ZERO(&cpus);
+    CPU_SET(static_cast<unsigned>(options.cpu), &cpus);
+    pthread_attr_setaffinity_np(&attributes, sizeof cpus, &cpus);
+  }
+  body_ = std::move(body);
+  const int error = pthread_create(
+      &handle_, &attributes,
+      [](void* self) -> void* {
+        static_cast<Thread*>(self)->body_();
+        return nullptr;
+      },
+      this);
+  pthread_attr_destroy(&attributes);
+  running_ = error == 0;
+  if (running_) pthread_setname_np(handle_, name);
+  return error;
+}
+
+void Thread::join() {
+  if (running_) pthread_join(handle_, nullptr);
+  running_ = false;
+}
+
+bool Thread::join_for(std::chrono::milliseconds time) {
+  if (!running_) return true;
+  timespec until{};
+  clock_gettime(CLOCK_REALTIME, &until);
+  const auto ns = std::chrono::nanoseconds(time).count() + until.tv_nsec;
+  until.tv_sec += ns / 1'000'000'000;
+  until.tv_nsec = ns % 1'000'000'000;
+  if (pthread_timedjoin_np(handle_, nullptr, &until) != 0) return false;
+  running_ = false;
+  return true;
+}
+
+}  // namespace monitor::rt

@@ -1,0 +1,37 @@
+// A thread with a small stack, and if asked a real-time priority and a core of its own.
+#pragma once
+
+#include <pthread.h>
+
+#include <chrono>
+#include <functional>
+
+namespace monitor::rt {
+
+struct ThreadOptions {
+  int priority = 0;  ///< of SCHED_FIFO; 0: the scheduler's normal class
+  int cpu = -1;      ///< core to be pinned to; -1: any
+};
+
+inline constexpr std::size_t kThreadStack_bytes = 256 * 1024;
+
+class Thread {
+ public:
+  Thread() = default;
+  ~Thread();  ///< joins
+  Thread(const Thread&) = delete;
+  Thread& operator=(const Thread&) = delete;
+
+  /// Returns 0, or the errno of what was not granted; then nothing runs.
+  int start(const char* name, const ThreadOptions& options, std::function<void()> body);
+  void join();
+  /// False when it is still running after that time.
+  bool join_for(std::chrono::milliseconds time);
+
+ private:
+  std::function<void()> body_;
+  pthread_t handle_{};
+  bool running_ = false;
+};
+
+}  // namespace monitor::rt

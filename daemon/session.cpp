@@ -1,0 +1,169 @@
+#include "daemon/session.h"
+
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <ctime>
+#include <memory>
+#include <ostream>
+
+#include "config/schema/document.h"
+#include "config/schema/error.h"
+#include "daemon/null_guard.h"
+#include "daemon/rt/run.h"
+
+namespace monitor {
+namespace {
+
+/// The first period begins this long after everything stands.
+constexpr std::int64_t kLead_ns = 20'000'000;
+constexpr std::int64_t kCommandLife_ns = 1'000'000'000;
+
+/// What a session consists of before it runs: nothing has been written to a device yet.
+struct Prepared {
+  double sample_time_s;
+  hal::Opening opening;
+  hal::Devices devices;
+  std::unique_ptr<control::Reference> reference;
+  std::uint64_t hash;
+  std::unique_ptr<estimator::fdi::Pipeline> pipeline;
+};
+
+Prepared prepare(DaemonConfig& config) {
+  Prepared p;
+  p.sample_time_s = 1.0 / config.loop.rate_Hz;
+  p.opening = {config.file, config.folder, p.sample_time_s, config.rig.valve().null_V};
+  p.devices = config.rig.open(p.opening);
+  if (!std::isnan(p.devices.sample_time_s)) p.sample_time_s = p.devices.sample_time_s;
+  p.reference = control::make_reference(
+      config.drives_valve() ? config.reference : control::ReferenceConfig{}, config.folder);
+  estimator::fdi::PipelineConfig pipeline = config.pipeline;
+  pipeline.load_bands(config.folder, p.sample_time_s);
+  p.pipeline = std::make_unique<estimator::fdi::Pipeline>(pipeline, p.sample_time_s);
+  p.hash = hash(config);
+  return p;
+}
+
+sigset_t stop_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int signal : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&set, signal);
+  return set;
+}
+
+bool wait_for_stop(long ms) {
+  const sigset_t set = stop_signals();
+  const timespec time{0, ms * 1'000'000};
+  return sigtimedwait(&set, nullptr, &time) > 0;
+}
+
+std::string hex(std::uint64_t value) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
+  return text;
+}
+
+void arm_and_start(rt::CommandQueue& commands, std::int64_t expires_ns) {
+  rt::Command command;
+  command.expires_ns = expires_ns;
+  for (const control::Event event : {control::Event::arm, control::Event::start}) {
+    command.event = event;
+    commands.push(command);
+  }
+}
+
+}  // namespace
+
+int run_session(DaemonConfig& config, const SessionOptions& options, std::ostream& log) {
+  Prepared p = prepare(config);
+  const bool virtual_time = options.virtual_time || p.devices.fast;
+  const sigset_t signals = stop_signals();
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+
+  rt::VirtualClock virtual_clock;
+  rt::MonotonicClock monotonic_clock;
+  rt::Clock& clock = virtual_time ? static_cast<rt::Clock&>(virtual_clock) : monotonic_clock;
+  const std::int64_t run_id =
+      virtual_time ? static_cast<std::int64_t>(p.hash >> 1U) : clock.utc_us();
+  std::unique_ptr<io::Recorder> recorder;
+  if (!config.recorder.folder.empty()) {
+    recorder = std::make_unique<io::Recorder>(config.recorder, run_id, !virtual_time);
+  }
+  io::Publisher publisher(config.lcm, run_id, p.sample_time_s, recorder.get());
+
+  auto samples = std::make_unique<rt::SampleQueue>();
+  rt::CommandQueue commands;
+  rt::LoopStats stats;
+  const hal::ValveConfig& valve_config = config.rig.valve();
+  const control::Controller controller(
+      config.controller, {valve_config.null_V, valve_config.limit_V, valve_config.slew_V_per_s},
+      p.sample_time_s);
+  hal::ValveDrive* valve = p.devices.valve.get();
+  rt::Loop loop(config.loop,
+                {clock, *p.devices.rod, valve, *p.reference, *samples, commands, stats}, controller,
+                p.sample_time_s);
+
+  rt::Grant grant;
+  grant.text = "virtual time";
+  if (!virtual_time) grant = rt::ask_privileges(config.loop);
+  log << "spoolwatchd: real-time privileges: " << grant.text << std::endl;
+  rt::Detector detector({clock, *samples, stats, *p.pipeline, publisher, recorder.get()},
+                        {config.rig_id, hex(p.hash), grant.text, config.rig.rod_backend(),
+                         valve != nullptr ? valve_config.backend : ""});
+
+  const NullGuard guard(valve);
+  const std::int64_t start_ns = clock.now_ns() + (virtual_time ? 0 : kLead_ns);
+  if (config.loop.auto_arm && valve != nullptr) {
+    arm_and_start(commands, start_ns + kCommandLife_ns);
+  }
+  const std::int64_t ticks =
+      options.duration_s > 0.0 ? std::llround(options.duration_s / p.sample_time_s) : rt::kForever;
+  std::atomic<bool> stop{false};
+  rt::Run run(loop, rt::Grid(start_ns, std::llround(p.sample_time_s * 1e9)), clock, valve, ticks,
+              stop);
+  const rt::Outcome outcome =
+      virtual_time ? rt::run_virtual(run, detector, stop, [] { return wait_for_stop(0); })
+                   : rt::run_realtime(run, detector, grant.loop_thread, stop, valve,
+                                      [] { return wait_for_stop(100); });
+  if (outcome.empty()) return static_cast<int>(config::schema::ExitCode::done);
+  log << "spoolwatchd: " << outcome << std::endl;
+  return static_cast<int>(config::schema::ExitCode::failed);
+}
+
+void check_session(DaemonConfig& config, std::ostream& out) {
+  const Prepared p = prepare(config);
+  out << config::schema::print_toml([&](config::schema::Visitor& v) { config.visit(v); });
+  char line[160];
+  out << "\n# " << config.file << ": period " << p.sample_time_s * 1e3 << " ms, configuration "
+      << hex(p.hash) << "\n";
+  if (!config.drives_valve()) {
+    out << "# No valve is driven: state MONITOR, nothing is ever written.\n";
+    return;
+  }
+  const double speed_mps = config.rig.worst_speed_mps(p.opening);
+  const double period_s = p.sample_time_s;
+  const double null_s = static_cast<double>(rt::kNullAfter_ns) * 1e-9;
+  // An outage shorter than the 50 ms rule ends with the old law, one as long as it with null.
+  const double stall_s = null_s + period_s;
+  const double bad_s = period_s;
+  const struct {
+    const char* failure;
+    double time_s;
+  } rows[] = {
+      {"stop, signal or error", 2.0 * period_s},
+      {"position missing", bad_s},
+      {"loop late, then back", stall_s},
+      {"process killed", 0.0},
+  };
+  std::snprintf(line, sizeof line, "# %-24s %-8s %16s %16s\n", "failure", "valve",
+                "worst time (ms)", "worst travel (mm)");
+  out << line;
+  for (const auto& row : rows) {
+    std::snprintf(line, sizeof line, "# %-24s %-8s %16.1f %16.2f\n", row.failure,
+                  config.rig.valve().backend.c_str(), row.time_s * 1e3,
+                  row.time_s * speed_mps * 1e3);
+    out << line;
+  }
+}
+
+}  // namespace monitor

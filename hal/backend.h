@@ -1,0 +1,47 @@
+// A backend as configuration sees it: its TOML table, and the devices that it opens.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "config/schema/visitor.h"
+#include "hal/device.h"
+
+namespace hal {
+
+/// What every backend is told about the rig when it opens.
+struct Opening {
+  std::string file;              ///< configuration file, for messages
+  std::filesystem::path folder;  ///< relative paths of the file start here
+  double sample_time_s = 0.005;  ///< period of the loop
+  double null_V = 0.0;           ///< the commanded safe voltage
+};
+
+struct Devices {
+  std::shared_ptr<RodSensor> rod;     ///< null when the backend reads no position
+  std::shared_ptr<ValveDrive> valve;  ///< null when the backend drives no valve
+  double sample_time_s = kMissing;    ///< period that the device dictates (a record's), else NaN
+  bool fast = false;                  ///< as fast as possible: nothing waits for the wall clock
+};
+
+class Backend {
+ public:
+  virtual ~Backend() = default;
+  /// Lists the fields of the backend's own table.
+  virtual void visit(config::schema::Visitor& v) = 0;
+  /// Opens and checks; throws config::schema::Error. Writes nothing to a device.
+  [[nodiscard]] virtual Devices open(const Opening& opening) const = 0;
+  /// Moves nothing real, so that it may be armed without a person (`loop.auto_arm`).
+  [[nodiscard]] virtual bool harmless() const noexcept = 0;
+  /// Fastest the rod can move under a command held at +-limit_V, NaN when it cannot be said.
+  [[nodiscard]] virtual double worst_speed_mps(const Opening& opening, double limit_V) const = 0;
+};
+
+/// `text` as a path, relative ones from the configuration file's folder.
+[[nodiscard]] inline std::filesystem::path resolve(const Opening& opening,
+                                                   const std::string& text) {
+  return opening.folder / text;
+}
+
+}  // namespace hal

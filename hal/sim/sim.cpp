@@ -1,0 +1,99 @@
+#include "hal/sim/sim.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "config/schema/error.h"
+
+namespace hal::sim {
+namespace {
+
+/// How long the valve is held open to find the fastest speed: many time constants of any rod.
+constexpr double kSpeedSearch_s = 0.5;
+/// How far a period may be from a whole number of integration steps, in steps.
+constexpr double kWholeSteps = 1e-6;
+
+}  // namespace
+
+void SimConfig::visit(config::schema::Visitor& v) {
+  v.text({"model", "model file (TOML)", true}, model);
+  v.number({"encoder_resolution_m", "step of the encoder, 0 for none"}, encoder_resolution_m,
+           {0.0, 0.1});
+  v.number({"noise_m", "standard deviation of the reading"}, noise_m, {0.0, 0.1});
+  v.integer({"dac_bits", "resolution of the D/A converter, 0 for none"}, dac_bits, {0, 24});
+  v.number({"dac_range_V", "range of the D/A converter, both ways"}, dac_range_V, {1e-3, 1e3});
+  v.integer({"seed", "of the noise"}, seed, {0, std::numeric_limits<std::int64_t>::max()});
+  config::schema::visit_list(v, {"fault", "a scheduled change of a parameter"}, faults);
+}
+
+SimRig::SimRig(std::unique_ptr<plant_sim::Plant> plant, const SimConfig& config,
+               double sample_time_s, double null_V)
+    : plant_(std::move(plant)),
+      schedule_(config.faults, *plant_),
+      encoder_(config.encoder_resolution_m, config.noise_m,
+               static_cast<std::uint64_t>(config.seed)),
+      dac_{static_cast<int>(config.dac_bits), config.dac_range_V},
+      sample_time_s_(sample_time_s),
+      null_V_(null_V),
+      held_V_(dac_.apply(null_V)) {}
+
+Reading SimRig::read(const Tick& tick) noexcept {
+  const double u_V = held_V_.load(std::memory_order_relaxed);
+  for (; index_ < tick.index; ++index_) {
+    schedule_.advance(*plant_, u_V, static_cast<double>(index_) * sample_time_s_, sample_time_s_);
+  }
+  Reading reading;
+  reading.y_m = encoder_.read(plant_->reading_m());
+  reading.command_V = u_V;
+  reading.quality = Quality::good;
+  return reading;
+}
+
+Applied SimRig::write(double u_V, const Tick& /*tick*/) noexcept {
+  const double applied_V = dac_.apply(u_V);
+  held_V_.store(applied_V, std::memory_order_relaxed);
+  return {applied_V, true};
+}
+
+Applied SimRig::go_null() noexcept { return write(null_V_, {}); }
+
+std::unique_ptr<plant_sim::Plant> SimBackend::load(const Opening& opening) const {
+  const std::filesystem::path file = resolve(opening, config_.model);
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) {
+    throw config::schema::bad_config(opening.file + ": [sim] model",
+                                     "is \"" + file.string() + "\", which is no file",
+                                     "a model file (TOML)");
+  }
+  return plant_sim::make_plant(plant_sim::load_model(file));
+}
+
+Devices SimBackend::open(const Opening& opening) const {
+  std::unique_ptr<plant_sim::Plant> plant = load(opening);
+  const double steps = opening.sample_time_s / plant->step_s();
+  if (std::abs(steps - std::round(steps)) > kWholeSteps) {
+    throw config::schema::bad_config(
+        opening.file + ": [loop] rate_hz",
+        "makes a period of " + std::to_string(steps) + " integration steps of the model",
+        "a whole number of steps");
+  }
+  auto rig =
+      std::make_shared<SimRig>(std::move(plant), config_, opening.sample_time_s, opening.null_V);
+  return {rig, rig, kMissing, false};
+}
+
+double SimBackend::worst_speed_mps(const Opening& opening, double limit_V) const {
+  const std::unique_ptr<plant_sim::Plant> plant = load(opening);
+  double worst_mps = 0.0;
+  for (const double u_V : {limit_V, -limit_V}) {
+    plant->reset();
+    for (double t_s = 0.0; t_s < kSpeedSearch_s; t_s += plant->step_s()) {
+      plant->advance(opening.null_V + u_V, plant->step_s());
+      worst_mps = std::max(worst_mps, std::abs(plant->speed_mps()));
+    }
+  }
+  return worst_mps;
+}
+
+}  // namespace hal::sim

@@ -1,0 +1,65 @@
+// The simulated rig as a device: a plant, an encoder, a D/A converter and a schedule of faults.
+//
+// It advances on the nominal time grid, whatever the wall clock did: reading at tick n integrates
+// from the last tick read to n under the voltage written last. The same seed and the same sequence
+// of ticks and writes give the same readings.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <vector>
+
+#include "hal/backend.h"
+#include "plant_sim/instruments.h"
+#include "plant_sim/schedule.h"
+
+namespace hal::sim {
+
+/// TOML [sim].
+struct SimConfig {
+  std::string model;
+  double encoder_resolution_m = 5e-6;
+  double noise_m = 0.0;
+  std::int64_t dac_bits = 12;
+  double dac_range_V = 10.0;
+  std::int64_t seed = 1;
+  std::vector<plant_sim::Change> faults;
+
+  void visit(config::schema::Visitor& v);
+};
+
+class SimRig final : public RodSensor, public ValveDrive {
+ public:
+  /// Throws config::schema::Error when a fault names no parameter of the plant.
+  SimRig(std::unique_ptr<plant_sim::Plant> plant, const SimConfig& config, double sample_time_s,
+         double null_V);
+
+  Reading read(const Tick& tick) noexcept override;
+  Applied write(double u_V, const Tick& tick) noexcept override;
+  Applied go_null() noexcept override;
+
+ private:
+  std::unique_ptr<plant_sim::Plant> plant_;
+  plant_sim::Schedule schedule_;
+  plant_sim::Encoder encoder_;
+  plant_sim::DacRange dac_;
+  double sample_time_s_;
+  double null_V_;
+  std::atomic<double> held_V_;  ///< go_null() may come from another thread
+  std::int64_t index_ = 0;      ///< tick that the plant stands at
+};
+
+class SimBackend final : public Backend {
+ public:
+  void visit(config::schema::Visitor& v) override { config_.visit(v); }
+  [[nodiscard]] Devices open(const Opening& opening) const override;
+  [[nodiscard]] bool harmless() const noexcept override { return true; }
+  [[nodiscard]] double worst_speed_mps(const Opening& opening, double limit_V) const override;
+
+ private:
+  [[nodiscard]] std::unique_ptr<plant_sim::Plant> load(const Opening& opening) const;
+
+  SimConfig config_;
+};
+
+}  // namespace hal::sim
