@@ -1,7 +1,106 @@
+// spoolwatch listen: what the daemon says over LCM, as lines, as JSON or as a live view.
+#include <unistd.h>
 #include <CLI/CLI.hpp>
+#include <chrono>
+#include <csignal>
+#include <iostream>
+#include <memory>
 
+#include "config/messages/channels.h"
+#include "config/schema/error.h"
 #include "workbench/command.h"
+#include "workbench/listen_feed.h"
+#include "workbench/listen_printer.h"
+#include "workbench/live_view.h"
 
 namespace workbench {
-void add_listen(CLI::App&, int&) {}
+namespace {
+
+struct Options {
+  std::string url = config::messages::kDefaultUrl;
+  std::string prefix = config::messages::kDefaultPrefix;
+  bool json = false;
+  bool live = false;
+  double duration_s = 0.0;
+};
+
+volatile std::sig_atomic_t stop_asked = 0;
+
+void ask_to_stop(int) { stop_asked = 1; }
+
+void stop_on_signals() {
+  struct sigaction action {};
+  action.sa_handler = ask_to_stop;
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
+}
+
+class Ending {
+ public:
+  explicit Ending(double duration_s)
+      : limited_(duration_s > 0.0),
+        at_(Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                               std::chrono::duration<double>(limited_ ? duration_s : 0.0))) {}
+  [[nodiscard]] bool reached() const {
+    return stop_asked != 0 || (limited_ && Clock::now() >= at_);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  bool limited_;
+  Clock::time_point at_;
+};
+
+int listen_with_lines(const Options& options) {
+  LinePrinter printer(std::cout, options.json);
+  Feed feed(options.url, options.prefix, false, printer);
+  const Ending ending(options.duration_s);
+  while (!ending.reached()) {
+    if (feed.poll(std::chrono::milliseconds(100)) || stop_asked != 0) continue;
+    if (options.url.starts_with("file:")) return 0;
+    throw config::schema::Error(config::schema::ExitCode::failed,
+                                "LCM cannot receive on \"" + options.url + "\" any more");
+  }
+  return 0;
+}
+
+int listen_live(const Options& options) {
+  LiveState state;
+  Feed feed(options.url, options.prefix, true, state);
+  const Ending ending(options.duration_s);
+  LiveView view;
+  bool more = true;
+  while (!ending.reached() && !view.quit_asked()) {
+    // After the end of a log its last picture stays.
+    if (more) {
+      more = feed.poll(std::chrono::milliseconds(100)) || !options.url.starts_with("file:");
+    } else {
+      ::usleep(100'000);
+    }
+    view.show(state);
+  }
+  return 0;
+}
+
+int listen(const Options& options) {
+  stop_on_signals();
+  const bool terminal = ::isatty(STDOUT_FILENO) == 1 && ::isatty(STDIN_FILENO) == 1;
+  return options.live && !options.json && terminal ? listen_live(options)
+                                                   : listen_with_lines(options);
+}
+
+}  // namespace
+
+void add_listen(CLI::App& command, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  command.add_option("--lcm-url", options->url, "LCM URL; file:///LOG?mode=r replays a log")
+      ->capture_default_str();
+  command.add_option("--prefix", options->prefix, "of the channel names")->capture_default_str();
+  command.add_option("--duration", options->duration_s, "stop after so many seconds (0: never)")
+      ->check(CLI::NonNegativeNumber);
+  command.add_flag("--json", options->json, "one JSON object per line");
+  command.add_flag("--live", options->live,
+                   "a terminal view; lines when there is no terminal. q quits");
+  command.callback([options, &exit_code] { exit_code = listen(*options); });
+}
+
 }  // namespace workbench

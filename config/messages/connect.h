@@ -1,9 +1,11 @@
 // Starts LCM on a URL, or says in one line why not. LCM itself answers a wrong URL with several
-// lines on stderr; they are held back here.
+// lines on stderr; they are held back here, and the first of them becomes the reason.
 #pragma once
 
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <unistd.h>
+#include <array>
 #include <lcm/lcm-cpp.hpp>
 #include <memory>
 #include <string>
@@ -12,36 +14,48 @@
 
 namespace config::messages {
 
-/// Sends what the process writes to stderr to nowhere while it lives. Only for the start of a
-/// program, before other threads write.
-class QuietStderr {
+/// Catches what the process writes to stderr while it lives. Only for the start of a program,
+/// before other threads write.
+class CaughtStderr {
  public:
-  QuietStderr() : saved_(::dup(STDERR_FILENO)) {
-    const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
-    ::dup2(nowhere, STDERR_FILENO);
-    ::close(nowhere);
+  CaughtStderr() : saved_(::dup(STDERR_FILENO)), caught_(::memfd_create("stderr", MFD_CLOEXEC)) {
+    ::dup2(caught_, STDERR_FILENO);
   }
-  ~QuietStderr() {
+  ~CaughtStderr() {
     ::dup2(saved_, STDERR_FILENO);
     ::close(saved_);
+    ::close(caught_);
   }
-  QuietStderr(const QuietStderr&) = delete;
-  QuietStderr& operator=(const QuietStderr&) = delete;
+  CaughtStderr(const CaughtStderr&) = delete;
+  CaughtStderr& operator=(const CaughtStderr&) = delete;
+
+  [[nodiscard]] std::string first_line() const {
+    std::array<char, 256> text{};
+    const ssize_t size = ::pread(caught_, text.data(), text.size(), 0);
+    const std::string all(text.data(), size > 0 ? static_cast<std::size_t>(size) : 0);
+    return all.substr(0, all.find('\n'));
+  }
 
  private:
   int saved_;
+  int caught_;
 };
 
 /// Throws schema::Error (exit 78).
 inline std::unique_ptr<lcm::LCM> connect(const std::string& url) {
   std::unique_ptr<lcm::LCM> lcm;
+  std::string reason;
   {
-    const QuietStderr quiet;
+    const CaughtStderr caught;
     lcm = std::make_unique<lcm::LCM>(url);
+    reason = caught.first_line();
   }
-  if (!lcm->good()) {
-    throw schema::bad_config("LCM URL \"" + url + "\"", "LCM cannot start on it",
-                             "udpm://GROUP:PORT?ttl=N on a reachable multicast network, "
+  // A tcpq client without its server counts as good but has no descriptor.
+  const bool writes_log = url.starts_with("file:") && url.find("mode=w") != std::string::npos;
+  if (!lcm->good() || (!writes_log && lcm->getFileno() < 0)) {
+    throw schema::bad_config("LCM URL \"" + url + "\"",
+                             "LCM cannot start" + (reason.empty() ? "" : " (" + reason + ")"),
+                             "udpm://GROUP:PORT?ttl=N with a multicast route to GROUP, "
                              "file:///LOG?mode=r of a readable log, tcpq://HOST:PORT of a server");
   }
   return lcm;

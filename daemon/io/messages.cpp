@@ -1,5 +1,7 @@
 #include "daemon/io/messages.h"
 
+#include <limits>
+
 namespace monitor::io {
 
 void fill(spoolwatch::sample_t& message, const estimator::fdi::Sample& sample,
@@ -48,9 +50,9 @@ void fill(spoolwatch::alarm_t& message, const estimator::fdi::Alarm& alarm, bool
   message.severity = static_cast<std::int8_t>(alarm.severity);
   message.active = alarm.active ? 1 : 0;
   message.repeat = repeat ? 1 : 0;
-  message.latched = alarm.latched ? 1 : 0;
-  message.acknowledged = alarm.acknowledged ? 1 : 0;
-  message.shelved = alarm.shelved ? 1 : 0;
+  message.latched = 0;
+  message.acknowledged = 0;
+  message.shelved = 0;
   message.first_up = alarm.first_up ? 1 : 0;
   message.tick = alarm.tick;
   message.value = alarm.value;
@@ -60,7 +62,7 @@ void fill(spoolwatch::alarm_t& message, const estimator::fdi::Alarm& alarm, bool
   message.quantity = alarm.quantity;
   message.parameter = alarm.parameter;
   message.direction = alarm.direction;
-  message.confidence = alarm.confidence;
+  message.confidence = std::numeric_limits<double>::quiet_NaN();
   message.group_size = static_cast<std::int32_t>(alarm.ambiguity_group.size());
   message.ambiguity_group = alarm.ambiguity_group;
   message.reason = alarm.reason;

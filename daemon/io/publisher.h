@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "config/messages/channels.h"
 #include "config/schema/visitor.h"
 
 namespace lcm {
@@ -30,11 +31,9 @@ namespace monitor::io {
 
 class Recorder;
 
-inline constexpr const char* kDefaultLcmUrl = "udpm://239.255.76.67:7667?ttl=0";
-
 struct PublisherConfig {
-  std::string url = kDefaultLcmUrl;  // "" sends nothing (records only)
-  std::string prefix = "SPOOLWATCH";
+  std::string url = config::messages::kDefaultUrl;  // "" sends nothing (records only)
+  std::string prefix = config::messages::kDefaultPrefix;
 
   /// Fields of the table [lcm].
   void visit(config::schema::Visitor& v);

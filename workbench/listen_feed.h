@@ -1,0 +1,83 @@
+// What a running daemon (or a log of one) says over LCM, message by message, together with what
+// only the receiver can notice: messages lost on the way, a restarted daemon, a silent one.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+
+namespace lcm {
+class LCM;
+struct ReceiveBuffer;
+}  // namespace lcm
+namespace spoolwatch {
+class sample_t;
+class estimate_t;
+class alarm_t;
+class health_t;
+}  // namespace spoolwatch
+
+namespace workbench {
+
+/// Without a health message for so long the daemon counts as silent (it sends one a second).
+inline constexpr std::chrono::seconds kSilence{3};
+
+class Listener {
+ public:
+  virtual ~Listener() = default;
+  virtual void on_sample(const spoolwatch::sample_t&) {}
+  virtual void on_estimate(const spoolwatch::estimate_t&) {}
+  virtual void on_alarm(const spoolwatch::alarm_t&) {}
+  virtual void on_health(const spoolwatch::health_t&) {}
+  /// A daemon was heard that was not heard before.
+  virtual void on_new_run(std::int64_t run_id, bool first) = 0;
+  /// `count` messages of `channel` did not arrive.
+  virtual void on_lost(const std::string& channel, std::int64_t count) = 0;
+  /// No health for kSilence (`silent`), or health again.
+  virtual void on_silence(bool silent) = 0;
+  /// Anything else worth a line, at most once per cause.
+  virtual void on_notice(const std::string& what) = 0;
+};
+
+class Feed {
+ public:
+  /// Throws config::schema::Error when LCM cannot start on `url`.
+  Feed(const std::string& url, const std::string& prefix, bool with_samples, Listener& listener);
+  ~Feed();
+  Feed(const Feed&) = delete;
+  Feed& operator=(const Feed&) = delete;
+
+  /// Handles what arrives within `timeout`. False at the end of a log.
+  bool poll(std::chrono::milliseconds timeout);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Channel {
+    std::int64_t next_seq = -1;  // -1 before the first message
+    std::int64_t lost = 0;       // not yet told
+  };
+
+  static void received(const lcm::ReceiveBuffer* buffer, const std::string& channel, Feed* feed);
+  template <class Message>
+  bool decode(const lcm::ReceiveBuffer& buffer, const std::string& channel, Message& message);
+  void follow(const std::string& channel, std::int64_t run_id, std::int64_t seq);
+  void watch();
+  void tell_losses();
+
+  std::unique_ptr<lcm::LCM> lcm_;
+  const std::string prefix_;
+  const bool is_log_;
+  Listener& listener_;
+  std::map<std::string, Channel> channels_;
+  std::set<std::int64_t> runs_;
+  std::set<std::string> told_;  // causes of notices
+  std::int64_t run_id_ = 0;
+  bool silent_ = false;
+  Clock::time_point last_health_;
+  Clock::time_point last_losses_;
+};
+
+}  // namespace workbench
