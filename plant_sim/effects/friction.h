@@ -1,0 +1,99 @@
+// Dry friction of seals and guides: Coulomb, Stribeck's rise towards standstill, pre-sliding.
+//
+//   sliding level   g(v) = Fc' + max(Fs - Fc', 0) exp(-(v/vs)^2),   Fc' = Fc (1 + r sign v)
+//   rigid (k = 0)   F = g(v) sign v while it slides; at rest F holds the other forces up to g(0)
+//   pre-sliding     F = k z,  dz = dx - |dx| k z / g(v)   (Dahl: a spring that yields at g)
+//
+// Fc  coulomb_N    Fs  static_N (below Fc: no rise)    vs  stribeck_mps    r  direction_ratio
+// k   presliding_stiffness_N_per_m    x  rod position    z  bristle deflection, m
+// Rigid contact is stick and slip, not a steep curve: while the speed is so small that friction
+// would stop the rod within one integration step, F is just the force that does so, never one that
+// drives. The bristle's equation is solved exactly over each travel dx, so its stiffness against
+// sliding asks for no shorter step. Both dissipate: F v >= 0, or k z^2 / 2 is what is stored.
+// Sources: Karnopp (1985); Dahl (1968); Armstrong-Helouvry, Dupont, Canudas de Wit (1994).
+#pragma once
+
+#include <array>
+
+#include "plant_sim/effects/site.h"
+#include "plant_sim/parameter.h"
+#include "plant_sim/scalar.h"
+
+namespace plant_sim {
+
+template <class S>
+struct Friction {
+  static constexpr const char* kName = "friction";
+  static constexpr const char* kEquation =
+      "Coulomb (1 + ratio sign v), Stribeck Fc + (Fs - Fc) exp(-(v/vs)^2), pre-sliding spring";
+  static constexpr std::array kSites = {Site::dry_friction};
+  static constexpr bool kDissipative = true;
+
+  struct Parameters {
+    S coulomb_N = 0.0;
+    S static_N = 0.0;
+    S stribeck_mps = 0.0;
+    S presliding_stiffness_N_per_m = 0.0;
+    S direction_ratio = 0.0;
+
+    template <class V>
+    void visit(V&& v) {
+      v(ParameterInfo{"coulomb_N", "sliding friction", 0.0, 1e6, 200.0, 0.0}, coulomb_N);
+      v(ParameterInfo{"static_N", "friction at standstill; below coulomb_N it has no influence",
+                      0.0, 1e6, 300.0, 0.0},
+        static_N);
+      v(ParameterInfo{"stribeck_mps", "speed over which static falls to sliding friction", 0.0,
+                      10.0, 0.01, 0.0},
+        stribeck_mps);
+      v(ParameterInfo{"presliding_stiffness_N_per_m", "stiffness before it slides; 0 is rigid", 0.0,
+                      1e9, 1e7, 0.0},
+        presliding_stiffness_N_per_m);
+      v(ParameterInfo{"direction_ratio", "more when extending, less when retracting", -1.0, 1.0,
+                      0.2, 0.0},
+        direction_ratio);
+    }
+  };
+  struct Memory {
+    S deflection_m = 0.0;
+  };
+
+  static S friction_N(const Parameters& p, const Memory& memory, const DryContact<S>& at) {
+    const S forward_N = level_N(p, S(1.0), at.v_mps);
+    const S backward_N = level_N(p, S(-1.0), at.v_mps);
+    const S least_N = select(at.v_mps > S(0.0), S(0.0), -backward_N);
+    const S most_N = select(at.v_mps < S(0.0), S(0.0), forward_N);
+    const S rigid_N = clamp(at.drive_N + at.arrest_kg_per_s * at.v_mps, least_N, most_N);
+    const S spring_N =
+        p.presliding_stiffness_N_per_m * deflection_m(p, memory, at.travel_m, at.v_mps);
+    return select(p.presliding_stiffness_N_per_m > S(0.0), spring_N, rigid_N);
+  }
+
+  static void accept(const Parameters& p, Memory& memory, const S& travel_m, const S& v_mps) {
+    memory.deflection_m = deflection_m(p, memory, travel_m, v_mps);
+  }
+
+  /// Sliding friction at this speed in the given direction (+1 extends, -1 retracts), >= 0.
+  static S level_N(const Parameters& p, const S& direction, const S& v_mps) {
+    const S coulomb_N = p.coulomb_N * (S(1.0) + direction * p.direction_ratio);
+    const S ratio = v_mps / max(p.stribeck_mps, S(kLeastStribeck_mps));
+    const S rise_N = max(p.static_N - coulomb_N, S(0.0));
+    return coulomb_N + rise_N * exp(-min(ratio * ratio, S(kNoRise)));
+  }
+
+ private:
+  static constexpr double kLeastStribeck_mps = 1e-9;  ///< the rise then is at standstill only
+  static constexpr double kNoRise = 700.0;            ///< exp(-700) is still a normal number
+  static constexpr double kLeastLevel_N = 1e-9;
+
+  /// The bristle after a travel of the rod at a constant level: z goes to +-g/k exponentially.
+  static S deflection_m(const Parameters& p, const Memory& memory, const S& travel_m,
+                        const S& v_mps) {
+    const S direction = select(travel_m < S(0.0), S(-1.0), S(1.0));
+    const S level = max(level_N(p, direction, v_mps), S(kLeastLevel_N));
+    const S k = max(p.presliding_stiffness_N_per_m, S(kLeastLevel_N));
+    const S remains = exp(-min(abs(travel_m) * k / level, S(kNoRise)));
+    return memory.deflection_m * remains + direction * (level / k) * (S(1.0) - remains);
+  }
+};
+
+}  // namespace plant_sim

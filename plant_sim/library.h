@@ -1,0 +1,32 @@
+// What can be simulated, as data: plants and effects with their parameters. For reading model
+// files, for the engineer's listing, and for tests that must hold for every effect.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "plant_sim/parameter.h"
+
+namespace plant_sim {
+
+struct EffectInfo {
+  std::string name;
+  std::string equation;
+  std::vector<std::string> sites;  ///< where it attaches (effects/site.h)
+  bool dissipative;                ///< can only take energy out
+  std::vector<ParameterInfo> parameters;
+};
+
+struct PlantInfo {
+  std::string name;
+  std::vector<ParameterInfo> parameters;
+  std::vector<ParameterInfo> initial;  ///< neutral = default; NaN = the plant's own choice
+};
+
+[[nodiscard]] const std::vector<EffectInfo>& effect_library();
+[[nodiscard]] const std::vector<PlantInfo>& plant_library();
+/// Null when there is no such plant.
+[[nodiscard]] const PlantInfo* find_plant(std::string_view name);
+
+}  // namespace plant_sim

@@ -1,0 +1,67 @@
+// A model file: which plant, its parameters and initial state, which effects are added to it, and
+// the gain of the loop that it is meant to be run in. TOML:
+//
+//   schema_version = 1
+//   name = "thesis"
+//   plant = "hydraulic_actuator"
+//   step_s = 0.001
+//   [parameters]          # every parameter of the plant that differs from its default
+//   mass_kg = 50.0
+//   [initial]
+//   y_m = 0.305
+//   [effects.friction]    # presence adds the effect; absent parameters are neutral
+//   coulomb_N = 100.0
+//   [loop]
+//   kp_V_per_m = 100.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "plant_sim/parameter.h"
+
+namespace config::schema {
+class Document;
+class Visitor;
+}  // namespace config::schema
+
+namespace plant_sim {
+
+struct ModelFile {
+  /// An effect of the library and its parameter values, in the order of the library.
+  struct Effect {
+    std::string name;
+    bool present = false;
+    std::vector<NamedValue> parameters;
+  };
+  struct Loop {
+    double kp_V_per_m = 100.0;
+  };
+
+  std::string name;
+  std::string plant = "hydraulic_actuator";
+  double step_s = 0.001;
+  std::vector<NamedValue> parameters;  ///< all of the plant's, defaults filled in
+  std::vector<NamedValue> initial;     ///< NaN = the plant's own choice (half supply pressure)
+  std::vector<Effect> effects;         ///< every effect of the library, present or not
+  Loop loop;
+
+  /// A model with the plant's defaults and no effect.
+  ModelFile();
+  void visit(config::schema::Visitor& v);
+
+  /// The value named "mass_kg", "friction.coulomb_N" or "initial.y_m"; null when unknown. Writing
+  /// to an effect's parameter through this makes the effect present.
+  double* value(std::string_view dotted);
+};
+
+/// Throws config::schema::Error (exit 78) for a missing file, an unknown key or a bad value.
+[[nodiscard]] ModelFile load_model(const std::filesystem::path& file);
+/// The same from a document, after `--set` has changed it.
+[[nodiscard]] ModelFile read_model(const config::schema::Document& document);
+/// TOML text that load_model() reads back to the same values.
+[[nodiscard]] std::string print_model(const ModelFile& model);
+
+}  // namespace plant_sim

@@ -1,0 +1,26 @@
+// What a plant or an effect tells about each of its parameters: the one list from which model files
+// are read, changes are checked and the library is printed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace plant_sim {
+
+/// All numbers in the unit that the name's suffix says.
+struct ParameterInfo {
+  const char* name;
+  const char* what;
+  double min;      ///< smallest allowed value
+  double max;      ///< largest allowed value
+  double typical;  ///< a size worth noticing: where searches start
+  double neutral;  ///< the value without influence (effects), or the default (plants)
+};
+
+/// A value by its name, as model files hold them.
+struct NamedValue {
+  std::string name;
+  double value;
+};
+
+}  // namespace plant_sim

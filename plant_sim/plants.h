@@ -1,0 +1,14 @@
+// Every plant there is. Adding one: its file, its include and its line in each_plant.
+#pragma once
+
+#include "plant_sim/hydraulic_actuator.h"
+
+namespace plant_sim {
+
+/// Calls f.operator()<Plant<double>>() for each.
+template <class F>
+void each_plant(F&& f) {
+  f.template operator()<HydraulicActuator<double>>();
+}
+
+}  // namespace plant_sim

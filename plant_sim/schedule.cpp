@@ -1,0 +1,92 @@
+#include "plant_sim/schedule.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "config/schema/document.h"
+#include "config/schema/error.h"
+
+namespace plant_sim {
+namespace {
+
+constexpr double kNever_s = std::numeric_limits<double>::infinity();
+/// Part of a step by which rounding may put a time late.
+constexpr double kSlack = 1e-6;
+
+}  // namespace
+
+void Change::visit(config::schema::Visitor& v) {
+  v.text({"parameter", "a parameter of the model, as effect.name for an effect's", true},
+         parameter);
+  v.number({"at_s", "when it starts", true}, at_s, {0.0, 1e9});
+  v.number({"value", "the new value"}, value);
+  v.number({"factor", "the new value as a factor of the old"}, factor);
+  v.number({"ramp_s", "time it takes; 0 is a step"}, ramp_s, {0.0, 1e9});
+}
+
+Schedule::Schedule(std::vector<Change> changes, Plant& plant) {
+  std::stable_sort(changes.begin(), changes.end(),
+                   [](const Change& a, const Change& b) { return a.at_s < b.at_s; });
+  for (const Change& change : changes) {
+    double* target = plant.parameter(change.parameter);
+    const std::string where = "change of " + change.parameter;
+    if (target == nullptr) {
+      const std::vector<std::string> names = plant.parameter_names();
+      std::string known;
+      for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
+      const std::string near = config::schema::nearest(change.parameter, names);
+      throw config::schema::bad_config(
+          where, "no such parameter" + (near.empty() ? "" : ", did you mean " + near + "?"), known);
+    }
+    if (std::isnan(change.value) == std::isnan(change.factor)) {
+      throw config::schema::bad_config(where, "needs one of value and factor", "value or factor");
+    }
+    const double to = std::isnan(change.value) ? change.factor * *target : change.value;
+    const ParameterInfo& info = *plant.parameter_info(change.parameter);
+    if (!(to >= info.min && to <= info.max)) {
+      throw config::schema::bad_config(
+          where, "to " + std::to_string(to) + " is out of range",
+          std::to_string(info.min) + " to " + std::to_string(info.max));
+    }
+    entries_.push_back({target, change.at_s, change.ramp_s, 0.0, to, false, false});
+  }
+}
+
+double Schedule::apply(double t_s) noexcept {
+  double next_s = kNever_s;
+  for (Entry& entry : entries_) {
+    if (entry.done) continue;
+    if (t_s < entry.at_s) {
+      next_s = std::min(next_s, entry.at_s);
+      continue;
+    }
+    if (!entry.started) entry.from = *entry.target;
+    entry.started = true;
+    const double passed_s = t_s - entry.at_s;
+    entry.done = passed_s >= entry.ramp_s;
+    *entry.target =
+        entry.done ? entry.to : entry.from + (entry.to - entry.from) * passed_s / entry.ramp_s;
+    if (!entry.done) next_s = t_s;
+  }
+  return next_s;
+}
+
+void Schedule::advance(Plant& plant, double u_V, double t_s, double duration_s) noexcept {
+  const double step_s = plant.step_s();
+  const long long steps = std::llround(duration_s / step_s);
+  long long i = 0;
+  while (i < steps) {
+    const double now_s = t_s + static_cast<double>(i) * step_s;
+    const double next_s = apply(now_s + kSlack * step_s);
+    // whole steps until the next change is due; one while a ramp runs
+    const double ahead = std::ceil((next_s - now_s) / step_s - kSlack);
+    const long long free = ahead < static_cast<double>(steps - i)
+                               ? static_cast<long long>(std::max(1.0, ahead))
+                               : steps - i;
+    plant.advance(u_V, static_cast<double>(free) * step_s);
+    i += free;
+  }
+}
+
+}  // namespace plant_sim

@@ -1,0 +1,55 @@
+// Faults and other changes of a plant's parameters at scheduled times, as a step or as a ramp.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "plant_sim/plant.h"
+
+namespace config::schema {
+class Visitor;
+}
+
+namespace plant_sim {
+
+/// One change. Exactly one of value and factor is given (the other is NaN).
+struct Change {
+  std::string parameter;  ///< "supply_pressure_Pa" or "friction.coulomb_N"
+  double at_s = 0.0;      ///< when it starts
+  double value = std::numeric_limits<double>::quiet_NaN();   ///< in the parameter's own unit
+  double factor = std::numeric_limits<double>::quiet_NaN();  ///< of the value at construction
+  double ramp_s = 0.0;                                       ///< 0 = a step
+
+  void visit(config::schema::Visitor& v);
+};
+
+class Schedule {
+ public:
+  Schedule() = default;
+  /// The plant must outlive the schedule. Throws config::schema::Error (exit 78) for an unknown
+  /// parameter, for a value outside its range, and for both or neither of value and factor.
+  Schedule(std::vector<Change> changes, Plant& plant);
+
+  /// Advances the plant from t_s over duration_s with u_V held. A change takes effect at the first
+  /// integration step that does not begin before its time; a ramp is linear from the value found
+  /// then, updated at every integration step. Times must not go back.
+  void advance(Plant& plant, double u_V, double t_s, double duration_s) noexcept;
+
+ private:
+  struct Entry {
+    double* target;
+    double at_s;
+    double ramp_s;
+    double from;
+    double to;
+    bool started;
+    bool done;
+  };
+  /// Applies what is due at t_s; returns the time of the next thing to do (infinite: none).
+  double apply(double t_s) noexcept;
+
+  std::vector<Entry> entries_;
+};
+
+}  // namespace plant_sim
