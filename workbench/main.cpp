@@ -11,6 +11,8 @@ namespace {
 
 constexpr workbench::Command kCommands[] = {
     {"listen", "print alarms and estimates as they arrive", workbench::add_listen},
+    {"estimate", "fit an ARX structure to a record", workbench::add_estimate},
+    {"calibrate", "learn alarm bands from a healthy record", workbench::add_calibrate},
     {"export", "write an LCM log as CSV", workbench::add_export},
 };
 

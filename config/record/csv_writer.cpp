@@ -1,13 +1,9 @@
-#include <unistd.h>
-
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <fstream>
+#include <string>
 
 #include "config/record/record.h"
-#include "config/schema/error.h"
+#include "config/record/whole_file.h"
 
 namespace config::record {
 namespace {
@@ -41,21 +37,7 @@ std::string csv_text(const Record& record) {
 }  // namespace
 
 void write_csv(const Record& record, const std::filesystem::path& file) {
-  std::filesystem::path temporary = file;
-  temporary += ".part" + std::to_string(getpid());
-  const std::string text = csv_text(record);
-  errno = 0;
-  std::ofstream out(temporary, std::ios::binary);
-  out.write(text.data(), static_cast<std::streamsize>(text.size()));
-  out.close();
-  std::error_code renamed;
-  if (out) std::filesystem::rename(temporary, file, renamed);
-  if (!out || renamed) {
-    const std::string why = renamed ? renamed.message() : std::strerror(errno);
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw schema::Error(schema::ExitCode::failed, file.string() + ": cannot be written: " + why);
-  }
+  write_whole(file, csv_text(record));
 }
 
 }  // namespace config::record

@@ -38,6 +38,12 @@ toml::table parse_value(const std::string& key, const std::string& value) {
   }
 }
 
+void read_version(Visitor& reader) {
+  std::int64_t version = 0;
+  reader.integer({"schema_version", "the layout version, 1", true}, version,
+                 {kSchemaVersion, kSchemaVersion});
+}
+
 }  // namespace
 
 Document::Document(std::shared_ptr<Data> data) : data_(std::move(data)) {}
@@ -100,11 +106,15 @@ void Document::set(std::string_view assignment) {
 
 void Document::read(const Visitor::Body& visit) const {
   TomlReader reader(data_->table, "", data_->name);
-  std::int64_t version = 0;
-  reader.integer({"schema_version", "the layout version, 1", true}, version,
-                 {kSchemaVersion, kSchemaVersion});
+  read_version(reader);
   visit(reader);
   reader.refuse_unknown_keys();
+}
+
+void Document::read_part(const Visitor::Body& visit) const {
+  TomlReader reader(data_->table, "", data_->name);
+  read_version(reader);
+  visit(reader);
 }
 
 const std::string& Document::name() const noexcept { return data_->name; }

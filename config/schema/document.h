@@ -27,6 +27,8 @@ class Document {
   /// Fills the fields that `visit` lists. Throws Error (exit 78) for an unknown key, a wrong type,
   /// a value out of range, a missing required key, or another schema_version.
   void read(const Visitor::Body& visit) const;
+  /// The same for a part of the file: other top-level tables and keys are left to other readers.
+  void read_part(const Visitor::Body& visit) const;
 
   [[nodiscard]] const std::string& name() const noexcept;
   /// The folder that relative paths inside the file are meant from.

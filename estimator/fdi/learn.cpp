@@ -1,0 +1,135 @@
+#include "estimator/fdi/learn.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <vector>
+
+#include "config/schema/error.h"
+
+namespace estimator::fdi {
+namespace {
+
+using config::schema::bad_data;
+
+constexpr double kEulerGamma = 0.57721566490153286;
+constexpr double kOneSided95 = 1.6449;
+constexpr std::size_t kFewestBlocks = 10;
+constexpr std::size_t kEnoughBlocks = 20;
+constexpr double kWindowsPerBlock = 5.0;
+
+/// Upper confidence limit of the level that block maxima exceed with probability `rate`.
+double gumbel_level(std::vector<double> maxima, double rate) {
+  std::sort(maxima.begin(), maxima.end());
+  const auto n = static_cast<double>(maxima.size());
+  double mean = 0.0;
+  double weighted = 0.0;
+  for (std::size_t i = 0; i < maxima.size(); ++i) {
+    mean += maxima[i] / n;
+    weighted += maxima[i] * static_cast<double>(i) / (n * (n - 1.0));
+  }
+  const double beta = std::max(0.0, 2.0 * weighted - mean) / std::log(2.0);
+  const double mu = mean - kEulerGamma * beta;
+  const double y = -std::log(-std::log1p(-rate));
+  const double error = beta * std::sqrt((1.113 + 0.457 * y + 0.805 * y * y) / n);
+  return mu + beta * y + kOneSided95 * error;
+}
+
+/// Whole periods (or windows) that span several windows, shorter when that leaves few blocks.
+double block_length_s(const LearnConfig& config, double duration_s) {
+  const double unit_s =
+      std::max(config.period_s > 0.0 ? config.period_s : config.window_s, config.interval_s);
+  double units = std::max(1.0, std::ceil(kWindowsPerBlock * config.window_s / unit_s));
+  while (units > 1.0 && duration_s / (units * unit_s) < static_cast<double>(kEnoughBlocks)) {
+    units -= 1.0;
+  }
+  return units * unit_s;
+}
+
+}  // namespace
+
+LearnedLimits learn_limits(std::span<const double> values, const LearnConfig& config) {
+  LearnedLimits out;
+  const double duration_s = static_cast<double>(values.size()) * config.interval_s;
+  out.block_s = block_length_s(config, duration_s);
+  const auto length =
+      static_cast<std::size_t>(std::max(1.0, std::round(out.block_s / config.interval_s)));
+  std::vector<double> maxima;
+  std::vector<double> negated_minima;
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (std::size_t begin = 0; begin + length <= values.size(); begin += length) {
+    double greatest = -std::numeric_limits<double>::infinity();
+    double least = std::numeric_limits<double>::infinity();
+    for (const double value : values.subspan(begin, length)) {
+      if (std::isnan(value)) continue;
+      greatest = std::max(greatest, value);
+      least = std::min(least, value);
+      sum += value;
+      ++count;
+    }
+    if (greatest < least) continue;
+    maxima.push_back(greatest);
+    negated_minima.push_back(-least);
+  }
+  out.blocks = maxima.size();
+  if (out.blocks < kFewestBlocks) {
+    std::ostringstream what;
+    what << "the healthy record is too short: " << out.blocks << " blocks of " << out.block_s
+         << " s with trustworthy estimates";
+    std::ostringstream allowed;
+    allowed << kFewestBlocks << " blocks or more";
+    throw bad_data("learning bands", what.str(), allowed.str());
+  }
+  const double rate = out.block_s / (2.0 * config.false_alarm_time_s);
+  if (!(rate < 0.5)) {
+    throw bad_data("learning bands", "the false-alarm time is shorter than a block of estimates");
+  }
+  const double greatest = *std::max_element(maxima.begin(), maxima.end());
+  const double least = -*std::max_element(negated_minima.begin(), negated_minima.end());
+  out.centre = sum / static_cast<double>(count);
+  out.high = std::max(gumbel_level(std::move(maxima), rate), greatest + config.least_margin);
+  out.low = std::min(-gumbel_level(std::move(negated_minima), rate), least - config.least_margin);
+  return out;
+}
+
+double find_period_s(std::span<const double> signal, double sample_time_s) {
+  constexpr std::size_t kMost = 4000;  // samples looked at
+  constexpr double kPeak = 0.8;        // correlation that counts as repeating
+  constexpr double kStep_s = 0.02;
+  const auto step = static_cast<std::size_t>(std::max(1.0, std::floor(kStep_s / sample_time_s)));
+  std::vector<double> x;
+  double mean = 0.0;
+  for (std::size_t i = 0; i < signal.size() && x.size() < kMost; i += step) {
+    x.push_back(signal[i]);
+  }
+  for (const double value : x) mean += value / static_cast<double>(x.size());
+  for (double& value : x) value -= mean;
+  const auto correlation = [&x](std::size_t lag) {
+    double xy = 0.0, xx = 0.0, yy = 0.0;
+    for (std::size_t i = lag; i < x.size(); ++i) {
+      xy += x[i] * x[i - lag];
+      xx += x[i] * x[i];
+      yy += x[i - lag] * x[i - lag];
+    }
+    return xx > 0.0 && yy > 0.0 ? xy / std::sqrt(xx * yy) : 0.0;
+  };
+  bool been_low = false;
+  std::size_t best = 0;
+  double highest = kPeak;
+  for (std::size_t lag = 1; lag < x.size() / 2; ++lag) {
+    const double r = correlation(lag);
+    been_low = been_low || r < 0.5;
+    if (!been_low) continue;
+    if (r > highest) {
+      highest = r;
+      best = lag;
+    } else if (best != 0 && r < 0.5) {
+      break;
+    }
+  }
+  return static_cast<double>(best * step) * sample_time_s;
+}
+
+}  // namespace estimator::fdi

@@ -1,0 +1,13 @@
+// Files that appear complete or not at all.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace config::record {
+
+/// Writes `text` under a temporary name beside `file` and renames it. Throws schema::Error (exit
+/// 1).
+void write_whole(const std::filesystem::path& file, std::string_view text);
+
+}  // namespace config::record
