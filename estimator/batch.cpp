@@ -1,75 +1,68 @@
 #include "estimator/batch.h"
 
-#include <Eigen/QR>
+#include <algorithm>
 #include <cassert>
+#include <cmath>
 
-#include "estimator/regressor.h"
 #include "estimator/solve.h"
+#include "estimator/tall.h"
 
 namespace estimator {
 namespace {
 
-/// Rows gathered before each factorisation: the working set stays in the first-level cache.
-constexpr int kChunk = 128;
-
-/// Householder factorisation of a tall matrix in chunks: [R; next rows] -> R.
-class TallFactor {
- public:
-  explicit TallFactor(int columns) : columns_(columns), rows_(columns + kChunk, columns) {
-    rows_.setZero();
+/// Adds to `factor` the rows whose targets are [first, end); the samples before them are there.
+void add_rows(const Structure& structure, const double* u_V, const double* y_m, std::size_t first,
+              std::size_t end, TallFactor& factor) {
+  for (std::size_t start = first; start < end; start += TallFactor::kChunk) {
+    const int rows = static_cast<int>(std::min<std::size_t>(TallFactor::kChunk, end - start));
+    int column = 0;
+    for (int i = 1; i <= structure.n; ++i) {
+      std::transform(y_m + start - i, y_m + start - i + rows, factor.column(column++),
+                     [](double y) { return -y; });
+    }
+    for (int i = structure.k; i < structure.k + structure.m; ++i) {
+      std::copy_n(u_V + start - i, rows, factor.column(column++));
+    }
+    if (structure.constant) std::fill_n(factor.column(column++), rows, 1.0);
+    std::copy_n(y_m + start, rows, factor.column(column));
+    factor.absorb(rows);
   }
+}
 
-  void add(const double* row) {
-    for (int j = 0; j < columns_; ++j) rows_(filled_, j) = row[j];
-    if (++filled_ == rows_.rows()) reduce();
+Small triangle(const TallFactor& factor) {
+  Small out = Small::Zero(factor.columns(), factor.columns());
+  for (int i = 0; i < factor.columns(); ++i) {
+    for (int j = i; j < factor.columns(); ++j) out(i, j) = factor.element(i, j);
   }
-
-  Small finish() {
-    rows_.bottomRows(rows_.rows() - filled_).setZero();
-    reduce();
-    return rows_.topRows(columns_);
-  }
-
- private:
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
-                             kMaxColumns + kChunk, kMaxColumns>;
-
-  void reduce() {
-    qr_.compute(rows_);
-    rows_.topRows(columns_) = qr_.matrixQR().topRows(columns_).triangularView<Eigen::Upper>();
-    filled_ = columns_;
-  }
-
-  int columns_;
-  int filled_ = 0;
-  Rows rows_;
-  Eigen::HouseholderQR<Rows> qr_;
-};
+  return out;
+}
 
 Estimate fit_stretch(const Structure& structure, std::span<const double> u_V,
                      std::span<const double> y_m, std::size_t first, std::size_t end,
                      std::span<const std::size_t> gaps, const Limits& limits) {
-  Regressor regressor(structure);
   const auto history = static_cast<std::size_t>(structure.history());
-  const std::size_t start = first > history ? first - history : 0;
-  auto gap = gaps.begin();
-  while (gap != gaps.end() && *gap <= start) ++gap;
   TallFactor factor(structure.size() + 1);
   Span span;
-  int rows = 0;
-  for (std::size_t t = start; t < end; ++t) {
-    if (gap != gaps.end() && *gap == t) {
-      regressor.reset();
-      ++gap;
+  std::size_t rows = 0;
+  // Runs of samples without a gap or a missing value, one after the other.
+  std::size_t run = first > history ? first - history : 0;
+  auto gap = std::upper_bound(gaps.begin(), gaps.end(), run);
+  while (run < end) {
+    const std::size_t limit = gap == gaps.end() ? end : std::min(*gap, end);
+    std::size_t stop = run;
+    while (stop < limit && std::isfinite(u_V[stop]) && std::isfinite(y_m[stop])) {
+      if (stop >= first) span.add(u_V[stop], y_m[stop]);
+      ++stop;
     }
-    const bool ready = regressor.push(u_V[t], y_m[t]);
-    if (t < first) continue;
-    span.add(u_V[t], y_m[t]);
-    if (!ready) continue;
-    factor.add(regressor.row());
-    ++rows;
+    const std::size_t target = std::max(run + history, first);
+    if (target < stop) {
+      add_rows(structure, u_V.data(), y_m.data(), target, stop, factor);
+      rows += stop - target;
+    }
+    run = stop < limit ? stop + 1 : stop;
+    while (gap != gaps.end() && *gap <= run) ++gap;
   }
-  Estimate out = solve(factor.finish(), rows, limits);
+  Estimate out = solve(triangle(factor), static_cast<int>(rows), limits);
   if (out.reason != Reason::too_short && !span.excited(limits)) {
     out.valid = false;
     out.reason = Reason::not_excited;

@@ -66,7 +66,8 @@ struct Recursive::State {
     for (int i = 0; i < size; ++i) p.d[i] = config.prior_variance;
     next_informed = 0;
     error_m = kNan;
-    residual_m2 = weights = weights_squared = 0.0;
+    cost_m2 = weights = weights_squared = 0.0;
+    prior_weight = 1.0 / config.prior_variance;
   }
 
   Factor batch() noexcept { return {size + 1, batch_memory.values.data()}; }
@@ -81,13 +82,15 @@ struct Recursive::State {
     for (int i = 0; i < size; ++i) prediction_m += regressor.row()[i] * theta[i];
     const double error = regressor.target_m() - prediction_m;
     const double lambda = config.forgetting;
+    if (!std::isfinite(error * error)) return false;
     alignas(16) double gain[padded(kMaxCoefficients)];
     const double alpha = update.measure(p, regressor.row(), lambda, lambda, gain);
+    if (!std::isfinite(alpha)) return false;
     const double per_alpha = error / alpha;
-    if (!std::isfinite(alpha) || !std::isfinite(per_alpha)) return false;
     for (int i = 0; i < size; ++i) theta[i] += gain[i] * per_alpha;
     error_m = error;
-    residual_m2 = lambda * (residual_m2 + error * per_alpha);
+    cost_m2 = lambda * (cost_m2 + error * per_alpha);
+    prior_weight *= lambda;
     weights = lambda * weights + 1.0;
     weights_squared = lambda * lambda * weights_squared + 1.0;
     if (lambda < 1.0) {
@@ -101,7 +104,9 @@ struct Recursive::State {
   void start_from_batch() noexcept {
     const auto factor = triangle(batch());
     const Small r = factor.topLeftCorner(size, size);
+    prior_weight = 0.0;
     if (!(scaled_condition(r) <= config.limits.max_condition)) {
+      prior_weight = 1.0 / config.prior_variance;
       for (int i = 0; i < size; ++i) {
         double prior[kMaxColumns] = {};
         prior[i] = 1.0 / std::sqrt(config.prior_variance);
@@ -115,8 +120,16 @@ struct Recursive::State {
       p.d[j] = root(j, j) * root(j, j);
       for (int i = 0; i < j; ++i) p.unit[padded(size) * j + i] = root(i, j) / root(j, j);
     }
-    residual_m2 = whole(size, size) * whole(size, size);
+    cost_m2 = whole(size, size) * whole(size, size);
     weights = weights_squared = config.warmup;
+  }
+
+  /// Sum of w e^2 of the current coefficients.
+  double residual_m2() const noexcept {
+    double square = 0.0;
+    for (int i = 0; i < size; ++i) square += theta[i] * theta[i];
+    const double out = cost_m2 - prior_weight * square;
+    return out > 0.0 ? out : 0.0;
   }
 
   /// U D^(1/2), so that P is its square.
@@ -140,7 +153,8 @@ struct Recursive::State {
   int warming = 0;
   int next_informed = 0;
   double error_m = kNan;
-  double residual_m2 = 0.0;      // sum of w e^2 of the current coefficients
+  double cost_m2 = 0.0;          // sum of w e^2 of the current coefficients + prior's share
+  double prior_weight = 0.0;     // that share per theta' theta
   double weights = 0.0;          // sum of w
   double weights_squared = 0.0;  // sum of w^2
 };
@@ -183,7 +197,7 @@ Estimate Recursive::estimate() const noexcept {
   out.size = s.size;
   out.value.fill(kNan);
   out.std_error.fill(kNan);
-  out.samples = static_cast<int>(s.weights);
+  out.samples = static_cast<int>(std::lround(s.weights));
   const auto refuse = [&out](Reason reason) {
     out.valid = false;
     out.reason = reason;
@@ -193,7 +207,8 @@ Estimate Recursive::estimate() const noexcept {
     return refuse(s.gate.open(s.config.limits) ? Reason::too_short : Reason::not_excited);
   }
   std::copy_n(s.theta.begin(), s.size, out.value.begin());
-  out.residual_rms_m = std::sqrt(s.residual_m2 / s.weights);
+  const double residual_m2 = s.residual_m2();
+  out.residual_rms_m = std::sqrt(residual_m2 / s.weights);
   const Small root = s.root();
   if (!root.allFinite() || !(root.diagonal().minCoeff() > 0.0)) return refuse(Reason::not_finite);
   out.condition = scaled_condition(inverse(root));
@@ -201,7 +216,7 @@ Estimate Recursive::estimate() const noexcept {
   const double repeat = s.weights_squared / s.weights;
   const double freedom = s.weights - s.size * repeat;
   if (!(freedom > 0.0)) return refuse(Reason::too_short);
-  const double deviation_m = std::sqrt(s.residual_m2 / freedom * repeat);
+  const double deviation_m = std::sqrt(residual_m2 / freedom * repeat);
   for (int i = 0; i < s.size; ++i) {
     out.std_error[i] = deviation_m * root.row(i).tail(s.size - i).norm();
   }

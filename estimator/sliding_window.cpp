@@ -146,9 +146,8 @@ bool SlidingWindow::gap(long long samples) noexcept {
   State& s = *state_;
   s.regressor.reset();
   // Past a whole window nothing is left, and whole strides more change nothing.
-  if (samples > s.config.window) {
-    samples -= (samples - s.config.window) / s.config.stride * s.config.stride;
-  }
+  const long long enough = s.config.window + s.config.stride;
+  if (samples > enough) samples -= (samples - enough) / s.config.stride * s.config.stride;
   bool due = false;
   for (long long i = 0; i < samples; ++i) due |= s.end_sample();
   return due;
