@@ -20,6 +20,18 @@ std::string millimetres(double value_m) {
   return text;
 }
 
+std::string steady_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%#.5g", value);  // trailing zeros kept: the width stays
+  return std::isnan(value) ? "-" : text;
+}
+
+std::string microseconds(double value_us) {
+  char text[32];
+  std::snprintf(text, sizeof text, value_us < 100.0 ? "%.1f" : "%.0f", value_us);
+  return std::isnan(value_us) ? "-" : text;
+}
+
 Style severity_style(int severity) {
   switch (severity) {
     case 0:
@@ -72,11 +84,12 @@ class Page {
     if (!state_.health().rig_id.empty()) {
       column = canvas_.text(row_, column + 2, "rig " + state_.health().rig_id);
     }
-    column = canvas_.text(row_, column + 2, "run " + std::to_string(state_.run_id()), Style::dim);
     if (state_.silent()) {
-      canvas_.text(row_, column + 2, "SILENT: no health message", Style::major);
+      canvas_.text(row_, column + 2, "SILENT: NO HEALTH", Style::major);
     } else if (!state_.notice().empty()) {
       canvas_.text(row_, column + 2, state_.notice(), Style::minor);
+    } else {
+      canvas_.text(row_, column + 2, "run " + std::to_string(state_.run_id()), Style::dim);
     }
     std::string time = time_text(state_.utc_us());
     if (const auto space = time.find(' '); time.back() == 'Z') {
@@ -125,7 +138,7 @@ class Page {
     const bool outside = track.value < track.low || track.value > track.high;
     const Style style = !track.valid ? Style::invalid : outside ? Style::major : Style::good;
     int column = canvas_.text(row_, 1, track.source + "." + track.quantity + " ", Style::bold);
-    column = canvas_.text(row_, column + 1, number_text(track.value), style);
+    column = canvas_.text(row_, column + 1, steady_number(track.value), style);
     if (!std::isnan(track.std_error)) {
       column = canvas_.text(row_, column + 1, glyphs_.plus_minus, Style::dim);
       column = canvas_.text(row_, column + 1, number_text(track.std_error, 2), Style::dim);
@@ -150,9 +163,9 @@ class Page {
   void loop() {
     const HealthFigures& health = state_.health();
     int column = canvas_.text(row_, 1, "late p99.9 ", Style::dim);
-    column = canvas_.text(row_, column, number_text(health.lateness_p999_us, 3), Style::bold);
+    column = canvas_.text(row_, column, microseconds(health.lateness_p999_us), Style::bold);
     column = canvas_.text(row_, column + 2, "max ", Style::dim);
-    column = canvas_.text(row_, column, number_text(health.lateness_max_us, 3), Style::bold);
+    column = canvas_.text(row_, column, microseconds(health.lateness_max_us), Style::bold);
     column = canvas_.text(row_, column + 1, glyphs_.micro, Style::dim) + 2;
     column = figure(column, "overruns", health.overruns);
     column = figure(column, "skipped", health.skipped_periods);
@@ -179,12 +192,12 @@ class Page {
     canvas_.text(row_, 1, time, Style::dim);
     canvas_.text(row_, 12, severity_text(alarm.severity), style);
     int column = std::max(
-        40, canvas_.text(row_, 20, alarm.name, alarm.active ? Style::bold : Style::normal) + 2);
+        36, canvas_.text(row_, 20, alarm.name, alarm.active ? Style::bold : Style::normal) + 2);
     std::string what;
-    if (!std::isnan(alarm.value)) what = number_text(alarm.value);
+    if (!std::isnan(alarm.value)) what = number_text(alarm.value, 4);
     if (alarm.active && alarm.direction != 0) {
-      what +=
-          alarm.direction < 0 ? " < " + number_text(alarm.low) : " > " + number_text(alarm.high);
+      what += alarm.direction < 0 ? " < " + number_text(alarm.low, 4)
+                                  : " > " + number_text(alarm.high, 4);
     }
     if (alarm.active && !alarm.parameter.empty()) what += "  " + alarm.parameter;
     if (what.empty() || alarm.severity == 3) what = alarm.reason;

@@ -12,6 +12,7 @@ namespace {
 
 // More than the largest message of an ordinary configuration; grows once if one is larger.
 constexpr std::size_t kBufferBytes = 16 << 10;
+constexpr std::size_t kMaxChannel = 63;  // LCM's own limit
 
 }  // namespace
 
@@ -37,7 +38,12 @@ Publisher::Publisher(const PublisherConfig& config, std::int64_t run_id, double 
       estimate_{config.prefix + "_ESTIMATE"},
       alarm_{config.prefix + "_ALARM"},
       health_{config.prefix + "_HEALTH"},
-      buffer_(kBufferBytes) {}
+      buffer_(kBufferBytes) {
+  if (estimate_.name.size() > kMaxChannel) {
+    throw config::schema::bad_config("[lcm] prefix", "channel " + estimate_.name + " is too long",
+                                     "54 characters");
+  }
+}
 
 Publisher::~Publisher() = default;
 
