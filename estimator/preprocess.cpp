@@ -69,7 +69,7 @@ Line remove_line(std::span<double> values) {
   return line;
 }
 
-void apply(Filter filter, std::span<double> values) {
+void apply_filter(Filter filter, std::span<double> values) {
   filter.reset();
   for (double& v : values) {
     if (std::isnan(v)) {
@@ -82,7 +82,7 @@ void apply(Filter filter, std::span<double> values) {
 
 std::vector<double> decimate(std::span<const double> values, int factor) {
   std::vector<double> all(values.begin(), values.end());
-  apply(anti_alias(factor), all);
+  apply_filter(anti_alias(factor), all);
   std::vector<double> out;
   for (std::size_t i = 0; i < all.size(); i += static_cast<std::size_t>(factor)) {
     out.push_back(all[i]);

@@ -24,7 +24,7 @@ struct Line {
 Line remove_line(std::span<double> values);
 
 /// Applies the filter to the whole vector in place, from a settled start.
-void apply(Filter filter, std::span<double> values);
+void apply_filter(Filter filter, std::span<double> values);
 
 /// Every `factor`-th sample, the first included, after the anti-alias filter.
 [[nodiscard]] std::vector<double> decimate(std::span<const double> values, int factor);
