@@ -23,5 +23,7 @@ void add_calibrate(CLI::App& command, int& exit_code);
 void add_estimate(CLI::App& command, int& exit_code);
 void add_export(CLI::App& command, int& exit_code);
 void add_listen(CLI::App& command, int& exit_code);
+void add_reproduce(CLI::App& command, int& exit_code);
+void add_simulate(CLI::App& command, int& exit_code);
 
 }  // namespace workbench

@@ -10,6 +10,8 @@
 namespace {
 
 constexpr workbench::Command kCommands[] = {
+    {"reproduce", "the source's figures beside ours", workbench::add_reproduce},
+    {"simulate", "a record from a model file, in closed loop", workbench::add_simulate},
     {"listen", "print alarms and estimates as they arrive", workbench::add_listen},
     {"estimate", "fit an ARX structure to a record", workbench::add_estimate},
     {"calibrate", "learn alarm bands from a healthy record", workbench::add_calibrate},

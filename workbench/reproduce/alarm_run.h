@@ -1,0 +1,58 @@
+// Alarms on the simulated stand: each sample of a closed-loop run goes through the same fault
+// detection pipeline as in the daemon; what comes out is kept with its time.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "estimator/fdi/pipeline.h"
+#include "workbench/reproduce/stand.h"
+
+namespace workbench::reproduce {
+
+struct AlarmChange {
+  double t_s;  ///< of the sample that brought it
+  std::string name;
+  int direction;  ///< +1 above the band, -1 below, 0: the alarm went
+  bool active;
+};
+
+struct CoefficientAt {
+  double t_s;
+  std::string source;
+  double b1;
+  bool valid;
+};
+
+struct AlarmRun {
+  std::vector<AlarmChange> changes;
+  std::vector<CoefficientAt> estimates;
+
+  /// Time of the first change after after_s that fits, NaN when there is none.
+  [[nodiscard]] double first(double after_s, bool active, int direction) const noexcept;
+};
+
+/// Whether the estimates are kept too.
+enum class Keep { alarms, estimates };
+
+[[nodiscard]] AlarmRun run_with_alarms(const Scenario& scenario,
+                                       const estimator::fdi::PipelineConfig& config,
+                                       double duration_s, std::uint64_t seed = 1,
+                                       Keep keep = Keep::alarms);
+
+/// b1 by least squares over whole periods; the first period is warm-up.
+[[nodiscard]] estimator::fdi::EstimatorConfig period_estimator(const char* structure = "arx111");
+/// b1 over a short window, several times in each.
+[[nodiscard]] estimator::fdi::EstimatorConfig sliding_estimator();
+/// A pipeline of one estimator and one band on its b1, m/V.
+[[nodiscard]] estimator::fdi::PipelineConfig watching_b1(
+    const estimator::fdi::EstimatorConfig& estimator, double low, double high);
+
+/// The source's bands on b1, m/V.
+inline constexpr double kCase1Low = 1.80e-4;
+inline constexpr double kCase1High = 2.10e-4;
+inline constexpr double kCase2Low = 1.9645e-4;
+inline constexpr double kCase2High = 1.9695e-4;
+
+}  // namespace workbench::reproduce

@@ -1,0 +1,66 @@
+// Cases I and II: one kind of fault, bands on b1, the alarms' coming and going.
+#include <cmath>
+
+#include "workbench/reproduce/alarm_run.h"
+#include "workbench/reproduce/experiment.h"
+#include "workbench/reproduce/text.h"
+#include "workbench/reproduce/tolerance.h"
+
+namespace workbench::reproduce {
+namespace {
+
+/// Normal, a quarter more, normal, a quarter less.
+Scenario schedule(const char* parameter, double normal) {
+  Scenario scenario = with_fault(calibrated(), parameter, 1.25 * normal, 15.0);
+  scenario = with_fault(scenario, parameter, normal, 30.0);
+  return with_fault(scenario, parameter, 0.75 * normal, 45.0);
+}
+
+const char* name(int direction) {
+  return direction > 0 ? "b1 above its band" : "b1 below its band";
+}
+
+/// b1 of the period that ends at t_s (or one sample before).
+double b1_at(const AlarmRun& found, double t_s) {
+  for (const CoefficientAt& estimate : found.estimates) {
+    if (std::abs(estimate.t_s - t_s) < 0.0151) return estimate.b1;
+  }
+  return std::nan("");
+}
+
+/// `first` is the direction in which b1 goes first.
+std::vector<Row> timeline(const char* parameter, double normal, double low, double high,
+                          int first) {
+  const auto found =
+      run_with_alarms(schedule(parameter, normal), watching_b1(period_estimator(), low, high), 60.0,
+                      1, Keep::estimates);
+  std::vector<Row> rows;
+  for (const double t_s : {14.0, 16.0, 18.0, 32.0, 46.0, 48.0}) {
+    rows.push_back(judged(text("b1 of the period that ends at %.0f s, m/V", t_s), {},
+                          b1_at(found, t_s), "information"));
+  }
+  rows.push_back(judged(text("alarm on (%s), s", name(first)), 18.0, found.first(15.0, true, first),
+                        "alarm time", "fault at 15 s"));
+  rows.push_back(judged("alarm off, s", 32.0, found.first(18.0, false, 0), "alarm time",
+                        "normal again at 30 s"));
+  rows.push_back(judged(text("alarm on (%s), s", name(-first)), 48.0,
+                        found.first(45.0, true, -first), "alarm time", "fault at 45 s"));
+  rows.push_back(judged("changes of the alarm in 60 s", 3.0,
+                        static_cast<double>(found.changes.size()), "count",
+                        "no others; the first period is warm-up without alarms"));
+  rows.push_back(judged("delay of the first alarm, s", 3.0, found.first(15.0, true, first) - 15.0,
+                        "about 3 s"));
+  return rows;
+}
+
+}  // namespace
+
+std::vector<Row> case_one() {
+  return timeline("supply_pressure_Pa", 1000.0 * kPa_per_psi, kCase1Low, kCase1High, +1);
+}
+
+std::vector<Row> case_two() {
+  return timeline("damping_N_s_per_m", 1000.0, kCase2Low, kCase2High, -1);
+}
+
+}  // namespace workbench::reproduce

@@ -1,0 +1,31 @@
+// One line of the comparison: what the source printed, what came out here, whether the two agree.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace workbench::reproduce {
+
+/// A number (SI unless `what` says otherwise), words, or nothing.
+using Value = std::variant<std::monostate, double, std::string>;
+
+enum class Agreement { yes, no, not_applicable };
+[[nodiscard]] const char* to_string(Agreement agreement) noexcept;
+
+struct Row {
+  std::string what;
+  Value printed;
+  Value ours;
+  Agreement agrees = Agreement::not_applicable;
+  std::string note;
+  bool expected = false;  ///< is meant to agree: `--strict` fails when it does not
+};
+
+struct Section {
+  std::string title;
+  std::vector<Row> rows;
+};
+
+}  // namespace workbench::reproduce

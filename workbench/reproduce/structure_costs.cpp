@@ -1,0 +1,157 @@
+// E of each model structure: batch least squares over the fifth period, then a free run of the same
+// period with the measured start; and two guesses at how the printed figures came about.
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "estimator/batch.h"
+#include "estimator/free_run.h"
+#include "workbench/reproduce/experiment.h"
+#include "workbench/reproduce/normal_equations.h"
+#include "workbench/reproduce/stand.h"
+#include "workbench/reproduce/text.h"
+#include "workbench/reproduce/tolerance.h"
+
+namespace workbench::reproduce {
+namespace {
+
+using estimator::Structure;
+
+constexpr std::size_t kFrom = 4 * kPeriod;
+/// Share of the energy of y beyond which a free run does not represent the output.
+constexpr double kLost = 0.01;
+
+struct Printed {
+  const char* structure;
+  double cost_m2;       ///< NaN: the exponent cannot be read
+  const char* reading;  ///< the digits that can
+};
+constexpr Printed kRepresenting[] = {{"arx111", 3.04986e-5, ""},
+                                     {"arx211", 2.87777e-5, ""},
+                                     {"arx311", 2.20337e-5, ""},
+                                     {"arx411", 1.48142e-5, ""}};
+constexpr Printed kFailing[] = {{"arx221", NAN, "6.16856"}, {"arx321", NAN, "6.08998"},
+                                {"arx331", NAN, "6.65183"}, {"arx421", NAN, "5.93432"},
+                                {"arx431", NAN, "6.17225"}, {"arx441", NAN, "6.89262"}};
+
+std::string upper(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return text;
+}
+
+/// E of `coefficients` on the record; `shift` samples out of step.
+double cost_m2(const Structure& structure, std::span<const double> coefficients,
+               std::span<const double> u_V, std::span<const double> y_m, int shift) {
+  return estimator::compare(y_m, estimator::free_run(structure, coefficients, u_V, y_m), 0, shift)
+      .cost_m2;
+}
+
+struct Costs {
+  double in_step_m2;
+  double late_m2;
+  double condition;
+};
+
+Costs fit(const Structure& structure, std::span<const double> u_V, std::span<const double> y_m) {
+  estimator::Limits limits;
+  limits.max_condition = INFINITY;
+  const auto estimate = estimator::fit_batch(structure, u_V, y_m, {}, limits);
+  const std::span<const double> theta(estimate.value.data(), structure.size());
+  return {cost_m2(structure, theta, u_V, y_m, 0), cost_m2(structure, theta, u_V, y_m, 1),
+          estimate.condition};
+}
+
+/// As text files with six decimals hold numbers ("%f").
+std::vector<double> six_decimals(std::span<const double> values) {
+  std::vector<double> out(values.begin(), values.end());
+  for (double& value : out) value = std::round(value * 1e6) * 1e-6;
+  return out;
+}
+
+double energy(std::span<const double> y_m) {
+  double sum = 0.0;
+  for (const double y : y_m) sum += y * y;
+  return sum;
+}
+
+const char* verdict(double e_m2, double energy_m2) {
+  return e_m2 < kLost * energy_m2 ? "represents the output" : "cannot represent";
+}
+
+void add_representing(std::vector<Row>& rows, const Record& record) {
+  const auto u_V = record.u(kFrom, kPeriod);
+  const auto y_m = record.y(kFrom, kPeriod);
+  const auto u6_V = six_decimals(u_V);
+  const auto y6_m = six_decimals(y_m);
+  double first6_m2 = 0.0;
+  for (const Printed& printed : kRepresenting) {
+    const Structure structure = estimator::parse_structure(printed.structure);
+    const std::string name = upper(printed.structure);
+    const Costs costs = fit(structure, u_V, y_m);
+    const Costs rounded = fit(structure, u6_V, y6_m);
+    rows.push_back(judged("E of " + name + ", in step, m2", printed.cost_m2, costs.in_step_m2,
+                          "cost, in step", text("condition %.2g", costs.condition)));
+    rows.push_back(judged("E of " + name + ", one sample out of step, m2", printed.cost_m2,
+                          costs.late_m2, "cost, out of step",
+                          "what a free run read one sample late would give"));
+    if (first6_m2 == 0.0) {
+      first6_m2 = rounded.in_step_m2;
+      continue;
+    }
+    rows.push_back(judged("E of " + name + " over E of ARX111, u and y kept to six decimals",
+                          printed.cost_m2 / kRepresenting[0].cost_m2,
+                          rounded.in_step_m2 / first6_m2, "cost, in step",
+                          text("the fall with n comes with the rounding of a text file; E %.3g",
+                               rounded.in_step_m2)));
+  }
+}
+
+void add_failing(std::vector<Row>& rows, const Record& record) {
+  const auto u_V = record.u(kFrom, kPeriod);
+  const auto y_m = record.y(kFrom, kPeriod);
+  const double all_m2 = energy(y_m);
+  for (const Printed& printed : kFailing) {
+    const Structure structure = estimator::parse_structure(printed.structure);
+    const std::string name = upper(printed.structure);
+    const Costs costs = fit(structure, u_V, y_m);
+    rows.push_back(
+        judged(name + ", orthogonal factorisation", std::string("cannot represent"),
+               std::string(verdict(costs.in_step_m2, all_m2)), "words, not expected",
+               text("E %.3g in step, %.3g out, condition %.2g; printed %s with an "
+                    "unreadable exponent; energy of y %.3g",
+                    costs.in_step_m2, costs.late_m2, costs.condition, printed.reading, all_m2)));
+    const double e_m2 =
+        cost_m2(structure, solve_normal_equations(structure, u_V, y_m), u_V, y_m, 0);
+    rows.push_back(judged(name + ", normal equations", std::string("cannot represent"),
+                          std::string(verdict(e_m2, all_m2)), "words, not expected",
+                          text("E %.3g: condition %.2g squared", e_m2, costs.condition)));
+  }
+}
+
+/// The gain of the loop is not printed: E out of step for several.
+void add_gains(std::vector<Row>& rows) {
+  for (const double kp_V_per_m : {100.0, 320.0, 400.0}) {
+    Scenario scenario = calibrated();
+    scenario.model.loop.kp_V_per_m = kp_V_per_m;
+    const Record record = run(scenario, 10.0);
+    const Costs costs = fit(estimator::parse_structure("arx111"), record.u(kFrom, kPeriod),
+                            record.y(kFrom, kPeriod));
+    rows.push_back(judged(text("E of ARX111, one sample out of step, Kp %.0f V/m, m2", kp_V_per_m),
+                          kRepresenting[0].cost_m2, costs.late_m2, "cost, out of step",
+                          text("in step %.3g", costs.in_step_m2)));
+  }
+}
+
+}  // namespace
+
+std::vector<Row> structure_costs() {
+  const Record record = run(calibrated(), 10.0);
+  std::vector<Row> rows;
+  add_representing(rows, record);
+  add_gains(rows);
+  add_failing(rows, record);
+  return rows;
+}
+
+}  // namespace workbench::reproduce

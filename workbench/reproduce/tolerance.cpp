@@ -1,0 +1,118 @@
+#include "workbench/reproduce/tolerance.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace workbench::reproduce {
+namespace {
+
+constexpr Tolerance kTolerances[] = {
+    {"information", Rule::none, 0, 0, false, "nothing printed to compare with"},
+    {"words", Rule::same, 0, 0, true, "the same verdict"},
+    {"words, not expected", Rule::same, 0, 0, false,
+     "the same verdict; it depends on how rounding spoils the source's normal equations"},
+    {"cost, in step", Rule::relative, 0.01, 0, false,
+     "1 %: six digits are printed, but gain and valve constant are not given well enough for more"},
+    {"cost, out of step", Rule::relative, 0.01, 0, false,
+     "1 %: as in step; a guess at how the printed figures came about"},
+    {"mean b1", Rule::relative, 1e-4, 0, true,
+     "0.01 %: the valve constant was solved for this figure"},
+    {"mean b1, recursive", Rule::relative, 2e-4, 0, true,
+     "0.02 %: as for the batch, and the recursion's wider spread"},
+    {"mean b1, as printed", Rule::relative, 0.005, 0, false,
+     "0.5 %: three digits of the printed parameters"},
+    {"spread", Rule::relative, 0.1, 0, false,
+     "10 %: spread of a noise-free run comes from start-up and rounding alone"},
+    {"spread, recursive", Rule::relative, 0.1, 0, true,
+     "10 %: the forgetting factor was solved for another printed figure"},
+    {"recursive cost", Rule::relative, 0.1, 0, false, "10 %: start and weights are not printed"},
+    {"magnitude", Rule::interval, 1e3, 1e9, true,
+     "printed 1.2e4: a thousandfold or more, the recursive estimate being the wider"},
+    {"recursive cost is smaller", Rule::interval, 0.0, 0.5, false, "printed 0.047: at most half"},
+    {"about +5 %", Rule::interval, 4.5, 5.5, true, "'about 5 %': rounds to 5"},
+    {"about -5 %", Rule::interval, -5.5, -4.5, true, "'about 5 %': rounds to 5"},
+    {"about +0.07 %", Rule::interval, 0.065, 0.075, true, "'about 0.07 %': rounds to 0.07"},
+    {"about -0.07 %", Rule::interval, -0.075, -0.065, true, "'about 0.07 %': rounds to 0.07"},
+    {"under 0.01 %", Rule::interval, -0.01, 0.01, true, "'less than 0.01 %'"},
+    {"under 0.01 %, +-50 %", Rule::interval, -0.01, 0.01, false,
+     "'less than 0.01 %'; said of a figure whose axis does not show more"},
+    {"range over Ps", Rule::relative, 0.05, 0, true,
+     "5 %: read off a figure and rounded outward to 0.05e-4"},
+    {"range over d", Rule::relative, 5e-4, 0, true,
+     "0.05 %: read off a figure, rounded to 0.0005e-4 or so"},
+    {"alarm time", Rule::apart, -0.0051, 0.0051, true,
+     "one sample: the last sample of a window comes 5 ms before the next window's first"},
+    {"count", Rule::apart, 0, 0, true, "the same number"},
+    {"about 3 s", Rule::interval, 2.5, 3.5, true, "'about 3 s': rounds to 3"},
+    {"about 3 s, any phase", Rule::interval, 2.0, 4.0, false,
+     "'about 3 s' was seen at one phase of the period only"},
+    {"median 0.3 s", Rule::interval, 0.0, 0.3, true, "this product's requirement"},
+    {"worst 0.6 s", Rule::interval, 0.0, 0.6, true, "this product's requirement"},
+    {"no false alarm", Rule::interval, 0.0, 0.0, true, "this product's requirement"},
+    {"rig b1", Rule::relative, 0.005, 0, true,
+     "0.5 %: two periods of the printed spread; the valve constant was solved for this figure"},
+    {"rig alarm time", Rule::apart, -0.0051, 0.0051, true,
+     "one sample; the ramp of the pressure is assumed"},
+    {"rig figure", Rule::relative, 0.5, 0, false,
+     "a factor of 1.5: a figure of the real stand, which has friction, noise and more"},
+};
+
+double number(const Value& value) {
+  const double* found = std::get_if<double>(&value);
+  return found == nullptr ? std::nan("") : *found;
+}
+
+bool agree(const Value& printed, const Value& ours, const Tolerance& rule) {
+  const double is = number(ours);
+  switch (rule.rule) {
+    case Rule::relative:
+      return std::abs(is - number(printed)) <= rule.low * std::abs(number(printed));
+    case Rule::interval:
+      return is >= rule.low && is <= rule.high;
+    case Rule::apart:
+      return is - number(printed) >= rule.low && is - number(printed) <= rule.high;
+    case Rule::same:
+      return printed == ours;
+    case Rule::none:
+      return false;
+  }
+  return false;
+}
+
+}  // namespace
+
+const char* to_string(Agreement agreement) noexcept {
+  switch (agreement) {
+    case Agreement::yes:
+      return "yes";
+    case Agreement::no:
+      return "no";
+    case Agreement::not_applicable:
+      return "n.a.";
+  }
+  return "n.a.";
+}
+
+const Tolerance& tolerance(std::string_view name) {
+  const auto* found = std::find_if(std::begin(kTolerances), std::end(kTolerances),
+                                   [&](const Tolerance& t) { return t.name == name; });
+  assert(found != std::end(kTolerances));
+  return *found;
+}
+
+Row judged(std::string what, Value printed, Value ours, std::string_view rule, std::string note) {
+  const Tolerance& by = tolerance(rule);
+  Row row;
+  row.what = std::move(what);
+  row.printed = std::move(printed);
+  row.ours = std::move(ours);
+  row.note = std::move(note);
+  row.expected = by.expected;
+  if (by.rule != Rule::none) {
+    row.agrees = agree(row.printed, row.ours, by) ? Agreement::yes : Agreement::no;
+  }
+  return row;
+}
+
+}  // namespace workbench::reproduce

@@ -1,0 +1,36 @@
+#include "workbench/simulate/closed_loop.h"
+
+namespace workbench::simulate {
+namespace {
+
+monitor::control::ValveLimits limits(const Instruments& instruments) {
+  monitor::control::ValveLimits out;
+  out.limit_V = instruments.dac_range_V;
+  return out;
+}
+
+}  // namespace
+
+ClosedLoop::ClosedLoop(const Scenario& scenario, std::uint64_t seed)
+    : plant_(plant_sim::make_plant(scenario.model)),
+      schedule_(scenario.faults, *plant_),
+      reference_(monitor::control::make_reference(scenario.reference, scenario.folder)),
+      controller_({scenario.model.loop.kp_V_per_m}, limits(scenario.instruments), kSampleTime_s),
+      encoder_(scenario.instruments.encoder_resolution_m, scenario.instruments.noise_m, seed),
+      dac_{static_cast<int>(scenario.instruments.dac_bits), scenario.instruments.dac_range_V} {}
+
+LoopRow ClosedLoop::step() noexcept {
+  LoopRow row{};
+  row.t_s = static_cast<double>(next_) * kSampleTime_s;
+  row.y_m = encoder_.read(plant_->reading_m());
+  row.reference_m = reference_->at(row.t_s);
+  const monitor::control::Command command = controller_.update(row.reference_m, row.y_m);
+  row.u_requested_V = command.requested_V;
+  row.u_applied_V = dac_.apply(command.limited_V);
+  row.saturated = command.saturated;
+  schedule_.advance(*plant_, row.u_applied_V, row.t_s, kSampleTime_s);
+  ++next_;
+  return row;
+}
+
+}  // namespace workbench::simulate

@@ -1,0 +1,47 @@
+// Everything that a closed-loop simulation needs besides its length: a model file, and optional
+// tables beside those of the model.
+//
+//   [reference]     kind, centre_m, amplitude_m, ... (daemon/control/reference.h)
+//   [instruments]   encoder_resolution_m, noise_m, dac_bits, dac_range_V
+//   [[fault]]       parameter, at_s, value or factor, ramp_s (plant_sim/schedule.h)
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "daemon/control/reference.h"
+#include "plant_sim/model_file.h"
+#include "plant_sim/schedule.h"
+
+namespace config::schema {
+class Document;
+class Visitor;
+}  // namespace config::schema
+
+namespace workbench::simulate {
+
+/// What stands between the plant and the controller. The defaults are ideal: no steps, no noise.
+struct Instruments {
+  double encoder_resolution_m = 0.0;
+  double noise_m = 0.0;       ///< standard deviation, before the encoder's rounding
+  std::int64_t dac_bits = 0;  ///< 0: no steps
+  double dac_range_V = 10.0;  ///< also the controller's limit
+
+  void visit(config::schema::Visitor& v);
+};
+
+struct Scenario {
+  plant_sim::ModelFile model;
+  monitor::control::ReferenceConfig reference;
+  std::filesystem::path folder;  ///< where a relative reference file starts from
+  Instruments instruments;
+  std::vector<plant_sim::Change> faults;
+
+  void visit(config::schema::Visitor& v);
+};
+
+/// Throws config::schema::Error (exit 78) for an unknown key or a bad value.
+[[nodiscard]] Scenario read_scenario(const config::schema::Document& document);
+
+}  // namespace workbench::simulate

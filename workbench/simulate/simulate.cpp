@@ -1,0 +1,132 @@
+// `spoolwatch simulate`: a record from a model file, in closed loop.
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "config/record/record.h"
+#include "config/schema/document.h"
+#include "config/schema/error.h"
+#include "workbench/command.h"
+#include "workbench/simulate/closed_loop.h"
+#include "workbench/simulate/fault_text.h"
+
+namespace workbench {
+namespace {
+
+namespace fs = std::filesystem;
+using config::schema::Error;
+using config::schema::ExitCode;
+
+/// Samples between two looks at the progress line: ten minutes of the stand.
+constexpr std::int64_t kProgressEvery = 120'000;
+
+struct Arguments {
+  std::string model;
+  std::string output;
+  std::string reference;
+  double duration_s = 60.0;
+  std::uint64_t seed = 1;
+  std::vector<std::string> assignments;
+  std::vector<std::string> faults;
+};
+
+/// --reference names a kind, or else a file.
+void choose_reference(const std::string& text, config::schema::Document& document) {
+  if (text.empty()) return;
+  for (const char* kind : {"sine", "multisine", "steps", "chirp", "prbs"}) {
+    if (text == kind) {
+      document.set("reference.kind=\"" + text + "\"");
+      return;
+    }
+  }
+  std::error_code ignored;
+  if (!fs::is_regular_file(text, ignored)) {
+    throw Error(ExitCode::usage, "--reference " + text +
+                                     ": is no kind and no file; allowed: sine, multisine, steps, "
+                                     "chirp, prbs, or a CSV file with t_s,reference_m");
+  }
+  document.set("reference.kind=\"file\"");
+  document.set("reference.file='" + fs::absolute(text).string() + "'");
+}
+
+simulate::Scenario read_scenario(const Arguments& arguments) {
+  auto document = config::schema::Document::load(arguments.model);
+  choose_reference(arguments.reference, document);
+  for (const std::string& assignment : arguments.assignments) document.set(assignment);
+  simulate::Scenario scenario = simulate::read_scenario(document);
+  for (const std::string& fault : arguments.faults) {
+    scenario.faults.push_back(simulate::parse_fault(fault));
+  }
+  return scenario;
+}
+
+/// Before an hour is simulated for nothing.
+void check_output(const std::string& output) {
+  const fs::path folder = fs::absolute(output).parent_path();
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored)) {
+    throw Error(ExitCode::failed, output + ": the folder " + folder.string() + " does not exist");
+  }
+}
+
+config::record::Record simulate_record(const Arguments& arguments,
+                                       const simulate::Scenario& scenario) {
+  simulate::ClosedLoop loop(scenario, arguments.seed);
+  const auto samples = std::llround(arguments.duration_s / simulate::kSampleTime_s);
+  const bool show = isatty(STDERR_FILENO) == 1;
+  config::record::Record record;
+  record.name = arguments.output;
+  record.sample_time_s = simulate::kSampleTime_s;
+  for (auto* column : {&record.t_s, &record.u_V, &record.y_m}) {
+    column->reserve(static_cast<std::size_t>(samples));
+  }
+  std::vector<double> reference_m;
+  reference_m.reserve(static_cast<std::size_t>(samples));
+  for (std::int64_t k = 0; k < samples; ++k) {
+    const simulate::LoopRow row = loop.step();
+    record.t_s.push_back(row.t_s);
+    record.u_V.push_back(row.u_applied_V);
+    record.y_m.push_back(row.y_m);
+    reference_m.push_back(row.reference_m);
+    if (show && k % kProgressEvery == kProgressEvery - 1) {
+      std::cerr << "\rsimulate: " << row.t_s << " of " << arguments.duration_s << " s"
+                << (k + kProgressEvery >= samples ? "\n" : "") << std::flush;
+    }
+  }
+  record.further.emplace_back("reference_m", std::move(reference_m));
+  return record;
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& command, int& /*exit_code*/) {
+  auto arguments = std::make_shared<Arguments>();
+  command.add_option("model", arguments->model, "model file (TOML)")->required();
+  command.add_option("-o,--output", arguments->output, "CSV: t_s,u_V,y_m,reference_m")->required();
+  command.add_option("--duration", arguments->duration_s, "seconds to simulate")
+      ->check(CLI::Range(simulate::kSampleTime_s, 1e6))
+      ->capture_default_str();
+  command.add_option("--seed", arguments->seed, "of the noise; same seed, same bytes")
+      ->capture_default_str();
+  command.add_option("--reference", arguments->reference,
+                     "sine, multisine, steps, chirp, prbs, or a CSV file with t_s,reference_m");
+  command
+      .add_option("--set", arguments->assignments,
+                  "table.key=value of the model file, [reference] or [instruments]")
+      ->allow_extra_args(false);
+  command
+      .add_option("--fault", arguments->faults,
+                  "PARAMETER=VALUE@SECONDS or PARAMETER*FACTOR@SECONDS, +SECONDS for a ramp")
+      ->allow_extra_args(false);
+  command.callback([arguments] {
+    const simulate::Scenario scenario = read_scenario(*arguments);
+    check_output(arguments->output);
+    write_csv(simulate_record(*arguments, scenario), arguments->output);
+  });
+}
+
+}  // namespace workbench
