@@ -10,8 +10,8 @@ namespace config::record {
 namespace {
 
 /// Share of a period by which a step may miss the grid: time stamps rounded to 1 ms at 130 Hz do so
-/// by up to 0.07.
-constexpr double kJitter = 0.1;
+/// by up to 0.125.
+constexpr double kJitter = 0.15;
 /// Relative error of the median step that a long gap multiplies.
 constexpr double kMedianError = 1e-3;
 constexpr std::size_t kStepsPerGap = 10;

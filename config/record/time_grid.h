@@ -14,8 +14,8 @@ struct TimeGrid {
 };
 
 /// The period is the median step, refined over the whole record. Throws schema::Error (exit 65)
-/// at `where(index)` when time does not increase or a step is no whole number of periods within a
-/// tenth of a period, and when more than a tenth of all steps are gaps.
+/// at `where(index)` when time does not increase or a step is no whole number of periods within 15
+/// % of a period, and when more than a tenth of all steps are gaps.
 [[nodiscard]] TimeGrid find_grid(const std::vector<double>& t_s,
                                  const std::function<std::string(std::size_t)>& where);
 

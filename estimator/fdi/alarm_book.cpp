@@ -19,6 +19,8 @@ const char* to_string(Severity severity) noexcept {
 }
 
 std::size_t AlarmBook::declare(Alarm alarm) {
+  constexpr std::size_t kReason = 160;  // room for later reasons
+  alarm.reason.reserve(kReason);
   alarms_.push_back(std::move(alarm));
   return alarms_.size() - 1;
 }

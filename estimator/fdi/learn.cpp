@@ -36,6 +36,46 @@ double gumbel_level(std::vector<double> maxima, double rate) {
   return mu + beta * y + kOneSided95 * error;
 }
 
+double signed_square(double x) { return x * std::abs(x); }
+double signed_root(double x) { return std::copysign(std::sqrt(std::abs(x)), x); }
+
+/// How far the band reaches from `centre`, upward (side 1) or downward (side -1).
+double margin(const std::vector<double>& extremes, double centre, double side, double rate) {
+  std::vector<double> squares;
+  squares.reserve(extremes.size());
+  for (const double extreme : extremes) squares.push_back(signed_square(side * (extreme - centre)));
+  return signed_root(gumbel_level(std::move(squares), rate));
+}
+
+/// The extremes of each block of `length` values that has a trustworthy one.
+struct BlockExtremes {
+  std::vector<double> greatest;
+  std::vector<double> least;
+  double mean = 0.0;  ///< of all values
+};
+
+BlockExtremes find_extremes(std::span<const double> values, std::size_t length) {
+  BlockExtremes out;
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (std::size_t begin = 0; begin + length <= values.size(); begin += length) {
+    double greatest = -std::numeric_limits<double>::infinity();
+    double least = std::numeric_limits<double>::infinity();
+    for (const double value : values.subspan(begin, length)) {
+      if (std::isnan(value)) continue;
+      greatest = std::max(greatest, value);
+      least = std::min(least, value);
+      sum += value;
+      ++count;
+    }
+    if (greatest < least) continue;
+    out.greatest.push_back(greatest);
+    out.least.push_back(least);
+  }
+  out.mean = sum / static_cast<double>(count);
+  return out;
+}
+
 /// Whole periods (or windows) that span several windows, shorter when that leaves few blocks.
 double block_length_s(const LearnConfig& config, double duration_s) {
   const double unit_s =
@@ -53,44 +93,27 @@ LearnedLimits learn_limits(std::span<const double> values, const LearnConfig& co
   LearnedLimits out;
   const double duration_s = static_cast<double>(values.size()) * config.interval_s;
   out.block_s = block_length_s(config, duration_s);
-  const auto length =
-      static_cast<std::size_t>(std::max(1.0, std::round(out.block_s / config.interval_s)));
-  std::vector<double> maxima;
-  std::vector<double> negated_minima;
-  double sum = 0.0;
-  std::size_t count = 0;
-  for (std::size_t begin = 0; begin + length <= values.size(); begin += length) {
-    double greatest = -std::numeric_limits<double>::infinity();
-    double least = std::numeric_limits<double>::infinity();
-    for (const double value : values.subspan(begin, length)) {
-      if (std::isnan(value)) continue;
-      greatest = std::max(greatest, value);
-      least = std::min(least, value);
-      sum += value;
-      ++count;
-    }
-    if (greatest < least) continue;
-    maxima.push_back(greatest);
-    negated_minima.push_back(-least);
-  }
-  out.blocks = maxima.size();
-  if (out.blocks < kFewestBlocks) {
-    std::ostringstream what;
-    what << "the healthy record is too short: " << out.blocks << " blocks of " << out.block_s
-         << " s with trustworthy estimates";
-    std::ostringstream allowed;
-    allowed << kFewestBlocks << " blocks or more";
-    throw bad_data("learning bands", what.str(), allowed.str());
-  }
   const double rate = out.block_s / (2.0 * config.false_alarm_time_s);
   if (!(rate < 0.5)) {
     throw bad_data("learning bands", "the false-alarm time is shorter than a block of estimates");
   }
-  const double greatest = *std::max_element(maxima.begin(), maxima.end());
-  const double least = -*std::max_element(negated_minima.begin(), negated_minima.end());
-  out.centre = sum / static_cast<double>(count);
-  out.high = std::max(gumbel_level(std::move(maxima), rate), greatest + config.least_margin);
-  out.low = std::min(-gumbel_level(std::move(negated_minima), rate), least - config.least_margin);
+  const auto length =
+      static_cast<std::size_t>(std::max(1.0, std::round(out.block_s / config.interval_s)));
+  const BlockExtremes extremes = find_extremes(values, length);
+  out.blocks = extremes.greatest.size();
+  if (out.blocks < kFewestBlocks) {
+    std::ostringstream what;
+    what << "the healthy record is too short: " << out.blocks << " blocks of " << out.block_s
+         << " s with trustworthy estimates";
+    throw bad_data("learning bands", what.str(), std::to_string(kFewestBlocks) + " or more");
+  }
+  out.centre = extremes.mean;
+  const double above = margin(extremes.greatest, extremes.mean, 1.0, rate);
+  const double below = margin(extremes.least, extremes.mean, -1.0, rate);
+  const auto least = std::min_element(extremes.least.begin(), extremes.least.end());
+  const auto greatest = std::max_element(extremes.greatest.begin(), extremes.greatest.end());
+  out.high = std::max(out.centre + above, *greatest + config.least_margin);
+  out.low = std::min(out.centre - below, *least - config.least_margin);
   return out;
 }
 

@@ -2,19 +2,22 @@
 //
 // Estimates from overlapping windows are correlated, and short windows vary with the phase of the
 // motion, so a quantile of all estimates taken as independent would be wrong. The record is cut
-// into blocks of several windows and whole periods of the motion; the greatest and least estimate
-// of each block are close to independent, and their law is Gumbel's:
+// into blocks of several windows and whole periods of the motion; the extremes of the blocks are
+// close to independent. Estimates over many samples have nearly normal tails, and of a normal x it
+// is x^2 whose block maxima are close to Gumbel's law, so the law is fitted to
+// w = (x - c) |x - c|, c the mean:
 //
-//   P(max <= z) = exp(-exp(-(z - mu)/beta)),   z(T) = mu - beta ln(-ln(1 - L/(2T)))
+//   P(max w <= z) = exp(-exp(-(z - mu)/beta)),   z(T) = mu - beta ln(-ln(1 - L/(2T)))
 //
 // L: block length, T: mean time between false alarms (each side gets half of the rate), mu and beta
 // from the first two L-moments. The band is the upper 95 % confidence limit of z(T) for the number
-// of blocks, variance beta^2/n (1.113 + 0.457 y + 0.805 y^2) with y the reduced variate. It never
-// comes closer to an observed extreme than one standard error of the estimates.
+// of blocks, variance beta^2/n (1.113 + 0.457 y + 0.805 y^2) with y the reduced variate, turned
+// back into x. It never comes closer to an observed extreme than one standard error.
 //
-// What it cannot know: what the healthy record does not show (drift over a day, other motions), and
-// whether the tail beyond the record goes on like Gumbel's; a normal tail falls faster, so the
-// bands are then wider than necessary. On-delays are not counted: they lower the rate further.
+// Its limits: it cannot know what the healthy record does not show (drift over a day, another
+// motion); a tail heavier than normal gives more false alarms than stated; where the phase of the
+// motion makes the extremes, w is nearly linear in the noise and the bands come out wider than
+// necessary. On-delays are not counted: they lower the rate further.
 //
 // Sources: J. R. M. Hosking, J. R. Wallis, Regional Frequency Analysis, 1997 (L-moments);
 // H. N. Phien, Journal of Hydrology 90 (1987) 355 (variance).

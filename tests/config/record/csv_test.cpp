@@ -1,0 +1,195 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "config/record/record.h"
+#include "config/schema/error.h"
+#include "tests/config/record/temporary_file.h"
+
+namespace config::record {
+namespace {
+
+using record_test::TemporaryFile;
+using testing::ElementsAre;
+
+Record read(const std::string& content) { return read_record(TemporaryFile(content).path()); }
+
+/// The message names the line and contains `part`; exit 65; one line.
+void expect_bad(const std::string& content, const std::string& place, const std::string& part) {
+  const TemporaryFile file(content);
+  try {
+    (void)read_record(file.path());
+    ADD_FAILURE() << "accepted: " << content;
+  } catch (const schema::Error& error) {
+    const std::string what = error.what();
+    EXPECT_EQ(error.exit_code(), 65);
+    EXPECT_EQ(what.find(file.path() + place + ": "), 0U) << what;
+    EXPECT_NE(what.find(part), std::string::npos) << what;
+    EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+  }
+}
+
+const std::string kRows = "0,1,0.1\n0.005,2,0.2\n0.010,3,0.3\n";
+
+TEST(Csv, ConvertsUnitsOnceAndKeepsFurtherColumnsByName) {
+  const Record record = read(
+      "t_ms,u_V,y_mm,ref_mm,supply_psi,tank_bar,case_kPa,force_norm\n"
+      "0,1.5,305,306,1000,1,2,0.25\n"
+      "5,-1.5,305.5,307,1001,1,2,nan\n"
+      "10,0,+306,308,1002,1,2,\n");
+  EXPECT_DOUBLE_EQ(record.sample_time_s, 0.005);
+  EXPECT_THAT(record.t_s, ElementsAre(0.0, 0.005, 0.01));
+  EXPECT_THAT(record.u_V, ElementsAre(1.5, -1.5, 0.0));
+  EXPECT_THAT(record.y_m, ElementsAre(0.305, 0.3055, 0.306));
+  ASSERT_EQ(record.further.size(), 5U);
+  EXPECT_DOUBLE_EQ(record.column("ref_m")->at(1), 0.307);
+  EXPECT_DOUBLE_EQ(record.column("supply_Pa")->at(0), 6894757.293168361);
+  EXPECT_DOUBLE_EQ(record.column("tank_Pa")->at(0), 1e5);
+  EXPECT_DOUBLE_EQ(record.column("case_Pa")->at(0), 2e3);
+  EXPECT_DOUBLE_EQ(record.column("force_norm")->at(0), 0.25);
+  EXPECT_TRUE(std::isnan(record.column("force_norm")->at(1)));
+  EXPECT_TRUE(std::isnan(record.column("force_norm")->at(2)));
+  EXPECT_EQ(record.column("force"), nullptr);
+}
+
+TEST(Csv, AcceptsWindowsLineEndsAByteOrderMarkQuotesAndColumnsInAnyOrder) {
+  const Record record =
+      read("\xEF\xBB\xBF\"y_m\", u_V ,t_s\r\n0.1,1,0\r\n0.2,2,1\r\n0.3,3,2\r\n\r\n");
+  EXPECT_THAT(record.y_m, ElementsAre(0.1, 0.2, 0.3));
+  EXPECT_THAT(record.t_s, ElementsAre(0.0, 1.0, 2.0));
+}
+
+TEST(Csv, ListsGapsOfWholePeriods) {
+  std::string text = "t_s,u_V,y_m\n";
+  for (int i = 0; i < 60; ++i) {
+    const int tick = i < 20 ? i : i < 40 ? i + 3 : i + 1000;
+    text += std::to_string(tick * 0.005) + ",1,0\n";
+  }
+  const Record record = read(text);
+  EXPECT_THAT(record.gaps, ElementsAre(20U, 40U));
+  EXPECT_NEAR(record.sample_time_s, 0.005, 1e-9);
+}
+
+TEST(Csv, TakesTimeStampsRoundedToAMillisecond) {
+  std::string text = "t_ms,u_V,y_m\n";
+  for (int i = 0; i < 1000; ++i) text += std::to_string(std::lround(i * 7.7531)) + ",1,0\n";
+  EXPECT_NEAR(read(text).sample_time_s, 0.0077531, 1e-6);
+}
+
+TEST(Csv, RefusesFilesWithoutData) {
+  expect_bad("", "", "is empty");
+  expect_bad("\n\n", "", "is empty");
+  expect_bad("t_s,u_V,y_m\n", "", "no data");
+  expect_bad("t_s,u_V,y_m\n0,1,2\n", ":2", "fewer than 3 samples");
+  EXPECT_THROW((void)read_record("/nowhere/at/all.csv"), schema::Error);
+  EXPECT_THROW((void)read_record("/tmp"), schema::Error);
+}
+
+TEST(Csv, RefusesALineCutOff) {
+  expect_bad("t_s,u_V,y_m\n" + kRows + "0.015,4", ":5", "cut off");
+  expect_bad("t_s,u_V,y_m\n" + kRows + "0.015,4,0.", ":5", "cut off");
+  expect_bad("t_s,u_V,y_m\n0,1,0.105\n0.005,2,0.205\n0.010,3,0.305\n0.015,4,0.4", ":5", "cut off");
+  expect_bad("t_s,u_V,y_m\n" + kRows + "0.015,4,", ":5", "cut off");
+  EXPECT_EQ(read("t_s,u_V,y_m\n" + kRows + "0.015,4,0.4").size(), 4U);
+}
+
+TEST(Csv, RefusesWhatIsNoNumberOrNotFinite) {
+  expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,abc,0\n", ":3", "u_V: 'abc' is no number");
+  expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,1.2.3,0\n", ":3", "is no number");
+  expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,,0\n", ":3", "is no number");
+  expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,1,nan\n", ":3", "y_m is nan");
+  expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,inf,1\n", ":3", "u_V is inf");
+  expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,1e999,1\n", ":3", "u_V is 1e999");
+  expect_bad("t_s,u_V,y_m,p_bar\n0,1,0,1\n0.005,1,0,inf\n", ":3", "p_bar is inf");
+}
+
+TEST(Csv, RefusesRowsOfAnotherLength) {
+  expect_bad("t_s,u_V,y_m\n0,1\n0.005,1,2\n", ":2", "too few fields");
+  expect_bad("t_s,u_V,y_m\n0,1,2,3\n0.005,1,2\n", ":2", "4 fields");
+  expect_bad("t_s,u_V,y_m\n0,1,2\n\n0.005,1,2\n", ":3", "empty line");
+}
+
+TEST(Csv, RefusesTimesThatDoNotGoOnEvenly) {
+  expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,1,0\n0.005,1,0\n0.01,1,0\n", ":4", "does not increase");
+  expect_bad("t_s,u_V,y_m\n0,1,0\n0.010,1,0\n0.005,1,0\n0.01,1,0\n", ":4", "does not increase");
+  expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,1,0\n0.010,1,0\n0.0175,1,0\n0.0225,1,0\n", ":5",
+             "unevenly sampled");
+  std::string alternating = "t_s,u_V,y_m\n";
+  double t_s = 0.0;
+  for (int i = 0; i < 31; ++i) {
+    alternating += std::to_string(t_s) + ",1,0\n";
+    t_s += i % 3 == 0 ? 0.01 : 0.005;
+  }
+  expect_bad(alternating, ":3", "unevenly sampled");
+}
+
+TEST(Csv, RefusesHeadersThatCannotBeMeant) {
+  expect_bad("u_V,y_m\n1,0\n", ":1", "lacks a time column");
+  expect_bad("t_s,y_m\n1,0\n", ":1", "lacks a command column");
+  expect_bad("t_s,u_V\n1,0\n", ":1", "lacks a position column");
+  expect_bad("t_s,u_V,y_m,t_ms\n0,1,2,0\n", ":1", "two time columns");
+  expect_bad("t_s,u_V,y_m,time_s\n0,1,2,0\n", ":1", "two time columns");
+  expect_bad("t_s,u_V,y_m,y_m\n0,1,2,0\n", ":1", "has column y_m twice");
+  expect_bad("t_s,u_V,y_m,y_mm\n0,1,2,0\n", ":1", "contradictory units: y_m and y_mm");
+  expect_bad("t_s,u_V,y_m,p_bar,p_psi\n0,1,2,0,0\n", ":1", "contradictory units");
+  expect_bad("t_s,u_V,y_V\n0,1,2\n", ":1", "contradictory unit");
+  expect_bad("t,u_V,y_m\n0,1,2\n", ":1", "column t has no unit");
+  expect_bad("t_s,u_V,,y_m\n0,1,2,3\n", ":1", "without a name");
+  expect_bad("0,1,2\n0.005,1,2\n", ":1", "lacks a time column");
+  expect_bad(std::string("\x7f"
+                         "ELF\0\0\0\0",
+                         8),
+             "", "is neither");
+}
+
+TEST(Csv, ReadsBackExactlyWhatItWrote) {
+  Record record;
+  record.further.emplace_back("supply_Pa", std::vector<double>{});
+  for (int i = 0; i < 50; ++i) {
+    record.t_s.push_back(i * 0.005);
+    record.u_V.push_back(std::sin(i) / 3.0);
+    record.y_m.push_back(0.305 + 1e-7 * i);
+    record.further[0].second.push_back(i == 7 ? std::nan("") : 6.89e6 + i / 7.0);
+  }
+  const TemporaryFile file("");
+  write_csv(record, file.path());
+  const Record again = read_record(file.path());
+  EXPECT_EQ(again.t_s, record.t_s);
+  EXPECT_EQ(again.u_V, record.u_V);
+  EXPECT_EQ(again.y_m, record.y_m);
+  EXPECT_TRUE(std::isnan(again.column("supply_Pa")->at(7)));
+  EXPECT_EQ(again.column("supply_Pa")->at(8), record.further[0].second[8]);
+  EXPECT_THROW(write_csv(record, "/nowhere/at/all.csv"), schema::Error);
+}
+
+TEST(Csv, AFailedWriteLeavesTheOldFileAndNoOther) {
+  const std::filesystem::path folder = testing::TempDir() + "/record_write_test";
+  std::filesystem::create_directories(folder / "taken.csv" / "inside");  // cannot be replaced
+  EXPECT_THROW(write_csv(Record{}, folder / "taken.csv"), schema::Error);
+  const auto entries = std::distance(std::filesystem::directory_iterator(folder), {});
+  EXPECT_EQ(entries, 1);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Csv, ReadsTheMeasuredRecords) {
+  const char* given = std::getenv("SPOOLWATCH_DATA");
+  const std::filesystem::path data =
+      given != nullptr ? std::filesystem::path(given)
+                       : std::filesystem::path(SPOOLWATCH_SOURCE_DIR) / "../shared/data";
+  if (!std::filesystem::exists(data / "faster/faster.csv")) {
+    GTEST_SKIP() << "no measured records in " << data;
+  }
+  const Record faster = read_record(data / "faster/faster.csv");
+  EXPECT_EQ(faster.size(), 21275U);
+  EXPECT_NEAR(1.0 / faster.sample_time_s, 128.98, 0.01);
+  EXPECT_TRUE(faster.gaps.empty());
+  const Record emps = read_record(data / "emps/train_200Hz.csv");
+  EXPECT_NEAR(emps.sample_time_s, 0.005, 1e-12);
+  EXPECT_NE(emps.column("ref_m"), nullptr);
+  EXPECT_NE(emps.column("F_N"), nullptr);
+}
+
+}  // namespace
+}  // namespace config::record

@@ -1,0 +1,142 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <lcm/lcm-cpp.hpp>
+
+#include "config/record/record.h"
+#include "config/schema/error.h"
+#include "spoolwatch/health_t.hpp"
+#include "spoolwatch/sample_t.hpp"
+#include "tests/config/record/temporary_file.h"
+
+namespace config::record {
+namespace {
+
+using record_test::TemporaryFile;
+using spoolwatch::sample_t;
+
+class LcmLog : public testing::Test {
+ protected:
+  template <class T>
+  void write(const std::string& channel, const T& message) {
+    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
+    message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    lcm::LogEvent event{};
+    event.eventnum = written_++;
+    event.timestamp = 1000 * event.eventnum;
+    event.channel = channel;
+    event.datalen = static_cast<std::int32_t>(bytes.size());
+    event.data = bytes.data();
+    log_->writeEvent(&event);
+  }
+  void write_samples(
+      const std::string& channel, int count,
+      const std::function<void(int, sample_t&)>& change = [](int, sample_t&) {}) {
+    for (int i = 0; i < count; ++i) {
+      sample_t s{};
+      s.tick = i;
+      s.sample_time_s = 0.005;
+      s.u_applied_V = 0.5 * i;
+      s.y_m = 0.3 + 0.001 * i;
+      s.reference_m = 0.4;
+      change(i, s);
+      write(channel, s);
+    }
+  }
+  Record read() {
+    log_.reset();  // closes it
+    return read_record(file_.path());
+  }
+  void expect_bad(const std::string& part) {
+    try {
+      (void)read();
+      ADD_FAILURE() << "accepted";
+    } catch (const schema::Error& error) {
+      EXPECT_EQ(error.exit_code(), 65);
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  }
+
+  TemporaryFile file_{"", ".log"};
+  std::unique_ptr<lcm::LogFile> log_ = std::make_unique<lcm::LogFile>(file_.path(), "w");
+  std::int64_t written_ = 0;
+};
+
+TEST_F(LcmLog, IsRecognisedByContentAndReadInSiUnits) {
+  write("SPOOLWATCH_HEALTH", spoolwatch::health_t{});
+  write_samples("SPOOLWATCH_SAMPLE", 5);
+  const Record record = read();
+  EXPECT_EQ(record.size(), 5U);
+  EXPECT_EQ(record.sample_time_s, 0.005);
+  EXPECT_DOUBLE_EQ(record.t_s[3], 0.015);
+  EXPECT_DOUBLE_EQ(record.u_V[3], 1.5);
+  EXPECT_DOUBLE_EQ(record.y_m[3], 0.303);
+  EXPECT_DOUBLE_EQ(record.column("reference_m")->at(3), 0.4);
+  EXPECT_TRUE(record.notes.empty());
+}
+
+TEST_F(LcmLog, FindsTheSamplesUnderAnotherPrefix) {
+  write("RIG2_HEALTH", spoolwatch::health_t{});
+  write_samples("RIG2_SAMPLE", 5);
+  EXPECT_EQ(read().size(), 5U);
+}
+
+TEST_F(LcmLog, LeavesBadSamplesOutAsGapsAndSaysSo) {
+  write_samples("SPOOLWATCH_SAMPLE", 40, [](int i, sample_t& s) {
+    if (i == 10) s.quality = 3;
+    if (i == 20) s.y_m = std::nan("");
+  });
+  const Record record = read();
+  EXPECT_EQ(record.size(), 38U);
+  EXPECT_EQ(record.gaps, (std::vector<std::size_t>{10, 19}));
+  ASSERT_EQ(record.notes.size(), 1U);
+  EXPECT_NE(record.notes[0].find("2 samples"), std::string::npos);
+}
+
+TEST_F(LcmLog, UsesTheCompleteEventsOfALogCutOffAndSaysSo) {
+  write_samples("SPOOLWATCH_SAMPLE", 10);
+  log_.reset();
+  std::filesystem::resize_file(file_.path(), std::filesystem::file_size(file_.path()) - 20);
+  const Record record = read();
+  EXPECT_EQ(record.size(), 9U);
+  ASSERT_EQ(record.notes.size(), 1U);
+  EXPECT_NE(record.notes[0].find("cut off"), std::string::npos);
+}
+
+TEST_F(LcmLog, RefusesALogOfAnotherType) {
+  write("SPOOLWATCH_HEALTH", spoolwatch::health_t{});
+  expect_bad("no events of type spoolwatch::sample_t");
+}
+
+TEST_F(LcmLog, RefusesAnotherTypeOnTheSampleChannel) {
+  write_samples("SPOOLWATCH_SAMPLE", 3);
+  write("SPOOLWATCH_SAMPLE", spoolwatch::health_t{});
+  expect_bad("event 3: on SPOOLWATCH_SAMPLE is of another type");
+}
+
+TEST_F(LcmLog, RefusesTwoRunsInOneRecord) {
+  write_samples("SPOOLWATCH_SAMPLE", 5, [](int i, sample_t& s) { s.run_id = i / 3; });
+  expect_bad("another run");
+}
+
+TEST_F(LcmLog, RefusesTicksThatGoBack) {
+  write_samples("SPOOLWATCH_SAMPLE", 5, [](int i, sample_t& s) { s.tick = i == 3 ? 1 : i; });
+  expect_bad("event 3: time does not increase");
+}
+
+TEST_F(LcmLog, RefusesALogWithoutAGoodSample) {
+  write_samples("SPOOLWATCH_SAMPLE", 5, [](int, sample_t& s) { s.u_applied_V = std::nan(""); });
+  expect_bad("no sample with a good position and command");
+}
+
+TEST_F(LcmLog, RefusesALogCutOffInItsFirstEvent) {
+  write_samples("SPOOLWATCH_SAMPLE", 1);
+  log_.reset();
+  std::filesystem::resize_file(file_.path(), 40);
+  expect_bad("no complete event");
+}
+
+}  // namespace
+}  // namespace config::record

@@ -1,0 +1,351 @@
+#include "estimator/fdi/pipeline.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "config/schema/error.h"
+#include "estimator/estimate.h"
+#include "tests/estimator/fdi/recorder.h"
+
+namespace estimator::fdi {
+namespace {
+
+using fdi_test::Recorder;
+
+constexpr double kSampleTime_s = 0.005;
+constexpr double kGain_m_per_V = 2e-4;
+
+/// y(t) = y(t-1) + gain u(t-1), u a sine of 2 V at 1 Hz: ARX111 with a1 = -1, b1 = gain exactly.
+class Integrator {
+ public:
+  double gain_m_per_V = kGain_m_per_V;
+  double amplitude_V = 2.0;
+
+  Sample next() {
+    Sample s;
+    s.tick = tick_;
+    s.y_m = y_m_;
+    s.u_applied_V = amplitude_V * std::sin(2.0 * M_PI * kSampleTime_s * static_cast<double>(tick_));
+    y_m_ += gain_m_per_V * s.u_applied_V;
+    ++tick_;
+    return s;
+  }
+
+ private:
+  double y_m_ = 0.0;
+  std::int64_t tick_ = 0;
+};
+
+/// One estimator of 1 s windows and a band on its b1.
+PipelineConfig watched(const std::string& method) {
+  PipelineConfig config;
+  EstimatorConfig estimator;
+  estimator.id = "e";
+  estimator.method = method;
+  estimator.window_s = 1.0;
+  estimator.stride_s = 0.1;
+  config.estimators.push_back(estimator);
+  BandConfig band;
+  band.id = "gain";
+  band.quantity = "e.b1";
+  band.low = 1.9e-4;
+  band.high = 2.1e-4;
+  band.parameter = "valve_gain_m_per_V";
+  config.bands.push_back(band);
+  return config;
+}
+
+void run(Pipeline& pipeline, Integrator& plant, int samples, Recorder& seen) {
+  for (int i = 0; i < samples; ++i) pipeline.process(plant.next(), seen);
+}
+
+class EveryMethod : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod, testing::Values("batch", "sliding", "recursive"));
+
+TEST_P(EveryMethod, FindsTheGainAndRaisesTheAlarmWithItsDirectionWhenTheGainRises) {
+  Pipeline pipeline(watched(GetParam()), kSampleTime_s);
+  Integrator plant;
+  Recorder seen;
+  run(pipeline, plant, 600, seen);
+  ASSERT_FALSE(seen.estimates.empty());
+  EXPECT_TRUE(seen.estimates.back().valid) << seen.estimates.back().reason;
+  EXPECT_NEAR(seen.estimates.back().b1, kGain_m_per_V, 1e-3 * kGain_m_per_V);
+  EXPECT_TRUE(seen.alarms.empty());
+
+  plant.gain_m_per_V = 1.2 * kGain_m_per_V;
+  run(pipeline, plant, 2400, seen);
+  ASSERT_EQ(seen.alarms.size(), 1U);
+  EXPECT_EQ(seen.alarms[0].severity, Severity::major);
+  EXPECT_EQ(seen.alarms[0].direction, 1);
+  EXPECT_EQ(seen.alarms[0].parameter, "valve_gain_m_per_V");
+  EXPECT_GT(seen.alarms[0].value, 2.1e-4);
+  EXPECT_EQ(pipeline.alarms().active_count(), 1U);
+}
+
+TEST_P(EveryMethod, IsInvalidWhenNothingMoves) {
+  Pipeline pipeline(watched(GetParam()), kSampleTime_s);
+  Integrator plant;
+  plant.amplitude_V = 0.0;
+  Recorder seen;
+  run(pipeline, plant, 1000, seen);
+  ASSERT_EQ(seen.alarms.size(), 1U);
+  EXPECT_EQ(seen.alarms[0].severity, Severity::invalid);
+  EXPECT_FALSE(seen.estimates.back().valid);
+  EXPECT_FALSE(seen.estimates.back().reason.empty());
+}
+
+TEST_P(EveryMethod, IsInvalidWhenThePositionIsStuckWhileTheCommandMoves) {
+  Pipeline pipeline(watched(GetParam()), kSampleTime_s);
+  Integrator plant;
+  plant.gain_m_per_V = 0.0;
+  Recorder seen;
+  run(pipeline, plant, 1000, seen);
+  ASSERT_EQ(seen.alarms.size(), 1U);
+  EXPECT_EQ(seen.alarms[0].severity, Severity::invalid);
+}
+
+TEST_P(EveryMethod, IsInvalidAfterALongGapAndValidAgainOneWindowLater) {
+  Pipeline pipeline(watched(GetParam()), kSampleTime_s);
+  Integrator plant;
+  Recorder seen;
+  run(pipeline, plant, 400, seen);
+  for (int i = 0; i < 100; ++i) plant.next();  // half a window lost
+  Sample first = plant.next();
+  first.gap = 100;
+  pipeline.process(first, seen);
+  run(pipeline, plant, 99, seen);
+  ASSERT_EQ(seen.alarms.size(), 1U);
+  EXPECT_EQ(seen.alarms[0].severity, Severity::invalid);
+  EXPECT_EQ(seen.estimates.back().reason, text(Reason::gap));
+  run(pipeline, plant, 400, seen);
+  ASSERT_EQ(seen.alarms.size(), 2U);
+  EXPECT_EQ(seen.alarms[1].severity, Severity::ok);
+  EXPECT_NEAR(seen.estimates.back().b1, kGain_m_per_V, 1e-3 * kGain_m_per_V);
+}
+
+TEST_P(EveryMethod, NoRegressorReachesAcrossAShortGap) {
+  Pipeline pipeline(watched(GetParam()), kSampleTime_s);
+  Integrator plant;
+  Recorder seen;
+  run(pipeline, plant, 290, seen);
+  for (int i = 0; i < 5; ++i) plant.next();
+  run(pipeline, plant, 105 + 200, seen);  // the ticks alone tell of the gap
+  EXPECT_TRUE(seen.alarms.empty());
+  EXPECT_TRUE(seen.estimates.back().valid);
+  // A row across the gap would be wrong by five samples' travel, 10 %.
+  EXPECT_NEAR(seen.estimates.back().b1, kGain_m_per_V, 1e-3 * kGain_m_per_V);
+}
+
+TEST_P(EveryMethod, IsInvalidWhenReadingsAreBadOrMissing) {
+  for (const bool nan : {false, true}) {
+    Pipeline pipeline(watched(GetParam()), kSampleTime_s);
+    Integrator plant;
+    Recorder seen;
+    run(pipeline, plant, 400, seen);
+    for (int i = 0; i < 200; ++i) {
+      Sample s = plant.next();
+      if (i % 10 == 0 && nan) s.y_m = std::nan("");
+      if (i % 10 == 0 && !nan) s.quality = Quality::bad;
+      pipeline.process(s, seen);
+    }
+    EXPECT_EQ(seen.estimates.back().reason, text(Reason::gap));
+    EXPECT_FALSE(seen.estimates.back().valid);
+  }
+}
+
+TEST_P(EveryMethod, IsInvalidWhileTheCommandIsSaturated) {
+  Pipeline pipeline(watched(GetParam()), kSampleTime_s);
+  Integrator plant;
+  Recorder seen;
+  run(pipeline, plant, 400, seen);
+  for (int i = 0; i < 200; ++i) {
+    Sample s = plant.next();
+    s.saturated = i % 5 == 0;  // 20 % of the window, 10 % are allowed
+    pipeline.process(s, seen);
+  }
+  EXPECT_EQ(seen.estimates.back().reason, text(Reason::saturated));
+  ASSERT_EQ(seen.alarms.size(), 1U);
+  EXPECT_EQ(seen.alarms[0].severity, Severity::invalid);
+}
+
+TEST(Pipeline, CallsAWindowWithLittleCommandNotExcited) {
+  PipelineConfig config = watched("sliding");
+  config.estimators[0].min_u_rms_V = 1.0;
+  Pipeline pipeline(config, kSampleTime_s);
+  Integrator plant;
+  plant.amplitude_V = 1.3;  // 0.92 V rms
+  Recorder seen;
+  run(pipeline, plant, 600, seen);
+  EXPECT_EQ(seen.estimates.back().reason, text(Reason::not_excited));
+}
+
+TEST(Pipeline, StaysSilentWhenTheRecordIsShorterThanItsWindow) {
+  Pipeline pipeline(watched("batch"), kSampleTime_s);
+  Integrator plant;
+  Recorder seen;
+  run(pipeline, plant, 199, seen);
+  EXPECT_TRUE(seen.estimates.empty());
+  EXPECT_TRUE(seen.alarms.empty());
+}
+
+TEST(Pipeline, MarksEstimatesBeforeTheFirstFullWindowAsTooShort) {
+  Pipeline pipeline(watched("sliding"), kSampleTime_s);
+  Integrator plant;
+  Recorder seen;
+  run(pipeline, plant, 199, seen);
+  ASSERT_FALSE(seen.estimates.empty());
+  for (const auto& estimate : seen.estimates) {
+    EXPECT_FALSE(estimate.valid);
+    EXPECT_TRUE(estimate.warming_up);
+    EXPECT_EQ(estimate.reason, text(Reason::too_short));
+  }
+  EXPECT_TRUE(seen.alarms.empty());
+}
+
+TEST(Pipeline, RaisesNoAlarmWithinTheWarmUp) {
+  PipelineConfig config = watched("batch");
+  config.estimators[0].warmup_s = 2.0;
+  Pipeline pipeline(config, kSampleTime_s);
+  Integrator plant;
+  plant.gain_m_per_V = 3e-4;
+  Recorder seen;
+  run(pipeline, plant, 400, seen);
+  EXPECT_EQ(seen.estimates.size(), 2U);
+  EXPECT_TRUE(seen.alarms.empty());
+  run(pipeline, plant, 200, seen);
+  EXPECT_EQ(seen.alarms.size(), 1U);
+}
+
+TEST(Pipeline, KeepsBatchWindowsOnTheGridOfTicksAcrossAGap) {
+  Pipeline pipeline(watched("batch"), kSampleTime_s);
+  Integrator plant;
+  Recorder seen;
+  run(pipeline, plant, 250, seen);
+  for (int i = 0; i < 7; ++i) plant.next();
+  run(pipeline, plant, 343, seen);
+  ASSERT_EQ(seen.estimates.size(), 3U);
+  EXPECT_EQ(seen.estimates[1].tick, 399);
+  EXPECT_EQ(seen.estimates[2].tick, 599);
+}
+
+TEST(Pipeline, IncrementsWithoutAPoleGiveTheSameGain) {
+  PipelineConfig config = watched("sliding");
+  config.estimators[0].structure = "arx011";
+  config.estimators[0].increments = true;
+  Pipeline pipeline(config, kSampleTime_s);
+  Integrator plant;
+  Recorder seen;
+  run(pipeline, plant, 600, seen);
+  EXPECT_NEAR(seen.estimates.back().b1, kGain_m_per_V, 1e-9 * kGain_m_per_V);
+}
+
+TEST(Pipeline, DetrendsEachWindowBeforeItsBatch) {
+  PipelineConfig config = watched("batch");
+  config.estimators[0].detrend = "mean";
+  Pipeline pipeline(config, kSampleTime_s);
+  Integrator plant;
+  Recorder seen;
+  for (int i = 0; i < 600; ++i) {
+    Sample s = plant.next();
+    s.y_m += 5.0;  // an offset that would drown the motion
+    pipeline.process(s, seen);
+  }
+  EXPECT_NEAR(seen.estimates.back().b1, kGain_m_per_V, 1e-4 * kGain_m_per_V);
+}
+
+TEST(Pipeline, WatchesSampleQuantities) {
+  PipelineConfig config;
+  BandConfig band;
+  band.id = "following";
+  band.quantity = "sample.following_error_m";
+  band.low = -0.01;
+  band.high = 0.01;
+  band.on_delay_s = 0.02;
+  config.bands.push_back(band);
+  Pipeline pipeline(config, kSampleTime_s);
+  Recorder seen;
+  Sample s;
+  for (int i = 0; i < 10; ++i, ++s.tick) {
+    s.reference_m = i < 3 ? 0.0 : 0.02;
+    pipeline.process(s, seen);
+  }
+  ASSERT_EQ(seen.alarms.size(), 1U);
+  EXPECT_EQ(seen.alarms[0].tick, 7);  // outside since tick 3, 4 ticks make 0.02 s
+  EXPECT_EQ(seen.alarms[0].source, "sample");
+  EXPECT_EQ(seen.alarms[0].direction, 1);
+}
+
+TEST(Pipeline, StartsAgainWhenTheTicksGoBack) {
+  Pipeline pipeline(watched("batch"), kSampleTime_s);
+  Recorder seen;
+  for (int start = 0; start < 2; ++start) {
+    Integrator plant;
+    run(pipeline, plant, 250, seen);
+  }
+  ASSERT_EQ(seen.estimates.size(), 2U);
+  EXPECT_TRUE(seen.estimates[1].valid);
+  EXPECT_NEAR(seen.estimates[1].b1, kGain_m_per_V, 1e-3 * kGain_m_per_V);
+}
+
+TEST(Pipeline, ResetForgetsSamplesAndAlarms) {
+  Pipeline pipeline(watched("batch"), kSampleTime_s);
+  Integrator plant;
+  plant.gain_m_per_V = 3e-4;
+  Recorder seen;
+  run(pipeline, plant, 250, seen);
+  EXPECT_EQ(pipeline.alarms().active_count(), 1U);
+  pipeline.reset();
+  EXPECT_EQ(pipeline.alarms().active_count(), 0U);
+  run(pipeline, plant, 200, seen);
+  EXPECT_EQ(seen.alarms.size(), 2U);
+}
+
+void expect_refused(const PipelineConfig& config, const std::string& part) {
+  try {
+    const Pipeline pipeline(config, kSampleTime_s);
+    FAIL() << "not refused: " << part;
+  } catch (const config::schema::Error& error) {
+    EXPECT_EQ(error.exit_code(), 78);
+    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+  }
+}
+
+TEST(Pipeline, RefusesWhatCannotBeMeant) {
+  PipelineConfig config = watched("sliding");
+  config.bands[0].quantity = "e.b2";
+  expect_refused(config, "e estimates no b2");
+  config.bands[0].quantity = "f.b1";
+  expect_refused(config, "names no estimator");
+  config.bands[0].quantity = "sample.z";
+  expect_refused(config, "a sample has no z");
+  config = watched("sliding");
+  config.bands[0].low = 3e-4;
+  expect_refused(config, "is not below high");
+  config = watched("sliding");
+  config.bands[0].hysteresis = 1.0;
+  expect_refused(config, "hysteresis");
+  config = watched("sliding");
+  config.bands.push_back(config.bands[0]);
+  expect_refused(config, "is taken");
+  config = watched("sliding");
+  config.estimators.push_back(config.estimators[0]);
+  expect_refused(config, "[[estimator]] id");
+  config = watched("sliding");
+  config.estimators[0].structure = "arma";
+  expect_refused(config, "[[estimator]] e");
+  config = watched("sliding");
+  config.estimators[0].detrend = "mean";
+  expect_refused(config, "detrend");
+  config = watched("sliding");
+  config.estimators[0].filter = "low";
+  config.estimators[0].filter_high_Hz = 200.0;
+  expect_refused(config, "[[estimator]] e");
+  config = watched("sliding");
+  config.bands[0].low = -std::numeric_limits<double>::infinity();
+  config.bands[0].high = std::numeric_limits<double>::infinity();
+  expect_refused(config, "neither low nor high");
+}
+
+}  // namespace
+}  // namespace estimator::fdi
