@@ -29,17 +29,41 @@ struct Prepared {
   std::unique_ptr<estimator::fdi::Pipeline> pipeline;
 };
 
+/// What `make` says is wrong with the configuration, with the place in the file put before it.
+template <class Make>
+auto at(const std::string& place, Make make) {
+  using config::schema::Error;
+  try {
+    return make();
+  } catch (const Error& e) {
+    if (e.exit_code() != static_cast<int>(config::schema::ExitCode::bad_config)) throw;
+    throw Error(config::schema::ExitCode::bad_config, place + ": " + e.what());
+  }
+}
+
 Prepared prepare(DaemonConfig& config) {
   Prepared p;
   p.sample_time_s = 1.0 / config.loop.rate_Hz;
   p.opening = {config.file, config.folder, p.sample_time_s, config.rig.valve().null_V};
   p.devices = config.rig.open(p.opening);
   if (!std::isnan(p.devices.sample_time_s)) p.sample_time_s = p.devices.sample_time_s;
-  p.reference = control::make_reference(
-      config.drives_valve() ? config.reference : control::ReferenceConfig{}, config.folder);
+  p.reference = at(config.file + ": [reference] file", [&] {
+    return control::make_reference(
+        config.drives_valve() ? config.reference : control::ReferenceConfig{}, config.folder);
+  });
   estimator::fdi::PipelineConfig pipeline = config.pipeline;
-  pipeline.load_bands(config.folder, p.sample_time_s);
-  p.pipeline = std::make_unique<estimator::fdi::Pipeline>(pipeline, p.sample_time_s);
+  at(config.file + ": bands_file", [&] {
+    std::error_code ignored;
+    if (!pipeline.bands_file.empty() &&
+        !std::filesystem::is_regular_file(config.folder / pipeline.bands_file, ignored)) {
+      throw config::schema::bad_config((config.folder / pipeline.bands_file).string(), "is no file",
+                                       "a file of learned bands (TOML)");
+    }
+    pipeline.load_bands(config.folder, p.sample_time_s);
+  });
+  p.pipeline = at(config.file, [&] {
+    return std::make_unique<estimator::fdi::Pipeline>(pipeline, p.sample_time_s);
+  });
   p.hash = hash(config);
   return p;
 }
@@ -61,6 +85,28 @@ std::string hex(std::uint64_t value) {
   char text[17];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
   return text;
+}
+
+void report(const rt::LoopStats& stats, std::ostream& log) {
+  const struct {
+    const char* what;
+    const rt::Histogram& times;
+  } rows[] = {{"lateness", stats.lateness},
+              {"tick", stats.tick},
+              {"read", stats.read},
+              {"control", stats.control},
+              {"write", stats.write}};
+  char line[160];
+  log << "spoolwatchd: " << stats.ticks.value() << " ticks, " << stats.overruns.value()
+      << " overruns, " << stats.skipped_periods.value() << " periods skipped, "
+      << stats.dropped_samples.value() << " samples dropped; of each period:\n";
+  for (const auto& row : rows) {
+    const auto us = [&](double q) { return static_cast<double>(row.times.quantile_ns(q)) * 1e-3; };
+    std::snprintf(line, sizeof line,
+                  "  %-8s p50 %.1f us  p99 %.1f us  p99.9 %.1f us  max %.1f us\n", row.what,
+                  us(0.5), us(0.99), us(0.999), static_cast<double>(row.times.max_ns()) * 1e-3);
+    log << line;
+  }
 }
 
 void arm_and_start(rt::CommandQueue& commands, std::int64_t expires_ns) {
@@ -125,6 +171,7 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
       virtual_time ? rt::run_virtual(run, detector, stop, [] { return wait_for_stop(0); })
                    : rt::run_realtime(run, detector, grant.loop_thread, stop, valve,
                                       [] { return wait_for_stop(100); });
+  if (!virtual_time) report(stats, log);
   if (outcome.empty()) return static_cast<int>(config::schema::ExitCode::done);
   log << "spoolwatchd: " << outcome << std::endl;
   return static_cast<int>(config::schema::ExitCode::failed);

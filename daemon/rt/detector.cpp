@@ -42,9 +42,13 @@ Detector::Detector(const Parts& parts, const Identity& identity)
   health_.device_bad.resize(health_.device.size());
 }
 
-void Detector::poll() {
+void Detector::drain() {
   Sample sample;
   while (parts_.samples.pop(sample)) process(sample);
+}
+
+void Detector::poll() {
+  drain();
   if (parts_.clock.now_ns() < next_second_ns_) return;
   once_a_second();
   next_second_ns_ += kSecond_ns;
@@ -53,7 +57,7 @@ void Detector::poll() {
 }
 
 void Detector::finish() {
-  poll();
+  drain();
   once_a_second();
 }
 

@@ -48,6 +48,7 @@ class Detector final : private estimator::fdi::Events {
   void on_estimate(const estimator::fdi::EstimateEvent& event) override;
   void on_alarm(const estimator::fdi::Alarm& alarm) override;
 
+  void drain();
   void process(const estimator::fdi::Sample& sample);
   void publish(const estimator::fdi::Alarm& alarm, bool repeat);
   void condition(const char* source, const char* name, estimator::fdi::Severity severity,

@@ -135,6 +135,7 @@ void Loop::send(Sample& sample) noexcept {
 }
 
 bool Loop::tick(const Period& period) noexcept {
+  const std::int64_t start_ns = parts_.clock.now_ns();
   tick_ = period.tick.index;
   parts_.stats.lateness.add(period.lateness_ns);
   take_commands();
@@ -162,6 +163,7 @@ bool Loop::tick(const Period& period) noexcept {
   sample.state = static_cast<std::uint8_t>(arming_.state());
   send(sample);
   parts_.stats.ticks.add();
+  parts_.stats.tick.add(parts_.clock.now_ns() - start_ns);
   return true;
 }
 

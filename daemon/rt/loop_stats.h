@@ -31,7 +31,7 @@ struct LoopStats {
   Counter expired_commands;
   Counter refused_commands;  ///< not allowed in the state of the moment
   Counter rod_good, rod_bad, valve_good, valve_bad;
-  Histogram lateness, read, control, write;
+  Histogram lateness, read, control, write, tick;
   std::atomic<control::State> state{control::State::disarmed};
   std::atomic<Trip> trip{Trip::none};  ///< why the state is LATCHED
 };

@@ -1,0 +1,60 @@
+// Runs the built spoolwatchd as its users do, in a folder of its own.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace program {
+
+struct Result {
+  int exit_code = -1;  ///< -signal when one ended it
+  std::string out;
+  std::string err;
+};
+
+/// A folder that goes away with the object.
+class Folder {
+ public:
+  Folder();
+  ~Folder();
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+struct Limits {
+  bool without_realtime = false;  ///< no SCHED_FIFO for the child
+};
+
+/// spoolwatchd with these arguments, standard streams into files of a folder.
+class Daemon {
+ public:
+  explicit Daemon(const std::vector<std::string>& arguments, Limits limits = {});
+  ~Daemon();
+  Daemon(const Daemon&) = delete;
+  Daemon& operator=(const Daemon&) = delete;
+  [[nodiscard]] pid_t pid() const noexcept { return pid_; }
+  Result wait();
+
+ private:
+  Folder folder_;
+  pid_t pid_;
+  bool waited_ = false;
+};
+
+Result run(const std::vector<std::string>& arguments, Limits limits = {});
+
+/// config/NAME of the source tree.
+std::string shipped(const std::string& name);
+
+/// --config NAME in virtual time, no LCM, recording to `log`, and what `more` says.
+std::vector<std::string> virtual_run(const std::string& config, const std::filesystem::path& log,
+                                     const std::vector<std::string>& more = {});
+
+}  // namespace program

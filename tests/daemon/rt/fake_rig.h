@@ -1,0 +1,108 @@
+// A rig made of two numbers and a list: what the loop reads is set by the test, what it writes is
+// kept. Reading or writing may take virtual time, or fail.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "daemon/rt/loop.h"
+
+namespace monitor::rt {
+
+inline constexpr double kFakeNull_V = 0.4;
+inline constexpr double kFakeSampleTime_s = 0.005;
+inline constexpr std::int64_t kFakePeriod_ns = 5'000'000;
+
+class FakeRig final : public hal::RodSensor, public hal::ValveDrive {
+ public:
+  struct Write {
+    std::int64_t tick;
+    double u_V;
+  };
+
+  explicit FakeRig(VirtualClock* clock) : clock_(clock) {}
+
+  hal::Reading read(const hal::Tick& tick) noexcept override {
+    if (clock_ != nullptr) clock_->advance_ns(read_ns);
+    hal::Reading reading;
+    reading.end = tick.index >= end_tick;
+    reading.y_m = y_m;
+    reading.command_V = command_V;
+    reading.quality = quality;
+    tick_ = tick.index;
+    return reading;
+  }
+  hal::Applied write(double u_V, const hal::Tick& tick) noexcept override {
+    writes.push_back({tick.index, u_V});
+    return {u_V, write_good};
+  }
+  hal::Applied go_null() noexcept override { return write(kFakeNull_V, {tick_, 0}); }
+
+  double y_m = 0.1;
+  double command_V = hal::kMissing;
+  hal::Quality quality = hal::Quality::good;
+  bool write_good = true;
+  std::int64_t read_ns = 0;
+  std::int64_t end_tick = kForeverTicks;
+  std::vector<Write> writes;
+
+  static constexpr std::int64_t kForeverTicks = 1'000'000'000;
+
+ private:
+  VirtualClock* clock_;
+  std::int64_t tick_ = 0;
+};
+
+/// A loop on the fake rig in virtual time: reference 0.3 m, 100 V/m, no slew limit.
+class LoopBench {
+ public:
+  explicit LoopBench(const LoopConfig& config = {}, bool with_valve = true)
+      : reference_(0.3, 0.0, 0.0),
+        controller_({100.0}, {kFakeNull_V, 30.0}, kFakeSampleTime_s),
+        loop_(config,
+              {clock, rig, with_valve ? &rig : nullptr, reference_, samples, commands, stats},
+              controller_, kFakeSampleTime_s),
+        grid_(0, kFakePeriod_ns) {}
+
+  bool tick() { return loop_.tick(grid_.next(clock)); }
+  /// Ticks once and returns its sample.
+  estimator::fdi::Sample sample() {
+    tick();
+    estimator::fdi::Sample last;
+    while (samples.pop(last)) {
+    }
+    return last;
+  }
+  void order(control::Event event, std::int64_t life_ns = 1'000'000'000) {
+    Command command;
+    command.event = event;
+    command.expires_ns = clock.now_ns() + life_ns;
+    commands.push(command);
+  }
+  void run() {
+    order(control::Event::arm);
+    order(control::Event::start);
+    tick();
+  }
+  Loop& loop() { return loop_; }
+  [[nodiscard]] double last_V() const { return rig.writes.back().u_V; }
+  [[nodiscard]] control::State state() const { return stats.state.load(); }
+
+  VirtualClock clock;
+  FakeRig rig{&clock};
+  SampleQueue samples;
+  CommandQueue commands;
+  LoopStats stats;
+
+ private:
+  control::Sine reference_;
+  control::Controller controller_;
+  Loop loop_;
+  Grid grid_;
+};
+
+/// What the law asks for with the rod at 0.1 m.
+inline constexpr double kLaw_V = kFakeNull_V + 100.0 * (0.3 - 0.1);
+inline constexpr double kRounding_V = 1e-12;
+
+}  // namespace monitor::rt

@@ -1,0 +1,144 @@
+// Overruns, missing positions, failed writes: what is written, what is counted, where it leads.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/daemon/rt/fake_rig.h"
+
+namespace monitor::rt {
+namespace {
+
+using control::Event;
+using control::State;
+
+TEST(Overrun, HoldsTheOutputMarksTheGapAndGoesOnWithTheLaw) {
+  LoopBench bench;
+  bench.run();
+  bench.sample();
+  const std::size_t writes = bench.rig.writes.size();
+  bench.clock.advance_ns(3 * kFakePeriod_ns + kFakePeriod_ns / 2);
+  const estimator::fdi::Sample sample = bench.sample();
+  EXPECT_EQ(bench.rig.writes.size(), writes + 1) << "nothing may be written for periods skipped";
+  EXPECT_EQ(sample.tick, 5);
+  EXPECT_EQ(sample.gap, 3);
+  EXPECT_EQ(sample.t_read_ns, 5 * kFakePeriod_ns) << "the phase of the grid is lost";
+  EXPECT_NEAR(sample.u_applied_V, kLaw_V, kRounding_V);
+  EXPECT_EQ(bench.stats.overruns.value(), 1);
+  EXPECT_EQ(bench.stats.skipped_periods.value(), 3);
+  EXPECT_EQ(bench.sample().gap, 0);
+}
+
+TEST(Overrun, WritesNullInTheFirstTickAfterFiftyMilliseconds) {
+  for (const auto& [lost, null] : {std::pair{8, false}, {9, true}, {30, true}}) {
+    LoopConfig config;
+    config.overrun_action = "count";
+    LoopBench bench(config);
+    bench.run();
+    bench.clock.advance_ns(lost * kFakePeriod_ns + 1);  // lost periods, then one more wait
+    const estimator::fdi::Sample sample = bench.sample();
+    ASSERT_EQ(sample.gap, lost);
+    // From tick to tick lost + 1 periods of 5 ms went by: 45 ms, 50 ms, 155 ms.
+    EXPECT_EQ(sample.u_applied_V == kFakeNull_V, null) << lost << " periods lost";
+    EXPECT_NEAR(bench.sample().u_applied_V, kLaw_V, kRounding_V);
+  }
+}
+
+TEST(Overrun, MoreThanAllowedInARowTakesTheConfiguredAction) {
+  for (const auto& [action, state] :
+       {std::pair{"latch", State::latched}, {"disarm", State::disarmed}, {"count", State::run}}) {
+    LoopConfig config;
+    config.max_lost_in_a_row = 2;
+    config.overrun_action = action;
+    LoopBench bench(config);
+    bench.run();
+    bench.clock.advance_ns(2 * kFakePeriod_ns + 1);
+    bench.tick();
+    EXPECT_EQ(bench.state(), State::run) << action;
+    bench.tick();
+    bench.clock.advance_ns(3 * kFakePeriod_ns + 1);
+    bench.tick();
+    EXPECT_EQ(bench.state(), state) << action;
+    EXPECT_EQ(bench.last_V() == kFakeNull_V, state != State::run) << action;
+  }
+}
+
+TEST(Overrun, ASlowDeviceIsAnOverrunToo) {
+  LoopBench bench;
+  bench.run();
+  bench.rig.read_ns = 2 * kFakePeriod_ns + 1;
+  bench.tick();
+  bench.rig.read_ns = 0;
+  EXPECT_EQ(bench.sample().gap, 2);
+  EXPECT_EQ(bench.stats.overruns.value(), 1);
+  EXPECT_GE(bench.stats.read.max_ns(), 2 * kFakePeriod_ns + 1);
+}
+
+TEST(Loop, WritesNullWhileThePositionIsMissingAndLatchesAfterTooMany) {
+  LoopConfig config;
+  config.max_bad_in_a_row = 3;
+  LoopBench bench(config);
+  bench.run();
+  for (int k = 0; k < 3; ++k) {
+    bench.rig.quality = hal::Quality::bad;
+    const estimator::fdi::Sample sample = bench.sample();
+    EXPECT_EQ(sample.u_applied_V, kFakeNull_V);
+    EXPECT_TRUE(std::isnan(sample.y_m)) << "a missing value must not look like a reading";
+    EXPECT_EQ(sample.quality, estimator::fdi::Quality::bad);
+    EXPECT_EQ(bench.state(), State::run);
+  }
+  bench.rig.quality = hal::Quality::good;
+  EXPECT_NEAR(bench.sample().u_applied_V, kLaw_V, kRounding_V);
+  bench.rig.y_m = std::nan("");  // no number is no reading, whatever the device says of it
+  for (int k = 0; k < 4; ++k) bench.tick();
+  EXPECT_EQ(bench.state(), State::latched);
+  EXPECT_EQ(bench.stats.trip.load(), Trip::reading);
+  EXPECT_EQ(bench.stats.rod_bad.value(), 7);
+  bench.rig.y_m = 0.1;
+  EXPECT_EQ(bench.sample().u_applied_V, kFakeNull_V) << "LATCHED stays so until a reset";
+}
+
+TEST(Loop, LatchesWhenTheValveCannotBeWritten) {
+  LoopConfig config;
+  config.max_bad_in_a_row = 1;
+  LoopBench bench(config);
+  bench.run();
+  bench.rig.write_good = false;
+  bench.tick();
+  EXPECT_EQ(bench.state(), State::run);
+  bench.tick();
+  EXPECT_EQ(bench.state(), State::latched);
+  EXPECT_EQ(bench.stats.trip.load(), Trip::write);
+  bench.tick();
+  EXPECT_EQ(bench.last_V(), kFakeNull_V);
+}
+
+TEST(Loop, ResetLeadsToDisarmedNotBackToMotion) {
+  LoopConfig config;
+  config.max_bad_in_a_row = 0;
+  LoopBench bench(config);
+  bench.run();
+  bench.rig.quality = hal::Quality::bad;
+  bench.tick();
+  ASSERT_EQ(bench.state(), State::latched);
+  bench.rig.quality = hal::Quality::good;
+  bench.order(Event::reset);
+  bench.tick();
+  EXPECT_EQ(bench.state(), State::disarmed);
+  EXPECT_EQ(bench.stats.trip.load(), Trip::none);
+  EXPECT_EQ(bench.last_V(), kFakeNull_V);
+}
+
+TEST(Loop, ClosingWritesNullWhateverIsOrdered) {
+  LoopBench bench;
+  bench.run();
+  bench.loop().close();
+  for (int k = 0; k < 3; ++k) {
+    bench.order(Event::arm);
+    bench.order(Event::start);
+    EXPECT_EQ(bench.sample().u_applied_V, kFakeNull_V);
+    EXPECT_EQ(bench.state(), State::disarmed);
+  }
+}
+
+}  // namespace
+}  // namespace monitor::rt

@@ -1,0 +1,116 @@
+#include "hal/sim/sim.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "config/schema/error.h"
+
+namespace hal::sim {
+namespace {
+
+constexpr double kTs_s = 0.005;
+
+std::unique_ptr<plant_sim::Plant> plant() { return plant_sim::make_plant(plant_sim::ModelFile()); }
+
+SimConfig ideal() {
+  SimConfig config;
+  config.encoder_resolution_m = 0.0;
+  config.dac_bits = 0;
+  return config;
+}
+
+Tick tick(std::int64_t index) { return {index, index * 5'000'000}; }
+
+TEST(SimRig, ReadsThePlantUnderTheVoltageWrittenLast) {
+  SimRig rig(plant(), ideal(), kTs_s, 0.0);
+  const std::unique_ptr<plant_sim::Plant> twin = plant();
+  for (std::int64_t k = 0; k < 200; ++k) {
+    EXPECT_DOUBLE_EQ(rig.read(tick(k)).y_m, twin->reading_m()) << "tick " << k;
+    const double u_V = std::sin(0.05 * static_cast<double>(k));
+    const Applied applied = rig.write(u_V, tick(k));
+    EXPECT_EQ(applied.u_V, u_V);
+    EXPECT_TRUE(applied.good);
+    twin->advance(u_V, kTs_s);
+  }
+}
+
+TEST(SimRig, HoldsTheVoltageOverSkippedTicks) {
+  SimRig rig(plant(), ideal(), kTs_s, 0.0);
+  const std::unique_ptr<plant_sim::Plant> twin = plant();
+  rig.read(tick(0));
+  rig.write(0.7, tick(0));
+  for (int k = 0; k < 8; ++k) twin->advance(0.7, kTs_s);
+  EXPECT_DOUBLE_EQ(rig.read(tick(8)).y_m, twin->reading_m());
+}
+
+TEST(SimRig, GivesTheSameReadingsForTheSameSeedOnly) {
+  const auto readings = [](std::int64_t seed) {
+    SimConfig config;
+    config.noise_m = 2e-6;
+    config.seed = seed;
+    SimRig rig(plant(), config, kTs_s, 0.0);
+    std::vector<double> y_m;
+    for (std::int64_t k = 0; k < 100; ++k) {
+      y_m.push_back(rig.read(tick(k)).y_m);
+      rig.write(0.1, tick(k));
+    }
+    return y_m;
+  };
+  EXPECT_EQ(readings(4), readings(4));
+  EXPECT_NE(readings(4), readings(5));
+}
+
+TEST(SimRig, AppliesTheConvertersStepsAndRange) {
+  SimConfig config = ideal();
+  config.dac_bits = 12;
+  config.dac_range_V = 10.0;
+  SimRig rig(plant(), config, kTs_s, 0.0);
+  constexpr double kStep_V = 20.0 / 4096.0;
+  EXPECT_DOUBLE_EQ(rig.write(0.4 * kStep_V, tick(0)).u_V, 0.0);
+  EXPECT_DOUBLE_EQ(rig.write(2.6 * kStep_V, tick(0)).u_V, 3.0 * kStep_V);
+  EXPECT_DOUBLE_EQ(rig.write(99.0, tick(0)).u_V, 10.0 - kStep_V);
+  EXPECT_DOUBLE_EQ(rig.read(tick(0)).command_V, 10.0 - kStep_V);
+}
+
+TEST(SimRig, GoesToTheConfiguredNullAndStartsThere) {
+  SimRig rig(plant(), ideal(), kTs_s, 0.35);
+  EXPECT_DOUBLE_EQ(rig.read(tick(0)).command_V, 0.35);
+  rig.write(2.0, tick(0));
+  EXPECT_DOUBLE_EQ(rig.go_null().u_V, 0.35);
+  EXPECT_DOUBLE_EQ(rig.read(tick(1)).command_V, 0.35);
+}
+
+TEST(SimRig, FaultsComeAtTheirTime) {
+  SimConfig config = ideal();
+  plant_sim::Change fault;
+  fault.parameter = "supply_pressure_Pa";
+  fault.at_s = 0.5;
+  fault.factor = 0.5;
+  config.faults = {fault};
+  SimRig faulty(plant(), config, kTs_s, 0.0);
+  SimRig healthy(plant(), ideal(), kTs_s, 0.0);
+  for (std::int64_t k = 0; k <= 150; ++k) {
+    const double difference_m = faulty.read(tick(k)).y_m - healthy.read(tick(k)).y_m;
+    if (k <= 100) {
+      EXPECT_EQ(difference_m, 0.0) << "tick " << k;
+    } else if (k == 150) {
+      EXPECT_LT(difference_m, -1e-4) << "half the pressure moves the rod less";
+    }
+    faulty.write(1.0, tick(k));
+    healthy.write(1.0, tick(k));
+  }
+}
+
+TEST(SimRig, RefusesAFaultOfAParameterThatThereIsNot) {
+  SimConfig config;
+  plant_sim::Change fault;
+  fault.parameter = "suply_pressure_Pa";
+  fault.factor = 0.5;
+  config.faults = {fault};
+  EXPECT_THROW(SimRig(plant(), config, kTs_s, 0.0), config::schema::Error);
+}
+
+}  // namespace
+}  // namespace hal::sim
