@@ -107,7 +107,7 @@ class HydraulicActuator {
     double step_s;
   };
   static S root(const S& drop_Pa);
-  bool ordinary(const S& u_V) const;
+  auto ordinary(const S& u_V) const;
   S divisions(const S& u_V) const;
   template <bool kLimits>
   void integrate(const S& u_V, const S& step_s);

@@ -110,36 +110,9 @@ typename HydraulicActuator<S>::State HydraulicActuator<S>::rate(const State& x, 
   return r;
 }
 
+/// In which lanes the step can be taken as a whole and cannot reach any limit.
 template <class S>
-void HydraulicActuator<S>::step(const S& u_V) {
-  const S known_V = select(abs(u_V) <= S(limits::kCommand_V), u_V,
-                           select(u_V > S(0.0), S(limits::kCommand_V),
-                                  select(u_V < S(0.0), S(-limits::kCommand_V), S(0.0))));
-  if (ordinary(known_V)) {
-    integrate<false>(known_V, S(derived_.step_s));
-    return;
-  }
-  const S parts = divisions(known_V);
-  const S part_s = S(derived_.step_s) / parts;
-  const double most = widest(parts);
-  for (double i = 0.0; i < most; i += 1.0) {
-    integrate<true>(known_V, select(S(i) < parts, part_s, S(0.0)));
-    keep_within_limits();
-  }
-}
-
-template <class S>
-template <bool kLimits>
-void HydraulicActuator<S>::integrate(const S& u_V, const S& step_s) {
-  const S from_y_m = state.y_m;
-  state = runge_kutta_step(state, step_s,
-                           [&](const State& x) { return rate<kLimits>(x, u_V, from_y_m); });
-  effects.accept(state.y_m - from_y_m, state.v_mps);
-}
-
-/// Whether the step can be taken as a whole, far from every limit, in all lanes.
-template <class S>
-bool HydraulicActuator<S>::ordinary(const S& u_V) const {
+auto HydraulicActuator<S>::ordinary(const S& u_V) const {
   const Parameters& p = parameters;
   const State& x = state;
   const S step_s = derived_.step_s;
@@ -167,9 +140,42 @@ bool HydraulicActuator<S>::ordinary(const S& u_V) const {
       both(low_Pa > S(limits::kLowPressure_Pa), high_Pa < S(limits::kHighPressure_Pa));
   const auto drop = both(drop_Pa > S(limits::kSmoothDrop_Pa),
                          flow_rate * flow_rate < allowed * allowed * drop_Pa);
+  // less than the lower pressure can come or go within the step
+  const S to_spare = S(0.5) * low_Pa * small_m3;
+  const S largest_Pa = max(high_Pa, p.supply_pressure_Pa);
+  const auto change = both(flow_rate * flow_rate * largest_Pa < to_spare * to_spare,
+                           p.area_m2 * abs(x.v_mps) * p.bulk_modulus_Pa * step_s < to_spare);
   const auto stiff = both(stiffness < S(kSquare) * derived_.mass_kg * in_m3 * out_m3,
                           slope * step_s <= S(limits::kRateStep) * derived_.mass_kg);
-  return all(both(both(place, pressure), both(drop, stiff)));
+  return both(both(both(place, pressure), both(drop, stiff)), change);
+}
+
+template <class S>
+void HydraulicActuator<S>::step(const S& u_V) {
+  const S known_V = select(abs(u_V) <= S(limits::kCommand_V), u_V,
+                           select(u_V > S(0.0), S(limits::kCommand_V),
+                                  select(u_V < S(0.0), S(-limits::kCommand_V), S(0.0))));
+  const auto whole = ordinary(known_V);
+  if (all(whole)) {
+    integrate<false>(known_V, S(derived_.step_s));
+    return;
+  }
+  const S parts = select(whole, S(1.0), divisions(known_V));
+  const S part_s = S(derived_.step_s) / parts;
+  const double most = widest(parts);
+  for (double i = 0.0; i < most; i += 1.0) {
+    integrate<true>(known_V, select(S(i) < parts, part_s, S(0.0)));
+    keep_within_limits();
+  }
+}
+
+template <class S>
+template <bool kLimits>
+void HydraulicActuator<S>::integrate(const S& u_V, const S& step_s) {
+  const S from_y_m = state.y_m;
+  state = runge_kutta_step(state, step_s,
+                           [&](const State& x) { return rate<kLimits>(x, u_V, from_y_m); });
+  effects.accept(state.y_m - from_y_m, state.v_mps);
 }
 
 /// Into how many parts the step is divided, so that the fastest of spool, damping, oil column and
@@ -189,8 +195,9 @@ S HydraulicActuator<S>::divisions(const S& u_V) const {
   const S drop_Pa = max(min(supply_Pa, return_Pa), least);
   const S reach_m =
       max(abs(x.spool_m), p.valve_gain_m_per_V * abs(u_V)) + abs(x.spool_mps) * step_s;
-  const S orifice_rate = derived_.orifice * reach_m * p.bulk_modulus_Pa /
-                         (S(2.0) * min(in_m3, out_m3) * sqrt(drop_Pa));
+  // the cubic of root() is up to 5/2 times as steep as the square root at its end
+  const S orifice_rate = S(1.25) * derived_.orifice * reach_m * p.bulk_modulus_Pa /
+                         (min(in_m3, out_m3) * sqrt(drop_Pa));
   const S column_rate = p.area_m2 * sqrt(p.bulk_modulus_Pa * (S(1.0) / in_m3 + S(1.0) / out_m3) *
                                          derived_.inverse_mass);
   const S damping_rate =

@@ -1,0 +1,93 @@
+#include "plant_sim/model_file.h"
+
+#include <gtest/gtest.h>
+
+#include "config/schema/document.h"
+#include "config/schema/error.h"
+#include "plant_sim/library.h"
+#include "plant_sim/plant.h"
+
+namespace plant_sim {
+namespace {
+
+ModelFile parse(const std::string& text) {
+  return read_model(config::schema::Document::parse(
+      "schema_version = 1\nname = \"test\"\nplant = \"hydraulic_actuator\"\n" + text, "test.toml"));
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    parse(text);
+  } catch (const config::schema::Error& error) {
+    EXPECT_EQ(error.exit_code(), 78);
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ModelFile, ReadsParametersInitialStateEffectsAndLoop) {
+  ModelFile model = parse(
+      "[parameters]\nmass_kg = 80.0\n[initial]\ny_m = 0.2\n[effects.friction]\ncoulomb_N = 120.0\n"
+      "[loop]\nkp_V_per_m = 250.0\n");
+  EXPECT_EQ(model.loop.kp_V_per_m, 250.0);
+  auto plant = make_plant(model);
+  EXPECT_EQ(plant->position_m(), 0.2);
+  EXPECT_EQ(*plant->parameter("mass_kg"), 80.0);
+  EXPECT_EQ(*plant->parameter("friction.coulomb_N"), 120.0);
+  EXPECT_EQ(*plant->parameter("area_m2"), 6.33e-4);
+  EXPECT_EQ(plant->parameter("friction.coulomb"), nullptr);
+}
+
+TEST(ModelFile, PrintsWhatItReadsBackTheSame) {
+  ModelFile model = parse("[effects.deadband]\nhalf_width_V = 0.05\n");
+  *model.value("supply_pressure_Pa") = 7.12345678901234e6;
+  const std::string text = print_model(model);
+  const ModelFile again = read_model(config::schema::Document::parse(text, "printed"));
+  EXPECT_EQ(print_model(again), text);
+  EXPECT_NE(text.find("[effects.deadband]"), std::string::npos);
+  EXPECT_EQ(text.find("[effects.friction]"), std::string::npos);
+  EXPECT_EQ(make_plant(again)->parameter_info("supply_pressure_Pa")->min, 0.0);
+}
+
+TEST(ModelFile, WritingToAnEffectsParameterAddsTheEffect) {
+  ModelFile model;
+  *model.value("coupled_slaves.mass_kg") = 20.0;
+  EXPECT_NE(print_model(model).find("[effects.coupled_slaves]\nmass_kg = 20.0"), std::string::npos);
+  EXPECT_EQ(model.value("coupled_slaves.nothing"), nullptr);
+}
+
+TEST(ModelFile, SaysWhatIsWrong) {
+  EXPECT_NE(refusal("[parameters]\nmas_kg = 1.0\n").find("mass_kg"), std::string::npos);
+  EXPECT_NE(refusal("[parameters]\nmass_kg = -1.0\n").find("out of range"), std::string::npos);
+  EXPECT_NE(refusal("[parameters]\nmass_kg = \"x\"\n"), "");
+  EXPECT_NE(refusal("[effects.frction]\ncoulomb_N = 1.0\n").find("friction"), std::string::npos);
+  EXPECT_NE(refusal("[initial]\ny_m = 0.7\n").find("stroke"), std::string::npos);
+  EXPECT_EQ(refusal("[initial]\ny_m = 0.6\n"), "");
+  EXPECT_THROW(load_model("/nowhere/model.toml"), config::schema::Error);
+}
+
+TEST(ModelFile, EveryShippedModelLoadsAndRuns) {
+  for (const char* name : {"thesis", "thesis_calibrated", "rig_2000psi", "rig_2000psi_slaves"}) {
+    const ModelFile model =
+        load_model(std::string(SPOOLWATCH_SOURCE_DIR) + "/config/models/" + name + ".toml");
+    EXPECT_EQ(model.name, name);
+    auto plant = make_plant(model);
+    plant->advance(1.0, 0.1);
+    EXPECT_GT(plant->position_m(), 0.305) << name;
+  }
+}
+
+TEST(Library, ListsEveryEffectWithItsSitesAndUsableRanges) {
+  ASSERT_FALSE(effect_library().empty());
+  for (const EffectInfo& effect : effect_library()) {
+    EXPECT_FALSE(effect.sites.empty()) << effect.name;
+    for (const ParameterInfo& parameter : effect.parameters) {
+      EXPECT_LE(parameter.min, parameter.neutral) << effect.name << parameter.name;
+      EXPECT_LE(parameter.neutral, parameter.max) << effect.name << parameter.name;
+      EXPECT_NE(parameter.typical, parameter.neutral) << effect.name << parameter.name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace plant_sim
