@@ -79,7 +79,11 @@ void recursive(benchmark::State& state) {
   }
   per_sample(state, data.u_V.size());
 }
-BENCHMARK(recursive)->Name("recursive_arx441/forgetting_permille")->Arg(1000)->Arg(995);
+BENCHMARK(recursive)
+    ->Name("recursive_arx441/forgetting_permille")
+    ->Arg(1000)
+    ->Arg(995)
+    ->UseRealTime();
 
 enum class Ask : std::uint8_t { nothing, coefficients, estimate };
 
@@ -99,9 +103,17 @@ void sliding(benchmark::State& state, Ask ask) {
   }
   per_sample(state, data.u_V.size());
 }
-BENCHMARK_CAPTURE(sliding, update, Ask::nothing)->Arg(1)->Arg(10)->Arg(40);
-BENCHMARK_CAPTURE(sliding, update_and_coefficients, Ask::coefficients)->Arg(1)->Arg(10)->Arg(40);
-BENCHMARK_CAPTURE(sliding, update_and_estimate, Ask::estimate)->Arg(1)->Arg(10)->Arg(40);
+BENCHMARK_CAPTURE(sliding, update, Ask::nothing)->Arg(1)->Arg(10)->Arg(40)->UseRealTime();
+BENCHMARK_CAPTURE(sliding, update_and_coefficients, Ask::coefficients)
+    ->Arg(1)
+    ->Arg(10)
+    ->Arg(40)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(sliding, update_and_estimate, Ask::estimate)
+    ->Arg(1)
+    ->Arg(10)
+    ->Arg(40)
+    ->UseRealTime();
 
 void batch(benchmark::State& state) {
   const Data& data = record();
@@ -111,7 +123,7 @@ void batch(benchmark::State& state) {
   const auto names = kArx441.names();
   for (std::size_t i = 0; i < names.size(); ++i) state.counters[names[i]] = fit.value[i];
 }
-BENCHMARK(batch)->Name("batch_arx441")->Unit(benchmark::kMicrosecond);
+BENCHMARK(batch)->Name("batch_arx441")->UseRealTime();
 
 }  // namespace
 
