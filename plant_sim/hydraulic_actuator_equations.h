@@ -162,9 +162,9 @@ void HydraulicActuator<S>::step(const S& u_V) {
   }
   const S parts = select(whole, S(1.0), divisions(known_V));
   const S part_s = S(derived_.step_s) / parts;
-  const double most = widest(parts);
-  for (double i = 0.0; i < most; i += 1.0) {
-    integrate<true>(known_V, select(S(i) < parts, part_s, S(0.0)));
+  const int most = static_cast<int>(widest(parts));
+  for (int i = 0; i < most; ++i) {
+    integrate<true>(known_V, select(S(static_cast<double>(i)) < parts, part_s, S(0.0)));
     keep_within_limits();
   }
 }

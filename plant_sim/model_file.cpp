@@ -13,6 +13,7 @@ using config::schema::Visitor;
 
 std::vector<NamedValue> defaults(const std::vector<ParameterInfo>& infos) {
   std::vector<NamedValue> values;
+  values.reserve(infos.size());
   for (const ParameterInfo& info : infos) values.push_back({info.name, info.neutral});
   return values;
 }
@@ -22,6 +23,15 @@ void visit_values(Visitor& v, const std::vector<ParameterInfo>& infos,
   for (std::size_t i = 0; i < infos.size(); ++i) {
     v.number({infos[i].name, infos[i].what}, values[i].value, {infos[i].min, infos[i].max});
   }
+}
+
+const PlantInfo& known_plant(const std::string& name) {
+  if (const PlantInfo* info = find_plant(name)) return *info;
+  std::string names;
+  for (const PlantInfo& plant : plant_library()) {
+    names += (names.empty() ? "" : ", ") + plant.name;
+  }
+  throw config::schema::bad_config("model: [] plant", "is \"" + name + "\"", names);
 }
 
 double* find(std::vector<NamedValue>& values, std::string_view name) {
@@ -44,9 +54,14 @@ ModelFile::ModelFile() {
 
 void ModelFile::visit(Visitor& v) {
   v.text({"name", "the model's name", true}, name);
-  v.choice({"plant", "which plant", true}, plant, {"hydraulic_actuator"});
+  const std::string before = plant;
+  v.text({"plant", "which plant", true}, plant);
+  const PlantInfo& info = known_plant(plant);
+  if (plant != before) {
+    parameters = defaults(info.parameters);
+    initial = defaults(info.initial);
+  }
   v.number({"step_s", "integration step"}, step_s, {1e-6, 0.01});
-  const PlantInfo& info = *find_plant(plant);
   v.table("parameters", [&](Visitor& t) { visit_values(t, info.parameters, parameters); });
   v.table("initial", [&](Visitor& t) { visit_values(t, info.initial, initial); });
   v.table("effects", [&](Visitor& t) {

@@ -94,7 +94,7 @@ TEST(Friction, BristleFollowsItsDifferentialEquation) {
     const double level = 200.0 * (1.0 + direction * 0.2);
     for (int i = 0; i < parts; ++i) {
       const double d = dx / parts;
-      z += d - std::abs(d) * direction * 1e7 * z * direction * direction / level * direction;
+      z += d - std::abs(d) * 1e7 * z / level;
     }
   };
   for (const double dx : {5e-6, 30e-6, -10e-6, -80e-6, 7e-6}) {

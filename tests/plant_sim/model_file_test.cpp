@@ -63,6 +63,13 @@ TEST(ModelFile, SaysWhatIsWrong) {
   EXPECT_NE(refusal("[effects.frction]\ncoulomb_N = 1.0\n").find("friction"), std::string::npos);
   EXPECT_NE(refusal("[initial]\ny_m = 0.7\n").find("stroke"), std::string::npos);
   EXPECT_EQ(refusal("[initial]\ny_m = 0.6\n"), "");
+  try {
+    (void)read_model(config::schema::Document::parse(
+        "schema_version = 1\nname = \"x\"\nplant = \"lathe\"\n", "x.toml"));
+    ADD_FAILURE() << "a lathe is no plant";
+  } catch (const config::schema::Error& error) {
+    EXPECT_NE(std::string(error.what()).find("hydraulic_actuator"), std::string::npos);
+  }
   EXPECT_THROW(load_model("/nowhere/model.toml"), config::schema::Error);
 }
 
