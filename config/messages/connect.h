@@ -41,8 +41,9 @@ class CaughtStderr {
   int caught_;
 };
 
-/// Throws schema::Error (exit 78).
-inline std::unique_ptr<lcm::LCM> connect(const std::string& url) {
+/// Throws schema::Error (exit 78). Who only sends says so: asking UDP for its descriptor starts a
+/// thread of LCM's that receives every message, our own too.
+inline std::unique_ptr<lcm::LCM> connect(const std::string& url, bool receives = true) {
   std::unique_ptr<lcm::LCM> lcm;
   std::string reason;
   {
@@ -52,7 +53,8 @@ inline std::unique_ptr<lcm::LCM> connect(const std::string& url) {
   }
   // A tcpq client without its server counts as good but has no descriptor.
   const bool writes_log = url.starts_with("file:") && url.find("mode=w") != std::string::npos;
-  if (!lcm->good() || (!writes_log && lcm->getFileno() < 0)) {
+  const bool only_sends = !receives && url.starts_with("udpm:");
+  if (!lcm->good() || (!writes_log && !only_sends && lcm->getFileno() < 0)) {
     throw schema::bad_config("LCM URL \"" + url + "\"",
                              "LCM cannot start" + (reason.empty() ? "" : " (" + reason + ")"),
                              "udpm://GROUP:PORT?ttl=N with a multicast route to GROUP, "

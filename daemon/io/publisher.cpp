@@ -29,7 +29,8 @@ void PublisherConfig::visit(config::schema::Visitor& v) {
 
 Publisher::Publisher(const PublisherConfig& config, std::int64_t run_id, double sample_time_s,
                      Recorder* recorder)
-    : lcm_(config.url.empty() ? nullptr : config::messages::connect(config.url)),
+    : lcm_(config.url.empty() ? nullptr
+                              : config::messages::connect(config.url, /*receives=*/false)),
       messages_(std::make_unique<Messages>()),
       recorder_(recorder),
       run_id_(run_id),

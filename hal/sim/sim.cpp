@@ -78,9 +78,14 @@ Devices SimBackend::open(const Opening& opening) const {
         "makes a period of " + std::to_string(steps) + " integration steps of the model",
         "a whole number of steps");
   }
-  auto rig =
-      std::make_shared<SimRig>(std::move(plant), config_, opening.sample_time_s, opening.null_V);
-  return {rig, rig, kMissing, false};
+  try {
+    auto rig =
+        std::make_shared<SimRig>(std::move(plant), config_, opening.sample_time_s, opening.null_V);
+    return {rig, rig, kMissing, false};
+  } catch (const config::schema::Error& e) {
+    throw config::schema::Error(config::schema::ExitCode::bad_config,
+                                opening.file + ": [[sim.fault]] " + e.what());
+  }
 }
 
 double SimBackend::worst_speed_mps(const Opening& opening, double limit_V) const {
