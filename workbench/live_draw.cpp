@@ -199,7 +199,10 @@ class Page {
       what += alarm.direction < 0 ? " < " + number_text(alarm.low, 4)
                                   : " > " + number_text(alarm.high, 4);
     }
-    if (alarm.active && !alarm.parameter.empty()) what += "  " + alarm.parameter;
+    const auto room = static_cast<std::size_t>(std::max(0, canvas_.columns() - 1 - column));
+    if (alarm.active && what.size() + 2 + alarm.parameter.size() <= room) {
+      what += "  " + alarm.parameter;
+    }
     if (what.empty() || alarm.severity == 3) what = alarm.reason;
     if (!alarm.active) what = "back to normal  " + what;
     canvas_.text(row_++, column, what, alarm.active ? Style::normal : Style::dim);

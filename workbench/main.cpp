@@ -1,8 +1,8 @@
 // spoolwatch: the engineer's tool. One line per command; every error that prevents a start is
 // caught here, once, and printed as one line.
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <exception>
-#include <iostream>
 
 #include "config/schema/error.h"
 #include "workbench/command.h"
@@ -18,9 +18,7 @@ constexpr workbench::Command kCommands[] = {
     {"export", "write an LCM log as CSV", workbench::add_export},
 };
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   int exit_code = 0;
   CLI::App app{"Spoolwatch: watch a servo-hydraulic test stand, and find what its model misses"};
   app.require_subcommand(1);
@@ -33,12 +31,20 @@ int main(int argc, char** argv) {
     const bool asked_for_help = error.get_exit_code() == 0;
     app.exit(error);
     return asked_for_help ? 0 : static_cast<int>(config::schema::ExitCode::usage);
-  } catch (const config::schema::Error& error) {
-    std::cerr << "spoolwatch: " << error.what() << '\n';
-    return error.exit_code();
-  } catch (const std::exception& error) {
-    std::cerr << "spoolwatch: " << error.what() << '\n';
-    return static_cast<int>(config::schema::ExitCode::failed);
   }
   return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const config::schema::Error& error) {
+    std::fprintf(stderr, "spoolwatch: %s\n", error.what());
+    return error.exit_code();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "spoolwatch: %s\n", error.what());
+    return static_cast<int>(config::schema::ExitCode::failed);
+  }
 }

@@ -23,8 +23,8 @@ class ByteQueue {
 
  private:
   std::vector<std::uint8_t> bytes_;
-  alignas(64) std::atomic<std::uint64_t> written_{0};  // bytes ever written
-  alignas(64) std::atomic<std::uint64_t> read_{0};
+  std::atomic<std::uint64_t> written_{0};  // bytes ever written
+  std::atomic<std::uint64_t> read_{0};
 };
 
 /// One thread. Push drops the oldest records until the new one fits.
