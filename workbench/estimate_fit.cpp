@@ -178,6 +178,10 @@ EstimateResult estimate_record(const Record& record, const EstimateOptions& opti
   const bool windowed = !std::isnan(options.window_s);
   const int window =
       windowed ? in_samples(options.window_s, data.sample_time_s) : static_cast<int>(fitted.size());
+  if (static_cast<std::size_t>(window) > fitted.size()) {
+    throw bad_data(record.name, "is shorter than the window",
+                   std::to_string(fitted.size()) + " samples or fewer");
+  }
   const int stride =
       std::isnan(options.stride_s) ? window : in_samples(options.stride_s, data.sample_time_s);
 

@@ -17,7 +17,7 @@ using schema::bad_data;
 using spoolwatch::sample_t;
 
 constexpr std::string_view kSyncWord = "\xED\xA1\xDA\x01";
-constexpr std::int8_t kBadQuality = 3;
+constexpr std::int8_t kStaleQuality = 2;  // and 3, bad: no new reading
 
 bool is_sample(const lcm::LogEvent& event) {
   std::int64_t hash = 0;
@@ -64,7 +64,7 @@ struct Builder {
   }
 
   void add(const sample_t& s) {
-    if (s.quality == kBadQuality || !std::isfinite(s.y_m) || !std::isfinite(s.u_applied_V)) {
+    if (s.quality >= kStaleQuality || !std::isfinite(s.y_m) || !std::isfinite(s.u_applied_V)) {
       ++bad;
       return;
     }

@@ -3,7 +3,8 @@
 // CSV: one header line whose names end in their unit (t_s, u_V, y_mm, ...); time, command and
 // position are found by their stem (t, u, y); any further column is kept under its name in SI
 // units (ref_mm becomes ref_m). LCM: the sample_t messages of one channel; the time is tick times
-// sample time, and the further columns are the other fields of the message.
+// sample time, and the further columns are the other fields of the message. Samples of stale or bad
+// quality, or without a command, are left out like any missing sample.
 //
 // Row k: y is sampled at t[k], before u[k] is written; u[k] holds until t[k+1].
 #pragma once

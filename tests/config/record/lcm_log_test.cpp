@@ -86,13 +86,15 @@ TEST_F(LcmLog, FindsTheSamplesUnderAnotherPrefix) {
 TEST_F(LcmLog, LeavesBadSamplesOutAsGapsAndSaysSo) {
   write_samples("SPOOLWATCH_SAMPLE", 40, [](int i, sample_t& s) {
     if (i == 10) s.quality = 3;
+    if (i == 30) s.quality = 2;
+    if (i == 35) s.quality = 1;  // uncertain is kept
     if (i == 20) s.y_m = std::nan("");
   });
   const Record record = read();
-  EXPECT_EQ(record.size(), 38U);
-  EXPECT_EQ(record.gaps, (std::vector<std::size_t>{10, 19}));
+  EXPECT_EQ(record.size(), 37U);
+  EXPECT_EQ(record.gaps, (std::vector<std::size_t>{10, 19, 28}));
   ASSERT_EQ(record.notes.size(), 1U);
-  EXPECT_NE(record.notes[0].find("2 samples"), std::string::npos);
+  EXPECT_NE(record.notes[0].find("3 samples"), std::string::npos);
 }
 
 TEST_F(LcmLog, UsesTheCompleteEventsOfALogCutOffAndSaysSo) {

@@ -148,6 +148,10 @@ TEST_F(Estimate, RefusesARecordShorterThanTheRegressor) {
   }
 }
 
+TEST_F(Estimate, RefusesAWindowLongerThanTheRecord) {
+  EXPECT_THROW(run(known(100), {"--window", "1.0"}), config::schema::Error);
+}
+
 TEST_F(Estimate, ReproducesTheReferenceErrorsOfTheFatigueRig) {
   const char* given = std::getenv("SPOOLWATCH_DATA");
   const std::filesystem::path data =
