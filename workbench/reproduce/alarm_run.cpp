@@ -34,12 +34,18 @@ class Recorder final : public fdi::Events {
 
 }  // namespace
 
-double AlarmRun::first(double after_s, bool active, int direction) const noexcept {
+double AlarmRun::next(double after_s, int direction) const noexcept {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   for (const AlarmChange& change : changes) {
-    if (change.t_s >= after_s && change.active == active &&
-        (!active || change.direction == direction)) {
-      return change.t_s;
-    }
+    if (change.t_s < after_s) continue;
+    return change.direction == direction && change.active == (direction != 0) ? change.t_s : kNone;
+  }
+  return kNone;
+}
+
+double AlarmRun::first(double after_s, int direction) const noexcept {
+  for (const AlarmChange& change : changes) {
+    if (change.t_s >= after_s && change.active && change.direction == direction) return change.t_s;
   }
   return std::numeric_limits<double>::quiet_NaN();
 }

@@ -29,8 +29,12 @@ struct AlarmRun {
   std::vector<AlarmChange> changes;
   std::vector<CoefficientAt> estimates;
 
-  /// Time of the first change after after_s that fits, NaN when there is none.
-  [[nodiscard]] double first(double after_s, bool active, int direction) const noexcept;
+  /// Time of the first change from after_s on, NaN when there is none or when it is another than to
+  /// this direction (0: the alarm goes).
+  [[nodiscard]] double next(double after_s, int direction) const noexcept;
+  /// Time of the first alarm to this direction from after_s on, whatever comes before it; NaN when
+  /// there is none.
+  [[nodiscard]] double first(double after_s, int direction) const noexcept;
 };
 
 /// Whether the estimates are kept too.

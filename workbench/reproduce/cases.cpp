@@ -39,17 +39,17 @@ std::vector<Row> timeline(const char* parameter, double normal, double low, doub
     rows.push_back(judged(text("b1 of the period that ends at %.0f s, m/V", t_s), {},
                           b1_at(found, t_s), "information"));
   }
-  rows.push_back(judged(text("alarm on (%s), s", name(first)), 18.0, found.first(15.0, true, first),
+  rows.push_back(judged(text("alarm on (%s), s", name(first)), 18.0, found.next(15.0, first),
                         "alarm time", "fault at 15 s"));
-  rows.push_back(judged("alarm off, s", 32.0, found.first(18.0, false, 0), "alarm time",
-                        "normal again at 30 s"));
-  rows.push_back(judged(text("alarm on (%s), s", name(-first)), 48.0,
-                        found.first(45.0, true, -first), "alarm time", "fault at 45 s"));
+  rows.push_back(
+      judged("alarm off, s", 32.0, found.next(18.0, 0), "alarm time", "normal again at 30 s"));
+  rows.push_back(judged(text("alarm on (%s), s", name(-first)), 48.0, found.next(45.0, -first),
+                        "alarm time", "fault at 45 s"));
   rows.push_back(judged("changes of the alarm in 60 s", 3.0,
                         static_cast<double>(found.changes.size()), "count",
                         "no others; the first period is warm-up without alarms"));
-  rows.push_back(judged("delay of the first alarm, s", 3.0, found.first(15.0, true, first) - 15.0,
-                        "about 3 s"));
+  rows.push_back(
+      judged("delay of the first alarm, s", 3.0, found.next(15.0, first) - 15.0, "about 3 s"));
   return rows;
 }
 

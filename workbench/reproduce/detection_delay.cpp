@@ -33,7 +33,7 @@ Delay delay(const estimator::fdi::EstimatorConfig& estimator, double factor) {
                                      factor * 1000.0 * kPa_per_psi, at_s);
     const auto found =
         run_with_alarms(scenario, config, at_s + 6.0, static_cast<std::uint64_t>(i + 1));
-    const double on_s = found.first(at_s, true, factor > 1.0 ? +1 : -1);
+    const double on_s = found.next(at_s, factor > 1.0 ? +1 : -1);
     delays_s.push_back(std::isnan(on_s) ? std::numeric_limits<double>::infinity() : on_s - at_s);
   }
   std::sort(delays_s.begin(), delays_s.end());

@@ -1,0 +1,109 @@
+// The command as people and scripts call it: determinism, bad arguments, exit codes.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "config/record/record.h"
+#include "tests/workbench/simulate/program.h"
+
+namespace workbench {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string kModel =
+    std::string(SPOOLWATCH_SOURCE_DIR) + "/config/models/thesis_calibrated.toml";
+const std::string kNoise =
+    " --set instruments.noise_m=2e-6 --set instruments.encoder_resolution_m=5e-6";
+
+std::string simulate(const std::string& output, const std::string& more) {
+  return "simulate " + kModel + " -o " + output + ' ' + more;
+}
+
+void expect_refused(const Outcome& outcome, int exit_code, const std::string& part) {
+  EXPECT_EQ(outcome.exit_code, exit_code) << outcome.error;
+  EXPECT_THAT(outcome.error, HasSubstr(part));
+  EXPECT_EQ(std::count(outcome.error.begin(), outcome.error.end(), '\n'), 1) << outcome.error;
+}
+
+TEST(SimulateProgram, WritesARecordThatReadsBack) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("a.csv");
+  ASSERT_EQ(run_program(simulate(file, "--duration 2")).exit_code, 0);
+  const auto record = config::record::read_record(file);
+  ASSERT_EQ(record.size(), 400U);
+  EXPECT_DOUBLE_EQ(record.sample_time_s, 0.005);
+  const auto* reference_m = record.column("reference_m");
+  ASSERT_NE(reference_m, nullptr);
+  for (std::size_t k = 0; k < record.size(); ++k) {
+    ASSERT_NEAR((*reference_m)[k], 0.305 + 0.0254 * std::sin(M_PI * 0.005 * double(k)), 1e-12);
+    ASSERT_NEAR(record.u_V[k], 250.0 * ((*reference_m)[k] - record.y_m[k]), 1e-12);
+  }
+}
+
+TEST(SimulateProgram, SameSeedSameBytesAnotherSeedOthers) {
+  const TemporaryFolder folder;
+  const std::string more = "--duration 3 --seed 7" + kNoise;
+  ASSERT_EQ(run_program(simulate(folder.file("a.csv"), more)).exit_code, 0);
+  ASSERT_EQ(run_program(simulate(folder.file("b.csv"), more)).exit_code, 0);
+  ASSERT_EQ(run_program(simulate(folder.file("c.csv"), "--duration 3 --seed 8" + kNoise)).exit_code,
+            0);
+  EXPECT_EQ(text_of(folder.file("a.csv")), text_of(folder.file("b.csv")));
+  EXPECT_NE(text_of(folder.file("a.csv")), text_of(folder.file("c.csv")));
+}
+
+TEST(SimulateProgram, FaultsAndReferencesChangeTheRecord) {
+  const TemporaryFolder folder;
+  std::string before;
+  for (const char* more :
+       {"", "--fault 'supply_pressure_Pa*0.5@0.5'", "--reference multisine",
+        "--reference prbs --set reference.hold_s=0.2", "--set reference.amplitude_m=0.01",
+        "--set parameters.mass_kg=60", "--set effects.friction.coulomb_N=100"}) {
+    const Outcome outcome =
+        run_program(simulate(folder.file("a.csv"), std::string("--duration 1 ") + more));
+    ASSERT_EQ(outcome.exit_code, 0) << more << outcome.error;
+    const std::string text = text_of(folder.file("a.csv"));
+    EXPECT_NE(text, before) << more;
+    before = text;
+  }
+}
+
+TEST(SimulateProgram, TakesTheReferenceFromAFile) {
+  const TemporaryFolder folder;
+  std::ofstream(folder.file("r.csv")) << "t_s,reference_m\n0,0.305\n1,0.315\n";
+  ASSERT_EQ(run_program(
+                simulate(folder.file("a.csv"), "--duration 1 --reference " + folder.file("r.csv")))
+                .exit_code,
+            0);
+  const auto record = config::record::read_record(folder.file("a.csv"));
+  EXPECT_NEAR((*record.column("reference_m"))[100], 0.310, 1e-12);
+}
+
+TEST(SimulateProgram, RefusesAnUnknownParameterAndNamesANearOne) {
+  const TemporaryFolder folder;
+  expect_refused(
+      run_program(simulate(folder.file("a.csv"), "--set parameters.suply_pressure_Pa=1e6")), 78,
+      "supply_pressure_Pa");
+  expect_refused(run_program(simulate(folder.file("a.csv"), "--fault suply_pressure_Pa=1e6@1")), 78,
+                 "supply_pressure_Pa");
+  EXPECT_FALSE(std::filesystem::exists(folder.file("a.csv")));
+}
+
+TEST(SimulateProgram, RefusesBadArgumentsInOneLine) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("a.csv");
+  expect_refused(run_program("simulate /nowhere.toml -o " + file), 78, "/nowhere.toml");
+  expect_refused(run_program(simulate("/nowhere/a.csv", "")), 1, "/nowhere does not exist");
+  expect_refused(run_program(simulate(file, "--reference triangle")), 2, "multisine");
+  expect_refused(run_program(simulate(file, "--set parameters.mass_kg")), 2, "table.key=value");
+  expect_refused(run_program(simulate(file, "--set parameters.mass_kg=-1")), 78, "mass_kg");
+  expect_refused(run_program(simulate(file, "--fault mass_kg")), 2, "PARAMETER=VALUE@SECONDS");
+  expect_refused(run_program(simulate(file, "--set initial.y_m=0.7")), 78, "y_m");
+  EXPECT_EQ(run_program(simulate(file, "--duration -1")).exit_code, 2);
+  EXPECT_EQ(run_program("simulate " + kModel).exit_code, 2);
+  EXPECT_FALSE(std::filesystem::exists(file));
+}
+
+}  // namespace
+}  // namespace workbench
