@@ -109,8 +109,7 @@ void run(Options options) {
   if (!(options.estimate.fit_from < options.estimate.fit_to)) {
     throw Error(ExitCode::usage, "--fit-from: is not before --fit-to");
   }
-  if (options.estimate.method != "batch" && std::isnan(options.estimate.window_s) &&
-      options.estimate.method == "sliding") {
+  if (options.estimate.method == "sliding" && std::isnan(options.estimate.window_s)) {
     throw Error(ExitCode::usage, "--method sliding: needs --window S");
   }
   const config::record::Record record = config::record::read_record(options.record);
