@@ -22,6 +22,7 @@ struct Layer {
 // The standard library and POSIX are open to all, save for the real-time parts named in kGuarded.
 const std::vector<Layer> kLayers{
     {"config/schema", {}, {"toml++"}},
+    {"config/messages", {"config/schema"}, {"lcm", "spoolwatch"}},
     {"config/record", {"config/schema"}, {"lcm", "spoolwatch"}},
     {"plant_sim", {"config/schema"}, {}},
     {"estimator", {"config/schema"}, {"Eigen", "ceres"}},
@@ -33,7 +34,7 @@ const std::vector<Layer> kLayers{
     {"daemon/rt",
      {"config", "estimator", "estimator/fdi", "hal", "hal/sim", "hal/replay", "plant_sim",
       "daemon/control", "daemon/io"},
-     {"boost"}},
+     {"boost", "spoolwatch"}},
     {"daemon/io",
      {"config", "estimator", "estimator/fdi", "hal", "hal/sim", "hal/replay", "plant_sim",
       "daemon/control"},
