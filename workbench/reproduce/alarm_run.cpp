@@ -92,6 +92,17 @@ fdi::EstimatorConfig sliding_estimator() {
   return config;
 }
 
+fdi::EstimatorConfig increments_estimator() {
+  fdi::EstimatorConfig config = sliding_estimator();
+  config.id = "increments";
+  config.structure = "arx011";
+  config.increments = true;
+  config.offset_m = 0.0;
+  config.stride_s = 0.02;
+  config.min_u_rms_V = 0.02;
+  return config;
+}
+
 fdi::PipelineConfig watching_b1(const fdi::EstimatorConfig& estimator, double low, double high) {
   fdi::BandConfig band;
   band.id = "b1";

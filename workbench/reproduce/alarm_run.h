@@ -49,6 +49,8 @@ enum class Keep { alarms, estimates };
 [[nodiscard]] estimator::fdi::EstimatorConfig period_estimator(const char* structure = "arx111");
 /// b1 over a short window, several times in each.
 [[nodiscard]] estimator::fdi::EstimatorConfig sliding_estimator();
+/// The same with the integrator's pole fixed at 1, as the shipped configurations have it.
+[[nodiscard]] estimator::fdi::EstimatorConfig increments_estimator();
 /// A pipeline of one estimator and one band on its b1, m/V.
 [[nodiscard]] estimator::fdi::PipelineConfig watching_b1(
     const estimator::fdi::EstimatorConfig& estimator, double low, double high);

@@ -11,7 +11,7 @@
 namespace workbench::reproduce {
 namespace {
 
-constexpr std::size_t kWhatWidth = 68;
+constexpr std::size_t kWhatWidth = 78;
 constexpr std::size_t kValueWidth = 22;
 
 std::string shown(const Value& value) {
