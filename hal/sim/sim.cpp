@@ -93,7 +93,8 @@ double SimBackend::worst_speed_mps(const Opening& opening, double limit_V) const
   double worst_mps = 0.0;
   for (const double u_V : {limit_V, -limit_V}) {
     plant->reset();
-    for (double t_s = 0.0; t_s < kSpeedSearch_s; t_s += plant->step_s()) {
+    const auto steps = static_cast<int>(kSpeedSearch_s / plant->step_s());
+    for (int i = 0; i < steps; ++i) {
       plant->advance(opening.null_V + u_V, plant->step_s());
       worst_mps = std::max(worst_mps, std::abs(plant->speed_mps()));
     }

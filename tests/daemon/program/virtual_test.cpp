@@ -2,6 +2,7 @@
 // null as the last command, recorded data of any period.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iomanip>
@@ -38,6 +39,25 @@ TEST(VirtualDaemon, CaseIAlarmsComeAndGoAtTheSourcesTimes) {
       0);
   const Log log = read_log(folder.path() / "log");
   EXPECT_EQ(log.timeline("supply_pressure", kTs_s), "18.0 high, 32.0 off, 48.0 low");
+}
+
+TEST(VirtualDaemon, SlidingWindowAlarmsWithinSixTenthsOfASecondOnARealisticRig) {
+  // Fault times spread over a period of the motion; encoder, converter and noise as in demo.toml.
+  for (const double at_s : {4.0, 4.4, 4.8, 5.2, 5.6}) {
+    const Folder folder;
+    ASSERT_EQ(
+        run(virtual_run(shipped("demo.toml"), folder.path() / "log",
+                        {"--duration", "8", "--set", "sim.fault.0.at_s=" + std::to_string(at_s)}))
+            .exit_code,
+        0);
+    double first_s = INFINITY;
+    for (const auto& alarm : read_log(folder.path() / "log").alarms) {
+      if (alarm.name != "supply_pressure_fast") continue;
+      first_s = std::min(first_s, static_cast<double>(alarm.tick) * kTs_s);
+    }
+    EXPECT_GE(first_s, at_s) << "a false alarm";
+    EXPECT_LE(first_s, at_s + 0.6);
+  }
 }
 
 TEST(VirtualDaemon, CaseIIAlarmsComeAndGoAtTheSourcesTimes) {
