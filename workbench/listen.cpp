@@ -21,6 +21,7 @@ struct Options {
   std::string prefix = config::messages::kDefaultPrefix;
   bool json = false;
   bool live = false;
+  bool alarms_only = false;
   double duration_s = 0.0;
 };
 
@@ -51,7 +52,7 @@ class Ending {
 };
 
 int listen_with_lines(const Options& options) {
-  LinePrinter printer(std::cout, options.json);
+  LinePrinter printer(std::cout, options.json, options.alarms_only);
   Feed feed(options.url, options.prefix, false, printer);
   const Ending ending(options.duration_s);
   while (!ending.reached()) {
@@ -98,6 +99,7 @@ void add_listen(CLI::App& command, int& exit_code) {
   command.add_option("--duration", options->duration_s, "stop after so many seconds (0: never)")
       ->check(CLI::NonNegativeNumber);
   command.add_flag("--json", options->json, "one JSON object per line");
+  command.add_flag("--alarms", options->alarms_only, "leave out the estimates");
   command.add_flag("--live", options->live,
                    "a terminal view; lines when there is no terminal. q quits");
   command.callback([options, &exit_code] { exit_code = listen(*options); });

@@ -64,6 +64,8 @@ std::string time_text(std::int64_t utc_us) {
   return out.data();
 }
 
+constexpr int kInvalid = 3;  // severity of alarm_t
+
 const char* severity_text(int severity) {
   constexpr std::array kText = {"OK", "MINOR", "MAJOR", "INVALID"};
   return severity >= 0 && severity < 4 ? kText[static_cast<std::size_t>(severity)] : "?";
@@ -104,7 +106,8 @@ std::string readable(const spoolwatch::alarm_t& alarm) {
     }
     line += "; ";
   }
-  if (!alarm.reason.empty()) line += alarm.reason + "; ";
+  const bool said = !alarm.quantity.empty() && alarm.severity != kInvalid;
+  if (!said && !alarm.reason.empty()) line += alarm.reason + "; ";
   if (alarm.active && !alarm.guidance.empty()) line += "do: " + alarm.guidance + "; ";
   line.erase(line.find_last_not_of("; ") + 1);
   return line;

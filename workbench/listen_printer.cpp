@@ -23,7 +23,7 @@ std::int64_t now_us() {
 }  // namespace
 
 void LinePrinter::on_estimate(const spoolwatch::estimate_t& estimate) {
-  line(json_ ? json(estimate) : readable(estimate));
+  if (!alarms_only_) line(json_ ? json(estimate) : readable(estimate));
 }
 
 void LinePrinter::on_alarm(const spoolwatch::alarm_t& alarm) {

@@ -11,7 +11,9 @@ namespace workbench {
 
 class LinePrinter final : public Listener {
  public:
-  LinePrinter(std::ostream& out, bool json) : out_(out), json_(json) {}
+  /// With `alarms_only`, estimates are left out.
+  LinePrinter(std::ostream& out, bool json, bool alarms_only = false)
+      : out_(out), json_(json), alarms_only_(alarms_only) {}
 
   void on_estimate(const spoolwatch::estimate_t& estimate) override;
   /// As text, the 1 Hz repeat of an active alarm is printed only when its coming was not seen.
@@ -29,6 +31,7 @@ class LinePrinter final : public Listener {
 
   std::ostream& out_;
   const bool json_;
+  const bool alarms_only_;
   std::map<std::string, int> active_;  // severity by source.name
 };
 
