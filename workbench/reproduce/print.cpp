@@ -65,6 +65,7 @@ void print_json(std::ostream& out, std::span<const Section> sections) {
                       {"agrees", to_string(row.agrees)},
                       {"note", row.note},
                       {"section", section.title},
+                      {"tolerance", row.tolerance},
                       {"expected", row.expected}});
     }
   }

@@ -9,8 +9,8 @@
 namespace workbench::reproduce {
 
 void print_table(std::ostream& out, std::span<const Section> sections);
-/// {"rows": [{"what", "printed", "ours", "agrees", "note"}]}; printed and ours are numbers, texts
-/// or null, agrees is "yes", "no" or "n.a.".
+/// {"rows": [{"what", "printed", "ours", "agrees", "note", "section", "tolerance", "expected"}]};
+/// printed and ours are numbers, texts or null, agrees is "yes", "no" or "n.a.".
 void print_json(std::ostream& out, std::span<const Section> sections);
 
 }  // namespace workbench::reproduce

@@ -20,7 +20,8 @@ struct Row {
   Value ours;
   Agreement agrees = Agreement::not_applicable;
   std::string note;
-  bool expected = false;  ///< is meant to agree: `--strict` fails when it does not
+  std::string_view tolerance;  ///< by which it was judged, and why
+  bool expected = false;       ///< is meant to agree: `--strict` fails when it does not
 };
 
 struct Section {

@@ -20,9 +20,9 @@ enum class Rule {
 struct Tolerance {
   std::string_view name;
   Rule rule;
+  bool expected;  ///< rows judged by it are meant to agree
   double low;
   double high;
-  bool expected;  ///< rows judged by it are meant to agree
   std::string_view reason;
 };
 

@@ -31,6 +31,7 @@ TEST(ReproduceProgram, WritesATableAndJsonWithTheDocumentedFields) {
     }
     EXPECT_THAT(row.at("agrees").get<std::string>(), testing::AnyOf("yes", "no", "n.a."));
     EXPECT_TRUE(row.at("note").is_string());
+    EXPECT_NE(row.at("tolerance"), "");
     yes += row.at("agrees") == "yes" ? 1 : 0;
   }
   EXPECT_GT(yes, 40);
