@@ -25,13 +25,11 @@ void visit_values(Visitor& v, const std::vector<ParameterInfo>& infos,
   }
 }
 
-const PlantInfo& known_plant(const std::string& name) {
-  if (const PlantInfo* info = find_plant(name)) return *info;
-  std::string names;
-  for (const PlantInfo& plant : plant_library()) {
-    names += (names.empty() ? "" : ", ") + plant.name;
-  }
-  throw config::schema::bad_config("model: [] plant", "is \"" + name + "\"", names);
+std::vector<std::string_view> plant_names() {
+  std::vector<std::string_view> names;
+  names.reserve(plant_library().size());
+  for (const PlantInfo& plant : plant_library()) names.emplace_back(plant.name);
+  return names;
 }
 
 double* find(std::vector<NamedValue>& values, std::string_view name) {
@@ -55,8 +53,8 @@ ModelFile::ModelFile() {
 void ModelFile::visit(Visitor& v) {
   v.text({"name", "the model's name", true}, name);
   const std::string before = plant;
-  v.text({"plant", "which plant", true}, plant);
-  const PlantInfo& info = known_plant(plant);
+  v.choice({"plant", "which plant", true}, plant, plant_names());
+  const PlantInfo& info = *find_plant(plant);
   if (plant != before) {
     parameters = defaults(info.parameters);
     initial = defaults(info.initial);

@@ -44,7 +44,7 @@ class Printer final : public Visitor {
     if (!std::isnan(value)) field(key, shown(value));
   }
   void text(Key key, std::string& value) override { field(key, toml_string(value)); }
-  void choice(Key key, std::string& value, std::initializer_list<std::string_view>) override {
+  void choice(Key key, std::string& value, const std::vector<std::string_view>&) override {
     field(key, toml_string(value));
   }
   void numbers(Key key, std::vector<double>& value, Range) override {

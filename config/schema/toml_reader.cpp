@@ -96,8 +96,7 @@ void TomlReader::text(Key key, std::string& value) {
   }
 }
 
-void TomlReader::choice(Key key, std::string& value,
-                        std::initializer_list<std::string_view> allowed) {
+void TomlReader::choice(Key key, std::string& value, const std::vector<std::string_view>& allowed) {
   if (const toml::node* node = find(key)) {
     std::string names;
     for (std::string_view name : allowed) names += (names.empty() ? "" : ", ") + std::string(name);

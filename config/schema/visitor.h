@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <initializer_list>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -45,7 +44,7 @@ class Visitor {
   virtual void number(Key key, double& value, Range range = {}) = 0;
   virtual void text(Key key, std::string& value) = 0;
   virtual void choice(Key key, std::string& value,
-                      std::initializer_list<std::string_view> allowed) = 0;
+                      const std::vector<std::string_view>& allowed) = 0;
   virtual void numbers(Key key, std::vector<double>& value, Range range = {}) = 0;
   virtual void texts(Key key, std::vector<std::string>& value) = 0;
 
