@@ -44,12 +44,12 @@ void add_short_buffers(std::vector<Row>& rows, const Structure& structure, const
 }
 
 void add_recursive(std::vector<Row>& rows, const std::string& name, const Judged& result,
-                   const char* spread_rule) {
+                   const char* offset_rule, const char* spread_rule) {
   rows.push_back(judged(name + ": J, in step, m2", 4.277e-5, result.cost_m2, "recursive cost",
                         text("one sample out of step %.4g", result.cost_late_m2)));
   rows.push_back(judged(name + ": mean b1, m/V", 1.9672e-4, result.b1.mean, "mean b1, recursive"));
   rows.push_back(
-      judged(name + ": greatest offset of b1, m/V", kPrintedOffset, result.b1.offset, spread_rule));
+      judged(name + ": greatest offset of b1, m/V", kPrintedOffset, result.b1.offset, offset_rule));
   rows.push_back(
       judged(name + ": variance of b1, (m/V)2", 2.7153e-14, result.b1.variance, spread_rule));
 }
@@ -64,12 +64,12 @@ std::vector<Row> batch_against_recursive() {
   add_batch(rows, whole);
   add_short_buffers(rows, structure, record);
   add_recursive(rows, "recursive, P(0) = 1e8 I", judge_recursive(structure, record, 1.0, false),
-                "spread");
+                "spread", "spread");
   add_recursive(rows, "recursive, warm start", judge_recursive(structure, record, 1.0, true),
-                "spread");
+                "spread", "spread");
   const double forgetting = forgetting_with_offset(structure, record, kPrintedOffset);
   const Judged solved = judge_recursive(structure, record, forgetting, true);
-  add_recursive(rows, text("recursive, forgetting %.4f (solved)", forgetting), solved,
+  add_recursive(rows, text("recursive, forgetting %.4f (solved)", forgetting), solved, "solved for",
                 "spread, recursive");
   rows.push_back(judged("b1 varies more in the recursion than in the batch", std::string("yes"),
                         std::string(solved.b1.variance > whole.b1.variance ? "yes" : "no"), "words",

@@ -24,7 +24,7 @@ std::vector<Row> printed_parameters() {
                  "outside every printed band: the printed valve constant 2.79e-5 m/V cannot be "
                  "the one used"),
           judged("b1 of ARX111, valve constant calibrated, m/V", kPrintedB1,
-                 fifth_period_b1(calibrated()), "mean b1")};
+                 fifth_period_b1(calibrated()), "mean b1", "the valve constant was solved for it")};
 }
 
 }  // namespace workbench::reproduce
