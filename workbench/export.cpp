@@ -71,7 +71,7 @@ constexpr const char* kEstimateHeader =
     "t_s,source,valid,name,value,std_error,low,high,condition,reason\n";
 constexpr const char* kAlarmHeader =
     "t_s,source,name,severity,active,repeat,quantity,value,std_error,low,high,direction,parameter,"
-    "reason,guidance\n";
+    "parameter_direction,reason,guidance\n";
 
 void append(std::string& csv, double t_s, const spoolwatch::estimate_t& estimate) {
   for (std::size_t i = 0; i < estimate.name.size(); ++i) {
@@ -90,8 +90,8 @@ void append(std::string& csv, double t_s, const spoolwatch::alarm_t& alarm) {
       << std::string_view(severity_text(alarm.severity)) << (alarm.active != 0)
       << (alarm.repeat != 0) << std::string_view(alarm.quantity) << alarm.value << alarm.std_error
       << alarm.low << alarm.high << static_cast<double>(alarm.direction)
-      << std::string_view(alarm.parameter) << std::string_view(alarm.reason)
-      << std::string_view(alarm.guidance);
+      << std::string_view(alarm.parameter) << static_cast<double>(alarm.parameter_direction)
+      << std::string_view(alarm.reason) << std::string_view(alarm.guidance);
   csv += row.end();
 }
 

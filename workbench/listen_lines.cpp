@@ -98,9 +98,9 @@ std::string readable(const spoolwatch::alarm_t& alarm) {
     }
     line += "; ";
   }
-  if (!alarm.parameter.empty()) {
+  if (alarm.active && !alarm.parameter.empty()) {
     line += "means " + alarm.parameter;
-    if (alarm.direction != 0) line += alarm.direction < 0 ? " low" : " high";
+    if (alarm.parameter_direction != 0) line += alarm.parameter_direction < 0 ? " low" : " high";
     for (const auto& other : alarm.ambiguity_group) {
       if (other != alarm.parameter) line += " or " + other;
     }
@@ -148,6 +148,7 @@ std::string json(const spoolwatch::alarm_t& alarm) {
                  {"high", alarm.high},
                  {"parameter", alarm.parameter},
                  {"direction", alarm.direction},
+                 {"parameter_direction", alarm.parameter_direction},
                  {"confidence", alarm.confidence},
                  {"ambiguity_group", alarm.ambiguity_group},
                  {"reason", alarm.reason},

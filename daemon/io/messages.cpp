@@ -62,6 +62,11 @@ void fill(spoolwatch::alarm_t& message, const estimator::fdi::Alarm& alarm, bool
   message.quantity = alarm.quantity;
   message.parameter = alarm.parameter;
   message.direction = alarm.direction;
+  const bool known = !alarm.parameter.empty();
+  message.parameter_direction =
+      static_cast<std::int8_t>(!known                       ? 0
+                               : alarm.falls_with_parameter ? -alarm.direction
+                                                            : alarm.direction);
   message.confidence = std::numeric_limits<double>::quiet_NaN();
   message.group_size = static_cast<std::int32_t>(alarm.ambiguity_group.size());
   message.ambiguity_group = alarm.ambiguity_group;

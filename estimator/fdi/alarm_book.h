@@ -29,10 +29,11 @@ struct Alarm {
   std::string guidance;
   std::string reason;
   Severity severity = Severity::ok;
-  bool active = false;        ///< severity is not ok
-  bool first_up = false;      ///< was the first to become active when none was
-  std::int8_t direction = 0;  ///< -1 below, +1 above the band, 0 neither
-  std::int64_t tick = 0;      ///< sample at which the state last changed
+  bool active = false;                ///< severity is not ok
+  bool first_up = false;              ///< was the first to become active when none was
+  std::int8_t direction = 0;          ///< -1 below, +1 above the band, 0 neither
+  bool falls_with_parameter = false;  ///< the quantity falls when the parameter rises
+  std::int64_t tick = 0;              ///< sample at which the state last changed
   double value = std::numeric_limits<double>::quiet_NaN();
   double std_error = std::numeric_limits<double>::quiet_NaN();
   double low = std::numeric_limits<double>::quiet_NaN();

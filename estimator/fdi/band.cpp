@@ -23,6 +23,8 @@ void BandConfig::visit(config::schema::Visitor& v) {
            {0.0, 3600.0});
   v.choice({"severity", "of the alarm"}, severity, {"minor", "major"});
   v.text({"parameter", "the physical parameter meant"}, parameter);
+  v.boolean({"falls_with_parameter", "the quantity falls when the parameter rises"},
+            falls_with_parameter);
   v.texts({"ambiguity_group", "parameters that cannot be told apart here"}, ambiguity_group);
   v.text({"guidance", "what to look at"}, guidance);
 }

@@ -29,6 +29,7 @@ struct BandConfig {
   double invalid_delay_s = 0.0;
   std::string severity = "major";
   std::string parameter;
+  bool falls_with_parameter = false;  ///< the quantity falls when the parameter rises
   std::vector<std::string> ambiguity_group;
   std::string guidance;
 

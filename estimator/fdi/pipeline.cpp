@@ -50,6 +50,7 @@ Alarm alarm_for(const BandConfig& band, std::string_view source) {
   alarm.name = band.id;
   alarm.quantity = band.quantity;
   alarm.parameter = band.parameter;
+  alarm.falls_with_parameter = band.falls_with_parameter;
   alarm.ambiguity_group = band.ambiguity_group;
   alarm.guidance = band.guidance;
   alarm.low = given(band.low);

@@ -1,8 +1,11 @@
 #include "workbench/reproduce/alarm_run.h"
 
+#include <cassert>
 #include <cmath>
 #include <limits>
 
+#include "config/schema/document.h"
+#include "workbench/reproduce/shipped_models.h"
 #include "workbench/simulate/closed_loop.h"
 
 namespace workbench::reproduce {
@@ -83,23 +86,14 @@ fdi::EstimatorConfig period_estimator(const char* structure) {
   return config;
 }
 
-fdi::EstimatorConfig sliding_estimator() {
-  fdi::EstimatorConfig config = period_estimator();
-  config.id = "sliding";
-  config.method = "sliding";
-  config.window_s = 0.4;
-  config.stride_s = 0.025;
-  return config;
-}
-
-fdi::EstimatorConfig increments_estimator() {
-  fdi::EstimatorConfig config = sliding_estimator();
-  config.id = "increments";
-  config.structure = "arx011";
-  config.increments = true;
-  config.offset_m = 0.0;
-  config.stride_s = 0.02;
-  config.min_u_rms_V = 0.02;
+fdi::PipelineConfig shipped_sliding_window() {
+  const char* const file = "thesis_case1.toml";
+  fdi::PipelineConfig config;
+  config::schema::Document::parse(shipped_model_text(file), file)
+      .read_part([&](config::schema::Visitor& v) { config.visit(v); });
+  std::erase_if(config.estimators, [](const auto& estimator) { return estimator.id != "sliding"; });
+  std::erase_if(config.bands, [](const auto& band) { return band.quantity != "sliding.b1"; });
+  assert(config.estimators.size() == 1 && config.bands.size() == 1);
   return config;
 }
 

@@ -47,10 +47,8 @@ enum class Keep { alarms, estimates };
 
 /// b1 by least squares over whole periods; the first period is warm-up.
 [[nodiscard]] estimator::fdi::EstimatorConfig period_estimator(const char* structure = "arx111");
-/// b1 over a short window, several times in each.
-[[nodiscard]] estimator::fdi::EstimatorConfig sliding_estimator();
-/// The same with the integrator's pole fixed at 1, as the shipped configurations have it.
-[[nodiscard]] estimator::fdi::EstimatorConfig increments_estimator();
+/// The sliding-window estimator and its band, as thesis_case1.toml ships them.
+[[nodiscard]] estimator::fdi::PipelineConfig shipped_sliding_window();
 /// A pipeline of one estimator and one band on its b1, m/V.
 [[nodiscard]] estimator::fdi::PipelineConfig watching_b1(
     const estimator::fdi::EstimatorConfig& estimator, double low, double high);

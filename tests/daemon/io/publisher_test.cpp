@@ -85,6 +85,7 @@ TEST_F(PublisherTest, RecordsEveryFieldOfEveryMessage) {
     alarm.name = "b1_low";
     alarm.quantity = "period.b1";
     alarm.parameter = "supply_pressure_Pa";
+    alarm.falls_with_parameter = true;
     alarm.ambiguity_group = {"supply_pressure_Pa", "gain"};
     alarm.severity = estimator::fdi::Severity::major;
     alarm.active = true;
@@ -129,6 +130,7 @@ TEST_F(PublisherTest, RecordsEveryFieldOfEveryMessage) {
   EXPECT_EQ(alarm.repeat, 1);
   EXPECT_EQ(alarm.first_up, 1);
   EXPECT_EQ(alarm.direction, -1);
+  EXPECT_EQ(alarm.parameter_direction, +1);
   EXPECT_EQ(alarm.ambiguity_group.size(), 2U);
   EXPECT_TRUE(std::isnan(alarm.high));
   EXPECT_EQ(events[4].channel, "RIG_HEALTH");

@@ -120,8 +120,8 @@ TEST_F(ExportTest, WritesOneRowPerAlarmMessage) {
   });
   // Without samples there is no period: the time counts from the first message.
   EXPECT_THAT(csv_of(log, "alarm"),
-              EndsWith("\n0,period,b1_low,MAJOR,1,1,period.b1,1.5,,,,-1,,,\n"
-                       "1.5,period,b1_low,MAJOR,1,0,period.b1,1.5,,,,-1,,,\n"));
+              EndsWith("\n0,period,b1_low,MAJOR,1,1,period.b1,1.5,,,,-1,,0,,\n"
+                       "1.5,period,b1_low,MAJOR,1,0,period.b1,1.5,,,,-1,,0,,\n"));
   // No estimate in a log of ours is a table without rows.
   EXPECT_EQ(csv_of(log, "estimate"),
             "t_s,source,valid,name,value,std_error,low,high,condition,reason\n");
