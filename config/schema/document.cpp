@@ -1,6 +1,7 @@
 #include "config/schema/document.h"
 
 #include <algorithm>
+#include <charconv>
 #include <fstream>
 #include <numeric>
 #include <sstream>
@@ -30,7 +31,7 @@ toml::table parse_toml(std::string_view text, const std::string& name) {
 /// The value of an assignment: TOML if it parses, else a bare string.
 toml::table parse_value(const std::string& key, const std::string& value) {
   try {
-    return toml::parse(key + " = " + value);
+    return toml::parse(key + " = " + value, kAssignments);
   } catch (const toml::parse_error&) {
     toml::table table;
     table.insert_or_assign(key, value);
@@ -82,11 +83,11 @@ void Document::set(std::string_view assignment) {
     const std::string part = path.substr(begin, dot - begin);
     begin = dot + 1;
     if (toml::array* array = node->as_array()) {
-      std::size_t index = array->size();
-      std::istringstream(part) >> index;
-      if (index >= array->size()) {
-        throw bad_config("--set " + path, "no element " + part,
-                         "0 to " + std::to_string(array->size()) + " less one");
+      std::size_t index = 0;
+      const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
+      if (error != std::errc() || end != part.data() + part.size() || index >= array->size()) {
+        throw bad_config("--set " + path, "no element \"" + part + "\"",
+                         array->empty() ? "none" : "0 to " + std::to_string(array->size() - 1));
       }
       node = array->get(index);
     } else if (toml::table* table = node->as_table()) {

@@ -35,10 +35,16 @@ TomlReader::TomlReader(const toml::table& table, std::string path, const std::st
 
 std::string TomlReader::where(std::string_view key, const toml::node* node) const {
   std::string place = file_;
-  if (node != nullptr && node->source().begin.line > 0) {
-    place += ":" + std::to_string(node->source().begin.line);
+  if (node != nullptr) {
+    const toml::source_region& source = node->source();
+    // What --set adds without parsing (a bare string, a table) has no source at all.
+    if (source.begin.line == 0 || (source.path && *source.path == kAssignments)) {
+      place = kAssignments;
+    } else {
+      place += ":" + std::to_string(source.begin.line);
+    }
   }
-  return place + ": [" + path_ + "] " + std::string(key);
+  return place + ": " + (path_.empty() ? "" : "[" + path_ + "] ") + std::string(key);
 }
 
 const toml::node* TomlReader::find(Key key) {

@@ -8,6 +8,9 @@
 
 namespace config::schema {
 
+/// Where values come from that --set gave.
+inline constexpr std::string_view kAssignments = "--set";
+
 class TomlReader final : public Visitor {
  public:
   /// `path` is the table's dotted name, "" for the top; `file` is for messages.

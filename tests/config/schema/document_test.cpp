@@ -108,7 +108,7 @@ TEST(Document, NamesFileLineTableKeyAndAllowedValues) {
   EXPECT_EQ(message("[loop]\nrate_hz = 100\n"),
             "78 stand.toml:3: [loop] rate_hz: is unknown, did you mean rate_Hz?; allowed: mode, "
             "optional_m, rate_Hz");
-  EXPECT_THAT(message("levels = [1, 20]\n"), HasSubstr("[] levels: is 20, out of range"));
+  EXPECT_THAT(message("levels = [1, 20]\n"), HasSubstr(": levels: is 20, out of range"));
   EXPECT_THAT(message("levels = 1\n"), HasSubstr("an array of numbers"));
   EXPECT_THAT(message("pump = 1\n"), HasSubstr("an array of tables"));
   EXPECT_THAT(message("loop = 1\n"), HasSubstr("a table"));
@@ -154,8 +154,19 @@ TEST(Document, RefusesAssignmentsThatNameNothing) {
   EXPECT_THAT(message("", {"=1"}), HasSubstr("2 --set"));
   EXPECT_THAT(message("enabled = true", {"enabled.x=1"}), HasSubstr("78 --set enabled.x"));
   EXPECT_THAT(message("[[pump]]\nname='p'\n", {"pump.3.name=x"}), HasSubstr("78 --set pump.3"));
+  for (const char* element : {"x", "1x", "-1", ""}) {
+    const std::string assignment = std::string("pump.") + element + ".name=y";
+    EXPECT_THAT(message("[[pump]]\nname='p'\n", {assignment.c_str()}),
+                HasSubstr(std::string("no element \"") + element + "\"; allowed: 0 to 0"));
+  }
   EXPECT_THAT(message("", {"lop.rate_Hz=1"}), HasSubstr("did you mean loop?"));
   EXPECT_THAT(message("", {"loop.rate_Hz=a b"}), HasSubstr("a whole number"));
+}
+
+TEST(Document, BlamesTheAssignmentAndNotTheFileForItsValue) {
+  EXPECT_THAT(message("", {"loop.rate_Hz=5000"}), HasSubstr("78 --set: [loop] rate_Hz: is 5000"));
+  EXPECT_THAT(message("", {"loop.rate_Hz=a b"}), HasSubstr("78 --set: [loop] rate_Hz: is 'a b'"));
+  EXPECT_THAT(message("", {"lop.rate_Hz=1"}), HasSubstr("78 --set: lop: is unknown"));
 }
 
 TEST(Nearest, FindsOneTypoAndLeavesStrangersAlone) {
