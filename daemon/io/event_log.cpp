@@ -1,6 +1,7 @@
 #include "daemon/io/event_log.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <algorithm>
 #include <cerrno>
@@ -49,7 +50,15 @@ int EventLog::open() {
   std::snprintf(name, sizeof name, "spoolwatch-%lld-%05d.lcmlog", static_cast<long long>(run_id_),
                 number_);
   file_ = folder_ / name;
-  descriptor_ = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  const auto open_file = [this] {
+    return ::open(file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  };
+  descriptor_ = open_file();
+  if (descriptor_ < 0 && errno == ENOENT) {
+    std::error_code ignored;
+    std::filesystem::create_directories(folder_, ignored);
+    descriptor_ = open_file();
+  }
   if (descriptor_ < 0) return errno;
   ++number_;
   size_ = 0;
@@ -59,7 +68,10 @@ int EventLog::open() {
 }
 
 bool EventLog::add(std::span<const std::uint8_t> event) {
-  if (batch_.empty() && open() != 0) return false;
+  if (batch_.empty()) {
+    leave_removed();
+    if (open() != 0) return false;
+  }
   const auto size_after = size_ + static_cast<std::int64_t>(batch_.size() + event.size());
   const bool file_full = size_after > file_bytes_ && !(size_ == 0 && batch_.empty());
   if (file_full && batch_.empty()) {
@@ -106,6 +118,11 @@ EventLog::Written EventLog::write() {
 void EventLog::close() noexcept {
   if (descriptor_ >= 0) ::close(descriptor_);
   descriptor_ = -1;
+}
+
+void EventLog::leave_removed() noexcept {
+  struct stat status {};
+  if (descriptor_ >= 0 && ::fstat(descriptor_, &status) == 0 && status.st_nlink == 0) close();
 }
 
 void EventLog::remove_oldest() const {

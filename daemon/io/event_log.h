@@ -31,7 +31,7 @@ class EventLog {
   EventLog(const EventLog&) = delete;
   EventLog& operator=(const EventLog&) = delete;
 
-  /// Opens a file if none is open; 0 or errno.
+  /// Opens a file if none is open, makes its folder again if it has gone; 0 or errno.
   int open();
 
   /// Adds an event (header from put_event_header, channel, data) to the batch for write(). False
@@ -49,6 +49,8 @@ class EventLog {
 
  private:
   void close() noexcept;
+  /// Closes a file that somebody removed: nothing written to it could ever be read.
+  void leave_removed() noexcept;
   void remove_oldest() const;
 
   const std::filesystem::path folder_;

@@ -41,6 +41,17 @@ void RecorderConfig::visit(config::schema::Visitor& v) {
             {4096, 1024 * kMiB});
 }
 
+void check_folder(const RecorderConfig& config) {
+  std::error_code error;
+  std::filesystem::path folder = std::filesystem::absolute(config.folder);
+  while (!std::filesystem::exists(folder, error) && folder.has_relative_path()) {
+    folder = folder.parent_path();
+  }
+  if (!std::filesystem::is_directory(folder, error)) {
+    throw cannot_record(config.folder, folder.string() + " is no folder");
+  }
+}
+
 Recorder::Recorder(const RecorderConfig& config, std::int64_t run_id, bool background)
     : log_(std::make_unique<EventLog>(config.folder, run_id, config.file_bytes, config.files)),
       queue_(std::make_unique<ByteQueue>(config.queue_bytes)),
@@ -56,7 +67,9 @@ Recorder::Recorder(const RecorderConfig& config, std::int64_t run_id, bool backg
   if (background_) thread_ = std::thread([this] { run(); });
 }
 
-Recorder::~Recorder() {
+Recorder::~Recorder() { finish(); }
+
+std::int64_t Recorder::finish() {
   if (thread_.joinable()) {
     {
       const std::lock_guard lock(mutex_);
@@ -67,6 +80,7 @@ Recorder::~Recorder() {
   }
   retry_in_ = 0;
   drain();
+  return dropped_ + lost_ + backlog_->records();
 }
 
 void Recorder::record(std::string_view channel, std::span<const std::uint8_t> data,

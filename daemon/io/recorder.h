@@ -39,6 +39,9 @@ struct RecorderConfig {
   void visit(config::schema::Visitor& v);
 };
 
+/// Throws config::schema::Error when `folder` can never be one; makes and writes nothing.
+void check_folder(const RecorderConfig& config);
+
 /// What the recorder can tell; every figure counts from its start.
 struct RecorderStatus {
   std::int64_t written_records = 0;
@@ -54,7 +57,7 @@ class Recorder {
   /// Opens the first file. Throws config::schema::Error when the folder cannot be made or written;
   /// a full disk is no error but a condition. `config.folder` must not be empty.
   Recorder(const RecorderConfig& config, std::int64_t run_id, bool background);
-  /// Writes what is queued, as far as the disk takes it, and closes the file.
+  /// As finish().
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
@@ -63,6 +66,10 @@ class Recorder {
   /// does not allocate when in the background.
   void record(std::string_view channel, std::span<const std::uint8_t> data,
               std::int64_t utc_us) noexcept;
+
+  /// Writes what is queued, as far as the disk takes it, and stops: call it last. Returns how many
+  /// messages are not on disk.
+  std::int64_t finish();
 
   /// Any thread.
   [[nodiscard]] RecorderStatus status() const noexcept;

@@ -7,6 +7,7 @@
 #include <unistd.h>
 #include <cerrno>
 #include <chrono>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <string>
@@ -221,6 +222,36 @@ TEST_F(RecorderTest, TakesAFileSizeLimitOfTheProcessForAFullDisk) {
   expect_whole(logs_in(folder_)[0]);
   EXPECT_TRUE(wait_for([&] { return recorder.status().written_records == 100; }));
   expect_whole(logs_in(folder_)[0]);
+}
+
+TEST_F(RecorderTest, GoesOnInANewFileWhenItsFolderIsRemoved) {
+  config_.folder = folder_ / "log";
+  Recorder recorder(config_, kRun, false);
+  for (int i = 0; i < 10; ++i) record(recorder, i);
+  fs::remove_all(config_.folder);
+  for (int i = 10; i < 30; ++i) record(recorder, i);
+  EXPECT_EQ(recorder.finish(), 0);
+  ASSERT_EQ(logs_in(config_.folder).size(), 1U);
+  const auto events = read_events(logs_in(config_.folder)[0]);
+  ASSERT_EQ(events.size(), 20U);
+  EXPECT_EQ(number_of(events.front()), 10);
+  expect_whole(logs_in(config_.folder)[0]);
+}
+
+TEST_F(RecorderTest, TellsInTheEndHowManyMessagesAreNotOnDisk) {
+  config_.backlog_bytes = 4096;
+  Recorder recorder(config_, kRun, false);
+  rlimit before{};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit small{2000, before.rlim_max};
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  ::setrlimit(RLIMIT_FSIZE, &small);
+  for (int i = 0; i < 100; ++i) record(recorder, i);
+  const std::int64_t missing = recorder.finish();
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_EQ(missing, 100 - static_cast<std::int64_t>(read_events(logs_in(folder_)[0]).size()));
+  EXPECT_GT(recorder.status().lost_records, 0) << "some of them left memory too";
 }
 
 TEST_F(RecorderTest, SaysInOneLineThatItCannotRecordInAFolder) {
