@@ -89,14 +89,16 @@ Devices Rig::open(const Opening& opening) const {
     devices.valve = valve->open(opening).valve;
   }
   if (valve != nullptr && devices.valve == nullptr) {
-    throw bad_config(valve_key, "is \"" + valve_.backend + "\", which drives no valve");
+    throw bad_config(valve_key, "is \"" + valve_.backend + "\", which drives no valve",
+                     "sim, none");
   }
   return devices;
 }
 
 bool Rig::harmless() const {
+  const Backend* rod = find(rod_);
   const Backend* valve = find(valve_.backend);
-  return valve == nullptr || valve->harmless();
+  return (rod == nullptr || rod->harmless()) && (valve == nullptr || valve->harmless());
 }
 
 double Rig::worst_speed_mps(const Opening& opening) const {

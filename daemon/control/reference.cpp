@@ -1,5 +1,9 @@
 #include "daemon/control/reference.h"
 
+#include <set>
+#include "config/schema/error.h"
+
+#include "config/schema/error.h"
 #include "daemon/control/reference_kinds.h"
 
 namespace monitor::control {
@@ -38,6 +42,16 @@ void ReferenceConfig::visit(config::schema::Visitor& v) {
 std::unique_ptr<Reference> make_reference(const ReferenceConfig& config,
                                           const std::filesystem::path& folder) {
   if (config.kind == "multisine") {
+    std::set<double> different(config.frequencies_Hz.begin(), config.frequencies_Hz.end());
+    if (different.empty() || different.size() < config.frequencies_Hz.size()) {
+      throw config::schema::bad_config("frequencies_Hz",
+                                       different.empty() ? "is empty" : "names one of them twice",
+                                       "different frequencies, one at least");
+    }
+    if (config.frequencies_Hz.empty()) {
+      throw config::schema::bad_config("[reference] frequencies_Hz", "is empty",
+                                       "one frequency or more");
+    }
     return std::make_unique<Multisine>(config.centre_m, config.amplitude_m, config.frequencies_Hz);
   }
   if (config.kind == "steps") return std::make_unique<Steps>(config);

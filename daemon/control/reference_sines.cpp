@@ -24,10 +24,6 @@ double Sine::at(double t_s) const noexcept {
 
 Multisine::Multisine(double centre_m, double amplitude_m, std::vector<double> frequencies_Hz)
     : centre_m_(centre_m), frequencies_Hz_(std::move(frequencies_Hz)) {
-  if (frequencies_Hz_.empty()) {
-    scale_m_ = 0.0;
-    return;
-  }
   const auto [slowest, fastest] =
       std::minmax_element(frequencies_Hz_.begin(), frequencies_Hz_.end());
   const double step_s = 1.0 / (kPointsPerCycle * *fastest);

@@ -78,6 +78,11 @@ Devices SimBackend::open(const Opening& opening) const {
         "makes a period of " + std::to_string(steps) + " integration steps of the model",
         "a whole number of steps");
   }
+  if (std::abs(opening.null_V) > config_.dac_range_V) {
+    throw config::schema::bad_config(opening.file + ": [valve] null_V",
+                                     "is outside the range of the D/A converter",
+                                     "at most [sim] dac_range_V in magnitude");
+  }
   try {
     auto rig =
         std::make_shared<SimRig>(std::move(plant), config_, opening.sample_time_s, opening.null_V);
