@@ -11,7 +11,8 @@ namespace {
 using config::schema::Visitor;
 
 /// Keys whose values are paths that start from the configuration's folder.
-constexpr const char* kPathKeys[] = {"sim.model", "replay.record", "reference.file", "bands_file"};
+constexpr const char* kPathKeys[] = {"sim.model", "replay.record", "reference.file", "bands_file",
+                                     "recorder.folder"};
 
 /// "key=value" with the value made absolute where the key names a file.
 std::string from_here(const std::string& assignment) {
@@ -56,6 +57,9 @@ void load(const std::filesystem::path& file, const std::vector<std::string>& ass
   document.read([&](Visitor& v) { config.visit(v); });
   config.file = document.name();
   config.folder = document.folder();
+  if (!config.recorder.folder.empty()) {
+    config.recorder.folder = (config.folder / config.recorder.folder).string();
+  }
   if (config.loop.auto_arm && !config.rig.harmless()) {
     throw config::schema::bad_config(config.file + ": [loop] auto_arm",
                                      "is true on a rig that moves something real", "false");

@@ -42,7 +42,7 @@ struct DaemonConfig {
 void load(const std::filesystem::path& file, const std::vector<std::string>& assignments,
           DaemonConfig& config);
 
-/// FNV-1a of everything that determines the data: the same data come from the same hash.
+/// FNV-1a of every value that determines the data; files that it names count by name alone.
 [[nodiscard]] std::uint64_t hash(DaemonConfig& config);
 
 }  // namespace monitor

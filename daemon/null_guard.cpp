@@ -1,33 +1,59 @@
 #include "daemon/null_guard.h"
 
-#include <atomic>
 #include <csignal>
+
+#include "daemon/rt/thread.h"
 
 namespace monitor {
 namespace {
 
-constexpr int kFatal[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
+/// All that end a process, but those that ask it to stop (session.cpp), those that are ignored, and
+/// SIGKILL.
+constexpr int kFatal[] = {SIGSEGV, SIGBUS,  SIGFPE,  SIGILL,  SIGABRT, SIGSYS,    SIGTRAP, SIGQUIT,
+                          SIGXCPU, SIGUSR1, SIGUSR2, SIGALRM, SIGPROF, SIGVTALRM, SIGIO};
 
-std::atomic<hal::ValveDrive*> guarded{nullptr};
-static_assert(std::atomic<hal::ValveDrive*>::is_always_lock_free);
+std::atomic<NullGuard*> guard_of_process{nullptr};
+static_assert(std::atomic<NullGuard*>::is_always_lock_free);
+static_assert(std::atomic<bool>::is_always_lock_free);
 
 /// Null, then the signal's own effect.
 void on_fatal_signal(int signal) {
-  if (hal::ValveDrive* valve = guarded.exchange(nullptr)) valve->go_null();
+  if (NullGuard* guard = guard_of_process.exchange(nullptr)) guard->close();
   std::signal(signal, SIG_DFL);
   raise(signal);
 }
 
 }  // namespace
 
-NullGuard::NullGuard(hal::ValveDrive* valve) noexcept {
-  guarded.store(valve);
-  for (const int signal : kFatal) std::signal(signal, on_fatal_signal);
+NullGuard::NullGuard(hal::ValveDrive* valve) noexcept : valve_(valve) {
+  static rt::SignalStack main_stack;
+  main_stack.use();
+  guard_of_process.store(this);
+  struct sigaction action {};
+  action.sa_handler = on_fatal_signal;
+  action.sa_flags = SA_ONSTACK;  // a stack that has overflowed can run no handler
+  for (const int signal : kFatal) sigaction(signal, &action, nullptr);
 }
 
 NullGuard::~NullGuard() {
-  if (hal::ValveDrive* valve = guarded.exchange(nullptr)) valve->go_null();
+  if (guard_of_process.exchange(nullptr) != nullptr) close();
   for (const int signal : kFatal) std::signal(signal, SIG_DFL);
+}
+
+void NullGuard::close() noexcept {
+  closed_.store(true);
+  if (valve_ != nullptr) valve_->go_null();
+}
+
+hal::Applied NullGuard::write(double u_V, const hal::Tick& tick) noexcept {
+  const hal::Applied applied = valve_->write(u_V, tick);
+  return closed_.load() ? valve_->go_null() : applied;
+}
+
+hal::Applied NullGuard::go_null() noexcept { return valve_->go_null(); }
+
+void outlive_failed_writes() noexcept {
+  for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
 }
 
 }  // namespace monitor

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <ctime>
 #include <memory>
 #include <ostream>
@@ -47,7 +48,8 @@ Prepared prepare(DaemonConfig& config) {
   p.opening = {config.file, config.folder, p.sample_time_s, config.rig.valve().null_V};
   p.devices = config.rig.open(p.opening);
   if (!std::isnan(p.devices.sample_time_s)) p.sample_time_s = p.devices.sample_time_s;
-  p.reference = at(config.file + ": [reference] file", [&] {
+  const bool from_file = config.reference.kind == "file";
+  p.reference = at(config.file + ": [reference]" + (from_file ? " file" : ""), [&] {
     return control::make_reference(
         config.drives_valve() ? config.reference : control::ReferenceConfig{}, config.folder);
   });
@@ -109,6 +111,16 @@ void report(const rt::LoopStats& stats, std::ostream& log) {
   }
 }
 
+/// Closes the log; says so when messages are missing in it.
+bool recorded_all(io::Recorder& recorder, std::ostream& log) {
+  const std::int64_t missing = recorder.finish();
+  if (missing == 0) return true;
+  const int error = recorder.status().error;
+  log << "spoolwatchd: recorder: " << missing << " messages are not in the log"
+      << (error != 0 ? std::string(" (") + std::strerror(error) + ")" : "") << std::endl;
+  return false;
+}
+
 void arm_and_start(rt::CommandQueue& commands, std::int64_t expires_ns) {
   rt::Command command;
   command.expires_ns = expires_ns;
@@ -144,20 +156,19 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
   const control::Controller controller(
       config.controller, {valve_config.null_V, valve_config.limit_V, valve_config.slew_V_per_s},
       p.sample_time_s);
-  hal::ValveDrive* valve = p.devices.valve.get();
-  rt::Loop loop(config.loop,
-                {clock, *p.devices.rod, valve, *p.reference, *samples, commands, stats}, controller,
-                p.sample_time_s);
-
   rt::Grant grant;
   grant.text = "virtual time";
   if (!virtual_time) grant = rt::ask_privileges(config.loop);
   log << "spoolwatchd: real-time privileges: " << grant.text << std::endl;
+  NullGuard guard(p.devices.valve.get());
+  hal::ValveDrive* valve = guard.valve();
+  rt::Loop loop(config.loop,
+                {clock, *p.devices.rod, valve, *p.reference, *samples, commands, stats}, controller,
+                p.sample_time_s);
   rt::Detector detector({clock, *samples, stats, *p.pipeline, publisher, recorder.get()},
                         {config.rig_id, hex(p.hash), grant.text, config.rig.rod_backend(),
                          valve != nullptr ? valve_config.backend : ""});
 
-  const NullGuard guard(valve);
   const std::int64_t start_ns = clock.now_ns() + (virtual_time ? 0 : kLead_ns);
   if (config.loop.auto_arm && valve != nullptr) {
     arm_and_start(commands, start_ns + kCommandLife_ns);
@@ -172,13 +183,17 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
                    : rt::run_realtime(run, detector, grant.loop_thread, stop, valve,
                                       [] { return wait_for_stop(100); });
   if (!virtual_time) report(stats, log);
-  if (outcome.empty()) return static_cast<int>(config::schema::ExitCode::done);
-  log << "spoolwatchd: " << outcome << std::endl;
-  return static_cast<int>(config::schema::ExitCode::failed);
+  if (!outcome.empty()) log << "spoolwatchd: " << outcome << std::endl;
+  const bool complete = recorder == nullptr || recorded_all(*recorder, log);
+  return static_cast<int>(outcome.empty() && complete ? config::schema::ExitCode::done
+                                                      : config::schema::ExitCode::failed);
 }
 
 void check_session(DaemonConfig& config, std::ostream& out) {
   const Prepared p = prepare(config);
+  const bool would_write_a_file = config.lcm.url.starts_with("file:");
+  if (!would_write_a_file) io::Publisher(config.lcm, 0, p.sample_time_s, nullptr);
+  if (!config.recorder.folder.empty()) io::check_folder(config.recorder);
   out << config::schema::print_toml([&](config::schema::Visitor& v) { config.visit(v); });
   char line[160];
   out << "\n# " << config.file << ": period " << p.sample_time_s * 1e3 << " ms, configuration "

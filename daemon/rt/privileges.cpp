@@ -23,13 +23,12 @@ class Report {
  public:
   explicit Report(bool required) : required_(required) {}
   void got(const std::string& what) { text_ += (text_.empty() ? "" : "; ") + what; }
-  void refused(const std::string& what, int error) {
+  void refused(const std::string& what, int error, const std::string& allowed) {
     const std::string line = "no " + what + " (" + std::strerror(error) + ")";
     if (required_) {
       throw config::schema::Error(
           config::schema::ExitCode::failed,
-          "[loop] privileges = \"require\": " + line +
-              "; allowed: run as root or with CAP_SYS_NICE and CAP_IPC_LOCK, or \"try\"");
+          "[loop] privileges = \"require\": " + line + "; allowed: " + allowed + ", or \"try\"");
     }
     got(line);
   }
@@ -40,10 +39,16 @@ class Report {
   std::string text_;
 };
 
+constexpr const char* kRights = "run as root or with CAP_SYS_NICE and CAP_IPC_LOCK";
+
 /// 0, or errno.
 int lock_memory() noexcept {
   if (mlockall(MCL_CURRENT) != 0) return errno;
-  if (mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) != 0) return errno;
+  if (mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) != 0) {
+    const int error = errno;
+    munlockall();
+    return error;
+  }
   void* room = mmap(nullptr, kRoomAfterLock_bytes, PROT_READ | PROT_WRITE,
                     MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (room == MAP_FAILED) {
@@ -88,7 +93,7 @@ Grant ask_privileges(const LoopConfig& config) {
   Report report(config.privileges == "require");
   const ThreadOptions fifo{static_cast<int>(config.priority), -1};
   if (const int error = try_thread(fifo)) {
-    report.refused("SCHED_FIFO", error);
+    report.refused("SCHED_FIFO", error, kRights);
   } else {
     grant.loop_thread.priority = fifo.priority;
     report.got("SCHED_FIFO " + std::to_string(fifo.priority));
@@ -97,14 +102,14 @@ Grant ask_privileges(const LoopConfig& config) {
     const ThreadOptions pinned{0, static_cast<int>(config.cpu)};
     const std::string core = "cpu " + std::to_string(config.cpu);
     if (const int error = try_thread(pinned)) {
-      report.refused(core, error);
+      report.refused(core, error, "cpu = the number of a core that this process may use");
     } else {
       grant.loop_thread.cpu = pinned.cpu;
       report.got(core);
     }
   }
   if (const int error = lock_memory()) {
-    report.refused("locked memory", error);
+    report.refused("locked memory", error, kRights);
   } else {
     report.got("memory locked");
   }

@@ -1,5 +1,7 @@
 #include "daemon/rt/run.h"
 
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 
@@ -13,7 +15,10 @@ constexpr std::int64_t kPoll_ns = 10'000'000;
 /// A loop that has not ended this long after it was told to is stuck in a device.
 constexpr std::chrono::milliseconds kStuck{1000};
 
-void detect(Detector& detector, const std::atomic<bool>& loop_ended, std::atomic<bool>& failed,
+/// Once the loop has ended; a network or a disk may take its time with what is queued.
+constexpr std::chrono::milliseconds kDetectorStuck{5000};
+
+void detect(Detector& detector, const std::atomic<bool>& loop_ended, std::atomic<bool>& stop,
             Outcome& outcome) {
   try {
     MonotonicClock clock;
@@ -24,8 +29,15 @@ void detect(Detector& detector, const std::atomic<bool>& loop_ended, std::atomic
     detector.finish();
   } catch (const std::exception& e) {
     outcome = std::string("detector: ") + e.what();
-    failed.store(true, std::memory_order_release);
+    stop.store(true, std::memory_order_relaxed);
   }
+}
+
+/// No destructor may wait for a thread that is stuck.
+[[noreturn]] void leave_stuck_thread(hal::ValveDrive* valve, const char* what) {
+  if (valve != nullptr) valve->go_null();
+  std::fputs(what, stderr);
+  std::_Exit(1);
 }
 
 }  // namespace
@@ -44,12 +56,10 @@ Outcome run_realtime(Run& run, Detector& detector, const ThreadOptions& loop_thr
                      std::atomic<bool>& stop, hal::ValveDrive* valve,
                      const std::function<bool()>& wait_stop_asked) {
   std::atomic<bool> loop_ended{false};
-  std::atomic<bool> detector_failed{false};
   Outcome outcome;
   Thread detecting;
   Thread looping;
-  int error = detecting.start("detector", {},
-                              [&] { detect(detector, loop_ended, detector_failed, outcome); });
+  int error = detecting.start("detector", {}, [&] { detect(detector, loop_ended, stop, outcome); });
   if (error == 0) {
     error = looping.start("loop", loop_thread, [&] {
       prepare_loop_thread();
@@ -64,16 +74,15 @@ Outcome run_realtime(Run& run, Detector& detector, const ThreadOptions& loop_thr
     return std::string("cannot start a thread: ") + std::strerror(error);
   }
   while (!loop_ended.load(std::memory_order_acquire)) {
-    if (wait_stop_asked() || detector_failed.load(std::memory_order_acquire)) {
-      stop.store(true, std::memory_order_relaxed);
-      break;
-    }
+    if (wait_stop_asked()) stop.store(true, std::memory_order_relaxed);
+    if (stop.load(std::memory_order_relaxed)) break;
   }
   if (!looping.join_for(kStuck)) {
-    if (valve != nullptr) valve->go_null();
-    std::_Exit(static_cast<int>(1));  // no destructor may wait for the stuck thread
+    leave_stuck_thread(valve, "spoolwatchd: a device does not return: null commanded\n");
   }
-  detecting.join();
+  if (!detecting.join_for(kDetectorStuck)) {
+    leave_stuck_thread(valve, "spoolwatchd: LCM does not return: the last messages are lost\n");
+  }
   return outcome;
 }
 

@@ -2,9 +2,17 @@
 
 #include <sched.h>
 
+#include <csignal>
 #include <ctime>
 
 namespace monitor::rt {
+
+void SignalStack::use() noexcept {
+  stack_t stack{};
+  stack.ss_sp = bytes_.data();
+  stack.ss_size = bytes_.size();
+  sigaltstack(&stack, nullptr);
+}
 
 Thread::~Thread() { join(); }
 
@@ -29,7 +37,9 @@ int Thread::start(const char* name, const ThreadOptions& options, std::function<
   const int error = pthread_create(
       &handle_, &attributes,
       [](void* self) -> void* {
-        static_cast<Thread*>(self)->body_();
+        auto* thread = static_cast<Thread*>(self);
+        thread->signal_stack_.use();
+        thread->body_();
         return nullptr;
       },
       this);

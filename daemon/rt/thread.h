@@ -3,7 +3,9 @@
 
 #include <pthread.h>
 
+#include <array>
 #include <chrono>
+#include <cstddef>
 #include <functional>
 
 namespace monitor::rt {
@@ -14,6 +16,16 @@ struct ThreadOptions {
 };
 
 inline constexpr std::size_t kThreadStack_bytes = 256 * 1024;
+
+/// Where a thread's signal handlers run, so that they do when its own stack has overflowed.
+class SignalStack {
+ public:
+  /// For the calling thread, which must end before the object does.
+  void use() noexcept;
+
+ private:
+  std::array<std::byte, 16 * 1024> bytes_;
+};
 
 class Thread {
  public:
@@ -30,6 +42,7 @@ class Thread {
 
  private:
   std::function<void()> body_;
+  SignalStack signal_stack_;
   pthread_t handle_{};
   bool running_ = false;
 };

@@ -99,6 +99,14 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"unknown_motion", "kind = \"sine\"", "kind = \"square\"", "[reference] kind", "prbs"},
         Case{"motion_file_not_there", "kind = \"sine\"", "kind = \"file\"\nfile = \"none.csv\"",
              "[reference] file", "a CSV file"},
+        Case{"motion_without_frequencies", "kind = \"sine\"",
+             "kind = \"multisine\"\nfrequencies_Hz = []", "[reference]: frequencies_Hz: is empty",
+             "one at least"},
+        Case{"motion_of_equal_frequencies", "kind = \"sine\"",
+             "kind = \"multisine\"\nfrequencies_Hz = [1.0, 2.0, 1.0]",
+             "[reference]: frequencies_Hz: names", "different"},
+        Case{"null_beyond_the_converter", "[sim]", "null_V = -10.5\n[sim]", "[valve] null_V",
+             "dac_range_V"},
         Case{"unknown_structure", "window_s", "structure = \"arx\"\nwindow_s",
              "[[estimator]] period: structure", "arxNMK"},
         Case{"unknown_quantity", "period.b1", "perio.b1", "[[band]] pressure: quantity",
@@ -129,6 +137,12 @@ TEST(Configuration, BadUsageIsExitCode2) {
   EXPECT_EQ(run({"--config"}).exit_code, 2);
   EXPECT_EQ(run({"--config", "a", "--clock", "sundial"}).exit_code, 2);
   EXPECT_EQ(run({"--config", "a", "--duration", "-3"}).exit_code, 2);
+  for (const char* duration : {"0", "nan", "inf", "1e300", "1e-300"}) {
+    const Result result = run({"--config", shipped("demo.toml"), "--clock", "virtual", "--lcm-url",
+                               "", "--duration", duration});
+    EXPECT_EQ(result.exit_code, 2) << duration;
+    EXPECT_THAT(result.err, HasSubstr(std::string("--duration: is ") + duration + "; allowed"));
+  }
   EXPECT_EQ(run({"--config", "a", "--no-such-flag"}).exit_code, 2);
   EXPECT_EQ(run({"--config", shipped("demo.toml"), "--set", "nonsense"}).exit_code, 2);
   EXPECT_EQ(run({"--help"}).exit_code, 0);
@@ -161,6 +175,26 @@ TEST(Configuration, CheckPrintsATomlThatGivesTheSameAgainAndTheWayToNull) {
     const auto end = first.out.find("\n# ");
     EXPECT_THAT(again.out, HasSubstr(first.out.substr(controller, end - controller)));
   }
+}
+
+TEST(Configuration, CheckRefusesWhatAStartWouldRefuse) {
+  const Result url = run({"--config", shipped("demo.toml"), "--lcm-url", "nonsense", "--check"});
+  EXPECT_EQ(url.exit_code, 78);
+  EXPECT_THAT(url.err, HasSubstr("LCM URL \"nonsense\""));
+  const Result folder = run({"--config", shipped("demo.toml"), "--lcm-url", "", "--set",
+                             "recorder.folder=/dev/null/log", "--check"});
+  EXPECT_EQ(folder.exit_code, 78);
+  EXPECT_THAT(folder.err, HasSubstr("/dev/null is no folder"));
+}
+
+TEST(Configuration, ALogFolderStartsFromTheFileLikeEveryOtherPath) {
+  const Folder folder;
+  const std::string file =
+      write_config(folder, "[reference]", "[recorder]\nfolder = \"logs\"\n[reference]");
+  const Result result =
+      run({"--config", file, "--clock", "virtual", "--lcm-url", "", "--duration", "0.1"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "logs"));
 }
 
 TEST(Configuration, CheckOfAReplayNeedsItsRecordAndWritesNothing) {

@@ -8,6 +8,8 @@
 #include <csignal>
 #include <string>
 
+#include "daemon/rt/thread.h"
+
 namespace monitor {
 namespace {
 
@@ -48,7 +50,8 @@ std::string writes_of_child(End end, int& status) {
 }
 
 TEST(NullGuard, CommandsNullWhenAFatalSignalComes) {
-  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) {
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGQUIT, SIGXCPU, SIGSYS,
+                           SIGTRAP, SIGUSR1, SIGUSR2, SIGALRM, SIGPROF, SIGVTALRM, SIGIO}) {
     int status = 0;
     EXPECT_EQ(writes_of_child([signal] { raise(signal); }, status), "un");
     EXPECT_TRUE(WIFSIGNALED(status));
@@ -56,10 +59,49 @@ TEST(NullGuard, CommandsNullWhenAFatalSignalComes) {
   }
 }
 
+/// Uses up any stack.
+int overflow(int depth) {  // NOLINT(misc-no-recursion)
+  volatile char frame[4096];
+  frame[0] = static_cast<char>(depth);
+  return depth < 0 ? 0 : overflow(depth + 1) + frame[0];
+}
+
+TEST(NullGuard, CommandsNullWhenTheStackOfAnyThreadOverflows) {
+  int status = 0;
+  EXPECT_EQ(writes_of_child([] { overflow(0); }, status), "un");
+  EXPECT_TRUE(WIFSIGNALED(status));
+  EXPECT_EQ(writes_of_child(
+                [] {
+                  rt::Thread thread;
+                  thread.start("deep", {}, [] { overflow(0); });
+                },
+                status),
+            "un");
+  EXPECT_TRUE(WIFSIGNALED(status));
+}
+
 TEST(NullGuard, CommandsNullWhenAnExceptionEndsTheProcess) {
   int status = 0;
   EXPECT_EQ(writes_of_child([] { std::terminate(); }, status), "un");
   EXPECT_EQ(WTERMSIG(status), SIGABRT);
+}
+
+TEST(NullGuard, FollowsEveryLaterCommandByNull) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  PipeValve inner(ends[1]);
+  {
+    NullGuard guard(&inner);
+    EXPECT_EQ(guard.valve()->write(1.0, {}).u_V, 1.0);
+    guard.close();
+    EXPECT_EQ(guard.valve()->write(1.0, {}).u_V, 0.0) << "what it says it applied";
+  }
+  close(ends[1]);
+  char text[8] = {};
+  EXPECT_EQ(read(ends[0], text, sizeof text), 5);
+  EXPECT_STREQ(text, "ununn");
+  close(ends[0]);
+  EXPECT_EQ(NullGuard(nullptr).valve(), nullptr);
 }
 
 TEST(NullGuard, CommandsNullWhenTheScopeIsLeftAndNotAfterwards) {

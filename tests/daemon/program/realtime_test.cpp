@@ -82,6 +82,17 @@ TEST(RealtimeDaemon, ACrashStaysVisibleAsOne) {
   EXPECT_EQ(daemon.wait().exit_code, -SIGABRT);
 }
 
+TEST(RealtimeDaemon, OutlivesABrokenPipe) {
+  const Folder folder;
+  const auto log_folder = folder.path() / "log";
+  Daemon daemon(realtime_run(shipped("thesis_case1.toml"), log_folder, {}));
+  wait_for_data(log_folder);
+  kill(daemon.pid(), SIGPIPE);
+  kill(daemon.pid(), SIGXFSZ);
+  kill(daemon.pid(), SIGTERM);
+  EXPECT_EQ(daemon.wait().exit_code, 0);
+}
+
 TEST(RealtimeDaemon, ReplaysAtTheRecordedPace) {
   const Folder folder;
   const std::string record = (folder.path() / "record.csv").string();

@@ -54,6 +54,11 @@ Daemon::Daemon(const std::vector<std::string>& arguments, Limits limits) {
       setrlimit(RLIMIT_RTPRIO, &none);
       prctl(PR_CAPBSET_DROP, CAP_SYS_NICE, 0, 0, 0);
     }
+    if (limits.without_stderr) close(STDERR_FILENO);
+    if (limits.file_bytes > 0) {
+      const rlimit small{limits.file_bytes, limits.file_bytes};
+      setrlimit(RLIMIT_FSIZE, &small);
+    }
     execv(program.c_str(), argv.data());
     _exit(127);
   }

@@ -3,6 +3,7 @@
 
 #include <sys/types.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -30,6 +31,8 @@ class Folder {
 
 struct Limits {
   bool without_realtime = false;  ///< no SCHED_FIFO for the child
+  bool without_stderr = false;    ///< closed, as some callers leave it
+  std::uint64_t file_bytes = 0;   ///< no file may grow larger; 0: any size
 };
 
 /// spoolwatchd with these arguments, standard streams into files of a folder.

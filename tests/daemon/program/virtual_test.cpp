@@ -70,6 +70,25 @@ TEST(VirtualDaemon, CaseIIAlarmsComeAndGoAtTheSourcesTimes) {
   EXPECT_EQ(log.timeline("damping", kTs_s), "18.0 low, 32.0 off, 48.0 high");
 }
 
+TEST(VirtualDaemon, SaysThatTheLogLacksMessagesAndFails) {
+  const Folder folder;
+  const Result result =
+      run(virtual_run(shipped("demo.toml"), folder.path() / "log", {"--duration", "10"}),
+          {.file_bytes = 50'000});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, testing::ContainsRegex(
+                              "recorder: [0-9]+ messages are not in the log \\(File too large\\)"));
+}
+
+TEST(VirtualDaemon, WritesNoLineOfTextIntoItsLogWhereStderrIsClosed) {
+  const Folder folder;
+  EXPECT_EQ(run(virtual_run(shipped("demo.toml"), folder.path() / "log", {"--duration", "1"}),
+                {.without_stderr = true})
+                .exit_code,
+            0);
+  EXPECT_EQ(bytes(folder.path() / "log").find("privileges:"), std::string::npos);
+}
+
 TEST(VirtualDaemon, FollowsTheReferenceInRunAndEndsAtNull) {
   const Folder folder;
   ASSERT_EQ(run(virtual_run(shipped("thesis_case1.toml"), folder.path() / "log",
