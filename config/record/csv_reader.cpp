@@ -40,8 +40,19 @@ std::string quoted(std::string_view text) {
   return "'" + shown + (text.size() > kLongest ? "...'" : "'");
 }
 
-/// Digits after the decimal point.
+std::string_view unquoted(std::string_view text) {
+  const bool has_quotes = text.size() >= 2 && text.front() == '"' && text.back() == '"';
+  return has_quotes ? text.substr(1, text.size() - 2) : text;
+}
+
+/// Digits after the decimal point; 0 with an exponent of one digit, such as a cut leaves.
 std::size_t decimals(std::string_view number) {
+  const std::size_t exponent = number.find_first_of("eE");
+  if (exponent != std::string_view::npos) {
+    const std::string_view digits = number.substr(number.find_first_not_of("eE+-", exponent));
+    if (digits.size() < 2) return 0;
+    number = number.substr(0, exponent);
+  }
   const std::size_t point = number.find('.');
   return point == std::string_view::npos ? 0 : number.size() - point - 1;
 }
@@ -70,6 +81,9 @@ class CsvReader {
     TimeGrid grid = find_grid(record_.t_s, [this](std::size_t i) { return place(i + 2); });
     record_.sample_time_s = grid.sample_time_s;
     record_.gaps = std::move(grid.gaps);
+    if (last_without_newline_) {
+      record_.notes.emplace_back("the last line has no line end: its last number may be cut off");
+    }
     return std::move(record_);
   }
 
@@ -104,13 +118,17 @@ class CsvReader {
     std::vector<std::string> names;
     std::string_view field;
     while (take(line, ',', field)) {
-      field = trimmed(field);
-      if (field.size() >= 2 && field.front() == '"' && field.back() == '"') {
-        field = field.substr(1, field.size() - 2);
-      }
+      field = unquoted(trimmed(field));
       if (field.empty()) throw bad_data(place(1), "has a column without a name");
       names.emplace_back(field);
       columns.push_back(parse_column(field));
+    }
+    const std::size_t other = names.front().find_first_of(";\t");
+    if (names.size() == 1 && other != std::string::npos) {
+      throw bad_data(place(1),
+                     names.front()[other] == ';' ? "separates columns by semicolons"
+                                                 : "separates columns by tabs",
+                     "commas, with points in decimal numbers");
     }
     record_.further.reserve(columns.size());
     for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -176,10 +194,11 @@ class CsvReader {
     std::string_view field;
     const std::string_view whole = line;
     while (take(line, ',', field)) {
-      if (count < targets_.size()) read_field(trimmed(field), targets_[count]);
+      field = unquoted(trimmed(field));
+      if (count < targets_.size()) read_field(field, targets_[count]);
       ++count;
     }
-    const std::size_t digits = decimals(trimmed(field));
+    const std::size_t digits = decimals(field);
     if (count < targets_.size() || (last_without_newline_ && digits < fewest_decimals_)) {
       throw bad_data(place(line_),
                      (last_without_newline_ ? "is cut off: " : "has too few fields: ") +
@@ -207,7 +226,7 @@ class CsvReader {
       }
       const bool missing = std::isnan(value) && target.may_be_missing;
       if (result.ec != std::errc{} || (!std::isfinite(value) && !missing)) {
-        throw bad_data(place(line_), "column " + target.name + " is " + std::string(text),
+        throw bad_data(place(line_), "column " + target.name + " is " + quoted(text),
                        "finite numbers");
       }
     }

@@ -1,8 +1,12 @@
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 
 #include "config/record/record.h"
 #include "config/schema/error.h"
@@ -99,10 +103,10 @@ TEST(Csv, RefusesWhatIsNoNumberOrNotFinite) {
   expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,abc,0\n", ":3", "u_V: 'abc' is no number");
   expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,1.2.3,0\n", ":3", "is no number");
   expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,,0\n", ":3", "is no number");
-  expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,1,nan\n", ":3", "y_m is nan");
-  expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,inf,1\n", ":3", "u_V is inf");
-  expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,1e999,1\n", ":3", "u_V is 1e999");
-  expect_bad("t_s,u_V,y_m,p_bar\n0,1,0,1\n0.005,1,0,inf\n", ":3", "p_bar is inf");
+  expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,1,nan\n", ":3", "y_m is 'nan'");
+  expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,inf,1\n", ":3", "u_V is 'inf'");
+  expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,1e999,1\n", ":3", "u_V is '1e999'");
+  expect_bad("t_s,u_V,y_m,p_bar\n0,1,0,1\n0.005,1,0,inf\n", ":3", "p_bar is 'inf'");
 }
 
 TEST(Csv, RefusesRowsOfAnotherLength) {
@@ -142,6 +146,54 @@ TEST(Csv, RefusesHeadersThatCannotBeMeant) {
                          "ELF\0\0\0\0",
                          8),
              "", "is neither");
+}
+
+TEST(Csv, RefusesAnExponentCutOff) {
+  const std::string rows = "0,1,1.5e-05\n0.005,2,2.5e-05\n0.010,3,3.5e-0";
+  expect_bad("t_s,u_V,y_m\n" + rows, ":4", "is cut off");
+  EXPECT_DOUBLE_EQ(read("t_s,u_V,y_m\n" + rows + "5\n").y_m[2], 3.5e-5);
+}
+
+TEST(Csv, NotesALastLineWithoutItsEnd) {
+  EXPECT_TRUE(read("t_s,u_V,y_m\n" + kRows).notes.empty());
+  const Record open = read("t_s,u_V,y_m\n" + kRows.substr(0, kRows.size() - 1));
+  EXPECT_EQ(open.size(), 3U);
+  ASSERT_EQ(open.notes.size(), 1U);
+}
+
+TEST(Csv, AcceptsQuotedNumbers) {
+  const Record record = read("\"t_s\",\"u_V\",\"y_m\"\n\"0\",\"1\",\"2.5\"\n" + kRows.substr(8));
+  EXPECT_DOUBLE_EQ(record.y_m[0], 2.5);
+}
+
+TEST(Csv, NamesAnotherSeparator) {
+  expect_bad("t_s;u_V;y_m\n0;1;2\n", ":1", "semicolons");
+  expect_bad("t_s\tu_V\ty_m\n0\t1\t2\n", ":1", "tabs");
+}
+
+TEST(Csv, KeepsMessagesShort) {
+  const TemporaryFile file("t_s,u_V,y_m\n" + std::string(100'000, '1') + "\n");
+  try {
+    (void)read_record(file.path());
+    FAIL();
+  } catch (const schema::Error& error) {
+    EXPECT_LT(std::string(error.what()).size(), 300U);
+  }
+}
+
+TEST(Csv, WritesIntoAPipeInsteadOfReplacingIt) {
+  const std::filesystem::path pipe =
+      testing::TempDir() + "spoolwatch_pipe_" + std::to_string(getpid());
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  Record record = read("t_s,u_V,y_m\n" + kRows);
+  write_csv(record, pipe);
+  char text[12] = {};
+  EXPECT_EQ(::read(reader, text, 11), 11);
+  EXPECT_STREQ(text, "t_s,u_V,y_m");
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+  close(reader);
+  std::filesystem::remove(pipe);
 }
 
 TEST(Csv, ReadsBackExactlyWhatItWrote) {
