@@ -42,6 +42,12 @@ Schedule::Schedule(std::vector<Change> changes, Plant& plant) {
     if (std::isnan(change.value) == std::isnan(change.factor)) {
       throw config::schema::bad_config(where, "needs one of value and factor", "value or factor");
     }
+    if (!std::isnan(change.factor) && (*target == 0.0 || !std::isfinite(*target))) {
+      throw config::schema::bad_config(
+          where,
+          "has a factor, and the parameter is " + std::string(*target == 0.0 ? "0" : "infinite"),
+          "value");
+    }
     const double to = std::isnan(change.value) ? change.factor * *target : change.value;
     const ParameterInfo& info = *plant.parameter_info(change.parameter);
     if (!(to >= info.min && to <= info.max)) {

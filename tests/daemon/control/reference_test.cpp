@@ -174,6 +174,12 @@ TEST(Reference, FileIsJoinedByStraightLinesAndHeldOutside) {
   std::filesystem::remove(file);
 }
 
+TEST(Reference, RefusesAMultisineWithoutSines) {
+  ReferenceConfig no_sines = of_kind("multisine");
+  no_sines.frequencies_Hz.clear();
+  EXPECT_THROW((void)make_reference(no_sines), config::schema::Error);
+}
+
 TEST(Reference, RefusesKeysOfAnotherKind) {
   ReferenceConfig config;
   const auto text = "schema_version = 1\nkind = \"sine\"\nsweep_s = 3.0\n";
