@@ -15,6 +15,7 @@
 #include "estimator/fdi/learned_bands.h"
 #include "estimator/fdi/pipeline.h"
 #include "workbench/command.h"
+#include "workbench/number_check.h"
 #include "workbench/record_samples.h"
 
 namespace workbench {
@@ -99,6 +100,15 @@ std::vector<Series> make_series(const std::vector<std::string>& quantities,
     if (number == pipeline.estimators.size()) {
       throw bad_config(file, "'" + quantity + "' names no estimator", "ESTIMATOR.b1");
     }
+    const fdi::EstimatorConfig& estimator = pipeline.estimators[number];
+    const std::vector<std::string> names =
+        fdi::estimate_names(estimator::parse_structure(estimator.structure, estimator.constant));
+    if (std::find(names.begin(), names.end(), name.name) == names.end()) {
+      std::string known;
+      for (const std::string& each : names) known += (known.empty() ? "" : ", ") + each;
+      throw bad_config(file, estimator.id + " estimates no '" + std::string(name.name) + "'",
+                       known);
+    }
     series.push_back({quantity, number, {}});
   }
   for (Series& s : series) s.name = fdi::split_quantity(s.quantity).name;
@@ -181,13 +191,13 @@ void add_calibrate(CLI::App& command, int& /*exit_code*/) {
       .add_option("--false-alarm-time-s", options->false_alarm_time_s,
                   "mean time between false alarms of each band")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command.add_option("--quantity", options->quantities,
                      "ESTIMATOR.b1, ...; default: the bands without limits, else all bands");
   command
       .add_option("--period-s", options->period_s,
                   "period of the motion, 0 for none; default: found in the record")
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_within(0.0, 1e6));
   command.callback([options] { run(*options); });
 }
 

@@ -10,6 +10,7 @@
 #include "config/schema/error.h"
 #include "workbench/command.h"
 #include "workbench/estimate_fit.h"
+#include "workbench/number_check.h"
 
 namespace workbench {
 namespace {
@@ -23,7 +24,30 @@ struct Options {
   std::string fit = "all";
   std::string json;
   EstimateOptions estimate;
+  CLI::Option* forgetting = nullptr;
+  CLI::Option* prior_variance = nullptr;
 };
+
+/// An option that the method or the filter does not use would be a wish silently not granted.
+void refuse_unused(const Options& options) {
+  const EstimateOptions& e = options.estimate;
+  const auto refuse = [](bool given, const std::string& option, const std::string& beside) {
+    if (!given) return;
+    throw config::schema::Error(config::schema::ExitCode::usage,
+                                option + ": has no use with " + beside);
+  };
+  const std::string method = "--method " + e.method;
+  const std::string filter = "--filter " + e.filter;
+  const bool recursive = e.method == "recursive";
+  refuse(!std::isnan(e.stride_s) && e.method == "batch", "--stride", method);
+  refuse(!std::isnan(e.window_s) && recursive, "--window", method);
+  refuse(options.forgetting->count() > 0 && !recursive, "--forgetting", method);
+  refuse(options.prior_variance->count() > 0 && !recursive, "--prior-variance", method);
+  const bool high = e.filter == "high" || e.filter == "band";
+  const bool low = e.filter == "low" || e.filter == "band";
+  refuse(!std::isnan(e.filter_low_Hz) && !high, "--filter-low-Hz", filter);
+  refuse(!std::isnan(e.filter_high_Hz) && !low, "--filter-high-Hz", filter);
+}
 
 ordered_json coefficients(const std::array<double, estimator::kMaxCoefficients>& values, int begin,
                           int count) {
@@ -112,6 +136,10 @@ void run(Options options) {
   if (options.estimate.method == "sliding" && std::isnan(options.estimate.window_s)) {
     throw Error(ExitCode::usage, "--method sliding: needs --window S");
   }
+  if (options.estimate.stride_s > options.estimate.window_s) {
+    throw Error(ExitCode::usage, "--stride: is longer than --window");
+  }
+  refuse_unused(options);
   const config::record::Record record = config::record::read_record(options.record);
   for (const std::string& note : record.notes) {
     std::cerr << "spoolwatch: " << record.name << ": " << note << '\n';
@@ -144,30 +172,45 @@ void add_estimate(CLI::App& command, int& /*exit_code*/) {
   command
       .add_option("--window", e.window_s,
                   "s; batch: one estimate for each; without it the whole record")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command.add_option("--stride", e.stride_s, "s between estimates, sliding and recursive")
-      ->check(CLI::PositiveNumber);
-  command.add_option("--forgetting", e.forgetting, "of recursive, per sample")
-      ->check(CLI::Range(0.5, 1.0))
-      ->capture_default_str();
-  command.add_option("--prior-variance", e.prior_variance, "of recursive: P(0) = C I")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+      ->check(positive_number());
+  options->forgetting =
+      command.add_option("--forgetting", e.forgetting, "of recursive, per sample")
+          ->check(number_within(0.5, 1.0))
+          ->capture_default_str();
+  options->prior_variance =
+      command.add_option("--prior-variance", e.prior_variance, "of recursive: P(0) = C I")
+          ->check(positive_number())
+          ->capture_default_str();
   command.add_option("--detrend", e.detrend, "u and y of the whole record")
       ->check(CLI::IsMember({"none", "mean", "linear"}))
       ->capture_default_str();
-  command.add_option("--offset-m", e.offset_m, "subtracted from y")->capture_default_str();
+  command.add_option("--offset-m", e.offset_m, "subtracted from y")
+      ->check(finite_number())
+      ->capture_default_str();
+  command.add_option("--filter", e.filter, "of u and y alike: Butterworth, order 4")
+      ->check(CLI::IsMember({"none", "low", "high", "band"}))
+      ->capture_default_str();
+  command.add_option("--filter-low-Hz", e.filter_low_Hz, "lower corner, of high and band")
+      ->check(positive_number());
+  command.add_option("--filter-high-Hz", e.filter_high_Hz, "upper corner, of low and band")
+      ->check(positive_number());
   command.add_option("--decimate", e.decimation, "keep one of so many samples, low-passed before")
-      ->check(CLI::Range(1, 1000))
+      ->check(number_within(1, 1000))
       ->capture_default_str();
-  command
-      .add_option("--fit", options->fit, "part that is fitted; errors are scored on the other part")
-      ->check(CLI::IsMember({"all", "first-half", "second-half"}))
-      ->capture_default_str();
+  CLI::Option* const fit =
+      command
+          .add_option("--fit", options->fit,
+                      "part that is fitted; errors are scored on the other part")
+          ->check(CLI::IsMember({"all", "first-half", "second-half"}))
+          ->capture_default_str();
   command.add_option("--fit-from", e.fit_from, "the same as a share of the record")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(number_within(0.0, 1.0))
+      ->excludes(fit);
   command.add_option("--fit-to", e.fit_to, "the same as a share of the record")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(number_within(0.0, 1.0))
+      ->excludes(fit);
   command.add_option("--json", options->json, "file for JSON, - for standard output");
   command.callback([options] { run(*options); });
 }

@@ -45,6 +45,26 @@ std::vector<std::size_t> gaps_in(const Data& data, Range range) {
   return out;
 }
 
+void filter(Data& data, const EstimateOptions& options) {
+  if (options.filter == "none") return;
+  estimator::FilterDesign design;
+  design.band = options.filter == "low"    ? estimator::Band::low_pass
+                : options.filter == "high" ? estimator::Band::high_pass
+                                           : estimator::Band::band_pass;
+  design.low_Hz = options.filter_low_Hz;
+  design.high_Hz = options.filter_high_Hz;
+  design.sample_Hz = 1.0 / data.sample_time_s;
+  const estimator::Filter filter(design);
+  for (std::vector<double>* values : {&data.u_V, &data.y_m}) {
+    std::size_t begin = 0;
+    for (std::size_t i = 0; i <= data.gaps.size(); ++i) {
+      const std::size_t end = i < data.gaps.size() ? data.gaps[i] : values->size();
+      estimator::apply_filter(filter, std::span(*values).subspan(begin, end - begin));
+      begin = end;
+    }
+  }
+}
+
 void decimate(Data& data, int factor, const std::string& name) {
   if (factor == 1) return;
   if (!data.gaps.empty()) {
@@ -67,6 +87,7 @@ Data prepare(const Record& record, const EstimateOptions& options) {
     if (options.detrend == "mean") estimator::remove_mean(*values);
     if (options.detrend == "linear") estimator::remove_line(*values);
   }
+  filter(data, options);
   decimate(data, options.decimation, record.name);
   return data;
 }
@@ -94,6 +115,7 @@ void score(Judged& judged, const Data& data, Range range, const estimator::Struc
     one_step_m2 += one.cost_m2;
     one_step_samples += one.samples;
   }
+  if (free_samples == 0) judged.cost_m2 = std::numeric_limits<double>::quiet_NaN();
   judged.free_run_rms_m = std::sqrt(judged.cost_m2 / free_samples);
   judged.one_step_rms_m = std::sqrt(one_step_m2 / one_step_samples);
 }

@@ -20,6 +20,9 @@ struct EstimateOptions {
   double prior_variance = 1e8;
   std::string detrend = "none";  ///< none, mean, linear: of u and y of the whole record
   double offset_m = 0.0;         ///< subtracted from y
+  std::string filter = "none";   ///< none, low, high, band: of u and y, settled anew at each gap
+  double filter_low_Hz = std::numeric_limits<double>::quiet_NaN();   ///< of high and band
+  double filter_high_Hz = std::numeric_limits<double>::quiet_NaN();  ///< of low and band
   int decimation = 1;
   double fit_from = 0.0;  ///< shares of the record that is fitted
   double fit_to = 1.0;
@@ -30,7 +33,7 @@ struct Judged {
   estimator::Estimate estimate;
   double from_s = 0.0;   ///< first sample fitted
   double to_s = 0.0;     ///< last sample fitted
-  double cost_m2 = 0.0;  ///< free run, first n samples measured
+  double cost_m2 = 0.0;  ///< free run, first n samples measured; NaN when none is left to judge
   double free_run_rms_m = 0.0;
   double one_step_rms_m = 0.0;
 };

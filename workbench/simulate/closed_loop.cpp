@@ -1,5 +1,10 @@
 #include "workbench/simulate/closed_loop.h"
 
+#include <cmath>
+#include <string>
+
+#include "config/schema/error.h"
+
 namespace workbench::simulate {
 namespace {
 
@@ -7,6 +12,18 @@ monitor::control::ValveLimits limits(const Instruments& instruments) {
   monitor::control::ValveLimits out;
   out.limit_V = instruments.dac_range_V;
   return out;
+}
+
+/// A plant moves by whole integration steps: any other step would make the periods longer or
+/// shorter than the record says.
+void check_step(double step_s) {
+  constexpr double kWholeSteps = 1e-6;
+  const double steps = kSampleTime_s / step_s;
+  if (std::abs(steps - std::round(steps)) > kWholeSteps) {
+    throw config::schema::bad_config(
+        "step_s", "makes a period of " + std::to_string(steps) + " integration steps",
+        "a whole number of steps in " + std::to_string(kSampleTime_s) + " s");
+  }
 }
 
 }  // namespace
@@ -17,7 +34,9 @@ ClosedLoop::ClosedLoop(const Scenario& scenario, std::uint64_t seed)
       reference_(monitor::control::make_reference(scenario.reference, scenario.folder)),
       controller_({scenario.model.loop.kp_V_per_m}, limits(scenario.instruments), kSampleTime_s),
       encoder_(scenario.instruments.encoder_resolution_m, scenario.instruments.noise_m, seed),
-      dac_{static_cast<int>(scenario.instruments.dac_bits), scenario.instruments.dac_range_V} {}
+      dac_{static_cast<int>(scenario.instruments.dac_bits), scenario.instruments.dac_range_V} {
+  check_step(plant_->step_s());
+}
 
 LoopRow ClosedLoop::step() noexcept {
   LoopRow row{};

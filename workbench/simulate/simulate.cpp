@@ -11,6 +11,7 @@
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "workbench/command.h"
+#include "workbench/number_check.h"
 #include "workbench/simulate/closed_loop.h"
 #include "workbench/simulate/fault_text.h"
 
@@ -84,20 +85,24 @@ config::record::Record simulate_record(const Arguments& arguments,
   for (auto* column : {&record.t_s, &record.u_V, &record.y_m}) {
     column->reserve(static_cast<std::size_t>(samples));
   }
-  std::vector<double> reference_m;
-  reference_m.reserve(static_cast<std::size_t>(samples));
+  for (const char* name : {"reference_m", "u_requested_V", "saturated"}) {
+    record.further.emplace_back(name, std::vector<double>{});
+    record.further.back().second.reserve(static_cast<std::size_t>(samples));
+  }
   for (std::int64_t k = 0; k < samples; ++k) {
     const simulate::LoopRow row = loop.step();
     record.t_s.push_back(row.t_s);
     record.u_V.push_back(row.u_applied_V);
     record.y_m.push_back(row.y_m);
-    reference_m.push_back(row.reference_m);
+    std::size_t column = 0;
+    for (const double value : {row.reference_m, row.u_requested_V, row.saturated ? 1.0 : 0.0}) {
+      record.further[column++].second.push_back(value);
+    }
     if (show && k % kProgressEvery == kProgressEvery - 1) {
       std::cerr << "\rsimulate: " << row.t_s << " of " << arguments.duration_s << " s"
                 << (k + kProgressEvery >= samples ? "\n" : "") << std::flush;
     }
   }
-  record.further.emplace_back("reference_m", std::move(reference_m));
   return record;
 }
 
@@ -106,11 +111,15 @@ config::record::Record simulate_record(const Arguments& arguments,
 void add_simulate(CLI::App& command, int& /*exit_code*/) {
   auto arguments = std::make_shared<Arguments>();
   command.add_option("model", arguments->model, "model file (TOML)")->required();
-  command.add_option("-o,--output", arguments->output, "CSV: t_s,u_V,y_m,reference_m")->required();
+  command
+      .add_option("-o,--output", arguments->output,
+                  "CSV: t_s,u_V,y_m,reference_m,u_requested_V,saturated")
+      ->required();
   command.add_option("--duration", arguments->duration_s, "seconds to simulate")
-      ->check(CLI::Range(simulate::kSampleTime_s, 1e6))
+      ->check(number_within(simulate::kSampleTime_s, 1e6))
       ->capture_default_str();
   command.add_option("--seed", arguments->seed, "of the noise; same seed, same bytes")
+      ->check(number_within(0.0, 1e18))
       ->capture_default_str();
   command.add_option("--reference", arguments->reference,
                      "sine, multisine, steps, chirp, prbs, or a CSV file with t_s,reference_m");

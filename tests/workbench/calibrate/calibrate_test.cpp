@@ -130,13 +130,15 @@ TEST_F(Calibrate, RefusesAHealthyRecordThatIsTooShort) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "bands.toml"));
 }
 
-TEST_F(Calibrate, RefusesAQuantityOfNoEstimator) {
+TEST_F(Calibrate, RefusesAQuantityThatNoEstimatorGives) {
   record(15.0);
-  try {
-    calibrate({"--quantity", "period.b1"});
-    FAIL();
-  } catch (const config::schema::Error& error) {
-    EXPECT_EQ(error.exit_code(), 78);
+  for (const char* quantity : {"period.b1", "sliding.b2", "sliding.", "b1"}) {
+    try {
+      calibrate({"--quantity", quantity});
+      FAIL() << quantity;
+    } catch (const config::schema::Error& error) {
+      EXPECT_EQ(error.exit_code(), 78) << error.what();
+    }
   }
 }
 

@@ -148,6 +148,62 @@ TEST_F(Estimate, RefusesARecordShorterThanTheRegressor) {
   }
 }
 
+TEST_F(Estimate, RefusesOptionsThatTheMethodDoesNotUse) {
+  const std::vector<std::vector<std::string>> useless = {
+      {"--stride", "0.1"},
+      {"--forgetting", "0.9"},
+      {"--prior-variance", "10"},
+      {"--method", "recursive", "--window", "0.1"},
+      {"--method", "sliding", "--window", "0.1", "--stride", "0.2"},
+      {"--filter-low-Hz", "1"},
+      {"--filter", "low", "--filter-high-Hz", "20", "--filter-low-Hz", "1"}};
+  for (const auto& options : useless) {
+    try {
+      run(known(100), options);
+      ADD_FAILURE() << options.front() << " accepted";
+    } catch (const config::schema::Error& error) {
+      EXPECT_EQ(error.exit_code(), 2) << error.what();
+    }
+  }
+  EXPECT_THROW(run(known(100), {"--fit", "first-half", "--fit-from", "0.2"}), CLI::ParseError);
+}
+
+TEST_F(Estimate, RefusesNumbersThatAreNone) {
+  for (const char* option : {"--window", "--stride", "--prior-variance", "--offset-m", "--fit-from",
+                             "--fit-to", "--filter-low-Hz", "--forgetting"}) {
+    for (const char* number : {"nan", "inf"}) {
+      EXPECT_THROW(run(known(100), {"--method", "recursive", option, number}), CLI::ParseError)
+          << option << ' ' << number;
+    }
+  }
+}
+
+/// u and y pass through the same filter, so the equation between them stays; from rest, so that
+/// the filter's start leaves no trace.
+TEST_F(Estimate, FiltersUAndYAlike) {
+  Record record = known(400);
+  double y1 = 0.0, y2 = 0.0, u1 = 0.0;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double y = 1.5 * y1 - 0.6 * y2 + 2e-4 * u1;
+    record.y_m[i] = 0.305 + y;
+    y2 = y1;
+    y1 = y;
+    u1 = record.u_V[i];
+  }
+  const json band = run(record, {"--structure", "arx211", "--filter", "band", "--filter-low-Hz",
+                                 "1", "--filter-high-Hz", "40"});
+  EXPECT_NEAR(band["a"][0], -1.5, 1e-9);
+  EXPECT_NEAR(band["a"][1], 0.6, 1e-9);
+  EXPECT_NEAR(band["b"][0], 2e-4, 1e-12);
+  try {
+    run(record, {"--filter", "low", "--filter-high-Hz", "150"});
+    FAIL() << "a corner above half the sampling rate";
+  } catch (const config::schema::Error& error) {
+    EXPECT_EQ(error.exit_code(), 2);
+    EXPECT_NE(std::string(error.what()).find("below 100"), std::string::npos) << error.what();
+  }
+}
+
 TEST_F(Estimate, RefusesAWindowLongerThanTheRecord) {
   EXPECT_THROW(run(known(100), {"--window", "1.0"}), config::schema::Error);
 }

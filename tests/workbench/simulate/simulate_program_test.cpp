@@ -69,6 +69,39 @@ TEST(SimulateProgram, FaultsAndReferencesChangeTheRecord) {
   }
 }
 
+/// A fault that does nothing, a motion of no sines and a period of 5/3 steps are mistakes.
+TEST(SimulateProgram, RefusesWhatCannotBeMeant) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("a.csv");
+  expect_refused(run_program(simulate(file, "--fault 'friction.coulomb_N*2@5'")), 78, "factor");
+  expect_refused(
+      run_program(simulate(file, "--reference multisine --set 'reference.frequencies_Hz=[]'")), 78,
+      "frequencies_Hz");
+  expect_refused(run_program(simulate(file, "--set step_s=0.003")), 78, "step_s");
+  EXPECT_FALSE(std::filesystem::exists(file));
+}
+
+/// What a replay of the record needs to know that an estimate over saturated samples is not valid.
+TEST(SimulateProgram, RecordsTheVoltageAskedForAndTheSaturation) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("a.csv");
+  ASSERT_EQ(run_program(simulate(file, "--duration 2 --set instruments.dac_range_V=0.5")).exit_code,
+            0);
+  const auto record = config::record::read_record(file);
+  const auto* requested_V = record.column("u_requested_V");
+  const auto* saturated = record.column("saturated");
+  ASSERT_NE(requested_V, nullptr);
+  ASSERT_NE(saturated, nullptr);
+  int count = 0;
+  for (std::size_t k = 0; k < record.size(); ++k) {
+    const bool beyond = std::abs((*requested_V)[k]) > 0.5;
+    EXPECT_EQ((*saturated)[k], beyond ? 1.0 : 0.0) << k;
+    EXPECT_DOUBLE_EQ(std::clamp((*requested_V)[k], -0.5, 0.5), record.u_V[k]) << k;
+    count += beyond ? 1 : 0;
+  }
+  EXPECT_GT(count, 10);
+}
+
 TEST(SimulateProgram, TakesTheReferenceFromAFile) {
   const TemporaryFolder folder;
   std::ofstream(folder.file("r.csv")) << "t_s,reference_m\n0,0.305\n1,0.315\n";
@@ -100,7 +133,9 @@ TEST(SimulateProgram, RefusesBadArgumentsInOneLine) {
   expect_refused(run_program(simulate(file, "--set parameters.mass_kg=-1")), 78, "mass_kg");
   expect_refused(run_program(simulate(file, "--fault mass_kg")), 2, "PARAMETER=VALUE@SECONDS");
   expect_refused(run_program(simulate(file, "--set initial.y_m=0.7")), 78, "y_m");
-  EXPECT_EQ(run_program(simulate(file, "--duration -1")).exit_code, 2);
+  for (const char* bad : {"--duration -1", "--duration nan", "--duration inf", "--seed -1"}) {
+    EXPECT_EQ(run_program(simulate(file, bad)).exit_code, 2) << bad;
+  }
   EXPECT_EQ(run_program("simulate " + kModel).exit_code, 2);
   EXPECT_FALSE(std::filesystem::exists(file));
 }
