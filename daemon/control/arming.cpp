@@ -29,20 +29,4 @@ bool Arming::apply(Event event) noexcept {
   return false;
 }
 
-const char* name(State state) noexcept {
-  switch (state) {
-    case State::monitor:
-      return "MONITOR";
-    case State::disarmed:
-      return "DISARMED";
-    case State::armed:
-      return "ARMED";
-    case State::run:
-      return "RUN";
-    case State::latched:
-      return "LATCHED";
-  }
-  return "?";
-}
-
 }  // namespace monitor::control

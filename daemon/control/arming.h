@@ -29,6 +29,4 @@ class Arming {
   State state_;
 };
 
-[[nodiscard]] const char* name(State state) noexcept;
-
 }  // namespace monitor::control

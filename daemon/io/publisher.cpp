@@ -68,8 +68,7 @@ void Publisher::health(spoolwatch::health_t& message, Stamp stamp) {
 }
 
 PublisherStatus Publisher::status() const noexcept {
-  return {sent_.load(std::memory_order_relaxed), failures_.load(std::memory_order_relaxed),
-          failing_.load(std::memory_order_relaxed)};
+  return {sent_.load(std::memory_order_relaxed), failures_.load(std::memory_order_relaxed)};
 }
 
 template <class Message>
@@ -86,7 +85,6 @@ void Publisher::send(Channel& channel, Message& message, Stamp stamp) {
     const bool failed =
         lcm_->publish(channel.name, buffer_.data(), static_cast<unsigned>(size)) != 0;
     (failed ? failures_ : sent_).fetch_add(1, std::memory_order_relaxed);
-    failing_.store(failed, std::memory_order_relaxed);
   }
   if (recorder_ != nullptr) {
     recorder_->record(channel.name, std::span(buffer_).first(static_cast<std::size_t>(size)),

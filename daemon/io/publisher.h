@@ -48,7 +48,6 @@ struct Stamp {
 struct PublisherStatus {
   std::int64_t sent = 0;
   std::int64_t send_failures = 0;
-  bool failing = false;  // the newest message could not be sent
 };
 
 class Publisher {
@@ -90,7 +89,6 @@ class Publisher {
   std::vector<std::uint8_t> buffer_;
   std::atomic<std::int64_t> sent_{0};
   std::atomic<std::int64_t> failures_{0};
-  std::atomic<bool> failing_{false};
 };
 
 }  // namespace monitor::io

@@ -103,7 +103,8 @@ TEST(RealtimeRun, TicksOnItsOwnThreadAndWritesNullWhenToldToStop) {
   RunBench bench(clock);
   {
     // One millisecond of period: the test is over soon, and the threads meet often.
-    rt::Run run(bench.loop, Grid(clock.now_ns(), 1'000'000), clock, &bench.rig, kForever, bench.stop);
+    rt::Run run(bench.loop, Grid(clock.now_ns(), 1'000'000), clock, &bench.rig, kForever,
+                bench.stop);
     EXPECT_EQ(run_realtime(run, bench.detector, {}, bench.stop, &bench.rig,
                            [&] {
                              clock.sleep_until_ns(clock.now_ns() + 1'000'000);
