@@ -156,6 +156,9 @@ void run(const Options& options) {
       make_series(wanted_quantities(options, pipeline_config), pipeline_config, options.config);
   pipeline_config.bands.clear();
   const config::record::Record record = config::record::read_record(options.record);
+  for (const std::string& note : record.notes) {
+    std::cerr << "spoolwatch: " << record.name << ": " << note << '\n';
+  }
   fdi::Pipeline pipeline(pipeline_config, record.sample_time_s);
   Collector collector(series);
   for (const fdi::Sample& sample : to_samples(record)) pipeline.process(sample, collector);

@@ -1,19 +1,19 @@
 // spoolwatch export: one kind of message of an LCM log as CSV.
 #include "workbench/export.h"
 
-#include <unistd.h>
 #include <CLI/CLI.hpp>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <lcm/lcm-cpp.hpp>
 #include <memory>
 
+#include "config/record/event_reader.h"
 #include "config/record/record.h"
+#include "config/record/whole_file.h"
 #include "config/schema/error.h"
 #include "spoolwatch/alarm_t.hpp"
 #include "spoolwatch/estimate_t.hpp"
@@ -97,8 +97,8 @@ void append(std::string& csv, double t_s, const spoolwatch::alarm_t& alarm) {
 
 // The grid's period, from the log's first sample; NaN when it has none.
 double sample_time_s(const std::string& file) {
-  lcm::LogFile log(file, "r");
-  while (const lcm::LogEvent* event = log.readNextEvent()) {
+  config::record::EventReader log(file);
+  while (const lcm::LogEvent* event = log.next()) {
     spoolwatch::sample_t sample{};
     if (type_of(*event) == spoolwatch::sample_t::getHash() &&
         sample.decode(event->data, 0, event->datalen) > 0) {
@@ -112,10 +112,10 @@ double sample_time_s(const std::string& file) {
 template <class Message>
 std::string messages_as_csv(const std::string& file, const char* kind, std::string csv) {
   const double period_s = sample_time_s(file);
-  lcm::LogFile log(file, "r");
+  config::record::EventReader log(file);
   std::int64_t first_us = -1;
   bool ours = false;
-  while (const lcm::LogEvent* event = log.readNextEvent()) {
+  while (const lcm::LogEvent* event = log.next()) {
     const std::int64_t type = type_of(*event);
     ours = ours || type == spoolwatch::sample_t::getHash() ||
            type == spoolwatch::estimate_t::getHash() || type == spoolwatch::alarm_t::getHash() ||
@@ -135,6 +135,10 @@ std::string messages_as_csv(const std::string& file, const char* kind, std::stri
                                 : static_cast<double>(message.tick) * period_s,
            message);
   }
+  if (!log.at_end()) {
+    std::cerr << "spoolwatch: " << file << ": cut off after byte " << log.complete()
+              << ": the complete events are used\n";
+  }
   if (!ours) {
     throw bad_data(file, "has no message of this project", "a log of the daemon's channels");
   }
@@ -150,31 +154,16 @@ void require_lcm_log(const std::string& file) {
   if (head != kSyncWord) throw bad_data(file, "is no LCM event log");
 }
 
-// Complete or not at all: a temporary name, then a rename.
-void write_file(const std::string& text, const std::filesystem::path& file) {
-  std::filesystem::path temporary = file;
-  temporary += ".part" + std::to_string(::getpid());
-  errno = 0;
-  std::ofstream out(temporary, std::ios::binary);
-  out.write(text.data(), static_cast<std::streamsize>(text.size()));
-  out.close();
-  std::error_code failed;
-  if (out) std::filesystem::rename(temporary, file, failed);
-  if (out && !failed) return;
-  const std::string why = failed ? failed.message() : std::strerror(errno);
-  std::filesystem::remove(temporary, failed);
-  throw config::schema::Error(config::schema::ExitCode::failed,
-                              file.string() + ": cannot be written: " + why);
-}
-
 }  // namespace
 
 void export_log(const std::string& log, const std::string& csv, const std::string& kind) {
   require_lcm_log(log);
   if (kind == "estimate") {
-    write_file(messages_as_csv<spoolwatch::estimate_t>(log, "_ESTIMATE", kEstimateHeader), csv);
+    config::record::write_whole(
+        csv, messages_as_csv<spoolwatch::estimate_t>(log, "_ESTIMATE", kEstimateHeader));
   } else if (kind == "alarm") {
-    write_file(messages_as_csv<spoolwatch::alarm_t>(log, "_ALARM", kAlarmHeader), csv);
+    config::record::write_whole(csv,
+                                messages_as_csv<spoolwatch::alarm_t>(log, "_ALARM", kAlarmHeader));
   } else {
     const auto record = config::record::read_record(log);
     for (const auto& note : record.notes)

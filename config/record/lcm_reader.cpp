@@ -2,10 +2,10 @@
 
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <lcm/lcm-cpp.hpp>
 #include <map>
 
+#include "config/record/event_reader.h"
 #include "config/record/time_grid.h"
 #include "config/schema/error.h"
 #include "spoolwatch/sample_t.hpp"
@@ -27,10 +27,9 @@ bool is_sample(const lcm::LogEvent& event) {
 
 /// The channel to read: the one named, or the only one of the right type.
 std::string choose_channel(const std::string& file, std::string_view wanted) {
-  lcm::LogFile log(file, "r");
-  if (!log.good()) throw bad_data(file, "cannot be read");
+  EventReader log(file);
   std::map<std::string, bool> channels;  // whether its first event is a sample
-  while (const lcm::LogEvent* event = log.readNextEvent()) {
+  while (const lcm::LogEvent* event = log.next()) {
     if (event->channel == wanted) return std::string(wanted);
     channels.emplace(event->channel, is_sample(*event));
   }
@@ -85,15 +84,12 @@ bool is_lcm_log(std::string_view head) noexcept { return head.starts_with(kSyncW
 
 Record read_lcm_log(const std::string& file, std::string_view wanted) {
   const std::string channel = choose_channel(file, wanted);
-  lcm::LogFile log(file, "r");
-  if (!log.good()) throw bad_data(file, "cannot be read");
+  EventReader log(file);
   Builder builder(file);
   Record& record = builder.record;
   sample_t first{};
   std::vector<std::int64_t> events;  // number of the event behind each row
-  std::int64_t complete = 0;         // end of the last complete event, bytes
-  while (const lcm::LogEvent* event = log.readNextEvent()) {
-    complete = std::ftell(log.getFilePtr());
+  while (const lcm::LogEvent* event = log.next()) {
     if (event->channel != channel) continue;
     const std::string where = file + ": event " + std::to_string(event->eventnum);
     sample_t sample{};
@@ -125,8 +121,8 @@ Record read_lcm_log(const std::string& file, std::string_view wanted) {
     record.notes.push_back(std::to_string(builder.bad) +
                            " samples without a good position and command left out");
   }
-  if (complete < static_cast<std::int64_t>(std::filesystem::file_size(file))) {
-    record.notes.push_back("cut off after byte " + std::to_string(complete) +
+  if (!log.at_end()) {
+    record.notes.push_back("cut off after byte " + std::to_string(log.complete()) +
                            ": the complete events are used");
   }
   return std::move(record);

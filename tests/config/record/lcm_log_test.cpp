@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <lcm/lcm-cpp.hpp>
 
@@ -105,6 +106,23 @@ TEST_F(LcmLog, UsesTheCompleteEventsOfALogCutOffAndSaysSo) {
   EXPECT_EQ(record.size(), 9U);
   ASSERT_EQ(record.notes.size(), 1U);
   EXPECT_NE(record.notes[0].find("cut off"), std::string::npos);
+}
+
+/// liblcm's reader allocates what a damaged length asks for, and ends the program.
+TEST_F(LcmLog, StopsAtADamagedLength) {
+  write_samples("SPOOLWATCH_SAMPLE", 10);
+  log_.reset();
+  const auto event_bytes = std::filesystem::file_size(file_.path()) / 10;
+  for (const int length_at : {20, 24}) {  // of the channel, of the data
+    std::fstream damaged(file_.path(), std::ios::in | std::ios::out | std::ios::binary);
+    damaged.seekp(static_cast<std::streamoff>(event_bytes) * (length_at == 20 ? 7 : 5) + length_at);
+    damaged.write("\x7F\xFF\xFF\xFF", 4);
+    damaged.close();
+    const Record record = read();
+    EXPECT_EQ(record.size(), length_at == 20 ? 7U : 5U);
+    ASSERT_EQ(record.notes.size(), 1U);
+    EXPECT_NE(record.notes[0].find("cut off"), std::string::npos);
+  }
 }
 
 TEST_F(LcmLog, RefusesALogOfAnotherType) {
