@@ -48,10 +48,6 @@ std::unique_ptr<Reference> make_reference(const ReferenceConfig& config,
                                        different.empty() ? "is empty" : "names one of them twice",
                                        "different frequencies, one at least");
     }
-    if (config.frequencies_Hz.empty()) {
-      throw config::schema::bad_config("[reference] frequencies_Hz", "is empty",
-                                       "one frequency or more");
-    }
     return std::make_unique<Multisine>(config.centre_m, config.amplitude_m, config.frequencies_Hz);
   }
   if (config.kind == "steps") return std::make_unique<Steps>(config);
