@@ -9,6 +9,8 @@ namespace monitor::rt {
 
 void SignalStack::use() noexcept {
   stack_t stack{};
+  if (sigaltstack(nullptr, &stack) != 0 || (stack.ss_flags & SS_DISABLE) == 0) return;
+  stack = {};
   stack.ss_sp = bytes_.data();
   stack.ss_size = bytes_.size();
   sigaltstack(&stack, nullptr);

@@ -20,7 +20,7 @@ inline constexpr std::size_t kThreadStack_bytes = 256 * 1024;
 /// Where a thread's signal handlers run, so that they do when its own stack has overflowed.
 class SignalStack {
  public:
-  /// For the calling thread, which must end before the object does.
+  /// For the calling thread, unless it has one; it must end before the object does.
   void use() noexcept;
 
  private:
