@@ -24,7 +24,8 @@ struct Reading {
   double y_m = kMissing;        ///< rod position, NaN when there is none
   double command_V = kMissing;  ///< the valve's command as the device sees it, NaN when it does not
   Quality quality = Quality::bad;
-  bool end = false;  ///< nothing more will come (end of a record), and this is no reading
+  bool saturated = false;  ///< that command was at a limit, as far as the device knows
+  bool end = false;        ///< nothing more will come (end of a record), and this is no reading
 };
 
 struct Applied {

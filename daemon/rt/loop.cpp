@@ -159,6 +159,7 @@ bool Loop::tick(const Period& period) noexcept {
   sample.reference_m = hal::kMissing;
   sample.u_requested_V = hal::kMissing;
   sample.u_applied_V = reading.command_V;
+  sample.saturated = reading.saturated;
   if (parts_.valve != nullptr) drive(period, have_position, sample);
   sample.state = static_cast<std::uint8_t>(arming_.state());
   send(sample);

@@ -27,7 +27,10 @@ void ReplayConfig::visit(config::schema::Visitor& v) {
 }
 
 ReplaySensor::ReplaySensor(config::record::Record record)
-    : record_(std::move(record)), quality_(record_.column("quality")), tick_(grid(record_)) {}
+    : record_(std::move(record)),
+      quality_(record_.column("quality")),
+      saturated_(record_.column("saturated")),
+      tick_(grid(record_)) {}
 
 Reading ReplaySensor::read(const Tick& tick) noexcept {
   while (next_ < tick_.size() && tick_[next_] < tick.index) ++next_;
@@ -38,6 +41,7 @@ Reading ReplaySensor::read(const Tick& tick) noexcept {
     reading.y_m = record_.y_m[next_];
     reading.command_V = record_.u_V[next_];
     reading.quality = Quality::good;
+    reading.saturated = saturated_ != nullptr && (*saturated_)[next_] > 0.0;
     if (quality_ != nullptr && std::isfinite((*quality_)[next_])) {
       reading.quality = static_cast<Quality>(std::clamp((*quality_)[next_], 0.0, 3.0));
     }

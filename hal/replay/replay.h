@@ -25,7 +25,8 @@ class ReplaySensor final : public RodSensor {
  private:
   config::record::Record record_;
   const std::vector<double>* quality_;  ///< the record's own column of it, or null
-  std::vector<std::int64_t> tick_;      ///< period of each row, from 0
+  const std::vector<double>* saturated_;
+  std::vector<std::int64_t> tick_;  ///< period of each row, from 0
   std::size_t next_ = 0;
 };
 

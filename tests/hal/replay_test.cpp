@@ -70,6 +70,16 @@ TEST(ReplaySensor, KeepsTheQualityThatTheRecordStates) {
   EXPECT_EQ(sensor.read(tick(3)).quality, Quality::good);
 }
 
+/// Estimates over saturated samples are not valid, on the stand and in a replay.
+TEST(ReplaySensor, KeepsTheSaturationThatTheRecordStates) {
+  config::record::Record record = ramp(3);
+  record.further = {{"saturated", {0.0, 1.0, std::nan("")}}};
+  ReplaySensor sensor(record);
+  EXPECT_FALSE(sensor.read(tick(0)).saturated);
+  EXPECT_TRUE(sensor.read(tick(1)).saturated);
+  EXPECT_FALSE(sensor.read(tick(2)).saturated);
+}
+
 TEST(ReplayBackend, TakesThePeriodFromTheRecordAndDrivesNothing) {
   const auto file = std::filesystem::temp_directory_path() / "spoolwatch_replay_test.csv";
   std::ofstream(file) << "t_s,u_V,y_mm\n0,1,2\n0.02,1,3\n0.04,1,4\n0.06,1,5\n";

@@ -29,6 +29,7 @@ class FakeRig final : public hal::RodSensor, public hal::ValveDrive {
     reading.y_m = y_m;
     reading.command_V = command_V;
     reading.quality = quality;
+    reading.saturated = command_saturated;
     tick_ = tick.index;
     return reading;
   }
@@ -41,6 +42,7 @@ class FakeRig final : public hal::RodSensor, public hal::ValveDrive {
   double y_m = 0.1;
   double command_V = hal::kMissing;
   hal::Quality quality = hal::Quality::good;
+  bool command_saturated = false;
   bool write_good = true;
   std::int64_t read_ns = 0;
   std::int64_t end_tick = kForeverTicks;

@@ -50,12 +50,14 @@ TEST(Loop, SampleCarriesWhatWasReadAskedForAndApplied) {
 TEST(Loop, WithoutAValveIsMonitorAndPassesOnTheMeasuredCommand) {
   LoopBench bench({}, false);
   bench.rig.command_V = 1.25;
+  bench.rig.command_saturated = true;
   bench.order(Event::arm);
   bench.order(Event::start);
   const estimator::fdi::Sample sample = bench.sample();
   EXPECT_EQ(bench.state(), State::monitor);
   EXPECT_TRUE(bench.rig.writes.empty());
   EXPECT_EQ(sample.u_applied_V, 1.25);
+  EXPECT_TRUE(sample.saturated);
   EXPECT_TRUE(std::isnan(sample.u_requested_V));
   EXPECT_TRUE(std::isnan(sample.reference_m));
   EXPECT_EQ(sample.t_write_ns, 0);
