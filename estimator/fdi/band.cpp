@@ -60,7 +60,7 @@ BandState::Result BandState::update(double value, double t_s) noexcept {
     pending_ = direction_;
     return result();
   }
-  if (pending_ != direction) {
+  if (pending_ != direction || t_s < pending_since_s_) {
     pending_ = direction;
     pending_since_s_ = t_s;
   }
@@ -70,7 +70,7 @@ BandState::Result BandState::update(double value, double t_s) noexcept {
 }
 
 BandState::Result BandState::update_invalid(double t_s) noexcept {
-  if (!missing_) {
+  if (!missing_ || t_s < missing_since_s_) {
     missing_ = true;
     missing_since_s_ = t_s;
   }

@@ -71,6 +71,16 @@ TEST(Band, GoesFromOneSideToTheOtherAfterTheOnDelay) {
                  {1.25, 2.50, kMajor, 1}});
 }
 
+/// A log read again, a rig restarted: what was pending counts from the new time.
+TEST(Band, KeepsItsDelaysWhenTimeGoesBack) {
+  BandState on(example());
+  follow(on, {{100.0, 2.50, kOk, 0}, {1.0, 2.50, kOk, 0}, {1.5, 2.50, kMajor, 1}});
+  BandConfig late = example();
+  late.invalid_delay_s = 0.3;
+  BandState invalid(late);
+  follow(invalid, {{100.0, kNan, kOk, 0}, {1.0, kNan, kOk, 0}, {1.3, kNan, kInvalid, 0}});
+}
+
 TEST(Band, WithoutDelaysActsAtOnce) {
   BandConfig config = example();
   config.on_delay_s = 0.0;
