@@ -2,11 +2,13 @@
 // determined them, and whether they may be trusted.
 //
 // Standard errors follow the least-squares covariance s^2 (Psi' Psi)^-1, s^2 = residual energy /
-// (rows - coefficients). They hold for residuals that are white. Dynamics that the structure leaves
-// out repeat with the motion: then the scatter between periods is far smaller than they say. Noise
-// of the position enters the regressors and biases the coefficients (most of all beyond one output
-// lag): no standard error covers that. The condition number is the 2-norm condition of the regressor matrix with
-// its columns scaled to unit length, so that it does not depend on units.
+// (rows - coefficients). They hold for white residuals. Dynamics that the structure leaves out
+// repeat with the motion: then the scatter between periods is far smaller than they say. Noise of
+// the position enters the regressors and biases the coefficients (most of all beyond one output
+// lag): no standard error covers that.
+//
+// The condition number is the 2-norm condition of the regressor matrix with its columns scaled to
+// unit length, so that it does not depend on units.
 #pragma once
 
 #include <array>
