@@ -37,7 +37,7 @@ double DacRange::apply(double u_V) const noexcept {
   if (bits <= 0) return held_V;
   const double half_codes = std::ldexp(1.0, bits - 1);
   const double code = std::min(std::round(held_V / step_V()), half_codes - 1.0);
-  return code * step_V();
+  return code * step_V() + 0.0;  // never -0
 }
 
 }  // namespace plant_sim

@@ -10,7 +10,7 @@ namespace {
 
 /// Refuses text that is no number or a number that `good` refuses.
 template <class Good>
-CLI::Validator check(std::string allowed, Good good) {
+CLI::Validator check(const std::string& allowed, Good good) {
   const auto refuse = [allowed, good](const std::string& text) {
     double value = 0.0;
     const bool taken = CLI::detail::lexical_cast(text, value) && good(value);

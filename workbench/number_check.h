@@ -2,7 +2,7 @@
 // hundred digits.
 #pragma once
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): the library's own name
 class Validator;
 }
 
