@@ -64,7 +64,7 @@ def main():
 
     budget = 2 * arguments.runs * (arguments.seconds + 10)
     stress = subprocess.Popen(["stress-ng", "--cpu", str(os.cpu_count()), "--timeout", f"{budget}s", "--quiet"],
-                              start_new_session=True)
+                              stderr=subprocess.DEVNULL, start_new_session=True)
     ours, peer, tick = [], [], []
     try:
         for run in range(arguments.runs):
