@@ -11,7 +11,7 @@ namespace monitor::rt {
 namespace {
 
 /// Width of a bucket against its lower edge.
-constexpr double kBucket = 0.125;
+constexpr double kBucket = 1.0 / 64;
 
 TEST(Histogram, QuantilesAreThoseOfTheSortedTimesToOneBucket) {
   std::mt19937 random(5);
