@@ -41,8 +41,10 @@ class Simulated final : public Plant {
   }
 
   [[nodiscard]] double position_m() const noexcept override { return model_.state.y_m; }
-  [[nodiscard]] double reading_m() const noexcept override { return model_.state.y_m; }
-  [[nodiscard]] double speed_mps() const noexcept override { return model_.state.v_mps; }
+  [[nodiscard]] double reading_m() const noexcept override {
+    return model_.effects.reading_m(model_.state.y_m);
+  }
+  [[nodiscard]] double speed_mps() const noexcept override { return model_.speed_mps(); }
   [[nodiscard]] double step_s() const noexcept override { return step_s_; }
 
   double* parameter(std::string_view dotted) noexcept override {
@@ -93,9 +95,12 @@ class Simulated final : public Plant {
     model_.parameters.visit(
         [&](const ParameterInfo& info, double& value) { f(info.name, info, value); });
     model_.effects.each([&](auto tag, auto& parameters) {
-      parameters.visit([&](const ParameterInfo& info, double& value) {
-        f(std::string(decltype(tag)::Type::kName) + "." + info.name, info, value);
-      });
+      using Effect = typename decltype(tag)::Type;
+      if constexpr (fits<Effect, Model>()) {
+        parameters.visit([&](const ParameterInfo& info, double& value) {
+          f(std::string(Effect::kName) + "." + info.name, info, value);
+        });
+      }
     });
   }
 

@@ -51,7 +51,7 @@ void odeint(benchmark::State& bench) {
   plant->reset();
   double u_V = 0.0;
   const auto rate = [&](const State& x, State& dxdt, double) {
-    const Actuator::State r = plant->rate<false>({x[0], x[1], x[2], x[3], x[4], x[5]}, u_V, x[0]);
+    const Actuator::State r = plant->rate<false, false>({x[0], x[1], x[2], x[3], x[4], x[5]}, u_V, x[0]);
     dxdt = {r.y_m, r.v_mps, r.in_Pa, r.out_Pa, r.spool_m, r.spool_mps};
   };
   for (auto _ : bench) {
