@@ -123,6 +123,7 @@ class HydraulicActuator {
   template <bool kEffects>
   Flows flows(const State& x) const;
   S reach_m(const S& u_V) const;
+  S fast_mps() const;
   auto ordinary(const S& u_V) const;
   S divisions(const S& u_V) const;
   template <bool kLimits, bool kEffects>

@@ -61,13 +61,24 @@ S HydraulicActuator<S>::reach_m(const S& u_V) const {
              max(abs(effects.opening_m(spool_m, gain)), abs(effects.opening_m(-spool_m, gain))));
 }
 
+/// The fastest that the rod can become within the step by the forces of effects.
+template <class S>
+S HydraulicActuator<S>::fast_mps() const {
+  const S v_mps = state.v_mps;
+  if (!effects.any()) return abs(v_mps);
+  const S push_N =
+      effects.remaining_N(state.y_m, {v_mps, S(0.0), S(0.0), derived_.arrest_kg_per_s});
+  return abs(v_mps) + abs(push_N) * derived_.inverse_mass * S(derived_.step_s);
+}
+
 /// In which lanes the step can be taken as a whole and cannot reach any limit.
 template <class S>
 auto HydraulicActuator<S>::ordinary(const S& u_V) const {
   const Parameters& p = parameters;
   const State& x = state;
   const S step_s = derived_.step_s;
-  const S travel_m = S(4.0) * abs(x.v_mps) * step_s + S(1e-3) * p.stroke_m;
+  const S speed_mps = fast_mps();
+  const S travel_m = S(4.0) * speed_mps * step_s + S(1e-3) * p.stroke_m;
   const S room_m = min(x.y_m, p.stroke_m - x.y_m);
   const S in_m3 = p.dead_volume_m3 + p.area_m2 * x.y_m;
   const S out_m3 = p.dead_volume_m3 + p.area_m2 * (p.stroke_m - x.y_m);
@@ -84,7 +95,7 @@ auto HydraulicActuator<S>::ordinary(const S& u_V) const {
                        derived_.stiffness_N_per_m * in_m3 * out_m3) *
                       step_s * step_s;
   const S leak_m3 = derived_.conductance_m3ps_per_Pa * p.bulk_modulus_Pa * step_s;
-  const S slope = p.damping_N_s_per_m + effects.slope_N_s_per_m(x.v_mps);
+  const S slope = p.damping_N_s_per_m + effects.slope_N_s_per_m(speed_mps);
   constexpr double kSquare = limits::kRateStep * limits::kRateStep;
   const auto place = both(room_m > travel_m, derived_.steady_rate * step_s <= S(limits::kRateStep));
   const auto pressure =
@@ -95,7 +106,7 @@ auto HydraulicActuator<S>::ordinary(const S& u_V) const {
   const S to_spare = S(0.5) * low_Pa * small_m3;
   const S largest_Pa = max(high_Pa, p.supply_pressure_Pa);
   const auto change = both(flow_rate * flow_rate * largest_Pa < to_spare * to_spare,
-                           p.area_m2 * abs(x.v_mps) * p.bulk_modulus_Pa * step_s < to_spare);
+                           p.area_m2 * speed_mps * p.bulk_modulus_Pa * step_s < to_spare);
   const auto stiff = both(stiffness < S(kSquare) * derived_.mass_kg * in_m3 * out_m3,
                           slope * step_s <= S(limits::kRateStep) * derived_.mass_kg);
   const auto leak = both(leak_m3 <= S(limits::kRateStep) * small_m3, leak_m3 * high_Pa <= to_spare);
@@ -159,7 +170,7 @@ S HydraulicActuator<S>::divisions(const S& u_V) const {
   const S column_rate = sqrt((oil_N_per_m + derived_.stiffness_N_per_m) * derived_.inverse_mass);
   const S leak_rate = derived_.conductance_m3ps_per_Pa * p.bulk_modulus_Pa / min(in_m3, out_m3);
   const S damping_rate =
-      (p.damping_N_s_per_m + effects.slope_N_s_per_m(x.v_mps)) * derived_.inverse_mass;
+      (p.damping_N_s_per_m + effects.slope_N_s_per_m(fast_mps())) * derived_.inverse_mass;
   const S fastest =
       max(max(derived_.steady_rate, damping_rate), max(max(orifice_rate, column_rate), leak_rate));
   return clamp(ceil(fastest * step_s * S(1.0 / limits::kRateStep)), S(1.0),

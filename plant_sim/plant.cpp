@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "config/schema/error.h"
+#include "plant_sim/library.h"
 #include "plant_sim/plants.h"
 
 namespace plant_sim {
@@ -118,6 +119,11 @@ class Simulated final : public Plant {
 std::unique_ptr<Plant> make_plant(const ModelFile& model) {
   std::unique_ptr<Plant> plant;
   std::string names;
+  if (const PlantInfo* info = find_plant(model.plant)) {
+    for (const ModelFile::Effect& effect : model.effects) {
+      if (effect.present) require_fit(*find_effect(effect.name), *info, model.name);
+    }
+  }
   each_plant([&]<class Model>() {
     if (model.plant == Model::kName) plant = std::make_unique<Simulated<Model>>(model);
     names += (names.empty() ? "" : ", ") + std::string(Model::kName);
