@@ -19,6 +19,7 @@ std::vector<ParameterInfo> listed() {
 template <class Type>
 std::vector<std::string> site_names() {
   std::vector<std::string> names;
+  names.reserve(Type::kSites.size());
   for (const Site site : Type::kSites) names.emplace_back(site_name(site));
   return names;
 }

@@ -109,6 +109,9 @@ class EffectSet : public EffectStore<S, E...> {
     this->template act<Site::force>([&]<class T>(Tag<T>, const auto& p, const auto&) {
       if constexpr (requires { T::stiffness_N_per_m(p); }) sum += T::stiffness_N_per_m(p);
     });
+    this->template act<Site::dry_friction>([&]<class T>(Tag<T>, const auto& p, const auto&) {
+      if constexpr (requires { T::stiffness_N_per_m(p); }) sum += T::stiffness_N_per_m(p);
+    });
     return sum;
   }
 

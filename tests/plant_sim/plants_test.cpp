@@ -71,6 +71,21 @@ TEST(ForceDrivenAxis, SlidesAgainstCoulombFrictionAndStandsBelowIt) {
   EXPECT_NEAR(plant->state.v_mps, 0.0, 1e-12);
 }
 
+TEST(ForceDrivenAxis, StandsOnItsBristlesHoweverStiffTheyAre) {
+  for (const double k : {1e5, 1e9}) {
+    auto plant = at_rest<Axis>();
+    plant->parameters.mass_kg = 10.0;
+    set_effect(*plant, "friction", "coulomb_N", 100.0);
+    set_effect(*plant, "friction", "presliding_stiffness_N_per_m", k);
+    hold(*plant, 1.0, 10.0);
+    // z = (g/k) (1 - exp(-k y/g)) holds 35 N at the least; each swing creeps on from there
+    const double held_m = -100.0 / k * std::log(1.0 - 0.35);
+    EXPECT_GE(plant->state.y_m, 0.999 * held_m) << k;
+    EXPECT_LT(plant->state.y_m, 5.0 * held_m) << k;
+    EXPECT_LT(std::abs(plant->state.v_mps), 1e-9) << k;
+  }
+}
+
 TEST(ForceDrivenAxis, CarriesAddedMass) {
   auto heavy = at_rest<Axis>();
   auto slaves = at_rest<Axis>();
