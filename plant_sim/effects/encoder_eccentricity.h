@@ -3,7 +3,8 @@
 //   reading = y + a sin(2 pi y/wavelength + phase)
 //
 // a  m     y  rod position, m     wavelength  way per turn, m; 0 is none     phase  rad
-// Source: eccentricity error, Nyce, Linear Position Sensors (2004), chapter 11.
+// Source: geometry of a circular scale whose centre is not its axis; a is the offset of the two on
+// a wheel that rolls along the stroke.
 #pragma once
 
 #include <array>

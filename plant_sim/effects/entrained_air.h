@@ -5,8 +5,8 @@
 // alpha  air's share of the volume at atmospheric pressure     pa  1.01e5 Pa
 // p  absolute pressure, the chamber's and pa, Pa               beta  of the oil alone, Pa
 // 1.4  exponent of a change of state without exchange of heat
-// Source: Merritt, Hydraulic Control Systems (1967), section 2-3; polytropic form after
-// Manring and Fales, Hydraulic Control Systems (2019), section 2.3.
+// Source: Merritt, Hydraulic Control Systems (1967), chapter 2; polytropic form after
+// Manring and Fales, Hydraulic Control Systems (2019), chapter 2.
 #pragma once
 
 #include <array>

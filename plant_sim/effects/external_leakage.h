@@ -3,7 +3,7 @@
 //   Q = C P     out of each chamber
 //
 // C  conductance, m3/s per Pa      P  that chamber's pressure, Pa
-// Source: Merritt, Hydraulic Control Systems (1967), section 6-1.
+// Source: Merritt, Hydraulic Control Systems (1967), chapter 6.
 #pragma once
 
 #include <array>

@@ -3,7 +3,7 @@
 //   opening = xv (1 + a) for xv > 0,   xv (1 - a) for xv < 0      at both orifices
 //
 // xv  spool position behind an overlap, m     a  ratio, positive: more when extending
-// Source: gain asymmetry of servovalves, ISO 10770-1 (2009), section 8.
+// Source: gain asymmetry of servovalves, ISO 10770-1 (2009).
 #pragma once
 
 #include <array>

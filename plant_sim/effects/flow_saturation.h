@@ -3,7 +3,7 @@
 //   |Q| <= limit      each orifice by itself
 //
 // Q, limit  m3/s
-// Source: flow limit of servovalves, Merritt, Hydraulic Control Systems (1967), section 5-7.
+// Source: flow limit of servovalves, Merritt, Hydraulic Control Systems (1967), chapter 5.
 #pragma once
 
 #include <array>

@@ -3,7 +3,7 @@
 //   F = a sin(2 pi y/wavelength + phase)
 //
 // a  N     y  rod position, m     wavelength  m; 0 is no ripple     phase  rad
-// Source: detent force, Gieras, Piech, Tomczuk, Linear Synchronous Motors (2012), section 3.10.
+// Source: detent force, Gieras, Piech, Tomczuk, Linear Synchronous Motors (2012).
 #pragma once
 
 #include <array>

@@ -3,7 +3,7 @@
 //   Q = C (Pi - Po)     out of chamber i, into chamber o
 //
 // C  conductance, m3/s per Pa      Pi Po  chamber pressures, Pa
-// Source: Merritt, Hydraulic Control Systems (1967), section 6-1.
+// Source: Merritt, Hydraulic Control Systems (1967), chapter 6.
 #pragma once
 
 #include <array>

@@ -3,7 +3,7 @@
 //   u_out = u + offset
 //
 // offset  V, positive extends
-// Source: null shift, Merritt, Hydraulic Control Systems (1967), section 7-3.
+// Source: null shift, Merritt, Hydraulic Control Systems (1967), chapter 7.
 #pragma once
 
 #include <array>

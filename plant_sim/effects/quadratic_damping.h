@@ -3,7 +3,7 @@
 //   F = c v |v|
 //
 // c  N/(m/s)^2     v  rod speed, m/s
-// Source: turbulent orifice, Merritt, Hydraulic Control Systems (1967), section 3-3.
+// Source: turbulent orifice, Merritt, Hydraulic Control Systems (1967), chapter 3.
 #pragma once
 
 #include <array>

@@ -3,7 +3,7 @@
 //   |xv'| <= rate,   and xv'' does not push beyond it
 //
 // xv  spool position, m    rate  m/s (the other valve parameters stay as they are)
-// Source: pilot flow saturation, Merritt, Hydraulic Control Systems (1967), section 7-4.
+// Source: pilot flow saturation, Merritt, Hydraulic Control Systems (1967), chapter 7.
 #pragma once
 
 #include <array>

@@ -7,7 +7,7 @@
 // D   droop, Pa/(m3/s)      g  flow of the orifice per sqrt(Pa)      Q  flow drawn, m3/s
 // Backwards (P > Ps) the same with both signs turned. Under 1 bar of drop the plant's orifice is
 // no square root any more; Q there is still the square root's.
-// Source: source resistance of a power unit, Merritt, Hydraulic Control Systems (1967), 11-2.
+// Source: source resistance of a power unit, Merritt, Hydraulic Control Systems (1967), chapter 11.
 #pragma once
 
 #include <array>

@@ -5,7 +5,7 @@
 // delay  s, up to half a second; before the run (and before a delay that is switched on during it)
 //        the command was 0 V. Between two integration steps the command is taken in proportion,
 //        which is the mean of the delayed command over the step.
-// Source: dead time, Franklin, Powell, Workman, Digital Control of Dynamic Systems (1998), 4.3.
+// Source: dead time, Franklin, Powell, Workman, Digital Control of Dynamic Systems (1998).
 #pragma once
 
 #include <algorithm>

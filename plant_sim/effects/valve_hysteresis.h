@@ -3,7 +3,7 @@
 //   u_out(k) = min(max(u_out(k-1), u(k) - w), u(k) + w)
 //
 // w  half width of the loop, V     k  integration step; it starts from u_out = 0
-// Source: play operator, Krasnosel'skii and Pokrovskii, Systems with Hysteresis (1989), chapter 2.
+// Source: play operator, Krasnosel'skii and Pokrovskii, Systems with Hysteresis (1989).
 #pragma once
 
 #include <array>
