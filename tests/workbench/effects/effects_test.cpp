@@ -38,7 +38,7 @@ TEST(Effects, WritesTheSameAsJson) {
     EXPECT_FALSE(effect["plants"].empty()) << effect["name"];
     for (const auto& parameter : effect["parameters"]) {
       const std::string name = parameter["name"];
-      EXPECT_NE(parameter["unit"] == "", !name.ends_with("_ratio")) << name;
+      EXPECT_EQ(parameter["unit"].get<std::string>().empty(), name.ends_with("_ratio")) << name;
     }
   }
   const auto& limit = json["effects"][6];
