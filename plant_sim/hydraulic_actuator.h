@@ -9,9 +9,9 @@
 //   xv >= 0: Qi = G xv q(Ps - Pi),  Qo = G xv q(Po - Pe)
 //   xv <  0: Qi = G xv q(Pi - Pe),  Qo = G xv q(Ps - Po)      G = Cd w sqrt(2/rho)
 //
-// y v rod position and speed; Pi Po chamber pressures; xv spool position; u command. F and the
-// opening behind xv are where effects act (effects/site.h). Beyond the source, and without a bit of
-// influence inside the stroke at ordinary pressures:
+// y v rod position and speed; Pi Po chamber pressures; xv spool position; u command. The command
+// chain ahead of xv, the opening behind it, supply, flows, beta, m and F are where effects act.
+// Beyond the source, and without a bit of influence inside the stroke at ordinary pressures:
 // - q(p) = sign(p) sqrt|p|, and under 1 bar a cubic through zero with the same value and slope at
 //   1 bar: a reversed orifice flows back, and the slope stays finite.
 // - End stops are inelastic: at y = 0 and y = L the rod loses its speed and is held while pushed
@@ -23,6 +23,7 @@
 //   orifice near zero drop), the step is divided, in each lane by its own number.
 #pragma once
 
+#include <array>
 #include <limits>
 
 #include "plant_sim/effects/table.h"
@@ -36,6 +37,10 @@ template <class S>
 class HydraulicActuator {
  public:
   static constexpr const char* kName = "hydraulic_actuator";
+  static constexpr std::array kSites = {Site::command,      Site::spool,   Site::opening,
+                                        Site::supply,       Site::flow,    Site::leakage,
+                                        Site::bulk_modulus, Site::inertia, Site::force,
+                                        Site::dry_friction, Site::sensor};
 
   /// The printed values (source, table 5.1); V0 is not printed and of no influence there.
   struct Parameters {
@@ -97,19 +102,31 @@ class HydraulicActuator {
   /// One step with u_V held; u_V that is not a number counts as 0.
   void step(const S& u_V);
 
-  /// The equations above, inside the stroke (kLimits false) or with its ends and cavitation.
-  template <bool kLimits>
+  [[nodiscard]] S speed_mps() const { return state.v_mps; }
+
+  /// The equations above, inside the stroke (kLimits false) or with its ends and cavitation, and
+  /// with the active effects or as if there were none.
+  template <bool kLimits, bool kEffects>
   State rate(const State& x, const S& u_V, const S& from_y_m) const;
 
  private:
   struct Derived {
     S orifice, two_zeta_wv, wv2, kv_wv2, mass_kg, inverse_mass, arrest_kg_per_s, steady_rate;
+    S spool_limit_mps, stiffness_N_per_m, conductance_m3ps_per_Pa;
     double step_s;
   };
+  struct Flows {
+    S in_m3ps;   ///< into the chamber that extends
+    S out_m3ps;  ///< out of the chamber that retracts
+  };
   static S root(const S& drop_Pa);
+  template <bool kEffects>
+  Flows flows(const State& x) const;
+  S reach_m(const S& u_V) const;
+  S fast_mps() const;
   auto ordinary(const S& u_V) const;
   S divisions(const S& u_V) const;
-  template <bool kLimits>
+  template <bool kLimits, bool kEffects>
   void integrate(const S& u_V, const S& step_s);
   void keep_within_limits();
 
@@ -120,3 +137,4 @@ class HydraulicActuator {
 
 #include "plant_sim/hydraulic_actuator_equations.h"
 #include "plant_sim/hydraulic_actuator_fields.h"
+#include "plant_sim/hydraulic_actuator_step.h"

@@ -1,4 +1,4 @@
-// The equations of hydraulic_actuator.h and the step that integrates them.
+// The equations of hydraulic_actuator.h.
 #pragma once
 
 #include "plant_sim/hydraulic_actuator.h"
@@ -6,51 +6,9 @@
 namespace plant_sim {
 namespace limits {
 
-inline constexpr double kSmoothDrop_Pa = 1e5;   ///< below it an orifice is no longer a square root
-inline constexpr double kLowPressure_Pa = 1e5;  ///< from here down cavitation is looked for
-inline constexpr double kHighPressure_Pa = 1e10;  ///< numerical guard, beyond any oil
-inline constexpr double kSpeed_mps = 1e3;         ///< numerical guard
-inline constexpr double kSpool_m = 1.0;           ///< numerical guard
-inline constexpr double kSpool_mps = 1e5;         ///< numerical guard
-inline constexpr double kCommand_V = 1e4;         ///< numerical guard
-/// A rate times the step up to which RK4 follows; it is stable up to 2.78.
-inline constexpr double kRateStep = 1.5;
-inline constexpr double kMostDivisions = 64.0;
+inline constexpr double kSmoothDrop_Pa = 1e5;  ///< below it an orifice is no longer a square root
 
 }  // namespace limits
-
-template <class S>
-void HydraulicActuator<S>::reset() {
-  const S half_Pa = S(0.5) * (parameters.supply_pressure_Pa + parameters.return_pressure_Pa);
-  const auto or_half = [&](const S& given) { return select(given >= S(0.0), given, half_Pa); };
-  state = {initial.y_m,
-           initial.v_mps,
-           or_half(initial.pressure_in_Pa),
-           or_half(initial.pressure_out_Pa),
-           initial.spool_m,
-           initial.spool_mps};
-  effects.reset();
-  keep_within_limits();
-}
-
-template <class S>
-void HydraulicActuator<S>::prepare(double step_s) {
-  Parameters& p = parameters;
-  p.visit(
-      [](const ParameterInfo& info, S& value) { value = clamp(value, S(info.min), S(info.max)); });
-  effects.prepare();
-  const S wv = p.valve_natural_frequency_rad_per_s;
-  derived_.step_s = step_s;
-  derived_.orifice =
-      p.discharge_coefficient * p.area_gradient_m * sqrt(S(2.0) / p.density_kg_per_m3);
-  derived_.two_zeta_wv = S(2.0) * p.valve_damping_ratio * wv;
-  derived_.wv2 = wv * wv;
-  derived_.kv_wv2 = p.valve_gain_m_per_V * derived_.wv2;
-  derived_.mass_kg = p.mass_kg + effects.added_mass_kg();
-  derived_.inverse_mass = S(1.0) / derived_.mass_kg;
-  derived_.arrest_kg_per_s = derived_.mass_kg * S(1.0 / step_s);
-  derived_.steady_rate = max(wv, derived_.two_zeta_wv);
-}
 
 /// q(p): sign(p) sqrt|p| down to 1 bar, then p (5 - (p/p1)^2) / (4 sqrt p1).
 template <class S>
@@ -65,7 +23,30 @@ S HydraulicActuator<S>::root(const S& drop_Pa) {
 }
 
 template <class S>
-template <bool kLimits>
+template <bool kEffects>
+typename HydraulicActuator<S>::Flows HydraulicActuator<S>::flows(const State& x) const {
+  const Parameters& p = parameters;
+  S opening_m = x.spool_m;
+  if constexpr (kEffects) opening_m = effects.opening_m(opening_m, p.valve_gain_m_per_V);
+  const S flow = derived_.orifice * opening_m;
+  const auto extends = flow >= S(0.0);
+  S supply_Pa = p.supply_pressure_Pa;
+  if constexpr (kEffects) {
+    supply_Pa = effects.supply_Pa(supply_Pa, select(extends, x.in_Pa, x.out_Pa), abs(flow));
+  }
+  Flows q;
+  q.in_m3ps = flow * root(select(extends, supply_Pa - x.in_Pa, x.in_Pa - p.return_pressure_Pa));
+  q.out_m3ps = flow * root(select(extends, x.out_Pa - p.return_pressure_Pa, supply_Pa - x.out_Pa));
+  if constexpr (kEffects) {
+    const Leak<S> leak = effects.leak(x.in_Pa, x.out_Pa);
+    q.in_m3ps = effects.flow_m3ps(q.in_m3ps) - leak.in_m3ps;
+    q.out_m3ps = effects.flow_m3ps(q.out_m3ps) + leak.out_m3ps;
+  }
+  return q;
+}
+
+template <class S>
+template <bool kLimits, bool kEffects>
 typename HydraulicActuator<S>::State HydraulicActuator<S>::rate(const State& x, const S& u_V,
                                                                 const S& from_y_m) const {
   const Parameters& p = parameters;
@@ -77,30 +58,32 @@ typename HydraulicActuator<S>::State HydraulicActuator<S>::rate(const State& x, 
     v_mps = select(y_m <= zero, max(v_mps, zero), v_mps);
     v_mps = select(y_m >= p.stroke_m, min(v_mps, zero), v_mps);
   }
-  const S flow = derived_.orifice * effects.opening_m(x.spool_m, p.valve_gain_m_per_V);
-  const auto extends = flow >= zero;
-  const S in_m3ps =
-      flow * root(select(extends, p.supply_pressure_Pa - x.in_Pa, x.in_Pa - p.return_pressure_Pa));
-  const S out_m3ps = flow * root(select(extends, x.out_Pa - p.return_pressure_Pa,
-                                        p.supply_pressure_Pa - x.out_Pa));
+  const Flows q = flows<kEffects>(x);
   const S swept_m3ps = p.area_m2 * v_mps;
-  const S in_Pa_per_m3 = p.bulk_modulus_Pa / (p.dead_volume_m3 + p.area_m2 * y_m);
-  const S out_Pa_per_m3 = p.bulk_modulus_Pa / (p.dead_volume_m3 + p.area_m2 * (p.stroke_m - y_m));
-  DryContact<S> contact;
-  contact.v_mps = v_mps;
-  contact.travel_m = x.y_m - from_y_m;
-  contact.arrest_kg_per_s = derived_.arrest_kg_per_s;
-  contact.drive_N = p.area_m2 * (x.in_Pa - x.out_Pa) - p.damping_N_s_per_m * v_mps -
-                    effects.resisting_N(y_m, v_mps);
-  const S force_N = contact.drive_N - effects.friction_N(contact);
+  S in_beta_Pa = p.bulk_modulus_Pa;
+  S out_beta_Pa = p.bulk_modulus_Pa;
+  S force_N = p.area_m2 * (x.in_Pa - x.out_Pa) - p.damping_N_s_per_m * v_mps;
+  if constexpr (kEffects) {
+    in_beta_Pa = effects.bulk_modulus_Pa(in_beta_Pa, x.in_Pa);
+    out_beta_Pa = effects.bulk_modulus_Pa(out_beta_Pa, x.out_Pa);
+    force_N =
+        effects.remaining_N(y_m, {v_mps, x.y_m - from_y_m, force_N, derived_.arrest_kg_per_s});
+  }
   State r;
   r.y_m = v_mps;
   r.v_mps = force_N * derived_.inverse_mass;
-  r.in_Pa = in_Pa_per_m3 * (in_m3ps - swept_m3ps);
-  r.out_Pa = out_Pa_per_m3 * (swept_m3ps - out_m3ps);
+  r.in_Pa = in_beta_Pa / (p.dead_volume_m3 + p.area_m2 * y_m) * (q.in_m3ps - swept_m3ps);
+  r.out_Pa =
+      out_beta_Pa / (p.dead_volume_m3 + p.area_m2 * (p.stroke_m - y_m)) * (swept_m3ps - q.out_m3ps);
   r.spool_m = x.spool_mps;
   r.spool_mps =
       derived_.kv_wv2 * u_V - derived_.two_zeta_wv * x.spool_mps - derived_.wv2 * x.spool_m;
+  if constexpr (kEffects) {
+    const S most_mps = derived_.spool_limit_mps;
+    r.spool_m = clamp(x.spool_mps, -most_mps, most_mps);
+    r.spool_mps = select(x.spool_mps >= most_mps, min(r.spool_mps, zero), r.spool_mps);
+    r.spool_mps = select(x.spool_mps <= -most_mps, max(r.spool_mps, zero), r.spool_mps);
+  }
   if constexpr (kLimits) {
     r.v_mps = select(y_m <= zero, max(r.v_mps, zero), r.v_mps);
     r.v_mps = select(y_m >= p.stroke_m, min(r.v_mps, zero), r.v_mps);
@@ -108,117 +91,6 @@ typename HydraulicActuator<S>::State HydraulicActuator<S>::rate(const State& x, 
     r.out_Pa = select(x.out_Pa <= zero, max(r.out_Pa, zero), r.out_Pa);
   }
   return r;
-}
-
-/// In which lanes the step can be taken as a whole and cannot reach any limit.
-template <class S>
-auto HydraulicActuator<S>::ordinary(const S& u_V) const {
-  const Parameters& p = parameters;
-  const State& x = state;
-  const S step_s = derived_.step_s;
-  const S travel_m = S(4.0) * abs(x.v_mps) * step_s + S(1e-3) * p.stroke_m;
-  const S room_m = min(x.y_m, p.stroke_m - x.y_m);
-  const S in_m3 = p.dead_volume_m3 + p.area_m2 * x.y_m;
-  const S out_m3 = p.dead_volume_m3 + p.area_m2 * (p.stroke_m - x.y_m);
-  const S small_m3 = min(in_m3, out_m3);
-  const S low_Pa = min(x.in_Pa, x.out_Pa);
-  const S high_Pa = max(x.in_Pa, x.out_Pa);
-  // the smallest drop over any open or shut orifice, and the widest opening within the step
-  const S drop_Pa =
-      min(min(abs(p.supply_pressure_Pa - x.in_Pa), abs(p.supply_pressure_Pa - x.out_Pa)),
-          low_Pa - p.return_pressure_Pa);
-  const S reach_m =
-      max(abs(x.spool_m), p.valve_gain_m_per_V * abs(u_V)) + abs(x.spool_mps) * step_s;
-  const S flow_rate = derived_.orifice * reach_m * p.bulk_modulus_Pa * step_s;
-  const S allowed = S(2.0 * limits::kRateStep) * small_m3;
-  const S stiffness =
-      p.bulk_modulus_Pa * p.area_m2 * p.area_m2 * (in_m3 + out_m3) * step_s * step_s;
-  const S slope = p.damping_N_s_per_m + effects.slope_N_s_per_m(x.v_mps);
-  constexpr double kSquare = limits::kRateStep * limits::kRateStep;
-  const auto place = both(room_m > travel_m, derived_.steady_rate * step_s <= S(limits::kRateStep));
-  const auto pressure =
-      both(low_Pa > S(limits::kLowPressure_Pa), high_Pa < S(limits::kHighPressure_Pa));
-  const auto drop = both(drop_Pa > S(limits::kSmoothDrop_Pa),
-                         flow_rate * flow_rate < allowed * allowed * drop_Pa);
-  // less than the lower pressure can come or go within the step
-  const S to_spare = S(0.5) * low_Pa * small_m3;
-  const S largest_Pa = max(high_Pa, p.supply_pressure_Pa);
-  const auto change = both(flow_rate * flow_rate * largest_Pa < to_spare * to_spare,
-                           p.area_m2 * abs(x.v_mps) * p.bulk_modulus_Pa * step_s < to_spare);
-  const auto stiff = both(stiffness < S(kSquare) * derived_.mass_kg * in_m3 * out_m3,
-                          slope * step_s <= S(limits::kRateStep) * derived_.mass_kg);
-  return both(both(both(place, pressure), both(drop, stiff)), change);
-}
-
-template <class S>
-void HydraulicActuator<S>::step(const S& u_V) {
-  const S known_V = select(abs(u_V) <= S(limits::kCommand_V), u_V,
-                           select(u_V > S(0.0), S(limits::kCommand_V),
-                                  select(u_V < S(0.0), S(-limits::kCommand_V), S(0.0))));
-  const auto whole = ordinary(known_V);
-  if (all(whole)) {
-    integrate<false>(known_V, S(derived_.step_s));
-    return;
-  }
-  const S parts = select(whole, S(1.0), divisions(known_V));
-  const S part_s = S(derived_.step_s) / parts;
-  const int most = static_cast<int>(widest(parts));
-  for (int i = 0; i < most; ++i) {
-    integrate<true>(known_V, select(S(static_cast<double>(i)) < parts, part_s, S(0.0)));
-    keep_within_limits();
-  }
-}
-
-template <class S>
-template <bool kLimits>
-void HydraulicActuator<S>::integrate(const S& u_V, const S& step_s) {
-  const S from_y_m = state.y_m;
-  state = runge_kutta_step(state, step_s,
-                           [&](const State& x) { return rate<kLimits>(x, u_V, from_y_m); });
-  effects.accept(state.y_m - from_y_m, state.v_mps);
-}
-
-/// Into how many parts the step is divided, so that the fastest of spool, damping, oil column and
-/// orifice is followed.
-template <class S>
-S HydraulicActuator<S>::divisions(const S& u_V) const {
-  const Parameters& p = parameters;
-  const State& x = state;
-  const S step_s = derived_.step_s;
-  const S in_m3 = p.dead_volume_m3 + p.area_m2 * x.y_m;
-  const S out_m3 = p.dead_volume_m3 + p.area_m2 * (p.stroke_m - x.y_m);
-  const S least = limits::kSmoothDrop_Pa;
-  const S supply_Pa =
-      min(abs(p.supply_pressure_Pa - x.in_Pa), abs(p.supply_pressure_Pa - x.out_Pa));
-  const S return_Pa =
-      min(abs(x.in_Pa - p.return_pressure_Pa), abs(x.out_Pa - p.return_pressure_Pa));
-  const S drop_Pa = max(min(supply_Pa, return_Pa), least);
-  const S reach_m =
-      max(abs(x.spool_m), p.valve_gain_m_per_V * abs(u_V)) + abs(x.spool_mps) * step_s;
-  // the cubic of root() is up to 5/2 times as steep as the square root at its end
-  const S orifice_rate = S(1.25) * derived_.orifice * reach_m * p.bulk_modulus_Pa /
-                         (min(in_m3, out_m3) * sqrt(drop_Pa));
-  const S column_rate = p.area_m2 * sqrt(p.bulk_modulus_Pa * (S(1.0) / in_m3 + S(1.0) / out_m3) *
-                                         derived_.inverse_mass);
-  const S damping_rate =
-      (p.damping_N_s_per_m + effects.slope_N_s_per_m(x.v_mps)) * derived_.inverse_mass;
-  const S fastest = max(max(derived_.steady_rate, damping_rate), max(orifice_rate, column_rate));
-  return clamp(ceil(fastest * step_s * S(1.0 / limits::kRateStep)), S(1.0),
-               S(limits::kMostDivisions));
-}
-
-template <class S>
-void HydraulicActuator<S>::keep_within_limits() {
-  const S zero = 0.0;
-  State& x = state;
-  x.y_m = clamp(x.y_m, zero, parameters.stroke_m);
-  x.v_mps = clamp(x.v_mps, S(-limits::kSpeed_mps), S(limits::kSpeed_mps));
-  x.v_mps = select(x.y_m <= zero, max(x.v_mps, zero), x.v_mps);
-  x.v_mps = select(x.y_m >= parameters.stroke_m, min(x.v_mps, zero), x.v_mps);
-  x.in_Pa = clamp(x.in_Pa, zero, S(limits::kHighPressure_Pa));
-  x.out_Pa = clamp(x.out_Pa, zero, S(limits::kHighPressure_Pa));
-  x.spool_m = clamp(x.spool_m, S(-limits::kSpool_m), S(limits::kSpool_m));
-  x.spool_mps = clamp(x.spool_mps, S(-limits::kSpool_mps), S(limits::kSpool_mps));
 }
 
 }  // namespace plant_sim

@@ -1,5 +1,8 @@
 #include "plant_sim/library.h"
 
+#include <algorithm>
+
+#include "config/schema/error.h"
 #include "plant_sim/plants.h"
 
 namespace plant_sim {
@@ -13,6 +16,22 @@ std::vector<ParameterInfo> listed() {
   return all;
 }
 
+template <class Type>
+std::vector<std::string> site_names() {
+  std::vector<std::string> names;
+  names.reserve(Type::kSites.size());
+  for (const Site site : Type::kSites) names.emplace_back(site_name(site));
+  return names;
+}
+
+template <class Info>
+const Info* find(const std::vector<Info>& library, std::string_view name) {
+  for (const Info& info : library) {
+    if (info.name == name) return &info;
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 const std::vector<EffectInfo>& effect_library() {
@@ -22,7 +41,7 @@ const std::vector<EffectInfo>& effect_library() {
     effects.each([&](auto tag, auto& parameters) {
       using Effect = typename decltype(tag)::Type;
       EffectInfo info{Effect::kName, Effect::kEquation, {}, Effect::kDissipative, {}};
-      for (const Site site : Effect::kSites) info.sites.emplace_back(site_name(site));
+      info.sites = site_names<Effect>();
       parameters.visit(
           [&](const ParameterInfo& parameter, double&) { info.parameters.push_back(parameter); });
       all.push_back(std::move(info));
@@ -36,19 +55,27 @@ const std::vector<PlantInfo>& plant_library() {
   static const std::vector<PlantInfo> library = [] {
     std::vector<PlantInfo> all;
     each_plant([&]<class Model>() {
-      all.push_back(
-          {Model::kName, listed<typename Model::Parameters>(), listed<typename Model::Initial>()});
+      all.push_back({Model::kName, site_names<Model>(), listed<typename Model::Parameters>(),
+                     listed<typename Model::Initial>()});
     });
     return all;
   }();
   return library;
 }
 
-const PlantInfo* find_plant(std::string_view name) {
-  for (const PlantInfo& plant : plant_library()) {
-    if (plant.name == name) return &plant;
+const PlantInfo* find_plant(std::string_view name) { return find(plant_library(), name); }
+
+const EffectInfo* find_effect(std::string_view name) { return find(effect_library(), name); }
+
+void require_fit(const EffectInfo& effect, const PlantInfo& plant, const std::string& where) {
+  for (const std::string& site : effect.sites) {
+    if (std::find(plant.sites.begin(), plant.sites.end(), site) != plant.sites.end()) continue;
+    std::string offered;
+    for (const std::string& name : plant.sites) offered += (offered.empty() ? "" : ", ") + name;
+    throw config::schema::bad_config(
+        where, effect.name + " acts on " + site + ", which " + plant.name + " does not have",
+        "effects of its sites " + offered);
   }
-  return nullptr;
 }
 
 }  // namespace plant_sim

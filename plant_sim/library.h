@@ -20,6 +20,7 @@ struct EffectInfo {
 
 struct PlantInfo {
   std::string name;
+  std::vector<std::string> sites;  ///< where effects can attach (effects/site.h)
   std::vector<ParameterInfo> parameters;
   std::vector<ParameterInfo> initial;  ///< neutral = default; NaN = the plant's own choice
 };
@@ -28,5 +29,11 @@ struct PlantInfo {
 [[nodiscard]] const std::vector<PlantInfo>& plant_library();
 /// Null when there is no such plant.
 [[nodiscard]] const PlantInfo* find_plant(std::string_view name);
+/// Null when there is no such effect.
+[[nodiscard]] const EffectInfo* find_effect(std::string_view name);
+
+/// Throws config::schema::Error (exit 78) when the plant lacks a site of the effect; `where` is
+/// the place in a file, or the file.
+void require_fit(const EffectInfo& effect, const PlantInfo& plant, const std::string& where);
 
 }  // namespace plant_sim

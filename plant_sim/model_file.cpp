@@ -96,8 +96,13 @@ ModelFile load_model(const std::filesystem::path& file) {
 ModelFile read_model(const config::schema::Document& document) {
   ModelFile model;
   document.read([&](Visitor& v) { model.visit(v); });
-  const double stroke_m = *model.value("stroke_m");
-  if (*model.value("initial.y_m") > stroke_m) {
+  for (std::size_t i = 0; i < model.effects.size(); ++i) {
+    if (!model.effects[i].present) continue;
+    require_fit(effect_library()[i], *find_plant(model.plant),
+                document.name() + ": [effects." + model.effects[i].name + "]");
+  }
+  const double* stroke_m = model.value("stroke_m");
+  if (stroke_m != nullptr && *model.value("initial.y_m") > *stroke_m) {
     throw config::schema::bad_config(document.name() + ": [initial] y_m", "is beyond the stroke",
                                      "0 to stroke_m");
   }

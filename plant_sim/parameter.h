@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace plant_sim {
@@ -16,6 +17,9 @@ struct ParameterInfo {
   double typical;  ///< a size worth noticing: where searches start
   double neutral;  ///< the value without influence (effects), or the default (plants)
 };
+
+/// The unit that a name's suffix says, "damping_N_s_per_m" in N s/m; "" for a number without one.
+[[nodiscard]] std::string unit_of(std::string_view name);
 
 /// A value by its name, as model files hold them.
 struct NamedValue {

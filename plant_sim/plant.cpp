@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "config/schema/error.h"
+#include "plant_sim/library.h"
 #include "plant_sim/plants.h"
 
 namespace plant_sim {
@@ -41,8 +42,10 @@ class Simulated final : public Plant {
   }
 
   [[nodiscard]] double position_m() const noexcept override { return model_.state.y_m; }
-  [[nodiscard]] double reading_m() const noexcept override { return model_.state.y_m; }
-  [[nodiscard]] double speed_mps() const noexcept override { return model_.state.v_mps; }
+  [[nodiscard]] double reading_m() const noexcept override {
+    return model_.effects.reading_m(model_.state.y_m);
+  }
+  [[nodiscard]] double speed_mps() const noexcept override { return model_.speed_mps(); }
   [[nodiscard]] double step_s() const noexcept override { return step_s_; }
 
   double* parameter(std::string_view dotted) noexcept override {
@@ -93,9 +96,12 @@ class Simulated final : public Plant {
     model_.parameters.visit(
         [&](const ParameterInfo& info, double& value) { f(info.name, info, value); });
     model_.effects.each([&](auto tag, auto& parameters) {
-      parameters.visit([&](const ParameterInfo& info, double& value) {
-        f(std::string(decltype(tag)::Type::kName) + "." + info.name, info, value);
-      });
+      using Effect = typename decltype(tag)::Type;
+      if constexpr (fits<Effect, Model>()) {
+        parameters.visit([&](const ParameterInfo& info, double& value) {
+          f(std::string(Effect::kName) + "." + info.name, info, value);
+        });
+      }
     });
   }
 
@@ -113,6 +119,11 @@ class Simulated final : public Plant {
 std::unique_ptr<Plant> make_plant(const ModelFile& model) {
   std::unique_ptr<Plant> plant;
   std::string names;
+  if (const PlantInfo* info = find_plant(model.plant)) {
+    for (const ModelFile::Effect& effect : model.effects) {
+      if (effect.present) require_fit(*find_effect(effect.name), *info, model.name);
+    }
+  }
   each_plant([&]<class Model>() {
     if (model.plant == Model::kName) plant = std::make_unique<Simulated<Model>>(model);
     names += (names.empty() ? "" : ", ") + std::string(Model::kName);

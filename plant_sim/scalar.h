@@ -22,12 +22,20 @@ inline double min(double a, double b) { return a < b ? a : b; }
 inline double max(double a, double b) { return a > b ? a : b; }
 inline double sqrt(double a) { return std::sqrt(a); }
 inline double exp(double a) { return std::exp(a); }
+inline double log(double a) { return std::log(a); }
+inline double sin(double a) { return std::sin(a); }
 inline double ceil(double a) { return std::ceil(a); }
+inline double floor(double a) { return std::floor(a); }
 inline double abs(double a) { return std::fabs(a); }
 inline bool all(bool mask) { return mask; }
 inline bool both(bool a, bool b) { return a && b; }
 /// The largest value of any lane.
 inline double widest(double a) { return a; }
+/// at(index), where at gives a number for a whole index; of lanes, each with its own index.
+template <class At>
+double pick(double index, At&& at) {
+  return at(static_cast<std::size_t>(index));
+}
 
 // ---- eight lanes ----
 // Four pairs, the width that every x86-64 and aarch64 has; a wider machine word changes only Pair.
@@ -119,7 +127,18 @@ Lanes one_by_one(const Lanes& a) {
   });
 }
 inline Lanes exp(const Lanes& a) { return one_by_one<exp>(a); }
+inline Lanes log(const Lanes& a) { return one_by_one<log>(a); }
+inline Lanes sin(const Lanes& a) { return one_by_one<sin>(a); }
 inline Lanes ceil(const Lanes& a) { return one_by_one<ceil>(a); }
+inline Lanes floor(const Lanes& a) { return one_by_one<floor>(a); }
+template <class At>
+Lanes pick(const Lanes& index, At&& at) {
+  Lanes picked;
+  for (std::size_t i = 0; i < Lanes::kSize; ++i) {
+    picked.set(i, at(static_cast<std::size_t>(index[i]))[i]);
+  }
+  return picked;
+}
 inline bool all(const Lanes::Mask& mask) {
   const Lanes::PairMask m = mask.part[0] & mask.part[1] & mask.part[2] & mask.part[3];
   return (m[0] & m[1]) != 0;

@@ -19,7 +19,9 @@ struct Command {
   Setup setup;
 };
 
+void add_add(CLI::App& command, int& exit_code);
 void add_calibrate(CLI::App& command, int& exit_code);
+void add_effects(CLI::App& command, int& exit_code);
 void add_estimate(CLI::App& command, int& exit_code);
 void add_export(CLI::App& command, int& exit_code);
 void add_listen(CLI::App& command, int& exit_code);

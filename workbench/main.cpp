@@ -15,6 +15,8 @@ constexpr workbench::Command kCommands[] = {
     {"listen", "print alarms and estimates as they arrive", workbench::add_listen},
     {"estimate", "fit an ARX structure to a record", workbench::add_estimate},
     {"calibrate", "learn alarm bands from a healthy record", workbench::add_calibrate},
+    {"effects", "the library of physical effects", workbench::add_effects},
+    {"add", "a model file with an effect more", workbench::add_add},
     {"export", "write an LCM log as CSV", workbench::add_export},
 };
 

@@ -1,146 +1,135 @@
-// All effects of the table in one object: parameters, memory, and per site the sum or the chain of
-// what the active ones contribute. An effect with every parameter neutral is skipped.
+// All effects of the table in one object, as a plant sees them: per site the sum or the chain of
+// what the active ones contribute (site.h says what each means).
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <tuple>
-#include <utility>
+#include <limits>
 
-#include "plant_sim/effects/site.h"
-#include "plant_sim/parameter.h"
-#include "plant_sim/scalar.h"
+#include "plant_sim/effects/effect_store.h"
 
 namespace plant_sim {
 
 template <class S, template <class> class... E>
-class EffectSet {
+class EffectSet : public EffectStore<S, E...> {
+  using Store = EffectStore<S, E...>;
+  template <class T>
+  using Tag = typename Store::template Tag<T>;
+
  public:
-  static constexpr std::size_t kCount = sizeof...(E);
-
-  /// Calls f(effect type tag, parameters) for each effect in the order of the table.
-  template <class F>
-  void each(F&& f) {
-    each_index([&](auto i) { f(std::get<i>(kTypes), std::get<i>(parameters_)); });
+  /// To be called once per step, and no oftener.
+  [[nodiscard]] S command_V(S u_V) {
+    this->template act<Site::command>(
+        [&]<class T>(Tag<T>, const auto& p, auto& memory) { u_V = T::command_V(p, memory, u_V); });
+    return u_V;
   }
 
-  /// To be called after parameters have changed: brings them into their ranges and finds out which
-  /// effects are active.
-  void prepare() {
-    any_ = false;
-    each_index([&](auto i) {
-      bool neutral = true;
-      std::get<i>(parameters_).visit([&](const ParameterInfo& info, S& value) {
-        value = clamp(value, S(info.min), S(info.max));
-        neutral = neutral && all(both(value <= S(info.neutral), value >= S(info.neutral)));
-      });
-      active_[i] = !neutral || always_;
-      any_ = any_ || active_[i];
+  [[nodiscard]] S spool_limit_mps() const {
+    S least = std::numeric_limits<double>::infinity();
+    this->template act<Site::spool>([&]<class T>(Tag<T>, const auto& p, const auto&) {
+      least = min(least, T::spool_limit_mps(p));
     });
+    return least;
   }
-
-  /// For tests: neutral effects take part too.
-  void set_always(bool always) { always_ = always; }
-
-  void reset() { memory_ = {}; }
 
   [[nodiscard]] S opening_m(S x_m, const S& gain_m_per_V) const {
-    act([&](auto type, const auto& p, const auto&) {
-      using Type = typename decltype(type)::Type;
-      if constexpr (requires { Type::opening_m(p, x_m, gain_m_per_V); }) {
-        x_m = Type::opening_m(p, x_m, gain_m_per_V);
-      }
+    this->template act<Site::opening>([&]<class T>(Tag<T>, const auto& p, const auto&) {
+      x_m = T::opening_m(p, x_m, gain_m_per_V);
     });
     return x_m;
   }
 
-  [[nodiscard]] S added_mass_kg() const {
-    S sum = 0.0;
-    act([&](auto type, const auto& p, const auto&) {
-      using Type = typename decltype(type)::Type;
-      if constexpr (requires { Type::added_mass_kg(p); }) sum += Type::added_mass_kg(p);
+  [[nodiscard]] S supply_Pa(S supply_Pa, const S& port_Pa, const S& flow) const {
+    this->template act<Site::supply>([&]<class T>(Tag<T>, const auto& p, const auto&) {
+      supply_Pa = T::supply_Pa(p, supply_Pa, port_Pa, flow);
+    });
+    return supply_Pa;
+  }
+
+  [[nodiscard]] S flow_m3ps(S flow_m3ps) const {
+    this->template act<Site::flow>([&]<class T>(Tag<T>, const auto& p, const auto&) {
+      flow_m3ps = T::flow_m3ps(p, flow_m3ps);
+    });
+    return flow_m3ps;
+  }
+
+  [[nodiscard]] Leak<S> leak(const S& in_Pa, const S& out_Pa) const {
+    Leak<S> sum;
+    this->template act<Site::leakage>([&]<class T>(Tag<T>, const auto& p, const auto&) {
+      const Leak<S> one = T::leak(p, in_Pa, out_Pa);
+      sum.in_m3ps += one.in_m3ps;
+      sum.out_m3ps += one.out_m3ps;
     });
     return sum;
   }
 
-  [[nodiscard]] S resisting_N(const S& y_m, const S& v_mps) const {
+  [[nodiscard]] S conductance_m3ps_per_Pa() const {
     S sum = 0.0;
-    act([&](auto type, const auto& p, const auto&) {
-      using Type = typename decltype(type)::Type;
-      if constexpr (requires { Type::resisting_N(p, y_m, v_mps); }) {
-        sum += Type::resisting_N(p, y_m, v_mps);
-      }
-    });
+    this->template act<Site::leakage>(
+        [&]<class T>(Tag<T>, const auto& p, const auto&) { sum += T::conductance_m3ps_per_Pa(p); });
     return sum;
+  }
+
+  [[nodiscard]] S bulk_modulus_Pa(S modulus_Pa, const S& at_Pa) const {
+    this->template act<Site::bulk_modulus>([&]<class T>(Tag<T>, const auto& p, const auto&) {
+      modulus_Pa = T::bulk_modulus_Pa(p, modulus_Pa, at_Pa);
+    });
+    return modulus_Pa;
+  }
+
+  [[nodiscard]] S added_mass_kg() const {
+    S sum = 0.0;
+    this->template act<Site::inertia>(
+        [&]<class T>(Tag<T>, const auto& p, const auto&) { sum += T::added_mass_kg(p); });
+    return sum;
+  }
+
+  /// The force that is left of contact.drive_N; of several frictions each sees what the earlier
+  /// ones left.
+  [[nodiscard]] S remaining_N(const S& y_m, DryContact<S> contact) const {
+    S resisting_N = 0.0;
+    this->template act<Site::force>([&]<class T>(Tag<T>, const auto& p, const auto&) {
+      resisting_N += T::resisting_N(p, y_m, contact.v_mps);
+    });
+    contact.drive_N -= resisting_N;
+    this->template act<Site::dry_friction>([&]<class T>(Tag<T>, const auto& p, const auto& memory) {
+      contact.drive_N -= T::friction_N(p, memory, contact);
+    });
+    return contact.drive_N;
   }
 
   [[nodiscard]] S slope_N_s_per_m(const S& v_mps) const {
     S sum = 0.0;
-    act([&](auto type, const auto& p, const auto&) {
-      using Type = typename decltype(type)::Type;
-      if constexpr (requires { Type::slope_N_s_per_m(p, v_mps); }) {
-        sum += Type::slope_N_s_per_m(p, v_mps);
-      }
+    this->template act<Site::force>([&]<class T>(Tag<T>, const auto& p, const auto&) {
+      if constexpr (requires { T::slope_N_s_per_m(p, v_mps); }) sum += T::slope_N_s_per_m(p, v_mps);
     });
     return sum;
   }
 
-  /// at.drive_N without friction; of several frictions each sees what the earlier ones left.
-  [[nodiscard]] S friction_N(DryContact<S> at) const {
+  [[nodiscard]] S stiffness_N_per_m() const {
     S sum = 0.0;
-    act([&](auto type, const auto& p, const auto& memory) {
-      using Type = typename decltype(type)::Type;
-      if constexpr (requires { Type::friction_N(p, memory, at); }) {
-        const S one = Type::friction_N(p, memory, at);
-        at.drive_N -= one;
-        sum += one;
-      }
+    this->template act<Site::force>([&]<class T>(Tag<T>, const auto& p, const auto&) {
+      if constexpr (requires { T::stiffness_N_per_m(p); }) sum += T::stiffness_N_per_m(p);
+    });
+    this->template act<Site::dry_friction>([&]<class T>(Tag<T>, const auto& p, const auto&) {
+      if constexpr (requires { T::stiffness_N_per_m(p); }) sum += T::stiffness_N_per_m(p);
     });
     return sum;
   }
 
+  [[nodiscard]] S reading_m(S y_m) const {
+    this->template act<Site::sensor>([&]<class T>(Tag<T>, const auto& p, const auto& memory) {
+      y_m = T::reading_m(p, memory, y_m);
+    });
+    return y_m;
+  }
+
+  /// To be called once per accepted integration step.
   void accept(const S& travel_m, const S& v_mps) {
-    if (!any_) return;
-    each_index([&](auto i) {
-      using Type = typename std::tuple_element_t<i, Types>::Type;
-      if constexpr (requires {
-                      Type::accept(std::get<i>(parameters_), std::get<i>(memory_), travel_m, v_mps);
-                    }) {
-        if (active_[i])
-          Type::accept(std::get<i>(parameters_), std::get<i>(memory_), travel_m, v_mps);
+    this->act_on_memory([&]<class T>(Tag<T>, const auto& p, auto& memory) {
+      if constexpr (requires { T::accept(p, memory, travel_m, v_mps); }) {
+        T::accept(p, memory, travel_m, v_mps);
       }
     });
   }
-
- private:
-  template <class T>
-  struct Tag {
-    using Type = T;
-  };
-  using Types = std::tuple<Tag<E<S>>...>;
-  static constexpr Types kTypes{};
-
-  template <class F>
-  static void each_index(F&& f) {
-    [&]<std::size_t... I>(std::index_sequence<I...>) {
-      (f(std::integral_constant<std::size_t, I>{}), ...);
-    }
-    (std::make_index_sequence<kCount>{});
-  }
-
-  template <class F>
-  void act(F&& f) const {
-    if (!any_) return;
-    each_index([&](auto i) {
-      if (active_[i]) f(std::get<i>(kTypes), std::get<i>(parameters_), std::get<i>(memory_));
-    });
-  }
-
-  std::tuple<typename E<S>::Parameters...> parameters_;
-  std::tuple<typename E<S>::Memory...> memory_;
-  std::array<bool, kCount> active_{};
-  bool any_ = false;
-  bool always_ = false;
 };
 
 }  // namespace plant_sim

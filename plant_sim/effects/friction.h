@@ -68,6 +68,8 @@ struct Friction {
     return select(p.presliding_stiffness_N_per_m > S(0.0), spring_N, rigid_N);
   }
 
+  static S stiffness_N_per_m(const Parameters& p) { return p.presliding_stiffness_N_per_m; }
+
   static void accept(const Parameters& p, Memory& memory, const S& travel_m, const S& v_mps) {
     memory.deflection_m = deflection_m(p, memory, travel_m, v_mps);
   }

@@ -1,36 +1,68 @@
 // Where an effect can act. An effect has, for each site in its kSites, the member function named
-// here; a plant calls those of every active effect where the equations have that place.
+// here; a plant calls those of every active effect where its equations have that place, and lists
+// in its own kSites which places it has. An effect fits a plant that has all of its sites.
 //
-// | site         | member function                         | meaning |
-// |--------------|-----------------------------------------|---------------------------------------|
-// | opening      | S opening_m(p, x_m, gain_m_per_V)       | valve opening from the spool position
-// | | inertia      | S added_mass_kg(p)                      | mass that moves with the rod | |
-// force        | S resisting_N(p, y_m, v_mps)            | a force against extension             |
-// | dry_friction | S friction_N(p, memory, DryContact)     | needs the other forces: may hold them
-// |
+//   command       S command_V(p, memory, u_V)                once per step, may remember
+//   spool         S spool_limit_mps(p)                       bound of the spool's speed
+//   opening       S opening_m(p, x_m, gain_m_per_V)          valve opening from spool position
+//   supply        S supply_Pa(p, supply_Pa, port_Pa, flow)   pressure ahead of the open orifice;
+//                                                            flow: its m3/s per sqrt(Pa)
+//   flow          S flow_m3ps(p, flow_m3ps)                  of one orifice
+//   leakage       Leak<S> leak(p, in_Pa, out_Pa)             what leaves either chamber
+//   bulk_modulus  S bulk_modulus_Pa(p, modulus_Pa, at_Pa)    of the oil in one chamber
+//   inertia       S added_mass_kg(p)                         mass that moves with the rod
+//   force         S resisting_N(p, y_m, v_mps)               a force against extension
+//   dry_friction  S friction_N(p, memory, DryContact)        sees the other forces: may hold them
+//   sensor        S reading_m(p, memory, y_m)                what the position sensor shows
 //
-// A force effect that is steep in speed may add `S slope_N_s_per_m(p, v_mps)`, dF/dv, from which
-// the integrator takes shorter steps. An effect with memory has a struct Memory, owned by the
-// plant, and `void accept(p, memory, travel_m, v_mps)`, called once per accepted integration step.
+// Those of one site act in the order of the table. What would be too fast for the integration step
+// tells so, and shorter steps are taken: `S slope_N_s_per_m(p, v_mps)` dF/dv,
+// `S stiffness_N_per_m(p)` the most that F changes with y, `S conductance_m3ps_per_Pa(p)`.
+//
+// An effect with memory has a struct Memory, owned by the plant, and may have
+// `void accept(p, memory, travel_m, v_mps)`, called once per accepted integration step,
+// `void Memory::prepare(step_s)`, called outside of steps, and `void Memory::reset()`.
 // A new site is a line here, a call in EffectSet and a place in a plant.
 #pragma once
 
 namespace plant_sim {
 
-enum class Site { opening, inertia, force, dry_friction };
+enum class Site : unsigned {
+  command,
+  spool,
+  opening,
+  supply,
+  flow,
+  leakage,
+  bulk_modulus,
+  inertia,
+  force,
+  dry_friction,
+  sensor
+};
 
 inline const char* site_name(Site site) {
-  switch (site) {
-    case Site::opening:
-      return "opening";
-    case Site::inertia:
-      return "inertia";
-    case Site::force:
-      return "force";
-    case Site::dry_friction:
-      return "dry_friction";
+  constexpr const char* kNames[] = {"command", "spool",        "opening",      "supply",
+                                    "flow",    "leakage",      "bulk_modulus", "inertia",
+                                    "force",   "dry_friction", "sensor"};
+  return kNames[static_cast<unsigned>(site)];
+}
+
+template <class Sites>
+constexpr bool has_site(const Sites& sites, Site wanted) {
+  for (const Site site : sites) {
+    if (site == wanted) return true;
   }
-  return "";
+  return false;
+}
+
+/// Whether every site of the effect is among the plant's.
+template <class Effect, class Plant>
+constexpr bool fits() {
+  for (const Site site : Effect::kSites) {
+    if (!has_site(Plant::kSites, site)) return false;
+  }
+  return true;
 }
 
 /// What a dry friction sees of the moving part at one instant of an integration step.
@@ -40,6 +72,13 @@ struct DryContact {
   S travel_m;         ///< since the last accepted step
   S drive_N;          ///< sum of all other forces on the moving part, positive extends
   S arrest_kg_per_s;  ///< mass over step: the force per speed that stops it within one step
+};
+
+/// Flow that leaves the chambers other than through the valve.
+template <class S>
+struct Leak {
+  S in_m3ps = 0.0;   ///< out of the chamber that extends
+  S out_m3ps = 0.0;  ///< out of the chamber that retracts
 };
 
 }  // namespace plant_sim

@@ -74,14 +74,44 @@ TEST(ModelFile, SaysWhatIsWrong) {
 }
 
 TEST(ModelFile, EveryShippedModelLoadsAndRuns) {
-  for (const char* name : {"thesis", "thesis_calibrated", "rig_2000psi", "rig_2000psi_slaves"}) {
+  for (const char* name : {"thesis", "thesis_calibrated", "rig_2000psi", "rig_2000psi_slaves",
+                           "velocity_servo", "force_driven_axis"}) {
     const ModelFile model =
         load_model(std::string(SPOOLWATCH_SOURCE_DIR) + "/config/models/" + name + ".toml");
     EXPECT_EQ(model.name, name);
     auto plant = make_plant(model);
+    const double from_m = plant->position_m();
     plant->advance(1.0, 0.1);
-    EXPECT_GT(plant->position_m(), 0.305) << name;
+    EXPECT_GT(plant->position_m(), from_m) << name;
   }
+}
+
+TEST(ModelFile, RefusesAnEffectWhoseSiteThePlantLacks) {
+  const auto text = [](const std::string& plant, const std::string& effect) {
+    return "schema_version = 1\nname = \"x\"\nplant = \"" + plant + "\"\n[effects." + effect +
+           "]\n";
+  };
+  const auto read = [](const std::string& toml) {
+    return read_model(config::schema::Document::parse(toml, "x.toml"));
+  };
+  try {
+    (void)read(text("velocity_servo", "supply_droop"));
+    ADD_FAILURE() << "a velocity servo has no supply";
+  } catch (const config::schema::Error& error) {
+    EXPECT_EQ(error.exit_code(), 78);
+    EXPECT_STREQ(error.what(),
+                 "x.toml: [effects.supply_droop]: supply_droop acts on supply, which "
+                 "velocity_servo does not have; allowed: effects of its sites command, opening, "
+                 "sensor");
+  }
+  EXPECT_THROW((void)read(text("force_driven_axis", "deadband")), config::schema::Error);
+  // slaves add mass and force: one of the two is not enough
+  EXPECT_THROW((void)read(text("velocity_servo", "coupled_slaves")), config::schema::Error);
+  EXPECT_NO_THROW((void)read(text("force_driven_axis", "coupled_slaves")));
+  ModelFile model = read(text("velocity_servo", "null_bias"));
+  EXPECT_EQ(make_plant(model)->parameter("supply_droop.droop_Pa_per_m3ps"), nullptr);
+  *model.value("friction.coulomb_N") = 1.0;
+  EXPECT_THROW((void)make_plant(model), config::schema::Error);
 }
 
 TEST(Library, ListsEveryEffectWithItsSitesAndUsableRanges) {

@@ -9,9 +9,13 @@ import sys
 
 import numpy as np
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 THESIS = dict(Cd=0.60, rho=847.0, w=2.07e-2, zeta=0.70, wv=628.0, Kv=2.79e-5, L=0.61, beta=6.89e8,
               Ps=6.89e6, Pe=0.0, A=6.33e-4, d=1000.0, m=50.0, V0=1e-5)
+# effects, as reference_test.cpp sets them
+OIL = dict(asymmetry=0.08, droop=2e10, internal=3e-12, external=1e-12, air=0.01)
+LOAD = dict(quadratic=2e4, spring=2e4, rest=0.3, force=300.0, ripple=100.0, wave=0.01, phase=1.0)
 SCALE = np.array([1e-3, 1e-2, 1e6, 1e6, 1e-6, 1e-3])
 
 
@@ -29,9 +33,50 @@ def rate(_, x, u, p):
             sv, -2 * p["zeta"] * wv * sv - wv * wv * xv + p["Kv"] * wv * wv * u]
 
 
+def supply(k, port, p):
+    """The supply pressure that the flow k sqrt(supply - port) leaves; found by bracketing."""
+    droop = p.get("droop", 0.0)
+    if droop == 0.0 or k == 0.0:
+        return p["Ps"]
+    return brentq(lambda at: p["Ps"] - droop * abs(k) * np.sqrt(at - port) - at, port, p["Ps"],
+                  xtol=1e-6, rtol=1e-14)
+
+
+def modulus(pressure, p):
+    """Oil and bubbles squeezed together; pressure is gauge."""
+    absolute = pressure + 1.01e5
+    x = p.get("air", 0.0) * (1.01e5 / absolute) ** (1 / 1.4)
+    return p["beta"] * (1 + x) / (1 + x * p["beta"] / (1.4 * absolute))
+
+
+def resisting(y, v, p):
+    ripple = p.get("ripple", 0.0) * np.sin(2 * np.pi * y / p.get("wave", 1.0) + p.get("phase", 0.0))
+    return (p.get("quadratic", 0.0) * v * abs(v) + p.get("spring", 0.0) * (y - p.get("rest", 0.0))
+            + p.get("force", 0.0) + ripple)
+
+
+def rate_with_effects(_, x, u, p):
+    y, v, pi, po, xv, sv = x
+    k = p["Cd"] * p["w"] * xv * np.sqrt(2.0 / p["rho"])
+    if "asymmetry" in p:
+        k *= 1 + np.sign(xv) * p["asymmetry"]
+    if xv >= 0:
+        qi, qo = k * np.sqrt(supply(k, pi, p) - pi), k * np.sqrt(po - p["Pe"])
+    else:
+        qi, qo = k * np.sqrt(pi - p["Pe"]), k * np.sqrt(supply(k, po, p) - po)
+    inside, outside = p.get("internal", 0.0) * (pi - po), p.get("external", 0.0)
+    qi, qo = qi - inside - outside * pi, qo - inside + outside * po
+    wv = p["wv"]
+    return [v, (p["A"] * (pi - po) - p["d"] * v - resisting(y, v, p)) / p["m"],
+            modulus(pi, p) / (p["V0"] + p["A"] * y) * (qi - p["A"] * v),
+            modulus(po, p) / (p["V0"] + p["A"] * (p["L"] - y)) * (p["A"] * v - qo),
+            sv, -2 * p["zeta"] * wv * sv - wv * wv * xv + p["Kv"] * wv * wv * u]
+
+
 def held(x, u, span, p):
     """The state after `span` seconds of constant u."""
-    out = solve_ivp(rate, (0.0, span), x, method="DOP853", rtol=1e-12, atol=1e-13 * SCALE,
+    equations = rate_with_effects if len(p) > len(THESIS) else rate
+    out = solve_ivp(equations, (0.0, span), x, method="DOP853", rtol=1e-12, atol=1e-13 * SCALE,
                     args=(u, p))
     assert out.success
     return out.y[:, -1]
@@ -84,6 +129,8 @@ def main():
     lines = ["case,t_s,u_V,y_m,v_mps,pressure_in_Pa,pressure_out_Pa,spool_m,spool_mps"]
     cases = {"loop": loop(THESIS, 100.0, 2)[::20],
              "steps": open_loop(THESIS, [1.0, -1.0, 0.0, 2.0, -2.0])[::2],
+             "oil": open_loop(dict(THESIS, **OIL), [1.0, -1.0, 0.5, 2.0, -2.0])[::2],
+             "load": open_loop(dict(THESIS, **LOAD), [1.0, -1.0, 0.5, 2.0, -2.0])[::2],
              "stiff": open_loop(dict(THESIS, m=10.0, d=300.0, Ps=1.379e7), [0.5, -0.5, 3.0])[::2]}
     for name, rows in cases.items():
         for row in rows:

@@ -84,6 +84,48 @@ TEST(HydraulicActuator, FollowsSciPyWithOtherParameters) {
   EXPECT_LT(fine.pressure, 1e-5);
 }
 
+/// Effects as reference.py names them in OIL and LOAD.
+using Values = std::vector<std::array<std::string, 2>>;
+
+Difference with_effects(const std::string& name, const Values& names,
+                        const std::vector<double>& values) {
+  Actuator plant;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    EXPECT_TRUE(set_effect(plant, names[i][0], names[i][1], values[i])) << names[i][1];
+  }
+  plant.prepare(2.5e-5);
+  plant.reset();
+  return open_loop(reference()[name], plant, 2.5e-5);
+}
+
+TEST(EffectsOnOil, FollowSciPyTogether) {
+  const Difference fine = with_effects("oil",
+                                       {{"flow_asymmetry", "asymmetry_ratio"},
+                                        {"supply_droop", "droop_Pa_per_m3ps"},
+                                        {"internal_leakage", "conductance_m3ps_per_Pa"},
+                                        {"external_leakage", "conductance_m3ps_per_Pa"},
+                                        {"entrained_air", "fraction_ratio"}},
+                                       {0.08, 2e10, 3e-12, 1e-12, 0.01});
+  EXPECT_LT(fine.y_m, 1e-9);
+  EXPECT_LT(fine.speed, 1e-6);
+  EXPECT_LT(fine.pressure, 1e-6);
+}
+
+TEST(EffectsOnTheRod, FollowSciPyTogether) {
+  const Difference fine = with_effects("load",
+                                       {{"quadratic_damping", "coefficient_N_s2_per_m2"},
+                                        {"load_spring", "stiffness_N_per_m"},
+                                        {"load_spring", "rest_m"},
+                                        {"load_force", "force_N"},
+                                        {"force_ripple", "amplitude_N"},
+                                        {"force_ripple", "wavelength_m"},
+                                        {"force_ripple", "phase_rad"}},
+                                       {2e4, 2e4, 0.3, 300.0, 100.0, 0.01, 1.0});
+  EXPECT_LT(fine.y_m, 1e-9);
+  EXPECT_LT(fine.speed, 1e-6);
+  EXPECT_LT(fine.pressure, 1e-6);
+}
+
 TEST(HydraulicActuator, FollowsSciPyInClosedLoopAtOneMillisecond) {
   auto plant = at_rest();
   const std::vector<Row> rows = reference()["loop"];

@@ -4,12 +4,16 @@
 #include <cmath>
 #include <memory>
 #include <random>
+#include <string>
+#include <type_traits>
 
-#include "plant_sim/hydraulic_actuator.h"
+#include "plant_sim/plants.h"
 
 namespace plant_sim::testing {
 
 using Actuator = HydraulicActuator<double>;
+using Servo = VelocityServo<double>;
+using Axis = ForceDrivenAxis<double>;
 
 /// Travel after which the slowest mode, the mean pressure, has settled: its time constant falls
 /// with the opening as the speed grows.
@@ -28,9 +32,9 @@ inline double steady_speed_mps(const Actuator::Parameters& p, double opening_m,
 }
 
 /// Sets one parameter of one effect, "friction", "coulomb_N"; false when there is none.
-template <class S>
-bool set_effect(HydraulicActuator<S>& plant, const std::string& effect, const std::string& name,
-                const S& value) {
+template <template <class> class Plant, class S>
+bool set_effect(Plant<S>& plant, const std::string& effect, const std::string& name,
+                const std::type_identity_t<S>& value) {
   bool found = false;
   plant.effects.each([&](auto tag, auto& parameters) {
     if (effect != decltype(tag)::Type::kName) return;
@@ -44,14 +48,16 @@ bool set_effect(HydraulicActuator<S>& plant, const std::string& effect, const st
 }
 
 /// Runs with u held for the time.
-inline void hold(Actuator& plant, double u_V, double duration_s, double step_s = 1e-3) {
+template <class Plant>
+void hold(Plant& plant, double u_V, double duration_s, double step_s = 1e-3) {
   plant.prepare(step_s);
   const long steps = std::lround(duration_s / step_s);
   for (long i = 0; i < steps; ++i) plant.step(u_V);
 }
 
-inline std::unique_ptr<Actuator> at_rest() {
-  auto plant = std::make_unique<Actuator>();
+template <class Plant = Actuator>
+std::unique_ptr<Plant> at_rest() {
+  auto plant = std::make_unique<Plant>();
   plant->prepare(1e-3);
   plant->reset();
   return plant;

@@ -68,6 +68,8 @@ def main():
     lanes = step["plant_sim_eight_lanes"]
     print(f"plant_sim                {ours:8.1f} ns per step")
     print(f"plant_sim, eight lanes   {lanes / 8:8.1f} ns per step and lane")
+    print(f"all effects at once      {step['plant_sim_every_effect']:8.1f} ns per step,"
+          f" {step['plant_sim_every_effect_lanes'] / 8:.1f} per step and lane")
     print(f"odeint runge_kutta4      {theirs:8.1f} ns per step  ({theirs / ours:.2f} x ours)")
     print(f"solve_ivp RK45           {scipy_s * 1e5:8.0f} ns per 1 ms of record"
           f"  ({scipy_s * 1e5 / ours:.0f} x ours)")

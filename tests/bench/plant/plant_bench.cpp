@@ -21,9 +21,14 @@ constexpr int kStepsPerSample = 5;
 
 double reference_m(int step) { return 0.0254 * std::sin(M_PI * step * 1e-3) + 0.305; }
 
-template <class S>
+template <class S, bool kEveryEffect = false>
 void ours(benchmark::State& bench) {
   auto plant = std::make_unique<HydraulicActuator<S>>();
+  plant->effects.each([](auto, auto& parameters) {
+    parameters.visit([](const plant_sim::ParameterInfo& info, S& value) {
+      if (kEveryEffect) value = info.typical;
+    });
+  });
   for (auto _ : bench) {
     plant->prepare(1e-3);
     plant->reset();
@@ -43,6 +48,8 @@ void ours(benchmark::State& bench) {
 }
 BENCHMARK(ours<double>)->Name("plant_sim")->Unit(benchmark::kMicrosecond);
 BENCHMARK(ours<Lanes>)->Name("plant_sim_eight_lanes")->Unit(benchmark::kMicrosecond);
+BENCHMARK(ours<double, true>)->Name("plant_sim_every_effect")->Unit(benchmark::kMicrosecond);
+BENCHMARK(ours<Lanes, true>)->Name("plant_sim_every_effect_lanes")->Unit(benchmark::kMicrosecond);
 
 void odeint(benchmark::State& bench) {
   using State = std::array<double, 6>;
@@ -51,7 +58,8 @@ void odeint(benchmark::State& bench) {
   plant->reset();
   double u_V = 0.0;
   const auto rate = [&](const State& x, State& dxdt, double) {
-    const Actuator::State r = plant->rate<false>({x[0], x[1], x[2], x[3], x[4], x[5]}, u_V, x[0]);
+    const Actuator::State r =
+        plant->rate<false, false>({x[0], x[1], x[2], x[3], x[4], x[5]}, u_V, x[0]);
     dxdt = {r.y_m, r.v_mps, r.in_Pa, r.out_Pa, r.spool_m, r.spool_mps};
   };
   for (auto _ : bench) {

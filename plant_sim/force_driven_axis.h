@@ -1,0 +1,130 @@
+// A mass that the command pushes: a linear motor, or a motor and screw, with a fast current loop.
+//
+//   y' = v,   M v' = gain u - d v - F
+//
+// y v  position and speed, m and m/s     M  moving mass, kg     u  command, V
+// gain  force per volt, N/V      d  viscous damping, N/(m/s)      F  what effects resist with
+// There is no end of the stroke: position is relative.
+// Source: inertia and friction model of a prismatic joint, Janot, Gautier, Brunot, Data set and
+// reference models of EMPS (2019).
+#pragma once
+
+#include <array>
+
+#include "plant_sim/effects/table.h"
+#include "plant_sim/guard.h"
+#include "plant_sim/parameter.h"
+#include "plant_sim/runge_kutta.h"
+#include "plant_sim/scalar.h"
+
+namespace plant_sim {
+
+template <class S>
+class ForceDrivenAxis {
+ public:
+  static constexpr const char* kName = "force_driven_axis";
+  static constexpr std::array kSites = {Site::command, Site::inertia, Site::force,
+                                        Site::dry_friction, Site::sensor};
+
+  struct Parameters {
+    S mass_kg = 100.0;
+    S damping_N_s_per_m = 200.0;
+    S gain_N_per_V = 35.0;
+
+    template <class V>
+    void visit(V&& v) {
+      v(ParameterInfo{"mass_kg", "moving mass M", 1e-3, 1e6, 100.0, 100.0}, mass_kg);
+      v(ParameterInfo{"damping_N_s_per_m", "viscous damping d", 0.0, 1e8, 200.0, 200.0},
+        damping_N_s_per_m);
+      v(ParameterInfo{"gain_N_per_V", "force per command", 0.0, 1e6, 35.0, 35.0}, gain_N_per_V);
+    }
+  };
+
+  struct Initial {
+    S y_m = 0.0;
+    S v_mps = 0.0;
+
+    template <class V>
+    void visit(V&& v) {
+      v(ParameterInfo{"y_m", "position", -100.0, 100.0, 0.0, 0.0}, y_m);
+      v(ParameterInfo{"v_mps", "speed", -100.0, 100.0, 0.0, 0.0}, v_mps);
+    }
+  };
+
+  struct State {
+    S y_m, v_mps;
+
+    State moved(const State& rate, const S& by) const {
+      return {y_m + by * rate.y_m, v_mps + by * rate.v_mps};
+    }
+    friend State operator+(const State& a, const State& b) { return a.moved(b, S(1.0)); }
+
+    template <class V>
+    void visit(V&& v) {
+      v("y_m", y_m);
+      v("v_mps", v_mps);
+    }
+  };
+
+  Parameters parameters;
+  Initial initial;
+  State state;
+  Effects<S> effects;
+
+  void reset() {
+    state = {initial.y_m, initial.v_mps};
+    effects.reset();
+  }
+
+  /// To be called before step() after any parameter has changed, with the length of the step.
+  void prepare(double step_s) {
+    parameters.visit([](const ParameterInfo& info, S& value) {
+      value = clamp(value, S(info.min), S(info.max));
+    });
+    effects.prepare(step_s);
+    step_s_ = step_s;
+    inverse_mass_ = S(1.0) / (parameters.mass_kg + effects.added_mass_kg());
+    arrest_kg_per_s_ = (parameters.mass_kg + effects.added_mass_kg()) * S(1.0 / step_s);
+    spring_rate_ = sqrt(effects.stiffness_N_per_m() * inverse_mass_);
+  }
+
+  /// One step with u_V held; u_V that is not a number counts as 0.
+  void step(const S& u_V) {
+    const S drive_N = parameters.gain_N_per_V * effects.command_V(limits::known_V(u_V));
+    const S parts = divisions();
+    const S part_s = S(step_s_) / parts;
+    const int most = static_cast<int>(widest(parts));
+    for (int i = 0; i < most; ++i) {
+      integrate(drive_N, select(S(static_cast<double>(i)) < parts, part_s, S(0.0)));
+    }
+  }
+
+  [[nodiscard]] S speed_mps() const { return state.v_mps; }
+
+ private:
+  /// Into how many parts the step is divided, so that damping and springs are followed.
+  S divisions() const {
+    const S slope = parameters.damping_N_s_per_m + effects.slope_N_s_per_m(state.v_mps);
+    const S fastest = max(slope * inverse_mass_, spring_rate_);
+    return clamp(ceil(fastest * S(step_s_ / limits::kRateStep)), S(1.0), S(limits::kMostDivisions));
+  }
+
+  void integrate(const S& drive_N, const S& step_s) {
+    const S from_m = state.y_m;
+    const auto rate = [&](const State& x) -> State {
+      const S free_N = drive_N - parameters.damping_N_s_per_m * x.v_mps;
+      const S force_N =
+          effects.remaining_N(x.y_m, {x.v_mps, x.y_m - from_m, free_N, arrest_kg_per_s_});
+      return {x.v_mps, force_N * inverse_mass_};
+    };
+    state = runge_kutta_step(state, step_s, rate);
+    state.y_m = clamp(state.y_m, S(-limits::kPosition_m), S(limits::kPosition_m));
+    state.v_mps = clamp(state.v_mps, S(-limits::kSpeed_mps), S(limits::kSpeed_mps));
+    effects.accept(state.y_m - from_m, state.v_mps);
+  }
+
+  double step_s_ = 0.0;
+  S inverse_mass_, arrest_kg_per_s_, spring_rate_;
+};
+
+}  // namespace plant_sim

@@ -1,0 +1,22 @@
+// Numerical guards that every plant shares: far beyond anything real, they keep states finite.
+#pragma once
+
+#include "plant_sim/scalar.h"
+
+namespace plant_sim::limits {
+
+inline constexpr double kSpeed_mps = 1e3;
+inline constexpr double kPosition_m = 1e6;
+inline constexpr double kCommand_V = 1e4;
+/// A rate times the step up to which RK4 follows; it is stable up to 2.78.
+inline constexpr double kRateStep = 1.5;
+inline constexpr double kMostDivisions = 64.0;
+
+/// The command within the guard; what is no number counts as 0 V.
+template <class S>
+S known_V(const S& u_V) {
+  return select(abs(u_V) <= S(kCommand_V), u_V,
+                select(u_V > S(0.0), S(kCommand_V), select(u_V < S(0.0), S(-kCommand_V), S(0.0))));
+}
+
+}  // namespace plant_sim::limits

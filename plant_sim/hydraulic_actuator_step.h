@@ -1,0 +1,194 @@
+// One step of hydraulic_actuator.h: how it is divided, integrated and kept within the limits.
+#pragma once
+
+#include "plant_sim/guard.h"
+#include "plant_sim/hydraulic_actuator.h"
+
+namespace plant_sim {
+namespace limits {
+
+inline constexpr double kLowPressure_Pa = 1e5;    ///< from here down cavitation is looked for
+inline constexpr double kHighPressure_Pa = 1e10;  ///< numerical guard, beyond any oil
+inline constexpr double kSpool_m = 1.0;           ///< numerical guard
+inline constexpr double kSpool_mps = 1e5;         ///< numerical guard
+
+}  // namespace limits
+
+template <class S>
+void HydraulicActuator<S>::reset() {
+  const S half_Pa = S(0.5) * (parameters.supply_pressure_Pa + parameters.return_pressure_Pa);
+  const auto or_half = [&](const S& given) { return select(given >= S(0.0), given, half_Pa); };
+  state = {initial.y_m,
+           initial.v_mps,
+           or_half(initial.pressure_in_Pa),
+           or_half(initial.pressure_out_Pa),
+           initial.spool_m,
+           initial.spool_mps};
+  effects.reset();
+  keep_within_limits();
+}
+
+template <class S>
+void HydraulicActuator<S>::prepare(double step_s) {
+  Parameters& p = parameters;
+  p.visit(
+      [](const ParameterInfo& info, S& value) { value = clamp(value, S(info.min), S(info.max)); });
+  effects.prepare(step_s);
+  const S wv = p.valve_natural_frequency_rad_per_s;
+  derived_.step_s = step_s;
+  derived_.orifice =
+      p.discharge_coefficient * p.area_gradient_m * sqrt(S(2.0) / p.density_kg_per_m3);
+  derived_.two_zeta_wv = S(2.0) * p.valve_damping_ratio * wv;
+  derived_.wv2 = wv * wv;
+  derived_.kv_wv2 = p.valve_gain_m_per_V * derived_.wv2;
+  derived_.mass_kg = p.mass_kg + effects.added_mass_kg();
+  derived_.inverse_mass = S(1.0) / derived_.mass_kg;
+  derived_.arrest_kg_per_s = derived_.mass_kg * S(1.0 / step_s);
+  derived_.steady_rate = max(wv, derived_.two_zeta_wv);
+  derived_.spool_limit_mps = effects.spool_limit_mps();
+  derived_.stiffness_N_per_m = effects.stiffness_N_per_m();
+  derived_.conductance_m3ps_per_Pa = effects.conductance_m3ps_per_Pa();
+}
+
+/// The widest opening that the step can come to.
+template <class S>
+S HydraulicActuator<S>::reach_m(const S& u_V) const {
+  const S spool_m = max(abs(state.spool_m), parameters.valve_gain_m_per_V * abs(u_V)) +
+                    abs(state.spool_mps) * S(derived_.step_s);
+  if (!effects.any()) return spool_m;
+  const S& gain = parameters.valve_gain_m_per_V;
+  return max(spool_m,
+             max(abs(effects.opening_m(spool_m, gain)), abs(effects.opening_m(-spool_m, gain))));
+}
+
+/// The fastest that the rod can become within the step by the forces of effects.
+template <class S>
+S HydraulicActuator<S>::fast_mps() const {
+  const S v_mps = state.v_mps;
+  if (!effects.any()) return abs(v_mps);
+  const S push_N =
+      effects.remaining_N(state.y_m, {v_mps, S(0.0), S(0.0), derived_.arrest_kg_per_s});
+  return abs(v_mps) + abs(push_N) * derived_.inverse_mass * S(derived_.step_s);
+}
+
+/// In which lanes the step can be taken as a whole and cannot reach any limit.
+template <class S>
+auto HydraulicActuator<S>::ordinary(const S& u_V) const {
+  const Parameters& p = parameters;
+  const State& x = state;
+  const S step_s = derived_.step_s;
+  const S speed_mps = fast_mps();
+  const S travel_m = S(4.0) * speed_mps * step_s + S(1e-3) * p.stroke_m;
+  const S room_m = min(x.y_m, p.stroke_m - x.y_m);
+  const S in_m3 = p.dead_volume_m3 + p.area_m2 * x.y_m;
+  const S out_m3 = p.dead_volume_m3 + p.area_m2 * (p.stroke_m - x.y_m);
+  const S small_m3 = min(in_m3, out_m3);
+  const S low_Pa = min(x.in_Pa, x.out_Pa);
+  const S high_Pa = max(x.in_Pa, x.out_Pa);
+  // the smallest drop over any open or shut orifice, and the widest opening within the step
+  const S drop_Pa =
+      min(min(abs(p.supply_pressure_Pa - x.in_Pa), abs(p.supply_pressure_Pa - x.out_Pa)),
+          low_Pa - p.return_pressure_Pa);
+  const S flow_rate = derived_.orifice * reach_m(u_V) * p.bulk_modulus_Pa * step_s;
+  const S allowed = S(2.0 * limits::kRateStep) * small_m3;
+  const S stiffness = (p.bulk_modulus_Pa * p.area_m2 * p.area_m2 * (in_m3 + out_m3) +
+                       derived_.stiffness_N_per_m * in_m3 * out_m3) *
+                      step_s * step_s;
+  const S leak_m3 = derived_.conductance_m3ps_per_Pa * p.bulk_modulus_Pa * step_s;
+  const S slope = p.damping_N_s_per_m + effects.slope_N_s_per_m(speed_mps);
+  constexpr double kSquare = limits::kRateStep * limits::kRateStep;
+  const auto place = both(room_m > travel_m, derived_.steady_rate * step_s <= S(limits::kRateStep));
+  const auto pressure =
+      both(low_Pa > S(limits::kLowPressure_Pa), high_Pa < S(limits::kHighPressure_Pa));
+  const auto drop = both(drop_Pa > S(limits::kSmoothDrop_Pa),
+                         flow_rate * flow_rate < allowed * allowed * drop_Pa);
+  // less than the lower pressure can come or go within the step
+  const S to_spare = S(0.5) * low_Pa * small_m3;
+  const S largest_Pa = max(high_Pa, p.supply_pressure_Pa);
+  const auto change = both(flow_rate * flow_rate * largest_Pa < to_spare * to_spare,
+                           p.area_m2 * speed_mps * p.bulk_modulus_Pa * step_s < to_spare);
+  const auto stiff = both(stiffness < S(kSquare) * derived_.mass_kg * in_m3 * out_m3,
+                          slope * step_s <= S(limits::kRateStep) * derived_.mass_kg);
+  const auto leak = both(leak_m3 <= S(limits::kRateStep) * small_m3, leak_m3 * high_Pa <= to_spare);
+  return both(both(both(place, pressure), both(drop, stiff)), both(change, leak));
+}
+
+template <class S>
+void HydraulicActuator<S>::step(const S& u_V) {
+  const S drive_V = effects.command_V(limits::known_V(u_V));
+  const auto whole = ordinary(drive_V);
+  if (all(whole)) {
+    if (effects.any()) {
+      integrate<false, true>(drive_V, S(derived_.step_s));
+    } else {
+      integrate<false, false>(drive_V, S(derived_.step_s));
+    }
+    return;
+  }
+  const S parts = select(whole, S(1.0), divisions(drive_V));
+  const S part_s = S(derived_.step_s) / parts;
+  const int most = static_cast<int>(widest(parts));
+  for (int i = 0; i < most; ++i) {
+    integrate<true, true>(drive_V, select(S(static_cast<double>(i)) < parts, part_s, S(0.0)));
+  }
+}
+
+template <class S>
+template <bool kLimits, bool kEffects>
+void HydraulicActuator<S>::integrate(const S& u_V, const S& step_s) {
+  const S from_y_m = state.y_m;
+  state = runge_kutta_step(
+      state, step_s, [&](const State& x) { return rate<kLimits, kEffects>(x, u_V, from_y_m); });
+  if constexpr (kLimits) keep_within_limits();
+  if constexpr (kEffects) {
+    const S most_mps = derived_.spool_limit_mps;
+    state.spool_mps = clamp(state.spool_mps, -most_mps, most_mps);
+    effects.accept(state.y_m - from_y_m, state.v_mps);
+  }
+}
+
+/// Into how many parts the step is divided, so that the fastest of spool, damping, oil column and
+/// orifice is followed.
+template <class S>
+S HydraulicActuator<S>::divisions(const S& u_V) const {
+  const Parameters& p = parameters;
+  const State& x = state;
+  const S step_s = derived_.step_s;
+  const S in_m3 = p.dead_volume_m3 + p.area_m2 * x.y_m;
+  const S out_m3 = p.dead_volume_m3 + p.area_m2 * (p.stroke_m - x.y_m);
+  const S least = limits::kSmoothDrop_Pa;
+  const S supply_Pa =
+      min(abs(p.supply_pressure_Pa - x.in_Pa), abs(p.supply_pressure_Pa - x.out_Pa));
+  const S return_Pa =
+      min(abs(x.in_Pa - p.return_pressure_Pa), abs(x.out_Pa - p.return_pressure_Pa));
+  const S drop_Pa = max(min(supply_Pa, return_Pa), least);
+  // the cubic of root() is up to 5/2 times as steep as the square root at its end
+  const S orifice_rate = S(1.25) * derived_.orifice * reach_m(u_V) * p.bulk_modulus_Pa /
+                         (min(in_m3, out_m3) * sqrt(drop_Pa));
+  const S oil_N_per_m =
+      p.area_m2 * p.area_m2 * p.bulk_modulus_Pa * (S(1.0) / in_m3 + S(1.0) / out_m3);
+  const S column_rate = sqrt((oil_N_per_m + derived_.stiffness_N_per_m) * derived_.inverse_mass);
+  const S leak_rate = derived_.conductance_m3ps_per_Pa * p.bulk_modulus_Pa / min(in_m3, out_m3);
+  const S damping_rate =
+      (p.damping_N_s_per_m + effects.slope_N_s_per_m(fast_mps())) * derived_.inverse_mass;
+  const S fastest =
+      max(max(derived_.steady_rate, damping_rate), max(max(orifice_rate, column_rate), leak_rate));
+  return clamp(ceil(fastest * step_s * S(1.0 / limits::kRateStep)), S(1.0),
+               S(limits::kMostDivisions));
+}
+
+template <class S>
+void HydraulicActuator<S>::keep_within_limits() {
+  const S zero = 0.0;
+  State& x = state;
+  x.y_m = clamp(x.y_m, zero, parameters.stroke_m);
+  x.v_mps = clamp(x.v_mps, S(-limits::kSpeed_mps), S(limits::kSpeed_mps));
+  x.v_mps = select(x.y_m <= zero, max(x.v_mps, zero), x.v_mps);
+  x.v_mps = select(x.y_m >= parameters.stroke_m, min(x.v_mps, zero), x.v_mps);
+  x.in_Pa = clamp(x.in_Pa, zero, S(limits::kHighPressure_Pa));
+  x.out_Pa = clamp(x.out_Pa, zero, S(limits::kHighPressure_Pa));
+  x.spool_m = clamp(x.spool_m, S(-limits::kSpool_m), S(limits::kSpool_m));
+  x.spool_mps = clamp(x.spool_mps, S(-limits::kSpool_mps), S(limits::kSpool_mps));
+}
+
+}  // namespace plant_sim

@@ -1,0 +1,100 @@
+// The two simpler plants against closed forms.
+#include <gtest/gtest.h>
+
+#include "tests/plant_sim/support.h"
+
+namespace plant_sim::testing {
+namespace {
+
+TEST(VelocityServo, MovesInProportionToTheCommand) {
+  auto plant = at_rest<Servo>();
+  hold(*plant, -1.5, 2.0);
+  EXPECT_NEAR(plant->state.y_m, -0.15, 1e-12);
+  EXPECT_EQ(plant->speed_mps(), -0.05 * 1.5);
+}
+
+TEST(VelocityServo, LagsByItsTimeConstantWhateverTheStep) {
+  for (const double tau_s : {0.0003, 0.02, 0.5}) {
+    for (const double step_s : {1e-2, 1e-3}) {
+      auto plant = at_rest<Servo>();
+      plant->parameters.time_constant_s = tau_s;
+      hold(*plant, 2.0, 0.3, step_s);
+      const double lost_s = tau_s * (1.0 - std::exp(-0.3 / tau_s));
+      EXPECT_NEAR(plant->state.y_m, 0.1 * (0.3 - lost_s), 1e-13) << tau_s << " " << step_s;
+    }
+  }
+}
+
+TEST(VelocityServo, PassesTheDeadbandBehindTheLag) {
+  const auto travel = [](double step_s) {
+    auto plant = at_rest<Servo>();
+    plant->parameters.time_constant_s = 0.1;
+    set_effect(*plant, "deadband", "half_width_V", 0.4);
+    hold(*plant, 2.0, 0.3, step_s);
+    return plant->state.y_m;
+  };
+  // opens at t0 where 2 (1 - exp(-t/tau)) = 0.4
+  const double t0 = -0.1 * std::log(0.8);
+  const double exact = 0.05 * (1.6 * (0.3 - t0) - 2.0 * 0.1 * (0.8 - std::exp(-3.0)));
+  EXPECT_NEAR(travel(1e-3), exact, 1e-7);
+  EXPECT_NEAR(travel(1e-5), exact, 1e-10);
+}
+
+TEST(VelocityServo, IsTheActuatorsLimitForSlowMotion) {
+  auto servo = at_rest<Servo>();
+  auto actuator = at_rest();
+  actuator->parameters.mass_kg = 1.0;
+  actuator->parameters.damping_N_s_per_m = 0.0;
+  servo->parameters.gain_mps_per_V = steady_speed_mps(actuator->parameters, 2.79e-5);
+  hold(*actuator, 1.0, 4.0);
+  const double from_m = actuator->state.y_m;
+  hold(*actuator, 1.0, 1.0);
+  hold(*servo, 1.0, 1.0);
+  EXPECT_NEAR(servo->state.y_m, actuator->state.y_m - from_m, 1e-7);
+}
+
+TEST(ForceDrivenAxis, SpeedsUpToForceOverDamping) {
+  auto plant = at_rest<Axis>();
+  hold(*plant, 2.0, 0.7);
+  const double expected = 2.0 * 35.0 / 200.0 * (1.0 - std::exp(-0.7 * 200.0 / 100.0));
+  EXPECT_NEAR(plant->state.v_mps, expected, 1e-12);
+}
+
+TEST(ForceDrivenAxis, SlidesAgainstCoulombFrictionAndStandsBelowIt) {
+  auto plant = at_rest<Axis>();
+  set_effect(*plant, "friction", "coulomb_N", 30.0);
+  hold(*plant, 0.8, 1.0);
+  EXPECT_EQ(plant->state.y_m, 0.0);
+  hold(*plant, 2.0, 15.0);
+  EXPECT_NEAR(plant->state.v_mps, (70.0 - 30.0) / 200.0, 1e-9);
+  hold(*plant, 0.0, 10.0);
+  EXPECT_NEAR(plant->state.v_mps, 0.0, 1e-12);
+}
+
+TEST(ForceDrivenAxis, StandsOnItsBristlesHoweverStiffTheyAre) {
+  for (const double k : {1e5, 1e9}) {
+    auto plant = at_rest<Axis>();
+    plant->parameters.mass_kg = 10.0;
+    set_effect(*plant, "friction", "coulomb_N", 100.0);
+    set_effect(*plant, "friction", "presliding_stiffness_N_per_m", k);
+    hold(*plant, 1.0, 10.0);
+    // z = (g/k) (1 - exp(-k y/g)) holds 35 N at the least; each swing creeps on from there
+    const double held_m = -100.0 / k * std::log(1.0 - 0.35);
+    EXPECT_GE(plant->state.y_m, 0.999 * held_m) << k;
+    EXPECT_LT(plant->state.y_m, 5.0 * held_m) << k;
+    EXPECT_LT(std::abs(plant->state.v_mps), 1e-9) << k;
+  }
+}
+
+TEST(ForceDrivenAxis, CarriesAddedMass) {
+  auto heavy = at_rest<Axis>();
+  auto slaves = at_rest<Axis>();
+  heavy->parameters.mass_kg = 130.0;
+  set_effect(*slaves, "coupled_slaves", "mass_kg", 30.0);
+  hold(*heavy, 2.0, 0.5);
+  hold(*slaves, 2.0, 0.5);
+  EXPECT_NEAR(heavy->state.v_mps, slaves->state.v_mps, 1e-14);
+}
+
+}  // namespace
+}  // namespace plant_sim::testing

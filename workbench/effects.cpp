@@ -1,0 +1,107 @@
+// spoolwatch effects: the library of physical effects, for reading and as JSON.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "config/record/whole_file.h"
+#include "plant_sim/library.h"
+#include "workbench/command.h"
+
+namespace workbench {
+namespace {
+
+using nlohmann::ordered_json;
+using plant_sim::EffectInfo;
+using plant_sim::ParameterInfo;
+using plant_sim::PlantInfo;
+
+bool fits(const EffectInfo& effect, const PlantInfo& plant) {
+  return std::all_of(effect.sites.begin(), effect.sites.end(), [&](const std::string& site) {
+    return std::find(plant.sites.begin(), plant.sites.end(), site) != plant.sites.end();
+  });
+}
+
+std::vector<std::string> plants_of(const EffectInfo& effect) {
+  std::vector<std::string> names;
+  for (const PlantInfo& plant : plant_sim::plant_library()) {
+    if (fits(effect, plant)) names.push_back(plant.name);
+  }
+  return names;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+// JSON has no infinity: null, as for every missing number.
+ordered_json finite(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
+}
+
+ordered_json json_of(const std::vector<ParameterInfo>& parameters, const char* last) {
+  ordered_json list = ordered_json::array();
+  for (const ParameterInfo& p : parameters) {
+    list.push_back({{"name", p.name},
+                    {"what", p.what},
+                    {"unit", plant_sim::unit_of(p.name)},
+                    {"min", finite(p.min)},
+                    {"max", finite(p.max)},
+                    {"typical", finite(p.typical)},
+                    {last, finite(p.neutral)}});
+  }
+  return list;
+}
+
+ordered_json library_json() {
+  ordered_json effects = ordered_json::array();
+  for (const EffectInfo& effect : plant_sim::effect_library()) {
+    effects.push_back({{"name", effect.name},
+                       {"equation", effect.equation},
+                       {"sites", effect.sites},
+                       {"plants", plants_of(effect)},
+                       {"dissipative", effect.dissipative},
+                       {"parameters", json_of(effect.parameters, "neutral")}});
+  }
+  ordered_json plants = ordered_json::array();
+  for (const PlantInfo& plant : plant_sim::plant_library()) {
+    plants.push_back({{"name", plant.name},
+                      {"sites", plant.sites},
+                      {"parameters", json_of(plant.parameters, "default")}});
+  }
+  return {{"effects", effects}, {"plants", plants}};
+}
+
+void print_library() {
+  for (const EffectInfo& effect : plant_sim::effect_library()) {
+    std::printf("%s\n  %s\n  acts on %s; for %s\n", effect.name.c_str(), effect.equation.c_str(),
+                joined(effect.sites).c_str(), joined(plants_of(effect)).c_str());
+    for (const ParameterInfo& p : effect.parameters) {
+      std::printf("    %-30s %g to %g %s, typically %g: %s\n", p.name, p.min, p.max,
+                  plant_sim::unit_of(p.name).c_str(), p.typical, p.what);
+    }
+  }
+}
+
+}  // namespace
+
+void add_effects(CLI::App& command, int&) {
+  auto json = std::make_shared<std::string>();
+  command.add_option("--json", *json, "write as JSON; - is standard output");
+  command.callback([json] {
+    if (json->empty()) {
+      print_library();
+    } else if (*json == "-") {
+      std::printf("%s\n", library_json().dump(2).c_str());
+    } else {
+      config::record::write_whole(*json, library_json().dump(2) + "\n");
+    }
+  });
+}
+
+}  // namespace workbench
