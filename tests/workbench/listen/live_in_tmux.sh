@@ -34,4 +34,8 @@ for _ in $(seq 100); do
   [ -s "$folder/exit" ] && break
   sleep 0.1
 done
-[ "$(cat "$folder/exit")" = 0 ]
+if [ "$(cat "$folder/exit")" != 0 ]; then
+  echo "q ended the view with $(cat "$folder/exit")" >&2
+  "${tmux[@]}" capture-pane -p -S - >&2
+  exit 1
+fi
