@@ -9,24 +9,27 @@ template <class S>
 template <class V>
 void HydraulicActuator<S>::Parameters::visit(V&& v) {
   const auto field = [&](const char* name, const char* what, double least, double most,
-                         double usual, S& value) {
-    v(ParameterInfo{name, what, least, most, usual, usual}, value);
+                         double usual, S& value, double uncertainty_ratio = 0.0) {
+    v(ParameterInfo{name, what, least, most, usual, usual, uncertainty_ratio}, value);
   };
-  field("mass_kg", "moving mass m", 0.1, 1e6, 50.0, mass_kg);
+  field("mass_kg", "moving mass m", 0.1, 1e6, 50.0, mass_kg, 0.05);
   field("area_m2", "piston area A, both sides", 1e-6, 1.0, 6.33e-4, area_m2);
-  field("damping_N_s_per_m", "viscous damping d", 0.0, 1e8, 1000.0, damping_N_s_per_m);
-  field("bulk_modulus_Pa", "effective bulk modulus beta", 1e6, 1e11, 6.89e8, bulk_modulus_Pa);
-  field("dead_volume_m3", "volume V0 left at the stroke's end", 1e-8, 1.0, 1e-5, dead_volume_m3);
+  field("damping_N_s_per_m", "viscous damping d", 0.0, 1e8, 1000.0, damping_N_s_per_m, 0.2);
+  field("bulk_modulus_Pa", "effective bulk modulus beta", 1e6, 1e11, 6.89e8, bulk_modulus_Pa, 0.1);
+  field("dead_volume_m3", "volume V0 left at the stroke's end", 1e-8, 1.0, 1e-5, dead_volume_m3,
+        0.2);
   field("stroke_m", "stroke L", 1e-3, 100.0, 0.61, stroke_m);
-  field("supply_pressure_Pa", "supply pressure Ps", 0.0, 1e8, 6.89e6, supply_pressure_Pa);
+  field("supply_pressure_Pa", "supply pressure Ps", 0.0, 1e8, 6.89e6, supply_pressure_Pa, 0.03);
   field("return_pressure_Pa", "return pressure Pe", 0.0, 1e8, 0.0, return_pressure_Pa);
   field("discharge_coefficient", "orifice coefficient Cd", 1e-3, 2.0, 0.60, discharge_coefficient);
   field("density_kg_per_m3", "oil density rho", 100.0, 5000.0, 847.0, density_kg_per_m3);
   field("area_gradient_m", "orifice width w", 1e-6, 1.0, 2.07e-2, area_gradient_m);
-  field("valve_gain_m_per_V", "spool travel per volt Kv", 0.0, 1.0, 2.79e-5, valve_gain_m_per_V);
+  field("valve_gain_m_per_V", "spool travel per volt Kv", 0.0, 1.0, 2.79e-5, valve_gain_m_per_V,
+        0.5);
   field("valve_natural_frequency_rad_per_s", "spool natural frequency wv", 1.0, 1e5, 628.0,
-        valve_natural_frequency_rad_per_s);
-  field("valve_damping_ratio", "spool damping ratio zeta", 0.0, 10.0, 0.70, valve_damping_ratio);
+        valve_natural_frequency_rad_per_s, 0.07);
+  field("valve_damping_ratio", "spool damping ratio zeta", 0.0, 10.0, 0.70, valve_damping_ratio,
+        0.1);
 }
 
 template <class S>

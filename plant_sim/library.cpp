@@ -54,7 +54,7 @@ const std::vector<EffectInfo>& effect_library() {
 const std::vector<PlantInfo>& plant_library() {
   static const std::vector<PlantInfo> library = [] {
     std::vector<PlantInfo> all;
-    each_plant([&]<class Model>() {
+    each_plant<double>([&]<class Model>() {
       all.push_back({Model::kName, site_names<Model>(), listed<typename Model::Parameters>(),
                      listed<typename Model::Initial>()});
     });

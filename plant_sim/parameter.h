@@ -16,6 +16,11 @@ struct ParameterInfo {
   double max;      ///< largest allowed value
   double typical;  ///< a size worth noticing: where searches start
   double neutral;  ///< the value without influence (effects), or the default (plants)
+  /// Plants: how far a rig may be from its model file, as a relative standard deviation; 0 = taken
+  /// as known, because the record cannot tell it from the others or because it is easily measured.
+  double uncertainty_ratio = 0.0;
+  /// Effects: 0 = what the effect is; above, a refinement that has to earn its place afterwards.
+  int refinement = 0;
 };
 
 /// The unit that a name's suffix says, "damping_N_s_per_m" in N s/m; "" for a number without one.

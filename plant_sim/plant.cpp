@@ -124,7 +124,7 @@ std::unique_ptr<Plant> make_plant(const ModelFile& model) {
       if (effect.present) require_fit(*find_effect(effect.name), *info, model.name);
     }
   }
-  each_plant([&]<class Model>() {
+  each_plant<double>([&]<class Model>() {
     if (model.plant == Model::kName) plant = std::make_unique<Simulated<Model>>(model);
     names += (names.empty() ? "" : ", ") + std::string(Model::kName);
   });

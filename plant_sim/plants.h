@@ -7,12 +7,12 @@
 
 namespace plant_sim {
 
-/// Calls f.operator()<Plant<double>>() for each.
-template <class F>
+/// Calls f.operator()<Plant<S>>() for each.
+template <class S, class F>
 void each_plant(F&& f) {
-  f.template operator()<HydraulicActuator<double>>();
-  f.template operator()<VelocityServo<double>>();
-  f.template operator()<ForceDrivenAxis<double>>();
+  f.template operator()<HydraulicActuator<S>>();
+  f.template operator()<VelocityServo<S>>();
+  f.template operator()<ForceDrivenAxis<S>>();
 }
 
 }  // namespace plant_sim

@@ -1,0 +1,50 @@
+// Up to eight parameter sets of one plant in lockstep, one in each SIMD lane: what fitting a model
+// needs, where nearly all time goes into simulations that differ a little in a parameter or two.
+//
+// A lane does the operations of the single plant (plant.h); what is said there of parameters, steps
+// and commands holds here. Between samples a lane's position may be shifted, which is how an
+// observer corrects it towards the measurement.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string_view>
+
+#include "plant_sim/model_file.h"
+
+namespace plant_sim {
+
+class Ensemble {
+ public:
+  static constexpr std::size_t kLanes = 8;
+  using Values = std::array<double, kLanes>;
+
+  Ensemble() = default;
+  Ensemble(const Ensemble&) = delete;
+  Ensemble& operator=(const Ensemble&) = delete;
+  virtual ~Ensemble() = default;
+
+  /// The parameter of that name ("mass_kg", "friction.coulomb_N") for set(); none when unknown.
+  [[nodiscard]] virtual std::optional<std::size_t> find(std::string_view dotted) const = 0;
+  /// A value outside the parameter's range acts as the nearest allowed one. lane < kLanes.
+  virtual void set(std::size_t parameter, std::size_t lane, double value) noexcept = 0;
+  [[nodiscard]] virtual double get(std::size_t parameter, std::size_t lane) const noexcept = 0;
+
+  /// Every lane to the model's initial state, its rod where the sensor shows reading_m.
+  virtual void start(double reading_m) noexcept = 0;
+  /// Holds u_V, one voltage for each lane, for duration_s (a whole number of steps).
+  virtual void advance(const Values& u_V, double duration_s) noexcept = 0;
+  /// Moves the rod, and with it what the sensor shows, without any physics.
+  virtual void shift(const Values& by_m) noexcept = 0;
+
+  [[nodiscard]] virtual Values reading_m() const noexcept = 0;
+  [[nodiscard]] virtual Values speed_mps() const noexcept = 0;
+};
+
+/// The model's plant with its parameters in all lanes, stepped every step_s instead of the model's
+/// own step. Throws config::schema::Error (exit 78) like make_plant().
+[[nodiscard]] std::unique_ptr<Ensemble> make_ensemble(const ModelFile& model, double step_s);
+
+}  // namespace plant_sim
