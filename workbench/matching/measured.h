@@ -1,0 +1,38 @@
+// A record as a model is held against it: command and position on an even grid, in segments between
+// which samples are missing.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "config/record/record.h"
+
+namespace workbench::matching {
+
+struct Measured {
+  std::string name;
+  double sample_time_s = 0.0;
+  std::vector<double> t_s;
+  std::vector<double> u_V;
+  std::vector<double> y_m;
+  std::vector<std::size_t> starts;  ///< first sample of each segment, ascending, the first is 0
+  std::vector<char> settled;        ///< 0 while a segment's unknown initial state dies away
+  std::vector<std::string> notes;   ///< restrictions that a reader of results should know
+
+  [[nodiscard]] std::size_t size() const noexcept { return t_s.size(); }
+};
+
+/// How long after a segment's start the error does not count.
+inline constexpr double kSettling_s = 0.5;
+/// Segments shorter than this are left out.
+inline constexpr double kShortest_s = 1.0;
+
+/// Throws config::schema::Error (exit 65) when what remains is shorter than 2 s. No sample is
+/// invented: segments between gaps start anew, short ones are left out and noted.
+[[nodiscard]] Measured measured(const config::record::Record& record);
+
+/// Samples [from, to) as a record of their own.
+[[nodiscard]] Measured part(const Measured& whole, std::size_t from, std::size_t to);
+
+}  // namespace workbench::matching
