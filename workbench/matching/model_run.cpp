@@ -44,8 +44,10 @@ void ModelRun::residuals(const Eigen::MatrixXd& points, const Eigen::MatrixXd& a
       ensemble_->set(index_[p], static_cast<std::size_t>(lane), searched_[p].value(s));
     }
   }
-  const auto load = added_N.size() > 0 ? ensemble_->find("load_force.force_N") : std::nullopt;
-  const double load_N = load ? ensemble_->get(*load, 0) : 0.0;
+  const auto found = ensemble_->find("load_force.force_N");
+  const bool loads = added_N.size() > 0 && found.has_value();
+  const std::size_t load = found.value_or(0);
+  const double load_N = loads ? ensemble_->get(load, 0) : 0.0;
   const double share = observer_per_s_ * record.sample_time_s;
   std::size_t segment = 0;
   for (Eigen::Index k = 0; k < samples; ++k) {
@@ -70,15 +72,15 @@ void ModelRun::residuals(const Eigen::MatrixXd& points, const Eigen::MatrixXd& a
     for (Eigen::Index lane = 0; lane < added_V.cols(); ++lane) {
       u_V[static_cast<std::size_t>(lane)] += added_V(k, lane);
     }
-    if (load) {
+    if (loads) {
       for (Eigen::Index lane = 0; lane < added_N.cols(); ++lane) {
-        ensemble_->set(*load, static_cast<std::size_t>(lane), load_N + added_N(k, lane));
+        ensemble_->set(load, static_cast<std::size_t>(lane), load_N + added_N(k, lane));
       }
     }
     ensemble_->advance(u_V, record.sample_time_s);
   }
-  for (std::size_t lane = 0; load && lane < Ensemble::kLanes; ++lane) {
-    ensemble_->set(*load, lane, load_N);
+  for (std::size_t lane = 0; loads && lane < Ensemble::kLanes; ++lane) {
+    ensemble_->set(load, lane, load_N);
   }
 }
 
