@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "config/schema/error.h"
+#include "plant_sim/formula/formula.h"
+#include "plant_sim/model_file.h"
 #include "plant_sim/plants.h"
 
 namespace plant_sim {
@@ -66,6 +68,33 @@ const std::vector<PlantInfo>& plant_library() {
 const PlantInfo* find_plant(std::string_view name) { return find(plant_library(), name); }
 
 const EffectInfo* find_effect(std::string_view name) { return find(effect_library(), name); }
+
+std::vector<EffectInfo> effects_of(const ModelFile& model) {
+  std::vector<EffectInfo> all = effect_library();
+  for (const FormulaEffect& declared : model.formula_effects) {
+    const FormulaSite* site = find_formula_site(declared.site);
+    const std::string result = site != nullptr ? std::string(site->result) + " = " : "";
+    EffectInfo info{declared.name, result + declared.formula, {declared.site}, false, {}};
+    for (const FormulaEffect::Parameter& p : declared.parameters) {
+      info.parameters.push_back(info_of(p));
+    }
+    info.what = declared.what;
+    all.push_back(std::move(info));
+  }
+  return all;
+}
+
+void require_fit(const ModelFile& model, const std::string& file) {
+  const PlantInfo* plant = find_plant(model.plant);
+  if (plant == nullptr) return;
+  const std::vector<EffectInfo> effects = effects_of(model);
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    const bool formula = i >= effect_library().size();
+    if (!formula && !model.effects[i].present) continue;
+    require_fit(effects[i], *plant,
+                file + (formula ? ": [formula_effects." : ": [effects.") + effects[i].name + "]");
+  }
+}
 
 void require_fit(const EffectInfo& effect, const PlantInfo& plant, const std::string& where) {
   for (const std::string& site : effect.sites) {

@@ -10,12 +10,15 @@
 
 namespace plant_sim {
 
+struct ModelFile;
+
 struct EffectInfo {
   std::string name;
   std::string equation;
   std::vector<std::string> sites;  ///< where it attaches (effects/site.h)
   bool dissipative;                ///< can only take energy out
   std::vector<ParameterInfo> parameters;
+  std::string what = {};  ///< of a formula of the model file: its meaning, as given there
 };
 
 struct PlantInfo {
@@ -32,6 +35,13 @@ struct PlantInfo {
 /// Null when there is no such effect.
 [[nodiscard]] const EffectInfo* find_effect(std::string_view name);
 
+/// Every effect that a model can have: the library's, then the formulas that its file declares, in
+/// the order of ModelFile::effects. Texts of parameters live as long as the program.
+[[nodiscard]] std::vector<EffectInfo> effects_of(const ModelFile& model);
+
+/// Throws config::schema::Error (exit 78) when the model's plant, if it exists, lacks a site of an
+/// effect that is present, or of a formula that is declared.
+void require_fit(const ModelFile& model, const std::string& file);
 /// Throws config::schema::Error (exit 78) when the plant lacks a site of the effect; `where` is
 /// the place in a file, or the file.
 void require_fit(const EffectInfo& effect, const PlantInfo& plant, const std::string& where);

@@ -1,5 +1,6 @@
 #include "plant_sim/model_file.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "config/schema/document.h"
@@ -39,14 +40,69 @@ double* find(std::vector<NamedValue>& values, std::string_view name) {
   return nullptr;
 }
 
+/// A value of the plant, whichever plant has it.
+double value_or(const ModelFile& model, std::string_view name, double otherwise) {
+  for (const NamedValue& value : model.parameters) {
+    if (value.name == name) return value.value;
+  }
+  return otherwise;
+}
+
+/// Where the variables of formulas plausibly are on this plant: commands of +-10 V, the whole
+/// stroke, twice the supply pressure.
+PlausibleRanges plausible(const ModelFile& model) {
+  constexpr double kFullCommand_V = 10.0;
+  PlausibleRanges ranges;
+  const double gain = value_or(model, "valve_gain_m_per_V", value_or(model, "gain_mps_per_V", 1.0));
+  const double opening = std::max(kFullCommand_V * gain, 1e-6);
+  const double supply_Pa = std::max(value_or(model, "supply_pressure_Pa", 1e7), 1e5);
+  const double orifice = value_or(model, "discharge_coefficient", 0.6) *
+                         value_or(model, "area_gradient_m", 0.02) *
+                         std::sqrt(2.0 / value_or(model, "density_kg_per_m3", 850.0));
+  const double flow_m3ps = std::max(orifice * opening * std::sqrt(supply_Pa), 1e-9);
+  const double stroke_m = value_or(model, "stroke_m", -1.0);
+  ranges.opening_m = {-opening, opening};
+  ranges.flow_m3ps = {-flow_m3ps, flow_m3ps};
+  ranges.pressure_Pa = {0.0, 2.0 * supply_Pa};
+  ranges.position_m = stroke_m > 0.0 ? VariableRange{0.0, stroke_m} : VariableRange{-2.0, 2.0};
+  return ranges;
+}
+
+std::string table_of(const FormulaEffect& effect, const std::string& file) {
+  return file + ": [formula_effects." + effect.name + "]";
+}
+
+void check_declared(const ModelFile& model, const FormulaEffect& effect, const std::string& file) {
+  const std::string where = table_of(effect, file);
+  if (find_effect(effect.name) != nullptr || effect.name == "initial") {
+    throw config::schema::bad_config(where, "has the name of an effect of the library",
+                                     "another name");
+  }
+  check(effect, compile(effect, plausible(model), where), where);
+}
+
 }  // namespace
 
 ModelFile::ModelFile() {
   const PlantInfo& info = *find_plant(plant);
   parameters = defaults(info.parameters);
   initial = defaults(info.initial);
-  for (const EffectInfo& effect : effect_library()) {
-    effects.push_back({effect.name, false, defaults(effect.parameters)});
+  list_effects();
+}
+
+/// Brings `effects` in line with what is declared; those that stay keep their values.
+void ModelFile::list_effects() {
+  const std::vector<EffectInfo> all = effects_of(*this);
+  effects.resize(all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::vector<NamedValue> neutral = defaults(all[i].parameters);
+    const auto same_name = [](const NamedValue& a, const NamedValue& b) {
+      return a.name == b.name;
+    };
+    const bool same = effects[i].name == all[i].name &&
+                      std::equal(neutral.begin(), neutral.end(), effects[i].parameters.begin(),
+                                 effects[i].parameters.end(), same_name);
+    if (!same) effects[i] = {all[i].name, false, neutral};
   }
 }
 
@@ -62,16 +118,50 @@ void ModelFile::visit(Visitor& v) {
   v.number({"step_s", "integration step"}, step_s, {1e-6, 0.01});
   v.table("parameters", [&](Visitor& t) { visit_values(t, info.parameters, parameters); });
   v.table("initial", [&](Visitor& t) { visit_values(t, info.initial, initial); });
+  std::vector<std::string> declared;
+  for (const FormulaEffect& effect : formula_effects) declared.push_back(effect.name);
+  declared = v.names("formula_effects", declared);
+  formula_effects.resize(declared.size());
+  v.table("formula_effects", [&](Visitor& t) {
+    for (std::size_t i = 0; i < declared.size(); ++i) {
+      formula_effects[i].name = declared[i];
+      t.table(declared[i].c_str(), [&](Visitor& f) { formula_effects[i].visit(f); });
+    }
+  });
+  list_effects();
+  const std::vector<EffectInfo> all = effects_of(*this);
   v.table("effects", [&](Visitor& t) {
     for (std::size_t i = 0; i < effects.size(); ++i) {
       t.optional_table(effects[i].name.c_str(), effects[i].present, [&](Visitor& e) {
-        visit_values(e, effect_library()[i].parameters, effects[i].parameters);
+        visit_values(e, all[i].parameters, effects[i].parameters);
       });
     }
   });
   v.table("loop", [&](Visitor& t) {
     t.number({"kp_V_per_m", "gain of the proportional controller"}, loop.kp_V_per_m, {0.0, 1e6});
   });
+}
+
+void ModelFile::declare(const FormulaEffect& effect, const std::string& file) {
+  check_declared(*this, effect, file);
+  const auto same = [&](const FormulaEffect& other) { return other.name == effect.name; };
+  const auto old = std::find_if(formula_effects.begin(), formula_effects.end(), same);
+  if (old == formula_effects.end()) {
+    formula_effects.push_back(effect);
+  } else {
+    *old = effect;
+    std::erase_if(effects, [&](const Effect& entry) { return entry.name == effect.name; });
+  }
+  list_effects();
+}
+
+Formulas ModelFile::formulas() const {
+  std::vector<Formula> all;
+  all.reserve(formula_effects.size());
+  for (const FormulaEffect& effect : formula_effects) {
+    all.push_back(compile(effect, plausible(*this), table_of(effect, name)));
+  }
+  return Formulas(std::move(all));
 }
 
 double* ModelFile::value(std::string_view dotted) {
@@ -96,10 +186,9 @@ ModelFile load_model(const std::filesystem::path& file) {
 ModelFile read_model(const config::schema::Document& document) {
   ModelFile model;
   document.read([&](Visitor& v) { model.visit(v); });
-  for (std::size_t i = 0; i < model.effects.size(); ++i) {
-    if (!model.effects[i].present) continue;
-    require_fit(effect_library()[i], *find_plant(model.plant),
-                document.name() + ": [effects." + model.effects[i].name + "]");
+  require_fit(model, document.name());
+  for (const FormulaEffect& effect : model.formula_effects) {
+    check_declared(model, effect, document.name());
   }
   const double* stroke_m = model.value("stroke_m");
   if (stroke_m != nullptr && *model.value("initial.y_m") > *stroke_m) {

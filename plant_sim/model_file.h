@@ -11,6 +11,7 @@
 //   y_m = 0.305
 //   [effects.friction]    # presence adds the effect; absent parameters are neutral
 //   coulomb_N = 100.0
+//   [formula_effects.NAME]  # a user's own effect (formula/formula_effect.h), then one like others
 //   [loop]
 //   kp_V_per_m = 100.0
 #pragma once
@@ -20,6 +21,7 @@
 #include <string_view>
 #include <vector>
 
+#include "plant_sim/formula/formula.h"
 #include "plant_sim/parameter.h"
 
 namespace config::schema {
@@ -30,7 +32,7 @@ class Visitor;
 namespace plant_sim {
 
 struct ModelFile {
-  /// An effect of the library and its parameter values, in the order of the library.
+  /// An effect and its parameter values.
   struct Effect {
     std::string name;
     bool present = false;
@@ -45,16 +47,27 @@ struct ModelFile {
   double step_s = 0.001;
   std::vector<NamedValue> parameters;  ///< all of the plant's, defaults filled in
   std::vector<NamedValue> initial;     ///< NaN = the plant's own choice (half supply pressure)
-  std::vector<Effect> effects;         ///< every effect of the library, present or not
+  std::vector<FormulaEffect> formula_effects;  ///< as declared
+  std::vector<Effect> effects;                 ///< the library's, then the formulas; present or not
   Loop loop;
 
   /// A model with the plant's defaults and no effect.
   ModelFile();
   void visit(config::schema::Visitor& v);
 
+  /// Declares a user's own effect, absent, in place of one of the same name. Throws
+  /// config::schema::Error (exit 78) when it is not one that can be simulated; `file` is for the
+  /// message.
+  void declare(const FormulaEffect& effect, const std::string& file);
+  /// The formulas ready for simulation. Throws like declare() when one does not parse.
+  [[nodiscard]] Formulas formulas() const;
+
   /// The value named "mass_kg", "friction.coulomb_N" or "initial.y_m"; null when unknown. Writing
   /// to an effect's parameter through this makes the effect present.
   double* value(std::string_view dotted);
+
+ private:
+  void list_effects();
 };
 
 /// Throws config::schema::Error (exit 78) for a missing file, an unknown key or a bad value.

@@ -3,36 +3,46 @@
 #include <utility>
 
 namespace plant_sim {
+namespace {
 
-std::string unit_of(std::string_view name) {
-  // longest first: the first that ends the name is its unit
+/// "N" of "N", "s2" of "s2", "m3/s" of "m3ps"; "" when it is no unit.
+std::string unit_word(std::string_view word) {
   static constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
-      {"_m3ps_per_Pa", "m3/s/Pa"},
-      {"_Pa_per_m3ps", "Pa/(m3/s)"},
-      {"_N_s2_per_m2", "N s2/m2"},
-      {"_N_s_per_m", "N s/m"},
-      {"_mps_per_V", "m/s/V"},
-      {"_kg_per_m3", "kg/m3"},
-      {"_rad_per_s", "rad/s"},
-      {"_N_per_m", "N/m"},
-      {"_N_per_V", "N/V"},
-      {"_V_per_m", "V/m"},
-      {"_m_per_V", "m/V"},
-      {"_m3ps", "m3/s"},
-      {"_mps", "m/s"},
-      {"_rad", "rad"},
-      {"_m2", "m2"},
-      {"_m3", "m3"},
-      {"_Pa", "Pa"},
-      {"_kg", "kg"},
-      {"_N", "N"},
-      {"_V", "V"},
-      {"_m", "m"},
-      {"_s", "s"}};
-  for (const auto& [suffix, unit] : kUnits) {
-    if (name.ends_with(suffix)) return std::string(unit);
+      {"m3ps", "m3/s"}, {"mps", "m/s"}, {"rad", "rad"}, {"Pa", "Pa"}, {"kg", "kg"},
+      {"Hz", "Hz"},     {"N", "N"},     {"V", "V"},     {"m", "m"},   {"s", "s"}};
+  for (const auto& [name, unit] : kUnits) {
+    if (word == name) return std::string(unit);
+    const bool power = word.size() == name.size() + 1 && word.starts_with(name) &&
+                       word.back() >= '2' && word.back() <= '9' && unit == name;
+    if (power) return std::string(word);
   }
   return "";
+}
+
+}  // namespace
+
+std::string unit_of(std::string_view name) {
+  // From the end, words that are units; one "per" among them divides. The first word is the name.
+  std::string unit;
+  std::string below;
+  bool divided = false;
+  for (std::size_t bar = name.rfind('_'); bar != std::string_view::npos && bar > 0;
+       bar = name.rfind('_')) {
+    const std::string_view word = name.substr(bar + 1);
+    if (word == "per" && !divided && !unit.empty()) {
+      divided = true;
+      std::swap(unit, below);
+    } else {
+      const std::string one = unit_word(word);
+      if (one.empty()) break;
+      unit = one + (unit.empty() ? "" : " ") + unit;
+    }
+    name = name.substr(0, bar);
+  }
+  if (!divided) return unit;
+  if (unit.empty()) return "1/" + below;
+  const bool compound = below.find_first_of(" /") != std::string::npos;
+  return unit + "/" + (compound && below != "s" ? "(" + below + ")" : below);
 }
 
 }  // namespace plant_sim

@@ -13,7 +13,8 @@ namespace {
 template <class Model>
 class Simulated final : public Plant {
  public:
-  explicit Simulated(const ModelFile& file) : step_s_(file.step_s) {
+  explicit Simulated(const ModelFile& file) : step_s_(file.step_s), formulas_(file.formulas()) {
+    model_.effects.formulas().declare(formulas_.data(), formulas_.size());
     each_parameter([&](const std::string& name, const ParameterInfo& info, double& value) {
       infos_.push_back({name, info, &value});
     });
@@ -103,6 +104,10 @@ class Simulated final : public Plant {
         });
       }
     });
+    model_.effects.formulas().each(
+        [&](const FormulaView& formula, const ParameterInfo& info, double& value) {
+          f(std::string(formula.name) + "." + info.name, info, value);
+        });
   }
 
   void assign(std::string_view name, double value) noexcept {
@@ -110,6 +115,7 @@ class Simulated final : public Plant {
   }
 
   double step_s_;
+  Formulas formulas_;
   Model model_;
   std::vector<Entry> infos_;
 };
@@ -119,11 +125,7 @@ class Simulated final : public Plant {
 std::unique_ptr<Plant> make_plant(const ModelFile& model) {
   std::unique_ptr<Plant> plant;
   std::string names;
-  if (const PlantInfo* info = find_plant(model.plant)) {
-    for (const ModelFile::Effect& effect : model.effects) {
-      if (effect.present) require_fit(*find_effect(effect.name), *info, model.name);
-    }
-  }
+  require_fit(model, model.name);
   each_plant<double>([&]<class Model>() {
     if (model.plant == Model::kName) plant = std::make_unique<Simulated<Model>>(model);
     names += (names.empty() ? "" : ", ") + std::string(Model::kName);

@@ -63,6 +63,9 @@ class Printer final : public Visitor {
   void optional_table(Key key, bool& present, const Body& body) override {
     if (present) nested(key, "[" + child(key) + "]", body, /*always=*/true);
   }
+  std::vector<std::string> names(Key, const std::vector<std::string>& printed) override {
+    return printed;
+  }
   std::size_t list(Key, std::size_t size) override { return size; }
   void element(Key key, std::size_t, const Body& body) override {
     nested(key, "[[" + child(key) + "]]", body, /*always=*/true);

@@ -1,5 +1,6 @@
 #include "config/schema/toml_reader.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -153,6 +154,26 @@ void TomlReader::table(Key key, const Body& body) {
 void TomlReader::optional_table(Key key, bool& present, const Body& body) {
   present = find(key) != nullptr;
   if (present) table(key, body);
+}
+
+std::vector<std::string> TomlReader::names(Key key, const std::vector<std::string>& /*printed*/) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return {};
+  if (!node->is_table()) wrong_type(key, *node, "a table");
+  std::vector<std::pair<toml::source_index, std::string>> found;
+  for (const auto& [name, item] : *node->as_table()) {
+    if (!item.is_table()) {
+      throw bad_config(where(std::string(key.name) + "." + std::string(name.str()), &item),
+                       "is " + shown(item), "a table");
+    }
+    found.emplace_back(item.source().begin.line, name.str());
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<std::string> names;
+  names.reserve(found.size());
+  for (auto& [line, name] : found) names.push_back(std::move(name));
+  return names;
 }
 
 std::size_t TomlReader::list(Key key, std::size_t /*size*/) {

@@ -25,6 +25,7 @@ class TomlReader final : public Visitor {
   void texts(Key key, std::vector<std::string>& value) override;
   void table(Key key, const Body& body) override;
   void optional_table(Key key, bool& present, const Body& body) override;
+  std::vector<std::string> names(Key key, const std::vector<std::string>& printed) override;
   std::size_t list(Key key, std::size_t size) override;
   void element(Key key, std::size_t index, const Body& body) override;
 

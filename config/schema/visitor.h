@@ -52,6 +52,9 @@ class Visitor {
   virtual void table(Key key, const Body& body) = 0;
   /// A sub-table whose presence means something; `body` runs only when it is present.
   virtual void optional_table(Key key, bool& present, const Body& body) = 0;
+  /// The names of a table's sub-tables, in the order of the file, for a table whose keys the file
+  /// chooses (for a printer: `printed`); then call `table` for it, and in there for each name.
+  virtual std::vector<std::string> names(Key key, const std::vector<std::string>& printed) = 0;
   /// An array of tables: returns how many there are (for a printer: `size`), then call `element`.
   virtual std::size_t list(Key key, std::size_t size) = 0;
   virtual void element(Key key, std::size_t index, const Body& body) = 0;

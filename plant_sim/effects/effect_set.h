@@ -13,13 +13,14 @@ class EffectSet : public EffectStore<S, E...> {
   using Store = EffectStore<S, E...>;
   template <class T>
   using Tag = typename Store::template Tag<T>;
+  using Store::formulas_;
 
  public:
   /// To be called once per step, and no oftener.
   [[nodiscard]] S command_V(S u_V) {
     this->template act<Site::command>(
         [&]<class T>(Tag<T>, const auto& p, auto& memory) { u_V = T::command_V(p, memory, u_V); });
-    return u_V;
+    return handed_on<Site::command>(u_V);
   }
 
   [[nodiscard]] S spool_limit_mps() const {
@@ -34,7 +35,7 @@ class EffectSet : public EffectStore<S, E...> {
     this->template act<Site::opening>([&]<class T>(Tag<T>, const auto& p, const auto&) {
       x_m = T::opening_m(p, x_m, gain_m_per_V);
     });
-    return x_m;
+    return handed_on<Site::opening>(x_m);
   }
 
   [[nodiscard]] S supply_Pa(S supply_Pa, const S& port_Pa, const S& flow) const {
@@ -48,7 +49,7 @@ class EffectSet : public EffectStore<S, E...> {
     this->template act<Site::flow>([&]<class T>(Tag<T>, const auto& p, const auto&) {
       flow_m3ps = T::flow_m3ps(p, flow_m3ps);
     });
-    return flow_m3ps;
+    return handed_on<Site::flow>(flow_m3ps);
   }
 
   [[nodiscard]] Leak<S> leak(const S& in_Pa, const S& out_Pa) const {
@@ -58,6 +59,11 @@ class EffectSet : public EffectStore<S, E...> {
       sum.in_m3ps += one.in_m3ps;
       sum.out_m3ps += one.out_m3ps;
     });
+    if (formulas_.acts_on(Site::leakage)) {
+      const S across_m3ps = formulas_.sum(Site::leakage, in_Pa, out_Pa);
+      sum.in_m3ps += across_m3ps;
+      sum.out_m3ps -= across_m3ps;
+    }
     return sum;
   }
 
@@ -65,7 +71,7 @@ class EffectSet : public EffectStore<S, E...> {
     S sum = 0.0;
     this->template act<Site::leakage>(
         [&]<class T>(Tag<T>, const auto& p, const auto&) { sum += T::conductance_m3ps_per_Pa(p); });
-    return sum;
+    return sum + formulas_.conductance_m3ps_per_Pa();
   }
 
   [[nodiscard]] S bulk_modulus_Pa(S modulus_Pa, const S& at_Pa) const {
@@ -89,6 +95,9 @@ class EffectSet : public EffectStore<S, E...> {
     this->template act<Site::force>([&]<class T>(Tag<T>, const auto& p, const auto&) {
       resisting_N += T::resisting_N(p, y_m, contact.v_mps);
     });
+    if (formulas_.acts_on(Site::force)) {
+      resisting_N += formulas_.sum(Site::force, y_m, contact.v_mps);
+    }
     contact.drive_N -= resisting_N;
     this->template act<Site::dry_friction>([&]<class T>(Tag<T>, const auto& p, const auto& memory) {
       contact.drive_N -= T::friction_N(p, memory, contact);
@@ -101,6 +110,7 @@ class EffectSet : public EffectStore<S, E...> {
     this->template act<Site::force>([&]<class T>(Tag<T>, const auto& p, const auto&) {
       if constexpr (requires { T::slope_N_s_per_m(p, v_mps); }) sum += T::slope_N_s_per_m(p, v_mps);
     });
+    if (formulas_.acts_on(Site::force)) sum += formulas_.slope_N_s_per_m(v_mps);
     return sum;
   }
 
@@ -112,14 +122,14 @@ class EffectSet : public EffectStore<S, E...> {
     this->template act<Site::dry_friction>([&]<class T>(Tag<T>, const auto& p, const auto&) {
       if constexpr (requires { T::stiffness_N_per_m(p); }) sum += T::stiffness_N_per_m(p);
     });
-    return sum;
+    return sum + formulas_.stiffness_N_per_m();
   }
 
   [[nodiscard]] S reading_m(S y_m) const {
     this->template act<Site::sensor>([&]<class T>(Tag<T>, const auto& p, const auto& memory) {
       y_m = T::reading_m(p, memory, y_m);
     });
-    return y_m;
+    return handed_on<Site::sensor>(y_m);
   }
 
   /// To be called once per accepted integration step.
@@ -129,6 +139,13 @@ class EffectSet : public EffectStore<S, E...> {
         T::accept(p, memory, travel_m, v_mps);
       }
     });
+  }
+
+ private:
+  /// What the formulas of a site make of what the effects before them gave.
+  template <Site kSite>
+  [[nodiscard]] S handed_on(const S& x) const {
+    return formulas_.acts_on(kSite) ? formulas_.chain(kSite, x) : x;
   }
 };
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "plant_sim/effects/site.h"
+#include "plant_sim/formula/formula_set.h"
 #include "plant_sim/parameter.h"
 #include "plant_sim/scalar.h"
 
@@ -28,8 +29,9 @@ class EffectStore {
   /// To be called after parameters have changed: brings them into their ranges and finds out which
   /// effects are active. Allocates at the first call and when the step changes, at no other.
   void prepare(double step_s) {
-    if (step_s == step_s_ && unchanged()) return;
-    used_sites_ = 0;
+    if (step_s == step_s_ && unchanged() && formulas_.unchanged()) return;
+    formulas_.prepare(always_);
+    used_sites_ = formulas_.sites();
     each_index([&](auto i) {
       bool neutral = true;
       std::get<i>(parameters_).visit([&](const ParameterInfo& info, S& value) {
@@ -44,6 +46,9 @@ class EffectStore {
     prepared_ = parameters_;
     step_s_ = step_s;
   }
+
+  /// The formulas of the model file; to be declared before the first prepare().
+  [[nodiscard]] FormulaSet<S>& formulas() { return formulas_; }
 
   /// For tests: neutral effects take part too.
   void set_always(bool always) {
@@ -66,6 +71,8 @@ class EffectStore {
   [[nodiscard]] bool any() const { return used_sites_ != 0; }
 
  protected:
+  FormulaSet<S> formulas_;
+
   template <class T>
   struct Tag {
     using Type = T;

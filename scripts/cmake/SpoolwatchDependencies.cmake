@@ -6,6 +6,7 @@ find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(Boost 1.74 REQUIRED)
 find_package(tomlplusplus REQUIRED)
+find_package(muparser 2.3 REQUIRED)
 include(GoogleTest)
 
 # LCM: Debian's lcm.pc asks for glib's headers, so header, library and generator are found directly.

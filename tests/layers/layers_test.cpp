@@ -24,7 +24,7 @@ const std::vector<Layer> kLayers{
     {"config/schema", {}, {"toml++"}},
     {"config/messages", {"config/schema"}, {"lcm", "spoolwatch"}},
     {"config/record", {"config/schema"}, {"lcm", "spoolwatch"}},
-    {"plant_sim", {"config/schema"}, {}},
+    {"plant_sim", {"config/schema"}, {"muParser"}},
     {"estimator", {"config/schema"}, {"Eigen", "ceres"}},
     {"estimator/fdi", {"config/schema", "estimator"}, {"Eigen"}},
     {"hal", {"config/schema", "hal/sim", "hal/replay"}, {}},

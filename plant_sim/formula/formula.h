@@ -1,0 +1,76 @@
+// A declared formula made ready to be simulated, and the checks that it must pass before.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "plant_sim/formula/formula_effect.h"
+#include "plant_sim/formula/tape.h"
+#include "plant_sim/parameter.h"
+
+namespace plant_sim {
+
+/// Between what a variable of a formula plausibly lies, in its own unit.
+struct VariableRange {
+  double min = 0.0;
+  double max = 0.0;
+};
+
+struct Formula {
+  std::string name;
+  FormulaSite place;
+  Tape tape;
+  std::vector<ParameterInfo> parameters;
+  std::array<VariableRange, Tape::kVariables> ranges;  ///< of the site's variables; none is 0..0
+};
+
+/// A formula as plain pointers into it, for what simulates it.
+struct FormulaView {
+  const char* name;
+  Site site;
+  double guard;
+  const ParameterInfo* parameters;
+  TapeView tape;
+  VariableRange ranges[Tape::kVariables];
+};
+
+/// The formulas of a model. Whatever simulates them must not outlive it.
+class Formulas {
+ public:
+  Formulas() = default;
+  explicit Formulas(std::vector<Formula> formulas);
+  [[nodiscard]] const FormulaView* data() const { return views_.data(); }
+  [[nodiscard]] std::size_t size() const { return views_.size(); }
+
+ private:
+  std::shared_ptr<const std::vector<Formula>> formulas_;  // copies share it: views stay valid
+  std::vector<FormulaView> views_;
+};
+
+/// What plants tell of the ranges of a formula's variables.
+struct PlausibleRanges {
+  VariableRange command_V{-10.0, 10.0};
+  VariableRange opening_m;
+  VariableRange flow_m3ps;
+  VariableRange pressure_Pa;
+  VariableRange position_m;
+  VariableRange speed_mps{-2.0, 2.0};
+};
+
+/// Parses the formula. Throws config::schema::Error (exit 78); `where` is its table in a file.
+[[nodiscard]] Formula compile(const FormulaEffect& effect, const PlausibleRanges& ranges,
+                              const std::string& where);
+
+/// Throws config::schema::Error (exit 78) unless names and ranges make sense, the formula has no
+/// influence when its parameters are neutral, and is finite over the variables' ranges for any of
+/// the parameters' least, largest and neutral values.
+void check(const FormulaEffect& effect, const Formula& formula, const std::string& where);
+
+[[nodiscard]] ParameterInfo info_of(const FormulaEffect::Parameter& parameter);
+
+/// `text` where it stays for the life of the program.
+[[nodiscard]] const char* interned(const std::string& text);
+
+}  // namespace plant_sim

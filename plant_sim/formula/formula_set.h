@@ -1,0 +1,168 @@
+// The formula effects of a plant: parameter values, which of them are active, and what they
+// contribute at each site. As with the effects of the table, one whose parameters are all neutral
+// is skipped. Results that are not finite count as no contribution.
+#pragma once
+
+#include <cstring>
+#include <vector>
+
+#include "plant_sim/formula/formula.h"
+#include "plant_sim/formula/steepness.h"
+
+namespace plant_sim {
+
+template <class S>
+class FormulaSet {
+ public:
+  FormulaSet() = default;
+
+  /// Replaces what was declared; all values are neutral. What is viewed must outlive *this.
+  void declare(const FormulaView* formulas, std::size_t count) {
+    effects_.clear();
+    effects_.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) effects_.emplace_back(formulas[i]);
+    fresh_ = true;
+  }
+
+  /// Calls f(const FormulaView&, const ParameterInfo&, S& value) for each parameter of each
+  /// formula. The values live until the next declare().
+  template <class F>
+  void each(F&& f) {
+    for (Effect& effect : effects_) {
+      for (std::size_t i = 0; i < effect.values.size(); ++i) {
+        f(effect.formula, effect.formula.parameters[i], effect.values[i]);
+      }
+    }
+  }
+
+  /// Whether prepare() has seen these values, bit for bit.
+  [[nodiscard]] bool unchanged() const {
+    for (const Effect& effect : effects_) {
+      if (std::memcmp(static_cast<const void*>(effect.values.data()),
+                      static_cast<const void*>(effect.prepared.data()),
+                      effect.values.size() * sizeof(S)) != 0) {
+        return false;
+      }
+    }
+    return !fresh_;
+  }
+
+  /// Brings parameters into their ranges and finds out which formulas are active, all when
+  /// `always`. No allocation.
+  void prepare(bool always) {
+    sites_ = 0;
+    for (Effect& effect : effects_) {
+      bool neutral = true;
+      for (std::size_t i = 0; i < effect.values.size(); ++i) {
+        const ParameterInfo& info = effect.formula.parameters[i];
+        S& value = effect.values[i];
+        value = clamp(value, S(info.min), S(info.max));
+        neutral = neutral && all(both(value <= S(info.neutral), value >= S(info.neutral)));
+        effect.prepared[i] = value;
+      }
+      effect.active = !neutral || always;
+      if (!effect.active) continue;
+      sites_ |= bit(effect.formula.site);
+      effect.run.set_parameters(effect.values.data());
+      if (effect.formula.site == Site::force) {
+        effect.steepness.prepare(
+            effect.formula.ranges[0], effect.formula.ranges[1],
+            [&](const S& y_m, const S& v_mps) { return effect.contribution(y_m, v_mps); });
+      }
+      if (effect.formula.site == Site::leakage) {
+        effect.conductance_m3ps_per_Pa =
+            S(2.0) *
+            steepest_m3ps_per_Pa<S>(effect.formula.ranges[0], [&](const S& in_Pa, const S& out_Pa) {
+              return effect.contribution(in_Pa, out_Pa);
+            });
+      }
+    }
+    fresh_ = false;
+  }
+
+  /// A bit per site, as the store of effects counts them.
+  [[nodiscard]] unsigned sites() const { return sites_; }
+  [[nodiscard]] bool acts_on(Site site) const { return (sites_ & bit(site)) != 0; }
+
+  /// For the sites that hand a value on: what the formulas make of x one after the other.
+  [[nodiscard]] S chain(Site site, S x) const {
+    each_active(site, [&](const Effect& effect) { x = effect.result(x, S(0.0), x); });
+    return x;
+  }
+
+  /// For force and leakage: the sum of what they give.
+  [[nodiscard]] S sum(Site site, const S& first, const S& second) const {
+    S total = 0.0;
+    each_active(site, [&](const Effect& effect) { total += effect.contribution(first, second); });
+    return total;
+  }
+
+  /// The largest |dF/dv| at any speed up to |v_mps|, estimated.
+  [[nodiscard]] S slope_N_s_per_m(const S& v_mps) const {
+    S total = 0.0;
+    each_active(Site::force,
+                [&](const Effect& effect) { total += effect.steepness.slope_N_s_per_m(v_mps); });
+    return total;
+  }
+
+  /// The largest |dF/dy| over the plausible positions and speeds, estimated.
+  [[nodiscard]] S stiffness_N_per_m() const {
+    S total = 0.0;
+    each_active(Site::force,
+                [&](const Effect& effect) { total += effect.steepness.stiffness_N_per_m(); });
+    return total;
+  }
+
+  /// Twice the largest |dQ/dp| over the plausible pressures, estimated: both chambers see it.
+  [[nodiscard]] S conductance_m3ps_per_Pa() const {
+    S total = 0.0;
+    each_active(Site::leakage,
+                [&](const Effect& effect) { total += effect.conductance_m3ps_per_Pa; });
+    return total;
+  }
+
+ private:
+  struct Effect {
+    explicit Effect(const FormulaView& declared) : formula(declared), run(declared.tape) {
+      values.reserve(declared.tape.parameters);
+      for (std::size_t i = 0; i < declared.tape.parameters; ++i) {
+        values.emplace_back(declared.parameters[i].neutral);
+      }
+      prepared = values;
+    }
+
+    /// The formula's value within the guard; `none` where it is not finite.
+    [[nodiscard]] S result(const S& first, const S& second, const S& none) const {
+      constexpr double kFinite = 1e300;
+      const S value = run(first, second);
+      const S guard = formula.guard;
+      return select(abs(value) <= S(kFinite), clamp(value, -guard, guard), none);
+    }
+    [[nodiscard]] S contribution(const S& first, const S& second) const {
+      return result(first, second, S(0.0));
+    }
+
+    FormulaView formula;
+    TapeRun<S> run;
+    std::vector<S> values;
+    std::vector<S> prepared;  ///< as the last prepare() left them
+    Steepness<S> steepness;
+    S conductance_m3ps_per_Pa = 0.0;
+    bool active = false;
+  };
+
+  static constexpr unsigned bit(Site site) { return 1U << static_cast<unsigned>(site); }
+
+  template <class F>
+  void each_active(Site site, F&& f) const {
+    for (const Effect& effect : effects_) {
+      if (effect.active && effect.formula.site == site) f(effect);
+    }
+  }
+
+  std::vector<Effect> effects_;
+  unsigned sites_ = 0;
+  bool fresh_ = false;
+};
+
+}  // namespace plant_sim

@@ -1,0 +1,207 @@
+#include "plant_sim/formula/recorder.h"
+
+#include <muParser.h>
+
+#include <algorithm>
+#include <cctype>
+#include <deque>
+
+#include "config/schema/document.h"
+#include "config/schema/error.h"
+#include "plant_sim/formula/recording.h"
+
+namespace plant_sim {
+namespace {
+
+using config::schema::bad_config;
+
+/// muParser calls plain functions: this is where they record.
+thread_local Recording* recording = nullptr;
+
+double recorded(Op op, double a, double b = -1.0, double c = -1.0) {
+  if (recording->too_long()) throw mu::ParserError(mu::ecEXPRESSION_TOO_LONG);
+  return recording->operation(op, a, b, c);
+}
+template <Op kOp>
+double of_one(double a) {
+  return recorded(kOp, a);
+}
+template <Op kOp>
+double of_two(double a, double b) {
+  return recorded(kOp, a, b);
+}
+template <Op kOp>
+double of_three(double a, double b, double c) {
+  return recorded(kOp, a, b, c);
+}
+
+struct Operator {
+  const char* name;
+  double (*record)(double, double);
+  unsigned precedence;
+};
+constexpr Operator kOperators[] = {
+    {"+", of_two<Op::add>, mu::prADD_SUB},      {"-", of_two<Op::subtract>, mu::prADD_SUB},
+    {"*", of_two<Op::multiply>, mu::prMUL_DIV}, {"/", of_two<Op::divide>, mu::prMUL_DIV},
+    {"<", of_two<Op::less>, mu::prCMP},         {"<=", of_two<Op::less_equal>, mu::prCMP},
+    {">", of_two<Op::greater>, mu::prCMP},      {">=", of_two<Op::greater_equal>, mu::prCMP},
+    {"==", of_two<Op::equal>, mu::prCMP},       {"!=", of_two<Op::unequal>, mu::prCMP},
+    {"&&", of_two<Op::both>, mu::prLAND},       {"||", of_two<Op::either>, mu::prLOR},
+};
+
+struct Function {
+  const char* name;
+  double (*record)(double);
+};
+constexpr Function kFunctions[] = {
+    {"abs", of_one<Op::abs>},     {"sign", of_one<Op::sign>}, {"sqrt", of_one<Op::sqrt>},
+    {"exp", of_one<Op::exp>},     {"ln", of_one<Op::ln>},     {"log10", of_one<Op::log10>},
+    {"sin", of_one<Op::sin>},     {"cos", of_one<Op::cos>},   {"tan", of_one<Op::tan>},
+    {"asin", of_one<Op::asin>},   {"acos", of_one<Op::acos>}, {"atan", of_one<Op::atan>},
+    {"sinh", of_one<Op::sinh>},   {"cosh", of_one<Op::cosh>}, {"tanh", of_one<Op::tanh>},
+    {"floor", of_one<Op::floor>},
+};
+struct PairFunction {
+  const char* name;
+  double (*record)(double, double);
+};
+constexpr PairFunction kPairFunctions[] = {
+    {"atan2", of_two<Op::atan2>}, {"min", of_two<Op::min>}, {"max", of_two<Op::max>}};
+constexpr const char* kChoose = "if";
+constexpr const char* kPi = "pi";
+
+mu::Parser bare_parser() {
+  mu::Parser parser;
+  parser.EnableOptimizer(false);
+  parser.EnableBuiltInOprt(false);
+  parser.ClearConst();
+  parser.ClearFun();
+  parser.ClearInfixOprt();
+  parser.ClearPostfixOprt();
+  parser.ClearOprt();
+  for (const Operator& o : kOperators) parser.DefineOprt(o.name, o.record, o.precedence);
+  parser.DefineOprt("^", of_two<Op::power>, mu::prPOW, mu::oaRIGHT);
+  parser.DefineInfixOprt("-", of_one<Op::negate>);
+  for (const Function& f : kFunctions) parser.DefineFun(f.name, f.record);
+  for (const PairFunction& f : kPairFunctions) parser.DefineFun(f.name, f.record);
+  parser.DefineFun(kChoose, of_three<Op::choose>);
+  return parser;
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+const char* reason(int code) {
+  switch (code) {
+    case mu::ecUNEXPECTED_EOF:
+      return "it ends too early";
+    case mu::ecUNEXPECTED_OPERATOR:
+      return "an operator without a value before it";
+    case mu::ecUNEXPECTED_ARG_SEP:
+      return "a comma outside of a function";
+    case mu::ecUNEXPECTED_VAL:
+    case mu::ecUNEXPECTED_VAR:
+    case mu::ecUNEXPECTED_FUN:
+      return "an operator is missing before it";
+    case mu::ecUNEXPECTED_PARENS:
+      return "a parenthesis that fits nowhere";
+    case mu::ecMISSING_PARENS:
+      return "a parenthesis is not closed";
+    case mu::ecTOO_MANY_PARAMS:
+      return "too many arguments";
+    case mu::ecTOO_FEW_PARAMS:
+      return "too few arguments";
+    case mu::ecEXPRESSION_TOO_LONG:
+      return "it is too long";
+    default:
+      return "it is no expression";
+  }
+}
+
+/// One line for what muParser found wrong; positions count from 1.
+config::schema::Error refusal(const mu::ParserError& error, std::vector<std::string> names,
+                              const std::string& where) {
+  std::string token = error.GetToken();
+  token.erase(std::find_if(token.rbegin(), token.rend(),
+                           [](unsigned char c) { return std::isspace(c) == 0; })
+                  .base(),
+              token.end());
+  const std::string place = " at character " + std::to_string(error.GetPos() + 1);
+  const std::vector<std::string>& words = formula_words();
+  if (error.GetCode() == mu::ecEMPTY_EXPRESSION) return bad_config(where, "is empty");
+  if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN && !token.empty()) {
+    if (std::find(words.begin(), words.end(), token) != words.end()) {
+      return bad_config(where, token + place + " is a function and needs (", token + "(...)");
+    }
+    if (std::isalpha(static_cast<unsigned char>(token[0])) != 0 || token[0] == '_') {
+      names.insert(names.end(), words.begin(), words.end());
+      const std::string near = config::schema::nearest(token, names);
+      return bad_config(
+          where,
+          "unknown name " + token + place + (near.empty() ? "" : ", did you mean " + near + "?"),
+          listed(names));
+    }
+    if (token[0] == '=') {
+      return bad_config(where, "an assignment" + place, "one expression; == compares");
+    }
+    if (token[0] == '?' || token[0] == ':') {
+      return bad_config(where, "unknown operator " + token.substr(0, 1) + place,
+                        "if(condition, yes, no)");
+    }
+  }
+  return bad_config(where, "does not parse" + place +
+                               (token.empty() ? "" : ", near \"" + token + "\"") + ": " +
+                               reason(error.GetCode()));
+}
+
+}  // namespace
+
+const std::vector<std::string>& formula_words() {
+  static const std::vector<std::string> words = [] {
+    std::vector<std::string> all = {kPi, kChoose};
+    for (const Function& f : kFunctions) all.emplace_back(f.name);
+    for (const PairFunction& f : kPairFunctions) all.emplace_back(f.name);
+    return all;
+  }();
+  return words;
+}
+
+Tape record_formula(const std::string& text, const std::vector<std::string>& variables,
+                    const std::vector<std::string>& parameters, const std::string& where) {
+  const std::size_t quote = text.find_first_of("\"'");
+  if (quote != std::string::npos) {
+    throw bad_config(where, "a string at character " + std::to_string(quote + 1), "numbers");
+  }
+  std::vector<std::string> names = variables;
+  names.insert(names.end(), parameters.begin(), parameters.end());
+  Recording here(parameters.size());
+  struct Scope {
+    explicit Scope(Recording& to) { recording = &to; }
+    ~Scope() { recording = nullptr; }
+  } const scope(here);
+  try {
+    mu::Parser parser = bare_parser();
+    std::deque<double> handles;  // muParser keeps their addresses
+    const auto define = [&](const std::string& name, double handle) {
+      handles.push_back(handle);
+      parser.DefineVar(name, &handles.back());
+    };
+    for (std::size_t i = 0; i < variables.size(); ++i) define(variables[i], Recording::input(i));
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      define(parameters[i], Recording::input(Tape::kVariables + i));
+    }
+    define(kPi, here.constant(3.141592653589793));
+    parser.SetExpr(text);
+    int count = 0;
+    const double* results = parser.Eval(count);
+    if (count != 1) throw bad_config(where, "has a comma outside of a function", "one expression");
+    return here.tape(results[0]);
+  } catch (const mu::ParserError& error) {
+    throw refusal(error, names, where);
+  }
+}
+
+}  // namespace plant_sim
