@@ -9,7 +9,8 @@
     accent: '#b0578d', muted: '#9aa5b1',
   };
   const CYCLE = ['model', 'residual', 'improved', 'accent', 'measured', 'muted'];
-  const PRINT_PX = {full: 690, half: 334};
+  const DASHES = [[7, 4], [2, 3], [12, 4, 2, 4]];
+  const PRINT_PX = {full: [690, 225], half: [334, 225]};
   const charts = [];
 
   const short = (v) => {
@@ -30,6 +31,7 @@
     return series.y.map((y, i) => ({x: shown(x[i], plot.x), y: shown(y, plot.y)}));
   };
 
+  // Curves lie above bars, bars above clouds, later series above earlier ones.
   function dataset(plot, series, index) {
     const tone = series.tone === 'automatic' ? CYCLE[index % CYCLE.length] : series.tone;
     const colour = TONES[tone];
@@ -40,17 +42,18 @@
     if (series.kind === 'bars') {
       return {...base, type: 'bar', backgroundColor: tint(colour, .8), borderWidth: 0,
               maxBarThickness: plot.horizontal ? 16 : 46, categoryPercentage: .8,
-              barPercentage: plot.categories ? .9 : 1, minBarLength: 2, order: 2};
+              barPercentage: plot.categories ? .9 : 1, minBarLength: 2, order: 200 - index};
     }
     if (series.kind === 'scatter') {
-      return {...base, type: 'scatter', showLine: false, borderWidth: 0, order: 3,
+      return {...base, type: 'scatter', showLine: false, borderWidth: 0, order: 300 - index,
               backgroundColor: tint(colour, count > 1000 ? .28 : count > 200 ? .5 : .85),
               radius: count > 1000 ? 1.6 : count > 200 ? 2.2 : 3.5, pointStyle: 'circle'};
     }
-    return {...base, type: 'line', borderWidth: count > 60 ? 1.4 : 2.2, tension: 0,
+    return {...base, type: 'line', borderWidth: count > 60 ? (tone === 'measured' ? 2.2 : 1.3) : 2,
             stepped: series.kind === 'steps' ? 'before' : false,
-            borderDash: series.dashed ? [6, 4] : [], pointRadius: count > 60 ? 0 : 3,
-            pointHoverRadius: 4, pointHitRadius: 6, spanGaps: false, order: 1};
+            borderDash: series.dashed ? [6, 4] : [], tension: 0,
+            pointRadius: count > 60 ? 0 : plot.categories ? 3.5 : 2,
+            pointHoverRadius: 4, pointHitRadius: 6, spanGaps: false, order: 100 - index};
   }
 
   // The axis of values: y, or x where bars lie.
@@ -62,14 +65,13 @@
       const plot = chart.options.plot;
       const area = chart.chartArea, ctx = chart.ctx, axis = value_axis(plot);
       ctx.save();
-      ctx.font = '600 12px ' + Chart.defaults.font.family;
-      ctx.strokeStyle = ctx.fillStyle = FLOOR;
-      ctx.lineWidth = 1.4;
-      for (const line of plot.lines) {
+      ctx.strokeStyle = FLOOR;
+      ctx.lineWidth = 1.5;
+      plot.lines.forEach((line, i) => {
         const at = chart.scales[axis].getPixelForValue(line.value);
         const [low, high] = axis === 'x' ? [area.left, area.right] : [area.top, area.bottom];
-        if (!(at >= low - 1 && at <= high + 1)) continue;
-        ctx.setLineDash([7, 4]);
+        if (!(at >= low - 1 && at <= high + 1)) return;
+        ctx.setLineDash(DASHES[i % DASHES.length]);
         ctx.beginPath();
         if (axis === 'x') {
           ctx.moveTo(at, area.top);
@@ -79,19 +81,7 @@
           ctx.lineTo(area.right, at);
         }
         ctx.stroke();
-        ctx.setLineDash([]);
-        const text = line.label + ' ' + with_unit(line.value, plot.y);
-        const width = ctx.measureText(text).width;
-        let left = area.right - width - 6, top = at < area.top + 20 ? at + 14 : at - 6;
-        if (axis === 'x') {
-          left = at + width + 8 > area.right ? at - width - 6 : at + 6;
-          top = area.bottom - 7;
-        }
-        ctx.fillStyle = 'rgba(255,255,255,.85)';
-        ctx.fillRect(left - 3, top - 11, width + 6, 15);
-        ctx.fillStyle = FLOOR;
-        ctx.fillText(text, left, top);
-      }
+      });
       ctx.restore();
     },
   };
@@ -202,7 +192,6 @@
   }
 
   function draw(canvas, plot) {
-    const many = plot.series.length > 1;
     const chart = new Chart(canvas, {
       data: {labels: plot.categories, datasets: plot.series.map((s, i) => dataset(plot, s, i))},
       options: {
@@ -211,15 +200,45 @@
         layout: {padding: {top: plot.categories && !plot.horizontal ? 14 : 4, right: 10}},
         interaction: hover(plot),
         plugins: {
-          legend: {display: many, align: 'end',
-                   labels: {color: INK, boxWidth: 22, boxHeight: 2, padding: 14}},
+          legend: {display: false},
           tooltip: tooltip(plot),
         },
       },
       plugins: [lines, numbers],
     });
     charts.push(chart);
+    legend(chart, plot);
     if (!plot.categories) follow(chart, plot);
+  }
+
+  // Names beside the title: a click hides a series. A lone series is named by the axis already.
+  function legend(chart, plot) {
+    const list = document.createElement('ul');
+    const add = (tag, look, colour, text) => {
+      const item = list.appendChild(document.createElement('li'));
+      const name = item.appendChild(document.createElement(tag));
+      const key = name.appendChild(document.createElement('i'));
+      key.className = look;
+      key.style.color = colour;
+      name.append(text);
+      return name;
+    };
+    if (plot.series.length > 1) {
+      plot.series.forEach((series, i) => {
+        const look = series.dashed ? 'dashed' : series.kind === 'steps' ? 'line' : series.kind;
+        const button = add('button', look, chart.data.datasets[i].borderColor, series.name);
+        button.setAttribute('aria-pressed', 'true');
+        button.addEventListener('click', () => {
+          const visible = !chart.isDatasetVisible(i);
+          chart.setDatasetVisibility(i, visible);
+          chart.update('none');
+          button.setAttribute('aria-pressed', String(visible));
+        });
+      });
+    }
+    plot.lines.forEach((line, i) => add('span', i % 3 === 1 ? 'dotted' : 'dashed', FLOOR,
+                                        line.label + ' ' + with_unit(line.value, plot.y)));
+    if (list.children.length) chart.canvas.closest('figure').querySelector('.head').append(list);
   }
 
   const members = (chart, plot) =>
@@ -310,10 +329,10 @@
   // Print: the column of an A4 page, and more pixels.
   addEventListener('beforeprint', () => {
     for (const chart of charts) {
-      const figure = chart.canvas.closest('figure');
-      chart.options.devicePixelRatio = 3;
-      chart.resize(PRINT_PX[figure.classList.contains('half') ? 'half' : 'full'],
-                   Math.min(chart.canvas.parentNode.clientHeight, 900));
+      const half = chart.canvas.closest('figure').classList.contains('half');
+      const [width, height] = PRINT_PX[half ? 'half' : 'full'];
+      chart.options.devicePixelRatio = 2.5;
+      chart.resize(width, chart.options.plot.horizontal ? Math.min(chart.height, 900) : height);
     }
   });
   addEventListener('afterprint', () => {

@@ -125,11 +125,11 @@ std::string figure(const Plot& plot, const std::string& note, std::size_t number
   if (plot.horizontal) {  // one line of text per category
     style = " style=\"height:" + std::to_string(90 + 26 * plot.categories.size()) + "px\"";
   }
-  std::string out = std::string("<figure class=\"plot ") +
-                    (plot.width == Width::half ? "half" : "full") + "\">\n<h3>" + html(plot.title) +
-                    "</h3>\n<div class=\"canvas\"" + style + "><canvas id=\"plot-" +
-                    std::to_string(number) + "\" role=\"img\" aria-label=\"" + html(plot.title) +
-                    "\"></canvas></div>\n";
+  std::string out =
+      std::string("<figure class=\"plot ") + (plot.width == Width::half ? "half" : "full") +
+      "\">\n<div class=\"head\"><h3>" + html(plot.title) + "</h3></div>\n<div class=\"canvas\"" +
+      style + "><canvas id=\"plot-" + std::to_string(number) + "\" role=\"img\" aria-label=\"" +
+      html(plot.title) + "\"></canvas></div>\n";
   const std::string caption =
       plot.caption + (plot.caption.empty() || note.empty() ? "" : " ") + note;
   if (!caption.empty()) out += "<figcaption>" + html(caption) + "</figcaption>\n";

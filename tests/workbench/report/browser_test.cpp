@@ -1,0 +1,117 @@
+// The report in a real browser. Skipped where there is none: scripts/install-packages browser.
+#include "tests/workbench/report/browser.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tests/workbench/report/example_report.h"
+
+namespace workbench::report {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+// A zoom ends on a pixel: 30 s on some 1130 pixels.
+constexpr double kPixel_s = 30.0 / 1000.0;
+// The thinnest series, a step line of 1.3 px, fills thousands of pixels; text and grid none of its
+// colour.
+constexpr int kInk = 100;
+
+class Browser : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!have_browser()) GTEST_SKIP() << "chromium is missing: scripts/install-packages browser";
+  }
+};
+
+std::string replaced(std::string page, const std::string& from, const std::string& to) {
+  const auto at = page.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return page.replace(at, from.size(), to);
+}
+
+/// The page with the check before its own program, so that an error there is seen.
+std::string with_check(std::string page) {
+  const std::string script =
+      "<script>\n" + read_text(SPOOLWATCH_SOURCE_DIR "/tests/workbench/report/browser_check.js") +
+      "</script>\n";
+  return page.insert(page.rfind("<script type=\"application/json\""), script);
+}
+
+json check_of(const Visit& visit) {
+  const std::string from = R"(<pre id="check">)";
+  const auto begin = visit.document.rfind(from);
+  if (begin == std::string::npos) {
+    ADD_FAILURE() << "the page left no result, chromium's status is " << visit.status;
+    return json::object();
+  }
+  const auto text = begin + from.size();
+  return json::parse(visit.document.substr(text, visit.document.find("</pre>", text) - text));
+}
+
+void expect_range(const json& range, double from_s, double to_s) {
+  EXPECT_NEAR(range[0].get<double>(), from_s, kPixel_s);
+  EXPECT_NEAR(range[1].get<double>(), to_s, kPixel_s);
+}
+
+TEST_F(Browser, DrawsEveryPlotZoomsAndReadsWithoutARequestOrAnError) {
+  const Visit seen = visit(with_check(render(example_report())));
+  const json check = check_of(seen);
+  ASSERT_TRUE(check.contains("printed")) << check.dump();
+  EXPECT_THAT(seen.requests, IsEmpty());
+  EXPECT_THAT(check["errors"], IsEmpty()) << check["errors"].dump();
+  EXPECT_EQ(check["declared"], 9);
+  EXPECT_EQ(check["drawn"], 9);
+  ASSERT_EQ(check["plots"].size(), 9U);
+  for (const json& plot : check["plots"]) {
+    for (const json& pixels : plot) EXPECT_GT(pixels.get<int>(), kInk) << check["plots"].dump();
+  }
+  EXPECT_LE(check["width"].get<int>(), 1366) << "the page is wider than a laptop's screen";
+
+  expect_range(check["before"][0], 0.0, 30.0);
+  for (const json& range : check["zoomed"]) expect_range(range, 12.0, 18.0);
+  for (const json& range : check["reset"]) expect_range(range, 0.0, 30.0);
+  const json& cloud = check["cloud"];
+  EXPECT_NEAR(cloud[0].get<double>(), -50.0, 1.0);
+  EXPECT_NEAR(cloud[3].get<double>(), 10.0, 1.0);
+
+  ASSERT_EQ(check["tooltip"].size(), 2U) << check["tooltip"].dump();
+  EXPECT_THAT(check["tooltip"][0].get<std::string>(), testing::MatchesRegex("time 1[45].* s"));
+  EXPECT_THAT(check["tooltip"][1].get<std::string>(), testing::MatchesRegex("residual: .* µm"));
+  for (const json& width : check["printed"]) EXPECT_LE(width.get<int>(), 690);
+}
+
+TEST_F(Browser, TheCheckNoticesCurvesThatAreNotDrawn) {
+  const std::string page =
+      replaced(render(example_report()), "return series.y.map((y, i)", "return [].map((y, i)");
+  const json check = check_of(visit(with_check(page)));
+  ASSERT_EQ(check["plots"].size(), 9U) << check.dump();
+  for (std::size_t i = 0; i < 7; ++i) {  // all but the two plots over names
+    for (const json& pixels : check["plots"][i]) EXPECT_LT(pixels.get<int>(), kInk) << i;
+  }
+}
+
+TEST_F(Browser, APlotThatFailsSaysSoAndTheOthersAreDrawn) {
+  const std::string page = replaced(render(example_report()), "function draw(canvas, plot) {",
+                                    "function draw(canvas, plot) {if (plot.title === 'Command') "
+                                    "throw new Error('planted');");
+  const Visit seen = visit(page);
+  EXPECT_THAT(seen.document, testing::HasSubstr("This plot could not be drawn: planted"));
+  EXPECT_THAT(seen.document, testing::HasSubstr(R"(data-plots="9" data-drawn="8")"));
+}
+
+TEST_F(Browser, ThePolicyStopsARequestThatWouldOtherwiseBeSeen) {
+  const std::string planted = replaced(render(example_report(200)), "<main>",
+                                       "<main><img src=\"http://planted.invalid/x.png\">");
+  EXPECT_THAT(visit(planted).requests, IsEmpty());
+  const std::string open = replaced(planted, "default-src 'none'", "default-src *");
+  EXPECT_THAT(visit(replaced(open, "img-src data:", "img-src *")).requests,
+              ElementsAre("http://planted.invalid/x.png"));
+}
+
+}  // namespace
+}  // namespace workbench::report

@@ -1,0 +1,48 @@
+#include "workbench/report/text.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace workbench::report {
+namespace {
+
+TEST(Text, HtmlLeavesNoMarkup) {
+  EXPECT_EQ(html(R"(<b a="1" c='2'>R&D</b>)"),
+            "&lt;b a=&quot;1&quot; c=&#39;2&#39;&gt;R&amp;D&lt;/b&gt;");
+}
+
+TEST(Text, UnitsAndAccentsPassUnchanged) { EXPECT_EQ(html("5 µm, ±2 °"), "5 µm, ±2 °"); }
+
+TEST(Text, BytesThatAreNoUtf8AreReplaced) {
+  EXPECT_EQ(html("a\xff"
+                 "b"),
+            "a\xef\xbf\xbd"
+            "b");
+  EXPECT_TRUE(nlohmann::json::accept(json_string("a\xc3")));
+}
+
+TEST(Text, AJsonStringCannotCloseItsScript) {
+  const std::string evil = "</script><!-- \"quoted\" \\ \n\t";
+  const std::string text = json_string(evil);
+  EXPECT_EQ(text.find('<'), std::string::npos);
+  EXPECT_EQ(nlohmann::json::parse(text).get<std::string>(), evil);
+}
+
+TEST(Text, NumbersAreShortAndKeepSevenDigits) {
+  EXPECT_EQ(json_number(0.005), "0.005");
+  EXPECT_EQ(json_number(-12.0), "-12");
+  EXPECT_EQ(json_number(1.0 / 3.0), "0.3333333");
+  EXPECT_EQ(json_number(6.02214076e23), "6.022141e+23");
+}
+
+TEST(Text, WhatIsNoNumberIsNull) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(json_numbers({1.0, std::nan(""), infinity, -infinity, 2.0}), "[1,null,null,null,2]");
+  EXPECT_EQ(json_numbers({}), "[]");
+}
+
+}  // namespace
+}  // namespace workbench::report
