@@ -24,7 +24,7 @@ class Ensemble {
   Ensemble() = default;
   Ensemble(const Ensemble&) = delete;
   Ensemble& operator=(const Ensemble&) = delete;
-  virtual ~Ensemble() = default;
+  virtual ~Ensemble();
 
   /// The parameter of that name ("mass_kg", "friction.coulomb_N") for set(); none when unknown.
   [[nodiscard]] virtual std::optional<std::size_t> find(std::string_view dotted) const = 0;
@@ -46,5 +46,15 @@ class Ensemble {
 /// The model's plant with its parameters in all lanes, stepped every step_s instead of the model's
 /// own step. Throws config::schema::Error (exit 78) like make_plant().
 [[nodiscard]] std::unique_ptr<Ensemble> make_ensemble(const ModelFile& model, double step_s);
+
+/// Every one gives the same bits; the wider, the faster.
+enum class InstructionSet { baseline, avx2, avx512 };
+/// Whether this machine, and this build, has it.
+[[nodiscard]] bool runs_here(InstructionSet set) noexcept;
+/// What make_ensemble() uses when it is not told.
+[[nodiscard]] InstructionSet fastest_here() noexcept;
+/// With one that runs here.
+[[nodiscard]] std::unique_ptr<Ensemble> make_ensemble(const ModelFile& model, double step_s,
+                                                      InstructionSet set);
 
 }  // namespace plant_sim

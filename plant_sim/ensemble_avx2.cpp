@@ -1,0 +1,10 @@
+// Compiled for AVX2: two words of four lanes.
+#include "plant_sim/lane_ensemble.h"
+
+namespace plant_sim {
+
+LaneEnsemble* new_avx2_lanes(const char* plant, double step_s) {
+  return new_lanes<BasicLanes<4>>(plant, step_s);
+}
+
+}  // namespace plant_sim

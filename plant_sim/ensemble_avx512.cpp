@@ -1,0 +1,10 @@
+// Compiled for AVX-512: all eight lanes in one word.
+#include "plant_sim/lane_ensemble.h"
+
+namespace plant_sim {
+
+LaneEnsemble* new_avx512_lanes(const char* plant, double step_s) {
+  return new_lanes<BasicLanes<8>>(plant, step_s);
+}
+
+}  // namespace plant_sim

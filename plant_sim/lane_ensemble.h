@@ -1,0 +1,110 @@
+// How an Ensemble is put together: what any machine runs (LaneEnsemble, in ensemble.cpp) and the
+// physics at eight lanes (InLanes), compiled once for each instruction set.
+//
+// A file compiled for a wide instruction set instantiates InLanes and nothing else: it must not
+// emit a function that the rest of the program could share with it, which would then run wide
+// instructions on a machine without them. So InLanes has no strings, no vectors of common types and
+// no exceptions; tests/plant_sim/wide_symbols.py looks at what those files emit.
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "plant_sim/ensemble.h"
+#include "plant_sim/plants.h"
+
+namespace plant_sim {
+
+class LaneEnsemble : public Ensemble {
+ public:
+  explicit LaneEnsemble(double step_s);
+  LaneEnsemble(const LaneEnsemble&) = delete;
+  LaneEnsemble& operator=(const LaneEnsemble&) = delete;
+  ~LaneEnsemble() override;
+
+  /// All lanes to the model's values.
+  void take(const ModelFile& model);
+
+  [[nodiscard]] std::optional<std::size_t> find(std::string_view dotted) const final;
+  void set(std::size_t parameter, std::size_t lane, double value) noexcept final;
+  [[nodiscard]] double get(std::size_t parameter, std::size_t lane) const noexcept final;
+
+ protected:
+  /// Tells of eight lanes that live as long as *this; owner is an effect, "initial" or null.
+  void enter(const char* owner, const char* name, void* lanes);
+  [[nodiscard]] double step_s() const { return step_s_; }
+
+ private:
+  struct Entry {
+    std::string name;
+    void* lanes;
+  };
+  double step_s_;
+  std::vector<Entry> entries_;
+  std::vector<Entry> initial_;
+};
+
+/// A template of physics at eight lanes, behind the runtime face.
+template <class Model, class S>
+class InLanes final : public LaneEnsemble {
+ public:
+  explicit InLanes(double step_s) : LaneEnsemble(step_s) {
+    model_.parameters.visit(
+        [&](const ParameterInfo& info, S& value) { enter(nullptr, info.name, &value); });
+    model_.effects.each([&](auto tag, auto& parameters) {
+      using Effect = typename decltype(tag)::Type;
+      if constexpr (fits<Effect, Model>()) {
+        parameters.visit(
+            [&](const ParameterInfo& info, S& value) { enter(Effect::kName, info.name, &value); });
+      }
+    });
+    model_.initial.visit(
+        [&](const ParameterInfo& info, S& value) { enter("initial", info.name, &value); });
+  }
+
+  void start(double reading_m) noexcept override {
+    model_.prepare(step_s());
+    model_.initial.y_m = reading_m;
+    model_.reset();
+    const S off_m = model_.effects.reading_m(model_.state.y_m) - reading_m;
+    model_.state.y_m -= off_m;
+  }
+
+  void advance(const Values& u_V, double duration_s) noexcept override {
+    model_.prepare(step_s());
+    const S u = S::load(u_V.data());
+    const auto steps = ::llround(duration_s / step_s());
+    for (long long i = 0; i < steps; ++i) model_.step(u);
+  }
+  void shift(const Values& by_m) noexcept override { model_.state.y_m += S::load(by_m.data()); }
+
+  [[nodiscard]] Values reading_m() const noexcept override {
+    return unpack(model_.effects.reading_m(model_.state.y_m));
+  }
+  [[nodiscard]] Values speed_mps() const noexcept override { return unpack(model_.speed_mps()); }
+
+ private:
+  static Values unpack(const S& lanes) {
+    Values values;
+    lanes.store(values.data());
+    return values;
+  }
+
+  Model model_;
+};
+
+/// The plant of that name at eight lanes; null when there is none. For the caller to own.
+template <class S>
+LaneEnsemble* new_lanes(const char* plant, double step_s) {
+  LaneEnsemble* made = nullptr;
+  each_plant<S>([&]<class Model>() {
+    if (__builtin_strcmp(plant, Model::kName) == 0) made = new InLanes<Model, S>(step_s);
+  });
+  return made;
+}
+
+LaneEnsemble* new_avx2_lanes(const char* plant, double step_s);
+LaneEnsemble* new_avx512_lanes(const char* plant, double step_s);
+
+}  // namespace plant_sim
