@@ -13,14 +13,14 @@
   const PRINT_PX = {full: [690, 225], half: [334, 225]};
   const charts = [];
 
-  const short = (v) => {
+  // The digits that carry something: no float noise, no trailing zeros, a real minus sign.
+  const number = (v, digits) => {
     if (!Number.isFinite(v)) return '–';
-    const size = Math.abs(v);
-    const text = size !== 0 && (size < 1e-4 || size >= 1e6) ? v.toExponential(3)
-                                                            : String(+v.toPrecision(5));
-    return text.replace(/-/g, '−');
+    const size = Math.abs(v), value = +v.toPrecision(digits);
+    const far = size !== 0 && (size < 1e-4 || size >= 1e7);
+    return (far ? value.toExponential() : String(value)).replace(/-/g, '−');
   };
-  const with_unit = (v, axis) => short(v) + (axis.unit ? ' ' + axis.unit : '');
+  const with_unit = (v, axis) => number(v, 5) + (axis.unit ? ' ' + axis.unit : '');
   const heading = (axis) => axis.label + (axis.unit ? ' (' + axis.unit + ')' : '');
   const tint = (colour, alpha) => colour + Math.round(alpha * 255).toString(16).padStart(2, '0');
 
@@ -42,7 +42,7 @@
     if (series.kind === 'bars') {
       return {...base, type: 'bar', backgroundColor: tint(colour, .8), borderWidth: 0,
               maxBarThickness: plot.horizontal ? 16 : 46, categoryPercentage: .8,
-              barPercentage: plot.categories ? .9 : 1, minBarLength: 2, order: 200 - index};
+              barPercentage: plot.categories ? .9 : 1, minBarLength: 2, order: 200};
     }
     if (series.kind === 'scatter') {
       return {...base, type: 'scatter', showLine: false, borderWidth: 0, order: 300 - index,
@@ -86,6 +86,19 @@
     },
   };
 
+  const empty = {
+    id: 'empty',
+    afterDraw(chart) {
+      if (chart.options.plot.series.some((s) => s.y.some((v) => v !== null))) return;
+      const area = chart.chartArea, ctx = chart.ctx;
+      ctx.save();
+      ctx.textAlign = 'center';
+      ctx.fillStyle = SOFT;
+      ctx.fillText('No values to draw', (area.left + area.right) / 2, (area.top + area.bottom) / 2);
+      ctx.restore();
+    },
+  };
+
   // Few named values carry their number.
   const numbers = {
     id: 'numbers',
@@ -98,7 +111,7 @@
       chart.getDatasetMeta(0).data.forEach((element, i) => {
         const value = plot.series[0].y[i];
         if (value === null) return;
-        const text = short(+value.toPrecision(3));
+        const text = number(value, 3);
         const half = ctx.measureText(text).width / 2;
         const x = plot.horizontal ? element.x + half + 6
                                   : Math.min(element.x, area.right - half - 2);
@@ -114,6 +127,20 @@
     },
   };
 
+  // A name in lines of about so many letters, broken at blanks and behind underscores.
+  function wrapped(name, letters) {
+    const rows = [''];
+    for (const part of name.match(/[^ _]*[ _]?/g)) {
+      const row = rows[rows.length - 1];
+      if (row.length > 1 && row.trim() !== '+' && (row + part).trim().length > letters) {
+        rows.push(part);
+      } else {
+        rows[rows.length - 1] = row + part;
+      }
+    }
+    return rows.map((row) => row.trim()).filter(Boolean);
+  }
+
   function scale(plot, which) {
     const axis = (which === value_axis(plot)) ? plot.y : plot.x;
     const common = {
@@ -123,9 +150,14 @@
     };
     if (plot.categories && which !== value_axis(plot)) {
       common.ticks.autoSkip = !plot.horizontal && plot.categories.length > 12;
+      if (!plot.horizontal) {
+        common.ticks.callback = function(i) {
+          return wrapped(plot.categories[i], this.width / plot.categories.length / 7);
+        };
+      }
       return {...common, type: 'category', grid: {...common.grid, display: false}, offset: true};
     }
-    const text = (v) => short(+v.toPrecision(10));
+    const text = (v) => number(v, 10);
     if (axis.log) {
       common.ticks.callback = function(v) {
         const few = this.max / this.min < 300;
@@ -179,6 +211,7 @@
       backgroundColor: 'rgba(255,255,255,.96)', titleColor: INK, bodyColor: INK,
       borderColor: '#c5ced8', borderWidth: 1, padding: 9, boxPadding: 4, usePointStyle: false,
       boxWidth: 10, boxHeight: 10,
+      itemSort: (a, b) => a.datasetIndex - b.datasetIndex,
       callbacks: {
         title: (items) => {
           if (!items.length) return '';
@@ -204,7 +237,7 @@
           tooltip: tooltip(plot),
         },
       },
-      plugins: [lines, numbers],
+      plugins: [lines, numbers, empty],
     });
     charts.push(chart);
     legend(chart, plot);
@@ -332,7 +365,8 @@
       const half = chart.canvas.closest('figure').classList.contains('half');
       const [width, height] = PRINT_PX[half ? 'half' : 'full'];
       chart.options.devicePixelRatio = 2.5;
-      chart.resize(width, chart.options.plot.horizontal ? Math.min(chart.height, 900) : height);
+      const plot = chart.options.plot;
+      chart.resize(width, plot.horizontal ? Math.min(70 + 18 * plot.categories.length, 880) : height);
     }
   });
   addEventListener('afterprint', () => {

@@ -123,7 +123,7 @@ PlotText plot_text(const Plot& plot) {
 std::string figure(const Plot& plot, const std::string& note, std::size_t number) {
   std::string style;
   if (plot.horizontal) {  // one line of text per category
-    style = " style=\"height:" + std::to_string(90 + 26 * plot.categories.size()) + "px\"";
+    style = " style=\"flex-basis:" + std::to_string(90 + 26 * plot.categories.size()) + "px\"";
   }
   std::string out =
       std::string("<figure class=\"plot ") + (plot.width == Width::half ? "half" : "full") +

@@ -59,8 +59,16 @@ async function use() {
   await wait(300);
   const tooltip = chart(1).tooltip;
   seen.tooltip = [...tooltip.title, ...tooltip.body.flatMap((part) => part.lines)];
+  const name = canvases[0].closest('figure').querySelector('button');
+  name.click();
+  seen.hidden = [chart(0).isDatasetVisible(0), chart(0).isDatasetVisible(1)];
+  name.click();
+  const widths = () => canvases.map((canvas) => parseInt(canvas.style.width, 10));
+  seen.shown = widths();
   dispatchEvent(new Event('beforeprint'));
-  seen.printed = canvases.map((canvas) => parseInt(canvas.style.width, 10));
+  seen.printed = widths();
+  dispatchEvent(new Event('afterprint'));
+  seen.again = widths();
 }
 
 addEventListener('load', async () => {
