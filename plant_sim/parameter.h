@@ -19,7 +19,8 @@ struct ParameterInfo {
   /// Plants: how far a rig may be from its model file, as a relative standard deviation; 0 = taken
   /// as known, because the record cannot tell it from the others or because it is easily measured.
   double uncertainty_ratio = 0.0;
-  /// Effects: 0 = what the effect is; above, a refinement that has to earn its place afterwards.
+  /// Effects: 0 = what the effect is; above, the number of a refinement of it, whose parameters
+  /// come and go together and have to earn their place.
   int refinement = 0;
 };
 

@@ -40,16 +40,16 @@ struct Friction {
     void visit(V&& v) {
       v(ParameterInfo{"coulomb_N", "sliding friction", 0.0, 1e6, 200.0, 0.0}, coulomb_N);
       v(ParameterInfo{"static_N", "friction at standstill; below coulomb_N it has no influence",
-                      0.0, 1e6, 300.0, 0.0},
+                      0.0, 1e6, 300.0, 0.0, 0.0, 1},
         static_N);
       v(ParameterInfo{"stribeck_mps", "speed over which static falls to sliding friction", 0.0,
-                      10.0, 0.01, 0.0},
+                      10.0, 0.01, 0.0, 0.0, 1},
         stribeck_mps);
       v(ParameterInfo{"presliding_stiffness_N_per_m", "stiffness before it slides; 0 is rigid", 0.0,
-                      1e9, 1e7, 0.0},
+                      1e9, 1e7, 0.0, 0.0, 2},
         presliding_stiffness_N_per_m);
       v(ParameterInfo{"direction_ratio", "more when extending, less when retracting", -1.0, 1.0,
-                      0.2, 0.0},
+                      0.2, 0.0, 0.0, 3},
         direction_ratio);
     }
   };

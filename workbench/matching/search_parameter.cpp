@@ -75,6 +75,7 @@ std::vector<SearchParameter> effect_parameters(const plant_sim::EffectInfo& effe
     p.name = effect.name + "." + info.name;
     p.unit = info.typical;
     p.prior_sd = kInfinite;
+    p.refinement = info.refinement;
     if (std::isinf(info.neutral)) {
       p.scale = Scale::reciprocal;
       p.lower = 0.0;
@@ -86,6 +87,31 @@ std::vector<SearchParameter> effect_parameters(const plant_sim::EffectInfo& effe
     found.push_back(p);
   }
   return found;
+}
+
+std::vector<SearchParameter> present_parameters(const plant_sim::ModelFile& model) {
+  std::vector<SearchParameter> found;
+  for (const plant_sim::ModelFile::Effect& effect : model.effects) {
+    const plant_sim::EffectInfo* info = effect.present ? plant_sim::find_effect(effect.name) : nullptr;
+    if (info == nullptr) continue;
+    const std::vector<SearchParameter> all = effect_parameters(*info, kEveryRefinement);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (effect.parameters[i].value != info->parameters[i].neutral) found.push_back(all[i]);
+    }
+  }
+  return found;
+}
+
+Eigen::VectorXd start_of(const plant_sim::ModelFile& model,
+                         const std::vector<SearchParameter>& searched) {
+  plant_sim::ModelFile copy = model;
+  Eigen::VectorXd x(static_cast<Eigen::Index>(searched.size()));
+  for (std::size_t i = 0; i < searched.size(); ++i) {
+    const double* value = copy.value(searched[i].name);
+    const double s = value == nullptr ? 0.0 : searched[i].search(*value);
+    x[static_cast<Eigen::Index>(i)] = std::clamp(s, searched[i].lower, searched[i].upper);
+  }
+  return x;
 }
 
 }  // namespace workbench::matching

@@ -1,0 +1,49 @@
+#include "workbench/diagnose/projection.h"
+
+#include <cmath>
+
+namespace workbench::diagnose {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+Projection::Projection(const matching::Fitted& fitted, const VectorXd& weights)
+    : weights_(weights), jacobian_(fitted.jacobian), per_sigma_(1.0 / fitted.sigma_m) {
+  weighted_jacobian_ = weights_.asDiagonal() * fitted.jacobian * per_sigma_;
+  Eigen::MatrixXd normal = weighted_jacobian_.transpose() * weighted_jacobian_;
+  for (Index i = 0; i < normal.rows(); ++i) {
+    const double sd = fitted.searched[static_cast<std::size_t>(i)].prior_sd;
+    // what neither the record nor a prior holds does not move here
+    normal(i, i) += std::isfinite(sd) ? 1.0 / (sd * sd) : 1e-9 * normal(i, i) + 1e-12;
+  }
+  normal_.compute(normal);
+  const VectorXd own = weights_.cwiseProduct(fitted.residual_m) * per_sigma_;
+  const VectorXd onto = weighted_jacobian_.transpose() * own;
+  cost_ = remaining(own, onto, own, onto);
+}
+
+double Projection::remaining(const VectorXd& weighted, const VectorXd& onto, const VectorXd& other,
+                             const VectorXd& other_onto) const {
+  return weighted.dot(other) - onto.dot(normal_.solve(other_onto));
+}
+
+std::pair<double, double> Projection::with(const Eigen::Ref<const VectorXd>& residual_m,
+                                           const Eigen::Ref<const VectorXd>& signature_m) const {
+  const VectorXd r = weights_.cwiseProduct(residual_m) * per_sigma_;
+  const VectorXd d = weights_.cwiseProduct(signature_m) * per_sigma_;
+  const VectorXd r_onto = weighted_jacobian_.transpose() * r;
+  const VectorXd d_onto = weighted_jacobian_.transpose() * d;
+  const double rr = remaining(r, r_onto, r, r_onto);
+  const double dd = remaining(d, d_onto, d, d_onto);
+  const double rd = remaining(r, r_onto, d, d_onto);
+  if (!(dd > 0.0)) return {rr, 0.0};
+  return {rr - rd * rd / dd, -rd / dd};
+}
+
+VectorXd Projection::beyond(const Eigen::Ref<const VectorXd>& signature_m) const {
+  const VectorXd d = weights_.cwiseProduct(signature_m) * per_sigma_;
+  return signature_m - jacobian_ * normal_.solve(weighted_jacobian_.transpose() * d) *
+                           (1.0 / per_sigma_) * per_sigma_;
+}
+
+}  // namespace workbench::diagnose

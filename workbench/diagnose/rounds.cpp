@@ -1,0 +1,202 @@
+#include "workbench/diagnose/rounds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "estimator/residual/comparison.h"
+#include "workbench/diagnose/parallel.h"
+
+namespace workbench::diagnose {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr int kQuickIterations = 12;
+constexpr double kQuickTolerance = 2e-3;
+constexpr int kThoroughIterations = 30;
+constexpr double kThoroughTolerance = 1e-5;
+/// Candidates within this of the best are fitted to the end.
+constexpr double kContender = 0.5;
+/// At the noise floor the quick look is as good as the fit: what it does not expect is not there.
+constexpr double kAtFloor = 1.05;
+constexpr double kExpectable = 0.002;
+constexpr std::size_t kPairable = 6;
+constexpr double kComparedBlock_s = 1.0;
+
+Candidate candidate_of(const Workshop& shop, const Stage& stage, const Glance& glance,
+                       Trial trial) {
+  Candidate candidate;
+  candidate.effects = {glance.effect};
+  candidate.expected_ratio = glance.expected_ratio;
+  candidate.score_rms_m = trial.fitted.score_rms_m;
+  candidate.fitted_at_all = true;
+  candidate.p_value = chance(shop, stage.fitted, trial.fitted);
+  candidate.fitted = std::move(trial.fitted);
+  return candidate;
+}
+
+void sort_by_score(std::vector<Candidate>& candidates) {
+  std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
+    if (a.fitted_at_all != b.fitted_at_all) return a.fitted_at_all;
+    return a.fitted_at_all ? a.score_rms_m < b.score_rms_m : a.expected_ratio < b.expected_ratio;
+  });
+}
+
+/// The contenders fitted to the end, with their Jacobians.
+void finish(const Workshop& shop, const Stage& stage, std::vector<Candidate>& candidates) {
+  const double best_m = candidates.front().score_rms_m;
+  std::size_t contenders = 0;
+  while (contenders < candidates.size() && candidates[contenders].fitted_at_all &&
+         candidates[contenders].score_rms_m <= (1.0 + kContender) * best_m &&
+         candidates[contenders].score_rms_m <=
+             (1.0 - 0.5 * kWorthwhile) * stage.fitted.score_rms_m) {
+    ++contenders;
+  }
+  matching::FitOptions options;
+  options.max_iterations = kThoroughIterations;
+  options.tolerance = kThoroughTolerance;
+  options.cancel = shop.cancel;
+  in_parallel(contenders, shop.threads, [&](std::size_t i) {
+    Candidate& candidate = candidates[i];
+    matching::Fitted fitted = matching::fit(shop.model, shop.evidence, shop.evidence.fits,
+                                            candidate.fitted.searched, candidate.fitted.x, options);
+    if (fitted.fit_rms_m > candidate.fitted.fit_rms_m * (1.0 + 1e-3)) return;
+    candidate.fitted = std::move(fitted);
+    candidate.score_rms_m = candidate.fitted.score_rms_m;
+    candidate.p_value = chance(shop, stage.fitted, candidate.fitted);
+  });
+  sort_by_score(candidates);
+}
+
+}  // namespace
+
+std::vector<VectorXd> bases_of(const Workshop& shop, const Stage& stage) {
+  VectorXd nominal = stage.fitted.x;
+  const VectorXd file = matching::start_of(shop.model, shop.standing);
+  nominal.head(file.size()) = file;
+  return {stage.fitted.x, nominal};
+}
+
+double chance(const Workshop& shop, const matching::Fitted& earlier,
+              const matching::Fitted& later) {
+  const auto scored = [&](const matching::Fitted& fitted) {
+    std::vector<double> series(fitted.residual_m.data(),
+                               fitted.residual_m.data() + fitted.residual_m.size());
+    for (std::size_t i = 0; i < series.size(); ++i) {
+      if (shop.evidence.scores[static_cast<Index>(i)] == 0.0) series[i] = std::nan("");
+    }
+    return series;
+  };
+  const int block =
+      std::max(8, static_cast<int>(std::lround(kComparedBlock_s / shop.evidence.sample_time_s)));
+  const estimator::residual::Comparison comparison =
+      estimator::residual::compare_residuals(scored(earlier), scored(later), block);
+  if (!std::isfinite(comparison.p)) return 1.0;
+  return comparison.z > 0.0 ? 0.5 * comparison.p : 1.0 - 0.5 * comparison.p;
+}
+
+Stage with(const Stage& stage, const Candidate& candidate) {
+  Stage next = stage;
+  next.added.insert(next.added.end(), candidate.effects.begin(), candidate.effects.end());
+  next.fitted = candidate.fitted;
+  return next;
+}
+
+Round single_round(const Workshop& shop, const Stage& stage, int number) {
+  Round round;
+  round.before = stage;
+  std::vector<plant_sim::EffectInfo> effects;
+  for (const plant_sim::EffectInfo& effect : shop.absent) {
+    if (std::find(stage.added.begin(), stage.added.end(), effect.name) == stage.added.end()) {
+      effects.push_back(effect);
+    }
+  }
+  std::mutex mutex;
+  Progress progress;
+  progress.of = static_cast<int>(2 * effects.size());
+  const auto report = [&](const std::string& doing, const Candidate* finished) {
+    const std::lock_guard lock(mutex);
+    ++progress.done;
+    progress.doing = "round " + std::to_string(number) + ": " + doing;
+    if (finished != nullptr &&
+        (progress.best.empty() || finished->score_rms_m < progress.best_rms_m)) {
+      progress.best = finished->effects.front();
+      progress.best_rms_m = finished->score_rms_m;
+    }
+    if (shop.progress) shop.progress(progress);
+  };
+  const std::vector<VectorXd> bases = bases_of(shop, stage);
+  std::vector<Glance> glances(effects.size());
+  in_parallel(effects.size(), shop.threads, [&](std::size_t i) {
+    if (shop.cancelled()) return;
+    glances[i] = glance(shop, stage, bases, effects[i]);
+    report("looking at " + effects[i].name, nullptr);
+  });
+  std::stable_sort(glances.begin(), glances.end(), [](const Glance& a, const Glance& b) {
+    return a.expected_ratio < b.expected_ratio;
+  });
+  const bool at_floor = stage.fitted.score_rms_m < kAtFloor * shop.evidence.noise_floor_m;
+  matching::FitOptions options;
+  options.max_iterations = kQuickIterations;
+  options.tolerance = kQuickTolerance;
+  options.final_jacobian = false;
+  options.cancel = shop.cancel;
+  round.candidates.resize(glances.size());
+  in_parallel(glances.size(), shop.threads, [&](std::size_t i) {
+    const Glance& look = glances[i];
+    Candidate& candidate = round.candidates[i];
+    candidate.effects = {look.effect};
+    candidate.expected_ratio = look.expected_ratio;
+    const bool hopeless = at_floor && look.expected_ratio > 1.0 - kExpectable;
+    if (!shop.cancelled() && !look.starts.empty() && !hopeless) {
+      candidate = candidate_of(shop, stage, look, attempt(shop, look, options));
+    }
+    report("trying " + look.effect, candidate.fitted_at_all ? &candidate : nullptr);
+  });
+  sort_by_score(round.candidates);
+  if (!round.candidates.empty()) finish(shop, stage, round.candidates);
+  return round;
+}
+
+std::vector<Candidate> pair_round(const Workshop& shop, const Round& singles) {
+  const std::size_t count = std::min(kPairable, singles.candidates.size());
+  struct Pair {
+    std::size_t first, second;
+  };
+  std::vector<Pair> pairs;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k = i + 1; k < count; ++k) pairs.push_back({i, k});
+  }
+  std::vector<Candidate> candidates(pairs.size());
+  matching::FitOptions options;
+  options.max_iterations = kQuickIterations;
+  options.tolerance = kQuickTolerance;
+  options.final_jacobian = false;
+  options.cancel = shop.cancel;
+  const auto base = static_cast<Index>(singles.before.fitted.searched.size());
+  in_parallel(pairs.size(), shop.threads, [&](std::size_t i) {
+    const Candidate& first = singles.candidates[pairs[i].first];
+    const Candidate& second = singles.candidates[pairs[i].second];
+    if (shop.cancelled() || !first.fitted_at_all || !second.fitted_at_all) return;
+    Glance look;
+    look.effect = first.effects.front();
+    look.searched = first.fitted.searched;
+    look.searched.insert(look.searched.end(), second.fitted.searched.begin() + base,
+                         second.fitted.searched.end());
+    VectorXd start(static_cast<Index>(look.searched.size()));
+    start << first.fitted.x, second.fitted.x.tail(second.fitted.x.size() - base);
+    look.starts = {start};
+    start.head(base) = second.fitted.x.head(base);
+    look.starts.push_back(start);
+    candidates[i] = candidate_of(shop, singles.before, look, attempt(shop, look, options));
+    candidates[i].effects.push_back(second.effects.front());
+  });
+  std::erase_if(candidates, [](const Candidate& c) { return !c.fitted_at_all; });
+  sort_by_score(candidates);
+  if (!candidates.empty()) finish(shop, singles.before, candidates);
+  return candidates;
+}
+
+}  // namespace workbench::diagnose

@@ -1,0 +1,23 @@
+// One round of the ladder: every absent effect on top of a stage, best first.
+#pragma once
+
+#include <vector>
+
+#include "workbench/diagnose/ladder.h"
+
+namespace workbench::diagnose {
+
+/// Search values to look from: the stage's own, and the model file's with the added effects as they
+/// are in the stage.
+[[nodiscard]] std::vector<Eigen::VectorXd> bases_of(const Workshop& shop, const Stage& stage);
+
+[[nodiscard]] Round single_round(const Workshop& shop, const Stage& stage, int number);
+/// The most promising effects of a round two by two.
+[[nodiscard]] std::vector<Candidate> pair_round(const Workshop& shop, const Round& singles);
+
+[[nodiscard]] Stage with(const Stage& stage, const Candidate& candidate);
+/// Probability that `later` scores better than `earlier` by chance.
+[[nodiscard]] double chance(const Workshop& shop, const matching::Fitted& earlier,
+                            const matching::Fitted& later);
+
+}  // namespace workbench::diagnose

@@ -1,0 +1,128 @@
+#include "workbench/diagnose/sizes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "plant_sim/parameter.h"
+
+namespace workbench::diagnose {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using matching::SearchParameter;
+
+constexpr double kHalfPi = 1.5707963267948966;
+constexpr Index kSizes = 8;
+constexpr double kSignedRatio = 4.0;    ///< between the sizes of one sign
+constexpr double kPositiveRatio = 3.0;  ///< between the sizes of an effect of one sign
+constexpr double kFinestTurns = 60.0;   ///< turns of the finest wavelength over the motion
+constexpr double kTurnStep = 0.5;       ///< between neighbouring wavelengths
+
+bool ends_with(const std::string& text, const std::string& ending) {
+  return text.size() >= ending.size() &&
+         text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+struct Span {
+  double least_m;
+  double most_m;
+};
+
+Span span_of(const matching::Evidence& evidence) {
+  Span span{evidence.records.front().y_m.front(), evidence.records.front().y_m.front()};
+  for (const matching::Measured& record : evidence.records) {
+    const auto [least, most] = std::minmax_element(record.y_m.begin(), record.y_m.end());
+    span.least_m = std::min(span.least_m, *least);
+    span.most_m = std::max(span.most_m, *most);
+  }
+  return span;
+}
+
+/// All parameters at their typical sizes, rest positions in the middle of the motion.
+VectorXd typical_point(const std::vector<SearchParameter>& searched, const Span& span) {
+  VectorXd point = VectorXd::Ones(static_cast<Index>(searched.size()));
+  for (std::size_t i = 0; i < searched.size(); ++i) {
+    const SearchParameter& p = searched[i];
+    double s = 1.0;
+    if (ends_with(p.name, ".rest_m")) s = p.search(0.5 * (span.least_m + span.most_m));
+    point[static_cast<Index>(i)] = std::clamp(s, p.lower, p.upper);
+  }
+  return point;
+}
+
+Index index_of(const std::vector<SearchParameter>& searched, const std::string& ending) {
+  for (std::size_t i = 0; i < searched.size(); ++i) {
+    if (ends_with(searched[i].name, ending)) return static_cast<Index>(i);
+  }
+  return -1;
+}
+
+MatrixXd periodic(const std::vector<SearchParameter>& searched, const VectorXd& typical,
+                  const Span& span, Index wavelength, Index phase) {
+  const double range_m = std::max(span.most_m - span.least_m, 1e-6);
+  const auto count = static_cast<Index>(kFinestTurns / kTurnStep);
+  MatrixXd points(typical.size(), 2 * count);
+  const SearchParameter& length = searched[static_cast<std::size_t>(wavelength)];
+  const SearchParameter& angle = searched[static_cast<std::size_t>(phase)];
+  for (Index i = 0; i < count; ++i) {
+    const double turns = kTurnStep * static_cast<double>(i + 1);
+    for (Index quarter = 0; quarter < 2; ++quarter) {
+      VectorXd point = typical;
+      point[wavelength] = std::clamp(length.search(range_m / turns), length.lower, length.upper);
+      point[phase] = angle.search(kHalfPi * static_cast<double>(quarter));
+      points.col(2 * i + quarter) = point;
+    }
+  }
+  return points;
+}
+
+}  // namespace
+
+MatrixXd trial_sizes(const std::vector<SearchParameter>& searched,
+                     const matching::Evidence& evidence) {
+  const Span span = span_of(evidence);
+  const VectorXd typical = typical_point(searched, span);
+  const Index wavelength = index_of(searched, ".wavelength_m");
+  const Index phase = index_of(searched, ".phase_rad");
+  if (wavelength >= 0 && phase >= 0) return periodic(searched, typical, span, wavelength, phase);
+  const bool both_signs = searched.front().lower < 0.0;
+  MatrixXd points(typical.size(), kSizes);
+  for (Index k = 0; k < kSizes; ++k) {
+    const double size =
+        both_signs ? std::pow(kSignedRatio, static_cast<double>(k / 2) - 3.0) * (k % 2 ? -1.0 : 1.0)
+                   : std::pow(kPositiveRatio, static_cast<double>(k) - 6.0);
+    points.col(k) = typical;
+    scale_size(searched, size, points.col(k));
+  }
+  return points;
+}
+
+VectorXd neutral_point(const std::vector<SearchParameter>& searched) {
+  return VectorXd::Zero(static_cast<Index>(searched.size()));
+}
+
+bool scale_size(const std::vector<SearchParameter>& searched, double share,
+                Eigen::Ref<VectorXd> own) {
+  bool possible = true;
+  if (share < 0.0 && !(searched.front().lower < 0.0)) {
+    const Index phase = index_of(searched, ".phase_rad");
+    possible = phase >= 0;
+    if (possible) {
+      const SearchParameter& angle = searched[static_cast<std::size_t>(phase)];
+      own[phase] = angle.search(angle.value(own[phase]) - 2.0 * kHalfPi);
+    }
+    share = -share;
+  }
+  const std::string unit = plant_sim::unit_of(searched.front().name);
+  for (std::size_t i = 0; i < searched.size(); ++i) {
+    if (i > 0 && plant_sim::unit_of(searched[i].name) != unit) continue;
+    const auto k = static_cast<Index>(i);
+    own[k] = std::clamp(own[k] * share, searched[i].lower, searched[i].upper);
+  }
+  return possible;
+}
+
+}  // namespace workbench::diagnose

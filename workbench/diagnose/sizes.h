@@ -1,0 +1,28 @@
+// The sizes of an effect that are tried before anything is fitted.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "workbench/matching/evidence.h"
+#include "workbench/matching/search_parameter.h"
+
+namespace workbench::diagnose {
+
+/// One column of search values each (searched.size() rows). The first parameter takes sizes over
+/// decades, with both signs where it may have them; those in the same unit go along with it;
+/// wavelengths are scanned over what the motion can resolve, with two phases; rest positions lie
+/// where the motion is.
+[[nodiscard]] Eigen::MatrixXd trial_sizes(const std::vector<matching::SearchParameter>& searched,
+                                          const matching::Evidence& evidence);
+
+/// Search values at which the effect is absent.
+[[nodiscard]] Eigen::VectorXd neutral_point(const std::vector<matching::SearchParameter>& searched);
+
+/// Scales the effect's size by `share`, within its bounds; a negative share of a size that cannot
+/// be negative turns a periodic effect by half a period. False where that is not possible: the size
+/// is then scaled by the amount alone.
+bool scale_size(const std::vector<matching::SearchParameter>& searched, double share,
+                Eigen::Ref<Eigen::VectorXd> own);
+
+}  // namespace workbench::diagnose

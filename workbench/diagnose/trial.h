@@ -1,0 +1,50 @@
+// One more effect tried on top of what is already in the model: a quick look first, then the fit.
+//
+// The quick look simulates the effect in several sizes, all side by side, and asks how far the
+// error falls when its size and all other parameters may still adjust, linearly:
+//   min |r - J a - d b|^2 / s^2 + prior(a)         d = (r(size) - r(0)) / size
+// It ranks the effects before anything is fitted, and says where the fit should begin.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "workbench/diagnose/workshop.h"
+#include "workbench/matching/fitting.h"
+
+namespace workbench::diagnose {
+
+/// Refinements that take part from the start; later ones are tried when the effect is settled.
+inline constexpr int kFirstRefinements = 2;
+
+/// A model as far as it has come: effects added, and all parameters fitted.
+struct Stage {
+  std::vector<std::string> added;  ///< in order
+  matching::Fitted fitted;
+};
+
+struct Glance {
+  std::string effect;
+  /// Expected score RMS over that of the stage: 1 = of no use.
+  double expected_ratio = 1.0;
+  std::vector<matching::SearchParameter> searched;  ///< the stage's, then the effect's
+  std::vector<Eigen::VectorXd> starts;              ///< where to begin, the most promising first
+};
+
+/// `bases`: search values of the stage's parameters to look from, the stage's own first. A single
+/// start misses effects that the fit of the stage has bent its parameters to follow.
+[[nodiscard]] Glance glance(const Workshop& shop, const Stage& stage,
+                            const std::vector<Eigen::VectorXd>& bases,
+                            const plant_sim::EffectInfo& effect);
+
+struct Trial {
+  std::string effect;
+  matching::Fitted fitted;
+};
+
+/// Fits from every start of the glance and keeps the best by the fitted samples.
+[[nodiscard]] Trial attempt(const Workshop& shop, const Glance& glance,
+                            const matching::FitOptions& options);
+
+}  // namespace workbench::diagnose

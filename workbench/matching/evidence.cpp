@@ -1,0 +1,71 @@
+#include "workbench/matching/evidence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "config/schema/error.h"
+#include "estimator/residual/noise_floor.h"
+
+namespace workbench::matching {
+namespace {
+
+bool is_fitted(const Measured& record, std::size_t i, Split split) {
+  switch (split) {
+    case Split::first_half:
+      return 2 * i < record.size();
+    case Split::second_half:
+      return 2 * i >= record.size();
+    case Split::blocks:
+      break;
+  }
+  const double since_s = record.t_s[i] - record.t_s.front();
+  return static_cast<long>(since_s / kBlock_s) % 2 == 0;
+}
+
+}  // namespace
+
+Split parse_split(std::string_view text) {
+  if (text == "blocks") return Split::blocks;
+  if (text == "first-half") return Split::first_half;
+  if (text == "second-half") return Split::second_half;
+  throw config::schema::Error(
+      config::schema::ExitCode::usage,
+      "--fit: is " + std::string(text) + "; allowed: blocks, first-half, second-half");
+}
+
+Evidence evidence(std::vector<Measured> records, std::vector<Measured> holdouts, Split split) {
+  Evidence result;
+  const std::size_t fitted_records = records.size();
+  const bool apart = !holdouts.empty();
+  result.sample_time_s = records.front().sample_time_s;
+  result.records = std::move(records);
+  for (Measured& record : holdouts) result.records.push_back(std::move(record));
+  std::size_t total = 0;
+  for (const Measured& record : result.records) total += record.size();
+  result.fits.setZero(static_cast<Eigen::Index>(total));
+  result.scores = result.fits;
+  Eigen::Index at = 0;
+  double square_m2 = 0.0;
+  for (std::size_t r = 0; r < result.records.size(); ++r) {
+    const Measured& record = result.records[r];
+    result.starts.push_back(static_cast<std::size_t>(at));
+    const double floor_m = estimator::residual::noise_floor(record.y_m, record.sample_time_s).sd_m;
+    square_m2 += floor_m * floor_m * static_cast<double>(record.size());
+    for (std::size_t i = 0; i < record.size(); ++i, ++at) {
+      if (record.settled[i] == 0) continue;
+      const bool fitted = apart ? r < fitted_records : is_fitted(record, i, split);
+      (fitted ? result.fits : result.scores)[at] = 1.0;
+    }
+  }
+  result.counts = result.fits + result.scores;
+  result.noise_floor_m = std::sqrt(square_m2 / static_cast<double>(total));
+  return result;
+}
+
+double rms(const Eigen::Ref<const Eigen::VectorXd>& residual_m, const Eigen::VectorXd& weights) {
+  const double samples = std::max(weights.sum(), 1.0);
+  return std::sqrt((residual_m.array().square() * weights.array()).sum() / samples);
+}
+
+}  // namespace workbench::matching

@@ -1,0 +1,77 @@
+// A model's parameters fitted to evidence.
+//
+//   min  sum r(k)^2 / (c s^2)  +  sum ((x - mean) / sd)^2
+//
+// r measured less modelled position of the fitted samples; s their RMS, not under the noise floor;
+// c by how much neighbouring errors hang together, (1 + rho) / (1 - rho). While a model is wrong
+// its errors are large and slow: the less the record says, the more the priors do.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <vector>
+
+#include "plant_sim/model_file.h"
+#include "workbench/matching/evidence.h"
+#include "workbench/matching/model_run.h"
+#include "workbench/matching/search_parameter.h"
+
+namespace workbench::matching {
+
+/// ModelRun over every record of the evidence.
+class EvidenceRun {
+ public:
+  EvidenceRun(const plant_sim::ModelFile& model, const Evidence& evidence,
+              const std::vector<SearchParameter>& searched,
+              double observer_per_s = kObserver_per_s);
+
+  /// evidence.size() x points.cols(); at most ModelRun::kLanes columns.
+  void residuals(const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals_m);
+  /// With what is added to command and load in each lane; both empty or of the size of residuals_m.
+  void residuals(const Eigen::MatrixXd& points, const Eigen::MatrixXd& added_V,
+                 const Eigen::MatrixXd& added_N, Eigen::MatrixXd& residuals_m);
+
+ private:
+  std::vector<ModelRun> runs_;
+  std::vector<Eigen::Index> sizes_;
+};
+
+struct FitOptions {
+  int max_iterations = 30;
+  double tolerance = 1e-4;     ///< relative decrease of the cost at which it ends
+  bool final_jacobian = true;  ///< false: Fitted::jacobian may be stale in some columns
+  double observer_per_s = kObserver_per_s;
+  std::function<bool()> cancel;  ///< true ends the search, keeping the best so far
+};
+
+struct Fitted {
+  std::vector<SearchParameter> searched;
+  Eigen::VectorXd x;           ///< search values
+  Eigen::VectorXd residual_m;  ///< of all samples
+  Eigen::MatrixXd jacobian;    ///< d residual / d x, all samples
+  std::vector<int> at_bound;   ///< -1, 0, +1 for each parameter
+  double fit_rms_m = 0.0;
+  double score_rms_m = 0.0;
+  double cost = 0.0;
+  double sigma_m = 0.0;  ///< s sqrt(c) of the last pass
+  int evaluations = 0;   ///< groups of eight simulations
+
+  /// The value found for a parameter, NaN when it was not searched.
+  [[nodiscard]] double value(std::string_view name) const;
+};
+
+/// Weights: which samples count in the fit (Evidence::fits, or counts for the final values).
+[[nodiscard]] Fitted fit(const plant_sim::ModelFile& model, const Evidence& evidence,
+                         const Eigen::VectorXd& weights,
+                         const std::vector<SearchParameter>& searched, const Eigen::VectorXd& start,
+                         const FitOptions& options = {});
+
+/// (1 + rho) / (1 - rho) with the residual's correlation rho from one sample to the next, within
+/// 1 to 100.
+[[nodiscard]] double correlation_factor(const Eigen::VectorXd& residual_m,
+                                        const Eigen::VectorXd& weights);
+
+/// The model with the values found; effects whose parameters were searched become present.
+[[nodiscard]] plant_sim::ModelFile with_values(plant_sim::ModelFile model, const Fitted& fitted);
+
+}  // namespace workbench::matching
