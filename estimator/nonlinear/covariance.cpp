@@ -1,0 +1,199 @@
+#include "estimator/nonlinear/covariance.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "estimator/nonlinear/linear_model.h"
+#include "estimator/residual/autoregression.h"
+
+namespace estimator::nonlinear {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kInterval = 1.959963984540054;  // standard deviations to either side, 95 %
+constexpr double kUnseen = 1e-9;  // singular value of the column-scaled triangle, of the largest
+constexpr double kShare = 1e-3;   // part in an unseen direction that makes a parameter unseen
+constexpr Eigen::Index kLongestTail = 4000;  // samples before the record that a filter may need
+constexpr double kMostScoreMemory = 0.97;
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// J' W with missing samples' rows 0, transposed back: residuals x open unknowns.
+MatrixXd weighted(const Problem& problem, const MatrixXd& jacobian,
+                  const std::vector<Index>& open) {
+  MatrixXd out(jacobian.rows(), static_cast<Index>(open.size()));
+  for (std::size_t k = 0; k < open.size(); ++k) {
+    for (Index i = 0; i < out.rows(); ++i) {
+      const double w = problem.weight(i);
+      out(i, static_cast<Index>(k)) = w > 0.0 ? w * jacobian(i, open[k]) : 0.0;
+    }
+  }
+  return out;
+}
+
+/// (WJ)' Gamma (WJ) for the autoregression's Gamma.
+MatrixXd coloured_middle(const MatrixXd& wj, const residual::Autoregression& model) {
+  const auto order = static_cast<Index>(model.a.size());
+  if (order == 0) return model.innovation_variance * (wj.transpose() * wj);
+  const Index n = wj.rows();
+  const Index tail = std::min(kLongestTail, n);
+  // g_t = wj_t + sum a_k g_{t+k}, and on into the past, where wj is 0.
+  MatrixXd g = MatrixXd::Zero(n + tail + order, wj.cols());
+  for (Index c = 0; c < wj.cols(); ++c) {
+    double* column = g.col(c).data() + tail;
+    for (Index t = n - 1; t >= -tail; --t) {
+      double value = t >= 0 ? wj(t, c) : 0.0;
+      for (Index k = 1; k <= order; ++k) {
+        value += model.a[static_cast<std::size_t>(k - 1)] * column[t + k];
+      }
+      column[t] = value;
+    }
+  }
+  return model.innovation_variance * (g.transpose() * g);
+}
+
+MatrixXd scores_middle(const MatrixXd& wj, const VectorXd& r, const Problem& problem,
+                       double correction) {
+  MatrixXd g = wj;
+  for (Index i = 0; i < g.rows(); ++i) {
+    if (problem.weight(i) > 0.0) g.row(i) *= r[i];
+  }
+  const Index n = g.rows();
+  VectorXd memory(g.cols());
+  for (Index c = 0; c < g.cols(); ++c) {
+    const double square = g.col(c).squaredNorm();
+    const double rho = square > 0.0 ? g.col(c).tail(n - 1).dot(g.col(c).head(n - 1)) / square : 0.0;
+    memory[c] = std::clamp(rho, -kMostScoreMemory, kMostScoreMemory);
+    for (Index i = n - 1; i > 0; --i) g(i, c) -= memory[c] * g(i - 1, c);
+  }
+  MatrixXd sum = g.transpose() * g;
+  const auto lags = static_cast<Index>(4.0 * std::pow(static_cast<double>(n) / 100.0, 2.0 / 9.0));
+  for (Index lag = 1; lag <= std::min(lags, n - 1); ++lag) {
+    const double w = 1.0 - static_cast<double>(lag) / static_cast<double>(lags + 1);
+    const MatrixXd cross = g.bottomRows(n - lag).transpose() * g.topRows(n - lag);
+    sum += w * (cross + cross.transpose());
+  }
+  const VectorXd back = (1.0 - memory.array()).inverse();
+  return correction * (back.asDiagonal() * sum * back.asDiagonal());
+}
+
+}  // namespace
+
+Covariance covariance(const Problem& problem, const Solution& solution,
+                      const CovarianceOptions& options) {
+  const Index p = problem.size();
+  Covariance out;
+  out.std_error = VectorXd::Constant(p, kNaN);
+  out.low = out.high = solution.x;
+  out.inflation = VectorXd::Constant(p, kNaN);
+  out.matrix = MatrixXd::Zero(p, p);
+  out.standing.assign(static_cast<std::size_t>(p), Standing::kEstimated);
+  std::vector<Index> open;
+  for (Index j = 0; j < p; ++j) {
+    const auto k = static_cast<std::size_t>(j);
+    if (problem.unknowns[k].is_held()) {
+      out.standing[k] = Standing::kHeld;
+    } else if (solution.at_bound[k] != 0) {
+      out.standing[k] = Standing::kAtBound;
+    } else {
+      open.push_back(j);
+    }
+  }
+  const auto f = static_cast<Index>(open.size());
+
+  // The residual's colour.
+  std::vector<double> series(static_cast<std::size_t>(problem.residuals), kNaN);
+  double counted = 0.0;
+  for (Index i = 0; i < problem.residuals; ++i) {
+    if (problem.weight(i) > 0.0) {
+      series[static_cast<std::size_t>(i)] = solution.residual[i];
+      counted += 1.0;
+    }
+  }
+  residual::Autoregression model = residual::fit_autoregression(series);
+  if (options.colour == Colour::kWhite) {
+    model.a.clear();
+    model.innovation_variance = model.variance;
+  }
+  out.effective_samples = model.effective_samples();
+  const double correction = counted / std::max(1.0, counted - static_cast<double>(f));
+  double factor = correction;
+  if (std::isfinite(options.noise_sd) && model.variance > 0.0) {
+    factor = options.noise_sd * options.noise_sd / model.variance;
+  }
+  out.noise_sd = std::sqrt(factor * model.variance);
+  model.innovation_variance *= factor;
+  if (open.empty()) return out;
+
+  // H by its triangle, columns scaled to length 1, so that nothing is squared before it must be.
+  const LinearModel linear = compress(problem, solution.x, solution.residual, solution.jacobian);
+  MatrixXd R(p, f);
+  for (Index k = 0; k < f; ++k) R.col(k) = linear.R.col(open[static_cast<std::size_t>(k)]);
+  VectorXd length(f);
+  for (Index k = 0; k < f; ++k) {
+    length[k] = R.col(k).norm();
+    if (length[k] > 0.0) {
+      R.col(k) /= length[k];
+    } else {
+      length[k] = 1.0;
+    }
+  }
+  const Eigen::JacobiSVD<MatrixXd> svd(R, Eigen::ComputeThinV);
+  const VectorXd s = svd.singularValues();
+  const MatrixXd& V = svd.matrixV();
+  MatrixXd inverse = MatrixXd::Zero(f, f);
+  for (Index k = 0; k < f; ++k) {
+    if (s[k] > kUnseen * s[0]) {
+      inverse += V.col(k) * V.col(k).transpose() / (s[k] * s[k]);
+      continue;
+    }
+    for (Index j = 0; j < f; ++j) {
+      if (std::abs(V(j, k)) > kShare) {
+        out.standing[static_cast<std::size_t>(open[static_cast<std::size_t>(j)])] =
+            Standing::kUnseen;
+      }
+    }
+  }
+  const VectorXd unit = length.cwiseInverse();
+  inverse = (unit.asDiagonal() * inverse * unit.asDiagonal()).eval();
+
+  const MatrixXd wj = weighted(problem, solution.jacobian, open);
+  MatrixXd middle = options.colour == Colour::kScores
+                        ? scores_middle(wj, solution.residual, problem, correction)
+                        : coloured_middle(wj, model);
+  middle /= std::pow(problem.sigma, 4);
+  for (Index k = 0; k < f; ++k) {
+    const Unknown& unknown =
+        problem.unknowns[static_cast<std::size_t>(open[static_cast<std::size_t>(k)])];
+    if (unknown.has_prior()) middle(k, k) += 1.0 / (unknown.prior_sd * unknown.prior_sd);
+  }
+  const MatrixXd C = inverse * middle * inverse;
+
+  for (Index k = 0; k < f; ++k) {
+    const Index j = open[static_cast<std::size_t>(k)];
+    const Unknown& unknown = problem.unknowns[static_cast<std::size_t>(j)];
+    if (out.standing[static_cast<std::size_t>(j)] == Standing::kUnseen) {
+      out.std_error[j] = kInfinity;
+      out.low[j] = unknown.lower;
+      out.high[j] = unknown.upper;
+      continue;
+    }
+    out.std_error[j] = std::sqrt(std::max(0.0, C(k, k)));
+    out.inflation[j] = C(k, k) / inverse(k, k);
+    out.low[j] = std::max(unknown.lower, solution.x[j] - kInterval * out.std_error[j]);
+    out.high[j] = std::min(unknown.upper, solution.x[j] + kInterval * out.std_error[j]);
+    for (Index i = 0; i < f; ++i) {
+      const Index row = open[static_cast<std::size_t>(i)];
+      if (out.standing[static_cast<std::size_t>(row)] == Standing::kEstimated) {
+        out.matrix(row, j) = C(i, k);
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace estimator::nonlinear

@@ -1,0 +1,275 @@
+// Reported errors against closed forms, certified values, and the errors really made.
+#include "estimator/nonlinear/covariance.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <random>
+
+#include "estimator/nonlinear/identifiability.h"
+#include "estimator/nonlinear/profile.h"
+#include "tests/estimator/nonlinear/problems.h"
+
+namespace estimator::nonlinear {
+namespace {
+
+using namespace testing_problems;
+
+MatrixXd normal(Index rows, Index columns, std::mt19937_64& engine) {
+  std::normal_distribution<double> draw;
+  return MatrixXd::NullaryExpr(rows, columns, [&] { return draw(engine); });
+}
+
+/// Slow sensitivities, as a position's are.
+MatrixXd slow(Index n) {
+  MatrixXd A(n, 4);
+  for (Index i = 0; i < n; ++i) {
+    const double t = static_cast<double>(i) / static_cast<double>(n);
+    A.row(i) << 1.0, std::sin(40.0 * t), std::cos(93.0 * t), std::sin(7.0 * t) * t;
+  }
+  return A;
+}
+
+TEST(Covariance, WhiteLinearCaseIsTheClosedForm) {
+  std::mt19937_64 engine(1);
+  const MatrixXd A = normal(80, 3, engine);
+  Problem problem = linear(A, normal(80, 1, engine));
+  problem.sigma = 0.7;
+  problem.unknowns[0].prior_mean = 0.2;
+  problem.unknowns[0].prior_sd = 0.1;
+  CovarianceOptions options;
+  options.colour = Colour::kWhite;
+  options.noise_sd = 0.7;
+  const Covariance c = covariance(problem, minimize(problem, VectorXd::Zero(3)), options);
+  MatrixXd H = A.transpose() * A / 0.49;
+  H(0, 0) += 100.0;
+  EXPECT_TRUE(c.matrix.isApprox(H.inverse(), 1e-6));
+  EXPECT_NEAR(c.inflation[1], 1.0, 1e-6);
+}
+
+TEST(Covariance, StandardDeviationsAreTheCertifiedOnes) {
+  int compared = 0;
+  for (const Certified& c : nist()) {
+    if (c.standard_deviation.size() == 0) continue;
+    Options search;
+    search.max_iterations = 1000;
+    search.cost_tolerance = 1e-14;
+    search.central = true;
+    Problem problem = c.problem;
+    for (Unknown& unknown : problem.unknowns) unknown.relative_step = 1e-5;
+    CovarianceOptions options;
+    options.colour = Colour::kWhite;
+    const Covariance found =
+        covariance(problem, minimize(problem, c.starts.back(), search), options);
+    for (Index j = 0; j < c.value.size(); ++j) {
+      EXPECT_NEAR(found.std_error[j], c.standard_deviation[j], 1e-4 * c.standard_deviation[j])
+          << c.name << j;
+      ++compared;
+    }
+  }
+  EXPECT_EQ(compared, 13);
+}
+
+TEST(Covariance, UnknownsAtABoundAreFlaggedAndTheOthersAreGivenThatBound) {
+  std::mt19937_64 engine(2);
+  const MatrixXd A = normal(60, 3, engine);
+  Problem problem = linear(A, A * VectorXd::Constant(3, 1.0) + normal(60, 1, engine));
+  problem.unknowns[1].upper = 0.0;
+  problem.unknowns[1].step = 1e-3;
+  CovarianceOptions options;
+  options.colour = Colour::kWhite;
+  options.noise_sd = 1.0;
+  const Covariance c = covariance(problem, minimize(problem, VectorXd::Zero(3)), options);
+  EXPECT_EQ(c.standing[1], Standing::kAtBound);
+  EXPECT_TRUE(std::isnan(c.std_error[1]));
+  MatrixXd rest(60, 2);
+  rest << A.col(0), A.col(2);
+  const MatrixXd expected = (rest.transpose() * rest).inverse();
+  EXPECT_NEAR(c.std_error[0], std::sqrt(expected(0, 0)), 1e-6);
+  EXPECT_NEAR(c.matrix(0, 2), expected(0, 1), 1e-6);
+}
+
+TEST(Covariance, WhatNobodySeesHasAnInfiniteError) {
+  std::mt19937_64 engine(3);
+  MatrixXd A = normal(60, 3, engine);
+  A.col(2) = 2.0 * A.col(1);
+  const Problem problem = linear(A, normal(60, 1, engine));
+  const Covariance c = covariance(problem, minimize(problem, VectorXd::Zero(3)));
+  EXPECT_EQ(c.standing[0], Standing::kEstimated);
+  EXPECT_EQ(c.standing[1], Standing::kUnseen);
+  EXPECT_TRUE(std::isinf(c.std_error[2]));
+  EXPECT_GT(c.std_error[0], 0.0);
+}
+
+struct Coverage {
+  double share[4] = {};
+};
+
+Coverage coverage(Colour colour, double memory, bool masked) {
+  constexpr int kRecords = 400;
+  constexpr Index kSamples = 2000;
+  const MatrixXd A = slow(kSamples);
+  const VectorXd truth = VectorXd::LinSpaced(4, -1.0, 2.0);
+  Coverage out;
+  std::mt19937_64 engine(77);
+  std::normal_distribution<double> draw;
+  for (int record = 0; record < kRecords; ++record) {
+    VectorXd y = A * truth;
+    double e = draw(engine) / std::sqrt(1.0 - memory * memory);
+    for (Index i = 0; i < kSamples; ++i) {
+      y[i] += 0.1 * e;
+      e = memory * e + draw(engine);
+    }
+    Problem problem = linear(A, y);
+    if (masked) {
+      problem.weights = VectorXd::Ones(kSamples);
+      for (Index i = 0; i < kSamples; ++i) problem.weights[i] = (i / 300) % 2 == 0 ? 1.0 : 0.0;
+    }
+    Solution s;  // the linear minimum, without the search
+    const MatrixXd W = masked ? MatrixXd(problem.weights.asDiagonal() * A) : A;
+    s.x = (W.transpose() * A).ldlt().solve(W.transpose() * y);
+    s.residual = y - A * s.x;
+    s.jacobian = -A;
+    s.at_bound.assign(4, 0);
+    CovarianceOptions options;
+    options.colour = colour;
+    const Covariance c = covariance(problem, s, options);
+    for (Index j = 0; j < 4; ++j) {
+      out.share[j] += (c.low[j] <= truth[j] && truth[j] <= c.high[j]) / double{kRecords};
+    }
+  }
+  return out;
+}
+
+TEST(Covariance, IntervalsCoverTheTruthUnderColouredNoise) {
+  for (const double memory : {0.0, 0.5, 0.9}) {
+    for (const bool masked : {false, true}) {
+      const Coverage c = coverage(Colour::kColoured, memory, masked);
+      for (const double share : c.share) {
+        EXPECT_GE(share, 0.90) << memory << masked;  // the aim is 90 to 99 %
+        EXPECT_LE(share, 0.99) << memory << masked;
+      }
+    }
+  }
+}
+
+TEST(Covariance, IntervalsFromTheScoresCoverTheTruth) {
+  for (const double memory : {0.0, 0.5}) {
+    const Coverage c = coverage(Colour::kScores, memory, false);
+    for (const double share : c.share) {
+      EXPECT_GE(share, 0.90) << memory;
+      EXPECT_LE(share, 0.99) << memory;
+    }
+  }
+}
+
+TEST(Covariance, TakingColourForWhiteWouldNotCover) {
+  EXPECT_LT(coverage(Colour::kWhite, 0.9, false).share[0], 0.6);
+}
+
+// y = gain sqrt(Ps) u in logarithms, with a third parameter of its own and a fourth without effect.
+Problem supply(VectorXd& centre) {
+  Problem problem;
+  problem.residuals = 300;
+  problem.unknowns.resize(4);
+  problem.sigma = 1e-3;
+  for (Unknown& unknown : problem.unknowns) unknown.step = 1e-6;
+  centre = VectorXd::Zero(4);
+  problem.evaluate = [](const MatrixXd& points, MatrixXd& r) {
+    for (Index k = 0; k < points.cols(); ++k) {
+      for (Index i = 0; i < 300; ++i) {
+        const double t = 0.02 * static_cast<double>(i);
+        const double slope = std::exp(points(0, k) + 0.5 * points(1, k));
+        r(i, k) = std::sin(3.0 * t) - slope * std::sin(3.0 * t) - points(2, k) * std::cos(t);
+      }
+    }
+  };
+  return problem;
+}
+
+TEST(Identifiability, OnlyGainTimesRootOfSupplyIsVisible) {
+  VectorXd centre;
+  Problem problem = supply(centre);
+  const Solution s = minimize(problem, centre);
+  const Identifiability found = identifiability(problem, s.jacobian, VectorXd::Ones(4));
+  ASSERT_EQ(found.unseen.size(), 2u);
+  const Combination* pair = nullptr;
+  const Combination* single = nullptr;
+  for (const Combination& c : found.unseen) (c.terms.size() == 2 ? pair : single) = &c;
+  ASSERT_NE(pair, nullptr);
+  ASSERT_NE(single, nullptr);
+  EXPECT_EQ(single->terms[0].unknown, 3);
+  EXPECT_EQ(pair->terms[0].unknown, 1);
+  EXPECT_NEAR(pair->terms[0].weight, 2.0 / std::sqrt(5.0), 1e-3);
+  EXPECT_EQ(pair->terms[1].unknown, 0);
+  EXPECT_NEAR(pair->terms[1].weight, -1.0 / std::sqrt(5.0), 1e-3);
+  EXPECT_GT(pair->uncertainty, 10.0);
+  // visible: gain + 0.5 ln Ps
+  ASSERT_EQ(pair->visible.size(), 2u);
+  EXPECT_NEAR(pair->visible[0].weight / pair->visible[1].weight, 0.5, 1e-3);
+  // sin 3t has 300/2 of energy: alone sigma / sqrt(150)
+  EXPECT_NEAR(found.alone[0], 1e-3 / std::sqrt(150.0), 3e-6);
+  EXPECT_GT(found.together[0], 10.0);
+  EXPECT_LT(found.together[2], 1e-3);
+
+  // A prior on the pressure makes the gain known.
+  problem.unknowns[1].prior_mean = 0.0;
+  problem.unknowns[1].prior_sd = 0.01;
+  IdentifiabilityOptions options;
+  options.with_priors = true;
+  const Identifiability helped = identifiability(problem, s.jacobian, VectorXd::Ones(4), options);
+  EXPECT_EQ(helped.unseen.size(), 1u);
+  EXPECT_NEAR(helped.together[0], 0.005, 1e-4);
+}
+
+TEST(Profile, OfALinearProblemIsTheNormalInterval) {
+  std::mt19937_64 engine(5);
+  const MatrixXd A = normal(100, 4, engine);
+  Problem problem = linear(A, normal(100, 1, engine));
+  const Solution s = minimize(problem, VectorXd::Zero(4));
+  const double error = std::sqrt((A.transpose() * A).inverse()(2, 2));
+  const Profile p = profile(problem, s, 2);
+  EXPECT_TRUE(p.low_found && p.high_found);
+  EXPECT_NEAR(p.low, s.x[2] - 1.96 * error, 0.05 * error);
+  EXPECT_NEAR(p.high, s.x[2] + 1.96 * error, 0.05 * error);
+  ProfileOptions four;
+  four.inflation = 4.0;
+  EXPECT_NEAR(profile(problem, s, 2, four).high, s.x[2] + 3.92 * error, 0.1 * error);
+}
+
+TEST(Profile, SaysOneSidedAndFlat) {
+  // r = y - exp(-a t) with data that have died out at once: any large a will do.
+  Problem problem;
+  problem.residuals = 50;
+  problem.sigma = 0.1;
+  problem.unknowns.resize(2);
+  problem.unknowns[0].lower = 0.0;
+  problem.unknowns[0].upper = 200.0;
+  problem.unknowns[0].step = 1e-4;
+  problem.unknowns[1].lower = -1.0;
+  problem.unknowns[1].upper = 1.0;
+  problem.evaluate = [](const MatrixXd& points, MatrixXd& r) {
+    for (Index k = 0; k < points.cols(); ++k) {
+      for (Index i = 0; i < 50; ++i) r(i, k) = -std::exp(-points(0, k) * (0.1 + 0.02 * double(i)));
+    }
+  };
+  VectorXd start(2);
+  start << 60.0, 0.3;
+  const Solution s = minimize(problem, start);
+  const Profile rate = profile(problem, s, 0);
+  EXPECT_TRUE(rate.one_sided());
+  EXPECT_TRUE(rate.low_found);
+  EXPECT_EQ(rate.high, 200.0);
+  // sum exp(-2 a t) = 3.84 sigma^2 at the limit
+  double sum = 0.0;
+  for (int i = 0; i < 50; ++i) sum += std::exp(-2.0 * rate.low * (0.1 + 0.02 * i));
+  EXPECT_NEAR(sum / 0.01, 3.84, 0.2);
+  const Profile nothing = profile(problem, s, 1);
+  EXPECT_TRUE(nothing.flat());
+  EXPECT_EQ(nothing.low, -1.0);
+  EXPECT_EQ(nothing.high, 1.0);
+}
+
+}  // namespace
+}  // namespace estimator::nonlinear
