@@ -9,6 +9,9 @@ namespace workbench::report {
 [[nodiscard]] std::string_view plot_library();
 [[nodiscard]] std::string_view plot_library_licence();
 [[nodiscard]] std::string_view page_style();
+[[nodiscard]] std::string_view page_series();
+[[nodiscard]] std::string_view page_marks();
+[[nodiscard]] std::string_view page_axes();
 [[nodiscard]] std::string_view page_program();
 
 }  // namespace workbench::report

@@ -139,9 +139,11 @@ std::string render(const Report& report) {
   page += plot_library_licence();
   page += "-->\n<script>\n";
   page += plot_library();
-  page += "\n</script>\n<script>\n";
-  page += page_program();
-  return page + "</script>\n</body>\n</html>\n";
+  page += "\n</script>\n<script>\n'use strict';\n(() => {\n";
+  for (const std::string_view part : {page_series(), page_marks(), page_axes(), page_program()}) {
+    page += part;
+  }
+  return page + "})();\n</script>\n</body>\n</html>\n";
 }
 
 void write_report(const Report& report, const std::filesystem::path& file) {

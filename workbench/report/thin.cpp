@@ -68,9 +68,9 @@ std::vector<std::size_t> thin_cloud(const std::vector<double>& x, const std::vec
     if (std::isfinite(x[i]) && std::isfinite(y[i])) rows.push_back(i);
   }
   if (rows.size() <= limit) return rows;
-  // Most points show the density, every eighth the outline.
+  // Most points show the density, every sixteenth the outline.
   std::vector<std::size_t> kept;
-  const std::size_t even = std::max<std::size_t>(1, limit - limit / 8);
+  const std::size_t even = std::max<std::size_t>(1, limit - limit / 16);
   for (std::size_t i = 0; i < even; ++i) kept.push_back(rows[i * rows.size() / even]);
   std::sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) { return x[a] < x[b]; });
   const std::size_t stretches = (limit - std::min(limit, even)) / 2;

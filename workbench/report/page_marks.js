@@ -1,0 +1,70 @@
+// What Chart.js draws besides the series: levels across the plot, figures at bars and steps, and a
+// word where there is nothing to draw. Series and colours: page_series.js.
+
+const lines = {
+  id: 'lines',
+  afterDatasetsDraw(chart) {
+    const plot = chart.options.plot;
+    const area = chart.chartArea, ctx = chart.ctx, axis = value_axis(plot);
+    ctx.save();
+    ctx.strokeStyle = FLOOR;
+    ctx.lineWidth = 1.5;
+    plot.lines.forEach((line, i) => {
+      const at = chart.scales[axis].getPixelForValue(line.value);
+      const [low, high] = axis === 'x' ? [area.left, area.right] : [area.top, area.bottom];
+      if (!(at >= low - 1 && at <= high + 1)) return;
+      ctx.setLineDash(DASHES[i % DASHES.length]);
+      ctx.beginPath();
+      if (axis === 'x') {
+        ctx.moveTo(at, area.top);
+        ctx.lineTo(at, area.bottom);
+      } else {
+        ctx.moveTo(area.left, at);
+        ctx.lineTo(area.right, at);
+      }
+      ctx.stroke();
+    });
+    ctx.restore();
+  },
+};
+
+const empty = {
+  id: 'empty',
+  afterDraw(chart) {
+    if (chart.options.plot.series.some((s) => s.y.some((v) => v !== null))) return;
+    const area = chart.chartArea, ctx = chart.ctx;
+    ctx.save();
+    ctx.textAlign = 'center';
+    ctx.fillStyle = SOFT;
+    ctx.fillText('No values to draw', (area.left + area.right) / 2, (area.top + area.bottom) / 2);
+    ctx.restore();
+  },
+};
+
+// Few named values carry their number.
+const numbers = {
+  id: 'numbers',
+  afterDatasetsDraw(chart) {
+    const plot = chart.options.plot;
+    if (!plot.categories || plot.categories.length > 24 || plot.series.length > 1) return;
+    const ctx = chart.ctx, area = chart.chartArea;
+    ctx.save();
+    ctx.font = '12px ' + Chart.defaults.font.family;
+    chart.getDatasetMeta(0).data.forEach((element, i) => {
+      const value = plot.series[0].y[i];
+      if (value === null) return;
+      const text = number(value, 3);
+      const half = ctx.measureText(text).width / 2;
+      const x = plot.horizontal ? element.x + half + 6
+                                : Math.min(element.x, area.right - half - 2);
+      const y = plot.horizontal ? element.y + 4 : element.y - 9;
+      ctx.lineWidth = 4;
+      ctx.lineJoin = 'round';
+      ctx.strokeStyle = '#fff';
+      ctx.strokeText(text, x - half, y);
+      ctx.fillStyle = INK;
+      ctx.fillText(text, x - half, y);
+    });
+    ctx.restore();
+  },
+};

@@ -1,0 +1,56 @@
+// How values read and how series look: numbers, colours, the sets that Chart.js draws.
+
+const INK = '#16202b', SOFT = '#55616e', GRID = '#e8ecf1', FLOOR = '#b3261e';
+// Okabe and Ito's colours, told apart with any colour vision.
+const TONES = {
+  measured: '#16202b', model: '#0072b2', residual: '#d55e00', improved: '#009e73',
+  accent: '#b0578d', muted: '#9aa5b1',
+};
+const CYCLE = ['model', 'residual', 'improved', 'accent', 'measured', 'muted'];
+const DASHES = [[7, 4], [2, 3], [12, 4, 2, 4]];
+
+// The digits that carry something: no float noise, no trailing zeros, a real minus sign.
+const number = (v, digits) => {
+  if (!Number.isFinite(v)) return '–';
+  const size = Math.abs(v), value = +v.toPrecision(digits);
+  const far = size !== 0 && (size < 1e-4 || size >= 1e7);
+  return (far ? value.toExponential() : String(value)).replace(/-/g, '−');
+};
+const with_unit = (v, axis) => number(v, 5) + (axis.unit ? ' ' + axis.unit : '');
+const heading = (axis) => axis.label + (axis.unit ? ' (' + axis.unit + ')' : '');
+const tint = (colour, alpha) => colour + Math.round(alpha * 255).toString(16).padStart(2, '0');
+
+// A value that the axis cannot show is a gap.
+const shown = (v, axis) => (v === null || (axis.log && v <= 0) ? NaN : v);
+const points = (plot, series) => {
+  const x = series.x || plot.xs;
+  return series.y.map((y, i) => ({x: shown(x[i], plot.x), y: shown(y, plot.y)}));
+};
+
+// Curves lie above bars, bars above clouds, later series above earlier ones.
+function dataset(plot, series, index) {
+  const tone = series.tone === 'automatic' ? CYCLE[index % CYCLE.length] : series.tone;
+  const colour = TONES[tone];
+  const base = {label: series.name, borderColor: colour, backgroundColor: colour};
+  const count = series.y.length;
+  if (plot.categories) base.data = series.y.map((y) => shown(y, plot.y));
+  else base.data = points(plot, series);
+  if (series.kind === 'bars') {
+    return {...base, type: 'bar', backgroundColor: tint(colour, .8), borderWidth: 0,
+            maxBarThickness: plot.horizontal ? 16 : 46, categoryPercentage: .8,
+            barPercentage: plot.categories ? .9 : 1, minBarLength: 2, order: 200};
+  }
+  if (series.kind === 'scatter') {
+    return {...base, type: 'scatter', showLine: false, borderWidth: 0, order: 300 - index,
+            backgroundColor: tint(colour, count > 1000 ? .28 : count > 200 ? .5 : .85),
+            radius: count > 1000 ? 1.6 : count > 200 ? 2.2 : 3.5, pointStyle: 'circle'};
+  }
+  return {...base, type: 'line', borderWidth: count > 60 ? (tone === 'measured' ? 2.2 : 1.3) : 2,
+          stepped: series.kind === 'steps' ? 'before' : false,
+          borderDash: series.dashed ? [6, 4] : [], tension: 0,
+          pointRadius: count > 60 ? 0 : plot.categories ? 3.5 : 2,
+          pointHoverRadius: 4, pointHitRadius: 6, spanGaps: false, order: 100 - index};
+}
+
+// The axis of values: y, or x where bars lie.
+const value_axis = (plot) => (plot.horizontal ? 'x' : 'y');
