@@ -30,10 +30,13 @@ using plant_sim::ParameterInfo;
                    known);
 }
 
-const EffectInfo& effect_named(const std::string& name) {
-  if (const EffectInfo* effect = plant_sim::find_effect(name)) return *effect;
+/// Of the library, or a formula that the model file declares.
+EffectInfo effect_named(const ModelFile& model, const std::string& name) {
   std::vector<std::string> names;
-  for (const EffectInfo& effect : plant_sim::effect_library()) names.push_back(effect.name);
+  for (const EffectInfo& effect : plant_sim::effects_of(model)) {
+    if (effect.name == name) return effect;
+    names.push_back(effect.name);
+  }
   refuse_name("effect " + name, name, names);
 }
 
@@ -89,7 +92,7 @@ struct Options {
 
 void add(const Options& options) {
   ModelFile model = plant_sim::load_model(options.model);
-  const EffectInfo& effect = effect_named(options.effect);
+  const EffectInfo effect = effect_named(model, options.effect);
   plant_sim::require_fit(effect, *plant_sim::find_plant(model.plant), options.model);
   entry_of(model, effect).present = true;
   for (const std::string& assignment : options.assignments) assign(model, effect, assignment);

@@ -1,4 +1,5 @@
-// spoolwatch effects: the library of physical effects, for reading and as JSON.
+// spoolwatch effects: the library of physical effects, and what a model file adds to it by
+// formulas, for reading and as JSON.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -9,6 +10,7 @@
 
 #include "config/record/whole_file.h"
 #include "plant_sim/library.h"
+#include "plant_sim/model_file.h"
 #include "workbench/command.h"
 
 namespace workbench {
@@ -58,15 +60,16 @@ ordered_json json_of(const std::vector<ParameterInfo>& parameters, const char* l
   return list;
 }
 
-ordered_json library_json() {
+ordered_json library_json(const std::vector<EffectInfo>& listed) {
   ordered_json effects = ordered_json::array();
-  for (const EffectInfo& effect : plant_sim::effect_library()) {
+  for (const EffectInfo& effect : listed) {
     effects.push_back({{"name", effect.name},
                        {"equation", effect.equation},
                        {"sites", effect.sites},
                        {"plants", plants_of(effect)},
                        {"dissipative", effect.dissipative},
                        {"parameters", json_of(effect.parameters, "neutral")}});
+    if (!effect.what.empty()) effects.back()["what"] = effect.what;
   }
   ordered_json plants = ordered_json::array();
   for (const PlantInfo& plant : plant_sim::plant_library()) {
@@ -77,10 +80,11 @@ ordered_json library_json() {
   return {{"effects", effects}, {"plants", plants}};
 }
 
-void print_library() {
-  for (const EffectInfo& effect : plant_sim::effect_library()) {
-    std::printf("%s\n  %s\n  acts on %s; for %s\n", effect.name.c_str(), effect.equation.c_str(),
-                joined(effect.sites).c_str(), joined(plants_of(effect)).c_str());
+void print_library(const std::vector<EffectInfo>& listed) {
+  for (const EffectInfo& effect : listed) {
+    const std::string what = effect.what.empty() ? "" : "  " + effect.what + "\n";
+    std::printf("%s\n  %s\n%s  acts on %s; for %s\n", effect.name.c_str(), effect.equation.c_str(),
+                what.c_str(), joined(effect.sites).c_str(), joined(plants_of(effect)).c_str());
     for (const ParameterInfo& p : effect.parameters) {
       std::printf("    %-30s %g to %g %s, typically %g: %s\n", p.name, p.min, p.max,
                   plant_sim::unit_of(p.name).c_str(), p.typical, p.what);
@@ -92,14 +96,19 @@ void print_library() {
 
 void add_effects(CLI::App& command, int&) {
   auto json = std::make_shared<std::string>();
+  auto model = std::make_shared<std::string>();
+  command.add_option("MODEL", *model, "a model file, to list its own effects too");
   command.add_option("--json", *json, "write as JSON; - is standard output");
-  command.callback([json] {
+  command.callback([json, model] {
+    const std::vector<EffectInfo> listed =
+        model->empty() ? plant_sim::effect_library()
+                       : plant_sim::effects_of(plant_sim::load_model(*model));
     if (json->empty()) {
-      print_library();
+      print_library(listed);
     } else if (*json == "-") {
-      std::printf("%s\n", library_json().dump(2).c_str());
+      std::printf("%s\n", library_json(listed).dump(2).c_str());
     } else {
-      config::record::write_whole(*json, library_json().dump(2) + "\n");
+      config::record::write_whole(*json, library_json(listed).dump(2) + "\n");
     }
   });
 }

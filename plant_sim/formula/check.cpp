@@ -1,12 +1,9 @@
 // What a declared formula must fulfil before it is simulated (formula.h).
-#include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 
 #include "config/schema/error.h"
 #include "plant_sim/formula/formula.h"
-#include "plant_sim/formula/recorder.h"
 
 namespace plant_sim {
 namespace {
@@ -21,24 +18,10 @@ std::string shown(double value) {
   if (std::isnan(value)) return "no number";
   if (std::isinf(value)) return "infinite";
   char buffer[32];
-  return {buffer, std::to_chars(std::begin(buffer), std::end(buffer), value).ptr};
+  return {buffer, std::to_chars(std::begin(buffer), std::end(buffer), value + 0.0).ptr};  // no -0
 }
 
-bool is_name(const std::string& name) {
-  return !name.empty() && std::isalpha(static_cast<unsigned char>(name[0])) != 0 &&
-         std::all_of(name.begin(), name.end(),
-                     [](unsigned char c) { return c < 128 && (std::isalnum(c) != 0 || c == '_'); });
-}
-
-void check_parameter(const FormulaEffect::Parameter& p, const Formula& formula, bool used,
-                     const std::string& where) {
-  const std::vector<std::string>& words = formula_words();
-  const auto& variables = formula.place.variables;
-  if (!is_name(p.name)) throw bad_config(where, "is no name", "letters, digits and _");
-  if (std::find(words.begin(), words.end(), p.name) != words.end() ||
-      std::find(variables.begin(), variables.end(), p.name) != variables.end()) {
-    throw bad_config(where, "has the name of a function or variable", "another name");
-  }
+void check_parameter(const FormulaEffect::Parameter& p, bool used, const std::string& where) {
   if (!(p.min < p.max)) throw bad_config(where, "has no range", "min below max");
   const std::string range = shown(p.min) + " to " + shown(p.max);
   if (p.neutral < p.min || p.neutral > p.max) {
@@ -125,7 +108,6 @@ void check_finite(const Formula& formula, TapeRun<double>& run, const std::strin
 }  // namespace
 
 void check(const FormulaEffect& effect, const Formula& formula, const std::string& where) {
-  if (!is_name(effect.name)) throw bad_config(where, "is no name", "letters, digits and _");
   if (effect.parameters.empty()) {
     throw bad_config(where, "has no parameter", "at least one, in [.parameters.NAME]");
   }
@@ -135,7 +117,7 @@ void check(const FormulaEffect& effect, const Formula& formula, const std::strin
   }
   for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
     const FormulaEffect::Parameter& p = effect.parameters[i];
-    check_parameter(p, formula, formula.tape.uses[i], where + " parameters." + p.name);
+    check_parameter(p, formula.tape.uses[i], where + " parameters." + p.name);
   }
   TapeRun<double> run(view_of(formula.tape));
   check_finite(formula, run, where + " formula");

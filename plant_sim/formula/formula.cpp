@@ -1,5 +1,7 @@
 #include "plant_sim/formula/formula.h"
 
+#include <algorithm>
+#include <cctype>
 #include <mutex>
 #include <set>
 
@@ -8,6 +10,8 @@
 
 namespace plant_sim {
 namespace {
+
+using config::schema::bad_config;
 
 std::array<VariableRange, Tape::kVariables> ranges_of(Site site, const PlausibleRanges& ranges) {
   switch (site) {
@@ -23,6 +27,27 @@ std::array<VariableRange, Tape::kVariables> ranges_of(Site site, const Plausible
       return {ranges.position_m, ranges.speed_mps};
     default:
       return {ranges.position_m, {}};
+  }
+}
+
+bool is_name(const std::string& name) {
+  return !name.empty() && std::isalpha(static_cast<unsigned char>(name[0])) != 0 &&
+         std::all_of(name.begin(), name.end(),
+                     [](unsigned char c) { return c < 128 && (std::isalnum(c) != 0 || c == '_'); });
+}
+
+/// Names that muParser and model files can take, each with one meaning.
+void check_names(const FormulaEffect& effect, const FormulaSite& place, const std::string& where) {
+  if (!is_name(effect.name)) throw bad_config(where, "is no name", "letters, digits and _");
+  const std::vector<std::string>& words = formula_words();
+  for (const FormulaEffect::Parameter& p : effect.parameters) {
+    const std::string its_table = where + " parameters." + p.name;
+    if (!is_name(p.name)) throw bad_config(its_table, "is no name", "letters, digits and _");
+    if (std::find(words.begin(), words.end(), p.name) != words.end() ||
+        std::find(place.variables.begin(), place.variables.end(), p.name) !=
+            place.variables.end()) {
+      throw bad_config(its_table, "has the name of a function or variable", "another name");
+    }
   }
 }
 
@@ -47,8 +72,9 @@ Formula compile(const FormulaEffect& effect, const PlausibleRanges& ranges,
     for (const FormulaSite& site : kFormulaSites) {
       sites += (sites.empty() ? "" : ", ") + std::string(site_name(site.site));
     }
-    throw config::schema::bad_config(where + " site", "is " + effect.site, sites);
+    throw bad_config(where + " site", "is " + effect.site, sites);
   }
+  check_names(effect, *place, where);
   std::vector<std::string> variables;
   for (const char* name : place->variables) {
     if (*name != '\0') variables.emplace_back(name);
@@ -62,6 +88,9 @@ Formula compile(const FormulaEffect& effect, const PlausibleRanges& ranges,
   return {effect.name, *place, record_formula(effect.formula, variables, names, where + " formula"),
           std::move(infos), ranges_of(place->site, ranges)};
 }
+
+const FormulaView* Formulas::data() const { return views_.data(); }
+std::size_t Formulas::size() const { return views_.size(); }
 
 Formulas::Formulas(std::vector<Formula> formulas)
     : formulas_(std::make_shared<const std::vector<Formula>>(std::move(formulas))) {

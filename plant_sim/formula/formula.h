@@ -41,8 +41,8 @@ class Formulas {
  public:
   Formulas() = default;
   explicit Formulas(std::vector<Formula> formulas);
-  [[nodiscard]] const FormulaView* data() const { return views_.data(); }
-  [[nodiscard]] std::size_t size() const { return views_.size(); }
+  [[nodiscard]] const FormulaView* data() const;
+  [[nodiscard]] std::size_t size() const;
 
  private:
   std::shared_ptr<const std::vector<Formula>> formulas_;  // copies share it: views stay valid
@@ -59,11 +59,12 @@ struct PlausibleRanges {
   VariableRange speed_mps{-2.0, 2.0};
 };
 
-/// Parses the formula. Throws config::schema::Error (exit 78); `where` is its table in a file.
+/// Checks the names and parses the formula. Throws config::schema::Error (exit 78); `where` is the
+/// effect's table in a file.
 [[nodiscard]] Formula compile(const FormulaEffect& effect, const PlausibleRanges& ranges,
                               const std::string& where);
 
-/// Throws config::schema::Error (exit 78) unless names and ranges make sense, the formula has no
+/// Throws config::schema::Error (exit 78) unless the ranges make sense, the formula has no
 /// influence when its parameters are neutral, and is finite over the variables' ranges for any of
 /// the parameters' least, largest and neutral values.
 void check(const FormulaEffect& effect, const Formula& formula, const std::string& where);

@@ -122,14 +122,16 @@ const char* reason(int code) {
 }
 
 /// One line for what muParser found wrong; positions count from 1.
-config::schema::Error refusal(const mu::ParserError& error, std::vector<std::string> names,
-                              const std::string& where) {
+config::schema::Error refusal(const mu::ParserError& error, std::size_t length,
+                              std::vector<std::string> names, const std::string& where) {
   std::string token = error.GetToken();
   token.erase(std::find_if(token.rbegin(), token.rend(),
                            [](unsigned char c) { return std::isspace(c) == 0; })
                   .base(),
               token.end());
-  const std::string place = " at character " + std::to_string(error.GetPos() + 1);
+  const std::string place =
+      " at character " +
+      std::to_string(std::min(static_cast<std::size_t>(error.GetPos()), length) + 1);
   const std::vector<std::string>& words = formula_words();
   if (error.GetCode() == mu::ecEMPTY_EXPRESSION) return bad_config(where, "is empty");
   if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN && !token.empty()) {
@@ -146,10 +148,6 @@ config::schema::Error refusal(const mu::ParserError& error, std::vector<std::str
     }
     if (token[0] == '=') {
       return bad_config(where, "an assignment" + place, "one expression; == compares");
-    }
-    if (token[0] == '?' || token[0] == ':') {
-      return bad_config(where, "unknown operator " + token.substr(0, 1) + place,
-                        "if(condition, yes, no)");
     }
   }
   return bad_config(where, "does not parse" + place +
@@ -174,6 +172,14 @@ Tape record_formula(const std::string& text, const std::vector<std::string>& var
   const std::size_t quote = text.find_first_of("\"'");
   if (quote != std::string::npos) {
     throw bad_config(where, "a string at character " + std::to_string(quote + 1), "numbers");
+  }
+  // muParser's own would take one side for good while it records
+  const std::size_t branch = text.find_first_of("?:");
+  if (branch != std::string::npos) {
+    throw bad_config(where,
+                     "unknown operator " + text.substr(branch, 1) + " at character " +
+                         std::to_string(branch + 1),
+                     "if(condition, yes, no)");
   }
   std::vector<std::string> names = variables;
   names.insert(names.end(), parameters.begin(), parameters.end());
@@ -200,7 +206,7 @@ Tape record_formula(const std::string& text, const std::vector<std::string>& var
     if (count != 1) throw bad_config(where, "has a comma outside of a function", "one expression");
     return here.tape(results[0]);
   } catch (const mu::ParserError& error) {
-    throw refusal(error, names, where);
+    throw refusal(error, text.size(), names, where);
   }
 }
 

@@ -169,6 +169,52 @@ TEST(Document, BlamesTheAssignmentAndNotTheFileForItsValue) {
   EXPECT_THAT(message("", {"lop.rate_Hz=1"}), HasSubstr("78 --set: lop: is unknown"));
 }
 
+/// A table whose keys the file chooses.
+struct Stock {
+  std::vector<Pump> pumps;
+  void visit(Visitor& v) {
+    std::vector<std::string> names;
+    for (const Pump& pump : pumps) names.push_back(pump.name);
+    names = v.names("stock", names);
+    pumps.resize(names.size());
+    v.table("stock", [&](Visitor& t) {
+      for (std::size_t i = 0; i < names.size(); ++i) {
+        pumps[i].name = names[i];
+        t.table(names[i].c_str(), [&](Visitor& p) {
+          p.number("pressure_Pa", pumps[i].pressure_Pa, {0.0, 3e7});
+        });
+      }
+    });
+  }
+};
+
+TEST(Document, ReadsAndPrintsTablesThatTheFileNamesInItsOrder) {
+  const auto read = [](const std::string& text) {
+    Stock stock;
+    Document::parse("schema_version = 1\n" + text, "s.toml").read([&](Visitor& v) {
+      stock.visit(v);
+    });
+    return stock;
+  };
+  Stock stock = read("[stock.west]\npressure_Pa = 2e6\n[stock.east]\n");
+  ASSERT_EQ(stock.pumps.size(), 2U);
+  EXPECT_EQ(stock.pumps[0].name, "west");
+  EXPECT_EQ(stock.pumps[0].pressure_Pa, 2e6);
+  EXPECT_EQ(stock.pumps[1].name, "east");
+  const std::string text = print_toml([&](Visitor& v) { stock.visit(v); });
+  EXPECT_NE(text.find("[stock.west]\npressure_Pa = 2e+06\n\n[stock.east]"), std::string::npos);
+  EXPECT_TRUE(read("").pumps.empty());
+  for (const char* bad : {"stock = 1\n", "[stock]\nwest = 1\n", "[stock.west]\npressure = 1\n"}) {
+    try {
+      (void)read(bad);
+      ADD_FAILURE() << bad;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), HasSubstr("stock")) << bad;
+      EXPECT_EQ(error.exit_code(), 78);
+    }
+  }
+}
+
 TEST(Nearest, FindsOneTypoAndLeavesStrangersAlone) {
   const std::vector<std::string> names{"friction", "deadband", "null_bias"};
   EXPECT_EQ(nearest("fricton", names), "friction");

@@ -93,6 +93,22 @@ TEST_F(AddTest, SaysThatAnEffectWithoutValuesHasNoInfluenceYet) {
   EXPECT_THAT(text, HasSubstr("[effects.spool_rate_limit]\nrate_mps = inf"));
 }
 
+TEST_F(AddTest, AddsAndChangesAnEffectThatTheModelFileGivesAsAFormula) {
+  const std::string model = kModels + "cubic_drag.toml";
+  EXPECT_THAT(add({model, "cubic_drag", "drag_N_s3_per_m3=3e4"}),
+              HasSubstr("drag_N_s3_per_m3 = 30000 N s3/m3"));
+  auto plant = plant_sim::make_plant(plant_sim::load_model(out()));
+  EXPECT_EQ(*plant->parameter("cubic_drag.drag_N_s3_per_m3"), 3e4);
+  add({out().string(), "friction", "coulomb_N=50"});
+  plant = plant_sim::make_plant(plant_sim::load_model(out()));
+  EXPECT_EQ(*plant->parameter("cubic_drag.drag_N_s3_per_m3"), 3e4);
+  EXPECT_EQ(*plant->parameter("friction.coulomb_N"), 50.0);
+  fs::remove(out());
+  EXPECT_THAT(refusal({model, "cubic_drag", "drag_N_s3_per_m3=-1"}), HasSubstr("out of range"));
+  EXPECT_THAT(refusal({model, "cubicdrag"}), HasSubstr("did you mean cubic_drag?"));
+  EXPECT_THAT(refusal({kModels + "thesis.toml", "cubic_drag"}), HasSubstr("is unknown"));
+}
+
 TEST_F(AddTest, NamesTheNearestForWhatItDoesNotKnow) {
   EXPECT_THAT(refusal({kModels + "thesis.toml", "fricton"}),
               AllOf(HasSubstr("did you mean friction?"), HasSubstr("backlash")));

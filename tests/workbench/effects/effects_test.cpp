@@ -47,6 +47,22 @@ TEST(Effects, WritesTheSameAsJson) {
   EXPECT_EQ(limit["parameters"][0]["unit"], "m3/s");
 }
 
+TEST(Effects, ListsTheFormulasOfAModelFileBehindTheLibrary) {
+  const std::string model = SPOOLWATCH_SOURCE_DIR "/config/models/cubic_drag.toml";
+  EXPECT_THAT(output({model}),
+              HasSubstr("cubic_drag\n  F = drag_N_s3_per_m3 * v_mps^3\n  seals that drag with the "
+                        "cube of the speed\n  acts on force; for hydraulic_actuator, "
+                        "force_driven_axis\n    drag_N_s3_per_m3               0 to 1e+07 N s3/m3, "
+                        "typically 250000: force per speed cubed\n"));
+  const auto json = nlohmann::json::parse(output({model, "--json", "-"}));
+  ASSERT_EQ(json["effects"].size(), plant_sim::effect_library().size() + 1);
+  EXPECT_EQ(json["effects"].back()["name"], "cubic_drag");
+  EXPECT_EQ(json["effects"].back()["sites"][0], "force");
+  EXPECT_FALSE(json["effects"].front().contains("what"));
+  EXPECT_THROW(output({"/nowhere/model.toml"}), config::schema::Error);
+  testing::internal::GetCapturedStdout();
+}
+
 TEST(Effects, RefusesAFileThatCannotBeWritten) {
   EXPECT_THROW(run_command(add_effects, {"--json", "/nowhere/library.json"}),
                config::schema::Error);
