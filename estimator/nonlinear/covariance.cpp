@@ -143,7 +143,7 @@ Covariance covariance(const Problem& problem, const Solution& solution,
     }
   }
   const Eigen::JacobiSVD<MatrixXd> svd(R, Eigen::ComputeThinV);
-  const VectorXd s = svd.singularValues();
+  const VectorXd& s = svd.singularValues();
   const MatrixXd& V = svd.matrixV();
   MatrixXd inverse = MatrixXd::Zero(f, f);
   for (Index k = 0; k < f; ++k) {
