@@ -1,6 +1,7 @@
 // exp, log and sin of a double or of a machine word of doubles (GCC vectors), with the very same
 // operations: lanes and single runs agree bit for bit, on every machine. Errors stay below 1.5
-// units in the last place of the result (sin: up to |x| = 1e6, beyond it is the C library's).
+// units in the last place of the result, of sin below 3 (up to |x| = 1e6; beyond, callers take the
+// C library's).
 //
 //   exp x = 2^n e^r,         n = round(x / ln 2),  r = x - n ln 2,  e^r = 1 + r + r^2 P(r)
 //   log x = e ln 2 + log(1 + f), 1 + f = x / 2^e in [sqrt 1/2, sqrt 2):

@@ -10,19 +10,21 @@
 namespace plant_sim {
 namespace {
 
-std::unique_ptr<LaneEnsemble> made(const char* plant, double step_s, InstructionSet set) {
+std::unique_ptr<LaneEnsemble> made(const ModelFile& model, double step_s, InstructionSet set) {
+  const char* plant = model.plant.c_str();
+  const Formulas formulas = model.formulas();
   LaneEnsemble* lanes = nullptr;
   switch (set) {
 #ifdef PLANT_SIM_WIDE_LANES
     case InstructionSet::avx512:
-      lanes = new_avx512_lanes(plant, step_s);
+      lanes = new_avx512_lanes(plant, formulas, step_s);
       break;
     case InstructionSet::avx2:
-      lanes = new_avx2_lanes(plant, step_s);
+      lanes = new_avx2_lanes(plant, formulas, step_s);
       break;
 #endif
     default:
-      lanes = new_lanes<Lanes>(plant, step_s);
+      lanes = new_lanes<Lanes>(plant, formulas, step_s);
       break;
   }
   return std::unique_ptr<LaneEnsemble>(lanes);
@@ -57,7 +59,8 @@ InstructionSet fastest_here() noexcept {
   return fastest;
 }
 
-LaneEnsemble::LaneEnsemble(double step_s) : step_s_(step_s) {}
+LaneEnsemble::LaneEnsemble(const Formulas& formulas, double step_s)
+    : step_s_(step_s), formulas_(formulas) {}
 LaneEnsemble::~LaneEnsemble() = default;
 
 void LaneEnsemble::enter(const char* owner, const char* name, void* lanes) {
@@ -112,12 +115,8 @@ std::unique_ptr<Ensemble> make_ensemble(const ModelFile& model, double step_s) {
 }
 
 std::unique_ptr<Ensemble> make_ensemble(const ModelFile& model, double step_s, InstructionSet set) {
-  if (const PlantInfo* info = find_plant(model.plant)) {
-    for (const ModelFile::Effect& effect : model.effects) {
-      if (effect.present) require_fit(*find_effect(effect.name), *info, model.name);
-    }
-  }
-  std::unique_ptr<LaneEnsemble> ensemble = made(model.plant.c_str(), step_s, set);
+  require_fit(model, model.name);
+  std::unique_ptr<LaneEnsemble> ensemble = made(model, step_s, set);
   if (ensemble == nullptr) {
     throw config::schema::bad_config(model.name, "there is no plant " + model.plant);
   }

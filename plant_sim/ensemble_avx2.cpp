@@ -3,8 +3,8 @@
 
 namespace plant_sim {
 
-LaneEnsemble* new_avx2_lanes(const char* plant, double step_s) {
-  return new_lanes<BasicLanes<4>>(plant, step_s);
+LaneEnsemble* new_avx2_lanes(const char* plant, const Formulas& formulas, double step_s) {
+  return new_lanes<BasicLanes<4>>(plant, formulas, step_s);
 }
 
 }  // namespace plant_sim

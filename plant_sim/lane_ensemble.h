@@ -12,13 +12,14 @@
 #include <vector>
 
 #include "plant_sim/ensemble.h"
+#include "plant_sim/formula/formula.h"
 #include "plant_sim/plants.h"
 
 namespace plant_sim {
 
 class LaneEnsemble : public Ensemble {
  public:
-  explicit LaneEnsemble(double step_s);
+  LaneEnsemble(const Formulas& formulas, double step_s);
   LaneEnsemble(const LaneEnsemble&) = delete;
   LaneEnsemble& operator=(const LaneEnsemble&) = delete;
   ~LaneEnsemble() override;
@@ -34,6 +35,7 @@ class LaneEnsemble : public Ensemble {
   /// Tells of eight lanes that live as long as *this; owner is an effect, "initial" or null.
   void enter(const char* owner, const char* name, void* lanes);
   [[nodiscard]] double step_s() const { return step_s_; }
+  [[nodiscard]] const Formulas& formulas() const { return formulas_; }
 
  private:
   struct Entry {
@@ -41,6 +43,7 @@ class LaneEnsemble : public Ensemble {
     void* lanes;
   };
   double step_s_;
+  Formulas formulas_;
   std::vector<Entry> entries_;
   std::vector<Entry> initial_;
 };
@@ -49,7 +52,8 @@ class LaneEnsemble : public Ensemble {
 template <class Model, class S>
 class InLanes final : public LaneEnsemble {
  public:
-  explicit InLanes(double step_s) : LaneEnsemble(step_s) {
+  InLanes(const Formulas& declared, double step_s) : LaneEnsemble(declared, step_s) {
+    model_.effects.formulas().declare(formulas().data(), formulas().size());
     model_.parameters.visit(
         [&](const ParameterInfo& info, S& value) { enter(nullptr, info.name, &value); });
     model_.effects.each([&](auto tag, auto& parameters) {
@@ -59,6 +63,8 @@ class InLanes final : public LaneEnsemble {
             [&](const ParameterInfo& info, S& value) { enter(Effect::kName, info.name, &value); });
       }
     });
+    model_.effects.formulas().each([&](const FormulaView& formula, const ParameterInfo& info,
+                                       S& value) { enter(formula.name, info.name, &value); });
     model_.initial.visit(
         [&](const ParameterInfo& info, S& value) { enter("initial", info.name, &value); });
   }
@@ -96,15 +102,15 @@ class InLanes final : public LaneEnsemble {
 
 /// The plant of that name at eight lanes; null when there is none. For the caller to own.
 template <class S>
-LaneEnsemble* new_lanes(const char* plant, double step_s) {
+LaneEnsemble* new_lanes(const char* plant, const Formulas& formulas, double step_s) {
   LaneEnsemble* made = nullptr;
   each_plant<S>([&]<class Model>() {
-    if (__builtin_strcmp(plant, Model::kName) == 0) made = new InLanes<Model, S>(step_s);
+    if (__builtin_strcmp(plant, Model::kName) == 0) made = new InLanes<Model, S>(formulas, step_s);
   });
   return made;
 }
 
-LaneEnsemble* new_avx2_lanes(const char* plant, double step_s);
-LaneEnsemble* new_avx512_lanes(const char* plant, double step_s);
+LaneEnsemble* new_avx2_lanes(const char* plant, const Formulas& formulas, double step_s);
+LaneEnsemble* new_avx512_lanes(const char* plant, const Formulas& formulas, double step_s);
 
 }  // namespace plant_sim
