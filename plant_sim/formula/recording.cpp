@@ -1,14 +1,16 @@
 #include "plant_sim/formula/recording.h"
 
+#include <bit>
 #include <cmath>
-#include <cstring>
 
 namespace plant_sim {
 namespace {
 
 constexpr double kMostProducts = 8.0;  // larger powers are left to pow()
 
-bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+bool same_bits(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
 
 std::size_t operands(Op op) {
   switch (op) {
