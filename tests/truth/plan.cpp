@@ -75,7 +75,7 @@ void draw_effect(const std::string& name, double push, Case& of, Random& random)
       const double share = std::max(0.3, random.uniform(0.55, 0.85) / push);
       h.flow_limit_m3ps = share * of.plant.area_m2 * free.fastest_mps;
     } else {
-      h.spool_rate_mps = std::max(0.1, random.uniform(0.5, 1.2) / push) * free.usual_spool_mps;
+      h.spool_rate_mps = std::max(0.2, random.uniform(0.6, 1.2) / push) * free.quick_spool_mps;
     }
   }
 }
@@ -147,6 +147,8 @@ Wanted wanted(const std::string& plan, std::size_t index, Random& random) {
     const std::size_t count = variants().size();
     want.effects = {variants()[index % count]};
     want.first_motion = index / count;
+    // Slow motions only reach a rate that would stop the loop from working.
+    if (want.effects.front() == "spool_rate_limit") want.motions = kRich;
   } else if (plan == "pairs") {
     Names all;
     for (const auto& [name, of] : classes()) all.push_back(name);

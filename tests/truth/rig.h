@@ -31,7 +31,7 @@ class Rig {
   double least_Pa;                      ///< lowest chamber pressure so far
   double greatest_ratio;                ///< highest chamber pressure so far over the supply's
   double fastest_mps = 0.0;             ///< of the rod
-  std::vector<double> spool_speed_mps;  ///< at the end of each sample, without its sign
+  std::vector<double> spool_speed_mps;  ///< the fastest within each sample
 
  private:
   void advance(double u_V, double span_s);
@@ -65,7 +65,7 @@ struct Record {
   std::vector<double> reading_m;  ///< y without noise and rounding
   double floor_m = 0.0;           ///< RMS of y - reading
   double least_Pa = 0.0, greatest_ratio = 0.0, fastest_mps = 0.0;
-  double usual_spool_mps = 0.0;  ///< exceeded in one sample of twenty
+  double quick_spool_mps = 0.0;  ///< exceeded in one sample of a hundred
 };
 
 Record simulate(const Case& of, int steps = 0);
