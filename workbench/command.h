@@ -21,9 +21,12 @@ struct Command {
 
 void add_add(CLI::App& command, int& exit_code);
 void add_calibrate(CLI::App& command, int& exit_code);
+void add_compare(CLI::App& command, int& exit_code);
+void add_diagnose(CLI::App& command, int& exit_code);
 void add_effects(CLI::App& command, int& exit_code);
 void add_estimate(CLI::App& command, int& exit_code);
 void add_export(CLI::App& command, int& exit_code);
+void add_fit(CLI::App& command, int& exit_code);
 void add_listen(CLI::App& command, int& exit_code);
 void add_reproduce(CLI::App& command, int& exit_code);
 void add_simulate(CLI::App& command, int& exit_code);

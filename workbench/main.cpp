@@ -14,6 +14,8 @@ constexpr workbench::Command kCommands[] = {
     {"simulate", "a record from a model file, in closed loop", workbench::add_simulate},
     {"listen", "print alarms and estimates as they arrive", workbench::add_listen},
     {"estimate", "fit an ARX structure to a record", workbench::add_estimate},
+    {"compare", "where a model fails against a record", workbench::add_compare},
+    {"fit", "a model's parameters estimated from records", workbench::add_fit},
     {"calibrate", "learn alarm bands from a healthy record", workbench::add_calibrate},
     {"effects", "the library of physical effects", workbench::add_effects},
     {"add", "a model file with an effect more", workbench::add_add},

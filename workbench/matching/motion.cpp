@@ -29,8 +29,7 @@ Weights weights(std::ptrdiff_t first, std::ptrdiff_t last, double sample_time_s)
     const double s = static_cast<double>(first + i);
     powers.row(i) << 1.0, s, s * s;
   }
-  const Eigen::MatrixXd inverse =
-      (powers.transpose() * powers).ldlt().solve(powers.transpose());
+  const Eigen::MatrixXd inverse = (powers.transpose() * powers).ldlt().solve(powers.transpose());
   Weights result;
   for (Eigen::Index i = 0; i < count; ++i) {
     result.slope.push_back(inverse(1, i) / sample_time_s);
@@ -52,10 +51,10 @@ void differentiate(const Measured& record, const Span& span, std::size_t half, M
     const std::size_t from = k - std::min(half, k - span.begin);
     const std::size_t to = std::min(k + half, span.end - 1);
     const bool cut = to - from != 2 * half;
-    const Weights w = cut ? weights(static_cast<std::ptrdiff_t>(from) -
-                                        static_cast<std::ptrdiff_t>(k),
-                                    static_cast<std::ptrdiff_t>(to - k), record.sample_time_s)
-                          : Weights{};
+    const Weights w =
+        cut ? weights(static_cast<std::ptrdiff_t>(from) - static_cast<std::ptrdiff_t>(k),
+                      static_cast<std::ptrdiff_t>(to - k), record.sample_time_s)
+            : Weights{};
     const Weights& used = cut ? w : inner;
     double v = 0.0;
     double a = 0.0;
@@ -127,12 +126,13 @@ Motion motion(const Measured& record, double noise_m) {
   result.speed_mps.resize(record.size());
   result.acceleration_mps2.resize(record.size());
   result.direction.resize(record.size(), Direction::resting);
-  const std::size_t half = std::max<std::size_t>(2, samples_in(kHalfWindow_s, record.sample_time_s));
+  const std::size_t half =
+      std::max<std::size_t>(2, samples_in(kHalfWindow_s, record.sample_time_s));
   for (const Span& span : segments(record)) differentiate(record, span, half, result);
   const Weights inner = weights(-static_cast<std::ptrdiff_t>(half),
                                 static_cast<std::ptrdiff_t>(half), record.sample_time_s);
-  const double rms_mps =
-      norm(result.speed_mps) / std::sqrt(static_cast<double>(std::max<std::size_t>(1, record.size())));
+  const double rms_mps = norm(result.speed_mps) /
+                         std::sqrt(static_cast<double>(std::max<std::size_t>(1, record.size())));
   result.rest_mps = std::max(kRestNoise * noise_m * norm(inner.slope), kRestShare * rms_mps);
   for (const Span& span : segments(record)) direct(record, span, result);
   return result;

@@ -1,0 +1,95 @@
+#include "workbench/compare/json.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "workbench/compare/words.h"
+
+namespace workbench::compare {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json number(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
+}
+
+ordered_json json_of(const Bin& bin) {
+  ordered_json out{{"from", number(bin.from)}, {"to", number(bin.to)}};
+  if (!bin.name.empty()) out["name"] = bin.name;
+  out["rms_m"] = number(bin.rms_m);
+  out["mean_m"] = number(bin.mean_m);
+  out["samples"] = bin.count;
+  out["time_share"] = number(bin.time_share);
+  out["error_share"] = number(bin.error_share);
+  out["speed_error_mps"] = number(bin.speed_error_mps);
+  out["arising_rms_mps"] = number(bin.arising_rms_mps);
+  out["arising_share"] = number(bin.arising_share);
+  return out;
+}
+
+ordered_json json_of(const Failing& failing) {
+  ordered_json out{{"variable", failing.ranges.front().variable}};
+  out.update(json_of(failing.figures));
+  out["stands_out"] = failing.stands_out;
+  return out;
+}
+
+const char* text(Judgement judgement) {
+  switch (judgement) {
+    case Judgement::at_floor:
+      return "at_floor";
+    case Judgement::fails_somewhere:
+      return "fails_somewhere";
+    case Judgement::fails_throughout:
+      return "fails_throughout";
+    case Judgement::useless:
+      break;
+  }
+  return "useless";
+}
+
+}  // namespace
+
+std::string to_json(const Comparison& c) {
+  const Words said = words(c);
+  ordered_json out;
+  out["model"] = c.model;
+  out["record"] = c.record.name;
+  out["judgement"] = text(said.judgement);
+  out["verdict"] = said.verdict;
+  out["findings"] = said.lines;
+  out["rms_m"] = number(c.rms_m);
+  out["free_run_rms_m"] = number(c.free_run_rms_m);
+  out["fit_percent"] = number(c.fit_percent);
+  out["noise_floor_m"] = number(c.noise_floor_m);
+  out["encoder_step_m"] = number(c.encoder_step_m);
+  out["one_step_rms_m"] = number(c.k_step.front().rms_m);
+  out["k_step"] = ordered_json::array();
+  for (const KStep& k : c.k_step) {
+    out["k_step"].push_back(
+        {{"samples", k.samples}, {"rms_m", number(k.rms_m)}, {"count", k.count}});
+  }
+  out["whiteness_p"] = number(c.whiteness_p);
+  out["independence_p"] = number(c.independence_p);
+  out["worst"] = ordered_json::array();
+  for (const Failing& failing : c.worst) out["worst"].push_back(json_of(failing));
+  out["gain_ratio"] = number(c.explained.gain_ratio);
+  out["offset_mps"] = number(c.explained.offset_mps);
+  out["explained_share"] = number(c.explained.share);
+  out["regions"] = ordered_json::object();
+  for (const Region& region : c.regions) {
+    ordered_json bins = ordered_json::array();
+    for (const Bin& bin : region.bins) bins.push_back(json_of(bin));
+    out["regions"][region.variable] = std::move(bins);
+  }
+  out["observer_per_s"] = number(c.observer_per_s);
+  out["sample_time_s"] = number(c.record.sample_time_s);
+  out["samples"] = c.record.size();
+  out["segments"] = c.record.starts.size();
+  out["duration_s"] = number(c.duration_s());
+  out["notes"] = c.notes;
+  return out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace workbench::compare

@@ -1,0 +1,248 @@
+#include "workbench/compare/sections.h"
+
+#include <cmath>
+#include <limits>
+
+#include "workbench/compare/units.h"
+#include "workbench/compare/words.h"
+
+namespace workbench::compare {
+namespace {
+
+using report::Kind;
+using report::Plot;
+using report::Section;
+using report::Series;
+using report::Tone;
+using report::Width;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// Values times a factor, with a break between segments; of settled samples only where asked.
+template <class F>
+std::vector<double> series(const matching::Measured& record, F value, bool settled_only = false) {
+  std::vector<double> out;
+  for (const matching::Span& span : matching::segments(record)) {
+    if (span.begin > 0) out.push_back(kNaN);
+    for (std::size_t k = span.begin; k < span.end; ++k) {
+      out.push_back(settled_only && record.settled[k] == 0 ? kNaN : value(k));
+    }
+  }
+  return out;
+}
+
+std::vector<double> times(const matching::Measured& record) {
+  std::vector<double> out;
+  for (const matching::Span& span : matching::segments(record)) {
+    if (span.begin > 0) out.push_back(0.5 * (record.t_s[span.begin - 1] + record.t_s[span.begin]));
+    for (std::size_t k = span.begin; k < span.end; ++k) out.push_back(record.t_s[k]);
+  }
+  return out;
+}
+
+/// Micrometres or millimetres, whichever suits an error of that size.
+Unit error_unit(double rms_m) {
+  return rms_m < 0.5e-3 ? Unit{"error", "um", 1e6} : Unit{"error", "mm", 1e3};
+}
+
+Plot over_time(const Comparison& c, const std::string& title, const report::Axis& y,
+               const std::string& prefix) {
+  Plot plot;
+  plot.title = title;
+  plot.x = {"time", "s"};
+  plot.y = y;
+  plot.x_values = times(c.record);
+  plot.zoom_group = prefix + "time";
+  return plot;
+}
+
+Series named(const std::string& name, Tone tone, std::vector<double> y) {
+  Series s;
+  s.name = name;
+  s.y = std::move(y);
+  s.tone = tone;
+  return s;
+}
+
+Section time_section(const Comparison& c, const std::string& prefix) {
+  const matching::Measured& r = c.record;
+  Section section;
+  section.heading = "Over time";
+  Plot position = over_time(c, "Position", {"position", "mm"}, prefix);
+  position.series.push_back(
+      named("measured", Tone::measured, series(r, [&](auto k) { return 1e3 * r.y_m[k]; })));
+  position.series.push_back(named("model, pure simulation", Tone::model, series(r, [&](auto k) {
+                                    return 1e3 * (r.y_m[k] - c.free_error_m[k]);
+                                  })));
+  const Unit unit = error_unit(c.rms_m);
+  Plot error = over_time(c, "Error, drift taken away", {"measured less model", unit.text}, prefix);
+  error.series.push_back(named("error", Tone::residual,
+                               series(
+                                   r, [&](auto k) { return unit.factor * c.error_m[k]; }, true)));
+  if (std::isfinite(c.noise_floor_m)) {
+    error.lines.push_back({2.0 * unit.factor * c.noise_floor_m, "twice the noise floor"});
+    error.lines.push_back({-2.0 * unit.factor * c.noise_floor_m, ""});
+  }
+  const Unit free_unit = error_unit(c.free_run_rms_m);
+  Plot free =
+      over_time(c, "Error of the pure simulation", {"measured less model", free_unit.text}, prefix);
+  free.series.push_back(named("error", Tone::accent, series(r, [&](auto k) {
+                                return free_unit.factor * c.free_error_m[k];
+                              })));
+  Plot command = over_time(c, "Command", {"command", "V"}, prefix);
+  command.series.push_back(
+      named("command", Tone::muted, series(r, [&](auto k) { return r.u_V[k]; })));
+  section.plots = {position, error, free, command};
+  return section;
+}
+
+report::Table worst_table(const Comparison& c) {
+  report::Table table;
+  table.caption =
+      "The range of each variable that stands out most, the most telling first. In bold: beyond "
+      "chance.";
+  table.columns = {{"where", "", false},
+                   {"error RMS", "um"},
+                   {"speed error RMS", "mm/s"},
+                   {"of the speed error", "%"},
+                   {"of the time", "%"}};
+  for (const Failing& failing : c.worst) {
+    if (failing.stands_out) table.marked_rows.push_back(table.rows.size());
+    table.rows.push_back({where(failing), three_digits(1e6 * failing.figures.rms_m),
+                          three_digits(1e3 * failing.figures.arising_rms_mps),
+                          three_digits(100.0 * failing.figures.arising_share),
+                          three_digits(100.0 * failing.figures.time_share)});
+  }
+  return table;
+}
+
+Section where_section(const Comparison& c) {
+  Section section;
+  section.heading = "Where it fails";
+  section.paragraphs.push_back(
+      "An error of position is remembered where it did not arise; the speed error, what the "
+      "model's speed lacks at that moment, is not. The bars show its RMS" +
+      std::string(c.explained.plain == Plain::neither
+                      ? "."
+                      : ", after what a plain gain and offset would explain has been taken off."));
+  section.tables_first = true;
+  section.tables.push_back(worst_table(c));
+  for (const Region& region : c.regions) {
+    const Unit unit = unit_of(region.variable);
+    Plot plot;
+    plot.title = std::string("By ") + unit.name;
+    plot.kind = Kind::bars;
+    plot.width = Width::half;
+    plot.x = {unit.name, unit.text};
+    plot.y = {"speed error RMS", "mm/s"};
+    Series bars = named("speed error RMS", Tone::residual, {});
+    for (const Bin& bin : region.bins) {
+      plot.categories.push_back(bin_text(region.variable, bin));
+      bars.y.push_back(1e3 * bin.arising_rms_mps);
+    }
+    plot.series.push_back(bars);
+    section.plots.push_back(plot);
+  }
+  return section;
+}
+
+Plot against(const Comparison& c, const std::string& variable, const std::vector<double>& values) {
+  const Unit unit = unit_of(variable);
+  const matching::Measured& r = c.record;
+  Plot plot;
+  plot.title = std::string("Against ") + unit.name;
+  plot.kind = Kind::scatter;
+  plot.width = Width::half;
+  plot.x = {unit.name, unit.text};
+  plot.y = {"speed error", "mm/s"};
+  plot.x_values = series(
+      r, [&](auto k) { return unit.factor * values[k]; }, true);
+  plot.series.push_back(named("speed error", Tone::residual,
+                              series(
+                                  r, [&](auto k) { return 1e3 * c.arising_mps[k]; }, true)));
+  return plot;
+}
+
+Section against_section(const Comparison& c) {
+  Section section;
+  section.heading = "The residual against each variable";
+  section.paragraphs.push_back(
+      "A shape here is physics that the model lacks: a step at zero velocity is dry friction, a "
+      "level that is not zero is an offset, a bend is something that grows with speed.");
+  section.plots = {against(c, "v", c.motion.speed_mps), against(c, "u", c.record.u_V),
+                   against(c, "y", c.record.y_m),
+                   against(c, "acceleration", c.motion.acceleration_mps2)};
+  return section;
+}
+
+report::Table number_table(const Comparison& c) {
+  report::Table table;
+  table.columns = {{"figure", "", false}, {"value", ""}, {"meaning", "", false}};
+  const std::string gain = three_digits(c.observer_per_s);
+  table.rows.push_back({"drift-corrected RMS", length(c.rms_m),
+                        "driven by the measured command; the position led back to the measured one "
+                        "at " +
+                            gain + " 1/s"});
+  table.rows.push_back({"free-run RMS", length(c.free_run_rms_m),
+                        "pure simulation from each segment's first sample"});
+  table.rows.push_back({"fit", three_digits(c.fit_percent) + " %",
+                        "100 (1 - |error| / |y - mean|), of the free run"});
+  for (const KStep& k : c.k_step) {
+    table.rows.push_back({std::to_string(k.samples) + " ahead, RMS", length(k.rms_m),
+                          "position put on the measured one that many samples before"});
+  }
+  table.rows.push_back({"noise floor", length(c.noise_floor_m),
+                        "noise and rounding of the position, from its own samples"});
+  table.rows.push_back({"whiteness p", probability(c.whiteness_p),
+                        "small: the residual is more than noise (Ljung-Box)"});
+  table.rows.push_back({"independence p", probability(c.independence_p),
+                        "small: the residual depends on earlier commands"});
+  return table;
+}
+
+Section number_section(const Comparison& c) {
+  Section section;
+  section.heading = "The numbers and how they are computed";
+  section.tables.push_back(number_table(c));
+  section.paragraphs.push_back(
+      "Velocity and acceleration: a parabola through the measured positions of 50 ms to either "
+      "side. At rest: below " +
+      speed(c.motion.rest_mps) +
+      ". Reversing: from 50 ms before the rod leaves one direction until 50 ms after it goes the "
+      "other way. The first half second of each segment does not count, except in the free run. "
+      "The speed error is a mean over 50 ms to either side.");
+  for (const std::string& note : c.notes) section.paragraphs.push_back("Note: " + note + ".");
+  return section;
+}
+
+}  // namespace
+
+std::vector<Section> sections(const Comparison& c, const std::string& prefix) {
+  return {time_section(c, prefix), where_section(c), against_section(c), number_section(c)};
+}
+
+report::Report make_report(const Comparison& c, const std::string& command) {
+  const Words said = words(c);
+  report::Report made;
+  made.title = c.model + " against " + c.record.name;
+  made.verdict = said.verdict;
+  made.summary = said.lines;
+  made.state = said.judgement == Judgement::at_floor  ? report::State::good
+               : said.judgement == Judgement::useless ? report::State::bad
+                                                      : report::State::warn;
+  const auto fact = [&](const char* label, double metres) {
+    const Unit unit = error_unit(metres);
+    made.facts.push_back({label, three_digits(unit.factor * metres), unit.text});
+  };
+  fact("drift-corrected RMS", c.rms_m);
+  fact("noise floor", c.noise_floor_m);
+  fact("free-run RMS", c.free_run_rms_m);
+  made.facts.push_back({"fit of the free run", three_digits(c.fit_percent), "%"});
+  fact("one step ahead, RMS", c.k_step.front().rms_m);
+  made.command = command;
+  made.sections = sections(c);
+  made.made_with = "spoolwatch compare";
+  return made;
+}
+
+}  // namespace workbench::compare

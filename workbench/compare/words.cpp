@@ -1,0 +1,156 @@
+#include "workbench/compare/words.h"
+
+#include <cmath>
+
+#include "workbench/compare/units.h"
+
+namespace workbench::compare {
+namespace {
+
+/// A p value under this is not chance.
+constexpr double kSignificant = 1e-3;
+/// Speed errors under this part of the rod's RMS speed are no drift worth a word.
+constexpr double kSlightDrift = 0.01;
+
+std::string fails_where(const Failing& failing) {
+  return where(failing) + ": " + percent(failing.figures.arising_share) +
+         " of the squared speed error arises there, in " + percent(failing.figures.time_share) +
+         " of the time.";
+}
+
+std::string in_proportion(double gain_ratio) {
+  return "the rod moves " + three_digits(100.0 * std::abs(gain_ratio)) + " % " +
+         (gain_ratio < 0.0 ? "less" : "more") + " than the model";
+}
+
+std::string by_a_constant(double offset_mps) {
+  return "drifts " + speed(std::abs(offset_mps)) + (offset_mps < 0.0 ? " inwards" : " outwards") +
+         " of it";
+}
+
+std::string plain_words(const Explained& explained) {
+  std::string text;
+  switch (explained.plain) {
+    case Plain::gain:
+      text = "Off in proportion: " + in_proportion(explained.gain_ratio);
+      break;
+    case Plain::offset:
+      text = "Off by a constant speed: the rod " + by_a_constant(explained.offset_mps);
+      break;
+    case Plain::both:
+      text = "Off in proportion and by a constant speed: " + in_proportion(explained.gain_ratio) +
+             " and " + by_a_constant(explained.offset_mps);
+      break;
+    case Plain::neither:
+      return {};
+  }
+  return text + "; this alone would explain " + percent(explained.share) + " of the squared error.";
+}
+
+/// What is left when the plain part is taken off.
+std::string beyond_words(const Comparison& c) {
+  const double left_m = c.explained.left_rms_m;
+  if (left_m <= kAtFloor * c.noise_floor_m) return "Beyond that it is at the noise floor.";
+  const std::string left = "Beyond that " + length(left_m) + " are left";
+  if (!c.headline.stands_out) return left + ", with no range standing out.";
+  return left + "; it fails " + fails_where(c.headline);
+}
+
+std::string size_words(const Comparison& c) {
+  std::string text = "Error " + length(c.rms_m) + " RMS, drift taken away";
+  if (std::isfinite(c.noise_floor_m)) {
+    text += ": " + three_digits(c.floor_ratio()) + " times the noise floor of " +
+            length(c.noise_floor_m);
+  } else {
+    text += "; the noise floor cannot be told from this record";
+  }
+  return text + ". Pure simulation: " + length(c.free_run_rms_m) + " RMS, fit " +
+         three_digits(c.fit_percent) + " %.";
+}
+
+const Bin* direction(const Comparison& c, const char* name) {
+  for (const Region& region : c.regions) {
+    for (const Bin& bin : region.bins) {
+      if (bin.name == name) return &bin;
+    }
+  }
+  return nullptr;
+}
+
+/// Which way the pure simulation runs off; empty where it stays.
+std::string drift_words(const Comparison& c) {
+  if (c.free_run_rms_m < 2.0 * c.rms_m) return {};
+  double squares = 0.0;
+  for (const double v : c.motion.speed_mps) squares += v * v;
+  const double least_mps =
+      kSlightDrift * std::sqrt(squares / static_cast<double>(c.motion.speed_mps.size()));
+  std::string text;
+  for (const bool out : {true, false}) {
+    const char* const name = out ? "extending" : "retracting";
+    const Bin* const bin = direction(c, name);
+    if (bin == nullptr || std::abs(bin->speed_error_mps) < least_mps) continue;
+    const bool slower = (bin->speed_error_mps < 0.0) == out;
+    const bool text_is_new = text.empty();
+    text += (text_is_new ? "" : ", ") + speed(std::abs(bin->speed_error_mps)) +
+            (slower ? " slower" : " faster") + (text_is_new ? " than the model" : "") + " while " +
+            name;
+  }
+  if (text.empty()) return {};
+  const double end_m = c.free_error_m.back();
+  return "Drifts in pure simulation, " + length(std::abs(end_m)) + " at the end: the rod runs " +
+         text + ".";
+}
+
+std::string dependence_words(const Comparison& c) {
+  if (c.independence_p < kSignificant) {
+    return "The residual depends on earlier commands: parameters are off or dynamics are missing.";
+  }
+  if (c.whiteness_p < kSignificant) {
+    return "The residual is not white, yet independent of the command: look at what acts without "
+           "it, such as the sensor, the load or the supply.";
+  }
+  if (!std::isfinite(c.independence_p) || !std::isfinite(c.whiteness_p)) return {};
+  return "The residual is white and independent of the command, as noise is.";
+}
+
+}  // namespace
+
+Words words(const Comparison& c) {
+  Words w;
+  const auto add = [&](const std::string& line) {
+    if (!line.empty()) w.lines.push_back(line);
+  };
+  if (!std::isfinite(c.rms_m) || !std::isfinite(c.free_run_rms_m)) {
+    w.judgement = Judgement::useless;
+    w.verdict = "The model's position leaves all bounds: nothing can be compared.";
+    return w;
+  }
+  if (c.floor_ratio() <= kAtFloor) {
+    w.judgement = Judgement::at_floor;
+    w.verdict = "At the noise floor: nothing left to explain.";
+    add(size_words(c));
+    add(drift_words(c));
+    if (c.independence_p < kSignificant) {
+      add("A trace of the command is left in the residual, too small to show in its size.");
+    }
+    return w;
+  }
+  const bool somewhere = c.headline.stands_out;
+  const std::string plain = plain_words(c.explained);
+  if (!plain.empty()) {
+    w.judgement = Judgement::fails_throughout;
+    w.verdict = plain;
+    add(beyond_words(c));
+  } else if (somewhere) {
+    w.judgement = Judgement::fails_somewhere;
+    w.verdict = "Fails " + fails_where(c.headline);
+  } else {
+    w.verdict = "Fails throughout: no range of position, velocity, command or time stands out.";
+  }
+  add(size_words(c));
+  add(drift_words(c));
+  add(dependence_words(c));
+  return w;
+}
+
+}  // namespace workbench::compare

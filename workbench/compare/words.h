@@ -1,0 +1,21 @@
+// What a comparison says in plain words: the verdict, then what supports it, most useful first.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "workbench/compare/comparison.h"
+
+namespace workbench::compare {
+
+enum class Judgement { at_floor, fails_somewhere, fails_throughout, useless };
+
+struct Words {
+  Judgement judgement = Judgement::fails_throughout;
+  std::string verdict;             ///< one sentence or two
+  std::vector<std::string> lines;  ///< further sentences, one thought each
+};
+
+[[nodiscard]] Words words(const Comparison& comparison);
+
+}  // namespace workbench::compare
