@@ -8,8 +8,9 @@ namespace {
 
 /// Of G: with some hundred ranges to choose from, chance stays below.
 constexpr double kLeastGain = 8.0;
-constexpr double kLeastRatio = 1.2;  ///< of the region's RMS to that of all
-constexpr double kLeastNoise = 2.0;  ///< of the region's RMS to the sensor's noise
+constexpr double kLeastRatio = 1.2;     ///< of the region's RMS to that of all
+constexpr double kLeastNoise = 2.0;     ///< of the region's RMS to the sensor's noise
+constexpr double kLeastOutside = 0.05;  ///< mean square outside, to that of all
 constexpr double kLeastLooks = 4.0;
 constexpr double kWidest = 0.5;     ///< of the time
 constexpr double kNarrowing = 1.3;  ///< by how much a second variable must raise G
@@ -19,7 +20,8 @@ double gain(const Bin& in, double all_looks, double all_mean_square) {
   const double out = all_looks * std::min(1.0, 2.0 * (1.0 - in.time_share));
   if (in.looks < kLeastLooks || out < kLeastLooks) return 0.0;
   const double out_mean_square =
-      all_mean_square * (1.0 - in.arising_share) / std::max(1e-12, 1.0 - in.time_share);
+      all_mean_square *
+      std::max(kLeastOutside, (1.0 - in.arising_share) / std::max(1e-12, 1.0 - in.time_share));
   const double in_mean_square = in.arising_rms_mps * in.arising_rms_mps;
   if (!(in_mean_square > out_mean_square) || !(out_mean_square > 0.0)) return 0.0;
   const double pooled = (in.looks * in_mean_square + out * out_mean_square) / (in.looks + out);

@@ -1,0 +1,78 @@
+#include "workbench/matching/measured.h"
+
+#include <gmock/gmock.h>
+
+#include <numeric>
+
+#include "config/schema/error.h"
+
+namespace workbench::matching {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr double kTs = 0.01;
+
+/// Samples numbered by their y; gaps before the given indices.
+config::record::Record record(std::size_t samples, std::vector<std::size_t> gaps = {}) {
+  config::record::Record r;
+  r.name = "made.csv";
+  r.sample_time_s = kTs;
+  for (std::size_t k = 0; k < samples; ++k) {
+    r.t_s.push_back(kTs * static_cast<double>(k));
+    r.u_V.push_back(1.0);
+    r.y_m.push_back(static_cast<double>(k));
+  }
+  r.gaps = std::move(gaps);
+  return r;
+}
+
+TEST(Measured, HasOneSegmentWhereNothingIsMissing) {
+  const Measured m = measured(record(300));
+  EXPECT_EQ(m.size(), 300U);
+  EXPECT_THAT(m.starts, ElementsAre(0U));
+  EXPECT_TRUE(m.notes.empty());
+}
+
+TEST(Measured, DoesNotCountTheFirstHalfSecondOfEachSegment) {
+  const Measured m = measured(record(300, {150}));
+  ASSERT_THAT(m.starts, ElementsAre(0U, 150U));
+  for (std::size_t k = 0; k < 300; ++k) {
+    EXPECT_EQ(m.settled[k] != 0, k % 150 >= 50) << k;
+  }
+}
+
+TEST(Measured, LeavesOutShortSegmentsAndSaysSo) {
+  const Measured m = measured(record(500, {200, 299}));  // 0.99 s between the gaps
+  EXPECT_THAT(m.starts, ElementsAre(0U, 200U));
+  EXPECT_EQ(m.size(), 401U);
+  EXPECT_EQ(m.y_m[199], 199.0);
+  EXPECT_EQ(m.y_m[200], 299.0);
+  ASSERT_EQ(m.notes.size(), 2U);
+  EXPECT_THAT(m.notes[1], HasSubstr("99 samples"));
+}
+
+TEST(Measured, RefusesLessThanTwoSecondsOfConnectedSamples) {
+  try {
+    (void)measured(record(390, {95, 190, 285}));  // four times just under a second
+    FAIL();
+  } catch (const config::schema::Error& error) {
+    EXPECT_EQ(error.exit_code(), 65);
+    EXPECT_THAT(error.what(), HasSubstr("too short"));
+  }
+}
+
+TEST(Measured, GivesAPartWithItsOwnSegmentsAndSettling) {
+  const Measured whole = measured(record(600, {300}));
+  const Measured p = part(whole, 200, 500);
+  EXPECT_EQ(p.size(), 300U);
+  EXPECT_EQ(p.y_m.front(), 200.0);
+  EXPECT_THAT(p.starts, ElementsAre(0U, 100U));
+  EXPECT_EQ(std::accumulate(p.settled.begin(), p.settled.end(), 0), 200);
+  EXPECT_EQ(p.settled[49], 0);
+  EXPECT_EQ(p.settled[50], 1);
+}
+
+}  // namespace
+}  // namespace workbench::matching
