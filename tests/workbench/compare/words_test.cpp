@@ -1,0 +1,95 @@
+#include "workbench/compare/words.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "tests/workbench/compare/servo_record.h"
+#include "workbench/compare/text.h"
+#include "workbench/compare/units.h"
+
+namespace workbench::compare {
+namespace {
+
+using compare_test::kGain;
+using testing::AnyOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+Comparison compared(const compare_test::Fault& fault) {
+  return compare(compare_test::servo(),
+                 matching::measured(compare_test::servo_record(fault, 30.0, 2e-6)));
+}
+
+TEST(Words, SayThatNothingIsLeftAtTheNoiseFloor) {
+  const Words said = words(compared(compare_test::healthy));
+  EXPECT_EQ(said.judgement, Judgement::at_floor);
+  EXPECT_EQ(said.verdict, "At the noise floor: nothing left to explain.");
+}
+
+TEST(Words, NameABiasAsAConstantSpeedWithItsSign) {
+  const Words out = words(compared([](double, double, double) { return 0.002; }));
+  EXPECT_THAT(out.verdict, StartsWith("Off by a constant speed: the rod drifts 2 mm/s outwards"));
+  EXPECT_THAT(out.lines, Contains(StartsWith("Beyond that it is at the noise floor")));
+  EXPECT_THAT(out.lines, Contains(HasSubstr("2 mm/s faster than the model while extending, 2 mm/s "
+                                            "slower while retracting")));
+  const Words in = words(compared([](double, double, double) { return -0.002; }));
+  EXPECT_THAT(in.verdict, HasSubstr("2 mm/s inwards"));
+}
+
+TEST(Words, NameAGainWithItsSign) {
+  const Words less = words(compared([](double, double u, double) { return -0.03 * kGain * u; }));
+  EXPECT_THAT(less.verdict,
+              AnyOf(HasSubstr("moves 3 % less"), HasSubstr("moves 3.0"), HasSubstr("moves 2.9")));
+  EXPECT_THAT(less.verdict, HasSubstr("less than the model"));
+}
+
+TEST(Words, NameTheRangeThatFails) {
+  const Words said = words(compared([](double t, double u, double) {
+    return t > 15.0 && t < 20.0 ? 0.01 * std::sin(40.0 * t) + 0.0 * u : 0.0;
+  }));
+  EXPECT_EQ(said.judgement, Judgement::fails_somewhere);
+  EXPECT_THAT(said.verdict, StartsWith("Fails from 15 to 20 s: "));
+}
+
+TEST(Where, ReadsAsPeopleSpeak) {
+  EXPECT_EQ(where(Range{"speed", 0.0, 0.005, "", true, false}), "below 5 mm/s");
+  EXPECT_EQ(where(Range{"speed", 0.1, 0.3, "", false, true}), "above 100 mm/s");
+  EXPECT_EQ(where(Range{"speed", 0.005, 0.02, "", false, false}), "between 5 and 20 mm/s");
+  EXPECT_EQ(where(Range{"v", -0.3, -0.1, "", true, false}), "retracting faster than 100 mm/s");
+  EXPECT_EQ(where(Range{"v", 0.1, 0.3, "", false, true}), "extending faster than 100 mm/s");
+  EXPECT_EQ(where(Range{"u", 2.0, 9.0, "", false, true}), "at commands above 2 V");
+  EXPECT_EQ(where(Range{"y", 0.1, 0.2, "", false, false}), "at positions from 100 to 200 mm");
+  EXPECT_EQ(where(Range{"time", 5.0, 10.0, "", false, false}), "from 5 to 10 s");
+  EXPECT_EQ(where(Range{"direction", 0.0, 0.0, "reversing", false, false}), "while reversing");
+}
+
+TEST(Units, GiveThreeDigitsAndNoExponents) {
+  EXPECT_EQ(length(2.456e-6), "2.46 um");
+  EXPECT_EQ(length(381.2e-6), "381 um");
+  EXPECT_EQ(length(1.706e-3), "1.71 mm");
+  EXPECT_EQ(length(1.234), "1234 mm");
+  EXPECT_EQ(length(std::nan("")), "-");
+  EXPECT_EQ(percent(0.0042), "under 1 %");
+  EXPECT_EQ(percent(0.9987), "over 99 %");
+  EXPECT_EQ(probability(1e-9), "< 1e-6");
+}
+
+TEST(Text, FitsATerminalAndIsAsciiWhereAskedFor) {
+  const Comparison c = compared([](double, double u, double) { return u > 0.5 ? 0.003 : 0.0; });
+  for (const bool all : {false, true}) {
+    std::string text = to_text(c, false, all);
+    EXPECT_THAT(text, HasSubstr("noise floor"));
+    std::size_t from = 0;
+    while (from < text.size()) {
+      const std::size_t to = text.find('\n', from);
+      EXPECT_LE(to - from, 90U) << text.substr(from, to - from);
+      from = to + 1;
+    }
+    for (const char letter : text) EXPECT_TRUE(letter == '\n' || (letter >= ' ' && letter <= '~'));
+  }
+}
+
+}  // namespace
+}  // namespace workbench::compare
