@@ -1,6 +1,7 @@
 #include "workbench/compare/sections.h"
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "workbench/compare/units.h"
@@ -81,7 +82,6 @@ Section time_section(const Comparison& c, const std::string& prefix) {
                                    r, [&](auto k) { return unit.factor * c.error_m[k]; }, true)));
   if (std::isfinite(c.noise_floor_m)) {
     error.lines.push_back({2.0 * unit.factor * c.noise_floor_m, "twice the noise floor"});
-    error.lines.push_back({-2.0 * unit.factor * c.noise_floor_m, ""});
   }
   const Unit free_unit = error_unit(c.free_run_rms_m);
   Plot free =
@@ -224,7 +224,7 @@ std::vector<Section> sections(const Comparison& c, const std::string& prefix) {
 report::Report make_report(const Comparison& c, const std::string& command) {
   const Words said = words(c);
   report::Report made;
-  made.title = c.model + " against " + c.record.name;
+  made.title = c.model + " against " + std::filesystem::path(c.record.name).filename().string();
   made.verdict = said.verdict;
   made.summary = said.lines;
   made.state = said.judgement == Judgement::at_floor  ? report::State::good
