@@ -46,11 +46,13 @@ All all_of(const Sorted& sorted) {
 
 /// Where two variables tell about the same, that one which people think in.
 constexpr double kAcceleration = 0.8;
+constexpr double kVelocity = 0.99;  ///< "below 5 mm/s" before "from -5 to 5 mm/s"
 
 void judge(Failing& failing, const Sorted& sorted, const All& all) {
   const Bin& in = failing.figures;
   failing.gain = gain(in, all.looks, all.mean_square);
   if (failing.ranges.back().variable == "acceleration") failing.gain *= kAcceleration;
+  if (failing.ranges.back().variable == "v") failing.gain *= kVelocity;
   const double least_mps =
       std::max(kLeastRatio * std::sqrt(all.mean_square), kLeastNoise * sorted.noise_mps);
   failing.stands_out =
