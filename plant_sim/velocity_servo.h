@@ -32,7 +32,7 @@ class VelocityServo {
 
     template <class V>
     void visit(V&& v) {
-      v(ParameterInfo{"gain_mps_per_V", "speed per command", 0.0, 100.0, 0.05, 0.05, 0.5},
+      v(ParameterInfo{"gain_mps_per_V", "speed per command", 0.0, 100.0, 0.05, 0.05, 2.0},
         gain_mps_per_V);
       v(ParameterInfo{"time_constant_s", "lag of the speed behind the command; 0 is none", 0.0,
                       10.0, 0.01, 0.0, 0.2},

@@ -10,8 +10,12 @@
 
 namespace estimator::residual {
 
-Comparison compare_residuals(std::span<const double> first, std::span<const double> second,
-                             int block) {
+namespace {
+
+/// `difference` of a block's two energies; NaN leaves the block out.
+template <class Difference>
+Comparison compare(std::span<const double> first, std::span<const double> second, int block,
+                   const Difference& difference) {
   assert(first.size() == second.size() && block > 0);
   Comparison out;
   std::vector<double> differences;
@@ -20,17 +24,21 @@ Comparison compare_residuals(std::span<const double> first, std::span<const doub
   std::size_t samples = 0;
   const auto length = static_cast<std::size_t>(block);
   for (std::size_t begin = 0; begin < first.size(); begin += length) {
-    double sum = 0.0;
+    double first_energy = 0.0;
+    double second_energy = 0.0;
     std::size_t count = 0;
     for (std::size_t t = begin; t < std::min(begin + length, first.size()); ++t) {
       if (std::isnan(first[t]) || std::isnan(second[t])) continue;
-      first_sum += first[t] * first[t];
-      second_sum += second[t] * second[t];
-      sum += first[t] * first[t] - second[t] * second[t];
+      first_energy += first[t] * first[t];
+      second_energy += second[t] * second[t];
       ++count;
     }
     samples += count;
-    if (2 * count >= length) differences.push_back(sum / static_cast<double>(count));
+    first_sum += first_energy;
+    second_sum += second_energy;
+    if (2 * count < length) continue;
+    const double d = difference(first_energy, second_energy) / static_cast<double>(count);
+    if (!std::isnan(d)) differences.push_back(d);
   }
   const auto n = static_cast<double>(differences.size());
   out.blocks = static_cast<int>(differences.size());
@@ -48,6 +56,20 @@ Comparison compare_residuals(std::span<const double> first, std::span<const doub
   out.z = mean / std::sqrt(variance / n);
   out.p = student_two_sided(out.z, n - 1.0);
   return out;
+}
+
+}  // namespace
+
+Comparison compare_residuals(std::span<const double> first, std::span<const double> second,
+                             int block) {
+  return compare(first, second, block, [](double a, double b) { return a - b; });
+}
+
+Comparison compare_in_proportion(std::span<const double> first, std::span<const double> second,
+                                 int block) {
+  return compare(first, second, block, [](double a, double b) {
+    return a > 0.0 && b > 0.0 ? std::log(a / b) : std::numeric_limits<double>::quiet_NaN();
+  });
 }
 
 }  // namespace estimator::residual

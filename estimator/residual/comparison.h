@@ -25,4 +25,10 @@ struct Comparison {
 [[nodiscard]] Comparison compare_residuals(std::span<const double> first,
                                            std::span<const double> second, int block);
 
+/// The same for the blocks' energies in proportion, d_b = log(first energy / second energy): what
+/// counts is in how many stretches the second is better and how steadily, not where errors are
+/// largest. Blocks without any error in one of them are left out.
+[[nodiscard]] Comparison compare_in_proportion(std::span<const double> first,
+                                               std::span<const double> second, int block);
+
 }  // namespace estimator::residual

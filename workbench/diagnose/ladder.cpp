@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "workbench/diagnose/look_over.h"
-#include "workbench/diagnose/parallel.h"
 #include "workbench/diagnose/rounds.h"
+#include "workbench/diagnose/way.h"
 
 namespace workbench::diagnose {
 namespace {
@@ -12,14 +12,16 @@ namespace {
 constexpr std::size_t kMostEffects = 4;
 /// Of the first round, that many are tried as the first effect when the best leads nowhere.
 constexpr std::size_t kDetours = 3;
-/// A gain must also be more than chance.
+/// A gain must also be more than chance, unless it is a large one.
 constexpr double kChance = 0.01;
+constexpr double kLargeGain = 0.1;
 
-bool is_gain(const Stage& stage, const Candidate& candidate) {
-  return candidate.fitted_at_all && candidate.p_value < kChance &&
-         candidate.score_rms_m <
-             (1.0 - kWorthwhile * static_cast<double>(candidate.effects.size())) *
-                 stage.fitted.score_rms_m;
+bool is_gain(const Workshop& shop, const Stage& stage, const Candidate& candidate) {
+  const double worthwhile = worthwhile_at(shop, stage.fitted.score_rms_m);
+  const double gain = 1.0 - candidate.score_rms_m / stage.fitted.score_rms_m;
+  return candidate.fitted_at_all &&
+         gain > worthwhile * static_cast<double>(candidate.effects.size()) &&
+         (gain > kLargeGain || candidate.p_value < kChance);
 }
 
 bool explained(const Workshop& shop, const Stage& stage) {
@@ -32,7 +34,8 @@ const Candidate& simplest(const Workshop& shop, const std::vector<Candidate>& ca
   for (const Candidate& other : candidates) {
     if (!other.fitted_at_all || other.effects.size() > chosen->effects.size()) continue;
     if (other.fitted.searched.size() < chosen->fitted.searched.size() &&
-        other.score_rms_m < (1.0 + kWorthwhile) * candidates.front().score_rms_m &&
+        other.score_rms_m <
+            (1.0 + worthwhile_at(shop, other.score_rms_m)) * candidates.front().score_rms_m &&
         chance(shop, other.fitted, candidates.front().fitted) > kChance) {
       chosen = &other;
     }
@@ -45,14 +48,14 @@ void go_on(const Workshop& shop, Stage& stage, std::vector<Round>& rounds) {
   while (stage.added.size() < kMostEffects && !shop.cancelled()) {
     Round round = single_round(shop, stage, static_cast<int>(rounds.size()) + 1);
     if (round.candidates.empty()) return;
-    const bool single = is_gain(stage, round.candidates.front());
+    const bool single = is_gain(shop, stage, round.candidates.front());
     if (!single && !explained(shop, stage) && !shop.cancelled()) {
       std::vector<Candidate> pairs = pair_round(shop, round);
-      if (!pairs.empty() && is_gain(stage, pairs.front())) {
+      if (!pairs.empty() && is_gain(shop, stage, pairs.front())) {
         round.candidates.insert(round.candidates.begin(), pairs.front());
       }
     }
-    const bool gain = is_gain(stage, round.candidates.front());
+    const bool gain = is_gain(shop, stage, round.candidates.front());
     if (gain) stage = with(stage, simplest(shop, round.candidates));
     rounds.push_back(std::move(round));
     if (!gain) return;
@@ -60,6 +63,11 @@ void go_on(const Workshop& shop, Stage& stage, std::vector<Round>& rounds) {
 }
 
 }  // namespace
+
+double worthwhile_at(const Workshop& shop, double score_rms_m) {
+  return score_rms_m < kUnexplained * shop.evidence.noise_floor_m ? kWorthwhileInNoise
+                                                                  : kWorthwhile;
+}
 
 Stage first_stage(const Workshop& shop) {
   matching::FitOptions options;
@@ -71,14 +79,7 @@ Stage first_stage(const Workshop& shop) {
 }
 
 std::vector<Glance> preview(const Workshop& shop, const Stage& stage) {
-  const std::vector<Eigen::VectorXd> bases = bases_of(shop, stage);
-  std::vector<Glance> glances(shop.absent.size());
-  in_parallel(glances.size(), shop.threads,
-              [&](std::size_t i) { glances[i] = glance(shop, stage, bases, shop.absent[i]); });
-  std::stable_sort(glances.begin(), glances.end(), [](const Glance& a, const Glance& b) {
-    return a.expected_ratio < b.expected_ratio;
-  });
-  return glances;
+  return glances_at(shop, stage, shop.absent);
 }
 
 Ladder climb(const Workshop& shop) {
@@ -96,7 +97,7 @@ Ladder climb(const Workshop& shop) {
   const std::vector<Candidate> firsts =
       ladder.rounds.empty() ? std::vector<Candidate>{} : ladder.rounds.front().candidates;
   for (std::size_t i = 1; i < std::min(kDetours, firsts.size()); ++i) {
-    if (explained(shop, stage) || shop.cancelled() || !is_gain(first, firsts[i])) break;
+    if (explained(shop, stage) || shop.cancelled() || !is_gain(shop, first, firsts[i])) break;
     if (std::find(stage.added.begin(), stage.added.end(), firsts[i].effects.front()) !=
         stage.added.end()) {
       continue;
@@ -110,7 +111,9 @@ Ladder climb(const Workshop& shop) {
       ladder.rounds = std::move(rounds);
     }
   }
-  ladder.final = std::move(stage);
+  if (!explained(shop, stage)) keep_supported(shop, stage);
+  ladder.way = way_to(shop, first, stage);
+  ladder.final = ladder.way.back();
   ladder.interrupted = shop.cancelled();
   return ladder;
 }

@@ -19,13 +19,18 @@
 
 namespace workbench::diagnose {
 
-/// Relative fall of the held-out error that an effect must bring. Healthy records of the source's
-/// actuator stayed below a tenth of it.
+/// Relative fall of the held-out error that an effect must bring.
 inline constexpr double kWorthwhile = 0.01;
+/// The same where the error is hardly more than noise, which hides much of an effect. Healthy
+/// records of the source's actuator stay below a quarter of it.
+inline constexpr double kWorthwhileInNoise = 0.004;
 /// Held-out error over the noise floor above which something is still unexplained.
 inline constexpr double kUnexplained = 1.15;
 /// Rivals within this of the best, in held-out error, explain the record about as well.
 inline constexpr double kRivals = 0.05;
+
+/// One of the two, for a held-out error.
+[[nodiscard]] double worthwhile_at(const Workshop& shop, double score_rms_m);
 
 struct Candidate {
   std::vector<std::string> effects;  ///< one, or two tried together
@@ -43,8 +48,9 @@ struct Round {
 
 struct Ladder {
   double nominal_rms_m = 0.0;  ///< held-out, the model file as it is
-  std::vector<Round> rounds;   ///< of the way that was taken in the end
-  Stage final;
+  std::vector<Round> rounds;   ///< of the search that led to the final model
+  std::vector<Stage> way;      ///< from the model as given to the final one, an effect at a time
+  Stage final;                 ///< the last of them
   bool interrupted = false;
 };
 

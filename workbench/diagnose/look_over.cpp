@@ -5,6 +5,7 @@
 #include <set>
 
 #include "workbench/diagnose/ladder.h"
+#include "workbench/diagnose/selection.h"
 
 namespace workbench::diagnose {
 namespace {
@@ -14,39 +15,8 @@ using Eigen::VectorXd;
 using matching::Fitted;
 using matching::SearchParameter;
 
-bool belongs(const SearchParameter& parameter, const std::string& effect) {
-  return parameter.name.rfind(effect + ".", 0) == 0;
-}
-
-struct Selection {
-  std::vector<SearchParameter> searched;
-  VectorXd start;
-};
-
-/// The stage's parameters for which keep(parameter) holds.
-template <class Keep>
-Selection select(const Fitted& fitted, const Keep& keep) {
-  Selection result;
-  std::vector<double> values;
-  for (std::size_t i = 0; i < fitted.searched.size(); ++i) {
-    if (!keep(fitted.searched[i])) continue;
-    result.searched.push_back(fitted.searched[i]);
-    values.push_back(fitted.x[static_cast<Index>(i)]);
-  }
-  result.start = Eigen::Map<VectorXd>(values.data(), static_cast<Index>(values.size()));
-  return result;
-}
-
-Fitted refit(const Workshop& shop, const Selection& selection, const VectorXd& weights) {
-  matching::FitOptions options;
-  options.tolerance = 1e-5;
-  options.cancel = shop.cancel;
-  return matching::fit(shop.model, shop.evidence, weights, selection.searched, selection.start,
-                       options);
-}
-
-bool costs_little(const Fitted& without, const Fitted& with) {
-  return without.score_rms_m < (1.0 + kWorthwhile) * with.score_rms_m;
+bool costs_little(const Workshop& shop, const Fitted& without, const Fitted& with) {
+  return without.score_rms_m < (1.0 + worthwhile_at(shop, with.score_rms_m)) * with.score_rms_m;
 }
 
 void drop_effects(const Workshop& shop, Stage& stage) {
@@ -55,7 +25,7 @@ void drop_effects(const Workshop& shop, Stage& stage) {
     Fitted without =
         refit(shop, select(stage.fitted, [&](const auto& p) { return !belongs(p, effect); }),
               shop.evidence.fits);
-    if (!costs_little(without, stage.fitted)) {
+    if (!costs_little(shop, without, stage.fitted)) {
       ++i;
       continue;
     }
@@ -78,7 +48,7 @@ void drop_refinements(const Workshop& shop, Stage& stage) {
           select(stage.fitted,
                  [&](const auto& p) { return !belongs(p, effect) || p.refinement != refinement; }),
           shop.evidence.fits);
-      if (costs_little(without, stage.fitted)) stage.fitted = std::move(without);
+      if (costs_little(shop, without, stage.fitted)) stage.fitted = std::move(without);
     }
   }
 }
@@ -98,10 +68,19 @@ std::optional<std::pair<double, double>> crossed(const Workshop& shop, const Sel
                    matching::rms(refit(shop, selection, second).residual_m, first));
 }
 
+/// Whether both halves do better with `more` than with `plain`.
+bool supported(const Workshop& shop, const Selection& plain, const Selection& more) {
+  const auto without = crossed(shop, plain);
+  const auto with = crossed(shop, more);
+  return without && with && with->first < (1.0 - kWorthwhile) * without->first &&
+         with->second < (1.0 - kWorthwhile) * without->second;
+}
+
 void add_refinements(const Workshop& shop, Stage& stage) {
   for (const std::string& effect : stage.added) {
-    const plant_sim::EffectInfo* info = plant_sim::find_effect(effect);
-    if (info == nullptr) continue;
+    const auto info = std::find_if(shop.absent.begin(), shop.absent.end(),
+                                   [&](const auto& absent) { return absent.name == effect; });
+    if (info == shop.absent.end()) continue;
     std::set<int> missing;
     const std::vector<SearchParameter> all =
         matching::effect_parameters(*info, matching::kEveryRefinement);
@@ -118,12 +97,8 @@ void add_refinements(const Workshop& shop, Stage& stage) {
       }
       more.start = VectorXd::Zero(static_cast<Index>(more.searched.size()));
       more.start.head(plain.start.size()) = plain.start;
-      const auto without = crossed(shop, plain);
-      const auto with = crossed(shop, more);
-      if (!without || !with) return;
-      const bool first = with->first < (1.0 - kWorthwhile) * without->first;
-      const bool second = with->second < (1.0 - kWorthwhile) * without->second;
-      if (first && second) stage.fitted = refit(shop, more, shop.evidence.fits);
+      if (!supported(shop, plain, more)) continue;
+      stage.fitted = refit(shop, more, shop.evidence.fits);
     }
   }
 }
@@ -134,6 +109,18 @@ void look_over(const Workshop& shop, Stage& stage) {
   drop_effects(shop, stage);
   drop_refinements(shop, stage);
   add_refinements(shop, stage);
+}
+
+void keep_supported(const Workshop& shop, Stage& stage) {
+  for (std::size_t i = stage.added.size(); i-- > 0 && stage.added.size() > 1;) {
+    const std::string effect = stage.added[i];
+    const Selection more = select(stage.fitted, [](const auto&) { return true; });
+    const Selection plain =
+        select(stage.fitted, [&](const auto& p) { return !belongs(p, effect); });
+    if (supported(shop, plain, more) || shop.cancelled()) continue;
+    stage.added.erase(stage.added.begin() + static_cast<std::ptrdiff_t>(i));
+    stage.fitted = refit(shop, plain, shop.evidence.fits);
+  }
 }
 
 }  // namespace workbench::diagnose

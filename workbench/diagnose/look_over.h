@@ -12,4 +12,7 @@ namespace workbench::diagnose {
 /// of either half of the records when they are fitted to the other half.
 void look_over(const Workshop& shop, Stage& stage);
 
+/// Drops effects, the latest first, that do not lower the error of both halves crosswise.
+void keep_supported(const Workshop& shop, Stage& stage);
+
 }  // namespace workbench::diagnose

@@ -1,7 +1,9 @@
 #include "workbench/diagnose/rounds.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <limits>
 #include <mutex>
 
 #include "estimator/residual/comparison.h"
@@ -22,8 +24,57 @@ constexpr double kContender = 0.5;
 /// At the noise floor the quick look is as good as the fit: what it does not expect is not there.
 constexpr double kAtFloor = 1.05;
 constexpr double kExpectable = 0.002;
+/// Iterations for effects that come after one that explains the record.
+constexpr int kGlimpseIterations = 4;
+/// Then, other starts are tried only for effects within this factor of the best.
+constexpr double kFar = 3.0;
+constexpr std::size_t kAllStarts = 1000;
 constexpr std::size_t kPairable = 6;
 constexpr double kComparedBlock_s = 1.0;
+
+matching::FitOptions quick(const Workshop& shop) {
+  matching::FitOptions options;
+  options.max_iterations = kQuickIterations;
+  options.tolerance = kQuickTolerance;
+  options.final_jacobian = false;
+  options.cancel = shop.cancel;
+  return options;
+}
+
+/// Tells the workshop how a round goes; from any thread.
+class Reporter {
+ public:
+  Reporter(const Workshop& shop, int round, std::size_t tasks) : shop_(&shop) {
+    begin_ = "round " + std::to_string(round) + ": ";
+    progress_.of = static_cast<int>(tasks);
+  }
+  void looked(const std::string& effect) { tell("looking at " + effect, nullptr); }
+  void expect(const std::vector<Glance>& glances) {
+    const std::lock_guard lock(mutex_);
+    for (const Glance& look : glances) progress_.expected.push_back(look.effect);
+  }
+  void tried(const Candidate& candidate) {
+    tell("trying " + candidate.effects.front(), candidate.fitted_at_all ? &candidate : nullptr);
+  }
+
+ private:
+  void tell(const std::string& doing, const Candidate* finished) {
+    const std::lock_guard lock(mutex_);
+    ++progress_.done;
+    progress_.doing = begin_ + doing;
+    if (finished != nullptr &&
+        (progress_.best.empty() || finished->score_rms_m < progress_.best_rms_m)) {
+      progress_.best = finished->effects.front();
+      progress_.best_rms_m = finished->score_rms_m;
+    }
+    if (shop_->progress) shop_->progress(progress_);
+  }
+
+  const Workshop* shop_;
+  std::string begin_;
+  std::mutex mutex_;
+  Progress progress_;
+};
 
 Candidate candidate_of(const Workshop& shop, const Stage& stage, const Glance& glance,
                        Trial trial) {
@@ -92,7 +143,7 @@ double chance(const Workshop& shop, const matching::Fitted& earlier,
   const int block =
       std::max(8, static_cast<int>(std::lround(kComparedBlock_s / shop.evidence.sample_time_s)));
   const estimator::residual::Comparison comparison =
-      estimator::residual::compare_residuals(scored(earlier), scored(later), block);
+      estimator::residual::compare_in_proportion(scored(earlier), scored(later), block);
   if (!std::isfinite(comparison.p)) return 1.0;
   return comparison.z > 0.0 ? 0.5 * comparison.p : 1.0 - 0.5 * comparison.p;
 }
@@ -113,47 +164,44 @@ Round single_round(const Workshop& shop, const Stage& stage, int number) {
       effects.push_back(effect);
     }
   }
-  std::mutex mutex;
-  Progress progress;
-  progress.of = static_cast<int>(2 * effects.size());
-  const auto report = [&](const std::string& doing, const Candidate* finished) {
-    const std::lock_guard lock(mutex);
-    ++progress.done;
-    progress.doing = "round " + std::to_string(number) + ": " + doing;
-    if (finished != nullptr &&
-        (progress.best.empty() || finished->score_rms_m < progress.best_rms_m)) {
-      progress.best = finished->effects.front();
-      progress.best_rms_m = finished->score_rms_m;
-    }
-    if (shop.progress) shop.progress(progress);
-  };
-  const std::vector<VectorXd> bases = bases_of(shop, stage);
-  std::vector<Glance> glances(effects.size());
-  in_parallel(effects.size(), shop.threads, [&](std::size_t i) {
-    if (shop.cancelled()) return;
-    glances[i] = glance(shop, stage, bases, effects[i]);
-    report("looking at " + effects[i].name, nullptr);
-  });
-  std::stable_sort(glances.begin(), glances.end(), [](const Glance& a, const Glance& b) {
-    return a.expected_ratio < b.expected_ratio;
-  });
+  Reporter reporter(shop, number, 2 * effects.size());
+  const std::vector<Glance> glances =
+      glances_at(shop, stage, effects, [&](const std::string& effect) { reporter.looked(effect); });
+  reporter.expect(glances);
   const bool at_floor = stage.fitted.score_rms_m < kAtFloor * shop.evidence.noise_floor_m;
-  matching::FitOptions options;
-  options.max_iterations = kQuickIterations;
-  options.tolerance = kQuickTolerance;
-  options.final_jacobian = false;
-  options.cancel = shop.cancel;
   round.candidates.resize(glances.size());
-  in_parallel(glances.size(), shop.threads, [&](std::size_t i) {
-    const Glance& look = glances[i];
+  std::atomic<bool> explained = false;
+  const auto work = [&](std::size_t i, std::size_t first_start, std::size_t starts) {
+    Glance look = glances[i];
+    look.starts.erase(look.starts.begin(),
+                      look.starts.begin() + static_cast<std::ptrdiff_t>(first_start));
+    look.starts.resize(std::min(look.starts.size(), starts));
+    if (shop.cancelled() || look.starts.empty()) return;
+    matching::FitOptions options = quick(shop);
+    // once the record is explained, others only have to show whether they come near
+    if (explained) options.max_iterations = kGlimpseIterations;
+    Candidate found = candidate_of(shop, stage, look, attempt(shop, look, options));
     Candidate& candidate = round.candidates[i];
-    candidate.effects = {look.effect};
-    candidate.expected_ratio = look.expected_ratio;
-    const bool hopeless = at_floor && look.expected_ratio > 1.0 - kExpectable;
-    if (!shop.cancelled() && !look.starts.empty() && !hopeless) {
-      candidate = candidate_of(shop, stage, look, attempt(shop, look, options));
+    if (!candidate.fitted_at_all || found.fitted.fit_rms_m < candidate.fitted.fit_rms_m) {
+      candidate = std::move(found);
     }
-    report("trying " + look.effect, candidate.fitted_at_all ? &candidate : nullptr);
+    if (candidate.score_rms_m < kUnexplained * shop.evidence.noise_floor_m) explained = true;
+  };
+  in_parallel(glances.size(), shop.threads, [&](std::size_t i) {
+    round.candidates[i].effects = {glances[i].effect};
+    round.candidates[i].expected_ratio = glances[i].expected_ratio;
+    const bool hopeless = at_floor && glances[i].expected_ratio > 1.0 - kExpectable;
+    if (!hopeless) work(i, 0, 1);
+    reporter.tried(round.candidates[i]);
+  });
+  double best_m = std::numeric_limits<double>::infinity();
+  for (const Candidate& candidate : round.candidates) {
+    best_m = std::min(best_m, candidate.score_rms_m);
+  }
+  in_parallel(glances.size(), shop.threads, [&](std::size_t i) {
+    const Candidate& candidate = round.candidates[i];
+    const bool far = explained && candidate.score_rms_m > kFar * best_m;
+    if (candidate.fitted_at_all && !far) work(i, 1, kAllStarts);
   });
   sort_by_score(round.candidates);
   if (!round.candidates.empty()) finish(shop, stage, round.candidates);
@@ -170,11 +218,7 @@ std::vector<Candidate> pair_round(const Workshop& shop, const Round& singles) {
     for (std::size_t k = i + 1; k < count; ++k) pairs.push_back({i, k});
   }
   std::vector<Candidate> candidates(pairs.size());
-  matching::FitOptions options;
-  options.max_iterations = kQuickIterations;
-  options.tolerance = kQuickTolerance;
-  options.final_jacobian = false;
-  options.cancel = shop.cancel;
+  const matching::FitOptions options = quick(shop);
   const auto base = static_cast<Index>(singles.before.fitted.searched.size());
   in_parallel(pairs.size(), shop.threads, [&](std::size_t i) {
     const Candidate& first = singles.candidates[pairs[i].first];

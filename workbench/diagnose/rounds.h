@@ -7,10 +7,6 @@
 
 namespace workbench::diagnose {
 
-/// Search values to look from: the stage's own, and the model file's with the added effects as they
-/// are in the stage.
-[[nodiscard]] std::vector<Eigen::VectorXd> bases_of(const Workshop& shop, const Stage& stage);
-
 [[nodiscard]] Round single_round(const Workshop& shop, const Stage& stage, int number);
 /// The most promising effects of a round two by two.
 [[nodiscard]] std::vector<Candidate> pair_round(const Workshop& shop, const Round& singles);

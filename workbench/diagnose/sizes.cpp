@@ -18,8 +18,13 @@ constexpr double kHalfPi = 1.5707963267948966;
 constexpr Index kSizes = 8;
 constexpr double kSignedRatio = 4.0;    ///< between the sizes of one sign
 constexpr double kPositiveRatio = 3.0;  ///< between the sizes of an effect of one sign
+constexpr double kFewestTurns = 1.5;    ///< a wave is one that is seen more than once
 constexpr double kFinestTurns = 60.0;   ///< turns of the finest wavelength over the motion
-constexpr double kTurnStep = 0.5;       ///< between neighbouring wavelengths
+/// How far a wavelength may move from where the scan found it.
+constexpr double kNeighbourhood = 1.15;
+/// Largest relative error of speed that a sensor's periodic error may show.
+constexpr double kSteepestReading = 0.3;
+constexpr double kTurnStep = 0.5;  ///< between neighbouring wavelengths
 
 bool ends_with(const std::string& text, const std::string& ending) {
   return text.size() >= ending.size() &&
@@ -60,34 +65,12 @@ Index index_of(const std::vector<SearchParameter>& searched, const std::string& 
   return -1;
 }
 
-MatrixXd periodic(const std::vector<SearchParameter>& searched, const VectorXd& typical,
-                  const Span& span, Index wavelength, Index phase) {
-  const double range_m = std::max(span.most_m - span.least_m, 1e-6);
-  const auto count = static_cast<Index>(kFinestTurns / kTurnStep);
-  MatrixXd points(typical.size(), 2 * count);
-  const SearchParameter& length = searched[static_cast<std::size_t>(wavelength)];
-  const SearchParameter& angle = searched[static_cast<std::size_t>(phase)];
-  for (Index i = 0; i < count; ++i) {
-    const double turns = kTurnStep * static_cast<double>(i + 1);
-    for (Index quarter = 0; quarter < 2; ++quarter) {
-      VectorXd point = typical;
-      point[wavelength] = std::clamp(length.search(range_m / turns), length.lower, length.upper);
-      point[phase] = angle.search(kHalfPi * static_cast<double>(quarter));
-      points.col(2 * i + quarter) = point;
-    }
-  }
-  return points;
-}
-
 }  // namespace
 
 MatrixXd trial_sizes(const std::vector<SearchParameter>& searched,
                      const matching::Evidence& evidence) {
   const Span span = span_of(evidence);
   const VectorXd typical = typical_point(searched, span);
-  const Index wavelength = index_of(searched, ".wavelength_m");
-  const Index phase = index_of(searched, ".phase_rad");
-  if (wavelength >= 0 && phase >= 0) return periodic(searched, typical, span, wavelength, phase);
   const bool both_signs = searched.front().lower < 0.0;
   MatrixXd points(typical.size(), kSizes);
   for (Index k = 0; k < kSizes; ++k) {
@@ -100,8 +83,51 @@ MatrixXd trial_sizes(const std::vector<SearchParameter>& searched,
   return points;
 }
 
-VectorXd neutral_point(const std::vector<SearchParameter>& searched) {
-  return VectorXd::Zero(static_cast<Index>(searched.size()));
+bool is_periodic(const std::vector<SearchParameter>& searched) {
+  return index_of(searched, ".wavelength_m") >= 0 && index_of(searched, ".phase_rad") >= 0;
+}
+
+MatrixXd wavelengths(const std::vector<SearchParameter>& searched,
+                     const matching::Evidence& evidence) {
+  const Span span = span_of(evidence);
+  const VectorXd typical = typical_point(searched, span);
+  const Index wavelength = index_of(searched, ".wavelength_m");
+  const Index phase = index_of(searched, ".phase_rad");
+  const double range_m = std::max(span.most_m - span.least_m, 1e-6);
+  const auto count = static_cast<Index>((kFinestTurns - kFewestTurns) / kTurnStep) + 1;
+  MatrixXd points(typical.size(), 2 * count);
+  const SearchParameter& length = searched[static_cast<std::size_t>(wavelength)];
+  const SearchParameter& angle = searched[static_cast<std::size_t>(phase)];
+  for (Index i = 0; i < count; ++i) {
+    const double turns = kFewestTurns + kTurnStep * static_cast<double>(i);
+    for (Index quarter = 0; quarter < 2; ++quarter) {
+      VectorXd point = typical;
+      point[wavelength] = std::clamp(length.search(range_m / turns), length.lower, length.upper);
+      point[phase] = angle.search(kHalfPi * static_cast<double>(quarter));
+      points.col(2 * i + quarter) = point;
+    }
+  }
+  return points;
+}
+
+void hold_wavelength(const plant_sim::EffectInfo& effect, const VectorXd& own,
+                     std::span<SearchParameter> searched) {
+  double wavelength_m = 0.0;
+  for (std::size_t i = 0; i < searched.size(); ++i) {
+    SearchParameter& p = searched[i];
+    if (!ends_with(p.name, ".wavelength_m")) continue;
+    const double s = own[static_cast<Index>(i)];
+    wavelength_m = p.value(s);
+    p.lower = std::max(p.lower, s / kNeighbourhood);
+    p.upper = std::min(p.upper, s * kNeighbourhood);
+  }
+  const bool of_sensor =
+      std::find(effect.sites.begin(), effect.sites.end(), "sensor") != effect.sites.end();
+  if (of_sensor && wavelength_m > 0.0) {
+    SearchParameter& size = searched.front();
+    const double most = size.search(kSteepestReading * wavelength_m / (4.0 * kHalfPi));
+    size.upper = std::min(size.upper, most);
+  }
 }
 
 bool scale_size(const std::vector<SearchParameter>& searched, double share,

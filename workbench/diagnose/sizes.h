@@ -2,22 +2,30 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
+#include "plant_sim/library.h"
 #include "workbench/matching/evidence.h"
 #include "workbench/matching/search_parameter.h"
 
 namespace workbench::diagnose {
 
 /// One column of search values each (searched.size() rows). The first parameter takes sizes over
-/// decades, with both signs where it may have them; those in the same unit go along with it;
-/// wavelengths are scanned over what the motion can resolve, with two phases; rest positions lie
-/// where the motion is.
+/// decades, with both signs where it may have them; those in the same unit go along with it; rest
+/// positions lie where the motion is.
 [[nodiscard]] Eigen::MatrixXd trial_sizes(const std::vector<matching::SearchParameter>& searched,
                                           const matching::Evidence& evidence);
 
-/// Search values at which the effect is absent.
-[[nodiscard]] Eigen::VectorXd neutral_point(const std::vector<matching::SearchParameter>& searched);
+/// Whether the effect has a wavelength and a phase.
+[[nodiscard]] bool is_periodic(const std::vector<matching::SearchParameter>& searched);
+/// Of a periodic effect: every wavelength that the motion can resolve, with two phases.
+[[nodiscard]] Eigen::MatrixXd wavelengths(const std::vector<matching::SearchParameter>& searched,
+                                          const matching::Evidence& evidence);
+/// Keeps a search within the neighbourhood of the wavelength at `own`, and the reading of a sensor
+/// from going back while the rod goes on.
+void hold_wavelength(const plant_sim::EffectInfo& effect, const Eigen::VectorXd& own,
+                     std::span<matching::SearchParameter> searched);
 
 /// Scales the effect's size by `share`, within its bounds; a negative share of a size that cannot
 /// be negative turns a periodic effect by half a period. False where that is not possible: the size

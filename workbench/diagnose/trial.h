@@ -7,6 +7,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -32,11 +33,12 @@ struct Glance {
   std::vector<Eigen::VectorXd> starts;              ///< where to begin, the most promising first
 };
 
-/// `bases`: search values of the stage's parameters to look from, the stage's own first. A single
-/// start misses effects that the fit of the stage has bent its parameters to follow.
-[[nodiscard]] Glance glance(const Workshop& shop, const Stage& stage,
-                            const std::vector<Eigen::VectorXd>& bases,
-                            const plant_sim::EffectInfo& effect);
+/// A quick look at each effect, the most promising first. It looks from the stage's own parameters
+/// and from the model file's: a single start misses effects that the fit of the stage has bent its
+/// parameters to follow. `looked` is called after each, from any thread; it may be empty.
+[[nodiscard]] std::vector<Glance> glances_at(
+    const Workshop& shop, const Stage& stage, const std::vector<plant_sim::EffectInfo>& effects,
+    const std::function<void(const std::string&)>& looked = {});
 
 struct Trial {
   std::string effect;

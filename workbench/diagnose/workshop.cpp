@@ -24,7 +24,7 @@ std::vector<EffectInfo> absent_effects(const ModelFile& model) {
     return false;
   };
   std::vector<EffectInfo> absent;
-  for (const EffectInfo& effect : plant_sim::effect_library()) {
+  for (const EffectInfo& effect : plant_sim::effects_of(model)) {
     if (fits(effect) && !acts(effect)) absent.push_back(effect);
   }
   return absent;

@@ -20,6 +20,7 @@ struct Progress {
   int of = 0;
   std::string best;  ///< the leading effect so far, may be empty
   double best_rms_m = 0.0;
+  std::vector<std::string> expected;  ///< the quick look's ranking, once it is known
 };
 
 struct Workshop {

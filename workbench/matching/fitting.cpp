@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "estimator/nonlinear/covariance.h"
 #include "estimator/nonlinear/minimize.h"
+#include "workbench/matching/wide_run.h"
 
 namespace workbench::matching {
 namespace {
@@ -13,8 +15,9 @@ constexpr double kDifference = 1e-3;  ///< step of the difference quotients, in 
 constexpr int kPasses = 3;
 constexpr double kSameSigma = 1.2;
 
-estimator::nonlinear::Problem problem_of(EvidenceRun& run, const Evidence& evidence,
-                                         const Eigen::VectorXd& weights,
+}  // namespace
+
+estimator::nonlinear::Problem problem_of(const Evidence& evidence, const Eigen::VectorXd& weights,
                                          const std::vector<SearchParameter>& searched) {
   estimator::nonlinear::Problem problem;
   problem.residuals = evidence.size();
@@ -30,13 +33,8 @@ estimator::nonlinear::Problem problem_of(EvidenceRun& run, const Evidence& evide
     unknown.prior_sd = p.prior_sd;
     problem.unknowns.push_back(unknown);
   }
-  problem.evaluate = [&run](const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals_m) {
-    run.residuals(points, residuals_m);
-  };
   return problem;
 }
-
-}  // namespace
 
 EvidenceRun::EvidenceRun(const plant_sim::ModelFile& model, const Evidence& evidence,
                          const std::vector<SearchParameter>& searched, double observer_per_s) {
@@ -95,8 +93,10 @@ double correlation_factor(const Eigen::VectorXd& residual_m, const Eigen::Vector
 Fitted fit(const plant_sim::ModelFile& model, const Evidence& evidence,
            const Eigen::VectorXd& weights, const std::vector<SearchParameter>& searched,
            const Eigen::VectorXd& start, const FitOptions& options) {
-  EvidenceRun run(model, evidence, searched, options.observer_per_s);
-  estimator::nonlinear::Problem problem = problem_of(run, evidence, weights, searched);
+  WideRun run(model, evidence, searched, options.observer_per_s, options.threads);
+  estimator::nonlinear::Problem problem = problem_of(evidence, weights, searched);
+  problem.evaluate = run.evaluate();
+  problem.lanes = run.lanes();
   estimator::nonlinear::Options how;
   how.cost_tolerance = options.tolerance;
   how.renew_all = false;
@@ -109,8 +109,13 @@ Fitted fit(const plant_sim::ModelFile& model, const Evidence& evidence,
     const auto k = static_cast<Eigen::Index>(i);
     x[k] = std::clamp(x[k], searched[i].lower, searched[i].upper);
   }
-  run.residuals(x, first_m);
-  how.start_residual = first_m.col(0);
+  if (options.start_residual_m.size() > 0) {
+    how.start_residual = options.start_residual_m;
+    how.start_jacobian = options.start_jacobian;
+  } else {
+    run.residuals(x, first_m);
+    how.start_residual = first_m.col(0);
+  }
   const auto sigma_of = [&](const Eigen::VectorXd& residual_m) {
     return std::max(evidence.noise_floor_m, rms(residual_m, weights)) *
            std::sqrt(correlation_factor(residual_m, weights));
@@ -148,6 +153,18 @@ Fitted fit(const plant_sim::ModelFile& model, const Evidence& evidence,
   result.fit_rms_m = rms(result.residual_m, weights);
   result.score_rms_m = rms(result.residual_m, evidence.scores);
   return result;
+}
+
+Eigen::VectorXd std_errors(const Evidence& evidence, const Eigen::VectorXd& weights,
+                           const Fitted& fitted) {
+  estimator::nonlinear::Problem problem = problem_of(evidence, weights, fitted.searched);
+  problem.sigma = fitted.sigma_m;
+  estimator::nonlinear::Solution solution;
+  solution.x = fitted.x;
+  solution.residual = fitted.residual_m;
+  solution.jacobian = fitted.jacobian;
+  solution.at_bound = fitted.at_bound;
+  return estimator::nonlinear::covariance(problem, solution).std_error;
 }
 
 plant_sim::ModelFile with_values(plant_sim::ModelFile model, const Fitted& fitted) {

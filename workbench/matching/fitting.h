@@ -11,6 +11,7 @@
 #include <functional>
 #include <vector>
 
+#include "estimator/nonlinear/problem.h"
 #include "plant_sim/model_file.h"
 #include "workbench/matching/evidence.h"
 #include "workbench/matching/model_run.h"
@@ -42,6 +43,10 @@ struct FitOptions {
   bool final_jacobian = true;  ///< false: Fitted::jacobian may be stale in some columns
   double observer_per_s = kObserver_per_s;
   std::function<bool()> cancel;  ///< true ends the search, keeping the best so far
+  unsigned threads = 1;          ///< that simulate side by side within this fit
+  // Of the start, where known already; otherwise empty.
+  Eigen::VectorXd start_residual_m;
+  Eigen::MatrixXd start_jacobian;
 };
 
 struct Fitted {
@@ -60,11 +65,21 @@ struct Fitted {
   [[nodiscard]] double value(std::string_view name) const;
 };
 
+/// What fit() minimises; `evaluate`, `lanes` and `sigma` are left to the caller.
+[[nodiscard]] estimator::nonlinear::Problem problem_of(
+    const Evidence& evidence, const Eigen::VectorXd& weights,
+    const std::vector<SearchParameter>& searched);
+
 /// Weights: which samples count in the fit (Evidence::fits, or counts for the final values).
 [[nodiscard]] Fitted fit(const plant_sim::ModelFile& model, const Evidence& evidence,
                          const Eigen::VectorXd& weights,
                          const std::vector<SearchParameter>& searched, const Eigen::VectorXd& start,
                          const FitOptions& options = {});
+
+/// Standard error of each search value, honest for residuals of any colour; NaN at a bound,
+/// infinite where neither record nor prior sees it. `weights` as in the fit.
+[[nodiscard]] Eigen::VectorXd std_errors(const Evidence& evidence, const Eigen::VectorXd& weights,
+                                         const Fitted& fitted);
 
 /// (1 + rho) / (1 - rho) with the residual's correlation rho from one sample to the next, within
 /// 1 to 100.

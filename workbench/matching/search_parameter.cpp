@@ -91,12 +91,16 @@ std::vector<SearchParameter> effect_parameters(const plant_sim::EffectInfo& effe
 
 std::vector<SearchParameter> present_parameters(const plant_sim::ModelFile& model) {
   std::vector<SearchParameter> found;
-  for (const plant_sim::ModelFile::Effect& effect : model.effects) {
-    const plant_sim::EffectInfo* info = effect.present ? plant_sim::find_effect(effect.name) : nullptr;
-    if (info == nullptr) continue;
-    const std::vector<SearchParameter> all = effect_parameters(*info, kEveryRefinement);
+  plant_sim::ModelFile copy = model;
+  for (const plant_sim::EffectInfo& info : plant_sim::effects_of(model)) {
+    const auto named = [&](const auto& effect) {
+      return effect.present && effect.name == info.name;
+    };
+    if (std::none_of(model.effects.begin(), model.effects.end(), named)) continue;
+    const std::vector<SearchParameter> all = effect_parameters(info, kEveryRefinement);
     for (std::size_t i = 0; i < all.size(); ++i) {
-      if (effect.parameters[i].value != info->parameters[i].neutral) found.push_back(all[i]);
+      const double* value = copy.value(all[i].name);
+      if (value != nullptr && *value != info.parameters[i].neutral) found.push_back(all[i]);
     }
   }
   return found;

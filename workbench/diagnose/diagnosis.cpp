@@ -1,0 +1,109 @@
+#include "workbench/diagnose/diagnosis.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "workbench/diagnose/advice.h"
+#include "workbench/diagnose/excitation.h"
+#include "workbench/diagnose/localise.h"
+#include "workbench/diagnose/rivals.h"
+#include "workbench/diagnose/selection.h"
+
+namespace workbench::diagnose {
+namespace {
+
+/// The better model's parameters on all samples, with what the record says of each.
+void settle(const Workshop& shop, Diagnosis& result) {
+  const Stage& stage = result.ladder.final;
+  const Selection all = select(stage.fitted, [](const auto&) { return true; });
+  result.final = shop.cancelled() ? stage.fitted : refit(shop, all, shop.evidence.counts);
+  result.better = matching::with_values(shop.model, result.final);
+  const Eigen::VectorXd errors =
+      matching::std_errors(shop.evidence, shop.evidence.counts, result.final);
+  for (std::size_t i = 0; i < result.final.searched.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const matching::SearchParameter& p = result.final.searched[i];
+    const bool at_bound = result.final.at_bound[i] != 0;
+    const double error = at_bound ? std::nan("") : errors[k] * p.slope(result.final.x[k]);
+    result.parameters.push_back({p.name, p.value(result.final.x[k]), error, at_bound});
+  }
+}
+
+void list_steps(Diagnosis& result) {
+  for (const Stage& stage : result.ladder.way) {
+    result.steps.push_back(
+        {stage.added.empty() ? "" : stage.added.back(), stage.fitted.score_rms_m});
+  }
+}
+
+/// Groups that a motion could separate make the verdict undetermined; others are the same equation.
+void weigh_rivals(const Workshop& shop, Diagnosis& result) {
+  for (const Rivalry& rivalry : rivalries(shop, result.ladder)) {
+    std::vector<std::string> group{rivalry.found};
+    group.insert(group.end(), rivalry.others.begin(), rivalry.others.end());
+    const Advice advice = advise(shop, rivalry.explanations, group);
+    if (!result.advice.empty()) result.advice += " ";
+    result.advice += advice.words;
+    (advice.separates ? result.ambiguous : result.same_here).push_back(std::move(group));
+  }
+}
+
+}  // namespace
+
+const char* text(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::nothing_missing:
+      return "nothing_missing";
+    case Verdict::missing:
+      return "missing";
+    case Verdict::undetermined:
+      return "undetermined";
+    case Verdict::unexplained:
+      return "unexplained";
+    case Verdict::not_excited:
+      break;
+  }
+  return "not_excited";
+}
+
+Diagnosis diagnose(const Workshop& shop) {
+  const auto begin = std::chrono::steady_clock::now();
+  Diagnosis result;
+  result.noise_floor_m = shop.evidence.noise_floor_m;
+  for (const matching::Measured& record : shop.evidence.records) {
+    for (const std::string& note : record.notes) result.notes.push_back(record.name + ": " + note);
+  }
+  const Excitation excitation = excitation_of(shop.evidence);
+  if (!excitation.enough) {
+    result.verdict = Verdict::not_excited;
+    result.notes.push_back(excitation.why);
+    result.advice = advice_to_excite(shop);
+    result.better = shop.model;
+    return result;
+  }
+  result.ladder = climb(shop);
+  const Stage& final = result.ladder.final;
+  result.nominal_rms_m = result.ladder.nominal_rms_m;
+  list_steps(result);
+  result.rms_before_m = result.steps.front().score_rms_m;
+  result.rms_after_m = final.fitted.score_rms_m;
+  result.missing = final.added;
+  settle(shop, result);
+  if (final.fitted.score_rms_m > kUnexplained * result.noise_floor_m) {
+    result.verdict = Verdict::unexplained;
+    result.where = localise(shop, final);
+    result.advice = advice_for_unexplained(result.where);
+  } else {
+    weigh_rivals(shop, result);
+    result.verdict = final.added.empty()        ? Verdict::nothing_missing
+                     : result.ambiguous.empty() ? Verdict::missing
+                                                : Verdict::undetermined;
+  }
+  if (result.ladder.interrupted) result.notes.emplace_back("interrupted: the best so far");
+  result.runtime_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return result;
+}
+
+}  // namespace workbench::diagnose

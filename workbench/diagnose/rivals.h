@@ -1,0 +1,22 @@
+// Which other effects explain the record about as well as those that were found.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "workbench/diagnose/ladder.h"
+
+namespace workbench::diagnose {
+
+/// One of the found effects, and the fits in which another effect stands in its place.
+struct Rivalry {
+  std::string found;
+  std::vector<std::string> others;             ///< best first
+  std::vector<matching::Fitted> explanations;  ///< with `found`, then one for each of the others
+};
+
+/// Empty when every found effect stands alone. Effects that contain a found one as a special case
+/// (a spring so long that it is a constant force) are no rivals.
+[[nodiscard]] std::vector<Rivalry> rivalries(const Workshop& shop, const Ladder& ladder);
+
+}  // namespace workbench::diagnose

@@ -1,0 +1,44 @@
+// Some of a fitted model's parameters, to be fitted again without the others.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "workbench/diagnose/workshop.h"
+#include "workbench/matching/fitting.h"
+
+namespace workbench::diagnose {
+
+struct Selection {
+  std::vector<matching::SearchParameter> searched;
+  Eigen::VectorXd start;
+};
+
+[[nodiscard]] inline bool belongs(const matching::SearchParameter& parameter,
+                                  const std::string& effect) {
+  return parameter.name.rfind(effect + ".", 0) == 0;
+}
+
+/// The parameters for which keep(parameter) holds, starting where they are.
+template <class Keep>
+[[nodiscard]] Selection select(const matching::Fitted& fitted, const Keep& keep) {
+  Selection result;
+  std::vector<double> values;
+  for (std::size_t i = 0; i < fitted.searched.size(); ++i) {
+    if (!keep(fitted.searched[i])) continue;
+    result.searched.push_back(fitted.searched[i]);
+    values.push_back(fitted.x[static_cast<Eigen::Index>(i)]);
+  }
+  result.start =
+      Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  return result;
+}
+
+void append(Selection& to, const Selection& more);
+
+/// Fitted to the end on the samples that `weights` counts.
+[[nodiscard]] matching::Fitted refit(const Workshop& shop, const Selection& selection,
+                                     const Eigen::VectorXd& weights);
+
+}  // namespace workbench::diagnose

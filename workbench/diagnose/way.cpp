@@ -1,0 +1,45 @@
+#include "workbench/diagnose/way.h"
+
+#include <algorithm>
+
+#include "workbench/diagnose/parallel.h"
+#include "workbench/diagnose/selection.h"
+
+namespace workbench::diagnose {
+namespace {
+
+/// `before` with one effect more, which starts as it is in the final model.
+Stage taking(const Workshop& shop, const Stage& before, const Stage& final,
+             const std::string& effect) {
+  Selection selection = select(before.fitted, [](const auto&) { return true; });
+  append(selection, select(final.fitted, [&](const auto& p) { return belongs(p, effect); }));
+  Stage next = before;
+  next.added.push_back(effect);
+  next.fitted = refit(shop, selection, shop.evidence.fits);
+  return next;
+}
+
+}  // namespace
+
+std::vector<Stage> way_to(const Workshop& shop, const Stage& first, const Stage& final) {
+  std::vector<Stage> way{first};
+  std::vector<std::string> remaining = final.added;
+  while (remaining.size() > 1 && !shop.cancelled()) {
+    std::vector<Stage> next(remaining.size());
+    in_parallel(remaining.size(), shop.threads,
+                [&](std::size_t i) { next[i] = taking(shop, way.back(), final, remaining[i]); });
+    const auto best = std::min_element(next.begin(), next.end(), [](const auto& a, const auto& b) {
+      return a.fitted.score_rms_m < b.fitted.score_rms_m;
+    });
+    std::erase(remaining, best->added.back());
+    way.push_back(std::move(*best));
+  }
+  if (remaining.empty()) return way;
+  Stage last = final;
+  last.added = way.back().added;
+  last.added.insert(last.added.end(), remaining.begin(), remaining.end());
+  way.push_back(std::move(last));
+  return way;
+}
+
+}  // namespace workbench::diagnose

@@ -1,0 +1,16 @@
+// The way from the model as given to the final one, one effect at a time: at each step the one that
+// brings most on top of those before it.
+#pragma once
+
+#include <vector>
+
+#include "workbench/diagnose/trial.h"
+
+namespace workbench::diagnose {
+
+/// Stages from `first` (nothing added) to `final`, both included; `added` is in the order of the
+/// way in all of them.
+[[nodiscard]] std::vector<Stage> way_to(const Workshop& shop, const Stage& first,
+                                        const Stage& final);
+
+}  // namespace workbench::diagnose
