@@ -1,0 +1,141 @@
+#include "workbench/diagnose/advice.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "tests/workbench/diagnose/truth_records.h"
+#include "workbench/diagnose/advice_words.h"
+
+namespace workbench::diagnose {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+/// The model with one effect added, fitted to the shop's record.
+matching::Fitted fitted_with(const Workshop& shop, const std::string& effect) {
+  std::vector<matching::SearchParameter> searched = shop.standing;
+  const auto own = matching::effect_parameters(*plant_sim::find_effect(effect), 0);
+  searched.insert(searched.end(), own.begin(), own.end());
+  matching::Fitted best;
+  for (const double size : {-1.0, 1.0}) {
+    Eigen::VectorXd start = matching::start_of(shop.model, searched);
+    start[start.size() - 1] = size;
+    matching::Fitted fitted =
+        matching::fit(shop.model, shop.evidence, shop.evidence.fits, searched, start);
+    if (best.x.size() == 0 || fitted.fit_rms_m < best.fit_rms_m) best = std::move(fitted);
+  }
+  return best;
+}
+
+class SineWithAsymmetricFlow : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    of_ = new truth::Case(truth::parse_case("motion=sine,flow_asymmetry.asymmetry_ratio=0.0135", 5));
+    shop_ = new Workshop(diagnose_test::shop_with(diagnose_test::measured(truth::simulate(*of_))));
+    rivals_ = new std::vector<matching::Fitted>{fitted_with(*shop_, "flow_asymmetry"),
+                                                fitted_with(*shop_, "load_force")};
+    advice_ = new Advice(advise(*shop_, *rivals_, {"flow_asymmetry", "load_force"}));
+  }
+  static void TearDownTestSuite() {
+    delete advice_;
+    delete rivals_;
+    delete shop_;
+    delete of_;
+  }
+  static truth::Case* of_;
+  static Workshop* shop_;
+  static std::vector<matching::Fitted>* rivals_;
+  static Advice* advice_;
+};
+truth::Case* SineWithAsymmetricFlow::of_ = nullptr;
+Workshop* SineWithAsymmetricFlow::shop_ = nullptr;
+std::vector<matching::Fitted>* SineWithAsymmetricFlow::rivals_ = nullptr;
+Advice* SineWithAsymmetricFlow::advice_ = nullptr;
+
+TEST_F(SineWithAsymmetricFlow, IsExplainedAsWellByALoad) {
+  EXPECT_LT((*rivals_)[1].score_rms_m, 1.05 * (*rivals_)[0].score_rms_m);
+}
+
+TEST_F(SineWithAsymmetricFlow, GetsAMotionNamedInWordsWithNumbers) {
+  EXPECT_TRUE(advice_->separates);
+  EXPECT_GE(advice_->separation, kSeparates);
+  EXPECT_THAT(advice_->words,
+              AllOf(StartsWith("Run "), HasSubstr(advice_->motion.words), HasSubstr(" mm of "),
+                    HasSubstr("flow_asymmetry and load_force"), HasSubstr("times the noise")));
+}
+
+TEST_F(SineWithAsymmetricFlow, IsResolvedByTheAdvisedMotionOnTheTrueRig) {
+  const Workshop again = diagnose_test::shop_with(diagnose_test::measured(
+      diagnose_test::run(*of_, advice_->motion.reference, advice_->motion.duration_s)));
+  const matching::Fitted right = fitted_with(again, "flow_asymmetry");
+  const matching::Fitted wrong = fitted_with(again, "load_force");
+  EXPECT_LT(right.score_rms_m, 1.1 * again.evidence.noise_floor_m);
+  EXPECT_GT(wrong.score_rms_m, 1.15 * right.score_rms_m);
+}
+
+TEST_F(SineWithAsymmetricFlow, IsAskedForASensorWhereTwoExplanationsAreOneEquation) {
+  const Advice advice = advise(*shop_, {(*rivals_)[0], (*rivals_)[0]}, {"load_force", "friction"});
+  EXPECT_FALSE(advice.separates);
+  EXPECT_THAT(advice.words, AllOf(HasSubstr("load_force and friction"), HasSubstr("load cell"),
+                                  Not(HasSubstr("Run "))));
+}
+
+TEST_F(SineWithAsymmetricFlow, LeavesTheStrokeToEveryMotionTried) {
+  for (const TestMotion& motion : test_motions(*shop_)) {
+    EXPECT_GT(motion.reference.centre_m - motion.reference.amplitude_m, 0.0);
+    EXPECT_LT(motion.reference.centre_m + motion.reference.amplitude_m, 0.61);
+    EXPECT_LE(motion.reference.amplitude_m, 0.07);
+    EXPECT_TRUE(simulated(*shop_, shop_->model, motion, 1).has_value()) << motion.words;
+  }
+}
+
+TEST(AdviceToExcite, NamesAMotionAboutTheMiddleOfTheStrokeForARodAtRest) {
+  config::record::Record record;
+  record.name = "rest";
+  record.sample_time_s = 0.005;
+  for (int k = 0; k < 1000; ++k) {
+    record.t_s.push_back(0.005 * k);
+    record.u_V.push_back(0.0);
+    record.y_m.push_back(0.1 + 5e-6 * ((k * k / 7) % 3));
+  }
+  const Workshop shop = diagnose_test::shop_with(matching::measured(record));
+  EXPECT_THAT(advice_to_excite(shop), AllOf(HasSubstr("multisine"), HasSubstr("of 305 mm")));
+}
+
+TEST(AdviceForUnexplained, NamesVariableSensorAndFormula) {
+  EXPECT_THAT(
+      advice_for_unexplained({{"force", "speed", 0.97}, {"force", "v", 0.96}}),
+      AllOf(HasSubstr("with the speed"), HasSubstr("like a force"), HasSubstr("97 %"),
+            HasSubstr("chamber pressures"), HasSubstr("v_mps"), HasSubstr("site = \"force\"")));
+}
+
+TEST(AdviceForUnexplained, OffersNoFormulaForWhatGoesWithTime) {
+  EXPECT_THAT(
+      advice_for_unexplained({{"gain", "time", 0.8}}),
+      AllOf(HasSubstr("with time"), HasSubstr("supply pressure"), Not(HasSubstr("formula"))));
+}
+
+TEST(AdviceForUnexplained, StillSaysWhatToRecordWhenNothingWasFound) {
+  EXPECT_THAT(advice_for_unexplained({}), HasSubstr("chamber pressures"));
+}
+
+TEST(MotionWords, TellKindNumbersPlaceAndLength) {
+  monitor::control::ReferenceConfig reference;
+  reference.kind = "multisine";
+  reference.amplitude_m = 0.04;
+  EXPECT_EQ(motion_words(reference, 30.0),
+            "a multisine of 0.1 to 1.9 Hz within 40 mm of 305 mm for 30 s");
+  reference.kind = "steps";
+  EXPECT_THAT(motion_words(reference, 30.0), StartsWith("fast steps every 1 s, each over 0.2 s"));
+  reference.kind = "prbs";
+  EXPECT_THAT(motion_words(reference, 30.0), StartsWith("a random binary motion"));
+  reference.kind = "chirp";
+  EXPECT_THAT(motion_words(reference, 30.0), StartsWith("a chirp from 0.5 to 5 Hz"));
+}
+
+}  // namespace
+}  // namespace workbench::diagnose

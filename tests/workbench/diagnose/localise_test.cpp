@@ -1,0 +1,150 @@
+#include "workbench/diagnose/localise.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "tests/workbench/diagnose/truth_records.h"
+#include "workbench/diagnose/ladder.h"
+#include "workbench/diagnose/variables.h"
+
+namespace workbench::diagnose {
+namespace {
+
+using testing::AnyOf;
+using testing::IsEmpty;
+
+std::vector<Where> where_of(const std::string& spec) {
+  const Workshop shop = diagnose_test::shop_of(spec);
+  return localise(shop, first_stage(shop));
+}
+
+/// A servo y' = rate(u, y, t) in steps of 5 us, on random levels of the command that pull back to
+/// 0.3 m; its reading may be anything of y and t.
+Workshop servo_shop(const std::function<double(double, double, double)>& rate_mps,
+                    const std::function<double(double, double)>& reading_m) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise_m(0.0, 2e-6);
+  std::uniform_real_distribution<double> level(-1.0, 1.0);
+  config::record::Record record;
+  record.name = "servo";
+  record.sample_time_s = 0.005;
+  double y_m = 0.3;
+  double step_V = 0.0;
+  for (int k = 0; k < 4000; ++k) {
+    const double t_s = 0.005 * k;
+    if (k % 30 == 0) step_V = 1.5 * level(random) - 8.0 * (y_m - 0.3);
+    record.t_s.push_back(t_s);
+    record.u_V.push_back(step_V);
+    record.y_m.push_back(5e-6 * std::round((reading_m(y_m, t_s) + noise_m(random)) / 5e-6));
+    for (int i = 0; i < 50; ++i) y_m += 1e-4 * rate_mps(step_V, y_m, t_s + 1e-4 * i);
+  }
+  plant_sim::ModelFile model = plant_sim::load_model(std::string(SPOOLWATCH_SOURCE_DIR) +
+                                                     "/config/models/velocity_servo.toml");
+  *model.value("time_constant_s") = 0.0;
+  return workshop(model, matching::evidence({matching::measured(record)}, {}));
+}
+
+double plain(double y_m, double /*t_s*/) { return y_m; }
+
+TEST(Localise, NamesSpeedAndForceForADragWithTheCubeOfTheSpeed) {
+  const auto where = where_of("motion=multisine,left_out=cubic_damping,left_out.size=2.5e5");
+  ASSERT_GE(where.size(), 2U);
+  EXPECT_EQ(where[0].enters, "force");
+  EXPECT_THAT(where[0].variable, AnyOf("speed", "v"));
+  EXPECT_GT(where[0].explained_ratio, 0.9);
+}
+
+TEST(Localise, NamesPositionAndForceForAStiffeningSpring) {
+  const auto where = where_of("motion=fast_steps,left_out=stiffening_spring,left_out.size=5e6");
+  ASSERT_FALSE(where.empty());
+  EXPECT_EQ(where[0].enters, "force");
+  EXPECT_EQ(where[0].variable, "y");
+  EXPECT_GT(where[0].explained_ratio, 0.9);
+}
+
+TEST(Localise, NamesAccelerationForAMountThatYields) {
+  const auto where = where_of("motion=multisine,left_out=mount_compliance,left_out.size=2e-5");
+  ASSERT_GE(where.size(), 2U);
+  EXPECT_EQ(where[0].enters, "measurement");
+  EXPECT_TRUE(where[0].variable == "acceleration" || where[1].variable == "acceleration");
+}
+
+TEST(Localise, NamesTimeAndFlowForANullThatWanders) {
+  const auto where = where_of("motion=chirp,left_out=null_drift,left_out.size=0.05");
+  ASSERT_FALSE(where.empty());
+  EXPECT_EQ(where[0].enters, "flow");
+  EXPECT_EQ(where[0].variable, "time");
+}
+
+TEST(Localise, NamesTheCommandForAValveThatOpensTwiceAsFastAboutItsMiddle) {
+  const auto where = where_of("motion=fast_steps,left_out=underlap,left_out.size=0.12");
+  ASSERT_GE(where.size(), 2U);
+  EXPECT_THAT(where[0].enters, AnyOf("flow", "gain"));
+  EXPECT_TRUE(where[0].variable == "u" || where[1].variable == "u");
+}
+
+TEST(Localise, NamesTimeForALoadThatIsSetDownInTheMiddle) {
+  const auto where =
+      where_of("motion=chirp,left_out=load_step,left_out.size=300,left_out.where=15.3");
+  ASSERT_GE(where.size(), 2U);
+  EXPECT_TRUE(where[0].variable == "time" || where[1].variable == "time");
+}
+
+TEST(Localise, NamesTimeAndGainForAServoThatGrowsSlower) {
+  const Workshop shop = servo_shop(
+      [](double u_V, double, double t_s) { return 0.05 * u_V * (1.0 - 0.01 * t_s); }, plain);
+  const auto where = localise(shop, first_stage(shop));
+  ASSERT_FALSE(where.empty());
+  EXPECT_EQ(where[0].enters, "gain");
+  EXPECT_EQ(where[0].variable, "time");
+  EXPECT_GT(where[0].explained_ratio, 0.9);
+}
+
+TEST(Localise, NamesPositionAndMeasurementForASensorWithADent) {
+  const Workshop shop = servo_shop(
+      [](double u_V, double, double) { return 0.05 * u_V; },
+      [](double y_m, double) { return y_m + 2e-4 * std::exp(-std::pow((y_m - 0.3) / 0.02, 2)); });
+  const auto where = localise(shop, first_stage(shop));
+  ASSERT_FALSE(where.empty());
+  EXPECT_EQ(where[0].enters, "measurement");
+  EXPECT_EQ(where[0].variable, "y");
+}
+
+TEST(Localise, LeavesForcesOutForAPlantThatHasNone) {
+  const Workshop shop = servo_shop(
+      [](double u_V, double, double t_s) { return 0.05 * u_V + 1e-3 * std::sin(t_s); }, plain);
+  for (const Where& where : localise(shop, first_stage(shop))) EXPECT_NE(where.enters, "force");
+}
+
+TEST(Localise, FindsNothingInNoise) {
+  const Workshop shop = servo_shop([](double u_V, double, double) { return 0.05 * u_V; }, plain);
+  for (const Where& where : localise(shop, first_stage(shop))) {
+    EXPECT_LT(where.explained_ratio, 0.05) << where.enters << " " << where.variable;
+  }
+}
+
+TEST(Localise, SaysNothingOnceItIsCancelled) {
+  Workshop shop = servo_shop([](double u_V, double, double) { return 0.05 * u_V; }, plain);
+  const Stage stage = first_stage(shop);
+  shop.cancel = [] { return true; };
+  EXPECT_THAT(localise(shop, stage), IsEmpty());
+}
+
+TEST(Pieces, AddUpToOneAndEachIsOneAtItsOwnKnot) {
+  const Eigen::VectorXd values = Eigen::VectorXd::LinSpaced(1001, -2.0, 5.0);
+  const Eigen::MatrixXd pieces = pieces_of(values, Eigen::VectorXd::Ones(1001));
+  ASSERT_EQ(pieces.cols(), kKnots);
+  EXPECT_LT((pieces.rowwise().sum().array() - 1.0).abs().maxCoeff(), 1e-12);
+  EXPECT_GE(pieces.minCoeff(), 0.0);
+  for (Eigen::Index i = 0; i < pieces.cols(); ++i) EXPECT_GT(pieces.col(i).maxCoeff(), 0.99);
+}
+
+TEST(Pieces, AreNoneForAVariableThatStandsStill) {
+  EXPECT_EQ(pieces_of(Eigen::VectorXd::Constant(50, 3.0), Eigen::VectorXd::Ones(50)).cols(), 0);
+}
+
+}  // namespace
+}  // namespace workbench::diagnose

@@ -1,0 +1,181 @@
+#include "workbench/diagnose/advice_words.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "plant_sim/library.h"
+
+namespace workbench::diagnose {
+namespace {
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+std::string listed(const std::vector<std::string>& names, const char* last) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) text += i + 1 == names.size() ? last : ", ";
+    text += names[i];
+  }
+  return text;
+}
+
+/// Whether all of them act at one of the sites.
+bool all_at(const plant_sim::ModelFile& model, const std::vector<std::string>& names,
+            std::initializer_list<const char*> sites) {
+  const std::vector<plant_sim::EffectInfo> effects = plant_sim::effects_of(model);
+  return std::all_of(names.begin(), names.end(), [&](const std::string& name) {
+    return std::any_of(effects.begin(), effects.end(), [&](const plant_sim::EffectInfo& effect) {
+      return effect.name == name &&
+             std::any_of(effect.sites.begin(), effect.sites.end(), [&](const std::string& site) {
+               return std::find(sites.begin(), sites.end(), site) != sites.end();
+             });
+    });
+  });
+}
+
+bool any_at(const plant_sim::ModelFile& model, const std::vector<std::string>& names,
+            const char* site) {
+  return std::any_of(names.begin(), names.end(),
+                     [&](const std::string& name) { return all_at(model, {name}, {site}); });
+}
+
+struct Word {
+  const char* key;
+  const char* words;
+};
+
+constexpr std::array kVariables{
+    Word{"y", "with the position"},
+    Word{"v", "with the velocity"},
+    Word{"u", "with the command"},
+    Word{"speed", "with the speed"},
+    Word{"acceleration", "with the acceleration"},
+    Word{"time", "with time"},
+    Word{"direction", "with the direction of motion"},
+};
+
+constexpr std::array kEnters{
+    Word{"flow", "like an offset of the command or a flow"},
+    Word{"gain", "like a change of the valve's gain"},
+    Word{"force", "like a force"},
+    Word{"measurement", "like an error of the position sensor"},
+};
+
+constexpr std::array kRecord{
+    Word{"flow",
+         "record the spool position, or the chamber pressures to tell a leak from the valve"},
+    Word{"gain", "record the supply pressure and the spool position"},
+    Word{"force", "record the chamber pressures"},
+    Word{"measurement", "record the position with a second sensor"},
+};
+
+constexpr std::array kDrift{
+    Word{"flow", "compare it with the oil's temperature and the valve's null"},
+    Word{"gain", "compare it with the supply pressure and the oil's temperature"},
+    Word{"force", "ask what was switched or loaded during the record"},
+    Word{"measurement", "look for a loose mount or a sensor that warms up"},
+};
+
+const char* of(const auto& words, const std::string& key) {
+  for (const Word& word : words) {
+    if (key == word.key) return word.words;
+  }
+  return "";
+}
+
+/// Which site of a formula has the variable; empty where none does.
+std::string formula_words(const Where& where) {
+  std::string site;
+  std::string variable;
+  if (where.enters == "force") {
+    site = "force";
+    if (where.variable == "y") variable = "y_m";
+    if (where.variable == "v" || where.variable == "speed" || where.variable == "direction") {
+      variable = "v_mps";
+    }
+  } else if (where.enters == "measurement") {
+    site = "sensor";
+    if (where.variable == "y") variable = "y_m";
+  } else if (where.variable == "u") {
+    site = "command";
+    variable = "u_V";
+  } else if (where.variable == "v" || where.variable == "speed" || where.variable == "direction") {
+    site = "opening";
+    variable = "x_m";
+  }
+  if (variable.empty()) return "";
+  return "or write it as a formula of " + variable + " ([formula_effects.NAME], site = \"" + site +
+         "\") and diagnose again";
+}
+
+}  // namespace
+
+std::string motion_words(const monitor::control::ReferenceConfig& reference, double duration_s) {
+  std::string text;
+  if (reference.kind == "multisine") {
+    text = "a multisine of " + number(reference.frequencies_Hz.front()) + " to " +
+           number(reference.frequencies_Hz.back()) + " Hz";
+  } else if (reference.kind == "steps") {
+    const bool slow = reference.rise_s < 0.1 * reference.hold_s;
+    text = std::string(slow ? "slow steps" : "fast steps") + " every " + number(reference.hold_s) +
+           " s, each over " + number(reference.rise_s) + " s,";
+  } else if (reference.kind == "chirp") {
+    text = "a chirp from " + number(reference.frequency_Hz) + " to " +
+           number(reference.frequency_end_Hz) + " Hz";
+  } else if (reference.kind == "prbs") {
+    text = "a random binary motion (prbs) of " + number(reference.hold_s) + " s a bit";
+  } else {
+    text = "a sine of " + number(reference.frequency_Hz) + " Hz";
+  }
+  return text + " within " + number(1e3 * reference.amplitude_m) + " mm of " +
+         number(1e3 * reference.centre_m) + " mm for " + number(duration_s) + " s";
+}
+
+std::string words_for_motion(const std::vector<std::string>& names, const std::string& motion,
+                             double separation) {
+  return "Run " + motion + ": a wrong choice among " + listed(names, " and ") +
+         " would then leave an error of at least " + number(separation) + " times the noise.";
+}
+
+std::string words_for_sensor(const plant_sim::ModelFile& model,
+                             const std::vector<std::string>& names) {
+  std::string sensor = "the chamber pressures would";
+  if (all_at(model, names, {"command", "spool", "opening"})) {
+    sensor = "the spool position would";
+  } else if (all_at(model, names, {"force", "dry_friction", "inertia"})) {
+    sensor = "a load cell at the rod would";
+  } else if (all_at(model, names, {"flow", "leakage", "supply", "bulk_modulus"})) {
+    sensor = "the chamber pressures and the supply pressure would";
+  } else if (any_at(model, names, "sensor")) {
+    sensor = "a second position sensor would";
+  }
+  return "From command and position alone no motion tried tells " + listed(names, " and ") +
+         " apart; " + sensor + ".";
+}
+
+std::string words_to_excite(const std::string& motion) {
+  return "Run " + motion + ", with the command free of its limits, and diagnose that record.";
+}
+
+std::string words_for_unexplained(const std::vector<Where>& where) {
+  if (where.empty()) {
+    return "No effect of the library explains what is left; record the chamber pressures and the "
+           "spool position.";
+  }
+  const Where& first = where.front();
+  std::string text = std::string("What is left goes ") + of(kVariables, first.variable) +
+                     " and enters " + of(kEnters, first.enters) + " (" +
+                     number(100.0 * std::clamp(first.explained_ratio, 0.0, 1.0)) +
+                     " % of the held-out squared error): ";
+  text += of(first.variable == "time" ? kDrift : kRecord, first.enters);
+  const std::string formula = formula_words(first);
+  if (!formula.empty()) text += ", " + formula;
+  return text + ".";
+}
+
+}  // namespace workbench::diagnose

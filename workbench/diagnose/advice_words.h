@@ -1,0 +1,25 @@
+// Every sentence of the advice.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "daemon/control/reference.h"
+#include "plant_sim/model_file.h"
+#include "workbench/diagnose/diagnosis.h"
+
+namespace workbench::diagnose {
+
+/// "a multisine of 0.1 to 1.9 Hz within 38 mm of 305 mm for 30 s".
+[[nodiscard]] std::string motion_words(const monitor::control::ReferenceConfig& reference,
+                                       double duration_s);
+
+[[nodiscard]] std::string words_for_motion(const std::vector<std::string>& names,
+                                           const std::string& motion, double separation);
+/// Where no motion helps: what would have to be measured, by where the effects act.
+[[nodiscard]] std::string words_for_sensor(const plant_sim::ModelFile& model,
+                                           const std::vector<std::string>& names);
+[[nodiscard]] std::string words_to_excite(const std::string& motion);
+[[nodiscard]] std::string words_for_unexplained(const std::vector<Where>& where);
+
+}  // namespace workbench::diagnose

@@ -1,0 +1,19 @@
+// How far one explanation stays from the motion that another one gives, when its parameters may
+// adjust: over the noise floor, so that 1 is nothing but noise.
+#pragma once
+
+#include "workbench/diagnose/workshop.h"
+#include "workbench/matching/fitting.h"
+
+namespace workbench::diagnose {
+
+/// Error that `rival` leaves on the evidence, its parameters adjusted linearly against their
+/// priors. About 20 ms for 30 s.
+[[nodiscard]] double expected_separation(const Workshop& shop, const matching::Evidence& evidence,
+                                         const matching::Fitted& rival);
+
+/// The same with the rival fitted for good, held out.
+[[nodiscard]] double fitted_separation(const Workshop& shop, const matching::Evidence& evidence,
+                                       const matching::Fitted& rival);
+
+}  // namespace workbench::diagnose
