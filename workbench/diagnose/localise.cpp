@@ -65,7 +65,7 @@ MatrixXd disturbance(const Place& at, Form form, const Variable& variable) {
     case Form::reading:
       break;
   }
-  return variable.signed_pieces;
+  return variable.signed_pieces.cols() > 0 ? variable.signed_pieces : variable.pieces;
 }
 
 /// What the observer makes of something added to the reading: no model is needed.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "workbench/matching/model_run.h"
 #include "workbench/matching/motion.h"
@@ -109,7 +110,7 @@ Variables variables(const Workshop& shop, const Stage& stage) {
   const Series s = series(shop, stage);
   Variables result;
   const auto add = [&](const char* name, MatrixXd pieces) {
-    if (pieces.cols() > 0) result.all.push_back({name, pieces, pieces});
+    if (pieces.cols() > 0) result.all.push_back({name, std::move(pieces), {}});
   };
   const auto add_size = [&](const char* name, const VectorXd& values) {
     MatrixXd pieces = pieces_of(values.cwiseAbs(), counts);

@@ -22,7 +22,7 @@ inline constexpr int kKnots = 8;
 struct Variable {
   std::string name;               ///< "y", "v", "u", "speed", "acceleration", "time", "direction"
   Eigen::MatrixXd pieces;         ///< add up to 1
-  Eigen::MatrixXd signed_pieces;  ///< of a size: with the sign of what it is the size of
+  Eigen::MatrixXd signed_pieces;  ///< of a size: with the sign of what has that size; else empty
 };
 
 struct Variables {
