@@ -17,10 +17,14 @@ namespace {
 void settle(const Workshop& shop, Diagnosis& result) {
   const Stage& stage = result.ladder.final;
   const Selection all = select(stage.fitted, [](const auto&) { return true; });
-  result.final = shop.cancelled() ? stage.fitted : refit(shop, all, shop.evidence.counts);
+  const bool explained = stage.fitted.score_rms_m <= kUnexplained * shop.evidence.noise_floor_m;
+  // what is left of the error is no noise: then the values are those that simulate best
+  result.final = shop.cancelled() ? stage.fitted
+                 : explained      ? refit(shop, all, shop.evidence.finally())
+                                  : refit(shop, all, shop.evidence.finally(), 0.0);
   result.better = matching::with_values(shop.model, result.final);
   const Eigen::VectorXd errors =
-      matching::std_errors(shop.evidence, shop.evidence.counts, result.final);
+      matching::std_errors(shop.evidence, shop.evidence.finally(), result.final);
   for (std::size_t i = 0; i < result.final.searched.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const matching::SearchParameter& p = result.final.searched[i];

@@ -27,6 +27,7 @@ Excerpt excerpt_of(const matching::Evidence& evidence, const matching::Fitted& f
   Excerpt excerpt;
   excerpt.evidence.records = {matching::part(record, from, from + length)};
   excerpt.evidence.starts = {0};
+  excerpt.evidence.fitted_records = 1;
   excerpt.evidence.noise_floor_m = evidence.noise_floor_m;
   excerpt.evidence.sample_time_s = evidence.sample_time_s;
   const auto begin = static_cast<Index>(from);

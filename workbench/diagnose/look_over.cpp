@@ -1,10 +1,11 @@
 #include "workbench/diagnose/look_over.h"
 
 #include <algorithm>
-#include <optional>
+#include <array>
 #include <set>
 
 #include "workbench/diagnose/ladder.h"
+#include "workbench/diagnose/parallel.h"
 #include "workbench/diagnose/selection.h"
 
 namespace workbench::diagnose {
@@ -53,27 +54,54 @@ void drop_refinements(const Workshop& shop, Stage& stage) {
   }
 }
 
-/// The error of each half of what counts under a fit to the other half.
-std::optional<std::pair<double, double>> crossed(const Workshop& shop, const Selection& selection) {
-  const VectorXd& counts = shop.evidence.counts;
-  VectorXd first = counts;
-  VectorXd second = counts;
-  double before = 0.0;
-  for (Index i = 0; i < counts.size(); ++i) {
-    (2.0 * before < counts.sum() ? second : first)[i] = 0.0;
-    before += counts[i];
+/// The records in two halves, each begun anew, fitted to one and scored on the other; records that
+/// were kept for scoring are one of the halves.
+struct Halves {
+  matching::Evidence forth;
+  matching::Evidence back;
+};
+
+Halves halves_of(const matching::Evidence& evidence) {
+  std::vector<matching::Measured> first;
+  std::vector<matching::Measured> second;
+  if (evidence.scores_apart()) {
+    const auto kept =
+        evidence.records.begin() + static_cast<std::ptrdiff_t>(evidence.fitted_records);
+    first.assign(evidence.records.begin(), kept);
+    second.assign(kept, evidence.records.end());
+    return {matching::evidence(first, second), matching::evidence(second, first)};
   }
-  if (shop.cancelled()) return std::nullopt;
-  return std::pair(matching::rms(refit(shop, selection, first).residual_m, second),
-                   matching::rms(refit(shop, selection, second).residual_m, first));
+  for (const matching::Measured& record : evidence.records) {
+    first.push_back(matching::part(record, 0, record.size() / 2));
+    second.push_back(matching::part(record, record.size() / 2, record.size()));
+  }
+  return {matching::evidence(first, second), matching::evidence(second, first)};
 }
 
-/// Whether both halves do better with `more` than with `plain`.
-bool supported(const Workshop& shop, const Selection& plain, const Selection& more) {
-  const auto without = crossed(shop, plain);
-  const auto with = crossed(shop, more);
-  return without && with && with->first < (1.0 - kWorthwhile) * without->first &&
-         with->second < (1.0 - kWorthwhile) * without->second;
+/// Whether both halves do better with `more` than with `plain`. Where noise is all that is left of
+/// the error the observer helps; otherwise the models have to prove themselves without it.
+bool supported(const Workshop& shop, bool explained, const Selection& plain,
+               const Selection& more) {
+  const Halves halves = halves_of(shop.evidence);
+  matching::FitOptions options;
+  options.tolerance = 1e-5;
+  options.final_jacobian = false;
+  options.cancel = shop.cancel;
+  if (!explained) options.observer_per_s = 0.0;
+  std::array<double, 4> score_rms_m{};
+  in_parallel(score_rms_m.size(), shop.threads, [&](std::size_t i) {
+    const Selection& selection = i % 2 == 0 ? plain : more;
+    const matching::Evidence& evidence = i < 2 ? halves.forth : halves.back;
+    score_rms_m[i] = matching::fit(shop.model, evidence, evidence.fits, selection.searched,
+                                   selection.start, options)
+                         .score_rms_m;
+  });
+  const double enough = 1.0 - worthwhile_at(shop, score_rms_m[0]);
+  return score_rms_m[1] < enough * score_rms_m[0] && score_rms_m[3] < enough * score_rms_m[2];
+}
+
+bool is_explained(const Workshop& shop, const Stage& stage) {
+  return stage.fitted.score_rms_m <= kUnexplained * shop.evidence.noise_floor_m;
 }
 
 void add_refinements(const Workshop& shop, Stage& stage) {
@@ -97,7 +125,7 @@ void add_refinements(const Workshop& shop, Stage& stage) {
       }
       more.start = VectorXd::Zero(static_cast<Index>(more.searched.size()));
       more.start.head(plain.start.size()) = plain.start;
-      if (!supported(shop, plain, more)) continue;
+      if (!supported(shop, is_explained(shop, stage), plain, more)) continue;
       stage.fitted = refit(shop, more, shop.evidence.fits);
     }
   }
@@ -117,7 +145,7 @@ void keep_supported(const Workshop& shop, Stage& stage) {
     const Selection more = select(stage.fitted, [](const auto&) { return true; });
     const Selection plain =
         select(stage.fitted, [&](const auto& p) { return !belongs(p, effect); });
-    if (supported(shop, plain, more) || shop.cancelled()) continue;
+    if (supported(shop, is_explained(shop, stage), plain, more) || shop.cancelled()) continue;
     stage.added.erase(stage.added.begin() + static_cast<std::ptrdiff_t>(i));
     stage.fitted = refit(shop, plain, shop.evidence.fits);
   }

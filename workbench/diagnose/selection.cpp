@@ -10,9 +10,10 @@ void append(Selection& to, const Selection& more) {
 }
 
 matching::Fitted refit(const Workshop& shop, const Selection& selection,
-                       const Eigen::VectorXd& weights) {
+                       const Eigen::VectorXd& weights, double observer_per_s) {
   matching::FitOptions options;
   options.tolerance = 1e-5;
+  options.observer_per_s = observer_per_s;
   options.cancel = shop.cancel;
   return matching::fit(shop.model, shop.evidence, weights, selection.searched, selection.start,
                        options);

@@ -39,6 +39,7 @@ void append(Selection& to, const Selection& more);
 
 /// Fitted to the end on the samples that `weights` counts.
 [[nodiscard]] matching::Fitted refit(const Workshop& shop, const Selection& selection,
-                                     const Eigen::VectorXd& weights);
+                                     const Eigen::VectorXd& weights,
+                                     double observer_per_s = matching::kObserver_per_s);
 
 }  // namespace workbench::diagnose

@@ -10,15 +10,7 @@
 namespace workbench::matching {
 namespace {
 
-bool is_fitted(const Measured& record, std::size_t i, Split split) {
-  switch (split) {
-    case Split::first_half:
-      return 2 * i < record.size();
-    case Split::second_half:
-      return 2 * i >= record.size();
-    case Split::blocks:
-      break;
-  }
+bool in_fitted_block(const Measured& record, std::size_t i) {
   const double since_s = record.t_s[i] - record.t_s.front();
   return static_cast<long>(since_s / kBlock_s) % 2 == 0;
 }
@@ -35,9 +27,20 @@ Split parse_split(std::string_view text) {
 }
 
 Evidence evidence(std::vector<Measured> records, std::vector<Measured> holdouts, Split split) {
+  if (holdouts.empty() && split != Split::blocks) {
+    std::vector<Measured> first;
+    std::vector<Measured> second;
+    for (const Measured& record : records) {
+      first.push_back(part(record, 0, record.size() / 2));
+      second.push_back(part(record, record.size() / 2, record.size()));
+    }
+    if (split == Split::second_half) first.swap(second);
+    return evidence(std::move(first), std::move(second));
+  }
   Evidence result;
   const std::size_t fitted_records = records.size();
   const bool apart = !holdouts.empty();
+  result.fitted_records = fitted_records;
   result.sample_time_s = records.front().sample_time_s;
   result.records = std::move(records);
   for (Measured& record : holdouts) result.records.push_back(std::move(record));
@@ -54,7 +57,7 @@ Evidence evidence(std::vector<Measured> records, std::vector<Measured> holdouts,
     square_m2 += floor_m * floor_m * static_cast<double>(record.size());
     for (std::size_t i = 0; i < record.size(); ++i, ++at) {
       if (record.settled[i] == 0) continue;
-      const bool fitted = apart ? r < fitted_records : is_fitted(record, i, split);
+      const bool fitted = apart ? r < fitted_records : in_fitted_block(record, i);
       (fitted ? result.fits : result.scores)[at] = 1.0;
     }
   }

@@ -24,15 +24,20 @@ struct Evidence {
   // One number for each sample of the long series, 1 or 0; settled samples only.
   Eigen::VectorXd fits;
   Eigen::VectorXd scores;
-  Eigen::VectorXd counts;  ///< either
+  Eigen::VectorXd counts;          ///< either
+  std::size_t fitted_records = 0;  ///< the first of `records`; the others only score
   double noise_floor_m = 0.0;
   double sample_time_s = 0.0;  ///< of the first record
 
   [[nodiscard]] Eigen::Index size() const { return counts.size(); }
+  /// Whether whole records are kept for scoring.
+  [[nodiscard]] bool scores_apart() const { return fitted_records < records.size(); }
+  /// The samples for final values: all, save for records that are kept for scoring.
+  [[nodiscard]] const Eigen::VectorXd& finally() const { return scores_apart() ? fits : counts; }
 };
 
-/// `holdouts` are records that only score; with them every sample of `records` is fitted. At least
-/// one record.
+/// `holdouts` are records that only score; with them every sample of `records` is fitted. Halves of
+/// records become records of their own, so that each begins anew. At least one record.
 [[nodiscard]] Evidence evidence(std::vector<Measured> records, std::vector<Measured> holdouts,
                                 Split split = Split::blocks);
 

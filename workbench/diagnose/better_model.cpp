@@ -1,0 +1,55 @@
+#include "workbench/diagnose/better_model.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "workbench/diagnose/quantity.h"
+#include "workbench/diagnose/words.h"
+
+namespace workbench::diagnose {
+namespace {
+
+/// As comment lines; no line break in `text` may end the comment.
+std::string comment(const std::string& text) {
+  constexpr std::size_t kLine = 98;
+  std::istringstream in(text);
+  std::string out;
+  std::string line = "#";
+  for (std::string word; in >> word;) {
+    if (line.size() > 1 && line.size() + 1 + word.size() > kLine) {
+      out += line + "\n";
+      line = "#";
+    }
+    line += " " + word;
+  }
+  return out + line + "\n";
+}
+
+}  // namespace
+
+std::string better_model_text(const Outcome& outcome) {
+  const Diagnosis& d = outcome.diagnosis;
+  std::string text = comment("Made by spoolwatch diagnose from " + outcome.model_file + "; " +
+                             (outcome.holdouts.empty() ? listed(outcome.records) + ", " : "") +
+                             split_words(outcome) + ".");
+  if (outcome.interrupted) {
+    text += comment("INTERRUPTED: the best so far, not everything was tried.");
+  }
+  text += comment(verdict_words(d));
+  std::string fall = "Held-out error: ";
+  const std::vector<StepWords> steps = step_words(d);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    fall += (i == 0 ? "" : ", ") + steps[i].what + " " + length_words(steps[i].rms_m);
+  }
+  text += comment(fall + "; noise floor " + length_words(d.noise_floor_m) + ".");
+  text += comment("The plant's own parameters are fitted too.");
+  std::string command = outcome.command;
+  std::replace(command.begin(), command.end(), '\n', ' ');
+  text += "# " + command + "\n";
+  // TOML allows no control characters in comments, file names may have any.
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 && c != '\n'; }, ' ');
+  return text + plant_sim::print_model(d.better);
+}
+
+}  // namespace workbench::diagnose

@@ -1,0 +1,27 @@
+// Ctrl-C while something long runs: the first asks it to stop, a second one ends the program.
+#pragma once
+
+#include <csignal>
+
+namespace workbench::diagnose {
+
+/// SIGINT and SIGTERM are caught while this lives, one such object at a time; afterwards they do
+/// what they did before.
+class Interrupt {
+ public:
+  Interrupt();
+  ~Interrupt();
+  Interrupt(const Interrupt&) = delete;
+  Interrupt& operator=(const Interrupt&) = delete;
+
+  /// From any thread.
+  [[nodiscard]] static bool requested() noexcept { return signal() != 0; }
+  /// The signal that came, 0 for none.
+  [[nodiscard]] static int signal() noexcept;
+
+ private:
+  struct sigaction before_int_ {};
+  struct sigaction before_term_ {};
+};
+
+}  // namespace workbench::diagnose

@@ -1,0 +1,92 @@
+#include "workbench/diagnose/json.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "workbench/diagnose/words.h"
+
+namespace workbench::diagnose {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+/// Effects tried together are one name with a plus.
+std::string joined(const std::vector<std::string>& effects) {
+  std::string text;
+  for (const std::string& effect : effects) text += (text.empty() ? "" : "+") + effect;
+  return text;
+}
+
+Json candidates_of(const Ladder& ladder) {
+  Json list = Json::array();
+  for (std::size_t r = 0; r < ladder.rounds.size(); ++r) {
+    for (const Candidate& c : ladder.rounds[r].candidates) {
+      Json one;
+      one["round"] = r + 1;
+      one["effect"] = joined(c.effects);
+      one["rms_heldout_m"] = c.fitted_at_all ? number_or_null(c.score_rms_m) : Json(nullptr);
+      one["p_value"] = c.fitted_at_all ? number_or_null(c.p_value) : Json(nullptr);
+      one["expected_ratio"] = number_or_null(c.expected_ratio);
+      list.push_back(std::move(one));
+    }
+  }
+  return list;
+}
+
+Json parameters_of(const Diagnosis& d) {
+  Json all = Json::object();
+  for (const ParameterValue& p : d.parameters) {
+    all[p.name] = {{"value", number_or_null(p.value)},
+                   {"std_error", number_or_null(p.std_error)},
+                   {"at_bound", p.at_bound}};
+  }
+  return all;
+}
+
+}  // namespace
+
+std::string to_json(const Outcome& outcome) {
+  const Diagnosis& d = outcome.diagnosis;
+  const bool fitted = outcome.fitted();
+  const auto error_m = [&](double value) { return fitted ? number_or_null(value) : Json(nullptr); };
+  Json json;
+  json["verdict"] = text(d.verdict);
+  json["missing"] = d.missing;
+  json["ambiguous"] = d.ambiguous;
+  json["same_here"] = d.same_here;
+  json["noise_floor_m"] = number_or_null(d.noise_floor_m);
+  json["nominal_rms_m"] = error_m(d.nominal_rms_m);
+  json["rms_before_m"] = error_m(d.rms_before_m);
+  json["rms_after_m"] = error_m(d.rms_after_m);
+  json["free_run_before_m"] = number_or_null(outcome.free_run_before_m);
+  json["free_run_after_m"] = number_or_null(outcome.free_run_after_m);
+  json["parameters"] = parameters_of(d);
+  json["candidates"] = candidates_of(d.ladder);
+  json["where"] = Json::array();
+  for (const Where& where : d.where) {
+    json["where"].push_back({{"class", where.enters},
+                             {"variable", where.variable},
+                             {"explained_ratio", number_or_null(where.explained_ratio)}});
+  }
+  json["steps"] = Json::array();
+  for (const Step& step : d.steps) {
+    Json one;
+    one["added"] = step.added.empty() ? Json(nullptr) : Json(step.added);
+    one["rms_heldout_m"] = number_or_null(step.score_rms_m);
+    json["steps"].push_back(std::move(one));
+  }
+  json["advice"] = d.advice;
+  json["words"] = verdict_words(d);
+  json["notes"] = d.notes;
+  json["interrupted"] = outcome.interrupted;
+  json["model"] = outcome.model_file;
+  json["records"] = outcome.records;
+  json["holdouts"] = outcome.holdouts;
+  json["command"] = outcome.command;
+  json["runtime_s"] = number_or_null(d.runtime_s);
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace workbench::diagnose

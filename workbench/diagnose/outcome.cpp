@@ -1,0 +1,57 @@
+#include "workbench/diagnose/outcome.h"
+
+#include <algorithm>
+
+namespace workbench::diagnose {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+VectorXd run(const Workshop& shop, const std::vector<matching::SearchParameter>& searched,
+             const VectorXd& x, double observer_per_s) {
+  matching::EvidenceRun runs(shop.model, shop.evidence, searched, observer_per_s);
+  MatrixXd residuals_m;
+  runs.residuals(x, residuals_m);
+  return residuals_m.col(0);
+}
+
+}  // namespace
+
+VectorXd residual_of_file_m(const Workshop& shop, double observer_per_s) {
+  return run(shop, shop.standing, matching::start_of(shop.model, shop.standing), observer_per_s);
+}
+
+VectorXd residual_of_m(const Workshop& shop, const matching::Fitted& fitted,
+                       double observer_per_s) {
+  return run(shop, fitted.searched, fitted.x, observer_per_s);
+}
+
+void simulate_freely(Outcome& outcome) {
+  if (!outcome.fitted()) return;
+  const Workshop& shop = outcome.shop;
+  outcome.free_run_before_m = matching::rms(residual_of_file_m(shop, 0.0), shop.evidence.counts);
+  outcome.free_run_after_m =
+      matching::rms(residual_of_m(shop, outcome.diagnosis.final, 0.0), shop.evidence.counts);
+}
+
+std::vector<std::string> taken_in(const Ladder& ladder, std::size_t round) {
+  const std::vector<std::string>& before = ladder.rounds[round].before.added;
+  const std::vector<std::string>& after =
+      round + 1 < ladder.rounds.size() ? ladder.rounds[round + 1].before.added : ladder.final.added;
+  std::vector<std::string> taken;
+  for (const std::string& effect : after) {
+    if (std::find(before.begin(), before.end(), effect) == before.end()) taken.push_back(effect);
+  }
+  return taken;
+}
+
+std::size_t deciding_round(const Ladder& ladder) {
+  for (std::size_t i = ladder.rounds.size(); i-- > 0;) {
+    if (!taken_in(ladder, i).empty()) return i;
+  }
+  return ladder.rounds.size() - 1;
+}
+
+}  // namespace workbench::diagnose

@@ -1,0 +1,46 @@
+// A diagnosis together with what it was made from: what text, JSON, model file and report are
+// written from.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "workbench/diagnose/diagnosis.h"
+#include "workbench/matching/evidence.h"
+
+namespace workbench::diagnose {
+
+struct Outcome {
+  Workshop shop;
+  Diagnosis diagnosis;
+  std::string model_file;
+  std::vector<std::string> records;   ///< as given: fitted, and scored by the split
+  std::vector<std::string> holdouts;  ///< as given: scored only
+  std::string output;                 ///< the better model's file; empty: none is written
+  std::string command;                ///< that made this, as for a shell
+  matching::Split split = matching::Split::blocks;
+  bool interrupted = false;
+  /// Pure simulation from each segment's first sample, all samples; NaN when nothing was fitted.
+  double free_run_before_m = std::numeric_limits<double>::quiet_NaN();  ///< the file as it is
+  double free_run_after_m = std::numeric_limits<double>::quiet_NaN();   ///< the better model
+
+  /// False when the records did not move enough for anything to be fitted.
+  [[nodiscard]] bool fitted() const { return diagnosis.final.x.size() > 0; }
+};
+
+/// Measured less modelled position of the long series, under the observer or without (0).
+[[nodiscard]] Eigen::VectorXd residual_of_file_m(const Workshop& shop, double observer_per_s);
+[[nodiscard]] Eigen::VectorXd residual_of_m(const Workshop& shop, const matching::Fitted& fitted,
+                                            double observer_per_s);
+
+/// Fills in the free-run errors.
+void simulate_freely(Outcome& outcome);
+
+/// The effects that a round's winner brought, empty when nothing was taken.
+[[nodiscard]] std::vector<std::string> taken_in(const Ladder& ladder, std::size_t round);
+/// The round that decided: the last in which something was taken, or else the last. Rounds there
+/// must be.
+[[nodiscard]] std::size_t deciding_round(const Ladder& ladder);
+
+}  // namespace workbench::diagnose

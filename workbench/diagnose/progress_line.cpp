@@ -1,0 +1,69 @@
+#include "workbench/diagnose/progress_line.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <ostream>
+
+#include "workbench/diagnose/quantity.h"
+
+namespace workbench::diagnose {
+namespace {
+
+constexpr std::chrono::milliseconds kPeriod{100};
+constexpr std::size_t kRanked = 5;
+constexpr std::size_t kColumns = 80;
+constexpr const char* kWipe = "\r\x1b[K";
+
+std::size_t columns() {
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kColumns;
+}
+
+std::string best_words(const Progress& progress, double noise_floor_m) {
+  const std::string floor = "noise floor " + length_words(noise_floor_m);
+  if (progress.best.empty()) return floor;
+  return "best " + progress.best + " " + length_words(progress.best_rms_m) + ", " + floor;
+}
+
+}  // namespace
+
+ProgressLine::ProgressLine(std::ostream& out, bool renewed, double noise_floor_m)
+    : out_(out), renewed_(renewed), noise_floor_m_(noise_floor_m) {}
+
+void ProgressLine::rank(const Progress& progress) {
+  const std::string round = progress.doing.substr(0, progress.doing.find(':'));
+  if (progress.expected.empty() || round == ranked_) return;
+  ranked_ = round;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(kRanked, progress.expected.size()); ++i) {
+    names += (i == 0 ? "" : ", ") + progress.expected[i];
+  }
+  out_ << (renewed_ ? kWipe : "") << round << ": at first sight " << names << std::endl;
+}
+
+void ProgressLine::show(const Progress& progress) {
+  rank(progress);
+  if (!renewed_) {
+    const std::string round = progress.doing.substr(0, progress.doing.find(':'));
+    if (round == round_) return;
+    round_ = round;
+    out_ << round << ": " << progress.of << " steps, " << best_words(progress, noise_floor_m_)
+         << std::endl;
+    return;
+  }
+  const auto now = std::chrono::steady_clock::now();
+  if (now - last_ < kPeriod && progress.done < progress.of) return;
+  last_ = now;
+  std::string line = progress.doing + ", " + std::to_string(progress.done) + " of " +
+                     std::to_string(progress.of) + "; " + best_words(progress, noise_floor_m_);
+  line.resize(std::min(line.size(), columns() - 1));
+  out_ << kWipe << line << std::flush;
+}
+
+void ProgressLine::end() {
+  if (renewed_) out_ << kWipe << std::flush;
+}
+
+}  // namespace workbench::diagnose

@@ -1,0 +1,81 @@
+#include "workbench/diagnose/report_pages.h"
+
+#include <cmath>
+
+#include "workbench/diagnose/quantity.h"
+#include "workbench/diagnose/words.h"
+
+namespace workbench::diagnose {
+namespace {
+
+report::State state_of(const Outcome& outcome) {
+  if (outcome.interrupted) return report::State::warn;
+  switch (outcome.diagnosis.verdict) {
+    case Verdict::nothing_missing:
+      return report::State::good;
+    case Verdict::unexplained:
+      return outcome.diagnosis.missing.empty() ? report::State::bad : report::State::warn;
+    default:
+      return report::State::warn;
+  }
+}
+
+report::Fact length_fact(const std::string& label, double length_m) {
+  const Quantity q = quantity("length_m", length_m, std::nan(""));
+  return {.label = label, .value = q.value, .unit = typeset(" " + q.unit).substr(1)};
+}
+
+std::string title_of(const Outcome& outcome) {
+  const auto names = [](std::vector<std::string> files) {
+    for (std::string& file : files) file = file_name(file);
+    return listed(files);
+  };
+  std::string title = file_name(outcome.model_file) + " against " + names(outcome.records);
+  if (!outcome.holdouts.empty()) title += ", held out " + names(outcome.holdouts);
+  return title;
+}
+
+std::vector<report::Fact> facts_of(const Outcome& outcome) {
+  const Diagnosis& d = outcome.diagnosis;
+  std::vector<report::Fact> facts;
+  if (outcome.fitted()) {
+    facts.push_back(length_fact("Model file as it is", d.nominal_rms_m));
+    facts.push_back(length_fact("Its parameters fitted", d.rms_before_m));
+    if (!d.missing.empty()) facts.push_back(length_fact("Better model", d.rms_after_m));
+  }
+  if (std::isfinite(d.noise_floor_m)) facts.push_back(length_fact("Noise floor", d.noise_floor_m));
+  if (outcome.fitted()) {
+    facts.push_back(length_fact("Free run, file", outcome.free_run_before_m));
+    facts.push_back(length_fact("Free run, better", outcome.free_run_after_m));
+  }
+  return facts;
+}
+
+}  // namespace
+
+report::Report report_of(const Outcome& outcome) {
+  const Diagnosis& d = outcome.diagnosis;
+  report::Report report;
+  report.title = title_of(outcome);
+  report.verdict = typeset(verdict_words(d));
+  report.state = state_of(outcome);
+  for (const std::string& remark : remarks(outcome)) report.summary.push_back(typeset(remark));
+  for (const std::string& note : d.notes) report.summary.push_back("Note: " + typeset(note) + ".");
+  const std::string next = next_command(outcome);
+  if (!next.empty()) report.summary.push_back("Next: " + next);
+  report.facts = facts_of(outcome);
+  report.command = outcome.command;
+  report.made_with = std::string("spoolwatch ") + SPOOLWATCH_VERSION;
+  if (outcome.fitted()) {
+    report.sections.push_back(falling_error_section(outcome));
+    if (!d.ladder.rounds.empty()) report.sections.push_back(candidates_section(outcome));
+    report.sections.push_back(parameters_section(outcome));
+    if (!d.where.empty()) report.sections.push_back(where_section(outcome));
+  }
+  for (report::Section& section : record_sections(outcome)) {
+    report.sections.push_back(std::move(section));
+  }
+  return report;
+}
+
+}  // namespace workbench::diagnose

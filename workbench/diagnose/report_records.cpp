@@ -1,0 +1,262 @@
+// The sections of the report that hold each record against the model before and after.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "workbench/diagnose/quantity.h"
+#include "workbench/diagnose/report_pages.h"
+#include "workbench/diagnose/words.h"
+#include "workbench/matching/motion.h"
+#include "workbench/report/thin.h"
+
+namespace workbench::diagnose {
+namespace {
+
+using report::Kind;
+using report::Plot;
+using report::Section;
+using report::Series;
+using report::Tone;
+
+using Values = std::vector<double>;
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kCloud = 2'500;
+constexpr std::size_t kBins = 30;
+constexpr std::size_t kLeastInBin = 5;
+/// Residuals above this are drawn in millimetres.
+constexpr double kMillimetres_m = 2e-3;
+
+/// The long series of residuals, of all records.
+struct Residuals {
+  Eigen::VectorXd file_m, before_m, after_m, free_file_m, free_after_m;
+};
+
+/// One residual in the unit that it is drawn in.
+struct Scale {
+  double per_m = 1e6;
+  const char* unit = "µm";
+};
+
+struct Page {
+  const matching::Measured& record;
+  matching::Motion motion;
+  Values file_m, before_m, after_m, free_file_m, free_after_m;  ///< NaN where it does not count
+  double noise_floor_m = kNone;
+  bool improved = false;  ///< something was added
+};
+
+Values times(const Values& values, double factor) {
+  Values out(values.size());
+  std::transform(values.begin(), values.end(), out.begin(),
+                 [factor](double value) { return factor * value; });
+  return out;
+}
+
+Values cut(const Eigen::VectorXd& series_m, std::size_t start, const matching::Measured& record) {
+  Values out(record.size(), kNone);
+  if (series_m.size() == 0) return out;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (record.settled[i] != 0) out[i] = series_m[static_cast<Eigen::Index>(start + i)];
+  }
+  return out;
+}
+
+Scale scale_of(const Values& residual_m) {
+  double most_m = 0.0;
+  for (const double r : residual_m) {
+    if (std::isfinite(r)) most_m = std::max(most_m, std::abs(r));
+  }
+  return most_m > kMillimetres_m ? Scale{1e3, "mm"} : Scale{};
+}
+
+/// Nothing is drawn across a gap.
+Values broken_at_gaps(Values values, const matching::Measured& record) {
+  for (const std::size_t start : record.starts) {
+    if (start > 0) values[start] = kNone;
+  }
+  return values;
+}
+
+Plot time_plot(const Page& page, const std::string& title, const report::Axis& y) {
+  return {.title = title,
+          .x = {"time", "s"},
+          .y = y,
+          .x_values = page.record.t_s,
+          .zoom_group = page.record.name};
+}
+
+Values model_mm(const Page& page, const Values& residual_m) {
+  Values out(residual_m.size());
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = 1e3 * (page.record.y_m[i] - residual_m[i]);
+  return out;
+}
+
+Plot position_plot(const Page& page, bool fitted) {
+  Plot plot = time_plot(page, "Position", {"position", "mm"});
+  plot.series.push_back({.name = "measured",
+                         .y = broken_at_gaps(times(page.record.y_m, 1e3), page.record),
+                         .tone = Tone::measured});
+  if (!fitted) return plot;
+  plot.series.push_back({.name = "model file, free run",
+                         .y = model_mm(page, page.free_file_m),
+                         .tone = Tone::residual,
+                         .dashed = true});
+  plot.series.push_back({.name = "better model, free run",
+                         .y = model_mm(page, page.free_after_m),
+                         .tone = Tone::improved});
+  plot.caption =
+      "Driven by the measured command from the first sample on, nothing corrected: errors add up.";
+  return plot;
+}
+
+Plot residual_plot(const Page& page, const std::string& title, const Values& residual_m,
+                   Tone tone) {
+  const Scale scale = scale_of(residual_m);
+  Plot plot = time_plot(page, title, {"measured − model", scale.unit});
+  plot.series.push_back({.name = "residual", .y = times(residual_m, scale.per_m), .tone = tone});
+  if (std::isfinite(page.noise_floor_m)) {
+    plot.lines = {{std::stod(number("%.3g", scale.per_m * page.noise_floor_m)), "noise floor"}};
+  }
+  return plot;
+}
+
+Plot command_plot(const Page& page) {
+  Plot plot = time_plot(page, "Command", {"command", "V"});
+  plot.series.push_back({.name = "command",
+                         .y = broken_at_gaps(page.record.u_V, page.record),
+                         .tone = Tone::muted,
+                         .kind = Kind::steps});
+  return plot;
+}
+
+/// Means over equal stretches of x.
+Series means(const std::string& name, const Values& x, const Values& y, Tone tone) {
+  const auto [least, most] = std::minmax_element(x.begin(), x.end());
+  const double width = (*most - *least) / static_cast<double>(kBins);
+  Series series{.name = name, .tone = tone, .kind = Kind::line};
+  if (!(width > 0.0)) return series;
+  std::array<double, kBins> sum{};
+  std::array<std::size_t, kBins> count{};
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!std::isfinite(y[i])) continue;
+    const auto bin = std::min(kBins - 1, static_cast<std::size_t>((x[i] - *least) / width));
+    sum[bin] += y[i];
+    ++count[bin];
+  }
+  for (std::size_t bin = 0; bin < kBins; ++bin) {
+    if (count[bin] < kLeastInBin) continue;
+    series.x.push_back(*least + width * (static_cast<double>(bin) + 0.5));
+    series.y.push_back(sum[bin] / static_cast<double>(count[bin]));
+  }
+  return series;
+}
+
+Series cloud(const std::string& name, const Values& x, const Values& y, Tone tone) {
+  Series series{.name = name, .tone = tone};
+  for (const std::size_t i : report::thin_cloud(x, y, kCloud)) {
+    series.x.push_back(x[i]);
+    series.y.push_back(y[i]);
+  }
+  return series;
+}
+
+Plot against(const Page& page, const std::string& what, const std::string& unit, const Values& x) {
+  const Scale scale = scale_of(page.before_m);
+  const Values before = times(page.before_m, scale.per_m);
+  const Values after = times(page.after_m, scale.per_m);
+  Plot plot{.title = "Residual against " + what,
+            .kind = Kind::scatter,
+            .x = {what, unit},
+            .y = {"measured − model", scale.unit},
+            .width = report::Width::half};
+  if (page.improved) {
+    plot.series = {cloud("before", x, before, Tone::residual),
+                   cloud("after", x, after, Tone::improved),
+                   means("before, mean", x, before, Tone::accent),
+                   means("after, mean", x, after, Tone::model)};
+  } else {
+    plot.series = {cloud("residual", x, after, Tone::residual),
+                   means("mean", x, after, Tone::model)};
+  }
+  return plot;
+}
+
+void add_clouds(const Page& page, Section& section) {
+  Values speed = times(page.motion.speed_mps, 1e3);
+  section.plots.push_back(against(page, "position", "mm", times(page.record.y_m, 1e3)));
+  section.plots.push_back(against(page, "velocity", "mm/s", speed));
+  section.plots.push_back(against(page, "command", "V", page.record.u_V));
+  for (double& v : speed) v = std::abs(v);
+  section.plots.push_back(against(page, "speed", "mm/s", speed));
+  section.plots.push_back(against(page, "acceleration", "m/s²", page.motion.acceleration_mps2));
+  section.plots.push_back(against(page, "time", "s", page.record.t_s));
+}
+
+Section section_of(const Page& page, bool fitted, const std::string& heading) {
+  Section section{.heading = heading};
+  section.plots.push_back(position_plot(page, fitted));
+  if (fitted) {
+    section.paragraphs = {
+        "Residuals are those that the error above is the RMS of. Before: the model's own "
+        "parameters fitted, nothing added" +
+        std::string(page.improved ? "; after: the better model." : ".") +
+        " In the clouds an even choice of the samples and their outline is drawn."};
+    if (page.improved) {
+      section.plots.push_back(
+          residual_plot(page, "Residual before", page.before_m, Tone::residual));
+      section.plots.push_back(residual_plot(page, "Residual after", page.after_m, Tone::improved));
+    } else {
+      section.plots.push_back(
+          residual_plot(page, "Residual, model file as it is", page.file_m, Tone::residual));
+      section.plots.push_back(
+          residual_plot(page, "Residual, its parameters fitted", page.after_m, Tone::improved));
+    }
+  }
+  section.plots.push_back(command_plot(page));
+  if (fitted) add_clouds(page, section);
+  return section;
+}
+
+Residuals residuals_of(const Outcome& outcome) {
+  Residuals all;
+  if (!outcome.fitted()) return all;
+  const Diagnosis& d = outcome.diagnosis;
+  const Workshop& shop = outcome.shop;
+  const Stage& before = d.ladder.rounds.empty() ? d.ladder.final : d.ladder.rounds.front().before;
+  all.file_m = residual_of_file_m(shop, matching::kObserver_per_s);
+  all.before_m = residual_of_m(shop, before.fitted, matching::kObserver_per_s);
+  all.after_m = residual_of_m(shop, d.final, matching::kObserver_per_s);
+  all.free_file_m = residual_of_file_m(shop, 0.0);
+  all.free_after_m = residual_of_m(shop, d.final, 0.0);
+  return all;
+}
+
+}  // namespace
+
+std::vector<Section> record_sections(const Outcome& outcome) {
+  const matching::Evidence& evidence = outcome.shop.evidence;
+  const Residuals all = residuals_of(outcome);
+  std::vector<Section> sections;
+  for (std::size_t r = 0; r < evidence.records.size(); ++r) {
+    const matching::Measured& record = evidence.records[r];
+    const std::size_t start = evidence.starts[r];
+    const double noise_m = std::isfinite(evidence.noise_floor_m) ? evidence.noise_floor_m : 0.0;
+    const Page page{.record = record,
+                    .motion = matching::motion(record, noise_m),
+                    .file_m = cut(all.file_m, start, record),
+                    .before_m = cut(all.before_m, start, record),
+                    .after_m = cut(all.after_m, start, record),
+                    .free_file_m = cut(all.free_file_m, start, record),
+                    .free_after_m = cut(all.free_after_m, start, record),
+                    .noise_floor_m = evidence.noise_floor_m,
+                    .improved = !outcome.diagnosis.missing.empty()};
+    const bool held_out = r >= outcome.records.size();
+    sections.push_back(section_of(page, outcome.fitted(),
+                                  (held_out ? "Held out: " : "Record ") + file_name(record.name)));
+  }
+  return sections;
+}
+
+}  // namespace workbench::diagnose

@@ -1,0 +1,225 @@
+#include "workbench/diagnose/words.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "workbench/diagnose/quantity.h"
+#include "workbench/diagnose/shell_words.h"
+
+namespace workbench::diagnose {
+namespace {
+
+std::string percent(double ratio) { return number("%.0f", 100.0 * ratio) + " %"; }
+
+/// "2.7 um held-out, 1.1 times the noise floor of 2.4 um".
+std::string beside_floor(const Diagnosis& d, double rms_m) {
+  return length_words(rms_m) + " on held-out data, " + times_words(rms_m / d.noise_floor_m) +
+         " times the noise floor of " + length_words(d.noise_floor_m);
+}
+
+std::string effects_words(const Diagnosis& d) {
+  std::string text;
+  for (const std::string& effect : d.missing) {
+    text += (text.empty() ? "" : "; ") + effect_words(d, effect);
+  }
+  return text;
+}
+
+/// The found effects that no rival disputes.
+std::vector<std::string> undisputed(const Diagnosis& d) {
+  std::vector<std::string> names;
+  for (const std::string& effect : d.missing) {
+    const bool disputed =
+        std::any_of(d.ambiguous.begin(), d.ambiguous.end(), [&](const auto& group) {
+          return std::find(group.begin(), group.end(), effect) != group.end();
+        });
+    if (!disputed) names.push_back(effect);
+  }
+  return names;
+}
+
+std::string undetermined_words(const Diagnosis& d) {
+  std::string groups;
+  for (const auto& group : d.ambiguous)
+    groups += (groups.empty() ? "" : "; ") + listed(group, "or");
+  const std::vector<std::string> sure = undisputed(d);
+  std::string text = "Undetermined: " + groups + " is missing, and this motion cannot tell which.";
+  if (!sure.empty()) {
+    text += " Missing in any case: ";
+    for (std::size_t i = 0; i < sure.size(); ++i) {
+      text += (i == 0 ? "" : "; ") + effect_words(d, sure[i]);
+    }
+    text += ".";
+  }
+  return text;
+}
+
+std::string unexplained_words(const Diagnosis& d) {
+  const std::string rest = "an error of " + beside_floor(d, d.rms_after_m) + ", remains";
+  if (d.missing.empty()) {
+    return "Unexplained: " + rest + ", and no effect of the library takes it away.";
+  }
+  return "Not the whole story: " + listed(d.missing) + (d.missing.size() > 1 ? " are" : " is") +
+         " missing, but " + rest + ".";
+}
+
+std::string reason_of(const Diagnosis& d) {
+  return d.notes.empty() ? "the records hardly move" : d.notes.back();
+}
+
+std::string fall_words(const Diagnosis& d) {
+  if (d.missing.empty()) {
+    return "With the plant's own parameters fitted, the held-out error goes from " +
+           length_words(d.nominal_rms_m) + " to " + length_words(d.rms_before_m) + ".";
+  }
+  const std::string with =
+      d.verdict == Verdict::undetermined ? "With " + listed(d.missing) + ", the" : "The";
+  return with + " held-out error falls from " + length_words(d.rms_before_m) + " to " +
+         length_words(d.rms_after_m) + "; the noise floor is " + length_words(d.noise_floor_m) +
+         ".";
+}
+
+void add_rivals(const Diagnosis& d, std::vector<std::string>& out) {
+  if (d.verdict != Verdict::undetermined && !d.ambiguous.empty()) {
+    std::string groups;
+    for (const auto& group : d.ambiguous)
+      groups += (groups.empty() ? "" : "; ") + listed(group, "or");
+    out.push_back("This motion cannot tell apart: " + groups + ".");
+  }
+  for (const auto& group : d.same_here) {
+    out.push_back("On this plant " + listed(group) +
+                  " act alike, whatever the motion: the name is a choice, the better model the "
+                  "same.");
+  }
+}
+
+}  // namespace
+
+std::string listed(const std::vector<std::string>& names, const std::string& last) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) text += i + 1 == names.size() ? " " + last + " " : ", ";
+    text += names[i];
+  }
+  return text;
+}
+
+std::string effect_words(const Diagnosis& diagnosis, const std::string& effect) {
+  std::string text;
+  for (const ParameterValue& p : diagnosis.parameters) {
+    if (p.name.rfind(effect + ".", 0) != 0) continue;
+    text += (text.empty() ? ": " : ", ") + parameter_words(p.name) + " " +
+            words(quantity(p.name, p.value, p.std_error)) + (p.at_bound ? " (at its bound)" : "");
+  }
+  return effect + text;
+}
+
+std::string file_name(const std::string& file) { return file.substr(file.find_last_of('/') + 1); }
+
+bool was_added(const Diagnosis& diagnosis, const std::string& parameter) {
+  const std::vector<std::string>& names = diagnosis.missing;
+  return std::find(names.begin(), names.end(), parameter.substr(0, parameter.find('.'))) !=
+         names.end();
+}
+
+std::string where_words(const Where& where) {
+  const std::string enters = where.enters == "flow"    ? "as a flow"
+                             : where.enters == "force" ? "as a force"
+                             : where.enters == "gain"  ? "as a change of the gain"
+                                                       : "in the measurement";
+  const std::string variable = where.variable == "y"   ? "the position y"
+                               : where.variable == "v" ? "the velocity v"
+                               : where.variable == "u" ? "the command u"
+                                                       : "the " + where.variable;
+  return enters + " that goes with " + variable;
+}
+
+std::string verdict_words(const Diagnosis& d) {
+  switch (d.verdict) {
+    case Verdict::nothing_missing:
+      return "Nothing is missing: the model, its own parameters adjusted, is left with " +
+             beside_floor(d, d.rms_after_m) + ", and no effect of the library lowers it further.";
+    case Verdict::missing:
+      return "Missing: " + effects_words(d) + ".";
+    case Verdict::undetermined:
+      return undetermined_words(d);
+    case Verdict::unexplained:
+      return unexplained_words(d);
+    case Verdict::not_excited:
+      break;
+  }
+  return "The record cannot tell: " + reason_of(d) + ".";
+}
+
+std::vector<std::string> remarks(const Outcome& outcome) {
+  const Diagnosis& d = outcome.diagnosis;
+  std::vector<std::string> out;
+  if (outcome.interrupted) {
+    out.emplace_back(
+        "Interrupted: this is the best so far. Not everything was tried, so other effects may do "
+        "as well.");
+  }
+  if (d.verdict != Verdict::not_excited) out.push_back(fall_words(d));
+  const bool named = d.verdict == Verdict::missing || d.missing.empty();
+  if (!named) out.push_back("Taken for the better model: " + effects_words(d) + ".");
+  add_rivals(d, out);
+  if (!d.where.empty()) {
+    std::string text = "What is left enters " + where_words(d.where[0]) + " (" +
+                       percent(d.where[0].explained_ratio) + " of its square)";
+    if (d.where.size() > 1) {
+      text += ", or " + where_words(d.where[1]) + " (" + percent(d.where[1].explained_ratio) + ")";
+    }
+    out.push_back(text + ".");
+  }
+  if (std::isfinite(outcome.free_run_before_m)) {
+    out.push_back("Pure simulation from the first sample is off by " +
+                  length_words(outcome.free_run_before_m) +
+                  " RMS with the model file as it is, by " +
+                  length_words(outcome.free_run_after_m) + " with the better model.");
+  }
+  if (!d.advice.empty()) out.push_back(d.advice);
+  return out;
+}
+
+std::string next_command(const Outcome& outcome) {
+  if (!outcome.fitted()) return "";
+  const std::string& record =
+      outcome.holdouts.empty() ? outcome.records.front() : outcome.holdouts.front();
+  if (!outcome.output.empty()) {
+    return shell_command({"spoolwatch", "compare", outcome.output, record});
+  }
+  return outcome.command + " -o better.toml";
+}
+
+std::string split_words(const Outcome& outcome) {
+  if (!outcome.holdouts.empty()) {
+    return "fitted to " + listed(outcome.records) + ", scored on " + listed(outcome.holdouts);
+  }
+  switch (outcome.split) {
+    case matching::Split::first_half:
+      return "fitted to the first half, scored on the second";
+    case matching::Split::second_half:
+      return "fitted to the second half, scored on the first";
+    case matching::Split::blocks:
+      break;
+  }
+  return "fitted to every other " + number("%g", matching::kBlock_s) + " s, scored on the rest";
+}
+
+std::vector<StepWords> step_words(const Diagnosis& diagnosis) {
+  std::vector<StepWords> steps;
+  if (diagnosis.steps.empty()) return steps;
+  steps.push_back({"model file as it is", diagnosis.nominal_rms_m});
+  for (const Step& step : diagnosis.steps) {
+    steps.push_back(
+        {step.added.empty() ? "its parameters fitted" : "+ " + step.added, step.score_rms_m});
+  }
+  // Refinements of what was added may come and go in the end.
+  constexpr double kSame = 1e-3;
+  if (std::abs(steps.back().rms_m - diagnosis.rms_after_m) > kSame * diagnosis.rms_after_m) {
+    steps.push_back({"refined", diagnosis.rms_after_m});
+  }
+  return steps;
+}
+
+}  // namespace workbench::diagnose

@@ -1,0 +1,47 @@
+// What a diagnosis found, in sentences.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "workbench/diagnose/outcome.h"
+
+namespace workbench::diagnose {
+
+/// "a", "a and b", "a, b and c"; with another last word, "a, b or c".
+[[nodiscard]] std::string listed(const std::vector<std::string>& names,
+                                 const std::string& last = "and");
+
+/// "friction: Coulomb 145 +- 2 N, static 181 +- 4 N", with the values of the better model.
+[[nodiscard]] std::string effect_words(const Diagnosis& diagnosis, const std::string& effect);
+
+/// The verdict, one sentence.
+[[nodiscard]] std::string verdict_words(const Diagnosis& diagnosis);
+
+/// What it rests on and what follows from it, one paragraph each: the fallen error, rivals, where
+/// the rest enters, advice.
+[[nodiscard]] std::vector<std::string> remarks(const Outcome& outcome);
+
+/// The command to type next; empty when there is none.
+[[nodiscard]] std::string next_command(const Outcome& outcome);
+
+/// "every other 2 s is fitted, the rest scores", ...
+[[nodiscard]] std::string split_words(const Outcome& outcome);
+
+/// "model file as it is", "+ friction", ...
+struct StepWords {
+  std::string what;
+  double rms_m = 0.0;
+};
+[[nodiscard]] std::vector<StepWords> step_words(const Diagnosis& diagnosis);
+
+/// Without its folder.
+[[nodiscard]] std::string file_name(const std::string& file);
+
+/// Whether a parameter belongs to an effect that was found missing.
+[[nodiscard]] bool was_added(const Diagnosis& diagnosis, const std::string& parameter);
+
+/// "as a force that goes with the speed".
+[[nodiscard]] std::string where_words(const Where& where);
+
+}  // namespace workbench::diagnose
