@@ -1,0 +1,283 @@
+#include "workbench/fit/choice.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "config/schema/document.h"
+#include "config/schema/error.h"
+#include "plant_sim/library.h"
+
+namespace workbench::fit {
+namespace {
+
+using config::schema::bad_config;
+using config::schema::Error;
+using config::schema::ExitCode;
+using matching::Scale;
+using matching::SearchParameter;
+using plant_sim::ParameterInfo;
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+/// A parameter that may be fitted.
+struct Known {
+  std::string name;
+  std::string effect;  ///< empty: the plant's
+  ParameterInfo info;
+  SearchParameter search;
+};
+
+std::string shown(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+/// The whole range that the parameter may have, no prior.
+void open_up(Known& known) {
+  SearchParameter& p = known.search;
+  p.prior_mean = 0.0;
+  p.prior_sd = kInfinite;
+  if (p.scale == Scale::logarithmic) {
+    p.lower = known.info.min > 0.0 ? std::log(known.info.min / p.unit) : -20.0;
+    p.upper = std::log(known.info.max / p.unit);
+  }
+}
+
+std::vector<Known> known_parameters(const plant_sim::ModelFile& model) {
+  std::vector<Known> found;
+  const plant_sim::PlantInfo& plant = *plant_sim::find_plant(model.plant);
+  const std::vector<SearchParameter> uncertain = matching::plant_parameters(model);
+  for (std::size_t i = 0; i < plant.parameters.size(); ++i) {
+    Known known{plant.parameters[i].name, "", plant.parameters[i], {}};
+    const auto same = [&](const SearchParameter& p) { return p.name == known.name; };
+    const auto given = std::find_if(uncertain.begin(), uncertain.end(), same);
+    if (given != uncertain.end()) {
+      known.search = *given;
+    } else {
+      SearchParameter& p = known.search;
+      const double value = model.parameters[i].value;
+      p.name = known.name;
+      p.scale = value > 0.0 ? Scale::logarithmic : Scale::linear;
+      p.unit = value > 0.0 ? value : (known.info.typical > 0.0 ? known.info.typical : 1.0);
+      p.lower = known.info.min / p.unit;
+      p.upper = known.info.max / p.unit;
+      open_up(known);
+    }
+    found.push_back(known);
+  }
+  for (const plant_sim::EffectInfo& effect : plant_sim::effects_of(model)) {
+    const auto fits = [&](const std::string& site) {
+      return std::find(plant.sites.begin(), plant.sites.end(), site) != plant.sites.end();
+    };
+    if (!std::all_of(effect.sites.begin(), effect.sites.end(), fits)) continue;
+    const auto all = matching::effect_parameters(effect, matching::kEveryRefinement);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      found.push_back({all[i].name, effect.name, effect.parameters[i], all[i]});
+    }
+  }
+  return found;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+/// Of the plant and of effects that the model has: what a list of allowed names should show.
+std::vector<std::string> names_worth_showing(const plant_sim::ModelFile& model,
+                                             const std::vector<Known>& known) {
+  std::vector<std::string> names;
+  for (const Known& k : known) {
+    const auto present = [&](const auto& e) { return e.present && e.name == k.effect; };
+    if (k.effect.empty() || std::any_of(model.effects.begin(), model.effects.end(), present)) {
+      names.push_back(k.name);
+    }
+  }
+  return names;
+}
+
+[[noreturn]] void refuse_name(const std::string& option, const std::string& typed,
+                              const std::vector<std::string>& near,
+                              const std::vector<std::string>& shown_names) {
+  const std::string best = config::schema::nearest(typed, near);
+  throw bad_config(option + " " + typed,
+                   "is no parameter of this model" +
+                       (best.empty() ? std::string() : ", did you mean " + best + "?"),
+                   joined(shown_names) + "; or an effect's, see `spoolwatch effects`");
+}
+
+std::vector<std::string> split(const std::vector<std::string>& lists) {
+  std::vector<std::string> words;
+  for (const std::string& list : lists) {
+    std::size_t from = 0;
+    while (from <= list.size()) {
+      const std::size_t to = std::min(list.find(',', from), list.size());
+      if (to > from) words.push_back(list.substr(from, to - from));
+      from = to + 1;
+    }
+  }
+  return words;
+}
+
+class Chooser {
+ public:
+  Chooser(const plant_sim::ModelFile& model, const Wishes& wishes)
+      : model_(model), wishes_(wishes), known_(known_parameters(model)) {
+    for (const Known& k : known_) {
+      all_.push_back(k.name);
+      if (!k.effect.empty()) all_.push_back(k.effect);
+    }
+    shown_ = names_worth_showing(model, known_);
+  }
+
+  Choice run() {
+    pick();
+    for (const std::string& text : wishes_.priors) prior(text);
+    for (const std::string& text : wishes_.bounds) bounds(text);
+    Choice choice;
+    for (const std::size_t i : picked_) choice.searched.push_back(known_[i].search);
+    if (choice.searched.empty()) {
+      throw Error(ExitCode::usage, "--free, --fix: leave nothing to fit");
+    }
+    choice.start = matching::start_of(model_, choice.searched);
+    return choice;
+  }
+
+ private:
+  /// Indices of a parameter, or of all those of an effect.
+  std::vector<std::size_t> find(const std::string& option, const std::string& name) const {
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < known_.size(); ++i) {
+      if (known_[i].name == name || known_[i].effect == name) found.push_back(i);
+    }
+    if (found.empty()) refuse_name(option, name, all_, shown_);
+    return found;
+  }
+
+  void pick() {
+    const auto add = [&](std::size_t i) {
+      if (std::find(picked_.begin(), picked_.end(), i) == picked_.end()) picked_.push_back(i);
+    };
+    if (wishes_.free.empty()) {
+      std::vector<SearchParameter> usual = matching::plant_parameters(model_);
+      for (const auto& p : matching::present_parameters(model_)) usual.push_back(p);
+      for (const SearchParameter& p : usual) {
+        for (const std::size_t i : find("--free", p.name)) add(i);
+      }
+    }
+    for (const std::string& name : split(wishes_.free)) {
+      for (const std::size_t i : find("--free", name)) add(i);
+    }
+    for (const std::string& name : split(wishes_.fix)) {
+      for (const std::size_t i : find("--fix", name)) {
+        picked_.erase(std::remove(picked_.begin(), picked_.end(), i), picked_.end());
+      }
+    }
+  }
+
+  /// The fitted parameter that "name=..." is about, and what stands behind the equals sign.
+  Known& subject(const std::string& option, const std::string& text, std::string& value) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos) {
+      throw Error(ExitCode::usage, option + " " + text + ": lacks an equals sign; allowed: name=" +
+                                       (option == "--prior" ? "mean+-sd" : "low:high"));
+    }
+    const std::string name = text.substr(0, equals);
+    value = text.substr(equals + 1);
+    std::vector<std::string> fitted;
+    for (const std::size_t i : picked_) {
+      if (known_[i].name == name) return known_[i];
+      fitted.push_back(known_[i].name);
+    }
+    const auto same = [&](const Known& k) { return k.name == name; };
+    if (std::any_of(known_.begin(), known_.end(), same)) {
+      throw bad_config(option + " " + name, "is not fitted; name it with --free", joined(fitted));
+    }
+    refuse_name(option, name, fitted, fitted);
+  }
+
+  void prior(const std::string& text) {
+    std::string value;
+    Known& known = subject("--prior", text, value);
+    if (value == "none") {
+      open_up(known);
+      return;
+    }
+    std::size_t sign = value.rfind("+-");
+    if (sign == std::string::npos) sign = value.find("\xc2\xb1");  // a plus-minus sign
+    const double mean = sign == std::string::npos ? std::nan("") : number_in(value.substr(0, sign));
+    std::string spread = sign == std::string::npos ? "" : value.substr(sign + 2);
+    const bool relative = !spread.empty() && spread.back() == '%';
+    if (relative) spread.pop_back();
+    const double sd = number_in(spread) * (relative ? 0.01 * std::abs(mean) : 1.0);
+    if (!std::isfinite(mean) || !(sd > 0.0)) {
+      throw Error(ExitCode::usage, "--prior " + text +
+                                       ": is no prior; allowed: name=mean+-sd with sd above 0 (or "
+                                       "in %), name=none");
+    }
+    SearchParameter& p = known.search;
+    const bool positive = p.scale != Scale::linear;
+    if (mean < known.info.min || mean > known.info.max || (positive && mean <= 0.0)) {
+      throw bad_config("--prior " + known.name, "has the mean " + shown(mean) + ", out of range",
+                       shown(known.info.min) + " to " + shown(known.info.max));
+    }
+    open_up(known);
+    p.prior_mean = p.search(mean);
+    p.prior_sd = sd / p.slope(p.prior_mean);
+  }
+
+  void bounds(const std::string& text) {
+    std::string value;
+    Known& known = subject("--bounds", text, value);
+    const std::size_t colon = value.find(':');
+    const auto end = [&](const std::string& word, double open) {
+      return word.empty() ? open : number_in(word);
+    };
+    const double low =
+        colon == std::string::npos ? std::nan("") : end(value.substr(0, colon), known.info.min);
+    const double high =
+        colon == std::string::npos ? std::nan("") : end(value.substr(colon + 1), known.info.max);
+    if (!(low < high)) {
+      throw Error(ExitCode::usage, "--bounds " + text +
+                                       ": are no bounds; allowed: name=low:high with low below "
+                                       "high (--fix name holds a value)");
+    }
+    if (low < known.info.min || high > known.info.max) {
+      throw bad_config("--bounds " + known.name, "are wider than the parameter's range",
+                       shown(known.info.min) + " to " + shown(known.info.max));
+    }
+    SearchParameter& p = known.search;
+    const double infinite = p.scale == Scale::logarithmic ? -20.0 : kInfinite;
+    const double a = low > 0.0 || p.scale == Scale::linear ? p.search(low) : infinite;
+    const double b = p.search(high);
+    p.lower = std::min(a, b);
+    p.upper = std::max(a, b);
+  }
+
+  const plant_sim::ModelFile& model_;
+  const Wishes& wishes_;
+  std::vector<Known> known_;
+  std::vector<std::string> all_;
+  std::vector<std::string> shown_;
+  std::vector<std::size_t> picked_;
+};
+
+}  // namespace
+
+double number_in(std::string_view text) {
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, failed] = std::from_chars(text.data(), end, value);
+  return failed == std::errc() && rest == end && std::isfinite(value) ? value : std::nan("");
+}
+
+Choice choose(const plant_sim::ModelFile& model, const Wishes& wishes) {
+  return Chooser(model, wishes).run();
+}
+
+}  // namespace workbench::fit

@@ -1,0 +1,37 @@
+// Which parameters are fitted, with what bounds and priors: the engineer's words as search
+// parameters.
+//
+//   --free, --fix  names as in model files ("mass_kg", "friction.coulomb_N"), or an effect's name
+//   --prior        name=mean+-sd, sd in the parameter's unit or in % of the mean; name=none
+//   --bounds       name=low:high, either may be left out
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "plant_sim/model_file.h"
+#include "workbench/matching/search_parameter.h"
+
+namespace workbench::fit {
+
+struct Wishes {
+  std::vector<std::string> free{};  ///< empty: the plant's uncertain ones and those of its effects
+  std::vector<std::string> fix{};
+  std::vector<std::string> priors{};
+  std::vector<std::string> bounds{};
+};
+
+struct Choice {
+  std::vector<matching::SearchParameter> searched;
+  Eigen::VectorXd start;
+};
+
+/// Throws config::schema::Error: exit 2 for a word that is not one of the above, 78 for an unknown
+/// parameter or a value that it cannot have.
+[[nodiscard]] Choice choose(const plant_sim::ModelFile& model, const Wishes& wishes);
+
+/// A finite number and nothing else; NaN otherwise.
+[[nodiscard]] double number_in(std::string_view text);
+
+}  // namespace workbench::fit

@@ -1,0 +1,276 @@
+#include "workbench/fit/estimation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "workbench/diagnose/parallel.h"
+#include "workbench/fit/doubts.h"
+#include "workbench/fit/starts.h"
+#include "workbench/matching/wide_run.h"
+
+namespace workbench::fit {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+using estimator::nonlinear::Covariance;
+using estimator::nonlinear::Problem;
+using estimator::nonlinear::Solution;
+using matching::Fitted;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+/// A fall of the cost by this is worth another look.
+constexpr double kBetter = 0.1;
+/// Costs within this of the best, and values within one standard error, are the same minimum.
+constexpr double kSameCost = 0.5;
+constexpr double kSamePlace = 1.0;
+/// Difference step of a plant's parameters, in logarithms: small, for nearly collinear ones.
+constexpr double kFine = 2e-5;
+constexpr double kPolished = 1e-7;
+constexpr int kPolishing = 8;
+
+class Estimator {
+ public:
+  explicit Estimator(const Task& task)
+      : task_(task),
+        run_(task.model, task.evidence, task.searched, task.observer_per_s, task.threads),
+        problem_(matching::problem_of(task.evidence, task.weights, task.searched)) {
+    problem_.evaluate = run_.evaluate();
+    problem_.lanes = run_.lanes();
+    for (std::size_t i = 0; i < task_.searched.size(); ++i) {
+      if (task_.searched[i].scale != matching::Scale::logarithmic) continue;
+      problem_.unknowns[i].step = problem_.unknowns[i].relative_step = kFine;
+    }
+  }
+
+  Estimation run() {
+    say("looking at what the record can tell");
+    derivatives(problem_, task_.start, out_.before.residual_m, start_jacobian_);
+    problem_.sigma = task_.evidence.noise_floor_m > 0.0
+                         ? task_.evidence.noise_floor_m
+                         : std::max(matching::rms(out_.before.residual_m, task_.weights), 1e-12);
+    out_.sight_before = sight(problem_, start_jacobian_, task_.searched, task_.start);
+    search();
+    polish(out_.fitted.x);
+    tell_starts();
+    know();
+    profile();
+    out_.noise_floor_m = task_.evidence.noise_floor_m;
+    out_.evaluations += out_.fitted.evaluations;
+    out_.fitted.x = solution_.x;
+    out_.fitted.sigma_m = problem_.sigma;
+    out_.fitted.residual_m = solution_.residual;
+    out_.fitted.jacobian = solution_.jacobian;
+    out_.fitted.at_bound = solution_.at_bound;
+    out_.fitted.fit_rms_m = matching::rms(solution_.residual, task_.weights);
+    out_.fitted.score_rms_m = matching::rms(solution_.residual, task_.evidence.scores);
+    out_.better = matching::with_values(task_.model, out_.fitted);
+    out_.after.residual_m = solution_.residual;
+    errors();
+    out_.interrupted = cancelled();
+    return std::move(out_);
+  }
+
+ private:
+  bool cancelled() const { return task_.cancel && task_.cancel(); }
+  void say(const std::string& doing) const {
+    if (task_.progress) task_.progress(doing);
+  }
+
+  void search() {
+    const std::vector<VectorXd> points =
+        starting_points(task_.searched, task_.start, std::max(1, task_.starts));
+    found_.resize(points.size());
+    say("fitting from " + std::to_string(points.size()) +
+        (points.size() == 1 ? " start" : " starts"));
+    const unsigned side_by_side = std::min(task_.threads, static_cast<unsigned>(points.size()));
+    diagnose::in_parallel(points.size(), side_by_side, [&](std::size_t i) {
+      if (i > 0 && cancelled()) return;
+      matching::FitOptions options;
+      options.final_jacobian = false;
+      options.observer_per_s = task_.observer_per_s;
+      options.cancel = task_.cancel;
+      options.threads = task_.threads / std::max(1U, side_by_side);
+      if (i == 0) {
+        options.start_residual_m = out_.before.residual_m;
+        options.start_jacobian = start_jacobian_;
+      }
+      found_[i] = matching::fit(task_.model, task_.evidence, task_.weights, task_.searched,
+                                points[i], options);
+    });
+    std::size_t best = 0;
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+      if (found_[i].x.size() == 0) continue;
+      out_.evaluations += found_[i].evaluations;
+      if (found_[i].fit_rms_m < found_[best].fit_rms_m) best = i;
+    }
+    // The priors count too: of the fits, the least cost by the measure of the best.
+    problem_.sigma = found_[best].sigma_m;
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+      if (found_[i].x.size() > 0 && cost(found_[i]) < cost(found_[best])) best = i;
+    }
+    out_.fitted = found_[best];
+    out_.evaluations -= out_.fitted.evaluations;
+    problem_.sigma = out_.fitted.sigma_m;
+  }
+
+  double cost(const Fitted& fitted) const {
+    return estimator::nonlinear::cost_of(problem_, fitted.x, fitted.residual_m);
+  }
+
+  void polish(const VectorXd& from) {
+    estimator::nonlinear::Options how;
+    how.cost_tolerance = kPolished;
+    how.max_iterations = kPolishing;
+    how.cancel = task_.cancel;
+    solution_ = minimize(problem_, from, how);
+    out_.evaluations += solution_.evaluations;
+    if (solution_.reason != estimator::nonlinear::Stop::kCancelled) return;
+    derivatives(problem_, solution_.x, solution_.residual, solution_.jacobian);
+    solution_.cost = cost_of(problem_, solution_.x, solution_.residual);
+  }
+
+  void tell_starts() {
+    const VectorXd std_error = covariance(problem_, solution_).std_error;
+    for (const Fitted& fitted : found_) {
+      if (fitted.x.size() == 0) continue;
+      ++out_.starts.tried;
+      bool near = true;
+      for (Index j = 0; j < fitted.x.size(); ++j) {
+        if (std::isfinite(std_error[j])) {
+          near = near && std::abs(fitted.x[j] - solution_.x[j]) < kSamePlace * std_error[j];
+        }
+      }
+      const bool good = cost(fitted) - solution_.cost < kSameCost;
+      ++(good ? (near ? out_.starts.same : out_.starts.elsewhere) : out_.starts.worse);
+    }
+  }
+
+  void know() {
+    known_ = covariance(problem_, solution_);
+    out_.effective_samples = known_.effective_samples;
+    out_.sight_after = sight(problem_, solution_.jacobian, task_.searched, solution_.x);
+    const auto n = static_cast<Index>(task_.searched.size());
+    out_.parameters.clear();
+    out_.correlation.setConstant(n, n, kNaN);
+    for (Index j = 0; j < n; ++j) {
+      const auto i = static_cast<std::size_t>(j);
+      const matching::SearchParameter& p = task_.searched[i];
+      Parameter q;
+      q.search = p;
+      q.start = p.value(task_.start[j]);
+      q.value = p.value(solution_.x[j]);
+      q.std_error = known_.std_error[j] * p.slope(solution_.x[j]);
+      q.low = std::min(p.value(known_.low[j]), p.value(known_.high[j]));
+      q.high = std::max(p.value(known_.low[j]), p.value(known_.high[j]));
+      q.at_bound = solution_.at_bound[i] * (p.scale == matching::Scale::reciprocal ? -1 : 1);
+      q.record_share = out_.sight_after.share[j];
+      out_.parameters.push_back(q);
+      for (Index k = 0; k < n; ++k) {
+        const double both = known_.matrix(j, j) * known_.matrix(k, k);
+        if (both > 0.0) out_.correlation(j, k) = known_.matrix(j, k) / std::sqrt(both);
+      }
+    }
+  }
+
+  void profile() {
+    if (task_.profiling == Profiling::none || cancelled()) return;
+    std::vector<std::string> why;
+    std::vector<estimator::nonlinear::Profile> walked;
+    for (int again = 0; again < 2; ++again) {
+      why = doubts(problem_, solution_, known_, task_.searched, out_.sight_after.share);
+      walked = profiles(task_, problem_, solution_, known_, chosen(why));
+      const auto least =
+          std::min_element(walked.begin(), walked.end(), [](const auto& a, const auto& b) {
+            return (a.least_x.size() > 0 ? a.least_cost : 1e300) <
+                   (b.least_x.size() > 0 ? b.least_cost : 1e300);
+          });
+      if (again > 0 || least->least_x.size() == 0 || cancelled() ||
+          least->least_cost > solution_.cost - kBetter) {
+        break;
+      }
+      say("a profile met a better place: looking there");
+      polish(least->least_x);
+      know();
+    }
+    for (std::size_t i = 0; i < walked.size(); ++i) {
+      out_.parameters[i].doubt = why[i];
+      if (walked[i].points.size() > 1) keep(walked[i], out_.parameters[i]);
+    }
+  }
+
+  std::vector<char> chosen(const std::vector<std::string>& why) const {
+    std::vector<char> which(why.size(), 0);
+    std::string names;
+    for (std::size_t i = 0; i < why.size(); ++i) {
+      const std::string& name = task_.searched[i].name;
+      const bool named =
+          std::find(task_.profiled.begin(), task_.profiled.end(), name) != task_.profiled.end();
+      which[i] = task_.profiling == Profiling::named ? named : !why[i].empty();
+      if (which[i] != 0) names += (names.empty() ? "" : ", ") + name;
+    }
+    if (!names.empty()) say("profile of " + names);
+    return which;
+  }
+
+  static void keep(const estimator::nonlinear::Profile& walked, Parameter& q) {
+    const matching::SearchParameter& p = q.search;
+    for (const auto& point : walked.points) q.profile.push_back({p.value(point.value), point.rise});
+    q.low_found = walked.low_found;
+    q.high_found = walked.high_found;
+    q.low = p.value(walked.low);
+    q.high = p.value(walked.high);
+    if (p.scale == matching::Scale::reciprocal) {
+      std::reverse(q.profile.begin(), q.profile.end());
+      std::swap(q.low, q.high);
+      std::swap(q.low_found, q.high_found);
+    }
+    q.from_profile = !walked.cancelled;
+  }
+
+  void errors() {
+    for (Errors* of : {&out_.before, &out_.after}) {
+      of->rms_m = matching::rms(of->residual_m, task_.weights);
+      if (task_.evidence.scores.sum() > 0.0) {
+        of->heldout_rms_m = matching::rms(of->residual_m, task_.evidence.scores);
+      }
+    }
+    // Pure simulation of every sample, as `compare` has it.
+    matching::Evidence all = task_.evidence;
+    for (matching::Measured& record : all.records) {
+      std::fill(record.settled.begin(), record.settled.end(), 1);
+    }
+    matching::EvidenceRun free(task_.model, all, task_.searched, 0.0);
+    Eigen::MatrixXd points(task_.start.size(), 2);
+    points << task_.start, solution_.x;
+    Eigen::MatrixXd residuals_m;
+    free.residuals(points, residuals_m);
+    double spread_m2 = 0.0;
+    for (const matching::Measured& record : all.records) {
+      const Eigen::Map<const VectorXd> y(record.y_m.data(), static_cast<Index>(record.size()));
+      spread_m2 += (y.array() - y.mean()).square().sum();
+    }
+    Index column = 0;
+    for (Errors* of : {&out_.before, &out_.after}) {
+      of->free_run_m = residuals_m.col(column++);
+      const double square_m2 = of->free_run_m.squaredNorm();
+      of->free_run_rms_m = std::sqrt(square_m2 / static_cast<double>(of->free_run_m.size()));
+      of->fit_percent = 100.0 * (1.0 - std::sqrt(square_m2 / spread_m2));
+    }
+  }
+
+  const Task& task_;
+  matching::WideRun run_;
+  Problem problem_;
+  Estimation out_;
+  Eigen::MatrixXd start_jacobian_;
+  std::vector<Fitted> found_;
+  Solution solution_;
+  Covariance known_;
+};
+
+}  // namespace
+
+Estimation estimate(const Task& task) { return Estimator(task).run(); }
+
+}  // namespace workbench::fit

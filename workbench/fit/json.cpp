@@ -1,0 +1,100 @@
+// A fit as JSON.
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "workbench/fit/outcome.h"
+
+namespace workbench::fit {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json number(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
+}
+
+ordered_json json_of(const Parameter& p) {
+  ordered_json out;
+  out["value"] = number(p.value);
+  out["std_error"] = number(p.std_error);
+  out["low"] = number(p.low);
+  out["high"] = number(p.high);
+  out["at_bound"] = p.at_bound;
+  out["start"] = number(p.start);
+  const bool prior = std::isfinite(p.search.prior_sd);
+  const double mean = p.search.value(p.search.prior_mean);
+  out["prior_mean"] = prior ? number(mean) : nullptr;
+  out["prior_sd"] =
+      prior ? number(p.search.prior_sd * p.search.slope(p.search.prior_mean)) : nullptr;
+  out["record_share"] = number(p.record_share);
+  out["interval"] = p.from_profile ? "profile" : "normal";
+  out["remark"] = remark(p);
+  if (!p.profile.empty()) {
+    out["profile"] = ordered_json::array();
+    for (const auto& point : p.profile) {
+      out["profile"].push_back({{"value", number(point.value)}, {"rise", number(point.rise)}});
+    }
+    out["low_found"] = p.low_found;
+    out["high_found"] = p.high_found;
+  }
+  return out;
+}
+
+ordered_json json_of(const Sight& sight) {
+  ordered_json out{{"condition", number(sight.condition)}, {"unseen", ordered_json::array()}};
+  for (const Unseen& unseen : sight.unseen) {
+    out["unseen"].push_back({{"parameter", unseen.name},
+                             {"partners", unseen.partners},
+                             {"visible", unseen.visible},
+                             {"words", unseen.words}});
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string to_json(const Outcome& o) {
+  const Estimation& e = o.estimation;
+  ordered_json out;
+  out["model"] = o.prepared->task.model.name;
+  out["records"] = ordered_json::array();
+  for (const auto& record : o.prepared->task.evidence.records)
+    out["records"].push_back(record.name);
+  out["words"] = words(o);
+  out["rms_before_m"] = number(e.before.rms_m);
+  out["rms_after_m"] = number(e.after.rms_m);
+  out["heldout_before_m"] = number(e.before.heldout_rms_m);
+  out["heldout_after_m"] = number(e.after.heldout_rms_m);
+  out["free_run_before_m"] = number(e.before.free_run_rms_m);
+  out["free_run_after_m"] = number(e.after.free_run_rms_m);
+  out["fit_percent_before"] = number(e.before.fit_percent);
+  out["fit_percent_after"] = number(e.after.fit_percent);
+  out["noise_floor_m"] = number(o.noise_floor_m);
+  out["sigma_m"] = number(e.fitted.sigma_m);  // that weighted the squared residuals
+  out["effective_samples"] = number(e.effective_samples);
+  for (const Parameter& p : e.parameters) out["parameters"][p.search.name] = json_of(p);
+  out["starts"] = {{"tried", e.starts.tried},
+                   {"same", e.starts.same},
+                   {"elsewhere", e.starts.elsewhere},
+                   {"worse", e.starts.worse}};
+  out["identifiability"] = {{"before", json_of(e.sight_before)}, {"after", json_of(e.sight_after)}};
+  ordered_json names = ordered_json::array();
+  ordered_json matrix = ordered_json::array();
+  for (Eigen::Index i = 0; i < e.correlation.rows(); ++i) {
+    names.push_back(e.parameters[static_cast<std::size_t>(i)].search.name);
+    ordered_json row = ordered_json::array();
+    for (Eigen::Index j = 0; j < e.correlation.cols(); ++j)
+      row.push_back(number(e.correlation(i, j)));
+    matrix.push_back(row);
+  }
+  out["correlation"] = {{"names", names}, {"matrix", matrix}};
+  out["observer_per_s"] = number(o.prepared->task.observer_per_s);
+  out["interrupted"] = e.interrupted;
+  out["notes"] = o.prepared->notes;
+  out["command"] = o.prepared->command;
+  out["evaluations"] = e.evaluations;
+  out["runtime_s"] = number(o.runtime_s);
+  return out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace workbench::fit

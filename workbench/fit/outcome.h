@@ -1,0 +1,43 @@
+// A finished fit as text, JSON, report and model file.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "workbench/fit/estimation.h"
+#include "workbench/fit/request.h"
+#include "workbench/report/report.h"
+
+namespace workbench::fit {
+
+struct Outcome {
+  const Prepared* prepared = nullptr;  ///< must outlive this
+  Estimation estimation;
+  double noise_floor_m = 0.0;  ///< NaN: cannot be told
+  double runtime_s = 0.0;
+  std::string output;  ///< the model file that is written, or empty
+};
+
+/// What it comes to in plain words, most important first.
+[[nodiscard]] std::vector<std::string> words(const Outcome& outcome);
+/// "held by its prior", "at its lower bound", ... or empty.
+[[nodiscard]] std::string remark(const Parameter& parameter);
+
+/// Words, table, profiles.
+[[nodiscard]] std::string to_text(const Outcome& outcome);
+
+/// SI throughout; a missing number is null. Keys: parameters.NAME.{value, std_error, low, high,
+/// at_bound (-1, 0, 1), start, prior_mean, prior_sd, record_share, interval ("normal", "profile"),
+/// remark, profile}, rms_before_m, rms_after_m, heldout_before_m, heldout_after_m,
+/// free_run_before_m, free_run_after_m, fit_percent_before, fit_percent_after, noise_floor_m,
+/// sigma_m (weighted the fit), starts.{tried, same, elsewhere, worse},
+/// identifiability.{before, after}.{condition, unseen: [{parameter, partners, visible, words}]},
+/// correlation.{names, matrix}, interrupted, runtime_s.
+[[nodiscard]] std::string to_json(const Outcome& outcome);
+
+[[nodiscard]] report::Report to_report(const Outcome& outcome);
+
+/// The model with what was found; its head says how.
+[[nodiscard]] std::string to_model(const Outcome& outcome);
+
+}  // namespace workbench::fit

@@ -1,0 +1,221 @@
+// A fit as a report.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "workbench/diagnose/quantity.h"
+#include "workbench/fit/outcome.h"
+
+namespace workbench::fit {
+namespace {
+
+using diagnose::number;
+using report::Plot;
+using report::Section;
+using report::Tone;
+using Values = std::vector<double>;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kThreshold = 3.841458820694124;
+constexpr double kMillimetres_m = 0.5e-3;
+
+struct LengthUnit {
+  double per_m;
+  const char* name;
+};
+
+LengthUnit unit_for(double rms_m) {
+  return rms_m < kMillimetres_m ? LengthUnit{1e6, "um"} : LengthUnit{1e3, "mm"};
+}
+
+/// One record's part of the long series, NaN where it does not count and at gaps.
+Values part(const Eigen::VectorXd& series, std::size_t start, const matching::Measured& record,
+            double factor, bool settled_only) {
+  Values out(record.size(), kNaN);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (settled_only && record.settled[i] == 0) continue;
+    out[i] = factor * series[static_cast<Eigen::Index>(start + i)];
+  }
+  for (const std::size_t begin : record.starts) {
+    if (begin > 0) out[begin] = kNaN;
+  }
+  return out;
+}
+
+Plot over_time(const matching::Measured& record, const std::string& title,
+               const report::Axis& axis) {
+  Plot plot;
+  plot.title = title;
+  plot.x = {"time", "s"};
+  plot.y = axis;
+  plot.x_values = record.t_s;
+  plot.zoom_group = record.name;
+  return plot;
+}
+
+void add_series(Plot& plot, const std::string& name, Tone tone, Values y) {
+  report::Series series;
+  series.name = name;
+  series.tone = tone;
+  series.y = std::move(y);
+  plot.series.push_back(std::move(series));
+}
+
+Section record_section(const Outcome& o, std::size_t r) {
+  const matching::Evidence& evidence = o.prepared->task.evidence;
+  const matching::Measured& record = evidence.records[r];
+  const std::size_t start = evidence.starts[r];
+  const Estimation& e = o.estimation;
+  Section section;
+  section.heading = record.name;
+  const Eigen::Map<const Eigen::VectorXd> y(record.y_m.data(),
+                                            static_cast<Eigen::Index>(record.size()));
+  const auto modelled = [&](const Eigen::VectorXd& error_m) {
+    Eigen::VectorXd all = -error_m;
+    all.segment(static_cast<Eigen::Index>(start), y.size()) += y;
+    return part(all, start, record, 1e3, false);
+  };
+  Plot position = over_time(record, "Position, pure simulation", {"position", "mm"});
+  Values measured_mm = record.y_m;
+  for (double& value : measured_mm) value *= 1e3;
+  add_series(position, "measured", Tone::measured, std::move(measured_mm));
+  add_series(position, "model as it was", Tone::muted, modelled(e.before.free_run_m));
+  add_series(position, "fitted model", Tone::model, modelled(e.after.free_run_m));
+  section.plots.push_back(position);
+  for (const bool fitted : {false, true}) {
+    const Errors& errors = fitted ? e.after : e.before;
+    const LengthUnit unit = unit_for(errors.rms_m);
+    Plot plot = over_time(record, fitted ? "Error after the fit" : "Error before the fit",
+                          {"measured less model", unit.name});
+    add_series(plot, "error, drift taken away", fitted ? Tone::improved : Tone::residual,
+               part(errors.residual_m, start, record, unit.per_m, true));
+    if (std::isfinite(o.noise_floor_m)) {
+      plot.lines = {{2.0 * unit.per_m * o.noise_floor_m, "twice the noise floor"},
+                    {-2.0 * unit.per_m * o.noise_floor_m, ""}};
+    }
+    section.plots.push_back(plot);
+  }
+  Plot command = over_time(record, "Command", {"command", "V"});
+  add_series(command, "command", Tone::muted, record.u_V);
+  section.plots.push_back(command);
+  return section;
+}
+
+std::string figure(double value) { return std::isnan(value) ? "-" : number("%.5g", value); }
+
+Section parameter_section(const Estimation& e) {
+  Section section;
+  section.heading = "Parameters";
+  section.paragraphs.push_back(
+      "Standard errors allow for residuals of any colour; the 95 % interval is that of the "
+      "likelihood's profile where one was walked. The record's share tells how much of what is "
+      "known comes from the record rather than from the prior.");
+  report::Table table;
+  table.columns = {
+      {"parameter", "", false}, {"unit", "", false}, {"start", ""}, {"fitted", ""},
+      {"std error", ""},        {"95 % from", ""},   {"to", ""},    {"record's share", "%"},
+      {"remark", "", false}};
+  for (const Parameter& p : e.parameters) {
+    table.rows.push_back({p.search.name, plant_sim::unit_of(p.search.name), figure(p.start),
+                          figure(p.value), number("%.2g", p.std_error), figure(p.low),
+                          figure(p.high), number("%.0f", 100.0 * p.record_share), remark(p)});
+    if (p.at_bound != 0) table.marked_rows.push_back(table.rows.size() - 1);
+  }
+  section.tables.push_back(table);
+  section.tables_first = true;
+  return section;
+}
+
+Section sight_section(const Estimation& e) {
+  Section section;
+  section.heading = "What the record cannot see";
+  for (const bool after : {false, true}) {
+    const Sight& sight = after ? e.sight_after : e.sight_before;
+    std::string text = after ? "After the fit: " : "Before the fit, at the model file's values: ";
+    std::string list;
+    for (const Unseen& unseen : sight.unseen) list += (list.empty() ? "" : "; ") + unseen.words;
+    section.paragraphs.push_back(
+        text + (list.empty() ? "every fitted parameter is seen" : list) +
+        number(". Condition of the scaled Jacobian: %.3g.", sight.condition));
+  }
+  report::Table table;
+  table.caption = "Correlation of the estimates";
+  table.columns.push_back({"", "", false});
+  for (const Parameter& p : e.parameters) table.columns.push_back({p.search.name, ""});
+  for (Eigen::Index i = 0; i < e.correlation.rows(); ++i) {
+    std::vector<std::string> row{e.parameters[static_cast<std::size_t>(i)].search.name};
+    for (Eigen::Index j = 0; j < e.correlation.cols(); ++j) {
+      const double value = e.correlation(i, j);
+      row.push_back(std::isnan(value) ? "-" : number("%.2f", value));
+    }
+    table.rows.push_back(row);
+  }
+  section.tables.push_back(table);
+  return section;
+}
+
+Section profile_section(const Estimation& e) {
+  Section section;
+  section.heading = "Profiles of the likelihood";
+  section.paragraphs.push_back(
+      "How the least cost rises when one parameter is held away from its best value and all others "
+      "follow. The 95 % interval is where it stays under 3.84. A parabola means that the standard "
+      "error tells all.");
+  for (const Parameter& p : e.parameters) {
+    if (p.profile.size() < 3) continue;
+    Plot plot;
+    plot.title = p.search.name;
+    plot.width = report::Width::half;
+    plot.x = {p.search.name, plant_sim::unit_of(p.search.name)};
+    plot.y = {"rise of the cost", ""};
+    report::Series series;
+    series.name = "profile";
+    series.tone = Tone::model;
+    for (const auto& point : p.profile) {
+      if (!std::isfinite(point.value) || point.rise > 5.0 * kThreshold) continue;
+      plot.x_values.push_back(point.value);
+      series.y.push_back(point.rise);
+    }
+    plot.series.push_back(series);
+    plot.lines.push_back({kThreshold, "95 %"});
+    plot.caption = p.doubt;
+    section.plots.push_back(plot);
+  }
+  return section;
+}
+
+}  // namespace
+
+report::Report to_report(const Outcome& o) {
+  const Estimation& e = o.estimation;
+  const std::vector<std::string> said = words(o);
+  report::Report made;
+  made.title = o.prepared->task.model.name + " fitted";
+  made.verdict = said.front();
+  made.summary.assign(said.begin() + 1, said.end());
+  const bool at_floor = std::isfinite(o.noise_floor_m) && e.after.rms_m < 1.15 * o.noise_floor_m;
+  made.state = at_floor && !e.interrupted ? report::State::good : report::State::warn;
+  const auto fact = [&](const char* label, double metres) {
+    const LengthUnit unit = unit_for(metres);
+    made.facts.push_back({label, number("%.3g", unit.per_m * metres), unit.name});
+  };
+  fact("error before", e.before.rms_m);
+  fact("error after", e.after.rms_m);
+  if (std::isfinite(e.after.heldout_rms_m)) fact("not fitted, after", e.after.heldout_rms_m);
+  if (std::isfinite(o.noise_floor_m)) fact("noise floor", o.noise_floor_m);
+  made.facts.push_back({"fit of the pure simulation", number("%.4g", e.after.fit_percent), "%"});
+  made.command = o.prepared->command;
+  made.sections.push_back(parameter_section(e));
+  for (std::size_t r = 0; r < o.prepared->task.evidence.records.size(); ++r) {
+    made.sections.push_back(record_section(o, r));
+  }
+  const auto profiled = [](const Parameter& p) { return p.profile.size() > 2; };
+  if (std::any_of(e.parameters.begin(), e.parameters.end(), profiled)) {
+    made.sections.push_back(profile_section(e));
+  }
+  made.sections.push_back(sight_section(e));
+  made.made_with = "spoolwatch fit";
+  return made;
+}
+
+}  // namespace workbench::fit

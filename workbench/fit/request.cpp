@@ -1,0 +1,255 @@
+#include "workbench/fit/request.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <thread>
+
+#include "config/record/record.h"
+#include "config/schema/document.h"
+#include "config/schema/error.h"
+#include "workbench/diagnose/shell_words.h"
+
+namespace workbench::fit {
+namespace {
+
+namespace fs = std::filesystem;
+using config::schema::Error;
+using config::schema::ExitCode;
+using matching::Evidence;
+using matching::Measured;
+
+/// A rod that moves less than this many noise floors does not tell a parameter.
+constexpr double kLeastMotion = 5.0;
+
+bool same_file(const std::string& a, const std::string& b) {
+  std::error_code ignored;
+  return a == b || fs::equivalent(a, b, ignored);
+}
+
+void check_files(const Request& request) {
+  for (std::size_t i = 0; i < request.records.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if (same_file(request.records[i], request.records[k])) {
+        throw Error(ExitCode::usage, request.records[i] +
+                                         ": is given twice; allowed: --weight to "
+                                         "make a record count more");
+      }
+    }
+    for (const std::string& holdout : request.holdouts) {
+      if (same_file(request.records[i], holdout)) {
+        throw Error(ExitCode::usage, "--holdout " + holdout + ": is fitted too");
+      }
+    }
+    for (const std::string* file : {&request.output, &request.json, &request.report}) {
+      if (!file->empty() && same_file(*file, request.records[i])) {
+        throw Error(ExitCode::usage, *file + ": would overwrite a record");
+      }
+    }
+  }
+  for (const std::string* file : {&request.json, &request.report}) {
+    if (!file->empty() && same_file(*file, request.model)) {
+      throw Error(ExitCode::usage, *file + ": would overwrite the model");
+    }
+  }
+  for (const std::string* file : {&request.output, &request.json, &request.report}) {
+    const fs::path folder = fs::path(*file).parent_path();
+    if (!file->empty() && !folder.empty() && !fs::is_directory(folder)) {
+      throw Error(ExitCode::failed, *file + ": there is no folder " + folder.string());
+    }
+  }
+}
+
+Measured read(const std::string& file) {
+  Measured record = matching::measured(config::record::read_record(file));
+  record.name = file;
+  return record;
+}
+
+void require_motion(const Evidence& evidence) {
+  for (const Measured& record : evidence.records) {
+    const auto [low, high] = std::minmax_element(record.y_m.begin(), record.y_m.end());
+    const double floor_m = std::isfinite(evidence.noise_floor_m) ? evidence.noise_floor_m : 0.0;
+    if (*high - *low <= 2.0 * kLeastMotion * floor_m || !(*high > *low)) {
+      char text[120];
+      std::snprintf(text, sizeof text, "the rod does not move: y stays within %.3g um of itself",
+                    1e6 * (*high - *low));
+      throw config::schema::bad_data(record.name, text,
+                                     "a record with motion well above the position's noise");
+    }
+  }
+}
+
+void note_saturation(const Measured& record, std::vector<std::string>& notes) {
+  const auto [low, high] = std::minmax_element(record.u_V.begin(), record.u_V.end());
+  const double most_V = std::max(std::abs(*low), std::abs(*high));
+  const auto limited = std::count_if(record.u_V.begin(), record.u_V.end(), [&](double u_V) {
+    return std::abs(u_V) >= most_V * (1.0 - 1e-9);
+  });
+  const double share = static_cast<double>(limited) / static_cast<double>(record.size());
+  if (!(*high > *low)) {
+    notes.push_back(record.name + ": the command never changes");
+  } else if (share > 0.2) {
+    char text[96];
+    std::snprintf(text, sizeof text, ": the command stands at its limit for %.0f %% of the time",
+                  100.0 * share);
+    notes.push_back(record.name + text);
+  }
+}
+
+/// Takes the samples of a span out of fit and score.
+void ignore(const std::string& text, Evidence& evidence, Eigen::VectorXd& mask) {
+  const std::size_t at = text.rfind('@');
+  const std::string name = at == std::string::npos ? "" : text.substr(0, at);
+  const std::string span = at == std::string::npos ? text : text.substr(at + 1);
+  const std::size_t colon = span.find(':');
+  const double from_s =
+      colon == std::string::npos ? std::nan("") : number_in(span.substr(0, colon));
+  const double to_s = colon == std::string::npos ? std::nan("") : number_in(span.substr(colon + 1));
+  if (!(from_s < to_s)) {
+    throw Error(ExitCode::usage,
+                "--ignore " + text + ": is no span; allowed: from:to or RECORD@from:to, in s");
+  }
+  bool met = false;
+  for (std::size_t r = 0; r < evidence.records.size(); ++r) {
+    const Measured& record = evidence.records[r];
+    if (!name.empty() && record.name != name && fs::path(record.name).filename() != name) continue;
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      if (record.t_s[i] < from_s || record.t_s[i] > to_s) continue;
+      mask[static_cast<Eigen::Index>(evidence.starts[r] + i)] = 0.0;
+      met = true;
+    }
+  }
+  if (!met) throw Error(ExitCode::usage, "--ignore " + text + ": no sample lies there");
+}
+
+void weigh(const Request& request, Task& task) {
+  Evidence& evidence = task.evidence;
+  if (!request.weights.empty() && request.weights.size() != request.records.size()) {
+    throw Error(ExitCode::usage, "--weight: has " + std::to_string(request.weights.size()) +
+                                     " numbers; allowed: one for each of the " +
+                                     std::to_string(request.records.size()) + " records");
+  }
+  Eigen::VectorXd mask = Eigen::VectorXd::Ones(evidence.size());
+  for (const std::string& text : request.ignored) ignore(text, evidence, mask);
+  if (request.fit == "all" && request.holdouts.empty()) {
+    evidence.fits = evidence.counts;
+    evidence.scores.setZero();
+  }
+  evidence.fits = evidence.fits.cwiseProduct(mask);
+  evidence.scores = evidence.scores.cwiseProduct(mask);
+  evidence.counts = evidence.counts.cwiseProduct(mask);
+  task.weights = evidence.fits;
+  for (std::size_t r = 0; r < request.weights.size(); ++r) {
+    const auto size = static_cast<Eigen::Index>(evidence.records[r].size());
+    task.weights.segment(static_cast<Eigen::Index>(evidence.starts[r]), size) *= request.weights[r];
+  }
+  const auto least = static_cast<double>(10 * task.searched.size());
+  if ((task.weights.array() > 0.0).cast<double>().sum() < least) {
+    throw Error(ExitCode::usage,
+                "--ignore, --weight, --fit: leave fewer than 10 samples for each "
+                "of the " +
+                    std::to_string(task.searched.size()) + " parameters");
+  }
+}
+
+void choose_profiles(const Request& request, Task& task) {
+  for (const std::string& name : request.profiles) {
+    if (name == "none") task.profiling = Profiling::none;
+    if (name == "none" || name == "doubtful") continue;
+    std::vector<std::string> names;
+    for (const auto& p : task.searched) names.push_back(p.name);
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      std::string allowed = "none, doubtful";
+      for (const std::string& known : names) allowed += ", " + known;
+      const std::string near = config::schema::nearest(name, names);
+      throw config::schema::bad_config(
+          "--profile " + name,
+          "is not fitted" + (near.empty() ? std::string() : ", did you mean " + near + "?"),
+          allowed);
+    }
+    task.profiling = Profiling::named;
+    task.profiled.push_back(name);
+  }
+}
+
+std::string shown(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", value);
+  return text;
+}
+
+std::string command_of(const Request& request) {
+  std::vector<std::string> words{"spoolwatch", "fit", request.model};
+  words.insert(words.end(), request.records.begin(), request.records.end());
+  const auto add = [&](const char* option, const std::string& value) {
+    if (value.empty()) return;
+    words.emplace_back(option);
+    words.push_back(value);
+  };
+  const auto add_all = [&](const char* option, const std::vector<std::string>& values) {
+    for (const std::string& value : values) add(option, value);
+  };
+  add_all("--holdout", request.holdouts);
+  if (request.fit != "all") add("--fit", request.fit);
+  add_all("--free", request.wishes.free);
+  add_all("--fix", request.wishes.fix);
+  add_all("--prior", request.wishes.priors);
+  add_all("--bounds", request.wishes.bounds);
+  add_all("--ignore", request.ignored);
+  for (const double weight : request.weights) add("--weight", shown(weight));
+  if (request.starts != Request{}.starts) add("--starts", std::to_string(request.starts));
+  add_all("--profile", request.profiles);
+  if (request.observer_per_s != matching::kObserver_per_s) {
+    add("--observer", shown(request.observer_per_s));
+  }
+  add_all("--set", request.assignments);
+  add("-o", request.output);
+  add("--json", request.json);
+  add("--report", request.report);
+  return diagnose::shell_command(words);
+}
+
+}  // namespace
+
+Prepared prepare(const Request& request) {
+  check_files(request);
+  Prepared out;
+  Task& task = out.task;
+  auto document = config::schema::Document::load(request.model);
+  for (const std::string& assignment : request.assignments) document.set(assignment);
+  task.model = plant_sim::read_model(document);
+  const Choice choice = choose(task.model, request.wishes);
+  task.searched = choice.searched;
+  task.start = choice.start;
+  choose_profiles(request, task);
+  std::vector<Measured> records;
+  std::vector<Measured> holdouts;
+  for (const std::string& file : request.records) records.push_back(read(file));
+  for (const std::string& file : request.holdouts) holdouts.push_back(read(file));
+  const matching::Split split =
+      request.fit == "all" ? matching::Split::blocks : matching::parse_split(request.fit);
+  task.evidence = matching::evidence(std::move(records), std::move(holdouts), split);
+  require_motion(task.evidence);
+  for (const Measured& record : task.evidence.records) {
+    for (const std::string& note : record.notes) out.notes.push_back(record.name + ": " + note);
+    note_saturation(record, out.notes);
+    if (request.observer_per_s * record.sample_time_s >= 1.0) {
+      throw Error(ExitCode::usage, "--observer: is too fast for samples every " +
+                                       shown(record.sample_time_s) +
+                                       " s; allowed: below 1 / sample time");
+    }
+  }
+  out.noise_floor_m = task.evidence.noise_floor_m;
+  if (!std::isfinite(out.noise_floor_m)) task.evidence.noise_floor_m = 0.0;
+  weigh(request, task);
+  task.starts = request.starts;
+  task.observer_per_s = request.observer_per_s;
+  task.threads =
+      request.threads > 0 ? request.threads : std::max(1U, std::thread::hardware_concurrency());
+  out.command = command_of(request);
+  return out;
+}
+
+}  // namespace workbench::fit

@@ -1,0 +1,42 @@
+// What `spoolwatch fit` is asked for, checked before anything is computed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "workbench/fit/choice.h"
+#include "workbench/fit/estimation.h"
+
+namespace workbench::fit {
+
+struct Request {
+  std::string model;
+  std::vector<std::string> records;
+  std::vector<std::string> holdouts;
+  std::string fit = "all";
+  Wishes wishes;
+  std::vector<std::string> ignored;  ///< "from:to" in s, or "RECORD@from:to"
+  std::vector<double> weights;       ///< of the records; empty: all 1
+  int starts = 4;
+  std::vector<std::string> profiles;  ///< names, "doubtful" or "none"
+  double observer_per_s = matching::kObserver_per_s;
+  unsigned threads = 0;  ///< 0: one for each processor
+  std::vector<std::string> assignments;
+  std::string output;
+  std::string json;  ///< "-": standard output
+  std::string report;
+  bool quiet = false;
+};
+
+struct Prepared {
+  Task task;
+  double noise_floor_m = 0.0;  ///< NaN: cannot be told
+  std::vector<std::string> notes;
+  std::string command;  ///< as it was typed
+};
+
+/// Reads everything. Throws config::schema::Error: exit 2 for contradictory options, 65 and 78 for
+/// files that cannot be used.
+[[nodiscard]] Prepared prepare(const Request& request);
+
+}  // namespace workbench::fit

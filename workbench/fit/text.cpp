@@ -1,0 +1,126 @@
+// A fit for the terminal.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "workbench/diagnose/quantity.h"
+#include "workbench/fit/outcome.h"
+
+namespace workbench::fit {
+namespace {
+
+using diagnose::number;
+
+constexpr std::size_t kColumns = 92;
+constexpr int kPlotWidth = 61;
+constexpr int kPlotHeight = 6;
+constexpr double kThreshold = 3.841458820694124;
+
+std::string wrapped(const std::string& text, const std::string& indent) {
+  std::string out;
+  std::size_t column = 0;
+  std::size_t from = 0;
+  while (from < text.size()) {
+    const std::size_t to = std::min(text.find(' ', from), text.size());
+    const std::string word = text.substr(from, to - from);
+    if (column > 0 && column + 1 + word.size() > kColumns) {
+      out += "\n" + indent;
+      column = indent.size();
+    } else if (column > 0) {
+      out += " ";
+      ++column;
+    }
+    out += word;
+    column += word.size();
+    from = to + 1;
+  }
+  return out + "\n";
+}
+
+std::string five(double value) { return std::isnan(value) ? "-" : number("%.5g", value); }
+
+std::string table(const std::vector<Parameter>& parameters) {
+  std::size_t width = 9;
+  for (const Parameter& p : parameters) width = std::max(width, p.search.name.size());
+  const auto row = [&](const std::string& name, const std::string& start, const std::string& value,
+                       const std::string& error, const std::string& low, const std::string& high,
+                       const std::string& what) {
+    char text[320];
+    std::snprintf(text, sizeof text, "  %-*s %11s %11s %10s %11s %11s  %s", static_cast<int>(width),
+                  name.c_str(), start.c_str(), value.c_str(), error.c_str(), low.c_str(),
+                  high.c_str(), what.c_str());
+    std::string line = text;
+    line.erase(line.find_last_not_of(' ') + 1);
+    return line + "\n";
+  };
+  std::string out = row("parameter", "start", "fitted", "+-", "95 % from", "to", "");
+  for (const Parameter& p : parameters) {
+    const bool shows = p.at_bound == 0 || p.from_profile;
+    out += row(p.search.name, five(p.start), five(p.value), number("%.2g", p.std_error),
+               shows ? five(p.low) : "-", shows ? five(p.high) : "-", remark(p));
+  }
+  return out;
+}
+
+/// The rise of the cost over the parameter's value, up to twice the threshold.
+std::string plot(const Parameter& p) {
+  const auto& points = p.profile;
+  const double least = points.front().value;
+  const double most = points.back().value;
+  std::string out = "Profile of " + p.search.name + ": 95 % from " + five(p.low) +
+                    (p.low_found ? "" : " (its bound)") + " to " + five(p.high) +
+                    (p.high_found ? "" : " (its bound)") + (p.doubt.empty() ? "" : "; " + p.doubt) +
+                    "\n";
+  if (!(most > least)) return out;
+  std::vector<std::string> rows(kPlotHeight + 1, std::string(kPlotWidth, ' '));
+  rows[kPlotHeight / 2].assign(kPlotWidth, '.');
+  std::size_t k = 1;
+  for (int c = 0; c < kPlotWidth; ++c) {
+    const double x = least + (most - least) * c / (kPlotWidth - 1);
+    while (k + 1 < points.size() && points[k].value < x) ++k;
+    const auto& a = points[k - 1];
+    const auto& b = points[k];
+    const double part = b.value > a.value ? (x - a.value) / (b.value - a.value) : 0.0;
+    // Roots of the rise are nearly straight.
+    const auto root = [](double rise) { return std::copysign(std::sqrt(std::abs(rise)), rise); };
+    const double sign_a = a.value < p.value ? -1.0 : 1.0;
+    const double sign_b = b.value <= p.value ? -1.0 : 1.0;
+    const double z = sign_a * root(a.rise) * (1.0 - part) + sign_b * root(b.rise) * part;
+    const double height = z * z / (2.0 * kThreshold) * kPlotHeight;
+    if (height > kPlotHeight + 0.5) continue;
+    rows[static_cast<std::size_t>(kPlotHeight - std::lround(height))][static_cast<std::size_t>(c)] =
+        '*';
+  }
+  for (int r = 0; r <= kPlotHeight; ++r) {
+    const char* const label = r == 0 ? "  7.7" : r == kPlotHeight / 2 ? "  3.8" : "     ";
+    out += std::string(r == kPlotHeight ? "    0" : label) + " |" +
+           rows[static_cast<std::size_t>(r)] + "\n";
+  }
+  const std::string left = five(least);
+  const std::string right = five(most);
+  const std::size_t used = left.size() + right.size();
+  out += "       " + left + std::string(used < kPlotWidth ? kPlotWidth - used : 1, ' ') + right +
+         " " + plant_sim::unit_of(p.search.name) + "\n";
+  return out;
+}
+
+}  // namespace
+
+std::string to_text(const Outcome& o) {
+  const Prepared& prepared = *o.prepared;
+  std::string names;
+  std::size_t r = 0;
+  for (const auto& record : prepared.task.evidence.records) {
+    names += (r++ == 0 ? "" : ", ") + record.name;
+  }
+  std::string out = prepared.task.model.name + " fitted to " + names + "\n\n";
+  for (const std::string& line : words(o)) out += wrapped(line, "  ");
+  out += "\n" + table(o.estimation.parameters);
+  for (const Parameter& p : o.estimation.parameters) {
+    if (p.profile.size() > 2) out += "\n" + plot(p);
+  }
+  if (!o.output.empty()) out += "\n" + o.output + " holds the fitted model.\n";
+  return out;
+}
+
+}  // namespace workbench::fit

@@ -1,0 +1,144 @@
+// What a fit comes to, in plain words.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "workbench/diagnose/quantity.h"
+#include "workbench/fit/outcome.h"
+
+namespace workbench::fit {
+namespace {
+
+using diagnose::length_words;
+using diagnose::number;
+
+constexpr double kAtFloor = 1.15;
+/// Moves under this many standard errors and this share are no news.
+constexpr double kNews = 2.0;
+constexpr std::size_t kMostMoved = 4;
+
+std::string move_words(const Parameter& p) {
+  const diagnose::Quantity q = diagnose::quantity(p.search.name, p.value, p.std_error);
+  std::string text = p.search.name;
+  if (p.start > 0.0 && p.value > 0.0 && std::isfinite(p.start) && std::isfinite(p.value)) {
+    text += number(" %+.2g %%", 100.0 * (p.value / p.start - 1.0)) + " to " + words(q);
+  } else {
+    text += " from " + words(diagnose::quantity(p.search.name, p.start, std::nan(""), p.value)) +
+            " to " + words(q);
+  }
+  return text;
+}
+
+double errors_moved(const Parameter& p) {
+  const double moved = std::abs(p.value - p.start);
+  if (!(moved > 0.0)) return 0.0;
+  return std::isfinite(p.std_error) && p.std_error > 0.0 ? moved / p.std_error : 1e6;
+}
+
+std::string size_words(const Outcome& o) {
+  const Estimation& e = o.estimation;
+  std::string text = "Error " + length_words(e.before.rms_m) + " -> " +
+                     length_words(e.after.rms_m) + " RMS" +
+                     (o.prepared->task.observer_per_s > 0.0 ? ", drift taken away" : "");
+  if (std::isfinite(o.noise_floor_m)) {
+    const double ratio = e.after.rms_m / o.noise_floor_m;
+    text += "; noise floor " + length_words(o.noise_floor_m);
+    text += ratio <= kAtFloor ? ": the model now explains all but the noise"
+                              : number(": still %.3g times as much", ratio);
+  } else {
+    text += "; the noise floor cannot be told from this record";
+  }
+  return text + ". Pure simulation: " + length_words(e.before.free_run_rms_m) + " -> " +
+         length_words(e.after.free_run_rms_m) + number(" RMS, fit %.4g", e.before.fit_percent) +
+         number(" -> %.4g %%.", e.after.fit_percent);
+}
+
+std::string heldout_words(const Estimation& e) {
+  if (!std::isfinite(e.after.heldout_rms_m)) return "";
+  std::string text = "On data that were not fitted: " + length_words(e.before.heldout_rms_m) +
+                     " -> " + length_words(e.after.heldout_rms_m) + " RMS.";
+  if (e.after.heldout_rms_m > e.before.heldout_rms_m) {
+    text += " The fit does not hold there: it is no better than the model as it was.";
+  }
+  return text;
+}
+
+std::string moved_words(const Estimation& e) {
+  std::vector<const Parameter*> moved;
+  for (const Parameter& p : e.parameters) {
+    if (errors_moved(p) > kNews) moved.push_back(&p);
+  }
+  if (moved.empty()) return "No parameter moved by more than chance.";
+  std::stable_sort(moved.begin(), moved.end(), [](const auto* a, const auto* b) {
+    return errors_moved(*a) > errors_moved(*b);
+  });
+  std::string text = "Moved: ";
+  for (std::size_t i = 0; i < std::min(moved.size(), kMostMoved); ++i) {
+    text += (i == 0 ? "" : ", ") + move_words(*moved[i]);
+  }
+  if (moved.size() > kMostMoved) {
+    text += ", and " + std::to_string(moved.size() - kMostMoved) + " more";
+  }
+  return text + ".";
+}
+
+std::string bound_words(const Estimation& e) {
+  std::string text;
+  for (const Parameter& p : e.parameters) {
+    if (p.at_bound == 0) continue;
+    text += (text.empty() ? "" : ", ") + p.search.name +
+            (p.at_bound < 0 ? " at its lower" : " at its upper") + " bound";
+  }
+  return text.empty() ? text : "Pressed against a limit: " + text + ".";
+}
+
+std::string starts_words(const Starts& s) {
+  if (s.tried < 2) return "";
+  std::string text =
+      std::to_string(s.same) + " of " + std::to_string(s.tried) + " starts ended in this minimum";
+  if (s.elsewhere > 0) {
+    text += ", " + std::to_string(s.elsewhere) + " as good at other values";
+  }
+  if (s.worse > 0) text += ", " + std::to_string(s.worse) + " in a worse one";
+  return text + ".";
+}
+
+std::string sight_words(const Sight& sight, const std::string& when) {
+  std::string text;
+  for (const Unseen& unseen : sight.unseen) {
+    text += (text.empty() ? "" : "; ") + unseen.words;
+  }
+  return text.empty() ? "" : when + text + ".";
+}
+
+}  // namespace
+
+std::string remark(const Parameter& p) {
+  if (p.at_bound < 0) return "at its lower bound";
+  if (p.at_bound > 0) return "at its upper bound";
+  if (std::isinf(p.std_error)) return "not visible";
+  if (std::isfinite(p.search.prior_sd) && p.record_share < 0.51) return "held by its prior";
+  if (p.from_profile) return p.doubt.empty() ? "profile" : "profile: " + p.doubt;
+  return p.doubt;
+}
+
+std::vector<std::string> words(const Outcome& o) {
+  const Estimation& e = o.estimation;
+  std::vector<std::string> said{size_words(o), heldout_words(e), moved_words(e), bound_words(e)};
+  const std::string before = sight_words(e.sight_before, "");
+  const std::string after = sight_words(e.sight_after, "");
+  if (before == after && !before.empty()) {
+    said.push_back("What the record cannot see, before the fit and after it: " + before);
+  } else {
+    if (!before.empty()) said.push_back("What the record cannot see, at the start: " + before);
+    if (!after.empty()) said.push_back("What the record cannot see, after the fit: " + after);
+    if (after.empty()) said.push_back("The record sees every fitted parameter.");
+  }
+  said.push_back(starts_words(e.starts));
+  if (e.interrupted) said.insert(said.begin(), "Interrupted: this is the best so far.");
+  for (const std::string& note : o.prepared->notes) said.push_back("Note: " + note + ".");
+  said.erase(std::remove(said.begin(), said.end(), std::string()), said.end());
+  return said;
+}
+
+}  // namespace workbench::fit
