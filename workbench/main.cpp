@@ -16,6 +16,7 @@ constexpr workbench::Command kCommands[] = {
     {"estimate", "fit an ARX structure to a record", workbench::add_estimate},
     {"compare", "where a model fails against a record", workbench::add_compare},
     {"fit", "a model's parameters estimated from records", workbench::add_fit},
+    {"diagnose", "which physical effect a model misses", workbench::add_diagnose},
     {"calibrate", "learn alarm bands from a healthy record", workbench::add_calibrate},
     {"effects", "the library of physical effects", workbench::add_effects},
     {"add", "a model file with an effect more", workbench::add_add},

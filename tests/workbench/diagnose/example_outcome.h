@@ -1,0 +1,59 @@
+// Diagnoses as they may come out, made by hand: for what is written from them.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "workbench/diagnose/outcome.h"
+
+namespace workbench::diagnose {
+
+inline matching::Fitted example_fit(double score_rms_m) {
+  matching::Fitted fitted;
+  fitted.x = Eigen::VectorXd::Zero(1);
+  fitted.score_rms_m = score_rms_m;
+  return fitted;
+}
+
+inline Candidate example_candidate(const std::string& effect, double score_rms_m, double p) {
+  Candidate candidate;
+  candidate.effects = {effect};
+  candidate.fitted = example_fit(score_rms_m);
+  candidate.score_rms_m = score_rms_m;
+  candidate.p_value = p;
+  candidate.fitted_at_all = true;
+  return candidate;
+}
+
+/// Friction found on one record of 26.3 um; the figures are chosen, none is computed.
+inline Outcome example_outcome() {
+  Outcome outcome;
+  outcome.model_file = "rig.toml";
+  outcome.records = {"bench.csv"};
+  outcome.command = "spoolwatch diagnose rig.toml bench.csv";
+  Diagnosis& d = outcome.diagnosis;
+  d.verdict = Verdict::missing;
+  d.missing = {"friction"};
+  d.noise_floor_m = 2.4e-6;
+  d.nominal_rms_m = 1.42e-3;
+  d.rms_before_m = 26.3e-6;
+  d.rms_after_m = 2.7e-6;
+  d.parameters = {{"damping_N_s_per_m", 1000.0 / 3.0, 4.0, false},
+                  {"friction.coulomb_N", 145.31, 1.9, false},
+                  {"friction.static_N", 181.2, 4.3, false},
+                  {"friction.stribeck_mps", 0.5, std::nan(""), true}};
+  d.steps = {{"", 26.3e-6}, {"friction", 2.7e-6}};
+  Round first;
+  first.before.fitted = example_fit(26.3e-6);
+  Candidate hopeless;
+  hopeless.effects = {"backlash"};
+  first.candidates = {example_candidate("friction", 2.7e-6, 1e-12),
+                      example_candidate("deadband", 9.8e-6, 0.02), hopeless};
+  d.ladder.rounds = {first};
+  d.ladder.final.added = {"friction"};
+  d.ladder.final.fitted = example_fit(2.7e-6);
+  d.final = d.ladder.final.fitted;
+  return outcome;
+}
+
+}  // namespace workbench::diagnose

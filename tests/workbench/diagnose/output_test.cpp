@@ -1,0 +1,134 @@
+// JSON, text, the better model's file and the progress line, from diagnoses made by hand.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "config/schema/document.h"
+#include "tests/workbench/diagnose/example_outcome.h"
+#include "workbench/diagnose/better_model.h"
+#include "workbench/diagnose/json.h"
+#include "workbench/diagnose/progress_line.h"
+#include "workbench/diagnose/text_output.h"
+
+namespace workbench::diagnose {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(DiagnosisJson, HasThePublishedKeysInSi) {
+  Outcome outcome = example_outcome();
+  outcome.diagnosis.ambiguous = {{"friction", "backlash"}};
+  outcome.diagnosis.where = {{"force", "speed", 0.62}};
+  const json j = json::parse(to_json(outcome));
+  EXPECT_EQ(j["verdict"], "missing");
+  EXPECT_EQ(j["missing"], json({"friction"}));
+  EXPECT_EQ(j["ambiguous"], json::parse(R"([["friction", "backlash"]])"));
+  EXPECT_EQ(j["noise_floor_m"], 2.4e-6);
+  EXPECT_EQ(j["rms_before_m"], 26.3e-6);
+  EXPECT_EQ(j["rms_after_m"], 2.7e-6);
+  EXPECT_EQ(j["nominal_rms_m"], 1.42e-3);
+  EXPECT_EQ(j["parameters"]["damping_N_s_per_m"]["value"], 1000.0 / 3.0);  // every digit
+  EXPECT_EQ(j["parameters"]["friction.coulomb_N"]["std_error"], 1.9);
+  EXPECT_EQ(j["parameters"]["friction.stribeck_mps"]["std_error"], nullptr);
+  EXPECT_EQ(j["parameters"]["friction.stribeck_mps"]["at_bound"], true);
+  EXPECT_EQ(j["candidates"][0]["effect"], "friction");
+  EXPECT_EQ(j["candidates"][0]["round"], 1);
+  EXPECT_EQ(j["candidates"][0]["rms_heldout_m"], 2.7e-6);
+  EXPECT_EQ(j["candidates"][0]["p_value"], 1e-12);
+  EXPECT_EQ(j["candidates"][2]["rms_heldout_m"], nullptr);  // never fitted
+  EXPECT_EQ(j["where"][0],
+            json::parse(R"({"class": "force", "variable": "speed", "explained_ratio": 0.62})"));
+  EXPECT_EQ(j["steps"][0]["added"], nullptr);
+  EXPECT_EQ(j["steps"][1]["added"], "friction");
+  EXPECT_EQ(j["steps"][1]["rms_heldout_m"], 2.7e-6);
+  EXPECT_EQ(j["interrupted"], false);
+  for (const char* key : {"advice", "runtime_s", "notes", "same_here"})
+    EXPECT_TRUE(j.contains(key));
+}
+
+TEST(DiagnosisJson, MissingNumbersAreNull) {
+  Outcome outcome = example_outcome();
+  outcome.diagnosis = {};
+  outcome.diagnosis.verdict = Verdict::not_excited;
+  outcome.diagnosis.noise_floor_m = std::nan("");
+  const json j = json::parse(to_json(outcome));
+  EXPECT_EQ(j["verdict"], "not_excited");
+  for (const char* key :
+       {"noise_floor_m", "rms_before_m", "rms_after_m", "nominal_rms_m", "free_run_after_m"}) {
+    EXPECT_EQ(j[key], nullptr) << key;
+  }
+  EXPECT_TRUE(j["candidates"].empty());
+}
+
+TEST(DiagnosisText, BeginsWithTheVerdictAndEndsWithTheNextCommand) {
+  Outcome outcome = example_outcome();
+  outcome.output = "better.toml";
+  std::ostringstream out;
+  print(outcome, out);
+  const std::string text = out.str();
+  EXPECT_TRUE(text.starts_with("Missing: friction: Coulomb 145.3 +- 1.9 N")) << text;
+  EXPECT_THAT(text, HasSubstr("+ friction                      2.7 um     1.12  #\n"));
+  EXPECT_THAT(text, testing::ContainsRegex("friction +2.7 um  p below 1e-06  taken\n"));
+  EXPECT_THAT(text, Not(HasSubstr("backlash")));  // never fitted
+  EXPECT_TRUE(text.ends_with("next: spoolwatch compare better.toml bench.csv\n")) << text;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100U) << line;
+}
+
+TEST(BetterModel, SaysAtItsTopWhatWasAddedAndReadsBack) {
+  Outcome outcome = example_outcome();
+  outcome.records = {"bench\r\nmass_kg = 1.csv"};  // no comment ends early
+  *outcome.diagnosis.better.value("friction.coulomb_N") = 145.31;
+  outcome.interrupted = true;
+  const std::string text = better_model_text(outcome);
+  EXPECT_THAT(text, HasSubstr("# Missing: friction: Coulomb 145.3 +- 1.9 N"));
+  EXPECT_THAT(text, HasSubstr("INTERRUPTED"));
+  EXPECT_THAT(text, HasSubstr("model file as it is 1.42 mm, its parameters fitted 26.3 um"));
+  EXPECT_THAT(text, HasSubstr("# spoolwatch diagnose rig.toml bench.csv\n"));
+  plant_sim::ModelFile read =
+      plant_sim::read_model(config::schema::Document::parse(text, "better.toml"));
+  EXPECT_EQ(*read.value("friction.coulomb_N"), 145.31);
+  EXPECT_NE(*read.value("mass_kg"), 1.0);
+}
+
+Progress step(const std::string& doing, int done) {
+  Progress progress;
+  progress.doing = doing;
+  progress.done = done;
+  progress.of = 36;
+  progress.best = "friction";
+  progress.best_rms_m = 2.71e-6;
+  return progress;
+}
+
+TEST(ProgressLine, IsOneLineForEachRoundWhereNoTerminalIs) {
+  std::ostringstream out;
+  ProgressLine line(out, false, 2.4e-6);
+  line.show(step("round 1: trying friction", 1));
+  Progress ranked = step("round 1: trying backlash", 2);
+  ranked.expected = {"friction", "backlash", "deadband"};
+  line.show(ranked);
+  line.show(ranked);
+  line.show(step("round 2: trying backlash", 1));
+  line.end();
+  EXPECT_EQ(out.str(),
+            "round 1: 36 steps, best friction 2.71 um, noise floor 2.4 um\n"
+            "round 1: at first sight friction, backlash, deadband\n"
+            "round 2: 36 steps, best friction 2.71 um, noise floor 2.4 um\n");
+}
+
+TEST(ProgressLine, IsRenewedOnATerminalAndWipedInTheEnd) {
+  std::ostringstream out;
+  ProgressLine line(out, true, 2.4e-6);
+  line.show(step("round 1: trying friction", 7));
+  line.end();
+  EXPECT_EQ(out.str(),
+            "\r\x1b[Kround 1: trying friction, 7 of 36; best friction 2.71 um, noise floor 2.4 um"
+            "\r\x1b[K");
+}
+
+}  // namespace
+}  // namespace workbench::diagnose

@@ -1,0 +1,94 @@
+// Requests that are refused before anything is computed.
+#include "workbench/diagnose/request.h"
+
+#include <gmock/gmock.h>
+
+#include "config/schema/error.h"
+#include "tests/workbench/diagnose/servo_bench.h"
+
+namespace workbench::diagnose {
+namespace {
+
+using config::schema::Error;
+using testing::HasSubstr;
+
+class DiagnoseRequest : public testing::Test, public ServoBench {
+ protected:
+  DiagnoseRequest() {
+    request_.model = model();
+    request_.records = {record("bench.csv", {.duration_s = 3.0})};
+  }
+
+  void expect_refused(int exit_code, const std::string& words) const {
+    try {
+      (void)prepare(request_);
+      ADD_FAILURE() << "is taken";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.exit_code(), exit_code) << error.what();
+      EXPECT_THAT(error.what(), HasSubstr(words));
+      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+    }
+  }
+
+  Request request_;
+};
+
+TEST_F(DiagnoseRequest, IsTakenWithItsRecordsAndCommand) {
+  request_.holdouts = {record("other.csv", {.sample_time_s = 0.01})};
+  request_.report = file("it's.html");
+  const Outcome outcome = prepare(request_);
+  EXPECT_EQ(outcome.shop.evidence.records.size(), 2U);
+  EXPECT_EQ(outcome.command, "spoolwatch diagnose " + model() + " " + request_.records[0] +
+                                 " --holdout " + request_.holdouts[0] + " --report '" +
+                                 file("it'\\''s.html") + "'");
+}
+
+TEST_F(DiagnoseRequest, HoldoutThatIsFittedTooIsRefused) {
+  request_.holdouts = {file("./bench.csv")};
+  expect_refused(2, "is fitted too");
+}
+
+TEST_F(DiagnoseRequest, RecordGivenTwiceIsRefused) {
+  request_.records.push_back(request_.records[0]);
+  expect_refused(2, "is given twice");
+}
+
+TEST_F(DiagnoseRequest, HoldoutBesideASplitIsRefused) {
+  EXPECT_THROW(diagnose_with({model(), request_.records[0], "--fit", "first-half", "--holdout",
+                              record("other.csv", {})}),
+               CLI::ExcludesError);
+}
+
+TEST_F(DiagnoseRequest, OutputsThatCouldNotBeWrittenAreRefusedAtOnce) {
+  request_.output = file("nowhere/better.toml");
+  expect_refused(1, "does not exist");
+  request_.output = file("");
+  expect_refused(1, "is a folder");
+  request_.output = "";
+  request_.report = "/proc/report.html";
+  if (geteuid() != 0) expect_refused(1, "cannot be written");
+}
+
+TEST_F(DiagnoseRequest, OutputsOverInputsOrOverEachOtherAreRefused) {
+  request_.output = request_.records[0];
+  expect_refused(2, "would overwrite an input");
+  request_.output = "";
+  request_.json = model();
+  expect_refused(2, "would overwrite an input");
+  request_.json = file("d.json");
+  request_.report = file("d.json");
+  expect_refused(2, "is the file of two outputs");
+}
+
+TEST_F(DiagnoseRequest, ShortRecordIsBadData) {
+  request_.records = {record("short.csv", {.duration_s = 1.0})};
+  expect_refused(65, "too short");
+}
+
+TEST_F(DiagnoseRequest, UnknownEffectIsBadConfiguration) {
+  request_.assignments = {"effects.fricton.coulomb_N=100"};
+  expect_refused(78, "fricton");
+}
+
+}  // namespace
+}  // namespace workbench::diagnose

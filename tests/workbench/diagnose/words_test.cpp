@@ -1,0 +1,101 @@
+// What is said of a diagnosis, for every verdict.
+#include "workbench/diagnose/words.h"
+
+#include <gmock/gmock.h>
+
+#include "tests/workbench/diagnose/example_outcome.h"
+
+namespace workbench::diagnose {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(Words, MissingEffectIsNamedWithItsValuesAndTheirErrors) {
+  const Outcome outcome = example_outcome();
+  EXPECT_EQ(verdict_words(outcome.diagnosis),
+            "Missing: friction: Coulomb 145.3 +- 1.9 N, static 181 +- 4 N, Stribeck speed 500 mm/s "
+            "(at its bound).");
+  EXPECT_THAT(remarks(outcome), Contains("The held-out error falls from 26.3 um to 2.7 um; the "
+                                         "noise floor is 2.4 um."));
+}
+
+TEST(Words, NothingMissingIsSaidBesideTheNoiseFloor) {
+  Outcome outcome = example_outcome();
+  outcome.diagnosis.verdict = Verdict::nothing_missing;
+  outcome.diagnosis.missing.clear();
+  EXPECT_THAT(verdict_words(outcome.diagnosis),
+              HasSubstr("Nothing is missing: the model, its own parameters adjusted, is left with "
+                        "2.7 um on held-out data, 1.12 times the noise floor of 2.4 um"));
+  EXPECT_THAT(remarks(outcome), Contains("With the plant's own parameters fitted, the held-out "
+                                         "error goes from 1.42 mm to 26.3 um."));
+}
+
+TEST(Words, RivalsAreNamedWithWhatIsSureInAnyCase) {
+  Outcome outcome = example_outcome();
+  Diagnosis& d = outcome.diagnosis;
+  d.verdict = Verdict::undetermined;
+  d.missing = {"friction", "flow_asymmetry"};
+  d.ambiguous = {{"flow_asymmetry", "load_force"}};
+  d.advice = "Move faster.";
+  const std::string words = verdict_words(d);
+  EXPECT_THAT(words, HasSubstr("Undetermined: flow_asymmetry or load_force is missing"));
+  EXPECT_THAT(words, HasSubstr("Missing in any case: friction: Coulomb"));
+  EXPECT_THAT(remarks(outcome), Contains("Move faster."));
+}
+
+TEST(Words, UnexplainedErrorSaysWhereItEnters) {
+  Outcome outcome = example_outcome();
+  Diagnosis& d = outcome.diagnosis;
+  d.verdict = Verdict::unexplained;
+  d.rms_after_m = 12e-6;
+  d.where = {{"force", "speed", 0.62}, {"flow", "v", 0.4}};
+  EXPECT_THAT(verdict_words(d),
+              HasSubstr("Not the whole story: friction is missing, but an error of"));
+  EXPECT_THAT(remarks(outcome),
+              Contains(HasSubstr("Taken for the better model: friction: Coulomb 145.3 +- 1.9 N")));
+  EXPECT_THAT(verdict_words(d), HasSubstr("12 um on held-out data, 5.00 times the noise floor"));
+  EXPECT_THAT(remarks(outcome),
+              Contains("What is left enters as a force that goes with the speed (62 % of its "
+                       "square), or as a flow that goes with the velocity v (40 %)."));
+  d.missing.clear();
+  EXPECT_THAT(verdict_words(d), HasSubstr("Unexplained: an error of 12 um"));
+}
+
+TEST(Words, RecordWithoutMotionGivesItsReasonAndNoFigures) {
+  Outcome outcome = example_outcome();
+  Diagnosis& d = outcome.diagnosis;
+  d = {};
+  d.verdict = Verdict::not_excited;
+  d.notes = {"the rod moves by 0.01 mm in all"};
+  d.advice = "Move more.";
+  EXPECT_EQ(verdict_words(d), "The record cannot tell: the rod moves by 0.01 mm in all.");
+  EXPECT_THAT(remarks(outcome), testing::ElementsAre("Move more."));
+  EXPECT_EQ(next_command(outcome), "");
+}
+
+TEST(Words, InterruptionIsSaidFirst) {
+  Outcome outcome = example_outcome();
+  outcome.interrupted = true;
+  EXPECT_THAT(remarks(outcome).front(), HasSubstr("Interrupted: this is the best so far"));
+}
+
+TEST(Words, NextCommandHoldsTheBetterModelAgainstTheRecord) {
+  Outcome outcome = example_outcome();
+  EXPECT_EQ(next_command(outcome), "spoolwatch diagnose rig.toml bench.csv -o better.toml");
+  outcome.output = "my rig.toml";
+  EXPECT_EQ(next_command(outcome), "spoolwatch compare 'my rig.toml' bench.csv");
+  outcome.holdouts = {"other.csv"};
+  EXPECT_EQ(next_command(outcome), "spoolwatch compare 'my rig.toml' other.csv");
+}
+
+TEST(Words, EffectsThatActAlikeOnThisPlantAreNamed) {
+  Outcome outcome = example_outcome();
+  outcome.diagnosis.same_here = {{"friction", "my_formula"}};
+  EXPECT_THAT(remarks(outcome),
+              Contains(HasSubstr("On this plant friction and my_formula act alike")));
+}
+
+}  // namespace
+}  // namespace workbench::diagnose
