@@ -79,7 +79,7 @@ void check_outputs(const Request& request) {
       std::error_code ignored;
       const bool plain = !files[i]->empty() && (!fs::exists(*files[i], ignored) ||
                                                 fs::is_regular_file(*files[i], ignored));
-      if (plain && fs::absolute(*files[i]) == fs::absolute(*files[k])) {
+      if (plain && !files[k]->empty() && fs::absolute(*files[i]) == fs::absolute(*files[k])) {
         throw Error(ExitCode::usage, *files[i] + ": is the file of two outputs");
       }
     }
