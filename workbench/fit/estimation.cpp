@@ -1,6 +1,7 @@
 #include "workbench/fit/estimation.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "workbench/diagnose/parallel.h"
@@ -26,34 +27,48 @@ constexpr double kSameCost = 0.5;
 constexpr double kSamePlace = 1.0;
 /// Difference step of a plant's parameters, in logarithms: small, for nearly collinear ones.
 constexpr double kFine = 2e-5;
+constexpr double kCoarse = 3e-5;
+constexpr int kDescent = 30;
+constexpr double kSameSigma = 1.2;
 constexpr double kPolished = 1e-7;
 constexpr int kPolishing = 8;
+
+/// Effects such as dry friction or play make the cost ragged.
+bool is_smooth(const plant_sim::ModelFile& model) {
+  return std::none_of(model.effects.begin(), model.effects.end(),
+                      [](const auto& effect) { return effect.present; });
+}
 
 class Estimator {
  public:
   explicit Estimator(const Task& task)
       : task_(task),
         run_(task.model, task.evidence, task.searched, task.observer_per_s, task.threads),
-        problem_(matching::problem_of(task.evidence, task.weights, task.searched)) {
+        smooth_(is_smooth(task.model)),
+        problem_(matching::problem_of(task.evidence, task.weights, task.searched,
+                                      smooth_ ? kFine : matching::kLogarithmStep)) {
     problem_.evaluate = run_.evaluate();
     problem_.lanes = run_.lanes();
-    for (std::size_t i = 0; i < task_.searched.size(); ++i) {
-      if (task_.searched[i].scale != matching::Scale::logarithmic) continue;
-      problem_.unknowns[i].step = problem_.unknowns[i].relative_step = kFine;
-    }
   }
 
   Estimation run() {
+    const auto begin = std::chrono::steady_clock::now();
     say("looking at what the record can tell");
     derivatives(problem_, task_.start, out_.before.residual_m, start_jacobian_);
     problem_.sigma = task_.evidence.noise_floor_m > 0.0
                          ? task_.evidence.noise_floor_m
                          : std::max(matching::rms(out_.before.residual_m, task_.weights), 1e-12);
     out_.sight_before = sight(problem_, start_jacobian_, task_.searched, task_.start);
-    search();
-    polish(out_.fitted.x);
+    if (task_.starts > 1) {
+      search();
+    } else {
+      descend();
+    }
+    polish(out_.fitted.x, &out_.fitted);
+    if (task_.starts <= 1) found_.assign(1, as_fitted());
     tell_starts();
     know();
+    out_.fit_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     profile();
     out_.noise_floor_m = task_.evidence.noise_floor_m;
     out_.evaluations += out_.fitted.evaluations;
@@ -88,6 +103,8 @@ class Estimator {
       if (i > 0 && cancelled()) return;
       matching::FitOptions options;
       options.final_jacobian = false;
+      options.tolerance = kCoarse;  // polished afterwards
+      if (smooth_) options.logarithm_step = kFine;
       options.observer_per_s = task_.observer_per_s;
       options.cancel = task_.cancel;
       options.threads = task_.threads / std::max(1U, side_by_side);
@@ -114,15 +131,60 @@ class Estimator {
     problem_.sigma = out_.fitted.sigma_m;
   }
 
+  /// From the one start: after each step the residual is weighed anew, until its size is known.
+  void descend() {
+    say("fitting");
+    Fitted& at = out_.fitted;
+    at.searched = task_.searched;
+    at.x = task_.start;
+    at.residual_m = out_.before.residual_m;
+    at.jacobian = start_jacobian_;
+    const auto weighed = [&] {
+      return std::max({task_.evidence.noise_floor_m, matching::rms(at.residual_m, task_.weights),
+                       1e-12}) *
+             std::sqrt(matching::correlation_factor(at.residual_m, task_.weights));
+    };
+    at.sigma_m = weighed();
+    for (int k = 0; k < kDescent && !cancelled(); ++k) {
+      problem_.sigma = at.sigma_m;
+      estimator::nonlinear::Options how;
+      how.max_iterations = 1;
+      how.final_jacobian = false;
+      how.start_residual = at.residual_m;
+      how.start_jacobian = at.jacobian;
+      solution_ = minimize(problem_, at.x, how);
+      out_.evaluations += solution_.evaluations;
+      at.x = solution_.x;
+      at.residual_m = solution_.residual;
+      at.jacobian = solution_.jacobian;
+      at.sigma_m = weighed();
+      if (at.sigma_m * kSameSigma > problem_.sigma) break;
+    }
+    problem_.sigma = at.sigma_m;
+  }
+
+  Fitted as_fitted() const {
+    Fitted fitted = out_.fitted;
+    fitted.x = solution_.x;
+    fitted.residual_m = solution_.residual;
+    return fitted;
+  }
+
   double cost(const Fitted& fitted) const {
     return estimator::nonlinear::cost_of(problem_, fitted.x, fitted.residual_m);
   }
 
-  void polish(const VectorXd& from) {
+  /// `known`: residual and Jacobian there, or null.
+  void polish(const VectorXd& from, const Fitted* known) {
     estimator::nonlinear::Options how;
     how.cost_tolerance = kPolished;
     how.max_iterations = kPolishing;
     how.cancel = task_.cancel;
+    how.central = !smooth_;
+    if (smooth_ && known != nullptr && known->jacobian.size() > 0) {
+      how.start_residual = known->residual_m;
+      how.start_jacobian = known->jacobian;
+    }
     solution_ = minimize(problem_, from, how);
     out_.evaluations += solution_.evaluations;
     if (solution_.reason != estimator::nonlinear::Stop::kCancelled) return;
@@ -190,7 +252,7 @@ class Estimator {
         break;
       }
       say("a profile met a better place: looking there");
-      polish(least->least_x);
+      polish(least->least_x, nullptr);
       know();
     }
     for (std::size_t i = 0; i < walked.size(); ++i) {
@@ -261,6 +323,7 @@ class Estimator {
 
   const Task& task_;
   matching::WideRun run_;
+  bool smooth_;
   Problem problem_;
   Estimation out_;
   Eigen::MatrixXd start_jacobian_;

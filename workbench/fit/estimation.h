@@ -85,6 +85,7 @@ struct Estimation {
   double effective_samples = 0.0;
   Starts starts;
   bool interrupted = false;
+  double fit_s = 0.0;   ///< time taken up to the standard errors, profiles left out
   int evaluations = 0;  ///< groups of eight simulations, without the profiles'
 };
 

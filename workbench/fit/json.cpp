@@ -93,6 +93,7 @@ std::string to_json(const Outcome& o) {
   out["notes"] = o.prepared->notes;
   out["command"] = o.prepared->command;
   out["evaluations"] = e.evaluations;
+  out["fit_s"] = number(e.fit_s);
   out["runtime_s"] = number(o.runtime_s);
   return out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }

@@ -32,7 +32,8 @@ struct Outcome {
 /// free_run_before_m, free_run_after_m, fit_percent_before, fit_percent_after, noise_floor_m,
 /// sigma_m (weighted the fit), starts.{tried, same, elsewhere, worse},
 /// identifiability.{before, after}.{condition, unseen: [{parameter, partners, visible, words}]},
-/// correlation.{names, matrix}, interrupted, runtime_s.
+/// correlation.{names, matrix}, interrupted, fit_s (without
+/// reading, profiles and writing), runtime_s.
 [[nodiscard]] std::string to_json(const Outcome& outcome);
 
 [[nodiscard]] report::Report to_report(const Outcome& outcome);

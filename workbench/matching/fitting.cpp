@@ -18,7 +18,8 @@ constexpr double kSameSigma = 1.2;
 }  // namespace
 
 estimator::nonlinear::Problem problem_of(const Evidence& evidence, const Eigen::VectorXd& weights,
-                                         const std::vector<SearchParameter>& searched) {
+                                         const std::vector<SearchParameter>& searched,
+                                         double logarithm_step) {
   estimator::nonlinear::Problem problem;
   problem.residuals = evidence.size();
   problem.lanes = ModelRun::kLanes;
@@ -27,8 +28,9 @@ estimator::nonlinear::Problem problem_of(const Evidence& evidence, const Eigen::
     estimator::nonlinear::Unknown unknown;
     unknown.lower = p.lower;
     unknown.upper = p.upper;
-    unknown.step = kDifference;
-    unknown.relative_step = kDifference;
+    const bool logarithm = p.scale == Scale::logarithmic;
+    unknown.step = logarithm ? logarithm_step : kDifference;
+    unknown.relative_step = unknown.step;
     unknown.prior_mean = p.prior_mean;
     unknown.prior_sd = p.prior_sd;
     problem.unknowns.push_back(unknown);
@@ -94,7 +96,8 @@ Fitted fit(const plant_sim::ModelFile& model, const Evidence& evidence,
            const Eigen::VectorXd& weights, const std::vector<SearchParameter>& searched,
            const Eigen::VectorXd& start, const FitOptions& options) {
   WideRun run(model, evidence, searched, options.observer_per_s, options.threads);
-  estimator::nonlinear::Problem problem = problem_of(evidence, weights, searched);
+  estimator::nonlinear::Problem problem =
+      problem_of(evidence, weights, searched, options.logarithm_step);
   problem.evaluate = run.evaluate();
   problem.lanes = run.lanes();
   estimator::nonlinear::Options how;

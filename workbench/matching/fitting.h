@@ -37,6 +37,10 @@ class EvidenceRun {
   std::vector<Eigen::Index> sizes_;
 };
 
+/// Step of the difference quotients of logarithmic parameters: large enough for models with dry
+/// friction, whose cost is ragged.
+inline constexpr double kLogarithmStep = 1e-3;
+
 struct FitOptions {
   int max_iterations = 30;
   double tolerance = 1e-4;     ///< relative decrease of the cost at which it ends
@@ -44,6 +48,7 @@ struct FitOptions {
   double observer_per_s = kObserver_per_s;
   std::function<bool()> cancel;  ///< true ends the search, keeping the best so far
   unsigned threads = 1;          ///< that simulate side by side within this fit
+  double logarithm_step = kLogarithmStep;
   // Of the start, where known already; otherwise empty.
   Eigen::VectorXd start_residual_m;
   Eigen::MatrixXd start_jacobian;
@@ -66,9 +71,10 @@ struct Fitted {
 };
 
 /// What fit() minimises; `evaluate`, `lanes` and `sigma` are left to the caller.
-[[nodiscard]] estimator::nonlinear::Problem problem_of(
-    const Evidence& evidence, const Eigen::VectorXd& weights,
-    const std::vector<SearchParameter>& searched);
+[[nodiscard]] estimator::nonlinear::Problem problem_of(const Evidence& evidence,
+                                                       const Eigen::VectorXd& weights,
+                                                       const std::vector<SearchParameter>& searched,
+                                                       double logarithm_step = kLogarithmStep);
 
 /// Weights: which samples count in the fit (Evidence::fits, or counts for the final values).
 [[nodiscard]] Fitted fit(const plant_sim::ModelFile& model, const Evidence& evidence,

@@ -1,0 +1,73 @@
+// Do 95 % intervals cover the truth in 95 % of records? Plants drawn by the truth generator, noise
+// and motion too; the model starts from the printed values.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "tests/workbench/fit/truth_record.h"
+
+namespace workbench::fit {
+namespace {
+
+const std::string kModels = SPOOLWATCH_SOURCE_DIR "/config/models/";
+constexpr int kRecords = 40;
+
+struct Count {
+  int inside = 0;
+  int of = 0;
+  double square = 0.0;
+};
+
+/// Fits 40 records of `text` and counts how often the interval holds the truth, per parameter.
+Count covered(const std::string& text, const Wishes& wishes) {
+  const auto model = plant_sim::load_model(kModels + "thesis.toml");
+  const std::vector<std::string> motions{"multisine", "fast_steps", "chirp", "slow_steps"};
+  Count all;
+  std::map<std::string, Count> each;
+  for (int i = 0; i < kRecords; ++i) {
+    const auto seed = static_cast<std::size_t>(1000 + i);
+    const std::string motion = "motion=" + motions[static_cast<std::size_t>(i) % motions.size()];
+    const truth::Case of = truth::parse_case(motion + text, seed);
+    Task t = workbench_test::task(model, of, wishes);
+    t.starts = 1;
+    const Estimation e = estimate(t);
+    for (const truth::PlantField& field : truth::plant_fields()) {
+      for (const Parameter& p : e.parameters) {
+        if (p.search.name != field.name) continue;
+        const double value = of.plant.*field.member;
+        const double z = (value - p.value) / p.std_error;
+        for (Count* count : {&all, &each[field.name]}) {
+          count->inside += value >= p.low && value <= p.high ? 1 : 0;
+          count->square += z * z;
+          ++count->of;
+        }
+      }
+    }
+  }
+  for (const auto& [name, count] : each) {
+    std::printf("  %-36s covered %3d of %3d, RMS of (truth - fitted)/std error %.2f\n",
+                name.c_str(), count.inside, count.of, std::sqrt(count.square / count.of));
+  }
+  return all;
+}
+
+// What the record itself determines: the priors do nothing here.
+TEST(FitCoverage, IntervalsOfTheRecordAloneCover) {
+  const Count count = covered("", {.free = {"valve_gain_m_per_V,damping_N_s_per_m,bulk_modulus_Pa"},
+                                   .priors = {"valve_gain_m_per_V=none", "damping_N_s_per_m=none",
+                                              "bulk_modulus_Pa=none"}});
+  const double share = static_cast<double>(count.inside) / count.of;
+  EXPECT_GE(share, 0.90);
+  EXPECT_LE(share, 0.99);
+}
+
+TEST(FitCoverage, IntervalsWithPriorsCoverPlantsThatAreOffEverywhere) {
+  const Count count = covered(",mismatched=1", {});
+  const double share = static_cast<double>(count.inside) / count.of;
+  EXPECT_GE(share, 0.90);
+  EXPECT_LE(share, 0.99);
+}
+
+}  // namespace
+}  // namespace workbench::fit

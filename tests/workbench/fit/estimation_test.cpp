@@ -1,0 +1,211 @@
+#include "workbench/fit/estimation.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "tests/workbench/fit/truth_record.h"
+
+namespace workbench::fit {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using workbench_test::parameter;
+using workbench_test::task;
+
+const std::string kModels = SPOOLWATCH_SOURCE_DIR "/config/models/";
+
+truth::Case healthy(const std::string& more, std::size_t seed = 3) {
+  return truth::parse_case("motion=multisine,length_s=15," + more, seed);
+}
+
+/// y' = k u exactly: what is fitted is linear in k, so that weighted least squares has closed
+/// forms. Steps of the record are short enough for the observer to be left out.
+struct Straight {
+  static constexpr double kGain = 0.05;
+  static constexpr double kNoise_m = 20e-6;
+
+  explicit Straight(double start) {
+    std::mt19937_64 engine(5);
+    std::normal_distribution<double> noise(0.0, kNoise_m);
+    config::record::Record record;
+    record.name = "straight";
+    record.sample_time_s = 0.005;
+    double y_m = 0.0;
+    for (int k = 0; k < 2000; ++k) {
+      record.t_s.push_back(0.005 * k);
+      record.y_m.push_back(y_m + (k == 0 ? 0.0 : noise(engine)));
+      reach_Vs.push_back(y_m / kGain);
+      record.u_V.push_back(std::sin(2.0 * 0.005 * k) + 0.3 * std::sin(9.0 * 0.005 * k));
+      y_m += 0.005 * kGain * record.u_V.back();
+    }
+    made = matching::measured(record);
+    model = plant_sim::load_model(kModels + "velocity_servo.toml");
+    *model.value("gain_mps_per_V") = start;
+    *model.value("time_constant_s") = 0.0;
+  }
+
+  Task fit(const Wishes& wishes) const {
+    Task t;
+    t.model = model;
+    const Choice choice = choose(model, wishes);
+    t.searched = choice.searched;
+    t.start = choice.start;
+    t.evidence = matching::evidence({made}, {});
+    t.weights = t.evidence.counts;
+    t.evidence.scores.setZero();
+    t.observer_per_s = 0.0;
+    t.profiling = Profiling::none;
+    return t;
+  }
+  /// sum w x^2 and sum w x y of y = gain x.
+  std::pair<double, double> sums(const Eigen::VectorXd& weights) const {
+    double xx = 0.0;
+    double xy = 0.0;
+    for (std::size_t k = 0; k < reach_Vs.size(); ++k) {
+      const double w = weights[static_cast<Eigen::Index>(k)];
+      xx += w * reach_Vs[k] * reach_Vs[k];
+      xy += w * reach_Vs[k] * made.y_m[k];
+    }
+    return {xx, xy};
+  }
+
+  std::vector<double> reach_Vs;
+  matching::Measured made;
+  plant_sim::ModelFile model;
+};
+
+TEST(FitEstimation, IsWeightedLeastSquaresWhereTheModelIsLinear) {
+  const Straight line(0.03);
+  Task t = line.fit({.free = {"gain_mps_per_V"}, .priors = {"gain_mps_per_V=none"}});
+  t.weights.head(1000) *= 4.0;
+  const Estimation e = estimate(t);
+  const auto [xx, xy] = line.sums(t.weights);
+  const Parameter& gain = parameter(e, "gain_mps_per_V");
+  // To the search's tolerance, a hundredth of the standard error.
+  EXPECT_NEAR(gain.value, xy / xx, 1e-2 * gain.std_error);
+  EXPECT_EQ(e.starts.same, 4);
+  // Sandwich of two weights: var = s^2 sum w^2 x^2 / (sum w x^2)^2.
+  Eigen::VectorXd square = t.weights.array().square();
+  const double expected = Straight::kNoise_m * std::sqrt(line.sums(square).first) / xx;
+  EXPECT_NEAR(gain.std_error / expected, 1.0, 0.1);
+}
+
+TEST(FitEstimation, APriorPullsAsBayesHasIt) {
+  const Straight line(0.05);
+  // As narrow as what the record says: the answer is half way.
+  const auto [xx, xy] = line.sums(line.fit({}).weights);
+  const double own = Straight::kNoise_m / std::sqrt(xx);
+  const double mean = xy / xx + 4.0 * own;
+  char prior[80];
+  std::snprintf(prior, sizeof prior, "gain_mps_per_V=%.17g+-%.17g", mean, own);
+  const Estimation e = estimate(line.fit({.free = {"gain_mps_per_V"}, .priors = {prior}}));
+  const Parameter& gain = parameter(e, "gain_mps_per_V");
+  EXPECT_NEAR((gain.value - xy / xx) / own, 2.0, 0.15);
+  EXPECT_NEAR(gain.std_error / own, std::sqrt(0.5), 0.1);
+  EXPECT_NEAR(gain.record_share, 0.5, 0.1);
+}
+
+TEST(FitEstimation, StopsAtABoundAndSaysSo) {
+  const Straight line(0.03);
+  const Estimation e =
+      estimate(line.fit({.free = {"gain_mps_per_V"}, .bounds = {"gain_mps_per_V=0.01:0.04"}}));
+  const Parameter& gain = parameter(e, "gain_mps_per_V");
+  EXPECT_NEAR(gain.value, 0.04, 1e-12);
+  EXPECT_EQ(gain.at_bound, 1);
+  EXPECT_TRUE(std::isnan(gain.std_error));
+}
+
+TEST(FitEstimation, TheProfileOfAParabolaIsTheNormalInterval) {
+  const Straight line(0.05);
+  Task t = line.fit({.free = {"gain_mps_per_V"}, .priors = {"gain_mps_per_V=none"}});
+  const Estimation plain = estimate(t);
+  t.profiling = Profiling::named;
+  t.profiled = {"gain_mps_per_V"};
+  const Estimation walked = estimate(t);
+  const Parameter& a = plain.parameters[0];
+  const Parameter& b = walked.parameters[0];
+  EXPECT_TRUE(b.from_profile);
+  EXPECT_NEAR(b.low, a.low, 0.1 * a.std_error);
+  EXPECT_NEAR(b.high, a.high, 0.1 * a.std_error);
+}
+
+TEST(FitEstimation, FindsAnotherPlantsParametersWithinItsErrors) {
+  const auto model = plant_sim::load_model(kModels + "thesis.toml");
+  const truth::Case of = healthy("");
+  const Estimation e = estimate(task(model, of, {}));
+  for (const truth::PlantField& field : truth::plant_fields()) {
+    const Parameter& p = parameter(e, field.name);
+    EXPECT_LT(std::abs(p.value - of.plant.*field.member), 3.5 * p.std_error) << field.name;
+  }
+  EXPECT_LT(e.after.rms_m, 1.1 * e.fitted.sigma_m);
+  EXPECT_GT(e.before.rms_m, 3.0 * e.after.rms_m);
+  EXPECT_GT(e.after.fit_percent, e.before.fit_percent);
+  EXPECT_EQ(e.starts.tried, 4);
+  EXPECT_EQ(e.starts.same + e.starts.elsewhere, 4);
+}
+
+TEST(FitEstimation, SaysThatOnlyGainTimesTheRootOfThePressureIsVisible) {
+  const auto model = plant_sim::load_model(kModels + "thesis.toml");
+  const Estimation e = estimate(task(model, healthy(""), {}));
+  for (const Sight* sight : {&e.sight_before, &e.sight_after}) {
+    ASSERT_FALSE(sight->unseen.empty());
+    const auto pressure = [](const Unseen& u) { return u.name == "supply_pressure_Pa"; };
+    const auto found = std::find_if(sight->unseen.begin(), sight->unseen.end(), pressure);
+    ASSERT_NE(found, sight->unseen.end());
+    EXPECT_THAT(found->visible, HasSubstr("valve_gain_m_per_V * sqrt(supply_pressure_Pa)"));
+    EXPECT_THAT(found->words, HasSubstr("its prior holds supply_pressure_Pa"));
+  }
+}
+
+TEST(FitEstimation, SaysThatOnlyRatiosOfAMassADampingAndAForceAreVisible) {
+  // M v' = gain u - d v: the motion is that of gain/M and d/M alone.
+  Task t = Straight(0.05).fit({});
+  t.model = plant_sim::load_model(kModels + "force_driven_axis.toml");
+  const Choice choice = choose(t.model, {.free = {"mass_kg", "damping_N_s_per_m", "gain_N_per_V"},
+                                         .priors = {"mass_kg=100+-10", "damping_N_s_per_m=none"}});
+  t.searched = choice.searched;
+  t.start = choice.start;
+  t.observer_per_s = matching::kObserver_per_s;
+  t.starts = 1;
+  const Estimation e = estimate(t);
+  ASSERT_FALSE(e.sight_before.unseen.empty());
+  const Unseen& first = e.sight_before.unseen[0];
+  EXPECT_EQ(first.partners.size(), 2U) << first.words;
+  EXPECT_THAT(first.visible, HasSubstr(" / "));
+}
+
+TEST(FitEstimation, StopsWhenAskedAndKeepsTheBestSoFar) {
+  const auto model = plant_sim::load_model(kModels + "thesis.toml");
+  Task t = task(model, healthy(""), {});
+  int asked = 0;
+  t.threads = 1;
+  t.cancel = [&] { return ++asked > 3; };
+  const Estimation e = estimate(t);
+  EXPECT_TRUE(e.interrupted);
+  EXPECT_LE(e.after.rms_m, e.before.rms_m);
+  EXPECT_TRUE(std::isfinite(parameter(e, "valve_gain_m_per_V").std_error));
+}
+
+TEST(FitEstimation, GivesTheSameAnswerWhateverTheThreads) {
+  const auto model = plant_sim::load_model(kModels + "thesis.toml");
+  Task t = task(model, healthy("", 4), {});
+  const Estimation one = [&] {
+    t.threads = 1;
+    return estimate(t);
+  }();
+  t.threads = 2;
+  const Estimation two = estimate(t);
+  for (std::size_t i = 0; i < one.parameters.size(); ++i) {
+    EXPECT_NEAR(one.parameters[i].value, two.parameters[i].value,
+                0.02 * one.parameters[i].std_error);
+  }
+  const Estimation again = estimate(t);
+  EXPECT_EQ(again.parameters[1].value, two.parameters[1].value);
+}
+
+}  // namespace
+}  // namespace workbench::fit
