@@ -47,9 +47,16 @@ std::vector<std::string> taken_in(const Ladder& ladder, std::size_t round) {
   return taken;
 }
 
+bool stayed(const Ladder& ladder, const std::vector<std::string>& effects) {
+  const std::vector<std::string>& final = ladder.final.added;
+  return std::any_of(effects.begin(), effects.end(), [&](const std::string& effect) {
+    return std::find(final.begin(), final.end(), effect) != final.end();
+  });
+}
+
 std::size_t deciding_round(const Ladder& ladder) {
   for (std::size_t i = ladder.rounds.size(); i-- > 0;) {
-    if (!taken_in(ladder, i).empty()) return i;
+    if (stayed(ladder, taken_in(ladder, i))) return i;
   }
   return ladder.rounds.size() - 1;
 }

@@ -39,8 +39,10 @@ void simulate_freely(Outcome& outcome);
 
 /// The effects that a round's winner brought, empty when nothing was taken.
 [[nodiscard]] std::vector<std::string> taken_in(const Ladder& ladder, std::size_t round);
-/// The round that decided: the last in which something was taken, or else the last. Rounds there
-/// must be.
+/// Whether one of these effects is left in the end: what a round takes may be dropped later.
+[[nodiscard]] bool stayed(const Ladder& ladder, const std::vector<std::string>& effects);
+/// The round that decided: the last in which something was taken that stayed, or else the last.
+/// Rounds there must be.
 [[nodiscard]] std::size_t deciding_round(const Ladder& ladder);
 
 }  // namespace workbench::diagnose

@@ -81,7 +81,9 @@ Table candidates_table(const Diagnosis& d, std::size_t index) {
       row.push_back(micrometres(candidate.score_rms_m));
       row.push_back(times_words(candidate.score_rms_m / d.noise_floor_m));
       row.push_back(chance_words(candidate.p_value));
-      row.emplace_back(was_taken(candidate, taken) ? "taken" : "");
+      row.emplace_back(!was_taken(candidate, taken) ? ""
+                       : stayed(d.ladder, taken)    ? "taken"
+                                                    : "taken, dropped later");
       if (was_taken(candidate, taken)) table.marked_rows.push_back(table.rows.size());
     } else {
       row.insert(row.end(), {"", "", "", "of no use at first sight, not fitted"});

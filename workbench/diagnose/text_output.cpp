@@ -96,7 +96,8 @@ void print_candidates(const Diagnosis& d, std::ostream& out) {
     std::sort(effects.begin(), effects.end());
     out << "  " << padded(listed(candidate.effects), 34) << "  "
         << padded(length_words(candidate.score_rms_m), 10, true) << "  p "
-        << (effects == taken ? padded(chance_words(candidate.p_value), 11) + "  taken"
+        << (effects == taken ? padded(chance_words(candidate.p_value), 11) +
+                                   (stayed(d.ladder, taken) ? "  taken" : "  taken, dropped later")
                              : chance_words(candidate.p_value))
         << '\n';
     ++shown;

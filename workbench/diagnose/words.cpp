@@ -126,7 +126,7 @@ std::string where_words(const Where& where) {
   const std::string enters = where.enters == "flow"    ? "as a flow"
                              : where.enters == "force" ? "as a force"
                              : where.enters == "gain"  ? "as a change of the gain"
-                                                       : "in the measurement";
+                                                       : "as an error of the measurement";
   const std::string variable = where.variable == "y"   ? "the position y"
                                : where.variable == "v" ? "the velocity v"
                                : where.variable == "u" ? "the command u"
