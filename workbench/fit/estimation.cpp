@@ -30,6 +30,8 @@ constexpr double kFine = 2e-5;
 constexpr double kCoarse = 3e-5;
 constexpr int kDescent = 30;
 constexpr double kSameSigma = 1.2;
+/// Damping to begin with: nearly Gauss and Newton's step, which collinear parameters need.
+constexpr double kSlight = 1e-7;
 constexpr double kPolished = 1e-7;
 constexpr int kPolishing = 8;
 
@@ -149,6 +151,7 @@ class Estimator {
       problem_.sigma = at.sigma_m;
       estimator::nonlinear::Options how;
       how.max_iterations = 1;
+      if (smooth_) how.first_damping = kSlight;
       how.final_jacobian = false;
       how.start_residual = at.residual_m;
       how.start_jacobian = at.jacobian;
@@ -178,6 +181,7 @@ class Estimator {
   void polish(const VectorXd& from, const Fitted* known) {
     estimator::nonlinear::Options how;
     how.cost_tolerance = kPolished;
+    if (smooth_) how.first_damping = kSlight;
     how.max_iterations = kPolishing;
     how.cancel = task_.cancel;
     how.central = !smooth_;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <map>
 
 #include "tests/workbench/fit/truth_record.h"
 
@@ -66,7 +67,10 @@ TEST(FitCoverage, IntervalsWithPriorsCoverPlantsThatAreOffEverywhere) {
   const Count count = covered(",mismatched=1", {});
   const double share = static_cast<double>(count.inside) / count.of;
   EXPECT_GE(share, 0.90);
-  EXPECT_LE(share, 0.99);
+  // No upper limit: plants are drawn evenly within 1.7 standard deviations of the priors, so that a
+  // parameter that only its prior knows is never outside. Errors are not far too large all the
+  // same.
+  EXPECT_GT(std::sqrt(count.square / count.of), 0.6);
 }
 
 }  // namespace
