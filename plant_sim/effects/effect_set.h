@@ -110,6 +110,9 @@ class EffectSet : public EffectStore<S, E...> {
     this->template act<Site::force>([&]<class T>(Tag<T>, const auto& p, const auto&) {
       if constexpr (requires { T::slope_N_s_per_m(p, v_mps); }) sum += T::slope_N_s_per_m(p, v_mps);
     });
+    this->template act<Site::dry_friction>([&]<class T>(Tag<T>, const auto& p, const auto&) {
+      if constexpr (requires { T::slope_N_s_per_m(p, v_mps); }) sum += T::slope_N_s_per_m(p, v_mps);
+    });
     if (formulas_.acts_on(Site::force)) sum += formulas_.slope_N_s_per_m(v_mps);
     return sum;
   }

@@ -2,15 +2,18 @@
 //
 //   sliding level   g(v) = Fc' + max(Fs - Fc', 0) exp(-(v/vs)^2),   Fc' = Fc (1 + r sign v)
 //   rigid (k = 0)   F = g(v) sign v while it slides; at rest F holds the other forces up to g(0)
-//   pre-sliding     F = k z,  dz = dx - |dx| k z / g(v)   (Dahl: a spring that yields at g)
+//   pre-sliding     F = k z + s1 z',  dz = dx - |dx| k z / g(v)   (a spring that yields at g)
 //
 // Fc  coulomb_N    Fs  static_N (below Fc: no rise)    vs  stribeck_mps    r  direction_ratio
 // k   presliding_stiffness_N_per_m    x  rod position    z  bristle deflection, m
+// s1  presliding_damping_N_s_per_m    with k only; 0 is Dahl's law, above it the LuGre law
 // Rigid contact is stick and slip, not a steep curve: while the speed is so small that friction
 // would stop the rod within one integration step, F is just the force that does so, never one that
 // drives. The bristle's equation is solved exactly over each travel dx, so its stiffness against
-// sliding asks for no shorter step. Both dissipate: F v >= 0, or k z^2 / 2 is what is stored.
-// Sources: Karnopp (1985); Dahl (1968); Armstrong-Helouvry, Dupont, Canudas de Wit (1994).
+// sliding asks for no shorter step. Both dissipate: F v >= 0, or k z^2 / 2 is what is stored; for
+// that z' is never against v. Sources: Karnopp (1985); Dahl (1968); Canudas de Wit, Olsson, Astrom,
+// Lischinsky, A new model for control of systems with friction (1995); Armstrong-Helouvry, Dupont,
+// Canudas de Wit (1994).
 #pragma once
 
 #include <array>
@@ -34,6 +37,7 @@ struct Friction {
     S static_N = 0.0;
     S stribeck_mps = 0.0;
     S presliding_stiffness_N_per_m = 0.0;
+    S presliding_damping_N_s_per_m = 0.0;
     S direction_ratio = 0.0;
 
     template <class V>
@@ -48,6 +52,9 @@ struct Friction {
       v(ParameterInfo{"presliding_stiffness_N_per_m", "stiffness before it slides; 0 is rigid", 0.0,
                       1e9, 1e7, 0.0, 0.0, 2},
         presliding_stiffness_N_per_m);
+      v(ParameterInfo{"presliding_damping_N_s_per_m", "damping before it slides", 0.0, 1e5, 500.0,
+                      0.0, 0.0, 2},
+        presliding_damping_N_s_per_m);
       v(ParameterInfo{"direction_ratio", "more when extending, less when retracting", -1.0, 1.0,
                       0.2, 0.0, 0.0, 3},
         direction_ratio);
@@ -65,10 +72,18 @@ struct Friction {
     const S rigid_N = clamp(at.drive_N + at.arrest_kg_per_s * at.v_mps, least_N, most_N);
     const S spring_N =
         p.presliding_stiffness_N_per_m * deflection_m(p, memory, at.travel_m, at.v_mps);
-    return select(p.presliding_stiffness_N_per_m > S(0.0), spring_N, rigid_N);
+    const S along_N = select(at.v_mps < S(0.0), -spring_N, spring_N);
+    const S level = max(select(at.v_mps < S(0.0), backward_N, forward_N), S(kLeastLevel_N));
+    const S still = max(S(1.0) - along_N / level, S(0.0));  // z' / v
+    const S bristle_N = spring_N + p.presliding_damping_N_s_per_m * at.v_mps * still;
+    return select(p.presliding_stiffness_N_per_m > S(0.0), bristle_N, rigid_N);
   }
 
   static S stiffness_N_per_m(const Parameters& p) { return p.presliding_stiffness_N_per_m; }
+
+  static S slope_N_s_per_m(const Parameters& p, const S& /*v_mps*/) {
+    return select(p.presliding_stiffness_N_per_m > S(0.0), p.presliding_damping_N_s_per_m, S(0.0));
+  }
 
   static void accept(const Parameters& p, Memory& memory, const S& travel_m, const S& v_mps) {
     memory.deflection_m = deflection_m(p, memory, travel_m, v_mps);

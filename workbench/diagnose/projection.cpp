@@ -40,6 +40,31 @@ std::pair<double, double> Projection::with(const Eigen::Ref<const VectorXd>& res
   return {rr - rd * rd / dd, -rd / dd};
 }
 
+Projection::Two Projection::with(const Eigen::Ref<const VectorXd>& residual_m,
+                                 const Eigen::Ref<const VectorXd>& first_m,
+                                 const Eigen::Ref<const VectorXd>& second_m) const {
+  const auto weighted = [&](const auto& series) -> VectorXd {
+    return weights_.cwiseProduct(series) * per_sigma_;
+  };
+  const VectorXd r = weighted(residual_m);
+  const VectorXd d = weighted(first_m);
+  const VectorXd e = weighted(second_m);
+  const VectorXd r_onto = weighted_jacobian_.transpose() * r;
+  const VectorXd d_onto = weighted_jacobian_.transpose() * d;
+  const VectorXd e_onto = weighted_jacobian_.transpose() * e;
+  const double dd = remaining(d, d_onto, d, d_onto);
+  const double ee = remaining(e, e_onto, e, e_onto);
+  const double de = remaining(d, d_onto, e, e_onto);
+  const double rd = remaining(r, r_onto, d, d_onto);
+  const double re = remaining(r, r_onto, e, e_onto);
+  const double rr = remaining(r, r_onto, r, r_onto);
+  const double determinant = dd * ee - de * de;
+  if (!(determinant > 1e-9 * dd * ee)) return {rr, 0.0, 0.0};
+  const double first = -(rd * ee - re * de) / determinant;
+  const double second = -(re * dd - rd * de) / determinant;
+  return {rr + first * rd + second * re, first, second};
+}
+
 VectorXd Projection::beyond(const Eigen::Ref<const VectorXd>& signature_m) const {
   const VectorXd d = weights_.cwiseProduct(signature_m) * per_sigma_;
   return signature_m - jacobian_ * normal_.solve(weighted_jacobian_.transpose() * d) *

@@ -24,6 +24,15 @@ class Projection {
   [[nodiscard]] std::pair<double, double> with(
       const Eigen::Ref<const Eigen::VectorXd>& residual_m,
       const Eigen::Ref<const Eigen::VectorXd>& signature_m) const;
+  /// The same with two signatures.
+  struct Two {
+    double cost;
+    double first;
+    double second;
+  };
+  [[nodiscard]] Two with(const Eigen::Ref<const Eigen::VectorXd>& residual_m,
+                         const Eigen::Ref<const Eigen::VectorXd>& first_m,
+                         const Eigen::Ref<const Eigen::VectorXd>& second_m) const;
   /// The signature less what the parameters can imitate of it.
   [[nodiscard]] Eigen::VectorXd beyond(const Eigen::Ref<const Eigen::VectorXd>& signature_m) const;
 

@@ -18,10 +18,11 @@ constexpr double kHalfPi = 1.5707963267948966;
 constexpr Index kSizes = 8;
 constexpr double kSignedRatio = 4.0;    ///< between the sizes of one sign
 constexpr double kPositiveRatio = 3.0;  ///< between the sizes of an effect of one sign
+constexpr double kSmall = 0.2;          ///< of its typical size: a wave's response is then linear
 constexpr double kFewestTurns = 1.5;    ///< a wave is one that is seen more than once
 constexpr double kFinestTurns = 60.0;   ///< turns of the finest wavelength over the motion
 /// How far a wavelength may move from where the scan found it.
-constexpr double kNeighbourhood = 1.15;
+constexpr double kNeighbourhood = 1.05;
 /// Largest relative error of speed that a sensor's periodic error may show.
 constexpr double kSteepestReading = 0.3;
 constexpr double kTurnStep = 0.5;  ///< between neighbouring wavelengths
@@ -71,12 +72,13 @@ MatrixXd trial_sizes(const std::vector<SearchParameter>& searched,
                      const matching::Evidence& evidence) {
   const Span span = span_of(evidence);
   const VectorXd typical = typical_point(searched, span);
+  const bool is_limit = searched.front().scale == matching::Scale::reciprocal;
   const bool both_signs = searched.front().lower < 0.0;
   MatrixXd points(typical.size(), kSizes);
   for (Index k = 0; k < kSizes; ++k) {
     const double size =
         both_signs ? std::pow(kSignedRatio, static_cast<double>(k / 2) - 3.0) * (k % 2 ? -1.0 : 1.0)
-                   : std::pow(kPositiveRatio, static_cast<double>(k) - 6.0);
+                   : std::pow(kPositiveRatio, static_cast<double>(k) - (is_limit ? 2.0 : 6.0));
     points.col(k) = typical;
     scale_size(searched, size, points.col(k));
   }
@@ -87,27 +89,39 @@ bool is_periodic(const std::vector<SearchParameter>& searched) {
   return index_of(searched, ".wavelength_m") >= 0 && index_of(searched, ".phase_rad") >= 0;
 }
 
-MatrixXd wavelengths(const std::vector<SearchParameter>& searched,
-                     const matching::Evidence& evidence) {
+std::vector<double> turns_over(const matching::Evidence& /*evidence*/) {
+  std::vector<double> turns;
+  for (double t = kFewestTurns; t <= kFinestTurns; t += kTurnStep) turns.push_back(t);
+  return turns;
+}
+
+MatrixXd waves(const std::vector<SearchParameter>& searched, const matching::Evidence& evidence,
+               double turns) {
   const Span span = span_of(evidence);
-  const VectorXd typical = typical_point(searched, span);
+  const double range_m = std::max(span.most_m - span.least_m, 1e-6);
   const Index wavelength = index_of(searched, ".wavelength_m");
   const Index phase = index_of(searched, ".phase_rad");
-  const double range_m = std::max(span.most_m - span.least_m, 1e-6);
-  const auto count = static_cast<Index>((kFinestTurns - kFewestTurns) / kTurnStep) + 1;
-  MatrixXd points(typical.size(), 2 * count);
   const SearchParameter& length = searched[static_cast<std::size_t>(wavelength)];
   const SearchParameter& angle = searched[static_cast<std::size_t>(phase)];
-  for (Index i = 0; i < count; ++i) {
-    const double turns = kFewestTurns + kTurnStep * static_cast<double>(i);
-    for (Index quarter = 0; quarter < 2; ++quarter) {
-      VectorXd point = typical;
-      point[wavelength] = std::clamp(length.search(range_m / turns), length.lower, length.upper);
-      point[phase] = angle.search(kHalfPi * static_cast<double>(quarter));
-      points.col(2 * i + quarter) = point;
-    }
+  MatrixXd points(static_cast<Index>(searched.size()), 2);
+  for (Index quarter = 0; quarter < 2; ++quarter) {
+    points.col(quarter) = typical_point(searched, span);
+    points(0, quarter) *= kSmall;
+    points(wavelength, quarter) =
+        std::clamp(length.search(range_m / turns), length.lower, length.upper);
+    points(phase, quarter) = angle.search(kHalfPi * static_cast<double>(quarter));
   }
   return points;
+}
+
+VectorXd wave_of(const std::vector<SearchParameter>& searched, const VectorXd& wave, double first,
+                 double second) {
+  VectorXd found = wave;
+  const Index phase = index_of(searched, ".phase_rad");
+  const SearchParameter& size = searched.front();
+  found[0] = std::clamp(wave[0] * std::hypot(first, second), size.lower, size.upper);
+  found[phase] = searched[static_cast<std::size_t>(phase)].search(std::atan2(second, first));
+  return found;
 }
 
 void hold_wavelength(const plant_sim::EffectInfo& effect, const VectorXd& own,

@@ -19,9 +19,16 @@ namespace workbench::diagnose {
 
 /// Whether the effect has a wavelength and a phase.
 [[nodiscard]] bool is_periodic(const std::vector<matching::SearchParameter>& searched);
-/// Of a periodic effect: every wavelength that the motion can resolve, with two phases.
-[[nodiscard]] Eigen::MatrixXd wavelengths(const std::vector<matching::SearchParameter>& searched,
-                                          const matching::Evidence& evidence);
+/// Of a periodic effect: wave numbers that the motion can resolve, in turns over it.
+[[nodiscard]] std::vector<double> turns_over(const matching::Evidence& evidence);
+/// A small periodic effect with so many turns over the motion, at phase 0 and a quarter later: two
+/// columns, whose sum in any proportion is the effect with any size and phase.
+[[nodiscard]] Eigen::MatrixXd waves(const std::vector<matching::SearchParameter>& searched,
+                                    const matching::Evidence& evidence, double turns);
+/// The effect of size and phase such that it is `first` times the first of waves() and `second`
+/// times the second.
+[[nodiscard]] Eigen::VectorXd wave_of(const std::vector<matching::SearchParameter>& searched,
+                                      const Eigen::VectorXd& wave, double first, double second);
 /// Keeps a search within the neighbourhood of the wavelength at `own`, and the reading of a sensor
 /// from going back while the rod goes on.
 void hold_wavelength(const plant_sim::EffectInfo& effect, const Eigen::VectorXd& own,

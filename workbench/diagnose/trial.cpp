@@ -19,6 +19,8 @@ using matching::SearchParameter;
 
 /// How far the linear estimate may move a size before the fit begins.
 constexpr double kFurthest = 3.0;
+/// Wavelengths of the coarse scan that are looked at more closely.
+constexpr std::size_t kFollowed = 4;
 
 struct Promise {
   double cost = std::numeric_limits<double>::infinity();
@@ -68,37 +70,65 @@ Promise look(matching::EvidenceRun& run, const Projection& projection, const Bas
   return best;
 }
 
-/// The most promising wavelengths, from a short stretch of the record.
-MatrixXd scanned(const Workshop& shop, const Stage& stage,
-                 const std::vector<SearchParameter>& searched,
-                 const std::vector<SearchParameter>& own) {
-  const Excerpt excerpt = excerpt_of(shop.evidence, stage.fitted);
-  const MatrixXd waves = wavelengths(own, shop.evidence);
-  matching::EvidenceRun run(shop.model, excerpt.evidence, searched);
-  const Projection projection(excerpt.fitted, excerpt.evidence.counts);
-  const Base base{stage.fitted.x, excerpt.fitted.residual_m};
-  std::vector<std::pair<double, Index>> ranking;
-  for (Index i = 0; i < waves.cols(); i += matching::ModelRun::kLanes) {
-    const Index lanes = std::min<Index>(matching::ModelRun::kLanes, waves.cols() - i);
-    MatrixXd points(base.x.size() + waves.rows(), lanes);
-    points.topRows(base.x.size()) = base.x.replicate(1, lanes);
-    points.bottomRows(waves.rows()) = waves.middleCols(i, lanes);
-    MatrixXd residuals_m;
+struct Wave {
+  double cost;
+  double turns;
+  VectorXd own;  ///< search values of the effect
+};
+
+/// How well waves of so many turns over the motion explain a residual, best first.
+std::vector<Wave> waves_at(const Workshop& shop, const matching::Evidence& evidence,
+                           const Projection& projection, const Base& base,
+                           const std::vector<SearchParameter>& searched,
+                           const std::vector<SearchParameter>& own,
+                           const std::vector<double>& turns) {
+  constexpr std::size_t kTogether = matching::ModelRun::kLanes / 2;
+  matching::EvidenceRun run(shop.model, evidence, searched);
+  std::vector<Wave> found;
+  MatrixXd residuals_m;
+  for (std::size_t from = 0; from < turns.size(); from += kTogether) {
+    const std::size_t count = std::min(kTogether, turns.size() - from);
+    MatrixXd points(base.x.size() + static_cast<Index>(own.size()), static_cast<Index>(2 * count));
+    points.topRows(base.x.size()) = base.x.replicate(1, points.cols());
+    for (std::size_t i = 0; i < count; ++i) {
+      points.bottomRows(static_cast<Index>(own.size())).middleCols(static_cast<Index>(2 * i), 2) =
+          waves(own, shop.evidence, turns[from + i]);
+    }
     run.residuals(points, residuals_m);
-    for (Index lane = 0; lane < lanes; ++lane) {
-      if (!residuals_m.col(lane).allFinite()) continue;
-      ranking.emplace_back(
-          projection.with(base.residual_m, residuals_m.col(lane) - base.residual_m).first,
-          i + lane);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto at = static_cast<Index>(2 * i);
+      if (!residuals_m.middleCols(at, 2).allFinite()) continue;
+      const Projection::Two two =
+          projection.with(base.residual_m, residuals_m.col(at) - base.residual_m,
+                          residuals_m.col(at + 1) - base.residual_m);
+      found.push_back({two.cost, turns[from + i],
+                       wave_of(own, points.col(at).tail(static_cast<Index>(own.size())), two.first,
+                               two.second)});
     }
   }
-  std::sort(ranking.begin(), ranking.end());
-  ranking.resize(std::min<std::size_t>(ranking.size(), matching::ModelRun::kLanes));
-  MatrixXd best(waves.rows(), static_cast<Index>(ranking.size()));
-  for (std::size_t i = 0; i < ranking.size(); ++i) {
-    best.col(static_cast<Index>(i)) = waves.col(ranking[i].second);
+  std::sort(found.begin(), found.end(),
+            [](const Wave& a, const Wave& b) { return a.cost < b.cost; });
+  return found;
+}
+
+/// The best waves: all that the motion resolves on a short stretch of the record, then finer on the
+/// whole of it about the most promising.
+std::vector<Wave> scanned(const Workshop& shop, const Stage& stage, const Projection& projection,
+                          const std::vector<SearchParameter>& searched,
+                          const std::vector<SearchParameter>& own) {
+  const Excerpt excerpt = excerpt_of(shop.evidence, stage.fitted);
+  const Projection there(excerpt.fitted, excerpt.evidence.counts);
+  const std::vector<Wave> coarse =
+      waves_at(shop, excerpt.evidence, there, {stage.fitted.x, excerpt.fitted.residual_m}, searched,
+               own, turns_over(shop.evidence));
+  std::vector<double> finer;
+  for (std::size_t i = 0; i < std::min(kFollowed, coarse.size()); ++i) {
+    for (const double by : {-0.375, -0.25, -0.125, 0.0, 0.125, 0.25, 0.375}) {
+      finer.push_back(coarse[i].turns + by);
+    }
   }
-  return best;
+  return waves_at(shop, shop.evidence, projection, {stage.fitted.x, stage.fitted.residual_m},
+                  searched, own, finer);
 }
 
 Glance glance(const Workshop& shop, const Stage& stage, const std::vector<Base>& bases,
@@ -106,26 +136,34 @@ Glance glance(const Workshop& shop, const Stage& stage, const std::vector<Base>&
   Glance result;
   result.effect = effect.name;
   result.searched = stage.fitted.searched;
-  std::vector<SearchParameter> own = matching::effect_parameters(effect, kFirstRefinements);
+  const std::vector<SearchParameter> own = matching::effect_parameters(effect, kFirstRefinements);
   result.searched.insert(result.searched.end(), own.begin(), own.end());
-  const MatrixXd sizes = is_periodic(own) ? scanned(shop, stage, result.searched, own)
-                                          : trial_sizes(own, shop.evidence);
-  matching::EvidenceRun run(shop.model, shop.evidence, result.searched);
+  const auto own_size = static_cast<Index>(own.size());
   std::vector<Promise> promises;
-  for (const Base& base : bases) promises.push_back(look(run, projection, base, own, sizes));
+  if (is_periodic(own)) {
+    std::vector<Wave> found = scanned(shop, stage, projection, result.searched, own);
+    if (!found.empty()) {
+      VectorXd start(stage.fitted.x.size() + own_size);
+      start << stage.fitted.x, found.front().own;
+      const auto first = static_cast<std::ptrdiff_t>(stage.fitted.searched.size());
+      hold_wavelength(effect, found.front().own,
+                      {result.searched.begin() + first, result.searched.end()});
+      promises.push_back({found.front().cost, std::move(start)});
+    }
+  } else {
+    const MatrixXd sizes = trial_sizes(own, shop.evidence);
+    matching::EvidenceRun run(shop.model, shop.evidence, result.searched);
+    for (const Base& base : bases) promises.push_back(look(run, projection, base, own, sizes));
+  }
   std::stable_sort(promises.begin(), promises.end(),
                    [](const Promise& a, const Promise& b) { return a.cost < b.cost; });
+  double least = projection.cost();
   for (Promise& promise : promises) {
-    if (promise.start.size() > 0) result.starts.push_back(std::move(promise.start));
+    if (promise.start.size() == 0) continue;
+    least = std::min(least, promise.cost);
+    result.starts.push_back(std::move(promise.start));
   }
-  const double least = std::min(projection.cost(), promises.front().cost);
-  result.expected_ratio = std::sqrt(least / projection.cost());
-  if (is_periodic(own) && !result.starts.empty()) {
-    const auto first = static_cast<std::ptrdiff_t>(stage.fitted.searched.size());
-    hold_wavelength(effect, result.starts.front().tail(sizes.rows()),
-                    {result.searched.begin() + first, result.searched.end()});
-    result.starts.resize(1);
-  }
+  result.expected_ratio = std::sqrt(std::max(least, 0.0) / projection.cost());
   return result;
 }
 
