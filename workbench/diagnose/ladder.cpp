@@ -4,6 +4,7 @@
 
 #include "workbench/diagnose/look_over.h"
 #include "workbench/diagnose/rounds.h"
+#include "workbench/diagnose/support.h"
 #include "workbench/diagnose/way.h"
 
 namespace workbench::diagnose {
@@ -12,20 +13,34 @@ namespace {
 constexpr std::size_t kMostEffects = 4;
 /// Of the first round, that many are tried as the first effect when the best leads nowhere.
 constexpr std::size_t kDetours = 3;
+/// They have to come within this factor of the best, and by another way than it.
+constexpr double kNear = 2.0;
+constexpr double kSamePath = 0.1;
 /// A gain must also be more than chance, unless it is a large one.
 constexpr double kChance = 0.01;
 constexpr double kLargeGain = 0.1;
 
+/// Whether the effect wants to be larger, or a wave longer, than such an effect can be: then it
+/// stands for something else.
+bool leaves_its_range(const Stage& stage, const Candidate& candidate) {
+  const matching::Fitted& fitted = candidate.fitted;
+  for (std::size_t i = stage.fitted.searched.size(); i < fitted.searched.size(); ++i) {
+    const matching::SearchParameter& p = fitted.searched[i];
+    const bool is_angle = p.name.find(".phase_rad") != std::string::npos;
+    const bool absent = fitted.x[static_cast<Eigen::Index>(i)] == 0.0;
+    if (p.refinement == 0 && fitted.at_bound[i] != 0 && !absent && !is_angle) return true;
+  }
+  return false;
+}
+
 bool is_gain(const Workshop& shop, const Stage& stage, const Candidate& candidate) {
   const double worthwhile = worthwhile_at(shop, stage.fitted.score_rms_m);
   const double gain = 1.0 - candidate.score_rms_m / stage.fitted.score_rms_m;
-  return candidate.fitted_at_all &&
-         gain > worthwhile * static_cast<double>(candidate.effects.size()) &&
-         (gain > kLargeGain || candidate.p_value < kChance);
-}
-
-bool explained(const Workshop& shop, const Stage& stage) {
-  return stage.fitted.score_rms_m <= kUnexplained * shop.evidence.noise_floor_m;
+  const double fit_gain = 1.0 - candidate.fitted.fit_rms_m / stage.fitted.fit_rms_m;
+  const double enough = worthwhile * static_cast<double>(candidate.effects.size());
+  // chance: steadily better wherever it was scored, or as much better where it was fitted
+  return candidate.fitted_at_all && gain > enough && !leaves_its_range(stage, candidate) &&
+         (gain > kLargeGain || candidate.p_value < kChance || fit_gain > enough);
 }
 
 /// Of candidates that explain the record alike, the one with the fewest parameters.
@@ -44,12 +59,16 @@ const Candidate& simplest(const Workshop& shop, const std::vector<Candidate>& ca
 }
 
 /// Rounds from a stage until nothing helps any more.
-void go_on(const Workshop& shop, Stage& stage, std::vector<Round>& rounds) {
+void go_on(const Workshop& shop, Stage& stage, std::vector<Round>& rounds, bool pairs_too) {
   while (stage.added.size() < kMostEffects && !shop.cancelled()) {
     Round round = single_round(shop, stage, static_cast<int>(rounds.size()) + 1);
     if (round.candidates.empty()) return;
+    // those that cannot be taken go behind those that can
+    std::stable_partition(
+        round.candidates.begin(), round.candidates.end(),
+        [&](const Candidate& candidate) { return is_gain(shop, stage, candidate); });
     const bool single = is_gain(shop, stage, round.candidates.front());
-    if (!single && !explained(shop, stage) && !shop.cancelled()) {
+    if (pairs_too && !single && !is_explained(shop, stage) && !shop.cancelled()) {
       std::vector<Candidate> pairs = pair_round(shop, round);
       if (!pairs.empty() && is_gain(shop, stage, pairs.front())) {
         round.candidates.insert(round.candidates.begin(), pairs.front());
@@ -92,27 +111,36 @@ Ladder climb(const Workshop& shop) {
   }
   Stage stage = first_stage(shop);
   const Stage first = stage;
-  go_on(shop, stage, ladder.rounds);
+  go_on(shop, stage, ladder.rounds, true);
   look_over(shop, stage);
   const std::vector<Candidate> firsts =
       ladder.rounds.empty() ? std::vector<Candidate>{} : ladder.rounds.front().candidates;
   for (std::size_t i = 1; i < std::min(kDetours, firsts.size()); ++i) {
-    if (explained(shop, stage) || shop.cancelled() || !is_gain(shop, first, firsts[i])) break;
+    if (is_explained(shop, stage) || shop.cancelled() || !is_gain(shop, first, firsts[i]) ||
+        firsts[i].score_rms_m > kNear * firsts.front().score_rms_m) {
+      break;
+    }
+    const double apart_m = matching::rms(
+        firsts[i].fitted.residual_m - firsts.front().fitted.residual_m, shop.evidence.counts);
+    if (apart_m < kSamePath * firsts[i].score_rms_m) continue;
     if (std::find(stage.added.begin(), stage.added.end(), firsts[i].effects.front()) !=
         stage.added.end()) {
       continue;
     }
     std::vector<Round> rounds{ladder.rounds.front()};
     Stage other = with(first, firsts[i]);
-    go_on(shop, other, rounds);
+    go_on(shop, other, rounds, false);
     look_over(shop, other);
     if (other.fitted.score_rms_m < (1.0 - kRivals) * stage.fitted.score_rms_m) {
       stage = std::move(other);
       ladder.rounds = std::move(rounds);
     }
   }
-  if (!explained(shop, stage)) keep_supported(shop, stage);
   ladder.way = way_to(shop, first, stage);
+  if (!is_explained(shop, stage)) {
+    ladder.way = supported_way(shop, ladder.way);
+    look_over(shop, ladder.way.back());
+  }
   ladder.final = ladder.way.back();
   ladder.interrupted = shop.cancelled();
   return ladder;

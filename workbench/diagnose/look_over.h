@@ -8,11 +8,8 @@
 namespace workbench::diagnose {
 
 /// Drops effects, then refinements of effects, as long as the held-out error suffers less than an
-/// effect must bring; then tries refinements that did not take part, which have to lower the error
-/// of either half of the records when they are fitted to the other half.
+/// effect must bring (and refinements without support.h's support where the error is more than
+/// noise); then tries refinements that did not take part, which need that support too.
 void look_over(const Workshop& shop, Stage& stage);
-
-/// Drops effects, the latest first, that do not lower the error of both halves crosswise.
-void keep_supported(const Workshop& shop, Stage& stage);
 
 }  // namespace workbench::diagnose

@@ -28,8 +28,10 @@ constexpr double kExpectable = 0.002;
 constexpr int kGlimpseIterations = 4;
 /// Then, other starts are tried only for effects within this factor of the best.
 constexpr double kFar = 3.0;
+/// After the first effect, that many of the most promising others are fitted.
+constexpr std::size_t kLookedThrough = 9;
 constexpr std::size_t kAllStarts = 1000;
-constexpr std::size_t kPairable = 6;
+constexpr std::size_t kPairable = 5;
 constexpr double kComparedBlock_s = 1.0;
 
 matching::FitOptions quick(const Workshop& shop) {
@@ -119,6 +121,9 @@ void finish(const Workshop& shop, const Stage& stage, std::vector<Candidate>& ca
     candidate.p_value = chance(shop, stage.fitted, candidate.fitted);
   });
   sort_by_score(candidates);
+  for (std::size_t i = contenders; i < candidates.size(); ++i) {
+    candidates[i].fitted.jacobian.resize(0, 0);  // large, and of no use any more
+  }
 }
 
 }  // namespace
@@ -190,7 +195,8 @@ Round single_round(const Workshop& shop, const Stage& stage, int number) {
   in_parallel(glances.size(), shop.threads, [&](std::size_t i) {
     round.candidates[i].effects = {glances[i].effect};
     round.candidates[i].expected_ratio = glances[i].expected_ratio;
-    const bool hopeless = at_floor && glances[i].expected_ratio > 1.0 - kExpectable;
+    const bool hopeless = (at_floor && glances[i].expected_ratio > 1.0 - kExpectable) ||
+                          (!stage.added.empty() && i >= kLookedThrough);
     if (!hopeless) work(i, 0, 1);
     reporter.tried(round.candidates[i]);
   });
@@ -232,8 +238,6 @@ std::vector<Candidate> pair_round(const Workshop& shop, const Round& singles) {
     VectorXd start(static_cast<Index>(look.searched.size()));
     start << first.fitted.x, second.fitted.x.tail(second.fitted.x.size() - base);
     look.starts = {start};
-    start.head(base) = second.fitted.x.head(base);
-    look.starts.push_back(start);
     candidates[i] = candidate_of(shop, singles.before, look, attempt(shop, look, options));
     candidates[i].effects.push_back(second.effects.front());
   });

@@ -60,7 +60,9 @@ Promise look(matching::EvidenceRun& run, const Projection& projection, const Bas
       const auto [cost, share] =
           projection.with(base.residual_m, residuals_m.col(lane) - base.residual_m);
       VectorXd start = points.col(lane);
-      const double size = std::clamp(std::abs(share), 1.0 / kFurthest, kFurthest);
+      // a limit that is not reached has no influence: begin where it was seen to have some
+      const bool is_limit = own.front().scale == matching::Scale::reciprocal;
+      const double size = is_limit ? 1.0 : std::clamp(std::abs(share), 1.0 / kFurthest, kFurthest);
       const bool possible = scale_size(own, std::copysign(size, share), start.tail(sizes.rows()));
       // of the wrong sign: still somewhere to begin, when there is nothing better
       const double counted = possible ? cost : std::max(cost, projection.cost());

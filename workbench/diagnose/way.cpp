@@ -4,6 +4,7 @@
 
 #include "workbench/diagnose/parallel.h"
 #include "workbench/diagnose/selection.h"
+#include "workbench/diagnose/support.h"
 
 namespace workbench::diagnose {
 namespace {
@@ -40,6 +41,19 @@ std::vector<Stage> way_to(const Workshop& shop, const Stage& first, const Stage&
   last.added.insert(last.added.end(), remaining.begin(), remaining.end());
   way.push_back(std::move(last));
   return way;
+}
+
+std::vector<Stage> supported_way(const Workshop& shop, const std::vector<Stage>& way) {
+  std::vector<Stage> kept{way.front()};
+  const auto all = [](const Stage& stage) {
+    return select(stage.fitted, [](const auto&) { return true; });
+  };
+  for (std::size_t i = 1; i < way.size() && !shop.cancelled(); ++i) {
+    Stage more = taking(shop, kept.back(), way.back(), way[i].added.back());
+    Selection start = all(kept.back());
+    if (supported(shop, false, start, all(more))) kept.push_back(std::move(more));
+  }
+  return kept;
 }
 
 }  // namespace workbench::diagnose

@@ -13,4 +13,7 @@ namespace workbench::diagnose {
 [[nodiscard]] std::vector<Stage> way_to(const Workshop& shop, const Stage& first,
                                         const Stage& final);
 
+/// The way with those effects only that support.h supports, each on top of those kept before it.
+[[nodiscard]] std::vector<Stage> supported_way(const Workshop& shop, const std::vector<Stage>& way);
+
 }  // namespace workbench::diagnose

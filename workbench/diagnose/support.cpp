@@ -1,0 +1,61 @@
+#include "workbench/diagnose/support.h"
+
+#include <array>
+
+#include "workbench/diagnose/ladder.h"
+#include "workbench/diagnose/parallel.h"
+
+namespace workbench::diagnose {
+namespace {
+
+/// The records in two halves, each begun anew, fitted to one and scored on the other; records that
+/// were kept for scoring are one of the halves.
+struct Halves {
+  matching::Evidence forth;
+  matching::Evidence back;
+};
+
+Halves halves_of(const matching::Evidence& evidence) {
+  std::vector<matching::Measured> first;
+  std::vector<matching::Measured> second;
+  if (evidence.scores_apart()) {
+    const auto kept =
+        evidence.records.begin() + static_cast<std::ptrdiff_t>(evidence.fitted_records);
+    first.assign(evidence.records.begin(), kept);
+    second.assign(kept, evidence.records.end());
+    return {matching::evidence(first, second), matching::evidence(second, first)};
+  }
+  for (const matching::Measured& record : evidence.records) {
+    first.push_back(matching::part(record, 0, record.size() / 2));
+    second.push_back(matching::part(record, record.size() / 2, record.size()));
+  }
+  return {matching::evidence(first, second), matching::evidence(second, first)};
+}
+
+}  // namespace
+
+bool supported(const Workshop& shop, bool explained, const Selection& plain,
+               const Selection& more) {
+  const Halves halves = halves_of(shop.evidence);
+  matching::FitOptions options;
+  options.tolerance = 1e-5;
+  options.final_jacobian = false;
+  options.cancel = shop.cancel;
+  if (!explained) options.observer_per_s = 0.0;
+  std::array<double, 4> score_rms_m{};
+  in_parallel(score_rms_m.size(), shop.threads, [&](std::size_t i) {
+    const Selection& selection = i % 2 == 0 ? plain : more;
+    const matching::Evidence& evidence = i < 2 ? halves.forth : halves.back;
+    score_rms_m[i] = matching::fit(shop.model, evidence, evidence.fits, selection.searched,
+                                   selection.start, options)
+                         .score_rms_m;
+  });
+  const double enough = 1.0 - worthwhile_at(shop, score_rms_m[0]);
+  return score_rms_m[1] < enough * score_rms_m[0] && score_rms_m[3] < enough * score_rms_m[2];
+}
+
+bool is_explained(const Workshop& shop, const Stage& stage) {
+  return stage.fitted.score_rms_m <= kUnexplained * shop.evidence.noise_floor_m;
+}
+
+}  // namespace workbench::diagnose
