@@ -4,6 +4,7 @@
 
 #include "workbench/diagnose/look_over.h"
 #include "workbench/diagnose/rounds.h"
+#include "workbench/diagnose/selection.h"
 #include "workbench/diagnose/support.h"
 #include "workbench/diagnose/way.h"
 
@@ -75,7 +76,13 @@ void go_on(const Workshop& shop, Stage& stage, std::vector<Round>& rounds, bool 
       }
     }
     const bool gain = is_gain(shop, stage, round.candidates.front());
-    if (gain) stage = with(stage, simplest(shop, round.candidates));
+    if (gain) {
+      stage = with(stage, simplest(shop, round.candidates));
+      if (stage.fitted.jacobian.size() == 0) {
+        stage.fitted =
+            refit(shop, select(stage.fitted, [](const auto&) { return true; }), shop.evidence.fits);
+      }
+    }
     rounds.push_back(std::move(round));
     if (!gain) return;
   }
@@ -129,6 +136,8 @@ Ladder climb(const Workshop& shop) {
     }
     std::vector<Round> rounds{ladder.rounds.front()};
     Stage other = with(first, firsts[i]);
+    other.fitted =
+        refit(shop, select(other.fitted, [](const auto&) { return true; }), shop.evidence.fits);
     go_on(shop, other, rounds, false);
     look_over(shop, other);
     if (other.fitted.score_rms_m < (1.0 - kRivals) * stage.fitted.score_rms_m) {
