@@ -124,6 +124,7 @@ class HydraulicActuator {
   Flows flows(const State& x) const;
   S reach_m(const S& u_V) const;
   S fast_mps() const;
+  S spool_reach_mps(const S& u_V) const;
   auto ordinary(const S& u_V) const;
   S divisions(const S& u_V) const;
   template <bool kLimits, bool kEffects>

@@ -11,6 +11,7 @@ inline constexpr double kLowPressure_Pa = 1e5;    ///< from here down cavitation
 inline constexpr double kHighPressure_Pa = 1e10;  ///< numerical guard, beyond any oil
 inline constexpr double kSpool_m = 1.0;           ///< numerical guard
 inline constexpr double kSpool_mps = 1e5;         ///< numerical guard
+inline constexpr double kCornerDivisions = 8.0;   ///< of a step in which the spool meets its limit
 
 }  // namespace limits
 
@@ -110,7 +111,16 @@ auto HydraulicActuator<S>::ordinary(const S& u_V) const {
   const auto stiff = both(stiffness < S(kSquare) * derived_.mass_kg * in_m3 * out_m3,
                           slope * step_s <= S(limits::kRateStep) * derived_.mass_kg);
   const auto leak = both(leak_m3 <= S(limits::kRateStep) * small_m3, leak_m3 * high_Pa <= to_spare);
-  return both(both(both(place, pressure), both(drop, stiff)), both(change, leak));
+  const auto free = spool_reach_mps(u_V) < derived_.spool_limit_mps;
+  return both(both(both(place, pressure), both(drop, stiff)), both(both(change, leak), free));
+}
+
+/// The fastest that the spool can become within the step.
+template <class S>
+S HydraulicActuator<S>::spool_reach_mps(const S& u_V) const {
+  const S rate =
+      derived_.kv_wv2 * u_V - derived_.two_zeta_wv * state.spool_mps - derived_.wv2 * state.spool_m;
+  return abs(state.spool_mps) + abs(rate) * S(derived_.step_s);
 }
 
 template <class S>
@@ -173,7 +183,10 @@ S HydraulicActuator<S>::divisions(const S& u_V) const {
       (p.damping_N_s_per_m + effects.slope_N_s_per_m(fast_mps())) * derived_.inverse_mass;
   const S fastest =
       max(max(derived_.steady_rate, damping_rate), max(max(orifice_rate, column_rate), leak_rate));
-  return clamp(ceil(fastest * step_s * S(1.0 / limits::kRateStep)), S(1.0),
+  // where the spool runs into its limit the equations have a corner
+  const S least_parts =
+      select(spool_reach_mps(u_V) < derived_.spool_limit_mps, S(1.0), S(limits::kCornerDivisions));
+  return clamp(ceil(fastest * step_s * S(1.0 / limits::kRateStep)), least_parts,
                S(limits::kMostDivisions));
 }
 

@@ -9,6 +9,9 @@
 namespace workbench::diagnose {
 namespace {
 
+/// What takes away that much of the held-out error needs no further support.
+constexpr double kPlainToSee = 0.5;
+
 /// `before` with one effect more, which starts as it is in the final model.
 Stage taking(const Workshop& shop, const Stage& before, const Stage& final,
              const std::string& effect) {
@@ -50,8 +53,11 @@ std::vector<Stage> supported_way(const Workshop& shop, const std::vector<Stage>&
   };
   for (std::size_t i = 1; i < way.size() && !shop.cancelled(); ++i) {
     Stage more = taking(shop, kept.back(), way.back(), way[i].added.back());
-    Selection start = all(kept.back());
-    if (supported(shop, false, start, all(more))) kept.push_back(std::move(more));
+    const bool plain_to_see =
+        more.fitted.score_rms_m < kPlainToSee * kept.back().fitted.score_rms_m;
+    if (plain_to_see || supported(shop, false, all(kept.back()), all(more))) {
+      kept.push_back(std::move(more));
+    }
   }
   return kept;
 }
