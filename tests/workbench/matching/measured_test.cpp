@@ -59,7 +59,25 @@ TEST(Measured, RefusesLessThanTwoSecondsOfConnectedSamples) {
     FAIL();
   } catch (const config::schema::Error& error) {
     EXPECT_EQ(error.exit_code(), 65);
-    EXPECT_THAT(error.what(), HasSubstr("too short"));
+    EXPECT_THAT(error.what(), HasSubstr("too short: of 3.9 s in 4 segments, the longest 1.05 s"));
+  }
+  try {
+    (void)measured(record(150));
+    FAIL();
+  } catch (const config::schema::Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("too short: 1.5 s"));
+  }
+}
+
+TEST(Measured, RefusesSamplesFarApart) {
+  config::record::Record slow = record(300);
+  slow.sample_time_s = 0.5;
+  try {
+    (void)measured(slow);
+    FAIL();
+  } catch (const config::schema::Error& error) {
+    EXPECT_EQ(error.exit_code(), 65);
+    EXPECT_THAT(error.what(), HasSubstr("is sampled every 0.5 s; allowed: every 0.25 s or faster"));
   }
 }
 
