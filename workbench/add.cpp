@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cstdio>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -95,7 +96,14 @@ void add(const Options& options) {
   const EffectInfo effect = effect_named(model, options.effect);
   plant_sim::require_fit(effect, *plant_sim::find_plant(model.plant), options.model);
   entry_of(model, effect).present = true;
-  for (const std::string& assignment : options.assignments) assign(model, effect, assignment);
+  std::set<std::string> given;
+  for (const std::string& assignment : options.assignments) {
+    const std::string name = assignment.substr(0, assignment.find('='));
+    if (!given.insert(name).second) {
+      throw config::schema::Error(config::schema::ExitCode::usage, name + ": is given twice");
+    }
+    assign(model, effect, assignment);
+  }
   config::record::write_whole(options.output, plant_sim::print_model(model));
 
   std::printf("%s: %s with %s\n", options.output.c_str(), model.name.c_str(), effect.name.c_str());

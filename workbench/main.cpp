@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <iostream>
 
 #include "config/schema/error.h"
 #include "workbench/command.h"
@@ -36,6 +37,11 @@ int run(int argc, char** argv) {
     const bool asked_for_help = error.get_exit_code() == 0;
     app.exit(error);
     return asked_for_help ? 0 : static_cast<int>(config::schema::ExitCode::usage);
+  }
+  std::cout.flush();
+  if (std::fflush(stdout) != 0 || !std::cout) {
+    throw config::schema::Error(config::schema::ExitCode::failed,
+                                "standard output: cannot be written");
   }
   return exit_code;
 }

@@ -20,6 +20,7 @@
 #include "workbench/compare/json.h"
 #include "workbench/compare/sections.h"
 #include "workbench/compare/text.h"
+#include "workbench/file_check.h"
 #include "workbench/number_check.h"
 
 namespace workbench {
@@ -111,6 +112,7 @@ bool utf8_terminal() {
 }
 
 void run(const Arguments& a) {
+  check_outputs({{"--json", a.json}, {"--report", a.report}}, {a.model, {a.record}});
   const plant_sim::ModelFile model = read_model(a);
   const matching::Measured record = read_measured(a);
   check_observer(a, record);

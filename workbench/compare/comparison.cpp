@@ -9,6 +9,7 @@
 #include "config/schema/error.h"
 #include "estimator/residual/noise_floor.h"
 #include "estimator/residual/whiteness.h"
+#include "workbench/matching/least_floor.h"
 
 namespace workbench::compare {
 namespace {
@@ -190,7 +191,7 @@ Comparison compare(const plant_sim::ModelFile& model, const matching::Measured& 
   c.notes = record.notes;
   const estimator::residual::NoiseFloor floor =
       estimator::residual::noise_floor(broken(record, record.y_m, false), record.sample_time_s);
-  c.noise_floor_m = floor.sd_m;
+  c.noise_floor_m = std::max(floor.sd_m, matching::kLeastFloor_m);  // NaN stays NaN
   c.encoder_step_m = floor.encoder_step_m;
   require_motion(record, floor.sd_m);
   note_command(c);

@@ -19,6 +19,11 @@ std::string fails_where(const Failing& failing) {
 }
 
 std::string in_proportion(double gain_ratio) {
+  if (gain_ratio < -1.0) {
+    return "the rod moves the other way than the model, " +
+           three_digits(-100.0 * (1.0 + gain_ratio)) +
+           " % as far: the sign of the command or of the position is turned";
+  }
   return "the rod moves " + three_digits(100.0 * std::abs(gain_ratio)) + " % " +
          (gain_ratio < 0.0 ? "less" : "more") + " than the model";
 }

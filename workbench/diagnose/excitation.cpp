@@ -34,7 +34,7 @@ Excitation excitation_of(const matching::Evidence& evidence) {
       free_samples += std::abs(u_V) < most_V * (1.0 - 1e-6) ? 1.0 : 0.0;
     }
   }
-  if (travel_m < kLeastTravel * evidence.noise_floor_m) {
+  if (!(travel_m >= kLeastTravel * evidence.noise_floor_m)) {
     return {false, "the rod moves by " + millimetres(travel_m) + " in all, " +
                        millimetres(evidence.noise_floor_m) + " of it noise"};
   }

@@ -147,8 +147,12 @@ Ladder climb(const Workshop& shop) {
   }
   ladder.way = way_to(shop, first, stage);
   if (!is_explained(shop, stage)) {
-    ladder.way = supported_way(shop, ladder.way);
-    look_over(shop, ladder.way.back());
+    std::vector<Stage> supported = supported_way(shop, ladder.way);
+    // interrupted in the midst of it: what was found stays
+    if (!shop.cancelled()) {
+      ladder.way = std::move(supported);
+      look_over(shop, ladder.way.back());
+    }
   }
   ladder.final = ladder.way.back();
   ladder.interrupted = shop.cancelled();

@@ -1,28 +1,20 @@
 #include "workbench/diagnose/request.h"
 
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
+#include <algorithm>
+#include <cstdio>
 #include <thread>
 
 #include "config/record/record.h"
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "workbench/diagnose/shell_words.h"
+#include "workbench/file_check.h"
 
 namespace workbench::diagnose {
 namespace {
 
-namespace fs = std::filesystem;
 using config::schema::Error;
 using config::schema::ExitCode;
-
-bool same_file(const std::string& a, const std::string& b) {
-  std::error_code ignored;
-  return a == b || fs::equivalent(a, b, ignored);
-}
 
 /// A record on both sides would be scored on what was fitted.
 void check_inputs(const Request& request) {
@@ -42,48 +34,12 @@ void check_inputs(const Request& request) {
   }
 }
 
-void check_output(const std::string& option, const std::string& file, const Request& request) {
-  if (file.empty() || (option == "--json" && file == "-")) return;
-  std::vector<std::string> inputs = request.records;
-  inputs.insert(inputs.end(), request.holdouts.begin(), request.holdouts.end());
-  if (option != "-o") inputs.push_back(request.model);
-  for (const std::string& input : inputs) {
-    if (same_file(file, input)) {
-      throw Error(ExitCode::usage, option + " " + file + ": would overwrite an input");
-    }
-  }
-  const fs::path folder = fs::absolute(file).parent_path();
-  std::error_code ignored;
-  if (fs::is_directory(file, ignored)) {
-    throw Error(ExitCode::failed, option + " " + file + ": is a folder");
-  }
-  if (!fs::is_directory(folder, ignored)) {
-    throw Error(ExitCode::failed,
-                option + " " + file + ": the folder " + folder.string() + " does not exist");
-  }
-  const bool special = fs::exists(file, ignored) && !fs::is_regular_file(file, ignored);
-  const fs::path asked = special ? fs::path(file) : folder;
-  if (access(asked.c_str(), W_OK) != 0) {
-    throw Error(ExitCode::failed,
-                option + " " + file + ": cannot be written: " + std::strerror(errno));
-  }
-}
-
-void check_outputs(const Request& request) {
-  check_output("--json", request.json, request);
-  check_output("--report", request.report, request);
-  check_output("-o", request.output, request);
-  const std::string* files[] = {&request.json, &request.report, &request.output};
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t k = 0; k < i; ++k) {
-      std::error_code ignored;
-      const bool plain = !files[i]->empty() && (!fs::exists(*files[i], ignored) ||
-                                                fs::is_regular_file(*files[i], ignored));
-      if (plain && !files[k]->empty() && fs::absolute(*files[i]) == fs::absolute(*files[k])) {
-        throw Error(ExitCode::usage, *files[i] + ": is the file of two outputs");
-      }
-    }
-  }
+void check_files(const Request& request) {
+  InputFiles inputs{request.model, request.records};
+  inputs.records.insert(inputs.records.end(), request.holdouts.begin(), request.holdouts.end());
+  check_outputs(
+      {{"--json", request.json}, {"--report", request.report}, {"-o", request.output, true}},
+      inputs);
 }
 
 plant_sim::ModelFile model_of(const Request& request) {
@@ -92,10 +48,21 @@ plant_sim::ModelFile model_of(const Request& request) {
   return plant_sim::read_model(document);
 }
 
+/// What noise explains is told from how smooth a motion is, which takes samples close enough.
+void require_rate(const matching::Measured& record) {
+  constexpr double kSlowest_s = 0.05;
+  if (record.sample_time_s <= kSlowest_s * (1.0 + 1e-6)) return;
+  char text[96];
+  std::snprintf(text, sizeof text, "%.3g samples a second are too few to tell noise from motion",
+                1.0 / record.sample_time_s);
+  throw config::schema::bad_data(record.name, text, "20 Hz or more; compare and fit take less");
+}
+
 std::vector<matching::Measured> records_of(const std::vector<std::string>& files) {
   std::vector<matching::Measured> records;
   for (const std::string& file : files) {
     records.push_back(matching::measured(config::record::read_record(file)));
+    require_rate(records.back());
   }
   return records;
 }
@@ -121,7 +88,7 @@ std::string command_of(const Request& request) {
 
 Outcome prepare(const Request& request) {
   check_inputs(request);
-  check_outputs(request);
+  check_files(request);
   Outcome outcome;
   outcome.split = matching::parse_split(request.fit);
   outcome.shop = workshop(

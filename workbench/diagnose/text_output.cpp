@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t kLine = 96;
 constexpr double kBar = 36.0;
+constexpr double kLeastBarRatio = 10.0;  ///< of the longest bar to the floor's
 constexpr std::size_t kShownCandidates = 5;
 
 /// A number stays with its unit, and a value with its error.
@@ -66,7 +67,7 @@ std::string bar(double rms_m, double floor_m, double most_m) {
 void print_steps(const Diagnosis& d, std::ostream& out) {
   const std::vector<StepWords> steps = step_words(d);
   std::size_t width = 22;
-  double most_m = d.noise_floor_m;
+  double most_m = kLeastBarRatio * d.noise_floor_m;
   for (const StepWords& step : steps) {
     width = std::max(width, step.what.size());
     if (std::isfinite(step.rms_m)) most_m = std::max(most_m, step.rms_m);

@@ -56,6 +56,10 @@ std::string undetermined_words(const Diagnosis& d) {
 
 std::string unexplained_words(const Diagnosis& d) {
   const std::string rest = "an error of " + beside_floor(d, d.rms_after_m) + ", remains";
+  if (d.ladder.interrupted) {
+    return "Not decided: " + (d.missing.empty() ? "" : "found so far " + listed(d.missing) + "; ") +
+           rest + ".";
+  }
   if (d.missing.empty()) {
     return "Unexplained: " + rest + ", and no effect of the library takes it away.";
   }
@@ -137,6 +141,10 @@ std::string where_words(const Where& where) {
 std::string verdict_words(const Diagnosis& d) {
   switch (d.verdict) {
     case Verdict::nothing_missing:
+      if (d.ladder.interrupted) {
+        return "Not decided: the model, its own parameters adjusted, is left with " +
+               beside_floor(d, d.rms_after_m) + " so far.";
+      }
       return "Nothing is missing: the model, its own parameters adjusted, is left with " +
              beside_floor(d, d.rms_after_m) + ", and no effect of the library lowers it further.";
     case Verdict::missing:

@@ -10,6 +10,7 @@
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "workbench/diagnose/shell_words.h"
+#include "workbench/file_check.h"
 
 namespace workbench::fit {
 namespace {
@@ -22,11 +23,6 @@ using matching::Measured;
 
 /// A rod that moves less than this many noise floors does not tell a parameter.
 constexpr double kLeastMotion = 5.0;
-
-bool same_file(const std::string& a, const std::string& b) {
-  std::error_code ignored;
-  return a == b || fs::equivalent(a, b, ignored);
-}
 
 void check_files(const Request& request) {
   for (std::size_t i = 0; i < request.records.size(); ++i) {
@@ -42,23 +38,12 @@ void check_files(const Request& request) {
         throw Error(ExitCode::usage, "--holdout " + holdout + ": is fitted too");
       }
     }
-    for (const std::string* file : {&request.output, &request.json, &request.report}) {
-      if (!file->empty() && same_file(*file, request.records[i])) {
-        throw Error(ExitCode::usage, *file + ": would overwrite a record");
-      }
-    }
   }
-  for (const std::string* file : {&request.json, &request.report}) {
-    if (!file->empty() && same_file(*file, request.model)) {
-      throw Error(ExitCode::usage, *file + ": would overwrite the model");
-    }
-  }
-  for (const std::string* file : {&request.output, &request.json, &request.report}) {
-    const fs::path folder = fs::path(*file).parent_path();
-    if (!file->empty() && !folder.empty() && !fs::is_directory(folder)) {
-      throw Error(ExitCode::failed, *file + ": there is no folder " + folder.string());
-    }
-  }
+  InputFiles inputs{request.model, request.records};
+  inputs.records.insert(inputs.records.end(), request.holdouts.begin(), request.holdouts.end());
+  check_outputs(
+      {{"--json", request.json}, {"--report", request.report}, {"-o", request.output, true}},
+      inputs);
 }
 
 Measured read(const std::string& file) {

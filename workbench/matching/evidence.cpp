@@ -6,6 +6,7 @@
 
 #include "config/schema/error.h"
 #include "estimator/residual/noise_floor.h"
+#include "workbench/matching/least_floor.h"
 
 namespace workbench::matching {
 namespace {
@@ -50,11 +51,16 @@ Evidence evidence(std::vector<Measured> records, std::vector<Measured> holdouts,
   result.scores = result.fits;
   Eigen::Index at = 0;
   double square_m2 = 0.0;
+  std::size_t told = 0;
   for (std::size_t r = 0; r < result.records.size(); ++r) {
     const Measured& record = result.records[r];
     result.starts.push_back(static_cast<std::size_t>(at));
     const double floor_m = estimator::residual::noise_floor(record.y_m, record.sample_time_s).sd_m;
-    square_m2 += floor_m * floor_m * static_cast<double>(record.size());
+    if (std::isfinite(floor_m)) {
+      square_m2 +=
+          std::pow(std::max(floor_m, kLeastFloor_m), 2) * static_cast<double>(record.size());
+      told += record.size();
+    }
     for (std::size_t i = 0; i < record.size(); ++i, ++at) {
       if (record.settled[i] == 0) continue;
       const bool fitted = apart ? r < fitted_records : in_fitted_block(record, i);
@@ -62,7 +68,7 @@ Evidence evidence(std::vector<Measured> records, std::vector<Measured> holdouts,
     }
   }
   result.counts = result.fits + result.scores;
-  result.noise_floor_m = std::sqrt(square_m2 / static_cast<double>(total));
+  result.noise_floor_m = std::sqrt(square_m2 / static_cast<double>(told));
   return result;
 }
 

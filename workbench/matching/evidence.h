@@ -26,6 +26,7 @@ struct Evidence {
   Eigen::VectorXd scores;
   Eigen::VectorXd counts;          ///< either
   std::size_t fitted_records = 0;  ///< the first of `records`; the others only score
+  /// Over the records that tell one; NaN when none does (below 20 Hz).
   double noise_floor_m = 0.0;
   double sample_time_s = 0.0;  ///< of the first record
 

@@ -10,6 +10,8 @@ namespace workbench::matching {
 namespace {
 
 constexpr double kLeast_s = 2.0;
+/// Two samples at least while a segment settles.
+constexpr double kSlowest_s = 0.25;
 
 void append(Measured& to, const config::record::Record& from, std::size_t begin, std::size_t end) {
   const auto settling = static_cast<std::size_t>(std::lround(kSettling_s / from.sample_time_s));
@@ -35,11 +37,17 @@ Measured measured(const config::record::Record& record) {
   result.name = record.name;
   result.sample_time_s = record.sample_time_s;
   result.notes = record.notes;
+  if (record.sample_time_s > kSlowest_s) {
+    throw config::schema::bad_data(record.name, "is sampled every " + seconds(record.sample_time_s),
+                                   "every " + seconds(kSlowest_s) + " or faster");
+  }
   const auto shortest = static_cast<std::size_t>(std::ceil(kShortest_s / record.sample_time_s));
   std::size_t left_out = 0;
+  std::size_t longest = 0;
   for (std::size_t i = 0; i <= record.gaps.size(); ++i) {
     const std::size_t begin = i == 0 ? 0 : record.gaps[i - 1];
     const std::size_t end = i == record.gaps.size() ? record.size() : record.gaps[i];
+    longest = std::max(longest, end - begin);
     if (end - begin >= shortest) {
       append(result, record, begin, end);
     } else {
@@ -56,9 +64,15 @@ Measured measured(const config::record::Record& record) {
   }
   const double length_s = static_cast<double>(result.size()) * result.sample_time_s;
   if (length_s < kLeast_s) {
-    throw config::schema::bad_data(record.name,
-                                   seconds(length_s) + " of connected samples is too short",
-                                   "at least " + seconds(kLeast_s));
+    const std::string all = seconds(static_cast<double>(record.size()) * record.sample_time_s);
+    const std::string what =
+        record.gaps.empty()
+            ? "is too short: " + all
+            : "is too short: of " + all + " in " + std::to_string(record.gaps.size() + 1) +
+                  " segments, the longest " +
+                  seconds(static_cast<double>(longest) * record.sample_time_s) + ", " +
+                  seconds(length_s) + " are in segments of " + seconds(kShortest_s) + " or more";
+    throw config::schema::bad_data(record.name, what, "at least " + seconds(kLeast_s));
   }
   return result;
 }

@@ -128,6 +128,11 @@ TEST_F(AddTest, RefusesBadValuesInOneLine) {
   EXPECT_THAT(refusal({"/nowhere/model.toml", "friction"}), HasSubstr("/nowhere/model.toml"));
 }
 
+TEST_F(AddTest, RefusesAParameterGivenTwice) {
+  EXPECT_THAT(refusal({kModels + "thesis.toml", "friction", "coulomb_N=3", "coulomb_N=4"}, 2),
+              HasSubstr("coulomb_N: is given twice"));
+}
+
 TEST_F(AddTest, LeavesNothingBehindWhenItCannotWrite) {
   try {
     run_command(add_add, {kModels + "thesis.toml", "friction", "-o", "/nowhere/better.toml"});

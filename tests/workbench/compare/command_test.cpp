@@ -141,6 +141,31 @@ TEST_F(CompareCommand, RefusesAMissingFile) {
   expect_refused({file("none.toml"), written(compare_test::servo_record(bias))}, 78, "none.toml");
 }
 
+TEST_F(CompareCommand, RefusesToWriteOverWhatItReadsOrTwiceToOneFile) {
+  const std::string record = written(compare_test::servo_record(bias));
+  const std::string text = text_of(record);
+  const std::string model = written("servo.toml", text_of(kModel));
+  const auto refused = [&](const std::vector<std::string>& outputs, int code) {
+    std::vector<std::string> arguments{model, record};
+    arguments.insert(arguments.end(), outputs.begin(), outputs.end());
+    try {
+      run(arguments);
+      ADD_FAILURE() << "accepted: " << outputs[1];
+    } catch (const config::schema::Error& error) {
+      EXPECT_EQ(error.exit_code(), code) << error.what();
+    }
+  };
+  refused({"--json", record}, 2);
+  refused({"--json", file("./record.csv")}, 2);
+  refused({"--report", model}, 2);
+  refused({"--json", file("out"), "--report", file("./out")}, 2);
+  refused({"--json", file("nowhere/out.json")}, 1);
+  refused({"--report", file(".")}, 1);
+  EXPECT_EQ(text_of(record), text);
+  EXPECT_EQ(text_of(model), text_of(kModel));
+  EXPECT_FALSE(fs::exists(file("out")));
+}
+
 TEST_F(CompareCommand, RefusesARecordWithoutMotion) {
   config::record::Record record = compare_test::servo_record(compare_test::healthy, 10.0, 2e-6);
   for (std::size_t k = 0; k < record.size(); ++k) record.y_m[k] = k % 3 == 0 ? 0.300005 : 0.3;

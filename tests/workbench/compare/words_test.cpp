@@ -45,6 +45,12 @@ TEST(Words, NameAGainWithItsSign) {
   EXPECT_THAT(less.verdict, HasSubstr("less than the model"));
 }
 
+TEST(Words, NameASignThatIsTurned) {
+  const Words said = words(compared([](double, double u, double) { return -2.0 * kGain * u; }));
+  EXPECT_THAT(said.verdict, HasSubstr("moves the other way than the model"));
+  EXPECT_THAT(said.verdict, HasSubstr("the sign of the command or of the position is turned"));
+}
+
 TEST(Words, NameTheRangeThatFails) {
   const Words said = words(compared([](double t, double u, double) {
     return t > 15.0 && t < 20.0 ? 0.01 * std::sin(40.0 * t) + 0.0 * u : 0.0;

@@ -104,6 +104,18 @@ TEST_F(DiagnoseCommand, RecordWithoutMotionIsNotExcitedAndLeavesNoModel) {
   EXPECT_THAT(text_of(file("d.html")), HasSubstr("The record cannot tell"));
 }
 
+TEST_F(DiagnoseCommand, PositionThatNeverChangesIsNotExcited) {
+  config::record::Record still;
+  for (int k = 0; k < 1000; ++k) {
+    still.t_s.push_back(0.005 * k);
+    still.u_V.push_back(std::sin(0.01 * k));
+    still.y_m.push_back(0.3);
+  }
+  config::record::write_csv(still, file("still.csv"));
+  ASSERT_EQ(run({model(), file("still.csv"), "--json", file("d.json")}), 0);
+  EXPECT_EQ(json_of(file("d.json"))["verdict"], "not_excited");
+}
+
 TEST_F(DiagnoseCommand, JsonOnStandardOutputIsAloneThere) {
   const std::string bench = record("bench.csv", {});
   ASSERT_EQ(run({model(), bench, "--json", "-"}), 0);
@@ -138,6 +150,7 @@ TEST_F(DiagnoseCommand, InterruptedRunKeepsTheBestSoFarAndSaysSo) {
   EXPECT_EQ(code, 128 + SIGINT);
   EXPECT_EQ(json_of(file("d.json"))["interrupted"], true);
   EXPECT_THAT(text_, HasSubstr("Interrupted: this is the best so far"));
+  EXPECT_THAT(text_, Not(HasSubstr("no effect of the library")));
   EXPECT_THAT(text_of(file("better.toml")), HasSubstr("# INTERRUPTED"));
   EXPECT_NO_THROW((void)plant_sim::load_model(file("better.toml")));
   struct sigaction after {};

@@ -85,6 +85,11 @@ TEST_F(DiagnoseRequest, ShortRecordIsBadData) {
   expect_refused(65, "too short");
 }
 
+TEST_F(DiagnoseRequest, RecordTooSlowToTellNoiseFromMotionIsBadData) {
+  request_.records = {record("slow.csv", {.sample_time_s = 0.1})};
+  expect_refused(65, "10 samples a second are too few");
+}
+
 TEST_F(DiagnoseRequest, UnknownEffectIsBadConfiguration) {
   request_.assignments = {"effects.fricton.coulomb_N=100"};
   expect_refused(78, "fricton");

@@ -149,8 +149,10 @@ TEST_F(FitTest, RefusesBadRequestsInOneLineAndWritesNothing) {
   EXPECT_THAT(refusal({"/nowhere.toml", record()}, 78), HasSubstr("/nowhere.toml"));
   EXPECT_THAT(refusal({model, record(), "--set", "parameters.mas_kg=3"}, 78), HasSubstr("mass_kg"));
   EXPECT_THAT(refusal({model, record(), "--report", "/nowhere/fit.html"}, 1),
-              HasSubstr("no folder"));
-  EXPECT_THAT(refusal({model, record(), "--report", record()}, 2), HasSubstr("overwrite a record"));
+              HasSubstr("does not exist"));
+  EXPECT_THAT(refusal({model, record(), "--report", record()}, 2), HasSubstr("overwrite an input"));
+  EXPECT_THAT(refusal({model, record(), "--json", path("a"), "--report", path("a")}, 2),
+              HasSubstr("two outputs"));
 }
 
 TEST_F(FitTest, RefusesARecordWithoutMotionAndNotesASaturatedOne) {
