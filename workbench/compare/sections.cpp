@@ -6,6 +6,8 @@
 
 #include "workbench/compare/units.h"
 #include "workbench/compare/words.h"
+#include "workbench/matching/error_words.h"
+#include "workbench/report/binned.h"
 
 namespace workbench::compare {
 namespace {
@@ -69,23 +71,26 @@ Section time_section(const Comparison& c, const std::string& prefix) {
   const matching::Measured& r = c.record;
   Section section;
   section.heading = "Over time";
+  section.paragraphs = {matching::kFreeRunMeaning, matching::kDriftCorrectedMeaning,
+                        matching::kNoiseFloorMeaning};
   Plot position = over_time(c, "Position", {"position", "mm"}, prefix);
   position.series.push_back(
       named("measured", Tone::measured, series(r, [&](auto k) { return 1e3 * r.y_m[k]; })));
-  position.series.push_back(named("model, pure simulation", Tone::model, series(r, [&](auto k) {
+  position.series.push_back(named("model, free run", Tone::model, series(r, [&](auto k) {
                                     return 1e3 * (r.y_m[k] - c.free_error_m[k]);
                                   })));
   const Unit unit = error_unit(c.rms_m);
-  Plot error = over_time(c, "Error, drift taken away", {"measured less model", unit.text}, prefix);
+  Plot error = over_time(c, "Error, drift-corrected", {"measured less model", unit.text}, prefix);
   error.series.push_back(named("error", Tone::residual,
                                series(
                                    r, [&](auto k) { return unit.factor * c.error_m[k]; }, true)));
   if (std::isfinite(c.noise_floor_m)) {
-    error.lines.push_back({2.0 * unit.factor * c.noise_floor_m, "twice the noise floor"});
+    const double twice = 2.0 * unit.factor * c.noise_floor_m;
+    error.lines = {{twice, "± twice the noise floor,"}, {-twice, ""}};
   }
   const Unit free_unit = error_unit(c.free_run_rms_m);
   Plot free =
-      over_time(c, "Error of the pure simulation", {"measured less model", free_unit.text}, prefix);
+      over_time(c, "Error of the free run", {"measured less model", free_unit.text}, prefix);
   free.series.push_back(named("error", Tone::accent, series(r, [&](auto k) {
                                 return free_unit.factor * c.free_error_m[k];
                               })));
@@ -120,8 +125,9 @@ Section where_section(const Comparison& c) {
   Section section;
   section.heading = "Where it fails";
   section.paragraphs.push_back(
-      "An error of position is remembered where it did not arise; the speed error, what the "
-      "model's speed lacks at that moment, is not. The bars show its RMS" +
+      "The position adds up the speed: an error of position still shows long after it arose. The "
+      "speed error, by how much the model's speed is off at the moment, shows where it arises. The "
+      "bars show its RMS" +
       std::string(c.explained.plain == Plain::neither
                       ? "."
                       : ", after what a plain gain and offset would explain has been taken off."));
@@ -157,9 +163,11 @@ Plot against(const Comparison& c, const std::string& variable, const std::vector
   plot.y = {"speed error", "mm/s"};
   plot.x_values = series(
       r, [&](auto k) { return unit.factor * values[k]; }, true);
-  plot.series.push_back(named("speed error", Tone::residual,
-                              series(
-                                  r, [&](auto k) { return 1e3 * c.arising_mps[k]; }, true)));
+  const Series cloud = named("speed error", Tone::residual,
+                             series(
+                                 r, [&](auto k) { return 1e3 * c.arising_mps[k]; }, true));
+  const report::Binned curves = report::binned(plot.x_values, cloud.y);
+  plot.series = {cloud, curves.mean, curves.rms};
   return plot;
 }
 
@@ -168,7 +176,9 @@ Section against_section(const Comparison& c) {
   section.heading = "The residual against each variable";
   section.paragraphs.push_back(
       "A shape here is physics that the model lacks: a step at zero velocity is dry friction, a "
-      "level that is not zero is an offset, a bend is something that grows with speed.");
+      "level that is not zero is an offset, a bend is something that grows with speed. The curves "
+      "are "
+      "mean and RMS over equal stretches.");
   section.plots = {against(c, "v", c.motion.speed_mps), against(c, "u", c.record.u_V),
                    against(c, "y", c.record.y_m),
                    against(c, "acceleration", c.motion.acceleration_mps2)};
@@ -231,8 +241,10 @@ report::Report make_report(const Comparison& c, const std::string& command) {
                : said.judgement == Judgement::useless ? report::State::bad
                                                       : report::State::warn;
   const auto fact = [&](const char* label, double metres) {
-    const Unit unit = error_unit(metres);
-    made.facts.push_back({label, three_digits(unit.factor * metres), unit.text});
+    const std::string said_so = length(metres);  // as in the words: "381 um"
+    const auto gap = said_so.rfind(' ');
+    if (gap == std::string::npos) return;
+    made.facts.push_back({label, said_so.substr(0, gap), said_so.substr(gap + 1)});
   };
   fact("drift-corrected RMS", c.rms_m);
   fact("noise floor", c.noise_floor_m);

@@ -6,6 +6,7 @@
 #include "workbench/diagnose/quantity.h"
 #include "workbench/diagnose/report_pages.h"
 #include "workbench/diagnose/words.h"
+#include "workbench/matching/error_words.h"
 
 namespace workbench::diagnose {
 namespace {
@@ -20,7 +21,6 @@ using report::Tone;
 constexpr std::size_t kDrawnCandidates = 14;
 /// Candidates that do worse than none by more than this are left to the table.
 constexpr double kWorse = 1.05;
-constexpr double kMicrometres = 1e6;
 
 std::string joined(const std::vector<std::string>& effects) {
   std::string text;
@@ -28,15 +28,29 @@ std::string joined(const std::vector<std::string>& effects) {
   return text;
 }
 
-std::string micrometres(double length_m) {
-  if (!std::isfinite(length_m)) return "";
-  const double um = kMicrometres * length_m;
-  return number(um < 1000.0 ? "%.3g" : "%.0f", um);
+/// One unit for all errors of a page: millimetres where even the least is one or more.
+struct Scale {
+  double per_m = 1e6;
+  const char* unit = "µm";
+
+  /// Three digits, "27.0"; whole from 1000 on.
+  [[nodiscard]] std::string words(double length_m) const {
+    if (!std::isfinite(length_m)) return "";
+    const double shown = per_m * length_m;
+    std::string text = number(shown < 1000.0 ? "%#.3g" : "%.0f", shown);
+    if (text.back() == '.') text.pop_back();
+    return text;
+  }
+};
+
+Scale scale_of(const Diagnosis& d) {
+  constexpr double kMillimetre_m = 1e-3;
+  return std::min(d.rms_before_m, d.rms_after_m) >= kMillimetre_m ? Scale{1e3, "mm"} : Scale{};
 }
 
 std::vector<report::ReferenceLine> floor_line(const Diagnosis& d) {
   if (!std::isfinite(d.noise_floor_m)) return {};
-  return {{std::stod(micrometres(d.noise_floor_m)), "noise floor"}};
+  return {{scale_of(d).per_m * d.noise_floor_m, "noise floor"}};
 }
 
 bool was_taken(const Candidate& candidate, std::vector<std::string> taken) {
@@ -48,49 +62,77 @@ bool was_taken(const Candidate& candidate, std::vector<std::string> taken) {
 
 Plot candidates_plot(const Diagnosis& d, std::size_t index) {
   const Round& round = d.ladder.rounds[index];
+  const Scale scale = scale_of(d);
+  const std::vector<std::string> taken = taken_in(d.ladder, index);
   Plot plot{.title = "Round " + std::to_string(index + 1),
             .kind = Kind::bars,
-            .y = {"held-out error", "µm"},
+            .y = {"held-out error", scale.unit},
             .lines = floor_line(d),
             .horizontal = true,
             .width = report::Width::half};
-  plot.series.push_back({.name = "held-out error", .tone = Tone::model});
+  plot.series = {{.name = "taken", .tone = Tone::improved},
+                 {.name = "not taken", .tone = Tone::model},
+                 {.name = "nothing added", .tone = Tone::muted}};
+  const auto add = [&](const std::string& name, double rms_m, std::size_t which) {
+    plot.categories.push_back(name);
+    for (std::size_t s = 0; s < plot.series.size(); ++s) {
+      plot.series[s].y.push_back(s == which ? scale.per_m * rms_m : std::nan(""));
+    }
+  };
   for (const Candidate& candidate : round.candidates) {
     const bool worse = candidate.score_rms_m > kWorse * round.before.fitted.score_rms_m;
     if (!candidate.fitted_at_all || worse || plot.categories.size() == kDrawnCandidates) break;
-    plot.categories.push_back(joined(candidate.effects));
-    plot.series[0].y.push_back(kMicrometres * candidate.score_rms_m);
+    add(joined(candidate.effects), candidate.score_rms_m, was_taken(candidate, taken) ? 0 : 1);
   }
-  plot.categories.push_back("none of them");
-  plot.series[0].y.push_back(kMicrometres * round.before.fitted.score_rms_m);
+  add("nothing added", round.before.fitted.score_rms_m, 2);
+  const auto unused = [](const report::Series& series) {
+    return std::none_of(series.y.begin(), series.y.end(), [](double y) { return !std::isnan(y); });
+  };
+  plot.series.erase(std::remove_if(plot.series.begin(), plot.series.end(), unused),
+                    plot.series.end());
   return plot;
+}
+
+/// "Round 2, with friction: of no use at first sight and not fitted: backlash, ..."
+std::string not_fitted_words(const Diagnosis& d, std::size_t index) {
+  std::vector<std::string> names;
+  for (const Candidate& candidate : d.ladder.rounds[index].candidates) {
+    if (!candidate.fitted_at_all) names.push_back(joined(candidate.effects));
+  }
+  if (names.empty()) return "";
+  return "Round " + std::to_string(index + 1) +
+         ", of no use at first sight and not fitted: " + listed(names) + ".";
 }
 
 Table candidates_table(const Diagnosis& d, std::size_t index) {
   const Round& round = d.ladder.rounds[index];
+  const Scale scale = scale_of(d);
   const std::vector<std::string> taken = taken_in(d.ladder, index);
   const std::string with =
       round.before.added.empty() ? "the model as given" : "with " + listed(round.before.added);
   Table table{
       .caption = "Round " + std::to_string(index + 1) + ", " + with,
-      .columns = {Column{"effect", "", false}, Column{"held-out error", "µm"},
+      .columns = {Column{"effect", "", false}, Column{"held-out error", scale.unit},
                   Column{"× noise floor", ""}, Column{"chance p", ""}, Column{"", "", false}}};
   for (const Candidate& candidate : round.candidates) {
     std::vector<std::string> row{joined(candidate.effects)};
-    if (candidate.fitted_at_all) {
-      row.push_back(micrometres(candidate.score_rms_m));
-      row.push_back(times_words(candidate.score_rms_m / d.noise_floor_m));
-      row.push_back(chance_words(candidate.p_value));
-      row.emplace_back(!was_taken(candidate, taken) ? ""
-                       : stayed(d.ladder, taken)    ? "taken"
-                                                    : "taken, dropped later");
-      if (was_taken(candidate, taken)) table.marked_rows.push_back(table.rows.size());
-    } else {
-      row.insert(row.end(), {"", "", "", "of no use at first sight, not fitted"});
-    }
+    if (!candidate.fitted_at_all) continue;
+    const bool took = was_taken(candidate, taken);
+    row.push_back(scale.words(candidate.score_rms_m));
+    row.push_back(times_words(candidate.score_rms_m / d.noise_floor_m));
+    row.push_back(chance_words(candidate.p_value));
+    row.emplace_back(!took ? "" : stayed(d.ladder, taken) ? "taken" : "taken, dropped later");
+    if (took) table.marked_rows.push_back(table.rows.size());
     table.rows.push_back(std::move(row));
   }
   return table;
+}
+
+std::string variable_words(const std::string& variable) {
+  if (variable == "y") return "position y";
+  if (variable == "v") return "velocity v";
+  if (variable == "u") return "command u";
+  return variable;
 }
 
 std::string change_words(double value, double before) {
@@ -104,25 +146,26 @@ Section falling_error_section(const Outcome& outcome) {
   const Diagnosis& d = outcome.diagnosis;
   Section section{.heading = "The falling error"};
   section.paragraphs = {
-      "RMS of measured less modelled position on data that were not fitted (" +
-      split_words(outcome) +
-      "), the slow drift of the integrating plant taken away by an observer. What the sensor's "
-      "steps and noise leave even with a perfect model is the noise floor."};
+      "Held-out error: the drift-corrected RMS of measured less modelled position on data that "
+      "were not fitted (" +
+          split_words(outcome) + ").",
+      matching::kDriftCorrectedMeaning, matching::kNoiseFloorMeaning};
   const std::vector<StepWords> steps = step_words(d);
+  const Scale scale = scale_of(d);
   Plot plot{.title = "Held-out error, step by step",
             .kind = Kind::line,
-            .y = {"held-out error", "µm", true},
+            .y = {"held-out error", scale.unit, true},
             .lines = floor_line(d)};
   plot.series.push_back({.name = "held-out error", .tone = Tone::model});
-  Table table{.columns = {Column{"step", "", false}, Column{"held-out error", "µm"},
+  Table table{.columns = {Column{"step", "", false}, Column{"held-out error", scale.unit},
                           Column{"× noise floor", ""}}};
   for (const StepWords& step : steps) {
     plot.categories.push_back(step.what);
-    plot.series[0].y.push_back(kMicrometres * step.rms_m);
+    plot.series[0].y.push_back(scale.per_m * step.rms_m);
     table.rows.push_back(
-        {step.what, micrometres(step.rms_m), times_words(step.rms_m / d.noise_floor_m)});
+        {step.what, scale.words(step.rms_m), times_words(step.rms_m / d.noise_floor_m)});
   }
-  table.rows.push_back({"noise floor", micrometres(d.noise_floor_m), "1"});
+  table.rows.push_back({"noise floor", scale.words(d.noise_floor_m), "1"});
   section.plots.push_back(std::move(plot));
   section.tables.push_back(std::move(table));
   return section;
@@ -135,12 +178,19 @@ Section candidates_section(const Outcome& outcome) {
       "Each round fits every absent effect together with all that the model has already, and "
       "scores it on held-out data. An effect is taken when it lowers that error by " +
       number("%g", 100.0 * kWorthwhile) +
-      " % or more and the gain is more than chance (p, one-sided)."};
+      " % or more and the gain is more than chance: p is the probability of such a gain by chance "
+      "alone. The bars end at the held-out error, the dashed line is the noise floor."};
   for (std::size_t i = 0; i < d.ladder.rounds.size(); ++i) {
     Plot plot = candidates_plot(d, i);
     if (plot.categories.size() > 1) section.plots.push_back(std::move(plot));
-    section.tables.push_back(candidates_table(d, i));
+    Table table = candidates_table(d, i);
+    if (!table.rows.empty()) section.tables.push_back(std::move(table));
   }
+  for (std::size_t i = 0; i < d.ladder.rounds.size(); ++i) {
+    const std::string words = not_fitted_words(d, i);
+    if (!words.empty()) section.paragraphs.push_back(words);
+  }
+  if (section.plots.size() == 1) section.plots.front().width = report::Width::full;
   return section;
 }
 
@@ -176,10 +226,11 @@ Section where_section(const Outcome& outcome) {
       "The remaining residual, explained by smooth functions of one variable each, as a flow, a "
       "force, a change of the gain or an error of the measurement; scored on held-out data."};
   Table table{.columns = {Column{"enters", "", false}, Column{"variable", "", false},
-                          Column{"explains of its square", "%"}}};
+                          Column{"explains of the squared residual", "%"}}};
   for (const Where& where : outcome.diagnosis.where) {
     table.rows.push_back(
-        {where.enters, where.variable, number("%.1f", 100.0 * where.explained_ratio)});
+        {where.enters, variable_words(where.variable),
+         where.explained_ratio > 0.0 ? number("%.1f", 100.0 * where.explained_ratio) : "none"});
   }
   if (!table.rows.empty()) table.marked_rows = {0};
   section.tables.push_back(std::move(table));

@@ -39,14 +39,14 @@ std::vector<report::Fact> facts_of(const Outcome& outcome) {
   const Diagnosis& d = outcome.diagnosis;
   std::vector<report::Fact> facts;
   if (outcome.fitted()) {
-    facts.push_back(length_fact("Model file as it is", d.nominal_rms_m));
+    facts.push_back(length_fact("Held-out error, model file", d.nominal_rms_m));
     facts.push_back(length_fact("Its parameters fitted", d.rms_before_m));
-    if (!d.missing.empty()) facts.push_back(length_fact("Better model", d.rms_after_m));
+    if (!d.missing.empty()) facts.push_back(length_fact("Effects added", d.rms_after_m));
   }
   if (std::isfinite(d.noise_floor_m)) facts.push_back(length_fact("Noise floor", d.noise_floor_m));
   if (outcome.fitted()) {
-    facts.push_back(length_fact("Free run, file", outcome.free_run_before_m));
-    facts.push_back(length_fact("Free run, better", outcome.free_run_after_m));
+    facts.push_back(length_fact("Free run, model file", outcome.free_run_before_m));
+    facts.push_back(length_fact("Free run, better model", outcome.free_run_after_m));
   }
   return facts;
 }
@@ -61,8 +61,7 @@ report::Report report_of(const Outcome& outcome) {
   report.state = state_of(outcome);
   for (const std::string& remark : remarks(outcome)) report.summary.push_back(typeset(remark));
   for (const std::string& note : d.notes) report.summary.push_back("Note: " + typeset(note) + ".");
-  const std::string next = next_command(outcome);
-  if (!next.empty()) report.summary.push_back("Next: " + next);
+  report.next_command = next_command(outcome);
   report.facts = facts_of(outcome);
   report.command = outcome.command;
   report.made_with = std::string("spoolwatch ") + SPOOLWATCH_VERSION;

@@ -1,13 +1,14 @@
 // The sections of the report that hold each record against the model before and after.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 #include "workbench/diagnose/quantity.h"
 #include "workbench/diagnose/report_pages.h"
 #include "workbench/diagnose/words.h"
+#include "workbench/matching/error_words.h"
 #include "workbench/matching/motion.h"
+#include "workbench/report/binned.h"
 #include "workbench/report/thin.h"
 
 namespace workbench::diagnose {
@@ -23,8 +24,6 @@ using Values = std::vector<double>;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kCloud = 2'500;
-constexpr std::size_t kBins = 30;
-constexpr std::size_t kLeastInBin = 5;
 /// Residuals above this are drawn in millimetres.
 constexpr double kMillimetres_m = 2e-3;
 
@@ -106,8 +105,7 @@ Plot position_plot(const Page& page, bool fitted) {
   plot.series.push_back({.name = "better model, free run",
                          .y = model_mm(page, page.free_after_m),
                          .tone = Tone::improved});
-  plot.caption =
-      "Driven by the measured command from the first sample on, nothing corrected: errors add up.";
+  plot.caption = matching::kFreeRunMeaning;
   return plot;
 }
 
@@ -117,7 +115,8 @@ Plot residual_plot(const Page& page, const std::string& title, const Values& res
   Plot plot = time_plot(page, title, {"measured − model", scale.unit});
   plot.series.push_back({.name = "residual", .y = times(residual_m, scale.per_m), .tone = tone});
   if (std::isfinite(page.noise_floor_m)) {
-    plot.lines = {{std::stod(number("%.3g", scale.per_m * page.noise_floor_m)), "noise floor"}};
+    const double twice = 2.0 * scale.per_m * page.noise_floor_m;
+    plot.lines = {{twice, "± twice the noise floor,"}, {-twice, ""}};
   }
   return plot;
 }
@@ -131,25 +130,10 @@ Plot command_plot(const Page& page) {
   return plot;
 }
 
-/// Means over equal stretches of x.
-Series means(const std::string& name, const Values& x, const Values& y, Tone tone) {
-  const auto [least, most] = std::minmax_element(x.begin(), x.end());
-  const double width = (*most - *least) / static_cast<double>(kBins);
-  Series series{.name = name, .tone = tone, .kind = Kind::line};
-  if (!(width > 0.0)) return series;
-  std::array<double, kBins> sum{};
-  std::array<std::size_t, kBins> count{};
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (!std::isfinite(y[i])) continue;
-    const auto bin = std::min(kBins - 1, static_cast<std::size_t>((x[i] - *least) / width));
-    sum[bin] += y[i];
-    ++count[bin];
-  }
-  for (std::size_t bin = 0; bin < kBins; ++bin) {
-    if (count[bin] < kLeastInBin) continue;
-    series.x.push_back(*least + width * (static_cast<double>(bin) + 0.5));
-    series.y.push_back(sum[bin] / static_cast<double>(count[bin]));
-  }
+Series mean_of(const std::string& name, const Values& x, const Values& y, Tone tone) {
+  Series series = report::binned(x, y).mean;
+  series.name = name;
+  series.tone = tone;
   return series;
 }
 
@@ -174,11 +158,11 @@ Plot against(const Page& page, const std::string& what, const std::string& unit,
   if (page.improved) {
     plot.series = {cloud("before", x, before, Tone::residual),
                    cloud("after", x, after, Tone::improved),
-                   means("before, mean", x, before, Tone::accent),
-                   means("after, mean", x, after, Tone::model)};
+                   mean_of("before, mean", x, before, Tone::accent),
+                   mean_of("after, mean", x, after, Tone::model)};
   } else {
-    plot.series = {cloud("residual", x, after, Tone::residual),
-                   means("mean", x, after, Tone::model)};
+    const report::Binned curves = report::binned(x, after);
+    plot.series = {cloud("residual", x, after, Tone::residual), curves.mean, curves.rms};
   }
   return plot;
 }
@@ -199,10 +183,12 @@ Section section_of(const Page& page, bool fitted, const std::string& heading) {
   section.plots.push_back(position_plot(page, fitted));
   if (fitted) {
     section.paragraphs = {
-        "Residuals are those that the error above is the RMS of. Before: the model's own "
-        "parameters fitted, nothing added" +
-        std::string(page.improved ? "; after: the better model." : ".") +
-        " In the clouds an even choice of the samples and their outline is drawn."};
+        "The residuals are drift-corrected, those that the error above is the RMS of" +
+        std::string(page.improved ? ". Before: the model's own parameters fitted, nothing added; "
+                                    "after: the better model."
+                                  : ".") +
+        " In the clouds an even choice of the samples and their outline is drawn; a curve that "
+        "leaves zero is physics that the model lacks."};
     if (page.improved) {
       section.plots.push_back(
           residual_plot(page, "Residual before", page.before_m, Tone::residual));

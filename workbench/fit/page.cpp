@@ -1,10 +1,12 @@
 // A fit as a report.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "workbench/diagnose/quantity.h"
 #include "workbench/fit/outcome.h"
+#include "workbench/matching/error_words.h"
 
 namespace workbench::fit {
 namespace {
@@ -23,6 +25,10 @@ struct LengthUnit {
   double per_m;
   const char* name;
 };
+
+std::string file_name(const std::string& file) {
+  return std::filesystem::path(file).filename().string();
+}
 
 LengthUnit unit_for(double rms_m) {
   return rms_m < kMillimetres_m ? LengthUnit{1e6, "um"} : LengthUnit{1e3, "mm"};
@@ -67,7 +73,11 @@ Section record_section(const Outcome& o, std::size_t r) {
   const std::size_t start = evidence.starts[r];
   const Estimation& e = o.estimation;
   Section section;
-  section.heading = record.name;
+  section.heading = "Record " + file_name(record.name);
+  if (r == 0) {
+    section.paragraphs = {matching::kFreeRunMeaning, matching::kDriftCorrectedMeaning,
+                          matching::kNoiseFloorMeaning};
+  }
   const Eigen::Map<const Eigen::VectorXd> y(record.y_m.data(),
                                             static_cast<Eigen::Index>(record.size()));
   const auto modelled = [&](const Eigen::VectorXd& error_m) {
@@ -75,7 +85,7 @@ Section record_section(const Outcome& o, std::size_t r) {
     all.segment(static_cast<Eigen::Index>(start), y.size()) += y;
     return part(all, start, record, 1e3, false);
   };
-  Plot position = over_time(record, "Position, pure simulation", {"position", "mm"});
+  Plot position = over_time(record, "Position, free run", {"position", "mm"});
   Values measured_mm = record.y_m;
   for (double& value : measured_mm) value *= 1e3;
   add_series(position, "measured", Tone::measured, std::move(measured_mm));
@@ -85,12 +95,14 @@ Section record_section(const Outcome& o, std::size_t r) {
   for (const bool fitted : {false, true}) {
     const Errors& errors = fitted ? e.after : e.before;
     const LengthUnit unit = unit_for(errors.rms_m);
-    Plot plot = over_time(record, fitted ? "Error after the fit" : "Error before the fit",
-                          {"measured less model", unit.name});
-    add_series(plot, "error, drift taken away", fitted ? Tone::improved : Tone::residual,
+    Plot plot = over_time(
+        record,
+        fitted ? "Error after the fit, drift-corrected" : "Error before the fit, drift-corrected",
+        {"measured less model", unit.name});
+    add_series(plot, "error, drift-corrected", fitted ? Tone::improved : Tone::residual,
                part(errors.residual_m, start, record, unit.per_m, true));
     if (std::isfinite(o.noise_floor_m)) {
-      plot.lines = {{2.0 * unit.per_m * o.noise_floor_m, "twice the noise floor"},
+      plot.lines = {{2.0 * unit.per_m * o.noise_floor_m, "± twice the noise floor,"},
                     {-2.0 * unit.per_m * o.noise_floor_m, ""}};
     }
     section.plots.push_back(plot);
@@ -101,8 +113,6 @@ Section record_section(const Outcome& o, std::size_t r) {
   return section;
 }
 
-std::string figure(double value) { return std::isnan(value) ? "-" : number("%.5g", value); }
-
 Section parameter_section(const Estimation& e) {
   Section section;
   section.heading = "Parameters";
@@ -111,14 +121,21 @@ Section parameter_section(const Estimation& e) {
       "likelihood's profile where one was walked. The record's share tells how much of what is "
       "known comes from the record rather than from the prior.");
   report::Table table;
-  table.columns = {
-      {"parameter", "", false}, {"unit", "", false}, {"start", ""}, {"fitted", ""},
-      {"std error", ""},        {"95 % from", ""},   {"to", ""},    {"record's share", "%"},
-      {"remark", "", false}};
+  table.columns = {{"parameter", "", false}, {"start", ""},           {"fitted", ""},
+                   {"± std. error", ""},     {"95 % from", ""},       {"to", ""},
+                   {"unit", "", false},      {"record's share", "%"}, {"remark", "", false}};
   for (const Parameter& p : e.parameters) {
-    table.rows.push_back({p.search.name, plant_sim::unit_of(p.search.name), figure(p.start),
-                          figure(p.value), number("%.2g", p.std_error), figure(p.low),
-                          figure(p.high), number("%.0f", 100.0 * p.record_share), remark(p)});
+    const std::string& name = p.search.name;
+    const diagnose::Quantity q = diagnose::quantity(name, p.value, p.std_error, p.start);
+    const double largest = std::max(std::abs(p.value), std::abs(p.start));
+    // The ends of the interval with the digits of the value.
+    const auto shown = [&](double value) {
+      if (std::isnan(value)) return std::string("-");
+      return diagnose::quantity(name, value, p.std_error, largest).value;
+    };
+    table.rows.push_back({name, diagnose::quantity(name, p.start, kNaN, largest).value, q.value,
+                          q.error, shown(p.low), shown(p.high), q.unit,
+                          number("%.0f", 100.0 * p.record_share), remark(p)});
     if (p.at_bound != 0) table.marked_rows.push_back(table.rows.size() - 1);
   }
   section.tables.push_back(table);
@@ -190,9 +207,15 @@ report::Report to_report(const Outcome& o) {
   const Estimation& e = o.estimation;
   const std::vector<std::string> said = words(o);
   report::Report made;
-  made.title = o.prepared->task.model.name + " fitted";
+  made.title = o.prepared->task.model.name + " fitted to ";
+  for (const matching::Measured& record : o.prepared->task.evidence.records) {
+    made.title += (&record == &o.prepared->task.evidence.records.front() ? "" : ", ") +
+                  file_name(record.name);
+  }
   made.verdict = said.front();
-  made.summary.assign(said.begin() + 1, said.end());
+  for (std::size_t i = 1; i < said.size(); ++i) {  // its own section tells what cannot be seen
+    if (said[i].rfind("What the record cannot see", 0) != 0) made.summary.push_back(said[i]);
+  }
   const bool at_floor = std::isfinite(o.noise_floor_m) && e.after.rms_m < 1.15 * o.noise_floor_m;
   made.state = at_floor && !e.interrupted ? report::State::good : report::State::warn;
   const auto fact = [&](const char* label, double metres) {
@@ -203,7 +226,7 @@ report::Report to_report(const Outcome& o) {
   fact("error after", e.after.rms_m);
   if (std::isfinite(e.after.heldout_rms_m)) fact("not fitted, after", e.after.heldout_rms_m);
   if (std::isfinite(o.noise_floor_m)) fact("noise floor", o.noise_floor_m);
-  made.facts.push_back({"fit of the pure simulation", number("%.4g", e.after.fit_percent), "%"});
+  made.facts.push_back({"fit of the free run", number("%.4g", e.after.fit_percent), "%"});
   made.command = o.prepared->command;
   made.sections.push_back(parameter_section(e));
   for (std::size_t r = 0; r < o.prepared->task.evidence.records.size(); ++r) {

@@ -49,8 +49,12 @@ function legend(chart, plot) {
       });
     });
   }
-  plot.lines.forEach((line, i) => add('span', i % 3 === 1 ? 'dotted' : 'dashed', FLOOR,
-                                      line.label + ' ' + with_unit(line.value, plot.y)));
+  plot.lines.filter((line) => line.label).forEach((line, i) => {
+    const small = plot.y.unit === 'mm' && Math.abs(line.value) < .01;
+    const value = small ? number(1000 * line.value, 3) + ' µm'
+                        : number(line.value, 3) + (plot.y.unit ? ' ' + plot.y.unit : '');
+    add('span', i % 3 === 1 ? 'dotted' : 'dashed', FLOOR, line.label + ' ' + value);
+  });
   if (list.children.length) chart.canvas.closest('figure').querySelector('.head').append(list);
 }
 

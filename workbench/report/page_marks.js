@@ -9,11 +9,13 @@ const lines = {
     ctx.save();
     ctx.strokeStyle = FLOOR;
     ctx.lineWidth = 1.5;
-    plot.lines.forEach((line, i) => {
+    let dash = -1;
+    plot.lines.forEach((line) => {
+      if (line.label || dash < 0) ++dash;
       const at = chart.scales[axis].getPixelForValue(line.value);
       const [low, high] = axis === 'x' ? [area.left, area.right] : [area.top, area.bottom];
       if (!(at >= low - 1 && at <= high + 1)) return;
-      ctx.setLineDash(DASHES[i % DASHES.length]);
+      ctx.setLineDash(DASHES[dash % DASHES.length]);
       ctx.beginPath();
       if (axis === 'x') {
         ctx.moveTo(at, area.top);
@@ -46,13 +48,14 @@ const numbers = {
   id: 'numbers',
   afterDatasetsDraw(chart) {
     const plot = chart.options.plot;
-    if (!plot.categories || plot.categories.length > 24 || plot.series.length > 1) return;
+    if (!plot.categories || plot.categories.length > 24) return;
+    if (plot.series.length > 1 && plot.kind !== 'bars') return;
     const ctx = chart.ctx, area = chart.chartArea;
     ctx.save();
     ctx.font = '12px ' + Chart.defaults.font.family;
-    chart.getDatasetMeta(0).data.forEach((element, i) => {
-      const value = plot.series[0].y[i];
-      if (value === null) return;
+    plot.series.forEach((series, s) => chart.getDatasetMeta(s).data.forEach((element, i) => {
+      const value = series.y[i];
+      if (value === null || value === undefined || !chart.isDatasetVisible(s)) return;
       const text = number(value, 3);
       const half = ctx.measureText(text).width / 2;
       const x = plot.horizontal ? element.x + half + 6
@@ -64,7 +67,7 @@ const numbers = {
       ctx.strokeText(text, x - half, y);
       ctx.fillStyle = INK;
       ctx.fillText(text, x - half, y);
-    });
+    }));
     ctx.restore();
   },
 };

@@ -24,7 +24,10 @@ const tint = (colour, alpha) => colour + Math.round(alpha * 255).toString(16).pa
 const shown = (v, axis) => (v === null || (axis.log && v <= 0) ? NaN : v);
 const points = (plot, series) => {
   const x = series.x || plot.xs;
-  return series.y.map((y, i) => ({x: shown(x[i], plot.x), y: shown(y, plot.y)}));
+  const all = series.y.map((y, i) => ({x: shown(x[i], plot.x), y: shown(y, plot.y)}));
+  if (series.kind !== 'scatter') return all;
+  // Chart.js takes the first and the last point for the ends of the axis.
+  return all.filter((p) => !isNaN(p.x) && !isNaN(p.y)).sort((a, b) => a.x - b.x);
 };
 
 // Curves lie above bars, bars above clouds, later series above earlier ones.
@@ -37,7 +40,7 @@ function dataset(plot, series, index) {
   else base.data = points(plot, series);
   if (series.kind === 'bars') {
     return {...base, type: 'bar', backgroundColor: tint(colour, .8), borderWidth: 0,
-            maxBarThickness: plot.horizontal ? 16 : 46, categoryPercentage: .8,
+            grouped: false, skipNull: true, maxBarThickness: plot.horizontal ? 16 : 46, categoryPercentage: .8,
             barPercentage: plot.categories ? .9 : 1, minBarLength: 2, order: 200};
   }
   if (series.kind === 'scatter') {

@@ -22,8 +22,9 @@ const char* name_of(Tone tone) {
 }
 
 std::string axis_json(const Axis& axis) {
-  return R"({"label":)" + json_string(axis.label) + R"(,"unit":)" + json_string(axis.unit) +
-         R"(,"log":)" + (axis.logarithmic ? "true" : "false") + "}";
+  return R"({"label":)" + json_string(typeset(axis.label)) + R"(,"unit":)" +
+         json_string(typeset(axis.unit)) + R"(,"log":)" + (axis.logarithmic ? "true" : "false") +
+         "}";
 }
 
 std::vector<double> pick(const std::vector<double>& values, const std::vector<std::size_t>& rows) {
@@ -58,8 +59,8 @@ struct Thinned {
 std::string series_json(const Plot& plot, const Series& series,
                         const std::vector<std::size_t>& shared, Thinned& thinned) {
   const Kind kind = series.kind.value_or(plot.kind);
-  std::string out = R"({"name":)" + json_string(series.name) + R"(,"kind":")" + name_of(kind) +
-                    R"(","tone":")" + name_of(series.tone) + '"';
+  std::string out = R"({"name":)" + json_string(typeset(series.name)) + R"(,"kind":")" +
+                    name_of(kind) + R"(","tone":")" + name_of(series.tone) + '"';
   if (series.dashed) out += R"(,"dashed":true)";
   if (!plot.categories.empty()) return out + R"(,"y":)" + json_numbers(series.y) + "}";
   const std::vector<double>& x = series.x.empty() ? plot.x_values : series.x;
@@ -106,7 +107,7 @@ PlotText plot_text(const Plot& plot) {
   if (!plot.categories.empty()) {
     json += R"(,"categories":[)";
     for (std::size_t i = 0; i < plot.categories.size(); ++i) {
-      json += (i > 0 ? "," : "") + json_string(plot.categories[i]);
+      json += (i > 0 ? "," : "") + json_string(typeset(plot.categories[i]));
     }
     json += ']';
   } else if (shares_x) {
@@ -115,7 +116,7 @@ PlotText plot_text(const Plot& plot) {
   json += R"(,"lines":[)";
   for (std::size_t i = 0; i < plot.lines.size(); ++i) {
     json += std::string(i > 0 ? "," : "") + R"({"value":)" + json_number(plot.lines[i].value) +
-            R"(,"label":)" + json_string(plot.lines[i].label) + "}";
+            R"(,"label":)" + json_string(typeset(plot.lines[i].label)) + "}";
   }
   return {json + R"(],"series":[)" + series + "]}", note_of(thinned)};
 }
@@ -125,14 +126,15 @@ std::string figure(const Plot& plot, const std::string& note, std::size_t number
   if (plot.horizontal) {  // one line of text per category
     style = " style=\"flex-basis:" + std::to_string(90 + 26 * plot.categories.size()) + "px\"";
   }
-  std::string out =
-      std::string("<figure class=\"plot ") + (plot.width == Width::half ? "half" : "full") +
-      "\">\n<div class=\"head\"><h3>" + html(plot.title) + "</h3></div>\n<div class=\"canvas\"" +
-      style + "><canvas id=\"plot-" + std::to_string(number) + "\" role=\"img\" aria-label=\"" +
-      html(plot.title) + "\"></canvas></div>\n";
+  std::string out = std::string("<figure class=\"plot ") +
+                    (plot.width == Width::half ? "half" : "full") +
+                    "\">\n<div class=\"head\"><h3>" + html(typeset(plot.title)) +
+                    "</h3></div>\n<div class=\"canvas\"" + style + "><canvas id=\"plot-" +
+                    std::to_string(number) + "\" role=\"img\" aria-label=\"" +
+                    html(typeset(plot.title)) + "\"></canvas></div>\n";
   const std::string caption =
       plot.caption + (plot.caption.empty() || note.empty() ? "" : " ") + note;
-  if (!caption.empty()) out += "<figcaption>" + html(caption) + "</figcaption>\n";
+  if (!caption.empty()) out += "<figcaption>" + html(typeset(caption)) + "</figcaption>\n";
   return out + "</figure>\n";
 }
 

@@ -17,7 +17,7 @@ namespace {
 constexpr const char* kPolicy =
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:";
 
-std::string paragraph(const std::string& text) { return "<p>" + html(text) + "</p>\n"; }
+std::string paragraph(const std::string& text) { return "<p>" + html(typeset(text)) + "</p>\n"; }
 
 std::string now() {
   const std::time_t seconds = std::time(nullptr);
@@ -46,20 +46,24 @@ std::string header(const Report& report) {
 
 std::string top(const Report& report) {
   std::string out = "<h1>" + html(report.title) + "</h1>\n<div class=\"verdict " +
-                    state_class(report.state) + "\"><p class=\"words\">" + html(report.verdict) +
-                    "</p>\n";
+                    state_class(report.state) + "\"><p class=\"words\">" +
+                    html(typeset(report.verdict)) + "</p>\n";
   for (const std::string& line : report.summary) out += paragraph(line);
   out += "</div>\n";
   if (!report.facts.empty()) out += "<dl class=\"facts\">\n";
   for (const Fact& fact : report.facts) {
-    out += "<div><dt>" + html(fact.label) + "</dt><dd>" + html(fact.value) +
-           (fact.unit.empty() ? "" : " <span>" + html(fact.unit) + "</span>") + "</dd></div>\n";
+    out += "<div><dt>" + html(fact.label) + "</dt><dd>" + html(typeset(fact.value)) +
+           (fact.unit.empty() ? "" : " <span>" + html(typeset(fact.unit)) + "</span>") +
+           "</dd></div>\n";
   }
   if (!report.facts.empty()) out += "</dl>\n";
-  if (!report.command.empty()) {
-    out += "<div class=\"command\"><span>Made by</span><code>" + html(report.command) +
+  const auto command = [&](const char* what, const std::string& words) {
+    if (words.empty()) return;
+    out += std::string("<div class=\"command\"><span>") + what + "</span><code>" + html(words) +
            "</code></div>\n";
-  }
+  };
+  command("Made by", report.command);
+  command("Next", report.next_command);
   return out;
 }
 
@@ -69,13 +73,13 @@ std::string table(const Table& table) {
     return std::string("<") + tag + (numeric ? " class=\"n\">" : ">") + text + "</" + tag + ">";
   };
   std::string out = "<div class=\"table\"><table>";
-  if (!table.caption.empty()) out += "<caption>" + html(table.caption) + "</caption>";
+  if (!table.caption.empty()) out += "<caption>" + html(typeset(table.caption)) + "</caption>";
   out += "\n<thead><tr>";
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const std::string& unit = table.columns[i].unit;
-    out += cell(
-        "th", i,
-        html(table.columns[i].name) + (unit.empty() ? "" : " <span>" + html(unit) + "</span>"));
+    out += cell("th", i,
+                html(typeset(table.columns[i].name)) +
+                    (unit.empty() ? "" : " <span>" + html(typeset(unit)) + "</span>"));
   }
   out += "</tr></thead>\n<tbody>\n";
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
@@ -83,7 +87,7 @@ std::string table(const Table& table) {
     out += std::find(marked.begin(), marked.end(), r) != marked.end() ? "<tr class=\"marked\">"
                                                                       : "<tr>";
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
-      out += cell("td", i, i < table.rows[r].size() ? html(table.rows[r][i]) : "");
+      out += cell("td", i, i < table.rows[r].size() ? html(typeset(table.rows[r][i])) : "");
     }
     out += "</tr>\n";
   }

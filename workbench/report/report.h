@@ -2,7 +2,8 @@
 // draws them, opens without a network, and prints on A4.
 //
 // Fill a Report and write it. Numbers are shown as they are given: convert to the unit that reads
-// well (mm, um, ms) and name it in the axis or column. Time plots of one zoom_group zoom together.
+// well (mm, um, ms) and name it in the axis or column. Text is typeset (text.h) but for the title,
+// the headings and the commands. Time plots of one zoom_group zoom together.
 #pragma once
 
 #include <cstddef>
@@ -36,7 +37,7 @@ struct Series {
 /// A line across the plot at one value of the y axis: a noise floor, a limit.
 struct ReferenceLine {
   double value = 0.0;
-  std::string label{};
+  std::string label{};  ///< empty: the other side of the line before, looks like it
 };
 
 enum class Width { full, half };  ///< two halves stand side by side
@@ -93,6 +94,7 @@ struct Report {
   std::vector<std::string> summary{};  ///< lines below the verdict
   std::vector<Fact> facts{};           ///< four to six
   std::string command{};               ///< the exact command that made it
+  std::string next_command{};          ///< the command to type next; empty: none
   std::vector<Section> sections{};
   std::string made_with{};  ///< program and version
   std::string made_at{};    ///< empty: now, local time

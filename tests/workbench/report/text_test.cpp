@@ -38,6 +38,22 @@ TEST(Text, NumbersAreShortAndKeepSevenDigits) {
   EXPECT_EQ(json_number(6.02214076e23), "6.022141e+23");
 }
 
+TEST(Text, UnitsAndSignsAreTypeset) {
+  EXPECT_EQ(typeset("27.1 um -> 2.5 um."), "27.1 µm → 2.5 µm.");
+  EXPECT_EQ(typeset("144 +- 3 N s2/m2, N s/m"), "144 ± 3 N·s²/m², N·s/m");
+  EXPECT_EQ(typeset("38.5 um/s, 9.9 cm3, 0.5 m/s2"), "38.5 µm/s, 9.9 cm³, 0.5 m/s²");
+  EXPECT_EQ(typeset("um"), "µm");
+  EXPECT_EQ(typeset("-97.65 to -50 (-1)"), "−97.65 to −50 (−1)");
+  EXPECT_EQ(typeset("89 % of 100 %"), "89\u00a0% of 100\u00a0%");
+}
+
+TEST(Text, NamesAreNotTypeset) {
+  for (const char* name : {"dead_volume_m3", "dead_volume_m3^0.049", "m2.toml", "rig-m3", "1e-06",
+                           "album", "null_bias.offset_V", "run m3.csv", "first-half"}) {
+    EXPECT_EQ(typeset(name), name);
+  }
+}
+
 TEST(Text, WhatIsNoNumberIsNull) {
   const double infinity = std::numeric_limits<double>::infinity();
   EXPECT_EQ(json_numbers({1.0, std::nan(""), infinity, -infinity, 2.0}), "[1,null,null,null,2]");
