@@ -93,15 +93,13 @@ Plot candidates_plot(const Diagnosis& d, std::size_t index) {
   return plot;
 }
 
-/// "Round 2, with friction: of no use at first sight and not fitted: backlash, ..."
-std::string not_fitted_words(const Diagnosis& d, std::size_t index) {
+/// "Of no use at first sight and not fitted: backlash, ..."
+std::string not_fitted_words(const Round& round) {
   std::vector<std::string> names;
-  for (const Candidate& candidate : d.ladder.rounds[index].candidates) {
+  for (const Candidate& candidate : round.candidates) {
     if (!candidate.fitted_at_all) names.push_back(joined(candidate.effects));
   }
-  if (names.empty()) return "";
-  return "Round " + std::to_string(index + 1) +
-         ", of no use at first sight and not fitted: " + listed(names) + ".";
+  return names.empty() ? "" : "Of no use at first sight and not fitted: " + listed(names) + ".";
 }
 
 Table candidates_table(const Diagnosis& d, std::size_t index) {
@@ -149,7 +147,7 @@ Section falling_error_section(const Outcome& outcome) {
       "Held-out error: the drift-corrected RMS of measured less modelled position on data that "
       "were not fitted (" +
           split_words(outcome) + ").",
-      matching::kDriftCorrectedMeaning, matching::kNoiseFloorMeaning};
+      matching::kFreeRunMeaning, matching::kDriftCorrectedMeaning, matching::kNoiseFloorMeaning};
   const std::vector<StepWords> steps = step_words(d);
   const Scale scale = scale_of(d);
   Plot plot{.title = "Held-out error, step by step",
@@ -181,14 +179,16 @@ Section candidates_section(const Outcome& outcome) {
       " % or more and the gain is more than chance: p is the probability of such a gain by chance "
       "alone. The bars end at the held-out error, the dashed line is the noise floor."};
   for (std::size_t i = 0; i < d.ladder.rounds.size(); ++i) {
+    const std::string not_fitted = not_fitted_words(d.ladder.rounds[i]);
     Plot plot = candidates_plot(d, i);
-    if (plot.categories.size() > 1) section.plots.push_back(std::move(plot));
+    if (plot.categories.size() > 1) {
+      plot.caption = not_fitted;
+      section.plots.push_back(std::move(plot));
+    } else if (!not_fitted.empty()) {
+      section.paragraphs.push_back("Round " + std::to_string(i + 1) + ". " + not_fitted);
+    }
     Table table = candidates_table(d, i);
     if (!table.rows.empty()) section.tables.push_back(std::move(table));
-  }
-  for (std::size_t i = 0; i < d.ladder.rounds.size(); ++i) {
-    const std::string words = not_fitted_words(d, i);
-    if (!words.empty()) section.paragraphs.push_back(words);
   }
   if (section.plots.size() == 1) section.plots.front().width = report::Width::full;
   return section;

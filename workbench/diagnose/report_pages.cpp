@@ -39,7 +39,7 @@ std::vector<report::Fact> facts_of(const Outcome& outcome) {
   const Diagnosis& d = outcome.diagnosis;
   std::vector<report::Fact> facts;
   if (outcome.fitted()) {
-    facts.push_back(length_fact("Held-out error, model file", d.nominal_rms_m));
+    facts.push_back(length_fact("Held-out error, file", d.nominal_rms_m));
     facts.push_back(length_fact("Its parameters fitted", d.rms_before_m));
     if (!d.missing.empty()) facts.push_back(length_fact("Effects added", d.rms_after_m));
   }

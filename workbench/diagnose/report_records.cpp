@@ -6,7 +6,6 @@
 #include "workbench/diagnose/quantity.h"
 #include "workbench/diagnose/report_pages.h"
 #include "workbench/diagnose/words.h"
-#include "workbench/matching/error_words.h"
 #include "workbench/matching/motion.h"
 #include "workbench/report/binned.h"
 #include "workbench/report/thin.h"
@@ -105,7 +104,7 @@ Plot position_plot(const Page& page, bool fitted) {
   plot.series.push_back({.name = "better model, free run",
                          .y = model_mm(page, page.free_after_m),
                          .tone = Tone::improved});
-  plot.caption = matching::kFreeRunMeaning;
+  plot.caption = "Free run: nothing is corrected, errors add up.";
   return plot;
 }
 

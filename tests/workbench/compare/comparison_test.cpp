@@ -216,7 +216,9 @@ TEST(Sections, HavePlotsWhoseSeriesAreAsLongAsTheirAxis) {
       ++plots;
       const std::size_t length =
           plot.categories.empty() ? plot.x_values.size() : plot.categories.size();
-      for (const report::Series& series : plot.series) EXPECT_EQ(series.y.size(), length);
+      for (const report::Series& series : plot.series) {
+        EXPECT_EQ(series.y.size(), series.x.empty() ? length : series.x.size());
+      }
       if (!plot.zoom_group.empty()) {
         EXPECT_EQ(plot.zoom_group, "first time");
       }

@@ -1,7 +1,8 @@
 // Added to a report by the browser test: looks at every canvas, zooms, hovers and prints, and leaves
 // what it saw as JSON in <pre id="check">.
 'use strict';
-const seen = {errors: [], plots: []};
+const seen = {errors: [], plots: [], cut: []};
+addEventListener('unhandledrejection', (event) => seen.errors.push(String(event.reason)));
 addEventListener('error', (event) => seen.errors.push(event.message));
 addEventListener('securitypolicyviolation', (event) => seen.errors.push(event.violatedDirective));
 
@@ -37,10 +38,27 @@ function drag(i, from, to) {
   send(i, 'pointerup', ...place(to), PointerEvent);
 }
 
+// Names the plots whose axes end before their values do.
+function cut(chart) {
+  const plot = chart.options.plot;
+  const outside = (value, scale) => Number.isFinite(value) &&
+      !(scale.type === 'logarithmic' && value <= 0) &&
+      (value < scale.min - 1e-9 || value > scale.max + 1e-9);
+  for (const series of plot.series) {
+    const values = plot.horizontal ? chart.scales.x : chart.scales.y;
+    const xs = plot.categories ? [] : series.x || plot.xs;
+    if (series.y.some((v) => v !== null && outside(v, values)) ||
+        xs.some((v, i) => v !== null && series.y[i] !== null && outside(v, chart.scales.x))) {
+      seen.cut.push(plot.title + ': ' + series.name);
+    }
+  }
+}
+
 async function look() {
   for (const canvas of canvases) {
     const sets = Chart.getChart(canvas).data.datasets;
     seen.plots.push(sets.map((set) => inked(canvas, set.borderColor)));
+    cut(Chart.getChart(canvas));
   }
   seen.declared = +document.body.dataset.plots;
   seen.drawn = +document.body.dataset.drawn;
@@ -73,7 +91,7 @@ async function use() {
 
 addEventListener('load', async () => {
   await wait(100);
-  await look().then(use).catch((error) => seen.errors.push(String(error)));
+  await look().then(USE ? use : () => 0).catch((error) => seen.errors.push(String(error)));
   const result = document.body.appendChild(document.createElement('pre'));
   result.id = 'check';
   result.textContent = JSON.stringify(seen);

@@ -1,5 +1,5 @@
 // The report in a real browser. Skipped where there is none: scripts/install-packages browser.
-#include "tests/workbench/report/browser.h"
+#include "tests/workbench/report/page_check.h"
 
 #include <gmock/gmock.h>
 
@@ -34,25 +34,6 @@ std::string replaced(std::string page, const std::string& from, const std::strin
   return page.replace(at, from.size(), to);
 }
 
-/// The page with the check before its own program, so that an error there is seen.
-std::string with_check(std::string page) {
-  const std::string script =
-      "<script>\n" + read_text(SPOOLWATCH_SOURCE_DIR "/tests/workbench/report/browser_check.js") +
-      "</script>\n";
-  return page.insert(page.rfind("<script type=\"application/json\""), script);
-}
-
-json check_of(const Visit& visit) {
-  const std::string from = R"(<pre id="check">)";
-  const auto begin = visit.document.rfind(from);
-  if (begin == std::string::npos) {
-    ADD_FAILURE() << "the page left no result, chromium's status is " << visit.status;
-    return json::object();
-  }
-  const auto text = begin + from.size();
-  return json::parse(visit.document.substr(text, visit.document.find("</pre>", text) - text));
-}
-
 void expect_range(const json& range, double from_s, double to_s) {
   EXPECT_NEAR(range[0].get<double>(), from_s, kPixel_s);
   EXPECT_NEAR(range[1].get<double>(), to_s, kPixel_s);
@@ -66,6 +47,7 @@ TEST_F(Browser, DrawsEveryPlotZoomsAndReadsWithoutARequestOrAnError) {
   EXPECT_THAT(check["errors"], IsEmpty()) << check["errors"].dump();
   EXPECT_EQ(check["declared"], 9);
   EXPECT_EQ(check["drawn"], 9);
+  EXPECT_THAT(check["cut"], IsEmpty()) << check["cut"].dump();
   ASSERT_EQ(check["plots"].size(), 9U);
   for (const json& plot : check["plots"]) {
     for (const json& pixels : plot) EXPECT_GT(pixels.get<int>(), kInk) << check["plots"].dump();
@@ -92,7 +74,7 @@ TEST_F(Browser, APlotThatFailsSaysSoAndCurvesThatAreMissingAreNoticed) {
                               "function draw(canvas, plot) {if (plot.title === 'Parameters') "
                               "throw new Error('planted');");
   page = replaced(page, R"("title":"Candidates, first round")", R"("title":"Parameters")");
-  page = replaced(page, "return series.y.map((y, i)", "return [].map((y, i)");
+  page = replaced(page, "const all = series.y.map((y, i)", "const all = [].map((y, i)");
   const Visit seen = visit(with_check(page));
   EXPECT_THAT(seen.document, testing::HasSubstr("This plot could not be drawn: planted"));
   EXPECT_THAT(seen.document, testing::HasSubstr(R"(data-plots="9" data-drawn="8")"));
@@ -102,6 +84,22 @@ TEST_F(Browser, APlotThatFailsSaysSoAndCurvesThatAreMissingAreNoticed) {
   for (std::size_t i = 0; i < 7; ++i) {  // all but the two plots over names
     for (const json& pixels : check["plots"][i]) EXPECT_LT(pixels.get<int>(), kInk) << i;
   }
+}
+
+TEST_F(Browser, ACloudAloneIsSeenWhole) {
+  Report report{.title = "cloud"};
+  Plot plot{
+      .title = "Cloud", .kind = Kind::scatter, .x = {"velocity", "mm/s"}, .y = {"error", "um"}};
+  for (int i = 0; i < 600; ++i) {  // ends in the middle of what it passes through
+    plot.x_values.push_back(100.0 * std::sin(0.05 * i));
+    if (i == 0) plot.series.push_back({.name = "sample"});
+    plot.series[0].y.push_back(5.0 * std::cos(0.07 * i));
+  }
+  report.sections = {{.heading = "Cloud", .plots = {plot}}};
+  const json check = check_of(visit(with_check(render(report), false)));
+  ASSERT_TRUE(check.contains("cut")) << check.dump();
+  EXPECT_THAT(check["cut"], IsEmpty()) << check["cut"].dump();
+  EXPECT_GT(check["plots"][0][0].get<int>(), kInk);
 }
 
 TEST_F(Browser, ThePolicyStopsARequestThatWouldOtherwiseBeSeen) {
