@@ -23,8 +23,6 @@ using diagnose::Outcome;
 using diagnose::Request;
 
 constexpr int kMostThreads = 256;
-/// As shells report a program that a signal ended.
-constexpr int kSignalled = 128;
 
 void write(const Outcome& outcome, const Request& request) {
   const bool stdout_is_json = request.json == "-";
@@ -56,11 +54,11 @@ int run(const Request& request) {
   outcome.shop.cancel = diagnose::Interrupt::requested;
   outcome.diagnosis = diagnose::diagnose(outcome.shop);
   if (!request.quiet) line.end();
-  const int signal = diagnose::Interrupt::signal();
-  outcome.interrupted = signal != 0 || outcome.diagnosis.ladder.interrupted;
+  const int exit_code = diagnose::Interrupt::exit_code();
+  outcome.interrupted = exit_code != 0 || outcome.diagnosis.ladder.interrupted;
   simulate_freely(outcome);
   write(outcome, request);
-  return signal == 0 ? 0 : kSignalled + signal;
+  return exit_code;
 }
 
 }  // namespace

@@ -9,9 +9,12 @@
 #include "workbench/diagnose/localise.h"
 #include "workbench/diagnose/rivals.h"
 #include "workbench/diagnose/selection.h"
+#include "workbench/diagnose/whole.h"
 
 namespace workbench::diagnose {
 namespace {
+
+constexpr double kAsClear = 0.9;  ///< explained share of what is left over that of the whole
 
 /// The better model's parameters on all samples, with what the record says of each.
 void settle(const Workshop& shop, Diagnosis& result) {
@@ -41,9 +44,21 @@ void list_steps(Diagnosis& result) {
   }
 }
 
+/// What carries the residual that nothing explains. Effects that were taken for want of the right
+/// one have swallowed part of it: then the model as given shows it more clearly.
+std::vector<Where> carriers(const Workshop& shop, const Stage& first, const Stage& final) {
+  std::vector<Where> left = localise(shop, final);
+  if (final.added.empty()) return left;
+  std::vector<Where> whole = localise(shop, first);
+  const auto share = [](const std::vector<Where>& where) {
+    return where.empty() ? 0.0 : where.front().explained_ratio;
+  };
+  return share(left) >= kAsClear * share(whole) ? left : whole;
+}
+
 /// Groups that a motion could separate make the verdict undetermined; others are the same equation.
-void weigh_rivals(const Workshop& shop, Diagnosis& result) {
-  for (const Rivalry& rivalry : rivalries(shop, result.ladder)) {
+void weigh_rivals(const Workshop& shop, const Stage& found, Diagnosis& result) {
+  for (const Rivalry& rivalry : rivalries(shop, result.ladder.rounds, found)) {
     std::vector<std::string> group{rivalry.found};
     group.insert(group.end(), rivalry.others.begin(), rivalry.others.end());
     const Advice advice = advise(shop, rivalry.explanations, group);
@@ -86,7 +101,13 @@ Diagnosis diagnose(const Workshop& shop) {
     result.better = shop.model;
     return result;
   }
-  result.ladder = climb(shop);
+  const Workshop search = for_search(shop);
+  result.ladder = climb(search);
+  const Stage found = result.ladder.final;
+  if (searches_in_part(search, shop)) {
+    carry_to_whole(shop, result.ladder);
+    result.notes.push_back(note_of_search(search, shop));
+  }
   const Stage& final = result.ladder.final;
   result.nominal_rms_m = result.ladder.nominal_rms_m;
   list_steps(result);
@@ -96,10 +117,12 @@ Diagnosis diagnose(const Workshop& shop) {
   settle(shop, result);
   if (final.fitted.score_rms_m > kUnexplained * result.noise_floor_m) {
     result.verdict = Verdict::unexplained;
-    result.where = localise(shop, final);
+    const bool begun = !result.ladder.rounds.empty();
+    result.where = carriers(search, begun ? result.ladder.rounds.front().before : found, found);
     result.advice = advice_for_unexplained(result.where);
+    weigh_rivals(search, found, result);
   } else {
-    weigh_rivals(shop, result);
+    weigh_rivals(search, found, result);
     result.verdict = final.added.empty()        ? Verdict::nothing_missing
                      : result.ambiguous.empty() ? Verdict::missing
                                                 : Verdict::undetermined;

@@ -27,6 +27,10 @@ Interrupt::~Interrupt() {
   sigaction(SIGTERM, &before_term_, nullptr);
 }
 
-int Interrupt::signal() noexcept { return came; }
+int Interrupt::exit_code() noexcept {
+  constexpr int kSignalled = 128;
+  const int signal = came;
+  return signal == 0 ? 0 : kSignalled + signal;
+}
 
 }  // namespace workbench::diagnose

@@ -15,9 +15,9 @@ class Interrupt {
   Interrupt& operator=(const Interrupt&) = delete;
 
   /// From any thread.
-  [[nodiscard]] static bool requested() noexcept { return signal() != 0; }
-  /// The signal that came, 0 for none.
-  [[nodiscard]] static int signal() noexcept;
+  [[nodiscard]] static bool requested() noexcept { return exit_code() != 0; }
+  /// As shells report a program that a signal ended: 128 and its number; 0 when none came.
+  [[nodiscard]] static int exit_code() noexcept;
 
  private:
   struct sigaction before_int_ {};

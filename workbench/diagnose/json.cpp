@@ -85,6 +85,7 @@ std::string to_json(const Outcome& outcome) {
   json["records"] = outcome.records;
   json["holdouts"] = outcome.holdouts;
   json["command"] = outcome.command;
+  json["preview_s"] = number_or_null(d.ladder.preview_s);
   json["runtime_s"] = number_or_null(d.runtime_s);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

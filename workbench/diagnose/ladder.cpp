@@ -1,6 +1,7 @@
 #include "workbench/diagnose/ladder.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "workbench/diagnose/look_over.h"
 #include "workbench/diagnose/rounds.h"
@@ -16,6 +17,8 @@ constexpr std::size_t kMostEffects = 4;
 constexpr std::size_t kDetours = 3;
 /// They have to come within this factor of the best, and by another way than it.
 constexpr double kNear = 2.0;
+/// And what is left must be this many times the noise.
+constexpr double kLost = 2.0;
 constexpr double kSamePath = 0.1;
 /// A gain must also be more than chance, unless it is a large one.
 constexpr double kChance = 0.01;
@@ -95,6 +98,13 @@ double worthwhile_at(const Workshop& shop, double score_rms_m) {
                                                                   : kWorthwhile;
 }
 
+double nominal_rms_m(const Workshop& shop) {
+  matching::EvidenceRun run(shop.model, shop.evidence, shop.standing);
+  Eigen::MatrixXd residuals_m;
+  run.residuals(matching::start_of(shop.model, shop.standing), residuals_m);
+  return matching::rms(residuals_m.col(0), shop.evidence.scores);
+}
+
 Stage first_stage(const Workshop& shop) {
   matching::FitOptions options;
   options.tolerance = 1e-5;
@@ -109,21 +119,21 @@ std::vector<Glance> preview(const Workshop& shop, const Stage& stage) {
 }
 
 Ladder climb(const Workshop& shop) {
+  const auto begin = std::chrono::steady_clock::now();
   Ladder ladder;
-  {
-    matching::EvidenceRun run(shop.model, shop.evidence, shop.standing);
-    Eigen::MatrixXd residuals_m;
-    run.residuals(matching::start_of(shop.model, shop.standing), residuals_m);
-    ladder.nominal_rms_m = matching::rms(residuals_m.col(0), shop.evidence.scores);
-  }
+  ladder.nominal_rms_m = nominal_rms_m(shop);
   Stage stage = first_stage(shop);
   const Stage first = stage;
+  ladder.preview_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   go_on(shop, stage, ladder.rounds, true);
+  if (!ladder.rounds.empty()) ladder.preview_s += ladder.rounds.front().looked_s;
   look_over(shop, stage);
   const std::vector<Candidate> firsts =
       ladder.rounds.empty() ? std::vector<Candidate>{} : ladder.rounds.front().candidates;
   for (std::size_t i = 1; i < std::min(kDetours, firsts.size()); ++i) {
-    if (is_explained(shop, stage) || shop.cancelled() || !is_gain(shop, first, firsts[i]) ||
+    if (stage.fitted.score_rms_m < kLost * shop.evidence.noise_floor_m || shop.cancelled() ||
+        !is_gain(shop, first, firsts[i]) ||
         firsts[i].score_rms_m > kNear * firsts.front().score_rms_m) {
       break;
     }

@@ -44,6 +44,7 @@ struct Candidate {
 struct Round {
   Stage before;
   std::vector<Candidate> candidates;  ///< best first
+  double looked_s = 0.0;              ///< what the quick look at all effects took
 };
 
 struct Ladder {
@@ -52,10 +53,13 @@ struct Ladder {
   std::vector<Stage> way;      ///< from the model as given to the final one, an effect at a time
   Stage final;                 ///< the last of them
   bool interrupted = false;
+  double preview_s = 0.0;  ///< until the first ranking of all effects was known
 };
 
 [[nodiscard]] Ladder climb(const Workshop& shop);
 
+/// Held-out error of the model file as it is.
+[[nodiscard]] double nominal_rms_m(const Workshop& shop);
 /// The quick look alone: every absent effect with its expected share of the error, best first.
 [[nodiscard]] std::vector<Glance> preview(const Workshop& shop, const Stage& stage);
 /// The model as it stands, its parameters fitted.

@@ -28,6 +28,8 @@ constexpr std::array kUnits{
     Unit{"m/s", "m/s", 1.0, 1.0},
     Unit{"m/s", "mm/s", 1e-3, 0.0},
     Unit{"m/s/V", "mm/s/V", 1e-3, 0.0},
+    Unit{"m/V", "mm/V", 1e-3, 1e-3},
+    Unit{"m/V", "um/V", 1e-6, 0.0},
     Unit{"s", "s", 1.0, 1.0},
     Unit{"s", "ms", 1e-3, 0.0},
     Unit{"V", "V", 1.0, 0.1},

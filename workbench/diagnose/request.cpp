@@ -7,34 +7,15 @@
 #include "config/record/record.h"
 #include "config/schema/document.h"
 #include "config/schema/error.h"
-#include "workbench/diagnose/shell_words.h"
 #include "workbench/file_check.h"
+#include "workbench/shell_words.h"
 
 namespace workbench::diagnose {
 namespace {
 
-using config::schema::Error;
-using config::schema::ExitCode;
-
-/// A record on both sides would be scored on what was fitted.
-void check_inputs(const Request& request) {
-  for (std::size_t i = 0; i < request.records.size(); ++i) {
-    for (std::size_t k = 0; k < i; ++k) {
-      if (same_file(request.records[i], request.records[k])) {
-        throw Error(ExitCode::usage, request.records[i] + ": is given twice");
-      }
-    }
-    for (const std::string& holdout : request.holdouts) {
-      if (same_file(request.records[i], holdout)) {
-        throw Error(ExitCode::usage, "--holdout " + holdout +
-                                         ": is fitted too; allowed: another record, or --fit "
-                                         "first-half to score on part of this one");
-      }
-    }
-  }
-}
-
 void check_files(const Request& request) {
+  check_records(request.records, request.holdouts,
+                "another record, or --fit first-half to score on part of this one");
   InputFiles inputs{request.model, request.records};
   inputs.records.insert(inputs.records.end(), request.holdouts.begin(), request.holdouts.end());
   check_outputs(
@@ -87,7 +68,6 @@ std::string command_of(const Request& request) {
 }  // namespace
 
 Outcome prepare(const Request& request) {
-  check_inputs(request);
   check_files(request);
   Outcome outcome;
   outcome.split = matching::parse_split(request.fit);

@@ -25,8 +25,8 @@ constexpr double kTold = 1e-3;
 /// Two fits whose residuals differ by less than this share of the error are the same motion.
 constexpr double kSameMotion = 0.3;
 
-const Round* round_of(const Ladder& ladder, const std::string& effect) {
-  for (const Round& round : ladder.rounds) {
+const Round* round_of(const std::vector<Round>& rounds, const std::string& effect) {
+  for (const Round& round : rounds) {
     const auto& before = round.before.added;
     if (std::find(before.begin(), before.end(), effect) != before.end()) continue;
     for (const Candidate& candidate : round.candidates) {
@@ -66,11 +66,11 @@ bool is_rival(const Workshop& shop, double without_m, const Fitted& found, const
 
 }  // namespace
 
-std::vector<Rivalry> rivalries(const Workshop& shop, const Ladder& ladder) {
+std::vector<Rivalry> rivalries(const Workshop& shop, const std::vector<Round>& rounds,
+                               const Stage& final) {
   std::vector<Rivalry> result;
-  const Stage& final = ladder.final;
   for (const std::string& effect : final.added) {
-    const Round* round = round_of(ladder, effect);
+    const Round* round = round_of(rounds, effect);
     if (round == nullptr || shop.cancelled()) continue;
     double chosen_m = 0.0;
     for (const Candidate& candidate : round->candidates) {

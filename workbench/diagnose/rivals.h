@@ -17,6 +17,7 @@ struct Rivalry {
 
 /// Empty when every found effect stands alone. Effects that contain a found one as a special case
 /// (a spring so long that it is a constant force) are no rivals.
-[[nodiscard]] std::vector<Rivalry> rivalries(const Workshop& shop, const Ladder& ladder);
+[[nodiscard]] std::vector<Rivalry> rivalries(const Workshop& shop, const std::vector<Round>& rounds,
+                                             const Stage& final);
 
 }  // namespace workbench::diagnose

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <mutex>
@@ -15,12 +16,13 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr int kQuickIterations = 12;
+constexpr int kQuickIterations = 8;
 constexpr double kQuickTolerance = 2e-3;
-constexpr int kThoroughIterations = 30;
-constexpr double kThoroughTolerance = 1e-5;
+constexpr int kThoroughIterations = 15;
+constexpr double kThoroughTolerance = 3e-5;
 /// Candidates within this of the best are fitted to the end.
 constexpr double kContender = 0.5;
+constexpr std::size_t kMostContenders = 3;
 /// At the noise floor the quick look is as good as the fit: what it does not expect is not there.
 constexpr double kAtFloor = 1.05;
 constexpr double kExpectable = 0.002;
@@ -30,6 +32,8 @@ constexpr int kGlimpseIterations = 4;
 constexpr double kFar = 3.0;
 /// After the first effect, that many of the most promising others are fitted.
 constexpr std::size_t kLookedThrough = 9;
+/// And that many are tried from other starts too.
+constexpr std::size_t kAgain = 3;
 constexpr std::size_t kAllStarts = 1000;
 constexpr std::size_t kPairable = 5;
 constexpr double kComparedBlock_s = 1.0;
@@ -101,7 +105,8 @@ void sort_by_score(std::vector<Candidate>& candidates) {
 void finish(const Workshop& shop, const Stage& stage, std::vector<Candidate>& candidates) {
   const double best_m = candidates.front().score_rms_m;
   std::size_t contenders = 0;
-  while (contenders < candidates.size() && candidates[contenders].fitted_at_all &&
+  while (contenders < std::min(kMostContenders, candidates.size()) &&
+         candidates[contenders].fitted_at_all &&
          candidates[contenders].score_rms_m <= (1.0 + kContender) * best_m &&
          candidates[contenders].score_rms_m <=
              (1.0 - 0.5 * kWorthwhile) * stage.fitted.score_rms_m) {
@@ -127,13 +132,6 @@ void finish(const Workshop& shop, const Stage& stage, std::vector<Candidate>& ca
 }
 
 }  // namespace
-
-std::vector<VectorXd> bases_of(const Workshop& shop, const Stage& stage) {
-  VectorXd nominal = stage.fitted.x;
-  const VectorXd file = matching::start_of(shop.model, shop.standing);
-  nominal.head(file.size()) = file;
-  return {stage.fitted.x, nominal};
-}
 
 double chance(const Workshop& shop, const matching::Fitted& earlier,
               const matching::Fitted& later) {
@@ -170,8 +168,10 @@ Round single_round(const Workshop& shop, const Stage& stage, int number) {
     }
   }
   Reporter reporter(shop, number, 2 * effects.size());
+  const auto begin = std::chrono::steady_clock::now();
   const std::vector<Glance> glances =
       glances_at(shop, stage, effects, [&](const std::string& effect) { reporter.looked(effect); });
+  round.looked_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   reporter.expect(glances);
   const bool at_floor = stage.fitted.score_rms_m < kAtFloor * shop.evidence.noise_floor_m;
   round.candidates.resize(glances.size());
@@ -207,7 +207,9 @@ Round single_round(const Workshop& shop, const Stage& stage, int number) {
   in_parallel(glances.size(), shop.threads, [&](std::size_t i) {
     const Candidate& candidate = round.candidates[i];
     const bool far = explained && candidate.score_rms_m > kFar * best_m;
-    if (candidate.fitted_at_all && !far) work(i, 1, kAllStarts);
+    // later stages have bent their parameters less
+    const bool later = !stage.added.empty() && i >= kAgain;
+    if (candidate.fitted_at_all && !far && !later) work(i, 1, kAllStarts);
   });
   sort_by_score(round.candidates);
   if (!round.candidates.empty()) finish(shop, stage, round.candidates);

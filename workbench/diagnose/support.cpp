@@ -38,7 +38,8 @@ bool supported(const Workshop& shop, bool explained, const Selection& plain,
                const Selection& more) {
   const Halves halves = halves_of(shop.evidence);
   matching::FitOptions options;
-  options.tolerance = 1e-5;
+  options.tolerance = 1e-4;
+  options.max_iterations = 15;
   options.final_jacobian = false;
   options.cancel = shop.cancel;
   if (!explained) options.observer_per_s = 0.0;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "workbench/diagnose/quantity.h"
-#include "workbench/diagnose/shell_words.h"
+#include "workbench/shell_words.h"
 
 namespace workbench::diagnose {
 namespace {
