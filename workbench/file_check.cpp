@@ -58,6 +58,27 @@ bool same_file(const std::string& a, const std::string& b) {
   return !first.empty() && first == fs::weakly_canonical(fs::absolute(b), ignored);
 }
 
+void check_records(const std::vector<std::string>& records,
+                   const std::vector<std::string>& holdouts, const std::string& instead) {
+  for (const std::vector<std::string>* side : {&records, &holdouts}) {
+    for (std::size_t i = 0; i < side->size(); ++i) {
+      for (std::size_t k = 0; k < i; ++k) {
+        if (same_file((*side)[i], (*side)[k])) {
+          throw Error(ExitCode::usage, (*side)[i] + ": is given twice");
+        }
+      }
+    }
+  }
+  for (const std::string& holdout : holdouts) {
+    for (const std::string& record : records) {
+      if (same_file(holdout, record)) {
+        throw Error(ExitCode::usage,
+                    "--holdout " + holdout + ": is fitted too; allowed: " + instead);
+      }
+    }
+  }
+}
+
 void check_outputs(const std::vector<OutputFile>& outputs, const InputFiles& inputs) {
   for (const OutputFile& output : outputs) {
     if (!is_written(output)) continue;

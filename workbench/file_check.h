@@ -9,6 +9,11 @@ namespace workbench {
 /// The same file, however it is spelled.
 [[nodiscard]] bool same_file(const std::string& a, const std::string& b);
 
+/// Throws (exit 2) for a record that is given twice among `records` and `holdouts`: fitted and
+/// scored, or counted double. `instead` says what is allowed for one that is on both sides.
+void check_records(const std::vector<std::string>& records,
+                   const std::vector<std::string>& holdouts, const std::string& instead);
+
 struct OutputFile {
   std::string option;  ///< "--json", as the user knows it
   std::string file;    ///< empty: not asked for; "-": standard output

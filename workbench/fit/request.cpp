@@ -9,8 +9,8 @@
 #include "config/record/record.h"
 #include "config/schema/document.h"
 #include "config/schema/error.h"
-#include "workbench/diagnose/shell_words.h"
 #include "workbench/file_check.h"
+#include "workbench/shell_words.h"
 
 namespace workbench::fit {
 namespace {
@@ -25,20 +25,8 @@ using matching::Measured;
 constexpr double kLeastMotion = 5.0;
 
 void check_files(const Request& request) {
-  for (std::size_t i = 0; i < request.records.size(); ++i) {
-    for (std::size_t k = 0; k < i; ++k) {
-      if (same_file(request.records[i], request.records[k])) {
-        throw Error(ExitCode::usage, request.records[i] +
-                                         ": is given twice; allowed: --weight to "
-                                         "make a record count more");
-      }
-    }
-    for (const std::string& holdout : request.holdouts) {
-      if (same_file(request.records[i], holdout)) {
-        throw Error(ExitCode::usage, "--holdout " + holdout + ": is fitted too");
-      }
-    }
-  }
+  check_records(request.records, request.holdouts,
+                "another record, or --fit to score on part of this one");
   InputFiles inputs{request.model, request.records};
   inputs.records.insert(inputs.records.end(), request.holdouts.begin(), request.holdouts.end());
   check_outputs(
@@ -193,7 +181,7 @@ std::string command_of(const Request& request) {
   add("-o", request.output);
   add("--json", request.json);
   add("--report", request.report);
-  return diagnose::shell_command(words);
+  return shell_command(words);
 }
 
 }  // namespace

@@ -53,6 +53,12 @@ TEST_F(DiagnoseRequest, RecordGivenTwiceIsRefused) {
   expect_refused(2, "is given twice");
 }
 
+TEST_F(DiagnoseRequest, HoldoutGivenTwiceIsRefused) {
+  const std::string other = record("other.csv", {.sample_time_s = 0.01});
+  request_.holdouts = {other, file("./other.csv")};
+  expect_refused(2, "is given twice");
+}
+
 TEST_F(DiagnoseRequest, HoldoutBesideASplitIsRefused) {
   EXPECT_THROW(diagnose_with({model(), request_.records[0], "--fit", "first-half", "--holdout",
                               record("other.csv", {})}),
