@@ -22,6 +22,7 @@
 #include "workbench/compare/text.h"
 #include "workbench/file_check.h"
 #include "workbench/number_check.h"
+#include "workbench/shell_words.h"
 
 namespace workbench {
 namespace {
@@ -41,20 +42,8 @@ struct Arguments {
   bool all = false;
 };
 
-/// A word as a shell takes it.
-std::string quoted(const std::string& word) {
-  const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 ||
-           std::string("-_./=,:+@%").find(static_cast<char>(c)) != std::string::npos;
-  });
-  if (plain) return word;
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
-
 std::string command_line(const Arguments& a) {
-  std::string line = "spoolwatch compare " + quoted(a.model) + " " + quoted(a.record);
+  std::string line = "spoolwatch compare " + shell_word(a.model) + " " + shell_word(a.record);
   const auto number = [&](const char* option, double value) {
     char text[48];
     std::snprintf(text, sizeof text, " %s %.9g", option, value);
@@ -63,9 +52,9 @@ std::string command_line(const Arguments& a) {
   if (std::isfinite(a.from_s)) number("--from", a.from_s);
   if (std::isfinite(a.to_s)) number("--to", a.to_s);
   if (a.observer_per_s != matching::kObserver_per_s) number("--observer", a.observer_per_s);
-  for (const std::string& assignment : a.assignments) line += " --set " + quoted(assignment);
-  if (!a.json.empty()) line += " --json " + quoted(a.json);
-  return line + " --report " + quoted(a.report);
+  for (const std::string& assignment : a.assignments) line += " --set " + shell_word(assignment);
+  if (!a.json.empty()) line += " --json " + shell_word(a.json);
+  return line + " --report " + shell_word(a.report);
 }
 
 plant_sim::ModelFile read_model(const Arguments& a) {

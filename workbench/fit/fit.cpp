@@ -42,7 +42,6 @@ namespace {
 
 using fit::Request;
 
-constexpr int kSignalled = 128;  ///< as shells report a program that a signal ended
 constexpr int kMostStarts = 1000;
 constexpr int kMostThreads = 256;
 
@@ -77,8 +76,7 @@ int run(const Request& request) {
   outcome.runtime_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   write(outcome, request);
-  const int signal = diagnose::Interrupt::signal();
-  return signal == 0 ? 0 : kSignalled + signal;
+  return diagnose::Interrupt::exit_code();
 }
 
 void declare_choice(CLI::App& command, Request& request) {

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "workbench/diagnose/shell_words.h"
+#include "workbench/shell_words.h"
 
 namespace workbench::diagnose {
 namespace {
