@@ -92,8 +92,8 @@ std::string advice_to_excite(const Workshop& shop) {
   return words_to_excite(test_motions(shop).front().words);
 }
 
-std::string advice_for_unexplained(const std::vector<Where>& where) {
-  return words_for_unexplained(where);
+std::string advice_for_unexplained(const std::vector<Where>& where, const std::string& plant) {
+  return words_for_unexplained(where, plant);
 }
 
 }  // namespace workbench::diagnose

@@ -32,6 +32,7 @@ struct Advice {
 [[nodiscard]] std::string advice_to_excite(const Workshop& shop);
 
 /// For a residual that no effect explains; `where` as localise() gives it, may be empty.
-[[nodiscard]] std::string advice_for_unexplained(const std::vector<Where>& where);
+[[nodiscard]] std::string advice_for_unexplained(const std::vector<Where>& where,
+                                                 const std::string& plant = "hydraulic_actuator");
 
 }  // namespace workbench::diagnose

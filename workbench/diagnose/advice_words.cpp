@@ -81,6 +81,28 @@ constexpr std::array kDrift{
     Word{"measurement", "look for a loose mount or a sensor that warms up"},
 };
 
+// The same for an axis that a motor drives: it has no valve and no chambers.
+constexpr std::array kAxisEnters{
+    Word{"flow", "like an offset of the command"},
+    Word{"gain", "like a change of the drive's gain"},
+    Word{"force", "like a force"},
+    Word{"measurement", "like an error of the position sensor"},
+};
+
+constexpr std::array kAxisRecord{
+    Word{"flow", "record the motor's current"},
+    Word{"gain", "record the motor's current"},
+    Word{"force", "record the force with a load cell, or the motor's current"},
+    Word{"measurement", "record the position with a second sensor"},
+};
+
+constexpr std::array kAxisDrift{
+    Word{"flow", "compare it with the drive's temperature"},
+    Word{"gain", "compare it with the drive's supply and temperature"},
+    Word{"force", "ask what was switched or loaded during the record"},
+    Word{"measurement", "look for a loose mount or a sensor that warms up"},
+};
+
 const char* of(const auto& words, const std::string& key) {
   for (const Word& word : words) {
     if (key == word.key) return word.words;
@@ -88,8 +110,13 @@ const char* of(const auto& words, const std::string& key) {
   return "";
 }
 
-/// Which site of a formula has the variable; empty where none does.
-std::string formula_words(const Where& where) {
+bool has_site(const std::string& plant, const std::string& site) {
+  const plant_sim::PlantInfo& info = *plant_sim::find_plant(plant);
+  return std::find(info.sites.begin(), info.sites.end(), site) != info.sites.end();
+}
+
+/// Which site of a formula has the variable; empty where none of the plant's does.
+std::string formula_words(const Where& where, const std::string& plant) {
   std::string site;
   std::string variable;
   if (where.enters == "force") {
@@ -105,10 +132,11 @@ std::string formula_words(const Where& where) {
     site = "command";
     variable = "u_V";
   } else if (where.variable == "v" || where.variable == "speed" || where.variable == "direction") {
-    site = "opening";
-    variable = "x_m";
+    const bool has_opening = has_site(plant, "opening");
+    site = has_opening ? "opening" : "force";
+    variable = has_opening ? "x_m" : "v_mps";
   }
-  if (variable.empty()) return "";
+  if (variable.empty() || !has_site(plant, site)) return "";
   return "or write it as a formula of " + variable + " ([formula_effects.NAME], site = \"" + site +
          "\") and diagnose again";
 }
@@ -162,18 +190,22 @@ std::string words_to_excite(const std::string& motion) {
   return "Run " + motion + ", with the command free of its limits, and diagnose that record.";
 }
 
-std::string words_for_unexplained(const std::vector<Where>& where) {
+std::string words_for_unexplained(const std::vector<Where>& where, const std::string& plant) {
+  const bool axis = !has_site(plant, "opening");
   if (where.empty()) {
-    return "No effect of the library explains what is left; record the chamber pressures and the "
-           "spool position.";
+    return std::string("No effect of the library explains what is left; record ") +
+           (axis ? "the motor's current and the force on the load."
+                 : "the chamber pressures and the spool position.");
   }
   const Where& first = where.front();
   std::string text = std::string("What is left goes ") + of(kVariables, first.variable) +
-                     " and enters " + of(kEnters, first.enters) + " (" +
+                     " and enters " + of(axis ? kAxisEnters : kEnters, first.enters) + " (" +
                      number(100.0 * std::clamp(first.explained_ratio, 0.0, 1.0)) +
                      " % of the held-out squared error): ";
-  text += of(first.variable == "time" ? kDrift : kRecord, first.enters);
-  const std::string formula = formula_words(first);
+  const auto& drift = axis ? kAxisDrift : kDrift;
+  const auto& record = axis ? kAxisRecord : kRecord;
+  text += of(first.variable == "time" ? drift : record, first.enters);
+  const std::string formula = formula_words(first, plant);
   if (!formula.empty()) text += ", " + formula;
   return text + ".";
 }

@@ -20,6 +20,8 @@ namespace workbench::diagnose {
 [[nodiscard]] std::string words_for_sensor(const plant_sim::ModelFile& model,
                                            const std::vector<std::string>& names);
 [[nodiscard]] std::string words_to_excite(const std::string& motion);
-[[nodiscard]] std::string words_for_unexplained(const std::vector<Where>& where);
+/// What to record, and which formula to try, on a plant of that name.
+[[nodiscard]] std::string words_for_unexplained(const std::vector<Where>& where,
+                                                const std::string& plant);
 
 }  // namespace workbench::diagnose

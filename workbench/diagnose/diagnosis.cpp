@@ -119,7 +119,7 @@ Diagnosis diagnose(const Workshop& shop) {
     result.verdict = Verdict::unexplained;
     const bool begun = !result.ladder.rounds.empty();
     result.where = carriers(search, begun ? result.ladder.rounds.front().before : found, found);
-    result.advice = advice_for_unexplained(result.where);
+    result.advice = advice_for_unexplained(result.where, shop.model.plant);
     weigh_rivals(search, found, result);
   } else {
     weigh_rivals(search, found, result);

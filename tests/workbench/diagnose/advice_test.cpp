@@ -34,7 +34,8 @@ matching::Fitted fitted_with(const Workshop& shop, const std::string& effect) {
 class SineWithAsymmetricFlow : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    of_ = new truth::Case(truth::parse_case("motion=sine,flow_asymmetry.asymmetry_ratio=0.0135", 5));
+    of_ =
+        new truth::Case(truth::parse_case("motion=sine,flow_asymmetry.asymmetry_ratio=0.0135", 5));
     shop_ = new Workshop(diagnose_test::shop_with(diagnose_test::measured(truth::simulate(*of_))));
     rivals_ = new std::vector<matching::Fitted>{fitted_with(*shop_, "flow_asymmetry"),
                                                 fitted_with(*shop_, "load_force")};
@@ -121,6 +122,22 @@ TEST(AdviceForUnexplained, OffersNoFormulaForWhatGoesWithTime) {
 
 TEST(AdviceForUnexplained, StillSaysWhatToRecordWhenNothingWasFound) {
   EXPECT_THAT(advice_for_unexplained({}), HasSubstr("chamber pressures"));
+}
+
+TEST(Advice, NamesNoValveAndNoChambersWhereThePlantHasNone) {
+  for (const char* enters : {"flow", "gain", "force", "measurement"}) {
+    for (const char* variable : {"v", "u", "time"}) {
+      const std::string text =
+          advice_for_unexplained({{enters, variable, 0.9}}, "force_driven_axis");
+      for (const char* word : {"valve", "chamber", "spool", "oil", "opening"}) {
+        EXPECT_EQ(text.find(word), std::string::npos) << text;
+      }
+    }
+  }
+  EXPECT_THAT(advice_for_unexplained({{"gain", "v", 0.9}}, "force_driven_axis"),
+              HasSubstr("formula of v_mps ([formula_effects.NAME], site = \"force\")"));
+  const std::string servo = advice_for_unexplained({{"force", "v", 0.9}}, "velocity_servo");
+  EXPECT_EQ(servo.find("site = \"force\""), std::string::npos) << servo;
 }
 
 TEST(MotionWords, TellKindNumbersPlaceAndLength) {
