@@ -1,4 +1,4 @@
-// Proof that a tick allocates nothing: malloc and its kin are counted, per thread, in this program.
+// Proof that a tick allocates nothing.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -6,43 +6,7 @@
 #include "daemon/rt/loop.h"
 #include "hal/replay/replay.h"
 #include "hal/sim/sim.h"
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define SPOOLWATCH_COUNTS_MALLOC 0
-#else
-#define SPOOLWATCH_COUNTS_MALLOC 1
-#endif
-
-namespace {
-
-thread_local long allocations = 0;
-
-}  // namespace
-
-#if SPOOLWATCH_COUNTS_MALLOC
-extern "C" {
-void* __libc_malloc(std::size_t);                 // NOLINT: glibc's own names
-void* __libc_calloc(std::size_t, std::size_t);    // NOLINT
-void* __libc_realloc(void*, std::size_t);         // NOLINT
-void* __libc_memalign(std::size_t, std::size_t);  // NOLINT
-void* malloc(std::size_t size) {
-  ++allocations;
-  return __libc_malloc(size);
-}
-void* calloc(std::size_t count, std::size_t size) {
-  ++allocations;
-  return __libc_calloc(count, size);
-}
-void* realloc(void* old, std::size_t size) {
-  ++allocations;
-  return __libc_realloc(old, size);
-}
-void* aligned_alloc(std::size_t alignment, std::size_t size) {
-  ++allocations;
-  return __libc_memalign(alignment, size);
-}
-}
-#endif
+#include "tests/count_allocations.h"
 
 namespace monitor::rt {
 namespace {

@@ -3,9 +3,8 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <functional>
-#include <random>
 
+#include "tests/workbench/diagnose/servo_shop.h"
 #include "tests/workbench/diagnose/truth_records.h"
 #include "workbench/diagnose/ladder.h"
 #include "workbench/diagnose/variables.h"
@@ -21,33 +20,11 @@ std::vector<Where> where_of(const std::string& spec) {
   return localise(shop, first_stage(shop));
 }
 
-/// A servo y' = rate(u, y, t) in steps of 5 us, on random levels of the command that pull back to
-/// 0.3 m; its reading may be anything of y and t.
-Workshop servo_shop(const std::function<double(double, double, double)>& rate_mps,
-                    const std::function<double(double, double)>& reading_m) {
-  std::mt19937 random(3);
-  std::normal_distribution<double> noise_m(0.0, 2e-6);
-  std::uniform_real_distribution<double> level(-1.0, 1.0);
-  config::record::Record record;
-  record.name = "servo";
-  record.sample_time_s = 0.005;
-  double y_m = 0.3;
-  double step_V = 0.0;
-  for (int k = 0; k < 4000; ++k) {
-    const double t_s = 0.005 * k;
-    if (k % 30 == 0) step_V = 1.5 * level(random) - 8.0 * (y_m - 0.3);
-    record.t_s.push_back(t_s);
-    record.u_V.push_back(step_V);
-    record.y_m.push_back(5e-6 * std::round((reading_m(y_m, t_s) + noise_m(random)) / 5e-6));
-    for (int i = 0; i < 50; ++i) y_m += 1e-4 * rate_mps(step_V, y_m, t_s + 1e-4 * i);
-  }
-  plant_sim::ModelFile model = plant_sim::load_model(std::string(SPOOLWATCH_SOURCE_DIR) +
-                                                     "/config/models/velocity_servo.toml");
-  *model.value("time_constant_s") = 0.0;
-  return workshop(model, matching::evidence({matching::measured(record)}, {}));
+Workshop servo_shop(const diagnose_test::Rate& rate_mps, const diagnose_test::Reading& reading_m) {
+  return diagnose_test::servo_shop({.rate_mps = rate_mps, .reading_m = reading_m});
 }
 
-double plain(double y_m, double /*t_s*/) { return y_m; }
+using diagnose_test::plain_reading;
 
 TEST(Localise, NamesSpeedAndForceForADragWithTheCubeOfTheSpeed) {
   const auto where = where_of("motion=multisine,left_out=cubic_damping,left_out.size=2.5e5");
@@ -94,8 +71,9 @@ TEST(Localise, NamesTimeForALoadThatIsSetDownInTheMiddle) {
 }
 
 TEST(Localise, NamesTimeAndGainForAServoThatGrowsSlower) {
-  const Workshop shop = servo_shop(
-      [](double u_V, double, double t_s) { return 0.05 * u_V * (1.0 - 0.01 * t_s); }, plain);
+  const Workshop shop =
+      servo_shop([](double u_V, double, double t_s) { return 0.05 * u_V * (1.0 - 0.01 * t_s); },
+                 plain_reading);
   const auto where = localise(shop, first_stage(shop));
   ASSERT_FALSE(where.empty());
   EXPECT_EQ(where[0].enters, "gain");
@@ -114,20 +92,22 @@ TEST(Localise, NamesPositionAndMeasurementForASensorWithADent) {
 }
 
 TEST(Localise, LeavesForcesOutForAPlantThatHasNone) {
-  const Workshop shop = servo_shop(
-      [](double u_V, double, double t_s) { return 0.05 * u_V + 1e-3 * std::sin(t_s); }, plain);
+  const Workshop shop =
+      servo_shop([](double u_V, double, double t_s) { return 0.05 * u_V + 1e-3 * std::sin(t_s); },
+                 plain_reading);
   for (const Where& where : localise(shop, first_stage(shop))) EXPECT_NE(where.enters, "force");
 }
 
 TEST(Localise, FindsNothingInNoise) {
-  const Workshop shop = servo_shop([](double u_V, double, double) { return 0.05 * u_V; }, plain);
+  const Workshop shop =
+      servo_shop([](double u_V, double, double) { return 0.05 * u_V; }, plain_reading);
   for (const Where& where : localise(shop, first_stage(shop))) {
     EXPECT_LT(where.explained_ratio, 0.05) << where.enters << " " << where.variable;
   }
 }
 
 TEST(Localise, SaysNothingOnceItIsCancelled) {
-  Workshop shop = servo_shop([](double u_V, double, double) { return 0.05 * u_V; }, plain);
+  Workshop shop = servo_shop([](double u_V, double, double) { return 0.05 * u_V; }, plain_reading);
   const Stage stage = first_stage(shop);
   shop.cancel = [] { return true; };
   EXPECT_THAT(localise(shop, stage), IsEmpty());

@@ -1,0 +1,111 @@
+// What a diagnosis says in the end, on servos of which the answer is known.
+#include "workbench/diagnose/diagnosis.h"
+
+#include <gmock/gmock.h>
+
+#include <set>
+
+#include "tests/workbench/diagnose/servo_shop.h"
+
+namespace workbench::diagnose {
+namespace {
+
+using diagnose_test::kServoGain;
+using diagnose_test::servo_shop;
+using diagnose_test::with_offset;
+using diagnose_test::with_offset_and_band;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+TEST(Diagnosis, NamesWhatIsMissingWithItsValueAndError) {
+  const Workshop shop = servo_shop({.rate_mps = with_offset(0.06)});
+  const Diagnosis d = diagnose(shop);
+  EXPECT_EQ(d.verdict, Verdict::missing);
+  EXPECT_THAT(d.missing, ElementsAre("null_bias"));
+  EXPECT_THAT(d.ambiguous, IsEmpty());
+  ASSERT_EQ(d.parameters.size(), 2U);
+  for (const ParameterValue& p : d.parameters) {
+    const double truth = p.name == "null_bias.offset_V" ? 0.06 : kServoGain;
+    EXPECT_NEAR(p.value, truth, 3.0 * p.std_error) << p.name;
+    EXPECT_GT(p.std_error, 0.0);
+    EXPECT_LT(p.std_error, 0.01 * truth) << p.name;
+    EXPECT_FALSE(p.at_bound);
+  }
+  ASSERT_EQ(d.steps.size(), 2U);
+  EXPECT_EQ(d.steps[1].added, "null_bias");
+  EXPECT_EQ(d.rms_before_m, d.steps[0].score_rms_m);
+  EXPECT_LE(d.rms_after_m, 1.1 * d.noise_floor_m);
+  EXPECT_THAT(d.where, IsEmpty());
+  plant_sim::ModelFile better = d.better;
+  EXPECT_NEAR(*better.value("null_bias.offset_V"), 0.06, 1e-3);
+}
+
+TEST(Diagnosis, DoesNotDependOnTheNumberOfThreads) {
+  Workshop shop = servo_shop({.rate_mps = with_offset_and_band(0.06, 0.1)});
+  shop.threads = 1;
+  const Diagnosis one = diagnose(shop);
+  shop.threads = 3;
+  const Diagnosis three = diagnose(shop);
+  EXPECT_EQ(one.missing, three.missing);
+  EXPECT_NEAR(one.rms_after_m, three.rms_after_m, 1e-3 * one.rms_after_m);
+}
+
+TEST(Diagnosis, SaysNothingIsMissingOfAHealthyRecord) {
+  const Diagnosis d = diagnose(
+      servo_shop({.rate_mps = [](double u_V, double, double) { return 0.98 * kServoGain * u_V; }}));
+  EXPECT_EQ(d.verdict, Verdict::nothing_missing);
+  EXPECT_THAT(d.missing, IsEmpty());
+  EXPECT_EQ(d.steps.size(), 1U);
+  EXPECT_LT(d.rms_after_m, d.nominal_rms_m);
+}
+
+TEST(Diagnosis, SaysWhatCarriesAnErrorThatNoEffectExplains) {
+  const Diagnosis d = diagnose(servo_shop({.rate_mps = [](double u_V, double, double t_s) {
+    return kServoGain * u_V * (1.0 - 0.01 * t_s);
+  }}));
+  EXPECT_EQ(d.verdict, Verdict::unexplained);
+  ASSERT_FALSE(d.where.empty());
+  EXPECT_EQ(d.where[0].enters, "gain");
+  EXPECT_EQ(d.where[0].variable, "time");
+  EXPECT_FALSE(d.advice.empty());
+}
+
+TEST(Diagnosis, AsksForMotionWhereThereIsNone) {
+  const Workshop shop = servo_shop({.rate_mps = with_offset(0.0),
+                                    .command_V = [](double, double) { return 0.0; },
+                                    .samples = 1000});
+  const Diagnosis d = diagnose(shop);
+  EXPECT_EQ(d.verdict, Verdict::not_excited);
+  EXPECT_THAT(d.missing, IsEmpty());
+  EXPECT_FALSE(d.notes.empty());
+  EXPECT_FALSE(d.advice.empty());
+  EXPECT_EQ(d.final.x.size(), 0);
+}
+
+TEST(Diagnosis, KeepsTheBestSoFarWhenItIsInterrupted) {
+  Workshop shop = servo_shop({.rate_mps = with_offset_and_band(0.06, 0.1), .samples = 2000});
+  shop.cancel = [] { return true; };
+  const Diagnosis d = diagnose(shop);
+  EXPECT_THAT(d.notes, testing::Contains(testing::HasSubstr("interrupted")));
+  EXPECT_EQ(d.steps.size(), 1U);
+  EXPECT_TRUE(std::isfinite(d.rms_after_m));
+}
+
+TEST(Diagnosis, PassesOnTheRestrictionsOfARecord) {
+  Workshop shop = servo_shop({.rate_mps = with_offset(0.0), .samples = 1000});
+  shop.evidence.records[0].notes = {"a gap at 3 s"};
+  EXPECT_THAT(diagnose(shop).notes, testing::Contains("servo: a gap at 3 s"));
+}
+
+TEST(Verdict, HasANameOfItsOwn) {
+  std::set<std::string> names;
+  for (const Verdict verdict : {Verdict::nothing_missing, Verdict::missing, Verdict::undetermined,
+                                Verdict::unexplained, Verdict::not_excited}) {
+    names.insert(text(verdict));
+  }
+  EXPECT_THAT(names, ElementsAre("missing", "not_excited", "nothing_missing", "undetermined",
+                                 "unexplained"));
+}
+
+}  // namespace
+}  // namespace workbench::diagnose

@@ -1,0 +1,93 @@
+// The stretch that is looked at quickly, and whether a record moves at all.
+#include "workbench/diagnose/excerpt.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "workbench/diagnose/excitation.h"
+
+namespace workbench::diagnose {
+namespace {
+
+/// 30 s at 200 Hz; the rod moves by `amplitude_m` between the two times.
+matching::Measured moving(double from_s, double to_s, double amplitude_m = 0.01) {
+  matching::Measured m;
+  m.name = "made";
+  m.sample_time_s = 0.005;
+  m.starts = {0};
+  for (int k = 0; k < 6000; ++k) {
+    const double t_s = k / 200.0;
+    m.t_s.push_back(t_s);
+    const double moves = t_s >= from_s && t_s < to_s ? 1.0 : 0.0;
+    m.u_V.push_back(moves * std::cos(6.0 * t_s));
+    m.y_m.push_back(0.3 + moves * amplitude_m * std::sin(6.0 * t_s) + 1e-6 * std::sin(777.0 * k));
+    m.settled.push_back(k < 100 ? 0 : 1);
+  }
+  return m;
+}
+
+matching::Fitted fitted(Eigen::Index samples) {
+  matching::Fitted f;
+  f.x = Eigen::VectorXd::Ones(2);
+  f.sigma_m = 3e-6;
+  f.residual_m = Eigen::VectorXd::LinSpaced(samples, 0.0, static_cast<double>(samples - 1));
+  f.jacobian.resize(samples, 2);
+  f.jacobian << f.residual_m, 2.0 * f.residual_m;
+  return f;
+}
+
+TEST(Excerpt, IsWhereTheRodGoesFurthest) {
+  const matching::Evidence evidence = matching::evidence({moving(14.0, 21.0)}, {});
+  const Excerpt excerpt = excerpt_of(evidence, fitted(6000));
+  const double begin_s =
+      evidence.records[0].t_s[static_cast<std::size_t>(
+                                  excerpt.fitted.residual_m[excerpt.fitted.residual_m.size() - 1]) -
+                              1599];
+  EXPECT_LE(begin_s, 14.0);
+  EXPECT_GE(begin_s + kExcerpt_s, 21.0);
+}
+
+TEST(Excerpt, HasItsOwnRowsOfResidualAndJacobian) {
+  const matching::Evidence evidence = matching::evidence({moving(14.0, 21.0)}, {});
+  const Excerpt excerpt = excerpt_of(evidence, fitted(6000));
+  ASSERT_EQ(excerpt.evidence.size(), 1600);
+  const Eigen::VectorXd row = excerpt.fitted.jacobian.col(0);
+  const auto from = static_cast<std::size_t>(row[0]);
+  EXPECT_EQ(excerpt.evidence.records[0].y_m[7], evidence.records[0].y_m[from + 7]);
+  EXPECT_EQ(row[1599], row[0] + 1599.0);
+  EXPECT_EQ(excerpt.evidence.counts.sum(), 1500.0);  // a cut is a start whose state is not known
+  EXPECT_EQ(excerpt.fitted.residual_m.head(100).sum(), 0.0);
+  EXPECT_EQ(excerpt.fitted.residual_m[100], row[100]);
+  EXPECT_EQ(excerpt.evidence.fits, excerpt.evidence.scores);
+}
+
+TEST(Excerpt, IsTheWholeOfAShortRecord) {
+  const matching::Evidence evidence =
+      matching::evidence({matching::part(moving(0.0, 30.0), 0, 900)}, {});
+  EXPECT_EQ(excerpt_of(evidence, fitted(900)).evidence.size(), 900);
+}
+
+TEST(Excitation, IsEnoughForARodThatMoves) {
+  EXPECT_TRUE(excitation_of(matching::evidence({moving(5.0, 9.0)}, {})).enough);
+}
+
+TEST(Excitation, IsNotEnoughForARodAtRestAndSaysHowLittleItMoves) {
+  const Excitation e = excitation_of(matching::evidence({moving(5.0, 25.0, 1e-5)}, {}));
+  EXPECT_FALSE(e.enough);
+  EXPECT_THAT(e.why, testing::HasSubstr("0.02"));
+  EXPECT_THAT(e.why, testing::HasSubstr("mm"));
+}
+
+TEST(Excitation, IsNotEnoughForACommandAtItsLimitThroughout) {
+  matching::Measured record = moving(0.0, 30.0);
+  for (std::size_t k = 0; k < record.size(); ++k) record.u_V[k] = record.u_V[k] > 0.0 ? 5.0 : -5.0;
+  const Excitation e = excitation_of(matching::evidence({record}, {}));
+  EXPECT_FALSE(e.enough);
+  EXPECT_THAT(e.why, testing::HasSubstr("limit"));
+  for (std::size_t k = 0; k < record.size() / 20; ++k) record.u_V[20 * k] = 1.0;
+  EXPECT_TRUE(excitation_of(matching::evidence({record}, {})).enough);
+}
+
+}  // namespace
+}  // namespace workbench::diagnose

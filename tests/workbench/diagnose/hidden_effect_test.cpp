@@ -1,0 +1,70 @@
+// Records with a hidden effect from a simulator of our own that shares no code with the product
+// (tests/truth): another integrator, LuGre friction, a controller in the loop, quantised, noisy,
+// the plant's own values off. A few of them, short; hidden_effect_set_test.cpp has many.
+#include <gmock/gmock.h>
+
+#include "tests/workbench/diagnose/judged.h"
+#include "tests/workbench/diagnose/truth_records.h"
+#include "workbench/diagnose/diagnosis.h"
+
+namespace workbench::diagnose {
+namespace {
+
+using diagnose_test::kAtFloor;
+using diagnose_test::said;
+using testing::IsEmpty;
+
+struct Judged {
+  truth::Case of;
+  Diagnosis diagnosis;
+};
+
+Judged judged(const std::string& spec, std::size_t seed) {
+  Judged result;
+  result.of = truth::parse_case(spec, seed);
+  result.diagnosis =
+      diagnose(diagnose_test::shop_with(diagnose_test::measured(truth::simulate(result.of))));
+  return result;
+}
+
+void expect_found(const Judged& j) {
+  const Diagnosis& d = j.diagnosis;
+  EXPECT_EQ(d.verdict, Verdict::missing) << said(d);
+  EXPECT_THAT(d.missing, testing::UnorderedElementsAreArray(truth::hidden_effects(j.of.hidden)))
+      << said(d);
+  EXPECT_LE(d.rms_after_m, kAtFloor * d.noise_floor_m) << said(d);
+  EXPECT_GE(d.rms_before_m, diagnose_test::kVisible * d.noise_floor_m) << said(d);
+  EXPECT_THAT(d.where, IsEmpty());
+  diagnose_test::expect_values(d, j.of);
+}
+
+TEST(HiddenEffect, FrictionIsNamedWithItsSize) {
+  expect_found(judged("motion=fast_steps,length_s=12,friction.coulomb_N=150", 11));
+}
+
+TEST(HiddenEffect, ADeadBandIsNamedWithItsWidth) {
+  expect_found(judged("motion=multisine,length_s=12,deadband.half_width_V=0.2", 12));
+}
+
+TEST(HiddenEffect, ANullBiasIsNamedWithItsSignOnAMismatchedPlant) {
+  expect_found(judged("motion=multisine,length_s=12,mismatched=1,null_bias.offset_V=-0.07", 13));
+}
+
+TEST(HiddenEffect, TwoAtOnceAreBothNamed) {
+  const Judged j =
+      judged("motion=multisine,length_s=20,deadband.half_width_V=0.2,null_bias.offset_V=0.07", 14);
+  expect_found(j);
+  ASSERT_EQ(j.diagnosis.steps.size(), 3U);
+  EXPECT_GT(j.diagnosis.steps[0].score_rms_m, j.diagnosis.steps[1].score_rms_m);
+  EXPECT_GT(j.diagnosis.steps[1].score_rms_m, j.diagnosis.steps[2].score_rms_m);
+}
+
+TEST(HiddenEffect, NoneIsFoundOnAHealthyPlantThatTheModelDoesNotMatch) {
+  const Diagnosis d = judged("motion=fast_steps,length_s=12,mismatched=1", 15).diagnosis;
+  EXPECT_EQ(d.verdict, Verdict::nothing_missing) << said(d);
+  EXPECT_THAT(d.missing, IsEmpty());
+  EXPECT_LE(d.rms_after_m, kAtFloor * d.noise_floor_m);
+}
+
+}  // namespace
+}  // namespace workbench::diagnose

@@ -1,0 +1,181 @@
+// The sizes tried of an effect; waves beside the sine that they stand for.
+#include "workbench/diagnose/sizes.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "plant_sim/parameter.h"
+
+namespace workbench::diagnose {
+namespace {
+
+using matching::SearchParameter;
+
+constexpr double kPi = 3.14159265358979323846;
+
+const std::vector<plant_sim::EffectInfo>& library() {
+  static const std::vector<plant_sim::EffectInfo> effects = plant_sim::effects_of(
+      plant_sim::load_model(std::string(SPOOLWATCH_SOURCE_DIR) + "/config/models/thesis.toml"));
+  return effects;
+}
+
+const plant_sim::EffectInfo& info(const std::string& name) {
+  return *std::find_if(library().begin(), library().end(),
+                       [&](const auto& effect) { return effect.name == name; });
+}
+
+std::vector<SearchParameter> own(const std::string& name) {
+  return matching::effect_parameters(info(name), 2);
+}
+
+std::size_t at(const std::vector<SearchParameter>& searched, const std::string& ending) {
+  for (std::size_t i = 0; i < searched.size(); ++i) {
+    if (searched[i].name.ends_with(ending)) return i;
+  }
+  return searched.size();
+}
+
+/// Between 0.25 and 0.35 m.
+matching::Evidence motion() {
+  matching::Evidence evidence;
+  evidence.records.resize(2);
+  evidence.records[0].y_m = {0.30, 0.35, 0.31};
+  evidence.records[1].y_m = {0.29, 0.25};
+  return evidence;
+}
+
+TEST(TrialSizes, StayWithinBoundsAndCoverThreeDecades) {
+  for (const plant_sim::EffectInfo& effect : library()) {
+    const std::vector<SearchParameter> searched = matching::effect_parameters(effect, 2);
+    const Eigen::MatrixXd sizes = trial_sizes(searched, motion());
+    ASSERT_EQ(sizes.rows(), static_cast<Eigen::Index>(searched.size())) << effect.name;
+    std::set<double> tried;
+    for (Eigen::Index k = 0; k < sizes.cols(); ++k) {
+      tried.insert(sizes(0, k));
+      for (Eigen::Index i = 0; i < sizes.rows(); ++i) {
+        const SearchParameter& p = searched[static_cast<std::size_t>(i)];
+        EXPECT_GE(sizes(i, k), p.lower) << p.name;
+        EXPECT_LE(sizes(i, k), p.upper) << p.name;
+      }
+    }
+    const bool both_signs = searched.front().lower < 0.0;
+    EXPECT_EQ(*tried.begin() < 0.0, both_signs) << effect.name;
+    double least = 1e9;
+    double most = 0.0;
+    for (const double size : tried) {
+      least = std::min(least, std::abs(size));
+      most = std::max(most, std::abs(size));
+    }
+    EXPECT_GT(most, (both_signs ? 60.0 : 500.0) * least) << effect.name;
+  }
+}
+
+TEST(TrialSizes, PutARestPositionWhereTheMotionIs) {
+  const std::vector<SearchParameter> searched = own("load_spring");
+  const std::size_t rest = at(searched, ".rest_m");
+  ASSERT_LT(rest, searched.size());
+  const Eigen::MatrixXd sizes = trial_sizes(searched, motion());
+  for (Eigen::Index k = 0; k < sizes.cols(); ++k) {
+    EXPECT_NEAR(searched[rest].value(sizes(static_cast<Eigen::Index>(rest), k)), 0.30, 1e-12);
+  }
+}
+
+TEST(TrialSizes, TakeParametersOfTheSameUnitAlong) {
+  const std::vector<SearchParameter> searched = own("friction");
+  const auto breakaway = static_cast<Eigen::Index>(at(searched, ".static_N"));
+  const Eigen::MatrixXd sizes = trial_sizes(searched, motion());
+  for (Eigen::Index k = 1; k < sizes.cols(); ++k) {
+    EXPECT_NEAR(sizes(breakaway, k) / sizes(breakaway, 0), sizes(0, k) / sizes(0, 0), 1e-9);
+  }
+}
+
+TEST(Waves, AreOnlyOfPeriodicEffects) {
+  std::vector<std::string> periodic;
+  for (const plant_sim::EffectInfo& effect : library()) {
+    if (is_periodic(matching::effect_parameters(effect, 2))) periodic.push_back(effect.name);
+  }
+  EXPECT_THAT(periodic, testing::UnorderedElementsAre("force_ripple", "encoder_eccentricity"));
+}
+
+/// a sin(2 pi y / wavelength + phase)
+double sine(const std::vector<SearchParameter>& searched, const Eigen::VectorXd& x, double y_m) {
+  const auto value = [&](std::size_t i) {
+    return searched[i].value(x[static_cast<Eigen::Index>(i)]);
+  };
+  return value(0) * std::sin(2.0 * kPi * y_m / value(at(searched, ".wavelength_m")) +
+                             value(at(searched, ".phase_rad")));
+}
+
+TEST(Waves, AddUpToAWaveOfAnySizeAndPhase) {
+  for (const char* effect : {"force_ripple", "encoder_eccentricity"}) {
+    const std::vector<SearchParameter> searched = own(effect);
+    const Eigen::MatrixXd two = waves(searched, motion(), 5.0);
+    EXPECT_NEAR(searched[at(searched, ".wavelength_m")].value(
+                    two(static_cast<Eigen::Index>(at(searched, ".wavelength_m")), 0)),
+                0.02, 1e-12);
+    for (const auto& [first, second] :
+         {std::pair{0.7, 0.4}, {-1.2, 0.3}, {0.2, -2.0}, {-0.5, -0.5}, {0.0, 1.0}}) {
+      const Eigen::VectorXd found = wave_of(searched, two.col(0), first, second);
+      for (const double y_m : {0.25, 0.263, 0.301, 0.35}) {
+        EXPECT_NEAR(
+            sine(searched, found, y_m),
+            first * sine(searched, two.col(0), y_m) + second * sine(searched, two.col(1), y_m),
+            1e-9 * searched[0].unit)
+            << effect;
+      }
+    }
+  }
+}
+
+TEST(Waves, AreSoughtFromOneAndAHalfToSixtyTurns) {
+  const std::vector<double> turns = turns_over(motion());
+  EXPECT_EQ(turns.front(), 1.5);
+  EXPECT_EQ(turns.back(), 60.0);
+  // a stretch of any wave number is less than a quarter turn from one that is tried
+  for (std::size_t i = 1; i < turns.size(); ++i) EXPECT_LE(turns[i] - turns[i - 1], 0.5);
+}
+
+TEST(Waves, KeepTheirLengthAndLeaveAReadingMonotonic) {
+  std::vector<SearchParameter> searched = own("encoder_eccentricity");
+  const std::size_t length = at(searched, ".wavelength_m");
+  const Eigen::VectorXd found = waves(searched, motion(), 5.0).col(0);
+  hold_wavelength(info("encoder_eccentricity"), found, searched);
+  EXPECT_NEAR(searched[length].value(searched[length].upper), 0.021, 1e-9);
+  EXPECT_NEAR(searched[length].value(searched[length].lower), 0.02 / 1.05, 1e-9);
+  const double most_m = searched[0].value(searched[0].upper);
+  EXPECT_NEAR(2.0 * kPi * most_m / 0.02, 0.3, 1e-9);  // d reading / d y
+
+  std::vector<SearchParameter> force = own("force_ripple");
+  const double before = force[0].upper;
+  hold_wavelength(info("force_ripple"), waves(force, motion(), 5.0).col(0), force);
+  EXPECT_EQ(force[0].upper, before);
+}
+
+TEST(ScaleSize, TurnsAWaveInsteadOfMakingItNegative) {
+  const std::vector<SearchParameter> searched = own("force_ripple");
+  const Eigen::VectorXd before = waves(searched, motion(), 7.0).col(1);
+  Eigen::VectorXd after = before;
+  EXPECT_TRUE(scale_size(searched, -1.5, after));
+  for (const double y_m : {0.25, 0.2812, 0.33}) {
+    EXPECT_NEAR(sine(searched, after, y_m), -1.5 * sine(searched, before, y_m), 1e-9);
+  }
+}
+
+TEST(ScaleSize, SaysWhereANegativeSizeIsNotPossible) {
+  const std::vector<SearchParameter> width = own("deadband");
+  Eigen::VectorXd own_size = Eigen::VectorXd::Constant(1, 2.0);
+  EXPECT_FALSE(scale_size(width, -0.5, own_size));
+  EXPECT_DOUBLE_EQ(own_size[0], 1.0);
+  const std::vector<SearchParameter> offset = own("null_bias");
+  own_size[0] = 2.0;
+  EXPECT_TRUE(scale_size(offset, -0.5, own_size));
+  EXPECT_DOUBLE_EQ(own_size[0], -1.0);
+  EXPECT_TRUE(scale_size(offset, 1e9, own_size));
+  EXPECT_EQ(own_size[0], offset[0].lower);
+}
+
+}  // namespace
+}  // namespace workbench::diagnose
