@@ -80,7 +80,11 @@ Evidence stretches_of(const Evidence& whole) {
     kept.sample_time_s = record.sample_time_s;
     result.starts.push_back(fits.size());
     for (const Stretch& stretch : stretches(record, share)) {
-      const Measured piece = part(record, stretch.begin, stretch.end);
+      Measured piece = part(record, stretch.begin, stretch.end);
+      const auto fading = static_cast<std::size_t>(std::lround(kFading_s / record.sample_time_s));
+      if (stretch.begin > 0) {
+        std::fill_n(piece.settled.begin(), std::min(fading, piece.size()), char{0});
+      }
       for (std::size_t i = 0; i < piece.size(); ++i) {
         const auto at = static_cast<Eigen::Index>(whole.starts[r] + stretch.begin + i);
         fits.push_back(piece.settled[i] != 0 ? whole.fits[at] : 0.0);
