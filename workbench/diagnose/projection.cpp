@@ -67,8 +67,7 @@ Projection::Two Projection::with(const Eigen::Ref<const VectorXd>& residual_m,
 
 VectorXd Projection::beyond(const Eigen::Ref<const VectorXd>& signature_m) const {
   const VectorXd d = weights_.cwiseProduct(signature_m) * per_sigma_;
-  return signature_m - jacobian_ * normal_.solve(weighted_jacobian_.transpose() * d) *
-                           (1.0 / per_sigma_) * per_sigma_;
+  return signature_m - jacobian_ * normal_.solve(weighted_jacobian_.transpose() * d);
 }
 
 }  // namespace workbench::diagnose

@@ -1,7 +1,9 @@
 // What remains of a residual when a model's parameters may still adjust, linearly and against their
 // priors, and when one further signature may come in with any strength.
 //
-//   cost = min_{a,b} |r + J a + d b|^2 / s^2 + sum ((x + a - mean) / sd)^2
+//   cost = min_{a,b} |r + J a + d b|^2 / s^2 + sum (a / sd)^2
+//
+// a adjustments of the parameters, held by the widths of their priors about where they are.
 #pragma once
 
 #include <Eigen/Cholesky>
