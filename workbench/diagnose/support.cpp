@@ -42,7 +42,12 @@ bool supported(const Workshop& shop, bool explained, const Selection& plain,
   options.max_iterations = 15;
   options.final_jacobian = false;
   options.cancel = shop.cancel;
-  if (!explained) options.observer_per_s = 0.0;
+  if (!explained) {
+    // pure simulation: its minimum is narrow, and what is not reached decides wrongly
+    options.observer_per_s = 0.0;
+    options.tolerance = 1e-5;
+    options.max_iterations = matching::FitOptions{}.max_iterations;
+  }
   std::array<double, 4> score_rms_m{};
   in_parallel(score_rms_m.size(), shop.threads, [&](std::size_t i) {
     const Selection& selection = i % 2 == 0 ? plain : more;
