@@ -174,6 +174,7 @@ Glance glance(const Workshop& shop, const Stage& stage, const std::vector<Base>&
 std::vector<Glance> glances_at(const Workshop& shop, const Stage& stage,
                                const std::vector<plant_sim::EffectInfo>& effects,
                                const std::function<void(const std::string&)>& looked) {
+  if (shop.cancelled() || stage.fitted.jacobian.size() == 0) return {};
   const std::vector<Base> bases = bases_of(shop, stage);
   const Projection projection(stage.fitted, shop.evidence.fits);
   std::vector<Glance> glances(effects.size());

@@ -160,6 +160,9 @@ Fitted fit(const plant_sim::ModelFile& model, const Evidence& evidence,
 
 Eigen::VectorXd std_errors(const Evidence& evidence, const Eigen::VectorXd& weights,
                            const Fitted& fitted) {
+  if (fitted.jacobian.size() == 0) {  // of a fit that was ended before it had one
+    return Eigen::VectorXd::Constant(fitted.x.size(), std::numeric_limits<double>::quiet_NaN());
+  }
   estimator::nonlinear::Problem problem = problem_of(evidence, weights, fitted.searched);
   problem.sigma = fitted.sigma_m;
   estimator::nonlinear::Solution solution;
