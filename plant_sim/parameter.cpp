@@ -33,9 +33,10 @@ std::string unit_of(std::string_view name) {
       divided = true;
       std::swap(unit, below);
     } else {
-      const std::string one = unit_word(word);
+      std::string one = unit_word(word);
       if (one.empty()) break;
-      unit = one + (unit.empty() ? "" : " ") + unit;
+      if (!unit.empty()) one.append(" ").append(unit);
+      unit = std::move(one);
     }
     name = name.substr(0, bar);
   }

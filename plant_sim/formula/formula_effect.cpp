@@ -1,5 +1,7 @@
 #include "plant_sim/formula/formula_effect.h"
 
+#include <iterator>
+
 #include "config/schema/visitor.h"
 
 namespace plant_sim {
@@ -18,11 +20,13 @@ void FormulaEffect::Parameter::visit(Visitor& v) {
 
 void FormulaEffect::visit(Visitor& v) {
   std::vector<std::string_view> sites;
+  sites.reserve(std::size(kFormulaSites));
   for (const FormulaSite& one : kFormulaSites) sites.emplace_back(site_name(one.site));
   v.choice({"site", "where it acts", true}, site, sites);
   v.text({"formula", "an expression of the site's variables and its parameters", true}, formula);
   v.text({"what", "meaning in one phrase"}, what);
   std::vector<std::string> names;
+  names.reserve(parameters.size());
   for (const Parameter& parameter : parameters) names.push_back(parameter.name);
   names = v.names({"parameters", "one table for each"}, names);
   v.table("parameters", [&](Visitor& t) {
