@@ -72,8 +72,9 @@ void check_records(const std::vector<std::string>& records,
   for (const std::string& holdout : holdouts) {
     for (const std::string& record : records) {
       if (same_file(holdout, record)) {
-        throw Error(ExitCode::usage,
-                    "--holdout " + holdout + ": is fitted too; allowed: " + instead);
+        std::string what = "--holdout ";
+        what.append(holdout).append(": is fitted too; allowed: ").append(instead);
+        throw Error(ExitCode::usage, what);
       }
     }
   }

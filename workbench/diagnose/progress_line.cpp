@@ -22,7 +22,7 @@ std::size_t columns() {
 }
 
 std::string best_words(const Progress& progress, double noise_floor_m) {
-  const std::string floor = "noise floor " + length_words(noise_floor_m);
+  std::string floor = "noise floor " + length_words(noise_floor_m);
   if (progress.best.empty()) return floor;
   return "best " + progress.best + " " + length_words(progress.best_rms_m) + ", " + floor;
 }

@@ -77,7 +77,8 @@ MatrixXd trial_sizes(const std::vector<SearchParameter>& searched,
   MatrixXd points(typical.size(), kSizes);
   for (Index k = 0; k < kSizes; ++k) {
     const double size =
-        both_signs ? std::pow(kSignedRatio, static_cast<double>(k / 2) - 3.0) * (k % 2 ? -1.0 : 1.0)
+        both_signs ? std::pow(kSignedRatio, std::floor(0.5 * static_cast<double>(k)) - 3.0) *
+                         (k % 2 ? -1.0 : 1.0)
                    : std::pow(kPositiveRatio, static_cast<double>(k) - (is_limit ? 2.0 : 6.0));
     points.col(k) = typical;
     scale_size(searched, size, points.col(k));

@@ -42,7 +42,7 @@ class Looker {
  public:
   Looker(const estimator::nonlinear::Problem& problem, const MatrixXd& jacobian,
          const std::vector<SearchParameter>& searched, const VectorXd& x)
-      : problem_(problem), searched_(searched), scale_(x.size()), prior_(x.size()) {
+      : searched_(searched), scale_(x.size()), prior_(x.size()) {
     for (Index j = 0; j < x.size(); ++j) {
       const auto& p = searched[static_cast<std::size_t>(j)];
       const bool prior = std::isfinite(p.prior_sd);
@@ -168,6 +168,7 @@ class Looker {
     }
     if (!products) return;
     std::vector<std::string> kept;
+    kept.reserve(moved.size());
     for (const auto& [noticed, k] : moved) {
       kept.push_back(product(name(k), name(j), column[k] / column[j] * scale_[k] / scale_[j]));
     }
@@ -183,7 +184,6 @@ class Looker {
     return text;
   }
 
-  const estimator::nonlinear::Problem& problem_;
   const std::vector<SearchParameter>& searched_;
   VectorXd scale_;
   VectorXd prior_;  ///< precision in those scales: 1, or 0 for none
