@@ -15,7 +15,7 @@
 #include "daemon/io/recorder.h"
 #include "daemon/rt/loop.h"
 #include "estimator/fdi/pipeline.h"
-#include "hal/rig.h"
+#include "hal/roles.h"
 
 namespace monitor {
 

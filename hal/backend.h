@@ -1,7 +1,8 @@
-// A backend as configuration sees it: its TOML table, and the devices that it opens.
+// A backend as configuration sees it: its TOML table, and the devices that it offers by name.
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -18,11 +19,24 @@ struct Opening {
   double null_V = 0.0;           ///< the commanded safe voltage
 };
 
-struct Devices {
-  std::shared_ptr<RodSensor> rod;     ///< null when the backend reads no position
-  std::shared_ptr<ValveDrive> valve;  ///< null when the backend drives no valve
-  double sample_time_s = kMissing;    ///< period that the device dictates (a record's), else NaN
-  bool fast = false;                  ///< as fast as possible: nothing waits for the wall clock
+/// What one backend has opened. Names (channels) are the backend's or those of its own table.
+struct Offer {
+  std::map<std::string, std::shared_ptr<RodSensor>> rods;
+  std::shared_ptr<ValveDrive> valve;  ///< null when the backend drives none
+  std::map<std::string, std::shared_ptr<Input>> inputs;
+  std::map<std::string, std::shared_ptr<Output>> outputs;
+  double sample_time_s = kMissing;  ///< period that the device dictates (a record's), else NaN
+  bool fast = false;                ///< as fast as possible: nothing waits for the wall clock
+};
+
+/// Channel of a backend that has one rod sensor.
+inline constexpr const char* kRodChannel = "position";
+
+/// How long the valve may keep a command of the law, in s; NaN: for ever.
+struct NullTimes {
+  double bus_lost_s = kMissing;      ///< the device no longer hears us, but runs
+  double process_dead_s = kMissing;  ///< nobody writes any more (SIGKILL, SIGSTOP)
+  double latency_s = 0.0;            ///< from a write of the loop to the voltage at the valve
 };
 
 class Backend {
@@ -31,11 +45,13 @@ class Backend {
   /// Lists the fields of the backend's own table.
   virtual void visit(config::schema::Visitor& v) = 0;
   /// Opens and checks; throws config::schema::Error. Writes nothing to a device.
-  [[nodiscard]] virtual Devices open(const Opening& opening) const = 0;
+  [[nodiscard]] virtual Offer open(const Opening& opening) const = 0;
   /// Moves nothing real, so that it may be armed without a person (`loop.auto_arm`).
   [[nodiscard]] virtual bool harmless() const noexcept = 0;
   /// Fastest the rod can move under a command held at +-limit_V, NaN when it cannot be said.
   [[nodiscard]] virtual double worst_speed_mps(const Opening& opening, double limit_V) const = 0;
+  /// What the valve does by itself when it is left alone.
+  [[nodiscard]] virtual NullTimes null_times() const { return {}; }
 };
 
 /// `text` as a path, relative ones from the configuration file's folder.

@@ -1,8 +1,11 @@
-// What the loop needs of hardware: read the rod's position, drive the valve, go to null.
+// What the loop needs of hardware, by role: read the rod's position, drive the valve, go to null,
+// read an auxiliary input, set an output.
 //
-// A backend (hal/sim, hal/replay, ...) implements one or both interfaces. Units and signs are those
-// of the field, set right once inside the backend: metres, volts, positive command extends.
-// Every function here is called from the loop: noexcept, no allocation, no lock, no blocking call.
+// A backend (hal/sim, hal/replay, ...) offers some of these. Units and signs are those of the
+// field, set right once inside the backend: metres, volts, pascals, positive command extends. Times
+// are of CLOCK_MONOTONIC. Every function here is called from the loop: noexcept, no allocation, no
+// lock, no blocking call; a device that blocks has a thread of its own and hands over what it read
+// last.
 #pragma once
 
 #include <cstdint>
@@ -22,6 +25,7 @@ struct Tick {
 
 struct Reading {
   double y_m = kMissing;        ///< rod position, NaN when there is none
+  std::int64_t t_ns = 0;        ///< when it was measured; 0: when it was asked for
   double command_V = kMissing;  ///< the valve's command as the device sees it, NaN when it does not
   Quality quality = Quality::bad;
   bool saturated = false;  ///< that command was at a limit, as far as the device knows
@@ -45,6 +49,27 @@ class ValveDrive {
   virtual Applied write(double u_V, const Tick& tick) noexcept = 0;
   /// The safe voltage `valve.null_V`. Also called from a crash handler: async-signal-safe.
   virtual Applied go_null() noexcept = 0;
+};
+
+/// An auxiliary signal: volts, pascals, or 0 and 1 of a switch.
+struct InputReading {
+  double value = kMissing;  ///< NaN when there is none
+  std::int64_t t_ns = 0;    ///< when it was measured; 0: when it was asked for
+  Quality quality = Quality::bad;
+};
+
+class Input {
+ public:
+  virtual ~Input() = default;
+  virtual InputReading read(const Tick& tick) noexcept = 0;
+};
+
+/// A line that is on or off, such as the permit for a watchdog relay.
+class Output {
+ public:
+  virtual ~Output() = default;
+  /// False when the device did not take it.
+  virtual bool set(bool on) noexcept = 0;
 };
 
 }  // namespace hal

@@ -49,7 +49,7 @@ Reading ReplaySensor::read(const Tick& tick) noexcept {
   return reading;
 }
 
-Devices ReplayBackend::open(const Opening& opening) const {
+Offer ReplayBackend::open(const Opening& opening) const {
   const std::filesystem::path file = resolve(opening, config_.record);
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) {
@@ -58,9 +58,11 @@ Devices ReplayBackend::open(const Opening& opening) const {
                                      "a CSV file or an LCM event log");
   }
   config::record::Record record = config::record::read_record(file);
-  const double sample_time_s = record.sample_time_s;
-  return {std::make_shared<ReplaySensor>(std::move(record)), nullptr, sample_time_s,
-          config_.pace == "fast"};
+  Offer offer;
+  offer.sample_time_s = record.sample_time_s;
+  offer.fast = config_.pace == "fast";
+  offer.rods[kRodChannel] = std::make_shared<ReplaySensor>(std::move(record));
+  return offer;
 }
 
 }  // namespace hal::replay

@@ -33,7 +33,7 @@ class ReplaySensor final : public RodSensor {
 class ReplayBackend final : public Backend {
  public:
   void visit(config::schema::Visitor& v) override { config_.visit(v); }
-  [[nodiscard]] Devices open(const Opening& opening) const override;
+  [[nodiscard]] Offer open(const Opening& opening) const override;
   [[nodiscard]] bool harmless() const noexcept override { return true; }
   /// Nothing is written, so nothing moves.
   [[nodiscard]] double worst_speed_mps(const Opening&, double) const override { return 0.0; }

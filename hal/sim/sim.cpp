@@ -69,7 +69,7 @@ std::unique_ptr<plant_sim::Plant> SimBackend::load(const Opening& opening) const
   return plant_sim::make_plant(plant_sim::load_model(file));
 }
 
-Devices SimBackend::open(const Opening& opening) const {
+Offer SimBackend::open(const Opening& opening) const {
   std::unique_ptr<plant_sim::Plant> plant = load(opening);
   const double steps = opening.sample_time_s / plant->step_s();
   if (std::abs(steps - std::round(steps)) > kWholeSteps) {
@@ -86,7 +86,10 @@ Devices SimBackend::open(const Opening& opening) const {
   try {
     auto rig =
         std::make_shared<SimRig>(std::move(plant), config_, opening.sample_time_s, opening.null_V);
-    return {rig, rig, kMissing, false};
+    Offer offer;
+    offer.rods[kRodChannel] = rig;
+    offer.valve = rig;
+    return offer;
   } catch (const config::schema::Error& e) {
     throw config::schema::Error(config::schema::ExitCode::bad_config,
                                 opening.file + ": [[sim.fault]] " + e.what());

@@ -52,8 +52,10 @@ class SimRig final : public RodSensor, public ValveDrive {
 class SimBackend final : public Backend {
  public:
   void visit(config::schema::Visitor& v) override { config_.visit(v); }
-  [[nodiscard]] Devices open(const Opening& opening) const override;
+  [[nodiscard]] Offer open(const Opening& opening) const override;
   [[nodiscard]] bool harmless() const noexcept override { return true; }
+  /// The simulated valve ends with the process.
+  [[nodiscard]] NullTimes null_times() const override { return {0.0, 0.0, 0.0}; }
   [[nodiscard]] double worst_speed_mps(const Opening& opening, double limit_V) const override;
 
  private:

@@ -87,11 +87,11 @@ TEST(ReplayBackend, TakesThePeriodFromTheRecordAndDrivesNothing) {
   config::schema::Document::parse(
       "schema_version = 1\nrecord = \"" + file.string() + "\"\npace = \"fast\"\n", "test")
       .read([&](config::schema::Visitor& v) { backend.visit(v); });
-  const Devices devices = backend.open({"test", {}, 0.005, 0.0});
+  const Offer devices = backend.open({"test", {}, 0.005, 0.0});
   EXPECT_DOUBLE_EQ(devices.sample_time_s, 0.02);
   EXPECT_TRUE(devices.fast);
   EXPECT_EQ(devices.valve, nullptr);
-  EXPECT_DOUBLE_EQ(devices.rod->read(tick(1)).y_m, 0.003);
+  EXPECT_DOUBLE_EQ(devices.rods.at(kRodChannel)->read(tick(1)).y_m, 0.003);
   std::filesystem::remove(file);
   try {
     (void)backend.open({"test", {}, 0.005, 0.0});

@@ -1,5 +1,5 @@
 // Which backend reads and which one drives is a matter of configuration alone.
-#include "hal/rig.h"
+#include "hal/roles.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,231 @@
+#include "hal/roles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <utility>
+
+#include "config/schema/document.h"
+#include "config/schema/error.h"
+#include "hal/replay/replay.h"
+#include "hal/sim/sim.h"
+
+namespace hal {
+namespace {
+
+using config::schema::bad_config;
+
+constexpr const char* kNone = "none";
+
+template <class T>
+std::unique_ptr<Backend> make() {
+  return std::make_unique<T>();
+}
+
+struct Entry {
+  const char* name;
+  std::unique_ptr<Backend> (*make)();
+};
+
+/// Every backend there is, one line each.
+constexpr Entry kRegistry[] = {
+    {"sim", make<sim::SimBackend>},
+    {"replay", make<replay::ReplayBackend>},
+};
+
+constexpr std::pair<const char*, InputRole> kRoles[] = {
+    {"e_stop", InputRole::e_stop},
+    {"enable", InputRole::enable},
+    {"valve_command", InputRole::valve_command},
+    {"pressure", InputRole::pressure},
+    {"other", InputRole::other},
+};
+
+InputRole role_of(const std::string& name) {
+  for (const auto& [text, role] : kRoles) {
+    if (name == text) return role;
+  }
+  return InputRole::other;
+}
+
+void visit_place(config::schema::Visitor& v, Place& place, bool channel_required) {
+  v.text({"backend", "one of the backends", true}, place.backend);
+  v.text({"channel", "which of the backend's devices", channel_required}, place.channel);
+}
+
+template <class Map>
+std::string names_of(const Map& map) {
+  std::string names;
+  for (const auto& [name, device] : map) names += (names.empty() ? "" : ", ") + name;
+  return names.empty() ? "none" : names;
+}
+
+/// Opens a backend when it is first asked for.
+class Opened {
+ public:
+  Opened(const Opening& opening, std::function<const Backend*(const std::string&)> find)
+      : opening_(opening), find_(std::move(find)) {}
+
+  /// `where`: "[rod]". Throws Error.
+  Offer& of(const std::string& where, const std::string& name, const char* more = "") {
+    const auto known = offers_.find(name);
+    if (known != offers_.end()) return known->second;
+    const Backend* backend = find_(name);
+    if (backend == nullptr) {
+      throw bad_config(opening_.file + ": " + where + " backend", "is \"" + name + "\"",
+                       backend_names() + more);
+    }
+    return offers_.emplace(name, backend->open(opening_)).first->second;
+  }
+
+  /// The device at `place` among the backend's `kind` (Offer::rods, ...). Throws Error.
+  template <class Device>
+  std::shared_ptr<Device> at(const std::string& where, const Place& place,
+                             std::map<std::string, std::shared_ptr<Device>> Offer::*kind) {
+    const auto& devices = of(where, place.backend).*kind;
+    const auto found = devices.find(place.channel);
+    if (found == devices.end()) {
+      throw bad_config(opening_.file + ": " + where + " channel",
+                       "is \"" + place.channel + "\", which backend \"" + place.backend +
+                           "\" does not offer here",
+                       names_of(devices));
+    }
+    return found->second;
+  }
+
+  [[nodiscard]] const std::map<std::string, Offer>& all() const noexcept { return offers_; }
+
+ private:
+  const Opening& opening_;
+  std::function<const Backend*(const std::string&)> find_;
+  std::map<std::string, Offer> offers_;
+};
+
+std::string indexed(const char* table, std::size_t index) {
+  return std::string("[[") + table + "]] " + std::to_string(index + 1);
+}
+
+}  // namespace
+
+std::string backend_names() {
+  std::string names;
+  for (const Entry& entry : kRegistry)
+    names += (names.empty() ? "" : ", ") + std::string(entry.name);
+  return names;
+}
+
+void SpareRodConfig::visit(config::schema::Visitor& v) {
+  v.text({"id", "name of the sensor", true}, id);
+  visit_place(v, place, false);
+}
+
+void InputConfig::visit(config::schema::Visitor& v) {
+  v.text({"id", "name of the signal", true}, id);
+  v.choice({"role", "what it is for"}, role,
+           {kRoles[0].first, kRoles[1].first, kRoles[2].first, kRoles[3].first, kRoles[4].first});
+  visit_place(v, place, true);
+}
+
+Rig::Rig() {
+  for (const Entry& entry : kRegistry) backends_.push_back(entry.make());
+}
+
+const Backend* Rig::find(const std::string& name) const noexcept {
+  for (std::size_t i = 0; i < backends_.size(); ++i) {
+    if (name == kRegistry[i].name) return backends_[i].get();
+  }
+  return nullptr;
+}
+
+std::vector<std::string> Rig::used() const {
+  std::vector<std::string> names{rod_.backend};
+  if (valve_.backend != kNone) names.push_back(valve_.backend);
+  for (const SpareRodConfig& rod : spare_rods_) names.push_back(rod.place.backend);
+  for (const InputConfig& input : inputs_) names.push_back(input.place.backend);
+  if (permit_present_) names.push_back(permit_.backend);
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
+void Rig::visit(config::schema::Visitor& v) {
+  v.table({"rod", "what reads the rod"},
+          [this](config::schema::Visitor& t) { visit_place(t, rod_, false); });
+  config::schema::visit_list(v, {"spare_rod", "a further rod sensor"}, spare_rods_);
+  v.table({"valve", "what drives the valve"}, [this](config::schema::Visitor& t) {
+    t.text({"backend", "one of the backends, or none"}, valve_.backend);
+    if (valve_.backend == kNone) return;
+    t.number({"null_V", "the commanded safe voltage"}, valve_.null_V, {-100.0, 100.0});
+    t.number({"limit_V", "greatest distance of a command from null"}, valve_.limit_V,
+             {1e-3, 100.0});
+    t.number({"slew_V_per_s", "fastest change of a command"}, valve_.slew_V_per_s,
+             {1e-3, std::numeric_limits<double>::infinity()});
+  });
+  config::schema::visit_list(v, {"input", "an auxiliary signal"}, inputs_);
+  v.optional_table({"permit", "a line that every good tick toggles, for a watchdog relay"},
+                   permit_present_,
+                   [this](config::schema::Visitor& t) { visit_place(t, permit_, false); });
+  const std::vector<std::string> in_use = used();
+  for (std::size_t i = 0; i < backends_.size(); ++i) {
+    const char* name = kRegistry[i].name;
+    if (std::find(in_use.begin(), in_use.end(), name) == in_use.end()) continue;
+    v.table({name, "table of that backend"},
+            [&](config::schema::Visitor& t) { backends_[i]->visit(t); });
+  }
+}
+
+Devices Rig::open(const Opening& opening) const {
+  Opened opened(opening, [this](const std::string& name) { return find(name); });
+  Devices devices;
+  opened.of("[rod]", rod_.backend);
+  if (valve_.backend != kNone) {
+    const Offer& offer = opened.of("[valve]", valve_.backend, ", none");
+    const auto dictates = [](const auto& entry) { return !std::isnan(entry.second.sample_time_s); };
+    if (std::any_of(opened.all().begin(), opened.all().end(), dictates)) {
+      throw bad_config(opening.file + ": [valve] backend",
+                       "is \"" + valve_.backend + "\" while a record is replayed", kNone);
+    }
+    if (offer.valve == nullptr) {
+      throw bad_config(opening.file + ": [valve] backend",
+                       "is \"" + valve_.backend + "\", which drives no valve", "sim, none");
+    }
+    devices.valve = offer.valve;
+  }
+  devices.rod = opened.at("[rod]", rod_, &Offer::rods);
+  for (std::size_t i = 0; i < spare_rods_.size(); ++i) {
+    devices.spare_rods.push_back(
+        {spare_rods_[i].id,
+         opened.at(indexed("spare_rod", i), spare_rods_[i].place, &Offer::rods)});
+  }
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    devices.inputs.push_back({inputs_[i].id, role_of(inputs_[i].role),
+                              opened.at(indexed("input", i), inputs_[i].place, &Offer::inputs)});
+  }
+  if (permit_present_) devices.permit = opened.at("[permit]", permit_, &Offer::outputs);
+  for (const auto& [name, offer] : opened.all()) {
+    if (!std::isnan(offer.sample_time_s)) devices.sample_time_s = offer.sample_time_s;
+    devices.fast = devices.fast || offer.fast;
+  }
+  return devices;
+}
+
+bool Rig::harmless() const {
+  const std::vector<std::string> in_use = used();
+  return std::all_of(in_use.begin(), in_use.end(), [this](const std::string& name) {
+    const Backend* backend = find(name);
+    return backend == nullptr || backend->harmless();
+  });
+}
+
+double Rig::worst_speed_mps(const Opening& opening) const {
+  const Backend* valve = find(valve_.backend);
+  return valve == nullptr ? 0.0 : valve->worst_speed_mps(opening, valve_.limit_V);
+}
+
+NullTimes Rig::null_times() const {
+  const Backend* valve = find(valve_.backend);
+  return valve == nullptr ? NullTimes{} : valve->null_times();
+}
+
+}  // namespace hal
