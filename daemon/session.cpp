@@ -198,6 +198,7 @@ void check_session(DaemonConfig& config, std::ostream& out) {
   char line[160];
   out << "\n# " << config.file << ": period " << p.sample_time_s * 1e3 << " ms, configuration "
       << hex(p.hash) << "\n";
+  for (const std::string& note : config.rig.notes(p.opening)) out << "# " << note << "\n";
   if (!config.drives_valve()) {
     out << "# No valve is driven: state MONITOR, nothing is ever written.\n";
     return;

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "config/schema/visitor.h"
 #include "hal/device.h"
@@ -52,6 +53,10 @@ class Backend {
   [[nodiscard]] virtual double worst_speed_mps(const Opening& opening, double limit_V) const = 0;
   /// What the valve does by itself when it is left alone.
   [[nodiscard]] virtual NullTimes null_times() const { return {}; }
+  /// Lines that `--check` prints: what follows from the table and a person should know.
+  [[nodiscard]] virtual std::vector<std::string> notes(const Opening& /*opening*/) const {
+    return {};
+  }
 };
 
 /// `text` as a path, relative ones from the configuration file's folder.

@@ -8,6 +8,7 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "hal/encoder/encoder.h"
 #include "hal/replay/replay.h"
 #include "hal/sim/sim.h"
 
@@ -32,6 +33,7 @@ struct Entry {
 constexpr Entry kRegistry[] = {
     {"sim", make<sim::SimBackend>},
     {"replay", make<replay::ReplayBackend>},
+    {"encoder", make<encoder::EncoderBackend>},
 };
 
 constexpr std::pair<const char*, InputRole> kRoles[] = {
@@ -226,6 +228,16 @@ double Rig::worst_speed_mps(const Opening& opening) const {
 NullTimes Rig::null_times() const {
   const Backend* valve = find(valve_.backend);
   return valve == nullptr ? NullTimes{} : valve->null_times();
+}
+
+std::vector<std::string> Rig::notes(const Opening& opening) const {
+  std::vector<std::string> notes;
+  for (const std::string& name : used()) {
+    const Backend* backend = find(name);
+    if (backend == nullptr) continue;
+    for (std::string& line : backend->notes(opening)) notes.push_back(std::move(line));
+  }
+  return notes;
 }
 
 }  // namespace hal

@@ -92,6 +92,8 @@ class Rig {
   [[nodiscard]] double worst_speed_mps(const Opening& opening) const;
   /// Of the valve's backend.
   [[nodiscard]] NullTimes null_times() const;
+  /// Of every backend in use.
+  [[nodiscard]] std::vector<std::string> notes(const Opening& opening) const;
 
  private:
   [[nodiscard]] const Backend* find(const std::string& name) const noexcept;

@@ -1,0 +1,23 @@
+// What comes from the lines of an encoder: edges with their time, and levels.
+#pragma once
+
+#include <cstdint>
+
+namespace hal::encoder {
+
+enum class Line : std::uint8_t { a, b, index };
+
+struct Edge {
+  std::int64_t t_ns = 0;  ///< CLOCK_MONOTONIC
+  Line line = Line::a;
+  bool level = false;  ///< after the edge
+};
+
+struct Levels {
+  bool a = false;
+  bool b = false;
+};
+
+inline bool operator==(Levels x, Levels y) noexcept { return x.a == y.a && x.b == y.b; }
+
+}  // namespace hal::encoder

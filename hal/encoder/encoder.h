@@ -1,0 +1,125 @@
+// An incremental encoder on lines of a GPIO chip, and switches and relays on others of its lines.
+//
+// A thread of its own blocks on the edges; the loop's read is wait-free and gives the count of now.
+// Inputs are read by the same thread, at least every half period. Outputs are set by the loop
+// itself: a chip that needs a bus for that (an I2C expander) is no place for one.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <vector>
+
+#include "hal/backend.h"
+#include "hal/device_thread.h"
+#include "hal/encoder/gpio_chip.h"
+#include "hal/encoder/tracker.h"
+#include "hal/latest.h"
+
+namespace hal::encoder {
+
+/// TOML [[encoder.input]] and [[encoder.output]].
+struct SwitchConfig {
+  std::string name;
+  std::int64_t line = -1;
+  Wiring wiring;
+
+  void visit(config::schema::Visitor& v);
+};
+
+/// TOML [encoder].
+struct EncoderConfig {
+  std::string chip;
+  std::int64_t line_a = -1;
+  std::int64_t line_b = -1;
+  std::int64_t line_index = -1;
+  std::string bias = "as_is";
+  std::string mode = "x4";
+  double resolution_m = kMissing;      ///< of one count; or the next
+  double counts_per_metre = kMissing;  ///< 1/m
+  std::int64_t sign = 1;
+  double reference_m = 0.0;  ///< position at the index, or where there is none at the start
+  double max_speed_mps = kMissing;
+  double max_edges_per_s = 20'000.0;
+  std::int64_t priority = 85;
+  std::vector<SwitchConfig> inputs;
+  std::vector<SwitchConfig> outputs;
+
+  void visit(config::schema::Visitor& v);
+  /// What visit() cannot see. `file` for messages. Throws config::schema::Error.
+  void check(const std::string& file) const;
+  [[nodiscard]] int per_cycle() const noexcept { return mode[1] - '0'; }
+  /// Of one count.
+  [[nodiscard]] double count_m() const noexcept;
+  [[nodiscard]] double edges_per_metre() const noexcept { return 4.0 / (per_cycle() * count_m()); }
+  [[nodiscard]] double permitted_speed_mps() const noexcept {
+    return max_edges_per_s / edges_per_metre();
+  }
+};
+
+/// What one thread reads, for a rod sensor and any number of inputs.
+class Watch {
+ public:
+  static constexpr std::size_t kInputs = 16;
+
+  /// Starts the thread. `period_ns`: of the loop. Throws config::schema::Error (exit 1) when it
+  /// cannot.
+  Watch(std::unique_ptr<EdgeSource> source, std::vector<std::shared_ptr<GpioLine>> inputs,
+        const TrackerOptions& options, std::int64_t period_ns, int priority);
+
+  struct View {
+    Snapshot rod;
+    std::int64_t inputs_ns = 0;
+    std::array<std::int8_t, kInputs> inputs{};  ///< 0, 1, or -1
+  };
+  /// The newest; from one thread only.
+  const View& view() noexcept { return latest_.get(); }
+  /// The position of now is the origin; takes effect within a period. From any thread.
+  void refer() noexcept { refer_.store(true, std::memory_order_relaxed); }
+  /// Whether what was known to be all at `t_ns` is too old at `now_ns`.
+  [[nodiscard]] bool stale(std::int64_t t_ns, std::int64_t now_ns) const noexcept {
+    return now_ns - t_ns > 4 * period_ns_;
+  }
+
+ private:
+  void pass() noexcept;
+
+  std::unique_ptr<EdgeSource> source_;
+  std::vector<std::shared_ptr<GpioLine>> inputs_;
+  std::int64_t period_ns_;
+  Tracker tracker_;
+  View view_;
+  Latest<View> latest_;
+  std::atomic<bool> refer_{false};
+  DeviceThread thread_;
+};
+
+class EncoderRod final : public RodSensor {
+ public:
+  EncoderRod(std::shared_ptr<Watch> watch, double count_m, double reference_m) noexcept
+      : watch_(std::move(watch)), count_m_(count_m), reference_m_(reference_m) {}
+
+  /// y of now, uncertain while edges may be missing, before the index, or near the permitted speed.
+  Reading read(const Tick& tick) noexcept override;
+  /// Counters of what went wrong, and the rate; from the loop's thread.
+  [[nodiscard]] const Snapshot& snapshot() noexcept { return watch_->view().rod; }
+
+ private:
+  std::shared_ptr<Watch> watch_;
+  double count_m_;  ///< negative for a reversed encoder
+  double reference_m_;
+};
+
+class EncoderBackend final : public Backend {
+ public:
+  void visit(config::schema::Visitor& v) override { config_.visit(v); }
+  [[nodiscard]] Offer open(const Opening& opening) const override;
+  /// An encoder moves nothing.
+  [[nodiscard]] bool harmless() const noexcept override { return true; }
+  [[nodiscard]] double worst_speed_mps(const Opening&, double) const override { return 0.0; }
+  [[nodiscard]] std::vector<std::string> notes(const Opening& opening) const override;
+
+ private:
+  EncoderConfig config_;
+};
+
+}  // namespace hal::encoder

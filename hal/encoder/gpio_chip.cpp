@@ -1,0 +1,82 @@
+#include "hal/encoder/gpio_chip.h"
+
+#include <fcntl.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "config/schema/error.h"
+
+namespace hal::encoder {
+namespace {
+
+using config::schema::bad_config;
+
+/// "gpiochip0 (pinctrl), gpiochip1 (ftdi)".
+std::string all_chips() {
+  std::string names;
+  gpiod_chip_iter* iterator = gpiod_chip_iter_new();
+  if (iterator == nullptr) return "a GPIO chip; this machine has none";
+  while (gpiod_chip* chip = gpiod_chip_iter_next(iterator)) {
+    names += (names.empty() ? "" : ", ") + std::string(gpiod_chip_name(chip)) + " (" +
+             gpiod_chip_label(chip) + ")";
+  }
+  gpiod_chip_iter_free(iterator);
+  return names.empty() ? "a GPIO chip; this machine has none" : names;
+}
+
+int flags_of(const Wiring& wiring) {
+  int flags = wiring.active_low ? GPIOD_LINE_REQUEST_FLAG_ACTIVE_LOW : 0;
+  if (wiring.bias == "pull_up") flags |= GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_UP;
+  if (wiring.bias == "pull_down") flags |= GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_DOWN;
+  if (wiring.bias == "disabled") flags |= GPIOD_LINE_REQUEST_FLAG_BIAS_DISABLE;
+  return flags;
+}
+
+}  // namespace
+
+std::shared_ptr<GpioChip> GpioChip::open(const std::string& where, const std::string& description) {
+  gpiod_chip* chip = gpiod_chip_open_lookup(description.c_str());
+  if (chip == nullptr) {
+    const int error = errno;
+    throw bad_config(where, "is \"" + description + "\": " + std::strerror(error),
+                     error == EACCES ? "a GPIO chip that this user may open" : all_chips());
+  }
+  return std::shared_ptr<GpioChip>(new GpioChip(chip));
+}
+
+std::shared_ptr<GpioLine> GpioChip::request(const std::string& where, std::int64_t offset, Use use,
+                                            const Wiring& wiring) {
+  const unsigned lines = gpiod_chip_num_lines(chip_);
+  const std::string name = gpiod_chip_name(chip_);
+  if (offset < 0 || offset >= lines) {
+    throw bad_config(where, "is " + std::to_string(offset),
+                     name + " has lines 0 to " + std::to_string(lines - 1));
+  }
+  gpiod_line* line = gpiod_chip_get_line(chip_, static_cast<unsigned>(offset));
+  const int flags = flags_of(wiring);
+  int result = -1;
+  if (line != nullptr) {
+    result = use == Use::edges ? gpiod_line_request_both_edges_events_flags(line, kConsumer, flags)
+             : use == Use::input ? gpiod_line_request_input_flags(line, kConsumer, flags)
+                                 : gpiod_line_request_output_flags(line, kConsumer, flags, 0);
+  }
+  if (result != 0) {
+    const int error = errno;
+    std::string what = "is " + std::to_string(offset) + " of " + name;
+    if (error == EBUSY) {
+      const char* holder = gpiod_line_consumer(line);
+      what += ", which is in use by " + (holder == nullptr ? "the kernel or another program"
+                                                           : "\"" + std::string(holder) + "\"");
+    } else {
+      what += std::string(", which cannot be requested: ") + std::strerror(error);
+    }
+    throw bad_config(where, what,
+                     use == Use::edges ? "a free line that signals edges" : "a free line");
+  }
+  auto requested = std::make_shared<GpioLine>(shared_from_this(), line);
+  if (use == Use::edges) fcntl(requested->fd(), F_SETFL, O_NONBLOCK);
+  return requested;
+}
+
+}  // namespace hal::encoder

@@ -1,0 +1,90 @@
+// Follows an encoder over what a kernel does to its edges: they arrive in batches, line by line and
+// now and then late, and when nobody fetches them in time the newest are dropped without a word.
+//
+// Late edges are put in their place by time. Missing ones show as an edge to the level that was, as
+// a batch as long as the kernel's memory, or as levels that stay different from the decoder's while
+// nothing arrives. Then the count is uncertain until the next index pulse or refer().
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "hal/encoder/edge_source.h"
+#include "hal/encoder/quadrature.h"
+
+namespace hal::encoder {
+
+/// What the loop gets to see.
+struct Snapshot {
+  std::int64_t counts = 0;    ///< from the origin
+  std::int64_t edge_ns = 0;   ///< time of the newest edge, 0 before the first
+  std::int64_t alive_ns = 0;  ///< when this was known to be all
+  bool lost = false;          ///< edges are missing
+  bool homed = false;         ///< the index has been passed, or there is none
+  bool too_fast = false;      ///< more edges than 80 % of what is permitted
+  bool failed = false;        ///< the lines cannot be read
+  double edges_per_s = 0.0;   ///< over the last window
+  // Counters since the start.
+  std::int64_t edges = 0;
+  std::int64_t illegal = 0;        ///< edges to the level that was
+  std::int64_t overflows = 0;      ///< batches as long as the kernel's memory
+  std::int64_t disagreements = 0;  ///< levels that were not the decoder's
+  std::int64_t late = 0;           ///< edges put in their place afterwards
+  std::int64_t slips = 0;          ///< index pulses in another place than before
+  std::int64_t times_lost = 0;     ///< how often the count became uncertain
+  std::int64_t times_too_fast = 0;
+};
+
+struct TrackerOptions {
+  int per_cycle = 4;  ///< counts: 1, 2 or 4
+  double max_edges_per_s = 0.0;
+  bool has_index = false;
+};
+
+/// Share of the permitted rate from which the reading is called uncertain.
+inline constexpr double kWarnRatio = 0.8;
+
+class Tracker {
+ public:
+  Tracker(const TrackerOptions& options, Levels levels) noexcept;
+
+  /// Waits once for at most `timeout_ns`, takes what there is, compares levels now and then.
+  /// `clock`: CLOCK_MONOTONIC in ns.
+  void step(EdgeSource& source, std::int64_t timeout_ns, std::int64_t (*clock)()) noexcept;
+  /// The present position is the origin, and certain.
+  void refer() noexcept;
+
+  [[nodiscard]] const Snapshot& snapshot() const noexcept { return snapshot_; }
+
+ private:
+  struct Step {
+    Edge edge;
+    QuadratureDecoder before;
+  };
+  static constexpr std::size_t kHistory = 32;
+  static constexpr std::int64_t kWindow_ns = 10'000'000;
+  static constexpr std::int64_t kCompareEvery_ns = 1'000'000;
+
+  void take(std::span<Edge> batch) noexcept;
+  void put(const Edge& edge) noexcept;
+  void apply(const Edge& edge) noexcept;
+  void lose() noexcept;
+  void compare(EdgeSource& source) noexcept;
+  void watch_rate(std::int64_t now_ns) noexcept;
+  void publish(std::int64_t now_ns) noexcept;
+
+  TrackerOptions options_;
+  QuadratureDecoder decoder_;
+  Snapshot snapshot_;
+  std::array<Step, kHistory> history_;  ///< the newest edges, a ring
+  std::uint64_t steps_ = 0;             ///< ever put into it
+  std::uint64_t oldest_ = 0;            ///< before this one nothing can be undone
+  bool referred_ = false;
+  int disagreeing_ = 0;  ///< comparisons in a row
+  std::int64_t compared_ns_ = 0;
+  std::int64_t window_ns_ = 0;  ///< start of the rate's window
+  std::int64_t window_edges_ = 0;
+};
+
+}  // namespace hal::encoder
