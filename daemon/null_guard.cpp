@@ -42,7 +42,7 @@ NullGuard::~NullGuard() {
 
 void NullGuard::close() noexcept {
   closed_.store(true);
-  if (valve_ != nullptr) valve_->go_null();
+  if (valve_ != nullptr) valve_->end_at_null();
 }
 
 hal::Applied NullGuard::write(double u_V, const hal::Tick& tick) noexcept {
@@ -51,6 +51,11 @@ hal::Applied NullGuard::write(double u_V, const hal::Tick& tick) noexcept {
 }
 
 hal::Applied NullGuard::go_null() noexcept { return valve_->go_null(); }
+
+hal::Applied NullGuard::end_at_null() noexcept {
+  closed_.store(true);
+  return valve_->end_at_null();
+}
 
 void outlive_failed_writes() noexcept {
   for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);

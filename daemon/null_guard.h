@@ -25,6 +25,7 @@ class NullGuard final : public hal::ValveDrive {
 
   hal::Applied write(double u_V, const hal::Tick& tick) noexcept override;
   hal::Applied go_null() noexcept override;
+  hal::Applied end_at_null() noexcept override;
 
  private:
   hal::ValveDrive* valve_;

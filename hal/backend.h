@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -28,6 +29,7 @@ struct Offer {
   std::map<std::string, std::shared_ptr<Output>> outputs;
   double sample_time_s = kMissing;  ///< period that the device dictates (a record's), else NaN
   bool fast = false;                ///< as fast as possible: nothing waits for the wall clock
+  std::function<std::string()> summary;  ///< one line of counters for people, or none
 };
 
 /// Channel of a backend that has one rod sensor.

@@ -49,6 +49,9 @@ class ValveDrive {
   virtual Applied write(double u_V, const Tick& tick) noexcept = 0;
   /// The safe voltage `valve.null_V`. Also called from a crash handler: async-signal-safe.
   virtual Applied go_null() noexcept = 0;
+  /// Null for good: later writes are null too. Waits, 0.1 s at most, until the device has it, for
+  /// the process may end next; not for the loop. Async-signal-safe.
+  virtual Applied end_at_null() noexcept { return go_null(); }
 };
 
 /// An auxiliary signal: volts, pascals, or 0 and 1 of a switch.

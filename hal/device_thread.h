@@ -1,5 +1,5 @@
-// A thread of a device that may block: it takes no signals (those are the main thread's) and asks
-// for a real-time priority, which it does without where it may not have one.
+// A thread of a device that may block: it takes no signals but a crash's (those are the main
+// thread's) and asks for a real-time priority, which it does without where it may not have one.
 #pragma once
 
 #include <pthread.h>
@@ -34,6 +34,10 @@ class DeviceThread {
     sigset_t all;
     sigset_t before;
     sigfillset(&all);
+    // A crash in here must still find the handler that commands null.
+    for (const int crash : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS, SIGTRAP}) {
+      sigdelset(&all, crash);
+    }
     pthread_sigmask(SIG_SETMASK, &all, &before);
     const int error = pthread_create(&handle_, nullptr, run, this);
     pthread_sigmask(SIG_SETMASK, &before, nullptr);

@@ -9,6 +9,7 @@
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "hal/encoder/encoder.h"
+#include "hal/modbus/modbus.h"
 #include "hal/replay/replay.h"
 #include "hal/sim/sim.h"
 
@@ -34,6 +35,7 @@ constexpr Entry kRegistry[] = {
     {"sim", make<sim::SimBackend>},
     {"replay", make<replay::ReplayBackend>},
     {"encoder", make<encoder::EncoderBackend>},
+    {"modbus", make<modbus::ModbusBackend>},
 };
 
 constexpr std::pair<const char*, InputRole> kRoles[] = {
@@ -208,6 +210,7 @@ Devices Rig::open(const Opening& opening) const {
   for (const auto& [name, offer] : opened.all()) {
     if (!std::isnan(offer.sample_time_s)) devices.sample_time_s = offer.sample_time_s;
     devices.fast = devices.fast || offer.fast;
+    if (offer.summary) devices.summaries.push_back(offer.summary);
   }
   return devices;
 }

@@ -5,6 +5,7 @@
 // `[permit] backend, channel`, and one table for each backend that is used, named like it.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -72,6 +73,8 @@ struct Devices {
   std::shared_ptr<Output> permit;   ///< null when there is none
   double sample_time_s = kMissing;  ///< period that a record dictates, else NaN
   bool fast = false;                ///< as fast as possible: nothing waits for the wall clock
+  /// One line of counters from each backend that has any.
+  std::vector<std::function<std::string()>> summaries;
 };
 
 class Rig {

@@ -35,7 +35,7 @@ void detect(Detector& detector, const std::atomic<bool>& loop_ended, std::atomic
 
 /// No destructor may wait for a thread that is stuck.
 [[noreturn]] void leave_stuck_thread(hal::ValveDrive* valve, const char* what) {
-  if (valve != nullptr) valve->go_null();
+  if (valve != nullptr) valve->end_at_null();
   std::fputs(what, stderr);
   std::_Exit(1);
 }

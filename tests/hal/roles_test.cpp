@@ -53,9 +53,9 @@ TEST(Rig, WithoutAValveDrivesNothing) {
 
 TEST(Rig, RefusesWhatDoesNotExistOrDoesNotFit) {
   EXPECT_EQ(refusal("[rod]\nbackend = \"modbas\"\n[valve]\nbackend = \"none\"\n"),
-            "rig.toml: [rod] backend: is \"modbas\"; allowed: sim, replay");
+            "rig.toml: [rod] backend: is \"modbas\"; allowed: " + backend_names());
   EXPECT_NE(refusal("[rod]\nbackend = \"sim\"\n[valve]\nbackend = \"x\"\n" + kSim)
-                .find("[valve] backend: is \"x\"; allowed: sim, replay, none"),
+                .find("[valve] backend: is \"x\"; allowed: " + backend_names() + ", none"),
             std::string::npos);
   EXPECT_NE(refusal("[rod]\nbackend = \"sim\"\n[valve]\nbackend = \"sim\"\n[sim]\n")
                 .find("[sim] model: is missing"),

@@ -1,0 +1,22 @@
+// The loop's view of a Modbus device: one object for each channel of the map, over one link.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "hal/backend.h"
+#include "hal/modbus/link.h"
+
+namespace hal::modbus {
+
+/// Ages from which a reading is stale, then bad.
+struct Freshness {
+  double stale_after_s = 0.0125;
+  double bad_after_s = 0.025;
+};
+
+/// `label` opens the summary: "modbus 127.0.0.1:502".
+[[nodiscard]] Offer make_devices(const std::shared_ptr<Link>& link, const Freshness& freshness,
+                                 const std::string& label);
+
+}  // namespace hal::modbus

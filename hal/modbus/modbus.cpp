@@ -1,0 +1,178 @@
+#include "hal/modbus/modbus.h"
+
+#include <arpa/inet.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "config/schema/error.h"
+#include "hal/modbus/devices.h"
+#include "hal/modbus/survey.h"
+
+namespace hal::modbus {
+namespace {
+
+using config::schema::bad_config;
+
+constexpr std::int64_t kBauds[] = {1200,  2400,   4800,   9600,   19200, 38400,
+                                   57600, 115200, 230400, 460800, 921600};
+
+/// "192.168.0.7:502" into its parts; false when it is none.
+bool split(const std::string& address, PortConfig& port) {
+  const std::size_t colon = address.rfind(':');
+  in_addr ignored{};
+  if (colon == std::string::npos) return false;
+  port.host = address.substr(0, colon);
+  const std::string digits = address.substr(colon + 1);
+  if (inet_pton(AF_INET, port.host.c_str(), &ignored) != 1) return false;
+  if (digits.empty() || digits.size() > 5 ||
+      !std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '9'; })) {
+    return false;
+  }
+  port.port = std::stoi(digits);
+  return port.port >= 1 && port.port <= 65535;
+}
+
+}  // namespace
+
+void ModbusConfig::visit(config::schema::Visitor& v) {
+  v.text({"address", "of a TCP device, numeric, with its port"}, address);
+  v.text({"serial", "serial line of an RTU device, instead of address"}, serial);
+  if (!serial.empty()) {
+    v.integer({"baud", "of the serial line"}, baud, {kBauds[0], 921600});
+    v.choice({"parity", "of the serial line"}, parity, {"none", "even", "odd"});
+    v.integer({"stop_bits", "of the serial line"}, stop_bits, {1, 2});
+  }
+  v.integer({"unit", "number of the device on its line"}, unit, {0, 247});
+  v.number({"timeout_s", "longest wait for a reply"}, timeout_s, {1e-4, 10.0});
+  v.number({"connect_timeout_s", "longest wait for a connection"}, connect_timeout_s, {1e-3, 10.0});
+  v.number({"longest_pause_s", "between two attempts to connect"}, longest_pause_s, {0.01, 60.0});
+  v.number({"stale_after_s", "age from which a reading is stale"}, stale_after_s, {1e-3, 10.0});
+  v.number({"bad_after_s", "age from which it is none"}, bad_after_s, {1e-3, 10.0});
+  v.boolean({"combined", "function 23: command and reading in one transaction"}, combined);
+  v.boolean({"multiple_only", "the device knows function 16 but not 6"}, multiple_only);
+  v.number({"read_ahead_s", "read so long before the loop's next period; 0: after the write"},
+           read_ahead_s, {0.0, 1.0});
+  v.number({"watchdog_s", "the device's own time-out for commands"}, watchdog_s, {1e-3, 60.0});
+  v.number({"delay_s", "from a write to the voltage at the valve"}, delay_s, {0.0, 1.0});
+  v.number({"max_speed_mps", "fastest that the rod can move"}, max_speed_mps, {0.0, 100.0});
+  v.boolean({"bench_rig", "the other side is a simulated rig: nothing real moves"}, bench_rig);
+  v.integer({"priority", "of the thread in SCHED_FIFO, where allowed; 0: none"}, priority, {0, 99});
+
+  std::vector<std::string> printed;
+  for (const Register& r : registers) printed.push_back(r.name);
+  const config::schema::Key key{"registers", "the map, by channel"};
+  const std::vector<std::string> names = v.names(key, printed);
+  registers.resize(names.size());
+  v.table(key, [&](config::schema::Visitor& t) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      registers[i].name = names[i];
+      t.table({names[i].c_str(), "one quantity"},
+              [&](config::schema::Visitor& one) { registers[i].visit(one); });
+    }
+  });
+}
+
+LinkConfig ModbusBackend::link_config(const Opening& opening) const {
+  const std::string where = opening.file + ": [modbus] ";
+  LinkConfig link;
+  if (config_.address.empty() == config_.serial.empty()) {
+    throw bad_config(where + "address",
+                     config_.address.empty() ? "is missing" : "stands beside serial",
+                     "address of a TCP device or serial line of an RTU device");
+  }
+  if (!config_.address.empty() && !split(config_.address, link.port)) {
+    throw bad_config(where + "address", "is \"" + config_.address + "\"",
+                     "a numeric address and a port, 192.168.0.7:502");
+  }
+  if (!config_.serial.empty() &&
+      std::find(std::begin(kBauds), std::end(kBauds), config_.baud) == std::end(kBauds)) {
+    std::string allowed;
+    for (const std::int64_t b : kBauds)
+      allowed += (allowed.empty() ? "" : ", ") + std::to_string(b);
+    throw bad_config(where + "baud", "is " + std::to_string(config_.baud), allowed);
+  }
+  link.port.serial = config_.serial;
+  link.port.baud = static_cast<int>(config_.baud);
+  link.port.parity = config_.parity == "none" ? 'N' : config_.parity == "odd" ? 'O' : 'E';
+  link.port.stop_bits = static_cast<int>(config_.stop_bits);
+  link.port.unit = static_cast<int>(config_.unit);
+  link.port.timeout_s =
+      std::isnan(config_.timeout_s) ? 0.8 * opening.sample_time_s : config_.timeout_s;
+  link.port.connect_timeout_s = config_.connect_timeout_s;
+  link.port.multiple_only = config_.multiple_only;
+  link.period_s = opening.sample_time_s;
+  link.null_V = opening.null_V;
+  link.watchdog_s = config_.watchdog_s;
+  link.combined = config_.combined;
+  link.read_ahead_s = config_.read_ahead_s;
+  link.stale_after_s =
+      std::isnan(config_.stale_after_s) ? 2.5 * opening.sample_time_s : config_.stale_after_s;
+  link.longest_pause_s = config_.longest_pause_s;
+  link.priority = static_cast<int>(config_.priority);
+  return link;
+}
+
+void ModbusBackend::check(const Opening& opening, const LinkConfig& link, const Plan& plan) const {
+  const std::string where = opening.file + ": [modbus] ";
+  if (link.read_ahead_s > 0.0 && (link.combined || link.read_ahead_s >= 0.9 * link.period_s)) {
+    throw bad_config(where + "read_ahead_s",
+                     link.combined ? "is set, and combined reads with the write"
+                                   : "is a whole period or nearly so",
+                     link.combined ? "0 where combined is true" : "below 0.9 periods");
+  }
+  if (plan.watchdog && std::isnan(config_.watchdog_s)) {
+    throw bad_config(where + "watchdog_s",
+                     "is missing for [modbus.registers." + plan.watchdog->name + "]",
+                     "the time-out in s that the device shall have");
+  }
+  if (plan.watchdog) {
+    const Codec& codec = plan.watchdog->codec;
+    const double written_s = codec.decode(codec.encode(config_.watchdog_s));
+    if (!(std::abs(written_s - config_.watchdog_s) <= codec.resolution() * 1.001) ||
+        written_s <= 0.0) {
+      throw bad_config(where + "watchdog_s",
+                       "is " + std::to_string(config_.watchdog_s) + ", and [modbus.registers." +
+                           plan.watchdog->name + "] can only take " + std::to_string(written_s),
+                       "what scale, low and high of that register allow");
+    }
+  }
+  if (plan.valve) {
+    const Codec& codec = plan.valve->codec;
+    const double written_V = codec.decode(codec.encode(opening.null_V));
+    const double slack_V = codec.resolution() * 1.001 + 1e-6 * std::abs(opening.null_V);
+    if (!(std::abs(written_V - opening.null_V) <= slack_V)) {
+      throw bad_config(opening.file + ": [valve] null_V",
+                       "is " + std::to_string(opening.null_V) + ", and [modbus.registers." +
+                           plan.valve->name + "] can only take " + std::to_string(written_V),
+                       "what scale, low and high of that register allow");
+    }
+  }
+  const double bad_after_s =
+      std::isnan(config_.bad_after_s) ? 2.0 * link.stale_after_s : config_.bad_after_s;
+  if (bad_after_s < link.stale_after_s) {
+    throw bad_config(where + "bad_after_s", "is below stale_after_s", "at least stale_after_s");
+  }
+}
+
+Offer ModbusBackend::open(const Opening& opening) const {
+  const LinkConfig config = link_config(opening);
+  Plan plan = make_plan(opening.file, config_.registers, config_.combined);
+  check(opening, config, plan);
+  auto counters = std::make_unique<Counters>();
+  auto port = std::make_unique<Port>(config.port, *counters);
+  const std::string device = config_.address.empty() ? "serial \"" + config_.serial + "\" at " +
+                                                           std::to_string(config_.baud) +
+                                                           " baud, parity " + config_.parity
+                                                     : "address \"" + config_.address + "\"";
+  const Snapshot first =
+      survey(*port, plan, {opening.file, device, config_.connect_timeout_s, config.port.timeout_s});
+  auto link =
+      std::make_shared<Link>(config, std::move(plan), std::move(port), std::move(counters), first);
+  const double bad_after_s =
+      std::isnan(config_.bad_after_s) ? 2.0 * config.stale_after_s : config_.bad_after_s;
+  return make_devices(link, {config.stale_after_s, bad_after_s},
+                      "modbus " + (config_.address.empty() ? config_.serial : config_.address));
+}
+
+}  // namespace hal::modbus
