@@ -182,7 +182,10 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
       virtual_time ? rt::run_virtual(run, detector, stop, [] { return wait_for_stop(0); })
                    : rt::run_realtime(run, detector, grant.loop_thread, stop, valve,
                                       [] { return wait_for_stop(100); });
-  if (!virtual_time) report(stats, log);
+  if (!virtual_time) {
+    report(stats, log);
+    for (const auto& summary : p.devices.summaries) log << "spoolwatchd: " << summary() << '\n';
+  }
   if (!outcome.empty()) log << "spoolwatchd: " << outcome << std::endl;
   const bool complete = recorder == nullptr || recorded_all(*recorder, log);
   return static_cast<int>(outcome.empty() && complete ? config::schema::ExitCode::done

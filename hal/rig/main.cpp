@@ -1,0 +1,105 @@
+// spoolwatch-rig: the simulated rig in real time, as a process of its own that speaks Modbus.
+#include <pthread.h>
+#include <sched.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <iostream>
+
+#include "config/schema/error.h"
+#include "hal/device_thread.h"
+#include "hal/rig/register_map.h"
+#include "hal/rig/server.h"
+
+namespace {
+
+using config::schema::ExitCode;
+
+volatile std::sig_atomic_t stop_asked = 0;
+void on_stop(int) { stop_asked = 1; }
+
+struct Options {
+  std::string file;
+  std::string listen;
+  std::string serial;
+  std::vector<std::string> assignments;
+  double duration_s = 0.0;
+};
+
+int serve(const Options& options, bool has_listen, bool has_serial) {
+  hal::rig::RigConfig config = hal::rig::load(options.file, options.assignments);
+  if (has_listen) config.bus.listen = options.listen == "0" ? "127.0.0.1:0" : options.listen;
+  if (has_serial) config.bus.serial = options.serial;
+  for (const int signal : {SIGTERM, SIGINT, SIGHUP}) std::signal(signal, on_stop);
+  std::signal(SIGPIPE, SIG_IGN);
+
+  const std::int64_t start_ns = hal::monotonic_ns();
+  hal::rig::BenchRig rig(config, start_ns);
+  hal::rig::Server server(config, rig);
+  if (config.bus.priority > 0) {
+    const sched_param parameters{static_cast<int>(config.bus.priority)};
+    pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);  // else the normal class
+  }
+  if (!server.address().empty()) std::cout << "listening on " << server.address() << std::endl;
+  if (!config.bus.serial.empty()) std::cout << "listening on " << config.bus.serial << std::endl;
+  const auto end_ns = start_ns + static_cast<std::int64_t>(options.duration_s * 1e9);
+  server.run([&] {
+    return stop_asked != 0 || (options.duration_s > 0.0 && hal::monotonic_ns() >= end_ns);
+  });
+  const auto& counts = server.counts();
+  std::cerr << "spoolwatch-rig: " << counts.requests << " requests of " << counts.clients
+            << " clients, " << counts.refused << " refused\n";
+  return static_cast<int>(ExitCode::done);
+}
+
+int set(const std::string& address, const std::vector<std::string>& texts) {
+  for (const std::string& text : texts) {
+    const std::string wrong = hal::rig::set_remotely(address, text);
+    if (wrong.empty()) continue;
+    std::cerr << "spoolwatch-rig: " << text << ": " << wrong << '\n';
+    return static_cast<int>(ExitCode::usage);
+  }
+  return static_cast<int>(ExitCode::done);
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("A simulated rig in real time that speaks Modbus TCP and RTU.", "spoolwatch-rig");
+  app.footer(hal::rig::kRegisterMapText);
+  Options options;
+  auto* file = app.add_option("--config", options.file, "the rig (TOML)");
+  auto* listen = app.add_option("--listen", options.listen,
+                                "address:port instead of [bus] listen; 0: any free port");
+  auto* serial = app.add_option("--serial", options.serial, "instead of [bus] serial");
+  app.add_option("--duration", options.duration_s, "seconds to run; without it, until a signal")
+      ->check(CLI::Range(1e-3, 1e9));
+  app.add_option("--set", options.assignments, "table.key=value, instead of the file's")
+      ->allow_extra_args(false);
+  CLI::App* setting = app.add_subcommand("set", "changes a running rig: a fault, the e-stop");
+  std::string address = "127.0.0.1:1502";
+  std::vector<std::string> texts;
+  setting->add_option("--address", address, "where the rig listens");
+  setting->add_option("parameter", texts, "name=value or name=xFACTOR (e_stop=0, mass_kg=x1.2)")
+      ->required();
+  try {
+    app.parse(argc, argv);
+    if (setting->count() == 0 && file->count() == 0) throw CLI::RequiredError("--config");
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? static_cast<int>(ExitCode::done) : static_cast<int>(ExitCode::usage);
+  }
+  if (setting->count() > 0) return set(address, texts);
+  return serve(options, listen->count() > 0, serial->count() > 0);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const config::schema::Error& e) {
+    std::cerr << "spoolwatch-rig: " << e.what() << '\n';
+    return e.exit_code();
+  } catch (const std::exception& e) {
+    std::cerr << "spoolwatch-rig: " << e.what() << '\n';
+    return static_cast<int>(ExitCode::failed);
+  }
+}

@@ -1,0 +1,75 @@
+// Answers Modbus requests about a BenchRig: TCP to any number of clients, and a serial line. One
+// thread; each request is answered with the plant brought up to the moment it came in.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hal/rig/bench_rig.h"
+
+struct _modbus;  // libmodbus
+struct _modbus_mapping_t;
+
+namespace hal::rig {
+
+class Server {
+ public:
+  /// Listens, and opens the serial line. Throws config::schema::Error (exit 78) when it cannot.
+  Server(const RigConfig& config, BenchRig& rig);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  /// "127.0.0.1:41234", "" without TCP.
+  [[nodiscard]] const std::string& address() const noexcept { return address_; }
+  /// Answers until `stop` says so, asked every few milliseconds.
+  void run(const std::function<bool()>& stop);
+
+  struct Counts {
+    std::uint64_t requests = 0;
+    std::uint64_t refused = 0;
+    std::uint64_t clients = 0;
+  };
+  [[nodiscard]] const Counts& counts() const noexcept { return counts_; }
+
+ private:
+  struct Free {
+    void operator()(_modbus* context) const;
+    void operator()(_modbus_mapping_t* mapping) const;
+  };
+  using Context = std::unique_ptr<_modbus, Free>;
+  using Mapping = std::unique_ptr<_modbus_mapping_t, Free>;
+  struct Written {
+    int address = 0;
+    int count = 0;
+  };
+
+  void listen(const RigConfig& config);
+  void open_serial(const RigConfig& config);
+  void accept_client();
+  /// False when the connection is over.
+  bool serve(_modbus* context);
+  void answer(_modbus* context, const std::uint8_t* query, int length);
+  void refresh();
+  void apply(const Written& written);
+  void obey_text();
+
+  BenchRig& rig_;
+  Context tcp_;
+  Context serial_;
+  Mapping process_;
+  Mapping text_;
+  int listener_ = -1;
+  std::vector<int> clients_;
+  std::string address_;
+  Counts counts_;
+};
+
+/// Sends "name=value" to a running rig. Returns "" or what is wrong; throws config::schema::Error
+/// (exit 1) when nobody answers at `address`.
+std::string set_remotely(const std::string& address, const std::string& text);
+
+}  // namespace hal::rig
