@@ -1,7 +1,8 @@
 // The configuration of spoolwatchd as it stands in its TOML file.
 //
 // Tables: [rig], [loop], [rod], [valve], one for each backend used, [reference] and [controller]
-// (only where a valve is driven), [[estimator]], [[band]], bands_file, [lcm], [recorder].
+// (only where a valve is driven), [safety], [[guard]], [[estimator]], [[band]], bands_file,
+// [control], [lcm], [recorder].
 #pragma once
 
 #include <cstdint>
@@ -10,7 +11,9 @@
 #include <vector>
 
 #include "daemon/control/controller.h"
+#include "daemon/control/guard_config.h"
 #include "daemon/control/reference.h"
+#include "daemon/io/control_socket.h"
 #include "daemon/io/publisher.h"
 #include "daemon/io/recorder.h"
 #include "daemon/rt/loop.h"
@@ -23,16 +26,20 @@ struct DaemonConfig {
   std::string file;              ///< where it was read from, for messages
   std::filesystem::path folder;  ///< relative paths in it start here
   std::string rig_id = "rig";
+  std::string calibration;  ///< file that commissioning wrote; empty: none
   rt::LoopConfig loop;
   hal::Rig rig;
   control::ReferenceConfig reference;
   control::ControllerConfig controller;
+  control::SafetyConfig safety;
   estimator::fdi::PipelineConfig pipeline;
+  io::ControlConfig control;
   io::PublisherConfig lcm;
   io::RecorderConfig recorder;
 
   void visit(config::schema::Visitor& v);
-  /// All of it but what is done with the results ([lcm], [recorder]).
+  /// All of it but who gives orders and what is done with the results ([control], [lcm],
+  /// [recorder]).
   void visit_what_determines_the_data(config::schema::Visitor& v);
   [[nodiscard]] bool drives_valve() const { return rig.valve().backend != "none"; }
 };
@@ -41,6 +48,10 @@ struct DaemonConfig {
 /// caller's folder. Throws config::schema::Error (exit 78, 2).
 void load(const std::filesystem::path& file, const std::vector<std::string>& assignments,
           DaemonConfig& config);
+
+/// Why the rig may not be armed as it is configured, in one line; empty: it may. Throws
+/// config::schema::Error for a calibration that does not fit.
+[[nodiscard]] std::string never_arms(const DaemonConfig& config);
 
 /// FNV-1a of every value that determines the data; files that it names count by name alone.
 [[nodiscard]] std::uint64_t hash(DaemonConfig& config);

@@ -1,5 +1,9 @@
 #include "daemon/session.h"
 
+#include <poll.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -10,7 +14,9 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "daemon/command_desk.h"
 #include "daemon/null_guard.h"
+#include "daemon/null_table.h"
 #include "daemon/rt/run.h"
 
 namespace monitor {
@@ -28,6 +34,8 @@ struct Prepared {
   std::unique_ptr<control::Reference> reference;
   std::uint64_t hash;
   std::unique_ptr<estimator::fdi::Pipeline> pipeline;
+  std::vector<control::GuardConfig> guards;
+  std::string never_arms;  ///< why it may not be armed; empty: it may
 };
 
 /// What `make` says is wrong with the configuration, with the place in the file put before it.
@@ -42,11 +50,41 @@ auto at(const std::string& place, Make make) {
   }
 }
 
+template <class Named>
+std::vector<std::string> ids_of(const std::vector<Named>& devices) {
+  std::vector<std::string> ids;
+  for (const auto& device : devices) ids.push_back(device.id);
+  return ids;
+}
+
+std::vector<std::size_t> inputs_of(const hal::Devices& devices, hal::InputRole role) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < devices.inputs.size(); ++i) {
+    if (devices.inputs[i].role == role) found.push_back(i);
+  }
+  return found;
+}
+
+void check_numbers(const std::string& file, const hal::Devices& devices) {
+  const auto check = [&](const char* table, std::size_t size, std::size_t most) {
+    if (size <= most) return;
+    throw config::schema::bad_config(file + ": [[" + table + "]]",
+                                     std::to_string(size) + " of them",
+                                     "at most " + std::to_string(most));
+  };
+  check("spare_rod", devices.spare_rods.size(), rt::kMaxSpareRods);
+  check("input", devices.inputs.size(), rt::kMaxInputs);
+}
+
 Prepared prepare(DaemonConfig& config) {
   Prepared p;
   p.sample_time_s = 1.0 / config.loop.rate_Hz;
   p.opening = {config.file, config.folder, p.sample_time_s, config.rig.valve().null_V};
   p.devices = config.rig.open(p.opening);
+  check_numbers(config.file, p.devices);
+  p.guards =
+      at(config.file, [&] { return control::all_guards(config.safety, config.loop.overrun()); });
+  p.never_arms = never_arms(config);
   if (!std::isnan(p.devices.sample_time_s)) p.sample_time_s = p.devices.sample_time_s;
   const bool from_file = config.reference.kind == "file";
   p.reference = at(config.file + ": [reference]" + (from_file ? " file" : ""), [&] {
@@ -77,11 +115,56 @@ sigset_t stop_signals() {
   return set;
 }
 
-bool wait_for_stop(long ms) {
+bool stop_pending() {
   const sigset_t set = stop_signals();
-  const timespec time{0, ms * 1'000'000};
-  return sigtimedwait(&set, nullptr, &time) > 0;
+  const timespec now{0, 0};
+  return sigtimedwait(&set, nullptr, &now) > 0;
 }
+
+/// The signals that ask the process to stop, as a file that can be waited for.
+class StopFile {
+ public:
+  StopFile() {
+    const sigset_t set = stop_signals();
+    file_ = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
+  }
+  ~StopFile() { close(file_); }
+  StopFile(const StopFile&) = delete;
+  StopFile& operator=(const StopFile&) = delete;
+  [[nodiscard]] int file() const noexcept { return file_; }
+  [[nodiscard]] bool came() const noexcept {
+    signalfd_siginfo info{};
+    return read(file_, &info, sizeof info) == sizeof info;
+  }
+
+ private:
+  int file_;
+};
+
+/// What the main thread does while the loop runs: control socket and signals, up to 100 ms a call.
+class Attendant {
+ public:
+  Attendant(CommandDesk& desk, io::ControlSocket* socket) : desk_(desk), socket_(socket) {}
+
+  /// Returns whether the daemon is asked to stop.
+  bool attend() {
+    if (socket_ == nullptr) {
+      pollfd file{stop_.file(), POLLIN, 0};
+      poll(&file, 1, kLook_ms);
+    } else {
+      socket_->wait(order_waits_ ? 1 : kLook_ms, stop_.file());
+      order_waits_ = desk_.serve(*socket_);
+    }
+    return stop_.came();
+  }
+
+ private:
+  static constexpr int kLook_ms = 100;
+  CommandDesk& desk_;
+  io::ControlSocket* socket_;
+  StopFile stop_;
+  bool order_waits_ = false;
+};
 
 std::string hex(std::uint64_t value) {
   char text[17];
@@ -126,6 +209,7 @@ void arm_and_start(rt::CommandQueue& commands, std::int64_t expires_ns) {
   command.expires_ns = expires_ns;
   for (const control::Event event : {control::Event::arm, control::Event::start}) {
     command.event = event;
+    command.at_once = true;
     commands.push(command);
   }
 }
@@ -141,6 +225,10 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
   rt::VirtualClock virtual_clock;
   rt::MonotonicClock monotonic_clock;
   rt::Clock& clock = virtual_time ? static_cast<rt::Clock&>(virtual_clock) : monotonic_clock;
+  std::unique_ptr<io::ControlSocket> socket;
+  if (!config.control.socket.empty() && !virtual_time) {
+    socket = std::make_unique<io::ControlSocket>(config.control, config.file);
+  }
   const std::int64_t run_id =
       virtual_time ? static_cast<std::int64_t>(p.hash >> 1U) : clock.utc_us();
   std::unique_ptr<io::Recorder> recorder;
@@ -163,11 +251,18 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
   NullGuard guard(p.devices.valve.get());
   hal::ValveDrive* valve = guard.valve();
   rt::Loop loop(config.loop,
-                {clock, *p.devices.rod, valve, *p.reference, *samples, commands, stats}, controller,
-                p.sample_time_s);
+                {clock, *p.devices.rod, valve, *p.reference, *samples, commands, stats,
+                 &p.devices.spare_rods, &p.devices.inputs, p.devices.permit.get()},
+                controller, p.sample_time_s, {config.safety, p.never_arms.empty()});
   rt::Detector detector({clock, *samples, stats, *p.pipeline, publisher, recorder.get()},
                         {config.rig_id, hex(p.hash), grant.text, config.rig.rod_backend(),
-                         valve != nullptr ? valve_config.backend : ""});
+                         valve != nullptr ? valve_config.backend : "", ids_of(p.devices.spare_rods),
+                         ids_of(p.devices.inputs), p.guards});
+  CommandDesk desk({clock, commands, stats},
+                   {config.rig_id, hex(p.hash), p.guards, ids_of(p.devices.spare_rods),
+                    ids_of(p.devices.inputs), inputs_of(p.devices, hal::InputRole::enable),
+                    inputs_of(p.devices, hal::InputRole::e_stop), p.never_arms});
+  Attendant attendant(desk, socket.get());
 
   const std::int64_t start_ns = clock.now_ns() + (virtual_time ? 0 : kLead_ns);
   if (config.loop.auto_arm && valve != nullptr) {
@@ -178,10 +273,10 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
   std::atomic<bool> stop{false};
   rt::Run run(loop, rt::Grid(start_ns, std::llround(p.sample_time_s * 1e9)), clock, valve, ticks,
               stop);
-  const rt::Outcome outcome =
-      virtual_time ? rt::run_virtual(run, detector, stop, [] { return wait_for_stop(0); })
-                   : rt::run_realtime(run, detector, grant.loop_thread, stop, valve,
-                                      [] { return wait_for_stop(100); });
+  const rt::Outcome outcome = virtual_time
+                                  ? rt::run_virtual(run, detector, stop, stop_pending)
+                                  : rt::run_realtime(run, detector, grant.loop_thread, stop, valve,
+                                                     [&] { return attendant.attend(); });
   if (!virtual_time) {
     report(stats, log);
     for (const auto& summary : p.devices.summaries) log << "spoolwatchd: " << summary() << '\n';
@@ -198,7 +293,6 @@ void check_session(DaemonConfig& config, std::ostream& out) {
   if (!would_write_a_file) io::Publisher(config.lcm, 0, p.sample_time_s, nullptr);
   if (!config.recorder.folder.empty()) io::check_folder(config.recorder);
   out << config::schema::print_toml([&](config::schema::Visitor& v) { config.visit(v); });
-  char line[160];
   out << "\n# " << config.file << ": period " << p.sample_time_s * 1e3 << " ms, configuration "
       << hex(p.hash) << "\n";
   for (const std::string& note : config.rig.notes(p.opening)) out << "# " << note << "\n";
@@ -206,30 +300,13 @@ void check_session(DaemonConfig& config, std::ostream& out) {
     out << "# No valve is driven: state MONITOR, nothing is ever written.\n";
     return;
   }
-  const double speed_mps = config.rig.worst_speed_mps(p.opening);
-  const double period_s = p.sample_time_s;
-  const double null_s = static_cast<double>(rt::kNullAfter_ns) * 1e-9;
-  // An outage shorter than the 50 ms rule ends with the old law, one as long as it with null.
-  const double stall_s = null_s + period_s;
-  const double bad_s = period_s;
-  const struct {
-    const char* failure;
-    double time_s;
-  } rows[] = {
-      {"stop, signal or error", 2.0 * period_s},
-      {"position missing", bad_s},
-      {"loop late, then back", stall_s},
-      {"process killed", 0.0},
-  };
-  std::snprintf(line, sizeof line, "# %-24s %-8s %16s %16s\n", "failure", "valve",
-                "worst time (ms)", "worst travel (mm)");
-  out << line;
-  for (const auto& row : rows) {
-    std::snprintf(line, sizeof line, "# %-24s %-8s %16.1f %16.2f\n", row.failure,
-                  config.rig.valve().backend.c_str(), row.time_s * 1e3,
-                  row.time_s * speed_mps * 1e3);
-    out << line;
-  }
+  if (!p.never_arms.empty()) out << "# It cannot be armed: " << p.never_arms << "\n";
+  print_null_table(
+      {config.rig.valve().backend, config.rig.null_times(), p.sample_time_s,
+       config.rig.worst_speed_mps(p.opening), config.safety.ramp_s, config.loop.max_bad_in_a_row,
+       p.guards, !inputs_of(p.devices, hal::InputRole::e_stop).empty(),
+       !inputs_of(p.devices, hal::InputRole::enable).empty(), config.rig.has_permit()},
+      out);
 }
 
 }  // namespace monitor

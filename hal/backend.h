@@ -40,6 +40,8 @@ struct NullTimes {
   double bus_lost_s = kMissing;      ///< the device no longer hears us, but runs
   double process_dead_s = kMissing;  ///< nobody writes any more (SIGKILL, SIGSTOP)
   double latency_s = 0.0;            ///< from a write of the loop to the voltage at the valve
+  /// The process stands still (SIGSTOP); NaN: as process_dead_s.
+  double process_stopped_s = kMissing;
 };
 
 class Backend {

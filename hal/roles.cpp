@@ -165,6 +165,8 @@ void Rig::visit(config::schema::Visitor& v) {
              {1e-3, 100.0});
     t.number({"slew_V_per_s", "fastest change of a command"}, valve_.slew_V_per_s,
              {1e-3, std::numeric_limits<double>::infinity()});
+    t.boolean({"accept_no_hardware_watchdog", "drive it though nothing but this process stops it"},
+              valve_.accept_no_hardware_watchdog);
   });
   config::schema::visit_list(v, {"input", "an auxiliary signal"}, inputs_);
   v.optional_table({"permit", "a line that every good tick toggles, for a watchdog relay"},

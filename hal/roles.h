@@ -25,6 +25,7 @@ struct ValveConfig {
   double null_V = 0.0;
   double limit_V = 10.0;
   double slew_V_per_s = std::numeric_limits<double>::infinity();
+  bool accept_no_hardware_watchdog = false;
 };
 
 /// TOML [[spare_rod]].

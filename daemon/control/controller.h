@@ -36,6 +36,7 @@ class Controller {
 
   /// From null, as after a start.
   void reset() noexcept { last_V_ = limits_.null_V; }
+  [[nodiscard]] double null_V() const noexcept { return limits_.null_V; }
   /// `periods` >= 1: since the last call, so that the slew limit counts time, not calls.
   Command update(double reference_m, double y_m, int periods = 1) noexcept;
 

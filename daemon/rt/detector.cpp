@@ -1,5 +1,7 @@
 #include "daemon/rt/detector.h"
 
+#include <algorithm>
+
 namespace monitor::rt {
 
 using estimator::fdi::Alarm;
@@ -12,31 +14,27 @@ constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
 double us(std::int64_t time_ns) { return static_cast<double>(time_ns) * 1e-3; }
 
-const char* text(Trip trip) {
-  switch (trip) {
-    case Trip::overrun:
-      return "too many lost periods: reset, then arm again";
-    case Trip::reading:
-      return "position missing: reset, then arm again";
-    case Trip::write:
-      return "valve not written: reset, then arm again";
-    case Trip::none:
-      break;
-  }
-  return "";
-}
-
 }  // namespace
 
 Detector::Detector(const Parts& parts, const Identity& identity)
     : parts_(parts),
       changed_([this](const Alarm& alarm) { publish(alarm, false); }),
+      guard_alarms_(identity.guards, parts.pipeline.alarms()),
+      spare_rods_(std::min(identity.spare_rods.size(), kMaxSpareRods)),
+      inputs_(std::min(identity.inputs.size(), kMaxInputs)),
       next_second_ns_(parts.clock.now_ns() + kSecond_ns) {
   health_.rig_id = identity.rig_id;
   health_.config_hash = identity.config_hash;
   health_.privileges = identity.privileges;
   health_.device = {"rod." + identity.rod};
   if (!identity.valve.empty()) health_.device.push_back("valve." + identity.valve);
+  for (std::size_t i = 0; i < spare_rods_; ++i) {
+    health_.device.push_back("spare_rod." + identity.spare_rods[i]);
+  }
+  for (std::size_t i = 0; i < inputs_; ++i) {
+    health_.device.push_back("input." + identity.inputs[i]);
+  }
+  for (const control::GuardConfig& guard : identity.guards) guard_ids_.push_back(guard.id);
   health_.device_count = static_cast<std::int32_t>(health_.device.size());
   health_.device_good.resize(health_.device.size());
   health_.device_bad.resize(health_.device.size());
@@ -63,6 +61,7 @@ void Detector::finish() {
 
 void Detector::process(const Sample& sample) {
   tick_ = sample.tick;
+  guard_alarms_.report(parts_.stats.guards, tick_, changed_);
   parts_.publisher.sample(sample);
   if (sample.state != state_) {
     state_ = sample.state;
@@ -90,8 +89,27 @@ void Detector::condition(const char* source, const char* name, Severity severity
 
 void Detector::watch_state() {
   const bool latched = state_ == static_cast<std::uint8_t>(control::State::latched);
-  condition("loop", "latched", Severity::major, latched,
-            text(parts_.stats.trip.load(std::memory_order_relaxed)));
+  condition("loop", "latched", Severity::major, latched, latched ? why_latched() : "");
+}
+
+std::string Detector::why_latched() const {
+  const auto index = parts_.stats.trip_guard.load(std::memory_order_relaxed);
+  const std::string id = index < guard_ids_.size() ? guard_ids_[index] : "?";
+  switch (parts_.stats.trip.load(std::memory_order_relaxed)) {
+    case Trip::overrun:
+      return "too many lost periods: reset, then arm again";
+    case Trip::reading:
+      return "position missing: reset, then arm again";
+    case Trip::write:
+      return "valve not written: reset, then arm again";
+    case Trip::e_stop:
+      return "emergency stop: release it, reset, then arm again";
+    case Trip::guard:
+      return "guard " + id + ": reset, then arm again";
+    case Trip::none:
+      break;
+  }
+  return "";
 }
 
 void Detector::once_a_second() {
@@ -130,10 +148,16 @@ void Detector::health() {
   health_.active_alarms = static_cast<std::int32_t>(parts_.pipeline.alarms().active_count());
   health_.device_good[0] = stats.rod_good.value();
   health_.device_bad[0] = stats.rod_bad.value();
-  if (health_.device.size() > 1) {
-    health_.device_good[1] = stats.valve_good.value();
-    health_.device_bad[1] = stats.valve_bad.value();
+  std::size_t at = 1;
+  const auto next = [&](const Counter& good, const Counter& bad) {
+    health_.device_good[at] = good.value();
+    health_.device_bad[at++] = bad.value();
+  };
+  if (health_.device.size() > spare_rods_ + inputs_ + 1) next(stats.valve_good, stats.valve_bad);
+  for (std::size_t i = 0; i < spare_rods_; ++i) {
+    next(stats.spare_rods[i].good, stats.spare_rods[i].bad);
   }
+  for (std::size_t i = 0; i < inputs_; ++i) next(stats.inputs[i].good, stats.inputs[i].bad);
   parts_.publisher.health(health_, stamp());
 }
 

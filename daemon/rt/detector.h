@@ -5,11 +5,13 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "daemon/io/conditions.h"
 #include "daemon/io/publisher.h"
 #include "daemon/io/recorder.h"
 #include "daemon/rt/clock.h"
+#include "daemon/rt/guard_alarms.h"
 #include "daemon/rt/loop_stats.h"
 #include "daemon/rt/queues.h"
 #include "estimator/fdi/pipeline.h"
@@ -23,7 +25,7 @@ class Detector final : private estimator::fdi::Events {
   struct Parts {
     Clock& clock;
     SampleQueue& samples;
-    const LoopStats& stats;
+    LoopStats& stats;
     estimator::fdi::Pipeline& pipeline;
     io::Publisher& publisher;
     const io::Recorder* recorder;
@@ -34,7 +36,9 @@ class Detector final : private estimator::fdi::Events {
     std::string config_hash;
     std::string privileges;
     std::string rod;
-    std::string valve;  ///< "" when none is driven
+    std::string valve;                            ///< "" when none is driven
+    std::vector<std::string> spare_rods, inputs;  ///< their ids
+    std::vector<control::GuardConfig> guards;     ///< control::all_guards
   };
 
   Detector(const Parts& parts, const Identity& identity);
@@ -56,6 +60,7 @@ class Detector final : private estimator::fdi::Events {
   void watch_state();
   void once_a_second();
   void health();
+  [[nodiscard]] std::string why_latched() const;
   [[nodiscard]] io::Stamp stamp() const noexcept {
     return {parts_.clock.utc_us(), parts_.clock.now_ns()};
   }
@@ -63,6 +68,10 @@ class Detector final : private estimator::fdi::Events {
   Parts parts_;
   std::function<void(const estimator::fdi::Alarm&)> changed_;
   io::Conditions conditions_;
+  GuardAlarms guard_alarms_;
+  std::vector<std::string> guard_ids_;
+  std::size_t spare_rods_;
+  std::size_t inputs_;
   spoolwatch::health_t health_;
   std::int64_t next_second_ns_;
   std::int64_t tick_ = 0;

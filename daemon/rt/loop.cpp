@@ -5,7 +5,10 @@
 
 namespace monitor::rt {
 
+using control::Action;
 using control::Event;
+using control::GuardKind;
+using control::Refusal;
 using control::State;
 using estimator::fdi::Sample;
 
@@ -26,53 +29,134 @@ void LoopConfig::visit(config::schema::Visitor& v) {
   v.integer({"cpu", "core that the loop is pinned to, -1 for any"}, cpu, {-1, 1023});
 }
 
+control::Action LoopConfig::overrun() const noexcept {
+  return overrun_action == "latch"    ? Action::latch
+         : overrun_action == "disarm" ? Action::disarm
+                                      : Action::indicate;
+}
+
 Loop::Loop(const LoopConfig& config, const Parts& parts, const control::Controller& controller,
-           double sample_time_s) noexcept
+           double sample_time_s, const SafetyRules& rules)
     : parts_(parts),
       controller_(controller),
-      reference_(&parts.reference),
+      motion_(parts.reference, {rules.safety.blend_s, rules.safety.blend_mps, sample_time_s}),
+      ramp_(rules.safety.ramp_s),
+      safety_(control::all_guards(rules.safety, config.overrun()), sample_time_s),
       arming_(parts.valve == nullptr),
+      around_(parts.spare_rods, parts.inputs, parts.stats),
       overruns_(config.max_lost_in_a_row, config.max_lost_a_minute),
-      overrun_action_(config.overrun_action == "latch"    ? OverrunAction::latch
-                      : config.overrun_action == "disarm" ? OverrunAction::disarm
-                                                          : OverrunAction::count),
       sample_time_s_(sample_time_s),
-      max_bad_in_a_row_(config.max_bad_in_a_row) {
+      null_V_(controller.null_V()),
+      max_bad_in_a_row_(config.max_bad_in_a_row),
+      may_arm_(rules.may_arm) {
   parts_.stats.state.store(arming_.state(), std::memory_order_relaxed);
 }
 
-void Loop::apply(Event event) noexcept {
-  if (!arming_.apply(event)) {
-    parts_.stats.refused_commands.add();
-    return;
-  }
+Refusal Loop::obstacle(Event event) const noexcept {
+  if (event != Event::arm && event != Event::start) return Refusal::none;
+  if (closing_) return Refusal::closing;
+  if (!may_arm_) return Refusal::calibration;
+  if (!around_.enabled()) return Refusal::enable;
+  if (safety_.obstacle() >= 0) return Refusal::guard;
+  return event == Event::start && !have_position() ? Refusal::position : Refusal::none;
+}
+
+Refusal Loop::carry_out(Event event, bool at_once) noexcept {
+  if (arming_.state() == State::monitor) return Refusal::monitor;
+  control::Arming after = arming_;
+  const bool resume = event == Event::start && arming_.state() == State::run && motion_.holding();
+  if (!resume && !after.apply(event)) return Refusal::state;
+  if (const Refusal refusal = obstacle(event); refusal != Refusal::none) return refusal;
   if (event == Event::start) {
-    motion_tick_ = tick_;
-    controller_.reset();
+    motion_.start(y_m_, tick_, at_once);
+    safety_.start(y_m_);
+    if (!resume) controller_.reset();
   }
-  if (event == Event::reset) parts_.stats.trip.store(Trip::none, std::memory_order_relaxed);
-  parts_.stats.state.store(arming_.state(), std::memory_order_relaxed);
+  if (!resume) apply(event);
+  return Refusal::none;
 }
 
-void Loop::trip(Trip why) noexcept {
-  if (arming_.state() == State::monitor || arming_.state() == State::latched) return;
-  parts_.stats.trip.store(why, std::memory_order_relaxed);
-  apply(Event::trip);
+Refusal Loop::carry_out(const Command& command) noexcept {
+  if (parts_.clock.now_ns() >= command.expires_ns) {
+    parts_.stats.expired_commands.add();
+    return Refusal::expired;
+  }
+  if (command.kind == Command::Kind::event) return carry_out(command.event, command.at_once);
+  if (arming_.state() == State::monitor) return Refusal::monitor;
+  const bool run = arming_.state() == State::run && !ramp_.active();
+  if (command.kind == Command::Kind::hold) {
+    if (!run) return Refusal::state;
+    if (!have_position()) return Refusal::position;
+    motion_.hold(y_m_);
+    return Refusal::none;
+  }
+  motion_.follow(control::Sine(command.centre_m, command.amplitude_m, command.frequency_Hz), tick_,
+                 run);
+  return Refusal::none;
 }
 
 void Loop::take_commands() noexcept {
   Command command;
   while (parts_.commands.pop(command)) {
-    if (parts_.clock.now_ns() >= command.expires_ns) {
-      parts_.stats.expired_commands.add();
-    } else if (command.kind == Command::Kind::event) {
-      apply(command.event);
-    } else {
-      commanded_ = control::Sine(command.centre_m, command.amplitude_m, command.frequency_Hz);
-      reference_ = &commanded_;
-      motion_tick_ = tick_;
+    const Refusal refusal = carry_out(command);
+    if (refusal != Refusal::none && refusal != Refusal::expired) {
+      parts_.stats.refused_commands.add();
     }
+    if (command.number == 0) continue;
+    answer_ = {command.number, refusal, arming_.state(), 0};
+    if (refusal == Refusal::guard) answer_.guard = static_cast<std::uint8_t>(safety_.obstacle());
   }
+}
+
+void Loop::apply(Event event) noexcept {
+  if (!arming_.apply(event)) return;
+  if (arming_.state() != State::run) ramp_.stop();
+  if (event == Event::reset) parts_.stats.trip.store(Trip::none, std::memory_order_relaxed);
+  parts_.stats.state.store(arming_.state(), std::memory_order_relaxed);
+}
+
+void Loop::act(const control::Verdict& verdict, bool measured) noexcept {
+  const State state = arming_.state();
+  if (state != State::run && (measured || state != State::armed)) return;
+  switch (verdict.action) {
+    case Action::none:
+    case Action::indicate:
+      break;
+    case Action::hold:
+      if (state == State::run && have_position()) motion_.hold(y_m_);
+      break;
+    case Action::ramp:
+      if (state == State::armed) leave();
+      if (state == State::run && !ramp_.active()) ramp_.start(last_V_, time_s());
+      break;
+    case Action::disarm:
+      leave();
+      break;
+    case Action::latch:
+      trip(verdict.guard);
+      break;
+  }
+}
+
+void Loop::trip(int guard) noexcept {
+  constexpr Trip kBuiltInTrips[] = {Trip::e_stop, Trip::reading, Trip::write, Trip::overrun};
+  const auto index = static_cast<std::size_t>(guard);
+  parts_.stats.trip_guard.store(static_cast<std::uint8_t>(guard), std::memory_order_relaxed);
+  parts_.stats.trip.store(index < control::kBuiltIn ? kBuiltInTrips[index] : Trip::guard,
+                          std::memory_order_relaxed);
+  apply(Event::trip);
+}
+
+void Loop::leave() noexcept {
+  if (arming_.state() == State::run || arming_.state() == State::armed) apply(Event::disarm);
+}
+
+void Loop::watch_inputs(const hal::Tick& tick) noexcept {
+  around_.read(tick, y_m_);
+  act(safety_.set(GuardKind::e_stop, !around_.e_stop_released(), 0.0), false);
+  if (!around_.enabled()) leave();
+  const bool missing = bad_readings_ > max_bad_in_a_row_;
+  act(safety_.set(GuardKind::missing, missing, static_cast<double>(bad_readings_)), false);
 }
 
 void Loop::watch_overruns(const Period& period) noexcept {
@@ -82,46 +166,61 @@ void Loop::watch_overruns(const Period& period) noexcept {
     parts_.stats.lateness.add(period.overrun_ns);
     gap_ += period.skipped;
   }
-  if (!overruns_.add(period.skipped, period.tick.nominal_ns)) return;
-  if (overrun_action_ == OverrunAction::latch) trip(Trip::overrun);
-  if (overrun_action_ == OverrunAction::disarm) leave();
+  const bool too_many = overruns_.add(period.skipped, period.tick.nominal_ns);
+  act(safety_.set(GuardKind::overrun, too_many, static_cast<double>(period.skipped)), false);
 }
 
-void Loop::leave() noexcept {
-  if (arming_.state() == State::run || arming_.state() == State::armed) apply(Event::disarm);
+void Loop::watch_motion(const hal::Reading& reading, Sample& sample) noexcept {
+  const bool follows = arming_.state() == State::run && !ramp_.active();
+  if (follows && interrupted_ && have_position()) motion_.rejoin(y_m_, tick_);
+  if (follows) sample.reference_m = motion_.at(tick_);
+  control::Facts facts;
+  facts.t_s = time_s();
+  facts.y_m = y_m_;
+  facts.called_stale = reading.quality == hal::Quality::stale;
+  if (reading.t_ns != 0) {
+    facts.age_s = static_cast<double>(parts_.clock.now_ns() - reading.t_ns) * 1e-9;
+  }
+  facts.reference_m = sample.reference_m;
+  facts.command_V = last_V_;
+  facts.saturated = last_limited_;
+  facts.spare_difference_m = around_.spare_difference_m();
+  act(safety_.watch(facts), true);
+  if (follows && motion_.holding()) sample.reference_m = motion_.at(tick_);
 }
 
-void Loop::watch_device(bool good, std::int64_t& bad_in_a_row, Trip why) noexcept {
-  bad_in_a_row = good ? 0 : bad_in_a_row + 1;
-  if (bad_in_a_row > max_bad_in_a_row_) trip(why);
-}
-
-void Loop::drive(const Period& period, bool have_position, Sample& sample) noexcept {
+void Loop::drive(const Period& period, Sample& sample) noexcept {
   const std::int64_t start_ns = parts_.clock.now_ns();
   const std::int64_t period_ns = std::llround(sample_time_s_ * 1e9);
   const bool too_long = period.skipped > 0 && (period.skipped + 1) * period_ns >= kNullAfter_ns;
-  const bool run = arming_.state() == State::run && have_position && !too_long;
-  double limited_V = 0.0;
-  if (arming_.state() == State::run) {
-    sample.reference_m = reference_->at(static_cast<double>(tick_ - motion_tick_) * sample_time_s_);
-  }
-  if (run) {
+  if (ramp_.active() && (too_long || ramp_.over(time_s()))) leave();
+  const bool run = arming_.state() == State::run && !too_long;
+  const bool ramp = run && ramp_.active();
+  const bool law = run && !ramp && have_position();
+  double command_V = null_V_;
+  if (law) {
     const int periods = static_cast<int>(std::min<std::int64_t>(period.skipped + 1, 1000));
     const control::Command command = controller_.update(sample.reference_m, sample.y_m, periods);
     sample.u_requested_V = command.requested_V;
     sample.saturated = command.saturated;
-    limited_V = command.limited_V;
+    command_V = command.limited_V;
   } else {
     controller_.reset();
+    if (ramp) command_V = sample.u_requested_V = null_V_ + ramp_.at(time_s());
   }
+  interrupted_ = arming_.state() == State::run && !law && !ramp;
+  last_V_ = command_V - null_V_;
+  last_limited_ = sample.saturated;
   sample.t_write_ns = parts_.clock.now_ns();
   parts_.stats.control.add(sample.t_write_ns - start_ns);
   const hal::Applied applied =
-      run ? parts_.valve->write(limited_V, period.tick) : parts_.valve->go_null();
+      law || ramp ? parts_.valve->write(command_V, period.tick) : parts_.valve->go_null();
   parts_.stats.write.add(parts_.clock.now_ns() - sample.t_write_ns);
   sample.u_applied_V = applied.u_V;
   (applied.good ? parts_.stats.valve_good : parts_.stats.valve_bad).add();
-  watch_device(applied.good, bad_writes_, Trip::write);
+  bad_writes_ = applied.good ? 0 : bad_writes_ + 1;
+  const bool lost = bad_writes_ > max_bad_in_a_row_;
+  act(safety_.set(GuardKind::bus_lost, lost, static_cast<double>(bad_writes_)), false);
 }
 
 void Loop::send(Sample& sample) noexcept {
@@ -134,13 +233,27 @@ void Loop::send(Sample& sample) noexcept {
   }
 }
 
+void Loop::show(const Period& period, const Sample& sample) noexcept {
+  LoopStats& stats = parts_.stats;
+  const bool run = arming_.state() == State::run;
+  stats.guards.show(safety_);
+  stats.y_m.store(sample.y_m, std::memory_order_relaxed);
+  stats.u_V.store(sample.u_applied_V, std::memory_order_relaxed);
+  stats.reference_m.store(sample.reference_m, std::memory_order_relaxed);
+  stats.holding.store(run && motion_.holding(), std::memory_order_relaxed);
+  stats.ramping.store(run && ramp_.active(), std::memory_order_relaxed);
+  answer_.state = arming_.state();
+  stats.answer.store(control::pack(answer_), std::memory_order_release);
+  const bool good = arming_.state() != State::latched && period.skipped == 0 && !closing_;
+  if (parts_.permit == nullptr || !good) return;
+  permit_on_ = !permit_on_;
+  (parts_.permit->set(permit_on_) ? stats.permit_good : stats.permit_bad).add();
+}
+
 bool Loop::tick(const Period& period) noexcept {
   const std::int64_t start_ns = parts_.clock.now_ns();
   tick_ = period.tick.index;
   parts_.stats.lateness.add(period.lateness_ns);
-  take_commands();
-  watch_overruns(period);
-  if (closing_) leave();
 
   Sample sample;
   sample.tick = tick_;
@@ -150,19 +263,32 @@ bool Loop::tick(const Period& period) noexcept {
   parts_.stats.read.add(parts_.clock.now_ns() - sample.t_read_ns);
   if (reading.end) return false;
 
-  const bool have_position = reading.quality != hal::Quality::bad && std::isfinite(reading.y_m);
-  (have_position ? parts_.stats.rod_good : parts_.stats.rod_bad).add();
-  watch_device(have_position, bad_readings_, Trip::reading);
-  sample.y_m = have_position ? reading.y_m : hal::kMissing;
-  sample.quality = have_position ? static_cast<estimator::fdi::Quality>(reading.quality)
-                                 : estimator::fdi::Quality::bad;
+  const bool good = reading.quality != hal::Quality::bad && std::isfinite(reading.y_m);
+  (good ? parts_.stats.rod_good : parts_.stats.rod_bad).add();
+  bad_readings_ = good ? 0 : bad_readings_ + 1;
+  y_m_ = good ? reading.y_m : hal::kMissing;
+  sample.y_m = y_m_;
+  sample.quality =
+      good ? static_cast<estimator::fdi::Quality>(reading.quality) : estimator::fdi::Quality::bad;
+  watch_inputs(period.tick);
+  take_commands();
+  watch_overruns(period);
+  if (closing_) leave();
+
   sample.reference_m = hal::kMissing;
   sample.u_requested_V = hal::kMissing;
-  sample.u_applied_V = reading.command_V;
-  sample.saturated = reading.saturated;
-  if (parts_.valve != nullptr) drive(period, have_position, sample);
+  sample.u_applied_V = around_.has_command() ? around_.command_V() : reading.command_V;
+  watch_motion(reading, sample);
+  if (parts_.valve != nullptr) {
+    drive(period, sample);
+  } else {
+    sample.saturated = reading.saturated;
+    last_V_ = sample.u_applied_V;
+    last_limited_ = reading.saturated;
+  }
   sample.state = static_cast<std::uint8_t>(arming_.state());
   send(sample);
+  show(period, sample);
   parts_.stats.ticks.add();
   parts_.stats.tick.add(parts_.clock.now_ns() - start_ns);
   return true;

@@ -1,23 +1,30 @@
-// The control loop: once a period it reads the rod, decides, writes the valve and hands the sample
-// on. Row k: y is read at t_k, before u_k is written; u_k holds until the next write.
+// The control loop: once a period it reads the rod and what is around it, decides, writes the valve
+// and hands the sample on. Row k: y is read at t_k, before u_k is written; u_k holds until the next
+// write.
 //
-// Null (valve.null_V) is written whenever the state is not RUN, in the first tick after 50 ms or
-// more without one, and when the position is missing. Trips lead to LATCHED: too many overruns,
-// readings missing or writes failed too many times in a row.
+// Null (valve.null_V) is written whenever the state is not RUN (a stop is null at once), in the
+// first tick after 50 ms or more without one, and when the position is missing. Guards (control/
+// safety.h) hold the reference, ramp the command to null or latch; losing the enable input disarms.
+// A start begins where the rod is; a start while a guard holds resumes from there, and so does the
+// law after a null in between.
 #pragma once
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "config/schema/visitor.h"
 #include "daemon/control/arming.h"
 #include "daemon/control/controller.h"
-#include "daemon/control/reference_kinds.h"
+#include "daemon/control/motion.h"
+#include "daemon/control/refusal.h"
+#include "daemon/control/safety.h"
 #include "daemon/rt/clock.h"
 #include "daemon/rt/grid.h"
 #include "daemon/rt/loop_stats.h"
 #include "daemon/rt/overrun.h"
 #include "daemon/rt/queues.h"
+#include "daemon/rt/surroundings.h"
 #include "hal/device.h"
 
 namespace monitor::rt {
@@ -35,6 +42,13 @@ struct LoopConfig {
   std::int64_t cpu = -1;
 
   void visit(config::schema::Visitor& v);
+  [[nodiscard]] control::Action overrun() const noexcept;
+};
+
+/// What the loop may do with its valve.
+struct SafetyRules {
+  control::SafetyConfig safety;
+  bool may_arm = true;  ///< false: a calibration is missing
 };
 
 /// After this long without a tick the old law is not trusted with the state it finds.
@@ -52,10 +66,14 @@ class Loop {
     SampleQueue& samples;
     CommandQueue& commands;
     LoopStats& stats;
+    const std::vector<hal::NamedRod>* spare_rods = nullptr;
+    const std::vector<hal::NamedInput>* inputs = nullptr;
+    hal::Output* permit = nullptr;
   };
 
+  /// Throws config::schema::Error for guards that do not go together.
   Loop(const LoopConfig& config, const Parts& parts, const control::Controller& controller,
-       double sample_time_s) noexcept;
+       double sample_time_s, const SafetyRules& rules = {});
 
   /// One period. False when the device has nothing more to give (end of a record). Does not
   /// allocate, lock, log or throw.
@@ -65,33 +83,53 @@ class Loop {
   void close() noexcept { closing_ = true; }
 
  private:
-  enum class OverrunAction : std::uint8_t { count, disarm, latch };
-
   void take_commands() noexcept;
+  [[nodiscard]] control::Refusal carry_out(const Command& command) noexcept;
+  [[nodiscard]] control::Refusal carry_out(control::Event event, bool at_once) noexcept;
+  /// What forbids to arm or to start.
+  [[nodiscard]] control::Refusal obstacle(control::Event event) const noexcept;
   void apply(control::Event event) noexcept;
-  void trip(Trip why) noexcept;
+  /// Carries out what a guard asks for. `measured`: only in RUN.
+  void act(const control::Verdict& verdict, bool measured) noexcept;
+  void trip(int guard) noexcept;
   /// From RUN or ARMED to DISARMED.
   void leave() noexcept;
   void watch_overruns(const Period& period) noexcept;
-  void watch_device(bool good, std::int64_t& bad_in_a_row, Trip why) noexcept;
-  void drive(const Period& period, bool have_position, estimator::fdi::Sample& sample) noexcept;
+  /// Emergency stop, enable, missing positions.
+  void watch_inputs(const hal::Tick& tick) noexcept;
+  /// The reference of this tick, and the guards that measure.
+  void watch_motion(const hal::Reading& reading, estimator::fdi::Sample& sample) noexcept;
+  void drive(const Period& period, estimator::fdi::Sample& sample) noexcept;
   void send(estimator::fdi::Sample& sample) noexcept;
+  void show(const Period& period, const estimator::fdi::Sample& sample) noexcept;
+  [[nodiscard]] double time_s() const noexcept {
+    return static_cast<double>(tick_) * sample_time_s_;
+  }
+  [[nodiscard]] bool have_position() const noexcept { return bad_readings_ == 0; }
 
   Parts parts_;
   control::Controller controller_;
-  control::Sine commanded_{0.0, 0.0, 0.0};
-  const control::Reference* reference_;
+  control::Motion motion_;
+  control::Ramp ramp_;
+  control::Safety safety_;
   control::Arming arming_;
+  Surroundings around_;
   OverrunRule overruns_;
-  OverrunAction overrun_action_;
   double sample_time_s_;
+  double null_V_;
   std::int64_t max_bad_in_a_row_;
+  bool may_arm_;
+  control::Answer answer_;  ///< to the newest order, given when the tick is over
   bool closing_ = false;
+  bool permit_on_ = false;
+  bool interrupted_ = false;   ///< RUN, but null was written in the tick before
+  double y_m_ = 0.0;           ///< of this tick, NaN when missing
+  double last_V_ = 0.0;        ///< u - null of the last command
+  bool last_limited_ = false;  ///< that command was at a limit
   std::int64_t bad_readings_ = 0;
   std::int64_t bad_writes_ = 0;
-  std::int64_t tick_ = 0;         ///< index of this tick
-  std::int64_t motion_tick_ = 0;  ///< index at which the reference signal began
-  std::int64_t gap_ = 0;          ///< periods that the detector has not been given
+  std::int64_t tick_ = 0;  ///< index of this tick
+  std::int64_t gap_ = 0;   ///< periods that the detector has not been given
 };
 
 }  // namespace monitor::rt

@@ -1,15 +1,22 @@
-// What the loop counts. The loop writes, any thread reads.
+// What the loop counts and shows. The loop writes, any thread reads.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
+#include <limits>
 
 #include "daemon/control/arming.h"
+#include "daemon/rt/guard_board.h"
 #include "daemon/rt/histogram.h"
 
 namespace monitor::rt {
 
-enum class Trip : std::uint8_t { none, overrun, reading, write };
+/// Why the state is LATCHED; `guard`: one of [[guard]].
+enum class Trip : std::uint8_t { none, overrun, reading, write, e_stop, guard };
+
+inline constexpr std::size_t kMaxSpareRods = 4;
+inline constexpr std::size_t kMaxInputs = 16;
 
 /// A counter with one writer.
 class Counter {
@@ -23,17 +30,34 @@ class Counter {
   std::atomic<std::int64_t> value_{0};
 };
 
+/// A device's readings.
+struct DeviceStats {
+  Counter good, bad;
+  std::atomic<double> value{std::numeric_limits<double>::quiet_NaN()};  ///< newest, NaN: none
+};
+
 struct LoopStats {
   Counter ticks;
   Counter overruns;  ///< late wake-ups that skipped periods
   Counter skipped_periods;
   Counter dropped_samples;  ///< queue to the detector full
   Counter expired_commands;
-  Counter refused_commands;  ///< not allowed in the state of the moment
+  Counter refused_commands;  ///< not allowed at that moment
   Counter rod_good, rod_bad, valve_good, valve_bad;
+  Counter permit_good, permit_bad;  ///< toggles of the permit output
+  std::array<DeviceStats, kMaxSpareRods> spare_rods;
+  std::array<DeviceStats, kMaxInputs> inputs;
   Histogram lateness, read, control, write, tick;
   std::atomic<control::State> state{control::State::disarmed};
-  std::atomic<Trip> trip{Trip::none};  ///< why the state is LATCHED
+  std::atomic<Trip> trip{Trip::none};
+  std::atomic<std::uint8_t> trip_guard{0};  ///< which guard that was
+  std::atomic<bool> holding{false};         ///< RUN, with the reference frozen
+  std::atomic<bool> ramping{false};         ///< RUN, on the way to null
+  std::atomic<double> y_m{std::numeric_limits<double>::quiet_NaN()};
+  std::atomic<double> reference_m{std::numeric_limits<double>::quiet_NaN()};
+  std::atomic<double> u_V{std::numeric_limits<double>::quiet_NaN()};
+  std::atomic<std::uint64_t> answer{0};  ///< to the newest order: control::unpack
+  GuardBoard guards;
 };
 
 }  // namespace monitor::rt

@@ -13,9 +13,11 @@ namespace monitor::rt {
 
 /// An order to the loop; one that arrives at or after expires_ns is dropped and counted.
 struct Command {
-  enum class Kind : std::uint8_t { event, sine };
+  enum class Kind : std::uint8_t { event, sine, hold };
   Kind kind = Kind::event;
   control::Event event = control::Event::disarm;  ///< of kind event
+  bool at_once = false;                           ///< of start: without blending
+  std::uint32_t number = 0;                       ///< for the answer; 0: none is wanted
   double centre_m = 0.0;                          ///< of kind sine: the new reference signal
   double amplitude_m = 0.0;
   double frequency_Hz = 0.0;

@@ -25,6 +25,12 @@ void SimConfig::visit(config::schema::Visitor& v) {
   v.number({"dac_range_V", "range of the D/A converter, both ways"}, dac_range_V, {1e-3, 1e3});
   v.integer({"seed", "of the noise"}, seed, {0, std::numeric_limits<std::int64_t>::max()});
   config::schema::visit_list(v, {"fault", "a scheduled change of a parameter"}, faults);
+  v.number({"command_timeout_s", "without a write for so long the valve goes to null"},
+           command_timeout_s, {1e-3, std::numeric_limits<double>::infinity()});
+  v.boolean({"pretend_real", "obey the rules of a rig that moves something"}, pretend_real);
+  config::schema::visit_list(v, {"trouble", "what goes wrong with rod sensor or valve"}, troubles);
+  config::schema::visit_list(v, {"rod", "a spare rod sensor"}, rods);
+  config::schema::visit_list(v, {"input", "a switch or another signal"}, inputs);
 }
 
 SimRig::SimRig(std::unique_ptr<plant_sim::Plant> plant, const SimConfig& config,
@@ -36,27 +42,79 @@ SimRig::SimRig(std::unique_ptr<plant_sim::Plant> plant, const SimConfig& config,
       dac_{static_cast<int>(config.dac_bits), config.dac_range_V},
       sample_time_s_(sample_time_s),
       null_V_(null_V),
-      held_V_(dac_.apply(null_V)) {}
+      held_V_(dac_.apply(null_V)),
+      timeout_ticks_(
+          std::isfinite(config.command_timeout_s)
+              ? std::max(1LL, std::llround(std::floor(config.command_timeout_s / sample_time_s +
+                                                      kWholeSteps)))
+              : std::numeric_limits<std::int64_t>::max()),
+      troubles_(config.troubles) {}
 
 Reading SimRig::read(const Tick& tick) noexcept {
-  const double u_V = held_V_.load(std::memory_order_relaxed);
+  double u_V = held_V_.load(std::memory_order_relaxed);
   for (; index_ < tick.index; ++index_) {
+    if (index_ - written_.load(std::memory_order_relaxed) >= timeout_ticks_) {
+      u_V = dac_.apply(null_V_);
+      held_V_.store(u_V, std::memory_order_relaxed);
+    }
     schedule_.advance(*plant_, u_V, static_cast<double>(index_) * sample_time_s_, sample_time_s_);
   }
   Reading reading;
   reading.y_m = encoder_.read(plant_->reading_m());
   reading.command_V = u_V;
   reading.quality = Quality::good;
+  if (!troubles_.empty()) spoil(reading, static_cast<double>(tick.index) * sample_time_s_);
   return reading;
 }
 
-Applied SimRig::write(double u_V, const Tick& /*tick*/) noexcept {
+void SimRig::spoil(Reading& reading, double t_s) noexcept {
+  const double y_m = reading.y_m;
+  bool frozen = false;
+  bool deaf = false;
+  for (const Trouble& trouble : troubles_) {
+    if (!trouble.at(t_s)) continue;
+    if (trouble.kind == "missing") {
+      reading.y_m = kMissing;
+      reading.quality = Quality::bad;
+    } else if (trouble.kind == "frozen") {
+      reading.y_m = last_y_m_;
+      frozen = true;
+    } else if (trouble.kind == "jump") {
+      reading.y_m += trouble.size_m;
+    } else if (trouble.kind == "stale") {
+      reading.y_m = last_y_m_;
+      reading.quality = Quality::stale;
+      frozen = true;
+    } else {
+      deaf = true;
+    }
+  }
+  if (!frozen) last_y_m_ = y_m;
+  deaf_.store(deaf, std::memory_order_relaxed);
+}
+
+Applied SimRig::take(double u_V) noexcept {
+  if (deaf_.load(std::memory_order_relaxed)) return {kMissing, false};
   const double applied_V = dac_.apply(u_V);
   held_V_.store(applied_V, std::memory_order_relaxed);
   return {applied_V, true};
 }
 
-Applied SimRig::go_null() noexcept { return write(null_V_, {}); }
+Applied SimRig::write(double u_V, const Tick& tick) noexcept {
+  const Applied applied = take(u_V);
+  if (applied.good) written_.store(tick.index, std::memory_order_relaxed);
+  return applied;
+}
+
+Applied SimRig::go_null() noexcept { return take(null_V_); }
+
+Reading SpareRod::read(const Tick& tick) noexcept {
+  const double t_s = static_cast<double>(tick.nominal_ns) * 1e-9;
+  Reading reading;
+  reading.y_m = rig_->position_m() + (t_s >= from_s_ ? offset_m_ : 0.0);
+  reading.quality = Quality::good;
+  return reading;
+}
 
 std::unique_ptr<plant_sim::Plant> SimBackend::load(const Opening& opening) const {
   const std::filesystem::path file = resolve(opening, config_.model);
@@ -89,11 +147,27 @@ Offer SimBackend::open(const Opening& opening) const {
     Offer offer;
     offer.rods[kRodChannel] = rig;
     offer.valve = rig;
+    for (const SpareConfig& spare : config_.rods) {
+      offer.rods[spare.id] = std::make_shared<SpareRod>(rig, spare);
+    }
+    for (const SwitchConfig& input : config_.inputs) {
+      offer.inputs[input.id] = std::make_shared<Switch>(input);
+    }
+    offer.outputs["permit"] = std::make_shared<Line>();
     return offer;
   } catch (const config::schema::Error& e) {
     throw config::schema::Error(config::schema::ExitCode::bad_config,
                                 opening.file + ": [[sim.fault]] " + e.what());
   }
+}
+
+NullTimes SimBackend::null_times() const {
+  NullTimes times;
+  const bool timeout = std::isfinite(config_.command_timeout_s);
+  if (timeout) times.bus_lost_s = times.process_stopped_s = config_.command_timeout_s;
+  if (!timeout) times.process_stopped_s = std::numeric_limits<double>::infinity();
+  times.process_dead_s = config_.pretend_real ? times.bus_lost_s : 0.0;
+  return times;
 }
 
 double SimBackend::worst_speed_mps(const Opening& opening, double limit_V) const {

@@ -2,7 +2,8 @@
 //
 // It advances on the nominal time grid, whatever the wall clock did: reading at tick n integrates
 // from the last tick read to n under the voltage written last. The same seed and the same sequence
-// of ticks and writes give the same readings.
+// of ticks and writes give the same readings. With a command time-out the simulated valve goes to
+// null by itself when nothing has been written for that long, also while the process stood still.
 #pragma once
 
 #include <atomic>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "hal/backend.h"
+#include "hal/sim/trouble.h"
 #include "plant_sim/instruments.h"
 #include "plant_sim/schedule.h"
 
@@ -24,6 +26,11 @@ struct SimConfig {
   double dac_range_V = 10.0;
   std::int64_t seed = 1;
   std::vector<plant_sim::Change> faults;
+  double command_timeout_s = std::numeric_limits<double>::infinity();
+  bool pretend_real = false;  ///< under the rules of a rig that moves something
+  std::vector<Trouble> troubles;
+  std::vector<SpareConfig> rods;
+  std::vector<SwitchConfig> inputs;
 
   void visit(config::schema::Visitor& v);
 };
@@ -37,8 +44,13 @@ class SimRig final : public RodSensor, public ValveDrive {
   Reading read(const Tick& tick) noexcept override;
   Applied write(double u_V, const Tick& tick) noexcept override;
   Applied go_null() noexcept override;
+  /// The plant's own position, after the tick read last.
+  [[nodiscard]] double position_m() const noexcept { return plant_->reading_m(); }
 
  private:
+  Applied take(double u_V) noexcept;
+  void spoil(Reading& reading, double t_s) noexcept;
+
   std::unique_ptr<plant_sim::Plant> plant_;
   plant_sim::Schedule schedule_;
   plant_sim::Encoder encoder_;
@@ -46,16 +58,33 @@ class SimRig final : public RodSensor, public ValveDrive {
   double sample_time_s_;
   double null_V_;
   std::atomic<double> held_V_;  ///< go_null() may come from another thread
-  std::int64_t index_ = 0;      ///< tick that the plant stands at
+  std::atomic<bool> deaf_{false};
+  std::atomic<std::int64_t> written_{0};  ///< tick of the last write
+  std::int64_t index_ = 0;                ///< tick that the plant stands at
+  std::int64_t timeout_ticks_;
+  std::vector<Trouble> troubles_;
+  double last_y_m_ = kMissing;  ///< reading before the trouble that froze it
+};
+
+/// A spare sensor on the rod of a SimRig, to be read after it.
+class SpareRod final : public RodSensor {
+ public:
+  SpareRod(std::shared_ptr<const SimRig> rig, const SpareConfig& config) noexcept
+      : rig_(std::move(rig)), offset_m_(config.offset_m), from_s_(config.from_s) {}
+  Reading read(const Tick& tick) noexcept override;
+
+ private:
+  std::shared_ptr<const SimRig> rig_;
+  double offset_m_, from_s_;
 };
 
 class SimBackend final : public Backend {
  public:
   void visit(config::schema::Visitor& v) override { config_.visit(v); }
   [[nodiscard]] Offer open(const Opening& opening) const override;
-  [[nodiscard]] bool harmless() const noexcept override { return true; }
-  /// The simulated valve ends with the process.
-  [[nodiscard]] NullTimes null_times() const override { return {0.0, 0.0, 0.0}; }
+  [[nodiscard]] bool harmless() const noexcept override { return !config_.pretend_real; }
+  /// The simulated valve ends with the process, unless it pretends to be a real one.
+  [[nodiscard]] NullTimes null_times() const override;
   [[nodiscard]] double worst_speed_mps(const Opening& opening, double limit_V) const override;
 
  private:

@@ -44,7 +44,7 @@ const std::vector<Layer> kLayers{
     {"daemon/io",
      {"config", "estimator", "estimator/fdi", "hal", "hal/sim", "hal/replay", "plant_sim",
       "daemon/control"},
-     {"boost", "lcm", "spoolwatch", "systemd"}},
+     {"boost", "lcm", "spoolwatch", "systemd", "nlohmann"}},
     {"daemon",
      {"config", "estimator", "estimator/fdi", "hal", "hal/sim", "hal/replay", "plant_sim",
       "daemon/control", "daemon/rt", "daemon/io"},

@@ -27,6 +27,7 @@ class FakeRig final : public hal::RodSensor, public hal::ValveDrive {
     hal::Reading reading;
     reading.end = tick.index >= end_tick;
     reading.y_m = y_m;
+    reading.t_ns = t_ns;
     reading.command_V = command_V;
     reading.quality = quality;
     reading.saturated = command_saturated;
@@ -45,6 +46,7 @@ class FakeRig final : public hal::RodSensor, public hal::ValveDrive {
   bool command_saturated = false;
   bool write_good = true;
   std::int64_t read_ns = 0;
+  std::int64_t t_ns = 0;  ///< when the reading was measured, 0: not known
   std::int64_t end_tick = kForeverTicks;
   std::vector<Write> writes;
 
@@ -55,15 +57,45 @@ class FakeRig final : public hal::RodSensor, public hal::ValveDrive {
   std::int64_t tick_ = 0;
 };
 
+/// What was set last, and how often it changed.
+class FakeOutput final : public hal::Output {
+ public:
+  bool set(bool level) noexcept override {
+    edges += level != on ? 1 : 0;
+    on = level;
+    return true;
+  }
+  bool on = false;
+  int edges = 0;
+};
+
+/// An input that the test sets.
+class FakeInput final : public hal::Input {
+ public:
+  explicit FakeInput(double value_) : value(value_) {}
+  hal::InputReading read(const hal::Tick&) noexcept override { return {value, 0, quality}; }
+  double value;
+  hal::Quality quality = hal::Quality::good;
+};
+
+/// No guards but the built-in ones, and the signal at once.
+inline SafetyRules without_blending() {
+  SafetyRules rules;
+  rules.safety.blend_s = 0.0;
+  return rules;
+}
+
 /// A loop on the fake rig in virtual time: reference 0.3 m, 100 V/m, no slew limit.
 class LoopBench {
  public:
-  explicit LoopBench(const LoopConfig& config = {}, bool with_valve = true)
+  explicit LoopBench(const LoopConfig& config = {}, bool with_valve = true,
+                     const SafetyRules& rules = without_blending())
       : reference_(0.3, 0.0, 0.0),
         controller_({100.0}, {kFakeNull_V, 30.0}, kFakeSampleTime_s),
         loop_(config,
-              {clock, rig, with_valve ? &rig : nullptr, reference_, samples, commands, stats},
-              controller_, kFakeSampleTime_s),
+              {clock, rig, with_valve ? &rig : nullptr, reference_, samples, commands, stats,
+               &spare_rods, &inputs, &permit},
+              controller_, kFakeSampleTime_s, rules),
         grid_(0, kFakePeriod_ns) {}
 
   bool tick() { return loop_.tick(grid_.next(clock)); }
@@ -92,6 +124,9 @@ class LoopBench {
 
   VirtualClock clock;
   FakeRig rig{&clock};
+  std::vector<hal::NamedRod> spare_rods;  ///< to be filled before the first tick
+  std::vector<hal::NamedInput> inputs;    ///< likewise
+  FakeOutput permit;
   SampleQueue samples;
   CommandQueue commands;
   LoopStats stats;

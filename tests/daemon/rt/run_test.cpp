@@ -20,10 +20,11 @@ struct RunBench {
         reference(0.3, 0.0, 0.0),
         loop({}, {clock, rig, &rig, reference, samples, commands, stats},
              control::Controller({100.0}, {kFakeNull_V, 30.0}, kFakeSampleTime_s),
-             kFakeSampleTime_s),
+             kFakeSampleTime_s, without_blending()),
         pipeline({}, kFakeSampleTime_s),
         publisher({"", "TEST"}, 1, kFakeSampleTime_s, nullptr),
-        detector({clock, samples, stats, pipeline, publisher, nullptr}, {"", "", "", "rod", "v"}) {
+        detector({clock, samples, stats, pipeline, publisher, nullptr},
+                 {"", "", "", "rod", "v", {}, {}, {}}) {
     Command command;
     command.expires_ns = INT64_MAX;
     for (const Event event : {Event::arm, Event::start}) {

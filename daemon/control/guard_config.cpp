@@ -1,0 +1,155 @@
+#include "daemon/control/guard_config.h"
+
+#include <algorithm>
+
+#include "config/schema/error.h"
+
+namespace monitor::control {
+namespace {
+
+struct Kind {
+  GuardKind kind;
+  const char* name;
+  const char* reason;
+  const char* guidance;
+};
+
+/// In the order of GuardKind.
+constexpr Kind kKinds[] = {
+    {GuardKind::e_stop, "e_stop", "the emergency stop is not released, or its line is dead",
+     "Find out why it was pressed; release it, reset, arm."},
+    {GuardKind::missing, "missing", "position missing", "Check the rod sensor and its bus."},
+    {GuardKind::bus_lost, "bus_lost", "valve not written", "Check the valve drive and its bus."},
+    {GuardKind::overrun, "overrun", "too many lost periods",
+     "Check the load of the machine and the real-time privileges."},
+    {GuardKind::travel, "travel", "the rod is beyond a travel limit",
+     "Start again to come back; check reference and limits."},
+    {GuardKind::following, "following", "the rod does not follow the reference",
+     "Check supply pressure, valve and load."},
+    {GuardKind::speed, "speed", "the rod moves too fast", "Check valve, reference and load."},
+    {GuardKind::stale, "stale", "the position is too old", "Check the rod sensor and its bus."},
+    {GuardKind::frozen, "frozen", "the reading stands still under a command that moves the rod",
+     "Check the rod sensor, the supply and the valve's cable."},
+    {GuardKind::jump, "jump", "the position jumped", "Check the rod sensor and its cable."},
+    {GuardKind::saturated, "saturated", "the command has been at its limit for too long",
+     "Check supply pressure, load and reference."},
+    {GuardKind::disagree, "disagree", "sensors disagree",
+     "Find out which rod sensor is wrong before moving."},
+};
+
+const Kind& kind_of(GuardKind kind) noexcept { return kKinds[static_cast<std::size_t>(kind)]; }
+
+/// A hold needs a position that can be trusted, a ramp a valve that can be written.
+std::vector<std::string_view> actions_of(GuardKind kind) {
+  switch (kind) {
+    case GuardKind::e_stop:
+      return {"ramp", "latch"};
+    case GuardKind::missing:
+    case GuardKind::bus_lost:
+      return {"indicate", "latch"};
+    case GuardKind::stale:
+    case GuardKind::frozen:
+    case GuardKind::jump:
+    case GuardKind::disagree:
+      return {"indicate", "ramp", "latch"};
+    default:
+      return {"indicate", "hold", "ramp", "latch"};
+  }
+}
+
+bool built_in(GuardKind kind) noexcept { return static_cast<std::size_t>(kind) < kBuiltIn; }
+
+}  // namespace
+
+const char* to_string(GuardKind kind) noexcept { return kind_of(kind).name; }
+const char* reason_of(GuardKind kind) noexcept { return kind_of(kind).reason; }
+const char* guidance_of(GuardKind kind) noexcept { return kind_of(kind).guidance; }
+
+GuardKind GuardConfig::which() const noexcept {
+  const auto* found = std::find_if(std::begin(kKinds), std::end(kKinds),
+                                   [this](const Kind& k) { return kind == k.name; });
+  return found == std::end(kKinds) ? GuardKind::travel : found->kind;
+}
+
+void GuardConfig::visit(config::schema::Visitor& v) {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  std::vector<std::string_view> names;
+  for (const Kind& k : kKinds) names.emplace_back(k.name);
+  v.text({"id", "its name in alarms; the kind's where it is left out"}, id);
+  v.choice({"kind", "what is watched", true}, kind, names);
+  if (id.empty()) id = kind;
+  const GuardKind w = which();
+  v.choice({"action", "what leaving the limits leads to"}, action, actions_of(w));
+  if (!built_in(w) && w != GuardKind::jump) {
+    const double least_s = w == GuardKind::frozen || w == GuardKind::saturated ? 1e-3 : 0.0;
+    v.number({"time_s", "how long it must last", least_s > 0.0}, time_s, {least_s, 1e4});
+  }
+  if (w == GuardKind::travel) {
+    v.number({"low_m", "least position"}, low_m, {-kInfinite, 100.0});
+    v.number({"high_m", "greatest position"}, high_m, {low_m, kInfinite});
+    v.number({"braking_mps2", "deceleration that is sure; counts where the rod would stop"},
+             braking_mps2, {1e-3, kInfinite});
+  }
+  if (w == GuardKind::following || w == GuardKind::jump) {
+    v.number({"limit_m", "greatest distance", true}, limit_m, {1e-7, 100.0});
+  }
+  if (w == GuardKind::speed) v.number({"limit_mps", "fastest", true}, limit_mps, {1e-6, 100.0});
+  if (w == GuardKind::stale) v.number({"age_s", "oldest reading", true}, age_s, {1e-4, 100.0});
+  if (w == GuardKind::frozen) {
+    v.number({"least_m", "motion that counts as one", true}, least_m, {1e-7, 100.0});
+    v.number({"command_V", "distance from null that must move the rod", true}, command_V,
+             {1e-3, 100.0});
+  }
+  if (w == GuardKind::disagree) {
+    v.number({"tolerance_m", "greatest difference of two sensors", true}, tolerance_m,
+             {1e-7, 100.0});
+  }
+  v.text({"guidance", "what a person shall do"}, guidance);
+}
+
+void SafetyConfig::visit(config::schema::Visitor& v) {
+  v.table({"safety", "how motion begins and ends"}, [this](config::schema::Visitor& t) {
+    t.number({"ramp_s", "from the last command to null, where a guard asks for a ramp"}, ramp_s,
+             {0.0, 10.0});
+    t.number({"blend_s", "from where the rod is to the reference signal"}, blend_s, {0.0, 600.0});
+    t.number({"blend_mps", "fastest reference until it has met the signal"}, blend_mps,
+             {1e-5, 10.0});
+  });
+  config::schema::visit_list(v, {"guard", "what is watched, and what it leads to"}, guards);
+}
+
+std::vector<GuardConfig> all_guards(const SafetyConfig& config, Action overrun_action) {
+  std::vector<GuardConfig> all(kBuiltIn);
+  for (std::size_t i = 0; i < kBuiltIn; ++i) all[i].id = all[i].kind = kKinds[i].name;
+  all[static_cast<std::size_t>(GuardKind::overrun)].action = to_string(overrun_action);
+  std::vector<bool> named(kBuiltIn, false);
+  for (std::size_t i = 0; i < config.guards.size(); ++i) {
+    const GuardConfig& guard = config.guards[i];
+    const std::string place = "[[guard]] " + std::to_string(i + 1);
+    const auto kind = static_cast<std::size_t>(guard.which());
+    if (kind >= kBuiltIn) {
+      all.push_back(guard);
+    } else if (named[kind]) {
+      throw config::schema::bad_config(place + " kind", "\"" + guard.kind + "\" is there twice",
+                                       "one of that kind");
+    } else {
+      all[kind] = guard;
+      named[kind] = true;
+    }
+  }
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if (all[i].id == all[k].id) {
+        throw config::schema::bad_config("[[guard]] id", "\"" + all[i].id + "\" is there twice",
+                                         "an id for each");
+      }
+    }
+  }
+  if (all.size() > kMaxGuards) {
+    throw config::schema::bad_config("[[guard]]", std::to_string(config.guards.size()) + " of them",
+                                     "at most " + std::to_string(kMaxGuards - kBuiltIn));
+  }
+  return all;
+}
+
+}  // namespace monitor::control

@@ -1,0 +1,94 @@
+// The guards of a rig as configuration lists them: what is watched, within which limits, and what
+// leaving them leads to. One [[guard]] each:
+//
+//   kind       trips when                                              keys
+//   travel     the rod is beyond a limit, or will be after braking     low_m, high_m, braking_mps2
+//   following  |r - y| > limit_m                                       limit_m
+//   speed      |dy/dt| > limit_mps                                     limit_mps
+//   stale      the reading is older than age_s, or called stale        age_s
+//   frozen     y moves less than least_m while |u - null| > command_V  least_m, command_V
+//   jump       |dy| > limit_m in one period                            limit_m
+//   saturated  the command is at a limit                               -
+//   disagree   a spare rod sensor differs by more than tolerance_m     tolerance_m
+//   overrun    more periods are lost than [loop] allows                -
+//   missing    more positions missing in a row than [loop] allows      -
+//   bus_lost   more writes failed in a row than [loop] allows          -
+//   e_stop     an input of that role is anything but 1                 -
+//
+// `time_s`: how long that must last (travel to disagree, not jump). The last four are there also
+// without an entry, with the action latch (overrun: `[loop] overrun_action`).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "config/schema/visitor.h"
+#include "daemon/control/action.h"
+
+namespace monitor::control {
+
+enum class GuardKind : std::uint8_t {
+  e_stop,
+  missing,
+  bus_lost,
+  overrun,
+  travel,
+  following,
+  speed,
+  stale,
+  frozen,
+  jump,
+  saturated,
+  disagree
+};
+
+/// Guards with an entry or without: e_stop, missing, bus_lost, overrun.
+inline constexpr std::size_t kBuiltIn = 4;
+inline constexpr std::size_t kMaxGuards = 32;
+
+[[nodiscard]] const char* to_string(GuardKind kind) noexcept;
+
+struct GuardConfig {
+  std::string id;  ///< empty: the kind's name
+  std::string kind;
+  std::string action = "latch";
+  double time_s = 0.0;
+  double low_m = -std::numeric_limits<double>::infinity();
+  double high_m = std::numeric_limits<double>::infinity();
+  double braking_mps2 = std::numeric_limits<double>::infinity();
+  double limit_m = std::numeric_limits<double>::quiet_NaN();
+  double limit_mps = std::numeric_limits<double>::quiet_NaN();
+  double age_s = std::numeric_limits<double>::quiet_NaN();
+  double least_m = std::numeric_limits<double>::quiet_NaN();
+  double command_V = std::numeric_limits<double>::quiet_NaN();
+  double tolerance_m = std::numeric_limits<double>::quiet_NaN();
+  std::string guidance;  ///< what a person shall do; empty: the kind's own words
+
+  /// Lists the keys of the chosen kind only.
+  void visit(config::schema::Visitor& v);
+  [[nodiscard]] GuardKind which() const noexcept;
+};
+
+/// TOML [safety] and [[guard]].
+struct SafetyConfig {
+  double ramp_s = 0.2;      ///< of the action ramp
+  double blend_s = 1.0;     ///< from where the rod is to the reference signal
+  double blend_mps = 0.05;  ///< fastest reference until it has met the signal
+  std::vector<GuardConfig> guards;
+
+  void visit(config::schema::Visitor& v);
+};
+
+/// All guards: the built-in ones first, in the order of GuardKind, then the others as listed.
+/// Throws config::schema::Error for two of one id, for two of a built-in kind and for too many.
+[[nodiscard]] std::vector<GuardConfig> all_guards(const SafetyConfig& config,
+                                                  Action overrun_action);
+
+/// What is wrong, in words, and what a person shall do.
+[[nodiscard]] const char* reason_of(GuardKind kind) noexcept;
+[[nodiscard]] const char* guidance_of(GuardKind kind) noexcept;
+
+}  // namespace monitor::control

@@ -1,0 +1,53 @@
+// The words of the control socket, for both its ends: one JSON object a line, one answer to each.
+//
+//   {"command": "status"}                                anyone who can connect
+//   {"command": "arm"}, disarm, start, stop, reset, hold  who may act
+//   {"command": "reference", "centre_m": r, "amplitude_m": a, "frequency_Hz": f}
+//
+// Answers: {"ok": true, "state": "ARMED", ...} or {"ok": false, "state": "...", "reason": "..."}.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+#include "daemon/control/arming.h"
+
+namespace monitor::control {
+
+inline constexpr const char* kDefaultSocket = "/run/spoolwatch/control.sock";
+inline constexpr std::size_t kMaxLine = 4096;
+
+inline constexpr const char* kStateNames[] = {"MONITOR", "DISARMED", "ARMED", "RUN", "LATCHED"};
+
+[[nodiscard]] constexpr const char* to_string(State state) noexcept {
+  return kStateNames[static_cast<std::size_t>(state)];
+}
+
+struct EventName {
+  const char* name;
+  Event event;
+};
+
+/// Commands that are events of the state machine.
+inline constexpr std::array<EventName, 5> kEventCommands = {{{"arm", Event::arm},
+                                                             {"disarm", Event::disarm},
+                                                             {"start", Event::start},
+                                                             {"stop", Event::stop},
+                                                             {"reset", Event::reset}}};
+
+namespace key {
+inline constexpr const char* kCommand = "command";
+inline constexpr const char* kCentre = "centre_m";
+inline constexpr const char* kAmplitude = "amplitude_m";
+inline constexpr const char* kFrequency = "frequency_Hz";
+inline constexpr const char* kOk = "ok";
+inline constexpr const char* kState = "state";
+inline constexpr const char* kReason = "reason";
+}  // namespace key
+
+inline constexpr const char* kStatus = "status";
+inline constexpr const char* kHold = "hold";
+inline constexpr const char* kReference = "reference";
+
+}  // namespace monitor::control

@@ -1,0 +1,129 @@
+#include "daemon/io/control_messages.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "daemon/control/protocol.h"
+
+namespace monitor::io {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+using Kind = ControlRequest::Kind;
+
+constexpr double kFarthest_m = 100.0;
+constexpr double kFastest_Hz = 1000.0;
+
+ControlRequest bad(const std::string& why) {
+  ControlRequest request;
+  request.wrong = why;
+  return request;
+}
+
+/// "" or what is wrong with the number.
+std::string read_number(const json& object, const char* key, double low, double high,
+                        double& value) {
+  const auto found = object.find(key);
+  if (found == object.end()) return std::string(key) + ": is missing";
+  value = found->is_number() ? found->get<double>() : std::nan("");
+  if (value >= low && value <= high) return "";
+  return std::string(key) + ": is " + found->dump().substr(0, 40) + "; allowed: a number from " +
+         json(low).dump() + " to " + json(high).dump();
+}
+
+ControlRequest parse_sine(const json& object) {
+  ControlRequest request;
+  for (const std::string& wrong :
+       {read_number(object, control::key::kCentre, -kFarthest_m, kFarthest_m, request.centre_m),
+        read_number(object, control::key::kAmplitude, 0.0, kFarthest_m, request.amplitude_m),
+        read_number(object, control::key::kFrequency, 0.0, kFastest_Hz, request.frequency_Hz)}) {
+    if (!wrong.empty()) return bad(wrong);
+  }
+  request.kind = Kind::sine;
+  return request;
+}
+
+/// NaN as null.
+json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+ordered_json inputs_of(const std::vector<ControlStatus::Input>& inputs) {
+  ordered_json list = ordered_json::array();
+  for (const auto& input : inputs) {
+    list.push_back({{"id", input.id}, {"value", number(input.value)}});
+  }
+  return list;
+}
+
+}  // namespace
+
+ControlRequest parse_request(const std::string& line) {
+  const json object = json::parse(line, nullptr, false);
+  if (!object.is_object()) return bad("no JSON object");
+  const auto name = object.find(control::key::kCommand);
+  if (name == object.end() || !name->is_string()) return bad("no \"command\"");
+  const auto& command = name->get_ref<const std::string&>();
+  ControlRequest request;
+  if (command == control::kReference) return parse_sine(object);
+  if (command == control::kStatus) {
+    request.kind = Kind::status;
+  } else if (command == control::kHold) {
+    request.kind = Kind::hold;
+  }
+  std::string known =
+      std::string(control::kStatus) + ", " + control::kHold + ", " + control::kReference;
+  for (const control::EventName& entry : control::kEventCommands) {
+    known += std::string(", ") + entry.name;
+    if (command != entry.name) continue;
+    request.kind = Kind::event;
+    request.event = entry.event;
+  }
+  if (request.kind == Kind::bad) request.wrong = "unknown command; allowed: " + known;
+  return request;
+}
+
+std::string print_status(const ControlStatus& status) {
+  ordered_json line;
+  line[control::key::kOk] = true;
+  line[control::key::kState] = control::to_string(status.state);
+  line["rig_id"] = status.rig_id;
+  line["config_hash"] = status.config_hash;
+  line["holding"] = status.holding;
+  line["ramping"] = status.ramping;
+  line["latched_by"] = status.latched_by.empty() ? json(nullptr) : json(status.latched_by);
+  line["obstacle"] = status.obstacle.empty() ? json(nullptr) : json(status.obstacle);
+  line["y_m"] = number(status.y_m);
+  line["reference_m"] = number(status.reference_m);
+  line["u_V"] = number(status.u_V);
+  line["ticks"] = status.ticks;
+  line["overruns"] = status.overruns;
+  ordered_json guards = ordered_json::array();
+  for (const auto& guard : status.guards) {
+    guards.push_back({{"id", guard.id},
+                      {"kind", guard.kind},
+                      {"action", guard.action},
+                      {"active", guard.active},
+                      {"value", number(guard.value)}});
+  }
+  line["guards"] = std::move(guards);
+  line["spare_rods"] = inputs_of(status.spare_rods);
+  line["inputs"] = inputs_of(status.inputs);
+  return line.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+std::string print_done(control::State state) {
+  ordered_json line;
+  line[control::key::kOk] = true;
+  line[control::key::kState] = control::to_string(state);
+  return line.dump();
+}
+
+std::string print_refused(control::State state, const std::string& reason) {
+  ordered_json line;
+  line[control::key::kOk] = false;
+  line[control::key::kState] = control::to_string(state);
+  line[control::key::kReason] = reason;
+  return line.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+}  // namespace monitor::io

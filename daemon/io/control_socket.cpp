@@ -1,0 +1,245 @@
+#include "daemon/io/control_socket.h"
+
+#include <fcntl.h>
+#include <grp.h>
+#include <poll.h>
+#include <sys/file.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "config/schema/error.h"
+#include "daemon/control/protocol.h"
+
+namespace monitor::io {
+namespace {
+
+using config::schema::bad_config;
+using config::schema::Error;
+using config::schema::ExitCode;
+
+constexpr gid_t kNoGroup = static_cast<gid_t>(-1);
+constexpr std::size_t kMaxClients = 16;
+constexpr std::size_t kMaxPath = sizeof(sockaddr_un::sun_path) - 1;
+constexpr std::size_t kMaxGroups = 65536;
+
+Error cannot(const std::string& what, int error) {
+  return {ExitCode::failed, what + ": " + std::strerror(error)};
+}
+
+/// Octal permissions, or throws.
+mode_t mode_of(const std::string& text, const std::string& file) {
+  const bool octal =
+      !text.empty() && text.size() <= 4 && text.find_first_not_of("01234567") == std::string::npos;
+  const unsigned long mode = octal ? std::stoul(text, nullptr, 8) : 01000;
+  if (mode > 0777) {
+    throw bad_config(file + ": [control] mode", "is \"" + text + "\"",
+                     "octal, \"0600\" to \"0777\"");
+  }
+  return static_cast<mode_t>(mode);
+}
+
+gid_t group_of(const std::string& name, const std::string& file) {
+  if (name.empty()) return kNoGroup;
+  const group* entry = getgrnam(name.c_str());
+  if (entry == nullptr) {
+    throw bad_config(file + ": [control] group", "is \"" + name + "\", which is no group here",
+                     "a group of this machine, or \"\"");
+  }
+  return entry->gr_gid;
+}
+
+sockaddr_un address_of(const std::filesystem::path& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  path.string().copy(address.sun_path, kMaxPath);
+  return address;
+}
+
+bool in_group(int file, const ucred& peer, gid_t group) {
+  if (group == kNoGroup) return false;
+  if (peer.gid == group) return true;
+  std::vector<gid_t> groups(64);
+  auto size = static_cast<socklen_t>(groups.size() * sizeof(gid_t));
+  if (getsockopt(file, SOL_SOCKET, SO_PEERGROUPS, groups.data(), &size) != 0) {
+    if (errno != ERANGE || size > kMaxGroups * sizeof(gid_t)) return false;
+    groups.resize(size / sizeof(gid_t));
+    if (getsockopt(file, SOL_SOCKET, SO_PEERGROUPS, groups.data(), &size) != 0) return false;
+  }
+  groups.resize(size / sizeof(gid_t));
+  return std::find(groups.begin(), groups.end(), group) != groups.end();
+}
+
+bool may_act(int file, gid_t group) {
+  ucred peer{};
+  socklen_t size = sizeof peer;
+  if (getsockopt(file, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0) return false;
+  return peer.uid == 0 || peer.uid == geteuid() || in_group(file, peer, group);
+}
+
+/// Whether a process answers on that socket.
+bool is_served(const sockaddr_un& address) {
+  const int probe = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  if (probe < 0) return false;
+  const bool connected =
+      connect(probe, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 ||
+      errno == EAGAIN;
+  close(probe);
+  return connected;
+}
+
+}  // namespace
+
+void ControlConfig::visit(config::schema::Visitor& v) {
+  v.text({"socket", "path of the control socket; empty: none"}, socket);
+  v.text({"mode", "its permissions, octal"}, mode);
+  v.text({"group", "whose members may act"}, group);
+}
+
+void check_control(const ControlConfig& config, const std::string& file) {
+  mode_of(config.mode, file);
+  group_of(config.group, file);
+  if (config.socket.size() > kMaxPath) {
+    throw bad_config(file + ": [control] socket",
+                     "is " + std::to_string(config.socket.size()) + " characters long",
+                     "at most " + std::to_string(kMaxPath));
+  }
+}
+
+ControlSocket::ControlSocket(const ControlConfig& config, const std::string& file)
+    : path_(config.socket), group_(group_of(config.group, file)) {
+  check_control(config, file);
+  const std::string place = "control socket " + path_.string();
+  std::error_code ignored;
+  std::filesystem::create_directories(path_.parent_path(), ignored);
+  lock_ = open((path_.string() + ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  if (lock_ < 0) throw cannot(place + " cannot be made", errno);
+  const sockaddr_un address = address_of(path_);
+  if (flock(lock_, LOCK_EX | LOCK_NB) != 0 || is_served(address)) {
+    close(lock_);
+    throw Error(ExitCode::failed, place + ": another daemon serves it; one rig, one daemon");
+  }
+  const auto fail = [&](const std::string& what, int error) {
+    if (listener_ >= 0) close(listener_);
+    close(lock_);
+    return cannot(what, error);
+  };
+  struct stat status {};
+  if (lstat(path_.c_str(), &status) == 0) {
+    if (!S_ISSOCK(status.st_mode)) throw fail(place + " cannot be made", EEXIST);
+    unlink(path_.c_str());
+  }
+  listener_ = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  // Nobody but the owner gets in before the permissions are set.
+  if (listener_ < 0 || fchmod(listener_, 0600) != 0 ||
+      bind(listener_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+    throw fail(place + " cannot be made", errno);
+  }
+  if ((group_ != kNoGroup && chown(path_.c_str(), static_cast<uid_t>(-1), group_) != 0) ||
+      chmod(path_.c_str(), mode_of(config.mode, file)) != 0 || listen(listener_, 8) != 0) {
+    const int error = errno;
+    unlink(path_.c_str());
+    throw fail(place + " cannot be given to group \"" + config.group + "\"", error);
+  }
+}
+
+ControlSocket::~ControlSocket() {
+  for (const Client& client : clients_) close(client.file);
+  unlink(path_.c_str());
+  close(listener_);
+  close(lock_);
+}
+
+void ControlSocket::wait(int timeout_ms, int other) {
+  std::vector<pollfd> files{{other, POLLIN, 0}, {listener_, POLLIN, 0}};
+  for (const Client& client : clients_) {
+    const bool reads = !client.asking && client.in.size() <= control::kMaxLine;
+    files.push_back({client.file,
+                     static_cast<short>((reads ? POLLIN : 0) | (client.out.empty() ? 0 : POLLOUT)),
+                     0});
+  }
+  if (poll(files.data(), files.size(), timeout_ms) <= 0) return;
+  for (std::size_t i = 0; i < clients_.size(); ++i) {
+    const short events = files[i + 2].revents;
+    if ((events & POLLOUT) != 0) write(clients_[i]);
+    if ((events & (POLLIN | POLLHUP | POLLERR)) != 0) read(clients_[i]);
+  }
+  drop_gone();
+  if (files[1].revents != 0) accept_clients();
+}
+
+void ControlSocket::accept_clients() {
+  const int file = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+  if (file < 0) return;
+  // The one that has been silent for longest makes room.
+  if (clients_.size() >= kMaxClients) {
+    const auto idle = std::find_if(clients_.begin(), clients_.end(),
+                                   [](const Client& client) { return !client.asking; });
+    if (idle == clients_.end()) {
+      close(file);
+      return;
+    }
+    idle->gone = true;
+    drop_gone();
+  }
+  clients_.push_back({next_id_++, file, may_act(file, group_), false, {}, {}, false});
+}
+
+void ControlSocket::read(Client& client) {
+  char bytes[1024];
+  const ssize_t n = recv(client.file, bytes, sizeof bytes, 0);
+  if (n > 0) {
+    client.in.append(bytes, static_cast<std::size_t>(n));
+    const bool endless =
+        client.in.size() > control::kMaxLine && client.in.find('\n') == std::string::npos;
+    client.gone = client.gone || endless;
+  } else if (n == 0 || (errno != EAGAIN && errno != EINTR)) {
+    client.gone = true;
+  }
+}
+
+void ControlSocket::write(Client& client) {
+  const ssize_t n = send(client.file, client.out.data(), client.out.size(), MSG_NOSIGNAL);
+  if (n > 0) {
+    client.out.erase(0, static_cast<std::size_t>(n));
+  } else if (errno != EAGAIN && errno != EINTR) {
+    client.gone = true;
+  }
+}
+
+void ControlSocket::drop_gone() {
+  for (const Client& client : clients_) {
+    if (client.gone) close(client.file);
+  }
+  std::erase_if(clients_, [](const Client& client) { return client.gone; });
+}
+
+bool ControlSocket::next(Request& request) {
+  for (Client& client : clients_) {
+    const std::size_t end = client.in.find('\n');
+    if (client.asking || end == std::string::npos) continue;
+    request = {client.id, client.in.substr(0, end), client.may_act};
+    client.in.erase(0, end + 1);
+    client.asking = true;
+    return true;
+  }
+  return false;
+}
+
+void ControlSocket::answer(std::uint64_t id, const std::string& line) {
+  for (Client& client : clients_) {
+    if (client.id != id) continue;
+    client.asking = false;
+    client.out += line + '\n';
+    if (client.out.size() > 64 * control::kMaxLine) client.gone = true;
+    if (!client.gone) write(client);
+  }
+  drop_gone();
+}
+
+}  // namespace monitor::io

@@ -1,0 +1,113 @@
+#include "daemon/null_table.h"
+
+#include <cmath>
+#include <cstdio>
+#include <ostream>
+
+#include "daemon/rt/loop.h"
+
+namespace monitor {
+namespace {
+
+using control::Action;
+using control::GuardKind;
+
+constexpr double kNever = hal::kMissing;
+constexpr const char* kHolds = "D/A holds; permit/watchdog needed";
+
+/// A reading may be a period old when the loop takes it: devices with a thread of their own.
+double reading_s(const NullFacts& facts) { return facts.sample_time_s; }
+
+/// From what a guard watches being so to its action.
+double notice_s(const control::GuardConfig& guard, const NullFacts& facts) {
+  const double period_s = facts.sample_time_s;
+  switch (guard.which()) {
+    case GuardKind::missing:
+    case GuardKind::bus_lost:
+      return static_cast<double>(facts.max_bad_in_a_row + 1) * period_s;
+    case GuardKind::stale:
+      return guard.age_s + guard.time_s + 2.0 * period_s;
+    case GuardKind::frozen:
+      return guard.time_s + 2.0 * period_s;
+    default:
+      return guard.time_s + (guard.time_s > 0.0 ? 2.0 : 1.0) * period_s;
+  }
+}
+
+NullRow guard_row(const control::GuardConfig& guard, const NullFacts& facts) {
+  NullRow row{"guard " + guard.id, kNever, ""};
+  const double time_s = reading_s(facts) + notice_s(guard, facts) + facts.times.latency_s;
+  switch (control::action_of(guard.action)) {
+    case Action::none:
+    case Action::indicate:
+      row.note = "indicates only";
+      break;
+    case Action::hold:
+      row.note = "reference held";
+      break;
+    case Action::ramp:
+      row.time_s = time_s + facts.ramp_s + facts.sample_time_s;
+      break;
+    case Action::disarm:
+    case Action::latch:
+      row.time_s = time_s;
+      break;
+  }
+  return row;
+}
+
+NullRow left_alone(const char* failure, double time_s, const NullFacts& facts) {
+  NullRow row{failure, std::isfinite(time_s) ? time_s : kNever, ""};
+  if (std::isnan(row.time_s)) row.note = facts.has_permit ? "the permit's relay" : kHolds;
+  return row;
+}
+
+}  // namespace
+
+std::vector<NullRow> null_rows(const NullFacts& facts) {
+  const double period_s = facts.sample_time_s;
+  const double latency_s = facts.times.latency_s;
+  const double null_after_s = static_cast<double>(rt::kNullAfter_ns) * 1e-9;
+  const hal::NullTimes& times = facts.times;
+  std::vector<NullRow> rows{
+      {"stop, signal or error", 2.0 * period_s + latency_s, ""},
+      {"position missing", reading_s(facts) + period_s + latency_s, ""},
+      // An outage shorter than the 50 ms rule ends with the old law, one as long as it with null.
+      {"loop late, then back", null_after_s + period_s + latency_s, ""},
+      left_alone("bus lost", times.bus_lost_s, facts),
+      left_alone("process killed", times.process_dead_s, facts),
+      left_alone(
+          "process stopped",
+          std::isnan(times.process_stopped_s) ? times.process_dead_s : times.process_stopped_s,
+          facts)};
+  if (facts.has_enable)
+    rows.push_back({"enable lost", reading_s(facts) + period_s + latency_s, ""});
+  for (const control::GuardConfig& guard : facts.guards) {
+    const GuardKind kind = guard.which();
+    // Null comes before these: with the first missing reading, or not at all.
+    if (kind == GuardKind::missing || kind == GuardKind::bus_lost) continue;
+    if (kind == GuardKind::e_stop && !facts.has_e_stop) continue;
+    rows.push_back(guard_row(guard, facts));
+  }
+  return rows;
+}
+
+void print_null_table(const NullFacts& facts, std::ostream& out) {
+  char line[200];
+  std::snprintf(line, sizeof line, "# %-24s %-8s %16s %18s\n", "failure", "valve",
+                "worst time (ms)", "worst travel (mm)");
+  out << line;
+  for (const NullRow& row : null_rows(facts)) {
+    const char* backend = facts.backend.c_str();
+    if (std::isnan(row.time_s)) {
+      std::snprintf(line, sizeof line, "# %-24s %-8s %16s %18s  (%s)\n", row.failure.c_str(),
+                    backend, "never", "-", row.note.c_str());
+    } else {
+      std::snprintf(line, sizeof line, "# %-24s %-8s %16.1f %18.2f\n", row.failure.c_str(), backend,
+                    row.time_s * 1e3, row.time_s * facts.speed_mps * 1e3);
+    }
+    out << line;
+  }
+}
+
+}  // namespace monitor

@@ -1,0 +1,66 @@
+#include "daemon/rt/guard_alarms.h"
+
+namespace monitor::rt {
+
+using control::Action;
+using estimator::fdi::Alarm;
+using estimator::fdi::Severity;
+
+namespace {
+
+const char* consequence(Action action) {
+  switch (action) {
+    case Action::hold:
+      return ": in RUN the reference is held; start resumes";
+    case Action::ramp:
+      return ": in RUN the command goes to null, then DISARMED";
+    case Action::disarm:
+      return ": DISARMED";
+    case Action::latch:
+      return ": in RUN LATCHED, reset leads out";
+    default:
+      return "";
+  }
+}
+
+}  // namespace
+
+GuardAlarms::GuardAlarms(const std::vector<control::GuardConfig>& guards,
+                         estimator::fdi::AlarmBook& book)
+    : book_(book) {
+  for (const control::GuardConfig& guard : guards) {
+    const control::GuardKind kind = guard.which();
+    const control::Guard limits(guard);
+    Alarm alarm;
+    alarm.source = "loop";
+    alarm.name = guard.id;
+    alarm.quantity = control::to_string(kind);
+    alarm.guidance = guard.guidance.empty() ? control::guidance_of(kind) : guard.guidance;
+    alarm.low = limits.low();
+    alarm.high = limits.high();
+    const Action action = control::action_of(guard.action);
+    const Severity severity = action == Action::indicate ? Severity::minor : Severity::major;
+    entries_.push_back({book_.declare(std::move(alarm)), severity,
+                        std::string(control::reason_of(kind)) + consequence(action)});
+  }
+}
+
+void GuardAlarms::report(GuardBoard& board, std::int64_t tick,
+                         const std::function<void(const Alarm&)>& changed) {
+  const std::uint32_t now = board.take_raised() | board.active();
+  if (now == shown_) return;
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    const std::uint32_t bit = 1U << i;
+    if (((now ^ shown_) & bit) == 0) continue;
+    const bool active = (now & bit) != 0;
+    estimator::fdi::AlarmState state;
+    state.severity = active ? entries_[i].severity : Severity::ok;
+    state.tick = tick;
+    state.value = board.value(i);
+    if (active) state.reason = entries_[i].reason;
+    if (const Alarm* alarm = book_.set(entries_[i].number, state)) changed(*alarm);
+  }
+  shown_ = now;
+}
+
+}  // namespace monitor::rt

@@ -1,0 +1,60 @@
+#include "daemon/rt/surroundings.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace monitor::rt {
+namespace {
+
+/// A switch reads 1 or it does not: room for rounding alone.
+constexpr double kSwitchRounding = 1e-6;
+
+bool trusted(hal::Quality quality, double value) noexcept {
+  return (quality == hal::Quality::good || quality == hal::Quality::uncertain) &&
+         std::isfinite(value);
+}
+
+void count(DeviceStats& stats, bool good, double value) noexcept {
+  (good ? stats.good : stats.bad).add();
+  stats.value.store(good ? value : hal::kMissing, std::memory_order_relaxed);
+}
+
+}  // namespace
+
+Surroundings::Surroundings(const std::vector<hal::NamedRod>* spare_rods,
+                           const std::vector<hal::NamedInput>* inputs, LoopStats& stats) noexcept
+    : spare_rods_(spare_rods), inputs_(inputs), stats_(stats) {
+  if (inputs_ == nullptr) return;
+  has_command_ = std::any_of(inputs_->begin(), inputs_->end(), [](const hal::NamedInput& input) {
+    return input.role == hal::InputRole::valve_command;
+  });
+}
+
+void Surroundings::read(const hal::Tick& tick, double y_m) noexcept {
+  spare_difference_m_ = 0.0;
+  const std::size_t rods =
+      spare_rods_ == nullptr ? 0 : std::min(spare_rods_->size(), kMaxSpareRods);
+  for (std::size_t i = 0; i < rods; ++i) {
+    const hal::Reading reading = (*spare_rods_)[i].rod->read(tick);
+    const bool good = trusted(reading.quality, reading.y_m);
+    count(stats_.spare_rods[i], good, reading.y_m);
+    const double difference_m = std::abs(reading.y_m - y_m);
+    if (good && difference_m > spare_difference_m_) spare_difference_m_ = difference_m;
+  }
+  e_stop_released_ = enabled_ = true;
+  const std::size_t inputs = inputs_ == nullptr ? 0 : std::min(inputs_->size(), kMaxInputs);
+  for (std::size_t i = 0; i < inputs; ++i) {
+    const hal::NamedInput& named = (*inputs_)[i];
+    const hal::InputReading reading = named.input->read(tick);
+    const bool good = trusted(reading.quality, reading.value);
+    count(stats_.inputs[i], good, reading.value);
+    const bool on = good && std::abs(reading.value - 1.0) < kSwitchRounding;
+    if (named.role == hal::InputRole::e_stop && !on) e_stop_released_ = false;
+    if (named.role == hal::InputRole::enable && !on) enabled_ = false;
+    if (named.role == hal::InputRole::valve_command) {
+      command_V_ = good ? reading.value : hal::kMissing;
+    }
+  }
+}
+
+}  // namespace monitor::rt

@@ -1,0 +1,79 @@
+// What may go wrong with the simulated devices, on schedule, and the devices besides rod and valve:
+// spare rod sensors, switches and an output.
+#pragma once
+
+#include <atomic>
+#include <limits>
+#include <string>
+
+#include "config/schema/visitor.h"
+#include "hal/device.h"
+
+namespace hal::sim {
+
+/// TOML [[sim.trouble]]: from_s <= t < to_s on the loop's grid.
+struct Trouble {
+  std::string kind;  ///< of the rod's reading: missing, frozen, jump, stale; of the valve: deaf
+  double from_s = 0.0;
+  double to_s = std::numeric_limits<double>::infinity();
+  double size_m = 0.0;  ///< of a jump
+
+  void visit(config::schema::Visitor& v);
+  [[nodiscard]] bool at(double t_s) const noexcept { return t_s >= from_s && t_s < to_s; }
+};
+
+/// TOML [[sim.rod]]: a spare sensor on the same rod, without steps or noise.
+struct SpareConfig {
+  std::string id;
+  double offset_m = 0.0;  ///< from from_s on
+  double from_s = 0.0;
+
+  void visit(config::schema::Visitor& v);
+};
+
+/// TOML [[sim.input]]: reads `value`, and from from_s to to_s `meanwhile` or nothing at all.
+struct SwitchConfig {
+  std::string id;
+  double value = 1.0;
+  double from_s = std::numeric_limits<double>::infinity();
+  double to_s = std::numeric_limits<double>::infinity();
+  double meanwhile = 0.0;
+  bool missing = false;
+
+  void visit(config::schema::Visitor& v);
+};
+
+class Switch final : public Input {
+ public:
+  explicit Switch(const SwitchConfig& config) noexcept
+      : value_(config.value),
+        from_s_(config.from_s),
+        to_s_(config.to_s),
+        meanwhile_(config.meanwhile),
+        missing_(config.missing) {}
+  InputReading read(const Tick& tick) noexcept override;
+
+ private:
+  double value_, from_s_, to_s_, meanwhile_;
+  bool missing_;
+};
+
+/// A line whose edges are counted.
+class Line final : public Output {
+ public:
+  bool set(bool on) noexcept override {
+    if (on_.exchange(on, std::memory_order_relaxed) != on) {
+      edges_.fetch_add(1, std::memory_order_relaxed);
+    }
+    return true;
+  }
+  [[nodiscard]] std::int64_t edges() const noexcept {
+    return edges_.load(std::memory_order_relaxed);
+  }
+
+ private:
+  std::atomic<bool> on_{false};
+  std::atomic<std::int64_t> edges_{0};
+};
+
+}  // namespace hal::sim

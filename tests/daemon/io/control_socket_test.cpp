@@ -1,0 +1,276 @@
+// The control socket without a daemon: lines, permissions, clients that misbehave, two of one path.
+#include "daemon/io/control_socket.h"
+
+#include <gmock/gmock.h>
+#include <grp.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <fstream>
+
+#include "config/schema/error.h"
+#include "daemon/control/protocol.h"
+#include "daemon/io/control_messages.h"
+
+namespace monitor::io {
+namespace {
+
+class ControlSocketTest : public testing::Test {
+ protected:
+  ControlSocketTest() {
+    std::string name = (std::filesystem::temp_directory_path() / "control-XXXXXX").string();
+    folder_ = ::mkdtemp(name.data());
+    config_.socket = (folder_ / "sub" / "s").string();
+    EXPECT_EQ(::pipe(never_), 0);
+  }
+  ~ControlSocketTest() override {
+    std::filesystem::remove_all(folder_);
+    ::close(never_[0]);
+    ::close(never_[1]);
+  }
+
+  [[nodiscard]] int connect() const {
+    const int file = ::socket(AF_UNIX, SOCK_STREAM, 0);
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    config_.socket.copy(address.sun_path, sizeof address.sun_path - 1);
+    if (::connect(file, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0) return file;
+    ::close(file);
+    return -1;
+  }
+  static void say(int file, const std::string& text) {
+    ASSERT_EQ(::send(file, text.data(), text.size(), MSG_NOSIGNAL),
+              static_cast<ssize_t>(text.size()));
+  }
+  static std::string hear(int file) {
+    char bytes[256];
+    const ssize_t n = ::recv(file, bytes, sizeof bytes, MSG_DONTWAIT);
+    return {bytes, n > 0 ? static_cast<std::size_t>(n) : 0};
+  }
+  /// Lets the socket see all that was sent.
+  void look(ControlSocket& socket) const {
+    for (int i = 0; i < 8; ++i) socket.wait(0, never_[0]);
+  }
+  [[nodiscard]] std::string refusal(int exit_code) const {
+    try {
+      const ControlSocket socket(config_, "rig.toml");
+    } catch (const config::schema::Error& e) {
+      EXPECT_EQ(e.exit_code(), exit_code);
+      return e.what();
+    }
+    return "accepted";
+  }
+
+  std::filesystem::path folder_;
+  ControlConfig config_;
+  int never_[2];
+};
+
+TEST_F(ControlSocketTest, TakesOneLineOfAClientAtATimeAndAnswersItsOwner) {
+  ControlSocket socket(config_, "rig.toml");
+  const int one = connect();
+  const int two = connect();
+  look(socket);
+  say(one, "first\nsecond\nthi");
+  say(two, "other\n");
+  look(socket);
+  ControlSocket::Request a;
+  ControlSocket::Request b;
+  ControlSocket::Request none;
+  ASSERT_TRUE(socket.next(a));
+  ASSERT_TRUE(socket.next(b));
+  EXPECT_FALSE(socket.next(none)) << "a second line waits for the first one's answer";
+  EXPECT_EQ(a.line, "first");
+  EXPECT_EQ(b.line, "other");
+  socket.answer(b.client, "to two");
+  socket.answer(a.client, "to one");
+  EXPECT_EQ(hear(one), "to one\n");
+  EXPECT_EQ(hear(two), "to two\n");
+  ASSERT_TRUE(socket.next(a));
+  EXPECT_EQ(a.line, "second");
+  socket.answer(a.client, "");
+  EXPECT_FALSE(socket.next(none)) << "half a line is none";
+  say(one, "rd\n");
+  look(socket);
+  ASSERT_TRUE(socket.next(a));
+  EXPECT_EQ(a.line, "third");
+  EXPECT_TRUE(a.may_act) << "the same user";
+  ::close(one);
+  ::close(two);
+}
+
+TEST_F(ControlSocketTest, OutlivesClientsThatGoFloodOrComeInCrowds) {
+  ControlSocket socket(config_, "rig.toml");
+  const int gone = connect();
+  look(socket);
+  say(gone, "request\n");
+  look(socket);
+  ControlSocket::Request request;
+  ASSERT_TRUE(socket.next(request));
+  ::close(gone);
+  look(socket);
+  socket.answer(request.client, "nobody hears this");
+  const int flood = connect();
+  look(socket);
+  const std::string endless(2 * control::kMaxLine, 'x');
+  say(flood, endless);
+  for (int i = 0; i < 20; ++i) socket.wait(0, never_[0]);
+  char byte = 0;
+  EXPECT_LE(::recv(flood, &byte, 1, MSG_DONTWAIT), 0);
+  EXPECT_NE(errno, EAGAIN) << "a line without end is cut off";
+  std::vector<int> crowd;
+  for (int i = 0; i < 60; ++i) {
+    crowd.push_back(connect());
+    look(socket);
+  }
+  say(crowd.back(), "the last\n");
+  look(socket);
+  ASSERT_TRUE(socket.next(request)) << "idle clients make room";
+  EXPECT_EQ(request.line, "the last");
+  for (const int file : crowd) ::close(file);
+  ::close(flood);
+}
+
+TEST_F(ControlSocketTest, IsRefusedWhereALiveOneIsAndTakesTheplaceOfADeadOne) {
+  {
+    const ControlSocket socket(config_, "rig.toml");
+    EXPECT_EQ(refusal(1), "control socket " + config_.socket +
+                              ": another daemon serves it; one rig, one daemon");
+    EXPECT_GE(connect(), 0) << "the first one still serves";
+  }
+  EXPECT_EQ(connect(), -1);
+  EXPECT_FALSE(std::filesystem::exists(config_.socket)) << "it cleans up";
+  const int dead = ::socket(AF_UNIX, SOCK_STREAM, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  config_.socket.copy(address.sun_path, sizeof address.sun_path - 1);
+  ASSERT_EQ(::bind(dead, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  ASSERT_EQ(::listen(dead, 1), 0);
+  EXPECT_THAT(refusal(1), testing::HasSubstr("another daemon")) << "served by one without our lock";
+  ::close(dead);
+  EXPECT_EQ(refusal(1), "accepted");
+  std::ofstream(config_.socket) << "a file in the way";
+  EXPECT_THAT(refusal(1), testing::HasSubstr("File exists"));
+}
+
+TEST_F(ControlSocketTest, HasThePermissionsThatAreAskedFor) {
+  config_.mode = "0600";
+  const ControlSocket socket(config_, "rig.toml");
+  struct stat status {};
+  ASSERT_EQ(::stat(config_.socket.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777U, 0600U);
+}
+
+TEST_F(ControlSocketTest, RefusesABadModeGroupOrPathInOneLine) {
+  config_.mode = "rw";
+  EXPECT_THAT(refusal(78), testing::HasSubstr("rig.toml: [control] mode: is \"rw\""));
+  config_.mode = "0660";
+  config_.group = "no-such-group-here";
+  EXPECT_THAT(refusal(78), testing::HasSubstr("[control] group: is \"no-such-group-here\""));
+  config_.group.clear();
+  config_.socket = "/" + std::string(200, 'x');
+  EXPECT_THAT(refusal(78), testing::HasSubstr("[control] socket: is 201 characters"));
+  config_.socket = "/proc/none/s";
+  EXPECT_THAT(refusal(1), testing::HasSubstr("cannot be made"));
+}
+
+/// Connects as another user, in a group or not, sends a line, and stays until told.
+class OtherUser {
+ public:
+  OtherUser(const std::string& path, gid_t main_group, gid_t further_group) {
+    EXPECT_EQ(::pipe(end_), 0);
+    child_ = ::fork();
+    if (child_ != 0) return;
+    const gid_t groups[] = {further_group};
+    const int file = ::socket(AF_UNIX, SOCK_STREAM, 0);
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path.copy(address.sun_path, sizeof address.sun_path - 1);
+    const bool ready = ::setgroups(1, groups) == 0 && ::setgid(main_group) == 0 &&
+                       ::setuid(65534) == 0 &&
+                       ::connect(file, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0;
+    if (ready) (void)!::write(file, "line\n", 5);
+    char byte = 0;
+    ::close(end_[1]);
+    (void)!::read(end_[0], &byte, 1);
+    ::_exit(0);
+  }
+  ~OtherUser() {
+    ::close(end_[0]);
+    ::close(end_[1]);
+    ::waitpid(child_, nullptr, 0);
+  }
+  OtherUser(const OtherUser&) = delete;
+  OtherUser& operator=(const OtherUser&) = delete;
+
+ private:
+  int end_[2];
+  pid_t child_;
+};
+
+TEST_F(ControlSocketTest, LetsOthersLookAndOnlyMembersOfItsGroupAct) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can become another user";
+  const group* entry = ::getgrgid(2);
+  if (entry == nullptr) GTEST_SKIP() << "no group 2 here";
+  config_.group = entry->gr_name;
+  config_.mode = "0666";
+  std::filesystem::permissions(folder_, std::filesystem::perms(0755));
+  ControlSocket socket(config_, "rig.toml");
+  for (const auto& [main_group, further_group, may] :
+       {std::tuple{65534U, 65534U, false}, {2U, 65534U, true}, {65534U, 2U, true}}) {
+    const OtherUser user(config_.socket, main_group, further_group);
+    ControlSocket::Request request;
+    bool came = false;
+    for (int i = 0; i < 200 && !came; ++i) {
+      socket.wait(50, never_[0]);
+      came = socket.next(request);
+    }
+    ASSERT_TRUE(came);
+    EXPECT_EQ(request.may_act, may) << main_group << " " << further_group;
+  }
+}
+
+TEST(ControlRequest, SaysInWordsWhatIsWrongWithALine) {
+  for (const auto& [line, wrong] :
+       {std::pair{"", "no JSON object"},
+        {"[1]", "no JSON object"},
+        {"{\"command\":\"arm\"", "no JSON object"},
+        {"{}", "no \"command\""},
+        {"{\"command\":7}", "no \"command\""},
+        {"{\"command\":\"fly\"}",
+         "unknown command; allowed: status, hold, reference, arm, disarm, start, stop, reset"},
+        {"{\"command\":\"reference\",\"centre_m\":0.1,\"amplitude_m\":0.1}",
+         "frequency_Hz: is missing"},
+        {"{\"command\":\"reference\",\"centre_m\":\"x\"}",
+         "centre_m: is \"x\"; allowed: a number from -100.0 to 100.0"},
+        {"{\"command\":\"reference\",\"centre_m\":0.1,\"amplitude_m\":-1,\"frequency_Hz\":1}",
+         "amplitude_m: is -1; allowed: a number from 0.0 to 100.0"}}) {
+    const ControlRequest request = parse_request(line);
+    EXPECT_EQ(request.kind, ControlRequest::Kind::bad);
+    EXPECT_EQ(request.wrong, wrong) << line;
+  }
+}
+
+TEST(ControlRequest, ReadsEveryCommand) {
+  EXPECT_EQ(parse_request("{\"command\":\"status\"}").kind, ControlRequest::Kind::status);
+  EXPECT_EQ(parse_request("{\"command\":\"hold\"}").kind, ControlRequest::Kind::hold);
+  for (const control::EventName& entry : control::kEventCommands) {
+    const ControlRequest request =
+        parse_request(std::string("{\"command\":\"") + entry.name + "\"}");
+    EXPECT_EQ(request.kind, ControlRequest::Kind::event);
+    EXPECT_EQ(request.event, entry.event);
+  }
+  const ControlRequest sine = parse_request(
+      "{\"command\":\"reference\",\"centre_m\":0.3,\"amplitude_m\":0.01,\"frequency_Hz\":2}");
+  EXPECT_EQ(sine.kind, ControlRequest::Kind::sine);
+  EXPECT_EQ(sine.centre_m, 0.3);
+  EXPECT_EQ(sine.amplitude_m, 0.01);
+  EXPECT_EQ(sine.frequency_Hz, 2.0);
+}
+
+}  // namespace
+}  // namespace monitor::io
