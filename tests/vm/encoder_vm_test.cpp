@@ -1,0 +1,245 @@
+// hal/encoder on a real kernel: lines of gpio-sim, moved in quadrature by a second process.
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <numbers>
+
+#include "config/schema/document.h"
+#include "config/schema/error.h"
+#include "hal/encoder/encoder.h"
+#include "hal/encoder/gpio_source.h"
+#include "hal/rig/gpio_lines.h"
+
+namespace hal::encoder {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+constexpr double kCount_m = 5e-5;
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr Tick kTick;
+
+std::string chip() { return std::getenv("SPOOLWATCH_GPIO_CHIP"); }
+
+std::string table(const std::string& more = "") {
+  return "schema_version = 1\nchip = \"" + chip() +
+         "\"\nline_a = 2\nline_b = 3\nresolution_m = 5e-5\n" + more;
+}
+
+Offer open(const std::string& text) {
+  EncoderBackend backend;
+  config::schema::Document::parse(text, "rig.toml").read([&](auto& v) { backend.visit(v); });
+  return backend.open({"rig.toml", ".", 0.005, 0.0});
+}
+
+std::string complaint(const std::string& text) {
+  try {
+    open(text);
+  } catch (const config::schema::Error& e) {
+    EXPECT_EQ(e.exit_code(), 78);
+    return e.what();
+  }
+  return "nothing";
+}
+
+void sleep_until(std::int64_t t_ns) {
+  const timespec until{t_ns / kSecond_ns, t_ns % kSecond_ns};
+  clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
+}
+
+/// Runs `body` in a process of its own; wait() returns its exit code.
+class Process {
+ public:
+  explicit Process(const std::function<int()>& body) : pid_(fork()) {
+    if (pid_ == 0) _exit(body());
+  }
+  int wait() const {
+    int status = 0;
+    waitpid(pid_, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+ private:
+  pid_t pid_;
+};
+
+const Snapshot& snapshot(const Offer& offer) {
+  return static_cast<EncoderRod&>(*offer.rods.at(kRodChannel)).snapshot();
+}
+
+/// The position when nothing has moved for a tenth of a second.
+Reading settled(const Offer& offer) {
+  sleep_until(monotonic_ns() + kSecond_ns / 10);
+  return offer.rods.at(kRodChannel)->read(kTick);
+}
+
+/// y in quarters; at most 300 edges a second.
+double sine_quarters(double t_s) {
+  return 40.0 * std::sin(2.0 * std::numbers::pi * 0.7 * t_s) + 30.0 * t_s;
+}
+
+TEST(EncoderVm, FollowsASineExactlyAtAPermittedSpeed) {
+  rig::SimEncoder lines(chip(), 2, 3);
+  const Offer offer = open(table());
+  const std::int64_t start_ns = monotonic_ns();
+  constexpr double kEnd_s = 4.0;
+  const auto target = [](double t_s) { return std::llround(std::floor(sine_quarters(t_s))); };
+  const Process driver([&] {
+    for (double t_s = 0.0; t_s <= kEnd_s; t_s += 1e-3) {
+      sleep_until(start_ns + std::llround(t_s * 1e9));
+      lines.move_to(target(t_s));
+    }
+    return 0;
+  });
+  double worst_m = 0.0;
+  for (std::int64_t k = 0; k < 800; ++k) {
+    sleep_until(start_ns + k * 5'000'000);
+    const Reading reading = offer.rods.at(kRodChannel)->read(kTick);
+    // The driver may be late by what the machine takes: compare with where it may have been.
+    double best_m = 1.0;
+    const double t_s = static_cast<double>(reading.t_ns - start_ns) * 1e-9;
+    for (double late_s = -0.001; late_s < 0.3; late_s += 1e-3) {
+      const double y_m = kCount_m * static_cast<double>(target(std::max(0.0, t_s - late_s)));
+      best_m = std::min(best_m, std::abs(reading.y_m - y_m));
+    }
+    worst_m = std::max(worst_m, best_m);
+    EXPECT_NE(reading.quality, Quality::uncertain) << k;  // the host may stop it: stale
+    EXPECT_NE(reading.quality, Quality::bad) << k;
+  }
+  EXPECT_EQ(driver.wait(), 0);
+  EXPECT_LT(worst_m, 1e-12);
+  EXPECT_NEAR(settled(offer).y_m, kCount_m * static_cast<double>(target(kEnd_s)), 1e-12);
+  EXPECT_GT(snapshot(offer).edges, 400);
+  EXPECT_EQ(snapshot(offer).illegal, 0);
+  EXPECT_EQ(snapshot(offer).times_lost, 0);
+}
+
+TEST(EncoderVm, LosesNoEdgeOfAFastMotionAndPrintsItsRate) {
+  rig::SimEncoder lines(chip(), 2, 3);
+  const Offer offer = open(table("max_edges_per_s = 1e6"));
+  constexpr std::int64_t kQuarters = 10'000;
+  const std::int64_t start_ns = monotonic_ns();
+  const Process driver([&] {
+    lines.move_to(kQuarters);
+    lines.move_to(kQuarters / 2);
+    return 0;
+  });
+  EXPECT_EQ(driver.wait(), 0);
+  const double time_s = static_cast<double>(monotonic_ns() - start_ns) * 1e-9;
+  const Reading reading = settled(offer);
+  const Snapshot& now = snapshot(offer);
+  std::printf("encoder: %.0f edges/s without loss; %lld edges, %lld late, %lld illegal\n",
+              1.5 * kQuarters / time_s, static_cast<long long>(now.edges),
+              static_cast<long long>(now.late), static_cast<long long>(now.illegal));
+  EXPECT_NEAR(reading.y_m, kCount_m * kQuarters / 2, 1e-12);
+  EXPECT_EQ(now.edges, kQuarters * 3 / 2);
+  EXPECT_EQ(now.times_lost, 0);
+  EXPECT_EQ(reading.quality, Quality::good);
+}
+
+TEST(EncoderVm, IsUncertainNearThePermittedSpeedAndGoodAgainBelow) {
+  rig::SimEncoder lines(chip(), 2, 3);
+  const Offer offer = open(table("max_edges_per_s = 500.0"));
+  bool uncertain = false;
+  for (int i = 0; i < 20; ++i) {
+    lines.move_to(lines.quarter() + 20);
+    sleep_until(monotonic_ns() + 5'000'000);
+    uncertain = uncertain || offer.rods.at(kRodChannel)->read(kTick).quality == Quality::uncertain;
+  }
+  EXPECT_TRUE(uncertain);
+  const Reading reading = settled(offer);
+  EXPECT_EQ(reading.quality, Quality::good);
+  EXPECT_NEAR(reading.y_m, kCount_m * 400, 1e-12);
+  EXPECT_GE(snapshot(offer).times_too_fast, 1);
+}
+
+TEST(EncoderVm, SaysThatTheCountIsUncertainWhenTheKernelDropsEdgesAndTheIndexMendsIt) {
+  rig::SimEncoder lines(chip(), 2, 3, 4);
+  lines.move_to(-20);
+  // The lines are watched, but for a while nobody fetches their edges.
+  const auto gpio = GpioChip::open("test", chip());
+  const auto line = [&](int offset) { return gpio->request("test", offset, Use::edges, {}); };
+  GpioSource source(line(2), line(3), line(4));
+  Tracker tracker({4, 1e6, true}, source.levels().value());
+  const auto step = [&] {
+    for (int i = 0; i < 20; ++i) tracker.step(source, 1'000'000, monotonic_ns);
+    return tracker.snapshot();
+  };
+  step();
+  lines.move_to(10);
+  const Snapshot before = step();
+  EXPECT_TRUE(before.homed);
+  EXPECT_FALSE(before.lost) << "15 edges a line";
+  EXPECT_EQ(before.counts, 10);
+  lines.move_to(110);
+  const Snapshot lost = step();
+  EXPECT_TRUE(lost.lost);
+  EXPECT_GE(lost.overflows, 1);
+  EXPECT_NE(lost.counts, 110) << "the newest were dropped";
+  while (lines.quarter() > -10) {
+    lines.move_to(lines.quarter() - 5);
+    step();
+  }
+  const Snapshot mended = step();
+  EXPECT_FALSE(mended.lost);
+  EXPECT_EQ(mended.slips, 1);
+  EXPECT_NEAR(static_cast<double>(mended.counts), -10.0, 1.0);
+}
+
+/// What the chip's line is driven to, as its value file says: "0" or "1".
+char driven(int line) {
+  const std::string pattern =
+      "/sys/devices/platform/gpio-sim.0/" + chip() + "/sim_gpio" + std::to_string(line) + "/value";
+  std::FILE* file = std::fopen(pattern.c_str(), "r");
+  const int value = file == nullptr ? '?' : std::fgetc(file);
+  if (file != nullptr) std::fclose(file);
+  return static_cast<char>(value);
+}
+
+TEST(EncoderVm, ReadsSwitchesAndSetsThePermitLine) {
+  rig::SimLine high(chip(), 6);
+  rig::SimLine low(chip(), 7);
+  high.set(true);
+  low.set(true);
+  const Offer offer =
+      open(table("[[input]]\nname = \"e_stop\"\nline = 6\n[[input]]\nname = \"enable\"\nline = 7\n"
+                 "active_low = true\n[[output]]\nname = \"permit\"\nline = 8\n"));
+  sleep_until(monotonic_ns() + kSecond_ns / 50);
+  Input& e_stop = *offer.inputs.at("e_stop");
+  Input& enable = *offer.inputs.at("enable");
+  EXPECT_EQ(e_stop.read(kTick).value, 1.0);
+  EXPECT_EQ(e_stop.read(kTick).quality, Quality::good);
+  EXPECT_EQ(enable.read(kTick).value, 0.0) << "active low";
+  high.set(false);
+  low.set(false);
+  sleep_until(monotonic_ns() + kSecond_ns / 50);
+  EXPECT_EQ(e_stop.read(kTick).value, 0.0);
+  EXPECT_EQ(enable.read(kTick).value, 1.0);
+  Output& permit = *offer.outputs.at("permit");
+  EXPECT_EQ(driven(8), '0') << "off until it is set";
+  for (const bool on : {true, false, true}) {
+    EXPECT_TRUE(permit.set(on));
+    EXPECT_EQ(driven(8), on ? '1' : '0');
+  }
+}
+
+TEST(EncoderVm, RefusesLinesThatItCannotHave) {
+  const Offer held = open(table());
+  EXPECT_THAT(complaint(table()),
+              AllOf(HasSubstr("[encoder] line_a"), HasSubstr("in use by \"spoolwatch\"")));
+  EXPECT_THAT(complaint("schema_version = 1\nchip = \"" + chip() +
+                        "\"\nline_a = 5\nline_b = 16\nresolution_m = 5e-5\n"),
+              AllOf(HasSubstr("[encoder] line_b"), HasSubstr("lines 0 to 15")));
+  EXPECT_THAT(complaint("schema_version = 1\nchip = \"gpiochip9\"\nline_a = 5\nline_b = 6\n"
+                        "resolution_m = 5e-5\n"),
+              AllOf(HasSubstr("[encoder] chip"), HasSubstr(chip() + " (rig)")));
+}
+
+}  // namespace
+}  // namespace hal::encoder
