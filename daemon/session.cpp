@@ -79,7 +79,8 @@ void check_numbers(const std::string& file, const hal::Devices& devices) {
 Prepared prepare(DaemonConfig& config) {
   Prepared p;
   p.sample_time_s = 1.0 / config.loop.rate_Hz;
-  p.opening = {config.file, config.folder, p.sample_time_s, config.rig.valve().null_V};
+  p.opening = {config.file, config.folder, p.sample_time_s, config.rig.valve().null_V,
+               config.rig.valve().limit_V};
   p.devices = config.rig.open(p.opening);
   check_numbers(config.file, p.devices);
   p.guards =

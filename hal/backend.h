@@ -19,6 +19,7 @@ struct Opening {
   std::filesystem::path folder;  ///< relative paths of the file start here
   double sample_time_s = 0.005;  ///< period of the loop
   double null_V = 0.0;           ///< the commanded safe voltage
+  double limit_V = kMissing;     ///< greatest distance of a command from null
 };
 
 /// What one backend has opened. Names (channels) are the backend's or those of its own table.

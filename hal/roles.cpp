@@ -8,6 +8,7 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "hal/comedi/comedi.h"
 #include "hal/encoder/encoder.h"
 #include "hal/modbus/modbus.h"
 #include "hal/replay/replay.h"
@@ -35,6 +36,7 @@ constexpr Entry kRegistry[] = {
     {"sim", make<sim::SimBackend>},
     {"replay", make<replay::ReplayBackend>},
     {"encoder", make<encoder::EncoderBackend>},
+    {"comedi", make<comedi::ComediBackend>},
     {"modbus", make<modbus::ModbusBackend>},
 };
 

@@ -36,6 +36,19 @@ class SwitchOutput final : public Output {
   std::shared_ptr<GpioLine> line_;
 };
 
+std::string summary(const Snapshot& rod) {
+  char line[240];
+  std::snprintf(
+      line, sizeof line,
+      "encoder: %lld edges; count uncertain %lld times (%lld illegal, %lld overflows, %lld "
+      "disagreements), too fast %lld times, %lld index slips",
+      static_cast<long long>(rod.edges), static_cast<long long>(rod.times_lost),
+      static_cast<long long>(rod.illegal), static_cast<long long>(rod.overflows),
+      static_cast<long long>(rod.disagreements), static_cast<long long>(rod.times_too_fast),
+      static_cast<long long>(rod.slips));
+  return line;
+}
+
 Levels levels_at_start(EdgeSource& source) { return source.levels().value_or(Levels{}); }
 
 }  // namespace
@@ -117,6 +130,7 @@ Offer EncoderBackend::open(const Opening& opening) const {
   for (std::size_t i = 0; i < config_.inputs.size(); ++i) {
     offer.inputs[config_.inputs[i].name] = std::make_shared<SwitchInput>(watch, i);
   }
+  offer.summary = [watch] { return summary(watch->view().rod); };
   return offer;
 }
 

@@ -1,0 +1,67 @@
+// A data acquisition board as this backend needs it: codes to and from channels. Over comedilib
+// below, and a test's own elsewhere.
+#pragma once
+
+#include <comedilib.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "hal/comedi/scale.h"
+
+namespace hal::comedi {
+
+enum class Kind : std::uint8_t { analog_input, analog_output, counter };
+
+/// One channel, as configured. `subdevice` -1: the first of its kind.
+struct Channel {
+  std::int64_t subdevice = -1;
+  std::int64_t channel = 0;
+  std::int64_t range = 0;
+  std::string aref = "ground";  ///< ground, common, diff, other
+};
+
+/// A channel that was found to exist.
+struct Place {
+  unsigned subdevice = 0;
+  unsigned channel = 0;
+  unsigned range = 0;
+  unsigned aref = 0;
+};
+
+class Board {
+ public:
+  virtual ~Board() = default;
+  /// May block for as long as the driver does. Any thread; a signal handler too.
+  virtual bool write(const Place& place, std::uint32_t code) noexcept = 0;
+  virtual std::optional<std::uint32_t> read(const Place& place) noexcept = 0;
+};
+
+class ComediBoard final : public Board {
+ public:
+  /// Throws config::schema::Error; `where`: "file: [comedi] device".
+  ComediBoard(const std::string& where, const std::string& device);
+
+  /// Throws config::schema::Error when the board has no such channel; `table`: "file:
+  /// [comedi.rod]".
+  [[nodiscard]] Place find(const std::string& table, Kind kind, const Channel& channel) const;
+  /// Volts of that channel's range.
+  [[nodiscard]] Span span(const std::string& table, const Place& place) const;
+  /// Keeps other programs from that subdevice until this one ends. Throws config::schema::Error.
+  void lock(const std::string& table, const Place& place) const;
+  /// Largest code of that channel.
+  [[nodiscard]] std::uint32_t max_code(const Place& place) const;
+
+  bool write(const Place& place, std::uint32_t code) noexcept override;
+  std::optional<std::uint32_t> read(const Place& place) noexcept override;
+
+ private:
+  struct Close {
+    void operator()(comedi_t* board) const noexcept { comedi_close(board); }
+  };
+  std::unique_ptr<comedi_t, Close> board_;
+};
+
+}  // namespace hal::comedi

@@ -1,0 +1,82 @@
+// The traffic with a board: commands out at once, all inputs in shortly before each tick.
+//
+// A driver's call may take its time (a converter that settles, a bus), so that a thread makes it;
+// the loop's side is wait-free. The thread writes a command as soon as it is woken, and reads a
+// quarter of a period, at most 1 ms, before the next tick is due, so that readings are fresh.
+// Without a thread the loop makes the calls itself: for boards known to be quick.
+#pragma once
+
+#include <semaphore.h>
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <vector>
+
+#include "hal/comedi/board.h"
+#include "hal/device.h"
+#include "hal/device_thread.h"
+#include "hal/latest.h"
+
+namespace hal::comedi {
+
+class Exchange {
+ public:
+  static constexpr std::size_t kInputs = 16;
+
+  struct View {
+    std::array<std::uint32_t, kInputs> codes{};
+    std::array<bool, kInputs> good{};
+    std::int64_t read_ns = 0;        ///< when the codes were read, 0: never
+    std::uint64_t written = 0;       ///< the newest command's number that reached the board
+    bool write_failed = false;       ///< of the newest write
+    std::int64_t read_failures = 0;  ///< since the start
+    std::int64_t write_failures = 0;
+  };
+
+  /// At most kInputs places. `output` is used by write() only.
+  Exchange(std::shared_ptr<Board> board, std::vector<Place> inputs, const Place& output,
+           std::int64_t period_ns);
+  ~Exchange();
+  Exchange(const Exchange&) = delete;
+  Exchange& operator=(const Exchange&) = delete;
+
+  /// Reads once, and starts the thread if asked to. Throws config::schema::Error when it cannot.
+  void start(bool threaded, int priority);
+
+  /// The inputs of this tick; from the loop's thread only.
+  const View& view(const Tick& tick) noexcept;
+  /// False when the board refused the last command, or has not taken it for two periods. From the
+  /// loop's thread only.
+  bool write(std::uint32_t code, const Tick& tick) noexcept;
+  /// From any thread and from a signal handler: also past a thread that no longer runs.
+  bool write_now(std::uint32_t code) noexcept;
+  /// Whether what was read at `t_ns` is too old at `now_ns`.
+  [[nodiscard]] bool stale(std::int64_t t_ns, std::int64_t now_ns) const noexcept {
+    return now_ns - t_ns > 3 * period_ns_;
+  }
+
+ private:
+  void pass() noexcept;
+  void read_all() noexcept;
+  void write_newest() noexcept;
+
+  std::shared_ptr<Board> board_;
+  std::vector<Place> inputs_;
+  Place output_;
+  std::int64_t period_ns_;
+  std::int64_t lead_ns_;
+  bool threaded_ = false;
+
+  View own_;  ///< the thread's; without one, the loop's
+  Latest<View> latest_;
+  std::atomic<std::uint64_t> command_{0};  ///< number << 32 | code; 0: none yet
+  std::atomic<std::int64_t> tick_ns_{0};   ///< when the loop last asked
+  std::int64_t next_read_ns_ = 0;
+  std::int64_t last_index_ = -1;
+  std::int64_t given_ns_ = 0;  ///< the loop's: when the oldest command not taken was given
+  sem_t wake_;
+  DeviceThread thread_;
+};
+
+}  // namespace hal::comedi
