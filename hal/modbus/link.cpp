@@ -120,6 +120,7 @@ void Link::wait_until(std::int64_t t_ns) noexcept {
 
 void Link::step() noexcept {
   if (thread_id_.load(std::memory_order_relaxed) == 0) thread_id_.store(gettid());
+  if (stop_.load()) return;  // its wake-up has been used
   wait_until(next_ns());
   if (stop_.load()) return;
   if (port_->is_open()) {

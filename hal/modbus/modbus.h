@@ -62,7 +62,9 @@ class ModbusBackend final : public Backend {
   }
   /// The device's own time-out ends a command, whichever side has gone.
   [[nodiscard]] NullTimes null_times() const override {
-    return {config_.watchdog_s, config_.watchdog_s, config_.delay_s};
+    return {.bus_lost_s = config_.watchdog_s,
+            .process_dead_s = config_.watchdog_s,
+            .latency_s = config_.delay_s};
   }
 
  private:
