@@ -20,15 +20,23 @@ struct Command {
 };
 
 void add_add(CLI::App& command, int& exit_code);
+void add_arm(CLI::App& command, int& exit_code);
 void add_calibrate(CLI::App& command, int& exit_code);
 void add_compare(CLI::App& command, int& exit_code);
 void add_diagnose(CLI::App& command, int& exit_code);
+void add_disarm(CLI::App& command, int& exit_code);
 void add_effects(CLI::App& command, int& exit_code);
 void add_estimate(CLI::App& command, int& exit_code);
 void add_export(CLI::App& command, int& exit_code);
 void add_fit(CLI::App& command, int& exit_code);
+void add_hold(CLI::App& command, int& exit_code);
 void add_listen(CLI::App& command, int& exit_code);
+void add_reference(CLI::App& command, int& exit_code);
 void add_reproduce(CLI::App& command, int& exit_code);
+void add_reset(CLI::App& command, int& exit_code);
 void add_simulate(CLI::App& command, int& exit_code);
+void add_start(CLI::App& command, int& exit_code);
+void add_status(CLI::App& command, int& exit_code);
+void add_stop(CLI::App& command, int& exit_code);
 
 }  // namespace workbench

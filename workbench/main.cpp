@@ -11,6 +11,15 @@
 namespace {
 
 constexpr workbench::Command kCommands[] = {
+    {"status", "what the running daemon does, and what forbids to arm it", workbench::add_status},
+    {"arm", "let the running daemon be started", workbench::add_arm},
+    {"disarm", "null, from RUN or ARMED", workbench::add_disarm},
+    {"start", "run the reference signal from where the rod is; resume after a hold",
+     workbench::add_start},
+    {"stop", "null at once, still ARMED", workbench::add_stop},
+    {"reset", "from LATCHED to DISARMED", workbench::add_reset},
+    {"hold", "freeze the reference where the rod is", workbench::add_hold},
+    {"reference", "another sine for the running daemon", workbench::add_reference},
     {"reproduce", "the source's figures beside ours", workbench::add_reproduce},
     {"simulate", "a record from a model file, in closed loop", workbench::add_simulate},
     {"listen", "print alarms and estimates as they arrive", workbench::add_listen},

@@ -9,9 +9,9 @@ namespace {
 /// A switch reads 1 or it does not: room for rounding alone.
 constexpr double kSwitchRounding = 1e-6;
 
+/// A device calls a reading bad when it has been stale for too long.
 bool trusted(hal::Quality quality, double value) noexcept {
-  return (quality == hal::Quality::good || quality == hal::Quality::uncertain) &&
-         std::isfinite(value);
+  return quality != hal::Quality::bad && std::isfinite(value);
 }
 
 void count(DeviceStats& stats, bool good, double value) noexcept {

@@ -96,7 +96,6 @@ TEST(Enable, IsNeededToArmAndItsLossDisarmsAtOnce) {
   for (const auto& [value, quality] : {std::pair{0.0, hal::Quality::good},
                                        {std::nan(""), hal::Quality::good},
                                        {1.0, hal::Quality::bad},
-                                       {1.0, hal::Quality::stale},
                                        {0.9, hal::Quality::good}}) {
     bench.input->value = value;
     bench.input->quality = quality;

@@ -1,0 +1,65 @@
+#include "workbench/control/status_text.h"
+
+#include <cstdio>
+#include <ostream>
+#include <string>
+
+namespace workbench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string text_of(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+std::string number_of(const Json& object, const char* key, double scale, const char* unit) {
+  const auto found = object.find(key);
+  if (found == object.end() || !found->is_number()) return "-";
+  char text[48];
+  std::snprintf(text, sizeof text, "%.4g%s", found->get<double>() * scale, unit);
+  return text;
+}
+
+bool is_set(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_boolean() && found->get<bool>();
+}
+
+void print_inputs(const Json& status, const char* key, const char* what, std::ostream& out) {
+  const auto list = status.find(key);
+  if (list == status.end() || !list->is_array()) return;
+  for (const Json& entry : *list) {
+    out << "  " << what << ' ' << text_of(entry, "id") << ": " << number_of(entry, "value", 1.0, "")
+        << '\n';
+  }
+}
+
+}  // namespace
+
+void print_status(const Json& status, std::ostream& out) {
+  out << text_of(status, "rig_id") << ": " << text_of(status, "state");
+  if (is_set(status, "holding")) out << ", holding: start resumes";
+  if (is_set(status, "ramping")) out << ", on the way to null";
+  const std::string latched_by = text_of(status, "latched_by");
+  if (!latched_by.empty()) out << " by " << latched_by;
+  out << '\n';
+  const std::string obstacle = text_of(status, "obstacle");
+  if (!obstacle.empty()) out << "  cannot be armed: " << obstacle << '\n';
+  out << "  rod " << number_of(status, "y_m", 1e3, " mm") << ", reference "
+      << number_of(status, "reference_m", 1e3, " mm") << ", valve "
+      << number_of(status, "u_V", 1.0, " V") << '\n';
+  print_inputs(status, "spare_rods", "spare rod", out);
+  print_inputs(status, "inputs", "input", out);
+  const auto guards = status.find("guards");
+  if (guards == status.end() || !guards->is_array()) return;
+  for (const Json& guard : *guards) {
+    if (!is_set(guard, "active")) continue;
+    out << "  guard " << text_of(guard, "id") << " (" << text_of(guard, "kind") << ", "
+        << text_of(guard, "action") << ") is active: " << number_of(guard, "value", 1.0, "")
+        << '\n';
+  }
+}
+
+}  // namespace workbench
