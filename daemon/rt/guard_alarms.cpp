@@ -57,7 +57,11 @@ void GuardAlarms::report(GuardBoard& board, std::int64_t tick,
     state.severity = active ? entries_[i].severity : Severity::ok;
     state.tick = tick;
     state.value = board.value(i);
-    if (active) state.reason = entries_[i].reason;
+    if (active) {
+      const Alarm& limits = book_.alarm(entries_[i].number);
+      state.reason = entries_[i].reason;
+      state.direction = state.value > limits.high ? 1 : state.value < limits.low ? -1 : 0;
+    }
     if (const Alarm* alarm = book_.set(entries_[i].number, state)) changed(*alarm);
   }
   shown_ = now;

@@ -114,6 +114,29 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"fault_of_nothing", "[reference]",
              "[[sim.fault]]\nparameter = \"oil\"\nat_s = 1.0\nfactor = 2.0\n[reference]", "oil",
              ""},
+        Case{"guard_without_a_kind", "[reference]", "[[guard]]\naction = \"hold\"\n[reference]",
+             "[guard.0] kind", "what is watched"},
+        Case{"guard_of_nothing", "[reference]", "[[guard]]\nkind = \"mood\"\n[reference]", "kind",
+             "travel"},
+        Case{"guard_without_its_limit", "[reference]", "[[guard]]\nkind = \"speed\"\n[reference]",
+             "limit_mps", ""},
+        Case{"hold_on_a_sensor_that_lies", "[reference]",
+             "[[guard]]\nkind = \"frozen\"\naction = \"hold\"\n[reference]", "action",
+             "indicate, ramp, latch"},
+        Case{"travel_upside_down", "[reference]",
+             "[[guard]]\nkind = \"travel\"\nlow_m = 0.4\nhigh_m = 0.2\n[reference]", "high_m",
+             "0.4"},
+        Case{"two_guards_of_one_name", "[reference]",
+             "[[guard]]\nkind = \"travel\"\n[[guard]]\nkind = \"travel\"\n[reference]",
+             "[[guard]] id: \"travel\" is there twice", "an id for each"},
+        Case{"real_without_a_watchdog", "[reference]", "pretend_real = true\n[reference]",
+             "[valve] backend", "accept_no_hardware_watchdog = true"},
+        Case{"real_that_arms_itself", "[reference]",
+             "pretend_real = true\ncommand_timeout_s = 0.1\n[reference]", "[loop] auto_arm",
+             "false"},
+        Case{"socket_of_no_group", "[reference]",
+             "[control]\ngroup = \"nobody-knows-this\"\n[reference]", "[control] group",
+             "a group of this machine"},
         Case{"bands_not_there", "schema_version = 1",
              "schema_version = 1\nbands_file = \"no.toml\"", "bands_file", "learned bands"}),
     [](const auto& test) { return std::string(test.param.what); });
@@ -185,6 +208,19 @@ TEST(Configuration, CheckRefusesWhatAStartWouldRefuse) {
                              "recorder.folder=/dev/null/log", "--check"});
   EXPECT_EQ(folder.exit_code, 78);
   EXPECT_THAT(folder.err, HasSubstr("/dev/null is no folder"));
+}
+
+TEST(Configuration, ARealRigWithAWatchdogOfSomeKindIsAccepted) {
+  const Folder folder;
+  for (const char* watchdog : {"accept_no_hardware_watchdog = true\n[sim]\npretend_real = true\n",
+                               "[permit]\nbackend = \"sim\"\n[sim]\npretend_real = true\n",
+                               "[sim]\npretend_real = true\ncommand_timeout_s = 0.1\n"}) {
+    const std::string file = write_config(folder, "[sim]\n", watchdog);
+    const Result result = run({"--config", file, "--set", "loop.auto_arm=false", "--check"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.out, HasSubstr("It cannot be armed: no [rig] calibration"));
+    EXPECT_THAT(result.out, HasSubstr("process killed"));
+  }
 }
 
 TEST(Configuration, ALogFolderStartsFromTheFileLikeEveryOtherPath) {

@@ -143,6 +143,85 @@ TEST(VirtualDaemon, WithoutAutoArmStaysDisarmedAtNull) {
   }
 }
 
+/// The shipped service, started by itself, with one thing that goes wrong.
+Log run_with_trouble(const std::vector<std::string>& settings, const std::string& tables) {
+  const Folder folder;
+  std::ifstream shipped_file(shipped("spoolwatchd.toml"));
+  const std::string text(std::istreambuf_iterator<char>(shipped_file), {});
+  const std::string file = (folder.path() / "rig.toml").string();
+  std::ofstream(file) << text << tables;
+  std::vector<std::string> more = {
+      "--duration",         "6",     "--set",
+      "loop.auto_arm=true", "--set", "sim.model=" + shipped("models/thesis_calibrated.toml")};
+  for (const std::string& setting : settings) {
+    more.emplace_back("--set");
+    more.push_back(setting);
+  }
+  const Result result = run(virtual_run(file, folder.path() / "log", more));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return read_log(folder.path() / "log");
+}
+
+TEST(VirtualDaemon, GuardsThatTripAreAlarmsWithReasonAndGuidance) {
+  const Log log = run_with_trouble(
+      {}, "[[sim.trouble]]\nkind = \"jump\"\nfrom_s = 3.0\nto_s = 4.0\nsize_m = 0.01\n");
+  EXPECT_EQ(log.timeline("jump", kTs_s).substr(0, 8), "3.0 high") << log.timeline("jump", kTs_s);
+  EXPECT_EQ(log.timeline("latched", kTs_s).substr(0, 4), "3.0 ");
+  for (const auto& alarm : log.alarms) {
+    if (alarm.name == "jump" && alarm.active == 1) {
+      EXPECT_EQ(alarm.source, "loop");
+      EXPECT_THAT(alarm.reason, testing::HasSubstr("the position jumped"));
+      EXPECT_THAT(alarm.guidance, testing::HasSubstr("Check the rod sensor"));
+      EXPECT_EQ(alarm.high, 0.005);
+      EXPECT_NEAR(alarm.value, 0.01, 5e-4);
+    }
+    if (alarm.name == "latched" && alarm.active == 1) {
+      EXPECT_EQ(alarm.reason, "guard jump: reset, then arm again");
+    }
+  }
+  for (const auto& s : log.samples) ASSERT_EQ(s.state, s.tick < 600 ? 3 : 4) << s.tick;
+}
+
+TEST(VirtualDaemon, GuardsStaySilentOnAHealthyRig) {
+  const Log log = run_with_trouble({}, "");
+  for (const auto& alarm : log.alarms) EXPECT_NE(alarm.source, "loop") << alarm.name;
+  EXPECT_EQ(log.samples[1000].state, 3);
+}
+
+TEST(VirtualDaemon, CountsSpareRodsAndInputsAsDevices) {
+  const Log log =
+      run_with_trouble({},
+                       "[[spare_rod]]\nid = \"second\"\nbackend = \"sim\"\nchannel = \"second\"\n"
+                       "[[sim.rod]]\nid = \"second\"\n");
+  const auto& health = log.healths.back();
+  EXPECT_EQ(health.device,
+            (std::vector<std::string>{"rod.sim", "valve.sim", "spare_rod.second", "input.e_stop"}));
+  EXPECT_EQ(health.device_good, (std::vector<std::int64_t>{1201, 1201, 1201, 1201}));
+  EXPECT_EQ(health.device_bad, (std::vector<std::int64_t>{0, 0, 0, 0}));
+}
+
+TEST(VirtualDaemon, OnlyWatchingTakesTheCommandFromAnInput) {
+  const Folder folder;
+  const std::string file = (folder.path() / "rig.toml").string();
+  std::ofstream(file) << "schema_version = 1\n[rod]\nbackend = \"sim\"\n[valve]\nbackend = "
+                         "\"none\"\n[[input]]\nid = \"u\"\nrole = \"valve_command\"\nbackend = "
+                         "\"sim\"\nchannel = \"u\"\n[sim]\nmodel = \""
+                      << shipped("models/thesis_calibrated.toml")
+                      << "\"\n[[sim.input]]\nid = \"u\"\nvalue = 1.5\nfrom_s = 0.5\nto_s = "
+                         "0.6\nmissing = true\n";
+  const Result result = run(virtual_run(file, folder.path() / "log", {"--duration", "1"}));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  for (const auto& s : read_log(folder.path() / "log").samples) {
+    ASSERT_EQ(s.state, 0);
+    ASSERT_EQ(s.t_write_ns, 0);
+    if (s.tick >= 100 && s.tick < 120) {
+      ASSERT_TRUE(std::isnan(s.u_applied_V));
+    } else {
+      ASSERT_EQ(s.u_applied_V, 1.5);
+    }
+  }
+}
+
 TEST(VirtualDaemon, ReplaysARecordOfAnotherPeriodAndOtherUnits) {
   const Folder folder;
   const std::string record = (folder.path() / "record.csv").string();
