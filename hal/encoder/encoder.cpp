@@ -49,8 +49,6 @@ std::string summary(const Snapshot& rod) {
   return line;
 }
 
-Levels levels_at_start(EdgeSource& source) { return source.levels().value_or(Levels{}); }
-
 }  // namespace
 
 Watch::Watch(std::unique_ptr<EdgeSource> source, std::vector<std::shared_ptr<GpioLine>> inputs,
@@ -58,7 +56,7 @@ Watch::Watch(std::unique_ptr<EdgeSource> source, std::vector<std::shared_ptr<Gpi
     : source_(std::move(source)),
       inputs_(std::move(inputs)),
       period_ns_(period_ns),
-      tracker_(options, levels_at_start(*source_)) {
+      tracker_(options, still_levels(*source_)) {
   view_.inputs.fill(-1);
   pass();
   const int error = thread_.start("encoder", priority, [this] { pass(); });

@@ -10,9 +10,21 @@ constexpr int kDisagreements = 3;
 
 }  // namespace
 
-Tracker::Tracker(const TrackerOptions& options, Levels levels) noexcept
-    : options_(options), decoder_(levels) {
+std::optional<Levels> still_levels(EdgeSource& source) noexcept {
+  constexpr int kAttempts = 1000;
+  for (int i = 0; i < kAttempts; ++i) {
+    std::array<Edge, kBatch> older;
+    while (source.wait(0) == Wake::edges && i++ < kAttempts) (void)source.drain(older);
+    const std::optional<Levels> levels = source.levels();
+    if (!levels || source.wait(0) == Wake::timeout) return levels;
+  }
+  return std::nullopt;
+}
+
+Tracker::Tracker(const TrackerOptions& options, std::optional<Levels> levels) noexcept
+    : options_(options), decoder_(levels.value_or(Levels{})) {
   snapshot_.homed = !options.has_index;
+  if (!levels) decoder_.mark_lost();
 }
 
 void Tracker::step(EdgeSource& source, std::int64_t timeout_ns, std::int64_t (*clock)()) noexcept {

@@ -45,9 +45,14 @@ struct TrackerOptions {
 /// Share of the permitted rate from which the reading is called uncertain.
 inline constexpr double kWarnRatio = 0.8;
 
+/// Levels to start from: those that no edge which is still queued, or comes meanwhile, has made.
+/// Empty when they cannot be read, or change too fast.
+[[nodiscard]] std::optional<Levels> still_levels(EdgeSource& source) noexcept;
+
 class Tracker {
  public:
-  Tracker(const TrackerOptions& options, Levels levels) noexcept;
+  /// Without levels the count is uncertain from the start.
+  Tracker(const TrackerOptions& options, std::optional<Levels> levels) noexcept;
 
   /// Waits once for at most `timeout_ns`, takes what there is, compares levels now and then.
   /// `clock`: CLOCK_MONOTONIC in ns.

@@ -1,12 +1,9 @@
 // hal/encoder on a real kernel: lines of gpio-sim, moved in quadrature by a second process.
 #include <gmock/gmock.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <functional>
 #include <numbers>
 
 #include "config/schema/document.h"
@@ -14,15 +11,18 @@
 #include "hal/encoder/encoder.h"
 #include "hal/encoder/gpio_source.h"
 #include "hal/rig/gpio_lines.h"
+#include "tests/vm/process.h"
 
 namespace hal::encoder {
 namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using vm::kSecond_ns;
+using vm::Process;
+using vm::sleep_until;
 
 constexpr double kCount_m = 5e-5;
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr Tick kTick;
 
 std::string chip() { return std::getenv("SPOOLWATCH_GPIO_CHIP"); }
@@ -48,27 +48,6 @@ std::string complaint(const std::string& text) {
   return "nothing";
 }
 
-void sleep_until(std::int64_t t_ns) {
-  const timespec until{t_ns / kSecond_ns, t_ns % kSecond_ns};
-  clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
-}
-
-/// Runs `body` in a process of its own; wait() returns its exit code.
-class Process {
- public:
-  explicit Process(const std::function<int()>& body) : pid_(fork()) {
-    if (pid_ == 0) _exit(body());
-  }
-  int wait() const {
-    int status = 0;
-    waitpid(pid_, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-
- private:
-  pid_t pid_;
-};
-
 const Snapshot& snapshot(const Offer& offer) {
   return static_cast<EncoderRod&>(*offer.rods.at(kRodChannel)).snapshot();
 }
@@ -90,7 +69,7 @@ TEST(EncoderVm, FollowsASineExactlyAtAPermittedSpeed) {
   const std::int64_t start_ns = monotonic_ns();
   constexpr double kEnd_s = 4.0;
   const auto target = [](double t_s) { return std::llround(std::floor(sine_quarters(t_s))); };
-  const Process driver([&] {
+  Process driver([&] {
     for (double t_s = 0.0; t_s <= kEnd_s; t_s += 1e-3) {
       sleep_until(start_ns + std::llround(t_s * 1e9));
       lines.move_to(target(t_s));
@@ -125,7 +104,7 @@ TEST(EncoderVm, LosesNoEdgeOfAFastMotionAndPrintsItsRate) {
   const Offer offer = open(table("max_edges_per_s = 1e6"));
   constexpr std::int64_t kQuarters = 10'000;
   const std::int64_t start_ns = monotonic_ns();
-  const Process driver([&] {
+  Process driver([&] {
     lines.move_to(kQuarters);
     lines.move_to(kQuarters / 2);
     return 0;
@@ -166,7 +145,7 @@ TEST(EncoderVm, SaysThatTheCountIsUncertainWhenTheKernelDropsEdgesAndTheIndexMen
   const auto gpio = GpioChip::open("test", chip());
   const auto line = [&](int offset) { return gpio->request("test", offset, Use::edges, {}); };
   GpioSource source(line(2), line(3), line(4));
-  Tracker tracker({4, 1e6, true}, source.levels().value());
+  Tracker tracker({4, 1e6, true}, still_levels(source));
   const auto step = [&] {
     for (int i = 0; i < 20; ++i) tracker.step(source, 1'000'000, monotonic_ns);
     return tracker.snapshot();

@@ -64,6 +64,23 @@ TEST(Tracker, BatchesOfBothLinesAreMergedInTheOrderOfTime) {
   EXPECT_EQ(bench.tracker.snapshot().edges, static_cast<std::int64_t>(edges.size()));
 }
 
+TEST(Tracker, EdgesFromBeforeTheStartDoNotCount) {
+  FakeSource source;
+  source.move({1, Line::a, true});
+  source.move({2, Line::b, true});
+  const std::optional<Levels> levels = still_levels(source);
+  ASSERT_TRUE(levels.has_value());
+  EXPECT_EQ(*levels, levels_in(2));
+  Tracker tracker(kOptions, levels);
+  test_now_ns = 1'000'000'000;
+  tracker.step(source, 0, test_clock);
+  EXPECT_EQ(tracker.snapshot().counts, 0);
+  EXPECT_FALSE(tracker.snapshot().lost);
+  Tracker without(kOptions, std::nullopt);
+  without.step(source, 0, test_clock);
+  EXPECT_TRUE(without.snapshot().lost);
+}
+
 TEST(Tracker, AnEdgeThatComesLateIsPutInItsPlace) {
   Bench bench;
   bench.move_to(9);
