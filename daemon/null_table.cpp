@@ -97,15 +97,18 @@ void print_null_table(const NullFacts& facts, std::ostream& out) {
   std::snprintf(line, sizeof line, "# %-24s %-8s %16s %18s\n", "failure", "valve",
                 "worst time (ms)", "worst travel (mm)");
   out << line;
+  const auto number = [](const char* format, double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, format, value);
+    return std::string(std::isnan(value) ? "-" : text);
+  };
   for (const NullRow& row : null_rows(facts)) {
-    const char* backend = facts.backend.c_str();
-    if (std::isnan(row.time_s)) {
-      std::snprintf(line, sizeof line, "# %-24s %-8s %16s %18s  (%s)\n", row.failure.c_str(),
-                    backend, "never", "-", row.note.c_str());
-    } else {
-      std::snprintf(line, sizeof line, "# %-24s %-8s %16.1f %18.2f\n", row.failure.c_str(), backend,
-                    row.time_s * 1e3, row.time_s * facts.speed_mps * 1e3);
-    }
+    const bool never = std::isnan(row.time_s);
+    const std::string time = never ? "never" : number("%.1f", row.time_s * 1e3);
+    const std::string travel = number("%.2f", row.time_s * facts.speed_mps * 1e3);
+    const std::string note = never ? "  (" + row.note + ")" : "";
+    std::snprintf(line, sizeof line, "# %-24s %-8s %16s %18s%s\n", row.failure.c_str(),
+                  facts.backend.c_str(), time.c_str(), travel.c_str(), note.c_str());
     out << line;
   }
 }

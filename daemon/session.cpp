@@ -1,9 +1,5 @@
 #include "daemon/session.h"
 
-#include <poll.h>
-#include <sys/signalfd.h>
-#include <unistd.h>
-
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -14,7 +10,7 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
-#include "daemon/command_desk.h"
+#include "daemon/attendant.h"
 #include "daemon/null_guard.h"
 #include "daemon/null_table.h"
 #include "daemon/rt/run.h"
@@ -109,63 +105,11 @@ Prepared prepare(DaemonConfig& config) {
   return p;
 }
 
-sigset_t stop_signals() {
-  sigset_t set;
-  sigemptyset(&set);
-  for (const int signal : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&set, signal);
-  return set;
-}
-
 bool stop_pending() {
   const sigset_t set = stop_signals();
   const timespec now{0, 0};
   return sigtimedwait(&set, nullptr, &now) > 0;
 }
-
-/// The signals that ask the process to stop, as a file that can be waited for.
-class StopFile {
- public:
-  StopFile() {
-    const sigset_t set = stop_signals();
-    file_ = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
-  }
-  ~StopFile() { close(file_); }
-  StopFile(const StopFile&) = delete;
-  StopFile& operator=(const StopFile&) = delete;
-  [[nodiscard]] int file() const noexcept { return file_; }
-  [[nodiscard]] bool came() const noexcept {
-    signalfd_siginfo info{};
-    return read(file_, &info, sizeof info) == sizeof info;
-  }
-
- private:
-  int file_;
-};
-
-/// What the main thread does while the loop runs: control socket and signals, up to 100 ms a call.
-class Attendant {
- public:
-  Attendant(CommandDesk& desk, io::ControlSocket* socket) : desk_(desk), socket_(socket) {}
-
-  /// Returns whether the daemon is asked to stop.
-  bool attend() {
-    if (socket_ == nullptr) {
-      pollfd file{stop_.file(), POLLIN, 0};
-      poll(&file, 1, kLook_ms);
-    } else {
-      socket_->wait(order_waits_ ? 1 : kLook_ms, stop_.file());
-      order_waits_ = desk_.serve(*socket_);
-    }
-    return stop_.came();
-  }
-
- private:
-  static constexpr int kLook_ms = 100;
-  CommandDesk& desk_;
-  io::ControlSocket* socket_;
-  StopFile stop_;
-  bool order_waits_ = false;
-};
 
 std::string hex(std::uint64_t value) {
   char text[17];

@@ -2,6 +2,8 @@
 // kept. Reading or writing may take virtual time, or fail.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <memory>
 #include <vector>
 
@@ -137,6 +139,20 @@ class LoopBench {
   Loop loop_;
   Grid grid_;
 };
+
+/// Orders and returns what the loop answers in the next tick.
+inline control::Answer ask(LoopBench& bench, control::Event event, std::uint32_t number = 7) {
+  Command command;
+  command.event = event;
+  command.number = number;
+  command.expires_ns = INT64_MAX;
+  bench.commands.push(command);
+  bench.tick();
+  const control::Answer answer = control::unpack(bench.stats.answer.load());
+  EXPECT_EQ(answer.number, number);
+  EXPECT_EQ(answer.state, bench.state());
+  return answer;
+}
 
 /// What the law asks for with the rod at 0.1 m.
 inline constexpr double kLaw_V = kFakeNull_V + 100.0 * (0.3 - 0.1);

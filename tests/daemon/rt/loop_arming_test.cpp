@@ -1,5 +1,5 @@
-// Guards, inputs and permit in the loop: what is written, where it leads, what an order is
-// answered.
+// Orders and inputs in the loop: what an order is answered, e-stop, enable, a command that is only
+// watched.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,25 +13,6 @@ using control::Event;
 using control::Refusal;
 using control::State;
 
-control::GuardConfig guard(const char* kind, const char* action) {
-  control::GuardConfig config;
-  config.id = config.kind = kind;
-  config.action = action;
-  return config;
-}
-
-control::GuardConfig travel_to(double high_m, const char* action) {
-  control::GuardConfig config = guard("travel", action);
-  config.high_m = high_m;
-  return config;
-}
-
-SafetyRules rules_of(const std::vector<control::GuardConfig>& guards) {
-  SafetyRules rules = without_blending();
-  rules.safety.guards = guards;
-  return rules;
-}
-
 /// A bench with one switch of that role.
 struct SwitchBench : LoopBench {
   SwitchBench(hal::InputRole role, double value, const SafetyRules& rules = without_blending())
@@ -40,20 +21,6 @@ struct SwitchBench : LoopBench {
   }
   std::shared_ptr<FakeInput> input;
 };
-
-/// Orders and returns what the loop answers in the next tick.
-control::Answer ask(LoopBench& bench, Event event, std::uint32_t number = 7) {
-  Command command;
-  command.event = event;
-  command.number = number;
-  command.expires_ns = INT64_MAX;
-  bench.commands.push(command);
-  bench.tick();
-  const control::Answer answer = control::unpack(bench.stats.answer.load());
-  EXPECT_EQ(answer.number, number);
-  EXPECT_EQ(answer.state, bench.state());
-  return answer;
-}
 
 TEST(Answer, PassesThroughOneWord) {
   const control::Answer answer{0xfedcba98U, Refusal::guard, State::latched, 31};
@@ -167,174 +134,16 @@ TEST(Monitor, TakesTheCommandFromItsInput) {
   EXPECT_TRUE(bench.rig.writes.empty());
 }
 
-TEST(Hold, FreezesTheReferenceWhereTheRodIsAndAStartResumes) {
-  LoopBench bench({}, true, rules_of({travel_to(0.2, "hold")}));
-  bench.run();
-  bench.rig.y_m = 0.21;
-  EXPECT_DOUBLE_EQ(bench.sample().reference_m, 0.21);
-  bench.rig.y_m = 0.19;
-  const estimator::fdi::Sample sample = bench.sample();
-  EXPECT_DOUBLE_EQ(sample.reference_m, 0.21) << "held, not following the rod";
-  EXPECT_NEAR(sample.u_applied_V, kFakeNull_V + 100.0 * 0.02, kRounding_V) << "the law goes on";
-  EXPECT_TRUE(bench.stats.holding.load());
-  EXPECT_EQ(bench.state(), State::run);
-  EXPECT_EQ(ask(bench, Event::start).refusal, Refusal::none);
-  EXPECT_FALSE(bench.stats.holding.load());
-  EXPECT_DOUBLE_EQ(bench.sample().reference_m, 0.3);
-}
-
-TEST(Hold, CanBeOrderedInRunOnly) {
+TEST(Missing, ForbidsToArmButLatchesNothingThatIsDisarmed) {
   LoopBench bench;
-  Command command;
-  command.kind = Command::Kind::hold;
-  command.expires_ns = INT64_MAX;
-  command.number = 3;
-  bench.commands.push(command);
-  bench.tick();
-  EXPECT_EQ(control::unpack(bench.stats.answer.load()).refusal, Refusal::state);
-  bench.run();
-  bench.rig.y_m = 0.17;
-  bench.commands.push(command);
-  EXPECT_DOUBLE_EQ(bench.sample().reference_m, 0.17);
-}
-
-TEST(RampToNull, IsAStraightLineThenDisarmed) {
-  SafetyRules rules = rules_of({travel_to(0.2, "ramp")});
-  rules.safety.ramp_s = 0.05;  // ten periods
-  LoopBench bench({}, true, rules);
-  bench.run();
-  const double offset_V = bench.last_V() - kFakeNull_V;
-  bench.rig.y_m = 0.21;
-  for (int k = 0; k < 10; ++k) {
-    bench.tick();
-    EXPECT_NEAR(bench.last_V(), kFakeNull_V + offset_V * (1.0 - k / 10.0), 1e-9) << k;
-    EXPECT_EQ(bench.state(), State::run);
-  }
-  bench.tick();
-  EXPECT_EQ(bench.last_V(), kFakeNull_V);
-  EXPECT_EQ(bench.state(), State::disarmed);
-}
-
-TEST(RampToNull, GivesWayToALatchAndToAStall) {
-  for (const bool stall : {true, false}) {
-    SafetyRules rules = rules_of({travel_to(0.2, "ramp"), guard("speed", "latch")});
-    rules.safety.guards[1].limit_mps = 100.0;
-    LoopBench bench({}, true, rules);
-    bench.run();
-    bench.rig.y_m = 0.21;
-    bench.tick();
-    ASSERT_TRUE(bench.stats.ramping.load());
-    if (stall) {
-      bench.clock.advance_ns(10 * kFakePeriod_ns + 1);
-    } else {
-      bench.rig.y_m = 2.0;
-    }
-    bench.tick();
-    EXPECT_EQ(bench.last_V(), kFakeNull_V);
-    EXPECT_EQ(bench.state(), stall ? State::disarmed : State::latched);
-  }
-}
-
-TEST(Guards, OfMotionActInRunOnlyButShowAlways) {
-  LoopBench bench({}, true, rules_of({travel_to(0.05, "latch")}));
-  bench.tick();
-  EXPECT_EQ(bench.state(), State::disarmed);
-  EXPECT_EQ(bench.stats.guards.active(), 1U << control::kBuiltIn);
-  EXPECT_EQ(bench.stats.guards.take_raised(), 1U << control::kBuiltIn);
-  EXPECT_EQ(bench.stats.guards.value(control::kBuiltIn), 0.1);
-  bench.run();
-  EXPECT_EQ(bench.state(), State::run) << "a rod outside may come back";
-  bench.rig.y_m = 0.11;
-  bench.tick();
-  EXPECT_EQ(bench.state(), State::latched);
-  EXPECT_EQ(bench.stats.trip.load(), Trip::guard);
-  EXPECT_EQ(bench.stats.trip_guard.load(), control::kBuiltIn);
-}
-
-TEST(Guards, SensorsThatDisagreeForbidToArmAndLatch) {
-  SafetyRules rules = rules_of({guard("disagree", "latch")});
-  rules.safety.guards[0].tolerance_m = 1e-3;
-  LoopBench bench({}, true, rules);
-  const auto spare = std::make_shared<FakeRig>(nullptr);
-  bench.spare_rods.push_back({"second", spare});
-  bench.run();
-  EXPECT_EQ(bench.state(), State::run);
-  spare->y_m = 0.1012;
-  bench.tick();
-  EXPECT_EQ(bench.state(), State::latched);
-  bench.order(Event::reset);
-  EXPECT_EQ(ask(bench, Event::arm).refusal, Refusal::guard);
-  spare->quality = hal::Quality::bad;
-  bench.tick();
-  EXPECT_EQ(ask(bench, Event::arm).refusal, Refusal::none)
-      << "a spare without a reading is counted";
-  EXPECT_EQ(bench.stats.spare_rods[0].bad.value(), 2);
-}
-
-TEST(Guards, StaleIsTheReadingsOwnTime) {
-  SafetyRules rules = rules_of({guard("stale", "latch")});
-  rules.safety.guards[0].age_s = 0.012;
-  LoopBench bench({}, true, rules);
-  bench.tick();
-  bench.run();
-  bench.rig.t_ns = bench.clock.now_ns();
-  for (int k = 0; k < 2; ++k) {
-    bench.tick();
-    EXPECT_EQ(bench.state(), State::run) << k;
-  }
-  bench.tick();
-  EXPECT_EQ(bench.state(), State::latched) << "15 ms old";
-}
-
-TEST(Guards, OverrunTakesTheActionOfItsEntry) {
-  LoopConfig config;
-  config.max_lost_in_a_row = 1;
-  LoopBench bench(config, true, rules_of({guard("overrun", "hold")}));
-  bench.run();
-  bench.clock.advance_ns(3 * kFakePeriod_ns + 1);
-  bench.rig.y_m = 0.15;
-  EXPECT_DOUBLE_EQ(bench.sample().reference_m, 0.15);
-  EXPECT_EQ(bench.state(), State::run);
-}
-
-TEST(Start, BeginsWhereTheRodIsAndSoDoesTheLawAfterANull) {
-  SafetyRules rules;
-  rules.safety.blend_s = 1.0;
-  LoopBench bench({}, true, rules);
-  bench.run();
-  EXPECT_EQ(bench.last_V(), kFakeNull_V) << "no error, no command";
-  for (int k = 0; k < 1000; ++k) bench.tick();
-  EXPECT_NEAR(bench.last_V(), kLaw_V, kRounding_V);
   bench.rig.quality = hal::Quality::bad;
-  bench.tick();
+  for (int k = 0; k < 10; ++k) bench.tick();
+  EXPECT_EQ(bench.state(), State::disarmed);
+  const control::Answer answer = ask(bench, Event::arm);
+  EXPECT_EQ(answer.refusal, Refusal::guard);
+  EXPECT_EQ(answer.guard, static_cast<std::uint8_t>(control::GuardKind::missing));
   bench.rig.quality = hal::Quality::good;
-  EXPECT_DOUBLE_EQ(bench.sample().reference_m, 0.1);
-  EXPECT_EQ(bench.last_V(), kFakeNull_V);
-}
-
-TEST(Start, NeedsAPosition) {
-  LoopBench bench;
-  bench.order(Event::arm);
-  bench.tick();
-  bench.rig.quality = hal::Quality::bad;
-  EXPECT_EQ(ask(bench, Event::start).refusal, Refusal::position);
-}
-
-TEST(Permit, TogglesWithEveryGoodTickAndStopsWithATrip) {
-  LoopBench bench({}, true, rules_of({travel_to(0.2, "latch")}));
-  bench.run();
-  for (int k = 0; k < 9; ++k) bench.tick();
-  EXPECT_EQ(bench.permit.edges, 10);
-  bench.clock.advance_ns(2 * kFakePeriod_ns + 1);
-  bench.tick();
-  EXPECT_EQ(bench.permit.edges, 10) << "an overrun is no good tick";
-  bench.tick();
-  EXPECT_EQ(bench.permit.edges, 11);
-  bench.rig.y_m = 0.21;
-  for (int k = 0; k < 5; ++k) bench.tick();
-  EXPECT_EQ(bench.state(), State::latched);
-  EXPECT_EQ(bench.permit.edges, 11);
-  EXPECT_EQ(bench.stats.permit_good.value(), 11);
+  EXPECT_EQ(ask(bench, Event::arm).refusal, Refusal::none);
 }
 
 }  // namespace

@@ -1,0 +1,46 @@
+#include "daemon/attendant.h"
+
+#include <poll.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+namespace monitor {
+namespace {
+
+constexpr int kLook_ms = 100;
+/// While the loop owes an answer.
+constexpr int kShortLook_ms = 1;
+
+}  // namespace
+
+sigset_t stop_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int signal : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&set, signal);
+  return set;
+}
+
+StopFile::StopFile() {
+  const sigset_t set = stop_signals();
+  file_ = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
+}
+
+StopFile::~StopFile() { close(file_); }
+
+bool StopFile::came() const noexcept {
+  signalfd_siginfo info{};
+  return read(file_, &info, sizeof info) == sizeof info;
+}
+
+bool Attendant::attend() {
+  if (socket_ == nullptr) {
+    pollfd file{stop_.file(), POLLIN, 0};
+    poll(&file, 1, kLook_ms);
+  } else {
+    socket_->wait(order_waits_ ? kShortLook_ms : kLook_ms, stop_.file());
+    order_waits_ = desk_.serve(*socket_);
+  }
+  return stop_.came();
+}
+
+}  // namespace monitor
