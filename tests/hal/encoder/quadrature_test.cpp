@@ -72,6 +72,10 @@ TEST(Quadrature, ResyncMovesOneQuarterWhereOneLevelDiffersAndKeepsThePhaseElsewh
   QuadratureDecoder both(levels_in(0));
   both.resync(levels_in(2));
   both.refer();
+  QuadratureDecoder coarse = both;
+  coarse.edge(testing::edge_between(2, 3, 0));
+  coarse.edge(testing::edge_between(3, 4, 0));
+  EXPECT_EQ(coarse.counts(1), 1) << "a cycle begins in phase 0";
   for (std::int64_t quarter = 2; quarter < 10; ++quarter) {
     both.edge(testing::edge_between(quarter, quarter + 1, 0));
   }

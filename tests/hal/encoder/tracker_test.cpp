@@ -98,13 +98,17 @@ TEST(Tracker, AnEdgeThatComesLateIsPutInItsPlace) {
 
 TEST(Tracker, AnEdgeThatComesLaterThanItCanUndoMakesTheCountUncertain) {
   Bench bench;
-  bench.move_to(20);
-  bench.step();
-  bench.move_to(40);
-  bench.step();
-  bench.source.hold_back(edge_between(0, 1, 1));
+  bench.source.hold_back(edge_between(0, 1, bench.t_ns += 1000));
+  for (int i = 0; i < 20; ++i) {  // B dithers: more edges than are kept
+    bench.source.move(edge_between(1, 2, bench.t_ns += 1000));
+    bench.source.move(edge_between(2, 1, bench.t_ns += 1000));
+    bench.step(0);
+  }
+  EXPECT_FALSE(bench.tracker.snapshot().lost) << "nothing contradicts it yet";
+  bench.source.move(edge_between(1, 0, bench.t_ns += 1000));
+  EXPECT_TRUE(bench.step(0).lost) << "A falls though it never rose";
   bench.source.release();
-  EXPECT_TRUE(bench.step(0).lost);
+  EXPECT_TRUE(bench.step(0).lost) << "it has risen, but too long ago";
 }
 
 TEST(Tracker, AFullQueueMakesTheCountUncertainUntilItIsReferred) {
