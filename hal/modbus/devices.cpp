@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "hal/modbus/phase.h"
+
 namespace hal::modbus {
 namespace {
 
@@ -49,8 +51,10 @@ class ModbusInput final : public Input {
 
 class ModbusRod final : public RodSensor {
  public:
-  ModbusRod(Channel position, std::unique_ptr<Channel> command)
-      : position_(std::move(position)), command_(std::move(command)) {}
+  ModbusRod(Channel position, std::unique_ptr<Channel> command, double jitter_s)
+      : position_(std::move(position)),
+        command_(std::move(command)),
+        phase_(std::llround(jitter_s * 1e9)) {}
 
   Reading read(const Tick& tick) noexcept override {
     const InputReading position = position_.read(tick);
@@ -58,6 +62,8 @@ class ModbusRod final : public RodSensor {
     reading.y_m = position.value;
     reading.t_ns = position.t_ns;
     reading.quality = position.quality;
+    const bool in_phase = phase_.keeps(position.t_ns, tick.nominal_ns);
+    if (reading.quality == Quality::good && !in_phase) reading.quality = Quality::stale;
     if (command_ != nullptr) reading.command_V = command_->read(tick).value;
     return reading;
   }
@@ -65,6 +71,7 @@ class ModbusRod final : public RodSensor {
  private:
   Channel position_;
   std::unique_ptr<Channel> command_;  ///< null: the device does not tell
+  Phase phase_;
 };
 
 class ModbusValve final : public ValveDrive {
@@ -101,7 +108,8 @@ Offer make_devices(const std::shared_ptr<Link>& link, const Freshness& freshness
     const Channel channel(link, i, freshness);
     if (r.role == "rod") {
       auto command = readback ? std::make_unique<Channel>(link, *readback, freshness) : nullptr;
-      offer.rods[r.name] = std::make_shared<ModbusRod>(channel, std::move(command));
+      offer.rods[r.name] =
+          std::make_shared<ModbusRod>(channel, std::move(command), freshness.jitter_s);
     } else {
       offer.inputs[r.name] = std::make_shared<ModbusInput>(channel);
     }

@@ -9,10 +9,11 @@
 
 namespace hal::modbus {
 
-/// Ages from which a reading is stale, then bad.
+/// When a reading is stale, then bad.
 struct Freshness {
-  double stale_after_s = 0.0125;
-  double bad_after_s = 0.025;
+  double stale_after_s = 0.0125;  ///< age
+  double bad_after_s = 0.025;     ///< age
+  double jitter_s = 5e-4;         ///< stale when it was measured further from its usual moment
 };
 
 /// `label` opens the summary: "modbus 127.0.0.1:502".

@@ -19,6 +19,9 @@ constexpr std::int64_t kFirstPause_ns = 10'000'000;
 /// The loop itself distrusts its law after this long.
 constexpr std::int64_t kSilence_ns = 50'000'000;
 constexpr int kOldCommand_periods = 2;
+constexpr int kLostGrid_periods = 20;
+/// By which the loop's grid is put later each period, in case it was taken for too early.
+constexpr std::int64_t kCreep_ns = 100;
 /// How long the end may wait for the thread, beyond the time-outs of two requests.
 constexpr int kEnd_ms = 10;
 
@@ -60,6 +63,12 @@ Link::~Link() {
 void Link::pace(const Tick& tick) noexcept {
   if (tick.index == paced_tick_) return;
   paced_tick_ = tick.index;
+  // A tick may come late, none comes early: the earliest show where the grid is.
+  const std::int64_t begun_ns = monotonic_ns() - tick.nominal_ns;
+  const std::int64_t late_ns = begun_ns - grid_ns_;
+  grid_ns_ =
+      late_ns < 0 || late_ns > kLostGrid_periods * period_ns_ ? begun_ns : grid_ns_ + kCreep_ns;
+  next_tick_ns_.store(grid_ns_ + tick.nominal_ns + period_ns_, std::memory_order_relaxed);
   if (driven_.load(std::memory_order_relaxed)) return;  // the command will do it
   paced_.store(true, std::memory_order_release);
   sem_post(&wake_);
@@ -156,8 +165,7 @@ void Link::work(std::int64_t now_ns) noexcept {
     pause_ns_ = 0;
   }
   if (round && later) {
-    const std::int64_t from_ns = command ? command->t_ns : now_ns;
-    read_due_ns_ = from_ns + period_ns_ - to_ns(config_.read_ahead_s);
+    read_due_ns_ = next_tick_ns_.load(std::memory_order_relaxed) - to_ns(config_.read_ahead_s);
   }
 }
 

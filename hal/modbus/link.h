@@ -107,6 +107,8 @@ class Link {
   std::atomic<std::int64_t> given_ns_{0};          ///< when the newest command was given
   std::vector<std::atomic<std::int8_t>> outputs_;  ///< -1: nothing new
   std::int64_t paced_tick_ = -1;
+  std::int64_t grid_ns_ = 0;                   ///< when the loop's period 0 began
+  std::atomic<std::int64_t> next_tick_ns_{0};  ///< when its next period will begin
 
   // To the loop.
   Latest<Snapshot> latest_;

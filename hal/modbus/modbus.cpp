@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "config/schema/error.h"
 #include "hal/modbus/devices.h"
@@ -49,6 +50,8 @@ void ModbusConfig::visit(config::schema::Visitor& v) {
   v.number({"longest_pause_s", "between two attempts to connect"}, longest_pause_s, {0.01, 60.0});
   v.number({"stale_after_s", "age from which a reading is stale"}, stale_after_s, {1e-3, 10.0});
   v.number({"bad_after_s", "age from which it is none"}, bad_after_s, {1e-3, 10.0});
+  v.number({"jitter_s", "stale when measured further from its usual moment of the period"},
+           jitter_s, {1e-5, 10.0});
   v.boolean({"combined", "function 23: command and reading in one transaction"}, combined);
   v.boolean({"multiple_only", "the device knows function 16 but not 6"}, multiple_only);
   v.number({"read_ahead_s", "read so long before the loop's next period; 0: after the write"},
@@ -169,10 +172,29 @@ Offer ModbusBackend::open(const Opening& opening) const {
       survey(*port, plan, {opening.file, device, config_.connect_timeout_s, config.port.timeout_s});
   auto link =
       std::make_shared<Link>(config, std::move(plan), std::move(port), std::move(counters), first);
-  const double bad_after_s =
+  Freshness freshness;
+  freshness.stale_after_s = config.stale_after_s;
+  freshness.bad_after_s =
       std::isnan(config_.bad_after_s) ? 2.0 * config.stale_after_s : config_.bad_after_s;
-  return make_devices(link, {config.stale_after_s, bad_after_s},
+  freshness.jitter_s = std::isnan(config_.jitter_s) ? 0.1 * config.period_s : config_.jitter_s;
+  return make_devices(link, freshness,
                       "modbus " + (config_.address.empty() ? config_.serial : config_.address));
+}
+
+std::vector<std::string> ModbusBackend::notes(const Opening& opening) const {
+  const LinkConfig link = link_config(opening);
+  const auto ms = [](double s) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g ms", s * 1e3);
+    return std::string(text);
+  };
+  return {"modbus " + (config_.address.empty() ? config_.serial : config_.address) +
+          ": a reply within " + ms(link.port.timeout_s) + ", position read " +
+          (link.read_ahead_s > 0.0 ? ms(link.read_ahead_s) + " before its period"
+                                   : std::string("with the command before")) +
+          ", declared delay " + ms(config_.delay_s) + " from a write to the valve, " +
+          (std::isnan(config_.watchdog_s) ? std::string("no time-out of the device")
+                                          : "device at null after " + ms(config_.watchdog_s))};
 }
 
 }  // namespace hal::modbus

@@ -11,8 +11,10 @@
 //   type = "float32"
 //
 // Requests wait for answers in a thread of their own (link.h); registers.h and plan.h say what a
-// map may hold. A reading is good while it is fresh, stale when it is older than stale_after_s, and
-// bad when it is older than bad_after_s, out of its limits, or while there is no connection.
+// map may hold. A reading is good while it is fresh; stale when it is older than stale_after_s, has
+// been handed out before, or was measured further than jitter_s from its usual moment of the
+// period; bad when it is older than bad_after_s, out of its limits, or while there is no
+// connection.
 #pragma once
 
 #include <memory>
@@ -37,6 +39,7 @@ struct ModbusConfig {
   double longest_pause_s = 1.0;
   double stale_after_s = kMissing;  ///< NaN: 2.5 periods
   double bad_after_s = kMissing;    ///< NaN: twice stale_after_s
+  double jitter_s = kMissing;       ///< NaN: 0.1 periods
   bool combined = false;
   bool multiple_only = false;
   double read_ahead_s = 0.0;
@@ -66,6 +69,7 @@ class ModbusBackend final : public Backend {
             .process_dead_s = config_.watchdog_s,
             .latency_s = config_.delay_s};
   }
+  [[nodiscard]] std::vector<std::string> notes(const Opening& opening) const override;
 
  private:
   [[nodiscard]] LinkConfig link_config(const Opening& opening) const;

@@ -13,6 +13,8 @@ namespace {
 constexpr std::int64_t kNever_ns = std::numeric_limits<std::int64_t>::max();
 /// A count of an encoder that has no steps.
 constexpr double kIdealCount_m = 1e-6;
+/// Time for the reply to whoever asked for silence.
+constexpr std::int64_t kMuteLead_ns = 100'000'000;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 std::int64_t to_ns(double s) { return std::llround(s * 1e9); }
@@ -195,7 +197,10 @@ std::string BenchRig::set(std::string_view text) {
            std::to_string(max);
   }
   *target = value;
-  if (target == &mute_s_) mute_until_ns_ = now_ns_ + to_ns(value);
+  if (target == &mute_s_) {
+    mute_from_ns_ = now_ns_ + kMuteLead_ns;
+    mute_until_ns_ = mute_from_ns_ + to_ns(value);
+  }
   return "";
 }
 

@@ -54,11 +54,14 @@ class BenchRig {
   /// The rod's true position and speed.
   [[nodiscard]] const plant_sim::Plant& plant() const noexcept { return *plant_; }
   /// No answers to anybody while this holds.
-  [[nodiscard]] bool mute() const noexcept { return now_ns_ < mute_until_ns_; }
+  [[nodiscard]] bool mute() const noexcept {
+    return now_ns_ >= mute_from_ns_ && now_ns_ < mute_until_ns_;
+  }
 
   /// "name=value" or "name=xFACTOR" (of the value at the start): a parameter of the plant, or
-  /// e_stop, enable, mute_s, encoder_frozen, valve_sign, valve_scale, encoder_sign, encoder_scale,
-  /// encoder_offset_m, null_V, command_timeout_s, permit_timeout_s. Returns "" or what is wrong.
+  /// e_stop, enable, mute_s (no answers, from 0.1 s later), encoder_frozen, valve_sign,
+  /// valve_scale, encoder_sign, encoder_scale, encoder_offset_m, null_V, command_timeout_s,
+  /// permit_timeout_s. Returns "" or what is wrong.
   std::string set(std::string_view text);
 
  private:
@@ -95,6 +98,7 @@ class BenchRig {
   std::int64_t schedule_steps_ = 0;  ///< of them, since the first command
   std::int64_t command_ns_ = -1;     ///< of the newest command; -1: none came
   std::int64_t permit_ns_ = -1;
+  std::int64_t mute_from_ns_ = 0;
   std::int64_t mute_until_ns_ = 0;
   bool permit_on_ = false;
   double asked_V_;

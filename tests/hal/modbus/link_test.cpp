@@ -21,7 +21,7 @@ constexpr std::uint16_t kNullRaw = 250;
 
 std::string map_of(const std::string& options = "", const std::string& registers = "") {
   return options +
-         "timeout_s = 0.1\nlongest_pause_s = 0.05\npriority = 0\n"
+         "timeout_s = 0.1\njitter_s = 10.0\nlongest_pause_s = 0.05\npriority = 0\n"
          "[modbus.registers.position]\nrole = \"rod\"\naddress = 4\nscale = 1e-3\nhigh = 2.0\n"
          "[modbus.registers.u]\nrole = \"valve_command\"\naddress = 2\ntype = \"int16\"\n"
          "scale = 1e-3\nlow = -10.0\nhigh = 10.0\n" +

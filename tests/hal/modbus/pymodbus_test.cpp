@@ -118,7 +118,8 @@ class Cable {
   std::thread thread_;
 };
 
-const std::string kWaits = "timeout_s = 1.0\nconnect_timeout_s = 2.0\npriority = 0\n";
+const std::string kWaits =
+    "timeout_s = 1.0\njitter_s = 10.0\nconnect_timeout_s = 2.0\npriority = 0\n";
 
 std::string entry(const std::string& name, const std::string& role, int address,
                   const std::string& type, const std::string& order) {

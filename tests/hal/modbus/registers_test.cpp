@@ -6,6 +6,7 @@
 #include <array>
 
 #include "hal/modbus/mailbox.h"
+#include "hal/modbus/phase.h"
 #include "tests/hal/modbus/stand.h"
 
 namespace hal::modbus {
@@ -93,6 +94,23 @@ TEST(CommandBox, KnowsTheAgeOfACommandAcrossTheWrapOfItsStamp) {
   const auto command = box.take(wrap_ns + 2'000'000);
   ASSERT_TRUE(command.has_value());
   EXPECT_NEAR(static_cast<double>(command->t_ns - (wrap_ns - 1'000'000)), 0.0, 131'072.0);
+}
+
+// Readings every 5 ms, 1.5 ms before their tick; times in us.
+TEST(Phase, KeepsReadingsOfTheUsualMomentOnly) {
+  Phase phase(500'000);
+  const auto keeps = [&](std::int64_t t_us, std::int64_t tick) {
+    return phase.keeps(t_us * 1000, tick * 5'000'000);
+  };
+  EXPECT_TRUE(keeps(98'500, 0)) << "the first one sets it";
+  EXPECT_TRUE(keeps(103'600, 1));
+  EXPECT_FALSE(keeps(103'600, 2)) << "handed out before";
+  EXPECT_FALSE(keeps(114'600, 3)) << "1.1 ms late";
+  EXPECT_TRUE(keeps(118'500, 4));
+  EXPECT_FALSE(keeps(123'500, 7)) << "of a tick that was skipped";
+  for (int tick = 8; tick < 11; ++tick) EXPECT_FALSE(keeps(100'000 + 5000 * tick, tick));
+  EXPECT_TRUE(keeps(155'000, 11)) << "a new habit";
+  EXPECT_TRUE(keeps(160'000, 12));
 }
 
 const std::string kAddress = "address = \"127.0.0.1:9\"\n";

@@ -14,7 +14,7 @@ constexpr std::uint16_t kNullRaw = 250;
 
 std::string rtu(const Device& device, const std::string& options = "") {
   return "serial = \"" + device.serial() + "\"\nbaud = 115200\nparity = \"none\"\n" + options +
-         "timeout_s = 0.1\nlongest_pause_s = 0.05\npriority = 0\n"
+         "timeout_s = 0.1\njitter_s = 10.0\nlongest_pause_s = 0.05\npriority = 0\n"
          "[modbus.registers.position]\nrole = \"rod\"\naddress = 4\nscale = 1e-3\n"
          "[modbus.registers.u]\nrole = \"valve_command\"\naddress = 2\ntype = \"int16\"\n"
          "scale = 1e-3\n";

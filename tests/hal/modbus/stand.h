@@ -11,6 +11,7 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "hal/device_thread.h"
 #include "hal/modbus/modbus.h"
 
 namespace hal::modbus {
@@ -55,11 +56,11 @@ class Stand {
   /// One period: reads, writes, waits for the next.
   Reading turn(double u_V) {
     const Reading reading = read();
-    applied_ = offer_.valve->write(u_V, {tick_, 0});
+    applied_ = offer_.valve->write(u_V, {tick_, nominal_ns()});
     std::this_thread::sleep_for(std::chrono::duration<double>(kPeriod_s));
     return reading;
   }
-  Reading read() { return offer_.rods.at("position")->read({++tick_, 0}); }
+  Reading read() { return offer_.rods.at("position")->read({++tick_, nominal_ns()}); }
   [[nodiscard]] const Applied& applied() const noexcept { return applied_; }
   [[nodiscard]] Offer& offer() noexcept { return offer_; }
 
@@ -72,7 +73,11 @@ class Stand {
   }
 
  private:
+  /// Its periods are as long as the machine makes them.
+  [[nodiscard]] std::int64_t nominal_ns() const { return monotonic_ns() - start_ns_; }
+
   Offer offer_;
+  std::int64_t start_ns_ = monotonic_ns();
   std::int64_t tick_ = 0;
   Applied applied_;
 };

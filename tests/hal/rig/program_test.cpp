@@ -1,0 +1,135 @@
+// spoolwatch-rig as its clients see it: requests byte by byte, as the protocol's text has them.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include "tests/hal/rig/client.h"
+#include "tests/hal/rig/rig_process.h"
+
+namespace hal::rig {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::vector<std::string> quiet(const std::vector<std::string>& more = {}) {
+  std::vector<std::string> all = {"--config", shipped_config("bench_rig.toml"), "--set",
+                                  "bus.priority=0"};
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+// 2.0 V is 40 00 00 00.
+const Bytes kWrite2V{16, 0, 2, 0, 2, 4, 0x40, 0, 0, 0};
+
+TEST(RigProgram, AnswersWithItsPositionInBothTables) {
+  RigProcess rig(quiet());
+  Client client(rig);
+  for (const int function : {3, 4}) {
+    const Bytes reply = client.ask({static_cast<std::uint8_t>(function), 0, 4, 0, 4});
+    ASSERT_EQ(reply.size(), 10U);
+    EXPECT_EQ(reply[0], function);
+    EXPECT_NEAR(float_at(reply, 2), 0.305, 5e-5);
+    const auto counts =
+        static_cast<std::int32_t>(reply[6] << 24 | reply[7] << 16 | reply[8] << 8 | reply[9]);
+    EXPECT_NEAR(counts * 5e-6, 0.305, 5e-5);
+  }
+  EXPECT_THAT(client.ask({2, 0, 0, 0, 2}), ElementsAre(2, 1, 3)) << "e-stop released, enabled";
+}
+
+TEST(RigProgram, TakesACommandInVoltsOrMillivoltsAndMovesTheRod) {
+  RigProcess rig(quiet());
+  Client client(rig);
+  EXPECT_THAT(client.ask(kWrite2V), ElementsAre(16, 0, 2, 0, 2));
+  EXPECT_NEAR(float_at(client.ask({3, 0, 8, 0, 2}), 2), 2.0, 0.005);
+  double y_m = 0.0;
+  for (int i = 0; i < 1000 && !(y_m > 0.32); ++i) {
+    y_m = float_at(client.ask({3, 0, 4, 0, 2}), 2);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_GT(y_m, 0.32) << "positive extends";
+  EXPECT_THAT(client.ask({6, 0, 0, 0xFC, 0x18}), ElementsAre(6, 0, 0, 0xFC, 0x18));  // -1000 mV
+  EXPECT_NEAR(float_at(client.ask({3, 0, 8, 0, 2}), 2), -1.0, 0.005);
+  // Function 23 writes 2 V and reads what the converter gave until then.
+  const Bytes both = client.ask({23, 0, 8, 0, 2, 0, 2, 0, 2, 4, 0x40, 0, 0, 0});
+  EXPECT_NEAR(float_at(both, 2), -1.0, 0.005);
+  EXPECT_NEAR(float_at(client.ask({3, 0, 8, 0, 2}), 2), 2.0, 0.005);
+}
+
+TEST(RigProgram, RefusesWhatItDoesNotHaveOrDoesNotLetBeWritten) {
+  RigProcess rig(quiet());
+  Client client(rig);
+  EXPECT_THAT(client.ask({3, 0x13, 0x88, 0, 1}), ElementsAre(0x83, 2));  // 5000
+  EXPECT_THAT(client.ask({3, 0, 14, 0, 2}), ElementsAre(0x83, 2));
+  EXPECT_THAT(client.ask({6, 0, 4, 0, 0}), ElementsAre(0x86, 2)) << "the position";
+  EXPECT_THAT(client.ask({16, 0, 3, 0, 2, 4, 0, 0, 0, 0}), ElementsAre(0x90, 2));
+  EXPECT_THAT(client.ask({6, 0x04, 0x4C, 0, 0}), ElementsAre(0x86, 2)) << "the reply, 1100";
+  EXPECT_THAT(client.ask({23, 0, 4, 0, 2, 0, 6, 0, 1, 2, 0, 0}), ElementsAre(0x97, 2));
+  EXPECT_THAT(client.ask({0x41, 0, 0, 0, 0}), testing::Not(testing::IsEmpty()));
+}
+
+TEST(RigProgram, ItsTimeOutIsARegister) {
+  RigProcess rig(quiet());
+  Client client(rig);
+  client.ask({6, 0, 1, 0, 50});
+  client.ask(kWrite2V);
+  std::this_thread::sleep_for(std::chrono::milliseconds(60));
+  const Bytes reply = client.ask({3, 0, 8, 0, 3});
+  EXPECT_EQ(float_at(reply, 2), 0.0);
+  EXPECT_EQ(reply.at(7), 3) << "a command came, and timed out";
+}
+
+TEST(RigProgram, ServesSeveralClientsAndDropsTheOneThatStopsInAWord) {
+  RigProcess rig(quiet());
+  Client one(rig);
+  Client two(rig);
+  Client broken(rig);
+  broken.send_bytes({0, 1, 0, 0, 0});
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(one.ask({3, 0, 4, 0, 2}).size(), 6U);
+    EXPECT_EQ(two.ask({3, 0, 4, 0, 2}).size(), 6U);
+  }
+  EXPECT_TRUE(broken.closed());
+}
+
+TEST(RigProgram, TakesFaultsFromTheCommandLine) {
+  RigProcess rig(quiet());
+  Client client(rig);
+  EXPECT_EQ(run_rig({"set", "--address", rig.address(), "e_stop=0", "enable=0"}).exit_code, 0);
+  EXPECT_THAT(client.ask({2, 0, 0, 0, 2}), ElementsAre(2, 1, 0));
+  client.ask(kWrite2V);
+  EXPECT_EQ(float_at(client.ask({3, 0, 8, 0, 2}), 2), 0.0) << "the e-stop takes the valve";
+  const Ended wrong = run_rig({"set", "--address", rig.address(), "e_stopp=1"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("e_stopp=1: names no parameter: e_stopp"));
+  EXPECT_EQ(run_rig({"set", "--address", rig.address(), "mute_s=0.2"}).exit_code, 0);
+  const std::string address = rig.address();
+  rig.signal(SIGTERM);
+  EXPECT_EQ(rig.wait(), 0);
+  EXPECT_EQ(run_rig({"set", "--address", address, "e_stop=1"}).exit_code, 1) << "nobody there";
+}
+
+TEST(RigProgram, BadConfigurationIsOneLineAndExit78) {
+  const auto expect_78 = [](const std::vector<std::string>& arguments, const std::string& text) {
+    const Ended ended = run_rig(arguments);
+    EXPECT_EQ(ended.exit_code, 78);
+    EXPECT_THAT(ended.err, HasSubstr(text));
+    EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
+  };
+  const std::string config = shipped_config("bench_rig.toml");
+  expect_78({"--config", "/no/such.toml"}, "/no/such.toml");
+  expect_78({"--config", config, "--set", "sim.model=none.toml"}, "[sim] model");
+  expect_78({"--config", config, "--set", "sim.fault.0.parameter=mas_kg"}, "[[sim.fault]]");
+  expect_78({"--config", config, "--set", "field.valve_sgn=1"}, "valve_sgn");
+  expect_78({"--config", config, "--listen", "rig:1502"}, "[bus] listen");
+  expect_78({"--config", config, "--listen", "0", "--serial", "/dev/no-such"}, "[bus] serial");
+  RigProcess rig(quiet());
+  expect_78({"--config", config, "--listen", rig.address()}, "Address already in use");
+  EXPECT_EQ(run_rig({}).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace hal::rig
