@@ -8,7 +8,7 @@ namespace monitor {
 namespace {
 
 constexpr int kLook_ms = 100;
-/// While the loop owes an answer.
+/// While there is something to do: the loop owes an answer, or requests wait.
 constexpr int kShortLook_ms = 1;
 
 }  // namespace
@@ -37,8 +37,8 @@ bool Attendant::attend() {
     pollfd file{stop_.file(), POLLIN, 0};
     poll(&file, 1, kLook_ms);
   } else {
-    socket_->wait(order_waits_ ? kShortLook_ms : kLook_ms, stop_.file());
-    order_waits_ = desk_.serve(*socket_);
+    socket_->wait(soon_ ? kShortLook_ms : kLook_ms, stop_.file());
+    soon_ = desk_.serve(*socket_);
   }
   return stop_.came();
 }

@@ -37,7 +37,7 @@ class Attendant {
   CommandDesk& desk_;
   io::ControlSocket* socket_;
   StopFile stop_;
-  bool order_waits_ = false;
+  bool soon_ = false;  ///< there is something to do
 };
 
 }  // namespace monitor

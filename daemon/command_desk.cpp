@@ -14,6 +14,8 @@ using Kind = io::ControlRequest::Kind;
 constexpr std::int64_t kLife_ns = 250'000'000;
 /// Then the answer is that there is none: longer, so that a late one is not called lost.
 constexpr std::int64_t kPatience_ns = 500'000'000;
+/// Requests at a time: a flood of them must not keep the main thread from a signal to stop.
+constexpr int kAtATime = 8;
 
 }  // namespace
 
@@ -22,7 +24,7 @@ CommandDesk::CommandDesk(const Parts& parts, Identity identity)
 
 bool CommandDesk::serve(io::ControlSocket& socket) {
   io::ControlSocket::Request request;
-  for (;;) {
+  for (int n = 0; n < kAtATime; ++n) {
     if (waiting_) {
       bool answered = false;
       const std::string line = take_answer(answered);
@@ -35,6 +37,7 @@ bool CommandDesk::serve(io::ControlSocket& socket) {
     const std::string line = line_for(io::parse_request(request.line), request.may_act);
     if (!waiting_) socket.answer(client_, line);
   }
+  return true;
 }
 
 std::string CommandDesk::line_for(const io::ControlRequest& request, bool may_act) {

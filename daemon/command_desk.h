@@ -35,7 +35,8 @@ class CommandDesk {
 
   CommandDesk(const Parts& parts, Identity identity);
 
-  /// Takes requests and gives answers; returns whether an order waits for the loop.
+  /// Takes some requests and gives answers; returns whether to come again soon: an order waits for
+  /// the loop, or there are more requests.
   bool serve(io::ControlSocket& socket);
 
  private:

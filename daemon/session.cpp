@@ -49,6 +49,7 @@ auto at(const std::string& place, Make make) {
 template <class Named>
 std::vector<std::string> ids_of(const std::vector<Named>& devices) {
   std::vector<std::string> ids;
+  ids.reserve(devices.size());
   for (const auto& device : devices) ids.push_back(device.id);
   return ids;
 }

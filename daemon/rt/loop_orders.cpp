@@ -39,12 +39,14 @@ Refusal Loop::carry_out(const Command& command) noexcept {
   if (command.kind == Command::Kind::event) return carry_out(command.event, command.at_once);
   if (arming_.state() == State::monitor) return Refusal::monitor;
   const bool run = arming_.state() == State::run && !ramp_.active();
+  if (run && !have_position()) return Refusal::position;
   if (command.kind == Command::Kind::hold) {
     if (!run) return Refusal::state;
-    if (!have_position()) return Refusal::position;
     motion_.hold(y_m_);
     return Refusal::none;
   }
+  // What holds must be able to hold again.
+  if (run) safety_.start(y_m_);
   motion_.follow(control::Sine(command.centre_m, command.amplitude_m, command.frequency_Hz), tick_,
                  run);
   return Refusal::none;

@@ -115,6 +115,21 @@ TEST(Control, ArmsStartsStopsAndSaysTheStateAfterEach) {
   EXPECT_EQ(starts, 1);
 }
 
+TEST(Control, AFloodOfRequestsNeitherStopsTheLoopNorKeepsASignalFromIt) {
+  Service service;
+  std::vector<FILE*> floods;
+  for (int i = 0; i < 4; ++i) {
+    const std::string flood = "while " SPOOLWATCH_BIN_DIR "/spoolwatch status --socket " +
+                              service.socket() + "; do :; done > /dev/null 2>&1";
+    floods.push_back(popen(flood.c_str(), "r"));
+  }
+  EXPECT_EQ(service.order("arm").out, "ARMED\n");
+  EXPECT_EQ(service.order("start").out, "RUN\n");
+  EXPECT_EQ(service.end().exit_code, 0);
+  for (FILE* flood : floods) pclose(flood);  // it ends with the daemon
+  EXPECT_EQ(service.log().samples.back().state, 1);
+}
+
 TEST(Control, WithoutADaemonIsOneLineAndExitCode1) {
   for (const char* word : {"status", "arm", "disarm", "start", "stop", "reset"}) {
     const Result result = spoolwatch(std::string(word) + " --socket /tmp/no/such/socket");

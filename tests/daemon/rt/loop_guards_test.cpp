@@ -47,6 +47,23 @@ TEST(Hold, FreezesTheReferenceWhereTheRodIsAndAStartResumes) {
   EXPECT_DOUBLE_EQ(bench.sample().reference_m, 0.3);
 }
 
+TEST(Hold, HoldsAgainWhenAnotherReferenceLeadsFurtherOut) {
+  LoopBench bench({}, true, rules_of({travel_to(0.2, "hold")}));
+  bench.run();
+  bench.rig.y_m = 0.21;
+  bench.tick();
+  ASSERT_TRUE(bench.stats.holding.load());
+  Command command;
+  command.kind = Command::Kind::sine;
+  command.centre_m = 0.5;
+  command.expires_ns = INT64_MAX;
+  bench.commands.push(command);
+  EXPECT_DOUBLE_EQ(bench.sample().reference_m, 0.5);
+  bench.rig.y_m = 0.2115;
+  EXPECT_DOUBLE_EQ(bench.sample().reference_m, 0.2115);
+  EXPECT_TRUE(bench.stats.holding.load());
+}
+
 TEST(Hold, CanBeOrderedInRunOnly) {
   LoopBench bench;
   Command command;
