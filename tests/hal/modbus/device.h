@@ -88,7 +88,7 @@ class Device {
   Line line_;
   int port_ = 0;
   std::string serial_;
-  int listener_ = -1;
+  std::atomic<int> listener_{-1};
   int pty_ = -1;
   int pty_client_ = -1;  ///< kept open, so that the line does not hang up
   std::vector<Client> clients_;

@@ -172,6 +172,49 @@ TEST(Bench, LeavesTheValveAtNullHoweverItEnds) {
   }
 }
 
+/// Bit 2 of the status: null for want of a command.
+bool timed_out(Client& client) { return (client.ask({3, 0, 10, 0, 1}).at(3) & 2) != 0; }
+
+TEST(Bench, TheRigGoesToItsNullWhenTheDaemonIsStoppedOrKilled) {
+  const Folder folder;
+  const auto log_folder = folder.path() / "log";
+  const RigProcess rig(rig_arguments());
+  Daemon daemon(daemon_arguments(rig.address(), log_folder, 600.0));
+  wait_for_samples(log_folder, 200);
+  Client client(rig);
+  EXPECT_FALSE(timed_out(client));
+  kill(daemon.pid(), SIGSTOP);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1000));  // twice the time-out
+  EXPECT_TRUE(timed_out(client));
+  EXPECT_EQ(float_at(client.ask({3, 0, 8, 0, 2}), 2), 0.0);
+  kill(daemon.pid(), SIGCONT);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1000));
+  EXPECT_FALSE(timed_out(client)) << "commands come again";
+  kill(daemon.pid(), SIGKILL);
+  daemon.wait();
+  std::this_thread::sleep_for(std::chrono::milliseconds(1000));
+  EXPECT_TRUE(timed_out(client));
+}
+
+TEST(Bench, AnEStopAtTheRigLatchesTheDaemon) {
+  const Folder folder;
+  const auto log_folder = folder.path() / "log";
+  const RigProcess rig(rig_arguments());
+  Daemon daemon(daemon_arguments(rig.address(), log_folder, 600.0));
+  wait_for_samples(log_folder, 200);
+  EXPECT_EQ(run_rig({"set", "--address", rig.address(), "e_stop=0"}).exit_code, 0);
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  EXPECT_EQ(run_rig({"set", "--address", rig.address(), "e_stop=1"}).exit_code, 0);
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  kill(daemon.pid(), SIGTERM);
+  EXPECT_EQ(daemon.wait().exit_code, 0);
+  const Log log = read_log(log_folder);
+  ASSERT_FALSE(log.samples.empty());
+  EXPECT_EQ(log.samples[100].state, 3) << "it ran";
+  EXPECT_EQ(log.samples.back().state, 4) << "LATCHED, although it has been released";
+  EXPECT_EQ(log.samples.back().u_applied_V, 0.0);
+}
+
 TEST(Bench, AnAbsentRigIsOneLineAndExit78) {
   const program::Result result =
       program::run({"--config", shipped_config("bench_modbus.toml"), "--lcm-url", "", "--set",
