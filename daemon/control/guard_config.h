@@ -5,7 +5,7 @@
 //   travel     the rod is beyond a limit, or will be after braking     low_m, high_m, braking_mps2
 //   following  |r - y| > limit_m                                       limit_m
 //   speed      |dy/dt| > limit_mps                                     limit_mps
-//   stale      the reading is older than age_s, or called stale        age_s
+//   stale      the reading is older than age_s; called stale, when its age is not known   age_s
 //   frozen     y moves less than least_m while |u - null| > command_V  least_m, command_V
 //   jump       |dy| > limit_m in one period                            limit_m
 //   saturated  the command is at a limit                               -

@@ -120,7 +120,7 @@ void Loop::watch_motion(const hal::Reading& reading, Sample& sample) noexcept {
   control::Facts facts;
   facts.t_s = time_s();
   facts.y_m = y_m_;
-  facts.called_stale = reading.quality == hal::Quality::stale;
+  facts.called_stale = reading.t_ns == 0 && reading.quality == hal::Quality::stale;
   if (reading.t_ns != 0) {
     facts.age_s = static_cast<double>(parts_.clock.now_ns() - reading.t_ns) * 1e-9;
   }

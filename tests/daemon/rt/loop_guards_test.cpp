@@ -167,6 +167,20 @@ TEST(Guards, StaleIsTheReadingsOwnTime) {
   EXPECT_EQ(bench.state(), State::latched) << "15 ms old";
 }
 
+TEST(Guards, StaleIsTheSensorsWordWhereTheAgeIsNotKnown) {
+  for (const bool known : {true, false}) {
+    SafetyRules rules = rules_of({guard("stale", "latch")});
+    rules.safety.guards[0].age_s = 1.0;
+    LoopBench bench({}, true, rules);
+    bench.tick();
+    bench.run();
+    bench.rig.t_ns = known ? bench.clock.now_ns() : 0;
+    bench.rig.quality = hal::Quality::stale;
+    bench.tick();
+    EXPECT_EQ(bench.state(), known ? State::run : State::latched);
+  }
+}
+
 TEST(Guards, OverrunTakesTheActionOfItsEntry) {
   LoopConfig config;
   config.max_lost_in_a_row = 1;
