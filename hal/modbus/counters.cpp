@@ -24,22 +24,31 @@ std::int64_t RoundTrips::quantile_ns(double q) const noexcept {
 }
 
 std::string summary(const Counters& c) {
-  const auto n = [](const Counters::Count& count) {
-    return static_cast<unsigned long long>(count.load(std::memory_order_relaxed));
+  const auto times = [](const RoundTrips& t) {
+    char text[120];
+    const auto us = [&](double q) { return static_cast<double>(t.quantile_ns(q)) * 1e-3; };
+    std::snprintf(text, sizeof text, "p50 %.0f us  p99 %.0f us  p99.9 %.0f us  max %.0f us",
+                  us(0.5), us(0.99), us(0.999), static_cast<double>(t.max_ns()) * 1e-3);
+    return std::string(text);
   };
-  const auto us = [&](double q) {
-    return static_cast<double>(c.round_trips.quantile_ns(q)) * 1e-3;
-  };
-  char line[320];
-  std::snprintf(line, sizeof line,
-                "%llu transactions, round trip p50 %.0f us  p99 %.0f us  p99.9 %.0f us  max %.0f "
-                "us; %llu timeouts, %llu bad replies, %llu link errors, %llu exceptions, %llu "
-                "reconnects, %llu commands expired, %llu silences of the loop",
-                n(c.transactions), us(0.5), us(0.99), us(0.999),
-                static_cast<double>(c.round_trips.max_ns()) * 1e-3, n(c.timeouts), n(c.bad_replies),
-                n(c.link_errors), n(c.exceptions), n(c.reconnects), n(c.expired_commands),
-                n(c.silences));
-  std::string text = line;
+  std::string text =
+      std::to_string(c.transactions.load()) + " transactions, round trip " + times(c.round_trips);
+  if (c.reactions.max_ns() > 0) text += "; position to command " + times(c.reactions);
+  const struct {
+    const Counters::Count& count;
+    const char* what;
+  } rows[] = {{c.timeouts, "timeouts"},
+              {c.bad_replies, "bad replies"},
+              {c.link_errors, "link errors"},
+              {c.exceptions, "exceptions"},
+              {c.reconnects, "reconnects"},
+              {c.expired_commands, "commands expired"},
+              {c.silences, "silences of the loop"}};
+  const char* separator = "; ";
+  for (const auto& row : rows) {
+    text += separator + std::to_string(row.count.load()) + " " + row.what;
+    separator = ", ";
+  }
   const int error = c.last_error.load(std::memory_order_relaxed);
   if (error != 0) text += std::string("; last error: ") + modbus_strerror(error);
   return text;

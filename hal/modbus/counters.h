@@ -10,7 +10,7 @@
 
 namespace hal::modbus {
 
-/// Times in log-linear buckets, 16 to each power of two: quantiles to 6 %.
+/// A distribution of times in log-linear buckets, 16 to each power of two: quantiles to 6 %.
 class RoundTrips {
  public:
   void add(std::int64_t time_ns) noexcept {
@@ -55,6 +55,7 @@ struct Counters {
   Count silences{0};               ///< the loop gave no command for too long: null was written
   std::atomic<int> last_error{0};  ///< errno of the last loss or exception, libmodbus's included
   RoundTrips round_trips;
+  RoundTrips reactions;  ///< from the measurement of a position to the command it led to, taken
 };
 
 /// One line for people: "24000 transactions, round trip p50 ...".

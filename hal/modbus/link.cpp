@@ -38,6 +38,7 @@ Link::Link(const LinkConfig& config, Plan plan, std::unique_ptr<Port> port,
       period_ns_(to_ns(config.period_s)),
       stale_ns_(to_ns(config.stale_after_s)),
       null_bits_(plan_.valve ? plan_.valve->codec.encode(config.null_V) : 0),
+      rod_(plan_.find_role("rod")),
       outputs_(plan_.outputs.size()),
       snapshot_(first) {
   if (plan_.valve) null_frame_ = port_->frame(*plan_.valve, null_bits_);
@@ -176,9 +177,15 @@ void Link::send(const Command& command, std::int64_t now_ns) noexcept {
   if (old && command.bits != null_bits_) {
     counters_->expired_commands.fetch_add(1, std::memory_order_relaxed);
   }
+  const std::int64_t measured_ns = measured();
   if (!write_bits(null ? null_bits_ : command.bits)) return;
+  if (!null && measured_ns != 0) counters_->reactions.add(monotonic_ns() - measured_ns);
   if (!old) taken_ns_.store(command.t_ns, std::memory_order_release);
   if (closing) null_taken_.store(true);
+}
+
+std::int64_t Link::measured() const noexcept {
+  return rod_ ? snapshot_.t_ns[plan_.reads[*rod_].block] : 0;
 }
 
 bool Link::write_bits(Bits bits) noexcept {

@@ -20,6 +20,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -84,6 +85,8 @@ class Link {
   bool greet() noexcept;
   void send(const Command& command, std::int64_t now_ns) noexcept;
   bool write_bits(Bits bits) noexcept;
+  /// When the rod was read last, 0: never.
+  [[nodiscard]] std::int64_t measured() const noexcept;
   void write_outputs() noexcept;
   void read_blocks(std::size_t from) noexcept;
   void keep(std::size_t block, const std::uint16_t* words, std::int64_t t_ns) noexcept;
@@ -96,6 +99,7 @@ class Link {
   const std::int64_t period_ns_;
   const std::int64_t stale_ns_;
   const Bits null_bits_;
+  const std::optional<std::size_t> rod_;  ///< index among the plan's reads
   std::vector<std::uint8_t> null_frame_;
 
   // From the loop.

@@ -1,6 +1,5 @@
 #include "hal/modbus/port.h"
 
-#include <modbus/modbus.h>
 #include <sys/socket.h>
 #include <unistd.h>
 

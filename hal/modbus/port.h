@@ -2,6 +2,8 @@
 // time. What is lost is closed at once, with nothing left behind that could be sent later.
 #pragma once
 
+#include <modbus/modbus.h>
+
 #include <atomic>
 #include <cstdint>
 #include <string>
@@ -9,8 +11,6 @@
 
 #include "hal/modbus/counters.h"
 #include "hal/modbus/plan.h"
-
-struct _modbus;  // libmodbus
 
 namespace hal::modbus {
 
@@ -71,7 +71,7 @@ class Port {
 
   PortConfig config_;
   Counters& counters_;
-  _modbus* context_;
+  modbus_t* context_;
   bool open_ = false;
   int error_ = 0;
   std::atomic<int> file_{-1};

@@ -45,8 +45,8 @@ void bound_waits(modbus_t* context) {
 
 }  // namespace
 
-void Server::Free::operator()(_modbus* context) const { modbus_free(context); }
-void Server::Free::operator()(_modbus_mapping_t* mapping) const { modbus_mapping_free(mapping); }
+void Server::Free::operator()(modbus_t* context) const { modbus_free(context); }
+void Server::Free::operator()(modbus_mapping_t* mapping) const { modbus_mapping_free(mapping); }
 
 Server::Server(const RigConfig& config, BenchRig& rig)
     : rig_(rig),

@@ -2,6 +2,8 @@
 // thread; each request is answered with the plant brought up to the moment it came in.
 #pragma once
 
+#include <modbus/modbus.h>
+
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -9,9 +11,6 @@
 #include <vector>
 
 #include "hal/rig/bench_rig.h"
-
-struct _modbus;  // libmodbus
-struct _modbus_mapping_t;
 
 namespace hal::rig {
 
@@ -37,11 +36,11 @@ class Server {
 
  private:
   struct Free {
-    void operator()(_modbus* context) const;
-    void operator()(_modbus_mapping_t* mapping) const;
+    void operator()(modbus_t* context) const;
+    void operator()(modbus_mapping_t* mapping) const;
   };
-  using Context = std::unique_ptr<_modbus, Free>;
-  using Mapping = std::unique_ptr<_modbus_mapping_t, Free>;
+  using Context = std::unique_ptr<modbus_t, Free>;
+  using Mapping = std::unique_ptr<modbus_mapping_t, Free>;
   struct Written {
     int address = 0;
     int count = 0;
@@ -51,8 +50,8 @@ class Server {
   void open_serial(const RigConfig& config);
   void accept_client();
   /// False when the connection is over.
-  bool serve(_modbus* context);
-  void answer(_modbus* context, const std::uint8_t* query, int length);
+  bool serve(modbus_t* context);
+  void answer(modbus_t* context, const std::uint8_t* query, int length);
   void refresh();
   void apply(const Written& written);
   void obey_text();
