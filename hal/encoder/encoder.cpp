@@ -41,11 +41,11 @@ std::string summary(const Snapshot& rod) {
   std::snprintf(
       line, sizeof line,
       "encoder: %lld edges; count uncertain %lld times (%lld illegal, %lld overflows, %lld "
-      "disagreements), too fast %lld times, %lld index slips",
+      "disagreements, %lld bursts), too fast %lld times, %lld index slips",
       static_cast<long long>(rod.edges), static_cast<long long>(rod.times_lost),
       static_cast<long long>(rod.illegal), static_cast<long long>(rod.overflows),
-      static_cast<long long>(rod.disagreements), static_cast<long long>(rod.times_too_fast),
-      static_cast<long long>(rod.slips));
+      static_cast<long long>(rod.disagreements), static_cast<long long>(rod.bursts),
+      static_cast<long long>(rod.times_too_fast), static_cast<long long>(rod.slips));
   return line;
 }
 

@@ -24,6 +24,7 @@ std::optional<Levels> still_levels(EdgeSource& source) noexcept {
 Tracker::Tracker(const TrackerOptions& options, std::optional<Levels> levels) noexcept
     : options_(options), decoder_(levels.value_or(Levels{})) {
   snapshot_.homed = !options.has_index;
+  burst_ns_ = static_cast<std::int64_t>(kBurst * 1e9 / options.max_edges_per_s);
   if (!levels) decoder_.mark_lost();
 }
 
@@ -70,6 +71,7 @@ void Tracker::put(const Edge& edge) noexcept {
     apply(edge);
     snapshot_.edge_ns = std::max(snapshot_.edge_ns, edge.t_ns);
     if (steps_ - oldest_ > kHistory) oldest_ = steps_ - kHistory;
+    watch_burst();
     return;
   }
   ++snapshot_.late;
@@ -83,6 +85,14 @@ void Tracker::put(const Edge& edge) noexcept {
   for (std::size_t i = 0; i < count; ++i) apply(again[i]);
   if (steps_ - oldest_ > kHistory) oldest_ = steps_ - kHistory;
   if (too_late) lose();
+}
+
+void Tracker::watch_burst() noexcept {
+  if (steps_ - oldest_ <= kBurst) return;
+  const std::int64_t first_ns = history_[(steps_ - 1 - kBurst) % kHistory].edge.t_ns;
+  if (history_[(steps_ - 1) % kHistory].edge.t_ns - first_ns >= burst_ns_) return;
+  ++snapshot_.bursts;
+  lose();
 }
 
 void Tracker::lose() noexcept {

@@ -3,7 +3,9 @@
 //
 // Late edges are put in their place by time. Missing ones show as an edge to the level that was, as
 // a batch as long as the kernel's memory, or as levels that stay different from the decoder's while
-// nothing arrives. Then the count is uncertain until the next index pulse or refer().
+// nothing arrives; and where edges follow each other faster than this machine is known to take
+// them, some may be missing without a trace. Then the count is uncertain until the next index pulse
+// or refer().
 #pragma once
 
 #include <array>
@@ -30,6 +32,7 @@ struct Snapshot {
   std::int64_t illegal = 0;        ///< edges to the level that was
   std::int64_t overflows = 0;      ///< batches as long as the kernel's memory
   std::int64_t disagreements = 0;  ///< levels that were not the decoder's
+  std::int64_t bursts = 0;         ///< times that eight edges came faster than permitted
   std::int64_t late = 0;           ///< edges put in their place afterwards
   std::int64_t slips = 0;          ///< index pulses in another place than before
   std::int64_t times_lost = 0;     ///< how often the count became uncertain
@@ -68,18 +71,21 @@ class Tracker {
     QuadratureDecoder before;
   };
   static constexpr std::size_t kHistory = 32;
+  static constexpr std::size_t kBurst = 8;  ///< edges
   static constexpr std::int64_t kWindow_ns = 10'000'000;
   static constexpr std::int64_t kCompareEvery_ns = 1'000'000;
 
   void take(std::span<Edge> batch) noexcept;
   void put(const Edge& edge) noexcept;
   void apply(const Edge& edge) noexcept;
+  void watch_burst() noexcept;
   void lose() noexcept;
   void compare(EdgeSource& source) noexcept;
   void watch_rate(std::int64_t now_ns) noexcept;
   void publish(std::int64_t now_ns) noexcept;
 
   TrackerOptions options_;
+  std::int64_t burst_ns_ = 0;  ///< shortest permitted time of kBurst edges
   QuadratureDecoder decoder_;
   Snapshot snapshot_;
   std::array<Step, kHistory> history_;  ///< the newest edges, a ring

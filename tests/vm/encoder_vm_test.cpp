@@ -131,20 +131,31 @@ TEST(EncoderVm, LosesNoEdgeOfAFastMotionAndPrintsItsRate) {
   EXPECT_EQ(reading.quality, Quality::good);
 }
 
-TEST(EncoderVm, IsUncertainNearThePermittedSpeedAndGoodAgainBelow) {
-  rig::SimEncoder lines(chip(), 2, 3);
-  const Offer offer = open(table("max_edges_per_s = 500.0"));
-  bool uncertain = false;
-  for (int i = 0; i < 20; ++i) {
-    lines.move_to(lines.quarter() + 20);
-    sleep_until(monotonic_ns() + 5'000'000);
-    uncertain = uncertain || offer.rods.at(kRodChannel)->read(kTick).quality == Quality::uncertain;
-  }
-  EXPECT_TRUE(uncertain);
-  const Reading reading = settled(offer);
-  EXPECT_EQ(reading.quality, Quality::good);
-  EXPECT_NEAR(reading.y_m, kCount_m * 400, 1e-12);
+TEST(EncoderVm, IsUncertainAboveThePermittedSpeedUntilTheIndex) {
+  rig::SimEncoder lines(chip(), 2, 3, 4);
+  const Offer offer = open(table("max_edges_per_s = 300.0\nline_index = 4\n"));
+  const auto walk_to = [&](std::int64_t to) {  // at most 100 edges a second
+    while (lines.quarter() != to) {
+      lines.move_to(lines.quarter() + (to > lines.quarter() ? 1 : -1));
+      sleep_until(monotonic_ns() + 10'000'000);
+    }
+    return settled(offer);
+  };
+  walk_to(5);
+  EXPECT_EQ(walk_to(-5).quality, Quality::good) << "homed";
+  const Reading before = walk_to(10);
+  EXPECT_NEAR(before.y_m, kCount_m * 11, 1.1 * kCount_m);
+  EXPECT_EQ(before.quality, Quality::good);
+  lines.move_to(60);
+  const Reading fast = settled(offer);
+  EXPECT_NEAR(fast.y_m, before.y_m + kCount_m * 50, 1e-12) << "nothing was lost, as it happens";
+  EXPECT_EQ(fast.quality, Quality::uncertain);
+  EXPECT_GE(snapshot(offer).bursts, 1);
   EXPECT_GE(snapshot(offer).times_too_fast, 1);
+  EXPECT_EQ(walk_to(10).quality, Quality::uncertain);
+  const Reading after = walk_to(-5);
+  EXPECT_EQ(after.quality, Quality::good);
+  EXPECT_EQ(snapshot(offer).slips, 0);
 }
 
 TEST(EncoderVm, SaysThatTheCountIsUncertainWhenTheKernelDropsEdgesAndTheIndexMendsIt) {

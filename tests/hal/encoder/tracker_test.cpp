@@ -98,14 +98,14 @@ TEST(Tracker, AnEdgeThatComesLateIsPutInItsPlace) {
 
 TEST(Tracker, AnEdgeThatComesLaterThanItCanUndoMakesTheCountUncertain) {
   Bench bench;
-  bench.source.hold_back(edge_between(0, 1, bench.t_ns += 1000));
+  bench.source.hold_back(edge_between(0, 1, bench.t_ns += 20'000));
   for (int i = 0; i < 20; ++i) {  // B dithers: more edges than are kept
-    bench.source.move(edge_between(1, 2, bench.t_ns += 1000));
-    bench.source.move(edge_between(2, 1, bench.t_ns += 1000));
+    bench.source.move(edge_between(1, 2, bench.t_ns += 20'000));
+    bench.source.move(edge_between(2, 1, bench.t_ns += 20'000));
     bench.step(0);
   }
   EXPECT_FALSE(bench.tracker.snapshot().lost) << "nothing contradicts it yet";
-  bench.source.move(edge_between(1, 0, bench.t_ns += 1000));
+  bench.source.move(edge_between(1, 0, bench.t_ns += 20'000));
   EXPECT_TRUE(bench.step(0).lost) << "A falls though it never rose";
   bench.source.release();
   EXPECT_TRUE(bench.step(0).lost) << "it has risen, but too long ago";
@@ -171,6 +171,22 @@ TEST(Tracker, TheReadingIsUncertainFromEightTenthsOfThePermittedRate) {
   }
   EXPECT_EQ(bench.tracker.snapshot().times_too_fast, 1);
   EXPECT_FALSE(bench.tracker.snapshot().lost) << "fast, but complete";
+}
+
+TEST(Tracker, EdgesFasterThanPermittedMayHaveLostSomeWithoutATrace) {
+  Bench bench;  // permitted: eight edges in 80 us
+  bench.move_to(20, 11'000);
+  EXPECT_FALSE(bench.step().lost);
+  bench.move_to(27, 14'000);
+  bench.move_to(29, 1'000);
+  EXPECT_FALSE(bench.step().lost) << "both lines at once: an interrupt that came late";
+  bench.move_to(40, 14'000);
+  EXPECT_FALSE(bench.step().lost);
+  bench.move_to(60, 9'000);
+  const Snapshot& now = bench.step();
+  EXPECT_TRUE(now.lost);
+  EXPECT_GE(now.bursts, 1);
+  EXPECT_EQ(now.counts, 60);
 }
 
 TEST(Tracker, IsNotHomedBeforeTheIndex) {

@@ -54,7 +54,7 @@ struct Rig {
   explicit Rig(bool has_index = false)
       : watch(std::make_shared<Watch>(std::make_unique<SharedSource>(state),
                                       std::vector<std::shared_ptr<GpioLine>>{},
-                                      TrackerOptions{4, 1e6, has_index}, kPeriod_ns, 0)),
+                                      TrackerOptions{4, 1e9, has_index}, kPeriod_ns, 0)),
         rod(watch, kCount_m, 0.1) {}
 
   void move_to(std::int64_t to) {
