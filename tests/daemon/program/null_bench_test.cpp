@@ -40,15 +40,26 @@ time_s = 0.05
 action = "ramp"
 )";
 
+constexpr const char* kPermit = R"(
+[permit]
+backend = "modbus"
+channel = "permit"
+
+[modbus.registers.permit]
+role = "output"
+function = "coil"
+address = 0
+)";
+
 /// bench_modbus.toml with guards, and the shipped daemon on it.
 class Bench {
  public:
-  Bench()
+  explicit Bench(const char* more = "")
       : rig_({"--config", hal::rig::shipped_config("bench_rig.toml")}),
         cable_(rig_.port()),
         watcher_(rig_.port()) {
     std::ifstream in(shipped("bench_modbus.toml"));
-    std::ofstream(file()) << in.rdbuf() << kGuards;
+    std::ofstream(file()) << in.rdbuf() << kGuards << more;
   }
 
   [[nodiscard]] std::vector<std::string> arguments(bool by_cable = false) const {
@@ -65,6 +76,16 @@ class Bench {
   }
   void set(const std::string& text) const {
     EXPECT_EQ(hal::rig::set_remotely(rig_.address(), text), "");
+  }
+  /// The rig's register of that name, read on a connection of its own.
+  [[nodiscard]] int status() const {
+    modbus_t* bus = modbus_new_tcp("127.0.0.1", rig_.port());
+    std::uint16_t word = 0;
+    const bool read =
+        modbus_connect(bus) == 0 && modbus_read_registers(bus, hal::rig::kStatus, 1, &word) == 1;
+    modbus_close(bus);
+    modbus_free(bus);
+    return read ? word : 0;
   }
   Watcher& watcher() { return watcher_; }
   Cable& cable() { return cable_; }
@@ -186,6 +207,26 @@ TEST(NullMatrix, OnTheBenchRigOverModbusIsNeverWorseThanStated) {
       EXPECT_LE(measured.least_s, row.time_s) << failure.row;
       EXPECT_LE(measured.travel_m, row.travel_m) << failure.row;
     }
+  }
+}
+
+TEST(Permit, LetsARelayTakeTheCommandAwayWhenTheDaemonTripsOrDies) {
+  for (const bool killed : {true, false}) {
+    Bench bench(kPermit);
+    Daemon daemon(bench.arguments());
+    ASSERT_TRUE(bench.moves());
+    // From now on the relay is all there is: no time-out of the command.
+    bench.set("permit_timeout_s=0.05");
+    bench.set("command_timeout_s=0");
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    ASSERT_TRUE(bench.moves()) << "the permit does not come";
+    if (killed) signal_daemon(daemon, SIGKILL);
+    if (!killed) bench.set("encoder_offset_m=0.02");  // guard jump: LATCHED
+    EXPECT_TRUE(bench.watcher().wait_for(
+        [](const Look& look) { return std::abs(look.valve_V) < kNull_V; }));
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    EXPECT_LT(std::abs(bench.watcher().looks().back().valve_V), kNull_V);
+    EXPECT_NE(bench.status() & hal::rig::kPermitMissing, 0);
   }
 }
 
