@@ -1,5 +1,6 @@
 #include "hal/modbus/port.h"
 
+#include <sys/file.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -72,6 +73,12 @@ bool Port::connect() noexcept {
     const linger none{1, 0};
     setsockopt(file, SOL_SOCKET, SO_LINGER, &none, sizeof none);
   } else {
+    if (flock(file, LOCK_EX | LOCK_NB) != 0) {  // another program talks on this line
+      error_ = EBUSY;
+      counters_.last_error.store(error_, std::memory_order_relaxed);
+      modbus_close(context_);
+      return false;
+    }
     modbus_flush(context_);
   }
   file_.store(file);

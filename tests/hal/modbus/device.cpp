@@ -268,6 +268,7 @@ void Device::serve(const Client& client, const Bytes& head, const Bytes& request
     const Bytes once = reply;
     reply.insert(reply.end(), once.begin(), once.end());
   }
+  if (how == Reply::slow) sleep_ms(static_cast<int>(0.85e3 * kReplyTimeout_s));
   if (how == Reply::late) sleep_ms(static_cast<int>(2e3 * kReplyTimeout_s));
   if (how == Reply::lost) return;
   if (how == Reply::close) {

@@ -15,7 +15,8 @@ namespace hal::modbus {
 
 enum class Reply {
   normal,
-  late,               ///< after twice the time that clients of these tests wait
+  slow,               ///< after 0.85 of the time that clients of these tests wait
+  late,               ///< after twice that time
   lost,               ///< none
   doubled,            ///< the same bytes twice
   truncated,          ///< all but the last byte

@@ -240,6 +240,23 @@ TEST(ModbusLink, WritesNullWhenTheLoopFallsSilent) {
   EXPECT_THAT(stand.offer().summary(), HasSubstr("1 silences"));
 }
 
+// Two periods are 40 ms; the device takes 85 ms for the command before.
+TEST(ModbusLink, ReplacesACommandThatHasWaitedTooLongByNull) {
+  Device device;
+  Stand stand(tcp(device), kNull_V);
+  ASSERT_TRUE(eventually([&] {
+    stand.turn(3.0);
+    return device.get(kCommand) == 3000;
+  }));
+  device.only_function(6);
+  device.answer(Reply::slow, 1);
+  stand.offer().valve->write(3.0, {});
+  std::this_thread::sleep_for(std::chrono::milliseconds(2));  // the thread has taken it
+  stand.offer().valve->write(5.0, {});
+  EXPECT_TRUE(eventually([&] { return device.get(kCommand) == kNullRaw; }));
+  for (const Received& write : device.writes()) EXPECT_NE(write.words[0], 5000);
+}
+
 TEST(ModbusLink, EndsAtNullAndStaysThere) {
   Device device;
   Stand stand(tcp(device), kNull_V);

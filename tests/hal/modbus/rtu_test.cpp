@@ -74,6 +74,12 @@ TEST(ModbusRtu, ADeviceThatUnderstandsNothingIsOneClearLine) {
   EXPECT_THAT(refusal_of(rtu(device)), HasSubstr("its address or line settings, its unit"));
 }
 
+TEST(ModbusRtu, ALineInUseIsOneClearLine) {
+  Device device(Device::Line::rtu);
+  const Stand stand(rtu(device), kNull_V);
+  EXPECT_THAT(refusal_of(rtu(device)), HasSubstr("cannot be connected (Device or resource busy)"));
+}
+
 TEST(ModbusRtu, LetsNullPassWhenTheThreadStandsStill) {
   Device device(Device::Line::rtu);
   Stand stand(rtu(device), kNull_V);
