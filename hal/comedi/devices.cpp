@@ -6,12 +6,11 @@ InputReading Analog::read(Exchange& exchange, const Tick& tick) const noexcept {
   const Exchange::View& view = exchange.view(tick);
   InputReading reading;
   reading.t_ns = view.read_ns;
-  if (!view.good[index]) return reading;
+  reading.quality = exchange.quality(view, index, monotonic_ns());
+  if (reading.quality == Quality::bad) return reading;
   const std::uint32_t code = view.codes[index];
   reading.value = value_of_V.forward(span.volts(code));
-  reading.quality = exchange.stale(view.read_ns, monotonic_ns()) ? Quality::stale
-                    : span.at_end(code)                          ? Quality::uncertain
-                                                                 : Quality::good;
+  if (reading.quality == Quality::good && span.at_end(code)) reading.quality = Quality::uncertain;
   return reading;
 }
 
@@ -28,10 +27,9 @@ Reading CounterRod::read(const Tick& tick) noexcept {
   const Exchange::View& view = exchange_->view(tick);
   Reading reading;
   reading.t_ns = view.read_ns;
-  if (!view.good[index_]) return reading;
+  reading.quality = exchange_->quality(view, index_, monotonic_ns());
+  if (reading.quality == Quality::bad) return reading;
   reading.y_m = metres_.forward(static_cast<double>(unwrap_.count(view.codes[index_])));
-  const bool stale = exchange_->stale(view.read_ns, monotonic_ns());
-  reading.quality = stale ? Quality::stale : Quality::good;
   return reading;
 }
 

@@ -16,6 +16,7 @@
 #include "hal/comedi/board.h"
 #include "hal/device.h"
 #include "hal/device_thread.h"
+#include "hal/freshness.h"
 #include "hal/latest.h"
 
 namespace hal::comedi {
@@ -51,9 +52,10 @@ class Exchange {
   bool write(std::uint32_t code, const Tick& tick) noexcept;
   /// From any thread and from a signal handler: also past a thread that no longer runs.
   bool write_now(std::uint32_t code) noexcept;
-  /// Whether what was read at `t_ns` is too old at `now_ns`.
-  [[nodiscard]] bool stale(std::int64_t t_ns, std::int64_t now_ns) const noexcept {
-    return now_ns - t_ns > 3 * period_ns_;
+  /// Of input `index` as it was read for `view`, at `now_ns`.
+  [[nodiscard]] Quality quality(const View& view, std::size_t index,
+                                std::int64_t now_ns) const noexcept {
+    return view.good[index] ? freshness(now_ns - view.read_ns, period_ns_) : Quality::bad;
   }
 
  private:

@@ -17,9 +17,9 @@ class SwitchInput final : public Input {
   InputReading read(const Tick&) noexcept override {
     const Watch::View& view = watch_->view();
     const int value = view.inputs[index_];
-    if (value < 0) return {};
-    const bool stale = watch_->stale(view.inputs_ns, monotonic_ns());
-    return {static_cast<double>(value), view.inputs_ns, stale ? Quality::stale : Quality::good};
+    const Quality quality = watch_->quality(view.inputs_ns, monotonic_ns());
+    if (value < 0 || quality == Quality::bad) return {kMissing, view.inputs_ns, Quality::bad};
+    return {static_cast<double>(value), view.inputs_ns, quality};
   }
 
  private:
@@ -85,12 +85,10 @@ Reading EncoderRod::read(const Tick&) noexcept {
   const std::int64_t now_ns = monotonic_ns();
   Reading reading;
   reading.t_ns = rod.alive_ns;
-  if (rod.failed) return reading;
+  reading.quality = rod.failed ? Quality::bad : watch_->quality(rod.alive_ns, now_ns);
+  if (reading.quality == Quality::bad) return reading;
   reading.y_m = reference_m_ + count_m_ * static_cast<double>(rod.counts);
-  if (watch_->stale(rod.alive_ns, now_ns)) {
-    reading.quality = Quality::stale;
-    return reading;
-  }
+  if (reading.quality == Quality::stale) return reading;
   reading.t_ns = now_ns;  // had there been an edge since, the count would be newer
   reading.quality = rod.lost || rod.too_fast || !rod.homed ? Quality::uncertain : Quality::good;
   return reading;

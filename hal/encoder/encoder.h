@@ -13,6 +13,7 @@
 #include "hal/device_thread.h"
 #include "hal/encoder/gpio_chip.h"
 #include "hal/encoder/tracker.h"
+#include "hal/freshness.h"
 #include "hal/latest.h"
 
 namespace hal::encoder {
@@ -75,9 +76,9 @@ class Watch {
   const View& view() noexcept { return latest_.get(); }
   /// The position of now is the origin; takes effect within a period. From any thread.
   void refer() noexcept { refer_.store(true, std::memory_order_relaxed); }
-  /// Whether what was known to be all at `t_ns` is too old at `now_ns`.
-  [[nodiscard]] bool stale(std::int64_t t_ns, std::int64_t now_ns) const noexcept {
-    return now_ns - t_ns > 4 * period_ns_;
+  /// Of what was known to be all at `t_ns`.
+  [[nodiscard]] Quality quality(std::int64_t t_ns, std::int64_t now_ns) const noexcept {
+    return freshness(now_ns - t_ns, period_ns_);
   }
 
  private:

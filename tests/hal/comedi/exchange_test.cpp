@@ -146,7 +146,8 @@ TEST(Exchange, ABoardThatHangsNeverHoldsTheLoopAndIsTold) {
   AnalogRod rod(rig.exchange, {0, kSpan, {0.01, 0.0}});
   rig.board->stick(true);
   EXPECT_TRUE(Rig::eventually([&] { return !valve.write(1.0, rig.next()).good; }));
-  EXPECT_TRUE(Rig::eventually([&] { return rod.read(rig.next()).quality == Quality::stale; }));
+  EXPECT_TRUE(Rig::eventually([&] { return rod.read(rig.next()).quality == Quality::bad; }));
+  EXPECT_TRUE(std::isnan(rod.read(rig.next()).y_m));
   for (int i = 0; i < 5; ++i) valve.write(2.0 + i, rig.next());
   rig.board->stick(false);
   EXPECT_TRUE(Rig::eventually([&] { return !rig.board->written().empty(); }));

@@ -101,16 +101,23 @@ TEST(EncoderRod, GivesTheReferencePlusTheCounts) {
   EXPECT_LE(reading.t_ns, monotonic_ns());
 }
 
-TEST(EncoderRod, IsStaleWhileItsThreadStandsAndGoodAgainAfterwards) {
+TEST(EncoderRod, HasNoValueAnyMoreWhileItsThreadHangsAndIsGoodAgainAfterwards) {
   Rig rig;
   rig.stick(true);
-  const Reading stale =
-      rig.read_until([](const Reading& r) { return r.quality == Quality::stale; });
-  EXPECT_EQ(stale.quality, Quality::stale);
-  EXPECT_GT(monotonic_ns() - stale.t_ns, 4 * kPeriod_ns) << "the time says since when";
+  const Reading bad = rig.read_until([](const Reading& r) { return r.quality == Quality::bad; });
+  EXPECT_EQ(bad.quality, Quality::bad);
+  EXPECT_TRUE(std::isnan(bad.y_m));
+  EXPECT_GT(monotonic_ns() - bad.t_ns, kBadPeriods * kPeriod_ns) << "the time says since when";
   rig.stick(false);
   const Reading good = rig.read_until([](const Reading& r) { return r.quality == Quality::good; });
   EXPECT_EQ(good.quality, Quality::good);
+}
+
+TEST(Freshness, IsStaleAfterThreePeriodsAndBadAfterSix) {
+  EXPECT_EQ(freshness(15, 5), Quality::good);
+  EXPECT_EQ(freshness(16, 5), Quality::stale);
+  EXPECT_EQ(freshness(30, 5), Quality::stale);
+  EXPECT_EQ(freshness(31, 5), Quality::bad);
 }
 
 TEST(EncoderRod, IsUncertainBeforeTheIndexAndAfterReferNoMore) {

@@ -1,0 +1,20 @@
+// How far a value that a device's thread read some time ago can be relied on.
+#pragma once
+
+#include <cstdint>
+
+#include "hal/device.h"
+
+namespace hal {
+
+inline constexpr std::int64_t kStalePeriods = 3;
+inline constexpr std::int64_t kBadPeriods = 6;
+
+/// Good, stale after three periods of the loop, bad (no value any more) after six: the thread
+/// hangs, and a switch that reads as it did may have moved.
+inline Quality freshness(std::int64_t age_ns, std::int64_t period_ns) noexcept {
+  if (age_ns > kBadPeriods * period_ns) return Quality::bad;
+  return age_ns > kStalePeriods * period_ns ? Quality::stale : Quality::good;
+}
+
+}  // namespace hal
