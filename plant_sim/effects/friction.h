@@ -62,6 +62,7 @@ struct Friction {
   };
   struct Memory {
     S deflection_m = 0.0;
+    S rise_ratio = 1.0;  ///< Stribeck's exponential at the speed of that moment
   };
 
   static S friction_N(const Parameters& p, const Memory& memory, const DryContact<S>& at) {
@@ -87,14 +88,12 @@ struct Friction {
 
   static void accept(const Parameters& p, Memory& memory, const S& travel_m, const S& v_mps) {
     memory.deflection_m = deflection_m(p, memory, travel_m, v_mps);
+    memory.rise_ratio = rise_ratio(p, v_mps);
   }
 
   /// Sliding friction at this speed in the given direction (+1 extends, -1 retracts), >= 0.
   static S level_N(const Parameters& p, const S& direction, const S& v_mps) {
-    const S coulomb_N = p.coulomb_N * (S(1.0) + direction * p.direction_ratio);
-    const S ratio = v_mps / max(p.stribeck_mps, S(kLeastStribeck_mps));
-    const S rise_N = max(p.static_N - coulomb_N, S(0.0));
-    return coulomb_N + rise_N * exp(-min(ratio * ratio, S(kNoRise)));
+    return level_at_N(p, direction, rise_ratio(p, v_mps));
   }
 
  private:
@@ -102,11 +101,23 @@ struct Friction {
   static constexpr double kNoRise = 700.0;            ///< exp(-700) is still a normal number
   static constexpr double kLeastLevel_N = 1e-9;
 
-  /// The bristle after a travel of the rod at a constant level: z goes to +-g/k exponentially.
+  static S rise_ratio(const Parameters& p, const S& v_mps) {
+    const S ratio = v_mps / max(p.stribeck_mps, S(kLeastStribeck_mps));
+    return exp(-min(ratio * ratio, S(kNoRise)));
+  }
+
+  static S level_at_N(const Parameters& p, const S& direction, const S& rise_ratio) {
+    const S coulomb_N = p.coulomb_N * (S(1.0) + direction * p.direction_ratio);
+    return coulomb_N + max(p.static_N - coulomb_N, S(0.0)) * rise_ratio;
+  }
+
+  /// The bristle after a travel of the rod: z goes to +-g/k exponentially, at the mean of the
+  /// levels at both ends, which makes the error of a step one of its third order.
   static S deflection_m(const Parameters& p, const Memory& memory, const S& travel_m,
                         const S& v_mps) {
     const S direction = select(travel_m < S(0.0), S(-1.0), S(1.0));
-    const S level = max(level_N(p, direction, v_mps), S(kLeastLevel_N));
+    const S mean_ratio = S(0.5) * (memory.rise_ratio + rise_ratio(p, v_mps));
+    const S level = max(level_at_N(p, direction, mean_ratio), S(kLeastLevel_N));
     const S k = max(p.presliding_stiffness_N_per_m, S(kLeastLevel_N));
     const S remains = exp(-min(abs(travel_m) * k / level, S(kNoRise)));
     return memory.deflection_m * remains + direction * (level / k) * (S(1.0) - remains);

@@ -127,10 +127,10 @@ void note_stroke(Comparison& c, const plant_sim::ModelFile& model) {
 }
 
 void find_speed_error(Comparison& c) {
-  const double kept = 1.0 - c.observer_per_s * c.record.sample_time_s;
   c.speed_error_mps.assign(c.record.size(), 0.0);
   for (const matching::Span& span : matching::segments(c.record)) {
     for (std::size_t k = span.begin; k + 1 < span.end; ++k) {
+      const double kept = 1.0 - c.record.share(k, c.observer_per_s);
       c.speed_error_mps[k] = (c.error_m[k + 1] - kept * c.error_m[k]) / c.record.sample_time_s;
     }
   }

@@ -24,7 +24,6 @@ double share(const Eigen::MatrixXd& signatures, const Eigen::VectorXd& e, Eigen:
 
 Explained explained(const matching::Measured& record, const std::vector<double>& error_m,
                     const std::vector<double>& speed_error_mps, double observer_per_s) {
-  const double kept = 1.0 - observer_per_s * record.sample_time_s;
   const auto n = static_cast<Eigen::Index>(record.size());
   Eigen::MatrixXd signatures = Eigen::MatrixXd::Zero(n, 2);
   Eigen::VectorXd e = Eigen::VectorXd::Zero(n);
@@ -40,6 +39,7 @@ Explained explained(const matching::Measured& record, const std::vector<double>&
       if (k + 1 == span.end) break;
       const double modelled_m =
           record.y_m[k + 1] - record.y_m[k] - speed_error_mps[k] * record.sample_time_s;
+      const double kept = 1.0 - record.share(k, observer_per_s);
       by_speed = kept * by_speed + modelled_m;
       by_one = kept * by_one + record.sample_time_s;
     }

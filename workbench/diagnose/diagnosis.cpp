@@ -23,8 +23,8 @@ void settle(const Workshop& shop, Diagnosis& result) {
   const bool explained = stage.fitted.score_rms_m <= kUnexplained * shop.evidence.noise_floor_m;
   // what is left of the error is no noise: then the values are those that simulate best
   result.final = shop.cancelled() ? stage.fitted
-                 : explained      ? refit(shop, all, shop.evidence.finally())
-                                  : refit(shop, all, shop.evidence.finally(), 0.0);
+                 : explained      ? refit(shop, all, shop.evidence.finally(), shop.threads)
+                                  : refit(shop, all, shop.evidence.finally(), shop.threads, 0.0);
   result.better = matching::with_values(shop.model, result.final);
   const Eigen::VectorXd errors =
       matching::std_errors(shop.evidence, shop.evidence.finally(), result.final);

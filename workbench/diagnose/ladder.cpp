@@ -7,6 +7,7 @@
 #include "workbench/diagnose/rounds.h"
 #include "workbench/diagnose/selection.h"
 #include "workbench/diagnose/support.h"
+#include "workbench/diagnose/two_at_once.h"
 #include "workbench/diagnose/way.h"
 
 namespace workbench::diagnose {
@@ -15,8 +16,9 @@ namespace {
 constexpr std::size_t kMostEffects = 4;
 /// Of the first round, that many are tried as the first effect when the best leads nowhere.
 constexpr std::size_t kDetours = 3;
-/// They have to come within this factor of the best, and by another way than it.
-constexpr double kNear = 2.0;
+/// They have to leave less than this share of the error, and by another way than the best: two
+/// effects together may look like a third one, which then comes far before either.
+constexpr double kHelpful = 0.7;
 /// And what is left must be this many times the noise.
 constexpr double kLost = 2.0;
 constexpr double kSamePath = 0.1;
@@ -82,12 +84,63 @@ void go_on(const Workshop& shop, Stage& stage, std::vector<Round>& rounds, bool 
     if (gain) {
       stage = with(stage, simplest(shop, round.candidates));
       if (stage.fitted.jacobian.size() == 0) {
-        stage.fitted =
-            refit(shop, select(stage.fitted, [](const auto&) { return true; }), shop.evidence.fits);
+        stage.fitted = finished(shop, stage.fitted);
       }
     }
     rounds.push_back(std::move(round));
     if (!gain) return;
+  }
+}
+
+/// A search from the first stage to where nothing helped any more.
+struct Trodden {
+  Stage stage;
+  std::vector<Round> rounds;
+};
+
+/// The search from `first` with a candidate as its beginning; it replaces `best` when it leads
+/// further.
+void try_beginning(const Workshop& shop, const Stage& first, const Candidate& candidate,
+                   Trodden& best) {
+  Trodden other{with(first, candidate), {best.rounds.front()}};
+  other.stage.fitted = finished(shop, other.stage.fitted);
+  go_on(shop, other.stage, other.rounds, false);
+  look_over(shop, other.stage);
+  if (other.stage.fitted.score_rms_m < (1.0 - kRivals) * best.stage.fitted.score_rms_m) {
+    if (candidate.effects.size() > 1) {
+      auto& candidates = other.rounds.front().candidates;
+      candidates.insert(candidates.begin(), candidate);
+    }
+    best = std::move(other);
+  }
+}
+
+/// Two effects together as the beginning, where one after another does not explain the record.
+void start_with_two(const Workshop& shop, const Stage& first, Trodden& best) {
+  if (best.rounds.empty() || is_explained(shop, best.stage) || shop.cancelled()) return;
+  std::vector<std::string> begun;  // on which the second round has tried all others
+  if (best.rounds.size() > 1) begun = best.rounds[1].before.added;
+  const std::vector<Candidate> pairs = two_at_once(shop, first, begun);
+  if (pairs.empty() || !is_gain(shop, first, pairs.front())) return;
+  try_beginning(shop, first, pairs.front(), best);
+}
+
+/// The next best effects of the first round as the beginning.
+void detour(const Workshop& shop, const Stage& first, Trodden& best) {
+  if (best.rounds.empty()) return;
+  const std::vector<Candidate> firsts = best.rounds.front().candidates;
+  for (std::size_t i = 1; i < std::min(kDetours, firsts.size()); ++i) {
+    if (best.stage.fitted.score_rms_m < kLost * shop.evidence.noise_floor_m || shop.cancelled() ||
+        !is_gain(shop, first, firsts[i]) ||
+        firsts[i].score_rms_m > kHelpful * first.fitted.score_rms_m) {
+      break;
+    }
+    const double apart_m = matching::rms(
+        firsts[i].fitted.residual_m - firsts.front().fitted.residual_m, shop.evidence.counts);
+    if (apart_m < kSamePath * firsts[i].score_rms_m) continue;
+    const auto& added = best.stage.added;
+    if (std::find(added.begin(), added.end(), firsts[i].effects.front()) != added.end()) continue;
+    try_beginning(shop, first, firsts[i], best);
   }
 }
 
@@ -109,6 +162,7 @@ Stage first_stage(const Workshop& shop) {
   matching::FitOptions options;
   options.tolerance = 1e-5;
   options.cancel = shop.cancel;
+  options.threads = shop.threads;
   return {{},
           matching::fit(shop.model, shop.evidence, shop.evidence.fits, shop.standing,
                         matching::start_of(shop.model, shop.standing), options)};
@@ -129,32 +183,11 @@ Ladder climb(const Workshop& shop) {
   go_on(shop, stage, ladder.rounds, true);
   if (!ladder.rounds.empty()) ladder.preview_s += ladder.rounds.front().looked_s;
   look_over(shop, stage);
-  const std::vector<Candidate> firsts =
-      ladder.rounds.empty() ? std::vector<Candidate>{} : ladder.rounds.front().candidates;
-  for (std::size_t i = 1; i < std::min(kDetours, firsts.size()); ++i) {
-    if (stage.fitted.score_rms_m < kLost * shop.evidence.noise_floor_m || shop.cancelled() ||
-        !is_gain(shop, first, firsts[i]) ||
-        firsts[i].score_rms_m > kNear * firsts.front().score_rms_m) {
-      break;
-    }
-    const double apart_m = matching::rms(
-        firsts[i].fitted.residual_m - firsts.front().fitted.residual_m, shop.evidence.counts);
-    if (apart_m < kSamePath * firsts[i].score_rms_m) continue;
-    if (std::find(stage.added.begin(), stage.added.end(), firsts[i].effects.front()) !=
-        stage.added.end()) {
-      continue;
-    }
-    std::vector<Round> rounds{ladder.rounds.front()};
-    Stage other = with(first, firsts[i]);
-    other.fitted =
-        refit(shop, select(other.fitted, [](const auto&) { return true; }), shop.evidence.fits);
-    go_on(shop, other, rounds, false);
-    look_over(shop, other);
-    if (other.fitted.score_rms_m < (1.0 - kRivals) * stage.fitted.score_rms_m) {
-      stage = std::move(other);
-      ladder.rounds = std::move(rounds);
-    }
-  }
+  Trodden best{stage, std::move(ladder.rounds)};
+  start_with_two(shop, first, best);
+  detour(shop, first, best);
+  stage = std::move(best.stage);
+  ladder.rounds = std::move(best.rounds);
   ladder.way = way_to(shop, first, stage);
   if (!is_explained(shop, stage)) {
     std::vector<Stage> supported = supported_way(shop, ladder.way);

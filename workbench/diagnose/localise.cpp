@@ -73,7 +73,6 @@ MatrixXd seen_by_observer(const Workshop& shop, MatrixXd added) {
   for (Index column = 0; column < added.cols(); ++column) {
     Index at = 0;
     for (const matching::Measured& record : shop.evidence.records) {
-      const double share = matching::kObserver_per_s * record.sample_time_s;
       std::size_t segment = 0;
       double shifted_m = 0.0;
       for (std::size_t k = 0; k < record.size(); ++k, ++at) {
@@ -83,7 +82,7 @@ MatrixXd seen_by_observer(const Workshop& shop, MatrixXd added) {
           ++segment;
         }
         seen += shifted_m;
-        shifted_m -= share * seen;
+        shifted_m -= record.share(k, matching::kObserver_per_s) * seen;
         seen *= record.settled[k] != 0 ? -1.0 : 0.0;
       }
     }

@@ -24,7 +24,7 @@ void drop_effects(const Workshop& shop, Stage& stage) {
     const std::string effect = stage.added[i];
     Fitted without =
         refit(shop, select(stage.fitted, [&](const auto& p) { return !belongs(p, effect); }),
-              shop.evidence.fits);
+              shop.evidence.fits, shop.threads);
     if (!costs_little(shop, without, stage.fitted)) {
       ++i;
       continue;
@@ -46,7 +46,7 @@ void drop_refinements(const Workshop& shop, Stage& stage) {
       const Selection plain = select(stage.fitted, [&](const auto& p) {
         return !belongs(p, effect) || p.refinement != refinement;
       });
-      Fitted without = refit(shop, plain, shop.evidence.fits);
+      Fitted without = refit(shop, plain, shop.evidence.fits, shop.threads);
       const bool earned =
           !costs_little(shop, without, stage.fitted) &&
           (is_explained(shop, stage) ||
@@ -78,7 +78,7 @@ void add_refinements(const Workshop& shop, Stage& stage) {
       more.start = VectorXd::Zero(static_cast<Index>(more.searched.size()));
       more.start.head(plain.start.size()) = plain.start;
       if (!supported(shop, is_explained(shop, stage), plain, more)) continue;
-      stage.fitted = refit(shop, more, shop.evidence.fits);
+      stage.fitted = refit(shop, more, shop.evidence.fits, shop.threads);
     }
   }
 }

@@ -27,6 +27,12 @@ double Projection::remaining(const VectorXd& weighted, const VectorXd& onto, con
   return weighted.dot(other) - onto.dot(normal_.solve(other_onto));
 }
 
+double Projection::remaining(const Eigen::Ref<const VectorXd>& residual_m) const {
+  const VectorXd r = weights_.cwiseProduct(residual_m) * per_sigma_;
+  const VectorXd onto = weighted_jacobian_.transpose() * r;
+  return remaining(r, onto, r, onto);
+}
+
 std::pair<double, double> Projection::with(const Eigen::Ref<const VectorXd>& residual_m,
                                            const Eigen::Ref<const VectorXd>& signature_m) const {
   const VectorXd r = weights_.cwiseProduct(residual_m) * per_sigma_;

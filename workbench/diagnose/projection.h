@@ -21,6 +21,8 @@ class Projection {
 
   /// With the fitted model's own residual and no signature.
   [[nodiscard]] double cost() const { return cost_; }
+  /// With another residual, its prior taken as that of the fitted model.
+  [[nodiscard]] double remaining(const Eigen::Ref<const Eigen::VectorXd>& residual_m) const;
   /// The cost and b with another residual (its prior taken as that of the fitted model) and a
   /// signature, both as long as the weights.
   [[nodiscard]] std::pair<double, double> with(

@@ -101,8 +101,33 @@ void sort_by_score(std::vector<Candidate>& candidates) {
   });
 }
 
-/// The contenders fitted to the end, with their Jacobians.
+}  // namespace
+
+double chance(const Workshop& shop, const matching::Fitted& earlier,
+              const matching::Fitted& later) {
+  const auto scored = [&](const matching::Fitted& fitted) {
+    std::vector<double> series(fitted.residual_m.data(),
+                               fitted.residual_m.data() + fitted.residual_m.size());
+    for (std::size_t i = 0; i < series.size(); ++i) {
+      if (shop.evidence.scores[static_cast<Index>(i)] == 0.0) series[i] = std::nan("");
+    }
+    return series;
+  };
+  const int block =
+      std::max(8, static_cast<int>(std::lround(kComparedBlock_s / shop.evidence.sample_time_s)));
+  const estimator::residual::Comparison comparison =
+      estimator::residual::compare_in_proportion(scored(earlier), scored(later), block);
+  if (!std::isfinite(comparison.p)) return 1.0;
+  return comparison.z > 0.0 ? 0.5 * comparison.p : 1.0 - 0.5 * comparison.p;
+}
+
+Candidate tried(const Workshop& shop, const Stage& stage, const Glance& glance) {
+  return candidate_of(shop, stage, glance, attempt(shop, glance, quick(shop)));
+}
+
 void finish(const Workshop& shop, const Stage& stage, std::vector<Candidate>& candidates) {
+  sort_by_score(candidates);
+  if (candidates.empty()) return;
   const double best_m = candidates.front().score_rms_m;
   std::size_t contenders = 0;
   while (contenders < std::min(kMostContenders, candidates.size()) &&
@@ -129,26 +154,6 @@ void finish(const Workshop& shop, const Stage& stage, std::vector<Candidate>& ca
   for (std::size_t i = contenders; i < candidates.size(); ++i) {
     candidates[i].fitted.jacobian.resize(0, 0);  // large, and of no use any more
   }
-}
-
-}  // namespace
-
-double chance(const Workshop& shop, const matching::Fitted& earlier,
-              const matching::Fitted& later) {
-  const auto scored = [&](const matching::Fitted& fitted) {
-    std::vector<double> series(fitted.residual_m.data(),
-                               fitted.residual_m.data() + fitted.residual_m.size());
-    for (std::size_t i = 0; i < series.size(); ++i) {
-      if (shop.evidence.scores[static_cast<Index>(i)] == 0.0) series[i] = std::nan("");
-    }
-    return series;
-  };
-  const int block =
-      std::max(8, static_cast<int>(std::lround(kComparedBlock_s / shop.evidence.sample_time_s)));
-  const estimator::residual::Comparison comparison =
-      estimator::residual::compare_in_proportion(scored(earlier), scored(later), block);
-  if (!std::isfinite(comparison.p)) return 1.0;
-  return comparison.z > 0.0 ? 0.5 * comparison.p : 1.0 - 0.5 * comparison.p;
 }
 
 Stage with(const Stage& stage, const Candidate& candidate) {
@@ -211,8 +216,7 @@ Round single_round(const Workshop& shop, const Stage& stage, int number) {
     const bool later = !stage.added.empty() && i >= kAgain;
     if (candidate.fitted_at_all && !far && !later) work(i, 1, kAllStarts);
   });
-  sort_by_score(round.candidates);
-  if (!round.candidates.empty()) finish(shop, stage, round.candidates);
+  finish(shop, stage, round.candidates);
   return round;
 }
 
@@ -226,7 +230,6 @@ std::vector<Candidate> pair_round(const Workshop& shop, const Round& singles) {
     for (std::size_t k = i + 1; k < count; ++k) pairs.push_back({i, k});
   }
   std::vector<Candidate> candidates(pairs.size());
-  const matching::FitOptions options = quick(shop);
   const auto base = static_cast<Index>(singles.before.fitted.searched.size());
   in_parallel(pairs.size(), shop.threads, [&](std::size_t i) {
     const Candidate& first = singles.candidates[pairs[i].first];
@@ -240,12 +243,11 @@ std::vector<Candidate> pair_round(const Workshop& shop, const Round& singles) {
     VectorXd start(static_cast<Index>(look.searched.size()));
     start << first.fitted.x, second.fitted.x.tail(second.fitted.x.size() - base);
     look.starts = {start};
-    candidates[i] = candidate_of(shop, singles.before, look, attempt(shop, look, options));
+    candidates[i] = tried(shop, singles.before, look);
     candidates[i].effects.push_back(second.effects.front());
   });
   std::erase_if(candidates, [](const Candidate& c) { return !c.fitted_at_all; });
-  sort_by_score(candidates);
-  if (!candidates.empty()) finish(shop, singles.before, candidates);
+  finish(shop, singles.before, candidates);
   return candidates;
 }
 

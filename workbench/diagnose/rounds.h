@@ -11,6 +11,11 @@ namespace workbench::diagnose {
 /// The most promising effects of a round two by two.
 [[nodiscard]] std::vector<Candidate> pair_round(const Workshop& shop, const Round& singles);
 
+/// Quick fits from every start of a glance; the best as a candidate of its effect.
+[[nodiscard]] Candidate tried(const Workshop& shop, const Stage& stage, const Glance& glance);
+/// The best candidates fitted to the end, with their Jacobians; all sorted, best first.
+void finish(const Workshop& shop, const Stage& stage, std::vector<Candidate>& candidates);
+
 [[nodiscard]] Stage with(const Stage& stage, const Candidate& candidate);
 /// Probability that `later` scores better than `earlier` by chance.
 [[nodiscard]] double chance(const Workshop& shop, const matching::Fitted& earlier,

@@ -37,9 +37,11 @@ template <class Keep>
 
 void append(Selection& to, const Selection& more);
 
-/// Fitted to the end on the samples that `weights` counts.
+/// Fitted to the end on the samples that `weights` counts. `threads` is 1 within in_parallel.
 [[nodiscard]] matching::Fitted refit(const Workshop& shop, const Selection& selection,
-                                     const Eigen::VectorXd& weights,
+                                     const Eigen::VectorXd& weights, unsigned threads = 1,
                                      double observer_per_s = matching::kObserver_per_s);
+/// A stage's fit, to the end, on all of the workshop's threads.
+[[nodiscard]] matching::Fitted finished(const Workshop& shop, const matching::Fitted& fitted);
 
 }  // namespace workbench::diagnose

@@ -13,14 +13,41 @@ constexpr double kLeast_s = 2.0;
 /// Two samples at least while a segment settles.
 constexpr double kSlowest_s = 0.25;
 
+/// Speed at a record's first sample, over the RMS speed of the record, above which it begins in the
+/// midst of a motion. A start from rest under a command stays below a few per cent.
+constexpr double kMoving = 0.05;
+/// Of the error in one sample, where samples are far apart.
+constexpr double kMostLed = 0.5;
+
+std::size_t settling_samples(double sample_time_s) {
+  return static_cast<std::size_t>(std::lround(kSettling_s / sample_time_s));
+}
+
+/// Of [begin, end); the speed at the start by the parabola through three samples.
+bool begins_moving(const config::record::Record& record, std::size_t begin, std::size_t end) {
+  if (end - begin < 3) return true;
+  const double* y_m = &record.y_m[begin];
+  const double first_m = 0.5 * (-3.0 * y_m[0] + 4.0 * y_m[1] - y_m[2]);
+  double squares = 0.0;
+  for (std::size_t i = begin + 1; i < end; ++i) {
+    squares += (record.y_m[i] - record.y_m[i - 1]) * (record.y_m[i] - record.y_m[i - 1]);
+  }
+  return std::abs(first_m) > kMoving * std::sqrt(squares / static_cast<double>(end - begin - 1));
+}
+
 void append(Measured& to, const config::record::Record& from, std::size_t begin, std::size_t end) {
-  const auto settling = static_cast<std::size_t>(std::lround(kSettling_s / from.sample_time_s));
+  const std::size_t settling = settling_samples(from.sample_time_s);
+  const Led led = begin > 0                         ? kLed
+                  : begins_moving(from, begin, end) ? kLedWhereObserved
+                                                    : kNotLed;
   to.starts.push_back(to.size());
   for (std::size_t i = begin; i < end; ++i) {
     to.t_s.push_back(from.t_s[i]);
     to.u_V.push_back(from.u_V[i]);
     to.y_m.push_back(from.y_m[i]);
-    to.settled.push_back(i - begin >= settling ? 1 : 0);
+    const bool settled = i - begin >= settling;
+    to.settled.push_back(settled ? 1 : 0);
+    to.led.push_back(settled ? kNotLed : led);
   }
 }
 
@@ -31,6 +58,13 @@ std::string seconds(double s) {
 }
 
 }  // namespace
+
+double Measured::share(std::size_t k, double observer_per_s) const noexcept {
+  const double observed = observer_per_s * sample_time_s;
+  if (k >= led.size() || led[k] == kNotLed) return observed;
+  if (led[k] == kLedWhereObserved && !(observer_per_s > 0.0)) return observed;
+  return std::max(observed, std::min(kMostLed, kLeading_per_s * sample_time_s));
+}
 
 Measured measured(const config::record::Record& record) {
   Measured result;
@@ -89,12 +123,17 @@ Measured part(const Measured& whole, std::size_t from, std::size_t to) {
   result.u_V = cut(whole.u_V);
   result.y_m = cut(whole.y_m);
   result.settled = cut(whole.settled);
+  if (!whole.led.empty()) result.led = cut(whole.led);
   result.starts = {0};
   for (const std::size_t start : whole.starts) {
     if (start > from && start < to) result.starts.push_back(start - from);
   }
-  const auto settling = static_cast<std::size_t>(std::lround(kSettling_s / whole.sample_time_s));
-  for (std::size_t i = 0; i < std::min(settling, result.size()); ++i) result.settled[i] = 0;
+  if (from == 0) return result;
+  result.led.resize(result.size());
+  for (std::size_t i = 0; i < std::min(settling_samples(whole.sample_time_s), result.size()); ++i) {
+    result.settled[i] = 0;
+    result.led[i] = kLed;
+  }
   return result;
 }
 

@@ -48,7 +48,6 @@ void ModelRun::residuals(const Eigen::MatrixXd& points, const Eigen::MatrixXd& a
   const bool loads = added_N.size() > 0 && found.has_value();
   const std::size_t load = found.value_or(0);
   const double load_N = loads ? ensemble_->get(load, 0) : 0.0;
-  const double share = observer_per_s_ * record.sample_time_s;
   std::size_t segment = 0;
   for (Eigen::Index k = 0; k < samples; ++k) {
     const auto row = static_cast<std::size_t>(k);
@@ -57,6 +56,7 @@ void ModelRun::residuals(const Eigen::MatrixXd& points, const Eigen::MatrixXd& a
       ++segment;
     }
     const Ensemble::Values reading_m = ensemble_->reading_m();
+    const double share = record.share(row, observer_per_s_);
     Ensemble::Values by_m{};
     for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) {
       by_m[lane] = share * (record.y_m[row] - reading_m[lane]);

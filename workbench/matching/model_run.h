@@ -5,7 +5,8 @@
 //
 // y yh measured and modelled position; l the observer's gain, 1/s. l = 0 is pure simulation from
 // each segment's start; a small l takes away the drift of an integrating plant and leaves what is
-// faster than 1/l as it is.
+// faster than 1/l as it is. A segment that begins in the midst of a motion is led at
+// kLeading_per_s while it settles.
 #pragma once
 
 #include <Eigen/Core>

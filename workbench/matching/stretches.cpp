@@ -53,6 +53,9 @@ void add(Measured& to, const Measured& from) {
   join(to.u_V, from.u_V);
   join(to.y_m, from.y_m);
   join(to.settled, from.settled);
+  to.led.resize(to.size() - from.size());
+  join(to.led, from.led);
+  to.led.resize(to.size());
 }
 
 }  // namespace
@@ -81,10 +84,6 @@ Evidence stretches_of(const Evidence& whole) {
     result.starts.push_back(fits.size());
     for (const Stretch& stretch : stretches(record, share)) {
       Measured piece = part(record, stretch.begin, stretch.end);
-      const auto fading = static_cast<std::size_t>(std::lround(kFading_s / record.sample_time_s));
-      if (stretch.begin > 0) {
-        std::fill_n(piece.settled.begin(), std::min(fading, piece.size()), char{0});
-      }
       for (std::size_t i = 0; i < piece.size(); ++i) {
         const auto at = static_cast<Eigen::Index>(whole.starts[r] + stretch.begin + i);
         fits.push_back(piece.settled[i] != 0 ? whole.fits[at] : 0.0);

@@ -13,10 +13,6 @@ inline constexpr double kSearched_s = 60.0;
 /// One of them: three blocks that are fitted and three that score (Split::blocks).
 inline constexpr double kStretch_s = 6.0 * kBlock_s;
 
-/// A stretch that begins in the midst of a motion counts from here on: what the model does not know
-/// of that moment has then died away under the observer to a few ten-thousandths.
-inline constexpr double kFading_s = 4.0;
-
 /// Length of all records together.
 [[nodiscard]] double length_s(const Evidence& evidence);
 

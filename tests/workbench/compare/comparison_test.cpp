@@ -27,7 +27,8 @@ Comparison compared(const compare_test::Fault& fault, double noise_m = 0.0) {
 
 double bias(double, double, double) { return kGain * kBias_V; }
 
-// e(k+1) = (1 - l Ts) e(k) + g b Ts, so e(k) = g b / l (1 - (1 - l Ts)^k); the free run g b k Ts.
+// e(k+1) = (1 - l Ts) e(k) + g b Ts, so e(k) = g b / l + (e(j) - g b / l) (1 - l Ts)^(k - j); the
+// free run g b k Ts. The record begins in motion: l is kLeading_per_s for its first 100 samples.
 TEST(Comparison, HasTheClosedFormErrorOfAServoWithABias) {
   const Comparison c = compared(bias);
   const std::size_t n = c.record.size();
@@ -35,7 +36,13 @@ TEST(Comparison, HasTheClosedFormErrorOfAServoWithABias) {
   double free_squares = 0.0;
   for (std::size_t k = 0; k < n; ++k) {
     const auto steps = static_cast<double>(k);
-    const double e_m = kGain * kBias_V / kObserver * (1.0 - std::pow(1.0 - kObserver * kTs, steps));
+    const auto from = [&](double e0_m, double rate_per_s, double after) {
+      const double last_m = kGain * kBias_V / rate_per_s;
+      return last_m + (e0_m - last_m) * std::pow(1.0 - rate_per_s * kTs, after);
+    };
+    const double e_m = k <= 100 ? from(0.0, matching::kLeading_per_s, steps)
+                                : from(from(0.0, matching::kLeading_per_s, 100.0), kObserver,
+                                       steps - 100.0);
     const double free_m = kGain * kBias_V * kTs * steps;
     ASSERT_NEAR(c.error_m[k], e_m, kRounding_m) << k;
     ASSERT_NEAR(c.free_error_m[k], free_m, kRounding_m) << k;
@@ -193,6 +200,9 @@ TEST(Comparison, StartsAnewBehindAGap) {
   EXPECT_EQ(c.record.starts.size(), 2U);
   EXPECT_NEAR(c.free_error_m[2999], kGain * kBias_V * kTs * 2999.0, kRounding_m);
   EXPECT_NEAR(c.free_error_m[3000], 0.0, kRounding_m);
+  // led for half a second, which leaves g b / l, and free from there
+  const double led_m = kGain * kBias_V / matching::kLeading_per_s;
+  EXPECT_NEAR(c.free_error_m[3200], led_m + kGain * kBias_V * kTs * 100.0, 1e-4 * led_m);
   EXPECT_NEAR(c.k_step[0].rms_m, kGain * kBias_V * kTs, kRounding_m);
 }
 

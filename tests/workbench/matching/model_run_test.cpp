@@ -138,6 +138,32 @@ TEST(ModelRun, GivesNothingBeforeASegmentHasSettled) {
   EXPECT_GT(std::abs(residuals_m(100, 0)), 1e-6);
 }
 
+/// The right model over the second half of its own motion, of which it knows neither speed nor
+/// pressures at the beginning.
+double error_after_settling_m(double observer_per_s, bool led) {
+  const plant_sim::ModelFile file = model("thesis");
+  const std::unique_ptr<plant_sim::Plant> plant = plant_sim::make_plant(file);
+  Measured whole = record(2000);
+  whole.starts = {0};
+  for (std::size_t k = 0; k < whole.size(); ++k) {
+    whole.y_m[k] = plant->reading_m();
+    plant->advance(whole.u_V[k], kTs);
+  }
+  Measured half = part(whole, 1000, 2000);
+  if (!led) half.led.clear();
+  ModelRun run(file, half, {}, observer_per_s);
+  Eigen::MatrixXd residuals_m;
+  run.residuals(Eigen::MatrixXd(0, 1), residuals_m);
+  return residuals_m.cwiseAbs().maxCoeff();
+}
+
+TEST(ModelRun, CatchesAMotionThatItsSegmentBeginsIn) {
+  for (const double observer_per_s : {0.0, 2.0}) {
+    EXPECT_LT(error_after_settling_m(observer_per_s, true), 2e-7) << observer_per_s;
+    EXPECT_GT(error_after_settling_m(observer_per_s, false), 2e-5) << observer_per_s;
+  }
+}
+
 TEST(ModelRun, RefusesAParameterThatTheModelDoesNotHave) {
   const Measured m = record();
   EXPECT_THROW(ModelRun(model("velocity_servo"), m, {{"mass_kg"}}), config::schema::Error);

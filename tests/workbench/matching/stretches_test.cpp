@@ -72,8 +72,7 @@ TEST(Stretches, KeepWhatEachSampleIsFor) {
     EXPECT_EQ(found.fits[here], whole.fits[there]);
     EXPECT_EQ(found.scores[here], whole.scores[there]);
   }
-  const double first = kept.t_s.front() == 0.0 ? 10 : 80;
-  EXPECT_EQ(settling, first + 4 * 80);
+  EXPECT_EQ(settling, 5 * 10);
   EXPECT_NEAR(found.fits.sum(), found.scores.sum(), 50.0);
 }
 

@@ -1,0 +1,127 @@
+#include "workbench/diagnose/two_at_once.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <limits>
+
+#include "workbench/diagnose/parallel.h"
+#include "workbench/diagnose/projection.h"
+#include "workbench/diagnose/rounds.h"
+#include "workbench/diagnose/sizes.h"
+
+namespace workbench::diagnose {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using matching::SearchParameter;
+
+/// Of the trial sizes of an effect, the last so many: those that are not small.
+constexpr Index kSizes = 4;
+/// That many couples are fitted, each from its best start seen from either base.
+constexpr std::size_t kFitted = 6;
+
+struct Effect {
+  std::string name;
+  std::vector<SearchParameter> own;
+  MatrixXd sizes;
+};
+
+struct Couple {
+  const Effect* first = nullptr;
+  const Effect* second = nullptr;
+  double cost = std::numeric_limits<double>::infinity();
+  std::vector<SearchParameter> searched;
+  std::vector<VectorXd> starts;  ///< one seen from each base
+};
+
+std::vector<Effect> effects_of(const Workshop& shop, const std::vector<std::string>& without) {
+  std::vector<Effect> effects;
+  for (const plant_sim::EffectInfo& info : shop.absent) {
+    if (std::find(without.begin(), without.end(), info.name) != without.end()) continue;
+    Effect effect{info.name, matching::effect_parameters(info, kFirstRefinements), {}};
+    if (is_periodic(effect.own)) continue;
+    effect.sizes = trial_sizes(effect.own, shop.evidence).rightCols(kSizes);
+    effects.push_back(std::move(effect));
+  }
+  return effects;
+}
+
+/// The best combination of sizes, the model's own parameters being at `base`.
+void look(const Workshop& shop, const Projection& projection, const VectorXd& base,
+          Couple& couple) {
+  matching::EvidenceRun run(shop.model, shop.evidence, couple.searched);
+  const Index first = couple.first->sizes.rows();
+  const Index second = couple.second->sizes.rows();
+  MatrixXd points(base.size() + first + second, kSizes * kSizes);
+  for (Index i = 0; i < kSizes; ++i) {
+    for (Index k = 0; k < kSizes; ++k) {
+      points.col(i * kSizes + k) << base, couple.first->sizes.col(i), couple.second->sizes.col(k);
+    }
+  }
+  double least = std::numeric_limits<double>::infinity();
+  Index best = 0;
+  MatrixXd residuals_m;
+  for (Index from = 0; from < points.cols(); from += matching::ModelRun::kLanes) {
+    const Index lanes = std::min<Index>(matching::ModelRun::kLanes, points.cols() - from);
+    run.residuals(points.middleCols(from, lanes), residuals_m);
+    for (Index lane = 0; lane < lanes; ++lane) {
+      if (!residuals_m.col(lane).allFinite()) continue;
+      const double cost = projection.remaining(residuals_m.col(lane));
+      if (cost >= least) continue;
+      least = cost;
+      best = from + lane;
+    }
+  }
+  couple.cost = std::min(couple.cost, least);
+  couple.starts.emplace_back(points.col(best));
+}
+
+}  // namespace
+
+std::vector<Candidate> two_at_once(const Workshop& shop, const Stage& stage,
+                                   const std::vector<std::string>& without) {
+  const std::vector<Effect> effects = effects_of(shop, without);
+  const Projection projection(stage.fitted, shop.evidence.fits);
+  VectorXd nominal = stage.fitted.x;
+  const VectorXd file = matching::start_of(shop.model, shop.standing);
+  nominal.head(file.size()) = file;
+  const std::array<const VectorXd*, 2> bases{&nominal, &stage.fitted.x};
+  std::vector<Couple> couples;
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    for (std::size_t k = i + 1; k < effects.size(); ++k) {
+      Couple couple;
+      couple.first = &effects[i];
+      couple.second = &effects[k];
+      couple.searched = stage.fitted.searched;
+      for (const Effect* effect : {couple.first, couple.second}) {
+        couple.searched.insert(couple.searched.end(), effect->own.begin(), effect->own.end());
+      }
+      couples.push_back(std::move(couple));
+    }
+  }
+  in_parallel(couples.size(), shop.threads, [&](std::size_t i) {
+    for (const VectorXd* base : bases) {
+      if (!shop.cancelled()) look(shop, projection, *base, couples[i]);
+    }
+  });
+  std::stable_sort(couples.begin(), couples.end(),
+                   [](const Couple& a, const Couple& b) { return a.cost < b.cost; });
+  couples.resize(std::min(couples.size(), kFitted));
+  std::vector<Candidate> candidates(couples.size());
+  std::atomic<bool> explained = false;
+  in_parallel(couples.size(), shop.threads, [&](std::size_t i) {
+    if (shop.cancelled() || explained) return;
+    Glance glance{couples[i].first->name, 1.0, couples[i].searched, couples[i].starts};
+    candidates[i] = tried(shop, stage, glance);
+    candidates[i].effects.push_back(couples[i].second->name);
+    if (candidates[i].score_rms_m < kUnexplained * shop.evidence.noise_floor_m) explained = true;
+  });
+  std::erase_if(candidates, [](const Candidate& c) { return !c.fitted_at_all; });
+  finish(shop, stage, candidates);
+  return candidates;
+}
+
+}  // namespace workbench::diagnose
