@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "workbench/diagnose/look_over.h"
 #include "workbench/diagnose/rounds.h"
@@ -25,6 +26,8 @@ constexpr double kSamePath = 0.1;
 /// A gain must also be more than chance, unless it is a large one.
 constexpr double kChance = 0.01;
 constexpr double kLargeGain = 0.1;
+/// Of the parameters, more than between two explanations that are alike.
+constexpr double kStrain = 6.0;
 
 /// Whether the effect wants to be larger, or a wave longer, than such an effect can be: then it
 /// stands for something else.
@@ -49,12 +52,25 @@ bool is_gain(const Workshop& shop, const Stage& stage, const Candidate& candidat
          (gain > kLargeGain || candidate.p_value < kChance || fit_gain > enough);
 }
 
-/// Of candidates that explain the record alike, the one with the fewest parameters.
+/// How far the parameters have gone from what was expected of them, in squared standard deviations.
+double strain(const matching::Fitted& fitted) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < fitted.searched.size(); ++i) {
+    const matching::SearchParameter& p = fitted.searched[i];
+    const double off = (fitted.x[static_cast<Eigen::Index>(i)] - p.prior_mean) / p.prior_sd;
+    if (std::isfinite(off)) sum += off * off;
+  }
+  return sum;
+}
+
+/// Of candidates that explain the record alike, the one with the fewest parameters; not one that
+/// needs the plant to be another than was expected.
 const Candidate& simplest(const Workshop& shop, const std::vector<Candidate>& candidates) {
   const Candidate* chosen = &candidates.front();
   for (const Candidate& other : candidates) {
     if (!other.fitted_at_all || other.effects.size() > chosen->effects.size()) continue;
     if (other.fitted.searched.size() < chosen->fitted.searched.size() &&
+        strain(other.fitted) < strain(candidates.front().fitted) + kStrain &&
         other.score_rms_m <
             (1.0 + worthwhile_at(shop, other.score_rms_m)) * candidates.front().score_rms_m &&
         chance(shop, other.fitted, candidates.front().fitted) > kChance) {
