@@ -1,5 +1,8 @@
 // spoolwatch-rig as its clients see it: requests byte by byte, as the protocol's text has them.
 #include <gmock/gmock.h>
+#include <poll.h>
+#include <pty.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -69,6 +72,34 @@ TEST(RigProgram, RefusesWhatItDoesNotHaveOrDoesNotLetBeWritten) {
   EXPECT_THAT(client.ask({6, 0x04, 0x4C, 0, 0}), ElementsAre(0x86, 2)) << "the reply, 1100";
   EXPECT_THAT(client.ask({23, 0, 4, 0, 2, 0, 6, 0, 1, 2, 0, 0}), ElementsAre(0x97, 2));
   EXPECT_THAT(client.ask({0x41, 0, 0, 0, 0}), testing::Not(testing::IsEmpty()));
+}
+
+TEST(RigProgram, AnswersOnASerialLineToo) {
+  int outer = -1;
+  int inner = -1;
+  char name[128];
+  ASSERT_EQ(openpty(&outer, &inner, name, nullptr, nullptr), 0);
+  const RigProcess rig(quiet({"--serial", name}));
+  ASSERT_FALSE(rig.address().empty());
+  // Unit 1, function 3, two registers from 4, CRC: as the protocol's text computes it.
+  const Bytes request{0x01, 0x03, 0x00, 0x04, 0x00, 0x02, 0x85, 0xCA};
+  Bytes reply;
+  pollfd file{outer, POLLIN, 0};
+  // The line may be opened a moment after the port is.
+  for (int i = 0; i < 20 && reply.empty(); ++i) {
+    ASSERT_EQ(write(outer, request.data(), request.size()), 8);
+    while (poll(&file, 1, reply.empty() ? 500 : 50) > 0) {
+      std::uint8_t bytes[64];
+      const ssize_t count = read(outer, bytes, sizeof bytes);
+      reply.insert(reply.end(), bytes, bytes + std::max<ssize_t>(count, 0));
+    }
+  }
+  ASSERT_EQ(reply.size(), 9U);
+  EXPECT_EQ(reply[0], 1);
+  EXPECT_EQ(reply[1], 3);
+  EXPECT_NEAR(float_at(reply, 3), 0.305, 5e-5);
+  close(outer);
+  close(inner);
 }
 
 TEST(RigProgram, ItsTimeOutIsARegister) {
