@@ -2,6 +2,7 @@
 // and finds what it finds on the simulated backend.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -148,6 +149,11 @@ TEST(Bench, LatchesWhenTheRigIsKilledAndStaysSoWhenItIsBack) {
     if (latched == 0 && log.samples[i].state == 4) latched = i;
   }
   EXPECT_TRUE(missing) << "a position without a rig";
+  for (const std::string name : {"missing", "bus_lost", "latched"}) {
+    EXPECT_TRUE(std::any_of(log.alarms.begin(), log.alarms.end(), [&](const auto& alarm) {
+      return alarm.name == name && alarm.active;
+    })) << name;
+  }
   ASSERT_GT(latched, 0U) << "not LATCHED";
   for (std::size_t i = latched; i < log.samples.size(); ++i) EXPECT_EQ(log.samples[i].state, 4);
   EXPECT_TRUE(std::isfinite(log.samples.back().y_m)) << "it reads again\n" << result.err;
