@@ -35,7 +35,7 @@ const std::vector<Layer> kLayers{
     {"hal/modbus", {"config/schema", "hal"}, {"modbus"}},
     {"hal/encoder", {"config/schema", "hal"}, {"gpiod"}},
     {"hal/comedi", {"config/schema", "hal"}, {"comedilib"}},
-    {"hal/rig", {"config/schema", "hal", "hal/sim", "plant_sim"}, {"modbus", "gpiod", "CLI"}},
+    {"hal/rig", {"config/schema", "hal", "plant_sim"}, {"modbus", "gpiod", "CLI"}},
     {"daemon/control", {"config/schema"}, {}},
     {"daemon/rt",
      {"config", "estimator", "estimator/fdi", "hal", "hal/sim", "hal/replay", "plant_sim",
