@@ -3,45 +3,12 @@
 // again.
 #include <gmock/gmock.h>
 
-#include <csignal>
-
-#include "tests/hal/modbus/device.h"
-#include "tests/hal/modbus/stand.h"
+#include "tests/hal/modbus/servo.h"
 
 namespace hal::modbus {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr int kCommand = 2;
-constexpr int kWatchdog = 1;
-constexpr int kPosition = 4;
-constexpr double kNull_V = 0.25;
-constexpr std::uint16_t kNullRaw = 250;
-
-std::string map_of(const std::string& options = "", const std::string& registers = "") {
-  return options +
-         "timeout_s = 0.1\njitter_s = 10.0\nlongest_pause_s = 0.05\npriority = 0\n"
-         "[modbus.registers.position]\nrole = \"rod\"\naddress = 4\nscale = 1e-3\nhigh = 2.0\n"
-         "[modbus.registers.u]\nrole = \"valve_command\"\naddress = 2\ntype = \"int16\"\n"
-         "scale = 1e-3\nlow = -10.0\nhigh = 10.0\n" +
-         registers;
-}
-std::string tcp(const Device& device, const std::string& options = "",
-                const std::string& registers = "") {
-  return map_of("address = \"127.0.0.1:" + std::to_string(device.port()) + "\"\n" + options,
-                registers);
-}
-
-/// Every connection that was written on begins with null.
-void expect_null_first(Device& device) {
-  for (int c = 1; c <= device.connections(); ++c) {
-    const auto writes = device.writes(c);
-    if (writes.empty()) continue;
-    EXPECT_EQ(writes[0].address, kCommand) << "connection " << c;
-    EXPECT_EQ(writes[0].words[0], kNullRaw) << "connection " << c;
-  }
-}
 
 TEST(ModbusLink, WritesNothingBeforeTheLoopDoes) {
   Device device;
@@ -99,106 +66,6 @@ TEST(ModbusLink, Function23WritesAndReadsInOneTransaction) {
     EXPECT_EQ(all.back().function, 23);
   }
   EXPECT_EQ(device.get(kCommand), kNullRaw) << "null is what it ends with";
-}
-
-struct Misdeed {
-  const char* name;
-  Reply reply;
-};
-
-class ModbusMisdeed : public testing::TestWithParam<Misdeed> {};
-
-TEST_P(ModbusMisdeed, ClosesTheConnectionAndBeginsAgainWithNull) {
-  Device device;
-  device.set(kPosition, 100);
-  Stand stand(tcp(device), kNull_V);
-  ASSERT_TRUE(eventually([&] { return stand.turn(3.0).quality == Quality::good; }));
-  const int before = device.connections();
-  device.answer(GetParam().reply, 1);
-  ASSERT_TRUE(eventually([&] {
-    stand.turn(3.0);
-    return device.connections() > before;
-  })) << "the connection has not been closed";
-  ASSERT_TRUE(eventually([&] {
-    return stand.turn(3.0).quality == Quality::good && device.get(kCommand) == 3000;
-  })) << "it does not come back";
-  expect_null_first(device);
-}
-
-INSTANTIATE_TEST_SUITE_P(Each, ModbusMisdeed,
-                         testing::Values(Misdeed{"Late", Reply::late}, Misdeed{"Lost", Reply::lost},
-                                         Misdeed{"Doubled", Reply::doubled},
-                                         Misdeed{"Truncated", Reply::truncated},
-                                         Misdeed{"Garbled", Reply::garbled},
-                                         Misdeed{"OfAnotherTransaction", Reply::wrong_transaction},
-                                         Misdeed{"Closed", Reply::close}),
-                         [](const auto& test) { return test.param.name; });
-
-TEST(ModbusLink, TurnsBadWithinATimeOutAndStaysSoWhileNothingAnswers) {
-  Device device;
-  Stand stand(tcp(device), kNull_V);
-  ASSERT_TRUE(stand.turn_until(Quality::good, 3.0));
-  device.answer(Reply::lost);
-  ASSERT_TRUE(stand.turn_until(Quality::bad, 3.0));
-  for (int i = 0; i < 20; ++i) {
-    const Reading reading = stand.turn(3.0);
-    EXPECT_EQ(reading.quality, Quality::bad);
-    EXPECT_TRUE(std::isnan(reading.y_m));
-  }
-  EXPECT_FALSE(stand.applied().good);
-  EXPECT_TRUE(std::isnan(stand.applied().u_V));
-  expect_null_first(device);
-  device.answer(Reply::normal);
-  EXPECT_TRUE(stand.turn_until(Quality::good, 3.0));
-}
-
-// The commands wished while the cable was out must not fire when it is in again.
-TEST(ModbusLink, NeverSendsWhatWasWishedWhileTheCableWasOut) {
-  Device device;
-  Stand stand(tcp(device), kNull_V);
-  ASSERT_TRUE(eventually([&] {
-    stand.turn(3.0);
-    return device.get(kCommand) == 3000;
-  }));
-  device.unplug();
-  for (int i = 0; i < 20; ++i) stand.turn(6.0);
-  EXPECT_EQ(stand.turn(6.0).quality, Quality::bad);
-  const int before = device.connections();
-  device.plug_in();
-  ASSERT_TRUE(eventually([&] { return device.connections() > before; }));
-  ASSERT_TRUE(eventually([&] {
-    stand.turn(7.0);
-    return device.get(kCommand) == 7000;
-  }));
-  for (const Received& write : device.writes()) EXPECT_NE(write.words[0], 6000);
-  expect_null_first(device);
-}
-
-TEST(ModbusLink, ComesBackWithNullAfterTheDeviceHasRebooted) {
-  Device device;
-  Stand stand(tcp(device, "watchdog_s = 0.05\n",
-                  "[modbus.registers.w]\nrole = \"watchdog\"\naddress = 1\nscale = 1e-3\n"),
-              kNull_V);
-  ASSERT_TRUE(stand.turn_until(Quality::good, 3.0));
-  device.reboot(200);
-  ASSERT_TRUE(eventually([&] {
-    stand.turn(4.0);
-    return device.get(kCommand) == 4000;
-  }));
-  EXPECT_EQ(device.get(kWatchdog), 50) << "a device that has rebooted has forgotten its time-out";
-  expect_null_first(device);
-}
-
-TEST(ModbusLink, GivesUpAConnectionThatIsOnlyHalfOpen) {
-  Device device;
-  Stand stand(tcp(device), kNull_V);
-  ASSERT_TRUE(stand.turn_until(Quality::good, 3.0));
-  device.half_open(true);
-  ASSERT_TRUE(stand.turn_until(Quality::bad, 3.0));
-  for (int i = 0; i < 10; ++i) EXPECT_EQ(stand.turn(3.0).quality, Quality::bad);
-  device.half_open(false);
-  EXPECT_TRUE(stand.turn_until(Quality::good, 3.0));
-  expect_null_first(device);
 }
 
 TEST(ModbusLink, AnExceptionKeepsTheConnectionAndAgesTheReading) {
