@@ -209,8 +209,11 @@ Ladder climb(const Workshop& shop) {
     std::vector<Stage> supported = supported_way(shop, ladder.way);
     // interrupted in the midst of it: what was found stays
     if (!shop.cancelled()) {
-      ladder.way = std::move(supported);
-      look_over(shop, ladder.way.back());
+      Stage last = supported.back();
+      look_over(shop, last);
+      const bool dropped = last.added.size() < supported.back().added.size();
+      ladder.way = dropped ? way_to(shop, first, last) : std::move(supported);
+      if (!dropped) ladder.way.back() = std::move(last);
     }
   }
   ladder.final = ladder.way.back();

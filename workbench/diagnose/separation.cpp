@@ -42,6 +42,11 @@ MatrixXd with_derivatives(const Workshop& shop, const matching::Evidence& eviden
   return residuals_m;
 }
 
+/// What a difference has to stand out from: noise, and what the rival leaves unexplained anyway.
+double unseen_m(const matching::Evidence& evidence, const matching::Fitted& rival) {
+  return std::max(evidence.noise_floor_m, rival.score_rms_m);
+}
+
 }  // namespace
 
 double expected_separation(const Workshop& shop, const matching::Evidence& evidence,
@@ -72,7 +77,7 @@ double expected_separation(const Workshop& shop, const matching::Evidence& evide
     }
     left_m = columns.col(0) - columns.rightCols(count) * normal.ldlt().solve(slope);
   }
-  return std::sqrt(left_m.cwiseProduct(counted).squaredNorm() / samples) / evidence.noise_floor_m;
+  return std::sqrt(left_m.cwiseProduct(counted).squaredNorm() / samples) / unseen_m(evidence, rival);
 }
 
 double fitted_separation(const Workshop& shop, const matching::Evidence& evidence,
@@ -84,7 +89,7 @@ double fitted_separation(const Workshop& shop, const matching::Evidence& evidenc
   options.cancel = shop.cancel;
   const matching::Fitted fitted =
       matching::fit(shop.model, evidence, evidence.fits, rival.searched, rival.x, options);
-  return fitted.score_rms_m / evidence.noise_floor_m;
+  return fitted.score_rms_m / unseen_m(evidence, rival);
 }
 
 }  // namespace workbench::diagnose

@@ -131,4 +131,19 @@ std::vector<Profile> profiles(const Task& task, const Problem& problem, const So
   return found;
 }
 
+void keep_profile(const estimator::nonlinear::Profile& walked, Parameter& q) {
+  const matching::SearchParameter& p = q.search;
+  for (const auto& point : walked.points) q.profile.push_back({p.value(point.value), point.rise});
+  q.low_found = walked.low_found;
+  q.high_found = walked.high_found;
+  q.low = p.value(walked.low);
+  q.high = p.value(walked.high);
+  if (p.scale == matching::Scale::reciprocal) {
+    std::reverse(q.profile.begin(), q.profile.end());
+    std::swap(q.low, q.high);
+    std::swap(q.low_found, q.high_found);
+  }
+  q.from_profile = !walked.cancelled;
+}
+
 }  // namespace workbench::fit

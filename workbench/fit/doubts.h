@@ -21,4 +21,7 @@ namespace workbench::fit {
     const estimator::nonlinear::Solution& solution, const estimator::nonlinear::Covariance& known,
     const std::vector<char>& chosen);
 
+/// What a profile says of a parameter, in the parameter's own unit.
+void keep_profile(const estimator::nonlinear::Profile& walked, Parameter& q);
+
 }  // namespace workbench::fit

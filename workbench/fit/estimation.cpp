@@ -6,6 +6,7 @@
 
 #include "workbench/diagnose/parallel.h"
 #include "workbench/fit/doubts.h"
+#include "workbench/fit/errors.h"
 #include "workbench/fit/starts.h"
 #include "workbench/matching/wide_run.h"
 
@@ -83,7 +84,7 @@ class Estimator {
     out_.fitted.score_rms_m = matching::rms(solution_.residual, task_.evidence.scores);
     out_.better = matching::with_values(task_.model, out_.fitted);
     out_.after.residual_m = solution_.residual;
-    errors();
+    find_errors(task_, solution_.x, out_.before, out_.after);
     out_.interrupted = cancelled();
     return std::move(out_);
   }
@@ -261,7 +262,7 @@ class Estimator {
     }
     for (std::size_t i = 0; i < walked.size(); ++i) {
       out_.parameters[i].doubt = why[i];
-      if (walked[i].points.size() > 1) keep(walked[i], out_.parameters[i]);
+      if (walked[i].points.size() > 1) keep_profile(walked[i], out_.parameters[i]);
     }
   }
 
@@ -277,52 +278,6 @@ class Estimator {
     }
     if (!names.empty()) say("profile of " + names);
     return which;
-  }
-
-  static void keep(const estimator::nonlinear::Profile& walked, Parameter& q) {
-    const matching::SearchParameter& p = q.search;
-    for (const auto& point : walked.points) q.profile.push_back({p.value(point.value), point.rise});
-    q.low_found = walked.low_found;
-    q.high_found = walked.high_found;
-    q.low = p.value(walked.low);
-    q.high = p.value(walked.high);
-    if (p.scale == matching::Scale::reciprocal) {
-      std::reverse(q.profile.begin(), q.profile.end());
-      std::swap(q.low, q.high);
-      std::swap(q.low_found, q.high_found);
-    }
-    q.from_profile = !walked.cancelled;
-  }
-
-  void errors() {
-    for (Errors* of : {&out_.before, &out_.after}) {
-      of->rms_m = matching::rms(of->residual_m, task_.weights);
-      if (task_.evidence.scores.sum() > 0.0) {
-        of->heldout_rms_m = matching::rms(of->residual_m, task_.evidence.scores);
-      }
-    }
-    // Pure simulation of every sample, as `compare` has it.
-    matching::Evidence all = task_.evidence;
-    for (matching::Measured& record : all.records) {
-      std::fill(record.settled.begin(), record.settled.end(), 1);
-    }
-    matching::EvidenceRun free(task_.model, all, task_.searched, 0.0);
-    Eigen::MatrixXd points(task_.start.size(), 2);
-    points << task_.start, solution_.x;
-    Eigen::MatrixXd residuals_m;
-    free.residuals(points, residuals_m);
-    double spread_m2 = 0.0;
-    for (const matching::Measured& record : all.records) {
-      const Eigen::Map<const VectorXd> y(record.y_m.data(), static_cast<Index>(record.size()));
-      spread_m2 += (y.array() - y.mean()).square().sum();
-    }
-    Index column = 0;
-    for (Errors* of : {&out_.before, &out_.after}) {
-      of->free_run_m = residuals_m.col(column++);
-      const double square_m2 = of->free_run_m.squaredNorm();
-      of->free_run_rms_m = std::sqrt(square_m2 / static_cast<double>(of->free_run_m.size()));
-      of->fit_percent = 100.0 * (1.0 - std::sqrt(square_m2 / spread_m2));
-    }
   }
 
   const Task& task_;

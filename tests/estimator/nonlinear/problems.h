@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -140,5 +141,16 @@ inline std::vector<Certified> nist() {
   }
   return out;
 }
+
+/// Numbers from the normal distribution.
+struct Draw {
+  std::mt19937_64 engine;
+  std::normal_distribution<double> normal;
+  explicit Draw(std::uint64_t seed) : engine(seed) {}
+  double operator()() { return normal(engine); }
+  MatrixXd matrix(Index rows, Index columns) {
+    return MatrixXd::NullaryExpr(rows, columns, [&] { return normal(engine); });
+  }
+};
 
 }  // namespace estimator::nonlinear::testing_problems
