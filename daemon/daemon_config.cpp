@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <sstream>
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
@@ -16,6 +18,18 @@ using config::schema::Visitor;
 constexpr const char* kPathKeys[] = {"sim.model",      "replay.record",   "reference.file",
                                      "bands_file",     "recorder.folder", "control.socket",
                                      "rig.calibration"};
+
+/// Keys that say how valve and rod sensor are wired and what their signals mean.
+constexpr const char* kWiringKeys[] = {
+    "backend", "channel",      "address",          "function",    "type",      "order", "scale",
+    "offset",  "sign",         "polarity",         "scale_ratio", "offset_V",  "mode",  "line_a",
+    "line_b",  "resolution_m", "counts_per_metre", "range",       "subdevice", "role",  "unit"};
+
+std::uint64_t fnv(const std::string& text) noexcept {
+  std::uint64_t h = 0xcbf29ce484222325U;
+  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+  return h;
+}
 
 /// A command that stays at the valve for ever needs someone else who takes it away.
 void refuse_without_watchdog(const DaemonConfig& config) {
@@ -92,7 +106,7 @@ void load(const std::filesystem::path& file, const std::vector<std::string>& ass
   }
 }
 
-std::string never_arms(const DaemonConfig& config) {
+std::string never_arms(DaemonConfig& config) {
   if (!config.drives_valve() || config.rig.harmless()) return "";
   if (config.calibration.empty()) {
     return "no [rig] calibration in " + config.file + ": commission the rig first";
@@ -102,16 +116,48 @@ std::string never_arms(const DaemonConfig& config) {
   if (!std::filesystem::exists(file, ignored)) {
     return "no calibration " + file.string() + ": commission the rig first";
   }
-  (void)control::load_calibration(file, config.rig_id);
-  return "";
+  const std::string against =
+      control::contradiction(control::load_calibration(file, config.rig_id),
+                             config.rig.valve().null_V, config.rig.valve().limit_V, wiring(config));
+  return against.empty() ? "" : "calibration " + file.string() + ": " + against;
+}
+
+std::string wiring(DaemonConfig& config) {
+  std::istringstream lines(config::schema::print_toml([&](Visitor& v) { config.rig.visit(v); }));
+  std::string text;   // of all tables that count
+  std::string table;  // the lines that count of this one
+  bool counts = false;
+  const auto take = [&] {
+    if (counts) text += table;
+    table.clear();
+  };
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with('[')) {
+      take();
+      // Lists hold auxiliary inputs and outputs.
+      counts = !line.starts_with("[[") && line != "[permit]";
+      table = line + '\n';
+      continue;
+    }
+    const std::string key = line.substr(0, line.find(' '));
+    const std::string value = line.substr(std::min(line.size(), line.find('=') + 2));
+    if (key == "role") counts = value.starts_with("\"rod\"") || value.starts_with("\"valve_comm");
+    const bool address_of_a_device = key == "address" && value.starts_with('"');
+    if (std::find(std::begin(kWiringKeys), std::end(kWiringKeys), key) != std::end(kWiringKeys) &&
+        !address_of_a_device) {
+      table += line + '\n';
+    }
+  }
+  take();
+  char digits[17];
+  std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(fnv(text)));
+  return digits;
 }
 
 std::uint64_t hash(DaemonConfig& config) {
   const std::string text =
       config::schema::print_toml([&](Visitor& v) { config.visit_what_determines_the_data(v); });
-  std::uint64_t h = 0xcbf29ce484222325U;
-  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
-  return h;
+  return fnv(text);
 }
 
 }  // namespace monitor

@@ -51,7 +51,11 @@ void load(const std::filesystem::path& file, const std::vector<std::string>& ass
 
 /// Why the rig may not be armed as it is configured, in one line; empty: it may. Throws
 /// config::schema::Error for a calibration that does not fit.
-[[nodiscard]] std::string never_arms(const DaemonConfig& config);
+[[nodiscard]] std::string never_arms(DaemonConfig& config);
+
+/// What determines sign, size and place of command and reading, in 16 hexadecimal digits: backends
+/// and channels of valve and rods, and their signs, scales, lines and registers.
+[[nodiscard]] std::string wiring(DaemonConfig& config);
 
 /// FNV-1a of every value that determines the data; files that it names count by name alone.
 [[nodiscard]] std::uint64_t hash(DaemonConfig& config);

@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "config/schema/error.h"
+#include "daemon/commission.h"
 #include "daemon/null_guard.h"
 #include "daemon/rt/privileges.h"
 #include "daemon/session.h"
@@ -26,6 +27,39 @@ void keep_standard_streams() {
   if (file >= 0) close(file);
 }
 
+/// --commission and what belongs to it; lengths in mm on the command line.
+const CLI::Option* add_commission(CLI::App& app, monitor::CommissionOptions& options) {
+  constexpr double kMetresPerMillimetre = 1e-3;
+  const auto millimetres = [&app](const char* name, const char* what, double low_mm, double high_mm,
+                                  double& target_m) {
+    return app
+        .add_option_function<double>(
+            name, [&target_m](const double& mm) { target_m = mm * kMetresPerMillimetre; }, what)
+        ->check(CLI::Range(low_mm, high_mm));
+  };
+  CLI::Option* out = app.add_option("--commission", options.out,
+                                    "find out how the rig is wired; the calibration file");
+  CLI::Option* more[] = {
+      millimetres("--max-travel-mm", "of the rod in a stage, 5", 0.1, 1000.0, options.max_travel_m),
+      millimetres("--max-speed-mmps", "of the rod, --max-travel-mm in 0.1 s", 0.1, 10000.0,
+                  options.max_speed_mps),
+      app.add_option("--authority", options.authority_V, "greatest command from null, V")
+          ->check(CLI::Range(1e-3, 100.0)),
+      app.add_option("--pulse", options.pulse_s, "length of a pulse, s")
+          ->check(CLI::Range(0.05, 10.0)),
+      app.add_option("--home", options.home, "where to drive at the end")
+          ->check(
+              CLI::IsMember({"none", "stop_above", "stop_below", "index_above", "index_below"})),
+      millimetres("--home-travel-mm", "on the way there, 1000", 1.0, 100000.0,
+                  options.home_travel_m),
+      millimetres("--stroke-mm", "true way between the stops: drive to both, for the scale", 1.0,
+                  100000.0, options.stroke_m),
+      app.add_flag("--yes", options.yes, "ask nobody before a motion")};
+  for (CLI::Option* option : more) option->needs(out)->group("Commissioning");
+  out->group("Commissioning");
+  return out;
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Runs a servo-hydraulic test stand and watches it for faults.", "spoolwatchd");
   std::string file;
@@ -43,6 +77,8 @@ int run(int argc, char** argv) {
   app.add_option("--set", assignments, "table.key=value, instead of the file's")
       ->allow_extra_args(false);
   app.add_flag("--check", check, "validate, print the effective configuration, write nothing");
+  monitor::CommissionOptions commission;
+  const CLI::Option* out = add_commission(app, commission);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -61,6 +97,10 @@ int run(int argc, char** argv) {
   if (check) {
     monitor::check_session(config, std::cout);
     return static_cast<int>(ExitCode::done);
+  }
+  if (out->count() > 0) {
+    commission.virtual_time = options.virtual_time;
+    return monitor::commission(config, commission, std::cout);
   }
   return monitor::run_session(config, options, std::cerr);
 }

@@ -12,6 +12,8 @@ namespace {
 
 constexpr workbench::Command kCommands[] = {
     {"status", "what the running daemon does, and what forbids to arm it", workbench::add_status},
+    {"commission", "find out how a rig is wired, and write its calibration file",
+     workbench::add_commission},
     {"arm", "let the running daemon be started", workbench::add_arm},
     {"disarm", "null, from RUN or ARMED", workbench::add_disarm},
     {"start", "run the reference signal from where the rod is; resume after a hold",

@@ -1,5 +1,8 @@
 #include "daemon/control/calibration.h"
 
+#include <cmath>
+#include <cstdio>
+
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 
@@ -8,17 +11,29 @@ namespace monitor::control {
 void Calibration::visit(config::schema::Visitor& v) {
   v.text({"rig_id", "[rig] id of the configuration it was made with", true}, rig_id);
   v.text({"date", "of the commissioning", true}, date);
-  v.number({"latency_s", "from a command to the first motion", true}, latency_s, {0.0, 10.0});
+  v.text({"wiring", "of the configuration that it was made with"}, wiring);
+  v.number({"latency_s", "from a command to the motion: dead time and lag", true}, latency_s,
+           {0.0, 10.0});
   v.table({"valve", "as found"}, [this](config::schema::Visitor& t) {
     t.integer({"sign", "1: a higher voltage extends the rod; -1", true}, valve_sign, {-1, 1});
     t.number({"null_V", "where the rod stands still", true}, null_V, {-100.0, 100.0});
     t.number({"dead_zone_V", "width of the range in which it does", true}, dead_zone_V,
              {0.0, 100.0});
+    t.number({"gain_mps_per_V", "speed by voltage outside of it"}, gain_mps_per_V, {0.0, 1e3});
   });
   v.table({"rod", "as found"}, [this](config::schema::Visitor& t) {
-    t.integer({"sign", "1: the raw reading grows as the rod extends; -1", true}, rod_sign, {-1, 1});
-    t.number({"scale", "metres a raw unit", true}, rod_scale, {1e-12, 1e3});
+    t.integer({"sign", "1: the reading grows as the rod extends; -1", true}, rod_sign, {-1, 1});
+    t.number({"scale", "true metres a metre of reading", true}, rod_scale, {1e-12, 1e3});
     t.number({"noise_m", "standard deviation at rest", true}, noise_m, {0.0, 1.0});
+  });
+  v.table({"home", "a place to be found again"}, [this](config::schema::Visitor& t) {
+    t.choice({"kind", "what it is"}, home, {"none", "stop_above", "stop_below", "index"});
+    if (home != "none") t.number({"position_m", "the reading there", true}, home_m, {-1e3, 1e3});
+  });
+  v.table({"limits", "within which it was found"}, [this](config::schema::Visitor& t) {
+    t.number({"authority_V", "greatest distance of a command from null"}, authority_V, {0.0, 1e3});
+    t.number({"max_travel_m", "of the rod"}, max_travel_m, {0.0, 1e3});
+    t.number({"max_speed_mps", "of the rod"}, max_speed_mps, {0.0, 1e3});
   });
 }
 
@@ -36,6 +51,32 @@ Calibration load_calibration(const std::filesystem::path& file, const std::strin
                      "\"" + rig_id + "\", the [rig] id of the configuration");
   }
   return calibration;
+}
+
+std::string contradiction(const Calibration& calibration, double null_V, double limit_V,
+                          const std::string& wiring) {
+  constexpr double kNullShare = 0.01;
+  constexpr double kScaleShare = 0.01;
+  char line[200];
+  if (calibration.valve_sign < 0) return "the valve is reversed: a positive command retracts";
+  if (calibration.rod_sign < 0) {
+    return "the rod sensor is reversed: the reading falls as the rod extends";
+  }
+  if (std::abs(calibration.rod_scale - 1.0) > kScaleShare) {
+    std::snprintf(line, sizeof line, "a metre of reading is %.4g m: correct the rod sensor's scale",
+                  calibration.rod_scale);
+    return line;
+  }
+  const double allowed_V = 0.5 * calibration.dead_zone_V + kNullShare * limit_V;
+  if (!(std::abs(null_V - calibration.null_V) <= allowed_V)) {
+    std::snprintf(line, sizeof line, "[valve] null_V is %.4g; the rod stands at %.4g +- %.2g",
+                  null_V, calibration.null_V, allowed_V);
+    return line;
+  }
+  if (!calibration.wiring.empty() && calibration.wiring != wiring) {
+    return "the configuration of valve or rod sensor has changed since: commission the rig again";
+  }
+  return "";
 }
 
 std::string print_calibration(Calibration calibration) {

@@ -185,7 +185,7 @@ TEST(Control, WhatMovesIsNotArmedWithoutACalibrationOfThisRig) {
   const auto write = [&](const char* rig) {
     std::ofstream(file) << "schema_version = 1\nrig_id = \"" << rig
                         << "\"\ndate = \"2026-03-01\"\nlatency_s = 0.004\n[valve]\nsign = 1\n"
-                           "null_V = 0.0\ndead_zone_V = 0.0\n[rod]\nsign = 1\nscale = 5e-6\n"
+                           "null_V = 0.0\ndead_zone_V = 0.0\n[rod]\nsign = 1\nscale = 1.0\n"
                            "noise_m = 2e-6\n";
   };
   write("another");

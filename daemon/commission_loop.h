@@ -1,0 +1,71 @@
+// The loop of a commissioning: once a period it reads the rod and what is around it, and writes
+// what the procedure says, null between its stages. In real time on a thread of its own, in virtual
+// time on the caller's.
+#pragma once
+
+#include <atomic>
+#include <functional>
+
+#include "daemon/control/commissioning.h"
+#include "daemon/rt/grid.h"
+#include "daemon/rt/surroundings.h"
+#include "daemon/rt/thread.h"
+
+namespace monitor {
+
+class CommissionLoop {
+ public:
+  struct Parts {
+    rt::Clock& clock;
+    const hal::Devices& devices;
+    hal::ValveDrive& valve;
+    double null_V;
+    double sample_time_s;
+    std::int64_t max_bad_in_a_row;
+  };
+  /// Why a stage ended that was not the procedure's doing.
+  enum class Stop : std::uint8_t { none, e_stop, not_enabled, valve_lost, stood_still };
+
+  /// In virtual time no thread is started, and stages take no time of the wall clock.
+  CommissionLoop(const Parts& parts, control::Commissioning& procedure, bool virtual_time);
+  ~CommissionLoop();
+  CommissionLoop(const CommissionLoop&) = delete;
+  CommissionLoop& operator=(const CommissionLoop&) = delete;
+
+  /// Returns 0 or the errno of what was not granted.
+  int start(const rt::ThreadOptions& options);
+  /// Runs what the procedure has begun. False when `stop_asked`, which may wait a little, said so
+  /// first: null is being written already then.
+  bool run_stage(const std::function<bool()>& stop_asked);
+  /// Null and no more ticks. False when a device does not return.
+  bool end();
+
+  [[nodiscard]] Stop stop() const noexcept { return stop_.load(std::memory_order_relaxed); }
+  [[nodiscard]] hal::Quality quality() const noexcept {
+    return quality_.load(std::memory_order_relaxed);
+  }
+
+ private:
+  void tick() noexcept;
+
+  Parts parts_;
+  control::Commissioning& procedure_;
+  bool virtual_time_;
+  rt::Grid grid_;
+  rt::LoopStats stats_;
+  rt::Surroundings around_;
+  double start_s_;
+  double applied_V_ = hal::kMissing;  ///< of the last write
+  std::int64_t bad_writes_ = 0;
+  bool permit_on_ = false;
+  std::atomic<bool> stage_{false};  ///< the loop has the procedure; else the caller has it
+  std::atomic<bool> abandon_{false};
+  std::atomic<bool> end_{false};
+  std::atomic<Stop> stop_{Stop::none};
+  std::atomic<hal::Quality> quality_{hal::Quality::bad};
+  rt::Thread thread_;
+};
+
+[[nodiscard]] const char* words_of(CommissionLoop::Stop stop) noexcept;
+
+}  // namespace monitor
