@@ -41,14 +41,14 @@ function dataset(plot, series, index) {
   if (series.kind === 'bars') {
     return {...base, type: 'bar', backgroundColor: tint(colour, .8), borderWidth: 0,
             grouped: false, skipNull: true, maxBarThickness: plot.horizontal ? 16 : 46, categoryPercentage: .8,
-            barPercentage: plot.categories ? .9 : 1, minBarLength: 2, order: 200};
+            barPercentage: plot.categories ? .9 : 1, minBarLength: 5, order: 200};
   }
   if (series.kind === 'scatter') {
     return {...base, type: 'scatter', showLine: false, borderWidth: 0, order: 300 - index,
             backgroundColor: tint(colour, count > 1000 ? .28 : count > 200 ? .5 : .85),
             radius: count > 1000 ? 1.6 : count > 200 ? 2.2 : 3.5, pointStyle: 'circle'};
   }
-  return {...base, type: 'line', borderWidth: count > 60 ? (tone === 'measured' ? 2.2 : 1.3) : 2,
+  return {...base, type: 'line', borderWidth: count > 60 ? (tone === 'measured' ? 2.6 : 1.3) : 2,
           stepped: series.kind === 'steps' ? 'before' : false,
           borderDash: series.dashed ? [6, 4] : [], tension: 0,
           pointRadius: count > 60 ? 0 : plot.categories ? 3.5 : 2,
