@@ -28,8 +28,8 @@ struct Offer {
   std::shared_ptr<ValveDrive> valve;  ///< null when the backend drives none
   std::map<std::string, std::shared_ptr<Input>> inputs;
   std::map<std::string, std::shared_ptr<Output>> outputs;
-  double sample_time_s = kMissing;  ///< period that the device dictates (a record's), else NaN
-  bool fast = false;                ///< as fast as possible: nothing waits for the wall clock
+  double sample_time_s = kMissing;       ///< period that the device dictates (a record's), else NaN
+  bool fast = false;                     ///< as fast as possible: nothing waits for the wall clock
   std::function<std::string()> summary;  ///< one line of counters for people, or none
 };
 

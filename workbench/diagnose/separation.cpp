@@ -77,7 +77,8 @@ double expected_separation(const Workshop& shop, const matching::Evidence& evide
     }
     left_m = columns.col(0) - columns.rightCols(count) * normal.ldlt().solve(slope);
   }
-  return std::sqrt(left_m.cwiseProduct(counted).squaredNorm() / samples) / unseen_m(evidence, rival);
+  return std::sqrt(left_m.cwiseProduct(counted).squaredNorm() / samples) /
+         unseen_m(evidence, rival);
 }
 
 double fitted_separation(const Workshop& shop, const matching::Evidence& evidence,

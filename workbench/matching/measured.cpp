@@ -37,9 +37,7 @@ bool begins_moving(const config::record::Record& record, std::size_t begin, std:
 
 void append(Measured& to, const config::record::Record& from, std::size_t begin, std::size_t end) {
   const std::size_t settling = settling_samples(from.sample_time_s);
-  const Led led = begin > 0                         ? kLed
-                  : begins_moving(from, begin, end) ? kLedWhereObserved
-                                                    : kNotLed;
+  const Led led = begin > 0 ? kLed : begins_moving(from, begin, end) ? kLedWhereObserved : kNotLed;
   to.starts.push_back(to.size());
   for (std::size_t i = begin; i < end; ++i) {
     to.t_s.push_back(from.t_s[i]);

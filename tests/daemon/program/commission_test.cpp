@@ -35,7 +35,8 @@ constexpr double kMaxTravel_m = 0.005;
 
 class Bench {
  public:
-  explicit Bench(const std::vector<std::string>& field = {}) : rig_(rig_arguments(field)) {
+  explicit Bench(const std::vector<std::string>& field = {}, const std::string& model = "")
+      : rig_(rig_arguments(field, model)) {
     std::ifstream in(shipped("bench_modbus.toml"));
     std::ofstream(file()) << in.rdbuf() << "[control]\nsocket = \"" << socket() << "\"\n"
                           << "[recorder]\nfolder = \"\"\n";
@@ -81,8 +82,10 @@ class Bench {
   [[nodiscard]] int port() const { return rig_.port(); }
 
  private:
-  static std::vector<std::string> rig_arguments(const std::vector<std::string>& field) {
+  static std::vector<std::string> rig_arguments(const std::vector<std::string>& field,
+                                                const std::string& model) {
     std::vector<std::string> words{"--config", hal::rig::shipped_config("bench_rig.toml")};
+    if (!model.empty()) words.insert(words.end(), {"--set", "sim.model=" + model});
     for (const std::string& setting : field) {
       words.emplace_back("--set");
       words.push_back("field." + setting);
@@ -173,6 +176,38 @@ TEST(Commission, LetsARealRigBeArmedAndItMovesTheRightWay) {
       watcher.wait_for([](const Look& look) { return std::abs(look.rod_m - 0.315) < 0.0005; }));
   for (const Look& look : watcher.looks()) ASSERT_GT(look.rod_m, 0.305 - kMaxTravel_m);
   end(*daemon);
+}
+
+TEST(Commission, FindsNullAndDeadZoneOfAValveThatHasThem) {
+  const Folder folder;
+  const std::string model = (folder.path() / "model.toml").string();
+  {
+    std::ifstream in(shipped("models/thesis_calibrated.toml"));
+    std::ofstream(model) << in.rdbuf() << "\n[effects.null_bias]\noffset_V = -0.06\n"
+                         << "[effects.deadband]\nhalf_width_V = 0.1\n";
+  }
+  const Bench bench({}, model);
+  Watcher watcher(bench.port());
+  const Result result = bench.commission();
+  ASSERT_EQ(result.exit_code, 0) << result.out << result.err;
+  // u - 0.06 V within +-0.1 V opens nothing: from -0.04 to 0.16 V.
+  EXPECT_NEAR(bench.found("null_V"), 0.06, kNullTolerance_V);
+  EXPECT_NEAR(bench.found("dead_zone_V"), 0.2, 2.0 * kNullTolerance_V);
+  EXPECT_NEAR(bench.found("gain_mps_per_V"), kGain_mps_per_V, kGainTolerance * kGain_mps_per_V);
+  EXPECT_LT(travel_m(watcher.looks()), kMaxTravel_m);
+}
+
+TEST(Commission, IsRefusedWhileADaemonServesTheRig) {
+  const Bench bench;
+  Daemon daemon(bench.arguments({"--lcm-url", ""}));
+  for (int i = 0; i < 200 && spoolwatch("status --socket " + bench.socket()).exit_code != 0; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  const Result result = bench.commission();
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, HasSubstr("another daemon serves it"));
+  kill(daemon.pid(), SIGTERM);
+  EXPECT_EQ(daemon.wait().exit_code, 0);
 }
 
 TEST(Commission, CatchesAReversedValveOrSensorBeforeItRunsAway) {

@@ -40,9 +40,9 @@ TEST(Comparison, HasTheClosedFormErrorOfAServoWithABias) {
       const double last_m = kGain * kBias_V / rate_per_s;
       return last_m + (e0_m - last_m) * std::pow(1.0 - rate_per_s * kTs, after);
     };
-    const double e_m = k <= 100 ? from(0.0, matching::kLeading_per_s, steps)
-                                : from(from(0.0, matching::kLeading_per_s, 100.0), kObserver,
-                                       steps - 100.0);
+    const double e_m =
+        k <= 100 ? from(0.0, matching::kLeading_per_s, steps)
+                 : from(from(0.0, matching::kLeading_per_s, 100.0), kObserver, steps - 100.0);
     const double free_m = kGain * kBias_V * kTs * steps;
     ASSERT_NEAR(c.error_m[k], e_m, kRounding_m) << k;
     ASSERT_NEAR(c.free_error_m[k], free_m, kRounding_m) << k;
