@@ -23,9 +23,9 @@ const char* words_of(CommissionLoop::Stop stop) noexcept {
     case CommissionLoop::Stop::none:
       break;
     case CommissionLoop::Stop::e_stop:
-      return "the emergency stop is pressed";
+      return "the emergency stop is pressed or cannot be read";
     case CommissionLoop::Stop::not_enabled:
-      return "the enable input is off";
+      return "the enable input is off or cannot be read";
     case CommissionLoop::Stop::valve_lost:
       return "the valve does not take commands";
     case CommissionLoop::Stop::stood_still:

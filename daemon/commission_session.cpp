@@ -10,7 +10,6 @@
 #include <cstring>
 #include <ctime>
 #include <ostream>
-#include <string_view>
 
 #include "config/schema/error.h"
 #include "daemon/null_guard.h"
@@ -58,12 +57,13 @@ std::string today(std::int64_t utc_us) {
 }
 
 /// What may help, to be put behind the failure.
-const char* remedy(std::string_view stage, Failure failure) noexcept {
+const char* remedy(Failure failure) noexcept {
   switch (failure) {
     case Failure::travel:
-      return stage == "rest" ? "; set [valve] null_V nearer to where the rod stands, or allow more "
-                               "with --max-travel-mm"
-                             : "";
+      return "; set [valve] null_V nearer to where the rod stands, or allow more with "
+             "--max-travel-mm";
+    case Failure::speed:
+      return "; a smaller --authority begins with smaller steps";
     case Failure::no_motion:
       return "; look at supply, enable and sensor, or allow more with --authority";
     case Failure::too_noisy:
@@ -103,7 +103,7 @@ void CommissionSession::stage(const char* name, const std::function<void()>& beg
   const Failure failure = procedure_.failure();
   if (failure == Failure::none || failure == Failure::reversed) return;
   give_up(text("%s: %s (travel %.2f mm, at last %.1f mm/s)%s", name, words_of(failure),
-               procedure_.travel_m() * 1e3, procedure_.speed_mps() * 1e3, remedy(name, failure)));
+               procedure_.travel_m() * 1e3, procedure_.speed_mps() * 1e3, remedy(failure)));
 }
 
 void CommissionSession::sign() {

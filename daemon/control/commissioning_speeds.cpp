@@ -42,9 +42,9 @@ void Commissioning::speed_pulse_over(double now_s, bool too_far) noexcept {
   if (found && sides_[0].found == 1 && sides_[1].found == 1) {
     for (const int direction : {-1, 1}) {
       Side& one = side(direction);
-      one.slow = LevelSearch::between(
-          kSlowLow * one.fast.speed_mps(), kSlowHigh * one.fast.speed_mps(),
-          std::fmax(one.fast.slow_V(), direction * rest_V_), one.fast.level_V());
+      one.slow =
+          LevelSearch::between(kSlowLow * one.fast.speed_mps(), kSlowHigh * one.fast.speed_mps(),
+                               direction * rest_V_, one.fast.level_V());
     }
   }
   if (sides_[0].found == 2 && sides_[1].found == 2) {

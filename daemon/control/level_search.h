@@ -1,4 +1,4 @@
-// Looks for a command that moves the rod at a speed within a band, each try one pulse: doubled
+// Looks for a command that moves the rod at a speed within a band, each try one pulse: growing
 // steps until the band lies between two tries, then halves. Pure; nothing allocates.
 #pragma once
 
@@ -32,8 +32,6 @@ class LevelSearch {
   [[nodiscard]] State state() const noexcept { return state_; }
   /// To be tried next; the one found at the end.
   [[nodiscard]] double level_V() const noexcept { return level_V_; }
-  /// Greatest level that was too slow, NaN when there is none.
-  [[nodiscard]] double slow_V() const noexcept { return slow_V_; }
   /// The speed that the found level gave.
   [[nodiscard]] double speed_mps() const noexcept { return speed_mps_; }
 
@@ -59,11 +57,12 @@ class LevelSearch {
       return;
     }
     level_V_ = std::fmin(std::fmax(level_V_ + (slow ? step_V_ : -step_V_), -limit_V_), limit_V_);
-    step_V_ *= 2.0;
+    step_V_ *= kGrowth;
   }
 
  private:
-  static constexpr int kMostTries = 16;
+  static constexpr int kMostTries = 24;
+  static constexpr double kGrowth = 1.5;
 
   double low_mps_ = 0.0;
   double high_mps_ = 0.0;

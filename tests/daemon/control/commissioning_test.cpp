@@ -11,6 +11,8 @@
 #include <random>
 #include <string>
 
+#include "tests/count_allocations.h"
+
 namespace monitor::control {
 namespace {
 
@@ -29,7 +31,8 @@ struct Servo {
   double encoder_sign = 1.0;
   double stop_low_m = -1e9;
   double stop_high_m = 1e9;
-  double push_mps = 0.0;  ///< whatever the command
+  double push_mps = 0.0;    ///< whatever the command
+  double down_ratio = 1.0;  ///< of the gain downward to that upward
 
   double y_m = 0.3;
   double v_mps = 0.0;
@@ -59,7 +62,8 @@ struct Servo {
       const double x = valve_sign * at_valve_V - null_V;
       const double half = 0.5 * dead_zone_V;
       const double open = x > half ? x - half : x < -half ? x + half : 0.0;
-      const double asked = stuck ? 0.0 : gain_mps_per_V * open + push_mps;
+      const double gain = gain_mps_per_V * (open < 0.0 ? down_ratio : 1.0);
+      const double asked = stuck ? 0.0 : gain * open + push_mps;
       // Exact over the step: v decays to what is asked.
       const double decay = std::exp(-kStep_s / lag_s);
       y_m += asked * kStep_s + (v_mps - asked) * lag_s * (1.0 - decay);
@@ -131,7 +135,8 @@ TEST_P(Healthy, GivesBackWhatTheServoIsMadeOfWithinTheTravel) {
       << words_of(procedure.failure()) << ", travel " << procedure.travel_m();
   const Findings& found = procedure.findings();
   EXPECT_GT(found.sign_m * found.sign_V, 0.0);
-  EXPECT_NEAR(found.gain_mps_per_V, servo.gain_mps_per_V, kGainTolerance * servo.gain_mps_per_V);
+  const double gain_mps_per_V = servo.gain_mps_per_V * 0.5 * (1.0 + servo.down_ratio);
+  EXPECT_NEAR(found.gain_mps_per_V, gain_mps_per_V, kGainTolerance * gain_mps_per_V);
   // A speed wrong by 60 um/s shifts the line by as much over the gain; twice that for either end.
   const double volts = 2.0 * 60e-6 / servo.gain_mps_per_V + 0.005 * servo.dead_zone_V;
   EXPECT_NEAR(found.null_V, servo.null_V, volts);
@@ -144,6 +149,21 @@ TEST_P(Healthy, GivesBackWhatTheServoIsMadeOfWithinTheTravel) {
 Servo with(double Servo::*what, double value) {
   Servo servo;
   servo.*what = value;
+  return servo;
+}
+
+/// Between two doubled levels it goes from standing to too fast.
+Servo steep() {
+  Servo servo = with(&Servo::dead_zone_V, 0.35);
+  servo.gain_mps_per_V = 0.4;
+  return servo;
+}
+
+/// Upward it takes many more pulses to find the levels than downward.
+Servo lopsided() {
+  Servo servo = steep();
+  servo.down_ratio = 0.1;
+  servo.dead_zone_V = 0.36;
   return servo;
 }
 
@@ -161,6 +181,7 @@ INSTANTIATE_TEST_SUITE_P(Servos, Healthy,
                                          Case{"null_below", with(&Servo::null_V, -0.08)},
                                          Case{"dead_zone", with(&Servo::dead_zone_V, 0.4)},
                                          Case{"null_and_dead_zone", null_and_dead_zone()},
+                                         Case{"steep", steep()}, Case{"lopsided", lopsided()},
                                          Case{"late", with(&Servo::delay_s, 0.025)},
                                          Case{"no_rounding", with(&Servo::count_m, 0.0)}),
                          [](const auto& each) { return each.param.name; });
@@ -289,6 +310,84 @@ TEST(Trouble, NoiseThatHidesTheMotionAndARodThatAnswersLateAreSaid) {
   Servo same = with(&Servo::delay_s, 0.06);
   ASSERT_EQ(up_to_speeds(patient, same), Failure::none) << words_of(patient.failure());
   EXPECT_NEAR(patient.findings().latency_s, 0.07, kLatencyTolerance_s);
+}
+
+TEST(AnyServo, StaysWithinTheTravelAndIsFoundOrGivenUp) {
+  std::mt19937 random(11);
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  int healthy = 0;
+  int found = 0;
+  for (int n = 0; n < 400; ++n) {
+    Servo servo;
+    servo.gain_mps_per_V = std::exp(between(std::log(0.01), std::log(0.5)));
+    servo.dead_zone_V = between(0.0, 0.6);
+    // The drift at the commanded null is up to 4 mm/s, what a stage of 5 mm can stand.
+    servo.null_V = between(-1.0, 1.0) * (0.5 * servo.dead_zone_V + 0.004 / servo.gain_mps_per_V);
+    servo.null_V = std::clamp(servo.null_V, -0.2, 0.2);
+    servo.delay_s = between(0.001, 0.025);
+    servo.lag_s = between(0.002, 0.015);
+    servo.down_ratio = std::exp(between(std::log(0.5), std::log(2.0)));
+    servo.noise_m = between(0.0, 5e-6);
+    servo.valve_sign = between(0.0, 1.0) < 0.25 ? -1.0 : 1.0;
+    servo.random.seed(static_cast<unsigned>(n));
+    CommissioningLimits limits;
+    Commissioning procedure(limits);
+    double farthest_m = 0.0;
+    Failure failure = Failure::none;
+    for (const Stage stage : {Stage::rest, Stage::sign, Stage::speeds}) {
+      procedure.begin(stage);
+      servo.from_m = servo.y_m;
+      servo.farthest_m = 0.0;
+      while (!procedure.over()) {
+        Commissioning::Input in;
+        in.now_s = in.t_s = servo.t_s;
+        in.usable = true;
+        in.y_m = servo.read();
+        servo.hold(procedure.step(in), kTs_s);
+      }
+      farthest_m = std::max(farthest_m, servo.farthest_m);
+      failure = procedure.failure();
+      if (failure != Failure::none) break;
+    }
+    EXPECT_LT(farthest_m, limits.max_travel_m) << "servo " << n;
+    if (servo.valve_sign < 0.0) {
+      EXPECT_TRUE(failure == Failure::reversed || failure == Failure::travel)
+          << "servo " << n << ": " << words_of(failure);
+      continue;
+    }
+    ++healthy;
+    if (failure != Failure::none) continue;
+    ++found;
+    const double gain_mps_per_V = servo.gain_mps_per_V * 0.5 * (1.0 + servo.down_ratio);
+    EXPECT_NEAR(procedure.findings().gain_mps_per_V, gain_mps_per_V, 0.05 * gain_mps_per_V)
+        << "servo " << n;
+  }
+  // Given up are steep ones behind a wide dead zone and slow ones that drift.
+  EXPECT_GE(found, 95 * healthy / 100) << "of " << healthy;
+}
+
+TEST(RealTime, NoTickAllocates) {
+  Servo servo = with(&Servo::dead_zone_V, 0.2);
+  servo.stop_high_m = 0.32;
+  Commissioning procedure({});
+  long taken = 0;
+  for (const Stage stage : {Stage::rest, Stage::sign, Stage::speeds, Stage::home}) {
+    stage == Stage::home ? procedure.begin_home(1, false) : procedure.begin(stage);
+    while (!procedure.over()) {
+      Commissioning::Input in;
+      in.now_s = in.t_s = servo.t_s;
+      in.usable = true;
+      in.y_m = servo.read();
+      const long before = allocations;
+      const double u_V = procedure.step(in);
+      taken += allocations - before;
+      servo.hold(u_V, kTs_s);
+    }
+    ASSERT_EQ(procedure.failure(), Failure::none);
+  }
+  EXPECT_EQ(taken, 0);
 }
 
 TEST(Home, IsTheStopAndTheRodIsTakenOffIt) {

@@ -10,6 +10,7 @@
 #include <memory>
 #include <thread>
 
+#include "hal/rig/server.h"
 #include "tests/daemon/program/bench_watch.h"
 #include "tests/daemon/program/subprocess.h"
 #include "tests/hal/rig/rig_process.h"
@@ -80,6 +81,8 @@ class Bench {
     return std::nan("");
   }
   [[nodiscard]] int port() const { return rig_.port(); }
+  /// No answers to anybody, from 0.1 s from now on, for a second.
+  void mute() const { EXPECT_EQ(hal::rig::set_remotely(rig_.address(), "mute_s=1"), ""); }
 
  private:
   static std::vector<std::string> rig_arguments(const std::vector<std::string>& field,
@@ -266,6 +269,22 @@ TEST(Commission, ASignalEndsItAtNullWithoutAFile) {
     EXPECT_FALSE(bench.written());
     EXPECT_EQ(watcher.looks().back().valve_V, 0.0);
   }
+}
+
+TEST(Commission, IsGivenUpWhenTheRigNoLongerAnswers) {
+  const Bench bench;
+  Watcher watcher(bench.port());
+  Daemon daemon(bench.arguments({"--commission", bench.out(), "--yes"}));
+  ASSERT_TRUE(watcher.wait_for([](const Look& look) { return std::abs(look.valve_V) > 0.05; }));
+  bench.mute();
+  const Result result = daemon.wait();
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.out, testing::AnyOf(HasSubstr("the position is missing or stale"),
+                                         HasSubstr("cannot be read"),
+                                         HasSubstr("the valve does not take commands")));
+  EXPECT_FALSE(bench.written());
+  EXPECT_TRUE(watcher.wait_for([](const Look& look) { return look.valve_V == 0.0; }));
+  EXPECT_LT(travel_m(watcher.looks()), kMaxTravel_m);
 }
 
 TEST(Commission, WhatCannotBeCommissionedIsSaidInOneLine) {
