@@ -83,8 +83,8 @@ void Commissioning::next_speed(double now_s) noexcept {
 }
 
 void Commissioning::evaluate() noexcept {
-  double ends_V[2];
-  double gains[2];
+  double ends_V[2] = {};
+  double gains[2] = {};
   for (std::size_t i = 0; i < sides_.size(); ++i) {
     const Side& s = sides_[i];
     const double n = s.points;
