@@ -13,6 +13,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kDifference = 1e-3;  ///< of the difference quotients, in search units
+constexpr double kPart = 0.05;
 constexpr int kReweightings = 3;
 constexpr int kIterations = 15;
 constexpr double kTolerance = 1e-3;
@@ -42,9 +43,10 @@ MatrixXd with_derivatives(const Workshop& shop, const matching::Evidence& eviden
   return residuals_m;
 }
 
-/// What a difference has to stand out from: noise, and what the rival leaves unexplained anyway.
+/// What a difference has to stand out from: noise, or a small part of what the rival leaves
+/// unexplained anyway.
 double unseen_m(const matching::Evidence& evidence, const matching::Fitted& rival) {
-  return std::max(evidence.noise_floor_m, rival.score_rms_m);
+  return std::max(evidence.noise_floor_m, kPart * rival.score_rms_m);
 }
 
 }  // namespace

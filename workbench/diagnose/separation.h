@@ -1,6 +1,6 @@
 // How far one explanation stays from the motion that another one gives, when its parameters may
-// adjust: over the noise floor, or over what that one leaves unexplained where this is more, so
-// that 1 is nothing to go by.
+// adjust: over the noise floor, or over a small part of what that one leaves unexplained where this
+// is more, so that 1 is nothing to go by.
 #pragma once
 
 #include "workbench/diagnose/workshop.h"
