@@ -1,22 +1,9 @@
 #include "hal/rig/rig_config.h"
 
-#include <limits>
-
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 
 namespace hal::rig {
-
-void PlantConfig::visit(config::schema::Visitor& v) {
-  v.text({"model", "model file (TOML)", true}, model);
-  v.number({"encoder_resolution_m", "step of the encoder, 0 for none"}, encoder_resolution_m,
-           {0.0, 0.1});
-  v.number({"noise_m", "standard deviation of the reading"}, noise_m, {0.0, 0.1});
-  v.integer({"dac_bits", "resolution of the D/A converter, 0 for none"}, dac_bits, {0, 24});
-  v.number({"dac_range_V", "range of the D/A converter, both ways"}, dac_range_V, {1e-3, 1e3});
-  v.integer({"seed", "of the noise"}, seed, {0, std::numeric_limits<std::int64_t>::max()});
-  config::schema::visit_list(v, {"fault", "a scheduled change of a parameter"}, faults);
-}
 
 void FieldConfig::visit(config::schema::Visitor& v) {
   v.number({"step_s", "of the integration"}, step_s, {1e-6, 1e-2});

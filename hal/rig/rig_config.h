@@ -8,22 +8,9 @@
 #include <vector>
 
 #include "config/schema/visitor.h"
-#include "plant_sim/schedule.h"
+#include "plant_sim/bench_plant.h"
 
 namespace hal::rig {
-
-/// TOML [sim]: the keys that the sim backend's table has for the same things.
-struct PlantConfig {
-  std::string model;
-  double encoder_resolution_m = 5e-6;
-  double noise_m = 0.0;
-  std::int64_t dac_bits = 12;
-  double dac_range_V = 10.0;
-  std::int64_t seed = 1;
-  std::vector<plant_sim::Change> faults;
-
-  void visit(config::schema::Visitor& v);
-};
 
 /// TOML [field]: how valve and encoder are wired, and what the device does when it is left alone.
 struct FieldConfig {
@@ -56,7 +43,7 @@ struct RigConfig {
   std::string file;
   std::filesystem::path folder;
   BusConfig bus;
-  PlantConfig sim;
+  plant_sim::BenchPlant sim;
   FieldConfig field;
 
   void visit(config::schema::Visitor& v);

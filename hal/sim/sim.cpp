@@ -17,14 +17,7 @@ constexpr double kWholeSteps = 1e-6;
 }  // namespace
 
 void SimConfig::visit(config::schema::Visitor& v) {
-  v.text({"model", "model file (TOML)", true}, model);
-  v.number({"encoder_resolution_m", "step of the encoder, 0 for none"}, encoder_resolution_m,
-           {0.0, 0.1});
-  v.number({"noise_m", "standard deviation of the reading"}, noise_m, {0.0, 0.1});
-  v.integer({"dac_bits", "resolution of the D/A converter, 0 for none"}, dac_bits, {0, 24});
-  v.number({"dac_range_V", "range of the D/A converter, both ways"}, dac_range_V, {1e-3, 1e3});
-  v.integer({"seed", "of the noise"}, seed, {0, std::numeric_limits<std::int64_t>::max()});
-  config::schema::visit_list(v, {"fault", "a scheduled change of a parameter"}, faults);
+  BenchPlant::visit(v);
   v.number({"command_timeout_s", "without a write for so long the valve goes to null"},
            command_timeout_s, {1e-3, std::numeric_limits<double>::infinity()});
   v.boolean({"pretend_real", "obey the rules of a rig that moves something"}, pretend_real);

@@ -12,20 +12,14 @@
 
 #include "hal/backend.h"
 #include "hal/sim/trouble.h"
+#include "plant_sim/bench_plant.h"
 #include "plant_sim/instruments.h"
 #include "plant_sim/schedule.h"
 
 namespace hal::sim {
 
 /// TOML [sim].
-struct SimConfig {
-  std::string model;
-  double encoder_resolution_m = 5e-6;
-  double noise_m = 0.0;
-  std::int64_t dac_bits = 12;
-  double dac_range_V = 10.0;
-  std::int64_t seed = 1;
-  std::vector<plant_sim::Change> faults;
+struct SimConfig : plant_sim::BenchPlant {
   double command_timeout_s = std::numeric_limits<double>::infinity();
   bool pretend_real = false;  ///< under the rules of a rig that moves something
   std::vector<Trouble> troubles;
