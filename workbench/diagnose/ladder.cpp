@@ -121,7 +121,7 @@ void try_beginning(const Workshop& shop, const Stage& first, const Candidate& ca
   Trodden other{with(first, candidate), {best.rounds.front()}};
   other.stage.fitted = finished(shop, other.stage.fitted);
   go_on(shop, other.stage, other.rounds, false);
-  look_over(shop, other.stage);
+  look_over(shop, other.stage, Look::on_the_way);
   if (other.stage.fitted.score_rms_m < (1.0 - kRivals) * best.stage.fitted.score_rms_m) {
     if (candidate.effects.size() > 1) {
       auto& candidates = other.rounds.front().candidates;
@@ -198,7 +198,7 @@ Ladder climb(const Workshop& shop) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   go_on(shop, stage, ladder.rounds, true);
   if (!ladder.rounds.empty()) ladder.preview_s += ladder.rounds.front().looked_s;
-  look_over(shop, stage);
+  look_over(shop, stage, Look::on_the_way);
   Trodden best{stage, std::move(ladder.rounds)};
   start_with_two(shop, first, best);
   detour(shop, first, best);
@@ -210,7 +210,7 @@ Ladder climb(const Workshop& shop) {
     // interrupted in the midst of it: what was found stays
     if (!shop.cancelled()) {
       Stage last = supported.back();
-      look_over(shop, last);
+      look_over(shop, last, Look::final);
       const bool dropped = last.added.size() < supported.back().added.size();
       ladder.way = dropped ? way_to(shop, first, last) : std::move(supported);
       if (!dropped) ladder.way.back() = std::move(last);

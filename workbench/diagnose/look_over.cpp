@@ -85,8 +85,9 @@ void add_refinements(const Workshop& shop, Stage& stage) {
 
 }  // namespace
 
-void look_over(const Workshop& shop, Stage& stage) {
+void look_over(const Workshop& shop, Stage& stage, Look look) {
   drop_effects(shop, stage);
+  if (look == Look::on_the_way && !is_explained(shop, stage)) return;
   drop_refinements(shop, stage);
   add_refinements(shop, stage);
 }

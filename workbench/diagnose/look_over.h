@@ -7,9 +7,13 @@
 
 namespace workbench::diagnose {
 
+/// Whether what is left over at the end of a search is looked over, or at the end of all of them.
+enum class Look { on_the_way, final };
+
 /// Drops effects, then refinements of effects, as long as the held-out error suffers less than an
 /// effect must bring (and refinements without support.h's support where the error is more than
-/// noise); then tries refinements that did not take part, which need that support too.
-void look_over(const Workshop& shop, Stage& stage);
+/// noise); then tries refinements that did not take part, which need that support too. On the way,
+/// a stage that noise does not explain keeps its refinements as they are: their support takes long.
+void look_over(const Workshop& shop, Stage& stage, Look look);
 
 }  // namespace workbench::diagnose

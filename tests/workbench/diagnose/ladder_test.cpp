@@ -104,7 +104,7 @@ TEST(LookOver, DropsAnEffectThatBringsNothingAndKeepsTheOthers) {
                             {"null_bias", 0.05},
                             {"flow_asymmetry", 0.001},
                             {"deadband", 0.08}});
-  look_over(shop, stage);
+  look_over(shop, stage, Look::final);
   EXPECT_THAT(stage.added, UnorderedElementsAre("null_bias", "deadband"));
   for (const auto& p : stage.fitted.searched) {
     EXPECT_FALSE(belongs(p, "transport_delay") || belongs(p, "flow_asymmetry")) << p.name;
