@@ -30,6 +30,7 @@ NAMES = ("mass_kg", "damping_N_s_per_m", "bulk_modulus_Pa", "dead_volume_m3", "s
 START = np.array([50.0, 1000.0, 6.89e8, 1e-5, 6.89e6, 2.79e-5, 628.0, 0.70])
 PRIOR_SD = np.array([0.05, 0.2, 0.1, 0.2, 0.03, 0.5, 0.07, 0.1])
 SAMPLE_S, STEPS, OBSERVER_PER_S, SETTLING_S = 0.005, 5, 2.0, 0.5
+LEADING_PER_S = 20.0  # while it settles: the record begins in the midst of a motion
 TOLERANCE = 1e-7
 TARGET = 5.0
 
@@ -41,7 +42,7 @@ def compiled(folder):
     function = ctypes.CDLL(str(library)).residuals
     array = np.ctypeslib.ndpointer(dtype=np.float64, flags="C")
     function.argtypes = [array, ctypes.c_int, ctypes.c_double, ctypes.c_int, ctypes.c_double,
-                         array, array, array]
+                         ctypes.c_int, ctypes.c_double, array, array, array]
     function.restype = None
     return function
 
@@ -81,7 +82,8 @@ def run(args, folder):
     def cost_terms(x):
         nonlocal count
         count += 1
-        function(START * np.exp(x), len(y), SAMPLE_S, STEPS, OBSERVER_PER_S, u, y, residual)
+        function(START * np.exp(x), len(y), SAMPLE_S, STEPS, OBSERVER_PER_S, first,
+                 LEADING_PER_S, u, y, residual)
         return np.concatenate([residual[first:] / sigma, x / PRIOR_SD])
 
     def peer(**how):

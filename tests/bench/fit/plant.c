@@ -27,14 +27,15 @@ static void rate(const double* p, double orifice, double u, const double* x, dou
   r[5] = p[6] * p[6] * (p[5] * u - x[4]) - 2.0 * p[7] * p[6] * x[5];
 }
 
-void residuals(const double* p, int n, double sample_s, int steps, double observer_per_s,
-               const double* u, const double* y, double* residual) {
+/// The first `led` samples are led to the measured position at leading_per_s.
+void residuals(const double* p, int n, double sample_s, int steps, double observer_per_s, int led,
+               double leading_per_s, const double* u, const double* y, double* residual) {
   const double h = sample_s / steps;
   const double orifice = 0.60 * 2.07e-2 * sqrt(2.0 / 847.0);
   double x[6] = {y[0], 0.0, 0.5 * p[4], 0.5 * p[4], 0.0, 0.0};
   for (int k = 0; k < n; ++k) {
     residual[k] = y[k] - x[0];
-    x[0] += observer_per_s * sample_s * residual[k];
+    x[0] += (k < led ? leading_per_s : observer_per_s) * sample_s * residual[k];
     for (int s = 0; s < steps; ++s) {
       double a[6], b[6], c[6], d[6], z[6];
       rate(p, orifice, u[k], x, a);
