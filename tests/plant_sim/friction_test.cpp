@@ -81,6 +81,15 @@ TEST(Friction, NeverDrivesTheRod) {
   }
 }
 
+F::Parameters bristle_with_rise() {
+  F::Parameters p;
+  p.coulomb_N = 200.0;
+  p.static_N = 300.0;
+  p.stribeck_mps = 0.01;
+  p.presliding_stiffness_N_per_m = 1e7;
+  return p;
+}
+
 TEST(Friction, BristleFollowsItsDifferentialEquation) {
   F::Parameters p;
   p.coulomb_N = 200.0;
@@ -105,11 +114,7 @@ TEST(Friction, BristleFollowsItsDifferentialEquation) {
 }
 
 TEST(Friction, BristleYieldsAtTheLevelsOfTheSpeedsOnItsWay) {
-  F::Parameters p;
-  p.coulomb_N = 200.0;
-  p.static_N = 300.0;
-  p.stribeck_mps = 0.01;
-  p.presliding_stiffness_N_per_m = 1e7;
+  const F::Parameters p = bristle_with_rise();
   F::Memory memory;
   double z = 0.0;
   double v_mps = 0.0;
@@ -133,11 +138,7 @@ TEST(Friction, BristleYieldsAtTheLevelsOfTheSpeedsOnItsWay) {
 TEST(Friction, PresslidingStoresNoMoreThanItTakes) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
-  F::Parameters p;
-  p.coulomb_N = 200.0;
-  p.static_N = 300.0;
-  p.stribeck_mps = 0.01;
-  p.presliding_stiffness_N_per_m = 1e7;
+  const F::Parameters p = bristle_with_rise();
   F::Memory memory;
   double given_J = 0.0;
   for (int i = 0; i < 20000; ++i) {

@@ -34,9 +34,7 @@ struct Base {
 };
 
 std::vector<Base> bases_of(const Workshop& shop, const Stage& stage) {
-  VectorXd nominal = stage.fitted.x;
-  const VectorXd file = matching::start_of(shop.model, shop.standing);
-  nominal.head(file.size()) = file;
+  const VectorXd nominal = with_file_values(shop, stage);
   matching::EvidenceRun run(shop.model, shop.evidence, stage.fitted.searched);
   MatrixXd residual_m;
   run.residuals(nominal, residual_m);
@@ -170,6 +168,13 @@ Glance glance(const Workshop& shop, const Stage& stage, const std::vector<Base>&
 }
 
 }  // namespace
+
+VectorXd with_file_values(const Workshop& shop, const Stage& stage) {
+  VectorXd point = stage.fitted.x;
+  const VectorXd file = matching::start_of(shop.model, shop.standing);
+  point.head(file.size()) = file;
+  return point;
+}
 
 std::vector<Glance> glances_at(const Workshop& shop, const Stage& stage,
                                const std::vector<plant_sim::EffectInfo>& effects,

@@ -25,6 +25,9 @@ struct Stage {
   matching::Fitted fitted;
 };
 
+/// The stage's search values, those of the plant and its present effects as in the model file.
+[[nodiscard]] Eigen::VectorXd with_file_values(const Workshop& shop, const Stage& stage);
+
 struct Glance {
   std::string effect;
   /// Expected score RMS over that of the stage: 1 = of no use.

@@ -85,9 +85,7 @@ std::vector<Candidate> two_at_once(const Workshop& shop, const Stage& stage,
                                    const std::vector<std::string>& without) {
   const std::vector<Effect> effects = effects_of(shop, without);
   const Projection projection(stage.fitted, shop.evidence.fits);
-  VectorXd nominal = stage.fitted.x;
-  const VectorXd file = matching::start_of(shop.model, shop.standing);
-  nominal.head(file.size()) = file;
+  const VectorXd nominal = with_file_values(shop, stage);
   const std::array<const VectorXd*, 2> bases{&nominal, &stage.fitted.x};
   std::vector<Couple> couples;
   for (std::size_t i = 0; i < effects.size(); ++i) {

@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <csignal>
-#include <cstdio>
 #include <fstream>
 #include <thread>
 
@@ -15,18 +14,6 @@ namespace program {
 namespace {
 
 using testing::HasSubstr;
-
-/// `spoolwatch` with these words, both streams together.
-Result spoolwatch(const std::string& words) {
-  const std::string command = SPOOLWATCH_BIN_DIR "/spoolwatch " + words + " 2>&1";
-  Result result;
-  FILE* pipe = popen(command.c_str(), "r");
-  char bytes[512];
-  while (std::size_t n = std::fread(bytes, 1, sizeof bytes, pipe)) result.out.append(bytes, n);
-  const int status = pclose(pipe);
-  result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return result;
-}
 
 /// The shipped service on the simulated rig, with a socket of its own.
 class Service {

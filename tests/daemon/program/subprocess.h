@@ -53,6 +53,9 @@ class Daemon {
 
 Result run(const std::vector<std::string>& arguments, Limits limits = {});
 
+/// `spoolwatch` with these words, as a shell takes them; both streams in `out`.
+Result spoolwatch(const std::string& words);
+
 /// config/NAME of the source tree.
 std::string shipped(const std::string& name);
 
