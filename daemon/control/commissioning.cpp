@@ -134,6 +134,10 @@ double Commissioning::step(const Input& in) noexcept {
   applied_V_ = std::abs(in.applied_V - command_V_) < kSameCommand * limits_.authority_V
                    ? in.applied_V
                    : command_V_;
+  if (in.disturbed && move_ != Move::drive) {
+    start_pause(in.now_s);
+    return command_V_;
+  }
   const double gone_s = in.now_s - move_s_;
   const double settle_s = kSettle * limits_.pulse_s;
   switch (move_) {

@@ -15,6 +15,7 @@
 //            Latency: from a step to where the lines of the reading before and after it meet.
 //   home     slowly to a stop (or until the sensor has seen its index), and a little back
 //
+// What is disturbed (a lost reply, a period that was skipped) is measured again.
 // The rod stays within max_travel of where a stage began (home: home_travel): a pulse ends after
 // 0.45 of it at most, the next goes or drives back, and at 0.8 the stage is given up; the rest is
 // for the rod to come to a stop. It is given up as well at a speed above max_speed, for motion
@@ -89,6 +90,9 @@ class Commissioning {
     double y_m = 0.0;
     bool usable = false;  ///< there is a y, and it is not stale
     bool homed = false;   ///< the sensor has its index
+    /// The valve may not have got what was said since the last tick: what is being measured is
+    /// measured again.
+    bool disturbed = false;
     /// What the valve gets, from valve.null_V, as the device says; NaN when it does not.
     double applied_V = Findings::kNone;
   };

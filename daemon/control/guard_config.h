@@ -13,7 +13,8 @@
 //   overrun    more periods are lost than [loop] allows                -
 //   missing    more positions missing in a row than [loop] allows      -
 //   bus_lost   more writes failed in a row than [loop] allows          -
-//   e_stop     an input of that role is anything but 1                 -
+//   e_stop     an input of that role is anything but 1, or cannot be read for longer than [loop]
+//              allows of missing positions (null is written meanwhile)  -
 //
 // `time_s`: how long that must last (travel to disagree, not jump). The last four are there also
 // without an entry, with the action latch (overrun: `[loop] overrun_action`).

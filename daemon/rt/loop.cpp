@@ -42,7 +42,7 @@ Loop::Loop(const LoopConfig& config, const Parts& parts, const control::Controll
       ramp_(rules.safety.ramp_s),
       safety_(control::all_guards(rules.safety, config.overrun()), sample_time_s),
       arming_(parts.valve == nullptr),
-      around_(parts.spare_rods, parts.inputs, parts.stats),
+      around_(parts.spare_rods, parts.inputs, config.max_bad_in_a_row, parts.stats),
       overruns_(config.max_lost_in_a_row, config.max_lost_a_minute),
       sample_time_s_(sample_time_s),
       null_V_(controller.null_V()),
@@ -139,7 +139,7 @@ void Loop::drive(const Period& period, Sample& sample) noexcept {
   if (ramp_.active() && (too_long || ramp_.over(time_s()))) leave();
   const bool run = arming_.state() == State::run && !too_long;
   const bool ramp = run && ramp_.active();
-  const bool law = run && !ramp && have_position();
+  const bool law = run && !ramp && have_position() && !around_.blind();
   double command_V = null_V_;
   if (law) {
     const int periods = static_cast<int>(std::min<std::int64_t>(period.skipped + 1, 1000));

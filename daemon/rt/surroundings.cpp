@@ -22,12 +22,25 @@ void count(DeviceStats& stats, bool good, double value) noexcept {
 }  // namespace
 
 Surroundings::Surroundings(const std::vector<hal::NamedRod>* spare_rods,
-                           const std::vector<hal::NamedInput>* inputs, LoopStats& stats) noexcept
-    : spare_rods_(spare_rods), inputs_(inputs), stats_(stats) {
+                           const std::vector<hal::NamedInput>* inputs, std::int64_t max_unread,
+                           LoopStats& stats) noexcept
+    : spare_rods_(spare_rods), inputs_(inputs), max_unread_(max_unread), stats_(stats) {
+  since_on_.fill(max_unread_ + 1);
   if (inputs_ == nullptr) return;
   has_command_ = std::any_of(inputs_->begin(), inputs_->end(), [](const hal::NamedInput& input) {
     return input.role == hal::InputRole::valve_command;
   });
+}
+
+bool Surroundings::counts_as_on(std::size_t input, bool good, bool on) noexcept {
+  std::int64_t& since_on = since_on_[input];
+  if (good) {
+    since_on = on ? 0 : max_unread_ + 1;
+  } else {
+    since_on = std::min(since_on + 1, max_unread_ + 1);
+    blind_ = true;
+  }
+  return since_on <= max_unread_;
 }
 
 void Surroundings::read(const hal::Tick& tick, double y_m) noexcept {
@@ -42,15 +55,18 @@ void Surroundings::read(const hal::Tick& tick, double y_m) noexcept {
     if (good && difference_m > spare_difference_m_) spare_difference_m_ = difference_m;
   }
   e_stop_released_ = enabled_ = true;
+  blind_ = false;
   const std::size_t inputs = inputs_ == nullptr ? 0 : std::min(inputs_->size(), kMaxInputs);
   for (std::size_t i = 0; i < inputs; ++i) {
     const hal::NamedInput& named = (*inputs_)[i];
     const hal::InputReading reading = named.input->read(tick);
     const bool good = trusted(reading.quality, reading.value);
     count(stats_.inputs[i], good, reading.value);
-    const bool on = good && std::abs(reading.value - 1.0) < kSwitchRounding;
-    if (named.role == hal::InputRole::e_stop && !on) e_stop_released_ = false;
-    if (named.role == hal::InputRole::enable && !on) enabled_ = false;
+    if (named.role == hal::InputRole::e_stop || named.role == hal::InputRole::enable) {
+      const bool on = std::abs(reading.value - 1.0) < kSwitchRounding;
+      bool& all = named.role == hal::InputRole::e_stop ? e_stop_released_ : enabled_;
+      if (!counts_as_on(i, good, on)) all = false;
+    }
     if (named.role == hal::InputRole::valve_command) {
       command_V_ = good ? reading.value : hal::kMissing;
     }

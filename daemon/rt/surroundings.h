@@ -2,6 +2,8 @@
 // about moving at all.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "daemon/rt/loop_stats.h"
@@ -12,15 +14,20 @@ namespace monitor::rt {
 class Surroundings {
  public:
   /// Either list may be null; both outlive this. More than kMaxSpareRods, kMaxInputs are not read.
+  /// max_unread: a switch that was on counts as on while it cannot be read for so many times in a
+  /// row; blind() meanwhile.
   Surroundings(const std::vector<hal::NamedRod>* spare_rods,
-               const std::vector<hal::NamedInput>* inputs, LoopStats& stats) noexcept;
+               const std::vector<hal::NamedInput>* inputs, std::int64_t max_unread,
+               LoopStats& stats) noexcept;
 
   /// Reads all; y_m of the main sensor, NaN when it has none.
   void read(const hal::Tick& tick, double y_m) noexcept;
 
-  /// Every input of that role is 1, with a reading to be trusted; true when there is none.
+  /// Every input of that role is 1, as far as is known; true when there is none.
   [[nodiscard]] bool e_stop_released() const noexcept { return e_stop_released_; }
   [[nodiscard]] bool enabled() const noexcept { return enabled_; }
+  /// One of them could not be read this time: nothing but null may be written.
+  [[nodiscard]] bool blind() const noexcept { return blind_; }
   /// Of the input valve_command, NaN when there is none.
   [[nodiscard]] double command_V() const noexcept { return command_V_; }
   [[nodiscard]] bool has_command() const noexcept { return has_command_; }
@@ -28,11 +35,18 @@ class Surroundings {
   [[nodiscard]] double spare_difference_m() const noexcept { return spare_difference_m_; }
 
  private:
+  /// Whether a switch that reads `good`, `on` counts as on.
+  bool counts_as_on(std::size_t input, bool good, bool on) noexcept;
+
   const std::vector<hal::NamedRod>* spare_rods_;
   const std::vector<hal::NamedInput>* inputs_;
+  std::int64_t max_unread_;
+  /// Readings since each switch was last seen on; beyond max_unread_: it is off.
+  std::array<std::int64_t, kMaxInputs> since_on_{};
   LoopStats& stats_;
   bool e_stop_released_ = true;
   bool enabled_ = true;
+  bool blind_ = false;
   bool has_command_ = false;
   double command_V_ = hal::kMissing;
   double spare_difference_m_ = 0.0;

@@ -56,6 +56,9 @@ function(spoolwatch_test name)
   target_compile_definitions(${name} PRIVATE
     SPOOLWATCH_SOURCE_DIR="${CMAKE_SOURCE_DIR}"
     SPOOLWATCH_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60
-    PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
+  set(properties TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
+  if(realtime IN_LIST ARG_LABELS)  # two loops of highest priority would disturb each other
+    list(APPEND properties RESOURCE_LOCK realtime)
+  endif()
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES ${properties})
 endfunction()

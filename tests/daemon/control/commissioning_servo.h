@@ -37,6 +37,7 @@ struct Servo {
   bool stuck = false;
   bool no_value = false;
   double index_m = 1e9;  ///< seen once y is above
+  double lost = 0.0;     ///< probability that this and three more commands never arrive
 
   // ---
   double t_s = 0.0;
@@ -46,7 +47,17 @@ struct Servo {
   std::deque<double> line{};
   std::mt19937 random{7};
   double last_reading_m = 0.3;
+  double held_V = 0.0;
+  int losing = 0;
+  bool disturbed = false;
 
+  /// What the valve gets of a command: the one before when it is lost.
+  double deliver(double u_V) {
+    if (losing == 0 && lost > 0.0 && std::bernoulli_distribution(lost)(random)) losing = 4;
+    disturbed = losing > 0;
+    if (disturbed) --losing;
+    return held_V = disturbed ? held_V : u_V;
+  }
   void hold(double u_V, double duration_s) {
     highest_V = std::max(highest_V, std::abs(u_V));
     for (int n = static_cast<int>(std::lround(duration_s / kStep_s)); n > 0; --n) {
@@ -85,7 +96,8 @@ inline void tick(Commissioning& procedure, Servo& servo) {
   in.usable = !servo.no_value;
   in.y_m = servo.read();
   in.homed = servo.y_m > servo.index_m;
-  servo.hold(procedure.step(in), kTs_s);
+  in.disturbed = servo.disturbed;
+  servo.hold(servo.deliver(procedure.step(in)), kTs_s);
 }
 
 /// Until the stage is over; then the rod coasts for half a second at null.

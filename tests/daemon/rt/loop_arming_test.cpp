@@ -13,6 +13,8 @@ using control::Event;
 using control::Refusal;
 using control::State;
 
+constexpr int kMaxBadInARow = 3;  // of LoopConfig
+
 /// A bench with one switch of that role.
 struct SwitchBench : LoopBench {
   SwitchBench(hal::InputRole role, double value, const SafetyRules& rules = without_blending())
@@ -60,17 +62,12 @@ TEST(Enable, IsNeededToArmAndItsLossDisarmsAtOnce) {
   bench.input->value = 1.0;
   bench.run();
   EXPECT_EQ(bench.state(), State::run);
-  for (const auto& [value, quality] : {std::pair{0.0, hal::Quality::good},
-                                       {std::nan(""), hal::Quality::good},
-                                       {1.0, hal::Quality::bad},
-                                       {0.9, hal::Quality::good}}) {
+  for (const double value : {0.0, 0.9}) {
     bench.input->value = value;
-    bench.input->quality = quality;
     bench.tick();
     EXPECT_EQ(bench.state(), State::disarmed) << value;
     EXPECT_EQ(bench.last_V(), kFakeNull_V);
     bench.input->value = 1.0;
-    bench.input->quality = hal::Quality::good;
     bench.tick();
     EXPECT_EQ(bench.state(), State::disarmed) << "it does not arm by itself";
     bench.run();
@@ -78,13 +75,47 @@ TEST(Enable, IsNeededToArmAndItsLossDisarmsAtOnce) {
   }
 }
 
-TEST(EmergencyStop, LatchesFromRunAndArmedWhateverElseItReads) {
+TEST(Switches, OneThatCannotBeReadMeansNullAtOnceAndTripsWhenItLasts) {
+  const struct {
+    hal::InputRole role;
+    State after;
+  } cases[] = {{hal::InputRole::enable, State::disarmed}, {hal::InputRole::e_stop, State::latched}};
+  const std::pair<double, hal::Quality> unread[] = {{std::nan(""), hal::Quality::good},
+                                                    {1.0, hal::Quality::bad}};
+  for (const auto& [role, after] : cases) {
+    for (const auto& [value, quality] : unread) {
+      SwitchBench bench(role, 1.0);
+      bench.run();
+      for (const int ticks : {1, kMaxBadInARow, kMaxBadInARow + 1}) {
+        bench.input->value = value;
+        bench.input->quality = quality;
+        for (int i = 0; i < ticks; ++i) {
+          bench.tick();
+          EXPECT_EQ(bench.last_V(), kFakeNull_V);
+          EXPECT_EQ(bench.state(), i < kMaxBadInARow ? State::run : after) << ticks;
+        }
+        bench.input->value = 1.0;
+        bench.input->quality = hal::Quality::good;
+        bench.tick();
+        EXPECT_EQ(bench.last_V() != kFakeNull_V, ticks <= kMaxBadInARow) << ticks;
+      }
+    }
+  }
+}
+
+TEST(Switches, OneThatHasNeverBeenReadCountsAsOff) {
+  SwitchBench bench(hal::InputRole::e_stop, std::nan(""));
+  bench.tick();
+  EXPECT_EQ(ask(bench, Event::arm).refusal, Refusal::guard);
+}
+
+TEST(EmergencyStop, LatchesFromRunAndArmed) {
   for (const bool run : {true, false}) {
     SwitchBench bench(hal::InputRole::e_stop, 1.0);
     bench.order(Event::arm);
     if (run) bench.order(Event::start);
     bench.tick();
-    bench.input->value = std::nan("");
+    bench.input->value = 0.0;
     bench.tick();
     EXPECT_EQ(bench.state(), State::latched);
     EXPECT_EQ(bench.last_V(), kFakeNull_V);
