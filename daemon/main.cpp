@@ -7,6 +7,7 @@
 
 #include "config/schema/error.h"
 #include "daemon/commission.h"
+#include "daemon/left_at_null.h"
 #include "daemon/null_guard.h"
 #include "daemon/rt/privileges.h"
 #include "daemon/session.h"
@@ -68,7 +69,8 @@ int run(int argc, char** argv) {
   std::vector<std::string> assignments;
   monitor::SessionOptions options;
   bool check = false;
-  app.add_option("--config", file, "configuration (TOML)")->required();
+  bool null = false;
+  const CLI::Option* configuration = app.add_option("--config", file, "configuration (TOML)");
   app.add_option("--clock", clock, "virtual: as fast as possible, deterministic")
       ->check(CLI::IsMember({"realtime", "virtual"}));
   const CLI::Option* duration = app.add_option("--duration", options.duration_s,
@@ -77,10 +79,17 @@ int run(int argc, char** argv) {
   app.add_option("--set", assignments, "table.key=value, instead of the file's")
       ->allow_extra_args(false);
   app.add_flag("--check", check, "validate, print the effective configuration, write nothing");
+  const CLI::Option* note = app.add_option(
+      "--driving", options.driving, "file in which it stands what is driven, while it is driven");
+  app.add_flag("--null", null,
+               "open the valve alone, write null, end; with --driving: the "
+               "valve that a daemon left behind, if one did");
   monitor::CommissionOptions commission;
   const CLI::Option* out = add_commission(app, commission);
   try {
     app.parse(argc, argv);
+    const bool from_note = null && note->count() > 0;
+    if (configuration->count() == 0 && !from_note) throw CLI::RequiredError("--config");
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? static_cast<int>(ExitCode::done) : static_cast<int>(ExitCode::usage);
   }
@@ -90,10 +99,12 @@ int run(int argc, char** argv) {
                                                      "; allowed: 0.001 to 1e9 (seconds)");
   }
   options.virtual_time = clock == "virtual";
+  if (null && note->count() > 0) return monitor::write_null(options.driving, std::cerr);
 
   monitor::DaemonConfig config;
   monitor::load(file, assignments, config);
   if (url->count() > 0) config.lcm.url = lcm_url;
+  if (null) return monitor::write_null(config, std::cerr);
   if (check) {
     monitor::check_session(config, std::cout);
     return static_cast<int>(ExitCode::done);

@@ -11,9 +11,11 @@
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "daemon/attendant.h"
+#include "daemon/left_at_null.h"
 #include "daemon/null_guard.h"
 #include "daemon/null_table.h"
 #include "daemon/rt/run.h"
+#include "daemon/service_report.h"
 
 namespace monitor {
 namespace {
@@ -73,11 +75,16 @@ void check_numbers(const std::string& file, const hal::Devices& devices) {
   check("input", devices.inputs.size(), rt::kMaxInputs);
 }
 
-Prepared prepare(DaemonConfig& config) {
+/// `exclusive`: no other process may drive the devices.
+Prepared prepare(DaemonConfig& config, bool exclusive) {
   Prepared p;
   p.sample_time_s = 1.0 / config.loop.rate_Hz;
-  p.opening = {config.file, config.folder, p.sample_time_s, config.rig.valve().null_V,
-               config.rig.valve().limit_V};
+  p.opening = {config.file,
+               config.folder,
+               p.sample_time_s,
+               config.rig.valve().null_V,
+               config.rig.valve().limit_V,
+               exclusive};
   p.devices = config.rig.open(p.opening);
   check_numbers(config.file, p.devices);
   p.guards =
@@ -163,7 +170,7 @@ void arm_and_start(rt::CommandQueue& commands, std::int64_t expires_ns) {
 }  // namespace
 
 int run_session(DaemonConfig& config, const SessionOptions& options, std::ostream& log) {
-  Prepared p = prepare(config);
+  Prepared p = prepare(config, true);
   const bool virtual_time = options.virtual_time || p.devices.fast;
   const sigset_t signals = stop_signals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
@@ -194,6 +201,8 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
   grant.text = "virtual time";
   if (!virtual_time) grant = rt::ask_privileges(config.loop);
   log << "spoolwatchd: real-time privileges: " << grant.text << std::endl;
+  const DrivingNote note(
+      virtual_time || !config.drives_valve() ? std::filesystem::path() : options.driving, config);
   NullGuard guard(p.devices.valve.get());
   hal::ValveDrive* valve = guard.valve();
   rt::Loop loop(config.loop,
@@ -209,6 +218,8 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
                     ids_of(p.devices.inputs), inputs_of(p.devices, hal::InputRole::enable),
                     inputs_of(p.devices, hal::InputRole::e_stop), p.never_arms});
   Attendant attendant(desk, socket.get());
+  const io::ServiceManager manager;
+  ServiceReport service(manager, clock, stats, valve != nullptr);
 
   const std::int64_t start_ns = clock.now_ns() + (virtual_time ? 0 : kLead_ns);
   if (config.loop.auto_arm && valve != nullptr) {
@@ -219,10 +230,15 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
   std::atomic<bool> stop{false};
   rt::Run run(loop, rt::Grid(start_ns, std::llround(p.sample_time_s * 1e9)), clock, valve, ticks,
               stop);
-  const rt::Outcome outcome = virtual_time
-                                  ? rt::run_virtual(run, detector, stop, stop_pending)
-                                  : rt::run_realtime(run, detector, grant.loop_thread, stop, valve,
-                                                     [&] { return attendant.attend(); });
+  const rt::Outcome outcome =
+      virtual_time ? rt::run_virtual(run, detector, stop, stop_pending)
+                   : rt::run_realtime(run, detector, grant.loop_thread, stop, valve, [&] {
+                       service.look();
+                       const bool stops = attendant.attend();
+                       if (stops) service.stopping();
+                       return stops;
+                     });
+  if (valve != nullptr && valve->end_at_null().good) note.withdraw();
   if (!virtual_time) {
     report(stats, log);
     for (const auto& summary : p.devices.summaries) log << "spoolwatchd: " << summary() << '\n';
@@ -234,7 +250,7 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
 }
 
 void check_session(DaemonConfig& config, std::ostream& out) {
-  const Prepared p = prepare(config);
+  const Prepared p = prepare(config, false);
   const bool would_write_a_file = config.lcm.url.starts_with("file:");
   if (!would_write_a_file) io::Publisher(config.lcm, 0, p.sample_time_s, nullptr);
   if (!config.recorder.folder.empty()) io::check_folder(config.recorder);

@@ -9,7 +9,8 @@ namespace monitor {
 
 struct SessionOptions {
   bool virtual_time = false;
-  double duration_s = 0.0;  ///< of the loop's grid; 0: until a signal comes
+  std::filesystem::path driving;  ///< where it is noted what is driven; empty: nowhere
+  double duration_s = 0.0;        ///< of the loop's grid; 0: until a signal comes
 };
 
 /// Runs until the duration is over, the record ends or a signal comes. Returns the exit code;

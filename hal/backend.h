@@ -20,6 +20,7 @@ struct Opening {
   double sample_time_s = 0.005;  ///< period of the loop
   double null_V = 0.0;           ///< the commanded safe voltage
   double limit_V = kMissing;     ///< greatest distance of a command from null
+  bool exclusive = true;         ///< to be driven: no other process may; else only looked at
 };
 
 /// What one backend has opened. Names (channels) are the backend's or those of its own table.
@@ -58,6 +59,8 @@ class Backend {
   [[nodiscard]] virtual double worst_speed_mps(const Opening& opening, double limit_V) const = 0;
   /// What the valve does by itself when it is left alone.
   [[nodiscard]] virtual NullTimes null_times() const { return {}; }
+  /// The valve is there and keeps a command when this process has gone.
+  [[nodiscard]] virtual bool outlives_process() const noexcept { return true; }
   /// Lines that `--check` prints: what follows from the table and a person should know.
   [[nodiscard]] virtual std::vector<std::string> notes(const Opening& /*opening*/) const {
     return {};

@@ -219,6 +219,12 @@ Devices Rig::open(const Opening& opening) const {
   return devices;
 }
 
+std::shared_ptr<ValveDrive> Rig::open_valve(const Opening& opening) const {
+  const Backend* backend = find(valve_.backend);
+  if (backend == nullptr || !backend->outlives_process()) return nullptr;
+  return backend->open(opening).valve;
+}
+
 bool Rig::harmless() const {
   const std::vector<std::string> in_use = used();
   return std::all_of(in_use.begin(), in_use.end(), [this](const std::string& name) {

@@ -87,6 +87,10 @@ class Rig {
   /// Opens each backend once. Throws Error when one does not exist or does not do what is asked.
   [[nodiscard]] Devices open(const Opening& opening) const;
 
+  /// Opens the valve's backend alone; null where none is driven or it goes with its process. Throws
+  /// Error.
+  [[nodiscard]] std::shared_ptr<ValveDrive> open_valve(const Opening& opening) const;
+
   [[nodiscard]] const std::string& rod_backend() const noexcept { return rod_.backend; }
   [[nodiscard]] const ValveConfig& valve() const noexcept { return valve_; }
   [[nodiscard]] bool has_permit() const noexcept { return permit_present_; }

@@ -68,6 +68,7 @@ void Detector::process(const Sample& sample) {
     watch_state();
   }
   parts_.pipeline.process(sample, *this);
+  parts_.stats.detected_samples.add();
 }
 
 void Detector::on_estimate(const estimator::fdi::EstimateEvent& event) {
@@ -146,6 +147,7 @@ void Detector::health() {
   health_.control_p999_us = us(stats.control.quantile_ns(0.999));
   health_.write_p999_us = us(stats.write.quantile_ns(0.999));
   health_.active_alarms = static_cast<std::int32_t>(parts_.pipeline.alarms().active_count());
+  parts_.stats.active_alarms.store(health_.active_alarms, std::memory_order_relaxed);
   health_.device_good[0] = stats.rod_good.value();
   health_.device_bad[0] = stats.rod_bad.value();
   std::size_t at = 1;

@@ -1,4 +1,4 @@
-// What the loop counts and shows. The loop writes, any thread reads.
+// What the loop counts and shows, and how far the detector has come. One writer each, any reader.
 #pragma once
 
 #include <array>
@@ -58,6 +58,8 @@ struct LoopStats {
   std::atomic<double> u_V{std::numeric_limits<double>::quiet_NaN()};
   std::atomic<std::uint64_t> answer{0};  ///< to the newest order: control::unpack
   GuardBoard guards;
+  Counter detected_samples;                    ///< by the detector, through all that it does
+  std::atomic<std::int32_t> active_alarms{0};  ///< by the detector, once a second
 };
 
 }  // namespace monitor::rt

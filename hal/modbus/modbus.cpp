@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "config/schema/error.h"
+#include "hal/claim.h"
 #include "hal/modbus/devices.h"
 #include "hal/modbus/survey.h"
 
@@ -14,6 +16,12 @@ namespace hal::modbus {
 namespace {
 
 using config::schema::bad_config;
+
+/// A device of this process's own for as long as the link to it lasts.
+struct Claimed {
+  std::unique_ptr<Claim> claim;
+  std::optional<Link> link;
+};
 
 constexpr std::int64_t kBauds[] = {1200,  2400,   4800,   9600,   19200, 38400,
                                    57600, 115200, 230400, 460800, 921600};
@@ -168,10 +176,17 @@ Offer ModbusBackend::open(const Opening& opening) const {
                                                            std::to_string(config_.baud) +
                                                            " baud, parity " + config_.parity
                                                      : "address \"" + config_.address + "\"";
+  const auto claimed = std::make_shared<Claimed>();
+  const bool writes = plan.valve || plan.watchdog || !plan.outputs.empty();
+  if (opening.exclusive && writes && !config_.address.empty()) {  // a serial line is locked itself
+    claimed->claim = std::make_unique<Claim>(
+        "modbus/" + config.port.host + ":" + std::to_string(config.port.port),
+        opening.file + ": [modbus] " + device);
+  }
   const Snapshot first =
       survey(*port, plan, {opening.file, device, config_.connect_timeout_s, config.port.timeout_s});
-  auto link =
-      std::make_shared<Link>(config, std::move(plan), std::move(port), std::move(counters), first);
+  claimed->link.emplace(config, std::move(plan), std::move(port), std::move(counters), first);
+  const std::shared_ptr<Link> link(claimed, &*claimed->link);
   Freshness freshness;
   freshness.stale_after_s = config.stale_after_s;
   freshness.bad_after_s =

@@ -2,6 +2,8 @@
 
 #include <modbus/modbus.h>
 
+#include <cerrno>
+
 #include "config/schema/error.h"
 #include "hal/device_thread.h"
 
@@ -30,6 +32,13 @@ class Survey {
                      "an address, function and type that it has");
   }
 
+  /// Nobody is there, which the configuration need not be to blame for; or the line is in use.
+  [[nodiscard]] config::schema::Error absent() const {
+    if (port_.error() == EBUSY) return silent("is in use by another program");
+    if (port_.error() == ENOENT || port_.error() == EACCES) return silent("cannot be opened");
+    return {config::schema::ExitCode::failed, silent("cannot be connected").what()};
+  }
+
   [[nodiscard]] config::schema::Error silent(const std::string& what) const {
     return bad_config(options_.file + ": [modbus] " + options_.device,
                       what + " (" + modbus_strerror(port_.error()) + ")",
@@ -45,7 +54,7 @@ class Survey {
 
 Snapshot survey(Port& port, const Plan& plan, const SurveyOptions& options) {
   Survey survey(port, options);
-  if (!port.connect()) throw survey.silent("cannot be connected");
+  if (!port.connect()) throw survey.absent();
   port.set_timeout(options.first_timeout_s);
   Snapshot snapshot;
   for (std::size_t b = 0; b < plan.blocks.size(); ++b) {

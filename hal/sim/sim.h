@@ -77,6 +77,7 @@ class SimBackend final : public Backend {
   void visit(config::schema::Visitor& v) override { config_.visit(v); }
   [[nodiscard]] Offer open(const Opening& opening) const override;
   [[nodiscard]] bool harmless() const noexcept override { return !config_.pretend_real; }
+  [[nodiscard]] bool outlives_process() const noexcept override { return false; }
   /// The simulated valve ends with the process, unless it pretends to be a real one.
   [[nodiscard]] NullTimes null_times() const override;
   [[nodiscard]] double worst_speed_mps(const Opening& opening, double limit_V) const override;

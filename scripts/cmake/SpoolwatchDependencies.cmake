@@ -17,8 +17,9 @@ add_library(spoolwatch_lcm INTERFACE)
 target_include_directories(spoolwatch_lcm SYSTEM INTERFACE "${LCM_INCLUDE_DIR}")
 target_link_libraries(spoolwatch_lcm INTERFACE "${LCM_LIBRARY}")
 
-# libmodbus, libgpiod 1.6 and comedilib: headers and libraries found directly.
-foreach(package "modbus modbus/modbus.h" "gpiod gpiod.h" "comedi comedilib.h")
+# libmodbus, libgpiod 1.6, comedilib and libsystemd: headers and libraries found directly.
+foreach(package "modbus modbus/modbus.h" "gpiod gpiod.h" "comedi comedilib.h"
+    "systemd systemd/sd-daemon.h")
   separate_arguments(package)
   list(GET package 0 name)
   list(GET package 1 header)

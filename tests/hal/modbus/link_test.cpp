@@ -181,7 +181,7 @@ TEST(ModbusLink, AnAbsentDeviceOrRegisterIsOneClearLine) {
     device.answer(Reply::lost);
     EXPECT_THAT(refusal_of(text), HasSubstr("does not answer a request (Connection timed out)"));
   }
-  EXPECT_THAT(refusal_of(text), HasSubstr("cannot be connected (Connection refused)"));
+  EXPECT_THAT(refusal_of(text, 0.0, 1), HasSubstr("cannot be connected (Connection refused)"));
 }
 
 }  // namespace

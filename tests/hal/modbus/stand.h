@@ -29,11 +29,11 @@ inline Offer open_text(const std::string& text, double null_V = 0.0) {
 }
 
 /// What the backend says when it refuses that text; "accepted" when it does not.
-inline std::string refusal_of(const std::string& text, double null_V = 0.0) {
+inline std::string refusal_of(const std::string& text, double null_V = 0.0, int exit_code = 78) {
   try {
     (void)open_text(text, null_V);
   } catch (const config::schema::Error& e) {
-    EXPECT_EQ(e.exit_code(), 78);
+    EXPECT_EQ(e.exit_code(), exit_code);
     EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos) << "more than one line";
     return e.what();
   }

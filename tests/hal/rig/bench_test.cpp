@@ -221,11 +221,11 @@ TEST(Bench, AnEStopAtTheRigLatchesTheDaemon) {
   EXPECT_EQ(log.samples.back().u_applied_V, 0.0);
 }
 
-TEST(Bench, AnAbsentRigIsOneLineAndExit78) {
+TEST(Bench, AnAbsentRigIsOneLineAndExit1) {
   const program::Result result =
       program::run({"--config", shipped_config("bench_modbus.toml"), "--lcm-url", "", "--set",
                     "modbus.address=127.0.0.1:9", "--duration", "1"});
-  EXPECT_EQ(result.exit_code, 78);
+  EXPECT_EQ(result.exit_code, 1) << "it may come later: worth another start";
   EXPECT_THAT(result.err, HasSubstr("[modbus] address \"127.0.0.1:9\": cannot be connected"));
   EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
 }

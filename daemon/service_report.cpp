@@ -1,0 +1,65 @@
+#include "daemon/service_report.h"
+
+#include <cstdio>
+
+#include "daemon/control/protocol.h"
+
+namespace monitor {
+namespace {
+
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+/// Signs of life in the time after which one is missed.
+constexpr std::int64_t kSigns = 4;
+
+}  // namespace
+
+bool ServiceReport::works() const noexcept {
+  return stats_.rod_good.value() >= kGoodCycles &&
+         (!drives_ || stats_.valve_good.value() >= kGoodCycles) &&
+         stats_.detected_samples.value() >= kGoodCycles;
+}
+
+void ServiceReport::look() {
+  const std::int64_t now_ns = clock_.now_ns();
+  if (!ready_ && works()) {
+    ready_ = true;
+    next_line_ns_ = now_ns;
+    manager_.ready();
+  }
+  feed(now_ns);
+  say(now_ns);
+}
+
+void ServiceReport::feed(std::int64_t now_ns) {
+  if (manager_.watchdog_ns() == 0 || now_ns - fed_ns_ < manager_.watchdog_ns() / kSigns) return;
+  const std::int64_t ticks = stats_.ticks.value();
+  const std::int64_t detected = stats_.detected_samples.value();
+  if (ticks == fed_ticks_ || detected == fed_detected_) return;
+  fed_ns_ = now_ns;
+  fed_ticks_ = ticks;
+  fed_detected_ = detected;
+  manager_.alive();
+}
+
+void ServiceReport::say(std::int64_t now_ns) {
+  if (now_ns < next_line_ns_) return;
+  next_line_ns_ = now_ns + kSecond_ns;
+  std::string line = this->line();
+  if (line == said_) return;
+  manager_.status(line);
+  said_ = std::move(line);
+}
+
+std::string ServiceReport::line() const {
+  if (!ready_) return "waiting for the first good cycles";
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "%s, active alarms: %d, lateness p99.9 %.2f ms, lost periods: %lld",
+                control::to_string(stats_.state.load(std::memory_order_relaxed)),
+                static_cast<int>(stats_.active_alarms.load(std::memory_order_relaxed)),
+                static_cast<double>(stats_.lateness.quantile_ns(0.999)) * 1e-6,
+                static_cast<long long>(stats_.skipped_periods.value()));
+  return text;
+}
+
+}  // namespace monitor
