@@ -188,7 +188,7 @@ void add_calibrate(CLI::App& command, int& /*exit_code*/) {
   auto options = std::make_shared<Options>();
   command.add_option("config", options->config, "configuration with [[estimator]] and [[band]]")
       ->required();
-  command.add_option("record", options->record, "healthy record: CSV or LCM log")->required();
+  command.add_option("record", options->record, "healthy record: CSV, MAT or LCM log")->required();
   command.add_option("-o,--output", options->out, "file for the learned bands")->required();
   command
       .add_option("--false-alarm-time-s", options->false_alarm_time_s,

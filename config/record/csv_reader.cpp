@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "config/record/layout.h"
 #include "config/record/time_grid.h"
-#include "config/record/units.h"
 #include "config/schema/error.h"
 
 namespace config::record {
@@ -31,15 +31,6 @@ bool take(std::string_view& rest, char separator, std::string_view& part) {
   return true;
 }
 
-std::string quoted(std::string_view text) {
-  constexpr std::size_t kLongest = 40;
-  std::string shown(text.substr(0, kLongest));
-  for (char& c : shown) {
-    if (static_cast<unsigned char>(c) < ' ') c = '?';
-  }
-  return "'" + shown + (text.size() > kLongest ? "...'" : "'");
-}
-
 std::string_view unquoted(std::string_view text) {
   const bool has_quotes = text.size() >= 2 && text.front() == '"' && text.back() == '"';
   return has_quotes ? text.substr(1, text.size() - 2) : text;
@@ -56,14 +47,6 @@ std::size_t decimals(std::string_view number) {
   const std::size_t point = number.find('.');
   return point == std::string_view::npos ? 0 : number.size() - point - 1;
 }
-
-/// One column on its way in.
-struct Target {
-  std::string name;  ///< as in the file
-  double factor = 1.0;
-  std::vector<double>* values = nullptr;
-  bool may_be_missing = false;
-};
 
 class CsvReader {
  public:
@@ -114,14 +97,12 @@ class CsvReader {
 
   void read_header(std::string_view line) {
     if (line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
-    std::vector<Column> columns;
     std::vector<std::string> names;
     std::string_view field;
     while (take(line, ',', field)) {
       field = unquoted(trimmed(field));
       if (field.empty()) throw bad_data(place(1), "has a column without a name");
       names.emplace_back(field);
-      columns.push_back(parse_column(field));
     }
     const std::size_t other = names.front().find_first_of(";\t");
     if (names.size() == 1 && other != std::string::npos) {
@@ -130,63 +111,11 @@ class CsvReader {
                                                  : "separates columns by tabs",
                      "commas, with points in decimal numbers");
     }
-    record_.further.reserve(columns.size());
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      refuse_clash(columns, names, i);
-      add_target(columns[i], names[i]);
+    targets_ = lay_out(names, place(1), record_);
+    if (const MissingColumn* missing = first_missing(targets_, record_)) {
+      throw bad_data(place(1), std::string("lacks a ") + missing->what + " column",
+                     missing->allowed);
     }
-    require(record_.t_s, "a time column", "t_s, t_ms");
-    require(record_.u_V, "a command column", "u_V, u_mV");
-    require(record_.y_m, "a position column", "y_m, y_mm");
-  }
-
-  void refuse_clash(const std::vector<Column>& columns, const std::vector<std::string>& names,
-                    std::size_t i) const {
-    for (std::size_t j = 0; j < i; ++j) {
-      const std::string both = names[j] + " and " + names[i];
-      if (names[i] == names[j]) throw bad_data(place(1), "has column " + names[i] + " twice");
-      if (is_time(columns[i]) && is_time(columns[j])) {
-        throw bad_data(place(1), "has two time columns, " + both);
-      }
-      const bool main = columns[i].stem == "u" || columns[i].stem == "y";
-      const bool same_stem = columns[i].stem == columns[j].stem && !columns[i].si_unit.empty() &&
-                             !columns[j].si_unit.empty();
-      if (same_stem && (main || columns[i].si_unit == columns[j].si_unit)) {
-        throw bad_data(place(1), "has contradictory units: " + both);
-      }
-    }
-  }
-
-  static bool is_time(const Column& column) { return column.stem == "t" || column.stem == "time"; }
-
-  void add_target(const Column& column, const std::string& name) {
-    const auto main_target = [&](std::vector<double>& values, std::string_view unit,
-                                 const char* allowed) {
-      if (column.si_unit != unit) {
-        throw bad_data(place(1),
-                       "column " + name +
-                           (column.si_unit.empty() ? " has no unit" : " has a contradictory unit"),
-                       allowed);
-      }
-      targets_.push_back({name, column.factor, &values, false});
-    };
-    if (is_time(column)) {
-      main_target(record_.t_s, "s", "t_s, t_ms");
-    } else if (column.stem == "u") {
-      main_target(record_.u_V, "V", "u_V, u_mV");
-    } else if (column.stem == "y") {
-      main_target(record_.y_m, "m", "y_m, y_mm, y_um");
-    } else {
-      record_.further.emplace_back(column.si_name, std::vector<double>{});
-      targets_.push_back({name, column.factor, &record_.further.back().second, true});
-    }
-  }
-
-  void require(const std::vector<double>& values, const char* what, const char* allowed) const {
-    for (const Target& target : targets_) {
-      if (target.values == &values) return;
-    }
-    throw bad_data(place(1), std::string("lacks ") + what, allowed);
   }
 
   void read_row(std::string_view line) {

@@ -1,10 +1,11 @@
-// A recorded experiment (u, y) in SI units, read from CSV or from an LCM event log.
+// A recorded experiment (u, y) in SI units, read from CSV, a MAT file or an LCM event log.
 //
 // CSV: one header line whose names end in their unit (t_s, u_V, y_mm, ...); time, command and
 // position are found by their stem (t, u, y); any further column is kept under its name in SI
-// units (ref_mm becomes ref_m). LCM: the sample_t messages of one channel; the time is tick times
-// sample time, and the further columns are the other fields of the message. Samples of stale or bad
-// quality, or without a command, are left out like any missing sample.
+// units (ref_mm becomes ref_m). MAT: vectors of these names (mat_reader.h). LCM: the sample_t
+// messages of one channel; the time is tick times sample time, and the further columns are the
+// other fields of the message. Samples of stale or bad quality, or without a command, are left out
+// like any missing sample.
 //
 // Row k: y is sampled at t[k], before u[k] is written; u[k] holds until t[k+1].
 #pragma once
@@ -38,9 +39,9 @@ struct Record {
 /// The LCM channel that a record is read from when none is named.
 inline constexpr std::string_view kSampleChannel = "SPOOLWATCH_SAMPLE";
 
-/// Reads CSV or an LCM event log, told apart by content. Throws schema::Error (exit 65, one line,
-/// "file:line: what; allowed: ...") for bad data. A step in time of a whole number of periods is a
-/// gap (listed); any other uneven step is an error.
+/// Reads CSV, MAT or an LCM event log, told apart by content. Throws schema::Error (exit 65, one
+/// line, "file:line: what; allowed: ...") for bad data. A step in time of a whole number of periods
+/// is a gap (listed); any other uneven step is an error.
 [[nodiscard]] Record read_record(const std::filesystem::path& file,
                                  std::string_view channel = kSampleChannel);
 

@@ -22,7 +22,7 @@ std::vector<std::int64_t> grid(const config::record::Record& record) {
 }  // namespace
 
 void ReplayConfig::visit(config::schema::Visitor& v) {
-  v.text({"record", "CSV or LCM event log", true}, record);
+  v.text({"record", "CSV, MAT or LCM event log", true}, record);
   v.choice({"pace", "at the recorded pace, or as fast as possible"}, pace, {"recorded", "fast"});
 }
 
@@ -55,7 +55,7 @@ Offer ReplayBackend::open(const Opening& opening) const {
   if (!std::filesystem::is_regular_file(file, ignored)) {
     throw config::schema::bad_config(opening.file + ": [replay] record",
                                      "is \"" + file.string() + "\", which is no file",
-                                     "a CSV file or an LCM event log");
+                                     "a CSV file, a MAT file or an LCM event log");
   }
   config::record::Record record = config::record::read_record(file);
   Offer offer;

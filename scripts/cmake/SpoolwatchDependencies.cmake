@@ -7,6 +7,7 @@ find_package(nlohmann_json REQUIRED)
 find_package(Boost 1.74 REQUIRED)
 find_package(tomlplusplus REQUIRED)
 find_package(muparser 2.3 REQUIRED)
+find_package(ZLIB REQUIRED)
 include(GoogleTest)
 
 # LCM: Debian's lcm.pc asks for glib's headers, so header, library and generator are found directly.
@@ -17,8 +18,8 @@ add_library(spoolwatch_lcm INTERFACE)
 target_include_directories(spoolwatch_lcm SYSTEM INTERFACE "${LCM_INCLUDE_DIR}")
 target_link_libraries(spoolwatch_lcm INTERFACE "${LCM_LIBRARY}")
 
-# libmodbus, libgpiod 1.6, comedilib and libsystemd: headers and libraries found directly.
-foreach(package "modbus modbus/modbus.h" "gpiod gpiod.h" "comedi comedilib.h"
+# matio, libmodbus, libgpiod 1.6, comedilib and libsystemd: headers and libraries found directly.
+foreach(package "matio matio.h" "modbus modbus/modbus.h" "gpiod gpiod.h" "comedi comedilib.h"
     "systemd systemd/sd-daemon.h")
   separate_arguments(package)
   list(GET package 0 name)

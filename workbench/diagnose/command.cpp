@@ -67,8 +67,9 @@ void add_diagnose(CLI::App& command, int& exit_code) {
   auto request = std::make_shared<Request>();
   command.add_option("MODEL", request->model, "a model file (TOML)")->required();
   command
-      .add_option("RECORD", request->records,
-                  "CSV (t_s,u_V,y_m) or LCM log; several are fitted together, each at its own rate")
+      .add_option(
+          "RECORD", request->records,
+          "CSV or MAT (t_s,u_V,y_m), or LCM log; several are fitted together, each at its own rate")
       ->required();
   CLI::Option* const holdout =
       command.add_option("--holdout", request->holdouts, "a record that only scores, not fitted")

@@ -103,7 +103,7 @@ void add_fit(CLI::App& command, int& exit_code) {
   command.add_option("MODEL", request->model, "a model file (TOML)")->required();
   command
       .add_option("RECORD", request->records,
-                  "CSV (t_s,u_V,y_m) or LCM log; several are fitted together")
+                  "CSV or MAT (t_s,u_V,y_m), or LCM log; several are fitted together")
       ->required();
   command.add_option("-o,--output", request->output, "the model file to write");
   declare_choice(command, *request);

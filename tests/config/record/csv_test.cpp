@@ -145,7 +145,7 @@ TEST(Csv, RefusesHeadersThatCannotBeMeant) {
   expect_bad(std::string("\x7f"
                          "ELF\0\0\0\0",
                          8),
-             "", "is neither");
+             "", "is no record");
 }
 
 TEST(Csv, RefusesAnExponentCutOff) {

@@ -1,0 +1,99 @@
+#include "config/record/layout.h"
+
+#include <algorithm>
+#include <array>
+
+#include "config/schema/error.h"
+
+namespace config::record {
+namespace {
+
+using schema::bad_data;
+
+struct MainColumn {
+  MissingColumn missing;
+  const char* si_unit;
+  const char* allowed;
+  std::vector<double> Record::*values;
+};
+
+constexpr std::array kMain = {
+    MainColumn{{"time", "t_s, t_ms"}, "s", "t_s, t_ms", &Record::t_s},
+    MainColumn{{"command", "u_V, u_mV"}, "V", "u_V, u_mV", &Record::u_V},
+    MainColumn{{"position", "y_m, y_mm"}, "m", "y_m, y_mm, y_um", &Record::y_m},
+};
+
+const MainColumn* main_of(const Column& column) {
+  if (is_time(column)) return kMain.data();
+  if (column.stem == "u") return &kMain[1];
+  if (column.stem == "y") return &kMain[2];
+  return nullptr;
+}
+
+void refuse_clash(const std::vector<Column>& columns, const std::vector<std::string>& names,
+                  std::size_t i, const std::string& where) {
+  for (std::size_t j = 0; j < i; ++j) {
+    const std::string both = names[j] + " and " + names[i];
+    if (names[i] == names[j]) throw bad_data(where, "has column " + names[i] + " twice");
+    if (is_time(columns[i]) && is_time(columns[j])) {
+      throw bad_data(where, "has two time columns, " + both);
+    }
+    const bool main = columns[i].stem == "u" || columns[i].stem == "y";
+    const bool same_stem = columns[i].stem == columns[j].stem && !columns[i].si_unit.empty() &&
+                           !columns[j].si_unit.empty();
+    if (same_stem && (main || columns[i].si_unit == columns[j].si_unit)) {
+      throw bad_data(where, "has contradictory units: " + both);
+    }
+  }
+}
+
+}  // namespace
+
+bool is_time(const Column& column) { return column.stem == "t" || column.stem == "time"; }
+
+bool is_main(const Column& column) { return main_of(column) != nullptr; }
+
+std::vector<Target> lay_out(const std::vector<std::string>& names, const std::string& where,
+                            Record& record) {
+  std::vector<Column> columns;
+  for (const std::string& name : names) columns.push_back(parse_column(name));
+  std::vector<Target> targets;
+  record.further.reserve(columns.size());
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    refuse_clash(columns, names, i, where);
+    const Column& column = columns[i];
+    if (const MainColumn* main = main_of(column); main == nullptr) {
+      record.further.emplace_back(column.si_name, std::vector<double>{});
+      targets.push_back({names[i], column.factor, &record.further.back().second, true});
+    } else if (column.si_unit == main->si_unit) {
+      targets.push_back({names[i], column.factor, &(record.*main->values), false});
+    } else {
+      throw bad_data(where,
+                     "column " + names[i] +
+                         (column.si_unit.empty() ? " has no unit" : " has a contradictory unit"),
+                     main->allowed);
+    }
+  }
+  return targets;
+}
+
+const MissingColumn* first_missing(const std::vector<Target>& targets, const Record& record) {
+  for (const MainColumn& main : kMain) {
+    const bool found = std::any_of(targets.begin(), targets.end(), [&](const Target& target) {
+      return target.values == &(record.*main.values);
+    });
+    if (!found) return &main.missing;
+  }
+  return nullptr;
+}
+
+std::string quoted(std::string_view text) {
+  constexpr std::size_t kLongest = 40;
+  std::string shown(text.substr(0, kLongest));
+  for (char& c : shown) {
+    if (static_cast<unsigned char>(c) < ' ') c = '?';
+  }
+  return "'" + shown + (text.size() > kLongest ? "...'" : "'");
+}
+
+}  // namespace config::record

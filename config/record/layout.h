@@ -1,0 +1,43 @@
+// Which column of a file goes where in a record: for every form of file that names its columns.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "config/record/record.h"
+#include "config/record/units.h"
+
+namespace config::record {
+
+/// One column on its way in.
+struct Target {
+  std::string name;  ///< as in the file
+  double factor = 1.0;
+  std::vector<double>* values = nullptr;  ///< within the record
+  bool may_be_missing = false;            ///< NaN stands for a missing value
+};
+
+[[nodiscard]] bool is_time(const Column& column);
+/// Time, command or position, whatever the unit.
+[[nodiscard]] bool is_main(const Column& column);
+
+/// Time, command and position by their stem, anything else as a further column of `record`, which
+/// must not be moved afterwards. Throws schema::Error (exit 65) at `where` for a name that is
+/// there twice, a wrong unit or none.
+[[nodiscard]] std::vector<Target> lay_out(const std::vector<std::string>& names,
+                                          const std::string& where, Record& record);
+
+struct MissingColumn {
+  const char* what;     ///< "time"
+  const char* allowed;  ///< names for it
+};
+
+/// The first of time, command and position that no target fills, or null.
+[[nodiscard]] const MissingColumn* first_missing(const std::vector<Target>& targets,
+                                                 const Record& record);
+
+/// In quotes, cut to what fits into a message, control characters replaced.
+[[nodiscard]] std::string quoted(std::string_view text);
+
+}  // namespace config::record

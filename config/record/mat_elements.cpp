@@ -1,0 +1,104 @@
+#include "config/record/mat_elements.h"
+
+#include <zlib.h>
+
+#include <bit>
+
+namespace config::record::mat {
+namespace {
+
+constexpr std::size_t kHeaderBytes = 128;
+constexpr std::size_t kVersionAt = 124;
+constexpr std::size_t kTagBytes = 8;
+/// What a file may unpack to; zlib itself packs no better than kBestRatio.
+constexpr std::size_t kMostBytes = std::size_t{1} << 30U;
+constexpr std::size_t kBestRatio = 1032;
+
+class Inflater {
+ public:
+  explicit Inflater(std::string_view packed) {
+    // zlib's interface is not const-correct: it only reads from here.
+    stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
+    stream_.avail_in = static_cast<uInt>(packed.size());
+    ready_ = inflateInit(&stream_) == Z_OK;
+  }
+  ~Inflater() {
+    if (ready_) inflateEnd(&stream_);
+  }
+  Inflater(const Inflater&) = delete;
+  Inflater& operator=(const Inflater&) = delete;
+
+  /// Fills `out` from its byte `from` on; false when there is less.
+  bool fill(std::string& out, std::size_t from) {
+    stream_.next_out = reinterpret_cast<Bytef*>(out.data() + from);
+    stream_.avail_out = static_cast<uInt>(out.size() - from);
+    const int result = ready_ ? inflate(&stream_, Z_SYNC_FLUSH) : Z_MEM_ERROR;
+    return (result == Z_OK || result == Z_STREAM_END || result == Z_BUF_ERROR) &&
+           stream_.avail_out == 0;
+  }
+
+ private:
+  z_stream stream_{};
+  bool ready_ = false;
+};
+
+}  // namespace
+
+bool is_version_5(std::string_view head) noexcept {
+  if (head.size() < kHeaderBytes) return false;
+  const std::string_view version = head.substr(kVersionAt, 4);
+  return version == std::string_view("\x00\x01IM", 4) ||
+         version == std::string_view("\x01\x00MI", 4);
+}
+
+Elements Elements::of_file(std::string_view content, const std::string& name) {
+  const bool little = content.substr(kVersionAt + 2, 2) == "IM";
+  return {content.substr(kHeaderBytes), little != (std::endian::native == std::endian::little),
+          true, name};
+}
+
+Elements Elements::within(std::string_view bytes) const { return {bytes, swapped_, false, *name_}; }
+
+schema::Error Elements::damaged(const std::string& what) const {
+  return schema::bad_data(*name_, "is damaged: a variable's " + what + " make no sense",
+                          "a MAT file of version 5 to 7");
+}
+
+Element Elements::next() {
+  const auto cut = [this] {
+    return top_ ? schema::bad_data(*name_, "is cut off within a variable") : damaged("parts");
+  };
+  if (rest_.size() < kTagBytes) throw cut();
+  const auto first = load<std::uint32_t>(rest_, 0);
+  Element element{static_cast<Type>(first & 0xFFFFU), {}};
+  std::size_t used = kTagBytes;
+  if (const std::size_t small = first >> 16U; small != 0) {
+    if (small > 4) throw damaged("parts");
+    element.data = rest_.substr(4, small);
+  } else {
+    const std::size_t bytes = load<std::uint32_t>(rest_, 4);
+    if (bytes > rest_.size() - kTagBytes) throw cut();
+    element.data = rest_.substr(kTagBytes, bytes);
+    used += bytes;
+    if (element.type != Type::compressed) used += (kTagBytes - bytes % kTagBytes) % kTagBytes;
+  }
+  rest_.remove_prefix(std::min(used, rest_.size()));
+  return element;
+}
+
+std::string Elements::unpack(const Element& element, std::size_t& total_bytes) const {
+  Inflater inflater(element.data);
+  std::string out(kTagBytes, '\0');
+  if (!inflater.fill(out, 0)) throw damaged("packed bytes");
+  const std::size_t bytes = load<std::uint32_t>(out, 4);
+  total_bytes += bytes;
+  if (total_bytes > kMostBytes) {
+    throw schema::bad_data(*name_, "unpacks to more than 1 GiB", "shorter records");
+  }
+  if (bytes > (element.data.size() + 1) * kBestRatio) throw damaged("packed bytes");
+  out.resize(kTagBytes + bytes);
+  if (bytes != 0 && !inflater.fill(out, kTagBytes)) throw damaged("packed bytes");
+  return out;
+}
+
+}  // namespace config::record::mat

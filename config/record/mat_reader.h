@@ -1,0 +1,21 @@
+// The MAT form of a record: vectors t_s, u_V, y_m, ... with units in their names as in CSV, or one
+// structure that has them as fields.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "config/record/record.h"
+
+namespace config::record {
+
+/// What the beginning of a file says of MATLAB's and Octave's other formats, as the end of an
+/// error's line; null for anything else.
+[[nodiscard]] const char* other_mat_format(std::string_view head) noexcept;
+
+/// `content` is that of a MAT file of version 5, `name` the file's in messages. Rows and columns
+/// are alike; variables that are no vectors of the time's length are left out and noted. Throws
+/// schema::Error (exit 65).
+[[nodiscard]] Record read_mat(std::string_view content, const std::string& name);
+
+}  // namespace config::record

@@ -1,0 +1,33 @@
+// The variables of a MAT file, version 5 (what MATLAB saves with -v6 and -v7, Octave with -v6 and
+// -v7, SciPy's savemat): numbers and structures of them; of the rest only what it is.
+//
+// Every length in the file is checked against the bytes that are there: a damaged or hostile file
+// ends in an error. matio, which writes MAT files for us, asks for gigabytes or stops the program
+// on such files, and does not read them here.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace config::record {
+
+struct MatVariable {
+  std::string name;
+  std::string type;               ///< "double", "text", "cell array", ... for messages
+  std::vector<std::size_t> dims;  ///< two or more; empty where not known
+  bool numeric = false;           ///< an array of numbers, logical ones included
+  bool complex = false;
+  std::vector<double> values;       ///< of a numeric vector (at most one extent above 1)
+  std::vector<MatVariable> fields;  ///< of a structure that is no array
+};
+
+/// True for the first 128 bytes of a MAT file of version 5.
+[[nodiscard]] bool is_mat_file(std::string_view head) noexcept;
+
+/// `content` is the file's, `name` stands for it in messages. Throws schema::Error (exit 65).
+[[nodiscard]] std::vector<MatVariable> read_mat_variables(std::string_view content,
+                                                          const std::string& name);
+
+}  // namespace config::record
