@@ -187,6 +187,24 @@ void Recursive::gap() noexcept { state_->regressor.reset(); }
 
 void Recursive::reset() noexcept { state_->reset(); }
 
+void Recursive::carry(Carrier& carrier) {
+  State& s = *state_;
+  carrier.value(s.regressor);
+  carrier.value(s.gate);
+  carrier.value(s.p);
+  carrier.value(s.batch_memory);
+  carrier.value(s.theta);
+  carrier.value(s.warming);
+  carrier.value(s.next_informed);
+  for (double* number : {&s.error_m, &s.cost_m2, &s.prior_weight, &s.weights, &s.weights_squared}) {
+    carrier.value(*number);
+  }
+  if (s.next_informed < 0 || s.next_informed >= s.size) {
+    carrier.fail();
+    reset();
+  }
+}
+
 const double* Recursive::coefficients() const noexcept { return state_->theta.data(); }
 
 double Recursive::prediction_error_m() const noexcept { return state_->error_m; }

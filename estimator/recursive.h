@@ -15,6 +15,7 @@
 
 #include <memory>
 
+#include "estimator/carrier.h"
 #include "estimator/estimate.h"
 
 namespace estimator {
@@ -43,6 +44,7 @@ class Recursive {
   void gap() noexcept;
   /// Back to the start.
   void reset() noexcept;
+  void carry(Carrier& carrier);
 
   /// Coefficients with standard errors and condition, computed on each call. Never allocates.
   /// While the gate is closed: the kept values, invalid with not_excited.

@@ -155,6 +155,24 @@ bool SlidingWindow::gap(long long samples) noexcept {
 
 void SlidingWindow::reset() noexcept { state_->reset(); }
 
+void SlidingWindow::carry(Carrier& carrier) {
+  State& s = *state_;
+  carrier.fixed(s.memory);
+  carrier.fixed(s.tallies);
+  carrier.value(s.regressor);
+  carrier.value(s.running_memory);
+  carrier.value(s.running_tally);
+  for (int* count : {&s.head, &s.old_side, &s.new_side, &s.in_block, &s.blocks_to_estimate}) {
+    carrier.value(*count);
+  }
+  const bool sane = s.head >= 0 && s.head <= s.blocks && s.old_side >= 0 && s.new_side >= 0 &&
+                    s.old_side + s.new_side <= s.blocks && s.in_block >= 0 && s.in_block < s.block;
+  if (!sane) {
+    carrier.fail();
+    reset();
+  }
+}
+
 Estimate SlidingWindow::estimate() const noexcept {
   State& s = *state_;
   FactorMemory memory;

@@ -13,6 +13,7 @@
 
 #include <memory>
 
+#include "estimator/carrier.h"
 #include "estimator/estimate.h"
 
 namespace estimator {
@@ -40,6 +41,7 @@ class SlidingWindow {
   bool gap(long long samples) noexcept;
   /// Forgets everything.
   void reset() noexcept;
+  void carry(Carrier& carrier);
 
   /// Over the window at the last due moment, computed on each call. Never allocates.
   [[nodiscard]] Estimate estimate() const noexcept;

@@ -87,8 +87,15 @@ std::string readable(const spoolwatch::alarm_t& alarm) {
   std::string line = column(time_text(alarm.utc_us), 10) +
                      column(severity_text(alarm.severity), 7) +
                      column(alarm.source + "." + alarm.name, 18);
-  if (!alarm.active) line += "back to normal; ";
+  if (alarm.shelved) {
+    line += "shelved; ";
+  } else if (!alarm.active) {
+    line += "back to normal; ";
+  }
   if (alarm.repeat != 0) line += "still active; ";
+  if (alarm.latched) line += "latched: normal again, not acknowledged; ";
+  if (alarm.active && alarm.acknowledged) line += "acknowledged; ";
+  if (alarm.active && alarm.first_up) line += "first of its burst; ";
   if (!alarm.quantity.empty()) {
     line += alarm.quantity + " = " + number_text(alarm.value);
     if (!std::isnan(alarm.std_error)) line += " +- " + number_text(alarm.std_error, 2);

@@ -48,11 +48,11 @@ void fill(spoolwatch::alarm_t& message, const estimator::fdi::Alarm& alarm, bool
   message.source = alarm.source;
   message.name = alarm.name;
   message.severity = static_cast<std::int8_t>(alarm.severity);
-  message.active = alarm.active ? 1 : 0;
+  message.active = alarm.annunciated() ? 1 : 0;
   message.repeat = repeat ? 1 : 0;
-  message.latched = 0;
-  message.acknowledged = 0;
-  message.shelved = 0;
+  message.latched = alarm.latched ? 1 : 0;
+  message.acknowledged = alarm.acknowledged ? 1 : 0;
+  message.shelved = alarm.shelved ? 1 : 0;
   message.first_up = alarm.first_up ? 1 : 0;
   message.tick = alarm.tick;
   message.value = alarm.value;

@@ -27,6 +27,7 @@ void BandConfig::visit(config::schema::Visitor& v) {
             falls_with_parameter);
   v.texts({"ambiguity_group", "parameters that cannot be told apart here"}, ambiguity_group);
   v.text({"guidance", "what to look at"}, guidance);
+  rules.visit(v);
 }
 
 BandState::BandState(const BandConfig& config)

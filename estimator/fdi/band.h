@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "config/schema/visitor.h"
-#include "estimator/fdi/alarm_book.h"
+#include "estimator/fdi/alarm.h"
 
 namespace estimator::fdi {
 
@@ -32,6 +32,7 @@ struct BandConfig {
   bool falls_with_parameter = false;  ///< the quantity falls when the parameter rises
   std::vector<std::string> ambiguity_group;
   std::string guidance;
+  AlarmRules rules;  ///< how its alarm lives
 
   void visit(config::schema::Visitor& v);
 };

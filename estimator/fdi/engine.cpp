@@ -19,6 +19,7 @@ class WindowEngine final : public Engine {
   bool push(double u_V, double y_m) noexcept override { return window_.push(u_V, y_m); }
   bool gap(long long samples) noexcept override { return window_.gap(samples); }
   void reset() noexcept override { window_.reset(); }
+  void carry(Carrier& carrier) override { window_.carry(carrier); }
   [[nodiscard]] Estimate estimate() const noexcept override { return window_.estimate(); }
 
  private:
@@ -53,6 +54,12 @@ class DetrendedBatch final : public Engine {
     u_V_.clear();
     y_m_.clear();
     window_.reset();
+  }
+  void carry(Carrier& carrier) override {
+    window_.carry(carrier);
+    carrier.growing(u_V_, length_);
+    carrier.growing(y_m_, length_);
+    carrier.value(estimate_);
   }
   [[nodiscard]] Estimate estimate() const noexcept override { return estimate_; }
 
@@ -95,6 +102,10 @@ class RecursiveEngine final : public Engine {
   void reset() noexcept override {
     recursion_.reset();
     since_ = 0;
+  }
+  void carry(Carrier& carrier) override {
+    recursion_.carry(carrier);
+    carrier.value(since_);
   }
   [[nodiscard]] Estimate estimate() const noexcept override { return recursion_.estimate(); }
 

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "estimator/carrier.h"
 #include "estimator/estimate.h"
 #include "estimator/fdi/pipeline.h"
 
@@ -17,6 +18,7 @@ class Engine {
   /// So many samples missing; true when an estimate became due meanwhile.
   virtual bool gap(long long samples) noexcept = 0;
   virtual void reset() noexcept = 0;
+  virtual void carry(Carrier& carrier) = 0;
   [[nodiscard]] virtual Estimate estimate() const noexcept = 0;
 };
 

@@ -53,6 +53,7 @@ Alarm alarm_for(const BandConfig& band, std::string_view source) {
   alarm.falls_with_parameter = band.falls_with_parameter;
   alarm.ambiguity_group = band.ambiguity_group;
   alarm.guidance = band.guidance;
+  alarm.rules = band.rules;
   alarm.low = given(band.low);
   alarm.high = given(band.high);
   return alarm;
@@ -96,7 +97,7 @@ struct Pipeline::Impl {
 };
 
 Pipeline::Impl::Impl(const PipelineConfig& config, double sample_time)
-    : sample_time_s(sample_time) {
+    : book(sample_time), sample_time_s(sample_time) {
   if (!(sample_time_s > 0.0)) throw bad_config("sample time", "is not positive");
   workers.reserve(config.estimators.size());
   for (const EstimatorConfig& estimator : config.estimators) add(estimator);
@@ -222,6 +223,8 @@ void Pipeline::process(const Sample& sample, Events& events) {
   }
   impl.started = true;
   impl.last_tick = sample.tick;
+  impl.book.advance(sample.tick, sample.utc_us,
+                    [&events](const Alarm& alarm) { events.on_alarm(alarm); });
   const double y_m = usable_y_m(sample);
   for (std::size_t i = 0; i < impl.workers.size(); ++i) {
     Stage& stage = impl.workers[i].stage;
@@ -247,6 +250,20 @@ void Pipeline::reset() {
   }
   for (SampleWatch& watched : impl_->sample_watches) watched.watch.state.reset();
   impl_->book.reset();
+}
+
+void Pipeline::carry(Carrier& carrier) {
+  Impl& impl = *impl_;
+  carrier.value(impl.started);
+  carrier.value(impl.last_tick);
+  for (Worker& worker : impl.workers) {
+    worker.stage.carry(carrier);
+    for (std::vector<Watch>& watches : worker.watches) {
+      for (Watch& watch : watches) carrier.value(watch.state);
+    }
+  }
+  for (SampleWatch& watched : impl.sample_watches) carrier.value(watched.watch.state);
+  impl.book.carry(carrier);
 }
 
 AlarmBook& Pipeline::alarms() noexcept { return impl_->book; }

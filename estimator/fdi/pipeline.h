@@ -104,7 +104,7 @@ class Events {
  public:
   virtual ~Events() = default;
   virtual void on_estimate(const EstimateEvent& event) = 0;
-  /// An alarm's severity or direction changed.
+  /// An alarm's severity, direction or life changed.
   virtual void on_alarm(const Alarm& alarm) = 0;
 };
 
@@ -119,6 +119,11 @@ class Pipeline {
   void process(const Sample& sample, Events& events);
   /// Forgets all samples, as at a start; alarms go back to OK without an event.
   void reset();
+
+  /// Saves every bit that later results depend on, or restores it into a pipeline of the same
+  /// configuration and sample time, which then goes on exactly as the saved one would have. When
+  /// carrier.complete() is false afterwards, it is of no use.
+  void carry(Carrier& carrier);
 
   /// Bands are in it from the start; conditions from elsewhere are set by the caller.
   [[nodiscard]] AlarmBook& alarms() noexcept;

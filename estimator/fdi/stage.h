@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "estimator/carrier.h"
 #include "estimator/estimate.h"
 #include "estimator/fdi/engine.h"
 #include "estimator/fdi/window_monitor.h"
@@ -22,6 +23,7 @@ class Stage {
   /// A sample; NaN in u or y is a missing one. True when an estimate is due.
   bool push(double u_V, double y_m, bool saturated) noexcept;
   void reset();
+  void carry(Carrier& carrier);
 
   /// Of the window that became due last; its reason covers gaps, saturation and excitation too.
   [[nodiscard]] Estimate estimate() const noexcept;

@@ -32,4 +32,12 @@ void WindowMonitor::reset() noexcept {
   missing_ = 0;
 }
 
+
+void WindowMonitor::carry(Carrier& carrier) {
+  carrier.fixed(u_V_);
+  carrier.fixed(flags_);
+  for (std::size_t* count : {&next_, &seen_, &saturated_, &missing_}) carrier.value(*count);
+  if (next_ >= flags_.size() || seen_ > flags_.size()) carrier.fail();
+}
+
 }  // namespace estimator::fdi

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "estimator/carrier.h"
+
 namespace estimator::fdi {
 
 class WindowMonitor {
@@ -15,6 +17,7 @@ class WindowMonitor {
   void push(double u_V, bool saturated) noexcept { add(u_V, saturated ? kSaturated : 0); }
   void push_missing() noexcept { add(0.0, kMissing); }
   void reset() noexcept;
+  void carry(Carrier& carrier);
 
   /// True once it has seen `length` samples, missing ones included.
   [[nodiscard]] bool full() const noexcept { return seen_ >= flags_.size(); }

@@ -41,6 +41,7 @@ estimator::fdi::Alarm b1_low(bool active) {
   alarm.parameter = "supply_pressure_Pa";
   alarm.severity = active ? estimator::fdi::Severity::major : estimator::fdi::Severity::ok;
   alarm.active = active;
+  alarm.acknowledged = !active;
   alarm.direction = active ? -1 : 0;
   alarm.value = 1.8e-4;
   alarm.std_error = 1e-6;

@@ -1,0 +1,58 @@
+#include "estimator/fdi/alarm.h"
+
+namespace estimator::fdi {
+
+void AlarmRules::visit(config::schema::Visitor& v) {
+  constexpr double kDay_s = 86400.0;
+  v.boolean({"acknowledge", "stays listed until somebody acknowledges it"}, acknowledge);
+  v.boolean({"latch", "stays active until then"}, latch);
+  v.integer({"count", "the alarm comes with so many times within count_window_s"}, count, {1, 100});
+  v.number({"count_window_s", "or when it lasts that long"}, count_window_s, {0.0, kDay_s});
+  v.integer({"chatter_count", "so many times within chatter_window_s are one long alarm; 0: never"},
+            chatter_count, {0, 100});
+  v.number({"chatter_window_s", "and how long it must be quiet then"}, chatter_window_s,
+           {0.0, kDay_s});
+  v.number({"shelve_limit_s", "longest time it can be shelved for; 0: it cannot"}, shelve_limit_s,
+           {0.0, 7.0 * kDay_s});
+}
+
+const char* to_string(Severity severity) noexcept {
+  switch (severity) {
+    case Severity::ok:
+      return "OK";
+    case Severity::minor:
+      return "MINOR";
+    case Severity::major:
+      return "MAJOR";
+    case Severity::invalid:
+      return "INVALID";
+  }
+  return "";
+}
+
+const char* to_string(Life life) noexcept {
+  switch (life) {
+    case Life::normal:
+      return "NORMAL";
+    case Life::unacknowledged:
+      return "UNACKNOWLEDGED";
+    case Life::acknowledged:
+      return "ACKNOWLEDGED";
+    case Life::returned:
+      return "RETURNED";
+    case Life::latched:
+      return "LATCHED";
+    case Life::shelved:
+      return "SHELVED";
+  }
+  return "";
+}
+
+Life Alarm::life() const noexcept {
+  if (shelved) return Life::shelved;
+  if (latched) return Life::latched;
+  if (active) return acknowledged ? Life::acknowledged : Life::unacknowledged;
+  return acknowledged ? Life::normal : Life::returned;
+}
+
+}  // namespace estimator::fdi

@@ -1,0 +1,135 @@
+// How the lives of a book outlast it: as a list after a restart, as every bit in a snapshot.
+#include <utility>
+
+#include "estimator/fdi/alarm_book.h"
+
+namespace estimator::fdi {
+namespace {
+
+/// An alarm acknowledged before the restart stays so when its cause is found again this soon.
+constexpr double kResume_s = 60.0;
+
+}  // namespace
+
+std::vector<SavedLife> AlarmBook::lives() const {
+  std::vector<SavedLife> lives;
+  for (const Alarm& alarm : alarms_) {
+    if (alarm.life() == Life::normal) continue;
+    SavedLife life;
+    life.source = alarm.source;
+    life.name = alarm.name;
+    life.reason = alarm.reason;
+    life.acknowledged_by = alarm.acknowledged_by;
+    life.shelved_by = alarm.shelved_by;
+    life.severity = alarm.severity;
+    life.direction = alarm.direction;
+    life.active = alarm.active;
+    life.latched = alarm.latched;
+    life.acknowledged = alarm.acknowledged;
+    life.first_up = alarm.first_up;
+    life.value = alarm.value;
+    life.shelved_for_s = shelved_for_s(alarm);
+    life.came_utc_us = alarm.came_utc_us;
+    life.times = alarm.times;
+    lives.push_back(std::move(life));
+  }
+  return lives;
+}
+
+void AlarmBook::restore(const std::vector<SavedLife>& lives) {
+  for (const SavedLife& life : lives) {
+    std::size_t number = find(life.source + "." + life.name);
+    if (number == kNone && (life.source == "loop" || life.source == "recorder")) {
+      Alarm alarm;
+      alarm.source = life.source;
+      alarm.name = life.name;
+      alarm.rules = condition_rules_;
+      number = declare(std::move(alarm));
+    }
+    if (number == kNone) continue;
+    Alarm& alarm = alarms_[number];
+    Memory& memory = memories_[number];
+    alarm.reason = life.reason;
+    alarm.came_utc_us = life.came_utc_us;
+    alarm.times = life.times;
+    alarm.first_up = life.first_up && !life.acknowledged;
+    alarm.value = life.value;
+    alarm.acknowledged_by = life.acknowledged_by;
+    const bool needs_a_person = alarm.rules.acknowledge || alarm.rules.latch;
+    alarm.acknowledged = life.acknowledged || !needs_a_person;
+    // Its cause is not known yet: only a latch makes it active.
+    if (life.active && alarm.rules.latch && !alarm.acknowledged) {
+      alarm.active = alarm.latched = true;
+      alarm.severity = life.severity;
+      alarm.direction = life.direction;
+    }
+    if (life.active) {
+      memory.resumes_known = true;
+      memory.resume_until = tick_ + ticks(kResume_s);
+      if (alarm.acknowledged) memory.seen = life.severity;
+    }
+    if (life.shelved_for_s > 0.0 && alarm.rules.shelve_limit_s > 0.0) {
+      alarm.shelved = true;
+      alarm.shelved_by = life.shelved_by;
+      alarm.shelved_until = tick_ + ticks(std::min(life.shelved_for_s, alarm.rules.shelve_limit_s));
+      memory.timed = true;
+    }
+  }
+  recount();
+}
+
+void AlarmBook::carry(Carrier& carrier) {
+  constexpr std::size_t kMostAlarms = 10000;
+  auto size = static_cast<std::uint64_t>(alarms_.size());
+  carrier.value(size);
+  if (size > kMostAlarms) carrier.fail();
+  for (std::size_t i = 0; carrier.good() && i < size; ++i) {
+    Alarm alarm;
+    if (i < alarms_.size()) alarm = alarms_[i];
+    for (std::string* text :
+         {&alarm.source, &alarm.name, &alarm.reason, &alarm.acknowledged_by, &alarm.shelved_by}) {
+      carrier.text(*text);
+    }
+    carrier.value(alarm.rules);
+    if (i == alarms_.size() && carrier.good()) declare(alarm);
+    if (!carrier.good() || i >= alarms_.size()) break;
+    if (alarm.source != alarms_[i].source || alarm.name != alarms_[i].name) return carrier.fail();
+    Alarm& to = alarms_[i];
+    to.reason = alarm.reason;
+    to.acknowledged_by = alarm.acknowledged_by;
+    to.shelved_by = alarm.shelved_by;
+    for (bool* flag :
+         {&to.active, &to.first_up, &to.latched, &to.acknowledged, &to.shelved, &to.chattering}) {
+      carrier.value(*flag);
+    }
+    for (std::int64_t* number :
+         {&to.tick, &to.shelved_until, &to.came_tick, &to.came_utc_us, &to.times}) {
+      carrier.value(*number);
+    }
+    for (double* number : {&to.value, &to.std_error, &to.low, &to.high}) carrier.value(*number);
+    carrier.value(to.severity);
+    carrier.value(to.direction);
+    Memory& memory = memories_[i];
+    for (Recent* recent : {&memory.comings, &memory.arrivals}) {
+      carrier.fixed(recent->ticks);
+      carrier.value(recent->next);
+      carrier.value(recent->filled);
+      if (recent->next > recent->ticks.size()) carrier.fail();
+    }
+    for (bool* flag : {&memory.admitted, &memory.timed, &memory.resumes_known}) {
+      carrier.value(*flag);
+    }
+    for (std::int64_t* number : {&memory.turned_tick, &memory.resume_until}) {
+      carrier.value(*number);
+    }
+    carrier.value(memory.severity);
+    carrier.value(memory.direction);
+    carrier.value(memory.seen);
+  }
+  carrier.value(tick_);
+  carrier.value(utc_us_);
+  carrier.value(changes_);
+  recount();
+}
+
+}  // namespace estimator::fdi
