@@ -22,6 +22,7 @@ struct Command {
 void add_add(CLI::App& command, int& exit_code);
 void add_commission(CLI::App& command, int& exit_code);
 void add_arm(CLI::App& command, int& exit_code);
+void add_bridge(CLI::App& command, int& exit_code);
 void add_calibrate(CLI::App& command, int& exit_code);
 void add_compare(CLI::App& command, int& exit_code);
 void add_diagnose(CLI::App& command, int& exit_code);

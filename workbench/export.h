@@ -1,15 +1,16 @@
-// An LCM log of the daemon as CSV.
+// A log of the daemon, or a record, as CSV, MAT, MCAP or lines of JSON.
 #pragma once
 
 #include <string>
 
 namespace workbench {
 
-/// Writes one kind of message ("sample", "estimate", "alarm") of `log` to the file `csv`, complete
-/// or not at all. Samples become a record (t_s,u_V,y_m, ...) that every command reads; estimates
-/// one row per number; alarms one row per message. t_s is tick times sample time in all three.
-/// Throws config::schema::Error: 65 for a log that is none or of another type, 1 when the file
-/// cannot be written.
-void export_log(const std::string& log, const std::string& csv, const std::string& kind);
+/// Writes `output` complete or not at all; without `format` its ending says which ("csv", "mat",
+/// "mcap", "json"). `channel` is one kind of message ("sample", "estimate", "alarm", "health") or
+/// "all"; without one it is all of them, and of CSV, which is one table, the samples. Throws
+/// config::schema::Error: 65 for an input that is none or of another type, 2 for an unknown format
+/// or an output over the input, 1 when the file cannot be written.
+void export_log(const std::string& input, const std::string& output,
+                const std::string& channel = "", const std::string& format = "");
 
 }  // namespace workbench

@@ -2,13 +2,13 @@
 #include <unistd.h>
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <csignal>
 #include <iostream>
 #include <memory>
 
 #include "config/messages/channels.h"
 #include "config/schema/error.h"
 #include "workbench/command.h"
+#include "workbench/ending.h"
 #include "workbench/listen_feed.h"
 #include "workbench/listen_printer.h"
 #include "workbench/live_view.h"
@@ -25,38 +25,12 @@ struct Options {
   double duration_s = 0.0;
 };
 
-volatile std::sig_atomic_t stop_asked = 0;
-
-void ask_to_stop(int) { stop_asked = 1; }
-
-void stop_on_signals() {
-  struct sigaction action {};
-  action.sa_handler = ask_to_stop;
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
-}
-
-class Ending {
- public:
-  explicit Ending(double duration_s)
-      : limited_(duration_s > 0.0),
-        at_(Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                               std::chrono::duration<double>(limited_ ? duration_s : 0.0))) {}
-  [[nodiscard]] bool reached() const {
-    return stop_asked != 0 || (limited_ && Clock::now() >= at_);
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  bool limited_;
-  Clock::time_point at_;
-};
-
 int listen_with_lines(const Options& options) {
   LinePrinter printer(std::cout, options.json, options.alarms_only);
-  Feed feed(options.url, options.prefix, false, printer);
   const Ending ending(options.duration_s);
+  Feed feed(options.url, options.prefix, false, printer);
   while (!ending.reached()) {
-    if (feed.poll(std::chrono::milliseconds(100)) || stop_asked != 0) continue;
+    if (feed.poll(std::chrono::milliseconds(100)) || Ending::asked()) continue;
     if (options.url.starts_with("file:")) return 0;
     throw config::schema::Error(config::schema::ExitCode::failed,
                                 "LCM cannot receive on \"" + options.url + "\" any more");
@@ -66,8 +40,8 @@ int listen_with_lines(const Options& options) {
 
 int listen_live(const Options& options) {
   LiveState state;
-  Feed feed(options.url, options.prefix, true, state);
   const Ending ending(options.duration_s);
+  Feed feed(options.url, options.prefix, true, state);
   LiveView view;
   bool more = true;
   while (!ending.reached() && !view.quit_asked()) {
@@ -83,7 +57,6 @@ int listen_live(const Options& options) {
 }
 
 int listen(const Options& options) {
-  stop_on_signals();
   const bool terminal = ::isatty(STDOUT_FILENO) == 1 && ::isatty(STDIN_FILENO) == 1;
   return options.live && !options.json && terminal ? listen_live(options)
                                                    : listen_with_lines(options);

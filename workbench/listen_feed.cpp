@@ -3,6 +3,7 @@
 #include <cerrno>
 
 #include "config/messages/connect.h"
+#include "config/messages/decode.h"
 #include "spoolwatch/alarm_t.hpp"
 #include "spoolwatch/estimate_t.hpp"
 #include "spoolwatch/health_t.hpp"
@@ -71,7 +72,7 @@ void Feed::received(const lcm::ReceiveBuffer* buffer, const std::string& channel
 
 template <class Message>
 bool Feed::decode(const lcm::ReceiveBuffer& buffer, const std::string& channel, Message& message) {
-  if (message.decode(buffer.data, 0, static_cast<int>(buffer.data_size)) < 0) {
+  if (!config::messages::decode(message, buffer.data, static_cast<int>(buffer.data_size))) {
     if (told_.insert(channel).second) {
       listener_.on_notice("messages of another type on channel " + channel +
                           " are left out (another version of the daemon?)");

@@ -32,7 +32,8 @@ constexpr workbench::Command kCommands[] = {
     {"calibrate", "learn alarm bands from a healthy record", workbench::add_calibrate},
     {"effects", "the library of physical effects", workbench::add_effects},
     {"add", "a model file with an effect more", workbench::add_add},
-    {"export", "write an LCM log as CSV", workbench::add_export},
+    {"export", "a log or record as CSV, MAT, MCAP or JSON", workbench::add_export},
+    {"bridge", "live values to PlotJuggler, JSON over UDP", workbench::add_bridge},
 };
 
 int run(int argc, char** argv) {

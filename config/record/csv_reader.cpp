@@ -40,8 +40,8 @@ std::string_view unquoted(std::string_view text) {
 std::size_t decimals(std::string_view number) {
   const std::size_t exponent = number.find_first_of("eE");
   if (exponent != std::string_view::npos) {
-    const std::string_view digits = number.substr(number.find_first_not_of("eE+-", exponent));
-    if (digits.size() < 2) return 0;
+    const std::size_t digits = number.find_first_not_of("eE+-", exponent);
+    if (digits == std::string_view::npos || number.size() - digits < 2) return 0;
     number = number.substr(0, exponent);
   }
   const std::size_t point = number.find('.');

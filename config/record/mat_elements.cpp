@@ -28,13 +28,15 @@ class Inflater {
   Inflater(const Inflater&) = delete;
   Inflater& operator=(const Inflater&) = delete;
 
-  /// Fills `out` from its byte `from` on; false when there is less.
-  bool fill(std::string& out, std::size_t from) {
-    stream_.next_out = reinterpret_cast<Bytef*>(out.data() + from);
-    stream_.avail_out = static_cast<uInt>(out.size() - from);
+  /// Up to `most` bytes more; empty for bytes that zlib did not pack.
+  std::string next(std::size_t most) {
+    std::string out(most, '\0');
+    stream_.next_out = reinterpret_cast<Bytef*>(out.data());
+    stream_.avail_out = static_cast<uInt>(out.size());
     const int result = ready_ ? inflate(&stream_, Z_SYNC_FLUSH) : Z_MEM_ERROR;
-    return (result == Z_OK || result == Z_STREAM_END || result == Z_BUF_ERROR) &&
-           stream_.avail_out == 0;
+    const bool good = result == Z_OK || result == Z_STREAM_END || result == Z_BUF_ERROR;
+    out.resize(good ? out.size() - stream_.avail_out : 0);
+    return out;
   }
 
  private:
@@ -88,17 +90,18 @@ Element Elements::next() {
 
 std::string Elements::unpack(const Element& element, std::size_t& total_bytes) const {
   Inflater inflater(element.data);
-  std::string out(kTagBytes, '\0');
-  if (!inflater.fill(out, 0)) throw damaged("packed bytes");
-  const std::size_t bytes = load<std::uint32_t>(out, 4);
+  const std::string tag = inflater.next(kTagBytes);
+  if (tag.size() < kTagBytes ||
+      load<std::uint32_t>(tag, 0) != static_cast<unsigned>(Type::matrix)) {
+    throw damaged("packed bytes");
+  }
+  const std::size_t bytes = load<std::uint32_t>(tag, 4);
+  if (bytes > (element.data.size() + 1) * kBestRatio) throw damaged("packed bytes");
   total_bytes += bytes;
   if (total_bytes > kMostBytes) {
     throw schema::bad_data(*name_, "unpacks to more than 1 GiB", "shorter records");
   }
-  if (bytes > (element.data.size() + 1) * kBestRatio) throw damaged("packed bytes");
-  out.resize(kTagBytes + bytes);
-  if (bytes != 0 && !inflater.fill(out, kTagBytes)) throw damaged("packed bytes");
-  return out;
+  return inflater.next(bytes);
 }
 
 }  // namespace config::record::mat

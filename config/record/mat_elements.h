@@ -47,7 +47,8 @@ class Elements {
   [[nodiscard]] bool at_end() const noexcept { return rest_.empty(); }
   /// Throws schema::Error (exit 65) when it does not fit into what is left.
   Element next();
-  /// What an element of type `compressed` holds. `total_bytes` counts what a file unpacks to.
+  /// The inside of the matrix that an element of type `compressed` holds; less than it states where
+  /// it states too much, as matio does of texts. `total_bytes` counts what a file unpacks to.
   [[nodiscard]] std::string unpack(const Element& element, std::size_t& total_bytes) const;
 
   /// The number at bytes[at], which must be there.

@@ -161,10 +161,7 @@ std::vector<MatVariable> read_mat_variables(std::string_view content, const std:
     const Element element = file.next();
     if (element.type == Type::compressed) {
       const std::string unpacked = file.unpack(element, unpacked_bytes);
-      Elements inner = file.within(unpacked);
-      const Element matrix = inner.next();
-      if (matrix.type != Type::matrix) throw file.damaged("type");
-      variables.push_back(read_matrix(file.within(matrix.data), 0));
+      variables.push_back(read_matrix(file.within(unpacked), 0));
     } else if (element.type == Type::matrix) {
       variables.push_back(read_matrix(file.within(element.data), 0));
     } else {

@@ -51,13 +51,13 @@ const std::vector<Layer> kLayers{
      {"boost", "lcm", "spoolwatch", "systemd", "CLI"}},
     {"workbench",
      {"config", "estimator", "estimator/fdi", "plant_sim", "daemon/control"},
-     {"CLI", "nlohmann", "lcm", "spoolwatch", "ncurses", "ceres", "Eigen", "muParser"}},
+     {"CLI", "nlohmann", "lcm", "spoolwatch", "ncurses", "ceres", "Eigen", "muParser", "matio"}},
 };
 
 // Headers of third parties: whoever includes one must have it in its row.
 const std::vector<std::string> kGuarded{"toml++", "Eigen",   "ceres",     "lcm",      "spoolwatch",
                                         "boost",  "systemd", "CLI",       "nlohmann", "ncurses",
-                                        "modbus", "gpiod",   "comedilib", "muParser"};
+                                        "modbus", "gpiod",   "comedilib", "muParser", "matio"};
 const std::vector<std::string> kProject{"config", "plant_sim", "estimator",
                                         "hal",    "daemon",    "workbench"};
 

@@ -151,6 +151,7 @@ TEST(Csv, RefusesHeadersThatCannotBeMeant) {
 TEST(Csv, RefusesAnExponentCutOff) {
   const std::string rows = "0,1,1.5e-05\n0.005,2,2.5e-05\n0.010,3,3.5e-0";
   expect_bad("t_s,u_V,y_m\n" + rows, ":4", "is cut off");
+  expect_bad("t_s,u_V,y_m\n0,1,1.5\n0.005,2,2.5e", ":3", "is cut off");
   EXPECT_DOUBLE_EQ(read("t_s,u_V,y_m\n" + rows + "5\n").y_m[2], 3.5e-5);
 }
 
