@@ -80,6 +80,18 @@ std::int64_t Machine::stopped_ns() const {
   return std::atoll(property("ActiveExitTimestampMonotonic").c_str()) * 1000;
 }
 
+std::int64_t Machine::logged_ns(const std::string& words) const {
+  const std::string text = run("journalctl --output=json --no-pager -b | grep '" + words +
+                               "' | tail -1 | "
+                               "sed 's/.*\"_SOURCE_REALTIME_TIMESTAMP\":\"\\([0-9]*\\)\".*/\\1/'")
+                               .text;
+  using std::chrono::duration_cast;
+  using std::chrono::nanoseconds;
+  const auto since_boot = std::chrono::steady_clock::now().time_since_epoch();
+  const auto utc = std::chrono::system_clock::now().time_since_epoch();
+  return std::atoll(text.c_str()) * 1000 - duration_cast<nanoseconds>(utc - since_boot).count();
+}
+
 void Machine::write(const std::string& path, const std::string& text) const {
   std::ofstream("/proc/" + init_ + "/root" + path) << text;
 }

@@ -28,6 +28,9 @@ class Machine {
   [[nodiscard]] pid_t daemon() const;
   /// When the service last began to stop, on the monotonic clock.
   [[nodiscard]] std::int64_t stopped_ns() const;
+  /// When systemd last wrote a line with that to the journal, on the monotonic clock: what is left
+  /// of a unit that has gone with its package.
+  [[nodiscard]] std::int64_t logged_ns(const std::string& words) const;
   void write(const std::string& path, const std::string& text) const;
 
  private:
