@@ -3,8 +3,14 @@
 namespace config::schema {
 namespace {
 
+/// One line, whatever of a file got into it.
 std::string line(const std::string& where, const std::string& what, const std::string& allowed) {
-  return where + ": " + what + (allowed.empty() ? "" : "; allowed: " + allowed);
+  std::string text = where + ": " + what + (allowed.empty() ? "" : "; allowed: " + allowed);
+  for (char& c : text) {
+    if (c == '\n' || c == '\t') c = ' ';
+    if (static_cast<unsigned char>(c) < ' ') c = '?';
+  }
+  return text;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
 
 option(SPOOLWATCH_BENCH "Build the benchmarks (scripts/bench)" OFF)
+option(SPOOLWATCH_FUZZ "Let the fuzz targets look for inputs: clang alone (scripts/fuzz)" OFF)
 set(SPOOLWATCH_SANITIZE "" CACHE STRING "Sanitizers, as in -fsanitize=")
 
 find_program(CCACHE ccache)

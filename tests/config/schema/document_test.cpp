@@ -215,6 +215,11 @@ TEST(Document, ReadsAndPrintsTablesThatTheFileNamesInItsOrder) {
   }
 }
 
+TEST(Error, IsOneLineWhateverAFileSays) {
+  EXPECT_STREQ(bad_data("a\nb.csv", "is '\x01\t'", "one\r\n").what(),
+               "a b.csv: is '? '; allowed: one? ");
+}
+
 TEST(Nearest, FindsOneTypoAndLeavesStrangersAlone) {
   const std::vector<std::string> names{"friction", "deadband", "null_bias"};
   EXPECT_EQ(nearest("fricton", names), "friction");
