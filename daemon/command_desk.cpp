@@ -14,6 +14,8 @@ using Kind = io::ControlRequest::Kind;
 constexpr std::int64_t kLife_ns = 250'000'000;
 /// Then the answer is that there is none: longer, so that a late one is not called lost.
 constexpr std::int64_t kPatience_ns = 500'000'000;
+/// The detector looks at its queue every 10 ms, unless LCM or a machine without time holds it up.
+constexpr std::int64_t kDetectorPatience_ns = 2'000'000'000;
 /// Requests at a time: a flood of them must not keep the main thread from a signal to stop.
 constexpr int kAtATime = 8;
 
@@ -23,31 +25,53 @@ CommandDesk::CommandDesk(const Parts& parts, Identity identity)
     : parts_(parts), identity_(std::move(identity)) {}
 
 bool CommandDesk::serve(io::ControlSocket& socket) {
-  io::ControlSocket::Request request;
   for (int n = 0; n < kAtATime; ++n) {
-    if (waiting_) {
-      bool answered = false;
-      const std::string line = take_answer(answered);
-      if (!answered) return true;
-      waiting_ = false;
-      socket.answer(client_, line);
+    if (waits_for_ != WaitsFor::nobody) {
+      const std::string line =
+          waits_for_ == WaitsFor::loop ? take_loop_answer() : take_alarm_answer();
+      if (line.empty()) return true;
+      waits_for_ = WaitsFor::nobody;
+      socket.answer(request_.client, line);
     }
-    if (!socket.next(request)) return false;
-    client_ = request.client;
-    const std::string line = line_for(io::parse_request(request.line), request.may_act);
-    if (!waiting_) socket.answer(client_, line);
+    if (!socket.next(request_)) return false;
+    const std::string line = line_for(io::parse_request(request_.line));
+    if (!line.empty()) socket.answer(request_.client, line);
   }
   return true;
 }
 
-std::string CommandDesk::line_for(const io::ControlRequest& request, bool may_act) {
+std::string CommandDesk::refuse(const std::string& why) {
+  note_act(why);
+  return io::print_refused(state(), why);
+}
+
+void CommandDesk::note_act(const std::string& refusal) {
+  if (!acts_ || parts_.audit == nullptr) return;
+  parts_.audit->note(
+      {parts_.clock.utc_us(), request_.uid, io::user_name(request_.uid), request_.line, refusal});
+}
+
+std::string CommandDesk::line_for(const io::ControlRequest& request) {
   if (request.kind == Kind::bad) return io::print_refused(state(), request.wrong);
+  acts_ = request.kind != Kind::status && request.kind != Kind::alarms;
   if (request.kind == Kind::status) return io::print_status(status());
-  if (!may_act) {
-    return io::print_refused(state(),
-                             "not permitted: you may look; the daemon's user, root and "
-                             "[control] group may act");
+  if (acts_ && !request_.may_act) {
+    return refuse(
+        "not permitted: you may look; the daemon's user, root and the members of [control] "
+        "act_group (or else group) may act");
   }
+  switch (request.kind) {
+    case Kind::alarms:
+    case Kind::acknowledge:
+    case Kind::shelve:
+    case Kind::unshelve:
+      return order_alarms(request);
+    default:
+      return order_loop(request);
+  }
+}
+
+std::string CommandDesk::order_loop(const io::ControlRequest& request) {
   rt::Command command;
   command.kind = request.kind == Kind::event  ? rt::Command::Kind::event
                  : request.kind == Kind::sine ? rt::Command::Kind::sine
@@ -59,25 +83,60 @@ std::string CommandDesk::line_for(const io::ControlRequest& request, bool may_ac
   const std::int64_t now_ns = parts_.clock.now_ns();
   command.expires_ns = now_ns + kLife_ns;
   command.number = ++number_;
-  if (!parts_.commands.push(command)) return io::print_refused(state(), "the loop takes no orders");
-  waiting_ = true;
+  if (!parts_.commands.push(command)) return refuse("the loop takes no orders");
+  waits_for_ = WaitsFor::loop;
   until_ns_ = now_ns + kPatience_ns;
   return "";
 }
 
-std::string CommandDesk::take_answer(bool& answered) const {
+std::string CommandDesk::order_alarms(const io::ControlRequest& request) {
+  using OrderKind = rt::AlarmOrder::Kind;
+  rt::AlarmOrder order;
+  order.kind = request.kind == Kind::alarms     ? OrderKind::list
+               : request.kind == Kind::shelve   ? OrderKind::shelve
+               : request.kind == Kind::unshelve ? OrderKind::unshelve
+               : request.alarm.empty()          ? OrderKind::acknowledge_all
+                                                : OrderKind::acknowledge;
+  order.alarm = request.alarm;
+  order.time_s = request.time_s;
+  if (acts_) order.who = io::user_name(request_.uid);
+  order.number = ++number_;
+  if (parts_.alarm_orders == nullptr || !parts_.alarm_orders->push(order)) {
+    return refuse("the detector takes no orders");
+  }
+  waits_for_ = WaitsFor::detector;
+  until_ns_ = parts_.clock.now_ns() + kDetectorPatience_ns;
+  return "";
+}
+
+std::string CommandDesk::take_loop_answer() {
   const control::Answer answer =
       control::unpack(parts_.stats.answer.load(std::memory_order_acquire));
-  answered = true;
   if (answer.number == number_) {
-    return answer.refusal == Refusal::none ? io::print_done(answer.state)
-                                           : io::print_refused(answer.state, words(answer));
+    const std::string refusal = answer.refusal == Refusal::none ? "" : words(answer);
+    note_act(refusal);
+    return refusal.empty() ? io::print_done(answer.state)
+                           : io::print_refused(answer.state, refusal);
   }
-  if (parts_.clock.now_ns() > until_ns_) {
-    return io::print_refused(state(), "the loop does not answer; the order has expired");
+  if (parts_.clock.now_ns() <= until_ns_) return "";
+  return refuse("the loop does not answer; the order has expired");
+}
+
+std::string CommandDesk::take_alarm_answer() {
+  std::shared_ptr<const rt::AlarmAnswer> answer;
+  while (parts_.alarm_answers->pop(answer)) {
+    if (answer->number != number_) continue;  // late, to an order given up
+    if (!answer->refusal.empty()) return refuse(answer->refusal);
+    note_act("");
+    if (acts_) return io::print_acted(state(), answer->done);
+    std::vector<io::ControlAlarm> alarms;
+    for (const auto& listed : answer->alarms) {
+      alarms.push_back({listed.alarm, listed.shelved_for_s});
+    }
+    return io::print_alarms(state(), alarms);
   }
-  answered = false;
-  return "";
+  if (parts_.clock.now_ns() <= until_ns_) return "";
+  return refuse("the detector does not answer; the order may still be carried out");
 }
 
 std::string CommandDesk::words(const control::Answer& answer) const {

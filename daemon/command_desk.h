@@ -1,5 +1,5 @@
-// Orders from the control socket to the loop and the loop's answers back, one order at a time. Runs
-// on the main thread.
+// Orders from the control socket to the loop, on alarms to the detector, and their answers back,
+// one order at a time. Runs on the main thread.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,10 @@
 
 #include "daemon/control/guard_config.h"
 #include "daemon/control/refusal.h"
+#include "daemon/io/audit.h"
 #include "daemon/io/control_messages.h"
 #include "daemon/io/control_socket.h"
+#include "daemon/rt/alarm_desk.h"
 #include "daemon/rt/clock.h"
 #include "daemon/rt/loop_stats.h"
 #include "daemon/rt/queues.h"
@@ -23,6 +25,9 @@ class CommandDesk {
     rt::Clock& clock;
     rt::CommandQueue& commands;
     const rt::LoopStats& stats;
+    rt::AlarmOrderQueue* alarm_orders = nullptr;  ///< null, as `alarm_answers`: none are taken
+    rt::AlarmAnswerQueue* alarm_answers = nullptr;
+    io::Audit* audit = nullptr;
   };
   /// What does not change.
   struct Identity {
@@ -36,12 +41,23 @@ class CommandDesk {
   CommandDesk(const Parts& parts, Identity identity);
 
   /// Takes some requests and gives answers; returns whether to come again soon: an order waits for
-  /// the loop, or there are more requests.
+  /// the loop or the detector, or there are more requests.
   bool serve(io::ControlSocket& socket);
 
  private:
-  [[nodiscard]] std::string line_for(const io::ControlRequest& request, bool may_act);
-  [[nodiscard]] std::string take_answer(bool& answered) const;
+  enum class WaitsFor : std::uint8_t { nobody, loop, detector };
+
+  /// Empty: the answer comes from the loop or the detector.
+  [[nodiscard]] std::string line_for(const io::ControlRequest& request);
+  [[nodiscard]] std::string order_loop(const io::ControlRequest& request);
+  [[nodiscard]] std::string order_alarms(const io::ControlRequest& request);
+  /// Empty: not yet.
+  [[nodiscard]] std::string take_loop_answer();
+  [[nodiscard]] std::string take_alarm_answer();
+  /// The answer that refuses the request at hand.
+  [[nodiscard]] std::string refuse(const std::string& why);
+  /// Writes down the act at hand.
+  void note_act(const std::string& refusal);
   [[nodiscard]] std::string words(const control::Answer& answer) const;
   [[nodiscard]] std::string obstacle() const;
   [[nodiscard]] io::ControlStatus status() const;
@@ -52,8 +68,9 @@ class CommandDesk {
   Parts parts_;
   Identity identity_;
   std::uint32_t number_ = 0;  ///< of the newest order
-  bool waiting_ = false;
-  std::uint64_t client_ = 0;  ///< who waits
+  WaitsFor waits_for_ = WaitsFor::nobody;
+  io::ControlSocket::Request request_{};  ///< at hand
+  bool acts_ = false;                     ///< it does more than look
   std::int64_t until_ns_ = 0;
 };
 

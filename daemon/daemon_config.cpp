@@ -15,9 +15,9 @@ namespace {
 using config::schema::Visitor;
 
 /// Keys whose values are paths that start from the configuration's folder.
-constexpr const char* kPathKeys[] = {"sim.model",      "replay.record",   "reference.file",
-                                     "bands_file",     "recorder.folder", "control.socket",
-                                     "rig.calibration"};
+constexpr const char* kPathKeys[] = {"sim.model",       "replay.record",   "reference.file",
+                                     "bands_file",      "recorder.folder", "control.socket",
+                                     "rig.calibration", "alarms.folder",   "evidence.folder"};
 
 /// Keys that say how valve and rod sensor are wired and what their signals mean.
 constexpr const char* kWiringKeys[] = {
@@ -81,6 +81,8 @@ void DaemonConfig::visit_what_determines_the_data(Visitor& v) {
 void DaemonConfig::visit(Visitor& v) {
   visit_what_determines_the_data(v);
   v.table({"control", "who may look and act"}, [this](Visitor& t) { control.visit(t); });
+  v.table({"alarms", "what becomes of alarms"}, [this](Visitor& t) { alarms.visit(t); });
+  v.table({"evidence", "kept of each alarm"}, [this](Visitor& t) { evidence.visit(t); });
   v.table({"lcm", "where messages go"}, [this](Visitor& t) { lcm.visit(t); });
   v.table({"recorder", "where logs go"}, [this](Visitor& t) { recorder.visit(t); });
 }
@@ -92,11 +94,9 @@ void load(const std::filesystem::path& file, const std::vector<std::string>& ass
   document.read([&](Visitor& v) { config.visit(v); });
   config.file = document.name();
   config.folder = document.folder();
-  if (!config.recorder.folder.empty()) {
-    config.recorder.folder = (config.folder / config.recorder.folder).string();
-  }
-  if (!config.control.socket.empty()) {
-    config.control.socket = (config.folder / config.control.socket).string();
+  for (std::string* path : {&config.recorder.folder, &config.control.socket, &config.alarms.folder,
+                            &config.evidence.folder}) {
+    if (!path->empty()) *path = (config.folder / *path).string();
   }
   io::check_control(config.control, config.file);
   refuse_without_watchdog(config);

@@ -2,7 +2,7 @@
 //
 // Tables: [rig], [loop], [rod], [valve], one for each backend used, [reference] and [controller]
 // (only where a valve is driven), [safety], [[guard]], [[estimator]], [[band]], bands_file,
-// [control], [lcm], [recorder].
+// [control], [alarms], [evidence], [lcm], [recorder].
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,9 @@
 #include "daemon/control/controller.h"
 #include "daemon/control/guard_config.h"
 #include "daemon/control/reference.h"
+#include "daemon/io/alarm_store.h"
 #include "daemon/io/control_socket.h"
+#include "daemon/io/evidence.h"
 #include "daemon/io/publisher.h"
 #include "daemon/io/recorder.h"
 #include "daemon/rt/loop.h"
@@ -34,12 +36,14 @@ struct DaemonConfig {
   control::SafetyConfig safety;
   estimator::fdi::PipelineConfig pipeline;
   io::ControlConfig control;
+  io::AlarmConfig alarms;
+  io::EvidenceConfig evidence;
   io::PublisherConfig lcm;
   io::RecorderConfig recorder;
 
   void visit(config::schema::Visitor& v);
-  /// All of it but who gives orders and what is done with the results ([control], [lcm],
-  /// [recorder]).
+  /// All of it but who gives orders and what is done with the results ([control],
+  /// [alarms], [evidence], [lcm], [recorder]).
   void visit_what_determines_the_data(config::schema::Visitor& v);
   [[nodiscard]] bool drives_valve() const { return rig.valve().backend != "none"; }
 };

@@ -10,6 +10,7 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "daemon/alarm_keeping.h"
 #include "daemon/attendant.h"
 #include "daemon/left_at_null.h"
 #include "daemon/null_guard.h"
@@ -31,6 +32,7 @@ struct Prepared {
   hal::Devices devices;
   std::unique_ptr<control::Reference> reference;
   std::uint64_t hash;
+  estimator::fdi::PipelineConfig pipeline_config;  ///< with the learned bands
   std::unique_ptr<estimator::fdi::Pipeline> pipeline;
   std::vector<control::GuardConfig> guards;
   std::string never_arms;  ///< why it may not be armed; empty: it may
@@ -109,6 +111,7 @@ Prepared prepare(DaemonConfig& config, bool exclusive) {
   p.pipeline = at(config.file, [&] {
     return std::make_unique<estimator::fdi::Pipeline>(pipeline, p.sample_time_s);
   });
+  p.pipeline_config = std::move(pipeline);
   p.hash = hash(config);
   return p;
 }
@@ -188,7 +191,10 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
   if (!config.recorder.folder.empty()) {
     recorder = std::make_unique<io::Recorder>(config.recorder, run_id, !virtual_time);
   }
+  AlarmKeeping keeping(config, p.pipeline_config, *p.pipeline,
+                       {hex(p.hash), run_id, p.sample_time_s, virtual_time});
   io::Publisher publisher(config.lcm, run_id, p.sample_time_s, recorder.get());
+  if (keeping.evidence != nullptr) publisher.attach(*keeping.evidence);
 
   auto samples = std::make_unique<rt::SampleQueue>();
   rt::CommandQueue commands;
@@ -209,11 +215,14 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
                 {clock, *p.devices.rod, valve, *p.reference, *samples, commands, stats,
                  &p.devices.spare_rods, &p.devices.inputs, p.devices.permit.get()},
                 controller, p.sample_time_s, {config.safety, p.never_arms.empty()});
-  rt::Detector detector({clock, *samples, stats, *p.pipeline, publisher, recorder.get()},
-                        {config.rig_id, hex(p.hash), grant.text, config.rig.rod_backend(),
-                         valve != nullptr ? valve_config.backend : "", ids_of(p.devices.spare_rods),
-                         ids_of(p.devices.inputs), p.guards});
-  CommandDesk desk({clock, commands, stats},
+  rt::Detector detector(
+      {clock, *samples, stats, *p.pipeline, publisher, recorder.get(), &keeping.orders,
+       &keeping.answers, keeping.store.get(), keeping.evidence.get(), keeping.pipeline_hash},
+      {config.rig_id, hex(p.hash), grant.text, config.rig.rod_backend(),
+       valve != nullptr ? valve_config.backend : "", ids_of(p.devices.spare_rods),
+       ids_of(p.devices.inputs), p.guards});
+  keeping.bring_back(*p.pipeline, clock.utc_us(), log);
+  CommandDesk desk({clock, commands, stats, &keeping.orders, &keeping.answers, keeping.audit.get()},
                    {config.rig_id, hex(p.hash), p.guards, ids_of(p.devices.spare_rods),
                     ids_of(p.devices.inputs), inputs_of(p.devices, hal::InputRole::enable),
                     inputs_of(p.devices, hal::InputRole::e_stop), p.never_arms});
@@ -244,6 +253,7 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
     for (const auto& summary : p.devices.summaries) log << "spoolwatchd: " << summary() << '\n';
   }
   if (!outcome.empty()) log << "spoolwatchd: " << outcome << std::endl;
+  if (keeping.evidence != nullptr) keeping.evidence->finish();
   const bool complete = recorder == nullptr || recorded_all(*recorder, log);
   return static_cast<int>(outcome.empty() && complete ? config::schema::ExitCode::done
                                                       : config::schema::ExitCode::failed);

@@ -19,10 +19,13 @@ struct Command {
   Setup setup;
 };
 
+void add_ack(CLI::App& command, int& exit_code);
 void add_add(CLI::App& command, int& exit_code);
+void add_alarms(CLI::App& command, int& exit_code);
 void add_commission(CLI::App& command, int& exit_code);
 void add_arm(CLI::App& command, int& exit_code);
 void add_bridge(CLI::App& command, int& exit_code);
+void add_backtest(CLI::App& command, int& exit_code);
 void add_calibrate(CLI::App& command, int& exit_code);
 void add_compare(CLI::App& command, int& exit_code);
 void add_diagnose(CLI::App& command, int& exit_code);
@@ -34,11 +37,14 @@ void add_fit(CLI::App& command, int& exit_code);
 void add_hold(CLI::App& command, int& exit_code);
 void add_listen(CLI::App& command, int& exit_code);
 void add_reference(CLI::App& command, int& exit_code);
+void add_replay(CLI::App& command, int& exit_code);
 void add_reproduce(CLI::App& command, int& exit_code);
 void add_reset(CLI::App& command, int& exit_code);
+void add_shelve(CLI::App& command, int& exit_code);
 void add_simulate(CLI::App& command, int& exit_code);
 void add_start(CLI::App& command, int& exit_code);
 void add_status(CLI::App& command, int& exit_code);
 void add_stop(CLI::App& command, int& exit_code);
+void add_unshelve(CLI::App& command, int& exit_code);
 
 }  // namespace workbench

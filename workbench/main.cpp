@@ -12,6 +12,10 @@ namespace {
 
 constexpr workbench::Command kCommands[] = {
     {"status", "what the running daemon does, and what forbids to arm it", workbench::add_status},
+    {"alarms", "the alarms of the running daemon, and what to do about them", workbench::add_alarms},
+    {"ack", "acknowledge an alarm, or all", workbench::add_ack},
+    {"shelve", "put an alarm aside for a time", workbench::add_shelve},
+    {"unshelve", "take it off the shelf", workbench::add_unshelve},
     {"commission", "find out how a rig is wired, and write its calibration file",
      workbench::add_commission},
     {"arm", "let the running daemon be started", workbench::add_arm},
@@ -30,6 +34,8 @@ constexpr workbench::Command kCommands[] = {
     {"fit", "a model's parameters estimated from records", workbench::add_fit},
     {"diagnose", "which physical effect a model misses", workbench::add_diagnose},
     {"calibrate", "learn alarm bands from a healthy record", workbench::add_calibrate},
+    {"backtest", "which alarms new rules would have told on old logs", workbench::add_backtest},
+    {"replay", "from the evidence of an alarm to the same alarm", workbench::add_replay},
     {"effects", "the library of physical effects", workbench::add_effects},
     {"add", "a model file with an effect more", workbench::add_add},
     {"export", "a log or record as CSV, MAT, MCAP or JSON", workbench::add_export},

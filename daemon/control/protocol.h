@@ -3,6 +3,10 @@
 //   {"command": "status"}                                anyone who can connect
 //   {"command": "arm"}, disarm, start, stop, reset, hold  who may act
 //   {"command": "reference", "centre_m": r, "amplitude_m": a, "frequency_Hz": f}
+//   {"command": "alarms"}                                anyone who can connect
+//   {"command": "ack", "alarm": "SOURCE.NAME"}           who may act; without "alarm": all
+//   {"command": "shelve", "alarm": "SOURCE.NAME", "time_s": t}
+//   {"command": "unshelve", "alarm": "SOURCE.NAME"}
 //
 // Answers: {"ok": true, "state": "ARMED", ...} or {"ok": false, "state": "...", "reason": "..."}.
 #pragma once
@@ -44,10 +48,18 @@ inline constexpr const char* kFrequency = "frequency_Hz";
 inline constexpr const char* kOk = "ok";
 inline constexpr const char* kState = "state";
 inline constexpr const char* kReason = "reason";
+inline constexpr const char* kAlarm = "alarm";
+inline constexpr const char* kTime = "time_s";
+inline constexpr const char* kAlarms = "alarms";
+inline constexpr const char* kDone = "done";
 }  // namespace key
 
 inline constexpr const char* kStatus = "status";
 inline constexpr const char* kHold = "hold";
 inline constexpr const char* kReference = "reference";
+inline constexpr const char* kAlarms = "alarms";
+inline constexpr const char* kAcknowledge = "ack";
+inline constexpr const char* kShelve = "shelve";
+inline constexpr const char* kUnshelve = "unshelve";
 
 }  // namespace monitor::control

@@ -9,7 +9,8 @@ using estimator::fdi::Severity;
 
 void Conditions::report(const PublisherStatus& publisher, const RecorderStatus& recorder,
                         std::int64_t tick, estimator::fdi::AlarmBook& book,
-                        const std::function<void(const estimator::fdi::Alarm&)>& changed) {
+                        const std::function<void(const estimator::fdi::Alarm&)>& changed,
+                        const EvidenceStatus& evidence) {
   const auto set = [&](const char* source, const char* name, Severity severity, bool active,
                        const std::string& reason) {
     if (const auto* alarm = book.set_condition(source, name, severity, active, reason, tick)) {
@@ -27,6 +28,13 @@ void Conditions::report(const PublisherStatus& publisher, const RecorderStatus& 
   const std::int64_t failures = publisher.send_failures - failures_before_;
   set("lcm", "send_failed", Severity::minor, failures > 0,
       failures > 0 ? "LCM could not send messages; is the network up?" : "");
+  const std::int64_t no_evidence = evidence.failed + evidence.skipped - no_evidence_before_;
+  set("evidence", "failed", Severity::minor, no_evidence > 0,
+      no_evidence <= 0      ? ""
+      : evidence.error != 0 ? std::string("evidence of an alarm could not be written: ") +
+                                  std::strerror(evidence.error)
+                            : "too many alarms at a time: not each has its evidence");
+  no_evidence_before_ += no_evidence;
   dropped_before_ = recorder.dropped_records;
   failures_before_ = publisher.send_failures;
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 
+#include "daemon/io/evidence.h"
 #include "daemon/io/publisher.h"
 #include "daemon/io/recorder.h"
 #include "estimator/fdi/alarm_book.h"
@@ -11,17 +12,20 @@
 namespace monitor::io {
 
 /// Sets the conditions recorder.disk_full, recorder.write_failed, recorder.dropping (messages lost
-/// to a full queue since the last call) and lcm.send_failed in `book`, and calls `changed` for each
-/// that came or went. Meant to be called once a second; keeps the counts of the last call.
+/// to a full queue since the last call), lcm.send_failed and evidence.failed in `book`, and calls
+/// `changed` for each that came or went. Meant to be called once a second; keeps the counts of the
+/// last call.
 class Conditions {
  public:
   void report(const PublisherStatus& publisher, const RecorderStatus& recorder, std::int64_t tick,
               estimator::fdi::AlarmBook& book,
-              const std::function<void(const estimator::fdi::Alarm&)>& changed);
+              const std::function<void(const estimator::fdi::Alarm&)>& changed,
+              const EvidenceStatus& evidence = {});
 
  private:
   std::int64_t dropped_before_ = 0;
   std::int64_t failures_before_ = 0;
+  std::int64_t no_evidence_before_ = 0;
 };
 
 }  // namespace monitor::io

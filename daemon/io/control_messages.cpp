@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/control/protocol.h"
+#include "daemon/io/audit.h"
 
 namespace monitor::io {
 namespace {
@@ -14,6 +15,8 @@ using Kind = ControlRequest::Kind;
 
 constexpr double kFarthest_m = 100.0;
 constexpr double kFastest_Hz = 1000.0;
+constexpr double kLongestShelf_s = 7.0 * 86400.0;
+constexpr std::size_t kLongestName = 256;
 
 ControlRequest bad(const std::string& why) {
   ControlRequest request;
@@ -44,6 +47,25 @@ ControlRequest parse_sine(const json& object) {
   return request;
 }
 
+/// `needs`: a name must be given.
+ControlRequest parse_alarm(const json& object, Kind kind, bool needs) {
+  ControlRequest request;
+  request.kind = kind;
+  const auto found = object.find(control::key::kAlarm);
+  if (found == object.end() && needs) return bad("alarm: is missing");
+  if (found != object.end()) {
+    if (!found->is_string() || found->get_ref<const std::string&>().size() > kLongestName ||
+        found->get_ref<const std::string&>().empty()) {
+      return bad("alarm: is " + found->dump().substr(0, 40) + "; allowed: \"SOURCE.NAME\"");
+    }
+    request.alarm = *found;
+  }
+  if (kind != Kind::shelve) return request;
+  const std::string wrong =
+      read_number(object, control::key::kTime, 0.0, kLongestShelf_s, request.time_s);
+  return wrong.empty() ? request : bad(wrong);
+}
+
 /// NaN as null.
 json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
@@ -65,13 +87,19 @@ ControlRequest parse_request(const std::string& line) {
   const auto& command = name->get_ref<const std::string&>();
   ControlRequest request;
   if (command == control::kReference) return parse_sine(object);
+  if (command == control::kAcknowledge) return parse_alarm(object, Kind::acknowledge, false);
+  if (command == control::kShelve) return parse_alarm(object, Kind::shelve, true);
+  if (command == control::kUnshelve) return parse_alarm(object, Kind::unshelve, true);
   if (command == control::kStatus) {
     request.kind = Kind::status;
   } else if (command == control::kHold) {
     request.kind = Kind::hold;
+  } else if (command == control::kAlarms) {
+    request.kind = Kind::alarms;
   }
-  std::string known =
-      std::string(control::kStatus) + ", " + control::kHold + ", " + control::kReference;
+  std::string known = std::string(control::kStatus) + ", " + control::kHold + ", " +
+                      control::kReference + ", " + control::kAlarms + ", " + control::kAcknowledge +
+                      ", " + control::kShelve + ", " + control::kUnshelve;
   for (const control::EventName& entry : control::kEventCommands) {
     known += std::string(", ") + entry.name;
     if (command != entry.name) continue;
@@ -108,6 +136,47 @@ std::string print_status(const ControlStatus& status) {
   line["guards"] = std::move(guards);
   line["spare_rods"] = inputs_of(status.spare_rods);
   line["inputs"] = inputs_of(status.inputs);
+  return line.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+std::string print_alarms(control::State state, const std::vector<ControlAlarm>& alarms) {
+  ordered_json line;
+  line[control::key::kOk] = true;
+  line[control::key::kState] = control::to_string(state);
+  ordered_json list = ordered_json::array();
+  for (const auto& [alarm, shelved_for_s] : alarms) {
+    list.push_back({{"source", alarm.source},
+                    {"name", alarm.name},
+                    {"life", estimator::fdi::to_string(alarm.life())},
+                    {"severity", estimator::fdi::to_string(alarm.severity)},
+                    {"active", alarm.active},
+                    {"acknowledged", alarm.acknowledged},
+                    {"latched", alarm.latched},
+                    {"first_up", alarm.first_up},
+                    {"chattering", alarm.chattering},
+                    {"shelved_for_s", alarm.shelved ? json(shelved_for_s) : json(nullptr)},
+                    {"shelved_by", alarm.shelved_by},
+                    {"acknowledged_by", alarm.acknowledged_by},
+                    {"came", alarm.times > 0 ? json(utc_text(alarm.came_utc_us)) : json(nullptr)},
+                    {"times", alarm.times},
+                    {"tick", alarm.tick},
+                    {"quantity", alarm.quantity},
+                    {"value", number(alarm.value)},
+                    {"low", number(alarm.low)},
+                    {"high", number(alarm.high)},
+                    {"parameter", alarm.parameter},
+                    {"reason", alarm.reason},
+                    {"guidance", alarm.guidance}});
+  }
+  line[control::key::kAlarms] = std::move(list);
+  return line.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+std::string print_acted(control::State state, const std::vector<std::string>& done) {
+  ordered_json line;
+  line[control::key::kOk] = true;
+  line[control::key::kState] = control::to_string(state);
+  line[control::key::kDone] = done;
   return line.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 

@@ -7,17 +7,30 @@
 #include <vector>
 
 #include "daemon/control/arming.h"
+#include "estimator/fdi/alarm.h"
 
 namespace monitor::io {
 
 struct ControlRequest {
-  enum class Kind : std::uint8_t { status, event, sine, hold, bad };
+  enum class Kind : std::uint8_t {
+    status,
+    event,
+    sine,
+    hold,
+    alarms,
+    acknowledge,
+    shelve,
+    unshelve,
+    bad
+  };
   Kind kind = Kind::bad;
   control::Event event = control::Event::disarm;  ///< of kind event
   double centre_m = 0.0;                          ///< of kind sine
   double amplitude_m = 0.0;
   double frequency_Hz = 0.0;
-  std::string wrong;  ///< of kind bad: why, in one line
+  std::string alarm;    ///< of kinds acknowledge (empty: all), shelve, unshelve
+  double time_s = 0.0;  ///< of kind shelve
+  std::string wrong;    ///< of kind bad: why, in one line
 };
 
 /// Never throws: what is no request is of kind bad.
@@ -50,6 +63,16 @@ struct ControlStatus {
 };
 
 [[nodiscard]] std::string print_status(const ControlStatus& status);
+/// What is told of an alarm.
+struct ControlAlarm {
+  estimator::fdi::Alarm alarm;
+  double shelved_for_s = 0.0;
+};
+
+[[nodiscard]] std::string print_alarms(control::State state,
+                                       const std::vector<ControlAlarm>& alarms);
+/// `done`: the alarms that an act has changed.
+[[nodiscard]] std::string print_acted(control::State state, const std::vector<std::string>& done);
 [[nodiscard]] std::string print_done(control::State state);
 [[nodiscard]] std::string print_refused(control::State state, const std::string& reason);
 

@@ -44,11 +44,11 @@ mode_t mode_of(const std::string& text, const std::string& file) {
   return static_cast<mode_t>(mode);
 }
 
-gid_t group_of(const std::string& name, const std::string& file) {
+gid_t group_of(const std::string& name, const std::string& file, const char* key = "group") {
   if (name.empty()) return kNoGroup;
   const group* entry = getgrnam(name.c_str());
   if (entry == nullptr) {
-    throw bad_config(file + ": [control] group", "is \"" + name + "\", which is no group here",
+    throw bad_config(file + ": [control] " + key, "is \"" + name + "\", which is no group here",
                      "a group of this machine, or \"\"");
   }
   return entry->gr_gid;
@@ -75,10 +75,18 @@ bool in_group(int file, const ucred& peer, gid_t group) {
   return std::find(groups.begin(), groups.end(), group) != groups.end();
 }
 
-bool may_act(int file, gid_t group) {
-  ucred peer{};
+/// Nobody when the kernel does not say.
+ucred peer_of(int file) {
+  ucred peer{0, static_cast<uid_t>(-1), static_cast<gid_t>(-1)};
   socklen_t size = sizeof peer;
-  if (getsockopt(file, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0) return false;
+  if (getsockopt(file, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0) {
+    peer.uid = static_cast<uid_t>(-1);
+  }
+  return peer;
+}
+
+bool may_act(int file, const ucred& peer, gid_t group) {
+  if (peer.uid == static_cast<uid_t>(-1)) return false;
   return peer.uid == 0 || peer.uid == geteuid() || in_group(file, peer, group);
 }
 
@@ -98,12 +106,14 @@ bool is_served(const sockaddr_un& address) {
 void ControlConfig::visit(config::schema::Visitor& v) {
   v.text({"socket", "path of the control socket; empty: none"}, socket);
   v.text({"mode", "its permissions, octal"}, mode);
-  v.text({"group", "whose members may act"}, group);
+  v.text({"group", "of the socket: whose members may connect and look, as mode says"}, group);
+  v.text({"act_group", "whose members may act; empty: those of group"}, act_group);
 }
 
 void check_control(const ControlConfig& config, const std::string& file) {
   mode_of(config.mode, file);
   group_of(config.group, file);
+  group_of(config.act_group, file, "act_group");
   if (config.socket.size() > kMaxPath) {
     throw bad_config(file + ": [control] socket",
                      "is " + std::to_string(config.socket.size()) + " characters long",
@@ -112,7 +122,10 @@ void check_control(const ControlConfig& config, const std::string& file) {
 }
 
 ControlSocket::ControlSocket(const ControlConfig& config, const std::string& file)
-    : path_(config.socket), group_(group_of(config.group, file)) {
+    : path_(config.socket),
+      group_(group_of(config.group, file)),
+      act_group_(config.act_group.empty() ? group_
+                                          : group_of(config.act_group, file, "act_group")) {
   check_control(config, file);
   const std::string place = "control socket " + path_.string();
   std::error_code ignored;
@@ -187,7 +200,9 @@ void ControlSocket::accept_clients() {
     idle->gone = true;
     drop_gone();
   }
-  clients_.push_back({next_id_++, file, may_act(file, group_), false, {}, {}, false});
+  const ucred peer = peer_of(file);
+  clients_.push_back(
+      {next_id_++, file, may_act(file, peer, act_group_), peer.uid, false, {}, {}, false});
 }
 
 void ControlSocket::read(Client& client) {
@@ -223,7 +238,7 @@ bool ControlSocket::next(Request& request) {
   for (Client& client : clients_) {
     const std::size_t end = client.in.find('\n');
     if (client.asking || end == std::string::npos) continue;
-    request = {client.id, client.in.substr(0, end), client.may_act};
+    request = {client.id, client.in.substr(0, end), client.may_act, client.uid};
     client.in.erase(0, end + 1);
     client.asking = true;
     return true;

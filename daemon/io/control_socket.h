@@ -1,6 +1,7 @@
 // The control socket: a Unix stream socket on which other programs ask and order, one line each way
 // at a time (control/protocol.h). Anyone who can connect may look; the same user, root and members
-// of `group` may act, as the kernel says who they are (SO_PEERCRED, SO_PEERGROUPS).
+// of `act_group` (where there is none, of `group`) may act, as the kernel says who they are
+// (SO_PEERCRED, SO_PEERGROUPS).
 //
 // One thread. Nothing here blocks but wait(), and that only as long as it is told to.
 #pragma once
@@ -21,7 +22,8 @@ namespace monitor::io {
 struct ControlConfig {
   std::string socket;         ///< path; empty: no socket
   std::string mode = "0660";  ///< permissions of the socket, octal
-  std::string group;          ///< whose members may act; empty: none but the same user and root
+  std::string group;          ///< of the socket, whose members may connect, as `mode` says
+  std::string act_group;      ///< whose members may act; empty: those of `group`
 
   void visit(config::schema::Visitor& v);
 };
@@ -35,6 +37,7 @@ class ControlSocket {
     std::uint64_t client;  ///< whom to answer
     std::string line;
     bool may_act;
+    unsigned uid;
   };
 
   /// Takes the place of a socket that nobody serves any more; throws config::schema::Error (exit 1)
@@ -56,6 +59,7 @@ class ControlSocket {
     std::uint64_t id;
     int file;
     bool may_act;
+    unsigned uid;
     bool asking = false;  ///< a request of it has not been answered
     std::string in;
     std::string out;
@@ -68,6 +72,7 @@ class ControlSocket {
 
   std::filesystem::path path_;
   gid_t group_;
+  gid_t act_group_;
   int lock_ = -1;
   int listener_ = -1;
   std::uint64_t next_id_ = 1;

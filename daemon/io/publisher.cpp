@@ -3,6 +3,7 @@
 #include <span>
 
 #include "config/messages/connect.h"
+#include "daemon/io/evidence.h"
 #include "daemon/io/messages.h"
 #include "daemon/io/recorder.h"
 #include "spoolwatch/health_t.hpp"
@@ -86,10 +87,9 @@ void Publisher::send(Channel& channel, Message& message, Stamp stamp) {
         lcm_->publish(channel.name, buffer_.data(), static_cast<unsigned>(size)) != 0;
     (failed ? failures_ : sent_).fetch_add(1, std::memory_order_relaxed);
   }
-  if (recorder_ != nullptr) {
-    recorder_->record(channel.name, std::span(buffer_).first(static_cast<std::size_t>(size)),
-                      stamp.utc_us);
-  }
+  const auto bytes = std::span(buffer_).first(static_cast<std::size_t>(size));
+  if (recorder_ != nullptr) recorder_->record(channel.name, bytes, stamp.utc_us);
+  if (evidence_ != nullptr) evidence_->record(channel.name, bytes, stamp.utc_us);
 }
 
 }  // namespace monitor::io

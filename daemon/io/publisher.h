@@ -29,6 +29,7 @@ struct Sample;
 
 namespace monitor::io {
 
+class Evidence;
 class Recorder;
 
 struct PublisherConfig {
@@ -59,6 +60,9 @@ class Publisher {
   Publisher(const Publisher&) = delete;
   Publisher& operator=(const Publisher&) = delete;
 
+  /// Hands it every message too; it outlives the publisher.
+  void attach(Evidence& evidence) noexcept { evidence_ = &evidence; }
+
   /// A sample carries its own stamp (utc_us, t_read_ns).
   void sample(const estimator::fdi::Sample& sample);
   void estimate(const estimator::fdi::EstimateEvent& event, Stamp stamp);
@@ -83,6 +87,7 @@ class Publisher {
   std::unique_ptr<lcm::LCM> lcm_;
   std::unique_ptr<Messages> messages_;
   Recorder* recorder_;
+  Evidence* evidence_ = nullptr;
   std::int64_t run_id_;
   double sample_time_s_;
   Channel sample_, estimate_, alarm_, health_;

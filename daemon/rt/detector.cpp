@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "estimator/fdi/snapshot.h"
+
 namespace monitor::rt {
 
 using estimator::fdi::Alarm;
@@ -20,6 +22,7 @@ Detector::Detector(const Parts& parts, const Identity& identity)
     : parts_(parts),
       changed_([this](const Alarm& alarm) { publish(alarm, false); }),
       guard_alarms_(identity.guards, parts.pipeline.alarms()),
+      alarm_desk_(parts.orders, parts.answers),
       spare_rods_(std::min(identity.spare_rods.size(), kMaxSpareRods)),
       inputs_(std::min(identity.inputs.size(), kMaxInputs)),
       next_second_ns_(parts.clock.now_ns() + kSecond_ns) {
@@ -46,7 +49,9 @@ void Detector::drain() {
 }
 
 void Detector::poll() {
+  alarm_desk_.serve(parts_.pipeline.alarms(), changed_);
   drain();
+  if (parts_.store != nullptr) parts_.store->keep(parts_.pipeline.alarms(), parts_.clock.utc_us());
   if (parts_.clock.now_ns() < next_second_ns_) return;
   once_a_second();
   next_second_ns_ += kSecond_ns;
@@ -57,10 +62,15 @@ void Detector::poll() {
 void Detector::finish() {
   drain();
   once_a_second();
+  if (parts_.store != nullptr) parts_.store->keep(parts_.pipeline.alarms(), parts_.clock.utc_us());
 }
 
 void Detector::process(const Sample& sample) {
   tick_ = sample.tick;
+  if (parts_.evidence != nullptr && parts_.evidence->wants_state(tick_)) {
+    estimator::fdi::save_snapshot(parts_.pipeline, parts_.pipeline_hash, tick_, snapshot_);
+    parts_.evidence->state(snapshot_, tick_);
+  }
   guard_alarms_.report(parts_.stats.guards, tick_, changed_);
   parts_.publisher.sample(sample);
   if (sample.state != state_) {
@@ -79,6 +89,16 @@ void Detector::on_alarm(const Alarm& alarm) { publish(alarm, false); }
 
 void Detector::publish(const Alarm& alarm, bool repeat) {
   parts_.publisher.alarm(alarm, repeat, stamp());
+  if (parts_.evidence != nullptr && !repeat) keep_evidence(alarm);
+}
+
+void Detector::keep_evidence(const Alarm& alarm) {
+  const auto& all = parts_.pipeline.alarms().alarms();
+  times_.resize(all.size(), 0);
+  std::int64_t& times = times_[static_cast<std::size_t>(&alarm - all.data())];
+  const bool came = alarm.times != times && alarm.annunciated() && alarm.source != "evidence";
+  times = alarm.times;
+  if (came) parts_.evidence->alarm(alarm, stamp().utc_us);
 }
 
 void Detector::condition(const char* source, const char* name, Severity severity, bool active,
@@ -124,7 +144,8 @@ void Detector::once_a_second() {
   dropped_before_ = dropped;
   conditions_.report(parts_.publisher.status(),
                      parts_.recorder != nullptr ? parts_.recorder->status() : io::RecorderStatus{},
-                     tick_, parts_.pipeline.alarms(), changed_);
+                     tick_, parts_.pipeline.alarms(), changed_,
+                     parts_.evidence != nullptr ? parts_.evidence->status() : io::EvidenceStatus{});
   parts_.pipeline.alarms().for_each_active([this](const Alarm& alarm) { publish(alarm, true); });
   health();
 }

@@ -7,9 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "daemon/io/alarm_store.h"
 #include "daemon/io/conditions.h"
+#include "daemon/io/evidence.h"
 #include "daemon/io/publisher.h"
 #include "daemon/io/recorder.h"
+#include "daemon/rt/alarm_desk.h"
 #include "daemon/rt/clock.h"
 #include "daemon/rt/guard_alarms.h"
 #include "daemon/rt/loop_stats.h"
@@ -29,6 +32,11 @@ class Detector final : private estimator::fdi::Events {
     estimator::fdi::Pipeline& pipeline;
     io::Publisher& publisher;
     const io::Recorder* recorder;
+    AlarmOrderQueue* orders = nullptr;  ///< of people, with `answers`
+    AlarmAnswerQueue* answers = nullptr;
+    io::AlarmStore* store = nullptr;
+    io::Evidence* evidence = nullptr;
+    std::uint64_t pipeline_hash = 0;  ///< fdi::hash_of(whole_text), for evidence
   };
   /// Constant fields of health_t.
   struct Identity {
@@ -55,6 +63,8 @@ class Detector final : private estimator::fdi::Events {
   void drain();
   void process(const estimator::fdi::Sample& sample);
   void publish(const estimator::fdi::Alarm& alarm, bool repeat);
+  /// Evidence of an alarm that has come.
+  void keep_evidence(const estimator::fdi::Alarm& alarm);
   void condition(const char* source, const char* name, estimator::fdi::Severity severity,
                  bool active, std::string_view reason);
   void watch_state();
@@ -69,6 +79,9 @@ class Detector final : private estimator::fdi::Events {
   std::function<void(const estimator::fdi::Alarm&)> changed_;
   io::Conditions conditions_;
   GuardAlarms guard_alarms_;
+  AlarmDesk alarm_desk_;
+  std::vector<std::int64_t> times_;     ///< Alarm::times that evidence was asked for
+  std::vector<std::uint8_t> snapshot_;  ///< of the pipeline
   std::vector<std::string> guard_ids_;
   std::size_t spare_rods_;
   std::size_t inputs_;

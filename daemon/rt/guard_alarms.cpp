@@ -36,6 +36,7 @@ GuardAlarms::GuardAlarms(const std::vector<control::GuardConfig>& guards,
     alarm.name = guard.id;
     alarm.quantity = control::to_string(kind);
     alarm.guidance = guard.guidance.empty() ? control::guidance_of(kind) : guard.guidance;
+    alarm.rules = book_.condition_rules();
     alarm.low = limits.low();
     alarm.high = limits.high();
     const Action action = control::action_of(guard.action);

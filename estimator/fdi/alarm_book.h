@@ -55,6 +55,7 @@ class AlarmBook {
   std::size_t declare(Alarm alarm);
   /// Rules of conditions that are declared at their first use.
   void set_condition_rules(const AlarmRules& rules) { condition_rules_ = rules; }
+  [[nodiscard]] const AlarmRules& condition_rules() const noexcept { return condition_rules_; }
 
   /// Tells an alarm's cause. Returns the alarm when a person or a program should learn of it (a
   /// transition to be published), null otherwise; value and std_error are kept up to date in either
@@ -80,6 +81,9 @@ class AlarmBook {
   /// For so long from now on; shelving what is shelved sets another time.
   ActOutcome shelve(std::size_t number, double time_s, std::string_view who);
   ActOutcome unshelve(std::size_t number);
+
+  /// Shows an alarm as it was told, whatever its cause and rules say: for the replay of a log.
+  void show(std::size_t number, const Alarm& told);
 
   /// kNone when there is no such alarm. `id`: "SOURCE.NAME", or the name when it is unique.
   [[nodiscard]] std::size_t find(std::string_view id) const noexcept;

@@ -1,4 +1,5 @@
 // How the lives of a book outlast it: as a list after a restart, as every bit in a snapshot.
+#include <algorithm>
 #include <utility>
 
 #include "estimator/fdi/alarm_book.h"
@@ -76,6 +77,23 @@ void AlarmBook::restore(const std::vector<SavedLife>& lives) {
     }
   }
   recount();
+}
+
+void AlarmBook::show(std::size_t number, const Alarm& told) {
+  Alarm& alarm = alarms_[number];
+  alarm.active = told.active;
+  alarm.severity = told.severity;
+  alarm.direction = told.direction;
+  alarm.latched = told.latched;
+  alarm.acknowledged = told.acknowledged;
+  alarm.shelved = told.shelved;
+  alarm.first_up = told.first_up;
+  alarm.tick = told.tick;
+  alarm.value = told.value;
+  alarm.reason = told.reason;
+  memories_[number].timed = false;
+  recount();
+  ++changes_;
 }
 
 void AlarmBook::carry(Carrier& carrier) {

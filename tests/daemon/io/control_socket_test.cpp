@@ -234,6 +234,58 @@ TEST_F(ControlSocketTest, LetsOthersLookAndOnlyMembersOfItsGroupAct) {
   }
 }
 
+TEST_F(ControlSocketTest, LetsMembersOfItsGroupLookAndThoseOfAnotherActWhenOneIsNamed) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can become another user";
+  for (auto [id, name] : {std::pair{2U, &config_.group}, {3U, &config_.act_group}}) {
+    const group* entry = ::getgrgid(id);
+    if (entry == nullptr) GTEST_SKIP() << "no group " << id << " here";
+    *name = entry->gr_name;
+  }
+  config_.mode = "0660";
+  std::filesystem::permissions(folder_, std::filesystem::perms(0755));
+  ControlSocket socket(config_, "rig.toml");
+  for (const auto& [main_group, further_group, may] :
+       {std::tuple{65534U, 2U, false}, {2U, 3U, true}, {3U, 2U, true}}) {
+    const OtherUser user(config_.socket, main_group, further_group);
+    ControlSocket::Request request;
+    bool came = false;
+    for (int i = 0; i < 200 && !came; ++i) {
+      socket.wait(50, never_[0]);
+      came = socket.next(request);
+    }
+    ASSERT_TRUE(came) << main_group << " " << further_group;
+    EXPECT_EQ(request.may_act, may) << main_group << " " << further_group;
+    EXPECT_EQ(request.uid, 65534U);
+  }
+  // Who is in the acting group alone cannot even connect: the socket's group decides.
+  const OtherUser outside(config_.socket, 65534, 3);
+  ControlSocket::Request request;
+  for (int i = 0; i < 10; ++i) {
+    socket.wait(20, never_[0]);
+    EXPECT_FALSE(socket.next(request));
+  }
+}
+
+TEST(ControlRequest, ReadsWhatIsAskedOfAlarms) {
+  using Kind = ControlRequest::Kind;
+  EXPECT_EQ(parse_request("{\"command\":\"alarms\"}").kind, Kind::alarms);
+  const ControlRequest all = parse_request("{\"command\":\"ack\"}");
+  EXPECT_EQ(all.kind, Kind::acknowledge);
+  EXPECT_EQ(all.alarm, "");
+  const ControlRequest shelve =
+      parse_request("{\"command\":\"shelve\",\"alarm\":\"s.a\",\"time_s\":600}");
+  EXPECT_EQ(shelve.kind, Kind::shelve);
+  EXPECT_EQ(shelve.alarm, "s.a");
+  EXPECT_EQ(shelve.time_s, 600.0);
+  EXPECT_EQ(parse_request("{\"command\":\"unshelve\",\"alarm\":\"s.a\"}").kind, Kind::unshelve);
+  for (const char* bad :
+       {"{\"command\":\"shelve\",\"alarm\":\"s.a\"}", "{\"command\":\"shelve\",\"time_s\":5}",
+        "{\"command\":\"shelve\",\"alarm\":\"s.a\",\"time_s\":-1}", "{\"command\":\"unshelve\"}",
+        "{\"command\":\"ack\",\"alarm\":7}", "{\"command\":\"ack\",\"alarm\":\"\"}"}) {
+    EXPECT_EQ(parse_request(bad).kind, Kind::bad) << bad;
+  }
+}
+
 TEST(ControlRequest, SaysInWordsWhatIsWrongWithALine) {
   for (const auto& [line, wrong] :
        {std::pair{"", "no JSON object"},
@@ -242,7 +294,8 @@ TEST(ControlRequest, SaysInWordsWhatIsWrongWithALine) {
         {"{}", "no \"command\""},
         {"{\"command\":7}", "no \"command\""},
         {"{\"command\":\"fly\"}",
-         "unknown command; allowed: status, hold, reference, arm, disarm, start, stop, reset"},
+         "unknown command; allowed: status, hold, reference, alarms, ack, shelve, unshelve, arm, "
+         "disarm, start, stop, reset"},
         {"{\"command\":\"reference\",\"centre_m\":0.1,\"amplitude_m\":0.1}",
          "frequency_Hz: is missing"},
         {"{\"command\":\"reference\",\"centre_m\":\"x\"}",

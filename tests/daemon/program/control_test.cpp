@@ -44,6 +44,8 @@ class Service {
     std::vector<std::string> all = {
         "--config",  shipped("spoolwatchd.toml"),
         "--lcm-url", "",
+        "--set",     "alarms.folder=",
+        "--set",     "evidence.folder=",
         "--set",     "recorder.folder=" + (folder_.path() / "log").string(),
         "--set",     "control.socket=" + socket()};
     for (const std::string& setting : settings) {

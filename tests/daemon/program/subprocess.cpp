@@ -105,7 +105,8 @@ std::vector<std::string> virtual_run(const std::string& config, const std::files
                                      const std::vector<std::string>& more) {
   std::vector<std::string> arguments = {
       "--config",  config, "--clock", "virtual",
-      "--lcm-url", "",     "--set",   "recorder.folder=" + log.string()};
+      "--lcm-url", "",     "--set",   "recorder.folder=" + log.string(),
+      "--set",     "evidence.folder="};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return arguments;
 }

@@ -1,0 +1,159 @@
+#include "daemon/io/alarm_store.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <utility>
+
+namespace monitor::io {
+namespace {
+
+using estimator::fdi::SavedLife;
+using estimator::fdi::Severity;
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+constexpr const char* kFormat = "spoolwatch alarms";
+constexpr int kVersion = 1;
+constexpr std::size_t kLargestFile = 16 << 20;
+
+SavedLife life_of(const json& entry, std::int64_t utc_us) {
+  SavedLife life;
+  life.source = entry.at("source");
+  life.name = entry.at("name");
+  life.reason = entry.at("reason");
+  life.severity = static_cast<Severity>(std::clamp(entry.at("severity").get<int>(), 0, 3));
+  life.direction = static_cast<std::int8_t>(std::clamp(entry.at("direction").get<int>(), -1, 1));
+  life.active = entry.at("active");
+  life.latched = entry.at("latched");
+  life.acknowledged = entry.at("acknowledged");
+  life.first_up = entry.at("first_up");
+  if (entry.at("value").is_number()) life.value = entry.at("value");
+  life.came_utc_us = entry.at("came_utc_us");
+  life.times = entry.at("times");
+  life.acknowledged_by = entry.at("acknowledged_by");
+  life.shelved_by = entry.at("shelved_by");
+  // A clock set back must not make a shelf longer than it was.
+  const double left_s =
+      static_cast<double>(entry.at("shelved_until_utc_us").get<std::int64_t>() - utc_us) * 1e-6;
+  life.shelved_for_s =
+      std::clamp(left_s, 0.0, std::max(entry.at("shelved_for_s").get<double>(), 0.0));
+  return life;
+}
+
+}  // namespace
+
+void AlarmConfig::visit(config::schema::Visitor& v) {
+  v.text({"folder", "where alarms.json and audit.log are kept; empty: nowhere"}, folder);
+  v.integer({"audit_bytes", "cap of audit.log"}, audit_bytes, {4096, 1LL << 40});
+  rules.visit(v);
+}
+
+std::string print_lives(const std::vector<SavedLife>& lives, const std::string& rig_id,
+                        std::int64_t utc_us) {
+  ordered_json list = ordered_json::array();
+  for (const SavedLife& life : lives) {
+    const auto until_us = utc_us + std::llround(life.shelved_for_s * 1e6);
+    list.push_back({{"source", life.source},
+                    {"name", life.name},
+                    {"reason", life.reason},
+                    {"severity", static_cast<int>(life.severity)},
+                    {"direction", static_cast<int>(life.direction)},
+                    {"active", life.active},
+                    {"latched", life.latched},
+                    {"acknowledged", life.acknowledged},
+                    {"first_up", life.first_up},
+                    {"value", std::isfinite(life.value) ? json(life.value) : json(nullptr)},
+                    {"came_utc_us", life.came_utc_us},
+                    {"times", life.times},
+                    {"acknowledged_by", life.acknowledged_by},
+                    {"shelved_by", life.shelved_by},
+                    {"shelved_for_s", life.shelved_for_s},
+                    {"shelved_until_utc_us", life.shelved_for_s > 0.0 ? until_us : 0}});
+  }
+  const ordered_json whole = {{"format", kFormat},
+                              {"version", kVersion},
+                              {"rig_id", rig_id},
+                              {"saved_utc_us", utc_us},
+                              {"alarms", std::move(list)}};
+  return whole.dump(1, ' ', false, json::error_handler_t::replace) + '\n';
+}
+
+LoadedLives parse_lives(const std::string& text, const std::string& rig_id, std::int64_t utc_us) {
+  const json whole = json::parse(text, nullptr, false);
+  LoadedLives loaded;
+  try {
+    if (!whole.is_object() || whole.at("format") != kFormat) {
+      loaded.wrong = "is no file of alarms, or damaged";
+    } else if (whole.at("version") != kVersion) {
+      loaded.wrong = "is of another version";
+    } else if (whole.at("rig_id") != rig_id) {
+      loaded.wrong = "is of another rig: " + whole.at("rig_id").dump();
+    } else {
+      for (const json& entry : whole.at("alarms")) loaded.lives.push_back(life_of(entry, utc_us));
+    }
+  } catch (const json::exception&) {
+    loaded.lives.clear();
+    loaded.wrong = "is damaged";
+  }
+  return loaded;
+}
+
+AlarmStore::AlarmStore(const std::filesystem::path& folder, std::string rig_id, Clerk& clerk)
+    : file_(folder / "alarms.json"), rig_id_(std::move(rig_id)), clerk_(clerk) {}
+
+LoadedLives AlarmStore::load(std::int64_t utc_us) const {
+  std::error_code error;
+  if (!std::filesystem::exists(file_, error) && !error) return {};
+  const auto size = std::filesystem::file_size(file_, error);
+  std::ifstream in(file_, std::ios::binary);
+  if (error || !in) return {{}, "cannot be read"};
+  if (size > kLargestFile) return {{}, "is too large"};
+  std::ostringstream text;
+  text << in.rdbuf();
+  return parse_lives(text.str(), rig_id_, utc_us);
+}
+
+void AlarmStore::keep(const estimator::fdi::AlarmBook& book, std::int64_t utc_us) {
+  if (book.changes() == saved_) return;
+  const bool posted = clerk_.post([this, text = print_lives(book.lives(), rig_id_, utc_us)] {
+    std::error_code ignored;
+    std::filesystem::create_directories(file_.parent_path(), ignored);
+    error_ = write_durably(file_, text);
+  });
+  if (posted) saved_ = book.changes();
+}
+
+int write_durably(const std::filesystem::path& file, const std::string& text) noexcept {
+  const std::string temporary = file.string() + ".new";
+  const int out = open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0640);
+  if (out < 0) return errno;
+  int error = 0;
+  for (std::size_t done = 0; error == 0 && done < text.size();) {
+    const ssize_t n = write(out, text.data() + done, text.size() - done);
+    if (n > 0) done += static_cast<std::size_t>(n);
+    if (n == 0) error = ENOSPC;
+    if (n < 0 && errno != EINTR) error = errno;
+  }
+  if (error == 0 && fsync(out) != 0) error = errno;
+  close(out);
+  if (error == 0 && rename(temporary.c_str(), file.c_str()) != 0) error = errno;
+  if (error != 0) {
+    unlink(temporary.c_str());
+    return error;
+  }
+  const int folder = open(file.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder >= 0) {
+    fsync(folder);
+    close(folder);
+  }
+  return 0;
+}
+
+}  // namespace monitor::io

@@ -1,0 +1,81 @@
+#include "daemon/io/audit.h"
+
+#include <fcntl.h>
+#include <pwd.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <ctime>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+namespace monitor::io {
+namespace {
+
+constexpr std::size_t kLongestRequest = 512;
+
+}  // namespace
+
+std::string utc_text(std::int64_t utc_us) {
+  const std::time_t seconds = utc_us / 1'000'000;
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  std::array<char, 48> out{};
+  const std::size_t length = std::strftime(out.data(), out.size(), "%Y-%m-%dT%H:%M:%S", &utc);
+  std::snprintf(out.data() + length, out.size() - length, ".%03dZ",
+                static_cast<int>(utc_us / 1000 % 1000));
+  return out.data();
+}
+
+std::string user_name(unsigned uid) {
+  std::array<char, 4096> memory{};
+  passwd entry{};
+  passwd* found = nullptr;
+  if (getpwuid_r(uid, &entry, memory.data(), memory.size(), &found) == 0 && found != nullptr) {
+    return entry.pw_name;
+  }
+  return std::to_string(uid);
+}
+
+std::string print_audit(const AuditEntry& entry) {
+  nlohmann::ordered_json line;
+  line["utc"] = utc_text(entry.utc_us);
+  line["uid"] = entry.uid;
+  line["who"] = entry.who;
+  line["what"] = entry.what.substr(0, kLongestRequest);
+  line["done"] = entry.refusal.empty();
+  if (!entry.refusal.empty()) line["reason"] = entry.refusal;
+  return line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
+}
+
+Audit::Audit(const std::filesystem::path& folder, std::int64_t file_bytes, Clerk& clerk)
+    : file_(folder / "audit.log"), file_bytes_(file_bytes), clerk_(clerk) {}
+
+void Audit::note(const AuditEntry& entry) {
+  if (!clerk_.post([this, line = print_audit(entry)] { append(line); })) ++lost_;
+}
+
+void Audit::append(const std::string& line) noexcept {
+  std::error_code error;
+  std::filesystem::create_directories(file_.parent_path(), error);
+  const auto size = std::filesystem::file_size(file_, error);
+  if (!error && static_cast<std::int64_t>(size + line.size()) > file_bytes_) {
+    std::filesystem::rename(file_, file_.string() + ".1", error);
+  }
+  const int file = open(file_.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0640);
+  bool written = false;
+  if (file >= 0) {
+    // One write: a line is there whole or, where the disk is full, taken back.
+    struct stat before {};
+    const bool known = fstat(file, &before) == 0;
+    const ssize_t n = write(file, line.data(), line.size());
+    written = n == static_cast<ssize_t>(line.size()) && fsync(file) == 0;
+    if (n >= 0 && !written && known && ftruncate(file, before.st_size) != 0) written = false;
+    close(file);
+  }
+  if (!written) ++lost_;
+}
+
+}  // namespace monitor::io

@@ -1,0 +1,136 @@
+#include "daemon/io/evidence.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+
+#include "config/schema/error.h"
+#include "daemon/io/byte_buffers.h"
+#include "daemon/io/event_log.h"
+#include "daemon/io/evidence_pack.h"
+#include "daemon/io/evidence_ring.h"
+
+namespace monitor::io {
+namespace {
+
+constexpr auto kDrainPeriod = std::chrono::milliseconds(50);
+constexpr std::size_t kMaxChannel = 63;
+constexpr std::size_t kQueueBytes = 4 << 20;
+/// Snapshots come as often as this share of before_s, so that a folder is not much longer.
+constexpr double kStateShare = 0.5;
+constexpr double kLeastState_s = 1.0;
+
+template <std::size_t n>
+void copy_text(const std::string& text, char (&to)[n]) {
+  text.copy(to, n - 1);
+}
+
+}  // namespace
+
+void EvidenceConfig::visit(config::schema::Visitor& v) {
+  v.text({"folder", "where the evidence of each alarm goes; empty: none is kept"}, folder);
+  v.number({"before_s", "kept from before an alarm"}, before_s, {0.1, 600.0});
+  v.number({"after_s", "and from after it"}, after_s, {0.0, 600.0});
+  v.integer({"packs", "folders kept, oldest removed first"}, packs, {1, 100000});
+  v.integer({"total_bytes", "of all folders"}, total_bytes, {1 << 20, 1LL << 42});
+  v.integer({"memory_bytes", "of the newest messages, and so of one folder"}, memory_bytes,
+            {1 << 20, 1LL << 30});
+}
+
+Evidence::Evidence(const EvidenceConfig& config, EvidenceFacts facts, bool background)
+    : background_(background),
+      state_every_(std::max<std::int64_t>(
+          1, std::llround(std::max(kStateShare * config.before_s, kLeastState_s) /
+                          facts.sample_time_s))),
+      queue_(std::make_unique<ByteQueue>(kQueueBytes)) {
+  std::error_code error;
+  std::filesystem::create_directories(config.folder, error);
+  if (error) {
+    throw config::schema::bad_config(config.folder,
+                                     "cannot keep evidence here: " + error.message());
+  }
+  prune_packs(config.folder, config.packs, config.total_bytes);
+  ring_ = std::make_unique<EvidenceRing>(config, std::move(facts));
+  if (background_) thread_ = std::thread([this] { run(); });
+}
+
+Evidence::~Evidence() { finish(); }
+
+bool Evidence::push(std::string_view channel, std::span<const std::uint8_t> data,
+                    std::int64_t utc_us) noexcept {
+  std::array<std::uint8_t, kEventHeader + kMaxChannel> head{};
+  channel = channel.substr(0, kMaxChannel);
+  put_event_header(std::span(head).first<kEventHeader>(), utc_us, channel.size(), data.size());
+  std::copy(channel.begin(), channel.end(), head.begin() + kEventHeader);
+  return queue_->push(std::span(head).first(kEventHeader + channel.size()), data);
+}
+
+void Evidence::record(std::string_view channel, std::span<const std::uint8_t> data,
+                      std::int64_t utc_us) noexcept {
+  if (lost_ && push(kGapChannel, {}, utc_us)) lost_ = false;
+  if (lost_ || !push(channel, data, utc_us)) {
+    lost_ = true;
+    next_state_ = 0;  // what follows can be replayed from a new snapshot only
+    dropped_.fetch_add(1, std::memory_order_relaxed);
+  }
+  if (!background_) drain();
+}
+
+void Evidence::state(std::span<const std::uint8_t> snapshot, std::int64_t tick) noexcept {
+  next_state_ = tick + state_every_;
+  record(kStateChannel, snapshot, tick);
+}
+
+void Evidence::alarm(const estimator::fdi::Alarm& alarm, std::int64_t utc_us) noexcept {
+  EvidenceTrigger trigger;
+  trigger.tick = alarm.tick;
+  trigger.utc_us = utc_us;
+  trigger.value = alarm.value;
+  trigger.severity = static_cast<std::int8_t>(alarm.severity);
+  trigger.direction = alarm.direction;
+  trigger.first_up = alarm.first_up;
+  copy_text(alarm.source, trigger.source);
+  copy_text(alarm.name, trigger.name);
+  record(kAlarmChannel, {reinterpret_cast<const std::uint8_t*>(&trigger), sizeof trigger}, utc_us);
+}
+
+void Evidence::finish() {
+  if (thread_.joinable()) {
+    {
+      const std::lock_guard lock(mutex_);
+      stop_ = true;
+    }
+    wake_.notify_one();
+    thread_.join();
+  }
+  drain();
+  ring_->finish();
+}
+
+EvidenceStatus Evidence::status() const noexcept {
+  EvidenceStatus status = ring_->status();
+  status.dropped = dropped_.load(std::memory_order_relaxed);
+  return status;
+}
+
+void Evidence::run() {
+  sigset_t all;  // signals are the main thread's
+  sigfillset(&all);
+  pthread_sigmask(SIG_BLOCK, &all, nullptr);
+  std::unique_lock lock(mutex_);
+  while (!stop_) {
+    wake_.wait_for(lock, kDrainPeriod, [this] { return stop_; });
+    lock.unlock();
+    drain();
+    lock.lock();
+  }
+}
+
+void Evidence::drain() {
+  while (queue_->pop(record_)) ring_->take(record_);
+}
+
+}  // namespace monitor::io

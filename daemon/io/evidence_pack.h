@@ -1,0 +1,51 @@
+// One folder of evidence on disk: it appears whole, under its name, or not at all.
+//
+//   pack.json           what it is, which alarm, how to replay it
+//   README.txt          the same in words
+//   log.lcmlog          messages from the snapshot on, an LCM event log
+//   state.bin           the fault detection before the first sample of the log
+//   pipeline.toml       its configuration, nothing left in other files
+//   configuration.toml  the daemon's, and the files that it names (model, bands, ...)
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "daemon/io/evidence.h"
+
+namespace monitor::io {
+
+/// The alarm that asked for a folder.
+struct EvidenceTrigger {
+  std::int64_t tick = 0;
+  std::int64_t utc_us = 0;
+  double value = 0.0;
+  std::int8_t severity = 0;
+  std::int8_t direction = 0;
+  bool first_up = false;
+  char source[96] = {};
+  char name[96] = {};
+};
+
+struct PackContents {
+  EvidenceTrigger trigger;
+  std::int64_t first_tick = 0;  ///< of the log's samples
+  std::int64_t last_tick = 0;
+  std::string inexact;  ///< why it cannot be replayed; empty: it can
+  std::span<const std::uint8_t> state;
+  /// Calls back with each event of the log, in order.
+  std::function<void(const std::function<void(std::span<std::uint8_t>)>&)> events;
+};
+
+/// 0 or errno.
+[[nodiscard]] int write_pack(const std::filesystem::path& folder, const EvidenceFacts& facts,
+                             const PackContents& contents);
+
+/// Removes the oldest folders beyond the limits, and what an interrupted daemon left half written.
+void prune_packs(const std::filesystem::path& folder, std::int64_t packs, std::int64_t bytes);
+
+}  // namespace monitor::io

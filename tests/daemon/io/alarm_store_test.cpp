@@ -1,0 +1,164 @@
+// What is kept of alarms across a restart, and who did what: files that are there whole or not.
+#include "daemon/io/alarm_store.h"
+
+#include <gmock/gmock.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "daemon/io/audit.h"
+
+namespace monitor::io {
+namespace {
+
+using estimator::fdi::Alarm;
+using estimator::fdi::AlarmBook;
+using estimator::fdi::AlarmState;
+using estimator::fdi::Life;
+using estimator::fdi::SavedLife;
+using estimator::fdi::Severity;
+using testing::HasSubstr;
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+class AlarmFiles : public testing::Test {
+ protected:
+  AlarmFiles() {
+    std::string name = (std::filesystem::temp_directory_path() / "alarms-XXXXXX").string();
+    folder_ = ::mkdtemp(name.data());
+  }
+  ~AlarmFiles() override { std::filesystem::remove_all(folder_); }
+
+  static AlarmBook book() {
+    AlarmBook book(1.0);
+    Alarm alarm;
+    alarm.source = "s";
+    for (const char* name : {"a", "b"}) {
+      alarm.name = name;
+      book.declare(alarm);
+    }
+    return book;
+  }
+  static void come(AlarmBook& book, std::size_t number) {
+    AlarmState state;
+    state.severity = Severity::major;
+    state.direction = -1;
+    state.value = 1.5;
+    state.reason = "too \"low\"";
+    book.set(number, state);
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(AlarmFiles, GiveBackEveryLifeThatWasSaved) {
+  AlarmBook before = book();
+  come(before, 0);
+  come(before, 1);
+  before.shelve(1, 100.0, "bob");
+  {
+    Clerk clerk;
+    AlarmStore store(folder_ / "sub", "rig", clerk);
+    store.keep(before, 1'000'000'000);
+    clerk.finish();
+  }
+  Clerk clerk;
+  const AlarmStore store(folder_ / "sub", "rig", clerk);
+  const LoadedLives loaded = store.load(1'030'000'000);  // 30 s later
+  EXPECT_EQ(loaded.wrong, "");
+  ASSERT_EQ(loaded.lives.size(), 2U);
+  EXPECT_EQ(loaded.lives[0].name, "a");
+  EXPECT_EQ(loaded.lives[0].reason, "too \"low\"");
+  EXPECT_EQ(loaded.lives[0].value, 1.5);
+  EXPECT_EQ(loaded.lives[0].direction, -1);
+  EXPECT_TRUE(loaded.lives[0].first_up);
+  EXPECT_EQ(loaded.lives[1].shelved_for_s, 70.0);
+  EXPECT_EQ(loaded.lives[1].shelved_by, "bob");
+  AlarmBook after = book();
+  after.restore(loaded.lives);
+  EXPECT_EQ(after.alarm(0).life(), Life::returned);
+  EXPECT_EQ(after.alarm(1).life(), Life::shelved);
+  // A clock that was set back does not make the shelf longer, one that ran on ends it.
+  EXPECT_EQ(store.load(500'000'000).lives[1].shelved_for_s, 100.0);
+  EXPECT_EQ(store.load(2'000'000'000).lives[1].shelved_for_s, 0.0);
+}
+
+TEST_F(AlarmFiles, AreWrittenOnlyWhenALifeHasChanged) {
+  AlarmBook alarms = book();
+  come(alarms, 0);
+  const auto keep = [&](AlarmStore& store, std::int64_t utc_us) { store.keep(alarms, utc_us); };
+  {
+    Clerk clerk;
+    AlarmStore store(folder_, "rig", clerk);
+    keep(store, 1'000'000);
+    keep(store, 2'000'000);
+    clerk.finish();
+  }
+  EXPECT_THAT(text_of(folder_ / "alarms.json"), HasSubstr("\"saved_utc_us\": 1000000"));
+}
+
+TEST_F(AlarmFiles, DamagedOrOfAnotherRigGiveNothingAndSayWhy) {
+  AlarmBook alarms = book();
+  come(alarms, 0);
+  const std::string good = print_lives(alarms.lives(), "rig", 5);
+  EXPECT_EQ(parse_lives(good, "rig", 5).lives.size(), 1U);
+  EXPECT_EQ(parse_lives(good, "another", 5).wrong, "is of another rig: \"rig\"");
+  EXPECT_TRUE(parse_lives(good, "another", 5).lives.empty());
+  for (std::size_t size = 0; size + 2 < good.size(); size += 7) {
+    const LoadedLives cut = parse_lives(good.substr(0, size), "rig", 5);
+    EXPECT_TRUE(cut.lives.empty());
+    EXPECT_NE(cut.wrong, "") << size;
+  }
+  for (const char* text : {"[]", "{}", "{\"format\": 3}",
+                           "{\"format\":\"spoolwatch alarms\",\"version\":1,\"rig_id\":\"rig\","
+                           "\"alarms\":[{\"source\":1}]}"}) {
+    EXPECT_NE(parse_lives(text, "rig", 5).wrong, "") << text;
+  }
+  Clerk clerk;
+  EXPECT_EQ(AlarmStore(folder_ / "none", "rig", clerk).load(5).wrong, "");
+}
+
+TEST_F(AlarmFiles, ThatCannotBeWrittenLeaveTheOldOne) {
+  const std::filesystem::path file = folder_ / "alarms.json";
+  ASSERT_EQ(write_durably(file, "old"), 0);
+  std::filesystem::create_directory(folder_ / "alarms.json.new");  // in the way
+  EXPECT_NE(write_durably(file, "new"), 0);
+  EXPECT_EQ(text_of(file), "old");
+}
+
+TEST_F(AlarmFiles, AuditHasALineForEachActAndStaysWithinItsSize) {
+  Clerk clerk;
+  Audit audit(folder_, 4096, clerk);
+  for (int i = 0; i < 200; ++i) {
+    audit.note({1'000'000LL * i, 1000, "ann", "{\"command\":\"ack\"}", i == 3 ? "no" : ""});
+  }
+  clerk.finish();
+  EXPECT_EQ(audit.lost(), 0);
+  const auto newest = std::filesystem::file_size(folder_ / "audit.log");
+  const auto before = std::filesystem::file_size(folder_ / "audit.log.1");
+  EXPECT_LE(newest, 4096U);
+  EXPECT_LE(before, 4096U);
+  EXPECT_GT(newest + before, 4096U);
+  std::istringstream lines(text_of(folder_ / "audit.log"));
+  std::string last;
+  for (std::string line; std::getline(lines, line);) last = line;
+  const auto entry = nlohmann::json::parse(last);
+  EXPECT_EQ(entry["utc"], "1970-01-01T00:03:19.000Z");
+  EXPECT_EQ(entry["uid"], 1000);
+  EXPECT_EQ(entry["who"], "ann");
+  EXPECT_EQ(entry["what"], "{\"command\":\"ack\"}");
+  EXPECT_EQ(entry["done"], true);
+  EXPECT_THAT(print_audit({0, 7, "x", "y", "no"}), HasSubstr("\"done\":false,\"reason\":\"no\""));
+}
+
+}  // namespace
+}  // namespace monitor::io

@@ -1,0 +1,50 @@
+#include "workbench/control/order.h"
+
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <iostream>
+
+#include "config/schema/error.h"
+#include "workbench/control/client.h"
+
+namespace workbench {
+namespace {
+
+using config::schema::Error;
+using config::schema::ExitCode;
+using Json = nlohmann::ordered_json;
+namespace control = monitor::control;
+
+void write_json(const Json& answer, const std::string& file) {
+  const std::string text = answer.dump(2) + '\n';
+  if (file == "-") {
+    std::cout << text;
+    return;
+  }
+  std::ofstream out(file);
+  out << text;
+  out.close();
+  if (!out) throw Error(ExitCode::failed, file + ": cannot be written");
+}
+
+}  // namespace
+
+void add_order_options(CLI::App& command, OrderOptions& options) {
+  command.add_option("--socket", options.socket, "control socket of the daemon")
+      ->capture_default_str();
+  command.add_option("--json", options.json, "write the answer there; - for standard output");
+}
+
+Json give_order(const Json& request, const OrderOptions& options) {
+  Json answer = ask_daemon(options.socket, request);
+  if (!options.json.empty()) write_json(answer, options.json);
+  if (answer.at(control::key::kOk).get<bool>()) return answer;
+  const auto reason = answer.find(control::key::kReason);
+  throw Error(ExitCode::failed,
+              "refused: " +
+                  (reason != answer.end() && reason->is_string() ? reason->get<std::string>()
+                                                                 : std::string("no reason given")) +
+                  " (the state is " + answer.at(control::key::kState).get<std::string>() + ")");
+}
+
+}  // namespace workbench

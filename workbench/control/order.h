@@ -1,0 +1,28 @@
+// What every command to the running daemon shares: its socket, its answer as JSON, its refusal.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "daemon/control/protocol.h"
+
+namespace CLI {
+class App;
+}
+
+namespace workbench {
+
+struct OrderOptions {
+  std::string socket = monitor::control::kDefaultSocket;
+  std::string json;  ///< file for the answer, "-" for standard output, empty: none
+};
+
+/// --socket and --json; `options` outlives the parsing.
+void add_order_options(CLI::App& command, OrderOptions& options);
+
+/// The daemon's answer, written where --json says. Throws config::schema::Error (exit 1) when it is
+/// a refusal, or when no daemon answers.
+nlohmann::ordered_json give_order(const nlohmann::ordered_json& request,
+                                  const OrderOptions& options);
+
+}  // namespace workbench

@@ -1,0 +1,42 @@
+// Old logs through a new configuration: the alarms of each run of the daemon as it would tell them
+// and as it told them.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "estimator/fdi/pipeline.h"
+#include "workbench/replay/occurrences.h"
+
+namespace workbench::replay {
+
+/// The alarms' part of a configuration file.
+struct Rules {
+  std::string file;
+  std::filesystem::path folder;  ///< bands_file starts here
+  estimator::fdi::PipelineConfig pipeline;
+};
+
+/// Throws config::schema::Error (exit 78).
+[[nodiscard]] Rules read_rules(const std::string& file);
+
+/// One run of the daemon, or one CSV record.
+struct BacktestRun {
+  std::vector<std::string> files;  ///< in the order of time
+  double sample_time_s = 0.0;
+  double from_s = 0.0, to_s = 0.0;  ///< of its samples
+  std::int64_t samples = 0;
+  bool has_recorded_alarms = false;  ///< a CSV record has none
+  std::vector<Occurrence> after;     ///< by the new rules
+  std::vector<Occurrence> before;    ///< by the old ones, or as recorded
+};
+
+/// `logs`: LCM event logs, folders of them, records. Logs of one run are put together. `old_rules`
+/// empty: what was recorded. Throws config::schema::Error (exit 65, 78).
+[[nodiscard]] std::vector<BacktestRun> run_backtest(const Rules& new_rules,
+                                                    const std::optional<Rules>& old_rules,
+                                                    const std::vector<std::string>& logs);
+
+}  // namespace workbench::replay

@@ -1,0 +1,23 @@
+// What a new configuration would have told, as lines for people and as JSON.
+#pragma once
+
+#include <iosfwd>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "workbench/replay/backtest_runs.h"
+
+namespace workbench::replay {
+
+struct BacktestReport {
+  std::string new_rules;
+  std::string old_rules;  ///< file, empty: what was recorded
+  std::vector<BacktestRun> runs;
+  std::vector<Difference> differences;  ///< one for each run
+};
+
+void print_backtest(const BacktestReport& report, std::ostream& out);
+[[nodiscard]] nlohmann::ordered_json backtest_json(const BacktestReport& report);
+
+}  // namespace workbench::replay

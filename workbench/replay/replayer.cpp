@@ -1,0 +1,231 @@
+#include "workbench/replay/replayer.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "config/schema/error.h"
+#include "estimator/fdi/snapshot.h"
+#include "workbench/replay/log_walk.h"
+
+namespace workbench::replay {
+namespace {
+
+using estimator::fdi::Alarm;
+using estimator::fdi::AlarmBook;
+using estimator::fdi::EstimateEvent;
+using estimator::fdi::Severity;
+
+constexpr std::size_t kMostDifferences = 20;
+
+bool same_bits(double a, double b) noexcept {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) noexcept {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](double x, double y) { return same_bits(x, y); });
+}
+
+/// An estimate as it is told, without the pointers.
+struct Told {
+  std::string source, reason;
+  std::int64_t tick;
+  bool valid;
+  double condition;
+  std::vector<double> value, std_error, low, high;
+};
+
+bool same(const Told& a, const spoolwatch::estimate_t& b) {
+  return a.source == b.source && a.reason == b.reason && a.tick == b.tick &&
+         a.valid == (b.valid != 0) && same_bits(a.condition, b.condition) &&
+         same_bits(a.value, b.value) && same_bits(a.std_error, b.std_error) &&
+         same_bits(a.low, b.low) && same_bits(a.high, b.high);
+}
+
+bool same(const Alarm& a, const spoolwatch::alarm_t& b) {
+  return a.source == b.source && a.name == b.name && static_cast<int>(a.severity) == b.severity &&
+         a.annunciated() == (b.active != 0) && a.latched == (b.latched != 0) &&
+         a.acknowledged == (b.acknowledged != 0) && a.shelved == (b.shelved != 0) &&
+         a.first_up == (b.first_up != 0) && a.tick == b.tick && same_bits(a.value, b.value) &&
+         same_bits(a.std_error, b.std_error) && same_bits(a.low, b.low) &&
+         same_bits(a.high, b.high) && a.quantity == b.quantity && a.parameter == b.parameter &&
+         a.direction == b.direction && a.reason == b.reason && a.guidance == b.guidance;
+}
+
+Alarm alarm_of(const spoolwatch::alarm_t& message) {
+  Alarm alarm;
+  alarm.source = message.source;
+  alarm.name = message.name;
+  alarm.severity = static_cast<Severity>(std::clamp<int>(message.severity, 0, 3));
+  alarm.active = alarm.severity != Severity::ok;
+  alarm.latched = message.latched != 0;
+  alarm.acknowledged = message.acknowledged != 0;
+  alarm.shelved = message.shelved != 0;
+  alarm.first_up = message.first_up != 0;
+  alarm.direction = message.direction;
+  alarm.tick = message.tick;
+  alarm.value = message.value;
+  alarm.std_error = message.std_error;
+  alarm.low = message.low;
+  alarm.high = message.high;
+  alarm.quantity = message.quantity;
+  alarm.reason = message.reason;
+  alarm.guidance = message.guidance;
+  return alarm;
+}
+
+class Replayer final : public LogVisitor, private estimator::fdi::Events {
+ public:
+  explicit Replayer(const Pack& pack) : pack_(pack), pipeline_(pack.pipeline, pack.sample_time_s) {
+    outcome.derived = from_pipeline(pack.source, pack.name);
+  }
+
+  void start() {
+    const std::int64_t tick = estimator::fdi::load_snapshot(
+        pack_.state, pack_.pipeline_hash, pipeline_, pack_.log.parent_path() / "state.bin");
+    if (tick != pack_.first_tick) {
+      throw config::schema::bad_data(pack_.log.parent_path() / "state.bin",
+                                     "is not the state before the first sample");
+    }
+  }
+
+  void on_sample(const spoolwatch::sample_t& sample) override {
+    for (const Told& told : estimates_) differ("estimate of " + told.source + " was not told");
+    for (const Alarm& alarm : alarms_) differ("alarm " + alarm.name + " was not told");
+    outcome.estimates += static_cast<std::int64_t>(estimates_.size());
+    outcome.alarms += static_cast<std::int64_t>(alarms_.size());
+    estimates_.clear();
+    alarms_.clear();
+    ++outcome.samples;
+    tick_ = sample.tick;
+    pipeline_.process(to_sample(sample), *this);
+  }
+
+  void on_estimate(const spoolwatch::estimate_t& message) override {
+    ++outcome.estimates;
+    if (estimates_.empty()) return differ("estimate of " + message.source + " is not found again");
+    if (same(estimates_.front(), message)) {
+      ++outcome.estimates_same;
+    } else {
+      differ("estimate of " + message.source + " is another");
+    }
+    estimates_.pop_front();
+  }
+
+  void on_alarm(const spoolwatch::alarm_t& message) override {
+    if (message.repeat != 0) return;
+    if (!from_pipeline(message.source, message.name)) {
+      from_elsewhere(message);
+    } else if (!alarms_.empty() && alarms_.front().name == message.name &&
+               !(was_unshelved(message))) {
+      ++outcome.alarms;
+      const bool is_same = same(alarms_.front(), message);
+      outcome.alarms_same += is_same ? 1 : 0;
+      if (!is_same) differ("alarm " + message.name + " is another");
+      look_for_the_alarm(message, alarms_.front(), is_same);
+      alarms_.pop_front();
+    } else {
+      act_of_a_person(message);
+    }
+  }
+
+  ReplayOutcome outcome;
+
+ private:
+  void on_estimate(const EstimateEvent& event) override {
+    Told told{std::string(event.source),
+              std::string(event.reason),
+              event.tick,
+              event.valid,
+              event.condition,
+              {},
+              {},
+              {},
+              {}};
+    for (const auto& value : event) {
+      told.value.push_back(value.value);
+      told.std_error.push_back(value.std_error);
+      told.low.push_back(value.low);
+      told.high.push_back(value.high);
+    }
+    estimates_.push_back(std::move(told));
+  }
+  void on_alarm(const Alarm& alarm) override {
+    if (from_pipeline(alarm.source, alarm.name)) alarms_.push_back(alarm);
+  }
+
+  [[nodiscard]] bool from_pipeline(const std::string& source, const std::string& name) const {
+    return std::any_of(
+        pack_.pipeline.bands.begin(), pack_.pipeline.bands.end(), [&](const auto& band) {
+          return band.id == name && estimator::fdi::split_quantity(band.quantity).source == source;
+        });
+  }
+
+  /// A shelf's time is not told, so its end is an act, before whatever else the sample brings.
+  [[nodiscard]] bool was_unshelved(const spoolwatch::alarm_t& message) const {
+    return alarms_.front().shelved && message.shelved == 0;
+  }
+
+  void from_elsewhere(const spoolwatch::alarm_t& message) {
+    AlarmBook& book = pipeline_.alarms();
+    const Alarm alarm = alarm_of(message);
+    std::size_t number = book.find(message.source + "." + message.name);
+    if (number == AlarmBook::kNone) {
+      Alarm fresh;
+      fresh.source = message.source;
+      fresh.name = message.name;
+      number = book.declare(std::move(fresh));
+    }
+    book.show(number, alarm);
+    look_for_the_alarm(message, alarm, same(alarm, message));
+  }
+
+  void act_of_a_person(const spoolwatch::alarm_t& message) {
+    AlarmBook& book = pipeline_.alarms();
+    const std::size_t number = book.find(message.source + "." + message.name);
+    if (number == AlarmBook::kNone) return;
+    const Alarm& alarm = book.alarm(number);
+    bool acted = false;
+    if (message.acknowledged != 0 && !alarm.acknowledged) {
+      acted = book.acknowledge(number, "").changed != nullptr;
+    } else if (message.shelved != 0) {
+      acted = book.shelve(number, alarm.rules.shelve_limit_s, "").changed != nullptr;
+    } else if (alarm.shelved) {
+      acted = book.unshelve(number).changed != nullptr;
+    }
+    if (!acted) differ("alarm " + message.name + " is not found again");
+  }
+
+  void look_for_the_alarm(const spoolwatch::alarm_t& message, const Alarm& alarm, bool is_same) {
+    if (outcome.found || message.source != pack_.source || message.name != pack_.name ||
+        message.tick != pack_.tick || message.active == 0) {
+      return;
+    }
+    outcome.found = true;
+    outcome.alarm_same = is_same;
+    outcome.alarm = alarm;
+  }
+
+  void differ(const std::string& what) {
+    if (outcome.differences.size() < kMostDifferences) {
+      outcome.differences.push_back("sample " + std::to_string(tick_) + ": " + what);
+    }
+  }
+
+  const Pack& pack_;
+  estimator::fdi::Pipeline pipeline_;
+  std::deque<Told> estimates_;  ///< told since the last sample, not yet compared
+  std::deque<Alarm> alarms_;
+  std::int64_t tick_ = 0;
+};
+
+}  // namespace
+
+ReplayOutcome replay(const Pack& pack) {
+  Replayer replayer(pack);
+  replayer.start();
+  walk_log(pack.log, pack.prefix, replayer);
+  return std::move(replayer.outcome);
+}
+
+}  // namespace workbench::replay
