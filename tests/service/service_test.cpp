@@ -220,7 +220,27 @@ TEST_F(Life, H_ASecondDaemonIsRefused) {
   EXPECT_THAT(s().order("status").text, HasSubstr(": RUN"));
 }
 
-TEST_F(Life, I_UpgradedItIsUpAgainDisarmed) {
+TEST_F(Life, I_WaitsForARigThatIsSwitchedOnLater) {
+  s().configure();
+  machine().run("systemctl stop spoolwatchd");
+  std::string address;
+  {
+    const hal::rig::RigProcess another({"--config", s().file_.path()});
+    address = another.address();
+  }
+  std::string text = s().configuration();
+  replace(text, s().rig_.address(), address);
+  machine().write(kConfiguration, text);
+  machine().run("systemctl start --no-block spoolwatchd");
+  ASSERT_TRUE(machine().becomes("NRestarts", "2")) << s().journal();
+  EXPECT_THAT(s().journal(), HasSubstr("cannot be connected (Connection refused)"));
+  const hal::rig::RigProcess another({"--config", s().file_.path()}, address);
+  EXPECT_TRUE(machine().becomes("ActiveState", "active")) << s().journal();
+  EXPECT_TRUE(machine().becomes("StatusText", "DISARMED"));
+  machine().run("systemctl stop spoolwatchd");
+}
+
+TEST_F(Life, J_UpgradedItIsUpAgainDisarmed) {
   run_anew();
   const double stated_s = s().stated_s("stop, signal or error");
   const Output upgraded = machine().run("apt-get install -y /work/" + deb(1));
@@ -234,7 +254,7 @@ TEST_F(Life, I_UpgradedItIsUpAgainDisarmed) {
   s().stays_at_null_since(machine().stopped_ns());
 }
 
-TEST_F(Life, J_RemovedItEndsAtNull) {
+TEST_F(Life, K_RemovedItEndsAtNull) {
   run_anew();
   const double stated_s = s().stated_s("stop, signal or error");
   const Output removed = machine().run("apt-get remove -y spoolwatch");
