@@ -36,8 +36,9 @@ interchange::Kinds kinds_of(const std::string& channel) {
 
 }  // namespace
 
-void export_log(const std::string& input, const std::string& output, const std::string& channel,
+void export_log(const std::string& input, const std::string& file, const std::string& channel,
                 const std::string& format) {
+  const std::string output = file == "-" ? "/dev/stdout" : file;
   const std::string form = format.empty() ? format_of(output) : format;
   check_outputs({{.option = "--output", .file = output, .may_replace_model = true}},
                 {.model = "", .records = {input}});
@@ -67,7 +68,9 @@ void add_export(CLI::App& command, int&) {
   auto options = std::make_shared<Options>();
   command.add_option("RECORD", options->input, "an LCM event log, or a record: CSV or MAT")
       ->required();
-  command.add_option("-o,--output", options->output, "the file to write: .csv .mat .mcap .json")
+  command
+      .add_option("-o,--output", options->output,
+                  "the file to write: .csv .mat .mcap .json; - into a pipe")
       ->required();
   command
       .add_option("--channel", options->channel, "which messages; all by default, samples as CSV")

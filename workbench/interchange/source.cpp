@@ -36,15 +36,19 @@ bool is_of(const lcm::LogEvent& event) {
   return type_of(event) == Message::getHash();
 }
 
+/// A kind of message, and how the names of its channels end.
+struct Kind {
+  const char* name;
+  const char* ending;
+};
+
 /// Hands the event over when it is of this type; `kind` also claims channels by their ending.
 template <class Message>
-bool take_as(const std::string& log, const lcm::LogEvent& event, const char* kind,
+bool take_as(const std::string& log, const lcm::LogEvent& event, const Kind& kind,
              const Kinds& kinds, Listener& listener) {
-  std::string ending = std::string("_") + kind;
-  for (char& c : ending) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   const bool right = is_of<Message>(event);
-  if (!right && !event.channel.ends_with(ending)) return false;
-  if (!kinds.contains(kind)) return right;
+  if (!right && !event.channel.ends_with(kind.ending)) return false;
+  if (!kinds.contains(kind.name)) return right;
   Message message{};
   if (!config::messages::decode(message, event.data, event.datalen)) {
     throw bad_data(
@@ -54,6 +58,15 @@ bool take_as(const std::string& log, const lcm::LogEvent& event, const char* kin
   }
   listener.on(message);
   return right;
+}
+
+bool take(const std::string& log, const lcm::LogEvent& event, const Kinds& kinds,
+          Listener& listener) {
+  using namespace spoolwatch;
+  return take_as<sample_t>(log, event, {"sample", "_SAMPLE"}, kinds, listener) ||
+         take_as<estimate_t>(log, event, {"estimate", "_ESTIMATE"}, kinds, listener) ||
+         take_as<alarm_t>(log, event, {"alarm", "_ALARM"}, kinds, listener) ||
+         take_as<health_t>(log, event, {"health", "_HEALTH"}, kinds, listener);
 }
 
 class TreeListener final : public Listener {
@@ -130,11 +143,7 @@ void read_log(const std::string& log, const Kinds& kinds, Listener& listener) {
   {
     Progress progress("exporting " + log);
     while (const lcm::LogEvent* event = events.next()) {
-      const bool taken =
-          take_as<spoolwatch::sample_t>(log, *event, "sample", kinds, listener) ||
-          take_as<spoolwatch::estimate_t>(log, *event, "estimate", kinds, listener) ||
-          take_as<spoolwatch::alarm_t>(log, *event, "alarm", kinds, listener) ||
-          take_as<spoolwatch::health_t>(log, *event, "health", kinds, listener);
+      const bool taken = take(log, *event, kinds, listener);
       ours = ours || taken;
       progress.at(static_cast<std::size_t>(events.complete()), static_cast<std::size_t>(bytes));
     }
