@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "config/schema/error.h"
+#include "config/schema/key_depth.h"
 #include "config/schema/toml_reader.h"
 
 namespace config::schema {
@@ -63,6 +64,10 @@ Document Document::load(const std::filesystem::path& file) {
 }
 
 Document Document::parse(std::string_view text, std::string name) {
+  if (most_key_parts(text) > kMostKeyParts) {
+    throw bad_config(name, "nests a table by a key of too many parts",
+                     "up to " + std::to_string(kMostKeyParts));
+  }
   auto data = std::make_shared<Data>();
   data->table = parse_toml(text, name);
   data->name = std::move(name);

@@ -215,6 +215,24 @@ TEST(Document, ReadsAndPrintsTablesThatTheFileNamesInItsOrder) {
   }
 }
 
+TEST(Document, RefusesAKeyThatWouldExhaustTheStack) {
+  std::string parts;
+  for (int i = 0; i < 100'000; ++i) parts += "a.";
+  for (const std::string& text : {parts + "b = 1\n", "[" + parts + "b]\n", "[[" + parts + "b]]\n",
+                                  "x = {" + parts + "b = 1}\n"}) {
+    try {
+      (void)Document::parse(text, "deep.toml");
+      ADD_FAILURE() << "accepted";
+    } catch (const Error& error) {
+      EXPECT_STREQ(error.what(),
+                   "deep.toml: nests a table by a key of too many parts; allowed: up to 64");
+    }
+  }
+  // Dots elsewhere are no parts.
+  const std::string dots(200, '.');
+  (void)Document::parse("# " + dots + "\n" + "t = \"" + dots + "\"\nn = [0.1, 0.2]\n", "dots.toml");
+}
+
 TEST(Error, IsOneLineWhateverAFileSays) {
   EXPECT_STREQ(bad_data("a\nb.csv", "is '\x01\t'", "one\r\n").what(),
                "a b.csv: is '? '; allowed: one? ");
