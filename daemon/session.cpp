@@ -215,12 +215,12 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
                 {clock, *p.devices.rod, valve, *p.reference, *samples, commands, stats,
                  &p.devices.spare_rods, &p.devices.inputs, p.devices.permit.get()},
                 controller, p.sample_time_s, {config.safety, p.never_arms.empty()});
-  rt::Detector detector(
-      {clock, *samples, stats, *p.pipeline, publisher, recorder.get(), &keeping.orders,
-       &keeping.answers, keeping.store.get(), keeping.evidence.get(), keeping.pipeline_hash},
-      {config.rig_id, hex(p.hash), grant.text, config.rig.rod_backend(),
-       valve != nullptr ? valve_config.backend : "", ids_of(p.devices.spare_rods),
-       ids_of(p.devices.inputs), p.guards});
+  rt::Detector detector({clock, *samples, stats, *p.pipeline, publisher, recorder.get(),
+                         &keeping.orders, &keeping.answers, keeping.store.get(),
+                         keeping.audit.get(), keeping.evidence.get(), keeping.pipeline_hash},
+                        {config.rig_id, hex(p.hash), grant.text, config.rig.rod_backend(),
+                         valve != nullptr ? valve_config.backend : "", ids_of(p.devices.spare_rods),
+                         ids_of(p.devices.inputs), p.guards});
   keeping.bring_back(*p.pipeline, clock.utc_us(), log);
   CommandDesk desk({clock, commands, stats, &keeping.orders, &keeping.answers, keeping.audit.get()},
                    {config.rig_id, hex(p.hash), p.guards, ids_of(p.devices.spare_rods),

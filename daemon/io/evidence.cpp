@@ -71,6 +71,13 @@ bool Evidence::push(std::string_view channel, std::span<const std::uint8_t> data
 void Evidence::record(std::string_view channel, std::span<const std::uint8_t> data,
                       std::int64_t utc_us) noexcept {
   if (lost_ && push(kGapChannel, {}, utc_us)) lost_ = false;
+  if (new_files_ != nullptr) {
+    const std::vector<EvidenceFile>* address = new_files_.get();
+    if (push(kFilesChannel, {reinterpret_cast<const std::uint8_t*>(&address), sizeof address},
+             utc_us)) {
+      static_cast<void>(new_files_.release());  // the ring's
+    }
+  }
   if (lost_ || !push(channel, data, utc_us)) {
     lost_ = true;
     next_state_ = 0;  // what follows can be replayed from a new snapshot only
@@ -82,6 +89,11 @@ void Evidence::record(std::string_view channel, std::span<const std::uint8_t> da
 void Evidence::state(std::span<const std::uint8_t> snapshot, std::int64_t tick) noexcept {
   next_state_ = tick + state_every_;
   record(kStateChannel, snapshot, tick);
+}
+
+void Evidence::reconfigure(std::vector<EvidenceFile> files) {
+  new_files_ = std::make_unique<std::vector<EvidenceFile>>(std::move(files));
+  next_state_ = 0;
 }
 
 void Evidence::alarm(const estimator::fdi::Alarm& alarm, std::int64_t utc_us) noexcept {

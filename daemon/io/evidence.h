@@ -76,6 +76,9 @@ class Evidence {
   /// Whether a snapshot is due before the sample of this tick is published.
   [[nodiscard]] bool wants_state(std::int64_t tick) const noexcept { return tick >= next_state_; }
   void state(std::span<const std::uint8_t> snapshot, std::int64_t tick) noexcept;
+  /// From the next snapshot on another configuration applies: what is asked for is written with
+  /// what there is, and later folders get these files.
+  void reconfigure(std::vector<EvidenceFile> files);
   /// Asks for a folder: call it after the alarm was published.
   void alarm(const estimator::fdi::Alarm& alarm, std::int64_t utc_us) noexcept;
 
@@ -93,6 +96,8 @@ class Evidence {
   const bool background_;
   std::int64_t state_every_;  ///< ticks
   std::int64_t next_state_ = 0;
+  /// Of another configuration, on their way to the ring.
+  std::unique_ptr<std::vector<EvidenceFile>> new_files_;
   bool lost_ = false;  ///< messages, since the last that fitted
   std::unique_ptr<ByteQueue> queue_;
   std::unique_ptr<EvidenceRing> ring_;  ///< of the writing thread

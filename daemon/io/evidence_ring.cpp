@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <utility>
 
 #include "daemon/io/event_log.h"
@@ -49,6 +50,15 @@ void EvidenceRing::take(std::span<const std::uint8_t> record) {
   const Parts parts = parts_of(record);
   if (parts.channel == kGapChannel) {
     checkpoints_.clear();
+    return;
+  }
+  if (parts.channel == kFilesChannel) {
+    std::vector<EvidenceFile>* address = nullptr;
+    std::memcpy(&address, parts.data.data(), sizeof address);
+    const std::unique_ptr<std::vector<EvidenceFile>> files(address);
+    write_due(true);
+    checkpoints_.clear();
+    facts_.files = std::move(*files);
     return;
   }
   if (parts.channel == kAlarmChannel) {

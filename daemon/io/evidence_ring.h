@@ -18,6 +18,8 @@ namespace monitor::io {
 inline constexpr std::string_view kStateChannel = "#state";
 inline constexpr std::string_view kAlarmChannel = "#alarm";
 inline constexpr std::string_view kGapChannel = "#gap";
+/// Holds the address of a std::vector<EvidenceFile> that the ring takes over.
+inline constexpr std::string_view kFilesChannel = "#files";
 
 class EvidenceRing {
  public:

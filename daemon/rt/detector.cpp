@@ -1,6 +1,8 @@
 #include "daemon/rt/detector.h"
 
 #include <algorithm>
+#include <cstring>
+#include <string>
 
 #include "estimator/fdi/snapshot.h"
 
@@ -146,8 +148,24 @@ void Detector::once_a_second() {
                      parts_.recorder != nullptr ? parts_.recorder->status() : io::RecorderStatus{},
                      tick_, parts_.pipeline.alarms(), changed_,
                      parts_.evidence != nullptr ? parts_.evidence->status() : io::EvidenceStatus{});
+  watch_alarm_files();
   parts_.pipeline.alarms().for_each_active([this](const Alarm& alarm) { publish(alarm, true); });
   health();
+}
+
+void Detector::watch_alarm_files() {
+  if (parts_.store != nullptr) {
+    const int error = parts_.store->error();
+    condition("alarms", "not_saved", Severity::minor, error != 0,
+              error != 0
+                  ? std::string("alarms would not survive a restart: ") + std::strerror(error)
+                  : "");
+  }
+  if (parts_.audit == nullptr) return;
+  const std::int64_t lost = parts_.audit->lost();
+  condition("alarms", "audit_lost", Severity::minor, lost > audit_lost_before_,
+            "who did what could not be written down");
+  audit_lost_before_ = lost;
 }
 
 void Detector::health() {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "daemon/io/alarm_store.h"
+#include "daemon/io/audit.h"
 #include "daemon/io/conditions.h"
 #include "daemon/io/evidence.h"
 #include "daemon/io/publisher.h"
@@ -35,6 +36,7 @@ class Detector final : private estimator::fdi::Events {
     AlarmOrderQueue* orders = nullptr;  ///< of people, with `answers`
     AlarmAnswerQueue* answers = nullptr;
     io::AlarmStore* store = nullptr;
+    const io::Audit* audit = nullptr;
     io::Evidence* evidence = nullptr;
     std::uint64_t pipeline_hash = 0;  ///< fdi::hash_of(whole_text), for evidence
   };
@@ -69,6 +71,7 @@ class Detector final : private estimator::fdi::Events {
                  bool active, std::string_view reason);
   void watch_state();
   void once_a_second();
+  void watch_alarm_files();
   void health();
   [[nodiscard]] std::string why_latched() const;
   [[nodiscard]] io::Stamp stamp() const noexcept {
@@ -91,6 +94,7 @@ class Detector final : private estimator::fdi::Events {
   std::uint8_t state_ = 0;
   std::int64_t overruns_before_ = 0;
   std::int64_t dropped_before_ = 0;
+  std::int64_t audit_lost_before_ = 0;
 };
 
 }  // namespace monitor::rt

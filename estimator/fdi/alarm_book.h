@@ -107,6 +107,11 @@ class AlarmBook {
   [[nodiscard]] std::vector<SavedLife> lives() const;
   void restore(const std::vector<SavedLife>& lives);
 
+  /// Goes on with the lives of the book before it, for new rules on the same alarms: what was
+  /// active, latched, acknowledged or shelved there is so here. Alarms that only one of them has
+  /// are left as they are. Call before the first sample.
+  void inherit(const AlarmBook& before);
+
   /// Saves or restores every bit (carrier.h).
   void carry(Carrier& carrier);
 

@@ -79,6 +79,38 @@ void AlarmBook::restore(const std::vector<SavedLife>& lives) {
   recount();
 }
 
+void AlarmBook::inherit(const AlarmBook& before) {
+  tick_ = before.tick_;
+  utc_us_ = before.utc_us_;
+  changes_ = before.changes_ + 1;
+  for (std::size_t i = 0; i < before.alarms_.size(); ++i) {
+    const Alarm& from = before.alarms_[i];
+    const std::size_t number = find(from.source + "." + from.name);
+    if (number == kNone) continue;
+    Alarm& to = alarms_[number];
+    Memory& memory = memories_[number];
+    Alarm was = to;
+    to = from;
+    to.quantity = was.quantity;
+    to.parameter = was.parameter;
+    to.falls_with_parameter = was.falls_with_parameter;
+    to.ambiguity_group = was.ambiguity_group;
+    to.guidance = was.guidance;
+    to.low = was.low;
+    to.high = was.high;
+    to.rules = was.rules;
+    Memory mine = std::move(memory);
+    memory = before.memories_[i];
+    memory.comings = std::move(mine.comings);
+    memory.arrivals = std::move(mine.arrivals);
+    memory.timed = true;
+    if (to.shelved) {
+      to.shelved_until = std::min(to.shelved_until, tick_ + ticks(to.rules.shelve_limit_s));
+    }
+  }
+  recount();
+}
+
 void AlarmBook::show(std::size_t number, const Alarm& told) {
   Alarm& alarm = alarms_[number];
   alarm.active = told.active;

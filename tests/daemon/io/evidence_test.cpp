@@ -137,6 +137,25 @@ TEST_F(EvidenceTest, IsBoundedInNumberAndInBytesTheOldestGoFirst) {
   EXPECT_THAT(packs().front().string(), testing::EndsWith("-9500"));
 }
 
+TEST_F(EvidenceTest, KeepsWhatBelongsToTwoConfigurationsApart) {
+  const auto evidence = make();
+  Publisher publisher({"", "T"}, 7, kSampleTime_s, nullptr);
+  publisher.attach(*evidence);
+  run(*evidence, publisher, 0, 501);
+  raise(*evidence, 500);
+  run(*evidence, publisher, 501, 510);
+  evidence->reconfigure({{"model.toml", "m = 2\n"}});
+  run(*evidence, publisher, 510, 561);
+  raise(*evidence, 560);
+  run(*evidence, publisher, 561, 700);
+  ASSERT_EQ(packs().size(), 2U);
+  const auto model = [](const fs::path& pack) { return bytes_of(pack / "model.toml"); };
+  EXPECT_EQ(manifest(packs()[0])["last_tick"], 509);
+  EXPECT_EQ(model(packs()[0]), "m = 1\n");
+  EXPECT_EQ(manifest(packs()[1])["first_tick"], 510);
+  EXPECT_EQ(model(packs()[1]), "m = 2\n");
+}
+
 TEST_F(EvidenceTest, SaysWhenItsMemoryWasTooSmall) {
   config_.before_s = 600.0;  // with 1 MiB
   const auto evidence = make();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "tests/daemon/program/log.h"
@@ -103,6 +104,32 @@ TEST_F(Evidence, OfEachAlarmLeadsToTheSameAlarmBitForBit) {
   }
   EXPECT_THAT(names, testing::IsSupersetOf(
                          {"supply_pressure", "supply_pressure_fast", "pressure_recursive", "far"}));
+}
+
+TEST_F(Evidence, AndTheLogShowTheLifeOfAnAlarm) {
+  run_case(10.0);
+  const Log log = read_log(folder_.path() / "log");
+  std::string life;
+  bool repeated_latched = false;
+  for (const spoolwatch::alarm_t& alarm : log.alarms) {
+    if (alarm.name != "pressure_recursive") continue;
+    EXPECT_EQ(alarm.acknowledged, 0);
+    EXPECT_EQ(alarm.shelved, 0);
+    if (alarm.repeat != 0) {
+      repeated_latched = repeated_latched || alarm.latched != 0;
+    } else {
+      life += alarm.latched != 0 ? "latched " : alarm.active != 0 ? "active " : "normal ";
+    }
+  }
+  EXPECT_EQ(life, "active latched ") << "the pressure is normal again at 30 s";
+  EXPECT_TRUE(repeated_latched) << "it is still active";
+  int first = 0;
+  for (const spoolwatch::alarm_t& alarm : log.alarms) first += alarm.first_up && !alarm.repeat;
+  EXPECT_GE(first, 1);
+  std::map<std::string, bool> active;
+  for (const spoolwatch::alarm_t& alarm : log.alarms) active[alarm.name] = alarm.active != 0;
+  const auto count = std::count_if(active.begin(), active.end(), [](auto& a) { return a.second; });
+  EXPECT_EQ(log.healths.back().active_alarms, count);
 }
 
 TEST_F(Evidence, BeginsBeforeTheAlarmAndEndsAfterItAtFullRate) {

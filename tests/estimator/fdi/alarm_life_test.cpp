@@ -257,6 +257,44 @@ TEST_F(AlarmLife, SurvivesARestartAsFarAsItMatters) {
   EXPECT_FALSE(book.alarm(3).shelved) << "61 s were left of 100";
 }
 
+TEST_F(AlarmLife, GoesOnUnderNewRules) {
+  AlarmRules latching;
+  latching.latch = true;
+  for (const char* name : {"active", "latched", "shelved", "dropped"}) {
+    declare(name, std::string(name) == "latched" ? latching : AlarmRules{});
+  }
+  for (std::size_t i = 0; i < 4; ++i) cause(1, i);
+  gone(2, 1);
+  book.acknowledge(0, "ann");
+  book.shelve(2, 100.0, "bob");
+  book.set_condition("recorder", "disk_full", Severity::minor, true, "full", 2);
+  pass(10);
+  told.clear();
+
+  const AlarmBook before = book;
+  book = AlarmBook(1.0);
+  AlarmRules shorter;
+  shorter.shelve_limit_s = 20.0;
+  declare("new");
+  declare("shelved", shorter);
+  declare("latched", latching);
+  declare("active");
+  book.inherit(before);
+  EXPECT_EQ(book.alarm(0).life(), Life::normal);
+  EXPECT_EQ(book.alarm(1).life(), Life::shelved);
+  EXPECT_EQ(book.alarm(2).life(), Life::latched);
+  EXPECT_EQ(book.alarm(3).life(), Life::acknowledged);
+  EXPECT_EQ(book.active_count(), 2U);
+  cause(11, 3);
+  EXPECT_THAT(told, IsEmpty()) << "it is still the same alarm";
+  gone(12, 3);
+  EXPECT_THAT(told, ElementsAre("12 active NORMAL"));
+  pass(29);
+  EXPECT_TRUE(book.alarm(1).shelved);
+  pass(30);
+  EXPECT_FALSE(book.alarm(1).shelved) << "the new limit counts from the change on";
+}
+
 TEST_F(AlarmLife, ShelvesKeepTheirTimeWhenTicksBeginAgain) {
   const std::size_t a = declare("a");
   pass(1000);
