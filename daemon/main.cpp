@@ -80,10 +80,10 @@ int run(int argc, char** argv) {
       ->allow_extra_args(false);
   app.add_flag("--check", check, "validate, print the effective configuration, write nothing");
   const CLI::Option* note = app.add_option(
-      "--driving", options.driving, "file in which it stands what is driven, while it is driven");
+      "--driving", options.driving, "file that says what is driven, there for as long as it is");
   app.add_flag("--null", null,
-               "open the valve alone, write null, end; with --driving: the "
-               "valve that a daemon left behind, if one did");
+               "write null and nothing else; with --driving: only where a "
+               "daemon that died has left such a file");
   monitor::CommissionOptions commission;
   const CLI::Option* out = add_commission(app, commission);
   try {

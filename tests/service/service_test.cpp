@@ -118,6 +118,21 @@ TEST_F(Life, A_InstalledItIsThereAndNotStarted) {
   EXPECT_THAT(rules, Not(HasSubstr("60-spoolwatch.rules:"))) << "a rule that udev does not take";
 }
 
+TEST_F(Life, A_SamplesRunFromWhereThePackagePutsThem) {
+  for (const char* command :
+       {"spoolwatchd --config /usr/share/spoolwatch/demo.toml --clock virtual --duration 5 "
+        "--lcm-url ''",
+        "spoolwatch simulate /usr/share/spoolwatch/models/thesis_calibrated.toml --duration 4 "
+        "-o /tmp/record.csv",
+        "spoolwatch compare /usr/share/spoolwatch/models/thesis_calibrated.toml /tmp/record.csv",
+        "spoolwatchd --config /usr/share/spoolwatch/thesis_case1.toml --check",
+        "spoolwatch compare /usr/share/spoolwatch/models/rig_2000psi.toml "
+        "/usr/share/spoolwatch/tour/steps.csv"}) {
+    const Output output = machine().run(std::string("cd / && runuser -u guest1 -- ") + command);
+    EXPECT_EQ(output.exit_code, 0) << command << "\n" << output.text;
+  }
+}
+
 TEST_F(Life, B_StartedItIsReadyDisarmedAndInRealTime) {
   s().configure();
   const std::int64_t begin_ns = hal::monotonic_ns();
