@@ -1,0 +1,102 @@
+// People's acts on their way to the book, and guards that live like any alarm.
+#include "daemon/rt/alarm_desk.h"
+
+#include <gmock/gmock.h>
+
+#include "daemon/control/safety.h"
+#include "daemon/rt/guard_alarms.h"
+#include "daemon/rt/guard_board.h"
+
+namespace monitor::rt {
+namespace {
+
+using estimator::fdi::Alarm;
+using estimator::fdi::AlarmBook;
+using estimator::fdi::AlarmRules;
+using estimator::fdi::Life;
+using estimator::fdi::Severity;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using Kind = AlarmOrder::Kind;
+
+class AlarmDeskTest : public testing::Test {
+ protected:
+  AlarmAnswer order(Kind kind, const std::string& alarm = "", double time_s = 0.0) {
+    orders_.push({kind, alarm, "ann", time_s, ++number_});
+    desk_.serve(book_, [this](const Alarm& changed) { changed_.push_back(changed.name); });
+    std::shared_ptr<const AlarmAnswer> answer;
+    EXPECT_TRUE(answers_.pop(answer));
+    EXPECT_EQ(answer->number, number_);
+    return *answer;
+  }
+
+  AlarmBook book_{1.0};
+  AlarmOrderQueue orders_;
+  AlarmAnswerQueue answers_;
+  AlarmDesk desk_{&orders_, &answers_};
+  std::uint32_t number_ = 0;
+  std::vector<std::string> changed_;
+};
+
+TEST_F(AlarmDeskTest, CarriesOutWhatIsOrderedAndTellsWhatHasChanged) {
+  for (const char* name : {"a", "b", "c"}) {
+    book_.set_condition("s", name, Severity::minor, true, "", 1);
+  }
+  book_.set_condition("s", "c", Severity::minor, false, "", 2);
+  EXPECT_THAT(order(Kind::shelve, "s.a", 60.0).done, ElementsAre("s.a"));
+  EXPECT_EQ(book_.alarm(0).shelved_by, "ann");
+  EXPECT_THAT(order(Kind::acknowledge, "b").done, ElementsAre("s.b"));
+  EXPECT_THAT(changed_, ElementsAre("a", "b"));
+  const AlarmAnswer all = order(Kind::acknowledge_all);
+  EXPECT_THAT(all.done, ElementsAre("s.a", "s.c")) << "what nobody had acknowledged";
+  EXPECT_THAT(order(Kind::acknowledge_all).done, IsEmpty());
+  EXPECT_THAT(order(Kind::unshelve, "a").done, ElementsAre("s.a"));
+}
+
+TEST_F(AlarmDeskTest, RefusesInWords) {
+  book_.set_condition("s", "a", Severity::minor, true, "", 1);
+  EXPECT_THAT(order(Kind::acknowledge, "x").refusal, HasSubstr("there is no alarm \"x\""));
+  EXPECT_EQ(order(Kind::unshelve, "a").refusal, "s.a: it is not shelved");
+  EXPECT_THAT(order(Kind::shelve, "a", 1e9).refusal, HasSubstr("s.a: it can be shelved for"));
+  EXPECT_THAT(changed_, IsEmpty());
+}
+
+TEST_F(AlarmDeskTest, ListsEveryAlarmWithWhatIsLeftOfItsShelf) {
+  book_.set_condition("s", "a", Severity::minor, true, "why", 1);
+  order(Kind::shelve, "a", 60.0);
+  book_.advance(20, 0, [](const Alarm&) {});
+  const AlarmAnswer list = order(Kind::list);
+  ASSERT_EQ(list.alarms.size(), 1U);
+  EXPECT_EQ(list.alarms[0].alarm.reason, "why");
+  EXPECT_EQ(list.alarms[0].shelved_for_s, 40.0);
+}
+
+TEST(GuardAlarms, LiveByTheRulesOfAllThatIsNoBand) {
+  const auto guards = control::all_guards({}, control::Action::latch);
+  control::Safety safety(guards, 0.005);
+  GuardBoard board;
+  AlarmBook book(0.005);
+  AlarmRules rules;
+  rules.latch = true;
+  book.set_condition_rules(rules);
+  GuardAlarms alarms(guards, book);
+  const std::size_t e_stop = book.find("loop.e_stop");
+  ASSERT_NE(e_stop, AlarmBook::kNone);
+  std::vector<Life> lives;
+  const auto report = [&](bool pressed, std::int64_t tick) {
+    safety.set(control::GuardKind::e_stop, pressed, 0.0);
+    board.show(safety);
+    book.advance(tick, 0, [](const Alarm&) {});
+    alarms.report(board, tick, [&](const Alarm& alarm) { lives.push_back(alarm.life()); });
+  };
+  report(true, 1);
+  report(false, 2);  // shown as active once more: it was, since the last look
+  report(false, 3);
+  EXPECT_THAT(lives, ElementsAre(Life::unacknowledged, Life::latched));
+  book.acknowledge(e_stop, "ann");
+  EXPECT_EQ(book.alarm(e_stop).life(), Life::normal);
+}
+
+}  // namespace
+}  // namespace monitor::rt
