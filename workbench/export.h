@@ -10,7 +10,7 @@ namespace workbench {
 /// "all"; without one it is all of them, and of CSV, which is one table, the samples. Throws
 /// config::schema::Error: 65 for an input that is none or of another type, 2 for an unknown format
 /// or an output over the input, 1 when the file cannot be written.
-void export_log(const std::string& input, const std::string& file,
-                const std::string& channel = "", const std::string& format = "");
+void export_log(const std::string& input, const std::string& file, const std::string& channel = "",
+                const std::string& format = "");
 
 }  // namespace workbench

@@ -56,6 +56,7 @@ bool is_main(const Column& column) { return main_of(column) != nullptr; }
 std::vector<Target> lay_out(const std::vector<std::string>& names, const std::string& where,
                             Record& record) {
   std::vector<Column> columns;
+  columns.reserve(names.size());
   for (const std::string& name : names) columns.push_back(parse_column(name));
   std::vector<Target> targets;
   record.further.reserve(columns.size());

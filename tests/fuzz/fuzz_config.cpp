@@ -32,6 +32,7 @@ void read_and_print(const Document& document, const char* table) {
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   fuzz::allow_errors([&] {
     const Document document = Document::parse(fuzz::text_of(data, size), "fuzz.toml");

@@ -70,6 +70,7 @@ int client_of(const std::string& path) {
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static Daemon daemon;
   const int client = client_of(daemon.path());

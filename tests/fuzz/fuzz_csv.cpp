@@ -4,6 +4,7 @@
 #include "config/record/csv_reader.h"
 #include "tests/fuzz/input.h"
 
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   fuzz::allow_errors([&] {
     const auto record = config::record::read_csv(fuzz::text_of(data, size), "fuzz.csv");

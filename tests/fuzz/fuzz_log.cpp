@@ -8,6 +8,7 @@
 #include "workbench/interchange/export_json.h"
 #include "workbench/interchange/export_mat.h"
 
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string file = fuzz::file_with(fuzz::text_of(data, size));
   const workbench::interchange::Kinds kinds{"sample", "estimate", "alarm", "health"};

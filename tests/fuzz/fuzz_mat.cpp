@@ -5,6 +5,7 @@
 #include "config/record/mat_variables.h"
 #include "tests/fuzz/input.h"
 
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view content = fuzz::text_of(data, size);
   if (!config::record::is_mat_file(content)) return 0;

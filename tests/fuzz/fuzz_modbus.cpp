@@ -75,6 +75,7 @@ Codec codec_of(const char* type) {
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static Device& device = *new Device;  // lives as long as its thread
   if (size < 1) return 0;

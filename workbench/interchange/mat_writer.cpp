@@ -85,6 +85,7 @@ MatValue::MatValue(const std::string& text) {
 
 MatValue::MatValue(std::size_t size, const std::vector<std::string>& fields) {
   std::vector<const char*> names;
+  names.reserve(fields.size());
   for (const std::string& field : fields) names.push_back(field.c_str());
   std::array<std::size_t, 2> dims{size, 1};
   variable_.reset(checked(Mat_VarCreateStruct(nullptr, 2, dims.data(), names.data(),
