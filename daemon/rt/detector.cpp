@@ -138,7 +138,7 @@ std::string Detector::why_latched() const {
 void Detector::once_a_second() {
   const std::int64_t overruns = parts_.stats.overruns.value();
   const std::int64_t dropped = parts_.stats.dropped_samples.value();
-  condition("loop", "overrun", Severity::minor, overruns > overruns_before_,
+  condition("loop", "lost_periods", Severity::minor, overruns > overruns_before_,
             "periods were lost in the last second");
   condition("loop", "dropping", Severity::invalid, dropped > dropped_before_,
             "the detector does not keep up: samples were dropped in the last second");

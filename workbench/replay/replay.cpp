@@ -1,6 +1,7 @@
 // spoolwatch replay FOLDER: from the evidence of an alarm to the same alarm, bit for bit.
 #include <CLI/CLI.hpp>
 #include <bit>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -43,17 +44,26 @@ void print(const Pack& pack, const ReplayOutcome& outcome, std::ostream& out) {
       << outcome.estimates_same << " of " << outcome.estimates << " estimates and "
       << outcome.alarms_same << " of " << outcome.alarms << " changes of alarms the same\n";
   if (outcome.found) {
-    char value[40];
-    std::snprintf(value, sizeof value, "%.9g", outcome.alarm.value);
     out << "  " << to_string(outcome.alarm.severity) << " at sample " << outcome.alarm.tick << ", "
-        << seconds(pack, outcome.alarm.tick) << ": " << outcome.alarm.quantity << " = " << value
-        << ", bits " << hex(outcome.alarm.value) << '\n';
-    if (!outcome.derived) out << "  told by " << pack.source << ": shown as it was recorded\n";
+        << seconds(pack, outcome.alarm.tick) << ": ";
+    if (std::isfinite(outcome.alarm.value)) {
+      char value[40];
+      std::snprintf(value, sizeof value, "%.9g", outcome.alarm.value);
+      out << outcome.alarm.quantity << " = " << value << ", bits " << hex(outcome.alarm.value)
+          << '\n';
+    } else {
+      out << outcome.alarm.reason << '\n';
+    }
+    if (!outcome.derived) {
+      out << "  this alarm does not come from the fault detection: shown as it was recorded\n";
+    }
   }
   for (const std::string& difference : outcome.differences) out << "  " << difference << '\n';
-  out << (outcome.same()  ? "the same alarm, bit for bit\n"
-          : outcome.found ? "not the same\n"
-                          : "the alarm does not come again\n");
+  if (outcome.same()) {
+    out << (outcome.derived ? "the same alarm" : "the same fault detection") << ", bit for bit\n";
+  } else {
+    out << (outcome.found ? "not the same\n" : "the alarm does not come again\n");
+  }
 }
 
 Json as_json(const Pack& pack, const ReplayOutcome& outcome) {
