@@ -201,6 +201,7 @@ io::ControlStatus CommandDesk::status() const {
   status.u_V = stats.u_V.load(std::memory_order_relaxed);
   status.ticks = stats.ticks.value();
   status.overruns = stats.overruns.value();
+  status.active_alarms = stats.active_alarms.load(std::memory_order_relaxed);
   for (std::size_t i = 0; i < identity_.guards.size(); ++i) {
     const control::GuardConfig& guard = identity_.guards[i];
     const bool active = ((stats.guards.active() >> i) & 1U) != 0;

@@ -125,6 +125,7 @@ std::string print_status(const ControlStatus& status) {
   line["u_V"] = number(status.u_V);
   line["ticks"] = status.ticks;
   line["overruns"] = status.overruns;
+  line["active_alarms"] = status.active_alarms;
   ordered_json guards = ordered_json::array();
   for (const auto& guard : status.guards) {
     guards.push_back({{"id", guard.id},

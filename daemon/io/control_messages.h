@@ -58,6 +58,7 @@ struct ControlStatus {
   double u_V = std::numeric_limits<double>::quiet_NaN();
   std::int64_t ticks = 0;
   std::int64_t overruns = 0;
+  std::int64_t active_alarms = 0;
   std::vector<Guard> guards;
   std::vector<Input> spare_rods, inputs;
 };

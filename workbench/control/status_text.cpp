@@ -52,6 +52,12 @@ void print_status(const Json& status, std::ostream& out) {
       << number_of(status, "u_V", 1.0, " V") << '\n';
   print_inputs(status, "spare_rods", "spare rod", out);
   print_inputs(status, "inputs", "input", out);
+  const auto alarms = status.find("active_alarms");
+  if (alarms != status.end() && alarms->is_number_integer() && alarms->get<long long>() > 0) {
+    const auto count = alarms->get<long long>();
+    out << "  " << count << (count == 1 ? " alarm is" : " alarms are")
+        << " active: spoolwatch alarms\n";
+  }
   const auto guards = status.find("guards");
   if (guards == status.end() || !guards->is_array()) return;
   for (const Json& guard : *guards) {

@@ -78,6 +78,14 @@ after_s = 1.0
     }
     return false;
   }
+  /// The daemon counts once a second.
+  bool status_shows(const std::string& text) {
+    for (int i = 0; i < 100; ++i) {
+      if (order("status").out.find(text) != std::string::npos) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    return false;
+  }
   [[nodiscard]] std::vector<json> audit() const {
     std::vector<json> lines;
     std::ifstream in(folder_.path() / "alarms" / "audit.log");
@@ -94,6 +102,7 @@ TEST_F(Alarms, AreSeenActedOnAndFoundAgainAfterAKill) {
   ASSERT_TRUE(shows("UNACKNOWLEDGED  MAJOR    sample.standing"));
   EXPECT_THAT(order("alarms").out, HasSubstr("first up"));
   EXPECT_THAT(order("alarms").out, HasSubstr("    do: nothing\n"));
+  EXPECT_TRUE(status_shows(" active: spoolwatch alarms\n"));
   EXPECT_EQ(order("ack sample.standing").out, "sample.standing\n");
   EXPECT_THAT(order("alarms").out, HasSubstr("ACKNOWLEDGED    MAJOR    sample.standing"));
   const Result again = order("ack standing");
