@@ -66,18 +66,20 @@ struct Friction {
   };
 
   static S friction_N(const Parameters& p, const Memory& memory, const DryContact<S>& at) {
-    const S forward_N = level_N(p, S(1.0), at.v_mps);
-    const S backward_N = level_N(p, S(-1.0), at.v_mps);
+    const S rise = rise_ratio(p, at.v_mps);
+    const S forward_N = level_at_N(p, S(1.0), rise);
+    const S backward_N = level_at_N(p, S(-1.0), rise);
     const S least_N = select(at.v_mps > S(0.0), S(0.0), -backward_N);
     const S most_N = select(at.v_mps < S(0.0), S(0.0), forward_N);
     const S rigid_N = clamp(at.drive_N + at.arrest_kg_per_s * at.v_mps, least_N, most_N);
-    const S spring_N =
-        p.presliding_stiffness_N_per_m * deflection_m(p, memory, at.travel_m, at.v_mps);
+    const auto bristled = p.presliding_stiffness_N_per_m > S(0.0);
+    if (all(p.presliding_stiffness_N_per_m <= S(0.0))) return rigid_N;
+    const S spring_N = p.presliding_stiffness_N_per_m * deflected_m(p, memory, at.travel_m, rise);
     const S along_N = select(at.v_mps < S(0.0), -spring_N, spring_N);
     const S level = max(select(at.v_mps < S(0.0), backward_N, forward_N), S(kLeastLevel_N));
     const S still = max(S(1.0) - along_N / level, S(0.0));  // z' / v
     const S bristle_N = spring_N + p.presliding_damping_N_s_per_m * at.v_mps * still;
-    return select(p.presliding_stiffness_N_per_m > S(0.0), bristle_N, rigid_N);
+    return select(bristled, bristle_N, rigid_N);
   }
 
   static S stiffness_N_per_m(const Parameters& p) { return p.presliding_stiffness_N_per_m; }
@@ -87,8 +89,11 @@ struct Friction {
   }
 
   static void accept(const Parameters& p, Memory& memory, const S& travel_m, const S& v_mps) {
-    memory.deflection_m = deflection_m(p, memory, travel_m, v_mps);
-    memory.rise_ratio = rise_ratio(p, v_mps);
+    const S rise = rise_ratio(p, v_mps);
+    if (!all(p.presliding_stiffness_N_per_m <= S(0.0))) {
+      memory.deflection_m = deflected_m(p, memory, travel_m, rise);
+    }
+    memory.rise_ratio = rise;
   }
 
   /// Sliding friction at this speed in the given direction (+1 extends, -1 retracts), >= 0.
@@ -102,6 +107,8 @@ struct Friction {
   static constexpr double kLeastLevel_N = 1e-9;
 
   static S rise_ratio(const Parameters& p, const S& v_mps) {
+    const S least_N = p.coulomb_N * (S(1.0) - abs(p.direction_ratio));
+    if (all(p.static_N <= least_N)) return S(1.0);
     const S ratio = v_mps / max(p.stribeck_mps, S(kLeastStribeck_mps));
     return exp(-min(ratio * ratio, S(kNoRise)));
   }
@@ -113,10 +120,10 @@ struct Friction {
 
   /// The bristle after a travel of the rod: z goes to +-g/k exponentially, at the mean of the
   /// levels at both ends, which makes the error of a step one of its third order.
-  static S deflection_m(const Parameters& p, const Memory& memory, const S& travel_m,
-                        const S& v_mps) {
+  static S deflected_m(const Parameters& p, const Memory& memory, const S& travel_m,
+                       const S& rise) {
     const S direction = select(travel_m < S(0.0), S(-1.0), S(1.0));
-    const S mean_ratio = S(0.5) * (memory.rise_ratio + rise_ratio(p, v_mps));
+    const S mean_ratio = S(0.5) * (memory.rise_ratio + rise);
     const S level = max(level_at_N(p, direction, mean_ratio), S(kLeastLevel_N));
     const S k = max(p.presliding_stiffness_N_per_m, S(kLeastLevel_N));
     const S remains = exp(-min(abs(travel_m) * k / level, S(kNoRise)));

@@ -120,6 +120,7 @@ void try_beginning(const Workshop& shop, const Stage& first, const Candidate& ca
                    Trodden& best) {
   Trodden other{with(first, candidate), {best.rounds.front()}};
   other.stage.fitted = finished(shop, other.stage.fitted);
+  if (!is_explained(shop, other.stage)) drop_hindrances(shop, other.stage);
   go_on(shop, other.stage, other.rounds, false);
   look_over(shop, other.stage, Look::on_the_way);
   if (other.stage.fitted.score_rms_m < (1.0 - kRivals) * best.stage.fitted.score_rms_m) {

@@ -35,17 +35,25 @@ void drop_effects(const Workshop& shop, Stage& stage) {
   }
 }
 
+/// Those of an effect that are searched, the last first.
+std::set<int, std::greater<>> refinements_of(const Fitted& fitted, const std::string& effect) {
+  std::set<int, std::greater<>> refinements;
+  for (const SearchParameter& p : fitted.searched) {
+    if (belongs(p, effect) && p.refinement > 0) refinements.insert(p.refinement);
+  }
+  return refinements;
+}
+
+Selection without_refinement(const Fitted& fitted, const std::string& effect, int refinement) {
+  return select(fitted,
+                [&](const auto& p) { return !belongs(p, effect) || p.refinement != refinement; });
+}
+
 void drop_refinements(const Workshop& shop, Stage& stage) {
   for (const std::string& effect : stage.added) {
-    std::set<int, std::greater<>> refinements;
-    for (const SearchParameter& p : stage.fitted.searched) {
-      if (belongs(p, effect) && p.refinement > 0) refinements.insert(p.refinement);
-    }
-    for (const int refinement : refinements) {
+    for (const int refinement : refinements_of(stage.fitted, effect)) {
       if (shop.cancelled()) return;
-      const Selection plain = select(stage.fitted, [&](const auto& p) {
-        return !belongs(p, effect) || p.refinement != refinement;
-      });
+      const Selection plain = without_refinement(stage.fitted, effect, refinement);
       Fitted without = refit(shop, plain, shop.evidence.fits, shop.threads);
       const bool earned =
           !costs_little(shop, without, stage.fitted) &&
@@ -84,6 +92,17 @@ void add_refinements(const Workshop& shop, Stage& stage) {
 }
 
 }  // namespace
+
+void drop_hindrances(const Workshop& shop, Stage& stage) {
+  for (const std::string& effect : stage.added) {
+    for (const int refinement : refinements_of(stage.fitted, effect)) {
+      if (shop.cancelled()) return;
+      Fitted without = refit(shop, without_refinement(stage.fitted, effect, refinement),
+                             shop.evidence.fits, shop.threads);
+      if (without.score_rms_m < stage.fitted.score_rms_m) stage.fitted = std::move(without);
+    }
+  }
+}
 
 void look_over(const Workshop& shop, Stage& stage, Look look) {
   drop_effects(shop, stage);

@@ -18,6 +18,9 @@ constexpr std::size_t kLargestGroup = 3;
 /// other effects are in place.
 constexpr double kWorthARefit = 2.0;
 constexpr std::size_t kMostRefits = 4;
+/// One that after so many iterations is still that much worse than the found effect is none.
+constexpr int kFirstIterations = 8;
+constexpr double kHopeless = 3.0;
 /// A rival brings at least this share of what the found effect brings.
 constexpr double kShareOfGain = 0.5;
 /// Probability of chance below which the held-out data do tell the found effect from a rival.
@@ -46,6 +49,14 @@ Fitted replaced(const Workshop& shop, const Stage& final, const std::string& eff
   const Selection own = select(
       candidate.fitted, [&](const auto& p) { return belongs(p, candidate.effects.front()); });
   append(selection, own);
+  matching::FitOptions begin;
+  begin.max_iterations = kFirstIterations;
+  begin.final_jacobian = false;
+  begin.cancel = shop.cancel;
+  const Fitted begun = matching::fit(shop.model, shop.evidence, shop.evidence.fits,
+                                     selection.searched, selection.start, begin);
+  if (begun.score_rms_m > kHopeless * final.fitted.score_rms_m) return begun;
+  selection.start = begun.x;
   return refit(shop, selection, shop.evidence.fits);
 }
 

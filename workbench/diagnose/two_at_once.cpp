@@ -5,6 +5,7 @@
 #include <atomic>
 #include <limits>
 
+#include "workbench/diagnose/excerpt.h"
 #include "workbench/diagnose/parallel.h"
 #include "workbench/diagnose/projection.h"
 #include "workbench/diagnose/rounds.h"
@@ -20,7 +21,9 @@ using matching::SearchParameter;
 
 /// Of the trial sizes of an effect, the last so many: those that are not small.
 constexpr Index kSizes = 4;
-/// That many couples are fitted, each from its best start seen from either base.
+/// That many couples, the best on a stretch of the record, are looked at on all of it.
+constexpr std::size_t kLookedAt = 16;
+/// That many are fitted, each from its best start seen from either base.
 constexpr std::size_t kFitted = 6;
 
 struct Effect {
@@ -50,9 +53,9 @@ std::vector<Effect> effects_of(const Workshop& shop, const std::vector<std::stri
 }
 
 /// The best combination of sizes, the model's own parameters being at `base`.
-void look(const Workshop& shop, const Projection& projection, const VectorXd& base,
-          Couple& couple) {
-  matching::EvidenceRun run(shop.model, shop.evidence, couple.searched);
+void look(const plant_sim::ModelFile& model, const matching::Evidence& evidence,
+          const Projection& projection, const VectorXd& base, Couple& couple) {
+  matching::EvidenceRun run(model, evidence, couple.searched);
   const Index first = couple.first->sizes.rows();
   const Index second = couple.second->sizes.rows();
   MatrixXd points(base.size() + first + second, kSizes * kSizes);
@@ -79,12 +82,27 @@ void look(const Workshop& shop, const Projection& projection, const VectorXd& ba
   couple.starts.emplace_back(points.col(best));
 }
 
+/// Looks at all couples from all bases and keeps the `most` best, the best first.
+void look_at(const Workshop& shop, const matching::Evidence& evidence, const Projection& projection,
+             const std::array<const VectorXd*, 2>& bases, std::size_t most,
+             std::vector<Couple>& couples) {
+  in_parallel(couples.size(), shop.threads, [&](std::size_t i) {
+    couples[i].cost = std::numeric_limits<double>::infinity();
+    couples[i].starts.clear();
+    for (const VectorXd* base : bases) {
+      if (!shop.cancelled()) look(shop.model, evidence, projection, *base, couples[i]);
+    }
+  });
+  std::stable_sort(couples.begin(), couples.end(),
+                   [](const Couple& a, const Couple& b) { return a.cost < b.cost; });
+  couples.resize(std::min(couples.size(), most));
+}
+
 }  // namespace
 
 std::vector<Candidate> two_at_once(const Workshop& shop, const Stage& stage,
                                    const std::vector<std::string>& without) {
   const std::vector<Effect> effects = effects_of(shop, without);
-  const Projection projection(stage.fitted, shop.evidence.fits);
   const VectorXd nominal = with_file_values(shop, stage);
   const std::array<const VectorXd*, 2> bases{&nominal, &stage.fitted.x};
   std::vector<Couple> couples;
@@ -100,14 +118,11 @@ std::vector<Candidate> two_at_once(const Workshop& shop, const Stage& stage,
       couples.push_back(std::move(couple));
     }
   }
-  in_parallel(couples.size(), shop.threads, [&](std::size_t i) {
-    for (const VectorXd* base : bases) {
-      if (!shop.cancelled()) look(shop, projection, *base, couples[i]);
-    }
-  });
-  std::stable_sort(couples.begin(), couples.end(),
-                   [](const Couple& a, const Couple& b) { return a.cost < b.cost; });
-  couples.resize(std::min(couples.size(), kFitted));
+  const Excerpt excerpt = excerpt_of(shop.evidence, stage.fitted);
+  const Projection there(excerpt.fitted, excerpt.evidence.counts);
+  look_at(shop, excerpt.evidence, there, bases, kLookedAt, couples);
+  look_at(shop, shop.evidence, Projection(stage.fitted, shop.evidence.fits), bases, kFitted,
+          couples);
   std::vector<Candidate> candidates(couples.size());
   std::atomic<bool> explained = false;
   in_parallel(couples.size(), shop.threads, [&](std::size_t i) {
