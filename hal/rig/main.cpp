@@ -3,11 +3,14 @@
 #include <sched.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <csignal>
 #include <iostream>
+#include <optional>
 
 #include "config/schema/error.h"
 #include "hal/device_thread.h"
+#include "hal/rig/moved_lines.h"
 #include "hal/rig/register_map.h"
 #include "hal/rig/server.h"
 
@@ -42,13 +45,26 @@ int serve(const Options& options, bool has_listen, bool has_serial) {
   }
   if (!server.address().empty()) std::cout << "listening on " << server.address() << std::endl;
   if (!config.bus.serial.empty()) std::cout << "listening on " << config.bus.serial << std::endl;
+  std::optional<hal::rig::MovedLines> lines;
+  if (config.gpio.present) {
+    lines.emplace(config, rig);
+    std::cout << "moving lines of " << config.gpio.chip << std::endl;
+  }
   const auto end_ns = start_ns + static_cast<std::int64_t>(options.duration_s * 1e9);
-  server.run([&] {
+  const auto stop = [&] {
+    if (lines) {
+      rig.advance_to(hal::monotonic_ns());
+      lines->follow(rig);
+    }
     return stop_asked != 0 || (options.duration_s > 0.0 && hal::monotonic_ns() >= end_ns);
-  });
+  };
+  constexpr double kWithoutLines_s = 5e-3;
+  const double every_s = lines ? config.gpio.interval_s : kWithoutLines_s;
+  server.run(stop, static_cast<int>(std::lround(1e3 * every_s)));
   const auto& counts = server.counts();
   std::cerr << "spoolwatch-rig: " << counts.requests << " requests of " << counts.clients
             << " clients, " << counts.refused << " refused\n";
+  if (lines) std::cerr << "spoolwatch-rig: " << lines->edges() << " edges\n";
   return static_cast<int>(ExitCode::done);
 }
 

@@ -32,8 +32,22 @@ void BusConfig::visit(config::schema::Visitor& v) {
   v.integer({"priority", "of SCHED_FIFO, where allowed; 0: none"}, priority, {0, 99});
 }
 
+void GpioConfig::visit(config::schema::Visitor& v) {
+  constexpr std::int64_t kMost = 1023;
+  v.text({"chip", "a chip of gpio-sim: gpiochip0", true}, chip);
+  v.integer({"line_a", "of the encoder"}, line_a, {0, kMost});
+  v.integer({"line_b", "of the encoder"}, line_b, {0, kMost});
+  v.integer({"line_index", "of the encoder, -1: none"}, line_index, {-1, kMost});
+  v.integer({"line_e_stop", "high while it is released, -1: none"}, line_e_stop, {-1, kMost});
+  v.integer({"line_enable", "high while enabled, -1: none"}, line_enable, {-1, kMost});
+  v.number({"count_m", "of a quarter of a cycle"}, count_m, {1e-9, 1.0});
+  v.number({"interval_s", "the lines follow so often"}, interval_s, {1e-3, 1.0});
+}
+
 void RigConfig::visit(config::schema::Visitor& v) {
   v.table({"bus", "where it is reached"}, [this](config::schema::Visitor& t) { bus.visit(t); });
+  v.optional_table({"gpio", "lines of a simulated GPIO chip"}, gpio.present,
+                   [this](config::schema::Visitor& t) { gpio.visit(t); });
   v.table({"sim", "the plant and its faults"},
           [this](config::schema::Visitor& t) { sim.visit(t); });
   v.table({"field", "wiring and time-outs"},

@@ -1,5 +1,5 @@
 // What spoolwatch-rig is told: the simulated plant and its faults as [sim] has them, and what
-// stands between them and the bus. TOML tables: [bus], [sim], [[sim.fault]], [field].
+// stands between them and the bus. TOML tables: [bus], [gpio], [sim], [[sim.fault]], [field].
 #pragma once
 
 #include <cstdint>
@@ -39,10 +39,26 @@ struct BusConfig {
   void visit(config::schema::Visitor& v);
 };
 
+/// TOML [gpio]: lines of a simulated chip (gpio-sim) that the encoder and the switches move.
+struct GpioConfig {
+  bool present = false;
+  std::string chip;  ///< "gpiochip0"
+  std::int64_t line_a = 0;
+  std::int64_t line_b = 1;
+  std::int64_t line_index = -1;   ///< -1: none; high at the count where the rod begins
+  std::int64_t line_e_stop = -1;  ///< -1: none; high while it is released
+  std::int64_t line_enable = -1;  ///< -1: none
+  double count_m = 1e-4;          ///< a quarter of a cycle
+  double interval_s = 1e-3;       ///< the lines follow so often
+
+  void visit(config::schema::Visitor& v);
+};
+
 struct RigConfig {
   std::string file;
   std::filesystem::path folder;
   BusConfig bus;
+  GpioConfig gpio;
   plant_sim::BenchPlant sim;
   FieldConfig field;
 

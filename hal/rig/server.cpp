@@ -24,7 +24,6 @@ namespace {
 
 using config::schema::bad_config;
 
-constexpr int kPoll_ms = 5;
 constexpr int kMostClients = 16;
 /// A request that does not come whole within this time ends its connection.
 constexpr std::uint32_t kWhole_us = 20'000;
@@ -120,13 +119,13 @@ void Server::accept_client() {
   ++counts_.clients;
 }
 
-void Server::run(const std::function<bool()>& stop) {
+void Server::run(const std::function<bool()>& stop, int every_ms) {
   while (!stop()) {
     std::vector<pollfd> files;
     for (const int client : clients_) files.push_back({client, POLLIN, 0});
     if (listener_ >= 0) files.push_back({listener_, POLLIN, 0});
     if (serial_ != nullptr) files.push_back({modbus_get_socket(serial_.get()), POLLIN, 0});
-    poll(files.data(), files.size(), kPoll_ms);
+    poll(files.data(), files.size(), every_ms);
     rig_.advance_to(monotonic_ns());
     for (const pollfd& file : files) {
       if (file.revents == 0) continue;

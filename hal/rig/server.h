@@ -24,8 +24,8 @@ class Server {
 
   /// "127.0.0.1:41234", "" without TCP.
   [[nodiscard]] const std::string& address() const noexcept { return address_; }
-  /// Answers until `stop` says so, asked every few milliseconds.
-  void run(const std::function<bool()>& stop);
+  /// Answers until `stop` says so, asked that often at least.
+  void run(const std::function<bool()>& stop, int every_ms = 5);
 
   struct Counts {
     std::uint64_t requests = 0;
