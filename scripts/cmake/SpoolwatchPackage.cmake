@@ -9,7 +9,7 @@ set(made "${CMAKE_BINARY_DIR}/packaging")
 file(MAKE_DIRECTORY "${made}")
 
 # Man pages and completion, from what the programs say of themselves.
-set(pages "${CMAKE_SOURCE_DIR}/packaging/pages")
+set(pages "${CMAKE_SOURCE_DIR}/systemd/package/pages")
 function(spoolwatch_page output depends)
   add_custom_command(OUTPUT "${made}/${output}"
     COMMAND sh -c "\"$@\" > '${made}/${output}.part' && mv '${made}/${output}.part' '${made}/${output}'"
@@ -20,7 +20,7 @@ set(programs spoolwatchd spoolwatch spoolwatch-rig)
 set(sections 8 1 1)
 set(outputs "")
 foreach(program section IN ZIP_LISTS programs sections)
-  set(extra "${CMAKE_SOURCE_DIR}/packaging/${program}.roff")
+  set(extra "${CMAKE_SOURCE_DIR}/systemd/package/${program}.roff")
   spoolwatch_page(${program}.${section} "${program};${extra}"
     man $<TARGET_FILE:${program}> ${section} ${PROJECT_VERSION} "${extra}")
   list(APPEND outputs "${made}/${program}.${section}")
@@ -55,7 +55,7 @@ install(FILES ${configurations} DESTINATION "${share}")
 install(DIRECTORY config/models config/tour DESTINATION "${share}")
 install(FILES config/messages/spoolwatch.lcm DESTINATION "${share}/messages")
 install(FILES README.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
-install(FILES packaging/copyright DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+install(FILES systemd/package/copyright DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 
 # Compressed as Debian wants it, the same bytes from the same input.
 install(CODE "
@@ -84,6 +84,6 @@ set(CPACK_DEBIAN_PACKAGE_SUGGESTS "bash-completion")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 file(WRITE "${made}/conffiles" "/etc/spoolwatch/spoolwatchd.toml\n")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA "${made}/conffiles"
-  "${CMAKE_SOURCE_DIR}/packaging/postinst" "${CMAKE_SOURCE_DIR}/packaging/prerm"
-  "${CMAKE_SOURCE_DIR}/packaging/postrm")
+  "${CMAKE_SOURCE_DIR}/systemd/package/postinst" "${CMAKE_SOURCE_DIR}/systemd/package/prerm"
+  "${CMAKE_SOURCE_DIR}/systemd/package/postrm")
 include(CPack)
