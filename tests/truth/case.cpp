@@ -29,6 +29,7 @@ double number(const std::string& key, const std::string& value) {
 bool set_number(Case& of, const std::string& key, double value) {
   if (key == "mismatched") return of.mismatched = value != 0.0, true;
   if (key == "length_s") return of.length_s = value, true;
+  if (key == "kp_V_per_m") return of.kp_V_per_m = value, true;
   if (key == "noise_m") return of.noise_m = value, true;
   if (key == "encoder_m") return of.encoder_m = value, true;
   if (key == "left_out.size") return of.left_out.size = value, true;
@@ -42,6 +43,25 @@ bool set_number(Case& of, const std::string& key, double value) {
     if (key == "plant." + field.name) return of.plant.*field.member = value, true;
   }
   return false;
+}
+
+/// atSECONDS:KEY; false when it is no such word.
+bool set_change(Case& of, const std::string& word, double value) {
+  const std::size_t colon = word.find(':');
+  if (word.rfind("at", 0) != 0 || colon == std::string::npos) return false;
+  Change change;
+  change.at_s = number(word, word.substr(2, colon - 2));
+  change.value = value;
+  const std::string key = word.substr(colon + 1);
+  for (const Parameter& parameter : parameters()) {
+    if (key == parameter.effect + "." + parameter.name) change.hidden = parameter.member;
+  }
+  for (const PlantField& field : plant_fields()) {
+    if (key == "plant." + field.name) change.plant = field.member;
+  }
+  if (change.hidden == nullptr && change.plant == nullptr) return false;
+  of.changes.push_back(change);
+  return true;
 }
 
 }  // namespace
@@ -175,7 +195,8 @@ Case parse_case(const std::string& text, std::size_t seed) {
       const LeftOutInfo* info = find_left_out(value);
       if (info == nullptr) throw std::invalid_argument("no left-out effect '" + value + "'");
       of.left_out = {info->kind, info->typical, 0.5 * (info->where_low + info->where_high)};
-    } else if (!set_number(of, key, number(key, value))) {
+    } else if (!set_change(of, key, number(key, value)) &&
+               !set_number(of, key, number(key, value))) {
       throw std::invalid_argument("no key '" + key + "'; see the head of tests/truth/case.h");
     }
   }
@@ -190,6 +211,7 @@ std::string to_text(const Case& of) {
   };
   if (of.mismatched) add("mismatched", 1.0);
   if (of.length_s != neutral.length_s) add("length_s", of.length_s);
+  if (of.kp_V_per_m != neutral.kp_V_per_m) add("kp_V_per_m", of.kp_V_per_m);
   if (of.noise_m != neutral.noise_m) add("noise_m", of.noise_m);
   if (of.encoder_m != neutral.encoder_m) add("encoder_m", of.encoder_m);
   for (const Parameter& parameter : parameters()) {
@@ -204,6 +226,17 @@ std::string to_text(const Case& of) {
     add("left_out.where", of.left_out.where);
   }
   for (const PlantField& field : plant_fields()) add("plant." + field.name, of.plant.*field.member);
+  for (const Change& change : of.changes) {
+    const std::string at = "at" + digits(change.at_s) + ":";
+    for (const PlantField& field : plant_fields()) {
+      if (change.plant == field.member) add(at + "plant." + field.name, change.value);
+    }
+    for (const Parameter& parameter : parameters()) {
+      if (change.hidden == parameter.member) {
+        add(at + parameter.effect + "." + parameter.name, change.value);
+      }
+    }
+  }
   return text;
 }
 

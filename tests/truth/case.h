@@ -3,9 +3,12 @@
 //   motion=multisine,mismatched=1,friction.coulomb_N=150,friction.static_N=190
 //   motion=fast_steps,left_out=cubic_damping,left_out.size=2.5e5,plant.mass_kg=52
 //
-// Keys: motion, mismatched, length_s, noise_m, encoder_m, EFFECT.PARAMETER (the product's names,
-// SI), left_out, left_out.size, left_out.where, plant.NAME, plant=printed. What is not given is
-// neutral; the plant's own values are drawn from the seed: gain +-3 %, damping and bulk modulus
+//   motion=sine,plant=printed,at15:plant.supply_pressure_Pa=8.61e6,at30:plant.supply_pressure_Pa=...
+//
+// Keys: motion, mismatched, length_s, kp_V_per_m, noise_m, encoder_m, EFFECT.PARAMETER (the
+// product's names, SI), left_out, left_out.size, left_out.where, plant.NAME, plant=printed;
+// atSECONDS: before a plant's or an effect's key makes it a change at that time. What is not given
+// is neutral; the plant's own values are drawn from the seed: gain +-3 %, damping and bulk modulus
 // +-8 %, and when mismatched natural frequency +-12 %, damping ratio +-12 %, mass +-8 %, dead
 // volume +-20 %, supply pressure +-5 %.
 #pragma once

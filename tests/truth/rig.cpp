@@ -38,6 +38,10 @@ void Rig::hold(double u_V) {
   advance(past_V_[whole], kSample_s - rest_s);
 }
 
+void Rig::change(const Plant& plant, const Hidden& hidden) {
+  actuator_ = Actuator(plant, hidden, actuator_.left_out);
+}
+
 void Rig::advance(double u_V, double span_s) {
   const Hidden& h = actuator_.hidden;
   const int count = std::max(1, static_cast<int>(std::ceil(steps_ * span_s / kSample_s - 1e-9)));
@@ -73,9 +77,17 @@ Record simulate(const Case& of, int steps) {
   Random random(of.seed);
   const std::vector<double> r_m = reference_m(of.motion, samples, random);
   Rig rig(of.plant, of.hidden, of.left_out, steps);
+  Plant plant = of.plant;
+  Hidden hidden = of.hidden;
   Record record;
   double sum_m2 = 0.0;
   for (std::size_t k = 0; k < samples; ++k) {
+    for (const Change& change : of.changes) {
+      if (static_cast<std::size_t>(std::lround(change.at_s / kSample_s)) != k) continue;
+      if (change.plant != nullptr) plant.*change.plant = change.value;
+      if (change.hidden != nullptr) hidden.*change.hidden = change.value;
+      rig.change(plant, hidden);
+    }
     const double reading_m = rig.reading_m();
     double y_m = reading_m + of.noise_m * random.normal();
     if (of.encoder_m > 0.0) y_m = of.encoder_m * std::round(y_m / of.encoder_m);

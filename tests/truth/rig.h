@@ -24,6 +24,8 @@ class Rig {
 
   /// Holds the command for one sample.
   void hold(double u_V);
+  /// From now on; the state stays.
+  void change(const Plant& plant, const Hidden& hidden);
   /// What the position sensor would show now without noise and rounding.
   [[nodiscard]] double reading_m() const;
 
@@ -45,6 +47,14 @@ class Rig {
   std::deque<double> past_V_;
 };
 
+/// A fault: from at_s on one value of the plant, or of what is hidden, is another.
+struct Change {
+  double at_s = 0.0;
+  double Plant::*plant = nullptr;
+  double Hidden::*hidden = nullptr;  ///< one of the two
+  double value = 0.0;
+};
+
 /// Everything that makes a record; the same values give the same record.
 struct Case {
   std::size_t seed = 1;  ///< of motion and noise
@@ -58,6 +68,7 @@ struct Case {
   Plant plant;
   Hidden hidden;
   LeftOut left_out;
+  std::vector<Change> changes;  ///< in any order; of the loop's record, not of replay()
 };
 
 struct Record {

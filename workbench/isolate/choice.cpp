@@ -1,0 +1,71 @@
+#include "workbench/isolate/choice.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "workbench/fit/choice.h"
+
+namespace workbench::isolate {
+namespace {
+
+/// Logarithms: a parameter falls or rises to about a third or threefold.
+constexpr double kWidest = 1.2;
+
+/// What may arise on a rig that was without it; the first parameter of each.
+constexpr const char* kEffects[] = {"null_bias.offset_V",
+                                    "internal_leakage.conductance_m3ps_per_Pa",
+                                    "external_leakage.conductance_m3ps_per_Pa",
+                                    "friction.coulomb_N",
+                                    "quadratic_damping.coefficient_N_s2_per_m2",
+                                    "load_force.force_N",
+                                    "supply_droop.droop_Pa_per_m3ps",
+                                    "flow_asymmetry.asymmetry_ratio",
+                                    "entrained_air.fraction_ratio"};
+
+bool has_sites(const plant_sim::ModelFile& model, const std::string& name) {
+  const auto* const effect = plant_sim::find_effect(name.substr(0, name.find('.')));
+  const auto& sites = plant_sim::find_plant(model.plant)->sites;
+  return effect != nullptr &&
+         std::all_of(effect->sites.begin(), effect->sites.end(), [&](const std::string& site) {
+           return std::find(sites.begin(), sites.end(), site) != sites.end();
+         });
+}
+
+std::vector<std::string> rivals(const plant_sim::ModelFile& model) {
+  std::vector<std::string> names;
+  for (const auto& p : matching::plant_parameters(model)) names.push_back(p.name);
+  for (const char* effect : kEffects) {
+    if (has_sites(model, effect)) names.emplace_back(effect);
+  }
+  return names;
+}
+
+}  // namespace
+
+std::vector<std::size_t> Choice::tracked_indices() const {
+  std::vector<std::size_t> indices(tracked);
+  std::iota(indices.begin(), indices.end(), 0);
+  return indices;
+}
+
+Choice choose(const plant_sim::ModelFile& model, const std::vector<std::string>& names) {
+  fit::Wishes wishes;
+  wishes.free = names;
+  Choice out;
+  out.tracked = fit::choose(model, wishes).searched.size();
+  for (const std::string& rival : rivals(model)) wishes.free.push_back(rival);
+  const fit::Choice chosen = fit::choose(model, wishes);
+  out.parameters = chosen.searched;
+  out.file = matching::start_of(model, out.parameters);
+  for (std::size_t i = 0; i < out.parameters.size(); ++i) {
+    matching::SearchParameter& p = out.parameters[i];
+    p.prior_mean = 0.0;
+    p.prior_sd = std::numeric_limits<double>::infinity();
+    if (p.scale != matching::Scale::logarithmic) continue;
+    p.lower = -kWidest;
+    p.upper = kWidest;
+  }
+  return out;
+}
+
+}  // namespace workbench::isolate

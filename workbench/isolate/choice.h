@@ -1,0 +1,27 @@
+// Which parameters are tracked, and which others could explain the same change of the rig.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "plant_sim/model_file.h"
+#include "workbench/matching/search_parameter.h"
+
+namespace workbench::isolate {
+
+/// Tracked parameters first, then their rivals: every uncertain parameter of the plant, and effects
+/// that may arise while a rig runs.
+struct Choice {
+  std::vector<matching::SearchParameter> parameters;
+  std::size_t tracked = 0;
+  Eigen::VectorXd file;  ///< search values of the model file
+
+  [[nodiscard]] std::vector<std::size_t> tracked_indices() const;
+};
+
+/// `names` as in model files. Throws config::schema::Error: exit 78 for an unknown name.
+[[nodiscard]] Choice choose(const plant_sim::ModelFile& model,
+                            const std::vector<std::string>& names);
+
+}  // namespace workbench::isolate

@@ -1,0 +1,56 @@
+// Which parameter has changed in a window, and which others would explain the window as well.
+//
+// A tracked parameter has changed when it is off its healthy value by `least` and by `sure`
+// standard errors. The name is then held against rivals, parameters that are not tracked:
+//   - one rival alone that leaves no more than all tracked ones together (within kChance): the
+//     changes of several tracked parameters have that one cause. It forms a group with the tracked
+//     parameter that explains most by itself, and no other parameter is named.
+//   - a rival that takes the place of one named parameter, the others as they are, and takes away
+//     its whole effect but for a share kLeft or kChance, and whose window is as small an error as
+//     any (within kAsGood, the other tracked ones free): it joins that parameter's group.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "workbench/isolate/choice.h"
+#include "workbench/isolate/window_fit.h"
+
+namespace workbench::isolate {
+
+struct Thresholds {
+  double least_ratio = 0.03;  ///< of the healthy value; linear parameters: see kLeastOfTypical
+  double sure = 5.0;          ///< standard errors
+  double at_once = 20.0;      ///< standard errors at which one window is enough for an alarm
+};
+
+/// Of an effect's typical size: the least change of an effect's parameter.
+inline constexpr double kLeastOfTypical = 0.2;
+inline constexpr double kChance = 16.0;  ///< chi-square
+inline constexpr double kLeft = 0.02;
+inline constexpr double kAsGood = 1.05;  ///< of the error's RMS
+
+/// Least change of a parameter, search units.
+[[nodiscard]] double least_of(const matching::SearchParameter& parameter,
+                              const Thresholds& thresholds);
+
+struct Rival {
+  std::string name;
+  double value = 0.0;  ///< that would explain the window
+};
+
+struct Named {
+  std::size_t parameter = 0;  ///< index of the choice
+  double x = 0.0;             ///< search value
+  double std_error = 0.0;     ///< search units
+  double deviation = 0.0;     ///< from healthy, search units
+  std::vector<Rival> rivals;  ///< empty: the name stands alone
+};
+
+/// `healthy`: search values of every parameter; `found`: the fit of the tracked ones to `cut`.
+[[nodiscard]] std::vector<Named> name_changes(WindowFit& fit, const Choice& choice, const Cut& cut,
+                                              const WindowEstimate& found,
+                                              const Eigen::VectorXd& healthy, double sigma_m,
+                                              const Thresholds& thresholds);
+
+}  // namespace workbench::isolate

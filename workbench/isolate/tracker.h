@@ -1,0 +1,100 @@
+// Physical parameters tracked over a sliding window, sample by sample.
+//
+// Each stride: the tracked parameters are fitted to the latest window (window_fit.h), the window is
+// judged (a model that does not explain it, or a motion that cannot tell the parameters, makes it
+// invalid, with the reason), and changes are named (naming.h). A window in which the rig changed
+// explains nothing: then its latest part alone is looked at, which is how a change is named before
+// the window is over. One call of push() does at most one such look; all others only keep the
+// sample.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "workbench/isolate/alarm_book.h"
+#include "workbench/isolate/choice.h"
+#include "workbench/isolate/naming.h"
+#include "workbench/isolate/window_fit.h"
+
+namespace workbench::isolate {
+
+struct Settings {
+  double window_s = 2.0;
+  double stride_s = 0.5;
+  double observer_per_s = matching::kObserver_per_s;
+  double most_ratio = 1.2;       ///< of the healthy error, beyond which a window is invalid
+  double most_std_error = 0.05;  ///< search units: of the value, or of an effect's typical size
+  Thresholds thresholds;
+};
+
+/// What the rig is like without a fault.
+struct Healthy {
+  double rms_m = 0.0;  ///< of a window's error; not under the noise floor
+  Eigen::VectorXd x;   ///< every parameter of the choice, search units
+};
+
+struct Estimate {
+  double x = 0.0;          ///< search value
+  double value = 0.0;      ///< SI
+  double std_error = 0.0;  ///< SI
+};
+
+struct Window {
+  double t_s = 0.0;  ///< of its last sample
+  double from_s = 0.0;
+  std::vector<Estimate> estimates;  ///< of the tracked parameters, in their order
+  Eigen::MatrixXd correlation;
+  double rms_m = 0.0;
+  bool valid = false;
+  std::string why;           ///< invalid: the reason
+  std::string part;          ///< what its latest part said, where that was looked at
+  std::vector<Named> named;  ///< changes, in this window or its latest part
+  int evaluations = 0;       ///< of the window's fit: groups of eight simulations
+  double fit_s = 0.0;        ///< time that it took
+};
+
+class Tracker {
+ public:
+  Tracker(const plant_sim::ModelFile& model, const Choice& choice, const Settings& settings,
+          double sample_time_s, double noise_floor_m);
+
+  /// From now on windows are judged and changes named; before, they are only fitted.
+  void take(const Healthy& healthy);
+  /// The window that ends with this sample, when one does. `first`: samples before it are missing.
+  std::optional<Window> push(double t_s, double u_V, double y_m, bool first);
+
+  [[nodiscard]] const AlarmBook& alarms() const { return alarms_; }
+
+ private:
+  [[nodiscard]] Cut latest(std::size_t samples) const;
+  Window look(double t_s);
+  void judge(Window& window, const Cut& cut, const WindowEstimate& found) const;
+  void look_at_part(Window& window);
+  void tell(Window& window, const Cut& cut, const WindowEstimate& found);
+
+  const Choice choice_;
+  Settings settings_;
+  double sample_time_s_;
+  double noise_floor_m_;
+  std::size_t lead_;
+  std::size_t window_;
+  std::size_t stride_;
+  WindowFit fit_;
+  std::vector<double> u_V_;  ///< the latest samples, twice as long as needed
+  std::vector<double> y_m_;
+  std::size_t kept_ = 0;   ///< samples since the last gap that are still there
+  std::size_t until_ = 0;  ///< samples until the next look
+  std::optional<Healthy> healthy_;
+  Eigen::VectorXd near_;  ///< where the next search begins
+  AlarmBook alarms_;
+};
+
+/// The medians over the windows of a record without a fault; what is not tracked is as in the file.
+/// Throws config::schema::Error (exit 65) when none is usable.
+[[nodiscard]] Healthy learn(const std::vector<Window>& windows, const Choice& choice,
+                            double noise_floor_m, const std::string& where);
+
+}  // namespace workbench::isolate
