@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
-#include <csignal>
 #include <filesystem>
 
 #include "config/schema/error.h"
@@ -16,7 +14,6 @@
 namespace monitor::io {
 namespace {
 
-constexpr auto kDrainPeriod = std::chrono::milliseconds(50);
 constexpr std::size_t kMaxChannel = 63;
 constexpr std::size_t kQueueBytes = 4 << 20;
 /// Snapshots come as often as this share of before_s, so that a folder is not much longer.
@@ -54,7 +51,7 @@ Evidence::Evidence(const EvidenceConfig& config, EvidenceFacts facts, bool backg
   }
   prune_packs(config.folder, config.packs, config.total_bytes);
   ring_ = std::make_unique<EvidenceRing>(config, std::move(facts));
-  if (background_) thread_ = std::thread([this] { run(); });
+  if (background_) thread_.start([this] { drain(); });
 }
 
 Evidence::~Evidence() { finish(); }
@@ -110,14 +107,7 @@ void Evidence::alarm(const estimator::fdi::Alarm& alarm, std::int64_t utc_us) no
 }
 
 void Evidence::finish() {
-  if (thread_.joinable()) {
-    {
-      const std::lock_guard lock(mutex_);
-      stop_ = true;
-    }
-    wake_.notify_one();
-    thread_.join();
-  }
+  thread_.stop();
   drain();
   ring_->finish();
 }
@@ -126,19 +116,6 @@ EvidenceStatus Evidence::status() const noexcept {
   EvidenceStatus status = ring_->status();
   status.dropped = dropped_.load(std::memory_order_relaxed);
   return status;
-}
-
-void Evidence::run() {
-  sigset_t all;  // signals are the main thread's
-  sigfillset(&all);
-  pthread_sigmask(SIG_BLOCK, &all, nullptr);
-  std::unique_lock lock(mutex_);
-  while (!stop_) {
-    wake_.wait_for(lock, kDrainPeriod, [this] { return stop_; });
-    lock.unlock();
-    drain();
-    lock.lock();
-  }
 }
 
 void Evidence::drain() {

@@ -10,17 +10,15 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <vector>
 
 #include "config/schema/visitor.h"
+#include "daemon/io/drain_thread.h"
 #include "estimator/fdi/alarm.h"
 
 namespace monitor::io {
@@ -90,7 +88,6 @@ class Evidence {
  private:
   bool push(std::string_view channel, std::span<const std::uint8_t> data,
             std::int64_t utc_us) noexcept;
-  void run();
   void drain();
 
   const bool background_;
@@ -103,10 +100,7 @@ class Evidence {
   std::unique_ptr<EvidenceRing> ring_;  ///< of the writing thread
   std::vector<std::uint8_t> record_;    ///< of the writing thread
   std::atomic<std::int64_t> dropped_{0};
-  std::mutex mutex_;
-  std::condition_variable wake_;
-  bool stop_ = false;  ///< under mutex_
-  std::thread thread_;
+  DrainThread thread_;  ///< the last: it uses the others
 };
 
 }  // namespace monitor::io

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <chrono>
-#include <csignal>
 #include <cstring>
 #include <string>
 #include <system_error>
@@ -17,7 +15,6 @@
 namespace monitor::io {
 namespace {
 
-constexpr auto kDrainPeriod = std::chrono::milliseconds(50);
 // Drains until a failed disk is tried again: about 1 s of time, or of samples at 200 Hz.
 constexpr int kRetryBackground = 20;
 constexpr int kRetryInline = 200;
@@ -64,20 +61,13 @@ Recorder::Recorder(const RecorderConfig& config, std::int64_t run_id, bool backg
   const int failed = log_->open();
   if (failed != 0 && !means_full(failed)) throw cannot_record(log_->file(), std::strerror(failed));
   error_ = failed;
-  if (background_) thread_ = std::thread([this] { run(); });
+  if (background_) thread_.start([this] { drain(); });
 }
 
 Recorder::~Recorder() { finish(); }
 
 std::int64_t Recorder::finish() {
-  if (thread_.joinable()) {
-    {
-      const std::lock_guard lock(mutex_);
-      stop_ = true;
-    }
-    wake_.notify_one();
-    thread_.join();
-  }
+  thread_.stop();
   retry_in_ = 0;
   drain();
   return dropped_ + lost_ + backlog_->records();
@@ -104,20 +94,6 @@ RecorderStatus Recorder::status() const noexcept {
   status.disk_full = means_full(status.error);
   status.write_failed = status.error != 0 && !status.disk_full;
   return status;
-}
-
-void Recorder::run() {
-  // Signals are the main thread's; a file-size limit is then seen as EFBIG.
-  sigset_t all;
-  sigfillset(&all);
-  pthread_sigmask(SIG_BLOCK, &all, nullptr);
-  std::unique_lock lock(mutex_);
-  while (!stop_) {
-    wake_.wait_for(lock, kDrainPeriod, [this] { return stop_; });
-    lock.unlock();
-    drain();
-    lock.lock();
-  }
 }
 
 void Recorder::drain() {

@@ -9,18 +9,16 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <vector>
 
 #include "config/schema/visitor.h"
+#include "daemon/io/drain_thread.h"
 
 namespace monitor::io {
 
@@ -75,7 +73,6 @@ class Recorder {
   [[nodiscard]] RecorderStatus status() const noexcept;
 
  private:
-  void run();
   void drain();
   void flush_backlog();
 
@@ -89,10 +86,7 @@ class Recorder {
   std::atomic<std::int64_t> dropped_{0};
   std::atomic<std::int64_t> lost_{0};
   std::atomic<int> error_{0};
-  std::mutex mutex_;
-  std::condition_variable wake_;
-  bool stop_ = false;  // under mutex_
-  std::thread thread_;
+  DrainThread thread_;  // the last: it uses the others
 };
 
 }  // namespace monitor::io
