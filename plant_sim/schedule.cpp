@@ -61,11 +61,13 @@ Schedule::Schedule(std::vector<Change> changes, Plant& plant) {
 
 double Schedule::apply(double t_s) noexcept {
   double next_s = kNever_s;
-  for (Entry& entry : entries_) {
+  while (next_ < entries_.size() && entries_[next_].done) ++next_;
+  for (std::size_t i = next_; i < entries_.size(); ++i) {
+    Entry& entry = entries_[i];
     if (entry.done) continue;
     if (t_s < entry.at_s) {
       next_s = std::min(next_s, entry.at_s);
-      continue;
+      break;
     }
     if (!entry.started) entry.from = *entry.target;
     entry.started = true;

@@ -1,6 +1,7 @@
 // Faults and other changes of a plant's parameters at scheduled times, as a step or as a ramp.
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>
@@ -49,7 +50,8 @@ class Schedule {
   /// Applies what is due at t_s; returns the time of the next thing to do (infinite: none).
   double apply(double t_s) noexcept;
 
-  std::vector<Entry> entries_;
+  std::vector<Entry> entries_;  ///< in the order of at_s
+  std::size_t next_ = 0;        ///< all before it are done
 };
 
 }  // namespace plant_sim
