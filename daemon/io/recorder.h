@@ -27,10 +27,10 @@ class ByteBacklog;
 class ByteQueue;
 
 struct RecorderConfig {
-  std::string folder;                  // "" records nothing: no Recorder is made
-  std::int64_t file_bytes = 64 << 20;  // cap of one file
-  std::int64_t files = 16;             // logs kept in the folder, oldest removed first
-  std::int64_t queue_bytes = 2 << 20;  // half a minute of a disk that does not answer
+  std::string folder;                    // "" records nothing: no Recorder is made
+  std::int64_t file_bytes = 64 << 20;    // cap of one file
+  std::int64_t files = 16;               // logs kept in the folder, oldest removed first
+  std::int64_t queue_bytes = 2 << 20;    // some 30 s of a disk that stands still
   std::int64_t backlog_bytes = 4 << 20;  // newest kept in memory while the disk is full
 
   /// Fields of the table [recorder].
