@@ -35,6 +35,7 @@ void add_estimate(CLI::App& command, int& exit_code);
 void add_export(CLI::App& command, int& exit_code);
 void add_fit(CLI::App& command, int& exit_code);
 void add_hold(CLI::App& command, int& exit_code);
+void add_isolate(CLI::App& command, int& exit_code);
 void add_listen(CLI::App& command, int& exit_code);
 void add_reference(CLI::App& command, int& exit_code);
 void add_replay(CLI::App& command, int& exit_code);

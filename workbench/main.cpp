@@ -33,6 +33,7 @@ constexpr workbench::Command kCommands[] = {
     {"compare", "where a model fails against a record", workbench::add_compare},
     {"fit", "a model's parameters estimated from records", workbench::add_fit},
     {"diagnose", "which physical effect a model misses", workbench::add_diagnose},
+    {"isolate", "which physical parameter has changed, window by window", workbench::add_isolate},
     {"calibrate", "learn alarm bands from a healthy record", workbench::add_calibrate},
     {"backtest", "which alarms new rules would have told on old logs", workbench::add_backtest},
     {"replay", "from the evidence of an alarm to the same alarm", workbench::add_replay},

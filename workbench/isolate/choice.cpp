@@ -1,6 +1,7 @@
 #include "workbench/isolate/choice.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "workbench/fit/choice.h"
@@ -10,6 +11,7 @@ namespace {
 
 /// Logarithms: a parameter falls or rises to about a third or threefold.
 constexpr double kWidest = 1.2;
+constexpr double kNone = std::numeric_limits<double>::infinity();
 
 /// What may arise on a rig that was without it; the first parameter of each.
 constexpr const char* kEffects[] = {"null_bias.offset_V",
@@ -57,10 +59,15 @@ Choice choose(const plant_sim::ModelFile& model, const std::vector<std::string>&
   const fit::Choice chosen = fit::choose(model, wishes);
   out.parameters = chosen.searched;
   out.file = matching::start_of(model, out.parameters);
+  out.uncertainty = Eigen::VectorXd::Constant(out.file.size(), kNone);
+  const auto uncertain = matching::plant_parameters(model);
   for (std::size_t i = 0; i < out.parameters.size(); ++i) {
     matching::SearchParameter& p = out.parameters[i];
+    const auto same = std::find_if(uncertain.begin(), uncertain.end(),
+                                   [&](const auto& other) { return other.name == p.name; });
+    if (same != uncertain.end()) out.uncertainty[static_cast<Eigen::Index>(i)] = same->prior_sd;
     p.prior_mean = 0.0;
-    p.prior_sd = std::numeric_limits<double>::infinity();
+    p.prior_sd = kNone;
     if (p.scale != matching::Scale::logarithmic) continue;
     p.lower = -kWidest;
     p.upper = kWidest;

@@ -16,6 +16,9 @@ struct Choice {
   std::vector<matching::SearchParameter> parameters;
   std::size_t tracked = 0;
   Eigen::VectorXd file;  ///< search values of the model file
+  /// How far a plant's value may be off its file (plant_sim::ParameterInfo::uncertainty_ratio);
+  /// infinite for the others.
+  Eigen::VectorXd uncertainty;
 
   [[nodiscard]] std::vector<std::size_t> tracked_indices() const;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace workbench::isolate {
 namespace {
@@ -71,14 +72,22 @@ class Namer {
       const WindowEstimate instead = fit_.fit(cut_, {a}, without, sigma_m_);
       const double left = instead.chi_square - chi_square_;
       if (left > std::max(kChance, kLeft * effect)) continue;
-      std::vector<std::size_t> free{a};
-      for (std::size_t i = 0; i < choice_.tracked; ++i) {
-        if (i != one.parameter) free.push_back(i);
-      }
-      const WindowEstimate best = fit_.fit(cut_, free, instead.x, sigma_m_);
+      const WindowEstimate best = let_follow(a, one.parameter, instead.x);
       if (best.rms_m > kAsGood * found_.rms_m) continue;
       one.rivals.push_back({name(a), value(a, best.x)});
     }
+  }
+
+  WindowEstimate let_follow(std::size_t rival, std::size_t instead_of, const VectorXd& from) {
+    VectorXd prior_sd = choice_.uncertainty;
+    std::vector<std::size_t> free;
+    for (std::size_t i = 0; i < choice_.parameters.size(); ++i) {
+      const auto at = static_cast<Index>(i);
+      const bool open = i == rival || i < choice_.tracked;
+      if (open) prior_sd[at] = std::numeric_limits<double>::infinity();
+      if (i != instead_of && (open || prior_sd[at] <= kMostUncertain_ratio)) free.push_back(i);
+    }
+    return fit_.fit(cut_, free, from, sigma_m_, prior_sd);
   }
 
   WindowFit& fit_;

@@ -6,8 +6,9 @@
 //     changes of several tracked parameters have that one cause. It forms a group with the tracked
 //     parameter that explains most by itself, and no other parameter is named.
 //   - a rival that takes the place of one named parameter, the others as they are, and takes away
-//     its whole effect but for a share kLeft or kChance, and whose window is as small an error as
-//     any (within kAsGood, the other tracked ones free): it joins that parameter's group.
+//     its whole effect but for a share kLeft or kChance; and that leaves no more than the tracked
+//     ones (within kAsGood) once others may follow: the tracked ones freely, those of the plant
+//     that are hardly seen as far as the file may be off. It joins that parameter's group.
 #pragma once
 
 #include <string>
@@ -27,8 +28,10 @@ struct Thresholds {
 /// Of an effect's typical size: the least change of an effect's parameter.
 inline constexpr double kLeastOfTypical = 0.2;
 inline constexpr double kChance = 16.0;  ///< chi-square
-inline constexpr double kLeft = 0.02;
+inline constexpr double kLeft = 1e-3;
 inline constexpr double kAsGood = 1.05;  ///< of the error's RMS
+/// Of a plant's value: less sure ones are calibrated by healthy records, and do not follow.
+inline constexpr double kMostUncertain_ratio = 0.1;
 
 /// Least change of a parameter, search units.
 [[nodiscard]] double least_of(const matching::SearchParameter& parameter,

@@ -74,7 +74,7 @@ void WindowFit::take(const Cut& cut) {
 }
 
 WindowEstimate WindowFit::fit(const Cut& cut, const std::vector<std::size_t>& free,
-                              const VectorXd& start, double sigma_m) {
+                              const VectorXd& start, double sigma_m, const VectorXd& prior_sd) {
   take(cut);
   const VectorXd shape = start_shape(cut, 1.0 - observer_per_s_ * window_.sample_time_s);
   const auto count = static_cast<Index>(free.size());
@@ -93,6 +93,10 @@ WindowEstimate WindowFit::fit(const Cut& cut, const std::vector<std::size_t>& fr
     unknown.upper = p.upper;
     unknown.step = kDifference;
     unknown.relative_step = kDifference;
+    if (prior_sd.size() > 0) {
+      unknown.prior_mean = start[static_cast<Index>(at)];
+      unknown.prior_sd = prior_sd[static_cast<Index>(at)];
+    }
     problem.unknowns.push_back(unknown);
     x[i] = start[static_cast<Index>(at)];
   }
@@ -127,6 +131,8 @@ WindowEstimate WindowFit::fit(const Cut& cut, const std::vector<std::size_t>& fr
   }
   out.std_error = known.std_error;
   out.correlation = correlation_of(known.matrix);
+  const MatrixXd inner = solution.jacobian.transpose() * solution.jacobian;
+  out.likeness = correlation_of(inner);
   out.at_bound = solution.at_bound;
   out.rms_m = solution.rms;
   out.chi_square = solution.cost;

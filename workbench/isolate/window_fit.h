@@ -33,6 +33,7 @@ struct WindowEstimate {
   Eigen::VectorXd x;            ///< every parameter; those that were held as they were given
   Eigen::VectorXd std_error;    ///< of the free ones, search units; infinite: not seen
   Eigen::MatrixXd correlation;  ///< of the free ones
+  Eigen::MatrixXd likeness;     ///< cosines between their effects on the position
   std::vector<int> at_bound;    ///< -1, 0, +1 of the free ones
   double rms_m = 0.0;
   double chi_square = 0.0;  ///< sum of squares / sigma^2
@@ -50,9 +51,12 @@ class WindowFit {
   WindowFit(const WindowFit&) = delete;
   WindowFit& operator=(const WindowFit&) = delete;
 
-  /// The parameters at `free` (indices) are fitted from `start`, which has every parameter.
+  /// The parameters at `free` (indices) are fitted from `start`, which has every parameter. Those
+  /// with a finite prior_sd (search units, one for each parameter, or empty) are held to the start
+  /// by it.
   [[nodiscard]] WindowEstimate fit(const Cut& cut, const std::vector<std::size_t>& free,
-                                   const Eigen::VectorXd& start, double sigma_m);
+                                   const Eigen::VectorXd& start, double sigma_m,
+                                   const Eigen::VectorXd& prior_sd = {});
 
   [[nodiscard]] const std::vector<matching::SearchParameter>& parameters() const {
     return run_.searched();

@@ -12,6 +12,9 @@ using diagnose::length_words;
 using diagnose::number;
 using Eigen::Index;
 
+/// Cosine above which it is another parameter that hides one.
+constexpr double kAlike = 0.98;
+
 std::string percent(double ratio) { return number("%.3g", 100.0 * ratio) + " %"; }
 
 bool is_logarithmic(const matching::SearchParameter& p) {
@@ -23,6 +26,16 @@ std::string error_words(const matching::SearchParameter& p, double std_error) {
   if (!std::isfinite(std_error)) return "not at all";
   return is_logarithmic(p) ? "to +- " + percent(std_error) + " only"
                            : "to +- " + number("%.2g", std_error) + " of its typical size only";
+}
+
+/// Whose effect is most like that of parameter `at`; -1: there is no other.
+Index alike(const Eigen::MatrixXd& likeness, Index at) {
+  Index best = -1;
+  for (Index j = 0; j < likeness.cols(); ++j) {
+    if (j == at) continue;
+    if (best < 0 || std::abs(likeness(at, j)) > std::abs(likeness(at, best))) best = j;
+  }
+  return best;
 }
 
 }  // namespace
@@ -62,22 +75,12 @@ std::string unseen_words(const Choice& choice, const WindowEstimate& found, doub
     const double error = found.std_error[at];
     if (error <= most_std_error) continue;
     const std::string known = name_words(p.name) + " is known " + error_words(p, error);
-    Index partner = -1;
-    for (Index j = 0; j < static_cast<Index>(choice.tracked); ++j) {
-      if (j == at) continue;
-      if (partner < 0 ||
-          std::abs(found.correlation(at, j)) > std::abs(found.correlation(at, partner))) {
-        partner = j;
-      }
-    }
-    // What its error would be if the partner were known.
-    if (partner >= 0 && std::isfinite(error)) {
-      const double correlation = found.correlation(at, partner);
-      if (error * std::sqrt(std::max(0.0, 1.0 - correlation * correlation)) <= most_std_error) {
-        return "the motion does not separate " + name_words(p.name) + " from " +
-               name_words(choice.parameters[static_cast<std::size_t>(partner)].name) +
-               " (correlation " + number("%.3f", correlation) + "): " + known;
-      }
+    const Index partner = alike(found.likeness, at);
+    if (partner >= 0 && std::abs(found.likeness(at, partner)) > kAlike) {
+      return "the motion does not separate " + name_words(p.name) + " from " +
+             name_words(choice.parameters[static_cast<std::size_t>(partner)].name) +
+             " (their effects are alike to " +
+             number("%.4f", std::abs(found.likeness(at, partner))) + "): " + known;
     }
     return "the motion does not show it: " + known;
   }

@@ -1,0 +1,97 @@
+// The command: what it writes, and what it refuses.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "config/schema/error.h"
+#include "tests/truth/case.h"
+#include "tests/workbench/isolate/tracked.h"
+#include "tests/workbench/run_command.h"
+
+namespace {
+
+using namespace workbench_test;
+namespace fs = std::filesystem;
+
+class IsolateCommand : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ =
+        fs::path(testing::TempDir()) /
+        ("isolate_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::create_directories(folder_);
+    std::ofstream(folder_ / "model.toml") << plant_sim::print_model(printed_model());
+    truth::Case of = stand(22.0);
+    fault(of, 15.0, &truth::Plant::supply_pressure_Pa, 0.9);
+    truth::write_csv(truth::simulate(of), file("record.csv"));
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string file(const std::string& name) const { return (folder_ / name).string(); }
+  void run(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments{file("model.toml"), file("record.csv")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    run_command(workbench::add_isolate, arguments);
+  }
+  int code(const std::vector<std::string>& more, std::string& line) const {
+    try {
+      run(more);
+    } catch (const config::schema::Error& error) {
+      line = error.what();
+      return error.exit_code();
+    }
+    return 0;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(IsolateCommand, WritesWindowsAndAlarmsAsJsonAndAPage) {
+  run({"--json", file("out.json"), "--report", file("out.html")});
+  const auto json = nlohmann::json::parse(std::ifstream(file("out.json")));
+  ASSERT_EQ(json["windows"].size(), 39u);  // from 2.75 s every 0.5 s up to 22 s
+  const auto& last = json["windows"].back();
+  EXPECT_TRUE(last["valid"]);
+  EXPECT_EQ(last["why"], "");
+  EXPECT_NEAR(last["t_s"].get<double>(), 21.745, 1e-6);
+  const double pressure_Pa = last["supply_pressure_Pa"]["value"];
+  EXPECT_NEAR(pressure_Pa, 0.9 * 6.89e6, 0.002 * 6.89e6);
+  EXPECT_GT(last["supply_pressure_Pa"]["std_error"], 0.0);
+  EXPECT_NEAR(last["damping_N_s_per_m"]["value"].get<double>(), 1000.0, 40.0);
+  ASSERT_EQ(json["alarms"].size(), 1u);
+  const auto& alarm = json["alarms"][0];
+  EXPECT_EQ(alarm["parameter"], "supply_pressure_Pa");
+  EXPECT_EQ(alarm["direction"], "low");
+  EXPECT_NEAR(alarm["change_ratio"].get<double>(), -0.1, 0.002);
+  EXPECT_GT(alarm["confidence"], 0.99);
+  EXPECT_TRUE(alarm["cleared_s"].is_null());
+  EXPECT_EQ(alarm["ambiguity_group"][0], "supply_pressure_Pa");
+  EXPECT_THAT(alarm["advice"].get<std::string>(), testing::HasSubstr("supply pressure"));
+  EXPECT_GT(fs::file_size(file("out.html")), 10000u);
+}
+
+TEST_F(IsolateCommand, TellsInWords) {
+  testing::internal::CaptureStdout();
+  run({});
+  const std::string text = testing::internal::GetCapturedStdout();
+  EXPECT_THAT(text, testing::HasSubstr("supply pressure low, -10.0 %"));
+  EXPECT_THAT(text, testing::HasSubstr("or valve gain"));
+  EXPECT_THAT(text, testing::HasSubstr("invalid"));
+}
+
+TEST_F(IsolateCommand, RefusesWhatItCannotUse) {
+  std::string line;
+  EXPECT_EQ(code({"--parameters", "supply_pressur_Pa"}, line), 78);
+  EXPECT_THAT(line, testing::HasSubstr("--parameters supply_pressur_Pa"));
+  EXPECT_THAT(line, testing::HasSubstr("did you mean supply_pressure_Pa"));
+  EXPECT_EQ(code({"--healthy", "ten"}, line), 2);
+  EXPECT_EQ(code({"--healthy", "0:1"}, line), 65);
+  EXPECT_THAT(line, testing::HasSubstr("has no whole window"));
+  EXPECT_EQ(code({"--window", "50"}, line), 65);
+  EXPECT_THAT(line, testing::HasSubstr("is too short"));
+  EXPECT_EQ(code({"--observer", "500"}, line), 2);
+}
+
+}  // namespace

@@ -1,0 +1,81 @@
+// spoolwatch isolate: physical parameters per window, and the changes named.
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "config/record/whole_file.h"
+#include "workbench/command.h"
+#include "workbench/isolate/outcome.h"
+#include "workbench/number_check.h"
+
+namespace workbench {
+namespace {
+
+using isolate::Outcome;
+using isolate::Request;
+
+void run(const Request& request) {
+  const Outcome outcome = isolate::isolate(request);
+  if (!request.report.empty()) write_report(to_report(outcome), request.report);
+  if (request.json == "-") {
+    std::cout << to_json(outcome);
+    return;
+  }
+  if (!request.json.empty()) config::record::write_whole(request.json, to_json(outcome));
+  std::cout << to_text(outcome, request.all_windows);
+}
+
+void declare_judging(CLI::App& command, Request& request) {
+  CLI::Option* const healthy =
+      command.add_option("--healthy", request.healthy, "from:to, s: the part without a fault")
+          ->capture_default_str();
+  command
+      .add_option("--healthy-rms", request.healthy_rms_m,
+                  "m: the healthy error, instead of learning it; the file's values are healthy")
+      ->check(positive_number())
+      ->excludes(healthy);
+  command
+      .add_option("--limit", request.settings.most_ratio,
+                  "times the healthy error: windows beyond are invalid")
+      ->check(number_within(1.0, 1e3))
+      ->capture_default_str();
+  command
+      .add_option("--least", request.settings.thresholds.least_ratio,
+                  "ratio: smaller changes of a parameter are not named")
+      ->check(number_within(1e-4, 1.0))
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void add_isolate(CLI::App& command, int& /*exit_code*/) {
+  auto request = std::make_shared<Request>();
+  command.add_option("MODEL", request->model, "a model file (TOML), calibrated when healthy")
+      ->required();
+  command.add_option("RECORD", request->record, "CSV or MAT (t_s,u_V,y_m), or LCM log")->required();
+  command
+      .add_option("--parameters", request->parameters,
+                  "name[,name...] as in model files, such as null_bias.offset_V, mass_kg")
+      ->allow_extra_args(false)
+      ->capture_default_str();
+  command.add_option("--window", request->settings.window_s, "s: length of a window")
+      ->check(number_within(0.1, 1e3))
+      ->capture_default_str();
+  command.add_option("--stride", request->settings.stride_s, "s: from window to window")
+      ->check(number_within(1e-3, 1e3))
+      ->capture_default_str();
+  command
+      .add_option("--observer", request->settings.observer_per_s,
+                  "1/s: how fast drift is led back to the measured position")
+      ->check(number_within(0.0, 1e3))
+      ->capture_default_str();
+  declare_judging(command, *request);
+  command.add_option("--set", request->assignments, "table.key=value of the model file")
+      ->allow_extra_args(false);
+  command.add_flag("--windows", request->all_windows, "print every window");
+  command.add_option("--json", request->json, "file for JSON, - for standard output");
+  command.add_option("--report", request->report, "file for a report with plots (HTML)");
+  command.callback([request] { run(*request); });
+}
+
+}  // namespace workbench

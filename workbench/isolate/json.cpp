@@ -1,0 +1,102 @@
+// A tracking as JSON.
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "workbench/isolate/outcome.h"
+#include "workbench/isolate/words.h"
+
+namespace workbench::isolate {
+namespace {
+
+using Eigen::Index;
+using nlohmann::ordered_json;
+
+ordered_json number(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
+}
+
+ordered_json json_of(const Window& window, const Choice& choice) {
+  ordered_json out{{"t_s", window.t_s}, {"from_s", window.from_s}};
+  for (std::size_t i = 0; i < choice.tracked; ++i) {
+    out[choice.parameters[i].name] = {{"value", number(window.estimates[i].value)},
+                                      {"std_error", number(window.estimates[i].std_error)}};
+  }
+  out["correlation"] = ordered_json::array();
+  for (Index i = 0; i < window.correlation.rows(); ++i) {
+    ordered_json row = ordered_json::array();
+    for (Index j = 0; j < window.correlation.cols(); ++j) {
+      row.push_back(number(window.correlation(i, j)));
+    }
+    out["correlation"].push_back(row);
+  }
+  out["rms_m"] = number(window.rms_m);
+  out["valid"] = window.valid;
+  out["why"] = window.why;
+  if (!window.part.empty()) out["part"] = window.part;
+  return out;
+}
+
+ordered_json json_of(const Alarm& alarm, const Outcome& o) {
+  const Named& named = alarm.named;
+  const matching::SearchParameter& p = o.choice.parameters[named.parameter];
+  const double healthy = p.value(o.healthy.x[static_cast<Index>(named.parameter)]);
+  const double value = p.value(named.x);
+  ordered_json group = ordered_json::array({p.name});
+  ordered_json rivals = ordered_json::array();
+  for (const Rival& rival : named.rivals) {
+    group.push_back(rival.name);
+    rivals.push_back({{"parameter", rival.name}, {"value", number(rival.value)}});
+  }
+  return {{"parameter", p.name},
+          {"direction", value > healthy ? "high" : "low"},
+          {"value", number(value)},
+          {"std_error", number(named.std_error * p.slope(named.x))},
+          {"healthy", number(healthy)},
+          {"change_ratio", number(healthy != 0.0 ? value / healthy - 1.0 : NAN)},
+          {"confidence", number(alarm.confidence)},
+          {"ambiguity_group", named.rivals.empty() ? ordered_json::array() : group},
+          {"rivals", rivals},
+          {"raised_s", alarm.raised_s},
+          {"cleared_s", number(alarm.cleared_s)},
+          {"advice", advice_words(o.choice, named)},
+          {"words", change_words(o.choice, named, o.healthy.x)}};
+}
+
+double median_fit_s(std::vector<Window> windows) {
+  if (windows.empty()) return NAN;
+  const auto middle = windows.begin() + static_cast<std::ptrdiff_t>(windows.size() / 2);
+  std::nth_element(windows.begin(), middle, windows.end(),
+                   [](const Window& a, const Window& b) { return a.fit_s < b.fit_s; });
+  return middle->fit_s;
+}
+
+}  // namespace
+
+std::string to_json(const Outcome& o) {
+  ordered_json out{{"model", o.model}, {"record", o.record}, {"command", o.command}};
+  ordered_json names = ordered_json::array();
+  ordered_json values = ordered_json::object();
+  for (std::size_t i = 0; i < o.choice.tracked; ++i) {
+    const matching::SearchParameter& p = o.choice.parameters[i];
+    names.push_back(p.name);
+    values[p.name] = number(p.value(o.healthy.x[static_cast<Index>(i)]));
+  }
+  out["parameters"] = names;
+  out["noise_floor_m"] = number(o.noise_floor_m);
+  out["healthy"] = {{"learnt", o.learnt},
+                    {"from_s", o.learnt ? number(o.healthy_from_s) : nullptr},
+                    {"to_s", o.learnt ? number(o.healthy_to_s) : nullptr},
+                    {"rms_m", number(o.healthy.rms_m)},
+                    {"values", values}};
+  out["limit_m"] = number(o.settings.most_ratio * o.healthy.rms_m);
+  out["alarms"] = ordered_json::array();
+  for (const Alarm& alarm : o.alarms) out["alarms"].push_back(json_of(alarm, o));
+  out["windows"] = ordered_json::array();
+  for (const Window& window : o.windows) out["windows"].push_back(json_of(window, o.choice));
+  out["notes"] = o.notes;
+  out["fit_s"] = number(median_fit_s(o.windows));
+  return out.dump(2) + "\n";
+}
+
+}  // namespace workbench::isolate

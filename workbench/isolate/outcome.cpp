@@ -1,0 +1,183 @@
+#include "workbench/isolate/outcome.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "config/record/record.h"
+#include "config/schema/document.h"
+#include "config/schema/error.h"
+#include "estimator/residual/noise_floor.h"
+#include "workbench/diagnose/quantity.h"
+#include "workbench/file_check.h"
+#include "workbench/fit/choice.h"
+#include "workbench/isolate/words.h"
+#include "workbench/shell_words.h"
+
+namespace workbench::isolate {
+namespace {
+
+using config::record::Record;
+using config::schema::Error;
+using config::schema::ExitCode;
+using diagnose::number;
+
+/// A healthy error above so many noise floors, and a healthy value so far off the file's, are
+/// worth a note.
+constexpr double kUncalibrated = 1.5;
+constexpr double kOffFile = 0.03;
+constexpr double kLeastSamples = 20.0;
+
+struct Span {
+  double from_s = 0.0;
+  double to_s = 0.0;
+};
+
+Span span(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  if (colon != std::string::npos) {
+    const Span out{fit::number_in(text.substr(0, colon)), fit::number_in(text.substr(colon + 1))};
+    if (out.from_s < out.to_s) return out;
+  }
+  throw Error(ExitCode::usage, "--healthy " + text + ": is no span; allowed: from:to, in s");
+}
+
+Choice choose_named(const plant_sim::ModelFile& model, const Request& request) {
+  try {
+    return choose(model, request.parameters);
+  } catch (const Error& error) {
+    std::string line = error.what();
+    const std::size_t at = line.find("--free");
+    if (at != std::string::npos) line.replace(at, 6, "--parameters");
+    throw Error(static_cast<ExitCode>(error.exit_code()), line);
+  }
+}
+
+/// Every window of [from, to) of the record.
+std::vector<Window> track(Tracker& tracker, const Record& record, const Span& within) {
+  std::vector<Window> windows;
+  std::size_t gap = 0;
+  bool first = true;
+  for (std::size_t k = 0; k < record.size(); ++k) {
+    if (gap < record.gaps.size() && record.gaps[gap] == k) {
+      first = true;
+      ++gap;
+    }
+    if (record.t_s[k] < within.from_s || record.t_s[k] >= within.to_s) continue;
+    if (auto window = tracker.push(record.t_s[k], record.u_V[k], record.y_m[k], first)) {
+      windows.push_back(std::move(*window));
+    }
+    first = false;
+  }
+  return windows;
+}
+
+void check(const Request& request, const Record& record) {
+  const double least_s = request.settings.window_s + kLead_s;
+  const double length_s = static_cast<double>(record.size()) * record.sample_time_s;
+  if (request.settings.window_s < kLeastSamples * record.sample_time_s) {
+    throw Error(ExitCode::usage, "--window: is too short for samples every " +
+                                     number("%.3g", record.sample_time_s) +
+                                     " s; allowed: 20 samples or more");
+  }
+  if (length_s < least_s) {
+    throw config::schema::bad_data(record.name, "is too short: " + number("%.3g", length_s) + " s",
+                                   "a window and its lead-in, " + number("%.3g", least_s) + " s");
+  }
+  if (request.settings.observer_per_s * record.sample_time_s >= 1.0) {
+    throw Error(ExitCode::usage, "--observer: is too fast for samples every " +
+                                     number("%.3g", record.sample_time_s) + " s");
+  }
+}
+
+std::string command_of(const Request& request) {
+  std::vector<std::string> words{"spoolwatch", "isolate", request.model, request.record};
+  const auto add = [&](const char* option, const std::string& value) {
+    words.emplace_back(option);
+    words.push_back(value);
+  };
+  if (request.parameters != Request{}.parameters) {
+    for (const std::string& names : request.parameters) add("--parameters", names);
+  }
+  if (request.settings.window_s != Settings{}.window_s) {
+    add("--window", number("%.9g", request.settings.window_s));
+  }
+  if (request.settings.stride_s != Settings{}.stride_s) {
+    add("--stride", number("%.9g", request.settings.stride_s));
+  }
+  if (request.settings.observer_per_s != Settings{}.observer_per_s) {
+    add("--observer", number("%.9g", request.settings.observer_per_s));
+  }
+  if (request.settings.most_ratio != Settings{}.most_ratio) {
+    add("--limit", number("%.9g", request.settings.most_ratio));
+  }
+  if (request.healthy_rms_m > 0.0) {
+    add("--healthy-rms", number("%.9g", request.healthy_rms_m));
+  } else if (request.healthy != Request{}.healthy) {
+    add("--healthy", request.healthy);
+  }
+  for (const std::string& assignment : request.assignments) add("--set", assignment);
+  return shell_command(words);
+}
+
+void note_calibration(Outcome& out) {
+  const double times = out.healthy.rms_m / out.noise_floor_m;
+  if (times > kUncalibrated) {
+    out.notes.push_back("the healthy error is " + number("%.3g", times) +
+                        " times the noise floor: the model lacks something that healthy data "
+                        "show; calibrate it first (spoolwatch diagnose, fit)");
+  }
+  for (std::size_t i = 0; i < out.choice.tracked; ++i) {
+    const matching::SearchParameter& p = out.choice.parameters[i];
+    const auto at = static_cast<Eigen::Index>(i);
+    if (p.scale != matching::Scale::logarithmic) continue;
+    const double off = std::exp(out.healthy.x[at] - out.choice.file[at]) - 1.0;
+    if (std::abs(off) < kOffFile) continue;
+    out.notes.push_back("when healthy, " + name_words(p.name) + " is " +
+                        number("%+.3g", 100.0 * off) +
+                        " % off the model file; changes count from there");
+  }
+}
+
+}  // namespace
+
+Outcome isolate(const Request& request) {
+  check_outputs({{"--json", request.json}, {"--report", request.report}},
+                {request.model, {request.record}});
+  auto document = config::schema::Document::load(request.model);
+  for (const std::string& assignment : request.assignments) document.set(assignment);
+  const plant_sim::ModelFile model = plant_sim::read_model(document);
+  const Record record = config::record::read_record(request.record);
+  check(request, record);
+  Outcome out;
+  out.model = request.model;
+  out.record = request.record;
+  out.command = command_of(request);
+  out.choice = choose_named(model, request);
+  out.settings = request.settings;
+  out.notes = record.notes;
+  const auto floor = estimator::residual::noise_floor(record.y_m, record.sample_time_s);
+  out.noise_floor_m = floor.sd_m;
+  const double floor_m = std::isfinite(floor.sd_m) ? floor.sd_m : 0.0;
+  const auto tracker = [&] {
+    return Tracker(model, out.choice, request.settings, record.sample_time_s, floor_m);
+  };
+  if (request.healthy_rms_m > 0.0) {
+    out.healthy = {request.healthy_rms_m, out.choice.file};
+  } else {
+    const Span healthy = span(request.healthy);
+    Tracker learning = tracker();
+    out.healthy = learn(track(learning, record, healthy), out.choice, floor_m,
+                        record.name + ": --healthy " + request.healthy);
+    out.learnt = true;
+    out.healthy_from_s = healthy.from_s;
+    out.healthy_to_s = healthy.to_s;
+    note_calibration(out);
+  }
+  Tracker judging = tracker();
+  judging.take(out.healthy);
+  out.windows = track(judging, record, {-INFINITY, INFINITY});
+  out.alarms = judging.alarms().alarms();
+  return out;
+}
+
+}  // namespace workbench::isolate

@@ -1,0 +1,56 @@
+// A record's tracking, from what was asked for to what is told.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "workbench/isolate/tracker.h"
+#include "workbench/report/report.h"
+
+namespace workbench::isolate {
+
+struct Request {
+  std::string model;
+  std::string record;
+  std::vector<std::string> parameters{"supply_pressure_Pa,damping_N_s_per_m"};
+  Settings settings;
+  std::string healthy = "0:10";  ///< from:to, s
+  double healthy_rms_m = 0.0;  ///< above 0: given instead of learnt; the file's values are healthy
+  std::vector<std::string> assignments;
+  std::string json;  ///< "-": standard output
+  std::string report;
+  bool all_windows = false;
+};
+
+struct Outcome {
+  std::string model;
+  std::string record;
+  std::string command;
+  Choice choice;
+  Settings settings;
+  Healthy healthy;
+  bool learnt = false;
+  double healthy_from_s = 0.0;
+  double healthy_to_s = 0.0;
+  double noise_floor_m = 0.0;  ///< NaN: cannot be told
+  std::vector<Window> windows;
+  std::vector<Alarm> alarms;
+  std::vector<std::string> notes;
+};
+
+/// Reads everything and tracks. Throws config::schema::Error: exit 2 for options, 65 and 78 for
+/// files that cannot be used.
+[[nodiscard]] Outcome isolate(const Request& request);
+
+[[nodiscard]] std::string to_text(const Outcome& outcome, bool all_windows);
+
+/// SI, a missing number is null: windows: [{t_s, from_s, NAME: {value, std_error}, correlation,
+/// rms_m, valid, why, part}], alarms: [{parameter, direction ("high", "low"), value, std_error,
+/// healthy, change_ratio, confidence, ambiguity_group, rivals: [{parameter, value}], raised_s,
+/// cleared_s, advice, words}], healthy: {rms_m, from_s, to_s, values}, noise_floor_m, parameters,
+/// limit_m, notes, fit_s (median of a window).
+[[nodiscard]] std::string to_json(const Outcome& outcome);
+
+[[nodiscard]] report::Report to_report(const Outcome& outcome);
+
+}  // namespace workbench::isolate

@@ -1,0 +1,112 @@
+// A tracking as a report.
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "workbench/diagnose/quantity.h"
+#include "workbench/isolate/outcome.h"
+#include "workbench/isolate/words.h"
+
+namespace workbench::isolate {
+namespace {
+
+using diagnose::number;
+using report::Plot;
+using report::Series;
+using report::Tone;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInterval = 1.96;
+
+Plot over_time(const Outcome& o, const std::string& title, const report::Axis& axis) {
+  Plot plot;
+  plot.title = title;
+  plot.x = {"time", "s"};
+  plot.y = axis;
+  plot.zoom_group = "record";
+  for (const Window& window : o.windows) plot.x_values.push_back(window.t_s);
+  return plot;
+}
+
+Plot parameter_plot(const Outcome& o, std::size_t i) {
+  const matching::SearchParameter& p = o.choice.parameters[i];
+  const bool relative = p.scale == matching::Scale::logarithmic;
+  const double healthy = p.value(o.healthy.x[static_cast<Eigen::Index>(i)]);
+  Plot plot = over_time(
+      o, name_words(p.name),
+      relative ? report::Axis{"of the healthy value", "%"} : report::Axis{name_words(p.name), ""});
+  const double factor = relative ? 100.0 / healthy : 1.0;
+  Series value{"found", {}, {}, Tone::model, {}, false};
+  Series low{"95 %, low", {}, {}, Tone::muted, {}, true};
+  Series high{"95 %, high", {}, {}, Tone::muted, {}, true};
+  for (const Window& window : o.windows) {
+    const Estimate& estimate = window.estimates[i];
+    const double about = kInterval * estimate.std_error;
+    value.y.push_back(window.valid ? factor * estimate.value : kNaN);
+    low.y.push_back(window.valid ? factor * (estimate.value - about) : kNaN);
+    high.y.push_back(window.valid ? factor * (estimate.value + about) : kNaN);
+  }
+  plot.series = {value, low, high};
+  plot.lines = {{factor * healthy, "healthy"}};
+  plot.caption = "Valid windows only, each at its last sample.";
+  return plot;
+}
+
+Plot error_plot(const Outcome& o) {
+  Plot plot = over_time(o, "Error of the fitted window", {"RMS", "um", true});
+  Series error{"error", {}, {}, Tone::residual, {}, false};
+  for (const Window& window : o.windows) error.y.push_back(1e6 * window.rms_m);
+  plot.series = {error};
+  plot.lines = {{1e6 * o.settings.most_ratio * o.healthy.rms_m, "limit of valid windows"}};
+  return plot;
+}
+
+report::Table alarm_table(const Outcome& o) {
+  report::Table table;
+  table.columns = {{"from", "s"},
+                   {"to", "s"},
+                   {"what", "", false},
+                   {"confidence", ""},
+                   {"or as well", "", false}};
+  for (const Alarm& alarm : o.alarms) {
+    table.rows.push_back(
+        {number("%.2f", alarm.raised_s), alarm.active() ? "" : number("%.2f", alarm.cleared_s),
+         change_words(o.choice, alarm.named, o.healthy.x),
+         number("%.4f", std::min(alarm.confidence, 0.9999)), group_words(o.choice, alarm.named)});
+  }
+  return table;
+}
+
+}  // namespace
+
+report::Report to_report(const Outcome& o) {
+  report::Report page;
+  page.title = "Isolation: " + std::filesystem::path(o.record).filename().string();
+  std::size_t invalid = 0;
+  for (const Window& window : o.windows) invalid += window.valid ? 0 : 1;
+  page.state = o.alarms.empty() ? report::State::good : report::State::warn;
+  page.verdict = o.alarms.empty() ? "No change named."
+                                  : std::to_string(o.alarms.size()) +
+                                        (o.alarms.size() == 1 ? " change" : " changes") + " named.";
+  page.summary = o.notes;
+  page.facts = {{"windows", std::to_string(o.windows.size()), ""},
+                {"invalid", std::to_string(invalid), ""},
+                {"healthy error", number("%.3g", 1e6 * o.healthy.rms_m), "um"},
+                {"noise floor", number("%.3g", 1e6 * o.noise_floor_m), "um"}};
+  page.command = o.command;
+  page.made_with = "spoolwatch isolate";
+  if (!o.alarms.empty()) {
+    report::Section alarms;
+    alarms.heading = "Changes";
+    alarms.tables.push_back(alarm_table(o));
+    page.sections.push_back(alarms);
+  }
+  report::Section course;
+  course.heading = "Parameters over time";
+  for (std::size_t i = 0; i < o.choice.tracked; ++i) course.plots.push_back(parameter_plot(o, i));
+  course.plots.push_back(error_plot(o));
+  page.sections.push_back(course);
+  return page;
+}
+
+}  // namespace workbench::isolate

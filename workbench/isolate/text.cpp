@@ -1,0 +1,91 @@
+// A tracking for the terminal.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "workbench/diagnose/quantity.h"
+#include "workbench/isolate/outcome.h"
+#include "workbench/isolate/words.h"
+
+namespace workbench::isolate {
+namespace {
+
+using diagnose::length_words;
+using diagnose::number;
+
+std::string seconds(double s) { return number("%.4g", s) + " s"; }
+
+std::string healthy_line(const Outcome& o) {
+  std::string text = "healthy";
+  text += o.learnt
+              ? " (" + number("%.4g", o.healthy_from_s) + " to " + seconds(o.healthy_to_s) + ")"
+              : " (given)";
+  text +=
+      ": error " + length_words(o.healthy.rms_m) + ", noise floor " + length_words(o.noise_floor_m);
+  for (std::size_t i = 0; i < o.choice.tracked; ++i) {
+    const matching::SearchParameter& p = o.choice.parameters[i];
+    text += ", " + name_words(p.name) + " " +
+            value_words(p, o.healthy.x[static_cast<Eigen::Index>(i)], NAN);
+  }
+  return text + "\n";
+}
+
+std::string alarm_lines(const Outcome& o, const Alarm& alarm) {
+  std::string text = "ALARM " + seconds(alarm.raised_s) +
+                     (alarm.active() ? "" : " to " + seconds(alarm.cleared_s)) + ": " +
+                     change_words(o.choice, alarm.named, o.healthy.x) + " (confidence " +
+                     number("%.4f", std::min(alarm.confidence, 0.9999)) + ")\n";
+  const std::string group = group_words(o.choice, alarm.named);
+  return group.empty() ? text : text + "      " + group + "\n";
+}
+
+/// Up to the first figure: reasons that differ in figures only are one.
+std::string kind_of(const std::string& why) { return why.substr(0, why.find(':')); }
+
+std::string invalid_lines(const Outcome& o) {
+  std::map<std::string, std::pair<int, const Window*>> kinds;
+  int count = 0;
+  for (const Window& window : o.windows) {
+    if (window.valid) continue;
+    ++count;
+    auto& kind = kinds[kind_of(window.why)];
+    if (kind.first++ == 0) kind.second = &window;
+  }
+  std::string text = std::to_string(o.windows.size()) + " windows of " +
+                     seconds(o.settings.window_s) + ", " + std::to_string(count) + " invalid\n";
+  for (const auto& [words, kind] : kinds) {
+    text += "  " + std::to_string(kind.first) + ", the first at " + seconds(kind.second->t_s) +
+            ": " + kind.second->why + "\n";
+  }
+  return text;
+}
+
+std::string window_line(const Outcome& o, const Window& window) {
+  std::string text = number("%9.3f", window.t_s) + " s ";
+  for (std::size_t i = 0; i < o.choice.tracked; ++i) {
+    const matching::SearchParameter& p = o.choice.parameters[i];
+    const Estimate& estimate = window.estimates[i];
+    text += " " + words(diagnose::quantity(p.name, estimate.value, estimate.std_error));
+    text += i + 1 < o.choice.tracked ? "," : "";
+  }
+  text += ", error " + length_words(window.rms_m);
+  if (!window.valid) text += "; INVALID, " + window.why;
+  if (!window.part.empty()) text += "; " + window.part;
+  return text + "\n";
+}
+
+}  // namespace
+
+std::string to_text(const Outcome& o, bool all_windows) {
+  std::string text = healthy_line(o);
+  for (const std::string& note : o.notes) text += "note: " + note + "\n";
+  for (const Alarm& alarm : o.alarms) text += alarm_lines(o, alarm);
+  if (o.alarms.empty()) text += "no change named\n";
+  text += invalid_lines(o);
+  if (all_windows) {
+    for (const Window& window : o.windows) text += window_line(o, window);
+  }
+  return text;
+}
+
+}  // namespace workbench::isolate
