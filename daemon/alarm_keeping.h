@@ -11,6 +11,7 @@
 #include "daemon/io/audit.h"
 #include "daemon/io/clerk.h"
 #include "daemon/rt/alarm_desk.h"
+#include "daemon/rules.h"
 #include "estimator/fdi/pipeline.h"
 
 namespace monitor {
@@ -24,10 +25,8 @@ class AlarmKeeping {
     double sample_time_s;
     bool virtual_time;  ///< nothing of another run is read, nothing is left to the next
   };
-  /// Before the detector: gives the pipeline's alarms their rules. `effective`: with the learned
-  /// bands in it. Throws config::schema::Error when evidence cannot be kept.
-  AlarmKeeping(DaemonConfig& config, const estimator::fdi::PipelineConfig& effective,
-               estimator::fdi::Pipeline& pipeline, const Session& session);
+  /// Before the detector. Throws config::schema::Error when evidence cannot be kept.
+  AlarmKeeping(DaemonConfig& config, const Rules& rules, const Session& session);
   ~AlarmKeeping();
   AlarmKeeping(const AlarmKeeping&) = delete;
   AlarmKeeping& operator=(const AlarmKeeping&) = delete;

@@ -27,9 +27,9 @@ StopFile::StopFile() {
 
 StopFile::~StopFile() { close(file_); }
 
-bool StopFile::came() const noexcept {
+int StopFile::take() const noexcept {
   signalfd_siginfo info{};
-  return read(file_, &info, sizeof info) == sizeof info;
+  return read(file_, &info, sizeof info) == sizeof info ? static_cast<int>(info.ssi_signo) : 0;
 }
 
 bool Attendant::attend() {
@@ -40,7 +40,13 @@ bool Attendant::attend() {
     socket_->wait(soon_ ? kShortLook_ms : kLook_ms, stop_.file());
     soon_ = desk_.serve(*socket_);
   }
-  return stop_.came();
+  reloader_.look();
+  for (int signal = stop_.take(); signal != 0; signal = stop_.take()) {
+    if (signal != SIGHUP) return true;
+    hung_up_ = true;
+  }
+  if (hung_up_ && reloader_.begin(getuid(), "SIGHUP")) hung_up_ = false;
+  return false;
 }
 
 }  // namespace monitor

@@ -1,5 +1,5 @@
 // What the main thread does while the loop runs: it waits for the signals that ask the process to
-// stop, and serves the control socket.
+// stop or to read its configuration again, and serves the control socket.
 #pragma once
 
 #include <csignal>
@@ -8,7 +8,8 @@
 
 namespace monitor {
 
-/// SIGTERM, SIGINT, SIGHUP; blocked in every thread, so that they are waited for.
+/// SIGTERM, SIGINT, SIGHUP; blocked in every thread, so that they are waited for. In a session
+/// SIGHUP asks for the configuration to be read again.
 [[nodiscard]] sigset_t stop_signals();
 
 /// Those signals as a file that can be waited for.
@@ -19,7 +20,10 @@ class StopFile {
   StopFile(const StopFile&) = delete;
   StopFile& operator=(const StopFile&) = delete;
   [[nodiscard]] int file() const noexcept { return file_; }
-  [[nodiscard]] bool came() const noexcept;
+  /// Whether any came.
+  [[nodiscard]] bool came() const noexcept { return take() != 0; }
+  /// The next that came, 0: none.
+  [[nodiscard]] int take() const noexcept;
 
  private:
   int file_;
@@ -27,8 +31,9 @@ class StopFile {
 
 class Attendant {
  public:
-  /// `socket` may be null; both outlive this.
-  Attendant(CommandDesk& desk, io::ControlSocket* socket) : desk_(desk), socket_(socket) {}
+  /// `socket` may be null; all of it outlives this.
+  Attendant(CommandDesk& desk, io::ControlSocket* socket, Reloader& reloader)
+      : desk_(desk), socket_(socket), reloader_(reloader) {}
 
   /// Up to 100 ms. Returns whether the daemon is asked to stop.
   bool attend();
@@ -36,8 +41,10 @@ class Attendant {
  private:
   CommandDesk& desk_;
   io::ControlSocket* socket_;
+  Reloader& reloader_;
   StopFile stop_;
-  bool soon_ = false;  ///< there is something to do
+  bool hung_up_ = false;  ///< a reload is asked for
+  bool soon_ = false;     ///< there is something to do
 };
 
 }  // namespace monitor

@@ -27,8 +27,9 @@ CommandDesk::CommandDesk(const Parts& parts, Identity identity)
 bool CommandDesk::serve(io::ControlSocket& socket) {
   for (int n = 0; n < kAtATime; ++n) {
     if (waits_for_ != WaitsFor::nobody) {
-      const std::string line =
-          waits_for_ == WaitsFor::loop ? take_loop_answer() : take_alarm_answer();
+      const std::string line = waits_for_ == WaitsFor::loop       ? take_loop_answer()
+                               : waits_for_ == WaitsFor::detector ? take_alarm_answer()
+                                                                  : take_reload_answer();
       if (line.empty()) return true;
       waits_for_ = WaitsFor::nobody;
       socket.answer(request_.client, line);
@@ -66,6 +67,11 @@ std::string CommandDesk::line_for(const io::ControlRequest& request) {
     case Kind::shelve:
     case Kind::unshelve:
       return order_alarms(request);
+    case Kind::reload:
+      return order_reload();
+    case Kind::note:
+      note_act("");
+      return io::print_done(state());
     default:
       return order_loop(request);
   }
@@ -139,6 +145,28 @@ std::string CommandDesk::take_alarm_answer() {
   return refuse("the detector does not answer; the order may still be carried out");
 }
 
+std::string CommandDesk::order_reload() {
+  if (parts_.reloader == nullptr || !parts_.reloader->begin(request_.uid, request_.line)) {
+    return refuse("the configuration is just being read again");
+  }
+  waits_for_ = WaitsFor::reloader;
+  until_ns_ = parts_.clock.now_ns() + kDetectorPatience_ns;
+  return take_reload_answer();
+}
+
+std::string CommandDesk::take_reload_answer() {
+  parts_.reloader->look();
+  if (!parts_.reloader->busy()) {
+    waits_for_ = WaitsFor::nobody;
+    const ReloadOutcome& outcome = parts_.reloader->last();
+    if (!outcome.refusal.empty()) return io::print_refused(state(), outcome.refusal);
+    return io::print_reloaded(state(), {parts_.reloader->config_hash(), outcome.changed,
+                                        outcome.warm, outcome.cold, outcome.ended});
+  }
+  if (parts_.clock.now_ns() <= until_ns_) return "";
+  return io::print_refused(state(), "the detector has not taken the rules yet; it may still do so");
+}
+
 std::string CommandDesk::words(const control::Answer& answer) const {
   switch (answer.refusal) {
     case Refusal::none:
@@ -188,6 +216,15 @@ io::ControlStatus CommandDesk::status() const {
   io::ControlStatus status;
   status.rig_id = identity_.rig_id;
   status.config_hash = identity_.config_hash;
+  if (parts_.reloader != nullptr) {
+    status.config_hash = parts_.reloader->config_hash();
+    status.reload_refused = parts_.reloader->last().refusal;
+    const DaemonConfig& config = parts_.reloader->running();
+    status.rules_hash = parts_.reloader->rules_hash();
+    status.sample_time_s = parts_.reloader->sample_time_s();
+    status.config_file = std::filesystem::absolute(config.file).string();
+    status.recorder_folder = config.recorder.folder;
+  }
   status.state = state();
   status.holding = stats.holding.load(std::memory_order_relaxed);
   status.ramping = stats.ramping.load(std::memory_order_relaxed);

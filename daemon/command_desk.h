@@ -11,6 +11,7 @@
 #include "daemon/io/audit.h"
 #include "daemon/io/control_messages.h"
 #include "daemon/io/control_socket.h"
+#include "daemon/reloader.h"
 #include "daemon/rt/alarm_desk.h"
 #include "daemon/rt/clock.h"
 #include "daemon/rt/loop_stats.h"
@@ -28,6 +29,7 @@ class CommandDesk {
     rt::AlarmOrderQueue* alarm_orders = nullptr;  ///< null, as `alarm_answers`: none are taken
     rt::AlarmAnswerQueue* alarm_answers = nullptr;
     io::Audit* audit = nullptr;
+    Reloader* reloader = nullptr;  ///< null: nothing is read again
   };
   /// What does not change.
   struct Identity {
@@ -45,15 +47,17 @@ class CommandDesk {
   bool serve(io::ControlSocket& socket);
 
  private:
-  enum class WaitsFor : std::uint8_t { nobody, loop, detector };
+  enum class WaitsFor : std::uint8_t { nobody, loop, detector, reloader };
 
   /// Empty: the answer comes from the loop or the detector.
   [[nodiscard]] std::string line_for(const io::ControlRequest& request);
   [[nodiscard]] std::string order_loop(const io::ControlRequest& request);
   [[nodiscard]] std::string order_alarms(const io::ControlRequest& request);
+  [[nodiscard]] std::string order_reload();
   /// Empty: not yet.
   [[nodiscard]] std::string take_loop_answer();
   [[nodiscard]] std::string take_alarm_answer();
+  [[nodiscard]] std::string take_reload_answer();
   /// The answer that refuses the request at hand.
   [[nodiscard]] std::string refuse(const std::string& why);
   /// Writes down the act at hand.

@@ -15,9 +15,9 @@ namespace {
 using config::schema::Visitor;
 
 /// Keys whose values are paths that start from the configuration's folder.
-constexpr const char* kPathKeys[] = {"sim.model",       "replay.record",   "reference.file",
-                                     "bands_file",      "recorder.folder", "control.socket",
-                                     "rig.calibration", "alarms.folder",   "evidence.folder"};
+constexpr const char* kPathKeys[] = {
+    "sim.model",      "replay.record",   "reference.file", "bands_file",      "recorder.folder",
+    "control.socket", "rig.calibration", "alarms.folder",  "evidence.folder", "model.file"};
 
 /// Keys that say how valve and rod sensor are wired and what their signals mean.
 constexpr const char* kWiringKeys[] = {
@@ -80,6 +80,9 @@ void DaemonConfig::visit_what_determines_the_data(Visitor& v) {
 
 void DaemonConfig::visit(Visitor& v) {
   visit_what_determines_the_data(v);
+  v.table({"model", "the physics of the healthy rig"}, [this](Visitor& t) {
+    t.text({"file", "model file that `spoolwatch promote` keeps up to date"}, model);
+  });
   v.table({"control", "who may look and act"}, [this](Visitor& t) { control.visit(t); });
   v.table({"alarms", "what becomes of alarms"}, [this](Visitor& t) { alarms.visit(t); });
   v.table({"evidence", "kept of each alarm"}, [this](Visitor& t) { evidence.visit(t); });

@@ -2,7 +2,7 @@
 //
 // Tables: [rig], [loop], [rod], [valve], one for each backend used, [reference] and [controller]
 // (only where a valve is driven), [safety], [[guard]], [[estimator]], [[band]], bands_file,
-// [control], [alarms], [evidence], [lcm], [recorder].
+// [model], [control], [alarms], [evidence], [lcm], [recorder].
 #pragma once
 
 #include <cstdint>
@@ -29,6 +29,8 @@ struct DaemonConfig {
   std::filesystem::path folder;  ///< relative paths in it start here
   std::string rig_id = "rig";
   std::string calibration;  ///< file that commissioning wrote; empty: none
+  /// Of the healthy rig's physics, for `spoolwatch promote`; empty: none. The daemon only names it.
+  std::string model;
   rt::LoopConfig loop;
   hal::Rig rig;
   control::ReferenceConfig reference;

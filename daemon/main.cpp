@@ -102,8 +102,11 @@ int run(int argc, char** argv) {
   if (null && note->count() > 0) return monitor::write_null(options.driving, std::cerr);
 
   monitor::DaemonConfig config;
-  monitor::load(file, assignments, config);
-  if (url->count() > 0) config.lcm.url = lcm_url;
+  options.read = [&](monitor::DaemonConfig& target) {
+    monitor::load(file, assignments, target);
+    if (url->count() > 0) target.lcm.url = lcm_url;
+  };
+  options.read(config);
   if (null) return monitor::write_null(config, std::cerr);
   if (check) {
     monitor::check_session(config, std::cout);

@@ -59,7 +59,7 @@ std::string ServiceReport::line() const {
                 static_cast<int>(stats_.active_alarms.load(std::memory_order_relaxed)),
                 static_cast<double>(stats_.lateness.quantile_ns(0.999)) * 1e-6,
                 static_cast<long long>(stats_.skipped_periods.value()));
-  return text;
+  return remark_.empty() ? text : text + ("; " + remark_);
 }
 
 }  // namespace monitor

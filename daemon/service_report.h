@@ -25,6 +25,8 @@ class ServiceReport {
   /// Tells what is due. On the main thread, several times in a quarter of the watchdog's time.
   void look();
   void stopping() const { manager_.stopping(); }
+  /// Added to the line of status; empty: nothing.
+  void remark(const std::string& remark) { remark_ = remark; }
 
  private:
   [[nodiscard]] bool works() const noexcept;
@@ -42,6 +44,7 @@ class ServiceReport {
   std::int64_t fed_detected_ = 0;  ///< of the detector, likewise
   std::int64_t next_line_ns_ = 0;
   std::string said_;
+  std::string remark_;
 };
 
 }  // namespace monitor

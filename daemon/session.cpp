@@ -1,5 +1,7 @@
 #include "daemon/session.h"
 
+#include <unistd.h>
+
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -15,7 +17,9 @@
 #include "daemon/left_at_null.h"
 #include "daemon/null_guard.h"
 #include "daemon/null_table.h"
+#include "daemon/reloader.h"
 #include "daemon/rt/run.h"
+#include "daemon/rules.h"
 #include "daemon/service_report.h"
 
 namespace monitor {
@@ -32,8 +36,7 @@ struct Prepared {
   hal::Devices devices;
   std::unique_ptr<control::Reference> reference;
   std::uint64_t hash;
-  estimator::fdi::PipelineConfig pipeline_config;  ///< with the learned bands
-  std::unique_ptr<estimator::fdi::Pipeline> pipeline;
+  Rules rules;
   std::vector<control::GuardConfig> guards;
   std::string never_arms;  ///< why it may not be armed; empty: it may
 };
@@ -98,34 +101,19 @@ Prepared prepare(DaemonConfig& config, bool exclusive) {
     return control::make_reference(
         config.drives_valve() ? config.reference : control::ReferenceConfig{}, config.folder);
   });
-  estimator::fdi::PipelineConfig pipeline = config.pipeline;
-  at(config.file + ": bands_file", [&] {
-    std::error_code ignored;
-    if (!pipeline.bands_file.empty() &&
-        !std::filesystem::is_regular_file(config.folder / pipeline.bands_file, ignored)) {
-      throw config::schema::bad_config((config.folder / pipeline.bands_file).string(), "is no file",
-                                       "a file of learned bands (TOML)");
-    }
-    pipeline.load_bands(config.folder, p.sample_time_s);
-  });
-  p.pipeline = at(config.file, [&] {
-    return std::make_unique<estimator::fdi::Pipeline>(pipeline, p.sample_time_s);
-  });
-  p.pipeline_config = std::move(pipeline);
+  p.rules = make_rules(config, p.sample_time_s);
   p.hash = hash(config);
   return p;
 }
 
-bool stop_pending() {
+/// In virtual time, where nobody serves a socket.
+bool stop_pending(Reloader& reloader) {
   const sigset_t set = stop_signals();
   const timespec now{0, 0};
-  return sigtimedwait(&set, nullptr, &now) > 0;
-}
-
-std::string hex(std::uint64_t value) {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
-  return text;
+  const int signal = sigtimedwait(&set, nullptr, &now);
+  reloader.look();
+  if (signal == SIGHUP) reloader.begin(getuid(), "SIGHUP");
+  return signal > 0 && signal != SIGHUP;
 }
 
 void report(const rt::LoopStats& stats, std::ostream& log) {
@@ -191,8 +179,7 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
   if (!config.recorder.folder.empty()) {
     recorder = std::make_unique<io::Recorder>(config.recorder, run_id, !virtual_time);
   }
-  AlarmKeeping keeping(config, p.pipeline_config, *p.pipeline,
-                       {hex(p.hash), run_id, p.sample_time_s, virtual_time});
+  AlarmKeeping keeping(config, p.rules, {hash_text(p.hash), run_id, p.sample_time_s, virtual_time});
   io::Publisher publisher(config.lcm, run_id, p.sample_time_s, recorder.get());
   if (keeping.evidence != nullptr) publisher.attach(*keeping.evidence);
 
@@ -215,18 +202,23 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
                 {clock, *p.devices.rod, valve, *p.reference, *samples, commands, stats,
                  &p.devices.spare_rods, &p.devices.inputs, p.devices.permit.get()},
                 controller, p.sample_time_s, {config.safety, p.never_arms.empty()});
-  rt::Detector detector({clock, *samples, stats, *p.pipeline, publisher, recorder.get(),
-                         &keeping.orders, &keeping.answers, keeping.store.get(),
-                         keeping.audit.get(), keeping.evidence.get(), keeping.pipeline_hash},
-                        {config.rig_id, hex(p.hash), grant.text, config.rig.rod_backend(),
-                         valve != nullptr ? valve_config.backend : "", ids_of(p.devices.spare_rods),
-                         ids_of(p.devices.inputs), p.guards});
-  keeping.bring_back(*p.pipeline, clock.utc_us(), log);
-  CommandDesk desk({clock, commands, stats, &keeping.orders, &keeping.answers, keeping.audit.get()},
-                   {config.rig_id, hex(p.hash), p.guards, ids_of(p.devices.spare_rods),
-                    ids_of(p.devices.inputs), inputs_of(p.devices, hal::InputRole::enable),
-                    inputs_of(p.devices, hal::InputRole::e_stop), p.never_arms});
-  Attendant attendant(desk, socket.get());
+  Reloader reloader({clock, log, keeping.audit.get(), keeping.evidence != nullptr, options.read,
+                     keeping.pipeline_hash},
+                    config, p.sample_time_s);
+  rt::Detector detector(
+      {clock, *samples, stats, *p.rules.pipeline, publisher, recorder.get(), &keeping.orders,
+       &keeping.answers, keeping.store.get(), keeping.audit.get(), keeping.evidence.get(),
+       keeping.pipeline_hash, &reloader.to_detector, &reloader.from_detector},
+      {config.rig_id, hash_text(p.hash), grant.text, config.rig.rod_backend(),
+       valve != nullptr ? valve_config.backend : "", ids_of(p.devices.spare_rods),
+       ids_of(p.devices.inputs), p.guards});
+  keeping.bring_back(*p.rules.pipeline, clock.utc_us(), log);
+  CommandDesk desk(
+      {clock, commands, stats, &keeping.orders, &keeping.answers, keeping.audit.get(), &reloader},
+      {config.rig_id, hash_text(p.hash), p.guards, ids_of(p.devices.spare_rods),
+       ids_of(p.devices.inputs), inputs_of(p.devices, hal::InputRole::enable),
+       inputs_of(p.devices, hal::InputRole::e_stop), p.never_arms});
+  Attendant attendant(desk, socket.get(), reloader);
   const io::ServiceManager manager;
   ServiceReport service(manager, clock, stats, valve != nullptr);
 
@@ -240,8 +232,9 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
   rt::Run run(loop, rt::Grid(start_ns, std::llround(p.sample_time_s * 1e9)), clock, valve, ticks,
               stop);
   const rt::Outcome outcome =
-      virtual_time ? rt::run_virtual(run, detector, stop, stop_pending)
+      virtual_time ? rt::run_virtual(run, detector, stop, [&] { return stop_pending(reloader); })
                    : rt::run_realtime(run, detector, grant.loop_thread, stop, valve, [&] {
+                       service.remark(reloader.complaint());
                        service.look();
                        const bool stops = attendant.attend();
                        if (stops) service.stopping();
@@ -266,7 +259,7 @@ void check_session(DaemonConfig& config, std::ostream& out) {
   if (!config.recorder.folder.empty()) io::check_folder(config.recorder);
   out << config::schema::print_toml([&](config::schema::Visitor& v) { config.visit(v); });
   out << "\n# " << config.file << ": period " << p.sample_time_s * 1e3 << " ms, configuration "
-      << hex(p.hash) << "\n";
+      << hash_text(p.hash) << "\n";
   for (const std::string& note : config.rig.notes(p.opening)) out << "# " << note << "\n";
   if (!config.drives_valve()) {
     out << "# No valve is driven: state MONITOR, nothing is ever written.\n";

@@ -1,6 +1,7 @@
 // One life of the daemon: everything that the configuration asks for, opened, run, and closed.
 #pragma once
 
+#include <functional>
 #include <iosfwd>
 
 #include "daemon/daemon_config.h"
@@ -11,6 +12,8 @@ struct SessionOptions {
   bool virtual_time = false;
   std::filesystem::path driving;  ///< where it is noted what is driven; empty: nowhere
   double duration_s = 0.0;        ///< of the loop's grid; 0: until a signal comes
+  /// Reads the configuration once more; throws config::schema::Error.
+  std::function<void(DaemonConfig&)> read;
 };
 
 /// Runs until the duration is over, the record ends or a signal comes. Returns the exit code;

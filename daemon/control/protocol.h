@@ -7,6 +7,8 @@
 //   {"command": "ack", "alarm": "SOURCE.NAME"}           who may act; without "alarm": all
 //   {"command": "shelve", "alarm": "SOURCE.NAME", "time_s": t}
 //   {"command": "unshelve", "alarm": "SOURCE.NAME"}
+//   {"command": "reload"}                                who may act: the configuration once more
+//   {"command": "note", "text": "..."}                   who may act: a line for the audit file
 //
 // Answers: {"ok": true, "state": "ARMED", ...} or {"ok": false, "state": "...", "reason": "..."}.
 #pragma once
@@ -52,6 +54,7 @@ inline constexpr const char* kAlarm = "alarm";
 inline constexpr const char* kTime = "time_s";
 inline constexpr const char* kAlarms = "alarms";
 inline constexpr const char* kDone = "done";
+inline constexpr const char* kText = "text";
 }  // namespace key
 
 inline constexpr const char* kStatus = "status";
@@ -61,5 +64,7 @@ inline constexpr const char* kAlarms = "alarms";
 inline constexpr const char* kAcknowledge = "ack";
 inline constexpr const char* kShelve = "shelve";
 inline constexpr const char* kUnshelve = "unshelve";
+inline constexpr const char* kReload = "reload";
+inline constexpr const char* kNote = "note";
 
 }  // namespace monitor::control

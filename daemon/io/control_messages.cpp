@@ -96,10 +96,17 @@ ControlRequest parse_request(const std::string& line) {
     request.kind = Kind::hold;
   } else if (command == control::kAlarms) {
     request.kind = Kind::alarms;
+  } else if (command == control::kReload) {
+    request.kind = Kind::reload;
+  } else if (command == control::kNote) {
+    const auto text = object.find(control::key::kText);
+    if (text == object.end() || !text->is_string()) return bad("text: is missing");
+    request.kind = Kind::note;
   }
   std::string known = std::string(control::kStatus) + ", " + control::kHold + ", " +
                       control::kReference + ", " + control::kAlarms + ", " + control::kAcknowledge +
-                      ", " + control::kShelve + ", " + control::kUnshelve;
+                      ", " + control::kShelve + ", " + control::kUnshelve + ", " +
+                      control::kReload + ", " + control::kNote;
   for (const control::EventName& entry : control::kEventCommands) {
     known += std::string(", ") + entry.name;
     if (command != entry.name) continue;
@@ -120,6 +127,12 @@ std::string print_status(const ControlStatus& status) {
   line["ramping"] = status.ramping;
   line["latched_by"] = status.latched_by.empty() ? json(nullptr) : json(status.latched_by);
   line["obstacle"] = status.obstacle.empty() ? json(nullptr) : json(status.obstacle);
+  line["config_file"] = status.config_file;
+  line["recorder_folder"] = status.recorder_folder;
+  line["rules_hash"] = status.rules_hash;
+  line["sample_time_s"] = number(status.sample_time_s);
+  line["reload_refused"] =
+      status.reload_refused.empty() ? json(nullptr) : json(status.reload_refused);
   line["y_m"] = number(status.y_m);
   line["reference_m"] = number(status.reference_m);
   line["u_V"] = number(status.u_V);
@@ -178,6 +191,18 @@ std::string print_acted(control::State state, const std::vector<std::string>& do
   line[control::key::kOk] = true;
   line[control::key::kState] = control::to_string(state);
   line[control::key::kDone] = done;
+  return line.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+std::string print_reloaded(control::State state, const ControlReload& reload) {
+  ordered_json line;
+  line[control::key::kOk] = true;
+  line[control::key::kState] = control::to_string(state);
+  line["config_hash"] = reload.config_hash;
+  line["changed"] = reload.changed;
+  line["warm"] = reload.warm;
+  line["cold"] = reload.cold;
+  line["ended"] = reload.ended;
   return line.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 

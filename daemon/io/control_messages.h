@@ -21,6 +21,8 @@ struct ControlRequest {
     acknowledge,
     shelve,
     unshelve,
+    reload,
+    note,
     bad
   };
   Kind kind = Kind::bad;
@@ -53,6 +55,10 @@ struct ControlStatus {
   bool ramping = false;
   std::string latched_by;  ///< id of the guard; empty unless LATCHED
   std::string obstacle;    ///< why it cannot be armed; empty when it can
+  std::string config_file, recorder_folder;
+  std::string rules_hash;  ///< of estimators and bands, the learned ones in them
+  double sample_time_s = std::numeric_limits<double>::quiet_NaN();
+  std::string reload_refused;  ///< why the newest configuration was not taken; empty: it was
   double y_m = std::numeric_limits<double>::quiet_NaN();
   double reference_m = std::numeric_limits<double>::quiet_NaN();
   double u_V = std::numeric_limits<double>::quiet_NaN();
@@ -74,6 +80,15 @@ struct ControlAlarm {
                                        const std::vector<ControlAlarm>& alarms);
 /// `done`: the alarms that an act has changed.
 [[nodiscard]] std::string print_acted(control::State state, const std::vector<std::string>& done);
+/// What a reload has changed.
+struct ControlReload {
+  std::string config_hash;
+  std::vector<std::string> changed;  ///< keys
+  std::vector<std::string> warm;     ///< estimators that went on
+  std::vector<std::string> cold;     ///< estimators that began anew
+  std::vector<std::string> ended;    ///< alarms that stood and are no more
+};
+[[nodiscard]] std::string print_reloaded(control::State state, const ControlReload& reload);
 [[nodiscard]] std::string print_done(control::State state);
 [[nodiscard]] std::string print_refused(control::State state, const std::string& reason);
 

@@ -51,6 +51,7 @@ void Detector::drain() {
 }
 
 void Detector::poll() {
+  take_rules();
   alarm_desk_.serve(parts_.pipeline.alarms(), changed_);
   drain();
   if (parts_.store != nullptr) parts_.store->keep(parts_.pipeline.alarms(), parts_.clock.utc_us());

@@ -18,6 +18,7 @@
 #include "daemon/rt/guard_alarms.h"
 #include "daemon/rt/loop_stats.h"
 #include "daemon/rt/queues.h"
+#include "daemon/rt/rule_change.h"
 #include "estimator/fdi/pipeline.h"
 #include "spoolwatch/health_t.hpp"
 
@@ -39,6 +40,8 @@ class Detector final : private estimator::fdi::Events {
     const io::Audit* audit = nullptr;
     io::Evidence* evidence = nullptr;
     std::uint64_t pipeline_hash = 0;  ///< fdi::hash_of(whole_text), for evidence
+    RuleQueue* new_rules = nullptr;   ///< to be taken, with `taken_rules`
+    RuleQueue* taken_rules = nullptr;
   };
   /// Constant fields of health_t.
   struct Identity {
@@ -62,6 +65,9 @@ class Detector final : private estimator::fdi::Events {
   void on_estimate(const estimator::fdi::EstimateEvent& event) override;
   void on_alarm(const estimator::fdi::Alarm& alarm) override;
 
+  /// New rules take the place of the old ones, between two samples.
+  void take_rules();
+  void change_rules(RuleChange& change);
   void drain();
   void process(const estimator::fdi::Sample& sample);
   void publish(const estimator::fdi::Alarm& alarm, bool repeat);

@@ -27,8 +27,14 @@ const char* consequence(Action action) {
 
 GuardAlarms::GuardAlarms(const std::vector<control::GuardConfig>& guards,
                          estimator::fdi::AlarmBook& book)
-    : book_(book) {
-  for (const control::GuardConfig& guard : guards) {
+    : guards_(guards) {
+  declare_in(book);
+}
+
+void GuardAlarms::declare_in(estimator::fdi::AlarmBook& book) {
+  book_ = &book;
+  entries_.clear();
+  for (const control::GuardConfig& guard : guards_) {
     const control::GuardKind kind = guard.which();
     const control::Guard limits(guard);
     Alarm alarm;
@@ -36,12 +42,12 @@ GuardAlarms::GuardAlarms(const std::vector<control::GuardConfig>& guards,
     alarm.name = guard.id;
     alarm.quantity = control::to_string(kind);
     alarm.guidance = guard.guidance.empty() ? control::guidance_of(kind) : guard.guidance;
-    alarm.rules = book_.condition_rules();
+    alarm.rules = book_->condition_rules();
     alarm.low = limits.low();
     alarm.high = limits.high();
     const Action action = control::action_of(guard.action);
     const Severity severity = action == Action::indicate ? Severity::minor : Severity::major;
-    entries_.push_back({book_.declare(std::move(alarm)), severity,
+    entries_.push_back({book_->declare(std::move(alarm)), severity,
                         std::string(control::reason_of(kind)) + consequence(action)});
   }
 }
@@ -59,11 +65,11 @@ void GuardAlarms::report(GuardBoard& board, std::int64_t tick,
     state.tick = tick;
     state.value = board.value(i);
     if (active) {
-      const Alarm& limits = book_.alarm(entries_[i].number);
+      const Alarm& limits = book_->alarm(entries_[i].number);
       state.reason = entries_[i].reason;
       state.direction = state.value > limits.high ? 1 : state.value < limits.low ? -1 : 0;
     }
-    if (const Alarm* alarm = book_.set(entries_[i].number, state)) changed(*alarm);
+    if (const Alarm* alarm = book_->set(entries_[i].number, state)) changed(*alarm);
   }
   shown_ = now;
 }

@@ -16,6 +16,9 @@ class GuardAlarms {
   /// Declares one alarm for each guard (control::all_guards) in `book`, which outlives this.
   GuardAlarms(const std::vector<control::GuardConfig>& guards, estimator::fdi::AlarmBook& book);
 
+  /// Declares them in another book, which takes the place of the first.
+  void declare_in(estimator::fdi::AlarmBook& book);
+
   /// Sets the alarms as the board shows them; `changed` is called for each that came or went. A
   /// guard that was active for one tick alone gives an alarm all the same, until the next call.
   void report(GuardBoard& board, std::int64_t tick,
@@ -27,8 +30,9 @@ class GuardAlarms {
     estimator::fdi::Severity severity;
     std::string reason;
   };
+  std::vector<control::GuardConfig> guards_;
   std::vector<Entry> entries_;
-  estimator::fdi::AlarmBook& book_;
+  estimator::fdi::AlarmBook* book_ = nullptr;
   std::uint32_t shown_ = 0;
 };
 

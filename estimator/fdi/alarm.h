@@ -79,6 +79,10 @@ struct Alarm {
   [[nodiscard]] bool annunciated() const noexcept { return active && !shelved; }
   /// Not normal, shelved or not.
   [[nodiscard]] bool stands() const noexcept { return active || !acknowledged; }
+  /// A band's, on what is estimated or measured; not a guard's or one of the daemon's own.
+  [[nodiscard]] bool on_quantity() const noexcept {
+    return quantity.find('.') != std::string::npos;
+  }
   [[nodiscard]] Life life() const noexcept;
 };
 

@@ -112,6 +112,10 @@ class AlarmBook {
   /// are left as they are. Call before the first sample.
   void inherit(const AlarmBook& before);
 
+  /// Declares what the book before it has and this has not, save alarms on quantities: conditions
+  /// that have come up. Before inherit().
+  void adopt_conditions(const AlarmBook& before);
+
   /// Saves or restores every bit (carrier.h).
   void carry(Carrier& carrier);
 

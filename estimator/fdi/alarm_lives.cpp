@@ -111,6 +111,17 @@ void AlarmBook::inherit(const AlarmBook& before) {
   recount();
 }
 
+void AlarmBook::adopt_conditions(const AlarmBook& before) {
+  for (const Alarm& from : before.alarms_) {
+    if (from.on_quantity() || find(from.source + "." + from.name) != kNone) continue;
+    Alarm alarm;
+    alarm.source = from.source;
+    alarm.name = from.name;
+    alarm.rules = condition_rules_;
+    declare(std::move(alarm));
+  }
+}
+
 void AlarmBook::show(std::size_t number, const Alarm& told) {
   Alarm& alarm = alarms_[number];
   alarm.active = told.active;

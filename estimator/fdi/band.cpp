@@ -87,4 +87,13 @@ void BandState::reset() noexcept {
   pending_ = 0;
 }
 
+void BandState::inherit(const BandState& before) noexcept {
+  invalid_ = before.invalid_;
+  direction_ = before.direction_;
+  pending_ = before.pending_;
+  pending_since_s_ = before.pending_since_s_;
+  missing_ = before.missing_;
+  missing_since_s_ = before.missing_since_s_;
+}
+
 }  // namespace estimator::fdi

@@ -51,6 +51,8 @@ class BandState {
   /// A value that cannot be trusted at time t_s.
   Result update_invalid(double t_s) noexcept;
   void reset() noexcept;
+  /// Goes on where another stood, with limits and delays of its own.
+  void inherit(const BandState& before) noexcept;
 
  private:
   [[nodiscard]] int wanted(double value) const noexcept;

@@ -34,6 +34,7 @@ struct Reading {
 
 struct Worker {
   Stage stage;
+  std::string settings;  ///< EstimatorConfig::fingerprint()
   std::vector<std::string> names;
   std::vector<NamedValue> values;
   std::vector<std::vector<Watch>> watches;  ///< for each value
@@ -94,6 +95,15 @@ struct Pipeline::Impl {
   void add(const BandConfig& band);
   void emit(std::size_t number, std::int64_t tick, std::int64_t utc_us, Events& events);
   void judge(Watch& watch, const Reading& reading, Events& events);
+  template <class F>
+  void for_each_watch(F&& f) {
+    for (Worker& worker : workers) {
+      for (std::vector<Watch>& watches : worker.watches) {
+        for (Watch& watch : watches) f(watch);
+      }
+    }
+    for (SampleWatch& watched : sample_watches) f(watched.watch);
+  }
 };
 
 Pipeline::Impl::Impl(const PipelineConfig& config, double sample_time)
@@ -111,7 +121,7 @@ void Pipeline::Impl::add(const EstimatorConfig& config) {
                      "a name of its own");
   }
   ids.push_back(config.id);
-  Worker worker{Stage(config, sample_time_s), {}, {}, {}};
+  Worker worker{Stage(config, sample_time_s), config.fingerprint(), {}, {}, {}};
   worker.names = estimate_names(worker.stage.structure());
   worker.watches.resize(worker.names.size());
   workers.push_back(std::move(worker));
@@ -264,6 +274,36 @@ void Pipeline::carry(Carrier& carrier) {
   }
   for (SampleWatch& watched : impl.sample_watches) carrier.value(watched.watch.state);
   impl.book.carry(carrier);
+}
+
+std::vector<bool> Pipeline::inherit(Pipeline& before) {
+  Impl& to = *impl_;
+  Impl& from = *before.impl_;
+  to.started = from.started;
+  to.last_tick = from.last_tick;
+  std::vector<bool> goes_on(to.workers.size(), false);
+  std::vector<std::uint8_t> bytes;
+  for (std::size_t i = 0; i < to.workers.size(); ++i) {
+    const auto id = std::find(from.ids.begin(), from.ids.end(), to.ids[i]);
+    if (id == from.ids.end()) continue;
+    Worker& old = from.workers[static_cast<std::size_t>(id - from.ids.begin())];
+    if (old.settings != to.workers[i].settings) continue;
+    bytes.clear();
+    Carrier out = Carrier::saving(bytes);
+    old.stage.carry(out);
+    Carrier in = Carrier::restoring(bytes);
+    to.workers[i].stage.carry(in);
+    goes_on[i] = true;
+  }
+  to.for_each_watch([&](Watch& watch) {
+    const Alarm& alarm = to.book.alarm(watch.alarm);
+    from.for_each_watch([&](const Watch& old) {
+      const Alarm& was = from.book.alarm(old.alarm);
+      if (was.name == alarm.name && was.quantity == alarm.quantity) watch.state.inherit(old.state);
+    });
+  });
+  to.book.inherit(from.book);
+  return goes_on;
 }
 
 AlarmBook& Pipeline::alarms() noexcept { return impl_->book; }

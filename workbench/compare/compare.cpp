@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "config/messages/channels.h"
 #include "config/record/record.h"
 #include "config/record/whole_file.h"
 #include "config/schema/document.h"
@@ -20,6 +21,7 @@
 #include "workbench/compare/json.h"
 #include "workbench/compare/sections.h"
 #include "workbench/compare/text.h"
+#include "workbench/compare/watch.h"
 #include "workbench/file_check.h"
 #include "workbench/number_check.h"
 #include "workbench/shell_words.h"
@@ -40,6 +42,8 @@ struct Arguments {
   double observer_per_s = matching::kObserver_per_s;
   std::vector<std::string> assignments;
   bool all = false;
+  bool live = false;
+  compare::WatchOptions watch{config::messages::kDefaultUrl, config::messages::kDefaultPrefix};
 };
 
 std::string command_line(const Arguments& a) {
@@ -100,7 +104,20 @@ bool utf8_terminal() {
   return false;
 }
 
-void run(const Arguments& a) {
+void run_live(Arguments& a) {
+  for (const auto& [given, option] :
+       {std::pair(!a.record.empty(), "RECORD"), std::pair(!a.report.empty(), "--report"),
+        std::pair(a.all, "--all"), std::pair(!a.json.empty() && a.json != "-", "--json FILE")}) {
+    if (given) throw Error(ExitCode::usage, std::string("--live: not together with ") + option);
+  }
+  a.watch.json = a.json == "-";
+  a.watch.observer_per_s = a.observer_per_s;
+  compare::watch(read_model(a), a.watch);
+}
+
+void run(Arguments& a) {
+  if (a.live) return run_live(a);
+  if (a.record.empty()) throw Error(ExitCode::usage, "compare: no RECORD, and not --live");
   check_outputs({{"--json", a.json}, {"--report", a.report}}, {a.model, {a.record}});
   const plant_sim::ModelFile model = read_model(a);
   const matching::Measured record = read_measured(a);
@@ -122,7 +139,7 @@ void run(const Arguments& a) {
 void add_compare(CLI::App& command, int& /*exit_code*/) {
   auto arguments = std::make_shared<Arguments>();
   command.add_option("model", arguments->model, "model file (TOML)")->required();
-  command.add_option("record", arguments->record, "CSV (t_s,u_V,y_m) or LCM log")->required();
+  command.add_option("record", arguments->record, "CSV (t_s,u_V,y_m) or LCM log");
   command.add_option("--json", arguments->json, "file for JSON, - for standard output");
   command.add_option("--report", arguments->report, "file for a report with plots (HTML)");
   command.add_option("--from", arguments->from_s, "s: leave out what is before")
@@ -136,6 +153,18 @@ void add_compare(CLI::App& command, int& /*exit_code*/) {
   command.add_option("--set", arguments->assignments, "table.key=value of the model file")
       ->allow_extra_args(false);
   command.add_flag("--all", arguments->all, "the error by every variable, not the most telling");
+  CLI::Option* live =
+      command.add_flag("--live", arguments->live, "with the running daemon, a line each second");
+  command
+      .add_option("--lcm-url", arguments->watch.url, "of --live; file:///LOG?mode=r takes a log")
+      ->needs(live)
+      ->capture_default_str();
+  command.add_option("--prefix", arguments->watch.prefix, "of --live: of the channel names")
+      ->needs(live)
+      ->capture_default_str();
+  command.add_option("--duration", arguments->watch.duration_s, "of --live, s (0: until Ctrl-C)")
+      ->needs(live)
+      ->check(CLI::NonNegativeNumber);
   command.callback([arguments] { run(*arguments); });
 }
 

@@ -1,0 +1,97 @@
+#include "daemon/reloader.h"
+
+#include <algorithm>
+#include <ostream>
+#include <utility>
+
+#include "config/schema/error.h"
+#include "daemon/rules.h"
+#include "estimator/fdi/snapshot.h"
+
+namespace monitor {
+
+Reloader::Reloader(Parts parts, DaemonConfig& running, double sample_time_s)
+    : parts_(std::move(parts)),
+      running_(running),
+      sample_time_s_(sample_time_s),
+      config_hash_(hash_text(hash(running))),
+      rules_hash_(hash_text(parts_.rules_hash)) {}
+
+bool Reloader::begin(unsigned uid, const std::string& what) {
+  if (busy()) return false;
+  under_way_ = std::make_unique<UnderWay>(UnderWay{uid, what, {}, {}});
+  try {
+    prepare(*under_way_);
+  } catch (const std::exception& e) {
+    ReloadOutcome refused;
+    refused.refusal = e.what();
+    std::replace(refused.refusal.begin(), refused.refusal.end(), '\n', ' ');
+    end(std::move(refused));
+  }
+  return true;
+}
+
+void Reloader::prepare(UnderWay& under_way) {
+  DaemonConfig& next = under_way.next;
+  parts_.read(next);
+  under_way.changed = differences(running_, next);
+  for (const std::string& key : under_way.changed) {
+    if (may_change(key)) continue;
+    throw config::schema::bad_config(next.file + ": " + key, "cannot change while the daemon runs",
+                                     "[[estimator]], [[band]], bands_file and the rules in "
+                                     "[alarms]; everything else at a restart");
+  }
+  Rules rules = make_rules(next, sample_time_s_);
+  auto change = std::make_shared<rt::RuleChange>();
+  change->pipeline = std::move(rules.pipeline);
+  change->pipeline_hash = estimator::fdi::hash_of(rules.text);
+  change->config_hash = hash_text(hash(next));
+  for (const auto& estimator : rules.effective.estimators) {
+    change->estimators.push_back(estimator.id);
+  }
+  if (parts_.evidence) change->evidence_files = evidence_files(next, rules.text);
+  if (!to_detector.push(std::move(change))) {
+    throw config::schema::Error(config::schema::ExitCode::failed, "the detector takes no rules");
+  }
+}
+
+void Reloader::look() {
+  std::shared_ptr<rt::RuleChange> taken;
+  if (!busy() || !from_detector.pop(taken)) return;
+  running_.pipeline = under_way_->next.pipeline;
+  running_.alarms.rules = under_way_->next.alarms.rules;
+  running_.model = under_way_->next.model;
+  config_hash_ = taken->config_hash;
+  rules_hash_ = hash_text(taken->pipeline_hash);
+  ReloadOutcome done;
+  done.changed = under_way_->changed;
+  done.warm = taken->warm;
+  done.cold = taken->cold;
+  done.ended = taken->ended;
+  end(std::move(done));
+}
+
+void Reloader::end(ReloadOutcome outcome) {
+  outcome.utc_us = parts_.clock.utc_us();
+  if (parts_.audit != nullptr) {
+    parts_.audit->note({outcome.utc_us, under_way_->uid, io::user_name(under_way_->uid),
+                        under_way_->what, outcome.refusal});
+  }
+  parts_.log << "spoolwatchd: ";
+  if (outcome.refusal.empty()) {
+    parts_.log << "new rules, configuration " << config_hash_ << ": " << outcome.changed.size()
+               << " keys changed, " << outcome.warm.size() << " estimators go on, "
+               << outcome.cold.size() << " warm up, " << outcome.ended.size() << " alarms ended";
+  } else {
+    parts_.log << "the old configuration stays: " << outcome.refusal;
+  }
+  parts_.log << std::endl;
+  under_way_.reset();
+  last_ = std::move(outcome);
+}
+
+std::string Reloader::complaint() const {
+  return last_.refusal.empty() ? "" : "the old configuration stays: " + last_.refusal;
+}
+
+}  // namespace monitor

@@ -1,0 +1,159 @@
+#include "daemon/rules.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "config/schema/document.h"
+#include "config/schema/error.h"
+#include "estimator/fdi/snapshot.h"
+
+namespace monitor {
+namespace {
+
+using config::schema::Error;
+using config::schema::ExitCode;
+using config::schema::Visitor;
+
+/// What `make` says is wrong with the configuration, with the place in the file put before it.
+template <class Make>
+auto at(const std::string& place, Make make) {
+  try {
+    return make();
+  } catch (const Error& e) {
+    if (e.exit_code() != static_cast<int>(ExitCode::bad_config)) throw;
+    throw Error(ExitCode::bad_config, place + ": " + e.what());
+  }
+}
+
+/// Files that a configuration names and that evidence needs to be read by itself.
+struct NamedFile {
+  const char* table;
+  const char* key;
+  const char* copy;
+};
+constexpr NamedFile kNamedFiles[] = {{"[sim]", "model", "model.toml"},
+                                     {"", "bands_file", "bands.toml"},
+                                     {"[model]", "file", "healthy_model.toml"},
+                                     {"[rig]", "calibration", "calibration.toml"},
+                                     {"[reference]", "file", "reference.csv"}};
+
+/// The value of a text key in printed TOML, "" when there is none.
+std::string text_of(const std::string& toml, const NamedFile& wanted) {
+  std::istringstream lines(toml);
+  std::string table;
+  const std::string begin = std::string(wanted.key) + " = \"";
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with('[')) table = line;
+    if (table != wanted.table || !line.starts_with(begin)) continue;
+    return line.substr(begin.size(), line.rfind('"') - begin.size());
+  }
+  return "";
+}
+
+std::string print(DaemonConfig& config) {
+  return config::schema::print_toml([&](Visitor& v) { config.visit(v); });
+}
+
+/// "[table] key" or "[[list]] id: key", and the value as it is printed. Items of a list without an
+/// id are numbered.
+std::map<std::string, std::string> flat(const std::string& toml) {
+  std::map<std::string, std::string> values;
+  std::map<std::string, int> items;
+  std::istringstream lines(toml);
+  std::string place;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("[[")) {
+      place = line + ' ' + std::to_string(++items[line]) + ": ";
+      continue;
+    }
+    if (line.starts_with('[')) {
+      place = line + ' ';
+      continue;
+    }
+    const std::size_t equals = line.find(" = ");
+    if (equals == std::string::npos) continue;
+    const std::string key = line.substr(0, equals);
+    const std::string value = line.substr(equals + 3);
+    if (key == "id" && place.starts_with("[[") && value.size() > 2) {
+      place = place.substr(0, place.find(']') + 3) + value.substr(1, value.size() - 2) + ": ";
+    }
+    values[place + key] = value;
+  }
+  return values;
+}
+
+}  // namespace
+
+Rules make_rules(const DaemonConfig& config, double sample_time_s) {
+  Rules rules;
+  rules.effective = config.pipeline;
+  std::error_code unknown;
+  if (!config.model.empty() &&
+      !std::filesystem::is_regular_file(config.folder / config.model, unknown)) {
+    throw config::schema::bad_config(config.file + ": [model] file: " + config.model, "is no file",
+                                     "a model file (TOML)");
+  }
+  at(config.file + ": bands_file", [&] {
+    const std::string& file = rules.effective.bands_file;
+    std::error_code ignored;
+    if (!file.empty() && !std::filesystem::is_regular_file(config.folder / file, ignored)) {
+      throw config::schema::bad_config((config.folder / file).string(), "is no file",
+                                       "a file of learned bands (TOML)");
+    }
+    rules.effective.load_bands(config.folder, sample_time_s);
+  });
+  rules.pipeline = at(config.file, [&] {
+    return std::make_unique<estimator::fdi::Pipeline>(rules.effective, sample_time_s);
+  });
+  rules.pipeline->alarms().set_condition_rules(config.alarms.rules);
+  rules.text = estimator::fdi::whole_text(rules.effective, sample_time_s);
+  return rules;
+}
+
+std::vector<io::EvidenceFile> evidence_files(DaemonConfig& config, const std::string& rules_text) {
+  const std::string toml = print(config);
+  std::vector<io::EvidenceFile> files = {{"configuration.toml", toml},
+                                         {"pipeline.toml", rules_text}};
+  for (const NamedFile& wanted : kNamedFiles) {
+    const std::string name = text_of(toml, wanted);
+    if (name.empty()) continue;
+    std::ifstream in(config.folder / name, std::ios::binary);
+    if (!in) continue;
+    std::ostringstream text;
+    text << in.rdbuf();
+    files.push_back({wanted.copy, text.str()});
+  }
+  return files;
+}
+
+std::vector<std::string> differences(DaemonConfig& before, DaemonConfig& after) {
+  const auto old_values = flat(print(before));
+  const auto new_values = flat(print(after));
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : old_values) {
+    const auto found = new_values.find(key);
+    if (found == new_values.end() || found->second != value) keys.push_back(key);
+  }
+  for (const auto& [key, value] : new_values) {
+    if (!old_values.contains(key)) keys.push_back(key);
+  }
+  std::sort(keys.begin(), keys.end());
+  return keys;
+}
+
+bool may_change(const std::string& key) {
+  if (key == "[alarms] folder" || key == "[alarms] audit_bytes") return false;
+  return key == "bands_file" || key.starts_with("[[estimator]]") || key.starts_with("[[band]]") ||
+         key.starts_with("[alarms]") || key.starts_with("[model]");
+}
+
+std::string hash_text(std::uint64_t hash) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+  return text;
+}
+
+}  // namespace monitor

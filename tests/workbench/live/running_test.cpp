@@ -1,0 +1,105 @@
+// A model beside the running rig: the same error as the comparison with the record afterwards.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "config/schema/document.h"
+#include "tests/workbench/live/healthy_log.h"
+#include "workbench/compare/comparison.h"
+#include "workbench/compare/running.h"
+
+namespace workbench::compare {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+plant_sim::ModelFile model_with(const std::string& assignment) {
+  auto document = config::schema::Document::load(program::shipped("models/thesis_calibrated.toml"));
+  document.set(assignment);
+  return plant_sim::read_model(document);
+}
+
+/// RMS of the last ten seconds of the comparison afterwards.
+double rms_afterwards_m(const Comparison& c) {
+  const std::size_t n = static_cast<std::size_t>(std::lround(10.0 / c.record.sample_time_s));
+  double squares = 0.0;
+  for (std::size_t k = c.error_m.size() - n; k < c.error_m.size(); ++k) {
+    squares += c.error_m[k] * c.error_m[k];
+  }
+  return std::sqrt(squares / static_cast<double>(n));
+}
+
+TEST(Running, TellsTheErrorThatTheComparisonFindsAfterwards) {
+  const program::Folder folder;
+  const std::string log = live_test::make_log(folder.path() / "log", "14");
+  const auto record = config::record::read_record(log);
+  const plant_sim::ModelFile model = model_with("parameters.damping_N_s_per_m=3000.0");
+  Running running(model);
+  for (std::size_t k = 0; k < record.size(); ++k) {
+    running.add(std::lround(record.t_s[k] / record.sample_time_s), record.sample_time_s,
+                record.u_V[k], record.y_m[k]);
+  }
+  const Comparison c = compare(model, matching::measured(record));
+  const double wanted_m = rms_afterwards_m(c);
+  const Figures figures = running.figures();
+  // What the unknown first state shifted has died away to exp(-2/s 4 s) by then.
+  EXPECT_NEAR(figures.rms_m, wanted_m, 1e-3 * wanted_m);
+  EXPECT_GT(wanted_m, 1e-7);
+  EXPECT_NEAR(figures.window_s, 10.0, 1e-9);
+  EXPECT_LT(figures.fit_percent, 100.0);
+
+  Running exact(model_with("parameters.damping_N_s_per_m=1000.0"));
+  for (std::size_t k = 0; k < record.size(); ++k) {
+    exact.add(std::lround(record.t_s[k] / record.sample_time_s), record.sample_time_s,
+              record.u_V[k], record.y_m[k]);
+  }
+  EXPECT_NE(exact.figures().rms_m, figures.rms_m);
+}
+
+TEST(Running, SettlesAnewBehindAGap) {
+  Running running(model_with("parameters.damping_N_s_per_m=1000.0"));
+  for (std::int64_t tick = 0; tick < 200; ++tick) running.add(tick, 0.005, 0.0, 0.3);
+  EXPECT_FALSE(std::isnan(running.error_m()));
+  running.add(300, 0.005, 0.0, 0.35);
+  EXPECT_TRUE(std::isnan(running.error_m()));
+  for (std::int64_t tick = 301; tick < 401; ++tick) running.add(tick, 0.005, 0.0, 0.35);
+  EXPECT_NEAR(running.error_m(), 0.0, 1e-6) << "the jump counts for no error";
+}
+
+TEST(Running, SaysWhenTheRodDoesNotMove) {
+  Running running(model_with("parameters.damping_N_s_per_m=1000.0"));
+  for (std::int64_t tick = 0; tick < 1000; ++tick) running.add(tick, 0.005, 0.0, 0.3);
+  EXPECT_THAT(running.figures().note, HasSubstr("does not move"));
+  EXPECT_THAT(line_of(running.figures()), HasSubstr("does not move"));
+}
+
+TEST(Running, IsALineEachSecondFromThePipe) {
+  const program::Folder folder;
+  const std::string log = live_test::make_log(folder.path() / "log", "14");
+  const std::string words = "compare " + program::shipped("models/thesis_calibrated.toml") +
+                            " --live --set parameters.damping_N_s_per_m=3000.0 --lcm-url 'file://" +
+                            log + "?mode=r&speed=0'";
+  const program::Result text = program::spoolwatch(words);
+  EXPECT_EQ(text.exit_code, 0) << text.out;
+  EXPECT_THAT(text.out, HasSubstr("x floor"));
+  const program::Result lines = program::spoolwatch(words + " --json -");
+  std::istringstream in(lines.out);
+  int count = 0;
+  json last;
+  for (std::string line; std::getline(in, line);) {
+    if (!line.starts_with('{')) continue;
+    last = json::parse(line);
+    ++count;
+  }
+  EXPECT_EQ(count, 14);
+  const Comparison c = compare(model_with("parameters.damping_N_s_per_m=3000.0"),
+                               matching::measured(config::record::read_record(log)));
+  EXPECT_NEAR(last["rms_m"].get<double>(), rms_afterwards_m(c), 0.01 * rms_afterwards_m(c));
+  EXPECT_EQ(program::spoolwatch("compare model.toml").exit_code, 2);
+}
+
+}  // namespace
+}  // namespace workbench::compare

@@ -1,0 +1,86 @@
+#include "workbench/live/sample_file.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <iterator>
+
+#include "config/schema/error.h"
+#include "spoolwatch/sample_t.hpp"
+
+namespace workbench::live {
+namespace {
+
+constexpr std::int8_t kStaleQuality = 2;  // and 3, bad: no new reading
+
+void append(std::string& text, double value) {
+  if (!text.empty()) text += ',';
+  if (std::isnan(value)) return;  // a missing value is an empty field
+  char buffer[32];
+  const auto result = std::to_chars(std::begin(buffer), std::end(buffer), value);
+  text.append(std::begin(buffer), result.ptr);
+}
+
+}  // namespace
+
+SampleFile::SampleFile(std::string file)
+    : file_(std::move(file)), part_(file_ + ".part"), out_(std::fopen(part_.c_str(), "we")) {
+  if (out_ == nullptr) fail();
+  if (std::fputs("t_s,u_V,y_m,reference_m,u_requested_V,quality,state,saturated\n", out_) < 0) {
+    fail();
+  }
+}
+
+SampleFile::~SampleFile() {
+  if (out_ != nullptr) std::fclose(out_);
+}
+
+void SampleFile::fail() const {
+  throw config::schema::Error(config::schema::ExitCode::failed,
+                              part_ + ": " + std::strerror(errno));
+}
+
+void SampleFile::add(const spoolwatch::sample_t& s) {
+  if (s.quality >= kStaleQuality || !std::isfinite(s.y_m) || !std::isfinite(s.u_applied_V)) {
+    ++unusable_;
+    return;
+  }
+  if (rows_ == 0) {
+    first_tick_ = s.tick;
+    sample_time_s_ = s.sample_time_s;
+  } else if (s.tick > last_tick_ + 1) {
+    ++gaps_;
+    missing_ += s.tick - last_tick_ - 1;
+  }
+  last_tick_ = s.tick;
+  ++rows_;
+  row_.clear();
+  for (const double value : {static_cast<double>(s.tick) * s.sample_time_s, s.u_applied_V, s.y_m,
+                             s.reference_m, s.u_requested_V, static_cast<double>(s.quality),
+                             static_cast<double>(s.state), s.saturated != 0 ? 1.0 : 0.0}) {
+    append(row_, value);
+  }
+  row_ += '\n';
+  if (std::fwrite(row_.data(), 1, row_.size(), out_) != row_.size()) fail();
+}
+
+void SampleFile::finish() {
+  bool good = std::fflush(out_) == 0 && fsync(fileno(out_)) == 0;
+  good = std::fclose(out_) == 0 && good;
+  out_ = nullptr;
+  if (!good) fail();
+  if (rows_ == 0) {
+    std::remove(part_.c_str());
+  } else if (std::rename(part_.c_str(), file_.c_str()) != 0) {
+    fail();
+  }
+}
+
+double SampleFile::duration_s() const noexcept {
+  return rows_ == 0 ? 0.0 : static_cast<double>(last_tick_ - first_tick_ + 1) * sample_time_s_;
+}
+
+}  // namespace workbench::live

@@ -1,0 +1,49 @@
+// Samples as they arrive, row by row into a CSV record (config/record/record.h) that has its name
+// only once it is complete: until then it is FILE.part beside it, where a record that was cut off
+// can still be found.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+namespace spoolwatch {
+class sample_t;
+}
+
+namespace workbench::live {
+
+class SampleFile {
+ public:
+  /// Throws config::schema::Error (exit 1) when it cannot be made.
+  explicit SampleFile(std::string file);
+  /// What is not finished stays as FILE.part.
+  ~SampleFile();
+  SampleFile(const SampleFile&) = delete;
+  SampleFile& operator=(const SampleFile&) = delete;
+
+  /// Ticks ascend. A sample without a good position and command gives no row: a gap.
+  void add(const spoolwatch::sample_t& sample);
+  /// Gives the file its name; without a row there is none. Throws config::schema::Error (exit 1).
+  void finish();
+
+  [[nodiscard]] std::int64_t rows() const noexcept { return rows_; }
+  [[nodiscard]] std::int64_t unusable() const noexcept { return unusable_; }
+  [[nodiscard]] std::int64_t gaps() const noexcept { return gaps_; }
+  /// Periods without a row between the first and the last.
+  [[nodiscard]] std::int64_t missing() const noexcept { return missing_; }
+  [[nodiscard]] double duration_s() const noexcept;
+
+ private:
+  [[noreturn]] void fail() const;
+
+  std::string file_, part_;
+  std::FILE* out_;
+  std::string row_;
+  std::int64_t rows_ = 0, unusable_ = 0, gaps_ = 0, missing_ = 0;
+  std::int64_t first_tick_ = 0, last_tick_ = 0;
+  double sample_time_s_ = 0.0;
+};
+
+}  // namespace workbench::live
