@@ -33,7 +33,7 @@ class Namer {
       if (std::abs(one.deviation) >= needed) named.push_back(one);
     }
     if (named.size() > 1 && one_cause(named)) return named;
-    for (Named& one : named) find_rivals(one);
+    for (Named& one : named) find_rivals(one, others_of(named));
     return named;
   }
 
@@ -63,8 +63,14 @@ class Namer {
     return true;
   }
 
-  void find_rivals(Named& one) {
-    VectorXd without = found_.x;
+  /// What has changed as it was found, all else healthy.
+  VectorXd others_of(const std::vector<Named>& named) const {
+    VectorXd x = healthy_;
+    for (const Named& one : named) x[static_cast<Index>(one.parameter)] = one.x;
+    return x;
+  }
+
+  void find_rivals(Named& one, VectorXd without) {
     const auto at = static_cast<Index>(one.parameter);
     without[at] = healthy_[at];
     const double effect = fit_.fit(cut_, {}, without, sigma_m_).chi_square - chi_square_;
