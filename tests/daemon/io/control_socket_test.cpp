@@ -278,6 +278,9 @@ TEST(ControlRequest, ReadsWhatIsAskedOfAlarms) {
   EXPECT_EQ(shelve.alarm, "s.a");
   EXPECT_EQ(shelve.time_s, 600.0);
   EXPECT_EQ(parse_request("{\"command\":\"unshelve\",\"alarm\":\"s.a\"}").kind, Kind::unshelve);
+  EXPECT_EQ(parse_request("{\"command\":\"reload\"}").kind, Kind::reload);
+  EXPECT_EQ(parse_request("{\"command\":\"note\",\"text\":\"t\"}").kind, Kind::note);
+  EXPECT_EQ(parse_request("{\"command\":\"note\"}").kind, Kind::bad);
   for (const char* bad :
        {"{\"command\":\"shelve\",\"alarm\":\"s.a\"}", "{\"command\":\"shelve\",\"time_s\":5}",
         "{\"command\":\"shelve\",\"alarm\":\"s.a\",\"time_s\":-1}", "{\"command\":\"unshelve\"}",
@@ -294,7 +297,9 @@ TEST(ControlRequest, SaysInWordsWhatIsWrongWithALine) {
         {"{}", "no \"command\""},
         {"{\"command\":7}", "no \"command\""},
         {"{\"command\":\"fly\"}",
-         "unknown command; allowed: status, hold, reference, alarms, ack, shelve, unshelve, arm, "
+         "unknown command; allowed: status, hold, reference, alarms, ack, shelve, unshelve, "
+         "reload, "
+         "note, arm, "
          "disarm, start, stop, reset"},
         {"{\"command\":\"reference\",\"centre_m\":0.1,\"amplitude_m\":0.1}",
          "frequency_Hz: is missing"},
