@@ -127,8 +127,8 @@ class Pipeline {
 
   /// Takes the place of the pipeline before it between two samples: estimators whose settings are
   /// the same go on with their windows, the others warm up; bands and alarms that stay go on with
-  /// their states (AlarmBook::inherit). Same sample time; before the first sample. Returns, for each
-  /// estimator, whether it goes on.
+  /// their states (AlarmBook::inherit). Same sample time; before the first sample. Returns, for
+  /// each estimator, whether it goes on.
   std::vector<bool> inherit(Pipeline& before);
 
   /// Bands are in it from the start; conditions from elsewhere are set by the caller.

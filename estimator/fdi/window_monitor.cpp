@@ -32,7 +32,6 @@ void WindowMonitor::reset() noexcept {
   missing_ = 0;
 }
 
-
 void WindowMonitor::carry(Carrier& carrier) {
   carrier.fixed(u_V_);
   carrier.fixed(flags_);

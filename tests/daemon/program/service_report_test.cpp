@@ -177,8 +177,8 @@ TEST_F(ServiceReportTest, WithoutAWatchdogNoSignOfLifeIsGiven) {
 TEST(ServiceProgram, TellsWhenItIsReadyAndWhenItStops) {
   const Ear ear;
   program::Daemon daemon({"--config", program::shipped("spoolwatchd.toml"), "--lcm-url", "",
-                          "--set", "recorder.folder=", "--set", "alarms.folder=",
-                          "--set", "evidence.folder=", "--set", "control.socket="});
+                          "--set", "recorder.folder=", "--set", "alarms.folder=", "--set",
+                          "evidence.folder=", "--set", "control.socket="});
   std::vector<std::string> heard;
   const auto listen = [&](const std::string& until) {
     for (int i = 0; i < 100; ++i) {

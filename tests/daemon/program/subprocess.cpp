@@ -103,10 +103,11 @@ std::string shipped(const std::string& name) {
 
 std::vector<std::string> virtual_run(const std::string& config, const std::filesystem::path& log,
                                      const std::vector<std::string>& more) {
-  std::vector<std::string> arguments = {
-      "--config",  config, "--clock", "virtual",
-      "--lcm-url", "",     "--set",   "recorder.folder=" + log.string(),
-      "--set",     "evidence.folder="};
+  std::vector<std::string> arguments = {"--config",  config,
+                                        "--clock",   "virtual",
+                                        "--lcm-url", "",
+                                        "--set",     "recorder.folder=" + log.string(),
+                                        "--set",     "evidence.folder="};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return arguments;
 }

@@ -77,7 +77,8 @@ TEST(ModbusRtu, ADeviceThatUnderstandsNothingIsOneClearLine) {
 TEST(ModbusRtu, ALineInUseIsOneClearLine) {
   Device device(Device::Line::rtu);
   const Stand stand(rtu(device), kNull_V);
-  EXPECT_THAT(refusal_of(rtu(device)), HasSubstr("is in use by another program (Device or resource busy)"));
+  EXPECT_THAT(refusal_of(rtu(device)),
+              HasSubstr("is in use by another program (Device or resource busy)"));
 }
 
 TEST(ModbusRtu, LetsNullPassWhenTheThreadStandsStill) {
