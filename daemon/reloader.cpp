@@ -50,7 +50,7 @@ void Reloader::prepare(UnderWay& under_way) {
     change->estimators.push_back(estimator.id);
   }
   if (parts_.evidence) change->evidence_files = evidence_files(next, rules.text);
-  if (!to_detector.push(std::move(change))) {
+  if (!to_detector.push(change)) {
     throw config::schema::Error(config::schema::ExitCode::failed, "the detector takes no rules");
   }
 }

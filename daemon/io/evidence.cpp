@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <filesystem>
 
@@ -69,9 +70,8 @@ void Evidence::record(std::string_view channel, std::span<const std::uint8_t> da
                       std::int64_t utc_us) noexcept {
   if (lost_ && push(kGapChannel, {}, utc_us)) lost_ = false;
   if (new_files_ != nullptr) {
-    const std::vector<EvidenceFile>* address = new_files_.get();
-    if (push(kFilesChannel, {reinterpret_cast<const std::uint8_t*>(&address), sizeof address},
-             utc_us)) {
+    const auto address = std::bit_cast<std::array<std::uint8_t, sizeof(void*)>>(new_files_.get());
+    if (push(kFilesChannel, address, utc_us)) {
       static_cast<void>(new_files_.release());  // the ring's
     }
   }

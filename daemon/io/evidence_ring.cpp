@@ -1,6 +1,8 @@
 #include "daemon/io/evidence_ring.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -53,9 +55,10 @@ void EvidenceRing::take(std::span<const std::uint8_t> record) {
     return;
   }
   if (parts.channel == kFilesChannel) {
-    std::vector<EvidenceFile>* address = nullptr;
-    std::memcpy(&address, parts.data.data(), sizeof address);
-    const std::unique_ptr<std::vector<EvidenceFile>> files(address);
+    std::array<std::uint8_t, sizeof(void*)> address{};
+    std::copy_n(parts.data.begin(), address.size(), address.begin());
+    const std::unique_ptr<std::vector<EvidenceFile>> files(
+        std::bit_cast<std::vector<EvidenceFile>*>(address));
     write_due(true);
     checkpoints_.clear();
     facts_.files = std::move(*files);

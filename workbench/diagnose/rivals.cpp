@@ -53,8 +53,8 @@ Fitted replaced(const Workshop& shop, const Stage& final, const std::string& eff
   begin.max_iterations = kFirstIterations;
   begin.final_jacobian = false;
   begin.cancel = shop.cancel;
-  const Fitted begun = matching::fit(shop.model, shop.evidence, shop.evidence.fits,
-                                     selection.searched, selection.start, begin);
+  Fitted begun = matching::fit(shop.model, shop.evidence, shop.evidence.fits, selection.searched,
+                               selection.start, begin);
   if (begun.score_rms_m > kHopeless * final.fitted.score_rms_m) return begun;
   selection.start = begun.x;
   return refit(shop, selection, shop.evidence.fits);
