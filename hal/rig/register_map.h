@@ -1,17 +1,19 @@
 // The registers of spoolwatch-rig, a simulated rig that speaks Modbus. Values of two registers have
 // the high word first (ABCD). Holding registers, functions 3, 6, 16 and 23:
+// clang-format off
 //
-//    0      command        int16    mV         written: the valve's command
-//    1      time-out       uint16   ms         written: null without a command for so long; 0:
-//    never 2-3    command        float32  V          written: the same command, finer 4-5 position
-//    float32  m          what the encoder says 6-7    counts         int32               the same
-//    in steps of the encoder 8-9    valve          float32  V          what the D/A converter gives
-//    now
-//   10      status         uint16   bits       1 a command came, 2 timed out, 4 e-stop pressed,
-//                                              8 permit missing, 16 not enabled
-//   11      e-stop         uint16              1 while released
-//   12      enable         uint16              1 while a person allows motion
-//   13-14   time           uint32   us         of the measurement, since the start
+//    0     command   int16    mV    written: the valve's command
+//    1     time-out  uint16   ms    written: null without a command for so long; 0: never
+//    2-3   command   float32  V     written: the same command, finer
+//    4-5   position  float32  m     what the encoder says
+//    6-7   counts    int32          the same in steps of the encoder
+//    8-9   valve     float32  V     what the D/A converter gives now
+//   10     status    uint16   bits  1 a command came, 2 timed out, 4 e-stop pressed,
+//                                   8 permit missing, 16 not enabled
+//   11     e-stop    uint16         1 while released
+//   12     enable    uint16         1 while a person allows motion
+//   13-14  time      uint32   us    of the measurement, since the start
+// clang-format on
 //
 // Input registers 0 to 14 (function 4) repeat them. Discrete inputs (function 2): 0 e-stop, 1
 // enable. Coil 0 (functions 1, 5, 15): the permit, watched when [field] permit_timeout_s is given.

@@ -40,6 +40,38 @@ time_s = 0.05
 action = "ramp"
 )";
 
+// One at a time: none of the others may come first.
+constexpr const char* kTravel = R"(
+[[guard]]
+kind = "travel"
+low_m = 0.2
+high_m = 0.42
+action = "latch"
+)";
+constexpr const char* kSpeed = R"(
+[[guard]]
+kind = "speed"
+limit_mps = 1.0
+action = "latch"
+)";
+constexpr const char* kFollowing = R"(
+[[guard]]
+kind = "following"
+limit_m = 0.08
+time_s = 0.02
+action = "latch"
+)";
+constexpr const char* kEnable = R"(
+[modbus.registers.enable]
+role = "input"
+address = 12
+[[input]]
+id = "enable"
+role = "enable"
+backend = "modbus"
+channel = "enable"
+)";
+
 constexpr const char* kPermit = R"(
 [permit]
 backend = "modbus"
@@ -51,15 +83,15 @@ function = "coil"
 address = 0
 )";
 
-/// bench_modbus.toml with guards, and the shipped daemon on it.
+/// bench_modbus.toml with more, and the shipped daemon on it.
 class Bench {
  public:
-  explicit Bench(const char* more = "")
+  explicit Bench(const std::string& more = kGuards)
       : rig_({"--config", hal::rig::shipped_config("bench_rig.toml")}),
         cable_(rig_.port()),
         watcher_(rig_.port()) {
     std::ifstream in(shipped("bench_modbus.toml"));
-    std::ofstream(file()) << in.rdbuf() << kGuards << more;
+    std::ofstream(file()) << in.rdbuf() << more;
   }
 
   [[nodiscard]] std::vector<std::string> arguments(bool by_cable = false) const {
@@ -122,6 +154,7 @@ struct Failure {
   bool device_decides = false;  ///< the machine's load does not matter
   bool at_command = false;      ///< null is looked for in what was written, not at the valve
   bool spoils_reading = false;  ///< so that it does not say how far the rod went
+  const char* more = kGuards;   ///< of the configuration
 };
 
 struct Measured {
@@ -163,6 +196,13 @@ std::vector<Failure> failures() {
       {"guard e_stop", [](Bench& b, Daemon&) { b.set("e_stop=0"); }, false, true},
       {"guard jump", [](Bench& b, Daemon&) { b.set("encoder_offset_m=0.02"); }, false, false, true},
       {"guard frozen", [](Bench& b, Daemon&) { b.set("encoder_frozen=1"); }, false, false, true},
+      {"guard travel", [](Bench& b, Daemon&) { b.set("encoder_offset_m=0.2"); }, false, false, true,
+       kTravel},
+      {"guard speed", [](Bench& b, Daemon&) { b.set("encoder_offset_m=0.02"); }, false, false, true,
+       kSpeed},
+      {"guard following", [](Bench& b, Daemon&) { b.set("encoder_offset_m=0.2"); }, false, false,
+       true, kFollowing},
+      {"enable lost", [](Bench& b, Daemon&) { b.set("enable=0"); }, false, true, false, kEnable},
   };
 }
 
@@ -170,7 +210,7 @@ TEST(NullMatrix, OnTheBenchRigOverModbusIsNeverWorseThanStated) {
   std::printf("# %-24s %-8s %14s %16s %20s %16s\n", "failure", "valve", "stated (ms)",
               "measured (ms)", "stated travel (mm)", "measured (mm)");
   for (const Failure& failure : failures()) {
-    Bench bench;
+    Bench bench(failure.more);
     std::vector<std::string> check = bench.arguments();
     check.emplace_back("--check");
     const Result table = run(check);
@@ -212,7 +252,7 @@ TEST(NullMatrix, OnTheBenchRigOverModbusIsNeverWorseThanStated) {
 
 TEST(Permit, LetsARelayTakeTheCommandAwayWhenTheDaemonTripsOrDies) {
   for (const bool killed : {true, false}) {
-    Bench bench(kPermit);
+    Bench bench(std::string(kGuards) + kPermit);
     Daemon daemon(bench.arguments());
     ASSERT_TRUE(bench.moves());
     // From now on the relay is all there is: no time-out of the command.
