@@ -1,5 +1,3 @@
-#include "estimator/fdi/pipeline.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -7,7 +5,7 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
-#include "estimator/fdi/stage.h"
+#include "estimator/fdi/pipeline_impl.h"
 
 namespace estimator::fdi {
 namespace {
@@ -17,33 +15,6 @@ using config::schema::bad_config;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 double given(double limit) noexcept { return std::isinf(limit) ? kNan : limit; }
-
-/// One band at work.
-struct Watch {
-  BandState state;
-  std::size_t alarm;  ///< number in the book
-};
-
-struct Reading {
-  double value;
-  double std_error;
-  bool trusted;
-  const char* why;  ///< when not trusted
-  std::int64_t tick;
-};
-
-struct Worker {
-  Stage stage;
-  std::string settings;  ///< EstimatorConfig::fingerprint()
-  std::vector<std::string> names;
-  std::vector<NamedValue> values;
-  std::vector<std::vector<Watch>> watches;  ///< for each value
-};
-
-struct SampleWatch {
-  SampleQuantity quantity;
-  Watch watch;
-};
 
 Alarm alarm_for(const BandConfig& band, std::string_view source) {
   Alarm alarm;
@@ -80,31 +51,6 @@ double EstimateEvent::value(std::string_view name) const noexcept {
   }
   return kNan;
 }
-
-struct Pipeline::Impl {
-  std::vector<std::string> ids;
-  std::vector<Worker> workers;
-  std::vector<SampleWatch> sample_watches;
-  AlarmBook book;
-  double sample_time_s = 0.0;
-  bool started = false;
-  std::int64_t last_tick = 0;
-
-  Impl(const PipelineConfig& config, double sample_time);
-  void add(const EstimatorConfig& config);
-  void add(const BandConfig& band);
-  void emit(std::size_t number, std::int64_t tick, std::int64_t utc_us, Events& events);
-  void judge(Watch& watch, const Reading& reading, Events& events);
-  template <class F>
-  void for_each_watch(F&& f) {
-    for (Worker& worker : workers) {
-      for (std::vector<Watch>& watches : worker.watches) {
-        for (Watch& watch : watches) f(watch);
-      }
-    }
-    for (SampleWatch& watched : sample_watches) f(watched.watch);
-  }
-};
 
 Pipeline::Impl::Impl(const PipelineConfig& config, double sample_time)
     : book(sample_time), sample_time_s(sample_time) {
@@ -252,58 +198,9 @@ void Pipeline::process(const Sample& sample, Events& events) {
 
 void Pipeline::reset() {
   impl_->started = false;
-  for (Worker& worker : impl_->workers) {
-    worker.stage.reset();
-    for (std::vector<Watch>& watches : worker.watches) {
-      for (Watch& watch : watches) watch.state.reset();
-    }
-  }
-  for (SampleWatch& watched : impl_->sample_watches) watched.watch.state.reset();
+  for (Worker& worker : impl_->workers) worker.stage.reset();
+  impl_->for_each_watch([](Watch& watch) { watch.state.reset(); });
   impl_->book.reset();
-}
-
-void Pipeline::carry(Carrier& carrier) {
-  Impl& impl = *impl_;
-  carrier.value(impl.started);
-  carrier.value(impl.last_tick);
-  for (Worker& worker : impl.workers) {
-    worker.stage.carry(carrier);
-    for (std::vector<Watch>& watches : worker.watches) {
-      for (Watch& watch : watches) carrier.value(watch.state);
-    }
-  }
-  for (SampleWatch& watched : impl.sample_watches) carrier.value(watched.watch.state);
-  impl.book.carry(carrier);
-}
-
-std::vector<bool> Pipeline::inherit(Pipeline& before) {
-  Impl& to = *impl_;
-  Impl& from = *before.impl_;
-  to.started = from.started;
-  to.last_tick = from.last_tick;
-  std::vector<bool> goes_on(to.workers.size(), false);
-  std::vector<std::uint8_t> bytes;
-  for (std::size_t i = 0; i < to.workers.size(); ++i) {
-    const auto id = std::find(from.ids.begin(), from.ids.end(), to.ids[i]);
-    if (id == from.ids.end()) continue;
-    Worker& old = from.workers[static_cast<std::size_t>(id - from.ids.begin())];
-    if (old.settings != to.workers[i].settings) continue;
-    bytes.clear();
-    Carrier out = Carrier::saving(bytes);
-    old.stage.carry(out);
-    Carrier in = Carrier::restoring(bytes);
-    to.workers[i].stage.carry(in);
-    goes_on[i] = true;
-  }
-  to.for_each_watch([&](Watch& watch) {
-    const Alarm& alarm = to.book.alarm(watch.alarm);
-    from.for_each_watch([&](const Watch& old) {
-      const Alarm& was = from.book.alarm(old.alarm);
-      if (was.name == alarm.name && was.quantity == alarm.quantity) watch.state.inherit(old.state);
-    });
-  });
-  to.book.inherit(from.book);
-  return goes_on;
 }
 
 AlarmBook& Pipeline::alarms() noexcept { return impl_->book; }

@@ -1,14 +1,14 @@
 #include "tests/service/machine.h"
 
-#include <sys/wait.h>
 
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <thread>
+
+#include "tests/daemon/program/subprocess.h"
 
 namespace service {
 namespace {
@@ -38,15 +38,9 @@ Machine::Machine() {
 }
 
 Output Machine::run(const std::string& command) const {
-  const std::string line =
-      "nsenter -t " + init_ + " -a -- /bin/sh -c " + quoted(command) + " 2>&1 </dev/null";
-  Output output;
-  FILE* pipe = popen(line.c_str(), "r");
-  char bytes[512];
-  while (std::size_t n = std::fread(bytes, 1, sizeof bytes, pipe)) output.text.append(bytes, n);
-  const int status = pclose(pipe);
-  output.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return output;
+  const program::Result result = program::shell("nsenter -t " + init_ + " -a -- /bin/sh -c " +
+                                                quoted(command) + " </dev/null");
+  return {result.exit_code, result.out};
 }
 
 std::string Machine::property(const std::string& name) const {

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "tests/daemon/program/json_lines.h"
 #include "tests/daemon/program/subprocess.h"
 
 namespace program {
@@ -87,10 +88,7 @@ after_s = 1.0
     return false;
   }
   [[nodiscard]] std::vector<json> audit() const {
-    std::vector<json> lines;
-    std::ifstream in(folder_.path() / "alarms" / "audit.log");
-    for (std::string line; std::getline(in, line);) lines.push_back(json::parse(line));
-    return lines;
+    return json_lines(folder_.path() / "alarms" / "audit.log");
   }
 
   Folder folder_;

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "tests/daemon/program/json_lines.h"
 #include "tests/daemon/program/log.h"
 #include "tests/daemon/program/subprocess.h"
 
@@ -78,10 +79,7 @@ after_s = 0.5
     return false;
   }
   [[nodiscard]] std::vector<json> audit() const {
-    std::vector<json> lines;
-    std::ifstream in(folder_.path() / "alarms" / "audit.log");
-    for (std::string line; std::getline(in, line);) lines.push_back(json::parse(line));
-    return lines;
+    return json_lines(folder_.path() / "alarms" / "audit.log");
   }
 
   static constexpr auto kNone = std::string::npos;

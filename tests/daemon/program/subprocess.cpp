@@ -86,15 +86,18 @@ Result run(const std::vector<std::string>& arguments, Limits limits) {
   return Daemon(arguments, limits).wait();
 }
 
-Result spoolwatch(const std::string& words) {
-  const std::string command = SPOOLWATCH_BIN_DIR "/spoolwatch " + words + " 2>&1";
+Result shell(const std::string& command) {
   Result result;
-  FILE* pipe = popen(command.c_str(), "r");
+  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
   char bytes[512];
   while (std::size_t n = std::fread(bytes, 1, sizeof bytes, pipe)) result.out.append(bytes, n);
   const int status = pclose(pipe);
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return result;
+}
+
+Result spoolwatch(const std::string& words) {
+  return shell(SPOOLWATCH_BIN_DIR "/spoolwatch " + words);
 }
 
 std::string shipped(const std::string& name) {

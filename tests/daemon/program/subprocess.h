@@ -53,6 +53,9 @@ class Daemon {
 
 Result run(const std::vector<std::string>& arguments, Limits limits = {});
 
+/// A shell's command; both streams in `out`.
+Result shell(const std::string& command);
+
 /// `spoolwatch` with these words, as a shell takes them; both streams in `out`.
 Result spoolwatch(const std::string& words);
 

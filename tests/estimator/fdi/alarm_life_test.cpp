@@ -1,50 +1,15 @@
 // The life of an alarm among people: acknowledged, latched, shelved, counted, quieted, first of a
-// burst, and brought through a restart. One tick is one second.
+// burst. One tick is one second.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <string>
-#include <vector>
-
-#include "estimator/fdi/alarm_book.h"
+#include "tests/estimator/fdi/alarm_life.h"
 
 namespace estimator::fdi {
 namespace {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
-
-/// A book, and what it tells of as "12 name STATE".
-class AlarmLife : public testing::Test {
- protected:
-  std::size_t declare(const char* name, const AlarmRules& rules = {}) {
-    Alarm alarm;
-    alarm.source = "s";
-    alarm.name = name;
-    alarm.rules = rules;
-    return book.declare(alarm);
-  }
-  void pass(std::int64_t tick) {
-    book.advance(tick, tick * 1'000'000, [this](const Alarm& alarm) { tell(&alarm); });
-  }
-  void cause(std::int64_t tick, std::size_t number, Severity severity = Severity::major) {
-    pass(tick);
-    AlarmState state;
-    state.severity = severity;
-    state.tick = tick;
-    state.reason = severity == Severity::ok ? "inside" : "outside";
-    tell(book.set(number, state));
-  }
-  void gone(std::int64_t tick, std::size_t number) { cause(tick, number, Severity::ok); }
-  void tell(const Alarm* alarm) {
-    if (alarm == nullptr) return;
-    told.push_back(std::to_string(alarm->tick) + " " + alarm->name + " " +
-                   to_string(alarm->life()));
-  }
-
-  AlarmBook book{1.0};
-  std::vector<std::string> told;
-};
 
 TEST_F(AlarmLife, IsListedUntilSomebodyHasAcknowledgedIt) {
   const std::size_t a = declare("a");
@@ -218,93 +183,6 @@ TEST_F(AlarmLife, ThatChattersIsOneLongAlarm) {
   cause(300, a);
   gone(301, a);
   EXPECT_THAT(told, ElementsAre("300 a ACKNOWLEDGED", "301 a NORMAL"));
-}
-
-TEST_F(AlarmLife, SurvivesARestartAsFarAsItMatters) {
-  AlarmRules latching;
-  latching.latch = true;
-  const char* names[] = {"seen", "unseen", "latched", "shelved", "normal"};
-  for (const char* name : names) {
-    declare(name, std::string(name) == "latched" ? latching : AlarmRules{});
-  }
-  for (std::size_t i = 0; i < 4; ++i) cause(1, i);
-  gone(2, 2);
-  book.acknowledge(0, "ann");
-  book.shelve(3, 100.0, "bob");
-  pass(41);
-  const std::vector<SavedLife> lives = book.lives();
-  ASSERT_EQ(lives.size(), 4U);
-
-  book = AlarmBook(1.0);
-  for (const char* name : names) {
-    declare(name, std::string(name) == "latched" ? latching : AlarmRules{});
-  }
-  told.clear();
-  book.restore(lives);
-  EXPECT_EQ(book.alarm(0).life(), Life::normal) << "until its cause is found again";
-  EXPECT_EQ(book.alarm(1).life(), Life::returned);
-  EXPECT_EQ(book.alarm(2).life(), Life::latched);
-  EXPECT_EQ(book.alarm(3).life(), Life::shelved);
-  EXPECT_EQ(book.alarm(4).life(), Life::normal);
-  EXPECT_EQ(book.active_count(), 1U);
-  EXPECT_EQ(book.alarm(3).shelved_by, "bob");
-  cause(5, 0);
-  EXPECT_THAT(told, ElementsAre("5 seen ACKNOWLEDGED")) << "nobody need acknowledge it again";
-  EXPECT_EQ(book.alarm(0).times, 1);
-  pass(60);
-  EXPECT_TRUE(book.alarm(3).shelved);
-  pass(61);
-  EXPECT_FALSE(book.alarm(3).shelved) << "61 s were left of 100";
-}
-
-TEST_F(AlarmLife, GoesOnUnderNewRules) {
-  AlarmRules latching;
-  latching.latch = true;
-  for (const char* name : {"active", "latched", "shelved", "dropped"}) {
-    declare(name, std::string(name) == "latched" ? latching : AlarmRules{});
-  }
-  for (std::size_t i = 0; i < 4; ++i) cause(1, i);
-  gone(2, 1);
-  book.acknowledge(0, "ann");
-  book.shelve(2, 100.0, "bob");
-  book.set_condition("recorder", "disk_full", Severity::minor, true, "full", 2);
-  pass(10);
-  told.clear();
-
-  const AlarmBook before = book;
-  book = AlarmBook(1.0);
-  AlarmRules shorter;
-  shorter.shelve_limit_s = 20.0;
-  declare("new");
-  declare("shelved", shorter);
-  declare("latched", latching);
-  declare("active");
-  book.inherit(before);
-  EXPECT_EQ(book.alarm(0).life(), Life::normal);
-  EXPECT_EQ(book.alarm(1).life(), Life::shelved);
-  EXPECT_EQ(book.alarm(2).life(), Life::latched);
-  EXPECT_EQ(book.alarm(3).life(), Life::acknowledged);
-  EXPECT_EQ(book.active_count(), 2U);
-  cause(11, 3);
-  EXPECT_THAT(told, IsEmpty()) << "it is still the same alarm";
-  gone(12, 3);
-  EXPECT_THAT(told, ElementsAre("12 active NORMAL"));
-  pass(29);
-  EXPECT_TRUE(book.alarm(1).shelved);
-  pass(30);
-  EXPECT_FALSE(book.alarm(1).shelved) << "the new limit counts from the change on";
-}
-
-TEST_F(AlarmLife, ShelvesKeepTheirTimeWhenTicksBeginAgain) {
-  const std::size_t a = declare("a");
-  pass(1000);
-  book.shelve(a, 100.0, "ann");
-  pass(1040);
-  pass(0);
-  pass(59);
-  EXPECT_TRUE(book.alarm(a).shelved);
-  pass(60);
-  EXPECT_FALSE(book.alarm(a).shelved);
 }
 
 TEST_F(AlarmLife, IsFoundByItsWholeNameOrByAUniqueOne) {
