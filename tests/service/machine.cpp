@@ -1,6 +1,5 @@
 #include "tests/service/machine.h"
 
-
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
