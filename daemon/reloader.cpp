@@ -36,7 +36,7 @@ void Reloader::prepare(UnderWay& under_way) {
   parts_.read(next);
   under_way.changed = differences(running_, next);
   for (const std::string& key : under_way.changed) {
-    if (may_change(key)) continue;
+    if (may_change(key, next.pipeline)) continue;
     throw config::schema::bad_config(next.file + ": " + key, "cannot change while the daemon runs",
                                      "[[estimator]], [[band]], bands_file and the rules in "
                                      "[alarms]; everything else at a restart");
@@ -46,9 +46,7 @@ void Reloader::prepare(UnderWay& under_way) {
   change->pipeline = std::move(rules.pipeline);
   change->pipeline_hash = estimator::fdi::hash_of(rules.text);
   change->config_hash = hash_text(hash(next));
-  for (const auto& estimator : rules.effective.estimators) {
-    change->estimators.push_back(estimator.id);
-  }
+  change->estimators = rules.effective.source_ids();
   if (parts_.evidence) change->evidence_files = evidence_files(next, rules.text);
   if (!to_detector.push(change)) {
     throw config::schema::Error(config::schema::ExitCode::failed, "the detector takes no rules");

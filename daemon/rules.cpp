@@ -103,7 +103,7 @@ Rules make_rules(const DaemonConfig& config, double sample_time_s) {
       throw config::schema::bad_config((config.folder / file).string(), "is no file",
                                        "a file of learned bands (TOML)");
     }
-    rules.effective.load_bands(config.folder, sample_time_s);
+    rules.effective.load_bands(config.folder, sample_time_s, config.rig_id);
   });
   rules.pipeline = at(config.file, [&] {
     return std::make_unique<estimator::fdi::Pipeline>(rules.effective, sample_time_s);
@@ -144,10 +144,9 @@ std::vector<std::string> differences(DaemonConfig& before, DaemonConfig& after) 
   return keys;
 }
 
-bool may_change(const std::string& key) {
+bool may_change(const std::string& key, const estimator::fdi::PipelineConfig& pipeline) {
   if (key == "[alarms] folder" || key == "[alarms] audit_bytes") return false;
-  return key == "bands_file" || key.starts_with("[[estimator]]") || key.starts_with("[[band]]") ||
-         key.starts_with("[alarms]") || key.starts_with("[model]");
+  return pipeline.owns(key) || key.starts_with("[alarms]") || key.starts_with("[model]");
 }
 
 std::string hash_text(std::uint64_t hash) {

@@ -31,7 +31,8 @@ struct Rules {
 [[nodiscard]] std::vector<std::string> differences(DaemonConfig& before, DaemonConfig& after);
 
 /// Whether such a key may change while the daemon runs.
-[[nodiscard]] bool may_change(const std::string& key);
+[[nodiscard]] bool may_change(const std::string& key,
+                              const estimator::fdi::PipelineConfig& pipeline);
 
 /// 16 hexadecimal digits.
 [[nodiscard]] std::string hash_text(std::uint64_t hash);

@@ -67,7 +67,7 @@ void fill(spoolwatch::alarm_t& message, const estimator::fdi::Alarm& alarm, bool
       static_cast<std::int8_t>(!known                       ? 0
                                : alarm.falls_with_parameter ? -alarm.direction
                                                             : alarm.direction);
-  message.confidence = std::numeric_limits<double>::quiet_NaN();
+  message.confidence = alarm.confidence;
   message.group_size = static_cast<std::int32_t>(alarm.ambiguity_group.size());
   message.ambiguity_group = alarm.ambiguity_group;
   message.reason = alarm.reason;

@@ -18,7 +18,7 @@ struct RuleChange {
   std::unique_ptr<estimator::fdi::Pipeline> pipeline;  ///< the new one; handed back: the old one
   std::uint64_t pipeline_hash = 0;                     ///< fdi::hash_of(whole_text)
   std::string config_hash;                             ///< of the whole configuration
-  std::vector<std::string> estimators;                 ///< ids, in the pipeline's order
+  std::vector<std::string> estimators;                 ///< ids of all sources, in their order
   std::vector<io::EvidenceFile> evidence_files;
 
   // What became of it.

@@ -62,6 +62,10 @@ struct Alarm {
   double std_error = std::numeric_limits<double>::quiet_NaN();
   double low = std::numeric_limits<double>::quiet_NaN();
   double high = std::numeric_limits<double>::quiet_NaN();
+  /// That the fault is the one named, 0 to 1; NaN where nobody says.
+  double confidence = std::numeric_limits<double>::quiet_NaN();
+  /// Parameter, ambiguity group and confidence are found while it runs, not configured.
+  bool named_at_run_time = false;
 
   AlarmRules rules{};
   bool latched = false;            ///< active only because nobody has acknowledged it

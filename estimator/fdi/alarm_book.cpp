@@ -42,7 +42,25 @@ const Alarm* AlarmBook::set(std::size_t number, const AlarmState& state) {
     memory.turned_tick = state.tick;
     memory.admitted = is_out && memory.comings.add(state.tick, ticks(alarm.rules.count_window_s));
   }
-  return settle(number, state.tick, state.reason);
+  const bool renamed = is_out && state.fault != nullptr && name(alarm, *state.fault);
+  const Alarm* changed = settle(number, state.tick, state.reason);
+  if (changed != nullptr || !renamed || !alarm.active) return changed;
+  alarm.tick = state.tick;
+  alarm.reason.assign(state.reason);
+  ++changes_;
+  return &alarm;
+}
+
+bool AlarmBook::name(Alarm& alarm, const FaultName& fault) {
+  alarm.confidence = fault.confidence;
+  if (alarm.parameter == fault.parameter &&
+      std::equal(alarm.ambiguity_group.begin(), alarm.ambiguity_group.end(), fault.group.begin(),
+                 fault.group.end())) {
+    return false;
+  }
+  alarm.parameter.assign(fault.parameter);
+  alarm.ambiguity_group.assign(fault.group.begin(), fault.group.end());
+  return true;
 }
 
 const Alarm* AlarmBook::settle(std::size_t number, std::int64_t tick, std::string_view reason) {
@@ -240,6 +258,11 @@ void AlarmBook::reset() noexcept {
     alarm.acknowledged = true;
     alarm.direction = memory.direction = 0;
     alarm.reason.clear();
+    if (alarm.named_at_run_time) {
+      alarm.parameter.clear();
+      alarm.ambiguity_group.clear();
+      alarm.confidence = std::numeric_limits<double>::quiet_NaN();
+    }
     memory.admitted = memory.timed = memory.resumes_known = false;
     memory.comings.filled = memory.arrivals.filled = 0;
   }

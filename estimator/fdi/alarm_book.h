@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,13 @@
 
 namespace estimator::fdi {
 
+/// What a method says the fault is.
+struct FaultName {
+  std::string_view parameter;               ///< "" when several cannot be told apart
+  std::span<const std::string_view> group;  ///< those several
+  double confidence = std::numeric_limits<double>::quiet_NaN();
+};
+
 /// What an alarm's cause changes to.
 struct AlarmState {
   Severity severity = Severity::ok;
@@ -26,7 +34,8 @@ struct AlarmState {
   std::int64_t tick = 0;
   double value = std::numeric_limits<double>::quiet_NaN();
   double std_error = std::numeric_limits<double>::quiet_NaN();
-  std::string_view reason;
+  std::string_view reason{};
+  const FaultName* fault = nullptr;  ///< of an alarm named at run time, while it is out
 };
 
 /// What became of an act of a person.
@@ -59,7 +68,7 @@ class AlarmBook {
 
   /// Tells an alarm's cause. Returns the alarm when a person or a program should learn of it (a
   /// transition to be published), null otherwise; value and std_error are kept up to date in either
-  /// case.
+  /// case. An active alarm that is named anew is such a transition.
   const Alarm* set(std::size_t number, const AlarmState& state);
 
   /// The same for a condition by name ("recorder", "disk_full"), declared at its first use.
@@ -155,6 +164,8 @@ class AlarmBook {
   /// Shows what the cause and the rules ask for; null when that is what it shows already.
   const Alarm* settle(std::size_t number, std::int64_t tick, std::string_view reason);
   void come(std::size_t number, std::int64_t tick);
+  /// True when the alarm has another name than before.
+  bool name(Alarm& alarm, const FaultName& fault);
   void recount() noexcept;
   [[nodiscard]] std::int64_t ticks(double time_s) const noexcept;
 

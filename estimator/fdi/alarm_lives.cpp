@@ -10,6 +10,17 @@ namespace {
 /// An alarm acknowledged before the restart stays so when its cause is found again this soon.
 constexpr double kResume_s = 60.0;
 
+void carry_name(Carrier& carrier, Alarm& alarm) {
+  constexpr std::uint64_t kMostNames = 1000;
+  carrier.text(alarm.parameter);
+  auto names = static_cast<std::uint64_t>(alarm.ambiguity_group.size());
+  carrier.value(names);
+  if (names > kMostNames) carrier.fail();
+  if (!carrier.good()) return;
+  alarm.ambiguity_group.resize(static_cast<std::size_t>(names));
+  for (std::string& name : alarm.ambiguity_group) carrier.text(name);
+}
+
 }  // namespace
 
 std::vector<SavedLife> AlarmBook::lives() const {
@@ -92,9 +103,13 @@ void AlarmBook::inherit(const AlarmBook& before) {
     Alarm was = to;
     to = from;
     to.quantity = was.quantity;
-    to.parameter = was.parameter;
+    if (!was.named_at_run_time || !from.named_at_run_time) {
+      to.parameter = was.parameter;
+      to.ambiguity_group = was.ambiguity_group;
+      to.confidence = was.confidence;
+    }
+    to.named_at_run_time = was.named_at_run_time;
     to.falls_with_parameter = was.falls_with_parameter;
-    to.ambiguity_group = was.ambiguity_group;
     to.guidance = was.guidance;
     to.low = was.low;
     to.high = was.high;
@@ -167,7 +182,10 @@ void AlarmBook::carry(Carrier& carrier) {
          {&to.tick, &to.shelved_until, &to.came_tick, &to.came_utc_us, &to.times}) {
       carrier.value(*number);
     }
-    for (double* number : {&to.value, &to.std_error, &to.low, &to.high}) carrier.value(*number);
+    for (double* number : {&to.value, &to.std_error, &to.low, &to.high, &to.confidence}) {
+      carrier.value(*number);
+    }
+    if (to.named_at_run_time) carry_name(carrier, to);
     carrier.value(to.severity);
     carrier.value(to.direction);
     Memory& memory = memories_[i];

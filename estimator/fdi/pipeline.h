@@ -1,5 +1,6 @@
-// Fault detection, sample by sample: estimators over windows of (u, y), and bands on what they
-// find. No thread, no message, no device: the daemon, tests and off-line replay run this same code.
+// Fault detection, sample by sample: estimators over windows of (u, y) and other sources of values
+// (source.h), and bands on what they find. No thread, no message, no device: the daemon, tests and
+// off-line replay run this same code.
 //
 //   Pipeline pipeline(config, sample_time_s);
 //   for (const Sample& s : record) pipeline.process(s, events);
@@ -20,6 +21,7 @@
 #include "estimator/fdi/band.h"
 #include "estimator/fdi/quantity.h"
 #include "estimator/fdi/sample.h"
+#include "estimator/fdi/source.h"
 
 namespace estimator::fdi {
 
@@ -54,37 +56,47 @@ struct EstimatorConfig {
   [[nodiscard]] std::string fingerprint() const;
 };
 
-/// TOML: [[estimator]], [[band]] and bands_file.
+/// TOML: [[estimator]], [[band]], bands_file, and a list of each further kind of source.
 struct PipelineConfig {
+  /// `more`: kinds of sources besides source_kinds(), from code above this library.
+  explicit PipelineConfig(std::span<const SourceKind> more);
+  PipelineConfig() : PipelineConfig(std::span<const SourceKind>{}) {}
+
   std::vector<EstimatorConfig> estimators;
+  std::vector<SourceList> sources;  ///< one list for each kind, estimators apart
   std::vector<BandConfig> bands;
   std::string bands_file;  ///< learned bands, "" for none; relative to the configuration's folder
 
   void visit(config::schema::Visitor& v);
-  /// Reads bands_file (relative to `folder`; nothing to do when it is ""): its limits go to the
-  /// bands on the same quantity that give none, or else make a band of their own. They must have
-  /// been learned at this sample time and with the same estimators: else schema::Error, exit 78.
-  /// Call once, before Pipeline.
-  void load_bands(const std::filesystem::path& folder, double sample_time_s);
+  /// Adds to the list of that kind; the name is one of `sources`.
+  void add(std::string_view list, std::unique_ptr<SourceConfig> source);
+  /// Ids of estimators, then of the other sources, in their order.
+  [[nodiscard]] std::vector<std::string> source_ids() const;
+  /// Null when no source but perhaps an estimator has this id.
+  [[nodiscard]] const SourceConfig* find_source(std::string_view id) const noexcept;
+  /// The settings of the estimator or other source with this id, in one line; "" when there is
+  /// none.
+  [[nodiscard]] std::string fingerprint(std::string_view id) const;
+  /// Whether a key "bands_file", "[[band]] id: high", "[[cusum]] id: ..." belongs to it.
+  [[nodiscard]] bool owns(std::string_view key) const;
+
+  /// Completes it with what stands in other files (relative to `folder`), so that nothing is left
+  /// there. Of bands_file the limits go to the bands on the same quantity that give none, or else
+  /// make a band of their own; they must have been learned at this sample time and with the same
+  /// estimators. Other sources take in theirs (SourceConfig::load). Else schema::Error, exit 78.
+  /// Call once, before Pipeline. `rig_id`: "" when it is not known.
+  void load_bands(const std::filesystem::path& folder, double sample_time_s,
+                  const std::string& rig_id = "");
 };
 
-/// One number of an estimate.
-struct NamedValue {
-  std::string_view name;  ///< a1, b1, constant, residual_rms_m, ...
-  double value;
-  double std_error;  ///< NaN where there is none
-  double low;        ///< band, NaN where none is set
-  double high;
-};
-
-/// What one estimator found; the pointers hold until the next call of process().
+/// What one source found; the pointers hold until the next call of process().
 struct EstimateEvent {
-  std::size_t estimator;    ///< number in PipelineConfig::estimators
+  std::size_t estimator;    ///< number in PipelineConfig::source_ids(): estimators come first
   std::string_view source;  ///< its id
   std::int64_t tick;        ///< newest sample in it
   std::int64_t utc_us;
   bool valid;
-  bool warming_up;          ///< within warmup_s or the first window: no band acts on it
+  bool warming_up;          ///< within warmup_s or the first window: no alarm acts on it
   std::string_view reason;  ///< why not valid, "" when it is
   double condition;         ///< 2-norm condition number of the scaled regressors
   int samples;              ///< regressor rows used
@@ -110,7 +122,8 @@ class Events {
 
 class Pipeline {
  public:
-  /// Throws schema::Error (exit 78) for an unknown structure, quantity, double id, ...
+  /// Throws schema::Error (exit 78) for an unknown structure, quantity, double id, sources that
+  /// read each other in a circle, ...
   Pipeline(const PipelineConfig& config, double sample_time_s);
   ~Pipeline();
   Pipeline(Pipeline&&) noexcept;
@@ -125,10 +138,10 @@ class Pipeline {
   /// carrier.complete() is false afterwards, it is of no use.
   void carry(Carrier& carrier);
 
-  /// Takes the place of the pipeline before it between two samples: estimators whose settings are
-  /// the same go on with their windows, the others warm up; bands and alarms that stay go on with
-  /// their states (AlarmBook::inherit). Same sample time; before the first sample. Returns, for
-  /// each estimator, whether it goes on.
+  /// Takes the place of the pipeline before it between two samples: sources whose settings are the
+  /// same, and those of the sources that they read, go on, the others warm up; bands and alarms
+  /// that stay go on with their states (AlarmBook::inherit). Same sample time; before the first
+  /// sample. Returns, for each of PipelineConfig::source_ids(), whether it goes on.
   std::vector<bool> inherit(Pipeline& before);
 
   /// Bands are in it from the start; conditions from elsewhere are set by the caller.

@@ -1,6 +1,4 @@
 // A pipeline's state on its way to a snapshot and back, or to the pipeline that follows it.
-#include <algorithm>
-
 #include "estimator/fdi/pipeline_impl.h"
 
 namespace estimator::fdi {
@@ -10,7 +8,8 @@ void Pipeline::carry(Carrier& carrier) {
   carrier.value(impl.started);
   carrier.value(impl.last_tick);
   for (Worker& worker : impl.workers) {
-    worker.stage.carry(carrier);
+    worker.source->carry(carrier);
+    worker.outlet->carry(carrier);
     for (std::vector<Watch>& watches : worker.watches) {
       for (Watch& watch : watches) carrier.value(watch.state);
     }
@@ -26,17 +25,17 @@ std::vector<bool> Pipeline::inherit(Pipeline& before) {
   to.last_tick = from.last_tick;
   std::vector<bool> goes_on(to.workers.size(), false);
   std::vector<std::uint8_t> bytes;
-  for (std::size_t i = 0; i < to.workers.size(); ++i) {
-    const auto id = std::find(from.ids.begin(), from.ids.end(), to.ids[i]);
-    if (id == from.ids.end()) continue;
-    Worker& old = from.workers[static_cast<std::size_t>(id - from.ids.begin())];
-    if (old.settings != to.workers[i].settings) continue;
+  for (Worker& worker : to.workers) {
+    Worker* const old = from.worker(worker.id);
+    if (old == nullptr || old->settings != worker.settings) continue;
     bytes.clear();
     Carrier out = Carrier::saving(bytes);
-    old.stage.carry(out);
+    old->source->carry(out);
+    old->outlet->carry(out);
     Carrier in = Carrier::restoring(bytes);
-    to.workers[i].stage.carry(in);
-    goes_on[i] = true;
+    worker.source->carry(in);
+    worker.outlet->carry(in);
+    goes_on[worker.number] = true;
   }
   to.for_each_watch([&](Watch& watch) {
     const Alarm& alarm = to.book.alarm(watch.alarm);

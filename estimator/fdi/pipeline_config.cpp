@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <cmath>
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "estimator/fdi/fingerprint.h"
 #include "estimator/fdi/learned_bands.h"
 #include "estimator/fdi/pipeline.h"
 
@@ -74,19 +76,59 @@ std::string EstimatorConfig::fingerprint() const {
   EstimatorConfig copy = *this;
   copy.id.clear();
   copy.warmup_s = 0.0;
-  std::string text = config::schema::print_toml([&](Visitor& v) { copy.visit(v); });
-  text.erase(0, text.find("structure"));
-  for (char& c : text) {
-    if (c == '\n') c = ' ';
-    if (c == '"') c = '\'';
+  return one_line(config::schema::print_toml([&](Visitor& v) { copy.visit(v); }));
+}
+
+PipelineConfig::PipelineConfig(std::span<const SourceKind> more) {
+  for (const SourceKind& kind : source_kinds()) sources.emplace_back(kind);
+  for (const SourceKind& kind : more) sources.emplace_back(kind);
+}
+
+void PipelineConfig::add(std::string_view list, std::unique_ptr<SourceConfig> source) {
+  const auto found = std::find_if(sources.begin(), sources.end(),
+                                  [&](const SourceList& each) { return each.kind.list == list; });
+  if (found == sources.end()) throw bad_config(std::string(list), "is no kind of source");
+  found->items.push_back(std::move(source));
+}
+
+std::vector<std::string> PipelineConfig::source_ids() const {
+  std::vector<std::string> ids;
+  for (const EstimatorConfig& estimator : estimators) ids.push_back(estimator.id);
+  for (const SourceList& list : sources) {
+    for (const auto& item : list.items) ids.push_back(item->id);
   }
-  while (!text.empty() && text.back() == ' ') text.pop_back();
-  return text;
+  return ids;
+}
+
+const SourceConfig* PipelineConfig::find_source(std::string_view id) const noexcept {
+  for (const SourceList& list : sources) {
+    for (const auto& item : list.items) {
+      if (item->id == id) return item.get();
+    }
+  }
+  return nullptr;
+}
+
+std::string PipelineConfig::fingerprint(std::string_view id) const {
+  if (const EstimatorConfig* estimator = find(estimators, id)) return estimator->fingerprint();
+  const SourceConfig* source = find_source(id);
+  return source != nullptr ? source->fingerprint() : "";
+}
+
+bool PipelineConfig::owns(std::string_view key) const {
+  if (key == "bands_file" || key.starts_with("[[estimator]]") || key.starts_with("[[band]]")) {
+    return true;
+  }
+  return std::any_of(sources.begin(), sources.end(), [&](const SourceList& each) {
+    const std::string list = std::string("[[") + each.kind.list;
+    return key.starts_with(list + "]]") || key.starts_with(list + ".");
+  });
 }
 
 void PipelineConfig::visit(Visitor& v) {
   v.text({"bands_file", "learned bands, relative to this file's folder"}, bands_file);
   config::schema::visit_list(v, {"estimator", "estimators"}, estimators);
+  for (SourceList& list : sources) list.visit(v);
   config::schema::visit_list(v, {"band", "alarm bands"}, bands);
 }
 
@@ -109,7 +151,11 @@ void LearnedBands::visit(Visitor& v) {
   config::schema::visit_list(v, {"learned", "bands"}, bands);
 }
 
-void PipelineConfig::load_bands(const std::filesystem::path& folder, double sample_time_s) {
+void PipelineConfig::load_bands(const std::filesystem::path& folder, double sample_time_s,
+                                const std::string& rig_id) {
+  for (SourceList& list : sources) {
+    for (const auto& item : list.items) item->load({folder, sample_time_s, rig_id, *this});
+  }
   if (bands_file.empty()) return;
   const std::filesystem::path file = folder / bands_file;
   LearnedBands learned;

@@ -2,8 +2,6 @@
 
 #include <limits>
 
-#include "config/schema/error.h"
-
 namespace estimator::fdi {
 
 QuantityName split_quantity(std::string_view quantity) noexcept {
@@ -17,15 +15,6 @@ std::vector<std::string> estimate_names(const Structure& structure) {
   names.emplace_back("residual_rms_m");
   names.emplace_back("condition");
   return names;
-}
-
-SampleQuantity parse_sample_quantity(std::string_view name, const std::string& where) {
-  if (name == "y_m") return SampleQuantity::y;
-  if (name == "u_V") return SampleQuantity::u;
-  if (name == "reference_m") return SampleQuantity::reference;
-  if (name == "following_error_m") return SampleQuantity::following_error;
-  throw config::schema::bad_config(where, "a sample has no " + std::string(name),
-                                   "y_m, u_V, reference_m, following_error_m");
 }
 
 double usable_y_m(const Sample& sample) noexcept {

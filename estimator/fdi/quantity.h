@@ -1,10 +1,12 @@
 // Named quantities that a band can watch.
 //
 //   ESTIMATOR.a1 .b1 .constant .residual_rms_m .condition    of the estimator with that id
+//   SOURCE.name                                              of any other source (source.h)
 //   sample.y_m .u_V .reference_m .following_error_m          of every sample; the following error
 //                                                            is reference minus position
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,8 +29,15 @@ struct QuantityName {
 [[nodiscard]] std::vector<std::string> estimate_names(const Structure& structure);
 
 enum class SampleQuantity { y, u, reference, following_error };
-/// Throws schema::Error (exit 78) at `where` for an unknown name.
-[[nodiscard]] SampleQuantity parse_sample_quantity(std::string_view name, const std::string& where);
+struct NamedSampleQuantity {
+  SampleQuantity quantity;
+  std::string_view name;
+};
+inline constexpr std::array<NamedSampleQuantity, 4> kSampleQuantities = {
+    {{SampleQuantity::y, "y_m"},
+     {SampleQuantity::u, "u_V"},
+     {SampleQuantity::reference, "reference_m"},
+     {SampleQuantity::following_error, "following_error_m"}}};
 /// NaN when it is missing, or its quality stale or bad.
 [[nodiscard]] double value_of(SampleQuantity quantity, const Sample& sample) noexcept;
 

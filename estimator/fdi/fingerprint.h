@@ -1,0 +1,20 @@
+// Settings as one line, to compare and to show.
+#pragma once
+
+#include <string>
+
+namespace estimator::fdi {
+
+/// Printed TOML from its first key after schema_version and id on.
+[[nodiscard]] inline std::string one_line(std::string toml) {
+  toml.erase(0, toml.find('\n') + 1);  // schema_version
+  if (toml.starts_with("id = ")) toml.erase(0, toml.find('\n') + 1);
+  for (char& c : toml) {
+    if (c == '\n') c = ' ';
+    if (c == '"') c = '\'';
+  }
+  while (!toml.empty() && toml.back() == ' ') toml.pop_back();
+  return toml;
+}
+
+}  // namespace estimator::fdi

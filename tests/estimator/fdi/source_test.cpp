@@ -1,0 +1,254 @@
+// Sources other than estimators: kinds handed in by the caller, values that bands and other sources
+// read, alarms that a source sets and names itself.
+#include "estimator/fdi/source.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "config/schema/document.h"
+#include "config/schema/error.h"
+#include "tests/estimator/fdi/watched_integrator.h"
+
+namespace estimator::fdi {
+namespace {
+
+using config::schema::Document;
+using config::schema::Visitor;
+using fdi_test::Integrator;
+using fdi_test::kSampleTime_s;
+using fdi_test::Recorder;
+
+/// How often its input came fresh, the input's sum, and an alarm of its own while the input is
+/// above a limit: named "a" up to twice that limit, one of {a, b} beyond.
+struct CounterConfig final : SourceConfigOf<CounterConfig> {
+  std::string quantity;
+  double limit = 1e9;
+  void visit(Visitor& v) override {
+    v.text({"id", "", true}, id);
+    v.text({"quantity", "", true}, quantity);
+    v.number({"limit"}, limit);
+  }
+  [[nodiscard]] std::vector<std::string> inputs() const override { return {quantity}; }
+  [[nodiscard]] std::unique_ptr<Source> make(const Setting& setting) const override;
+};
+
+class CounterSource final : public Source {
+ public:
+  CounterSource(const CounterConfig& config, const Setting& setting)
+      : input_(setting.inputs.find(config.quantity, "[[counter]] " + config.id)),
+        limit_(config.limit) {}
+  [[nodiscard]] std::vector<std::string> names() const override { return {"count", "sum"}; }
+  [[nodiscard]] std::vector<Alarm> own_alarms() const override {
+    Alarm alarm;
+    alarm.name = "high";
+    return {alarm};
+  }
+  bool lose(std::int64_t /*periods*/) noexcept override { return false; }
+  bool push(const Sample& /*sample*/, double /*y_m*/) noexcept override {
+    if (!input_.fresh()) return false;
+    ++count_;
+    if (input_.usable()) sum_ += input_.value();
+    return true;
+  }
+  Finding find(std::span<NamedValue> values) noexcept override {
+    values[0].value = count_;
+    values[1].value = sum_;
+    Finding found;
+    found.valid = input_.usable();
+    found.reason = found.valid ? "" : input_.why();
+    return found;
+  }
+  [[nodiscard]] AlarmState own_alarm(std::size_t /*number*/) const noexcept override {
+    static constexpr std::array<std::string_view, 2> kBoth{"a", "b"};
+    static constexpr FaultName kOne{"a", {}, 0.9};
+    static constexpr FaultName kGroup{"", kBoth, 0.5};
+    AlarmState state;
+    if (!input_.usable() || input_.value() <= limit_) return state;
+    state.severity = Severity::major;
+    state.direction = 1;
+    state.value = input_.value();
+    state.reason = "above";
+    state.fault = input_.value() > 2.0 * limit_ ? &kGroup : &kOne;
+    return state;
+  }
+  void reset() override { count_ = sum_ = 0.0; }
+  void carry(Carrier& carrier) override {
+    carrier.value(count_);
+    carrier.value(sum_);
+  }
+
+ private:
+  Input input_;
+  double limit_;
+  double count_ = 0.0;
+  double sum_ = 0.0;
+};
+
+std::unique_ptr<Source> CounterConfig::make(const Setting& setting) const {
+  return std::make_unique<CounterSource>(*this, setting);
+}
+
+constexpr std::array<SourceKind, 1> kKinds{source_kind<CounterConfig>("counter", "for tests")};
+
+PipelineConfig read(const std::string& text) {
+  PipelineConfig config(kKinds);
+  Document::parse("schema_version = 1\n" + text, "test.toml").read([&](Visitor& v) {
+    config.visit(v);
+  });
+  return config;
+}
+
+const char* const kEstimator =
+    "[[estimator]]\nid = 'e'\nmethod = 'sliding'\nwindow_s = 1.0\n"
+    "stride_s = 0.1\n";
+
+std::string counter(const std::string& id, const std::string& quantity, double limit = 1e9) {
+  return "[[counter]]\nid = '" + id + "'\nquantity = '" + quantity +
+         "'\nlimit = " + std::to_string(limit) + "\n";
+}
+
+Sample at(std::int64_t tick, double y_m) {
+  Sample s;
+  s.tick = tick;
+  s.y_m = y_m;
+  return s;
+}
+
+class Values final : public Events {
+ public:
+  void on_estimate(const EstimateEvent& event) override {
+    ++events;
+    last = event.value("count");
+    sum = event.value("sum");
+    source = event.source;
+    number = event.estimator;
+  }
+  void on_alarm(const Alarm& alarm) override { alarms.push_back(alarm); }
+  std::vector<Alarm> alarms;
+  std::string source;
+  std::size_t number = 0;
+  int events = 0;
+  double last = 0.0, sum = 0.0;
+};
+
+TEST(Source, ReadsTheSampleOrAnEstimatorOrAnotherSourceWhateverTheOrderInTheFile) {
+  const PipelineConfig config =
+      read(counter("third", "second.sum") + counter("second", "e.b1") + kEstimator);
+  EXPECT_EQ(config.source_ids(), (std::vector<std::string>{"e", "third", "second"}));
+  Pipeline pipeline(config, kSampleTime_s);
+  Integrator plant;
+  Recorder seen;
+  fdi_test::run(pipeline, plant, 240, seen);
+  // Estimates at samples 20, 40, ... 240: 12 of each source, each after what it reads.
+  ASSERT_EQ(seen.estimates.size(), 36U);
+  EXPECT_EQ(seen.estimates[0].estimator, 0U);
+  EXPECT_EQ(seen.estimates[1].estimator, 2U);
+  EXPECT_EQ(seen.estimates[2].estimator, 1U);
+  EXPECT_FALSE(seen.estimates[1].valid) << "the window is not full";
+  EXPECT_TRUE(seen.estimates[35].valid);
+}
+
+TEST(Source, ItsValuesAreWatchedByBands) {
+  Pipeline pipeline(read(counter("c", "sample.y_m") +
+                         "[[band]]\nid = 'many'\nquantity = 'c.count'\nhigh = 3.5\n"),
+                    kSampleTime_s);
+  Values seen;
+  for (std::int64_t tick = 0; tick < 3; ++tick) pipeline.process(at(tick, 0.25), seen);
+  EXPECT_TRUE(seen.alarms.empty());
+  EXPECT_EQ(seen.sum, 0.75);
+  pipeline.process(at(3, 0.25), seen);
+  ASSERT_EQ(seen.alarms.size(), 1U);
+  EXPECT_EQ(seen.alarms[0].source, "c");
+  EXPECT_EQ(seen.alarms[0].value, 4.0);
+}
+
+TEST(Source, NamesTheFaultOfItsOwnAlarmAndTellsWhenTheNameChanges) {
+  Pipeline pipeline(read(counter("c", "sample.y_m", 1.0)), kSampleTime_s);
+  Values seen;
+  std::int64_t tick = 0;
+  for (const double y_m : {0.5, 1.5, 1.6, 2.5, 2.6, 0.5}) pipeline.process(at(tick++, y_m), seen);
+  ASSERT_EQ(seen.alarms.size(), 3U);
+  EXPECT_EQ(seen.alarms[0].name, "high");
+  EXPECT_EQ(seen.alarms[0].parameter, "a");
+  EXPECT_EQ(seen.alarms[0].confidence, 0.9);
+  EXPECT_EQ(seen.alarms[0].tick, 1);
+  EXPECT_EQ(seen.alarms[1].parameter, "");
+  EXPECT_EQ(seen.alarms[1].ambiguity_group, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(seen.alarms[1].tick, 3);
+  EXPECT_EQ(seen.alarms[2].severity, Severity::ok);
+}
+
+TEST(Source, GoesOnBitForBitAfterASnapshotAndTakesItsNameAlong) {
+  const PipelineConfig config = read(counter("c", "sample.y_m", 1.0) + counter("d", "c.sum"));
+  Pipeline one(config, kSampleTime_s);
+  Values seen;
+  for (std::int64_t tick = 0; tick < 7; ++tick) one.process(at(tick, 2.5), seen);
+  std::vector<std::uint8_t> bytes;
+  Carrier out = Carrier::saving(bytes);
+  one.carry(out);
+  Pipeline two(config, kSampleTime_s);
+  Carrier in = Carrier::restoring(bytes);
+  two.carry(in);
+  ASSERT_TRUE(in.complete());
+  const Alarm& alarm = two.alarms().alarm(two.alarms().find("c.high"));
+  EXPECT_EQ(alarm.ambiguity_group, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(alarm.confidence, 0.5);
+  Values a;
+  Values b;
+  one.process(at(7, 2.5), a);
+  two.process(at(7, 2.5), b);
+  EXPECT_EQ(a.sum, b.sum);
+  EXPECT_EQ(b.last, 8.0);
+  EXPECT_TRUE(b.alarms.empty()) << "the alarm stands already";
+}
+
+TEST(Source, GoesOnUnderNewRulesWhenItsSettingsAndThoseOfWhatItReadsAreTheSame) {
+  const std::string rest = counter("c", "e.b1") + counter("d", "sample.y_m");
+  Pipeline before(read(kEstimator + rest), kSampleTime_s);
+  Integrator plant;
+  Recorder seen;
+  fdi_test::run(before, plant, 300, seen);
+  Pipeline same(read(kEstimator + rest), kSampleTime_s);
+  EXPECT_EQ(same.inherit(before), (std::vector<bool>{true, true, true}));
+  Pipeline other(read(std::string(kEstimator) + "constant = true\n" + rest), kSampleTime_s);
+  EXPECT_EQ(other.inherit(before), (std::vector<bool>{false, false, true}));
+}
+
+TEST(Source, IsRefusedWhenItReadsWhatIsNotThereOrInACircle) {
+  const auto refusal = [](const std::string& text) -> std::string {
+    try {
+      Pipeline(read(text), kSampleTime_s);
+    } catch (const config::schema::Error& error) {
+      EXPECT_EQ(error.exit_code(), 78);
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(refusal(counter("c", "sample.z")).find("[[counter]] c: a sample has no z"),
+            std::string::npos);
+  EXPECT_NE(refusal(counter("c", "d.sum")).find("names no estimator or other source"),
+            std::string::npos);
+  EXPECT_NE(refusal(counter("c", "d.sum") + counter("d", "c.sum")).find("in turn"),
+            std::string::npos);
+  EXPECT_NE(refusal(counter("c", "c.sum")).find("in turn"), std::string::npos);
+  EXPECT_NE(refusal(counter("c", "sample.y_m") + counter("c", "sample.u_V")).find("taken"),
+            std::string::npos);
+}
+
+TEST(Source, MeansTheSameAfterPrintingAndReadingAndInACopy) {
+  PipelineConfig config = read(counter("c", "sample.y_m", 2.5));
+  PipelineConfig copy = config;
+  const auto print = [](PipelineConfig& c) {
+    return config::schema::print_toml([&](Visitor& v) { c.visit(v); });
+  };
+  EXPECT_EQ(print(copy), print(config));
+  EXPECT_NE(copy.find_source("c"), config.find_source("c"));
+  EXPECT_EQ(config.fingerprint("c"), "quantity = 'sample.y_m' limit = 2.5");
+  EXPECT_TRUE(config.owns("[[counter]] c: limit"));
+  EXPECT_FALSE(config.owns("[[count]] c: limit"));
+}
+
+}  // namespace
+}  // namespace estimator::fdi
