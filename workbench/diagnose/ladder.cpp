@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "workbench/diagnose/look_over.h"
 #include "workbench/diagnose/rounds.h"
@@ -15,6 +16,8 @@ namespace workbench::diagnose {
 namespace {
 
 constexpr std::size_t kMostEffects = 4;
+/// One after another; when these do not explain the record, two at once are tried before any more.
+constexpr std::size_t kBeforeTwoAtOnce = 2;
 /// Of the first round, that many are tried as the first effect when the best leads nowhere.
 constexpr std::size_t kDetours = 3;
 /// They have to leave less than this share of the error, and by another way than the best: two
@@ -80,11 +83,12 @@ const Candidate& simplest(const Workshop& shop, const std::vector<Candidate>& ca
   return *chosen;
 }
 
-/// Rounds from a stage until nothing helps any more.
-void go_on(const Workshop& shop, Stage& stage, std::vector<Round>& rounds, bool pairs_too) {
-  while (stage.added.size() < kMostEffects && !shop.cancelled()) {
+/// Rounds from a stage until it has `most` effects or nothing helps any more: then false.
+bool go_on(const Workshop& shop, Stage& stage, std::vector<Round>& rounds, bool pairs_too,
+           std::size_t most = kMostEffects) {
+  while (stage.added.size() < most && !shop.cancelled()) {
     Round round = single_round(shop, stage, static_cast<int>(rounds.size()) + 1);
-    if (round.candidates.empty()) return;
+    if (round.candidates.empty()) return false;
     // those that cannot be taken go behind those that can
     std::stable_partition(
         round.candidates.begin(), round.candidates.end(),
@@ -104,8 +108,9 @@ void go_on(const Workshop& shop, Stage& stage, std::vector<Round>& rounds, bool 
       }
     }
     rounds.push_back(std::move(round));
-    if (!gain) return;
+    if (!gain) return false;
   }
+  return true;
 }
 
 /// A search from the first stage to where nothing helped any more.
@@ -114,32 +119,44 @@ struct Trodden {
   std::vector<Round> rounds;
 };
 
-/// The search from `first` with a candidate as its beginning; it replaces `best` when it leads
-/// further.
-void try_beginning(const Workshop& shop, const Stage& first, const Candidate& candidate,
-                   Trodden& best) {
-  Trodden other{with(first, candidate), {best.rounds.front()}};
-  other.stage.fitted = finished(shop, other.stage.fitted);
-  if (!is_explained(shop, other.stage)) drop_hindrances(shop, other.stage);
+/// The search from `first` with a candidate as its beginning, after the round `begun`.
+Trodden trodden_from(const Workshop& shop, const Stage& first, const Candidate& candidate,
+                     const Round& begun) {
+  Trodden other{with(first, candidate), {begun}};
+  end_unhindered(shop, other.stage);
   go_on(shop, other.stage, other.rounds, false);
   look_over(shop, other.stage, Look::on_the_way);
-  if (other.stage.fitted.score_rms_m < (1.0 - kRivals) * best.stage.fitted.score_rms_m) {
-    if (candidate.effects.size() > 1) {
-      auto& candidates = other.rounds.front().candidates;
-      candidates.insert(candidates.begin(), candidate);
-    }
-    best = std::move(other);
+  if (candidate.effects.size() > 1) {
+    auto& candidates = other.rounds.front().candidates;
+    candidates.insert(candidates.begin(), candidate);
   }
+  return other;
 }
 
-/// Two effects together as the beginning, where one after another does not explain the record.
-void start_with_two(const Workshop& shop, const Stage& first, Trodden& best) {
-  if (best.rounds.empty() || is_explained(shop, best.stage) || shop.cancelled()) return;
+bool leads_further(const Trodden& other, const Trodden& best) {
+  return other.stage.fitted.score_rms_m < (1.0 - kRivals) * best.stage.fitted.score_rms_m;
+}
+
+/// Two effects together as the beginning, where one after another has not explained the record.
+std::optional<Trodden> start_with_two(const Workshop& shop, const Stage& first,
+                                      const Trodden& best) {
+  if (best.rounds.empty() || is_explained(shop, best.stage) || shop.cancelled()) return {};
   std::vector<std::string> begun;  // on which the second round has tried all others
   if (best.rounds.size() > 1) begun = best.rounds[1].before.added;
   const std::vector<Candidate> pairs = two_at_once(shop, first, begun);
-  if (pairs.empty() || !is_gain(shop, first, pairs.front())) return;
-  try_beginning(shop, first, pairs.front(), best);
+  if (pairs.empty() || !is_gain(shop, first, pairs.front())) return {};
+  return trodden_from(shop, first, pairs.front(), best.rounds.front());
+}
+
+/// The search one effect after another, or with two at once where that leads further.
+Trodden search(const Workshop& shop, const Stage& first) {
+  Trodden best{first, {}};
+  const bool may_go_on = go_on(shop, best.stage, best.rounds, true, kBeforeTwoAtOnce);
+  std::optional<Trodden> other = start_with_two(shop, first, best);
+  if (other && is_explained(shop, other->stage) && leads_further(*other, best)) return *other;
+  if (may_go_on) go_on(shop, best.stage, best.rounds, true);
+  look_over(shop, best.stage, Look::on_the_way);
+  return other && leads_further(*other, best) ? *other : best;
 }
 
 /// The next best effects of the first round as the beginning.
@@ -157,7 +174,8 @@ void detour(const Workshop& shop, const Stage& first, Trodden& best) {
     if (apart_m < kSamePath * firsts[i].score_rms_m) continue;
     const auto& added = best.stage.added;
     if (std::find(added.begin(), added.end(), firsts[i].effects.front()) != added.end()) continue;
-    try_beginning(shop, first, firsts[i], best);
+    Trodden other = trodden_from(shop, first, firsts[i], best.rounds.front());
+    if (leads_further(other, best)) best = std::move(other);
   }
 }
 
@@ -193,17 +211,13 @@ Ladder climb(const Workshop& shop) {
   const auto begin = std::chrono::steady_clock::now();
   Ladder ladder;
   ladder.nominal_rms_m = nominal_rms_m(shop);
-  Stage stage = first_stage(shop);
-  const Stage first = stage;
+  const Stage first = first_stage(shop);
   ladder.preview_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  go_on(shop, stage, ladder.rounds, true);
-  if (!ladder.rounds.empty()) ladder.preview_s += ladder.rounds.front().looked_s;
-  look_over(shop, stage, Look::on_the_way);
-  Trodden best{stage, std::move(ladder.rounds)};
-  start_with_two(shop, first, best);
+  Trodden best = search(shop, first);
+  if (!best.rounds.empty()) ladder.preview_s += best.rounds.front().looked_s;
   detour(shop, first, best);
-  stage = std::move(best.stage);
+  const Stage& stage = best.stage;
   ladder.rounds = std::move(best.rounds);
   ladder.way = way_to(shop, first, stage);
   if (!is_explained(shop, stage)) {

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "workbench/diagnose/ladder.h"
+#include "workbench/diagnose/parallel.h"
 #include "workbench/diagnose/selection.h"
 #include "workbench/diagnose/support.h"
 
@@ -19,19 +20,32 @@ bool costs_little(const Workshop& shop, const Fitted& without, const Fitted& wit
   return without.score_rms_m < (1.0 + worthwhile_at(shop, with.score_rms_m)) * with.score_rms_m;
 }
 
+/// Selections fitted side by side, each given up when hopeless beside the stage.
+std::vector<Fitted> fitted(const Workshop& shop, const Stage& stage,
+                           const std::vector<Selection>& selections) {
+  std::vector<Fitted> fits(selections.size());
+  in_parallel(selections.size(), shop.threads, [&](std::size_t i) {
+    fits[i] = refit_if_hopeful(shop, selections[i], stage.fitted.score_rms_m);
+  });
+  return fits;
+}
+
 void drop_effects(const Workshop& shop, Stage& stage) {
-  for (std::size_t i = 0; stage.added.size() > 1 && i < stage.added.size() && !shop.cancelled();) {
-    const std::string effect = stage.added[i];
-    Fitted without =
-        refit(shop, select(stage.fitted, [&](const auto& p) { return !belongs(p, effect); }),
-              shop.evidence.fits, shop.threads);
-    if (!costs_little(shop, without, stage.fitted)) {
-      ++i;
-      continue;
+  bool dropped = true;
+  while (dropped && stage.added.size() > 1 && !shop.cancelled()) {
+    dropped = false;
+    std::vector<Selection> selections;
+    for (const std::string& effect : stage.added) {
+      selections.push_back(
+          select(stage.fitted, [&](const auto& p) { return !belongs(p, effect); }));
     }
-    stage.fitted = std::move(without);
-    stage.added.erase(stage.added.begin() + static_cast<std::ptrdiff_t>(i));
-    i = 0;
+    std::vector<Fitted> without = fitted(shop, stage, selections);
+    for (std::size_t i = 0; i < without.size() && !dropped && !shop.cancelled(); ++i) {
+      if (!costs_little(shop, without[i], stage.fitted)) continue;
+      stage.fitted = std::move(without[i]);
+      stage.added.erase(stage.added.begin() + static_cast<std::ptrdiff_t>(i));
+      dropped = true;
+    }
   }
 }
 
@@ -49,18 +63,42 @@ Selection without_refinement(const Fitted& fitted, const std::string& effect, in
                 [&](const auto& p) { return !belongs(p, effect) || p.refinement != refinement; });
 }
 
-void drop_refinements(const Workshop& shop, Stage& stage) {
+struct Refinement {
+  std::string effect;
+  int number = 0;
+};
+
+/// The refinements of all effects of a stage, in the order in which they may go.
+std::vector<Refinement> refinements_of(const Stage& stage) {
+  std::vector<Refinement> all;
   for (const std::string& effect : stage.added) {
-    for (const int refinement : refinements_of(stage.fitted, effect)) {
-      if (shop.cancelled()) return;
-      const Selection plain = without_refinement(stage.fitted, effect, refinement);
-      Fitted without = refit(shop, plain, shop.evidence.fits, shop.threads);
-      const bool earned =
-          !costs_little(shop, without, stage.fitted) &&
-          (is_explained(shop, stage) ||
-           supported(shop, false, plain, select(stage.fitted, [](const auto&) { return true; })));
-      if (!earned) stage.fitted = std::move(without);
+    for (const int number : refinements_of(stage.fitted, effect)) all.push_back({effect, number});
+  }
+  return all;
+}
+
+bool earned(const Workshop& shop, const Stage& stage, const Selection& plain,
+            const Fitted& without) {
+  return !costs_little(shop, without, stage.fitted) &&
+         (is_explained(shop, stage) ||
+          supported(shop, false, plain, select(stage.fitted, [](const auto&) { return true; })));
+}
+
+void drop_refinements(const Workshop& shop, Stage& stage) {
+  std::vector<Refinement> remaining = refinements_of(stage);
+  while (!remaining.empty() && !shop.cancelled()) {
+    std::vector<Selection> plain;
+    for (const Refinement& refinement : remaining) {
+      plain.push_back(without_refinement(stage.fitted, refinement.effect, refinement.number));
     }
+    std::vector<Fitted> without = fitted(shop, stage, plain);
+    std::size_t i = 0;
+    while (i < remaining.size() && !shop.cancelled() && earned(shop, stage, plain[i], without[i])) {
+      ++i;
+    }
+    if (i == remaining.size() || shop.cancelled()) return;
+    stage.fitted = finished(shop, without[i]);
+    remaining.erase(remaining.begin(), remaining.begin() + static_cast<std::ptrdiff_t>(i) + 1);
   }
 }
 
@@ -93,15 +131,29 @@ void add_refinements(const Workshop& shop, Stage& stage) {
 
 }  // namespace
 
-void drop_hindrances(const Workshop& shop, Stage& stage) {
+void end_unhindered(const Workshop& shop, Stage& stage) {
+  if (is_explained(shop, stage)) {
+    stage.fitted = finished(shop, stage.fitted);
+    return;
+  }
+  std::vector<Selection> selections{select(stage.fitted, [](const auto&) { return true; })};
   for (const std::string& effect : stage.added) {
     for (const int refinement : refinements_of(stage.fitted, effect)) {
-      if (shop.cancelled()) return;
-      Fitted without = refit(shop, without_refinement(stage.fitted, effect, refinement),
-                             shop.evidence.fits, shop.threads);
-      if (without.score_rms_m < stage.fitted.score_rms_m) stage.fitted = std::move(without);
+      selections.push_back(without_refinement(stage.fitted, effect, refinement));
     }
   }
+  std::vector<Fitted> fits(selections.size());
+  in_parallel(selections.size(), shop.threads, [&](std::size_t i) {
+    const std::size_t longest_first = selections.size() - 1 - i;
+    fits[longest_first] = refit(shop, selections[longest_first], shop.evidence.fits);
+  });
+  stage.fitted = std::move(fits.front());
+  if (is_explained(shop, stage) || shop.cancelled()) return;
+  const auto best =
+      std::min_element(fits.begin() + 1, fits.end(),
+                       [](const auto& a, const auto& b) { return a.score_rms_m < b.score_rms_m; });
+  if (best == fits.end() || best->score_rms_m >= stage.fitted.score_rms_m) return;
+  stage.fitted = finished(shop, *best);  // from the ground up, now that nothing is in its way
 }
 
 void look_over(const Workshop& shop, Stage& stage, Look look) {

@@ -16,8 +16,9 @@ enum class Look { on_the_way, final };
 /// a stage that noise does not explain keeps its refinements as they are: their support takes long.
 void look_over(const Workshop& shop, Stage& stage, Look look);
 
-/// Drops refinements of effects without which the held-out error is smaller: their search has ended
-/// somewhere wrong, and holds the others' there.
-void drop_hindrances(const Workshop& shop, Stage& stage);
+/// Fits a stage to the end, beside it without each refinement of its effects: where that ends
+/// lower, and noise does not explain the stage, the refinement goes. Its search has ended somewhere
+/// wrong, and holds the others' there.
+void end_unhindered(const Workshop& shop, Stage& stage);
 
 }  // namespace workbench::diagnose

@@ -18,9 +18,6 @@ constexpr std::size_t kLargestGroup = 3;
 /// other effects are in place.
 constexpr double kWorthARefit = 2.0;
 constexpr std::size_t kMostRefits = 4;
-/// One that after so many iterations is still that much worse than the found effect is none.
-constexpr int kFirstIterations = 8;
-constexpr double kHopeless = 3.0;
 /// A rival brings at least this share of what the found effect brings.
 constexpr double kShareOfGain = 0.5;
 /// Probability of chance below which the held-out data do tell the found effect from a rival.
@@ -49,15 +46,7 @@ Fitted replaced(const Workshop& shop, const Stage& final, const std::string& eff
   const Selection own = select(
       candidate.fitted, [&](const auto& p) { return belongs(p, candidate.effects.front()); });
   append(selection, own);
-  matching::FitOptions begin;
-  begin.max_iterations = kFirstIterations;
-  begin.final_jacobian = false;
-  begin.cancel = shop.cancel;
-  Fitted begun = matching::fit(shop.model, shop.evidence, shop.evidence.fits, selection.searched,
-                               selection.start, begin);
-  if (begun.score_rms_m > kHopeless * final.fitted.score_rms_m) return begun;
-  selection.start = begun.x;
-  return refit(shop, selection, shop.evidence.fits);
+  return refit_if_hopeful(shop, selection, final.fitted.score_rms_m);
 }
 
 bool contains(const Workshop& shop, const Fitted& larger, const Fitted& smaller) {
@@ -67,12 +56,15 @@ bool contains(const Workshop& shop, const Fitted& larger, const Fitted& smaller)
   return apart_m < kSameMotion * smaller.score_rms_m;
 }
 
-bool is_rival(const Workshop& shop, double without_m, const Fitted& found, const Fitted& other) {
+bool explains_alike(const Workshop& shop, const Fitted& found, const Fitted& other) {
+  return other.score_rms_m <= (1.0 + kRivals) * found.score_rms_m &&
+         chance(shop, other, found) > kTold && !contains(shop, other, found);
+}
+
+bool brings_enough(double without_m, const Fitted& found, const Fitted& other) {
   const double gain = 1.0 - found.score_rms_m / without_m;
   const double other_gain = 1.0 - other.score_rms_m / without_m;
-  return other.score_rms_m <= (1.0 + kRivals) * found.score_rms_m &&
-         other_gain >= kShareOfGain * gain && chance(shop, other, found) > kTold &&
-         !contains(shop, other, found);
+  return other_gain >= kShareOfGain * gain;
 }
 
 }  // namespace
@@ -100,6 +92,10 @@ std::vector<Rivalry> rivalries(const Workshop& shop, const std::vector<Round>& r
     std::vector<Fitted> fits(others.size());
     in_parallel(others.size(), shop.threads,
                 [&](std::size_t i) { fits[i] = replaced(shop, final, effect, *others[i]); });
+    if (std::none_of(fits.begin(), fits.end(),
+                     [&](const Fitted& fit) { return explains_alike(shop, final.fitted, fit); })) {
+      continue;
+    }
     const double without_m =
         final.added.size() == 1
             ? round->before.fitted.score_rms_m
@@ -108,7 +104,10 @@ std::vector<Rivalry> rivalries(const Workshop& shop, const std::vector<Round>& r
                   .score_rms_m;
     Rivalry rivalry{effect, {}, {final.fitted}};
     for (std::size_t i = 0; i < fits.size() && rivalry.others.size() + 1 < kLargestGroup; ++i) {
-      if (!is_rival(shop, without_m, final.fitted, fits[i])) continue;
+      if (!explains_alike(shop, final.fitted, fits[i]) ||
+          !brings_enough(without_m, final.fitted, fits[i])) {
+        continue;
+      }
       rivalry.others.push_back(others[i]->effects.front());
       rivalry.explanations.push_back(std::move(fits[i]));
     }

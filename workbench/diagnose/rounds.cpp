@@ -16,7 +16,6 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr int kQuickIterations = 8;
 constexpr double kQuickTolerance = 2e-3;
 constexpr int kThoroughIterations = 15;
 constexpr double kThoroughTolerance = 3e-5;
@@ -121,8 +120,10 @@ double chance(const Workshop& shop, const matching::Fitted& earlier,
   return comparison.z > 0.0 ? 0.5 * comparison.p : 1.0 - 0.5 * comparison.p;
 }
 
-Candidate tried(const Workshop& shop, const Stage& stage, const Glance& glance) {
-  return candidate_of(shop, stage, glance, attempt(shop, glance, quick(shop)));
+Candidate tried(const Workshop& shop, const Stage& stage, const Glance& glance, int iterations) {
+  matching::FitOptions options = quick(shop);
+  options.max_iterations = iterations;
+  return candidate_of(shop, stage, glance, attempt(shop, glance, options));
 }
 
 void finish(const Workshop& shop, const Stage& stage, std::vector<Candidate>& candidates) {

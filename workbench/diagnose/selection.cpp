@@ -1,6 +1,13 @@
 #include "workbench/diagnose/selection.h"
 
 namespace workbench::diagnose {
+namespace {
+
+/// What after so many iterations is still that much worse will not come near.
+constexpr int kFirstIterations = 8;
+constexpr double kHopeless = 3.0;
+
+}  // namespace
 
 void append(Selection& to, const Selection& more) {
   Eigen::VectorXd start(to.start.size() + more.start.size());
@@ -18,6 +25,19 @@ matching::Fitted refit(const Workshop& shop, const Selection& selection,
   options.cancel = shop.cancel;
   return matching::fit(shop.model, shop.evidence, weights, selection.searched, selection.start,
                        options);
+}
+
+matching::Fitted refit_if_hopeful(const Workshop& shop, const Selection& selection, double than_m,
+                                  unsigned threads) {
+  matching::FitOptions begin;
+  begin.threads = threads;
+  begin.max_iterations = kFirstIterations;
+  begin.final_jacobian = false;
+  begin.cancel = shop.cancel;
+  matching::Fitted begun = matching::fit(shop.model, shop.evidence, shop.evidence.fits,
+                                         selection.searched, selection.start, begin);
+  if (begun.score_rms_m > kHopeless * than_m) return begun;
+  return refit(shop, {selection.searched, begun.x}, shop.evidence.fits, threads);
 }
 
 matching::Fitted finished(const Workshop& shop, const matching::Fitted& fitted) {

@@ -25,6 +25,9 @@ constexpr Index kSizes = 4;
 constexpr std::size_t kLookedAt = 16;
 /// That many are fitted, each from its best start seen from either base.
 constexpr std::size_t kFitted = 6;
+/// For that many iterations at first; then only those within this factor of the best go on.
+constexpr int kFirstIterations = 4;
+constexpr double kFar = 3.0;
 
 struct Effect {
   std::string name;
@@ -98,6 +101,13 @@ void look_at(const Workshop& shop, const matching::Evidence& evidence, const Pro
   couples.resize(std::min(couples.size(), most));
 }
 
+Candidate tried(const Workshop& shop, const Stage& stage, const Couple& couple, int iterations) {
+  const Glance glance{couple.first->name, 1.0, couple.searched, couple.starts};
+  Candidate candidate = diagnose::tried(shop, stage, glance, iterations);
+  candidate.effects.push_back(couple.second->name);
+  return candidate;
+}
+
 }  // namespace
 
 std::vector<Candidate> two_at_once(const Workshop& shop, const Stage& stage,
@@ -124,12 +134,16 @@ std::vector<Candidate> two_at_once(const Workshop& shop, const Stage& stage,
   look_at(shop, shop.evidence, Projection(stage.fitted, shop.evidence.fits), bases, kFitted,
           couples);
   std::vector<Candidate> candidates(couples.size());
+  in_parallel(couples.size(), shop.threads, [&](std::size_t i) {
+    if (!shop.cancelled()) candidates[i] = tried(shop, stage, couples[i], kFirstIterations);
+  });
+  double best_m = std::numeric_limits<double>::infinity();
+  for (const Candidate& candidate : candidates) best_m = std::min(best_m, candidate.score_rms_m);
   std::atomic<bool> explained = false;
   in_parallel(couples.size(), shop.threads, [&](std::size_t i) {
-    if (shop.cancelled() || explained) return;
-    Glance glance{couples[i].first->name, 1.0, couples[i].searched, couples[i].starts};
-    candidates[i] = tried(shop, stage, glance);
-    candidates[i].effects.push_back(couples[i].second->name);
+    if (shop.cancelled() || explained || !(candidates[i].score_rms_m < kFar * best_m)) return;
+    couples[i].starts = {candidates[i].fitted.x};
+    candidates[i] = tried(shop, stage, couples[i], kQuickIterations);
     if (candidates[i].score_rms_m < kUnexplained * shop.evidence.noise_floor_m) explained = true;
   });
   std::erase_if(candidates, [](const Candidate& c) { return !c.fitted_at_all; });
