@@ -3,8 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tracking/words.h"
 #include "workbench/isolate/outcome.h"
-#include "workbench/isolate/words.h"
 
 namespace workbench::isolate {
 namespace {
@@ -39,7 +39,7 @@ ordered_json json_of(const Window& window, const Choice& choice) {
 
 ordered_json json_of(const Alarm& alarm, const Outcome& o) {
   const Named& named = alarm.named;
-  const matching::SearchParameter& p = o.choice.parameters[named.parameter];
+  const tracking::SearchParameter& p = o.choice.parameters[named.parameter];
   const double healthy = p.value(o.healthy.x[static_cast<Index>(named.parameter)]);
   const double value = p.value(named.x);
   ordered_json group = ordered_json::array({p.name});
@@ -59,8 +59,8 @@ ordered_json json_of(const Alarm& alarm, const Outcome& o) {
           {"rivals", rivals},
           {"raised_s", alarm.raised_s},
           {"cleared_s", number(alarm.cleared_s)},
-          {"advice", advice_words(o.choice, named)},
-          {"words", change_words(o.choice, named, o.healthy.x)}};
+          {"advice", tracking::advice_words(o.choice, named)},
+          {"words", tracking::change_words(o.choice, named, o.healthy.x)}};
 }
 
 double median_fit_s(std::vector<Window> windows) {
@@ -78,7 +78,7 @@ std::string to_json(const Outcome& o) {
   ordered_json names = ordered_json::array();
   ordered_json values = ordered_json::object();
   for (std::size_t i = 0; i < o.choice.tracked; ++i) {
-    const matching::SearchParameter& p = o.choice.parameters[i];
+    const tracking::SearchParameter& p = o.choice.parameters[i];
     names.push_back(p.name);
     values[p.name] = number(p.value(o.healthy.x[static_cast<Index>(i)]));
   }

@@ -7,10 +7,10 @@
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "estimator/residual/noise_floor.h"
-#include "workbench/diagnose/quantity.h"
+#include "tracking/quantity.h"
+#include "tracking/words.h"
 #include "workbench/file_check.h"
 #include "workbench/fit/choice.h"
-#include "workbench/isolate/words.h"
 #include "workbench/shell_words.h"
 
 namespace workbench::isolate {
@@ -19,7 +19,7 @@ namespace {
 using config::record::Record;
 using config::schema::Error;
 using config::schema::ExitCode;
-using diagnose::number;
+using tracking::number;
 
 /// A healthy error above so many noise floors, and a healthy value so far off the file's, are
 /// worth a note.
@@ -39,17 +39,6 @@ Span span(const std::string& text) {
     if (out.from_s < out.to_s) return out;
   }
   throw Error(ExitCode::usage, "--healthy " + text + ": is no span; allowed: from:to, in s");
-}
-
-Choice choose_named(const plant_sim::ModelFile& model, const Request& request) {
-  try {
-    return choose(model, request.parameters);
-  } catch (const Error& error) {
-    std::string line = error.what();
-    const std::size_t at = line.find("--free");
-    if (at != std::string::npos) line.replace(at, 6, "--parameters");
-    throw Error(static_cast<ExitCode>(error.exit_code()), line);
-  }
 }
 
 /// Every window of [from, to) of the record.
@@ -72,7 +61,7 @@ std::vector<Window> track(Tracker& tracker, const Record& record, const Span& wi
 }
 
 void check(const Request& request, const Record& record) {
-  const double least_s = request.settings.window_s + kLead_s;
+  const double least_s = request.settings.window_s + tracking::kLead_s;
   const double length_s = static_cast<double>(record.size()) * record.sample_time_s;
   if (request.settings.window_s < kLeastSamples * record.sample_time_s) {
     throw Error(ExitCode::usage, "--window: is too short for samples every " +
@@ -127,12 +116,12 @@ void note_calibration(Outcome& out) {
                         "show; calibrate it first (spoolwatch diagnose, fit)");
   }
   for (std::size_t i = 0; i < out.choice.tracked; ++i) {
-    const matching::SearchParameter& p = out.choice.parameters[i];
+    const tracking::SearchParameter& p = out.choice.parameters[i];
     const auto at = static_cast<Eigen::Index>(i);
-    if (p.scale != matching::Scale::logarithmic) continue;
+    if (p.scale != tracking::Scale::logarithmic) continue;
     const double off = std::exp(out.healthy.x[at] - out.choice.file[at]) - 1.0;
     if (std::abs(off) < kOffFile) continue;
-    out.notes.push_back("when healthy, " + name_words(p.name) + " is " +
+    out.notes.push_back("when healthy, " + tracking::name_words(p.name) + " is " +
                         number("%+.3g", 100.0 * off) +
                         " % off the model file; changes count from there");
   }
@@ -152,7 +141,7 @@ Outcome isolate(const Request& request) {
   out.model = request.model;
   out.record = request.record;
   out.command = command_of(request);
-  out.choice = choose_named(model, request);
+  out.choice = tracking::choose(model, request.parameters, "--parameters");
   out.settings = request.settings;
   out.notes = record.notes;
   const auto floor = estimator::residual::noise_floor(record.y_m, record.sample_time_s);
@@ -166,8 +155,8 @@ Outcome isolate(const Request& request) {
   } else {
     const Span healthy = span(request.healthy);
     Tracker learning = tracker();
-    out.healthy = learn(track(learning, record, healthy), out.choice, floor_m,
-                        record.name + ": --healthy " + request.healthy);
+    out.healthy = tracking::learn(track(learning, record, healthy), out.choice, floor_m,
+                                  record.name + ": --healthy " + request.healthy);
     out.learnt = true;
     out.healthy_from_s = healthy.from_s;
     out.healthy_to_s = healthy.to_s;

@@ -4,10 +4,19 @@
 #include <string>
 #include <vector>
 
-#include "workbench/isolate/tracker.h"
+#include "tracking/tracker.h"
 #include "workbench/report/report.h"
 
 namespace workbench::isolate {
+
+using tracking::Alarm;
+using tracking::Choice;
+using tracking::Healthy;
+using tracking::Named;
+using tracking::Rival;
+using tracking::Settings;
+using tracking::Tracker;
+using tracking::Window;
 
 struct Request {
   std::string model;

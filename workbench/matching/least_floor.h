@@ -1,9 +1,10 @@
 // The least noise that a measured position is taken to have.
 #pragma once
 
+#include "tracking/least_floor.h"
+
 namespace workbench::matching {
 
-/// Better than any rod's sensor; simulated ones may show no noise at all.
-inline constexpr double kLeastFloor_m = 1e-9;
+using tracking::kLeastFloor_m;
 
 }  // namespace workbench::matching

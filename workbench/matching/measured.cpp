@@ -16,8 +16,6 @@ constexpr double kSlowest_s = 0.25;
 /// Speed at a record's first sample, over the RMS speed of the record, above which it begins in the
 /// midst of a motion. A start from rest under a command stays below a few per cent.
 constexpr double kMoving = 0.05;
-/// Of the error in one sample, where samples are far apart.
-constexpr double kMostLed = 0.5;
 
 std::size_t settling_samples(double sample_time_s) {
   return static_cast<std::size_t>(std::lround(kSettling_s / sample_time_s));
@@ -56,13 +54,6 @@ std::string seconds(double s) {
 }
 
 }  // namespace
-
-double Measured::share(std::size_t k, double observer_per_s) const noexcept {
-  const double observed = observer_per_s * sample_time_s;
-  if (k >= led.size() || led[k] == kNotLed) return observed;
-  if (led[k] == kLedWhereObserved && !(observer_per_s > 0.0)) return observed;
-  return std::max(observed, std::min(kMostLed, kLeading_per_s * sample_time_s));
-}
 
 Measured measured(const config::record::Record& record) {
   Measured result;

@@ -6,13 +6,14 @@
 #include <nlohmann/json.hpp>
 
 #include "config/schema/error.h"
+#include "tests/tracking/tracked.h"
 #include "tests/truth/case.h"
-#include "tests/workbench/isolate/tracked.h"
 #include "tests/workbench/run_command.h"
 
 namespace {
 
-using namespace workbench_test;
+using namespace tracking_test;
+using workbench_test::run_command;
 namespace fs = std::filesystem;
 
 class IsolateCommand : public testing::Test {

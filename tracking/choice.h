@@ -6,14 +6,14 @@
 #include <vector>
 
 #include "plant_sim/model_file.h"
-#include "workbench/matching/search_parameter.h"
+#include "tracking/search_parameter.h"
 
-namespace workbench::isolate {
+namespace tracking {
 
 /// Tracked parameters first, then their rivals: every uncertain parameter of the plant, and effects
 /// that may arise while a rig runs.
 struct Choice {
-  std::vector<matching::SearchParameter> parameters;
+  std::vector<SearchParameter> parameters;
   std::size_t tracked = 0;
   Eigen::VectorXd file;  ///< search values of the model file
   /// How far a plant's value may be off its file (plant_sim::ParameterInfo::uncertainty_ratio);
@@ -23,8 +23,9 @@ struct Choice {
   [[nodiscard]] std::vector<std::size_t> tracked_indices() const;
 };
 
-/// `names` as in model files. Throws config::schema::Error: exit 78 for an unknown name.
+/// `lists` of names as in model files, by comma. Throws config::schema::Error (exit 78) that begins
+/// with `option` for an unknown name.
 [[nodiscard]] Choice choose(const plant_sim::ModelFile& model,
-                            const std::vector<std::string>& names);
+                            const std::vector<std::string>& lists, const std::string& option);
 
-}  // namespace workbench::isolate
+}  // namespace tracking

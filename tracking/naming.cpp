@@ -1,10 +1,10 @@
-#include "workbench/isolate/naming.h"
+#include "tracking/naming.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace workbench::isolate {
+namespace tracking {
 namespace {
 
 using Eigen::Index;
@@ -107,9 +107,9 @@ class Namer {
 
 }  // namespace
 
-double least_of(const matching::SearchParameter& parameter, const Thresholds& thresholds) {
-  return parameter.scale == matching::Scale::logarithmic ? std::log1p(thresholds.least_ratio)
-                                                         : kLeastOfTypical;
+double least_of(const SearchParameter& parameter, const Thresholds& thresholds) {
+  return parameter.scale == Scale::logarithmic ? std::log1p(thresholds.least_ratio)
+                                               : kLeastOfTypical;
 }
 
 std::vector<Named> name_changes(WindowFit& fit, const Choice& choice, const Cut& cut,
@@ -118,4 +118,4 @@ std::vector<Named> name_changes(WindowFit& fit, const Choice& choice, const Cut&
   return Namer(fit, choice, cut, found, healthy, sigma_m).run(thresholds);
 }
 
-}  // namespace workbench::isolate
+}  // namespace tracking

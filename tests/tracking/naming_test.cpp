@@ -3,11 +3,11 @@
 
 #include <algorithm>
 
-#include "tests/workbench/isolate/tracked.h"
+#include "tests/tracking/tracked.h"
 
 namespace {
 
-using namespace workbench_test;
+using namespace tracking_test;
 using truth::Plant;
 
 constexpr double kOnTimePressure_s = 1.2;

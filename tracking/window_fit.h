@@ -14,10 +14,10 @@
 #include <memory>
 #include <vector>
 
-#include "workbench/matching/measured.h"
-#include "workbench/matching/model_run.h"
+#include "tracking/measured.h"
+#include "tracking/model_run.h"
 
-namespace workbench::isolate {
+namespace tracking {
 
 inline constexpr double kLead_s = 0.75;
 
@@ -45,9 +45,8 @@ struct WindowEstimate {
 class WindowFit {
  public:
   /// `most` samples, lead-in and window together, is the longest that will come.
-  WindowFit(const plant_sim::ModelFile& model, std::vector<matching::SearchParameter> parameters,
-            double sample_time_s, std::size_t most,
-            double observer_per_s = matching::kObserver_per_s);
+  WindowFit(const plant_sim::ModelFile& model, std::vector<SearchParameter> parameters,
+            double sample_time_s, std::size_t most, double observer_per_s = kObserver_per_s);
   WindowFit(const WindowFit&) = delete;
   WindowFit& operator=(const WindowFit&) = delete;
 
@@ -58,16 +57,14 @@ class WindowFit {
                                    const Eigen::VectorXd& start, double sigma_m,
                                    const Eigen::VectorXd& prior_sd = {});
 
-  [[nodiscard]] const std::vector<matching::SearchParameter>& parameters() const {
-    return run_.searched();
-  }
+  [[nodiscard]] const std::vector<SearchParameter>& parameters() const { return run_.searched(); }
 
  private:
   void take(const Cut& cut);
 
   double observer_per_s_;
-  matching::Measured window_;
-  matching::ModelRun run_;
+  Measured window_;
+  ModelRun run_;
 };
 
-}  // namespace workbench::isolate
+}  // namespace tracking

@@ -1,15 +1,15 @@
-#include "workbench/isolate/tracker.h"
+#include "tracking/tracker.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include "config/schema/error.h"
-#include "workbench/diagnose/quantity.h"
-#include "workbench/isolate/words.h"
-#include "workbench/matching/least_floor.h"
+#include "tracking/least_floor.h"
+#include "tracking/quantity.h"
+#include "tracking/words.h"
 
-namespace workbench::isolate {
+namespace tracking {
 namespace {
 
 using Eigen::Index;
@@ -44,7 +44,7 @@ Tracker::Tracker(const plant_sim::ModelFile& model, const Choice& choice, const 
     : choice_(choice),
       settings_(settings),
       sample_time_s_(sample_time_s),
-      noise_floor_m_(std::max(noise_floor_m, matching::kLeastFloor_m)),
+      noise_floor_m_(std::max(noise_floor_m, kLeastFloor_m)),
       lead_(samples_in(kLead_s, sample_time_s)),
       window_(samples_in(settings.window_s, sample_time_s)),
       stride_(std::max<std::size_t>(1, samples_in(settings.stride_s, sample_time_s))),
@@ -99,7 +99,7 @@ Window Tracker::look(double t_s) {
   window.correlation = found.correlation;
   for (std::size_t i = 0; i < choice_.tracked; ++i) {
     const auto at = static_cast<Index>(i);
-    const matching::SearchParameter& p = choice_.parameters[i];
+    const SearchParameter& p = choice_.parameters[i];
     window.estimates.push_back(
         {found.x[at], p.value(found.x[at]), found.std_error[at] * p.slope(found.x[at])});
   }
@@ -171,10 +171,10 @@ Healthy learn(const std::vector<Window>& windows, const Choice& choice, double n
     throw config::schema::bad_data(where, why, "a healthy motion that tells the parameters");
   }
   Healthy healthy;
-  healthy.rms_m = std::max({median(rms_m), noise_floor_m, matching::kLeastFloor_m});
+  healthy.rms_m = std::max({median(rms_m), noise_floor_m, kLeastFloor_m});
   healthy.x = choice.file;
   for (std::size_t i = 0; i < x.size(); ++i) healthy.x[static_cast<Index>(i)] = median(x[i]);
   return healthy;
 }
 
-}  // namespace workbench::isolate
+}  // namespace tracking

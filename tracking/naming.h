@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-#include "workbench/isolate/choice.h"
-#include "workbench/isolate/window_fit.h"
+#include "tracking/choice.h"
+#include "tracking/window_fit.h"
 
-namespace workbench::isolate {
+namespace tracking {
 
 struct Thresholds {
   double least_ratio = 0.03;  ///< of the healthy value; linear parameters: see kLeastOfTypical
@@ -34,8 +34,7 @@ inline constexpr double kAsGood = 1.05;  ///< of the error's RMS
 inline constexpr double kMostUncertain_ratio = 0.1;
 
 /// Least change of a parameter, search units.
-[[nodiscard]] double least_of(const matching::SearchParameter& parameter,
-                              const Thresholds& thresholds);
+[[nodiscard]] double least_of(const SearchParameter& parameter, const Thresholds& thresholds);
 
 struct Rival {
   std::string name;
@@ -56,4 +55,4 @@ struct Named {
                                               const Eigen::VectorXd& healthy, double sigma_m,
                                               const Thresholds& thresholds);
 
-}  // namespace workbench::isolate
+}  // namespace tracking

@@ -3,15 +3,14 @@
 
 #include <string>
 
-#include "workbench/isolate/alarm_book.h"
-#include "workbench/isolate/choice.h"
-#include "workbench/isolate/window_fit.h"
+#include "tracking/alarm_book.h"
+#include "tracking/choice.h"
+#include "tracking/window_fit.h"
 
-namespace workbench::isolate {
+namespace tracking {
 
 /// "6.89 MPa +- 700 Pa" of a parameter at a search value.
-[[nodiscard]] std::string value_words(const matching::SearchParameter& parameter, double x,
-                                      double std_error);
+[[nodiscard]] std::string value_words(const SearchParameter& parameter, double x, double std_error);
 /// "supply pressure" of "supply_pressure_Pa".
 [[nodiscard]] std::string name_words(const std::string& name);
 
@@ -32,4 +31,4 @@ namespace workbench::isolate {
 /// What would tell the members of the group apart.
 [[nodiscard]] std::string advice_words(const Choice& choice, const Named& named);
 
-}  // namespace workbench::isolate
+}  // namespace tracking

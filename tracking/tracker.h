@@ -14,17 +14,17 @@
 #include <string>
 #include <vector>
 
-#include "workbench/isolate/alarm_book.h"
-#include "workbench/isolate/choice.h"
-#include "workbench/isolate/naming.h"
-#include "workbench/isolate/window_fit.h"
+#include "tracking/alarm_book.h"
+#include "tracking/choice.h"
+#include "tracking/naming.h"
+#include "tracking/window_fit.h"
 
-namespace workbench::isolate {
+namespace tracking {
 
 struct Settings {
   double window_s = 2.0;
   double stride_s = 0.5;
-  double observer_per_s = matching::kObserver_per_s;
+  double observer_per_s = kObserver_per_s;
   double most_ratio = 1.2;       ///< of the healthy error, beyond which a window is invalid
   double most_std_error = 0.05;  ///< search units: of the value, or of an effect's typical size
   Thresholds thresholds;
@@ -97,4 +97,4 @@ class Tracker {
 [[nodiscard]] Healthy learn(const std::vector<Window>& windows, const Choice& choice,
                             double noise_floor_m, const std::string& where);
 
-}  // namespace workbench::isolate
+}  // namespace tracking

@@ -1,4 +1,4 @@
-#include "workbench/diagnose/quantity.h"
+#include "tracking/quantity.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 
 #include "plant_sim/parameter.h"
 
-namespace workbench::diagnose {
+namespace tracking {
 namespace {
 
 struct Unit {
@@ -164,4 +164,4 @@ std::string typeset(std::string text) {
   return text;
 }
 
-}  // namespace workbench::diagnose
+}  // namespace tracking

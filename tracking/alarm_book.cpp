@@ -1,9 +1,9 @@
-#include "workbench/isolate/alarm_book.h"
+#include "tracking/alarm_book.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace workbench::isolate {
+namespace tracking {
 namespace {
 
 constexpr double kBack = 2.0;  ///< standard errors
@@ -68,4 +68,4 @@ void AlarmBook::update(double t_s, const std::vector<Named>& named, const std::v
   }
 }
 
-}  // namespace workbench::isolate
+}  // namespace tracking

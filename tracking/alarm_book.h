@@ -8,9 +8,9 @@
 #include <limits>
 #include <vector>
 
-#include "workbench/isolate/naming.h"
+#include "tracking/naming.h"
 
-namespace workbench::isolate {
+namespace tracking {
 
 struct Alarm {
   Named named;  ///< as known best: of the latest whole window that named it, else of its first part
@@ -52,4 +52,4 @@ class AlarmBook {
   std::vector<Alarm> alarms_;
 };
 
-}  // namespace workbench::isolate
+}  // namespace tracking

@@ -1,4 +1,4 @@
-#include "workbench/isolate/window_fit.h"
+#include "tracking/window_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include "estimator/nonlinear/covariance.h"
 #include "estimator/nonlinear/minimize.h"
 
-namespace workbench::isolate {
+namespace tracking {
 namespace {
 
 using Eigen::Index;
@@ -20,15 +20,15 @@ constexpr double kTolerance = 1e-5;
 /// Nearly Gauss and Newton's step: windows follow each other, the start is near.
 constexpr double kSlight = 1e-6;
 
-matching::Measured room_for(std::size_t most, double sample_time_s) {
-  matching::Measured window;
+Measured room_for(std::size_t most, double sample_time_s) {
+  Measured window;
   window.sample_time_s = sample_time_s;
   window.starts = {0};
   window.t_s.assign(most, 0.0);
   window.u_V.assign(most, 0.0);
   window.y_m.assign(most, 0.0);
   window.settled.assign(most, 1);
-  window.led.assign(most, matching::kNotLed);
+  window.led.assign(most, kNotLed);
   return window;
 }
 
@@ -55,9 +55,8 @@ MatrixXd correlation_of(const MatrixXd& covariance) {
 
 }  // namespace
 
-WindowFit::WindowFit(const plant_sim::ModelFile& model,
-                     std::vector<matching::SearchParameter> parameters, double sample_time_s,
-                     std::size_t most, double observer_per_s)
+WindowFit::WindowFit(const plant_sim::ModelFile& model, std::vector<SearchParameter> parameters,
+                     double sample_time_s, std::size_t most, double observer_per_s)
     : observer_per_s_(observer_per_s),
       window_(room_for(most, sample_time_s)),
       run_(model, window_, std::move(parameters), observer_per_s) {}
@@ -68,9 +67,9 @@ void WindowFit::take(const Cut& cut) {
   window_.u_V.assign(cut.u_V, cut.u_V + all);
   window_.y_m.assign(cut.y_m, cut.y_m + all);
   window_.settled.assign(all, 1);
-  window_.led.assign(all, matching::kNotLed);
+  window_.led.assign(all, kNotLed);
   std::fill_n(window_.settled.begin(), cut.lead, static_cast<char>(0));
-  std::fill_n(window_.led.begin(), cut.lead, static_cast<char>(matching::kLed));
+  std::fill_n(window_.led.begin(), cut.lead, static_cast<char>(kLed));
 }
 
 WindowEstimate WindowFit::fit(const Cut& cut, const std::vector<std::size_t>& free,
@@ -80,14 +79,14 @@ WindowEstimate WindowFit::fit(const Cut& cut, const std::vector<std::size_t>& fr
   const auto count = static_cast<Index>(free.size());
   estimator::nonlinear::Problem problem;
   problem.residuals = shape.size();
-  problem.lanes = matching::ModelRun::kLanes;
+  problem.lanes = ModelRun::kLanes;
   problem.sigma = sigma_m;
   problem.weights = VectorXd::Zero(shape.size());
   problem.weights.tail(static_cast<Index>(cut.samples)).setOnes();
   VectorXd x(count);
   for (Index i = 0; i < count; ++i) {
     const std::size_t at = free[static_cast<std::size_t>(i)];
-    const matching::SearchParameter& p = run_.searched()[at];
+    const SearchParameter& p = run_.searched()[at];
     estimator::nonlinear::Unknown unknown;
     unknown.lower = p.lower;
     unknown.upper = p.upper;
@@ -140,4 +139,4 @@ WindowEstimate WindowFit::fit(const Cut& cut, const std::vector<std::size_t>& fr
   return out;
 }
 
-}  // namespace workbench::isolate
+}  // namespace tracking

@@ -7,11 +7,11 @@
 
 #include "tests/truth/case.h"
 #include "tests/truth/rig.h"
-#include "workbench/isolate/tracker.h"
+#include "tracking/tracker.h"
 
-namespace workbench_test {
+namespace tracking_test {
 
-namespace iso = workbench::isolate;
+namespace iso = tracking;
 
 /// Encoder of 5 um and noise of 2 um.
 inline constexpr double kFloor_m = 2.47e-6;
@@ -54,7 +54,7 @@ inline Tracked tracked(const truth::Record& record, const std::vector<std::strin
                        const iso::Settings& settings = {}) {
   const plant_sim::ModelFile model = printed_model();
   Tracked out;
-  out.choice = iso::choose(model, names);
+  out.choice = iso::choose(model, names, "parameters");
   const auto run = [&](iso::Tracker& tracker, double until_s) {
     std::vector<iso::Window> windows;
     for (std::size_t k = 0; k < record.t_s.size() && record.t_s[k] < until_s; ++k) {
@@ -72,4 +72,4 @@ inline Tracked tracked(const truth::Record& record, const std::vector<std::strin
   return out;
 }
 
-}  // namespace workbench_test
+}  // namespace tracking_test

@@ -1,12 +1,13 @@
-#include "workbench/isolate/choice.h"
+#include "tracking/choice.h"
 
 #include <algorithm>
 #include <limits>
 #include <numeric>
 
-#include "workbench/fit/choice.h"
+#include "config/schema/error.h"
+#include "tracking/known_parameters.h"
 
-namespace workbench::isolate {
+namespace tracking {
 namespace {
 
 /// Logarithms: a parameter falls or rises to about a third or threefold.
@@ -35,7 +36,7 @@ bool has_sites(const plant_sim::ModelFile& model, const std::string& name) {
 
 std::vector<std::string> rivals(const plant_sim::ModelFile& model) {
   std::vector<std::string> names;
-  for (const auto& p : matching::plant_parameters(model)) names.push_back(p.name);
+  for (const auto& p : plant_parameters(model)) names.push_back(p.name);
   for (const char* effect : kEffects) {
     if (has_sites(model, effect)) names.emplace_back(effect);
   }
@@ -50,29 +51,46 @@ std::vector<std::size_t> Choice::tracked_indices() const {
   return indices;
 }
 
-Choice choose(const plant_sim::ModelFile& model, const std::vector<std::string>& names) {
-  fit::Wishes wishes;
-  wishes.free = names;
+Choice choose(const plant_sim::ModelFile& model, const std::vector<std::string>& lists,
+              const std::string& option) {
+  const std::vector<Known> known = known_parameters(model);
   Choice out;
-  out.tracked = fit::choose(model, wishes).searched.size();
-  for (const std::string& rival : rivals(model)) wishes.free.push_back(rival);
-  const fit::Choice chosen = fit::choose(model, wishes);
-  out.parameters = chosen.searched;
-  out.file = matching::start_of(model, out.parameters);
+  const auto add = [&](const std::string& name) {
+    bool found = false;
+    for (const Known& k : known) {
+      if (k.name != name && k.effect != name) continue;
+      found = true;
+      const auto same = [&](const auto& p) { return p.name == k.name; };
+      if (std::none_of(out.parameters.begin(), out.parameters.end(), same)) {
+        out.parameters.push_back(k.search);
+      }
+    }
+    if (found) return;
+    std::vector<std::string> all;
+    for (const Known& k : known) all.push_back(k.name);
+    refuse_name(option, name, all, names_worth_showing(model, known));
+  };
+  for (const std::string& name : split_names(lists)) add(name);
+  out.tracked = out.parameters.size();
+  if (out.tracked == 0) {
+    throw config::schema::bad_config(option, "names no parameter", "one or more, by comma");
+  }
+  for (const std::string& rival : rivals(model)) add(rival);
+  out.file = start_of(model, out.parameters);
   out.uncertainty = Eigen::VectorXd::Constant(out.file.size(), kNone);
-  const auto uncertain = matching::plant_parameters(model);
+  const auto uncertain = plant_parameters(model);
   for (std::size_t i = 0; i < out.parameters.size(); ++i) {
-    matching::SearchParameter& p = out.parameters[i];
+    SearchParameter& p = out.parameters[i];
     const auto same = std::find_if(uncertain.begin(), uncertain.end(),
                                    [&](const auto& other) { return other.name == p.name; });
     if (same != uncertain.end()) out.uncertainty[static_cast<Eigen::Index>(i)] = same->prior_sd;
     p.prior_mean = 0.0;
     p.prior_sd = kNone;
-    if (p.scale != matching::Scale::logarithmic) continue;
+    if (p.scale != Scale::logarithmic) continue;
     p.lower = -kWidest;
     p.upper = kWidest;
   }
   return out;
 }
 
-}  // namespace workbench::isolate
+}  // namespace tracking

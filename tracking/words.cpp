@@ -1,15 +1,13 @@
-#include "workbench/isolate/words.h"
+#include "tracking/words.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "workbench/diagnose/quantity.h"
+#include "tracking/quantity.h"
 
-namespace workbench::isolate {
+namespace tracking {
 namespace {
 
-using diagnose::length_words;
-using diagnose::number;
 using Eigen::Index;
 
 /// Cosine above which it is another parameter that hides one.
@@ -17,12 +15,10 @@ constexpr double kAlike = 0.98;
 
 std::string percent(double ratio) { return number("%.3g", 100.0 * ratio) + " %"; }
 
-bool is_logarithmic(const matching::SearchParameter& p) {
-  return p.scale == matching::Scale::logarithmic;
-}
+bool is_logarithmic(const SearchParameter& p) { return p.scale == Scale::logarithmic; }
 
 /// "12 %" of the value, or "0.3 times its typical size".
-std::string error_words(const matching::SearchParameter& p, double std_error) {
+std::string error_words(const SearchParameter& p, double std_error) {
   if (!std::isfinite(std_error)) return "not at all";
   return is_logarithmic(p) ? "to +- " + percent(std_error) + " only"
                            : "to +- " + number("%.2g", std_error) + " of its typical size only";
@@ -46,11 +42,11 @@ std::string name_words(const std::string& name) {
     std::replace(effect.begin(), effect.end(), '_', ' ');
     return effect;
   }
-  return diagnose::parameter_words(name);
+  return parameter_words(name);
 }
 
-std::string value_words(const matching::SearchParameter& p, double x, double std_error) {
-  return words(diagnose::quantity(p.name, p.value(x), std_error * p.slope(x)));
+std::string value_words(const SearchParameter& p, double x, double std_error) {
+  return words(quantity(p.name, p.value(x), std_error * p.slope(x)));
 }
 
 std::string still_words(double moved_m, double noise_floor_m, double window_s) {
@@ -71,7 +67,7 @@ std::string unseen_words(const Choice& choice, const WindowEstimate& found, doub
   }
   for (std::size_t i = 0; i < choice.tracked; ++i) {
     const auto at = static_cast<Index>(i);
-    const matching::SearchParameter& p = choice.parameters[i];
+    const SearchParameter& p = choice.parameters[i];
     const double error = found.std_error[at];
     if (error <= most_std_error) continue;
     const std::string known = name_words(p.name) + " is known " + error_words(p, error);
@@ -98,7 +94,7 @@ std::string part_words(const Choice& choice, const WindowEstimate& found, double
 }
 
 std::string change_words(const Choice& choice, const Named& named, const Eigen::VectorXd& healthy) {
-  const matching::SearchParameter& p = choice.parameters[named.parameter];
+  const SearchParameter& p = choice.parameters[named.parameter];
   const double before = p.value(healthy[static_cast<Index>(named.parameter)]);
   const double now = p.value(named.x);
   const std::string direction = now > before ? " high" : " low";
@@ -113,7 +109,7 @@ std::string group_words(const Choice& choice, const Named& named) {
   for (std::size_t i = 0; i < named.rivals.size(); ++i) {
     const Rival& rival = named.rivals[i];
     text += (i == 0 ? " " : " or ") + name_words(rival.name) + " " +
-            words(diagnose::quantity(rival.name, rival.value, NAN));
+            words(quantity(rival.name, rival.value, NAN));
   }
   return text + ": command and position cannot tell; " + advice_words(choice, named);
 }
@@ -132,4 +128,4 @@ std::string advice_words(const Choice& choice, const Named& named) {
   return "another motion may";
 }
 
-}  // namespace workbench::isolate
+}  // namespace tracking

@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "tests/workbench/isolate/tracked.h"
+#include "tests/tracking/tracked.h"
 
 namespace {
 
-using namespace workbench_test;
+using namespace tracking_test;
 using testing::HasSubstr;
 
 TEST(Window, FindsPressureWithinTwoPerMilleAndDampingWithinItsStandardErrors) {
@@ -69,7 +69,8 @@ TEST(Window, SaysWhatTheMotionDoesNotSeparate) {
   const truth::Record record = truth::simulate(stand(8.0));
   const plant_sim::ModelFile model = printed_model();
   // Both only appear as their product.
-  const iso::Choice choice = iso::choose(model, {"valve_gain_m_per_V", "discharge_coefficient"});
+  const iso::Choice choice =
+      iso::choose(model, {"valve_gain_m_per_V", "discharge_coefficient"}, "parameters");
   iso::Tracker tracker(model, choice, {}, truth::kSample_s, kFloor_m);
   iso::Window last;
   for (std::size_t k = 0; k < record.t_s.size(); ++k) {
@@ -83,7 +84,8 @@ TEST(Window, SaysWhatTheMotionDoesNotSeparate) {
 TEST(Window, NeverReachesAcrossAGap) {
   const truth::Record record = truth::simulate(stand(20.0));
   const plant_sim::ModelFile model = printed_model();
-  iso::Tracker tracker(model, iso::choose(model, usual()), {}, truth::kSample_s, kFloor_m);
+  iso::Tracker tracker(model, iso::choose(model, usual(), "parameters"), {}, truth::kSample_s,
+                       kFloor_m);
   for (std::size_t k = 0; k < record.t_s.size(); ++k) {
     const bool gap = k == 2001;  // behind 10 s the record goes on 0.7 s later
     if (k > 2001 && k < 2141) continue;

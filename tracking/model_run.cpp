@@ -1,11 +1,11 @@
-#include "workbench/matching/model_run.h"
+#include "tracking/model_run.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "config/schema/error.h"
 
-namespace workbench::matching {
+namespace tracking {
 
 double step_for(const plant_sim::ModelFile& model, double sample_time_s) {
   return sample_time_s / std::max(1.0, std::ceil(sample_time_s / model.step_s - 1e-6));
@@ -84,4 +84,4 @@ void ModelRun::residuals(const Eigen::MatrixXd& points, const Eigen::MatrixXd& a
   }
 }
 
-}  // namespace workbench::matching
+}  // namespace tracking

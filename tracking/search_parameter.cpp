@@ -1,10 +1,10 @@
-#include "workbench/matching/search_parameter.h"
+#include "tracking/search_parameter.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace workbench::matching {
+namespace tracking {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -118,4 +118,4 @@ Eigen::VectorXd start_of(const plant_sim::ModelFile& model,
   return x;
 }
 
-}  // namespace workbench::matching
+}  // namespace tracking
