@@ -11,6 +11,7 @@
 #include <memory>
 #include <sstream>
 #include <string>
+#include <thread>
 
 #include "hal/rig/server.h"
 #include "tests/daemon/program/bench_watch.h"
@@ -103,6 +104,14 @@ class Service {
   }
   [[nodiscard]] std::string journal() const {
     return machine_.run("journalctl -u spoolwatchd --no-pager | tail -40").text;
+  }
+  /// Waits, 20 s at most, until the journal holds these words.
+  [[nodiscard]] bool writes(const std::string& words) const {
+    for (int i = 0; i < 100; ++i) {
+      if (journal().find(words) != std::string::npos) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    }
+    return false;
   }
   /// The worst time that `--check` states, in s.
   [[nodiscard]] double stated_s(const std::string& failure) const {

@@ -163,6 +163,23 @@ TEST_F(Life, C_ArmedItRunsAndAnotherProcessHearsItsAlarms) {
   EXPECT_EQ(hal::rig::set_remotely(s().rig_.address(), "supply_pressure_Pa=x1"), "");
 }
 
+TEST_F(Life, C_ReloadedItRunsOnByTheNewRulesAndKeepsTheOldOnesWhenTheyAreBroken) {
+  run_anew();
+  const pid_t before = machine().daemon();
+  std::string text = s().configuration();
+  replace(text, "low = 0.00018", "low = 0.00017");
+  machine().write(kConfiguration, text);
+  EXPECT_EQ(machine().run("systemctl reload spoolwatchd").exit_code, 0);
+  EXPECT_TRUE(s().writes("new rules, configuration")) << s().journal();
+  EXPECT_THAT(s().journal(), HasSubstr("1 keys changed"));
+  s().configure("[controller.nonsense]\nx = 1\n");
+  EXPECT_EQ(machine().run("systemctl reload spoolwatchd").exit_code, 0);
+  EXPECT_TRUE(s().writes("the old configuration stays")) << s().journal();
+  EXPECT_THAT(machine().property("StatusText"), HasSubstr("the old configuration stays"));
+  EXPECT_EQ(machine().daemon(), before);
+  EXPECT_THAT(s().order("status").text, HasSubstr(": RUN"));
+}
+
 TEST_F(Life, D_StoppedTheWatchdogStartsItAgainDisarmed) {
   run_anew();
   const pid_t before = machine().daemon();
