@@ -129,7 +129,7 @@ void Pipeline::Impl::add(std::size_t number, const std::string& id, std::unique_
   for (Alarm& alarm : worker.source->own_alarms()) {
     alarm.source = id;
     alarm.quantity = id + "." + alarm.name;
-    alarm.named_at_run_time = true;
+    alarm.named_at_run_time = alarm.parameter.empty() && alarm.ambiguity_group.empty();
     worker.own_alarms.push_back(book.declare(alarm));
   }
   workers.push_back(std::move(worker));

@@ -66,7 +66,7 @@ class Source {
   /// Names of its values, the same for its whole life.
   [[nodiscard]] virtual std::vector<std::string> names() const = 0;
   /// Alarms that it sets itself, the same for its whole life: name, rules, guidance, limits. The
-  /// pipeline fills in source, quantity and that the fault is named at run time.
+  /// pipeline fills in source and quantity; one without a parameter is named at run time.
   [[nodiscard]] virtual std::vector<Alarm> own_alarms() const { return {}; }
 
   /// `periods` samples missing before the next one; true when a finding became due meanwhile.

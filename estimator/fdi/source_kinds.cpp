@@ -1,8 +1,25 @@
 // The table of the kinds of sources: a kind more is a line more.
-#include "estimator/fdi/source.h"
+#include <array>
+
+#include "estimator/fdi/classifier.h"
+#include "estimator/fdi/cusum.h"
+#include "estimator/fdi/distance.h"
+#include "estimator/fdi/glr.h"
+#include "estimator/fdi/trend.h"
 
 namespace estimator::fdi {
+namespace {
 
-std::span<const SourceKind> source_kinds() noexcept { return {}; }
+constexpr std::array kSourceKinds{
+    source_kind<CusumConfig>("cusum", "tests for a change of mean of known size"),
+    source_kind<GlrConfig>("glr", "tests for a change of mean of any size"),
+    source_kind<DistanceConfig>("distance", "distances from a trained healthy region"),
+    source_kind<ClassifierConfig>("classifier", "trained faults told apart"),
+    source_kind<TrendConfig>("trend", "slow drifts, with the time to a limit"),
+};
+
+}  // namespace
+
+std::span<const SourceKind> source_kinds() noexcept { return kSourceKinds; }
 
 }  // namespace estimator::fdi

@@ -1,0 +1,88 @@
+#include "estimator/fdi/block_source.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace estimator::fdi {
+
+BlockSource::BlockSource(const std::vector<std::string>& quantities, double block_s,
+                         const Setting& setting, const std::string& where)
+    : sums_(quantities.size()), means_(quantities.size()) {
+  for (const std::string& quantity : quantities) {
+    inputs_.push_back(setting.inputs.find(quantity, where));
+  }
+  if (block_s > 0.0) {
+    length_ = std::max<std::int64_t>(1, std::llround(block_s / setting.sample_time_s));
+    interval_s_ = static_cast<double>(length_) * setting.sample_time_s;
+  } else {
+    interval_s_ = inputs_.front().interval_s();
+  }
+}
+
+bool BlockSource::lose(std::int64_t periods) noexcept {
+  samples_ += periods;
+  if (length_ == 0 || samples_ < length_) return false;
+  samples_ %= length_;
+  std::fill(sums_.begin(), sums_.end(), Sum{});
+  return false;
+}
+
+bool BlockSource::push(const Sample& /*sample*/, double /*y_m*/) noexcept {
+  ++samples_;
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    if (!inputs_[i].fresh()) continue;
+    ++sums_[i].fresh;
+    if (!inputs_[i].usable()) continue;
+    ++sums_[i].usable;
+    sums_[i].sum += inputs_[i].value();
+  }
+  if (length_ == 0 ? sums_.front().fresh == 0 : samples_ < length_) return false;
+  samples_ = 0;
+  return close();
+}
+
+bool BlockSource::close() noexcept {
+  valid_ = true;
+  unusable_ = nullptr;
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    const bool enough = sums_[i].usable > 0 && 2 * sums_[i].usable >= sums_[i].fresh;
+    if (!enough && unusable_ == nullptr) unusable_ = &inputs_[i];
+    means_[i] = sums_[i].sum / static_cast<double>(sums_[i].usable);
+    sums_[i] = Sum{};
+  }
+  valid_ = unusable_ == nullptr;
+  warming_up_ = warming_up_ && !valid_;
+  if (valid_) take(means_);
+  return true;
+}
+
+Finding BlockSource::find(std::span<NamedValue> values) noexcept {
+  show(values);
+  Finding found;
+  found.valid = valid_;
+  // Warming up is told as long as an input does so; one that never becomes usable is INVALID.
+  found.warming_up = warming_up_ && unusable_ != nullptr && unusable_->warming_up();
+  found.reason = valid_ ? "" : unusable_ != nullptr ? unusable_->why() : "no block yet";
+  return found;
+}
+
+void BlockSource::reset() {
+  std::fill(sums_.begin(), sums_.end(), Sum{});
+  samples_ = 0;
+  valid_ = false;
+  warming_up_ = true;
+  unusable_ = nullptr;
+  forget();
+}
+
+void BlockSource::carry(Carrier& carrier) {
+  carrier.fixed(sums_);
+  carrier.fixed(means_);
+  carrier.value(samples_);
+  carrier.value(valid_);
+  carrier.value(warming_up_);
+  // Which input was unusable is told with the block, not later.
+  carry_memory(carrier);
+}
+
+}  // namespace estimator::fdi

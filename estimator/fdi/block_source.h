@@ -1,0 +1,57 @@
+// A source that works on block means of other values: estimates of overlapping windows are strongly
+// correlated, means over blocks as long as the window hardly are.
+//
+// A block is block_s of samples (0: every new value of the first input is one). Its mean of each
+// input is over the new, usable values in it; it counts when at least half of the new values were
+// usable. A block that a gap cuts is dropped. Blocks without means leave the test as it is.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "estimator/fdi/source.h"
+
+namespace estimator::fdi {
+
+class BlockSource : public Source {
+ public:
+  /// `where`: "[[cusum]] id", for messages.
+  BlockSource(const std::vector<std::string>& quantities, double block_s, const Setting& setting,
+              const std::string& where);
+
+  bool lose(std::int64_t periods) noexcept final;
+  bool push(const Sample& sample, double y_m) noexcept final;
+  Finding find(std::span<NamedValue> values) noexcept final;
+  void reset() final;
+  void carry(Carrier& carrier) final;
+  [[nodiscard]] double interval_s() const noexcept final { return interval_s_; }
+
+ protected:
+  /// A block's means, in the order of the quantities.
+  virtual void take(std::span<const double> means) noexcept = 0;
+  virtual void show(std::span<NamedValue> values) const noexcept = 0;
+  virtual void forget() noexcept = 0;
+  virtual void carry_memory(Carrier& carrier) = 0;
+  /// Nothing is known before the first block.
+  [[nodiscard]] bool valid() const noexcept { return valid_; }
+
+ private:
+  struct Sum {
+    double sum = 0.0;
+    std::int64_t usable = 0;
+    std::int64_t fresh = 0;
+  };
+  [[nodiscard]] bool close() noexcept;
+
+  std::vector<Input> inputs_;
+  std::vector<Sum> sums_;
+  std::vector<double> means_;
+  std::int64_t length_ = 0;  ///< samples; 0: every new value
+  std::int64_t samples_ = 0;
+  double interval_s_;
+  bool valid_ = false;
+  bool warming_up_ = true;
+  const Input* unusable_ = nullptr;  ///< of the last block
+};
+
+}  // namespace estimator::fdi

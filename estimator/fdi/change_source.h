@@ -1,0 +1,72 @@
+// What tests for a change of mean have in common: [[cusum]] and [[glr]] on one value of another
+// source, or of the sample, standardised by what it is when all is well,
+//
+//   z = (block mean - mean) / std_dev,     std_dev of block means over long runs
+//
+// with a threshold from a stated mean time between false alarms (average_run_length.h). The mean
+// itself is only known to std_dev / sqrt(blocks): the threshold is set as if it were wrong by 1.645
+// times that (95 %, one side).
+#pragma once
+
+#include "estimator/fdi/block_source.h"
+#include "estimator/fdi/trained.h"
+
+namespace estimator::fdi {
+
+struct ChangeConfig : TrainedConfig {
+  std::string quantity;
+  double false_alarm_time_s = 86400.0;
+  double mean = std::numeric_limits<double>::quiet_NaN();
+  double std_dev = std::numeric_limits<double>::quiet_NaN();
+  double mean_error = 0.0;  ///< standard error of `mean`, in its unit
+  std::string parameter;
+  bool falls_with_parameter = false;
+  std::vector<std::string> ambiguity_group;
+  AlarmNaming naming;
+
+  [[nodiscard]] std::vector<std::string> quantities() const override { return {quantity}; }
+  void adopt(const TrainedSource& trained) override;
+
+ protected:
+  void visit_change(config::schema::Visitor& v);
+};
+
+/// Values: statistic (1 at the threshold), shift (of the mean, in the quantity's unit, since the
+/// change that the test sees), since_s (how long ago that was).
+class ChangeSource : public BlockSource {
+ public:
+  /// Throws schema::Error (exit 78) when it is not trained.
+  ChangeSource(const ChangeConfig& config, const Setting& setting);
+
+  [[nodiscard]] std::vector<std::string> names() const final {
+    return {"statistic", "shift", "since_s"};
+  }
+  [[nodiscard]] std::vector<Alarm> own_alarms() const final;
+  [[nodiscard]] AlarmState own_alarm(std::size_t number) const noexcept final;
+
+ protected:
+  /// What the newest standardised block makes of the test.
+  struct Verdict {
+    double statistic = 0.0;  ///< 1 at the threshold
+    double shift = 0.0;      ///< mean of z since the change, std_dev
+    double blocks = 0.0;     ///< since the change
+  };
+  [[nodiscard]] virtual Verdict test(double z) noexcept = 0;
+  /// Blocks between false alarms that the configuration asks for.
+  [[nodiscard]] double run_length() const noexcept;
+  /// 95 % of what the mean may be wrong by, std_dev.
+  [[nodiscard]] double mean_error() const noexcept;
+
+  void take(std::span<const double> means) noexcept final;
+  void show(std::span<NamedValue> values) const noexcept final;
+  void forget_verdict() noexcept { verdict_ = {}, out_ = false; }
+  void carry_verdict(Carrier& carrier);
+
+ private:
+  std::shared_ptr<const ChangeConfig> config_;
+  Verdict verdict_;
+  bool out_ = false;
+  mutable char reason_[160] = "";
+};
+
+}  // namespace estimator::fdi

@@ -1,0 +1,213 @@
+#include "estimator/fdi/classifier.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "config/schema/error.h"
+#include "estimator/fdi/block_source.h"
+#include "estimator/fdi/region.h"
+
+namespace estimator::fdi {
+namespace {
+
+using config::schema::bad_config;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kLikely = 0.05;  ///< a class of this probability belongs to the ambiguity group
+constexpr std::size_t kMostClasses = 64;
+constexpr int kNone = -1;
+
+std::vector<Region> regions_of(const ClassifierConfig& config) {
+  const std::size_t size = config.features.size();
+  std::vector<double> pooled(size * size, 0.0);
+  double weights = 0.0;
+  for (const TrainedClass& each : config.classes) {
+    const auto weight = static_cast<double>(each.blocks - 1);
+    weights += weight;
+    for (std::size_t i = 0; i < pooled.size(); ++i) pooled[i] += weight * each.covariance[i];
+  }
+  std::vector<Region> regions;
+  for (const TrainedClass& each : config.classes) {
+    std::vector<double> covariance = each.covariance;
+    for (std::size_t i = 0; i < covariance.size(); ++i) {
+      covariance[i] += config.pooling * (pooled[i] / weights - covariance[i]);
+    }
+    regions.emplace_back(each.mean, covariance, static_cast<double>(each.blocks),
+                         config.where() + ": class " + each.name);
+  }
+  return regions;
+}
+
+class Classifier final : public BlockSource {
+ public:
+  Classifier(const ClassifierConfig& config, const Setting& setting)
+      : BlockSource(config.features, config.block_s, setting, config.where()),
+        config_(config),
+        regions_(regions_of(config)) {
+    for (const Region& region : regions_) limits_.push_back(region.limit(config.rejection));
+    for (std::size_t i = 0; i < config.classes.size(); ++i) {
+      if (config.classes[i].name == Trained::kHealthy) healthy_ = static_cast<int>(i);
+    }
+    answer_.found = healthy_;
+  }
+  [[nodiscard]] std::vector<std::string> names() const override {
+    return {"class", "probability", "distance2"};
+  }
+  [[nodiscard]] std::vector<Alarm> own_alarms() const override {
+    return {config_.naming.alarm("fault")};
+  }
+  [[nodiscard]] AlarmState own_alarm(std::size_t /*number*/) const noexcept override;
+
+ private:
+  struct Answer {
+    int found = kNone;  ///< class
+    int nearest = 0;    ///< by distance
+    double probability = 0.0;
+    double distance2 = 0.0;  ///< of the nearest
+  };
+  void take(std::span<const double> means) noexcept override;
+  void show(std::span<NamedValue> values) const noexcept override {
+    values[0].value = valid() ? answer_.found : kNan;
+    values[1].value = valid() && answer_.found != kNone ? answer_.probability : kNan;
+    values[2].value = valid() ? answer_.distance2 : kNan;
+  }
+  void forget() noexcept override {
+    answer_ = {};
+    answer_.found = healthy_;
+    in_a_row_ = 0;
+    out_ = false;
+  }
+  void carry_memory(Carrier& carrier) override {
+    carrier.value(answer_);
+    carrier.value(probabilities_);
+    carrier.value(in_a_row_);
+    carrier.value(out_);
+    const int classes = static_cast<int>(regions_.size());
+    if (answer_.found >= classes || answer_.nearest >= classes || answer_.found < kNone ||
+        answer_.nearest < 0) {
+      answer_ = {};
+      carrier.fail();
+    }
+  }
+
+  ClassifierConfig config_;
+  std::vector<Region> regions_;
+  std::vector<double> limits_;
+  int healthy_ = 0;
+  Answer answer_;
+  std::array<double, kMostClasses> probabilities_{};
+  std::int64_t in_a_row_ = 0;  ///< blocks of one answer; negative counts towards healthy
+  bool out_ = false;
+  mutable FaultName fault_;
+  mutable std::array<std::string_view, kMostClasses> group_;
+  mutable char reason_[200] = "";
+};
+
+void Classifier::take(std::span<const double> means) noexcept {
+  Answer now;
+  now.distance2 = std::numeric_limits<double>::infinity();
+  double greatest = -std::numeric_limits<double>::infinity();
+  bool any = false;
+  for (std::size_t i = 0; i < regions_.size(); ++i) {
+    const double distance2 = regions_[i].distance2(means);
+    any = any || distance2 <= limits_[i];
+    if (distance2 < now.distance2) {
+      now.distance2 = distance2;
+      now.nearest = static_cast<int>(i);
+    }
+    probabilities_[i] = regions_[i].log_density();
+    if (probabilities_[i] <= greatest) continue;
+    greatest = probabilities_[i];
+    now.found = static_cast<int>(i);
+  }
+  double sum = 0.0;
+  for (std::size_t i = 0; i < regions_.size(); ++i) {
+    probabilities_[i] = std::exp(probabilities_[i] - greatest);
+    sum += probabilities_[i];
+  }
+  for (std::size_t i = 0; i < regions_.size(); ++i) probabilities_[i] /= sum;
+  if (!any) now.found = kNone;
+  now.probability = now.found == kNone ? 0.0 : probabilities_[static_cast<std::size_t>(now.found)];
+  in_a_row_ = now.found == answer_.found ? in_a_row_ + 1 : 1;
+  answer_ = now;
+  if (in_a_row_ >= config_.confirm) out_ = now.found != healthy_;
+}
+
+AlarmState Classifier::own_alarm(std::size_t /*number*/) const noexcept {
+  AlarmState state;
+  state.value = answer_.distance2;
+  if (!out_) {
+    state.reason = "as when all was well";
+    return state;
+  }
+  state.severity = config_.naming.level();
+  fault_ = {};
+  if (answer_.found == kNone) {
+    std::snprintf(reason_, sizeof reason_,
+                  "none of these: nearest is %s, %.3g away, %.3g is its edge",
+                  config_.classes[static_cast<std::size_t>(answer_.nearest)].name.c_str(),
+                  std::sqrt(answer_.distance2),
+                  std::sqrt(limits_[static_cast<std::size_t>(answer_.nearest)]));
+  } else {
+    const TrainedClass& found = config_.classes[static_cast<std::size_t>(answer_.found)];
+    std::size_t likely = 0;
+    for (std::size_t i = 0; i < regions_.size(); ++i) {
+      const std::string_view name = config_.classes[i].name;
+      if (probabilities_[i] < kLikely) continue;
+      if (std::find(group_.begin(), group_.begin() + likely, name) == group_.begin() + likely) {
+        group_[likely++] = name;
+      }
+    }
+    state.direction = static_cast<std::int8_t>(likely > 1 ? 0 : found.direction);
+    fault_.confidence = answer_.probability;
+    if (likely > 1) {
+      fault_.group = std::span<const std::string_view>(group_.data(), likely);
+    } else {
+      fault_.parameter = found.name;
+    }
+    std::snprintf(reason_, sizeof reason_, "looks like %s%s, probability %.3f", found.name.c_str(),
+                  found.direction > 0   ? " risen"
+                  : found.direction < 0 ? " fallen"
+                                        : "",
+                  answer_.probability);
+  }
+  state.fault = &fault_;
+  state.reason = reason_;
+  return state;
+}
+
+}  // namespace
+
+void ClassifierConfig::visit(config::schema::Visitor& v) {
+  visit_trained(v);
+  v.texts({"features", "the values taken together", true}, features);
+  v.number({"rejection", "share of a class's own blocks that is none of these"}, rejection,
+           {1e-12, 0.5});
+  v.number({"pooling", "of the covariances; 0: each its own, 1: one for all"}, pooling, {0.0, 1.0});
+  v.integer({"confirm", "blocks in a row that an alarm needs"}, confirm, {1, 1000});
+  naming.visit(v);
+  config::schema::visit_list(v, {"class", "trained classes"}, classes);
+}
+
+std::unique_ptr<Source> ClassifierConfig::make(const Setting& setting) const {
+  if (features.empty()) throw bad_config(where() + ": features", "is empty");
+  if (classes.size() < 2 || classes.size() > kMostClasses) {
+    throw bad_config(where(), "is not trained on healthy records and on those of a fault",
+                     "file, from spoolwatch train with --class");
+  }
+  bool healthy = false;
+  for (const TrainedClass& each : classes) {
+    healthy = healthy || each.name == Trained::kHealthy;
+    if (each.mean.size() == features.size() &&
+        each.covariance.size() == features.size() * features.size()) {
+      continue;
+    }
+    throw bad_config(where() + ": class " + each.name, "has not a number for each feature");
+  }
+  if (!healthy) throw bad_config(where(), "has no class healthy");
+  return std::make_unique<Classifier>(*this, setting);
+}
+
+}  // namespace estimator::fdi

@@ -1,0 +1,65 @@
+#include "estimator/fdi/cusum.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimator/fdi/average_run_length.h"
+
+namespace estimator::fdi {
+namespace {
+
+constexpr double kCap = 1.25;  // of the threshold
+
+class Cusum final : public ChangeSource {
+ public:
+  Cusum(const CusumConfig& config, const Setting& setting)
+      : ChangeSource(config, setting),
+        k_(0.5 * config.shift_sigma),
+        h_(cusum_threshold(k_, run_length(), mean_error())) {}
+
+ private:
+  struct Side {
+    double sum = 0.0;    ///< S
+    double total = 0.0;  ///< of z since S was zero
+    double blocks = 0.0;
+    void add(double z, double k, double cap) noexcept {
+      sum = std::min(sum + z - k, cap);
+      total += z;
+      blocks += 1.0;
+      if (sum <= 0.0) *this = {};
+    }
+  };
+  Verdict test(double z) noexcept override {
+    up_.add(z, k_, kCap * h_);
+    down_.add(-z, k_, kCap * h_);
+    const bool is_up = up_.sum >= down_.sum;
+    const Side& side = is_up ? up_ : down_;
+    const double mean = side.blocks > 0.0 ? side.total / side.blocks : 0.0;
+    return {side.sum / h_, is_up ? mean : -mean, side.blocks};
+  }
+  void forget() noexcept override {
+    up_ = down_ = {};
+    forget_verdict();
+  }
+  void carry_memory(Carrier& carrier) override {
+    carrier.value(up_);
+    carrier.value(down_);
+    carry_verdict(carrier);
+  }
+
+  double k_, h_;
+  Side up_, down_;
+};
+
+}  // namespace
+
+void CusumConfig::visit(config::schema::Visitor& v) {
+  visit_change(v);
+  v.number({"shift_sigma", "the shift looked for, in std_dev"}, shift_sigma, {0.01, 20.0});
+}
+
+std::unique_ptr<Source> CusumConfig::make(const Setting& setting) const {
+  return std::make_unique<Cusum>(*this, setting);
+}
+
+}  // namespace estimator::fdi

@@ -1,0 +1,136 @@
+#include "estimator/fdi/trained.h"
+
+#include <cmath>
+
+#include "config/schema/document.h"
+#include "config/schema/error.h"
+#include "estimator/fdi/pipeline.h"
+
+namespace estimator::fdi {
+namespace {
+
+using config::schema::bad_config;
+using config::schema::Visitor;
+
+/// Two sample times are the same within clock accuracy.
+constexpr double kSameSampleTime = 1e-3;
+
+}  // namespace
+
+void TrainedClass::visit(Visitor& v) {
+  v.text({"name", "healthy, or what has changed", true}, name);
+  v.integer({"direction", "in which it has"}, direction, {-1, 1});
+  v.integer({"blocks", "how many it was learned from", true}, blocks, {2, 1'000'000'000});
+  v.numbers({"mean", "of block means", true}, mean);
+  v.numbers({"covariance", "of block means, row by row", true}, covariance);
+  v.numbers({"long_run", "standard deviations with their autocorrelation in them", true}, long_run);
+}
+
+void TrainedSource::visit(Visitor& v) {
+  v.text({"id", "the source that it is for", true}, id);
+  v.texts({"quantities", "what it was trained on"}, quantities);
+  v.texts({"settings", "of the source of each"}, settings);
+  v.number({"block_s", "length of the blocks", true}, block_s, {0.0, 1e6});
+  config::schema::visit_list(v, {"class", "kinds of records"}, classes);
+}
+
+const TrainedClass* TrainedSource::healthy() const noexcept {
+  for (const TrainedClass& each : classes) {
+    if (each.name == Trained::kHealthy) return &each;
+  }
+  return nullptr;
+}
+
+void Trained::visit(Visitor& v) {
+  v.integer({"trained_version", "layout of this file", true}, version, {kVersion, kVersion});
+  v.text({"rig_id", "of the rig", true}, rig_id);
+  v.number({"sample_time_s", "of the records", true}, sample_time_s, {1e-6, 1e3});
+  v.texts({"records", "that it was learned from"}, records);
+  config::schema::visit_list(v, {"trained", "for each source"}, sources);
+}
+
+void TrainedConfig::visit_trained(Visitor& v) {
+  v.text({"id", "names its values: ID.name", true}, id);
+  v.number({"block_s", "values are averaged over so long; 0: each by itself"}, block_s, {0.0, 1e6});
+  v.text({"file", "of spoolwatch train, relative to this file's folder"}, file);
+}
+
+void TrainedConfig::load(const Loading& loading) {
+  if (file.empty()) return;
+  const std::string name = (loading.folder / file).string();
+  Trained trained;
+  config::schema::Document::load(name).read([&](Visitor& v) { trained.visit(v); });
+  if (!loading.rig_id.empty() && loading.rig_id != trained.rig_id) {
+    throw bad_config(
+        name + ": rig_id",
+        "was trained on rig '" + trained.rig_id + "', this is '" + loading.rig_id + "'",
+        "a file trained on this rig");
+  }
+  if (std::abs(trained.sample_time_s - loading.sample_time_s) >
+      kSameSampleTime * loading.sample_time_s) {
+    throw bad_config(name + ": sample_time_s",
+                     "was trained at " + std::to_string(trained.sample_time_s) +
+                         " s, the samples come every " + std::to_string(loading.sample_time_s) +
+                         " s",
+                     "a file trained at the same sample time");
+  }
+  for (const TrainedSource& source : trained.sources) {
+    if (source.id != id) continue;
+    const std::string place = name + ": [[trained]] " + id;
+    if (source.quantities != quantities() || source.block_s != block_s) {
+      throw bad_config(place, "was trained on other quantities or blocks than " + where() + " has",
+                       "train again");
+    }
+    const std::vector<std::string> settings = settings_of(quantities(), loading.pipeline, where());
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+      if (i < source.settings.size() && source.settings[i] == settings[i]) continue;
+      throw bad_config(place,
+                       source.quantities[i] + " was trained with other settings: " +
+                           (i < source.settings.size() ? source.settings[i] : "none"),
+                       settings[i]);
+    }
+    const std::size_t size = quantities().size();
+    for (const TrainedClass& each : source.classes) {
+      if (each.mean.size() == size && each.long_run.size() == size &&
+          each.covariance.size() == size * size) {
+        continue;
+      }
+      throw bad_config(place, "class " + each.name + " has not a number for each quantity");
+    }
+    if (source.healthy() == nullptr) throw bad_config(place, "has no class healthy");
+    adopt(source);
+    file.clear();
+    return;
+  }
+  throw bad_config(name, "knows nothing of " + where(), "train again");
+}
+
+std::vector<std::string> settings_of(const std::vector<std::string>& quantities,
+                                     const PipelineConfig& pipeline, const std::string& where) {
+  std::vector<std::string> settings;
+  for (const std::string& quantity : quantities) {
+    const std::string_view source = split_quantity(quantity).source;
+    if (dynamic_cast<const TrainedConfig*>(pipeline.find_source(source)) != nullptr) {
+      throw bad_config(where, "cannot be trained on " + quantity + ", which is trained itself",
+                       "values of estimators and of the sample");
+    }
+    settings.push_back(pipeline.fingerprint(source));
+  }
+  return settings;
+}
+
+void AlarmNaming::visit(Visitor& v) {
+  v.choice({"severity", "of its alarm"}, severity, {"minor", "major"});
+  v.text({"guidance", "what to look at"}, guidance);
+  rules.visit(v);
+}
+
+Alarm AlarmNaming::alarm(std::string name) const {
+  Alarm alarm;
+  alarm.name = std::move(name);
+  alarm.guidance = guidance;
+  alarm.rules = rules;
+  return alarm;
+}
+
+}  // namespace estimator::fdi
