@@ -33,6 +33,7 @@ constexpr workbench::Command kCommands[] = {
     {"listen", "print alarms and estimates as they arrive", workbench::add_listen},
     {"record", "a record from the running daemon", workbench::add_record},
     {"estimate", "fit an ARX structure to a record", workbench::add_estimate},
+    {"select", "every model structure on a record, and which to take", workbench::add_select},
     {"compare", "where a model fails against a record", workbench::add_compare},
     {"fit", "a model's parameters estimated from records", workbench::add_fit},
     {"diagnose", "which physical effect a model misses", workbench::add_diagnose},

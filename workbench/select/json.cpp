@@ -1,0 +1,102 @@
+// The comparison as JSON; SI units, a missing number is null.
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "workbench/select/outcome.h"
+
+namespace workbench::select {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json number(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
+}
+
+ordered_json numbers(const std::vector<double>& values) {
+  ordered_json out = ordered_json::array();
+  for (const double value : values) out.push_back(number(value));
+  return out;
+}
+
+ordered_json bias_of(const structures::BiasTest& test) {
+  return {{"verdict", text(test.verdict)},
+          {"p", number(test.p)},
+          {"statistic", number(test.statistic)},
+          {"dof", test.dof},
+          {"instruments", text(test.instruments)},
+          {"instrument_count", test.instrument_count},
+          {"strength_F", number(test.strength_F)},
+          {"least_squares", numbers(test.least_squares)},
+          {"least_squares_std_error", numbers(test.least_squares_error)},
+          {"instrumental", numbers(test.instrumental)},
+          {"instrumental_std_error", numbers(test.instrumental_error)}};
+}
+
+ordered_json json_of(const Judged& one) {
+  ordered_json out{{"structure", one.candidate.name},
+                   {"family", one.candidate.family()},
+                   {"valid", one.fitted.valid},
+                   {"why", one.fitted.why},
+                   {"represents", one.represents},
+                   {"parameters", one.fitted.parameters},
+                   {"names", one.fitted.names},
+                   {"value", numbers(one.fitted.value)},
+                   {"std_error", numbers(one.fitted.std_error)},
+                   {"one_step_rms_m", number(one.one_step_rms_m)},
+                   {"free_run_rms_m", number(one.free_run_rms_m)},
+                   {"free_run_whole_rms_m", number(one.free_run_whole_rms_m)},
+                   {"cost_m2", number(one.cost_m2)},
+                   {"period_costs_m2", numbers(one.period_costs_m2)},
+                   {"fit_percent", number(one.fit_percent)},
+                   {"aicc", number(one.aicc)},
+                   {"bic", number(one.bic)},
+                   {"whiteness_p", number(one.whiteness_p)},
+                   {"condition", number(one.fitted.condition)},
+                   {"spread", number(one.spread)},
+                   {"period_mean", numbers(one.period_mean)},
+                   {"period_variance", numbers(one.period_variance)},
+                   {"periods", one.periods},
+                   {"on_line",
+                    {{"sound", one.on_line.sound},
+                     {"method", one.on_line.method},
+                     {"why", one.on_line.why},
+                     {"free_run_rms_m", number(one.on_line.free_run_rms_m)}}},
+                   {"bias", one.has_bias_test ? bias_of(one.bias) : ordered_json(nullptr)},
+                   {"fit_s", number(one.fit_s)}};
+  return out;
+}
+
+ordered_json name_of(const Outcome& o, int index) {
+  return index < 0 ? ordered_json(nullptr)
+                   : ordered_json(o.judged[static_cast<std::size_t>(index)].candidate.name);
+}
+
+}  // namespace
+
+std::string to_json(const Outcome& o) {
+  ordered_json out{{"record", o.name},
+                   {"sample_time_s", o.sample_time_s},
+                   {"samples", o.samples},
+                   {"gaps", o.gaps},
+                   {"delay", o.delay},
+                   {"constant", o.request.constant},
+                   {"period_s", o.period_s},
+                   {"fitted_from_s", o.from_s},
+                   {"fitted_to_s", o.fitted_to_s},
+                   {"scored_to_s", o.scored_to_s},
+                   {"scored_periods", o.held_out_periods},
+                   {"noise_floor_m", number(o.noise_floor_m)},
+                   {"recommended", name_of(o, o.recommended)},
+                   {"most_accurate", name_of(o, o.most_accurate)},
+                   {"reason", o.reason},
+                   {"bias", o.bias_words},
+                   {"structures", ordered_json::array()},
+                   {"notes", o.notes},
+                   {"interrupted", o.interrupted},
+                   {"runtime_s", number(o.runtime_s)}};
+  for (const Judged& one : o.judged) out["structures"].push_back(json_of(one));
+  return out.dump(2) + "\n";
+}
+
+}  // namespace workbench::select

@@ -1,0 +1,129 @@
+// Which structure to take, and why: the source's three criteria in its order. A structure must
+// represent the record (its free run errs less than the rod moves); the best held-out E counts,
+// but one a little above it (25 %: 12 % in RMS) is as good; among those a sound recursive form is
+// preferred for watching on line, then the least spread of coefficients between periods.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "workbench/select/outcome.h"
+#include "workbench/select/words.h"
+
+namespace workbench::select {
+namespace {
+
+constexpr double kAsGood = 1.25;     // of E
+constexpr double kSameSpread = 1.1;  // then fewer coefficients decide
+
+double cost_of(const Judged& judged) {
+  if (!judged.fitted.valid) return std::numeric_limits<double>::infinity();
+  return std::isfinite(judged.cost_m2) ? judged.cost_m2 : std::numeric_limits<double>::max();
+}
+
+double spread_of(const Judged& judged) {
+  return std::isfinite(judged.spread) ? judged.spread : std::numeric_limits<double>::max();
+}
+
+/// The steadier; of two alike the smaller.
+bool preferred(const Judged& a, const Judged& b) {
+  const double least = std::min(spread_of(a), spread_of(b));
+  if (spread_of(a) <= kSameSpread * least && spread_of(b) <= kSameSpread * least) {
+    return a.fitted.parameters < b.fitted.parameters;
+  }
+  return spread_of(a) < spread_of(b);
+}
+
+int choose(const Outcome& outcome, bool on_line) {
+  int best = -1;
+  const double limit = kAsGood * cost_of(outcome.judged.front());
+  for (std::size_t i = 0; i < outcome.judged.size(); ++i) {
+    const Judged& one = outcome.judged[i];
+    if (!one.represents || !(cost_of(one) <= limit)) continue;
+    if (on_line && !one.on_line.sound) continue;
+    if (best < 0 || preferred(one, outcome.judged[static_cast<std::size_t>(best)])) {
+      best = static_cast<int>(i);
+    }
+  }
+  return best;
+}
+
+std::string against_best(const Judged& chosen, const Judged& best) {
+  if (chosen.candidate.name == best.candidate.name) return "its free run errs least";
+  const double more = 100.0 * (chosen.free_run_rms_m / best.free_run_rms_m - 1.0);
+  return "its free run errs " + number_words(more, 2) + " % more than the best, " +
+         best.candidate.name;
+}
+
+std::string why(const Outcome& outcome, bool on_line) {
+  const Judged& chosen = outcome.judged[static_cast<std::size_t>(outcome.recommended)];
+  const Judged& best = outcome.judged.front();
+  std::string out = against_best(chosen, best);
+  if (std::isfinite(chosen.spread)) {
+    out += "; its coefficients scatter " + number_words(100.0 * chosen.spread, 2) +
+           " % from period to period";
+    if (chosen.candidate.name != best.candidate.name && std::isfinite(best.spread)) {
+      out += " (" + best.candidate.name + ": " + number_words(100.0 * best.spread, 2) + " %)";
+    }
+  }
+  if (on_line) return out + "; it can follow on line by " + method_words(chosen.on_line.method);
+  return out + "; none that is as good can follow on line: " + chosen.on_line.why;
+}
+
+/// The bias of the recommended structure's coefficients, or of the ARX nearest to it.
+std::string bias_words(const Outcome& outcome) {
+  const Judged* about = nullptr;
+  bool itself = false;
+  for (std::size_t i = 0; i < outcome.judged.size() && !itself; ++i) {
+    const Judged& one = outcome.judged[i];
+    if (!one.has_bias_test) continue;
+    itself = static_cast<int>(i) == outcome.recommended;
+    if (about == nullptr || itself) about = &one;
+  }
+  if (about == nullptr) return "";
+  const structures::BiasTest& test = about->bias;
+  const std::string of = (itself ? "" : "the best ARX, " + about->candidate.name + ": ");
+  const std::string beside = std::string("instrumental variables (") + text(test.instruments) + ")";
+  const auto orders = about->candidate.arx();
+  const auto b1 = static_cast<std::size_t>(orders->a);
+  switch (test.verdict) {
+    case structures::BiasVerdict::kUndetermined:
+      return of +
+             "whether least squares is biased cannot be told: the motion leaves the "
+             "instruments too weak (F " +
+             number_words(test.strength_F, 2) + ", 10 is needed); a richer reference would tell";
+    case structures::BiasVerdict::kNoBiasSeen:
+      return of + "no bias of least squares is seen beside " + beside + ", Durbin-Wu-Hausman p " +
+             number_words(test.p, 2);
+    case structures::BiasVerdict::kBiased:
+      break;
+  }
+  const double off = 100.0 * (test.least_squares[b1] / test.instrumental[b1] - 1.0);
+  const bool sure = std::abs(test.instrumental[b1]) > 2.0 * test.instrumental_error[b1];
+  return of + "least squares is biased beside " + beside + ", Durbin-Wu-Hausman p " +
+         probability_words(test.p) +
+         (sure ? ": b1 by " + number_words(off, 2) + " %" : ": b1 itself is uncertain there") +
+         "; bands learnt on the same motion still hold, physical figures from it do not";
+}
+
+}  // namespace
+
+void recommend(Outcome& outcome) {
+  std::stable_sort(outcome.judged.begin(), outcome.judged.end(),
+                   [](const Judged& a, const Judged& b) { return cost_of(a) < cost_of(b); });
+  outcome.recommended = outcome.most_accurate = -1;
+  outcome.bias_words = bias_words(outcome);
+  if (outcome.judged.empty() || !outcome.judged.front().represents) {
+    outcome.reason =
+        "no structure represents this record: every free run errs more than the rod "
+        "moves";
+    return;
+  }
+  outcome.most_accurate = 0;
+  outcome.recommended = choose(outcome, true);
+  const bool on_line = outcome.recommended >= 0;
+  if (!on_line) outcome.recommended = choose(outcome, false);
+  outcome.reason = why(outcome, on_line);
+  outcome.bias_words = bias_words(outcome);
+}
+
+}  // namespace workbench::select

@@ -1,0 +1,106 @@
+// The comparison as a table for people, best first.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "workbench/select/outcome.h"
+#include "workbench/select/words.h"
+
+namespace workbench::select {
+namespace {
+
+constexpr double kMicro = 1e6;
+constexpr double kMilli = 1e3;
+
+std::string line(const char* format, auto... values) {
+  char out[256];
+  std::snprintf(out, sizeof out, format, values...);
+  return out;
+}
+
+/// Micrometres, or millimetres with their unit where those have too many digits.
+std::string length(double value_m) {
+  if (!std::isfinite(value_m) || value_m > 1e3) return "diverges";
+  if (value_m < 1e-3) return number_words(kMicro * value_m, 3) + " um";
+  return number_words(kMilli * value_m, 3) + " mm";
+}
+
+std::string condition(double value) {
+  return std::isfinite(value) ? line("%.0e", value) : std::string("-");
+}
+
+std::string spread(double value) {
+  if (!std::isfinite(value)) return "-";
+  const double percent = 100.0 * value;
+  return percent >= 1000.0 ? "> 1000 %" : number_words(percent, 2) + " %";
+}
+
+std::string bias(const Judged& judged) {
+  if (judged.has_bias_test) return text(judged.bias.verdict);
+  return "-";
+}
+
+double least_bic(const Outcome& outcome) {
+  double out = std::numeric_limits<double>::infinity();
+  for (const Judged& one : outcome.judged) {
+    if (std::isfinite(one.bic)) out = std::min(out, one.bic);
+  }
+  return out;
+}
+
+std::string row(const Judged& one, double bic, const char* mark) {
+  if (!one.fitted.valid) {
+    return line("%s %-11s not fitted: ", mark, one.candidate.name.c_str()) + one.fitted.why + "\n";
+  }
+  return line(
+      "%s %-11s %4d %10s %10s %10s %9s %8s %7s %9s  %-12s %s\n", mark, one.candidate.name.c_str(),
+      one.fitted.parameters, length(one.one_step_rms_m).c_str(), length(one.free_run_rms_m).c_str(),
+      length(one.free_run_whole_rms_m).c_str(),
+      std::isfinite(one.cost_m2) && one.represents ? line("%.2e", one.cost_m2).c_str() : "-",
+      std::isfinite(one.bic) ? line("%.0f", one.bic - bic).c_str() : "-",
+      condition(one.fitted.condition).c_str(), spread(one.spread).c_str(), bias(one).c_str(),
+      one.on_line.method.c_str());
+}
+
+}  // namespace
+
+std::string to_text(const Outcome& o) {
+  std::string out = line("%s: %zu samples every %s ms, %zu gaps", o.name.c_str(), o.samples,
+                         number_words(1e3 * o.sample_time_s, 4).c_str(), o.gaps);
+  out += line("; delay %d; fitted from %s s to %s s, scored to %s s in %d periods of %s s\n",
+              o.delay, number_words(o.from_s, 4).c_str(), number_words(o.fitted_to_s, 4).c_str(),
+              number_words(o.scored_to_s, 4).c_str(), o.held_out_periods,
+              number_words(o.period_s, 3).c_str());
+  if (std::isfinite(o.noise_floor_m)) {
+    out += "noise of the position: " + length(o.noise_floor_m) + "\n";
+  }
+  out += line("\n%-13s %4s %10s %10s %10s %9s %8s %7s %9s  %-12s %s\n", "", "coef", "one step",
+              "free run,", "free run,", "E,", "BIC over", "condi-", "spread of", "LS bias", "on");
+  out += line("%-13s %4s %10s %10s %10s %9s %8s %7s %9s  %-12s %s\n", "  structure", "", "",
+              "1 period", "all", "m2", "the best", "tion", "coef", "(DWH)", "line");
+  const double bic = least_bic(o);
+  bool failed = false;
+  for (std::size_t i = 0; i < o.judged.size(); ++i) {
+    const Judged& one = o.judged[i];
+    if (one.fitted.valid && !one.represents && !failed) {
+      failed = true;
+      out += "  cannot represent this record (the free run errs more than the rod moves):\n";
+    }
+    const bool chosen = static_cast<int>(i) == o.recommended;
+    out += row(one, bic, chosen ? ">" : " ");
+  }
+  out += '\n';
+  if (o.recommended >= 0) {
+    out += "recommended: " + o.judged[static_cast<std::size_t>(o.recommended)].candidate.name +
+           ". " + static_cast<char>(std::toupper(static_cast<unsigned char>(o.reason[0]))) +
+           o.reason.substr(1) + ".\n";
+  } else {
+    out += o.reason + ".\n";
+  }
+  if (!o.bias_words.empty()) out += "bias: " + o.bias_words + ".\n";
+  for (const std::string& note : o.notes) out += "note: " + note + ".\n";
+  if (o.interrupted) out += "interrupted: not all structures were compared.\n";
+  return out;
+}
+
+}  // namespace workbench::select

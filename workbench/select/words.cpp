@@ -1,0 +1,32 @@
+#include "workbench/select/words.h"
+
+#include <cmath>
+#include <cstdio>
+
+namespace workbench::select {
+
+std::string number_words(double value, int digits) {
+  if (!std::isfinite(value)) return "-";
+  char out[40];
+  const double size = std::abs(value);
+  if (size != 0.0 && (size < 1e-3 || size >= 1e6)) {
+    std::snprintf(out, sizeof out, "%.*e", digits - 1, value);
+    return out;
+  }
+  const int before = size >= 1.0 ? static_cast<int>(std::floor(std::log10(size))) + 1 : 1;
+  int after = digits - before;
+  if (size < 1.0 && size > 0.0) after = digits - 1 - static_cast<int>(std::floor(std::log10(size)));
+  std::snprintf(out, sizeof out, "%.*f", after > 0 ? after : 0, value);
+  return out;
+}
+
+std::string probability_words(double p) { return p < 1e-6 ? "below 1e-6" : number_words(p, 2); }
+
+std::string method_words(const std::string& method) {
+  if (method == "RLS") return "recursive least squares";
+  if (method == "RML") return "recursive maximum likelihood or extended least squares";
+  if (method == "RPEM") return "recursive prediction error";
+  return method;
+}
+
+}  // namespace workbench::select
