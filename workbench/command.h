@@ -45,6 +45,7 @@ void add_replay(CLI::App& command, int& exit_code);
 void add_reproduce(CLI::App& command, int& exit_code);
 void add_reset(CLI::App& command, int& exit_code);
 void add_select(CLI::App& command, int& exit_code);
+void add_scorecard(CLI::App& command, int& exit_code);
 void add_shelve(CLI::App& command, int& exit_code);
 void add_simulate(CLI::App& command, int& exit_code);
 void add_start(CLI::App& command, int& exit_code);

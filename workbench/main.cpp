@@ -39,6 +39,8 @@ constexpr workbench::Command kCommands[] = {
     {"diagnose", "which physical effect a model misses", workbench::add_diagnose},
     {"isolate", "which physical parameter has changed, window by window", workbench::add_isolate},
     {"calibrate", "learn alarm bands from a healthy record", workbench::add_calibrate},
+    {"scorecard", "what each method detects, how late, and how often it cries wolf",
+     workbench::add_scorecard},
     {"backtest", "which alarms new rules would have told on old logs", workbench::add_backtest},
     {"promote", "a better model and its bands into the running daemon", workbench::add_promote},
     {"replay", "from the evidence of an alarm to the same alarm", workbench::add_replay},

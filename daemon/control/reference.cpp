@@ -10,14 +10,14 @@ namespace monitor::control {
 
 void ReferenceConfig::visit(config::schema::Visitor& v) {
   v.choice({"kind", "shape of the motion"}, kind,
-           {"sine", "multisine", "steps", "chirp", "prbs", "file"});
+           {"sine", "triangle", "multisine", "steps", "chirp", "prbs", "file"});
   if (kind == "file") {
     v.text({"file", "CSV with the columns t_s,reference_m", true}, file);
     return;
   }
   v.number({"centre_m", "middle of the motion"}, centre_m, {-100.0, 100.0});
   v.number({"amplitude_m", "greatest distance from the middle"}, amplitude_m, {0.0, 100.0});
-  if (kind == "sine" || kind == "chirp") {
+  if (kind == "sine" || kind == "triangle" || kind == "chirp") {
     v.number({"frequency_Hz", "frequency; of a chirp, the first"}, frequency_Hz, {0.0, 1000.0});
   }
   if (kind == "chirp") {
@@ -49,6 +49,9 @@ std::unique_ptr<Reference> make_reference(const ReferenceConfig& config,
                                        "different frequencies, one at least");
     }
     return std::make_unique<Multisine>(config.centre_m, config.amplitude_m, config.frequencies_Hz);
+  }
+  if (config.kind == "triangle") {
+    return std::make_unique<Triangle>(config.centre_m, config.amplitude_m, config.frequency_Hz);
   }
   if (config.kind == "steps") return std::make_unique<Steps>(config);
   if (config.kind == "chirp") return std::make_unique<Chirp>(config);

@@ -18,6 +18,15 @@ class Sine final : public Reference {
   double centre_m_, amplitude_m_, frequency_Hz_;
 };
 
+class Triangle final : public Reference {
+ public:
+  Triangle(double centre_m, double amplitude_m, double frequency_Hz) noexcept;
+  [[nodiscard]] double at(double t_s) const noexcept override;
+
+ private:
+  double centre_m_, amplitude_m_, frequency_Hz_;
+};
+
 class Multisine final : public Reference {
  public:
   Multisine(double centre_m, double amplitude_m, std::vector<double> frequencies_Hz);

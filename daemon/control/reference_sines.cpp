@@ -22,6 +22,15 @@ double Sine::at(double t_s) const noexcept {
   return centre_m_ + amplitude_m_ * std::sin(kTurn_rad * frequency_Hz_ * t_s);
 }
 
+Triangle::Triangle(double centre_m, double amplitude_m, double frequency_Hz) noexcept
+    : centre_m_(centre_m), amplitude_m_(amplitude_m), frequency_Hz_(frequency_Hz) {}
+
+double Triangle::at(double t_s) const noexcept {
+  const double cycles = frequency_Hz_ * t_s + 0.25;
+  const double within = cycles - std::floor(cycles);
+  return centre_m_ + amplitude_m_ * (1.0 - 4.0 * std::abs(within - 0.5));
+}
+
 Multisine::Multisine(double centre_m, double amplitude_m, std::vector<double> frequencies_Hz)
     : centre_m_(centre_m), frequencies_Hz_(std::move(frequencies_Hz)) {
   const auto [slowest, fastest] =

@@ -52,7 +52,7 @@ set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS config/spoolwatch
 # Samples: every configuration with its models beside it, and the message types.
 file(GLOB configurations CONFIGURE_DEPENDS config/*.toml)
 install(FILES ${configurations} DESTINATION "${share}")
-install(DIRECTORY config/models config/tour DESTINATION "${share}")
+install(DIRECTORY config/models config/scorecard config/tour DESTINATION "${share}")
 install(FILES config/messages/spoolwatch.lcm DESTINATION "${share}/messages")
 install(FILES README.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 install(FILES systemd/package/copyright DESTINATION "${CMAKE_INSTALL_DOCDIR}")

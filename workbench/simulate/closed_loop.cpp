@@ -33,6 +33,7 @@ ClosedLoop::ClosedLoop(const Scenario& scenario, std::uint64_t seed)
       schedule_(scenario.faults, *plant_),
       reference_(monitor::control::make_reference(scenario.reference, scenario.folder)),
       controller_({scenario.model.loop.kp_V_per_m}, limits(scenario.instruments), kSampleTime_s),
+      sensor_(scenario.sensor_faults),
       encoder_(scenario.instruments.encoder_resolution_m, scenario.instruments.noise_m, seed),
       dac_{static_cast<int>(scenario.instruments.dac_bits), scenario.instruments.dac_range_V} {
   check_step(plant_->step_s());
@@ -41,7 +42,8 @@ ClosedLoop::ClosedLoop(const Scenario& scenario, std::uint64_t seed)
 LoopRow ClosedLoop::step() noexcept {
   LoopRow row{};
   row.t_s = static_cast<double>(next_) * kSampleTime_s;
-  row.y_m = encoder_.read(plant_->reading_m());
+  const double signal_m = sensor_.signal_m(row.t_s, plant_->reading_m());
+  row.y_m = sensor_.reading_m(row.t_s, encoder_.read(signal_m));
   row.reference_m = reference_->at(row.t_s);
   const monitor::control::Command command = controller_.update(row.reference_m, row.y_m);
   row.u_requested_V = command.requested_V;

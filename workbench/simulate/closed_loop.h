@@ -42,6 +42,7 @@ class ClosedLoop {
   plant_sim::Schedule schedule_;
   std::unique_ptr<monitor::control::Reference> reference_;
   monitor::control::Controller controller_;
+  FaultySensor sensor_;
   plant_sim::Encoder encoder_;
   plant_sim::DacRange dac_;
   std::int64_t next_ = 0;

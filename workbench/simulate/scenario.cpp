@@ -20,6 +20,7 @@ void Scenario::visit(config::schema::Visitor& v) {
   v.table({"instruments", "encoder, noise and D/A converter"},
           [&](config::schema::Visitor& t) { instruments.visit(t); });
   visit_list(v, {"fault", "changes of parameters at scheduled times"}, faults);
+  visit_list(v, {"sensor_fault", "faults of the position sensor"}, sensor_faults);
 }
 
 Scenario read_scenario(const config::schema::Document& document) {

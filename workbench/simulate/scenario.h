@@ -4,6 +4,7 @@
 //   [reference]     kind, centre_m, amplitude_m, ... (daemon/control/reference.h)
 //   [instruments]   encoder_resolution_m, noise_m, dac_bits, dac_range_V
 //   [[fault]]       parameter, at_s, value or factor, ramp_s (plant_sim/schedule.h)
+//   [[sensor_fault]]  kind, at_s, size (sensor_fault.h)
 #pragma once
 
 #include <cstdint>
@@ -13,6 +14,7 @@
 #include "daemon/control/reference.h"
 #include "plant_sim/model_file.h"
 #include "plant_sim/schedule.h"
+#include "workbench/simulate/sensor_fault.h"
 
 namespace config::schema {
 class Document;
@@ -37,6 +39,7 @@ struct Scenario {
   std::filesystem::path folder;  ///< where a relative reference file starts from
   Instruments instruments;
   std::vector<plant_sim::Change> faults;
+  std::vector<SensorFault> sensor_faults;
 
   void visit(config::schema::Visitor& v);
 };

@@ -38,7 +38,7 @@ struct Arguments {
 /// --reference names a kind, or else a file.
 void choose_reference(const std::string& text, config::schema::Document& document) {
   if (text.empty()) return;
-  for (const char* kind : {"sine", "multisine", "steps", "chirp", "prbs"}) {
+  for (const char* kind : {"sine", "triangle", "multisine", "steps", "chirp", "prbs"}) {
     if (text == kind) {
       document.set("reference.kind=\"" + text + "\"");
       return;
@@ -47,7 +47,7 @@ void choose_reference(const std::string& text, config::schema::Document& documen
   std::error_code ignored;
   if (!fs::is_regular_file(text, ignored)) {
     throw Error(ExitCode::usage, "--reference " + text +
-                                     ": is no kind and no file; allowed: sine, multisine, steps, "
+                                     ": is no kind and no file; allowed: sine, triangle, multisine, steps, "
                                      "chirp, prbs, or a CSV file with t_s,reference_m");
   }
   document.set("reference.kind=\"file\"");
@@ -122,7 +122,7 @@ void add_simulate(CLI::App& command, int& /*exit_code*/) {
       ->check(number_within(0.0, 1e18))
       ->capture_default_str();
   command.add_option("--reference", arguments->reference,
-                     "sine, multisine, steps, chirp, prbs, or a CSV file with t_s,reference_m");
+                     "sine, triangle, multisine, steps, chirp, prbs, or a CSV file with t_s,reference_m");
   command
       .add_option("--set", arguments->assignments,
                   "table.key=value of the model file, [reference] or [instruments]")

@@ -32,6 +32,19 @@ TEST(Reference, IsTheSourcesSineByDefault) {
   }
 }
 
+TEST(Reference, TriangleGoesToAndFroAtConstantSpeed) {
+  ReferenceConfig config = of_kind("triangle");
+  config.centre_m = 0.3;
+  config.amplitude_m = 0.02;
+  config.frequency_Hz = 0.5;
+  const auto reference = make_reference(config);
+  const double expected_m[] = {0.3, 0.31, 0.32, 0.31, 0.3, 0.29, 0.28, 0.29, 0.3};
+  for (int i = 0; i < 9; ++i) {
+    EXPECT_NEAR(reference->at(0.25 * i), expected_m[i], kRounding) << i;
+    EXPECT_NEAR(reference->at(100.0 + 0.25 * i), expected_m[i], kRounding) << i;
+  }
+}
+
 TEST(Reference, MultisinePeaksAtTheAmplitudeAndHoldsOnlyItsFrequencies) {
   ReferenceConfig config = of_kind("multisine");
   config.centre_m = 0.0;

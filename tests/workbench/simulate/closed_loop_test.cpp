@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <vector>
 
 namespace workbench::simulate {
 namespace {
@@ -74,6 +75,50 @@ TEST(ClosedLoop, FaultActsFromItsTimeOnAndNotBefore) {
       ASSERT_NE(difference_m, 0.0) << k;
     }
   }
+}
+
+/// What 2 s of the loop read.
+std::vector<double> read_with(const SensorFault& fault) {
+  Scenario scenario = thesis();
+  scenario.sensor_faults.push_back(fault);
+  ClosedLoop loop(scenario, 1);
+  std::vector<double> y_m;
+  for (int k = 0; k < 400; ++k) y_m.push_back(loop.step().y_m);
+  return y_m;
+}
+
+std::vector<double> read_healthy() {
+  ClosedLoop loop(thesis(), 1);
+  std::vector<double> y_m;
+  for (int k = 0; k < 400; ++k) y_m.push_back(loop.step().y_m);
+  return y_m;
+}
+
+TEST(ClosedLoop, SensorFaultIsSeenByTheControllerFromItsTimeOn) {
+  const std::vector<double> healthy = read_healthy();
+  const std::vector<double> faulty = read_with({"offset", 1.0, 1e-3});
+  for (std::size_t k = 0; k < 200; ++k) ASSERT_EQ(faulty[k], healthy[k]) << k;
+  EXPECT_NEAR(faulty[200], healthy[200] + 1e-3, 1e-12);
+  // The loop takes the offset back: the reading, not the rod, follows the reference again.
+  EXPECT_NEAR(faulty[399], healthy[399], 2e-5);
+}
+
+TEST(ClosedLoop, FrozenSensorReadsItsLastValueForGood) {
+  const std::vector<double> healthy = read_healthy();
+  const std::vector<double> faulty = read_with({"freeze", 0.5, 0.0});
+  for (std::size_t k = 0; k < 100; ++k) ASSERT_EQ(faulty[k], healthy[k]) << k;
+  for (std::size_t k = 100; k < 400; ++k) ASSERT_EQ(faulty[k], healthy[99]) << k;
+}
+
+TEST(FaultySensor, DriftsAndScalesFromWhereItWas) {
+  FaultySensor drifting({{"drift", 2.0, 1e-3}});
+  EXPECT_EQ(drifting.signal_m(1.0, 0.3), 0.3);
+  EXPECT_NEAR(drifting.signal_m(5.0, 0.3), 0.303, 1e-15);
+  FaultySensor scaled({{"scale", 2.0, 0.1}});
+  EXPECT_EQ(scaled.signal_m(1.0, 0.2), 0.2);
+  EXPECT_EQ(scaled.signal_m(2.0, 0.3), 0.3);
+  EXPECT_NEAR(scaled.signal_m(3.0, 0.32), 0.322, 1e-15);
+  EXPECT_NEAR(scaled.signal_m(4.0, 0.25), 0.245, 1e-15);
 }
 
 }  // namespace

@@ -1,0 +1,99 @@
+// Alarms against what was injected, on a signal whose course is known.
+#include "workbench/scorecard/watch.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+namespace workbench::scorecard {
+namespace {
+
+namespace fdi = estimator::fdi;
+
+constexpr double kPeriod_s = 0.005;
+
+fdi::BandConfig band(const std::string& id, double high, const std::string& parameter,
+                     const std::vector<std::string>& group = {}) {
+  fdi::BandConfig out;
+  out.id = id;
+  out.quantity = "sample.y_m";
+  out.high = high;
+  out.parameter = parameter;
+  out.ambiguity_group = group;
+  out.rules.chatter_count = 0;
+  return out;
+}
+
+fdi::PipelineConfig watching(const std::vector<fdi::BandConfig>& bands) {
+  fdi::PipelineConfig config;
+  config.bands = bands;
+  return config;
+}
+
+/// y rises by 1 m/s from `from_s` on.
+Samples ramp(double from_s, double duration_s) {
+  Samples samples(static_cast<std::size_t>(std::lround(duration_s / kPeriod_s)));
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const double t_s = static_cast<double>(k) * kPeriod_s;
+    samples[k].tick = static_cast<std::int64_t>(k);
+    samples[k].y_m = std::max(0.0, t_s - from_s);
+  }
+  return samples;
+}
+
+Answer answer(const std::vector<fdi::BandConfig>& bands, double fault_s = 1.0) {
+  return Watch(watching(bands), kPeriod_s).fault(ramp(1.0, 4.0), fault_s, {"a"}, true);
+}
+
+TEST(Watch, MeasuresTheDelayFromTheFaultToTheFirstAlarm) {
+  const Answer found = answer({band("one", 0.5, "a")});
+  EXPECT_EQ(found.verdict, Verdict::right);
+  EXPECT_NEAR(found.delay_s, 0.505, 1e-9);  // the first sample above 0.5 m
+  EXPECT_THAT(found.first, testing::ElementsAre("a"));
+}
+
+TEST(Watch, JudgesTheNamesOfEveryAlarm) {
+  EXPECT_EQ(answer({band("one", 0.5, "a", {"a", "b"})}).verdict, Verdict::group);
+  EXPECT_EQ(answer({band("one", 0.5, "b")}).verdict, Verdict::wrong);
+  EXPECT_EQ(answer({band("one", 0.5, "a"), band("two", 1.5, "b")}).verdict, Verdict::wrong);
+  EXPECT_EQ(answer({band("one", 0.5, "a"), band("two", 1.5, "b", {"a", "b"})}).verdict,
+            Verdict::group);
+  EXPECT_EQ(answer({band("one", 0.5, "")}).verdict, Verdict::unnamed);
+  EXPECT_EQ(answer({band("one", 0.5, ""), band("two", 1.0, "a")}).verdict, Verdict::right);
+  EXPECT_EQ(answer({band("one", 9.0, "a")}).verdict, Verdict::missed);
+  EXPECT_TRUE(std::isinf(answer({band("one", 9.0, "a")}).delay_s));
+}
+
+TEST(Watch, JoinsTheNamesThatComeTogether) {
+  EXPECT_THAT(answer({band("one", 0.5, "a"), band("two", 0.5, "b"), band("three", 1.0, "c")}).first,
+              testing::ElementsAre("a", "b"));
+}
+
+TEST(Watch, StopsAtTheFirstAlarmWhenTheRestDoesNotCount) {
+  Watch watch(watching({band("one", 0.5, "a"), band("two", 1.0, "b")}), kPeriod_s);
+  EXPECT_EQ(watch.fault(ramp(1.0, 4.0), 1.0, {"a"}, false).verdict, Verdict::right);
+  EXPECT_EQ(watch.fault(ramp(1.0, 4.0), 1.0, {"a"}, true).verdict, Verdict::wrong);
+}
+
+TEST(Watch, DoesNotCountAnAlarmThatStoodBefore) {
+  const Answer found = answer({band("one", 0.5, "a")}, 2.0);
+  EXPECT_EQ(found.verdict, Verdict::standing);
+  EXPECT_FALSE(found.detected());
+}
+
+TEST(Watch, CountsTimesAndTimeOfFalseAlarms) {
+  Samples samples = ramp(100.0, 10.0);  // ten seconds of 0 m
+  for (const std::size_t from : {200U, 800U, 1400U}) {
+    for (std::size_t k = from; k < from + 100; ++k) samples[k].y_m = 1.0;
+  }
+  for (std::size_t k = 1700; k < 1800; ++k) samples[k].y_m = std::nan("");
+  Watch watch(watching({band("one", 0.5, "a"), band("two", 0.9, "b")}), kPeriod_s);
+  const Quiet quiet = watch.quiet(samples);
+  EXPECT_EQ(quiet.alarms, 3);
+  EXPECT_NEAR(quiet.alarm_s, 3 * 100 * kPeriod_s, 1e-9);
+  EXPECT_NEAR(quiet.invalid_s, 100 * kPeriod_s, 1e-9);
+  EXPECT_EQ(watch.quiet(ramp(100.0, 10.0)).alarms, 0) << "begins anew";
+}
+
+}  // namespace
+}  // namespace workbench::scorecard

@@ -1,0 +1,168 @@
+#include "workbench/scorecard/card.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "workbench/scorecard/statistics.h"
+
+namespace workbench::scorecard {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+void add_quiet(QuietFigures& to, const json& result) {
+  to.hours += result["hours"].get<double>();
+  to.counted += Quiet{result["alarms"].get<std::int64_t>(), result["alarm_s"].get<double>(),
+                      result["invalid_s"].get<double>()};
+}
+
+std::string joined(const json& names) {
+  std::string out;
+  for (const json& name : names) out += (out.empty() ? "" : "|") + name.get<std::string>();
+  return out;
+}
+
+Found& found_of(FaultFigures& of, const std::string& motion, int direction) {
+  for (Found& found : of.found) {
+    if (found.motion == motion && found.direction == direction) return found;
+  }
+  of.found.push_back({motion, direction, true, false, std::nullopt, 0.0, {}, {}});
+  return of.found.back();
+}
+
+void add_stated(FaultFigures& of, Found& found, const json& result) {
+  for (const json& answer : result["answers"]) {
+    ++found.verdicts[answer["verdict"].get<std::string>()];
+    const json& delay_s = answer["delay_s"];
+    found.delays_s.push_back(delay_s.is_null() ? kInfinity : delay_s.get<double>());
+    if (!delay_s.is_null()) ++of.first[joined(answer["first"])];
+  }
+}
+
+void add(MethodFigures& to, const Bench& bench, const Part& part, const json& result) {
+  const std::string& motion = bench.plan.motions[part.motion].id;
+  const bool usable = !result.contains("unusable");
+  if (!usable) to.unusable[motion] = result["unusable"].get<std::string>();
+  if (part.kind == Part::Kind::healthy || part.kind == Part::Kind::benign) {
+    if (!usable) return;
+    if (part.kind == Part::Kind::benign) {
+      add_quiet(to.benign[bench.plan.benign[part.subject].id], result);
+      return;
+    }
+    add_quiet(to.healthy, result);
+    add_quiet(to.healthy_of[motion], result);
+    return;
+  }
+  const Fault& fault = bench.plan.faults[part.subject];
+  auto of = std::find_if(to.faults.begin(), to.faults.end(),
+                         [&](const FaultFigures& f) { return f.fault == &fault; });
+  if (of == to.faults.end()) of = to.faults.insert(of, FaultFigures{&fault, {}, {}});
+  Found& found = found_of(*of, motion, part.direction);
+  found.usable = usable;
+  if (!usable) return;
+  if (part.kind == Part::Kind::stated) {
+    add_stated(*of, found, result);
+    return;
+  }
+  found.searched = true;
+  found.greatest = fault.sizes(part.direction).back();
+  if (!result["smallest"].is_null()) found.smallest = result["smallest"].get<double>();
+}
+
+}  // namespace
+
+double QuietFigures::per_hour() const {
+  return hours > 0.0 ? static_cast<double>(counted.alarms) / hours : kNaN;
+}
+
+double QuietFigures::per_hour_upper() const { return poisson_upper(counted.alarms, hours); }
+
+std::optional<FaultFigures::Smallest> FaultFigures::smallest(const std::string& motion) const {
+  std::optional<Smallest> worst;
+  for (const Found& one : found) {
+    if (one.motion != motion || (!one.searched && one.usable)) continue;
+    if (!one.usable) return std::nullopt;
+    const Smallest here{one.smallest.value_or(one.greatest), !one.smallest};
+    const auto worse = [](const Smallest& a, const Smallest& b) {
+      return a.beyond != b.beyond ? a.beyond : a.size > b.size;
+    };
+    if (!worst || worse(here, *worst)) worst = here;
+  }
+  return worst;
+}
+
+std::vector<double> FaultFigures::delays_s() const {
+  std::vector<double> all;
+  for (const Found& one : found) all.insert(all.end(), one.delays_s.begin(), one.delays_s.end());
+  return all;
+}
+
+int FaultFigures::verdict(Verdict verdict) const {
+  int count = 0;
+  for (const Found& one : found) {
+    const auto at = one.verdicts.find(to_string(verdict));
+    if (at != one.verdicts.end()) count += at->second;
+  }
+  return count;
+}
+
+int FaultFigures::trials() const { return static_cast<int>(delays_s().size()); }
+
+int MethodFigures::verdict(Verdict verdict) const {
+  int count = 0;
+  for (const FaultFigures& fault : faults) count += fault.verdict(verdict);
+  return count;
+}
+
+int MethodFigures::trials() const {
+  int count = 0;
+  for (const FaultFigures& fault : faults) count += fault.trials();
+  return count;
+}
+
+Card make_card(const Bench& bench, const std::vector<Method>& methods, const Scope& scope,
+               const std::vector<Part>& parts, const Store& store, const Trials& trials) {
+  Card card;
+  card.seeds = scope.seeds;
+  card.watch_s = bench.plan.watch_s;
+  card.benign = bench.plan.benign;
+  for (const Motion& motion : bench.plan.motions) {
+    if (scope.motions.empty() ||
+        std::find(scope.motions.begin(), scope.motions.end(), motion.id) != scope.motions.end()) {
+      card.motions.push_back(motion.id);
+    }
+  }
+  card.parts = parts.size();
+  card.done = parts.size();
+  std::vector<char> open(parts.size(), 0);
+  for (std::size_t m = 0; m < methods.size(); ++m) {
+    MethodFigures figures;
+    figures.name = methods[m].name;
+    figures.what = methods[m].what;
+    figures.load_ratio = trials.load_ratio(m);
+    const std::string key = digest(methods[m].text);
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      const json* const result = store.find(parts[p].id, key);
+      if (result == nullptr) {
+        open[p] = 1;
+      } else {
+        add(figures, bench, parts[p], *result);
+      }
+    }
+    card.methods.push_back(std::move(figures));
+  }
+  card.done -= static_cast<std::size_t>(std::count(open.begin(), open.end(), 1));
+  return card;
+}
+
+std::string names_words(const std::string& names) {
+  if (names.empty()) return "no name";
+  std::string out;
+  for (const char c : names) out += c == '|' ? std::string(" or ") : std::string(1, c);
+  return out;
+}
+
+}  // namespace workbench::scorecard

@@ -1,0 +1,45 @@
+#include "workbench/scorecard/progress.h"
+
+#include <cstdio>
+#include <ostream>
+
+namespace workbench::scorecard {
+namespace {
+
+std::string clock(double time_s) {
+  char out[32];
+  const auto whole = static_cast<long>(time_s);
+  std::snprintf(out, sizeof out, "%ld:%02ld", whole / 60, whole % 60);
+  return out;
+}
+
+}  // namespace
+
+Progress::Progress(std::ostream& out, bool renewed, std::size_t parts, double work)
+    : out_(out), renewed_(renewed), parts_(parts), all_(work) {}
+
+void Progress::add(double work, const std::string& part) {
+  ++done_;
+  worked_ += work;
+  const double share = all_ > 0.0 ? worked_ / all_ : 1.0;
+  if (!renewed_ && static_cast<int>(10.0 * share) <= tenths_) return;
+  tenths_ = static_cast<int>(10.0 * share);
+  const double passed_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  const double left_s = share > 0.0 ? passed_s * (1.0 - share) / share : 0.0;
+  out_ << (renewed_ ? "\r\x1b[K" : "") << "scorecard: " << done_ << " of " << parts_ << " parts, "
+       << clock(passed_s) << ", " << clock(left_s) << " left" << (renewed_ ? ", " + part : "\n")
+       << std::flush;
+}
+
+void Progress::end() {
+  if (renewed_ && done_ > 0) out_ << "\r\x1b[K" << std::flush;
+}
+
+std::string number_words(double value) {
+  char out[32];
+  std::snprintf(out, sizeof out, "%.9g", value);
+  return out;
+}
+
+}  // namespace workbench::scorecard

@@ -1,0 +1,67 @@
+// A pipeline on one record, and what its alarms said.
+//
+// An alarm that calls a value untrustworthy (INVALID) names no fault; it is counted apart.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "estimator/fdi/pipeline.h"
+#include "workbench/scorecard/stand.h"
+
+namespace workbench::scorecard {
+
+using Names = std::set<std::string>;  ///< parameters of one alarm that cannot be told apart
+
+enum class Verdict {
+  right,     ///< every alarm named the fault, and nothing else
+  group,     ///< every alarm named a group that holds it
+  wrong,     ///< an alarm named something else
+  unnamed,   ///< alarms without a name
+  missed,    ///< no alarm
+  standing,  ///< an alarm stood when the fault came: nothing is counted
+};
+[[nodiscard]] const char* to_string(Verdict verdict);
+
+/// What a method said of a fault.
+struct Answer {
+  Verdict verdict = Verdict::missed;
+  double delay_s = std::numeric_limits<double>::infinity();  ///< to its first alarm
+  Names first;  ///< names of the alarms that came first, together
+
+  [[nodiscard]] bool detected() const {
+    return verdict != Verdict::missed && verdict != Verdict::standing;
+  }
+};
+
+/// What a method did while there was no fault.
+struct Quiet {
+  std::int64_t alarms = 0;  ///< times that the first alarm came while none stood
+  double alarm_s = 0.0;     ///< time in which one stood
+  double invalid_s = 0.0;   ///< time in which an alarm was INVALID
+
+  Quiet& operator+=(const Quiet& other);
+};
+
+class Watch {
+ public:
+  Watch(const estimator::fdi::PipelineConfig& config, double sample_time_s);
+
+  /// `names`: that are right. `to_the_end`: names are judged by all alarms until the record ends,
+  /// not by the first ones alone, after which it stops.
+  [[nodiscard]] Answer fault(const Samples& samples, double at_s,
+                             const std::vector<std::string>& names, bool to_the_end);
+  [[nodiscard]] Quiet quiet(const Samples& samples);
+
+ private:
+  class Listener;
+
+  estimator::fdi::Pipeline pipeline_;
+  double sample_time_s_;
+};
+
+}  // namespace workbench::scorecard
