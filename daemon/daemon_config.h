@@ -1,8 +1,8 @@
 // The configuration of spoolwatchd as it stands in its TOML file.
 //
 // Tables: [rig], [loop], [rod], [valve], one for each backend used, [reference] and [controller]
-// (only where a valve is driven), [safety], [[guard]], [[estimator]], [[band]], bands_file,
-// [model], [control], [alarms], [evidence], [lcm], [recorder].
+// (only where a valve is driven), [safety], [[guard]], [[estimator]], [[tracker]], [[band]],
+// bands_file, [model], [control], [alarms], [evidence], [lcm], [recorder].
 #pragma once
 
 #include <cstdint>
@@ -21,6 +21,7 @@
 #include "daemon/rt/loop.h"
 #include "estimator/fdi/pipeline.h"
 #include "hal/roles.h"
+#include "tracking/source_kinds.h"
 
 namespace monitor {
 
@@ -36,7 +37,7 @@ struct DaemonConfig {
   control::ReferenceConfig reference;
   control::ControllerConfig controller;
   control::SafetyConfig safety;
-  estimator::fdi::PipelineConfig pipeline;
+  estimator::fdi::PipelineConfig pipeline{tracking::source_kinds()};
   io::ControlConfig control;
   io::AlarmConfig alarms;
   io::EvidenceConfig evidence;

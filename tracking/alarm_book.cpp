@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace tracking {
 namespace {
@@ -18,7 +19,7 @@ double confidence_of(const Named& named, double least) {
 AlarmBook::AlarmBook(const Choice& choice, const Thresholds& thresholds)
     : thresholds_(thresholds), tracks_(choice.tracked) {
   for (std::size_t i = 0; i < choice.tracked; ++i) {
-    tracks_[i].least = least_of(choice.parameters[i], thresholds);
+    tracks_[i].least = least_of(choice, i, thresholds);
   }
 }
 
@@ -33,6 +34,43 @@ void AlarmBook::raise(double t_s, Track& track, const Named& named, bool whole) 
     alarm.confidence = confidence;
   }
   track.whole = whole;
+}
+
+const Alarm* AlarmBook::active(std::size_t parameter) const {
+  const int at = tracks_[parameter].active;
+  return at < 0 ? nullptr : &alarms_[static_cast<std::size_t>(at)];
+}
+
+void AlarmBook::forget_cleared() {
+  std::vector<Alarm> kept;
+  for (Track& track : tracks_) {
+    if (track.active < 0) continue;
+    kept.push_back(alarms_[static_cast<std::size_t>(track.active)]);
+    track.active = static_cast<int>(kept.size()) - 1;
+  }
+  alarms_.swap(kept);
+}
+
+void AlarmBook::carry(estimator::Carrier& carrier, const Choice& choice) {
+  carrier.fixed(tracks_);
+  auto count = static_cast<std::uint64_t>(alarms_.size());
+  carrier.value(count);
+  if (count > choice.tracked) carrier.fail();
+  if (!carrier.good()) return;
+  alarms_.resize(static_cast<std::size_t>(count));
+  for (Alarm& alarm : alarms_) {
+    std::vector<Named> one{alarm.named};
+    tracking::carry(carrier, one, choice);
+    if (one.size() != 1) carrier.fail();
+    if (!carrier.good()) return;
+    alarm.named = one.front();
+    carrier.value(alarm.raised_s);
+    carrier.value(alarm.cleared_s);
+    carrier.value(alarm.confidence);
+  }
+  for (const Track& track : tracks_) {
+    if (track.active >= static_cast<int>(alarms_.size())) carrier.fail();
+  }
 }
 
 void AlarmBook::update(double t_s, const std::vector<Named>& named, const std::vector<Seen>& seen,

@@ -37,6 +37,12 @@ class AlarmBook {
               const Eigen::VectorXd& healthy, bool whole);
 
   [[nodiscard]] const std::vector<Alarm>& alarms() const { return alarms_; }
+  /// The active one that names the tracked parameter; null: there is none.
+  [[nodiscard]] const Alarm* active(std::size_t parameter) const;
+  /// Keeps active alarms alone, for a tracking without an end.
+  void forget_cleared();
+  /// Bit for bit (carrier.h), after forget_cleared().
+  void carry(estimator::Carrier& carrier, const Choice& choice);
 
  private:
   struct Track {

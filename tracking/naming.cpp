@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace tracking {
@@ -23,21 +24,41 @@ class Namer {
         sigma_m_(std::min(sigma_m, found.rms_m)),
         chi_square_(found.chi_square * sigma_m * sigma_m / (sigma_m_ * sigma_m_)) {}
 
-  std::vector<Named> run(const Thresholds& thresholds) {
+  std::vector<Named> run(const Thresholds& thresholds, Memory& memory) {
     std::vector<Named> named;
+    std::vector<signed char> directions(choice_.tracked, 0);
     for (std::size_t i = 0; i < choice_.tracked; ++i) {
       const auto at = static_cast<Index>(i);
       Named one{i, found_.x[at], found_.std_error[at], found_.x[at] - healthy_[at], {}};
       const double needed =
-          std::max(least_of(choice_.parameters[i], thresholds), thresholds.sure * one.std_error);
-      if (std::abs(one.deviation) >= needed) named.push_back(one);
+          std::max(least_of(choice_, i, thresholds), thresholds.sure * one.std_error);
+      if (std::abs(one.deviation) < needed) continue;
+      named.push_back(one);
+      directions[i] = one.deviation > 0.0 ? 1 : -1;
     }
-    if (named.size() > 1 && one_cause(named)) return named;
-    for (Named& one : named) find_rivals(one, others_of(named));
+    if (memory.left > 0 && directions == memory.directions) {
+      --memory.left;
+      return as_before(memory.named);
+    }
+    if (named.size() < 2 || !one_cause(named)) {
+      const VectorXd others = others_of(named);
+      for (Named& one : named) find_rivals(one, others);
+    }
+    memory = {directions, Memory::kAnew, named};
     return named;
   }
 
  private:
+  std::vector<Named> as_before(std::vector<Named> named) const {
+    for (Named& one : named) {
+      const auto at = static_cast<Index>(one.parameter);
+      one.x = found_.x[at];
+      one.std_error = found_.std_error[at];
+      one.deviation = found_.x[at] - healthy_[at];
+    }
+    return named;
+  }
+
   std::string name(std::size_t i) const { return choice_.parameters[i].name; }
   double value(std::size_t i, const VectorXd& x) const {
     return choice_.parameters[i].value(x[static_cast<Index>(i)]);
@@ -107,15 +128,47 @@ class Namer {
 
 }  // namespace
 
-double least_of(const SearchParameter& parameter, const Thresholds& thresholds) {
-  return parameter.scale == Scale::logarithmic ? std::log1p(thresholds.least_ratio)
-                                               : kLeastOfTypical;
+double least_of(const Choice& choice, std::size_t parameter, const Thresholds& thresholds) {
+  if (choice.parameters[parameter].scale == Scale::logarithmic) {
+    return std::log1p(thresholds.least_ratio);
+  }
+  const double present = std::abs(choice.file[static_cast<Index>(parameter)]);
+  return present > 0.0 ? std::min(present, kLeastOfTypical) : kLeastOfTypical;
 }
 
 std::vector<Named> name_changes(WindowFit& fit, const Choice& choice, const Cut& cut,
                                 const WindowEstimate& found, const VectorXd& healthy,
-                                double sigma_m, const Thresholds& thresholds) {
-  return Namer(fit, choice, cut, found, healthy, sigma_m).run(thresholds);
+                                double sigma_m, const Thresholds& thresholds, Memory& memory) {
+  return Namer(fit, choice, cut, found, healthy, sigma_m).run(thresholds, memory);
+}
+
+void carry(estimator::Carrier& carrier, std::vector<Named>& named, const Choice& choice) {
+  auto count = static_cast<std::uint64_t>(named.size());
+  carrier.value(count);
+  if (count > choice.tracked) carrier.fail();
+  if (!carrier.good()) return;
+  named.resize(static_cast<std::size_t>(count));
+  for (Named& one : named) {
+    carrier.value(one.parameter);
+    carrier.value(one.x);
+    carrier.value(one.std_error);
+    carrier.value(one.deviation);
+    auto rivals = static_cast<std::uint64_t>(one.rivals.size());
+    carrier.value(rivals);
+    if (one.parameter >= choice.tracked || rivals > choice.parameters.size()) carrier.fail();
+    if (!carrier.good()) return;
+    one.rivals.resize(static_cast<std::size_t>(rivals));
+    for (Rival& rival : one.rivals) {
+      carrier.text(rival.name);
+      carrier.value(rival.value);
+    }
+  }
+}
+
+void Memory::carry(estimator::Carrier& carrier, const Choice& choice) {
+  carrier.growing(directions, choice.tracked);
+  carrier.value(left);
+  tracking::carry(carrier, named, choice);
 }
 
 }  // namespace tracking

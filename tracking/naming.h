@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "estimator/carrier.h"
 #include "tracking/choice.h"
 #include "tracking/window_fit.h"
 
@@ -33,8 +34,9 @@ inline constexpr double kAsGood = 1.05;  ///< of the error's RMS
 /// Of a plant's value: less sure ones are calibrated by healthy records, and do not follow.
 inline constexpr double kMostUncertain_ratio = 0.1;
 
-/// Least change of a parameter, search units.
-[[nodiscard]] double least_of(const SearchParameter& parameter, const Thresholds& thresholds);
+/// Least change of a parameter, search units: of an effect that the model has, no more than it is.
+[[nodiscard]] double least_of(const Choice& choice, std::size_t parameter,
+                              const Thresholds& thresholds);
 
 struct Rival {
   std::string name;
@@ -49,10 +51,24 @@ struct Named {
   std::vector<Rival> rivals;  ///< empty: the name stands alone
 };
 
+/// The names of the window before: the same parameters, off in the same directions, keep their
+/// rivals, which cost most of the time to find; they are looked for anew every kAnew windows.
+struct Memory {
+  static constexpr int kAnew = 10;
+  std::vector<signed char> directions;  ///< of each tracked parameter; empty: nothing to keep
+  int left = 0;                         ///< windows for which it may be kept
+  std::vector<Named> named;
+
+  void carry(estimator::Carrier& carrier, const Choice& choice);
+};
+
 /// `healthy`: search values of every parameter; `found`: the fit of the tracked ones to `cut`.
 [[nodiscard]] std::vector<Named> name_changes(WindowFit& fit, const Choice& choice, const Cut& cut,
                                               const WindowEstimate& found,
                                               const Eigen::VectorXd& healthy, double sigma_m,
-                                              const Thresholds& thresholds);
+                                              const Thresholds& thresholds, Memory& memory);
+
+/// Bit for bit (carrier.h).
+void carry(estimator::Carrier& carrier, std::vector<Named>& named, const Choice& choice);
 
 }  // namespace tracking

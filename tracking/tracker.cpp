@@ -20,6 +20,12 @@ constexpr double kParts[] = {0.75, 0.5, 0.25};
 constexpr double kChanceOfRms = 3.5;
 /// A rod that moves less than this many noise floors tells nothing.
 constexpr double kLeastMotion = 10.0;
+/// Of the healthy error: what the noise floor is at least taken for.
+constexpr double kLeastOfHealthy = 0.2;
+/// Standard errors: one-sided, 95 %.
+constexpr double kMostly = 1.645;
+/// Standard error, search units, up to which a window serves to learn what is healthy.
+constexpr double kLeastKnown = 0.05;
 
 std::size_t samples_in(double duration_s, double sample_time_s) {
   return static_cast<std::size_t>(std::lround(duration_s / sample_time_s));
@@ -41,7 +47,8 @@ double motion_m(const Cut& cut) {
 
 Tracker::Tracker(const plant_sim::ModelFile& model, const Choice& choice, const Settings& settings,
                  double sample_time_s, double noise_floor_m)
-    : choice_(choice),
+    : model_(model),
+      choice_(choice),
       settings_(settings),
       sample_time_s_(sample_time_s),
       noise_floor_m_(std::max(noise_floor_m, kLeastFloor_m)),
@@ -52,6 +59,8 @@ Tracker::Tracker(const plant_sim::ModelFile& model, const Choice& choice, const 
       u_V_(2 * (lead_ + window_)),
       y_m_(u_V_.size()),
       near_(choice.file),
+      pool_(choice.tracked, (window_ + stride_ - 1) / stride_,
+            static_cast<std::size_t>(std::max<std::int64_t>(1, settings.pooled))),
       alarms_(choice, settings.thresholds) {}
 
 void Tracker::take(const Healthy& healthy) {
@@ -64,6 +73,7 @@ std::optional<Window> Tracker::push(double t_s, double u_V, double y_m, bool fir
   if (first) {
     kept_ = 0;
     until_ = needed;
+    pool_.clear();
   }
   if (kept_ == u_V_.size()) {
     const auto half = static_cast<std::ptrdiff_t>(needed);
@@ -97,34 +107,85 @@ Window Tracker::look(double t_s) {
   window.evaluations = found.evaluations;
   window.rms_m = found.rms_m;
   window.correlation = found.correlation;
-  for (std::size_t i = 0; i < choice_.tracked; ++i) {
-    const auto at = static_cast<Index>(i);
-    const SearchParameter& p = choice_.parameters[i];
-    window.estimates.push_back(
-        {found.x[at], p.value(found.x[at]), found.std_error[at] * p.slope(found.x[at])});
-  }
+  const bool fits = !healthy_ || found.rms_m <= settings_.most_ratio * healthy_->rms_m;
+  window.explained = moves(cut) && fits;
+  estimate(window, found);
   judge(window, cut, found);
-  if (window.valid) near_ = found.x;
-  if (!healthy_) return window;
-  const bool moves = motion_m(cut) > kLeastMotion * noise_floor_m_;
-  if (found.rms_m <= settings_.most_ratio * healthy_->rms_m) {
-    if (moves) tell(window, cut, found);
-  } else if (moves) {
+  if (window.explained) near_ = found.x;
+  if (!healthy_ || !moves(cut)) return window;
+  if (fits) {
+    tell(window, cut, found);
+  } else {
     look_at_part(window);
   }
   return window;
 }
 
+bool Tracker::moves(const Cut& cut) const { return motion_m(cut) > kLeastMotion * noise_m(); }
+
+double Tracker::noise_m() const {
+  return std::max(noise_floor_m_, healthy_ ? kLeastOfHealthy * healthy_->rms_m : 0.0);
+}
+
+void Tracker::estimate(Window& window, const WindowEstimate& found) {
+  const Eigen::VectorXd own = found.x.head(static_cast<Index>(choice_.tracked));
+  const bool bounded =
+      std::any_of(found.at_bound.begin(), found.at_bound.end(), [](int side) { return side != 0; });
+  pool_.add(own, found.covariance, window.explained && !bounded && found.std_error.allFinite());
+  const Pooled pooled = pool_.pooled();
+  for (std::size_t i = 0; i < choice_.tracked; ++i) {
+    const auto at = static_cast<Index>(i);
+    const SearchParameter& p = choice_.parameters[i];
+    const bool many = pooled.windows > 1;
+    Estimate one;
+    one.x = many ? pooled.x[at] : own[at];
+    const double error = many ? std::sqrt(pooled.covariance(at, at)) : found.std_error[at];
+    one.value = p.value(one.x);
+    one.std_error = error * p.slope(one.x);
+    const double named = std::max(least_of(choice_, i, settings_.thresholds),
+                                  settings_.thresholds.sure * found.std_error[at]);
+    one.smallest = (named + kMostly * found.std_error[at]) * p.slope(one.x);
+    window.estimates.push_back(one);
+  }
+}
+
 void Tracker::judge(Window& window, const Cut& cut, const WindowEstimate& found) const {
-  const double moved_m = motion_m(cut);
-  if (!(moved_m > kLeastMotion * noise_floor_m_)) {
-    window.why = still_words(moved_m, noise_floor_m_, settings_.window_s);
-  } else if (healthy_ && found.rms_m > settings_.most_ratio * healthy_->rms_m) {
-    window.why = unexplained_words(found.rms_m, healthy_->rms_m, settings_.most_ratio);
-  } else {
-    window.why = unseen_words(choice_, found, settings_.most_std_error);
+  std::string why;
+  if (!moves(cut)) {
+    why = still_words(motion_m(cut), noise_m(), settings_.window_s);
+  } else if (!window.explained) {
+    why = unexplained_words(found.rms_m, healthy_->rms_m, settings_.most_ratio);
+  }
+  for (std::size_t i = 0; i < choice_.tracked; ++i) {
+    Estimate& one = window.estimates[i];
+    const SearchParameter& p = choice_.parameters[i];
+    const double most =
+        p.scale == Scale::logarithmic ? settings_.most_std_error : settings_.most_of_typical;
+    one.why =
+        why.empty() ? unseen_words(choice_, found, i, one.std_error / p.slope(one.x), most) : why;
+    one.valid = one.why.empty();
+    if (window.why.empty()) window.why = one.why;
   }
   window.valid = window.why.empty();
+  window.poor = !moves(cut) || (window.explained && !window.valid);
+}
+
+std::optional<Probe> Tracker::probe() {
+  if (!settings_.probe.given() || !healthy_) return std::nullopt;
+  plant_sim::ModelFile healthy = model_;
+  for (std::size_t i = 0; i < choice_.tracked; ++i) {
+    const SearchParameter& p = choice_.parameters[i];
+    if (double* value = healthy.value(p.name)) {
+      *value = p.value(healthy_->x[static_cast<Index>(i)]);
+    }
+  }
+  return best_probe(healthy, settings_.probe, lead_ + window_, sample_time_s_, healthy_->rms_m,
+                    [this](const double* u_V, const double* y_m) {
+                      return fit_
+                          .fit({u_V, y_m, lead_, window_}, choice_.tracked_indices(), healthy_->x,
+                               healthy_->rms_m)
+                          .std_error;
+                    });
 }
 
 void Tracker::look_at_part(Window& window) {
@@ -136,7 +197,7 @@ void Tracker::look_at_part(Window& window) {
     const double most = std::max(
         settings_.most_ratio, 1.0 + kChanceOfRms / std::sqrt(2.0 * static_cast<double>(samples)));
     if (part.rms_m > most * healthy_->rms_m) continue;
-    if (!(motion_m(cut) > kLeastMotion * noise_floor_m_)) return;
+    if (!moves(cut)) return;
     window.part = part_words(choice_, part, static_cast<double>(samples) * sample_time_s_);
     tell(window, cut, part);
     near_ = part.x;
@@ -145,35 +206,98 @@ void Tracker::look_at_part(Window& window) {
 }
 
 void Tracker::tell(Window& window, const Cut& cut, const WindowEstimate& found) {
-  window.named =
-      name_changes(fit_, choice_, cut, found, healthy_->x, healthy_->rms_m, settings_.thresholds);
+  const bool whole = cut.samples == window_;
+  Memory once;  // the rivals of a part are not those of the whole window
+  window.named = name_changes(fit_, choice_, cut, found, healthy_->x, healthy_->rms_m,
+                              settings_.thresholds, whole ? memory_ : once);
+  if (whole) refine(window);
   std::vector<Seen> seen;
   for (std::size_t i = 0; i < choice_.tracked; ++i) {
     seen.push_back({found.x[static_cast<Index>(i)], found.std_error[static_cast<Index>(i)]});
   }
-  alarms_.update(window.t_s, window.named, seen, healthy_->x, cut.samples == window_);
+  alarms_.update(window.t_s, window.named, seen, healthy_->x, whole);
+}
+
+/// What is named has the values of the windows that agree with this one.
+void Tracker::refine(Window& window) const {
+  for (Named& one : window.named) {
+    const Estimate& best = window.estimates[one.parameter];
+    one.x = best.x;
+    one.std_error = best.std_error / choice_.parameters[one.parameter].slope(best.x);
+    one.deviation = best.x - healthy_->x[static_cast<Index>(one.parameter)];
+  }
+}
+
+void Tracker::reset() {
+  kept_ = 0;
+  until_ = 0;
+  healthy_.reset();
+  near_ = choice_.file;
+  pool_.clear();
+  memory_ = {};
+  alarms_ = AlarmBook(choice_, settings_.thresholds);
+}
+
+void Tracker::carry(estimator::Carrier& carrier) {
+  const auto vector = [&carrier](Eigen::VectorXd& x) {
+    for (double& value : x) carrier.value(value);
+  };
+  carrier.fixed(u_V_);
+  carrier.fixed(y_m_);
+  carrier.value(kept_);
+  carrier.value(until_);
+  bool knows = healthy_.has_value();
+  carrier.value(knows);
+  if (carrier.restores()) {
+    healthy_.reset();
+    if (knows) healthy_ = Healthy{0.0, choice_.file};
+    if (kept_ > u_V_.size()) carrier.fail();
+  }
+  if (healthy_) {
+    carrier.value(healthy_->rms_m);
+    vector(healthy_->x);
+  }
+  vector(near_);
+  pool_.carry(carrier);
+  memory_.carry(carrier, choice_);
+  alarms_.carry(carrier, choice_);
+}
+
+bool teaches(const Window& window, const Choice& choice) {
+  for (std::size_t i = 0; i < choice.tracked; ++i) {
+    const Estimate& one = window.estimates[i];
+    const double slope = choice.parameters[i].slope(one.x);
+    if (!window.explained || !(one.std_error <= kLeastKnown * slope)) return false;
+  }
+  return window.explained;
 }
 
 Healthy learn(const std::vector<Window>& windows, const Choice& choice, double noise_floor_m,
               const std::string& where) {
   std::vector<double> rms_m;
   std::vector<std::vector<double>> x(choice.tracked);
-  std::string why = "has no whole window";
+  std::vector<std::string> why(choice.tracked, "has no whole window");
   for (const Window& window : windows) {
-    if (!window.valid) {
-      why = "has no usable window: " + window.why;
-      continue;
+    if (window.explained) rms_m.push_back(window.rms_m);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const Estimate& one = window.estimates[i];
+      const SearchParameter& p = choice.parameters[i];
+      if (!window.explained || !(one.std_error <= kLeastKnown * p.slope(one.x))) {
+        why[i] = "has no usable window: " + one.why;
+      } else {
+        x[i].push_back(one.x);
+      }
     }
-    rms_m.push_back(window.rms_m);
-    for (std::size_t i = 0; i < x.size(); ++i) x[i].push_back(window.estimates[i].x);
-  }
-  if (rms_m.empty()) {
-    throw config::schema::bad_data(where, why, "a healthy motion that tells the parameters");
   }
   Healthy healthy;
-  healthy.rms_m = std::max({median(rms_m), noise_floor_m, kLeastFloor_m});
   healthy.x = choice.file;
-  for (std::size_t i = 0; i < x.size(); ++i) healthy.x[static_cast<Index>(i)] = median(x[i]);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (x[i].empty()) {
+      throw config::schema::bad_data(where, why[i], "a healthy motion that tells the parameters");
+    }
+    healthy.x[static_cast<Index>(i)] = median(x[i]);
+  }
+  healthy.rms_m = std::max({median(rms_m), noise_floor_m, kLeastFloor_m});
   return healthy;
 }
 

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,6 +18,8 @@
 #include "tracking/alarm_book.h"
 #include "tracking/choice.h"
 #include "tracking/naming.h"
+#include "tracking/pool.h"
+#include "tracking/probe.h"
 #include "tracking/window_fit.h"
 
 namespace tracking {
@@ -26,8 +29,11 @@ struct Settings {
   double stride_s = 0.5;
   double observer_per_s = kObserver_per_s;
   double most_ratio = 1.2;       ///< of the healthy error, beyond which a window is invalid
-  double most_std_error = 0.05;  ///< search units: of the value, or of an effect's typical size
+  double most_std_error = 0.01;  ///< ratio, beyond which a value is invalid
+  double most_of_typical = 0.1;  ///< the same of an effect, over its typical size
+  std::int64_t pooled = 4;       ///< windows that a value is taken from while they agree (pool.h)
   Thresholds thresholds;
+  ProbeLimits probe;
 };
 
 /// What the rig is like without a fault.
@@ -40,6 +46,9 @@ struct Estimate {
   double x = 0.0;          ///< search value
   double value = 0.0;      ///< SI
   double std_error = 0.0;  ///< SI
+  double smallest = 0.0;   ///< change, SI, that this motion would show in 95 of 100 windows
+  bool valid = false;
+  std::string why;  ///< invalid: the reason
 };
 
 struct Window {
@@ -48,8 +57,10 @@ struct Window {
   std::vector<Estimate> estimates;  ///< of the tracked parameters, in their order
   Eigen::MatrixXd correlation;
   double rms_m = 0.0;
-  bool valid = false;
-  std::string why;           ///< invalid: the reason
+  bool explained = false;    ///< moves, and the model explains it
+  bool poor = false;         ///< it is the motion that does not tell
+  bool valid = false;        ///< all estimates are
+  std::string why;           ///< invalid: the first reason
   std::string part;          ///< what its latest part said, where that was looked at
   std::vector<Named> named;  ///< changes, in this window or its latest part
   int evaluations = 0;       ///< of the window's fit: groups of eight simulations
@@ -67,14 +78,32 @@ class Tracker {
   std::optional<Window> push(double t_s, double u_V, double y_m, bool first);
 
   [[nodiscard]] const AlarmBook& alarms() const { return alarms_; }
+  /// AlarmBook::forget_cleared().
+  void forget_cleared() { alarms_.forget_cleared(); }
+  [[nodiscard]] const std::optional<Healthy>& healthy() const { return healthy_; }
+  [[nodiscard]] const Choice& choice() const { return choice_; }
+
+  /// What motion within the limits of the settings would tell; a tenth of a second or so. Once the
+  /// healthy rig is known.
+  [[nodiscard]] std::optional<Probe> probe();
+
+  /// As at the start, the healthy rig forgotten.
+  void reset();
+  /// Bit for bit (carrier.h), after forget_cleared().
+  void carry(estimator::Carrier& carrier);
 
  private:
   [[nodiscard]] Cut latest(std::size_t samples) const;
   Window look(double t_s);
+  void estimate(Window& window, const WindowEstimate& found);
   void judge(Window& window, const Cut& cut, const WindowEstimate& found) const;
+  [[nodiscard]] bool moves(const Cut& cut) const;
+  [[nodiscard]] double noise_m() const;
   void look_at_part(Window& window);
   void tell(Window& window, const Cut& cut, const WindowEstimate& found);
+  void refine(Window& window) const;
 
+  plant_sim::ModelFile model_;
   const Choice choice_;
   Settings settings_;
   double sample_time_s_;
@@ -89,8 +118,13 @@ class Tracker {
   std::size_t until_ = 0;  ///< samples until the next look
   std::optional<Healthy> healthy_;
   Eigen::VectorXd near_;  ///< where the next search begins
+  Pool pool_;
+  Memory memory_;
   AlarmBook alarms_;
 };
+
+/// Whether a window may serve to learn from: explained, every parameter known to some per cent.
+[[nodiscard]] bool teaches(const Window& window, const Choice& choice);
 
 /// The medians over the windows of a record without a fault; what is not tracked is as in the file.
 /// Throws config::schema::Error (exit 65) when none is usable.

@@ -129,6 +129,7 @@ WindowEstimate WindowFit::fit(const Cut& cut, const std::vector<std::size_t>& fr
     out.x[static_cast<Index>(free[static_cast<std::size_t>(i)])] = solution.x[i];
   }
   out.std_error = known.std_error;
+  out.covariance = known.matrix;
   out.correlation = correlation_of(known.matrix);
   const MatrixXd inner = solution.jacobian.transpose() * solution.jacobian;
   out.likeness = correlation_of(inner);

@@ -30,11 +30,12 @@ struct Cut {
 };
 
 struct WindowEstimate {
-  Eigen::VectorXd x;            ///< every parameter; those that were held as they were given
-  Eigen::VectorXd std_error;    ///< of the free ones, search units; infinite: not seen
-  Eigen::MatrixXd correlation;  ///< of the free ones
-  Eigen::MatrixXd likeness;     ///< cosines between their effects on the position
-  std::vector<int> at_bound;    ///< -1, 0, +1 of the free ones
+  Eigen::VectorXd x;           ///< every parameter; those that were held as they were given
+  Eigen::VectorXd std_error;   ///< of the free ones, search units; infinite: not seen
+  Eigen::MatrixXd covariance;  ///< of the free ones
+  Eigen::MatrixXd correlation;
+  Eigen::MatrixXd likeness;   ///< cosines between their effects on the position
+  std::vector<int> at_bound;  ///< -1, 0, +1 of the free ones
   double rms_m = 0.0;
   double chi_square = 0.0;  ///< sum of squares / sigma^2
   int evaluations = 0;      ///< groups of eight simulations

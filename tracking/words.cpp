@@ -59,28 +59,21 @@ std::string unexplained_words(double rms_m, double healthy_m, double most_ratio)
          length_words(healthy_m) + ", limit " + number("%.3g", most_ratio) + " times that";
 }
 
-std::string unseen_words(const Choice& choice, const WindowEstimate& found, double most_std_error) {
-  for (std::size_t i = 0; i < choice.tracked; ++i) {
-    if (found.at_bound[i] != 0) {
-      return name_words(choice.parameters[i].name) + " ran to the end of its range";
-    }
-  }
-  for (std::size_t i = 0; i < choice.tracked; ++i) {
-    const auto at = static_cast<Index>(i);
-    const SearchParameter& p = choice.parameters[i];
-    const double error = found.std_error[at];
-    if (error <= most_std_error) continue;
-    const std::string known = name_words(p.name) + " is known " + error_words(p, error);
-    const Index partner = alike(found.likeness, at);
-    if (partner >= 0 && std::abs(found.likeness(at, partner)) > kAlike) {
-      return "the motion does not separate " + name_words(p.name) + " from " +
-             name_words(choice.parameters[static_cast<std::size_t>(partner)].name) +
-             " (their effects are alike to " +
-             number("%.4f", std::abs(found.likeness(at, partner))) + "): " + known;
-    }
+std::string unseen_words(const Choice& choice, const WindowEstimate& found, std::size_t i,
+                         double std_error, double most) {
+  const SearchParameter& p = choice.parameters[i];
+  if (found.at_bound[i] != 0) return name_words(p.name) + " ran to the end of its range";
+  if (std_error <= most) return {};
+  const std::string known = name_words(p.name) + " is known " + error_words(p, std_error);
+  const auto at = static_cast<Index>(i);
+  const Index partner = alike(found.likeness, at);
+  if (partner < 0 || !(std::abs(found.likeness(at, partner)) > kAlike)) {
     return "the motion does not show it: " + known;
   }
-  return {};
+  return "the motion does not separate " + name_words(p.name) + " from " +
+         name_words(choice.parameters[static_cast<std::size_t>(partner)].name) +
+         " (their effects are alike to " + number("%.4f", std::abs(found.likeness(at, partner))) +
+         "): " + known;
 }
 
 std::string part_words(const Choice& choice, const WindowEstimate& found, double length_s) {

@@ -17,9 +17,10 @@ namespace tracking {
 // Why a window is invalid.
 [[nodiscard]] std::string still_words(double moved_m, double noise_floor_m, double window_s);
 [[nodiscard]] std::string unexplained_words(double rms_m, double healthy_m, double most_ratio);
-/// Empty when every tracked parameter is seen, within bounds, to `most_std_error`.
+/// Of tracked parameter `i`: empty when it is within its bounds and `std_error` (search units) is
+/// at most `most`.
 [[nodiscard]] std::string unseen_words(const Choice& choice, const WindowEstimate& found,
-                                       double most_std_error);
+                                       std::size_t i, double std_error, double most);
 [[nodiscard]] std::string part_words(const Choice& choice, const WindowEstimate& found,
                                      double length_s);
 

@@ -105,6 +105,50 @@ TEST(Isolation, SaysThatTheValveGainWouldExplainAChangeOfPressureAsWell) {
   }
 }
 
+TEST(Isolation, GivesTheMassAndTheSquareLawInTheGroupOfADampingThatTheyLookLike) {
+  truth::Case heavier = stand(25.0);
+  fault(heavier, 15.2, &Plant::mass_kg, 1.2);
+  truth::Case rougher = stand(25.0);
+  rougher.changes.push_back({15.2, nullptr, &truth::Hidden::quadratic_N_s2_per_m2, 2000.0});
+  const std::pair<truth::Case, const char*> cases[] = {
+      {heavier, "mass_kg"}, {rougher, "quadratic_damping.coefficient_N_s2_per_m2"}};
+  for (const auto& [of, name] : cases) {
+    const Tracked t = tracked(truth::simulate(of));
+    ASSERT_EQ(t.alarms.size(), 1u) << name;
+    EXPECT_EQ(t.name(t.alarms[0]), "damping_N_s_per_m");
+    EXPECT_TRUE(has_rival(t.alarms[0], name)) << name;
+  }
+}
+
+TEST(Isolation, SeparatesTheNeedleValveThatIsClosedByFourFifths) {
+  // The slaves as config/models/rig_2000psi_slaves.toml assumes them; the instruments of the rig.
+  truth::Case of = stand(40.0);
+  of.plant.supply_pressure_Pa = 13.79e6;
+  of.plant.valve_gain_m_per_V = 1.14011e-5;
+  of.kp_V_per_m = 600.0;
+  of.encoder_m = 2.5e-6;
+  of.noise_m = 0.2e-6;
+  of.hidden.slaves_kg = 20.0;
+  of.hidden.slaves_N_s_per_m = 2000.0;
+  of.hidden.needle_N_s2_per_m2 = 20.0;
+  of.changes.push_back({20.0, nullptr, &truth::Hidden::needle_N_s2_per_m2, 500.0});
+  plant_sim::ModelFile model = printed_model();
+  *model.value("supply_pressure_Pa") = of.plant.supply_pressure_Pa;
+  *model.value("valve_gain_m_per_V") = of.plant.valve_gain_m_per_V;
+  *model.value("coupled_slaves.mass_kg") = 20.0;
+  *model.value("coupled_slaves.damping_N_s_per_m") = 2000.0;
+  *model.value("coupled_slaves.needle_N_s2_per_m2") = 20.0;
+  const Tracked t =
+      tracked(truth::simulate(of), {"supply_pressure_Pa", "coupled_slaves.needle_N_s2_per_m2"}, {},
+              model, 0.75e-6);
+  ASSERT_EQ(t.alarms.size(), 1u);
+  EXPECT_EQ(t.name(t.alarms[0]), "coupled_slaves.needle_N_s2_per_m2");
+  const auto& p = t.choice.parameters[t.alarms[0].named.parameter];
+  const double needle = p.value(t.alarms[0].named.x);
+  EXPECT_NEAR(needle, 500.0, 5.0 * t.alarms[0].named.std_error * p.slope(t.alarms[0].named.x));
+  EXPECT_NEAR(needle, 500.0, 100.0);
+}
+
 TEST(Isolation, NamesNothingWhileTheRigIsHealthy) {
   for (const std::size_t seed : {1, 2, 3}) {
     EXPECT_TRUE(tracked(truth::simulate(stand(60.0, seed))).alarms.empty()) << seed;

@@ -51,8 +51,9 @@ inline plant_sim::ModelFile printed_model() {
 }
 
 inline Tracked tracked(const truth::Record& record, const std::vector<std::string>& names = usual(),
-                       const iso::Settings& settings = {}) {
-  const plant_sim::ModelFile model = printed_model();
+                       const iso::Settings& settings = {},
+                       const plant_sim::ModelFile& model = printed_model(),
+                       double floor_m = kFloor_m) {
   Tracked out;
   out.choice = iso::choose(model, names, "parameters");
   const auto run = [&](iso::Tracker& tracker, double until_s) {
@@ -63,9 +64,9 @@ inline Tracked tracked(const truth::Record& record, const std::vector<std::strin
     }
     return windows;
   };
-  iso::Tracker learning(model, out.choice, settings, truth::kSample_s, kFloor_m);
-  out.healthy = iso::learn(run(learning, kHealthy_s), out.choice, kFloor_m, "truth");
-  iso::Tracker judging(model, out.choice, settings, truth::kSample_s, kFloor_m);
+  iso::Tracker learning(model, out.choice, settings, truth::kSample_s, floor_m);
+  out.healthy = iso::learn(run(learning, kHealthy_s), out.choice, floor_m, "truth");
+  iso::Tracker judging(model, out.choice, settings, truth::kSample_s, floor_m);
   judging.take(out.healthy);
   out.windows = run(judging, INFINITY);
   out.alarms = judging.alarms().alarms();
