@@ -44,13 +44,14 @@ void add_reload(CLI::App& command, int& exit_code);
 void add_replay(CLI::App& command, int& exit_code);
 void add_reproduce(CLI::App& command, int& exit_code);
 void add_reset(CLI::App& command, int& exit_code);
-void add_select(CLI::App& command, int& exit_code);
 void add_scorecard(CLI::App& command, int& exit_code);
+void add_select(CLI::App& command, int& exit_code);
 void add_shelve(CLI::App& command, int& exit_code);
 void add_simulate(CLI::App& command, int& exit_code);
 void add_start(CLI::App& command, int& exit_code);
 void add_status(CLI::App& command, int& exit_code);
 void add_stop(CLI::App& command, int& exit_code);
+void add_train(CLI::App& command, int& exit_code);
 void add_unshelve(CLI::App& command, int& exit_code);
 
 }  // namespace workbench

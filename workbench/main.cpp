@@ -41,6 +41,7 @@ constexpr workbench::Command kCommands[] = {
     {"calibrate", "learn alarm bands from a healthy record", workbench::add_calibrate},
     {"scorecard", "what each method detects, how late, and how often it cries wolf",
      workbench::add_scorecard},
+    {"train", "teach the fault detection from records, healthy and faulty", workbench::add_train},
     {"backtest", "which alarms new rules would have told on old logs", workbench::add_backtest},
     {"promote", "a better model and its bands into the running daemon", workbench::add_promote},
     {"replay", "from the evidence of an alarm to the same alarm", workbench::add_replay},

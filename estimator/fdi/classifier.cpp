@@ -161,7 +161,10 @@ AlarmState Classifier::own_alarm(std::size_t /*number*/) const noexcept {
       }
     }
     state.direction = static_cast<std::int8_t>(likely > 1 ? 0 : found.direction);
-    fault_.confidence = answer_.probability;
+    fault_.confidence = 0.0;  // several laws may have one name
+    for (std::size_t i = 0; i < regions_.size(); ++i) {
+      if (config_.classes[i].name == found.name) fault_.confidence += probabilities_[i];
+    }
     if (likely > 1) {
       fault_.group = std::span<const std::string_view>(group_.data(), likely);
     } else {
@@ -171,7 +174,7 @@ AlarmState Classifier::own_alarm(std::size_t /*number*/) const noexcept {
                   found.direction > 0   ? " risen"
                   : found.direction < 0 ? " fallen"
                                         : "",
-                  answer_.probability);
+                  fault_.confidence);
   }
   state.fault = &fault_;
   state.reason = reason_;

@@ -10,7 +10,7 @@
 // The alarm comes after `confirm` blocks in a row that are not healthy, names the class that they
 // agree on, and gives the classes of 5 % or more as ambiguity group when there are several. A
 // fault of another size than those of the training records is often none of these: train several
-// sizes under one name.
+// sizes under one name, each is a law of its own.
 // Source: T. Hastie, R. Tibshirani, J. Friedman, The Elements of Statistical Learning, 4.3; B. D.
 // Ripley, Pattern Recognition and Neural Networks, 1996, 2.1 (doubt and outliers).
 #pragma once
