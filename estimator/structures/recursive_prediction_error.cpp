@@ -17,6 +17,7 @@ constexpr int kLength = 64;  // of a series: delay and order fit
 static_assert(kLength > kMaxDelay + kMaxOrder);
 constexpr double kFirstForgetting = 0.95;
 constexpr double kForgettingRate = 0.99;
+constexpr int kHold = 20;  // updates for each coefficient, before the noise model moves
 constexpr int kHalvings = 12;
 constexpr double kMostRoot = 0.999;
 constexpr double kVarianceMemory = 0.999;
@@ -103,8 +104,9 @@ struct RecursivePredictionError::State {
     const bool plain = o.extended;
     for (int i = 0; i < n.a; ++i) *psi++ = -(plain ? now.y : now.y_dc)[i];
     for (int i = 0; i < n.b; ++i) *psi++ = (plain ? now.u : now.u_dc)[n.k + i];
-    for (int i = 0; i < n.c; ++i) *psi++ = (plain ? now.e : now.e_c)[i];
-    for (int i = 0; i < n.d; ++i) *psi++ = -(plain ? now.v : now.v_c)[i];
+    const bool hold = n.f == 0 && now.updates < kHold * n.size();
+    for (int i = 0; i < n.c; ++i) *psi++ = hold ? 0.0 : (plain ? now.e : now.e_c)[i];
+    for (int i = 0; i < n.d; ++i) *psi++ = hold ? 0.0 : -(plain ? now.v : now.v_c)[i];
     for (int i = 0; i < n.f; ++i) *psi++ = -(plain ? now.w : now.w_dc)[i];
     if (n.constant) *psi++ = plain ? 1.0 : now.one_dc[0];
   }

@@ -27,7 +27,8 @@ constexpr double kKnownBefore_s = 0.25;  // measured samples before a free run
 constexpr int kLeastPeriods = 3;
 constexpr int kLeastPeriod = 20;  // samples
 constexpr int kMostDelay = 10;
-constexpr double kClear = 10.0;  // of BIC: "very strong" evidence (Kass, Raftery 1995)
+constexpr double kClear = 10.0;   // of BIC: "very strong" evidence (Kass, Raftery 1995)
+constexpr double kReached = 1.5;  // of the batch fit's free run
 constexpr int kWhitenessLags = 20;
 
 /// The record as it is compared on.
@@ -275,6 +276,10 @@ void run_on_line(Judged& judged, const Ground& ground) {
   found.fitted.model = structures::from_values(*orders, filter.value());
   score_free_runs(found, ground);
   judged.on_line.free_run_rms_m = found.free_run_rms_m;
+  if (!(found.free_run_rms_m <= kReached * judged.free_run_rms_m)) {
+    judged.on_line.sound = false;
+    judged.on_line.why = "its recursion does not come to the batch fit on this record";
+  }
 }
 
 void test_closed_loop(Judged& judged, const Ground& ground) {

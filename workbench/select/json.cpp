@@ -88,6 +88,7 @@ std::string to_json(const Outcome& o) {
                    {"scored_periods", o.held_out_periods},
                    {"noise_floor_m", number(o.noise_floor_m)},
                    {"recommended", name_of(o, o.recommended)},
+                   {"on_line", name_of(o, o.watch)},
                    {"most_accurate", name_of(o, o.most_accurate)},
                    {"reason", o.reason},
                    {"bias", o.bias_words},

@@ -40,7 +40,7 @@ struct Request {
 
 /// Whether the coefficients can follow sample by sample, and how.
 struct OnLine {
-  bool sound = false;
+  bool sound = false;  ///< in theory, and it came to the batch fit on this record
   std::string method;  ///< "RLS", "RML, RELS", "RPEM", "none"
   std::string why;     ///< none: in words
   /// Run over the fitted part, scored like the batch fit; NaN where there is none.
@@ -86,6 +86,7 @@ struct Outcome {
   std::vector<Judged> judged;  ///< best first
   int recommended = -1;        ///< index; -1: none represents the record
   int most_accurate = -1;
+  int watch = -1;  ///< the one to follow on line; -1: none
   std::string reason;
   std::string bias_words;
   std::vector<std::string> notes;

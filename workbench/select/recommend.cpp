@@ -33,9 +33,9 @@ bool preferred(const Judged& a, const Judged& b) {
   return spread_of(a) < spread_of(b);
 }
 
-int choose(const Outcome& outcome, bool on_line) {
+/// Of those that are as good as the best: of all, or of those that can follow on line.
+int choose(const Outcome& outcome, bool on_line, double limit) {
   int best = -1;
-  const double limit = kAsGood * cost_of(outcome.judged.front());
   for (std::size_t i = 0; i < outcome.judged.size(); ++i) {
     const Judged& one = outcome.judged[i];
     if (!one.represents || !(cost_of(one) <= limit)) continue;
@@ -66,7 +66,9 @@ std::string why(const Outcome& outcome, bool on_line) {
     }
   }
   if (on_line) return out + "; it can follow on line by " + method_words(chosen.on_line.method);
-  return out + "; none that is as good can follow on line: " + chosen.on_line.why;
+  const std::string& why_not = chosen.on_line.why;
+  return out + "; none that is as good can follow on line" +
+         (why_not.empty() ? "" : ": " + why_not);
 }
 
 /// The bias of the recommended structure's coefficients, or of the ARX nearest to it.
@@ -110,7 +112,7 @@ std::string bias_words(const Outcome& outcome) {
 void recommend(Outcome& outcome) {
   std::stable_sort(outcome.judged.begin(), outcome.judged.end(),
                    [](const Judged& a, const Judged& b) { return cost_of(a) < cost_of(b); });
-  outcome.recommended = outcome.most_accurate = -1;
+  outcome.recommended = outcome.most_accurate = outcome.watch = -1;
   outcome.bias_words = bias_words(outcome);
   if (outcome.judged.empty() || !outcome.judged.front().represents) {
     outcome.reason =
@@ -119,9 +121,16 @@ void recommend(Outcome& outcome) {
     return;
   }
   outcome.most_accurate = 0;
-  outcome.recommended = choose(outcome, true);
+  const double limit = kAsGood * cost_of(outcome.judged.front());
+  outcome.recommended = outcome.watch = choose(outcome, true, limit);
   const bool on_line = outcome.recommended >= 0;
-  if (!on_line) outcome.recommended = choose(outcome, false);
+  if (!on_line) outcome.recommended = choose(outcome, false, limit);
+  const auto best_on_line =
+      std::find_if(outcome.judged.begin(), outcome.judged.end(),
+                   [](const Judged& one) { return one.represents && one.on_line.sound; });
+  if (!on_line && best_on_line != outcome.judged.end()) {
+    outcome.watch = choose(outcome, true, kAsGood * cost_of(*best_on_line));
+  }
   outcome.reason = why(outcome, on_line);
   outcome.bias_words = bias_words(outcome);
 }

@@ -40,6 +40,11 @@ std::string bias(const Judged& judged) {
   return "-";
 }
 
+std::string on_line(const OnLine& form) {
+  if (form.sound || form.method == "none") return form.method;
+  return form.method + ", not here";
+}
+
 double least_bic(const Outcome& outcome) {
   double out = std::numeric_limits<double>::infinity();
   for (const Judged& one : outcome.judged) {
@@ -59,7 +64,7 @@ std::string row(const Judged& one, double bic, const char* mark) {
       std::isfinite(one.cost_m2) && one.represents ? line("%.2e", one.cost_m2).c_str() : "-",
       std::isfinite(one.bic) ? line("%.0f", one.bic - bic).c_str() : "-",
       condition(one.fitted.condition).c_str(), spread(one.spread).c_str(), bias(one).c_str(),
-      one.on_line.method.c_str());
+      on_line(one.on_line).c_str());
 }
 
 }  // namespace
@@ -96,6 +101,13 @@ std::string to_text(const Outcome& o) {
            o.reason.substr(1) + ".\n";
   } else {
     out += o.reason + ".\n";
+  }
+  if (o.watch >= 0 && o.watch != o.recommended) {
+    const Judged& one = o.judged[static_cast<std::size_t>(o.watch)];
+    out += "to follow on line: " + one.candidate.name + ", by " + method_words(one.on_line.method) +
+           "; its free run errs " +
+           number_words(100.0 * (one.free_run_rms_m / o.judged.front().free_run_rms_m - 1.0), 2) +
+           " % more than the best.\n";
   }
   if (!o.bias_words.empty()) out += "bias: " + o.bias_words + ".\n";
   for (const std::string& note : o.notes) out += "note: " + note + ".\n";

@@ -190,6 +190,24 @@ TEST_F(Select, RunsTheRecursiveFormsToTheBatchResult) {
   }
 }
 
+TEST_F(Select, NamesAnotherToFollowOnLineWhereTheBestCannot) {
+  // A valve that saturates: only the network represents it well.
+  std::mt19937_64 random(9);
+  std::normal_distribution<double> normal;
+  data::Record record;
+  double y = 0.0, u = 0.0;
+  for (int t = 0; t < 3000; ++t) {
+    y = 0.8 * y + 1e-3 * std::tanh(3.0 * u) + 1e-6 * normal(random);
+    u = normal(random);
+    record.y_m.push_back(y);
+    record.u_V.push_back(u);
+  }
+  const json out = run({write(record), "--structures", "arx111,arx411,narx111/3,ss2"});
+  EXPECT_EQ(out["recommended"], "narx111/3");
+  EXPECT_EQ(out["on_line"].get<std::string>().substr(0, 3), "arx");
+  EXPECT_THAT(text_, HasSubstr("to follow on line: arx"));
+}
+
 TEST_F(Select, RefusesInOneClearLine) {
   std::string line;
   const std::string good = write(data::closed_loop(2000, 1e-6, 5e-6, 8));
