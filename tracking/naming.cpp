@@ -14,18 +14,24 @@ using Eigen::VectorXd;
 class Namer {
  public:
   Namer(WindowFit& fit, const Choice& choice, const Cut& cut, const WindowEstimate& found,
-        const VectorXd& healthy, double sigma_m)
+        const VectorXd& healthy, double sigma_m, std::size_t measured)
       : fit_(fit),
         choice_(choice),
         cut_(cut),
         found_(found),
         healthy_(healthy),
+        measured_(measured),
+        base_(healthy),
         // The window's own noise: what is beyond it is not chance.
         sigma_m_(std::min(sigma_m, found.rms_m)),
-        chi_square_(found.chi_square * sigma_m * sigma_m / (sigma_m_ * sigma_m_)) {}
+        chi_square_(found.chi_square * sigma_m * sigma_m / (sigma_m_ * sigma_m_)) {
+    if (measured != kNotMeasured)
+      base_[static_cast<Index>(measured)] = found.x[static_cast<Index>(measured)];
+  }
 
   std::vector<Named> run(const Thresholds& thresholds, Memory& memory) {
     std::vector<Named> named;
+    std::vector<Named> read;
     std::vector<signed char> directions(choice_.tracked, 0);
     for (std::size_t i = 0; i < choice_.tracked; ++i) {
       const auto at = static_cast<Index>(i);
@@ -33,7 +39,7 @@ class Namer {
       const double needed =
           std::max(least_of(choice_, i, thresholds), thresholds.sure * one.std_error);
       if (std::abs(one.deviation) < needed) continue;
-      named.push_back(one);
+      (i == measured_ ? read : named).push_back(one);
       directions[i] = one.deviation > 0.0 ? 1 : -1;
     }
     if (memory.left > 0 && directions == memory.directions) {
@@ -44,6 +50,7 @@ class Namer {
       const VectorXd others = others_of(named);
       for (Named& one : named) find_rivals(one, others);
     }
+    named.insert(named.end(), read.begin(), read.end());
     memory = {directions, Memory::kAnew, named};
     return named;
   }
@@ -67,14 +74,14 @@ class Namer {
   bool one_cause(std::vector<Named>& named) {
     std::vector<Rival> causes;
     for (std::size_t a = choice_.tracked; a < choice_.parameters.size(); ++a) {
-      const WindowEstimate alone = fit_.fit(cut_, {a}, healthy_, sigma_m_);
+      const WindowEstimate alone = fit_.fit(cut_, {a}, base_, sigma_m_);
       if (alone.chi_square < chi_square_ + kChance) causes.push_back({name(a), value(a, alone.x)});
     }
     if (causes.empty()) return false;
     std::size_t best = 0;
     double least = INFINITY;
     for (std::size_t i = 0; i < named.size(); ++i) {
-      const auto one = fit_.fit(cut_, {named[i].parameter}, healthy_, sigma_m_);
+      const auto one = fit_.fit(cut_, {named[i].parameter}, base_, sigma_m_);
       if (one.chi_square >= least) continue;
       least = one.chi_square;
       best = i;
@@ -86,7 +93,7 @@ class Namer {
 
   /// What has changed as it was found, all else healthy.
   VectorXd others_of(const std::vector<Named>& named) const {
-    VectorXd x = healthy_;
+    VectorXd x = base_;
     for (const Named& one : named) x[static_cast<Index>(one.parameter)] = one.x;
     return x;
   }
@@ -112,7 +119,8 @@ class Namer {
       const auto at = static_cast<Index>(i);
       const bool open = i == rival || i < choice_.tracked;
       if (open) prior_sd[at] = std::numeric_limits<double>::infinity();
-      if (i != instead_of && (open || prior_sd[at] <= kMostUncertain_ratio)) free.push_back(i);
+      if (i != instead_of && i != measured_ && (open || prior_sd[at] <= kMostUncertain_ratio))
+        free.push_back(i);
     }
     return fit_.fit(cut_, free, from, sigma_m_, prior_sd);
   }
@@ -122,6 +130,8 @@ class Namer {
   const Cut& cut_;
   const WindowEstimate& found_;
   const VectorXd& healthy_;
+  std::size_t measured_;
+  VectorXd base_;  ///< healthy, but for what was read
   double sigma_m_;
   double chi_square_;
 };
@@ -138,8 +148,9 @@ double least_of(const Choice& choice, std::size_t parameter, const Thresholds& t
 
 std::vector<Named> name_changes(WindowFit& fit, const Choice& choice, const Cut& cut,
                                 const WindowEstimate& found, const VectorXd& healthy,
-                                double sigma_m, const Thresholds& thresholds, Memory& memory) {
-  return Namer(fit, choice, cut, found, healthy, sigma_m).run(thresholds, memory);
+                                double sigma_m, const Thresholds& thresholds, Memory& memory,
+                                std::size_t measured) {
+  return Namer(fit, choice, cut, found, healthy, sigma_m, measured).run(thresholds, memory);
 }
 
 void carry(estimator::Carrier& carrier, std::vector<Named>& named, const Choice& choice) {

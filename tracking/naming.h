@@ -62,11 +62,15 @@ struct Memory {
   void carry(estimator::Carrier& carrier, const Choice& choice);
 };
 
+inline constexpr std::size_t kNotMeasured = static_cast<std::size_t>(-1);
+
+/// `measured`: a tracked parameter that was read, not fitted, and so has no rivals.
 /// `healthy`: search values of every parameter; `found`: the fit of the tracked ones to `cut`.
 [[nodiscard]] std::vector<Named> name_changes(WindowFit& fit, const Choice& choice, const Cut& cut,
                                               const WindowEstimate& found,
                                               const Eigen::VectorXd& healthy, double sigma_m,
-                                              const Thresholds& thresholds, Memory& memory);
+                                              const Thresholds& thresholds, Memory& memory,
+                                              std::size_t measured = kNotMeasured);
 
 /// Bit for bit (carrier.h).
 void carry(estimator::Carrier& carrier, std::vector<Named>& named, const Choice& choice);

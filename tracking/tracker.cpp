@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <string_view>
 
 #include "config/schema/error.h"
 #include "tracking/least_floor.h"
@@ -20,6 +21,8 @@ constexpr double kParts[] = {0.75, 0.5, 0.25};
 constexpr double kChanceOfRms = 3.5;
 /// A rod that moves less than this many noise floors tells nothing.
 constexpr double kLeastMotion = 10.0;
+/// Of a reading: its standard error is not less, whatever its noise.
+constexpr double kLeastOfReading = 1e-4;
 /// Of the healthy error: what the noise floor is at least taken for.
 constexpr double kLeastOfHealthy = 0.2;
 /// Standard errors: one-sided, 95 %.
@@ -35,6 +38,38 @@ double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+std::size_t tracked_index(const Choice& choice, std::string_view name) {
+  for (std::size_t i = 0; i < choice.tracked; ++i) {
+    if (choice.parameters[i].name == name) return i;
+  }
+  return kNotMeasured;
+}
+
+/// The matrix with a row and a column more at `at`, `diagonal` where they meet.
+Eigen::MatrixXd widened(const Eigen::MatrixXd& matrix, Index at, double diagonal) {
+  const Index n = matrix.rows();
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n + 1, n + 1);
+  const auto place = [at](Index i) { return i < at ? i : i + 1; };
+  for (Index i = 0; i < n; ++i) {
+    for (Index j = 0; j < n; ++j) out(place(i), place(j)) = matrix(i, j);
+  }
+  out(at, at) = diagonal;
+  return out;
+}
+
+/// What was fitted, and a reading of the parameter `held` in its place among the tracked.
+WindowEstimate with_reading(WindowEstimate found, std::size_t held, double std_error) {
+  const auto at = static_cast<Index>(held);
+  found.covariance = widened(found.covariance, at, std_error * std_error);
+  found.correlation = widened(found.correlation, at, 1.0);
+  found.likeness = widened(found.likeness, at, 1.0);
+  found.at_bound.insert(found.at_bound.begin() + static_cast<std::ptrdiff_t>(held), 0);
+  const Eigen::VectorXd fitted = found.std_error;
+  found.std_error.resize(fitted.size() + 1);
+  found.std_error << fitted.head(at), std_error, fitted.tail(fitted.size() - at);
+  return found;
 }
 
 double motion_m(const Cut& cut) {
@@ -54,10 +89,12 @@ Tracker::Tracker(const plant_sim::ModelFile& model, const Choice& choice, const 
       noise_floor_m_(std::max(noise_floor_m, kLeastFloor_m)),
       lead_(samples_in(kLead_s, sample_time_s)),
       window_(samples_in(settings.window_s, sample_time_s)),
+      supply_(tracked_index(choice, "supply_pressure_Pa")),
       stride_(std::max<std::size_t>(1, samples_in(settings.stride_s, sample_time_s))),
       fit_(model, choice.parameters, sample_time_s, lead_ + window_, settings.observer_per_s),
       u_V_(2 * (lead_ + window_)),
       y_m_(u_V_.size()),
+      supply_Pa_(u_V_.size(), std::numeric_limits<double>::quiet_NaN()),
       near_(choice.file),
       pool_(choice.tracked, (window_ + stride_ - 1) / stride_,
             static_cast<std::size_t>(std::max<std::int64_t>(1, settings.pooled))),
@@ -68,7 +105,8 @@ void Tracker::take(const Healthy& healthy) {
   near_ = healthy.x;
 }
 
-std::optional<Window> Tracker::push(double t_s, double u_V, double y_m, bool first) {
+std::optional<Window> Tracker::push(double t_s, double u_V, double y_m, bool first,
+                                    double supply_Pa) {
   const std::size_t needed = lead_ + window_;
   if (first) {
     kept_ = 0;
@@ -79,10 +117,12 @@ std::optional<Window> Tracker::push(double t_s, double u_V, double y_m, bool fir
     const auto half = static_cast<std::ptrdiff_t>(needed);
     std::copy(u_V_.end() - half, u_V_.end(), u_V_.begin());
     std::copy(y_m_.end() - half, y_m_.end(), y_m_.begin());
+    std::copy(supply_Pa_.end() - half, supply_Pa_.end(), supply_Pa_.begin());
     kept_ = needed;
   }
   u_V_[kept_] = u_V;
   y_m_[kept_] = y_m;
+  supply_Pa_[kept_] = supply_Pa;
   ++kept_;
   if (until_ > 0) --until_;
   if (until_ > 0 || kept_ < needed) return std::nullopt;
@@ -95,6 +135,32 @@ Cut Tracker::latest(std::size_t samples) const {
   return {u_V_.data() + from, y_m_.data() + from, lead_, samples};
 }
 
+std::size_t Tracker::measured(std::size_t samples) const {
+  if (supply_ == kNotMeasured) return supply_;
+  const auto last = supply_Pa_.begin() + static_cast<std::ptrdiff_t>(kept_);
+  const bool read = std::all_of(last - static_cast<std::ptrdiff_t>(samples), last,
+                                [](double value) { return value > 0.0; });
+  return read ? supply_ : kNotMeasured;
+}
+
+WindowEstimate Tracker::fit(const Cut& cut, Eigen::VectorXd near, double sigma_m) {
+  std::vector<std::size_t> free = choice_.tracked_indices();
+  const std::size_t held = measured(cut.samples);
+  if (held == kNotMeasured) return fit_.fit(cut, free, near, sigma_m);
+  const SearchParameter& p = choice_.parameters[held];
+  const Eigen::Map<const Eigen::ArrayXd> read_Pa(supply_Pa_.data() + kept_ - cut.samples,
+                                                 static_cast<Index>(cut.samples));
+  const double mean_Pa = read_Pa.mean();
+  const auto count = static_cast<double>(cut.samples);
+  near[static_cast<Index>(held)] = p.search(mean_Pa);
+  const double error_Pa =
+      std::max(std::sqrt((read_Pa - mean_Pa).square().sum() / (count * (count - 1.0))),
+               kLeastOfReading * mean_Pa);
+  free.erase(free.begin() + static_cast<std::ptrdiff_t>(held));
+  const WindowEstimate found = fit_.fit(cut, free, near, sigma_m);
+  return with_reading(found, held, error_Pa / p.slope(near[static_cast<Index>(held)]));
+}
+
 Window Tracker::look(double t_s) {
   Window window;
   window.t_s = t_s;
@@ -102,7 +168,7 @@ Window Tracker::look(double t_s) {
   const Cut cut = latest(window_);
   const double sigma_m = healthy_ ? healthy_->rms_m : noise_floor_m_;
   const auto begin = std::chrono::steady_clock::now();
-  const WindowEstimate found = fit_.fit(cut, choice_.tracked_indices(), near_, sigma_m);
+  const WindowEstimate found = fit(cut, near_, sigma_m);
   window.fit_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   window.evaluations = found.evaluations;
   window.rms_m = found.rms_m;
@@ -193,7 +259,7 @@ void Tracker::look_at_part(Window& window) {
   for (const double share : kParts) {
     const auto samples = static_cast<std::size_t>(share * static_cast<double>(window_));
     const Cut cut = latest(samples);
-    const WindowEstimate part = fit_.fit(cut, choice_.tracked_indices(), near, healthy_->rms_m);
+    const WindowEstimate part = fit(cut, near, healthy_->rms_m);
     const double most = std::max(
         settings_.most_ratio, 1.0 + kChanceOfRms / std::sqrt(2.0 * static_cast<double>(samples)));
     if (part.rms_m > most * healthy_->rms_m) continue;
@@ -209,7 +275,7 @@ void Tracker::tell(Window& window, const Cut& cut, const WindowEstimate& found) 
   const bool whole = cut.samples == window_;
   Memory once;  // the rivals of a part are not those of the whole window
   window.named = name_changes(fit_, choice_, cut, found, healthy_->x, healthy_->rms_m,
-                              settings_.thresholds, whole ? memory_ : once);
+                              settings_.thresholds, whole ? memory_ : once, measured(cut.samples));
   if (whole) refine(window);
   std::vector<Seen> seen;
   for (std::size_t i = 0; i < choice_.tracked; ++i) {
@@ -244,6 +310,7 @@ void Tracker::carry(estimator::Carrier& carrier) {
   };
   carrier.fixed(u_V_);
   carrier.fixed(y_m_);
+  carrier.fixed(supply_Pa_);
   carrier.value(kept_);
   carrier.value(until_);
   bool knows = healthy_.has_value();

@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -75,7 +76,10 @@ class Tracker {
   /// From now on windows are judged and changes named; before, they are only fitted.
   void take(const Healthy& healthy);
   /// The window that ends with this sample, when one does. `first`: samples before it are missing.
-  std::optional<Window> push(double t_s, double u_V, double y_m, bool first);
+  /// Where a reading of the supply pressure comes with every sample of a window, it takes the place
+  /// of that parameter's fit.
+  std::optional<Window> push(double t_s, double u_V, double y_m, bool first,
+                             double supply_Pa = std::numeric_limits<double>::quiet_NaN());
 
   [[nodiscard]] const AlarmBook& alarms() const { return alarms_; }
   /// AlarmBook::forget_cleared().
@@ -94,6 +98,10 @@ class Tracker {
 
  private:
   [[nodiscard]] Cut latest(std::size_t samples) const;
+  /// Fits the tracked parameters from `near`; a measured one is held to its mean.
+  [[nodiscard]] WindowEstimate fit(const Cut& cut, Eigen::VectorXd near, double sigma_m);
+  /// The parameter that was read in all of the latest samples; kNotMeasured: none.
+  [[nodiscard]] std::size_t measured(std::size_t samples) const;
   Window look(double t_s);
   void estimate(Window& window, const WindowEstimate& found);
   void judge(Window& window, const Cut& cut, const WindowEstimate& found) const;
@@ -110,12 +118,14 @@ class Tracker {
   double noise_floor_m_;
   std::size_t lead_;
   std::size_t window_;
+  std::size_t supply_;  ///< index of the supply pressure where it is tracked; else kNotMeasured
   std::size_t stride_;
   WindowFit fit_;
   std::vector<double> u_V_;  ///< the latest samples, twice as long as needed
   std::vector<double> y_m_;
-  std::size_t kept_ = 0;   ///< samples since the last gap that are still there
-  std::size_t until_ = 0;  ///< samples until the next look
+  std::vector<double> supply_Pa_;  ///< NaN: not read
+  std::size_t kept_ = 0;           ///< samples since the last gap that are still there
+  std::size_t until_ = 0;          ///< samples until the next look
   std::optional<Healthy> healthy_;
   Eigen::VectorXd near_;  ///< where the next search begins
   Pool pool_;

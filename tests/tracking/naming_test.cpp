@@ -149,6 +149,31 @@ TEST(Isolation, SeparatesTheNeedleValveThatIsClosedByFourFifths) {
   EXPECT_NEAR(needle, 500.0, 100.0);
 }
 
+TEST(Isolation, TellsValveGainFromSupplyPressureWithAReadingOfThePressure) {
+  const std::vector<std::string> names{"supply_pressure_Pa", "damping_N_s_per_m",
+                                       "valve_gain_m_per_V"};
+  const std::pair<double Plant::*, const char*> faults[] = {
+      {&Plant::valve_gain_m_per_V, "valve_gain_m_per_V"},
+      {&Plant::supply_pressure_Pa, "supply_pressure_Pa"}};
+  for (const auto& [member, name] : faults) {
+    truth::Case of = stand(25.0);
+    fault(of, 15.2, member, 0.9);
+    const truth::Record record = truth::simulate(of);
+    truth::Random random(3);
+    std::vector<double> supply_Pa;
+    for (const double t_s : record.t_s) {
+      const bool low = t_s >= 15.2 && member == &Plant::supply_pressure_Pa;
+      supply_Pa.push_back((low ? 0.9 : 1.0) * 6.89e6 + 2e4 * random.normal());
+    }
+    const Tracked t = tracked(record, names, {}, printed_model(), kFloor_m, supply_Pa);
+    ASSERT_EQ(t.alarms.size(), 1u) << name;
+    EXPECT_EQ(t.name(t.alarms[0]), name);
+    EXPECT_TRUE(t.alarms[0].named.rivals.empty() || !has_rival(t.alarms[0], "supply_pressure_Pa"));
+    EXPECT_FALSE(has_rival(t.alarms[0], "valve_gain_m_per_V"));
+    EXPECT_NEAR(std::exp(t.alarms[0].named.x), 0.9, 0.002);
+  }
+}
+
 TEST(Isolation, NamesNothingWhileTheRigIsHealthy) {
   for (const std::size_t seed : {1, 2, 3}) {
     EXPECT_TRUE(tracked(truth::simulate(stand(60.0, seed))).alarms.empty()) << seed;

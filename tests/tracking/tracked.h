@@ -53,13 +53,14 @@ inline plant_sim::ModelFile printed_model() {
 inline Tracked tracked(const truth::Record& record, const std::vector<std::string>& names = usual(),
                        const iso::Settings& settings = {},
                        const plant_sim::ModelFile& model = printed_model(),
-                       double floor_m = kFloor_m) {
+                       double floor_m = kFloor_m, const std::vector<double>& supply_Pa = {}) {
   Tracked out;
   out.choice = iso::choose(model, names, "parameters");
   const auto run = [&](iso::Tracker& tracker, double until_s) {
     std::vector<iso::Window> windows;
     for (std::size_t k = 0; k < record.t_s.size() && record.t_s[k] < until_s; ++k) {
-      auto window = tracker.push(record.t_s[k], record.u_V[k], record.y_m[k], k == 0);
+      auto window = tracker.push(record.t_s[k], record.u_V[k], record.y_m[k], k == 0,
+                                 supply_Pa.empty() ? NAN : supply_Pa[k]);
       if (window) windows.push_back(*window);
     }
     return windows;
