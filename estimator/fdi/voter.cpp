@@ -1,0 +1,188 @@
+#include "estimator/fdi/voter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "config/schema/error.h"
+
+namespace estimator::fdi {
+namespace {
+
+using config::schema::bad_config;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+class Voter final : public Source {
+ public:
+  Voter(const VoterConfig& config, const Setting& setting)
+      : config_(config),
+        sample_time_s_(setting.sample_time_s),
+        stride_(std::max<std::int64_t>(1, std::llround(config.stride_s / sample_time_s_))),
+        vote_(config.channels.size(),
+              {config.tolerance,
+               std::max<std::int64_t>(1, std::llround(config.confirm_s / sample_time_s_)),
+               std::max<std::int64_t>(1, std::llround(config.return_s / sample_time_s_))}) {
+    for (const std::string& channel : config.channels) {
+      inputs_.push_back(setting.inputs.find(channel, "[[voter]] " + config.id));
+    }
+  }
+  [[nodiscard]] std::vector<std::string> names() const override {
+    return {"value", "spread", "out"};
+  }
+  [[nodiscard]] std::vector<Alarm> own_alarms() const override {
+    return {config_.naming.alarm("channel_out")};
+  }
+  bool lose(std::int64_t periods) noexcept override {
+    samples_ += periods;
+    return false;
+  }
+  bool push(const Sample& /*sample*/, double /*y_m*/) noexcept override {
+    std::array<double, 3> values{};
+    for (std::size_t i = 0; i < inputs_.size(); ++i) {
+      values[i] = inputs_[i].usable() ? inputs_[i].value() : kNan;
+    }
+    const bool changed = vote_.take(std::span(values).first(inputs_.size()));
+    if (++samples_ < stride_ && !changed) return false;
+    samples_ = 0;
+    return true;
+  }
+  Finding find(std::span<NamedValue> values) noexcept override {
+    Finding found;
+    found.valid = !std::isnan(vote_.value());
+    found.reason = found.valid ? "" : "the channels disagree or are missing";
+    values[0].value = vote_.value();
+    values[1].value = vote_.spread();
+    values[2].value = vote_.disagree() ? -1.0 : static_cast<double>(first_out() + 1);
+    return found;
+  }
+  [[nodiscard]] AlarmState own_alarm(std::size_t /*number*/) const noexcept override;
+  void reset() override {
+    vote_.reset();
+    samples_ = 0;
+  }
+  void carry(Carrier& carrier) override {
+    carrier.value(vote_);
+    carrier.value(samples_);
+    if (vote_.count() != inputs_.size()) carrier.fail();
+  }
+  [[nodiscard]] double interval_s() const noexcept override {
+    return static_cast<double>(stride_) * sample_time_s_;
+  }
+
+ private:
+  /// -1 when all are in.
+  [[nodiscard]] int first_out() const noexcept {
+    for (std::size_t i = 0; i < inputs_.size(); ++i) {
+      if (vote_.channel(i).out) return static_cast<int>(i);
+    }
+    return -1;
+  }
+
+  VoterConfig config_;
+  double sample_time_s_;
+  std::int64_t stride_;
+  Vote vote_;
+  std::vector<Input> inputs_;
+  std::int64_t samples_ = 0;
+  mutable FaultName fault_;
+  mutable std::array<std::string_view, 3> group_;
+  mutable char reason_[200] = "";
+};
+
+AlarmState Voter::own_alarm(std::size_t /*number*/) const noexcept {
+  AlarmState state;
+  state.value = vote_.spread();
+  const int out = first_out();
+  fault_ = {};
+  state.fault = &fault_;
+  if (vote_.disagree()) {
+    state.severity = Severity::invalid;
+    std::size_t size = 0;
+    for (std::size_t i = 0; i < inputs_.size(); ++i) {
+      if (!vote_.channel(i).out) group_[size++] = config_.channels[i];
+    }
+    fault_.group = std::span<const std::string_view>(group_.data(), size);
+    state.reason = "two channels disagree, and nobody knows which is right";
+    return state;
+  }
+  if (out < 0) {
+    state.reason = "all channels agree";
+    return state;
+  }
+  const auto number = static_cast<std::size_t>(out);
+  state.severity = config_.naming.level();
+  fault_.parameter = config_.channels[number];
+  std::snprintf(reason_, sizeof reason_, "channel %s is out since %.3g s; the others go on",
+                config_.channels[number].c_str(),
+                static_cast<double>(vote_.taken() - vote_.channel(number).since) * sample_time_s_);
+  state.reason = reason_;
+  return state;
+}
+
+}  // namespace
+
+bool Vote::judge(std::size_t i, bool wrong) noexcept {
+  Channel& channel = channels_[i];
+  channel.against = wrong != channel.out ? channel.against + 1 : 0;
+  if (channel.against < (channel.out ? rules_.comes_back : rules_.confirm)) return false;
+  if (!channel.out) channel.since = taken_ - channel.against + 1;
+  channel.out = !channel.out;
+  channel.against = 0;
+  return true;
+}
+
+bool Vote::take(std::span<const double> values) noexcept {
+  ++taken_;
+  // The channels that take part: in, and there.
+  std::array<double, 3> present{};  // in rising order
+  std::size_t size = 0;
+  for (std::size_t i = 0; i < count_ && i < present.size(); ++i) {
+    if (channels_[i].out || !std::isfinite(values[i])) continue;
+    std::size_t at = size++;
+    for (; at > 0 && present[at - 1] > values[i]; --at) present[at] = present[at - 1];
+    present[at] = values[i];
+  }
+  spread_ = size > 0 ? present[size - 1] - present[0] : kNan;
+  const bool apart = size == 2 && spread_ > rules_.tolerance;
+  apart_ = apart ? apart_ + 1 : 0;
+  const bool was = disagree_;
+  disagree_ = apart_ >= rules_.confirm || size == 0;
+  value_ = disagree_   ? kNan
+           : size == 3 ? present[1]
+           : size == 2 ? 0.5 * (present[0] + present[1])
+                       : present[0];
+  bool changed = disagree_ != was;
+  for (std::size_t i = 0; i < count_; ++i) {
+    // Of two that differ none is told to be wrong; nothing comes back while nobody knows.
+    const bool missing = !std::isfinite(values[i]);
+    const bool compared = !disagree_ && (size != 2 || channels_[i].out);
+    const bool wrong =
+        missing || (compared ? std::abs(values[i] - value_) > rules_.tolerance : channels_[i].out);
+    changed = judge(i, wrong) || changed;
+  }
+  return changed;
+}
+
+void Vote::reset() noexcept { *this = Vote(count_, rules_); }
+
+void VoterConfig::visit(config::schema::Visitor& v) {
+  v.text({"id", "names its values: ID.value", true}, id);
+  v.texts({"channels", "two or three values of one quantity", true}, channels);
+  v.number({"tolerance", "by which channels may differ, in their unit", true}, tolerance,
+           {0.0, 1e12});
+  v.number({"confirm_s", "how long before a channel is out"}, confirm_s, {0.0, 3600.0});
+  v.number({"return_s", "how long it must agree to come back"}, return_s, {0.0, 86400.0});
+  v.number({"stride_s", "between two findings"}, stride_s, {1e-4, 3600.0});
+  naming.visit(v);
+}
+
+std::unique_ptr<Source> VoterConfig::make(const Setting& setting) const {
+  if (channels.size() < 2 || channels.size() > 3) {
+    throw bad_config("[[voter]] " + id + ": channels", std::to_string(channels.size()) + " given",
+                     "two or three");
+  }
+  return std::make_unique<Voter>(*this, setting);
+}
+
+}  // namespace estimator::fdi

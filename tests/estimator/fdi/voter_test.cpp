@@ -1,0 +1,114 @@
+// The vote over redundant channels: which is out, since when, and what is still known.
+#include "estimator/fdi/voter.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/estimator/fdi/plain_values.h"
+
+namespace estimator::fdi {
+namespace {
+
+using fdi_test::PlainValues;
+using fdi_test::refusal;
+
+constexpr Vote::Rules kRules{1.0, 3, 5};
+
+/// The same channels `times` times.
+void take(Vote& vote, std::vector<double> values, int times) {
+  for (int i = 0; i < times; ++i) vote.take(values);
+}
+
+TEST(Vote, OfThreeFollowsTheMiddleWhileOneGoesAway) {
+  Vote vote(3, kRules);
+  take(vote, {10.0, 10.2, 10.1}, 10);
+  EXPECT_DOUBLE_EQ(vote.value(), 10.1);
+  take(vote, {10.0, 50.0, 10.1}, 2);
+  EXPECT_FALSE(vote.channel(1).out) << "not confirmed yet";
+  EXPECT_DOUBLE_EQ(vote.value(), 10.1) << "and yet it has no say";
+  take(vote, {10.0, 50.0, 10.1}, 1);
+  EXPECT_TRUE(vote.channel(1).out);
+  EXPECT_EQ(vote.channel(1).since, 11);
+  EXPECT_FALSE(vote.channel(0).out);
+  take(vote, {10.0, 50.0, 10.1}, 1);
+  EXPECT_DOUBLE_EQ(vote.value(), 10.05) << "the mean of the two that are left";
+}
+
+TEST(Vote, ComesBackOnlyAfterAgreeingForLong) {
+  Vote vote(3, kRules);
+  take(vote, {10.0, 50.0, 10.0}, 5);
+  ASSERT_TRUE(vote.channel(1).out);
+  take(vote, {10.0, 10.0, 10.0}, 4);
+  take(vote, {10.0, 50.0, 10.0}, 1);
+  take(vote, {10.0, 10.0, 10.0}, 4);
+  EXPECT_TRUE(vote.channel(1).out);
+  take(vote, {10.0, 10.0, 10.0}, 1);
+  EXPECT_FALSE(vote.channel(1).out);
+}
+
+TEST(Vote, OfTwoKnowsThatTheyDifferButNotWhichIsRight) {
+  Vote vote(2, kRules);
+  take(vote, {10.0, 10.4}, 5);
+  EXPECT_DOUBLE_EQ(vote.value(), 10.2);
+  take(vote, {10.0, 12.0}, 3);
+  EXPECT_TRUE(vote.disagree());
+  EXPECT_TRUE(std::isnan(vote.value()));
+  EXPECT_FALSE(vote.channel(0).out || vote.channel(1).out);
+  take(vote, {10.0, 10.0}, 1);
+  EXPECT_FALSE(vote.disagree());
+}
+
+TEST(Vote, OfTwoGoesOnWithTheOneThatIsThere) {
+  Vote vote(2, kRules);
+  take(vote, {10.0, std::nan("")}, 3);
+  EXPECT_DOUBLE_EQ(vote.value(), 10.0);
+  EXPECT_TRUE(vote.channel(1).out);
+  take(vote, {std::nan(""), std::nan("")}, 1);
+  EXPECT_TRUE(vote.disagree());
+}
+
+TEST(Vote, OfThreeSurvivesTwoFaultsOneAfterTheOther) {
+  Vote vote(3, kRules);
+  take(vote, {10.0, 50.0, 10.0}, 5);
+  take(vote, {10.0, 50.0, std::nan("")}, 5);
+  EXPECT_DOUBLE_EQ(vote.value(), 10.0);
+  EXPECT_TRUE(vote.channel(1).out && vote.channel(2).out);
+  EXPECT_FALSE(vote.channel(0).out);
+}
+
+const char* const kVoter =
+    "[[voter]]\nid = 'rods'\nchannels = ['sample.y_m', 'sample.u_V', 'sample.reference_m']\n"
+    "tolerance = 1.0\nconfirm_s = 3.0\nreturn_s = 5.0\nstride_s = 10.0\n"
+    "[[band]]\nid = 'far'\nquantity = 'rods.value'\nhigh = 11.0\n";
+
+TEST(Voter, NamesTheChannelThatIsOutAndItsValueIsWatchedLikeAnyOther) {
+  PlainValues values(kVoter);
+  for (int i = 0; i < 20; ++i) values.feed(10.0, 10.1, 10.2);
+  EXPECT_EQ(values.estimates, 2);
+  EXPECT_DOUBLE_EQ(values.last("value"), 10.1);
+  for (int i = 0; i < 3; ++i) values.feed(90.0, 10.1, 10.2);
+  ASSERT_EQ(values.alarms.size(), 1U) << "told at once, not a stride later";
+  EXPECT_EQ(values.alarms[0].name, "channel_out");
+  EXPECT_EQ(values.alarms[0].parameter, "sample.y_m");
+  EXPECT_EQ(values.last("out"), 1.0);
+  for (int i = 0; i < 10; ++i) values.feed(90.0, 14.0, 14.0);
+  ASSERT_EQ(values.alarms.size(), 2U);
+  EXPECT_EQ(values.alarms[1].name, "far") << "the band sees the fail-over's value";
+  for (int i = 0; i < 3; ++i) values.feed(90.0, 14.0, 20.0);
+  bool told = false;
+  for (const Alarm& alarm : values.alarms) {
+    told = told || (alarm.name == "channel_out" && alarm.severity == Severity::invalid &&
+                    alarm.ambiguity_group.size() == 2);
+  }
+  EXPECT_TRUE(told);
+}
+
+TEST(Voter, TakesTwoOrThreeChannels) {
+  EXPECT_NE(refusal("[[voter]]\nid = 'r'\ntolerance = 1.0\nchannels = ['sample.y_m']\n")
+                .find("two or three"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace estimator::fdi
