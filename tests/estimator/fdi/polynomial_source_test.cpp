@@ -24,7 +24,8 @@ PipelineConfig read(const std::string& text) {
 }
 
 const std::string kArmax =
-    "[[polynomial]]\nid = 'p'\nstructure = 'armax1111'\nforgetting = 0.998\noffset_m = 0.3\n";
+    "[[polynomial]]\nid = 'p'\nstructure = 'armax1111'\nforgetting = 0.998\noffset_m = 0.3\n"
+    "warmup_s = 5.0\n";
 
 /// y(t) = 0.9 y(t-1) + gain u(t-1) + e(t) + 0.7 e(t-1) about 0.3 m, e: 2 um.
 class Rod {
