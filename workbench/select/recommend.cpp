@@ -49,9 +49,8 @@ int choose(const Outcome& outcome, bool on_line, double limit) {
 
 std::string against_best(const Judged& chosen, const Judged& best) {
   if (chosen.candidate.name == best.candidate.name) return "its free run errs least";
-  const double more = 100.0 * (chosen.free_run_rms_m / best.free_run_rms_m - 1.0);
-  return "its free run errs " + number_words(more, 2) + " % more than the best, " +
-         best.candidate.name;
+  return "its free run errs " + more_words(chosen.free_run_rms_m / best.free_run_rms_m) +
+         " the best, " + best.candidate.name;
 }
 
 std::string why(const Outcome& outcome, bool on_line) {

@@ -106,8 +106,7 @@ std::string to_text(const Outcome& o) {
     const Judged& one = o.judged[static_cast<std::size_t>(o.watch)];
     out += "to follow on line: " + one.candidate.name + ", by " + method_words(one.on_line.method) +
            "; its free run errs " +
-           number_words(100.0 * (one.free_run_rms_m / o.judged.front().free_run_rms_m - 1.0), 2) +
-           " % more than the best.\n";
+           more_words(one.free_run_rms_m / o.judged.front().free_run_rms_m) + " the best.\n";
   }
   if (!o.bias_words.empty()) out += "bias: " + o.bias_words + ".\n";
   for (const std::string& note : o.notes) out += "note: " + note + ".\n";

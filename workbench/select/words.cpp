@@ -20,6 +20,11 @@ std::string number_words(double value, int digits) {
   return out;
 }
 
+std::string more_words(double ratio) {
+  if (ratio >= 2.0) return number_words(ratio, 2) + " times";
+  return number_words(100.0 * (ratio - 1.0), 2) + " % more than";
+}
+
 std::string probability_words(double p) { return p < 1e-6 ? "below 1e-6" : number_words(p, 2); }
 
 std::string method_words(const std::string& method) {

@@ -7,6 +7,8 @@ namespace workbench::select {
 
 /// So many significant digits, "-" for a missing value, no exponent between 1e-3 and 1e6.
 [[nodiscard]] std::string number_words(double value, int digits);
+/// 1.05: "5 % more than"; 3: "3 times".
+[[nodiscard]] std::string more_words(double ratio);
 /// "0.03", "below 1e-6".
 [[nodiscard]] std::string probability_words(double p);
 /// "RLS" -> "recursive least squares".

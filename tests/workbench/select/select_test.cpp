@@ -232,6 +232,8 @@ TEST(SelectWords, PrintNumbersShortly) {
   EXPECT_EQ(number_words(0.012345, 2), "0.012");
   EXPECT_EQ(number_words(1.2e-5, 2), "1.2e-05");
   EXPECT_EQ(number_words(NAN, 2), "-");
+  EXPECT_EQ(more_words(1.05), "5.0 % more than");
+  EXPECT_EQ(more_words(3.0), "3.0 times");
 }
 
 }  // namespace
