@@ -9,7 +9,9 @@
 #include <string>
 
 #include "estimator/fdi/pipeline.h"
+#include "tracking/source_kinds.h"
 #include "workbench/scorecard/stand.h"
+#include "workbench/train/learn.h"
 
 namespace workbench::scorecard {
 
@@ -17,7 +19,7 @@ struct Method {
   std::string name;
   std::string what;
   double false_alarm_time_s = 86400.0;  ///< of each learned band, aimed at
-  estimator::fdi::PipelineConfig pipeline;
+  estimator::fdi::PipelineConfig pipeline{tracking::source_kinds()};
   std::string file;
   std::string text;  ///< as it is in effect: what results depend on
 
@@ -27,9 +29,19 @@ struct Method {
 /// A file, or the name of a shipped method. Throws config::schema::Error (exit 78).
 [[nodiscard]] Method load_method(const std::string& file);
 
-/// The pipeline's configuration with every band learned. Throws config::schema::Error (exit 65)
-/// when the record does not do.
-[[nodiscard]] estimator::fdi::PipelineConfig train(const Method& method, const Samples& healthy,
-                                                   const std::string& record);
+/// Records of one motion to learn from.
+struct Lessons {
+  config::record::Record healthy;
+  std::vector<train::Teaching> faults;
+};
+[[nodiscard]] Lessons lessons(const Bench& bench, const Motion& motion, std::uint64_t seed,
+                              bool with_faults);
+
+/// Whether it learns to tell faults apart.
+[[nodiscard]] bool needs_faults(const Method& method);
+
+/// The pipeline's configuration with all that is learned in it. Throws config::schema::Error (exit
+/// 65) when the records do not do.
+[[nodiscard]] estimator::fdi::PipelineConfig learn(const Method& method, const Lessons& lessons);
 
 }  // namespace workbench::scorecard

@@ -119,7 +119,7 @@ int run(const Options& o) {
                                   {"--report", o.report},
                                   {"--markdown", o.markdown},
                                   {"--resume", o.resume}};
-  check_outputs(outputs, {o.plan, o.methods});
+  check_outputs(outputs, {o.plan.empty() ? "/" : o.plan, o.methods});
   const Bench bench = load_bench(o.plan);
   const std::vector<Method> methods = load_methods(o.methods);
   const std::vector<Part> parts = parts_of(bench, o.scope);

@@ -95,15 +95,13 @@ double Trials::load_ratio(std::size_t method) const {
 const Trials::Trained& Trials::trained(std::size_t motion) {
   Trained& out = *trained_[motion];
   std::call_once(out.once, [&] {
-    const Motion& of = bench_.plan.motions[motion];
-    const std::string name = "training/" + of.id;
-    const Samples samples =
-        scorecard::run(healthy(bench_, of), bench_.plan.training_s, seed_of(scope_.seed, name));
+    const Lessons taught = lessons(bench_, bench_.plan.motions[motion], scope_.seed,
+                                   std::any_of(methods_.begin(), methods_.end(), needs_faults));
     for (const Method& method : methods_) {
       std::string why;
       estimator::fdi::PipelineConfig config = method.pipeline;
       try {
-        config = train(method, samples, name);
+        config = learn(method, taught);
       } catch (const config::schema::Error& error) {
         if (error.exit_code() != static_cast<int>(config::schema::ExitCode::bad_data)) throw;
         why = error.what();
