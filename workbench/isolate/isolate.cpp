@@ -72,6 +72,9 @@ void add_isolate(CLI::App& command, int& /*exit_code*/) {
   declare_judging(command, *request);
   command.add_option("--set", request->assignments, "table.key=value of the model file")
       ->allow_extra_args(false);
+  command.add_option("--learn", request->learn,
+                     "file for what is healthy, which [[tracker]] healthy names");
+  command.add_option("--rig", request->rig_id, "rig id, noted in that file; another is refused");
   command.add_flag("--windows", request->all_windows, "print every window");
   command.add_option("--json", request->json, "file for JSON, - for standard output");
   command.add_option("--report", request->report, "file for a report with plots (HTML)");

@@ -19,8 +19,11 @@ ordered_json number(double value) {
 ordered_json json_of(const Window& window, const Choice& choice) {
   ordered_json out{{"t_s", window.t_s}, {"from_s", window.from_s}};
   for (std::size_t i = 0; i < choice.tracked; ++i) {
-    out[choice.parameters[i].name] = {{"value", number(window.estimates[i].value)},
-                                      {"std_error", number(window.estimates[i].std_error)}};
+    const tracking::Estimate& estimate = window.estimates[i];
+    out[choice.parameters[i].name] = {{"value", number(estimate.value)},
+                                      {"std_error", number(estimate.std_error)},
+                                      {"smallest", number(estimate.smallest)},
+                                      {"valid", estimate.valid}};
   }
   out["correlation"] = ordered_json::array();
   for (Index i = 0; i < window.correlation.rows(); ++i) {

@@ -4,9 +4,12 @@
 #include <cmath>
 
 #include "config/record/record.h"
+#include "config/record/whole_file.h"
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "estimator/residual/noise_floor.h"
+#include "tracking/healthy_file.h"
+#include "tracking/known_parameters.h"
 #include "tracking/quantity.h"
 #include "tracking/words.h"
 #include "workbench/file_check.h"
@@ -26,6 +29,8 @@ using tracking::number;
 constexpr double kUncalibrated = 1.5;
 constexpr double kOffFile = 0.03;
 constexpr double kLeastSamples = 20.0;
+constexpr const char* kSupply = "supply_pressure_Pa";
+constexpr const char* kGain = "valve_gain_m_per_V";
 
 struct Span {
   double from_s = 0.0;
@@ -41,18 +46,41 @@ Span span(const std::string& text) {
   throw Error(ExitCode::usage, "--healthy " + text + ": is no span; allowed: from:to, in s");
 }
 
+/// Null: the record has none of that name.
+const std::vector<double>* column(const Record& record, std::string_view name) {
+  for (const auto& [its_name, values] : record.further) {
+    if (its_name == name) return &values;
+  }
+  return nullptr;
+}
+
+/// With a reading of the supply pressure the valve gain can be told, and is tracked as well.
+std::vector<std::string> tracked_names(const Request& request, const Record& record,
+                                       std::vector<std::string>& notes) {
+  std::vector<std::string> names = tracking::split_names(request.parameters);
+  const auto has = [&](const char* name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  if (column(record, kSupply) == nullptr || !has(kSupply)) return names;
+  notes.push_back(std::string("the record's ") + kSupply + " takes the place of its fit");
+  if (!has(kGain)) names.emplace_back(kGain);
+  return names;
+}
+
 /// Every window of [from, to) of the record.
 std::vector<Window> track(Tracker& tracker, const Record& record, const Span& within) {
   std::vector<Window> windows;
   std::size_t gap = 0;
   bool first = true;
+  const std::vector<double>* const supply_Pa = column(record, kSupply);
   for (std::size_t k = 0; k < record.size(); ++k) {
     if (gap < record.gaps.size() && record.gaps[gap] == k) {
       first = true;
       ++gap;
     }
     if (record.t_s[k] < within.from_s || record.t_s[k] >= within.to_s) continue;
-    if (auto window = tracker.push(record.t_s[k], record.u_V[k], record.y_m[k], first)) {
+    if (auto window = tracker.push(record.t_s[k], record.u_V[k], record.y_m[k], first,
+                                   supply_Pa != nullptr ? (*supply_Pa)[k] : NAN)) {
       windows.push_back(std::move(*window));
     }
     first = false;
@@ -127,11 +155,23 @@ void note_calibration(Outcome& out) {
   }
 }
 
+void write_learnt(const Request& request, const plant_sim::ModelFile& model, const Record& record,
+                  const Outcome& out) {
+  tracking::HealthyFile file = tracking::healthy_file(model, out.choice, out.settings, out.healthy);
+  file.rig_id = request.rig_id;
+  file.source = record.name;
+  file.sample_time_s = record.sample_time_s;
+  file.noise_floor_m = std::isfinite(out.noise_floor_m) ? out.noise_floor_m : 0.0;
+  config::record::write_whole(request.learn,
+                              config::schema::print_toml([&](auto& v) { file.visit(v); }));
+}
+
 }  // namespace
 
 Outcome isolate(const Request& request) {
-  check_outputs({{"--json", request.json}, {"--report", request.report}},
-                {request.model, {request.record}});
+  check_outputs(
+      {{"--json", request.json}, {"--report", request.report}, {"--learn", request.learn}},
+      {request.model, {request.record}});
   auto document = config::schema::Document::load(request.model);
   for (const std::string& assignment : request.assignments) document.set(assignment);
   const plant_sim::ModelFile model = plant_sim::read_model(document);
@@ -141,9 +181,9 @@ Outcome isolate(const Request& request) {
   out.model = request.model;
   out.record = request.record;
   out.command = command_of(request);
-  out.choice = tracking::choose(model, request.parameters, "--parameters");
   out.settings = request.settings;
   out.notes = record.notes;
+  out.choice = tracking::choose(model, tracked_names(request, record, out.notes), "--parameters");
   const auto floor = estimator::residual::noise_floor(record.y_m, record.sample_time_s);
   out.noise_floor_m = floor.sd_m;
   const double floor_m = std::isfinite(floor.sd_m) ? floor.sd_m : 0.0;
@@ -151,6 +191,9 @@ Outcome isolate(const Request& request) {
     return Tracker(model, out.choice, request.settings, record.sample_time_s, floor_m);
   };
   if (request.healthy_rms_m > 0.0) {
+    if (!request.learn.empty()) {
+      throw Error(ExitCode::usage, "--learn: nothing is learnt with --healthy-rms");
+    }
     out.healthy = {request.healthy_rms_m, out.choice.file};
   } else {
     const Span healthy = span(request.healthy);
@@ -161,6 +204,7 @@ Outcome isolate(const Request& request) {
     out.healthy_from_s = healthy.from_s;
     out.healthy_to_s = healthy.to_s;
     note_calibration(out);
+    if (!request.learn.empty()) write_learnt(request, model, record, out);
   }
   Tracker judging = tracker();
   judging.take(out.healthy);

@@ -42,9 +42,9 @@ Plot parameter_plot(const Outcome& o, std::size_t i) {
   for (const Window& window : o.windows) {
     const tracking::Estimate& estimate = window.estimates[i];
     const double about = kInterval * estimate.std_error;
-    value.y.push_back(window.valid ? factor * estimate.value : kNaN);
-    low.y.push_back(window.valid ? factor * (estimate.value - about) : kNaN);
-    high.y.push_back(window.valid ? factor * (estimate.value + about) : kNaN);
+    value.y.push_back(estimate.valid ? factor * estimate.value : kNaN);
+    low.y.push_back(estimate.valid ? factor * (estimate.value - about) : kNaN);
+    high.y.push_back(estimate.valid ? factor * (estimate.value + about) : kNaN);
   }
   plot.series = {value, low, high};
   plot.lines = {{factor * healthy, "healthy"}};

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "estimator/fdi/pipeline.h"
+#include "tracking/source_kinds.h"
 #include "workbench/replay/occurrences.h"
 
 namespace workbench::replay {
@@ -16,7 +17,7 @@ namespace workbench::replay {
 struct Rules {
   std::string file;
   std::filesystem::path folder;  ///< bands_file starts here
-  estimator::fdi::PipelineConfig pipeline;
+  estimator::fdi::PipelineConfig pipeline{tracking::source_kinds()};
 };
 
 /// Throws config::schema::Error (exit 78).

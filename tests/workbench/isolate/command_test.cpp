@@ -9,6 +9,7 @@
 #include "tests/tracking/tracked.h"
 #include "tests/truth/case.h"
 #include "tests/workbench/run_command.h"
+#include "tracking/healthy_file.h"
 
 namespace {
 
@@ -71,6 +72,19 @@ TEST_F(IsolateCommand, WritesWindowsAndAlarmsAsJsonAndAPage) {
   EXPECT_EQ(alarm["ambiguity_group"][0], "supply_pressure_Pa");
   EXPECT_THAT(alarm["advice"].get<std::string>(), testing::HasSubstr("supply pressure"));
   EXPECT_GT(fs::file_size(file("out.html")), 10000u);
+}
+
+TEST_F(IsolateCommand, WritesWhatIsHealthyForTheDaemon) {
+  run({"--learn", file("healthy.toml"), "--rig", "stand-1"});
+  const plant_sim::ModelFile model = plant_sim::load_model(file("model.toml"));
+  const tracking::Choice choice = tracking::choose(model, usual(), "parameters");
+  const auto learnt =
+      tracking::read_healthy(file("healthy.toml"), model, {}, choice, truth::kSample_s, "stand-1");
+  EXPECT_NEAR(learnt.values[0], 6.89e6, 0.002 * 6.89e6);
+  EXPECT_NEAR(learnt.values[1], 1000.0, 20.0);
+  EXPECT_NEAR(learnt.rms_m, kFloor_m, 0.1 * kFloor_m);
+  std::string line;
+  EXPECT_EQ(code({"--learn", file("healthy.toml"), "--healthy-rms", "2e-6"}, line), 2);
 }
 
 TEST_F(IsolateCommand, TellsInWords) {
