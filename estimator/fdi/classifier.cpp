@@ -76,18 +76,24 @@ class Classifier final : public BlockSource {
   void forget() noexcept override {
     answer_ = {};
     answer_.found = healthy_;
+    told_ = answer_;
     in_a_row_ = 0;
     out_ = false;
   }
   void carry_memory(Carrier& carrier) override {
     carrier.value(answer_);
+    carrier.value(told_);
     carrier.value(probabilities_);
+    carrier.value(told_probabilities_);
     carrier.value(in_a_row_);
     carrier.value(out_);
     const int classes = static_cast<int>(regions_.size());
-    if (answer_.found >= classes || answer_.nearest >= classes || answer_.found < kNone ||
-        answer_.nearest < 0) {
-      answer_ = {};
+    for (Answer* each : {&answer_, &told_}) {
+      if (each->found < classes && each->nearest < classes && each->found >= kNone &&
+          each->nearest >= 0) {
+        continue;
+      }
+      *each = {};
       carrier.fail();
     }
   }
@@ -97,7 +103,9 @@ class Classifier final : public BlockSource {
   std::vector<double> limits_;
   int healthy_ = 0;
   Answer answer_;
+  Answer told_;  ///< the last that was confirmed
   std::array<double, kMostClasses> probabilities_{};
+  std::array<double, kMostClasses> told_probabilities_{};
   std::int64_t in_a_row_ = 0;  ///< blocks of one answer; negative counts towards healthy
   bool out_ = false;
   mutable FaultName fault_;
@@ -132,30 +140,32 @@ void Classifier::take(std::span<const double> means) noexcept {
   now.probability = now.found == kNone ? 0.0 : probabilities_[static_cast<std::size_t>(now.found)];
   in_a_row_ = now.found == answer_.found ? in_a_row_ + 1 : 1;
   answer_ = now;
-  if (in_a_row_ >= config_.confirm) out_ = now.found != healthy_;
+  if (in_a_row_ < config_.confirm) return;
+  out_ = now.found != healthy_;
+  told_ = now;
+  told_probabilities_ = probabilities_;
 }
 
 AlarmState Classifier::own_alarm(std::size_t /*number*/) const noexcept {
   AlarmState state;
-  state.value = answer_.distance2;
+  state.value = told_.distance2;
   if (!out_) {
     state.reason = "as when all was well";
     return state;
   }
   state.severity = config_.naming.level();
   fault_ = {};
-  if (answer_.found == kNone) {
-    std::snprintf(reason_, sizeof reason_,
-                  "none of these: nearest is %s, %.3g away, %.3g is its edge",
-                  config_.classes[static_cast<std::size_t>(answer_.nearest)].name.c_str(),
-                  std::sqrt(answer_.distance2),
-                  std::sqrt(limits_[static_cast<std::size_t>(answer_.nearest)]));
+  if (told_.found == kNone) {
+    std::snprintf(
+        reason_, sizeof reason_, "none of these: nearest is %s, %.3g away, %.3g is its edge",
+        config_.classes[static_cast<std::size_t>(told_.nearest)].name.c_str(),
+        std::sqrt(told_.distance2), std::sqrt(limits_[static_cast<std::size_t>(told_.nearest)]));
   } else {
-    const TrainedClass& found = config_.classes[static_cast<std::size_t>(answer_.found)];
+    const TrainedClass& found = config_.classes[static_cast<std::size_t>(told_.found)];
     std::size_t likely = 0;
     for (std::size_t i = 0; i < regions_.size(); ++i) {
       const std::string_view name = config_.classes[i].name;
-      if (probabilities_[i] < kLikely) continue;
+      if (told_probabilities_[i] < kLikely) continue;
       if (std::find(group_.begin(), group_.begin() + likely, name) == group_.begin() + likely) {
         group_[likely++] = name;
       }
@@ -163,7 +173,7 @@ AlarmState Classifier::own_alarm(std::size_t /*number*/) const noexcept {
     state.direction = static_cast<std::int8_t>(likely > 1 ? 0 : found.direction);
     fault_.confidence = 0.0;  // several laws may have one name
     for (std::size_t i = 0; i < regions_.size(); ++i) {
-      if (config_.classes[i].name == found.name) fault_.confidence += probabilities_[i];
+      if (config_.classes[i].name == found.name) fault_.confidence += told_probabilities_[i];
     }
     if (likely > 1) {
       fault_.group = std::span<const std::string_view>(group_.data(), likely);

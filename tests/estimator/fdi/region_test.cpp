@@ -125,7 +125,9 @@ TEST(Classifier, NamesTheFaultOnceItIsConfirmedAndSaysWhenItIsNoneOfThese) {
   EXPECT_EQ(values.alarms.back().parameter, "");
   EXPECT_EQ(values.last("class"), -1.0);
   EXPECT_NE(values.alarms.back().reason.find("none of these"), std::string::npos);
+  const std::size_t told = values.alarms.size();
   values.feed(0.0, 0.0);
+  EXPECT_EQ(values.alarms.size(), told) << "one block takes nothing back";
   values.feed(0.0, 0.0);
   EXPECT_EQ(values.alarms.back().severity, Severity::ok);
   EXPECT_EQ(values.pipeline.alarms().active_count(), 0U);
