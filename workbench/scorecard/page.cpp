@@ -117,7 +117,7 @@ Plot delay_plot(const Card& card, const Fault& fault) {
   plot.width = report::Width::half;
   plot.x = {"after the fault", "s"};
   plot.y = {"detected", "%"};
-  plot.lines = {{100.0 * kDetected, "95 %"}};
+  plot.lines = {{100.0 * kDetected, "asked for"}};
   for (const MethodFigures& method : card.methods) {
     const FaultFigures* const of = figures_of(method, fault);
     if (of == nullptr || of->trials() == 0) continue;
@@ -223,7 +223,8 @@ report::Report to_report(const Card& card) {
   page.state = complete ? report::State::good : report::State::warn;
   page.verdict = std::to_string(card.methods.size()) + " methods, " +
                  std::to_string(faults_of(card).size()) + " faults, " +
-                 std::to_string(card.motions.size()) + " motions";
+                 std::to_string(card.motions.size()) +
+                 (card.motions.size() == 1 ? " motion" : " motions");
   if (!complete) {
     page.summary.push_back("Not complete: " + std::to_string(card.done) + " of " +
                            std::to_string(card.parts) + " parts are done.");
