@@ -19,9 +19,9 @@
 #include "daemon/io/publisher.h"
 #include "daemon/io/recorder.h"
 #include "daemon/rt/loop.h"
+#include "daemon/tracking/source_kinds.h"
 #include "estimator/fdi/pipeline.h"
 #include "hal/roles.h"
-#include "tracking/source_kinds.h"
 
 namespace monitor {
 
@@ -37,7 +37,7 @@ struct DaemonConfig {
   control::ReferenceConfig reference;
   control::ControllerConfig controller;
   control::SafetyConfig safety;
-  estimator::fdi::PipelineConfig pipeline{tracking::source_kinds()};
+  estimator::fdi::PipelineConfig pipeline{monitor::tracking::source_kinds()};
   io::ControlConfig control;
   io::AlarmConfig alarms;
   io::EvidenceConfig evidence;

@@ -27,7 +27,7 @@ const std::vector<Layer> kLayers{
     {"plant_sim", {"config/schema"}, {"muParser"}},
     {"estimator", {"config/schema"}, {"Eigen", "ceres"}},
     {"estimator/fdi", {"config/schema", "estimator"}, {"Eigen"}},
-    {"tracking", {"config/schema", "plant_sim", "estimator", "estimator/fdi"}, {"Eigen"}},
+    {"daemon/tracking", {"config/schema", "plant_sim", "estimator", "estimator/fdi"}, {"Eigen"}},
     {"hal",
      {"config/schema", "hal/sim", "hal/replay", "hal/modbus", "hal/encoder", "hal/comedi"},
      {}},
@@ -47,11 +47,11 @@ const std::vector<Layer> kLayers{
       "daemon/control"},
      {"boost", "lcm", "spoolwatch", "systemd", "nlohmann"}},
     {"daemon",
-     {"config", "estimator", "estimator/fdi", "tracking", "hal", "hal/sim", "hal/replay",
+     {"config", "estimator", "estimator/fdi", "daemon/tracking", "hal", "hal/sim", "hal/replay",
       "plant_sim", "daemon/control", "daemon/rt", "daemon/io"},
      {"boost", "lcm", "spoolwatch", "systemd", "CLI"}},
     {"workbench",
-     {"config", "estimator", "estimator/fdi", "plant_sim", "tracking", "daemon/control"},
+     {"config", "estimator", "estimator/fdi", "plant_sim", "daemon/control", "daemon/tracking"},
      {"CLI", "nlohmann", "lcm", "spoolwatch", "ncurses", "ceres", "Eigen", "muParser", "matio"}},
 };
 
@@ -59,7 +59,7 @@ const std::vector<Layer> kLayers{
 const std::vector<std::string> kGuarded{"toml++", "Eigen",   "ceres",     "lcm",      "spoolwatch",
                                         "boost",  "systemd", "CLI",       "nlohmann", "ncurses",
                                         "modbus", "gpiod",   "comedilib", "muParser", "matio"};
-const std::vector<std::string> kProject{"config", "plant_sim", "estimator", "tracking",
+const std::vector<std::string> kProject{"config", "plant_sim", "estimator",
                                         "hal",    "daemon",    "workbench"};
 
 bool below(const std::string& path, const std::string& folder) {

@@ -1,18 +1,18 @@
 // Numbers as an engineer reads them: in the unit of the size, rounded to what is known of them.
 #pragma once
 
-#include "tracking/quantity.h"
+#include "daemon/tracking/quantity.h"
 
 namespace workbench::diagnose {
 
-using tracking::chance_words;
-using tracking::length_words;
-using tracking::number;
-using tracking::parameter_words;
-using tracking::quantity;
-using tracking::Quantity;
-using tracking::times_words;
-using tracking::typeset;
-using tracking::words;
+using monitor::tracking::chance_words;
+using monitor::tracking::length_words;
+using monitor::tracking::number;
+using monitor::tracking::parameter_words;
+using monitor::tracking::quantity;
+using monitor::tracking::Quantity;
+using monitor::tracking::times_words;
+using monitor::tracking::typeset;
+using monitor::tracking::words;
 
 }  // namespace workbench::diagnose

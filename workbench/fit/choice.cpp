@@ -8,7 +8,7 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
-#include "tracking/known_parameters.h"
+#include "daemon/tracking/known_parameters.h"
 
 namespace workbench::fit {
 namespace {
@@ -18,12 +18,12 @@ using config::schema::Error;
 using config::schema::ExitCode;
 using matching::Scale;
 using matching::SearchParameter;
-using tracking::Known;
-using tracking::known_parameters;
-using tracking::names_worth_showing;
-using tracking::open_up;
-using tracking::refuse_name;
-using tracking::split_names;
+using monitor::tracking::Known;
+using monitor::tracking::known_parameters;
+using monitor::tracking::names_worth_showing;
+using monitor::tracking::open_up;
+using monitor::tracking::refuse_name;
+using monitor::tracking::split_names;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -106,7 +106,7 @@ class Chooser {
     const auto same = [&](const Known& k) { return k.name == name; };
     if (std::any_of(known_.begin(), known_.end(), same)) {
       throw bad_config(option + " " + name, "is not fitted; name it with --free",
-                       tracking::joined_names(fitted));
+                       monitor::tracking::joined_names(fitted));
     }
     refuse_name(option, name, fitted, fitted);
   }

@@ -7,11 +7,11 @@
 #include "config/record/whole_file.h"
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "daemon/tracking/healthy_file.h"
+#include "daemon/tracking/known_parameters.h"
+#include "daemon/tracking/quantity.h"
+#include "daemon/tracking/words.h"
 #include "estimator/residual/noise_floor.h"
-#include "tracking/healthy_file.h"
-#include "tracking/known_parameters.h"
-#include "tracking/quantity.h"
-#include "tracking/words.h"
 #include "workbench/file_check.h"
 #include "workbench/fit/choice.h"
 #include "workbench/shell_words.h"
@@ -22,7 +22,7 @@ namespace {
 using config::record::Record;
 using config::schema::Error;
 using config::schema::ExitCode;
-using tracking::number;
+using monitor::tracking::number;
 
 /// A healthy error above so many noise floors, and a healthy value so far off the file's, are
 /// worth a note.
@@ -57,7 +57,7 @@ const std::vector<double>* column(const Record& record, std::string_view name) {
 /// With a reading of the supply pressure the valve gain can be told, and is tracked as well.
 std::vector<std::string> tracked_names(const Request& request, const Record& record,
                                        std::vector<std::string>& notes) {
-  std::vector<std::string> names = tracking::split_names(request.parameters);
+  std::vector<std::string> names = monitor::tracking::split_names(request.parameters);
   const auto has = [&](const char* name) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };
@@ -89,7 +89,7 @@ std::vector<Window> track(Tracker& tracker, const Record& record, const Span& wi
 }
 
 void check(const Request& request, const Record& record) {
-  const double least_s = request.settings.window_s + tracking::kLead_s;
+  const double least_s = request.settings.window_s + monitor::tracking::kLead_s;
   const double length_s = static_cast<double>(record.size()) * record.sample_time_s;
   if (request.settings.window_s < kLeastSamples * record.sample_time_s) {
     throw Error(ExitCode::usage, "--window: is too short for samples every " +
@@ -144,12 +144,12 @@ void note_calibration(Outcome& out) {
                         "show; calibrate it first (spoolwatch diagnose, fit)");
   }
   for (std::size_t i = 0; i < out.choice.tracked; ++i) {
-    const tracking::SearchParameter& p = out.choice.parameters[i];
+    const monitor::tracking::SearchParameter& p = out.choice.parameters[i];
     const auto at = static_cast<Eigen::Index>(i);
-    if (p.scale != tracking::Scale::logarithmic) continue;
+    if (p.scale != monitor::tracking::Scale::logarithmic) continue;
     const double off = std::exp(out.healthy.x[at] - out.choice.file[at]) - 1.0;
     if (std::abs(off) < kOffFile) continue;
-    out.notes.push_back("when healthy, " + tracking::name_words(p.name) + " is " +
+    out.notes.push_back("when healthy, " + monitor::tracking::name_words(p.name) + " is " +
                         number("%+.3g", 100.0 * off) +
                         " % off the model file; changes count from there");
   }
@@ -157,7 +157,8 @@ void note_calibration(Outcome& out) {
 
 void write_learnt(const Request& request, const plant_sim::ModelFile& model, const Record& record,
                   const Outcome& out) {
-  tracking::HealthyFile file = tracking::healthy_file(model, out.choice, out.settings, out.healthy);
+  monitor::tracking::HealthyFile file =
+      monitor::tracking::healthy_file(model, out.choice, out.settings, out.healthy);
   file.rig_id = request.rig_id;
   file.source = record.name;
   file.sample_time_s = record.sample_time_s;
@@ -183,7 +184,8 @@ Outcome isolate(const Request& request) {
   out.command = command_of(request);
   out.settings = request.settings;
   out.notes = record.notes;
-  out.choice = tracking::choose(model, tracked_names(request, record, out.notes), "--parameters");
+  out.choice =
+      monitor::tracking::choose(model, tracked_names(request, record, out.notes), "--parameters");
   const auto floor = estimator::residual::noise_floor(record.y_m, record.sample_time_s);
   out.noise_floor_m = floor.sd_m;
   const double floor_m = std::isfinite(floor.sd_m) ? floor.sd_m : 0.0;
@@ -198,8 +200,8 @@ Outcome isolate(const Request& request) {
   } else {
     const Span healthy = span(request.healthy);
     Tracker learning = tracker();
-    out.healthy = tracking::learn(track(learning, record, healthy), out.choice, floor_m,
-                                  record.name + ": --healthy " + request.healthy);
+    out.healthy = monitor::tracking::learn(track(learning, record, healthy), out.choice, floor_m,
+                                           record.name + ": --healthy " + request.healthy);
     out.learnt = true;
     out.healthy_from_s = healthy.from_s;
     out.healthy_to_s = healthy.to_s;

@@ -4,19 +4,19 @@
 #include <string>
 #include <vector>
 
-#include "tracking/tracker.h"
+#include "daemon/tracking/tracker.h"
 #include "workbench/report/report.h"
 
 namespace workbench::isolate {
 
-using tracking::Alarm;
-using tracking::Choice;
-using tracking::Healthy;
-using tracking::Named;
-using tracking::Rival;
-using tracking::Settings;
-using tracking::Tracker;
-using tracking::Window;
+using monitor::tracking::Alarm;
+using monitor::tracking::Choice;
+using monitor::tracking::Healthy;
+using monitor::tracking::Named;
+using monitor::tracking::Rival;
+using monitor::tracking::Settings;
+using monitor::tracking::Tracker;
+using monitor::tracking::Window;
 
 struct Request {
   std::string model;

@@ -3,17 +3,17 @@
 #include <filesystem>
 #include <limits>
 
-#include "tracking/quantity.h"
-#include "tracking/words.h"
+#include "daemon/tracking/quantity.h"
+#include "daemon/tracking/words.h"
 #include "workbench/isolate/outcome.h"
 
 namespace workbench::isolate {
 namespace {
 
+using monitor::tracking::number;
 using report::Plot;
 using report::Series;
 using report::Tone;
-using tracking::number;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInterval = 1.96;
@@ -29,18 +29,18 @@ Plot over_time(const Outcome& o, const std::string& title, const report::Axis& a
 }
 
 Plot parameter_plot(const Outcome& o, std::size_t i) {
-  const tracking::SearchParameter& p = o.choice.parameters[i];
-  const bool relative = p.scale == tracking::Scale::logarithmic;
+  const monitor::tracking::SearchParameter& p = o.choice.parameters[i];
+  const bool relative = p.scale == monitor::tracking::Scale::logarithmic;
   const double healthy = p.value(o.healthy.x[static_cast<Eigen::Index>(i)]);
-  Plot plot = over_time(o, tracking::name_words(p.name),
+  Plot plot = over_time(o, monitor::tracking::name_words(p.name),
                         relative ? report::Axis{"of the healthy value", "%"}
-                                 : report::Axis{tracking::name_words(p.name), ""});
+                                 : report::Axis{monitor::tracking::name_words(p.name), ""});
   const double factor = relative ? 100.0 / healthy : 1.0;
   Series value{"found", {}, {}, Tone::model, {}, false};
   Series low{"95 %, low", {}, {}, Tone::muted, {}, true};
   Series high{"95 %, high", {}, {}, Tone::muted, {}, true};
   for (const Window& window : o.windows) {
-    const tracking::Estimate& estimate = window.estimates[i];
+    const monitor::tracking::Estimate& estimate = window.estimates[i];
     const double about = kInterval * estimate.std_error;
     value.y.push_back(estimate.valid ? factor * estimate.value : kNaN);
     low.y.push_back(estimate.valid ? factor * (estimate.value - about) : kNaN);
@@ -71,9 +71,9 @@ report::Table alarm_table(const Outcome& o) {
   for (const Alarm& alarm : o.alarms) {
     table.rows.push_back({number("%.2f", alarm.raised_s),
                           alarm.active() ? "" : number("%.2f", alarm.cleared_s),
-                          tracking::change_words(o.choice, alarm.named, o.healthy.x),
+                          monitor::tracking::change_words(o.choice, alarm.named, o.healthy.x),
                           number("%.4f", std::min(alarm.confidence, 0.9999)),
-                          tracking::group_words(o.choice, alarm.named)});
+                          monitor::tracking::group_words(o.choice, alarm.named)});
   }
   return table;
 }

@@ -3,15 +3,15 @@
 #include <cmath>
 #include <map>
 
-#include "tracking/quantity.h"
-#include "tracking/words.h"
+#include "daemon/tracking/quantity.h"
+#include "daemon/tracking/words.h"
 #include "workbench/isolate/outcome.h"
 
 namespace workbench::isolate {
 namespace {
 
-using tracking::length_words;
-using tracking::number;
+using monitor::tracking::length_words;
+using monitor::tracking::number;
 
 std::string seconds(double s) { return number("%.4g", s) + " s"; }
 
@@ -23,9 +23,9 @@ std::string healthy_line(const Outcome& o) {
   text +=
       ": error " + length_words(o.healthy.rms_m) + ", noise floor " + length_words(o.noise_floor_m);
   for (std::size_t i = 0; i < o.choice.tracked; ++i) {
-    const tracking::SearchParameter& p = o.choice.parameters[i];
-    text += ", " + tracking::name_words(p.name) + " " +
-            tracking::value_words(p, o.healthy.x[static_cast<Eigen::Index>(i)], NAN);
+    const monitor::tracking::SearchParameter& p = o.choice.parameters[i];
+    text += ", " + monitor::tracking::name_words(p.name) + " " +
+            monitor::tracking::value_words(p, o.healthy.x[static_cast<Eigen::Index>(i)], NAN);
   }
   return text + "\n";
 }
@@ -33,9 +33,9 @@ std::string healthy_line(const Outcome& o) {
 std::string alarm_lines(const Outcome& o, const Alarm& alarm) {
   std::string text = "ALARM " + seconds(alarm.raised_s) +
                      (alarm.active() ? "" : " to " + seconds(alarm.cleared_s)) + ": " +
-                     tracking::change_words(o.choice, alarm.named, o.healthy.x) + " (confidence " +
-                     number("%.4f", std::min(alarm.confidence, 0.9999)) + ")\n";
-  const std::string group = tracking::group_words(o.choice, alarm.named);
+                     monitor::tracking::change_words(o.choice, alarm.named, o.healthy.x) +
+                     " (confidence " + number("%.4f", std::min(alarm.confidence, 0.9999)) + ")\n";
+  const std::string group = monitor::tracking::group_words(o.choice, alarm.named);
   return group.empty() ? text : text + "      " + group + "\n";
 }
 
@@ -63,9 +63,10 @@ std::string invalid_lines(const Outcome& o) {
 std::string window_line(const Outcome& o, const Window& window) {
   std::string text = number("%9.3f", window.t_s) + " s ";
   for (std::size_t i = 0; i < o.choice.tracked; ++i) {
-    const tracking::SearchParameter& p = o.choice.parameters[i];
-    const tracking::Estimate& estimate = window.estimates[i];
-    text += " " + tracking::words(tracking::quantity(p.name, estimate.value, estimate.std_error));
+    const monitor::tracking::SearchParameter& p = o.choice.parameters[i];
+    const monitor::tracking::Estimate& estimate = window.estimates[i];
+    text += " " + monitor::tracking::words(
+                      monitor::tracking::quantity(p.name, estimate.value, estimate.std_error));
     text += i + 1 < o.choice.tracked ? "," : "";
   }
   text += ", error " + length_words(window.rms_m);

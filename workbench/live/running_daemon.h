@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "daemon/tracking/source_kinds.h"
 #include "estimator/fdi/pipeline.h"
-#include "tracking/source_kinds.h"
 
 namespace workbench::live {
 
@@ -38,7 +38,7 @@ class RunningDaemon {
 
   std::string socket_, config_file_, model_;
   std::filesystem::path folder_, recorder_;
-  estimator::fdi::PipelineConfig rules_{tracking::source_kinds()};
+  estimator::fdi::PipelineConfig rules_{monitor::tracking::source_kinds()};
   double sample_time_s_ = 0.0;
 };
 

@@ -3,17 +3,17 @@
 #pragma once
 
 #include "config/record/record.h"
-#include "tracking/measured.h"
+#include "daemon/tracking/measured.h"
 
 namespace workbench::matching {
 
-using tracking::kLeading_per_s;
-using tracking::kLed;
-using tracking::kLedWhereObserved;
-using tracking::kNotLed;
-using tracking::kSettling_s;
-using tracking::Led;
-using tracking::Measured;
+using monitor::tracking::kLeading_per_s;
+using monitor::tracking::kLed;
+using monitor::tracking::kLedWhereObserved;
+using monitor::tracking::kNotLed;
+using monitor::tracking::kSettling_s;
+using monitor::tracking::Led;
+using monitor::tracking::Measured;
 
 /// Segments shorter than this are left out.
 inline constexpr double kShortest_s = 1.0;

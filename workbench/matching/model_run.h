@@ -1,14 +1,14 @@
 // A model driven by the measured command, as fitting and diagnosing run it.
 #pragma once
 
-#include "tracking/model_run.h"
+#include "daemon/tracking/model_run.h"
 #include "workbench/matching/measured.h"
 #include "workbench/matching/search_parameter.h"
 
 namespace workbench::matching {
 
-using tracking::kObserver_per_s;
-using tracking::ModelRun;
-using tracking::step_for;
+using monitor::tracking::kObserver_per_s;
+using monitor::tracking::ModelRun;
+using monitor::tracking::step_for;
 
 }  // namespace workbench::matching

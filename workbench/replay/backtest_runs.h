@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "daemon/tracking/source_kinds.h"
 #include "estimator/fdi/pipeline.h"
-#include "tracking/source_kinds.h"
 #include "workbench/replay/occurrences.h"
 
 namespace workbench::replay {
@@ -17,7 +17,7 @@ namespace workbench::replay {
 struct Rules {
   std::string file;
   std::filesystem::path folder;  ///< bands_file starts here
-  estimator::fdi::PipelineConfig pipeline{tracking::source_kinds()};
+  estimator::fdi::PipelineConfig pipeline{monitor::tracking::source_kinds()};
 };
 
 /// Throws config::schema::Error (exit 78).

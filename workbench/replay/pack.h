@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "daemon/tracking/source_kinds.h"
 #include "estimator/fdi/pipeline.h"
-#include "tracking/source_kinds.h"
 
 namespace workbench::replay {
 
@@ -15,7 +15,7 @@ struct Pack {
   std::filesystem::path log;
   std::string rig_id, prefix;
   double sample_time_s = 0.0;
-  estimator::fdi::PipelineConfig pipeline{tracking::source_kinds()};
+  estimator::fdi::PipelineConfig pipeline{monitor::tracking::source_kinds()};
   std::uint64_t pipeline_hash = 0;
   std::vector<std::uint8_t> state;  ///< before the first sample
   std::int64_t first_tick = 0;

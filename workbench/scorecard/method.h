@@ -8,8 +8,8 @@
 
 #include <string>
 
+#include "daemon/tracking/source_kinds.h"
 #include "estimator/fdi/pipeline.h"
-#include "tracking/source_kinds.h"
 #include "workbench/scorecard/stand.h"
 #include "workbench/train/learn.h"
 
@@ -19,7 +19,7 @@ struct Method {
   std::string name;
   std::string what;
   double false_alarm_time_s = 86400.0;  ///< of each learned band, aimed at
-  estimator::fdi::PipelineConfig pipeline{tracking::source_kinds()};
+  estimator::fdi::PipelineConfig pipeline{monitor::tracking::source_kinds()};
   std::string file;
   std::string text;  ///< as it is in effect: what results depend on
 

@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "config/schema/error.h"
-#include "tests/tracking/tracked.h"
+#include "daemon/tracking/healthy_file.h"
+#include "tests/daemon/tracking/tracked.h"
 #include "tests/truth/case.h"
 #include "tests/workbench/run_command.h"
-#include "tracking/healthy_file.h"
 
 namespace {
 
@@ -77,9 +77,9 @@ TEST_F(IsolateCommand, WritesWindowsAndAlarmsAsJsonAndAPage) {
 TEST_F(IsolateCommand, WritesWhatIsHealthyForTheDaemon) {
   run({"--learn", file("healthy.toml"), "--rig", "stand-1"});
   const plant_sim::ModelFile model = plant_sim::load_model(file("model.toml"));
-  const tracking::Choice choice = tracking::choose(model, usual(), "parameters");
-  const auto learnt =
-      tracking::read_healthy(file("healthy.toml"), model, {}, choice, truth::kSample_s, "stand-1");
+  const monitor::tracking::Choice choice = monitor::tracking::choose(model, usual(), "parameters");
+  const auto learnt = monitor::tracking::read_healthy(file("healthy.toml"), model, {}, choice,
+                                                      truth::kSample_s, "stand-1");
   EXPECT_NEAR(learnt.values[0], 6.89e6, 0.002 * 6.89e6);
   EXPECT_NEAR(learnt.values[1], 1000.0, 20.0);
   EXPECT_NEAR(learnt.rms_m, kFloor_m, 0.1 * kFloor_m);

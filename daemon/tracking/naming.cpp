@@ -1,0 +1,185 @@
+#include "daemon/tracking/naming.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace monitor::tracking {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+class Namer {
+ public:
+  Namer(WindowFit& fit, const Choice& choice, const Cut& cut, const WindowEstimate& found,
+        const VectorXd& healthy, double sigma_m, std::size_t measured)
+      : fit_(fit),
+        choice_(choice),
+        cut_(cut),
+        found_(found),
+        healthy_(healthy),
+        measured_(measured),
+        base_(healthy),
+        // The window's own noise: what is beyond it is not chance.
+        sigma_m_(std::min(sigma_m, found.rms_m)),
+        chi_square_(found.chi_square * sigma_m * sigma_m / (sigma_m_ * sigma_m_)) {
+    if (measured != kNotMeasured)
+      base_[static_cast<Index>(measured)] = found.x[static_cast<Index>(measured)];
+  }
+
+  std::vector<Named> run(const Thresholds& thresholds, Memory& memory) {
+    std::vector<Named> named;
+    std::vector<Named> read;
+    std::vector<signed char> directions(choice_.tracked, 0);
+    for (std::size_t i = 0; i < choice_.tracked; ++i) {
+      const auto at = static_cast<Index>(i);
+      Named one{i, found_.x[at], found_.std_error[at], found_.x[at] - healthy_[at], {}};
+      const double needed =
+          std::max(least_of(choice_, i, thresholds), thresholds.sure * one.std_error);
+      if (std::abs(one.deviation) < needed) continue;
+      (i == measured_ ? read : named).push_back(one);
+      directions[i] = one.deviation > 0.0 ? 1 : -1;
+    }
+    if (memory.left > 0 && directions == memory.directions) {
+      --memory.left;
+      return as_before(memory.named);
+    }
+    if (named.size() < 2 || !one_cause(named)) {
+      const VectorXd others = others_of(named);
+      for (Named& one : named) find_rivals(one, others);
+    }
+    named.insert(named.end(), read.begin(), read.end());
+    memory = {directions, Memory::kAnew, named};
+    return named;
+  }
+
+ private:
+  std::vector<Named> as_before(std::vector<Named> named) const {
+    for (Named& one : named) {
+      const auto at = static_cast<Index>(one.parameter);
+      one.x = found_.x[at];
+      one.std_error = found_.std_error[at];
+      one.deviation = found_.x[at] - healthy_[at];
+    }
+    return named;
+  }
+
+  std::string name(std::size_t i) const { return choice_.parameters[i].name; }
+  double value(std::size_t i, const VectorXd& x) const {
+    return choice_.parameters[i].value(x[static_cast<Index>(i)]);
+  }
+
+  bool one_cause(std::vector<Named>& named) {
+    std::vector<Rival> causes;
+    for (std::size_t a = choice_.tracked; a < choice_.parameters.size(); ++a) {
+      const WindowEstimate alone = fit_.fit(cut_, {a}, base_, sigma_m_);
+      if (alone.chi_square < chi_square_ + kChance) causes.push_back({name(a), value(a, alone.x)});
+    }
+    if (causes.empty()) return false;
+    std::size_t best = 0;
+    double least = INFINITY;
+    for (std::size_t i = 0; i < named.size(); ++i) {
+      const auto one = fit_.fit(cut_, {named[i].parameter}, base_, sigma_m_);
+      if (one.chi_square >= least) continue;
+      least = one.chi_square;
+      best = i;
+    }
+    named = {named[best]};
+    named.front().rivals = causes;
+    return true;
+  }
+
+  /// What has changed as it was found, all else healthy.
+  VectorXd others_of(const std::vector<Named>& named) const {
+    VectorXd x = base_;
+    for (const Named& one : named) x[static_cast<Index>(one.parameter)] = one.x;
+    return x;
+  }
+
+  void find_rivals(Named& one, VectorXd without) {
+    const auto at = static_cast<Index>(one.parameter);
+    without[at] = healthy_[at];
+    const double effect = fit_.fit(cut_, {}, without, sigma_m_).chi_square - chi_square_;
+    for (std::size_t a = choice_.tracked; a < choice_.parameters.size(); ++a) {
+      const WindowEstimate instead = fit_.fit(cut_, {a}, without, sigma_m_);
+      const double left = instead.chi_square - chi_square_;
+      if (left > std::max(kChance, kLeft * effect)) continue;
+      const WindowEstimate best = let_follow(a, one.parameter, instead.x);
+      if (best.rms_m > kAsGood * found_.rms_m) continue;
+      one.rivals.push_back({name(a), value(a, best.x)});
+    }
+  }
+
+  WindowEstimate let_follow(std::size_t rival, std::size_t instead_of, const VectorXd& from) {
+    VectorXd prior_sd = choice_.uncertainty;
+    std::vector<std::size_t> free;
+    for (std::size_t i = 0; i < choice_.parameters.size(); ++i) {
+      const auto at = static_cast<Index>(i);
+      const bool open = i == rival || i < choice_.tracked;
+      if (open) prior_sd[at] = std::numeric_limits<double>::infinity();
+      if (i != instead_of && i != measured_ && (open || prior_sd[at] <= kMostUncertain_ratio))
+        free.push_back(i);
+    }
+    return fit_.fit(cut_, free, from, sigma_m_, prior_sd);
+  }
+
+  WindowFit& fit_;
+  const Choice& choice_;
+  const Cut& cut_;
+  const WindowEstimate& found_;
+  const VectorXd& healthy_;
+  std::size_t measured_;
+  VectorXd base_;  ///< healthy, but for what was read
+  double sigma_m_;
+  double chi_square_;
+};
+
+}  // namespace
+
+double least_of(const Choice& choice, std::size_t parameter, const Thresholds& thresholds) {
+  if (choice.parameters[parameter].scale == Scale::logarithmic) {
+    return std::log1p(thresholds.least_ratio);
+  }
+  const double present = std::abs(choice.file[static_cast<Index>(parameter)]);
+  return present > 0.0 ? std::min(present, kLeastOfTypical) : kLeastOfTypical;
+}
+
+std::vector<Named> name_changes(WindowFit& fit, const Choice& choice, const Cut& cut,
+                                const WindowEstimate& found, const VectorXd& healthy,
+                                double sigma_m, const Thresholds& thresholds, Memory& memory,
+                                std::size_t measured) {
+  return Namer(fit, choice, cut, found, healthy, sigma_m, measured).run(thresholds, memory);
+}
+
+void carry(estimator::Carrier& carrier, std::vector<Named>& named, const Choice& choice) {
+  auto count = static_cast<std::uint64_t>(named.size());
+  carrier.value(count);
+  if (count > choice.tracked) carrier.fail();
+  if (!carrier.good()) return;
+  named.resize(static_cast<std::size_t>(count));
+  for (Named& one : named) {
+    carrier.value(one.parameter);
+    carrier.value(one.x);
+    carrier.value(one.std_error);
+    carrier.value(one.deviation);
+    auto rivals = static_cast<std::uint64_t>(one.rivals.size());
+    carrier.value(rivals);
+    if (one.parameter >= choice.tracked || rivals > choice.parameters.size()) carrier.fail();
+    if (!carrier.good()) return;
+    one.rivals.resize(static_cast<std::size_t>(rivals));
+    for (Rival& rival : one.rivals) {
+      carrier.text(rival.name);
+      carrier.value(rival.value);
+    }
+  }
+}
+
+void Memory::carry(estimator::Carrier& carrier, const Choice& choice) {
+  carrier.growing(directions, choice.tracked);
+  carrier.value(left);
+  monitor::tracking::carry(carrier, named, choice);
+}
+
+}  // namespace monitor::tracking

@@ -1,0 +1,243 @@
+#include "daemon/tracking/source.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "daemon/tracking/quantity.h"
+#include "daemon/tracking/words.h"
+
+namespace monitor::tracking {
+namespace {
+
+using estimator::fdi::AlarmState;
+using estimator::fdi::Finding;
+using estimator::fdi::NamedValue;
+using estimator::fdi::Sample;
+using estimator::fdi::Severity;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+/// The model has stopped explaining the rig when this many windows' lengths in a row say so: a
+/// window across a change says it as well, and is over after one.
+constexpr double kLong = 1.5;
+constexpr std::size_t kMostLessons = 100000;
+
+std::size_t count_of(double duration_s, double each_s) {
+  const double count = std::ceil(duration_s / each_s);
+  return static_cast<std::size_t>(std::clamp(count, 1.0, static_cast<double>(kMostLessons)));
+}
+
+std::string value_name(std::string name) {
+  std::replace(name.begin(), name.end(), '.', '_');
+  return name;
+}
+
+}  // namespace
+
+TrackerSource::TrackerSource(const TrackerConfig& config, const plant_sim::ModelFile& model,
+                             const Choice& choice, std::optional<Healthy> healthy,
+                             double sample_time_s)
+    : sample_time_s_(sample_time_s),
+      stride_s_(config.settings.stride_s),
+      window_s_(config.settings.window_s),
+      most_ratio_(config.settings.most_ratio),
+      noise_floor_m_(config.learnt.noise_floor_m),
+      lessons_(count_of(config.learn_s, config.settings.stride_s)),
+      severity_(config.severity == "minor" ? Severity::minor : Severity::major),
+      rules_(config.rules),
+      given_(std::move(healthy)),
+      tracker_(model, choice, config.settings, sample_time_s, noise_floor_m_),
+      said_(choice.tracked + 1) {
+  reset();
+}
+
+std::vector<std::string> TrackerSource::names() const {
+  std::vector<std::string> names;
+  const Choice& choice = tracker_.choice();
+  for (std::size_t i = 0; i < choice.tracked; ++i) {
+    names.push_back(value_name(choice.parameters[i].name));
+  }
+  for (std::size_t i = 0; i < choice.tracked; ++i) names.push_back("smallest_" + names[i]);
+  names.emplace_back("residual_rms_m");
+  return names;
+}
+
+std::vector<estimator::fdi::Alarm> TrackerSource::own_alarms() const {
+  std::vector<estimator::fdi::Alarm> alarms;
+  for (std::size_t i = 0; i <= tracker_.choice().tracked; ++i) {
+    estimator::fdi::Alarm alarm;
+    alarm.name = i < tracker_.choice().tracked ? names()[i] : "unexplained";
+    alarm.rules = rules_;
+    alarms.push_back(alarm);
+  }
+  return alarms;
+}
+
+bool TrackerSource::is_due(std::int64_t missing) noexcept {
+  broken_ = true;
+  missing_ += missing;
+  if (static_cast<double>(missing_) * sample_time_s_ < stride_s_) return false;
+  missing_ = 0;
+  std::fill(found_.begin(), found_.end(), kNan);
+  why_ = "samples are missing";
+  rms_m_ = kNan;
+  samples_ = 0;
+  return true;
+}
+
+bool TrackerSource::lose(std::int64_t periods) noexcept { return is_due(periods); }
+
+bool TrackerSource::push(const Sample& sample, double y_m) noexcept {
+  if (!std::isfinite(y_m) || !std::isfinite(sample.u_applied_V)) return is_due(1);
+  const double t_s = static_cast<double>(sample.tick) * sample_time_s_;
+  const std::optional<Window> window =
+      tracker_.push(t_s, sample.u_applied_V, y_m, std::exchange(broken_, false));
+  missing_ = 0;
+  if (!window) return false;
+  take(*window);
+  return true;
+}
+
+void TrackerSource::take(const Window& window) {
+  const std::size_t tracked = tracker_.choice().tracked;
+  for (std::size_t i = 0; i < tracked; ++i) {
+    const Estimate& one = window.estimates[i];
+    found_[i] = one.valid ? one.value : kNan;
+    found_[tracked + i] = one.valid ? one.std_error : kNan;
+    found_[2 * tracked + i] = window.explained ? one.smallest : kNan;
+  }
+  rms_m_ = window.rms_m;
+  samples_ = static_cast<int>(std::lround(window_s_ / sample_time_s_));
+  why_ = window.why;
+  const bool fits = !tracker_.healthy() || window.rms_m <= most_ratio_ * tracker_.healthy()->rms_m;
+  unexplained_ = fits ? 0 : unexplained_ + 1;
+  if (!tracker_.healthy()) {
+    learn_from(window);
+  } else {
+    suggest(window);
+  }
+  tracker_.forget_cleared();
+  say();
+}
+
+void TrackerSource::learn_from(const Window& window) {
+  const Choice& choice = tracker_.choice();
+  why_ = "learning what is healthy" + (window.why.empty() ? "" : "; " + window.why);
+  if (!teaches(window, choice)) return;
+  learning_.push_back(window.rms_m);
+  for (const Estimate& one : window.estimates) learning_.push_back(one.x);
+  const std::size_t length = 1 + choice.tracked;
+  if (learning_.size() < lessons_ * length) return;
+  std::vector<Window> windows(lessons_);
+  for (std::size_t k = 0; k < lessons_; ++k) {
+    windows[k].explained = true;
+    windows[k].rms_m = learning_[k * length];
+    windows[k].estimates.resize(choice.tracked);
+    for (std::size_t i = 0; i < choice.tracked; ++i) {
+      windows[k].estimates[i].x = learning_[k * length + 1 + i];
+    }
+  }
+  tracker_.take(learn(windows, choice, noise_floor_m_, "healthy motion"));
+  learning_.clear();
+}
+
+void TrackerSource::suggest(const Window& window) {
+  if (!window.poor) return;
+  if (!probe_) {
+    const std::optional<Probe> probe = tracker_.probe();
+    probe_ = probe ? probe_words(*probe) : "";
+  }
+  if (probe_->empty()) return;
+  // Short, for what hands reasons on cuts them.
+  const std::size_t colon = why_.find(':');
+  why_ =
+      (window.explained ? "this motion tells too little" : why_.substr(0, colon)) + "; " + *probe_;
+}
+
+void TrackerSource::say() {
+  const Choice& choice = tracker_.choice();
+  for (std::size_t i = 0; i < choice.tracked; ++i) {
+    Said& said = said_[i];
+    said.state = {};
+    const monitor::tracking::Alarm* const alarm = tracker_.alarms().active(i);
+    if (alarm == nullptr) continue;
+    const Named& named = alarm->named;
+    const SearchParameter& p = choice.parameters[i];
+    const std::string group = group_words(choice, named);
+    said.reason =
+        change_words(choice, named, tracker_.healthy()->x) + (group.empty() ? "" : "; " + group);
+    said.parameter = named.rivals.empty() ? p.name : "";
+    said.group.clear();
+    if (!named.rivals.empty()) said.group.push_back(p.name);
+    for (const Rival& rival : named.rivals) said.group.push_back(rival.name);
+    said.views.assign(said.group.begin(), said.group.end());
+    said.fault = {said.parameter, said.views, alarm->confidence};
+    said.state.severity = severity_;
+    said.state.direction = named.deviation > 0.0 ? 1 : -1;
+    said.state.value = p.value(named.x);
+    said.state.std_error = named.std_error * p.slope(named.x);
+    said.state.reason = said.reason;
+    said.state.fault = &said.fault;
+  }
+  Said& said = said_.back();
+  said.state = {};
+  if (static_cast<double>(unexplained_) * stride_s_ < kLong * window_s_) return;
+  said.reason = why_;
+  said.state.severity = severity_;
+  said.state.direction = 1;
+  said.state.value = rms_m_;
+  said.state.reason = said.reason;
+}
+
+Finding TrackerSource::find(std::span<NamedValue> values) noexcept {
+  const std::size_t tracked = tracker_.choice().tracked;
+  for (std::size_t i = 0; i < tracked; ++i) {
+    values[i].value = found_[i];
+    values[i].std_error = found_[tracked + i];
+    values[tracked + i].value = found_[2 * tracked + i];
+    values[tracked + i].std_error = kNan;
+  }
+  values[2 * tracked].value = rms_m_;
+  values[2 * tracked].std_error = kNan;
+  Finding finding;
+  finding.warming_up = !tracker_.healthy().has_value();
+  finding.valid = why_.empty();
+  finding.reason = why_.c_str();
+  finding.samples = samples_;
+  return finding;
+}
+
+AlarmState TrackerSource::own_alarm(std::size_t number) const noexcept {
+  return said_[number].state;
+}
+
+void TrackerSource::reset() {
+  tracker_.reset();
+  if (given_) tracker_.take(*given_);
+  broken_ = true;
+  missing_ = 0;
+  learning_.clear();
+  found_.assign(3 * tracker_.choice().tracked, kNan);
+  why_.clear();
+  rms_m_ = kNan;
+  samples_ = 0;
+  unexplained_ = 0;
+  probe_.reset();
+  say();
+}
+
+void TrackerSource::carry(estimator::Carrier& carrier) {
+  tracker_.carry(carrier);
+  carrier.value(broken_);
+  carrier.value(missing_);
+  carrier.growing(learning_, lessons_ * (1 + tracker_.choice().tracked));
+  carrier.fixed(found_);
+  carrier.text(why_);
+  carrier.value(rms_m_);
+  carrier.value(samples_);
+  carrier.value(unexplained_);
+  if (carrier.restores() && carrier.good()) say();
+}
+
+}  // namespace monitor::tracking

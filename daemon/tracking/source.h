@@ -1,0 +1,70 @@
+// The tracker as a source of the fault detection. It allocates, and a look at a window takes
+// milliseconds: it belongs on the detector thread, not in the loop.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/tracking/tracker_config.h"
+#include "estimator/fdi/source.h"
+
+namespace monitor::tracking {
+
+class TrackerSource final : public estimator::fdi::Source {
+ public:
+  /// `healthy`: none = learnt from the first windows that teach.
+  TrackerSource(const TrackerConfig& config, const plant_sim::ModelFile& model,
+                const Choice& choice, std::optional<Healthy> healthy, double sample_time_s);
+
+  [[nodiscard]] std::vector<std::string> names() const override;
+  [[nodiscard]] std::vector<estimator::fdi::Alarm> own_alarms() const override;
+  bool lose(std::int64_t periods) noexcept override;
+  bool push(const estimator::fdi::Sample& sample, double y_m) noexcept override;
+  estimator::fdi::Finding find(std::span<estimator::fdi::NamedValue> values) noexcept override;
+  [[nodiscard]] estimator::fdi::AlarmState own_alarm(std::size_t number) const noexcept override;
+  void reset() override;
+  void carry(estimator::Carrier& carrier) override;
+  [[nodiscard]] double interval_s() const noexcept override { return stride_s_; }
+
+ private:
+  /// What the alarm of a parameter says.
+  struct Said {
+    std::string reason;
+    std::string parameter;
+    std::vector<std::string> group;
+    std::vector<std::string_view> views;
+    estimator::fdi::FaultName fault;
+    estimator::fdi::AlarmState state;
+  };
+
+  void take(const Window& window);
+  void learn_from(const Window& window);
+  void suggest(const Window& window);
+  void say();
+  [[nodiscard]] bool is_due(std::int64_t missing) noexcept;
+
+  double sample_time_s_;
+  double stride_s_;
+  double window_s_;
+  double most_ratio_;
+  double noise_floor_m_;
+  std::size_t lessons_;  ///< windows that are learnt from
+  estimator::fdi::Severity severity_;
+  estimator::fdi::AlarmRules rules_;
+  std::optional<Healthy> given_;
+  Tracker tracker_;
+  bool broken_ = true;            ///< samples are missing before the next one
+  std::int64_t missing_ = 0;      ///< samples since the latest finding, in a row
+  std::vector<double> learning_;  ///< of each window: error, then x of the parameters
+  std::vector<double> found_;     ///< the values, then their standard errors
+  std::string why_;
+  std::optional<std::string> probe_;  ///< the motion that would tell, once it was looked for
+  double rms_m_ = 0.0;
+  int samples_ = 0;
+  std::int64_t unexplained_ = 0;  ///< windows in a row
+  std::vector<Said> said_;        ///< of each tracked parameter, then "unexplained"
+};
+
+}  // namespace monitor::tracking

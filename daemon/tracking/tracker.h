@@ -1,0 +1,144 @@
+// Physical parameters tracked over a sliding window, sample by sample.
+//
+// Each stride: the tracked parameters are fitted to the latest window (window_fit.h), the window is
+// judged (a model that does not explain it, or a motion that cannot tell the parameters, makes it
+// invalid, with the reason), and changes are named (naming.h). A window in which the rig changed
+// explains nothing: then its latest part alone is looked at, which is how a change is named before
+// the window is over. One call of push() does at most one such look; all others only keep the
+// sample.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/tracking/alarm_book.h"
+#include "daemon/tracking/choice.h"
+#include "daemon/tracking/naming.h"
+#include "daemon/tracking/pool.h"
+#include "daemon/tracking/probe.h"
+#include "daemon/tracking/window_fit.h"
+
+namespace monitor::tracking {
+
+struct Settings {
+  double window_s = 2.0;
+  double stride_s = 0.5;
+  double observer_per_s = kObserver_per_s;
+  double most_ratio = 1.2;       ///< of the healthy error, beyond which a window is invalid
+  double most_std_error = 0.01;  ///< ratio, beyond which a value is invalid
+  double most_of_typical = 0.1;  ///< the same of an effect, over its typical size
+  std::int64_t pooled = 4;       ///< windows that a value is taken from while they agree (pool.h)
+  Thresholds thresholds;
+  ProbeLimits probe;
+};
+
+/// What the rig is like without a fault.
+struct Healthy {
+  double rms_m = 0.0;  ///< of a window's error; not under the noise floor
+  Eigen::VectorXd x;   ///< every parameter of the choice, search units
+};
+
+struct Estimate {
+  double x = 0.0;          ///< search value
+  double value = 0.0;      ///< SI
+  double std_error = 0.0;  ///< SI
+  double smallest = 0.0;   ///< change, SI, that this motion would show in 95 of 100 windows
+  bool valid = false;
+  std::string why;  ///< invalid: the reason
+};
+
+struct Window {
+  double t_s = 0.0;  ///< of its last sample
+  double from_s = 0.0;
+  std::vector<Estimate> estimates;  ///< of the tracked parameters, in their order
+  Eigen::MatrixXd correlation;
+  double rms_m = 0.0;
+  bool explained = false;    ///< moves, and the model explains it
+  bool poor = false;         ///< it is the motion that does not tell
+  bool valid = false;        ///< all estimates are
+  std::string why;           ///< invalid: the first reason
+  std::string part;          ///< what its latest part said, where that was looked at
+  std::vector<Named> named;  ///< changes, in this window or its latest part
+  int evaluations = 0;       ///< of the window's fit: groups of eight simulations
+  double fit_s = 0.0;        ///< time that it took
+};
+
+class Tracker {
+ public:
+  Tracker(const plant_sim::ModelFile& model, const Choice& choice, const Settings& settings,
+          double sample_time_s, double noise_floor_m);
+
+  /// From now on windows are judged and changes named; before, they are only fitted.
+  void take(const Healthy& healthy);
+  /// The window that ends with this sample, when one does. `first`: samples before it are missing.
+  /// Where a reading of the supply pressure comes with every sample of a window, it takes the place
+  /// of that parameter's fit.
+  std::optional<Window> push(double t_s, double u_V, double y_m, bool first,
+                             double supply_Pa = std::numeric_limits<double>::quiet_NaN());
+
+  [[nodiscard]] const AlarmBook& alarms() const { return alarms_; }
+  /// AlarmBook::forget_cleared().
+  void forget_cleared() { alarms_.forget_cleared(); }
+  [[nodiscard]] const std::optional<Healthy>& healthy() const { return healthy_; }
+  [[nodiscard]] const Choice& choice() const { return choice_; }
+
+  /// What motion within the limits of the settings would tell; a tenth of a second or so. Once the
+  /// healthy rig is known.
+  [[nodiscard]] std::optional<Probe> probe();
+
+  /// As at the start, the healthy rig forgotten.
+  void reset();
+  /// Bit for bit (carrier.h), after forget_cleared().
+  void carry(estimator::Carrier& carrier);
+
+ private:
+  [[nodiscard]] Cut latest(std::size_t samples) const;
+  /// Fits the tracked parameters from `near`; a measured one is held to its mean.
+  [[nodiscard]] WindowEstimate fit(const Cut& cut, Eigen::VectorXd near, double sigma_m);
+  /// The parameter that was read in all of the latest samples; kNotMeasured: none.
+  [[nodiscard]] std::size_t measured(std::size_t samples) const;
+  Window look(double t_s);
+  void estimate(Window& window, const WindowEstimate& found);
+  void judge(Window& window, const Cut& cut, const WindowEstimate& found) const;
+  [[nodiscard]] bool moves(const Cut& cut) const;
+  [[nodiscard]] double noise_m() const;
+  void look_at_part(Window& window);
+  void tell(Window& window, const Cut& cut, const WindowEstimate& found);
+  void refine(Window& window) const;
+
+  plant_sim::ModelFile model_;
+  const Choice choice_;
+  Settings settings_;
+  double sample_time_s_;
+  double noise_floor_m_;
+  std::size_t lead_;
+  std::size_t window_;
+  std::size_t supply_;  ///< index of the supply pressure where it is tracked; else kNotMeasured
+  std::size_t stride_;
+  WindowFit fit_;
+  std::vector<double> u_V_;  ///< the latest samples, twice as long as needed
+  std::vector<double> y_m_;
+  std::vector<double> supply_Pa_;  ///< NaN: not read
+  std::size_t kept_ = 0;           ///< samples since the last gap that are still there
+  std::size_t until_ = 0;          ///< samples until the next look
+  std::optional<Healthy> healthy_;
+  Eigen::VectorXd near_;  ///< where the next search begins
+  Pool pool_;
+  Memory memory_;
+  AlarmBook alarms_;
+};
+
+/// Whether a window may serve to learn from: explained, every parameter known to some per cent.
+[[nodiscard]] bool teaches(const Window& window, const Choice& choice);
+
+/// The medians over the windows of a record without a fault; what is not tracked is as in the file.
+/// Throws config::schema::Error (exit 65) when none is usable.
+[[nodiscard]] Healthy learn(const std::vector<Window>& windows, const Choice& choice,
+                            double noise_floor_m, const std::string& where);
+
+}  // namespace monitor::tracking

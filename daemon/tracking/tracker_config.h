@@ -1,0 +1,47 @@
+// [[tracker]]: physical parameters tracked on line, as a source of the fault detection.
+//
+//   [[tracker]]
+//   id = "physics"
+//   model = "models/thesis.toml"          # of the healthy rig
+//   parameters = ["supply_pressure_Pa", "damping_N_s_per_m"]
+//   healthy = "healthy.toml"              # from `spoolwatch isolate --learn`; or learn_s
+//
+// Its values: each parameter by its name (a dot in it becomes "_"), NaN where the window does not
+// tell it; smallest_NAME, the change that the present motion would show; residual_rms_m. Its
+// alarms: each parameter by the same name, which name the parameter or the group that cannot be
+// told apart; and "unexplained" when the model no longer explains the rig.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "daemon/tracking/healthy_file.h"
+#include "daemon/tracking/source_kinds.h"
+#include "daemon/tracking/tracker.h"
+#include "estimator/fdi/source.h"
+
+namespace monitor::tracking {
+
+struct TrackerConfig final : estimator::fdi::SourceConfigOf<TrackerConfig> {
+  TrackerConfig();
+
+  std::string model;       ///< file, relative to the configuration; read by load()
+  std::string model_toml;  ///< what stood in it
+  std::vector<std::string> parameters{"supply_pressure_Pa", "damping_N_s_per_m"};
+  Settings settings;
+  std::string healthy;  ///< file; "": learnt from the first learn_s of motion
+  double learn_s = 10.0;
+  HealthyFile learnt;  ///< what stood in the file
+  std::string severity = "major";
+  estimator::fdi::AlarmRules rules;
+
+  void visit(config::schema::Visitor& v) override;
+  void load(const estimator::fdi::Loading& loading) override;
+  [[nodiscard]] std::unique_ptr<estimator::fdi::Source> make(
+      const estimator::fdi::Setting& setting) const override;
+
+ private:
+  [[nodiscard]] std::string where() const { return "[[tracker]] " + id; }
+};
+
+}  // namespace monitor::tracking

@@ -1,0 +1,124 @@
+#include "daemon/tracking/words.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/tracking/quantity.h"
+
+namespace monitor::tracking {
+namespace {
+
+using Eigen::Index;
+
+/// Cosine above which it is another parameter that hides one.
+constexpr double kAlike = 0.98;
+
+std::string percent(double ratio) { return number("%.3g", 100.0 * ratio) + " %"; }
+
+bool is_logarithmic(const SearchParameter& p) { return p.scale == Scale::logarithmic; }
+
+/// "12 %" of the value, or "0.3 times its typical size".
+std::string error_words(const SearchParameter& p, double std_error) {
+  if (!std::isfinite(std_error)) return "not at all";
+  return is_logarithmic(p) ? "to +- " + percent(std_error) + " only"
+                           : "to +- " + number("%.2g", std_error) + " of its typical size only";
+}
+
+/// Whose effect is most like that of parameter `at`; -1: there is no other.
+Index alike(const Eigen::MatrixXd& likeness, Index at) {
+  Index best = -1;
+  for (Index j = 0; j < likeness.cols(); ++j) {
+    if (j == at) continue;
+    if (best < 0 || std::abs(likeness(at, j)) > std::abs(likeness(at, best))) best = j;
+  }
+  return best;
+}
+
+}  // namespace
+
+std::string name_words(const std::string& name) {
+  if (name.find('.') != std::string::npos) {
+    std::string effect = name.substr(0, name.find('.'));
+    std::replace(effect.begin(), effect.end(), '_', ' ');
+    return effect;
+  }
+  return parameter_words(name);
+}
+
+std::string value_words(const SearchParameter& p, double x, double std_error) {
+  return words(quantity(p.name, p.value(x), std_error * p.slope(x)));
+}
+
+std::string still_words(double moved_m, double noise_floor_m, double window_s) {
+  return "no motion: within " + number("%.3g", window_s) + " s the rod moves " +
+         length_words(moved_m) + ", the position's noise is " + length_words(noise_floor_m);
+}
+
+std::string unexplained_words(double rms_m, double healthy_m, double most_ratio) {
+  return "the model does not explain it: error " + length_words(rms_m) + ", healthy " +
+         length_words(healthy_m) + ", limit " + number("%.3g", most_ratio) + " times that";
+}
+
+std::string unseen_words(const Choice& choice, const WindowEstimate& found, std::size_t i,
+                         double std_error, double most) {
+  const SearchParameter& p = choice.parameters[i];
+  if (found.at_bound[i] != 0) return name_words(p.name) + " ran to the end of its range";
+  if (std_error <= most) return {};
+  const std::string known = name_words(p.name) + " is known " + error_words(p, std_error);
+  const auto at = static_cast<Index>(i);
+  const Index partner = alike(found.likeness, at);
+  if (partner < 0 || !(std::abs(found.likeness(at, partner)) > kAlike)) {
+    return "the motion does not show it: " + known;
+  }
+  return "the motion does not separate " + name_words(p.name) + " from " +
+         name_words(choice.parameters[static_cast<std::size_t>(partner)].name) +
+         " (their effects are alike to " + number("%.4f", std::abs(found.likeness(at, partner))) +
+         "): " + known;
+}
+
+std::string part_words(const Choice& choice, const WindowEstimate& found, double length_s) {
+  std::string text = "its last " + number("%.3g", length_s) + " s alone:";
+  for (std::size_t i = 0; i < choice.tracked; ++i) {
+    const auto at = static_cast<Index>(i);
+    text += (i == 0 ? " " : ", ") + name_words(choice.parameters[i].name) + " " +
+            value_words(choice.parameters[i], found.x[at], found.std_error[at]);
+  }
+  return text;
+}
+
+std::string change_words(const Choice& choice, const Named& named, const Eigen::VectorXd& healthy) {
+  const SearchParameter& p = choice.parameters[named.parameter];
+  const double before = p.value(healthy[static_cast<Index>(named.parameter)]);
+  const double now = p.value(named.x);
+  const std::string direction = now > before ? " high" : " low";
+  const std::string size =
+      is_logarithmic(p) ? number("%+.1f", 100.0 * (now / before - 1.0)) + " %, " : std::string();
+  return name_words(p.name) + direction + ", " + size + value_words(p, named.x, named.std_error);
+}
+
+std::string group_words(const Choice& choice, const Named& named) {
+  if (named.rivals.empty()) return {};
+  std::string text = "or";
+  for (std::size_t i = 0; i < named.rivals.size(); ++i) {
+    const Rival& rival = named.rivals[i];
+    text += (i == 0 ? " " : " or ") + name_words(rival.name) + " " +
+            words(quantity(rival.name, rival.value, NAN));
+  }
+  return text + ": command and position cannot tell; " + advice_words(choice, named);
+}
+
+std::string advice_words(const Choice& choice, const Named& named) {
+  if (named.rivals.empty()) return {};
+  std::string all = choice.parameters[named.parameter].name;
+  for (const Rival& rival : named.rivals) all += " " + rival.name;
+  const auto has = [&](const char* word) { return all.find(word) != std::string::npos; };
+  if (has("supply")) return "a reading of the supply pressure would";
+  if (has("leakage") || has("air") || has("bulk"))
+    return "a reading of the chamber pressures would";
+  if (has("friction") || has("damping") || has("mass") || has("load")) {
+    return "a motion of other speeds and accelerations would";
+  }
+  return "another motion may";
+}
+
+}  // namespace monitor::tracking

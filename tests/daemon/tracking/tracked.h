@@ -1,0 +1,77 @@
+// Records of the independent truth generator, tracked as the command does it.
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "daemon/tracking/tracker.h"
+#include "tests/truth/case.h"
+#include "tests/truth/rig.h"
+
+namespace tracking_test {
+
+namespace iso = monitor::tracking;
+
+/// Encoder of 5 um and noise of 2 um.
+inline constexpr double kFloor_m = 2.47e-6;
+inline constexpr double kHealthy_s = 10.0;
+
+/// The source's stand: sine of 25.4 mm at 0.5 Hz.
+inline truth::Case stand(double length_s, std::size_t seed = 1) {
+  truth::Case of = truth::parse_case("motion=sine,plant=printed", seed);
+  of.length_s = length_s;
+  return of;
+}
+
+inline void fault(truth::Case& of, double at_s, double truth::Plant::*member, double factor) {
+  of.changes.push_back({at_s, member, nullptr, factor * of.plant.*member});
+}
+
+struct Tracked {
+  iso::Choice choice;
+  iso::Healthy healthy;
+  std::vector<iso::Window> windows;
+  std::vector<iso::Alarm> alarms;
+
+  [[nodiscard]] const std::string& name(const iso::Alarm& alarm) const {
+    return choice.parameters[alarm.named.parameter].name;
+  }
+};
+
+inline const std::vector<std::string>& usual() {
+  static const std::vector<std::string> names{"supply_pressure_Pa", "damping_N_s_per_m"};
+  return names;
+}
+
+inline plant_sim::ModelFile printed_model() {
+  plant_sim::ModelFile model;  // the defaults are the printed values
+  model.name = "printed";
+  return model;
+}
+
+inline Tracked tracked(const truth::Record& record, const std::vector<std::string>& names = usual(),
+                       const iso::Settings& settings = {},
+                       const plant_sim::ModelFile& model = printed_model(),
+                       double floor_m = kFloor_m, const std::vector<double>& supply_Pa = {}) {
+  Tracked out;
+  out.choice = iso::choose(model, names, "parameters");
+  const auto run = [&](iso::Tracker& tracker, double until_s) {
+    std::vector<iso::Window> windows;
+    for (std::size_t k = 0; k < record.t_s.size() && record.t_s[k] < until_s; ++k) {
+      auto window = tracker.push(record.t_s[k], record.u_V[k], record.y_m[k], k == 0,
+                                 supply_Pa.empty() ? NAN : supply_Pa[k]);
+      if (window) windows.push_back(*window);
+    }
+    return windows;
+  };
+  iso::Tracker learning(model, out.choice, settings, truth::kSample_s, floor_m);
+  out.healthy = iso::learn(run(learning, kHealthy_s), out.choice, floor_m, "truth");
+  iso::Tracker judging(model, out.choice, settings, truth::kSample_s, floor_m);
+  judging.take(out.healthy);
+  out.windows = run(judging, INFINITY);
+  out.alarms = judging.alarms().alarms();
+  return out;
+}
+
+}  // namespace tracking_test
