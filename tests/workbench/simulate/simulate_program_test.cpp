@@ -128,7 +128,7 @@ TEST(SimulateProgram, RefusesBadArgumentsInOneLine) {
   const std::string file = folder.file("a.csv");
   expect_refused(run_program("simulate /nowhere.toml -o " + file), 78, "/nowhere.toml");
   expect_refused(run_program(simulate("/nowhere/a.csv", "")), 1, "/nowhere does not exist");
-  expect_refused(run_program(simulate(file, "--reference triangle")), 2, "multisine");
+  expect_refused(run_program(simulate(file, "--reference sawtooth")), 2, "multisine");
   expect_refused(run_program(simulate(file, "--set parameters.mass_kg")), 2, "table.key=value");
   expect_refused(run_program(simulate(file, "--set parameters.mass_kg=-1")), 78, "mass_kg");
   expect_refused(run_program(simulate(file, "--fault mass_kg")), 2, "PARAMETER=VALUE@SECONDS");
