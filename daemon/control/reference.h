@@ -1,9 +1,10 @@
 // Reference signals: where the rod shall be, as a function of time.
 //
 //   sine       r = centre + amplitude sin(2 pi f t)
-//   triangle   the same frequency and amplitude at constant speed to and fro, upwards from the centre
-//   multisine  sines of the listed frequencies with Schroeder's phases, scaled to peak at amplitude
-//   steps      random levels within +-amplitude, each held for hold_s, joined over rise_s by a
+//   triangle   the same frequency and amplitude at constant speed to and fro, upwards from the
+//   centre multisine  sines of the listed frequencies with Schroeder's phases, scaled to peak at
+//   amplitude steps      random levels within +-amplitude, each held for hold_s, joined over rise_s
+//   by a
 //              quintic with zero speed and acceleration at both ends
 //   chirp      frequency rising linearly from f to f_end over sweep_s, then again; phase continuous
 //   prbs       +-amplitude by a maximum-length shift register, one bit each hold_s

@@ -46,9 +46,10 @@ void choose_reference(const std::string& text, config::schema::Document& documen
   }
   std::error_code ignored;
   if (!fs::is_regular_file(text, ignored)) {
-    throw Error(ExitCode::usage, "--reference " + text +
-                                     ": is no kind and no file; allowed: sine, triangle, multisine, steps, "
-                                     "chirp, prbs, or a CSV file with t_s,reference_m");
+    throw Error(ExitCode::usage,
+                "--reference " + text +
+                    ": is no kind and no file; allowed: sine, triangle, multisine, steps, "
+                    "chirp, prbs, or a CSV file with t_s,reference_m");
   }
   document.set("reference.kind=\"file\"");
   document.set("reference.file='" + fs::absolute(text).string() + "'");
@@ -121,8 +122,9 @@ void add_simulate(CLI::App& command, int& /*exit_code*/) {
   command.add_option("--seed", arguments->seed, "of the noise; same seed, same bytes")
       ->check(number_within(0.0, 1e18))
       ->capture_default_str();
-  command.add_option("--reference", arguments->reference,
-                     "sine, triangle, multisine, steps, chirp, prbs, or a CSV file with t_s,reference_m");
+  command.add_option(
+      "--reference", arguments->reference,
+      "sine, triangle, multisine, steps, chirp, prbs, or a CSV file with t_s,reference_m");
   command
       .add_option("--set", arguments->assignments,
                   "table.key=value of the model file, [reference] or [instruments]")
