@@ -67,6 +67,7 @@ Choice choose(const plant_sim::ModelFile& model, const std::vector<std::string>&
     }
     if (found) return;
     std::vector<std::string> all;
+    all.reserve(known.size());
     for (const Known& k : known) all.push_back(k.name);
     refuse_name(option, name, all, names_worth_showing(model, known));
   };

@@ -9,6 +9,9 @@ namespace estimator::fdi {
 namespace {
 
 constexpr double kCap = 1.25;  // of the threshold
+/// Of the shift found: once it is told, what is less no longer adds up. So the alarm of a large
+/// change goes soon after it.
+constexpr double kStillThere = 0.25;
 
 class Cusum final : public ChangeSource {
  public:
@@ -22,20 +25,23 @@ class Cusum final : public ChangeSource {
     double sum = 0.0;    ///< S
     double total = 0.0;  ///< of z since S was zero
     double blocks = 0.0;
-    void add(double z, double k, double cap) noexcept {
-      sum = std::min(sum + z - k, cap);
+    bool told = false;
+    [[nodiscard]] double mean() const noexcept { return blocks > 0.0 ? total / blocks : 0.0; }
+    void add(double z, double k, double threshold) noexcept {
+      const double drift = told ? std::max(k, kStillThere * mean()) : k;
+      sum = std::min(sum + z - drift, kCap * threshold);
       total += z;
       blocks += 1.0;
+      told = told || sum >= threshold;
       if (sum <= 0.0) *this = {};
     }
   };
   Verdict test(double z) noexcept override {
-    up_.add(z, k_, kCap * h_);
-    down_.add(-z, k_, kCap * h_);
+    up_.add(z, k_, h_);
+    down_.add(-z, k_, h_);
     const bool is_up = up_.sum >= down_.sum;
     const Side& side = is_up ? up_ : down_;
-    const double mean = side.blocks > 0.0 ? side.total / side.blocks : 0.0;
-    return {side.sum / h_, is_up ? mean : -mean, side.blocks};
+    return {side.sum / h_, is_up ? side.mean() : -side.mean(), side.blocks};
   }
   void forget() noexcept override {
     up_ = down_ = {};

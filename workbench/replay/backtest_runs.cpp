@@ -168,9 +168,13 @@ Rules read_rules(const std::string& file) {
   const config::schema::Document document = config::schema::Document::load(file);
   document.read_part([&](config::schema::Visitor& v) { rules.pipeline.visit(v); });
   rules.folder = document.folder();
-  if (rules.pipeline.bands.empty() && rules.pipeline.bands_file.empty()) {
-    throw config::schema::bad_config(file, "has no [[band]], and so no alarm",
-                                     "a configuration of spoolwatchd with one");
+  const bool none_by_itself =
+      std::all_of(rules.pipeline.sources.begin(), rules.pipeline.sources.end(),
+                  [](const auto& list) { return list.items.empty(); });
+  if (rules.pipeline.bands.empty() && rules.pipeline.bands_file.empty() && none_by_itself) {
+    throw config::schema::bad_config(
+        file, "has no [[band]] nor anything else that raises an alarm",
+        "a configuration of spoolwatchd with a [[band]], [[cusum]], [[classifier]], ...");
   }
   return rules;
 }

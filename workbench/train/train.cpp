@@ -59,7 +59,12 @@ std::string shown(const fdi::TrainedClass& each) {
 }
 
 void print(const fdi::TrainedSource& source, const fdi::TrainedConfig& config) {
-  std::cout << config.where() << ": blocks of " << source.block_s << " s:";
+  std::cout << config.where() << ": ";
+  if (source.block_s > 0.0) {
+    std::cout << "blocks of " << source.block_s << " s:";
+  } else {
+    std::cout << "values:";
+  }
   for (const fdi::TrainedClass& each : source.classes) {
     std::cout << ' ' << shown(each) << ' ' << each.blocks;
   }

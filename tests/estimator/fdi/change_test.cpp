@@ -195,5 +195,15 @@ TEST(Cusum, TakesAsLongToFindTheShiftItIsMadeForAsTheChainSays) {
   EXPECT_NEAR(mean, expected, 0.1 * expected);  // four standard errors
 }
 
+TEST(Cusum, LetsGoOfALargeChangeSoonAfterItsEnd) {
+  // 100 standard deviations, and then as before: what has added up is taken off at a quarter of it.
+  PlainValues values(rules("cusum", 1e5));
+  for (int i = 0; i < 20; ++i) values.feed(210.0);
+  ASSERT_EQ(values.alarms.size(), 1U);
+  for (int i = 0; i < 3; ++i) values.feed(10.0);
+  ASSERT_EQ(values.alarms.size(), 2U);
+  EXPECT_EQ(values.alarms[1].severity, Severity::ok);
+}
+
 }  // namespace
 }  // namespace estimator::fdi
