@@ -124,6 +124,9 @@ Method load_method(const std::string& file) {
   return method;
 }
 
+/// Of the stated size of a fault, at which names are judged: never one that was taught.
+constexpr double kTaughtShares[] = {0.4, 0.7, 1.5, 2.5};
+
 bool needs_faults(const Method& method) {
   bool needs = false;
   fdi::PipelineConfig copy = method.pipeline;
@@ -140,7 +143,7 @@ Lessons lessons(const Bench& bench, const Motion& motion, std::uint64_t seed, bo
   for (const Fault& fault : bench.plan.faults) {
     if (fault.parameter.empty()) continue;
     for (const int direction : fault.directions()) {
-      for (const double share : {0.5, 1.0, 2.0}) {
+      for (const double share : kTaughtShares) {
         const Injected injected{&fault, direction, share * fault.stated, 0.0};
         const std::string lesson =
             name + "/" + fault.id + (direction > 0 ? "/up/" : "/down/") + std::to_string(share);
