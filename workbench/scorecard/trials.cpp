@@ -120,105 +120,140 @@ Samples Trials::record_of(const Part& part, const Injected& injected, std::size_
       seed_of(scope_.seed, motion.id + "/" + injected.fault->id + "/" + std::to_string(trial));
   Injected timed = injected;
   timed.at_s = bench_.plan.lead_s + bench_.plan.phase_s * unit_of(seed);
-  Samples samples =
-      scorecard::run(faulty(bench_, motion, timed), timed.at_s + bench_.plan.watch_s, seed);
-  return samples;
+  return scorecard::run(faulty(bench_, motion, timed), timed.at_s + bench_.plan.watch_s, seed);
 }
 
-namespace {
+/// One part on its way.
+struct Trials::Turn {
+  const Part& part;
+  Runners& runners;
+  const std::function<bool()>& stop;
+  std::vector<json> out;  ///< of each method
 
-double fault_at_s(const Samples& samples, double watch_s) {
-  return static_cast<double>(samples.size()) * simulate::kSampleTime_s - watch_s;
-}
-
-}  // namespace
-
-std::vector<json> Trials::run(const Part& part, const std::vector<std::size_t>& which,
-                              const std::function<bool()>& stop) {
-  Runners runners(*this, part.motion, which);
-  const Plan& plan = bench_.plan;
-  const Motion& motion = plan.motions[part.motion];
-  std::vector<json> out(which.size());
-  const auto each = [&](const auto& f) {
+  template <class F>
+  void each(const F& f) {
     for (std::size_t i = 0; i < runners.size() && !stop(); ++i) {
       if (runners.usable(i)) f(i);
     }
-  };
+  }
+};
 
-  if (part.kind == Part::Kind::healthy || part.kind == Part::Kind::benign) {
-    const double record_s = plan.part_h * kHour_s;
-    const Samples samples = scorecard::run(part.kind == Part::Kind::healthy
-                                               ? healthy(bench_, motion)
-                                               : changed(bench_, motion, plan.benign[part.subject]),
-                                           record_s, seed_of(scope_.seed, part.id));
-    each([&](std::size_t i) {
-      const Quiet q = runners.with(i, record_s, [&](Watch& w) { return w.quiet(samples); });
-      out[i] = {{"hours", plan.part_h},
-                {"alarms", q.alarms},
-                {"alarm_s", q.alarm_s},
-                {"invalid_s", q.invalid_s}};
+/// Hours without a fault.
+void Trials::quiet(Turn& turn) const {
+  const Motion& motion = bench_.plan.motions[turn.part.motion];
+  const double record_s = bench_.plan.part_h * kHour_s;
+  const Samples samples =
+      scorecard::run(turn.part.kind == Part::Kind::healthy
+                         ? healthy(bench_, motion)
+                         : changed(bench_, motion, bench_.plan.benign[turn.part.subject]),
+                     record_s, seed_of(scope_.seed, turn.part.id));
+  turn.each([&](std::size_t i) {
+    const Quiet q = turn.runners.with(i, record_s, [&](Watch& w) { return w.quiet(samples); });
+    turn.out[i] = {{"hours", bench_.plan.part_h},
+                   {"alarms", q.alarms},
+                   {"alarm_s", q.alarm_s},
+                   {"invalid_s", q.invalid_s}};
+  });
+}
+
+/// What a method says of a record with a fault, which ends watch_s after it.
+Answer Trials::answer(Turn& turn, std::size_t method, const Samples& samples,
+                      bool to_the_end) const {
+  const double end_s = static_cast<double>(samples.size()) * simulate::kSampleTime_s;
+  const double at_s = end_s - bench_.plan.watch_s;
+  const Fault& fault = bench_.plan.faults[turn.part.subject];
+  return turn.runners.with(method, to_the_end ? end_s : at_s, [&](Watch& w) {
+    return w.fault(samples, at_s, fault.names, to_the_end);
+  });
+}
+
+/// The stated size of a fault: delays and names.
+void Trials::stated(Turn& turn) const {
+  const Fault& fault = bench_.plan.faults[turn.part.subject];
+  for (json& one : turn.out) one = {{"answers", json::array()}};
+  for (std::int64_t trial = 0; trial < scope_.seeds && !turn.stop(); ++trial) {
+    const Samples samples = record_of(turn.part, {&fault, turn.part.direction, fault.stated, 0.0},
+                                      static_cast<std::size_t>(trial));
+    turn.each([&](std::size_t i) {
+      turn.out[i]["answers"].push_back(to_json(answer(turn, i, samples, true)));
     });
-  } else {
-    const Fault& fault = plan.faults[part.subject];
-    const auto trials = static_cast<std::size_t>(scope_.seeds);
-    const auto answer = [&](std::size_t i, const Samples& samples, bool to_the_end) {
-      const double at_s = fault_at_s(samples, plan.watch_s);
-      return runners.with(i, to_the_end ? at_s + plan.watch_s : at_s, [&](Watch& w) {
-        return w.fault(samples, at_s, fault.names, to_the_end);
-      });
-    };
-    if (part.kind == Part::Kind::stated) {
-      for (json& one : out) one = {{"answers", json::array()}};
-      for (std::size_t trial = 0; trial < trials && !stop(); ++trial) {
-        const Samples samples = record_of(part, {&fault, part.direction, fault.stated, 0.0}, trial);
-        each(
-            [&](std::size_t i) { out[i]["answers"].push_back(to_json(answer(i, samples, true))); });
-      }
-    } else {
-      const std::vector<double> sizes = fault.sizes(part.direction);
-      std::vector<LadderSearch> searches(which.size(), LadderSearch(sizes.size()));
-      for (json& one : out) one = {{"smallest", nullptr}, {"rungs", json::array()}};
-      // Methods that ask for the same rung share its records.
-      for (;;) {
-        std::map<std::size_t, std::vector<std::size_t>> asked;
-        for (std::size_t i = 0; i < runners.size(); ++i) {
-          if (const auto rung = searches[i].next(); rung && runners.usable(i)) {
-            asked[*rung].push_back(i);
-          }
-        }
-        if (asked.empty() || stop()) break;
-        for (const auto& [rung, methods] : asked) {
-          std::vector<std::size_t> detected(methods.size());
-          std::vector<std::size_t> tried(methods.size());
-          std::vector<char> open(methods.size(), 1);
-          for (std::size_t trial = 0; trial < trials && !stop(); ++trial) {
-            if (std::find(open.begin(), open.end(), 1) == open.end()) break;
-            const Samples samples =
-                record_of(part, {&fault, part.direction, sizes[rung], 0.0}, trial);
-            for (std::size_t k = 0; k < methods.size(); ++k) {
-              if (open[k] == 0) continue;
-              ++tried[k];
-              if (answer(methods[k], samples, false).detected()) ++detected[k];
-              open[k] = decided(detected[k], tried[k], trials, kDetected) ? 0 : 1;
-            }
-          }
-          if (stop()) break;
-          for (std::size_t k = 0; k < methods.size(); ++k) {
-            const std::size_t i = methods[k];
-            searches[i].tell(*decided(detected[k], tried[k], trials, kDetected));
-            out[i]["rungs"].push_back(
-                {{"size", sizes[rung]}, {"detected", detected[k]}, {"tried", tried[k]}});
-            if (const auto smallest = searches[i].smallest()) {
-              out[i]["smallest"] = sizes[*smallest];
-            }
-          }
+  }
+}
+
+/// How often each of the methods detects one size; those whose share is decided stop early.
+std::vector<Trials::Count> Trials::rung(Turn& turn, const std::vector<std::size_t>& methods,
+                                        double size) const {
+  const Fault& fault = bench_.plan.faults[turn.part.subject];
+  const auto trials = static_cast<std::size_t>(scope_.seeds);
+  std::vector<Count> counts(methods.size());
+  const auto open = [&](const Count& c) {
+    return !decided(c.detected, c.tried, trials, kDetected);
+  };
+  for (std::size_t trial = 0; trial < trials && !turn.stop(); ++trial) {
+    if (std::none_of(counts.begin(), counts.end(), open)) break;
+    const Samples samples = record_of(turn.part, {&fault, turn.part.direction, size, 0.0}, trial);
+    for (std::size_t k = 0; k < methods.size(); ++k) {
+      if (!open(counts[k])) continue;
+      ++counts[k].tried;
+      if (answer(turn, methods[k], samples, false).detected()) ++counts[k].detected;
+    }
+  }
+  return counts;
+}
+
+/// The smallest size that each method detects. Methods that ask for the same rung share its
+/// records.
+void Trials::ladder(Turn& turn) const {
+  const auto trials = static_cast<std::size_t>(scope_.seeds);
+  const std::vector<double> sizes =
+      bench_.plan.faults[turn.part.subject].sizes(turn.part.direction);
+  std::vector<LadderSearch> searches(turn.out.size(), LadderSearch(sizes.size()));
+  for (json& one : turn.out) one = {{"smallest", nullptr}, {"rungs", json::array()}};
+  for (;;) {
+    std::map<std::size_t, std::vector<std::size_t>> asked;
+    for (std::size_t i = 0; i < turn.runners.size(); ++i) {
+      const auto next = searches[i].next();
+      if (next && turn.runners.usable(i)) asked[*next].push_back(i);
+    }
+    if (asked.empty() || turn.stop()) return;
+    for (const auto& [number, methods] : asked) {
+      const std::vector<Count> counts = rung(turn, methods, sizes[number]);
+      if (turn.stop()) return;
+      for (std::size_t k = 0; k < methods.size(); ++k) {
+        const std::size_t i = methods[k];
+        searches[i].tell(*decided(counts[k].detected, counts[k].tried, trials, kDetected));
+        turn.out[i]["rungs"].push_back({{"size", sizes[number]},
+                                        {"detected", counts[k].detected},
+                                        {"tried", counts[k].tried}});
+        if (const auto smallest = searches[i].smallest()) {
+          turn.out[i]["smallest"] = sizes[*smallest];
         }
       }
     }
   }
+}
+
+std::vector<json> Trials::run(const Part& part, const std::vector<std::size_t>& which,
+                              const std::function<bool()>& stop) {
+  Runners runners(*this, part.motion, which);
+  Turn turn{part, runners, stop, std::vector<json>(which.size())};
+  switch (part.kind) {
+    case Part::Kind::healthy:
+    case Part::Kind::benign:
+      quiet(turn);
+      break;
+    case Part::Kind::stated:
+      stated(turn);
+      break;
+    case Part::Kind::ladder:
+      ladder(turn);
+      break;
+  }
   if (stop()) return {};
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = runners.result(i, std::move(out[i]));
-  return out;
+  for (std::size_t i = 0; i < turn.out.size(); ++i) {
+    turn.out[i] = runners.result(i, std::move(turn.out[i]));
+  }
+  return turn.out;
 }
 
 }  // namespace workbench::scorecard

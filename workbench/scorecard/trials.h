@@ -76,10 +76,22 @@ class Trials {
     std::atomic<double> rig_s = 0.0;
   };
   class Runners;
+  struct Turn;
+  struct Count {
+    std::size_t detected = 0;
+    std::size_t tried = 0;
+  };
 
   [[nodiscard]] const Trained& trained(std::size_t motion);
   [[nodiscard]] Samples record_of(const Part& part, const Injected& injected,
                                   std::size_t trial) const;
+  void quiet(Turn& turn) const;
+  void stated(Turn& turn) const;
+  void ladder(Turn& turn) const;
+  [[nodiscard]] std::vector<Count> rung(Turn& turn, const std::vector<std::size_t>& methods,
+                                        double size) const;
+  [[nodiscard]] Answer answer(Turn& turn, std::size_t method, const Samples& samples,
+                              bool to_the_end) const;
 
   const Bench& bench_;
   std::vector<Method> methods_;
