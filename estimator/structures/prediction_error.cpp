@@ -135,7 +135,7 @@ PolynomialFit refused(const Orders& orders, const std::string& why) {
   return out;
 }
 
-nonlinear::Solution best_of(const nonlinear::Problem& problem, std::vector<VectorXd> starts,
+nonlinear::Solution best_of(const nonlinear::Problem& problem, const std::vector<VectorXd>& starts,
                             const PredictionErrorOptions& options) {
   nonlinear::Options search;
   search.max_iterations = options.max_iterations;

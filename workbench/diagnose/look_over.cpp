@@ -88,6 +88,7 @@ void drop_refinements(const Workshop& shop, Stage& stage) {
   std::vector<Refinement> remaining = refinements_of(stage);
   while (!remaining.empty() && !shop.cancelled()) {
     std::vector<Selection> plain;
+    plain.reserve(remaining.size());
     for (const Refinement& refinement : remaining) {
       plain.push_back(without_refinement(stage.fitted, refinement.effect, refinement.number));
     }

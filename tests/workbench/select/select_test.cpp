@@ -54,7 +54,7 @@ class Select : public testing::Test {
       out.y_m.push_back(y_scale_m * of.y_m[t]);
     }
     if (!of.reference_m.empty()) out.further.emplace_back("reference_m", of.reference_m);
-    const std::string file = (folder_ / "record.csv").string();
+    std::string file = (folder_ / "record.csv").string();
     write_csv(out, file);
     return file;
   }

@@ -82,15 +82,15 @@ std::vector<double> read_with(const SensorFault& fault) {
   Scenario scenario = thesis();
   scenario.sensor_faults.push_back(fault);
   ClosedLoop loop(scenario, 1);
-  std::vector<double> y_m;
-  for (int k = 0; k < 400; ++k) y_m.push_back(loop.step().y_m);
+  std::vector<double> y_m(400);
+  for (double& y : y_m) y = loop.step().y_m;
   return y_m;
 }
 
 std::vector<double> read_healthy() {
   ClosedLoop loop(thesis(), 1);
-  std::vector<double> y_m;
-  for (int k = 0; k < 400; ++k) y_m.push_back(loop.step().y_m);
+  std::vector<double> y_m(400);
+  for (double& y : y_m) y = loop.step().y_m;
   return y_m;
 }
 
