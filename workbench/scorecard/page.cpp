@@ -231,7 +231,7 @@ report::Report to_report(const Card& card) {
   }
   for (const MethodFigures& method : card.methods) {
     for (const auto& [motion, why] : method.unusable) {
-      page.summary.push_back(method.name + " cannot be used on " + motion + ": " + why);
+      page.summary.push_back(method.name + " " + unusable_words(motion, why));
     }
   }
   double healthy_h = 0.0;

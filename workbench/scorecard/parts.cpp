@@ -9,6 +9,10 @@
 namespace workbench::scorecard {
 namespace {
 
+config::schema::Error not_in_plan(const std::string& what, const std::string& allowed) {
+  return {config::schema::ExitCode::usage, what + ": is not in the plan; allowed: " + allowed};
+}
+
 constexpr double kHour_s = 3600.0;
 
 template <class T>
@@ -21,9 +25,7 @@ void check(const char* option, const std::vector<std::string>& asked, const std:
   }
   for (const std::string& name : asked) {
     if (std::find(names.begin(), names.end(), name) != names.end()) continue;
-    throw config::schema::Error(
-        config::schema::ExitCode::usage,
-        std::string(option) + " " + name + ": is not in the plan; allowed: " + known);
+    throw not_in_plan(std::string(option) + " " + name, known);
   }
 }
 

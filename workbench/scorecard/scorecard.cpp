@@ -75,6 +75,7 @@ std::string command_of(const Options& o) {
 void work(const std::vector<Part>& parts, const std::vector<Method>& methods, Trials& trials,
           Store& store, unsigned threads) {
   std::vector<std::string> keys;
+  keys.reserve(methods.size());
   for (const Method& method : methods) keys.push_back(digest(method.text));
   std::vector<std::pair<const Part*, std::vector<std::size_t>>> open;
   for (const Part& part : parts) {

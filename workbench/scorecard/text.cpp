@@ -112,7 +112,7 @@ std::string motions_words(const Card& card) {
 std::string method_text(const MethodFigures& method) {
   std::string out = "\n" + method.name + ": " + method.what + "\n";
   for (const auto& [motion, why] : method.unusable) {
-    out += "  cannot be used on " + motion + ": " + why + "\n";
+    out.append("  ").append(unusable_words(motion, why)).append("\n");
   }
   Rows rows{{"fault", "right", "group", "wrong", "no name", "missed", "alarm before",
              "names that came first"}};

@@ -24,6 +24,10 @@ std::string alarms_words(const QuietFigures& q) {
   return std::to_string(q.counted.alarms) + " in " + number("%.3g", q.hours) + " h";
 }
 
+std::string unusable_words(const std::string& motion, const std::string& why) {
+  return "cannot be used on " + motion + ": " + why;
+}
+
 std::string rate_words(const QuietFigures& q) {
   if (!(q.hours > 0.0)) return "–";
   return number("%.2g", q.per_hour()) + " (< " + number("%.2g", q.per_hour_upper()) + ")";

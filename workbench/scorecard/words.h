@@ -9,6 +9,7 @@
 namespace workbench::scorecard {
 
 [[nodiscard]] std::string alarms_words(const QuietFigures& q);  ///< "2 in 12 h"
+[[nodiscard]] std::string unusable_words(const std::string& motion, const std::string& why);
 [[nodiscard]] std::string rate_words(const QuietFigures& q);    ///< "0.17 (< 0.52)"
 [[nodiscard]] std::string benign_words(const QuietFigures& q);  ///< "1.3 per h", "12 % of the time"
 [[nodiscard]] std::string share_words(int count, int of);       ///< "97 %"
