@@ -4,6 +4,7 @@
 
 #include <pthread.h>
 #include <sched.h>
+#include <sys/prctl.h>
 #include <time.h>
 
 #include <atomic>
@@ -63,6 +64,7 @@ class DeviceThread {
  private:
   static void* run(void* self) {
     auto* thread = static_cast<DeviceThread*>(self);
+    prctl(PR_SET_TIMERSLACK, 1UL);  // in the normal class a sleep would end 50 us late
     while (!thread->stop_.load(std::memory_order_relaxed)) thread->body_();
     return nullptr;
   }

@@ -77,7 +77,10 @@ class ModbusRod final : public RodSensor {
 class ModbusValve final : public ValveDrive {
  public:
   explicit ModbusValve(std::shared_ptr<Link> link) : link_(std::move(link)) {}
-  Applied write(double u_V, const Tick&) noexcept override { return link_->write(u_V); }
+  Applied write(double u_V, const Tick& tick) noexcept override {
+    link_->pace(tick);  // the rod may be read by another backend
+    return link_->write(u_V);
+  }
   Applied go_null() noexcept override { return link_->go_null(); }
   Applied end_at_null() noexcept override { return link_->end_at_null(); }
 

@@ -16,12 +16,7 @@ namespace hal::modbus {
 namespace {
 
 constexpr std::int64_t kFirstPause_ns = 10'000'000;
-/// The loop itself distrusts its law after this long.
-constexpr std::int64_t kSilence_ns = 50'000'000;
 constexpr int kOldCommand_periods = 2;
-constexpr int kLostGrid_periods = 20;
-/// By which the loop's grid is put later each period, in case it was taken for too early.
-constexpr std::int64_t kCreep_ns = 100;
 /// How long the end may wait for the thread, beyond the time-outs of two requests.
 constexpr int kEnd_ms = 10;
 
@@ -40,6 +35,7 @@ Link::Link(const LinkConfig& config, Plan plan, std::unique_ptr<Port> port,
       null_bits_(plan_.valve ? plan_.valve->codec.encode(config.null_V) : 0),
       rod_(plan_.find_role("rod")),
       outputs_(plan_.outputs.size()),
+      rhythm_(period_ns_, to_ns(config.hand_over_s)),
       snapshot_(first) {
   if (plan_.valve) null_frame_ = port_->frame(*plan_.valve, null_bits_);
   for (auto& output : outputs_) output.store(-1);
@@ -64,15 +60,17 @@ Link::~Link() {
 void Link::pace(const Tick& tick) noexcept {
   if (tick.index == paced_tick_) return;
   paced_tick_ = tick.index;
-  // A tick may come late, none comes early: the earliest show where the grid is.
-  const std::int64_t begun_ns = monotonic_ns() - tick.nominal_ns;
-  const std::int64_t late_ns = begun_ns - grid_ns_;
-  grid_ns_ =
-      late_ns < 0 || late_ns > kLostGrid_periods * period_ns_ ? begun_ns : grid_ns_ + kCreep_ns;
-  next_tick_ns_.store(grid_ns_ + tick.nominal_ns + period_ns_, std::memory_order_relaxed);
+  const std::int64_t now_ns = monotonic_ns();
+  rhythm_.tick(tick, now_ns);
   if (driven_.load(std::memory_order_relaxed)) return;  // the command will do it
-  paced_.store(true, std::memory_order_release);
-  sem_post(&wake_);
+  paced_.store(true);
+  announce(now_ns);
+}
+
+void Link::announce(std::int64_t now_ns) noexcept {
+  // What is wanted must be there before the time that follows from it, or it waits for a period.
+  next_tick_ns_.store(rhythm_.next_ns(now_ns), std::memory_order_release);
+  if (asleep_.load()) sem_post(&wake_);
 }
 
 Applied Link::command(Bits bits) noexcept {
@@ -81,7 +79,7 @@ Applied Link::command(Bits bits) noexcept {
   const std::int64_t before_ns = given_ns_.exchange(now_ns);
   if (closing_.load()) bits = null_bits_;
   box_.put(bits, now_ns);
-  sem_post(&wake_);
+  announce(now_ns);
   const bool good = online() && before_ns - taken_ns_.load(std::memory_order_acquire) <= stale_ns_;
   return {good ? plan_.valve->codec.decode(bits) : kMissing, good};
 }
@@ -92,13 +90,17 @@ Applied Link::write(double u_V) noexcept {
 
 bool Link::set_output(std::size_t index, bool on) noexcept {
   outputs_[index].store(on ? 1 : 0, std::memory_order_release);
-  if (!driven_.load(std::memory_order_relaxed)) sem_post(&wake_);
+  if (!driven_.load(std::memory_order_relaxed)) {  // else it goes with the command
+    switched_.store(true);
+    announce(monotonic_ns());
+  }
   return online();
 }
 
 Applied Link::end_at_null() noexcept {
   closing_.store(true);
   const Applied applied = command(null_bits_);
+  sem_post(&wake_);
   const int longest_ms = kEnd_ms + static_cast<int>(2e3 * config_.port.timeout_s);
   if (gettid() != thread_id_.load()) {
     for (int ms = 0; ms < longest_ms && !null_taken_.load(); ++ms) poll(nullptr, 0, 1);
@@ -108,13 +110,24 @@ Applied Link::end_at_null() noexcept {
   return {applied.u_V, sent};
 }
 
-std::int64_t Link::next_ns() const noexcept {
-  if (!port_->is_open()) return retry_ns_;
-  std::int64_t next = read_due_ns_;
+std::int64_t Link::next_ns() noexcept {
+  if (!port_->is_open()) {
+    asleep_.store(false);
+    return retry_ns_;
+  }
+  const std::int64_t now_ns = monotonic_ns();
+  std::int64_t next = std::min(read_due_ns_, look_ns(now_ns));
   // Until the loop runs, readings are kept fresh at its pace.
-  if (first_round_) next = std::min(next, monotonic_ns() + period_ns_);
+  if (first_round_) next = std::min(next, now_ns + period_ns_);
   if (greeted_ && !at_null_) next = std::min(next, given_ns_.load() + kSilence_ns);
   return next;
+}
+
+std::int64_t Link::look_ns(std::int64_t now_ns) noexcept {
+  const std::int64_t look = rhythm_.look_ns(next_tick_ns_.load(std::memory_order_acquire), now_ns);
+  asleep_.store(look == kNever_ns);
+  const bool asked = box_.waiting() || (!driven_.load() && (paced_.load() || switched_.load()));
+  return asked ? now_ns : look;
 }
 
 void Link::wait_until(std::int64_t t_ns) noexcept {
@@ -141,7 +154,8 @@ void Link::step() noexcept {
 }
 
 void Link::work(std::int64_t now_ns) noexcept {
-  const bool paced = paced_.exchange(false, std::memory_order_acquire);
+  const bool paced = paced_.exchange(false);
+  switched_.store(false);
   const bool driven = driven_.load();
   if (paced || driven) first_round_ = false;
   const bool read_was_due = now_ns >= read_due_ns_ || first_round_;

@@ -2,6 +2,8 @@
 //
 // The loop paces it: each command (or, where nothing is driven, each reading) that the loop asks
 // for lets the thread do one round of requests, one at a time. The loop takes what was read last.
+// It leaves a command in a box and makes no system call: the thread knows from the calls of before
+// when the next tick comes, and looks then (rhythm.h).
 //
 //   - Nothing is written before the loop's first command.
 //   - Whatever goes wrong with a reply closes the connection. It is made again with a growing
@@ -18,7 +20,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -30,6 +31,7 @@
 #include "hal/modbus/mailbox.h"
 #include "hal/modbus/plan.h"
 #include "hal/modbus/port.h"
+#include "hal/modbus/rhythm.h"
 
 namespace hal::modbus {
 
@@ -39,6 +41,7 @@ struct LinkConfig {
   double null_V = 0.0;
   double watchdog_s = kMissing;   ///< written to the plan's watchdog register
   bool combined = false;          ///< function 23
+  double hand_over_s = 1e-4;      ///< longest that a command waits for the thread to look
   double read_ahead_s = 0.0;      ///< how long before the loop's next period; 0: after the write
   double stale_after_s = 0.0125;  ///< a write not taken for that long has failed
   double longest_pause_s = 1.0;   ///< between two attempts to connect
@@ -70,14 +73,16 @@ class Link {
   [[nodiscard]] const Counters& counters() const noexcept { return *counters_; }
 
  private:
-  static constexpr std::int64_t kNever_ns = std::numeric_limits<std::int64_t>::max();
-
   Applied command(Bits bits) noexcept;
+  /// Says when to look next; wakes the thread where it has given up looking.
+  void announce(std::int64_t now_ns) noexcept;
 
   // The thread's side.
   void step() noexcept;
   void wait_until(std::int64_t t_ns) noexcept;
-  [[nodiscard]] std::int64_t next_ns() const noexcept;
+  [[nodiscard]] std::int64_t next_ns() noexcept;
+  /// When to look for what the loop wants next.
+  [[nodiscard]] std::int64_t look_ns(std::int64_t now_ns) noexcept;
   void work(std::int64_t now_ns) noexcept;
   void reconnect() noexcept;
   void lost() noexcept;
@@ -105,14 +110,16 @@ class Link {
   // From the loop.
   CommandBox box_;
   sem_t wake_;
+  std::atomic<bool> asleep_{false};  ///< the thread does not look by itself
   std::atomic<bool> paced_{false};
+  std::atomic<bool> switched_{false};              ///< an output was set while nothing is driven
   std::atomic<bool> driven_{false};                ///< the loop has given a command
   std::atomic<bool> closing_{false};               ///< only null from now on
   std::atomic<std::int64_t> given_ns_{0};          ///< when the newest command was given
   std::vector<std::atomic<std::int8_t>> outputs_;  ///< -1: nothing new
   std::int64_t paced_tick_ = -1;
-  std::int64_t grid_ns_ = 0;                   ///< when the loop's period 0 began
-  std::atomic<std::int64_t> next_tick_ns_{0};  ///< when its next period will begin
+  Rhythm rhythm_;
+  std::atomic<std::int64_t> next_tick_ns_{0};  ///< when the loop's next period will begin
 
   // To the loop.
   Latest<Snapshot> latest_;

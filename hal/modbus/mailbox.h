@@ -24,8 +24,9 @@ class CommandBox {
  public:
   void put(Bits bits, std::int64_t t_ns) noexcept {
     const std::uint64_t stamp = (static_cast<std::uint64_t>(t_ns) >> kShift) | 1U;
-    box_.store(stamp << 32U | bits, std::memory_order_release);
+    box_.store(stamp << 32U | bits);
   }
+  [[nodiscard]] bool waiting() const noexcept { return box_.load() != 0; }
   /// Empties the box. `now_ns` tells which of the times that look alike is meant (three days).
   std::optional<Command> take(std::int64_t now_ns) noexcept {
     const std::uint64_t packed = box_.exchange(0, std::memory_order_acquire);

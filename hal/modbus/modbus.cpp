@@ -64,8 +64,11 @@ void ModbusConfig::visit(config::schema::Visitor& v) {
   v.boolean({"multiple_only", "the device knows function 16 but not 6"}, multiple_only);
   v.number({"read_ahead_s", "read so long before the loop's next period; 0: after the write"},
            read_ahead_s, {0.0, 1.0});
+  v.number({"hand_over_s", "longest that a command waits for the thread that sends it"},
+           hand_over_s, {2e-5, 0.01});
   v.number({"watchdog_s", "the device's own time-out for commands"}, watchdog_s, {1e-3, 60.0});
-  v.number({"delay_s", "from a write to the voltage at the valve"}, delay_s, {0.0, 1.0});
+  v.number({"delay_s", "from the sending of a command to the voltage at the valve"}, delay_s,
+           {0.0, 1.0});
   v.number({"max_speed_mps", "fastest that the rod can move"}, max_speed_mps, {0.0, 100.0});
   v.boolean({"bench_rig", "the other side is a simulated rig: nothing real moves"}, bench_rig);
   v.integer({"priority", "of the thread in SCHED_FIFO, where allowed; 0: none"}, priority, {0, 99});
@@ -117,6 +120,7 @@ LinkConfig ModbusBackend::link_config(const Opening& opening) const {
   link.watchdog_s = config_.watchdog_s;
   link.combined = config_.combined;
   link.read_ahead_s = config_.read_ahead_s;
+  link.hand_over_s = config_.hand_over_s;
   link.stale_after_s =
       std::isnan(config_.stale_after_s) ? 2.5 * opening.sample_time_s : config_.stale_after_s;
   link.longest_pause_s = config_.longest_pause_s;
@@ -207,7 +211,8 @@ std::vector<std::string> ModbusBackend::notes(const Opening& opening) const {
           ": a reply within " + ms(link.port.timeout_s) + ", position read " +
           (link.read_ahead_s > 0.0 ? ms(link.read_ahead_s) + " before its period"
                                    : std::string("with the command before")) +
-          ", declared delay " + ms(config_.delay_s) + " from a write to the valve, " +
+          ", a command sent within " + ms(link.hand_over_s) + ", declared delay " +
+          ms(config_.delay_s) + " from there to the valve, " +
           (std::isnan(config_.watchdog_s) ? std::string("no time-out of the device")
                                           : "device at null after " + ms(config_.watchdog_s))};
 }

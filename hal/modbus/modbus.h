@@ -43,6 +43,7 @@ struct ModbusConfig {
   bool combined = false;
   bool multiple_only = false;
   double read_ahead_s = 0.0;
+  double hand_over_s = 1e-4;
   double watchdog_s = kMissing;
   double delay_s = 0.0;
   double max_speed_mps = kMissing;
@@ -67,7 +68,7 @@ class ModbusBackend final : public Backend {
   [[nodiscard]] NullTimes null_times() const override {
     return {.bus_lost_s = config_.watchdog_s,
             .process_dead_s = config_.watchdog_s,
-            .latency_s = config_.delay_s};
+            .latency_s = config_.hand_over_s + config_.delay_s};
   }
   [[nodiscard]] std::vector<std::string> notes(const Opening& opening) const override;
 
