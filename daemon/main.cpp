@@ -78,7 +78,9 @@ int run(int argc, char** argv) {
   CLI::Option* url = app.add_option("--lcm-url", lcm_url, "instead of [lcm] url");
   app.add_option("--set", assignments, "table.key=value, instead of the file's")
       ->allow_extra_args(false);
-  app.add_flag("--check", check, "validate, print the effective configuration, write nothing");
+  app.add_flag("--check", check,
+               "validate, print the effective configuration and what happens at "
+               "each failure, write nothing; 78 also where a device cannot be reached");
   const CLI::Option* note = app.add_option(
       "--driving", options.driving, "file that says what is driven, there for as long as it is");
   app.add_flag("--null", null,

@@ -69,19 +69,26 @@ std::vector<std::size_t> inputs_of(const hal::Devices& devices, hal::InputRole r
   return found;
 }
 
-void check_numbers(const std::string& file, const hal::Devices& devices) {
+void check_numbers(const std::string& file, const hal::Rig& rig) {
   const auto check = [&](const char* table, std::size_t size, std::size_t most) {
     if (size <= most) return;
     throw config::schema::bad_config(file + ": [[" + table + "]]",
                                      std::to_string(size) + " of them",
                                      "at most " + std::to_string(most));
   };
-  check("spare_rod", devices.spare_rods.size(), rt::kMaxSpareRods);
-  check("input", devices.inputs.size(), rt::kMaxInputs);
+  check("spare_rod", rig.spare_rods().size(), rt::kMaxSpareRods);
+  check("input", rig.inputs().size(), rt::kMaxInputs);
 }
 
-/// `exclusive`: no other process may drive the devices.
-Prepared prepare(DaemonConfig& config, bool exclusive) {
+void check_failover(const DaemonConfig& config) {
+  if (!config.safety.failover.present || config.rig.rods() > 1) return;
+  throw config::schema::bad_config(config.file + ": [failover]",
+                                   "has no other rod sensor to go over to", "a [[spare_rod]]");
+}
+
+/// To run, where no other process may drive the devices; or, with `absent`, to look at, where a
+/// device that cannot be reached is named in it and all else goes on.
+Prepared prepare(DaemonConfig& config, std::string* absent) {
   Prepared p;
   p.sample_time_s = 1.0 / config.loop.rate_Hz;
   p.opening = {config.file,
@@ -89,9 +96,15 @@ Prepared prepare(DaemonConfig& config, bool exclusive) {
                p.sample_time_s,
                config.rig.valve().null_V,
                config.rig.valve().limit_V,
-               exclusive};
-  p.devices = config.rig.open(p.opening);
-  check_numbers(config.file, p.devices);
+               absent == nullptr};
+  check_numbers(config.file, config.rig);
+  check_failover(config);
+  try {
+    p.devices = config.rig.open(p.opening);
+  } catch (const hal::Absent& e) {
+    if (absent == nullptr) throw;
+    *absent = e.what();
+  }
   p.guards =
       at(config.file, [&] { return control::all_guards(config.safety, config.loop.overrun()); });
   p.never_arms = never_arms(config);
@@ -161,7 +174,7 @@ void arm_and_start(rt::CommandQueue& commands, std::int64_t expires_ns) {
 }  // namespace
 
 int run_session(DaemonConfig& config, const SessionOptions& options, std::ostream& log) {
-  Prepared p = prepare(config, true);
+  Prepared p = prepare(config, nullptr);
   const bool virtual_time = options.virtual_time || p.devices.fast;
   const sigset_t signals = stop_signals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
@@ -253,7 +266,8 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
 }
 
 void check_session(DaemonConfig& config, std::ostream& out) {
-  const Prepared p = prepare(config, false);
+  std::string absent;
+  const Prepared p = prepare(config, &absent);
   const bool would_write_a_file = config.lcm.url.starts_with("file:");
   if (!would_write_a_file) io::Publisher(config.lcm, 0, p.sample_time_s, nullptr);
   if (!config.recorder.folder.empty()) io::check_folder(config.recorder);
@@ -263,15 +277,19 @@ void check_session(DaemonConfig& config, std::ostream& out) {
   for (const std::string& note : config.rig.notes(p.opening)) out << "# " << note << "\n";
   if (!config.drives_valve()) {
     out << "# No valve is driven: state MONITOR, nothing is ever written.\n";
-    return;
+  } else {
+    if (!p.never_arms.empty()) out << "# It cannot be armed: " << p.never_arms << "\n";
+    print_null_table(
+        {config.rig.valve().backend, config.rig.null_times(), p.sample_time_s,
+         config.rig.worst_speed_mps(p.opening), config.safety.ramp_s, config.loop.max_bad_in_a_row,
+         p.guards, config.rig.has_input(hal::InputRole::e_stop),
+         config.rig.has_input(hal::InputRole::enable), config.rig.has_permit()},
+        out);
   }
-  if (!p.never_arms.empty()) out << "# It cannot be armed: " << p.never_arms << "\n";
-  print_null_table(
-      {config.rig.valve().backend, config.rig.null_times(), p.sample_time_s,
-       config.rig.worst_speed_mps(p.opening), config.safety.ramp_s, config.loop.max_bad_in_a_row,
-       p.guards, !inputs_of(p.devices, hal::InputRole::e_stop).empty(),
-       !inputs_of(p.devices, hal::InputRole::enable).empty(), config.rig.has_permit()},
-      out);
+  if (absent.empty()) return;
+  out.flush();
+  throw config::schema::Error(config::schema::ExitCode::bad_config,
+                              absent + "; all that can be checked without it is in order");
 }
 
 }  // namespace monitor

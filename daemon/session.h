@@ -21,7 +21,8 @@ struct SessionOptions {
 int run_session(DaemonConfig& config, const SessionOptions& options, std::ostream& log);
 
 /// Opens and validates everything without writing to a device, prints the effective configuration
-/// and, for each failure, how soon null is commanded and how far the rod may travel until then.
+/// and, for each failure, how soon null is commanded and how far the rod may travel until then. A
+/// device that cannot be reached is an Error (exit 78) after all that.
 void check_session(DaemonConfig& config, std::ostream& out);
 
 }  // namespace monitor

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "config/schema/error.h"
 #include "config/schema/visitor.h"
 #include "hal/device.h"
 
@@ -21,6 +22,12 @@ struct Opening {
   double null_V = 0.0;           ///< the commanded safe voltage
   double limit_V = kMissing;     ///< greatest distance of a command from null
   bool exclusive = true;         ///< to be driven: no other process may; else only looked at
+};
+
+/// A device that cannot be reached, which the configuration need not be to blame for.
+class Absent : public config::schema::Error {
+ public:
+  explicit Absent(const config::schema::Error& error) : Error(error) {}
 };
 
 /// What one backend has opened. Names (channels) are the backend's or those of its own table.
@@ -51,7 +58,8 @@ class Backend {
   virtual ~Backend() = default;
   /// Lists the fields of the backend's own table.
   virtual void visit(config::schema::Visitor& v) = 0;
-  /// Opens and checks; throws config::schema::Error. Writes nothing to a device.
+  /// Opens and checks; throws config::schema::Error, Absent where there is no device. Writes
+  /// nothing to a device.
   [[nodiscard]] virtual Offer open(const Opening& opening) const = 0;
   /// Moves nothing real, so that it may be armed without a person (`loop.auto_arm`).
   [[nodiscard]] virtual bool harmless() const noexcept = 0;

@@ -225,6 +225,11 @@ std::shared_ptr<ValveDrive> Rig::open_valve(const Opening& opening) const {
   return backend->open(opening).valve;
 }
 
+bool Rig::has_input(InputRole role) const {
+  return std::any_of(inputs_.begin(), inputs_.end(),
+                     [role](const InputConfig& input) { return role_of(input.role) == role; });
+}
+
 bool Rig::harmless() const {
   const std::vector<std::string> in_use = used();
   return std::all_of(in_use.begin(), in_use.end(), [this](const std::string& name) {

@@ -84,7 +84,8 @@ class Rig {
 
   /// Lists the roles and the tables of the backends that they name.
   void visit(config::schema::Visitor& v);
-  /// Opens each backend once. Throws Error when one does not exist or does not do what is asked.
+  /// Opens each backend once. Throws Error when one does not exist or does not do what is asked,
+  /// Absent where a device cannot be reached.
   [[nodiscard]] Devices open(const Opening& opening) const;
 
   /// Opens the valve's backend alone; null where none is driven or it goes with its process. Throws
@@ -93,6 +94,13 @@ class Rig {
 
   [[nodiscard]] const std::string& rod_backend() const noexcept { return rod_.backend; }
   [[nodiscard]] const ValveConfig& valve() const noexcept { return valve_; }
+  [[nodiscard]] const std::vector<SpareRodConfig>& spare_rods() const noexcept {
+    return spare_rods_;
+  }
+  [[nodiscard]] const std::vector<InputConfig>& inputs() const noexcept { return inputs_; }
+  [[nodiscard]] bool has_input(InputRole role) const;
+  /// Rod sensors, the configured one and the spare ones.
+  [[nodiscard]] std::size_t rods() const noexcept { return 1 + spare_rods_.size(); }
   [[nodiscard]] bool has_permit() const noexcept { return permit_present_; }
   /// No device moves anything real.
   [[nodiscard]] bool harmless() const;

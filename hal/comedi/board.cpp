@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "config/schema/error.h"
+#include "hal/backend.h"
 
 namespace hal::comedi {
 namespace {
@@ -54,8 +55,9 @@ ComediBoard::ComediBoard(const std::string& where, const std::string& device) {
     const char* why = access(device.c_str(), F_OK) != 0 ? "no such device"
                       : errno != 0                      ? std::strerror(errno)
                                                         : comedi_strerror(comedi_errno());
-    throw bad_config(where, "is \"" + device + "\": " + why,
-                     "a configured comedi board such as /dev/comedi0, which this user may open");
+    throw Absent(
+        bad_config(where, "is \"" + device + "\": " + why,
+                   "a configured comedi board such as /dev/comedi0, which this user may open"));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cerrno>
 
 #include "config/schema/error.h"
+#include "hal/backend.h"
 #include "hal/device_thread.h"
 
 namespace hal::modbus {
@@ -33,16 +34,17 @@ class Survey {
   }
 
   /// Nobody is there, which the configuration need not be to blame for; or the line is in use.
-  [[nodiscard]] config::schema::Error absent() const {
+  [[nodiscard]] Absent absent() const {
     if (port_.error() == EBUSY) return silent("is in use by another program");
     if (port_.error() == ENOENT || port_.error() == EACCES) return silent("cannot be opened");
-    return {config::schema::ExitCode::failed, silent("cannot be connected").what()};
+    return Absent({config::schema::ExitCode::failed, silent("cannot be connected").what()});
   }
 
-  [[nodiscard]] config::schema::Error silent(const std::string& what) const {
-    return bad_config(options_.file + ": [modbus] " + options_.device,
-                      what + " (" + modbus_strerror(port_.error()) + ")",
-                      "a device that is switched on, its address or line settings, its unit");
+  [[nodiscard]] Absent silent(const std::string& what) const {
+    return Absent(
+        bad_config(options_.file + ": [modbus] " + options_.device,
+                   what + " (" + modbus_strerror(port_.error()) + ")",
+                   "a device that is switched on, its address or line settings, its unit"));
   }
 
  private:

@@ -10,6 +10,7 @@
 namespace program {
 namespace {
 
+using testing::ContainsRegex;
 using testing::HasSubstr;
 
 constexpr const char* kHealthy = R"(schema_version = 1
@@ -208,6 +209,23 @@ TEST(Configuration, CheckRefusesWhatAStartWouldRefuse) {
                              "recorder.folder=/dev/null/log", "--check"});
   EXPECT_EQ(folder.exit_code, 78);
   EXPECT_THAT(folder.err, HasSubstr("/dev/null is no folder"));
+}
+
+TEST(Configuration, CheckPrintsTheWayToNullAlsoWhereADeviceCannotBeReached) {
+  const Result modbus = run(
+      {"--config", shipped("bench_modbus.toml"), "--check", "--set", "modbus.address=127.0.0.1:9"});
+  EXPECT_EQ(modbus.exit_code, 78);
+  // Two periods of 5 ms, 0.1 ms for the thread, 0.5 ms declared; 0.45 m/s.
+  EXPECT_THAT(modbus.out, ContainsRegex("stop, signal or error +modbus +10\\.6 +4\\.77\n"));
+  EXPECT_THAT(modbus.out, ContainsRegex("process killed +modbus +50\\.0 +22\\.50\n"));
+  EXPECT_THAT(modbus.err, HasSubstr("[modbus] address \"127.0.0.1:9\": cannot be connected"));
+  EXPECT_EQ(std::count(modbus.err.begin(), modbus.err.end(), '\n'), 1) << modbus.err;
+  const Result stand = run({"--config", shipped("stand_gpio_comedi.toml"), "--check", "--set",
+                            "encoder.chip=gpiochip77"});
+  EXPECT_EQ(stand.exit_code, 78);
+  EXPECT_THAT(stand.out, ContainsRegex("process killed +comedi +never"));
+  EXPECT_THAT(stand.err, HasSubstr("[encoder] chip: is \"gpiochip77\""));
+  EXPECT_EQ(std::count(stand.err.begin(), stand.err.end(), '\n'), 1) << stand.err;
 }
 
 TEST(Configuration, ARealRigWithAWatchdogOfSomeKindIsAccepted) {
