@@ -4,130 +4,14 @@
 
 #include <cmath>
 #include <csignal>
-#include <fstream>
 #include <functional>
 #include <sstream>
 #include <thread>
 
-#include "hal/device_thread.h"
-#include "hal/rig/server.h"
-#include "tests/daemon/program/bench_watch.h"
-#include "tests/daemon/program/subprocess.h"
-#include "tests/hal/rig/rig_process.h"
+#include "tests/daemon/program/null_bench.h"
 
 namespace program {
 namespace {
-
-/// What is still called null: two steps of the converter.
-constexpr double kNull_V = 0.01;
-/// A command that is far from null, and moves the rod by some decimetres a second.
-constexpr double kFar_V = 3.0;
-
-constexpr const char* kGuards = R"(
-[safety]
-ramp_s = 0.1
-
-[[guard]]
-kind = "jump"
-limit_m = 0.008
-action = "latch"
-
-[[guard]]
-kind = "frozen"
-least_m = 5e-5
-command_V = 1.0
-time_s = 0.05
-action = "ramp"
-)";
-
-// One at a time: none of the others may come first.
-constexpr const char* kTravel = R"(
-[[guard]]
-kind = "travel"
-low_m = 0.2
-high_m = 0.42
-action = "latch"
-)";
-constexpr const char* kSpeed = R"(
-[[guard]]
-kind = "speed"
-limit_mps = 1.0
-action = "latch"
-)";
-constexpr const char* kFollowing = R"(
-[[guard]]
-kind = "following"
-limit_m = 0.08
-time_s = 0.02
-action = "latch"
-)";
-constexpr const char* kEnable = R"(
-[modbus.registers.enable]
-role = "input"
-address = 12
-[[input]]
-id = "enable"
-role = "enable"
-backend = "modbus"
-channel = "enable"
-)";
-
-constexpr const char* kPermit = R"(
-[permit]
-backend = "modbus"
-channel = "permit"
-
-[modbus.registers.permit]
-role = "output"
-function = "coil"
-address = 0
-)";
-
-/// bench_modbus.toml with more, and the shipped daemon on it.
-class Bench {
- public:
-  explicit Bench(const std::string& more = kGuards)
-      : rig_({"--config", hal::rig::shipped_config("bench_rig.toml")}),
-        cable_(rig_.port()),
-        watcher_(rig_.port()) {
-    std::ifstream in(shipped("bench_modbus.toml"));
-    std::ofstream(file()) << in.rdbuf() << more;
-  }
-
-  [[nodiscard]] std::vector<std::string> arguments(bool by_cable = false) const {
-    return {"--config",  file(),
-            "--lcm-url", "",
-            "--set",     "modbus.address=" + (by_cable ? cable_.address() : rig_.address()),
-            "--set",     "reference.amplitude_m=0.05",
-            "--set",     "reference.frequency_Hz=1.0"};
-  }
-  [[nodiscard]] std::string file() const { return (folder_.path() / "bench.toml").string(); }
-  /// Until the valve is far from null, and on its way out.
-  bool moves() {
-    return watcher_.wait_for([](const Look& look) { return look.valve_V > kFar_V; });
-  }
-  void set(const std::string& text) const {
-    EXPECT_EQ(hal::rig::set_remotely(rig_.address(), text), "");
-  }
-  /// The rig's register of that name, read on a connection of its own.
-  [[nodiscard]] int status() const {
-    modbus_t* bus = modbus_new_tcp("127.0.0.1", rig_.port());
-    std::uint16_t word = 0;
-    const bool read =
-        modbus_connect(bus) == 0 && modbus_read_registers(bus, hal::rig::kStatus, 1, &word) == 1;
-    modbus_close(bus);
-    modbus_free(bus);
-    return read ? word : 0;
-  }
-  Watcher& watcher() { return watcher_; }
-  Cable& cable() { return cable_; }
-
- private:
-  Folder folder_;
-  hal::rig::RigProcess rig_;
-  Cable cable_;
-  Watcher watcher_;
-};
 
 struct Stated {
   double time_s = std::nan("");
@@ -155,7 +39,14 @@ struct Failure {
   bool at_command = false;      ///< null is looked for in what was written, not at the valve
   bool spoils_reading = false;  ///< so that it does not say how far the rod went
   const char* more = kGuards;   ///< of the configuration
+  bool goes_on = false;         ///< after kOutage_s, and the device's time-out is no help
 };
+
+/// The tick before it is up to 5 ms older and the next one comes on the grid: 50 ms between the two
+/// at least, 52 at most.
+constexpr double kOutage_s = 0.047;
+/// What was on its way to the rig is there.
+constexpr std::int64_t kSettled_ns = 10'000'000;
 
 struct Measured {
   double least_s;  ///< it was longer than that
@@ -183,6 +74,18 @@ Measured measure(const std::vector<Look>& looks, std::int64_t begin_ns, std::int
   return measured;
 }
 
+/// Until null came, nothing but the command that stood when the failure had begun was at the rig.
+bool kept_still(const std::vector<Look>& looks, std::int64_t begun_ns) {
+  double held_V = std::nan("");
+  for (const Look& look : looks) {
+    if (look.before_ns < begun_ns) continue;
+    if (std::abs(look.command_V) < kNull_V) return true;
+    if (!std::isnan(held_V) && look.command_V != held_V) return false;
+    if (look.before_ns > begun_ns + kSettled_ns) held_V = look.command_V;
+  }
+  return false;
+}
+
 void signal_daemon(Daemon& daemon, int number) { kill(daemon.pid(), number); }
 
 std::vector<Failure> failures() {
@@ -190,6 +93,8 @@ std::vector<Failure> failures() {
       {"stop, signal or error", [](Bench&, Daemon& d) { signal_daemon(d, SIGTERM); }},
       {"position missing", [](Bench& b, Daemon&) { b.set("encoder_offset_m=50"); }, false, false,
        true},
+      {"loop late, then back", [](Bench&, Daemon& d) { signal_daemon(d, SIGSTOP); }, false, false,
+       false, kGuards, true},
       {"bus lost", [](Bench& b, Daemon&) { b.cable().cut(); }, true},
       {"process killed", [](Bench&, Daemon& d) { signal_daemon(d, SIGKILL); }, true},
       {"process stopped", [](Bench&, Daemon& d) { signal_daemon(d, SIGSTOP); }, true},
@@ -206,25 +111,64 @@ std::vector<Failure> failures() {
   };
 }
 
+struct Trial {
+  Measured measured{};
+  double longer_s = 0.0;  ///< than the outage that was wanted
+  bool prompt = false;    ///< the loop had its real-time priority
+};
+
+Trial attempt(const Failure& failure, Bench& bench) {
+  std::vector<std::string> arguments = bench.arguments(failure.row == "bus lost");
+  if (failure.goes_on) arguments.insert(arguments.end(), {"--set", "modbus.watchdog_s=1"});
+  Daemon daemon(arguments);
+  EXPECT_TRUE(bench.moves()) << failure.row << ": no motion";
+  Trial trial;
+  const std::int64_t begin_ns = hal::monotonic_ns();
+  failure.cause(bench, daemon);
+  const std::int64_t begun_ns = hal::monotonic_ns();
+  if (failure.goes_on) {
+    std::this_thread::sleep_for(std::chrono::duration<double>(kOutage_s));
+    signal_daemon(daemon, SIGCONT);
+    trial.longer_s = static_cast<double>(hal::monotonic_ns() - begin_ns) * 1e-9 - kOutage_s;
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(600));
+  trial.measured = measure(bench.watcher().looks(), begin_ns, begun_ns, failure.at_command);
+  if (failure.spoils_reading) trial.measured.travel_m = 0.0;
+  if (failure.goes_on && !std::isnan(trial.measured.most_s)) {
+    EXPECT_TRUE(kept_still(bench.watcher().looks(), begun_ns)) << "the law went on before null";
+  }
+  if (failure.row == "process stopped") {
+    signal_daemon(daemon, SIGCONT);
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    EXPECT_LT(std::abs(bench.watcher().looks().back().valve_V), kNull_V)
+        << "an old command came through, or the law went on by itself";
+  }
+  signal_daemon(daemon, SIGTERM);
+  const Result result = daemon.wait();
+  trial.prompt = result.err.find("SCHED_FIFO") != std::string::npos &&
+                 result.err.find("no SCHED_FIFO") == std::string::npos;
+  return trial;
+}
+
 TEST(NullMatrix, OnTheBenchRigOverModbusIsNeverWorseThanStated) {
   std::printf("# %-24s %-8s %14s %16s %20s %16s\n", "failure", "valve", "stated (ms)",
               "measured (ms)", "stated travel (mm)", "measured (mm)");
   for (const Failure& failure : failures()) {
-    Bench bench(failure.more);
-    std::vector<std::string> check = bench.arguments();
-    check.emplace_back("--check");
-    const Result table = run(check);
-    ASSERT_EQ(table.exit_code, 0) << table.err;
-    const Stated row = stated(table.out, failure.row);
-    ASSERT_FALSE(std::isnan(row.time_s)) << failure.row << "\n" << table.out;
-    Daemon daemon(bench.arguments(failure.row == "bus lost"));
-    ASSERT_TRUE(bench.moves()) << failure.row << ": no motion";
-    const std::int64_t begin_ns = hal::monotonic_ns();
-    failure.cause(bench, daemon);
-    const std::int64_t begun_ns = hal::monotonic_ns();
-    std::this_thread::sleep_for(std::chrono::milliseconds(600));
-    Measured measured = measure(bench.watcher().looks(), begin_ns, begun_ns, failure.at_command);
-    if (failure.spoils_reading) measured.travel_m = 0.0;
+    Stated row;
+    Trial trial;
+    trial.measured.most_s = std::nan("");
+    // A loop that is back gives null for one period: a watcher that was late itself looks again.
+    for (int i = 0; i < (failure.goes_on ? 5 : 1) && std::isnan(trial.measured.most_s); ++i) {
+      Bench bench(failure.more);
+      std::vector<std::string> check = bench.arguments();
+      check.emplace_back("--check");
+      const Result table = run(check);
+      ASSERT_EQ(table.exit_code, 0) << table.err;
+      row = stated(table.out, failure.row);
+      ASSERT_FALSE(std::isnan(row.time_s)) << failure.row << "\n" << table.out;
+      trial = attempt(failure, bench);
+    }
+    const Measured& measured = trial.measured;
     ASSERT_FALSE(std::isnan(measured.most_s)) << failure.row << ": never at null";
     char travel[32] = "-";
     if (!failure.spoils_reading) {
@@ -233,19 +177,10 @@ TEST(NullMatrix, OnTheBenchRigOverModbusIsNeverWorseThanStated) {
     std::printf("# %-24s %-8s %14.1f %7.1f to %5.1f %20.2f %16s\n", failure.row.c_str(), "modbus",
                 row.time_s * 1e3, measured.least_s * 1e3, measured.most_s * 1e3, row.travel_m * 1e3,
                 travel);
-    if (failure.row == "process stopped") {
-      signal_daemon(daemon, SIGCONT);
-      std::this_thread::sleep_for(std::chrono::milliseconds(300));
-      EXPECT_LT(std::abs(bench.watcher().looks().back().valve_V), kNull_V)
-          << "an old command came through, or the law went on by itself";
-    }
-    signal_daemon(daemon, SIGTERM);
-    const Result result = daemon.wait();
-    const bool prompt = result.err.find("SCHED_FIFO") != std::string::npos &&
-                        result.err.find("no SCHED_FIFO") == std::string::npos;
-    if (failure.device_decides || prompt) {
-      EXPECT_LE(measured.least_s, row.time_s) << failure.row;
-      EXPECT_LE(measured.travel_m, row.travel_m) << failure.row;
+    if (failure.device_decides || trial.prompt) {
+      EXPECT_LE(measured.least_s, row.time_s + trial.longer_s) << failure.row;
+      EXPECT_LE(measured.travel_m, row.travel_m * (1.0 + trial.longer_s / row.time_s))
+          << failure.row;
     }
   }
 }
