@@ -5,9 +5,9 @@
 #include <cmath>
 #include <string_view>
 
-#include "config/schema/error.h"
 #include "daemon/tracking/least_floor.h"
 #include "daemon/tracking/quantity.h"
+#include "daemon/tracking/reading.h"
 #include "daemon/tracking/words.h"
 
 namespace monitor::tracking {
@@ -21,23 +21,13 @@ constexpr double kParts[] = {0.75, 0.5, 0.25};
 constexpr double kChanceOfRms = 3.5;
 /// A rod that moves less than this many noise floors tells nothing.
 constexpr double kLeastMotion = 10.0;
-/// Of a reading: its standard error is not less, whatever its noise.
-constexpr double kLeastOfReading = 1e-4;
 /// Of the healthy error: what the noise floor is at least taken for.
 constexpr double kLeastOfHealthy = 0.2;
 /// Standard errors: one-sided, 95 %.
 constexpr double kMostly = 1.645;
-/// Standard error, search units, up to which a window serves to learn what is healthy.
-constexpr double kLeastKnown = 0.05;
 
 std::size_t samples_in(double duration_s, double sample_time_s) {
   return static_cast<std::size_t>(std::lround(duration_s / sample_time_s));
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 std::size_t tracked_index(const Choice& choice, std::string_view name) {
@@ -45,31 +35,6 @@ std::size_t tracked_index(const Choice& choice, std::string_view name) {
     if (choice.parameters[i].name == name) return i;
   }
   return kNotMeasured;
-}
-
-/// The matrix with a row and a column more at `at`, `diagonal` where they meet.
-Eigen::MatrixXd widened(const Eigen::MatrixXd& matrix, Index at, double diagonal) {
-  const Index n = matrix.rows();
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n + 1, n + 1);
-  const auto place = [at](Index i) { return i < at ? i : i + 1; };
-  for (Index i = 0; i < n; ++i) {
-    for (Index j = 0; j < n; ++j) out(place(i), place(j)) = matrix(i, j);
-  }
-  out(at, at) = diagonal;
-  return out;
-}
-
-/// What was fitted, and a reading of the parameter `held` in its place among the tracked.
-WindowEstimate with_reading(WindowEstimate found, std::size_t held, double std_error) {
-  const auto at = static_cast<Index>(held);
-  found.covariance = widened(found.covariance, at, std_error * std_error);
-  found.correlation = widened(found.correlation, at, 1.0);
-  found.likeness = widened(found.likeness, at, 1.0);
-  found.at_bound.insert(found.at_bound.begin() + static_cast<std::ptrdiff_t>(held), 0);
-  const Eigen::VectorXd fitted = found.std_error;
-  found.std_error.resize(fitted.size() + 1);
-  found.std_error << fitted.head(at), std_error, fitted.tail(fitted.size() - at);
-  return found;
 }
 
 double motion_m(const Cut& cut) {
@@ -92,9 +57,7 @@ Tracker::Tracker(const plant_sim::ModelFile& model, const Choice& choice, const 
       supply_(tracked_index(choice, "supply_pressure_Pa")),
       stride_(std::max<std::size_t>(1, samples_in(settings.stride_s, sample_time_s))),
       fit_(model, choice.parameters, sample_time_s, lead_ + window_, settings.observer_per_s),
-      u_V_(2 * (lead_ + window_)),
-      y_m_(u_V_.size()),
-      supply_Pa_(u_V_.size(), std::numeric_limits<double>::quiet_NaN()),
+      samples_(lead_, window_),
       near_(choice.file),
       pool_(choice.tracked, (window_ + stride_ - 1) / stride_,
             static_cast<std::size_t>(std::max<std::int64_t>(1, settings.pooled))),
@@ -107,39 +70,20 @@ void Tracker::take(const Healthy& healthy) {
 
 std::optional<Window> Tracker::push(double t_s, double u_V, double y_m, bool first,
                                     double supply_Pa) {
-  const std::size_t needed = lead_ + window_;
   if (first) {
-    kept_ = 0;
-    until_ = needed;
+    samples_.clear();
+    until_ = samples_.needed();
     pool_.clear();
   }
-  if (kept_ == u_V_.size()) {
-    const auto half = static_cast<std::ptrdiff_t>(needed);
-    std::copy(u_V_.end() - half, u_V_.end(), u_V_.begin());
-    std::copy(y_m_.end() - half, y_m_.end(), y_m_.begin());
-    std::copy(supply_Pa_.end() - half, supply_Pa_.end(), supply_Pa_.begin());
-    kept_ = needed;
-  }
-  u_V_[kept_] = u_V;
-  y_m_[kept_] = y_m;
-  supply_Pa_[kept_] = supply_Pa;
-  ++kept_;
+  samples_.push(u_V, y_m, supply_Pa);
   if (until_ > 0) --until_;
-  if (until_ > 0 || kept_ < needed) return std::nullopt;
+  if (until_ > 0 || !samples_.enough()) return std::nullopt;
   until_ = stride_;
   return look(t_s);
 }
 
-Cut Tracker::latest(std::size_t samples) const {
-  const std::size_t from = kept_ - samples - lead_;
-  return {u_V_.data() + from, y_m_.data() + from, lead_, samples};
-}
-
 std::size_t Tracker::measured(std::size_t samples) const {
-  if (supply_ == kNotMeasured) return supply_;
-  const auto last = supply_Pa_.begin() + static_cast<std::ptrdiff_t>(kept_);
-  const bool read = std::all_of(last - static_cast<std::ptrdiff_t>(samples), last,
-                                [](double value) { return value > 0.0; });
+  const bool read = supply_ != kNotMeasured && samples_.supply_Pa(samples) != nullptr;
   return read ? supply_ : kNotMeasured;
 }
 
@@ -148,24 +92,19 @@ WindowEstimate Tracker::fit(const Cut& cut, Eigen::VectorXd near, double sigma_m
   const std::size_t held = measured(cut.samples);
   if (held == kNotMeasured) return fit_.fit(cut, free, near, sigma_m);
   const SearchParameter& p = choice_.parameters[held];
-  const Eigen::Map<const Eigen::ArrayXd> read_Pa(supply_Pa_.data() + kept_ - cut.samples,
-                                                 static_cast<Index>(cut.samples));
-  const double mean_Pa = read_Pa.mean();
-  const auto count = static_cast<double>(cut.samples);
-  near[static_cast<Index>(held)] = p.search(mean_Pa);
-  const double error_Pa =
-      std::max(std::sqrt((read_Pa - mean_Pa).square().sum() / (count * (count - 1.0))),
-               kLeastOfReading * mean_Pa);
+  const Reading read = reading_of(samples_.supply_Pa(cut.samples), cut.samples);
+  double& at = near[static_cast<Index>(held)];
+  at = p.search(read.mean);
   free.erase(free.begin() + static_cast<std::ptrdiff_t>(held));
-  const WindowEstimate found = fit_.fit(cut, free, near, sigma_m);
-  return with_reading(found, held, error_Pa / p.slope(near[static_cast<Index>(held)]));
+  const double std_error = read.std_error / p.slope(at);
+  return with_reading(fit_.fit(cut, free, near, sigma_m), held, std_error);
 }
 
 Window Tracker::look(double t_s) {
   Window window;
   window.t_s = t_s;
   window.from_s = t_s - static_cast<double>(window_ - 1) * sample_time_s_;
-  const Cut cut = latest(window_);
+  const Cut cut = samples_.latest(window_);
   const double sigma_m = healthy_ ? healthy_->rms_m : noise_floor_m_;
   const auto begin = std::chrono::steady_clock::now();
   const WindowEstimate found = fit(cut, near_, sigma_m);
@@ -258,7 +197,7 @@ void Tracker::look_at_part(Window& window) {
   Eigen::VectorXd near = healthy_->x;
   for (const double share : kParts) {
     const auto samples = static_cast<std::size_t>(share * static_cast<double>(window_));
-    const Cut cut = latest(samples);
+    const Cut cut = samples_.latest(samples);
     const WindowEstimate part = fit(cut, near, healthy_->rms_m);
     const double most = std::max(
         settings_.most_ratio, 1.0 + kChanceOfRms / std::sqrt(2.0 * static_cast<double>(samples)));
@@ -295,7 +234,7 @@ void Tracker::refine(Window& window) const {
 }
 
 void Tracker::reset() {
-  kept_ = 0;
+  samples_.clear();
   until_ = 0;
   healthy_.reset();
   near_ = choice_.file;
@@ -308,17 +247,13 @@ void Tracker::carry(estimator::Carrier& carrier) {
   const auto vector = [&carrier](Eigen::VectorXd& x) {
     for (double& value : x) carrier.value(value);
   };
-  carrier.fixed(u_V_);
-  carrier.fixed(y_m_);
-  carrier.fixed(supply_Pa_);
-  carrier.value(kept_);
+  samples_.carry(carrier);
   carrier.value(until_);
   bool knows = healthy_.has_value();
   carrier.value(knows);
   if (carrier.restores()) {
     healthy_.reset();
     if (knows) healthy_ = Healthy{0.0, choice_.file};
-    if (kept_ > u_V_.size()) carrier.fail();
   }
   if (healthy_) {
     carrier.value(healthy_->rms_m);
@@ -328,44 +263,6 @@ void Tracker::carry(estimator::Carrier& carrier) {
   pool_.carry(carrier);
   memory_.carry(carrier, choice_);
   alarms_.carry(carrier, choice_);
-}
-
-bool teaches(const Window& window, const Choice& choice) {
-  for (std::size_t i = 0; i < choice.tracked; ++i) {
-    const Estimate& one = window.estimates[i];
-    const double slope = choice.parameters[i].slope(one.x);
-    if (!window.explained || !(one.std_error <= kLeastKnown * slope)) return false;
-  }
-  return window.explained;
-}
-
-Healthy learn(const std::vector<Window>& windows, const Choice& choice, double noise_floor_m,
-              const std::string& where) {
-  std::vector<double> rms_m;
-  std::vector<std::vector<double>> x(choice.tracked);
-  std::vector<std::string> why(choice.tracked, "has no whole window");
-  for (const Window& window : windows) {
-    if (window.explained) rms_m.push_back(window.rms_m);
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const Estimate& one = window.estimates[i];
-      const SearchParameter& p = choice.parameters[i];
-      if (!window.explained || !(one.std_error <= kLeastKnown * p.slope(one.x))) {
-        why[i] = "has no usable window: " + one.why;
-      } else {
-        x[i].push_back(one.x);
-      }
-    }
-  }
-  Healthy healthy;
-  healthy.x = choice.file;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (x[i].empty()) {
-      throw config::schema::bad_data(where, why[i], "a healthy motion that tells the parameters");
-    }
-    healthy.x[static_cast<Index>(i)] = median(x[i]);
-  }
-  healthy.rms_m = std::max({median(rms_m), noise_floor_m, kLeastFloor_m});
-  return healthy;
 }
 
 }  // namespace monitor::tracking

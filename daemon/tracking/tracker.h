@@ -18,9 +18,12 @@
 
 #include "daemon/tracking/alarm_book.h"
 #include "daemon/tracking/choice.h"
+#include "daemon/tracking/healthy.h"
 #include "daemon/tracking/naming.h"
 #include "daemon/tracking/pool.h"
 #include "daemon/tracking/probe.h"
+#include "daemon/tracking/samples.h"
+#include "daemon/tracking/window.h"
 #include "daemon/tracking/window_fit.h"
 
 namespace monitor::tracking {
@@ -35,37 +38,6 @@ struct Settings {
   std::int64_t pooled = 4;       ///< windows that a value is taken from while they agree (pool.h)
   Thresholds thresholds;
   ProbeLimits probe;
-};
-
-/// What the rig is like without a fault.
-struct Healthy {
-  double rms_m = 0.0;  ///< of a window's error; not under the noise floor
-  Eigen::VectorXd x;   ///< every parameter of the choice, search units
-};
-
-struct Estimate {
-  double x = 0.0;          ///< search value
-  double value = 0.0;      ///< SI
-  double std_error = 0.0;  ///< SI
-  double smallest = 0.0;   ///< change, SI, that this motion would show in 95 of 100 windows
-  bool valid = false;
-  std::string why;  ///< invalid: the reason
-};
-
-struct Window {
-  double t_s = 0.0;  ///< of its last sample
-  double from_s = 0.0;
-  std::vector<Estimate> estimates;  ///< of the tracked parameters, in their order
-  Eigen::MatrixXd correlation;
-  double rms_m = 0.0;
-  bool explained = false;    ///< moves, and the model explains it
-  bool poor = false;         ///< it is the motion that does not tell
-  bool valid = false;        ///< all estimates are
-  std::string why;           ///< invalid: the first reason
-  std::string part;          ///< what its latest part said, where that was looked at
-  std::vector<Named> named;  ///< changes, in this window or its latest part
-  int evaluations = 0;       ///< of the window's fit: groups of eight simulations
-  double fit_s = 0.0;        ///< time that it took
 };
 
 class Tracker {
@@ -97,7 +69,6 @@ class Tracker {
   void carry(estimator::Carrier& carrier);
 
  private:
-  [[nodiscard]] Cut latest(std::size_t samples) const;
   /// Fits the tracked parameters from `near`; a measured one is held to its mean.
   [[nodiscard]] WindowEstimate fit(const Cut& cut, Eigen::VectorXd near, double sigma_m);
   /// The parameter that was read in all of the latest samples; kNotMeasured: none.
@@ -121,24 +92,13 @@ class Tracker {
   std::size_t supply_;  ///< index of the supply pressure where it is tracked; else kNotMeasured
   std::size_t stride_;
   WindowFit fit_;
-  std::vector<double> u_V_;  ///< the latest samples, twice as long as needed
-  std::vector<double> y_m_;
-  std::vector<double> supply_Pa_;  ///< NaN: not read
-  std::size_t kept_ = 0;           ///< samples since the last gap that are still there
-  std::size_t until_ = 0;          ///< samples until the next look
+  Samples samples_;
+  std::size_t until_ = 0;  ///< samples until the next look
   std::optional<Healthy> healthy_;
   Eigen::VectorXd near_;  ///< where the next search begins
   Pool pool_;
   Memory memory_;
   AlarmBook alarms_;
 };
-
-/// Whether a window may serve to learn from: explained, every parameter known to some per cent.
-[[nodiscard]] bool teaches(const Window& window, const Choice& choice);
-
-/// The medians over the windows of a record without a fault; what is not tracked is as in the file.
-/// Throws config::schema::Error (exit 65) when none is usable.
-[[nodiscard]] Healthy learn(const std::vector<Window>& windows, const Choice& choice,
-                            double noise_floor_m, const std::string& where);
 
 }  // namespace monitor::tracking

@@ -1,0 +1,40 @@
+// The latest samples of the rig since the last gap, as many as a window and its lead-in need.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "daemon/tracking/window_fit.h"
+#include "estimator/carrier.h"
+
+namespace monitor::tracking {
+
+class Samples {
+ public:
+  Samples(std::size_t lead, std::size_t window);
+
+  /// Nothing before now belongs together with what comes.
+  void clear() noexcept { kept_ = 0; }
+  /// `supply_Pa`: NaN when it was not read. Copies a window once in as many samples.
+  void push(double u_V, double y_m, double supply_Pa);
+
+  [[nodiscard]] std::size_t needed() const noexcept { return needed_; }
+  [[nodiscard]] bool enough() const noexcept { return kept_ >= needed_; }
+  /// The latest, with the lead-in before them.
+  [[nodiscard]] Cut latest(std::size_t samples) const noexcept;
+  /// Their supply pressures; null unless it was read in all of them.
+  [[nodiscard]] const double* supply_Pa(std::size_t samples) const noexcept;
+
+  /// Bit for bit (carrier.h).
+  void carry(estimator::Carrier& carrier);
+
+ private:
+  std::size_t lead_;
+  std::size_t needed_;
+  std::vector<double> u_V_;  ///< twice as long as needed
+  std::vector<double> y_m_;
+  std::vector<double> supply_Pa_;  ///< NaN: not read
+  std::size_t kept_ = 0;           ///< since the last gap that are still there
+};
+
+}  // namespace monitor::tracking
