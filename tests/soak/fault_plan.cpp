@@ -1,8 +1,10 @@
 #include "tests/soak/fault_plan.h"
 
+#include <fstream>
 #include <iomanip>
 #include <random>
 #include <sstream>
+#include <stdexcept>
 
 namespace soak {
 namespace {
@@ -45,6 +47,18 @@ std::string as_toml(const std::vector<Fault>& faults) {
     change(fault.back_s, 1.0, fault.back_ramp_s);
   }
   return out.str();
+}
+
+std::string configuration(const std::filesystem::path& file, const std::vector<Fault>& faults) {
+  std::ifstream in(file);
+  if (!in) throw std::runtime_error("cannot read " + file.string());
+  std::string text;
+  bool fault = false;
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with('[')) fault = line.starts_with("[[sim.fault]]");
+    if (!fault) text += line + '\n';
+  }
+  return text + as_toml(faults);
 }
 
 }  // namespace soak

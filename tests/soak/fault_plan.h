@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -22,5 +23,9 @@ std::vector<Fault> random_faults(std::uint64_t seed, double duration_s);
 
 /// As [[sim.fault]] of a configuration.
 std::string as_toml(const std::vector<Fault>& faults);
+
+/// The configuration in the file without its [[sim.fault]] tables, and with these. Throws
+/// std::runtime_error when it cannot be read.
+std::string configuration(const std::filesystem::path& file, const std::vector<Fault>& faults);
 
 }  // namespace soak

@@ -8,6 +8,7 @@
 #include "tests/soak/alarm_watch.h"
 #include "tests/soak/books.h"
 #include "tests/soak/fault_plan.h"
+#include "tests/soak/quiet.h"
 #include "tests/soak/week.h"
 
 namespace soak {
@@ -28,6 +29,27 @@ WeekResult hours(double hours, bool record, const std::vector<std::string>& more
   WeekResult result = run_week(options, out);
   EXPECT_EQ(result.samples, static_cast<std::int64_t>(hours * 3600.0 * 200.0) + 1) << out.str();
   return result;
+}
+
+QuietResult minutes(const std::vector<Fault>& faults) {
+  QuietOptions options;
+  options.config = SPOOLWATCH_SOURCE_DIR "/config/thesis_case3_named.toml";
+  options.hours = 0.1;
+  options.faults = faults;
+  return run_quiet(options);
+}
+
+TEST(QuietHours, HaveNoAlarmAndHoldEverySample) {
+  const QuietResult result = minutes({});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.samples, 360 * 200 + 1);
+  EXPECT_GT(result.valid, 600);  // of two a second, less the lead-in and what is learnt from
+  EXPECT_THAT(result.alarms, IsEmpty());
+}
+
+TEST(QuietHours, SeeAnAlarmThatComes) {
+  const QuietResult result = minutes({{200.0, 0.0, 1.25, 300.0, 0.0}});
+  EXPECT_THAT(result.alarms, ElementsAre(HasSubstr("physics.supply_pressure_Pa")));
 }
 
 TEST(SimulatedWeek, AnHourWithRandomFaultsIsRight) {

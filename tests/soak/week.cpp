@@ -50,19 +50,6 @@ bool runs(pid_t pid) {
          info.si_pid == 0;
 }
 
-/// The file without its [[sim.fault]] tables, and with these.
-std::string configuration(const fs::path& file, const std::vector<Fault>& faults) {
-  std::ifstream in(file);
-  if (!in) throw std::runtime_error("cannot read " + file.string());
-  std::string text;
-  bool fault = false;
-  for (std::string line; std::getline(in, line);) {
-    if (line.starts_with('[')) fault = line.starts_with("[[sim.fault]]");
-    if (!fault) text += line + '\n';
-  }
-  return text + as_toml(faults);
-}
-
 /// What is wrong with the folder of the recorder; empty: nothing. One file more is there for the
 /// moment between the new one and the oldest's removal.
 std::string rotation_problem(const fs::path& folder) {
