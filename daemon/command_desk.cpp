@@ -103,6 +103,8 @@ std::string CommandDesk::order_alarms(const io::ControlRequest& request) {
                : request.kind == Kind::unshelve ? OrderKind::unshelve
                : request.alarm.empty()          ? OrderKind::acknowledge_all
                                                 : OrderKind::acknowledge;
+  request_acknowledges_ = request.kind == Kind::acknowledge &&
+                          (request.alarm.empty() || rt::RodAlarms::is_one(request.alarm));
   order.alarm = request.alarm;
   order.time_s = request.time_s;
   if (acts_) order.who = io::user_name(request_.uid);
@@ -113,6 +115,13 @@ std::string CommandDesk::order_alarms(const io::ControlRequest& request) {
   waits_for_ = WaitsFor::detector;
   until_ns_ = parts_.clock.now_ns() + kDetectorPatience_ns;
   return "";
+}
+
+void CommandDesk::forgive_rods() {
+  rt::Command command;
+  command.kind = rt::Command::Kind::forgive;
+  command.expires_ns = parts_.clock.now_ns() + kLife_ns;
+  parts_.commands.push(command);
 }
 
 std::string CommandDesk::take_loop_answer() {
@@ -134,7 +143,10 @@ std::string CommandDesk::take_alarm_answer() {
     if (answer->number != number_) continue;  // late, to an order given up
     if (!answer->refusal.empty()) return refuse(answer->refusal);
     note_act("");
-    if (acts_) return io::print_acted(state(), answer->done);
+    if (acts_) {
+      if (request_acknowledges_) forgive_rods();
+      return io::print_acted(state(), answer->done);
+    }
     std::vector<io::ControlAlarm> alarms;
     for (const auto& listed : answer->alarms) {
       alarms.push_back({listed.alarm, listed.shelved_for_s});
@@ -211,6 +223,25 @@ std::string CommandDesk::obstacle() const {
   return "";
 }
 
+void CommandDesk::add_rods(io::ControlStatus& status) const {
+  if (identity_.spare_rods.empty()) return;
+  const rt::LoopStats& stats = parts_.stats;
+  const auto since_s = [&](std::int64_t tick) {
+    return static_cast<double>(status.ticks - tick) * status.sample_time_s;
+  };
+  for (std::size_t i = 0; i <= identity_.spare_rods.size(); ++i) {
+    const rt::RodStats& rod = stats.rods[i];
+    const control::RodFault fault = rod.fault.load(std::memory_order_relaxed);
+    const rt::DeviceStats& device = i == 0 ? stats.rod : stats.spare_rods[i - 1];
+    status.rods.push_back({i == 0 ? control::kRodId : identity_.spare_rods[i - 1],
+                           device.value.load(std::memory_order_relaxed),
+                           fault == control::RodFault::none ? "" : control::to_string(fault),
+                           since_s(rod.since_tick.load(std::memory_order_relaxed))});
+  }
+  status.rod_in_charge = status.rods[stats.rod_in_charge.load(std::memory_order_relaxed)].id;
+  status.rod_in_charge_for_s = since_s(stats.rod_since_tick.load(std::memory_order_relaxed));
+}
+
 io::ControlStatus CommandDesk::status() const {
   const rt::LoopStats& stats = parts_.stats;
   io::ControlStatus status;
@@ -249,6 +280,7 @@ io::ControlStatus CommandDesk::status() const {
   for (std::size_t i = 0; i < identity_.spare_rods.size(); ++i) {
     status.spare_rods.push_back({identity_.spare_rods[i], stats.spare_rods[i].value.load()});
   }
+  add_rods(status);
   for (std::size_t i = 0; i < identity_.inputs.size(); ++i) {
     status.inputs.push_back({identity_.inputs[i], stats.inputs[i].value.load()});
   }

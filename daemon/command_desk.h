@@ -16,6 +16,7 @@
 #include "daemon/rt/clock.h"
 #include "daemon/rt/loop_stats.h"
 #include "daemon/rt/queues.h"
+#include "daemon/rt/rod_alarms.h"
 
 namespace monitor {
 
@@ -65,6 +66,9 @@ class CommandDesk {
   [[nodiscard]] std::string words(const control::Answer& answer) const;
   [[nodiscard]] std::string obstacle() const;
   [[nodiscard]] io::ControlStatus status() const;
+  void add_rods(io::ControlStatus& status) const;
+  /// Whoever has seen that a rod sensor is out lets it be in again, if it is right.
+  void forgive_rods();
   [[nodiscard]] control::State state() const noexcept {
     return parts_.stats.state.load(std::memory_order_relaxed);
   }
@@ -75,6 +79,7 @@ class CommandDesk {
   WaitsFor waits_for_ = WaitsFor::nobody;
   io::ControlSocket::Request request_{};  ///< at hand
   bool acts_ = false;                     ///< it does more than look
+  bool request_acknowledges_ = false;     ///< that a rod sensor is out, perhaps
   std::int64_t until_ns_ = 0;
 };
 

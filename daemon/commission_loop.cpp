@@ -41,7 +41,7 @@ CommissionLoop::CommissionLoop(const Parts& parts, control::Commissioning& proce
       virtual_time_(virtual_time),
       grid_(parts.clock.now_ns() + (virtual_time ? 0 : kLead_ns),
             std::llround(parts.sample_time_s * 1e9)),
-      around_(&parts.devices.spare_rods, &parts.devices.inputs, parts.max_bad_in_a_row, stats_),
+      around_(&parts.devices.inputs, parts.max_bad_in_a_row, stats_),
       start_s_(seconds(parts.clock.now_ns())) {}
 
 CommissionLoop::~CommissionLoop() { end_.store(true, std::memory_order_relaxed); }
@@ -95,7 +95,7 @@ void CommissionLoop::tick() noexcept {
   }
   in.applied_V =
       (std::isfinite(reading.command_V) ? reading.command_V : applied_V_) - parts_.null_V;
-  around_.read(period.tick, in.y_m);
+  around_.read(period.tick);
   in.disturbed = around_.blind() || bad_writes_ > 0 || period.skipped > 0;
 
   double command_V = 0.0;

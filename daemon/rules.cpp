@@ -85,11 +85,33 @@ std::map<std::string, std::string> flat(const std::string& toml) {
   return values;
 }
 
+/// A rod sensor that is read must be there; one alone is the sample's y_m.
+void check_rods(const DaemonConfig& config) {
+  const std::size_t rods = config.rig.rods() > 1 ? config.rig.rods() : 0;
+  const auto check = [&](const std::string& where, const std::string& quantity) {
+    const std::size_t rod = estimator::fdi::rod_of(quantity);
+    if (rod <= rods) return;
+    throw config::schema::bad_config(
+        config.file + ": " + where, "reads " + quantity + ", which the rig does not have",
+        rods == 0 ? "a [[spare_rod]]; one sensor alone is sample.y_m"
+                  : "sample.rod_1_m to sample.rod_" + std::to_string(rods) + "_m");
+  };
+  for (const auto& list : config.pipeline.sources) {
+    for (const auto& item : list.items) {
+      for (const std::string& input : item->inputs()) {
+        check("[[" + std::string(list.kind.list) + "]] " + item->id, input);
+      }
+    }
+  }
+  for (const auto& band : config.pipeline.bands) check("[[band]] " + band.id, band.quantity);
+}
+
 }  // namespace
 
 Rules make_rules(const DaemonConfig& config, double sample_time_s) {
   Rules rules;
   rules.effective = config.pipeline;
+  check_rods(config);
   std::error_code unknown;
   if (!config.model.empty() &&
       !std::filesystem::is_regular_file(config.folder / config.model, unknown)) {

@@ -14,7 +14,7 @@ constexpr std::int64_t kSigns = 4;
 }  // namespace
 
 bool ServiceReport::works() const noexcept {
-  return stats_.rod_good.value() >= kGoodCycles &&
+  return stats_.rod.good.value() >= kGoodCycles &&
          (!drives_ || stats_.valve_good.value() >= kGoodCycles) &&
          stats_.detected_samples.value() >= kGoodCycles;
 }

@@ -224,7 +224,7 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
        keeping.pipeline_hash, &reloader.to_detector, &reloader.from_detector},
       {config.rig_id, hash_text(p.hash), grant.text, config.rig.rod_backend(),
        valve != nullptr ? valve_config.backend : "", ids_of(p.devices.spare_rods),
-       ids_of(p.devices.inputs), p.guards});
+       ids_of(p.devices.inputs), p.guards, p.sample_time_s});
   keeping.bring_back(*p.rules.pipeline, clock.utc_us(), log);
   CommandDesk desk(
       {clock, commands, stats, &keeping.orders, &keeping.answers, keeping.audit.get(), &reloader},

@@ -8,6 +8,7 @@
 // last.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -16,6 +17,11 @@ namespace hal {
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 enum class Quality : std::uint8_t { good, uncertain, stale, bad };
+
+/// A device calls a reading bad when it has been stale for too long.
+[[nodiscard]] inline bool trusted(Quality quality, double value) noexcept {
+  return quality != Quality::bad && std::isfinite(value);
+}
 
 /// One point of the loop's time grid.
 struct Tick {

@@ -115,6 +115,8 @@ void SafetyConfig::visit(config::schema::Visitor& v) {
     t.number({"blend_mps", "fastest reference until it has met the signal"}, blend_mps,
              {1e-5, 10.0});
   });
+  v.optional_table({"failover", "from one rod sensor to another"}, failover.present,
+                   [this](config::schema::Visitor& t) { failover.visit(t); });
   config::schema::visit_list(v, {"guard", "what is watched, and what it leads to"}, guards);
 }
 

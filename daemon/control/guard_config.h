@@ -9,7 +9,7 @@
 //   frozen     y moves less than least_m while |u - null| > command_V  least_m, command_V
 //   jump       |dy| > limit_m in one period                            limit_m
 //   saturated  the command is at a limit                               -
-//   disagree   a spare rod sensor differs by more than tolerance_m     tolerance_m
+//   disagree   rod sensors differ by more than tolerance_m (rod_choice.h)  tolerance_m
 //   overrun    more periods are lost than [loop] allows                -
 //   missing    more positions missing in a row than [loop] allows      -
 //   bus_lost   more writes failed in a row than [loop] allows          -
@@ -28,6 +28,7 @@
 
 #include "config/schema/visitor.h"
 #include "daemon/control/action.h"
+#include "daemon/control/failover.h"
 
 namespace monitor::control {
 
@@ -73,11 +74,12 @@ struct GuardConfig {
   [[nodiscard]] GuardKind which() const noexcept;
 };
 
-/// TOML [safety] and [[guard]].
+/// TOML [safety], [failover] and [[guard]].
 struct SafetyConfig {
   double ramp_s = 0.2;      ///< of the action ramp
   double blend_s = 1.0;     ///< from where the rod is to the reference signal
   double blend_mps = 0.05;  ///< fastest reference until it has met the signal
+  FailoverConfig failover;
   std::vector<GuardConfig> guards;
 
   void visit(config::schema::Visitor& v);

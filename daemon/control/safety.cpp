@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "daemon/control/sensor_watch.h"
+
 namespace monitor::control {
 namespace {
 
@@ -137,21 +139,22 @@ Verdict Safety::set(GuardKind built_in, bool active, double value) noexcept {
   return active ? Verdict{guards_[index].action(), static_cast<int>(index)} : Verdict{};
 }
 
-Verdict Safety::watch(const Facts& facts) noexcept {
-  const double dy_m = facts.y_m - last_y_m_;
-  const double dt_s = facts.t_s - last_t_s_;
+Verdict Safety::watch(const Facts& facts, const SensorWatch* sensor) noexcept {
+  if (facts.other_sensor) last_.forget();
   Verdict verdict;
+  if (sensor != nullptr) {
+    for (const SensorWatch::Watched& each : sensor->guards()) guards_[each.number] = each.guard;
+  }
   for (std::size_t i = kBuiltIn; i < guards_.size(); ++i) {
     Guard& guard = guards_[i];
-    guard.watch(facts, dt_s > 0.0 ? dy_m : kNaN, dt_s, sample_time_s_);
+    if (sensor == nullptr || !watches_a_sensor(guard.kind())) {
+      guard.watch(facts, last_.dy_m(facts), last_.dt_s(facts), sample_time_s_);
+    }
     if (guard.rose() && guard.action() > verdict.action) {
       verdict = {guard.action(), static_cast<int>(i)};
     }
   }
-  if (!std::isnan(facts.y_m)) {
-    last_y_m_ = facts.y_m;
-    last_t_s_ = facts.t_s;
-  }
+  last_.take(facts);
   return verdict;
 }
 

@@ -19,8 +19,34 @@ struct Facts {
   double reference_m = std::numeric_limits<double>::quiet_NaN();  ///< where y shall be, in RUN
   double command_V = 0.0;           ///< u - null of the period that ends now
   bool saturated = false;           ///< that command was at a limit
-  double spare_difference_m = 0.0;  ///< greatest |y - spare|
+  double spare_difference_m = 0.0;  ///< of the rod sensors, RodChoice::difference_m()
+  bool other_sensor = false;        ///< y is another sensor's than in the tick before
 };
+
+/// The reading before this one.
+class LastReading {
+ public:
+  /// NaN when there is none to compare with.
+  [[nodiscard]] double dy_m(const Facts& facts) const noexcept {
+    return dt_s(facts) > 0.0 ? facts.y_m - y_m_ : std::numeric_limits<double>::quiet_NaN();
+  }
+  [[nodiscard]] double dt_s(const Facts& facts) const noexcept { return facts.t_s - t_s_; }
+  void take(const Facts& facts) noexcept {
+    if (!(facts.y_m == facts.y_m)) return;  // NaN
+    y_m_ = facts.y_m;
+    t_s_ = facts.t_s;
+  }
+  void forget() noexcept { y_m_ = std::numeric_limits<double>::quiet_NaN(); }
+
+ private:
+  double y_m_ = std::numeric_limits<double>::quiet_NaN();
+  double t_s_ = 0.0;
+};
+
+/// Whether that kind watches a reading, and not the motion.
+[[nodiscard]] constexpr bool watches_a_sensor(GuardKind kind) noexcept {
+  return kind == GuardKind::stale || kind == GuardKind::frozen || kind == GuardKind::jump;
+}
 
 /// Which guard asks for what; guard -1: none does.
 struct Verdict {
@@ -47,6 +73,11 @@ class Guard {
   [[nodiscard]] bool rose() const noexcept { return rose_; }
   /// What was compared with the limit last.
   [[nodiscard]] double value() const noexcept { return value_; }
+  /// How long what it watches has lasted, frozen or not yet.
+  [[nodiscard]] double lasting_s(double t_s) const noexcept {
+    return since_s_ == since_s_ ? t_s - since_s_ : 0.0;
+  }
+  [[nodiscard]] double time_s() const noexcept { return time_s_; }
   [[nodiscard]] double low() const noexcept { return low_; }
   [[nodiscard]] double high() const noexcept { return high_; }
 
@@ -67,6 +98,8 @@ class Guard {
   bool rose_ = false;
 };
 
+class SensorWatch;
+
 class Safety {
  public:
   /// `guards` from all_guards().
@@ -75,7 +108,9 @@ class Safety {
   /// A built-in guard, as another detected it. Its action if it is active.
   Verdict set(GuardKind built_in, bool active, double value) noexcept;
   /// All other guards. The strongest action among those that have just become active.
-  Verdict watch(const Facts& facts) noexcept;
+  /// `sensor`: watches the reading already, so that its guards' states are taken over; null: it is
+  /// watched here.
+  Verdict watch(const Facts& facts, const SensorWatch* sensor = nullptr) noexcept;
   /// A motion begins at y_m.
   void start(double y_m) noexcept;
   /// An active guard that forbids to arm and to start (e_stop, missing, bus_lost, stale, disagree,
@@ -87,8 +122,7 @@ class Safety {
  private:
   std::vector<Guard> guards_;
   double sample_time_s_;
-  double last_y_m_ = std::numeric_limits<double>::quiet_NaN();
-  double last_t_s_ = 0.0;
+  LastReading last_;
 };
 
 }  // namespace monitor::control

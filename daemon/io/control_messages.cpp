@@ -148,6 +148,18 @@ std::string print_status(const ControlStatus& status) {
                       {"value", number(guard.value)}});
   }
   line["guards"] = std::move(guards);
+  if (!status.rods.empty()) {
+    ordered_json rods = ordered_json::array();
+    for (const auto& rod : status.rods) {
+      rods.push_back({{"id", rod.id},
+                      {"y_m", number(rod.y_m)},
+                      {"out", rod.fault.empty() ? json(nullptr) : json(rod.fault)},
+                      {"out_for_s", rod.fault.empty() ? json(nullptr) : number(rod.for_s)}});
+    }
+    line["rods"] = std::move(rods);
+    line["rod_in_charge"] = status.rod_in_charge;
+    line["rod_in_charge_for_s"] = number(status.rod_in_charge_for_s);
+  }
   line["spare_rods"] = inputs_of(status.spare_rods);
   line["inputs"] = inputs_of(status.inputs);
   return line.dump(-1, ' ', false, json::error_handler_t::replace);

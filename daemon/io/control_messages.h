@@ -49,6 +49,13 @@ struct ControlStatus {
     std::string id;
     double value = std::numeric_limits<double>::quiet_NaN();
   };
+  /// Of several rod sensors, the configured one first.
+  struct Rod {
+    std::string id;
+    double y_m = std::numeric_limits<double>::quiet_NaN();
+    std::string fault;   ///< why it is out; empty: it is in
+    double for_s = 0.0;  ///< it has been out
+  };
   std::string rig_id, config_hash;
   control::State state = control::State::disarmed;
   bool holding = false;
@@ -67,6 +74,9 @@ struct ControlStatus {
   std::int64_t active_alarms = 0;
   std::vector<Guard> guards;
   std::vector<Input> spare_rods, inputs;
+  std::vector<Rod> rods;  ///< empty: there is one alone
+  std::string rod_in_charge;
+  double rod_in_charge_for_s = 0.0;
 };
 
 [[nodiscard]] std::string print_status(const ControlStatus& status);

@@ -1,6 +1,6 @@
 #include "daemon/io/messages.h"
 
-#include <limits>
+#include <algorithm>
 
 namespace monitor::io {
 
@@ -18,6 +18,23 @@ void fill(spoolwatch::sample_t& message, const estimator::fdi::Sample& sample,
   message.state = static_cast<std::int8_t>(sample.state);
   message.saturated = sample.saturated ? 1 : 0;
   message.gap = sample.gap;
+}
+
+void fill(spoolwatch::rods_t& message, const estimator::fdi::Sample& sample) {
+  message.tick = sample.tick;
+  message.in_charge = static_cast<std::int8_t>(sample.rod_in_charge);
+  message.changed = sample.rod_changed ? 1 : 0;
+  message.since_tick = sample.rod_since;
+  const std::size_t count = std::min<std::size_t>(sample.rod_count, estimator::fdi::kMaxRods);
+  message.count = static_cast<std::int32_t>(count);
+  message.rod.resize(count);
+  message.y_m.assign(sample.rod_m.begin(), sample.rod_m.begin() + count);
+  message.quality.resize(count);
+  message.fault.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    message.quality[i] = static_cast<std::int8_t>(sample.rod_quality[i]);
+    message.fault[i] = static_cast<std::int8_t>(sample.rod_fault[i]);
+  }
 }
 
 void fill(spoolwatch::estimate_t& message, const estimator::fdi::EstimateEvent& event) {

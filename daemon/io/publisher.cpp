@@ -1,6 +1,7 @@
 #include "daemon/io/publisher.h"
 
 #include <span>
+#include <utility>
 
 #include "config/messages/connect.h"
 #include "daemon/io/evidence.h"
@@ -19,6 +20,7 @@ constexpr std::size_t kMaxChannel = 63;  // LCM's own limit
 
 struct Publisher::Messages {
   spoolwatch::sample_t sample{};
+  spoolwatch::rods_t rods{};
   spoolwatch::estimate_t estimate{};
   spoolwatch::alarm_t alarm{};
 };
@@ -37,6 +39,7 @@ Publisher::Publisher(const PublisherConfig& config, std::int64_t run_id, double 
       run_id_(run_id),
       sample_time_s_(sample_time_s),
       sample_{config.prefix + "_SAMPLE"},
+      rods_{config.prefix + "_RODS"},
       estimate_{config.prefix + "_ESTIMATE"},
       alarm_{config.prefix + "_ALARM"},
       health_{config.prefix + "_HEALTH"},
@@ -49,7 +52,13 @@ Publisher::Publisher(const PublisherConfig& config, std::int64_t run_id, double 
 
 Publisher::~Publisher() = default;
 
+void Publisher::name_rods(std::vector<std::string> rods) { messages_->rods.rod = std::move(rods); }
+
 void Publisher::sample(const estimator::fdi::Sample& sample) {
+  if (sample.rod_count > 0) {
+    fill(messages_->rods, sample);
+    send(rods_, messages_->rods, {sample.utc_us, sample.t_read_ns});
+  }
   fill(messages_->sample, sample, sample_time_s_);
   send(sample_, messages_->sample, {sample.utc_us, sample.t_read_ns});
 }

@@ -63,7 +63,10 @@ class Publisher {
   /// Hands it every message too; it outlives the publisher.
   void attach(Evidence& evidence) noexcept { evidence_ = &evidence; }
 
-  /// A sample carries its own stamp (utc_us, t_read_ns).
+  /// Ids of the rod sensors, the configured one first.
+  void name_rods(std::vector<std::string> rods);
+
+  /// A sample carries its own stamp (utc_us, t_read_ns). Several rod sensors are told just before.
   void sample(const estimator::fdi::Sample& sample);
   void estimate(const estimator::fdi::EstimateEvent& event, Stamp stamp);
   /// `repeat`: an active alarm sent again, not a change.
@@ -90,7 +93,7 @@ class Publisher {
   Evidence* evidence_ = nullptr;
   std::int64_t run_id_;
   double sample_time_s_;
-  Channel sample_, estimate_, alarm_, health_;
+  Channel sample_, rods_, estimate_, alarm_, health_;
   std::vector<std::uint8_t> buffer_;
   std::atomic<std::int64_t> sent_{0};
   std::atomic<std::int64_t> failures_{0};

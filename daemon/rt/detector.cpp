@@ -16,6 +16,13 @@ namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
+/// Of all rod sensors, the configured one first.
+std::vector<std::string> rods_of(const Detector::Identity& identity) {
+  std::vector<std::string> rods{control::kRodId};
+  rods.insert(rods.end(), identity.spare_rods.begin(), identity.spare_rods.end());
+  return rods;
+}
+
 double us(std::int64_t time_ns) { return static_cast<double>(time_ns) * 1e-3; }
 
 }  // namespace
@@ -24,10 +31,12 @@ Detector::Detector(const Parts& parts, const Identity& identity)
     : parts_(parts),
       changed_([this](const Alarm& alarm) { publish(alarm, false); }),
       guard_alarms_(identity.guards, parts.pipeline.alarms()),
+      rod_alarms_(rods_of(identity), identity.sample_time_s),
       alarm_desk_(parts.orders, parts.answers),
       spare_rods_(std::min(identity.spare_rods.size(), kMaxSpareRods)),
       inputs_(std::min(identity.inputs.size(), kMaxInputs)),
       next_second_ns_(parts.clock.now_ns() + kSecond_ns) {
+  parts_.publisher.name_rods(rods_of(identity));
   health_.rig_id = identity.rig_id;
   health_.config_hash = identity.config_hash;
   health_.privileges = identity.privileges;
@@ -75,6 +84,7 @@ void Detector::process(const Sample& sample) {
     parts_.evidence->state(snapshot_, tick_);
   }
   guard_alarms_.report(parts_.stats.guards, tick_, changed_);
+  rod_alarms_.report(sample, parts_.pipeline.alarms(), changed_);
   parts_.publisher.sample(sample);
   if (sample.state != state_) {
     state_ = sample.state;
@@ -188,8 +198,8 @@ void Detector::health() {
   health_.write_p999_us = us(stats.write.quantile_ns(0.999));
   health_.active_alarms = static_cast<std::int32_t>(parts_.pipeline.alarms().active_count());
   parts_.stats.active_alarms.store(health_.active_alarms, std::memory_order_relaxed);
-  health_.device_good[0] = stats.rod_good.value();
-  health_.device_bad[0] = stats.rod_bad.value();
+  health_.device_good[0] = stats.rod.good.value();
+  health_.device_bad[0] = stats.rod.bad.value();
   std::size_t at = 1;
   const auto next = [&](const Counter& good, const Counter& bad) {
     health_.device_good[at] = good.value();

@@ -18,6 +18,7 @@
 #include "daemon/rt/guard_alarms.h"
 #include "daemon/rt/loop_stats.h"
 #include "daemon/rt/queues.h"
+#include "daemon/rt/rod_alarms.h"
 #include "daemon/rt/rule_change.h"
 #include "estimator/fdi/pipeline.h"
 #include "spoolwatch/health_t.hpp"
@@ -52,6 +53,7 @@ class Detector final : private estimator::fdi::Events {
     std::string valve;                            ///< "" when none is driven
     std::vector<std::string> spare_rods, inputs;  ///< their ids
     std::vector<control::GuardConfig> guards;     ///< control::all_guards
+    double sample_time_s = 0.005;
   };
 
   Detector(const Parts& parts, const Identity& identity);
@@ -88,6 +90,7 @@ class Detector final : private estimator::fdi::Events {
   std::function<void(const estimator::fdi::Alarm&)> changed_;
   io::Conditions conditions_;
   GuardAlarms guard_alarms_;
+  RodAlarms rod_alarms_;
   AlarmDesk alarm_desk_;
   std::vector<std::int64_t> times_;     ///< Alarm::times that evidence was asked for
   std::vector<std::uint8_t> snapshot_;  ///< of the pipeline

@@ -42,7 +42,11 @@ Loop::Loop(const LoopConfig& config, const Parts& parts, const control::Controll
       ramp_(rules.safety.ramp_s),
       safety_(control::all_guards(rules.safety, config.overrun()), sample_time_s),
       arming_(parts.valve == nullptr),
-      around_(parts.spare_rods, parts.inputs, config.max_bad_in_a_row, parts.stats),
+      rods_(parts.rod, parts.spare_rods, parts.stats,
+            {rules.safety.failover,
+             control::all_guards(rules.safety, config.overrun()),
+             {sample_time_s, config.max_bad_in_a_row, rules.safety.blend_mps}}),
+      around_(parts.inputs, config.max_bad_in_a_row, parts.stats),
       overruns_(config.max_lost_in_a_row, config.max_lost_a_minute),
       sample_time_s_(sample_time_s),
       null_V_(controller.null_V()),
@@ -95,7 +99,7 @@ void Loop::leave() noexcept {
 }
 
 void Loop::watch_inputs(const hal::Tick& tick) noexcept {
-  around_.read(tick, y_m_);
+  around_.read(tick);
   act(safety_.set(GuardKind::e_stop, !around_.e_stop_released(), 0.0), false);
   if (!around_.enabled()) leave();
   const bool missing = bad_readings_ > max_bad_in_a_row_;
@@ -127,8 +131,9 @@ void Loop::watch_motion(const hal::Reading& reading, Sample& sample) noexcept {
   facts.reference_m = sample.reference_m;
   facts.command_V = last_V_;
   facts.saturated = last_limited_;
-  facts.spare_difference_m = around_.spare_difference_m();
-  act(safety_.watch(facts), true);
+  facts.spare_difference_m = rods_.choice().difference_m();
+  facts.other_sensor = rods_.choice().changed();
+  act(safety_.watch(facts, rods_.choice().watch()), true);
   if (follows && motion_.holding()) sample.reference_m = motion_.at(tick_);
 }
 
@@ -143,7 +148,8 @@ void Loop::drive(const Period& period, Sample& sample) noexcept {
   double command_V = null_V_;
   if (law) {
     const int periods = static_cast<int>(std::min<std::int64_t>(period.skipped + 1, 1000));
-    const control::Command command = controller_.update(sample.reference_m, sample.y_m, periods);
+    const control::Command command =
+        controller_.update(sample.reference_m, y_m_ + rods_.choice().bump_m(), periods);
     sample.u_requested_V = command.requested_V;
     sample.saturated = command.saturated;
     command_V = command.limited_V;
@@ -202,17 +208,18 @@ bool Loop::tick(const Period& period) noexcept {
   sample.tick = tick_;
   sample.utc_us = parts_.clock.utc_us();
   sample.t_read_ns = parts_.clock.now_ns();
-  const hal::Reading reading = parts_.rod.read(period.tick);
+  const bool follows = arming_.state() == State::run && !ramp_.active() && !interrupted_;
+  const hal::Reading& reading = rods_.read(period.tick, parts_.clock, time_s(), last_V_, follows);
   parts_.stats.read.add(parts_.clock.now_ns() - sample.t_read_ns);
   if (reading.end) return false;
 
-  const bool good = reading.quality != hal::Quality::bad && std::isfinite(reading.y_m);
-  (good ? parts_.stats.rod_good : parts_.stats.rod_bad).add();
+  const bool good = hal::trusted(reading.quality, reading.y_m);
   bad_readings_ = good ? 0 : bad_readings_ + 1;
   y_m_ = good ? reading.y_m : hal::kMissing;
   sample.y_m = y_m_;
   sample.quality =
       good ? static_cast<estimator::fdi::Quality>(reading.quality) : estimator::fdi::Quality::bad;
+  rods_.fill(sample);
   watch_inputs(period.tick);
   take_commands();
   watch_overruns(period);

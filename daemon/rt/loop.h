@@ -7,6 +7,8 @@
 // safety.h) hold the reference, ramp the command to null or latch; losing the enable input disarms.
 // A start begins where the rod is; a start while a guard holds resumes from there, and so does the
 // law after a null in between.
+//
+// Several rod sensors: control/rod_choice.h says which one's reading counts.
 #pragma once
 
 #include <cstdint>
@@ -24,6 +26,7 @@
 #include "daemon/rt/loop_stats.h"
 #include "daemon/rt/overrun.h"
 #include "daemon/rt/queues.h"
+#include "daemon/rt/rods.h"
 #include "daemon/rt/surroundings.h"
 #include "hal/device.h"
 
@@ -113,6 +116,7 @@ class Loop {
   control::Ramp ramp_;
   control::Safety safety_;
   control::Arming arming_;
+  Rods rods_;
   Surroundings around_;
   OverrunRule overruns_;
   double sample_time_s_;

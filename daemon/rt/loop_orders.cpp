@@ -25,6 +25,7 @@ Refusal Loop::carry_out(Event event, bool at_once) noexcept {
   if (event == Event::start) {
     motion_.start(y_m_, tick_, at_once);
     safety_.start(y_m_);
+    rods_.choice().start();
     if (!resume) controller_.reset();
   }
   if (!resume) apply(event);
@@ -35,6 +36,10 @@ Refusal Loop::carry_out(const Command& command) noexcept {
   if (parts_.clock.now_ns() >= command.expires_ns) {
     parts_.stats.expired_commands.add();
     return Refusal::expired;
+  }
+  if (command.kind == Command::Kind::forgive) {
+    rods_.choice().forgive();
+    return Refusal::none;
   }
   if (command.kind == Command::Kind::event) return carry_out(command.event, command.at_once);
   if (arming_.state() == State::monitor) return Refusal::monitor;

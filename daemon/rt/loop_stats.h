@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "daemon/control/arming.h"
+#include "daemon/control/failover.h"
 #include "daemon/rt/guard_board.h"
 #include "daemon/rt/histogram.h"
 
@@ -15,7 +16,7 @@ namespace monitor::rt {
 /// Why the state is LATCHED; `guard`: one of [[guard]].
 enum class Trip : std::uint8_t { none, overrun, reading, write, e_stop, guard };
 
-inline constexpr std::size_t kMaxSpareRods = 4;
+inline constexpr std::size_t kMaxSpareRods = control::kMaxRods - 1;
 inline constexpr std::size_t kMaxInputs = 16;
 
 /// A counter with one writer.
@@ -34,6 +35,18 @@ class Counter {
 struct DeviceStats {
   Counter good, bad;
   std::atomic<double> value{std::numeric_limits<double>::quiet_NaN()};  ///< newest, NaN: none
+
+  void count(bool is_good, double reading) noexcept {
+    (is_good ? good : bad).add();
+    value.store(is_good ? reading : std::numeric_limits<double>::quiet_NaN(),
+                std::memory_order_relaxed);
+  }
+};
+
+/// A rod sensor's part in the loop, the configured one's first.
+struct RodStats {
+  std::atomic<control::RodFault> fault{control::RodFault::none};  ///< why it is out
+  std::atomic<std::int64_t> since_tick{0};                        ///< it has been out or in
 };
 
 struct LoopStats {
@@ -43,10 +56,14 @@ struct LoopStats {
   Counter dropped_samples;  ///< queue to the detector full
   Counter expired_commands;
   Counter refused_commands;  ///< not allowed at that moment
-  Counter rod_good, rod_bad, valve_good, valve_bad;
+  DeviceStats rod;           ///< the configured sensor
+  Counter valve_good, valve_bad;
   Counter permit_good, permit_bad;  ///< toggles of the permit output
   std::array<DeviceStats, kMaxSpareRods> spare_rods;
   std::array<DeviceStats, kMaxInputs> inputs;
+  std::array<RodStats, control::kMaxRods> rods;
+  std::atomic<std::uint8_t> rod_in_charge{0};
+  std::atomic<std::int64_t> rod_since_tick{0};  ///< it has been in charge
   Histogram lateness, read, control, write, tick;
   std::atomic<control::State> state{control::State::disarmed};
   std::atomic<Trip> trip{Trip::none};

@@ -9,22 +9,11 @@ namespace {
 /// A switch reads 1 or it does not: room for rounding alone.
 constexpr double kSwitchRounding = 1e-6;
 
-/// A device calls a reading bad when it has been stale for too long.
-bool trusted(hal::Quality quality, double value) noexcept {
-  return quality != hal::Quality::bad && std::isfinite(value);
-}
-
-void count(DeviceStats& stats, bool good, double value) noexcept {
-  (good ? stats.good : stats.bad).add();
-  stats.value.store(good ? value : hal::kMissing, std::memory_order_relaxed);
-}
-
 }  // namespace
 
-Surroundings::Surroundings(const std::vector<hal::NamedRod>* spare_rods,
-                           const std::vector<hal::NamedInput>* inputs, std::int64_t max_unread,
+Surroundings::Surroundings(const std::vector<hal::NamedInput>* inputs, std::int64_t max_unread,
                            LoopStats& stats) noexcept
-    : spare_rods_(spare_rods), inputs_(inputs), max_unread_(max_unread), stats_(stats) {
+    : inputs_(inputs), max_unread_(max_unread), stats_(stats) {
   since_on_.fill(max_unread_ + 1);
   if (inputs_ == nullptr) return;
   has_command_ = std::any_of(inputs_->begin(), inputs_->end(), [](const hal::NamedInput& input) {
@@ -43,25 +32,15 @@ bool Surroundings::counts_as_on(std::size_t input, bool good, bool on) noexcept 
   return since_on <= max_unread_;
 }
 
-void Surroundings::read(const hal::Tick& tick, double y_m) noexcept {
-  spare_difference_m_ = 0.0;
-  const std::size_t rods =
-      spare_rods_ == nullptr ? 0 : std::min(spare_rods_->size(), kMaxSpareRods);
-  for (std::size_t i = 0; i < rods; ++i) {
-    const hal::Reading reading = (*spare_rods_)[i].rod->read(tick);
-    const bool good = trusted(reading.quality, reading.y_m);
-    count(stats_.spare_rods[i], good, reading.y_m);
-    const double difference_m = std::abs(reading.y_m - y_m);
-    if (good && difference_m > spare_difference_m_) spare_difference_m_ = difference_m;
-  }
+void Surroundings::read(const hal::Tick& tick) noexcept {
   e_stop_released_ = enabled_ = true;
   blind_ = false;
   const std::size_t inputs = inputs_ == nullptr ? 0 : std::min(inputs_->size(), kMaxInputs);
   for (std::size_t i = 0; i < inputs; ++i) {
     const hal::NamedInput& named = (*inputs_)[i];
     const hal::InputReading reading = named.input->read(tick);
-    const bool good = trusted(reading.quality, reading.value);
-    count(stats_.inputs[i], good, reading.value);
+    const bool good = hal::trusted(reading.quality, reading.value);
+    stats_.inputs[i].count(good, reading.value);
     if (named.role == hal::InputRole::e_stop || named.role == hal::InputRole::enable) {
       const bool on = std::abs(reading.value - 1.0) < kSwitchRounding;
       bool& all = named.role == hal::InputRole::e_stop ? e_stop_released_ : enabled_;

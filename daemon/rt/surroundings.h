@@ -1,5 +1,4 @@
-// What the loop reads besides the rod: spare rod sensors and auxiliary inputs, and what they say
-// about moving at all.
+// What the loop reads besides the rod: auxiliary inputs, and what they say about moving at all.
 #pragma once
 
 #include <array>
@@ -13,15 +12,14 @@ namespace monitor::rt {
 
 class Surroundings {
  public:
-  /// Either list may be null; both outlive this. More than kMaxSpareRods, kMaxInputs are not read.
-  /// max_unread: a switch that was on counts as on while it cannot be read for so many times in a
-  /// row; blind() meanwhile.
-  Surroundings(const std::vector<hal::NamedRod>* spare_rods,
-               const std::vector<hal::NamedInput>* inputs, std::int64_t max_unread,
+  /// The list may be null and outlives this. More than kMaxInputs are not read. max_unread: a
+  /// switch that was on counts as on while it cannot be read for so many times in a row; blind()
+  /// meanwhile.
+  Surroundings(const std::vector<hal::NamedInput>* inputs, std::int64_t max_unread,
                LoopStats& stats) noexcept;
 
-  /// Reads all; y_m of the main sensor, NaN when it has none.
-  void read(const hal::Tick& tick, double y_m) noexcept;
+  /// Reads all.
+  void read(const hal::Tick& tick) noexcept;
 
   /// Every input of that role is 1, as far as is known; true when there is none.
   [[nodiscard]] bool e_stop_released() const noexcept { return e_stop_released_; }
@@ -31,14 +29,11 @@ class Surroundings {
   /// Of the input valve_command, NaN when there is none.
   [[nodiscard]] double command_V() const noexcept { return command_V_; }
   [[nodiscard]] bool has_command() const noexcept { return has_command_; }
-  /// Greatest |y - spare| of the spares that have a reading; 0 when it cannot be said.
-  [[nodiscard]] double spare_difference_m() const noexcept { return spare_difference_m_; }
 
  private:
   /// Whether a switch that reads `good`, `on` counts as on.
   bool counts_as_on(std::size_t input, bool good, bool on) noexcept;
 
-  const std::vector<hal::NamedRod>* spare_rods_;
   const std::vector<hal::NamedInput>* inputs_;
   std::int64_t max_unread_;
   /// Readings since each switch was last seen on; beyond max_unread_: it is off.
@@ -49,7 +44,6 @@ class Surroundings {
   bool blind_ = false;
   bool has_command_ = false;
   double command_V_ = hal::kMissing;
-  double spare_difference_m_ = 0.0;
 };
 
 }  // namespace monitor::rt

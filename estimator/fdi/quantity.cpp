@@ -3,6 +3,19 @@
 #include <limits>
 
 namespace estimator::fdi {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+double trusted(Quality quality, double y_m) noexcept {
+  return quality == Quality::good || quality == Quality::uncertain ? y_m : kNan;
+}
+
+constexpr std::size_t index_of(SampleQuantity rod) noexcept {
+  return static_cast<std::size_t>(rod) - static_cast<std::size_t>(SampleQuantity::rod_1);
+}
+
+}  // namespace
 
 QuantityName split_quantity(std::string_view quantity) noexcept {
   const std::size_t dot = quantity.rfind('.');
@@ -18,22 +31,39 @@ std::vector<std::string> estimate_names(const Structure& structure) {
 }
 
 double usable_y_m(const Sample& sample) noexcept {
-  const bool usable = sample.quality == Quality::good || sample.quality == Quality::uncertain;
-  return usable ? sample.y_m : std::numeric_limits<double>::quiet_NaN();
+  return sample.rod_changed ? kNan : trusted(sample.quality, sample.y_m);
+}
+
+std::size_t rod_of(std::string_view quantity) noexcept {
+  const QuantityName name = split_quantity(quantity);
+  if (name.source != kSampleSource) return 0;
+  for (const NamedSampleQuantity& each : kSampleQuantities) {
+    if (each.name == name.name && each.quantity >= SampleQuantity::rod_1) {
+      return index_of(each.quantity) + 1;
+    }
+  }
+  return 0;
 }
 
 double value_of(SampleQuantity quantity, const Sample& sample) noexcept {
   switch (quantity) {
     case SampleQuantity::y:
-      return usable_y_m(sample);
+      return trusted(sample.quality, sample.y_m);
     case SampleQuantity::u:
       return sample.u_applied_V;
     case SampleQuantity::reference:
       return sample.reference_m;
     case SampleQuantity::following_error:
-      return sample.reference_m - usable_y_m(sample);
+      return sample.reference_m - trusted(sample.quality, sample.y_m);
+    case SampleQuantity::rod_in_charge:
+      return sample.rod_count > 0 ? sample.rod_in_charge + 1.0 : kNan;
+    default:
+      break;
   }
-  return std::numeric_limits<double>::quiet_NaN();
+  const std::size_t rod = index_of(quantity);
+  return rod < sample.rod_count && rod < kMaxRods
+             ? trusted(sample.rod_quality[rod], sample.rod_m[rod])
+             : kNan;
 }
 
 }  // namespace estimator::fdi

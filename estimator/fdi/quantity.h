@@ -4,6 +4,8 @@
 //   SOURCE.name                                              of any other source (source.h)
 //   sample.y_m .u_V .reference_m .following_error_m          of every sample; the following error
 //                                                            is reference minus position
+//   sample.rod_1_m .rod_2_m ... .rod_5_m .rod_in_charge      of a rig with several rod sensors, the
+//                                                            configured one first; NaN elsewhere
 #pragma once
 
 #include <array>
@@ -28,20 +30,41 @@ struct QuantityName {
 /// Names of an estimate's values in their order: coefficients, residual_rms_m, condition.
 [[nodiscard]] std::vector<std::string> estimate_names(const Structure& structure);
 
-enum class SampleQuantity { y, u, reference, following_error };
+enum class SampleQuantity {
+  y,
+  u,
+  reference,
+  following_error,
+  rod_in_charge,
+  rod_1,
+  rod_2,
+  rod_3,
+  rod_4,
+  rod_5
+};
 struct NamedSampleQuantity {
   SampleQuantity quantity;
   std::string_view name;
 };
-inline constexpr std::array<NamedSampleQuantity, 4> kSampleQuantities = {
+inline constexpr std::array<NamedSampleQuantity, 10> kSampleQuantities = {
     {{SampleQuantity::y, "y_m"},
      {SampleQuantity::u, "u_V"},
      {SampleQuantity::reference, "reference_m"},
-     {SampleQuantity::following_error, "following_error_m"}}};
+     {SampleQuantity::following_error, "following_error_m"},
+     {SampleQuantity::rod_in_charge, "rod_in_charge"},
+     {SampleQuantity::rod_1, "rod_1_m"},
+     {SampleQuantity::rod_2, "rod_2_m"},
+     {SampleQuantity::rod_3, "rod_3_m"},
+     {SampleQuantity::rod_4, "rod_4_m"},
+     {SampleQuantity::rod_5, "rod_5_m"}}};
 /// NaN when it is missing, or its quality stale or bad.
 [[nodiscard]] double value_of(SampleQuantity quantity, const Sample& sample) noexcept;
 
-/// Position that may be used: good or uncertain; NaN otherwise.
+/// Number of the rod sensor, from 1, that "sample.rod_2_m" reads; 0: it reads none.
+[[nodiscard]] std::size_t rod_of(std::string_view quantity) noexcept;
+
+/// Position that an estimator may use: good or uncertain, and of the same sensor as the one before;
+/// NaN otherwise.
 [[nodiscard]] double usable_y_m(const Sample& sample) noexcept;
 
 }  // namespace estimator::fdi

@@ -2,12 +2,24 @@
 // queues.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
 namespace estimator::fdi {
 
 enum class Quality : std::uint8_t { good = 0, uncertain = 1, stale = 2, bad = 3 };
+
+/// Rod sensors that a sample has room for.
+inline constexpr std::size_t kMaxRods = 5;
+
+constexpr std::array<double, kMaxRods> no_rods() noexcept {
+  std::array<double, kMaxRods> none{};
+  for (double& y_m : none) y_m = std::numeric_limits<double>::quiet_NaN();
+  return none;
+}
 
 /// y_m is read at t_read_ns, before u_applied_V is written at t_write_ns; u holds until the next
 /// write. A missing number is NaN.
@@ -24,6 +36,15 @@ struct Sample {
   std::uint8_t state = 0;  ///< arming state, as in sample_t
   bool saturated = false;  ///< a limit of range or slew was active
   std::int32_t gap = 0;    ///< periods missing just before this one
+
+  // Where the rig has several rod sensors, each of them, the configured one first.
+  std::uint8_t rod_count = 0;      ///< 0: there is one alone, and y_m is its reading
+  std::uint8_t rod_in_charge = 0;  ///< whose reading y_m is
+  bool rod_changed = false;        ///< another than in the sample before: y_m may have a step here
+  std::int64_t rod_since = 0;      ///< tick from which on it has been in charge
+  std::array<double, kMaxRods> rod_m = no_rods();
+  std::array<Quality, kMaxRods> rod_quality{};
+  std::array<std::uint8_t, kMaxRods> rod_fault{};  ///< why it is out, as in rods_t; 0: it is in
 };
 static_assert(std::is_trivially_copyable_v<Sample>);
 

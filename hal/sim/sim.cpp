@@ -41,7 +41,7 @@ SimRig::SimRig(std::unique_ptr<plant_sim::Plant> plant, const SimConfig& config,
               ? std::max(1LL, std::llround(std::floor(config.command_timeout_s / sample_time_s +
                                                       kWholeSteps)))
               : std::numeric_limits<std::int64_t>::max()),
-      troubles_(config.troubles) {}
+      spoilt_(config.troubles, "") {}
 
 Reading SimRig::read(const Tick& tick) noexcept {
   double u_V = held_V_.load(std::memory_order_relaxed);
@@ -56,34 +56,9 @@ Reading SimRig::read(const Tick& tick) noexcept {
   reading.y_m = encoder_.read(plant_->reading_m());
   reading.command_V = u_V;
   reading.quality = Quality::good;
-  if (!troubles_.empty()) spoil(reading, static_cast<double>(tick.index) * sample_time_s_);
+  const double t_s = static_cast<double>(tick.index) * sample_time_s_;
+  deaf_.store(spoilt_.spoil(reading, t_s), std::memory_order_relaxed);
   return reading;
-}
-
-void SimRig::spoil(Reading& reading, double t_s) noexcept {
-  const double y_m = reading.y_m;
-  bool frozen = false;
-  bool deaf = false;
-  for (const Trouble& trouble : troubles_) {
-    if (!trouble.at(t_s)) continue;
-    if (trouble.kind == "missing") {
-      reading.y_m = kMissing;
-      reading.quality = Quality::bad;
-    } else if (trouble.kind == "frozen") {
-      reading.y_m = last_y_m_;
-      frozen = true;
-    } else if (trouble.kind == "jump") {
-      reading.y_m += trouble.size_m;
-    } else if (trouble.kind == "stale") {
-      reading.y_m = last_y_m_;
-      reading.quality = Quality::stale;
-      frozen = true;
-    } else {
-      deaf = true;
-    }
-  }
-  if (!frozen) last_y_m_ = y_m;
-  deaf_.store(deaf, std::memory_order_relaxed);
 }
 
 Applied SimRig::take(double u_V) noexcept {
@@ -104,8 +79,9 @@ Applied SimRig::go_null() noexcept { return take(null_V_); }
 Reading SpareRod::read(const Tick& tick) noexcept {
   const double t_s = static_cast<double>(tick.nominal_ns) * 1e-9;
   Reading reading;
-  reading.y_m = rig_->position_m() + (t_s >= from_s_ ? offset_m_ : 0.0);
+  reading.y_m = encoder_.read(rig_->position_m() + (t_s >= from_s_ ? offset_m_ : 0.0));
   reading.quality = Quality::good;
+  spoilt_.spoil(reading, t_s);
   return reading;
 }
 
@@ -120,7 +96,22 @@ std::unique_ptr<plant_sim::Plant> SimBackend::load(const Opening& opening) const
   return plant_sim::make_plant(plant_sim::load_model(file));
 }
 
+void SimBackend::check_troubles(const Opening& opening) const {
+  std::string known;
+  for (const SpareConfig& spare : config_.rods) known += (known.empty() ? "" : ", ") + spare.id;
+  for (const Trouble& trouble : config_.troubles) {
+    const auto is_it = [&](const SpareConfig& spare) { return spare.id == trouble.rod; };
+    if (trouble.rod.empty() || std::any_of(config_.rods.begin(), config_.rods.end(), is_it)) {
+      continue;
+    }
+    throw config::schema::bad_config(opening.file + ": [[sim.trouble]] rod",
+                                     "is \"" + trouble.rod + "\", which is no [[sim.rod]]",
+                                     known.empty() ? "none is there" : known);
+  }
+}
+
 Offer SimBackend::open(const Opening& opening) const {
+  check_troubles(opening);
   std::unique_ptr<plant_sim::Plant> plant = load(opening);
   const double steps = opening.sample_time_s / plant->step_s();
   if (std::abs(steps - std::round(steps)) > kWholeSteps) {
@@ -140,8 +131,9 @@ Offer SimBackend::open(const Opening& opening) const {
     Offer offer;
     offer.rods[kRodChannel] = rig;
     offer.valve = rig;
+    std::uint64_t seed = static_cast<std::uint64_t>(config_.seed);
     for (const SpareConfig& spare : config_.rods) {
-      offer.rods[spare.id] = std::make_shared<SpareRod>(rig, spare);
+      offer.rods[spare.id] = std::make_shared<SpareRod>(rig, spare, config_.troubles, ++seed);
     }
     for (const SwitchConfig& input : config_.inputs) {
       offer.inputs[input.id] = std::make_shared<Switch>(input);

@@ -43,7 +43,6 @@ class SimRig final : public RodSensor, public ValveDrive {
 
  private:
   Applied take(double u_V) noexcept;
-  void spoil(Reading& reading, double t_s) noexcept;
 
   std::unique_ptr<plant_sim::Plant> plant_;
   plant_sim::Schedule schedule_;
@@ -56,20 +55,27 @@ class SimRig final : public RodSensor, public ValveDrive {
   std::atomic<std::int64_t> written_{0};  ///< tick of the last write
   std::int64_t index_ = 0;                ///< tick that the plant stands at
   std::int64_t timeout_ticks_;
-  std::vector<Trouble> troubles_;
-  double last_y_m_ = kMissing;  ///< reading before the trouble that froze it
+  SpoiltRod spoilt_;
 };
 
 /// A spare sensor on the rod of a SimRig, to be read after it.
 class SpareRod final : public RodSensor {
  public:
-  SpareRod(std::shared_ptr<const SimRig> rig, const SpareConfig& config) noexcept
-      : rig_(std::move(rig)), offset_m_(config.offset_m), from_s_(config.from_s) {}
+  /// `troubles`: of all rods; `seed`: of its noise.
+  SpareRod(std::shared_ptr<const SimRig> rig, const SpareConfig& config,
+           const std::vector<Trouble>& troubles = {}, std::uint64_t seed = 1)
+      : rig_(std::move(rig)),
+        offset_m_(config.offset_m),
+        from_s_(config.from_s),
+        encoder_(config.encoder_resolution_m, config.noise_m, seed),
+        spoilt_(troubles, config.id) {}
   Reading read(const Tick& tick) noexcept override;
 
  private:
   std::shared_ptr<const SimRig> rig_;
   double offset_m_, from_s_;
+  plant_sim::Encoder encoder_;
+  SpoiltRod spoilt_;
 };
 
 class SimBackend final : public Backend {
@@ -84,6 +90,7 @@ class SimBackend final : public Backend {
 
  private:
   [[nodiscard]] std::unique_ptr<plant_sim::Plant> load(const Opening& opening) const;
+  void check_troubles(const Opening& opening) const;
 
   SimConfig config_;
 };

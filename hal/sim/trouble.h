@@ -5,6 +5,7 @@
 #include <atomic>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "config/schema/visitor.h"
 #include "hal/device.h"
@@ -13,20 +14,39 @@ namespace hal::sim {
 
 /// TOML [[sim.trouble]]: from_s <= t < to_s on the loop's grid.
 struct Trouble {
-  std::string kind;  ///< of the rod's reading: missing, frozen, jump, stale; of the valve: deaf
+  /// Of a rod's reading: missing, frozen, jump, drift, stale; of the valve: deaf.
+  std::string kind;
+  std::string rod;  ///< id of a [[sim.rod]]; empty: the rig's own
   double from_s = 0.0;
   double to_s = std::numeric_limits<double>::infinity();
-  double size_m = 0.0;  ///< of a jump
+  double size_m = 0.0;    ///< of a jump
+  double rate_mps = 0.0;  ///< of a drift
 
   void visit(config::schema::Visitor& v);
   [[nodiscard]] bool at(double t_s) const noexcept { return t_s >= from_s && t_s < to_s; }
 };
 
-/// TOML [[sim.rod]]: a spare sensor on the same rod, without steps or noise.
+/// What the troubles of one rod sensor make of its readings.
+class SpoiltRod {
+ public:
+  /// Those of `all` that are its own; `id` empty: the rig's own sensor.
+  SpoiltRod(const std::vector<Trouble>& all, const std::string& id);
+
+  /// Returns whether the valve is deaf.
+  bool spoil(Reading& reading, double t_s) noexcept;
+
+ private:
+  std::vector<Trouble> troubles_;
+  double last_y_m_ = kMissing;  ///< reading before the trouble that froze it
+};
+
+/// TOML [[sim.rod]]: a spare sensor on the same rod, with steps and noise of its own.
 struct SpareConfig {
   std::string id;
   double offset_m = 0.0;  ///< from from_s on
   double from_s = 0.0;
+  double encoder_resolution_m = 0.0;
+  double noise_m = 0.0;
 
   void visit(config::schema::Visitor& v);
 };

@@ -36,6 +36,27 @@ void print_inputs(const Json& status, const char* key, const char* what, std::os
   }
 }
 
+/// Of several rod sensors: which one is in charge, and which are out.
+void print_rods(const Json& status, std::ostream& out) {
+  const auto rods = status.find("rods");
+  if (rods == status.end() || !rods->is_array()) {
+    return print_inputs(status, "spare_rods", "spare rod", out);
+  }
+  const std::string in_charge = text_of(status, "rod_in_charge");
+  for (const Json& rod : *rods) {
+    const std::string id = text_of(rod, "id");
+    const std::string fault = text_of(rod, "out");
+    out << "  rod sensor " << id << ": " << number_of(rod, "y_m", 1e3, " mm");
+    if (id == in_charge) {
+      out << ", in charge for " << number_of(status, "rod_in_charge_for_s", 1.0, " s");
+    }
+    if (!fault.empty()) {
+      out << ", out for " << number_of(rod, "out_for_s", 1.0, " s") << ": " << fault;
+    }
+    out << '\n';
+  }
+}
+
 }  // namespace
 
 void print_status(const Json& status, std::ostream& out) {
@@ -52,7 +73,7 @@ void print_status(const Json& status, std::ostream& out) {
   out << "  rod " << number_of(status, "y_m", 1e3, " mm") << ", reference "
       << number_of(status, "reference_m", 1e3, " mm") << ", valve "
       << number_of(status, "u_V", 1.0, " V") << '\n';
-  print_inputs(status, "spare_rods", "spare rod", out);
+  print_rods(status, out);
   print_inputs(status, "inputs", "input", out);
   const auto alarms = status.find("active_alarms");
   if (alarms != status.end() && alarms->is_number_integer() && alarms->get<long long>() > 0) {

@@ -54,11 +54,11 @@ class Course final : public LogVisitor {
   Course(const Rules& new_rules, const std::optional<Rules>& old_rules)
       : new_rules_(new_rules), old_rules_(old_rules) {}
 
-  void on_sample(const spoolwatch::sample_t& message) override {
+  void on_sample(const spoolwatch::sample_t& message, const spoolwatch::rods_t* rods) override {
     if (!(message.sample_time_s > 0.0 && message.sample_time_s < 1e3)) {
       throw bad_data(run.files.back(), "has a sample without a sample time");
     }
-    take(to_sample(message), message.sample_time_s);
+    take(to_sample(message, rods), message.sample_time_s);
   }
   void on_alarm(const spoolwatch::alarm_t& message) override {
     // Guards and the daemon's own alarms watch no quantity of the fault detection.
@@ -114,7 +114,7 @@ struct Place {
 class FirstSample final : public LogVisitor {
  public:
   struct Found {};
-  void on_sample(const spoolwatch::sample_t& message) override {
+  void on_sample(const spoolwatch::sample_t& message, const spoolwatch::rods_t* /*rods*/) override {
     sample = message;
     throw Found{};
   }

@@ -1,5 +1,6 @@
 #include "workbench/replay/log_walk.h"
 
+#include <algorithm>
 #include <lcm/lcm-cpp.hpp>
 
 #include "config/messages/decode.h"
@@ -23,13 +24,23 @@ Message decoded(const lcm::LogEvent& event, const std::string& file) {
   return message;
 }
 
+estimator::fdi::Quality quality_of(std::int8_t quality) noexcept {
+  const bool known = quality >= 0 && quality <= 3;
+  return known ? static_cast<estimator::fdi::Quality>(quality) : estimator::fdi::Quality::bad;
+}
+
 }  // namespace
 
 void walk_log(const std::string& file, const std::string& prefix, LogVisitor& visitor) {
   config::record::EventReader reader(file);
+  spoolwatch::rods_t rods{};  // the newest
   while (const lcm::LogEvent* event = reader.next()) {
     if (event->channel == prefix + kSample) {
-      visitor.on_sample(decoded<spoolwatch::sample_t>(*event, file));
+      const auto sample = decoded<spoolwatch::sample_t>(*event, file);
+      const bool of_it = rods.count > 0 && rods.run_id == sample.run_id && rods.tick == sample.tick;
+      visitor.on_sample(sample, of_it ? &rods : nullptr);
+    } else if (event->channel == prefix + "_RODS") {
+      rods = decoded<spoolwatch::rods_t>(*event, file);
     } else if (event->channel == prefix + "_ESTIMATE") {
       visitor.on_estimate(decoded<spoolwatch::estimate_t>(*event, file));
     } else if (event->channel == prefix + "_ALARM") {
@@ -48,7 +59,8 @@ std::string find_prefix(const std::string& file) {
   return "";
 }
 
-estimator::fdi::Sample to_sample(const spoolwatch::sample_t& message) noexcept {
+estimator::fdi::Sample to_sample(const spoolwatch::sample_t& message,
+                                 const spoolwatch::rods_t* rods) noexcept {
   estimator::fdi::Sample sample;
   sample.tick = message.tick;
   sample.t_read_ns = message.t_read_ns;
@@ -58,12 +70,22 @@ estimator::fdi::Sample to_sample(const spoolwatch::sample_t& message) noexcept {
   sample.y_m = message.y_m;
   sample.u_requested_V = message.u_requested_V;
   sample.u_applied_V = message.u_applied_V;
-  const bool known = message.quality >= 0 && message.quality <= 3;
-  sample.quality =
-      known ? static_cast<estimator::fdi::Quality>(message.quality) : estimator::fdi::Quality::bad;
+  sample.quality = quality_of(message.quality);
   sample.state = static_cast<std::uint8_t>(message.state);
   sample.saturated = message.saturated != 0;
   sample.gap = message.gap;
+  if (rods == nullptr) return sample;
+  const auto count =
+      std::min(static_cast<std::size_t>(std::max(rods->count, 0)), estimator::fdi::kMaxRods);
+  sample.rod_count = static_cast<std::uint8_t>(count);
+  sample.rod_in_charge = static_cast<std::uint8_t>(rods->in_charge);
+  sample.rod_changed = rods->changed != 0;
+  sample.rod_since = rods->since_tick;
+  for (std::size_t i = 0; i < count; ++i) {
+    sample.rod_m[i] = rods->y_m[i];
+    sample.rod_quality[i] = quality_of(rods->quality[i]);
+    sample.rod_fault[i] = static_cast<std::uint8_t>(rods->fault[i]);
+  }
   return sample;
 }
 

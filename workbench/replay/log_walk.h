@@ -7,6 +7,7 @@
 #include "estimator/fdi/sample.h"
 #include "spoolwatch/alarm_t.hpp"
 #include "spoolwatch/estimate_t.hpp"
+#include "spoolwatch/rods_t.hpp"
 #include "spoolwatch/sample_t.hpp"
 
 namespace workbench::replay {
@@ -14,7 +15,8 @@ namespace workbench::replay {
 class LogVisitor {
  public:
   virtual ~LogVisitor() = default;
-  virtual void on_sample(const spoolwatch::sample_t& sample) = 0;
+  /// `rods`: what was told of several rod sensors in this sample; null where there is one alone.
+  virtual void on_sample(const spoolwatch::sample_t& sample, const spoolwatch::rods_t* rods) = 0;
   virtual void on_estimate(const spoolwatch::estimate_t& /*estimate*/) {}
   virtual void on_alarm(const spoolwatch::alarm_t& /*alarm*/) {}
 };
@@ -26,6 +28,7 @@ void walk_log(const std::string& file, const std::string& prefix, LogVisitor& vi
 /// The prefix of the first sample's channel; "" when there is none.
 [[nodiscard]] std::string find_prefix(const std::string& file);
 
-[[nodiscard]] estimator::fdi::Sample to_sample(const spoolwatch::sample_t& message) noexcept;
+[[nodiscard]] estimator::fdi::Sample to_sample(const spoolwatch::sample_t& message,
+                                               const spoolwatch::rods_t* rods) noexcept;
 
 }  // namespace workbench::replay

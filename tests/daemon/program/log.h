@@ -8,12 +8,14 @@
 #include "spoolwatch/alarm_t.hpp"
 #include "spoolwatch/estimate_t.hpp"
 #include "spoolwatch/health_t.hpp"
+#include "spoolwatch/rods_t.hpp"
 #include "spoolwatch/sample_t.hpp"
 
 namespace program {
 
 struct Log {
   std::vector<spoolwatch::sample_t> samples;
+  std::vector<spoolwatch::rods_t> rods;
   std::vector<spoolwatch::estimate_t> estimates;
   std::vector<spoolwatch::alarm_t> alarms;
   std::vector<spoolwatch::health_t> healths;

@@ -73,7 +73,7 @@ class ServiceReportTest : public testing::Test {
     clock_.advance_ns(5 * kMillisecond_ns);
     if (loop) stats_.ticks.add();
     if (loop && good) {
-      stats_.rod_good.add();
+      stats_.rod.good.add();
       stats_.valve_good.add();
     }
     if (detector) stats_.detected_samples.add();
@@ -107,7 +107,7 @@ TEST_F(ServiceReportTest, SaysReadyOnceAfterTwentyGoodCycles) {
 TEST_F(ServiceReportTest, IsNotReadyWithoutReadingsWritesOrDetector) {
   for (int i = 0; i < 100; ++i) cycle(true, true, false);
   EXPECT_EQ(ready_, 0) << "without readings";
-  stats_.rod_good.add(100);
+  stats_.rod.good.add(100);
   for (int i = 0; i < 100; ++i) cycle(true, true, false);
   EXPECT_EQ(ready_, 0) << "without writes";
   ServiceReport watching(manager_, clock_, stats_, false);

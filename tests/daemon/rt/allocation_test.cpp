@@ -29,6 +29,7 @@ SafetyRules every_guard() {
     guard.least_m = guard.tolerance_m = 1e-4;
     rules.safety.guards.push_back(guard);
   }
+  rules.safety.failover = {true, 1e-3, 0.02, 0.5};
   return rules;
 }
 
@@ -109,9 +110,9 @@ TEST_F(TickAllocation, IsNoneOnTheSimulatedRigWhateverTheMotion) {
     fault.ramp_s = 2.0;
     config.faults = {fault};
     config.command_timeout_s = 0.1;
-    for (const char* trouble : {"missing", "frozen", "jump", "stale", "deaf"}) {
+    for (const char* trouble : {"missing", "frozen", "jump", "drift", "stale", "deaf"}) {
       const double from_s = 8.0 + static_cast<double>(config.troubles.size());
-      config.troubles.push_back({trouble, from_s, from_s + 0.3, 0.01});
+      config.troubles.push_back({trouble, "", from_s, from_s + 0.3, 0.01, 0.01});
     }
     const auto rig = std::make_shared<hal::sim::SimRig>(
         plant_sim::make_plant(plant_sim::ModelFile()), config, kTs_s, 0.0);

@@ -92,7 +92,7 @@ TEST(Loop, WritesNullWhileThePositionIsMissingAndLatchesAfterTooMany) {
   for (int k = 0; k < 4; ++k) bench.tick();
   EXPECT_EQ(bench.state(), State::latched);
   EXPECT_EQ(bench.stats.trip.load(), Trip::reading);
-  EXPECT_EQ(bench.stats.rod_bad.value(), 7);
+  EXPECT_EQ(bench.stats.rod.bad.value(), 7);
   bench.rig.y_m = 0.1;
   EXPECT_EQ(bench.sample().u_applied_V, kFakeNull_V) << "LATCHED stays so until a reset";
 }

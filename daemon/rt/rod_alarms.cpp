@@ -1,0 +1,64 @@
+#include "daemon/rt/rod_alarms.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+namespace monitor::rt {
+
+using control::RodFault;
+using estimator::fdi::Alarm;
+using estimator::fdi::AlarmBook;
+using estimator::fdi::Sample;
+using estimator::fdi::Severity;
+
+namespace {
+
+const char* words_of(RodFault fault) {
+  switch (fault) {
+    case RodFault::none:
+      break;
+    case RodFault::missing:
+      return "its position is missing";
+    case RodFault::stale:
+      return "its position is too old";
+    case RodFault::frozen:
+      return "it stands still while another sees the rod move";
+    case RodFault::jump:
+      return "its position jumped";
+    case RodFault::outvoted:
+      return "it is off the middle of the others";
+  }
+  return "";
+}
+
+}  // namespace
+
+RodAlarms::RodAlarms(std::vector<std::string> rods, double sample_time_s)
+    : rods_(std::move(rods)), sample_time_s_(sample_time_s) {
+  for (const std::string& rod : rods_) names_.push_back("rod_" + rod + "_out");
+}
+
+void RodAlarms::report(const Sample& sample, AlarmBook& book,
+                       const std::function<void(const Alarm&)>& changed) {
+  if (sample.rod_count == 0) return;
+  const std::size_t count = std::min<std::size_t>(sample.rod_count, rods_.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    if (sample.rod_fault[i] == shown_[i]) continue;
+    shown_[i] = sample.rod_fault[i];
+    char reason[200] = "";
+    if (shown_[i] != 0) {
+      const std::string& in_charge =
+          rods_[std::min<std::size_t>(sample.rod_in_charge, rods_.size() - 1)];
+      std::snprintf(reason, sizeof reason,
+                    "out since %.3f s after the start: %s; the controller works with %.40s",
+                    static_cast<double>(sample.tick) * sample_time_s_,
+                    words_of(static_cast<RodFault>(shown_[i])), in_charge.c_str());
+    }
+    const Alarm* alarm =
+        book.set_condition("loop", names_[i], Severity::major, shown_[i] != 0, reason, sample.tick);
+    if (alarm != nullptr) changed(*alarm);
+  }
+}
+
+}  // namespace monitor::rt

@@ -1,0 +1,63 @@
+#include "daemon/rt/rods.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace monitor::rt {
+
+const hal::Reading& Rods::read(const hal::Tick& tick, const Clock& clock, double t_s,
+                               double command_V, bool law) noexcept {
+  count_ = 1 + (spares_ == nullptr ? 0 : std::min(spares_->size(), kMaxSpareRods));
+  std::array<control::RodReading, control::kMaxRods> rods;
+  readings_[0] = rod_.read(tick);
+  in_charge_ = readings_[0];
+  if (in_charge_.end) return in_charge_;
+  for (std::size_t i = 1; i < count_; ++i) readings_[i] = (*spares_)[i - 1].rod->read(tick);
+  for (std::size_t i = 0; i < count_; ++i) {
+    const hal::Reading& reading = readings_[i];
+    const bool good = hal::trusted(reading.quality, reading.y_m);
+    (i == 0 ? stats_.rod : stats_.spare_rods[i - 1]).count(good, reading.y_m);
+    if (good) rods[i].y_m = reading.y_m;
+    rods[i].called_stale = reading.t_ns == 0 && reading.quality == hal::Quality::stale;
+    if (reading.t_ns != 0) {
+      rods[i].age_s = static_cast<double>(clock.now_ns() - reading.t_ns) * 1e-9;
+    }
+  }
+  choice_.take(std::span(rods).first(count_), t_s, command_V, law);
+  if (choice_.changed()) since_tick_ = tick.index;
+  show(tick.index);
+  const hal::Reading& chosen = readings_[choice_.in_charge()];
+  in_charge_.y_m = chosen.y_m;
+  in_charge_.t_ns = chosen.t_ns;
+  in_charge_.quality = chosen.quality;
+  return in_charge_;
+}
+
+void Rods::show(std::int64_t tick) noexcept {
+  for (std::size_t i = 0; i < count_; ++i) {
+    const control::RodFault fault = choice_.fault(i);
+    if (stats_.rods[i].fault.load(std::memory_order_relaxed) == fault) continue;
+    stats_.rods[i].since_tick.store(tick, std::memory_order_relaxed);
+    stats_.rods[i].fault.store(fault, std::memory_order_relaxed);
+  }
+  stats_.rod_since_tick.store(since_tick_, std::memory_order_relaxed);
+  stats_.rod_in_charge.store(static_cast<std::uint8_t>(choice_.in_charge()),
+                             std::memory_order_relaxed);
+}
+
+void Rods::fill(estimator::fdi::Sample& sample) const noexcept {
+  if (count_ < 2) return;
+  sample.rod_count = static_cast<std::uint8_t>(count_);
+  sample.rod_in_charge = static_cast<std::uint8_t>(choice_.in_charge());
+  sample.rod_changed = choice_.changed();
+  sample.rod_since = since_tick_;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const bool good = hal::trusted(readings_[i].quality, readings_[i].y_m);
+    sample.rod_m[i] = good ? readings_[i].y_m : hal::kMissing;
+    sample.rod_quality[i] = good ? static_cast<estimator::fdi::Quality>(readings_[i].quality)
+                                 : estimator::fdi::Quality::bad;
+    sample.rod_fault[i] = static_cast<std::uint8_t>(choice_.fault(i));
+  }
+}
+
+}  // namespace monitor::rt

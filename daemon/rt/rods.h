@@ -1,0 +1,47 @@
+// The rod sensors of a rig: read one after the other, and the one whose reading counts.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "daemon/control/rod_choice.h"
+#include "daemon/rt/clock.h"
+#include "daemon/rt/loop_stats.h"
+#include "estimator/fdi/sample.h"
+#include "hal/roles.h"
+
+namespace monitor::rt {
+
+class Rods {
+ public:
+  /// `spares` may be null; the devices outlive this. More than kMaxSpareRods are not read.
+  Rods(hal::RodSensor& rod, const std::vector<hal::NamedRod>* spares, LoopStats& stats,
+       const control::RodChoice& choice) noexcept
+      : rod_(rod), spares_(spares), stats_(stats), choice_(choice) {}
+
+  /// Reads all and decides which one is in charge; see RodChoice::take. Returns that one's reading,
+  /// with the configured device's word on the valve's command and on the end of a record.
+  const hal::Reading& read(const hal::Tick& tick, const Clock& clock, double t_s, double command_V,
+                           bool law) noexcept;
+  /// What each of them read.
+  void fill(estimator::fdi::Sample& sample) const noexcept;
+
+  [[nodiscard]] control::RodChoice& choice() noexcept { return choice_; }
+  [[nodiscard]] const control::RodChoice& choice() const noexcept { return choice_; }
+
+ private:
+  void show(std::int64_t tick) noexcept;
+
+  hal::RodSensor& rod_;
+  const std::vector<hal::NamedRod>* spares_;
+  LoopStats& stats_;
+  control::RodChoice choice_;
+  std::size_t count_ = 1;
+  std::array<hal::Reading, control::kMaxRods> readings_{};
+  hal::Reading in_charge_;
+  std::int64_t since_tick_ = 0;
+};
+
+static_assert(estimator::fdi::kMaxRods == control::kMaxRods);
+
+}  // namespace monitor::rt
