@@ -21,11 +21,6 @@ AlarmKeeping::AlarmKeeping(DaemonConfig& config, const Rules& rules, const Sessi
   audit = std::make_unique<io::Audit>(config.alarms.folder, config.alarms.audit_bytes, *clerk_);
 }
 
-// The clerk's jobs use the others.
-AlarmKeeping::~AlarmKeeping() {
-  if (clerk_ != nullptr) clerk_->finish();
-}
-
 void AlarmKeeping::bring_back(estimator::fdi::Pipeline& pipeline, std::int64_t utc_us,
                               std::ostream& log) const {
   if (store == nullptr) return;

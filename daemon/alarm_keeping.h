@@ -27,7 +27,6 @@ class AlarmKeeping {
   };
   /// Before the detector. Throws config::schema::Error when evidence cannot be kept.
   AlarmKeeping(DaemonConfig& config, const Rules& rules, const Session& session);
-  ~AlarmKeeping();
   AlarmKeeping(const AlarmKeeping&) = delete;
   AlarmKeeping& operator=(const AlarmKeeping&) = delete;
 

@@ -122,11 +122,12 @@ LoadedLives AlarmStore::load(std::int64_t utc_us) const {
 
 void AlarmStore::keep(const estimator::fdi::AlarmBook& book, std::int64_t utc_us) {
   if (book.changes() == saved_) return;
-  const bool posted = clerk_.post([this, text = print_lives(book.lives(), rig_id_, utc_us)] {
-    std::error_code ignored;
-    std::filesystem::create_directories(file_.parent_path(), ignored);
-    error_ = write_durably(file_, text);
-  });
+  const bool posted = clerk_.post(
+      [file = file_, error = error_, text = print_lives(book.lives(), rig_id_, utc_us)] {
+        std::error_code ignored;
+        std::filesystem::create_directories(file.parent_path(), ignored);
+        *error = write_durably(file, text);
+      });
   if (posted) saved_ = book.changes();
 }
 

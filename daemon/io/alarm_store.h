@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,7 @@ struct LoadedLives {
 
 class AlarmStore {
  public:
+  /// `clerk` writes, also what is queued when this ends.
   AlarmStore(const std::filesystem::path& folder, std::string rig_id, Clerk& clerk);
 
   /// Before the first save(). A file that does not exist is nothing wrong.
@@ -46,7 +48,7 @@ class AlarmStore {
   void keep(const estimator::fdi::AlarmBook& book, std::int64_t utc_us);
 
   /// errno of the last save, 0 when it went well. Any thread.
-  [[nodiscard]] int error() const noexcept { return error_; }
+  [[nodiscard]] int error() const noexcept { return *error_; }
   [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
 
  private:
@@ -54,7 +56,7 @@ class AlarmStore {
   std::string rig_id_;
   Clerk& clerk_;
   std::uint64_t saved_ = 0;  ///< AlarmBook::changes() of what was saved last
-  std::atomic<int> error_{0};
+  std::shared_ptr<std::atomic<int>> error_ = std::make_shared<std::atomic<int>>(0);  ///< its jobs'
 };
 
 /// Writes the file under a temporary name beside it, synchronises and renames it; 0 or errno.

@@ -51,20 +51,22 @@ std::string print_audit(const AuditEntry& entry) {
 }
 
 Audit::Audit(const std::filesystem::path& folder, std::int64_t file_bytes, Clerk& clerk)
-    : file_(folder / "audit.log"), file_bytes_(file_bytes), clerk_(clerk) {}
+    : file_(std::make_shared<File>(folder / "audit.log", file_bytes)), clerk_(clerk) {}
 
 void Audit::note(const AuditEntry& entry) {
-  if (!clerk_.post([this, line = print_audit(entry)] { append(line); })) ++lost_;
+  if (!clerk_.post([file = file_, line = print_audit(entry)] { file->append(line); })) {
+    ++file_->lost;
+  }
 }
 
-void Audit::append(const std::string& line) noexcept {
+void Audit::File::append(const std::string& line) noexcept {
   std::error_code error;
-  std::filesystem::create_directories(file_.parent_path(), error);
-  const auto size = std::filesystem::file_size(file_, error);
-  if (!error && static_cast<std::int64_t>(size + line.size()) > file_bytes_) {
-    std::filesystem::rename(file_, file_.string() + ".1", error);
+  std::filesystem::create_directories(path.parent_path(), error);
+  const auto size = std::filesystem::file_size(path, error);
+  if (!error && static_cast<std::int64_t>(size + line.size()) > most_bytes) {
+    std::filesystem::rename(path, path.string() + ".1", error);
   }
-  const int file = open(file_.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0640);
+  const int file = open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0640);
   bool written = false;
   if (file >= 0) {
     // One write: a line is there whole or, where the disk is full, taken back.
@@ -75,7 +77,7 @@ void Audit::append(const std::string& line) noexcept {
     if (n >= 0 && !written && known && ftruncate(file, before.st_size) != 0) written = false;
     close(file);
   }
-  if (!written) ++lost_;
+  if (!written) ++lost;
 }
 
 }  // namespace monitor::io

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 
 #include "daemon/io/clerk.h"
@@ -25,21 +26,26 @@ struct AuditEntry {
 
 class Audit {
  public:
-  /// `clerk` writes; it is finished before this ends.
+  /// `clerk` writes, also what is queued when this ends.
   Audit(const std::filesystem::path& folder, std::int64_t file_bytes, Clerk& clerk);
 
   /// Does not wait for the disk.
   void note(const AuditEntry& entry);
   /// Lines that could not be written.
-  [[nodiscard]] std::int64_t lost() const noexcept { return lost_; }
+  [[nodiscard]] std::int64_t lost() const noexcept { return file_->lost; }
 
  private:
-  void append(const std::string& line) noexcept;
+  /// What the clerk's jobs write to; they share it.
+  struct File {
+    std::filesystem::path path;
+    std::int64_t most_bytes;
+    std::atomic<std::int64_t> lost{0};
 
-  std::filesystem::path file_;
-  std::int64_t file_bytes_;
+    void append(const std::string& line) noexcept;
+  };
+
+  std::shared_ptr<File> file_;
   Clerk& clerk_;
-  std::atomic<std::int64_t> lost_{0};
 };
 
 /// "ann", or the number when the user has no name here.

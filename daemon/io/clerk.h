@@ -20,10 +20,10 @@ class Clerk {
   Clerk(const Clerk&) = delete;
   Clerk& operator=(const Clerk&) = delete;
 
-  /// Any thread; waits for nothing longer than another post(). The job must not throw. False when
-  /// the queue is full.
+  /// Any thread; waits for nothing longer than another post(). The job must not throw, and owns
+  /// what it uses: whoever posts it may be gone when it is done. False when the queue is full.
   bool post(std::function<void()> job);
-  /// Does what is queued, and nothing that comes later. Whatever the jobs use must still be there.
+  /// Does what is queued, and nothing that comes later.
   void finish();
   [[nodiscard]] std::int64_t dropped() const noexcept { return dropped_; }
 

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <future>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -133,6 +134,25 @@ TEST_F(AlarmFiles, ThatCannotBeWrittenLeaveTheOldOne) {
   std::filesystem::create_directory(folder_ / "alarms.json.new");  // in the way
   EXPECT_NE(write_durably(file, "new"), 0);
   EXPECT_EQ(text_of(file), "old");
+}
+
+TEST_F(AlarmFiles, AreWrittenAlsoWhenWhoAskedForItIsGone) {
+  AlarmBook alarms = book();
+  come(alarms, 0);
+  std::promise<void> go_on;
+  {
+    Clerk clerk;
+    clerk.post([done = go_on.get_future().share()] { done.wait(); });
+    {
+      AlarmStore store(folder_, "rig", clerk);
+      store.keep(alarms, 1'000'000);
+      Audit audit(folder_, 4096, clerk);
+      audit.note({1'000'000, 1000, "ann", "{}", ""});
+    }
+    go_on.set_value();
+  }
+  EXPECT_THAT(text_of(folder_ / "alarms.json"), HasSubstr("\"saved_utc_us\": 1000000"));
+  EXPECT_THAT(text_of(folder_ / "audit.log"), HasSubstr("ann"));
 }
 
 TEST_F(AlarmFiles, AuditHasALineForEachActAndStaysWithinItsSize) {
