@@ -15,7 +15,12 @@ struct ThreadOptions {
   int cpu = -1;      ///< core to be pinned to; -1: any
 };
 
+/// What the sanitizers add to each frame, and what their own handlers need, takes more.
+#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
+inline constexpr std::size_t kThreadStack_bytes = 2 * 1024 * 1024;
+#else
 inline constexpr std::size_t kThreadStack_bytes = 256 * 1024;
+#endif
 
 /// Where a thread's signal handlers run, so that they do when its own stack has overflowed.
 class SignalStack {
@@ -24,7 +29,7 @@ class SignalStack {
   void use() noexcept;
 
  private:
-  std::array<std::byte, 16 * 1024> bytes_;
+  std::array<std::byte, kThreadStack_bytes / 16> bytes_;
 };
 
 class Thread {
