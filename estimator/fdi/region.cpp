@@ -3,54 +3,9 @@
 #include <cmath>
 
 #include "config/schema/error.h"
+#include "estimator/residual/special.h"
 
 namespace estimator::fdi {
-namespace {
-
-/// Continued fraction of the incomplete beta function, Abramowitz and Stegun 26.5.8.
-double beta_fraction(double a, double b, double x) {
-  constexpr double kTiny = 1e-300;
-  const auto kept = [](double v) { return std::abs(v) < kTiny ? kTiny : v; };
-  double c = 1.0;
-  double d = 1.0 / kept(1.0 - (a + b) * x / (a + 1.0));
-  double h = d;
-  for (int m = 1; m < 10000; ++m) {
-    const double even = m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m));
-    d = 1.0 / kept(1.0 + even * d);
-    c = kept(1.0 + even / c);
-    h *= d * c;
-    const double odd = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1));
-    d = 1.0 / kept(1.0 + odd * d);
-    c = kept(1.0 + odd / c);
-    h *= d * c;
-    if (std::abs(d * c - 1.0) < 1e-15) break;
-  }
-  return h;
-}
-
-}  // namespace
-
-double f_upper(double x, double d1, double d2) {
-  if (!(x > 0.0)) return 1.0;
-  const double a = d2 / 2.0;
-  const double b = d1 / 2.0;
-  const double z = d2 / (d2 + d1 * x);
-  const double front = std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) +
-                                a * std::log(z) + b * std::log1p(-z));
-  if (z < (a + 1.0) / (a + b + 2.0)) return front * beta_fraction(a, b, z) / a;
-  return 1.0 - front * beta_fraction(b, a, 1.0 - z) / b;
-}
-
-double f_quantile_upper(double p, double d1, double d2) {
-  double low = 0.0;
-  double high = 10.0;
-  while (f_upper(high, d1, d2) > p) high *= 2.0;
-  for (int k = 0; k < 200 && high - low > 1e-13 * high; ++k) {
-    const double middle = 0.5 * (low + high);
-    (f_upper(middle, d1, d2) > p ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
-}
 
 Region::Region(std::span<const double> mean, std::span<const double> covariance, double blocks,
                const std::string& where)
@@ -104,7 +59,7 @@ double Region::distance2(std::span<const double> x) noexcept {
 double Region::limit(double p) const {
   const auto d = static_cast<double>(mean_.size());
   const double n = blocks_;
-  return d * (n + 1.0) * (n - 1.0) / (n * (n - d)) * f_quantile_upper(p, d, n - d);
+  return d * (n + 1.0) * (n - 1.0) / (n * (n - d)) * residual::f_quantile_upper(p, d, n - d);
 }
 
 }  // namespace estimator::fdi

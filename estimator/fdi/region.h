@@ -20,11 +20,6 @@
 
 namespace estimator::fdi {
 
-/// x with P(F > x) = p for d1 and d2 degrees of freedom.
-[[nodiscard]] double f_quantile_upper(double p, double d1, double d2);
-/// P(F > x).
-[[nodiscard]] double f_upper(double x, double d1, double d2);
-
 class Region {
  public:
   /// `covariance` row by row. Throws schema::Error (exit 78) at `where` when it is not positive

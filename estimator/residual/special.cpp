@@ -40,6 +40,19 @@ double beta_regularised(double a, double b, double x) {
   return 1.0 - front * beta_fraction(b, a, 1.0 - x) / b;
 }
 
+/// x > 0 with upper(x) = p; `beyond`: where to begin to look.
+template <class F>
+double quantile_upper(double p, double beyond, const F& upper) {
+  double low = 0.0;
+  double high = beyond;
+  while (upper(high) > p) high *= 2.0;
+  for (int k = 0; k < 200 && high - low > 1e-14 * high; ++k) {
+    const double middle = 0.5 * (low + high);
+    (upper(middle) > p ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
 }  // namespace
 
 double chi_square_upper(double x, double dof) {
@@ -81,14 +94,13 @@ double student_two_sided(double t, double dof) {
 double normal_two_sided(double z) { return std::erfc(std::abs(z) / std::sqrt(2.0)); }
 
 double chi_square_quantile_upper(double p, double dof) {
-  double low = 0.0;
-  double high = dof + 10.0;
-  while (chi_square_upper(high, dof) > p) high *= 2.0;
-  for (int k = 0; k < 200 && high - low > 1e-14 * high; ++k) {
-    const double middle = 0.5 * (low + high);
-    (chi_square_upper(middle, dof) > p ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
+  return quantile_upper(p, dof + 10.0, [&](double x) { return chi_square_upper(x, dof); });
+}
+
+double f_quantile_upper(double p, double dof1, double dof2) {
+  return quantile_upper(p, 10.0, [&](double x) {
+    return beta_regularised(dof2 / 2.0, dof1 / 2.0, dof2 / (dof2 + dof1 * x));
+  });
 }
 
 }  // namespace estimator::residual

@@ -2,6 +2,7 @@
 //
 //   chi-square   P(X > x) = Q(dof/2, x/2), the regularised upper incomplete gamma function
 //   Student t    P(|T| > |t|) = I_{dof/(dof + t^2)}(dof/2, 1/2), the incomplete beta function
+//   Fisher F     P(X > x) = I_{dof2/(dof2 + dof1 x)}(dof2/2, dof1/2)
 //   normal       P(|Z| > |z|) = erfc(|z|/sqrt(2))
 //
 // Series below the bulk, continued fraction (Lentz) above it.
@@ -17,5 +18,6 @@ namespace estimator::residual {
 
 /// x with P(X > x) = p, 0 < p < 1.
 [[nodiscard]] double chi_square_quantile_upper(double p, double dof);
+[[nodiscard]] double f_quantile_upper(double p, double dof1, double dof2);
 
 }  // namespace estimator::residual

@@ -15,13 +15,6 @@ namespace {
 using fdi_test::PlainValues;
 using fdi_test::refusal;
 
-TEST(FLaw, HasTheQuantilesOfTheIncompleteBetaFunction) {
-  // Octave: z = betaincinv(p, d2/2, d1/2); (1/z - 1)*d2/d1
-  EXPECT_NEAR(f_quantile_upper(0.01, 2, 50), 5.056610865, 1e-8);
-  EXPECT_NEAR(f_quantile_upper(1e-5, 3, 200), 9.193747768, 1e-8);
-  EXPECT_NEAR(f_quantile_upper(0.05, 4, 12), 3.259166727, 1e-8);
-}
-
 TEST(Region, MeasuresTheDistanceInItsOwnSpreadAndNamesTheValueItComesFrom) {
   // S = [4 3; 3 9], S^-1 = [9 -3; -3 4]/27. x - mean = (2, -3): T^2 = (36 + 36 + 36)/27 = 4.
   const double mean[] = {10.0, 20.0};

@@ -44,5 +44,12 @@ TEST(Special, StudentTailAgreesWithTheTablesAndTheCauchyLaw) {
   EXPECT_NEAR(normal_two_sided(1.959964), 0.05, 1e-7);
 }
 
+TEST(Special, FisherQuantilesAreThoseOfTheIncompleteBetaFunction) {
+  // Octave: z = betaincinv(p, dof2/2, dof1/2); (1/z - 1)*dof2/dof1
+  EXPECT_NEAR(f_quantile_upper(0.01, 2, 50), 5.056610865, 1e-8);
+  EXPECT_NEAR(f_quantile_upper(1e-5, 3, 200), 9.193747768, 1e-8);
+  EXPECT_NEAR(f_quantile_upper(0.05, 4, 12), 3.259166727, 1e-8);
+}
+
 }  // namespace
 }  // namespace estimator::residual
