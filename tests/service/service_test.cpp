@@ -6,6 +6,7 @@
 #include <csignal>
 
 #include "tests/service/bench.h"
+#include "tests/service/listener.h"
 
 namespace service {
 namespace {
@@ -16,32 +17,6 @@ using testing::Not;
 double since_s(std::int64_t from_ns) {
   return static_cast<double>(hal::monotonic_ns() - from_ns) * 1e-9;
 }
-
-/// Alarms as another process hears them; ends by itself.
-class Listener {
- public:
-  Listener()
-      : lines_(popen((std::string(SPOOLWATCH_BIN_DIR "/spoolwatch listen --json --alarms "
-                                                     "--duration 40 --lcm-url '") +
-                      kLcm + "'")
-                         .c_str(),
-                     "r")) {}
-  ~Listener() { pclose(lines_); }
-  Listener(const Listener&) = delete;
-  Listener& operator=(const Listener&) = delete;
-
-  /// Waits until a line with that comes; "" when none does.
-  std::string hears(const std::string& wanted) {
-    char line[4096];
-    while (std::fgets(line, sizeof line, lines_) != nullptr) {
-      if (std::string(line).find(wanted) != std::string::npos) return line;
-    }
-    return "";
-  }
-
- private:
-  FILE* lines_;
-};
 
 class Life : public testing::Test {
  protected:

@@ -1,8 +1,11 @@
 // Runs one command of the workbench in this process.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -19,6 +22,20 @@ inline int run_command(workbench::Setup setup, std::vector<std::string> argument
   std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
   app.parse(arguments);
   return exit_code;
+}
+
+/// What the command prints, while it is expected to set that exit code.
+inline std::string printed_by(workbench::Setup setup, std::vector<std::string> arguments,
+                              int exit_code = 0) {
+  testing::internal::CaptureStdout();
+  try {
+    EXPECT_EQ(run_command(setup, std::move(arguments)), exit_code);
+  } catch (...) {
+    testing::internal::GetCapturedStdout();
+    throw;
+  }
+  std::fflush(stdout);
+  return testing::internal::GetCapturedStdout();
 }
 
 }  // namespace workbench_test

@@ -31,11 +31,7 @@ class AddTest : public testing::Test {
   // What the command prints; `arguments` without -o.
   std::string add(std::vector<std::string> arguments) const {
     arguments.insert(arguments.end(), {"-o", out().string()});
-    testing::internal::CaptureStdout();
-    const int code = run_command(add_add, std::move(arguments));
-    std::fflush(stdout);
-    EXPECT_EQ(code, 0);
-    return testing::internal::GetCapturedStdout();
+    return workbench_test::printed_by(add_add, std::move(arguments));
   }
   std::string refusal(std::vector<std::string> arguments, int exit_code = 78) const {
     arguments.insert(arguments.end(), {"-o", out().string()});

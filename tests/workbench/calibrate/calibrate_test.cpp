@@ -62,14 +62,7 @@ class Calibrate : public testing::Test {
     std::vector<std::string> arguments{folder_ / "config.toml", folder_ / "healthy.csv", "-o",
                                        folder_ / "bands.toml"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    testing::internal::CaptureStdout();
-    try {
-      workbench_test::run_command(add_calibrate, arguments);
-    } catch (...) {
-      testing::internal::GetCapturedStdout();
-      throw;
-    }
-    printed_ = testing::internal::GetCapturedStdout();
+    printed_ = workbench_test::printed_by(add_calibrate, arguments);
   }
   fdi::PipelineConfig loaded() {
     fdi::PipelineConfig config;

@@ -14,10 +14,7 @@ using testing::HasSubstr;
 using workbench_test::run_command;
 
 std::string output(std::vector<std::string> arguments) {
-  testing::internal::CaptureStdout();
-  EXPECT_EQ(run_command(add_effects, std::move(arguments)), 0);
-  std::fflush(stdout);
-  return testing::internal::GetCapturedStdout();
+  return workbench_test::printed_by(add_effects, std::move(arguments));
 }
 
 TEST(Effects, ListsEveryEffectWithEquationSitesPlantsAndRanges) {
@@ -60,7 +57,6 @@ TEST(Effects, ListsTheFormulasOfAModelFileBehindTheLibrary) {
   EXPECT_EQ(json["effects"].back()["sites"][0], "force");
   EXPECT_FALSE(json["effects"].front().contains("what"));
   EXPECT_THROW(output({"/nowhere/model.toml"}), config::schema::Error);
-  testing::internal::GetCapturedStdout();
 }
 
 TEST(Effects, RefusesAFileThatCannotBeWritten) {

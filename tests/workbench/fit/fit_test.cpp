@@ -47,11 +47,7 @@ class FitTest : public testing::Test {
   }
 
   static std::string fit(std::vector<std::string> arguments) {
-    testing::internal::CaptureStdout();
-    const int code = run_command(add_fit, std::move(arguments));
-    std::fflush(stdout);
-    EXPECT_EQ(code, 0);
-    return testing::internal::GetCapturedStdout();
+    return workbench_test::printed_by(add_fit, std::move(arguments));
   }
   std::string refusal(std::vector<std::string> arguments, int exit_code) const {
     arguments.insert(arguments.end(), {"-o", path("out.toml"), "--json", path("out.json")});
@@ -177,13 +173,10 @@ TEST(FitEmps, AgreesWithThePublishedParameters) {
   std::string folder = given != nullptr ? given : SPOOLWATCH_SOURCE_DIR "/../shared/data";
   const std::string record = folder + "/emps/train_200Hz.csv";
   if (!fs::exists(record)) GTEST_SKIP() << record << " is not here; set SPOOLWATCH_DATA";
-  testing::internal::CaptureStdout();
-  run_command(add_fit,
-              {kModels + "force_driven_axis.toml", record, "--set",
-               "parameters.gain_N_per_V=35.15065", "--set", "effects.friction.coulomb_N=10",
-               "--set", "effects.load_force.force_N=1", "--observer", "0", "--json", "-"});
-  std::fflush(stdout);
-  const auto json = nlohmann::json::parse(testing::internal::GetCapturedStdout());
+  const auto json = nlohmann::json::parse(workbench_test::printed_by(
+      add_fit, {kModels + "force_driven_axis.toml", record, "--set",
+                "parameters.gain_N_per_V=35.15065", "--set", "effects.friction.coulomb_N=10",
+                "--set", "effects.load_force.force_N=1", "--observer", "0", "--json", "-"}));
   const std::vector<std::pair<std::string, double>> published{{"mass_kg", 95.11},
                                                               {"damping_N_s_per_m", 203.5},
                                                               {"friction.coulomb_N", 20.39},
