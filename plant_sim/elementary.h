@@ -42,11 +42,9 @@ inline V power_of_two(V n) {
   return __builtin_bit_cast(V, (low + 1023) << 52);
 }
 
+/// e^(x - n ln 2), n = round(x / ln 2).
 template <class V>
-inline V exp(V x) {
-  constexpr double kLargest = 709.782712893384;
-  constexpr double kSmallest = -745.2;
-  const V n = (x * 1.4426950408889634 + kRounder) - kRounder;
+inline V exp_of_rest(V x, V n) {
   const V r = (x - n * 0.6931471803691238) - n * 1.9082149292705877e-10;
   const V r2 = r * r;
   const V r4 = r2 * r2;
@@ -55,11 +53,26 @@ inline V exp(V x) {
               r4 * ((0.0013888888946996254 + r * 0.00019841269917553634) +
                     r2 * (2.4801489960856445e-05 + r * 2.755721613746e-06) +
                     r4 * (2.763127440438842e-07 + r * 2.511791522991621e-08));
+  return 1.0 + (r + r2 * p);
+}
+
+template <class V>
+inline V exp(V x) {
+  constexpr double kLargest = 709.782712893384;
+  constexpr double kSmallest = -745.2;
+  const V n = (x * 1.4426950408889634 + kRounder) - kRounder;
   // two factors: the result may be subnormal, or above 2^1023
   const V half = ((n * 0.5) + kRounder) - kRounder;
-  const V y = ((1.0 + (r + r2 * p)) * power_of_two<V>(half)) * power_of_two<V>(n - half);
+  const V y = (exp_of_rest(x, n) * power_of_two<V>(half)) * power_of_two<V>(n - half);
   const V low = x < kSmallest ? V{} : y;
   return x > kLargest ? V{} + std::numeric_limits<double>::infinity() : low;
+}
+
+/// e^-x for 0 <= x <= 700, the same bits without what only tiny and large results need.
+template <class V>
+inline V decay(V x) {
+  const V n = (-x * 1.4426950408889634 + kRounder) - kRounder;
+  return exp_of_rest<V>(-x, n) * power_of_two<V>(n);
 }
 
 template <class V>

@@ -145,7 +145,7 @@ void HydraulicActuator<S>::step(const S& u_V) {
 
 template <class S>
 template <bool kLimits, bool kEffects>
-void HydraulicActuator<S>::integrate(const S& u_V, const S& step_s) {
+[[gnu::flatten]] void HydraulicActuator<S>::integrate(const S& u_V, const S& step_s) {
   const S from_y_m = state.y_m;
   state = runge_kutta_step(
       state, step_s, [&](const State& x) { return rate<kLimits, kEffects>(x, u_V, from_y_m); });

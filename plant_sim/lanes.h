@@ -153,6 +153,10 @@ BasicLanes<W> exp(const BasicLanes<W>& a) {
   return BasicLanes<W>::each([&](std::size_t i) { return elementary::exp(a.part(i)); });
 }
 template <std::size_t W>
+BasicLanes<W> decay(const BasicLanes<W>& a) {
+  return BasicLanes<W>::each([&](std::size_t i) { return elementary::decay(a.part(i)); });
+}
+template <std::size_t W>
 BasicLanes<W> log(const BasicLanes<W>& a) {
   return BasicLanes<W>::each([&](std::size_t i) { return elementary::log(a.part(i)); });
 }

@@ -17,6 +17,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 
 #include "plant_sim/effects/site.h"
 #include "plant_sim/parameter.h"
@@ -63,10 +64,15 @@ struct Friction {
   struct Memory {
     S deflection_m = 0.0;
     S rise_ratio = 1.0;  ///< Stribeck's exponential at the speed of that moment
+    S v_mps = std::numeric_limits<double>::quiet_NaN();  ///< that speed
+
+    /// Parameters have changed: nothing is known of the exponential.
+    void prepare(double /*step_s*/) { v_mps = std::numeric_limits<double>::quiet_NaN(); }
   };
 
   static S friction_N(const Parameters& p, const Memory& memory, const DryContact<S>& at) {
-    const S rise = rise_ratio(p, at.v_mps);
+    const bool known = all(both(at.v_mps <= memory.v_mps, at.v_mps >= memory.v_mps));
+    const S rise = known ? memory.rise_ratio : rise_ratio(p, at.v_mps);
     const S forward_N = level_at_N(p, S(1.0), rise);
     const S backward_N = level_at_N(p, S(-1.0), rise);
     const S least_N = select(at.v_mps > S(0.0), S(0.0), -backward_N);
@@ -94,6 +100,7 @@ struct Friction {
       memory.deflection_m = deflected_m(p, memory, travel_m, rise);
     }
     memory.rise_ratio = rise;
+    memory.v_mps = v_mps;
   }
 
   /// Sliding friction at this speed in the given direction (+1 extends, -1 retracts), >= 0.
@@ -103,14 +110,14 @@ struct Friction {
 
  private:
   static constexpr double kLeastStribeck_mps = 1e-9;  ///< the rise then is at standstill only
-  static constexpr double kNoRise = 700.0;            ///< exp(-700) is still a normal number
+  static constexpr double kNoRise = 700.0;            ///< e^-700 is still a normal number
   static constexpr double kLeastLevel_N = 1e-9;
 
   static S rise_ratio(const Parameters& p, const S& v_mps) {
     const S least_N = p.coulomb_N * (S(1.0) - abs(p.direction_ratio));
     if (all(p.static_N <= least_N)) return S(1.0);
     const S ratio = v_mps / max(p.stribeck_mps, S(kLeastStribeck_mps));
-    return exp(-min(ratio * ratio, S(kNoRise)));
+    return decay(min(ratio * ratio, S(kNoRise)));
   }
 
   static S level_at_N(const Parameters& p, const S& direction, const S& rise_ratio) {
@@ -122,11 +129,12 @@ struct Friction {
   /// levels at both ends, which makes the error of a step one of its third order.
   static S deflected_m(const Parameters& p, const Memory& memory, const S& travel_m,
                        const S& rise) {
+    if (all(abs(travel_m) <= S(0.0))) return memory.deflection_m;  // what follows comes to the same
     const S direction = select(travel_m < S(0.0), S(-1.0), S(1.0));
     const S mean_ratio = S(0.5) * (memory.rise_ratio + rise);
     const S level = max(level_at_N(p, direction, mean_ratio), S(kLeastLevel_N));
     const S k = max(p.presliding_stiffness_N_per_m, S(kLeastLevel_N));
-    const S remains = exp(-min(abs(travel_m) * k / level, S(kNoRise)));
+    const S remains = decay(min(abs(travel_m) * k / level, S(kNoRise)));
     return memory.deflection_m * remains + direction * (level / k) * (S(1.0) - remains);
   }
 };

@@ -73,7 +73,8 @@ class TapeRun {
   }
 
  private:
-  void run(const TapeView::Part& part, std::size_t into) const {
+  /// Kept out of the plant's equations, which are one function.
+  [[gnu::noinline]] void run(const TapeView::Part& part, std::size_t into) const {
     S* const at = registers_.data();
     for (const Tape::Instruction* i = part.first; i != part.last; ++i) {
       at[into++] = apply(i->op, at[i->a], at[i->b], at[i->c]);

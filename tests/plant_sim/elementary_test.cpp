@@ -61,6 +61,21 @@ TEST(Exp, EndsInZeroAndInfinity) {
   EXPECT_NEAR(exp(-740.0) / std::exp(-740.0), 1.0, 0.1);  // subnormal
 }
 
+TEST(Decay, HasTheBitsOfTheExponentialDownToItsEnd) {
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> wide(0.0, 700.0);
+  std::uniform_real_distribution<double> narrow(0.0, 1.0);
+  const auto check = [](double x) {
+    EXPECT_EQ(decay(x), exp(-x)) << x;
+    EXPECT_EQ(decay(Lanes(x))[1], decay(x)) << x;
+  };
+  for (const double x : {0.0, 1e-300, 700.0}) check(x);
+  for (int i = 0; i < 50000; ++i) {
+    check(wide(random));
+    check(narrow(random));
+  }
+}
+
 TEST(Log, IsWithinOneAndAHalfUnitsInTheLastPlace) {
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> near_one(0.5, 2.0);

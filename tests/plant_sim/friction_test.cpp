@@ -67,6 +67,20 @@ TEST(Friction, FallsFromStaticToCoulombAlongStribecksCurve) {
   EXPECT_DOUBLE_EQ(F::level_N(p, 1.0, 1e-6), 100.0);
 }
 
+TEST(Friction, IsThatOfNewParametersAtOnce) {
+  F::Parameters p;
+  p.coulomb_N = 200.0;
+  p.static_N = 300.0;
+  p.stribeck_mps = 0.01;
+  F::Memory memory;
+  F::accept(p, memory, 1e-6, 0.005);
+  const DryContact<double> at{0.005, 0.0, 1e4, 0.0};
+  EXPECT_NEAR(F::friction_N(p, memory, at), 200.0 + 100.0 * std::exp(-0.25), 1e-9);
+  p.stribeck_mps = 0.004;
+  memory.prepare(1e-3);
+  EXPECT_NEAR(F::friction_N(p, memory, at), 200.0 + 100.0 * std::exp(-1.5625), 1e-9);
+}
+
 TEST(Friction, NeverDrivesTheRod) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
