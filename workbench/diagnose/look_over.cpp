@@ -133,27 +133,23 @@ void add_refinements(const Workshop& shop, Stage& stage) {
 }  // namespace
 
 void end_unhindered(const Workshop& shop, Stage& stage) {
-  if (is_explained(shop, stage)) {
-    stage.fitted = finished(shop, stage.fitted);
-    return;
+  std::vector<Selection> without;
+  for (const Refinement& refinement : refinements_of(stage)) {
+    without.push_back(without_refinement(stage.fitted, refinement.effect, refinement.number));
   }
-  std::vector<Selection> selections{select(stage.fitted, [](const auto&) { return true; })};
-  for (const std::string& effect : stage.added) {
-    for (const int refinement : refinements_of(stage.fitted, effect)) {
-      selections.push_back(without_refinement(stage.fitted, effect, refinement));
-    }
-  }
-  std::vector<Fitted> fits(selections.size());
-  in_parallel(selections.size(), shop.threads, [&](std::size_t i) {
-    const std::size_t longest_first = selections.size() - 1 - i;
-    fits[longest_first] = refit(shop, selections[longest_first], shop.evidence.fits);
+  stage.fitted = finished(shop, stage.fitted);
+  if (is_explained(shop, stage) || without.empty() || shop.cancelled()) return;
+  std::vector<Fitted> fits(without.size());
+  const auto side_by_side = std::min(shop.threads, static_cast<unsigned>(without.size()));
+  in_parallel(without.size(), side_by_side, [&](std::size_t i) {
+    const std::size_t longest_first = without.size() - 1 - i;
+    fits[longest_first] =
+        refit(shop, without[longest_first], shop.evidence.fits, shop.threads / side_by_side);
   });
-  stage.fitted = std::move(fits.front());
-  if (is_explained(shop, stage) || shop.cancelled()) return;
   const auto best =
-      std::min_element(fits.begin() + 1, fits.end(),
+      std::min_element(fits.begin(), fits.end(),
                        [](const auto& a, const auto& b) { return a.score_rms_m < b.score_rms_m; });
-  if (best == fits.end() || best->score_rms_m >= stage.fitted.score_rms_m) return;
+  if (best->score_rms_m >= stage.fitted.score_rms_m) return;
   stage.fitted = finished(shop, *best);  // from the ground up, now that nothing is in its way
 }
 
