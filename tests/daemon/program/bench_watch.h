@@ -19,14 +19,9 @@
 
 #include "hal/device_thread.h"
 #include "hal/rig/register_map.h"
+#include "tests/daemon/program/null_watch.h"
 
 namespace program {
-
-/// What was seen at the rig: between the two times.
-struct Look {
-  std::int64_t before_ns, after_ns;
-  double command_V, valve_V, rod_m;
-};
 
 inline double real(const std::uint16_t* words) {
   return static_cast<double>(modbus_get_float_abcd(words));

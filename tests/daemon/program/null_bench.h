@@ -13,8 +13,6 @@
 
 namespace program {
 
-/// What is still called null: two steps of the converter.
-inline constexpr double kNull_V = 0.01;
 /// A command that is far from null, and moves the rod by some decimetres a second.
 inline constexpr double kFar_V = 3.0;
 
