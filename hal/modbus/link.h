@@ -19,6 +19,7 @@
 #include <sys/types.h>
 
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -34,6 +35,8 @@
 #include "hal/modbus/rhythm.h"
 
 namespace hal::modbus {
+
+[[nodiscard]] inline std::int64_t to_ns(double s) noexcept { return std::llround(s * 1e9); }
 
 struct LinkConfig {
   PortConfig port;

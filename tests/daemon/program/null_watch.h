@@ -1,9 +1,9 @@
 // How soon null was at a valve that somebody watches, and what `--check` states for it.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -12,6 +12,7 @@ namespace program {
 
 /// What is still called null: two steps of the converter.
 inline constexpr double kNull_V = 0.01;
+
 /// What was seen at the rig: between the two times.
 struct Look {
   std::int64_t before_ns, after_ns;

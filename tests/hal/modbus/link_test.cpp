@@ -117,8 +117,9 @@ TEST(ModbusLink, ReplacesACommandThatHasWaitedTooLongByNull) {
   }));
   device.only_function(6);
   device.answer(Reply::slow, 1);
+  const std::size_t before = device.writes().size();
   stand.offer().valve->write(3.0, {});
-  std::this_thread::sleep_for(std::chrono::milliseconds(2));  // the thread has taken it
+  ASSERT_TRUE(eventually([&] { return device.writes().size() > before; })) << "it is on its way";
   stand.offer().valve->write(5.0, {});
   EXPECT_TRUE(eventually([&] { return device.get(kCommand) == kNullRaw; }));
   for (const Received& write : device.writes()) EXPECT_NE(write.words[0], 5000);
