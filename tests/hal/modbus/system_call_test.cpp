@@ -66,6 +66,9 @@ Ticks run_loop(const Offer& offer) {
 }
 
 TEST(ModbusSystemCalls, NoneInATickThatComesAfterAnother) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "the sanitizers make calls of their own";
+#endif
   Ticks ran = Ticks::disturbed;
   for (int attempt = 0; attempt < 20 && ran == Ticks::disturbed; ++attempt) {
     Device device;
