@@ -112,5 +112,43 @@ TEST(SimRig, RefusesAFaultOfAParameterThatThereIsNot) {
   EXPECT_THROW(SimRig(plant(), config, kTs_s, 0.0), config::schema::Error);
 }
 
+TEST(SpareRod, HasNoiseAndTroublesOfItsOwn) {
+  SimConfig config = ideal();
+  Trouble drift;
+  drift.kind = "drift";
+  drift.rod = "b";
+  drift.from_s = 0.1;
+  drift.rate_mps = 0.01;
+  Trouble frozen;
+  frozen.kind = "frozen";  // the rig's own
+  frozen.from_s = 0.1;
+  config.troubles = {drift, frozen};
+  const auto rig = std::make_shared<SimRig>(plant(), config, kTs_s, 0.0);
+  SpareConfig spare;
+  spare.id = "b";
+  spare.offset_m = 1e-3;
+  SpareRod b(rig, spare, config.troubles);
+  spare.id = "c";
+  spare.noise_m = 1e-5;
+  SpareRod c(rig, spare, config.troubles, 7);
+  double squares = 0.0;
+  double frozen_at_m = 0.0;
+  for (std::int64_t k = 0; k < 400; ++k) {
+    const double own_m = rig->read(tick(k)).y_m;
+    rig->write(0.5, tick(k));
+    const double y_m = rig->position_m();
+    const double drift_m = k < 20 ? 0.0 : 0.01 * (static_cast<double>(k) * kTs_s - 0.1);
+    EXPECT_NEAR(b.read(tick(k)).y_m, y_m + 1e-3 + drift_m, 1e-12) << k;
+    const double noise_m = c.read(tick(k)).y_m - y_m - 1e-3;
+    squares += noise_m * noise_m;
+    if (k < 20) frozen_at_m = own_m;
+    if (k >= 20) {
+      EXPECT_EQ(own_m, frozen_at_m) << k;
+    }
+  }
+  // 400 squares of a normal number: 7 % of standard deviation, five of them.
+  EXPECT_NEAR(squares / 400.0, 1e-10, 0.36e-10);
+}
+
 }  // namespace
 }  // namespace hal::sim

@@ -8,6 +8,7 @@
 
 #include "daemon/rt/loop.h"
 #include "hal/sim/sim.h"
+#include "tests/daemon/rt/fake_rig.h"
 
 namespace monitor::rt {
 namespace {
@@ -225,6 +226,41 @@ TEST(FailoverOfTwo, DoesNotKickTheValve) {
   EXPECT_EQ(course.out(0), static_cast<std::int64_t>(kFaultTick));
   EXPECT_NEAR(course.position_m.back() - healthy.position_m.back(), -kOffset_m, 2e-5)
       << "in the end the controller holds what the sensor in charge reads";
+}
+
+TEST(FailoverOfTwo, GoesBackOnAnOrderOrAStartOnly) {
+  SafetyRules rules = without_blending();
+  rules.safety.failover.present = true;
+  rules.safety.failover.tolerance_m = 1e-3;
+  LoopBench bench({}, true, rules);
+  const auto spare = std::make_shared<FakeRig>(nullptr);
+  bench.spare_rods.push_back({"b", spare});
+  bench.run();
+  for (const bool by_order : {true, false}) {
+    bench.rig.quality = hal::Quality::bad;
+    const estimator::fdi::Sample without = bench.sample();
+    EXPECT_EQ(without.rod_in_charge, 1);
+    EXPECT_EQ(without.y_m, 0.1);
+    EXPECT_TRUE(std::isnan(without.rod_m[0]));
+    EXPECT_EQ(without.rod_quality[0], estimator::fdi::Quality::bad);
+    bench.rig.quality = hal::Quality::good;
+    for (int k = 0; k < 1000; ++k) bench.tick();
+    EXPECT_EQ(bench.stats.rod_in_charge.load(), 1);
+    if (by_order) {
+      Command command;
+      command.kind = Command::Kind::forgive;
+      command.expires_ns = INT64_MAX;
+      bench.commands.push(command);
+    } else {
+      bench.order(control::Event::stop);
+      bench.order(control::Event::start);
+    }
+    bench.tick();
+    bench.tick();
+    EXPECT_EQ(bench.stats.rod_in_charge.load(), 0) << by_order;
+    EXPECT_EQ(bench.stats.rods[0].fault.load(), RodFault::none);
+  }
+  EXPECT_EQ(bench.state(), State::run);
 }
 
 TEST(FailoverOfTwo, ASecondFailureIsTheGuards) {
