@@ -37,7 +37,12 @@ void Reloader::prepare(UnderWay& under_way) {
   under_way.changed = differences(running_, next);
   for (const std::string& key : under_way.changed) {
     if (may_change(key, next.pipeline)) continue;
-    throw config::schema::bad_config(next.file + ": " + key, "cannot change while the daemon runs",
+    const bool acts = key.starts_with("[[guard]]") || key.starts_with("[safety]") ||
+                      key.starts_with("[failover]");
+    throw config::schema::bad_config(next.file + ": " + key,
+                                     acts ? "cannot change while the daemon runs, for it decides "
+                                            "what is done with the valve: restart the daemon"
+                                          : "cannot change while the daemon runs",
                                      "[[estimator]], [[band]], bands_file and the rules in "
                                      "[alarms]; everything else at a restart");
   }

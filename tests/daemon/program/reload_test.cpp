@@ -143,6 +143,13 @@ TEST_F(Reload, OfABadFileKeepsTheOldOneAndSaysWhy) {
   std::ofstream(file(), std::ios::app) << "\n[safety]\nramp_s = 0.77\n";
   EXPECT_THAT(order("reload").out,
               HasSubstr("[safety] ramp_s: cannot change while the daemon runs"));
+  write(0.3, "");
+  std::ofstream(file(), std::ios::app) << "\n[[guard]]\nkind = \"travel\"\nhigh_m = 0.4\n";
+  const Result guards = order("reload");
+  EXPECT_EQ(guards.exit_code, 1);
+  EXPECT_THAT(guards.out, HasSubstr("[[guard]] travel: "));
+  EXPECT_THAT(guards.out, HasSubstr("cannot change while the daemon runs, for it decides what is "
+                                    "done with the valve: restart the daemon"));
   EXPECT_EQ(standing()["high"], 0.2) << "nothing of it is taken";
 
   write(0.3, "");
@@ -151,10 +158,10 @@ TEST_F(Reload, OfABadFileKeepsTheOldOneAndSaysWhy) {
   EXPECT_EQ(standing()["high"], 0.3);
   EXPECT_EQ(end().exit_code, 0);
   const std::vector<json> acts = audit();
-  ASSERT_EQ(acts.size(), 4U);
+  ASSERT_EQ(acts.size(), 5U);
   EXPECT_EQ(acts[0]["done"], false);
   EXPECT_THAT(acts[2]["reason"].get<std::string>(), HasSubstr("[safety] ramp_s"));
-  EXPECT_EQ(acts[3]["done"], true);
+  EXPECT_EQ(acts[4]["done"], true);
 }
 
 }  // namespace
