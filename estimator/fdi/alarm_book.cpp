@@ -19,7 +19,7 @@ bool AlarmBook::Recent::add(std::int64_t tick, std::int64_t window) noexcept {
 }
 
 std::size_t AlarmBook::declare(Alarm alarm) {
-  constexpr std::size_t kReason = 256;  // room for later reasons
+  constexpr std::size_t kReason = 512;  // room for later reasons
   alarm.reason.reserve(kReason);
   Memory memory;
   memory.comings.ticks.resize(static_cast<std::size_t>(alarm.rules.count));

@@ -30,19 +30,21 @@ void Pipeline::Impl::judge(Watch& watch, const Reading& reading, Events& events)
   state.value = reading.value;
   state.std_error = reading.std_error;
   const Alarm& alarm = book.alarm(watch.alarm);
-  char text[160] = "";
+  char text[Outlet::kReason + 160] = "";
   if (alarm.severity != state.severity || alarm.direction != state.direction) {
+    int size = 0;
     if (result.severity == Severity::invalid) {
-      std::snprintf(text, sizeof text, "%s cannot be trusted: %s", alarm.quantity.c_str(),
-                    reading.why);
+      size = std::snprintf(text, sizeof text, "%s cannot be trusted: %s", alarm.quantity.c_str(),
+                           reading.why);
     } else if (result.direction != 0) {
-      std::snprintf(text, sizeof text, "%s is %.6g, %s %.6g", alarm.quantity.c_str(), reading.value,
-                    result.direction > 0 ? "above" : "below",
-                    result.direction > 0 ? alarm.high : alarm.low);
+      size = std::snprintf(text, sizeof text, "%s is %.6g, %s %.6g", alarm.quantity.c_str(),
+                           reading.value, result.direction > 0 ? "above" : "below",
+                           result.direction > 0 ? alarm.high : alarm.low);
     } else {
-      std::snprintf(text, sizeof text, "%s is %.6g, inside its band", alarm.quantity.c_str(),
-                    reading.value);
+      size = std::snprintf(text, sizeof text, "%s is %.6g, inside its band", alarm.quantity.c_str(),
+                           reading.value);
     }
+    end_after_a_word(text, size);
   }
   state.reason = text;
   if (const Alarm* changed = book.set(watch.alarm, state)) events.on_alarm(*changed);
@@ -51,7 +53,8 @@ void Pipeline::Impl::judge(Watch& watch, const Reading& reading, Events& events)
 void Pipeline::Impl::emit(Worker& worker, std::int64_t tick, std::int64_t utc_us, Events& events) {
   Outlet& outlet = *worker.outlet;
   outlet.finding = worker.source->find(outlet.values);
-  std::snprintf(outlet.reason, sizeof outlet.reason, "%s", outlet.finding.reason);
+  end_after_a_word(outlet.reason,
+                   std::snprintf(outlet.reason, sizeof outlet.reason, "%s", outlet.finding.reason));
   outlet.finding.reason = outlet.reason;
   outlet.fresh = true;
   const Finding& found = outlet.finding;

@@ -8,6 +8,17 @@
 
 namespace estimator::fdi {
 
+void end_after_a_word(std::span<char> text, int wanted) noexcept {
+  constexpr std::string_view kMore = "...";
+  if (wanted < 0 || static_cast<std::size_t>(wanted) < text.size()) return;
+  const std::size_t latest = text.size() - kMore.size() - 1;
+  std::size_t end = latest;
+  while (end > 0 && text[end] != ' ') --end;
+  if (end == 0) end = latest;
+  kMore.copy(&text[end], kMore.size());
+  text[end + kMore.size()] = '\0';
+}
+
 void Outlet::reset() noexcept {
   finding = Finding{};
   reason[0] = '\0';

@@ -90,12 +90,16 @@ class Source {
   }
 };
 
+/// Lets a text that snprintf has cut end after a whole word, with "..."; `wanted`: what snprintf
+/// returned.
+void end_after_a_word(std::span<char> text, int wanted) noexcept;
+
 /// The newest finding of a source, where those that read it look.
 struct Outlet {
-  static constexpr std::size_t kReason = 96;
+  static constexpr std::size_t kReason = 320;
   std::vector<NamedValue> values;
   Finding finding;            ///< its reason stands in `reason`
-  char reason[kReason] = "";  ///< cut to this length
+  char reason[kReason] = "";  ///< what does not fit ends after a whole word
   bool fresh = false;         ///< found with the present sample
   double interval_s = std::numeric_limits<double>::quiet_NaN();
 

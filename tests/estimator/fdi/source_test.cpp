@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <string>
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
@@ -248,6 +249,20 @@ TEST(Source, MeansTheSameAfterPrintingAndReadingAndInACopy) {
   EXPECT_EQ(config.fingerprint("c"), "quantity = 'sample.y_m' limit = 2.5");
   EXPECT_TRUE(config.owns("[[counter]] c: limit"));
   EXPECT_FALSE(config.owns("[[count]] c: limit"));
+}
+
+TEST(Words, ThatDoNotFitEndAfterAWholeOne) {
+  const auto cut = [](const std::string& words) {
+    std::array<char, 16> text{};
+    words.copy(text.data(), text.size() - 1);
+    end_after_a_word(text, static_cast<int>(words.size()));
+    return std::string(text.data());
+  };
+  EXPECT_EQ(cut("fifteen letters"), "fifteen letters");
+  EXPECT_EQ(cut("sixteen letters?"), "sixteen...");
+  EXPECT_EQ(cut("one two three four"), "one two...");
+  EXPECT_EQ(cut("a b c d e f g h i"), "a b c d e f...");
+  EXPECT_EQ(cut("onewordwithoutanyspace"), "onewordwitho...");
 }
 
 }  // namespace
