@@ -118,15 +118,13 @@ Rules make_rules(const DaemonConfig& config, double sample_time_s) {
     throw config::schema::bad_config(config.file + ": [model] file: " + config.model, "is no file",
                                      "a model file (TOML)");
   }
-  at(config.file + ": bands_file", [&] {
-    const std::string& file = rules.effective.bands_file;
-    std::error_code ignored;
-    if (!file.empty() && !std::filesystem::is_regular_file(config.folder / file, ignored)) {
-      throw config::schema::bad_config((config.folder / file).string(), "is no file",
-                                       "a file of learned bands (TOML)");
-    }
-    rules.effective.load_bands(config.folder, sample_time_s, config.rig_id);
-  });
+  const std::string& bands = rules.effective.bands_file;
+  if (!bands.empty() && !std::filesystem::is_regular_file(config.folder / bands, unknown)) {
+    throw config::schema::bad_config(
+        config.file + ": bands_file: " + (config.folder / bands).string(), "is no file",
+        "a file of learned bands (TOML)");
+  }
+  at(config.file, [&] { rules.effective.load_bands(config.folder, sample_time_s, config.rig_id); });
   rules.pipeline = at(config.file, [&] {
     return std::make_unique<estimator::fdi::Pipeline>(rules.effective, sample_time_s);
   });

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "daemon/tracking/sensor_rival.h"
+
 namespace monitor::tracking {
 namespace {
 
@@ -16,6 +18,7 @@ class Namer {
   Namer(WindowFit& fit, const Choice& choice, const Cut& cut, const WindowEstimate& found,
         const VectorXd& healthy, double sigma_m, std::size_t measured)
       : fit_(fit),
+        sample_time_s_(fit.sample_time_s()),
         choice_(choice),
         cut_(cut),
         found_(found),
@@ -77,6 +80,9 @@ class Namer {
       const WindowEstimate alone = fit_.fit(cut_, {a}, base_, sigma_m_);
       if (alone.chi_square < chi_square_ + kChance) causes.push_back({name(a), value(a, alone.x)});
     }
+    for (const SensorRival& sensor : sensor_rivals(fit_, cut_, base_, sigma_m_, sample_time_s_)) {
+      if (sensor.chi_square < chi_square_ + kChance) causes.push_back({sensor.name, sensor.value});
+    }
     if (causes.empty()) return false;
     std::size_t best = 0;
     double least = INFINITY;
@@ -110,6 +116,10 @@ class Namer {
       if (best.rms_m > kAsGood * found_.rms_m) continue;
       one.rivals.push_back({name(a), value(a, best.x)});
     }
+    for (const SensorRival& sensor : sensor_rivals(fit_, cut_, without, sigma_m_, sample_time_s_)) {
+      if (sensor.chi_square < chi_square_ + kChance)
+        one.rivals.push_back({sensor.name, sensor.value});
+    }
   }
 
   WindowEstimate let_follow(std::size_t rival, std::size_t instead_of, const VectorXd& from) {
@@ -126,6 +136,7 @@ class Namer {
   }
 
   WindowFit& fit_;
+  double sample_time_s_;
   const Choice& choice_;
   const Cut& cut_;
   const WindowEstimate& found_;

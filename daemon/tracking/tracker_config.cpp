@@ -67,8 +67,13 @@ void TrackerConfig::load(const estimator::fdi::Loading& loading) {
   const auto document = config::schema::Document::parse(model_toml, where() + ": model");
   const plant_sim::ModelFile read = plant_sim::read_model(document);
   const Choice choice = choose(read, parameters, where() + ": parameters");
-  learnt = read_healthy(loading.folder / healthy, read, settings, choice, loading.sample_time_s,
-                        loading.rig_id);
+  try {
+    learnt = read_healthy(loading.folder / healthy, read, settings, choice, loading.sample_time_s,
+                          loading.rig_id);
+  } catch (const config::schema::Error& error) {
+    throw config::schema::Error(static_cast<config::schema::ExitCode>(error.exit_code()),
+                                where() + ": healthy: " + error.what());
+  }
   const Healthy known = healthy_of(learnt, choice);
   learnt.values.clear();
   for (std::size_t i = 0; i < choice.tracked; ++i) {

@@ -59,6 +59,7 @@ class WindowFit {
                                    const Eigen::VectorXd& prior_sd = {});
 
   [[nodiscard]] const std::vector<SearchParameter>& parameters() const { return run_.searched(); }
+  [[nodiscard]] double sample_time_s() const { return window_.sample_time_s; }
 
  private:
   void take(const Cut& cut);

@@ -112,7 +112,12 @@ std::string advice_words(const Choice& choice, const Named& named) {
   std::string all = choice.parameters[named.parameter].name;
   for (const Rival& rival : named.rivals) all += " " + rival.name;
   const auto has = [&](const char* word) { return all.find(word) != std::string::npos; };
+  const bool sensor = has("position_sensor");
+  if (has("supply") && sensor) {
+    return "readings of the supply pressure and of a second position sensor would";
+  }
   if (has("supply")) return "a reading of the supply pressure would";
+  if (sensor) return "a second position sensor would";
   if (has("leakage") || has("air") || has("bulk"))
     return "a reading of the chamber pressures would";
   if (has("friction") || has("damping") || has("mass") || has("load")) {

@@ -42,7 +42,8 @@ TEST(Tracker, TellsSupplyPressureAndDampingApartWhereTheSourceCouldNot) {
   EXPECT_GT(alarms[0].tick, 200 * 15);
   EXPECT_LT(alarms[0].tick, 200 * 17.5);
   EXPECT_EQ(alarms[1].name, "supply_pressure_Pa");
-  EXPECT_THAT(alarms[1].ambiguity_group, ElementsAre("supply_pressure_Pa", "valve_gain_m_per_V"));
+  EXPECT_THAT(alarms[1].ambiguity_group, ElementsAre("supply_pressure_Pa", "valve_gain_m_per_V",
+                                                     "position_sensor.scale_ratio"));
   EXPECT_GT(alarms[1].tick, 200 * 45);
   EXPECT_LT(alarms[1].tick, 200 * 46);
   int packs = 0;
@@ -73,7 +74,8 @@ rms_m = 2.5e-6
       run(virtual_run(shipped("thesis_case3_named.toml"), folder.path() / "log",
                       {"--duration", "1", "--set", "tracker.0.healthy=" + file.string()}));
   EXPECT_EQ(refused.exit_code, 78);
-  EXPECT_THAT(refused.err, testing::HasSubstr("was learnt with another model"));
+  EXPECT_THAT(refused.err, testing::HasSubstr("[[tracker]] physics: healthy: " + file.string() +
+                                              ": was learnt with another model"));
   EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1) << refused.err;
 }
 
