@@ -104,6 +104,53 @@ TEST(Voter, NamesTheChannelThatIsOutAndItsValueIsWatchedLikeAnyOther) {
   EXPECT_TRUE(told);
 }
 
+TEST(Voter, OfTwoRodSensorsNamesTheOneWithoutAReading) {
+  PlainValues values(
+      "[[voter]]\nid = 'rods'\nchannels = ['sample.rod_1_m', 'sample.rod_2_m']\n"
+      "tolerance = 1.0\nconfirm_s = 3.0\nreturn_s = 5.0\nstride_s = 10.0\n");
+  const auto feed = [&](Quality second, int times) {
+    for (int i = 0; i < times; ++i) {
+      Sample s;
+      s.tick = values.tick++;
+      s.y_m = 10.0;
+      s.rod_count = 2;
+      s.rod_m = {10.0, 10.5};
+      s.rod_quality = {Quality::good, second};
+      values.pipeline.process(s, values);
+    }
+  };
+  feed(Quality::good, 20);
+  EXPECT_DOUBLE_EQ(values.last("value"), 10.25);
+  feed(Quality::stale, 3);
+  ASSERT_EQ(values.alarms.size(), 1U);
+  EXPECT_EQ(values.alarms[0].parameter, "sample.rod_2_m");
+  EXPECT_DOUBLE_EQ(values.last("value"), 10.0);
+}
+
+TEST(SampleQuantity, OfRodSensorsIsMissingWhereTheyAreNot) {
+  Sample s;
+  s.y_m = 1.0;
+  EXPECT_TRUE(std::isnan(value_of(SampleQuantity::rod_1, s)));
+  EXPECT_TRUE(std::isnan(value_of(SampleQuantity::rod_in_charge, s)));
+  s.rod_count = 2;
+  s.rod_in_charge = 1;
+  s.rod_m = {1.0, 2.0, 3.0};
+  EXPECT_EQ(value_of(SampleQuantity::rod_2, s), 2.0);
+  EXPECT_TRUE(std::isnan(value_of(SampleQuantity::rod_3, s)));
+  EXPECT_EQ(value_of(SampleQuantity::rod_in_charge, s), 2.0);
+  EXPECT_EQ(rod_of("sample.rod_5_m"), 5U);
+  EXPECT_EQ(rod_of("sample.y_m"), 0U);
+  EXPECT_EQ(rod_of("period.rod_5_m"), 0U);
+}
+
+TEST(SampleQuantity, OfAnotherSensorIsNoPositionForEstimatorsButOneForBands) {
+  Sample s;
+  s.y_m = 1.0;
+  s.rod_changed = true;
+  EXPECT_TRUE(std::isnan(usable_y_m(s)));
+  EXPECT_EQ(value_of(SampleQuantity::y, s), 1.0);
+}
+
 TEST(Voter, TakesTwoOrThreeChannels) {
   EXPECT_NE(refusal("[[voter]]\nid = 'r'\ntolerance = 1.0\nchannels = ['sample.y_m']\n")
                 .find("two or three"),
