@@ -16,6 +16,9 @@ using Eigen::VectorXd;
 using matching::Fitted;
 using matching::SearchParameter;
 
+/// Of a fit that only has to show whether it ends lower.
+constexpr int kFirstIterations = 10;
+
 bool costs_little(const Workshop& shop, const Fitted& without, const Fitted& with) {
   return without.score_rms_m < (1.0 + worthwhile_at(shop, with.score_rms_m)) * with.score_rms_m;
 }
@@ -139,16 +142,20 @@ void end_unhindered(const Workshop& shop, Stage& stage) {
   }
   stage.fitted = finished(shop, stage.fitted);
   if (is_explained(shop, stage) || without.empty() || shop.cancelled()) return;
-  std::vector<Fitted> fits(without.size());
+  matching::FitOptions begin;
+  begin.max_iterations = kFirstIterations;
+  begin.final_jacobian = false;
+  begin.cancel = shop.cancel;
   const auto side_by_side = std::min(shop.threads, static_cast<unsigned>(without.size()));
+  begin.threads = shop.threads / side_by_side;
+  std::vector<Fitted> fits(without.size());
   in_parallel(without.size(), side_by_side, [&](std::size_t i) {
-    const std::size_t longest_first = without.size() - 1 - i;
-    fits[longest_first] =
-        refit(shop, without[longest_first], shop.evidence.fits, shop.threads / side_by_side);
+    fits[i] = matching::fit(shop.model, shop.evidence, shop.evidence.fits, without[i].searched,
+                            without[i].start, begin);
   });
-  const auto best =
-      std::min_element(fits.begin(), fits.end(),
-                       [](const auto& a, const auto& b) { return a.score_rms_m < b.score_rms_m; });
+  const auto best = std::min_element(fits.begin(), fits.end(), [](const auto& a, const auto& b) {
+    return a.score_rms_m < b.score_rms_m;
+  });
   if (best->score_rms_m >= stage.fitted.score_rms_m) return;
   stage.fitted = finished(shop, *best);  // from the ground up, now that nothing is in its way
 }

@@ -1,11 +1,20 @@
 #include "workbench/diagnose/selection.h"
 
+#include <limits>
+
 namespace workbench::diagnose {
 namespace {
 
-/// What after so many iterations is still that much worse will not come near.
-constexpr int kFirstIterations = 8;
+/// Looked at every so many iterations.
+constexpr int kStride = 8;
+/// What then is still that much worse will not come near; the first time, that much.
 constexpr double kHopeless = 3.0;
+constexpr double kHopelessAtFirst = 10.0;
+/// This much worse is near.
+constexpr double kNear = 1.1;
+/// The way that is left must not be longer than so many strides like the last one.
+constexpr double kPatience = 4.0;
+constexpr int kMostStrides = 8;
 
 }  // namespace
 
@@ -29,15 +38,29 @@ matching::Fitted refit(const Workshop& shop, const Selection& selection,
 
 matching::Fitted refit_if_hopeful(const Workshop& shop, const Selection& selection, double than_m,
                                   unsigned threads) {
-  matching::FitOptions begin;
-  begin.threads = threads;
-  begin.max_iterations = kFirstIterations;
-  begin.final_jacobian = false;
-  begin.cancel = shop.cancel;
-  matching::Fitted begun = matching::fit(shop.model, shop.evidence, shop.evidence.fits,
-                                         selection.searched, selection.start, begin);
-  if (begun.score_rms_m > kHopeless * than_m) return begun;
-  return refit(shop, {selection.searched, begun.x}, shop.evidence.fits, threads);
+  matching::FitOptions stride;
+  stride.threads = threads;
+  stride.max_iterations = kStride;
+  stride.passes = 1;
+  stride.final_jacobian = false;
+  stride.cancel = shop.cancel;
+  matching::Fitted at;
+  at.x = selection.start;
+  double before_m = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < kMostStrides; ++k) {
+    at = matching::fit(shop.model, shop.evidence, shop.evidence.fits, selection.searched, at.x,
+                       stride);
+    const double left_m = at.score_rms_m - kNear * than_m;
+    if (left_m <= 0.0) break;
+    const double hopeless = k == 0 ? kHopelessAtFirst : kHopeless;
+    if (at.score_rms_m > hopeless * than_m || left_m > kPatience * (before_m - at.score_rms_m)) {
+      return at;
+    }
+    before_m = at.score_rms_m;
+    stride.start_residual_m = at.residual_m;
+    stride.start_jacobian = at.jacobian;
+  }
+  return refit(shop, {selection.searched, at.x}, shop.evidence.fits, threads);
 }
 
 matching::Fitted finished(const Workshop& shop, const matching::Fitted& fitted) {

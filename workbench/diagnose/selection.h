@@ -42,7 +42,7 @@ void append(Selection& to, const Selection& more);
                                      const Eigen::VectorXd& weights, unsigned threads = 1,
                                      double observer_per_s = matching::kObserver_per_s);
 /// On the samples that fit, but given up, as far as it came, when after a few iterations it is
-/// still several times `than_m`, with which it is to be compared.
+/// still several times `than_m`, with which it is to be compared, or comes too slowly to get there.
 [[nodiscard]] matching::Fitted refit_if_hopeful(const Workshop& shop, const Selection& selection,
                                                 double than_m, unsigned threads = 1);
 /// A stage's fit, to the end, on all of the workshop's threads.

@@ -25,7 +25,8 @@ constexpr Index kSizes = 4;
 constexpr std::size_t kLookedAt = 16;
 /// That many are fitted, each from its best start seen from either base.
 constexpr std::size_t kFitted = 6;
-/// For that many iterations at first; then only those within this factor of the best go on.
+/// For that many iterations on the stretch; then those within this factor of the best go on, on the
+/// whole record.
 constexpr int kFirstIterations = 4;
 constexpr double kFar = 3.0;
 
@@ -133,16 +134,20 @@ std::vector<Candidate> two_at_once(const Workshop& shop, const Stage& stage,
   look_at(shop, excerpt.evidence, there, bases, kLookedAt, couples);
   look_at(shop, shop.evidence, Projection(stage.fitted, shop.evidence.fits), bases, kFitted,
           couples);
-  std::vector<Candidate> candidates(couples.size());
+  Workshop on_stretch = shop;
+  on_stretch.evidence = excerpt.evidence;
+  const Stage before{stage.added, excerpt.fitted};
+  std::vector<Candidate> begun(couples.size());
   in_parallel(couples.size(), shop.threads, [&](std::size_t i) {
-    if (!shop.cancelled()) candidates[i] = tried(shop, stage, couples[i], kFirstIterations);
+    if (!shop.cancelled()) begun[i] = tried(on_stretch, before, couples[i], kFirstIterations);
   });
   double best_m = std::numeric_limits<double>::infinity();
-  for (const Candidate& candidate : candidates) best_m = std::min(best_m, candidate.score_rms_m);
+  for (const Candidate& candidate : begun) best_m = std::min(best_m, candidate.score_rms_m);
+  std::vector<Candidate> candidates(couples.size());
   std::atomic<bool> explained = false;
   in_parallel(couples.size(), shop.threads, [&](std::size_t i) {
-    if (shop.cancelled() || explained || !(candidates[i].score_rms_m < kFar * best_m)) return;
-    couples[i].starts = {candidates[i].fitted.x};
+    if (shop.cancelled() || explained || !(begun[i].score_rms_m < kFar * best_m)) return;
+    couples[i].starts = {begun[i].fitted.x};
     candidates[i] = tried(shop, stage, couples[i], kQuickIterations);
     if (candidates[i].score_rms_m < kUnexplained * shop.evidence.noise_floor_m) explained = true;
   });

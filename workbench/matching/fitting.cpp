@@ -12,7 +12,6 @@ namespace workbench::matching {
 namespace {
 
 constexpr double kDifference = 1e-3;  ///< step of the difference quotients, in search units
-constexpr int kPasses = 3;
 constexpr double kSameSigma = 1.2;
 
 }  // namespace
@@ -127,13 +126,13 @@ Fitted fit(const plant_sim::ModelFile& model, const Evidence& evidence,
   result.searched = searched;
   result.evaluations = 1;
   problem.sigma = sigma_of(how.start_residual);
-  for (int pass = 0; pass < kPasses; ++pass) {
-    how.final_jacobian = options.final_jacobian && pass + 1 == kPasses;
+  for (int pass = 0; pass < options.passes; ++pass) {
+    how.final_jacobian = options.final_jacobian && pass + 1 == options.passes;
     estimator::nonlinear::Solution solution = minimize(problem, x, how);
     result.evaluations += solution.evaluations;
     const double sigma_m = problem.sigma;
     problem.sigma = sigma_of(solution.residual);
-    const bool last = pass + 1 == kPasses || (problem.sigma < kSameSigma * sigma_m &&
+    const bool last = pass + 1 == options.passes || (problem.sigma < kSameSigma * sigma_m &&
                                               sigma_m < kSameSigma * problem.sigma);
     x = solution.x;
     how.start_residual = solution.residual;

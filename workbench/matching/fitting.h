@@ -44,6 +44,7 @@ inline constexpr double kLogarithmStep = 1e-3;
 struct FitOptions {
   int max_iterations = 30;
   double tolerance = 1e-4;     ///< relative decrease of the cost at which it ends
+  int passes = 3;              ///< at most; each weighs the residual anew
   bool final_jacobian = true;  ///< false: Fitted::jacobian may be stale in some columns
   double observer_per_s = kObserver_per_s;
   std::function<bool()> cancel;  ///< true ends the search, keeping the best so far
