@@ -133,7 +133,7 @@ Fitted fit(const plant_sim::ModelFile& model, const Evidence& evidence,
     const double sigma_m = problem.sigma;
     problem.sigma = sigma_of(solution.residual);
     const bool last = pass + 1 == options.passes || (problem.sigma < kSameSigma * sigma_m &&
-                                              sigma_m < kSameSigma * problem.sigma);
+                                                     sigma_m < kSameSigma * problem.sigma);
     x = solution.x;
     how.start_residual = solution.residual;
     how.start_jacobian = solution.jacobian;
