@@ -36,6 +36,7 @@ Stage best_of(const Workshop& shop, const Stage& before, const Stage& final,
   begin.final_jacobian = false;
   begin.cancel = shop.cancel;
   std::vector<Selection> selections;
+  selections.reserve(effects.size());
   for (const std::string& effect : effects) selections.push_back(taking(before, final, effect));
   std::vector<matching::Fitted> fits(effects.size());
   in_parallel(effects.size(), shop.threads, [&](std::size_t i) {
