@@ -4,10 +4,9 @@
 //   psi(t) = - de/dtheta:  for A: -(D/C) y(t-i);   B: (D/(C F)) u(t-k-i+1);   F: -(D/(C F)) w(t-i)
 //            C: (1/C) e(t-i);   D: -(1/C) v(t-i), v = A y - w;   constant: (D/(C F)) 1
 //   theta += P psi e / (lambda + psi' P psi);  a step that would leave C or F unstable is halved
-//   without F, C rests at 0 for the first 20 updates a coefficient: errors of a wrong A are no
-//   noise lambda(t) = lambda - (lambda - 0.95) 0.99^t at first: early, wrong gradients are
-//   forgotten
+//   lambda(t) = lambda - (lambda - 0.95) 0.99^t at first: early, wrong gradients are forgotten
 //
+// Without F, C rests at 0 for the first 20 updates a coefficient: errors of a wrong A are no noise.
 // ARX: this is recursive least squares. ARMAX: recursive maximum likelihood (RML2); with
 // `extended`, psi unfiltered: extended least squares (RELS, RML1), which converges surely only
 // where 1/C - 1/2 is positive real. Output error and Box-Jenkins need F stable: behind an

@@ -6,13 +6,11 @@
 // when the next tick comes, and looks then (rhythm.h).
 //
 //   - Nothing is written before the loop's first command.
-//   - Whatever goes wrong with a reply closes the connection. It is made again with a growing
-//   pause;
-//     null is the first thing written then, the device's time-out the second. A command that was
-//     given before is never sent after.
+//   - Whatever goes wrong with a reply closes the connection. It is made again after a growing
+//     pause; null is the first thing written then, the device's time-out the second. A command that
+//     was given before is never sent after.
 //   - A command older than two periods is replaced by null, and so is the last one when the loop
-//   has
-//     given none for 50 ms.
+//     has given none for 50 ms.
 #pragma once
 
 #include <semaphore.h>
@@ -127,8 +125,8 @@ class Link {
   // To the loop.
   Latest<Snapshot> latest_;
   std::atomic<bool> online_{true};
-  std::atomic<std::int64_t> taken_ns_{
-      0};                                ///< when the newest command that the device took was given
+  /// When the newest command that the device took was given.
+  std::atomic<std::int64_t> taken_ns_{0};
   std::atomic<bool> null_taken_{false};  ///< after closing_ was seen
 
   // The thread's own.
