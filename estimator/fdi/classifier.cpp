@@ -4,10 +4,12 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "config/schema/error.h"
 #include "estimator/fdi/block_source.h"
 #include "estimator/fdi/region.h"
+#include "estimator/fdi/size_order.h"
 
 namespace estimator::fdi {
 namespace {
@@ -19,38 +21,49 @@ constexpr double kLikely = 0.05;  ///< a class of this probability belongs to th
 constexpr std::size_t kMostClasses = 64;
 constexpr int kNone = -1;
 
-std::vector<Region> regions_of(const ClassifierConfig& config) {
-  const std::size_t size = config.features.size();
-  std::vector<double> pooled(size * size, 0.0);
+using Square = Eigen::Map<const Eigen::MatrixXd>;
+
+Square covariance_of(const TrainedClass& each) {
+  const auto size = static_cast<Eigen::Index>(each.mean.size());
+  return {each.covariance.data(), size, size};
+}
+
+Eigen::MatrixXd pooled_covariance(const std::vector<TrainedClass>& classes) {
+  Eigen::MatrixXd pooled = 0.0 * covariance_of(classes.front());
   double weights = 0.0;
-  for (const TrainedClass& each : config.classes) {
+  for (const TrainedClass& each : classes) {
     const auto weight = static_cast<double>(each.blocks - 1);
     weights += weight;
-    for (std::size_t i = 0; i < pooled.size(); ++i) pooled[i] += weight * each.covariance[i];
+    pooled += weight * covariance_of(each);
   }
-  std::vector<Region> regions;
+  return pooled / weights;
+}
+
+/// Mean and covariance of each class, drawn towards the pooled one.
+std::vector<SizeLaw> laws_of(const ClassifierConfig& config, const Eigen::MatrixXd& pooled) {
+  std::vector<SizeLaw> laws;
   for (const TrainedClass& each : config.classes) {
-    std::vector<double> covariance = each.covariance;
-    for (std::size_t i = 0; i < covariance.size(); ++i) {
-      covariance[i] += config.pooling * (pooled[i] / weights - covariance[i]);
-    }
-    regions.emplace_back(each.mean, covariance, static_cast<double>(each.blocks),
-                         config.where() + ": class " + each.name);
+    const Square own = covariance_of(each);
+    laws.push_back({Eigen::Map<const Eigen::VectorXd>(each.mean.data(), own.rows()),
+                    own + config.pooling * (pooled - own), static_cast<double>(each.blocks)});
   }
-  return regions;
+  return laws;
 }
 
 class Classifier final : public BlockSource {
  public:
   Classifier(const ClassifierConfig& config, const Setting& setting)
-      : BlockSource(config.features, config.block_s, setting, config.where()),
-        config_(config),
-        regions_(regions_of(config)) {
-    for (const Region& region : regions_) limits_.push_back(region.limit(config.rejection));
-    for (std::size_t i = 0; i < config.classes.size(); ++i) {
-      if (config.classes[i].name == Trained::kHealthy) healthy_ = static_cast<int>(i);
+      : BlockSource(config.features, config.block_s, setting, config.where()), config_(config) {
+    const Eigen::MatrixXd pooled = pooled_covariance(config.classes);
+    const std::vector<SizeLaw> laws = laws_of(config, pooled);
+    for (std::size_t i = 0; i < laws.size(); ++i) {
+      const std::string& name = config.classes[i].name;
+      regions_.push_back(region_of(laws[i], config.where() + ": class " + name));
+      limits_.push_back(regions_[i].limit(config.rejection));
+      if (name == Trained::kHealthy) healthy_ = i;
     }
-    answer_.found = healthy_;
+    paths_ = join_sizes(config.classes, laws, pooled, healthy_, config.rejection, config.where());
+    answer_.found = static_cast<int>(healthy_);
   }
   [[nodiscard]] std::vector<std::string> names() const override {
     return {"class", "probability", "distance2"};
@@ -68,6 +81,8 @@ class Classifier final : public BlockSource {
     double distance2 = 0.0;  ///< of the nearest
   };
   void take(std::span<const double> means) noexcept override;
+  /// Whatever its size.
+  [[nodiscard]] bool same_fault(int one, int other) const noexcept;
   void show(std::span<NamedValue> values) const noexcept override {
     values[0].value = valid() ? answer_.found : kNan;
     values[1].value = valid() && answer_.found != kNone ? answer_.probability : kNan;
@@ -75,7 +90,7 @@ class Classifier final : public BlockSource {
   }
   void forget() noexcept override {
     answer_ = {};
-    answer_.found = healthy_;
+    answer_.found = static_cast<int>(healthy_);
     told_ = answer_;
     in_a_row_ = 0;
     out_ = false;
@@ -101,7 +116,8 @@ class Classifier final : public BlockSource {
   ClassifierConfig config_;
   std::vector<Region> regions_;
   std::vector<double> limits_;
-  int healthy_ = 0;
+  std::vector<std::optional<SizePath>> paths_;  ///< that lead to each class
+  std::size_t healthy_ = 0;
   Answer answer_;
   Answer told_;  ///< the last that was confirmed
   std::array<double, kMostClasses> probabilities_{};
@@ -114,36 +130,48 @@ class Classifier final : public BlockSource {
 };
 
 void Classifier::take(std::span<const double> means) noexcept {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
   Answer now;
-  now.distance2 = std::numeric_limits<double>::infinity();
-  double greatest = -std::numeric_limits<double>::infinity();
-  bool any = false;
+  now.distance2 = kInfinite;
+  const bool outside = regions_[healthy_].distance2(means) > limits_[healthy_];
+  double greatest = -kInfinite;
   for (std::size_t i = 0; i < regions_.size(); ++i) {
-    const double distance2 = regions_[i].distance2(means);
-    any = any || distance2 <= limits_[i];
+    double distance2 = regions_[i].distance2(means);
+    double log_density = distance2 <= limits_[i] ? regions_[i].log_density() : -kInfinite;
+    if (outside && paths_[i]) {
+      const SizePath::Nearest on_path = paths_[i]->nearest(means);
+      distance2 = std::min(distance2, on_path.distance2);
+      if (on_path.inside) log_density = std::max(log_density, on_path.log_density);
+    }
+    probabilities_[i] = log_density;
     if (distance2 < now.distance2) {
       now.distance2 = distance2;
       now.nearest = static_cast<int>(i);
     }
-    probabilities_[i] = regions_[i].log_density();
-    if (probabilities_[i] <= greatest) continue;
-    greatest = probabilities_[i];
+    if (log_density <= greatest) continue;
+    greatest = log_density;
     now.found = static_cast<int>(i);
   }
   double sum = 0.0;
   for (std::size_t i = 0; i < regions_.size(); ++i) {
-    probabilities_[i] = std::exp(probabilities_[i] - greatest);
+    probabilities_[i] = now.found == kNone ? 0.0 : std::exp(probabilities_[i] - greatest);
     sum += probabilities_[i];
   }
-  for (std::size_t i = 0; i < regions_.size(); ++i) probabilities_[i] /= sum;
-  if (!any) now.found = kNone;
+  for (std::size_t i = 0; i < regions_.size() && sum > 0.0; ++i) probabilities_[i] /= sum;
   now.probability = now.found == kNone ? 0.0 : probabilities_[static_cast<std::size_t>(now.found)];
-  in_a_row_ = now.found == answer_.found ? in_a_row_ + 1 : 1;
+  in_a_row_ = same_fault(now.found, answer_.found) ? in_a_row_ + 1 : 1;
   answer_ = now;
   if (in_a_row_ < config_.confirm) return;
-  out_ = now.found != healthy_;
+  out_ = now.found != static_cast<int>(healthy_);
   told_ = now;
   told_probabilities_ = probabilities_;
+}
+
+bool Classifier::same_fault(int one, int other) const noexcept {
+  if (one == other || one == kNone || other == kNone) return one == other;
+  const TrainedClass& a = config_.classes[static_cast<std::size_t>(one)];
+  const TrainedClass& b = config_.classes[static_cast<std::size_t>(other)];
+  return a.name == b.name && a.direction == b.direction;
 }
 
 AlarmState Classifier::own_alarm(std::size_t /*number*/) const noexcept {

@@ -4,13 +4,22 @@
 // is the class's own, drawn towards the pooled one by `pooling` (0: quadratic, 1: linear
 // discriminant analysis).
 //
-//   P(class | x) = N(x; class) / sum over classes        (equal prior probabilities)
-//   none of these when T^2 of every class exceeds its limit for probability `rejection`
+//   P(class | x) = N(x; class) / sum over classes that do not reject x     (equal priors)
+//   a class rejects x when its T^2 exceeds the limit for probability `rejection`
+//   none of these when every class does
 //
-// The alarm comes after `confirm` blocks in a row that are not healthy, names the class that they
-// agree on, and gives the classes of 5 % or more as ambiguity group when there are several. A
-// fault of another size than those of the training records is often none of these: train several
-// sizes under one name, each is a law of its own.
+// Classes of one name and direction, whose means lie one behind the other as seen from healthy, are
+// sizes of one fault: outside the healthy region each also takes what lies on the curve that leads
+// to it from the size before, the smallest from where the curve leaves the healthy region
+// (size_path.h): the greater of both densities counts, the smaller of both T^2. Nothing counts
+// beyond the greatest size but its own law.
+//
+// Inside its own region healthy is held against taught sizes alone, as if there were no curves: a
+// healthy block comes out as anything else only where it is outside that region (share `rejection`)
+// or at a taught size.
+//
+// The alarm comes after `confirm` blocks in a row that are not healthy, names the fault that they
+// agree on, and gives the classes of 5 % or more as ambiguity group when there are several.
 // Source: T. Hastie, R. Tibshirani, J. Friedman, The Elements of Statistical Learning, 4.3; B. D.
 // Ripley, Pattern Recognition and Neural Networks, 1996, 2.1 (doubt and outliers).
 #pragma once
@@ -19,8 +28,8 @@
 
 namespace estimator::fdi {
 
-/// Values: class (its number in the list, -1: none of these), probability, distance2 (of the
-/// nearest).
+/// Values: class (its number in the list, between two sizes the greater's, -1: none of these),
+/// probability, distance2 (of the nearest).
 struct ClassifierConfig final : TrainedConfig {
   std::vector<std::string> features;
   double rejection = 1e-4;  ///< share of a class's own blocks that is rejected

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace estimator::fdi {
 
@@ -16,5 +17,13 @@ namespace estimator::fdi {
   while (!toml.empty() && toml.back() == ' ') toml.pop_back();
   return toml;
 }
+
+/// The first setting in which two such lines differ, "[table] key = value"; "none" where a line
+/// lacks it.
+struct Difference {
+  std::string found;
+  std::string expected;
+};
+[[nodiscard]] Difference difference(std::string_view found, std::string_view expected);
 
 }  // namespace estimator::fdi

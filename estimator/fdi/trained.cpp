@@ -1,9 +1,12 @@
 #include "estimator/fdi/trained.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "estimator/fdi/fingerprint.h"
 #include "estimator/fdi/pipeline.h"
 
 namespace estimator::fdi {
@@ -14,6 +17,39 @@ using config::schema::Visitor;
 
 /// Two sample times are the same within clock accuracy.
 constexpr double kSameSampleTime = 1e-3;
+
+std::string seconds(double s) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g s", s);
+  return text;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+/// `at`: what led here; a source that reads itself in a circle is refused elsewhere.
+std::string settings_behind(std::string_view source, const PipelineConfig& pipeline,
+                            const std::string& quantity, const std::string& where,
+                            std::vector<std::string_view>& at) {
+  std::string settings = pipeline.fingerprint(source);
+  const SourceConfig* const config = pipeline.find_source(source);
+  if (config == nullptr || std::find(at.begin(), at.end(), source) != at.end()) return settings;
+  if (dynamic_cast<const TrainedConfig*>(config) != nullptr) {
+    throw bad_config(where, "cannot be trained on " + quantity + ", which is trained itself",
+                     "values of estimators and of the sample");
+  }
+  at.push_back(source);
+  for (const std::string& input : config->inputs()) {
+    const std::string behind =
+        settings_behind(split_quantity(input).source, pipeline, quantity, where, at);
+    if (!behind.empty()) settings += " | " + behind;
+  }
+  at.pop_back();
+  return settings;
+}
 
 }  // namespace
 
@@ -43,6 +79,7 @@ const TrainedClass* TrainedSource::healthy() const noexcept {
 
 void Trained::visit(Visitor& v) {
   v.integer({"trained_version", "layout of this file", true}, version, {kVersion, kVersion});
+  v.text({"units", "of position, command and time", true}, units);
   v.text({"rig_id", "of the rig", true}, rig_id);
   v.number({"sample_time_s", "of the records", true}, sample_time_s, {1e-6, 1e3});
   v.texts({"records", "that it was learned from"}, records);
@@ -60,6 +97,9 @@ void TrainedConfig::load(const Loading& loading) {
   const std::string name = (loading.folder / file).string();
   Trained trained;
   config::schema::Document::load(name).read([&](Visitor& v) { trained.visit(v); });
+  if (trained.units != Trained::kUnits) {
+    throw bad_config(name + ": units", "was trained in '" + trained.units + "'", Trained::kUnits);
+  }
   if (!loading.rig_id.empty() && loading.rig_id != trained.rig_id) {
     throw bad_config(
         name + ": rig_id",
@@ -69,26 +109,14 @@ void TrainedConfig::load(const Loading& loading) {
   if (std::abs(trained.sample_time_s - loading.sample_time_s) >
       kSameSampleTime * loading.sample_time_s) {
     throw bad_config(name + ": sample_time_s",
-                     "was trained at " + std::to_string(trained.sample_time_s) +
-                         " s, the samples come every " + std::to_string(loading.sample_time_s) +
-                         " s",
+                     "was trained at " + seconds(trained.sample_time_s) +
+                         ", the samples come every " + seconds(loading.sample_time_s),
                      "a file trained at the same sample time");
   }
   for (const TrainedSource& source : trained.sources) {
     if (source.id != id) continue;
     const std::string place = name + ": [[trained]] " + id;
-    if (source.quantities != quantities() || source.block_s != block_s) {
-      throw bad_config(place, "was trained on other quantities or blocks than " + where() + " has",
-                       "train again");
-    }
-    const std::vector<std::string> settings = settings_of(quantities(), loading.pipeline, where());
-    for (std::size_t i = 0; i < settings.size(); ++i) {
-      if (i < source.settings.size() && source.settings[i] == settings[i]) continue;
-      throw bad_config(place,
-                       source.quantities[i] + " was trained with other settings: " +
-                           (i < source.settings.size() ? source.settings[i] : "none"),
-                       settings[i]);
-    }
+    check(source, loading, place);
     const std::size_t size = quantities().size();
     for (const TrainedClass& each : source.classes) {
       if (each.mean.size() == size && each.long_run.size() == size &&
@@ -105,16 +133,33 @@ void TrainedConfig::load(const Loading& loading) {
   throw bad_config(name, "knows nothing of " + where(), "train again");
 }
 
+void TrainedConfig::check(const TrainedSource& trained, const Loading& loading,
+                          const std::string& place) const {
+  if (trained.quantities != quantities()) {
+    throw bad_config(place, "was trained on " + joined(trained.quantities), joined(quantities()));
+  }
+  if (trained.block_s != block_s) {
+    throw bad_config(place, "was trained on blocks of " + seconds(trained.block_s),
+                     "block_s of " + where() + ", " + seconds(block_s));
+  }
+  const std::vector<std::string> settings = settings_of(quantities(), loading.pipeline, where());
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    const std::string found = i < trained.settings.size() ? trained.settings[i] : "";
+    if (found == settings[i]) continue;
+    const Difference differs = difference(found, settings[i]);
+    throw bad_config(place,
+                     trained.quantities[i] + " was trained with other settings: " + differs.found,
+                     differs.expected);
+  }
+}
+
 std::vector<std::string> settings_of(const std::vector<std::string>& quantities,
                                      const PipelineConfig& pipeline, const std::string& where) {
   std::vector<std::string> settings;
   for (const std::string& quantity : quantities) {
-    const std::string_view source = split_quantity(quantity).source;
-    if (dynamic_cast<const TrainedConfig*>(pipeline.find_source(source)) != nullptr) {
-      throw bad_config(where, "cannot be trained on " + quantity + ", which is trained itself",
-                       "values of estimators and of the sample");
-    }
-    settings.push_back(pipeline.fingerprint(source));
+    std::vector<std::string_view> at;
+    settings.push_back(
+        settings_behind(split_quantity(quantity).source, pipeline, quantity, where, at));
   }
   return settings;
 }

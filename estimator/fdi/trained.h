@@ -1,7 +1,8 @@
 // What `spoolwatch train` learns from records: the file that sources name as `file`.
 //
-// It is of one rig, sample time and setting of the estimators behind it, and refused for any other:
-// each entry carries the settings of what it was trained on.
+// It is of one rig, sample time and units, and refused for any other. Each entry is of the values
+// it was trained on, of their blocks, and of the settings of what makes these values, back to the
+// sample: structure, offset, filter, window and so on.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +31,9 @@ struct TrainedClass {
 struct TrainedSource {
   std::string id;
   std::vector<std::string> quantities;
-  std::vector<std::string> settings;  ///< of the source of each quantity, "" of the sample
+  /// Of the source of each quantity, then "|" and those of the sources that it reads; "" of the
+  /// sample.
+  std::vector<std::string> settings;
   double block_s = 0.0;
   std::vector<TrainedClass> classes;
 
@@ -40,10 +43,13 @@ struct TrainedSource {
 };
 
 struct Trained {
-  static constexpr std::int64_t kVersion = 1;
+  static constexpr std::int64_t kVersion = 2;
   static constexpr const char* kHealthy = "healthy";
+  /// Of positions, commands and times, and so of all that is estimated from them.
+  static constexpr const char* kUnits = "m, V, s";
 
   std::int64_t version = kVersion;
+  std::string units = kUnits;
   std::string rig_id;
   double sample_time_s = 0.0;
   std::vector<std::string> records;
@@ -69,6 +75,10 @@ struct TrainedConfig : SourceConfig {
   [[nodiscard]] std::vector<std::string> inputs() const override { return quantities(); }
   void load(const Loading& loading) override;
   [[nodiscard]] std::string where() const { return std::string("[[") + list() + "]] " + id; }
+
+ private:
+  /// Throws when `trained` was learned from other values than these.
+  void check(const TrainedSource& trained, const Loading& loading, const std::string& place) const;
 };
 
 /// Settings of the source of each quantity, as they stand in a trained file. Throws schema::Error

@@ -11,6 +11,7 @@
 #include "config/schema/error.h"
 #include "estimator/fdi/region.h"
 #include "workbench/command.h"
+#include "workbench/rig_table.h"
 #include "workbench/train/learn.h"
 
 namespace workbench {
@@ -100,7 +101,7 @@ void run(const Options& options) {
   std::string rig_id = "rig";
   config::schema::Document::load(options.config).read_part([&](config::schema::Visitor& v) {
     pipeline.visit(v);
-    v.table({"rig"}, [&](config::schema::Visitor& rig) { rig.text({"id"}, rig_id); });
+    visit_rig(v, rig_id);
   });
   std::vector<train::Teaching> teachings(1);
   teachings[0].name = fdi::Trained::kHealthy;

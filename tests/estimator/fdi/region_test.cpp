@@ -1,4 +1,4 @@
-// Distance from a healthy region, classes with rejection, slow trends.
+// Distance from a healthy region, slow trends.
 #include "estimator/fdi/region.h"
 
 #include <gtest/gtest.h>
@@ -85,61 +85,6 @@ TEST(Distance, IsRefusedUntrainedOrWithAFlatRegion) {
   std::string flat = kDistance;
   flat.replace(flat.find("4.0, 3.0, 3.0, 9.0"), 18, "4.0, 9.0, 9.0, 9.0");
   EXPECT_NE(refusal(flat).find("positive definite"), std::string::npos);
-}
-
-std::string law(const std::string& name, double y, double u, int direction = 0) {
-  return "[[classifier.class]]\nname = '" + name + "'\nblocks = 200\nmean = [" + std::to_string(y) +
-         ", " + std::to_string(u) + "]\ncovariance = [1.0, 0.0, 0.0, 1.0]\n" +
-         "long_run = [1.0, 1.0]\ndirection = " + std::to_string(direction) + "\n";
-}
-
-std::string classifier(const std::string& classes) {
-  return "[[classifier]]\nid = 'c'\nfeatures = ['sample.y_m', 'sample.u_V']\nconfirm = 2\n" +
-         classes;
-}
-
-TEST(Classifier, NamesTheFaultOnceItIsConfirmedAndSaysWhenItIsNoneOfThese) {
-  PlainValues values(
-      classifier(law("healthy", 0, 0) + law("pressure", 8, 0, 1) + law("damping", 0, 8, -1)));
-  values.feed(0.5, 0.5);
-  values.feed(8.0, 0.0);
-  EXPECT_TRUE(values.alarms.empty()) << "one block is no confirmation";
-  values.feed(8.0, 0.5);
-  ASSERT_EQ(values.alarms.size(), 1U);
-  EXPECT_EQ(values.alarms[0].parameter, "pressure");
-  EXPECT_EQ(values.alarms[0].direction, 1);
-  EXPECT_GT(values.alarms[0].confidence, 0.999);
-  values.feed(0.0, 8.0);
-  values.feed(0.0, 8.0);
-  EXPECT_EQ(values.alarms.back().parameter, "damping");
-  EXPECT_EQ(values.alarms.back().direction, -1);
-  values.feed(30.0, 30.0);
-  values.feed(30.0, 30.0);
-  EXPECT_EQ(values.alarms.back().parameter, "");
-  EXPECT_EQ(values.last("class"), -1.0);
-  EXPECT_NE(values.alarms.back().reason.find("none of these"), std::string::npos);
-  const std::size_t told = values.alarms.size();
-  values.feed(0.0, 0.0);
-  EXPECT_EQ(values.alarms.size(), told) << "one block takes nothing back";
-  values.feed(0.0, 0.0);
-  EXPECT_EQ(values.alarms.back().severity, Severity::ok);
-  EXPECT_EQ(values.pipeline.alarms().active_count(), 0U);
-}
-
-TEST(Classifier, GivesTheClassesThatItCannotTellApartWithTheirProbability) {
-  PlainValues values(classifier(law("healthy", 0, 0) + law("pressure", 8, 0) + law("gain", 9, 0)));
-  // log of the ratio pressure : gain at y = 8.2 is (0.64 - 0.04)/2 = 0.3.
-  for (int i = 0; i < 3; ++i) values.feed(8.2, 0.0);
-  ASSERT_EQ(values.alarms.size(), 1U);
-  EXPECT_EQ(values.alarms[0].parameter, "");
-  EXPECT_EQ(values.alarms[0].ambiguity_group, (std::vector<std::string>{"pressure", "gain"}));
-  EXPECT_NEAR(values.alarms[0].confidence, 1.0 / (1.0 + std::exp(-0.3)), 1e-6);
-}
-
-TEST(Classifier, IsRefusedWithoutClasses) {
-  EXPECT_NE(refusal(classifier("")).find("not trained"), std::string::npos);
-  EXPECT_NE(refusal(classifier(law("a", 0, 0) + law("b", 1, 1))).find("no class healthy"),
-            std::string::npos);
 }
 
 TEST(LocalTrend, IsTheStraightLineOfLeastSquaresWhenNothingIsForgotten) {

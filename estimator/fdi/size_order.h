@@ -1,0 +1,24 @@
+// Which trained classes are sizes of one fault, in which order, and the curves that join them.
+//
+// Two classes of one name and direction are sizes of one fault when their means are seen from
+// healthy within 60 degrees of each other, in the pooled covariance's measure; the nearer to
+// healthy is the smaller. A size's curve begins at the greatest of the smaller ones, or at healthy.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "estimator/fdi/size_path.h"
+#include "estimator/fdi/trained.h"
+
+namespace estimator::fdi {
+
+/// The curve that leads to each class; none to `healthy`, and to one that lies within its region.
+/// `laws` are those of `classes`, `pooled` the covariance in which lengths are measured. Throws
+/// schema::Error (exit 78) at `where`.
+[[nodiscard]] std::vector<std::optional<SizePath>> join_sizes(
+    const std::vector<TrainedClass>& classes, const std::vector<SizeLaw>& laws,
+    const Eigen::MatrixXd& pooled, std::size_t healthy, double rejection, const std::string& where);
+
+}  // namespace estimator::fdi
