@@ -6,7 +6,8 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
-#include "estimator/fdi/snapshot.h"
+#include "daemon/tracking/known_parameters.h"
+#include "estimator/fdi/fingerprint.h"
 
 namespace monitor::tracking {
 namespace {
@@ -23,34 +24,45 @@ std::string text_of(double value) {
   return text;
 }
 
+std::vector<std::string> sorted(std::vector<std::string> names) {
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// Throws unless what was found when it was learnt is what is expected now.
+void compare(const std::string& where, double found, double expected, const char* unit) {
+  if (text_of(found) == text_of(expected)) return;
+  throw bad_config(where, "was learnt with " + text_of(found) + unit, text_of(expected) + unit);
+}
+
 }  // namespace
 
 void HealthyFile::visit(Visitor& v) {
+  v.integer({"healthy_version", "layout of this file", true}, version, {kVersion, kVersion});
   v.text({"rig_id", "of the rig; empty: of any"}, rig_id);
   v.text({"model", "its name", true}, model);
-  v.text({"fingerprint", "of the model and of the windows", true}, fingerprint);
+  v.text({"model_values", "all that the model is", true}, model_values);
   v.text({"source", "the healthy record"}, source);
   v.texts({"parameters", "tracked", true}, parameters);
   v.numbers({"values", "of the parameters, SI", true}, values);
   v.number({"sample_time_s", "of the record", true}, sample_time_s, {1e-6, 1e3});
+  v.number({"window_s", "length of the windows", true}, window_s, {1e-6, 1e6});
+  v.number({"observer_per_s", "how fast drift was led back", true}, observer_per_s, {0.0, 1e3});
   v.number({"rms_m", "of a healthy window's error", true}, rms_m, {1e-12, 1.0});
   v.number({"noise_floor_m", "of the position"}, noise_floor_m, {0.0, 1.0});
 }
 
-std::string fingerprint_of(const plant_sim::ModelFile& model, const Settings& settings) {
-  const std::string whole = plant_sim::print_model(model) + text_of(settings.window_s) + ' ' +
-                            text_of(settings.observer_per_s);
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx",
-                static_cast<unsigned long long>(estimator::fdi::hash_of(whole)));
-  return text;
+std::string values_line(const plant_sim::ModelFile& model) {
+  return estimator::fdi::one_line(plant_sim::print_model(model));
 }
 
 HealthyFile healthy_file(const plant_sim::ModelFile& model, const Choice& choice,
                          const Settings& settings, const Healthy& healthy) {
   HealthyFile file;
   file.model = model.name;
-  file.fingerprint = fingerprint_of(model, settings);
+  file.model_values = values_line(model);
+  file.window_s = settings.window_s;
+  file.observer_per_s = settings.observer_per_s;
   for (std::size_t i = 0; i < choice.tracked; ++i) {
     const SearchParameter& p = choice.parameters[i];
     file.parameters.push_back(p.name);
@@ -66,28 +78,31 @@ HealthyFile read_healthy(const std::filesystem::path& path, const plant_sim::Mod
   HealthyFile file;
   config::schema::Document::load(path).read([&](Visitor& v) { file.visit(v); });
   const std::string where = path.string();
-  if (file.fingerprint != fingerprint_of(model, settings)) {
-    throw bad_config(
-        where,
-        "was learnt with another model, window_s or observer_per_s (model " + file.model + ")",
-        "one learnt with model " + model.name + " as it is, windows of " +
-            text_of(settings.window_s) + " s, observer_per_s " + text_of(settings.observer_per_s));
+  const std::string values = values_line(model);
+  if (file.model_values != values) {
+    const auto differs = estimator::fdi::difference(file.model_values, values);
+    throw bad_config(where + ": model_values",
+                     "was learnt with another model, " + file.model + ": " + differs.found,
+                     "model " + model.name + ": " + differs.expected);
   }
+  compare(where + ": window_s", file.window_s, settings.window_s, " s");
+  compare(where + ": observer_per_s", file.observer_per_s, settings.observer_per_s, " 1/s");
   if (!file.rig_id.empty() && !rig_id.empty() && file.rig_id != rig_id) {
     throw bad_config(where + ": rig_id", "is of another rig, " + file.rig_id, rig_id);
   }
   if (std::abs(file.sample_time_s - sample_time_s) > kSameSampleTime * sample_time_s) {
     throw bad_config(where + ": sample_time_s", "is " + text_of(file.sample_time_s) + " s",
-                     text_of(sample_time_s));
+                     text_of(sample_time_s) + " s");
   }
   if (file.values.size() != file.parameters.size()) {
     throw bad_config(where + ": values", "are not as many as parameters");
   }
-  for (std::size_t i = 0; i < choice.tracked; ++i) {
-    const std::string& name = choice.parameters[i].name;
-    if (std::find(file.parameters.begin(), file.parameters.end(), name) == file.parameters.end()) {
-      throw bad_config(where + ": parameters", "lack " + name, "all that are tracked");
-    }
+  std::vector<std::string> tracked;
+  for (std::size_t i = 0; i < choice.tracked; ++i) tracked.push_back(choice.parameters[i].name);
+  if (sorted(file.parameters) != sorted(tracked)) {
+    throw bad_config(where + ": parameters",
+                     "was learnt while " + joined_names(file.parameters) + " were tracked",
+                     joined_names(tracked));
   }
   return file;
 }

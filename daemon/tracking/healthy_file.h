@@ -1,8 +1,9 @@
 // What a tracking has learnt of a healthy rig, as a file: written by `spoolwatch isolate --learn`,
-// read by [[tracker]]. It says of which model, rig, parameters and window it is; others are
-// refused.
+// read by [[tracker]]. It says of which model with all its values, rig, sample time, window,
+// observer and tracked parameters it is; others are refused.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -13,28 +14,33 @@
 namespace monitor::tracking {
 
 struct HealthyFile {
+  static constexpr std::int64_t kVersion = 2;
+
+  std::int64_t version = kVersion;
   std::string rig_id;                   ///< "": of any rig
   std::string model;                    ///< its name
-  std::string fingerprint;              ///< of the model's values and the settings of the windows
+  std::string model_values;             ///< values_line() of it
   std::string source;                   ///< the record
   std::vector<std::string> parameters;  ///< tracked
   std::vector<double> values;           ///< SI
   double sample_time_s = 0.0;
+  double window_s = 0.0;
+  double observer_per_s = 0.0;
   double rms_m = 0.0;
   double noise_floor_m = 0.0;
 
   void visit(config::schema::Visitor& v);
 };
 
-/// What a healthy error and healthy values hold for: 16 hexadecimal digits.
-[[nodiscard]] std::string fingerprint_of(const plant_sim::ModelFile& model,
-                                         const Settings& settings);
+/// All that the model is, as one line (estimator/fdi/fingerprint.h).
+[[nodiscard]] std::string values_line(const plant_sim::ModelFile& model);
 
 [[nodiscard]] HealthyFile healthy_file(const plant_sim::ModelFile& model, const Choice& choice,
                                        const Settings& settings, const Healthy& healthy);
 
-/// Throws config::schema::Error: exit 78 for a file of another model, window, sample time,
-/// rig (where both are known) or without one of the parameters.
+/// Throws config::schema::Error: exit 78 for a file of another version, model, window, observer,
+/// sample time, rig (where both are known) or list of tracked parameters, whatever its order: what
+/// one of them was found to be depends on which others were free.
 [[nodiscard]] HealthyFile read_healthy(const std::filesystem::path& file,
                                        const plant_sim::ModelFile& model, const Settings& settings,
                                        const Choice& choice, double sample_time_s,

@@ -12,6 +12,7 @@
 #include "config/schema/error.h"
 #include "workbench/record_samples.h"
 #include "workbench/replay/log_walk.h"
+#include "workbench/rig_table.h"
 
 namespace workbench::replay {
 namespace {
@@ -31,7 +32,7 @@ class Watch final : private estimator::fdi::Events {
  public:
   Watch(const Rules& rules, double sample_time_s) : sample_time_s_(sample_time_s) {
     estimator::fdi::PipelineConfig config = rules.pipeline;
-    config.load_bands(rules.folder, sample_time_s);
+    config.load_bands(rules.folder, sample_time_s, rules.rig_id);
     pipeline_ = std::make_unique<Pipeline>(config, sample_time_s);
   }
   void process(const Sample& sample) { pipeline_->process(sample, *this); }
@@ -166,7 +167,10 @@ Rules read_rules(const std::string& file) {
   Rules rules;
   rules.file = file;
   const config::schema::Document document = config::schema::Document::load(file);
-  document.read_part([&](config::schema::Visitor& v) { rules.pipeline.visit(v); });
+  document.read_part([&](config::schema::Visitor& v) {
+    rules.pipeline.visit(v);
+    visit_rig(v, rules.rig_id);
+  });
   rules.folder = document.folder();
   const bool none_by_itself =
       std::all_of(rules.pipeline.sources.begin(), rules.pipeline.sources.end(),

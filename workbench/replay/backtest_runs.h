@@ -17,6 +17,7 @@ namespace workbench::replay {
 struct Rules {
   std::string file;
   std::filesystem::path folder;  ///< bands_file starts here
+  std::string rig_id;            ///< "" where the file does not say
   estimator::fdi::PipelineConfig pipeline{monitor::tracking::source_kinds()};
 };
 

@@ -29,16 +29,29 @@ class HealthyFiles : public testing::Test {
   }
   void TearDown() override { fs::remove(path_); }
 
+  void rewrite(const std::string& from, const std::string& to) const {
+    std::ifstream in(path_);
+    std::string text((std::istreambuf_iterator<char>(in)), {});
+    in.close();
+    ASSERT_NE(text.find(from), std::string::npos) << text;
+    std::ofstream(path_) << text.replace(text.find(from), from.size(), to);
+  }
+
+  /// One line; "" when it is not refused.
   std::string refusal(const plant_sim::ModelFile& model, const iso::Settings& settings,
                       double sample_time_s, const std::string& rig_id) const {
     try {
       (void)iso::read_healthy(path_, model, settings, choice_, sample_time_s, rig_id);
     } catch (const config::schema::Error& error) {
+      const std::string line = error.what();
       EXPECT_EQ(error.exit_code(), 78);
-      return error.what();
+      EXPECT_THAT(line, HasSubstr(path_.string()));
+      EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+      return line;
     }
     return {};
   }
+  std::string refusal() const { return refusal(model_, {}, truth::kSample_s, "stand-1"); }
 
   plant_sim::ModelFile model_ = printed_model();
   iso::Choice choice_;
@@ -55,17 +68,47 @@ TEST_F(HealthyFiles, ComeBackAsTheyWere) {
   EXPECT_NEAR(healthy.x[1], std::log(0.9), 1e-12);
 }
 
-TEST_F(HealthyFiles, AreRefusedForAnotherModelRigWindowOrSampleTime) {
-  EXPECT_EQ(refusal(model_, {}, truth::kSample_s, "stand-1"), "");
-  EXPECT_EQ(refusal(model_, {}, truth::kSample_s, ""), "");
-  EXPECT_THAT(refusal(model_, {}, truth::kSample_s, "stand-2"), HasSubstr("another rig, stand-1"));
-  EXPECT_THAT(refusal(model_, {}, 0.01, "stand-1"), HasSubstr("sample_time_s"));
-  iso::Settings longer;
-  longer.window_s = 3.0;
-  EXPECT_THAT(refusal(model_, longer, truth::kSample_s, "stand-1"), HasSubstr("another model"));
+TEST_F(HealthyFiles, AreRefusedForAnotherRigOrSampleTime) {
+  EXPECT_EQ(refusal(), "");
+  EXPECT_EQ(refusal(model_, {}, truth::kSample_s, ""), "") << "of any rig";
+  EXPECT_THAT(refusal(model_, {}, truth::kSample_s, "stand-2"),
+              HasSubstr("rig_id: is of another rig, stand-1; allowed: stand-2"));
+  EXPECT_THAT(refusal(model_, {}, 0.01, "stand-1"),
+              HasSubstr("sample_time_s: is 0.005 s; allowed: 0.01 s"));
+}
+
+TEST_F(HealthyFiles, AreRefusedForAnotherWindowOrObserver) {
+  iso::Settings other;
+  other.window_s = 3.0;
+  EXPECT_THAT(refusal(model_, other, truth::kSample_s, "stand-1"),
+              HasSubstr("window_s: was learnt with 2 s; allowed: 3 s"));
+  other = {};
+  other.observer_per_s = 1.0;
+  EXPECT_THAT(refusal(model_, other, truth::kSample_s, "stand-1"),
+              HasSubstr("observer_per_s: was learnt with 2 1/s; allowed: 1 1/s"));
+}
+
+TEST_F(HealthyFiles, AreRefusedForAModelWithAnotherValueOrEffectAndSayWhich) {
   plant_sim::ModelFile other = model_;
   *other.value("mass_kg") = 51.0;
-  EXPECT_THAT(refusal(other, {}, truth::kSample_s, "stand-1"), HasSubstr("another model"));
+  EXPECT_THAT(refusal(other, {}, truth::kSample_s, "stand-1"),
+              testing::AllOf(HasSubstr("mass_kg = 50.0; allowed: "), HasSubstr("mass_kg = 51.0")));
+  other = model_;
+  other.name = "renamed";
+  EXPECT_THAT(refusal(other, {}, truth::kSample_s, "stand-1"), HasSubstr("another model, printed"));
+}
+
+TEST_F(HealthyFiles, AreRefusedWhereOtherParametersWereTracked) {
+  choice_ = iso::choose(model_, {"supply_pressure_Pa"}, "parameters");
+  EXPECT_THAT(refusal(), HasSubstr("parameters: was learnt while supply_pressure_Pa, "
+                                   "damping_N_s_per_m were tracked; allowed: supply_pressure_Pa"));
+  choice_ = iso::choose(model_, {"damping_N_s_per_m", "supply_pressure_Pa"}, "parameters");
+  EXPECT_EQ(refusal(), "") << "the order does not matter";
+}
+
+TEST_F(HealthyFiles, AreRefusedInAnotherLayout) {
+  rewrite("healthy_version = 2", "healthy_version = 1");
+  EXPECT_THAT(refusal(), HasSubstr("healthy_version"));
 }
 
 }  // namespace
