@@ -16,9 +16,9 @@ using Eigen::VectorXd;
 class Namer {
  public:
   Namer(WindowFit& fit, const Choice& choice, const Cut& cut, const WindowEstimate& found,
-        const VectorXd& healthy, double sigma_m, std::size_t measured)
+        const VectorXd& healthy, double sigma_m, const Thresholds& thresholds, std::size_t measured)
       : fit_(fit),
-        sample_time_s_(fit.sample_time_s()),
+        thresholds_(thresholds),
         choice_(choice),
         cut_(cut),
         found_(found),
@@ -32,7 +32,7 @@ class Namer {
       base_[static_cast<Index>(measured)] = found.x[static_cast<Index>(measured)];
   }
 
-  std::vector<Named> run(const Thresholds& thresholds, Memory& memory) {
+  std::vector<Named> run(Memory& memory) {
     std::vector<Named> named;
     std::vector<Named> read;
     std::vector<signed char> directions(choice_.tracked, 0);
@@ -40,7 +40,7 @@ class Namer {
       const auto at = static_cast<Index>(i);
       Named one{i, found_.x[at], found_.std_error[at], found_.x[at] - healthy_[at], {}};
       const double needed =
-          std::max(least_of(choice_, i, thresholds), thresholds.sure * one.std_error);
+          std::max(least_of(choice_, i, thresholds_), thresholds_.sure * one.std_error);
       if (std::abs(one.deviation) < needed) continue;
       (i == measured_ ? read : named).push_back(one);
       directions[i] = one.deviation > 0.0 ? 1 : -1;
@@ -80,9 +80,7 @@ class Namer {
       const WindowEstimate alone = fit_.fit(cut_, {a}, base_, sigma_m_);
       if (alone.chi_square < chi_square_ + kChance) causes.push_back({name(a), value(a, alone.x)});
     }
-    for (const SensorRival& sensor : sensor_rivals(fit_, cut_, base_, sigma_m_, sample_time_s_)) {
-      if (sensor.chi_square < chi_square_ + kChance) causes.push_back({sensor.name, sensor.value});
-    }
+    add_sensor(base_, causes);
     if (causes.empty()) return false;
     std::size_t best = 0;
     double least = INFINITY;
@@ -116,9 +114,13 @@ class Namer {
       if (best.rms_m > kAsGood * found_.rms_m) continue;
       one.rivals.push_back({name(a), value(a, best.x)});
     }
-    for (const SensorRival& sensor : sensor_rivals(fit_, cut_, without, sigma_m_, sample_time_s_)) {
-      if (sensor.chi_square < chi_square_ + kChance)
-        one.rivals.push_back({sensor.name, sensor.value});
+    add_sensor(without, one.rivals);
+  }
+
+  void add_sensor(const VectorXd& x, std::vector<Rival>& rivals) const {
+    if (!thresholds_.suspect_position_sensor) return;
+    for (const SensorRival& sensor : sensor_rivals(fit_, cut_, x, sigma_m_, fit_.sample_time_s())) {
+      if (sensor.chi_square < chi_square_ + kChance) rivals.push_back({sensor.name, sensor.value});
     }
   }
 
@@ -136,7 +138,7 @@ class Namer {
   }
 
   WindowFit& fit_;
-  double sample_time_s_;
+  const Thresholds& thresholds_;
   const Choice& choice_;
   const Cut& cut_;
   const WindowEstimate& found_;
@@ -161,7 +163,7 @@ std::vector<Named> name_changes(WindowFit& fit, const Choice& choice, const Cut&
                                 const WindowEstimate& found, const VectorXd& healthy,
                                 double sigma_m, const Thresholds& thresholds, Memory& memory,
                                 std::size_t measured) {
-  return Namer(fit, choice, cut, found, healthy, sigma_m, measured).run(thresholds, memory);
+  return Namer(fit, choice, cut, found, healthy, sigma_m, thresholds, measured).run(memory);
 }
 
 void carry(estimator::Carrier& carrier, std::vector<Named>& named, const Choice& choice) {

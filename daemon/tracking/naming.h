@@ -9,9 +9,9 @@
 //     its whole effect but for a share kLeft or kChance; and that leaves no more than the tracked
 //     ones (within kAsGood) once others may follow: the tracked ones freely, those of the plant
 //     that are hardly seen as far as the file may be off. It joins that parameter's group.
-// The position sensor joins where its scale or drift in place of the parameter, the others as they
-// are, leaves no more within kChance (sensor_rival.h): its scale is to command and position nearly
-// what the valve gain is, and its drift what a null bias is.
+// Where the position sensor is suspected as well, it joins where its scale or drift in place of the
+// parameter, the others as they are, leaves no more within kChance (sensor_rival.h): its scale is
+// to command and position nearly what the valve gain is, and its drift what a null bias is.
 #pragma once
 
 #include <string>
@@ -27,6 +27,7 @@ struct Thresholds {
   double least_ratio = 0.03;  ///< of the healthy value; linear parameters: see kLeastOfTypical
   double sure = 5.0;          ///< standard errors
   double at_once = 20.0;      ///< standard errors at which one window is enough for an alarm
+  bool suspect_position_sensor = false;  ///< it may have changed, too, and joins the groups
 };
 
 /// Of an effect's typical size: the least change of an effect's parameter.

@@ -35,6 +35,8 @@ void TrackerConfig::visit(Visitor& v) {
            settings.most_ratio, {1.0, 1e3});
   v.number({"least_ratio", "smaller changes are not named"}, settings.thresholds.least_ratio,
            {1e-4, 1.0});
+  v.boolean({"suspect_position_sensor", "its scale or drift may explain a change as well"},
+            settings.thresholds.suspect_position_sensor);
   v.number({"most_std_error_ratio", "of a value, beyond which it is invalid"},
            settings.most_std_error, {1e-6, 1.0});
   v.number({"most_std_error_of_typical", "the same of an effect, over its typical size"},

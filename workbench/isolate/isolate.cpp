@@ -44,6 +44,8 @@ void declare_judging(CLI::App& command, Request& request) {
                   "ratio: smaller changes of a parameter are not named")
       ->check(number_within(1e-4, 1.0))
       ->capture_default_str();
+  command.add_flag("--suspect-position-sensor", request.settings.thresholds.suspect_position_sensor,
+                   "its scale or drift may explain a change as well");
 }
 
 }  // namespace

@@ -127,6 +127,9 @@ std::string command_of(const Request& request) {
   if (request.settings.most_ratio != Settings{}.most_ratio) {
     add("--limit", number("%.9g", request.settings.most_ratio));
   }
+  if (request.settings.thresholds.suspect_position_sensor) {
+    words.emplace_back("--suspect-position-sensor");
+  }
   if (request.healthy_rms_m > 0.0) {
     add("--healthy-rms", number("%.9g", request.healthy_rms_m));
   } else if (request.healthy != Request{}.healthy) {

@@ -1,4 +1,4 @@
-// A position sensor that reads wrongly is not taken for a change of the rig alone.
+// A position sensor that is suspected and reads wrongly is not taken for a change of the rig alone.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -28,6 +28,12 @@ truth::Record scaled(double s, std::size_t seed) {
   return whole;
 }
 
+iso::Settings suspecting() {
+  iso::Settings settings;
+  settings.thresholds.suspect_position_sensor = true;
+  return settings;
+}
+
 bool has_sensor(const iso::Alarm& alarm) {
   return std::any_of(alarm.named.rivals.begin(), alarm.named.rivals.end(), [](const auto& rival) {
     return rival.name.rfind("position_sensor.", 0) == 0;
@@ -36,7 +42,7 @@ bool has_sensor(const iso::Alarm& alarm) {
 
 TEST(Sensor, OfAnotherScaleIsInTheGroupOfEveryAlarmThatItRaises) {
   for (const double s : {1.05, 0.95}) {
-    const Tracked t = tracked(scaled(s, 1));
+    const Tracked t = tracked(scaled(s, 1), usual(), suspecting());
     ASSERT_FALSE(t.alarms.empty()) << s;
     bool is_scale = false;
     for (const iso::Alarm& alarm : t.alarms) {
@@ -55,11 +61,17 @@ TEST(Sensor, IsNoRivalOfADampingThatChanges) {
   for (const double factor : {1.25, 0.75}) {
     truth::Case of = stand(25.0);
     fault(of, kFault_s, &truth::Plant::damping_N_s_per_m, factor);
-    const Tracked t = tracked(truth::simulate(of));
+    const Tracked t = tracked(truth::simulate(of), usual(), suspecting());
     ASSERT_EQ(t.alarms.size(), 1u);
     EXPECT_EQ(t.name(t.alarms[0]), "damping_N_s_per_m");
     EXPECT_FALSE(has_sensor(t.alarms[0]));
   }
+}
+
+TEST(Sensor, IsInNoGroupWhereItIsNotSuspected) {
+  const Tracked t = tracked(scaled(1.05, 1));
+  ASSERT_FALSE(t.alarms.empty());
+  for (const iso::Alarm& alarm : t.alarms) EXPECT_FALSE(has_sensor(alarm)) << t.name(alarm);
 }
 
 }  // namespace

@@ -96,6 +96,23 @@ TEST_F(IsolateCommand, TellsInWords) {
   EXPECT_THAT(text, testing::HasSubstr("invalid"));
 }
 
+TEST_F(IsolateCommand, SuspectsThePositionSensorWhereItIsAskedTo) {
+  truth::Case of = stand(22.0);
+  fault(of, 15.0, &truth::Plant::valve_gain_m_per_V, 1.05);
+  truth::write_csv(truth::simulate(of), file("record.csv"));
+  const auto group = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"--json", file("out.json")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    run(arguments);
+    const auto json = nlohmann::json::parse(std::ifstream(file("out.json")));
+    return json["alarms"][0]["ambiguity_group"].get<std::vector<std::string>>();
+  };
+  EXPECT_THAT(group({}), testing::ElementsAre("supply_pressure_Pa", "valve_gain_m_per_V"));
+  EXPECT_THAT(group({"--suspect-position-sensor"}),
+              testing::ElementsAre("supply_pressure_Pa", "valve_gain_m_per_V",
+                                   "position_sensor.scale_ratio"));
+}
+
 TEST_F(IsolateCommand, RefusesWhatItCannotUse) {
   std::string line;
   EXPECT_EQ(code({"--parameters", "supply_pressur_Pa"}, line), 78);
