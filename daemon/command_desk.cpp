@@ -281,6 +281,7 @@ io::ControlStatus CommandDesk::status() const {
     status.spare_rods.push_back({identity_.spare_rods[i], stats.spare_rods[i].value.load()});
   }
   add_rods(status);
+  if (parts_.detectable != nullptr) status.detectable = parts_.detectable->read();
   for (std::size_t i = 0; i < identity_.inputs.size(); ++i) {
     status.inputs.push_back({identity_.inputs[i], stats.inputs[i].value.load()});
   }

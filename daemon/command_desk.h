@@ -31,6 +31,7 @@ class CommandDesk {
     rt::AlarmAnswerQueue* alarm_answers = nullptr;
     io::Audit* audit = nullptr;
     Reloader* reloader = nullptr;  ///< null: nothing is read again
+    const io::DetectableBoard* detectable = nullptr;
   };
   /// What does not change.
   struct Identity {

@@ -218,19 +218,20 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
   Reloader reloader({clock, log, keeping.audit.get(), keeping.evidence != nullptr, options.read,
                      keeping.pipeline_hash},
                     config, p.sample_time_s);
+  io::DetectableBoard detectable;
   rt::Detector detector(
       {clock, *samples, stats, *p.rules.pipeline, publisher, recorder.get(), &keeping.orders,
        &keeping.answers, keeping.store.get(), keeping.audit.get(), keeping.evidence.get(),
-       keeping.pipeline_hash, &reloader.to_detector, &reloader.from_detector},
+       keeping.pipeline_hash, &reloader.to_detector, &reloader.from_detector, &detectable},
       {config.rig_id, hash_text(p.hash), grant.text, config.rig.rod_backend(),
        valve != nullptr ? valve_config.backend : "", ids_of(p.devices.spare_rods),
        ids_of(p.devices.inputs), p.guards, p.sample_time_s});
   keeping.bring_back(*p.rules.pipeline, clock.utc_us(), log);
-  CommandDesk desk(
-      {clock, commands, stats, &keeping.orders, &keeping.answers, keeping.audit.get(), &reloader},
-      {config.rig_id, hash_text(p.hash), p.guards, ids_of(p.devices.spare_rods),
-       ids_of(p.devices.inputs), inputs_of(p.devices, hal::InputRole::enable),
-       inputs_of(p.devices, hal::InputRole::e_stop), p.never_arms});
+  CommandDesk desk({clock, commands, stats, &keeping.orders, &keeping.answers, keeping.audit.get(),
+                    &reloader, &detectable},
+                   {config.rig_id, hash_text(p.hash), p.guards, ids_of(p.devices.spare_rods),
+                    ids_of(p.devices.inputs), inputs_of(p.devices, hal::InputRole::enable),
+                    inputs_of(p.devices, hal::InputRole::e_stop), p.never_arms});
   Attendant attendant(desk, socket.get(), reloader);
   const io::ServiceManager manager;
   ServiceReport service(manager, clock, stats, valve != nullptr);

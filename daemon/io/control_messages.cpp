@@ -77,6 +77,20 @@ ordered_json inputs_of(const std::vector<ControlStatus::Input>& inputs) {
   return list;
 }
 
+ordered_json detectable_of(const ControlStatus& status) {
+  ordered_json list = ordered_json::array();
+  for (const Detectable& source : status.detectable) {
+    ordered_json smallest = ordered_json::object();
+    for (const auto& change : source.changes) smallest[change.name] = number(change.smallest);
+    const double age_s = static_cast<double>(status.ticks - source.tick) * status.sample_time_s;
+    list.push_back({{"source", source.source},
+                    {"age_s", number(age_s)},
+                    {"smallest", std::move(smallest)},
+                    {"why", source.why.empty() ? json(nullptr) : json(source.why)}});
+  }
+  return list;
+}
+
 }  // namespace
 
 ControlRequest parse_request(const std::string& line) {
@@ -162,6 +176,7 @@ std::string print_status(const ControlStatus& status) {
   }
   line["spare_rods"] = inputs_of(status.spare_rods);
   line["inputs"] = inputs_of(status.inputs);
+  line["detectable"] = detectable_of(status);
   return line.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "daemon/control/arming.h"
+#include "daemon/io/detectable.h"
 #include "estimator/fdi/alarm.h"
 
 namespace monitor::io {
@@ -77,6 +78,7 @@ struct ControlStatus {
   std::vector<Rod> rods;  ///< empty: there is one alone
   std::string rod_in_charge;
   double rod_in_charge_for_s = 0.0;
+  std::vector<Detectable> detectable;
 };
 
 [[nodiscard]] std::string print_status(const ControlStatus& status);

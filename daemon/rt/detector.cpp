@@ -96,6 +96,7 @@ void Detector::process(const Sample& sample) {
 
 void Detector::on_estimate(const estimator::fdi::EstimateEvent& event) {
   parts_.publisher.estimate(event, stamp());
+  if (parts_.detectable != nullptr) parts_.detectable->note(event);
 }
 
 void Detector::on_alarm(const Alarm& alarm) { publish(alarm, false); }

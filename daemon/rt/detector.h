@@ -10,6 +10,7 @@
 #include "daemon/io/alarm_store.h"
 #include "daemon/io/audit.h"
 #include "daemon/io/conditions.h"
+#include "daemon/io/detectable.h"
 #include "daemon/io/evidence.h"
 #include "daemon/io/publisher.h"
 #include "daemon/io/recorder.h"
@@ -43,6 +44,7 @@ class Detector final : private estimator::fdi::Events {
     std::uint64_t pipeline_hash = 0;  ///< fdi::hash_of(whole_text), for evidence
     RuleQueue* new_rules = nullptr;   ///< to be taken, with `taken_rules`
     RuleQueue* taken_rules = nullptr;
+    io::DetectableBoard* detectable = nullptr;
   };
   /// Constant fields of health_t.
   struct Identity {

@@ -37,6 +37,7 @@ void Detector::change_rules(RuleChange& change) {
     change.ended.push_back(id);
   }
   std::swap(parts_.pipeline, next);
+  if (parts_.detectable != nullptr) parts_.detectable->clear();
   parts_.pipeline_hash = change.pipeline_hash;
   health_.config_hash = change.config_hash;
   // An alarm that stood before has its evidence.

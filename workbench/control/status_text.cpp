@@ -1,8 +1,11 @@
 #include "workbench/control/status_text.h"
 
+#include <cmath>
 #include <cstdio>
 #include <ostream>
 #include <string>
+
+#include "daemon/tracking/quantity.h"
 
 namespace workbench {
 namespace {
@@ -57,6 +60,27 @@ void print_rods(const Json& status, std::ostream& out) {
   }
 }
 
+/// The smallest changes that would be seen now, and what would help where they are great.
+void print_detectable(const Json& status, std::ostream& out) {
+  const auto sources = status.find("detectable");
+  if (sources == status.end() || !sources->is_array()) return;
+  namespace tracking = monitor::tracking;
+  for (const Json& source : *sources) {
+    out << "  " << text_of(source, "source") << " would detect now:";
+    const char* before = " ";
+    for (const auto& [name, smallest] : source.at("smallest").items()) {
+      out << before << tracking::parameter_words(name) << ' '
+          << (smallest.is_number()
+                  ? tracking::words(tracking::quantity(name, smallest.get<double>(), NAN))
+                  : "not known");
+      before = ", ";
+    }
+    out << '\n';
+    const std::string why = text_of(source, "why");
+    if (!why.empty()) out << "    " << why << '\n';
+  }
+}
+
 }  // namespace
 
 void print_status(const Json& status, std::ostream& out) {
@@ -75,6 +99,7 @@ void print_status(const Json& status, std::ostream& out) {
       << number_of(status, "u_V", 1.0, " V") << '\n';
   print_rods(status, out);
   print_inputs(status, "inputs", "input", out);
+  print_detectable(status, out);
   const auto alarms = status.find("active_alarms");
   if (alarms != status.end() && alarms->is_number_integer() && alarms->get<long long>() > 0) {
     const auto count = alarms->get<long long>();
