@@ -145,6 +145,7 @@ Card make_card(const Bench& bench, const std::vector<Method>& methods, const Sco
     figures.load_ratio = trials.load_ratio(m);
     const std::string key = digest(methods[m].text);
     for (std::size_t p = 0; p < parts.size(); ++p) {
+      if (!parts[p].is_for(methods[m])) continue;
       const json* const result = store.find(parts[p].id, key);
       if (result == nullptr) {
         open[p] = 1;

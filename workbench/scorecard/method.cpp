@@ -90,6 +90,9 @@ void Method::visit(config::schema::Visitor& v) {
   v.text({"what", "in a few words"}, what);
   v.number({"false_alarm_time_s", "between false alarms, of each learned band"}, false_alarm_time_s,
            {1.0, 1e9});
+  v.number({"healthy_share", "of the plan's hours without a fault that it is given"}, healthy_share,
+           {0.0, 1.0});
+  v.texts({"notices", "SOURCE.NAME of alarms that are no faults, and are not counted"}, notices);
   pipeline.visit(v);
 }
 

@@ -2,8 +2,8 @@
 // configuration that makes up a pipeline. Bands without limits are learned, as by `spoolwatch
 // calibrate`, from a healthy record of the motion that the method is then tried on.
 //
-// TOML: name, what, false_alarm_time_s, and [[estimator]], [[band]], ... of a daemon's
-// configuration.
+// TOML: name, what, false_alarm_time_s, healthy_share, notices, and [[estimator]], [[band]], ... of
+// a daemon's configuration.
 #pragma once
 
 #include <string>
@@ -19,6 +19,8 @@ struct Method {
   std::string name;
   std::string what;
   double false_alarm_time_s = 86400.0;  ///< of each learned band, aimed at
+  double healthy_share = 1.0;        ///< of the plan's hours without a fault, where it takes long
+  std::vector<std::string> notices;  ///< alarms that are no faults, and are not counted
   estimator::fdi::PipelineConfig pipeline{monitor::tracking::source_kinds()};
   std::string file;
   std::string text;  ///< as it is in effect: what results depend on

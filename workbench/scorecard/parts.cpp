@@ -67,8 +67,8 @@ std::vector<Part> parts_of(const Bench& bench, const Scope& scope) {
     const auto records = static_cast<std::size_t>(std::ceil(all - 1e-6));
     for (std::size_t i = 0; i < records; ++i) {
       for (const std::size_t m : motions) {
-        parts.push_back(
-            {kind, id + plan.motions[m].id + "/" + std::to_string(i), m, subject, 1, part_s});
+        parts.push_back({kind, id + plan.motions[m].id + "/" + std::to_string(i), m, subject, 1,
+                         part_s, static_cast<double>(i) / static_cast<double>(records)});
       }
     }
   };

@@ -81,7 +81,7 @@ void work(const std::vector<Part>& parts, const std::vector<Method>& methods, Tr
   for (const Part& part : parts) {
     std::vector<std::size_t> which;
     for (std::size_t m = 0; m < methods.size(); ++m) {
-      if (store.find(part.id, keys[m]) == nullptr) which.push_back(m);
+      if (part.is_for(methods[m]) && store.find(part.id, keys[m]) == nullptr) which.push_back(m);
     }
     if (!which.empty()) open.emplace_back(&part, which);
   }

@@ -1,5 +1,6 @@
 #include "workbench/scorecard/stand.h"
 
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -14,6 +15,10 @@ std::uint64_t mix(std::uint64_t x) {
   x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9U;
   x = (x ^ (x >> 27U)) * 0x94d049bb133111ebU;
   return x ^ (x >> 31U);
+}
+
+plant_sim::Encoder spare_rod(const simulate::Scenario& scenario, std::uint64_t seed) {
+  return {scenario.instruments.encoder_resolution_m, scenario.instruments.noise_m, seed};
 }
 
 }  // namespace
@@ -60,6 +65,8 @@ simulate::Scenario changed(const Bench& bench, const Motion& motion, const Benig
 
 Samples run(const simulate::Scenario& scenario, double duration_s, std::uint64_t seed) {
   simulate::ClosedLoop loop(scenario, seed);
+  std::array<plant_sim::Encoder, 2> spare_rods{spare_rod(scenario, seed_of(seed, "rod_2")),
+                                               spare_rod(scenario, seed_of(seed, "rod_3"))};
   Samples samples(static_cast<std::size_t>(std::llround(duration_s / simulate::kSampleTime_s)));
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const simulate::LoopRow row = loop.step();
@@ -73,6 +80,9 @@ Samples run(const simulate::Scenario& scenario, double duration_s, std::uint64_t
     s.u_requested_V = row.u_requested_V;
     s.u_applied_V = row.u_applied_V;
     s.saturated = row.saturated;
+    s.rod_count = 1;
+    s.rod_m[0] = row.y_m;
+    for (plant_sim::Encoder& rod : spare_rods) s.rod_m[s.rod_count++] = rod.read(row.rod_m);
   }
   return samples;
 }

@@ -47,10 +47,11 @@ class Trials::Runners {
     const Trained& trained = trials.trained(motion);
     for (const std::size_t method : which) {
       unusable_.push_back(trained.unusable[method]);
-      watches_.push_back(
-          trained.unusable[method].empty()
-              ? std::make_unique<Watch>(trained.configs[method], simulate::kSampleTime_s)
-              : nullptr);
+      watches_.push_back(trained.unusable[method].empty()
+                             ? std::make_unique<Watch>(trained.configs[method],
+                                                       simulate::kSampleTime_s,
+                                                       trials.methods_[method].notices)
+                             : nullptr);
     }
   }
 
@@ -60,7 +61,8 @@ class Trials::Runners {
     return usable(i) ? std::move(found) : json{{"unusable", unusable_[i]}};
   }
 
-  /// `f(Watch&)` with its time taken; `rig_s`: at most so long a record.
+  [[nodiscard]] Watch& watch(std::size_t i) { return *watches_[i]; }
+  /// `f(Watch&)` with its time taken; `rig_s`: of the record.
   template <class F>
   auto with(std::size_t i, double rig_s, const F& f) {
     const double begin_s = processor_s();
@@ -157,14 +159,16 @@ void Trials::quiet(Turn& turn) const {
 }
 
 /// What a method says of a record with a fault, which ends watch_s after it.
-Answer Trials::answer(Turn& turn, std::size_t method, const Samples& samples,
-                      bool to_the_end) const {
+Answer Trials::answer(Turn& turn, std::size_t method, const Samples& samples, bool to_the_end,
+                      Watch::Lead* lead) const {
   const double end_s = static_cast<double>(samples.size()) * simulate::kSampleTime_s;
   const double at_s = end_s - bench_.plan.watch_s;
   const Fault& fault = bench_.plan.faults[turn.part.subject];
-  return turn.runners.with(method, to_the_end ? end_s : at_s, [&](Watch& w) {
-    return w.fault(samples, at_s, fault.names, to_the_end);
-  });
+  const auto judge = [&](Watch& w) {
+    return w.fault(samples, at_s, fault.names, to_the_end, lead);
+  };
+  // One that stops early took nobody knows how much of the record.
+  return to_the_end ? turn.runners.with(method, end_s, judge) : judge(turn.runners.watch(method));
 }
 
 /// The stated size of a fault: delays and names.
@@ -182,7 +186,8 @@ void Trials::stated(Turn& turn) const {
 
 /// How often each of the methods detects one size; those whose share is decided stop early.
 std::vector<Trials::Count> Trials::rung(Turn& turn, const std::vector<std::size_t>& methods,
-                                        double size) const {
+                                        double size,
+                                        std::vector<std::vector<Watch::Lead>>& leads) const {
   const Fault& fault = bench_.plan.faults[turn.part.subject];
   const auto trials = static_cast<std::size_t>(scope_.seeds);
   std::vector<Count> counts(methods.size());
@@ -195,7 +200,8 @@ std::vector<Trials::Count> Trials::rung(Turn& turn, const std::vector<std::size_
     for (std::size_t k = 0; k < methods.size(); ++k) {
       if (!open(counts[k])) continue;
       ++counts[k].tried;
-      if (answer(turn, methods[k], samples, false).detected()) ++counts[k].detected;
+      Watch::Lead& lead = leads[methods[k]][trial];
+      if (answer(turn, methods[k], samples, false, &lead).detected()) ++counts[k].detected;
     }
   }
   return counts;
@@ -208,6 +214,7 @@ void Trials::ladder(Turn& turn) const {
   const std::vector<double> sizes =
       bench_.plan.faults[turn.part.subject].sizes(turn.part.direction);
   std::vector<LadderSearch> searches(turn.out.size(), LadderSearch(sizes.size()));
+  std::vector<std::vector<Watch::Lead>> leads(turn.out.size(), std::vector<Watch::Lead>(trials));
   for (json& one : turn.out) one = {{"smallest", nullptr}, {"rungs", json::array()}};
   for (;;) {
     std::map<std::size_t, std::vector<std::size_t>> asked;
@@ -217,7 +224,7 @@ void Trials::ladder(Turn& turn) const {
     }
     if (asked.empty() || turn.stop()) return;
     for (const auto& [number, methods] : asked) {
-      const std::vector<Count> counts = rung(turn, methods, sizes[number]);
+      const std::vector<Count> counts = rung(turn, methods, sizes[number], leads);
       if (turn.stop()) return;
       for (std::size_t k = 0; k < methods.size(); ++k) {
         const std::size_t i = methods[k];

@@ -47,6 +47,11 @@ struct Part {
   std::size_t subject = 0;  ///< fault or benign change
   int direction = 1;
   double work_s = 0.0;  ///< simulated time, about
+  double share = 0.0;   ///< of the hours without a fault, those before it
+
+  [[nodiscard]] bool is_for(const Method& method) const {
+    return kind != Kind::healthy || share < method.healthy_share;
+  }
 };
 
 /// Parts of what is asked for. Throws config::schema::Error (exit 2) for an unknown name.
@@ -88,10 +93,12 @@ class Trials {
   void quiet(Turn& turn) const;
   void stated(Turn& turn) const;
   void ladder(Turn& turn) const;
+  /// `leads`: of each method and trial.
   [[nodiscard]] std::vector<Count> rung(Turn& turn, const std::vector<std::size_t>& methods,
-                                        double size) const;
+                                        double size,
+                                        std::vector<std::vector<Watch::Lead>>& leads) const;
   [[nodiscard]] Answer answer(Turn& turn, std::size_t method, const Samples& samples,
-                              bool to_the_end) const;
+                              bool to_the_end, Watch::Lead* lead = nullptr) const;
 
   const Bench& bench_;
   std::vector<Method> methods_;

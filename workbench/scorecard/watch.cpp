@@ -1,7 +1,11 @@
 #include "workbench/scorecard/watch.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <utility>
+
+#include "estimator/carrier.h"
 
 namespace workbench::scorecard {
 
@@ -50,9 +54,11 @@ Quiet& Quiet::operator+=(const Quiet& other) {
 /// Follows which alarms stand.
 class Watch::Listener final : public fdi::Events {
  public:
+  explicit Listener(std::vector<std::string> notices) : notices_(std::move(notices)) {}
   void on_estimate(const fdi::EstimateEvent& /*event*/) override {}
   void on_alarm(const fdi::Alarm& alarm) override {
     const std::string key = alarm.source + "." + alarm.name;
+    if (std::find(notices_.begin(), notices_.end(), key) != notices_.end()) return;
     const bool counts = alarm.active && alarm.severity != fdi::Severity::invalid;
     const Names names = counts ? names_of(alarm) : Names{};
     State& state = states_[key];
@@ -77,35 +83,52 @@ class Watch::Listener final : public fdi::Events {
     Names names;
     int direction = 0;
   };
+  std::vector<std::string> notices_;
   std::map<std::string, State> states_;
 };
 
-Watch::Watch(const fdi::PipelineConfig& config, double sample_time_s)
-    : pipeline_(config, sample_time_s), sample_time_s_(sample_time_s) {}
+Watch::Watch(const fdi::PipelineConfig& config, double sample_time_s,
+             std::vector<std::string> notices)
+    : pipeline_(config, sample_time_s),
+      sample_time_s_(sample_time_s),
+      notices_(std::move(notices)) {}
+
+void Watch::take_lead(const Samples& samples, std::size_t end, Listener& listener, Lead* lead) {
+  if (lead != nullptr && lead->said != nullptr) {
+    estimator::Carrier carrier = estimator::Carrier::restoring(lead->pipeline);
+    pipeline_.carry(carrier);
+    assert(carrier.complete());
+    listener = *lead->said;
+    return;
+  }
+  pipeline_.reset();
+  for (std::size_t k = 0; k < end; ++k) pipeline_.process(samples[k], listener);
+  listener.came.clear();
+  if (lead == nullptr) return;
+  estimator::Carrier carrier = estimator::Carrier::saving(lead->pipeline);
+  pipeline_.carry(carrier);
+  lead->said = std::make_shared<Listener>(listener);
+}
 
 Answer Watch::fault(const Samples& samples, double at_s, const std::vector<std::string>& names,
-                    bool to_the_end) {
-  pipeline_.reset();
-  Listener listener;
+                    bool to_the_end, Lead* lead) {
+  const auto time_s = [&](std::size_t k) {
+    return static_cast<double>(samples[k].tick) * sample_time_s_;
+  };
+  std::size_t k = 0;
+  while (k < samples.size() && time_s(k) < at_s) ++k;
+  Listener listener(notices_);
+  take_lead(samples, k, listener, lead);
   Answer answer;
-  bool begun = false;  // the sample before was healthy
-  for (const fdi::Sample& sample : samples) {
-    const double t_s = static_cast<double>(sample.tick) * sample_time_s_;
-    const int stood = listener.standing;
-    pipeline_.process(sample, listener);
-    if (t_s < at_s) {
-      begun = true;
-      listener.came.clear();
-      continue;
-    }
-    if (begun && stood > 0) {
-      answer.verdict = Verdict::standing;
-      return answer;
-    }
-    begun = false;
+  if (listener.standing > 0) {
+    answer.verdict = Verdict::standing;
+    return answer;
+  }
+  for (; k < samples.size(); ++k) {
+    pipeline_.process(samples[k], listener);
     if (listener.came.empty()) continue;
     const bool first = !answer.detected();
-    if (first) answer.delay_s = t_s - at_s;
+    if (first) answer.delay_s = time_s(k) - at_s;
     for (const Names& one : listener.came) {
       answer.verdict = add(answer.verdict, one, names);
       if (first) answer.first.insert(one.begin(), one.end());
@@ -118,7 +141,7 @@ Answer Watch::fault(const Samples& samples, double at_s, const std::vector<std::
 
 Quiet Watch::quiet(const Samples& samples) {
   pipeline_.reset();
-  Listener listener;
+  Listener listener(notices_);
   Quiet quiet;
   bool stood = false;
   for (const fdi::Sample& sample : samples) {

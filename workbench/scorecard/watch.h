@@ -1,11 +1,13 @@
 // A pipeline on one record, and what its alarms said.
 //
-// An alarm that calls a value untrustworthy (INVALID) names no fault; it is counted apart.
+// An alarm that calls a value untrustworthy (INVALID) names no fault; it is counted apart. One that
+// is a notice, and no fault, is not counted.
 #pragma once
 
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -49,19 +51,33 @@ struct Quiet {
 
 class Watch {
  public:
-  Watch(const estimator::fdi::PipelineConfig& config, double sample_time_s);
+  class Listener;
+  /// What a pipeline and its alarms were when the fault came. Of records that are the same until
+  /// then, it is found once.
+  struct Lead {
+    std::vector<std::uint8_t> pipeline;
+    std::shared_ptr<const Listener> said;  ///< null: not yet found
+  };
+
+  /// `notices`: SOURCE.NAME of alarms that are no faults.
+  Watch(const estimator::fdi::PipelineConfig& config, double sample_time_s,
+        std::vector<std::string> notices = {});
 
   /// `names`: that are right. `to_the_end`: names are judged by all alarms until the record ends,
-  /// not by the first ones alone, after which it stops.
+  /// not by the first ones alone, after which it stops. `lead`: of the samples before, by a watch
+  /// of the same configuration.
   [[nodiscard]] Answer fault(const Samples& samples, double at_s,
-                             const std::vector<std::string>& names, bool to_the_end);
+                             const std::vector<std::string>& names, bool to_the_end,
+                             Lead* lead = nullptr);
   [[nodiscard]] Quiet quiet(const Samples& samples);
 
  private:
-  class Listener;
+  /// Takes the samples before `end`, or goes on from where they were taken.
+  void take_lead(const Samples& samples, std::size_t end, Listener& listener, Lead* lead);
 
   estimator::fdi::Pipeline pipeline_;
   double sample_time_s_;
+  std::vector<std::string> notices_;
 };
 
 }  // namespace workbench::scorecard

@@ -42,7 +42,8 @@ ClosedLoop::ClosedLoop(const Scenario& scenario, std::uint64_t seed)
 LoopRow ClosedLoop::step() noexcept {
   LoopRow row{};
   row.t_s = static_cast<double>(next_) * kSampleTime_s;
-  const double signal_m = sensor_.signal_m(row.t_s, plant_->reading_m());
+  row.rod_m = plant_->reading_m();
+  const double signal_m = sensor_.signal_m(row.t_s, row.rod_m);
   row.y_m = sensor_.reading_m(row.t_s, encoder_.read(signal_m));
   row.reference_m = reference_->at(row.t_s);
   const monitor::control::Command command = controller_.update(row.reference_m, row.y_m);

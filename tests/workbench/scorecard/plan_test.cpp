@@ -81,6 +81,26 @@ TEST(Bench, InjectsTheFaultAtItsTime) {
   }
 }
 
+TEST(Bench, HasTwoMoreRodSensorsThatNoSensorFaultTouches) {
+  const Bench bench = load_bench("");
+  Fault drift;
+  drift.id = "drift";
+  drift.sensor = "drift";
+  drift.per_unit = 1.0;
+  const Samples samples = run(faulty(bench, bench.plan.motions[0], {&drift, 1, 0.01, 1.0}), 2.0, 7);
+  int apart = 0;
+  constexpr double kNoise_m = 2e-5;  // steps of 5 um, six deviations of the noise of 2 um, twice
+  for (const auto& s : samples) {
+    ASSERT_EQ(s.rod_count, 3);
+    EXPECT_EQ(s.rod_m[0], s.y_m);
+    EXPECT_NEAR(s.rod_m[1], s.rod_m[2], kNoise_m);
+    apart += s.rod_m[1] != s.rod_m[2] ? 1 : 0;
+  }
+  EXPECT_GT(apart, 0) << "each has its own noise";
+  // 0.01 m/s for the last second
+  EXPECT_NEAR(samples.back().rod_m[0] - samples.back().rod_m[1], 0.00995, kNoise_m);
+}
+
 TEST(Parts, CoverFaultsDirectionsAndMotionsAndTheHoursAskedFor) {
   const Bench bench = load_bench("");
   Scope scope;
@@ -105,6 +125,22 @@ TEST(Parts, CoverFaultsDirectionsAndMotionsAndTheHoursAskedFor) {
     if (part.kind == Part::Kind::healthy) hours += bench.plan.part_h;
   }
   EXPECT_GE(hours, 72.0);
+}
+
+TEST(Parts, OfHealthyHoursAreFewerForAMethodThatTakesLong) {
+  const Bench bench = load_bench("");
+  Method brief;
+  brief.healthy_share = 0.25;
+  double hours = 0.0;
+  for (const Part& part : parts_of(bench, {})) {
+    EXPECT_TRUE(part.is_for(Method()));
+    if (part.kind == Part::Kind::healthy) {
+      hours += part.is_for(brief) ? bench.plan.part_h : 0.0;
+    } else {
+      EXPECT_TRUE(part.is_for(brief)) << part.id;
+    }
+  }
+  EXPECT_NEAR(hours, 0.25 * bench.plan.healthy_h, 1e-9);
 }
 
 TEST(Parts, RefuseAnUnknownName) {

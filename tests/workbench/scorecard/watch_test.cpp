@@ -52,6 +52,32 @@ TEST(Watch, MeasuresTheDelayFromTheFaultToTheFirstAlarm) {
   EXPECT_THAT(found.first, testing::ElementsAre("a"));
 }
 
+TEST(Watch, GoesOnFromALeadAsIfItHadTakenIt) {
+  const std::vector<fdi::BandConfig> bands{band("one", 0.5, "a", {"a", "b"}),
+                                           band("two", 1.5, "c")};
+  Watch watch(watching(bands), kPeriod_s);
+  Watch::Lead lead;
+  const Samples slow = ramp(1.2, 4.0);
+  const Samples late = ramp(2.0, 4.0);
+  const Answer first = watch.fault(slow, 1.1, {"a"}, true, &lead);
+  ASSERT_NE(lead.said, nullptr);
+  const Answer alone = Watch(watching(bands), kPeriod_s).fault(late, 1.1, {"a"}, true);
+  const Answer after = watch.fault(late, 1.1, {"a"}, true, &lead);
+  EXPECT_NEAR(first.delay_s, 0.605, 1e-9);
+  EXPECT_EQ(first.verdict, Verdict::wrong);
+  EXPECT_EQ(after.delay_s, alone.delay_s);
+  EXPECT_NEAR(after.delay_s, 1.405, 1e-9);
+  EXPECT_EQ(after.verdict, alone.verdict);
+  EXPECT_EQ(after.first, alone.first);
+}
+
+TEST(Watch, CountsNoNotice) {
+  Watch watch(watching({band("one", 0.5, "a"), band("two", 0.7, "b")}), kPeriod_s, {"sample.one"});
+  const Answer found = watch.fault(ramp(1.0, 4.0), 1.0, {"b"}, true);
+  EXPECT_EQ(found.verdict, Verdict::right);
+  EXPECT_NEAR(found.delay_s, 0.705, 1e-9);
+}
+
 TEST(Watch, JudgesTheNamesOfEveryAlarm) {
   EXPECT_EQ(answer({band("one", 0.5, "a", {"a", "b"})}).verdict, Verdict::group);
   EXPECT_EQ(answer({band("one", 0.5, "b")}).verdict, Verdict::wrong);
