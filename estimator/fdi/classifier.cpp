@@ -133,12 +133,23 @@ void Classifier::take(std::span<const double> means) noexcept {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   Answer now;
   now.distance2 = kInfinite;
-  const bool outside = regions_[healthy_].distance2(means) > limits_[healthy_];
+  // Where healthy is likeliest and not all reject it, no curve counts.
   double greatest = -kInfinite;
+  bool any = false;
+  std::size_t likeliest = healthy_;
+  for (std::size_t i = 0; i < regions_.size(); ++i) {
+    any = regions_[i].distance2(means) <= limits_[i] || any;
+    probabilities_[i] = regions_[i].log_density();
+    if (probabilities_[i] <= greatest) continue;
+    greatest = probabilities_[i];
+    likeliest = i;
+  }
+  const bool well = any && likeliest == healthy_;
+  greatest = -kInfinite;
   for (std::size_t i = 0; i < regions_.size(); ++i) {
     double distance2 = regions_[i].distance2(means);
-    double log_density = distance2 <= limits_[i] ? regions_[i].log_density() : -kInfinite;
-    if (outside && paths_[i]) {
+    double log_density = well || distance2 <= limits_[i] ? probabilities_[i] : -kInfinite;
+    if (!well && paths_[i]) {
       const SizePath::Nearest on_path = paths_[i]->nearest(means);
       distance2 = std::min(distance2, on_path.distance2);
       if (on_path.inside) log_density = std::max(log_density, on_path.log_density);

@@ -9,14 +9,14 @@
 //   none of these when every class does
 //
 // Classes of one name and direction, whose means lie one behind the other as seen from healthy, are
-// sizes of one fault: outside the healthy region each also takes what lies on the curve that leads
+// sizes of one fault: where x is not healthy each also takes what lies on the curve that leads
 // to it from the size before, the smallest from where the curve leaves the healthy region
 // (size_path.h): the greater of both densities counts, the smaller of both T^2. Nothing counts
 // beyond the greatest size but its own law.
 //
-// Inside its own region healthy is held against taught sizes alone, as if there were no curves: a
-// healthy block comes out as anything else only where it is outside that region (share `rejection`)
-// or at a taught size.
+// Where healthy is likeliest among the taught laws and some class does not reject x, x is healthy,
+// as if there were no curves: they turn no healthy block into a fault, they only give names to what
+// was none of these.
 //
 // The alarm comes after `confirm` blocks in a row that are not healthy, names the fault that they
 // agree on, and gives the classes of 5 % or more as ambiguity group when there are several.
