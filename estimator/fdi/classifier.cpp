@@ -81,8 +81,6 @@ class Classifier final : public BlockSource {
     double distance2 = 0.0;  ///< of the nearest
   };
   void take(std::span<const double> means) noexcept override;
-  /// Whatever its size.
-  [[nodiscard]] bool same_fault(int one, int other) const noexcept;
   void show(std::span<NamedValue> values) const noexcept override {
     values[0].value = valid() ? answer_.found : kNan;
     values[1].value = valid() && answer_.found != kNone ? answer_.probability : kNan;
@@ -133,35 +131,32 @@ void Classifier::take(std::span<const double> means) noexcept {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   Answer now;
   now.distance2 = kInfinite;
-  // Where healthy is likeliest and not all reject it, no curve counts.
   double greatest = -kInfinite;
-  bool any = false;
-  std::size_t likeliest = healthy_;
-  for (std::size_t i = 0; i < regions_.size(); ++i) {
-    any = regions_[i].distance2(means) <= limits_[i] || any;
-    probabilities_[i] = regions_[i].log_density();
-    if (probabilities_[i] <= greatest) continue;
-    greatest = probabilities_[i];
-    likeliest = i;
-  }
-  const bool well = any && likeliest == healthy_;
-  greatest = -kInfinite;
-  for (std::size_t i = 0; i < regions_.size(); ++i) {
-    double distance2 = regions_[i].distance2(means);
-    double log_density = well || distance2 <= limits_[i] ? probabilities_[i] : -kInfinite;
-    if (!well && paths_[i]) {
-      const SizePath::Nearest on_path = paths_[i]->nearest(means);
-      distance2 = std::min(distance2, on_path.distance2);
-      if (on_path.inside) log_density = std::max(log_density, on_path.log_density);
-    }
+  const auto weigh = [&](std::size_t i, double distance2, double log_density) {
     probabilities_[i] = log_density;
     if (distance2 < now.distance2) {
       now.distance2 = distance2;
       now.nearest = static_cast<int>(i);
     }
-    if (log_density <= greatest) continue;
+    if (log_density <= greatest) return;
     greatest = log_density;
     now.found = static_cast<int>(i);
+  };
+  bool any = false;
+  for (std::size_t i = 0; i < regions_.size(); ++i) {
+    const double distance2 = regions_[i].distance2(means);
+    any = any || distance2 <= limits_[i];
+    weigh(i, distance2, regions_[i].log_density());
+  }
+  if (!any) {
+    now.found = kNone;
+    greatest = -kInfinite;
+    for (std::size_t i = 0; i < regions_.size(); ++i) {
+      probabilities_[i] = -kInfinite;
+      if (!paths_[i]) continue;
+      const SizePath::Nearest on_path = paths_[i]->nearest(means);
+      weigh(i, on_path.distance2, on_path.inside ? on_path.log_density : -kInfinite);
+    }
   }
   double sum = 0.0;
   for (std::size_t i = 0; i < regions_.size(); ++i) {
@@ -170,19 +165,12 @@ void Classifier::take(std::span<const double> means) noexcept {
   }
   for (std::size_t i = 0; i < regions_.size() && sum > 0.0; ++i) probabilities_[i] /= sum;
   now.probability = now.found == kNone ? 0.0 : probabilities_[static_cast<std::size_t>(now.found)];
-  in_a_row_ = same_fault(now.found, answer_.found) ? in_a_row_ + 1 : 1;
+  in_a_row_ = now.found == answer_.found ? in_a_row_ + 1 : 1;
   answer_ = now;
   if (in_a_row_ < config_.confirm) return;
   out_ = now.found != static_cast<int>(healthy_);
   told_ = now;
   told_probabilities_ = probabilities_;
-}
-
-bool Classifier::same_fault(int one, int other) const noexcept {
-  if (one == other || one == kNone || other == kNone) return one == other;
-  const TrainedClass& a = config_.classes[static_cast<std::size_t>(one)];
-  const TrainedClass& b = config_.classes[static_cast<std::size_t>(other)];
-  return a.name == b.name && a.direction == b.direction;
 }
 
 AlarmState Classifier::own_alarm(std::size_t /*number*/) const noexcept {

@@ -8,18 +8,14 @@
 //   a class rejects x when its T^2 exceeds the limit for probability `rejection`
 //   none of these when every class does
 //
-// Classes of one name and direction, whose means lie one behind the other as seen from healthy, are
-// sizes of one fault: where x is not healthy each also takes what lies on the curve that leads
-// to it from the size before, the smallest from where the curve leaves the healthy region
-// (size_path.h): the greater of both densities counts, the smaller of both T^2. Nothing counts
-// beyond the greatest size but its own law.
+// What is none of these is held against sizes between those taught: classes of one name and
+// direction, whose means lie one behind the other as seen from healthy, are sizes of one fault, and
+// each also takes what lies on the curve that leads to it from the size before, the smallest from
+// where the curve leaves the healthy region (size_path.h). So a curve turns no block that a class
+// takes into another's. Nothing counts beyond the greatest size but its own law.
 //
-// Where healthy is likeliest among the taught laws and some class does not reject x, x is healthy,
-// as if there were no curves: they turn no healthy block into a fault, they only give names to what
-// was none of these.
-//
-// The alarm comes after `confirm` blocks in a row that are not healthy, names the fault that they
-// agree on, and gives the classes of 5 % or more as ambiguity group when there are several.
+// The alarm comes after `confirm` blocks in a row of one class that is not healthy (or of none),
+// names it, and gives the classes of 5 % or more as ambiguity group when there are several.
 // Source: T. Hastie, R. Tibshirani, J. Friedman, The Elements of Statistical Learning, 4.3; B. D.
 // Ripley, Pattern Recognition and Neural Networks, 1996, 2.1 (doubt and outliers).
 #pragma once
