@@ -4,6 +4,13 @@
 #include "plant_sim/guard.h"
 #include "plant_sim/hydraulic_actuator.h"
 
+/// Before a function that is compiled as one with all that it calls: the wide ensembles' step.
+#ifdef PLANT_SIM_WHOLE_STEPS
+#define PLANT_SIM_WHOLE [[gnu::flatten]]
+#else
+#define PLANT_SIM_WHOLE
+#endif
+
 namespace plant_sim {
 namespace limits {
 
@@ -145,7 +152,7 @@ void HydraulicActuator<S>::step(const S& u_V) {
 
 template <class S>
 template <bool kLimits, bool kEffects>
-[[gnu::flatten]] void HydraulicActuator<S>::integrate(const S& u_V, const S& step_s) {
+PLANT_SIM_WHOLE void HydraulicActuator<S>::integrate(const S& u_V, const S& step_s) {
   const S from_y_m = state.y_m;
   state = runge_kutta_step(
       state, step_s, [&](const State& x) { return rate<kLimits, kEffects>(x, u_V, from_y_m); });
