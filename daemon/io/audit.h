@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "daemon/io/clerk.h"
 
@@ -37,6 +38,8 @@ class Audit {
  private:
   /// What the clerk's jobs write to; they share it.
   struct File {
+    File(std::filesystem::path file, std::int64_t most) : path(std::move(file)), most_bytes(most) {}
+
     std::filesystem::path path;
     std::int64_t most_bytes;
     std::atomic<std::int64_t> lost{0};
