@@ -20,7 +20,6 @@ using estimator::fdi::Alarm;
 using estimator::fdi::AlarmBook;
 using estimator::fdi::AlarmState;
 using estimator::fdi::Life;
-using estimator::fdi::SavedLife;
 using estimator::fdi::Severity;
 using testing::HasSubstr;
 

@@ -55,7 +55,7 @@ std::string write_config(const Folder& folder, const std::string& from, const st
   if (const auto models = text.find("MODELS"); models != std::string::npos) {
     text.replace(models, 6, shipped("models"));
   }
-  const std::string file = (folder.path() / "rig.toml").string();
+  std::string file = (folder.path() / "rig.toml").string();
   std::ofstream(file) << text;
   return file;
 }
