@@ -19,7 +19,6 @@ namespace program {
 namespace {
 
 using nlohmann::json;
-using testing::Contains;
 using testing::HasSubstr;
 
 class Reload : public testing::Test {

@@ -43,7 +43,7 @@ class HealthyFiles : public testing::Test {
     try {
       (void)iso::read_healthy(path_, model, settings, choice_, sample_time_s, rig_id);
     } catch (const config::schema::Error& error) {
-      const std::string line = error.what();
+      std::string line = error.what();
       EXPECT_EQ(error.exit_code(), 78);
       EXPECT_THAT(line, HasSubstr(path_.string()));
       EXPECT_EQ(line.find('\n'), std::string::npos) << line;

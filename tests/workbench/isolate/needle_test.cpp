@@ -51,10 +51,10 @@ class Needle : public testing::TestWithParam<const char*> {
     fs::create_directories(folder_);
     truth::write_csv(truth::simulate(stand(GetParam(), 30.0, 11)), file("healthy.csv"));
     printed_by(workbench::add_fit,
-               {SPOOLWATCH_SOURCE_DIR "/config/models/rig_2000psi_slaves.toml", file("healthy.csv"),
-                "-o", file("calibrated.toml"), "--quiet", "--profile", "none", "--starts", "2",
-                "--set", "effects.friction.presliding_stiffness_N_per_m=3e6", "--set",
-                "effects.friction.presliding_damping_N_s_per_m=300", "--set",
+               {std::string(SPOOLWATCH_SOURCE_DIR "/config/models/rig_2000psi_slaves.toml"),
+                file("healthy.csv"), "-o", file("calibrated.toml"), "--quiet", "--profile", "none",
+                "--starts", "2", "--set", "effects.friction.presliding_stiffness_N_per_m=3e6",
+                "--set", "effects.friction.presliding_damping_N_s_per_m=300", "--set",
                 "effects.friction.static_N=320", "--set", "effects.friction.stribeck_mps=0.02",
                 "--json", file("fit.json")});
   }
