@@ -8,6 +8,8 @@
 #include <limits>
 #include <type_traits>
 
+#include "estimator/fdi/pressures.h"
+
 namespace estimator::fdi {
 
 enum class Quality : std::uint8_t { good = 0, uncertain = 1, stale = 2, bad = 3 };
@@ -45,6 +47,8 @@ struct Sample {
   std::array<double, kMaxRods> rod_m = no_rods();
   std::array<Quality, kMaxRods> rod_quality{};
   std::array<std::uint8_t, kMaxRods> rod_fault{};  ///< why it is out, as in rods_t; 0: it is in
+
+  Pressures pressures;
 };
 static_assert(std::is_trivially_copyable_v<Sample>);
 
