@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "plant_sim/model_file.h"
+#include "plant_sim/pressures.h"
 
 namespace plant_sim {
 
@@ -41,6 +42,8 @@ class Ensemble {
 
   [[nodiscard]] virtual Values reading_m() const noexcept = 0;
   [[nodiscard]] virtual Values speed_mps() const noexcept = 0;
+  /// As Plant::pressures(); not numbers where the plant has none.
+  [[nodiscard]] virtual PressuresOf<Values> pressures() const noexcept = 0;
 };
 
 /// The model's plant with its parameters in all lanes, stepped every step_s instead of the model's

@@ -28,6 +28,7 @@
 
 #include "plant_sim/effects/table.h"
 #include "plant_sim/parameter.h"
+#include "plant_sim/pressures.h"
 #include "plant_sim/runge_kutta.h"
 #include "plant_sim/scalar.h"
 
@@ -103,6 +104,7 @@ class HydraulicActuator {
   void step(const S& u_V);
 
   [[nodiscard]] S speed_mps() const { return state.v_mps; }
+  [[nodiscard]] PressuresOf<S> pressures() const;
 
   /// The equations above, inside the stroke (kLimits false) or with its ends and cavitation, and
   /// with the active effects or as if there were none.
@@ -120,6 +122,10 @@ class HydraulicActuator {
     S out_m3ps;  ///< out of the chamber that retracts
   };
   static S root(const S& drop_Pa);
+  template <bool kEffects>
+  S valve_flow(const State& x) const;
+  template <bool kEffects>
+  S inlet_Pa(const State& x, const S& flow) const;
   template <bool kEffects>
   Flows flows(const State& x) const;
   S reach_m(const S& u_V) const;

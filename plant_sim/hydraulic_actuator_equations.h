@@ -22,18 +22,38 @@ S HydraulicActuator<S>::root(const S& drop_Pa) {
   return select(size < S(kDrop), inside, with_sign);
 }
 
+/// G xv of the opening: an orifice's flow per square root of its drop.
+template <class S>
+template <bool kEffects>
+S HydraulicActuator<S>::valve_flow(const State& x) const {
+  S opening_m = x.spool_m;
+  if constexpr (kEffects) opening_m = effects.opening_m(opening_m, parameters.valve_gain_m_per_V);
+  return derived_.orifice * opening_m;
+}
+
+/// What the flow drawn leaves of the supply pressure.
+template <class S>
+template <bool kEffects>
+S HydraulicActuator<S>::inlet_Pa(const State& x, const S& flow) const {
+  S supply_Pa = parameters.supply_pressure_Pa;
+  if constexpr (kEffects) {
+    supply_Pa = effects.supply_Pa(supply_Pa, select(flow >= S(0.0), x.in_Pa, x.out_Pa), abs(flow));
+  }
+  return supply_Pa;
+}
+
+template <class S>
+PressuresOf<S> HydraulicActuator<S>::pressures() const {
+  return {inlet_Pa<true>(state, valve_flow<true>(state)), state.in_Pa, state.out_Pa};
+}
+
 template <class S>
 template <bool kEffects>
 typename HydraulicActuator<S>::Flows HydraulicActuator<S>::flows(const State& x) const {
   const Parameters& p = parameters;
-  S opening_m = x.spool_m;
-  if constexpr (kEffects) opening_m = effects.opening_m(opening_m, p.valve_gain_m_per_V);
-  const S flow = derived_.orifice * opening_m;
+  const S flow = valve_flow<kEffects>(x);
   const auto extends = flow >= S(0.0);
-  S supply_Pa = p.supply_pressure_Pa;
-  if constexpr (kEffects) {
-    supply_Pa = effects.supply_Pa(supply_Pa, select(extends, x.in_Pa, x.out_Pa), abs(flow));
-  }
+  const S supply_Pa = inlet_Pa<kEffects>(x, flow);
   Flows q;
   q.in_m3ps = flow * root(select(extends, supply_Pa - x.in_Pa, x.in_Pa - p.return_pressure_Pa));
   q.out_m3ps = flow * root(select(extends, x.out_Pa - p.return_pressure_Pa, supply_Pa - x.out_Pa));

@@ -89,6 +89,10 @@ class InLanes final : public LaneEnsemble {
     return unpack(model_.effects.reading_m(model_.state.y_m));
   }
   [[nodiscard]] Values speed_mps() const noexcept override { return unpack(model_.speed_mps()); }
+  [[nodiscard]] PressuresOf<Values> pressures() const noexcept override {
+    const PressuresOf<S> p = pressures_of<S>(model_);
+    return {unpack(p.supply_Pa), unpack(p.in_Pa), unpack(p.out_Pa)};
+  }
 
  private:
   static Values unpack(const S& lanes) {

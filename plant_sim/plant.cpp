@@ -47,6 +47,9 @@ class Simulated final : public Plant {
     return model_.effects.reading_m(model_.state.y_m);
   }
   [[nodiscard]] double speed_mps() const noexcept override { return model_.speed_mps(); }
+  [[nodiscard]] Pressures pressures() const noexcept override {
+    return pressures_of<double>(model_);
+  }
   [[nodiscard]] double step_s() const noexcept override { return step_s_; }
 
   double* parameter(std::string_view dotted) noexcept override {

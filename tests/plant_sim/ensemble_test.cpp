@@ -17,6 +17,7 @@ namespace {
 constexpr std::size_t kLanes = Ensemble::kLanes;
 /// Rounding only; the operations are the same.
 constexpr double kAgree = 1e-12;
+constexpr double kAgree_Pa = 1e-4;
 constexpr double kSample_s = 0.005;
 constexpr double kStep_s = 0.001;
 
@@ -94,10 +95,30 @@ class Side {
       }
       ASSERT_EQ(reading_m, together_[0]->reading_m()) << what;
       ASSERT_EQ(speed_mps, together_[0]->speed_mps()) << what;
+      compare_pressures(ensemble->pressures(), what);
     }
   }
 
  private:
+  void compare_pressures(const PressuresOf<Ensemble::Values>& found,
+                         const std::string& what) const {
+    const PressuresOf<Ensemble::Values> first = together_[0]->pressures();
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const Pressures alone = alone_[lane]->pressures();
+      const auto near = [&](double lanes_Pa, double baseline_Pa, double alone_Pa) {
+        const std::string where = what + " lane " + std::to_string(lane);
+        if (std::isnan(alone_Pa)) {
+          ASSERT_TRUE(std::isnan(lanes_Pa)) << where;
+          return;
+        }
+        ASSERT_NEAR(lanes_Pa, alone_Pa, kAgree_Pa) << where;
+        ASSERT_EQ(lanes_Pa, baseline_Pa) << where;
+      };
+      near(found.supply_Pa[lane], first.supply_Pa[lane], alone.supply_Pa);
+      near(found.in_Pa[lane], first.in_Pa[lane], alone.in_Pa);
+      near(found.out_Pa[lane], first.out_Pa[lane], alone.out_Pa);
+    }
+  }
   static void shift(Plant& plant, double by_m) {
     const double y_m = plant.position_m() + by_m;
     plant.set_state({&y_m, 1});
