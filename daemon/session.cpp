@@ -195,6 +195,7 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
   AlarmKeeping keeping(config, p.rules, {hash_text(p.hash), run_id, p.sample_time_s, virtual_time});
   io::Publisher publisher(config.lcm, run_id, p.sample_time_s, recorder.get());
   if (keeping.evidence != nullptr) publisher.attach(*keeping.evidence);
+  if (config.rig.measures_pressures()) publisher.tell_pressures();
 
   auto samples = std::make_unique<rt::SampleQueue>();
   rt::CommandQueue commands;

@@ -44,6 +44,9 @@ constexpr std::pair<const char*, InputRole> kRoles[] = {
     {"e_stop", InputRole::e_stop},
     {"enable", InputRole::enable},
     {"valve_command", InputRole::valve_command},
+    {"supply_pressure", InputRole::supply_pressure},
+    {"pressure_in", InputRole::pressure_in},
+    {"pressure_out", InputRole::pressure_out},
     {"pressure", InputRole::pressure},
     {"other", InputRole::other},
 };
@@ -129,7 +132,8 @@ void SpareRodConfig::visit(config::schema::Visitor& v) {
 void InputConfig::visit(config::schema::Visitor& v) {
   v.text({"id", "name of the signal", true}, id);
   v.choice({"role", "what it is for"}, role,
-           {kRoles[0].first, kRoles[1].first, kRoles[2].first, kRoles[3].first, kRoles[4].first});
+           {kRoles[0].first, kRoles[1].first, kRoles[2].first, kRoles[3].first, kRoles[4].first,
+            kRoles[5].first, kRoles[6].first, kRoles[7].first});
   visit_place(v, place, true);
 }
 
@@ -183,7 +187,20 @@ void Rig::visit(config::schema::Visitor& v) {
   }
 }
 
+void Rig::check_inputs(const std::string& file) const {
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    const auto same = [&](const InputConfig& input) { return input.role == inputs_[i].role; };
+    const auto end = inputs_.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto first = std::find_if(inputs_.begin(), end, same);
+    if (!goes_with_samples(role_of(inputs_[i].role)) || first == end) continue;
+    throw bad_config(file + ": " + indexed("input", i) + " role",
+                     "is \"" + inputs_[i].role + "\", and so is that of \"" + first->id + "\"",
+                     "one input of that role; \"pressure\" for any other");
+  }
+}
+
 Devices Rig::open(const Opening& opening) const {
+  check_inputs(opening.file);
   Opened opened(opening, [this](const std::string& name) { return find(name); });
   Devices devices;
   opened.of("[rod]", rod_.backend);
@@ -230,6 +247,12 @@ bool Rig::has_input(InputRole role) const {
                      [role](const InputConfig& input) { return role_of(input.role) == role; });
 }
 
+bool Rig::measures_pressures() const {
+  return std::any_of(inputs_.begin(), inputs_.end(), [](const InputConfig& input) {
+    return goes_with_samples(role_of(input.role));
+  });
+}
+
 bool Rig::harmless() const {
   const std::vector<std::string> in_use = used();
   return std::all_of(in_use.begin(), in_use.end(), [this](const std::string& name) {
@@ -250,6 +273,13 @@ NullTimes Rig::null_times() const {
 
 std::vector<std::string> Rig::notes(const Opening& opening) const {
   std::vector<std::string> notes;
+  std::string pressures;
+  for (const InputConfig& input : inputs_) {
+    if (!goes_with_samples(role_of(input.role))) continue;
+    pressures += (pressures.empty() ? "" : ", ") + input.role + " from " + input.place.backend +
+                 " \"" + input.place.channel + "\"";
+  }
+  if (!pressures.empty()) notes.push_back("Pressures with every sample: " + pressures + ".");
   for (const std::string& name : used()) {
     const Backend* backend = find(name);
     if (backend == nullptr) continue;

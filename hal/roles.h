@@ -47,12 +47,21 @@ struct InputConfig {
 
 /// What an input is for.
 enum class InputRole : std::uint8_t {
-  e_stop,         ///< 1 while the emergency stop is released; anything else trips
-  enable,         ///< 1 while a person allows motion
-  valve_command,  ///< V, the command of the controller in charge (monitor only)
-  pressure,       ///< Pa
+  e_stop,           ///< 1 while the emergency stop is released; anything else trips
+  enable,           ///< 1 while a person allows motion
+  valve_command,    ///< V, the command of the controller in charge (monitor only)
+  supply_pressure,  ///< Pa, and so are the next two; one of each at most
+  pressure_in,      ///< of the chamber that extends the rod
+  pressure_out,     ///< of the chamber that retracts it
+  pressure,         ///< Pa, any other
   other
 };
+
+/// One of the pressures that go with every sample.
+[[nodiscard]] constexpr bool goes_with_samples(InputRole role) noexcept {
+  return role == InputRole::supply_pressure || role == InputRole::pressure_in ||
+         role == InputRole::pressure_out;
+}
 
 struct NamedInput {
   std::string id;
@@ -99,6 +108,8 @@ class Rig {
   }
   [[nodiscard]] const std::vector<InputConfig>& inputs() const noexcept { return inputs_; }
   [[nodiscard]] bool has_input(InputRole role) const;
+  /// At least one of those that go with every sample.
+  [[nodiscard]] bool measures_pressures() const;
   /// Rod sensors, the configured one and the spare ones.
   [[nodiscard]] std::size_t rods() const noexcept { return 1 + spare_rods_.size(); }
   [[nodiscard]] bool has_permit() const noexcept { return permit_present_; }
@@ -108,10 +119,12 @@ class Rig {
   [[nodiscard]] double worst_speed_mps(const Opening& opening) const;
   /// Of the valve's backend.
   [[nodiscard]] NullTimes null_times() const;
-  /// Of every backend in use.
+  /// The pressures that go with every sample, and what every backend in use has to say.
   [[nodiscard]] std::vector<std::string> notes(const Opening& opening) const;
 
  private:
+  /// Throws Error for a second input of a role that stands once.
+  void check_inputs(const std::string& file) const;
   [[nodiscard]] const Backend* find(const std::string& name) const noexcept;
   /// Names of the backends in use, each once.
   [[nodiscard]] std::vector<std::string> used() const;

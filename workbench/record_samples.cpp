@@ -3,7 +3,55 @@
 #include <cmath>
 #include <limits>
 
+#include "config/record/sample_columns.h"
+
 namespace workbench {
+namespace {
+
+using config::record::Record;
+using estimator::fdi::Sample;
+using Column = const std::vector<double>*;
+
+double at(Column column, std::size_t row) {
+  return column != nullptr ? (*column)[row] : std::numeric_limits<double>::quiet_NaN();
+}
+
+void add_pressures(const Record& record, std::vector<Sample>& samples) {
+  const Column supply = record.column(config::record::kSupplyPressure);
+  const Column in = record.column(config::record::kPressureIn);
+  const Column out = record.column(config::record::kPressureOut);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    samples[i].pressures = {at(supply, i), at(in, i), at(out, i)};
+  }
+}
+
+/// Several rod sensors; a reading that a record has is a good one.
+void add_rods(const Record& record, std::vector<Sample>& samples) {
+  std::vector<Column> rods;
+  while (rods.size() < estimator::fdi::kMaxRods) {
+    const Column rod = record.column(config::record::rod_column(rods.size()));
+    if (rod == nullptr) break;
+    rods.push_back(rod);
+  }
+  const Column in_charge = record.column(config::record::kRodInCharge);
+  if (rods.size() < 2 || in_charge == nullptr) return;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double number = at(in_charge, i);
+    if (!(number >= 1.0 && number <= static_cast<double>(rods.size()))) continue;
+    Sample& s = samples[i];
+    s.rod_count = static_cast<std::uint8_t>(rods.size());
+    s.rod_in_charge = static_cast<std::uint8_t>(number - 1.0);
+    const bool same = i > 0 && samples[i - 1].rod_in_charge == s.rod_in_charge;
+    s.rod_changed = i > 0 && !same;
+    s.rod_since = same ? samples[i - 1].rod_since : s.tick;
+    for (std::size_t rod = 0; rod < rods.size(); ++rod) {
+      s.rod_m[rod] = at(rods[rod], i);
+      if (!std::isfinite(s.rod_m[rod])) s.rod_quality[rod] = estimator::fdi::Quality::bad;
+    }
+  }
+}
+
+}  // namespace
 
 std::vector<estimator::fdi::Sample> to_samples(const config::record::Record& record) {
   const auto at = [&record](const char* name) { return record.column(name); };
@@ -34,6 +82,8 @@ std::vector<estimator::fdi::Sample> to_samples(const config::record::Record& rec
     }
     s.saturated = saturated != nullptr && (*saturated)[i] > 0.0;
   }
+  add_pressures(record, samples);
+  add_rods(record, samples);
   return samples;
 }
 

@@ -3,9 +3,12 @@
 #include <cmath>
 #include <cstdint>
 #include <lcm/lcm-cpp.hpp>
+#include <limits>
 #include <map>
 
+#include "config/messages/decode.h"
 #include "config/record/event_reader.h"
+#include "config/record/sample_columns.h"
 #include "config/record/time_grid.h"
 #include "config/schema/error.h"
 #include "spoolwatch/sample_t.hpp"
@@ -17,6 +20,7 @@ using schema::bad_data;
 using spoolwatch::sample_t;
 
 constexpr std::string_view kSyncWord = "\xED\xA1\xDA\x01";
+constexpr std::string_view kSampleEnding = "_SAMPLE";
 constexpr std::int8_t kStaleQuality = 2;  // and 3, bad: no new reading
 
 bool is_sample(const lcm::LogEvent& event) {
@@ -54,27 +58,46 @@ std::string choose_channel(const std::string& file, std::string_view wanted) {
 struct Builder {
   Record record;
   std::size_t bad = 0;
+  SampleColumns columns;
 
-  explicit Builder(const std::string& name) {
-    record.name = name;
-    for (const char* column : {"reference_m", "u_requested_V", "quality", "state", "saturated"}) {
-      record.further.emplace_back(column, std::vector<double>{});
-    }
-  }
+  explicit Builder(const std::string& name) { record.name = name; }
 
   void add(const sample_t& s) {
     if (s.quality >= kStaleQuality || !std::isfinite(s.y_m) || !std::isfinite(s.u_applied_V)) {
       ++bad;
       return;
     }
+    const std::vector<double>& row = columns.row(s);
+    for (std::size_t i = record.further.size(); i < row.size(); ++i) {
+      const double missing = std::numeric_limits<double>::quiet_NaN();
+      record.further.emplace_back(columns.names()[i],
+                                  std::vector<double>(record.t_s.size(), missing));
+    }
     record.t_s.push_back(static_cast<double>(s.tick) * s.sample_time_s);
     record.u_V.push_back(s.u_applied_V);
     record.y_m.push_back(s.y_m);
-    std::size_t column = 0;
-    for (const double value : {s.reference_m, s.u_requested_V, static_cast<double>(s.quality),
-                               static_cast<double>(s.state), s.saturated != 0 ? 1.0 : 0.0}) {
-      record.further[column++].second.push_back(value);
+    for (std::size_t i = 0; i < row.size(); ++i) record.further[i].second.push_back(row[i]);
+  }
+
+  /// Takes what is told beside the samples of `channel`; throws where it is of another type.
+  void note(const lcm::LogEvent& event, const std::string& channel, const std::string& file) {
+    if (!channel.ends_with(kSampleEnding)) return;
+    const std::string prefix = channel.substr(0, channel.size() - kSampleEnding.size());
+    if (event.channel == prefix + "_RODS") note_as<spoolwatch::rods_t>(event, file);
+    if (event.channel == prefix + "_PRESSURES") note_as<spoolwatch::pressures_t>(event, file);
+  }
+
+ private:
+  template <class Message>
+  void note_as(const lcm::LogEvent& event, const std::string& file) {
+    Message message{};
+    if (!messages::decode(message, event.data, event.datalen)) {
+      throw bad_data(
+          file + ": event " + std::to_string(event.eventnum),
+          "on " + event.channel + " is of another type",
+          std::string("spoolwatch::") + Message::getTypeName() + " in this version's layout");
     }
+    columns.note(message);
   }
 };
 
@@ -90,7 +113,10 @@ Record read_lcm_log(const std::string& file, std::string_view wanted) {
   sample_t first{};
   std::vector<std::int64_t> events;  // number of the event behind each row
   while (const lcm::LogEvent* event = log.next()) {
-    if (event->channel != channel) continue;
+    if (event->channel != channel) {
+      builder.note(*event, channel, file);
+      continue;
+    }
     const std::string where = file + ": event " + std::to_string(event->eventnum);
     sample_t sample{};
     if (sample.decode(event->data, 0, event->datalen) != event->datalen) {

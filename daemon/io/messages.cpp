@@ -37,6 +37,13 @@ void fill(spoolwatch::rods_t& message, const estimator::fdi::Sample& sample) {
   }
 }
 
+void fill(spoolwatch::pressures_t& message, const estimator::fdi::Sample& sample) {
+  message.tick = sample.tick;
+  message.supply_Pa = sample.pressures.supply_Pa;
+  message.in_Pa = sample.pressures.in_Pa;
+  message.out_Pa = sample.pressures.out_Pa;
+}
+
 void fill(spoolwatch::estimate_t& message, const estimator::fdi::EstimateEvent& event) {
   message.source = event.source;
   message.tick = event.tick;

@@ -7,6 +7,7 @@
 #include "estimator/fdi/sample.h"
 #include "spoolwatch/alarm_t.hpp"
 #include "spoolwatch/estimate_t.hpp"
+#include "spoolwatch/pressures_t.hpp"
 #include "spoolwatch/rods_t.hpp"
 #include "spoolwatch/sample_t.hpp"
 
@@ -16,6 +17,7 @@ void fill(spoolwatch::sample_t& message, const estimator::fdi::Sample& sample,
           double sample_time_s);
 /// All but the ids, of which there may be fewer than rods.
 void fill(spoolwatch::rods_t& message, const estimator::fdi::Sample& sample);
+void fill(spoolwatch::pressures_t& message, const estimator::fdi::Sample& sample);
 void fill(spoolwatch::estimate_t& message, const estimator::fdi::EstimateEvent& event);
 void fill(spoolwatch::alarm_t& message, const estimator::fdi::Alarm& alarm, bool repeat);
 

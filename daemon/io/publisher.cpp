@@ -21,6 +21,7 @@ constexpr std::size_t kMaxChannel = 63;  // LCM's own limit
 struct Publisher::Messages {
   spoolwatch::sample_t sample{};
   spoolwatch::rods_t rods{};
+  spoolwatch::pressures_t pressures{};
   spoolwatch::estimate_t estimate{};
   spoolwatch::alarm_t alarm{};
 };
@@ -40,13 +41,14 @@ Publisher::Publisher(const PublisherConfig& config, std::int64_t run_id, double 
       sample_time_s_(sample_time_s),
       sample_{config.prefix + "_SAMPLE"},
       rods_{config.prefix + "_RODS"},
+      pressures_{config.prefix + "_PRESSURES"},
       estimate_{config.prefix + "_ESTIMATE"},
       alarm_{config.prefix + "_ALARM"},
       health_{config.prefix + "_HEALTH"},
       buffer_(kBufferBytes) {
-  if (estimate_.name.size() > kMaxChannel) {
-    throw config::schema::bad_config("[lcm] prefix", "channel " + estimate_.name + " is too long",
-                                     "54 characters");
+  if (pressures_.name.size() > kMaxChannel) {
+    throw config::schema::bad_config("[lcm] prefix", "channel " + pressures_.name + " is too long",
+                                     "53 characters");
   }
 }
 
@@ -58,6 +60,10 @@ void Publisher::sample(const estimator::fdi::Sample& sample) {
   if (sample.rod_count > 0) {
     fill(messages_->rods, sample);
     send(rods_, messages_->rods, {sample.utc_us, sample.t_read_ns});
+  }
+  if (tells_pressures_) {
+    fill(messages_->pressures, sample);
+    send(pressures_, messages_->pressures, {sample.utc_us, sample.t_read_ns});
   }
   fill(messages_->sample, sample, sample_time_s_);
   send(sample_, messages_->sample, {sample.utc_us, sample.t_read_ns});

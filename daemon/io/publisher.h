@@ -1,6 +1,7 @@
 // Sends what the daemon finds out over LCM and hands the same bytes to the recorder.
 //
-// Channels PREFIX_SAMPLE, PREFIX_ESTIMATE, PREFIX_ALARM, PREFIX_HEALTH (types: config/messages).
+// Channels PREFIX_SAMPLE, PREFIX_RODS, PREFIX_PRESSURES, PREFIX_ESTIMATE, PREFIX_ALARM,
+// PREFIX_HEALTH (types: config/messages).
 // Each message is encoded once, into a buffer made in advance. A message that LCM cannot send is
 // still recorded; failures are counted and shown by status(). All calls come from one thread.
 #pragma once
@@ -66,7 +67,11 @@ class Publisher {
   /// Ids of the rod sensors, the configured one first.
   void name_rods(std::vector<std::string> rods);
 
-  /// A sample carries its own stamp (utc_us, t_read_ns). Several rod sensors are told just before.
+  /// The rig measures at least one of the pressures that go with a sample.
+  void tell_pressures() noexcept { tells_pressures_ = true; }
+
+  /// A sample carries its own stamp (utc_us, t_read_ns). Several rod sensors and pressures are told
+  /// just before.
   void sample(const estimator::fdi::Sample& sample);
   void estimate(const estimator::fdi::EstimateEvent& event, Stamp stamp);
   /// `repeat`: an active alarm sent again, not a change.
@@ -93,7 +98,8 @@ class Publisher {
   Evidence* evidence_ = nullptr;
   std::int64_t run_id_;
   double sample_time_s_;
-  Channel sample_, rods_, estimate_, alarm_, health_;
+  Channel sample_, rods_, pressures_, estimate_, alarm_, health_;
+  bool tells_pressures_ = false;
   std::vector<std::uint8_t> buffer_;
   std::atomic<std::int64_t> sent_{0};
   std::atomic<std::int64_t> failures_{0};

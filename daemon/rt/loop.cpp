@@ -221,6 +221,7 @@ bool Loop::tick(const Period& period) noexcept {
       good ? static_cast<estimator::fdi::Quality>(reading.quality) : estimator::fdi::Quality::bad;
   rods_.fill(sample);
   watch_inputs(period.tick);
+  sample.pressures = around_.pressures();
   take_commands();
   watch_overruns(period);
   if (closing_) leave();

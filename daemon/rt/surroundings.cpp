@@ -32,6 +32,14 @@ bool Surroundings::counts_as_on(std::size_t input, bool good, bool on) noexcept 
   return since_on <= max_unread_;
 }
 
+void Surroundings::take_pressure(hal::InputRole role, const hal::InputReading& reading) noexcept {
+  const bool good = reading.quality == hal::Quality::good && std::isfinite(reading.value);
+  const double value_Pa = good ? reading.value : hal::kMissing;
+  if (role == hal::InputRole::supply_pressure) pressures_.supply_Pa = value_Pa;
+  if (role == hal::InputRole::pressure_in) pressures_.in_Pa = value_Pa;
+  if (role == hal::InputRole::pressure_out) pressures_.out_Pa = value_Pa;
+}
+
 void Surroundings::read(const hal::Tick& tick) noexcept {
   e_stop_released_ = enabled_ = true;
   blind_ = false;
@@ -49,6 +57,7 @@ void Surroundings::read(const hal::Tick& tick) noexcept {
     if (named.role == hal::InputRole::valve_command) {
       command_V_ = good ? reading.value : hal::kMissing;
     }
+    take_pressure(named.role, reading);
   }
 }
 

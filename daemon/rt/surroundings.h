@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "daemon/rt/loop_stats.h"
+#include "estimator/fdi/pressures.h"
 #include "hal/roles.h"
 
 namespace monitor::rt {
@@ -29,10 +30,14 @@ class Surroundings {
   /// Of the input valve_command, NaN when there is none.
   [[nodiscard]] double command_V() const noexcept { return command_V_; }
   [[nodiscard]] bool has_command() const noexcept { return has_command_; }
+  /// Of the inputs that measure them, each NaN where its reading is not good: the fault detection
+  /// takes them for what they were at this tick.
+  [[nodiscard]] const estimator::fdi::Pressures& pressures() const noexcept { return pressures_; }
 
  private:
   /// Whether a switch that reads `good`, `on` counts as on.
   bool counts_as_on(std::size_t input, bool good, bool on) noexcept;
+  void take_pressure(hal::InputRole role, const hal::InputReading& reading) noexcept;
 
   const std::vector<hal::NamedInput>* inputs_;
   std::int64_t max_unread_;
@@ -44,6 +49,7 @@ class Surroundings {
   bool blind_ = false;
   bool has_command_ = false;
   double command_V_ = hal::kMissing;
+  estimator::fdi::Pressures pressures_;
 };
 
 }  // namespace monitor::rt

@@ -55,11 +55,11 @@ class Course final : public LogVisitor {
   Course(const Rules& new_rules, const std::optional<Rules>& old_rules)
       : new_rules_(new_rules), old_rules_(old_rules) {}
 
-  void on_sample(const spoolwatch::sample_t& message, const spoolwatch::rods_t* rods) override {
+  void on_sample(const spoolwatch::sample_t& message, const Beside& beside) override {
     if (!(message.sample_time_s > 0.0 && message.sample_time_s < 1e3)) {
       throw bad_data(run.files.back(), "has a sample without a sample time");
     }
-    take(to_sample(message, rods), message.sample_time_s);
+    take(to_sample(message, beside), message.sample_time_s);
   }
   void on_alarm(const spoolwatch::alarm_t& message) override {
     // Guards and the daemon's own alarms watch no quantity of the fault detection.
@@ -115,7 +115,7 @@ struct Place {
 class FirstSample final : public LogVisitor {
  public:
   struct Found {};
-  void on_sample(const spoolwatch::sample_t& message, const spoolwatch::rods_t* /*rods*/) override {
+  void on_sample(const spoolwatch::sample_t& message, const Beside& /*beside*/) override {
     sample = message;
     throw Found{};
   }
@@ -200,9 +200,10 @@ std::vector<BacktestRun> run_backtest(const Rules& new_rules, const std::optiona
                      [](const Place& a, const Place& b) { return a.first_tick < b.first_tick; });
     Course course(new_rules, old_rules);
     course.run.has_recorded_alarms = true;
+    Newest newest;
     for (const Place& part : parts) {
       course.run.files.push_back(part.file);
-      walk_log(part.file, part.prefix, course);
+      walk_log(part.file, part.prefix, course, newest);
     }
     runs.push_back(course.finish());
   }

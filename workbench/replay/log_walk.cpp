@@ -31,16 +31,30 @@ estimator::fdi::Quality quality_of(std::int8_t quality) noexcept {
 
 }  // namespace
 
+Beside Newest::beside(const spoolwatch::sample_t& sample) const noexcept {
+  const auto of_it = [&](const auto& other) {
+    return other && other->run_id == sample.run_id && other->tick == sample.tick ? &*other
+                                                                                 : nullptr;
+  };
+  return {of_it(rods), of_it(pressures)};
+}
+
 void walk_log(const std::string& file, const std::string& prefix, LogVisitor& visitor) {
+  Newest newest;
+  walk_log(file, prefix, visitor, newest);
+}
+
+void walk_log(const std::string& file, const std::string& prefix, LogVisitor& visitor,
+              Newest& newest) {
   config::record::EventReader reader(file);
-  spoolwatch::rods_t rods{};  // the newest
   while (const lcm::LogEvent* event = reader.next()) {
     if (event->channel == prefix + kSample) {
       const auto sample = decoded<spoolwatch::sample_t>(*event, file);
-      const bool of_it = rods.count > 0 && rods.run_id == sample.run_id && rods.tick == sample.tick;
-      visitor.on_sample(sample, of_it ? &rods : nullptr);
+      visitor.on_sample(sample, newest.beside(sample));
     } else if (event->channel == prefix + "_RODS") {
-      rods = decoded<spoolwatch::rods_t>(*event, file);
+      newest.rods = decoded<spoolwatch::rods_t>(*event, file);
+    } else if (event->channel == prefix + "_PRESSURES") {
+      newest.pressures = decoded<spoolwatch::pressures_t>(*event, file);
     } else if (event->channel == prefix + "_ESTIMATE") {
       visitor.on_estimate(decoded<spoolwatch::estimate_t>(*event, file));
     } else if (event->channel == prefix + "_ALARM") {
@@ -60,7 +74,7 @@ std::string find_prefix(const std::string& file) {
 }
 
 estimator::fdi::Sample to_sample(const spoolwatch::sample_t& message,
-                                 const spoolwatch::rods_t* rods) noexcept {
+                                 const Beside& beside) noexcept {
   estimator::fdi::Sample sample;
   sample.tick = message.tick;
   sample.t_read_ns = message.t_read_ns;
@@ -74,6 +88,10 @@ estimator::fdi::Sample to_sample(const spoolwatch::sample_t& message,
   sample.state = static_cast<std::uint8_t>(message.state);
   sample.saturated = message.saturated != 0;
   sample.gap = message.gap;
+  if (const auto* pressures = beside.pressures; pressures != nullptr) {
+    sample.pressures = {pressures->supply_Pa, pressures->in_Pa, pressures->out_Pa};
+  }
+  const spoolwatch::rods_t* rods = beside.rods;
   if (rods == nullptr) return sample;
   const auto count =
       std::min(static_cast<std::size_t>(std::max(rods->count, 0)), estimator::fdi::kMaxRods);

@@ -89,7 +89,7 @@ class Replayer final : public LogVisitor, private estimator::fdi::Events {
     }
   }
 
-  void on_sample(const spoolwatch::sample_t& sample, const spoolwatch::rods_t* rods) override {
+  void on_sample(const spoolwatch::sample_t& sample, const Beside& beside) override {
     for (const Told& told : estimates_) differ("estimate of " + told.source + " was not told");
     for (const Alarm& alarm : alarms_) differ("alarm " + alarm.name + " was not told");
     outcome.estimates += static_cast<std::int64_t>(estimates_.size());
@@ -98,7 +98,7 @@ class Replayer final : public LogVisitor, private estimator::fdi::Events {
     alarms_.clear();
     ++outcome.samples;
     tick_ = sample.tick;
-    pipeline_.process(to_sample(sample, rods), *this);
+    pipeline_.process(to_sample(sample, beside), *this);
   }
 
   void on_estimate(const spoolwatch::estimate_t& message) override {

@@ -9,6 +9,8 @@
 #include "config/record/record.h"
 #include "config/schema/error.h"
 #include "spoolwatch/health_t.hpp"
+#include "spoolwatch/pressures_t.hpp"
+#include "spoolwatch/rods_t.hpp"
 #include "spoolwatch/sample_t.hpp"
 #include "tests/config/record/temporary_file.h"
 
@@ -82,6 +84,60 @@ TEST_F(LcmLog, FindsTheSamplesUnderAnotherPrefix) {
   write("RIG2_HEALTH", spoolwatch::health_t{});
   write_samples("RIG2_SAMPLE", 5);
   EXPECT_EQ(read().size(), 5U);
+}
+
+TEST_F(LcmLog, GivesPressuresAsColumnsOfTheSamplesThatTheyBelongTo) {
+  write_samples("SPOOLWATCH_SAMPLE", 8, [this](int i, sample_t& s) {
+    spoolwatch::pressures_t p{};
+    p.tick = i == 6 ? 5 : i;    // that of sample 6 is lost: only an old one is there
+    p.run_id = i == 7 ? 1 : 0;  // of another run
+    p.supply_Pa = 7e6 + i;
+    p.in_Pa = i == 4 ? std::nan("") : 4e6 + i;
+    p.out_Pa = 2e6 + i;
+    if (i >= 2) write("SPOOLWATCH_PRESSURES", p);
+    if (i == 3) s.quality = 3;
+  });
+  const Record record = read();
+  ASSERT_EQ(record.size(), 7U);
+  EXPECT_EQ(record.further.size(), 8U);
+  const double nan = std::nan("");
+  const double supply_Pa[] = {nan, nan, 7e6 + 2, 7e6 + 4, 7e6 + 5, nan, nan};
+  const double in_Pa[] = {nan, nan, 4e6 + 2, nan, 4e6 + 5, nan, nan};
+  for (std::size_t i = 0; i < 7; ++i) {
+    const double supply = record.column("supply_pressure_Pa")->at(i);
+    const double in = record.column("pressure_in_Pa")->at(i);
+    const double out = record.column("pressure_out_Pa")->at(i);
+    EXPECT_TRUE(supply == supply_Pa[i] || (std::isnan(supply) && std::isnan(supply_Pa[i]))) << i;
+    EXPECT_TRUE(in == in_Pa[i] || (std::isnan(in) && std::isnan(in_Pa[i]))) << i;
+    EXPECT_TRUE(out == supply_Pa[i] - 5e6 || (std::isnan(out) && std::isnan(supply_Pa[i]))) << i;
+  }
+}
+
+TEST_F(LcmLog, GivesEveryRodSensorAsAColumn) {
+  write_samples("RIG2_SAMPLE", 4, [this](int i, sample_t&) {
+    spoolwatch::rods_t rods{};
+    rods.tick = i;
+    rods.in_charge = static_cast<std::int8_t>(i / 2);
+    rods.count = 2;
+    rods.rod = {"rod", "outer"};
+    rods.y_m = {0.3 + 0.001 * i, i == 1 ? std::nan("") : 0.4};
+    rods.quality = {0, 0};
+    rods.fault = {0, 0};
+    write("RIG2_RODS", rods);
+    write("OTHER_RODS", rods);
+  });
+  const Record record = read();
+  ASSERT_EQ(record.size(), 4U);
+  EXPECT_EQ(*record.column("rod_in_charge"), (std::vector<double>{1.0, 1.0, 2.0, 2.0}));
+  EXPECT_EQ(*record.column("rod_1_m"), record.y_m);
+  EXPECT_TRUE(std::isnan(record.column("rod_2_m")->at(1)));
+  EXPECT_EQ(record.column("rod_2_m")->at(2), 0.4);
+}
+
+TEST_F(LcmLog, RefusesPressuresOfAnotherType) {
+  write_samples("SPOOLWATCH_SAMPLE", 3);
+  write("SPOOLWATCH_PRESSURES", spoolwatch::health_t{});
+  expect_bad("event 3: on SPOOLWATCH_PRESSURES is of another type");
 }
 
 TEST_F(LcmLog, LeavesBadSamplesOutAsGapsAndSaysSo) {

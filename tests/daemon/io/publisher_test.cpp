@@ -17,6 +17,7 @@
 #include "spoolwatch/alarm_t.hpp"
 #include "spoolwatch/estimate_t.hpp"
 #include "spoolwatch/health_t.hpp"
+#include "spoolwatch/pressures_t.hpp"
 #include "spoolwatch/sample_t.hpp"
 #include "tests/daemon/io/log_reader.h"
 
@@ -137,6 +138,40 @@ TEST_F(PublisherTest, RecordsEveryFieldOfEveryMessage) {
   EXPECT_EQ(decode<spoolwatch::health_t>(events[4]).ticks, 6);
 }
 
+TEST_F(PublisherTest, TellsPressuresJustBeforeTheirSampleWhereTheRigMeasuresThem) {
+  const auto channels = [&](bool measures) {
+    {
+      Recorder recorder({.folder = folder_}, measures ? 11 : 12, false);
+      Publisher publisher({.url = "", .prefix = "RIG"}, 11, kSampleTime_s, &recorder);
+      if (measures) publisher.tell_pressures();
+      Sample with = sample(4);
+      with.pressures = {7e6, 4.5e6, 2.5e6};
+      publisher.sample(with);
+      publisher.sample(sample(5));
+    }
+    return read_events(logs_in(folder_).at(measures ? 0 : 1));
+  };
+  const auto events = channels(true);
+  ASSERT_EQ(events.size(), 4U);
+  EXPECT_EQ(events[0].channel, "RIG_PRESSURES");
+  EXPECT_EQ(events[1].channel, "RIG_SAMPLE");
+  EXPECT_EQ(events[2].channel, "RIG_PRESSURES");
+  const auto first = decode<spoolwatch::pressures_t>(events[0]);
+  EXPECT_EQ(first.run_id, 11);
+  EXPECT_EQ(first.seq, 0);
+  EXPECT_EQ(first.tick, 4);
+  EXPECT_EQ(first.utc_us, 20'000);
+  EXPECT_EQ(first.mono_ns, 20'000'000);
+  EXPECT_EQ(first.supply_Pa, 7e6);
+  EXPECT_EQ(first.in_Pa, 4.5e6);
+  EXPECT_EQ(first.out_Pa, 2.5e6);
+  const auto second = decode<spoolwatch::pressures_t>(events[2]);
+  EXPECT_EQ(second.seq, 1);
+  EXPECT_EQ(second.tick, 5);
+  EXPECT_TRUE(std::isnan(second.supply_Pa)) << "none, and never the last one again";
+  EXPECT_EQ(channels(false).size(), 2U);
+}
+
 TEST_F(PublisherTest, LeavesALogThatIsARecord) {
   {
     Recorder recorder({.folder = folder_}, 1, false);
@@ -226,7 +261,7 @@ TEST_F(PublisherTest, CountsWhatALostNetworkKeepsFromBeingSentAndStillRecordsIt)
 }
 
 TEST_F(PublisherTest, RefusesAPrefixThatMakesChannelNamesTooLongForLcm) {
-  const std::string longest(54, 'P');  // 54 + "_ESTIMATE" = 63 characters, LCM's limit
+  const std::string longest(53, 'P');  // 53 + "_PRESSURES" = 63 characters, LCM's limit
   EXPECT_NO_THROW(Publisher({.url = "", .prefix = longest}, 1, kSampleTime_s, nullptr));
   EXPECT_THROW(Publisher({.url = "", .prefix = longest + "P"}, 1, kSampleTime_s, nullptr),
                config::schema::Error);

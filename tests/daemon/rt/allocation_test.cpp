@@ -42,8 +42,9 @@ struct Around {
                                        rig, hal::sim::SpareConfig{"", offset_m, 0.0})});
       }
     }
-    for (const auto role : {hal::InputRole::e_stop, hal::InputRole::enable,
-                            hal::InputRole::pressure, hal::InputRole::other}) {
+    for (const auto role :
+         {hal::InputRole::e_stop, hal::InputRole::enable, hal::InputRole::pressure,
+          hal::InputRole::supply_pressure, hal::InputRole::pressure_in, hal::InputRole::other}) {
       hal::sim::SwitchConfig config;
       config.from_s = 7.0;  // off for a while
       config.to_s = 7.5;
