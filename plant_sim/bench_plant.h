@@ -8,6 +8,7 @@
 
 #include "config/schema/visitor.h"
 #include "plant_sim/schedule.h"
+#include "plant_sim/transducer.h"
 
 namespace plant_sim {
 
@@ -19,6 +20,7 @@ struct BenchPlant {
   double dac_range_V = 10.0;
   std::int64_t seed = 1;
   std::vector<Change> faults;
+  std::vector<TransducerConfig> pressures;  ///< those that are not without error
 
   void visit(config::schema::Visitor& v);
 };

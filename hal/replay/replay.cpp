@@ -2,11 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "config/record/sample_columns.h"
 #include "config/schema/error.h"
 
 namespace hal::replay {
 namespace {
+
+/// Inputs, and the columns that they are read from.
+constexpr std::pair<const char*, const char*> kColumns[] = {
+    {"supply_pressure", config::record::kSupplyPressure},
+    {"pressure_in", config::record::kPressureIn},
+    {"pressure_out", config::record::kPressureOut}};
 
 /// Rows per period: 1 from row to row, more across a gap.
 std::vector<std::int64_t> grid(const config::record::Record& record) {
@@ -26,27 +34,44 @@ void ReplayConfig::visit(config::schema::Visitor& v) {
   v.choice({"pace", "at the recorded pace, or as fast as possible"}, pace, {"recorded", "fast"});
 }
 
-ReplaySensor::ReplaySensor(config::record::Record record)
+Rows::Rows(const config::record::Record& record) : tick_(grid(record)) {}
+
+std::size_t Rows::at(const Tick& tick) noexcept {
+  while (next_ < tick_.size() && tick_[next_] < tick.index) ++next_;
+  return next_ == tick_.size() || tick_[next_] == tick.index ? next_ : kNone;
+}
+
+ReplaySensor::ReplaySensor(std::shared_ptr<const config::record::Record> record)
     : record_(std::move(record)),
-      quality_(record_.column("quality")),
-      saturated_(record_.column("saturated")),
-      tick_(grid(record_)) {}
+      quality_(record_->column("quality")),
+      saturated_(record_->column("saturated")),
+      rows_(*record_) {}
 
 Reading ReplaySensor::read(const Tick& tick) noexcept {
-  while (next_ < tick_.size() && tick_[next_] < tick.index) ++next_;
+  const std::size_t row = rows_.at(tick);
   Reading reading;
-  if (next_ == tick_.size()) {
+  if (row == record_->size()) {
     reading.end = true;
-  } else if (tick_[next_] == tick.index) {
-    reading.y_m = record_.y_m[next_];
-    reading.command_V = record_.u_V[next_];
+  } else if (row != Rows::kNone) {
+    reading.y_m = record_->y_m[row];
+    reading.command_V = record_->u_V[row];
     reading.quality = Quality::good;
-    reading.saturated = saturated_ != nullptr && (*saturated_)[next_] > 0.0;
-    if (quality_ != nullptr && std::isfinite((*quality_)[next_])) {
-      reading.quality = static_cast<Quality>(std::clamp((*quality_)[next_], 0.0, 3.0));
+    reading.saturated = saturated_ != nullptr && (*saturated_)[row] > 0.0;
+    if (quality_ != nullptr && std::isfinite((*quality_)[row])) {
+      reading.quality = static_cast<Quality>(std::clamp((*quality_)[row], 0.0, 3.0));
     }
   }
   return reading;
+}
+
+ReplayInput::ReplayInput(std::shared_ptr<const config::record::Record> record,
+                         const std::vector<double>& column)
+    : record_(std::move(record)), column_(column), rows_(*record_) {}
+
+InputReading ReplayInput::read(const Tick& tick) noexcept {
+  const std::size_t row = rows_.at(tick);
+  if (row == Rows::kNone || row == record_->size() || std::isnan(column_[row])) return {};
+  return {column_[row], 0, Quality::good};
 }
 
 Offer ReplayBackend::open(const Opening& opening) const {
@@ -57,11 +82,16 @@ Offer ReplayBackend::open(const Opening& opening) const {
                                      "is \"" + file.string() + "\", which is no file",
                                      "a CSV file, a MAT file or an LCM event log");
   }
-  config::record::Record record = config::record::read_record(file);
+  const auto record =
+      std::make_shared<const config::record::Record>(config::record::read_record(file));
   Offer offer;
-  offer.sample_time_s = record.sample_time_s;
+  offer.sample_time_s = record->sample_time_s;
   offer.fast = config_.pace == "fast";
-  offer.rods[kRodChannel] = std::make_shared<ReplaySensor>(std::move(record));
+  offer.rods[kRodChannel] = std::make_shared<ReplaySensor>(record);
+  for (const auto& [channel, name] : kColumns) {
+    const std::vector<double>* column = record->column(name);
+    if (column != nullptr) offer.inputs[channel] = std::make_shared<ReplayInput>(record, *column);
+  }
   return offer;
 }
 

@@ -1,7 +1,9 @@
 // A recorded experiment as a device: position and command both come from the record, nothing is
 // written. The period of the loop is the record's; a period that the record lacks reads as missing.
+// Inputs supply_pressure, pressure_in and pressure_out where the record has such a column.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "config/record/record.h"
@@ -17,17 +19,47 @@ struct ReplayConfig {
   void visit(config::schema::Visitor& v);
 };
 
+/// Where in a record the loop is.
+class Rows {
+ public:
+  explicit Rows(const config::record::Record& record);
+  /// The row of this period; `size` of the record after its end, and kNone for one that it lacks.
+  /// Ticks do not go back.
+  [[nodiscard]] std::size_t at(const Tick& tick) noexcept;
+
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+ private:
+  std::vector<std::int64_t> tick_;  ///< period of each row, from 0
+  std::size_t next_ = 0;
+};
+
 class ReplaySensor final : public RodSensor {
  public:
-  explicit ReplaySensor(config::record::Record record);
+  explicit ReplaySensor(std::shared_ptr<const config::record::Record> record);
+  explicit ReplaySensor(const config::record::Record& record)
+      : ReplaySensor(std::make_shared<const config::record::Record>(record)) {}
   Reading read(const Tick& tick) noexcept override;
 
  private:
-  config::record::Record record_;
+  std::shared_ptr<const config::record::Record> record_;
   const std::vector<double>* quality_;  ///< the record's own column of it, or null
   const std::vector<double>* saturated_;
-  std::vector<std::int64_t> tick_;  ///< period of each row, from 0
-  std::size_t next_ = 0;
+  Rows rows_;
+};
+
+/// A column of the record.
+class ReplayInput final : public Input {
+ public:
+  /// The column is the record's.
+  ReplayInput(std::shared_ptr<const config::record::Record> record,
+              const std::vector<double>& column);
+  InputReading read(const Tick& tick) noexcept override;
+
+ private:
+  std::shared_ptr<const config::record::Record> record_;
+  const std::vector<double>& column_;
+  Rows rows_;
 };
 
 class ReplayBackend final : public Backend {

@@ -14,6 +14,18 @@ constexpr double kSpeedSearch_s = 0.5;
 /// How far a period may be from a whole number of integration steps, in steps.
 constexpr double kWholeSteps = 1e-6;
 
+/// Throws where it names no transducer, or a rod sensor as well.
+void check_pressure(const std::string& file, const Trouble& trouble) {
+  const auto& known = plant_sim::kTransducers;
+  const std::string where = file + ": [[sim.trouble]] pressure";
+  if (!trouble.rod.empty()) {
+    throw config::schema::bad_config(where, "stands beside rod", "one of the two");
+  }
+  if (std::find(known.begin(), known.end(), trouble.pressure) != known.end()) return;
+  throw config::schema::bad_config(where, "is \"" + trouble.pressure + "\"",
+                                   std::string(known[0]) + ", " + known[1] + ", " + known[2]);
+}
+
 }  // namespace
 
 void SimConfig::visit(config::schema::Visitor& v) {
@@ -21,7 +33,8 @@ void SimConfig::visit(config::schema::Visitor& v) {
   v.number({"command_timeout_s", "without a write for so long the valve goes to null"},
            command_timeout_s, {1e-3, std::numeric_limits<double>::infinity()});
   v.boolean({"pretend_real", "obey the rules of a rig that moves something"}, pretend_real);
-  config::schema::visit_list(v, {"trouble", "what goes wrong with rod sensor or valve"}, troubles);
+  config::schema::visit_list(v, {"trouble", "what goes wrong with a sensor or the valve"},
+                             troubles);
   config::schema::visit_list(v, {"rod", "a spare rod sensor"}, rods);
   config::schema::visit_list(v, {"input", "a switch or another signal"}, inputs);
 }
@@ -85,6 +98,13 @@ Reading SpareRod::read(const Tick& tick) noexcept {
   return reading;
 }
 
+InputReading PressureInput::read(const Tick& tick) noexcept {
+  const double t_s = static_cast<double>(tick.nominal_ns) * 1e-9;
+  InputReading reading{transducers_->read(which_, rig_->pressures(), t_s), 0, Quality::good};
+  spoilt_.spoil(reading, t_s);
+  return reading;
+}
+
 std::unique_ptr<plant_sim::Plant> SimBackend::load(const Opening& opening) const {
   const std::filesystem::path file = resolve(opening, config_.model);
   std::error_code ignored;
@@ -100,6 +120,10 @@ void SimBackend::check_troubles(const Opening& opening) const {
   std::string known;
   for (const SpareConfig& spare : config_.rods) known += (known.empty() ? "" : ", ") + spare.id;
   for (const Trouble& trouble : config_.troubles) {
+    if (!trouble.pressure.empty()) {
+      check_pressure(opening.file, trouble);
+      continue;
+    }
     const auto is_it = [&](const SpareConfig& spare) { return spare.id == trouble.rod; };
     if (trouble.rod.empty() || std::any_of(config_.rods.begin(), config_.rods.end(), is_it)) {
       continue;
@@ -107,6 +131,24 @@ void SimBackend::check_troubles(const Opening& opening) const {
     throw config::schema::bad_config(opening.file + ": [[sim.trouble]] rod",
                                      "is \"" + trouble.rod + "\", which is no [[sim.rod]]",
                                      known.empty() ? "none is there" : known);
+  }
+}
+
+void SimBackend::offer_pressures(const std::string& file, const std::shared_ptr<SimRig>& rig,
+                                 Offer& offer) const {
+  std::shared_ptr<plant_sim::Transducers> transducers;
+  try {
+    transducers = std::make_shared<plant_sim::Transducers>(
+        config_.pressures, static_cast<std::uint64_t>(config_.seed));
+  } catch (const config::schema::Error& e) {
+    throw config::schema::Error(config::schema::ExitCode::bad_config, file + ": " + e.what());
+  }
+  const plant_sim::Pressures now = rig->pressures();
+  const double values_Pa[] = {now.supply_Pa, now.in_Pa, now.out_Pa};
+  for (std::size_t i = 0; i < plant_sim::kTransducers.size(); ++i) {
+    if (std::isnan(values_Pa[i])) continue;  // such a plant has none
+    offer.inputs[plant_sim::kTransducers[i]] =
+        std::make_shared<PressureInput>(rig, transducers, i, config_.troubles);
   }
 }
 
@@ -125,25 +167,27 @@ Offer SimBackend::open(const Opening& opening) const {
                                      "is outside the range of the D/A converter",
                                      "at most [sim] dac_range_V in magnitude");
   }
+  std::shared_ptr<SimRig> rig;
   try {
-    auto rig =
+    rig =
         std::make_shared<SimRig>(std::move(plant), config_, opening.sample_time_s, opening.null_V);
-    Offer offer;
-    offer.rods[kRodChannel] = rig;
-    offer.valve = rig;
-    std::uint64_t seed = static_cast<std::uint64_t>(config_.seed);
-    for (const SpareConfig& spare : config_.rods) {
-      offer.rods[spare.id] = std::make_shared<SpareRod>(rig, spare, config_.troubles, ++seed);
-    }
-    for (const SwitchConfig& input : config_.inputs) {
-      offer.inputs[input.id] = std::make_shared<Switch>(input);
-    }
-    offer.outputs["permit"] = std::make_shared<Line>();
-    return offer;
   } catch (const config::schema::Error& e) {
     throw config::schema::Error(config::schema::ExitCode::bad_config,
                                 opening.file + ": [[sim.fault]] " + e.what());
   }
+  Offer offer;
+  offer.rods[kRodChannel] = rig;
+  offer.valve = rig;
+  std::uint64_t seed = static_cast<std::uint64_t>(config_.seed);
+  for (const SpareConfig& spare : config_.rods) {
+    offer.rods[spare.id] = std::make_shared<SpareRod>(rig, spare, config_.troubles, ++seed);
+  }
+  offer_pressures(opening.file, rig, offer);
+  for (const SwitchConfig& input : config_.inputs) {
+    offer.inputs[input.id] = std::make_shared<Switch>(input);
+  }
+  offer.outputs["permit"] = std::make_shared<Line>();
+  return offer;
 }
 
 NullTimes SimBackend::null_times() const {

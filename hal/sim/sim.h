@@ -40,6 +40,8 @@ class SimRig final : public RodSensor, public ValveDrive {
   Applied go_null() noexcept override;
   /// The plant's own position, after the tick read last.
   [[nodiscard]] double position_m() const noexcept { return plant_->reading_m(); }
+  /// Likewise, its pressures.
+  [[nodiscard]] plant_sim::Pressures pressures() const noexcept { return plant_->pressures(); }
 
  private:
   Applied take(double u_V) noexcept;
@@ -78,6 +80,26 @@ class SpareRod final : public RodSensor {
   SpoiltRod spoilt_;
 };
 
+/// A pressure of a SimRig's plant, to be read after the rig.
+class PressureInput final : public Input {
+ public:
+  /// `which` of plant_sim::kTransducers; `transducers` are shared by all of a rig.
+  PressureInput(std::shared_ptr<const SimRig> rig,
+                std::shared_ptr<plant_sim::Transducers> transducers, std::size_t which,
+                const std::vector<Trouble>& troubles = {})
+      : rig_(std::move(rig)),
+        transducers_(std::move(transducers)),
+        which_(which),
+        spoilt_(troubles, plant_sim::kTransducers.at(which)) {}
+  InputReading read(const Tick& tick) noexcept override;
+
+ private:
+  std::shared_ptr<const SimRig> rig_;
+  std::shared_ptr<plant_sim::Transducers> transducers_;
+  std::size_t which_;
+  SpoiltPressure spoilt_;
+};
+
 class SimBackend final : public Backend {
  public:
   void visit(config::schema::Visitor& v) override { config_.visit(v); }
@@ -91,6 +113,9 @@ class SimBackend final : public Backend {
  private:
   [[nodiscard]] std::unique_ptr<plant_sim::Plant> load(const Opening& opening) const;
   void check_troubles(const Opening& opening) const;
+  /// Offers the pressures that the plant has.
+  void offer_pressures(const std::string& file, const std::shared_ptr<SimRig>& rig,
+                       Offer& offer) const;
 
   SimConfig config_;
 };

@@ -11,6 +11,9 @@ void Trouble::visit(config::schema::Visitor& v) {
   v.choice({"kind", "what goes wrong", true}, kind,
            {"missing", "frozen", "jump", "drift", "stale", "deaf"});
   if (kind != "deaf") v.text({"rod", "id of a spare rod sensor; empty: the rig's own"}, rod);
+  if (kind == "missing" || kind == "frozen" || kind == "stale") {
+    v.text({"pressure", "the transducer that it is of, in place of a rod sensor"}, pressure);
+  }
   v.number({"from_s", "when it begins"}, from_s, {0.0, kInfinite});
   v.number({"to_s", "when it is over"}, to_s, {0.0, kInfinite});
   if (kind == "jump") v.number({"size_m", "added to the reading"}, size_m, {-100.0, 100.0});
@@ -19,7 +22,7 @@ void Trouble::visit(config::schema::Visitor& v) {
 
 SpoiltRod::SpoiltRod(const std::vector<Trouble>& all, const std::string& id) {
   for (const Trouble& trouble : all) {
-    if (trouble.rod == id) troubles_.push_back(trouble);
+    if (trouble.rod == id && trouble.pressure.empty()) troubles_.push_back(trouble);
   }
 }
 
@@ -49,6 +52,28 @@ bool SpoiltRod::spoil(Reading& reading, double t_s) noexcept {
   }
   if (!frozen) last_y_m_ = y_m;
   return deaf;
+}
+
+SpoiltPressure::SpoiltPressure(const std::vector<Trouble>& all, const std::string& id) {
+  for (const Trouble& trouble : all) {
+    if (trouble.pressure == id) troubles_.push_back(trouble);
+  }
+}
+
+void SpoiltPressure::spoil(InputReading& reading, double t_s) noexcept {
+  const double value_Pa = reading.value;
+  bool frozen = false;
+  for (const Trouble& trouble : troubles_) {
+    if (!trouble.at(t_s)) continue;
+    if (trouble.kind == "missing") {
+      reading = {};
+      continue;
+    }
+    frozen = true;
+    reading.value = last_Pa_;
+    if (trouble.kind == "stale") reading.quality = Quality::stale;
+  }
+  if (!frozen) last_Pa_ = value_Pa;
 }
 
 void SpareConfig::visit(config::schema::Visitor& v) {

@@ -1,5 +1,5 @@
 // What may go wrong with the simulated devices, on schedule, and the devices besides rod and valve:
-// spare rod sensors, switches and an output.
+// spare rod sensors, switches and an output; pressure transducers are plant_sim/transducer.h.
 #pragma once
 
 #include <atomic>
@@ -19,8 +19,9 @@ struct Trouble {
   std::string rod;  ///< id of a [[sim.rod]]; empty: the rig's own
   double from_s = 0.0;
   double to_s = std::numeric_limits<double>::infinity();
-  double size_m = 0.0;    ///< of a jump
-  double rate_mps = 0.0;  ///< of a drift
+  double size_m = 0.0;     ///< of a jump
+  double rate_mps = 0.0;   ///< of a drift
+  std::string pressure{};  ///< whose readings are missing, frozen or stale; empty: a rod's
 
   void visit(config::schema::Visitor& v);
   [[nodiscard]] bool at(double t_s) const noexcept { return t_s >= from_s && t_s < to_s; }
@@ -38,6 +39,17 @@ class SpoiltRod {
  private:
   std::vector<Trouble> troubles_;
   double last_y_m_ = kMissing;  ///< reading before the trouble that froze it
+};
+
+/// What the troubles of one pressure transducer make of its readings.
+class SpoiltPressure {
+ public:
+  SpoiltPressure(const std::vector<Trouble>& all, const std::string& id);
+  void spoil(InputReading& reading, double t_s) noexcept;
+
+ private:
+  std::vector<Trouble> troubles_;
+  double last_Pa_ = kMissing;  ///< reading before the trouble that froze it
 };
 
 /// TOML [[sim.rod]]: a spare sensor on the same rod, with steps and noise of its own.

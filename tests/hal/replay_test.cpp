@@ -80,6 +80,40 @@ TEST(ReplaySensor, KeepsTheSaturationThatTheRecordStates) {
   EXPECT_FALSE(sensor.read(tick(2)).saturated);
 }
 
+TEST(ReplayInput, GivesItsColumnRowByRowAndNothingWhereThereIsNone) {
+  const auto record = std::make_shared<config::record::Record>(ramp(6));
+  for (std::size_t i = 3; i < 6; ++i) record->t_s[i] += 0.02;  // two periods lost before row 3
+  record->gaps = {3};
+  record->further = {{"pressure_in_Pa", {1e6, 2e6, std::nan(""), 4e6, 5e6, 6e6}}};
+  ReplayInput input(record, record->further[0].second);
+  const double wanted_Pa[] = {1e6, 2e6, kMissing, kMissing, kMissing, 4e6, 5e6, 6e6, kMissing};
+  for (int i = 0; i < 9; ++i) {
+    const InputReading reading = input.read(tick(i));
+    if (std::isnan(wanted_Pa[i])) {
+      EXPECT_TRUE(std::isnan(reading.value)) << i;
+      EXPECT_EQ(reading.quality, Quality::bad) << i;
+    } else {
+      EXPECT_EQ(reading.value, wanted_Pa[i]) << i;
+      EXPECT_EQ(reading.quality, Quality::good) << i;
+    }
+  }
+}
+
+TEST(ReplayBackend, OffersThePressuresThatTheRecordHas) {
+  const auto file = std::filesystem::temp_directory_path() / "spoolwatch_replay_pressure.csv";
+  std::ofstream(file) << "t_s,u_V,y_mm,supply_pressure_bar,other_Pa\n"
+                         "0,1,2,70,1\n0.02,1,3,71,1\n0.04,1,4,72,1\n";
+  ReplayBackend backend;
+  config::schema::Document::parse("schema_version = 1\nrecord = \"" + file.string() + "\"\n",
+                                  "test")
+      .read([&](config::schema::Visitor& v) { backend.visit(v); });
+  const Offer devices = backend.open({"test", {}, 0.005, 0.0});
+  std::filesystem::remove(file);
+  ASSERT_EQ(devices.inputs.size(), 1U);
+  // A bar is 1e5 Pa; the product may miss it by a rounding.
+  EXPECT_NEAR(devices.inputs.at("supply_pressure")->read(tick(1)).value, 7.1e6, 1e-8);
+}
+
 TEST(ReplayBackend, TakesThePeriodFromTheRecordAndDrivesNothing) {
   const auto file = std::filesystem::temp_directory_path() / "spoolwatch_replay_test.csv";
   std::ofstream(file) << "t_s,u_V,y_mm\n0,1,2\n0.02,1,3\n0.04,1,4\n0.06,1,5\n";

@@ -1,0 +1,47 @@
+#include "plant_sim/transducer.h"
+
+#include "config/schema/error.h"
+
+namespace plant_sim {
+namespace {
+
+/// Apart from the seeds of rod sensors, which count on from the plant's own.
+constexpr std::uint64_t kSeeds = 1000;
+constexpr double kMost_Pa = 1e9;
+
+}  // namespace
+
+void TransducerConfig::visit(config::schema::Visitor& v) {
+  v.choice({"of", "which pressure it measures", true}, of,
+           {kTransducers[0], kTransducers[1], kTransducers[2]});
+  v.number({"offset_Pa", "added to the pressure"}, offset_Pa, {-kMost_Pa, kMost_Pa});
+  v.number({"from_s", "when the offset begins"}, from_s,
+           {0.0, std::numeric_limits<double>::infinity()});
+  v.number({"noise_Pa", "standard deviation of its noise"}, noise_Pa, {0.0, kMost_Pa});
+  v.number({"resolution_Pa", "its step; 0: none"}, resolution_Pa, {0.0, kMost_Pa});
+}
+
+Transducers::Transducers(const std::vector<TransducerConfig>& configs, std::uint64_t seed) {
+  for (const char* name : kTransducers) {
+    TransducerConfig found;
+    for (const TransducerConfig& config : configs) {
+      if (config.of != name) continue;
+      if (!found.of.empty()) {
+        throw config::schema::bad_config("[[sim.pressure]] of",
+                                         std::string("is \"") + name + "\" twice",
+                                         "one entry for each pressure");
+      }
+      found = config;
+    }
+    const std::uint64_t own_seed = seed + kSeeds + all_.size();
+    all_.push_back({found, Encoder(found.resolution_Pa, found.noise_Pa, own_seed)});
+  }
+}
+
+double Transducers::read(std::size_t which, const Pressures& true_Pa, double t_s) noexcept {
+  Transducer& own = all_[which];
+  const double p_Pa = which == 0 ? true_Pa.supply_Pa : which == 1 ? true_Pa.in_Pa : true_Pa.out_Pa;
+  return own.converter.read(p_Pa + (t_s >= own.config.from_s ? own.config.offset_Pa : 0.0));
+}
+
+}  // namespace plant_sim

@@ -1,0 +1,49 @@
+// Pressure transducers on a simulated rig: what they make of the pressures that the plant has.
+//
+//   reading = resolution round((p + offset + noise) / resolution), offset from from_s on
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "config/schema/visitor.h"
+#include "plant_sim/instruments.h"
+#include "plant_sim/pressures.h"
+
+namespace plant_sim {
+
+/// TOML [[sim.pressure]].
+struct TransducerConfig {
+  std::string of;          ///< one of kTransducers
+  double offset_Pa = 0.0;  ///< from from_s on
+  double from_s = 0.0;
+  double noise_Pa = 0.0;       ///< standard deviation
+  double resolution_Pa = 0.0;  ///< 0: none
+
+  void visit(config::schema::Visitor& v);
+};
+
+/// In the order of Pressures; also the channels of the sim backend.
+inline constexpr std::array<const char*, 3> kTransducers = {"supply_pressure", "pressure_in",
+                                                            "pressure_out"};
+
+class Transducers {
+ public:
+  /// Those that no entry names are without error. Throws config::schema::Error (exit 78) where two
+  /// are of the same pressure. `seed`: of the noise.
+  Transducers(const std::vector<TransducerConfig>& configs, std::uint64_t seed);
+
+  /// The reading of one (in the order of kTransducers), with a fresh sample of its noise.
+  double read(std::size_t which, const Pressures& true_Pa, double t_s) noexcept;
+
+ private:
+  struct Transducer {
+    TransducerConfig config;
+    Encoder converter;  ///< its steps and noise are in Pa here
+  };
+  std::vector<Transducer> all_;
+};
+
+}  // namespace plant_sim
