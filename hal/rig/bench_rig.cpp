@@ -41,6 +41,15 @@ plant_sim::Schedule make_schedule(const RigConfig& config, plant_sim::Plant& pla
   }
 }
 
+plant_sim::Transducers make_transducers(const RigConfig& config) {
+  try {
+    return {config.sim.pressures, static_cast<std::uint64_t>(config.sim.seed)};
+  } catch (const config::schema::Error& e) {
+    throw config::schema::Error(config::schema::ExitCode::bad_config,
+                                config.file + ": " + e.what());
+  }
+}
+
 }  // namespace
 
 BenchRig::BenchRig(const RigConfig& config, std::int64_t now_ns)
@@ -49,6 +58,7 @@ BenchRig::BenchRig(const RigConfig& config, std::int64_t now_ns)
       schedule_(make_schedule(config, *plant_)),
       encoder_(config.sim.encoder_resolution_m, config.sim.noise_m,
                static_cast<std::uint64_t>(config.sim.seed)),
+      transducers_(make_transducers(config)),
       dac_{static_cast<int>(config.sim.dac_bits), config.sim.dac_range_V},
       count_m_(config.sim.encoder_resolution_m > 0.0 ? config.sim.encoder_resolution_m
                                                      : kIdealCount_m),
@@ -139,6 +149,11 @@ double BenchRig::read_position_m() {
         field_.encoder_sign * field_.encoder_scale * plant_->reading_m() + field_.encoder_offset_m);
   }
   return last_position_m_;
+}
+
+double BenchRig::read_pressure_Pa(std::size_t which) {
+  const double t_s = static_cast<double>(schedule_steps_) * plant_->step_s();
+  return transducers_.read(which, plant_->pressures(), t_s);
 }
 
 std::int32_t BenchRig::counts(double position_m) const {

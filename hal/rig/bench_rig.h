@@ -43,6 +43,8 @@ class BenchRig {
 
   /// What the encoder says, with a fresh sample of its noise.
   double read_position_m();
+  /// What a pressure transducer says (of plant_sim::kTransducers), likewise; NaN: there is none.
+  double read_pressure_Pa(std::size_t which);
   [[nodiscard]] std::int32_t counts(double position_m) const;
   [[nodiscard]] double converter_V() const;
   [[nodiscard]] double asked_V() const noexcept { return asked_V_; }
@@ -83,6 +85,7 @@ class BenchRig {
   std::unique_ptr<plant_sim::Plant> plant_;
   plant_sim::Schedule schedule_;
   plant_sim::Encoder encoder_;
+  plant_sim::Transducers transducers_;
   plant_sim::DacRange dac_;
   double count_m_;
   double e_stop_ = 1.0;

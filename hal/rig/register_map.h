@@ -13,9 +13,13 @@
 //   11     e-stop    uint16         1 while released
 //   12     enable    uint16         1 while a person allows motion
 //   13-14  time      uint32   us    of the measurement, since the start
+//   15     supply    int16    kPa   gauge pressure at the valve's inlet, as [[sim.pressure]] says
+//   16     in        int16    kPa   of the chamber that extends the rod
+//   17     out       int16    kPa   of the chamber that retracts it
 // clang-format on
 //
-// Input registers 0 to 14 (function 4) repeat them. Discrete inputs (function 2): 0 e-stop, 1
+// A pressure that the plant does not have reads -32768. Input registers 0 to 17 (function 4) repeat
+// them. Discrete inputs (function 2): 0 e-stop, 1
 // enable. Coil 0 (functions 1, 5, 15): the permit, watched when [field] permit_timeout_s is given.
 // Holding registers 1000 to 1099 take a text, "supply_pressure_Pa=x0.75", 1100 to 1199 then hold
 // the reply: what `spoolwatch-rig set` uses. Everything else is refused with exception 2.
@@ -34,7 +38,8 @@ inline constexpr int kStatus = 10;
 inline constexpr int kEStop = 11;
 inline constexpr int kEnable = 12;
 inline constexpr int kTime = 13;
-inline constexpr int kRegisters = 15;
+inline constexpr int kPressures = 15;  ///< three, in the order of plant_sim::kTransducers
+inline constexpr int kRegisters = 18;
 
 inline constexpr int kText = 1000;
 inline constexpr int kReply = 1100;
@@ -53,6 +58,9 @@ inline constexpr const char* kRegisterMapText =
   11    e-stop                  1 while released
   12    enable                  1 while a person allows motion
   13-14 time      uint32   us   of the measurement
+  15    supply    int16    kPa  pressure at the valve's inlet
+  16    in        int16    kPa  of the chamber that extends the rod
+  17    out       int16    kPa  of the chamber that retracts it
 Discrete inputs: 0 e-stop, 1 enable. Coil: 0 permit.)";
 
 }  // namespace hal::rig

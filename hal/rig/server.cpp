@@ -37,6 +37,13 @@ void put_float(std::uint16_t* registers, int at, double value) {
   put_wide(registers, at, std::bit_cast<std::uint32_t>(static_cast<float>(value)));
 }
 
+/// As int16; the least number where there is no pressure.
+std::uint16_t kilopascals(double p_Pa) {
+  const double rounded = std::isfinite(p_Pa) ? std::round(p_Pa * 1e-3) : -32768.0;
+  return static_cast<std::uint16_t>(
+      static_cast<std::int16_t>(std::clamp(rounded, -32768.0, 32767.0)));
+}
+
 void bound_waits(modbus_t* context) {
   modbus_set_byte_timeout(context, 0, kWhole_us);
   modbus_set_response_timeout(context, 0, 1000);  // what it waits before it answers a bad request
@@ -195,6 +202,9 @@ void Server::refresh() {
   r[kEStop] = rig_.e_stop_released() ? 1 : 0;
   r[kEnable] = rig_.enabled() ? 1 : 0;
   put_wide(r, kTime, rig_.time_us());
+  for (std::size_t i = 0; i < plant_sim::kTransducers.size(); ++i) {
+    r[kPressures + i] = kilopascals(rig_.read_pressure_Pa(i));
+  }
   std::copy(r, r + kRegisters, process_->tab_input_registers);
   process_->tab_input_bits[0] = rig_.e_stop_released() ? 1 : 0;
   process_->tab_input_bits[1] = rig_.enabled() ? 1 : 0;

@@ -33,6 +33,29 @@ std::unique_ptr<plant_sim::Plant> twin() {
   return plant_sim::make_plant(model);
 }
 
+TEST(BenchRig, ItsTransducersHaveTheErrorsDeclared) {
+  RigConfig config = ideal();
+  plant_sim::TransducerConfig drifted;
+  drifted.of = "pressure_in";
+  drifted.offset_Pa = 2e5;
+  drifted.from_s = 0.1;
+  config.sim.pressures = {drifted};
+  BenchRig rig(config, kStart_ns);
+  const auto plant = twin();
+  rig.advance_to(at(0.2));
+  EXPECT_DOUBLE_EQ(rig.read_pressure_Pa(1), plant->pressures().in_Pa)
+      << "schedules count from the first command";
+  rig.command(1.0);
+  rig.advance_to(at(0.4));
+  plant->advance(0.0, 0.2);
+  plant->advance(1.0, 0.2);
+  EXPECT_DOUBLE_EQ(rig.read_pressure_Pa(0), plant->pressures().supply_Pa);
+  EXPECT_DOUBLE_EQ(rig.read_pressure_Pa(1), plant->pressures().in_Pa + 2e5);
+  EXPECT_DOUBLE_EQ(rig.read_pressure_Pa(2), plant->pressures().out_Pa);
+  config.sim.pressures.push_back(drifted);
+  EXPECT_THROW(BenchRig(config, kStart_ns), config::schema::Error);
+}
+
 TEST(BenchRig, HoldsTheCommandUntilTheNext) {
   BenchRig rig(ideal(), kStart_ns);
   const auto plant = twin();

@@ -62,11 +62,35 @@ TEST(RigProgram, TakesACommandInVoltsOrMillivoltsAndMovesTheRod) {
   EXPECT_NEAR(float_at(client.ask({3, 0, 8, 0, 2}), 2), 2.0, 0.005);
 }
 
+TEST(RigProgram, TellsItsPressuresInKilopascals) {
+  RigProcess rig(quiet());
+  Client client(rig);
+  const auto pressures = [&](int function) {
+    const Bytes reply = client.ask({static_cast<std::uint8_t>(function), 0, 15, 0, 3});
+    EXPECT_EQ(reply.size(), 8U);
+    std::vector<int> all;
+    for (std::size_t i = 2; i + 1 < reply.size(); i += 2) {
+      all.push_back(static_cast<std::int16_t>(reply[i] << 8 | reply[i + 1]));
+    }
+    return all;
+  };
+  // At rest in the middle: 6.89 MPa, and half of it on either side.
+  EXPECT_THAT(pressures(3), ElementsAre(6890, 3445, 3445));
+  client.ask(kWrite2V);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  const std::vector<int> moving = pressures(4);
+  ASSERT_EQ(moving.size(), 3U);
+  EXPECT_EQ(moving[0], 6890);
+  // A (Pi - Po) = d v: with 6.33e-4 m2, 1000 N s/m and 0.09 m/s some 140 kPa.
+  EXPECT_GT(moving[1] - moving[2], 50);
+  EXPECT_LT(moving[1] - moving[2], 250);
+}
+
 TEST(RigProgram, RefusesWhatItDoesNotHaveOrDoesNotLetBeWritten) {
   RigProcess rig(quiet());
   Client client(rig);
   EXPECT_THAT(client.ask({3, 0x13, 0x88, 0, 1}), ElementsAre(0x83, 2));  // 5000
-  EXPECT_THAT(client.ask({3, 0, 14, 0, 2}), ElementsAre(0x83, 2));
+  EXPECT_THAT(client.ask({3, 0, 17, 0, 2}), ElementsAre(0x83, 2));
   EXPECT_THAT(client.ask({6, 0, 4, 0, 0}), ElementsAre(0x86, 2)) << "the position";
   EXPECT_THAT(client.ask({16, 0, 3, 0, 2, 4, 0, 0, 0, 0}), ElementsAre(0x90, 2));
   EXPECT_THAT(client.ask({6, 0x04, 0x4C, 0, 0}), ElementsAre(0x86, 2)) << "the reply, 1100";
