@@ -6,9 +6,13 @@
 #include <cstring>
 #include <iostream>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "config/messages/channels.h"
 #include "config/schema/error.h"
+#include "spoolwatch/pressures_t.hpp"
+#include "spoolwatch/rods_t.hpp"
 #include "spoolwatch/sample_t.hpp"
 #include "workbench/command.h"
 #include "workbench/ending.h"
@@ -37,7 +41,13 @@ class Bridge final : public Listener {
         place_(options.udp),
         sample_rate_Hz_(options.sample_rate_Hz) {}
 
+  void on_rods(const spoolwatch::rods_t& rods) override { rods_ = interchange::to_message(rods); }
+  void on_pressures(const spoolwatch::pressures_t& pressures) override {
+    pressures_ = interchange::to_message(pressures);
+  }
   void on_sample(const spoolwatch::sample_t& sample) override {
+    const auto rods = std::exchange(rods_, std::nullopt);
+    const auto pressures = std::exchange(pressures_, std::nullopt);
     if (sample_rate_Hz_ > 0.0) {
       // The first sample of each period of the rate asked for; a hair early for rounding.
       const double t_s = static_cast<double>(sample.tick) * sample.sample_time_s;
@@ -48,6 +58,8 @@ class Bridge final : public Listener {
       }
       last_period_ = period;
     }
+    if (rods) send(*rods);
+    if (pressures) send(*pressures);
     send(interchange::to_message(sample));
   }
   void on_estimate(const spoolwatch::estimate_t& estimate) override {
@@ -86,6 +98,7 @@ class Bridge final : public Listener {
   }
 
   interchange::UdpSender sender_;
+  std::optional<interchange::Message> rods_, pressures_;  ///< of the sample that comes next
   std::string place_;
   double sample_rate_Hz_;
   double last_period_ = -1.0;

@@ -30,7 +30,9 @@ std::string format_of(const std::string& output) {
 }
 
 interchange::Kinds kinds_of(const std::string& channel) {
-  if (channel.empty() || channel == "all") return {"sample", "estimate", "alarm", "health"};
+  if (channel.empty() || channel == "all") {
+    return {interchange::all_kinds().begin(), interchange::all_kinds().end()};
+  }
   return {channel};
 }
 
@@ -43,10 +45,12 @@ void export_log(const std::string& input, const std::string& file, const std::st
   check_outputs({{.option = "--output", .file = output, .may_replace_model = true}},
                 {.model = "", .records = {input}});
   if (form == "csv") {
-    if (channel == "all" || channel == "health") {
-      throw Error(ExitCode::usage, "--channel " + channel +
-                                       ": is no one table; allowed with CSV: sample, estimate, "
-                                       "alarm");
+    if (!channel.empty() && channel != "sample" && channel != "estimate" && channel != "alarm") {
+      const bool columns = channel == "rods" || channel == "pressures";
+      throw Error(ExitCode::usage,
+                  "--channel " + channel +
+                      (columns ? ": is among the columns of sample" : ": is no one table") +
+                      "; allowed with CSV: sample, estimate, alarm");
     }
     interchange::export_csv(input, channel.empty() ? "sample" : channel, output);
   } else if (form == "mat") {
@@ -74,7 +78,7 @@ void add_export(CLI::App& command, int&) {
       ->required();
   command
       .add_option("--channel", options->channel, "which messages; all by default, samples as CSV")
-      ->check(CLI::IsMember({"sample", "estimate", "alarm", "health", "all"}));
+      ->check(CLI::IsMember({"sample", "rods", "pressures", "estimate", "alarm", "health", "all"}));
   command.add_option("--format", options->format, "whatever the file is called")
       ->check(CLI::IsMember({"csv", "mat", "mcap", "json"}));
   command.callback([options] {

@@ -7,13 +7,15 @@
 #include "spoolwatch/alarm_t.hpp"
 #include "spoolwatch/estimate_t.hpp"
 #include "spoolwatch/health_t.hpp"
+#include "spoolwatch/pressures_t.hpp"
+#include "spoolwatch/rods_t.hpp"
 #include "spoolwatch/sample_t.hpp"
 
 namespace workbench {
 namespace {
 
-// Messages that may wait while the terminal is slow; LCM's own 30 are 0.15 s of samples.
-constexpr int kQueued = 2000;
+// Messages that may wait while the terminal is slow: 10 s of samples with all that goes with them.
+constexpr int kQueued = 6000;
 constexpr std::chrono::seconds kTellLosses{1};
 
 }  // namespace
@@ -26,7 +28,7 @@ Feed::Feed(const std::string& url, const std::string& prefix, bool with_samples,
       last_health_(Clock::now()),
       last_losses_(last_health_) {
   const std::string kinds =
-      with_samples ? "(SAMPLE|ESTIMATE|ALARM|HEALTH)" : "(ESTIMATE|ALARM|HEALTH)";
+      with_samples ? "(SAMPLE|RODS|PRESSURES|ESTIMATE|ALARM|HEALTH)" : "(ESTIMATE|ALARM|HEALTH)";
   auto* subscription = lcm_->subscribeFunction(prefix_ + "_" + kinds, &Feed::received, this);
   if (subscription == nullptr) {
     throw config::schema::bad_config("LCM URL \"" + url + "\"", "LCM cannot receive on it");
@@ -55,6 +57,12 @@ void Feed::received(const lcm::ReceiveBuffer* buffer, const std::string& channel
   if (kind == "SAMPLE") {
     spoolwatch::sample_t message;
     if (feed->decode(*buffer, channel, message)) feed->listener_.on_sample(message);
+  } else if (kind == "RODS") {
+    spoolwatch::rods_t message;
+    if (feed->decode(*buffer, channel, message)) feed->listener_.on_rods(message);
+  } else if (kind == "PRESSURES") {
+    spoolwatch::pressures_t message;
+    if (feed->decode(*buffer, channel, message)) feed->listener_.on_pressures(message);
   } else if (kind == "ESTIMATE") {
     spoolwatch::estimate_t message;
     if (feed->decode(*buffer, channel, message)) feed->listener_.on_estimate(message);

@@ -15,6 +15,8 @@ struct ReceiveBuffer;
 }  // namespace lcm
 namespace spoolwatch {
 class sample_t;
+class rods_t;
+class pressures_t;
 class estimate_t;
 class alarm_t;
 class health_t;
@@ -28,6 +30,9 @@ inline constexpr std::chrono::seconds kSilence{3};
 class Listener {
  public:
   virtual ~Listener() = default;
+  /// These two come just before the sample that they belong to.
+  virtual void on_rods(const spoolwatch::rods_t&) {}
+  virtual void on_pressures(const spoolwatch::pressures_t&) {}
   virtual void on_sample(const spoolwatch::sample_t&) {}
   virtual void on_estimate(const spoolwatch::estimate_t&) {}
   virtual void on_alarm(const spoolwatch::alarm_t&) {}

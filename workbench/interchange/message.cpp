@@ -6,6 +6,8 @@
 #include "spoolwatch/alarm_t.hpp"
 #include "spoolwatch/estimate_t.hpp"
 #include "spoolwatch/health_t.hpp"
+#include "spoolwatch/pressures_t.hpp"
+#include "spoolwatch/rods_t.hpp"
 #include "spoolwatch/sample_t.hpp"
 #include "workbench/listen_lines.h"
 
@@ -24,6 +26,39 @@ std::int64_t ns(std::int64_t utc_us) {
 }
 
 }  // namespace
+
+const std::vector<std::string>& all_kinds() {
+  static const std::vector<std::string> kAll = {"sample",   "rods",  "pressures",
+                                                "estimate", "alarm", "health"};
+  return kAll;
+}
+
+Message to_message(const spoolwatch::rods_t& r) {
+  const auto in_charge = static_cast<std::size_t>(r.in_charge);
+  Message message{"rods",
+                  "rods",
+                  ns(r.utc_us),
+                  {{"y_m", in_charge < r.y_m.size() ? Tree(r.y_m[in_charge]) : Tree()},
+                   {"in_charge", in_charge < r.rod.size() ? r.rod[in_charge] : ""},
+                   {"changed", r.changed != 0},
+                   {"since_tick", r.since_tick},
+                   {"tick", r.tick}}};
+  Tree& rods = message.values["rod"];
+  for (std::size_t i = 0; i < r.rod.size(); ++i) {
+    rods[r.rod[i]] = {{"y_m", r.y_m[i]}, {"quality", r.quality[i]}, {"fault", r.fault[i]}};
+  }
+  return message;
+}
+
+Message to_message(const spoolwatch::pressures_t& p) {
+  return {"pressures",
+          "pressures",
+          ns(p.utc_us),
+          {{"supply_pressure_Pa", p.supply_Pa},
+           {"pressure_in_Pa", p.in_Pa},
+           {"pressure_out_Pa", p.out_Pa},
+           {"tick", p.tick}}};
+}
 
 Message to_message(const spoolwatch::sample_t& s) {
   return {"sample",

@@ -6,9 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace spoolwatch {
 class sample_t;
+class rods_t;
+class pressures_t;
 class estimate_t;
 class alarm_t;
 class health_t;
@@ -18,14 +21,20 @@ namespace workbench::interchange {
 
 using Tree = nlohmann::ordered_json;
 
+/// Every kind of message: "sample", "rods", "pressures", "estimate", "alarm", "health".
+[[nodiscard]] const std::vector<std::string>& all_kinds();
+
 struct Message {
-  std::string kind;   ///< "sample", "estimate", "alarm", "health"
+  std::string kind;   ///< one of all_kinds()
   std::string topic;  ///< one curve or table each: "sample", "estimate/SOURCE", "alarm/SOURCE/NAME"
   std::int64_t t_ns = 0;  ///< UTC, or from 0 where the time is virtual or a record's
   Tree values;            ///< an object; missing numbers are null
 };
 
 [[nodiscard]] Message to_message(const spoolwatch::sample_t& sample);
+/// Each rod sensor by its id, the one in charge, and which that is.
+[[nodiscard]] Message to_message(const spoolwatch::rods_t& rods);
+[[nodiscard]] Message to_message(const spoolwatch::pressures_t& pressures);
 [[nodiscard]] Message to_message(const spoolwatch::estimate_t& estimate);
 [[nodiscard]] Message to_message(const spoolwatch::alarm_t& alarm);
 [[nodiscard]] Message to_message(const spoolwatch::health_t& health);

@@ -19,6 +19,8 @@
 #include "spoolwatch/alarm_t.hpp"
 #include "spoolwatch/estimate_t.hpp"
 #include "spoolwatch/health_t.hpp"
+#include "spoolwatch/pressures_t.hpp"
+#include "spoolwatch/rods_t.hpp"
 #include "spoolwatch/sample_t.hpp"
 
 namespace workbench::interchange {
@@ -64,6 +66,8 @@ bool take(const std::string& log, const lcm::LogEvent& event, const Kinds& kinds
           Listener& listener) {
   using namespace spoolwatch;
   return take_as<sample_t>(log, event, {"sample", "_SAMPLE"}, kinds, listener) ||
+         take_as<rods_t>(log, event, {"rods", "_RODS"}, kinds, listener) ||
+         take_as<pressures_t>(log, event, {"pressures", "_PRESSURES"}, kinds, listener) ||
          take_as<estimate_t>(log, event, {"estimate", "_ESTIMATE"}, kinds, listener) ||
          take_as<alarm_t>(log, event, {"alarm", "_ALARM"}, kinds, listener) ||
          take_as<health_t>(log, event, {"health", "_HEALTH"}, kinds, listener);
@@ -73,6 +77,8 @@ class TreeListener final : public Listener {
  public:
   explicit TreeListener(const std::function<void(const Message&)>& take) : take_(take) {}
   void on(const spoolwatch::sample_t& message) override { take_(to_message(message)); }
+  void on(const spoolwatch::rods_t& message) override { take_(to_message(message)); }
+  void on(const spoolwatch::pressures_t& message) override { take_(to_message(message)); }
   void on(const spoolwatch::estimate_t& message) override { take_(to_message(message)); }
   void on(const spoolwatch::alarm_t& message) override { take_(to_message(message)); }
   void on(const spoolwatch::health_t& message) override { take_(to_message(message)); }

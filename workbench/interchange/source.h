@@ -11,7 +11,7 @@
 
 namespace workbench::interchange {
 
-/// "sample", "estimate", "alarm", "health"
+/// Of all_kinds().
 using Kinds = std::set<std::string>;
 
 /// A line on a terminal that says how far the work is, gone at its end; nothing elsewhere.
@@ -39,6 +39,8 @@ class Listener {
  public:
   virtual ~Listener() = default;
   virtual void on(const spoolwatch::sample_t&) {}
+  virtual void on(const spoolwatch::rods_t&) {}
+  virtual void on(const spoolwatch::pressures_t&) {}
   virtual void on(const spoolwatch::estimate_t&) {}
   virtual void on(const spoolwatch::alarm_t&) {}
   virtual void on(const spoolwatch::health_t&) {}

@@ -6,6 +6,8 @@
 
 #include "config/messages/channels.h"
 #include "config/schema/error.h"
+#include "spoolwatch/pressures_t.hpp"
+#include "spoolwatch/rods_t.hpp"
 #include "spoolwatch/sample_t.hpp"
 #include "workbench/command.h"
 #include "workbench/ending.h"
@@ -36,6 +38,8 @@ class Recording final : public Listener {
   explicit Recording(const Options& options)
       : file_(options.out), duration_s_(options.duration_s) {}
 
+  void on_rods(const spoolwatch::rods_t& rods) override { file_.note(rods); }
+  void on_pressures(const spoolwatch::pressures_t& pressures) override { file_.note(pressures); }
   void on_sample(const spoolwatch::sample_t& sample) override {
     if (complete_ || !ended_.empty()) return;
     if (file_.rows() > 0 && (sample.tick <= tick_ || sample.sample_time_s != sample_time_s_)) {

@@ -29,9 +29,6 @@ void append(std::string& text, double value) {
 SampleFile::SampleFile(std::string file)
     : file_(std::move(file)), part_(file_ + ".part"), out_(std::fopen(part_.c_str(), "we")) {
   if (out_ == nullptr) fail();
-  if (std::fputs("t_s,u_V,y_m,reference_m,u_requested_V,quality,state,saturated\n", out_) < 0) {
-    fail();
-  }
 }
 
 SampleFile::~SampleFile() {
@@ -48,9 +45,14 @@ void SampleFile::add(const spoolwatch::sample_t& s) {
     ++unusable_;
     return;
   }
+  const std::vector<double>& further = columns_.row(s);
   if (rows_ == 0) {
     first_tick_ = s.tick;
     sample_time_s_ = s.sample_time_s;
+    width_ = further.size();
+    std::string header = "t_s,u_V,y_m";
+    for (const std::string& name : columns_.names()) header += "," + name;
+    if (std::fputs((header + "\n").c_str(), out_) < 0) fail();
   } else if (s.tick > last_tick_ + 1) {
     ++gaps_;
     missing_ += s.tick - last_tick_ - 1;
@@ -58,11 +60,10 @@ void SampleFile::add(const spoolwatch::sample_t& s) {
   last_tick_ = s.tick;
   ++rows_;
   row_.clear();
-  for (const double value : {static_cast<double>(s.tick) * s.sample_time_s, s.u_applied_V, s.y_m,
-                             s.reference_m, s.u_requested_V, static_cast<double>(s.quality),
-                             static_cast<double>(s.state), s.saturated != 0 ? 1.0 : 0.0}) {
+  for (const double value : {static_cast<double>(s.tick) * s.sample_time_s, s.u_applied_V, s.y_m}) {
     append(row_, value);
   }
+  for (std::size_t i = 0; i < width_; ++i) append(row_, further[i]);
   row_ += '\n';
   if (std::fwrite(row_.data(), 1, row_.size(), out_) != row_.size()) fail();
 }

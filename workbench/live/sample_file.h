@@ -8,6 +8,8 @@
 #include <memory>
 #include <string>
 
+#include "config/record/sample_columns.h"
+
 namespace spoolwatch {
 class sample_t;
 }
@@ -23,6 +25,12 @@ class SampleFile {
   SampleFile(const SampleFile&) = delete;
   SampleFile& operator=(const SampleFile&) = delete;
 
+  /// What comes just before its sample. Columns of what has not come before the first row are not
+  /// there.
+  template <class Message>
+  void note(const Message& beside) {
+    columns_.note(beside);
+  }
   /// Ticks ascend. A sample without a good position and command gives no row: a gap.
   void add(const spoolwatch::sample_t& sample);
   /// Gives the file its name; without a row there is none. Throws config::schema::Error (exit 1).
@@ -40,6 +48,8 @@ class SampleFile {
 
   std::string file_, part_;
   std::FILE* out_;
+  config::record::SampleColumns columns_;
+  std::size_t width_ = 0;  ///< further columns
   std::string row_;
   std::int64_t rows_ = 0, unusable_ = 0, gaps_ = 0, missing_ = 0;
   std::int64_t first_tick_ = 0, last_tick_ = 0;

@@ -48,6 +48,7 @@ Log read_log(const std::filesystem::path& folder) {
     while (const lcm::LogEvent* event = reader.readNextEvent()) {
       if (event->channel == "SPOOLWATCH_SAMPLE") decode(*event, log.samples);
       if (event->channel == "SPOOLWATCH_RODS") decode(*event, log.rods);
+      if (event->channel == "SPOOLWATCH_PRESSURES") decode(*event, log.pressures);
       if (event->channel == "SPOOLWATCH_ESTIMATE") decode(*event, log.estimates);
       if (event->channel == "SPOOLWATCH_ALARM") decode(*event, log.alarms);
       if (event->channel == "SPOOLWATCH_HEALTH") decode(*event, log.healths);

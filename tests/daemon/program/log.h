@@ -8,6 +8,7 @@
 #include "spoolwatch/alarm_t.hpp"
 #include "spoolwatch/estimate_t.hpp"
 #include "spoolwatch/health_t.hpp"
+#include "spoolwatch/pressures_t.hpp"
 #include "spoolwatch/rods_t.hpp"
 #include "spoolwatch/sample_t.hpp"
 
@@ -16,6 +17,7 @@ namespace program {
 struct Log {
   std::vector<spoolwatch::sample_t> samples;
   std::vector<spoolwatch::rods_t> rods;
+  std::vector<spoolwatch::pressures_t> pressures;
   std::vector<spoolwatch::estimate_t> estimates;
   std::vector<spoolwatch::alarm_t> alarms;
   std::vector<spoolwatch::health_t> healths;

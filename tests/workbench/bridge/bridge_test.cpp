@@ -95,6 +95,37 @@ TEST(Bridge, LeavesOutSamplesAboveTheRateAskedFor) {
   }
 }
 
+TEST(Bridge, SendsPressuresAndRodSensorsWithTheSamplesThatItSends) {
+  Subprocess peer({"python3", SPOOLWATCH_SOURCE_DIR "/tests/workbench/bridge/udp_peer.py"});
+  const std::string port = peer.line_with("port");
+  ASSERT_FALSE(port.empty());
+  const std::string url = own_url();
+  Publisher publisher({.url = url}, 3, 0.005, nullptr);
+  publisher.tell_pressures();
+  publisher.name_rods({"rod", "outer"});
+  Subprocess bridge({kProgram, "bridge", "--lcm-url", url, "--udp", "127.0.0.1:" + port.substr(5),
+                     "--sample-rate", "50"});
+  const auto send = [&](int tick) {
+    estimator::fdi::Sample sample;
+    sample.tick = tick;
+    sample.y_m = 0.125;
+    sample.pressures = {7e6, 4e6 + tick, 2e6};
+    sample.rod_count = 2;
+    sample.rod_in_charge = 1;
+    sample.rod_m[0] = 0.5;
+    sample.rod_m[1] = 0.125;
+    publisher.sample(sample);
+  };
+  ASSERT_FALSE(line_after(peer, "/pressures/tick", [&](int i) { send(4 * i); }).empty());
+  EXPECT_THAT(peer.line_with("/sample/y_m"), HasSubstr("0.125")) << "after what goes with it";
+  for (int tick = 10'000; tick < 10'008; ++tick) send(tick);
+  EXPECT_THAT(peer.line_with("/rods/in_charge"), testing::EndsWith(" outer"));
+  for (const int tick : {10'000, 10'004}) {
+    EXPECT_THAT(peer.line_with("/pressures/pressure_in_Pa 401"),
+                testing::EndsWith(" " + std::to_string(4'000'000 + tick) + ".0"));
+  }
+}
+
 TEST(Bridge, CountsWhatNobodyTakes) {
   const std::string url = own_url();
   Publisher publisher({.url = url}, 3, 0.005, nullptr);
