@@ -51,6 +51,14 @@ std::vector<std::size_t> Choice::tracked_indices() const {
   return indices;
 }
 
+double Choice::supply_Pa() const {
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].name != "supply_pressure_Pa") continue;
+    return parameters[i].value(file[static_cast<Eigen::Index>(i)]);
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
 Choice choose(const plant_sim::ModelFile& model, const std::vector<std::string>& lists,
               const std::string& option) {
   const std::vector<Known> known = known_parameters(model);

@@ -21,6 +21,8 @@ struct Choice {
   Eigen::VectorXd uncertainty;
 
   [[nodiscard]] std::vector<std::size_t> tracked_indices() const;
+  /// The model file's; NaN: its plant has no pressures.
+  [[nodiscard]] double supply_Pa() const;
 };
 
 /// `lists` of names as in model files, by comma. Throws config::schema::Error (exit 78) that begins

@@ -1,6 +1,7 @@
 #include "daemon/tracking/healthy.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "config/schema/error.h"
 #include "daemon/tracking/least_floor.h"
@@ -12,11 +13,50 @@ using Eigen::Index;
 
 /// Standard error, search units, up to which a window serves to learn what is healthy.
 constexpr double kLeastKnown = 0.05;
+/// Normal numbers: their standard deviation over the median of their distances.
+constexpr double kOfMedian = 1.4826;
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+/// What the windows say of a chamber; `spread_Pa`: of their offsets, as a standard deviation.
+ChamberError median_of(const std::vector<ChamberFit>& windows, double least_Pa, double& spread_Pa) {
+  std::vector<double> rms_Pa;
+  std::vector<double> mean_Pa;
+  for (const ChamberFit& one : windows) {
+    rms_Pa.push_back(one.rms_Pa);
+    mean_Pa.push_back(one.mean_Pa);
+  }
+  const ChamberError out{std::max(median(rms_Pa), least_Pa), median(mean_Pa)};
+  for (double& value : mean_Pa) value = std::abs(value - out.offset_Pa);
+  spread_Pa = kOfMedian * median(mean_Pa);
+  return out;
+}
+
+/// Not known where few windows had them, or the plant has none.
+ChamberErrors learn_chambers(const std::vector<Window>& windows, const Choice& choice) {
+  std::vector<ChamberFit> in;
+  std::vector<ChamberFit> out;
+  std::size_t explained = 0;
+  for (const Window& window : windows) {
+    if (!window.explained) continue;
+    ++explained;
+    if (!std::isfinite(window.in.rms_Pa) || !std::isfinite(window.out.rms_Pa)) continue;
+    in.push_back(window.in);
+    out.push_back(window.out);
+  }
+  ChamberErrors errors;
+  const double supply_Pa = choice.supply_Pa();
+  if (!(supply_Pa > 0.0) || in.empty() || 2 * in.size() < explained) return errors;
+  double in_spread_Pa = 0.0;
+  double out_spread_Pa = 0.0;
+  errors.in = median_of(in, kLeastError_ratio * supply_Pa, in_spread_Pa);
+  errors.out = median_of(out, kLeastError_ratio * supply_Pa, out_spread_Pa);
+  errors.offset_sd_Pa = std::max({kDrift_ratio * supply_Pa, in_spread_Pa, out_spread_Pa});
+  return errors;
 }
 
 }  // namespace
@@ -56,6 +96,7 @@ Healthy learn(const std::vector<Window>& windows, const Choice& choice, double n
     healthy.x[static_cast<Index>(i)] = median(x[i]);
   }
   healthy.rms_m = std::max({median(rms_m), noise_floor_m, kLeastFloor_m});
+  healthy.chambers = learn_chambers(windows, choice);
   return healthy;
 }
 

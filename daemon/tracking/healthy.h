@@ -1,5 +1,5 @@
 // What the rig is like without a fault, learnt from windows of healthy motion: the median of each
-// tracked parameter, and of the window's error.
+// tracked parameter, of the window's error, and of what chamber pressures are off the model.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,6 +14,9 @@ namespace monitor::tracking {
 struct Healthy {
   double rms_m = 0.0;  ///< of a window's error; not under the noise floor
   Eigen::VectorXd x;   ///< every parameter of the choice, search units
+  ChamberErrors chambers{};
+
+  [[nodiscard]] Errors errors() const { return {rms_m, chambers}; }
 };
 
 /// Whether a window may serve to learn from: explained, every parameter known to some per cent.

@@ -50,6 +50,7 @@ void HealthyFile::visit(Visitor& v) {
   v.number({"observer_per_s", "how fast drift was led back", true}, observer_per_s, {0.0, 1e3});
   v.number({"rms_m", "of a healthy window's error", true}, rms_m, {1e-12, 1.0});
   v.number({"noise_floor_m", "of the position"}, noise_floor_m, {0.0, 1.0});
+  chambers.visit(v);
 }
 
 std::string values_line(const plant_sim::ModelFile& model) {
@@ -69,6 +70,7 @@ HealthyFile healthy_file(const plant_sim::ModelFile& model, const Choice& choice
     file.values.push_back(p.value(healthy.x[static_cast<Eigen::Index>(i)]));
   }
   file.rms_m = healthy.rms_m;
+  file.chambers = healthy.chambers;
   return file;
 }
 
@@ -110,6 +112,7 @@ HealthyFile read_healthy(const std::filesystem::path& path, const plant_sim::Mod
 Healthy healthy_of(const HealthyFile& file, const Choice& choice) {
   Healthy healthy;
   healthy.rms_m = file.rms_m;
+  healthy.chambers = file.chambers;
   healthy.x = choice.file;
   for (std::size_t i = 0; i < choice.tracked; ++i) {
     for (std::size_t j = 0; j < file.parameters.size(); ++j) {

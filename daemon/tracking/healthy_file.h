@@ -28,6 +28,7 @@ struct HealthyFile {
   double observer_per_s = 0.0;
   double rms_m = 0.0;
   double noise_floor_m = 0.0;
+  ChamberErrors chambers;  ///< not known: chamber pressures are not used
 
   void visit(config::schema::Visitor& v);
 };

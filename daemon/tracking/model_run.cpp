@@ -28,11 +28,25 @@ ModelRun::ModelRun(const plant_sim::ModelFile& model, const Measured& record,
 }
 
 void ModelRun::residuals(const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals_m) {
-  residuals(points, {}, {}, residuals_m);
+  run(points, {}, {}, residuals_m, nullptr);
+}
+
+void ModelRun::residuals(const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals_m,
+                         Chambers& chambers) {
+  const auto samples = static_cast<Eigen::Index>(record_->size());
+  chambers.in_Pa.resize(samples, kLanes);
+  chambers.out_Pa.resize(samples, kLanes);
+  run(points, {}, {}, residuals_m, &chambers);
 }
 
 void ModelRun::residuals(const Eigen::MatrixXd& points, const Eigen::MatrixXd& added_V,
                          const Eigen::MatrixXd& added_N, Eigen::MatrixXd& residuals_m) {
+  run(points, added_V, added_N, residuals_m, nullptr);
+}
+
+void ModelRun::run(const Eigen::MatrixXd& points, const Eigen::MatrixXd& added_V,
+                   const Eigen::MatrixXd& added_N, Eigen::MatrixXd& residuals_m,
+                   Chambers* chambers) {
   using plant_sim::Ensemble;
   const Measured& record = *record_;
   const Eigen::Index lanes = points.cols();
@@ -66,6 +80,13 @@ void ModelRun::residuals(const Eigen::MatrixXd& points, const Eigen::MatrixXd& a
       residuals_m(k, lane) = counts * (record.y_m[row] - reading_m[static_cast<std::size_t>(lane)]);
     }
     speed_mps_[row] = ensemble_->speed_mps()[0];
+    if (chambers != nullptr) {
+      const plant_sim::PressuresOf<Ensemble::Values> model = ensemble_->pressures();
+      for (Eigen::Index lane = 0; lane < kLanes; ++lane) {
+        chambers->in_Pa(k, lane) = model.in_Pa[static_cast<std::size_t>(lane)];
+        chambers->out_Pa(k, lane) = model.out_Pa[static_cast<std::size_t>(lane)];
+      }
+    }
     if (share > 0.0) ensemble_->shift(by_m);
     Ensemble::Values u_V;
     u_V.fill(record.u_V[row]);

@@ -42,12 +42,24 @@ class ModelRun {
   void residuals(const Eigen::MatrixXd& points, const Eigen::MatrixXd& added_V,
                  const Eigen::MatrixXd& added_N, Eigen::MatrixXd& residuals_m);
 
+  /// Model pressures of every sample in each lane, size() x kLanes.
+  struct Chambers {
+    Eigen::MatrixXd in_Pa;
+    Eigen::MatrixXd out_Pa;
+  };
+  /// The same as the first, with the model's chamber pressures; of the observer they feel nothing
+  /// but that the rod is elsewhere.
+  void residuals(const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals_m, Chambers& chambers);
+
   [[nodiscard]] const std::vector<SearchParameter>& searched() const { return searched_; }
   [[nodiscard]] std::size_t size() const { return record_->size(); }
   /// The model's speed of lane 0 in the latest run, one for each sample.
   [[nodiscard]] const std::vector<double>& speed_mps() const { return speed_mps_; }
 
  private:
+  void run(const Eigen::MatrixXd& points, const Eigen::MatrixXd& added_V,
+           const Eigen::MatrixXd& added_N, Eigen::MatrixXd& residuals_m, Chambers* chambers);
+
   const Measured* record_;
   std::vector<SearchParameter> searched_;
   double observer_per_s_;

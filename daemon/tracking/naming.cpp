@@ -16,20 +16,24 @@ using Eigen::VectorXd;
 class Namer {
  public:
   Namer(WindowFit& fit, const Choice& choice, const Cut& cut, const WindowEstimate& found,
-        const VectorXd& healthy, double sigma_m, const Thresholds& thresholds, std::size_t measured)
+        const VectorXd& healthy, const Errors& errors, const Thresholds& thresholds,
+        const Held& held)
       : fit_(fit),
         thresholds_(thresholds),
         choice_(choice),
         cut_(cut),
         found_(found),
         healthy_(healthy),
-        measured_(measured),
+        held_(held),
         base_(healthy),
-        // The window's own noise: what is beyond it is not chance.
-        sigma_m_(std::min(sigma_m, found.rms_m)),
-        chi_square_(found.chi_square * sigma_m * sigma_m / (sigma_m_ * sigma_m_)) {
-    if (measured != kNotMeasured)
-      base_[static_cast<Index>(measured)] = found.x[static_cast<Index>(measured)];
+        errors_(own(errors, found)),
+        chi_square_(found.chi_square * errors.rms_m * errors.rms_m /
+                    (errors_.rms_m * errors_.rms_m)) {
+    if (with_chambers()) chi_square_ = fit_.fit(cut_, {}, found.x, errors_).chi_square;
+    const std::size_t read = held.measured;
+    if (read != kNotMeasured) base_[static_cast<Index>(read)] = found.x[static_cast<Index>(read)];
+    if (held.healthy != kNotMeasured) rivals_.push_back(held.healthy);
+    for (std::size_t a = choice.tracked; a < choice.parameters.size(); ++a) rivals_.push_back(a);
   }
 
   std::vector<Named> run(Memory& memory) {
@@ -38,11 +42,11 @@ class Namer {
     std::vector<signed char> directions(choice_.tracked, 0);
     for (std::size_t i = 0; i < choice_.tracked; ++i) {
       const auto at = static_cast<Index>(i);
-      Named one{i, found_.x[at], found_.std_error[at], found_.x[at] - healthy_[at], {}};
+      Named one{i, found_.x[at], found_.std_error[at], found_.x[at] - healthy_[at], {}, sensed()};
       const double needed =
           std::max(least_of(choice_, i, thresholds_), thresholds_.sure * one.std_error);
       if (std::abs(one.deviation) < needed) continue;
-      (i == measured_ ? read : named).push_back(one);
+      (i == held_.measured ? read : named).push_back(one);
       directions[i] = one.deviation > 0.0 ? 1 : -1;
     }
     if (memory.left > 0 && directions == memory.directions) {
@@ -59,12 +63,33 @@ class Namer {
   }
 
  private:
+  /// The window's own noise: what is beyond it is not chance.
+  static Errors own(Errors errors, const WindowEstimate& found) {
+    errors.rms_m = std::min(errors.rms_m, found.rms_m);
+    if (!found.with_chambers()) {
+      errors.chambers = {};
+    } else {
+      ChamberErrors& chambers = errors.chambers;
+      chambers.in.rms_Pa = std::min(chambers.in.rms_Pa, found.in.rms_Pa);
+      chambers.out.rms_Pa = std::min(chambers.out.rms_Pa, found.out.rms_Pa);
+    }
+    return errors;
+  }
+  [[nodiscard]] bool with_chambers() const { return errors_.chambers.known(); }
+  [[nodiscard]] Sensed sensed() const { return {held_.measured != kNotMeasured, with_chambers()}; }
+  [[nodiscard]] bool as_good(const WindowEstimate& other) const {
+    return !(other.rms_m > kAsGood * found_.rms_m) &&
+           !(other.in.rms_Pa > kAsGood * found_.in.rms_Pa) &&
+           !(other.out.rms_Pa > kAsGood * found_.out.rms_Pa);
+  }
+
   std::vector<Named> as_before(std::vector<Named> named) const {
     for (Named& one : named) {
       const auto at = static_cast<Index>(one.parameter);
       one.x = found_.x[at];
       one.std_error = found_.std_error[at];
       one.deviation = found_.x[at] - healthy_[at];
+      one.sensed = sensed();
     }
     return named;
   }
@@ -76,8 +101,8 @@ class Namer {
 
   bool one_cause(std::vector<Named>& named) {
     std::vector<Rival> causes;
-    for (std::size_t a = choice_.tracked; a < choice_.parameters.size(); ++a) {
-      const WindowEstimate alone = fit_.fit(cut_, {a}, base_, sigma_m_);
+    for (const std::size_t a : rivals_) {
+      const WindowEstimate alone = fit_.fit(cut_, {a}, base_, errors_);
       if (alone.chi_square < chi_square_ + kChance) causes.push_back({name(a), value(a, alone.x)});
     }
     add_sensor(base_, causes);
@@ -85,7 +110,7 @@ class Namer {
     std::size_t best = 0;
     double least = INFINITY;
     for (std::size_t i = 0; i < named.size(); ++i) {
-      const auto one = fit_.fit(cut_, {named[i].parameter}, base_, sigma_m_);
+      const auto one = fit_.fit(cut_, {named[i].parameter}, base_, errors_);
       if (one.chi_square >= least) continue;
       least = one.chi_square;
       best = i;
@@ -105,13 +130,13 @@ class Namer {
   void find_rivals(Named& one, VectorXd without) {
     const auto at = static_cast<Index>(one.parameter);
     without[at] = healthy_[at];
-    const double effect = fit_.fit(cut_, {}, without, sigma_m_).chi_square - chi_square_;
-    for (std::size_t a = choice_.tracked; a < choice_.parameters.size(); ++a) {
-      const WindowEstimate instead = fit_.fit(cut_, {a}, without, sigma_m_);
+    const double effect = fit_.fit(cut_, {}, without, errors_).chi_square - chi_square_;
+    for (const std::size_t a : rivals_) {
+      const WindowEstimate instead = fit_.fit(cut_, {a}, without, errors_);
       const double left = instead.chi_square - chi_square_;
       if (left > std::max(kChance, kLeft * effect)) continue;
       const WindowEstimate best = let_follow(a, one.parameter, instead.x);
-      if (best.rms_m > kAsGood * found_.rms_m) continue;
+      if (!as_good(best)) continue;
       one.rivals.push_back({name(a), value(a, best.x)});
     }
     add_sensor(without, one.rivals);
@@ -119,7 +144,7 @@ class Namer {
 
   void add_sensor(const VectorXd& x, std::vector<Rival>& rivals) const {
     if (!thresholds_.suspect_position_sensor) return;
-    for (const SensorRival& sensor : sensor_rivals(fit_, cut_, x, sigma_m_, fit_.sample_time_s())) {
+    for (const SensorRival& sensor : sensor_rivals(fit_, cut_, x, errors_, fit_.sample_time_s())) {
       if (sensor.chi_square < chi_square_ + kChance) rivals.push_back({sensor.name, sensor.value});
     }
   }
@@ -129,12 +154,12 @@ class Namer {
     std::vector<std::size_t> free;
     for (std::size_t i = 0; i < choice_.parameters.size(); ++i) {
       const auto at = static_cast<Index>(i);
-      const bool open = i == rival || i < choice_.tracked;
+      const bool open = i == rival || (i < choice_.tracked && i != held_.healthy);
       if (open) prior_sd[at] = std::numeric_limits<double>::infinity();
-      if (i != instead_of && i != measured_ && (open || prior_sd[at] <= kMostUncertain_ratio))
+      if (i != instead_of && i != held_.measured && (open || prior_sd[at] <= kMostUncertain_ratio))
         free.push_back(i);
     }
-    return fit_.fit(cut_, free, from, sigma_m_, prior_sd);
+    return fit_.fit(cut_, free, from, errors_, prior_sd);
   }
 
   WindowFit& fit_;
@@ -143,10 +168,11 @@ class Namer {
   const Cut& cut_;
   const WindowEstimate& found_;
   const VectorXd& healthy_;
-  std::size_t measured_;
+  Held held_;
   VectorXd base_;  ///< healthy, but for what was read
-  double sigma_m_;
+  Errors errors_;
   double chi_square_;
+  std::vector<std::size_t> rivals_;
 };
 
 }  // namespace
@@ -161,9 +187,9 @@ double least_of(const Choice& choice, std::size_t parameter, const Thresholds& t
 
 std::vector<Named> name_changes(WindowFit& fit, const Choice& choice, const Cut& cut,
                                 const WindowEstimate& found, const VectorXd& healthy,
-                                double sigma_m, const Thresholds& thresholds, Memory& memory,
-                                std::size_t measured) {
-  return Namer(fit, choice, cut, found, healthy, sigma_m, thresholds, measured).run(memory);
+                                const Errors& errors, const Thresholds& thresholds, Memory& memory,
+                                const Held& held) {
+  return Namer(fit, choice, cut, found, healthy, errors, thresholds, held).run(memory);
 }
 
 void carry(estimator::Carrier& carrier, std::vector<Named>& named, const Choice& choice) {
@@ -177,6 +203,8 @@ void carry(estimator::Carrier& carrier, std::vector<Named>& named, const Choice&
     carrier.value(one.x);
     carrier.value(one.std_error);
     carrier.value(one.deviation);
+    carrier.value(one.sensed.supply);
+    carrier.value(one.sensed.chambers);
     auto rivals = static_cast<std::uint64_t>(one.rivals.size());
     carrier.value(rivals);
     if (one.parameter >= choice.tracked || rivals > choice.parameters.size()) carrier.fail();

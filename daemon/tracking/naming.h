@@ -47,12 +47,19 @@ struct Rival {
   double value = 0.0;  ///< that would explain the window
 };
 
+/// Pressures that a window was looked at with.
+struct Sensed {
+  bool supply = false;
+  bool chambers = false;
+};
+
 struct Named {
   std::size_t parameter = 0;  ///< index of the choice
   double x = 0.0;             ///< search value
   double std_error = 0.0;     ///< search units
   double deviation = 0.0;     ///< from healthy, search units
   std::vector<Rival> rivals;  ///< empty: the name stands alone
+  Sensed sensed;              ///< what was looked at beside command and position
 };
 
 /// The names of the window before: the same parameters, off in the same directions, keep their
@@ -68,13 +75,18 @@ struct Memory {
 
 inline constexpr std::size_t kNotMeasured = static_cast<std::size_t>(-1);
 
-/// `measured`: a tracked parameter that was read, not fitted, and so has no rivals.
+/// Tracked parameters that were not fitted.
+struct Held {
+  std::size_t measured = kNotMeasured;  ///< was read, and so has no rivals
+  std::size_t healthy = kNotMeasured;   ///< stands at its healthy value, and is a rival of others
+};
+
 /// `healthy`: search values of every parameter; `found`: the fit of the tracked ones to `cut`.
 [[nodiscard]] std::vector<Named> name_changes(WindowFit& fit, const Choice& choice, const Cut& cut,
                                               const WindowEstimate& found,
-                                              const Eigen::VectorXd& healthy, double sigma_m,
+                                              const Eigen::VectorXd& healthy, const Errors& errors,
                                               const Thresholds& thresholds, Memory& memory,
-                                              std::size_t measured = kNotMeasured);
+                                              const Held& held = {});
 
 /// Bit for bit (carrier.h).
 void carry(estimator::Carrier& carrier, std::vector<Named>& named, const Choice& choice);

@@ -33,7 +33,7 @@ Reading reading_of(const double* values, std::size_t samples) {
                          kLeastOfReading * mean)};
 }
 
-WindowEstimate with_reading(WindowEstimate found, std::size_t held, double std_error) {
+WindowEstimate with_held(WindowEstimate found, std::size_t held, double std_error) {
   const auto at = static_cast<Index>(held);
   found.covariance = widened(found.covariance, at, std_error * std_error);
   found.correlation = widened(found.correlation, at, 1.0);

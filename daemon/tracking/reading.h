@@ -15,8 +15,8 @@ struct Reading {
 /// Two samples or more of one quantity, in its own unit.
 [[nodiscard]] Reading reading_of(const double* values, std::size_t samples);
 
-/// What was fitted, and a reading of the parameter `held` in its place among the tracked;
-/// `std_error` in search units.
-[[nodiscard]] WindowEstimate with_reading(WindowEstimate found, std::size_t held, double std_error);
+/// What was fitted, and the parameter `held` in its place among the tracked; `std_error` in search
+/// units, of what is known of it without the fit; infinite: nothing is.
+[[nodiscard]] WindowEstimate with_held(WindowEstimate found, std::size_t held, double std_error);
 
 }  // namespace monitor::tracking

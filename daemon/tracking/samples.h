@@ -6,6 +6,7 @@
 
 #include "daemon/tracking/window_fit.h"
 #include "estimator/carrier.h"
+#include "estimator/fdi/pressures.h"
 
 namespace monitor::tracking {
 
@@ -15,12 +16,12 @@ class Samples {
 
   /// Nothing before now belongs together with what comes.
   void clear() noexcept { kept_ = 0; }
-  /// `supply_Pa`: NaN when it was not read. Copies a window once in as many samples.
-  void push(double u_V, double y_m, double supply_Pa);
+  /// Copies a window once in as many samples.
+  void push(double u_V, double y_m, const estimator::fdi::Pressures& pressures);
 
   [[nodiscard]] std::size_t needed() const noexcept { return needed_; }
   [[nodiscard]] bool enough() const noexcept { return kept_ >= needed_; }
-  /// The latest, with the lead-in before them.
+  /// The latest, with the lead-in before them; with chamber pressures where both were read in all.
   [[nodiscard]] Cut latest(std::size_t samples) const noexcept;
   /// Their supply pressures; null unless it was read in all of them.
   [[nodiscard]] const double* supply_Pa(std::size_t samples) const noexcept;
@@ -33,8 +34,10 @@ class Samples {
   std::size_t needed_;
   std::vector<double> u_V_;  ///< twice as long as needed
   std::vector<double> y_m_;
-  std::vector<double> supply_Pa_;  ///< NaN: not read
-  std::size_t kept_ = 0;           ///< since the last gap that are still there
+  std::vector<double> supply_Pa_;  ///< NaN: not read; as the two below
+  std::vector<double> in_Pa_;
+  std::vector<double> out_Pa_;
+  std::size_t kept_ = 0;  ///< since the last gap that are still there
 };
 
 }  // namespace monitor::tracking

@@ -23,7 +23,7 @@ double least(double a, double b, double c, double step) {
 }  // namespace
 
 std::vector<SensorRival> sensor_rivals(WindowFit& fit, const Cut& cut, const Eigen::VectorXd& x,
-                                       double sigma_m, double sample_time_s) {
+                                       const Errors& errors, double sample_time_s) {
   const std::size_t all = cut.lead + cut.samples;
   const double* const end = cut.y_m + all;
   const double centre_m =
@@ -35,13 +35,16 @@ std::vector<SensorRival> sensor_rivals(WindowFit& fit, const Cut& cut, const Eig
   drifting.name = "position_sensor.drift_mps";
   scaled.y_m.resize(all);
   drifting.y_m.resize(all);
+  double position = 0.0;
   const auto by_scale = [&](double less) {  // 1 / s = 1 + less
     for (std::size_t k = 0; k < all; ++k) {
       scaled.y_m[k] = centre_m + (1.0 + less) * (cut.y_m[k] - centre_m);
     }
     scaled.scale = 1.0 / (1.0 + less);
     scaled.value = scaled.scale - 1.0;
-    scaled.chi_square = fit.fit(scaled.cut(cut), {}, x, sigma_m).chi_square;
+    const WindowEstimate held = fit.fit(scaled.cut(cut), {}, x, errors);
+    position = held.position_chi_square;
+    scaled.chi_square = held.chi_square;
     return scaled.chi_square;
   };
   const auto by_drift = [&](double rate_mps) {
@@ -49,7 +52,7 @@ std::vector<SensorRival> sensor_rivals(WindowFit& fit, const Cut& cut, const Eig
       drifting.y_m[k] = cut.y_m[k] - rate_mps * sample_time_s * (static_cast<double>(k) - middle);
     }
     drifting.value = rate_mps;
-    drifting.chi_square = fit.fit(drifting.cut(cut), {}, x, sigma_m).chi_square;
+    drifting.chi_square = fit.fit(drifting.cut(cut), {}, x, errors).chi_square;
     return drifting.chi_square;
   };
   const double as_read = by_scale(0.0);
@@ -57,7 +60,7 @@ std::vector<SensorRival> sensor_rivals(WindowFit& fit, const Cut& cut, const Eig
   const double less = least(by_scale(-kScaleStep), as_read, by_scale(kScaleStep), kScaleStep);
   if (std::abs(less) < kMostScale) {
     by_scale(less);
-    scaled.chi_square *= scaled.scale * scaled.scale;
+    scaled.chi_square += (scaled.scale * scaled.scale - 1.0) * position;
     found.push_back(std::move(scaled));
   }
   const double rate_mps =

@@ -7,7 +7,7 @@
 //
 // The model is held against y'. Its residual is linear in 1 / s and in r, but for what little the
 // plant depends on y: chi-square is a parabola, which three values give. It counts in the reading's
-// own noise, that is times s^2.
+// own noise, that is times s^2; what chamber pressures say of the model stays as it is.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,14 +26,16 @@ struct SensorRival {
   std::vector<double> y_m;  ///< y', lead-in and window
 
   [[nodiscard]] Cut cut(const Cut& as_read) const {
-    return {as_read.u_V, y_m.data(), as_read.lead, as_read.samples};
+    Cut right = as_read;
+    right.y_m = y_m.data();
+    return right;
   }
 };
 
 /// The scale and the drift that explain the window best where the model is as `x` has it; those
 /// beyond what a sensor may show (a third, 10 mm/s) are left out.
 [[nodiscard]] std::vector<SensorRival> sensor_rivals(WindowFit& fit, const Cut& cut,
-                                                     const Eigen::VectorXd& x, double sigma_m,
+                                                     const Eigen::VectorXd& x, const Errors& errors,
                                                      double sample_time_s);
 
 }  // namespace monitor::tracking

@@ -22,6 +22,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// window across a change says it as well, and is over after one.
 constexpr double kLong = 1.5;
 constexpr std::size_t kMostLessons = 100000;
+/// Numbers of a lesson before its parameters: error, then each chamber's error and offset.
+constexpr std::size_t kErrors = 5;
 
 std::size_t count_of(double duration_s, double each_s) {
   const double count = std::ceil(duration_s / each_s);
@@ -41,8 +43,8 @@ TrackerSource::TrackerSource(const TrackerConfig& config, const plant_sim::Model
     : sample_time_s_(sample_time_s),
       stride_s_(config.settings.stride_s),
       window_s_(config.settings.window_s),
-      most_ratio_(config.settings.most_ratio),
       noise_floor_m_(config.learnt.noise_floor_m),
+      pressures_(config.pressures),
       lessons_(count_of(config.learn_s, config.settings.stride_s)),
       severity_(config.severity == "minor" ? Severity::minor : Severity::major),
       rules_(config.rules),
@@ -92,7 +94,8 @@ bool TrackerSource::push(const Sample& sample, double y_m) noexcept {
   if (!std::isfinite(y_m) || !std::isfinite(sample.u_applied_V)) return is_due(1);
   const double t_s = static_cast<double>(sample.tick) * sample_time_s_;
   const std::optional<Window> window =
-      tracker_.push(t_s, sample.u_applied_V, y_m, std::exchange(broken_, false));
+      tracker_.push(t_s, sample.u_applied_V, y_m, std::exchange(broken_, false),
+                    pressures_ ? sample.pressures : estimator::fdi::Pressures{});
   missing_ = 0;
   if (!window) return false;
   take(*window);
@@ -110,13 +113,13 @@ void TrackerSource::take(const Window& window) {
   rms_m_ = window.rms_m;
   samples_ = static_cast<int>(std::lround(window_s_ / sample_time_s_));
   why_ = window.why;
-  const bool fits = !tracker_.healthy() || window.rms_m <= most_ratio_ * tracker_.healthy()->rms_m;
-  unexplained_ = fits ? 0 : unexplained_ + 1;
+  unexplained_ = window.fits ? 0 : unexplained_ + 1;
   if (!tracker_.healthy()) {
     learn_from(window);
   } else {
     suggest(window);
   }
+  note_ = window.left_out;
   tracker_.forget_cleared();
   say();
 }
@@ -125,17 +128,23 @@ void TrackerSource::learn_from(const Window& window) {
   const Choice& choice = tracker_.choice();
   why_ = "learning what is healthy" + (window.why.empty() ? "" : "; " + window.why);
   if (!teaches(window, choice)) return;
-  learning_.push_back(window.rms_m);
+  for (const double value :
+       {window.rms_m, window.in.rms_Pa, window.in.mean_Pa, window.out.rms_Pa, window.out.mean_Pa}) {
+    learning_.push_back(value);
+  }
   for (const Estimate& one : window.estimates) learning_.push_back(one.x);
-  const std::size_t length = 1 + choice.tracked;
+  const std::size_t length = kErrors + choice.tracked;
   if (learning_.size() < lessons_ * length) return;
   std::vector<Window> windows(lessons_);
   for (std::size_t k = 0; k < lessons_; ++k) {
     windows[k].explained = true;
-    windows[k].rms_m = learning_[k * length];
+    const double* const lesson = learning_.data() + k * length;
+    windows[k].rms_m = lesson[0];
+    windows[k].in = {lesson[1], lesson[2]};
+    windows[k].out = {lesson[3], lesson[4]};
     windows[k].estimates.resize(choice.tracked);
     for (std::size_t i = 0; i < choice.tracked; ++i) {
-      windows[k].estimates[i].x = learning_[k * length + 1 + i];
+      windows[k].estimates[i].x = lesson[kErrors + i];
     }
   }
   tracker_.take(learn(windows, choice, noise_floor_m_, "healthy motion"));
@@ -203,7 +212,7 @@ Finding TrackerSource::find(std::span<NamedValue> values) noexcept {
   Finding finding;
   finding.warming_up = !tracker_.healthy().has_value();
   finding.valid = why_.empty();
-  finding.reason = why_.c_str();
+  finding.reason = (finding.valid ? note_ : why_).c_str();
   finding.samples = samples_;
   return finding;
 }
@@ -220,6 +229,7 @@ void TrackerSource::reset() {
   learning_.clear();
   found_.assign(3 * tracker_.choice().tracked, kNan);
   why_.clear();
+  note_.clear();
   rms_m_ = kNan;
   samples_ = 0;
   unexplained_ = 0;
@@ -231,9 +241,10 @@ void TrackerSource::carry(estimator::Carrier& carrier) {
   tracker_.carry(carrier);
   carrier.value(broken_);
   carrier.value(missing_);
-  carrier.growing(learning_, lessons_ * (1 + tracker_.choice().tracked));
+  carrier.growing(learning_, lessons_ * (kErrors + tracker_.choice().tracked));
   carrier.fixed(found_);
   carrier.text(why_);
+  carrier.text(note_);
   carrier.value(rms_m_);
   carrier.value(samples_);
   carrier.value(unexplained_);

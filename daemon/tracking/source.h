@@ -48,8 +48,8 @@ class TrackerSource final : public estimator::fdi::Source {
   double sample_time_s_;
   double stride_s_;
   double window_s_;
-  double most_ratio_;
   double noise_floor_m_;
+  bool pressures_;       ///< of the samples are used
   std::size_t lessons_;  ///< windows that are learnt from
   estimator::fdi::Severity severity_;
   estimator::fdi::AlarmRules rules_;
@@ -57,9 +57,10 @@ class TrackerSource final : public estimator::fdi::Source {
   Tracker tracker_;
   bool broken_ = true;            ///< samples are missing before the next one
   std::int64_t missing_ = 0;      ///< samples since the latest finding, in a row
-  std::vector<double> learning_;  ///< of each window: error, then x of the parameters
+  std::vector<double> learning_;  ///< of each window: errors, then x of the parameters
   std::vector<double> found_;     ///< the values, then their standard errors
   std::string why_;
+  std::string note_;                  ///< on a valid finding: what was left out of it
   std::optional<std::string> probe_;  ///< the motion that would tell, once it was looked for
   double rms_m_ = 0.0;
   int samples_ = 0;

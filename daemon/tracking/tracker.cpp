@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "daemon/tracking/least_floor.h"
 #include "daemon/tracking/quantity.h"
@@ -25,6 +26,8 @@ constexpr double kLeastMotion = 10.0;
 constexpr double kLeastOfHealthy = 0.2;
 /// Standard errors: one-sided, 95 %.
 constexpr double kMostly = 1.645;
+/// Standard error, search units, of what is held while the healthy rig is learnt.
+constexpr double kHeld = 1e-4;
 
 std::size_t samples_in(double duration_s, double sample_time_s) {
   return static_cast<std::size_t>(std::lround(duration_s / sample_time_s));
@@ -43,6 +46,18 @@ double motion_m(const Cut& cut) {
   return *high - *low;
 }
 
+/// The same window without its pressures.
+Cut alone(Cut cut) {
+  cut.in_Pa = nullptr;
+  cut.out_Pa = nullptr;
+  return cut;
+}
+
+bool stands_still(const double* values, const Cut& cut) {
+  const double* const first = values + cut.lead;
+  return std::all_of(first, first + cut.samples, [first](double v) { return v == *first; });
+}
+
 }  // namespace
 
 Tracker::Tracker(const plant_sim::ModelFile& model, const Choice& choice, const Settings& settings,
@@ -55,6 +70,7 @@ Tracker::Tracker(const plant_sim::ModelFile& model, const Choice& choice, const 
       lead_(samples_in(kLead_s, sample_time_s)),
       window_(samples_in(settings.window_s, sample_time_s)),
       supply_(tracked_index(choice, "supply_pressure_Pa")),
+      gain_(tracked_index(choice, "valve_gain_m_per_V")),
       stride_(std::max<std::size_t>(1, samples_in(settings.stride_s, sample_time_s))),
       fit_(model, choice.parameters, sample_time_s, lead_ + window_, settings.observer_per_s),
       samples_(lead_, window_),
@@ -69,59 +85,129 @@ void Tracker::take(const Healthy& healthy) {
 }
 
 std::optional<Window> Tracker::push(double t_s, double u_V, double y_m, bool first,
-                                    double supply_Pa) {
+                                    const estimator::fdi::Pressures& pressures) {
   if (first) {
     samples_.clear();
     until_ = samples_.needed();
     pool_.clear();
   }
-  samples_.push(u_V, y_m, supply_Pa);
+  samples_.push(u_V, y_m, pressures);
   if (until_ > 0) --until_;
   if (until_ > 0 || !samples_.enough()) return std::nullopt;
   until_ = stride_;
   return look(t_s);
 }
 
-std::size_t Tracker::measured(std::size_t samples) const {
-  const bool read = supply_ != kNotMeasured && samples_.supply_Pa(samples) != nullptr;
-  return read ? supply_ : kNotMeasured;
+/// The latest samples; without chamber pressures, and why, where they cannot be right.
+Cut Tracker::usable(std::size_t samples, std::string& left_out) const {
+  Cut cut = samples_.latest(samples);
+  if (cut.in_Pa == nullptr) {
+    if (healthy_ && healthy_->chambers.known()) {
+      left_out = "chamber pressures left out because they were not read in the whole window";
+    }
+    return cut;
+  }
+  const bool in = stands_still(cut.in_Pa, cut);
+  if (in || stands_still(cut.out_Pa, cut)) {
+    left_out = std::string("chamber pressures left out because the reading of the pressure ") +
+               (in ? "in" : "out") + " stands still";
+  }
+  return in || !left_out.empty() || !(choice_.supply_Pa() > 0.0) ? alone(cut) : cut;
 }
 
-WindowEstimate Tracker::fit(const Cut& cut, Eigen::VectorXd near, double sigma_m) {
+Held Tracker::held(const Cut& cut, const Errors& errors) const {
+  Held out;
+  if (supply_ == kNotMeasured) return out;
+  if (samples_.supply_Pa(cut.samples) != nullptr) {
+    out.measured = supply_;
+  } else if (healthy_ ? healthy_->chambers.known() && !with_chambers(cut, errors)
+                      : cut.in_Pa != nullptr) {
+    out.healthy = gain_;
+  }
+  return out;
+}
+
+WindowEstimate Tracker::fit(const Cut& cut, Eigen::VectorXd near, const Errors& errors) {
+  const Held held = this->held(cut, errors);
   std::vector<std::size_t> free = choice_.tracked_indices();
-  const std::size_t held = measured(cut.samples);
-  if (held == kNotMeasured) return fit_.fit(cut, free, near, sigma_m);
-  const SearchParameter& p = choice_.parameters[held];
+  const auto hold = [&](std::size_t parameter, double x) {
+    near[static_cast<Index>(parameter)] = x;
+    free.erase(std::find(free.begin(), free.end(), parameter));
+  };
+  if (held.healthy != kNotMeasured) {
+    const auto at = static_cast<Index>(held.healthy);
+    hold(held.healthy, healthy_ ? healthy_->x[at] : choice_.file[at]);
+    return with_held(fit_.fit(cut, free, near, errors), held.healthy, healthy_ ? INFINITY : kHeld);
+  }
+  if (held.measured == kNotMeasured) return fit_.fit(cut, free, near, errors);
+  const SearchParameter& p = choice_.parameters[held.measured];
   const Reading read = reading_of(samples_.supply_Pa(cut.samples), cut.samples);
-  double& at = near[static_cast<Index>(held)];
-  at = p.search(read.mean);
-  free.erase(free.begin() + static_cast<std::ptrdiff_t>(held));
-  const double std_error = read.std_error / p.slope(at);
-  return with_reading(fit_.fit(cut, free, near, sigma_m), held, std_error);
+  const double at = p.search(read.mean);
+  hold(held.measured, at);
+  return with_held(fit_.fit(cut, free, near, errors), held.measured, read.std_error / p.slope(at));
+}
+
+WindowEstimate Tracker::first_fit(const Cut& cut) {
+  const WindowEstimate found = fit(cut, near_, {noise_floor_m_, {}});
+  if (cut.in_Pa == nullptr) return found;
+  const double supply_Pa = choice_.supply_Pa();
+  const ChamberErrors one_Pa{{1.0, 0.0}, {1.0, 0.0}, 0.0};
+  const WindowEstimate seen = fit_.fit(cut, {}, found.x, {noise_floor_m_, one_Pa});
+  ChamberErrors own;
+  own.in.rms_Pa = std::max(seen.in.rms_Pa, kLeastError_ratio * supply_Pa);
+  own.out.rms_Pa = std::max(seen.out.rms_Pa, kLeastError_ratio * supply_Pa);
+  own.offset_sd_Pa = supply_Pa;  // any
+  return fit(cut, found.x, {std::max(noise_floor_m_, found.rms_m), own});
+}
+
+std::string Tracker::misfit(const WindowEstimate& found, double most_ratio) const {
+  return healthy_ ? misfit_words(found, healthy_->errors(), most_ratio) : std::string();
 }
 
 Window Tracker::look(double t_s) {
   Window window;
   window.t_s = t_s;
   window.from_s = t_s - static_cast<double>(window_ - 1) * sample_time_s_;
-  const Cut cut = samples_.latest(window_);
-  const double sigma_m = healthy_ ? healthy_->rms_m : noise_floor_m_;
+  Cut cut = usable(window_, window.left_out);
   const auto begin = std::chrono::steady_clock::now();
-  const WindowEstimate found = fit(cut, near_, sigma_m);
+  WindowEstimate found = healthy_ ? fit(cut, near_, healthy_->errors()) : first_fit(cut);
   window.fit_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   window.evaluations = found.evaluations;
+  std::string misfit = this->misfit(found, settings_.most_ratio);
+  if (misfit.empty()) pressures_out_ = false;
+  bool part = false;
+  if (!misfit.empty() && moves(cut) && found.with_chambers()) {
+    part = look_at_part(window, cut);
+    if (!part) {
+      const Cut with = std::exchange(cut, alone(cut));
+      const Errors errors = healthy_->errors();
+      WindowEstimate instead = fit(cut, near_, errors);
+      if (this->misfit(instead, settings_.most_ratio).empty()) {
+        // Which of the two it is shows where they have not drawn the fit to them.
+        const std::string shown =
+            this->misfit(fit_.fit(with, {}, instead.x, errors), settings_.most_ratio);
+        if (!shown.empty()) misfit = shown;
+        window.left_out = "chamber pressures left out because " + misfit;
+        pressures_out_ = true;
+        misfit.clear();
+        found = std::move(instead);
+      }
+    }
+  }
   window.rms_m = found.rms_m;
+  window.in = found.in;
+  window.out = found.out;
   window.correlation = found.correlation;
-  const bool fits = !healthy_ || found.rms_m <= settings_.most_ratio * healthy_->rms_m;
-  window.explained = moves(cut) && fits;
+  window.fits = misfit.empty();
+  window.explained = moves(cut) && window.fits;
   estimate(window, found);
-  judge(window, cut, found);
+  judge(window, cut, found, misfit);
   if (window.explained) near_ = found.x;
   if (!healthy_ || !moves(cut)) return window;
-  if (fits) {
+  if (window.fits) {
     tell(window, cut, found);
-  } else {
-    look_at_part(window);
+  } else if (!part && (pressures_out_ || !found.with_chambers())) {
+    look_at_part(window, cut);
   }
   return window;
 }
@@ -154,25 +240,33 @@ void Tracker::estimate(Window& window, const WindowEstimate& found) {
   }
 }
 
-void Tracker::judge(Window& window, const Cut& cut, const WindowEstimate& found) const {
+void Tracker::judge(Window& window, const Cut& cut, const WindowEstimate& found,
+                    const std::string& misfit) const {
   std::string why;
   if (!moves(cut)) {
     why = still_words(motion_m(cut), noise_m(), settings_.window_s);
   } else if (!window.explained) {
-    why = unexplained_words(found.rms_m, healthy_->rms_m, settings_.most_ratio);
+    why = misfit;
   }
+  bool unseen = false;
   for (std::size_t i = 0; i < choice_.tracked; ++i) {
     Estimate& one = window.estimates[i];
     const SearchParameter& p = choice_.parameters[i];
     const double most =
         p.scale == Scale::logarithmic ? settings_.most_std_error : settings_.most_of_typical;
-    one.why =
-        why.empty() ? unseen_words(choice_, found, i, one.std_error / p.slope(one.x), most) : why;
+    one.why = why;
+    if (why.empty() && i == gain_ && !window.left_out.empty() &&
+        std::isinf(found.std_error[static_cast<Index>(i)])) {
+      one.why = "position alone does not tell valve gain from supply pressure: " + window.left_out;
+    } else if (why.empty()) {
+      one.why = unseen_words(choice_, found, i, one.std_error / p.slope(one.x), most);
+      unseen = unseen || !one.why.empty();
+    }
     one.valid = one.why.empty();
     if (window.why.empty()) window.why = one.why;
   }
   window.valid = window.why.empty();
-  window.poor = !moves(cut) || (window.explained && !window.valid);
+  window.poor = !moves(cut) || (window.explained && unseen);
 }
 
 std::optional<Probe> Tracker::probe() {
@@ -188,33 +282,37 @@ std::optional<Probe> Tracker::probe() {
                     [this](const double* u_V, const double* y_m) {
                       return fit_
                           .fit({u_V, y_m, lead_, window_}, choice_.tracked_indices(), healthy_->x,
-                               healthy_->rms_m)
+                               {healthy_->rms_m, {}})
                           .std_error;
                     });
 }
 
-void Tracker::look_at_part(Window& window) {
+bool Tracker::look_at_part(Window& window, const Cut& whole) {
   Eigen::VectorXd near = healthy_->x;
   for (const double share : kParts) {
     const auto samples = static_cast<std::size_t>(share * static_cast<double>(window_));
-    const Cut cut = samples_.latest(samples);
-    const WindowEstimate part = fit(cut, near, healthy_->rms_m);
+    std::string left_out;
+    Cut cut = usable(samples, left_out);
+    if (whole.in_Pa == nullptr) cut = alone(cut);
+    const WindowEstimate part = fit(cut, near, healthy_->errors());
     const double most = std::max(
         settings_.most_ratio, 1.0 + kChanceOfRms / std::sqrt(2.0 * static_cast<double>(samples)));
-    if (part.rms_m > most * healthy_->rms_m) continue;
-    if (!moves(cut)) return;
+    if (!misfit(part, most).empty()) continue;
+    if (!moves(cut)) return true;
     window.part = part_words(choice_, part, static_cast<double>(samples) * sample_time_s_);
     tell(window, cut, part);
     near_ = part.x;
-    return;
+    return true;
   }
+  return false;
 }
 
 void Tracker::tell(Window& window, const Cut& cut, const WindowEstimate& found) {
   const bool whole = cut.samples == window_;
   Memory once;  // the rivals of a part are not those of the whole window
-  window.named = name_changes(fit_, choice_, cut, found, healthy_->x, healthy_->rms_m,
-                              settings_.thresholds, whole ? memory_ : once, measured(cut.samples));
+  const Errors errors = healthy_->errors();
+  window.named = name_changes(fit_, choice_, cut, found, healthy_->x, errors, settings_.thresholds,
+                              whole ? memory_ : once, held(cut, errors));
   if (whole) refine(window);
   std::vector<Seen> seen;
   for (std::size_t i = 0; i < choice_.tracked; ++i) {
@@ -240,6 +338,7 @@ void Tracker::reset() {
   near_ = choice_.file;
   pool_.clear();
   memory_ = {};
+  pressures_out_ = false;
   alarms_ = AlarmBook(choice_, settings_.thresholds);
 }
 
@@ -249,15 +348,17 @@ void Tracker::carry(estimator::Carrier& carrier) {
   };
   samples_.carry(carrier);
   carrier.value(until_);
+  carrier.value(pressures_out_);
   bool knows = healthy_.has_value();
   carrier.value(knows);
   if (carrier.restores()) {
     healthy_.reset();
-    if (knows) healthy_ = Healthy{0.0, choice_.file};
+    if (knows) healthy_ = Healthy{0.0, choice_.file, {}};
   }
   if (healthy_) {
     carrier.value(healthy_->rms_m);
     vector(healthy_->x);
+    healthy_->chambers.carry(carrier);
   }
   vector(near_);
   pool_.carry(carrier);

@@ -6,6 +6,17 @@
 // explains nothing: then its latest part alone is looked at, which is how a change is named before
 // the window is over. One call of push() does at most one such look; all others only keep the
 // sample.
+//
+// Pressures, where they come with every sample of a window:
+// - The supply's mean takes the place of that parameter's fit.
+// - The chambers' count in the fit beside the position, once the healthy rig knows their errors.
+//   Before, each window is fitted by its position alone, and then with the errors that it showed;
+//   where both supply pressure and valve gain are tracked, the gain is the file's.
+//   Where they do not belong to the model while the position does (a failed transducer, or a change
+//   that is not tracked), or a transducer stands still, the window is looked at by position alone,
+//   and says so (Window::left_out). By position alone valve gain and supply pressure are one
+//   number: where both are tracked the gain is held then, and a change is told as the group of the
+//   two.
 #pragma once
 
 #include <Eigen/Core>
@@ -48,10 +59,8 @@ class Tracker {
   /// From now on windows are judged and changes named; before, they are only fitted.
   void take(const Healthy& healthy);
   /// The window that ends with this sample, when one does. `first`: samples before it are missing.
-  /// Where a reading of the supply pressure comes with every sample of a window, it takes the place
-  /// of that parameter's fit.
   std::optional<Window> push(double t_s, double u_V, double y_m, bool first,
-                             double supply_Pa = std::numeric_limits<double>::quiet_NaN());
+                             const estimator::fdi::Pressures& pressures = {});
 
   [[nodiscard]] const AlarmBook& alarms() const { return alarms_; }
   /// AlarmBook::forget_cleared().
@@ -69,16 +78,21 @@ class Tracker {
   void carry(estimator::Carrier& carrier);
 
  private:
-  /// Fits the tracked parameters from `near`; a measured one is held to its mean.
-  [[nodiscard]] WindowEstimate fit(const Cut& cut, Eigen::VectorXd near, double sigma_m);
-  /// The parameter that was read in all of the latest samples; kNotMeasured: none.
-  [[nodiscard]] std::size_t measured(std::size_t samples) const;
+  /// Fits the tracked parameters from `near`, but those that are held.
+  [[nodiscard]] WindowEstimate fit(const Cut& cut, Eigen::VectorXd near, const Errors& errors);
+  /// Before the healthy rig is known.
+  [[nodiscard]] WindowEstimate first_fit(const Cut& cut);
+  [[nodiscard]] Held held(const Cut& cut, const Errors& errors) const;
+  [[nodiscard]] Cut usable(std::size_t samples, std::string& left_out) const;
+  [[nodiscard]] std::string misfit(const WindowEstimate& found, double most_ratio) const;
   Window look(double t_s);
   void estimate(Window& window, const WindowEstimate& found);
-  void judge(Window& window, const Cut& cut, const WindowEstimate& found) const;
+  void judge(Window& window, const Cut& cut, const WindowEstimate& found,
+             const std::string& misfit) const;
   [[nodiscard]] bool moves(const Cut& cut) const;
   [[nodiscard]] double noise_m() const;
-  void look_at_part(Window& window);
+  /// Whether a part was explained; by position alone where the cut has no pressures.
+  bool look_at_part(Window& window, const Cut& whole);
   void tell(Window& window, const Cut& cut, const WindowEstimate& found);
   void refine(Window& window) const;
 
@@ -90,10 +104,12 @@ class Tracker {
   std::size_t lead_;
   std::size_t window_;
   std::size_t supply_;  ///< index of the supply pressure where it is tracked; else kNotMeasured
+  std::size_t gain_;    ///< the same of the valve gain
   std::size_t stride_;
   WindowFit fit_;
   Samples samples_;
-  std::size_t until_ = 0;  ///< samples until the next look
+  std::size_t until_ = 0;       ///< samples until the next look
+  bool pressures_out_ = false;  ///< chamber pressures have not belonged to the model lately
   std::optional<Healthy> healthy_;
   Eigen::VectorXd near_;  ///< where the next search begins
   Pool pool_;

@@ -50,6 +50,9 @@ void TrackerConfig::visit(Visitor& v) {
            {0.0, 1.0});
   v.numbers({"healthy_values", "in place of the file: of the parameters, SI"}, learnt.values);
   v.number({"noise_floor_m", "of the position"}, learnt.noise_floor_m, {0.0, 1.0});
+  v.boolean({"pressures", "supply and chamber pressures are used where the rig reads them"},
+            pressures);
+  learnt.chambers.visit(v);
   v.number({"probe_low_m", "least position of a probing motion that is suggested"},
            settings.probe.low_m, {-1e3, 1e3});
   v.number({"probe_high_m", "greatest; not above the least: none is suggested"},
@@ -105,7 +108,7 @@ std::unique_ptr<estimator::fdi::Source> TrackerConfig::make(
     if (learnt.values.size() != choice.tracked) {
       throw bad_config(where() + ": healthy_values", "are not as many as parameters");
     }
-    known = Healthy{learnt.rms_m, choice.file};
+    known = Healthy{learnt.rms_m, choice.file, learnt.chambers};
     for (std::size_t i = 0; i < choice.tracked; ++i) {
       known->x[static_cast<Eigen::Index>(i)] = choice.parameters[i].search(learnt.values[i]);
     }

@@ -31,7 +31,8 @@ struct TrackerConfig final : estimator::fdi::SourceConfigOf<TrackerConfig> {
   Settings settings;
   std::string healthy;  ///< file; "": learnt from the first learn_s of motion
   double learn_s = 10.0;
-  HealthyFile learnt;  ///< what stood in the file
+  bool pressures = true;  ///< those of the samples are used
+  HealthyFile learnt;     ///< what stood in the file
   std::string severity = "major";
   estimator::fdi::AlarmRules rules;
 

@@ -24,6 +24,10 @@ struct Window {
   std::vector<Estimate> estimates;  ///< of the tracked parameters, in their order
   Eigen::MatrixXd correlation;
   double rms_m = 0.0;
+  ChamberFit in;  ///< NaN: chamber pressures did not count; as the next
+  ChamberFit out;
+  std::string left_out;      ///< why they did not, where the healthy rig knows them
+  bool fits = false;         ///< the model explains it
   bool explained = false;    ///< moves, and the model explains it
   bool poor = false;         ///< it is the motion that does not tell
   bool valid = false;        ///< all estimates are

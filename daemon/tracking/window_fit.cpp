@@ -53,6 +53,33 @@ MatrixXd correlation_of(const MatrixXd& covariance) {
   return out;
 }
 
+/// Of a residual's mean, when its offset is what it is best: 1 / sqrt(1 + n S^2 / sigma^2).
+double left_of_mean(Index samples, const ChamberError& error, const ChamberErrors& errors) {
+  const double ratio = errors.offset_sd_Pa / error.rms_Pa;
+  return 1.0 / std::sqrt(1.0 + static_cast<double>(samples) * ratio * ratio);
+}
+
+/// The errors of each quantity from the residual as WindowFit::compare() makes it.
+void tell_errors(const Cut& cut, const Errors& errors, const VectorXd& residual,
+                 WindowEstimate& out) {
+  const auto all = static_cast<Index>(cut.lead + cut.samples);
+  const auto samples = static_cast<Index>(cut.samples);
+  const double square = residual.segment(all - samples, samples).squaredNorm();
+  out.rms_m = std::sqrt(square / static_cast<double>(samples));
+  out.position_chi_square = square / (errors.rms_m * errors.rms_m);
+  if (!with_chambers(cut, errors)) return;
+  const auto chamber = [&](Index from, const ChamberError& error) {
+    const VectorXd r = residual.segment(from, samples) * (error.rms_Pa / errors.rms_m);
+    const double mean = r.mean();
+    return ChamberFit{
+        std::sqrt((r.array() - mean).square().mean()),
+        mean / left_of_mean(samples, error, errors.chambers),
+    };
+  };
+  out.in = chamber(all, errors.chambers.in);
+  out.out = chamber(all + samples, errors.chambers.out);
+}
+
 }  // namespace
 
 WindowFit::WindowFit(const plant_sim::ModelFile& model, std::vector<SearchParameter> parameters,
@@ -72,17 +99,48 @@ void WindowFit::take(const Cut& cut) {
   std::fill_n(window_.led.begin(), cut.lead, static_cast<char>(kLed));
 }
 
+void WindowFit::compare(const Cut& cut, const Errors& errors, const MatrixXd& points,
+                        MatrixXd& residuals) {
+  if (!with_chambers(cut, errors)) {
+    run_.residuals(points, residuals);
+    return;
+  }
+  const auto all = static_cast<Index>(cut.lead + cut.samples);
+  const auto samples = static_cast<Index>(cut.samples);
+  const Index sets = points.cols();
+  run_.residuals(points, position_m_, chambers_);
+  residuals.resize(all + 2 * samples, sets);
+  residuals.topRows(all) = position_m_;
+  const auto place = [&](Index from, const double* read_Pa, const MatrixXd& model_Pa,
+                         const ChamberError& error) {
+    const Eigen::Map<const VectorXd> read(read_Pa + cut.lead, samples);
+    const double scale = errors.rms_m / error.rms_Pa;
+    const double left = left_of_mean(samples, error, errors.chambers);
+    for (Index set = 0; set < sets; ++set) {
+      auto column = residuals.col(set).segment(from, samples);
+      column = (read - model_Pa.col(set).tail(samples)).array() - error.offset_Pa;
+      column.array() -= (1.0 - left) * column.mean();
+      column *= scale;
+    }
+  };
+  place(all, cut.in_Pa, chambers_.in_Pa, errors.chambers.in);
+  place(all + samples, cut.out_Pa, chambers_.out_Pa, errors.chambers.out);
+}
+
 WindowEstimate WindowFit::fit(const Cut& cut, const std::vector<std::size_t>& free,
-                              const VectorXd& start, double sigma_m, const VectorXd& prior_sd) {
+                              const VectorXd& start, const Errors& errors,
+                              const VectorXd& prior_sd) {
   take(cut);
   const VectorXd shape = start_shape(cut, 1.0 - observer_per_s_ * window_.sample_time_s);
   const auto count = static_cast<Index>(free.size());
+  const Index all = shape.size();
+  const auto samples = static_cast<Index>(cut.samples);
   estimator::nonlinear::Problem problem;
-  problem.residuals = shape.size();
+  problem.residuals = all + (with_chambers(cut, errors) ? 2 * samples : 0);
   problem.lanes = ModelRun::kLanes;
-  problem.sigma = sigma_m;
-  problem.weights = VectorXd::Zero(shape.size());
-  problem.weights.tail(static_cast<Index>(cut.samples)).setOnes();
+  problem.sigma = errors.rms_m;
+  problem.weights = VectorXd::Zero(problem.residuals);
+  problem.weights.tail(problem.residuals - static_cast<Index>(cut.lead)).setOnes();
   VectorXd x(count);
   for (Index i = 0; i < count; ++i) {
     const std::size_t at = free[static_cast<std::size_t>(i)];
@@ -100,23 +158,23 @@ WindowEstimate WindowFit::fit(const Cut& cut, const std::vector<std::size_t>& fr
     x[i] = start[static_cast<Index>(at)];
   }
   MatrixXd every;
-  problem.evaluate = [&](const MatrixXd& points, MatrixXd& residuals_m) {
+  problem.evaluate = [&](const MatrixXd& points, MatrixXd& residuals) {
     every = start.replicate(1, points.cols());
     for (Index i = 0; i < count; ++i) {
       every.row(static_cast<Index>(free[static_cast<std::size_t>(i)])) = points.row(i);
     }
-    run_.residuals(every, residuals_m);
-    const Eigen::RowVectorXd along = shape.transpose() * residuals_m;
-    residuals_m.noalias() -= shape * along;
+    compare(cut, errors, every, residuals);
+    const Eigen::RowVectorXd along = shape.transpose() * residuals.topRows(all);
+    residuals.topRows(all).noalias() -= shape * along;
   };
   WindowEstimate out;
   out.x = start;
   if (free.empty()) {
-    MatrixXd residual_m;
-    problem.evaluate(MatrixXd(0, 1), residual_m);
-    out.chi_square = residual_m.squaredNorm() / (sigma_m * sigma_m);
-    out.rms_m = std::sqrt(residual_m.squaredNorm() / static_cast<double>(cut.samples));
+    MatrixXd residual;
+    problem.evaluate(MatrixXd(0, 1), residual);
+    out.chi_square = residual.squaredNorm() / (errors.rms_m * errors.rms_m);
     out.evaluations = 1;
+    tell_errors(cut, errors, residual.col(0), out);
     return out;
   }
   estimator::nonlinear::Options how;
@@ -124,7 +182,9 @@ WindowEstimate WindowFit::fit(const Cut& cut, const std::vector<std::size_t>& fr
   how.cost_tolerance = kTolerance;
   how.first_damping = kSlight;
   const estimator::nonlinear::Solution solution = minimize(problem, x, how);
-  const estimator::nonlinear::Covariance known = covariance(problem, solution);
+  estimator::nonlinear::CovarianceOptions of;
+  if (problem.residuals > all) of.series = {all, all + samples};
+  const estimator::nonlinear::Covariance known = covariance(problem, solution, of);
   for (Index i = 0; i < count; ++i) {
     out.x[static_cast<Index>(free[static_cast<std::size_t>(i)])] = solution.x[i];
   }
@@ -134,9 +194,9 @@ WindowEstimate WindowFit::fit(const Cut& cut, const std::vector<std::size_t>& fr
   const MatrixXd inner = solution.jacobian.transpose() * solution.jacobian;
   out.likeness = correlation_of(inner);
   out.at_bound = solution.at_bound;
-  out.rms_m = solution.rms;
   out.chi_square = solution.cost;
   out.evaluations = solution.evaluations;
+  tell_errors(cut, errors, solution.residual, out);
   return out;
 }
 

@@ -1,19 +1,34 @@
-// A few parameters of a model fitted to one short window of command and position.
+// A few parameters of a model fitted to one short window of command and position, and of chamber
+// pressures where they were read.
 //
-//   min over x, c   sum over the window of (y(k) - yh(k; x) - c s(k))^2 / sigma^2
+//   min over x, c, ci, co   sum over the window of
+//       (y(k) - yh(k; x) - c s(k))^2 / sigma^2
+//     + (Pi(k) - Pih(k; x) - bi - ci)^2 / sigma_i^2 + (Po(k) - Poh(k; x) - bo - co)^2 / sigma_o^2
+//     + (ci^2 + co^2) / S^2
 //
-// y yh  measured and modelled position; x the free parameters in search units
-// c s   what an unknown position at the window's start leaves: s(k) = (1 - l Ts)^k, l the observer
+// y yh    measured and modelled position; x the free parameters in search units
+// c s     what an unknown position at the window's start leaves: s(k) = (1 - l Ts)^k, l the
+// observer Pi Po   pressures of the chambers, h: modelled; bi bo learnt offsets of the transducers,
+// ci co
+//         what a window is off them, S how far that may be (chambers.h)
+// sigma   errors of healthy windows
 //
 // The model starts at rest a lead-in before the window and is led to the measured position there
 // (Measured::led), so that speed and pressures are its own when the window begins; what is left of
-// the position's error is c, which is projected out of every residual.
+// the position's error is c, which is projected out of every residual. Pressures are compared, not
+// led to. Of n residuals r of a chamber with mean m, the least over ci is that of
+//   r - (1 - 1 / sqrt(1 + n S^2 / sigma_i^2)) m:
+// a projection where S is large. Were it a whole one, nothing would be left of what pressures say
+// best: with a symmetric valve in + out is the supply pressure.
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <vector>
 
+#include "daemon/tracking/chambers.h"
 #include "daemon/tracking/measured.h"
 #include "daemon/tracking/model_run.h"
 
@@ -26,8 +41,21 @@ struct Cut {
   const double* u_V = nullptr;
   const double* y_m = nullptr;
   std::size_t lead = 0;
-  std::size_t samples = 0;  ///< of the window
+  std::size_t samples = 0;        ///< of the window
+  const double* in_Pa = nullptr;  ///< null: not read in all of them; as the next
+  const double* out_Pa = nullptr;
 };
+
+/// Of one chamber's pressure, measured less modelled less learnt offset.
+struct ChamberFit {
+  double rms_Pa = std::numeric_limits<double>::quiet_NaN();  ///< about its mean; NaN: not used
+  double mean_Pa = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// Whether the cut's chamber pressures count in a fit with these errors.
+[[nodiscard]] inline bool with_chambers(const Cut& cut, const Errors& errors) {
+  return errors.chambers.known() && cut.in_Pa != nullptr && cut.out_Pa != nullptr;
+}
 
 struct WindowEstimate {
   Eigen::VectorXd x;           ///< every parameter; those that were held as they were given
@@ -36,9 +64,15 @@ struct WindowEstimate {
   Eigen::MatrixXd correlation;
   Eigen::MatrixXd likeness;   ///< cosines between their effects on the position
   std::vector<int> at_bound;  ///< -1, 0, +1 of the free ones
-  double rms_m = 0.0;
-  double chi_square = 0.0;  ///< sum of squares / sigma^2
-  int evaluations = 0;      ///< groups of eight simulations
+  double rms_m = 0.0;         ///< of the position
+  ChamberFit in;
+  ChamberFit out;
+  double chi_square = 0.0;           ///< sum of squares / sigma^2
+  double position_chi_square = 0.0;  ///< the position's part of it
+  int evaluations = 0;               ///< groups of eight simulations
+
+  /// Whether chamber pressures counted.
+  [[nodiscard]] bool with_chambers() const { return std::isfinite(in.rms_Pa); }
 };
 
 /// One model with its parameters; fits window after window without building anything anew. Not for
@@ -53,9 +87,9 @@ class WindowFit {
 
   /// The parameters at `free` (indices) are fitted from `start`, which has every parameter. Those
   /// with a finite prior_sd (search units, one for each parameter, or empty) are held to the start
-  /// by it.
+  /// by it. Chamber pressures count where the cut has them and `errors` knows theirs.
   [[nodiscard]] WindowEstimate fit(const Cut& cut, const std::vector<std::size_t>& free,
-                                   const Eigen::VectorXd& start, double sigma_m,
+                                   const Eigen::VectorXd& start, const Errors& errors,
                                    const Eigen::VectorXd& prior_sd = {});
 
   [[nodiscard]] const std::vector<SearchParameter>& parameters() const { return run_.searched(); }
@@ -63,10 +97,15 @@ class WindowFit {
 
  private:
   void take(const Cut& cut);
+  /// What of the residuals is the position's, all rows, and of pressures, the window's.
+  void compare(const Cut& cut, const Errors& errors, const Eigen::MatrixXd& points,
+               Eigen::MatrixXd& residuals);
 
   double observer_per_s_;
   Measured window_;
   ModelRun run_;
+  Eigen::MatrixXd position_m_;
+  ModelRun::Chambers chambers_;
 };
 
 }  // namespace monitor::tracking

@@ -34,6 +34,36 @@ Index alike(const Eigen::MatrixXd& likeness, Index at) {
   return best;
 }
 
+std::string pressure_words(double value_Pa) {
+  return words(quantity("pressure_Pa", value_Pa, NAN));
+}
+
+/// How often a chamber's error is its limit, and its offset that of offsets.
+struct Beyond {
+  double error = 0.0;
+  double offset = 0.0;
+
+  [[nodiscard]] double most() const { return std::max(error, offset); }
+};
+
+Beyond beyond(const ChamberFit& found, const ChamberError& healthy, double offset_sd_Pa,
+              double most_ratio) {
+  return {found.rms_Pa / (most_ratio * healthy.rms_Pa),
+          std::abs(found.mean_Pa) / (kMostOffset * offset_sd_Pa)};
+}
+
+std::string chamber_words(const std::string& name, const ChamberFit& found,
+                          const ChamberError& healthy, double offset_sd_Pa, double most_ratio) {
+  const Beyond by = beyond(found, healthy, offset_sd_Pa, most_ratio);
+  if (by.error >= by.offset) {
+    return "the model does not explain the " + name + ": error " + pressure_words(found.rms_Pa) +
+           ", healthy " + pressure_words(healthy.rms_Pa) + ", limit " + number("%.3g", most_ratio) +
+           " times that";
+  }
+  return "the " + name + " is off the model: by " + pressure_words(found.mean_Pa) +
+         " from when it was healthy, limit " + pressure_words(kMostOffset * offset_sd_Pa);
+}
+
 }  // namespace
 
 std::string name_words(const std::string& name) {
@@ -54,9 +84,19 @@ std::string still_words(double moved_m, double noise_floor_m, double window_s) {
          length_words(moved_m) + ", the position's noise is " + length_words(noise_floor_m);
 }
 
-std::string unexplained_words(double rms_m, double healthy_m, double most_ratio) {
-  return "the model does not explain it: error " + length_words(rms_m) + ", healthy " +
-         length_words(healthy_m) + ", limit " + number("%.3g", most_ratio) + " times that";
+std::string misfit_words(const WindowEstimate& found, const Errors& healthy, double most_ratio) {
+  if (found.rms_m > most_ratio * healthy.rms_m) {
+    return "the model does not explain it: error " + length_words(found.rms_m) + ", healthy " +
+           length_words(healthy.rms_m) + ", limit " + number("%.3g", most_ratio) + " times that";
+  }
+  if (!found.with_chambers()) return {};
+  const ChamberErrors& chambers = healthy.chambers;
+  const double sd_Pa = chambers.offset_sd_Pa;
+  const double in = beyond(found.in, chambers.in, sd_Pa, most_ratio).most();
+  const double out = beyond(found.out, chambers.out, sd_Pa, most_ratio).most();
+  if (in <= 1.0 && out <= 1.0) return {};
+  return in >= out ? chamber_words("pressure in", found.in, chambers.in, sd_Pa, most_ratio)
+                   : chamber_words("pressure out", found.out, chambers.out, sd_Pa, most_ratio);
 }
 
 std::string unseen_words(const Choice& choice, const WindowEstimate& found, std::size_t i,
@@ -104,7 +144,10 @@ std::string group_words(const Choice& choice, const Named& named) {
     text += (i == 0 ? " " : " or ") + name_words(rival.name) + " " +
             words(quantity(rival.name, rival.value, NAN));
   }
-  return text + ": command and position cannot tell; " + advice_words(choice, named);
+  return text +
+         (named.sensed.chambers ? ": command, position and chamber pressures cannot tell; "
+                                : ": command and position cannot tell; ") +
+         advice_words(choice, named);
 }
 
 std::string advice_words(const Choice& choice, const Named& named) {
@@ -113,13 +156,15 @@ std::string advice_words(const Choice& choice, const Named& named) {
   for (const Rival& rival : named.rivals) all += " " + rival.name;
   const auto has = [&](const char* word) { return all.find(word) != std::string::npos; };
   const bool sensor = has("position_sensor");
-  if (has("supply") && sensor) {
+  const bool supply = has("supply") && !named.sensed.supply;
+  if (supply && sensor) {
     return "readings of the supply pressure and of a second position sensor would";
   }
-  if (has("supply")) return "a reading of the supply pressure would";
+  if (supply) return "a reading of the supply pressure would";
   if (sensor) return "a second position sensor would";
-  if (has("leakage") || has("air") || has("bulk"))
+  if (!named.sensed.chambers && (has("leakage") || has("air") || has("bulk"))) {
     return "a reading of the chamber pressures would";
+  }
   if (has("friction") || has("damping") || has("mass") || has("load")) {
     return "a motion of other speeds and accelerations would";
   }

@@ -16,7 +16,9 @@ namespace monitor::tracking {
 
 // Why a window is invalid.
 [[nodiscard]] std::string still_words(double moved_m, double noise_floor_m, double window_s);
-[[nodiscard]] std::string unexplained_words(double rms_m, double healthy_m, double most_ratio);
+/// Why the window's errors are beyond what is healthy; empty: they are not.
+[[nodiscard]] std::string misfit_words(const WindowEstimate& found, const Errors& healthy,
+                                       double most_ratio);
 /// Of tracked parameter `i`: empty when it is within its bounds and `std_error` (search units) is
 /// at most `most`.
 [[nodiscard]] std::string unseen_words(const Choice& choice, const WindowEstimate& found,

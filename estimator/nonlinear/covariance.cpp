@@ -81,6 +81,54 @@ MatrixXd scores_middle(const MatrixXd& wj, const VectorXd& r, const Problem& pro
   return correction * (back.asDiagonal() * sum * back.asDiagonal());
 }
 
+double counting(const Problem& problem) {
+  double count = 0.0;
+  for (Index i = 0; i < problem.residuals; ++i) count += problem.weight(i) > 0.0 ? 1.0 : 0.0;
+  return count;
+}
+
+/// A series of the residual: its rows, its colour, its noise.
+struct Stretch {
+  Index from = 0;
+  Index rows = 0;
+  residual::Autoregression model;
+  double variance = 0.0;
+  double share = 0.0;  ///< of the residuals that count
+};
+
+std::vector<Stretch> colours(const Problem& problem, const Solution& solution,
+                             const CovarianceOptions& options, double correction, double counted) {
+  std::vector<Index> firsts{0};
+  firsts.insert(firsts.end(), options.series.begin(), options.series.end());
+  std::vector<Stretch> out;
+  for (std::size_t k = 0; k < firsts.size(); ++k) {
+    Stretch one;
+    one.from = firsts[k];
+    one.rows = (k + 1 < firsts.size() ? firsts[k + 1] : problem.residuals) - one.from;
+    std::vector<double> series(static_cast<std::size_t>(one.rows), kNaN);
+    double count = 0.0;
+    for (Index i = 0; i < one.rows; ++i) {
+      if (!(problem.weight(one.from + i) > 0.0)) continue;
+      series[static_cast<std::size_t>(i)] = solution.residual[one.from + i];
+      count += 1.0;
+    }
+    one.model = residual::fit_autoregression(series);
+    if (options.colour == Colour::kWhite) {
+      one.model.a.clear();
+      one.model.innovation_variance = one.model.variance;
+    }
+    double factor = correction;
+    if (std::isfinite(options.noise_sd) && one.model.variance > 0.0) {
+      factor = options.noise_sd * options.noise_sd / one.model.variance;
+    }
+    one.variance = factor * one.model.variance;
+    one.share = count / counted;
+    one.model.innovation_variance *= factor;
+    out.push_back(one);
+  }
+  return out;
+}
+
 }  // namespace
 
 Covariance covariance(const Problem& problem, const Solution& solution,
@@ -105,28 +153,15 @@ Covariance covariance(const Problem& problem, const Solution& solution,
   }
   const auto f = static_cast<Index>(open.size());
 
-  // The residual's colour.
-  std::vector<double> series(static_cast<std::size_t>(problem.residuals), kNaN);
-  double counted = 0.0;
-  for (Index i = 0; i < problem.residuals; ++i) {
-    if (problem.weight(i) > 0.0) {
-      series[static_cast<std::size_t>(i)] = solution.residual[i];
-      counted += 1.0;
-    }
-  }
-  residual::Autoregression model = residual::fit_autoregression(series);
-  if (options.colour == Colour::kWhite) {
-    model.a.clear();
-    model.innovation_variance = model.variance;
-  }
-  out.effective_samples = model.effective_samples();
+  const double counted = counting(problem);
   const double correction = counted / std::max(1.0, counted - static_cast<double>(f));
-  double factor = correction;
-  if (std::isfinite(options.noise_sd) && model.variance > 0.0) {
-    factor = options.noise_sd * options.noise_sd / model.variance;
+  const std::vector<Stretch> stretches = colours(problem, solution, options, correction, counted);
+  double variance = 0.0;
+  for (const Stretch& stretch : stretches) {
+    variance += stretch.share * stretch.variance;
+    out.effective_samples += stretch.model.effective_samples();
   }
-  out.noise_sd = std::sqrt(factor * model.variance);
-  model.innovation_variance *= factor;
+  out.noise_sd = std::sqrt(variance);
   if (open.empty()) return out;
 
   // H by its triangle, columns scaled to length 1, so that nothing is squared before it must be.
@@ -162,9 +197,14 @@ Covariance covariance(const Problem& problem, const Solution& solution,
   inverse = (unit.asDiagonal() * inverse * unit.asDiagonal()).eval();
 
   const MatrixXd wj = weighted(problem, solution.jacobian, open);
-  MatrixXd middle = options.colour == Colour::kScores
-                        ? scores_middle(wj, solution.residual, problem, correction)
-                        : coloured_middle(wj, model);
+  MatrixXd middle = MatrixXd::Zero(f, f);
+  if (options.colour == Colour::kScores) {
+    middle = scores_middle(wj, solution.residual, problem, correction);
+  } else {
+    for (const Stretch& stretch : stretches) {
+      middle += coloured_middle(wj.middleRows(stretch.from, stretch.rows), stretch.model);
+    }
+  }
   middle /= std::pow(problem.sigma, 4);
   for (Index k = 0; k < f; ++k) {
     const Unknown& unknown =

@@ -84,6 +84,15 @@ double Actuator::drawn_m3ps(double k, double supply_Pa, double port_Pa) const {
   return std::sqrt(half * half + k * k * drop_Pa) - half;
 }
 
+double Actuator::inlet_Pa(const State& x, double t_s) const {
+  const double supply_Pa = plant.supply_pressure_Pa * left_out.supply_factor(t_s);
+  const double open_m = opening_m(x[4], x[0], t_s);
+  const double port_Pa = open_m >= 0.0 ? x[2] : x[3];
+  if (hidden.droop_Pa_per_m3ps <= 0.0) return supply_Pa;
+  return supply_Pa -
+         hidden.droop_Pa_per_m3ps * drawn_m3ps(orifice_ * std::abs(open_m), supply_Pa, port_Pa);
+}
+
 State Actuator::rate(const State& x, double u_V, double t_s) const {
   const auto [y_m, v_mps, in_Pa, out_Pa, spool_m, spool_mps, z_m] = x;
   const double open_m = opening_m(spool_m, y_m, t_s);

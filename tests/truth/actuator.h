@@ -92,6 +92,8 @@ class Actuator {
   [[nodiscard]] State rate(const State& x, double u_V, double t_s) const;
   /// One step of Heun's method.
   void step(State& x, double u_V, double t_s, double step_s) const;
+  /// Supply pressure at the valve: what the flow drawn leaves of it.
+  [[nodiscard]] double inlet_Pa(const State& x, double t_s) const;
   /// Force of the bristles.
   [[nodiscard]] double friction_N(double z_m, double v_mps) const;
 

@@ -32,6 +32,7 @@ bool set_number(Case& of, const std::string& key, double value) {
   if (key == "kp_V_per_m") return of.kp_V_per_m = value, true;
   if (key == "noise_m") return of.noise_m = value, true;
   if (key == "encoder_m") return of.encoder_m = value, true;
+  if (key == "pressure_noise_Pa") return of.pressure_noise_Pa = value, true;
   if (key == "left_out.size") return of.left_out.size = value, true;
   if (key == "left_out.where") return of.left_out.where = value, true;
   for (const Parameter& parameter : parameters()) {
@@ -214,6 +215,7 @@ std::string to_text(const Case& of) {
   if (of.kp_V_per_m != neutral.kp_V_per_m) add("kp_V_per_m", of.kp_V_per_m);
   if (of.noise_m != neutral.noise_m) add("noise_m", of.noise_m);
   if (of.encoder_m != neutral.encoder_m) add("encoder_m", of.encoder_m);
+  if (of.pressure_noise_Pa >= 0.0) add("pressure_noise_Pa", of.pressure_noise_Pa);
   for (const Parameter& parameter : parameters()) {
     const double value = of.hidden.*parameter.member;
     if (value != neutral.hidden.*parameter.member) {

@@ -5,7 +5,8 @@
 //
 //   motion=sine,plant=printed,at15:plant.supply_pressure_Pa=8.61e6,at30:plant.supply_pressure_Pa=...
 //
-// Keys: motion, mismatched, length_s, kp_V_per_m, noise_m, encoder_m, EFFECT.PARAMETER (the
+// Keys: motion, mismatched, length_s, kp_V_per_m, noise_m, encoder_m, pressure_noise_Pa (makes
+// columns supply_pressure_Pa, pressure_in_Pa, pressure_out_Pa), EFFECT.PARAMETER (the
 // product's names, SI), left_out, left_out.size, left_out.where, plant.NAME, plant=printed;
 // atSECONDS: before a plant's or an effect's key makes it a change at that time. What is not given
 // is neutral; the plant's own values are drawn from the seed: gain +-3 %, damping and bulk modulus

@@ -9,6 +9,7 @@ namespace truth {
 namespace {
 
 constexpr double kTwoPi = 6.283185307179586;
+constexpr std::size_t kPressures = 0x9e3779b9;  ///< apart from any seed in use
 
 double play(double output, double input, double half_width) {
   return std::min(std::max(output, input - half_width), input + half_width);
@@ -80,6 +81,7 @@ Record simulate(const Case& of, int steps) {
   Plant plant = of.plant;
   Hidden hidden = of.hidden;
   Record record;
+  Random chance(of.seed + kPressures);  // the position's noise is the same with and without
   double sum_m2 = 0.0;
   for (std::size_t k = 0; k < samples; ++k) {
     for (const Change& change : of.changes) {
@@ -101,6 +103,11 @@ Record simulate(const Case& of, int steps) {
     record.y_m.push_back(y_m);
     record.reading_m.push_back(reading_m);
     sum_m2 += (y_m - reading_m) * (y_m - reading_m);
+    if (of.pressure_noise_Pa >= 0.0) {
+      record.supply_Pa.push_back(rig.inlet_Pa() + of.pressure_noise_Pa * chance.normal());
+      record.in_Pa.push_back(rig.x[2] + of.pressure_noise_Pa * chance.normal());
+      record.out_Pa.push_back(rig.x[3] + of.pressure_noise_Pa * chance.normal());
+    }
     rig.hold(u_V);
   }
   record.floor_m = std::sqrt(sum_m2 / static_cast<double>(samples));
@@ -126,9 +133,16 @@ std::vector<double> replay(const Case& of, const std::vector<double>& u_V, int s
 void write_csv(const Record& record, const std::string& file) {
   std::FILE* out = std::fopen(file.c_str(), "w");
   if (out == nullptr) throw std::runtime_error("cannot write " + file);
-  std::fputs("t_s,u_V,y_m\n", out);
+  const bool pressures = !record.supply_Pa.empty();
+  std::fputs("t_s,u_V,y_m", out);
+  if (pressures) std::fputs(",supply_pressure_Pa,pressure_in_Pa,pressure_out_Pa", out);
+  std::fputs("\n", out);
   for (std::size_t k = 0; k < record.t_s.size(); ++k) {
-    std::fprintf(out, "%.3f,%.6f,%.6f\n", record.t_s[k], record.u_V[k], record.y_m[k]);
+    std::fprintf(out, "%.3f,%.6f,%.6f", record.t_s[k], record.u_V[k], record.y_m[k]);
+    if (pressures) {
+      std::fprintf(out, ",%.1f,%.1f,%.1f", record.supply_Pa[k], record.in_Pa[k], record.out_Pa[k]);
+    }
+    std::fputs("\n", out);
   }
   if (std::fclose(out) != 0) throw std::runtime_error("cannot write " + file);
 }

@@ -3,7 +3,7 @@
 //   command: u(t - delay) + null bias -> play (valve hysteresis) -> spool
 //   reading: play (backlash) -> y + a sin(2 pi y/wavelength + phase)
 //   loop:    u_k = Kp (r_k - y_k), 12 bits over +-10 V, at 200 Hz; y_k = reading + noise in steps
-//            of the encoder; row k: y is sampled, then u is written and held
+//            of the encoder; row k: y and pressures are sampled, then u is written and held
 #pragma once
 
 #include <cstddef>
@@ -28,6 +28,8 @@ class Rig {
   void change(const Plant& plant, const Hidden& hidden);
   /// What the position sensor would show now without noise and rounding.
   [[nodiscard]] double reading_m() const;
+  /// At the valve's inlet now, without a transducer's error.
+  [[nodiscard]] double inlet_Pa() const { return actuator_.inlet_Pa(x, t_s_); }
 
   State x;
   double least_Pa;                      ///< lowest chamber pressure so far
@@ -65,6 +67,7 @@ struct Case {
   double noise_m = 2e-6;
   double encoder_m = 5e-6;  ///< 0 for none
   double converter_V = 20.0 / 4096.0;
+  double pressure_noise_Pa = -1.0;  ///< of three transducers; below 0: there are none
   Plant plant;
   Hidden hidden;
   LeftOut left_out;
@@ -73,8 +76,9 @@ struct Case {
 
 struct Record {
   std::vector<double> t_s, u_V, y_m;
-  std::vector<double> reading_m;  ///< y without noise and rounding
-  double floor_m = 0.0;           ///< RMS of y - reading
+  std::vector<double> reading_m;                 ///< y without noise and rounding
+  std::vector<double> supply_Pa, in_Pa, out_Pa;  ///< as read; empty: there are no transducers
+  double floor_m = 0.0;                          ///< RMS of y - reading
   double least_Pa = 0.0, greatest_ratio = 0.0, fastest_mps = 0.0;
   double quick_spool_mps = 0.0;  ///< exceeded in one sample of a hundred
 };
@@ -82,7 +86,8 @@ struct Record {
 Record simulate(const Case& of, int steps = 0);
 /// The readings of the case's plant under a given command, open loop.
 std::vector<double> replay(const Case& of, const std::vector<double>& u_V, int steps = 0);
-/// t_s,u_V,y_m; throws std::runtime_error when the file cannot be written.
+/// t_s,u_V,y_m, and pressures where they were read; throws std::runtime_error when the file cannot
+/// be written.
 void write_csv(const Record& record, const std::string& file);
 
 }  // namespace truth

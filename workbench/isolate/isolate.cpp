@@ -72,6 +72,8 @@ void add_isolate(CLI::App& command, int& /*exit_code*/) {
       ->check(number_within(0.0, 1e3))
       ->capture_default_str();
   declare_judging(command, *request);
+  command.add_flag("--no-pressures", request->no_pressures,
+                   "supply_pressure_Pa, pressure_in_Pa, pressure_out_Pa of RECORD are not used");
   command.add_option("--set", request->assignments, "table.key=value of the model file")
       ->allow_extra_args(false);
   command.add_option("--learn", request->learn,

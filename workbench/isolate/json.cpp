@@ -34,6 +34,13 @@ ordered_json json_of(const Window& window, const Choice& choice) {
     out["correlation"].push_back(row);
   }
   out["rms_m"] = number(window.rms_m);
+  if (std::isfinite(window.in.rms_Pa)) {
+    out["pressures"] = {{"in_error_Pa", number(window.in.rms_Pa)},
+                        {"in_offset_Pa", number(window.in.mean_Pa)},
+                        {"out_error_Pa", number(window.out.rms_Pa)},
+                        {"out_offset_Pa", number(window.out.mean_Pa)}};
+  }
+  if (!window.left_out.empty()) out["left_out"] = window.left_out;
   out["valid"] = window.valid;
   out["why"] = window.why;
   if (!window.part.empty()) out["part"] = window.part;
@@ -92,6 +99,14 @@ std::string to_json(const Outcome& o) {
                     {"to_s", o.learnt ? number(o.healthy_to_s) : nullptr},
                     {"rms_m", number(o.healthy.rms_m)},
                     {"values", values}};
+  const monitor::tracking::ChamberErrors& chambers = o.healthy.chambers;
+  if (chambers.known()) {
+    out["healthy"]["pressures"] = {{"in_error_Pa", chambers.in.rms_Pa},
+                                   {"in_offset_Pa", chambers.in.offset_Pa},
+                                   {"out_error_Pa", chambers.out.rms_Pa},
+                                   {"out_offset_Pa", chambers.out.offset_Pa},
+                                   {"offset_sd_Pa", chambers.offset_sd_Pa}};
+  }
   out["limit_m"] = number(o.settings.most_ratio * o.healthy.rms_m);
   out["alarms"] = ordered_json::array();
   for (const Alarm& alarm : o.alarms) out["alarms"].push_back(json_of(alarm, o));

@@ -30,6 +30,8 @@ constexpr double kUncalibrated = 1.5;
 constexpr double kOffFile = 0.03;
 constexpr double kLeastSamples = 20.0;
 constexpr const char* kSupply = "supply_pressure_Pa";
+constexpr const char* kIn = "pressure_in_Pa";
+constexpr const char* kOut = "pressure_out_Pa";
 constexpr const char* kGain = "valve_gain_m_per_V";
 
 struct Span {
@@ -54,33 +56,76 @@ const std::vector<double>* column(const Record& record, std::string_view name) {
   return nullptr;
 }
 
-/// With a reading of the supply pressure the valve gain can be told, and is tracked as well.
-std::vector<std::string> tracked_names(const Request& request, const Record& record,
+/// The record's pressures; null: not there, or not to be used.
+struct Readings {
+  const std::vector<double>* supply_Pa = nullptr;
+  const std::vector<double>* in_Pa = nullptr;  ///< as the next: both or none
+  const std::vector<double>* out_Pa = nullptr;
+
+  [[nodiscard]] estimator::fdi::Pressures at(std::size_t k) const {
+    estimator::fdi::Pressures out;
+    if (supply_Pa != nullptr) out.supply_Pa = (*supply_Pa)[k];
+    if (in_Pa != nullptr) out.in_Pa = (*in_Pa)[k];
+    if (out_Pa != nullptr) out.out_Pa = (*out_Pa)[k];
+    return out;
+  }
+};
+
+bool mostly_read(const std::vector<double>* column) {
+  return column != nullptr &&
+         2 * std::count_if(column->begin(), column->end(),
+                           [](double value) { return std::isfinite(value); }) >=
+             static_cast<std::ptrdiff_t>(column->size());
+}
+
+Readings readings_of(const Record& record, const Request& request) {
+  Readings out;
+  if (request.no_pressures) return out;
+  out.supply_Pa = column(record, kSupply);
+  // What the chambers are like when healthy has to be learnt.
+  if (request.healthy_rms_m > 0.0) return out;
+  if (!mostly_read(column(record, kIn)) || !mostly_read(column(record, kOut))) return out;
+  out.in_Pa = column(record, kIn);
+  out.out_Pa = column(record, kOut);
+  return out;
+}
+
+/// With a reading of the supply pressure or of both chambers' the valve gain can be told, and is
+/// tracked as well.
+std::vector<std::string> tracked_names(const Request& request, const Readings& readings,
                                        std::vector<std::string>& notes) {
   std::vector<std::string> names = monitor::tracking::split_names(request.parameters);
   const auto has = [&](const char* name) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };
-  if (column(record, kSupply) == nullptr || !has(kSupply)) return names;
-  notes.push_back(std::string("the record's ") + kSupply + " takes the place of its fit");
-  if (!has(kGain)) names.emplace_back(kGain);
+  const bool supply = readings.supply_Pa != nullptr && has(kSupply);
+  if (supply) {
+    notes.push_back(std::string("the record's ") + kSupply + " takes the place of its fit");
+  }
+  if (readings.in_Pa != nullptr) {
+    notes.push_back(std::string("the record's ") + kIn + " and " + kOut +
+                    " are fitted beside the position");
+  }
+  if ((supply || readings.in_Pa != nullptr) && has(kSupply) && !has(kGain)) {
+    names.emplace_back(kGain);
+  }
   return names;
 }
 
 /// Every window of [from, to) of the record.
-std::vector<Window> track(Tracker& tracker, const Record& record, const Span& within) {
+std::vector<Window> track(Tracker& tracker, const Record& record, const Readings& readings,
+                          const Span& within) {
   std::vector<Window> windows;
   std::size_t gap = 0;
   bool first = true;
-  const std::vector<double>* const supply_Pa = column(record, kSupply);
   for (std::size_t k = 0; k < record.size(); ++k) {
     if (gap < record.gaps.size() && record.gaps[gap] == k) {
       first = true;
       ++gap;
     }
     if (record.t_s[k] < within.from_s || record.t_s[k] >= within.to_s) continue;
-    if (auto window = tracker.push(record.t_s[k], record.u_V[k], record.y_m[k], first,
-                                   supply_Pa != nullptr ? (*supply_Pa)[k] : NAN)) {
+    if (auto window =
+            tracker.push(record.t_s[k], record.u_V[k], record.y_m[k], first, readings.at(k))) {
       windows.push_back(std::move(*window));
     }
     first = false;
@@ -130,6 +175,7 @@ std::string command_of(const Request& request) {
   if (request.settings.thresholds.suspect_position_sensor) {
     words.emplace_back("--suspect-position-sensor");
   }
+  if (request.no_pressures) words.emplace_back("--no-pressures");
   if (request.healthy_rms_m > 0.0) {
     add("--healthy-rms", number("%.9g", request.healthy_rms_m));
   } else if (request.healthy != Request{}.healthy) {
@@ -187,8 +233,9 @@ Outcome isolate(const Request& request) {
   out.command = command_of(request);
   out.settings = request.settings;
   out.notes = record.notes;
+  const Readings readings = readings_of(record, request);
   out.choice =
-      monitor::tracking::choose(model, tracked_names(request, record, out.notes), "--parameters");
+      monitor::tracking::choose(model, tracked_names(request, readings, out.notes), "--parameters");
   const auto floor = estimator::residual::noise_floor(record.y_m, record.sample_time_s);
   out.noise_floor_m = floor.sd_m;
   const double floor_m = std::isfinite(floor.sd_m) ? floor.sd_m : 0.0;
@@ -199,12 +246,12 @@ Outcome isolate(const Request& request) {
     if (!request.learn.empty()) {
       throw Error(ExitCode::usage, "--learn: nothing is learnt with --healthy-rms");
     }
-    out.healthy = {request.healthy_rms_m, out.choice.file};
+    out.healthy = {request.healthy_rms_m, out.choice.file, {}};
   } else {
     const Span healthy = span(request.healthy);
     Tracker learning = tracker();
-    out.healthy = monitor::tracking::learn(track(learning, record, healthy), out.choice, floor_m,
-                                           record.name + ": --healthy " + request.healthy);
+    out.healthy = monitor::tracking::learn(track(learning, record, readings, healthy), out.choice,
+                                           floor_m, record.name + ": --healthy " + request.healthy);
     out.learnt = true;
     out.healthy_from_s = healthy.from_s;
     out.healthy_to_s = healthy.to_s;
@@ -213,7 +260,7 @@ Outcome isolate(const Request& request) {
   }
   Tracker judging = tracker();
   judging.take(out.healthy);
-  out.windows = track(judging, record, {-INFINITY, INFINITY});
+  out.windows = track(judging, record, readings, {-INFINITY, INFINITY});
   out.alarms = judging.alarms().alarms();
   return out;
 }

@@ -27,6 +27,7 @@ struct Request {
   double healthy_rms_m = 0.0;  ///< above 0: given instead of learnt; the file's values are healthy
   std::string learn;           ///< file for what was learnt, for [[tracker]] healthy
   std::string rig_id;          ///< noted in it
+  bool no_pressures = false;   ///< the record's are not used
   std::vector<std::string> assignments;
   std::string json;  ///< "-": standard output
   std::string report;
@@ -56,10 +57,11 @@ struct Outcome {
 [[nodiscard]] std::string to_text(const Outcome& outcome, bool all_windows);
 
 /// SI, a missing number is null: windows: [{t_s, from_s, NAME: {value, std_error, smallest, valid},
-/// correlation, rms_m, valid, why, part}], alarms: [{parameter, direction ("high", "low"), value,
-/// std_error, healthy, change_ratio, confidence, ambiguity_group, rivals: [{parameter, value}],
-/// raised_s, cleared_s, advice, words}], healthy: {rms_m, from_s, to_s, values}, noise_floor_m,
-/// parameters, limit_m, notes, fit_s (median of a window).
+/// correlation, rms_m, pressures: {in_error_Pa, in_offset_Pa, out_error_Pa, out_offset_Pa} (where
+/// they counted), left_out (why they did not), valid, why, part}], alarms: [{parameter, direction
+/// ("high", "low"), value, std_error, healthy, change_ratio, confidence, ambiguity_group, rivals:
+/// [{parameter, value}], raised_s, cleared_s, advice, words}], healthy: {rms_m, from_s, to_s,
+/// values, pressures}, noise_floor_m, parameters, limit_m, notes, fit_s (median of a window).
 [[nodiscard]] std::string to_json(const Outcome& outcome);
 
 [[nodiscard]] report::Report to_report(const Outcome& outcome);

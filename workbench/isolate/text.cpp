@@ -13,6 +13,10 @@ namespace {
 using monitor::tracking::length_words;
 using monitor::tracking::number;
 
+std::string pressure(double value_Pa) {
+  return monitor::tracking::words(monitor::tracking::quantity("pressure_Pa", value_Pa, NAN));
+}
+
 std::string seconds(double s) { return number("%.4g", s) + " s"; }
 
 std::string healthy_line(const Outcome& o) {
@@ -22,6 +26,11 @@ std::string healthy_line(const Outcome& o) {
               : " (given)";
   text +=
       ": error " + length_words(o.healthy.rms_m) + ", noise floor " + length_words(o.noise_floor_m);
+  const monitor::tracking::ChamberErrors& chambers = o.healthy.chambers;
+  if (chambers.known()) {
+    text += ", pressures in " + pressure(chambers.in.rms_Pa) + " and out " +
+            pressure(chambers.out.rms_Pa);
+  }
   for (std::size_t i = 0; i < o.choice.tracked; ++i) {
     const monitor::tracking::SearchParameter& p = o.choice.parameters[i];
     text += ", " + monitor::tracking::name_words(p.name) + " " +
@@ -42,20 +51,34 @@ std::string alarm_lines(const Outcome& o, const Alarm& alarm) {
 /// Up to the first figure: reasons that differ in figures only are one.
 std::string kind_of(const std::string& why) { return why.substr(0, why.find(':')); }
 
-std::string invalid_lines(const Outcome& o) {
+/// The windows that say something, one line for each kind of it.
+std::string kind_lines(const Outcome& o, std::string Window::*words) {
   std::map<std::string, std::pair<int, const Window*>> kinds;
-  int count = 0;
   for (const Window& window : o.windows) {
-    if (window.valid) continue;
-    ++count;
-    auto& kind = kinds[kind_of(window.why)];
+    if ((window.*words).empty()) continue;
+    auto& kind = kinds[kind_of(window.*words)];
     if (kind.first++ == 0) kind.second = &window;
   }
-  std::string text = std::to_string(o.windows.size()) + " windows of " +
-                     seconds(o.settings.window_s) + ", " + std::to_string(count) + " invalid\n";
-  for (const auto& [words, kind] : kinds) {
+  std::string text;
+  for (const auto& [name, kind] : kinds) {
     text += "  " + std::to_string(kind.first) + ", the first at " + seconds(kind.second->t_s) +
-            ": " + kind.second->why + "\n";
+            ": " + kind.second->*words + "\n";
+  }
+  return text;
+}
+
+std::string window_lines(const Outcome& o) {
+  const auto invalid = std::count_if(o.windows.begin(), o.windows.end(),
+                                     [](const Window& window) { return !window.valid; });
+  const auto left_out = std::count_if(o.windows.begin(), o.windows.end(), [](const Window& window) {
+    return !window.left_out.empty();
+  });
+  std::string text = std::to_string(o.windows.size()) + " windows of " +
+                     seconds(o.settings.window_s) + ", " + std::to_string(invalid) + " invalid\n" +
+                     kind_lines(o, &Window::why);
+  if (left_out > 0) {
+    text += std::to_string(left_out) + " windows by position alone\n" +
+            kind_lines(o, &Window::left_out);
   }
   return text;
 }
@@ -71,6 +94,7 @@ std::string window_line(const Outcome& o, const Window& window) {
   }
   text += ", error " + length_words(window.rms_m);
   if (!window.valid) text += "; INVALID, " + window.why;
+  if (!window.left_out.empty()) text += "; " + window.left_out;
   if (!window.part.empty()) text += "; " + window.part;
   return text + "\n";
 }
@@ -82,7 +106,7 @@ std::string to_text(const Outcome& o, bool all_windows) {
   for (const std::string& note : o.notes) text += "note: " + note + "\n";
   for (const Alarm& alarm : o.alarms) text += alarm_lines(o, alarm);
   if (o.alarms.empty()) text += "no change named\n";
-  text += invalid_lines(o);
+  text += window_lines(o);
   if (all_windows) {
     for (const Window& window : o.windows) text += window_line(o, window);
   }

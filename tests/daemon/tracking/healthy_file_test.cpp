@@ -22,6 +22,7 @@ class HealthyFiles : public testing::Test {
     choice_ = iso::choose(model_, usual(), "parameters");
     iso::Healthy healthy{2.5e-6, choice_.file};
     healthy.x[1] = std::log(0.9);
+    healthy.chambers = {{5e3, -2e4}, {6e3, 3e4}, 1.4e4};
     iso::HealthyFile file = iso::healthy_file(model_, choice_, {}, healthy);
     file.rig_id = "stand-1";
     file.sample_time_s = truth::kSample_s;
@@ -66,6 +67,46 @@ TEST_F(HealthyFiles, ComeBackAsTheyWere) {
   EXPECT_EQ(healthy.rms_m, 2.5e-6);
   EXPECT_NEAR(healthy.x[0], 0.0, 1e-12);
   EXPECT_NEAR(healthy.x[1], std::log(0.9), 1e-12);
+  EXPECT_EQ(healthy.chambers.in.rms_Pa, 5e3);
+  EXPECT_EQ(healthy.chambers.in.offset_Pa, -2e4);
+  EXPECT_EQ(healthy.chambers.out.rms_Pa, 6e3);
+  EXPECT_EQ(healthy.chambers.out.offset_Pa, 3e4);
+  EXPECT_EQ(healthy.chambers.offset_sd_Pa, 1.4e4);
+}
+
+TEST_F(HealthyFiles, OfARigWithoutChamberPressuresGoOnWithoutThem) {
+  for (const char* line :
+       {"pressure_in_error_Pa = 5000.0\n", "pressure_out_error_Pa = 6000.0\n",
+        "pressure_in_offset_Pa = -20000.0\n", "pressure_out_offset_Pa = 30000.0\n",
+        "pressure_offset_sd_Pa = 14000.0\n"}) {
+    rewrite(line, "");
+  }
+  const auto file = iso::read_healthy(path_, model_, {}, choice_, truth::kSample_s, "stand-1");
+  const iso::Healthy healthy = iso::healthy_of(file, choice_);
+  EXPECT_FALSE(healthy.chambers.known());
+  // What comes with the samples then changes nothing.
+  truth::Case of = stand(6.0);
+  of.pressure_noise_Pa = 5e3;
+  const truth::Record record = truth::simulate(of);
+  iso::Tracker with(model_, choice_, {}, truth::kSample_s, kFloor_m);
+  iso::Tracker without(model_, choice_, {}, truth::kSample_s, kFloor_m);
+  with.take(healthy);
+  without.take(healthy);
+  int windows = 0;
+  for (std::size_t k = 0; k < record.t_s.size(); ++k) {
+    estimator::fdi::Pressures chambers;
+    chambers.in_Pa = record.in_Pa[k];
+    chambers.out_Pa = record.out_Pa[k];
+    const auto a = with.push(record.t_s[k], record.u_V[k], record.y_m[k], k == 0, chambers);
+    const auto b = without.push(record.t_s[k], record.u_V[k], record.y_m[k], k == 0);
+    ASSERT_EQ(a.has_value(), b.has_value());
+    if (!a) continue;
+    ++windows;
+    EXPECT_EQ(a->estimates[0].value, b->estimates[0].value);
+    EXPECT_EQ(a->estimates[1].std_error, b->estimates[1].std_error);
+    EXPECT_EQ(a->left_out, "");
+  }
+  EXPECT_GT(windows, 5);
 }
 
 TEST_F(HealthyFiles, AreRefusedForAnotherRigOrSampleTime) {

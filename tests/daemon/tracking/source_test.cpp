@@ -56,6 +56,9 @@ void run(fdi::Pipeline& pipeline, const truth::Record& record, std::size_t from,
     sample.tick = static_cast<std::int64_t>(k);
     sample.u_applied_V = record.u_V[k];
     sample.y_m = record.y_m[k];
+    if (!record.in_Pa.empty()) sample.pressures.in_Pa = record.in_Pa[k];
+    if (!record.out_Pa.empty()) sample.pressures.out_Pa = record.out_Pa[k];
+    if (!record.supply_Pa.empty()) sample.pressures.supply_Pa = record.supply_Pa[k];
     pipeline.process(sample, log);
   }
 }
@@ -111,10 +114,55 @@ TEST(TrackerSource, TellsDampingAndSupplyPressureApartOnLine) {
   EXPECT_LT(last[6], 0.09 * 1000.0);
 }
 
-TEST(TrackerSource, GoesOnBitForBitFromASnapshot) {
-  const truth::Record record = case_three();
-  const fdi::PipelineConfig config = watching();
-  for (const std::size_t cut : {700u, 2517u}) {  // while it learns; while an alarm stands
+const std::vector<std::string> kWithGain{"supply_pressure_Pa", "damping_N_s_per_m",
+                                         "valve_gain_m_per_V"};
+
+/// Valve gain 10 % low from 14 s on, as pressures of the chambers or of the supply are read.
+truth::Record gain_falls(bool chambers, bool supply) {
+  truth::Case of = stand(24.0);
+  of.pressure_noise_Pa = 5e3;
+  fault(of, 14.0, &truth::Plant::valve_gain_m_per_V, 0.9);
+  truth::Record record = truth::simulate(of);
+  if (!chambers) record.in_Pa.clear();
+  if (!chambers) record.out_Pa.clear();
+  if (!supply) record.supply_Pa.clear();
+  return record;
+}
+
+TEST(TrackerSource, TellsTheValveGainByPressuresThatTheSamplesCarry) {
+  for (const bool chambers : {true, false}) {
+    const truth::Record record = gain_falls(chambers, !chambers);
+    fdi::Pipeline pipeline(watching(kWithGain), truth::kSample_s);
+    Log log;
+    run(pipeline, record, 0, record.y_m.size(), log);
+    ASSERT_FALSE(log.alarms.empty());
+    for (const Log::Change& change : log.alarms) {
+      EXPECT_EQ(change.alarm.name, "valve_gain_m_per_V") << change.alarm.reason;
+      EXPECT_EQ(change.alarm.parameter, "valve_gain_m_per_V");
+      EXPECT_EQ(change.alarm.direction, -1);
+    }
+    EXPECT_NEAR(log.alarms.back().alarm.value, 0.9 * 2.79e-5, 0.01 * 2.79e-5);
+  }
+}
+
+TEST(TrackerSource, SaysWhyItGoesOnByPositionAlone) {
+  truth::Record record = gain_falls(true, false);
+  for (std::size_t k = 2000; k < record.in_Pa.size(); ++k) record.in_Pa[k] = record.in_Pa[2000];
+  fdi::Pipeline pipeline(watching(kWithGain), truth::kSample_s);
+  Log log;
+  run(pipeline, record, 0, 2799, log);
+  EXPECT_TRUE(log.alarms.empty());
+  EXPECT_THAT(log.reasons.back(), HasSubstr("valve gain"));  // is not told, and so invalid
+  fdi::Pipeline without(watching(), truth::kSample_s);
+  Log other;
+  run(without, record, 0, 2799, other);
+  EXPECT_THAT(other.reasons.back(), HasSubstr("the reading of the pressure in stands still"));
+}
+
+/// A pipeline that is saved and restored at a cut, and one that never was.
+void expect_the_same(const fdi::PipelineConfig& config, const truth::Record& record,
+                     const std::vector<std::size_t>& cuts) {
+  for (const std::size_t cut : cuts) {
     const std::size_t end = cut + 900;
     fdi::Pipeline whole(config, truth::kSample_s);
     Log unused;
@@ -142,6 +190,18 @@ TEST(TrackerSource, GoesOnBitForBitFromASnapshot) {
       EXPECT_EQ(found.alarms[i].alarm.value, expected.alarms[i].alarm.value);
     }
   }
+}
+
+TEST(TrackerSource, GoesOnBitForBitFromASnapshot) {
+  const truth::Record record = case_three();
+  const fdi::PipelineConfig config = watching();
+  expect_the_same(config, record, {700u, 2517u});  // while it learns; while an alarm stands
+}
+
+TEST(TrackerSource, GoesOnBitForBitWithPressures) {
+  truth::Record record = gain_falls(true, false);
+  for (std::size_t k = 3600; k < record.in_Pa.size(); ++k) record.in_Pa[k] = record.in_Pa[3600];
+  expect_the_same(watching(kWithGain), record, {700u, 2900u, 3700u});
 }
 
 TEST(TrackerSource, AlarmsWhenTheModelNoLongerExplainsTheRig) {

@@ -50,6 +50,7 @@ inline plant_sim::ModelFile printed_model() {
   return model;
 }
 
+/// Chamber pressures are used where the record has them, its supply pressure only as `supply_Pa`.
 inline Tracked tracked(const truth::Record& record, const std::vector<std::string>& names = usual(),
                        const iso::Settings& settings = {},
                        const plant_sim::ModelFile& model = printed_model(),
@@ -59,8 +60,11 @@ inline Tracked tracked(const truth::Record& record, const std::vector<std::strin
   const auto run = [&](iso::Tracker& tracker, double until_s) {
     std::vector<iso::Window> windows;
     for (std::size_t k = 0; k < record.t_s.size() && record.t_s[k] < until_s; ++k) {
-      auto window = tracker.push(record.t_s[k], record.u_V[k], record.y_m[k], k == 0,
-                                 supply_Pa.empty() ? NAN : supply_Pa[k]);
+      estimator::fdi::Pressures pressures;
+      if (!supply_Pa.empty()) pressures.supply_Pa = supply_Pa[k];
+      if (!record.in_Pa.empty()) pressures.in_Pa = record.in_Pa[k];
+      if (!record.out_Pa.empty()) pressures.out_Pa = record.out_Pa[k];
+      auto window = tracker.push(record.t_s[k], record.u_V[k], record.y_m[k], k == 0, pressures);
       if (window) windows.push_back(*window);
     }
     return windows;

@@ -96,6 +96,63 @@ TEST_F(IsolateCommand, TellsInWords) {
   EXPECT_THAT(text, testing::HasSubstr("invalid"));
 }
 
+TEST_F(IsolateCommand, UsesTheChamberPressuresOfTheRecord) {
+  truth::Case of = stand(22.0);
+  of.pressure_noise_Pa = 5e3;
+  fault(of, 15.0, &truth::Plant::valve_gain_m_per_V, 0.9);
+  truth::Record record = truth::simulate(of);
+  truth::write_csv(record, file("record.csv"));
+  // without the supply's column
+  std::ifstream all(file("record.csv"));
+  std::ofstream two(file("two.csv"));
+  for (std::string line; std::getline(all, line);) {
+    std::size_t at = 0;
+    for (int comma = 0; comma < 3; ++comma) at = line.find(',', at) + 1;
+    two << line.erase(at, line.find(',', at) + 1 - at) << '\n';
+  }
+  two.close();
+  fs::rename(file("two.csv"), file("record.csv"));
+  run({"--json", file("out.json"), "--learn", file("healthy.toml")});
+  const auto json = nlohmann::json::parse(std::ifstream(file("out.json")));
+  ASSERT_EQ(json["alarms"].size(), 1u) << json["alarms"].dump(1);
+  EXPECT_EQ(json["alarms"][0]["parameter"], "valve_gain_m_per_V");
+  EXPECT_TRUE(json["alarms"][0]["ambiguity_group"].empty());
+  EXPECT_EQ(json["alarms"][0]["advice"], "");
+  EXPECT_EQ(json["parameters"].size(), 3u);
+  EXPECT_EQ(json["notes"].back(),
+            "the record's pressure_in_Pa and pressure_out_Pa are fitted beside the position");
+  // 2000 readings of healthy windows
+  EXPECT_NEAR(json["healthy"]["pressures"]["in_error_Pa"].get<double>(), 5e3, 300.0);
+  EXPECT_NEAR(json["windows"].back()["pressures"]["out_error_Pa"].get<double>(), 5e3, 1000.0);
+  const plant_sim::ModelFile model = plant_sim::load_model(file("model.toml"));
+  const monitor::tracking::Choice choice = monitor::tracking::choose(
+      model, {"supply_pressure_Pa,damping_N_s_per_m,valve_gain_m_per_V"}, "parameters");
+  const auto learnt = monitor::tracking::read_healthy(file("healthy.toml"), model, {}, choice,
+                                                      truth::kSample_s, "");
+  EXPECT_TRUE(learnt.chambers.known());
+
+  run({"--json", file("out.json"), "--no-pressures"});
+  const auto without = nlohmann::json::parse(std::ifstream(file("out.json")));
+  ASSERT_EQ(without["alarms"].size(), 1u);
+  EXPECT_THAT(without["alarms"][0]["ambiguity_group"].get<std::vector<std::string>>(),
+              testing::ElementsAre("supply_pressure_Pa", "valve_gain_m_per_V"));
+  EXPECT_FALSE(without["healthy"].contains("pressures"));
+}
+
+TEST_F(IsolateCommand, SaysWhyWindowsAreByPositionAlone) {
+  truth::Case of = stand(22.0);
+  of.pressure_noise_Pa = 5e3;
+  truth::Record record = truth::simulate(of);
+  for (std::size_t k = 3000; k < record.in_Pa.size(); ++k) record.out_Pa[k] = record.out_Pa[3000];
+  truth::write_csv(record, file("record.csv"));
+  testing::internal::CaptureStdout();
+  run({});
+  const std::string text = testing::internal::GetCapturedStdout();
+  EXPECT_THAT(text, testing::HasSubstr("no change named"));
+  EXPECT_THAT(text, testing::HasSubstr("windows by position alone"));
+  EXPECT_THAT(text, testing::HasSubstr("the reading of the pressure out stands still"));
+}
+
 TEST_F(IsolateCommand, SuspectsThePositionSensorWhereItIsAskedTo) {
   truth::Case of = stand(22.0);
   fault(of, 15.0, &truth::Plant::valve_gain_m_per_V, 1.05);
