@@ -43,6 +43,7 @@ LoopRow ClosedLoop::step() noexcept {
   LoopRow row{};
   row.t_s = static_cast<double>(next_) * kSampleTime_s;
   row.rod_m = plant_->reading_m();
+  row.pressures = plant_->pressures();
   const double signal_m = sensor_.signal_m(row.t_s, row.rod_m);
   row.y_m = sensor_.reading_m(row.t_s, encoder_.read(signal_m));
   row.reference_m = reference_->at(row.t_s);

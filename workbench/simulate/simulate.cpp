@@ -10,6 +10,8 @@
 #include "config/record/record.h"
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "plant_sim/instruments.h"
+#include "plant_sim/plant.h"
 #include "workbench/command.h"
 #include "workbench/number_check.h"
 #include "workbench/simulate/closed_loop.h"
@@ -24,6 +26,7 @@ using config::schema::ExitCode;
 
 /// Samples between two looks at the progress line: ten minutes of the stand.
 constexpr std::int64_t kProgressEvery = 120'000;
+constexpr std::uint64_t kPressures = 0x70726573;  ///< apart from any seed in use
 
 struct Arguments {
   std::string model;
@@ -31,6 +34,8 @@ struct Arguments {
   std::string reference;
   double duration_s = 60.0;
   std::uint64_t seed = 1;
+  bool pressures = false;
+  double pressure_noise_Pa = 0.0;
   std::vector<std::string> assignments;
   std::vector<std::string> faults;
 };
@@ -75,9 +80,32 @@ void check_output(const std::string& output) {
   }
 }
 
+/// The columns beside t_s,u_V,y_m.
+std::vector<const char*> column_names(const Arguments& arguments) {
+  std::vector<const char*> names{"reference_m", "u_requested_V", "saturated"};
+  if (arguments.pressures) {
+    names.insert(names.end(), {"supply_pressure_Pa", "pressure_in_Pa", "pressure_out_Pa"});
+  }
+  return names;
+}
+
+/// Their values in that order.
+std::vector<double> further_of(const simulate::LoopRow& row, const Arguments& arguments,
+                               plant_sim::Gaussian& chance) {
+  std::vector<double> values{row.reference_m, row.u_requested_V, row.saturated ? 1.0 : 0.0};
+  if (!arguments.pressures) return values;
+  const plant_sim::Pressures& p = row.pressures;
+  for (const double pressure_Pa : {p.supply_Pa, p.in_Pa, p.out_Pa}) {
+    values.push_back(pressure_Pa + arguments.pressure_noise_Pa * chance.next());
+  }
+  return values;
+}
+
 config::record::Record simulate_record(const Arguments& arguments,
                                        const simulate::Scenario& scenario) {
   simulate::ClosedLoop loop(scenario, arguments.seed);
+  // The position's noise is the same with and without pressures.
+  plant_sim::Gaussian chance(arguments.seed + kPressures);
   const auto samples = std::llround(arguments.duration_s / simulate::kSampleTime_s);
   const bool show = isatty(STDERR_FILENO) == 1;
   config::record::Record record;
@@ -86,7 +114,7 @@ config::record::Record simulate_record(const Arguments& arguments,
   for (auto* column : {&record.t_s, &record.u_V, &record.y_m}) {
     column->reserve(static_cast<std::size_t>(samples));
   }
-  for (const char* name : {"reference_m", "u_requested_V", "saturated"}) {
+  for (const char* name : column_names(arguments)) {
     record.further.emplace_back(name, std::vector<double>{});
     record.further.back().second.reserve(static_cast<std::size_t>(samples));
   }
@@ -96,7 +124,7 @@ config::record::Record simulate_record(const Arguments& arguments,
     record.u_V.push_back(row.u_applied_V);
     record.y_m.push_back(row.y_m);
     std::size_t column = 0;
-    for (const double value : {row.reference_m, row.u_requested_V, row.saturated ? 1.0 : 0.0}) {
+    for (const double value : further_of(row, arguments, chance)) {
       record.further[column++].second.push_back(value);
     }
     if (show && k % kProgressEvery == kProgressEvery - 1) {
@@ -107,14 +135,27 @@ config::record::Record simulate_record(const Arguments& arguments,
   return record;
 }
 
+void check_pressures(const Arguments& arguments, const simulate::Scenario& scenario) {
+  if (!arguments.pressures) {
+    if (arguments.pressure_noise_Pa > 0.0) {
+      throw Error(ExitCode::usage, "--pressure-noise: needs --pressures");
+    }
+    return;
+  }
+  if (std::isfinite(plant_sim::make_plant(scenario.model)->pressures().in_Pa)) return;
+  throw Error(ExitCode::bad_config, arguments.model + ": --pressures: plant " + scenario.model.plant +
+                                    " has none; allowed: hydraulic_actuator");
+}
+
 }  // namespace
 
 void add_simulate(CLI::App& command, int& /*exit_code*/) {
   auto arguments = std::make_shared<Arguments>();
   command.add_option("model", arguments->model, "model file (TOML)")->required();
   command
-      .add_option("-o,--output", arguments->output,
-                  "CSV: t_s,u_V,y_m,reference_m,u_requested_V,saturated")
+      .add_option(
+          "-o,--output", arguments->output,
+          "CSV: t_s,u_V,y_m,reference_m,u_requested_V,saturated, and pressures if asked for")
       ->required();
   command.add_option("--duration", arguments->duration_s, "seconds to simulate")
       ->check(number_within(simulate::kSampleTime_s, 1e6))
@@ -125,6 +166,13 @@ void add_simulate(CLI::App& command, int& /*exit_code*/) {
   command.add_option(
       "--reference", arguments->reference,
       "sine, triangle, multisine, steps, chirp, prbs, or a CSV file with t_s,reference_m");
+  command.add_flag("--pressures", arguments->pressures,
+                   "columns supply_pressure_Pa, pressure_in_Pa, pressure_out_Pa as well");
+  command
+      .add_option("--pressure-noise", arguments->pressure_noise_Pa,
+                  "Pa: standard deviation of each pressure's noise")
+      ->check(number_within(0.0, 1e9))
+      ->capture_default_str();
   command
       .add_option("--set", arguments->assignments,
                   "table.key=value of the model file, [reference] or [instruments]")
@@ -135,6 +183,7 @@ void add_simulate(CLI::App& command, int& /*exit_code*/) {
       ->allow_extra_args(false);
   command.callback([arguments] {
     const simulate::Scenario scenario = read_scenario(*arguments);
+    check_pressures(*arguments, scenario);
     check_output(arguments->output);
     write_csv(simulate_record(*arguments, scenario), arguments->output);
   });

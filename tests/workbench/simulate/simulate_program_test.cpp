@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "config/record/record.h"
+#include "plant_sim/model_file.h"
 #include "tests/workbench/simulate/program.h"
 
 namespace workbench {
@@ -40,6 +41,41 @@ TEST(SimulateProgram, WritesARecordThatReadsBack) {
     ASSERT_NEAR((*reference_m)[k], 0.305 + 0.0254 * std::sin(M_PI * 0.005 * double(k)), 1e-12);
     ASSERT_NEAR(record.u_V[k], 250.0 * ((*reference_m)[k] - record.y_m[k]), 1e-12);
   }
+}
+
+TEST(SimulateProgram, WritesPressuresWithNoiseWhereAskedTo) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("a.csv");
+  const std::string still = "--duration 5 --set reference.amplitude_m=0";
+  ASSERT_EQ(run_program(simulate(file, still + " --pressures --pressure-noise 5000")).exit_code, 0);
+  const auto record = config::record::read_record(file);
+  const auto* supply_Pa = record.column("supply_pressure_Pa");
+  const auto* in_Pa = record.column("pressure_in_Pa");
+  const auto* out_Pa = record.column("pressure_out_Pa");
+  ASSERT_TRUE(supply_Pa != nullptr && in_Pa != nullptr && out_Pa != nullptr);
+  const double declared_Pa = *plant_sim::load_model(kModel).value("supply_pressure_Pa");
+  double squares_Pa2 = 0.0;
+  double sum_Pa = 0.0;
+  for (std::size_t k = 0; k < record.size(); ++k) {
+    squares_Pa2 += std::pow((*supply_Pa)[k] - declared_Pa, 2);
+    sum_Pa += (*in_Pa)[k] + (*out_Pa)[k];
+  }
+  const auto samples = static_cast<double>(record.size());
+  // 1000 numbers: standard deviations of the RMS and of the mean, four to either side
+  EXPECT_NEAR(std::sqrt(squares_Pa2 / samples), 5000.0, 4.0 * 5000.0 / std::sqrt(2.0 * samples));
+  EXPECT_NEAR(sum_Pa / samples, declared_Pa, 4.0 * 5000.0 * std::sqrt(2.0 / samples) + 1.0);
+  ASSERT_EQ(run_program(simulate(folder.file("b.csv"), still)).exit_code, 0);
+  EXPECT_EQ(config::record::read_record(folder.file("b.csv")).y_m, record.y_m);
+}
+
+TEST(SimulateProgram, RefusesPressuresThatThereAreNot) {
+  const TemporaryFolder folder;
+  expect_refused(
+      run_program("simulate " + std::string(SPOOLWATCH_SOURCE_DIR) +
+                  "/config/models/velocity_servo.toml -o " + folder.file("a.csv") + " --pressures"),
+      78, "velocity_servo has none");
+  expect_refused(run_program(simulate(folder.file("a.csv"), "--pressure-noise 10")), 2,
+                 "needs --pressures");
 }
 
 TEST(SimulateProgram, SameSeedSameBytesAnotherSeedOthers) {
