@@ -23,7 +23,7 @@ struct Layer {
 const std::vector<Layer> kLayers{
     {"config/schema", {}, {"toml++"}},
     {"config/messages", {"config/schema"}, {"lcm", "spoolwatch"}},
-    {"config/record", {"config/schema"}, {"lcm", "spoolwatch"}},
+    {"config/record", {"config/schema", "config/messages"}, {"lcm", "spoolwatch"}},
     {"plant_sim", {"config/schema"}, {"muParser"}},
     {"estimator", {"config/schema"}, {"Eigen", "ceres"}},
     {"estimator/fdi", {"config/schema", "estimator"}, {"Eigen"}},
