@@ -8,6 +8,9 @@
 namespace config::record {
 namespace {
 
+/// More than any rig has: a damaged log must not make a million columns.
+constexpr std::size_t kMostRods = 16;
+
 /// A message tells of a sample when both name the same tick of the same run.
 template <class Message>
 bool tells_of(const Message& message, const spoolwatch::sample_t& sample) noexcept {
@@ -25,7 +28,7 @@ void SampleColumns::note(const spoolwatch::rods_t& rods) {
   rods_ = rods;
   if (rod_columns_ != 0) return;
   rod_columns_ = names_.size();
-  rods_shown_ = rods.y_m.size();
+  rods_shown_ = std::min(rods.y_m.size(), kMostRods);
   names_.emplace_back(kRodInCharge);
   for (std::size_t i = 0; i < rods_shown_; ++i) names_.push_back(rod_column(i));
 }
