@@ -13,6 +13,8 @@ void ChamberErrors::visit(config::schema::Visitor& v) {
   };
   number("pressure_in_error_Pa", "of a healthy window's pressure in; 0: not used", in.rms_Pa, 0.0);
   number("pressure_out_error_Pa", "of its pressure out; 0: not used", out.rms_Pa, 0.0);
+  number("pressure_in_weight_Pa", "its sigma in the fit", in.weight_Pa, 0.0);
+  number("pressure_out_weight_Pa", "its sigma in the fit", out.weight_Pa, 0.0);
   number("pressure_in_offset_Pa", "of the reading from the healthy model", in.offset_Pa, -kMost_Pa);
   number("pressure_out_offset_Pa", "of the reading from the healthy model", out.offset_Pa,
          -kMost_Pa);
@@ -20,7 +22,8 @@ void ChamberErrors::visit(config::schema::Visitor& v) {
 }
 
 void ChamberErrors::carry(estimator::Carrier& carrier) {
-  for (double* value : {&in.rms_Pa, &in.offset_Pa, &out.rms_Pa, &out.offset_Pa, &offset_sd_Pa}) {
+  for (double* value : {&in.rms_Pa, &in.offset_Pa, &in.weight_Pa, &out.rms_Pa, &out.offset_Pa,
+                        &out.weight_Pa, &offset_sd_Pa}) {
     carrier.value(*value);
   }
 }

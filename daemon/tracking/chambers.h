@@ -6,7 +6,11 @@
 // p ph  measured and modelled pressure of one chamber
 // b     learnt offset of the transducer (and of the model): the median of healthy windows' means
 // c     what is left of it in one window, unknown but small: its standard deviation is s
-// e     the rest; its RMS is the chamber's error
+// e     the rest; its RMS is the chamber's error, beyond which a window is not the healthy rig's
+//
+// In the fit a chamber has the weight of its error where the position alone is fitted. Where the
+// model is right that is the same; where it lacks something, pressures do not draw the parameters
+// away from what the position says, and they count in every window as they did when it was learnt.
 #pragma once
 
 #include "config/schema/visitor.h"
@@ -18,6 +22,7 @@ namespace monitor::tracking {
 struct ChamberError {
   double rms_Pa = 0.0;     ///< of e; 0: not known
   double offset_Pa = 0.0;  ///< b
+  double weight_Pa = 0.0;  ///< sigma of the fit where the position's is its healthy error
 };
 
 struct ChamberErrors {
@@ -26,7 +31,9 @@ struct ChamberErrors {
   double offset_sd_Pa = 0.0;  ///< s, of either
 
   /// Otherwise pressures are not used.
-  [[nodiscard]] bool known() const noexcept { return in.rms_Pa > 0.0 && out.rms_Pa > 0.0; }
+  [[nodiscard]] bool known() const noexcept {
+    return in.rms_Pa > 0.0 && out.rms_Pa > 0.0 && in.weight_Pa > 0.0 && out.weight_Pa > 0.0;
+  }
   /// Keys of what is healthy, all optional.
   void visit(config::schema::Visitor& v);
   /// Bit for bit (carrier.h).

@@ -23,21 +23,26 @@ double median(std::vector<double> values) {
 }
 
 /// What the windows say of a chamber; `spread_Pa`: of their offsets, as a standard deviation.
-ChamberError median_of(const std::vector<ChamberFit>& windows, double least_Pa, double& spread_Pa) {
+ChamberError median_of(const std::vector<ChamberFit>& windows, double rms_m, double least_Pa,
+                       double& spread_Pa) {
   std::vector<double> rms_Pa;
   std::vector<double> mean_Pa;
+  std::vector<double> weight_Pa;
   for (const ChamberFit& one : windows) {
     rms_Pa.push_back(one.rms_Pa);
     mean_Pa.push_back(one.mean_Pa);
+    weight_Pa.push_back(one.weight_Pa_per_m * rms_m);
   }
-  const ChamberError out{std::max(median(rms_Pa), least_Pa), median(mean_Pa)};
+  const ChamberError out{std::max(median(rms_Pa), least_Pa), median(mean_Pa),
+                         std::max(median(weight_Pa), least_Pa)};
   for (double& value : mean_Pa) value = std::abs(value - out.offset_Pa);
   spread_Pa = kOfMedian * median(mean_Pa);
   return out;
 }
 
 /// Not known where few windows had them, or the plant has none.
-ChamberErrors learn_chambers(const std::vector<Window>& windows, const Choice& choice) {
+ChamberErrors learn_chambers(const std::vector<Window>& windows, const Choice& choice,
+                             double rms_m) {
   std::vector<ChamberFit> in;
   std::vector<ChamberFit> out;
   std::size_t explained = 0;
@@ -53,8 +58,8 @@ ChamberErrors learn_chambers(const std::vector<Window>& windows, const Choice& c
   if (!(supply_Pa > 0.0) || in.empty() || 2 * in.size() < explained) return errors;
   double in_spread_Pa = 0.0;
   double out_spread_Pa = 0.0;
-  errors.in = median_of(in, kLeastError_ratio * supply_Pa, in_spread_Pa);
-  errors.out = median_of(out, kLeastError_ratio * supply_Pa, out_spread_Pa);
+  errors.in = median_of(in, rms_m, kLeastError_ratio * supply_Pa, in_spread_Pa);
+  errors.out = median_of(out, rms_m, kLeastError_ratio * supply_Pa, out_spread_Pa);
   errors.offset_sd_Pa = std::max({kDrift_ratio * supply_Pa, in_spread_Pa, out_spread_Pa});
   return errors;
 }
@@ -96,7 +101,7 @@ Healthy learn(const std::vector<Window>& windows, const Choice& choice, double n
     healthy.x[static_cast<Index>(i)] = median(x[i]);
   }
   healthy.rms_m = std::max({median(rms_m), noise_floor_m, kLeastFloor_m});
-  healthy.chambers = learn_chambers(windows, choice);
+  healthy.chambers = learn_chambers(windows, choice, healthy.rms_m);
   return healthy;
 }
 

@@ -69,9 +69,8 @@ class Namer {
     if (!found.with_chambers()) {
       errors.chambers = {};
     } else {
-      ChamberErrors& chambers = errors.chambers;
-      chambers.in.rms_Pa = std::min(chambers.in.rms_Pa, found.in.rms_Pa);
-      chambers.out.rms_Pa = std::min(chambers.out.rms_Pa, found.out.rms_Pa);
+      errors.chambers.in.weight_Pa *= std::min(1.0, found.in.rms_Pa / errors.chambers.in.rms_Pa);
+      errors.chambers.out.weight_Pa *= std::min(1.0, found.out.rms_Pa / errors.chambers.out.rms_Pa);
     }
     return errors;
   }

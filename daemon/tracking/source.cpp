@@ -22,8 +22,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// window across a change says it as well, and is over after one.
 constexpr double kLong = 1.5;
 constexpr std::size_t kMostLessons = 100000;
-/// Numbers of a lesson before its parameters: error, then each chamber's error and offset.
-constexpr std::size_t kErrors = 5;
+/// Numbers of a lesson before its parameters: error, then each chamber's (ChamberFit).
+constexpr std::size_t kErrors = 7;
 
 std::size_t count_of(double duration_s, double each_s) {
   const double count = std::ceil(duration_s / each_s);
@@ -128,9 +128,11 @@ void TrackerSource::learn_from(const Window& window) {
   const Choice& choice = tracker_.choice();
   why_ = "learning what is healthy" + (window.why.empty() ? "" : "; " + window.why);
   if (!teaches(window, choice)) return;
-  for (const double value :
-       {window.rms_m, window.in.rms_Pa, window.in.mean_Pa, window.out.rms_Pa, window.out.mean_Pa}) {
-    learning_.push_back(value);
+  learning_.push_back(window.rms_m);
+  for (const ChamberFit& one : {window.in, window.out}) {
+    for (const double value : {one.rms_Pa, one.mean_Pa, one.weight_Pa_per_m}) {
+      learning_.push_back(value);
+    }
   }
   for (const Estimate& one : window.estimates) learning_.push_back(one.x);
   const std::size_t length = kErrors + choice.tracked;
@@ -140,8 +142,8 @@ void TrackerSource::learn_from(const Window& window) {
     windows[k].explained = true;
     const double* const lesson = learning_.data() + k * length;
     windows[k].rms_m = lesson[0];
-    windows[k].in = {lesson[1], lesson[2]};
-    windows[k].out = {lesson[3], lesson[4]};
+    windows[k].in = {lesson[1], lesson[2], lesson[3]};
+    windows[k].out = {lesson[4], lesson[5], lesson[6]};
     windows[k].estimates.resize(choice.tracked);
     for (std::size_t i = 0; i < choice.tracked; ++i) {
       windows[k].estimates[i].x = lesson[kErrors + i];

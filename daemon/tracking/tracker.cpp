@@ -151,11 +151,13 @@ WindowEstimate Tracker::first_fit(const Cut& cut) {
   const WindowEstimate found = fit(cut, near_, {noise_floor_m_, {}});
   if (cut.in_Pa == nullptr) return found;
   const double supply_Pa = choice_.supply_Pa();
-  const ChamberErrors one_Pa{{1.0, 0.0}, {1.0, 0.0}, 0.0};
+  const ChamberErrors one_Pa{{1.0, 0.0, 1.0}, {1.0, 0.0, 1.0}, 0.0};
   const WindowEstimate seen = fit_.fit(cut, {}, found.x, {noise_floor_m_, one_Pa});
   ChamberErrors own;
   own.in.rms_Pa = std::max(seen.in.rms_Pa, kLeastError_ratio * supply_Pa);
   own.out.rms_Pa = std::max(seen.out.rms_Pa, kLeastError_ratio * supply_Pa);
+  own.in.weight_Pa = own.in.rms_Pa;
+  own.out.weight_Pa = own.out.rms_Pa;
   own.offset_sd_Pa = supply_Pa;  // any
   return fit(cut, found.x, {std::max(noise_floor_m_, found.rms_m), own});
 }

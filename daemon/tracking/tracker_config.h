@@ -6,6 +6,15 @@
 //   parameters = ["supply_pressure_Pa", "damping_N_s_per_m"]
 //   healthy = "healthy.toml"              # from `spoolwatch isolate --learn`; or learn_s
 //
+// Pressures that the rig reads are used (`pressures = false`: not). The supply's takes the place of
+// the fit of supply_pressure_Pa; the chambers' are fitted beside the position (tracker.h) once what
+// they are like when healthy is known: from learn_s, or from a file that was learnt with them; an
+// older file leaves them out. With either the valve gain can be told from the supply pressure, and
+// valve_gain_m_per_V should stand in `parameters`: it is not added by itself. Where it does not, a
+// change of the gain is found "unexplained" beside a reading of the supply, and by position alone,
+// as the group of both, beside readings of the chambers. What was left out is said in the finding's
+// reason.
+//
 // Its values: each parameter by its name (a dot in it becomes "_"), NaN where the window does not
 // tell it; smallest_NAME, the change that the present motion would show; residual_rms_m. Its
 // alarms: each parameter by the same name, which name the parameter or the group that cannot be

@@ -55,7 +55,7 @@ MatrixXd correlation_of(const MatrixXd& covariance) {
 
 /// Of a residual's mean, when its offset is what it is best: 1 / sqrt(1 + n S^2 / sigma^2).
 double left_of_mean(Index samples, const ChamberError& error, const ChamberErrors& errors) {
-  const double ratio = errors.offset_sd_Pa / error.rms_Pa;
+  const double ratio = errors.offset_sd_Pa / error.weight_Pa;
   return 1.0 / std::sqrt(1.0 + static_cast<double>(samples) * ratio * ratio);
 }
 
@@ -69,11 +69,12 @@ void tell_errors(const Cut& cut, const Errors& errors, const VectorXd& residual,
   out.position_chi_square = square / (errors.rms_m * errors.rms_m);
   if (!with_chambers(cut, errors)) return;
   const auto chamber = [&](Index from, const ChamberError& error) {
-    const VectorXd r = residual.segment(from, samples) * (error.rms_Pa / errors.rms_m);
+    const VectorXd r = residual.segment(from, samples) * (error.weight_Pa / errors.rms_m);
     const double mean = r.mean();
     return ChamberFit{
         std::sqrt((r.array() - mean).square().mean()),
         mean / left_of_mean(samples, error, errors.chambers),
+        error.weight_Pa / errors.rms_m,
     };
   };
   out.in = chamber(all, errors.chambers.in);
@@ -114,7 +115,7 @@ void WindowFit::compare(const Cut& cut, const Errors& errors, const MatrixXd& po
   const auto place = [&](Index from, const double* read_Pa, const MatrixXd& model_Pa,
                          const ChamberError& error) {
     const Eigen::Map<const VectorXd> read(read_Pa + cut.lead, samples);
-    const double scale = errors.rms_m / error.rms_Pa;
+    const double scale = errors.rms_m / error.weight_Pa;
     const double left = left_of_mean(samples, error, errors.chambers);
     for (Index set = 0; set < sets; ++set) {
       auto column = residuals.col(set).segment(from, samples);

@@ -11,7 +11,7 @@
 // observer Pi Po   pressures of the chambers, h: modelled; bi bo learnt offsets of the transducers,
 // ci co
 //         what a window is off them, S how far that may be (chambers.h)
-// sigma   errors of healthy windows
+// sigma   errors of healthy windows, of pressures as chambers.h says
 //
 // The model starts at rest a lead-in before the window and is led to the measured position there
 // (Measured::led), so that speed and pressures are its own when the window begins; what is left of
@@ -50,6 +50,7 @@ struct Cut {
 struct ChamberFit {
   double rms_Pa = std::numeric_limits<double>::quiet_NaN();  ///< about its mean; NaN: not used
   double mean_Pa = std::numeric_limits<double>::quiet_NaN();
+  double weight_Pa_per_m = std::numeric_limits<double>::quiet_NaN();  ///< sigma over the position's
 };
 
 /// Whether the cut's chamber pressures count in a fit with these errors.

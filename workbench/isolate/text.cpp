@@ -48,8 +48,8 @@ std::string alarm_lines(const Outcome& o, const Alarm& alarm) {
   return group.empty() ? text : text + "      " + group + "\n";
 }
 
-/// Up to the first figure: reasons that differ in figures only are one.
-std::string kind_of(const std::string& why) { return why.substr(0, why.find(':')); }
+/// Up to the first figures: reasons that differ in figures only are one.
+std::string kind_of(const std::string& why) { return why.substr(0, why.find_first_of(":(")); }
 
 /// The windows that say something, one line for each kind of it.
 std::string kind_lines(const Outcome& o, std::string Window::*words) {

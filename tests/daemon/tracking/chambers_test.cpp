@@ -203,7 +203,7 @@ TEST(Chambers, CountAnOffsetByItsOwnAndTheNoisesVariance) {
   iso::Cut cut{record.u_V.data(), record.y_m.data(), kLead, kSamples};
   cut.in_Pa = record.in_Pa.data();
   cut.out_Pa = record.out_Pa.data();
-  const iso::Errors errors{kFloor_m, {{5e3, 0.0}, {6e3, 0.0}, 2e3}};
+  const iso::Errors errors{kFloor_m, {{5e3, 0.0, 5e3}, {6e3, 0.0, 6e3}, 2e3}};
   const iso::WindowEstimate before = fit.fit(cut, {}, choice.file, errors);
   std::vector<double> off_Pa = record.in_Pa;
   for (double& value : off_Pa) value += 3e4;

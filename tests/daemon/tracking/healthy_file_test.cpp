@@ -22,7 +22,7 @@ class HealthyFiles : public testing::Test {
     choice_ = iso::choose(model_, usual(), "parameters");
     iso::Healthy healthy{2.5e-6, choice_.file};
     healthy.x[1] = std::log(0.9);
-    healthy.chambers = {{5e3, -2e4}, {6e3, 3e4}, 1.4e4};
+    healthy.chambers = {{5e3, -2e4, 7e3}, {6e3, 3e4, 8e3}, 1.4e4};
     iso::HealthyFile file = iso::healthy_file(model_, choice_, {}, healthy);
     file.rig_id = "stand-1";
     file.sample_time_s = truth::kSample_s;
@@ -71,12 +71,15 @@ TEST_F(HealthyFiles, ComeBackAsTheyWere) {
   EXPECT_EQ(healthy.chambers.in.offset_Pa, -2e4);
   EXPECT_EQ(healthy.chambers.out.rms_Pa, 6e3);
   EXPECT_EQ(healthy.chambers.out.offset_Pa, 3e4);
+  EXPECT_EQ(healthy.chambers.in.weight_Pa, 7e3);
+  EXPECT_EQ(healthy.chambers.out.weight_Pa, 8e3);
   EXPECT_EQ(healthy.chambers.offset_sd_Pa, 1.4e4);
 }
 
 TEST_F(HealthyFiles, OfARigWithoutChamberPressuresGoOnWithoutThem) {
   for (const char* line :
        {"pressure_in_error_Pa = 5000.0\n", "pressure_out_error_Pa = 6000.0\n",
+        "pressure_in_weight_Pa = 7000.0\n", "pressure_out_weight_Pa = 8000.0\n",
         "pressure_in_offset_Pa = -20000.0\n", "pressure_out_offset_Pa = 30000.0\n",
         "pressure_offset_sd_Pa = 14000.0\n"}) {
     rewrite(line, "");
