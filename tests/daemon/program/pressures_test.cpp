@@ -147,6 +147,14 @@ TEST(Pressures, ComeOutAsColumnsOfARecordHoweverItIsMade) {
     ASSERT_EQ(json.at("pressures").at("tick"), log.samples.at(k).tick) << line;
   }
   EXPECT_EQ(k, log.samples.size());
+  // One table has no place for them but as columns.
+  const Result refused = spoolwatch("export " + file + " -o " + at + ".csv --channel pressures");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.out, HasSubstr("--channel pressures: is among the columns of sample"));
+  ASSERT_EQ(spoolwatch("export " + file + " -o " + at + ".mcap").exit_code, 0);
+  std::ifstream mcap(at + ".mcap", std::ios::binary);
+  const std::string bytes(std::istreambuf_iterator<char>(mcap), {});
+  EXPECT_THAT(bytes, HasSubstr("/pressures"));
 }
 
 TEST(Pressures, OfARecordAreReadAgainByTheReplayBackend) {
