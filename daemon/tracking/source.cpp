@@ -50,7 +50,7 @@ TrackerSource::TrackerSource(const TrackerConfig& config, const plant_sim::Model
       rules_(config.rules),
       given_(std::move(healthy)),
       tracker_(model, choice, config.settings, sample_time_s, noise_floor_m_),
-      said_(choice.tracked + 1) {
+      said_(choice.tracked + tracker_.slow_change().size() + 1) {
   reset();
 }
 
@@ -62,16 +62,24 @@ std::vector<std::string> TrackerSource::names() const {
   }
   for (std::size_t i = 0; i < choice.tracked; ++i) names.push_back("smallest_" + names[i]);
   names.emplace_back("residual_rms_m");
+  const SlowChange& slow = tracker_.slow_change();
+  for (std::size_t i = 0; i < slow.size(); ++i) {
+    names.push_back("healthy_" + names[slow.parameter(i)]);
+  }
   return names;
 }
 
 std::vector<estimator::fdi::Alarm> TrackerSource::own_alarms() const {
-  std::vector<estimator::fdi::Alarm> alarms;
-  for (std::size_t i = 0; i <= tracker_.choice().tracked; ++i) {
-    estimator::fdi::Alarm alarm;
-    alarm.name = i < tracker_.choice().tracked ? names()[i] : "unexplained";
-    alarm.rules = rules_;
-    alarms.push_back(alarm);
+  const std::vector<std::string> all = names();
+  std::vector<std::string> wanted(
+      all.begin(), all.begin() + static_cast<std::ptrdiff_t>(tracker_.choice().tracked));
+  const SlowChange& slow = tracker_.slow_change();
+  for (std::size_t i = 0; i < slow.size(); ++i) wanted.push_back("slow_" + all[slow.parameter(i)]);
+  wanted.emplace_back("unexplained");
+  std::vector<estimator::fdi::Alarm> alarms(wanted.size());
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    alarms[i].name = wanted[i];
+    alarms[i].rules = rules_;
   }
   return alarms;
 }
@@ -191,6 +199,7 @@ void TrackerSource::say() {
     said.state.reason = said.reason;
     said.state.fault = &said.fault;
   }
+  say_slow();
   Said& said = said_.back();
   said.state = {};
   if (static_cast<double>(unexplained_) * stride_s_ < kLong * window_s_) return;
@@ -199,6 +208,28 @@ void TrackerSource::say() {
   said.state.direction = 1;
   said.state.value = rms_m_;
   said.state.reason = said.reason;
+}
+
+void TrackerSource::say_slow() {
+  const Choice& choice = tracker_.choice();
+  const SlowChange& slow = tracker_.slow_change();
+  for (std::size_t i = 0; i < slow.size(); ++i) {
+    Said& said = said_[choice.tracked + i];
+    said.state = {};
+    const int end = tracker_.healthy() ? slow.at_end(i, tracker_.healthy()->x) : 0;
+    if (end == 0) continue;
+    const std::size_t at = slow.parameter(i);
+    const SearchParameter& p = choice.parameters[at];
+    const double x = tracker_.healthy()->x[static_cast<Eigen::Index>(at)];
+    said.reason = slow_words(p, slow.learnt(i), x);
+    said.parameter = p.name;
+    said.fault = {said.parameter, {}, kNan};
+    said.state.severity = Severity::minor;
+    said.state.direction = end < 0 ? -1 : 1;
+    said.state.value = p.value(x);
+    said.state.reason = said.reason;
+    said.state.fault = &said.fault;
+  }
 }
 
 Finding TrackerSource::find(std::span<NamedValue> values) noexcept {
@@ -211,6 +242,16 @@ Finding TrackerSource::find(std::span<NamedValue> values) noexcept {
   }
   values[2 * tracked].value = rms_m_;
   values[2 * tracked].std_error = kNan;
+  const SlowChange& slow = tracker_.slow_change();
+  for (std::size_t i = 0; i < slow.size(); ++i) {
+    const std::size_t at = slow.parameter(i);
+    const std::optional<Healthy>& healthy = tracker_.healthy();
+    NamedValue& value = values[2 * tracked + 1 + i];
+    value.value =
+        healthy ? tracker_.choice().parameters[at].value(healthy->x[static_cast<Eigen::Index>(at)])
+                : kNan;
+    value.std_error = kNan;
+  }
   Finding finding;
   finding.warming_up = !tracker_.healthy().has_value();
   finding.valid = why_.empty();

@@ -43,6 +43,7 @@ class TrackerSource final : public estimator::fdi::Source {
   void learn_from(const Window& window);
   void suggest(const Window& window);
   void say();
+  void say_slow();
   [[nodiscard]] bool is_due(std::int64_t missing) noexcept;
 
   double sample_time_s_;
@@ -65,7 +66,7 @@ class TrackerSource final : public estimator::fdi::Source {
   double rms_m_ = 0.0;
   int samples_ = 0;
   std::int64_t unexplained_ = 0;  ///< windows in a row
-  std::vector<Said> said_;        ///< of each tracked parameter, then "unexplained"
+  std::vector<Said> said_;  ///< of each tracked parameter, then of those followed, "unexplained"
 };
 
 }  // namespace monitor::tracking

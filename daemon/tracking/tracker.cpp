@@ -74,6 +74,7 @@ Tracker::Tracker(const plant_sim::ModelFile& model, const Choice& choice, const 
       stride_(std::max<std::size_t>(1, samples_in(settings.stride_s, sample_time_s))),
       fit_(model, choice.parameters, sample_time_s, lead_ + window_, settings.observer_per_s),
       samples_(lead_, window_),
+      slow_(choice, settings.following),
       near_(choice.file),
       pool_(choice.tracked, (window_ + stride_ - 1) / stride_,
             static_cast<std::size_t>(std::max<std::int64_t>(1, settings.pooled))),
@@ -81,6 +82,7 @@ Tracker::Tracker(const plant_sim::ModelFile& model, const Choice& choice, const 
 
 void Tracker::take(const Healthy& healthy) {
   healthy_ = healthy;
+  slow_.take(healthy.x);
   near_ = healthy.x;
 }
 
@@ -211,6 +213,7 @@ Window Tracker::look(double t_s) {
   } else if (!part && (pressures_out_ || !found.with_chambers())) {
     look_at_part(window, cut);
   }
+  slow_.follow(window, fits, alarms_, healthy_->x);
   return window;
 }
 
@@ -362,6 +365,7 @@ void Tracker::carry(estimator::Carrier& carrier) {
     vector(healthy_->x);
     healthy_->chambers.carry(carrier);
   }
+  slow_.carry(carrier);
   vector(near_);
   pool_.carry(carrier);
   memory_.carry(carrier, choice_);

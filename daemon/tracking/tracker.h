@@ -34,6 +34,7 @@
 #include "daemon/tracking/pool.h"
 #include "daemon/tracking/probe.h"
 #include "daemon/tracking/samples.h"
+#include "daemon/tracking/slow_change.h"
 #include "daemon/tracking/window.h"
 #include "daemon/tracking/window_fit.h"
 
@@ -48,6 +49,7 @@ struct Settings {
   double most_of_typical = 0.1;  ///< the same of an effect, over its typical size
   std::int64_t pooled = 4;       ///< windows that a value is taken from while they agree (pool.h)
   Thresholds thresholds;
+  Following following;
   ProbeLimits probe;
 };
 
@@ -65,7 +67,9 @@ class Tracker {
   [[nodiscard]] const AlarmBook& alarms() const { return alarms_; }
   /// AlarmBook::forget_cleared().
   void forget_cleared() { alarms_.forget_cleared(); }
+  /// What changes are counted from: as learnt, but for what has changed slowly (slow_change.h).
   [[nodiscard]] const std::optional<Healthy>& healthy() const { return healthy_; }
+  [[nodiscard]] const SlowChange& slow_change() const { return slow_; }
   [[nodiscard]] const Choice& choice() const { return choice_; }
 
   /// What motion within the limits of the settings would tell; a tenth of a second or so. Once the
@@ -111,6 +115,7 @@ class Tracker {
   std::size_t until_ = 0;       ///< samples until the next look
   bool pressures_out_ = false;  ///< chamber pressures have not belonged to the model lately
   std::optional<Healthy> healthy_;
+  SlowChange slow_;
   Eigen::VectorXd near_;  ///< where the next search begins
   Pool pool_;
   Memory memory_;

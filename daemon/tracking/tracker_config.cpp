@@ -53,6 +53,11 @@ void TrackerConfig::visit(Visitor& v) {
   v.boolean({"pressures", "supply and chamber pressures are used where the rig reads them"},
             pressures);
   learnt.chambers.visit(v);
+  v.texts({"follow", "parameters whose slow changes are no faults"}, settings.following.parameters);
+  v.number({"follow_ratio_per_h", "how fast, of the healthy value"}, settings.following.ratio_per_h,
+           {1e-3, 100.0});
+  v.number({"follow_most_ratio", "how far from what was learnt; then alarm slow_NAME"},
+           settings.following.most_ratio, {1e-3, 10.0});
   v.number({"probe_low_m", "least position of a probing motion that is suggested"},
            settings.probe.low_m, {-1e3, 1e3});
   v.number({"probe_high_m", "greatest; not above the least: none is suggested"},
@@ -103,6 +108,7 @@ std::unique_ptr<estimator::fdi::Source> TrackerConfig::make(
   const auto document = config::schema::Document::parse(model_toml, where() + ": model");
   const plant_sim::ModelFile read = plant_sim::read_model(document);
   const Choice choice = choose(read, parameters, where() + ": parameters");
+  const SlowChange follows(choice, settings.following, where() + ": follow");
   std::optional<Healthy> known;
   if (learnt.rms_m > 0.0) {
     if (learnt.values.size() != choice.tracked) {

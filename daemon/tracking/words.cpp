@@ -136,6 +136,14 @@ std::string change_words(const Choice& choice, const Named& named, const Eigen::
   return name_words(p.name) + direction + ", " + size + value_words(p, named.x, named.std_error);
 }
 
+std::string slow_words(const SearchParameter& p, double learnt, double x) {
+  const std::string far = is_logarithmic(p)
+                              ? number("%+.1f", 100.0 * (p.value(x) / p.value(learnt) - 1.0)) + " %"
+                              : number("%+.2g", x - learnt) + " times its typical size";
+  return name_words(p.name) + " came by and by to " + words(quantity(p.name, p.value(x), NAN)) +
+         ", " + far + " from what was learnt; slow changes are followed no further";
+}
+
 std::string group_words(const Choice& choice, const Named& named) {
   if (named.rivals.empty()) return {};
   std::string text = "or";

@@ -29,6 +29,8 @@ namespace monitor::tracking {
 /// "supply pressure high, +10.0 %"; of an effect: its value.
 [[nodiscard]] std::string change_words(const Choice& choice, const Named& named,
                                        const Eigen::VectorXd& healthy);
+/// "damping came by and by to 700 N s/m, -30.0 % from what was learnt".
+[[nodiscard]] std::string slow_words(const SearchParameter& parameter, double learnt, double x);
 /// Which other parameters would explain it, and what would tell; empty: none.
 [[nodiscard]] std::string group_words(const Choice& choice, const Named& named);
 /// What would tell the members of the group apart.

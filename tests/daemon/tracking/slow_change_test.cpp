@@ -1,0 +1,126 @@
+// What changes slowly is followed, by the rule of slow_change.h and on records of the independent
+// generator.
+#include "daemon/tracking/slow_change.h"
+
+#include <gmock/gmock.h>
+
+#include "config/schema/error.h"
+#include "daemon/tracking/tracker_config.h"
+#include "tests/daemon/tracking/tracked.h"
+
+namespace {
+
+using namespace tracking_test;
+using testing::HasSubstr;
+
+constexpr double kStride_s = 0.5;
+
+iso::Choice usual_choice() { return iso::choose(printed_model(), usual(), "parameters"); }
+
+/// An explained window in which damping is found at `x`.
+iso::Window window_at(double t_s, double x, bool valid = true) {
+  iso::Window window;
+  window.t_s = t_s;
+  window.estimates.resize(2);
+  window.estimates[1].x = x;
+  window.estimates[1].valid = valid;
+  return window;
+}
+
+struct Followed {
+  iso::Choice choice = usual_choice();
+  iso::AlarmBook alarms{choice, {}};
+  iso::SlowChange slow;
+  Eigen::VectorXd healthy = choice.file;
+
+  explicit Followed(double ratio_per_h, double most_ratio)
+      : slow(choice, {{"damping_N_s_per_m"}, ratio_per_h, most_ratio}) {
+    slow.take(healthy);
+  }
+};
+
+TEST(SlowChange, GoesNoFasterThanItsRate) {
+  Followed f(0.36, 0.3);  // 1e-4 a second
+  for (int k = 0; k <= 200; ++k) {
+    f.slow.follow(window_at(k * kStride_s, -0.2), true, f.alarms, f.healthy);
+  }
+  EXPECT_NEAR(f.healthy[1], -100.0 * 1e-4, 1e-12);  // 100 s
+  EXPECT_EQ(f.healthy[0], f.choice.file[0]);
+  EXPECT_EQ(f.slow.at_end(0, f.healthy), 0);
+}
+
+TEST(SlowChange, TellsTheEndOfTheDistanceThatIsFollowed) {
+  Followed f(36.0, 0.3);
+  for (int k = 0; k <= 200; ++k) {
+    f.slow.follow(window_at(k * kStride_s, 0.5), true, f.alarms, f.healthy);
+  }
+  EXPECT_DOUBLE_EQ(f.healthy[1], 0.3);
+  EXPECT_EQ(f.slow.at_end(0, f.healthy), 1);
+}
+
+TEST(SlowChange, CountsTheTimeInWhichTheMotionToldNothing) {
+  Followed f(0.36, 0.3);
+  f.slow.follow(window_at(0.0, -0.05), true, f.alarms, f.healthy);
+  for (int k = 1; k < 200; ++k) {
+    f.slow.follow(window_at(k * kStride_s, -0.05, false), true, f.alarms, f.healthy);
+  }
+  EXPECT_EQ(f.healthy[1], 0.0);
+  f.slow.follow(window_at(100.0, -0.05), true, f.alarms, f.healthy);  // 1e-2 are allowed by now
+  EXPECT_NEAR(f.healthy[1], -0.2 * 0.05, 1e-12);
+}
+
+TEST(SlowChange, StandsStillWhereTheModelDoesNotExplainTheRig) {
+  Followed f(0.36, 0.3);
+  for (int k = 0; k <= 200; ++k) {
+    f.slow.follow(window_at(k * kStride_s, -0.2), false, f.alarms, f.healthy);
+  }
+  EXPECT_EQ(f.healthy[1], 0.0);
+}
+
+TEST(SlowChange, RefusesAParameterThatIsNotTracked) {
+  try {
+    iso::SlowChange(usual_choice(), {{"mass_kg"}, 0.5, 0.3}, "[[tracker]] physics: follow");
+    FAIL() << "was taken";
+  } catch (const config::schema::Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("[[tracker]] physics: follow: names mass_kg"));
+    EXPECT_THAT(error.what(), HasSubstr("supply_pressure_Pa, damping_N_s_per_m"));
+    EXPECT_EQ(error.exit_code(), 78);
+  }
+}
+
+/// Damping falls in small steps, by 10 % in five minutes, as it would in twenty.
+truth::Record warming(double fault_at_s) {
+  truth::Case of = stand(360.0);
+  for (int second = 20; second < 320; ++second) {
+    const double factor = 1.0 - 0.1 * (second - 20) / 300.0;
+    const bool faulty = fault_at_s > 0.0 && second >= fault_at_s;
+    fault(of, second, &truth::Plant::damping_N_s_per_m, factor * (faulty ? 1.25 : 1.0));
+  }
+  return truth::simulate(of);
+}
+
+iso::Settings following() {
+  iso::Settings settings;
+  settings.following = {{"damping_N_s_per_m"}, 2.0, 0.3};
+  return settings;
+}
+
+TEST(SlowChange, OfDampingIsNoAlarmWhereItIsFollowed) {
+  const truth::Record record = warming(0.0);
+  EXPECT_FALSE(tracked(record).alarms.empty());
+  const Tracked followed = tracked(record, usual(), following());
+  EXPECT_TRUE(followed.alarms.empty());
+  // What the windows find stays what the rig has.
+  EXPECT_NEAR(followed.windows.back().estimates[1].value, 900.0, 30.0);
+}
+
+TEST(SlowChange, LeavesAFaultOfDampingToBeNamed) {
+  const Tracked found = tracked(warming(200.0), usual(), following());
+  ASSERT_EQ(found.alarms.size(), 1u);
+  EXPECT_EQ(found.name(found.alarms[0]), "damping_N_s_per_m");
+  EXPECT_GT(found.alarms[0].raised_s, 200.0);
+  EXPECT_LT(found.alarms[0].raised_s, 203.0);
+  EXPECT_TRUE(found.alarms[0].active());
+}
+
+}  // namespace
