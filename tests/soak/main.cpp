@@ -53,9 +53,7 @@ int be_quiet(const soak::QuietOptions& options) {
   return result.exit_code == 0 && result.alarms.empty() && result.valid > 0 ? 0 : 1;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app("Long runs of spoolwatchd, checked.", "spoolwatch-soak");
   app.require_subcommand(1);
 
@@ -82,13 +80,19 @@ int main(int argc, char** argv) {
   add_up->add_flag("--complete", complete, "nothing may be missing, counted or not");
   CLI11_PARSE(app, argc, argv);
 
+  if (add_up->parsed()) return reconcile(folder, report, complete);
+  if (stay->parsed()) return be_quiet(quiet);
+  std::vector<std::string> words;
+  for (const std::string& set : week.more) words.insert(words.end(), {"--set", set});
+  week.more = words;
+  return soak::run_week(week, std::cout).problem_count == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
   try {
-    if (add_up->parsed()) return reconcile(folder, report, complete);
-    if (stay->parsed()) return be_quiet(quiet);
-    std::vector<std::string> words;
-    for (const std::string& set : week.more) words.insert(words.end(), {"--set", set});
-    week.more = words;
-    return soak::run_week(week, std::cout).problem_count == 0 ? 0 : 1;
+    return run(argc, argv);
   } catch (const std::exception& e) {
     std::cerr << "spoolwatch-soak: " << e.what() << '\n';
     return 1;
