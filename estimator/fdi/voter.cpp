@@ -103,7 +103,8 @@ AlarmState Voter::own_alarm(std::size_t /*number*/) const noexcept {
       if (!vote_.channel(i).out) group_[size++] = config_.channels[i];
     }
     fault_.group = std::span<const std::string_view>(group_.data(), size);
-    state.reason = "two channels disagree, and nobody knows which is right";
+    state.reason =
+        size > 0 ? "two channels disagree, and nobody knows which is right" : "no channel is left";
     return state;
   }
   if (out < 0) {
@@ -122,11 +123,14 @@ AlarmState Voter::own_alarm(std::size_t /*number*/) const noexcept {
 
 }  // namespace
 
-bool Vote::judge(std::size_t i, bool wrong) noexcept {
+bool Vote::judge(std::size_t i, bool wrong, bool missing) noexcept {
   Channel& channel = channels_[i];
   channel.against = wrong != channel.out ? channel.against + 1 : 0;
   if (channel.against < (channel.out ? rules_.comes_back : rules_.confirm)) return false;
-  if (!channel.out) channel.since = taken_ - channel.against + 1;
+  if (!channel.out) {
+    channel.since = taken_ - channel.against + 1;
+    channel.missed = missing;
+  }
   channel.out = !channel.out;
   channel.against = 0;
   return true;
@@ -134,32 +138,38 @@ bool Vote::judge(std::size_t i, bool wrong) noexcept {
 
 bool Vote::take(std::span<const double> values) noexcept {
   ++taken_;
-  // The channels that take part: in, and there.
+  // The channels that take part: in, and there. Where none is in, those that are there tell each
+  // other whether they may come back.
+  bool none_in = true;
+  for (std::size_t i = 0; i < count_; ++i) none_in = none_in && channels_[i].out;
   std::array<double, 3> present{};  // in rising order
   std::size_t size = 0;
   for (std::size_t i = 0; i < count_ && i < present.size(); ++i) {
-    if (channels_[i].out || !std::isfinite(values[i])) continue;
+    if ((channels_[i].out && !none_in) || !std::isfinite(values[i])) continue;
     std::size_t at = size++;
     for (; at > 0 && present[at - 1] > values[i]; --at) present[at] = present[at - 1];
     present[at] = values[i];
   }
   spread_ = size > 0 ? present[size - 1] - present[0] : kNan;
-  const bool apart = size == 2 && spread_ > rules_.tolerance;
+  const bool differ = size == 2 && spread_ > rules_.tolerance;
+  const bool apart = differ && !none_in;
   apart_ = apart ? apart_ + 1 : 0;
   const bool was = disagree_;
-  disagree_ = apart_ >= rules_.confirm || size == 0;
-  value_ = disagree_   ? kNan
-           : size == 3 ? present[1]
-           : size == 2 ? 0.5 * (present[0] + present[1])
-                       : present[0];
+  disagree_ = apart_ >= rules_.confirm || size == 0 || none_in;
+  const double agreed = size == 3   ? present[1]
+                        : size == 2 ? 0.5 * (present[0] + present[1])
+                                    : present[0];
+  value_ = disagree_ ? kNan : agreed;
+  if (none_in) spread_ = kNan;
   bool changed = disagree_ != was;
   for (std::size_t i = 0; i < count_; ++i) {
     // Of two that differ none is told to be wrong; nothing comes back while nobody knows.
     const bool missing = !std::isfinite(values[i]);
-    const bool compared = !disagree_ && (size != 2 || channels_[i].out);
+    const bool tells = size > 1 ? !differ : channels_[i].missed;
+    const bool compared = none_in ? tells : !disagree_ && (size != 2 || channels_[i].out);
     const bool wrong =
-        missing || (compared ? std::abs(values[i] - value_) > rules_.tolerance : channels_[i].out);
-    changed = judge(i, wrong) || changed;
+        missing || (compared ? std::abs(values[i] - agreed) > rules_.tolerance : channels_[i].out);
+    changed = judge(i, wrong, missing) || changed;
   }
   return changed;
 }

@@ -6,8 +6,11 @@
 // again for `return_s`. With one out, the remaining two are compared: when they differ, it cannot
 // be said which is wrong, and the value is not valid. Two channels from the start: the same, except
 // that a channel whose reading is missing is out by itself. Agreed value: the middle of three, the
-// mean of two, the only one left. Source: Song 2002, chapter 2 (redundant sensors); J. H. Lala, R.
-// E. Harper, Proceedings of the IEEE 82 (1994) 25 (mid-value select).
+// mean of two, the only one left. Where all
+// were missing, those that are there and agree for `return_s` come back together; one alone does
+// unless it was outvoted. Source: Song
+// 2002, chapter 2 (redundant sensors); J. H. Lala, R. E. Harper, Proceedings of the IEEE 82 (1994)
+// 25 (mid-value select).
 #pragma once
 
 #include <array>
@@ -42,6 +45,7 @@ class Vote {
   struct Channel {
     std::int64_t against = 0;  ///< samples in a row outside, or inside while it is out
     bool out = false;
+    bool missed = false;     ///< it left because it was missing, not because it differed
     std::int64_t since = 0;  ///< sample at which it left
   };
   explicit Vote(std::size_t channels, Rules rules) : rules_(rules), count_(channels) {}
@@ -58,7 +62,7 @@ class Vote {
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
 
  private:
-  [[nodiscard]] bool judge(std::size_t i, bool wrong) noexcept;
+  [[nodiscard]] bool judge(std::size_t i, bool wrong, bool missing) noexcept;
 
   Rules rules_;
   std::size_t count_;

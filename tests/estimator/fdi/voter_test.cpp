@@ -77,6 +77,40 @@ TEST(Vote, OfThreeSurvivesTwoFaultsOneAfterTheOther) {
   EXPECT_FALSE(vote.channel(0).out);
 }
 
+TEST(Vote, GoesOnWithThoseThatComeBackAfterAllWereMissing) {
+  const double none = std::nan("");
+  for (const std::size_t channels : {2u, 3u}) {
+    Vote vote(channels, kRules);
+    const auto feed = [&](double a, double b, double c, int times) {
+      const double values[] = {a, b, c};
+      for (int i = 0; i < times; ++i) vote.take(std::span(values).first(channels));
+    };
+    feed(none, none, none, 10);  // from the start, as estimators are while they warm up
+    EXPECT_TRUE(vote.disagree());
+    feed(10.0, 10.2, 10.1, 4);
+    EXPECT_TRUE(std::isnan(vote.value()));
+    feed(10.0, 10.2, 10.1, 2);
+    EXPECT_DOUBLE_EQ(vote.value(), 10.1) << channels;
+    EXPECT_FALSE(vote.disagree());
+    feed(none, none, none, 10);
+    feed(10.0, 13.0, none, 20);
+    EXPECT_TRUE(vote.disagree()) << "two that differ do not come back";
+    feed(10.0, none, none, 6);
+    EXPECT_DOUBLE_EQ(vote.value(), 10.0) << "the only one";
+  }
+}
+
+TEST(Vote, DoesNotTrustAnOutvotedChannelThatIsTheOnlyOneLeft) {
+  const double none = std::nan("");
+  Vote vote(3, kRules);
+  take(vote, {10.0, 50.0, 10.0}, 5);
+  take(vote, {none, 50.0, none}, 30);
+  EXPECT_TRUE(std::isnan(vote.value()));
+  take(vote, {10.0, 50.0, 10.0}, 6);
+  EXPECT_DOUBLE_EQ(vote.value(), 10.0);
+  EXPECT_TRUE(vote.channel(1).out);
+}
+
 const char* const kVoter =
     "[[voter]]\nid = 'rods'\nchannels = ['sample.y_m', 'sample.u_V', 'sample.reference_m']\n"
     "tolerance = 1.0\nconfirm_s = 3.0\nreturn_s = 5.0\nstride_s = 10.0\n"
