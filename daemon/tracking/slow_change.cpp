@@ -28,12 +28,16 @@ std::size_t tracked_index(const Choice& choice, const std::string& name, const s
 }  // namespace
 
 SlowChange::SlowChange(const Choice& choice, const Following& following, const std::string& where)
-    : rate_per_s_(following.ratio_per_h / kHour_s), most_(following.most_ratio) {
+    : rate_per_s_(following.ratio_per_h / kHour_s) {
+  const double most = following.most_ratio;
   for (const std::string& name : following.parameters) {
     const std::size_t index = tracked_index(choice, name, where);
     const auto same = [index](const Followed& one) { return one.index == index; };
     if (std::any_of(followed_.begin(), followed_.end(), same)) continue;
-    followed_.push_back({index, choice.file[static_cast<Index>(index)], kNan});
+    const bool ratio = choice.parameters[index].scale == Scale::logarithmic;
+    const double below = ratio ? -std::log(std::max(0.0, 1.0 - most)) : most;
+    const double above = ratio ? std::log1p(most) : most;
+    followed_.push_back({index, choice.file[static_cast<Index>(index)], below, above, kNan});
   }
 }
 
@@ -58,15 +62,15 @@ void SlowChange::follow(const Window& window, bool explained, const AlarmBook& a
     double& at = healthy[static_cast<Index>(one.index)];
     const double most = rate_per_s_ * since_s;
     at += std::clamp(kGain * (found.x - at), -most, most);
-    at = std::clamp(at, one.learnt - most_, one.learnt + most_);
+    at = std::clamp(at, one.learnt - one.below, one.learnt + one.above);
   }
 }
 
 int SlowChange::at_end(std::size_t number, const Eigen::VectorXd& healthy) const {
   const Followed& one = followed_[number];
   const double off = healthy[static_cast<Index>(one.index)] - one.learnt;
-  if (std::abs(off) < kEnd * most_) return 0;
-  return off < 0.0 ? -1 : 1;
+  if (off <= -kEnd * one.below) return -1;
+  return off >= kEnd * one.above ? 1 : 0;
 }
 
 void SlowChange::carry(estimator::Carrier& carrier) { carrier.fixed(followed_); }

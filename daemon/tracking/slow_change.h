@@ -2,14 +2,15 @@
 // healthy value of a parameter follows what the windows find, no faster than a stated rate and no
 // further than a stated distance from what was learnt.
 //
-//   h += min(max(g (x - h), -r T), r T),   |h - h0| <= m
+//   h += min(max(g (x - h), -r T), r T),   h0 - below <= h <= h0 + above
 //
 // h  healthy value that changes are counted from, search units     h0  as it was learnt
 // x  what an explained window that names no change of it found     g   kGain, against chance
-// T  time since the latest look at which the motion told x         r m rate and distance
+// T  time since the latest look at which the motion told x         r   rate
+// below above  the stated distance m: of a ratio -ln(1 - m) and ln(1 + m), else m
 //
 // A change that is faster than r is named before it is followed, and from then on it is not. What
-// comes by and by further than m is told by an alarm of its own.
+// comes by and by further is told by an alarm of its own.
 #pragma once
 
 #include <Eigen/Core>
@@ -57,10 +58,11 @@ class SlowChange {
   struct Followed {
     std::size_t index = 0;
     double learnt = 0.0;
+    double below = 0.0;
+    double above = 0.0;
     double told_s = 0.0;  ///< time of the latest look that told it; NaN: none yet
   };
   double rate_per_s_;
-  double most_;
   std::vector<Followed> followed_;
 };
 
