@@ -213,7 +213,7 @@ Window Tracker::look(double t_s) {
   } else if (!part && (pressures_out_ || !found.with_chambers())) {
     look_at_part(window, cut);
   }
-  slow_.follow(window, fits, alarms_, healthy_->x);
+  slow_.follow(window, window.fits, alarms_, healthy_->x);
   return window;
 }
 
