@@ -5,6 +5,7 @@
 #include <string>
 
 #include "workbench/simulate/closed_loop.h"
+#include "workbench/simulate/transducers.h"
 
 namespace workbench::scorecard {
 namespace {
@@ -67,6 +68,7 @@ Samples run(const simulate::Scenario& scenario, double duration_s, std::uint64_t
   simulate::ClosedLoop loop(scenario, seed);
   std::array<plant_sim::Encoder, 2> spare_rods{spare_rod(scenario, seed_of(seed, "rod_2")),
                                                spare_rod(scenario, seed_of(seed, "rod_3"))};
+  simulate::Transducers transducers(scenario.instruments, seed);
   Samples samples(static_cast<std::size_t>(std::llround(duration_s / simulate::kSampleTime_s)));
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const simulate::LoopRow row = loop.step();
@@ -80,6 +82,8 @@ Samples run(const simulate::Scenario& scenario, double duration_s, std::uint64_t
     s.u_requested_V = row.u_requested_V;
     s.u_applied_V = row.u_applied_V;
     s.saturated = row.saturated;
+    const plant_sim::Pressures read = transducers.read(row.pressures);
+    s.pressures = {read.supply_Pa, read.in_Pa, read.out_Pa};
     s.rod_count = 1;
     s.rod_m[0] = row.y_m;
     for (plant_sim::Encoder& rod : spare_rods) s.rod_m[s.rod_count++] = rod.read(row.rod_m);

@@ -2,7 +2,8 @@
 // tables beside those of the model.
 //
 //   [reference]     kind, centre_m, amplitude_m, ... (daemon/control/reference.h)
-//   [instruments]   encoder_resolution_m, noise_m, dac_bits, dac_range_V
+//   [instruments]   encoder_resolution_m, noise_m, dac_bits, dac_range_V,
+//                   pressure_noise_Pa
 //   [[fault]]       parameter, at_s, value or factor, ramp_s (plant_sim/schedule.h)
 //   [[sensor_fault]]  kind, at_s, size (sensor_fault.h)
 #pragma once
@@ -26,9 +27,10 @@ namespace workbench::simulate {
 /// What stands between the plant and the controller. The defaults are ideal: no steps, no noise.
 struct Instruments {
   double encoder_resolution_m = 0.0;
-  double noise_m = 0.0;       ///< standard deviation, before the encoder's rounding
-  std::int64_t dac_bits = 0;  ///< 0: no steps
-  double dac_range_V = 10.0;  ///< also the controller's limit
+  double noise_m = 0.0;            ///< standard deviation, before the encoder's rounding
+  std::int64_t dac_bits = 0;       ///< 0: no steps
+  double dac_range_V = 10.0;       ///< also the controller's limit
+  double pressure_noise_Pa = 0.0;  ///< standard deviation, of each transducer
 
   void visit(config::schema::Visitor& v);
 };

@@ -6,16 +6,17 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "config/record/record.h"
 #include "config/schema/document.h"
 #include "config/schema/error.h"
-#include "plant_sim/instruments.h"
 #include "plant_sim/plant.h"
 #include "workbench/command.h"
 #include "workbench/number_check.h"
 #include "workbench/simulate/closed_loop.h"
 #include "workbench/simulate/fault_text.h"
+#include "workbench/simulate/transducers.h"
 
 namespace workbench {
 namespace {
@@ -26,7 +27,6 @@ using config::schema::ExitCode;
 
 /// Samples between two looks at the progress line: ten minutes of the stand.
 constexpr std::int64_t kProgressEvery = 120'000;
-constexpr std::uint64_t kPressures = 0x70726573;  ///< apart from any seed in use
 
 struct Arguments {
   std::string model;
@@ -35,7 +35,7 @@ struct Arguments {
   double duration_s = 60.0;
   std::uint64_t seed = 1;
   bool pressures = false;
-  double pressure_noise_Pa = 0.0;
+  double pressure_noise_Pa = NAN;  ///< NaN: the instruments' own
   std::vector<std::string> assignments;
   std::vector<std::string> faults;
 };
@@ -90,22 +90,20 @@ std::vector<const char*> column_names(const Arguments& arguments) {
 }
 
 /// Their values in that order.
-std::vector<double> further_of(const simulate::LoopRow& row, const Arguments& arguments,
-                               plant_sim::Gaussian& chance) {
+std::vector<double> further_of(const simulate::LoopRow& row,
+                               std::optional<simulate::Transducers>& transducers) {
   std::vector<double> values{row.reference_m, row.u_requested_V, row.saturated ? 1.0 : 0.0};
-  if (!arguments.pressures) return values;
-  const plant_sim::Pressures& p = row.pressures;
-  for (const double pressure_Pa : {p.supply_Pa, p.in_Pa, p.out_Pa}) {
-    values.push_back(pressure_Pa + arguments.pressure_noise_Pa * chance.next());
-  }
+  if (!transducers) return values;
+  const plant_sim::Pressures read = transducers->read(row.pressures);
+  values.insert(values.end(), {read.supply_Pa, read.in_Pa, read.out_Pa});
   return values;
 }
 
 config::record::Record simulate_record(const Arguments& arguments,
                                        const simulate::Scenario& scenario) {
   simulate::ClosedLoop loop(scenario, arguments.seed);
-  // The position's noise is the same with and without pressures.
-  plant_sim::Gaussian chance(arguments.seed + kPressures);
+  std::optional<simulate::Transducers> transducers;
+  if (arguments.pressures) transducers.emplace(scenario.instruments, arguments.seed);
   const auto samples = std::llround(arguments.duration_s / simulate::kSampleTime_s);
   const bool show = isatty(STDERR_FILENO) == 1;
   config::record::Record record;
@@ -124,7 +122,7 @@ config::record::Record simulate_record(const Arguments& arguments,
     record.u_V.push_back(row.u_applied_V);
     record.y_m.push_back(row.y_m);
     std::size_t column = 0;
-    for (const double value : further_of(row, arguments, chance)) {
+    for (const double value : further_of(row, transducers)) {
       record.further[column++].second.push_back(value);
     }
     if (show && k % kProgressEvery == kProgressEvery - 1) {
@@ -137,14 +135,15 @@ config::record::Record simulate_record(const Arguments& arguments,
 
 void check_pressures(const Arguments& arguments, const simulate::Scenario& scenario) {
   if (!arguments.pressures) {
-    if (arguments.pressure_noise_Pa > 0.0) {
+    if (!std::isnan(arguments.pressure_noise_Pa)) {
       throw Error(ExitCode::usage, "--pressure-noise: needs --pressures");
     }
     return;
   }
   if (std::isfinite(plant_sim::make_plant(scenario.model)->pressures().in_Pa)) return;
-  throw Error(ExitCode::bad_config, arguments.model + ": --pressures: plant " + scenario.model.plant +
-                                    " has none; allowed: hydraulic_actuator");
+  throw Error(ExitCode::bad_config, arguments.model + ": --pressures: plant " +
+                                        scenario.model.plant +
+                                        " has none; allowed: hydraulic_actuator");
 }
 
 }  // namespace
@@ -170,9 +169,8 @@ void add_simulate(CLI::App& command, int& /*exit_code*/) {
                    "columns supply_pressure_Pa, pressure_in_Pa, pressure_out_Pa as well");
   command
       .add_option("--pressure-noise", arguments->pressure_noise_Pa,
-                  "Pa: standard deviation of each pressure's noise")
-      ->check(number_within(0.0, 1e9))
-      ->capture_default_str();
+                  "Pa: standard deviation of each one's noise, for instruments.pressure_noise_Pa")
+      ->check(number_within(0.0, 1e9));
   command
       .add_option("--set", arguments->assignments,
                   "table.key=value of the model file, [reference] or [instruments]")
@@ -182,7 +180,10 @@ void add_simulate(CLI::App& command, int& /*exit_code*/) {
                   "PARAMETER=VALUE@SECONDS or PARAMETER*FACTOR@SECONDS, +SECONDS for a ramp")
       ->allow_extra_args(false);
   command.callback([arguments] {
-    const simulate::Scenario scenario = read_scenario(*arguments);
+    simulate::Scenario scenario = read_scenario(*arguments);
+    if (!std::isnan(arguments->pressure_noise_Pa)) {
+      scenario.instruments.pressure_noise_Pa = arguments->pressure_noise_Pa;
+    }
     check_pressures(*arguments, scenario);
     check_output(arguments->output);
     write_csv(simulate_record(*arguments, scenario), arguments->output);

@@ -1,0 +1,32 @@
+// Pressure transducers of a simulated stand: what they read of the plant's pressures.
+#pragma once
+
+#include <cstdint>
+
+#include "plant_sim/instruments.h"
+#include "plant_sim/pressures.h"
+#include "workbench/simulate/scenario.h"
+
+namespace workbench::simulate {
+
+class Transducers {
+ public:
+  /// The position's noise of the same seed is another, whether pressures are read or not.
+  Transducers(const Instruments& instruments, std::uint64_t seed)
+      : noise_Pa_(instruments.pressure_noise_Pa), chance_(seed + kApart) {}
+
+  [[nodiscard]] plant_sim::Pressures read(plant_sim::Pressures p) noexcept {
+    for (double* pressure_Pa : {&p.supply_Pa, &p.in_Pa, &p.out_Pa}) {
+      *pressure_Pa += noise_Pa_ * chance_.next();
+    }
+    return p;
+  }
+
+ private:
+  static constexpr std::uint64_t kApart = 0x70726573;
+
+  double noise_Pa_;
+  plant_sim::Gaussian chance_;
+};
+
+}  // namespace workbench::simulate
