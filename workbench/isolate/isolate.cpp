@@ -46,6 +46,19 @@ void declare_judging(CLI::App& command, Request& request) {
       ->capture_default_str();
   command.add_flag("--suspect-position-sensor", request.settings.thresholds.suspect_position_sensor,
                    "its scale or drift may explain a change as well");
+  auto& following = request.settings.following;
+  CLI::Option* const follow =
+      command
+          .add_option("--follow", following.parameters,
+                      "name[,name...]: parameters whose slow changes are no faults")
+          ->delimiter(',')
+          ->allow_extra_args(false);
+  command
+      .add_option("--follow-per-hour", following.ratio_per_h,
+                  "ratio: how much of its value a parameter is followed in an hour")
+      ->check(number_within(1e-3, 1e3))
+      ->needs(follow)
+      ->capture_default_str();
 }
 
 }  // namespace

@@ -175,6 +175,11 @@ std::string command_of(const Request& request) {
   if (request.settings.thresholds.suspect_position_sensor) {
     words.emplace_back("--suspect-position-sensor");
   }
+  const monitor::tracking::Following& following = request.settings.following;
+  for (const std::string& name : following.parameters) add("--follow", name);
+  if (following.ratio_per_h != Settings{}.following.ratio_per_h) {
+    add("--follow-per-hour", number("%.9g", following.ratio_per_h));
+  }
   if (request.no_pressures) words.emplace_back("--no-pressures");
   if (request.healthy_rms_m > 0.0) {
     add("--healthy-rms", number("%.9g", request.healthy_rms_m));
@@ -201,6 +206,22 @@ void note_calibration(Outcome& out) {
     out.notes.push_back("when healthy, " + monitor::tracking::name_words(p.name) + " is " +
                         number("%+.3g", 100.0 * off) +
                         " % off the model file; changes count from there");
+  }
+}
+
+void note_followed(Outcome& out, const Tracker& tracker) {
+  const monitor::tracking::SlowChange& slow = tracker.slow_change();
+  for (std::size_t i = 0; i < slow.size(); ++i) {
+    const std::size_t at = slow.parameter(i);
+    const monitor::tracking::SearchParameter& p = out.choice.parameters[at];
+    const Eigen::VectorXd& healthy = tracker.healthy()->x;
+    out.notes.push_back(
+        slow.at_end(i, healthy) != 0
+            ? monitor::tracking::slow_words(p, slow.learnt(i),
+                                            healthy[static_cast<Eigen::Index>(at)])
+            : monitor::tracking::name_words(p.name) + " was followed from " +
+                  monitor::tracking::value_words(p, slow.learnt(i), NAN) + " to " +
+                  monitor::tracking::value_words(p, healthy[static_cast<Eigen::Index>(at)], NAN));
   }
 }
 
@@ -239,6 +260,7 @@ Outcome isolate(const Request& request) {
   const auto floor = estimator::residual::noise_floor(record.y_m, record.sample_time_s);
   out.noise_floor_m = floor.sd_m;
   const double floor_m = std::isfinite(floor.sd_m) ? floor.sd_m : 0.0;
+  const monitor::tracking::SlowChange follows(out.choice, request.settings.following, "--follow");
   const auto tracker = [&] {
     return Tracker(model, out.choice, request.settings, record.sample_time_s, floor_m);
   };
@@ -262,6 +284,7 @@ Outcome isolate(const Request& request) {
   judging.take(out.healthy);
   out.windows = track(judging, record, readings, {-INFINITY, INFINITY});
   out.alarms = judging.alarms().alarms();
+  note_followed(out, judging);
   return out;
 }
 

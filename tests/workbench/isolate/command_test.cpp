@@ -170,8 +170,28 @@ TEST_F(IsolateCommand, SuspectsThePositionSensorWhereItIsAskedTo) {
                                    "position_sensor.scale_ratio"));
 }
 
+TEST_F(IsolateCommand, FollowsWhatMayChangeSlowly) {
+  truth::Case of = stand(130.0);
+  for (int k = 0; k < 100; ++k) {  // by 5 % in 100 s
+    fault(of, 15.0 + k, &truth::Plant::damping_N_s_per_m, 1.0 - 0.0005 * (k + 1));
+  }
+  truth::write_csv(truth::simulate(of), file("record.csv"));
+  const auto found = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"--json", file("out.json")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    run(arguments);
+    return nlohmann::json::parse(std::ifstream(file("out.json")));
+  };
+  EXPECT_EQ(found({})["alarms"].size(), 1u);
+  const auto json = found({"--follow", "damping_N_s_per_m", "--follow-per-hour", "3"});
+  EXPECT_EQ(json["alarms"].size(), 0u);
+  EXPECT_THAT(json["notes"].back().get<std::string>(), testing::StartsWith("damping was followed"));
+}
+
 TEST_F(IsolateCommand, RefusesWhatItCannotUse) {
   std::string line;
+  EXPECT_EQ(code({"--follow", "mass_kg"}, line), 78);
+  EXPECT_THAT(line, testing::HasSubstr("--follow: names mass_kg, which is not tracked"));
   EXPECT_EQ(code({"--parameters", "supply_pressur_Pa"}, line), 78);
   EXPECT_THAT(line, testing::HasSubstr("--parameters supply_pressur_Pa"));
   EXPECT_THAT(line, testing::HasSubstr("did you mean supply_pressure_Pa"));
