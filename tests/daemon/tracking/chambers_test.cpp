@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <functional>
 
+#include "daemon/tracking/words.h"
 #include "tests/daemon/tracking/tracked.h"
 
 namespace {
@@ -13,6 +14,7 @@ namespace {
 using namespace tracking_test;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using truth::Plant;
 
 constexpr double kNoise_Pa = 5e3;  // 0.05 % of a transducer of 100 bar
@@ -217,6 +219,22 @@ TEST(Chambers, CountAnOffsetByItsOwnAndTheNoisesVariance) {
   const double more =
       (std::pow(after.in.mean_Pa, 2) - std::pow(before.in.mean_Pa, 2)) / variance_Pa2;
   EXPECT_NEAR(after.chi_square - before.chi_square, more, 1e-6 * more);
+}
+
+TEST(Chambers, AreNotAskedForWhereTheyAreRead) {
+  const iso::Choice choice = iso::choose(printed_model(), usual(), "parameters");
+  iso::Named named{1, 0.1, 0.01, 0.1, {{"internal_leakage.conductance_m3ps_per_Pa", 1e-12}}, {}};
+  EXPECT_EQ(iso::advice_words(choice, named), "a reading of the chamber pressures would");
+  EXPECT_THAT(iso::group_words(choice, named), HasSubstr(": command and position cannot tell"));
+  named.sensed.chambers = true;
+  EXPECT_EQ(iso::advice_words(choice, named),
+            "a motion of other speeds and accelerations would");  // damping
+  EXPECT_THAT(iso::group_words(choice, named),
+              HasSubstr("command, position and chamber pressures cannot tell"));
+  named.rivals = {{"supply_droop.droop_Pa_per_m3ps", 1e10}};
+  EXPECT_EQ(iso::advice_words(choice, named), "a reading of the supply pressure would");
+  named.sensed.supply = true;
+  EXPECT_THAT(iso::advice_words(choice, named), Not(HasSubstr("supply")));
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 // The tracker in a pipeline: its alarms by name, its values, and its state carried bit for bit.
+#include "config/schema/document.h"
 #include "daemon/tracking/tracker_config.h"
 #include "estimator/fdi/snapshot.h"
 #include "tests/daemon/tracking/tracked.h"
@@ -143,6 +144,42 @@ TEST(TrackerSource, TellsTheValveGainByPressuresThatTheSamplesCarry) {
     }
     EXPECT_NEAR(log.alarms.back().alarm.value, 0.9 * 2.79e-5, 0.01 * 2.79e-5);
   }
+}
+
+TEST(TrackerSource, LeavesPressuresAloneWhereItIsTold) {
+  const truth::Record record = gain_falls(true, true);
+  fdi::PipelineConfig config(monitor::tracking::source_kinds());
+  auto tracker = std::make_unique<monitor::tracking::TrackerConfig>();
+  tracker->id = "physics";
+  tracker->model_toml = plant_sim::print_model(printed_model());
+  tracker->learn_s = kLearn_s;
+  tracker->pressures = false;
+  config.add("tracker", std::move(tracker));
+  fdi::Pipeline pipeline(config, truth::kSample_s);
+  Log log;
+  run(pipeline, record, 0, record.y_m.size(), log);
+  ASSERT_FALSE(log.alarms.empty());
+  EXPECT_THAT(log.alarms.back().alarm.ambiguity_group,
+              ElementsAre("supply_pressure_Pa", "valve_gain_m_per_V"));
+}
+
+TEST(TrackerConfig, KeepsWhatIsHealthyOfPressuresWhenItIsPrinted) {
+  monitor::tracking::TrackerConfig config;
+  config.id = "physics";
+  config.pressures = false;
+  config.learnt.chambers = {{5e3, -2e4, 7e3}, {6e3, 3e4, 8e3}, 1.4e4};
+  const std::string text = config::schema::print_toml([&](auto& v) { config.visit(v); });
+  monitor::tracking::TrackerConfig read;
+  config::schema::Document::parse(text, "test").read([&](auto& v) { read.visit(v); });
+  EXPECT_FALSE(read.pressures);
+  const iso::ChamberErrors& chambers = read.learnt.chambers;
+  EXPECT_EQ(chambers.in.rms_Pa, 5e3);
+  EXPECT_EQ(chambers.in.offset_Pa, -2e4);
+  EXPECT_EQ(chambers.in.weight_Pa, 7e3);
+  EXPECT_EQ(chambers.out.rms_Pa, 6e3);
+  EXPECT_EQ(chambers.out.offset_Pa, 3e4);
+  EXPECT_EQ(chambers.out.weight_Pa, 8e3);
+  EXPECT_EQ(chambers.offset_sd_Pa, 1.4e4);
 }
 
 TEST(TrackerSource, SaysWhyItGoesOnByPositionAlone) {

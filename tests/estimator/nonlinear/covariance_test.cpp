@@ -48,6 +48,55 @@ TEST(Covariance, WhiteLinearCaseIsTheClosedForm) {
   EXPECT_NEAR(c.inflation[1], 1.0, 1e-6);
 }
 
+TEST(Covariance, SeriesHaveTheNoiseOfTheirOwn) {
+  constexpr Index kRows = 4000;
+  constexpr double kFirst = 0.5;
+  constexpr double kSecond = 3.0;
+  std::mt19937_64 engine(2);
+  const MatrixXd A = normal(2 * kRows, 3, engine);
+  MatrixXd y = normal(2 * kRows, 1, engine);
+  y.topRows(kRows) *= kFirst;
+  y.bottomRows(kRows) *= kSecond;
+  const Problem problem = linear(A, y);
+  CovarianceOptions options;
+  options.series = {kRows};
+  const Solution solution = minimize(problem, VectorXd::Zero(3));
+  const MatrixXd first = A.topRows(kRows);
+  const MatrixXd second = A.bottomRows(kRows);
+  const MatrixXd middle =
+      kFirst * kFirst * first.transpose() * first + kSecond * kSecond * second.transpose() * second;
+  const MatrixXd inverse = (A.transpose() * A).inverse();
+  const VectorXd expected = (inverse * middle * inverse).diagonal().cwiseSqrt();
+  for (const Colour colour : {Colour::kWhite, Colour::kColoured}) {
+    options.colour = colour;
+    const Covariance found = covariance(problem, solution, options);
+    // The noise of 4000 numbers is known to 1.1 %; what looks like colour in them adds to that.
+    for (Index j = 0; j < 3; ++j) EXPECT_NEAR(found.std_error[j], expected[j], 0.06 * expected[j]);
+    const double both = std::sqrt(0.5 * (kFirst * kFirst + kSecond * kSecond));
+    EXPECT_NEAR(found.noise_sd, both, 0.04 * both);
+  }
+}
+
+TEST(Covariance, ASeriesOfItsOwnDoesNotTakeTheOthersColour) {
+  // Slow noise behind white noise: each parameter is seen in one of them alone.
+  constexpr Index kRows = 4000;
+  constexpr double kMemory = 0.9;
+  std::mt19937_64 engine(3);
+  MatrixXd A = MatrixXd::Zero(2 * kRows, 2);
+  A.topRows(kRows).col(0).setOnes();
+  A.bottomRows(kRows).col(1).setOnes();
+  MatrixXd y = normal(2 * kRows, 1, engine);
+  for (Index i = kRows + 1; i < 2 * kRows; ++i) y(i, 0) += kMemory * y(i - 1, 0);
+  const Problem problem = linear(A, y);
+  CovarianceOptions options;
+  options.series = {kRows};
+  const Covariance found = covariance(problem, minimize(problem, VectorXd::Zero(2)), options);
+  // Of the mean of n numbers: 1 / sqrt n, and with the memory a, 1 / ((1 - a) sqrt n).
+  const double white = 1.0 / std::sqrt(static_cast<double>(kRows));
+  EXPECT_NEAR(found.std_error[0], white, 0.15 * white);
+  EXPECT_NEAR(found.std_error[1], white / (1.0 - kMemory), 0.25 * white / (1.0 - kMemory));
+}
+
 TEST(Covariance, StandardDeviationsAreTheCertifiedOnes) {
   int compared = 0;
   for (const Certified& c : nist()) {
