@@ -85,16 +85,31 @@ std::map<std::string, std::string> flat(const std::string& toml) {
   return values;
 }
 
-/// A rod sensor that is read must be there; one alone is the sample's y_m.
-void check_rods(const DaemonConfig& config) {
-  const std::size_t rods = config.rig.rods() > 1 ? config.rig.rods() : 0;
+/// What would make the quantity of a sample one that the rig has; empty: it has it. A rod sensor
+/// alone is the sample's y_m.
+std::string lacking(const hal::Rig& rig, const std::string& quantity) {
+  const std::size_t rods = rig.rods() > 1 ? rig.rods() : 0;
+  if (estimator::fdi::rod_of(quantity) > rods) {
+    return rods == 0 ? "a [[spare_rod]]; one sensor alone is sample.y_m"
+                     : "sample.rod_1_m to sample.rod_" + std::to_string(rods) + "_m";
+  }
+  for (const char* role : {"supply_pressure", "pressure_in", "pressure_out"}) {
+    if (quantity != "sample." + std::string(role) + "_Pa") continue;
+    for (const hal::InputConfig& input : rig.inputs()) {
+      if (input.role == role) return {};
+    }
+    return "an [[input]] of role \"" + std::string(role) + "\"";
+  }
+  return {};
+}
+
+/// A sensor that is read must be there.
+void check_sensors(const DaemonConfig& config) {
   const auto check = [&](const std::string& where, const std::string& quantity) {
-    const std::size_t rod = estimator::fdi::rod_of(quantity);
-    if (rod <= rods) return;
-    throw config::schema::bad_config(
-        config.file + ": " + where, "reads " + quantity + ", which the rig does not have",
-        rods == 0 ? "a [[spare_rod]]; one sensor alone is sample.y_m"
-                  : "sample.rod_1_m to sample.rod_" + std::to_string(rods) + "_m");
+    const std::string needed = lacking(config.rig, quantity);
+    if (needed.empty()) return;
+    throw config::schema::bad_config(config.file + ": " + where,
+                                     "reads " + quantity + ", which the rig does not have", needed);
   };
   for (const auto& list : config.pipeline.sources) {
     for (const auto& item : list.items) {
@@ -111,7 +126,7 @@ void check_rods(const DaemonConfig& config) {
 Rules make_rules(const DaemonConfig& config, double sample_time_s) {
   Rules rules;
   rules.effective = config.pipeline;
-  check_rods(config);
+  check_sensors(config);
   std::error_code unknown;
   if (!config.model.empty() &&
       !std::filesystem::is_regular_file(config.folder / config.model, unknown)) {

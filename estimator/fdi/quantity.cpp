@@ -55,6 +55,12 @@ double value_of(SampleQuantity quantity, const Sample& sample) noexcept {
       return sample.reference_m;
     case SampleQuantity::following_error:
       return sample.reference_m - trusted(sample.quality, sample.y_m);
+    case SampleQuantity::supply_pressure:
+      return sample.pressures.supply_Pa;
+    case SampleQuantity::pressure_in:
+      return sample.pressures.in_Pa;
+    case SampleQuantity::pressure_out:
+      return sample.pressures.out_Pa;
     case SampleQuantity::rod_in_charge:
       return sample.rod_count > 0 ? sample.rod_in_charge + 1.0 : kNan;
     default:

@@ -4,7 +4,9 @@
 //   SOURCE.name                                              of any other source (source.h)
 //   sample.y_m .u_V .reference_m .following_error_m          of every sample; the following error
 //                                                            is reference minus position
-//   sample.rod_1_m .rod_2_m ... .rod_5_m .rod_in_charge      of a rig with several rod sensors, the
+//   sample.supply_pressure_Pa .pressure_in_Pa .pressure_out_Pa    NaN where the rig does not read
+//   it sample.rod_1_m .rod_2_m ... .rod_5_m .rod_in_charge      of a rig with several rod sensors,
+//   the
 //                                                            configured one first; NaN elsewhere
 #pragma once
 
@@ -35,6 +37,9 @@ enum class SampleQuantity {
   u,
   reference,
   following_error,
+  supply_pressure,
+  pressure_in,
+  pressure_out,
   rod_in_charge,
   rod_1,
   rod_2,
@@ -46,11 +51,14 @@ struct NamedSampleQuantity {
   SampleQuantity quantity;
   std::string_view name;
 };
-inline constexpr std::array<NamedSampleQuantity, 10> kSampleQuantities = {
+inline constexpr std::array<NamedSampleQuantity, 13> kSampleQuantities = {
     {{SampleQuantity::y, "y_m"},
      {SampleQuantity::u, "u_V"},
      {SampleQuantity::reference, "reference_m"},
      {SampleQuantity::following_error, "following_error_m"},
+     {SampleQuantity::supply_pressure, "supply_pressure_Pa"},
+     {SampleQuantity::pressure_in, "pressure_in_Pa"},
+     {SampleQuantity::pressure_out, "pressure_out_Pa"},
      {SampleQuantity::rod_in_charge, "rod_in_charge"},
      {SampleQuantity::rod_1, "rod_1_m"},
      {SampleQuantity::rod_2, "rod_2_m"},

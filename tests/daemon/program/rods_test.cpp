@@ -112,6 +112,12 @@ TEST(ThreeRods, AreAskedForInOneLineWhereTheyAreNot) {
   EXPECT_EQ(result.exit_code, 78);
   EXPECT_THAT(result.err, HasSubstr("[[voter]] v: reads sample.rod_1_m, which the rig does not "
                                     "have; allowed: a [[spare_rod]]"));
+  result = refused("[[band]]\nid = \"low\"\nquantity = \"sample.supply_pressure_Pa\"\nlow = 5e6\n");
+  EXPECT_EQ(result.exit_code, 78);
+  EXPECT_THAT(
+      result.err,
+      HasSubstr("[[band]] low: reads sample.supply_pressure_Pa, which the rig does not have; "
+                "allowed: an [[input]] of role \"supply_pressure\""));
   result = refused("[failover]\ntolerance_m = 1e-3\n");
   EXPECT_EQ(result.exit_code, 78);
   EXPECT_THAT(result.err, HasSubstr("[failover]: has no other rod sensor to go over to"));

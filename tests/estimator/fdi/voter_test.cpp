@@ -177,6 +177,15 @@ TEST(SampleQuantity, OfRodSensorsIsMissingWhereTheyAreNot) {
   EXPECT_EQ(rod_of("period.rod_5_m"), 0U);
 }
 
+TEST(SampleQuantity, OfPressuresIsMissingWhereTheyAreNotRead) {
+  Sample s;
+  EXPECT_TRUE(std::isnan(value_of(SampleQuantity::supply_pressure, s)));
+  s.pressures = {7e6, 3e6, 4e6};
+  EXPECT_EQ(value_of(SampleQuantity::supply_pressure, s), 7e6);
+  EXPECT_EQ(value_of(SampleQuantity::pressure_in, s), 3e6);
+  EXPECT_EQ(value_of(SampleQuantity::pressure_out, s), 4e6);
+}
+
 TEST(SampleQuantity, OfAnotherSensorIsNoPositionForEstimatorsButOneForBands) {
   Sample s;
   s.y_m = 1.0;
