@@ -8,7 +8,6 @@
 
 #include "daemon/tracking/least_floor.h"
 #include "daemon/tracking/quantity.h"
-#include "daemon/tracking/reading.h"
 #include "daemon/tracking/words.h"
 
 namespace monitor::tracking {
@@ -26,9 +25,6 @@ constexpr double kLeastMotion = 10.0;
 constexpr double kLeastOfHealthy = 0.2;
 /// Standard errors: one-sided, 95 %.
 constexpr double kMostly = 1.645;
-/// Standard error, search units, of what is held while the healthy rig is learnt.
-constexpr double kHeld = 1e-4;
-
 std::size_t samples_in(double duration_s, double sample_time_s) {
   return static_cast<std::size_t>(std::lround(duration_s / sample_time_s));
 }
@@ -44,18 +40,6 @@ double motion_m(const Cut& cut) {
   const double* const y_m = cut.y_m + cut.lead;
   const auto [low, high] = std::minmax_element(y_m, y_m + cut.samples);
   return *high - *low;
-}
-
-/// The same window without its pressures.
-Cut alone(Cut cut) {
-  cut.in_Pa = nullptr;
-  cut.out_Pa = nullptr;
-  return cut;
-}
-
-bool stands_still(const double* values, const Cut& cut) {
-  const double* const first = values + cut.lead;
-  return std::all_of(first, first + cut.samples, [first](double v) { return v == *first; });
 }
 
 }  // namespace
@@ -100,74 +84,6 @@ std::optional<Window> Tracker::push(double t_s, double u_V, double y_m, bool fir
   return look(t_s);
 }
 
-/// The latest samples; without chamber pressures, and why, where they cannot be right.
-Cut Tracker::usable(std::size_t samples, std::string& left_out) const {
-  Cut cut = samples_.latest(samples);
-  if (cut.in_Pa == nullptr) {
-    if (healthy_ && healthy_->chambers.known()) {
-      left_out = "chamber pressures left out because they were not read in the whole window";
-    }
-    return cut;
-  }
-  const bool in = stands_still(cut.in_Pa, cut);
-  if (in || stands_still(cut.out_Pa, cut)) {
-    left_out = std::string("chamber pressures left out because the reading of the pressure ") +
-               (in ? "in" : "out") + " stands still";
-  }
-  return in || !left_out.empty() || !(choice_.supply_Pa() > 0.0) ? alone(cut) : cut;
-}
-
-Held Tracker::held(const Cut& cut, const Errors& errors) const {
-  Held out;
-  if (supply_ == kNotMeasured) return out;
-  if (samples_.supply_Pa(cut.samples) != nullptr) {
-    out.measured = supply_;
-  } else if (healthy_ ? healthy_->chambers.known() && !with_chambers(cut, errors)
-                      : cut.in_Pa != nullptr) {
-    out.healthy = gain_;
-  }
-  return out;
-}
-
-WindowEstimate Tracker::fit(const Cut& cut, Eigen::VectorXd near, const Errors& errors) {
-  const Held held = this->held(cut, errors);
-  std::vector<std::size_t> free = choice_.tracked_indices();
-  const auto hold = [&](std::size_t parameter, double x) {
-    near[static_cast<Index>(parameter)] = x;
-    free.erase(std::find(free.begin(), free.end(), parameter));
-  };
-  if (held.healthy != kNotMeasured) {
-    const auto at = static_cast<Index>(held.healthy);
-    hold(held.healthy, healthy_ ? healthy_->x[at] : choice_.file[at]);
-    return with_held(fit_.fit(cut, free, near, errors), held.healthy, healthy_ ? INFINITY : kHeld);
-  }
-  if (held.measured == kNotMeasured) return fit_.fit(cut, free, near, errors);
-  const SearchParameter& p = choice_.parameters[held.measured];
-  const Reading read = reading_of(samples_.supply_Pa(cut.samples), cut.samples);
-  const double at = p.search(read.mean);
-  hold(held.measured, at);
-  return with_held(fit_.fit(cut, free, near, errors), held.measured, read.std_error / p.slope(at));
-}
-
-WindowEstimate Tracker::first_fit(const Cut& cut) {
-  const WindowEstimate found = fit(cut, near_, {noise_floor_m_, {}});
-  if (cut.in_Pa == nullptr) return found;
-  const double supply_Pa = choice_.supply_Pa();
-  const ChamberErrors one_Pa{{1.0, 0.0, 1.0}, {1.0, 0.0, 1.0}, 0.0};
-  const WindowEstimate seen = fit_.fit(cut, {}, found.x, {noise_floor_m_, one_Pa});
-  ChamberErrors own;
-  own.in.rms_Pa = std::max(seen.in.rms_Pa, kLeastError_ratio * supply_Pa);
-  own.out.rms_Pa = std::max(seen.out.rms_Pa, kLeastError_ratio * supply_Pa);
-  own.in.weight_Pa = own.in.rms_Pa;
-  own.out.weight_Pa = own.out.rms_Pa;
-  own.offset_sd_Pa = supply_Pa;  // any
-  return fit(cut, found.x, {std::max(noise_floor_m_, found.rms_m), own});
-}
-
-std::string Tracker::misfit(const WindowEstimate& found, double most_ratio) const {
-  return healthy_ ? misfit_words(found, healthy_->errors(), most_ratio) : std::string();
-}
-
 Window Tracker::look(double t_s) {
   Window window;
   window.t_s = t_s;
@@ -183,7 +99,7 @@ Window Tracker::look(double t_s) {
   if (!misfit.empty() && moves(cut) && found.with_chambers()) {
     part = look_at_part(window, cut);
     if (!part) {
-      const Cut with = std::exchange(cut, alone(cut));
+      const Cut with = std::exchange(cut, cut.without_pressures());
       const Errors errors = healthy_->errors();
       WindowEstimate instead = fit(cut, near_, errors);
       if (this->misfit(instead, settings_.most_ratio).empty()) {
@@ -274,31 +190,13 @@ void Tracker::judge(Window& window, const Cut& cut, const WindowEstimate& found,
   window.poor = !moves(cut) || (window.explained && unseen);
 }
 
-std::optional<Probe> Tracker::probe() {
-  if (!settings_.probe.given() || !healthy_) return std::nullopt;
-  plant_sim::ModelFile healthy = model_;
-  for (std::size_t i = 0; i < choice_.tracked; ++i) {
-    const SearchParameter& p = choice_.parameters[i];
-    if (double* value = healthy.value(p.name)) {
-      *value = p.value(healthy_->x[static_cast<Index>(i)]);
-    }
-  }
-  return best_probe(healthy, settings_.probe, lead_ + window_, sample_time_s_, healthy_->rms_m,
-                    [this](const double* u_V, const double* y_m) {
-                      return fit_
-                          .fit({u_V, y_m, lead_, window_}, choice_.tracked_indices(), healthy_->x,
-                               {healthy_->rms_m, {}})
-                          .std_error;
-                    });
-}
-
 bool Tracker::look_at_part(Window& window, const Cut& whole) {
   Eigen::VectorXd near = healthy_->x;
   for (const double share : kParts) {
     const auto samples = static_cast<std::size_t>(share * static_cast<double>(window_));
     std::string left_out;
     Cut cut = usable(samples, left_out);
-    if (whole.in_Pa == nullptr) cut = alone(cut);
+    if (whole.in_Pa == nullptr) cut = cut.without_pressures();
     const WindowEstimate part = fit(cut, near, healthy_->errors());
     const double most = std::max(
         settings_.most_ratio, 1.0 + kChanceOfRms / std::sqrt(2.0 * static_cast<double>(samples)));

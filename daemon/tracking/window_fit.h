@@ -44,6 +44,8 @@ struct Cut {
   std::size_t samples = 0;        ///< of the window
   const double* in_Pa = nullptr;  ///< null: not read in all of them; as the next
   const double* out_Pa = nullptr;
+
+  [[nodiscard]] Cut without_pressures() const { return {u_V, y_m, lead, samples}; }
 };
 
 /// Of one chamber's pressure, measured less modelled less learnt offset.
