@@ -7,10 +7,10 @@
 //     + (ci^2 + co^2) / S^2
 //
 // y yh    measured and modelled position; x the free parameters in search units
-// c s     what an unknown position at the window's start leaves: s(k) = (1 - l Ts)^k, l the
-// observer Pi Po   pressures of the chambers, h: modelled; bi bo learnt offsets of the transducers,
-// ci co
-//         what a window is off them, S how far that may be (chambers.h)
+// c s     what an unknown position at the window's start leaves: s(k) = (1 - l Ts)^k
+// l       the observer's gain
+// Pi Po   chamber pressures, h: modelled; bi bo the transducers' learnt offsets
+// ci co   what a window is off them, S how far that may be (chambers.h)
 // sigma   errors of healthy windows, of pressures as chambers.h says
 //
 // The model starts at rest a lead-in before the window and is led to the measured position there
