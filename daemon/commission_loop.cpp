@@ -83,11 +83,12 @@ void CommissionLoop::tick() noexcept {
   const hal::Reading reading = parts_.devices.rod->read(period.tick);
   quality_.store(reading.quality, std::memory_order_relaxed);
   in.y_m = reading.y_m;
-  in.homed = reading.quality == hal::Quality::good;
-  in.usable = std::isfinite(reading.y_m) && !reading.end && reading.quality != hal::Quality::bad;
+  in.homed = reading.quality == config::signals::Quality::good;
+  in.usable = std::isfinite(reading.y_m) && !reading.end &&
+              reading.quality != config::signals::Quality::bad;
   if (reading.t_ns == 0) {
     in.t_s = in.now_s;
-    in.usable = in.usable && reading.quality != hal::Quality::stale;
+    in.usable = in.usable && reading.quality != config::signals::Quality::stale;
   } else {
     // Its own time says more than being early or late.
     in.t_s = seconds(reading.t_ns) - start_s_;

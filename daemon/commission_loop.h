@@ -41,7 +41,7 @@ class CommissionLoop {
   bool end();
 
   [[nodiscard]] Stop stop() const noexcept { return stop_.load(std::memory_order_relaxed); }
-  [[nodiscard]] hal::Quality quality() const noexcept {
+  [[nodiscard]] config::signals::Quality quality() const noexcept {
     return quality_.load(std::memory_order_relaxed);
   }
 
@@ -62,7 +62,7 @@ class CommissionLoop {
   std::atomic<bool> abandon_{false};
   std::atomic<bool> end_{false};
   std::atomic<Stop> stop_{Stop::none};
-  std::atomic<hal::Quality> quality_{hal::Quality::bad};
+  std::atomic<config::signals::Quality> quality_{config::signals::Quality::bad};
   rt::Thread thread_;
 };
 

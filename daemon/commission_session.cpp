@@ -161,7 +161,7 @@ void CommissionSession::homes() {
   }
   if (options_.home == "none") return;
   const bool index = options_.home.starts_with("index");
-  if (index && loop_->quality() == hal::Quality::good) {
+  if (index && loop_->quality() == config::signals::Quality::good) {
     out_ << "home:   the sensor has its index already, or none is wired" << std::endl;
     return;
   }

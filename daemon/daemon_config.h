@@ -19,11 +19,13 @@
 #include "daemon/io/publisher.h"
 #include "daemon/io/recorder.h"
 #include "daemon/rt/loop.h"
-#include "daemon/tracking/source_kinds.h"
 #include "estimator/fdi/pipeline.h"
+#include "estimator/fdi/tracker/source_kinds.h"
 #include "hal/roles.h"
 
 namespace monitor {
+
+namespace tracker = estimator::fdi::tracker;
 
 struct DaemonConfig {
   std::string file;              ///< where it was read from, for messages
@@ -37,7 +39,7 @@ struct DaemonConfig {
   control::ReferenceConfig reference;
   control::ControllerConfig controller;
   control::SafetyConfig safety;
-  estimator::fdi::PipelineConfig pipeline{monitor::tracking::source_kinds()};
+  estimator::fdi::PipelineConfig pipeline{tracker::source_kinds()};
   io::ControlConfig control;
   io::AlarmConfig alarms;
   io::EvidenceConfig evidence;

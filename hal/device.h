@@ -12,15 +12,15 @@
 #include <cstdint>
 #include <limits>
 
+#include "config/signals/quality.h"
+
 namespace hal {
 
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-enum class Quality : std::uint8_t { good, uncertain, stale, bad };
-
 /// A device calls a reading bad when it has been stale for too long.
-[[nodiscard]] inline bool trusted(Quality quality, double value) noexcept {
-  return quality != Quality::bad && std::isfinite(value);
+[[nodiscard]] inline bool trusted(config::signals::Quality quality, double value) noexcept {
+  return quality != config::signals::Quality::bad && std::isfinite(value);
 }
 
 /// One point of the loop's time grid.
@@ -33,7 +33,7 @@ struct Reading {
   double y_m = kMissing;        ///< rod position, NaN when there is none
   std::int64_t t_ns = 0;        ///< when it was measured; 0: when it was asked for
   double command_V = kMissing;  ///< the valve's command as the device sees it, NaN when it does not
-  Quality quality = Quality::bad;
+  config::signals::Quality quality = config::signals::Quality::bad;
   bool saturated = false;  ///< that command was at a limit, as far as the device knows
   bool end = false;        ///< nothing more will come (end of a record), and this is no reading
 };
@@ -64,7 +64,7 @@ class ValveDrive {
 struct InputReading {
   double value = kMissing;  ///< NaN when there is none
   std::int64_t t_ns = 0;    ///< when it was measured; 0: when it was asked for
-  Quality quality = Quality::bad;
+  config::signals::Quality quality = config::signals::Quality::bad;
 };
 
 class Input {

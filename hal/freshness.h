@@ -12,9 +12,10 @@ inline constexpr std::int64_t kBadPeriods = 6;
 
 /// Good, stale after three periods of the loop, bad (no value any more) after six: the thread
 /// hangs, and a switch that reads as it did may have moved.
-inline Quality freshness(std::int64_t age_ns, std::int64_t period_ns) noexcept {
-  if (age_ns > kBadPeriods * period_ns) return Quality::bad;
-  return age_ns > kStalePeriods * period_ns ? Quality::stale : Quality::good;
+inline config::signals::Quality freshness(std::int64_t age_ns, std::int64_t period_ns) noexcept {
+  if (age_ns > kBadPeriods * period_ns) return config::signals::Quality::bad;
+  return age_ns > kStalePeriods * period_ns ? config::signals::Quality::stale
+                                            : config::signals::Quality::good;
 }
 
 }  // namespace hal

@@ -3,8 +3,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
-#include <vector>
 
 namespace plant_sim {
 
@@ -23,9 +21,6 @@ struct ParameterInfo {
   /// come and go together and have to earn their place.
   int refinement = 0;
 };
-
-/// The unit that a name's suffix says, "damping_N_s_per_m" in N s/m; "" for a number without one.
-[[nodiscard]] std::string unit_of(std::string_view name);
 
 /// A value by its name, as model files hold them.
 struct NamedValue {

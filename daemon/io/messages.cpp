@@ -4,7 +4,7 @@
 
 namespace monitor::io {
 
-void fill(spoolwatch::sample_t& message, const estimator::fdi::Sample& sample,
+void fill(spoolwatch::sample_t& message, const config::signals::Sample& sample,
           double sample_time_s) {
   message.tick = sample.tick;
   message.t_read_ns = sample.t_read_ns;
@@ -20,12 +20,12 @@ void fill(spoolwatch::sample_t& message, const estimator::fdi::Sample& sample,
   message.gap = sample.gap;
 }
 
-void fill(spoolwatch::rods_t& message, const estimator::fdi::Sample& sample) {
+void fill(spoolwatch::rods_t& message, const config::signals::Sample& sample) {
   message.tick = sample.tick;
   message.in_charge = static_cast<std::int8_t>(sample.rod_in_charge);
   message.changed = sample.rod_changed ? 1 : 0;
   message.since_tick = sample.rod_since;
-  const std::size_t count = std::min<std::size_t>(sample.rod_count, estimator::fdi::kMaxRods);
+  const std::size_t count = std::min<std::size_t>(sample.rod_count, config::signals::kMaxRods);
   message.count = static_cast<std::int32_t>(count);
   message.rod.resize(count);
   message.y_m.assign(sample.rod_m.begin(), sample.rod_m.begin() + count);
@@ -37,7 +37,7 @@ void fill(spoolwatch::rods_t& message, const estimator::fdi::Sample& sample) {
   }
 }
 
-void fill(spoolwatch::pressures_t& message, const estimator::fdi::Sample& sample) {
+void fill(spoolwatch::pressures_t& message, const config::signals::Sample& sample) {
   message.tick = sample.tick;
   message.supply_Pa = sample.pressures.supply_Pa;
   message.in_Pa = sample.pressures.in_Pa;

@@ -2,9 +2,9 @@
 // publisher's. Strings and arrays of the target are used again, so their memory is kept.
 #pragma once
 
+#include "config/signals/sample.h"
 #include "estimator/fdi/alarm_book.h"
 #include "estimator/fdi/pipeline.h"
-#include "estimator/fdi/sample.h"
 #include "spoolwatch/alarm_t.hpp"
 #include "spoolwatch/estimate_t.hpp"
 #include "spoolwatch/pressures_t.hpp"
@@ -13,11 +13,11 @@
 
 namespace monitor::io {
 
-void fill(spoolwatch::sample_t& message, const estimator::fdi::Sample& sample,
+void fill(spoolwatch::sample_t& message, const config::signals::Sample& sample,
           double sample_time_s);
 /// All but the ids, of which there may be fewer than rods.
-void fill(spoolwatch::rods_t& message, const estimator::fdi::Sample& sample);
-void fill(spoolwatch::pressures_t& message, const estimator::fdi::Sample& sample);
+void fill(spoolwatch::rods_t& message, const config::signals::Sample& sample);
+void fill(spoolwatch::pressures_t& message, const config::signals::Sample& sample);
 void fill(spoolwatch::estimate_t& message, const estimator::fdi::EstimateEvent& event);
 void fill(spoolwatch::alarm_t& message, const estimator::fdi::Alarm& alarm, bool repeat);
 

@@ -56,7 +56,7 @@ Publisher::~Publisher() = default;
 
 void Publisher::name_rods(std::vector<std::string> rods) { messages_->rods.rod = std::move(rods); }
 
-void Publisher::sample(const estimator::fdi::Sample& sample) {
+void Publisher::sample(const config::signals::Sample& sample) {
   if (sample.rod_count > 0) {
     fill(messages_->rods, sample);
     send(rods_, messages_->rods, {sample.utc_us, sample.t_read_ns});

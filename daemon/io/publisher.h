@@ -72,7 +72,7 @@ class Publisher {
 
   /// A sample carries its own stamp (utc_us, t_read_ns). Several rod sensors and pressures are told
   /// just before.
-  void sample(const estimator::fdi::Sample& sample);
+  void sample(const config::signals::Sample& sample);
   void estimate(const estimator::fdi::EstimateEvent& event, Stamp stamp);
   /// `repeat`: an active alarm sent again, not a change.
   void alarm(const estimator::fdi::Alarm& alarm, bool repeat, Stamp stamp);

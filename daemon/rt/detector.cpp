@@ -8,8 +8,8 @@
 
 namespace monitor::rt {
 
+using config::signals::Sample;
 using estimator::fdi::Alarm;
-using estimator::fdi::Sample;
 using estimator::fdi::Severity;
 
 namespace {

@@ -73,7 +73,7 @@ class Detector final : private estimator::fdi::Events {
   void take_rules();
   void change_rules(RuleChange& change);
   void drain();
-  void process(const estimator::fdi::Sample& sample);
+  void process(const config::signals::Sample& sample);
   void publish(const estimator::fdi::Alarm& alarm, bool repeat);
   /// Evidence of an alarm that has come.
   void keep_evidence(const estimator::fdi::Alarm& alarm);

@@ -5,11 +5,11 @@
 
 namespace monitor::rt {
 
+using config::signals::Sample;
 using control::Action;
 using control::Event;
 using control::GuardKind;
 using control::State;
-using estimator::fdi::Sample;
 
 void LoopConfig::visit(config::schema::Visitor& v) {
   v.number({"rate_hz", "of the loop; a replayed record brings its own"}, rate_Hz, {1.0, 2000.0});
@@ -124,7 +124,7 @@ void Loop::watch_motion(const hal::Reading& reading, Sample& sample) noexcept {
   control::Facts facts;
   facts.t_s = time_s();
   facts.y_m = y_m_;
-  facts.called_stale = reading.t_ns == 0 && reading.quality == hal::Quality::stale;
+  facts.called_stale = reading.t_ns == 0 && reading.quality == config::signals::Quality::stale;
   if (reading.t_ns != 0) {
     facts.age_s = static_cast<double>(parts_.clock.now_ns() - reading.t_ns) * 1e-9;
   }
@@ -217,8 +217,7 @@ bool Loop::tick(const Period& period) noexcept {
   bad_readings_ = good ? 0 : bad_readings_ + 1;
   y_m_ = good ? reading.y_m : hal::kMissing;
   sample.y_m = y_m_;
-  sample.quality =
-      good ? static_cast<estimator::fdi::Quality>(reading.quality) : estimator::fdi::Quality::bad;
+  sample.quality = good ? reading.quality : config::signals::Quality::bad;
   rods_.fill(sample);
   watch_inputs(period.tick);
   sample.pressures = around_.pressures();

@@ -101,10 +101,10 @@ class Loop {
   /// Emergency stop, enable, missing positions.
   void watch_inputs(const hal::Tick& tick) noexcept;
   /// The reference of this tick, and the guards that measure.
-  void watch_motion(const hal::Reading& reading, estimator::fdi::Sample& sample) noexcept;
-  void drive(const Period& period, estimator::fdi::Sample& sample) noexcept;
-  void send(estimator::fdi::Sample& sample) noexcept;
-  void show(const Period& period, const estimator::fdi::Sample& sample) noexcept;
+  void watch_motion(const hal::Reading& reading, config::signals::Sample& sample) noexcept;
+  void drive(const Period& period, config::signals::Sample& sample) noexcept;
+  void send(config::signals::Sample& sample) noexcept;
+  void show(const Period& period, const config::signals::Sample& sample) noexcept;
   [[nodiscard]] double time_s() const noexcept {
     return static_cast<double>(tick_) * sample_time_s_;
   }

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "config/signals/sample.h"
 #include "daemon/control/arming.h"
-#include "estimator/fdi/sample.h"
 
 namespace monitor::rt {
 
@@ -28,7 +28,7 @@ static_assert(std::is_trivially_copyable_v<Command>);
 
 /// Ten seconds of a 200 Hz loop.
 using SampleQueue =
-    boost::lockfree::spsc_queue<estimator::fdi::Sample, boost::lockfree::capacity<2000>>;
+    boost::lockfree::spsc_queue<config::signals::Sample, boost::lockfree::capacity<2000>>;
 using CommandQueue = boost::lockfree::spsc_queue<Command, boost::lockfree::capacity<32>>;
 
 }  // namespace monitor::rt

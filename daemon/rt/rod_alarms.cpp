@@ -6,10 +6,10 @@
 
 namespace monitor::rt {
 
+using config::signals::Sample;
 using control::RodFault;
 using estimator::fdi::Alarm;
 using estimator::fdi::AlarmBook;
-using estimator::fdi::Sample;
 using estimator::fdi::Severity;
 
 namespace {

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "config/signals/sample.h"
 #include "daemon/control/failover.h"
 #include "estimator/fdi/alarm_book.h"
-#include "estimator/fdi/sample.h"
 
 namespace monitor::rt {
 
@@ -24,7 +24,7 @@ class RodAlarms {
   }
 
   /// Sets the alarms as the sample says; `changed` is called for each that came or went.
-  void report(const estimator::fdi::Sample& sample, estimator::fdi::AlarmBook& book,
+  void report(const config::signals::Sample& sample, estimator::fdi::AlarmBook& book,
               const std::function<void(const estimator::fdi::Alarm&)>& changed);
 
  private:

@@ -18,7 +18,7 @@ const hal::Reading& Rods::read(const hal::Tick& tick, const Clock& clock, double
     const bool good = hal::trusted(reading.quality, reading.y_m);
     (i == 0 ? stats_.rod : stats_.spare_rods[i - 1]).count(good, reading.y_m);
     if (good) rods[i].y_m = reading.y_m;
-    rods[i].called_stale = reading.t_ns == 0 && reading.quality == hal::Quality::stale;
+    rods[i].called_stale = reading.t_ns == 0 && reading.quality == config::signals::Quality::stale;
     if (reading.t_ns != 0) {
       rods[i].age_s = static_cast<double>(clock.now_ns() - reading.t_ns) * 1e-9;
     }
@@ -45,7 +45,7 @@ void Rods::show(std::int64_t tick) noexcept {
                              std::memory_order_relaxed);
 }
 
-void Rods::fill(estimator::fdi::Sample& sample) const noexcept {
+void Rods::fill(config::signals::Sample& sample) const noexcept {
   if (count_ < 2) return;
   sample.rod_count = static_cast<std::uint8_t>(count_);
   sample.rod_in_charge = static_cast<std::uint8_t>(choice_.in_charge());
@@ -54,8 +54,7 @@ void Rods::fill(estimator::fdi::Sample& sample) const noexcept {
   for (std::size_t i = 0; i < count_; ++i) {
     const bool good = hal::trusted(readings_[i].quality, readings_[i].y_m);
     sample.rod_m[i] = good ? readings_[i].y_m : hal::kMissing;
-    sample.rod_quality[i] = good ? static_cast<estimator::fdi::Quality>(readings_[i].quality)
-                                 : estimator::fdi::Quality::bad;
+    sample.rod_quality[i] = good ? readings_[i].quality : config::signals::Quality::bad;
     sample.rod_fault[i] = static_cast<std::uint8_t>(choice_.fault(i));
   }
 }

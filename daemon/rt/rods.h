@@ -4,10 +4,10 @@
 #include <array>
 #include <vector>
 
+#include "config/signals/sample.h"
 #include "daemon/control/rod_choice.h"
 #include "daemon/rt/clock.h"
 #include "daemon/rt/loop_stats.h"
-#include "estimator/fdi/sample.h"
 #include "hal/roles.h"
 
 namespace monitor::rt {
@@ -24,7 +24,7 @@ class Rods {
   const hal::Reading& read(const hal::Tick& tick, const Clock& clock, double t_s, double command_V,
                            bool law) noexcept;
   /// What each of them read.
-  void fill(estimator::fdi::Sample& sample) const noexcept;
+  void fill(config::signals::Sample& sample) const noexcept;
 
   [[nodiscard]] control::RodChoice& choice() noexcept { return choice_; }
   [[nodiscard]] const control::RodChoice& choice() const noexcept { return choice_; }
@@ -42,6 +42,6 @@ class Rods {
   std::int64_t since_tick_ = 0;
 };
 
-static_assert(estimator::fdi::kMaxRods == control::kMaxRods);
+static_assert(config::signals::kMaxRods == control::kMaxRods);
 
 }  // namespace monitor::rt

@@ -33,7 +33,8 @@ bool Surroundings::counts_as_on(std::size_t input, bool good, bool on) noexcept 
 }
 
 void Surroundings::take_pressure(hal::InputRole role, const hal::InputReading& reading) noexcept {
-  const bool good = reading.quality == hal::Quality::good && std::isfinite(reading.value);
+  const bool good =
+      reading.quality == config::signals::Quality::good && std::isfinite(reading.value);
   const double value_Pa = good ? reading.value : hal::kMissing;
   if (role == hal::InputRole::supply_pressure) pressures_.supply_Pa = value_Pa;
   if (role == hal::InputRole::pressure_in) pressures_.in_Pa = value_Pa;

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "config/signals/pressures.h"
 #include "daemon/rt/loop_stats.h"
-#include "estimator/fdi/pressures.h"
 #include "hal/roles.h"
 
 namespace monitor::rt {
@@ -32,7 +32,7 @@ class Surroundings {
   [[nodiscard]] bool has_command() const noexcept { return has_command_; }
   /// Of the inputs that measure them, each NaN where its reading is not good: the fault detection
   /// takes them for what they were at this tick.
-  [[nodiscard]] const estimator::fdi::Pressures& pressures() const noexcept { return pressures_; }
+  [[nodiscard]] const config::signals::Pressures& pressures() const noexcept { return pressures_; }
 
  private:
   /// Whether a switch that reads `good`, `on` counts as on.
@@ -49,7 +49,7 @@ class Surroundings {
   bool blind_ = false;
   bool has_command_ = false;
   double command_V_ = hal::kMissing;
-  estimator::fdi::Pressures pressures_;
+  config::signals::Pressures pressures_;
 };
 
 }  // namespace monitor::rt

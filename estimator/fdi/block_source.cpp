@@ -27,7 +27,7 @@ bool BlockSource::lose(std::int64_t periods) noexcept {
   return false;
 }
 
-bool BlockSource::push(const Sample& /*sample*/, double /*y_m*/) noexcept {
+bool BlockSource::push(const config::signals::Sample& /*sample*/, double /*y_m*/) noexcept {
   ++samples_;
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     if (!inputs_[i].fresh()) continue;

@@ -20,7 +20,7 @@ class BlockSource : public Source {
               const std::string& where);
 
   bool lose(std::int64_t periods) noexcept final;
-  bool push(const Sample& sample, double y_m) noexcept final;
+  bool push(const config::signals::Sample& sample, double y_m) noexcept final;
   Finding find(std::span<NamedValue> values) noexcept final;
   void reset() final;
   void carry(Carrier& carrier) final;

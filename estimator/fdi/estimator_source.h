@@ -18,7 +18,7 @@ class EstimatorSource final : public Source {
     return estimate_names(stage_.structure());
   }
   bool lose(std::int64_t periods) noexcept override { return stage_.lose(periods); }
-  bool push(const Sample& sample, double y_m) noexcept override {
+  bool push(const config::signals::Sample& sample, double y_m) noexcept override {
     return stage_.push(sample.u_applied_V, y_m, sample.saturated);
   }
   Finding find(std::span<NamedValue> values) noexcept override;

@@ -125,7 +125,7 @@ class Observer final : public Source {
     start_again();
     return false;
   }
-  bool push(const Sample& /*sample*/, double /*y_m*/) noexcept override {
+  bool push(const config::signals::Sample& /*sample*/, double /*y_m*/) noexcept override {
     if (++since_ >= stride_) since_ = 0;
     missing_ = false;
     for (Index i = 0; i < u_.size(); ++i) {

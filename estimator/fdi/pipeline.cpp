@@ -75,7 +75,7 @@ void Pipeline::Impl::emit(Worker& worker, std::int64_t tick, std::int64_t utc_us
   }
 }
 
-void Pipeline::Impl::take(const Sample& taken) {
+void Pipeline::Impl::take(const config::signals::Sample& taken) {
   for (std::size_t i = 0; i < kSampleQuantities.size(); ++i) {
     sample.values[i].value = value_of(kSampleQuantities[i].quantity, taken);
   }
@@ -89,7 +89,7 @@ Pipeline::~Pipeline() = default;
 Pipeline::Pipeline(Pipeline&&) noexcept = default;
 Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 
-void Pipeline::process(const Sample& sample, Events& events) {
+void Pipeline::process(const config::signals::Sample& sample, Events& events) {
   Impl& impl = *impl_;
   std::int64_t lost = 0;
   if (impl.started && sample.tick <= impl.last_tick) {

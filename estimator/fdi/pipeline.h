@@ -17,10 +17,10 @@
 #include <vector>
 
 #include "config/schema/visitor.h"
+#include "config/signals/sample.h"
 #include "estimator/fdi/alarm_book.h"
 #include "estimator/fdi/band.h"
 #include "estimator/fdi/quantity.h"
-#include "estimator/fdi/sample.h"
 #include "estimator/fdi/source.h"
 
 namespace estimator::fdi {
@@ -129,7 +129,7 @@ class Pipeline {
   Pipeline(Pipeline&&) noexcept;
   Pipeline& operator=(Pipeline&&) noexcept;
 
-  void process(const Sample& sample, Events& events);
+  void process(const config::signals::Sample& sample, Events& events);
   /// Forgets all samples, as at a start; alarms go back to OK without an event.
   void reset();
 

@@ -55,7 +55,7 @@ struct Pipeline::Impl final : private Inputs {
   void add(std::size_t number, const std::string& id, std::unique_ptr<Source> source,
            std::string settings);
   void add(const BandConfig& band);
-  void take(const Sample& taken);
+  void take(const config::signals::Sample& taken);
   void emit(Worker& worker, std::int64_t tick, std::int64_t utc_us, Events& events);
   void judge(Watch& watch, const Reading& reading, Events& events);
   [[nodiscard]] Worker* worker(std::string_view id) noexcept;

@@ -54,7 +54,7 @@ class PolynomialSource final : public Source {
     for (std::int64_t i = 0; i < std::min(periods, length); ++i) monitor_.push_missing();
     return advance(periods);
   }
-  bool push(const Sample& sample, double y_m) noexcept override {
+  bool push(const config::signals::Sample& sample, double y_m) noexcept override {
     const double u_V = sample.u_applied_V;
     if (!std::isfinite(u_V) || !std::isfinite(y_m)) return lose(1);
     monitor_.push(u_V, sample.saturated);

@@ -7,8 +7,10 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-double trusted(Quality quality, double y_m) noexcept {
-  return quality == Quality::good || quality == Quality::uncertain ? y_m : kNan;
+double trusted(config::signals::Quality quality, double y_m) noexcept {
+  return quality == config::signals::Quality::good || quality == config::signals::Quality::uncertain
+             ? y_m
+             : kNan;
 }
 
 constexpr std::size_t index_of(SampleQuantity rod) noexcept {
@@ -30,7 +32,7 @@ std::vector<std::string> estimate_names(const Structure& structure) {
   return names;
 }
 
-double usable_y_m(const Sample& sample) noexcept {
+double usable_y_m(const config::signals::Sample& sample) noexcept {
   return sample.rod_changed ? kNan : trusted(sample.quality, sample.y_m);
 }
 
@@ -45,7 +47,7 @@ std::size_t rod_of(std::string_view quantity) noexcept {
   return 0;
 }
 
-double value_of(SampleQuantity quantity, const Sample& sample) noexcept {
+double value_of(SampleQuantity quantity, const config::signals::Sample& sample) noexcept {
   switch (quantity) {
     case SampleQuantity::y:
       return trusted(sample.quality, sample.y_m);
@@ -67,7 +69,7 @@ double value_of(SampleQuantity quantity, const Sample& sample) noexcept {
       break;
   }
   const std::size_t rod = index_of(quantity);
-  return rod < sample.rod_count && rod < kMaxRods
+  return rod < sample.rod_count && rod < config::signals::kMaxRods
              ? trusted(sample.rod_quality[rod], sample.rod_m[rod])
              : kNan;
 }

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "estimator/fdi/sample.h"
+#include "config/signals/sample.h"
 #include "estimator/structure.h"
 
 namespace estimator::fdi {
@@ -66,13 +66,14 @@ inline constexpr std::array<NamedSampleQuantity, 13> kSampleQuantities = {
      {SampleQuantity::rod_4, "rod_4_m"},
      {SampleQuantity::rod_5, "rod_5_m"}}};
 /// NaN when it is missing, or its quality stale or bad.
-[[nodiscard]] double value_of(SampleQuantity quantity, const Sample& sample) noexcept;
+[[nodiscard]] double value_of(SampleQuantity quantity,
+                              const config::signals::Sample& sample) noexcept;
 
 /// Number of the rod sensor, from 1, that "sample.rod_2_m" reads; 0: it reads none.
 [[nodiscard]] std::size_t rod_of(std::string_view quantity) noexcept;
 
 /// Position that an estimator may use: good or uncertain, and of the same sensor as the one before;
 /// NaN otherwise.
-[[nodiscard]] double usable_y_m(const Sample& sample) noexcept;
+[[nodiscard]] double usable_y_m(const config::signals::Sample& sample) noexcept;
 
 }  // namespace estimator::fdi

@@ -30,9 +30,9 @@
 #include <vector>
 
 #include "config/schema/visitor.h"
+#include "config/signals/sample.h"
 #include "estimator/carrier.h"
 #include "estimator/fdi/alarm_book.h"
-#include "estimator/fdi/sample.h"
 
 namespace estimator::fdi {
 
@@ -73,7 +73,7 @@ class Source {
   virtual bool lose(std::int64_t periods) noexcept = 0;
   /// A sample; `y_m` is its position where it may be used, NaN otherwise. True when a finding is
   /// due.
-  virtual bool push(const Sample& sample, double y_m) noexcept = 0;
+  virtual bool push(const config::signals::Sample& sample, double y_m) noexcept = 0;
   /// Sets value and std_error of each of `values`, which are in the order of names().
   virtual Finding find(std::span<NamedValue> values) noexcept = 0;
   /// What the number-th of own_alarms() shall be now; views hold until the next call. Tick is set

@@ -37,7 +37,7 @@ class Voter final : public Source {
     samples_ += periods;
     return false;
   }
-  bool push(const Sample& /*sample*/, double /*y_m*/) noexcept override {
+  bool push(const config::signals::Sample& /*sample*/, double /*y_m*/) noexcept override {
     std::array<double, 3> values{};
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
       values[i] = inputs_[i].usable() ? inputs_[i].value() : kNan;

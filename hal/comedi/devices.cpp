@@ -7,10 +7,11 @@ InputReading Analog::read(Exchange& exchange, const Tick& tick) const noexcept {
   InputReading reading;
   reading.t_ns = view.read_ns;
   reading.quality = exchange.quality(view, index, monotonic_ns());
-  if (reading.quality == Quality::bad) return reading;
+  if (reading.quality == config::signals::Quality::bad) return reading;
   const std::uint32_t code = view.codes[index];
   reading.value = value_of_V.forward(span.volts(code));
-  if (reading.quality == Quality::good && span.at_end(code)) reading.quality = Quality::uncertain;
+  if (reading.quality == config::signals::Quality::good && span.at_end(code))
+    reading.quality = config::signals::Quality::uncertain;
   return reading;
 }
 
@@ -28,7 +29,7 @@ Reading CounterRod::read(const Tick& tick) noexcept {
   Reading reading;
   reading.t_ns = view.read_ns;
   reading.quality = exchange_->quality(view, index_, monotonic_ns());
-  if (reading.quality == Quality::bad) return reading;
+  if (reading.quality == config::signals::Quality::bad) return reading;
   reading.y_m = metres_.forward(static_cast<double>(unwrap_.count(view.codes[index_])));
   return reading;
 }

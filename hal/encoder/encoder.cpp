@@ -17,8 +17,9 @@ class SwitchInput final : public Input {
   InputReading read(const Tick&) noexcept override {
     const Watch::View& view = watch_->view();
     const int value = view.inputs[index_];
-    const Quality quality = watch_->quality(view.inputs_ns, monotonic_ns());
-    if (value < 0 || quality == Quality::bad) return {kMissing, view.inputs_ns, Quality::bad};
+    const config::signals::Quality quality = watch_->quality(view.inputs_ns, monotonic_ns());
+    if (value < 0 || quality == config::signals::Quality::bad)
+      return {kMissing, view.inputs_ns, config::signals::Quality::bad};
     return {static_cast<double>(value), view.inputs_ns, quality};
   }
 
@@ -85,12 +86,14 @@ Reading EncoderRod::read(const Tick&) noexcept {
   const std::int64_t now_ns = monotonic_ns();
   Reading reading;
   reading.t_ns = rod.alive_ns;
-  reading.quality = rod.failed ? Quality::bad : watch_->quality(rod.alive_ns, now_ns);
-  if (reading.quality == Quality::bad) return reading;
+  reading.quality =
+      rod.failed ? config::signals::Quality::bad : watch_->quality(rod.alive_ns, now_ns);
+  if (reading.quality == config::signals::Quality::bad) return reading;
   reading.y_m = reference_m_ + count_m_ * static_cast<double>(rod.counts);
-  if (reading.quality == Quality::stale) return reading;
+  if (reading.quality == config::signals::Quality::stale) return reading;
   reading.t_ns = now_ns;  // had there been an edge since, the count would be newer
-  reading.quality = rod.lost || rod.too_fast || !rod.homed ? Quality::uncertain : Quality::good;
+  reading.quality = rod.lost || rod.too_fast || !rod.homed ? config::signals::Quality::uncertain
+                                                           : config::signals::Quality::good;
   return reading;
 }
 

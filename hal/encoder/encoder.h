@@ -77,7 +77,8 @@ class Watch {
   /// The position of now is the origin; takes effect within a period. From any thread.
   void refer() noexcept { refer_.store(true, std::memory_order_relaxed); }
   /// Of what was known to be all at `t_ns`.
-  [[nodiscard]] Quality quality(std::int64_t t_ns, std::int64_t now_ns) const noexcept {
+  [[nodiscard]] config::signals::Quality quality(std::int64_t t_ns,
+                                                 std::int64_t now_ns) const noexcept {
     return freshness(now_ns - t_ns, period_ns_);
   }
 

@@ -29,7 +29,8 @@ class Channel {
       return reading;
     }
     reading.value = value;
-    reading.quality = age_ns > stale_ns_ ? Quality::stale : Quality::good;
+    reading.quality =
+        age_ns > stale_ns_ ? config::signals::Quality::stale : config::signals::Quality::good;
     return reading;
   }
 
@@ -63,7 +64,8 @@ class ModbusRod final : public RodSensor {
     reading.t_ns = position.t_ns;
     reading.quality = position.quality;
     const bool in_phase = phase_.keeps(position.t_ns, tick.nominal_ns);
-    if (reading.quality == Quality::good && !in_phase) reading.quality = Quality::stale;
+    if (reading.quality == config::signals::Quality::good && !in_phase)
+      reading.quality = config::signals::Quality::stale;
     if (command_ != nullptr) reading.command_V = command_->read(tick).value;
     return reading;
   }

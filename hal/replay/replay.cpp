@@ -55,10 +55,11 @@ Reading ReplaySensor::read(const Tick& tick) noexcept {
   } else if (row != Rows::kNone) {
     reading.y_m = record_->y_m[row];
     reading.command_V = record_->u_V[row];
-    reading.quality = Quality::good;
+    reading.quality = config::signals::Quality::good;
     reading.saturated = saturated_ != nullptr && (*saturated_)[row] > 0.0;
     if (quality_ != nullptr && std::isfinite((*quality_)[row])) {
-      reading.quality = static_cast<Quality>(std::clamp((*quality_)[row], 0.0, 3.0));
+      reading.quality =
+          static_cast<config::signals::Quality>(std::clamp((*quality_)[row], 0.0, 3.0));
     }
   }
   return reading;
@@ -71,7 +72,7 @@ ReplayInput::ReplayInput(std::shared_ptr<const config::record::Record> record,
 InputReading ReplayInput::read(const Tick& tick) noexcept {
   const std::size_t row = rows_.at(tick);
   if (row == Rows::kNone || row == record_->size() || std::isnan(column_[row])) return {};
-  return {column_[row], 0, Quality::good};
+  return {column_[row], 0, config::signals::Quality::good};
 }
 
 Offer ReplayBackend::open(const Opening& opening) const {

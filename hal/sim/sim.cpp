@@ -68,7 +68,7 @@ Reading SimRig::read(const Tick& tick) noexcept {
   Reading reading;
   reading.y_m = encoder_.read(plant_->reading_m());
   reading.command_V = u_V;
-  reading.quality = Quality::good;
+  reading.quality = config::signals::Quality::good;
   const double t_s = static_cast<double>(tick.index) * sample_time_s_;
   deaf_.store(spoilt_.spoil(reading, t_s), std::memory_order_relaxed);
   return reading;
@@ -93,14 +93,15 @@ Reading SpareRod::read(const Tick& tick) noexcept {
   const double t_s = static_cast<double>(tick.nominal_ns) * 1e-9;
   Reading reading;
   reading.y_m = encoder_.read(rig_->position_m() + (t_s >= from_s_ ? offset_m_ : 0.0));
-  reading.quality = Quality::good;
+  reading.quality = config::signals::Quality::good;
   spoilt_.spoil(reading, t_s);
   return reading;
 }
 
 InputReading PressureInput::read(const Tick& tick) noexcept {
   const double t_s = static_cast<double>(tick.nominal_ns) * 1e-9;
-  InputReading reading{transducers_->read(which_, rig_->pressures(), t_s), 0, Quality::good};
+  InputReading reading{transducers_->read(which_, rig_->pressures(), t_s), 0,
+                       config::signals::Quality::good};
   spoilt_.spoil(reading, t_s);
   return reading;
 }

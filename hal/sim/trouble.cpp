@@ -34,7 +34,7 @@ bool SpoiltRod::spoil(Reading& reading, double t_s) noexcept {
     if (!trouble.at(t_s)) continue;
     if (trouble.kind == "missing") {
       reading.y_m = kMissing;
-      reading.quality = Quality::bad;
+      reading.quality = config::signals::Quality::bad;
     } else if (trouble.kind == "frozen") {
       reading.y_m = last_y_m_;
       frozen = true;
@@ -44,7 +44,7 @@ bool SpoiltRod::spoil(Reading& reading, double t_s) noexcept {
       reading.y_m += trouble.rate_mps * (t_s - trouble.from_s);
     } else if (trouble.kind == "stale") {
       reading.y_m = last_y_m_;
-      reading.quality = Quality::stale;
+      reading.quality = config::signals::Quality::stale;
       frozen = true;
     } else {
       deaf = true;
@@ -71,7 +71,7 @@ void SpoiltPressure::spoil(InputReading& reading, double t_s) noexcept {
     }
     frozen = true;
     reading.value = last_Pa_;
-    if (trouble.kind == "stale") reading.quality = Quality::stale;
+    if (trouble.kind == "stale") reading.quality = config::signals::Quality::stale;
   }
   if (!frozen) last_Pa_ = value_Pa;
 }
@@ -97,7 +97,7 @@ InputReading Switch::read(const Tick& tick) noexcept {
   const double t_s = static_cast<double>(tick.nominal_ns) * 1e-9;
   const bool now = t_s >= from_s_ && t_s < to_s_;
   if (now && missing_) return {};
-  return {now ? meanwhile_ : value_, 0, Quality::good};
+  return {now ? meanwhile_ : value_, 0, config::signals::Quality::good};
 }
 
 }  // namespace hal::sim

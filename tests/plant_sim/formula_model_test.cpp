@@ -129,7 +129,7 @@ TEST(Units, AreReadFromTheEndOfAName) {
                                                         {"torque_N_m", "N m"},
                                                         {"V", ""},
                                                         {"half_width_V", "V"}};
-  for (const auto& [name, unit] : kNames) EXPECT_EQ(unit_of(name), unit) << name;
+  for (const auto& [name, unit] : kNames) EXPECT_EQ(config::units::unit_of(name), unit) << name;
 }
 
 }  // namespace

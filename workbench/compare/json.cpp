@@ -6,6 +6,8 @@
 #include "workbench/compare/words.h"
 
 namespace workbench::compare {
+
+namespace validation = estimator::greybox::validation;
 namespace {
 
 using nlohmann::ordered_json;
@@ -14,7 +16,7 @@ ordered_json number(double value) {
   return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
 }
 
-ordered_json json_of(const Bin& bin) {
+ordered_json json_of(const validation::Bin& bin) {
   ordered_json out{{"from", number(bin.from)}, {"to", number(bin.to)}};
   if (!bin.name.empty()) out["name"] = bin.name;
   out["rms_m"] = number(bin.rms_m);
@@ -28,9 +30,9 @@ ordered_json json_of(const Bin& bin) {
   return out;
 }
 
-ordered_json json_of(const Failing& failing) {
+ordered_json json_of(const validation::Failing& failing) {
   ordered_json out{{"variable", failing.ranges.front().variable}};
-  out.update(json_of(failing.figures));
+  out.update(live::json_of(failing.figures));
   out["stands_out"] = failing.stands_out;
   return out;
 }
@@ -51,7 +53,7 @@ const char* text(Judgement judgement) {
 
 }  // namespace
 
-std::string to_json(const Comparison& c) {
+std::string to_json(const validation::Comparison& c) {
   const Words said = words(c);
   ordered_json out;
   out["model"] = c.model;
@@ -66,21 +68,21 @@ std::string to_json(const Comparison& c) {
   out["encoder_step_m"] = number(c.encoder_step_m);
   out["one_step_rms_m"] = number(c.k_step.front().rms_m);
   out["k_step"] = ordered_json::array();
-  for (const KStep& k : c.k_step) {
+  for (const validation::KStep& k : c.k_step) {
     out["k_step"].push_back(
         {{"samples", k.samples}, {"rms_m", number(k.rms_m)}, {"count", k.count}});
   }
   out["whiteness_p"] = number(c.whiteness_p);
   out["independence_p"] = number(c.independence_p);
   out["worst"] = ordered_json::array();
-  for (const Failing& failing : c.worst) out["worst"].push_back(json_of(failing));
+  for (const validation::Failing& failing : c.worst) out["worst"].push_back(live::json_of(failing));
   out["gain_ratio"] = number(c.explained.gain_ratio);
   out["offset_mps"] = number(c.explained.offset_mps);
   out["explained_share"] = number(c.explained.share);
   out["regions"] = ordered_json::object();
-  for (const Region& region : c.regions) {
+  for (const validation::Region& region : c.regions) {
     ordered_json bins = ordered_json::array();
-    for (const Bin& bin : region.bins) bins.push_back(json_of(bin));
+    for (const validation::Bin& bin : region.bins) bins.push_back(live::json_of(bin));
     out["regions"][region.variable] = std::move(bins);
   }
   out["observer_per_s"] = number(c.observer_per_s);

@@ -4,28 +4,31 @@
 #include <filesystem>
 #include <limits>
 
-#include "workbench/compare/units.h"
 #include "workbench/compare/words.h"
-#include "workbench/matching/error_words.h"
-#include "workbench/report/binned.h"
+#include "workbench/present/binned.h"
+#include "workbench/present/compare_units.h"
+#include "workbench/present/error_definitions.h"
 
 namespace workbench::compare {
+
+namespace greybox = estimator::greybox;
+namespace validation = estimator::greybox::validation;
 namespace {
 
-using report::Kind;
-using report::Plot;
-using report::Section;
-using report::Series;
-using report::Tone;
-using report::Width;
+using present::Kind;
+using present::Plot;
+using present::Section;
+using present::Series;
+using present::Tone;
+using present::Width;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Values times a factor, with a break between segments; of settled samples only where asked.
 template <class F>
-std::vector<double> series(const matching::Measured& record, F value, bool settled_only = false) {
+std::vector<double> series(const greybox::Measured& record, F value, bool settled_only = false) {
   std::vector<double> out;
-  for (const matching::Span& span : matching::segments(record)) {
+  for (const greybox::Span& span : greybox::segments(record)) {
     if (span.begin > 0) out.push_back(kNaN);
     for (std::size_t k = span.begin; k < span.end; ++k) {
       out.push_back(settled_only && record.settled[k] == 0 ? kNaN : value(k));
@@ -34,9 +37,9 @@ std::vector<double> series(const matching::Measured& record, F value, bool settl
   return out;
 }
 
-std::vector<double> times(const matching::Measured& record) {
+std::vector<double> times(const greybox::Measured& record) {
   std::vector<double> out;
-  for (const matching::Span& span : matching::segments(record)) {
+  for (const greybox::Span& span : greybox::segments(record)) {
     if (span.begin > 0) out.push_back(0.5 * (record.t_s[span.begin - 1] + record.t_s[span.begin]));
     for (std::size_t k = span.begin; k < span.end; ++k) out.push_back(record.t_s[k]);
   }
@@ -44,11 +47,11 @@ std::vector<double> times(const matching::Measured& record) {
 }
 
 /// Micrometres or millimetres, whichever suits an error of that size.
-Unit error_unit(double rms_m) {
-  return rms_m < 0.5e-3 ? Unit{"error", "um", 1e6} : Unit{"error", "mm", 1e3};
+present::Unit error_unit(double rms_m) {
+  return rms_m < 0.5e-3 ? present::Unit{"error", "um", 1e6} : present::Unit{"error", "mm", 1e3};
 }
 
-Plot over_time(const Comparison& c, const std::string& title, const report::Axis& y,
+Plot over_time(const validation::Comparison& c, const std::string& title, const present::Axis& y,
                const std::string& prefix) {
   Plot plot;
   plot.title = title;
@@ -67,19 +70,19 @@ Series named(const std::string& name, Tone tone, std::vector<double> y) {
   return s;
 }
 
-Section time_section(const Comparison& c, const std::string& prefix) {
-  const matching::Measured& r = c.record;
+Section time_section(const validation::Comparison& c, const std::string& prefix) {
+  const greybox::Measured& r = c.record;
   Section section;
   section.heading = "Over time";
-  section.paragraphs = {matching::kFreeRunMeaning, matching::kDriftCorrectedMeaning,
-                        matching::kNoiseFloorMeaning};
+  section.paragraphs = {present::kFreeRunMeaning, present::kDriftCorrectedMeaning,
+                        present::kNoiseFloorMeaning};
   Plot position = over_time(c, "Position", {"position", "mm"}, prefix);
   position.series.push_back(
       named("measured", Tone::measured, series(r, [&](auto k) { return 1e3 * r.y_m[k]; })));
   position.series.push_back(named("model, free run", Tone::model, series(r, [&](auto k) {
                                     return 1e3 * (r.y_m[k] - c.free_error_m[k]);
                                   })));
-  const Unit unit = error_unit(c.rms_m);
+  const present::Unit unit = error_unit(c.rms_m);
   Plot error = over_time(c, "Error, drift-corrected", {"measured less model", unit.text}, prefix);
   error.series.push_back(named("error", Tone::residual,
                                series(
@@ -88,7 +91,7 @@ Section time_section(const Comparison& c, const std::string& prefix) {
     const double twice = 2.0 * unit.factor * c.noise_floor_m;
     error.lines = {{twice, "± twice the noise floor,"}, {-twice, ""}};
   }
-  const Unit free_unit = error_unit(c.free_run_rms_m);
+  const present::Unit free_unit = error_unit(c.free_run_rms_m);
   Plot free =
       over_time(c, "Error of the free run", {"measured less model", free_unit.text}, prefix);
   free.series.push_back(named("error", Tone::accent, series(r, [&](auto k) {
@@ -101,8 +104,8 @@ Section time_section(const Comparison& c, const std::string& prefix) {
   return section;
 }
 
-report::Table worst_table(const Comparison& c) {
-  report::Table table;
+present::Table worst_table(const validation::Comparison& c) {
+  present::Table table;
   table.caption =
       "The range of each variable that stands out most, the most telling first. In bold: beyond "
       "chance.";
@@ -111,30 +114,31 @@ report::Table worst_table(const Comparison& c) {
                    {"speed error RMS", "mm/s"},
                    {"of the speed error", "%"},
                    {"of the time", "%"}};
-  for (const Failing& failing : c.worst) {
+  for (const validation::Failing& failing : c.worst) {
     if (failing.stands_out) table.marked_rows.push_back(table.rows.size());
-    table.rows.push_back({where(failing), three_digits(1e6 * failing.figures.rms_m),
-                          three_digits(1e3 * failing.figures.arising_rms_mps),
-                          three_digits(100.0 * failing.figures.arising_share),
-                          three_digits(100.0 * failing.figures.time_share)});
+    table.rows.push_back({present::where(failing),
+                          present::three_digits(1e6 * failing.figures.rms_m),
+                          present::three_digits(1e3 * failing.figures.arising_rms_mps),
+                          present::three_digits(100.0 * failing.figures.arising_share),
+                          present::three_digits(100.0 * failing.figures.time_share)});
   }
   return table;
 }
 
-Section where_section(const Comparison& c) {
+Section where_section(const validation::Comparison& c) {
   Section section;
   section.heading = "Where it fails";
   section.paragraphs.push_back(
       "The position adds up the speed: an error of position still shows long after it arose. The "
       "speed error, by how much the model's speed is off at the moment, shows where it arises. The "
       "bars show its RMS" +
-      std::string(c.explained.plain == Plain::neither
+      std::string(c.explained.plain == validation::Plain::neither
                       ? "."
                       : ", after what a plain gain and offset would explain has been taken off."));
   section.tables_first = true;
   section.tables.push_back(worst_table(c));
-  for (const Region& region : c.regions) {
-    const Unit unit = unit_of(region.variable);
+  for (const validation::Region& region : c.regions) {
+    const present::Unit unit = present::unit_of(region.variable);
     Plot plot;
     plot.title = std::string("By ") + unit.name;
     plot.kind = Kind::bars;
@@ -142,8 +146,8 @@ Section where_section(const Comparison& c) {
     plot.x = {unit.name, unit.text};
     plot.y = {"speed error RMS", "mm/s"};
     Series bars = named("speed error RMS", Tone::residual, {});
-    for (const Bin& bin : region.bins) {
-      plot.categories.push_back(bin_text(region.variable, bin));
+    for (const validation::Bin& bin : region.bins) {
+      plot.categories.push_back(present::bin_text(region.variable, bin));
       bars.y.push_back(1e3 * bin.arising_rms_mps);
     }
     plot.series.push_back(bars);
@@ -152,9 +156,10 @@ Section where_section(const Comparison& c) {
   return section;
 }
 
-Plot against(const Comparison& c, const std::string& variable, const std::vector<double>& values) {
-  const Unit unit = unit_of(variable);
-  const matching::Measured& r = c.record;
+Plot against(const validation::Comparison& c, const std::string& variable,
+             const std::vector<double>& values) {
+  const present::Unit unit = present::unit_of(variable);
+  const greybox::Measured& r = c.record;
   Plot plot;
   plot.title = std::string("Against ") + unit.name;
   plot.kind = Kind::scatter;
@@ -166,12 +171,12 @@ Plot against(const Comparison& c, const std::string& variable, const std::vector
   const Series cloud = named("speed error", Tone::residual,
                              series(
                                  r, [&](auto k) { return 1e3 * c.arising_mps[k]; }, true));
-  const report::Binned curves = report::binned(plot.x_values, cloud.y);
+  const present::Binned curves = present::binned(plot.x_values, cloud.y);
   plot.series = {cloud, curves.mean, curves.rms};
   return plot;
 }
 
-Section against_section(const Comparison& c) {
+Section against_section(const validation::Comparison& c) {
   Section section;
   section.heading = "The residual against each variable";
   section.paragraphs.push_back(
@@ -185,39 +190,39 @@ Section against_section(const Comparison& c) {
   return section;
 }
 
-report::Table number_table(const Comparison& c) {
-  report::Table table;
+present::Table number_table(const validation::Comparison& c) {
+  present::Table table;
   table.columns = {{"figure", "", false}, {"value", ""}, {"meaning", "", false}};
-  const std::string gain = three_digits(c.observer_per_s);
-  table.rows.push_back({"drift-corrected RMS", length(c.rms_m),
+  const std::string gain = present::three_digits(c.observer_per_s);
+  table.rows.push_back({"drift-corrected RMS", present::length(c.rms_m),
                         "driven by the measured command; the position led back to the measured one "
                         "at " +
                             gain + " 1/s"});
-  table.rows.push_back({"free-run RMS", length(c.free_run_rms_m),
+  table.rows.push_back({"free-run RMS", present::length(c.free_run_rms_m),
                         "pure simulation from each segment's first sample"});
-  table.rows.push_back({"fit", three_digits(c.fit_percent) + " %",
+  table.rows.push_back({"fit", present::three_digits(c.fit_percent) + " %",
                         "100 (1 - |error| / |y - mean|), of the free run"});
-  for (const KStep& k : c.k_step) {
-    table.rows.push_back({std::to_string(k.samples) + " ahead, RMS", length(k.rms_m),
+  for (const validation::KStep& k : c.k_step) {
+    table.rows.push_back({std::to_string(k.samples) + " ahead, RMS", present::length(k.rms_m),
                           "position put on the measured one that many samples before"});
   }
-  table.rows.push_back({"noise floor", length(c.noise_floor_m),
+  table.rows.push_back({"noise floor", present::length(c.noise_floor_m),
                         "noise and rounding of the position, from its own samples"});
-  table.rows.push_back({"whiteness p", probability(c.whiteness_p),
+  table.rows.push_back({"whiteness p", present::probability(c.whiteness_p),
                         "small: the residual is more than noise (Ljung-Box)"});
-  table.rows.push_back({"independence p", probability(c.independence_p),
+  table.rows.push_back({"independence p", present::probability(c.independence_p),
                         "small: the residual depends on earlier commands"});
   return table;
 }
 
-Section number_section(const Comparison& c) {
+Section number_section(const validation::Comparison& c) {
   Section section;
   section.heading = "The numbers and how they are computed";
   section.tables.push_back(number_table(c));
   section.paragraphs.push_back(
       "Velocity and acceleration: a parabola through the measured positions of 50 ms to either "
       "side. At rest: below " +
-      speed(c.motion.rest_mps) +
+      present::speed(c.motion.rest_mps) +
       ". Reversing: from 50 ms before the rod leaves one direction until 50 ms after it goes the "
       "other way. The first half second of each segment does not count, except in the free run. "
       "The speed error is a mean over 50 ms to either side.");
@@ -227,21 +232,21 @@ Section number_section(const Comparison& c) {
 
 }  // namespace
 
-std::vector<Section> sections(const Comparison& c, const std::string& prefix) {
+std::vector<Section> sections(const validation::Comparison& c, const std::string& prefix) {
   return {time_section(c, prefix), where_section(c), against_section(c), number_section(c)};
 }
 
-report::Report make_report(const Comparison& c, const std::string& command) {
+present::Report make_report(const validation::Comparison& c, const std::string& command) {
   const Words said = words(c);
-  report::Report made;
+  present::Report made;
   made.title = c.model + " against " + std::filesystem::path(c.record.name).filename().string();
   made.verdict = said.verdict;
   made.summary = said.lines;
-  made.state = said.judgement == Judgement::at_floor  ? report::State::good
-               : said.judgement == Judgement::useless ? report::State::bad
-                                                      : report::State::warn;
+  made.state = said.judgement == Judgement::at_floor  ? present::State::good
+               : said.judgement == Judgement::useless ? present::State::bad
+                                                      : present::State::warn;
   const auto fact = [&](const char* label, double metres) {
-    const std::string said_so = length(metres);  // as in the words: "381 um"
+    const std::string said_so = present::length(metres);  // as in the words: "381 um"
     const auto gap = said_so.rfind(' ');
     if (gap == std::string::npos) return;
     made.facts.push_back({label, said_so.substr(0, gap), said_so.substr(gap + 1)});
@@ -249,7 +254,7 @@ report::Report make_report(const Comparison& c, const std::string& command) {
   fact("drift-corrected RMS", c.rms_m);
   fact("noise floor", c.noise_floor_m);
   fact("free-run RMS", c.free_run_rms_m);
-  made.facts.push_back({"fit of the free run", three_digits(c.fit_percent), "%"});
+  made.facts.push_back({"fit of the free run", present::three_digits(c.fit_percent), "%"});
   fact("one step ahead, RMS", c.k_step.front().rms_m);
   made.command = command;
   made.sections = sections(c);

@@ -5,16 +5,19 @@
 #include <string>
 #include <vector>
 
-#include "workbench/compare/comparison.h"
-#include "workbench/report/report.h"
+#include "estimator/greybox/validation/comparison.h"
+#include "workbench/present/report.h"
 
 namespace workbench::compare {
 
+namespace validation = estimator::greybox::validation;
+
 /// Over time; where it arises; against each variable; how it was computed. `prefix` keeps the zoom
 /// groups of several comparisons in one report apart.
-[[nodiscard]] std::vector<report::Section> sections(const Comparison& comparison,
-                                                    const std::string& prefix = "");
+[[nodiscard]] std::vector<present::Section> sections(const validation::Comparison& comparison,
+                                                     const std::string& prefix = "");
 
-[[nodiscard]] report::Report make_report(const Comparison& comparison, const std::string& command);
+[[nodiscard]] present::Report make_report(const validation::Comparison& comparison,
+                                          const std::string& command);
 
 }  // namespace workbench::compare

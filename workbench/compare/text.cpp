@@ -5,10 +5,12 @@
 #include <cstdio>
 #include <vector>
 
-#include "workbench/compare/units.h"
 #include "workbench/compare/words.h"
+#include "workbench/present/compare_units.h"
 
 namespace workbench::compare {
+
+namespace validation = estimator::greybox::validation;
 namespace {
 
 constexpr std::size_t kColumns = 88;
@@ -55,7 +57,7 @@ std::string bar(double share, bool unicode) {
   return text + kParts[eighths % 8];
 }
 
-std::string numbers(const Comparison& c) {
+std::string numbers(const validation::Comparison& c) {
   std::string out;
   const auto row = [&](const std::string& name, const std::string& value,
                        const std::string& beside) {
@@ -65,69 +67,73 @@ std::string numbers(const Comparison& c) {
   };
   const auto times_floor = [&](double rms_m) {
     if (!std::isfinite(c.noise_floor_m) || !std::isfinite(rms_m)) return std::string();
-    return three_digits(rms_m / c.noise_floor_m) + " x the noise floor";
+    return present::three_digits(rms_m / c.noise_floor_m) + " x the noise floor";
   };
-  row("drift-corrected", length(c.rms_m), times_floor(c.rms_m));
-  row("pure simulation", length(c.free_run_rms_m), "fit " + three_digits(c.fit_percent) + " %");
-  for (const KStep& k : c.k_step) {
+  row("drift-corrected", present::length(c.rms_m), times_floor(c.rms_m));
+  row("pure simulation", present::length(c.free_run_rms_m),
+      "fit " + present::three_digits(c.fit_percent) + " %");
+  for (const validation::KStep& k : c.k_step) {
     const double ahead_s = static_cast<double>(k.samples) * c.record.sample_time_s;
-    row(line("%zu sample%s ahead", k.samples, k.samples == 1 ? "" : "s"), length(k.rms_m),
-        k.count == 0 ? "no stretch is long enough" : "over " + three_digits(1e3 * ahead_s) + " ms");
+    row(line("%zu sample%s ahead", k.samples, k.samples == 1 ? "" : "s"), present::length(k.rms_m),
+        k.count == 0 ? "no stretch is long enough"
+                     : "over " + present::three_digits(1e3 * ahead_s) + " ms");
   }
-  row("noise floor", length(c.noise_floor_m),
-      c.encoder_step_m > 0.0 ? "encoder step " + length(c.encoder_step_m) : "");
-  row("white", "p " + probability(c.whiteness_p), "");
-  row("independent of command", "p " + probability(c.independence_p), "");
+  row("noise floor", present::length(c.noise_floor_m),
+      c.encoder_step_m > 0.0 ? "encoder step " + present::length(c.encoder_step_m) : "");
+  row("white", "p " + present::probability(c.whiteness_p), "");
+  row("independent of command", "p " + present::probability(c.independence_p), "");
   return out;
 }
 
-std::string chart(const Region& region, bool unicode) {
-  const Unit unit = unit_of(region.variable);
+std::string chart(const validation::Region& region, bool unicode) {
+  const present::Unit unit = present::unit_of(region.variable);
   double most = 0.0;
-  for (const Bin& bin : region.bins) most = std::max(most, bin.arising_rms_mps);
+  for (const validation::Bin& bin : region.bins) most = std::max(most, bin.arising_rms_mps);
   const std::string head =
       unit.text[0] != '\0' ? std::string(unit.name) + ", " + unit.text : std::string(unit.name);
   std::string out =
       line("  %-20s %9s %10s %6s %6s\n", head.c_str(), "error RMS", "speed err.", "time", "share");
-  for (const Bin& bin : region.bins) {
-    out += line("  %-20s %9s %10s %5.0f%% %5.0f%% ", bin_text(region.variable, bin).c_str(),
-                length(bin.rms_m).c_str(), speed(bin.arising_rms_mps).c_str(),
-                100.0 * bin.time_share, 100.0 * bin.arising_share) +
-           bar(most > 0.0 ? bin.arising_rms_mps / most : 0.0, unicode) + "\n";
+  for (const validation::Bin& bin : region.bins) {
+    out +=
+        line("  %-20s %9s %10s %5.0f%% %5.0f%% ", present::bin_text(region.variable, bin).c_str(),
+             present::length(bin.rms_m).c_str(), present::speed(bin.arising_rms_mps).c_str(),
+             100.0 * bin.time_share, 100.0 * bin.arising_share) +
+        bar(most > 0.0 ? bin.arising_rms_mps / most : 0.0, unicode) + "\n";
   }
   return out;
 }
 
-const Region* find(const Comparison& c, const std::string& variable) {
-  for (const Region& region : c.regions) {
+const validation::Region* find(const validation::Comparison& c, const std::string& variable) {
+  for (const validation::Region& region : c.regions) {
     if (region.variable == variable) return &region;
   }
   return nullptr;
 }
 
 /// What the chart shows unless all is asked for: the variable that tells most, and the direction.
-std::vector<const Region*> shown(const Comparison& c, bool all) {
-  std::vector<const Region*> regions;
+std::vector<const validation::Region*> shown(const validation::Comparison& c, bool all) {
+  std::vector<const validation::Region*> regions;
   if (all) {
-    for (const Region& region : c.regions) regions.push_back(&region);
+    for (const validation::Region& region : c.regions) regions.push_back(&region);
     return regions;
   }
-  for (const Failing& failing : c.worst) {
+  for (const validation::Failing& failing : c.worst) {
     if (failing.ranges.front().variable == "direction") continue;
     regions.push_back(find(c, failing.ranges.front().variable));
     break;
   }
-  if (const Region* direction = find(c, "direction")) regions.push_back(direction);
+  if (const validation::Region* direction = find(c, "direction")) regions.push_back(direction);
   return regions;
 }
 
 }  // namespace
 
-std::string to_text(const Comparison& c, bool unicode, bool all) {
+std::string to_text(const validation::Comparison& c, bool unicode, bool all) {
   const Words said = words(c);
-  std::string out = line("%s against %s: %s s, %zu samples at %s Hz", c.model.c_str(),
-                         c.record.name.c_str(), three_digits(c.duration_s()).c_str(),
-                         c.record.size(), three_digits(1.0 / c.record.sample_time_s).c_str());
+  std::string out =
+      line("%s against %s: %s s, %zu samples at %s Hz", c.model.c_str(), c.record.name.c_str(),
+           present::three_digits(c.duration_s()).c_str(), c.record.size(),
+           present::three_digits(1.0 / c.record.sample_time_s).c_str());
   if (c.record.starts.size() > 1) out += line(", %zu segments", c.record.starts.size());
   out += "\n";
   for (const std::string& note : c.notes) out += wrapped("note: " + note, "  ", "        ");
@@ -136,7 +142,7 @@ std::string to_text(const Comparison& c, bool unicode, bool all) {
   out += "\n" + numbers(c);
   if (said.judgement == Judgement::useless) return out;
   const bool noise = said.judgement == Judgement::at_floor;
-  for (const Region* region : shown(c, all)) {
+  for (const validation::Region* region : shown(c, all)) {
     if (noise && !all) break;
     out += "\n" + chart(*region, unicode);
   }

@@ -3,12 +3,14 @@
 
 #include <string>
 
-#include "workbench/compare/comparison.h"
+#include "estimator/greybox/validation/comparison.h"
 
 namespace workbench::compare {
 
+namespace validation = estimator::greybox::validation;
+
 /// `unicode`: block characters, else ASCII. `all`: every variable's bins, not only the most
 /// telling.
-[[nodiscard]] std::string to_text(const Comparison& comparison, bool unicode, bool all);
+[[nodiscard]] std::string to_text(const validation::Comparison& comparison, bool unicode, bool all);
 
 }  // namespace workbench::compare

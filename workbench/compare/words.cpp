@@ -2,9 +2,11 @@
 
 #include <cmath>
 
-#include "workbench/compare/units.h"
+#include "workbench/present/compare_units.h"
 
 namespace workbench::compare {
+
+namespace validation = estimator::greybox::validation;
 namespace {
 
 /// A p value under this is not chance.
@@ -12,70 +14,72 @@ constexpr double kSignificant = 1e-3;
 /// Speed errors under this part of the rod's RMS speed are no drift worth a word.
 constexpr double kSlightDrift = 0.01;
 
-std::string fails_where(const Failing& failing) {
-  return where(failing) + ": " + percent(failing.figures.arising_share) +
-         " of the squared speed error arises there, in " + percent(failing.figures.time_share) +
-         " of the time.";
+std::string fails_where(const validation::Failing& failing) {
+  return present::where(failing) + ": " + present::percent(failing.figures.arising_share) +
+         " of the squared speed error arises there, in " +
+         present::percent(failing.figures.time_share) + " of the time.";
 }
 
 std::string in_proportion(double gain_ratio) {
   if (gain_ratio < -1.0) {
     return "the rod moves the other way than the model, " +
-           three_digits(-100.0 * (1.0 + gain_ratio)) +
+           present::three_digits(-100.0 * (1.0 + gain_ratio)) +
            " % as far: the sign of the command or of the position is turned";
   }
-  return "the rod moves " + three_digits(100.0 * std::abs(gain_ratio)) + " % " +
+  return "the rod moves " + present::three_digits(100.0 * std::abs(gain_ratio)) + " % " +
          (gain_ratio < 0.0 ? "less" : "more") + " than the model";
 }
 
 std::string by_a_constant(double offset_mps) {
-  return "drifts " + speed(std::abs(offset_mps)) + (offset_mps < 0.0 ? " inwards" : " outwards") +
-         " of it";
+  return "drifts " + present::speed(std::abs(offset_mps)) +
+         (offset_mps < 0.0 ? " inwards" : " outwards") + " of it";
 }
 
-std::string plain_words(const Explained& explained) {
+std::string plain_words(const validation::Explained& explained) {
   std::string text;
   switch (explained.plain) {
-    case Plain::gain:
+    case validation::Plain::gain:
       text = "Off in proportion: " + in_proportion(explained.gain_ratio);
       break;
-    case Plain::offset:
+    case validation::Plain::offset:
       text = "Off by a constant speed: the rod " + by_a_constant(explained.offset_mps);
       break;
-    case Plain::both:
+    case validation::Plain::both:
       text = "Off in proportion and by a constant speed: " + in_proportion(explained.gain_ratio) +
              " and " + by_a_constant(explained.offset_mps);
       break;
-    case Plain::neither:
+    case validation::Plain::neither:
       return {};
   }
-  return text + "; this alone would explain " + percent(explained.share) + " of the squared error.";
+  return text + "; this alone would explain " + present::percent(explained.share) +
+         " of the squared error.";
 }
 
 /// What is left when the plain part is taken off.
-std::string beyond_words(const Comparison& c) {
+std::string beyond_words(const validation::Comparison& c) {
   const double left_m = c.explained.left_rms_m;
-  if (left_m <= kAtFloor * c.noise_floor_m) return "Beyond that it is at the noise floor.";
-  const std::string left = "Beyond that " + length(left_m) + " are left";
+  if (left_m <= validation::kAtFloor * c.noise_floor_m)
+    return "Beyond that it is at the noise floor.";
+  const std::string left = "Beyond that " + present::length(left_m) + " are left";
   if (!c.headline.stands_out) return left + ", with no range standing out.";
   return left + "; it fails " + fails_where(c.headline);
 }
 
-std::string size_words(const Comparison& c) {
-  std::string text = "Error " + length(c.rms_m) + " RMS, drift taken away";
+std::string size_words(const validation::Comparison& c) {
+  std::string text = "Error " + present::length(c.rms_m) + " RMS, drift taken away";
   if (std::isfinite(c.noise_floor_m)) {
-    text += ": " + three_digits(c.floor_ratio()) + " times the noise floor of " +
-            length(c.noise_floor_m);
+    text += ": " + present::three_digits(c.floor_ratio()) + " times the noise floor of " +
+            present::length(c.noise_floor_m);
   } else {
     text += "; the noise floor cannot be told from this record";
   }
-  return text + ". Pure simulation: " + length(c.free_run_rms_m) + " RMS, fit " +
-         three_digits(c.fit_percent) + " %.";
+  return text + ". Pure simulation: " + present::length(c.free_run_rms_m) + " RMS, fit " +
+         present::three_digits(c.fit_percent) + " %.";
 }
 
-const Bin* direction(const Comparison& c, const char* name) {
-  for (const Region& region : c.regions) {
-    for (const Bin& bin : region.bins) {
+const validation::Bin* direction(const validation::Comparison& c, const char* name) {
+  for (const validation::Region& region : c.regions) {
+    for (const validation::Bin& bin : region.bins) {
       if (bin.name == name) return &bin;
     }
   }
@@ -83,7 +87,7 @@ const Bin* direction(const Comparison& c, const char* name) {
 }
 
 /// Which way the pure simulation runs off; empty where it stays.
-std::string drift_words(const Comparison& c) {
+std::string drift_words(const validation::Comparison& c) {
   if (c.free_run_rms_m < 2.0 * c.rms_m) return {};
   double squares = 0.0;
   for (const double v : c.motion.speed_mps) squares += v * v;
@@ -92,21 +96,21 @@ std::string drift_words(const Comparison& c) {
   std::string text;
   for (const bool out : {true, false}) {
     const char* const name = out ? "extending" : "retracting";
-    const Bin* const bin = direction(c, name);
+    const validation::Bin* const bin = direction(c, name);
     if (bin == nullptr || std::abs(bin->speed_error_mps) < least_mps) continue;
     const bool slower = (bin->speed_error_mps < 0.0) == out;
     const bool text_is_new = text.empty();
-    text += (text_is_new ? "" : ", ") + speed(std::abs(bin->speed_error_mps)) +
+    text += (text_is_new ? "" : ", ") + present::speed(std::abs(bin->speed_error_mps)) +
             (slower ? " slower" : " faster") + (text_is_new ? " than the model" : "") + " while " +
             name;
   }
   if (text.empty()) return {};
   const double end_m = c.free_error_m.back();
-  return "Drifts in pure simulation, " + length(std::abs(end_m)) + " at the end: the rod runs " +
-         text + ".";
+  return "Drifts in pure simulation, " + present::length(std::abs(end_m)) +
+         " at the end: the rod runs " + text + ".";
 }
 
-std::string dependence_words(const Comparison& c) {
+std::string dependence_words(const validation::Comparison& c) {
   if (c.independence_p < kSignificant) {
     return "The residual depends on earlier commands: parameters are off or dynamics are missing.";
   }
@@ -120,7 +124,7 @@ std::string dependence_words(const Comparison& c) {
 
 }  // namespace
 
-Words words(const Comparison& c) {
+Words words(const validation::Comparison& c) {
   Words w;
   const auto add = [&](const std::string& line) {
     if (!line.empty()) w.lines.push_back(line);
@@ -130,7 +134,7 @@ Words words(const Comparison& c) {
     w.verdict = "The model's position leaves all bounds: nothing can be compared.";
     return w;
   }
-  if (c.floor_ratio() <= kAtFloor) {
+  if (c.floor_ratio() <= validation::kAtFloor) {
     w.judgement = Judgement::at_floor;
     w.verdict = "At the noise floor: nothing left to explain.";
     add(size_words(c));

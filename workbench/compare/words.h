@@ -4,9 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "workbench/compare/comparison.h"
+#include "estimator/greybox/validation/comparison.h"
 
 namespace workbench::compare {
+
+namespace validation = estimator::greybox::validation;
 
 enum class Judgement { at_floor, fails_somewhere, fails_throughout, useless };
 
@@ -16,6 +18,6 @@ struct Words {
   std::vector<std::string> lines;  ///< further sentences, one thought each
 };
 
-[[nodiscard]] Words words(const Comparison& comparison);
+[[nodiscard]] Words words(const validation::Comparison& comparison);
 
 }  // namespace workbench::compare

@@ -5,7 +5,7 @@
 #include <ostream>
 #include <string>
 
-#include "daemon/tracking/quantity.h"
+#include "config/units/quantity.h"
 
 namespace workbench {
 namespace {
@@ -69,9 +69,9 @@ void print_detectable(const Json& status, std::ostream& out) {
     out << "  " << text_of(source, "source") << " would detect now:";
     const char* before = " ";
     for (const auto& [name, smallest] : source.at("smallest").items()) {
-      out << before << tracking::parameter_words(name) << ' '
+      out << before << config::units::parameter_words(name) << ' '
           << (smallest.is_number()
-                  ? tracking::words(tracking::quantity(name, smallest.get<double>(), NAN))
+                  ? config::units::words(config::units::quantity(name, smallest.get<double>(), NAN))
                   : "not known");
       before = ", ";
     }

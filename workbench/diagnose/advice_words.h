@@ -5,10 +5,12 @@
 #include <vector>
 
 #include "daemon/control/reference.h"
+#include "estimator/greybox/selection/diagnosis.h"
 #include "plant_sim/model_file.h"
-#include "workbench/diagnose/diagnosis.h"
 
 namespace workbench::diagnose {
+
+namespace selection = estimator::greybox::selection;
 
 /// "a multisine of 0.1 to 1.9 Hz within 38 mm of 305 mm for 30 s".
 [[nodiscard]] std::string motion_words(const monitor::control::ReferenceConfig& reference,
@@ -21,7 +23,7 @@ namespace workbench::diagnose {
                                            const std::vector<std::string>& names);
 [[nodiscard]] std::string words_to_excite(const std::string& motion);
 /// What to record, and which formula to try, on a plant of that name.
-[[nodiscard]] std::string words_for_unexplained(const std::vector<Where>& where,
+[[nodiscard]] std::string words_for_unexplained(const std::vector<selection::Where>& where,
                                                 const std::string& plant);
 
 }  // namespace workbench::diagnose

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <sstream>
 
-#include "workbench/diagnose/quantity.h"
+#include "config/units/quantity.h"
 #include "workbench/diagnose/words.h"
 
 namespace workbench::diagnose {
+
+namespace selection = estimator::greybox::selection;
 namespace {
 
 /// As comment lines; no line break in `text` may end the comment.
@@ -28,7 +30,7 @@ std::string comment(const std::string& text) {
 }  // namespace
 
 std::string better_model_text(const Outcome& outcome) {
-  const Diagnosis& d = outcome.diagnosis;
+  const selection::Diagnosis& d = outcome.diagnosis;
   std::string text = comment("Made by spoolwatch diagnose from " + outcome.model_file + "; " +
                              (outcome.holdouts.empty() ? listed(outcome.records) + ", " : "") +
                              split_words(outcome) + ".");
@@ -39,9 +41,10 @@ std::string better_model_text(const Outcome& outcome) {
   std::string fall = "Held-out error: ";
   const std::vector<StepWords> steps = step_words(d);
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    fall += (i == 0 ? "" : ", ") + steps[i].what + " " + length_words(steps[i].rms_m);
+    fall +=
+        (i == 0 ? "" : ", ") + steps[i].what + " " + config::units::length_words(steps[i].rms_m);
   }
-  text += comment(fall + "; noise floor " + length_words(d.noise_floor_m) + ".");
+  text += comment(fall + "; noise floor " + config::units::length_words(d.noise_floor_m) + ".");
   text += comment("The plant's own parameters are fitted too.");
   std::string command = outcome.command;
   std::replace(command.begin(), command.end(), '\n', ' ');

@@ -6,6 +6,8 @@
 #include "workbench/diagnose/words.h"
 
 namespace workbench::diagnose {
+
+namespace selection = estimator::greybox::selection;
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -19,10 +21,10 @@ std::string joined(const std::vector<std::string>& effects) {
   return text;
 }
 
-Json candidates_of(const Ladder& ladder) {
+Json candidates_of(const selection::Ladder& ladder) {
   Json list = Json::array();
   for (std::size_t r = 0; r < ladder.rounds.size(); ++r) {
-    for (const Candidate& c : ladder.rounds[r].candidates) {
+    for (const selection::Candidate& c : ladder.rounds[r].candidates) {
       Json one;
       one["round"] = r + 1;
       one["effect"] = joined(c.effects);
@@ -35,9 +37,9 @@ Json candidates_of(const Ladder& ladder) {
   return list;
 }
 
-Json parameters_of(const Diagnosis& d) {
+Json parameters_of(const selection::Diagnosis& d) {
   Json all = Json::object();
-  for (const ParameterValue& p : d.parameters) {
+  for (const selection::ParameterValue& p : d.parameters) {
     all[p.name] = {{"value", number_or_null(p.value)},
                    {"std_error", number_or_null(p.std_error)},
                    {"at_bound", p.at_bound}};
@@ -48,11 +50,11 @@ Json parameters_of(const Diagnosis& d) {
 }  // namespace
 
 std::string to_json(const Outcome& outcome) {
-  const Diagnosis& d = outcome.diagnosis;
+  const selection::Diagnosis& d = outcome.diagnosis;
   const bool fitted = outcome.fitted();
   const auto error_m = [&](double value) { return fitted ? number_or_null(value) : Json(nullptr); };
   Json json;
-  json["verdict"] = text(d.verdict);
+  json["verdict"] = selection::text(d.verdict);
   json["missing"] = d.missing;
   json["ambiguous"] = d.ambiguous;
   json["same_here"] = d.same_here;
@@ -65,19 +67,19 @@ std::string to_json(const Outcome& outcome) {
   json["parameters"] = parameters_of(d);
   json["candidates"] = candidates_of(d.ladder);
   json["where"] = Json::array();
-  for (const Where& where : d.where) {
+  for (const selection::Where& where : d.where) {
     json["where"].push_back({{"class", where.enters},
                              {"variable", where.variable},
                              {"explained_ratio", number_or_null(where.explained_ratio)}});
   }
   json["steps"] = Json::array();
-  for (const Step& step : d.steps) {
+  for (const selection::Step& step : d.steps) {
     Json one;
     one["added"] = step.added.empty() ? Json(nullptr) : Json(step.added);
     one["rms_heldout_m"] = number_or_null(step.score_rms_m);
     json["steps"].push_back(std::move(one));
   }
-  json["advice"] = d.advice;
+  json["advice"] = outcome.advice;
   json["words"] = verdict_words(d);
   json["notes"] = d.notes;
   json["interrupted"] = outcome.interrupted;

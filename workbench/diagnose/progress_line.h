@@ -5,21 +5,23 @@
 #include <iosfwd>
 #include <string>
 
-#include "workbench/diagnose/workshop.h"
+#include "estimator/greybox/selection/problem.h"
 
 namespace workbench::diagnose {
+
+namespace selection = estimator::greybox::selection;
 
 class ProgressLine {
  public:
   /// `renewed`: `out` is a terminal. The stream must outlive this object.
   ProgressLine(std::ostream& out, bool renewed, double noise_floor_m);
 
-  void show(const Progress& progress);
+  void show(const selection::Progress& progress);
   /// Wipes the renewed line.
   void end();
 
  private:
-  void rank(const Progress& progress);
+  void rank(const selection::Progress& progress);
 
   std::ostream& out_;
   bool renewed_;

@@ -2,21 +2,25 @@
 #include <algorithm>
 #include <cmath>
 
-#include "workbench/diagnose/ladder.h"
-#include "workbench/diagnose/quantity.h"
+#include "config/units/quantity.h"
+#include "estimator/greybox/selection/structure_search.h"
 #include "workbench/diagnose/report_pages.h"
 #include "workbench/diagnose/words.h"
-#include "workbench/matching/error_words.h"
+#include "workbench/present/error_definitions.h"
 
 namespace workbench::diagnose {
+
+namespace greybox = estimator::greybox;
+namespace selection = estimator::greybox::selection;
+namespace tracking = estimator::greybox::tracking;
 namespace {
 
-using report::Column;
-using report::Kind;
-using report::Plot;
-using report::Section;
-using report::Table;
-using report::Tone;
+using present::Column;
+using present::Kind;
+using present::Plot;
+using present::Section;
+using present::Table;
+using present::Tone;
 
 constexpr std::size_t kDrawnCandidates = 14;
 /// Candidates that do worse than none by more than this are left to the table.
@@ -29,7 +33,7 @@ std::string joined(const std::vector<std::string>& effects) {
 }
 
 /// One unit for all errors of a page: millimetres where even the least is one or more.
-struct Scale {
+struct greybox::Scale {
   double per_m = 1e6;
   const char* unit = "µm";
 
@@ -37,39 +41,40 @@ struct Scale {
   [[nodiscard]] std::string words(double length_m) const {
     if (!std::isfinite(length_m)) return "";
     const double shown = per_m * length_m;
-    std::string text = number(shown < 1000.0 ? "%#.3g" : "%.0f", shown);
+    std::string text = config::units::number(shown < 1000.0 ? "%#.3g" : "%.0f", shown);
     if (text.back() == '.') text.pop_back();
     return text;
   }
 };
 
-Scale scale_of(const Diagnosis& d) {
+greybox::Scale scale_of(const selection::Diagnosis& d) {
   constexpr double kMillimetre_m = 1e-3;
-  return std::min(d.rms_before_m, d.rms_after_m) >= kMillimetre_m ? Scale{1e3, "mm"} : Scale{};
+  return std::min(d.rms_before_m, d.rms_after_m) >= kMillimetre_m ? greybox::Scale{1e3, "mm"}
+                                                                  : greybox::Scale{};
 }
 
-std::vector<report::ReferenceLine> floor_line(const Diagnosis& d) {
+std::vector<present::ReferenceLine> floor_line(const selection::Diagnosis& d) {
   if (!std::isfinite(d.noise_floor_m)) return {};
   return {{scale_of(d).per_m * d.noise_floor_m, "noise floor"}};
 }
 
-bool was_taken(const Candidate& candidate, std::vector<std::string> taken) {
+bool was_taken(const selection::Candidate& candidate, std::vector<std::string> taken) {
   std::vector<std::string> effects = candidate.effects;
   std::sort(effects.begin(), effects.end());
   std::sort(taken.begin(), taken.end());
   return effects == taken;
 }
 
-Plot candidates_plot(const Diagnosis& d, std::size_t index) {
-  const Round& round = d.ladder.rounds[index];
-  const Scale scale = scale_of(d);
+Plot candidates_plot(const selection::Diagnosis& d, std::size_t index) {
+  const selection::Round& round = d.ladder.rounds[index];
+  const greybox::Scale scale = scale_of(d);
   const std::vector<std::string> taken = taken_in(d.ladder, index);
   Plot plot{.title = "Round " + std::to_string(index + 1),
             .kind = Kind::bars,
             .y = {"held-out error", scale.unit},
             .lines = floor_line(d),
             .horizontal = true,
-            .width = report::Width::half};
+            .width = present::Width::half};
   plot.series = {{.name = "taken", .tone = Tone::improved},
                  {.name = "not taken", .tone = Tone::model},
                  {.name = "nothing added", .tone = Tone::muted}};
@@ -79,13 +84,13 @@ Plot candidates_plot(const Diagnosis& d, std::size_t index) {
       plot.series[s].y.push_back(s == which ? scale.per_m * rms_m : std::nan(""));
     }
   };
-  for (const Candidate& candidate : round.candidates) {
+  for (const selection::Candidate& candidate : round.candidates) {
     const bool worse = candidate.score_rms_m > kWorse * round.before.fitted.score_rms_m;
     if (!candidate.fitted_at_all || worse || plot.categories.size() == kDrawnCandidates) break;
     add(joined(candidate.effects), candidate.score_rms_m, was_taken(candidate, taken) ? 0 : 1);
   }
   add("nothing added", round.before.fitted.score_rms_m, 2);
-  const auto unused = [](const report::Series& series) {
+  const auto unused = [](const present::Series& series) {
     return std::none_of(series.y.begin(), series.y.end(), [](double y) { return !std::isnan(y); });
   };
   plot.series.erase(std::remove_if(plot.series.begin(), plot.series.end(), unused),
@@ -94,17 +99,17 @@ Plot candidates_plot(const Diagnosis& d, std::size_t index) {
 }
 
 /// "Of no use at first sight and not fitted: backlash, ..."
-std::string not_fitted_words(const Round& round) {
+std::string not_fitted_words(const selection::Round& round) {
   std::vector<std::string> names;
-  for (const Candidate& candidate : round.candidates) {
+  for (const selection::Candidate& candidate : round.candidates) {
     if (!candidate.fitted_at_all) names.push_back(joined(candidate.effects));
   }
   return names.empty() ? "" : "Of no use at first sight and not fitted: " + listed(names) + ".";
 }
 
-Table candidates_table(const Diagnosis& d, std::size_t index) {
-  const Round& round = d.ladder.rounds[index];
-  const Scale scale = scale_of(d);
+Table candidates_table(const selection::Diagnosis& d, std::size_t index) {
+  const selection::Round& round = d.ladder.rounds[index];
+  const greybox::Scale scale = scale_of(d);
   const std::vector<std::string> taken = taken_in(d.ladder, index);
   const std::string with =
       round.before.added.empty() ? "the model as given" : "with " + listed(round.before.added);
@@ -112,13 +117,13 @@ Table candidates_table(const Diagnosis& d, std::size_t index) {
       .caption = "Round " + std::to_string(index + 1) + ", " + with,
       .columns = {Column{"effect", "", false}, Column{"held-out error", scale.unit},
                   Column{"× noise floor", ""}, Column{"chance p", ""}, Column{"", "", false}}};
-  for (const Candidate& candidate : round.candidates) {
+  for (const selection::Candidate& candidate : round.candidates) {
     std::vector<std::string> row{joined(candidate.effects)};
     if (!candidate.fitted_at_all) continue;
     const bool took = was_taken(candidate, taken);
     row.push_back(scale.words(candidate.score_rms_m));
-    row.push_back(times_words(candidate.score_rms_m / d.noise_floor_m));
-    row.push_back(chance_words(candidate.p_value));
+    row.push_back(config::units::times_words(candidate.score_rms_m / d.noise_floor_m));
+    row.push_back(config::units::chance_words(candidate.p_value));
     row.emplace_back(!took ? "" : stayed(d.ladder, taken) ? "taken" : "taken, dropped later");
     if (took) table.marked_rows.push_back(table.rows.size());
     table.rows.push_back(std::move(row));
@@ -135,21 +140,21 @@ std::string variable_words(const std::string& variable) {
 
 std::string change_words(double value, double before) {
   if (before == 0.0 || !std::isfinite(before) || !std::isfinite(value)) return "";
-  return number("%+.1f", 100.0 * (value / before - 1.0));
+  return config::units::number("%+.1f", 100.0 * (value / before - 1.0));
 }
 
 }  // namespace
 
 Section falling_error_section(const Outcome& outcome) {
-  const Diagnosis& d = outcome.diagnosis;
+  const selection::Diagnosis& d = outcome.diagnosis;
   Section section{.heading = "The falling error"};
   section.paragraphs = {
       "Held-out error: the drift-corrected RMS of measured less modelled position on data that "
       "were not fitted (" +
           split_words(outcome) + ").",
-      matching::kFreeRunMeaning, matching::kDriftCorrectedMeaning, matching::kNoiseFloorMeaning};
+      present::kFreeRunMeaning, present::kDriftCorrectedMeaning, present::kNoiseFloorMeaning};
   const std::vector<StepWords> steps = step_words(d);
-  const Scale scale = scale_of(d);
+  const greybox::Scale scale = scale_of(d);
   Plot plot{.title = "Held-out error, step by step",
             .kind = Kind::line,
             .y = {"held-out error", scale.unit, true},
@@ -160,8 +165,8 @@ Section falling_error_section(const Outcome& outcome) {
   for (const StepWords& step : steps) {
     plot.categories.push_back(step.what);
     plot.series[0].y.push_back(scale.per_m * step.rms_m);
-    table.rows.push_back(
-        {step.what, scale.words(step.rms_m), times_words(step.rms_m / d.noise_floor_m)});
+    table.rows.push_back({step.what, scale.words(step.rms_m),
+                          config::units::times_words(step.rms_m / d.noise_floor_m)});
   }
   table.rows.push_back({"noise floor", scale.words(d.noise_floor_m), "1"});
   section.plots.push_back(std::move(plot));
@@ -170,12 +175,12 @@ Section falling_error_section(const Outcome& outcome) {
 }
 
 Section candidates_section(const Outcome& outcome) {
-  const Diagnosis& d = outcome.diagnosis;
+  const selection::Diagnosis& d = outcome.diagnosis;
   Section section{.heading = "The candidates"};
   section.paragraphs = {
       "Each round fits every absent effect together with all that the model has already, and "
       "scores it on held-out data. An effect is taken when it lowers that error by " +
-      number("%g", 100.0 * kWorthwhile) +
+      config::units::number("%g", 100.0 * selection::kWorthwhile) +
       " % or more and the gain is more than chance: p is the probability of such a gain by chance "
       "alone. The bars end at the held-out error, the dashed line is the noise floor."};
   for (std::size_t i = 0; i < d.ladder.rounds.size(); ++i) {
@@ -190,12 +195,12 @@ Section candidates_section(const Outcome& outcome) {
     Table table = candidates_table(d, i);
     if (!table.rows.empty()) section.tables.push_back(std::move(table));
   }
-  if (section.plots.size() == 1) section.plots.front().width = report::Width::full;
+  if (section.plots.size() == 1) section.plots.front().width = present::Width::full;
   return section;
 }
 
 Section parameters_section(const Outcome& outcome) {
-  const Diagnosis& d = outcome.diagnosis;
+  const selection::Diagnosis& d = outcome.diagnosis;
   Section section{.heading = "The better model's parameters"};
   section.paragraphs = {
       "Fitted to all samples. The error is one standard error; none is given for a value at its "
@@ -205,15 +210,16 @@ Section parameters_section(const Outcome& outcome) {
                           Column{"unit", "", false}, Column{"in the file"}, Column{"change", "%"},
                           Column{"", "", false}}};
   plant_sim::ModelFile file = outcome.shop.model;
-  for (const ParameterValue& p : d.parameters) {
-    const Quantity q = quantity(p.name, p.value, p.std_error);
+  for (const selection::ParameterValue& p : d.parameters) {
+    const config::units::Quantity q = config::units::quantity(p.name, p.value, p.std_error);
     const double* before = file.value(p.name);
     const bool added = was_added(d, p.name);
     const bool known = before != nullptr && !added;
-    const std::string in_file = known ? quantity(p.name, *before, std::nan(""), p.value).value : "";
+    const std::string in_file =
+        known ? config::units::quantity(p.name, *before, std::nan(""), p.value).value : "";
     if (added) table.marked_rows.push_back(table.rows.size());
-    table.rows.push_back({p.name, q.value, q.error, typeset(" " + q.unit).substr(1), in_file,
-                          known ? change_words(p.value, *before) : "",
+    table.rows.push_back({p.name, q.value, q.error, config::units::typeset(" " + q.unit).substr(1),
+                          in_file, known ? change_words(p.value, *before) : "",
                           std::string(added ? "new" : "") + (p.at_bound ? " at its bound" : "")});
   }
   section.tables.push_back(std::move(table));
@@ -227,10 +233,11 @@ Section where_section(const Outcome& outcome) {
       "force, a change of the gain or an error of the measurement; scored on held-out data."};
   Table table{.columns = {Column{"enters", "", false}, Column{"variable", "", false},
                           Column{"explains of the squared residual", "%"}}};
-  for (const Where& where : outcome.diagnosis.where) {
-    table.rows.push_back(
-        {where.enters, variable_words(where.variable),
-         where.explained_ratio > 0.0 ? number("%.1f", 100.0 * where.explained_ratio) : "none"});
+  for (const selection::Where& where : outcome.diagnosis.where) {
+    table.rows.push_back({where.enters, variable_words(where.variable),
+                          where.explained_ratio > 0.0
+                              ? config::units::number("%.1f", 100.0 * where.explained_ratio)
+                              : "none"});
   }
   if (!table.rows.empty()) table.marked_rows = {0};
   section.tables.push_back(std::move(table));

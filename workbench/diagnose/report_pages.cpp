@@ -2,27 +2,29 @@
 
 #include <cmath>
 
-#include "workbench/diagnose/quantity.h"
+#include "config/units/quantity.h"
 #include "workbench/diagnose/words.h"
 
 namespace workbench::diagnose {
+
+namespace selection = estimator::greybox::selection;
 namespace {
 
-report::State state_of(const Outcome& outcome) {
-  if (outcome.interrupted) return report::State::warn;
+present::State state_of(const Outcome& outcome) {
+  if (outcome.interrupted) return present::State::warn;
   switch (outcome.diagnosis.verdict) {
-    case Verdict::nothing_missing:
-      return report::State::good;
-    case Verdict::unexplained:
-      return outcome.diagnosis.missing.empty() ? report::State::bad : report::State::warn;
+    case selection::Verdict::nothing_missing:
+      return present::State::good;
+    case selection::Verdict::unexplained:
+      return outcome.diagnosis.missing.empty() ? present::State::bad : present::State::warn;
     default:
-      return report::State::warn;
+      return present::State::warn;
   }
 }
 
-report::Fact length_fact(const std::string& label, double length_m) {
-  const Quantity q = quantity("length_m", length_m, std::nan(""));
-  return {.label = label, .value = q.value, .unit = typeset(" " + q.unit).substr(1)};
+present::Fact length_fact(const std::string& label, double length_m) {
+  const config::units::Quantity q = config::units::quantity("length_m", length_m, std::nan(""));
+  return {.label = label, .value = q.value, .unit = config::units::typeset(" " + q.unit).substr(1)};
 }
 
 std::string title_of(const Outcome& outcome) {
@@ -35,9 +37,9 @@ std::string title_of(const Outcome& outcome) {
   return title;
 }
 
-std::vector<report::Fact> facts_of(const Outcome& outcome) {
-  const Diagnosis& d = outcome.diagnosis;
-  std::vector<report::Fact> facts;
+std::vector<present::Fact> facts_of(const Outcome& outcome) {
+  const selection::Diagnosis& d = outcome.diagnosis;
+  std::vector<present::Fact> facts;
   if (outcome.fitted()) {
     facts.push_back(length_fact("Held-out error, file", d.nominal_rms_m));
     facts.push_back(length_fact("Its parameters fitted", d.rms_before_m));
@@ -53,14 +55,16 @@ std::vector<report::Fact> facts_of(const Outcome& outcome) {
 
 }  // namespace
 
-report::Report report_of(const Outcome& outcome) {
-  const Diagnosis& d = outcome.diagnosis;
-  report::Report report;
+present::Report report_of(const Outcome& outcome) {
+  const selection::Diagnosis& d = outcome.diagnosis;
+  present::Report report;
   report.title = title_of(outcome);
-  report.verdict = typeset(verdict_words(d));
+  report.verdict = config::units::typeset(verdict_words(d));
   report.state = state_of(outcome);
-  for (const std::string& remark : remarks(outcome)) report.summary.push_back(typeset(remark));
-  for (const std::string& note : d.notes) report.summary.push_back("Note: " + typeset(note) + ".");
+  for (const std::string& remark : remarks(outcome))
+    report.summary.push_back(config::units::typeset(remark));
+  for (const std::string& note : d.notes)
+    report.summary.push_back("Note: " + config::units::typeset(note) + ".");
   report.next_command = next_command(outcome);
   report.facts = facts_of(outcome);
   report.command = outcome.command;
@@ -71,7 +75,7 @@ report::Report report_of(const Outcome& outcome) {
     report.sections.push_back(parameters_section(outcome));
     if (!d.where.empty()) report.sections.push_back(where_section(outcome));
   }
-  for (report::Section& section : record_sections(outcome)) {
+  for (present::Section& section : record_sections(outcome)) {
     report.sections.push_back(std::move(section));
   }
   return report;

@@ -3,19 +3,19 @@
 #pragma once
 
 #include "workbench/diagnose/outcome.h"
-#include "workbench/report/report.h"
+#include "workbench/present/report.h"
 
 namespace workbench::diagnose {
 
-[[nodiscard]] report::Report report_of(const Outcome& outcome);
+[[nodiscard]] present::Report report_of(const Outcome& outcome);
 
 // Its parts.
 
-[[nodiscard]] report::Section falling_error_section(const Outcome& outcome);
-[[nodiscard]] report::Section candidates_section(const Outcome& outcome);
-[[nodiscard]] report::Section parameters_section(const Outcome& outcome);
-[[nodiscard]] report::Section where_section(const Outcome& outcome);
+[[nodiscard]] present::Section falling_error_section(const Outcome& outcome);
+[[nodiscard]] present::Section candidates_section(const Outcome& outcome);
+[[nodiscard]] present::Section parameters_section(const Outcome& outcome);
+[[nodiscard]] present::Section where_section(const Outcome& outcome);
 /// One section for each record.
-[[nodiscard]] std::vector<report::Section> record_sections(const Outcome& outcome);
+[[nodiscard]] std::vector<present::Section> record_sections(const Outcome& outcome);
 
 }  // namespace workbench::diagnose

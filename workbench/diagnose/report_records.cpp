@@ -3,25 +3,28 @@
 #include <cmath>
 #include <limits>
 
-#include "workbench/diagnose/quantity.h"
+#include "config/units/quantity.h"
+#include "estimator/greybox/kinematics.h"
 #include "workbench/diagnose/report_pages.h"
 #include "workbench/diagnose/words.h"
-#include "workbench/matching/motion.h"
-#include "workbench/report/binned.h"
-#include "workbench/report/thin.h"
+#include "workbench/present/binned.h"
+#include "workbench/present/thin.h"
 
 namespace workbench::diagnose {
+
+namespace greybox = estimator::greybox;
+namespace selection = estimator::greybox::selection;
 namespace {
 
-using report::Kind;
-using report::Plot;
-using report::Section;
-using report::Series;
-using report::Tone;
+using present::Kind;
+using present::Plot;
+using present::Section;
+using present::Series;
+using present::Tone;
 
 using Values = std::vector<double>;
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double live::kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kCloud = 2'500;
 /// Residuals above this are drawn in millimetres.
 constexpr double kMillimetres_m = 2e-3;
@@ -32,16 +35,16 @@ struct Residuals {
 };
 
 /// One residual in the unit that it is drawn in.
-struct Scale {
+struct greybox::Scale {
   double per_m = 1e6;
   const char* unit = "µm";
 };
 
 struct Page {
-  const matching::Measured& record;
-  matching::Motion motion;
+  const greybox::Measured& record;
+  greybox::Motion motion;
   Values file_m, before_m, after_m, free_file_m, free_after_m;  ///< NaN where it does not count
-  double noise_floor_m = kNone;
+  double noise_floor_m = live::kNone;
   bool improved = false;  ///< something was added
 };
 
@@ -52,8 +55,8 @@ Values times(const Values& values, double factor) {
   return out;
 }
 
-Values cut(const Eigen::VectorXd& series_m, std::size_t start, const matching::Measured& record) {
-  Values out(record.size(), kNone);
+Values cut(const Eigen::VectorXd& series_m, std::size_t start, const greybox::Measured& record) {
+  Values out(record.size(), live::kNone);
   if (series_m.size() == 0) return out;
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (record.settled[i] != 0) out[i] = series_m[static_cast<Eigen::Index>(start + i)];
@@ -61,23 +64,23 @@ Values cut(const Eigen::VectorXd& series_m, std::size_t start, const matching::M
   return out;
 }
 
-Scale scale_of(const Values& residual_m) {
+greybox::Scale scale_of(const Values& residual_m) {
   double most_m = 0.0;
   for (const double r : residual_m) {
     if (std::isfinite(r)) most_m = std::max(most_m, std::abs(r));
   }
-  return most_m > kMillimetres_m ? Scale{1e3, "mm"} : Scale{};
+  return most_m > kMillimetres_m ? greybox::Scale{1e3, "mm"} : greybox::Scale{};
 }
 
 /// Nothing is drawn across a gap.
-Values broken_at_gaps(Values values, const matching::Measured& record) {
+Values broken_at_gaps(Values values, const greybox::Measured& record) {
   for (const std::size_t start : record.starts) {
-    if (start > 0) values[start] = kNone;
+    if (start > 0) values[start] = live::kNone;
   }
   return values;
 }
 
-Plot time_plot(const Page& page, const std::string& title, const report::Axis& y) {
+Plot time_plot(const Page& page, const std::string& title, const present::Axis& y) {
   return {.title = title,
           .x = {"time", "s"},
           .y = y,
@@ -110,7 +113,7 @@ Plot position_plot(const Page& page, bool fitted) {
 
 Plot residual_plot(const Page& page, const std::string& title, const Values& residual_m,
                    Tone tone) {
-  const Scale scale = scale_of(residual_m);
+  const greybox::Scale scale = scale_of(residual_m);
   Plot plot = time_plot(page, title, {"measured − model", scale.unit});
   plot.series.push_back({.name = "residual", .y = times(residual_m, scale.per_m), .tone = tone});
   if (std::isfinite(page.noise_floor_m)) {
@@ -130,7 +133,7 @@ Plot command_plot(const Page& page) {
 }
 
 Series mean_of(const std::string& name, const Values& x, const Values& y, Tone tone) {
-  Series series = report::binned(x, y).mean;
+  Series series = present::binned(x, y).mean;
   series.name = name;
   series.tone = tone;
   return series;
@@ -138,7 +141,7 @@ Series mean_of(const std::string& name, const Values& x, const Values& y, Tone t
 
 Series cloud(const std::string& name, const Values& x, const Values& y, Tone tone) {
   Series series{.name = name, .tone = tone};
-  for (const std::size_t i : report::thin_cloud(x, y, kCloud)) {
+  for (const std::size_t i : present::thin_cloud(x, y, kCloud)) {
     series.x.push_back(x[i]);
     series.y.push_back(y[i]);
   }
@@ -146,21 +149,21 @@ Series cloud(const std::string& name, const Values& x, const Values& y, Tone ton
 }
 
 Plot against(const Page& page, const std::string& what, const std::string& unit, const Values& x) {
-  const Scale scale = scale_of(page.before_m);
+  const greybox::Scale scale = scale_of(page.before_m);
   const Values before = times(page.before_m, scale.per_m);
   const Values after = times(page.after_m, scale.per_m);
   Plot plot{.title = "Residual against " + what,
             .kind = Kind::scatter,
             .x = {what, unit},
             .y = {"measured − model", scale.unit},
-            .width = report::Width::half};
+            .width = present::Width::half};
   if (page.improved) {
     plot.series = {cloud("before", x, before, Tone::residual),
                    cloud("after", x, after, Tone::improved),
                    mean_of("before, mean", x, before, Tone::accent),
                    mean_of("after, mean", x, after, Tone::model)};
   } else {
-    const report::Binned curves = report::binned(x, after);
+    const present::Binned curves = present::binned(x, after);
     plot.series = {cloud("residual", x, after, Tone::residual), curves.mean, curves.rms};
   }
   return plot;
@@ -207,12 +210,13 @@ Section section_of(const Page& page, bool fitted, const std::string& heading) {
 Residuals residuals_of(const Outcome& outcome) {
   Residuals all;
   if (!outcome.fitted()) return all;
-  const Diagnosis& d = outcome.diagnosis;
-  const Workshop& shop = outcome.shop;
-  const Stage& before = d.ladder.rounds.empty() ? d.ladder.final : d.ladder.rounds.front().before;
-  all.file_m = residual_of_file_m(shop, matching::kObserver_per_s);
-  all.before_m = residual_of_m(shop, before.fitted, matching::kObserver_per_s);
-  all.after_m = residual_of_m(shop, d.final, matching::kObserver_per_s);
+  const selection::Diagnosis& d = outcome.diagnosis;
+  const selection::Workshop& shop = outcome.shop;
+  const selection::Stage& before =
+      d.ladder.rounds.empty() ? d.ladder.final : d.ladder.rounds.front().before;
+  all.file_m = residual_of_file_m(shop, greybox::kObserver_per_s);
+  all.before_m = residual_of_m(shop, before.fitted, greybox::kObserver_per_s);
+  all.after_m = residual_of_m(shop, d.final, greybox::kObserver_per_s);
   all.free_file_m = residual_of_file_m(shop, 0.0);
   all.free_after_m = residual_of_m(shop, d.final, 0.0);
   return all;
@@ -221,15 +225,15 @@ Residuals residuals_of(const Outcome& outcome) {
 }  // namespace
 
 std::vector<Section> record_sections(const Outcome& outcome) {
-  const matching::Evidence& evidence = outcome.shop.evidence;
+  const greybox::Evidence& evidence = outcome.shop.evidence;
   const Residuals all = residuals_of(outcome);
   std::vector<Section> sections;
   for (std::size_t r = 0; r < evidence.records.size(); ++r) {
-    const matching::Measured& record = evidence.records[r];
+    const greybox::Measured& record = evidence.records[r];
     const std::size_t start = evidence.starts[r];
     const double noise_m = std::isfinite(evidence.noise_floor_m) ? evidence.noise_floor_m : 0.0;
     const Page page{.record = record,
-                    .motion = matching::motion(record, noise_m),
+                    .motion = greybox::motion(record, noise_m),
                     .file_m = cut(all.file_m, start, record),
                     .before_m = cut(all.before_m, start, record),
                     .after_m = cut(all.after_m, start, record),

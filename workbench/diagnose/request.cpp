@@ -7,18 +7,21 @@
 #include "config/record/record.h"
 #include "config/schema/document.h"
 #include "config/schema/error.h"
-#include "workbench/file_check.h"
-#include "workbench/shell_words.h"
+#include "workbench/cli/file_check.h"
+#include "workbench/present/shell_command.h"
 
 namespace workbench::diagnose {
+
+namespace greybox = estimator::greybox;
+namespace selection = estimator::greybox::selection;
 namespace {
 
 void check_files(const Request& request) {
-  check_records(request.records, request.holdouts,
-                "another record, or --fit first-half to score on part of this one");
-  InputFiles inputs{request.model, request.records};
+  cli::check_records(request.records, request.holdouts,
+                     "another record, or --fit first-half to score on part of this one");
+  cli::InputFiles inputs{request.model, request.records};
   inputs.records.insert(inputs.records.end(), request.holdouts.begin(), request.holdouts.end());
-  check_outputs(
+  cli::check_outputs(
       {{"--json", request.json}, {"--report", request.report}, {"-o", request.output, true}},
       inputs);
 }
@@ -30,7 +33,7 @@ plant_sim::ModelFile model_of(const Request& request) {
 }
 
 /// What noise explains is told from how smooth a motion is, which takes samples close enough.
-void require_rate(const matching::Measured& record) {
+void require_rate(const greybox::Measured& record) {
   constexpr double kSlowest_s = 0.05;
   if (record.sample_time_s <= kSlowest_s * (1.0 + 1e-6)) return;
   char text[96];
@@ -39,10 +42,10 @@ void require_rate(const matching::Measured& record) {
   throw config::schema::bad_data(record.name, text, "20 Hz or more; compare and fit take less");
 }
 
-std::vector<matching::Measured> records_of(const std::vector<std::string>& files) {
-  std::vector<matching::Measured> records;
+std::vector<greybox::Measured> records_of(const std::vector<std::string>& files) {
+  std::vector<greybox::Measured> records;
   for (const std::string& file : files) {
-    records.push_back(matching::measured(config::record::read_record(file)));
+    records.push_back(greybox::measured(config::record::read_record(file)));
     require_rate(records.back());
   }
   return records;
@@ -62,7 +65,7 @@ std::string command_of(const Request& request) {
   add("--json", request.json);
   add("--report", request.report);
   add("-o", request.output);
-  return shell_command(words);
+  return present::shell_command(words);
 }
 
 }  // namespace
@@ -70,10 +73,10 @@ std::string command_of(const Request& request) {
 Outcome prepare(const Request& request) {
   check_files(request);
   Outcome outcome;
-  outcome.split = matching::parse_split(request.fit);
-  outcome.shop = workshop(
+  outcome.split = greybox::parse_split(request.fit);
+  outcome.shop = selection::workshop(
       model_of(request),
-      matching::evidence(records_of(request.records), records_of(request.holdouts), outcome.split));
+      greybox::evidence(records_of(request.records), records_of(request.holdouts), outcome.split));
   const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
   outcome.shop.threads = request.threads > 0 ? request.threads : processors;
   outcome.model_file = request.model;

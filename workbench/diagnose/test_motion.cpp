@@ -5,13 +5,16 @@
 
 #include "config/record/record.h"
 #include "config/schema/error.h"
+#include "estimator/greybox/kinematics.h"
+#include "estimator/greybox/observer_simulation.h"
 #include "estimator/residual/noise_floor.h"
 #include "workbench/diagnose/advice_words.h"
-#include "workbench/matching/model_run.h"
-#include "workbench/matching/motion.h"
 #include "workbench/simulate/closed_loop.h"
 
 namespace workbench::diagnose {
+
+namespace greybox = estimator::greybox;
+namespace selection = estimator::greybox::selection;
 namespace {
 
 using monitor::control::ReferenceConfig;
@@ -55,16 +58,16 @@ double stroke_of(const plant_sim::ModelFile& model) {
   return stroke_m == nullptr ? std::nan("") : *stroke_m;
 }
 
-Room room_of(const Workshop& shop) {
-  const matching::Evidence& evidence = shop.evidence;
+Room room_of(const selection::Workshop& shop) {
+  const greybox::Evidence& evidence = shop.evidence;
   double low_m = evidence.records.front().y_m.front();
   double high_m = low_m;
   double fastest_mps = 0.0;
-  for (const matching::Measured& record : evidence.records) {
+  for (const greybox::Measured& record : evidence.records) {
     const auto [low, high] = std::minmax_element(record.y_m.begin(), record.y_m.end());
     low_m = std::min(low_m, *low);
     high_m = std::max(high_m, *high);
-    for (const double v_mps : matching::motion(record, evidence.noise_floor_m).speed_mps) {
+    for (const double v_mps : greybox::motion(record, evidence.noise_floor_m).speed_mps) {
       fastest_mps = std::max(fastest_mps, std::abs(v_mps));
     }
   }
@@ -72,7 +75,7 @@ Room room_of(const Workshop& shop) {
   room.centre_m = std::round(500.0 * (low_m + high_m)) * 1e-3;
   const double half_m = 0.5 * (high_m - low_m);
   const double stroke_m = stroke_of(shop.model);
-  const matching::Measured& first = evidence.records.front();
+  const greybox::Measured& first = evidence.records.front();
   const double noise_m =
       std::max(evidence.noise_floor_m, estimator::residual::encoder_step_m(first.y_m));
   if (half_m > kLeastTravel * noise_m) {
@@ -116,7 +119,7 @@ ReferenceConfig steps(const Room& room, double hold_periods, double rise_periods
 
 }  // namespace
 
-std::vector<TestMotion> test_motions(const Workshop& shop) {
+std::vector<TestMotion> test_motions(const selection::Workshop& shop) {
   const Room room = room_of(shop);
   const double duration_s =
       std::round(std::clamp(kPeriods / room.frequency_Hz, kShortest_s, kLongest_s));
@@ -137,9 +140,10 @@ std::vector<TestMotion> test_motions(const Workshop& shop) {
   return result;
 }
 
-std::optional<matching::Measured> simulated(const Workshop& shop, plant_sim::ModelFile model,
-                                            const TestMotion& motion, std::uint64_t seed) {
-  const matching::Measured& like = shop.evidence.records.front();
+std::optional<greybox::Measured> simulated(const selection::Workshop& shop,
+                                           plant_sim::ModelFile model, const TestMotion& motion,
+                                           std::uint64_t seed) {
+  const greybox::Measured& like = shop.evidence.records.front();
   const estimator::residual::NoiseFloor floor =
       estimator::residual::noise_floor(like.y_m, like.sample_time_s);
   simulate::Scenario scenario;
@@ -151,7 +155,7 @@ std::optional<matching::Measured> simulated(const Workshop& shop, plant_sim::Mod
       std::sqrt(std::max(0.0, noise_m * noise_m - rounding_m * rounding_m));
   scenario.instruments.dac_bits = kDacBits;
   scenario.instruments.dac_range_V = kDac_V;
-  model.step_s = matching::step_for(model, simulate::kSampleTime_s);
+  model.step_s = greybox::step_for(model, simulate::kSampleTime_s);
   if (double* start_m = model.value("initial.y_m")) {
     *start_m = monitor::control::make_reference(motion.reference)->at(0.0);
   }
@@ -177,7 +181,7 @@ std::optional<matching::Measured> simulated(const Workshop& shop, plant_sim::Mod
   if (static_cast<double>(saturated) > kMostSaturated * static_cast<double>(samples)) {
     return std::nullopt;
   }
-  return matching::measured(record);
+  return greybox::measured(record);
 }
 
 }  // namespace workbench::diagnose

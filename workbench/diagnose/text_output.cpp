@@ -5,10 +5,12 @@
 #include <ostream>
 #include <sstream>
 
-#include "workbench/diagnose/quantity.h"
+#include "config/units/quantity.h"
 #include "workbench/diagnose/words.h"
 
 namespace workbench::diagnose {
+
+namespace selection = estimator::greybox::selection;
 namespace {
 
 constexpr std::size_t kLine = 96;
@@ -64,7 +66,7 @@ std::string bar(double rms_m, double floor_m, double most_m) {
   return std::string(static_cast<std::size_t>(1.0 + kBar * std::clamp(share, 0.0, 1.0)), '#');
 }
 
-void print_steps(const Diagnosis& d, std::ostream& out) {
+void print_steps(const selection::Diagnosis& d, std::ostream& out) {
   const std::vector<StepWords> steps = step_words(d);
   std::size_t width = 22;
   double most_m = kLeastBarRatio * d.noise_floor_m;
@@ -74,32 +76,32 @@ void print_steps(const Diagnosis& d, std::ostream& out) {
   }
   out << '\n' << padded("step", width) << "  held-out error  x floor  (bars: logarithmic)\n";
   const auto row = [&](const std::string& what, double rms_m) {
-    out << padded(what, width) << "  " << padded(length_words(rms_m), 14, true) << "  "
-        << padded(times_words(rms_m / d.noise_floor_m), 7, true) << "  "
+    out << padded(what, width) << "  " << padded(config::units::length_words(rms_m), 14, true)
+        << "  " << padded(config::units::times_words(rms_m / d.noise_floor_m), 7, true) << "  "
         << bar(rms_m, d.noise_floor_m, most_m) << '\n';
   };
   for (const StepWords& step : steps) row(step.what, step.rms_m);
   row("noise floor", d.noise_floor_m);
 }
 
-void print_candidates(const Diagnosis& d, std::ostream& out) {
+void print_candidates(const selection::Diagnosis& d, std::ostream& out) {
   if (d.ladder.rounds.empty()) return;
   const std::size_t index = deciding_round(d.ladder);
-  const Round& round = d.ladder.rounds[index];
+  const selection::Round& round = d.ladder.rounds[index];
   out << "\ncandidates of round " << index + 1 << ": "
-      << length_words(round.before.fitted.score_rms_m) << " without any\n";
+      << config::units::length_words(round.before.fitted.score_rms_m) << " without any\n";
   std::vector<std::string> taken = taken_in(d.ladder, index);
   std::sort(taken.begin(), taken.end());
   std::size_t shown = 0;
-  for (const Candidate& candidate : round.candidates) {
+  for (const selection::Candidate& candidate : round.candidates) {
     if (!candidate.fitted_at_all || shown == kShownCandidates) break;
     std::vector<std::string> effects = candidate.effects;
     std::sort(effects.begin(), effects.end());
     out << "  " << padded(listed(candidate.effects), 34) << "  "
-        << padded(length_words(candidate.score_rms_m), 10, true) << "  p "
-        << (effects == taken ? padded(chance_words(candidate.p_value), 11) +
+        << padded(config::units::length_words(candidate.score_rms_m), 10, true) << "  p "
+        << (effects == taken ? padded(config::units::chance_words(candidate.p_value), 11) +
                                    (stayed(d.ladder, taken) ? "  taken" : "  taken, dropped later")
-                             : chance_words(candidate.p_value))
+                             : config::units::chance_words(candidate.p_value))
         << '\n';
     ++shown;
   }
@@ -107,19 +109,19 @@ void print_candidates(const Diagnosis& d, std::ostream& out) {
 }
 
 void print_parameters(const Outcome& outcome, std::ostream& out) {
-  const Diagnosis& d = outcome.diagnosis;
+  const selection::Diagnosis& d = outcome.diagnosis;
   if (d.parameters.empty()) return;
   plant_sim::ModelFile file = outcome.shop.model;
   std::size_t width = 0;
-  for (const ParameterValue& p : d.parameters) width = std::max(width, p.name.size());
+  for (const selection::ParameterValue& p : d.parameters) width = std::max(width, p.name.size());
   out << "\nparameters of the better model\n";
-  for (const ParameterValue& p : d.parameters) {
+  for (const selection::ParameterValue& p : d.parameters) {
     const double* before = was_added(d, p.name) ? nullptr : file.value(p.name);
-    std::string value = words(quantity(p.name, p.value, p.std_error));
+    std::string value = config::units::words(config::units::quantity(p.name, p.value, p.std_error));
     out << "  " << padded(p.name, width) << "  ";
     if (before != nullptr) {
-      value =
-          padded(value, 24) + "  was " + words(quantity(p.name, *before, std::nan(""), p.value));
+      value = padded(value, 24) + "  was " +
+              config::units::words(config::units::quantity(p.name, *before, std::nan(""), p.value));
     }
     out << value << (p.at_bound ? "  at its bound" : "") << '\n';
   }
@@ -128,7 +130,7 @@ void print_parameters(const Outcome& outcome, std::ostream& out) {
 }  // namespace
 
 void print(const Outcome& outcome, std::ostream& out) {
-  const Diagnosis& d = outcome.diagnosis;
+  const selection::Diagnosis& d = outcome.diagnosis;
   out << wrapped(verdict_words(d));
   for (const std::string& remark : remarks(outcome)) out << wrapped(remark);
   if (outcome.fitted()) {
@@ -137,7 +139,7 @@ void print(const Outcome& outcome, std::ostream& out) {
     print_parameters(outcome, out);
     out << '\n'
         << wrapped(outcome.model_file + ": " + split_words(outcome) + "; " +
-                   number("%.1f", d.runtime_s) + " s.");
+                   config::units::number("%.1f", d.runtime_s) + " s.");
   }
   for (const std::string& note : d.notes) out << wrapped("note: " + note);
   const std::string next = next_command(outcome);

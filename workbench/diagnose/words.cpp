@@ -3,21 +3,25 @@
 #include <algorithm>
 #include <cmath>
 
-#include "workbench/diagnose/quantity.h"
-#include "workbench/shell_words.h"
+#include "config/units/quantity.h"
+#include "workbench/present/shell_command.h"
 
 namespace workbench::diagnose {
+
+namespace greybox = estimator::greybox;
+namespace selection = estimator::greybox::selection;
 namespace {
 
-std::string percent(double ratio) { return number("%.0f", 100.0 * ratio) + " %"; }
+std::string percent(double ratio) { return config::units::number("%.0f", 100.0 * ratio) + " %"; }
 
 /// "2.7 um held-out, 1.1 times the noise floor of 2.4 um".
-std::string beside_floor(const Diagnosis& d, double rms_m) {
-  return length_words(rms_m) + " on held-out data, " + times_words(rms_m / d.noise_floor_m) +
-         " times the noise floor of " + length_words(d.noise_floor_m);
+std::string beside_floor(const selection::Diagnosis& d, double rms_m) {
+  return config::units::length_words(rms_m) + " on held-out data, " +
+         config::units::times_words(rms_m / d.noise_floor_m) + " times the noise floor of " +
+         config::units::length_words(d.noise_floor_m);
 }
 
-std::string effects_words(const Diagnosis& d) {
+std::string effects_words(const selection::Diagnosis& d) {
   std::string text;
   for (const std::string& effect : d.missing) {
     text += (text.empty() ? "" : "; ") + effect_words(d, effect);
@@ -26,7 +30,7 @@ std::string effects_words(const Diagnosis& d) {
 }
 
 /// The found effects that no rival disputes.
-std::vector<std::string> undisputed(const Diagnosis& d) {
+std::vector<std::string> undisputed(const selection::Diagnosis& d) {
   std::vector<std::string> names;
   for (const std::string& effect : d.missing) {
     const bool disputed =
@@ -38,7 +42,7 @@ std::vector<std::string> undisputed(const Diagnosis& d) {
   return names;
 }
 
-std::string undetermined_words(const Diagnosis& d) {
+std::string undetermined_words(const selection::Diagnosis& d) {
   std::string groups;
   for (const auto& group : d.ambiguous)
     groups += (groups.empty() ? "" : "; ") + listed(group, "or");
@@ -54,7 +58,7 @@ std::string undetermined_words(const Diagnosis& d) {
   return text;
 }
 
-std::string unexplained_words(const Diagnosis& d) {
+std::string unexplained_words(const selection::Diagnosis& d) {
   const std::string rest = "an error of " + beside_floor(d, d.rms_after_m) + ", remains";
   if (d.ladder.interrupted) {
     return "Not decided: " + (d.missing.empty() ? "" : "found so far " + listed(d.missing) + "; ") +
@@ -67,24 +71,25 @@ std::string unexplained_words(const Diagnosis& d) {
          " missing, but " + rest + ".";
 }
 
-std::string reason_of(const Diagnosis& d) {
+std::string reason_of(const selection::Diagnosis& d) {
   return d.notes.empty() ? "the records hardly move" : d.notes.back();
 }
 
-std::string fall_words(const Diagnosis& d) {
+std::string fall_words(const selection::Diagnosis& d) {
   if (d.missing.empty()) {
     return "With the plant's own parameters fitted, the held-out error goes from " +
-           length_words(d.nominal_rms_m) + " to " + length_words(d.rms_before_m) + ".";
+           config::units::length_words(d.nominal_rms_m) + " to " +
+           config::units::length_words(d.rms_before_m) + ".";
   }
   const std::string with =
-      d.verdict == Verdict::undetermined ? "With " + listed(d.missing) + ", the" : "The";
-  return with + " held-out error falls from " + length_words(d.rms_before_m) + " to " +
-         length_words(d.rms_after_m) + "; the noise floor is " + length_words(d.noise_floor_m) +
-         ".";
+      d.verdict == selection::Verdict::undetermined ? "With " + listed(d.missing) + ", the" : "The";
+  return with + " held-out error falls from " + config::units::length_words(d.rms_before_m) +
+         " to " + config::units::length_words(d.rms_after_m) + "; the noise floor is " +
+         config::units::length_words(d.noise_floor_m) + ".";
 }
 
-void add_rivals(const Diagnosis& d, std::vector<std::string>& out) {
-  if (d.verdict != Verdict::undetermined && !d.ambiguous.empty()) {
+void add_rivals(const selection::Diagnosis& d, std::vector<std::string>& out) {
+  if (d.verdict != selection::Verdict::undetermined && !d.ambiguous.empty()) {
     std::string groups;
     for (const auto& group : d.ambiguous)
       groups += (groups.empty() ? "" : "; ") + listed(group, "or");
@@ -108,25 +113,26 @@ std::string listed(const std::vector<std::string>& names, const std::string& las
   return text;
 }
 
-std::string effect_words(const Diagnosis& diagnosis, const std::string& effect) {
+std::string effect_words(const selection::Diagnosis& diagnosis, const std::string& effect) {
   std::string text;
-  for (const ParameterValue& p : diagnosis.parameters) {
+  for (const selection::ParameterValue& p : diagnosis.parameters) {
     if (p.name.rfind(effect + ".", 0) != 0) continue;
-    text += (text.empty() ? ": " : ", ") + parameter_words(p.name) + " " +
-            words(quantity(p.name, p.value, p.std_error)) + (p.at_bound ? " (at its bound)" : "");
+    text += (text.empty() ? ": " : ", ") + config::units::parameter_words(p.name) + " " +
+            config::units::words(config::units::quantity(p.name, p.value, p.std_error)) +
+            (p.at_bound ? " (at its bound)" : "");
   }
   return effect + text;
 }
 
 std::string file_name(const std::string& file) { return file.substr(file.find_last_of('/') + 1); }
 
-bool was_added(const Diagnosis& diagnosis, const std::string& parameter) {
+bool was_added(const selection::Diagnosis& diagnosis, const std::string& parameter) {
   const std::vector<std::string>& names = diagnosis.missing;
   return std::find(names.begin(), names.end(), parameter.substr(0, parameter.find('.'))) !=
          names.end();
 }
 
-std::string where_words(const Where& where) {
+std::string where_words(const selection::Where& where) {
   const std::string enters = where.enters == "flow"    ? "as a flow"
                              : where.enters == "force" ? "as a force"
                              : where.enters == "gain"  ? "as a change of the gain"
@@ -138,37 +144,37 @@ std::string where_words(const Where& where) {
   return enters + " that goes with " + variable;
 }
 
-std::string verdict_words(const Diagnosis& d) {
+std::string verdict_words(const selection::Diagnosis& d) {
   switch (d.verdict) {
-    case Verdict::nothing_missing:
+    case selection::Verdict::nothing_missing:
       if (d.ladder.interrupted) {
         return "Not decided: the model, its own parameters adjusted, is left with " +
                beside_floor(d, d.rms_after_m) + " so far.";
       }
       return "Nothing is missing: the model, its own parameters adjusted, is left with " +
              beside_floor(d, d.rms_after_m) + ", and no effect of the library lowers it further.";
-    case Verdict::missing:
+    case selection::Verdict::missing:
       return "Missing: " + effects_words(d) + ".";
-    case Verdict::undetermined:
+    case selection::Verdict::undetermined:
       return undetermined_words(d);
-    case Verdict::unexplained:
+    case selection::Verdict::unexplained:
       return unexplained_words(d);
-    case Verdict::not_excited:
+    case selection::Verdict::not_excited:
       break;
   }
   return "The record cannot tell: " + reason_of(d) + ".";
 }
 
 std::vector<std::string> remarks(const Outcome& outcome) {
-  const Diagnosis& d = outcome.diagnosis;
+  const selection::Diagnosis& d = outcome.diagnosis;
   std::vector<std::string> out;
   if (outcome.interrupted) {
     out.emplace_back(
         "Interrupted: this is the best so far. Not everything was tried, so other effects may do "
         "as well.");
   }
-  if (d.verdict != Verdict::not_excited) out.push_back(fall_words(d));
-  const bool named = d.verdict == Verdict::missing || d.missing.empty();
+  if (d.verdict != selection::Verdict::not_excited) out.push_back(fall_words(d));
+  const bool named = d.verdict == selection::Verdict::missing || d.missing.empty();
   if (!named) out.push_back("Taken for the better model: " + effects_words(d) + ".");
   add_rivals(d, out);
   if (!d.where.empty()) {
@@ -181,11 +187,12 @@ std::vector<std::string> remarks(const Outcome& outcome) {
   }
   if (std::isfinite(outcome.free_run_before_m)) {
     out.push_back("Pure simulation from the first sample is off by " +
-                  length_words(outcome.free_run_before_m) +
+                  config::units::length_words(outcome.free_run_before_m) +
                   " RMS with the model file as it is, by " +
-                  length_words(outcome.free_run_after_m) + " with the better model.");
+                  config::units::length_words(outcome.free_run_after_m) +
+                  " with the better model.");
   }
-  if (!d.advice.empty()) out.push_back(d.advice);
+  if (!outcome.advice.empty()) out.push_back(outcome.advice);
   return out;
 }
 
@@ -194,7 +201,7 @@ std::string next_command(const Outcome& outcome) {
   const std::string& record =
       outcome.holdouts.empty() ? outcome.records.front() : outcome.holdouts.front();
   if (!outcome.output.empty()) {
-    return shell_command({"spoolwatch", "compare", outcome.output, record});
+    return present::shell_command({"spoolwatch", "compare", outcome.output, record});
   }
   return outcome.command + " -o better.toml";
 }
@@ -204,21 +211,22 @@ std::string split_words(const Outcome& outcome) {
     return "fitted to " + listed(outcome.records) + ", scored on " + listed(outcome.holdouts);
   }
   switch (outcome.split) {
-    case matching::Split::first_half:
+    case greybox::Split::first_half:
       return "fitted to the first half, scored on the second";
-    case matching::Split::second_half:
+    case greybox::Split::second_half:
       return "fitted to the second half, scored on the first";
-    case matching::Split::blocks:
+    case greybox::Split::blocks:
       break;
   }
-  return "fitted to every other " + number("%g", matching::kBlock_s) + " s, scored on the rest";
+  return "fitted to every other " + config::units::number("%g", greybox::kBlock_s) +
+         " s, scored on the rest";
 }
 
-std::vector<StepWords> step_words(const Diagnosis& diagnosis) {
+std::vector<StepWords> step_words(const selection::Diagnosis& diagnosis) {
   std::vector<StepWords> steps;
   if (diagnosis.steps.empty()) return steps;
   steps.push_back({"model file as it is", diagnosis.nominal_rms_m});
-  for (const Step& step : diagnosis.steps) {
+  for (const selection::Step& step : diagnosis.steps) {
     steps.push_back(
         {step.added.empty() ? "its parameters fitted" : "+ " + step.added, step.score_rms_m});
   }

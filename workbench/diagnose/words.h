@@ -8,15 +8,18 @@
 
 namespace workbench::diagnose {
 
+namespace selection = estimator::greybox::selection;
+
 /// "a", "a and b", "a, b and c"; with another last word, "a, b or c".
 [[nodiscard]] std::string listed(const std::vector<std::string>& names,
                                  const std::string& last = "and");
 
 /// "friction: Coulomb 145 +- 2 N, static 181 +- 4 N", with the values of the better model.
-[[nodiscard]] std::string effect_words(const Diagnosis& diagnosis, const std::string& effect);
+[[nodiscard]] std::string effect_words(const selection::Diagnosis& diagnosis,
+                                       const std::string& effect);
 
 /// The verdict, one sentence.
-[[nodiscard]] std::string verdict_words(const Diagnosis& diagnosis);
+[[nodiscard]] std::string verdict_words(const selection::Diagnosis& diagnosis);
 
 /// What it rests on and what follows from it, one paragraph each: the fallen error, rivals, where
 /// the rest enters, advice.
@@ -33,15 +36,15 @@ struct StepWords {
   std::string what;
   double rms_m = 0.0;
 };
-[[nodiscard]] std::vector<StepWords> step_words(const Diagnosis& diagnosis);
+[[nodiscard]] std::vector<StepWords> step_words(const selection::Diagnosis& diagnosis);
 
 /// Without its folder.
 [[nodiscard]] std::string file_name(const std::string& file);
 
 /// Whether a parameter belongs to an effect that was found missing.
-[[nodiscard]] bool was_added(const Diagnosis& diagnosis, const std::string& parameter);
+[[nodiscard]] bool was_added(const selection::Diagnosis& diagnosis, const std::string& parameter);
 
 /// "as a force that goes with the speed".
-[[nodiscard]] std::string where_words(const Where& where);
+[[nodiscard]] std::string where_words(const selection::Where& where);
 
 }  // namespace workbench::diagnose

@@ -8,22 +8,24 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
-#include "daemon/tracking/known_parameters.h"
+#include "estimator/greybox/parameter_catalogue.h"
 
 namespace workbench::fit {
+
+namespace greybox = estimator::greybox;
 namespace {
 
 using config::schema::bad_config;
 using config::schema::Error;
 using config::schema::ExitCode;
-using matching::Scale;
-using matching::SearchParameter;
-using monitor::tracking::Known;
-using monitor::tracking::known_parameters;
-using monitor::tracking::names_worth_showing;
-using monitor::tracking::open_up;
-using monitor::tracking::refuse_name;
-using monitor::tracking::split_names;
+using greybox::Known;
+using greybox::known_parameters;
+using greybox::names_worth_showing;
+using greybox::open_up;
+using greybox::refuse_name;
+using greybox::Scale;
+using greybox::SearchParameter;
+using greybox::split_names;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -53,7 +55,7 @@ class Chooser {
     if (choice.searched.empty()) {
       throw Error(ExitCode::usage, "--free, --fix: leave nothing to fit");
     }
-    choice.start = matching::start_of(model_, choice.searched);
+    choice.start = greybox::start_of(model_, choice.searched);
     return choice;
   }
 
@@ -73,8 +75,8 @@ class Chooser {
       if (std::find(picked_.begin(), picked_.end(), i) == picked_.end()) picked_.push_back(i);
     };
     if (wishes_.free.empty()) {
-      std::vector<SearchParameter> usual = matching::plant_parameters(model_);
-      for (const auto& p : matching::present_parameters(model_)) usual.push_back(p);
+      std::vector<SearchParameter> usual = greybox::plant_parameters(model_);
+      for (const auto& p : greybox::present_parameters(model_)) usual.push_back(p);
       for (const SearchParameter& p : usual) {
         for (const std::size_t i : find("--free", p.name)) add(i);
       }
@@ -106,7 +108,7 @@ class Chooser {
     const auto same = [&](const Known& k) { return k.name == name; };
     if (std::any_of(known_.begin(), known_.end(), same)) {
       throw bad_config(option + " " + name, "is not fitted; name it with --free",
-                       monitor::tracking::joined_names(fitted));
+                       greybox::joined_names(fitted));
     }
     refuse_name(option, name, fitted, fitted);
   }

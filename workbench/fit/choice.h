@@ -10,10 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "estimator/greybox/free_parameter.h"
 #include "plant_sim/model_file.h"
-#include "workbench/matching/search_parameter.h"
 
 namespace workbench::fit {
+
+namespace greybox = estimator::greybox;
 
 struct Wishes {
   std::vector<std::string> free{};  ///< empty: the plant's uncertain ones and those of its effects
@@ -23,7 +25,7 @@ struct Wishes {
 };
 
 struct Choice {
-  std::vector<matching::SearchParameter> searched;
+  std::vector<greybox::SearchParameter> searched;
   Eigen::VectorXd start;
 };
 

@@ -5,6 +5,8 @@
 #include "workbench/fit/outcome.h"
 
 namespace workbench::fit {
+
+namespace greybox = estimator::greybox;
 namespace {
 
 using nlohmann::ordered_json;
@@ -13,7 +15,7 @@ ordered_json number(double value) {
   return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
 }
 
-ordered_json json_of(const Parameter& p) {
+ordered_json json_of(const greybox::Parameter& p) {
   ordered_json out;
   out["value"] = number(p.value);
   out["std_error"] = number(p.std_error);
@@ -40,9 +42,9 @@ ordered_json json_of(const Parameter& p) {
   return out;
 }
 
-ordered_json json_of(const Sight& sight) {
+ordered_json json_of(const greybox::Sight& sight) {
   ordered_json out{{"condition", number(sight.condition)}, {"unseen", ordered_json::array()}};
-  for (const Unseen& unseen : sight.unseen) {
+  for (const greybox::Unseen& unseen : sight.unseen) {
     out["unseen"].push_back({{"parameter", unseen.name},
                              {"partners", unseen.partners},
                              {"visible", unseen.visible},
@@ -54,7 +56,7 @@ ordered_json json_of(const Sight& sight) {
 }  // namespace
 
 std::string to_json(const Outcome& o) {
-  const Estimation& e = o.estimation;
+  const greybox::Estimation& e = o.estimation;
   ordered_json out;
   out["model"] = o.prepared->task.model.name;
   out["records"] = ordered_json::array();
@@ -72,7 +74,7 @@ std::string to_json(const Outcome& o) {
   out["noise_floor_m"] = number(o.noise_floor_m);
   out["sigma_m"] = number(e.fitted.sigma_m);  // that weighted the squared residuals
   out["effective_samples"] = number(e.effective_samples);
-  for (const Parameter& p : e.parameters) out["parameters"][p.search.name] = json_of(p);
+  for (const greybox::Parameter& p : e.parameters) out["parameters"][p.search.name] = json_of(p);
   out["starts"] = {{"tried", e.starts.tried},
                    {"same", e.starts.same},
                    {"elsewhere", e.starts.elsewhere},

@@ -4,15 +4,17 @@
 #include <string>
 #include <vector>
 
-#include "workbench/fit/estimation.h"
+#include "estimator/greybox/estimation.h"
 #include "workbench/fit/request.h"
-#include "workbench/report/report.h"
+#include "workbench/present/report.h"
 
 namespace workbench::fit {
 
+namespace greybox = estimator::greybox;
+
 struct Outcome {
   const Prepared* prepared = nullptr;  ///< must outlive this
-  Estimation estimation;
+  greybox::Estimation estimation;
   double noise_floor_m = 0.0;  ///< NaN: cannot be told
   double runtime_s = 0.0;
   std::string output;  ///< the model file that is written, or empty
@@ -21,7 +23,7 @@ struct Outcome {
 /// What it comes to in plain words, most important first.
 [[nodiscard]] std::vector<std::string> words(const Outcome& outcome);
 /// "held by its prior", "at its lower bound", ... or empty.
-[[nodiscard]] std::string remark(const Parameter& parameter);
+[[nodiscard]] std::string remark(const greybox::Parameter& parameter);
 
 /// Words, table, profiles.
 [[nodiscard]] std::string to_text(const Outcome& outcome);
@@ -36,7 +38,7 @@ struct Outcome {
 /// reading, profiles and writing), runtime_s.
 [[nodiscard]] std::string to_json(const Outcome& outcome);
 
-[[nodiscard]] report::Report to_report(const Outcome& outcome);
+[[nodiscard]] present::Report to_report(const Outcome& outcome);
 
 /// The model with what was found; its head says how.
 [[nodiscard]] std::string to_model(const Outcome& outcome);

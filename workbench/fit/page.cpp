@@ -4,17 +4,20 @@
 #include <filesystem>
 #include <limits>
 
-#include "workbench/diagnose/quantity.h"
+#include "config/units/quantity.h"
+#include "config/units/unit_suffix.h"
 #include "workbench/fit/outcome.h"
-#include "workbench/matching/error_words.h"
+#include "workbench/present/error_definitions.h"
 
 namespace workbench::fit {
+
+namespace greybox = estimator::greybox;
 namespace {
 
-using diagnose::number;
-using report::Plot;
-using report::Section;
-using report::Tone;
+using config::units::number;
+using present::Plot;
+using present::Section;
+using present::Tone;
 using Values = std::vector<double>;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -35,7 +38,7 @@ LengthUnit unit_for(double rms_m) {
 }
 
 /// One record's part of the long series, NaN where it does not count and at gaps.
-Values part(const Eigen::VectorXd& series, std::size_t start, const matching::Measured& record,
+Values part(const Eigen::VectorXd& series, std::size_t start, const greybox::Measured& record,
             double factor, bool settled_only) {
   Values out(record.size(), kNaN);
   for (std::size_t i = 0; i < out.size(); ++i) {
@@ -48,8 +51,8 @@ Values part(const Eigen::VectorXd& series, std::size_t start, const matching::Me
   return out;
 }
 
-Plot over_time(const matching::Measured& record, const std::string& title,
-               const report::Axis& axis) {
+Plot over_time(const greybox::Measured& record, const std::string& title,
+               const present::Axis& axis) {
   Plot plot;
   plot.title = title;
   plot.x = {"time", "s"};
@@ -60,7 +63,7 @@ Plot over_time(const matching::Measured& record, const std::string& title,
 }
 
 void add_series(Plot& plot, const std::string& name, Tone tone, Values y) {
-  report::Series series;
+  present::Series series;
   series.name = name;
   series.tone = tone;
   series.y = std::move(y);
@@ -68,15 +71,15 @@ void add_series(Plot& plot, const std::string& name, Tone tone, Values y) {
 }
 
 Section record_section(const Outcome& o, std::size_t r) {
-  const matching::Evidence& evidence = o.prepared->task.evidence;
-  const matching::Measured& record = evidence.records[r];
+  const greybox::Evidence& evidence = o.prepared->task.evidence;
+  const greybox::Measured& record = evidence.records[r];
   const std::size_t start = evidence.starts[r];
-  const Estimation& e = o.estimation;
+  const greybox::Estimation& e = o.estimation;
   Section section;
   section.heading = "Record " + file_name(record.name);
   if (r == 0) {
-    section.paragraphs = {matching::kFreeRunMeaning, matching::kDriftCorrectedMeaning,
-                          matching::kNoiseFloorMeaning};
+    section.paragraphs = {present::kFreeRunMeaning, present::kDriftCorrectedMeaning,
+                          present::kNoiseFloorMeaning};
   }
   const Eigen::Map<const Eigen::VectorXd> y(record.y_m.data(),
                                             static_cast<Eigen::Index>(record.size()));
@@ -93,7 +96,7 @@ Section record_section(const Outcome& o, std::size_t r) {
   add_series(position, "fitted model", Tone::model, modelled(e.after.free_run_m));
   section.plots.push_back(position);
   for (const bool fitted : {false, true}) {
-    const Errors& errors = fitted ? e.after : e.before;
+    const greybox::Errors& errors = fitted ? e.after : e.before;
     const LengthUnit unit = unit_for(errors.rms_m);
     Plot plot = over_time(
         record,
@@ -113,28 +116,28 @@ Section record_section(const Outcome& o, std::size_t r) {
   return section;
 }
 
-Section parameter_section(const Estimation& e) {
+Section parameter_section(const greybox::Estimation& e) {
   Section section;
   section.heading = "Parameters";
   section.paragraphs.push_back(
       "Standard errors allow for residuals of any colour; the 95 % interval is that of the "
       "likelihood's profile where one was walked. The record's share tells how much of what is "
       "known comes from the record rather than from the prior.");
-  report::Table table;
+  present::Table table;
   table.columns = {{"parameter", "", false}, {"start", ""},           {"fitted", ""},
                    {"± std. error", ""},     {"95 % from", ""},       {"to", ""},
                    {"unit", "", false},      {"record's share", "%"}, {"remark", "", false}};
-  for (const Parameter& p : e.parameters) {
+  for (const greybox::Parameter& p : e.parameters) {
     const std::string& name = p.search.name;
-    const diagnose::Quantity q = diagnose::quantity(name, p.value, p.std_error, p.start);
+    const config::units::Quantity q = config::units::quantity(name, p.value, p.std_error, p.start);
     const double largest = std::max(std::abs(p.value), std::abs(p.start));
     // The ends of the interval with the digits of the value.
     const auto shown = [&](double value) {
       if (std::isnan(value)) return std::string("-");
-      return diagnose::quantity(name, value, p.std_error, largest).value;
+      return config::units::quantity(name, value, p.std_error, largest).value;
     };
-    table.rows.push_back({name, diagnose::quantity(name, p.start, kNaN, largest).value, q.value,
-                          q.error, shown(p.low), shown(p.high), q.unit,
+    table.rows.push_back({name, config::units::quantity(name, p.start, kNaN, largest).value,
+                          q.value, q.error, shown(p.low), shown(p.high), q.unit,
                           number("%.0f", 100.0 * p.record_share), remark(p)});
     if (p.at_bound != 0) table.marked_rows.push_back(table.rows.size() - 1);
   }
@@ -143,22 +146,23 @@ Section parameter_section(const Estimation& e) {
   return section;
 }
 
-Section sight_section(const Estimation& e) {
+Section sight_section(const greybox::Estimation& e) {
   Section section;
   section.heading = "What the record cannot see";
   for (const bool after : {false, true}) {
-    const Sight& sight = after ? e.sight_after : e.sight_before;
+    const greybox::Sight& sight = after ? e.sight_after : e.sight_before;
     std::string text = after ? "After the fit: " : "Before the fit, at the model file's values: ";
     std::string list;
-    for (const Unseen& unseen : sight.unseen) list += (list.empty() ? "" : "; ") + unseen.words;
+    for (const greybox::Unseen& unseen : sight.unseen)
+      list += (list.empty() ? "" : "; ") + unseen.words;
     section.paragraphs.push_back(
         text + (list.empty() ? "every fitted parameter is seen" : list) +
         number(". Condition of the scaled Jacobian: %.3g.", sight.condition));
   }
-  report::Table table;
+  present::Table table;
   table.caption = "Correlation of the estimates";
   table.columns.push_back({"", "", false});
-  for (const Parameter& p : e.parameters) table.columns.push_back({p.search.name, ""});
+  for (const greybox::Parameter& p : e.parameters) table.columns.push_back({p.search.name, ""});
   for (Eigen::Index i = 0; i < e.correlation.rows(); ++i) {
     std::vector<std::string> row{e.parameters[static_cast<std::size_t>(i)].search.name};
     for (Eigen::Index j = 0; j < e.correlation.cols(); ++j) {
@@ -171,21 +175,21 @@ Section sight_section(const Estimation& e) {
   return section;
 }
 
-Section profile_section(const Estimation& e) {
+Section profile_section(const greybox::Estimation& e) {
   Section section;
   section.heading = "Profiles of the likelihood";
   section.paragraphs.push_back(
       "How the least cost rises when one parameter is held away from its best value and all others "
       "follow. The 95 % interval is where it stays under 3.84. A parabola means that the standard "
       "error tells all.");
-  for (const Parameter& p : e.parameters) {
+  for (const greybox::Parameter& p : e.parameters) {
     if (p.profile.size() < 3) continue;
     Plot plot;
     plot.title = p.search.name;
-    plot.width = report::Width::half;
-    plot.x = {p.search.name, plant_sim::unit_of(p.search.name)};
+    plot.width = present::Width::half;
+    plot.x = {p.search.name, config::units::unit_of(p.search.name)};
     plot.y = {"rise of the cost", ""};
-    report::Series series;
+    present::Series series;
     series.name = "profile";
     series.tone = Tone::model;
     for (const auto& point : p.profile) {
@@ -203,12 +207,12 @@ Section profile_section(const Estimation& e) {
 
 }  // namespace
 
-report::Report to_report(const Outcome& o) {
-  const Estimation& e = o.estimation;
+present::Report to_report(const Outcome& o) {
+  const greybox::Estimation& e = o.estimation;
   const std::vector<std::string> said = words(o);
-  report::Report made;
+  present::Report made;
   made.title = o.prepared->task.model.name + " fitted to ";
-  for (const matching::Measured& record : o.prepared->task.evidence.records) {
+  for (const greybox::Measured& record : o.prepared->task.evidence.records) {
     made.title += (&record == &o.prepared->task.evidence.records.front() ? "" : ", ") +
                   file_name(record.name);
   }
@@ -217,7 +221,7 @@ report::Report to_report(const Outcome& o) {
     if (said[i].rfind("What the record cannot see", 0) != 0) made.summary.push_back(said[i]);
   }
   const bool at_floor = std::isfinite(o.noise_floor_m) && e.after.rms_m < 1.15 * o.noise_floor_m;
-  made.state = at_floor && !e.interrupted ? report::State::good : report::State::warn;
+  made.state = at_floor && !e.interrupted ? present::State::good : present::State::warn;
   const auto fact = [&](const char* label, double metres) {
     const LengthUnit unit = unit_for(metres);
     made.facts.push_back({label, number("%.3g", unit.per_m * metres), unit.name});
@@ -232,7 +236,7 @@ report::Report to_report(const Outcome& o) {
   for (std::size_t r = 0; r < o.prepared->task.evidence.records.size(); ++r) {
     made.sections.push_back(record_section(o, r));
   }
-  const auto profiled = [](const Parameter& p) { return p.profile.size() > 2; };
+  const auto profiled = [](const greybox::Parameter& p) { return p.profile.size() > 2; };
   if (std::any_of(e.parameters.begin(), e.parameters.end(), profiled)) {
     made.sections.push_back(profile_section(e));
   }

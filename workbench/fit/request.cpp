@@ -9,33 +9,35 @@
 #include "config/record/record.h"
 #include "config/schema/document.h"
 #include "config/schema/error.h"
-#include "workbench/file_check.h"
-#include "workbench/shell_words.h"
+#include "workbench/cli/file_check.h"
+#include "workbench/present/shell_command.h"
 
 namespace workbench::fit {
+
+namespace greybox = estimator::greybox;
 namespace {
 
 namespace fs = std::filesystem;
 using config::schema::Error;
 using config::schema::ExitCode;
-using matching::Evidence;
-using matching::Measured;
+using greybox::Evidence;
+using greybox::Measured;
 
 /// A rod that moves less than this many noise floors does not tell a parameter.
 constexpr double kLeastMotion = 5.0;
 
 void check_files(const Request& request) {
-  check_records(request.records, request.holdouts,
-                "another record, or --fit to score on part of this one");
-  InputFiles inputs{request.model, request.records};
+  cli::check_records(request.records, request.holdouts,
+                     "another record, or --fit to score on part of this one");
+  cli::InputFiles inputs{request.model, request.records};
   inputs.records.insert(inputs.records.end(), request.holdouts.begin(), request.holdouts.end());
-  check_outputs(
+  cli::check_outputs(
       {{"--json", request.json}, {"--report", request.report}, {"-o", request.output, true}},
       inputs);
 }
 
 Measured read(const std::string& file) {
-  Measured record = matching::measured(config::record::read_record(file));
+  Measured record = greybox::measured(config::record::read_record(file));
   record.name = file;
   return record;
 }
@@ -97,7 +99,7 @@ void ignore(const std::string& text, Evidence& evidence, Eigen::VectorXd& mask) 
   if (!met) throw Error(ExitCode::usage, "--ignore " + text + ": no sample lies there");
 }
 
-void weigh(const Request& request, Task& task) {
+void weigh(const Request& request, greybox::Task& task) {
   Evidence& evidence = task.evidence;
   if (!request.weights.empty() && request.weights.size() != request.records.size()) {
     throw Error(ExitCode::usage, "--weight: has " + std::to_string(request.weights.size()) +
@@ -127,9 +129,9 @@ void weigh(const Request& request, Task& task) {
   }
 }
 
-void choose_profiles(const Request& request, Task& task) {
+void choose_profiles(const Request& request, greybox::Task& task) {
   for (const std::string& name : request.profiles) {
-    if (name == "none") task.profiling = Profiling::none;
+    if (name == "none") task.profiling = greybox::Profiling::none;
     if (name == "none" || name == "doubtful") continue;
     std::vector<std::string> names;
     for (const auto& p : task.searched) names.push_back(p.name);
@@ -142,7 +144,7 @@ void choose_profiles(const Request& request, Task& task) {
           "is not fitted" + (near.empty() ? std::string() : ", did you mean " + near + "?"),
           allowed);
     }
-    task.profiling = Profiling::named;
+    task.profiling = greybox::Profiling::named;
     task.profiled.push_back(name);
   }
 }
@@ -174,14 +176,14 @@ std::string command_of(const Request& request) {
   for (const double weight : request.weights) add("--weight", shown(weight));
   if (request.starts != Request{}.starts) add("--starts", std::to_string(request.starts));
   add_all("--profile", request.profiles);
-  if (request.observer_per_s != matching::kObserver_per_s) {
+  if (request.observer_per_s != greybox::kObserver_per_s) {
     add("--observer", shown(request.observer_per_s));
   }
   add_all("--set", request.assignments);
   add("-o", request.output);
   add("--json", request.json);
   add("--report", request.report);
-  return shell_command(words);
+  return present::shell_command(words);
 }
 
 }  // namespace
@@ -189,7 +191,7 @@ std::string command_of(const Request& request) {
 Prepared prepare(const Request& request) {
   check_files(request);
   Prepared out;
-  Task& task = out.task;
+  greybox::Task& task = out.task;
   auto document = config::schema::Document::load(request.model);
   for (const std::string& assignment : request.assignments) document.set(assignment);
   task.model = plant_sim::read_model(document);
@@ -201,9 +203,9 @@ Prepared prepare(const Request& request) {
   std::vector<Measured> holdouts;
   for (const std::string& file : request.records) records.push_back(read(file));
   for (const std::string& file : request.holdouts) holdouts.push_back(read(file));
-  const matching::Split split =
-      request.fit == "all" ? matching::Split::blocks : matching::parse_split(request.fit);
-  task.evidence = matching::evidence(std::move(records), std::move(holdouts), split);
+  const greybox::Split split =
+      request.fit == "all" ? greybox::Split::blocks : greybox::parse_split(request.fit);
+  task.evidence = greybox::evidence(std::move(records), std::move(holdouts), split);
   require_motion(task.evidence);
   for (const Measured& record : task.evidence.records) {
     for (const std::string& note : record.notes) out.notes.push_back(record.name + ": " + note);

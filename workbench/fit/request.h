@@ -4,10 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "estimator/greybox/estimation.h"
 #include "workbench/fit/choice.h"
-#include "workbench/fit/estimation.h"
 
 namespace workbench::fit {
+
+namespace greybox = estimator::greybox;
 
 struct Request {
   std::string model;
@@ -19,7 +21,7 @@ struct Request {
   std::vector<double> weights;       ///< of the records; empty: all 1
   int starts = 4;
   std::vector<std::string> profiles;  ///< names, "doubtful" or "none"
-  double observer_per_s = matching::kObserver_per_s;
+  double observer_per_s = greybox::kObserver_per_s;
   unsigned threads = 0;  ///< 0: one for each processor
   std::vector<std::string> assignments;
   std::string output;
@@ -29,7 +31,7 @@ struct Request {
 };
 
 struct Prepared {
-  Task task;
+  greybox::Task task;
   double noise_floor_m = 0.0;  ///< NaN: cannot be told
   std::vector<std::string> notes;
   std::string command;  ///< as it was typed

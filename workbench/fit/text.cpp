@@ -3,13 +3,16 @@
 #include <cmath>
 #include <cstdio>
 
-#include "workbench/diagnose/quantity.h"
+#include "config/units/quantity.h"
+#include "config/units/unit_suffix.h"
 #include "workbench/fit/outcome.h"
 
 namespace workbench::fit {
+
+namespace greybox = estimator::greybox;
 namespace {
 
-using diagnose::number;
+using config::units::number;
 
 constexpr std::size_t kColumns = 92;
 constexpr int kPlotWidth = 61;
@@ -39,9 +42,9 @@ std::string wrapped(const std::string& text, const std::string& indent) {
 
 std::string five(double value) { return std::isnan(value) ? "-" : number("%.5g", value); }
 
-std::string table(const std::vector<Parameter>& parameters) {
+std::string table(const std::vector<greybox::Parameter>& parameters) {
   std::size_t width = 9;
-  for (const Parameter& p : parameters) width = std::max(width, p.search.name.size());
+  for (const greybox::Parameter& p : parameters) width = std::max(width, p.search.name.size());
   const auto row = [&](const std::string& name, const std::string& start, const std::string& value,
                        const std::string& error, const std::string& low, const std::string& high,
                        const std::string& what) {
@@ -54,7 +57,7 @@ std::string table(const std::vector<Parameter>& parameters) {
     return line + "\n";
   };
   std::string out = row("parameter", "start", "fitted", "+-", "95 % from", "to", "");
-  for (const Parameter& p : parameters) {
+  for (const greybox::Parameter& p : parameters) {
     const bool shows = p.at_bound == 0 || p.from_profile;
     out += row(p.search.name, five(p.start), five(p.value), number("%.2g", p.std_error),
                shows ? five(p.low) : "-", shows ? five(p.high) : "-", remark(p));
@@ -63,7 +66,7 @@ std::string table(const std::vector<Parameter>& parameters) {
 }
 
 /// The rise of the cost over the parameter's value, up to twice the threshold.
-std::string plot(const Parameter& p) {
+std::string plot(const greybox::Parameter& p) {
   const auto& points = p.profile;
   const double least = points.front().value;
   const double most = points.back().value;
@@ -100,7 +103,7 @@ std::string plot(const Parameter& p) {
   const std::string right = five(most);
   const std::size_t used = left.size() + right.size();
   out += "       " + left + std::string(used < kPlotWidth ? kPlotWidth - used : 1, ' ') + right +
-         " " + plant_sim::unit_of(p.search.name) + "\n";
+         " " + config::units::unit_of(p.search.name) + "\n";
   return out;
 }
 
@@ -116,7 +119,7 @@ std::string to_text(const Outcome& o) {
   std::string out = prepared.task.model.name + " fitted to " + names + "\n\n";
   for (const std::string& line : words(o)) out += wrapped(line, "  ");
   out += "\n" + table(o.estimation.parameters);
-  for (const Parameter& p : o.estimation.parameters) {
+  for (const greybox::Parameter& p : o.estimation.parameters) {
     if (p.profile.size() > 2) out += "\n" + plot(p);
   }
   if (!o.output.empty()) out += "\n" + o.output + " holds the fitted model.\n";

@@ -3,40 +3,43 @@
 #include <cmath>
 #include <cstdio>
 
-#include "workbench/diagnose/quantity.h"
+#include "config/units/quantity.h"
 #include "workbench/fit/outcome.h"
 
 namespace workbench::fit {
+
+namespace greybox = estimator::greybox;
 namespace {
 
-using diagnose::length_words;
-using diagnose::number;
+using config::units::length_words;
+using config::units::number;
 
 constexpr double kAtFloor = 1.15;
 /// Moves under this many standard errors and this share are no news.
 constexpr double kNews = 2.0;
 constexpr std::size_t kMostMoved = 4;
 
-std::string move_words(const Parameter& p) {
-  const diagnose::Quantity q = diagnose::quantity(p.search.name, p.value, p.std_error);
+std::string move_words(const greybox::Parameter& p) {
+  const config::units::Quantity q = config::units::quantity(p.search.name, p.value, p.std_error);
   std::string text = p.search.name;
   if (p.start > 0.0 && p.value > 0.0 && std::isfinite(p.start) && std::isfinite(p.value)) {
     text += number(" %+.2g %%", 100.0 * (p.value / p.start - 1.0)) + " to " + words(q);
   } else {
-    text += " from " + words(diagnose::quantity(p.search.name, p.start, std::nan(""), p.value)) +
-            " to " + words(q);
+    text += " from " +
+            words(config::units::quantity(p.search.name, p.start, std::nan(""), p.value)) + " to " +
+            words(q);
   }
   return text;
 }
 
-double errors_moved(const Parameter& p) {
+double errors_moved(const greybox::Parameter& p) {
   const double moved = std::abs(p.value - p.start);
   if (!(moved > 0.0)) return 0.0;
   return std::isfinite(p.std_error) && p.std_error > 0.0 ? moved / p.std_error : 1e6;
 }
 
 std::string size_words(const Outcome& o) {
-  const Estimation& e = o.estimation;
+  const greybox::Estimation& e = o.estimation;
   std::string text = "Error " + length_words(e.before.rms_m) + " -> " +
                      length_words(e.after.rms_m) + " RMS" +
                      (o.prepared->task.observer_per_s > 0.0 ? ", drift taken away" : "");
@@ -53,7 +56,7 @@ std::string size_words(const Outcome& o) {
          number(" -> %.4g %%.", e.after.fit_percent);
 }
 
-std::string heldout_words(const Estimation& e) {
+std::string heldout_words(const greybox::Estimation& e) {
   if (!std::isfinite(e.after.heldout_rms_m)) return "";
   std::string text = "On data that were not fitted: " + length_words(e.before.heldout_rms_m) +
                      " -> " + length_words(e.after.heldout_rms_m) + " RMS.";
@@ -63,9 +66,9 @@ std::string heldout_words(const Estimation& e) {
   return text;
 }
 
-std::string moved_words(const Estimation& e) {
-  std::vector<const Parameter*> moved;
-  for (const Parameter& p : e.parameters) {
+std::string moved_words(const greybox::Estimation& e) {
+  std::vector<const greybox::Parameter*> moved;
+  for (const greybox::Parameter& p : e.parameters) {
     if (errors_moved(p) > kNews) moved.push_back(&p);
   }
   if (moved.empty()) return "No parameter moved by more than chance.";
@@ -82,9 +85,9 @@ std::string moved_words(const Estimation& e) {
   return text + ".";
 }
 
-std::string bound_words(const Estimation& e) {
+std::string bound_words(const greybox::Estimation& e) {
   std::string text;
-  for (const Parameter& p : e.parameters) {
+  for (const greybox::Parameter& p : e.parameters) {
     if (p.at_bound == 0) continue;
     text += (text.empty() ? "" : ", ") + p.search.name +
             (p.at_bound < 0 ? " at its lower" : " at its upper") + " bound";
@@ -92,7 +95,7 @@ std::string bound_words(const Estimation& e) {
   return text.empty() ? text : "Pressed against a limit: " + text + ".";
 }
 
-std::string starts_words(const Starts& s) {
+std::string starts_words(const greybox::Starts& s) {
   if (s.tried < 2) return "";
   std::string text =
       std::to_string(s.same) + " of " + std::to_string(s.tried) + " starts ended in this minimum";
@@ -103,9 +106,9 @@ std::string starts_words(const Starts& s) {
   return text + ".";
 }
 
-std::string sight_words(const Sight& sight, const std::string& when) {
+std::string sight_words(const greybox::Sight& sight, const std::string& when) {
   std::string text;
-  for (const Unseen& unseen : sight.unseen) {
+  for (const greybox::Unseen& unseen : sight.unseen) {
     text += (text.empty() ? "" : "; ") + unseen.words;
   }
   return text.empty() ? "" : when + text + ".";
@@ -113,7 +116,7 @@ std::string sight_words(const Sight& sight, const std::string& when) {
 
 }  // namespace
 
-std::string remark(const Parameter& p) {
+std::string remark(const greybox::Parameter& p) {
   if (p.at_bound < 0) return "at its lower bound";
   if (p.at_bound > 0) return "at its upper bound";
   if (std::isinf(p.std_error)) return "not visible";
@@ -123,7 +126,7 @@ std::string remark(const Parameter& p) {
 }
 
 std::vector<std::string> words(const Outcome& o) {
-  const Estimation& e = o.estimation;
+  const greybox::Estimation& e = o.estimation;
   std::vector<std::string> said{size_words(o), heldout_words(e), moved_words(e), bound_words(e)};
   const std::string before = sight_words(e.sight_before, "");
   const std::string after = sight_words(e.sight_after, "");

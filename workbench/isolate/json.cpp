@@ -3,10 +3,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "daemon/tracking/words.h"
+#include "estimator/greybox/tracking/words.h"
 #include "workbench/isolate/outcome.h"
 
 namespace workbench::isolate {
+
+namespace greybox = estimator::greybox;
+namespace tracking = estimator::greybox::tracking;
 namespace {
 
 using Eigen::Index;
@@ -19,7 +22,7 @@ ordered_json number(double value) {
 ordered_json json_of(const Window& window, const Choice& choice) {
   ordered_json out{{"t_s", window.t_s}, {"from_s", window.from_s}};
   for (std::size_t i = 0; i < choice.tracked; ++i) {
-    const monitor::tracking::Estimate& estimate = window.estimates[i];
+    const tracking::Estimate& estimate = window.estimates[i];
     out[choice.parameters[i].name] = {{"value", number(estimate.value)},
                                       {"std_error", number(estimate.std_error)},
                                       {"smallest", number(estimate.smallest)},
@@ -49,7 +52,7 @@ ordered_json json_of(const Window& window, const Choice& choice) {
 
 ordered_json json_of(const Alarm& alarm, const Outcome& o) {
   const Named& named = alarm.named;
-  const monitor::tracking::SearchParameter& p = o.choice.parameters[named.parameter];
+  const greybox::SearchParameter& p = o.choice.parameters[named.parameter];
   const double healthy = p.value(o.healthy.x[static_cast<Index>(named.parameter)]);
   const double value = p.value(named.x);
   ordered_json group = ordered_json::array({p.name});
@@ -69,8 +72,8 @@ ordered_json json_of(const Alarm& alarm, const Outcome& o) {
           {"rivals", rivals},
           {"raised_s", alarm.raised_s},
           {"cleared_s", number(alarm.cleared_s)},
-          {"advice", monitor::tracking::advice_words(o.choice, named)},
-          {"words", monitor::tracking::change_words(o.choice, named, o.healthy.x)}};
+          {"advice", tracking::advice_words(o.choice, named)},
+          {"words", tracking::change_words(o.choice, named, o.healthy.x)}};
 }
 
 double median_fit_s(std::vector<Window> windows) {
@@ -88,7 +91,7 @@ std::string to_json(const Outcome& o) {
   ordered_json names = ordered_json::array();
   ordered_json values = ordered_json::object();
   for (std::size_t i = 0; i < o.choice.tracked; ++i) {
-    const monitor::tracking::SearchParameter& p = o.choice.parameters[i];
+    const greybox::SearchParameter& p = o.choice.parameters[i];
     names.push_back(p.name);
     values[p.name] = number(p.value(o.healthy.x[static_cast<Index>(i)]));
   }
@@ -99,7 +102,7 @@ std::string to_json(const Outcome& o) {
                     {"to_s", o.learnt ? number(o.healthy_to_s) : nullptr},
                     {"rms_m", number(o.healthy.rms_m)},
                     {"values", values}};
-  const monitor::tracking::ChamberErrors& chambers = o.healthy.chambers;
+  const tracking::ChamberErrors& chambers = o.healthy.chambers;
   if (chambers.known()) {
     out["healthy"]["pressures"] = {{"in_error_Pa", chambers.in.rms_Pa},
                                    {"in_offset_Pa", chambers.in.offset_Pa},

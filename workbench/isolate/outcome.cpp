@@ -7,22 +7,26 @@
 #include "config/record/whole_file.h"
 #include "config/schema/document.h"
 #include "config/schema/error.h"
-#include "daemon/tracking/healthy_file.h"
-#include "daemon/tracking/known_parameters.h"
-#include "daemon/tracking/quantity.h"
-#include "daemon/tracking/words.h"
+#include "config/units/quantity.h"
+#include "estimator/fdi/tracker/baseline_file.h"
+#include "estimator/greybox/parameter_catalogue.h"
+#include "estimator/greybox/tracking/words.h"
 #include "estimator/residual/noise_floor.h"
-#include "workbench/file_check.h"
+#include "workbench/cli/file_check.h"
 #include "workbench/fit/choice.h"
-#include "workbench/shell_words.h"
+#include "workbench/present/shell_command.h"
 
 namespace workbench::isolate {
+
+namespace tracker = estimator::fdi::tracker;
+namespace greybox = estimator::greybox;
+namespace tracking = estimator::greybox::tracking;
 namespace {
 
 using config::record::Record;
 using config::schema::Error;
 using config::schema::ExitCode;
-using monitor::tracking::number;
+using config::units::number;
 
 /// A healthy error above so many noise floors, and a healthy value so far off the file's, are
 /// worth a note.
@@ -62,8 +66,8 @@ struct Readings {
   const std::vector<double>* in_Pa = nullptr;  ///< as the next: both or none
   const std::vector<double>* out_Pa = nullptr;
 
-  [[nodiscard]] estimator::fdi::Pressures at(std::size_t k) const {
-    estimator::fdi::Pressures out;
+  [[nodiscard]] config::signals::Pressures at(std::size_t k) const {
+    config::signals::Pressures out;
     if (supply_Pa != nullptr) out.supply_Pa = (*supply_Pa)[k];
     if (in_Pa != nullptr) out.in_Pa = (*in_Pa)[k];
     if (out_Pa != nullptr) out.out_Pa = (*out_Pa)[k];
@@ -94,7 +98,7 @@ Readings readings_of(const Record& record, const Request& request) {
 /// tracked as well.
 std::vector<std::string> tracked_names(const Request& request, const Readings& readings,
                                        std::vector<std::string>& notes) {
-  std::vector<std::string> names = monitor::tracking::split_names(request.parameters);
+  std::vector<std::string> names = greybox::split_names(request.parameters);
   const auto has = [&](const char* name) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };
@@ -134,7 +138,7 @@ std::vector<Window> track(Tracker& tracker, const Record& record, const Readings
 }
 
 void check(const Request& request, const Record& record) {
-  const double least_s = request.settings.window_s + monitor::tracking::kLead_s;
+  const double least_s = request.settings.window_s + tracking::kLead_s;
   const double length_s = static_cast<double>(record.size()) * record.sample_time_s;
   if (request.settings.window_s < kLeastSamples * record.sample_time_s) {
     throw Error(ExitCode::usage, "--window: is too short for samples every " +
@@ -175,7 +179,7 @@ std::string command_of(const Request& request) {
   if (request.settings.thresholds.suspect_position_sensor) {
     words.emplace_back("--suspect-position-sensor");
   }
-  const monitor::tracking::Following& following = request.settings.following;
+  const tracking::Following& following = request.settings.following;
   for (const std::string& name : following.parameters) add("--follow", name);
   if (following.ratio_per_h != Settings{}.following.ratio_per_h) {
     add("--follow-per-hour", number("%.9g", following.ratio_per_h));
@@ -187,7 +191,7 @@ std::string command_of(const Request& request) {
     add("--healthy", request.healthy);
   }
   for (const std::string& assignment : request.assignments) add("--set", assignment);
-  return shell_command(words);
+  return present::shell_command(words);
 }
 
 void note_calibration(Outcome& out) {
@@ -198,37 +202,35 @@ void note_calibration(Outcome& out) {
                         "show; calibrate it first (spoolwatch diagnose, fit)");
   }
   for (std::size_t i = 0; i < out.choice.tracked; ++i) {
-    const monitor::tracking::SearchParameter& p = out.choice.parameters[i];
+    const greybox::SearchParameter& p = out.choice.parameters[i];
     const auto at = static_cast<Eigen::Index>(i);
-    if (p.scale != monitor::tracking::Scale::logarithmic) continue;
+    if (p.scale != greybox::Scale::logarithmic) continue;
     const double off = std::exp(out.healthy.x[at] - out.choice.file[at]) - 1.0;
     if (std::abs(off) < kOffFile) continue;
-    out.notes.push_back("when healthy, " + monitor::tracking::name_words(p.name) + " is " +
+    out.notes.push_back("when healthy, " + tracking::name_words(p.name) + " is " +
                         number("%+.3g", 100.0 * off) +
                         " % off the model file; changes count from there");
   }
 }
 
 void note_followed(Outcome& out, const Tracker& tracker) {
-  const monitor::tracking::SlowChange& slow = tracker.slow_change();
+  const tracking::SlowChange& slow = tracker.slow_change();
   for (std::size_t i = 0; i < slow.size(); ++i) {
     const std::size_t at = slow.parameter(i);
-    const monitor::tracking::SearchParameter& p = out.choice.parameters[at];
+    const greybox::SearchParameter& p = out.choice.parameters[at];
     const Eigen::VectorXd& healthy = tracker.healthy()->x;
     out.notes.push_back(
         slow.at_end(i, healthy) != 0
-            ? monitor::tracking::slow_words(p, slow.learnt(i),
-                                            healthy[static_cast<Eigen::Index>(at)])
-            : monitor::tracking::name_words(p.name) + " was followed from " +
-                  monitor::tracking::value_words(p, slow.learnt(i), NAN) + " to " +
-                  monitor::tracking::value_words(p, healthy[static_cast<Eigen::Index>(at)], NAN));
+            ? tracking::slow_words(p, slow.learnt(i), healthy[static_cast<Eigen::Index>(at)])
+            : tracking::name_words(p.name) + " was followed from " +
+                  tracking::value_words(p, slow.learnt(i), NAN) + " to " +
+                  tracking::value_words(p, healthy[static_cast<Eigen::Index>(at)], NAN));
   }
 }
 
 void write_learnt(const Request& request, const plant_sim::ModelFile& model, const Record& record,
                   const Outcome& out) {
-  monitor::tracking::HealthyFile file =
-      monitor::tracking::healthy_file(model, out.choice, out.settings, out.healthy);
+  tracker::HealthyFile file = tracker::healthy_file(model, out.choice, out.settings, out.healthy);
   file.rig_id = request.rig_id;
   file.source = record.name;
   file.sample_time_s = record.sample_time_s;
@@ -240,7 +242,7 @@ void write_learnt(const Request& request, const plant_sim::ModelFile& model, con
 }  // namespace
 
 Outcome isolate(const Request& request) {
-  check_outputs(
+  cli::check_outputs(
       {{"--json", request.json}, {"--report", request.report}, {"--learn", request.learn}},
       {request.model, {request.record}});
   auto document = config::schema::Document::load(request.model);
@@ -255,12 +257,11 @@ Outcome isolate(const Request& request) {
   out.settings = request.settings;
   out.notes = record.notes;
   const Readings readings = readings_of(record, request);
-  out.choice =
-      monitor::tracking::choose(model, tracked_names(request, readings, out.notes), "--parameters");
+  out.choice = tracking::choose(model, tracked_names(request, readings, out.notes), "--parameters");
   const auto floor = estimator::residual::noise_floor(record.y_m, record.sample_time_s);
   out.noise_floor_m = floor.sd_m;
   const double floor_m = std::isfinite(floor.sd_m) ? floor.sd_m : 0.0;
-  const monitor::tracking::SlowChange follows(out.choice, request.settings.following, "--follow");
+  const tracking::SlowChange follows(out.choice, request.settings.following, "--follow");
   const auto tracker = [&] {
     return Tracker(model, out.choice, request.settings, record.sample_time_s, floor_m);
   };
@@ -272,8 +273,8 @@ Outcome isolate(const Request& request) {
   } else {
     const Span healthy = span(request.healthy);
     Tracker learning = tracker();
-    out.healthy = monitor::tracking::learn(track(learning, record, readings, healthy), out.choice,
-                                           floor_m, record.name + ": --healthy " + request.healthy);
+    out.healthy = tracking::learn(track(learning, record, readings, healthy), out.choice, floor_m,
+                                  record.name + ": --healthy " + request.healthy);
     out.learnt = true;
     out.healthy_from_s = healthy.from_s;
     out.healthy_to_s = healthy.to_s;

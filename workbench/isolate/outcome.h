@@ -4,19 +4,21 @@
 #include <string>
 #include <vector>
 
-#include "daemon/tracking/tracker.h"
-#include "workbench/report/report.h"
+#include "estimator/greybox/tracking/parameter_tracker.h"
+#include "workbench/present/report.h"
 
 namespace workbench::isolate {
 
-using monitor::tracking::Alarm;
-using monitor::tracking::Choice;
-using monitor::tracking::Healthy;
-using monitor::tracking::Named;
-using monitor::tracking::Rival;
-using monitor::tracking::Settings;
-using monitor::tracking::Tracker;
-using monitor::tracking::Window;
+namespace tracking = estimator::greybox::tracking;
+
+using tracking::Alarm;
+using tracking::Choice;
+using tracking::Healthy;
+using tracking::Named;
+using tracking::Rival;
+using tracking::Settings;
+using tracking::Tracker;
+using tracking::Window;
 
 struct Request {
   std::string model;
@@ -64,6 +66,6 @@ struct Outcome {
 /// values, pressures}, noise_floor_m, parameters, limit_m, notes, fit_s (median of a window).
 [[nodiscard]] std::string to_json(const Outcome& outcome);
 
-[[nodiscard]] report::Report to_report(const Outcome& outcome);
+[[nodiscard]] present::Report to_report(const Outcome& outcome);
 
 }  // namespace workbench::isolate

@@ -3,22 +3,25 @@
 #include <filesystem>
 #include <limits>
 
-#include "daemon/tracking/quantity.h"
-#include "daemon/tracking/words.h"
+#include "config/units/quantity.h"
+#include "estimator/greybox/tracking/words.h"
 #include "workbench/isolate/outcome.h"
 
 namespace workbench::isolate {
+
+namespace greybox = estimator::greybox;
+namespace tracking = estimator::greybox::tracking;
 namespace {
 
-using monitor::tracking::number;
-using report::Plot;
-using report::Series;
-using report::Tone;
+using config::units::number;
+using present::Plot;
+using present::Series;
+using present::Tone;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInterval = 1.96;
 
-Plot over_time(const Outcome& o, const std::string& title, const report::Axis& axis) {
+Plot over_time(const Outcome& o, const std::string& title, const present::Axis& axis) {
   Plot plot;
   plot.title = title;
   plot.x = {"time", "s"};
@@ -29,18 +32,18 @@ Plot over_time(const Outcome& o, const std::string& title, const report::Axis& a
 }
 
 Plot parameter_plot(const Outcome& o, std::size_t i) {
-  const monitor::tracking::SearchParameter& p = o.choice.parameters[i];
-  const bool relative = p.scale == monitor::tracking::Scale::logarithmic;
+  const greybox::SearchParameter& p = o.choice.parameters[i];
+  const bool relative = p.scale == greybox::Scale::logarithmic;
   const double healthy = p.value(o.healthy.x[static_cast<Eigen::Index>(i)]);
-  Plot plot = over_time(o, monitor::tracking::name_words(p.name),
-                        relative ? report::Axis{"of the healthy value", "%"}
-                                 : report::Axis{monitor::tracking::name_words(p.name), ""});
+  Plot plot = over_time(o, tracking::name_words(p.name),
+                        relative ? present::Axis{"of the healthy value", "%"}
+                                 : present::Axis{tracking::name_words(p.name), ""});
   const double factor = relative ? 100.0 / healthy : 1.0;
   Series value{"found", {}, {}, Tone::model, {}, false};
   Series low{"95 %, low", {}, {}, Tone::muted, {}, true};
   Series high{"95 %, high", {}, {}, Tone::muted, {}, true};
   for (const Window& window : o.windows) {
-    const monitor::tracking::Estimate& estimate = window.estimates[i];
+    const tracking::Estimate& estimate = window.estimates[i];
     const double about = kInterval * estimate.std_error;
     value.y.push_back(estimate.valid ? factor * estimate.value : kNaN);
     low.y.push_back(estimate.valid ? factor * (estimate.value - about) : kNaN);
@@ -61,8 +64,8 @@ Plot error_plot(const Outcome& o) {
   return plot;
 }
 
-report::Table alarm_table(const Outcome& o) {
-  report::Table table;
+present::Table alarm_table(const Outcome& o) {
+  present::Table table;
   table.columns = {{"from", "s"},
                    {"to", "s"},
                    {"what", "", false},
@@ -71,21 +74,21 @@ report::Table alarm_table(const Outcome& o) {
   for (const Alarm& alarm : o.alarms) {
     table.rows.push_back({number("%.2f", alarm.raised_s),
                           alarm.active() ? "" : number("%.2f", alarm.cleared_s),
-                          monitor::tracking::change_words(o.choice, alarm.named, o.healthy.x),
+                          tracking::change_words(o.choice, alarm.named, o.healthy.x),
                           number("%.4f", std::min(alarm.confidence, 0.9999)),
-                          monitor::tracking::group_words(o.choice, alarm.named)});
+                          tracking::group_words(o.choice, alarm.named)});
   }
   return table;
 }
 
 }  // namespace
 
-report::Report to_report(const Outcome& o) {
-  report::Report page;
+present::Report to_report(const Outcome& o) {
+  present::Report page;
   page.title = "Isolation: " + std::filesystem::path(o.record).filename().string();
   std::size_t invalid = 0;
   for (const Window& window : o.windows) invalid += window.valid ? 0 : 1;
-  page.state = o.alarms.empty() ? report::State::good : report::State::warn;
+  page.state = o.alarms.empty() ? present::State::good : present::State::warn;
   page.verdict = o.alarms.empty() ? "No change named."
                                   : std::to_string(o.alarms.size()) +
                                         (o.alarms.size() == 1 ? " change" : " changes") + " named.";
@@ -97,12 +100,12 @@ report::Report to_report(const Outcome& o) {
   page.command = o.command;
   page.made_with = "spoolwatch isolate";
   if (!o.alarms.empty()) {
-    report::Section alarms;
+    present::Section alarms;
     alarms.heading = "Changes";
     alarms.tables.push_back(alarm_table(o));
     page.sections.push_back(alarms);
   }
-  report::Section course;
+  present::Section course;
   course.heading = "Parameters over time";
   for (std::size_t i = 0; i < o.choice.tracked; ++i) course.plots.push_back(parameter_plot(o, i));
   course.plots.push_back(error_plot(o));

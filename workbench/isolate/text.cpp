@@ -3,18 +3,21 @@
 #include <cmath>
 #include <map>
 
-#include "daemon/tracking/quantity.h"
-#include "daemon/tracking/words.h"
+#include "config/units/quantity.h"
+#include "estimator/greybox/tracking/words.h"
 #include "workbench/isolate/outcome.h"
 
 namespace workbench::isolate {
+
+namespace greybox = estimator::greybox;
+namespace tracking = estimator::greybox::tracking;
 namespace {
 
-using monitor::tracking::length_words;
-using monitor::tracking::number;
+using config::units::length_words;
+using config::units::number;
 
 std::string pressure(double value_Pa) {
-  return monitor::tracking::words(monitor::tracking::quantity("pressure_Pa", value_Pa, NAN));
+  return config::units::words(config::units::quantity("pressure_Pa", value_Pa, NAN));
 }
 
 std::string seconds(double s) { return number("%.4g", s) + " s"; }
@@ -26,15 +29,15 @@ std::string healthy_line(const Outcome& o) {
               : " (given)";
   text +=
       ": error " + length_words(o.healthy.rms_m) + ", noise floor " + length_words(o.noise_floor_m);
-  const monitor::tracking::ChamberErrors& chambers = o.healthy.chambers;
+  const tracking::ChamberErrors& chambers = o.healthy.chambers;
   if (chambers.known()) {
     text += ", pressures in " + pressure(chambers.in.rms_Pa) + " and out " +
             pressure(chambers.out.rms_Pa);
   }
   for (std::size_t i = 0; i < o.choice.tracked; ++i) {
-    const monitor::tracking::SearchParameter& p = o.choice.parameters[i];
-    text += ", " + monitor::tracking::name_words(p.name) + " " +
-            monitor::tracking::value_words(p, o.healthy.x[static_cast<Eigen::Index>(i)], NAN);
+    const greybox::SearchParameter& p = o.choice.parameters[i];
+    text += ", " + tracking::name_words(p.name) + " " +
+            tracking::value_words(p, o.healthy.x[static_cast<Eigen::Index>(i)], NAN);
   }
   return text + "\n";
 }
@@ -42,9 +45,9 @@ std::string healthy_line(const Outcome& o) {
 std::string alarm_lines(const Outcome& o, const Alarm& alarm) {
   std::string text = "ALARM " + seconds(alarm.raised_s) +
                      (alarm.active() ? "" : " to " + seconds(alarm.cleared_s)) + ": " +
-                     monitor::tracking::change_words(o.choice, alarm.named, o.healthy.x) +
-                     " (confidence " + number("%.4f", std::min(alarm.confidence, 0.9999)) + ")\n";
-  const std::string group = monitor::tracking::group_words(o.choice, alarm.named);
+                     tracking::change_words(o.choice, alarm.named, o.healthy.x) + " (confidence " +
+                     number("%.4f", std::min(alarm.confidence, 0.9999)) + ")\n";
+  const std::string group = tracking::group_words(o.choice, alarm.named);
   return group.empty() ? text : text + "      " + group + "\n";
 }
 
@@ -86,10 +89,10 @@ std::string window_lines(const Outcome& o) {
 std::string window_line(const Outcome& o, const Window& window) {
   std::string text = number("%9.3f", window.t_s) + " s ";
   for (std::size_t i = 0; i < o.choice.tracked; ++i) {
-    const monitor::tracking::SearchParameter& p = o.choice.parameters[i];
-    const monitor::tracking::Estimate& estimate = window.estimates[i];
-    text += " " + monitor::tracking::words(
-                      monitor::tracking::quantity(p.name, estimate.value, estimate.std_error));
+    const greybox::SearchParameter& p = o.choice.parameters[i];
+    const tracking::Estimate& estimate = window.estimates[i];
+    text += " " + config::units::words(
+                      config::units::quantity(p.name, estimate.value, estimate.std_error));
     text += i + 1 < o.choice.tracked ? "," : "";
   }
   text += ", error " + length_words(window.rms_m);

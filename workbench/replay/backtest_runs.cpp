@@ -10,18 +10,18 @@
 #include "config/record/record.h"
 #include "config/schema/document.h"
 #include "config/schema/error.h"
-#include "workbench/record_samples.h"
 #include "workbench/replay/log_walk.h"
-#include "workbench/rig_table.h"
+#include "workbench/train/record_samples.h"
+#include "workbench/train/rig_table.h"
 
 namespace workbench::replay {
 namespace {
 
 namespace fs = std::filesystem;
 using config::schema::bad_data;
+using config::signals::Sample;
 using estimator::fdi::Alarm;
 using estimator::fdi::Pipeline;
-using estimator::fdi::Sample;
 
 std::string id_of(const std::string& source, const std::string& name) {
   return source + "." + name;
@@ -157,7 +157,7 @@ BacktestRun run_record(const std::string& file, const Rules& new_rules,
   Course course(new_rules, old_rules);
   course.run.files = {file};
   const config::record::Record record = config::record::read_record(file);
-  for (const Sample& sample : to_samples(record)) course.take(sample, record.sample_time_s);
+  for (const Sample& sample : train::to_samples(record)) course.take(sample, record.sample_time_s);
   return course.finish();
 }
 
@@ -169,7 +169,7 @@ Rules read_rules(const std::string& file) {
   const config::schema::Document document = config::schema::Document::load(file);
   document.read_part([&](config::schema::Visitor& v) {
     rules.pipeline.visit(v);
-    visit_rig(v, rules.rig_id);
+    train::visit_rig(v, rules.rig_id);
   });
   rules.folder = document.folder();
   const bool none_by_itself =

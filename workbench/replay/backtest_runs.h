@@ -7,18 +7,20 @@
 #include <string>
 #include <vector>
 
-#include "daemon/tracking/source_kinds.h"
 #include "estimator/fdi/pipeline.h"
+#include "estimator/fdi/tracker/source_kinds.h"
 #include "workbench/replay/occurrences.h"
 
 namespace workbench::replay {
+
+namespace tracker = estimator::fdi::tracker;
 
 /// The alarms' part of a configuration file.
 struct Rules {
   std::string file;
   std::filesystem::path folder;  ///< bands_file starts here
   std::string rig_id;            ///< "" where the file does not say
-  estimator::fdi::PipelineConfig pipeline{monitor::tracking::source_kinds()};
+  estimator::fdi::PipelineConfig pipeline{tracker::source_kinds()};
 };
 
 /// Throws config::schema::Error (exit 78).

@@ -24,9 +24,9 @@ Message decoded(const lcm::LogEvent& event, const std::string& file) {
   return message;
 }
 
-estimator::fdi::Quality quality_of(std::int8_t quality) noexcept {
+config::signals::Quality quality_of(std::int8_t quality) noexcept {
   const bool known = quality >= 0 && quality <= 3;
-  return known ? static_cast<estimator::fdi::Quality>(quality) : estimator::fdi::Quality::bad;
+  return known ? static_cast<config::signals::Quality>(quality) : config::signals::Quality::bad;
 }
 
 }  // namespace
@@ -73,9 +73,9 @@ std::string find_prefix(const std::string& file) {
   return "";
 }
 
-estimator::fdi::Sample to_sample(const spoolwatch::sample_t& message,
-                                 const Beside& beside) noexcept {
-  estimator::fdi::Sample sample;
+config::signals::Sample to_sample(const spoolwatch::sample_t& message,
+                                  const Beside& beside) noexcept {
+  config::signals::Sample sample;
   sample.tick = message.tick;
   sample.t_read_ns = message.t_read_ns;
   sample.t_write_ns = message.t_write_ns;
@@ -94,7 +94,7 @@ estimator::fdi::Sample to_sample(const spoolwatch::sample_t& message,
   const spoolwatch::rods_t* rods = beside.rods;
   if (rods == nullptr) return sample;
   const auto count =
-      std::min(static_cast<std::size_t>(std::max(rods->count, 0)), estimator::fdi::kMaxRods);
+      std::min(static_cast<std::size_t>(std::max(rods->count, 0)), config::signals::kMaxRods);
   sample.rod_count = static_cast<std::uint8_t>(count);
   sample.rod_in_charge = static_cast<std::uint8_t>(rods->in_charge);
   sample.rod_changed = rods->changed != 0;

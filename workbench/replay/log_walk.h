@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "estimator/fdi/sample.h"
+#include "config/signals/sample.h"
 #include "spoolwatch/alarm_t.hpp"
 #include "spoolwatch/estimate_t.hpp"
 #include "spoolwatch/pressures_t.hpp"
@@ -46,7 +46,7 @@ void walk_log(const std::string& file, const std::string& prefix, LogVisitor& vi
 /// The prefix of the first sample's channel; "" when there is none.
 [[nodiscard]] std::string find_prefix(const std::string& file);
 
-[[nodiscard]] estimator::fdi::Sample to_sample(const spoolwatch::sample_t& message,
-                                               const Beside& beside) noexcept;
+[[nodiscard]] config::signals::Sample to_sample(const spoolwatch::sample_t& message,
+                                                const Beside& beside) noexcept;
 
 }  // namespace workbench::replay

@@ -6,16 +6,18 @@
 #include <string>
 #include <vector>
 
-#include "daemon/tracking/source_kinds.h"
 #include "estimator/fdi/pipeline.h"
+#include "estimator/fdi/tracker/source_kinds.h"
 
 namespace workbench::replay {
+
+namespace tracker = estimator::fdi::tracker;
 
 struct Pack {
   std::filesystem::path log;
   std::string rig_id, prefix;
   double sample_time_s = 0.0;
-  estimator::fdi::PipelineConfig pipeline{monitor::tracking::source_kinds()};
+  estimator::fdi::PipelineConfig pipeline{tracker::source_kinds()};
   std::uint64_t pipeline_hash = 0;
   std::vector<std::uint8_t> state;  ///< before the first sample
   std::int64_t first_tick = 0;

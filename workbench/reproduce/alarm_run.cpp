@@ -38,12 +38,13 @@ class Recorder final : public fdi::Events {
 }  // namespace
 
 double AlarmRun::next(double after_s, int direction) const noexcept {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  constexpr double live::kNone = std::numeric_limits<double>::quiet_NaN();
   for (const AlarmChange& change : changes) {
     if (change.t_s < after_s) continue;
-    return change.direction == direction && change.active == (direction != 0) ? change.t_s : kNone;
+    return change.direction == direction && change.active == (direction != 0) ? change.t_s
+                                                                              : live::kNone;
   }
-  return kNone;
+  return live::kNone;
 }
 
 double AlarmRun::first(double after_s, int direction) const noexcept {
@@ -61,7 +62,7 @@ AlarmRun run_with_alarms(const Scenario& scenario, const fdi::PipelineConfig& co
   const std::int64_t samples = std::llround(duration_s / simulate::kSampleTime_s);
   for (std::int64_t tick = 0; tick < samples; ++tick) {
     const simulate::LoopRow row = loop.step();
-    fdi::Sample sample;
+    config::signals::Sample sample;
     sample.tick = tick;
     sample.t_read_ns = std::llround(row.t_s * 1e9);
     sample.t_write_ns = sample.t_read_ns;

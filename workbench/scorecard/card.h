@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "workbench/report/report.h"
+#include "workbench/present/report.h"
 #include "workbench/scorecard/store.h"
 #include "workbench/scorecard/trials.h"
 
@@ -98,6 +98,6 @@ struct Card {
 /// number is null; a smallest size that was not found is null.
 [[nodiscard]] std::string to_json(const Card& card);
 
-[[nodiscard]] report::Report to_report(const Card& card);
+[[nodiscard]] present::Report to_report(const Card& card);
 
 }  // namespace workbench::scorecard

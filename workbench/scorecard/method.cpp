@@ -11,9 +11,9 @@
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "estimator/fdi/trained.h"
-#include "workbench/learn_bands.h"
 #include "workbench/scorecard/shipped.h"
 #include "workbench/simulate/closed_loop.h"
+#include "workbench/train/learn_bands.h"
 
 namespace workbench::scorecard {
 namespace {
@@ -178,11 +178,11 @@ fdi::PipelineConfig learn(const Method& method, const Lessons& lessons) {
   }
   const auto open = [](const fdi::BandConfig& band) { return open_ended(band); };
   if (std::none_of(trained.bands.begin(), trained.bands.end(), open)) return trained;
-  LearnOptions options;
+  train::LearnOptions options;
   options.config = method.file;
   options.false_alarm_time_s = method.false_alarm_time_s;
-  const fdi::LearnedBands bands =
-      learn_bands(trained, wanted_quantities(trained, method.file), {&lessons.healthy, 1}, options);
+  const fdi::LearnedBands bands = train::learn_bands(
+      trained, train::wanted_quantities(trained, method.file), {&lessons.healthy, 1}, options);
   for (const fdi::LearnedBand& learned : bands.bands) {
     for (fdi::BandConfig& band : trained.bands) {
       if (band.quantity != learned.quantity || !open_ended(band)) continue;

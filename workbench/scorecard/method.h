@@ -8,12 +8,14 @@
 
 #include <string>
 
-#include "daemon/tracking/source_kinds.h"
 #include "estimator/fdi/pipeline.h"
+#include "estimator/fdi/tracker/source_kinds.h"
 #include "workbench/scorecard/stand.h"
 #include "workbench/train/learn.h"
 
 namespace workbench::scorecard {
+
+namespace tracker = estimator::fdi::tracker;
 
 struct Method {
   std::string name;
@@ -21,7 +23,7 @@ struct Method {
   double false_alarm_time_s = 86400.0;  ///< of each learned band, aimed at
   double healthy_share = 1.0;        ///< of the plan's hours without a fault, where it takes long
   std::vector<std::string> notices;  ///< alarms that are no faults, and are not counted
-  estimator::fdi::PipelineConfig pipeline{monitor::tracking::source_kinds()};
+  estimator::fdi::PipelineConfig pipeline{tracker::source_kinds()};
   std::string file;
   std::string text;  ///< as it is in effect: what results depend on
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "workbench/diagnose/quantity.h"
+#include "config/units/quantity.h"
 #include "workbench/scorecard/card.h"
 #include "workbench/scorecard/statistics.h"
 #include "workbench/scorecard/words.h"
@@ -10,9 +10,9 @@
 namespace workbench::scorecard {
 namespace {
 
-using diagnose::number;
-using report::Plot;
-using report::Table;
+using config::units::number;
+using present::Plot;
+using present::Table;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -22,8 +22,8 @@ std::vector<std::string> method_names(const Card& card) {
   return names;
 }
 
-report::Section false_alarms(const Card& card) {
-  report::Section section;
+present::Section false_alarms(const Card& card) {
+  present::Section section;
   section.heading = "False alarms";
   section.paragraphs = {
       "An alarm counts once, when it comes while none stands. The limit is that of Poisson's law: "
@@ -34,11 +34,11 @@ report::Section false_alarms(const Card& card) {
   for (const Benign& change : card.benign) table.columns.push_back({change.id, "", false});
   Plot plot;
   plot.title = "False alarms when healthy";
-  plot.kind = report::Kind::bars;
+  plot.kind = present::Kind::bars;
   plot.horizontal = true;
   plot.categories = method_names(card);
   plot.y = {"upper limit (95 %)", "1/h", true};
-  report::Series limit{"limit", {}, {}, report::Tone::residual, {}, false};
+  present::Series limit{"limit", {}, {}, present::Tone::residual, {}, false};
   for (const MethodFigures& method : card.methods) {
     const QuietFigures& q = method.healthy;
     const bool any = q.hours > 0.0;
@@ -65,12 +65,12 @@ report::Section false_alarms(const Card& card) {
 Plot smallest_plot(const Card& card, const Fault& fault) {
   Plot plot;
   plot.title = fault_words(fault);
-  plot.kind = report::Kind::bars;
+  plot.kind = present::Kind::bars;
   plot.horizontal = true;
-  plot.width = report::Width::half;
+  plot.width = present::Width::half;
   plot.categories = method_names(card);
   plot.y = {"smallest detected, " + card.motions.front(), fault.unit, true};
-  report::Series bars{"smallest", {}, {}, report::Tone::model, {}, false};
+  present::Series bars{"smallest", {}, {}, present::Tone::model, {}, false};
   for (const MethodFigures& method : card.methods) {
     const FaultFigures* const of = figures_of(method, fault);
     const auto smallest = of == nullptr ? std::nullopt : of->smallest(card.motions.front());
@@ -80,8 +80,8 @@ Plot smallest_plot(const Card& card, const Fault& fault) {
   return plot;
 }
 
-report::Section smallest(const Card& card) {
-  report::Section section;
+present::Section smallest(const Card& card) {
+  present::Section section;
   section.heading = "Smallest fault detected";
   section.paragraphs = {detected_words(card)};
   Table table;
@@ -113,8 +113,8 @@ report::Section smallest(const Card& card) {
 Plot delay_plot(const Card& card, const Fault& fault) {
   Plot plot;
   plot.title = sized_words(fault);
-  plot.kind = report::Kind::steps;
-  plot.width = report::Width::half;
+  plot.kind = present::Kind::steps;
+  plot.width = present::Width::half;
   plot.x = {"after the fault", "s"};
   plot.y = {"detected", "%"};
   plot.lines = {{100.0 * kDetected, "asked for"}};
@@ -123,7 +123,7 @@ Plot delay_plot(const Card& card, const Fault& fault) {
     if (of == nullptr || of->trials() == 0) continue;
     std::vector<double> delays_s = of->delays_s();
     std::sort(delays_s.begin(), delays_s.end());
-    report::Series curve{method.name, {0.0}, {0.0}, report::Tone::automatic, {}, false};
+    present::Series curve{method.name, {0.0}, {0.0}, present::Tone::automatic, {}, false};
     double share = 0.0;
     for (std::size_t i = 0; i < delays_s.size() && std::isfinite(delays_s[i]); ++i) {
       share = 100.0 * static_cast<double>(i + 1) / static_cast<double>(delays_s.size());
@@ -138,8 +138,8 @@ Plot delay_plot(const Card& card, const Fault& fault) {
   return plot;
 }
 
-report::Section delays(const Card& card) {
-  report::Section section;
+present::Section delays(const Card& card) {
+  present::Section section;
   section.heading = "Delay";
   section.paragraphs = {"At the stated size, over all motions and both directions."};
   Table table;
@@ -185,8 +185,8 @@ Table matrix(const MethodFigures& method) {
   return table;
 }
 
-report::Section names(const Card& card) {
-  report::Section section;
+present::Section names(const Card& card) {
+  present::Section section;
   section.heading = "Names";
   section.paragraphs = {
       "The true fault and what the first alarm named, at the stated size, over all motions, "
@@ -216,11 +216,11 @@ report::Section names(const Card& card) {
 
 }  // namespace
 
-report::Report to_report(const Card& card) {
-  report::Report page;
+present::Report to_report(const Card& card) {
+  present::Report page;
   page.title = "Scorecard";
   const bool complete = card.done == card.parts;
-  page.state = complete ? report::State::good : report::State::warn;
+  page.state = complete ? present::State::good : present::State::warn;
   page.verdict = std::to_string(card.methods.size()) + " methods, " +
                  std::to_string(faults_of(card).size()) + " faults, " +
                  std::to_string(card.motions.size()) +

@@ -72,7 +72,7 @@ Samples run(const simulate::Scenario& scenario, double duration_s, std::uint64_t
   Samples samples(static_cast<std::size_t>(std::llround(duration_s / simulate::kSampleTime_s)));
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const simulate::LoopRow row = loop.step();
-    estimator::fdi::Sample& s = samples[k];
+    config::signals::Sample& s = samples[k];
     s.tick = static_cast<std::int64_t>(k);
     s.t_read_ns = std::llround(row.t_s * 1e9);
     s.t_write_ns = s.t_read_ns;
@@ -96,7 +96,7 @@ config::record::Record to_record(const Samples& samples, std::string_view name) 
   record.name = name;
   record.sample_time_s = simulate::kSampleTime_s;
   std::vector<double> reference_m;
-  for (const estimator::fdi::Sample& s : samples) {
+  for (const config::signals::Sample& s : samples) {
     record.t_s.push_back(static_cast<double>(s.tick) * simulate::kSampleTime_s);
     record.u_V.push_back(s.u_applied_V);
     record.y_m.push_back(s.y_m);

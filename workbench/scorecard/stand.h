@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "config/record/record.h"
-#include "estimator/fdi/sample.h"
+#include "config/signals/sample.h"
 #include "workbench/scorecard/plan.h"
 
 namespace workbench::scorecard {
 
-using Samples = std::vector<estimator::fdi::Sample>;
+using Samples = std::vector<config::signals::Sample>;
 
 /// A fault of one size, in one direction (+1, -1).
 struct Injected {

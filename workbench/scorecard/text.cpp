@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "workbench/diagnose/quantity.h"
+#include "config/units/quantity.h"
 #include "workbench/scorecard/card.h"
 #include "workbench/scorecard/statistics.h"
 #include "workbench/scorecard/words.h"
@@ -10,7 +10,7 @@
 namespace workbench::scorecard {
 namespace {
 
-using diagnose::number;
+using config::units::number;
 using Rows = std::vector<std::vector<std::string>>;
 
 /// Characters, not bytes.

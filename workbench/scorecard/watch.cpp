@@ -54,7 +54,7 @@ Quiet& Quiet::operator+=(const Quiet& other) {
 /// Follows which alarms stand.
 class Watch::Listener final : public fdi::Events {
  public:
-  explicit Listener(std::vector<std::string> notices) : notices_(std::move(notices)) {}
+  explicit live::Listener(std::vector<std::string> notices) : notices_(std::move(notices)) {}
   void on_estimate(const fdi::EstimateEvent& /*event*/) override {}
   void on_alarm(const fdi::Alarm& alarm) override {
     const std::string key = alarm.source + "." + alarm.name;
@@ -93,7 +93,8 @@ Watch::Watch(const fdi::PipelineConfig& config, double sample_time_s,
       sample_time_s_(sample_time_s),
       notices_(std::move(notices)) {}
 
-void Watch::take_lead(const Samples& samples, std::size_t end, Listener& listener, Lead* lead) {
+void Watch::take_lead(const Samples& samples, std::size_t end, live::Listener& listener,
+                      Lead* lead) {
   if (lead != nullptr && lead->said != nullptr) {
     estimator::Carrier carrier = estimator::Carrier::restoring(lead->pipeline);
     pipeline_.carry(carrier);
@@ -107,7 +108,7 @@ void Watch::take_lead(const Samples& samples, std::size_t end, Listener& listene
   if (lead == nullptr) return;
   estimator::Carrier carrier = estimator::Carrier::saving(lead->pipeline);
   pipeline_.carry(carrier);
-  lead->said = std::make_shared<Listener>(listener);
+  lead->said = std::make_shared<live::Listener>(listener);
 }
 
 Answer Watch::fault(const Samples& samples, double at_s, const std::vector<std::string>& names,
@@ -117,7 +118,7 @@ Answer Watch::fault(const Samples& samples, double at_s, const std::vector<std::
   };
   std::size_t k = 0;
   while (k < samples.size() && time_s(k) < at_s) ++k;
-  Listener listener(notices_);
+  live::Listener listener(notices_);
   take_lead(samples, k, listener, lead);
   Answer answer;
   if (listener.standing > 0) {
@@ -141,10 +142,10 @@ Answer Watch::fault(const Samples& samples, double at_s, const std::vector<std::
 
 Quiet Watch::quiet(const Samples& samples) {
   pipeline_.reset();
-  Listener listener(notices_);
+  live::Listener listener(notices_);
   Quiet quiet;
   bool stood = false;
-  for (const fdi::Sample& sample : samples) {
+  for (const config::signals::Sample& sample : samples) {
     pipeline_.process(sample, listener);
     const bool stands = listener.standing > 0;
     // One that came and went within the sample was there, too.

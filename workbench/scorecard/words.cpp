@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "workbench/diagnose/quantity.h"
+#include "config/units/quantity.h"
 #include "workbench/scorecard/statistics.h"
 
 namespace workbench::scorecard {
 
-using diagnose::number;
+using config::units::number;
 
 namespace {
 

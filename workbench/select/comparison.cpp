@@ -6,8 +6,8 @@
 #include <thread>
 
 #include "config/schema/error.h"
+#include "estimator/parallel.h"
 #include "estimator/residual/noise_floor.h"
-#include "workbench/diagnose/parallel.h"
 #include "workbench/select/judge.h"
 
 namespace workbench::select {
@@ -137,22 +137,22 @@ Outcome compare_structures(const Request& request,
   }
   if (candidates.empty()) candidates = usual_candidates(out.delay, request.constant);
 
-  std::vector<Judged> judged(candidates.size());
+  std::vector<estimate::Judged> judged(candidates.size());
   std::mutex mutex;
   std::size_t done = 0;
   const unsigned threads =
       request.threads > 0 ? request.threads : std::max(1u, std::thread::hardware_concurrency());
-  diagnose::in_parallel(candidates.size(), threads, [&](std::size_t i) {
+  estimator::in_parallel(candidates.size(), threads, [&](std::size_t i) {
     if (cancel()) return;
     judged[i] = judge(candidates[i], ground, cancel);
     const std::lock_guard lock(mutex);
     progress({candidates[i].name, ++done, candidates.size()});
   });
-  for (Judged& one : judged) {
+  for (estimate::Judged& one : judged) {
     if (!one.candidate.name.empty()) out.judged.push_back(std::move(one));
   }
   out.interrupted = cancel();
-  for (const Judged& one : out.judged) {
+  for (const estimate::Judged& one : out.judged) {
     out.held_out_periods =
         std::max(out.held_out_periods, static_cast<int>(one.period_costs_m2.size()));
   }

@@ -7,7 +7,7 @@
 
 #include "config/schema/error.h"
 #include "estimator/fdi/block_source.h"
-#include "workbench/record_samples.h"
+#include "workbench/train/record_samples.h"
 
 namespace workbench::train {
 namespace {
@@ -180,7 +180,7 @@ fdi::Trained learn(const fdi::PipelineConfig& pipeline, const std::vector<Teachi
       out.records.push_back(teaching.name + ": " + record.name);
       std::vector<std::shared_ptr<Rows>> rows;
       fdi::Pipeline run(collecting(pipeline, sources, rows), out.sample_time_s);
-      for (const fdi::Sample& sample : to_samples(record)) run.process(sample, silence);
+      for (const config::signals::Sample& sample : to_samples(record)) run.process(sample, silence);
       for (std::size_t i = 0; i < sources.size(); ++i) blocks[i].push_back(std::move(*rows[i]));
     }
     const bool healthy = teaching.name == fdi::Trained::kHealthy;

@@ -12,8 +12,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "config/signals/sample.h"
 #include "daemon/io/publisher.h"
-#include "estimator/fdi/sample.h"
 #include "spoolwatch/sample_t.hpp"
 #include "tests/daemon/io/log_reader.h"
 
@@ -52,7 +52,7 @@ class EvidenceTest : public testing::Test {
   }
   /// Samples from..to, a snapshot whenever one is due.
   static void run(Evidence& evidence, Publisher& publisher, std::int64_t from, std::int64_t to) {
-    estimator::fdi::Sample sample;
+    config::signals::Sample sample;
     for (sample.tick = from; sample.tick < to; ++sample.tick) {
       const std::vector<std::uint8_t> state(100, static_cast<std::uint8_t>(sample.tick));
       if (evidence.wants_state(sample.tick)) evidence.state(state, sample.tick);

@@ -25,7 +25,7 @@ namespace monitor::io {
 namespace {
 
 namespace fs = std::filesystem;
-using estimator::fdi::Sample;
+using config::signals::Sample;
 
 constexpr double kSampleTime_s = 0.005;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();

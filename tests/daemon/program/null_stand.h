@@ -26,7 +26,7 @@ struct Seen {
   double t_s;
   double valve_V;  ///< held from the tick before to this one
   double rod_m;    ///< true
-  estimator::fdi::Sample sample;
+  config::signals::Sample sample;
 };
 
 inline std::string rig_toml(const std::string& more) {

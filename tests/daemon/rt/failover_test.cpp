@@ -92,7 +92,7 @@ class Course {
       command.expires_ns = INT64_MAX;
       commands.push(command);
     }
-    estimator::fdi::Sample sample;
+    config::signals::Sample sample;
     while (grid_ticks_ < 1600) {
       ++grid_ticks_;
       loop.tick(grid.next(clock));
@@ -126,7 +126,7 @@ class Course {
   }
 
   LoopStats stats;
-  std::vector<estimator::fdi::Sample> samples;
+  std::vector<config::signals::Sample> samples;
   std::vector<double> position_m;
 
  private:
@@ -237,13 +237,13 @@ TEST(FailoverOfTwo, GoesBackOnAnOrderOrAStartOnly) {
   bench.spare_rods.push_back({"b", spare});
   bench.run();
   for (const bool by_order : {true, false}) {
-    bench.rig.quality = hal::Quality::bad;
-    const estimator::fdi::Sample without = bench.sample();
+    bench.rig.quality = config::signals::Quality::bad;
+    const config::signals::Sample without = bench.sample();
     EXPECT_EQ(without.rod_in_charge, 1);
     EXPECT_EQ(without.y_m, 0.1);
     EXPECT_TRUE(std::isnan(without.rod_m[0]));
-    EXPECT_EQ(without.rod_quality[0], estimator::fdi::Quality::bad);
-    bench.rig.quality = hal::Quality::good;
+    EXPECT_EQ(without.rod_quality[0], config::signals::Quality::bad);
+    bench.rig.quality = config::signals::Quality::good;
     for (int k = 0; k < 1000; ++k) bench.tick();
     EXPECT_EQ(bench.stats.rod_in_charge.load(), 1);
     if (by_order) {

@@ -44,7 +44,7 @@ class FakeRig final : public hal::RodSensor, public hal::ValveDrive {
 
   double y_m = 0.1;
   double command_V = hal::kMissing;
-  hal::Quality quality = hal::Quality::good;
+  config::signals::Quality quality = config::signals::Quality::good;
   bool command_saturated = false;
   bool write_good = true;
   std::int64_t read_ns = 0;
@@ -77,7 +77,7 @@ class FakeInput final : public hal::Input {
   explicit FakeInput(double value_) : value(value_) {}
   hal::InputReading read(const hal::Tick&) noexcept override { return {value, 0, quality}; }
   double value;
-  hal::Quality quality = hal::Quality::good;
+  config::signals::Quality quality = config::signals::Quality::good;
 };
 
 /// No guards but the built-in ones, and the signal at once.
@@ -102,9 +102,9 @@ class LoopBench {
 
   bool tick() { return loop_.tick(grid_.next(clock)); }
   /// Ticks once and returns its sample.
-  estimator::fdi::Sample sample() {
+  config::signals::Sample sample() {
     tick();
-    estimator::fdi::Sample last;
+    config::signals::Sample last;
     while (samples.pop(last)) {
     }
     return last;

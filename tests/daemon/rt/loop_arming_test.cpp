@@ -80,8 +80,8 @@ TEST(Switches, OneThatCannotBeReadMeansNullAtOnceAndTripsWhenItLasts) {
     hal::InputRole role;
     State after;
   } cases[] = {{hal::InputRole::enable, State::disarmed}, {hal::InputRole::e_stop, State::latched}};
-  const std::pair<double, hal::Quality> unread[] = {{std::nan(""), hal::Quality::good},
-                                                    {1.0, hal::Quality::bad}};
+  const std::pair<double, config::signals::Quality> unread[] = {
+      {std::nan(""), config::signals::Quality::good}, {1.0, config::signals::Quality::bad}};
   for (const auto& [role, after] : cases) {
     for (const auto& [value, quality] : unread) {
       SwitchBench bench(role, 1.0);
@@ -95,7 +95,7 @@ TEST(Switches, OneThatCannotBeReadMeansNullAtOnceAndTripsWhenItLasts) {
           EXPECT_EQ(bench.state(), i < kMaxBadInARow ? State::run : after) << ticks;
         }
         bench.input->value = 1.0;
-        bench.input->quality = hal::Quality::good;
+        bench.input->quality = config::signals::Quality::good;
         bench.tick();
         EXPECT_EQ(bench.last_V() != kFakeNull_V, ticks <= kMaxBadInARow) << ticks;
       }
@@ -152,13 +152,13 @@ TEST(Monitor, TakesTheCommandFromItsInput) {
   Grid grid(0, kFakePeriod_ns);
   const auto u_V = [&] {
     loop.tick(grid.next(bench.clock));
-    estimator::fdi::Sample sample;
+    config::signals::Sample sample;
     bench.samples.pop(sample);
     EXPECT_EQ(sample.state, 0);
     return sample.u_applied_V;
   };
   EXPECT_EQ(u_V(), 2.5);
-  input->quality = hal::Quality::bad;
+  input->quality = config::signals::Quality::bad;
   EXPECT_TRUE(std::isnan(u_V())) << "a missing command is missing";
   EXPECT_EQ(bench.stats.inputs[0].good.value(), 1);
   EXPECT_EQ(bench.stats.inputs[0].bad.value(), 1);
@@ -167,13 +167,13 @@ TEST(Monitor, TakesTheCommandFromItsInput) {
 
 TEST(Missing, ForbidsToArmButLatchesNothingThatIsDisarmed) {
   LoopBench bench;
-  bench.rig.quality = hal::Quality::bad;
+  bench.rig.quality = config::signals::Quality::bad;
   for (int k = 0; k < 10; ++k) bench.tick();
   EXPECT_EQ(bench.state(), State::disarmed);
   const control::Answer answer = ask(bench, Event::arm);
   EXPECT_EQ(answer.refusal, Refusal::guard);
   EXPECT_EQ(answer.guard, static_cast<std::uint8_t>(control::GuardKind::missing));
-  bench.rig.quality = hal::Quality::good;
+  bench.rig.quality = config::signals::Quality::good;
   EXPECT_EQ(ask(bench, Event::arm).refusal, Refusal::none);
 }
 

@@ -37,7 +37,7 @@ TEST(Hold, FreezesTheReferenceWhereTheRodIsAndAStartResumes) {
   bench.rig.y_m = 0.21;
   EXPECT_DOUBLE_EQ(bench.sample().reference_m, 0.21);
   bench.rig.y_m = 0.19;
-  const estimator::fdi::Sample sample = bench.sample();
+  const config::signals::Sample sample = bench.sample();
   EXPECT_DOUBLE_EQ(sample.reference_m, 0.21) << "held, not following the rod";
   EXPECT_NEAR(sample.u_applied_V, kFakeNull_V + 100.0 * 0.02, kRounding_V) << "the law goes on";
   EXPECT_TRUE(bench.stats.holding.load());
@@ -145,7 +145,7 @@ TEST(Guards, SensorsThatDisagreeForbidToArmAndLatch) {
   EXPECT_EQ(bench.state(), State::latched);
   bench.order(Event::reset);
   EXPECT_EQ(ask(bench, Event::arm).refusal, Refusal::guard);
-  spare->quality = hal::Quality::bad;
+  spare->quality = config::signals::Quality::bad;
   bench.tick();
   EXPECT_EQ(ask(bench, Event::arm).refusal, Refusal::none)
       << "a spare without a reading is counted";
@@ -175,7 +175,7 @@ TEST(Guards, StaleIsTheSensorsWordWhereTheAgeIsNotKnown) {
     bench.tick();
     bench.run();
     bench.rig.t_ns = known ? bench.clock.now_ns() : 0;
-    bench.rig.quality = hal::Quality::stale;
+    bench.rig.quality = config::signals::Quality::stale;
     bench.tick();
     EXPECT_EQ(bench.state(), known ? State::run : State::latched);
   }
@@ -200,9 +200,9 @@ TEST(Start, BeginsWhereTheRodIsAndSoDoesTheLawAfterANull) {
   EXPECT_EQ(bench.last_V(), kFakeNull_V) << "no error, no command";
   for (int k = 0; k < 1000; ++k) bench.tick();
   EXPECT_NEAR(bench.last_V(), kLaw_V, kRounding_V);
-  bench.rig.quality = hal::Quality::bad;
+  bench.rig.quality = config::signals::Quality::bad;
   bench.tick();
-  bench.rig.quality = hal::Quality::good;
+  bench.rig.quality = config::signals::Quality::good;
   EXPECT_DOUBLE_EQ(bench.sample().reference_m, 0.1);
   EXPECT_EQ(bench.last_V(), kFakeNull_V);
 }
@@ -211,7 +211,7 @@ TEST(Start, NeedsAPosition) {
   LoopBench bench;
   bench.order(Event::arm);
   bench.tick();
-  bench.rig.quality = hal::Quality::bad;
+  bench.rig.quality = config::signals::Quality::bad;
   EXPECT_EQ(ask(bench, Event::start).refusal, Refusal::position);
 }
 

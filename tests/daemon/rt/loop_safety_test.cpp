@@ -17,7 +17,7 @@ TEST(Overrun, HoldsTheOutputMarksTheGapAndGoesOnWithTheLaw) {
   bench.sample();
   const std::size_t writes = bench.rig.writes.size();
   bench.clock.advance_ns(3 * kFakePeriod_ns + kFakePeriod_ns / 2);
-  const estimator::fdi::Sample sample = bench.sample();
+  const config::signals::Sample sample = bench.sample();
   EXPECT_EQ(bench.rig.writes.size(), writes + 1) << "nothing may be written for periods skipped";
   EXPECT_EQ(sample.tick, 5);
   EXPECT_EQ(sample.gap, 3);
@@ -35,7 +35,7 @@ TEST(Overrun, WritesNullInTheFirstTickAfterFiftyMilliseconds) {
     LoopBench bench(config);
     bench.run();
     bench.clock.advance_ns(lost * kFakePeriod_ns + 1);  // lost periods, then one more wait
-    const estimator::fdi::Sample sample = bench.sample();
+    const config::signals::Sample sample = bench.sample();
     ASSERT_EQ(sample.gap, lost);
     // From tick to tick lost + 1 periods of 5 ms went by: 45 ms, 50 ms, 155 ms.
     EXPECT_EQ(sample.u_applied_V == kFakeNull_V, null) << lost << " periods lost";
@@ -79,14 +79,14 @@ TEST(Loop, WritesNullWhileThePositionIsMissingAndLatchesAfterTooMany) {
   LoopBench bench(config);
   bench.run();
   for (int k = 0; k < 3; ++k) {
-    bench.rig.quality = hal::Quality::bad;
-    const estimator::fdi::Sample sample = bench.sample();
+    bench.rig.quality = config::signals::Quality::bad;
+    const config::signals::Sample sample = bench.sample();
     EXPECT_EQ(sample.u_applied_V, kFakeNull_V);
     EXPECT_TRUE(std::isnan(sample.y_m)) << "a missing value must not look like a reading";
-    EXPECT_EQ(sample.quality, estimator::fdi::Quality::bad);
+    EXPECT_EQ(sample.quality, config::signals::Quality::bad);
     EXPECT_EQ(bench.state(), State::run);
   }
-  bench.rig.quality = hal::Quality::good;
+  bench.rig.quality = config::signals::Quality::good;
   EXPECT_NEAR(bench.sample().u_applied_V, kLaw_V, kRounding_V);
   bench.rig.y_m = std::nan("");  // no number is no reading, whatever the device says of it
   for (int k = 0; k < 4; ++k) bench.tick();
@@ -117,10 +117,10 @@ TEST(Loop, ResetLeadsToDisarmedNotBackToMotion) {
   config.max_bad_in_a_row = 0;
   LoopBench bench(config);
   bench.run();
-  bench.rig.quality = hal::Quality::bad;
+  bench.rig.quality = config::signals::Quality::bad;
   bench.tick();
   ASSERT_EQ(bench.state(), State::latched);
-  bench.rig.quality = hal::Quality::good;
+  bench.rig.quality = config::signals::Quality::good;
   bench.order(Event::reset);
   bench.tick();
   EXPECT_EQ(bench.state(), State::disarmed);

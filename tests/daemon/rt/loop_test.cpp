@@ -33,7 +33,7 @@ TEST(Loop, SampleCarriesWhatWasReadAskedForAndApplied) {
   bench.run();
   bench.rig.y_m = 0.25;
   bench.rig.read_ns = 40'000;
-  const estimator::fdi::Sample sample = bench.sample();
+  const config::signals::Sample sample = bench.sample();
   EXPECT_EQ(sample.tick, 1);
   EXPECT_DOUBLE_EQ(sample.y_m, 0.25);
   EXPECT_DOUBLE_EQ(sample.reference_m, 0.3);
@@ -53,7 +53,7 @@ TEST(Loop, WithoutAValveIsMonitorAndPassesOnTheMeasuredCommand) {
   bench.rig.command_saturated = true;
   bench.order(Event::arm);
   bench.order(Event::start);
-  const estimator::fdi::Sample sample = bench.sample();
+  const config::signals::Sample sample = bench.sample();
   EXPECT_EQ(bench.state(), State::monitor);
   EXPECT_TRUE(bench.rig.writes.empty());
   EXPECT_EQ(sample.u_applied_V, 1.25);
@@ -107,7 +107,7 @@ TEST(Loop, CountsSamplesDroppedByAFullQueueAndMarksTheGap) {
   constexpr int kCapacity = 2000;
   for (int i = 0; i < kCapacity + 7; ++i) bench.tick();
   EXPECT_EQ(bench.stats.dropped_samples.value(), 7);
-  estimator::fdi::Sample sample;
+  config::signals::Sample sample;
   std::int64_t tick = 0;
   while (bench.samples.pop(sample)) {
     EXPECT_EQ(sample.tick, tick++) << "the newest must be dropped, not the oldest";

@@ -8,8 +8,8 @@
 namespace monitor::rt {
 namespace {
 
+using config::signals::Quality;
 using hal::InputRole;
-using hal::Quality;
 
 std::shared_ptr<FakeInput> add(LoopBench& bench, InputRole role, double value) {
   auto input = std::make_shared<FakeInput>(value);
@@ -28,7 +28,7 @@ TEST(Pressures, GoWithTheSampleOfTheirTickByRole) {
     in->value -= 2e3;
     out->value += 3e3;
     other->value = 1.0;
-    const estimator::fdi::Pressures found = bench.sample().pressures;
+    const config::signals::Pressures found = bench.sample().pressures;
     EXPECT_EQ(found.supply_Pa, supply->value);
     EXPECT_EQ(found.in_Pa, in->value);
     EXPECT_EQ(found.out_Pa, out->value);
@@ -39,7 +39,7 @@ TEST(Pressures, AreNoNumberWhereNothingMeasuresThem) {
   LoopBench bench;
   add(bench, InputRole::pressure, 9e6);
   add(bench, InputRole::pressure_in, 4e6);
-  const estimator::fdi::Pressures found = bench.sample().pressures;
+  const config::signals::Pressures found = bench.sample().pressures;
   EXPECT_TRUE(std::isnan(found.supply_Pa));
   EXPECT_EQ(found.in_Pa, 4e6);
   EXPECT_TRUE(std::isnan(found.out_Pa));
@@ -53,7 +53,7 @@ TEST(Pressures, CountOnlyWhileTheirReadingIsGood) {
   // An uncertain one is at the end of a converter's range, and the truth may lie beyond.
   for (const Quality quality : {Quality::uncertain, Quality::stale, Quality::bad}) {
     supply->quality = quality;
-    const estimator::fdi::Pressures found = bench.sample().pressures;
+    const config::signals::Pressures found = bench.sample().pressures;
     EXPECT_TRUE(std::isnan(found.supply_Pa)) << static_cast<int>(quality);
     EXPECT_EQ(found.in_Pa, 4e6) << "the other one is good";
   }

@@ -42,7 +42,7 @@ struct Bench {
 
   void feed(int count, double y_m) {
     for (int i = 0; i < count; ++i) {
-      fdi::Sample sample;
+      config::signals::Sample sample;
       sample.tick = tick++;
       sample.y_m = y_m;
       sample.u_applied_V = std::sin(0.1 * static_cast<double>(sample.tick));
@@ -169,7 +169,7 @@ TEST(RuleChange, ToTheSameRulesChangesNoBitOfWhatFollows) {
       EXPECT_EQ(next->inherit(*parted), std::vector<bool>{true});
       parted = std::move(next);
     }
-    fdi::Sample sample;
+    config::signals::Sample sample;
     sample.tick = tick;
     sample.u_applied_V = std::sin(0.07 * static_cast<double>(tick));
     sample.y_m = y_m;

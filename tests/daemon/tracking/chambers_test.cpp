@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <functional>
 
-#include "daemon/tracking/words.h"
+#include "estimator/greybox/tracking/words.h"
 #include "tests/daemon/tracking/tracked.h"
 
 namespace {

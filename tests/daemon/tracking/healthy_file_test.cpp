@@ -1,5 +1,5 @@
 // What is learnt of a healthy rig: written, read, and refused where it is of something else.
-#include "daemon/tracking/healthy_file.h"
+#include "estimator/fdi/tracker/baseline_file.h"
 
 #include <gmock/gmock.h>
 
@@ -97,7 +97,7 @@ TEST_F(HealthyFiles, OfARigWithoutChamberPressuresGoOnWithoutThem) {
   without.take(healthy);
   int windows = 0;
   for (std::size_t k = 0; k < record.t_s.size(); ++k) {
-    estimator::fdi::Pressures chambers;
+    config::signals::Pressures chambers;
     chambers.in_Pa = record.in_Pa[k];
     chambers.out_Pa = record.out_Pa[k];
     const auto a = with.push(record.t_s[k], record.u_V[k], record.y_m[k], k == 0, chambers);

@@ -1,14 +1,16 @@
 // Windows together: inverse-variance weights by hand, and no window that disagrees.
-#include "daemon/tracking/pool.h"
+#include "estimator/greybox/tracking/window_fusion.h"
 
 #include <gtest/gtest.h>
+
+namespace tracking = estimator::greybox::tracking;
 
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using monitor::tracking::Pool;
-using monitor::tracking::Pooled;
+using tracking::Pool;
+using tracking::Pooled;
 
 VectorXd one(double x) { return VectorXd::Constant(1, x); }
 MatrixXd variance(double sd) { return MatrixXd::Constant(1, 1, sd * sd); }

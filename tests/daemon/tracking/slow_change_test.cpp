@@ -1,11 +1,11 @@
 // What changes slowly is followed, by the rule of slow_change.h and on records of the independent
 // generator.
-#include "daemon/tracking/slow_change.h"
+#include "estimator/greybox/tracking/baseline_drift.h"
 
 #include <gmock/gmock.h>
 
 #include "config/schema/error.h"
-#include "daemon/tracking/tracker_config.h"
+#include "estimator/fdi/tracker/tracker_config.h"
 #include "tests/daemon/tracking/tracked.h"
 
 namespace {

@@ -1,10 +1,12 @@
 // The tracker in a pipeline: its alarms by name, its values, and its state carried bit for bit.
 #include "config/schema/document.h"
-#include "daemon/tracking/tracker_config.h"
 #include "estimator/fdi/snapshot.h"
+#include "estimator/fdi/tracker/tracker_config.h"
 #include "tests/daemon/tracking/tracked.h"
 
 #include <gmock/gmock.h>
+
+namespace tracker = estimator::fdi::tracker;
 
 namespace {
 
@@ -40,8 +42,8 @@ struct Log final : fdi::Events {
 };
 
 fdi::PipelineConfig watching(std::vector<std::string> parameters = usual()) {
-  fdi::PipelineConfig config(monitor::tracking::source_kinds());
-  auto tracker = std::make_unique<monitor::tracking::TrackerConfig>();
+  fdi::PipelineConfig config(tracker::source_kinds());
+  auto tracker = std::make_unique<tracker::TrackerConfig>();
   tracker->id = "physics";
   tracker->model_toml = plant_sim::print_model(printed_model());
   tracker->parameters = std::move(parameters);
@@ -53,7 +55,7 @@ fdi::PipelineConfig watching(std::vector<std::string> parameters = usual()) {
 void run(fdi::Pipeline& pipeline, const truth::Record& record, std::size_t from, std::size_t to,
          Log& log) {
   for (std::size_t k = from; k < to; ++k) {
-    fdi::Sample sample;
+    config::signals::Sample sample;
     sample.tick = static_cast<std::int64_t>(k);
     sample.u_applied_V = record.u_V[k];
     sample.y_m = record.y_m[k];
@@ -148,8 +150,8 @@ TEST(TrackerSource, TellsTheValveGainByPressuresThatTheSamplesCarry) {
 
 TEST(TrackerSource, LeavesPressuresAloneWhereItIsTold) {
   const truth::Record record = gain_falls(true, true);
-  fdi::PipelineConfig config(monitor::tracking::source_kinds());
-  auto tracker = std::make_unique<monitor::tracking::TrackerConfig>();
+  fdi::PipelineConfig config(tracker::source_kinds());
+  auto tracker = std::make_unique<tracker::TrackerConfig>();
   tracker->id = "physics";
   tracker->model_toml = plant_sim::print_model(printed_model());
   tracker->learn_s = kLearn_s;
@@ -164,12 +166,12 @@ TEST(TrackerSource, LeavesPressuresAloneWhereItIsTold) {
 }
 
 TEST(TrackerConfig, KeepsWhatIsHealthyOfPressuresWhenItIsPrinted) {
-  monitor::tracking::TrackerConfig config;
+  tracker::TrackerConfig config;
   config.id = "physics";
   config.pressures = false;
   config.learnt.chambers = {{5e3, -2e4, 7e3}, {6e3, 3e4, 8e3}, 1.4e4};
   const std::string text = config::schema::print_toml([&](auto& v) { config.visit(v); });
-  monitor::tracking::TrackerConfig read;
+  tracker::TrackerConfig read;
   config::schema::Document::parse(text, "test").read([&](auto& v) { read.visit(v); });
   EXPECT_FALSE(read.pressures);
   const iso::ChamberErrors& chambers = read.learnt.chambers;
@@ -260,8 +262,8 @@ TEST(TrackerSource, SuggestsAMotionWithinItsLimitsWhereTheRodStandsStill) {
     record.u_V.push_back(0.0);
     record.y_m.push_back(record.y_m.back());
   }
-  fdi::PipelineConfig config(monitor::tracking::source_kinds());
-  auto tracker = std::make_unique<monitor::tracking::TrackerConfig>();
+  fdi::PipelineConfig config(tracker::source_kinds());
+  auto tracker = std::make_unique<tracker::TrackerConfig>();
   tracker->id = "physics";
   tracker->model_toml = plant_sim::print_model(printed_model());
   tracker->learn_s = 3.0;
@@ -282,7 +284,7 @@ TEST(TrackerSource, SaysThatSamplesAreMissing) {
   Log log;
   run(pipeline, record, 0, 600, log);
   const std::size_t before = log.reasons.size();
-  fdi::Sample sample;
+  config::signals::Sample sample;
   for (std::int64_t tick = 600; tick < 800; ++tick) {
     sample.tick = tick;
     sample.y_m = NAN;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/tracking/tracker.h"
+#include "estimator/greybox/tracking/parameter_tracker.h"
 #include "tests/truth/case.h"
 #include "tests/truth/rig.h"
 
@@ -60,7 +60,7 @@ inline Tracked tracked(const truth::Record& record, const std::vector<std::strin
   const auto run = [&](iso::Tracker& tracker, double until_s) {
     std::vector<iso::Window> windows;
     for (std::size_t k = 0; k < record.t_s.size() && record.t_s[k] < until_s; ++k) {
-      estimator::fdi::Pressures pressures;
+      config::signals::Pressures pressures;
       if (!supply_Pa.empty()) pressures.supply_Pa = supply_Pa[k];
       if (!record.in_Pa.empty()) pressures.in_Pa = record.in_Pa[k];
       if (!record.out_Pa.empty()) pressures.out_Pa = record.out_Pa[k];

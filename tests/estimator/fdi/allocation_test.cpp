@@ -38,7 +38,7 @@ TEST(Pipeline, DoesNotAllocateInSteadyState) {
   config.estimators[0].detrend = "linear";
   Pipeline pipeline(config, 0.005);
   Counter events;
-  Sample s;
+  config::signals::Sample s;
   const auto run = [&](int samples) {
     for (int i = 0; i < samples; ++i, ++s.tick) {
       s.u_applied_V = std::sin(0.03 * static_cast<double>(s.tick)) +

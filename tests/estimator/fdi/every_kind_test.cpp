@@ -90,8 +90,8 @@ stride_s = 10.0
 class Stream {
  public:
   /// The gain rises after a while, a channel leaves for a while, a gap comes.
-  Sample next() {
-    Sample s;
+  config::signals::Sample next() {
+    config::signals::Sample s;
     s.tick = tick_;
     s.u_applied_V = std::sin(0.05 * static_cast<double>(tick_)) +
                     0.4 * std::sin(0.31 * static_cast<double>(tick_));
@@ -161,7 +161,7 @@ TEST(EveryKind, GoesOnBitForBitFromAnyMoment) {
     Bytes a;
     Bytes b;
     for (int i = at; i < 4000; ++i) {
-      const Sample sample = stream.next();
+      const config::signals::Sample sample = stream.next();
       whole.process(sample, a);
       restored.process(sample, b);
     }

@@ -67,7 +67,7 @@ TEST_P(EveryMethod, IsInvalidAfterALongGapAndValidAgainOneWindowLater) {
   Recorder seen;
   run(pipeline, plant, 400, seen);
   for (int i = 0; i < 100; ++i) plant.next();  // half a window lost
-  Sample first = plant.next();
+  config::signals::Sample first = plant.next();
   first.gap = 100;
   pipeline.process(first, seen);
   run(pipeline, plant, 99, seen);
@@ -100,9 +100,9 @@ TEST_P(EveryMethod, IsInvalidWhenReadingsAreBadOrMissing) {
     Recorder seen;
     run(pipeline, plant, 400, seen);
     for (int i = 0; i < 200; ++i) {
-      Sample s = plant.next();
+      config::signals::Sample s = plant.next();
       if (i % 10 == 0 && nan) s.y_m = std::nan("");
-      if (i % 10 == 0 && !nan) s.quality = Quality::bad;
+      if (i % 10 == 0 && !nan) s.quality = config::signals::Quality::bad;
       pipeline.process(s, seen);
     }
     EXPECT_EQ(seen.estimates.back().reason, text(Reason::gap));
@@ -116,7 +116,7 @@ TEST_P(EveryMethod, IsInvalidWhileTheCommandIsSaturated) {
   Recorder seen;
   run(pipeline, plant, 400, seen);
   for (int i = 0; i < 200; ++i) {
-    Sample s = plant.next();
+    config::signals::Sample s = plant.next();
     s.saturated = i % 5 == 0;  // 20 % of the window, 10 % are allowed
     pipeline.process(s, seen);
   }

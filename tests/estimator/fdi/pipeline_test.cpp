@@ -96,7 +96,7 @@ TEST(Pipeline, DetrendsEachWindowBeforeItsBatch) {
   Integrator plant;
   Recorder seen;
   for (int i = 0; i < 600; ++i) {
-    Sample s = plant.next();
+    config::signals::Sample s = plant.next();
     s.y_m += 5.0;  // an offset that would drown the motion
     pipeline.process(s, seen);
   }
@@ -114,7 +114,7 @@ TEST(Pipeline, WatchesSampleQuantities) {
   config.bands.push_back(band);
   Pipeline pipeline(config, kSampleTime_s);
   Recorder seen;
-  Sample s;
+  config::signals::Sample s;
   for (int i = 0; i < 10; ++i, ++s.tick) {
     s.reference_m = i < 3 ? 0.0 : 0.02;
     pipeline.process(s, seen);

@@ -23,7 +23,7 @@ class PlainValues final : public estimator::fdi::Events {
       : pipeline(read_rules(rules), sample_time_s) {}
 
   void feed(double y_m, double u_V = 0.0, double reference_m = 0.0) {
-    estimator::fdi::Sample s;
+    config::signals::Sample s;
     s.tick = tick++;
     s.y_m = y_m;
     s.u_applied_V = u_V;

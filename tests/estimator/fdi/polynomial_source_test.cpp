@@ -32,12 +32,12 @@ class Rod {
  public:
   double gain_m_per_V = 2e-4;
   double amplitude_V = 1.0;
-  Sample next() {
+  config::signals::Sample next() {
     const double e = 2e-6 * normal_(random_);
     y_ = 0.9 * y_ + gain_m_per_V * u_ + e + 0.7 * e_;
     e_ = e;
     u_ = amplitude_V * normal_(random_);
-    Sample s;
+    config::signals::Sample s;
     s.tick = tick_++;
     s.y_m = 0.3 + y_;
     s.u_applied_V = u_;
@@ -121,7 +121,7 @@ TEST(PolynomialSource, GoesOnBitForBitAfterASnapshot) {
   two.carry(in);
   ASSERT_TRUE(in.complete());
   for (int i = 0; i < 500; ++i) {
-    const Sample sample = rod.next();
+    const config::signals::Sample sample = rod.next();
     one.process(sample, seen);
     two.process(sample, other);
   }

@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <random>
 
-#include "estimator/fdi/sample.h"
+#include "config/signals/sample.h"
 
 namespace small_rig {
 
@@ -44,8 +44,8 @@ class Rig {
   double supply_Pa;  ///< may change between steps
   double damping_N_s_per_m;
 
-  estimator::fdi::Sample step() {
-    estimator::fdi::Sample s;
+  config::signals::Sample step() {
+    config::signals::Sample s;
     s.tick = tick_;
     s.reference_m = 0.0254 * std::sin(kTwoPi * 0.5 * (time_s() + setup_.phase_s)) + 0.305;
     s.y_m = measured_m();

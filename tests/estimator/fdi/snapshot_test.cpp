@@ -78,12 +78,12 @@ PipelineConfig everything() {
   return config;
 }
 
-std::vector<Sample> samples() {
+std::vector<config::signals::Sample> samples() {
   std::mt19937 random(7);
   std::normal_distribution<double> noise(0.0, 2e-6);
-  std::vector<Sample> all;
+  std::vector<config::signals::Sample> all;
   double y_m = 0.0;
-  Sample s;
+  config::signals::Sample s;
   for (std::int64_t tick = 0; tick < 3000; ++tick) {
     const double gain = tick % 500 < 250 ? 1e-3 : 1.3e-3;
     s.u_applied_V = std::sin(0.05 * static_cast<double>(tick)) +
@@ -93,7 +93,7 @@ std::vector<Sample> samples() {
     s.y_m = y_m + noise(random);
     y_m += gain * s.u_applied_V;
     s.saturated = tick % 97 == 0;
-    s.quality = tick % 201 == 0 ? Quality::bad : Quality::good;
+    s.quality = tick % 201 == 0 ? config::signals::Quality::bad : config::signals::Quality::good;
     if (tick % 611 < 5) continue;  // a gap
     all.push_back(s);
   }
@@ -102,7 +102,7 @@ std::vector<Sample> samples() {
 
 TEST(Snapshot, GoesOnBitForBitFromAnyMoment) {
   const PipelineConfig config = everything();
-  const std::vector<Sample> all = samples();
+  const std::vector<config::signals::Sample> all = samples();
   for (const std::size_t at :
        {std::size_t{0}, std::size_t{33}, std::size_t{777}, std::size_t{1501}, std::size_t{2222}}) {
     Pipeline whole(config, 0.005);
@@ -133,7 +133,7 @@ TEST(Snapshot, OfAnotherConfigurationOrCutOffIsRefused) {
   const PipelineConfig config = everything();
   Pipeline one(config, 0.005);
   Bytes events;
-  for (const Sample& s : samples()) one.process(s, events);
+  for (const config::signals::Sample& s : samples()) one.process(s, events);
   std::vector<std::uint8_t> snapshot;
   Carrier saver = Carrier::saving(snapshot);
   one.carry(saver);

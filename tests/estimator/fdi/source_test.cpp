@@ -47,7 +47,7 @@ class CounterSource final : public Source {
     return {alarm};
   }
   bool lose(std::int64_t /*periods*/) noexcept override { return false; }
-  bool push(const Sample& /*sample*/, double /*y_m*/) noexcept override {
+  bool push(const config::signals::Sample& /*sample*/, double /*y_m*/) noexcept override {
     if (!input_.fresh()) return false;
     ++count_;
     if (input_.usable()) sum_ += input_.value();
@@ -110,8 +110,8 @@ std::string counter(const std::string& id, const std::string& quantity, double l
          "'\nlimit = " + std::to_string(limit) + "\n";
 }
 
-Sample at(std::int64_t tick, double y_m) {
-  Sample s;
+config::signals::Sample at(std::int64_t tick, double y_m) {
+  config::signals::Sample s;
   s.tick = tick;
   s.y_m = y_m;
   return s;

@@ -142,27 +142,27 @@ TEST(Voter, OfTwoRodSensorsNamesTheOneWithoutAReading) {
   PlainValues values(
       "[[voter]]\nid = 'rods'\nchannels = ['sample.rod_1_m', 'sample.rod_2_m']\n"
       "tolerance = 1.0\nconfirm_s = 3.0\nreturn_s = 5.0\nstride_s = 10.0\n");
-  const auto feed = [&](Quality second, int times) {
+  const auto feed = [&](config::signals::Quality second, int times) {
     for (int i = 0; i < times; ++i) {
-      Sample s;
+      config::signals::Sample s;
       s.tick = values.tick++;
       s.y_m = 10.0;
       s.rod_count = 2;
       s.rod_m = {10.0, 10.5};
-      s.rod_quality = {Quality::good, second};
+      s.rod_quality = {config::signals::Quality::good, second};
       values.pipeline.process(s, values);
     }
   };
-  feed(Quality::good, 20);
+  feed(config::signals::Quality::good, 20);
   EXPECT_DOUBLE_EQ(values.last("value"), 10.25);
-  feed(Quality::stale, 3);
+  feed(config::signals::Quality::stale, 3);
   ASSERT_EQ(values.alarms.size(), 1U);
   EXPECT_EQ(values.alarms[0].parameter, "sample.rod_2_m");
   EXPECT_DOUBLE_EQ(values.last("value"), 10.0);
 }
 
 TEST(SampleQuantity, OfRodSensorsIsMissingWhereTheyAreNot) {
-  Sample s;
+  config::signals::Sample s;
   s.y_m = 1.0;
   EXPECT_TRUE(std::isnan(value_of(SampleQuantity::rod_1, s)));
   EXPECT_TRUE(std::isnan(value_of(SampleQuantity::rod_in_charge, s)));
@@ -178,7 +178,7 @@ TEST(SampleQuantity, OfRodSensorsIsMissingWhereTheyAreNot) {
 }
 
 TEST(SampleQuantity, OfPressuresIsMissingWhereTheyAreNotRead) {
-  Sample s;
+  config::signals::Sample s;
   EXPECT_TRUE(std::isnan(value_of(SampleQuantity::supply_pressure, s)));
   s.pressures = {7e6, 3e6, 4e6};
   EXPECT_EQ(value_of(SampleQuantity::supply_pressure, s), 7e6);
@@ -187,7 +187,7 @@ TEST(SampleQuantity, OfPressuresIsMissingWhereTheyAreNotRead) {
 }
 
 TEST(SampleQuantity, OfAnotherSensorIsNoPositionForEstimatorsButOneForBands) {
-  Sample s;
+  config::signals::Sample s;
   s.y_m = 1.0;
   s.rod_changed = true;
   EXPECT_TRUE(std::isnan(usable_y_m(s)));

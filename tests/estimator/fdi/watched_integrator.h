@@ -10,11 +10,11 @@
 
 namespace fdi_test {
 
+using config::signals::Sample;
 using estimator::fdi::BandConfig;
 using estimator::fdi::EstimatorConfig;
 using estimator::fdi::Pipeline;
 using estimator::fdi::PipelineConfig;
-using estimator::fdi::Sample;
 
 inline constexpr double kSampleTime_s = 0.005;
 inline constexpr double kGain_m_per_V = 2e-4;

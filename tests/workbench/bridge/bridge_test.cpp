@@ -12,7 +12,7 @@
 #include "daemon/io/publisher.h"
 #include "estimator/fdi/pipeline.h"
 #include "tests/workbench/listen/subprocess.h"
-#include "workbench/interchange/udp_sender.h"
+#include "workbench/exchange/udp_sender.h"
 
 namespace workbench {
 namespace {
@@ -27,7 +27,7 @@ std::string own_url() {
 }
 
 void send_sample(Publisher& publisher, int tick) {
-  estimator::fdi::Sample sample;
+  config::signals::Sample sample;
   sample.tick = tick;
   sample.utc_us = 5'000'000 + tick * 5000;
   sample.y_m = 0.125;
@@ -106,7 +106,7 @@ TEST(Bridge, SendsPressuresAndRodSensorsWithTheSamplesThatItSends) {
   Subprocess bridge({kProgram, "bridge", "--lcm-url", url, "--udp", "127.0.0.1:" + port.substr(5),
                      "--sample-rate", "50"});
   const auto send = [&](int tick) {
-    estimator::fdi::Sample sample;
+    config::signals::Sample sample;
     sample.tick = tick;
     sample.y_m = 0.125;
     sample.pressures = {7e6, 4e6 + tick, 2e6};
@@ -149,7 +149,7 @@ TEST(Bridge, CountsWhatNobodyTakes) {
 }
 
 TEST(UdpAddress, TakesNamesAndBothKindsOfNumbers) {
-  using interchange::udp_address;
+  using exchange::udp_address;
   EXPECT_EQ(udp_address("stand-pc:9870").host, "stand-pc");
   EXPECT_EQ(udp_address("127.0.0.1:9870").port, "9870");
   EXPECT_EQ(udp_address("[fe80::1]:9870").host, "fe80::1");

@@ -1,4 +1,4 @@
-#include "workbench/interchange/datagrams.h"
+#include "workbench/exchange/datagrams.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,26 +8,26 @@ namespace {
 
 using nlohmann::json;
 
-Message message(Tree values) {
+exchange::Message message(exchange::Tree values) {
   return {"estimate", "estimate/period", 1'500'000'000, std::move(values)};
 }
 
 TEST(Datagrams, KeepASmallMessageInOnePiece) {
   EXPECT_THAT(
-      datagrams_of(message({{"b1", {{"value", 2.0}}}})),
+      exchange::datagrams_of(message({{"b1", {{"value", 2.0}}}})),
       testing::ElementsAre(R"({"timestamp":1.5,"estimate":{"period":{"b1":{"value":2.0}}}})"));
 }
 
 TEST(Datagrams, CutALargeMessageIntoPiecesThatTogetherAreTheWhole) {
-  Tree values;
+  exchange::Tree values;
   for (int i = 0; i < 100; ++i) {
     values["parameter_" + std::to_string(i)] = {{"value", i * 0.1}, {"low", nullptr}, {"high", i}};
   }
-  const std::vector<std::string> pieces = datagrams_of(message(values));
+  const std::vector<std::string> pieces = exchange::datagrams_of(message(values));
   EXPECT_GT(pieces.size(), 3U);
   json whole;
   for (const std::string& piece : pieces) {
-    EXPECT_LE(piece.size(), kMostDatagramBytes);
+    EXPECT_LE(piece.size(), exchange::kMostDatagramBytes);
     const json tree = json::parse(piece);
     EXPECT_EQ(tree["timestamp"], 1.5);
     whole.merge_patch(tree);
@@ -40,7 +40,7 @@ TEST(Datagrams, CutALargeMessageIntoPiecesThatTogetherAreTheWhole) {
 }
 
 TEST(Datagrams, CutATextThatIsTooLongAndNoLetterInHalf) {
-  const std::vector<std::string> pieces = datagrams_of(
+  const std::vector<std::string> pieces = exchange::datagrams_of(
       message({{"reason", std::string(99, 'a') + "\xC2\xB0" + std::string(2000, 'b')}}));
   ASSERT_EQ(pieces.size(), 1U);
   const json tree = json::parse(pieces[0]);

@@ -52,7 +52,7 @@ class Calibrate : public testing::Test {
     small_rig::Rig rig({});
     while (rig.time_s() < duration_s) {
       record.t_s.push_back(rig.time_s());
-      const fdi::Sample sample = rig.step();
+      const config::signals::Sample sample = rig.step();
       record.u_V.push_back(sample.u_applied_V);
       record.y_m.push_back(sample.y_m);
     }

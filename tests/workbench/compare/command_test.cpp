@@ -51,7 +51,8 @@ class CompareCommand : public testing::Test {
   static int run(std::vector<std::string> arguments) {
     testing::internal::CaptureStdout();
     try {
-      const int code = workbench_test::run_command(workbench::add_compare, std::move(arguments));
+      const int code =
+          workbench_test::run_command(workbench::cli::add_compare, std::move(arguments));
       testing::internal::GetCapturedStdout();
       return code;
     } catch (...) {

@@ -1,4 +1,4 @@
-#include "workbench/compare/comparison.h"
+#include "estimator/greybox/validation/comparison.h"
 
 #include <gmock/gmock.h>
 
@@ -8,6 +8,9 @@
 #include "workbench/compare/sections.h"
 
 namespace workbench::compare {
+
+namespace greybox = estimator::greybox;
+namespace validation = estimator::greybox::validation;
 namespace {
 
 using compare_test::healthy;
@@ -21,8 +24,8 @@ constexpr double kObserver = 2.0;
 /// Rounding of positions of 0.3 m, summed over thousands of steps.
 constexpr double kRounding_m = 1e-11;
 
-Comparison compared(const compare_test::Fault& fault, double noise_m = 0.0) {
-  return compare(servo(), matching::measured(servo_record(fault, 30.0, noise_m)));
+validation::Comparison compared(const compare_test::Fault& fault, double noise_m = 0.0) {
+  return validation::compare(servo(), greybox::measured(servo_record(fault, 30.0, noise_m)));
 }
 
 double bias(double, double, double) { return kGain * kBias_V; }
@@ -30,7 +33,7 @@ double bias(double, double, double) { return kGain * kBias_V; }
 // e(k+1) = (1 - l Ts) e(k) + g b Ts, so e(k) = g b / l + (e(j) - g b / l) (1 - l Ts)^(k - j); the
 // free run g b k Ts. The record begins in motion: l is kLeading_per_s for its first 100 samples.
 TEST(Comparison, HasTheClosedFormErrorOfAServoWithABias) {
-  const Comparison c = compared(bias);
+  const validation::Comparison c = compared(bias);
   const std::size_t n = c.record.size();
   double squares = 0.0;
   double free_squares = 0.0;
@@ -41,8 +44,8 @@ TEST(Comparison, HasTheClosedFormErrorOfAServoWithABias) {
       return last_m + (e0_m - last_m) * std::pow(1.0 - rate_per_s * kTs, after);
     };
     const double e_m =
-        k <= 100 ? from(0.0, matching::kLeading_per_s, steps)
-                 : from(from(0.0, matching::kLeading_per_s, 100.0), kObserver, steps - 100.0);
+        k <= 100 ? from(0.0, greybox::kLeading_per_s, steps)
+                 : from(from(0.0, greybox::kLeading_per_s, 100.0), kObserver, steps - 100.0);
     const double free_m = kGain * kBias_V * kTs * steps;
     ASSERT_NEAR(c.error_m[k], e_m, kRounding_m) << k;
     ASSERT_NEAR(c.free_error_m[k], free_m, kRounding_m) << k;
@@ -54,9 +57,9 @@ TEST(Comparison, HasTheClosedFormErrorOfAServoWithABias) {
 }
 
 TEST(Comparison, PredictsKStepsAheadWithKTimesTheErrorOfOne) {
-  const Comparison c = compared(bias);
+  const validation::Comparison c = compared(bias);
   ASSERT_EQ(c.k_step.size(), 3U);
-  for (const KStep& k : c.k_step) {
+  for (const validation::KStep& k : c.k_step) {
     EXPECT_NEAR(k.rms_m, kGain * kBias_V * kTs * static_cast<double>(k.samples), kRounding_m);
   }
   EXPECT_EQ(c.k_step[0].count, 5899U);  // 6000 samples, 100 of them unsettled, one has no next
@@ -64,7 +67,7 @@ TEST(Comparison, PredictsKStepsAheadWithKTimesTheErrorOfOne) {
 }
 
 TEST(Comparison, GivesTheFitOfTheFreeRunInPercent) {
-  const Comparison c = compared(bias);
+  const validation::Comparison c = compared(bias);
   double mean_m = 0.0;
   for (const double y_m : c.record.y_m) mean_m += y_m / static_cast<double>(c.record.size());
   double error = 0.0;
@@ -77,19 +80,20 @@ TEST(Comparison, GivesTheFitOfTheFreeRunInPercent) {
 }
 
 TEST(Comparison, ExplainsABiasByAConstantSpeedAndAGainInProportion) {
-  const Comparison offset = compared(bias);
-  EXPECT_EQ(offset.explained.plain, Plain::offset);
+  const validation::Comparison offset = compared(bias);
+  EXPECT_EQ(offset.explained.plain, validation::Plain::offset);
   EXPECT_NEAR(offset.explained.offset_mps, kGain * kBias_V, 1e-8);
   EXPECT_GT(offset.explained.share, 0.999);
-  const Comparison gain = compared([](double, double u, double) { return 0.03 * kGain * u; });
-  EXPECT_EQ(gain.explained.plain, Plain::gain);
+  const validation::Comparison gain =
+      compared([](double, double u, double) { return 0.03 * kGain * u; });
+  EXPECT_EQ(gain.explained.plain, validation::Plain::gain);
   // Led back to the measurement, the model's own speed is a little more than g u.
   EXPECT_NEAR(gain.explained.gain_ratio, 0.03, 0.002);
   EXPECT_GT(gain.explained.share, 0.99);
 }
 
 TEST(Comparison, FindsTheNoiseFloorAndNothingElseInAHealthyRecord) {
-  const Comparison c = compared(healthy, 2e-6);
+  const validation::Comparison c = compared(healthy, 2e-6);
   const double floor_m = std::sqrt(4.0 + 25.0 / 12.0) * 1e-6;
   EXPECT_NEAR(c.noise_floor_m, floor_m, 0.1 * floor_m);
   EXPECT_NEAR(c.encoder_step_m, 5e-6, 1e-9);
@@ -98,7 +102,7 @@ TEST(Comparison, FindsTheNoiseFloorAndNothingElseInAHealthyRecord) {
   EXPECT_GT(c.whiteness_p, 1e-3);
   EXPECT_GT(c.independence_p, 1e-3);
   EXPECT_FALSE(c.headline.stands_out);
-  for (const Failing& failing : c.worst) EXPECT_FALSE(failing.stands_out);
+  for (const validation::Failing& failing : c.worst) EXPECT_FALSE(failing.stands_out);
 }
 
 /// A fault somewhere, and the variable and range that must come out first.
@@ -139,9 +143,9 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& each) { return std::string(each.param.name); });
 
 TEST_P(FailingIn, ComesOutFirst) {
-  const Comparison c = compared(GetParam().fault, 2e-6);
+  const validation::Comparison c = compared(GetParam().fault, 2e-6);
   ASSERT_FALSE(c.worst.empty());
-  const Failing& first = c.worst.front();
+  const validation::Failing& first = c.worst.front();
   EXPECT_TRUE(first.stands_out);
   EXPECT_EQ(first.ranges.front().variable, GetParam().variable);
   EXPECT_NEAR(first.figures.from, GetParam().from, GetParam().tolerance);
@@ -150,18 +154,18 @@ TEST_P(FailingIn, ComesOutFirst) {
 }
 
 TEST(Regions, ShareTimeAndErrorOutCompletely) {
-  const Comparison c = compared(bias, 2e-6);
+  const validation::Comparison c = compared(bias, 2e-6);
   ASSERT_EQ(c.regions.size(), 7U);
   double squares = 0.0;
   for (std::size_t k = 0; k < c.record.size(); ++k) {
     if (c.record.settled[k] != 0) squares += c.error_m[k] * c.error_m[k];
   }
-  for (const Region& region : c.regions) {
+  for (const validation::Region& region : c.regions) {
     std::size_t count = 0;
     double time = 0.0;
     double error = 0.0;
     double sum = 0.0;
-    for (const Bin& bin : region.bins) {
+    for (const validation::Bin& bin : region.bins) {
       count += bin.count;
       time += bin.time_share;
       error += bin.error_share;
@@ -175,11 +179,11 @@ TEST(Regions, ShareTimeAndErrorOutCompletely) {
 }
 
 TEST(Regions, GiveTheSpeedErrorOfEachDirection) {
-  const Comparison c =
+  const validation::Comparison c =
       compared([](double, double u, double) { return u > 0.0 ? -0.1 * kGain * u : 0.0; });
-  for (const Region& region : c.regions) {
+  for (const validation::Region& region : c.regions) {
     if (region.variable != "direction") continue;
-    for (const Bin& bin : region.bins) {
+    for (const validation::Bin& bin : region.bins) {
       if (bin.name == "extending") {
         EXPECT_LT(bin.speed_error_mps, -1e-3);
       }
@@ -196,20 +200,20 @@ TEST(Comparison, StartsAnewBehindAGap) {
     column->erase(column->begin() + 3000, column->begin() + 3100);
   }
   record.gaps = {3000};
-  const Comparison c = compare(servo(), matching::measured(record));
+  const validation::Comparison c = validation::compare(servo(), greybox::measured(record));
   EXPECT_EQ(c.record.starts.size(), 2U);
   EXPECT_NEAR(c.free_error_m[2999], kGain * kBias_V * kTs * 2999.0, kRounding_m);
   EXPECT_NEAR(c.free_error_m[3000], 0.0, kRounding_m);
   // led for half a second, which leaves g b / l, and free from there
-  const double led_m = kGain * kBias_V / matching::kLeading_per_s;
+  const double led_m = kGain * kBias_V / greybox::kLeading_per_s;
   EXPECT_NEAR(c.free_error_m[3200], led_m + kGain * kBias_V * kTs * 100.0, 1e-4 * led_m);
   EXPECT_NEAR(c.k_step[0].rms_m, kGain * kBias_V * kTs, kRounding_m);
 }
 
 TEST(Comparison, SaysTheSameAtOtherRates) {
   for (const double sample_time_s : {0.001, 0.02}) {
-    const Comparison c =
-        compare(servo(), matching::measured(servo_record(bias, 20.0, 2e-6, sample_time_s)));
+    const validation::Comparison c = validation::compare(
+        servo(), greybox::measured(servo_record(bias, 20.0, 2e-6, sample_time_s)));
     EXPECT_NEAR(c.explained.offset_mps, kGain * kBias_V, 1e-5) << sample_time_s;
     EXPECT_NEAR(c.rms_m, kGain * kBias_V / kObserver, 0.05 * c.rms_m) << sample_time_s;
   }
@@ -218,15 +222,15 @@ TEST(Comparison, SaysTheSameAtOtherRates) {
 TEST(Sections, HavePlotsWhoseSeriesAreAsLongAsTheirAxis) {
   config::record::Record record = servo_record(bias, 20.0, 2e-6);
   record.gaps = {2000};
-  const Comparison c = compare(servo(), matching::measured(record));
-  const std::vector<report::Section> all = sections(c, "first ");
+  const validation::Comparison c = validation::compare(servo(), greybox::measured(record));
+  const std::vector<present::Section> all = sections(c, "first ");
   std::size_t plots = 0;
-  for (const report::Section& section : all) {
-    for (const report::Plot& plot : section.plots) {
+  for (const present::Section& section : all) {
+    for (const present::Plot& plot : section.plots) {
       ++plots;
       const std::size_t length =
           plot.categories.empty() ? plot.x_values.size() : plot.categories.size();
-      for (const report::Series& series : plot.series) {
+      for (const present::Series& series : plot.series) {
         EXPECT_EQ(series.y.size(), series.x.empty() ? length : series.x.size());
       }
       if (!plot.zoom_group.empty()) {
@@ -235,7 +239,7 @@ TEST(Sections, HavePlotsWhoseSeriesAreAsLongAsTheirAxis) {
     }
   }
   EXPECT_EQ(plots, 15U);
-  EXPECT_THAT(report::render(make_report(c, "spoolwatch compare a b")),
+  EXPECT_THAT(present::render(make_report(c, "spoolwatch compare a b")),
               testing::HasSubstr("spoolwatch compare a b"));
 }
 

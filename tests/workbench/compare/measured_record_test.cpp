@@ -9,6 +9,9 @@
 #include "workbench/compare/words.h"
 
 namespace workbench::compare {
+
+namespace greybox = estimator::greybox;
+namespace validation = estimator::greybox::validation;
 namespace {
 
 std::filesystem::path data(const std::string& name) {
@@ -29,9 +32,9 @@ plant_sim::ModelFile model(const std::string& name) {
 
 TEST(MeasuredRecord, OfTheFatigueRigDriftsAsTheReferenceSays) {
   SKIP_WITHOUT(data("faster/faster.csv"));
-  const matching::Measured whole =
-      matching::measured(config::record::read_record(data("faster/faster.csv")));
-  const matching::Measured half = matching::part(whole, 0, whole.size() / 2);
+  const greybox::Measured whole =
+      greybox::measured(config::record::read_record(data("faster/faster.csv")));
+  const greybox::Measured half = greybox::part(whole, 0, whole.size() / 2);
   // v = k u by least squares on the free run: y(k) - y(0) = k Ts sum u.
   double moved = 0.0;
   double xy = 0.0;
@@ -44,7 +47,7 @@ TEST(MeasuredRecord, OfTheFatigueRigDriftsAsTheReferenceSays) {
   plant_sim::ModelFile servo = model("velocity_servo");
   *servo.value("gain_mps_per_V") = xy / xx;
   *servo.value("time_constant_s") = 0.0;
-  const Comparison c = compare(servo, half);
+  const validation::Comparison c = validation::compare(servo, half);
   EXPECT_NEAR(1e3 * c.free_run_rms_m, 2.25, 0.05);
   EXPECT_GT(c.floor_ratio(), 10.0);
 }
@@ -55,23 +58,23 @@ TEST(MeasuredRecord, OfTheLinearAxisLeavesAtLeastTheReferenceErrorToAViscousMode
   *axis.value("mass_kg") = 95.11;
   *axis.value("damping_N_s_per_m") = 203.5;
   *axis.value("gain_N_per_V") = 35.15065;
-  const matching::Measured record =
-      matching::measured(config::record::read_record(data("emps/train_200Hz.csv")));
-  const Comparison plain = compare(axis, record);
+  const greybox::Measured record =
+      greybox::measured(config::record::read_record(data("emps/train_200Hz.csv")));
+  const validation::Comparison plain = validation::compare(axis, record);
   EXPECT_GT(1e3 * plain.free_run_rms_m, 90.0);
   EXPECT_EQ(words(plain).judgement, Judgement::fails_throughout);
   // With the published friction and offset the free run stays within a centimetre.
   *axis.value("friction.coulomb_N") = 20.39;
   *axis.value("load_force.force_N") = -3.165;
-  const Comparison better = compare(axis, record);
+  const validation::Comparison better = validation::compare(axis, record);
   EXPECT_LT(1e3 * better.free_run_rms_m, 10.0);
 }
 
 TEST(MeasuredRecord, WithHiddenFrictionOrBacklashFailsWhileReversing) {
   for (const char* name : {"hidden/case01.csv", "hidden/case06.csv"}) {
     SKIP_WITHOUT(data(name));
-    const Comparison c =
-        compare(model("thesis"), matching::measured(config::record::read_record(data(name))));
+    const validation::Comparison c = validation::compare(
+        model("thesis"), greybox::measured(config::record::read_record(data(name))));
     ASSERT_TRUE(c.headline.stands_out) << name;
     EXPECT_EQ(c.headline.ranges.front().name, "reversing") << name;
     EXPECT_GT(c.headline.figures.arising_share, 0.8) << name;
@@ -81,8 +84,8 @@ TEST(MeasuredRecord, WithHiddenFrictionOrBacklashFailsWhileReversing) {
 TEST(MeasuredRecord, WithAnEffectThatGrowsWithSpeedFailsAtHighSpeed) {
   for (const char* name : {"hidden/case07.csv", "hidden/case13.csv"}) {
     SKIP_WITHOUT(data(name));
-    const Comparison c =
-        compare(model("thesis"), matching::measured(config::record::read_record(data(name))));
+    const validation::Comparison c = validation::compare(
+        model("thesis"), greybox::measured(config::record::read_record(data(name))));
     ASSERT_TRUE(c.headline.stands_out) << name;
     EXPECT_EQ(c.worst.front().ranges.front().variable, "speed") << name;
     EXPECT_TRUE(c.worst.front().ranges.front().highest) << name;
@@ -91,9 +94,9 @@ TEST(MeasuredRecord, WithAnEffectThatGrowsWithSpeedFailsAtHighSpeed) {
 
 TEST(MeasuredRecord, WithANullBiasIsOffByItsConstantSpeed) {
   SKIP_WITHOUT(data("hidden/case04.csv"));
-  const Comparison c = compare(
-      model("thesis"), matching::measured(config::record::read_record(data("hidden/case04.csv"))));
-  EXPECT_EQ(c.explained.plain, Plain::offset);
+  const validation::Comparison c = validation::compare(
+      model("thesis"), greybox::measured(config::record::read_record(data("hidden/case04.csv"))));
+  EXPECT_EQ(c.explained.plain, validation::Plain::offset);
   EXPECT_LT(c.explained.offset_mps, 0.0);  // a bias of -0.07 V
   EXPECT_GT(c.explained.share, 0.98);
 }

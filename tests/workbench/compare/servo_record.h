@@ -8,8 +8,8 @@
 #include <random>
 #include <string>
 
+#include "estimator/greybox/dataset.h"
 #include "plant_sim/model_file.h"
-#include "workbench/matching/measured.h"
 
 namespace compare_test {
 

@@ -6,9 +6,12 @@
 
 #include "tests/workbench/compare/servo_record.h"
 #include "workbench/compare/text.h"
-#include "workbench/compare/units.h"
+#include "workbench/present/compare_units.h"
 
 namespace workbench::compare {
+
+namespace greybox = estimator::greybox;
+namespace validation = estimator::greybox::validation;
 namespace {
 
 using compare_test::kGain;
@@ -17,9 +20,9 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-Comparison compared(const compare_test::Fault& fault) {
-  return compare(compare_test::servo(),
-                 matching::measured(compare_test::servo_record(fault, 30.0, 2e-6)));
+validation::Comparison compared(const compare_test::Fault& fault) {
+  return validation::compare(compare_test::servo(),
+                             greybox::measured(compare_test::servo_record(fault, 30.0, 2e-6)));
 }
 
 TEST(Words, SayThatNothingIsLeftAtTheNoiseFloor) {
@@ -60,30 +63,40 @@ TEST(Words, NameTheRangeThatFails) {
 }
 
 TEST(Where, ReadsAsPeopleSpeak) {
-  EXPECT_EQ(where(Range{"speed", 0.0, 0.005, "", true, false}), "below 5 mm/s");
-  EXPECT_EQ(where(Range{"speed", 0.1, 0.3, "", false, true}), "above 100 mm/s");
-  EXPECT_EQ(where(Range{"speed", 0.005, 0.02, "", false, false}), "between 5 and 20 mm/s");
-  EXPECT_EQ(where(Range{"v", -0.3, -0.1, "", true, false}), "retracting faster than 100 mm/s");
-  EXPECT_EQ(where(Range{"v", 0.1, 0.3, "", false, true}), "extending faster than 100 mm/s");
-  EXPECT_EQ(where(Range{"u", 2.0, 9.0, "", false, true}), "at commands above 2 V");
-  EXPECT_EQ(where(Range{"y", 0.1, 0.2, "", false, false}), "at positions from 100 to 200 mm");
-  EXPECT_EQ(where(Range{"time", 5.0, 10.0, "", false, false}), "from 5 to 10 s");
-  EXPECT_EQ(where(Range{"direction", 0.0, 0.0, "reversing", false, false}), "while reversing");
+  EXPECT_EQ(present::where(validation::Range{"speed", 0.0, 0.005, "", true, false}),
+            "below 5 mm/s");
+  EXPECT_EQ(present::where(validation::Range{"speed", 0.1, 0.3, "", false, true}),
+            "above 100 mm/s");
+  EXPECT_EQ(present::where(validation::Range{"speed", 0.005, 0.02, "", false, false}),
+            "between 5 and 20 mm/s");
+  EXPECT_EQ(present::where(validation::Range{"v", -0.3, -0.1, "", true, false}),
+            "retracting faster than 100 mm/s");
+  EXPECT_EQ(present::where(validation::Range{"v", 0.1, 0.3, "", false, true}),
+            "extending faster than 100 mm/s");
+  EXPECT_EQ(present::where(validation::Range{"u", 2.0, 9.0, "", false, true}),
+            "at commands above 2 V");
+  EXPECT_EQ(present::where(validation::Range{"y", 0.1, 0.2, "", false, false}),
+            "at positions from 100 to 200 mm");
+  EXPECT_EQ(present::where(validation::Range{"time", 5.0, 10.0, "", false, false}),
+            "from 5 to 10 s");
+  EXPECT_EQ(present::where(validation::Range{"direction", 0.0, 0.0, "reversing", false, false}),
+            "while reversing");
 }
 
 TEST(Units, GiveThreeDigitsAndNoExponents) {
-  EXPECT_EQ(length(2.456e-6), "2.46 um");
-  EXPECT_EQ(length(381.2e-6), "381 um");
-  EXPECT_EQ(length(1.706e-3), "1.71 mm");
-  EXPECT_EQ(length(1.234), "1234 mm");
-  EXPECT_EQ(length(std::nan("")), "-");
-  EXPECT_EQ(percent(0.0042), "under 1 %");
-  EXPECT_EQ(percent(0.9987), "over 99 %");
-  EXPECT_EQ(probability(1e-9), "< 1e-6");
+  EXPECT_EQ(present::length(2.456e-6), "2.46 um");
+  EXPECT_EQ(present::length(381.2e-6), "381 um");
+  EXPECT_EQ(present::length(1.706e-3), "1.71 mm");
+  EXPECT_EQ(present::length(1.234), "1234 mm");
+  EXPECT_EQ(present::length(std::nan("")), "-");
+  EXPECT_EQ(present::percent(0.0042), "under 1 %");
+  EXPECT_EQ(present::percent(0.9987), "over 99 %");
+  EXPECT_EQ(present::probability(1e-9), "< 1e-6");
 }
 
 TEST(Text, FitsATerminalAndIsAsciiWhereAskedFor) {
-  const Comparison c = compared([](double, double u, double) { return u > 0.5 ? 0.003 : 0.0; });
+  const validation::Comparison c =
+      compared([](double, double u, double) { return u > 0.5 ? 0.003 : 0.0; });
   for (const bool all : {false, true}) {
     std::string text = to_text(c, false, all);
     EXPECT_THAT(text, HasSubstr("noise floor"));

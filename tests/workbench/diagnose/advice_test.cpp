@@ -1,4 +1,4 @@
-#include "workbench/diagnose/advice.h"
+#include "workbench/diagnose/experiment_design.h"
 
 #include <gmock/gmock.h>
 
@@ -8,6 +8,9 @@
 #include "workbench/diagnose/advice_words.h"
 
 namespace workbench::diagnose {
+
+namespace greybox = estimator::greybox;
+namespace selection = estimator::greybox::selection;
 namespace {
 
 using testing::AllOf;
@@ -16,16 +19,16 @@ using testing::Not;
 using testing::StartsWith;
 
 /// The model with one effect added, fitted to the shop's record.
-matching::Fitted fitted_with(const Workshop& shop, const std::string& effect) {
-  std::vector<matching::SearchParameter> searched = shop.standing;
-  const auto own = matching::effect_parameters(*plant_sim::find_effect(effect), 0);
+greybox::Fitted fitted_with(const selection::Workshop& shop, const std::string& effect) {
+  std::vector<greybox::SearchParameter> searched = shop.standing;
+  const auto own = greybox::effect_parameters(*plant_sim::find_effect(effect), 0);
   searched.insert(searched.end(), own.begin(), own.end());
-  matching::Fitted best;
+  greybox::Fitted best;
   for (const double size : {-1.0, 1.0}) {
-    Eigen::VectorXd start = matching::start_of(shop.model, searched);
+    Eigen::VectorXd start = greybox::start_of(shop.model, searched);
     start[start.size() - 1] = size;
-    matching::Fitted fitted =
-        matching::fit(shop.model, shop.evidence, shop.evidence.fits, searched, start);
+    greybox::Fitted fitted =
+        greybox::fit(shop.model, shop.evidence, shop.evidence.fits, searched, start);
     if (best.x.size() == 0 || fitted.fit_rms_m < best.fit_rms_m) best = std::move(fitted);
   }
   return best;
@@ -36,9 +39,10 @@ class SineWithAsymmetricFlow : public testing::Test {
   static void SetUpTestSuite() {
     of_ =
         new truth::Case(truth::parse_case("motion=sine,flow_asymmetry.asymmetry_ratio=0.0135", 5));
-    shop_ = new Workshop(diagnose_test::shop_with(diagnose_test::measured(truth::simulate(*of_))));
-    rivals_ = new std::vector<matching::Fitted>{fitted_with(*shop_, "flow_asymmetry"),
-                                                fitted_with(*shop_, "load_force")};
+    shop_ = new selection::Workshop(
+        diagnose_test::shop_with(diagnose_test::measured(truth::simulate(*of_))));
+    rivals_ = new std::vector<greybox::Fitted>{fitted_with(*shop_, "flow_asymmetry"),
+                                               fitted_with(*shop_, "load_force")};
     advice_ = new Advice(advise(*shop_, *rivals_, {"flow_asymmetry", "load_force"}));
   }
   static void TearDownTestSuite() {
@@ -48,13 +52,13 @@ class SineWithAsymmetricFlow : public testing::Test {
     delete of_;
   }
   static truth::Case* of_;
-  static Workshop* shop_;
-  static std::vector<matching::Fitted>* rivals_;
+  static selection::Workshop* shop_;
+  static std::vector<greybox::Fitted>* rivals_;
   static Advice* advice_;
 };
 truth::Case* SineWithAsymmetricFlow::of_ = nullptr;
-Workshop* SineWithAsymmetricFlow::shop_ = nullptr;
-std::vector<matching::Fitted>* SineWithAsymmetricFlow::rivals_ = nullptr;
+selection::Workshop* SineWithAsymmetricFlow::shop_ = nullptr;
+std::vector<greybox::Fitted>* SineWithAsymmetricFlow::rivals_ = nullptr;
 Advice* SineWithAsymmetricFlow::advice_ = nullptr;
 
 TEST_F(SineWithAsymmetricFlow, IsExplainedAsWellByALoad) {
@@ -70,10 +74,10 @@ TEST_F(SineWithAsymmetricFlow, GetsAMotionNamedInWordsWithNumbers) {
 }
 
 TEST_F(SineWithAsymmetricFlow, IsResolvedByTheAdvisedMotionOnTheTrueRig) {
-  const Workshop again = diagnose_test::shop_with(diagnose_test::measured(
+  const selection::Workshop again = diagnose_test::shop_with(diagnose_test::measured(
       diagnose_test::run(*of_, advice_->motion.reference, advice_->motion.duration_s)));
-  const matching::Fitted right = fitted_with(again, "flow_asymmetry");
-  const matching::Fitted wrong = fitted_with(again, "load_force");
+  const greybox::Fitted right = fitted_with(again, "flow_asymmetry");
+  const greybox::Fitted wrong = fitted_with(again, "load_force");
   EXPECT_LT(right.score_rms_m, 1.1 * again.evidence.noise_floor_m);
   EXPECT_GT(wrong.score_rms_m, 1.15 * right.score_rms_m);
 }
@@ -103,7 +107,7 @@ TEST(AdviceToExcite, NamesAMotionAboutTheMiddleOfTheStrokeForARodAtRest) {
     record.u_V.push_back(0.0);
     record.y_m.push_back(0.1 + 5e-6 * ((k * k / 7) % 3));
   }
-  const Workshop shop = diagnose_test::shop_with(matching::measured(record));
+  const selection::Workshop shop = diagnose_test::shop_with(greybox::measured(record));
   EXPECT_THAT(advice_to_excite(shop), AllOf(HasSubstr("multisine"), HasSubstr("of 305 mm")));
 }
 

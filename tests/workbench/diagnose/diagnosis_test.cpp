@@ -1,5 +1,5 @@
 // What a diagnosis says in the end, on servos of which the answer is known.
-#include "workbench/diagnose/diagnosis.h"
+#include "workbench/diagnose/experiment_design.h"
 
 #include <gmock/gmock.h>
 
@@ -8,6 +8,8 @@
 #include "tests/workbench/diagnose/servo_shop.h"
 
 namespace workbench::diagnose {
+
+namespace selection = estimator::greybox::selection;
 namespace {
 
 using diagnose_test::kServoGain;
@@ -18,13 +20,13 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 
 TEST(Diagnosis, NamesWhatIsMissingWithItsValueAndError) {
-  const Workshop shop = servo_shop({.rate_mps = with_offset(0.06)});
-  const Diagnosis d = diagnose(shop);
-  EXPECT_EQ(d.verdict, Verdict::missing);
+  const selection::Workshop shop = servo_shop({.rate_mps = with_offset(0.06)});
+  const selection::Diagnosis d = diagnose(shop).diagnosis;
+  EXPECT_EQ(d.verdict, selection::Verdict::missing);
   EXPECT_THAT(d.missing, ElementsAre("null_bias"));
   EXPECT_THAT(d.ambiguous, IsEmpty());
   ASSERT_EQ(d.parameters.size(), 2U);
-  for (const ParameterValue& p : d.parameters) {
+  for (const selection::ParameterValue& p : d.parameters) {
     const double truth = p.name == "null_bias.offset_V" ? 0.06 : kServoGain;
     EXPECT_NEAR(p.value, truth, 3.0 * p.std_error) << p.name;
     EXPECT_GT(p.std_error, 0.0);
@@ -41,67 +43,73 @@ TEST(Diagnosis, NamesWhatIsMissingWithItsValueAndError) {
 }
 
 TEST(Diagnosis, DoesNotDependOnTheNumberOfThreads) {
-  Workshop shop = servo_shop({.rate_mps = with_offset_and_band(0.06, 0.1)});
+  selection::Workshop shop = servo_shop({.rate_mps = with_offset_and_band(0.06, 0.1)});
   shop.threads = 1;
-  const Diagnosis one = diagnose(shop);
+  const selection::Diagnosis one = diagnose(shop).diagnosis;
   shop.threads = 3;
-  const Diagnosis three = diagnose(shop);
+  const selection::Diagnosis three = diagnose(shop).diagnosis;
   EXPECT_EQ(one.missing, three.missing);
   EXPECT_NEAR(one.rms_after_m, three.rms_after_m, 1e-3 * one.rms_after_m);
 }
 
 TEST(Diagnosis, SaysNothingIsMissingOfAHealthyRecord) {
-  const Diagnosis d = diagnose(
-      servo_shop({.rate_mps = [](double u_V, double, double) { return 0.98 * kServoGain * u_V; }}));
-  EXPECT_EQ(d.verdict, Verdict::nothing_missing);
+  const selection::Diagnosis d = diagnose(servo_shop({.rate_mps = [](double u_V, double, double) {
+                                   return 0.98 * kServoGain * u_V;
+                                 }})).diagnosis;
+  EXPECT_EQ(d.verdict, selection::Verdict::nothing_missing);
   EXPECT_THAT(d.missing, IsEmpty());
   EXPECT_EQ(d.steps.size(), 1U);
   EXPECT_LT(d.rms_after_m, d.nominal_rms_m);
 }
 
 TEST(Diagnosis, SaysWhatCarriesAnErrorThatNoEffectExplains) {
-  const Diagnosis d = diagnose(servo_shop({.rate_mps = [](double u_V, double, double t_s) {
+  const AdvisedDiagnosis advised = diagnose(servo_shop({.rate_mps = [](double u_V, double, double t_s) {
     return kServoGain * u_V * (1.0 - 0.01 * t_s);
-  }}));
-  EXPECT_EQ(d.verdict, Verdict::unexplained);
+      }})));
+  const selection::Diagnosis& d = advised.diagnosis;
+  EXPECT_EQ(d.verdict, selection::Verdict::unexplained);
   ASSERT_FALSE(d.where.empty());
   EXPECT_EQ(d.where[0].enters, "gain");
   EXPECT_EQ(d.where[0].variable, "time");
-  EXPECT_FALSE(d.advice.empty());
+  EXPECT_FALSE(advised.advice.empty());
 }
 
 TEST(Diagnosis, AsksForMotionWhereThereIsNone) {
-  const Workshop shop = servo_shop({.rate_mps = with_offset(0.0),
-                                    .command_V = [](double, double) { return 0.0; },
-                                    .samples = 1000});
-  const Diagnosis d = diagnose(shop);
-  EXPECT_EQ(d.verdict, Verdict::not_excited);
+  const selection::Workshop shop = servo_shop({.rate_mps = with_offset(0.0),
+                                               .command_V = [](double, double) { return 0.0; },
+                                               .samples = 1000});
+  const AdvisedDiagnosis advised = diagnose(shop);
+  const selection::Diagnosis& d = advised.diagnosis;
+  EXPECT_EQ(d.verdict, selection::Verdict::not_excited);
   EXPECT_THAT(d.missing, IsEmpty());
   EXPECT_FALSE(d.notes.empty());
-  EXPECT_FALSE(d.advice.empty());
+  EXPECT_FALSE(advised.advice.empty());
   EXPECT_EQ(d.final.x.size(), 0);
 }
 
 TEST(Diagnosis, KeepsTheBestSoFarWhenItIsInterrupted) {
-  Workshop shop = servo_shop({.rate_mps = with_offset_and_band(0.06, 0.1), .samples = 2000});
+  selection::Workshop shop =
+      servo_shop({.rate_mps = with_offset_and_band(0.06, 0.1), .samples = 2000});
   shop.cancel = [] { return true; };
-  const Diagnosis d = diagnose(shop);
+  const selection::Diagnosis d = diagnose(shop).diagnosis;
   EXPECT_THAT(d.notes, testing::Contains(testing::HasSubstr("interrupted")));
   EXPECT_EQ(d.steps.size(), 1U);
   EXPECT_TRUE(std::isfinite(d.rms_after_m));
 }
 
 TEST(Diagnosis, PassesOnTheRestrictionsOfARecord) {
-  Workshop shop = servo_shop({.rate_mps = with_offset(0.0), .samples = 1000});
+  selection::Workshop shop = servo_shop({.rate_mps = with_offset(0.0), .samples = 1000});
   shop.evidence.records[0].notes = {"a gap at 3 s"};
-  EXPECT_THAT(diagnose(shop).notes, testing::Contains("servo: a gap at 3 s"));
+  EXPECT_THAT(diagnose(shop).diagnosis.notes, testing::Contains("servo: a gap at 3 s"));
 }
 
 TEST(Verdict, HasANameOfItsOwn) {
   std::set<std::string> names;
-  for (const Verdict verdict : {Verdict::nothing_missing, Verdict::missing, Verdict::undetermined,
-                                Verdict::unexplained, Verdict::not_excited}) {
-    names.insert(text(verdict));
+  for (const selection::Verdict verdict :
+       {selection::Verdict::nothing_missing, selection::Verdict::missing,
+        selection::Verdict::undetermined, selection::Verdict::unexplained,
+        selection::Verdict::not_excited}) {
+    names.insert(selection::text(verdict));
   }
   EXPECT_THAT(names, ElementsAre("missing", "not_excited", "nothing_missing", "undetermined",
                                  "unexplained"));

@@ -8,15 +8,19 @@
 
 namespace workbench::diagnose {
 
-inline matching::Fitted example_fit(double score_rms_m) {
-  matching::Fitted fitted;
+namespace greybox = estimator::greybox;
+namespace selection = estimator::greybox::selection;
+
+inline greybox::Fitted example_fit(double score_rms_m) {
+  greybox::Fitted fitted;
   fitted.x = Eigen::VectorXd::Zero(1);
   fitted.score_rms_m = score_rms_m;
   return fitted;
 }
 
-inline Candidate example_candidate(const std::string& effect, double score_rms_m, double p) {
-  Candidate candidate;
+inline selection::Candidate example_candidate(const std::string& effect, double score_rms_m,
+                                              double p) {
+  selection::Candidate candidate;
   candidate.effects = {effect};
   candidate.fitted = example_fit(score_rms_m);
   candidate.score_rms_m = score_rms_m;
@@ -31,8 +35,8 @@ inline Outcome example_outcome() {
   outcome.model_file = "rig.toml";
   outcome.records = {"bench.csv"};
   outcome.command = "spoolwatch diagnose rig.toml bench.csv";
-  Diagnosis& d = outcome.diagnosis;
-  d.verdict = Verdict::missing;
+  selection::Diagnosis& d = outcome.diagnosis;
+  d.verdict = selection::Verdict::missing;
   d.missing = {"friction"};
   d.noise_floor_m = 2.4e-6;
   d.nominal_rms_m = 1.42e-3;
@@ -43,9 +47,9 @@ inline Outcome example_outcome() {
                   {"friction.static_N", 181.2, 4.3, false},
                   {"friction.stribeck_mps", 0.5, std::nan(""), true}};
   d.steps = {{"", 26.3e-6}, {"friction", 2.7e-6}};
-  Round first;
+  selection::Round first;
   first.before.fitted = example_fit(26.3e-6);
-  Candidate hopeless;
+  selection::Candidate hopeless;
   hopeless.effects = {"backlash"};
   first.candidates = {example_candidate("friction", 2.7e-6, 1e-12),
                       example_candidate("deadband", 9.8e-6, 0.02), hopeless};

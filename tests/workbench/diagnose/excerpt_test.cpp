@@ -1,18 +1,21 @@
 // The stretch that is looked at quickly, and whether a record moves at all.
-#include "workbench/diagnose/excerpt.h"
+#include "estimator/greybox/selection/screening_segment.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "workbench/diagnose/excitation.h"
+#include "estimator/greybox/selection/excitation.h"
 
 namespace workbench::diagnose {
+
+namespace greybox = estimator::greybox;
+namespace selection = estimator::greybox::selection;
 namespace {
 
 /// 30 s at 200 Hz; the rod moves by `amplitude_m` between the two times.
-matching::Measured moving(double from_s, double to_s, double amplitude_m = 0.01) {
-  matching::Measured m;
+greybox::Measured moving(double from_s, double to_s, double amplitude_m = 0.01) {
+  greybox::Measured m;
   m.name = "made";
   m.sample_time_s = 0.005;
   m.starts = {0};
@@ -27,8 +30,8 @@ matching::Measured moving(double from_s, double to_s, double amplitude_m = 0.01)
   return m;
 }
 
-matching::Fitted fitted(Eigen::Index samples) {
-  matching::Fitted f;
+greybox::Fitted fitted(Eigen::Index samples) {
+  greybox::Fitted f;
   f.x = Eigen::VectorXd::Ones(2);
   f.sigma_m = 3e-6;
   f.residual_m = Eigen::VectorXd::LinSpaced(samples, 0.0, static_cast<double>(samples - 1));
@@ -38,19 +41,19 @@ matching::Fitted fitted(Eigen::Index samples) {
 }
 
 TEST(Excerpt, IsWhereTheRodGoesFurthest) {
-  const matching::Evidence evidence = matching::evidence({moving(14.0, 21.0)}, {});
-  const Excerpt excerpt = excerpt_of(evidence, fitted(6000));
+  const greybox::Evidence evidence = greybox::evidence({moving(14.0, 21.0)}, {});
+  const selection::Excerpt excerpt = selection::excerpt_of(evidence, fitted(6000));
   const double begin_s =
       evidence.records[0].t_s[static_cast<std::size_t>(
                                   excerpt.fitted.residual_m[excerpt.fitted.residual_m.size() - 1]) -
                               1599];
   EXPECT_LE(begin_s, 14.0);
-  EXPECT_GE(begin_s + kExcerpt_s, 21.0);
+  EXPECT_GE(begin_s + selection::kExcerpt_s, 21.0);
 }
 
 TEST(Excerpt, HasItsOwnRowsOfResidualAndJacobian) {
-  const matching::Evidence evidence = matching::evidence({moving(14.0, 21.0)}, {});
-  const Excerpt excerpt = excerpt_of(evidence, fitted(6000));
+  const greybox::Evidence evidence = greybox::evidence({moving(14.0, 21.0)}, {});
+  const selection::Excerpt excerpt = selection::excerpt_of(evidence, fitted(6000));
   ASSERT_EQ(excerpt.evidence.size(), 1600);
   const Eigen::VectorXd row = excerpt.fitted.jacobian.col(0);
   const auto from = static_cast<std::size_t>(row[0]);
@@ -63,30 +66,31 @@ TEST(Excerpt, HasItsOwnRowsOfResidualAndJacobian) {
 }
 
 TEST(Excerpt, IsTheWholeOfAShortRecord) {
-  const matching::Evidence evidence =
-      matching::evidence({matching::part(moving(0.0, 30.0), 0, 900)}, {});
-  EXPECT_EQ(excerpt_of(evidence, fitted(900)).evidence.size(), 900);
+  const greybox::Evidence evidence =
+      greybox::evidence({greybox::part(moving(0.0, 30.0), 0, 900)}, {});
+  EXPECT_EQ(selection::excerpt_of(evidence, fitted(900)).evidence.size(), 900);
 }
 
 TEST(Excitation, IsEnoughForARodThatMoves) {
-  EXPECT_TRUE(excitation_of(matching::evidence({moving(5.0, 9.0)}, {})).enough);
+  EXPECT_TRUE(selection::excitation_of(greybox::evidence({moving(5.0, 9.0)}, {})).enough);
 }
 
 TEST(Excitation, IsNotEnoughForARodAtRestAndSaysHowLittleItMoves) {
-  const Excitation e = excitation_of(matching::evidence({moving(5.0, 25.0, 1e-5)}, {}));
+  const selection::Excitation e =
+      selection::excitation_of(greybox::evidence({moving(5.0, 25.0, 1e-5)}, {}));
   EXPECT_FALSE(e.enough);
   EXPECT_THAT(e.why, testing::HasSubstr("0.02"));
   EXPECT_THAT(e.why, testing::HasSubstr("mm"));
 }
 
 TEST(Excitation, IsNotEnoughForACommandAtItsLimitThroughout) {
-  matching::Measured record = moving(0.0, 30.0);
+  greybox::Measured record = moving(0.0, 30.0);
   for (std::size_t k = 0; k < record.size(); ++k) record.u_V[k] = record.u_V[k] > 0.0 ? 5.0 : -5.0;
-  const Excitation e = excitation_of(matching::evidence({record}, {}));
+  const selection::Excitation e = selection::excitation_of(greybox::evidence({record}, {}));
   EXPECT_FALSE(e.enough);
   EXPECT_THAT(e.why, testing::HasSubstr("limit"));
   for (std::size_t k = 0; k < record.size() / 20; ++k) record.u_V[20 * k] = 1.0;
-  EXPECT_TRUE(excitation_of(matching::evidence({record}, {})).enough);
+  EXPECT_TRUE(selection::excitation_of(greybox::evidence({record}, {})).enough);
 }
 
 }  // namespace

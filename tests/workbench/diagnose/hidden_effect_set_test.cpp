@@ -4,12 +4,14 @@
 
 #include <cstdio>
 
+#include "estimator/greybox/selection/diagnosis.h"
 #include "tests/truth/plan.h"
 #include "tests/workbench/diagnose/judged.h"
 #include "tests/workbench/diagnose/truth_records.h"
-#include "workbench/diagnose/diagnosis.h"
 
 namespace workbench::diagnose {
+
+namespace selection = estimator::greybox::selection;
 namespace {
 
 using diagnose_test::said;
@@ -32,7 +34,8 @@ Count count_of(const std::string& plan, std::size_t records, const Right& right)
   for (std::size_t i = 0; i < records; ++i) {
     truth::Record record;
     const truth::Planned planned = truth::plan_record(plan, kSeed, i, record);
-    const Diagnosis d = diagnose(diagnose_test::shop_with(diagnose_test::measured(record)));
+    const selection::Diagnosis d =
+        diagnose_test::found_in(diagnose_test::shop_with(diagnose_test::measured(record)));
     ++count.records;
     if (right(planned, d)) {
       ++count.right;
@@ -47,57 +50,59 @@ Count count_of(const std::string& plan, std::size_t records, const Right& right)
 }
 
 TEST(HiddenEffects, AreNamedOneByOneOnTwoMotionsEach) {
-  const Count count = count_of("single", 2 * kKinds, [](const auto& planned, const Diagnosis& d) {
-    return diagnose_test::is_right(d, planned.hidden);
-  });
+  const Count count =
+      count_of("single", 2 * kKinds, [](const auto& planned, const selection::Diagnosis& d) {
+        return diagnose_test::is_right(d, planned.hidden);
+      });
   EXPECT_GE(count.share(), 0.95);
   EXPECT_GE(count.at_floor, 0.9 * count.right);
 }
 
 TEST(HiddenEffects, AreNamedTwoByTwo) {
-  const Count count = count_of("pairs", 14, [](const auto& planned, const Diagnosis& d) {
+  const Count count = count_of("pairs", 14, [](const auto& planned, const selection::Diagnosis& d) {
     return diagnose_test::is_right(d, planned.hidden);
   });
   EXPECT_GE(count.share(), 0.85);
 }
 
 TEST(HiddenEffects, AreNotFoundOnHealthyRecords) {
-  const Count count = count_of("healthy", 10, [](const auto& /*planned*/, const Diagnosis& d) {
-    return d.verdict == Verdict::nothing_missing;
-  });
+  const Count count =
+      count_of("healthy", 10, [](const auto& /*planned*/, const selection::Diagnosis& d) {
+        return d.verdict == selection::Verdict::nothing_missing;
+      });
   EXPECT_EQ(count.right, count.records);
 }
 
 TEST(HiddenEffects, OutsideTheLibraryAreUnexplainedByTheRightVariable) {
   const std::size_t kinds = truth::left_out_table().size();
-  const Count count = count_of("leftout", kinds, [](const auto& planned, const Diagnosis& d) {
-    const truth::LeftOutInfo& info = *truth::find_left_out(planned.of.left_out.kind);
-    bool named = false;
-    for (std::size_t i = 0; i < std::min<std::size_t>(2, d.where.size()); ++i) {
-      named = named || std::find(info.variables.begin(), info.variables.end(),
-                                 d.where[i].variable) != info.variables.end();
-    }
-    return d.verdict == Verdict::unexplained && named;
-  });
+  const Count count =
+      count_of("leftout", kinds, [](const auto& planned, const selection::Diagnosis& d) {
+        const truth::LeftOutInfo& info = *truth::find_left_out(planned.of.left_out.kind);
+        bool named = false;
+        for (std::size_t i = 0; i < std::min<std::size_t>(2, d.where.size()); ++i) {
+          named = named || std::find(info.variables.begin(), info.variables.end(),
+                                     d.where[i].variable) != info.variables.end();
+        }
+        return d.verdict == selection::Verdict::unexplained && named;
+      });
   EXPECT_GE(count.share(), 0.8);
 }
 
 TEST(HiddenEffects, FrictionAndANullBiasAreBothNamed) {
-  const Diagnosis d = diagnose(diagnose_test::shop_of(
+  const selection::Diagnosis d = diagnose_test::found_in(diagnose_test::shop_of(
       "motion=multisine,friction.coulomb_N=150,null_bias.offset_V=0.07", 14));
-  EXPECT_EQ(d.verdict, Verdict::missing) << said(d);
+  EXPECT_EQ(d.verdict, selection::Verdict::missing) << said(d);
   EXPECT_THAT(d.missing, testing::UnorderedElementsAre("friction", "null_bias")) << said(d);
   EXPECT_LE(d.rms_after_m, diagnose_test::kAtFloor * d.noise_floor_m) << said(d);
 }
 
 TEST(HiddenEffects, ADragWithTheCubeOfTheSpeedIsUnexplainedBySpeedAndForce) {
-  const Diagnosis d = diagnose(
+  const selection::Diagnosis d = diagnose_test::found_in(
       diagnose_test::shop_of("motion=multisine,left_out=cubic_damping,left_out.size=2.5e5", 16));
-  EXPECT_EQ(d.verdict, Verdict::unexplained) << said(d);
+  EXPECT_EQ(d.verdict, selection::Verdict::unexplained) << said(d);
   ASSERT_FALSE(d.where.empty());
   EXPECT_EQ(d.where[0].enters, "force") << said(d);
   EXPECT_THAT(d.where[0].variable, testing::AnyOf("speed", "v")) << said(d);
-  EXPECT_FALSE(d.advice.empty());
 }
 
 }  // namespace

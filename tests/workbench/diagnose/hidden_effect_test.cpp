@@ -3,11 +3,13 @@
 // the plant's own values off. A few of them, short; hidden_effect_set_test.cpp has many.
 #include <gmock/gmock.h>
 
+#include "estimator/greybox/selection/diagnosis.h"
 #include "tests/workbench/diagnose/judged.h"
 #include "tests/workbench/diagnose/truth_records.h"
-#include "workbench/diagnose/diagnosis.h"
 
 namespace workbench::diagnose {
+
+namespace selection = estimator::greybox::selection;
 namespace {
 
 using diagnose_test::kAtFloor;
@@ -16,20 +18,20 @@ using testing::IsEmpty;
 
 struct Judged {
   truth::Case of;
-  Diagnosis diagnosis;
+  selection::Diagnosis diagnosis;
 };
 
 Judged judged(const std::string& spec, std::size_t seed) {
   Judged result;
   result.of = truth::parse_case(spec, seed);
-  result.diagnosis =
-      diagnose(diagnose_test::shop_with(diagnose_test::measured(truth::simulate(result.of))));
+  result.diagnosis = diagnose_test::found_in(
+      diagnose_test::shop_with(diagnose_test::measured(truth::simulate(result.of))));
   return result;
 }
 
 void expect_found(const Judged& j) {
-  const Diagnosis& d = j.diagnosis;
-  EXPECT_EQ(d.verdict, Verdict::missing) << said(d);
+  const selection::Diagnosis& d = j.diagnosis;
+  EXPECT_EQ(d.verdict, selection::Verdict::missing) << said(d);
   EXPECT_THAT(d.missing, testing::UnorderedElementsAreArray(truth::hidden_effects(j.of.hidden)))
       << said(d);
   EXPECT_LE(d.rms_after_m, kAtFloor * d.noise_floor_m) << said(d);
@@ -60,8 +62,8 @@ TEST(HiddenEffect, TwoAtOnceAreBothNamed) {
 }
 
 TEST(HiddenEffect, NoneIsFoundOnAHealthyPlantThatTheModelDoesNotMatch) {
-  const Diagnosis d = judged("motion=fast_steps,length_s=12,mismatched=1", 15).diagnosis;
-  EXPECT_EQ(d.verdict, Verdict::nothing_missing) << said(d);
+  const selection::Diagnosis d = judged("motion=fast_steps,length_s=12,mismatched=1", 15).diagnosis;
+  EXPECT_EQ(d.verdict, selection::Verdict::nothing_missing) << said(d);
   EXPECT_THAT(d.missing, IsEmpty());
   EXPECT_LE(d.rms_after_m, kAtFloor * d.noise_floor_m);
 }

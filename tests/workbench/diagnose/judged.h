@@ -8,10 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "estimator/greybox/selection/diagnosis.h"
 #include "tests/truth/case.h"
-#include "workbench/diagnose/diagnosis.h"
+#include "workbench/diagnose/experiment_design.h"
 
 namespace diagnose_test {
+
+namespace selection = estimator::greybox::selection;
 
 /// Held-out error over the noise floor that a found model may leave.
 inline constexpr double kAtFloor = 1.1;
@@ -20,8 +23,12 @@ inline constexpr double kStdErrors = 3.0;
 /// Held-out error over the noise floor up to which a hidden effect need not be seen.
 inline constexpr double kVisible = 1.5;
 
-inline std::string said(const workbench::diagnose::Diagnosis& d) {
-  std::string words = workbench::diagnose::text(d.verdict);
+inline selection::Diagnosis found_in(const selection::Workshop& shop) {
+  return workbench::diagnose::diagnose(shop).diagnosis;
+}
+
+inline std::string said(const selection::Diagnosis& d) {
+  std::string words = selection::text(d.verdict);
   for (const std::string& name : d.missing) words += " " + name;
   for (const auto& group : d.ambiguous) {
     words += " {";
@@ -35,9 +42,8 @@ inline std::string said(const workbench::diagnose::Diagnosis& d) {
 }
 
 /// Named exactly; or with at most two others that it cannot be told from; or not to be seen.
-inline bool is_right(const workbench::diagnose::Diagnosis& d,
-                     const std::vector<std::string>& hidden) {
-  using workbench::diagnose::Verdict;
+inline bool is_right(const selection::Diagnosis& d, const std::vector<std::string>& hidden) {
+  using selection::Verdict;
   if (d.verdict == Verdict::missing) {
     return std::is_permutation(d.missing.begin(), d.missing.end(), hidden.begin(), hidden.end());
   }
@@ -53,7 +59,7 @@ inline bool is_right(const workbench::diagnose::Diagnosis& d,
 
 /// Every scored parameter of the hidden effects is within its tolerance, or within a few of its own
 /// standard errors.
-inline void expect_values(const workbench::diagnose::Diagnosis& d, const truth::Case& of) {
+inline void expect_values(const selection::Diagnosis& d, const truth::Case& of) {
   const std::vector<std::string> hidden = truth::hidden_effects(of.hidden);
   for (const truth::Parameter& parameter : truth::parameters()) {
     if (parameter.tolerance == 0.0 ||

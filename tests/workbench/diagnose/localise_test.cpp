@@ -1,26 +1,29 @@
-#include "workbench/diagnose/localise.h"
+#include "estimator/greybox/selection/localisation.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
+#include "estimator/greybox/selection/residual_variables.h"
+#include "estimator/greybox/selection/structure_search.h"
 #include "tests/workbench/diagnose/servo_shop.h"
 #include "tests/workbench/diagnose/truth_records.h"
-#include "workbench/diagnose/ladder.h"
-#include "workbench/diagnose/variables.h"
 
 namespace workbench::diagnose {
+
+namespace selection = estimator::greybox::selection;
 namespace {
 
 using testing::AnyOf;
 using testing::IsEmpty;
 
-std::vector<Where> where_of(const std::string& spec) {
-  const Workshop shop = diagnose_test::shop_of(spec);
-  return localise(shop, first_stage(shop));
+std::vector<selection::Where> where_of(const std::string& spec) {
+  const selection::Workshop shop = diagnose_test::shop_of(spec);
+  return selection::localise(shop, selection::first_stage(shop));
 }
 
-Workshop servo_shop(const diagnose_test::Rate& rate_mps, const diagnose_test::Reading& reading_m) {
+selection::Workshop servo_shop(const diagnose_test::Rate& rate_mps,
+                               const diagnose_test::Reading& reading_m) {
   return diagnose_test::servo_shop({.rate_mps = rate_mps, .reading_m = reading_m});
 }
 
@@ -71,10 +74,10 @@ TEST(Localise, NamesTimeForALoadThatIsSetDownInTheMiddle) {
 }
 
 TEST(Localise, NamesTimeAndGainForAServoThatGrowsSlower) {
-  const Workshop shop =
+  const selection::Workshop shop =
       servo_shop([](double u_V, double, double t_s) { return 0.05 * u_V * (1.0 - 0.01 * t_s); },
                  plain_reading);
-  const auto where = localise(shop, first_stage(shop));
+  const auto where = selection::localise(shop, selection::first_stage(shop));
   ASSERT_FALSE(where.empty());
   EXPECT_EQ(where[0].enters, "gain");
   EXPECT_EQ(where[0].variable, "time");
@@ -82,48 +85,52 @@ TEST(Localise, NamesTimeAndGainForAServoThatGrowsSlower) {
 }
 
 TEST(Localise, NamesPositionAndMeasurementForASensorWithADent) {
-  const Workshop shop = servo_shop(
+  const selection::Workshop shop = servo_shop(
       [](double u_V, double, double) { return 0.05 * u_V; },
       [](double y_m, double) { return y_m + 2e-4 * std::exp(-std::pow((y_m - 0.3) / 0.02, 2)); });
-  const auto where = localise(shop, first_stage(shop));
+  const auto where = selection::localise(shop, selection::first_stage(shop));
   ASSERT_FALSE(where.empty());
   EXPECT_EQ(where[0].enters, "measurement");
   EXPECT_EQ(where[0].variable, "y");
 }
 
 TEST(Localise, LeavesForcesOutForAPlantThatHasNone) {
-  const Workshop shop =
+  const selection::Workshop shop =
       servo_shop([](double u_V, double, double t_s) { return 0.05 * u_V + 1e-3 * std::sin(t_s); },
                  plain_reading);
-  for (const Where& where : localise(shop, first_stage(shop))) EXPECT_NE(where.enters, "force");
+  for (const selection::Where& where : selection::localise(shop, selection::first_stage(shop)))
+    EXPECT_NE(where.enters, "force");
 }
 
 TEST(Localise, FindsNothingInNoise) {
-  const Workshop shop =
+  const selection::Workshop shop =
       servo_shop([](double u_V, double, double) { return 0.05 * u_V; }, plain_reading);
-  for (const Where& where : localise(shop, first_stage(shop))) {
+  for (const selection::Where& where : selection::localise(shop, selection::first_stage(shop))) {
     EXPECT_LT(where.explained_ratio, 0.05) << where.enters << " " << where.variable;
   }
 }
 
 TEST(Localise, SaysNothingOnceItIsCancelled) {
-  Workshop shop = servo_shop([](double u_V, double, double) { return 0.05 * u_V; }, plain_reading);
-  const Stage stage = first_stage(shop);
+  selection::Workshop shop =
+      servo_shop([](double u_V, double, double) { return 0.05 * u_V; }, plain_reading);
+  const selection::Stage stage = selection::first_stage(shop);
   shop.cancel = [] { return true; };
-  EXPECT_THAT(localise(shop, stage), IsEmpty());
+  EXPECT_THAT(selection::localise(shop, stage), IsEmpty());
 }
 
 TEST(Pieces, AddUpToOneAndEachIsOneAtItsOwnKnot) {
   const Eigen::VectorXd values = Eigen::VectorXd::LinSpaced(1001, -2.0, 5.0);
-  const Eigen::MatrixXd pieces = pieces_of(values, Eigen::VectorXd::Ones(1001));
-  ASSERT_EQ(pieces.cols(), kKnots);
+  const Eigen::MatrixXd pieces = selection::pieces_of(values, Eigen::VectorXd::Ones(1001));
+  ASSERT_EQ(pieces.cols(), selection::kKnots);
   EXPECT_LT((pieces.rowwise().sum().array() - 1.0).abs().maxCoeff(), 1e-12);
   EXPECT_GE(pieces.minCoeff(), 0.0);
   for (Eigen::Index i = 0; i < pieces.cols(); ++i) EXPECT_GT(pieces.col(i).maxCoeff(), 0.99);
 }
 
 TEST(Pieces, AreNoneForAVariableThatStandsStill) {
-  EXPECT_EQ(pieces_of(Eigen::VectorXd::Constant(50, 3.0), Eigen::VectorXd::Ones(50)).cols(), 0);
+  EXPECT_EQ(
+      selection::pieces_of(Eigen::VectorXd::Constant(50, 3.0), Eigen::VectorXd::Ones(50)).cols(),
+      0);
 }
 
 }  // namespace

@@ -12,6 +12,8 @@
 #include "workbench/diagnose/text_output.h"
 
 namespace workbench::diagnose {
+
+namespace selection = estimator::greybox::selection;
 namespace {
 
 using nlohmann::json;
@@ -24,7 +26,7 @@ TEST(DiagnosisJson, HasThePublishedKeysInSi) {
   outcome.diagnosis.where = {{"force", "speed", 0.62}};
   const json j = json::parse(to_json(outcome));
   EXPECT_EQ(j["verdict"], "missing");
-  EXPECT_EQ(j["missing"], json({"friction"}));
+  EXPECT_EQ(j["missing"], live::json({"friction"}));
   EXPECT_EQ(j["ambiguous"], json::parse(R"([["friction", "backlash"]])"));
   EXPECT_EQ(j["noise_floor_m"], 2.4e-6);
   EXPECT_EQ(j["rms_before_m"], 26.3e-6);
@@ -52,7 +54,7 @@ TEST(DiagnosisJson, HasThePublishedKeysInSi) {
 TEST(DiagnosisJson, MissingNumbersAreNull) {
   Outcome outcome = example_outcome();
   outcome.diagnosis = {};
-  outcome.diagnosis.verdict = Verdict::not_excited;
+  outcome.diagnosis.verdict = selection::Verdict::not_excited;
   outcome.diagnosis.noise_floor_m = std::nan("");
   const json j = json::parse(to_json(outcome));
   EXPECT_EQ(j["verdict"], "not_excited");
@@ -94,8 +96,8 @@ TEST(BetterModel, SaysAtItsTopWhatWasAddedAndReadsBack) {
   EXPECT_NE(*read.value("mass_kg"), 1.0);
 }
 
-Progress step(const std::string& doing, int done) {
-  Progress progress;
+selection::Progress step(const std::string& doing, int done) {
+  selection::Progress progress;
   progress.doing = doing;
   progress.done = done;
   progress.of = 36;
@@ -108,7 +110,7 @@ TEST(ProgressLine, IsOneLineForEachRoundWhereNoTerminalIs) {
   std::ostringstream out;
   ProgressLine line(out, false, 2.4e-6);
   line.show(step("round 1: trying friction", 1));
-  Progress ranked = step("round 1: trying backlash", 2);
+  selection::Progress ranked = step("round 1: trying backlash", 2);
   ranked.expected = {"friction", "backlash", "deadband"};
   line.show(ranked);
   line.show(ranked);

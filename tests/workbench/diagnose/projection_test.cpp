@@ -1,5 +1,5 @@
 // What remains of a residual, beside a dense least-squares solution of the same sum.
-#include "workbench/diagnose/projection.h"
+#include "estimator/greybox/selection/projection.h"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,9 @@
 #include <limits>
 
 namespace workbench::diagnose {
+
+namespace greybox = estimator::greybox;
+namespace selection = estimator::greybox::selection;
 namespace {
 
 using Eigen::Index;
@@ -14,13 +17,13 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index kSamples = 240;
-constexpr double kNone = std::numeric_limits<double>::infinity();
+constexpr double live::kNone = std::numeric_limits<double>::infinity();
 
 /// Three parameters, the last without a prior; numbers that are the same everywhere.
-matching::Fitted example() {
-  matching::Fitted fitted;
-  for (const double sd : {0.02, 0.3, kNone}) {
-    matching::SearchParameter p;
+greybox::Fitted example() {
+  greybox::Fitted fitted;
+  for (const double sd : {0.02, 0.3, live::kNone}) {
+    greybox::SearchParameter p;
     p.prior_sd = sd;
     fitted.searched.push_back(p);
   }
@@ -44,7 +47,7 @@ struct Dense {
 };
 
 /// The sum of the header with further columns, as one tall least-squares problem.
-Dense dense(const matching::Fitted& fitted, const VectorXd& weights, const VectorXd& residual_m,
+Dense dense(const greybox::Fitted& fitted, const VectorXd& weights, const VectorXd& residual_m,
             const MatrixXd& signatures_m) {
   const Index parameters = fitted.jacobian.cols();
   MatrixXd a = MatrixXd::Zero(kSamples + parameters, parameters + signatures_m.cols());
@@ -61,17 +64,17 @@ Dense dense(const matching::Fitted& fitted, const VectorXd& weights, const Vecto
 }
 
 TEST(Projection, LeavesWhatTheParametersCannotTakeAwayWithinTheirPriors) {
-  const matching::Fitted fitted = example();
+  const greybox::Fitted fitted = example();
   const VectorXd weights = every_third_left_out();
-  const Projection projection(fitted, weights);
+  const selection::Projection projection(fitted, weights);
   const Dense expected = dense(fitted, weights, fitted.residual_m, MatrixXd(kSamples, 0));
   EXPECT_NEAR(projection.cost(), expected.cost, 1e-9 * expected.cost);
 }
 
 TEST(Projection, FindsTheStrengthOfASignatureBesideAdjustingParameters) {
-  const matching::Fitted fitted = example();
+  const greybox::Fitted fitted = example();
   const VectorXd weights = every_third_left_out();
-  const Projection projection(fitted, weights);
+  const selection::Projection projection(fitted, weights);
   const VectorXd residual_m = fitted.residual_m + 2e-6 * VectorXd::Random(kSamples);
   const VectorXd signature_m = 4e-6 * VectorXd::Random(kSamples) + fitted.jacobian.col(1);
   const auto [cost, strength] = projection.with(residual_m, signature_m);
@@ -81,12 +84,13 @@ TEST(Projection, FindsTheStrengthOfASignatureBesideAdjustingParameters) {
 }
 
 TEST(Projection, FindsTwoStrengthsTogether) {
-  const matching::Fitted fitted = example();
+  const greybox::Fitted fitted = example();
   const VectorXd weights = every_third_left_out();
-  const Projection projection(fitted, weights);
+  const selection::Projection projection(fitted, weights);
   MatrixXd both_m = 4e-6 * MatrixXd::Random(kSamples, 2);
   both_m.col(1) += 0.7 * both_m.col(0);
-  const Projection::Two two = projection.with(fitted.residual_m, both_m.col(0), both_m.col(1));
+  const selection::Projection::Two two =
+      projection.with(fitted.residual_m, both_m.col(0), both_m.col(1));
   const Dense expected = dense(fitted, weights, fitted.residual_m, both_m);
   EXPECT_NEAR(two.cost, expected.cost, 1e-9 * expected.cost);
   EXPECT_NEAR(two.first, expected.solution[3], 1e-9);
@@ -94,21 +98,22 @@ TEST(Projection, FindsTwoStrengthsTogether) {
 }
 
 TEST(Projection, GivesNoStrengthToASignatureThatCannotBeTold) {
-  const matching::Fitted fitted = example();
-  const Projection projection(fitted, every_third_left_out());
+  const greybox::Fitted fitted = example();
+  const selection::Projection projection(fitted, every_third_left_out());
   const auto [cost, strength] = projection.with(fitted.residual_m, VectorXd::Zero(kSamples));
   EXPECT_DOUBLE_EQ(cost, projection.cost());
   EXPECT_EQ(strength, 0.0);
   const VectorXd signature_m = 1e-6 * VectorXd::Random(kSamples);
-  const Projection::Two two = projection.with(fitted.residual_m, signature_m, 2.0 * signature_m);
+  const selection::Projection::Two two =
+      projection.with(fitted.residual_m, signature_m, 2.0 * signature_m);
   EXPECT_EQ(two.first, 0.0);
   EXPECT_EQ(two.second, 0.0);
 }
 
 TEST(Projection, TakesFromASignatureWhatTheParametersCanImitate) {
-  matching::Fitted fitted = example();
-  for (matching::SearchParameter& p : fitted.searched) p.prior_sd = kNone;
-  const Projection projection(fitted, VectorXd::Ones(kSamples));
+  greybox::Fitted fitted = example();
+  for (greybox::SearchParameter& p : fitted.searched) p.prior_sd = live::kNone;
+  const selection::Projection projection(fitted, VectorXd::Ones(kSamples));
   const VectorXd own_m = 1e-6 * VectorXd::Random(kSamples);
   const VectorXd beyond_m = projection.beyond(own_m + 0.4 * fitted.jacobian.col(0));
   EXPECT_LT((fitted.jacobian.transpose() * beyond_m).norm(), 1e-6 * fitted.jacobian.norm() * 1e-6);

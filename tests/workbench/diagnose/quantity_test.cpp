@@ -1,5 +1,5 @@
 // Units and digits as an engineer writes them; expected texts by hand.
-#include "workbench/diagnose/quantity.h"
+#include "config/units/quantity.h"
 
 #include <gtest/gtest.h>
 
@@ -7,15 +7,15 @@
 #include <cstdio>
 #include <limits>
 
-#include "workbench/shell_words.h"
+#include "workbench/present/shell_command.h"
 
 namespace workbench::diagnose {
 namespace {
 
-const double kNone = std::nan("");
+const double live::kNone = std::nan("");
 
 std::string said(const char* name, double value, double error) {
-  return words(quantity(name, value, error));
+  return config::units::words(config::units::quantity(name, value, error));
 }
 
 TEST(Quantity, IsRoundedToWhatItsErrorLeaves) {
@@ -27,46 +27,47 @@ TEST(Quantity, IsRoundedToWhatItsErrorLeaves) {
 }
 
 TEST(Quantity, IsShownInTheUnitThatReadsWell) {
-  EXPECT_EQ(said("limit_m3ps", 1e-4, kNone), "6 L/min");
-  EXPECT_EQ(said("supply_pressure_Pa", 6.89e6, kNone), "68.9 bar");
-  EXPECT_EQ(said("droop.droop_Pa_per_m3ps", 6e9, kNone), "1 bar/(L/min)");
-  EXPECT_EQ(said("leak.conductance_m3ps_per_Pa", 1e-11, kNone), "60 mL/min/bar");
+  EXPECT_EQ(said("limit_m3ps", 1e-4, live::kNone), "6 L/min");
+  EXPECT_EQ(said("supply_pressure_Pa", 6.89e6, live::kNone), "68.9 bar");
+  EXPECT_EQ(said("droop.droop_Pa_per_m3ps", 6e9, live::kNone), "1 bar/(L/min)");
+  EXPECT_EQ(said("leak.conductance_m3ps_per_Pa", 1e-11, live::kNone), "60 mL/min/bar");
   EXPECT_EQ(said("flow_asymmetry.asymmetry_ratio", 0.04, 0.002), "4.00 +- 0.20 %");
-  EXPECT_EQ(said("force_ripple.phase_rad", 3.14159265, kNone), "180 deg");
-  EXPECT_EQ(said("gain_mps_per_V", 0.0123, kNone), "12.3 mm/s/V");
-  EXPECT_EQ(said("quadratic_damping.coefficient_N_s2_per_m2", 8000.0, kNone), "8000 N s2/m2");
+  EXPECT_EQ(said("force_ripple.phase_rad", 3.14159265, live::kNone), "180 deg");
+  EXPECT_EQ(said("gain_mps_per_V", 0.0123, live::kNone), "12.3 mm/s/V");
+  EXPECT_EQ(said("quadratic_damping.coefficient_N_s2_per_m2", 8000.0, live::kNone), "8000 N s2/m2");
 }
 
 TEST(Quantity, MissingLimitsAndMissingValuesAreWords) {
-  EXPECT_EQ(said("limit_m3ps", std::numeric_limits<double>::infinity(), kNone), "no limit");
-  EXPECT_EQ(said("mass_kg", kNone, kNone), "unknown");
-  EXPECT_EQ(length_words(kNone), "unknown");
+  EXPECT_EQ(said("limit_m3ps", std::numeric_limits<double>::infinity(), live::kNone), "no limit");
+  EXPECT_EQ(said("mass_kg", live::kNone, live::kNone), "unknown");
+  EXPECT_EQ(config::units::length_words(live::kNone), "unknown");
 }
 
 TEST(Quantity, LengthsGoFromMicrometresToMetres) {
-  EXPECT_EQ(length_words(2.63e-5), "26.3 um");
-  EXPECT_EQ(length_words(1.42e-3), "1.42 mm");
-  EXPECT_EQ(length_words(2.0), "2 m");
-  EXPECT_EQ(typeset("26.3 um +- 2 um"), "26.3 µm ± 2 µm");
+  EXPECT_EQ(config::units::length_words(2.63e-5), "26.3 um");
+  EXPECT_EQ(config::units::length_words(1.42e-3), "1.42 mm");
+  EXPECT_EQ(config::units::length_words(2.0), "2 m");
+  EXPECT_EQ(config::units::typeset("26.3 um +- 2 um"), "26.3 µm ± 2 µm");
 }
 
 TEST(Quantity, ParameterNamesLoseEffectAndUnit) {
-  EXPECT_EQ(parameter_words("friction.coulomb_N"), "Coulomb");
-  EXPECT_EQ(parameter_words("friction.presliding_stiffness_N_per_m"), "presliding stiffness");
-  EXPECT_EQ(parameter_words("deadband.half_width_V"), "half width");
-  EXPECT_EQ(parameter_words("flow_asymmetry.asymmetry_ratio"), "asymmetry");
-  EXPECT_EQ(parameter_words("transport_delay.delay_s"), "delay");
+  EXPECT_EQ(config::units::parameter_words("friction.coulomb_N"), "Coulomb");
+  EXPECT_EQ(config::units::parameter_words("friction.presliding_stiffness_N_per_m"),
+            "presliding stiffness");
+  EXPECT_EQ(config::units::parameter_words("deadband.half_width_V"), "half width");
+  EXPECT_EQ(config::units::parameter_words("flow_asymmetry.asymmetry_ratio"), "asymmetry");
+  EXPECT_EQ(config::units::parameter_words("transport_delay.delay_s"), "delay");
 }
 
 TEST(Chance, IsNotShownFinerThanItIsKnown) {
-  EXPECT_EQ(chance_words(1e-12), "below 1e-06");
-  EXPECT_EQ(chance_words(0.034), "0.034");
-  EXPECT_EQ(chance_words(kNone), "-");
+  EXPECT_EQ(config::units::chance_words(1e-12), "below 1e-06");
+  EXPECT_EQ(config::units::chance_words(0.034), "0.034");
+  EXPECT_EQ(config::units::chance_words(live::kNone), "-");
 }
 
 /// What a shell makes of the word.
 std::string through_shell(const std::string& word) {
-  FILE* pipe = popen(("printf %s " + shell_word(word)).c_str(), "r");
+  FILE* pipe = popen(("printf %s " + present::shell_word(word)).c_str(), "r");
   std::string out;
   for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) out += static_cast<char>(c);
   pclose(pipe);
@@ -78,7 +79,7 @@ TEST(ShellWord, ReachesTheProgramAsItWas) {
                                  "two\nlines", "--set", "a;b&c|d>e"}) {
     EXPECT_EQ(through_shell(word), word);
   }
-  EXPECT_EQ(shell_word("/data/bench-1.csv"), "/data/bench-1.csv");
+  EXPECT_EQ(present::shell_word("/data/bench-1.csv"), "/data/bench-1.csv");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // How likely a gain is by chance, by counting; one round of trials.
-#include "workbench/diagnose/rounds.h"
+#include "estimator/greybox/selection/search_round.h"
 
 #include <gmock/gmock.h>
 
@@ -9,14 +9,17 @@
 #include "tests/workbench/diagnose/servo_shop.h"
 
 namespace workbench::diagnose {
+
+namespace greybox = estimator::greybox;
+namespace selection = estimator::greybox::selection;
 namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
 
 /// 6000 samples at 200 Hz of which every other 2 s score.
-Workshop blocks() {
-  Workshop shop;
+selection::Workshop blocks() {
+  selection::Workshop shop;
   shop.evidence.sample_time_s = 0.005;
   shop.evidence.scores = VectorXd::Zero(6000);
   for (Index k = 0; k < 6000; ++k) shop.evidence.scores[k] = (k / 400) % 2 == 1 ? 1.0 : 0.0;
@@ -26,8 +29,8 @@ Workshop blocks() {
 class Noise {
  public:
   explicit Noise(unsigned seed) : random_(seed) {}
-  matching::Fitted residual(double sd_m, double phi = 0.0) {
-    matching::Fitted fitted;
+  greybox::Fitted residual(double sd_m, double phi = 0.0) {
+    greybox::Fitted fitted;
     fitted.residual_m.resize(6000);
     double value = 0.0;
     for (double& r : fitted.residual_m) {
@@ -44,13 +47,14 @@ class Noise {
 
 // Counts of 400 draws at a chance of 5 % and 1 % lie within 20 +- 13 and 4 +- 6.
 TEST(Chance, IsWhatItSaysWhenNeitherIsBetter) {
-  const Workshop shop = blocks();
+  const selection::Workshop shop = blocks();
   for (const double phi : {0.0, 0.9}) {
     Noise noise(17);
     int at_5_percent = 0;
     int at_1_percent = 0;
     for (int i = 0; i < 400; ++i) {
-      const double p = chance(shop, noise.residual(1e-6, phi), noise.residual(1e-6, phi));
+      const double p =
+          selection::chance(shop, noise.residual(1e-6, phi), noise.residual(1e-6, phi));
       ASSERT_GE(p, 0.0);
       ASSERT_LE(p, 1.0);
       at_5_percent += p < 0.05 ? 1 : 0;
@@ -62,40 +66,42 @@ TEST(Chance, IsWhatItSaysWhenNeitherIsBetter) {
 }
 
 TEST(Chance, IsSmallForASteadyGainAndLargeForASteadyLoss) {
-  const Workshop shop = blocks();
+  const selection::Workshop shop = blocks();
   Noise noise(4);
-  const matching::Fitted earlier = noise.residual(1.2e-6);
-  const matching::Fitted later = noise.residual(1e-6);
-  EXPECT_LT(chance(shop, earlier, later), 1e-4);
-  EXPECT_NEAR(chance(shop, earlier, later) + chance(shop, later, earlier), 1.0, 1e-12);
+  const greybox::Fitted earlier = noise.residual(1.2e-6);
+  const greybox::Fitted later = noise.residual(1e-6);
+  EXPECT_LT(selection::chance(shop, earlier, later), 1e-4);
+  EXPECT_NEAR(selection::chance(shop, earlier, later) + selection::chance(shop, later, earlier),
+              1.0, 1e-12);
 }
 
 TEST(Chance, LooksAtScoredSamplesOnly) {
-  const Workshop shop = blocks();
+  const selection::Workshop shop = blocks();
   Noise noise(4);
-  const matching::Fitted earlier = noise.residual(1e-6);
-  const matching::Fitted later = noise.residual(1e-6);
-  matching::Fitted other = later;
+  const greybox::Fitted earlier = noise.residual(1e-6);
+  const greybox::Fitted later = noise.residual(1e-6);
+  greybox::Fitted other = later;
   for (Index k = 0; k < 6000; ++k) {
     if (shop.evidence.scores[k] == 0.0) other.residual_m[k] = 1.0;
   }
-  EXPECT_EQ(chance(shop, earlier, later), chance(shop, earlier, other));
+  EXPECT_EQ(selection::chance(shop, earlier, later), selection::chance(shop, earlier, other));
 }
 
 TEST(Chance, IsCertainWithTooLittleToCount) {
-  Workshop shop = blocks();
+  selection::Workshop shop = blocks();
   shop.evidence.scores.setZero();
   Noise noise(4);
-  EXPECT_EQ(chance(shop, noise.residual(2e-6), noise.residual(1e-6)), 1.0);
+  EXPECT_EQ(selection::chance(shop, noise.residual(2e-6), noise.residual(1e-6)), 1.0);
 }
 
 TEST(SingleRound, RanksTheHiddenEffectFirstAndTellsHowItGoes) {
-  Workshop shop = diagnose_test::servo_shop({.rate_mps = diagnose_test::with_offset(0.06)});
-  std::vector<Progress> told;
-  shop.progress = [&](const Progress& progress) { told.push_back(progress); };
-  const Round round = single_round(shop, first_stage(shop), 1);
+  selection::Workshop shop =
+      diagnose_test::servo_shop({.rate_mps = diagnose_test::with_offset(0.06)});
+  std::vector<selection::Progress> told;
+  shop.progress = [&](const selection::Progress& progress) { told.push_back(progress); };
+  const selection::Round round = selection::single_round(shop, selection::first_stage(shop), 1);
   ASSERT_EQ(round.candidates.size(), shop.absent.size());
-  const Candidate& best = round.candidates.front();
+  const selection::Candidate& best = round.candidates.front();
   EXPECT_THAT(best.effects, testing::ElementsAre("null_bias"));
   EXPECT_LT(best.p_value, 1e-6);
   EXPECT_GT(best.fitted.jacobian.size(), 0);
@@ -111,26 +117,28 @@ TEST(SingleRound, RanksTheHiddenEffectFirstAndTellsHowItGoes) {
 }
 
 TEST(SingleRound, LeavesOutWhatIsInTheModelAlready) {
-  const Workshop shop = diagnose_test::servo_shop({.rate_mps = diagnose_test::with_offset(0.06)});
-  const Stage stage = diagnose_test::stage_with(shop, first_stage(shop), {{"null_bias", 0.06}});
-  for (const Candidate& candidate : single_round(shop, stage, 2).candidates) {
+  const selection::Workshop shop =
+      diagnose_test::servo_shop({.rate_mps = diagnose_test::with_offset(0.06)});
+  const selection::Stage stage =
+      diagnose_test::stage_with(shop, selection::first_stage(shop), {{"null_bias", 0.06}});
+  for (const selection::Candidate& candidate : selection::single_round(shop, stage, 2).candidates) {
     EXPECT_NE(candidate.effects.front(), "null_bias");
   }
 }
 
 TEST(PairRound, TriesEffectsTwoByTwoAndRanksTheTruePairFirst) {
-  const Workshop shop =
+  const selection::Workshop shop =
       diagnose_test::servo_shop({.rate_mps = diagnose_test::with_offset_and_band(0.06, 0.1)});
-  Round singles = single_round(shop, first_stage(shop), 1);
-  std::erase_if(singles.candidates, [](const Candidate& candidate) {
+  selection::Round singles = selection::single_round(shop, selection::first_stage(shop), 1);
+  std::erase_if(singles.candidates, [](const selection::Candidate& candidate) {
     const std::string& effect = candidate.effects.front();
     return effect != "null_bias" && effect != "deadband" && effect != "flow_asymmetry";
   });
-  const std::vector<Candidate> pairs = pair_round(shop, singles);
+  const std::vector<selection::Candidate> pairs = selection::pair_round(shop, singles);
   ASSERT_EQ(pairs.size(), 3U);
   EXPECT_THAT(pairs.front().effects, testing::UnorderedElementsAre("null_bias", "deadband"));
   EXPECT_LT(pairs.front().score_rms_m, 1.1 * shop.evidence.noise_floor_m);
-  const Stage both = with(singles.before, pairs.front());
+  const selection::Stage both = selection::with(singles.before, pairs.front());
   EXPECT_EQ(both.added, pairs.front().effects);
 }
 

@@ -11,12 +11,15 @@
 #include <vector>
 
 #include "config/record/record.h"
+#include "estimator/greybox/selection/parameter_subset.h"
+#include "estimator/greybox/selection/problem.h"
+#include "estimator/greybox/selection/screening.h"
 #include "plant_sim/model_file.h"
-#include "workbench/diagnose/selection.h"
-#include "workbench/diagnose/trial.h"
-#include "workbench/diagnose/workshop.h"
 
 namespace diagnose_test {
+
+namespace greybox = estimator::greybox;
+namespace selection = estimator::greybox::selection;
 
 inline constexpr double kServoGain = 0.05;  ///< m/s per V
 
@@ -37,7 +40,7 @@ struct ServoRun {
 };
 
 /// In steps of 0.1 ms, 200 Hz, 2 um noise, 5 um encoder.
-inline workbench::matching::Measured servo_record(const ServoRun& run) {
+inline greybox::Measured servo_record(const ServoRun& run) {
   std::mt19937 random(run.seed);
   std::normal_distribution<double> noise_m(0.0, 2e-6);
   std::uniform_real_distribution<double> level(-1.0, 1.0);
@@ -58,7 +61,7 @@ inline workbench::matching::Measured servo_record(const ServoRun& run) {
     record.y_m.push_back(5e-6 * std::round((run.reading_m(y_m, t_s) + noise_m(random)) / 5e-6));
     for (int i = 0; i < 50; ++i) y_m += 1e-4 * run.rate_mps(u_V, y_m, t_s + 1e-4 * i);
   }
-  return workbench::matching::measured(record);
+  return greybox::measured(record);
 }
 
 inline plant_sim::ModelFile servo_model() {
@@ -68,9 +71,8 @@ inline plant_sim::ModelFile servo_model() {
   return model;
 }
 
-inline workbench::diagnose::Workshop servo_shop(const ServoRun& run) {
-  return workbench::diagnose::workshop(servo_model(),
-                                       workbench::matching::evidence({servo_record(run)}, {}));
+inline selection::Workshop servo_shop(const ServoRun& run) {
+  return selection::workshop(servo_model(), greybox::evidence({servo_record(run)}, {}));
 }
 
 /// y' = 0.05 (u + offset).
@@ -87,16 +89,15 @@ inline Rate with_offset_and_band(double offset_V, double width_V) {
 }
 
 /// `before` with effects of one parameter, which start at a value.
-inline workbench::diagnose::Stage stage_with(
-    const workbench::diagnose::Workshop& shop, const workbench::diagnose::Stage& before,
-    const std::vector<std::pair<std::string, double>>& effects) {
-  using namespace workbench::diagnose;
+inline selection::Stage stage_with(const selection::Workshop& shop, const selection::Stage& before,
+                                   const std::vector<std::pair<std::string, double>>& effects) {
+  using namespace workbench::diagnose::diagnose;
   Selection selection = select(before.fitted, [](const auto&) { return true; });
   Stage stage = before;
   for (const auto& [name, value] : effects) {
     const auto info = std::find_if(shop.absent.begin(), shop.absent.end(),
                                    [&](const auto& absent) { return absent.name == name; });
-    Selection own{workbench::matching::effect_parameters(*info, 0), Eigen::VectorXd(1)};
+    Selection own{greybox::effect_parameters(*info, 0), Eigen::VectorXd(1)};
     own.start[0] = own.searched.front().search(value);
     append(selection, own);
     stage.added.push_back(name);

@@ -1,5 +1,5 @@
 // The sizes tried of an effect; waves beside the sine that they stand for.
-#include "workbench/diagnose/sizes.h"
+#include "estimator/greybox/selection/trial_sizes.h"
 
 #include <gmock/gmock.h>
 
@@ -10,9 +10,12 @@
 #include "plant_sim/parameter.h"
 
 namespace workbench::diagnose {
+
+namespace greybox = estimator::greybox;
+namespace selection = estimator::greybox::selection;
 namespace {
 
-using matching::SearchParameter;
+using greybox::SearchParameter;
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -27,11 +30,11 @@ const plant_sim::EffectInfo& info(const std::string& name) {
                        [&](const auto& effect) { return effect.name == name; });
 }
 
-std::vector<SearchParameter> own(const std::string& name) {
-  return matching::effect_parameters(info(name), 2);
+std::vector<greybox::SearchParameter> own(const std::string& name) {
+  return greybox::effect_parameters(info(name), 2);
 }
 
-std::size_t at(const std::vector<SearchParameter>& searched, const std::string& ending) {
+std::size_t at(const std::vector<greybox::SearchParameter>& searched, const std::string& ending) {
   for (std::size_t i = 0; i < searched.size(); ++i) {
     if (searched[i].name.ends_with(ending)) return i;
   }
@@ -39,8 +42,8 @@ std::size_t at(const std::vector<SearchParameter>& searched, const std::string& 
 }
 
 /// Between 0.25 and 0.35 m.
-matching::Evidence motion() {
-  matching::Evidence evidence;
+greybox::Evidence motion() {
+  greybox::Evidence evidence;
   evidence.records.resize(2);
   evidence.records[0].y_m = {0.30, 0.35, 0.31};
   evidence.records[1].y_m = {0.29, 0.25};
@@ -49,14 +52,14 @@ matching::Evidence motion() {
 
 TEST(TrialSizes, StayWithinBoundsAndCoverThreeDecades) {
   for (const plant_sim::EffectInfo& effect : library()) {
-    const std::vector<SearchParameter> searched = matching::effect_parameters(effect, 2);
-    const Eigen::MatrixXd sizes = trial_sizes(searched, motion());
+    const std::vector<greybox::SearchParameter> searched = greybox::effect_parameters(effect, 2);
+    const Eigen::MatrixXd sizes = selection::trial_sizes(searched, motion());
     ASSERT_EQ(sizes.rows(), static_cast<Eigen::Index>(searched.size())) << effect.name;
     std::set<double> tried;
     for (Eigen::Index k = 0; k < sizes.cols(); ++k) {
       tried.insert(sizes(0, k));
       for (Eigen::Index i = 0; i < sizes.rows(); ++i) {
-        const SearchParameter& p = searched[static_cast<std::size_t>(i)];
+        const greybox::SearchParameter& p = searched[static_cast<std::size_t>(i)];
         EXPECT_GE(sizes(i, k), p.lower) << p.name;
         EXPECT_LE(sizes(i, k), p.upper) << p.name;
       }
@@ -74,19 +77,19 @@ TEST(TrialSizes, StayWithinBoundsAndCoverThreeDecades) {
 }
 
 TEST(TrialSizes, PutARestPositionWhereTheMotionIs) {
-  const std::vector<SearchParameter> searched = own("load_spring");
+  const std::vector<greybox::SearchParameter> searched = own("load_spring");
   const std::size_t rest = at(searched, ".rest_m");
   ASSERT_LT(rest, searched.size());
-  const Eigen::MatrixXd sizes = trial_sizes(searched, motion());
+  const Eigen::MatrixXd sizes = selection::trial_sizes(searched, motion());
   for (Eigen::Index k = 0; k < sizes.cols(); ++k) {
     EXPECT_NEAR(searched[rest].value(sizes(static_cast<Eigen::Index>(rest), k)), 0.30, 1e-12);
   }
 }
 
 TEST(TrialSizes, TakeParametersOfTheSameUnitAlong) {
-  const std::vector<SearchParameter> searched = own("friction");
+  const std::vector<greybox::SearchParameter> searched = own("friction");
   const auto breakaway = static_cast<Eigen::Index>(at(searched, ".static_N"));
-  const Eigen::MatrixXd sizes = trial_sizes(searched, motion());
+  const Eigen::MatrixXd sizes = selection::trial_sizes(searched, motion());
   for (Eigen::Index k = 1; k < sizes.cols(); ++k) {
     EXPECT_NEAR(sizes(breakaway, k) / sizes(breakaway, 0), sizes(0, k) / sizes(0, 0), 1e-9);
   }
@@ -95,13 +98,15 @@ TEST(TrialSizes, TakeParametersOfTheSameUnitAlong) {
 TEST(Waves, AreOnlyOfPeriodicEffects) {
   std::vector<std::string> periodic;
   for (const plant_sim::EffectInfo& effect : library()) {
-    if (is_periodic(matching::effect_parameters(effect, 2))) periodic.push_back(effect.name);
+    if (selection::is_periodic(greybox::effect_parameters(effect, 2)))
+      periodic.push_back(effect.name);
   }
   EXPECT_THAT(periodic, testing::UnorderedElementsAre("force_ripple", "encoder_eccentricity"));
 }
 
 /// a sin(2 pi y / wavelength + phase)
-double sine(const std::vector<SearchParameter>& searched, const Eigen::VectorXd& x, double y_m) {
+double sine(const std::vector<greybox::SearchParameter>& searched, const Eigen::VectorXd& x,
+            double y_m) {
   const auto value = [&](std::size_t i) {
     return searched[i].value(x[static_cast<Eigen::Index>(i)]);
   };
@@ -111,14 +116,14 @@ double sine(const std::vector<SearchParameter>& searched, const Eigen::VectorXd&
 
 TEST(Waves, AddUpToAWaveOfAnySizeAndPhase) {
   for (const char* effect : {"force_ripple", "encoder_eccentricity"}) {
-    const std::vector<SearchParameter> searched = own(effect);
-    const Eigen::MatrixXd two = waves(searched, motion(), 5.0);
+    const std::vector<greybox::SearchParameter> searched = own(effect);
+    const Eigen::MatrixXd two = selection::waves(searched, motion(), 5.0);
     EXPECT_NEAR(searched[at(searched, ".wavelength_m")].value(
                     two(static_cast<Eigen::Index>(at(searched, ".wavelength_m")), 0)),
                 0.02, 1e-12);
     for (const auto& [first, second] :
          {std::pair{0.7, 0.4}, {-1.2, 0.3}, {0.2, -2.0}, {-0.5, -0.5}, {0.0, 1.0}}) {
-      const Eigen::VectorXd found = wave_of(searched, two.col(0), first, second);
+      const Eigen::VectorXd found = selection::wave_of(searched, two.col(0), first, second);
       for (const double y_m : {0.25, 0.263, 0.301, 0.35}) {
         EXPECT_NEAR(
             sine(searched, found, y_m),
@@ -131,7 +136,7 @@ TEST(Waves, AddUpToAWaveOfAnySizeAndPhase) {
 }
 
 TEST(Waves, AreSoughtFromOneAndAHalfToSixtyTurns) {
-  const std::vector<double> turns = turns_over(motion());
+  const std::vector<double> turns = selection::turns_over(motion());
   EXPECT_EQ(turns.front(), 1.5);
   EXPECT_EQ(turns.back(), 60.0);
   // a stretch of any wave number is less than a quarter turn from one that is tried
@@ -139,41 +144,42 @@ TEST(Waves, AreSoughtFromOneAndAHalfToSixtyTurns) {
 }
 
 TEST(Waves, KeepTheirLengthAndLeaveAReadingMonotonic) {
-  std::vector<SearchParameter> searched = own("encoder_eccentricity");
+  std::vector<greybox::SearchParameter> searched = own("encoder_eccentricity");
   const std::size_t length = at(searched, ".wavelength_m");
-  const Eigen::VectorXd found = waves(searched, motion(), 5.0).col(0);
-  hold_wavelength(info("encoder_eccentricity"), found, searched);
+  const Eigen::VectorXd found = selection::waves(searched, motion(), 5.0).col(0);
+  selection::hold_wavelength(info("encoder_eccentricity"), found, searched);
   EXPECT_NEAR(searched[length].value(searched[length].upper), 0.021, 1e-9);
   EXPECT_NEAR(searched[length].value(searched[length].lower), 0.02 / 1.05, 1e-9);
   const double most_m = searched[0].value(searched[0].upper);
   EXPECT_NEAR(2.0 * kPi * most_m / 0.02, 0.3, 1e-9);  // d reading / d y
 
-  std::vector<SearchParameter> force = own("force_ripple");
+  std::vector<greybox::SearchParameter> force = own("force_ripple");
   const double before = force[0].upper;
-  hold_wavelength(info("force_ripple"), waves(force, motion(), 5.0).col(0), force);
+  selection::hold_wavelength(info("force_ripple"), selection::waves(force, motion(), 5.0).col(0),
+                             force);
   EXPECT_EQ(force[0].upper, before);
 }
 
 TEST(ScaleSize, TurnsAWaveInsteadOfMakingItNegative) {
-  const std::vector<SearchParameter> searched = own("force_ripple");
-  const Eigen::VectorXd before = waves(searched, motion(), 7.0).col(1);
+  const std::vector<greybox::SearchParameter> searched = own("force_ripple");
+  const Eigen::VectorXd before = selection::waves(searched, motion(), 7.0).col(1);
   Eigen::VectorXd after = before;
-  EXPECT_TRUE(scale_size(searched, -1.5, after));
+  EXPECT_TRUE(selection::scale_size(searched, -1.5, after));
   for (const double y_m : {0.25, 0.2812, 0.33}) {
     EXPECT_NEAR(sine(searched, after, y_m), -1.5 * sine(searched, before, y_m), 1e-9);
   }
 }
 
 TEST(ScaleSize, SaysWhereANegativeSizeIsNotPossible) {
-  const std::vector<SearchParameter> width = own("deadband");
+  const std::vector<greybox::SearchParameter> width = own("deadband");
   Eigen::VectorXd own_size = Eigen::VectorXd::Constant(1, 2.0);
-  EXPECT_FALSE(scale_size(width, -0.5, own_size));
+  EXPECT_FALSE(selection::scale_size(width, -0.5, own_size));
   EXPECT_DOUBLE_EQ(own_size[0], 1.0);
-  const std::vector<SearchParameter> offset = own("null_bias");
+  const std::vector<greybox::SearchParameter> offset = own("null_bias");
   own_size[0] = 2.0;
-  EXPECT_TRUE(scale_size(offset, -0.5, own_size));
+  EXPECT_TRUE(selection::scale_size(offset, -0.5, own_size));
   EXPECT_DOUBLE_EQ(own_size[0], -1.0);
-  EXPECT_TRUE(scale_size(offset, 1e9, own_size));
+  EXPECT_TRUE(selection::scale_size(offset, 1e9, own_size));
   EXPECT_EQ(own_size[0], offset[0].lower);
 }
 

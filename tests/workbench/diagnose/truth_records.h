@@ -9,33 +9,35 @@
 
 #include "config/record/record.h"
 #include "daemon/control/reference.h"
+#include "estimator/greybox/selection/problem.h"
 #include "plant_sim/model_file.h"
 #include "tests/truth/case.h"
 #include "tests/truth/rig.h"
-#include "workbench/diagnose/workshop.h"
 
 namespace diagnose_test {
+
+namespace greybox = estimator::greybox;
+namespace selection = estimator::greybox::selection;
 
 inline plant_sim::ModelFile thesis() {
   return plant_sim::load_model(std::string(SPOOLWATCH_SOURCE_DIR) + "/config/models/thesis.toml");
 }
 
-inline workbench::matching::Measured measured(const truth::Record& truth) {
+inline greybox::Measured measured(const truth::Record& truth) {
   config::record::Record record;
   record.name = "truth";
   record.sample_time_s = 0.005;
   record.t_s = truth.t_s;
   record.u_V = truth.u_V;
   record.y_m = truth.y_m;
-  return workbench::matching::measured(record);
+  return greybox::measured(record);
 }
 
-inline workbench::diagnose::Workshop shop_with(workbench::matching::Measured record) {
-  return workbench::diagnose::workshop(thesis(),
-                                       workbench::matching::evidence({std::move(record)}, {}));
+inline selection::Workshop shop_with(greybox::Measured record) {
+  return selection::workshop(thesis(), greybox::evidence({std::move(record)}, {}));
 }
 
-inline workbench::diagnose::Workshop shop_of(const std::string& spec, std::size_t seed = 1) {
+inline selection::Workshop shop_of(const std::string& spec, std::size_t seed = 1) {
   return shop_with(measured(truth::simulate(truth::parse_case(spec, seed))));
 }
 

@@ -6,6 +6,8 @@
 #include "tests/workbench/diagnose/example_outcome.h"
 
 namespace workbench::diagnose {
+
+namespace selection = estimator::greybox::selection;
 namespace {
 
 using testing::Contains;
@@ -23,7 +25,7 @@ TEST(Words, MissingEffectIsNamedWithItsValuesAndTheirErrors) {
 
 TEST(Words, NothingMissingIsSaidBesideTheNoiseFloor) {
   Outcome outcome = example_outcome();
-  outcome.diagnosis.verdict = Verdict::nothing_missing;
+  outcome.diagnosis.verdict = selection::Verdict::nothing_missing;
   outcome.diagnosis.missing.clear();
   EXPECT_THAT(verdict_words(outcome.diagnosis),
               HasSubstr("Nothing is missing: the model, its own parameters adjusted, is left with "
@@ -34,11 +36,11 @@ TEST(Words, NothingMissingIsSaidBesideTheNoiseFloor) {
 
 TEST(Words, RivalsAreNamedWithWhatIsSureInAnyCase) {
   Outcome outcome = example_outcome();
-  Diagnosis& d = outcome.diagnosis;
-  d.verdict = Verdict::undetermined;
+  selection::Diagnosis& d = outcome.diagnosis;
+  d.verdict = selection::Verdict::undetermined;
   d.missing = {"friction", "flow_asymmetry"};
   d.ambiguous = {{"flow_asymmetry", "load_force"}};
-  d.advice = "Move faster.";
+  outcome.advice = "Move faster.";
   const std::string words = verdict_words(d);
   EXPECT_THAT(words, HasSubstr("Undetermined: flow_asymmetry or load_force is missing"));
   EXPECT_THAT(words, HasSubstr("Missing in any case: friction: Coulomb"));
@@ -47,8 +49,8 @@ TEST(Words, RivalsAreNamedWithWhatIsSureInAnyCase) {
 
 TEST(Words, UnexplainedErrorSaysWhereItEnters) {
   Outcome outcome = example_outcome();
-  Diagnosis& d = outcome.diagnosis;
-  d.verdict = Verdict::unexplained;
+  selection::Diagnosis& d = outcome.diagnosis;
+  d.verdict = selection::Verdict::unexplained;
   d.rms_after_m = 12e-6;
   d.where = {{"force", "speed", 0.62}, {"flow", "v", 0.4}};
   EXPECT_THAT(verdict_words(d),
@@ -65,11 +67,11 @@ TEST(Words, UnexplainedErrorSaysWhereItEnters) {
 
 TEST(Words, RecordWithoutMotionGivesItsReasonAndNoFigures) {
   Outcome outcome = example_outcome();
-  Diagnosis& d = outcome.diagnosis;
+  selection::Diagnosis& d = outcome.diagnosis;
   d = {};
-  d.verdict = Verdict::not_excited;
+  d.verdict = selection::Verdict::not_excited;
   d.notes = {"the rod moves by 0.01 mm in all"};
-  d.advice = "Move more.";
+  outcome.advice = "Move more.";
   EXPECT_EQ(verdict_words(d), "The record cannot tell: the rod moves by 0.01 mm in all.");
   EXPECT_THAT(remarks(outcome), testing::ElementsAre("Move more."));
   EXPECT_EQ(next_command(outcome), "");

@@ -1,4 +1,4 @@
-#include "workbench/export.h"
+#include "workbench/cli/export.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ class ExportTest : public testing::Test {
     return folder_ / "log" / "spoolwatch-3-00000.lcmlog";
   }
   std::string csv_of(const std::string& log, const std::string& kind) const {
-    export_log(log, folder_ / "out.csv", kind);
+    cli::export_log(log, folder_ / "out.csv", kind);
     std::ifstream in(folder_ / "out.csv");
     return {std::istreambuf_iterator<char>(in), {}};
   }
@@ -57,7 +57,7 @@ class ExportTest : public testing::Test {
   }
   static void samples(Publisher& publisher, int count) {
     for (int tick = 0; tick < count; ++tick) {
-      estimator::fdi::Sample sample;
+      config::signals::Sample sample;
       sample.tick = tick + 100;
       sample.y_m = 0.1 + 1e-3 * tick;
       sample.u_applied_V = 2.5 * tick;
@@ -130,17 +130,17 @@ TEST_F(ExportTest, WritesOneRowPerAlarmMessage) {
 TEST_F(ExportTest, RefusesWhatIsNoLogOfOursAndLeavesNoFile) {
   const std::string csv = folder_ / "out.csv";
   const std::string missing = folder_ / "missing";
-  EXPECT_THAT(error_of([&] { export_log(missing, csv, "alarm"); }, 65),
+  EXPECT_THAT(error_of([&] { cli::export_log(missing, csv, "alarm"); }, 65),
               EndsWith("cannot be read: No such file or directory"));
   const std::string text = folder_ / "text.csv";
   std::ofstream(text) << "t_s,u_V,y_m\n0,1,2\n";
-  EXPECT_THAT(error_of([&] { export_log(text, csv, "alarm"); }, 65),
+  EXPECT_THAT(error_of([&] { cli::export_log(text, csv, "alarm"); }, 65),
               HasSubstr("is no LCM event log: it has samples alone"));
-  EXPECT_THAT(error_of([&] { export_log(text, csv, "sample"); }, 65),
+  EXPECT_THAT(error_of([&] { cli::export_log(text, csv, "sample"); }, 65),
               HasSubstr("has fewer than 3 samples"));
   const std::string empty = folder_ / "empty";
   std::ofstream{empty};
-  EXPECT_THAT(error_of([&] { export_log(empty, csv, "sample"); }, 65), HasSubstr("is empty"));
+  EXPECT_THAT(error_of([&] { cli::export_log(empty, csv, "sample"); }, 65), HasSubstr("is empty"));
   const std::string other = folder_ / "other.log";
   {
     lcm::LogFile log(other, "w");
@@ -149,7 +149,7 @@ TEST_F(ExportTest, RefusesWhatIsNoLogOfOursAndLeavesNoFile) {
     log.writeEvent(&event);
   }
   for (const char* kind : {"sample", "estimate", "alarm"}) {
-    error_of([&] { export_log(other, csv, kind); }, 65);
+    error_of([&] { cli::export_log(other, csv, kind); }, 65);
   }
   EXPECT_FALSE(fs::exists(csv));
 }
@@ -162,14 +162,15 @@ TEST_F(ExportTest, NamesTheEventThatIsOfAnotherType) {
     lcm::LogEvent event{0, 1, "SPOOLWATCH_ALARM", sizeof data, data};
     file.writeEvent(&event);
   }
-  EXPECT_THAT(error_of([&] { export_log(log, folder_ / "out.csv", "alarm"); }, 65),
+  EXPECT_THAT(error_of([&] { cli::export_log(log, folder_ / "out.csv", "alarm"); }, 65),
               HasSubstr("event 0: on SPOOLWATCH_ALARM is of another type"));
 }
 
 TEST_F(ExportTest, SaysWhyAFileCannotBeWritten) {
   const std::string log = log_of([](Publisher& publisher) { samples(publisher, 3); });
-  EXPECT_THAT(error_of([&] { export_log(log, folder_ / "no_folder" / "out.csv", "alarm"); }, 1),
-              HasSubstr("does not exist"));
+  EXPECT_THAT(
+      error_of([&] { cli::export_log(log, folder_ / "no_folder" / "out.csv", "alarm"); }, 1),
+      HasSubstr("does not exist"));
 }
 
 }  // namespace

@@ -16,7 +16,7 @@
 #include "daemon/io/publisher.h"
 #include "daemon/io/recorder.h"
 #include "estimator/fdi/pipeline.h"
-#include "workbench/export.h"
+#include "workbench/cli/export.h"
 
 namespace workbench {
 namespace {
@@ -62,7 +62,7 @@ class FormatsTest : public testing::Test {
     monitor::io::Recorder recorder({.folder = folder_ / "log"}, 3, false);
     monitor::io::Publisher publisher({.url = ""}, 3, 0.005, &recorder);
     for (int tick = 0; tick < 20; ++tick) {
-      estimator::fdi::Sample sample;
+      config::signals::Sample sample;
       sample.tick = tick + 100;
       sample.utc_us = (tick + 100) * 5000;
       sample.y_m = 0.1 + 1e-3 * tick;
@@ -108,8 +108,8 @@ class FormatsTest : public testing::Test {
 
 TEST_F(FormatsTest, MatIsReadBySciPyToTheLastBit) {
   const std::string input = log();
-  export_log(input, folder_ / "out.mat");
-  export_log(input, folder_ / "out.csv");
+  cli::export_log(input, folder_ / "out.mat");
+  cli::export_log(input, folder_ / "out.csv");
   const Result result = run_python("read_mat.py " + (folder_ / "out.mat").string() + " " +
                                    (folder_ / "out.csv").string());
   if (result.exit_code == 77) GTEST_SKIP() << "python3-scipy is not installed";
@@ -118,7 +118,7 @@ TEST_F(FormatsTest, MatIsReadBySciPyToTheLastBit) {
 
 TEST_F(FormatsTest, MatReadsBackAsTheSameRecord) {
   const std::string input = log();
-  export_log(input, folder_ / "out.mat");
+  cli::export_log(input, folder_ / "out.mat");
   const auto from_log = config::record::read_record(input);
   const auto from_mat = config::record::read_record(folder_ / "out.mat");
   EXPECT_EQ(from_mat.t_s, from_log.t_s);
@@ -133,25 +133,25 @@ TEST_F(FormatsTest, MatReadsBackAsTheSameRecord) {
 TEST_F(FormatsTest, ARecordGoesThroughEveryFormat) {
   const std::string csv = folder_ / "in.csv";
   std::ofstream(csv) << "t_ms,u_V,y_mm,supply_bar\n0,1,305,100\n5,2,306,\n10,3,307,102\n";
-  export_log(csv, folder_ / "out.mat");
+  cli::export_log(csv, folder_ / "out.mat");
   const auto record = config::record::read_record(folder_ / "out.mat");
   EXPECT_DOUBLE_EQ(record.y_m[1], 0.306);
   EXPECT_DOUBLE_EQ(record.column("supply_Pa")->at(0), 1e7);
-  export_log(folder_ / "out.mat", folder_ / "out.jsonl");
+  cli::export_log(folder_ / "out.mat", folder_ / "out.jsonl");
   EXPECT_EQ(content("out.jsonl").substr(0, content("out.jsonl").find('\n')),
             R"({"timestamp":0.0,"sample":{"t_s":0.0,"y_m":0.305,"u_applied_V":1.0,)"
             R"("supply_Pa":10000000.0}})");
-  export_log(folder_ / "out.mat", folder_ / "out.mcap");
+  cli::export_log(folder_ / "out.mat", folder_ / "out.mcap");
   EXPECT_THAT(content("out.mcap"), HasSubstr(R"("y_m":0.306)"));
 }
 
 TEST_F(FormatsTest, JsonLinesAreReadByPython) {
-  export_log(log(), folder_ / "out.json");
+  cli::export_log(log(), folder_ / "out.json");
   EXPECT_EQ(run_python("read_json.py " + (folder_ / "out.json").string()).output, "good\n");
 }
 
 TEST_F(FormatsTest, McapIsReadByFoxglovesReader) {
-  export_log(log(), folder_ / "out.mcap");
+  cli::export_log(log(), folder_ / "out.mcap");
   const Result result = run("node " + kReaders + "read_mcap.js " + (folder_ / "out.mcap").string());
   if (result.exit_code == 77 || result.exit_code == 127) {
     GTEST_SKIP() << "@mcap/core is not installed (npm install @mcap/core; NODE_PATH)";
@@ -171,7 +171,7 @@ std::uint64_t number(const std::string& bytes, std::size_t at, int size) {
 
 // The parts that any reader needs, as https://mcap.dev/spec lays them out.
 TEST_F(FormatsTest, McapHasTheLayoutOfItsSpecification) {
-  export_log(log(), folder_ / "out.mcap");
+  cli::export_log(log(), folder_ / "out.mcap");
   const std::string file = content("out.mcap");
   const std::string magic("\x89MCAP0\r\n", 8);
   ASSERT_EQ(file.substr(0, 8), magic);
@@ -213,7 +213,7 @@ TEST_F(FormatsTest, SaysWhichFormatsThereAre) {
   const auto error = [&](const std::string& output, const std::string& channel = "",
                          const std::string& format = "") {
     try {
-      export_log(input, output, channel, format);
+      cli::export_log(input, output, channel, format);
     } catch (const config::schema::Error& e) {
       EXPECT_EQ(e.exit_code(), 2);
       return std::string(e.what());

@@ -9,6 +9,8 @@
 #include "tests/workbench/fit/truth_record.h"
 
 namespace workbench::fit {
+
+namespace greybox = estimator::greybox;
 namespace {
 
 const std::string kModels = SPOOLWATCH_SOURCE_DIR "/config/models/";
@@ -30,11 +32,11 @@ Count covered(const std::string& text, const Wishes& wishes) {
     const auto seed = static_cast<std::size_t>(1000 + i);
     const std::string motion = "motion=" + motions[static_cast<std::size_t>(i) % motions.size()];
     const truth::Case of = truth::parse_case(motion + text, seed);
-    Task t = workbench_test::task(model, of, wishes);
+    greybox::Task t = workbench_test::task(model, of, wishes);
     t.starts = 1;
-    const Estimation e = estimate(t);
+    const greybox::Estimation e = greybox::estimate(t);
     for (const truth::PlantField& field : truth::plant_fields()) {
-      for (const Parameter& p : e.parameters) {
+      for (const greybox::Parameter& p : e.parameters) {
         if (p.search.name != field.name) continue;
         const double value = of.plant.*field.member;
         const double z = (value - p.value) / p.std_error;

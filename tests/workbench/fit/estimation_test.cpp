@@ -1,4 +1,4 @@
-#include "workbench/fit/estimation.h"
+#include "estimator/greybox/estimation.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,6 +9,8 @@
 #include "tests/workbench/fit/truth_record.h"
 
 namespace workbench::fit {
+
+namespace greybox = estimator::greybox;
 namespace {
 
 using testing::ElementsAre;
@@ -42,23 +44,23 @@ struct Straight {
       record.u_V.push_back(std::sin(2.0 * 0.005 * k) + 0.3 * std::sin(9.0 * 0.005 * k));
       y_m += 0.005 * kGain * record.u_V.back();
     }
-    made = matching::measured(record);
+    made = greybox::measured(record);
     model = plant_sim::load_model(kModels + "velocity_servo.toml");
     *model.value("gain_mps_per_V") = start;
     *model.value("time_constant_s") = 0.0;
   }
 
-  Task fit(const Wishes& wishes) const {
-    Task t;
+  greybox::Task fit(const Wishes& wishes) const {
+    greybox::Task t;
     t.model = model;
     const Choice choice = choose(model, wishes);
     t.searched = choice.searched;
     t.start = choice.start;
-    t.evidence = matching::evidence({made}, {});
+    t.evidence = greybox::evidence({made}, {});
     t.weights = t.evidence.counts;
     t.evidence.scores.setZero();
     t.observer_per_s = 0.0;
-    t.profiling = Profiling::none;
+    t.profiling = greybox::Profiling::none;
     return t;
   }
   /// sum w x^2 and sum w x y of y = gain x.
@@ -74,17 +76,17 @@ struct Straight {
   }
 
   std::vector<double> reach_Vs;
-  matching::Measured made;
+  greybox::Measured made;
   plant_sim::ModelFile model;
 };
 
 TEST(FitEstimation, IsWeightedLeastSquaresWhereTheModelIsLinear) {
   const Straight line(0.03);
-  Task t = line.fit({.free = {"gain_mps_per_V"}, .priors = {"gain_mps_per_V=none"}});
+  greybox::Task t = line.fit({.free = {"gain_mps_per_V"}, .priors = {"gain_mps_per_V=none"}});
   t.weights.head(1000) *= 4.0;
-  const Estimation e = estimate(t);
+  const greybox::Estimation e = greybox::estimate(t);
   const auto [xx, xy] = line.sums(t.weights);
-  const Parameter& gain = parameter(e, "gain_mps_per_V");
+  const greybox::Parameter& gain = parameter(e, "gain_mps_per_V");
   // To the search's tolerance, a hundredth of the standard error.
   EXPECT_NEAR(gain.value, xy / xx, 1e-2 * gain.std_error);
   EXPECT_EQ(e.starts.same, 4);
@@ -102,8 +104,9 @@ TEST(FitEstimation, APriorPullsAsBayesHasIt) {
   const double mean = xy / xx + 4.0 * own;
   char prior[80];
   std::snprintf(prior, sizeof prior, "gain_mps_per_V=%.17g+-%.17g", mean, own);
-  const Estimation e = estimate(line.fit({.free = {"gain_mps_per_V"}, .priors = {prior}}));
-  const Parameter& gain = parameter(e, "gain_mps_per_V");
+  const greybox::Estimation e =
+      greybox::estimate(line.fit({.free = {"gain_mps_per_V"}, .priors = {prior}}));
+  const greybox::Parameter& gain = parameter(e, "gain_mps_per_V");
   EXPECT_NEAR((gain.value - xy / xx) / own, 2.0, 0.15);
   EXPECT_NEAR(gain.std_error / own, std::sqrt(0.5), 0.1);
   EXPECT_NEAR(gain.record_share, 0.5, 0.1);
@@ -111,9 +114,9 @@ TEST(FitEstimation, APriorPullsAsBayesHasIt) {
 
 TEST(FitEstimation, StopsAtABoundAndSaysSo) {
   const Straight line(0.03);
-  const Estimation e =
-      estimate(line.fit({.free = {"gain_mps_per_V"}, .bounds = {"gain_mps_per_V=0.01:0.04"}}));
-  const Parameter& gain = parameter(e, "gain_mps_per_V");
+  const greybox::Estimation e = greybox::estimate(
+      line.fit({.free = {"gain_mps_per_V"}, .bounds = {"gain_mps_per_V=0.01:0.04"}}));
+  const greybox::Parameter& gain = parameter(e, "gain_mps_per_V");
   EXPECT_NEAR(gain.value, 0.04, 1e-12);
   EXPECT_EQ(gain.at_bound, 1);
   EXPECT_TRUE(std::isnan(gain.std_error));
@@ -121,13 +124,13 @@ TEST(FitEstimation, StopsAtABoundAndSaysSo) {
 
 TEST(FitEstimation, TheProfileOfAParabolaIsTheNormalInterval) {
   const Straight line(0.05);
-  Task t = line.fit({.free = {"gain_mps_per_V"}, .priors = {"gain_mps_per_V=none"}});
-  const Estimation plain = estimate(t);
-  t.profiling = Profiling::named;
+  greybox::Task t = line.fit({.free = {"gain_mps_per_V"}, .priors = {"gain_mps_per_V=none"}});
+  const greybox::Estimation plain = greybox::estimate(t);
+  t.profiling = greybox::Profiling::named;
   t.profiled = {"gain_mps_per_V"};
-  const Estimation walked = estimate(t);
-  const Parameter& a = plain.parameters[0];
-  const Parameter& b = walked.parameters[0];
+  const greybox::Estimation walked = greybox::estimate(t);
+  const greybox::Parameter& a = plain.parameters[0];
+  const greybox::Parameter& b = walked.parameters[0];
   EXPECT_TRUE(b.from_profile);
   EXPECT_NEAR(b.low, a.low, 0.1 * a.std_error);
   EXPECT_NEAR(b.high, a.high, 0.1 * a.std_error);
@@ -136,9 +139,9 @@ TEST(FitEstimation, TheProfileOfAParabolaIsTheNormalInterval) {
 TEST(FitEstimation, FindsAnotherPlantsParametersWithinItsErrors) {
   const auto model = plant_sim::load_model(kModels + "thesis.toml");
   const truth::Case of = healthy("");
-  const Estimation e = estimate(task(model, of, {}));
+  const greybox::Estimation e = greybox::estimate(task(model, of, {}));
   for (const truth::PlantField& field : truth::plant_fields()) {
-    const Parameter& p = parameter(e, field.name);
+    const greybox::Parameter& p = parameter(e, field.name);
     EXPECT_LT(std::abs(p.value - of.plant.*field.member), 3.5 * p.std_error) << field.name;
   }
   EXPECT_LT(e.after.rms_m, 1.1 * e.fitted.sigma_m);
@@ -150,10 +153,10 @@ TEST(FitEstimation, FindsAnotherPlantsParametersWithinItsErrors) {
 
 TEST(FitEstimation, SaysThatOnlyGainTimesTheRootOfThePressureIsVisible) {
   const auto model = plant_sim::load_model(kModels + "thesis.toml");
-  const Estimation e = estimate(task(model, healthy(""), {}));
-  for (const Sight* sight : {&e.sight_before, &e.sight_after}) {
+  const greybox::Estimation e = greybox::estimate(task(model, healthy(""), {}));
+  for (const greybox::Sight* sight : {&e.sight_before, &e.sight_after}) {
     ASSERT_FALSE(sight->unseen.empty());
-    const auto pressure = [](const Unseen& u) { return u.name == "supply_pressure_Pa"; };
+    const auto pressure = [](const greybox::Unseen& u) { return u.name == "supply_pressure_Pa"; };
     const auto found = std::find_if(sight->unseen.begin(), sight->unseen.end(), pressure);
     ASSERT_NE(found, sight->unseen.end());
     EXPECT_THAT(found->visible, HasSubstr("valve_gain_m_per_V * sqrt(supply_pressure_Pa)"));
@@ -163,28 +166,28 @@ TEST(FitEstimation, SaysThatOnlyGainTimesTheRootOfThePressureIsVisible) {
 
 TEST(FitEstimation, SaysThatOnlyRatiosOfAMassADampingAndAForceAreVisible) {
   // M v' = gain u - d v: the motion is that of gain/M and d/M alone.
-  Task t = Straight(0.05).fit({});
+  greybox::Task t = Straight(0.05).fit({});
   t.model = plant_sim::load_model(kModels + "force_driven_axis.toml");
   const Choice choice = choose(t.model, {.free = {"mass_kg", "damping_N_s_per_m", "gain_N_per_V"},
                                          .priors = {"mass_kg=100+-10", "damping_N_s_per_m=none"}});
   t.searched = choice.searched;
   t.start = choice.start;
-  t.observer_per_s = matching::kObserver_per_s;
+  t.observer_per_s = greybox::kObserver_per_s;
   t.starts = 1;
-  const Estimation e = estimate(t);
+  const greybox::Estimation e = greybox::estimate(t);
   ASSERT_FALSE(e.sight_before.unseen.empty());
-  const Unseen& first = e.sight_before.unseen[0];
+  const greybox::Unseen& first = e.sight_before.unseen[0];
   EXPECT_EQ(first.partners.size(), 2U) << first.words;
   EXPECT_THAT(first.visible, HasSubstr(" / "));
 }
 
 TEST(FitEstimation, StopsWhenAskedAndKeepsTheBestSoFar) {
   const auto model = plant_sim::load_model(kModels + "thesis.toml");
-  Task t = task(model, healthy(""), {});
+  greybox::Task t = task(model, healthy(""), {});
   int asked = 0;
   t.threads = 1;
   t.cancel = [&] { return ++asked > 3; };
-  const Estimation e = estimate(t);
+  const greybox::Estimation e = greybox::estimate(t);
   EXPECT_TRUE(e.interrupted);
   EXPECT_LE(e.after.rms_m, e.before.rms_m);
   EXPECT_TRUE(std::isfinite(parameter(e, "valve_gain_m_per_V").std_error));
@@ -192,18 +195,18 @@ TEST(FitEstimation, StopsWhenAskedAndKeepsTheBestSoFar) {
 
 TEST(FitEstimation, GivesTheSameAnswerWhateverTheThreads) {
   const auto model = plant_sim::load_model(kModels + "thesis.toml");
-  Task t = task(model, healthy("", 4), {});
-  const Estimation one = [&] {
+  greybox::Task t = task(model, healthy("", 4), {});
+  const greybox::Estimation one = [&] {
     t.threads = 1;
-    return estimate(t);
+    return greybox::estimate(t);
   }();
   t.threads = 2;
-  const Estimation two = estimate(t);
+  const greybox::Estimation two = greybox::estimate(t);
   for (std::size_t i = 0; i < one.parameters.size(); ++i) {
     EXPECT_NEAR(one.parameters[i].value, two.parameters[i].value,
                 0.02 * one.parameters[i].std_error);
   }
-  const Estimation again = estimate(t);
+  const greybox::Estimation again = greybox::estimate(t);
   EXPECT_EQ(again.parameters[1].value, two.parameters[1].value);
 }
 

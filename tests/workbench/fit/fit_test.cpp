@@ -16,6 +16,8 @@
 #include "tests/workbench/run_command.h"
 
 namespace workbench {
+
+namespace greybox = estimator::greybox;
 namespace {
 
 namespace fs = std::filesystem;
@@ -71,8 +73,8 @@ class FitTest : public testing::Test {
 
 TEST_F(FitTest, WritesTheBetterModelAndSaysWhatMoved) {
   const std::string said =
-      fit({kModels + "thesis.toml", record(), "--fit", "blocks", "-o", path("better.toml"),
-           "--json", path("fit.json"), "--report", path("fit.html")});
+      greybox::fit({kModels + "thesis.toml", record(), "--fit", "blocks", "-o", path("better.toml"),
+                    "--json", path("fit.json"), "--report", path("fit.html")});
   EXPECT_THAT(said, AllOf(HasSubstr("RMS, drift taken away"), HasSubstr("On data that were not"),
                           HasSubstr("What the record cannot see"),
                           HasSubstr("starts ended in this minimum"), HasSubstr("Moved:")));
@@ -88,7 +90,7 @@ TEST_F(FitTest, WritesTheBetterModelAndSaysWhatMoved) {
   EXPECT_THAT(text_of(path("fit.html")),
               AllOf(HasSubstr("Correlation of the estimates"), HasSubstr("spoolwatch fit")));
   // What it writes can be fitted again, and there is nothing more to gain.
-  fit({path("better.toml"), record(), "--fit", "blocks", "--json", path("again.json")});
+  greybox::fit({path("better.toml"), record(), "--fit", "blocks", "--json", path("again.json")});
   const auto again = nlohmann::json::parse(text_of(path("again.json")));
   EXPECT_NEAR(double(again["rms_after_m"]) / double(json["rms_after_m"]), 1.0, 0.01);
 }
@@ -122,7 +124,7 @@ TEST_F(FitTest, IgnoredSpansDoNotCount) {
                                        "--profile",
                                        "none"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    return double(nlohmann::json::parse(fit(arguments))["rms_after_m"]);
+    return double(nlohmann::json::parse(greybox::fit(arguments))["rms_after_m"]);
   };
   EXPECT_GT(rms({}), 100e-6);
   // The observer's memory of the nonsense dies away in 3 s.
@@ -162,7 +164,7 @@ TEST_F(FitTest, RefusesARecordWithoutMotionAndNotesASaturatedOne) {
   full << "t_s,u_V,y_m\n";
   for (int k = 0; k < 1000; ++k) full << 0.005 * k << ",1," << 0.05 + 0.0002 * k << "\n";
   full.close();
-  EXPECT_THAT(fit({kModels + "thesis.toml", path("full.csv"), "--profile", "none"}),
+  EXPECT_THAT(greybox::fit({kModels + "thesis.toml", path("full.csv"), "--profile", "none"}),
               HasSubstr("the command never changes"));
 }
 

@@ -6,10 +6,13 @@
 #include <nlohmann/json.hpp>
 
 #include "config/schema/error.h"
-#include "daemon/tracking/healthy_file.h"
+#include "estimator/fdi/tracker/baseline_file.h"
 #include "tests/daemon/tracking/tracked.h"
 #include "tests/truth/case.h"
 #include "tests/workbench/run_command.h"
+
+namespace tracker = estimator::fdi::tracker;
+namespace tracking = estimator::greybox::tracking;
 
 namespace {
 
@@ -35,7 +38,7 @@ class IsolateCommand : public testing::Test {
   void run(const std::vector<std::string>& more) const {
     std::vector<std::string> arguments{file("model.toml"), file("record.csv")};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    run_command(workbench::add_isolate, arguments);
+    run_command(workbench::cli::add_isolate, arguments);
   }
   int code(const std::vector<std::string>& more, std::string& line) const {
     try {
@@ -77,9 +80,9 @@ TEST_F(IsolateCommand, WritesWindowsAndAlarmsAsJsonAndAPage) {
 TEST_F(IsolateCommand, WritesWhatIsHealthyForTheDaemon) {
   run({"--learn", file("healthy.toml"), "--rig", "stand-1"});
   const plant_sim::ModelFile model = plant_sim::load_model(file("model.toml"));
-  const monitor::tracking::Choice choice = monitor::tracking::choose(model, usual(), "parameters");
-  const auto learnt = monitor::tracking::read_healthy(file("healthy.toml"), model, {}, choice,
-                                                      truth::kSample_s, "stand-1");
+  const tracking::Choice choice = tracking::choose(model, usual(), "parameters");
+  const auto learnt =
+      tracker::read_healthy(file("healthy.toml"), model, {}, choice, truth::kSample_s, "stand-1");
   EXPECT_NEAR(learnt.values[0], 6.89e6, 0.002 * 6.89e6);
   EXPECT_NEAR(learnt.values[1], 1000.0, 20.0);
   EXPECT_NEAR(learnt.rms_m, kFloor_m, 0.1 * kFloor_m);
@@ -125,10 +128,10 @@ TEST_F(IsolateCommand, UsesTheChamberPressuresOfTheRecord) {
   EXPECT_NEAR(json["healthy"]["pressures"]["in_error_Pa"].get<double>(), 5e3, 300.0);
   EXPECT_NEAR(json["windows"].back()["pressures"]["out_error_Pa"].get<double>(), 5e3, 1000.0);
   const plant_sim::ModelFile model = plant_sim::load_model(file("model.toml"));
-  const monitor::tracking::Choice choice = monitor::tracking::choose(
+  const tracking::Choice choice = tracking::choose(
       model, {"supply_pressure_Pa,damping_N_s_per_m,valve_gain_m_per_V"}, "parameters");
-  const auto learnt = monitor::tracking::read_healthy(file("healthy.toml"), model, {}, choice,
-                                                      truth::kSample_s, "");
+  const auto learnt =
+      tracker::read_healthy(file("healthy.toml"), model, {}, choice, truth::kSample_s, "");
   EXPECT_TRUE(learnt.chambers.known());
 
   run({"--json", file("out.json"), "--no-pressures"});

@@ -50,7 +50,7 @@ class Needle : public testing::TestWithParam<const char*> {
                    testing::UnitTest::GetInstance()->current_test_info()->name())));
     fs::create_directories(folder_);
     truth::write_csv(truth::simulate(stand(GetParam(), 30.0, 11)), file("healthy.csv"));
-    printed_by(workbench::add_fit,
+    printed_by(workbench::cli::add_fit,
                {std::string(SPOOLWATCH_SOURCE_DIR "/config/models/rig_2000psi_slaves.toml"),
                 file("healthy.csv"), "-o", file("calibrated.toml"), "--quiet", "--profile", "none",
                 "--starts", "2", "--set", "effects.friction.presliding_stiffness_N_per_m=3e6",
@@ -65,7 +65,7 @@ class Needle : public testing::TestWithParam<const char*> {
   }
   [[nodiscard]] json isolated(const truth::Case& of) const {
     truth::write_csv(truth::simulate(of), file("record.csv"));
-    printed_by(workbench::add_isolate,
+    printed_by(workbench::cli::add_isolate,
                {file("calibrated.toml"), file("record.csv"), "--parameters",
                 std::string("supply_pressure_Pa,") + kNeedle, "--json", file("out.json")});
     return json::parse(std::ifstream(file("out.json")));

@@ -60,7 +60,7 @@ class FakeDaemon {
   void sample(std::int64_t tick) {
     const double t_s = static_cast<double>(tick) * kSampleTime_s;
     const double phase = 2.0 * 3.141592653589793 * 0.5 * t_s;
-    estimator::fdi::Sample sample;
+    config::signals::Sample sample;
     sample.tick = tick;
     sample.utc_us = now().utc_us;
     sample.t_read_ns = now().mono_ns;

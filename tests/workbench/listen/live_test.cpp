@@ -8,8 +8,8 @@
 #include "spoolwatch/estimate_t.hpp"
 #include "spoolwatch/health_t.hpp"
 #include "spoolwatch/sample_t.hpp"
-#include "workbench/live_state.h"
-#include "workbench/live_view.h"
+#include "workbench/live/live_state.h"
+#include "workbench/live/live_view.h"
 
 namespace workbench {
 namespace {
@@ -24,9 +24,9 @@ spoolwatch::estimate_t b1(double value, double t_s) {
   estimate.size = 2;
   estimate.name = {"a1", "b1"};
   estimate.value = {-1.0, value};
-  estimate.std_error = {kNone, 1e-6};
-  estimate.low = {kNone, 1.0};
-  estimate.high = {kNone, 3.0};
+  estimate.std_error = {live::kNone, 1e-6};
+  estimate.low = {live::kNone, 1.0};
+  estimate.high = {live::kNone, 3.0};
   return estimate;
 }
 
@@ -34,7 +34,7 @@ class LiveTest : public testing::Test {
  protected:
   [[nodiscard]] std::string row_with(const std::wstring& part, int rows = 24,
                                      int columns = 80) const {
-    const Canvas canvas = draw(state_, rows, columns, Glyphs::ascii());
+    const live::Canvas canvas = live::draw(state_, rows, columns, live::Glyphs::ascii());
     for (int row = 0; row < canvas.rows(); ++row) {
       const std::wstring text = canvas.row_text(row);
       if (text.find(part) != std::wstring::npos) return {text.begin(), text.end()};
@@ -42,7 +42,7 @@ class LiveTest : public testing::Test {
     return "";
   }
 
-  LiveState state_;
+  live::LiveState state_;
 };
 
 TEST_F(LiveTest, PutsTheMarkerWhereTheValueIsInItsBand) {
@@ -119,12 +119,13 @@ TEST_F(LiveTest, ShowsLatenessAndCounts) {
 TEST_F(LiveTest, DrawsOnAnySizeOfTerminalAndWithAnyNumbers) {
   state_.on_new_run(1, true);
   spoolwatch::sample_t sample{};
-  sample.y_m = kNone;
+  sample.y_m = live::kNone;
   sample.reference_m = HUGE_VAL;
   state_.on_sample(sample);
-  for (const double value : {kNone, HUGE_VAL, -HUGE_VAL, 0.0}) state_.on_estimate(b1(value, 1.0));
+  for (const double value : {live::kNone, HUGE_VAL, -HUGE_VAL, 0.0})
+    state_.on_estimate(b1(value, 1.0));
   for (const auto& [rows, columns] : {std::pair{1, 1}, {5, 20}, {24, 80}, {60, 300}}) {
-    const Canvas canvas = draw(state_, rows, columns, Glyphs::unicode());
+    const live::Canvas canvas = live::draw(state_, rows, columns, live::Glyphs::unicode());
     EXPECT_EQ(canvas.rows(), rows);
   }
 }

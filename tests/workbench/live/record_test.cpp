@@ -12,8 +12,8 @@
 #include <thread>
 
 #include "config/record/record.h"
+#include "config/signals/sample.h"
 #include "daemon/io/publisher.h"
-#include "estimator/fdi/sample.h"
 #include "spoolwatch/sample_t.hpp"
 #include "tests/workbench/listen/subprocess.h"
 #include "tests/workbench/live/healthy_log.h"
@@ -93,7 +93,7 @@ class Sender {
   explicit Sender(const std::string& url) : publisher_({.url = url}, 3, 0.005, nullptr) {
     thread_ = std::thread([this] {
       for (std::int64_t tick = 0; !stop_; ++tick) {
-        estimator::fdi::Sample sample;
+        config::signals::Sample sample;
         sample.tick = tick;
         sample.y_m = 0.1;
         publisher_.sample(sample);

@@ -6,11 +6,14 @@
 #include <sstream>
 
 #include "config/schema/document.h"
+#include "estimator/greybox/validation/comparison.h"
 #include "tests/workbench/live/healthy_log.h"
-#include "workbench/compare/comparison.h"
-#include "workbench/compare/running.h"
+#include "workbench/live/online_residual.h"
 
 namespace workbench::compare {
+
+namespace greybox = estimator::greybox;
+namespace validation = estimator::greybox::validation;
 namespace {
 
 using nlohmann::json;
@@ -23,7 +26,7 @@ plant_sim::ModelFile model_with(const std::string& assignment) {
 }
 
 /// RMS of the last ten seconds of the comparison afterwards.
-double rms_afterwards_m(const Comparison& c) {
+double rms_afterwards_m(const validation::Comparison& c) {
   const std::size_t n = static_cast<std::size_t>(std::lround(10.0 / c.record.sample_time_s));
   double squares = 0.0;
   for (std::size_t k = c.error_m.size() - n; k < c.error_m.size(); ++k) {
@@ -37,21 +40,21 @@ TEST(Running, TellsTheErrorThatTheComparisonFindsAfterwards) {
   const std::string log = live_test::make_log(folder.path() / "log", "14");
   const auto record = config::record::read_record(log);
   const plant_sim::ModelFile model = model_with("parameters.damping_N_s_per_m=3000.0");
-  Running running(model);
+  live::Running running(model);
   for (std::size_t k = 0; k < record.size(); ++k) {
     running.add(std::lround(record.t_s[k] / record.sample_time_s), record.sample_time_s,
                 record.u_V[k], record.y_m[k]);
   }
-  const Comparison c = compare(model, matching::measured(record));
+  const validation::Comparison c = validation::compare(model, greybox::measured(record));
   const double wanted_m = rms_afterwards_m(c);
-  const Figures figures = running.figures();
+  const live::Figures figures = running.figures();
   // What the unknown first state shifted has died away to exp(-2/s 4 s) by then.
   EXPECT_NEAR(figures.rms_m, wanted_m, 1e-3 * wanted_m);
   EXPECT_GT(wanted_m, 1e-7);
   EXPECT_NEAR(figures.window_s, 10.0, 1e-9);
   EXPECT_LT(figures.fit_percent, 100.0);
 
-  Running exact(model_with("parameters.damping_N_s_per_m=1000.0"));
+  live::Running exact(model_with("parameters.damping_N_s_per_m=1000.0"));
   for (std::size_t k = 0; k < record.size(); ++k) {
     exact.add(std::lround(record.t_s[k] / record.sample_time_s), record.sample_time_s,
               record.u_V[k], record.y_m[k]);
@@ -60,7 +63,7 @@ TEST(Running, TellsTheErrorThatTheComparisonFindsAfterwards) {
 }
 
 TEST(Running, SettlesAnewBehindAGap) {
-  Running running(model_with("parameters.damping_N_s_per_m=1000.0"));
+  live::Running running(model_with("parameters.damping_N_s_per_m=1000.0"));
   for (std::int64_t tick = 0; tick < 200; ++tick) running.add(tick, 0.005, 0.0, 0.3);
   EXPECT_FALSE(std::isnan(running.error_m()));
   running.add(300, 0.005, 0.0, 0.35);
@@ -70,10 +73,10 @@ TEST(Running, SettlesAnewBehindAGap) {
 }
 
 TEST(Running, SaysWhenTheRodDoesNotMove) {
-  Running running(model_with("parameters.damping_N_s_per_m=1000.0"));
+  live::Running running(model_with("parameters.damping_N_s_per_m=1000.0"));
   for (std::int64_t tick = 0; tick < 1000; ++tick) running.add(tick, 0.005, 0.0, 0.3);
   EXPECT_THAT(running.figures().note, HasSubstr("does not move"));
-  EXPECT_THAT(line_of(running.figures()), HasSubstr("does not move"));
+  EXPECT_THAT(live::line_of(running.figures()), HasSubstr("does not move"));
 }
 
 TEST(Running, IsALineEachSecondFromThePipe) {
@@ -95,8 +98,9 @@ TEST(Running, IsALineEachSecondFromThePipe) {
     ++count;
   }
   EXPECT_EQ(count, 14);
-  const Comparison c = compare(model_with("parameters.damping_N_s_per_m=3000.0"),
-                               matching::measured(config::record::read_record(log)));
+  const validation::Comparison c =
+      validation::compare(model_with("parameters.damping_N_s_per_m=3000.0"),
+                          greybox::measured(config::record::read_record(log)));
   EXPECT_NEAR(last["rms_m"].get<double>(), rms_afterwards_m(c), 0.01 * rms_afterwards_m(c));
   EXPECT_EQ(program::spoolwatch("compare model.toml").exit_code, 2);
 }

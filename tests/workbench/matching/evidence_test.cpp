@@ -1,5 +1,5 @@
 // Which samples are fitted and which score; expected masks counted by hand.
-#include "workbench/matching/evidence.h"
+#include "estimator/greybox/fit_dataset.h"
 
 #include <gmock/gmock.h>
 
@@ -9,14 +9,16 @@
 #include "config/schema/error.h"
 
 namespace workbench::matching {
+
+namespace greybox = estimator::greybox;
 namespace {
 
 /// White noise of 3 um about a slow motion, 200 Hz, settled half a second after each start.
-Measured record(std::size_t samples, double noise_m = 3e-6, unsigned seed = 1,
-                std::vector<std::size_t> starts = {0}) {
+greybox::Measured record(std::size_t samples, double noise_m = 3e-6, unsigned seed = 1,
+                         std::vector<std::size_t> starts = {0}) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0.0, noise_m);
-  Measured m;
+  greybox::Measured m;
   m.name = "made";
   m.sample_time_s = 0.005;
   m.settled.assign(samples, 1);
@@ -33,7 +35,7 @@ Measured record(std::size_t samples, double noise_m = 3e-6, unsigned seed = 1,
 }
 
 TEST(Evidence, FitsEveryOtherBlockOfTwoSecondsAndScoresTheRest) {
-  const Evidence e = evidence({record(2000)}, {});
+  const greybox::Evidence e = greybox::evidence({record(2000)}, {});
   ASSERT_EQ(e.size(), 2000);
   for (Eigen::Index k = 0; k < e.size(); ++k) {
     const bool settling = k < 100;
@@ -49,14 +51,14 @@ TEST(Evidence, FitsEveryOtherBlockOfTwoSecondsAndScoresTheRest) {
 }
 
 TEST(Evidence, CountsNothingWhileASegmentSettles) {
-  const Evidence e = evidence({record(2000, 3e-6, 1, {0, 1000})}, {});
+  const greybox::Evidence e = greybox::evidence({record(2000, 3e-6, 1, {0, 1000})}, {});
   EXPECT_EQ(e.counts.segment(1000, 100).sum(), 0.0);
   EXPECT_EQ(e.counts[1100], 1.0);
   EXPECT_EQ(e.counts.sum(), 1800.0);
 }
 
 TEST(Evidence, BeginsItsBlocksAnewInEachRecord) {
-  const Evidence e = evidence({record(500), record(900)}, {});
+  const greybox::Evidence e = greybox::evidence({record(500), record(900)}, {});
   EXPECT_THAT(e.starts, testing::ElementsAre(0U, 500U));
   EXPECT_EQ(e.scores[499], 1.0);
   EXPECT_EQ(e.fits[500 + 100], 1.0);
@@ -65,13 +67,13 @@ TEST(Evidence, BeginsItsBlocksAnewInEachRecord) {
 }
 
 TEST(Evidence, FitsOneHalfAndScoresTheOtherBegunAnew) {
-  const Measured whole = record(2001);
-  for (const Split split : {Split::first_half, Split::second_half}) {
-    const Evidence e = evidence({whole}, {}, split);
+  const greybox::Measured whole = record(2001);
+  for (const greybox::Split split : {greybox::Split::first_half, greybox::Split::second_half}) {
+    const greybox::Evidence e = greybox::evidence({whole}, {}, split);
     ASSERT_EQ(e.records.size(), 2U);
     EXPECT_TRUE(e.scores_apart());
-    const std::size_t fitted_from = split == Split::first_half ? 0 : 1000;
-    const std::size_t scored_from = split == Split::first_half ? 1000 : 0;
+    const std::size_t fitted_from = split == greybox::Split::first_half ? 0 : 1000;
+    const std::size_t scored_from = split == greybox::Split::first_half ? 1000 : 0;
     EXPECT_EQ(e.records[0].y_m.front(), whole.y_m[fitted_from]);
     EXPECT_EQ(e.records[1].y_m.front(), whole.y_m[scored_from]);
     const auto fitted = static_cast<Eigen::Index>(e.records[0].size());
@@ -84,7 +86,7 @@ TEST(Evidence, FitsOneHalfAndScoresTheOtherBegunAnew) {
 }
 
 TEST(Evidence, ScoresRecordsThatAreHeldOutAndFitsAllOfTheOthers) {
-  const Evidence e = evidence({record(1000), record(800)}, {record(600)});
+  const greybox::Evidence e = greybox::evidence({record(1000), record(800)}, {record(600)});
   EXPECT_EQ(e.fitted_records, 2U);
   EXPECT_EQ(e.fits.sum(), 900.0 + 700.0);
   EXPECT_EQ(e.scores.sum(), 500.0);
@@ -93,11 +95,12 @@ TEST(Evidence, ScoresRecordsThatAreHeldOutAndFitsAllOfTheOthers) {
 }
 
 TEST(Evidence, HasTheNoiseOfAllRecordsByTheirLength) {
-  const double quiet_m = evidence({record(3000, 2e-6, 1)}, {}).noise_floor_m;
-  const double loud_m = evidence({record(1000, 6e-6, 2)}, {}).noise_floor_m;
+  const double quiet_m = greybox::evidence({record(3000, 2e-6, 1)}, {}).noise_floor_m;
+  const double loud_m = greybox::evidence({record(1000, 6e-6, 2)}, {}).noise_floor_m;
   EXPECT_NEAR(quiet_m, 2e-6, 0.3e-6);
   EXPECT_NEAR(loud_m, 6e-6, 0.9e-6);
-  const double both_m = evidence({record(3000, 2e-6, 1), record(1000, 6e-6, 2)}, {}).noise_floor_m;
+  const double both_m =
+      greybox::evidence({record(3000, 2e-6, 1), record(1000, 6e-6, 2)}, {}).noise_floor_m;
   EXPECT_NEAR(both_m, std::sqrt(0.75 * quiet_m * quiet_m + 0.25 * loud_m * loud_m), 1e-12);
 }
 
@@ -106,16 +109,16 @@ TEST(Evidence, RmsIsOverTheCountedSamplesOnly) {
   residual_m << 3.0, 100.0, -4.0, 0.0;
   Eigen::VectorXd weights(4);
   weights << 1.0, 0.0, 1.0, 0.0;
-  EXPECT_DOUBLE_EQ(rms(residual_m, weights), std::sqrt(12.5));
-  EXPECT_EQ(rms(residual_m, Eigen::VectorXd::Zero(4)), 0.0);
+  EXPECT_DOUBLE_EQ(greybox::rms(residual_m, weights), std::sqrt(12.5));
+  EXPECT_EQ(greybox::rms(residual_m, Eigen::VectorXd::Zero(4)), 0.0);
 }
 
 TEST(Split, IsReadByItsNameAndAnythingElseIsAnError) {
-  EXPECT_EQ(parse_split("blocks"), Split::blocks);
-  EXPECT_EQ(parse_split("first-half"), Split::first_half);
-  EXPECT_EQ(parse_split("second-half"), Split::second_half);
+  EXPECT_EQ(greybox::parse_split("blocks"), greybox::Split::blocks);
+  EXPECT_EQ(greybox::parse_split("first-half"), greybox::Split::first_half);
+  EXPECT_EQ(greybox::parse_split("second-half"), greybox::Split::second_half);
   try {
-    static_cast<void>(parse_split("third"));
+    static_cast<void>(greybox::parse_split("third"));
     FAIL();
   } catch (const config::schema::Error& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("third"));

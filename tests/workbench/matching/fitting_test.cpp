@@ -1,6 +1,6 @@
 // Fits of a servo v = gain (u + offset) without lag, whose position is linear in gain and
 // gain x offset: estimates, priors and standard errors stand beside linear algebra and counting.
-#include "workbench/matching/fitting.h"
+#include "estimator/greybox/fit.h"
 
 #include <gmock/gmock.h>
 
@@ -10,13 +10,15 @@
 #include <random>
 
 namespace workbench::matching {
+
+namespace greybox = estimator::greybox;
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kNone = std::numeric_limits<double>::infinity();
+constexpr double live::kNone = std::numeric_limits<double>::infinity();
 constexpr double kTs = 0.005;
 constexpr double kGain = 0.05;  ///< of the model file
 
@@ -28,11 +30,11 @@ plant_sim::ModelFile servo() {
   return model;
 }
 
-SearchParameter gain() {
-  return {"gain_mps_per_V", Scale::logarithmic, kGain, -1.0, 1.0, 0.0, kNone};
+greybox::SearchParameter gain() {
+  return {"gain_mps_per_V", greybox::Scale::logarithmic, kGain, -1.0, 1.0, 0.0, live::kNone};
 }
-SearchParameter offset() {
-  return {"null_bias.offset_V", Scale::linear, 0.05, -200.0, 200.0, 0.0, kNone};
+greybox::SearchParameter offset() {
+  return {"null_bias.offset_V", greybox::Scale::linear, 0.05, -200.0, 200.0, 0.0, live::kNone};
 }
 
 /// sum of u Ts up to each sample, and time: the two columns of the position.
@@ -42,11 +44,11 @@ struct Columns {
 };
 
 /// Noise with memory `phi` from sample to sample and standard deviation noise_m; none at the start.
-Evidence made(double gain_mps_per_V, double offset_V, double noise_m, unsigned seed,
-              double phi = 0.0, Columns* columns = nullptr, std::size_t samples = 2000) {
+greybox::Evidence made(double gain_mps_per_V, double offset_V, double noise_m, unsigned seed,
+                       double phi = 0.0, Columns* columns = nullptr, std::size_t samples = 2000) {
   std::mt19937 random(seed);
   std::normal_distribution<double> white(0.0, noise_m * std::sqrt(1.0 - phi * phi));
-  Measured m;
+  greybox::Measured m;
   m.name = "made";
   m.sample_time_s = kTs;
   m.starts = {0};
@@ -70,26 +72,27 @@ Evidence made(double gain_mps_per_V, double offset_V, double noise_m, unsigned s
     sum_Vs += u_V * kTs;
     noise = phi * noise + white(random);
   }
-  return evidence({m}, {});
+  return greybox::evidence({m}, {});
 }
 
-FitOptions freely() {
-  FitOptions options;
+greybox::FitOptions freely() {
+  greybox::FitOptions options;
   options.observer_per_s = 0.0;
   options.tolerance = 1e-12;
   return options;
 }
 
-VectorXd position_m(const Evidence& evidence) {
+VectorXd position_m(const greybox::Evidence& evidence) {
   const std::vector<double>& y = evidence.records[0].y_m;
   return Eigen::Map<const VectorXd>(y.data(), static_cast<Index>(y.size())).array() - y[0];
 }
 
 TEST(Fit, IsLinearLeastSquaresWhereThePositionIsLinear) {
   Columns columns;
-  const Evidence e = made(0.0537, -0.021, 4e-4, 5, 0.0, &columns);
+  const greybox::Evidence e = made(0.0537, -0.021, 4e-4, 5, 0.0, &columns);
   for (const VectorXd& weights : {e.fits, e.counts}) {
-    const Fitted fitted = fit(servo(), e, weights, {gain(), offset()}, VectorXd::Zero(2), freely());
+    const greybox::Fitted fitted =
+        greybox::fit(servo(), e, weights, {gain(), offset()}, VectorXd::Zero(2), freely());
     MatrixXd a(e.size(), 2);
     a << columns.command_Vs, columns.t_s;
     const VectorXd root = weights.cwiseSqrt();
@@ -101,19 +104,20 @@ TEST(Fit, IsLinearLeastSquaresWhereThePositionIsLinear) {
     EXPECT_NEAR(fitted.value("null_bias.offset_V"), c[1] / c[0], 1e-6);
     const VectorXd expected_m = position_m(e) - a * c;
     EXPECT_LT((fitted.residual_m - expected_m).cwiseProduct(e.counts).cwiseAbs().maxCoeff(), 1e-8);
-    EXPECT_NEAR(fitted.fit_rms_m, rms(expected_m, weights), 1e-9);
-    EXPECT_NEAR(fitted.score_rms_m, rms(expected_m, e.scores), 1e-9);
+    EXPECT_NEAR(fitted.fit_rms_m, greybox::rms(expected_m, weights), 1e-9);
+    EXPECT_NEAR(fitted.score_rms_m, greybox::rms(expected_m, e.scores), 1e-9);
   }
 }
 
 TEST(Fit, GivesTheSameFromFarAwayAndOnSeveralThreads) {
-  const Evidence e = made(0.0537, -0.021, 4e-6, 5);
-  const Fitted near = fit(servo(), e, e.fits, {gain(), offset()}, VectorXd::Zero(2), freely());
-  FitOptions options = freely();
+  const greybox::Evidence e = made(0.0537, -0.021, 4e-6, 5);
+  const greybox::Fitted near =
+      greybox::fit(servo(), e, e.fits, {gain(), offset()}, VectorXd::Zero(2), freely());
+  greybox::FitOptions options = freely();
   options.threads = 2;
   VectorXd start(2);
   start << 7.0, -30.0;  // the gain's is beyond its bound
-  const Fitted far = fit(servo(), e, e.fits, {gain(), offset()}, start, options);
+  const greybox::Fitted far = greybox::fit(servo(), e, e.fits, {gain(), offset()}, start, options);
   EXPECT_NEAR(far.x[0], near.x[0], 1e-7);
   EXPECT_NEAR(far.x[1], near.x[1], 1e-6);
 }
@@ -121,11 +125,12 @@ TEST(Fit, GivesTheSameFromFarAwayAndOnSeveralThreads) {
 TEST(Fit, WeighsThePriorAgainstTheRecord) {
   constexpr double kNoise_m = 0.02;
   Columns columns;
-  const Evidence e = made(kGain, 0.05, kNoise_m, 7, 0.0, &columns);
-  SearchParameter p = offset();
+  const greybox::Evidence e = made(kGain, 0.05, kNoise_m, 7, 0.0, &columns);
+  greybox::SearchParameter p = offset();
   p.prior_mean = 1.06;
   p.prior_sd = 0.03;
-  const Fitted fitted = fit(servo(), e, e.fits, {p}, VectorXd::Constant(1, 1.06), freely());
+  const greybox::Fitted fitted =
+      greybox::fit(servo(), e, e.fits, {p}, VectorXd::Constant(1, 1.06), freely());
   const VectorXd x = (kGain * p.unit * columns.t_s).cwiseProduct(e.fits);
   const VectorXd y = position_m(e) - kGain * columns.command_Vs;
   const double of_record = 1.0 / (fitted.sigma_m * fitted.sigma_m);
@@ -139,22 +144,24 @@ TEST(Fit, WeighsThePriorAgainstTheRecord) {
 }
 
 TEST(Fit, StopsAtABoundAndSaysSo) {
-  const Evidence e = made(0.0537, 0.0, 1e-5, 3);
-  SearchParameter p = gain();
+  const greybox::Evidence e = made(0.0537, 0.0, 1e-5, 3);
+  greybox::SearchParameter p = gain();
   p.upper = 0.03;  // log(0.0537 / 0.05) is 0.071
-  const Fitted fitted = fit(servo(), e, e.fits, {p, offset()}, VectorXd::Zero(2), freely());
+  const greybox::Fitted fitted =
+      greybox::fit(servo(), e, e.fits, {p, offset()}, VectorXd::Zero(2), freely());
   EXPECT_EQ(fitted.x[0], 0.03);
   EXPECT_THAT(fitted.at_bound, testing::ElementsAre(1, 0));
-  const VectorXd errors = std_errors(e, e.fits, fitted);
+  const VectorXd errors = greybox::std_errors(e, e.fits, fitted);
   EXPECT_TRUE(std::isnan(errors[0]));
   EXPECT_TRUE(std::isfinite(errors[1]));
 }
 
 TEST(Fit, KeepsWhatItHasWhenItIsCancelled) {
-  const Evidence e = made(0.0537, 0.0, 1e-5, 3);
-  FitOptions options = freely();
+  const greybox::Evidence e = made(0.0537, 0.0, 1e-5, 3);
+  greybox::FitOptions options = freely();
   options.cancel = [] { return true; };
-  const Fitted fitted = fit(servo(), e, e.fits, {gain()}, VectorXd::Constant(1, 0.2), options);
+  const greybox::Fitted fitted =
+      greybox::fit(servo(), e, e.fits, {gain()}, VectorXd::Constant(1, 0.2), options);
   EXPECT_EQ(fitted.x[0], 0.2);
   EXPECT_EQ(fitted.residual_m.size(), e.size());
 }
@@ -166,11 +173,11 @@ VectorXd scatter_over_error(double phi) {
   MatrixXd x(2, kDraws);
   VectorXd error = VectorXd::Zero(2);
   for (int i = 0; i < kDraws; ++i) {
-    const Evidence e = made(0.0537, -0.021, 5e-5, 100U + static_cast<unsigned>(i), phi);
-    const Fitted fitted =
-        fit(servo(), e, e.counts, {gain(), offset()}, VectorXd::Zero(2), freely());
+    const greybox::Evidence e = made(0.0537, -0.021, 5e-5, 100U + static_cast<unsigned>(i), phi);
+    const greybox::Fitted fitted =
+        greybox::fit(servo(), e, e.counts, {gain(), offset()}, VectorXd::Zero(2), freely());
     x.col(i) = fitted.x;
-    error += std_errors(e, e.counts, fitted) / kDraws;
+    error += greybox::std_errors(e, e.counts, fitted) / kDraws;
   }
   const MatrixXd off = x.colwise() - x.rowwise().mean();
   const VectorXd scatter = (off.rowwise().squaredNorm() / (kDraws - 1)).cwiseSqrt();
@@ -203,7 +210,7 @@ double factor_of(double phi) {
     x[k] = k % 100 == 50 ? 1e6 : value;
     if (k % 100 == 50) weights[k] = 0.0;
   }
-  return correlation_factor(x, weights);
+  return greybox::correlation_factor(x, weights);
 }
 
 TEST(CorrelationFactor, IsThatOfAFirstOrderProcess) {
@@ -217,15 +224,15 @@ TEST(CorrelationFactor, IsThatOfAFirstOrderProcess) {
 TEST(CorrelationFactor, StaysBetweenOneAndAHundred) {
   EXPECT_EQ(factor_of(-0.8), 1.0);
   EXPECT_EQ(factor_of(0.9999), 100.0);
-  EXPECT_EQ(correlation_factor(VectorXd::Zero(50), VectorXd::Ones(50)), 1.0);
+  EXPECT_EQ(greybox::correlation_factor(VectorXd::Zero(50), VectorXd::Ones(50)), 1.0);
 }
 
 TEST(Fitted, PutsItsValuesIntoTheModelAndMakesEffectsPresent) {
-  Fitted fitted;
+  greybox::Fitted fitted;
   fitted.searched = {gain(), offset()};
   fitted.x.resize(2);
   fitted.x << std::log(1.1), 2.0;
-  plant_sim::ModelFile model = with_values(servo(), fitted);
+  plant_sim::ModelFile model = greybox::with_values(servo(), fitted);
   EXPECT_NEAR(*model.value("gain_mps_per_V"), 0.055, 1e-12);
   EXPECT_DOUBLE_EQ(*model.value("null_bias.offset_V"), 0.1);
   const auto present = [](const plant_sim::ModelFile::Effect& effect) {

@@ -1,4 +1,4 @@
-#include "workbench/matching/measured.h"
+#include "estimator/greybox/dataset.h"
 
 #include <gmock/gmock.h>
 
@@ -7,6 +7,8 @@
 #include "config/schema/error.h"
 
 namespace workbench::matching {
+
+namespace greybox = estimator::greybox;
 namespace {
 
 using testing::ElementsAre;
@@ -29,14 +31,14 @@ config::record::Record record(std::size_t samples, std::vector<std::size_t> gaps
 }
 
 TEST(Measured, HasOneSegmentWhereNothingIsMissing) {
-  const Measured m = measured(record(300));
+  const greybox::Measured m = greybox::measured(record(300));
   EXPECT_EQ(m.size(), 300U);
   EXPECT_THAT(m.starts, ElementsAre(0U));
   EXPECT_TRUE(m.notes.empty());
 }
 
 TEST(Measured, DoesNotCountTheFirstHalfSecondOfEachSegment) {
-  const Measured m = measured(record(300, {150}));
+  const greybox::Measured m = greybox::measured(record(300, {150}));
   ASSERT_THAT(m.starts, ElementsAre(0U, 150U));
   for (std::size_t k = 0; k < 300; ++k) {
     EXPECT_EQ(m.settled[k] != 0, k % 150 >= 50) << k;
@@ -44,7 +46,8 @@ TEST(Measured, DoesNotCountTheFirstHalfSecondOfEachSegment) {
 }
 
 TEST(Measured, LeavesOutShortSegmentsAndSaysSo) {
-  const Measured m = measured(record(500, {200, 299}));  // 0.99 s between the gaps
+  const greybox::Measured m =
+      greybox::measured(record(500, {200, 299}));  // 0.99 s between the gaps
   EXPECT_THAT(m.starts, ElementsAre(0U, 200U));
   EXPECT_EQ(m.size(), 401U);
   EXPECT_EQ(m.y_m[199], 199.0);
@@ -55,14 +58,14 @@ TEST(Measured, LeavesOutShortSegmentsAndSaysSo) {
 
 TEST(Measured, RefusesLessThanTwoSecondsOfConnectedSamples) {
   try {
-    (void)measured(record(390, {95, 190, 285}));  // four times just under a second
+    (void)greybox::measured(record(390, {95, 190, 285}));  // four times just under a second
     FAIL();
   } catch (const config::schema::Error& error) {
     EXPECT_EQ(error.exit_code(), 65);
     EXPECT_THAT(error.what(), HasSubstr("too short: of 3.9 s in 4 segments, the longest 1.05 s"));
   }
   try {
-    (void)measured(record(150));
+    (void)greybox::measured(record(150));
     FAIL();
   } catch (const config::schema::Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("too short: 1.5 s"));
@@ -73,7 +76,7 @@ TEST(Measured, RefusesSamplesFarApart) {
   config::record::Record slow = record(300);
   slow.sample_time_s = 0.5;
   try {
-    (void)measured(slow);
+    (void)greybox::measured(slow);
     FAIL();
   } catch (const config::schema::Error& error) {
     EXPECT_EQ(error.exit_code(), 65);
@@ -82,8 +85,8 @@ TEST(Measured, RefusesSamplesFarApart) {
 }
 
 TEST(Measured, GivesAPartWithItsOwnSegmentsAndSettling) {
-  const Measured whole = measured(record(600, {300}));
-  const Measured p = part(whole, 200, 500);
+  const greybox::Measured whole = greybox::measured(record(600, {300}));
+  const greybox::Measured p = greybox::part(whole, 200, 500);
   EXPECT_EQ(p.size(), 300U);
   EXPECT_EQ(p.y_m.front(), 200.0);
   EXPECT_THAT(p.starts, ElementsAre(0U, 100U));

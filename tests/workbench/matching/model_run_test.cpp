@@ -1,4 +1,4 @@
-#include "workbench/matching/model_run.h"
+#include "estimator/greybox/observer_simulation.h"
 
 #include <gmock/gmock.h>
 
@@ -10,6 +10,8 @@
 #include "plant_sim/plant.h"
 
 namespace workbench::matching {
+
+namespace greybox = estimator::greybox;
 namespace {
 
 constexpr double kTs = 0.005;
@@ -20,8 +22,8 @@ plant_sim::ModelFile model(const std::string& name) {
 }
 
 /// A made-up motion, which no model fits; a second segment begins in the middle.
-Measured record(std::size_t samples = 600, double sample_time_s = kTs) {
-  Measured m;
+greybox::Measured record(std::size_t samples = 600, double sample_time_s = kTs) {
+  greybox::Measured m;
   m.name = "made";
   m.sample_time_s = sample_time_s;
   for (std::size_t k = 0; k < samples; ++k) {
@@ -44,8 +46,8 @@ void set_position(plant_sim::Plant& plant, double position_m) {
 }
 
 /// The equations of the header with the single plant, which shares no loop with the ensemble.
-std::vector<double> by_single_plant(plant_sim::ModelFile file, const Measured& m, double l_per_s,
-                                    double added_V = 0.0, double added_N = 0.0) {
+std::vector<double> by_single_plant(plant_sim::ModelFile file, const greybox::Measured& m,
+                                    double l_per_s, double added_V = 0.0, double added_N = 0.0) {
   if (added_N != 0.0) *file.value("load_force.force_N") += added_N;
   std::vector<double> e;
   std::unique_ptr<plant_sim::Plant> plant;
@@ -71,9 +73,9 @@ INSTANTIATE_TEST_SUITE_P(Plants, ModelRunOf,
 TEST_P(ModelRunOf, EqualsTheSinglePlantWithAndWithoutTheObserver) {
   plant_sim::ModelFile file = model(GetParam());
   if (file.plant != "velocity_servo") *file.value("friction.coulomb_N") = 30.0;
-  const Measured m = record();
+  const greybox::Measured m = record();
   for (const double l_per_s : {0.0, 2.0}) {
-    ModelRun run(file, m, {}, l_per_s);
+    greybox::ModelRun run(file, m, {}, l_per_s);
     Eigen::MatrixXd residuals_m;
     run.residuals(Eigen::MatrixXd(0, 1), residuals_m);
     const std::vector<double> expected = by_single_plant(file, m, l_per_s);
@@ -86,9 +88,10 @@ TEST_P(ModelRunOf, EqualsTheSinglePlantWithAndWithoutTheObserver) {
 
 TEST(ModelRun, PutsEachColumnIntoALaneOfItsOwn) {
   const plant_sim::ModelFile file = model("thesis");
-  const Measured m = record();
-  const SearchParameter damping{"damping_N_s_per_m", Scale::logarithmic, 1000.0, -1.0, 1.0};
-  ModelRun run(file, m, {damping}, 2.0);
+  const greybox::Measured m = record();
+  const greybox::SearchParameter damping{"damping_N_s_per_m", greybox::Scale::logarithmic, 1000.0,
+                                         -1.0, 1.0};
+  greybox::ModelRun run(file, m, {damping}, 2.0);
   Eigen::MatrixXd points(1, 2);
   points << 0.0, std::log(2.0);
   Eigen::MatrixXd residuals_m;
@@ -106,8 +109,8 @@ TEST(ModelRun, PutsEachColumnIntoALaneOfItsOwn) {
 
 TEST(ModelRun, AddsToCommandAndLoadOfOneLane) {
   const plant_sim::ModelFile file = model("thesis");
-  const Measured m = record();
-  ModelRun run(file, m, {}, 2.0);
+  const greybox::Measured m = record();
+  greybox::ModelRun run(file, m, {}, 2.0);
   const auto n = static_cast<Eigen::Index>(m.size());
   Eigen::MatrixXd added_V = Eigen::MatrixXd::Zero(n, 3);
   Eigen::MatrixXd added_N = Eigen::MatrixXd::Zero(n, 3);
@@ -129,9 +132,9 @@ TEST(ModelRun, AddsToCommandAndLoadOfOneLane) {
 }
 
 TEST(ModelRun, GivesNothingBeforeASegmentHasSettled) {
-  Measured m = record();
+  greybox::Measured m = record();
   for (std::size_t k = 0; k < 100; ++k) m.settled[k] = 0;
-  ModelRun run(model("velocity_servo"), m, {}, 2.0);
+  greybox::ModelRun run(model("velocity_servo"), m, {}, 2.0);
   Eigen::MatrixXd residuals_m;
   run.residuals(Eigen::MatrixXd(0, 1), residuals_m);
   EXPECT_EQ(residuals_m.topRows(100).cwiseAbs().maxCoeff(), 0.0);
@@ -143,15 +146,15 @@ TEST(ModelRun, GivesNothingBeforeASegmentHasSettled) {
 double error_after_settling_m(double observer_per_s, bool led) {
   const plant_sim::ModelFile file = model("thesis");
   const std::unique_ptr<plant_sim::Plant> plant = plant_sim::make_plant(file);
-  Measured whole = record(2000);
+  greybox::Measured whole = record(2000);
   whole.starts = {0};
   for (std::size_t k = 0; k < whole.size(); ++k) {
     whole.y_m[k] = plant->reading_m();
     plant->advance(whole.u_V[k], kTs);
   }
-  Measured half = part(whole, 1000, 2000);
+  greybox::Measured half = greybox::part(whole, 1000, 2000);
   if (!led) half.led.clear();
-  ModelRun run(file, half, {}, observer_per_s);
+  greybox::ModelRun run(file, half, {}, observer_per_s);
   Eigen::MatrixXd residuals_m;
   run.residuals(Eigen::MatrixXd(0, 1), residuals_m);
   return residuals_m.cwiseAbs().maxCoeff();
@@ -165,17 +168,17 @@ TEST(ModelRun, CatchesAMotionThatItsSegmentBeginsIn) {
 }
 
 TEST(ModelRun, RefusesAParameterThatTheModelDoesNotHave) {
-  const Measured m = record();
-  EXPECT_THROW(ModelRun(model("velocity_servo"), m, {{"mass_kg"}}), config::schema::Error);
+  const greybox::Measured m = record();
+  EXPECT_THROW(greybox::ModelRun(model("velocity_servo"), m, {{"mass_kg"}}), config::schema::Error);
 }
 
 TEST(StepFor, DividesTheSampleTimeAndIsNeverLongerThanTheModelsOwn) {
   const plant_sim::ModelFile file = model("thesis");  // 1 ms
-  EXPECT_DOUBLE_EQ(step_for(file, 0.005), 0.001);
-  EXPECT_DOUBLE_EQ(step_for(file, 0.001), 0.001);
-  EXPECT_DOUBLE_EQ(step_for(file, 0.02), 0.001);
-  EXPECT_DOUBLE_EQ(step_for(file, 0.0077531), 0.0077531 / 8.0);
-  EXPECT_DOUBLE_EQ(step_for(file, 0.0002), 0.0002);
+  EXPECT_DOUBLE_EQ(greybox::step_for(file, 0.005), 0.001);
+  EXPECT_DOUBLE_EQ(greybox::step_for(file, 0.001), 0.001);
+  EXPECT_DOUBLE_EQ(greybox::step_for(file, 0.02), 0.001);
+  EXPECT_DOUBLE_EQ(greybox::step_for(file, 0.0077531), 0.0077531 / 8.0);
+  EXPECT_DOUBLE_EQ(greybox::step_for(file, 0.0002), 0.0002);
 }
 
 // y' = g u has the same position at common times whatever the rate, u held.
@@ -183,7 +186,7 @@ TEST(ModelRun, ReachesTheSamePositionAtFiftyHertzAsAtAThousand) {
   plant_sim::ModelFile file = model("velocity_servo");
   *file.value("time_constant_s") = 0.0;
   for (const double sample_time_s : {0.02, 0.005, 0.001, 0.0077531}) {
-    Measured m;
+    greybox::Measured m;
     m.sample_time_s = sample_time_s;
     const auto samples = static_cast<std::size_t>(std::lround(4.0 / sample_time_s));
     for (std::size_t k = 0; k < samples; ++k) {
@@ -193,7 +196,7 @@ TEST(ModelRun, ReachesTheSamePositionAtFiftyHertzAsAtAThousand) {
       m.settled.push_back(1);
     }
     m.starts = {0};
-    ModelRun run(file, m, {}, 0.0);
+    greybox::ModelRun run(file, m, {}, 0.0);
     Eigen::MatrixXd residuals_m;
     run.residuals(Eigen::MatrixXd(0, 1), residuals_m);
     EXPECT_LT(residuals_m.cwiseAbs().maxCoeff(), 1e-12) << sample_time_s;

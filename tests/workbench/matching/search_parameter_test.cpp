@@ -1,4 +1,4 @@
-#include "workbench/matching/search_parameter.h"
+#include "estimator/greybox/free_parameter.h"
 
 #include <gmock/gmock.h>
 
@@ -6,26 +6,31 @@
 #include <limits>
 
 namespace workbench::matching {
+
+namespace greybox = estimator::greybox;
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 TEST(SearchParameter, GoesThereAndBackOnEveryScale) {
-  for (const Scale scale : {Scale::linear, Scale::logarithmic, Scale::reciprocal}) {
-    const SearchParameter p{"x", scale, 40.0};
+  for (const greybox::Scale scale :
+       {greybox::Scale::linear, greybox::Scale::logarithmic, greybox::Scale::reciprocal}) {
+    const greybox::SearchParameter p{"x", scale, 40.0};
     for (const double s : {0.2, 1.0, 1.7}) EXPECT_NEAR(p.search(p.value(s)), s, 1e-12);
   }
 }
 
 TEST(SearchParameter, StandsForTheNeutralValueAtZero) {
-  EXPECT_EQ((SearchParameter{"x", Scale::linear, 40.0}).value(0.0), 0.0);
-  EXPECT_EQ((SearchParameter{"x", Scale::logarithmic, 40.0}).value(0.0), 40.0);
-  EXPECT_EQ((SearchParameter{"x", Scale::reciprocal, 40.0}).value(0.0), kInfinite);
+  EXPECT_EQ((greybox::SearchParameter{"x", greybox::Scale::linear, 40.0}).value(0.0), 0.0);
+  EXPECT_EQ((greybox::SearchParameter{"x", greybox::Scale::logarithmic, 40.0}).value(0.0), 40.0);
+  EXPECT_EQ((greybox::SearchParameter{"x", greybox::Scale::reciprocal, 40.0}).value(0.0),
+            kInfinite);
 }
 
 TEST(SearchParameter, HasTheSlopeOfItsValue) {
-  for (const Scale scale : {Scale::linear, Scale::logarithmic, Scale::reciprocal}) {
-    const SearchParameter p{"x", scale, 40.0};
+  for (const greybox::Scale scale :
+       {greybox::Scale::linear, greybox::Scale::logarithmic, greybox::Scale::reciprocal}) {
+    const greybox::SearchParameter p{"x", scale, 40.0};
     const double h = 1e-6;
     const double difference = std::abs(p.value(0.7 + h) - p.value(0.7 - h)) / (2.0 * h);
     EXPECT_NEAR(p.slope(0.7), difference, 1e-5 * difference);
@@ -35,11 +40,11 @@ TEST(SearchParameter, HasTheSlopeOfItsValue) {
 TEST(PlantParameters, CentreOnTheModelFileWithinItsRanges) {
   plant_sim::ModelFile model;
   *model.value("damping_N_s_per_m") = 1234.0;
-  const std::vector<SearchParameter> found = plant_parameters(model);
+  const std::vector<greybox::SearchParameter> found = greybox::plant_parameters(model);
   ASSERT_FALSE(found.empty());
   const plant_sim::PlantInfo& plant = *plant_sim::find_plant(model.plant);
   bool damping = false;
-  for (const SearchParameter& p : found) {
+  for (const greybox::SearchParameter& p : found) {
     EXPECT_DOUBLE_EQ(p.value(0.0), *model.value(p.name)) << p.name;
     EXPECT_LT(p.lower, 0.0) << p.name;
     EXPECT_GT(p.upper, 0.0) << p.name;
@@ -56,7 +61,8 @@ TEST(PlantParameters, CentreOnTheModelFileWithinItsRanges) {
 
 TEST(EffectParameters, ReachTheirNeutralValueForEveryEffectOfTheLibrary) {
   for (const plant_sim::EffectInfo& effect : plant_sim::effect_library()) {
-    for (const SearchParameter& p : effect_parameters(effect, kEveryRefinement)) {
+    for (const greybox::SearchParameter& p :
+         greybox::effect_parameters(effect, greybox::kEveryRefinement)) {
       for (const plant_sim::ParameterInfo& info : effect.parameters) {
         if (p.name != effect.name + "." + info.name) continue;
         EXPECT_LT(p.lower, p.upper) << p.name;

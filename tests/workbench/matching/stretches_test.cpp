@@ -1,11 +1,13 @@
 // Which samples of a long record are searched; expected counts and places by hand.
-#include "workbench/matching/stretches.h"
+#include "estimator/greybox/representative_segments.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
 namespace workbench::matching {
+
+namespace greybox = estimator::greybox;
 namespace {
 
 using testing::AllOf;
@@ -17,8 +19,8 @@ using testing::SizeIs;
 constexpr double kSample_s = 0.05;
 
 /// 20 Hz; the rod moves only from `busy_s` on for `busy_for_s` of every two minutes.
-Measured record(double length_s, double busy_s = 0.0, double busy_for_s = 120.0) {
-  Measured m;
+greybox::Measured record(double length_s, double busy_s = 0.0, double busy_for_s = 120.0) {
+  greybox::Measured m;
   m.name = "made";
   m.sample_time_s = kSample_s;
   const auto samples = static_cast<std::size_t>(std::lround(length_s / kSample_s));
@@ -37,17 +39,18 @@ Measured record(double length_s, double busy_s = 0.0, double busy_for_s = 120.0)
 }
 
 TEST(Stretches, OfTenMinutesAreOneTenth) {
-  const Evidence whole = evidence({record(600.0)}, {});
-  const Evidence found = stretches_of(whole);
-  EXPECT_NEAR(length_s(whole), 600.0, 1e-9);
-  EXPECT_NEAR(length_s(found), 60.0, 1e-9);
+  const greybox::Evidence whole = greybox::evidence({record(600.0)}, {});
+  const greybox::Evidence found = greybox::stretches_of(whole);
+  EXPECT_NEAR(greybox::length_s(whole), 600.0, 1e-9);
+  EXPECT_NEAR(greybox::length_s(found), 60.0, 1e-9);
   EXPECT_THAT(found.records.front().starts, SizeIs(5));
   EXPECT_EQ(found.noise_floor_m, whole.noise_floor_m);
 }
 
 TEST(Stretches, LieWhereTheRodMovesInEachPartOfTheRecord) {
-  const Evidence found = stretches_of(evidence({record(600.0, 60.0, 15.0)}, {}));
-  const Measured& kept = found.records.front();
+  const greybox::Evidence found =
+      greybox::stretches_of(greybox::evidence({record(600.0, 60.0, 15.0)}, {}));
+  const greybox::Measured& kept = found.records.front();
   ASSERT_THAT(kept.starts, SizeIs(5));
   for (std::size_t i = 0; i < 5; ++i) {
     const double from_s = kept.t_s[kept.starts[i]] - 120.0 * static_cast<double>(i);
@@ -56,9 +59,9 @@ TEST(Stretches, LieWhereTheRodMovesInEachPartOfTheRecord) {
 }
 
 TEST(Stretches, KeepWhatEachSampleIsFor) {
-  const Evidence whole = evidence({record(600.0)}, {});
-  const Evidence found = stretches_of(whole);
-  const Measured& kept = found.records.front();
+  const greybox::Evidence whole = greybox::evidence({record(600.0)}, {});
+  const greybox::Evidence found = greybox::stretches_of(whole);
+  const greybox::Measured& kept = found.records.front();
   double settling = 0.0;
   for (std::size_t k = 0; k < kept.size(); ++k) {
     const auto there = static_cast<Eigen::Index>(std::lround(kept.t_s[k] / kSample_s));
@@ -77,8 +80,8 @@ TEST(Stretches, KeepWhatEachSampleIsFor) {
 }
 
 TEST(Stretches, AreTakenOfEveryRecordAndShortOnesStayWhole) {
-  const Evidence whole = evidence({record(500.0), record(15.0)}, {record(85.0)});
-  const Evidence found = stretches_of(whole);
+  const greybox::Evidence whole = greybox::evidence({record(500.0), record(15.0)}, {record(85.0)});
+  const greybox::Evidence found = greybox::stretches_of(whole);
   ASSERT_THAT(found.records, SizeIs(3));
   EXPECT_EQ(found.fitted_records, 2U);
   EXPECT_THAT(found.records[0].starts, SizeIs(4));
@@ -90,9 +93,9 @@ TEST(Stretches, AreTakenOfEveryRecordAndShortOnesStayWhole) {
 }
 
 TEST(Stretches, BeginAnewAfterGapsOfTheRecord) {
-  Measured gappy = record(600.0);
+  greybox::Measured gappy = record(600.0);
   gappy.starts = {0, 30, 2430};
-  const Evidence found = stretches_of(evidence({gappy}, {}));
+  const greybox::Evidence found = greybox::stretches_of(greybox::evidence({gappy}, {}));
   for (const std::size_t start : found.records.front().starts) {
     EXPECT_LT(start, found.records.front().size());
   }

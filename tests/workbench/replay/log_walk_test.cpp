@@ -11,13 +11,13 @@
 #include "daemon/io/publisher.h"
 #include "daemon/io/recorder.h"
 #include "tests/daemon/program/subprocess.h"
-#include "workbench/record_samples.h"
+#include "workbench/train/record_samples.h"
 
 namespace workbench::replay {
 namespace {
 
 namespace fs = std::filesystem;
-using estimator::fdi::Sample;
+using config::signals::Sample;
 
 /// Sample 3 has no pressures, and a rod sensor is missing from 5 on, where the other takes over.
 Sample sample_of(int tick) {
@@ -34,7 +34,7 @@ Sample sample_of(int tick) {
   sample.rod_since = tick < 5 ? 0 : 5;
   sample.rod_m[0] = tick < 5 ? sample.y_m : std::nan("");
   sample.rod_m[1] = tick < 5 ? 0.4 : sample.y_m;
-  if (tick >= 5) sample.rod_quality[0] = estimator::fdi::Quality::bad;
+  if (tick >= 5) sample.rod_quality[0] = config::signals::Quality::bad;
   return sample;
 }
 
@@ -97,7 +97,7 @@ TEST(LogWalk, KeepsASampleAndWhatIsToldBesideItTogetherAcrossFiles) {
 TEST(RecordSamples, HaveTheRodsAndThePressuresOfTheirColumns) {
   const program::Folder folder;
   const auto files = record(folder.path() / "log", 10, 1 << 20);
-  const std::vector<Sample> samples = to_samples(config::record::read_record(files.at(0)));
+  const std::vector<Sample> samples = train::to_samples(config::record::read_record(files.at(0)));
   ASSERT_EQ(samples.size(), 10U);
   for (int tick = 0; tick < 10; ++tick) {
     expect_beside(samples[static_cast<std::size_t>(tick)], sample_of(tick));
@@ -109,7 +109,7 @@ TEST(RecordSamples, HaveNeitherWhereARecordHasNeither) {
   record.sample_time_s = 0.01;
   record.t_s = {0.0, 0.01, 0.02};
   record.u_V = record.y_m = {0.0, 1.0, 2.0};
-  for (const Sample& sample : to_samples(record)) {
+  for (const Sample& sample : train::to_samples(record)) {
     EXPECT_EQ(sample.rod_count, 0);
     EXPECT_TRUE(std::isnan(sample.pressures.supply_Pa));
     EXPECT_FALSE(sample.pressures.chambers());

@@ -1,4 +1,4 @@
-#include "workbench/report/binned.h"
+#include "workbench/present/binned.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ TEST(Binned, MeanAndRmsOfEveryStretchAreThoseOfItsPoints) {
   }
   y[10] = std::numeric_limits<double>::quiet_NaN();
   y[11] = std::numeric_limits<double>::infinity();
-  const Binned b = binned(x, y, 2);
+  const present::Binned b = present::binned(x, y, 2);
   ASSERT_EQ(b.mean.y.size(), 2U);
   EXPECT_DOUBLE_EQ(b.mean.x[0], 24.75);  // of 0 to 99 in two
   EXPECT_DOUBLE_EQ(b.mean.y[0], 1.0);
@@ -28,8 +28,8 @@ TEST(Binned, MeanAndRmsOfEveryStretchAreThoseOfItsPoints) {
 
 TEST(Binned, StretchesOfFewPointsAreLeftOutAndOneXHasNone) {
   const std::vector<double> x{0, 0, 0, 0, 0, 10, 10, 10, 10};
-  EXPECT_EQ(binned(x, std::vector<double>(9, 1.0), 10).mean.x.size(), 1U);
-  EXPECT_TRUE(binned(std::vector<double>(9, 1.0), x).mean.x.empty());
+  EXPECT_EQ(present::binned(x, std::vector<double>(9, 1.0), 10).mean.x.size(), 1U);
+  EXPECT_TRUE(present::binned(std::vector<double>(9, 1.0), x).mean.x.empty());
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ void expect_range(const json& range, double from_s, double to_s) {
 }
 
 TEST_F(Browser, DrawsEveryPlotZoomsAndReadsWithoutARequestOrAnError) {
-  const Visit seen = visit(with_check(render(example_report())));
+  const Visit seen = visit(with_check(present::render(example_report())));
   const json check = check_of(seen);
   ASSERT_TRUE(check.contains("again")) << check.dump();
   EXPECT_THAT(seen.requests, IsEmpty());
@@ -70,7 +70,7 @@ TEST_F(Browser, DrawsEveryPlotZoomsAndReadsWithoutARequestOrAnError) {
 }
 
 TEST_F(Browser, APlotThatFailsSaysSoAndCurvesThatAreMissingAreNoticed) {
-  std::string page = replaced(render(example_report()), "function draw(canvas, plot) {",
+  std::string page = replaced(present::render(example_report()), "function draw(canvas, plot) {",
                               "function draw(canvas, plot) {if (plot.title === 'Parameters') "
                               "throw new Error('planted');");
   page = replaced(page, R"("title":"Candidates, first round")", R"("title":"Parameters")");
@@ -87,23 +87,25 @@ TEST_F(Browser, APlotThatFailsSaysSoAndCurvesThatAreMissingAreNoticed) {
 }
 
 TEST_F(Browser, ACloudAloneIsSeenWhole) {
-  Report report{.title = "cloud"};
-  Plot plot{
-      .title = "Cloud", .kind = Kind::scatter, .x = {"velocity", "mm/s"}, .y = {"error", "um"}};
+  present::Report report{.title = "cloud"};
+  present::Plot plot{.title = "Cloud",
+                     .kind = present::Kind::scatter,
+                     .x = {"velocity", "mm/s"},
+                     .y = {"error", "um"}};
   for (int i = 0; i < 600; ++i) {  // ends in the middle of what it passes through
     plot.x_values.push_back(100.0 * std::sin(0.05 * i));
     if (i == 0) plot.series.push_back({.name = "sample"});
     plot.series[0].y.push_back(5.0 * std::cos(0.07 * i));
   }
   report.sections = {{.heading = "Cloud", .plots = {plot}}};
-  const json check = check_of(visit(with_check(render(report), false)));
+  const json check = check_of(visit(with_check(present::render(report), false)));
   ASSERT_TRUE(check.contains("cut")) << check.dump();
   EXPECT_THAT(check["cut"], IsEmpty()) << check["cut"].dump();
   EXPECT_GT(check["plots"][0][0].get<int>(), kInk);
 }
 
 TEST_F(Browser, ThePolicyStopsARequestThatWouldOtherwiseBeSeen) {
-  const std::string planted = replaced(render(example_report(200)), "<main>",
+  const std::string planted = replaced(present::render(example_report(200)), "<main>",
                                        "<main><img src=\"http://planted.invalid/x.png\">");
   EXPECT_THAT(visit(planted).requests, IsEmpty());
   EXPECT_THAT(visit(replaced(planted, "img-src data:", "img-src *")).requests,

@@ -28,7 +28,7 @@ class Reports : public testing::Test, public ServoBench {
     }
   }
 
-  int quietly(workbench::Setup setup, std::vector<std::string> arguments) {
+  int quietly(cli::Setup setup, std::vector<std::string> arguments) {
     testing::internal::CaptureStdout();
     testing::internal::CaptureStderr();
     const int code = workbench_test::run_command(setup, std::move(arguments));

@@ -1,4 +1,4 @@
-#include "workbench/report/report.h"
+#include "workbench/present/report.h"
 
 #include <gmock/gmock.h>
 
@@ -39,19 +39,19 @@ std::string read(const fs::path& file) {
   return text.str();
 }
 
-Report one_plot(const Plot& plot) {
+present::Report one_plot(const present::Plot& plot) {
   return {.title = "t", .verdict = "v", .sections = {{.heading = "h", .plots = {plot}}}};
 }
 
 TEST(Report, EveryPlotHasOneCanvasAndOneSetOfData) {
-  const std::string page = render(example_report());
+  const std::string page = present::render(example_report());
   EXPECT_EQ(count(page, "<canvas id="), 9U);
   EXPECT_EQ(data_of(page).size(), 9U);
   EXPECT_THAT(page, HasSubstr(R"(data-plots="9")"));
 }
 
 TEST(Report, VerdictCommandAndHeadlinesStandInThePage) {
-  const std::string page = render(example_report());
+  const std::string page = present::render(example_report());
   EXPECT_THAT(page, HasSubstr(R"(<div class="verdict warn"><p class="words">Friction is missing)"));
   EXPECT_THAT(page, HasSubstr("<code>spoolwatch diagnose rig_2000psi.toml bench_0412.csv"));
   EXPECT_THAT(page, HasSubstr("<dt>Noise floor</dt><dd>2.50 <span>µm</span></dd>"));
@@ -59,7 +59,7 @@ TEST(Report, VerdictCommandAndHeadlinesStandInThePage) {
 }
 
 TEST(Report, NothingInThePagePointsOutside) {
-  const std::string page = render(example_report());
+  const std::string page = present::render(example_report());
   EXPECT_THAT(page, HasSubstr("default-src 'none'"));
   EXPECT_FALSE(std::regex_search(page, std::regex(R"(<(link|iframe|img|object)\b)")));
   EXPECT_FALSE(std::regex_search(page, std::regex(R"((src|href)\s*=\s*"(?!#))")));
@@ -67,22 +67,22 @@ TEST(Report, NothingInThePagePointsOutside) {
 }
 
 TEST(Report, TheLibraryComesWithItsLicence) {
-  const std::string page = render(example_report());
+  const std::string page = present::render(example_report());
   EXPECT_THAT(page, HasSubstr("Chart.js v3."));
   EXPECT_THAT(page, HasSubstr("The above copyright notice and this permission notice shall be"));
 }
 
 TEST(Report, HostileTextStaysText) {
   const std::string evil = "</script><script>alert('x')</script>";
-  Plot plot{.title = evil,
-            .x = {evil, evil},
-            .y = {evil, evil},
-            .x_values = {0.0},
-            .series = {{.name = evil, .y = {1.0}}},
-            .lines = {{1.0, evil}},
-            .zoom_group = evil,
-            .caption = evil};
-  Report report = one_plot(plot);
+  present::Plot plot{.title = evil,
+                     .x = {evil, evil},
+                     .y = {evil, evil},
+                     .x_values = {0.0},
+                     .series = {{.name = evil, .y = {1.0}}},
+                     .lines = {{1.0, evil}},
+                     .zoom_group = evil,
+                     .caption = evil};
+  present::Report report = one_plot(plot);
   plot.x_values.clear();
   plot.categories = {evil};
   report.sections[0].plots.push_back(plot);
@@ -93,54 +93,54 @@ TEST(Report, HostileTextStaysText) {
   report.sections[0].paragraphs = {evil};
   report.sections[0].tables = {
       {.caption = evil, .columns = {{evil, evil}}, .rows = {{evil}}, .marked_rows = {0}}};
-  const std::string page = render(report);
+  const std::string page = present::render(report);
   EXPECT_THAT(page, Not(HasSubstr("<script>alert")));
   EXPECT_EQ(count(page, "</script>"), 3U);
   EXPECT_EQ(data_of(page)[0]["series"][0]["name"], evil);
 }
 
 TEST(Report, ValuesAndGapsArriveAsTheyWere) {
-  const Plot plot{.title = "p",
-                  .x_values = {0.0, 0.005, 0.01},
-                  .series = {{.name = "a", .y = {1.5, kNan, -2.25e-6}}}};
-  const nlohmann::json data = data_of(render(one_plot(plot)));
+  const present::Plot plot{.title = "p",
+                           .x_values = {0.0, 0.005, 0.01},
+                           .series = {{.name = "a", .y = {1.5, kNan, -2.25e-6}}}};
+  const nlohmann::json data = data_of(present::render(one_plot(plot)));
   EXPECT_EQ(data[0]["xs"], nlohmann::json::parse("[0,0.005,0.01]"));
   EXPECT_EQ(data[0]["series"][0]["y"], nlohmann::json::parse("[1.5,null,-2.25e-06]"));
 }
 
 TEST(Report, ALongRecordIsThinnedAndSaysSo) {
-  const std::string page = render(example_report(120'000));
+  const std::string page = present::render(example_report(120'000));
   EXPECT_LT(page.size(), 2'000'000U);
   EXPECT_THAT(page, HasSubstr("of 120000 samples: the least and the greatest of each stretch."));
   EXPECT_THAT(page, HasSubstr("of 120000 points"));
   const nlohmann::json plot = data_of(page)[0];
   EXPECT_EQ(plot["xs"].size(), plot["series"][0]["y"].size());
   EXPECT_EQ(plot["xs"].size(), plot["series"][1]["y"].size());
-  EXPECT_THAT(render(example_report()), Not(HasSubstr("Drawn with")));
+  EXPECT_THAT(present::render(example_report()), Not(HasSubstr("Drawn with")));
 }
 
 TEST(Report, SeriesOfUnequalLengthAreCutToTheShorter) {
-  const Plot plot{
+  const present::Plot plot{
       .title = "p",
       .x_values = {0.0, 1.0},
       .series = {{.name = "long", .y = {1.0, 2.0, 3.0}}, {.name = "short", .y = {4.0}}}};
-  const nlohmann::json data = data_of(render(one_plot(plot)));
+  const nlohmann::json data = data_of(present::render(one_plot(plot)));
   EXPECT_EQ(data[0]["series"][0]["y"], nlohmann::json::parse("[1,2]"));
   EXPECT_EQ(data[0]["series"][1]["y"], nlohmann::json::parse("[4]"));
 }
 
 TEST(Report, AShortTableRowIsFilledAndNumbersStandRight) {
-  Report report{.title = "t"};
+  present::Report report{.title = "t"};
   report.sections = {{.tables = {{.columns = {{"name", "", false}, {"RMS", "µm"}},
                                   .rows = {{"only"}, {"a", "1.5", "beyond"}}}}}};
-  const std::string page = render(report);
+  const std::string page = present::render(report);
   EXPECT_THAT(page, HasSubstr(R"(<tr><td>only</td><td class="n"></td></tr>)"));
   EXPECT_THAT(page, HasSubstr(R"(<th class="n">RMS <span>µm</span></th>)"));
   EXPECT_THAT(page, Not(HasSubstr("beyond")));
 }
 
 TEST(Report, AnEmptyReportIsStillAPage) {
-  const std::string page = render({});
+  const std::string page = present::render({});
   EXPECT_TRUE(data_of(page).empty());
   EXPECT_THAT(page, testing::EndsWith("</html>\n"));
 }
@@ -151,14 +151,14 @@ TEST(Report, AFileAppearsWholeOrNotAtAll) {
   fs::create_directories(folder);
   const fs::path file = folder / "report.html";
   std::ofstream(file) << "before";
-  Report report = example_report(100);
-  write_report(report, file);
-  EXPECT_EQ(read(file), render(report));
+  present::Report report = example_report(100);
+  present::write_report(report, file);
+  EXPECT_EQ(read(file), present::render(report));
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
 
   const fs::path missing = folder / "nowhere" / "report.html";
   try {
-    write_report(report, missing);
+    present::write_report(report, missing);
     FAIL() << "no error";
   } catch (const config::schema::Error& error) {
     EXPECT_EQ(error.exit_code(), 1);

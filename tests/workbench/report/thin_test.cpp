@@ -1,4 +1,4 @@
-#include "workbench/report/thin.h"
+#include "workbench/present/thin.h"
 
 #include <gmock/gmock.h>
 
@@ -27,8 +27,8 @@ std::vector<double> wave(double turns) {
 
 TEST(Thin, ShortSeriesAreKeptWhole) {
   const std::vector<double> y{3.0, 1.0, 2.0};
-  EXPECT_THAT(thin_lines({&y}, 3, 3), testing::ElementsAre(0, 1, 2));
-  EXPECT_THAT(thin_cloud(y, y, 3), testing::ElementsAre(0, 1, 2));
+  EXPECT_THAT(present::thin_lines({&y}, 3, 3), testing::ElementsAre(0, 1, 2));
+  EXPECT_THAT(present::thin_cloud(y, y, 3), testing::ElementsAre(0, 1, 2));
 }
 
 TEST(Thin, ASpikeOfOneSampleIsKeptInEverySeries) {
@@ -36,7 +36,7 @@ TEST(Thin, ASpikeOfOneSampleIsKeptInEverySeries) {
   std::vector<double> b = wave(5.0);
   a[70'001] = 9.0;
   b[11'117] = -9.0;
-  const auto rows = thin_lines({&a, &b}, kRows, kLimit);
+  const auto rows = present::thin_lines({&a, &b}, kRows, kLimit);
   EXPECT_THAT(rows, Contains(70'001));
   EXPECT_THAT(rows, Contains(11'117));
   EXPECT_LE(rows.size(), kLimit);
@@ -45,7 +45,7 @@ TEST(Thin, ASpikeOfOneSampleIsKeptInEverySeries) {
 
 TEST(Thin, RowsAscendAndRunFromFirstToLast) {
   const std::vector<double> y = wave(7.0);
-  const auto rows = thin_lines({&y}, kRows, kLimit);
+  const auto rows = present::thin_lines({&y}, kRows, kLimit);
   EXPECT_EQ(rows.front(), 0U);
   EXPECT_EQ(rows.back(), kRows - 1);
   EXPECT_EQ(std::adjacent_find(rows.begin(), rows.end(), std::greater_equal<>()), rows.end());
@@ -56,7 +56,7 @@ TEST(Thin, TheOutlineNeverFallsShortOfTheSeries) {
   // part of a stretch that hangs over the window's ends: 20 samples of a wave of 3 turns.
   const double overhang = 3.0 * 6.3 * 20.0 / kRows;
   const std::vector<double> y = wave(3.0);
-  const auto rows = thin_lines({&y}, kRows, kLimit);
+  const auto rows = present::thin_lines({&y}, kRows, kLimit);
   for (std::size_t window = 0; window < 1000; ++window) {
     const auto first = y.begin() + static_cast<long>(window * 120);
     const auto [low, high] = std::minmax_element(first, first + 120);
@@ -75,7 +75,7 @@ TEST(Thin, TheOutlineNeverFallsShortOfTheSeries) {
 TEST(Thin, AGapOfOneSampleStaysAGap) {
   std::vector<double> y = wave(3.0);
   y[50'003] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT(thin_lines({&y}, kRows, kLimit), Contains(50'003));
+  EXPECT_THAT(present::thin_lines({&y}, kRows, kLimit), Contains(50'003));
 }
 
 TEST(Thin, ACloudKeepsItsExtremesAndDropsGaps) {
@@ -85,7 +85,7 @@ TEST(Thin, ACloudKeepsItsExtremesAndDropsGaps) {
   y[44'444] = -5.0;
   for (std::size_t i = 60'000; i < 60'050; ++i) y[i] = std::nan("");
   x[9] = std::nan("");
-  const auto rows = thin_cloud(x, y, 8000);
+  const auto rows = present::thin_cloud(x, y, 8000);
   EXPECT_LE(rows.size(), 8000U);
   EXPECT_GE(rows.size(), 7000U);
   EXPECT_THAT(rows, Contains(33'333));
@@ -104,7 +104,7 @@ TEST(Thin, ACloudKeepsItsDensity) {
   for (double& value : y) value = normal(random);
   double sum = 0.0;
   std::vector<int> tenths(10);
-  const auto rows = thin_cloud(x, y, 8000);
+  const auto rows = present::thin_cloud(x, y, 8000);
   for (const std::size_t row : rows) {
     sum += y[row] * y[row];
     ++tenths[static_cast<std::size_t>(x[row] * 10.0)];

@@ -82,7 +82,7 @@ class ScorecardCommand : public testing::Test {
     testing::internal::CaptureStdout();
     testing::internal::CaptureStderr();
     try {
-      code_ = workbench_test::run_command(workbench::add_scorecard, arguments);
+      code_ = workbench_test::run_command(workbench::cli::add_scorecard, arguments);
     } catch (...) {
       testing::internal::GetCapturedStdout();
       testing::internal::GetCapturedStderr();

@@ -19,7 +19,8 @@ TEST_F(Train, TeachesOneCommandWhatChangedInARecordNotSeenBefore) {
   const auto run = [&](const small_rig::Setup& setup) {
     pipeline.reset();
     seen.alarms.clear();
-    for (const fdi::Sample& sample : samples(setup, 30.0)) pipeline.process(sample, seen);
+    for (const config::signals::Sample& sample : samples(setup, 30.0))
+      pipeline.process(sample, seen);
   };
   run({.seed = 77});
   EXPECT_TRUE(seen.alarms.empty()) << seen.alarms.front().source << seen.alarms.front().reason;
@@ -53,7 +54,8 @@ TEST_F(Train, NamesSizesBetweenThoseTaughtAndRejectsAFaultThatWasNotTaught) {
   fdi_test::Recorder seen;
   const auto says = [&](const small_rig::Setup& setup) {
     pipeline.reset();
-    for (const fdi::Sample& sample : samples(setup, 30.0)) pipeline.process(sample, seen);
+    for (const config::signals::Sample& sample : samples(setup, 30.0))
+      pipeline.process(sample, seen);
     const fdi::AlarmBook& book = pipeline.alarms();
     const auto& alarm = book.alarm(book.find("fault.fault"));
     if (alarm.severity == fdi::Severity::ok) return std::string("well");

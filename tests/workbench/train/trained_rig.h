@@ -66,15 +66,16 @@ class Train : public testing::Test {
     std::string text = kConfig;
     return text.replace(text.find(from), from.size(), to);
   }
-  static std::vector<fdi::Sample> samples(const small_rig::Setup& setup, double duration_s) {
-    std::vector<fdi::Sample> all;
+  static std::vector<config::signals::Sample> samples(const small_rig::Setup& setup,
+                                                      double duration_s) {
+    std::vector<config::signals::Sample> all;
     small_rig::Rig rig(setup);
     while (rig.time_s() < duration_s) all.push_back(rig.step());
     return all;
   }
   void record(const std::string& name, const small_rig::Setup& setup, double duration_s) {
     config::record::Record record;
-    for (const fdi::Sample& sample : samples(setup, duration_s)) {
+    for (const config::signals::Sample& sample : samples(setup, duration_s)) {
       record.t_s.push_back(static_cast<double>(sample.tick) * small_rig::kSampleTime_s);
       record.u_V.push_back(sample.u_applied_V);
       record.y_m.push_back(sample.y_m);

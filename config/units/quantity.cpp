@@ -1,0 +1,167 @@
+#include "config/units/quantity.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "config/units/unit_suffix.h"
+
+namespace config::units {
+namespace {
+
+struct Unit {
+  const char* si;
+  const char* unit;
+  double in_si;  ///< one of the unit
+  double from;   ///< used for |value| from here on, SI
+};
+
+constexpr double kLitrePerMinute_m3ps = 1e-3 / 60.0;
+constexpr double kBar_Pa = 1e5;
+
+/// Of one SI unit the largest first.
+constexpr std::array kUnits{
+    Unit{"m", "m", 1.0, 1.0},
+    Unit{"m", "mm", 1e-3, 1e-3},
+    Unit{"m", "um", 1e-6, 0.0},
+    Unit{"m/s", "m/s", 1.0, 1.0},
+    Unit{"m/s", "mm/s", 1e-3, 0.0},
+    Unit{"m/s/V", "mm/s/V", 1e-3, 0.0},
+    Unit{"m/V", "mm/V", 1e-3, 1e-3},
+    Unit{"m/V", "um/V", 1e-6, 0.0},
+    Unit{"s", "s", 1.0, 1.0},
+    Unit{"s", "ms", 1e-3, 0.0},
+    Unit{"V", "V", 1.0, 0.1},
+    Unit{"V", "mV", 1e-3, 0.0},
+    Unit{"Pa", "bar", kBar_Pa, 1e4},
+    Unit{"Pa", "Pa", 1.0, 0.0},
+    Unit{"N", "kN", 1e3, 1e4},
+    Unit{"N", "N", 1.0, 0.0},
+    Unit{"N/m", "N/mm", 1e3, 1e4},
+    Unit{"N/m", "N/m", 1.0, 0.0},
+    Unit{"m3/s", "L/min", kLitrePerMinute_m3ps, 0.0},
+    Unit{"m3/s/Pa", "mL/min/bar", 1e-3 * kLitrePerMinute_m3ps / kBar_Pa, 0.0},
+    Unit{"Pa/(m3/s)", "bar/(L/min)", kBar_Pa / kLitrePerMinute_m3ps, 0.0},
+    Unit{"m3", "cm3", 1e-6, 0.0},
+    Unit{"rad", "deg", 3.14159265358979323846 / 180.0, 0.0},
+    Unit{"ratio", "%", 0.01, 0.0},
+};
+
+bool ends_with(std::string_view text, std::string_view ending) {
+  return text.size() >= ending.size() && text.substr(text.size() - ending.size()) == ending;
+}
+
+std::string si_unit(std::string_view name) {
+  return ends_with(name, "_ratio") ? "ratio" : unit_of(name);
+}
+
+Unit unit_for(const std::string& si, double size) {
+  for (const Unit& unit : kUnits) {
+    if (si == unit.si && size >= unit.from) return unit;
+  }
+  return {si.c_str(), si.c_str(), 1.0, 0.0};
+}
+
+int exponent(double x) { return static_cast<int>(std::floor(std::log10(x) + 1e-12)); }
+
+/// As many decimals as the error allows: its first digit, two where that is 1 or 2.
+int decimals_for(double value, double error) {
+  constexpr int kMostDigits = 6;
+  const int last = exponent(error) - (error / std::pow(10.0, exponent(error)) < 2.95 ? 1 : 0);
+  const int least = value == 0.0 ? -kMostDigits : exponent(std::abs(value)) - (kMostDigits - 1);
+  return std::max(0, -std::max(last, least));
+}
+
+std::string fixed(double value, int decimals) {
+  char text[64];
+  const bool plain = std::abs(value) < 1e6 && decimals <= 9;
+  if (plain) {
+    std::snprintf(text, sizeof text, "%.*f", decimals, value);
+  } else {
+    std::snprintf(text, sizeof text, "%.4g", value);
+  }
+  return text;
+}
+
+/// Three digits, without an exponent where it reads well.
+std::string rounded(double value) {
+  const double size = std::abs(value);
+  if (size >= 100.0 && size < 1e5) return number("%.0f", value);
+  return number("%.3g", value);
+}
+
+void replace_all(std::string& text, const std::string& from, const std::string& to) {
+  for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+}
+
+}  // namespace
+
+std::string number(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+Quantity quantity(std::string_view name, double value, double std_error, double reference) {
+  if (std::isinf(value)) return {"no limit", "", ""};
+  if (std::isnan(value)) return {"unknown", "", ""};
+  const std::string si = si_unit(name);
+  const double size =
+      std::max(std::abs(value), std::isfinite(reference) ? std::abs(reference) : 0.0);
+  const Unit unit = unit_for(si, size);
+  const double shown = value / unit.in_si;
+  const double error = std_error / unit.in_si;
+  if (!(error > 0.0) || std::isinf(error)) return {rounded(shown), "", unit.unit};
+  if (error > 1e3 * std::abs(shown)) return {rounded(shown), rounded(error), unit.unit};
+  const int decimals = decimals_for(shown, error);
+  const bool lost = error < 0.5 * std::pow(10.0, -decimals);
+  return {fixed(shown, decimals), lost ? number("%.1g", error) : fixed(error, decimals), unit.unit};
+}
+
+std::string words(const Quantity& quantity) {
+  return quantity.value + (quantity.error.empty() ? "" : " +- " + quantity.error) +
+         (quantity.unit.empty() ? "" : " " + quantity.unit);
+}
+
+std::string length_words(double length_m) {
+  if (!std::isfinite(length_m)) return "unknown";
+  return words(quantity("length_m", length_m, std::nan("")));
+}
+
+std::string chance_words(double p) {
+  constexpr double kLeast = 1e-6;
+  if (!std::isfinite(p)) return "-";
+  return p < kLeast ? "below " + number("%.0e", kLeast) : number("%.2g", p);
+}
+
+std::string times_words(double ratio) {
+  if (!std::isfinite(ratio)) return "-";
+  return number(ratio < 10.0 ? "%.2f" : ratio < 100.0 ? "%.1f" : "%.0f", ratio);
+}
+
+std::string parameter_words(std::string_view name) {
+  if (const auto dot = name.rfind('.'); dot != std::string_view::npos) name.remove_prefix(dot + 1);
+  if (name == "coulomb_N") return "Coulomb";
+  if (name == "stribeck_mps") return "Stribeck speed";
+  std::string text(name);
+  // the first word is never a unit
+  for (auto bar = text.rfind('_'); bar != std::string::npos; bar = text.rfind('_')) {
+    const std::string rest = text.substr(bar + 1);
+    const bool unit = rest == "per" || rest == "ratio" || !unit_of("x_" + rest).empty();
+    if (!unit) break;
+    text.resize(bar);
+  }
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return text;
+}
+
+std::string typeset(std::string text) {
+  replace_all(text, " +- ", " ± ");
+  replace_all(text, " um", " µm");
+  return text;
+}
+
+}  // namespace config::units

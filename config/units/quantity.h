@@ -1,0 +1,43 @@
+// Numbers as an engineer reads them: in the unit of the size, rounded to what is known of them.
+//
+//   2.63e-5 m -> "26.3 um"      0.0612 V +- 0.0011 -> "61.2 +- 1.1 mV"
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace config::units {
+
+struct Quantity {
+  std::string value;
+  std::string error;  ///< empty: not known
+  std::string unit;   ///< empty: a bare number
+};
+
+/// `name` carries the unit as its suffix ("friction.coulomb_N"); value and error in it. The error
+/// may be NaN. The unit is chosen by the larger of |value| and `reference`.
+[[nodiscard]] Quantity quantity(std::string_view name, double value, double std_error,
+                                double reference = 0.0);
+
+/// "145 +- 2 N"; without the error when it is not known.
+[[nodiscard]] std::string words(const Quantity& quantity);
+
+/// "26.3 um", "1.42 mm"; "unknown" for NaN.
+[[nodiscard]] std::string length_words(double length_m);
+
+/// "3.1e-05", "below 1e-12": a probability.
+[[nodiscard]] std::string chance_words(double p);
+
+/// "Coulomb" of "friction.coulomb_N", "half width" of "deadband.half_width_V".
+[[nodiscard]] std::string parameter_words(std::string_view name);
+
+/// "1.12", "53", "12339": how many times.
+[[nodiscard]] std::string times_words(double ratio);
+
+/// printf-like, for doubles: "%.3g".
+[[nodiscard]] std::string number(const char* format, double value);
+
+/// Text for the page: "um" as the micrometre sign has it, "+-" as one sign.
+[[nodiscard]] std::string typeset(std::string text);
+
+}  // namespace config::units

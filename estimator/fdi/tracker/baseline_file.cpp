@@ -1,0 +1,129 @@
+#include "estimator/fdi/tracker/baseline_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "config/schema/document.h"
+#include "config/schema/error.h"
+#include "estimator/fdi/fingerprint.h"
+#include "estimator/greybox/parameter_catalogue.h"
+
+namespace estimator::fdi::tracker {
+namespace {
+
+using config::schema::bad_config;
+using config::schema::Visitor;
+
+/// Two sample times are the same within clock accuracy.
+constexpr double kSameSampleTime = 1e-3;
+
+std::string text_of(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", value);
+  return text;
+}
+
+std::vector<std::string> sorted(std::vector<std::string> names) {
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// Throws unless what was found when it was learnt is what is expected now.
+void compare(const std::string& where, double found, double expected, const char* unit) {
+  if (text_of(found) == text_of(expected)) return;
+  throw bad_config(where, "was learnt with " + text_of(found) + unit, text_of(expected) + unit);
+}
+
+}  // namespace
+
+void HealthyFile::visit(Visitor& v) {
+  v.integer({"healthy_version", "layout of this file", true}, version, {kVersion, kVersion});
+  v.text({"rig_id", "of the rig; empty: of any"}, rig_id);
+  v.text({"model", "its name", true}, model);
+  v.text({"model_values", "all that the model is", true}, model_values);
+  v.text({"source", "the healthy record"}, source);
+  v.texts({"parameters", "tracked", true}, parameters);
+  v.numbers({"values", "of the parameters, SI", true}, values);
+  v.number({"sample_time_s", "of the record", true}, sample_time_s, {1e-6, 1e3});
+  v.number({"window_s", "length of the windows", true}, window_s, {1e-6, 1e6});
+  v.number({"observer_per_s", "how fast drift was led back", true}, observer_per_s, {0.0, 1e3});
+  v.number({"rms_m", "of a healthy window's error", true}, rms_m, {1e-12, 1.0});
+  v.number({"noise_floor_m", "of the position"}, noise_floor_m, {0.0, 1.0});
+  chambers.visit(v);
+}
+
+std::string values_line(const plant_sim::ModelFile& model) {
+  return estimator::fdi::one_line(plant_sim::print_model(model));
+}
+
+HealthyFile healthy_file(const plant_sim::ModelFile& model, const greybox::tracking::Choice& choice,
+                         const greybox::tracking::Settings& settings,
+                         const greybox::tracking::Healthy& healthy) {
+  HealthyFile file;
+  file.model = model.name;
+  file.model_values = values_line(model);
+  file.window_s = settings.window_s;
+  file.observer_per_s = settings.observer_per_s;
+  for (std::size_t i = 0; i < choice.tracked; ++i) {
+    const greybox::SearchParameter& p = choice.parameters[i];
+    file.parameters.push_back(p.name);
+    file.values.push_back(p.value(healthy.x[static_cast<Eigen::Index>(i)]));
+  }
+  file.rms_m = healthy.rms_m;
+  file.chambers = healthy.chambers;
+  return file;
+}
+
+HealthyFile read_healthy(const std::filesystem::path& path, const plant_sim::ModelFile& model,
+                         const greybox::tracking::Settings& settings,
+                         const greybox::tracking::Choice& choice, double sample_time_s,
+                         const std::string& rig_id) {
+  HealthyFile file;
+  config::schema::Document::load(path).read([&](Visitor& v) { file.visit(v); });
+  const std::string where = path.string();
+  const std::string values = values_line(model);
+  if (file.model_values != values) {
+    const auto differs = estimator::fdi::difference(file.model_values, values);
+    throw bad_config(where + ": model_values",
+                     "was learnt with another model, " + file.model + ": " + differs.found,
+                     "model " + model.name + ": " + differs.expected);
+  }
+  compare(where + ": window_s", file.window_s, settings.window_s, " s");
+  compare(where + ": observer_per_s", file.observer_per_s, settings.observer_per_s, " 1/s");
+  if (!file.rig_id.empty() && !rig_id.empty() && file.rig_id != rig_id) {
+    throw bad_config(where + ": rig_id", "is of another rig, " + file.rig_id, rig_id);
+  }
+  if (std::abs(file.sample_time_s - sample_time_s) > kSameSampleTime * sample_time_s) {
+    throw bad_config(where + ": sample_time_s", "is " + text_of(file.sample_time_s) + " s",
+                     text_of(sample_time_s) + " s");
+  }
+  if (file.values.size() != file.parameters.size()) {
+    throw bad_config(where + ": values", "are not as many as parameters");
+  }
+  std::vector<std::string> tracked;
+  for (std::size_t i = 0; i < choice.tracked; ++i) tracked.push_back(choice.parameters[i].name);
+  if (sorted(file.parameters) != sorted(tracked)) {
+    throw bad_config(where + ": parameters",
+                     "was learnt while " + greybox::joined_names(file.parameters) + " were tracked",
+                     greybox::joined_names(tracked));
+  }
+  return file;
+}
+
+greybox::tracking::Healthy healthy_of(const HealthyFile& file,
+                                      const greybox::tracking::Choice& choice) {
+  greybox::tracking::Healthy healthy;
+  healthy.rms_m = file.rms_m;
+  healthy.chambers = file.chambers;
+  healthy.x = choice.file;
+  for (std::size_t i = 0; i < choice.tracked; ++i) {
+    for (std::size_t j = 0; j < file.parameters.size(); ++j) {
+      if (file.parameters[j] != choice.parameters[i].name) continue;
+      healthy.x[static_cast<Eigen::Index>(i)] = choice.parameters[i].search(file.values[j]);
+    }
+  }
+  return healthy;
+}
+
+}  // namespace estimator::fdi::tracker

@@ -1,0 +1,127 @@
+#include "estimator/fdi/tracker/tracker_config.h"
+
+#include "config/schema/document.h"
+#include "config/schema/error.h"
+#include "estimator/fdi/tracker/tracker_method.h"
+
+namespace estimator::fdi::tracker {
+namespace {
+
+using config::schema::bad_config;
+using config::schema::Visitor;
+using estimator::fdi::SourceKind;
+
+constexpr double kLongest_s = 1e3;
+constexpr double kLeastSamples = 20.0;
+
+const SourceKind kKinds[] = {estimator::fdi::source_kind<TrackerConfig>(
+    "tracker", "physical parameters of a model, fitted to a sliding window")};
+
+}  // namespace
+
+std::span<const SourceKind> source_kinds() noexcept { return kKinds; }
+
+TrackerConfig::TrackerConfig() { learnt.rms_m = 0.0; }
+
+void TrackerConfig::visit(Visitor& v) {
+  v.text({"id", "names its quantities: ID.supply_pressure_Pa", true}, id);
+  v.text({"model", "model file of the healthy rig"}, model);
+  v.text({"model_toml", "its text, in place of the file"}, model_toml);
+  v.texts({"parameters", "tracked, as in model files"}, parameters);
+  v.number({"window_s", "length of the window"}, settings.window_s, {0.1, kLongest_s});
+  v.number({"stride_s", "between estimates"}, settings.stride_s, {1e-3, kLongest_s});
+  v.number({"observer_per_s", "how fast drift is led back"}, settings.observer_per_s, {0.0, 1e3});
+  v.number({"limit_ratio", "of the healthy error: beyond, a window is invalid"},
+           settings.most_ratio, {1.0, 1e3});
+  v.number({"least_ratio", "smaller changes are not named"}, settings.thresholds.least_ratio,
+           {1e-4, 1.0});
+  v.boolean({"suspect_position_sensor", "its scale or drift may explain a change as well"},
+            settings.thresholds.suspect_position_sensor);
+  v.number({"most_std_error_ratio", "of a value, beyond which it is invalid"},
+           settings.most_std_error, {1e-6, 1.0});
+  v.number({"most_std_error_of_typical", "the same of an effect, over its typical size"},
+           settings.most_of_typical, {1e-6, 10.0});
+  v.integer({"pooled", "windows that a value is taken from while they agree"}, settings.pooled,
+            {1, 100});
+  v.text({"healthy", "file of spoolwatch isolate --learn"}, healthy);
+  v.number({"learn_s", "motion to learn what is healthy from, without a file"}, learn_s,
+           {0.0, 1e6});
+  v.number({"healthy_rms_m", "in place of the file: a healthy window's error"}, learnt.rms_m,
+           {0.0, 1.0});
+  v.numbers({"healthy_values", "in place of the file: of the parameters, SI"}, learnt.values);
+  v.number({"noise_floor_m", "of the position"}, learnt.noise_floor_m, {0.0, 1.0});
+  v.boolean({"pressures", "supply and chamber pressures are used where the rig reads them"},
+            pressures);
+  learnt.chambers.visit(v);
+  v.texts({"follow", "parameters whose slow changes are no faults"}, settings.following.parameters);
+  v.number({"follow_ratio_per_h", "how fast, of the healthy value"}, settings.following.ratio_per_h,
+           {1e-3, 100.0});
+  v.number({"follow_most_ratio", "how far from what was learnt; then alarm slow_NAME"},
+           settings.following.most_ratio, {1e-3, 10.0});
+  v.number({"probe_low_m", "least position of a probing motion that is suggested"},
+           settings.probe.low_m, {-1e3, 1e3});
+  v.number({"probe_high_m", "greatest; not above the least: none is suggested"},
+           settings.probe.high_m, {-1e3, 1e3});
+  v.number({"probe_speed_mps", "greatest speed of it"}, settings.probe.speed_mps, {1e-6, 100.0});
+  v.number({"probe_command_V", "greatest command of it"}, settings.probe.command_V, {1e-3, 1e3});
+  v.choice({"severity", "of its alarms"}, severity, {"minor", "major"});
+  rules.visit(v);
+}
+
+void TrackerConfig::load(const estimator::fdi::Loading& loading) {
+  if (!model.empty()) {
+    model_toml = plant_sim::print_model(plant_sim::load_model(loading.folder / model));
+    model.clear();
+  }
+  if (healthy.empty()) return;
+  const auto document = config::schema::Document::parse(model_toml, where() + ": model");
+  const plant_sim::ModelFile read = plant_sim::read_model(document);
+  const greybox::tracking::Choice choice =
+      greybox::tracking::choose(read, parameters, where() + ": parameters");
+  try {
+    learnt = read_healthy(loading.folder / healthy, read, settings, choice, loading.sample_time_s,
+                          loading.rig_id);
+  } catch (const config::schema::Error& error) {
+    throw config::schema::Error(static_cast<config::schema::ExitCode>(error.exit_code()),
+                                where() + ": healthy: " + error.what());
+  }
+  const greybox::tracking::Healthy known = healthy_of(learnt, choice);
+  learnt.values.clear();
+  for (std::size_t i = 0; i < choice.tracked; ++i) {
+    learnt.values.push_back(choice.parameters[i].value(known.x[static_cast<Eigen::Index>(i)]));
+  }
+  healthy.clear();
+}
+
+std::unique_ptr<estimator::fdi::Source> TrackerConfig::make(
+    const estimator::fdi::Setting& setting) const {
+  if (model_toml.empty()) {
+    throw bad_config(where() + ": model", "is not given", "a model file (TOML)");
+  }
+  const double sample_time_s = setting.sample_time_s;
+  if (settings.window_s < kLeastSamples * sample_time_s) {
+    throw bad_config(where() + ": window_s", "is too short", "20 samples or more");
+  }
+  if (settings.observer_per_s * sample_time_s >= 1.0) {
+    throw bad_config(where() + ": observer_per_s", "is too fast for the sample time",
+                     "below 1 / sample time");
+  }
+  const auto document = config::schema::Document::parse(model_toml, where() + ": model");
+  const plant_sim::ModelFile read = plant_sim::read_model(document);
+  const greybox::tracking::Choice choice =
+      greybox::tracking::choose(read, parameters, where() + ": parameters");
+  const greybox::tracking::SlowChange follows(choice, settings.following, where() + ": follow");
+  std::optional<greybox::tracking::Healthy> known;
+  if (learnt.rms_m > 0.0) {
+    if (learnt.values.size() != choice.tracked) {
+      throw bad_config(where() + ": healthy_values", "are not as many as parameters");
+    }
+    known = greybox::tracking::Healthy{learnt.rms_m, choice.file, learnt.chambers};
+    for (std::size_t i = 0; i < choice.tracked; ++i) {
+      known->x[static_cast<Eigen::Index>(i)] = choice.parameters[i].search(learnt.values[i]);
+    }
+  }
+  return std::make_unique<TrackerSource>(*this, read, choice, known, sample_time_s);
+}
+
+}  // namespace estimator::fdi::tracker

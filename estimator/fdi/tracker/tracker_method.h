@@ -1,0 +1,73 @@
+// The tracker as a source of the fault detection. It allocates, and a look at a window takes
+// milliseconds: it belongs on the detector thread, not in the loop.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "estimator/fdi/source.h"
+#include "estimator/fdi/tracker/tracker_config.h"
+
+namespace estimator::fdi::tracker {
+
+class TrackerSource final : public estimator::fdi::Source {
+ public:
+  /// `healthy`: none = learnt from the first windows that teach.
+  TrackerSource(const TrackerConfig& config, const plant_sim::ModelFile& model,
+                const greybox::tracking::Choice& choice,
+                std::optional<greybox::tracking::Healthy> healthy, double sample_time_s);
+
+  [[nodiscard]] std::vector<std::string> names() const override;
+  [[nodiscard]] std::vector<estimator::fdi::Alarm> own_alarms() const override;
+  bool lose(std::int64_t periods) noexcept override;
+  bool push(const config::signals::Sample& sample, double y_m) noexcept override;
+  estimator::fdi::Finding find(std::span<estimator::fdi::NamedValue> values) noexcept override;
+  [[nodiscard]] estimator::fdi::AlarmState own_alarm(std::size_t number) const noexcept override;
+  void reset() override;
+  void carry(estimator::Carrier& carrier) override;
+  [[nodiscard]] double interval_s() const noexcept override { return stride_s_; }
+
+ private:
+  /// What the alarm of a parameter says.
+  struct Said {
+    std::string reason;
+    std::string parameter;
+    std::vector<std::string> group;
+    std::vector<std::string_view> views;
+    estimator::fdi::FaultName fault;
+    estimator::fdi::AlarmState state;
+  };
+
+  void take(const greybox::tracking::Window& window);
+  void learn_from(const greybox::tracking::Window& window);
+  void suggest(const greybox::tracking::Window& window);
+  void say();
+  void say_slow();
+  [[nodiscard]] bool is_due(std::int64_t missing) noexcept;
+
+  double sample_time_s_;
+  double stride_s_;
+  double window_s_;
+  double noise_floor_m_;
+  bool pressures_;       ///< of the samples are used
+  std::size_t lessons_;  ///< windows that are learnt from
+  estimator::fdi::Severity severity_;
+  estimator::fdi::AlarmRules rules_;
+  std::optional<greybox::tracking::Healthy> given_;
+  greybox::tracking::Tracker tracker_;
+  bool broken_ = true;            ///< samples are missing before the next one
+  std::int64_t missing_ = 0;      ///< samples since the latest finding, in a row
+  std::vector<double> learning_;  ///< of each window: errors, then x of the parameters
+  std::vector<double> found_;     ///< the values, then their standard errors
+  std::string why_;
+  std::string note_;                  ///< on a valid finding: what was left out of it
+  std::optional<std::string> probe_;  ///< the motion that would tell, once it was looked for
+  double rms_m_ = 0.0;
+  int samples_ = 0;
+  std::int64_t unexplained_ = 0;  ///< windows in a row
+  std::vector<Said> said_;  ///< of each tracked parameter, then of those followed, "unexplained"
+};
+
+}  // namespace estimator::fdi::tracker

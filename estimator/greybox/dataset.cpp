@@ -1,0 +1,139 @@
+#include "estimator/greybox/dataset.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "config/record/record.h"
+#include "config/schema/error.h"
+
+namespace estimator::greybox {
+namespace {
+
+/// Of the error in one sample, where samples are far apart.
+constexpr double kMostLed = 0.5;
+constexpr double kLeast_s = 2.0;
+/// Two samples at least while a segment settles.
+constexpr double kSlowest_s = 0.25;
+
+/// Speed at a record's first sample, over the RMS speed of the record, above which it begins in the
+/// midst of a motion. A start from rest under a command stays below a few per cent.
+constexpr double kMoving = 0.05;
+
+std::size_t settling_samples(double sample_time_s) {
+  return static_cast<std::size_t>(std::lround(kSettling_s / sample_time_s));
+}
+
+/// Of [begin, end); the speed at the start by the parabola through three samples.
+bool begins_moving(const config::record::Record& record, std::size_t begin, std::size_t end) {
+  if (end - begin < 3) return true;
+  const double* y_m = &record.y_m[begin];
+  const double first_m = 0.5 * (-3.0 * y_m[0] + 4.0 * y_m[1] - y_m[2]);
+  double squares = 0.0;
+  for (std::size_t i = begin + 1; i < end; ++i) {
+    squares += (record.y_m[i] - record.y_m[i - 1]) * (record.y_m[i] - record.y_m[i - 1]);
+  }
+  return std::abs(first_m) > kMoving * std::sqrt(squares / static_cast<double>(end - begin - 1));
+}
+
+void append(Measured& to, const config::record::Record& from, std::size_t begin, std::size_t end) {
+  const std::size_t settling = settling_samples(from.sample_time_s);
+  const Led led = begin > 0 ? kLed : begins_moving(from, begin, end) ? kLedWhereObserved : kNotLed;
+  to.starts.push_back(to.size());
+  for (std::size_t i = begin; i < end; ++i) {
+    to.t_s.push_back(from.t_s[i]);
+    to.u_V.push_back(from.u_V[i]);
+    to.y_m.push_back(from.y_m[i]);
+    const bool settled = i - begin >= settling;
+    to.settled.push_back(settled ? 1 : 0);
+    to.led.push_back(settled ? kNotLed : led);
+  }
+}
+
+std::string seconds(double s) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g s", s);
+  return text;
+}
+
+}  // namespace
+
+double Measured::share(std::size_t k, double observer_per_s) const noexcept {
+  const double observed = observer_per_s * sample_time_s;
+  if (k >= led.size() || led[k] == kNotLed) return observed;
+  if (led[k] == kLedWhereObserved && !(observer_per_s > 0.0)) return observed;
+  return std::max(observed, std::min(kMostLed, kLeading_per_s * sample_time_s));
+}
+
+Measured measured(const config::record::Record& record) {
+  Measured result;
+  result.name = record.name;
+  result.sample_time_s = record.sample_time_s;
+  result.notes = record.notes;
+  if (record.sample_time_s > kSlowest_s) {
+    throw config::schema::bad_data(record.name, "is sampled every " + seconds(record.sample_time_s),
+                                   "every " + seconds(kSlowest_s) + " or faster");
+  }
+  const auto shortest = static_cast<std::size_t>(std::ceil(kShortest_s / record.sample_time_s));
+  std::size_t left_out = 0;
+  std::size_t longest = 0;
+  for (std::size_t i = 0; i <= record.gaps.size(); ++i) {
+    const std::size_t begin = i == 0 ? 0 : record.gaps[i - 1];
+    const std::size_t end = i == record.gaps.size() ? record.size() : record.gaps[i];
+    longest = std::max(longest, end - begin);
+    if (end - begin >= shortest) {
+      append(result, record, begin, end);
+    } else {
+      left_out += end - begin;
+    }
+  }
+  if (!record.gaps.empty()) {
+    result.notes.push_back(std::to_string(record.gaps.size()) + " gaps: the model starts anew in " +
+                           std::to_string(result.starts.size()) + " segments");
+  }
+  if (left_out > 0) {
+    result.notes.push_back(std::to_string(left_out) + " samples in segments shorter than " +
+                           seconds(kShortest_s) + " are left out");
+  }
+  const double length_s = static_cast<double>(result.size()) * result.sample_time_s;
+  if (length_s < kLeast_s) {
+    const std::string all = seconds(static_cast<double>(record.size()) * record.sample_time_s);
+    const std::string what =
+        record.gaps.empty()
+            ? "is too short: " + all
+            : "is too short: of " + all + " in " + std::to_string(record.gaps.size() + 1) +
+                  " segments, the longest " +
+                  seconds(static_cast<double>(longest) * record.sample_time_s) + ", " +
+                  seconds(length_s) + " are in segments of " + seconds(kShortest_s) + " or more";
+    throw config::schema::bad_data(record.name, what, "at least " + seconds(kLeast_s));
+  }
+  return result;
+}
+
+Measured part(const Measured& whole, std::size_t from, std::size_t to) {
+  Measured result;
+  result.name = whole.name;
+  result.sample_time_s = whole.sample_time_s;
+  const auto cut = [&](const auto& values) {
+    return std::decay_t<decltype(values)>(values.begin() + static_cast<std::ptrdiff_t>(from),
+                                          values.begin() + static_cast<std::ptrdiff_t>(to));
+  };
+  result.t_s = cut(whole.t_s);
+  result.u_V = cut(whole.u_V);
+  result.y_m = cut(whole.y_m);
+  result.settled = cut(whole.settled);
+  if (!whole.led.empty()) result.led = cut(whole.led);
+  result.starts = {0};
+  for (const std::size_t start : whole.starts) {
+    if (start > from && start < to) result.starts.push_back(start - from);
+  }
+  if (from == 0) return result;
+  result.led.resize(result.size());
+  for (std::size_t i = 0; i < std::min(settling_samples(whole.sample_time_s), result.size()); ++i) {
+    result.settled[i] = 0;
+    result.led[i] = kLed;
+  }
+  return result;
+}
+
+}  // namespace estimator::greybox

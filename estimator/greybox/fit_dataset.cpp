@@ -1,0 +1,80 @@
+#include "estimator/greybox/fit_dataset.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "config/schema/error.h"
+#include "estimator/greybox/dataset.h"
+#include "estimator/residual/noise_floor.h"
+
+namespace estimator::greybox {
+namespace {
+
+bool in_fitted_block(const Measured& record, std::size_t i) {
+  const double since_s = record.t_s[i] - record.t_s.front();
+  return static_cast<long>(since_s / kBlock_s) % 2 == 0;
+}
+
+}  // namespace
+
+Split parse_split(std::string_view text) {
+  if (text == "blocks") return Split::blocks;
+  if (text == "first-half") return Split::first_half;
+  if (text == "second-half") return Split::second_half;
+  throw config::schema::Error(
+      config::schema::ExitCode::usage,
+      "--fit: is " + std::string(text) + "; allowed: blocks, first-half, second-half");
+}
+
+Evidence evidence(std::vector<Measured> records, std::vector<Measured> holdouts, Split split) {
+  if (holdouts.empty() && split != Split::blocks) {
+    std::vector<Measured> first;
+    std::vector<Measured> second;
+    for (const Measured& record : records) {
+      first.push_back(part(record, 0, record.size() / 2));
+      second.push_back(part(record, record.size() / 2, record.size()));
+    }
+    if (split == Split::second_half) first.swap(second);
+    return evidence(std::move(first), std::move(second));
+  }
+  Evidence result;
+  const std::size_t fitted_records = records.size();
+  const bool apart = !holdouts.empty();
+  result.fitted_records = fitted_records;
+  result.sample_time_s = records.front().sample_time_s;
+  result.records = std::move(records);
+  for (Measured& record : holdouts) result.records.push_back(std::move(record));
+  std::size_t total = 0;
+  for (const Measured& record : result.records) total += record.size();
+  result.fits.setZero(static_cast<Eigen::Index>(total));
+  result.scores = result.fits;
+  Eigen::Index at = 0;
+  double square_m2 = 0.0;
+  std::size_t told = 0;
+  for (std::size_t r = 0; r < result.records.size(); ++r) {
+    const Measured& record = result.records[r];
+    result.starts.push_back(static_cast<std::size_t>(at));
+    const double floor_m = estimator::residual::noise_floor(record.y_m, record.sample_time_s).sd_m;
+    if (std::isfinite(floor_m)) {
+      square_m2 +=
+          std::pow(std::max(floor_m, kLeastFloor_m), 2) * static_cast<double>(record.size());
+      told += record.size();
+    }
+    for (std::size_t i = 0; i < record.size(); ++i, ++at) {
+      if (record.settled[i] == 0) continue;
+      const bool fitted = apart ? r < fitted_records : in_fitted_block(record, i);
+      (fitted ? result.fits : result.scores)[at] = 1.0;
+    }
+  }
+  result.counts = result.fits + result.scores;
+  result.noise_floor_m = std::sqrt(square_m2 / static_cast<double>(told));
+  return result;
+}
+
+double rms(const Eigen::Ref<const Eigen::VectorXd>& residual_m, const Eigen::VectorXd& weights) {
+  const double samples = std::max(weights.sum(), 1.0);
+  return std::sqrt((residual_m.array().square() * weights.array()).sum() / samples);
+}
+
+}  // namespace estimator::greybox

@@ -1,0 +1,121 @@
+#include "estimator/greybox/free_parameter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace estimator::greybox {
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+/// How many standard deviations of its prior a plant's parameter may move.
+constexpr double kWidest = 3.0;
+/// How many times its typical size an effect may reach.
+constexpr double kLargest = 200.0;
+
+}  // namespace
+
+double SearchParameter::value(double s) const {
+  switch (scale) {
+    case Scale::logarithmic:
+      return unit * std::exp(s);
+    case Scale::reciprocal:
+      return s > 0.0 ? unit / s : kInfinite;
+    case Scale::linear:
+      break;
+  }
+  return unit * s;
+}
+
+double SearchParameter::search(double value) const {
+  switch (scale) {
+    case Scale::logarithmic:
+      return std::log(value / unit);
+    case Scale::reciprocal:
+      return unit / value;
+    case Scale::linear:
+      break;
+  }
+  return value / unit;
+}
+
+double SearchParameter::slope(double s) const {
+  switch (scale) {
+    case Scale::logarithmic:
+      return unit * std::exp(s);
+    case Scale::reciprocal:
+      return unit / (s * s);
+    case Scale::linear:
+      break;
+  }
+  return std::abs(unit);
+}
+
+std::vector<SearchParameter> plant_parameters(const plant_sim::ModelFile& model) {
+  std::vector<SearchParameter> found;
+  const plant_sim::PlantInfo& plant = *plant_sim::find_plant(model.plant);
+  for (std::size_t i = 0; i < plant.parameters.size(); ++i) {
+    const plant_sim::ParameterInfo& info = plant.parameters[i];
+    const double value = model.parameters[i].value;
+    if (info.uncertainty_ratio <= 0.0 || value <= 0.0) continue;
+    const double sd = info.uncertainty_ratio;
+    const double least = info.min > 0.0 ? std::log(info.min / value) : -kInfinite;
+    found.push_back({info.name, Scale::logarithmic, value, std::max(least, -kWidest * sd),
+                     std::min(std::log(info.max / value), kWidest * sd), 0.0, sd});
+  }
+  return found;
+}
+
+std::vector<SearchParameter> effect_parameters(const plant_sim::EffectInfo& effect,
+                                               int refinement) {
+  std::vector<SearchParameter> found;
+  for (const plant_sim::ParameterInfo& info : effect.parameters) {
+    if (info.refinement > refinement) continue;
+    SearchParameter p;
+    p.name = effect.name + "." + info.name;
+    p.unit = info.typical;
+    p.prior_sd = kInfinite;
+    p.refinement = info.refinement;
+    if (std::isinf(info.neutral)) {
+      p.scale = Scale::reciprocal;
+      p.lower = 0.0;
+      p.upper = info.min > 0.0 ? std::min(info.typical / info.min, kLargest) : kLargest;
+    } else {
+      p.lower = std::max(info.min / info.typical, -kLargest);
+      p.upper = std::min(info.max / info.typical, kLargest);
+    }
+    found.push_back(p);
+  }
+  return found;
+}
+
+std::vector<SearchParameter> present_parameters(const plant_sim::ModelFile& model) {
+  std::vector<SearchParameter> found;
+  plant_sim::ModelFile copy = model;
+  for (const plant_sim::EffectInfo& info : plant_sim::effects_of(model)) {
+    const auto named = [&](const auto& effect) {
+      return effect.present && effect.name == info.name;
+    };
+    if (std::none_of(model.effects.begin(), model.effects.end(), named)) continue;
+    const std::vector<SearchParameter> all = effect_parameters(info, kEveryRefinement);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const double* value = copy.value(all[i].name);
+      if (value != nullptr && *value != info.parameters[i].neutral) found.push_back(all[i]);
+    }
+  }
+  return found;
+}
+
+Eigen::VectorXd start_of(const plant_sim::ModelFile& model,
+                         const std::vector<SearchParameter>& searched) {
+  plant_sim::ModelFile copy = model;
+  Eigen::VectorXd x(static_cast<Eigen::Index>(searched.size()));
+  for (std::size_t i = 0; i < searched.size(); ++i) {
+    const double* value = copy.value(searched[i].name);
+    const double s = value == nullptr ? 0.0 : searched[i].search(*value);
+    x[static_cast<Eigen::Index>(i)] = std::clamp(s, searched[i].lower, searched[i].upper);
+  }
+  return x;
+}
+
+}  // namespace estimator::greybox

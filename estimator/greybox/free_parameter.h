@@ -1,0 +1,52 @@
+// A model parameter as a search sees it: a number near 0 or 1 with bounds, whatever its unit.
+//
+//   linear       value = unit s              effects: s = 0 is their absence
+//   logarithmic  value = unit exp(s)         plants: s = 0 is the model file's value
+//   reciprocal   value = unit / s            limits: s = 0 is no limit
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "plant_sim/library.h"
+#include "plant_sim/model_file.h"
+
+namespace estimator::greybox {
+
+enum class Scale { linear, logarithmic, reciprocal };
+
+inline constexpr int kEveryRefinement = 1000;
+
+struct SearchParameter {
+  std::string name;  ///< "damping_N_s_per_m", "friction.coulomb_N"
+  Scale scale = Scale::linear;
+  double unit = 1.0;
+  double lower = 0.0;  ///< bounds, in s
+  double upper = 0.0;
+  double prior_mean = 0.0;  ///< in s
+  double prior_sd = 0.0;    ///< infinite: none
+  int refinement = 0;       ///< plant_sim::ParameterInfo::refinement
+
+  [[nodiscard]] double value(double s) const;
+  [[nodiscard]] double search(double value) const;
+  /// |d value / d s|, for standard errors.
+  [[nodiscard]] double slope(double s) const;
+};
+
+/// The plant's parameters that a rig may not share with its model file, with their priors about the
+/// file's values (plant_sim::ParameterInfo::uncertainty_ratio).
+[[nodiscard]] std::vector<SearchParameter> plant_parameters(const plant_sim::ModelFile& model);
+
+/// The parameters of effects that the model has and that do not stand at their neutral value.
+[[nodiscard]] std::vector<SearchParameter> present_parameters(const plant_sim::ModelFile& model);
+
+/// Search values at which every parameter is as in the model file.
+[[nodiscard]] Eigen::VectorXd start_of(const plant_sim::ModelFile& model,
+                                       const std::vector<SearchParameter>& searched);
+
+/// An effect's parameters up to the given refinement, from absence to their largest.
+[[nodiscard]] std::vector<SearchParameter> effect_parameters(const plant_sim::EffectInfo& effect,
+                                                             int refinement);
+
+}  // namespace estimator::greybox

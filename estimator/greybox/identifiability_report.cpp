@@ -1,0 +1,216 @@
+#include "estimator/greybox/identifiability_report.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+#include "estimator/nonlinear/difference.h"
+#include "estimator/nonlinear/identifiability.h"
+#include "estimator/nonlinear/linear_model.h"
+
+namespace estimator::greybox {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// A prior holds a parameter that the record leaves with more than this part of its spread.
+constexpr double kHeld = 0.7;
+constexpr double kWeak = 1e-2;
+constexpr double kRidge = 1e-9;
+constexpr std::size_t kMostPartners = 4;
+
+std::string power_of(const std::string& name, double exponent) {
+  if (std::abs(exponent - 1.0) < 0.1) return name;
+  if (std::abs(exponent - 0.5) < 0.05) return "sqrt(" + name + ")";
+  char text[32];
+  std::snprintf(text, sizeof text, "^%.2g", exponent);
+  return name + text;
+}
+
+/// What stays the same when b follows a with d ln b / d ln a = slope.
+std::string product(const std::string& b, const std::string& a, double slope) {
+  return slope < 0.0 ? b + " * " + power_of(a, -slope) : b + " / " + power_of(a, slope);
+}
+
+class Looker {
+ public:
+  Looker(const estimator::nonlinear::Problem& problem, const MatrixXd& jacobian,
+         const std::vector<SearchParameter>& searched, const VectorXd& x)
+      : searched_(searched), scale_(x.size()), prior_(x.size()) {
+    for (Index j = 0; j < x.size(); ++j) {
+      const auto& p = searched[static_cast<std::size_t>(j)];
+      const bool prior = std::isfinite(p.prior_sd);
+      scale_[j] = prior                           ? p.prior_sd
+                  : p.scale == Scale::logarithmic ? 1.0
+                                                  : std::max(std::abs(x[j]), 0.1);
+      prior_[j] = prior ? 1.0 : 0.0;
+    }
+    const VectorXd nothing = VectorXd::Zero(problem.residuals);
+    const MatrixXd K =
+        estimator::nonlinear::compress_data(problem, nothing, jacobian).R * scale_.asDiagonal();
+    record_ = K.transpose() * K;
+    condition_ = estimator::nonlinear::identifiability(problem, jacobian, scale_).condition;
+  }
+
+  Sight look() {
+    const Index n = scale_.size();
+    Sight out;
+    out.condition = condition_;
+    out.share.resize(n);
+    VectorXd spread(n);
+    for (Index j = 0; j < n; ++j) spread[j] = std::sqrt(inverse(prior_).coeff(j, j));
+    for (Index j = 0; j < n; ++j) {
+      out.share[j] = prior_[j] > 0.0 ? 1.0 - std::min(1.0, spread[j] * spread[j])
+                                     : (spread[j] < 1e3 ? 1.0 : 0.0);
+    }
+    std::vector<Index> order(static_cast<std::size_t>(n));
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](Index a, Index b) { return spread[a] > spread[b]; });
+    for (const Index j : order) {
+      const double limit = prior_[j] > 0.0 ? kHeld : 1.0;
+      if (spread[j] < limit || is_partner(out, j)) continue;
+      out.unseen.push_back(unseen(j));
+    }
+    return out;
+  }
+
+ private:
+  MatrixXd inverse(const VectorXd& priors) const {
+    MatrixXd H = record_;
+    H.diagonal() += priors;
+    // Relative to each parameter's own weight, so that an invisible one stays invisible.
+    const VectorXd unit = (record_.diagonal().array() + priors.array() + 1e-12).rsqrt();
+    H = (unit.asDiagonal() * H * unit.asDiagonal()).eval();
+    H.diagonal().array() += kRidge;
+    const MatrixXd inverse = H.ldlt().solve(MatrixXd::Identity(H.rows(), H.cols()));
+    return unit.asDiagonal() * inverse * unit.asDiagonal();
+  }
+
+  /// Without priors a combination leaves several unseen; it is said once.
+  bool is_partner(const Sight& out, Index j) const {
+    if (prior_[j] > 0.0) return false;
+    return std::any_of(out.unseen.begin(), out.unseen.end(), [&](const Unseen& u) {
+      return std::find(u.partners.begin(), u.partners.end(), name(j)) != u.partners.end();
+    });
+  }
+
+  const std::string& name(Index j) const { return searched_[static_cast<std::size_t>(j)].name; }
+
+  bool both_logarithmic(Index a, Index b) const {
+    return searched_[static_cast<std::size_t>(a)].scale == Scale::logarithmic &&
+           searched_[static_cast<std::size_t>(b)].scale == Scale::logarithmic;
+  }
+
+  /// How far j can move unnoticed when only k follows.
+  double hidden_by(Index j, Index k) const {
+    const double rest = record_(j, j) - record_(j, k) * record_(j, k) / record_(k, k);
+    return 1.0 / std::sqrt(std::max(rest, 1e-18));
+  }
+
+  Unseen unseen(Index j) const {
+    Unseen out;
+    out.name = name(j);
+    out.has_prior = prior_[j] > 0.0;
+    const std::string fate = out.has_prior ? "its prior holds " + out.name
+                                           : out.name + " has no prior and stays arbitrary";
+    if (!(record_(j, j) * kHeld * kHeld > 1.0)) {
+      out.words = "the record hardly depends on " + out.name + ": " + fate;
+      return out;
+    }
+    Index best = -1;
+    for (Index k = 0; k < scale_.size(); ++k) {
+      if (k == j || !(record_(k, k) > 0.0)) continue;
+      if (best < 0 || hidden_by(j, k) > hidden_by(j, best)) best = k;
+    }
+    if (best >= 0 && hidden_by(j, best) > kHeld) {
+      const double slope = -record_(j, best) / record_(best, best) * scale_[best] / scale_[j];
+      out.partners = {name(best)};
+      if (both_logarithmic(j, best)) out.visible = product(name(best), out.name, slope);
+      out.words = (out.visible.empty() ? out.name + " and " + name(best) + " cannot be told apart"
+                                       : "only " + out.visible + " is visible") +
+                  ": " + fate;
+      return out;
+    }
+    followers(j, out);
+    out.words = (out.visible.empty() ? out.name + " can be traded against " + list(out.partners)
+                 : out.partners.size() == 1 ? "only " + out.visible + " is visible"
+                                            : "only " + out.visible + " are visible") +
+                ": " + fate;
+    return out;
+  }
+
+  void followers(Index j, Unseen& out) const {
+    // Weak, so that the exponents are those of the equations; not none, for the sake of those that
+    // nothing else would hold.
+    VectorXd others = kWeak * prior_;
+    others[j] = 0.0;
+    const VectorXd column = inverse(others).col(j);
+    std::vector<std::pair<double, Index>> moved;
+    for (Index k = 0; k < column.size(); ++k) {
+      if (k == j) continue;
+      // In what the record would notice of k alone.
+      const double noticed = std::abs(column[k] / column[j]) * std::sqrt(record_(k, k));
+      if (noticed > 1.0) moved.push_back({noticed, k});
+    }
+    std::sort(moved.begin(), moved.end(), std::greater<>());
+    bool products = !moved.empty() && moved.size() <= kMostPartners;
+    for (const auto& [noticed, k] : moved) {
+      if (out.partners.size() == kMostPartners) break;
+      out.partners.push_back(name(k));
+      products = products && both_logarithmic(j, k);
+    }
+    if (!products) return;
+    std::vector<std::string> kept;
+    kept.reserve(moved.size());
+    for (const auto& [noticed, k] : moved) {
+      kept.push_back(product(name(k), name(j), column[k] / column[j] * scale_[k] / scale_[j]));
+    }
+    out.visible = list(kept);
+  }
+
+  static std::string list(const std::vector<std::string>& names) {
+    if (names.empty()) return "the others together";
+    std::string text = names.front();
+    for (std::size_t i = 1; i < names.size(); ++i) {
+      text += (i + 1 == names.size() ? " and " : ", ") + names[i];
+    }
+    return text;
+  }
+
+  const std::vector<SearchParameter>& searched_;
+  VectorXd scale_;
+  VectorXd prior_;  ///< precision in those scales: 1, or 0 for none
+  MatrixXd record_;
+  double condition_ = 0.0;
+};
+
+}  // namespace
+
+Sight sight(const estimator::nonlinear::Problem& problem, const MatrixXd& jacobian,
+            const std::vector<SearchParameter>& searched, const VectorXd& x) {
+  return Looker(problem, jacobian, searched, x).look();
+}
+
+void derivatives(const estimator::nonlinear::Problem& problem, const VectorXd& x,
+                 VectorXd& residual, MatrixXd& jacobian) {
+  using estimator::nonlinear::Probe;
+  std::vector<Index> columns(static_cast<std::size_t>(x.size()));
+  std::iota(columns.begin(), columns.end(), 0);
+  const std::vector<Probe> probes = probes_at(problem, x, columns, false);
+  MatrixXd points(x.size(), static_cast<Index>(probes.size()) + 1);
+  points.col(0) = x;
+  points.rightCols(static_cast<Index>(probes.size())) = points_at(x, probes, 0, probes.size());
+  estimator::nonlinear::Groups groups(problem);
+  const MatrixXd results = groups.run(points);
+  residual = results.col(0);
+  jacobian.setZero(problem.residuals, x.size());
+  fill_columns(problem, x, residual, probes, results.rightCols(static_cast<Index>(probes.size())),
+               groups, jacobian);
+}
+
+}  // namespace estimator::greybox

@@ -1,0 +1,28 @@
+// Which parameters the standard error alone does not describe well, and their profiles.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "estimator/greybox/estimation.h"
+
+namespace estimator::greybox {
+
+/// One text for each parameter, empty where there is no doubt: at a bound, a large standard error
+/// that no prior explains, or a cost that is no parabola where the interval ends.
+[[nodiscard]] std::vector<std::string> doubts(const estimator::nonlinear::Problem& problem,
+                                              const estimator::nonlinear::Solution& solution,
+                                              const estimator::nonlinear::Covariance& known,
+                                              const std::vector<SearchParameter>& searched,
+                                              const Eigen::VectorXd& record_share);
+
+/// Of the parameters whose `chosen` is not 0, on the task's threads; others stay empty.
+[[nodiscard]] std::vector<estimator::nonlinear::Profile> profiles(
+    const Task& task, const estimator::nonlinear::Problem& problem,
+    const estimator::nonlinear::Solution& solution, const estimator::nonlinear::Covariance& known,
+    const std::vector<char>& chosen);
+
+/// What a profile says of a parameter, in the parameter's own unit.
+void keep_profile(const estimator::nonlinear::Profile& walked, Parameter& q);
+
+}  // namespace estimator::greybox

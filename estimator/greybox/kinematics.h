@@ -1,0 +1,42 @@
+// What the measured rod does at each sample: speed and acceleration from the position alone, and
+// which way it goes. By these the errors of a model are sorted.
+//
+//   y(t + s) ~ c0 + c1 s + c2 s^2  by least squares over |s| <= 50 ms   (Savitzky, Golay 1964)
+//   v = c1,  a = 2 c2
+//
+// At least two samples to either side are used (at 50 Hz, 40 ms); at a segment's ends the window is
+// cut and the parabola read off its middle. No sample of another segment is looked at.
+#pragma once
+
+#include <vector>
+
+#include "estimator/greybox/dataset.h"
+
+namespace estimator::greybox {
+
+enum class Direction { extending, retracting, resting, reversing };
+
+[[nodiscard]] const char* text(Direction direction) noexcept;
+
+struct Motion {
+  std::vector<double> speed_mps;  ///< signed, positive extends
+  std::vector<double> acceleration_mps2;
+  std::vector<Direction> direction;
+  double rest_mps = 0.0;  ///< slower than this is at rest
+};
+
+inline constexpr double kHalfWindow_s = 0.05;
+
+/// A rod slower than four standard deviations of the speed's noise, and slower than 1 % of its RMS
+/// speed, counts as at rest; noise_m is the position's. "Reversing" is from 50 ms before the rod
+/// leaves one direction until 50 ms after it goes the other way, where that takes at most 0.5 s.
+[[nodiscard]] Motion motion(const Measured& record, double noise_m);
+
+/// First and one past the last sample of each segment.
+struct Span {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+[[nodiscard]] std::vector<Span> segments(const Measured& record);
+
+}  // namespace estimator::greybox

@@ -1,0 +1,18 @@
+// Where searches begin: the model file's values first, then values drawn about them, the same each
+// time.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "estimator/greybox/free_parameter.h"
+
+namespace estimator::greybox {
+
+/// `count` points. Those after the first are drawn from the priors; without a prior a logarithm by
+/// 0.5 about the start, a size of an effect within a factor of about three of it (of its typical
+/// size where the effect starts from nothing).
+[[nodiscard]] std::vector<Eigen::VectorXd> starting_points(
+    const std::vector<SearchParameter>& searched, const Eigen::VectorXd& start, int count);
+
+}  // namespace estimator::greybox

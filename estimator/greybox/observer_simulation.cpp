@@ -1,0 +1,108 @@
+#include "estimator/greybox/observer_simulation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "config/schema/error.h"
+
+namespace estimator::greybox {
+
+double step_for(const plant_sim::ModelFile& model, double sample_time_s) {
+  return sample_time_s / std::max(1.0, std::ceil(sample_time_s / model.step_s - 1e-6));
+}
+
+ModelRun::ModelRun(const plant_sim::ModelFile& model, const Measured& record,
+                   std::vector<SearchParameter> searched, double observer_per_s)
+    : record_(&record),
+      searched_(std::move(searched)),
+      observer_per_s_(observer_per_s),
+      ensemble_(plant_sim::make_ensemble(model, step_for(model, record.sample_time_s))),
+      speed_mps_(record.size(), 0.0) {
+  for (const SearchParameter& parameter : searched_) {
+    const auto index = ensemble_->find(parameter.name);
+    if (!index) {
+      throw config::schema::bad_config(model.name, "has no parameter " + parameter.name);
+    }
+    index_.push_back(*index);
+  }
+}
+
+void ModelRun::residuals(const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals_m) {
+  run(points, {}, {}, residuals_m, nullptr);
+}
+
+void ModelRun::residuals(const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals_m,
+                         Chambers& chambers) {
+  const auto samples = static_cast<Eigen::Index>(record_->size());
+  chambers.in_Pa.resize(samples, kLanes);
+  chambers.out_Pa.resize(samples, kLanes);
+  run(points, {}, {}, residuals_m, &chambers);
+}
+
+void ModelRun::residuals(const Eigen::MatrixXd& points, const Eigen::MatrixXd& added_V,
+                         const Eigen::MatrixXd& added_N, Eigen::MatrixXd& residuals_m) {
+  run(points, added_V, added_N, residuals_m, nullptr);
+}
+
+void ModelRun::run(const Eigen::MatrixXd& points, const Eigen::MatrixXd& added_V,
+                   const Eigen::MatrixXd& added_N, Eigen::MatrixXd& residuals_m,
+                   Chambers* chambers) {
+  using plant_sim::Ensemble;
+  const Measured& record = *record_;
+  const Eigen::Index lanes = points.cols();
+  const auto samples = static_cast<Eigen::Index>(record.size());
+  residuals_m.resize(samples, lanes);
+  for (std::size_t p = 0; p < searched_.size(); ++p) {
+    for (Eigen::Index lane = 0; lane < kLanes; ++lane) {
+      const double s = points(static_cast<Eigen::Index>(p), std::min(lane, lanes - 1));
+      ensemble_->set(index_[p], static_cast<std::size_t>(lane), searched_[p].value(s));
+    }
+  }
+  const auto found = ensemble_->find("load_force.force_N");
+  const bool loads = added_N.size() > 0 && found.has_value();
+  const std::size_t load = found.value_or(0);
+  const double load_N = loads ? ensemble_->get(load, 0) : 0.0;
+  std::size_t segment = 0;
+  for (Eigen::Index k = 0; k < samples; ++k) {
+    const auto row = static_cast<std::size_t>(k);
+    if (segment < record.starts.size() && record.starts[segment] == row) {
+      ensemble_->start(record.y_m[row]);
+      ++segment;
+    }
+    const Ensemble::Values reading_m = ensemble_->reading_m();
+    const double share = record.share(row, observer_per_s_);
+    Ensemble::Values by_m{};
+    for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) {
+      by_m[lane] = share * (record.y_m[row] - reading_m[lane]);
+    }
+    const double counts = record.settled[row] != 0 ? 1.0 : 0.0;
+    for (Eigen::Index lane = 0; lane < lanes; ++lane) {
+      residuals_m(k, lane) = counts * (record.y_m[row] - reading_m[static_cast<std::size_t>(lane)]);
+    }
+    speed_mps_[row] = ensemble_->speed_mps()[0];
+    if (chambers != nullptr) {
+      const plant_sim::PressuresOf<Ensemble::Values> model = ensemble_->pressures();
+      for (Eigen::Index lane = 0; lane < kLanes; ++lane) {
+        chambers->in_Pa(k, lane) = model.in_Pa[static_cast<std::size_t>(lane)];
+        chambers->out_Pa(k, lane) = model.out_Pa[static_cast<std::size_t>(lane)];
+      }
+    }
+    if (share > 0.0) ensemble_->shift(by_m);
+    Ensemble::Values u_V;
+    u_V.fill(record.u_V[row]);
+    for (Eigen::Index lane = 0; lane < added_V.cols(); ++lane) {
+      u_V[static_cast<std::size_t>(lane)] += added_V(k, lane);
+    }
+    if (loads) {
+      for (Eigen::Index lane = 0; lane < added_N.cols(); ++lane) {
+        ensemble_->set(load, static_cast<std::size_t>(lane), load_N + added_N(k, lane));
+      }
+    }
+    ensemble_->advance(u_V, record.sample_time_s);
+  }
+  for (std::size_t lane = 0; loads && lane < Ensemble::kLanes; ++lane) {
+    ensemble_->set(load, lane, load_N);
+  }
+}
+
+}  // namespace estimator::greybox

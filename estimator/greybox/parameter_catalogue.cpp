@@ -1,0 +1,104 @@
+#include "estimator/greybox/parameter_catalogue.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "config/schema/document.h"
+#include "config/schema/error.h"
+
+namespace estimator::greybox {
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+void open_up(Known& known) {
+  SearchParameter& p = known.search;
+  p.prior_mean = 0.0;
+  p.prior_sd = kInfinite;
+  if (p.scale == Scale::logarithmic) {
+    p.lower = known.info.min > 0.0 ? std::log(known.info.min / p.unit) : -20.0;
+    p.upper = std::log(known.info.max / p.unit);
+  }
+}
+
+std::vector<Known> known_parameters(const plant_sim::ModelFile& model) {
+  std::vector<Known> found;
+  const plant_sim::PlantInfo& plant = *plant_sim::find_plant(model.plant);
+  const std::vector<SearchParameter> uncertain = plant_parameters(model);
+  for (std::size_t i = 0; i < plant.parameters.size(); ++i) {
+    Known known{plant.parameters[i].name, "", plant.parameters[i], {}};
+    const auto same = [&](const SearchParameter& p) { return p.name == known.name; };
+    const auto given = std::find_if(uncertain.begin(), uncertain.end(), same);
+    if (given != uncertain.end()) {
+      known.search = *given;
+    } else {
+      SearchParameter& p = known.search;
+      const double value = model.parameters[i].value;
+      p.name = known.name;
+      p.scale = value > 0.0 ? Scale::logarithmic : Scale::linear;
+      p.unit = value > 0.0 ? value : (known.info.typical > 0.0 ? known.info.typical : 1.0);
+      p.lower = known.info.min / p.unit;
+      p.upper = known.info.max / p.unit;
+      open_up(known);
+    }
+    found.push_back(known);
+  }
+  for (const plant_sim::EffectInfo& effect : plant_sim::effects_of(model)) {
+    const auto fits = [&](const std::string& site) {
+      return std::find(plant.sites.begin(), plant.sites.end(), site) != plant.sites.end();
+    };
+    if (!std::all_of(effect.sites.begin(), effect.sites.end(), fits)) continue;
+    const auto all = effect_parameters(effect, kEveryRefinement);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      found.push_back({all[i].name, effect.name, effect.parameters[i], all[i]});
+    }
+  }
+  return found;
+}
+
+std::vector<std::string> names_worth_showing(const plant_sim::ModelFile& model,
+                                             const std::vector<Known>& known) {
+  std::vector<std::string> names;
+  for (const Known& k : known) {
+    const auto present = [&](const auto& e) { return e.present && e.name == k.effect; };
+    if (k.effect.empty() || std::any_of(model.effects.begin(), model.effects.end(), present)) {
+      names.push_back(k.name);
+    }
+  }
+  return names;
+}
+
+void refuse_name(const std::string& option, const std::string& typed,
+                 const std::vector<std::string>& near,
+                 const std::vector<std::string>& shown_names) {
+  const std::string best = config::schema::nearest(typed, near);
+  throw config::schema::bad_config(
+      option + " " + typed,
+      "is no parameter of this model" +
+          (best.empty() ? std::string() : ", did you mean " + best + "?"),
+      joined_names(shown_names) + "; or an effect's, see `spoolwatch effects`");
+}
+
+std::vector<std::string> split_names(const std::vector<std::string>& lists) {
+  std::vector<std::string> words;
+  for (const std::string& list : lists) {
+    std::size_t from = 0;
+    while (from <= list.size()) {
+      const std::size_t to = std::min(list.find(',', from), list.size());
+      if (to > from) words.push_back(list.substr(from, to - from));
+      from = to + 1;
+    }
+  }
+  return words;
+}
+
+std::string joined_names(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+}  // namespace estimator::greybox

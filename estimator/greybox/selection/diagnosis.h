@@ -1,0 +1,64 @@
+// What a diagnosis says in the end, and what it rests on.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "estimator/greybox/selection/structure_search.h"
+
+namespace estimator::greybox::selection {
+
+enum class Verdict { nothing_missing, missing, undetermined, unexplained, not_excited };
+/// "nothing_missing", ...
+[[nodiscard]] const char* text(Verdict verdict);
+
+struct ParameterValue {
+  std::string name;
+  double value = 0.0;      ///< SI, the unit in the name
+  double std_error = 0.0;  ///< NaN where the record does not say (at a bound)
+  bool at_bound = false;
+};
+
+/// Where a residual enters the equations, and which variable it goes with.
+struct Where {
+  std::string enters;            ///< "flow", "force", "gain", "measurement"
+  std::string variable;          ///< "y", "v", "u", "speed", "acceleration", "time", "direction"
+  double explained_ratio = 0.0;  ///< of the held-out squared error
+};
+
+struct Step {
+  std::string added;  ///< empty: the model as given, its parameters fitted
+  double score_rms_m = 0.0;
+};
+
+struct Diagnosis {
+  Verdict verdict = Verdict::nothing_missing;
+  std::vector<std::string> missing;                 ///< in the order added
+  std::vector<std::vector<std::string>> ambiguous;  ///< groups of two or three names
+  std::vector<std::vector<std::string>>
+      same_here;  ///< one equation on this plant, whatever the motion
+  double noise_floor_m = 0.0;
+  double nominal_rms_m = 0.0;              ///< held-out, the model file as it is
+  double rms_before_m = 0.0;               ///< held-out, its parameters fitted
+  double rms_after_m = 0.0;                ///< held-out, with what is missing
+  std::vector<ParameterValue> parameters;  ///< of the better model, fitted to all samples
+  std::vector<Where> where;                ///< best first; empty when nothing is left to explain
+  std::vector<Step> steps;
+  std::vector<std::string> notes;  ///< restrictions: gaps, interrupted, ...
+  Ladder ladder;
+  Fitted final;                 ///< the better model on all samples
+  plant_sim::ModelFile better;  ///< the model file with it
+  double runtime_s = 0.0;
+};
+
+/// Whether some motion would tell explanations apart that describe the record about as well;
+/// `names` has one name for each. Groups for which it says yes make a verdict undetermined.
+using Separable = std::function<bool(
+    const Workshop&, const std::vector<Fitted>& explanations, const std::vector<std::string>& names)>;
+
+/// The whole diagnosis. Ends early, with the best so far and a note, when the workshop's cancel
+/// says so.
+[[nodiscard]] Diagnosis diagnose(const Workshop& shop, const Separable& separable);
+
+}  // namespace estimator::greybox::selection

@@ -1,0 +1,94 @@
+#include "estimator/greybox/selection/discrimination.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace estimator::greybox::selection {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kDifference = 1e-3;  ///< of the difference quotients, in search units
+constexpr double kPart = 0.05;
+constexpr int kReweightings = 3;
+constexpr int kIterations = 15;
+constexpr double kTolerance = 1e-3;
+
+/// Residual and its derivatives at the rival's values.
+MatrixXd with_derivatives(const Workshop& shop, const Evidence& evidence, const Fitted& rival) {
+  EvidenceRun run(shop.model, evidence, rival.searched);
+  const Index count = rival.x.size();
+  MatrixXd points = rival.x.replicate(1, count + 1);
+  for (Index i = 0; i < count; ++i) {
+    const auto& parameter = rival.searched[static_cast<std::size_t>(i)];
+    const bool up = rival.x[i] + kDifference <= parameter.upper;
+    points(i, i + 1) += up ? kDifference : -kDifference;
+  }
+  MatrixXd residuals_m(evidence.size(), count + 1);
+  MatrixXd some_m;
+  for (Index from = 0; from <= count; from += ModelRun::kLanes) {
+    const Index lanes = std::min<Index>(ModelRun::kLanes, count + 1 - from);
+    run.residuals(points.middleCols(from, lanes), some_m);
+    residuals_m.middleCols(from, lanes) = some_m;
+  }
+  for (Index i = 0; i < count; ++i) {
+    residuals_m.col(i + 1) =
+        (residuals_m.col(i + 1) - residuals_m.col(0)) / (points(i, i + 1) - rival.x[i]);
+  }
+  return residuals_m;
+}
+
+/// What a difference has to stand out from: noise, or a small part of what the rival leaves
+/// unexplained anyway.
+double unseen_m(const Evidence& evidence, const Fitted& rival) {
+  return std::max(evidence.noise_floor_m, kPart * rival.score_rms_m);
+}
+
+}  // namespace
+
+double expected_separation(const Workshop& shop, const Evidence& evidence, const Fitted& rival) {
+  const MatrixXd columns = with_derivatives(shop, evidence, rival);
+  if (!columns.allFinite()) return std::numeric_limits<double>::infinity();
+  const Index count = rival.x.size();
+  const MatrixXd weighted = evidence.counts.asDiagonal() * columns;
+  const MatrixXd products = weighted.transpose() * weighted;
+  const VectorXd counted = evidence.counts;
+  const double samples = counted.sum();
+  VectorXd left_m = columns.col(0);
+  for (int pass = 0; pass < kReweightings; ++pass) {
+    const double sigma_m = std::max(evidence.noise_floor_m, rms(left_m, counted)) *
+                           std::sqrt(correlation_factor(left_m, counted));
+    const double per_square = 1.0 / (sigma_m * sigma_m);
+    MatrixXd normal = per_square * products.bottomRightCorner(count, count);
+    VectorXd slope = per_square * products.col(0).tail(count);
+    for (Index i = 0; i < count; ++i) {
+      const auto& parameter = rival.searched[static_cast<std::size_t>(i)];
+      const double sd = parameter.prior_sd;
+      if (std::isfinite(sd)) {
+        normal(i, i) += 1.0 / (sd * sd);
+        slope[i] += (rival.x[i] - parameter.prior_mean) / (sd * sd);
+      } else {
+        normal(i, i) += 1e-9 * normal(i, i) + 1e-12;
+      }
+    }
+    left_m = columns.col(0) - columns.rightCols(count) * normal.ldlt().solve(slope);
+  }
+  return std::sqrt(left_m.cwiseProduct(counted).squaredNorm() / samples) /
+         unseen_m(evidence, rival);
+}
+
+double fitted_separation(const Workshop& shop, const Evidence& evidence, const Fitted& rival) {
+  FitOptions options;
+  options.max_iterations = kIterations;
+  options.tolerance = kTolerance;
+  options.final_jacobian = false;
+  options.cancel = shop.cancel;
+  const Fitted fitted = fit(shop.model, evidence, evidence.fits, rival.searched, rival.x, options);
+  return fitted.score_rms_m / unseen_m(evidence, rival);
+}
+
+}  // namespace estimator::greybox::selection

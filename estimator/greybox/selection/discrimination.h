@@ -1,0 +1,20 @@
+// How far one explanation stays from the motion that another one gives, when its parameters may
+// adjust: over the noise floor, or over a small part of what that one leaves unexplained where this
+// is more, so that 1 is nothing to go by.
+#pragma once
+
+#include "estimator/greybox/fit.h"
+#include "estimator/greybox/selection/problem.h"
+
+namespace estimator::greybox::selection {
+
+/// Error that `rival` leaves on the evidence, its parameters adjusted linearly against their
+/// priors. About 20 ms for 30 s.
+[[nodiscard]] double expected_separation(const Workshop& shop, const Evidence& evidence,
+                                         const Fitted& rival);
+
+/// The same with the rival fitted for good, held out.
+[[nodiscard]] double fitted_separation(const Workshop& shop, const Evidence& evidence,
+                                       const Fitted& rival);
+
+}  // namespace estimator::greybox::selection

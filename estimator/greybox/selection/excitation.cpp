@@ -1,0 +1,47 @@
+#include "estimator/greybox/selection/excitation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace estimator::greybox::selection {
+namespace {
+
+/// Travel over the noise's standard deviation below which a motion is lost in it.
+constexpr double kLeastTravel = 50.0;
+/// Share of samples at the largest or smallest command from which the command is a constant.
+constexpr double kStuck = 0.98;
+
+std::string millimetres(double m) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g mm", 1e3 * m);
+  return text;
+}
+
+}  // namespace
+
+Excitation excitation_of(const Evidence& evidence) {
+  double travel_m = 0.0;
+  double free_samples = 0.0;
+  double samples = 0.0;
+  for (const Measured& record : evidence.records) {
+    const auto [low_m, high_m] = std::minmax_element(record.y_m.begin(), record.y_m.end());
+    travel_m = std::max(travel_m, *high_m - *low_m);
+    const auto [low_V, high_V] = std::minmax_element(record.u_V.begin(), record.u_V.end());
+    const double most_V = std::max(std::abs(*low_V), std::abs(*high_V));
+    for (const double u_V : record.u_V) {
+      samples += 1.0;
+      free_samples += std::abs(u_V) < most_V * (1.0 - 1e-6) ? 1.0 : 0.0;
+    }
+  }
+  if (!(travel_m >= kLeastTravel * evidence.noise_floor_m)) {
+    return {false, "the rod moves by " + millimetres(travel_m) + " in all, " +
+                       millimetres(evidence.noise_floor_m) + " of it noise"};
+  }
+  if (free_samples < (1.0 - kStuck) * samples) {
+    return {false, "the command stays at its limit throughout"};
+  }
+  return {};
+}
+
+}  // namespace estimator::greybox::selection

@@ -1,0 +1,117 @@
+#include "estimator/greybox/selection/indistinguishable_models.h"
+
+#include <algorithm>
+
+#include "estimator/greybox/selection/parameter_subset.h"
+#include "estimator/greybox/selection/search_round.h"
+#include "estimator/parallel.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+using Eigen::VectorXd;
+
+/// A group names at most that many effects.
+constexpr std::size_t kLargestGroup = 3;
+/// Candidates of a round up to this much worse than the chosen one may become rivals when all
+/// other effects are in place.
+constexpr double kWorthARefit = 2.0;
+constexpr std::size_t kMostRefits = 4;
+/// A rival brings at least this share of what the found effect brings.
+constexpr double kShareOfGain = 0.5;
+/// Probability of chance below which the held-out data do tell the found effect from a rival.
+constexpr double kTold = 1e-3;
+/// Two fits whose residuals differ by less than this share of the error are the same motion.
+constexpr double kSameMotion = 0.3;
+
+const Round* round_of(const std::vector<Round>& rounds, const std::string& effect) {
+  for (const Round& round : rounds) {
+    const auto& before = round.before.added;
+    if (std::find(before.begin(), before.end(), effect) != before.end()) continue;
+    for (const Candidate& candidate : round.candidates) {
+      if (candidate.effects.size() == 1 && candidate.effects.front() == effect &&
+          candidate.fitted_at_all) {
+        return &round;
+      }
+    }
+  }
+  return nullptr;
+}
+
+/// The final model with `candidate` instead of `effect`.
+Fitted replaced(const Workshop& shop, const Stage& final, const std::string& effect,
+                const Candidate& candidate) {
+  Selection selection = select(final.fitted, [&](const auto& p) { return !belongs(p, effect); });
+  const Selection own = select(
+      candidate.fitted, [&](const auto& p) { return belongs(p, candidate.effects.front()); });
+  append(selection, own);
+  return refit_if_hopeful(shop, selection, final.fitted.score_rms_m);
+}
+
+bool contains(const Workshop& shop, const Fitted& larger, const Fitted& smaller) {
+  if (larger.searched.size() <= smaller.searched.size()) return false;
+  const double apart_m = rms(larger.residual_m - smaller.residual_m, shop.evidence.counts);
+  return apart_m < kSameMotion * smaller.score_rms_m;
+}
+
+bool explains_alike(const Workshop& shop, const Fitted& found, const Fitted& other) {
+  return other.score_rms_m <= (1.0 + kRivals) * found.score_rms_m &&
+         chance(shop, other, found) > kTold && !contains(shop, other, found);
+}
+
+bool brings_enough(double without_m, const Fitted& found, const Fitted& other) {
+  const double gain = 1.0 - found.score_rms_m / without_m;
+  const double other_gain = 1.0 - other.score_rms_m / without_m;
+  return other_gain >= kShareOfGain * gain;
+}
+
+}  // namespace
+
+std::vector<Rivalry> rivalries(const Workshop& shop, const std::vector<Round>& rounds,
+                               const Stage& final) {
+  std::vector<Rivalry> result;
+  for (const std::string& effect : final.added) {
+    const Round* round = round_of(rounds, effect);
+    if (round == nullptr || shop.cancelled()) continue;
+    double chosen_m = 0.0;
+    for (const Candidate& candidate : round->candidates) {
+      if (candidate.effects == std::vector<std::string>{effect}) chosen_m = candidate.score_rms_m;
+    }
+    std::vector<const Candidate*> others;
+    for (const Candidate& candidate : round->candidates) {
+      const bool taken = std::find(final.added.begin(), final.added.end(),
+                                   candidate.effects.front()) != final.added.end();
+      if (candidate.effects.size() > 1 || taken || !candidate.fitted_at_all ||
+          candidate.score_rms_m > kWorthARefit * chosen_m || others.size() >= kMostRefits) {
+        continue;
+      }
+      others.push_back(&candidate);
+    }
+    std::vector<Fitted> fits(others.size());
+    in_parallel(others.size(), shop.threads,
+                [&](std::size_t i) { fits[i] = replaced(shop, final, effect, *others[i]); });
+    if (std::none_of(fits.begin(), fits.end(),
+                     [&](const Fitted& fit) { return explains_alike(shop, final.fitted, fit); })) {
+      continue;
+    }
+    const double without_m =
+        final.added.size() == 1
+            ? round->before.fitted.score_rms_m
+            : refit(shop, select(final.fitted, [&](const auto& p) { return !belongs(p, effect); }),
+                    shop.evidence.fits)
+                  .score_rms_m;
+    Rivalry rivalry{effect, {}, {final.fitted}};
+    for (std::size_t i = 0; i < fits.size() && rivalry.others.size() + 1 < kLargestGroup; ++i) {
+      if (!explains_alike(shop, final.fitted, fits[i]) ||
+          !brings_enough(without_m, final.fitted, fits[i])) {
+        continue;
+      }
+      rivalry.others.push_back(others[i]->effects.front());
+      rivalry.explanations.push_back(std::move(fits[i]));
+    }
+    if (!rivalry.others.empty()) result.push_back(std::move(rivalry));
+  }
+  return result;
+}
+
+}  // namespace estimator::greybox::selection

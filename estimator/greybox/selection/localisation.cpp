@@ -1,0 +1,221 @@
+#include "estimator/greybox/selection/localisation.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "estimator/greybox/selection/residual_variables.h"
+#include "estimator/parallel.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Disturbances of this size, in RMS, keep to the linear part of the response.
+constexpr double kSmall_ratio = 0.02;
+constexpr double kSmall_N = 10.0;
+/// How far a piece may go, in multiples of the residual: keeps pieces without samples at rest.
+constexpr double kFreedom = 30.0;
+/// Rise of the remaining error by which a piece more has to pay for itself.
+constexpr double kPerPiece = 0.002;
+
+enum class Form { flow, gain, force, drag, reading, scale };
+
+const char* class_of(Form form) {
+  switch (form) {
+    case Form::flow:
+      return "flow";
+    case Form::gain:
+      return "gain";
+    case Form::force:
+    case Form::drag:
+      return "force";
+    case Form::reading:
+    case Form::scale:
+      break;
+  }
+  return "measurement";
+}
+
+double rms_of(const VectorXd& values) {
+  return std::sqrt(values.squaredNorm() / static_cast<double>(std::max<Index>(1, values.size())));
+}
+
+struct Place {
+  const Workshop& shop;
+  const Stage& stage;
+  const Variables& variables;
+};
+
+/// The disturbance itself, in units of its form, one column for each piece.
+MatrixXd disturbance(const Place& at, Form form, const Variable& variable) {
+  switch (form) {
+    case Form::gain:
+      return at.variables.command_V.asDiagonal() * variable.pieces;
+    case Form::drag:
+      return at.variables.speed_mps.asDiagonal() * variable.pieces;
+    case Form::scale:
+      return at.variables.position_m.asDiagonal() * variable.pieces;
+    case Form::flow:
+    case Form::force:
+    case Form::reading:
+      break;
+  }
+  return variable.signed_pieces.cols() > 0 ? variable.signed_pieces : variable.pieces;
+}
+
+/// What the observer makes of something added to the reading: no model is needed.
+MatrixXd seen_by_observer(const Workshop& shop, MatrixXd added) {
+  for (Index column = 0; column < added.cols(); ++column) {
+    Index at = 0;
+    for (const Measured& record : shop.evidence.records) {
+      std::size_t segment = 0;
+      double shifted_m = 0.0;
+      for (std::size_t k = 0; k < record.size(); ++k, ++at) {
+        double& seen = added(at, column);
+        if (segment < record.starts.size() && record.starts[segment] == k) {
+          shifted_m = -seen;  // the model starts where its reading is the measured one
+          ++segment;
+        }
+        seen += shifted_m;
+        shifted_m -= record.share(k, kObserver_per_s) * seen;
+        seen *= record.settled[k] != 0 ? -1.0 : 0.0;
+      }
+    }
+  }
+  return added;
+}
+
+/// d residual / d disturbance.
+MatrixXd signatures(const Place& at, Form form, const Variable& variable) {
+  MatrixXd added = disturbance(at, form, variable);
+  if (form == Form::reading || form == Form::scale) {
+    return seen_by_observer(at.shop, std::move(added));
+  }
+  const bool force = form == Form::force || form == Form::drag;
+  const double whole = rms_of(added.rowwise().sum());
+  if (!(whole > 0.0)) return MatrixXd::Zero(added.rows(), added.cols());
+  const double size = force ? kSmall_N : kSmall_ratio * rms_of(at.variables.command_V);
+  added *= size / whole;
+  EvidenceRun run(at.shop.model, at.shop.evidence, at.stage.fitted.searched);
+  const MatrixXd points = at.stage.fitted.x.replicate(1, added.cols());
+  MatrixXd residuals_m;
+  const MatrixXd none;
+  run.residuals(points, force ? none : added, force ? added : none, residuals_m);
+  residuals_m.colwise() -= at.stage.fitted.residual_m;
+  return residuals_m * (whole / size);
+}
+
+/// Sums of products of all columns and the residual, over the samples that count.
+MatrixXd products(const MatrixXd& columns, const VectorXd& weights) {
+  const MatrixXd weighted = weights.asDiagonal() * columns;
+  return weighted.transpose() * weighted;
+}
+
+/// The regression of the residual on Jacobian and signatures, by sums of products alone. The priors
+/// keep the weight that they had in the stage's fit: parameters that bend further than there would
+/// follow what the signatures are meant to explain.
+class Regression {
+ public:
+  Regression(const Place& at, const MatrixXd& signatures)
+      : fitted_(at.stage.fitted), parameters_(fitted_.jacobian.cols()) {
+    MatrixXd columns(signatures.rows(), parameters_ + signatures.cols() + 1);
+    columns << fitted_.jacobian, signatures, fitted_.residual_m;
+    const Evidence& evidence = at.shop.evidence;
+    const bool holds_out = evidence.scores.sum() > 0.0;
+    fits_ = products(columns, evidence.fits);
+    scores_ = holds_out ? products(columns, evidence.scores) : fits_;
+  }
+
+  /// Held-out squared error that remains, over that without signatures and adjustment.
+  [[nodiscard]] double remaining_ratio() const {
+    const Index all = fits_.cols() - 1;
+    const VectorXd weights = solve();
+    return weights.dot(scores_ * weights) / scores_(all, all);
+  }
+
+ private:
+  /// Coefficients of the columns, that of the residual being 1.
+  [[nodiscard]] VectorXd solve() const {
+    const Index all = fits_.cols() - 1;
+    const double per_square = 1.0 / (fitted_.sigma_m * fitted_.sigma_m);
+    MatrixXd normal = per_square * fits_.topLeftCorner(all, all);
+    VectorXd slope = per_square * fits_.col(all).head(all);
+    for (Index i = 0; i < all; ++i) {
+      const double own = normal(i, i);
+      if (i < parameters_) {
+        const auto& parameter = fitted_.searched[static_cast<std::size_t>(i)];
+        const double sd = parameter.prior_sd;
+        if (std::isfinite(sd)) {
+          normal(i, i) += 1.0 / (sd * sd);
+          slope[i] += (fitted_.x[i] - parameter.prior_mean) / (sd * sd);
+        } else {
+          normal(i, i) += 1e-6 * own + 1e-12;
+        }
+      } else {
+        const double total = per_square * fits_(all, all);
+        normal(i, i) += own / (kFreedom * kFreedom * total) + 1e-300;
+      }
+    }
+    VectorXd weights(all + 1);
+    weights << -normal.ldlt().solve(slope), 1.0;
+    return weights;
+  }
+
+  const Fitted& fitted_;
+  Index parameters_;
+  MatrixXd fits_, scores_;
+};
+
+struct Attempt {
+  Form form;
+  std::size_t variable;
+  double remaining_ratio = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace
+
+std::vector<Where> localise(const Workshop& shop, const Stage& stage) {
+  const Variables variables = selection::variables(shop, stage);
+  const Place at{shop, stage, variables};
+  const plant_sim::PlantInfo& plant = *plant_sim::find_plant(shop.model.plant);
+  const bool forces =
+      std::find(plant.sites.begin(), plant.sites.end(), "force") != plant.sites.end();
+  std::vector<Attempt> attempts;
+  for (std::size_t i = 0; i < variables.all.size(); ++i) {
+    for (const Form form :
+         {Form::flow, Form::gain, Form::force, Form::drag, Form::reading, Form::scale}) {
+      if (!forces && (form == Form::force || form == Form::drag)) continue;
+      attempts.push_back({form, i});
+    }
+  }
+  in_parallel(attempts.size(), shop.threads, [&](std::size_t i) {
+    if (shop.cancelled()) return;
+    Attempt& attempt = attempts[i];
+    const MatrixXd found = signatures(at, attempt.form, variables.all[attempt.variable]);
+    if (!found.allFinite()) return;
+    attempt.remaining_ratio = Regression(at, found).remaining_ratio();
+  });
+  if (shop.cancelled()) return {};
+  const auto paid = [&](const Attempt& a) {
+    const auto pieces = static_cast<double>(variables.all[a.variable].pieces.cols());
+    return a.remaining_ratio * (1.0 + kPerPiece * pieces);
+  };
+  std::stable_sort(attempts.begin(), attempts.end(),
+                   [&](const Attempt& a, const Attempt& b) { return paid(a) < paid(b); });
+  std::vector<Where> result;
+  for (const Attempt& a : attempts) {
+    const std::string& name = variables.all[a.variable].name;
+    const bool named = std::any_of(result.begin(), result.end(),
+                                   [&](const Where& where) { return where.variable == name; });
+    if (named || !std::isfinite(a.remaining_ratio)) continue;
+    result.push_back({class_of(a.form), name, 1.0 - a.remaining_ratio});
+  }
+  return result;
+}
+
+}  // namespace estimator::greybox::selection

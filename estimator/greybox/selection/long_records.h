@@ -1,0 +1,23 @@
+// Long records: the search goes over stretches of them, and what it found is fitted to the whole.
+#pragma once
+
+#include <string>
+
+#include "estimator/greybox/selection/problem.h"
+#include "estimator/greybox/selection/structure_search.h"
+
+namespace estimator::greybox::selection {
+
+/// The same workshop, with stretches for evidence when the records are long (stretches.h).
+[[nodiscard]] Workshop for_search(const Workshop& shop);
+/// Whether `search` has stretches only.
+[[nodiscard]] bool searches_in_part(const Workshop& search, const Workshop& shop);
+
+/// The ladder's way and final model fitted to all of the evidence and scored there. Rounds keep the
+/// errors that they had in the search, and their candidates' residuals.
+void carry_to_whole(const Workshop& shop, Ladder& ladder);
+
+/// "effects were searched for in 60 of 600 s; ..."
+[[nodiscard]] std::string note_of_search(const Workshop& search, const Workshop& shop);
+
+}  // namespace estimator::greybox::selection

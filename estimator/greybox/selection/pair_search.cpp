@@ -1,0 +1,158 @@
+#include "estimator/greybox/selection/pair_search.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <limits>
+
+#include "estimator/greybox/selection/projection.h"
+#include "estimator/greybox/selection/screening_segment.h"
+#include "estimator/greybox/selection/search_round.h"
+#include "estimator/greybox/selection/trial_sizes.h"
+#include "estimator/parallel.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Of the trial sizes of an effect, the last so many: those that are not small.
+constexpr Index kSizes = 4;
+/// That many couples, the best on a stretch of the record, are looked at on all of it.
+constexpr std::size_t kLookedAt = 16;
+/// That many are fitted, each from its best start seen from either base.
+constexpr std::size_t kFitted = 6;
+/// For that many iterations on the stretch; then those within this factor of the best go on, on the
+/// whole record.
+constexpr int kFirstIterations = 4;
+constexpr double kFar = 3.0;
+
+struct Effect {
+  std::string name;
+  std::vector<SearchParameter> own;
+  MatrixXd sizes;
+};
+
+struct Couple {
+  const Effect* first = nullptr;
+  const Effect* second = nullptr;
+  double cost = std::numeric_limits<double>::infinity();
+  std::vector<SearchParameter> searched;
+  std::vector<VectorXd> starts;  ///< one seen from each base
+};
+
+std::vector<Effect> effects_of(const Workshop& shop, const std::vector<std::string>& without) {
+  std::vector<Effect> effects;
+  for (const plant_sim::EffectInfo& info : shop.absent) {
+    if (std::find(without.begin(), without.end(), info.name) != without.end()) continue;
+    Effect effect{info.name, effect_parameters(info, kFirstRefinements), {}};
+    if (is_periodic(effect.own)) continue;
+    effect.sizes = trial_sizes(effect.own, shop.evidence).rightCols(kSizes);
+    effects.push_back(std::move(effect));
+  }
+  return effects;
+}
+
+/// The best combination of sizes, the model's own parameters being at `base`.
+void look(const plant_sim::ModelFile& model, const Evidence& evidence, const Projection& projection,
+          const VectorXd& base, Couple& couple) {
+  EvidenceRun run(model, evidence, couple.searched);
+  const Index first = couple.first->sizes.rows();
+  const Index second = couple.second->sizes.rows();
+  MatrixXd points(base.size() + first + second, kSizes * kSizes);
+  for (Index i = 0; i < kSizes; ++i) {
+    for (Index k = 0; k < kSizes; ++k) {
+      points.col(i * kSizes + k) << base, couple.first->sizes.col(i), couple.second->sizes.col(k);
+    }
+  }
+  double least = std::numeric_limits<double>::infinity();
+  Index best = 0;
+  MatrixXd residuals_m;
+  for (Index from = 0; from < points.cols(); from += ModelRun::kLanes) {
+    const Index lanes = std::min<Index>(ModelRun::kLanes, points.cols() - from);
+    run.residuals(points.middleCols(from, lanes), residuals_m);
+    for (Index lane = 0; lane < lanes; ++lane) {
+      if (!residuals_m.col(lane).allFinite()) continue;
+      const double cost = projection.remaining(residuals_m.col(lane));
+      if (cost >= least) continue;
+      least = cost;
+      best = from + lane;
+    }
+  }
+  couple.cost = std::min(couple.cost, least);
+  couple.starts.emplace_back(points.col(best));
+}
+
+/// Looks at all couples from all bases and keeps the `most` best, the best first.
+void look_at(const Workshop& shop, const Evidence& evidence, const Projection& projection,
+             const std::array<const VectorXd*, 2>& bases, std::size_t most,
+             std::vector<Couple>& couples) {
+  in_parallel(couples.size(), shop.threads, [&](std::size_t i) {
+    couples[i].cost = std::numeric_limits<double>::infinity();
+    couples[i].starts.clear();
+    for (const VectorXd* base : bases) {
+      if (!shop.cancelled()) look(shop.model, evidence, projection, *base, couples[i]);
+    }
+  });
+  std::stable_sort(couples.begin(), couples.end(),
+                   [](const Couple& a, const Couple& b) { return a.cost < b.cost; });
+  couples.resize(std::min(couples.size(), most));
+}
+
+Candidate tried(const Workshop& shop, const Stage& stage, const Couple& couple, int iterations) {
+  const Glance glance{couple.first->name, 1.0, couple.searched, couple.starts};
+  Candidate candidate = tried(shop, stage, glance, iterations);
+  candidate.effects.push_back(couple.second->name);
+  return candidate;
+}
+
+}  // namespace
+
+std::vector<Candidate> two_at_once(const Workshop& shop, const Stage& stage,
+                                   const std::vector<std::string>& without) {
+  const std::vector<Effect> effects = effects_of(shop, without);
+  const VectorXd nominal = with_file_values(shop, stage);
+  const std::array<const VectorXd*, 2> bases{&nominal, &stage.fitted.x};
+  std::vector<Couple> couples;
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    for (std::size_t k = i + 1; k < effects.size(); ++k) {
+      Couple couple;
+      couple.first = &effects[i];
+      couple.second = &effects[k];
+      couple.searched = stage.fitted.searched;
+      for (const Effect* effect : {couple.first, couple.second}) {
+        couple.searched.insert(couple.searched.end(), effect->own.begin(), effect->own.end());
+      }
+      couples.push_back(std::move(couple));
+    }
+  }
+  const Excerpt excerpt = excerpt_of(shop.evidence, stage.fitted);
+  const Projection there(excerpt.fitted, excerpt.evidence.counts);
+  look_at(shop, excerpt.evidence, there, bases, kLookedAt, couples);
+  look_at(shop, shop.evidence, Projection(stage.fitted, shop.evidence.fits), bases, kFitted,
+          couples);
+  Workshop on_stretch = shop;
+  on_stretch.evidence = excerpt.evidence;
+  const Stage before{stage.added, excerpt.fitted};
+  std::vector<Candidate> begun(couples.size());
+  in_parallel(couples.size(), shop.threads, [&](std::size_t i) {
+    if (!shop.cancelled()) begun[i] = tried(on_stretch, before, couples[i], kFirstIterations);
+  });
+  double best_m = std::numeric_limits<double>::infinity();
+  for (const Candidate& candidate : begun) best_m = std::min(best_m, candidate.score_rms_m);
+  std::vector<Candidate> candidates(couples.size());
+  std::atomic<bool> explained = false;
+  in_parallel(couples.size(), shop.threads, [&](std::size_t i) {
+    if (shop.cancelled() || explained || !(begun[i].score_rms_m < kFar * best_m)) return;
+    couples[i].starts = {begun[i].fitted.x};
+    candidates[i] = tried(shop, stage, couples[i], kQuickIterations);
+    if (candidates[i].score_rms_m < kUnexplained * shop.evidence.noise_floor_m) explained = true;
+  });
+  std::erase_if(candidates, [](const Candidate& c) { return !c.fitted_at_all; });
+  finish(shop, stage, candidates);
+  return candidates;
+}
+
+}  // namespace estimator::greybox::selection

@@ -1,0 +1,56 @@
+// What remains of a residual when a model's parameters may still adjust, linearly and against their
+// priors, and when one further signature may come in with any strength.
+//
+//   cost = min_{a,b} |r + J a + d b|^2 / s^2 + sum (a / sd)^2
+//
+// a adjustments of the parameters, held by the widths of their priors about where they are.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <utility>
+
+#include "estimator/greybox/fit.h"
+
+namespace estimator::greybox::selection {
+
+class Projection {
+ public:
+  /// Of a fitted model, over the samples that `weights` (0 or 1) counts.
+  Projection(const Fitted& fitted, const Eigen::VectorXd& weights);
+
+  /// With the fitted model's own residual and no signature.
+  [[nodiscard]] double cost() const { return cost_; }
+  /// With another residual, its prior taken as that of the fitted model.
+  [[nodiscard]] double remaining(const Eigen::Ref<const Eigen::VectorXd>& residual_m) const;
+  /// The cost and b with another residual (its prior taken as that of the fitted model) and a
+  /// signature, both as long as the weights.
+  [[nodiscard]] std::pair<double, double> with(
+      const Eigen::Ref<const Eigen::VectorXd>& residual_m,
+      const Eigen::Ref<const Eigen::VectorXd>& signature_m) const;
+  /// The same with two signatures.
+  struct Two {
+    double cost;
+    double first;
+    double second;
+  };
+  [[nodiscard]] Two with(const Eigen::Ref<const Eigen::VectorXd>& residual_m,
+                         const Eigen::Ref<const Eigen::VectorXd>& first_m,
+                         const Eigen::Ref<const Eigen::VectorXd>& second_m) const;
+  /// The signature less what the parameters can imitate of it.
+  [[nodiscard]] Eigen::VectorXd beyond(const Eigen::Ref<const Eigen::VectorXd>& signature_m) const;
+
+ private:
+  [[nodiscard]] double remaining(const Eigen::VectorXd& weighted, const Eigen::VectorXd& onto,
+                                 const Eigen::VectorXd& other,
+                                 const Eigen::VectorXd& other_onto) const;
+
+  Eigen::VectorXd weights_;
+  Eigen::MatrixXd weighted_jacobian_;  ///< per s, only counted samples
+  Eigen::MatrixXd jacobian_;
+  Eigen::LLT<Eigen::MatrixXd> normal_;
+  double per_sigma_ = 0.0;
+  double cost_ = 0.0;
+};
+
+}  // namespace estimator::greybox::selection

@@ -1,0 +1,45 @@
+// What a residual may depend on: each variable of the motion cut into a few overlapping pieces.
+//
+//   h_i(x) = 1 at knot i, 0 at its neighbours, straight lines between, constant beyond the ends
+//
+// so that sum b_i h_i(x(t)) is any function of the variable, straight from knot to knot. The knots
+// lie half way between equal steps of the variable and equal shares of the samples: a rod that
+// mostly rests still leaves knots for its speeds.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "estimator/greybox/selection/problem.h"
+#include "estimator/greybox/selection/screening.h"
+
+namespace estimator::greybox::selection {
+
+inline constexpr int kKnots = 8;
+
+/// One row for each sample of the evidence. At most kKnots columns.
+struct Variable {
+  std::string name;               ///< "y", "v", "u", "speed", "acceleration", "time", "direction"
+  Eigen::MatrixXd pieces;         ///< add up to 1
+  Eigen::MatrixXd signed_pieces;  ///< of a size: with the sign of what has that size; else empty
+};
+
+struct Variables {
+  std::vector<Variable> all;  ///< "u" twice: by its size, the same either way, and as it is
+  Eigen::VectorXd command_V;
+  Eigen::VectorXd position_m;  ///< the model's, about its mean over the counted samples
+  Eigen::VectorXd speed_mps;   ///< the model's
+};
+
+/// The command as measured; position, speed and acceleration of the stage's model, because a
+/// measured position carries the very noise that it would then explain; time since each record
+/// began.
+[[nodiscard]] Variables variables(const Workshop& shop, const Stage& stage);
+
+/// h_i of one variable over the samples that `counts` (0 or 1) tells. At least two columns, or
+/// none where the variable does not vary.
+[[nodiscard]] Eigen::MatrixXd pieces_of(const Eigen::VectorXd& values,
+                                        const Eigen::VectorXd& counts);
+
+}  // namespace estimator::greybox::selection

@@ -1,0 +1,68 @@
+// The search for what is missing: effects are tried one by one and taken one after another while
+// data that were not fitted support them, and looked over again at the end.
+//
+//   take    the effect that lowers the held-out error most, by kWorthwhile or more
+//   pairs   where no single effect helps and the error is still above what noise explains
+//   detour  where the error stays high, the same from the next best first effects
+//   drop    an effect, or a refinement of one, whose absence costs less than it is worth
+//
+// Every fit adjusts all of the model's uncertain parameters too, within their priors, so that a
+// slightly wrong model is not taken for a missing effect.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "estimator/greybox/selection/problem.h"
+#include "estimator/greybox/selection/screening.h"
+
+namespace estimator::greybox::selection {
+
+/// Relative fall of the held-out error that an effect must bring.
+inline constexpr double kWorthwhile = 0.01;
+/// The same where the error is hardly more than noise, which hides much of an effect. Healthy
+/// records of the source's actuator stay below a quarter of it.
+inline constexpr double kWorthwhileInNoise = 0.004;
+/// Held-out error over the noise floor above which something is still unexplained.
+inline constexpr double kUnexplained = 1.15;
+/// Rivals within this of the best, in held-out error, explain the record about as well.
+inline constexpr double kRivals = 0.05;
+
+/// One of the two, for a held-out error.
+[[nodiscard]] double worthwhile_at(const Workshop& shop, double score_rms_m);
+
+struct Candidate {
+  std::vector<std::string> effects;  ///< one, or two tried together
+  double expected_ratio = 1.0;       ///< of the quick look; 1 for pairs
+  Fitted fitted;                     ///< with the stage's parameters
+  double score_rms_m = std::numeric_limits<double>::infinity();
+  double p_value = 1.0;  ///< that its gain over the stage is chance
+  bool fitted_at_all = false;
+};
+
+struct Round {
+  Stage before;
+  std::vector<Candidate> candidates;  ///< best first
+  double looked_s = 0.0;              ///< what the quick look at all effects took
+};
+
+struct Ladder {
+  double nominal_rms_m = 0.0;  ///< held-out, the model file as it is
+  std::vector<Round> rounds;   ///< of the search that led to the final model
+  std::vector<Stage> way;      ///< from the model as given to the final one, an effect at a time
+  Stage final;                 ///< the last of them
+  bool interrupted = false;
+  double preview_s = 0.0;  ///< until the first ranking of all effects was known
+};
+
+[[nodiscard]] Ladder climb(const Workshop& shop);
+
+/// Held-out error of the model file as it is.
+[[nodiscard]] double nominal_rms_m(const Workshop& shop);
+/// The quick look alone: every absent effect with its expected share of the error, best first.
+[[nodiscard]] std::vector<Glance> preview(const Workshop& shop, const Stage& stage);
+/// The model as it stands, its parameters fitted.
+[[nodiscard]] Stage first_stage(const Workshop& shop);
+
+}  // namespace estimator::greybox::selection

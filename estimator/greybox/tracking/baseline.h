@@ -1,0 +1,30 @@
+// What the rig is like without a fault, learnt from windows of healthy motion: the median of each
+// tracked parameter, of the window's error, and of what chamber pressures are off the model.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "estimator/greybox/tracking/window_result.h"
+
+namespace estimator::greybox::tracking {
+
+/// What the rig is like without a fault.
+struct Healthy {
+  double rms_m = 0.0;  ///< of a window's error; not under the noise floor
+  Eigen::VectorXd x;   ///< every parameter of the choice, search units
+  ChamberErrors chambers{};
+
+  [[nodiscard]] Errors errors() const { return {rms_m, chambers}; }
+};
+
+/// Whether a window may serve to learn from: explained, every parameter known to some per cent.
+[[nodiscard]] bool teaches(const Window& window, const Choice& choice);
+
+/// The medians over the windows of a record without a fault; what is not tracked is as in the file.
+/// Throws config::schema::Error (exit 65) when none is usable.
+[[nodiscard]] Healthy learn(const std::vector<Window>& windows, const Choice& choice,
+                            double noise_floor_m, const std::string& where);
+
+}  // namespace estimator::greybox::tracking

@@ -1,0 +1,61 @@
+// From changes named window by window to alarms with a beginning and an end.
+//
+// A change is told at once when it is `at_once` standard errors off, or when two windows in a row
+// name it in the same direction. It ends with a window that puts the parameter back to within its
+// least change, by two standard errors.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "estimator/greybox/tracking/change_naming.h"
+
+namespace estimator::greybox::tracking {
+
+struct Alarm {
+  Named named;  ///< as known best: of the latest whole window that named it, else of its first part
+  double raised_s = 0.0;
+  double cleared_s = std::numeric_limits<double>::quiet_NaN();  ///< NaN: still there
+  double confidence = 0.0;  ///< that the change is more than the least
+
+  [[nodiscard]] bool active() const { return !(cleared_s == cleared_s); }
+};
+
+/// A tracked parameter as a window saw it.
+struct Seen {
+  double x = 0.0;
+  double std_error = 0.0;
+};
+
+class AlarmBook {
+ public:
+  AlarmBook() = default;
+  AlarmBook(const Choice& choice, const Thresholds& thresholds);
+
+  /// `seen` has all tracked parameters; `whole`: of a whole window, not of a part.
+  void update(double t_s, const std::vector<Named>& named, const std::vector<Seen>& seen,
+              const Eigen::VectorXd& healthy, bool whole);
+
+  [[nodiscard]] const std::vector<Alarm>& alarms() const { return alarms_; }
+  /// The active one that names the tracked parameter; null: there is none.
+  [[nodiscard]] const Alarm* active(std::size_t parameter) const;
+  /// Keeps active alarms alone, for a tracking without an end.
+  void forget_cleared();
+  /// Bit for bit (carrier.h), after forget_cleared().
+  void carry(estimator::Carrier& carrier, const Choice& choice);
+
+ private:
+  struct Track {
+    double least = 0.0;
+    int direction = 0;  ///< of the latest window that named it; 0: it did not
+    int active = -1;    ///< index of its alarm
+    bool whole = false;
+  };
+  void raise(double t_s, Track& track, const Named& named, bool whole);
+
+  Thresholds thresholds_;
+  std::vector<Track> tracks_;
+  std::vector<Alarm> alarms_;
+};
+
+}  // namespace estimator::greybox::tracking

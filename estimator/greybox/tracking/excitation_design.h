@@ -1,0 +1,43 @@
+// Which short motion would tell the tracked parameters best: sines within given limits are driven
+// through the model in its loop, with the healthy error as noise, and each fitted as a window is.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "plant_sim/model_file.h"
+
+namespace estimator::greybox::tracking {
+
+struct ProbeLimits {
+  double low_m = 0.0;
+  double high_m = 0.0;      ///< not above low_m: no probe is suggested
+  double speed_mps = 0.05;  ///< greatest
+  double command_V = 10.0;  ///< greatest
+
+  [[nodiscard]] bool given() const { return high_m > low_m; }
+};
+
+struct Probe {
+  double centre_m = 0.0;
+  double amplitude_m = 0.0;
+  double frequency_Hz = 0.0;
+  double duration_s = 0.0;
+  Eigen::VectorXd std_error;  ///< of the tracked parameters, search units
+};
+
+/// Standard errors of the tracked parameters from so many samples of command and position.
+using Foresee = std::function<Eigen::VectorXd(const double* u_V, const double* y_m)>;
+
+/// None where no sine within the limits tells every parameter. `samples`: lead-in and window.
+[[nodiscard]] std::optional<Probe> best_probe(const plant_sim::ModelFile& healthy,
+                                              const ProbeLimits& limits, std::size_t samples,
+                                              double sample_time_s, double noise_m,
+                                              const Foresee& foresee);
+
+/// "probe with a sine of 20 mm at 1 Hz about 305 mm for 3.8 s"
+[[nodiscard]] std::string probe_words(const Probe& probe);
+
+}  // namespace estimator::greybox::tracking

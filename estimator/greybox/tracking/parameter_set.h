@@ -1,0 +1,33 @@
+// Which parameters are tracked, and which others could explain the same change of the rig.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "estimator/greybox/free_parameter.h"
+#include "plant_sim/model_file.h"
+
+namespace estimator::greybox::tracking {
+
+/// Tracked parameters first, then their rivals: every uncertain parameter of the plant, and effects
+/// that may arise while a rig runs.
+struct Choice {
+  std::vector<SearchParameter> parameters;
+  std::size_t tracked = 0;
+  Eigen::VectorXd file;  ///< search values of the model file
+  /// How far a plant's value may be off its file (plant_sim::ParameterInfo::uncertainty_ratio);
+  /// infinite for the others.
+  Eigen::VectorXd uncertainty;
+
+  [[nodiscard]] std::vector<std::size_t> tracked_indices() const;
+  /// The model file's; NaN: its plant has no pressures.
+  [[nodiscard]] double supply_Pa() const;
+};
+
+/// `lists` of names as in model files, by comma. Throws config::schema::Error (exit 78) that begins
+/// with `option` for an unknown name.
+[[nodiscard]] Choice choose(const plant_sim::ModelFile& model,
+                            const std::vector<std::string>& lists, const std::string& option);
+
+}  // namespace estimator::greybox::tracking

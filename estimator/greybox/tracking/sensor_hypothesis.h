@@ -1,0 +1,41 @@
+// What the position sensor alone would explain: a scale or a drift of its reading in place of a
+// change of the rig.
+//
+//   scale   y' = yc + (y - yc) / s        drift   y' = y - r (t - tc)
+//
+// y  as read    y'  where the rod is then    yc tc  middle of the window
+//
+// The model is held against y'. Its residual is linear in 1 / s and in r, but for what little the
+// plant depends on y: chi-square is a parabola, which three values give. It counts in the reading's
+// own noise, that is times s^2; what chamber pressures say of the model stays as it is.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "estimator/greybox/tracking/window_fit.h"
+
+namespace estimator::greybox::tracking {
+
+/// A window as a faulty sensor would have read it, set right.
+struct SensorRival {
+  const char* name = "";  ///< position_sensor.scale_ratio (its change), position_sensor.drift_mps
+  double value = 0.0;
+  double scale = 1.0;  ///< s: residuals of the window set right, times this, are in the reading's
+  double chi_square = 0.0;
+  std::vector<double> y_m;  ///< y', lead-in and window
+
+  [[nodiscard]] Cut cut(const Cut& as_read) const {
+    Cut right = as_read;
+    right.y_m = y_m.data();
+    return right;
+  }
+};
+
+/// The scale and the drift that explain the window best where the model is as `x` has it; those
+/// beyond what a sensor may show (a third, 10 mm/s) are left out.
+[[nodiscard]] std::vector<SensorRival> sensor_rivals(WindowFit& fit, const Cut& cut,
+                                                     const Eigen::VectorXd& x, const Errors& errors,
+                                                     double sample_time_s);
+
+}  // namespace estimator::greybox::tracking

@@ -1,0 +1,188 @@
+#include "estimator/greybox/tracking/words.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "config/units/quantity.h"
+
+namespace estimator::greybox::tracking {
+namespace {
+
+using Eigen::Index;
+
+/// Cosine above which it is another parameter that hides one.
+constexpr double kAlike = 0.98;
+
+std::string percent(double ratio) { return config::units::number("%.3g", 100.0 * ratio) + " %"; }
+
+bool is_logarithmic(const SearchParameter& p) { return p.scale == Scale::logarithmic; }
+
+/// "12 %" of the value, or "0.3 times its typical size".
+std::string error_words(const SearchParameter& p, double std_error) {
+  if (!std::isfinite(std_error)) return "not at all";
+  return is_logarithmic(p)
+             ? "to +- " + percent(std_error) + " only"
+             : "to +- " + config::units::number("%.2g", std_error) + " of its typical size only";
+}
+
+/// Whose effect is most like that of parameter `at`; -1: there is no other.
+Index alike(const Eigen::MatrixXd& likeness, Index at) {
+  Index best = -1;
+  for (Index j = 0; j < likeness.cols(); ++j) {
+    if (j == at) continue;
+    if (best < 0 || std::abs(likeness(at, j)) > std::abs(likeness(at, best))) best = j;
+  }
+  return best;
+}
+
+std::string pressure_words(double value_Pa) {
+  return config::units::words(config::units::quantity("pressure_Pa", value_Pa, NAN));
+}
+
+/// How often a chamber's error is its limit, and its offset that of offsets.
+struct Beyond {
+  double error = 0.0;
+  double offset = 0.0;
+
+  [[nodiscard]] double most() const { return std::max(error, offset); }
+};
+
+Beyond beyond(const ChamberFit& found, const ChamberError& healthy, double offset_sd_Pa,
+              double most_ratio) {
+  return {found.rms_Pa / (most_ratio * healthy.rms_Pa),
+          std::abs(found.mean_Pa) / (kMostOffset * offset_sd_Pa)};
+}
+
+std::string chamber_words(const std::string& name, const ChamberFit& found,
+                          const ChamberError& healthy, double offset_sd_Pa, double most_ratio) {
+  const Beyond by = beyond(found, healthy, offset_sd_Pa, most_ratio);
+  if (by.error >= by.offset) {
+    return "the model does not explain the " + name + ": error " + pressure_words(found.rms_Pa) +
+           ", healthy " + pressure_words(healthy.rms_Pa) + ", limit " +
+           config::units::number("%.3g", most_ratio) + " times that";
+  }
+  return "the " + name + " is off the model: by " + pressure_words(found.mean_Pa) +
+         " from when it was healthy, limit " + pressure_words(kMostOffset * offset_sd_Pa);
+}
+
+}  // namespace
+
+std::string name_words(const std::string& name) {
+  if (name.find('.') != std::string::npos) {
+    std::string effect = name.substr(0, name.find('.'));
+    std::replace(effect.begin(), effect.end(), '_', ' ');
+    return effect;
+  }
+  return config::units::parameter_words(name);
+}
+
+std::string value_words(const SearchParameter& p, double x, double std_error) {
+  return config::units::words(config::units::quantity(p.name, p.value(x), std_error * p.slope(x)));
+}
+
+std::string still_words(double moved_m, double noise_floor_m, double window_s) {
+  return "no motion: within " + config::units::number("%.3g", window_s) + " s the rod moves " +
+         config::units::length_words(moved_m) + ", the position's noise is " +
+         config::units::length_words(noise_floor_m);
+}
+
+std::string misfit_words(const WindowEstimate& found, const Errors& healthy, double most_ratio) {
+  if (found.rms_m > most_ratio * healthy.rms_m) {
+    return "the model does not explain it: error " + config::units::length_words(found.rms_m) +
+           ", healthy " + config::units::length_words(healthy.rms_m) + ", limit " +
+           config::units::number("%.3g", most_ratio) + " times that";
+  }
+  if (!found.with_chambers()) return {};
+  const ChamberErrors& chambers = healthy.chambers;
+  const double sd_Pa = chambers.offset_sd_Pa;
+  const double in = beyond(found.in, chambers.in, sd_Pa, most_ratio).most();
+  const double out = beyond(found.out, chambers.out, sd_Pa, most_ratio).most();
+  if (in <= 1.0 && out <= 1.0) return {};
+  return in >= out ? chamber_words("pressure in", found.in, chambers.in, sd_Pa, most_ratio)
+                   : chamber_words("pressure out", found.out, chambers.out, sd_Pa, most_ratio);
+}
+
+std::string unseen_words(const Choice& choice, const WindowEstimate& found, std::size_t i,
+                         double std_error, double most) {
+  const SearchParameter& p = choice.parameters[i];
+  if (found.at_bound[i] != 0) return name_words(p.name) + " ran to the end of its range";
+  if (std_error <= most) return {};
+  const std::string known = name_words(p.name) + " is known " + error_words(p, std_error);
+  const auto at = static_cast<Index>(i);
+  const Index partner = alike(found.likeness, at);
+  if (partner < 0 || !(std::abs(found.likeness(at, partner)) > kAlike)) {
+    return "the motion does not show it: " + known;
+  }
+  return "the motion does not separate " + name_words(p.name) + " from " +
+         name_words(choice.parameters[static_cast<std::size_t>(partner)].name) +
+         " (their effects are alike to " +
+         config::units::number("%.4f", std::abs(found.likeness(at, partner))) + "): " + known;
+}
+
+std::string part_words(const Choice& choice, const WindowEstimate& found, double length_s) {
+  std::string text = "its last " + config::units::number("%.3g", length_s) + " s alone:";
+  for (std::size_t i = 0; i < choice.tracked; ++i) {
+    const auto at = static_cast<Index>(i);
+    text += (i == 0 ? " " : ", ") + name_words(choice.parameters[i].name) + " " +
+            value_words(choice.parameters[i], found.x[at], found.std_error[at]);
+  }
+  return text;
+}
+
+std::string change_words(const Choice& choice, const Named& named, const Eigen::VectorXd& healthy) {
+  const SearchParameter& p = choice.parameters[named.parameter];
+  const double before = p.value(healthy[static_cast<Index>(named.parameter)]);
+  const double now = p.value(named.x);
+  const std::string direction = now > before ? " high" : " low";
+  const std::string size =
+      is_logarithmic(p) ? config::units::number("%+.1f", 100.0 * (now / before - 1.0)) + " %, "
+                        : std::string();
+  return name_words(p.name) + direction + ", " + size + value_words(p, named.x, named.std_error);
+}
+
+std::string slow_words(const SearchParameter& p, double learnt, double x) {
+  const std::string far =
+      is_logarithmic(p)
+          ? config::units::number("%+.1f", 100.0 * (p.value(x) / p.value(learnt) - 1.0)) + " %"
+          : config::units::number("%+.2g", x - learnt) + " times its typical size";
+  return name_words(p.name) + " came by and by to " +
+         config::units::words(config::units::quantity(p.name, p.value(x), NAN)) + ", " + far +
+         " from what was learnt; slow changes are followed no further";
+}
+
+std::string group_words(const Choice& choice, const Named& named) {
+  if (named.rivals.empty()) return {};
+  std::string text = "or";
+  for (std::size_t i = 0; i < named.rivals.size(); ++i) {
+    const Rival& rival = named.rivals[i];
+    text += (i == 0 ? " " : " or ") + name_words(rival.name) + " " +
+            config::units::words(config::units::quantity(rival.name, rival.value, NAN));
+  }
+  return text +
+         (named.sensed.chambers ? ": command, position and chamber pressures cannot tell; "
+                                : ": command and position cannot tell; ") +
+         advice_words(choice, named);
+}
+
+std::string advice_words(const Choice& choice, const Named& named) {
+  if (named.rivals.empty()) return {};
+  std::string all = choice.parameters[named.parameter].name;
+  for (const Rival& rival : named.rivals) all += " " + rival.name;
+  const auto has = [&](const char* word) { return all.find(word) != std::string::npos; };
+  const bool sensor = has("position_sensor");
+  const bool supply = has("supply") && !named.sensed.supply;
+  if (supply && sensor) {
+    return "readings of the supply pressure and of a second position sensor would";
+  }
+  if (supply) return "a reading of the supply pressure would";
+  if (sensor) return "a second position sensor would";
+  if (!named.sensed.chambers && (has("leakage") || has("air") || has("bulk"))) {
+    return "a reading of the chamber pressures would";
+  }
+  if (has("friction") || has("damping") || has("mass") || has("load")) {
+    return "a motion of other speeds and accelerations would";
+  }
+  return "another motion may";
+}
+
+}  // namespace estimator::greybox::tracking

@@ -1,0 +1,217 @@
+#include "estimator/greybox/validation/comparison.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numeric>
+
+#include "config/schema/error.h"
+#include "estimator/greybox/dataset.h"
+#include "estimator/residual/noise_floor.h"
+#include "estimator/residual/whiteness.h"
+
+namespace estimator::greybox::validation {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+/// A rod whose positions spread by less than this many noise floors does not move.
+constexpr double kLeastMotion = 10.0;
+constexpr double kLeastMotion_m = 1e-9;
+/// Command within this part of its greatest magnitude counts as at its limit.
+constexpr double kAtLimit = 0.999;
+constexpr double kOftenLimited = 0.1;
+constexpr double kAlwaysLimited = 0.9;
+
+/// `values` with a missing sample between segments and where `counts` is 0.
+std::vector<double> broken(const Measured& record, const std::vector<double>& values,
+                           bool settled_only) {
+  std::vector<double> series;
+  for (const Span& span : segments(record)) {
+    if (span.begin > 0) series.push_back(kNaN);
+    for (std::size_t k = span.begin; k < span.end; ++k) {
+      series.push_back(settled_only && record.settled[k] == 0 ? kNaN : values[k]);
+    }
+  }
+  return series;
+}
+
+std::vector<double> run(const plant_sim::ModelFile& model, const Measured& record,
+                        double observer_per_s) {
+  Measured all = record;
+  std::fill(all.settled.begin(), all.settled.end(), char{1});
+  ModelRun run(model, all, {}, observer_per_s);
+  Eigen::MatrixXd residual_m;
+  run.residuals(Eigen::MatrixXd(0, 1), residual_m);
+  std::vector<double> errors_m(record.size());
+  for (std::size_t k = 0; k < errors_m.size(); ++k) {
+    errors_m[k] = residual_m(static_cast<Eigen::Index>(k), 0);
+  }
+  return errors_m;
+}
+
+double rms(const std::vector<double>& values, const std::vector<char>& counts) {
+  double squares = 0.0;
+  double n = 0.0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (counts[k] == 0) continue;
+    squares += values[k] * values[k];
+    n += 1.0;
+  }
+  return n > 0.0 ? std::sqrt(squares / n) : kNaN;
+}
+
+double spread(const std::vector<double>& values) {
+  const auto n = static_cast<double>(values.size());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  double squares = 0.0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  return std::sqrt(squares / n);
+}
+
+std::string number(const char* format, double a, double b = 0.0) {
+  char text[160];
+  std::snprintf(text, sizeof text, format, a, b);
+  return text;
+}
+
+void require_motion(const Measured& record, double noise_m) {
+  const double sd_m = spread(record.y_m);
+  const double least_m = std::max(kLeastMotion_m, std::isfinite(noise_m) ? noise_m : 0.0);
+  const auto [low, high] = std::minmax_element(record.y_m.begin(), record.y_m.end());
+  // Noise of n samples spans 7 to 10 standard deviations.
+  if (sd_m < kLeastMotion * least_m && *high - *low < 2.0 * kLeastMotion * least_m) {
+    throw config::schema::bad_data(
+        record.name,
+        number("the rod does not move: y stays within %.3g um of itself", 1e6 * (*high - *low)),
+        "a record with motion well above the position's noise");
+  }
+}
+
+void note_command(Comparison& c) {
+  const std::vector<double>& u_V = c.record.u_V;
+  const auto [low, high] = std::minmax_element(u_V.begin(), u_V.end());
+  if (!(*high > *low)) {
+    c.limited_share = 1.0;
+    c.notes.push_back(
+        number("the command stays at %.4g V: the model is tried at this one value", *low));
+    return;
+  }
+  const double most_V = std::max(std::abs(*low), std::abs(*high));
+  const auto at_limit = std::count_if(u_V.begin(), u_V.end(),
+                                      [&](double u) { return std::abs(u) >= kAtLimit * most_V; });
+  c.limited_share = static_cast<double>(at_limit) / static_cast<double>(u_V.size());
+  if (c.limited_share > kAlwaysLimited) {
+    c.notes.push_back(
+        number("the command is at +-%.4g V in %.0f %% of the samples: smaller "
+               "commands are hardly tried",
+               most_V, 100.0 * c.limited_share));
+  } else if (c.limited_share > kOftenLimited) {
+    c.notes.push_back(number("the command is at its limit of +-%.4g V in %.0f %% of the samples",
+                             most_V, 100.0 * c.limited_share));
+  }
+}
+
+void note_stroke(Comparison& c, const plant_sim::ModelFile& model) {
+  for (const plant_sim::NamedValue& parameter : model.parameters) {
+    if (parameter.name != "stroke_m") continue;
+    const auto [low, high] = std::minmax_element(c.record.y_m.begin(), c.record.y_m.end());
+    if (*low < 0.0 || *high > parameter.value) {
+      char text[160];
+      std::snprintf(text, sizeof text,
+                    "y runs from %.4g to %.4g mm, outside the model's stroke of 0 to %.4g mm",
+                    1e3 * *low, 1e3 * *high, 1e3 * parameter.value);
+      c.notes.emplace_back(text);
+    }
+  }
+}
+
+void find_speed_error(Comparison& c) {
+  c.speed_error_mps.assign(c.record.size(), 0.0);
+  for (const Span& span : segments(c.record)) {
+    for (std::size_t k = span.begin; k + 1 < span.end; ++k) {
+      const double kept = 1.0 - c.record.share(k, c.observer_per_s);
+      c.speed_error_mps[k] = (c.error_m[k + 1] - kept * c.error_m[k]) / c.record.sample_time_s;
+    }
+  }
+}
+
+std::size_t half_window(const Comparison& c) {
+  return static_cast<std::size_t>(
+      std::max(1L, std::lround(kHalfWindow_s / c.record.sample_time_s)));
+}
+
+void find_arising(Comparison& c) {
+  const std::size_t half = half_window(c);
+  const double sample_time_s = c.record.sample_time_s;
+  c.arising_mps.assign(c.record.size(), 0.0);
+  for (const Span& span : segments(c.record)) {
+    for (std::size_t k = span.begin; k < span.end; ++k) {
+      const std::size_t from = k - std::min(half, k - span.begin);
+      const std::size_t to = std::min(k + half, span.end - 1);
+      double sum_mps = 0.0;
+      for (std::size_t i = from; i < to; ++i) sum_mps += c.speed_error_mps[i];
+      const double steps = static_cast<double>(to - from);
+      const double mean_mps = sum_mps / steps;
+      const double modelled_mps =
+          (c.record.y_m[to] - c.record.y_m[from]) / (steps * sample_time_s) - mean_mps;
+      c.arising_mps[k] = mean_mps - c.explained.gain_ratio * modelled_mps - c.explained.offset_mps;
+    }
+  }
+}
+
+void find_regions(Comparison& c) {
+  Sorted sorted;
+  sorted.record = &c.record;
+  sorted.motion = &c.motion;
+  sorted.error_m = &c.error_m;
+  sorted.speed_error_mps = &c.speed_error_mps;
+  sorted.arising_mps = &c.arising_mps;
+  sorted.counts = c.record.settled;
+  const double window_s = 2.0 * static_cast<double>(half_window(c)) * c.record.sample_time_s;
+  sorted.noise_mps =
+      std::isfinite(c.noise_floor_m) ? std::sqrt(2.0) * c.noise_floor_m / window_s : 0.0;
+  c.regions = sort_by_region(sorted);
+  c.worst = failing_regions(sorted, c.regions);
+  c.headline = narrowed(sorted, c.regions, c.worst);
+}
+
+}  // namespace
+
+double Comparison::duration_s() const {
+  return static_cast<double>(record.size()) * record.sample_time_s;
+}
+
+Comparison compare(const plant_sim::ModelFile& model, const Measured& record,
+                   double observer_per_s) {
+  Comparison c;
+  c.model = model.name;
+  c.record = record;
+  c.observer_per_s = observer_per_s;
+  c.notes = record.notes;
+  const estimator::residual::NoiseFloor floor =
+      estimator::residual::noise_floor(broken(record, record.y_m, false), record.sample_time_s);
+  c.noise_floor_m = std::max(floor.sd_m, kLeastFloor_m);  // NaN stays NaN
+  c.encoder_step_m = floor.encoder_step_m;
+  require_motion(record, floor.sd_m);
+  note_command(c);
+  note_stroke(c, model);
+  c.error_m = run(model, record, observer_per_s);
+  c.free_error_m = run(model, record, 0.0);
+  c.rms_m = rms(c.error_m, record.settled);
+  c.free_run_rms_m = rms(c.free_error_m, std::vector<char>(record.size(), 1));
+  c.fit_percent = 100.0 * (1.0 - c.free_run_rms_m / spread(record.y_m));
+  c.k_step = k_step_errors(model, record);
+  const std::vector<double> residual = broken(record, c.error_m, true);
+  c.whiteness_p = estimator::residual::whiteness(residual).p;
+  c.independence_p =
+      estimator::residual::independence(residual, broken(record, record.u_V, false)).p;
+  c.motion = motion(record, std::isfinite(floor.sd_m) ? floor.sd_m : 0.0);
+  find_speed_error(c);
+  c.explained = explained(record, c.error_m, c.speed_error_mps, observer_per_s);
+  find_arising(c);
+  find_regions(c);
+  return c;
+}
+
+}  // namespace estimator::greybox::validation

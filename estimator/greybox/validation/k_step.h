@@ -1,0 +1,28 @@
+// How well the model predicts k samples ahead.
+//
+// Every k samples the model's position is put on the measured one; its other states (speed,
+// pressures, spool) stay as its own run under the measured command has them. The error just before
+// the next such moment is the k-step error. Several runs, set off against each other, share the
+// work. A perfect model's k-step error is sqrt(2) times the noise: that of both readings.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "estimator/greybox/dataset.h"
+#include "plant_sim/model_file.h"
+
+namespace estimator::greybox::validation {
+
+struct KStep {
+  std::size_t samples = 1;  ///< k
+  double rms_m = std::numeric_limits<double>::quiet_NaN();
+  std::size_t count = 0;  ///< how many predictions; 0: no segment is long enough
+};
+
+/// k = 1, 10 and 100.
+[[nodiscard]] std::vector<KStep> k_step_errors(const plant_sim::ModelFile& model,
+                                               const Measured& record);
+
+}  // namespace estimator::greybox::validation

@@ -1,0 +1,55 @@
+// A model's error sorted by what the rod was doing: bins over position, velocity, speed, command,
+// acceleration, direction and time, and what the error is in each.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "estimator/greybox/kinematics.h"
+
+namespace estimator::greybox::validation {
+
+/// What is sorted and by what; all series have the record's length, SI.
+struct Sorted {
+  const Measured* record = nullptr;
+  const Motion* motion = nullptr;
+  const std::vector<double>* error_m = nullptr;
+  const std::vector<double>* speed_error_mps = nullptr;  ///< measured less modelled speed
+  const std::vector<double>* arising_mps = nullptr;      ///< by which regions are told apart
+  std::vector<char> counts;                              ///< 0: the sample is left out
+  double noise_mps = 0.0;                                ///< of arising_mps, from the sensor
+};
+
+struct Bin {
+  double from = 0.0;  ///< SI; of direction: NaN
+  double to = 0.0;
+  std::string name;  ///< of direction: "extending"; empty otherwise
+  std::size_t count = 0;
+  double time_share = 0.0;
+  double error_share = 0.0;  ///< of the squared position error
+  double rms_m = 0.0;        ///< of the position error
+  double mean_m = 0.0;
+  double speed_error_mps = 0.0;  ///< mean; positive: the rod moves out more than the model
+  double arising_rms_mps = 0.0;
+  double arising_share = 0.0;  ///< of the squared speed error
+  /// How many samples at least a correlation length apart: what the RMS is worth.
+  double looks = 0.0;
+};
+
+struct Region {
+  std::string variable;  ///< y, v, speed, u, acceleration, direction, time
+  std::vector<Bin> bins;
+  std::vector<int> bin_of;  ///< of each sample; -1: left out
+};
+
+/// Over how many samples arising errors hang together: 1 + 2 sum rho(k)^2, that of their squares.
+[[nodiscard]] double correlation_length(const Sorted& sorted);
+
+/// Edges are round numbers; a bin of too few samples is joined with its neighbour.
+[[nodiscard]] std::vector<Region> sort_by_region(const Sorted& sorted);
+
+/// Figures of the samples where `in` is not 0; from, to and name are left to the caller.
+[[nodiscard]] Bin figures(const Sorted& sorted, const std::vector<char>& in, double length);
+
+}  // namespace estimator::greybox::validation

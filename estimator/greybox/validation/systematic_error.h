@@ -1,0 +1,29 @@
+// Two plain things that make a model's position run away from the measured one, and how much of the
+// error they would explain: a speed that is off in proportion, and one that is off by a constant.
+//
+//   e(k) ~ g z_v(k) + b z_1(k),   z(k+1) = (1 - l Ts) z(k) + Ts x(k),   x = modelled speed, 1
+//
+// e measured less modelled position under the observer l; g relative, b in m/s.
+#pragma once
+
+#include <vector>
+
+#include "estimator/greybox/dataset.h"
+
+namespace estimator::greybox::validation {
+
+enum class Plain { neither, gain, offset, both };
+
+struct Explained {
+  Plain plain = Plain::neither;  ///< what explains at least half, as simply as possible
+  double share = 0.0;            ///< of the squared error, by that
+  double gain_ratio = 0.0;       ///< g: the rod moves 1 + g times as far as the model; 0: not used
+  double offset_mps = 0.0;       ///< b; 0: not used
+  double left_rms_m = 0.0;       ///< of the error without what they explain
+};
+
+[[nodiscard]] Explained explained(const Measured& record, const std::vector<double>& error_m,
+                                  const std::vector<double>& speed_error_mps,
+                                  double observer_per_s);
+
+}  // namespace estimator::greybox::validation

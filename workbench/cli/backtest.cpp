@@ -1,0 +1,66 @@
+// spoolwatch backtest NEW.toml LOG...: new rules on old logs.
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "config/record/whole_file.h"
+#include "workbench/cli/command.h"
+#include "workbench/cli/number_check.h"
+#include "workbench/replay/backtest_text.h"
+
+namespace workbench::cli {
+namespace {
+
+struct Options {
+  std::string configuration;
+  std::vector<std::string> logs;
+  std::string old;
+  std::string json;
+  double tolerance_s = 10.0;
+};
+
+void run(const Options& options) {
+  const replay::Rules new_rules = replay::read_rules(options.configuration);
+  std::optional<replay::Rules> old_rules;
+  if (!options.old.empty()) old_rules = replay::read_rules(options.old);
+  replay::BacktestReport report;
+  report.new_rules = options.configuration;
+  report.old_rules = options.old;
+  report.runs = replay::run_backtest(new_rules, old_rules, options.logs);
+  for (const replay::BacktestRun& each : report.runs) {
+    report.differences.push_back(
+        replay::compare(each.before, each.after, options.tolerance_s, 0.5 * each.sample_time_s));
+  }
+  if (options.json == "-") {
+    std::cout << replay::backtest_json(report).dump(2) << '\n';
+    return;
+  }
+  replay::print_backtest(report, std::cout);
+  if (!options.json.empty()) {
+    config::record::write_whole(options.json, replay::backtest_json(report).dump(2) + '\n');
+  }
+}
+
+}  // namespace
+
+void add_backtest(CLI::App& command, int& /*exit_code*/) {
+  const auto options = std::make_shared<Options>();
+  command
+      .add_option("configuration", options->configuration,
+                  "the new [[estimator]], [[band]] and bands_file")
+      ->required();
+  command.add_option("logs", options->logs, "LCM event logs, folders of them, or records")
+      ->required();
+  command.add_option("--old", options->old,
+                     "compare with what this configuration tells, not with what was recorded");
+  command
+      .add_option("--tolerance", options->tolerance_s,
+                  "alarms that come so near, or overlap, are the same one, s")
+      ->capture_default_str()
+      ->check(number_within(0.0, 1e6));
+  command.add_option("--json", options->json, "write the outcome there; - for standard output");
+  command.callback([options] { run(*options); });
+}
+
+}  // namespace workbench::cli

@@ -1,0 +1,176 @@
+// `spoolwatch compare MODEL.toml RECORD`: where a model fails against a measurement, as text, JSON
+// and a report.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "config/messages/channels.h"
+#include "config/record/record.h"
+#include "config/record/whole_file.h"
+#include "config/schema/document.h"
+#include "config/schema/error.h"
+#include "estimator/greybox/validation/comparison.h"
+#include "plant_sim/model_file.h"
+#include "workbench/cli/command.h"
+#include "workbench/cli/file_check.h"
+#include "workbench/cli/number_check.h"
+#include "workbench/compare/json.h"
+#include "workbench/compare/sections.h"
+#include "workbench/compare/text.h"
+#include "workbench/live/live_compare.h"
+#include "workbench/present/shell_command.h"
+
+namespace workbench::cli {
+
+namespace greybox = estimator::greybox;
+namespace validation = estimator::greybox::validation;
+namespace {
+
+using config::schema::Error;
+using config::schema::ExitCode;
+
+struct Arguments {
+  std::string model;
+  std::string record;
+  std::string json;
+  std::string report;
+  double from_s = -std::numeric_limits<double>::infinity();
+  double to_s = std::numeric_limits<double>::infinity();
+  double observer_per_s = greybox::kObserver_per_s;
+  std::vector<std::string> assignments;
+  bool all = false;
+  bool live = false;
+  live::WatchOptions watch{config::messages::kDefaultUrl, config::messages::kDefaultPrefix};
+};
+
+std::string command_line(const Arguments& a) {
+  std::string line =
+      "spoolwatch compare " + present::shell_word(a.model) + " " + present::shell_word(a.record);
+  const auto number = [&](const char* option, double value) {
+    char text[48];
+    std::snprintf(text, sizeof text, " %s %.9g", option, value);
+    line += text;
+  };
+  if (std::isfinite(a.from_s)) number("--from", a.from_s);
+  if (std::isfinite(a.to_s)) number("--to", a.to_s);
+  if (a.observer_per_s != greybox::kObserver_per_s) number("--observer", a.observer_per_s);
+  for (const std::string& assignment : a.assignments)
+    line += " --set " + present::shell_word(assignment);
+  if (!a.json.empty()) line += " --json " + present::shell_word(a.json);
+  return line + " --report " + present::shell_word(a.report);
+}
+
+plant_sim::ModelFile read_model(const Arguments& a) {
+  auto document = config::schema::Document::load(a.model);
+  for (const std::string& assignment : a.assignments) document.set(assignment);
+  return plant_sim::read_model(document);
+}
+
+/// The record's samples from --from to --to.
+greybox::Measured read_measured(const Arguments& a) {
+  config::record::Record record = config::record::read_record(a.record);
+  greybox::Measured whole = greybox::measured(record);
+  if (std::isinf(a.from_s) && std::isinf(a.to_s)) return whole;
+  const auto index = [&](double t_s) {
+    return static_cast<std::size_t>(std::lower_bound(whole.t_s.begin(), whole.t_s.end(), t_s) -
+                                    whole.t_s.begin());
+  };
+  const std::size_t from = index(a.from_s);
+  const std::size_t to = index(a.to_s);
+  const double least_s = 2.0;
+  if (from >= to || static_cast<double>(to - from) * whole.sample_time_s < least_s) {
+    throw Error(ExitCode::usage, "--from, --to: leave less than 2 s of " + whole.name);
+  }
+  greybox::Measured part = greybox::part(whole, from, to);
+  part.notes = whole.notes;
+  return part;
+}
+
+void check_observer(const Arguments& a, const greybox::Measured& record) {
+  if (a.observer_per_s * record.sample_time_s < 1.0) return;
+  throw Error(ExitCode::usage, "--observer: is too fast for samples every " +
+                                   std::to_string(record.sample_time_s) +
+                                   " s; allowed: below 1 / sample time");
+}
+
+bool utf8_terminal() {
+  for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
+    const char* const value = std::getenv(name);
+    if (value == nullptr || *value == '\0') continue;
+    const std::string locale = value;
+    return locale.find("UTF-8") != std::string::npos || locale.find("utf8") != std::string::npos;
+  }
+  return false;
+}
+
+void run_live(Arguments& a) {
+  for (const auto& [given, option] :
+       {std::pair(!a.record.empty(), "RECORD"), std::pair(!a.report.empty(), "--report"),
+        std::pair(a.all, "--all"), std::pair(!a.json.empty() && a.json != "-", "--json FILE")}) {
+    if (given) throw Error(ExitCode::usage, std::string("--live: not together with ") + option);
+  }
+  a.watch.json = a.json == "-";
+  a.watch.observer_per_s = a.observer_per_s;
+  live::watch(read_model(a), a.watch);
+}
+
+void run(Arguments& a) {
+  if (a.live) return run_live(a);
+  if (a.record.empty()) throw Error(ExitCode::usage, "compare: no RECORD, and not --live");
+  check_outputs({{"--json", a.json}, {"--report", a.report}}, {a.model, {a.record}});
+  const plant_sim::ModelFile model = read_model(a);
+  const greybox::Measured record = read_measured(a);
+  check_observer(a, record);
+  const validation::Comparison comparison = validation::compare(model, record, a.observer_per_s);
+  if (!a.report.empty()) {
+    present::write_report(compare::make_report(comparison, command_line(a)), a.report);
+  }
+  if (a.json == "-") {
+    std::cout << compare::to_json(comparison);
+    return;
+  }
+  if (!a.json.empty()) config::record::write_whole(a.json, compare::to_json(comparison));
+  std::cout << compare::to_text(comparison, utf8_terminal(), a.all);
+}
+
+}  // namespace
+
+void add_compare(CLI::App& command, int& /*exit_code*/) {
+  auto arguments = std::make_shared<Arguments>();
+  command.add_option("model", arguments->model, "model file (TOML)")->required();
+  command.add_option("record", arguments->record, "CSV (t_s,u_V,y_m) or LCM log");
+  command.add_option("--json", arguments->json, "file for JSON, - for standard output");
+  command.add_option("--report", arguments->report, "file for a report with plots (HTML)");
+  command.add_option("--from", arguments->from_s, "s: leave out what is before")
+      ->check(finite_number());
+  command.add_option("--to", arguments->to_s, "s: leave out what is after")->check(finite_number());
+  command
+      .add_option("--observer", arguments->observer_per_s,
+                  "1/s: how fast drift is led back to the measured position")
+      ->check(positive_number())
+      ->capture_default_str();
+  command.add_option("--set", arguments->assignments, "table.key=value of the model file")
+      ->allow_extra_args(false);
+  command.add_flag("--all", arguments->all, "the error by every variable, not the most telling");
+  CLI::Option* live =
+      command.add_flag("--live", arguments->live, "with the running daemon, a line each second");
+  command
+      .add_option("--lcm-url", arguments->watch.url, "of --live; file:///LOG?mode=r takes a log")
+      ->needs(live)
+      ->capture_default_str();
+  command.add_option("--prefix", arguments->watch.prefix, "of --live: of the channel names")
+      ->needs(live)
+      ->capture_default_str();
+  command.add_option("--duration", arguments->watch.duration_s, "of --live, s (0: until Ctrl-C)")
+      ->needs(live)
+      ->check(CLI::NonNegativeNumber);
+  command.callback([arguments] { run(*arguments); });
+}
+
+}  // namespace workbench::cli

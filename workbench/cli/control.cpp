@@ -1,0 +1,69 @@
+// spoolwatch status | arm | disarm | start | stop | reset | hold | reference: the running daemon,
+// asked and ordered through its control socket.
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "daemon/control/protocol.h"
+#include "workbench/cli/command.h"
+#include "workbench/control/order.h"
+#include "workbench/control/status_text.h"
+
+namespace workbench::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace control = monitor::control;
+
+struct Options {
+  OrderOptions common;
+  double centre_m = 0.0;
+  double amplitude_m = 0.0;
+  double frequency_Hz = 0.0;
+};
+
+int order(const Json& request, const OrderOptions& options) {
+  const Json answer = give_order(request, options);
+  if (options.json == "-") return 0;
+  if (request.at(control::key::kCommand) == control::kStatus) {
+    print_status(answer, std::cout);
+  } else {
+    std::cout << answer.at(control::key::kState).get<std::string>() << '\n';
+  }
+  return 0;
+}
+
+void add_word(CLI::App& command, int& exit_code, const char* word) {
+  const auto options = std::make_shared<OrderOptions>();
+  add_order_options(command, *options);
+  command.callback([options, word, &exit_code] {
+    exit_code = order({{control::key::kCommand, word}}, *options);
+  });
+}
+
+}  // namespace
+
+void add_status(CLI::App& command, int& exit_code) { add_word(command, exit_code, "status"); }
+void add_arm(CLI::App& command, int& exit_code) { add_word(command, exit_code, "arm"); }
+void add_disarm(CLI::App& command, int& exit_code) { add_word(command, exit_code, "disarm"); }
+void add_start(CLI::App& command, int& exit_code) { add_word(command, exit_code, "start"); }
+void add_stop(CLI::App& command, int& exit_code) { add_word(command, exit_code, "stop"); }
+void add_reset(CLI::App& command, int& exit_code) { add_word(command, exit_code, "reset"); }
+void add_hold(CLI::App& command, int& exit_code) { add_word(command, exit_code, "hold"); }
+
+void add_reference(CLI::App& command, int& exit_code) {
+  const auto options = std::make_shared<Options>();
+  add_order_options(command, options->common);
+  command.add_option("--centre", options->centre_m, "middle of the motion, m")->required();
+  command.add_option("--amplitude", options->amplitude_m, "m")->capture_default_str();
+  command.add_option("--frequency", options->frequency_Hz, "Hz")->capture_default_str();
+  command.callback([options, &exit_code] {
+    exit_code = order({{control::key::kCommand, control::kReference},
+                       {control::key::kCentre, options->centre_m},
+                       {control::key::kAmplitude, options->amplitude_m},
+                       {control::key::kFrequency, options->frequency_Hz}},
+                      options->common);
+  });
+}
+
+}  // namespace workbench::cli

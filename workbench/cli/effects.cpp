@@ -1,0 +1,117 @@
+// spoolwatch effects: the library of physical effects, and what a model file adds to it by
+// formulas, for reading and as JSON.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "config/record/whole_file.h"
+#include "config/units/unit_suffix.h"
+#include "plant_sim/library.h"
+#include "plant_sim/model_file.h"
+#include "workbench/cli/command.h"
+
+namespace workbench::cli {
+namespace {
+
+using nlohmann::ordered_json;
+using plant_sim::EffectInfo;
+using plant_sim::ParameterInfo;
+using plant_sim::PlantInfo;
+
+bool fits(const EffectInfo& effect, const PlantInfo& plant) {
+  return std::all_of(effect.sites.begin(), effect.sites.end(), [&](const std::string& site) {
+    return std::find(plant.sites.begin(), plant.sites.end(), site) != plant.sites.end();
+  });
+}
+
+std::vector<std::string> plants_of(const EffectInfo& effect) {
+  std::vector<std::string> names;
+  for (const PlantInfo& plant : plant_sim::plant_library()) {
+    if (fits(effect, plant)) names.push_back(plant.name);
+  }
+  return names;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+// JSON has no infinity: null, as for every missing number.
+ordered_json finite(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
+}
+
+ordered_json json_of(const std::vector<ParameterInfo>& parameters, const char* last) {
+  ordered_json list = ordered_json::array();
+  for (const ParameterInfo& p : parameters) {
+    list.push_back({{"name", p.name},
+                    {"what", p.what},
+                    {"unit", config::units::unit_of(p.name)},
+                    {"min", finite(p.min)},
+                    {"max", finite(p.max)},
+                    {"typical", finite(p.typical)},
+                    {last, finite(p.neutral)}});
+  }
+  return list;
+}
+
+ordered_json library_json(const std::vector<EffectInfo>& listed) {
+  ordered_json effects = ordered_json::array();
+  for (const EffectInfo& effect : listed) {
+    effects.push_back({{"name", effect.name},
+                       {"equation", effect.equation},
+                       {"sites", effect.sites},
+                       {"plants", plants_of(effect)},
+                       {"dissipative", effect.dissipative},
+                       {"parameters", json_of(effect.parameters, "neutral")}});
+    if (!effect.what.empty()) effects.back()["what"] = effect.what;
+  }
+  ordered_json plants = ordered_json::array();
+  for (const PlantInfo& plant : plant_sim::plant_library()) {
+    plants.push_back({{"name", plant.name},
+                      {"sites", plant.sites},
+                      {"parameters", json_of(plant.parameters, "default")}});
+  }
+  return {{"effects", effects}, {"plants", plants}};
+}
+
+void print_library(const std::vector<EffectInfo>& listed) {
+  for (const EffectInfo& effect : listed) {
+    const std::string what = effect.what.empty() ? "" : "  " + effect.what + "\n";
+    std::printf("%s\n  %s\n%s  acts on %s; for %s\n", effect.name.c_str(), effect.equation.c_str(),
+                what.c_str(), joined(effect.sites).c_str(), joined(plants_of(effect)).c_str());
+    for (const ParameterInfo& p : effect.parameters) {
+      std::printf("    %-30s %g to %g %s, typically %g: %s\n", p.name, p.min, p.max,
+                  config::units::unit_of(p.name).c_str(), p.typical, p.what);
+    }
+  }
+}
+
+}  // namespace
+
+void add_effects(CLI::App& command, int&) {
+  auto json = std::make_shared<std::string>();
+  auto model = std::make_shared<std::string>();
+  command.add_option("MODEL", *model, "a model file, to list its own effects too");
+  command.add_option("--json", *json, "write as JSON; - is standard output");
+  command.callback([json, model] {
+    const std::vector<EffectInfo> listed =
+        model->empty() ? plant_sim::effect_library()
+                       : plant_sim::effects_of(plant_sim::load_model(*model));
+    if (json->empty()) {
+      print_library(listed);
+    } else if (*json == "-") {
+      std::printf("%s\n", library_json(listed).dump(2).c_str());
+    } else {
+      config::record::write_whole(*json, library_json(listed).dump(2) + "\n");
+    }
+  });
+}
+
+}  // namespace workbench::cli

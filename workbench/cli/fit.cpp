@@ -1,0 +1,142 @@
+// spoolwatch fit: a model's parameters estimated from records.
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+#include "config/record/whole_file.h"
+#include "config/units/quantity.h"
+#include "workbench/cli/command.h"
+#include "workbench/cli/interrupt.h"
+#include "workbench/cli/number_check.h"
+#include "workbench/fit/outcome.h"
+
+namespace workbench::cli {
+namespace fit {
+
+std::string to_model(const Outcome& o) {
+  const Estimation& e = o.estimation;
+  std::string text = "# Fitted by: " + o.prepared->command + "\n";
+  for (const auto& record : o.prepared->task.evidence.records)
+    text += "# record " + record.name + "\n";
+  text += "# error " + config::units::length_words(e.before.rms_m) + " -> " +
+          config::units::length_words(e.after.rms_m) + " RMS" +
+          (e.interrupted ? "; interrupted, the best so far" : "") + "\n";
+  for (const Parameter& p : e.parameters) {
+    char line[200];
+    std::snprintf(line, sizeof line, "# %s %.6g, 95 %% from %.6g to %.6g", p.search.name.c_str(),
+                  p.value, p.low, p.high);
+    const std::string more = remark(p);
+    text += line + (more.empty() ? "" : "; " + more) + "\n";
+  }
+  return text + plant_sim::print_model(e.better);
+}
+
+}  // namespace fit
+
+namespace {
+
+using fit::Request;
+
+constexpr int kMostStarts = 1000;
+constexpr int kMostThreads = 256;
+
+void write(const fit::Outcome& outcome, const Request& request) {
+  if (!request.output.empty()) config::record::write_whole(request.output, to_model(outcome));
+  if (!request.report.empty()) write_report(to_report(outcome), request.report);
+  if (request.json == "-") {
+    std::cout << to_json(outcome);
+    return;
+  }
+  if (!request.json.empty()) config::record::write_whole(request.json, to_json(outcome));
+  std::cout << to_text(outcome);
+}
+
+int run(const Request& request) {
+  const auto begin = std::chrono::steady_clock::now();
+  fit::Prepared prepared = prepare(request);
+  const Interrupt interrupt;
+  prepared.task.cancel = Interrupt::requested;
+  const bool shown = !request.quiet && isatty(STDERR_FILENO) == 1;
+  if (shown) {
+    prepared.task.progress = [](const std::string& doing) {
+      std::cerr << "\r\x1b[K" << doing << std::flush;
+    };
+  }
+  fit::Outcome outcome;
+  outcome.prepared = &prepared;
+  outcome.noise_floor_m = prepared.noise_floor_m;
+  outcome.output = request.output;
+  outcome.estimation = estimate(prepared.task);
+  if (shown) std::cerr << "\r\x1b[K" << std::flush;
+  outcome.runtime_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  write(outcome, request);
+  return Interrupt::exit_code();
+}
+
+void declare_choice(CLI::App& command, Request& request) {
+  const auto each = [&](const char* name, std::vector<std::string>& values, const char* what) {
+    command.add_option(name, values, what)->allow_extra_args(false);
+  };
+  each("--free", request.wishes.free,
+       "name[,name...]: fit these only; default: the plant's uncertain parameters and those of its "
+       "effects");
+  each("--fix", request.wishes.fix, "name[,name...]: leave these as they are");
+  each("--prior", request.wishes.priors,
+       "name=mean+-sd (sd in the unit, or in % of the mean), or name=none");
+  each("--bounds", request.wishes.bounds, "name=low:high");
+  each("--ignore", request.ignored, "from:to or RECORD@from:to, s: these samples do not count");
+  command.add_option("--weight", request.weights, "of each record's squared errors, in order")
+      ->allow_extra_args(false)
+      ->check(number_within(0.0, 1e6));
+}
+
+}  // namespace
+
+void add_fit(CLI::App& command, int& exit_code) {
+  auto request = std::make_shared<Request>();
+  command.add_option("MODEL", request->model, "a model file (TOML)")->required();
+  command
+      .add_option("RECORD", request->records,
+                  "CSV or MAT (t_s,u_V,y_m), or LCM log; several are fitted together")
+      ->required();
+  command.add_option("-o,--output", request->output, "the model file to write");
+  declare_choice(command, *request);
+  CLI::Option* const holdout =
+      command.add_option("--holdout", request->holdouts, "a record that only scores, not fitted")
+          ->allow_extra_args(false);
+  command.add_option("--fit", request->fit, "part of each record that is fitted; the rest scores")
+      ->check(CLI::IsMember({"all", "blocks", "first-half", "second-half"}))
+      ->capture_default_str()
+      ->excludes(holdout);
+  command.add_option("--starts", request->starts, "searches from so many places")
+      ->check(number_within(1, kMostStarts))
+      ->capture_default_str();
+  command
+      .add_option("--profile", request->profiles,
+                  "walk the likelihood of: a parameter's name, doubtful (default), none")
+      ->allow_extra_args(false);
+  command
+      .add_option("--observer", request->observer_per_s,
+                  "1/s: how fast drift is led back to the measured position")
+      ->check(number_within(0.0, 1e4))
+      ->capture_default_str();
+  command.add_option("--threads", request->threads, "default: one for each processor")
+      ->check(number_within(1, kMostThreads));
+  command.add_option("--set", request->assignments, "table.key=value of the model file")
+      ->allow_extra_args(false);
+  command.add_option("--json", request->json, "file for JSON, - for standard output");
+  command.add_option("--report", request->report, "file for a report with plots (HTML)");
+  command.add_flag("--quiet", request->quiet, "no progress on standard error");
+  command.footer(
+      "Ctrl-C ends it early: the best so far is printed and written, marked as interrupted, and "
+      "the exit code is 130; a second Ctrl-C ends the program at once.");
+  command.callback([request, &exit_code] { exit_code = run(*request); });
+}
+
+}  // namespace workbench::cli

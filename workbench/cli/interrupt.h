@@ -1,0 +1,27 @@
+// Ctrl-C while something long runs: the first asks it to stop, a second one ends the program.
+#pragma once
+
+#include <csignal>
+
+namespace workbench::cli {
+
+/// SIGINT and SIGTERM are caught while this lives, one such object at a time; afterwards they do
+/// what they did before.
+class Interrupt {
+ public:
+  Interrupt();
+  ~Interrupt();
+  Interrupt(const Interrupt&) = delete;
+  Interrupt& operator=(const Interrupt&) = delete;
+
+  /// From any thread.
+  [[nodiscard]] static bool requested() noexcept { return exit_code() != 0; }
+  /// As shells report a program that a signal ended: 128 and its number; 0 when none came.
+  [[nodiscard]] static int exit_code() noexcept;
+
+ private:
+  struct sigaction before_int_ {};
+  struct sigaction before_term_ {};
+};
+
+}  // namespace workbench::cli

@@ -1,0 +1,101 @@
+// spoolwatch isolate: physical parameters per window, and the changes named.
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "config/record/whole_file.h"
+#include "workbench/cli/command.h"
+#include "workbench/cli/number_check.h"
+#include "workbench/isolate/outcome.h"
+
+namespace workbench::cli {
+namespace {
+
+using isolate::Outcome;
+using isolate::Request;
+
+void run(const Request& request) {
+  const Outcome outcome = isolate::isolate(request);
+  if (!request.report.empty()) write_report(to_report(outcome), request.report);
+  if (request.json == "-") {
+    std::cout << to_json(outcome);
+    return;
+  }
+  if (!request.json.empty()) config::record::write_whole(request.json, to_json(outcome));
+  std::cout << to_text(outcome, request.all_windows);
+}
+
+void declare_judging(CLI::App& command, Request& request) {
+  CLI::Option* const healthy =
+      command.add_option("--healthy", request.healthy, "from:to, s: the part without a fault")
+          ->capture_default_str();
+  command
+      .add_option("--healthy-rms", request.healthy_rms_m,
+                  "m: the healthy error, instead of learning it; the file's values are healthy")
+      ->check(positive_number())
+      ->excludes(healthy);
+  command
+      .add_option("--limit", request.settings.most_ratio,
+                  "times the healthy error: windows beyond are invalid")
+      ->check(number_within(1.0, 1e3))
+      ->capture_default_str();
+  command
+      .add_option("--least", request.settings.thresholds.least_ratio,
+                  "ratio: smaller changes of a parameter are not named")
+      ->check(number_within(1e-4, 1.0))
+      ->capture_default_str();
+  command.add_flag("--suspect-position-sensor", request.settings.thresholds.suspect_position_sensor,
+                   "its scale or drift may explain a change as well");
+  auto& following = request.settings.following;
+  CLI::Option* const follow =
+      command
+          .add_option("--follow", following.parameters,
+                      "name[,name...]: parameters whose slow changes are no faults")
+          ->delimiter(',')
+          ->allow_extra_args(false);
+  command
+      .add_option("--follow-per-hour", following.ratio_per_h,
+                  "ratio: how much of its value a parameter is followed in an hour")
+      ->check(number_within(1e-3, 1e3))
+      ->needs(follow)
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void add_isolate(CLI::App& command, int& /*exit_code*/) {
+  auto request = std::make_shared<Request>();
+  command.add_option("MODEL", request->model, "a model file (TOML), calibrated when healthy")
+      ->required();
+  command.add_option("RECORD", request->record, "CSV or MAT (t_s,u_V,y_m), or LCM log")->required();
+  command
+      .add_option("--parameters", request->parameters,
+                  "name[,name...] as in model files, such as null_bias.offset_V, mass_kg")
+      ->allow_extra_args(false)
+      ->capture_default_str();
+  command.add_option("--window", request->settings.window_s, "s: length of a window")
+      ->check(number_within(0.1, 1e3))
+      ->capture_default_str();
+  command.add_option("--stride", request->settings.stride_s, "s: from window to window")
+      ->check(number_within(1e-3, 1e3))
+      ->capture_default_str();
+  command
+      .add_option("--observer", request->settings.observer_per_s,
+                  "1/s: how fast drift is led back to the measured position")
+      ->check(number_within(0.0, 1e3))
+      ->capture_default_str();
+  declare_judging(command, *request);
+  command.add_flag("--no-pressures", request->no_pressures,
+                   "supply_pressure_Pa, pressure_in_Pa, pressure_out_Pa of RECORD are not used");
+  command.add_option("--set", request->assignments, "table.key=value of the model file")
+      ->allow_extra_args(false);
+  command.add_option("--learn", request->learn,
+                     "file for what is healthy, which [[tracker]] healthy names");
+  command.add_option("--rig", request->rig_id, "rig id, noted in that file; another is refused");
+  command.add_flag("--windows", request->all_windows, "print every window");
+  command.add_option("--json", request->json, "file for JSON, - for standard output");
+  command.add_option("--report", request->report, "file for a report with plots (HTML)");
+  command.callback([request] { run(*request); });
+}
+
+}  // namespace workbench::cli

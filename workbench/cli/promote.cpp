@@ -1,0 +1,202 @@
+// spoolwatch promote MODEL2.toml: a better model, and bands learned beside it, into the running
+// daemon; refused when it would be worse. `promote --back` brings the one before it back.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <span>
+
+#include "config/record/whole_file.h"
+#include "config/schema/document.h"
+#include "config/schema/error.h"
+#include "plant_sim/model_file.h"
+#include "workbench/cli/command.h"
+#include "workbench/cli/number_check.h"
+#include "workbench/control/order.h"
+#include "workbench/present/compare_units.h"
+#include "workbench/promotion/running_daemon.h"
+#include "workbench/promotion/trial.h"
+#include "workbench/promotion/versions.h"
+#include "workbench/train/learn_bands.h"
+
+namespace workbench::cli {
+namespace {
+
+namespace fs = std::filesystem;
+namespace fdi = estimator::fdi;
+using config::schema::Error;
+using config::schema::ExitCode;
+using promotion::RunningDaemon;
+
+struct Options {
+  std::string model;
+  std::vector<std::string> records;
+  std::string socket = monitor::control::kDefaultSocket;
+  double false_alarm_time_s = 86400.0;
+  bool back = false;
+};
+
+plant_sim::ModelFile read_model(const fs::path& file) {
+  const auto document = config::schema::Document::load(file);
+  return plant_sim::read_model(document);
+}
+
+/// Says a step here and in the audit file.
+void step(const RunningDaemon& daemon, const std::string& text) {
+  std::cout << text << std::endl;
+  daemon.note(text);
+}
+
+class Attempt {
+ public:
+  Attempt(const RunningDaemon& daemon, const Options& options)
+      : daemon_(daemon), options_(options), candidate_(daemon.bands_file().string() + ".new") {}
+  ~Attempt() {
+    std::error_code ignored;
+    fs::remove(candidate_, ignored);
+  }
+  Attempt(const Attempt&) = delete;
+  Attempt& operator=(const Attempt&) = delete;
+
+  void run() {
+    read_records();
+    compare_models();
+    learn();
+    backtest();
+    swap();
+  }
+
+ private:
+  void read_records() {
+    files_ = options_.records.empty() ? promotion::healthy_logs(daemon_) : options_.records;
+    for (const std::string& file : files_) records_.push_back(config::record::read_record(file));
+    std::string names;
+    for (const std::string& file : files_) names += ' ' + fs::path(file).filename().string();
+    step(daemon_, options_.model + ": tried on" + names);
+  }
+  void compare_models() {
+    const promotion::ModelTrial trial = promotion::try_model(read_model(daemon_.model_file()),
+                                                             read_model(options_.model), records_);
+    for (const std::string& note : trial.notes) std::cerr << "left out: " << note << '\n';
+    const std::string figures = "error " + present::length(trial.after_rms_m) + ", before " +
+                                present::length(trial.before_rms_m) + ", noise floor " +
+                                present::length(trial.floor_m);
+    if (trial.worse()) throw Error(ExitCode::failed, "the new model is worse: " + figures);
+    step(daemon_, "compared: " + figures);
+  }
+  void learn() {
+    std::vector<std::string> quantities;
+    for (const fdi::BandConfig& band : daemon_.rules().bands) {
+      const bool open = std::isinf(band.low) && std::isinf(band.high);
+      if (open && fdi::split_quantity(band.quantity).source != fdi::kSampleSource) {
+        quantities.push_back(band.quantity);
+      }
+    }
+    std::sort(quantities.begin(), quantities.end());
+    quantities.erase(std::unique(quantities.begin(), quantities.end()), quantities.end());
+    if (quantities.empty()) {
+      throw config::schema::bad_config(daemon_.config_file(), "has no [[band]] without limits",
+                                       "one whose limits are learned");
+    }
+    fdi::LearnedBands learned =
+        train::learn_bands(daemon_.rules(), quantities, std::span(records_).first(learned_from()),
+                           {daemon_.config_file(), options_.false_alarm_time_s});
+    bands_ = config::schema::print_toml([&](auto& v) { learned.visit(v); });
+    config::record::write_whole(candidate_, bands_);
+    std::string text = "bands learned:";
+    for (const fdi::LearnedBand& band : learned.bands) {
+      char limits[96];
+      std::snprintf(limits, sizeof limits, " %.6g to %.6g;", band.low, band.high);
+      text += ' ' + band.quantity + limits;
+    }
+    step(daemon_, text);
+  }
+  void backtest() {
+    const std::vector<std::string> alarms = promotion::new_alarms(daemon_, candidate_, files_);
+    if (!alarms.empty()) {
+      throw Error(ExitCode::failed, std::to_string(alarms.size()) +
+                                        " new alarms on the healthy records: " + alarms.front());
+    }
+    step(daemon_, "back-tested: no new alarm on " + std::to_string(files_.size()) + " records, " +
+                      std::to_string(files_.size() - learned_from()) + " of them not learned from");
+  }
+  /// The last of several records only tries the bands.
+  [[nodiscard]] std::size_t learned_from() const noexcept {
+    return records_.size() > 1 ? records_.size() - 1 : 1;
+  }
+  void swap() {
+    const int version =
+        promotion::replace({{daemon_.model_file(), promotion::read_whole(options_.model)},
+                            {daemon_.bands_file(), bands_}});
+    try {
+      daemon_.reload();
+    } catch (const Error& e) {
+      promotion::bring_back({daemon_.model_file(), daemon_.bands_file()}, version);
+      try {
+        daemon_.reload();
+      } catch (const Error&) {  // it still runs by the old rules: it took nothing
+      }
+      throw Error(ExitCode::failed, std::string("the daemon did not take it, the old files are "
+                                                "back: ") +
+                                        e.what());
+    }
+    step(daemon_, "in use; the one before it is kept as version " + std::to_string(version) +
+                      ": spoolwatch promote --back");
+  }
+
+  const RunningDaemon& daemon_;
+  const Options& options_;
+  fs::path candidate_;
+  std::vector<std::string> files_;
+  std::vector<config::record::Record> records_;
+  std::string bands_;
+};
+
+void go_back(const RunningDaemon& daemon) {
+  const std::vector<fs::path> files = {daemon.model_file(), daemon.bands_file()};
+  const int version = promotion::newest_version(files);
+  if (version == 0) throw Error(ExitCode::failed, "there is none before " + files[0].string());
+  promotion::bring_back(files, version);
+  daemon.reload();
+  step(daemon, "version " + std::to_string(version) + " is in use again");
+}
+
+void promote(const Options& options) {
+  if (options.back == !options.model.empty()) {
+    throw Error(ExitCode::usage, "promote: either MODEL.toml or --back");
+  }
+  const RunningDaemon daemon(options.socket);
+  try {
+    if (options.back) return go_back(daemon);
+    std::error_code ignored;
+    if (fs::equivalent(options.model, daemon.model_file(), ignored)) {
+      throw Error(ExitCode::failed, options.model + " is the model in use");
+    }
+    Attempt(daemon, options).run();
+  } catch (const Error& e) {
+    daemon.note(std::string("refused: ") + e.what());
+    throw Error(ExitCode::failed, std::string("refused: ") + e.what());
+  }
+}
+
+}  // namespace
+
+void add_promote(CLI::App& command, int& /*exit_code*/) {
+  auto options = std::make_shared<Options>();
+  command.add_option("model", options->model, "the better model (TOML)");
+  command.add_option("--record", options->records,
+                     "healthy records; the last of several tries the bands that the others "
+                     "teach; without: the daemon's own logs");
+  command.add_option("--socket", options->socket, "control socket of the daemon")
+      ->capture_default_str();
+  command
+      .add_option("--false-alarm-time-s", options->false_alarm_time_s,
+                  "mean time between false alarms of each band")
+      ->capture_default_str()
+      ->check(positive_number());
+  command.add_flag("--back", options->back, "the one before it again");
+  command.callback([options] { promote(*options); });
+}
+
+}  // namespace workbench::cli

@@ -1,0 +1,132 @@
+// spoolwatch record -o F.csv: a record from the running daemon, off its LCM stream.
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <iostream>
+#include <memory>
+
+#include "config/messages/channels.h"
+#include "config/schema/error.h"
+#include "spoolwatch/pressures_t.hpp"
+#include "spoolwatch/rods_t.hpp"
+#include "spoolwatch/sample_t.hpp"
+#include "workbench/cli/command.h"
+#include "workbench/cli/stop_condition.h"
+#include "workbench/live/listen_feed.h"
+#include "workbench/live/sample_file.h"
+
+namespace workbench::cli {
+namespace {
+
+using config::schema::Error;
+using config::schema::ExitCode;
+using live::SampleFile;
+
+struct Options {
+  std::string url = config::messages::kDefaultUrl;
+  std::string prefix = config::messages::kDefaultPrefix;
+  std::string out;
+  double duration_s = 0.0;
+};
+
+/// Longer than the record itself, for a daemon that is still to be heard.
+constexpr double kPatience_s = 5.0;
+
+void say(const std::string& line) { std::cerr << "spoolwatch record: " << line << std::endl; }
+
+class Recording final : public live::Listener {
+ public:
+  explicit Recording(const Options& options)
+      : file_(options.out), duration_s_(options.duration_s) {}
+
+  void on_rods(const spoolwatch::rods_t& rods) override { file_.note(rods); }
+  void on_pressures(const spoolwatch::pressures_t& pressures) override { file_.note(pressures); }
+  void on_sample(const spoolwatch::sample_t& sample) override {
+    if (complete_ || !ended_.empty()) return;
+    if (file_.rows() > 0 && (sample.tick <= tick_ || sample.sample_time_s != sample_time_s_)) {
+      ended_ = "the samples begin anew";
+      return;
+    }
+    if (file_.rows() == 0) first_tick_ = sample.tick;
+    sample_time_s_ = sample.sample_time_s;
+    const double since_s = static_cast<double>(sample.tick - first_tick_) * sample_time_s_;
+    if (duration_s_ > 0.0 && since_s >= duration_s_ - 0.5 * sample_time_s_) {
+      complete_ = true;
+      return;
+    }
+    tick_ = sample.tick;
+    file_.add(sample);
+  }
+  void on_new_run(std::int64_t run_id, bool first) override {
+    if (first) return say("daemon found, run " + std::to_string(run_id));
+    if (file_.rows() > 0) ended_ = "the daemon has been restarted";
+  }
+  void on_lost(const std::string& channel, std::int64_t count) override {
+    if (channel.ends_with("_SAMPLE") && !over()) lost_ += count;
+  }
+  void on_silence(bool silent) override {
+    say(silent ? "no daemon is heard" : "a daemon is heard again");
+  }
+  void on_notice(const std::string& what) override { say(what); }
+
+  [[nodiscard]] bool over() const noexcept { return complete_ || !ended_.empty(); }
+  [[nodiscard]] bool complete() const noexcept { return complete_; }
+  [[nodiscard]] SampleFile& file() noexcept { return file_; }
+
+  /// One line, and whether the record is what was asked for.
+  void sum_up(const std::string& out) const {
+    char text[256];
+    std::snprintf(text, sizeof text,
+                  "%s: %lld samples, %.6g s; %lld gaps of %lld periods together (%lld datagrams "
+                  "lost, %lld samples without a good position)",
+                  out.c_str(), static_cast<long long>(file_.rows()), file_.duration_s(),
+                  static_cast<long long>(file_.gaps()), static_cast<long long>(file_.missing()),
+                  static_cast<long long>(lost_), static_cast<long long>(file_.unusable()));
+    std::cout << text << '\n';
+    if (!ended_.empty()) say(ended_ + ": the record ends there");
+  }
+
+ private:
+  SampleFile file_;
+  double duration_s_;
+  double sample_time_s_ = 0.0;
+  std::int64_t first_tick_ = 0, tick_ = 0;
+  std::int64_t lost_ = 0;
+  bool complete_ = false;
+  std::string ended_;
+};
+
+int record(const Options& options) {
+  const bool limited = options.duration_s > 0.0;
+  const Ending ending(limited ? options.duration_s + kPatience_s : 0.0);
+  Recording recording(options);
+  {
+    live::Feed feed(options.url, options.prefix, true, recording);
+    while (!ending.reached() && !recording.over()) {
+      if (feed.poll(std::chrono::milliseconds(20)) || Ending::asked()) continue;
+      if (options.url.starts_with("file:")) break;
+      throw Error(ExitCode::failed, "LCM cannot receive on \"" + options.url + "\" any more");
+    }
+  }
+  recording.file().finish();
+  if (recording.file().rows() == 0) {
+    throw Error(ExitCode::failed, "no sample came on \"" + options.url + "\": nothing is written");
+  }
+  recording.sum_up(options.out);
+  const bool as_asked = recording.complete() || Ending::asked() || !limited;
+  return static_cast<int>(as_asked ? ExitCode::done : ExitCode::failed);
+}
+
+}  // namespace
+
+void add_record(CLI::App& command, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  command.add_option("-o,--output", options->out, "the record (CSV)")->required();
+  command.add_option("--duration", options->duration_s, "s of samples (0: until Ctrl-C)")
+      ->check(CLI::NonNegativeNumber);
+  command.add_option("--lcm-url", options->url, "LCM URL; file:///LOG?mode=r takes a log")
+      ->capture_default_str();
+  command.add_option("--prefix", options->prefix, "of the channel names")->capture_default_str();
+  command.callback([options, &exit_code] { exit_code = record(*options); });
+}
+
+}  // namespace workbench::cli

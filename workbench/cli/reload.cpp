@@ -1,0 +1,44 @@
+// spoolwatch reload: the running daemon reads its configuration once more; what is wrong with it is
+// said here, and the old one stays.
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "daemon/control/protocol.h"
+#include "workbench/cli/command.h"
+#include "workbench/control/order.h"
+
+namespace workbench::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace control = monitor::control;
+
+void print(const Json& answer, const char* key, const char* what) {
+  const auto list = answer.find(key);
+  if (list == answer.end() || !list->is_array()) return;
+  for (const Json& entry : *list) {
+    if (entry.is_string()) std::cout << what << entry.get<std::string>() << '\n';
+  }
+}
+
+void reload(const OrderOptions& options) {
+  const Json answer = give_order({{control::key::kCommand, control::kReload}}, options);
+  if (options.json == "-") return;
+  const auto changed = answer.find("changed");
+  if (changed == answer.end() || changed->empty()) std::cout << "no key has changed\n";
+  print(answer, "changed", "changed: ");
+  print(answer, "warm", "estimator goes on: ");
+  print(answer, "cold", "estimator warms up: ");
+  print(answer, "ended", "alarm is no more: ");
+}
+
+}  // namespace
+
+void add_reload(CLI::App& command, int& /*exit_code*/) {
+  const auto options = std::make_shared<OrderOptions>();
+  add_order_options(command, *options);
+  command.callback([options] { reload(*options); });
+}
+
+}  // namespace workbench::cli

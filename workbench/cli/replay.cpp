@@ -1,0 +1,121 @@
+// spoolwatch replay FOLDER: from the evidence of an alarm to the same alarm, bit for bit.
+#include <CLI/CLI.hpp>
+#include <bit>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "config/schema/error.h"
+#include "workbench/cli/command.h"
+#include "workbench/replay/replayer.h"
+
+namespace workbench::cli {
+namespace {
+
+using replay::Pack;
+using replay::ReplayOutcome;
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::string folder;
+  std::string json;
+};
+
+std::string hex(double value) {
+  char text[20];
+  std::snprintf(text, sizeof text, "%016llx",
+                static_cast<unsigned long long>(std::bit_cast<std::uint64_t>(value)));
+  return text;
+}
+
+std::string seconds(const Pack& pack, std::int64_t tick) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f s", static_cast<double>(tick) * pack.sample_time_s);
+  return text;
+}
+
+void print(const Pack& pack, const ReplayOutcome& outcome, std::ostream& out) {
+  out << "evidence of " << pack.source << '.' << pack.name << " on rig " << pack.rig_id << ", "
+      << pack.utc << '\n'
+      << "  " << outcome.samples << " samples from " << seconds(pack, pack.first_tick) << "; "
+      << outcome.estimates_same << " of " << outcome.estimates << " estimates and "
+      << outcome.alarms_same << " of " << outcome.alarms << " changes of alarms the same\n";
+  if (outcome.found) {
+    out << "  " << to_string(outcome.alarm.severity) << " at sample " << outcome.alarm.tick << ", "
+        << seconds(pack, outcome.alarm.tick) << ": ";
+    if (std::isfinite(outcome.alarm.value)) {
+      char value[40];
+      std::snprintf(value, sizeof value, "%.9g", outcome.alarm.value);
+      out << outcome.alarm.quantity << " = " << value << ", bits " << hex(outcome.alarm.value)
+          << '\n';
+    } else {
+      out << outcome.alarm.reason << '\n';
+    }
+    if (!outcome.derived) {
+      out << "  this alarm does not come from the fault detection: shown as it was recorded\n";
+    }
+  }
+  for (const std::string& difference : outcome.differences) out << "  " << difference << '\n';
+  if (outcome.same()) {
+    out << (outcome.derived ? "the same alarm" : "the same fault detection") << ", bit for bit\n";
+  } else {
+    out << (outcome.found ? "not the same\n" : "the alarm does not come again\n");
+  }
+}
+
+Json as_json(const Pack& pack, const ReplayOutcome& outcome) {
+  Json alarm = nullptr;
+  if (outcome.found) {
+    alarm = {{"source", pack.source},
+             {"name", pack.name},
+             {"severity", to_string(outcome.alarm.severity)},
+             {"tick", outcome.alarm.tick},
+             {"value_bits", hex(outcome.alarm.value)},
+             {"first_up", outcome.alarm.first_up},
+             {"derived", outcome.derived}};
+  }
+  return {{"same", outcome.same()},
+          {"alarm", alarm},
+          {"samples", outcome.samples},
+          {"estimates", outcome.estimates},
+          {"estimates_same", outcome.estimates_same},
+          {"alarms", outcome.alarms},
+          {"alarms_same", outcome.alarms_same},
+          {"differences", outcome.differences}};
+}
+
+int run(const Options& options) {
+  const Pack pack = replay::read_pack(options.folder);
+  const ReplayOutcome outcome = replay::replay(pack);
+  if (options.json == "-") {
+    std::cout << as_json(pack, outcome).dump(2) << '\n';
+  } else {
+    print(pack, outcome, std::cout);
+  }
+  if (!options.json.empty() && options.json != "-") {
+    std::ofstream out(options.json);
+    out << as_json(pack, outcome).dump(2) << '\n';
+    out.close();
+    if (!out) {
+      throw config::schema::Error(config::schema::ExitCode::failed,
+                                  options.json + ": cannot be written");
+    }
+  }
+  return outcome.same() ? 0 : static_cast<int>(config::schema::ExitCode::failed);
+}
+
+}  // namespace
+
+void add_replay(CLI::App& command, int& exit_code) {
+  const auto options = std::make_shared<Options>();
+  command.add_option("folder", options->folder, "evidence of an alarm, as spoolwatchd wrote it")
+      ->required();
+  command.add_option("--json", options->json, "write the outcome there; - for standard output");
+  command.footer("Exit code 0: the same alarm came again, bit for bit; 1: it did not.");
+  command.callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace workbench::cli

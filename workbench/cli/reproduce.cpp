@@ -1,0 +1,61 @@
+// `spoolwatch reproduce`: the source's figures beside ours.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "config/schema/error.h"
+#include "workbench/cli/command.h"
+#include "workbench/reproduce/experiment.h"
+#include "workbench/reproduce/print.h"
+
+namespace workbench::cli {
+namespace {
+
+using config::schema::Error;
+using config::schema::ExitCode;
+
+struct Arguments {
+  std::string json;
+  bool strict = false;
+};
+
+bool missed(const reproduce::Row& row) {
+  return row.expected && row.agrees == reproduce::Agreement::no;
+}
+
+}  // namespace
+
+void add_reproduce(CLI::App& command, int& exit_code) {
+  auto arguments = std::make_shared<Arguments>();
+  command.add_option("--json", arguments->json, "write the rows to this file; - for output");
+  command.add_flag("--strict", arguments->strict,
+                   "exit 1 when a figure that is meant to agree does not");
+  command.callback([arguments, &exit_code] {
+    std::ofstream file;
+    if (!arguments->json.empty() && arguments->json != "-") {
+      file.open(arguments->json);
+      if (!file) throw Error(ExitCode::failed, arguments->json + ": cannot be written");
+    }
+    const auto sections = reproduce::run_all(reproduce::experiments(),
+                                             std::max(1U, std::thread::hardware_concurrency()));
+    if (arguments->json == "-") {
+      reproduce::print_json(std::cout, sections);
+    } else {
+      reproduce::print_table(std::cout, sections);
+      if (file.is_open()) reproduce::print_json(file, sections);
+    }
+    if (file.is_open() && !file.flush()) {
+      throw Error(ExitCode::failed, arguments->json + ": cannot be written");
+    }
+    const bool all = std::none_of(sections.begin(), sections.end(), [](const auto& section) {
+      return std::any_of(section.rows.begin(), section.rows.end(), missed);
+    });
+    if (arguments->strict && !all) exit_code = static_cast<int>(ExitCode::failed);
+  });
+}
+
+}  // namespace workbench::cli

@@ -1,0 +1,183 @@
+// `spoolwatch scorecard`: what each method detects, how late, under which name, and how often it
+// cries wolf.
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "config/record/whole_file.h"
+#include "config/schema/error.h"
+#include "estimator/parallel.h"
+#include "workbench/cli/command.h"
+#include "workbench/cli/file_check.h"
+#include "workbench/cli/interrupt.h"
+#include "workbench/cli/number_check.h"
+#include "workbench/present/shell_command.h"
+#include "workbench/scorecard/card.h"
+#include "workbench/scorecard/progress.h"
+#include "workbench/scorecard/shipped.h"
+
+namespace workbench::cli {
+namespace {
+
+using namespace scorecard;
+using Interrupt;
+
+struct Options {
+  std::vector<std::string> methods;
+  std::string plan, json, report, markdown, resume;
+  Scope scope;
+  unsigned threads = 0;
+  bool details = false;
+};
+
+std::vector<Method> load_methods(const std::vector<std::string>& files) {
+  std::vector<Method> methods;
+  std::set<std::string> seen;
+  for (const std::string& file : files.empty() ? shipped_methods() : files) {
+    methods.push_back(load_method(file));
+    if (!seen.insert(methods.back().name).second) {
+      throw config::schema::bad_config(file + ": name",
+                                       "'" + methods.back().name + "' is that of another method",
+                                       "a name of its own");
+    }
+  }
+  return methods;
+}
+
+std::string command_of(const Options& o) {
+  std::vector<std::string> words{"spoolwatch", "scorecard"};
+  words.insert(words.end(), o.methods.begin(), o.methods.end());
+  const auto add = [&](const char* option, const std::string& value) {
+    if (value.empty()) return;
+    words.emplace_back(option);
+    words.push_back(value);
+  };
+  if (o.scope.full) words.emplace_back("--full");
+  if (o.scope.seeds != Scope{}.seeds) add("--seeds", std::to_string(o.scope.seeds));
+  if (o.scope.seed != Scope{}.seed) add("--seed", std::to_string(o.scope.seed));
+  if (o.scope.hours >= 0.0) add("--hours", number_words(o.scope.hours));
+  for (const std::string& motion : o.scope.motions) add("--motion", motion);
+  for (const std::string& fault : o.scope.faults) add("--fault", fault);
+  add("--plan", o.plan);
+  add("--resume", o.resume);
+  add("--json", o.json);
+  add("--report", o.report);
+  return present::shell_command(words);
+}
+
+void work(const std::vector<Part>& parts, const std::vector<Method>& methods, Trials& trials,
+          Store& store, unsigned threads) {
+  std::vector<std::string> keys;
+  keys.reserve(methods.size());
+  for (const Method& method : methods) keys.push_back(digest(method.text));
+  std::vector<std::pair<const Part*, std::vector<std::size_t>>> open;
+  for (const Part& part : parts) {
+    std::vector<std::size_t> which;
+    for (std::size_t m = 0; m < methods.size(); ++m) {
+      if (part.is_for(methods[m]) && store.find(part.id, keys[m]) == nullptr) which.push_back(m);
+    }
+    if (!which.empty()) open.emplace_back(&part, which);
+  }
+  // The longest first: then both threads end together.
+  std::stable_sort(open.begin(), open.end(), [](const auto& a, const auto& b) {
+    return a.first->work_s * static_cast<double>(a.second.size()) >
+           b.first->work_s * static_cast<double>(b.second.size());
+  });
+  double all_s = 0.0;
+  for (const auto& [part, which] : open) all_s += part->work_s * static_cast<double>(which.size());
+  Progress progress(std::cerr, isatty(STDERR_FILENO) == 1, open.size(), all_s);
+  std::mutex mutex;
+  try {
+    estimator::in_parallel(open.size(), threads, [&](std::size_t i) {
+      if (Interrupt::requested()) return;
+      const auto& [part, which] = open[i];
+      std::vector<nlohmann::json> results = trials.run(*part, which, Interrupt::requested);
+      const std::lock_guard lock(mutex);
+      for (std::size_t k = 0; k < results.size(); ++k) {
+        store.put(part->id, keys[which[k]], std::move(results[k]));
+      }
+      if (!results.empty()) {
+        progress.add(part->work_s * static_cast<double>(which.size()), part->id);
+      }
+    });
+  } catch (...) {
+    store.save();
+    throw;
+  }
+  progress.end();
+  store.save();
+}
+
+int run(const Options& o) {
+  std::vector<OutputFile> outputs{{"--json", o.json},
+                                  {"--report", o.report},
+                                  {"--markdown", o.markdown},
+                                  {"--resume", o.resume}};
+  check_outputs(outputs, {o.plan.empty() ? "/" : o.plan, o.methods});
+  const Bench bench = load_bench(o.plan);
+  const std::vector<Method> methods = load_methods(o.methods);
+  const std::vector<Part> parts = parts_of(bench, o.scope);
+  Store store(o.resume, digest(bench.text + std::to_string(o.scope.seeds) + "/" +
+                               std::to_string(o.scope.seed)));
+  Trials trials(bench, methods, o.scope);
+  const auto begin = std::chrono::steady_clock::now();
+  int stopped = 0;
+  {
+    const Interrupt interrupt;
+    const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
+    work(parts, methods, trials, store, o.threads > 0 ? o.threads : processors);
+    stopped = Interrupt::exit_code();
+  }
+  Card card = make_card(bench, methods, o.scope, parts, store, trials);
+  card.command = command_of(o);
+  card.runtime_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (!o.report.empty()) write_report(to_report(card), o.report);
+  if (!o.markdown.empty()) config::record::write_whole(o.markdown, to_markdown(card));
+  if (o.json == "-") {
+    std::cout << to_json(card);
+  } else {
+    if (!o.json.empty()) config::record::write_whole(o.json, to_json(card));
+    std::cout << to_text(card, o.details);
+  }
+  return stopped;
+}
+
+}  // namespace
+
+void add_scorecard(CLI::App& command, int& exit_code) {
+  auto o = std::make_shared<Options>();
+  command.add_option("METHOD", o->methods,
+                     "files of methods, or names of shipped ones; default: all that are shipped");
+  command.add_flag("--full", o->scope.full, "the hours that one false alarm in 24 h needs: 72");
+  command.add_option("--seeds", o->scope.seeds, "trials of each fault, direction, size and motion")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  command.add_option("--seed", o->scope.seed, "of noise and phases; same seed, same figures")
+      ->check(number_within(0.0, 1e18))
+      ->capture_default_str();
+  command.add_option("--hours", o->scope.hours, "h without a fault; default: as the plan says")
+      ->check(number_within(0.0, 1e5));
+  command.add_option("--motion", o->scope.motions, "only these of the plan")
+      ->allow_extra_args(false);
+  command.add_option("--fault", o->scope.faults, "only these of the plan")->allow_extra_args(false);
+  command.add_option("--plan", o->plan, "another plan (TOML) than the shipped one")
+      ->check(CLI::ExistingFile);
+  command.add_option("--resume", o->resume,
+                     "file that keeps what is done, and that a later run goes on from");
+  command.add_option("--threads", o->threads, "default: one for each processor")
+      ->check(CLI::Range(1, 1024));
+  command.add_flag("--details", o->details, "print which names came first, too");
+  command.add_option("--json", o->json, "file for JSON, - for standard output");
+  command.add_option("--report", o->report, "file for a page with plots (HTML)");
+  command.add_option("--markdown", o->markdown, "file for the tables (Markdown)");
+  command.callback([o, &exit_code] { exit_code = run(*o); });
+}
+
+}  // namespace workbench::cli

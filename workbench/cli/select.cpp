@@ -1,0 +1,77 @@
+// spoolwatch select: every structure of the source on one record, and which to take.
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "config/record/whole_file.h"
+#include "workbench/cli/command.h"
+#include "workbench/cli/file_check.h"
+#include "workbench/cli/interrupt.h"
+#include "workbench/cli/number_check.h"
+#include "workbench/select/outcome.h"
+
+namespace workbench::cli {
+namespace {
+
+using select::Outcome;
+using select::Request;
+
+constexpr int kMostThreads = 256;
+constexpr const char* kWipe = "\r\x1b[K";
+
+int run(const Request& request) {
+  check_outputs({{.option = "--json", .file = request.json}},
+                {.model = request.record, .records = {}});
+  const Interrupt interrupt;
+  const bool renewed = isatty(STDERR_FILENO) == 1;
+  const auto show = [&](const select::Progress& progress) {
+    if (request.quiet) return;
+    std::cerr << (renewed ? kWipe : "") << progress.done << " of " << progress.of << ": "
+              << progress.doing << (renewed ? "" : "\n") << std::flush;
+  };
+  const Outcome outcome = compare_structures(request, show, [] { return Interrupt::requested(); });
+  if (renewed && !request.quiet) std::cerr << kWipe << std::flush;
+  if (request.json == "-") {
+    std::cout << to_json(outcome);
+  } else {
+    if (!request.json.empty()) config::record::write_whole(request.json, to_json(outcome));
+    std::cout << to_text(outcome);
+  }
+  return Interrupt::exit_code();
+}
+
+}  // namespace
+
+void add_select(CLI::App& command, int& exit_code) {
+  auto request = std::make_shared<Request>();
+  command.add_option("RECORD", request->record, "CSV or MAT (t_s,u_V,y_m), or LCM log")->required();
+  command
+      .add_option("--structures", request->structures,
+                  "name[,name...]: arxNMK, armaxNMCK, oeMFK, bjMCDFK, ssN, n4sidN, narxNMK/H; "
+                  "without it some of each kind")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command
+      .add_option("--delay", request->delay,
+                  "samples from u to y, of the usual structures; without it found in the record")
+      ->check(number_within(0, 50));
+  command.add_option("--period", request->period_s, "s: the motion's period, or another unit")
+      ->check(positive_number())
+      ->capture_default_str();
+  command
+      .add_option("--fit-to", request->fit_share,
+                  "share of the record that is fitted; the rest scores")
+      ->check(number_within(0.1, 0.9))
+      ->capture_default_str();
+  command.add_flag("!--no-constant", request->constant, "estimate no constant term");
+  command.add_flag("!--keep-offset", request->de_mean, "take no mean off y");
+  command.add_option("--threads", request->threads, "default: one for each processor")
+      ->check(number_within(1, kMostThreads));
+  command.add_option("--json", request->json, "file for JSON, - for standard output");
+  command.add_flag("--quiet", request->quiet, "no progress on standard error");
+  command.callback([request, &exit_code] { exit_code = run(*request); });
+}
+
+}  // namespace workbench::cli

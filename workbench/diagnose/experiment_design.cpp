@@ -1,0 +1,126 @@
+#include "workbench/diagnose/experiment_design.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "estimator/greybox/selection/discrimination.h"
+#include "estimator/parallel.h"
+#include "workbench/diagnose/advice_words.h"
+
+namespace workbench::diagnose {
+
+namespace greybox = estimator::greybox;
+namespace selection = estimator::greybox::selection;
+namespace {
+
+constexpr std::uint64_t kSeed = 1;
+/// Of the motions that promise most, that many are tried with complete fits.
+constexpr std::size_t kTried = 3;
+/// Beyond this a motion is clear enough; the next one is not tried.
+constexpr double kClearly = 2.0;
+
+/// One motion with every rival in turn as the truth; empty where one cannot run it.
+std::vector<greybox::Evidence> truths(const selection::Workshop& shop,
+                                      const std::vector<greybox::Fitted>& rivals,
+                                      const TestMotion& motion) {
+  std::vector<greybox::Evidence> result;
+  for (const greybox::Fitted& rival : rivals) {
+    auto record = simulated(shop, greybox::with_values(shop.model, rival), motion, kSeed);
+    if (!record) return {};
+    result.push_back(greybox::evidence({std::move(*record)}, {}));
+  }
+  return result;
+}
+
+using Separation = double (*)(const selection::Workshop&, const greybox::Evidence&,
+                              const greybox::Fitted&);
+
+/// Of the closest pair, either way round.
+double closest(const selection::Workshop& shop, const std::vector<greybox::Fitted>& rivals,
+               const std::vector<greybox::Evidence>& truths, Separation separation) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t truth = 0; truth < truths.size(); ++truth) {
+    for (std::size_t other = 0; other < rivals.size(); ++other) {
+      if (other == truth || shop.cancelled()) continue;
+      least = std::min(least, separation(shop, truths[truth], rivals[other]));
+    }
+  }
+  return least;
+}
+
+struct Option {
+  TestMotion motion;
+  double expected = 0.0;
+  std::vector<greybox::Evidence> truths;
+};
+
+std::vector<Option> options_for(const selection::Workshop& shop,
+                                const std::vector<greybox::Fitted>& rivals) {
+  std::vector<Option> options;
+  for (TestMotion& motion : test_motions(shop)) options.push_back({std::move(motion), 0.0, {}});
+  estimator::in_parallel(options.size(), shop.threads, [&](std::size_t i) {
+    if (shop.cancelled()) return;
+    Option& option = options[i];
+    option.truths = truths(shop, rivals, option.motion);
+    if (!option.truths.empty()) {
+      option.expected = closest(shop, rivals, option.truths, expected_separation);
+    }
+  });
+  std::stable_sort(options.begin(), options.end(),
+                   [](const Option& a, const Option& b) { return a.expected > b.expected; });
+  return options;
+}
+
+}  // namespace
+
+Advice advise(const selection::Workshop& shop, const std::vector<greybox::Fitted>& rivals,
+              const std::vector<std::string>& names) {
+  std::vector<Option> options = options_for(shop, rivals);
+  Advice advice;
+  for (std::size_t i = 0; i < std::min(kTried, options.size()); ++i) {
+    Option& option = options[i];
+    if (option.expected < kSeparates || shop.cancelled()) break;
+    const double separation = closest(shop, rivals, option.truths, fitted_separation);
+    if (separation <= advice.separation) continue;
+    advice.separation = separation;
+    advice.motion = std::move(option.motion);
+    if (separation >= kClearly) break;
+  }
+  advice.separates = advice.separation >= kSeparates;
+  advice.words = advice.separates ? words_for_motion(names, advice.motion.words, advice.separation)
+                                  : words_for_sensor(shop.model, names);
+  return advice;
+}
+
+std::string advice_to_excite(const selection::Workshop& shop) {
+  return words_to_excite(test_motions(shop).front().words);
+}
+
+std::string advice_for_unexplained(const std::vector<selection::Where>& where,
+                                   const std::string& plant) {
+  return words_for_unexplained(where, plant);
+}
+
+AdvisedDiagnosis diagnose(const selection::Workshop& shop) {
+  std::string for_rivals;
+  const auto separable = [&](const selection::Workshop& searched,
+                             const std::vector<greybox::Fitted>& explanations,
+                             const std::vector<std::string>& names) {
+    const Advice advice = advise(searched, explanations, names);
+    for_rivals += (for_rivals.empty() ? "" : " ") + advice.words;
+    return advice.separates;
+  };
+  AdvisedDiagnosis result{selection::diagnose(shop, separable), ""};
+  const selection::Diagnosis& found = result.diagnosis;
+  if (found.verdict == selection::Verdict::not_excited) {
+    result.advice = advice_to_excite(shop);
+  } else if (found.verdict == selection::Verdict::unexplained) {
+    result.advice = advice_for_unexplained(found.where, shop.model.plant);
+  }
+  if (!result.advice.empty() && !for_rivals.empty()) result.advice += " ";
+  result.advice += for_rivals;
+  return result;
+}
+
+}  // namespace workbench::diagnose

@@ -1,0 +1,50 @@
+// What to do next when a record does not answer the question: the motion that would, or the sensor.
+//
+// Rivals explain a record about as well. On each motion that might tell them apart every rival in
+// turn is taken for the truth, simulated in closed loop, and the others are adjusted to it: the
+// motion on which even the closest pair stays furthest apart is advised.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "estimator/greybox/selection/diagnosis.h"
+#include "estimator/greybox/selection/problem.h"
+#include "workbench/diagnose/test_motion.h"
+
+namespace workbench::diagnose {
+
+namespace greybox = estimator::greybox;
+namespace selection = estimator::greybox::selection;
+
+/// Error of a wrong explanation, over the noise, from which a motion tells two apart.
+inline constexpr double kSeparates = 1.15;
+
+struct Advice {
+  bool separates = false;   ///< false: no motion tried tells the rivals apart
+  double separation = 1.0;  ///< error of the nearest wrong explanation over the noise
+  TestMotion motion;        ///< the best one
+  std::string words;
+};
+
+/// `names` of the rivals, one for each. At least two rivals.
+[[nodiscard]] Advice advise(const selection::Workshop& shop,
+                            const std::vector<greybox::Fitted>& rivals,
+                            const std::vector<std::string>& names);
+
+/// For a record that does not move enough.
+[[nodiscard]] std::string advice_to_excite(const selection::Workshop& shop);
+
+/// For a residual that no effect explains; `where` as localise() gives it, may be empty.
+[[nodiscard]] std::string advice_for_unexplained(const std::vector<selection::Where>& where,
+                                                 const std::string& plant = "hydraulic_actuator");
+
+struct AdvisedDiagnosis {
+  selection::Diagnosis diagnosis;
+  std::string advice;  ///< "" where nothing is left to ask
+};
+
+/// selection::diagnose() with the advice that follows from it.
+[[nodiscard]] AdvisedDiagnosis diagnose(const selection::Workshop& shop);
+
+}  // namespace workbench::diagnose

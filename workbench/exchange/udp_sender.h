@@ -1,0 +1,37 @@
+// Sends datagrams to one place, never waiting, and counts those that could not be sent.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace workbench::exchange {
+
+struct UdpAddress {
+  std::string host;
+  std::string port;
+};
+
+/// "HOST:PORT", "[ADDRESS]:PORT" for IPv6. Throws config::schema::Error (exit 2) for anything
+/// else, a port out of 1 to 65535 among it.
+[[nodiscard]] UdpAddress udp_address(const std::string& text);
+
+class UdpSender {
+ public:
+  /// Throws config::schema::Error (exit 1) for a host that is not known.
+  explicit UdpSender(const UdpAddress& address);
+  ~UdpSender();
+  UdpSender(const UdpSender&) = delete;
+  UdpSender& operator=(const UdpSender&) = delete;
+
+  /// errno of what went wrong, 0 when it is on its way.
+  int send(const std::string& datagram) noexcept;
+  [[nodiscard]] std::uint64_t sent() const noexcept { return sent_; }
+  [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; }
+
+ private:
+  int socket_ = -1;
+  std::uint64_t sent_ = 0;
+  std::uint64_t dropped_ = 0;
+};
+
+}  // namespace workbench::exchange

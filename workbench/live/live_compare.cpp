@@ -1,0 +1,102 @@
+#include "workbench/live/live_compare.h"
+
+#include <unistd.h>
+
+#include <cmath>
+#include <iostream>
+
+#include "config/schema/error.h"
+#include "spoolwatch/sample_t.hpp"
+#include "workbench/cli/stop_condition.h"
+#include "workbench/live/listen_feed.h"
+#include "workbench/live/online_residual.h"
+
+namespace workbench::live {
+namespace {
+
+constexpr std::int8_t kStaleQuality = 2;  // and 3, bad: no new reading
+
+void say(const std::string& line) { std::cerr << "spoolwatch compare: " << line << std::endl; }
+
+/// On a terminal each line takes the place of the one before.
+class Watcher final : public Listener {
+ public:
+  Watcher(const plant_sim::ModelFile& model, const WatchOptions& options)
+      : running_(model, options.observer_per_s),
+        json_(options.json),
+        terminal_(!options.json && isatty(STDOUT_FILENO) == 1) {}
+
+  void on_sample(const spoolwatch::sample_t& s) override {
+    if (s.quality >= kStaleQuality || !std::isfinite(s.y_m) || !std::isfinite(s.u_applied_V)) {
+      return;
+    }
+    running_.add(s.tick, s.sample_time_s, s.u_applied_V, s.y_m);
+    const auto second =
+        static_cast<std::int64_t>(std::floor(static_cast<double>(s.tick) * s.sample_time_s + 1e-9));
+    if (told_ && second == second_) return;
+    // The first second has hardly begun.
+    if (told_) tell();
+    told_ = true;
+    second_ = second;
+  }
+  void on_new_run(std::int64_t run_id, bool first) override {
+    say((first ? "daemon found, run " : "the daemon has been restarted, run ") +
+        std::to_string(run_id));
+  }
+  void on_lost(const std::string& channel, std::int64_t count) override {
+    if (channel.ends_with("_SAMPLE")) {
+      say(std::to_string(count) + " samples lost on the way: the model settles anew");
+    }
+  }
+  void on_silence(bool silent) override {
+    say(silent ? "no daemon is heard" : "a daemon is heard again");
+  }
+  void on_notice(const std::string& what) override { say(what); }
+
+  void end() {
+    if (terminal_ && lines_ > 0) std::cout << '\n';
+  }
+  [[nodiscard]] bool empty() const noexcept { return lines_ == 0; }
+
+ private:
+  void tell() {
+    const Figures figures = running_.figures();
+    if (json_) {
+      std::cout << json_of(figures) << std::endl;
+    } else if (terminal_) {
+      std::cout << '\r' << line_of(figures) << "\033[K" << std::flush;
+    } else {
+      std::cout << line_of(figures) << std::endl;
+    }
+    ++lines_;
+  }
+
+  Running running_;
+  bool json_, terminal_;
+  bool told_ = false;
+  std::int64_t second_ = 0;
+  std::int64_t lines_ = 0;
+};
+
+}  // namespace
+
+void watch(const plant_sim::ModelFile& model, const WatchOptions& options) {
+  using config::schema::Error;
+  using config::schema::ExitCode;
+  const cli::Ending ending(options.duration_s);
+  Watcher watcher(model, options);
+  {
+    Feed feed(options.url, options.prefix, true, watcher);
+    while (!ending.reached() && std::cout) {
+      if (feed.poll(std::chrono::milliseconds(100)) || Ending::asked()) continue;
+      if (options.url.starts_with("file:")) break;
+      throw Error(ExitCode::failed, "LCM cannot receive on \"" + options.url + "\" any more");
+    }
+  }
+  watcher.end();
+  if (watcher.empty() && !Ending::asked()) {
+    throw Error(ExitCode::failed, "no samples came on \"" + options.url + "\"");
+  }
+}
+
+}  // namespace workbench::live

@@ -1,0 +1,106 @@
+#include "workbench/present/compare_units.h"
+
+#include <cmath>
+#include <cstdio>
+
+namespace workbench::present {
+
+namespace validation = estimator::greybox::validation;
+namespace {
+
+std::string print(const char* format, double value) {
+  char text[48];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+/// Bounds are round numbers, or a record's extremes, which nobody needs exactly.
+std::string bound(double value, const Unit& unit) {
+  return print("%.4g", std::abs(value) < 1e-12 ? 0.0 : unit.factor * value);
+}
+
+}  // namespace
+
+Unit unit_of(const std::string& variable) {
+  if (variable == "y") return {"position", "mm", 1e3};
+  if (variable == "v") return {"velocity", "mm/s", 1e3};
+  if (variable == "speed") return {"speed", "mm/s", 1e3};
+  if (variable == "u") return {"command", "V", 1.0};
+  if (variable == "acceleration") return {"acceleration", "m/s2", 1.0};
+  if (variable == "time") return {"time", "s", 1.0};
+  return {"direction", "", 1.0};
+}
+
+std::string three_digits(double value) {
+  if (!std::isfinite(value)) return "-";
+  return print(std::abs(value) >= 999.5 ? "%.0f" : "%.3g", value);
+}
+
+std::string length(double metres) {
+  if (!std::isfinite(metres)) return "-";
+  if (std::abs(metres) < 0.9995e-3) return three_digits(1e6 * metres) + " um";
+  return three_digits(1e3 * metres) + " mm";
+}
+
+std::string speed(double mps) {
+  if (!std::isfinite(mps)) return "-";
+  if (std::abs(mps) < 0.9995e-4) return three_digits(1e6 * mps) + " um/s";
+  return three_digits(1e3 * mps) + " mm/s";
+}
+
+std::string percent(double share) {
+  if (!std::isfinite(share)) return "-";
+  if (share > 0.0 && share < 0.01) return "under 1 %";
+  if (share < 1.0 && share > 0.995) return "over 99 %";
+  return print("%.0f", 100.0 * share) + " %";
+}
+
+std::string probability(double p) {
+  if (!std::isfinite(p)) return "-";
+  return p < 1e-6 ? "< 1e-6" : print("%.2g", p);
+}
+
+std::string bin_text(const std::string& variable, const validation::Bin& bin) {
+  if (!bin.name.empty()) return bin.name;
+  const Unit unit = unit_of(variable);
+  return bound(bin.from, unit) + " to " + bound(bin.to, unit);
+}
+
+std::string where(const validation::Range& range) {
+  if (!range.name.empty()) {
+    return range.name == "at rest" ? range.name : "while " + range.name;
+  }
+  const Unit unit = unit_of(range.variable);
+  const std::string low = bound(range.from, unit);
+  const std::string high = bound(range.to, unit);
+  const std::string tail = std::string(" ") + unit.text;
+  if (range.variable == "time") {
+    if (range.lowest) return "in the first " + high + tail;
+    return "from " + low + " to " + high + tail;
+  }
+  if (range.variable == "v") {
+    if (range.highest && range.from > 0.0) return "extending faster than " + low + tail;
+    if (range.lowest && range.to < 0.0) {
+      return "retracting faster than " + bound(-range.to, unit) + tail;
+    }
+  }
+  const bool plain = range.variable == "speed";
+  const std::string head = plain
+                               ? std::string()
+                               : std::string("at ") + (range.variable == "v"   ? "velocities "
+                                                       : range.variable == "y" ? "positions "
+                                                       : range.variable == "u" ? "commands "
+                                                                               : "accelerations ");
+  if (range.lowest) return head + "below " + high + tail;
+  if (range.highest) return head + "above " + low + tail;
+  return head + (plain ? "between " : "from ") + low + (plain ? " and " : " to ") + high + tail;
+}
+
+std::string where(const validation::Failing& failing) {
+  std::string text;
+  for (const validation::Range& range : failing.ranges)
+    text += (text.empty() ? "" : " ") + where(range);
+  return text;
+}
+
+}  // namespace workbench::present

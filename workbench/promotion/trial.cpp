@@ -1,0 +1,113 @@
+#include "workbench/promotion/trial.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "config/schema/error.h"
+#include "estimator/greybox/validation/comparison.h"
+#include "workbench/replay/backtest_runs.h"
+
+namespace workbench::promotion {
+
+namespace greybox = estimator::greybox;
+namespace validation = estimator::greybox::validation;
+namespace {
+
+namespace fs = std::filesystem;
+using config::schema::Error;
+using config::schema::ExitCode;
+
+/// Alarms that come so near are the same one, as in `backtest`.
+constexpr double kTolerance_s = 10.0;
+constexpr std::size_t kMostLogs = 8;
+
+replay::Rules rules_with(const RunningDaemon& daemon, const fs::path& bands) {
+  replay::Rules rules;
+  rules.file = daemon.config_file();
+  rules.folder = daemon.folder();
+  rules.pipeline = daemon.rules();
+  rules.pipeline.bands_file = fs::absolute(bands).string();
+  return rules;
+}
+
+}  // namespace
+
+ModelTrial try_model(const plant_sim::ModelFile& before, const plant_sim::ModelFile& after,
+                     const std::vector<config::record::Record>& records) {
+  ModelTrial trial;
+  trial.floor_m = std::numeric_limits<double>::quiet_NaN();
+  double squares_before = 0.0;
+  double squares_after = 0.0;
+  double samples = 0.0;
+  for (const config::record::Record& record : records) {
+    try {
+      const greybox::Measured measured = greybox::measured(record);
+      const validation::Comparison old_one = validation::compare(before, measured);
+      const validation::Comparison new_one = validation::compare(after, measured);
+      const auto n = static_cast<double>(measured.size());
+      squares_before += n * old_one.rms_m * old_one.rms_m;
+      squares_after += n * new_one.rms_m * new_one.rms_m;
+      samples += n;
+      trial.floor_m = std::fmin(trial.floor_m, new_one.noise_floor_m);
+    } catch (const Error& e) {
+      if (e.exit_code() != static_cast<int>(ExitCode::bad_data)) throw;
+      trial.notes.emplace_back(e.what());
+    }
+  }
+  if (samples == 0.0) {
+    throw config::schema::bad_data("the records",
+                                   trial.notes.empty() ? "there is none" : trial.notes.front());
+  }
+  trial.before_rms_m = std::sqrt(squares_before / samples);
+  trial.after_rms_m = std::sqrt(squares_after / samples);
+  return trial;
+}
+
+std::vector<std::string> new_alarms(const RunningDaemon& daemon, const fs::path& bands,
+                                    const std::vector<std::string>& files) {
+  const auto runs = replay::run_backtest(rules_with(daemon, bands),
+                                         rules_with(daemon, daemon.bands_file()), files);
+  std::vector<std::string> found;
+  for (const replay::BacktestRun& run : runs) {
+    const replay::Difference difference =
+        replay::compare(run.before, run.after, kTolerance_s, 0.5 * run.sample_time_s);
+    for (const replay::Occurrence& each : difference.appears) {
+      char when[48];
+      std::snprintf(when, sizeof when, " at %.1f s in ", each.from_s);
+      found.push_back(each.alarm + when + run.files.front());
+    }
+  }
+  return found;
+}
+
+std::vector<std::string> healthy_logs(const RunningDaemon& daemon) {
+  std::vector<fs::path> logs;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(daemon.recorder_folder(), ignored)) {
+    if (entry.path().extension() == ".lcmlog") logs.push_back(entry.path());
+  }
+  std::sort(logs.begin(), logs.end(), [&](const fs::path& a, const fs::path& b) {
+    return fs::last_write_time(a, ignored) > fs::last_write_time(b, ignored);
+  });
+  std::vector<std::string> healthy;
+  for (const fs::path& log : logs) {
+    if (healthy.size() == kMostLogs) break;
+    try {
+      const auto runs = replay::run_backtest(rules_with(daemon, daemon.bands_file()), std::nullopt,
+                                             {log.string()});
+      if (runs.front().after.empty() && runs.front().before.empty()) {
+        healthy.push_back(log.string());
+      }
+    } catch (const Error& e) {
+      if (e.exit_code() != static_cast<int>(ExitCode::bad_data)) throw;
+    }
+  }
+  if (!healthy.empty()) return healthy;
+  throw Error(ExitCode::failed, "no log without an alarm in the recorder's folder \"" +
+                                    daemon.recorder_folder().string() +
+                                    "\"; allowed: healthy ones by --record");
+}
+
+}  // namespace workbench::promotion

@@ -1,0 +1,40 @@
+// A new model and the bands learned beside it, tried on records before they are let near the rig.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "config/record/record.h"
+#include "estimator/fdi/learned_bands.h"
+#include "plant_sim/model_file.h"
+#include "workbench/promotion/running_daemon.h"
+
+namespace workbench::promotion {
+
+/// The error of both models over all records, drift-corrected, each sample counting alike.
+struct ModelTrial {
+  double before_rms_m = 0.0;
+  double after_rms_m = 0.0;
+  double floor_m = 0.0;            ///< the lowest of the records'
+  std::vector<std::string> notes;  ///< records left out, and why
+  /// Larger by more than a hundredth: less is chance.
+  [[nodiscard]] bool worse() const noexcept { return after_rms_m > 1.01 * before_rms_m; }
+};
+
+/// Throws config::schema::Error (exit 65) when no record is left.
+[[nodiscard]] ModelTrial try_model(const plant_sim::ModelFile& before,
+                                   const plant_sim::ModelFile& after,
+                                   const std::vector<config::record::Record>& records);
+
+/// What alarms new bands would tell on the records that the old ones do not, in words: "period_gain
+/// at 12.3 s in FILE". `bands` beside the old file, under a name of its own.
+[[nodiscard]] std::vector<std::string> new_alarms(const RunningDaemon& daemon,
+                                                  const std::filesystem::path& bands,
+                                                  const std::vector<std::string>& files);
+
+/// The newest logs of the daemon's recorder on which its rules tell no alarm. Throws
+/// config::schema::Error (exit 1) when there is none.
+[[nodiscard]] std::vector<std::string> healthy_logs(const RunningDaemon& daemon);
+
+}  // namespace workbench::promotion

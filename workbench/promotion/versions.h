@@ -1,0 +1,35 @@
+// Files that are replaced together and can be brought back: FILE is the one in use, FILE.v1,
+// FILE.v2, ... are those before it. A file that did not differ is kept all the same, so that a
+// version is whole.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace workbench::promotion {
+
+/// A file and what it is to hold.
+struct Replacement {
+  std::filesystem::path file;
+  std::string text;
+};
+
+/// The newest version of which all files are there, 0 when there is none.
+[[nodiscard]] int newest_version(const std::vector<std::filesystem::path>& files);
+
+/// FILE.v3.
+[[nodiscard]] std::filesystem::path version_of(const std::filesystem::path& file, int version);
+
+/// Keeps the files as a new version and replaces them, each whole or not at all. Returns the
+/// version. Throws config::schema::Error (exit 1); then the files are as they were.
+int replace(const std::vector<Replacement>& replacements);
+
+/// Brings a version back; it is used up, and what was in use becomes FILE.withdrawn. Throws
+/// config::schema::Error (exit 1).
+void bring_back(const std::vector<std::filesystem::path>& files, int version);
+
+/// The file's bytes. Throws config::schema::Error (exit 1).
+[[nodiscard]] std::string read_whole(const std::filesystem::path& file);
+
+}  // namespace workbench::promotion
