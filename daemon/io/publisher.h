@@ -22,10 +22,12 @@ class LCM;
 namespace spoolwatch {
 class health_t;
 }
+namespace config::signals {
+struct Sample;
+}
 namespace estimator::fdi {
 struct Alarm;
 struct EstimateEvent;
-struct Sample;
 }  // namespace estimator::fdi
 
 namespace monitor::io {

@@ -17,22 +17,22 @@ namespace {
 using config::schema::Error;
 using config::schema::ExitCode;
 using Json = nlohmann::ordered_json;
-namespace control = monitor::control;
+namespace protocol = monitor::control;
 
 struct Options {
-  OrderOptions common;
+  control::OrderOptions common;
   std::string alarm;
   bool all = false;
   double time_s = 0.0;
 };
 
 void act(const char* word, const Options& options, bool with_time) {
-  Json request = {{control::key::kCommand, word}};
-  if (!options.alarm.empty()) request[control::key::kAlarm] = options.alarm;
-  if (with_time) request[control::key::kTime] = options.time_s;
-  const Json answer = give_order(request, options.common);
+  Json request = {{protocol::key::kCommand, word}};
+  if (!options.alarm.empty()) request[protocol::key::kAlarm] = options.alarm;
+  if (with_time) request[protocol::key::kTime] = options.time_s;
+  const Json answer = control::give_order(request, options.common);
   if (options.common.json == "-") return;
-  const auto done = answer.find(control::key::kDone);
+  const auto done = answer.find(protocol::key::kDone);
   if (done == answer.end() || !done->is_array() || done->empty()) {
     std::cout << "nothing to do\n";
     return;
@@ -44,17 +44,18 @@ void act(const char* word, const Options& options, bool with_time) {
 
 void add_alarms(CLI::App& command, int& /*exit_code*/) {
   const auto options = std::make_shared<Options>();
-  add_order_options(command, options->common);
+  control::add_order_options(command, options->common);
   command.add_flag("--all", options->all, "those that are normal too");
   command.callback([options] {
-    const Json answer = give_order({{control::key::kCommand, control::kAlarms}}, options->common);
-    if (options->common.json != "-") print_alarms(answer, options->all, std::cout);
+    const Json answer =
+        control::give_order({{protocol::key::kCommand, protocol::kAlarms}}, options->common);
+    if (options->common.json != "-") control::print_alarms(answer, options->all, std::cout);
   });
 }
 
 void add_ack(CLI::App& command, int& /*exit_code*/) {
   const auto options = std::make_shared<Options>();
-  add_order_options(command, options->common);
+  control::add_order_options(command, options->common);
   CLI::Option* alarm =
       command.add_option("alarm", options->alarm, "SOURCE.NAME, as `alarms` lists it");
   command.add_flag("--all", options->all, "every one that nobody has acknowledged")
@@ -63,26 +64,26 @@ void add_ack(CLI::App& command, int& /*exit_code*/) {
     if (options->alarm.empty() && !options->all) {
       throw Error(ExitCode::usage, "ack: no alarm; allowed: SOURCE.NAME, or --all");
     }
-    act(control::kAcknowledge, *options, false);
+    act(protocol::kAcknowledge, *options, false);
   });
 }
 
 void add_shelve(CLI::App& command, int& /*exit_code*/) {
   const auto options = std::make_shared<Options>();
-  add_order_options(command, options->common);
+  control::add_order_options(command, options->common);
   command.add_option("alarm", options->alarm, "SOURCE.NAME, as `alarms` lists it")->required();
   const std::map<std::string, double> units = {{"s", 1.0}, {"min", 60.0}, {"h", 3600.0}};
   command.add_option("--for", options->time_s, "how long: 90s, 10min, 2h")
       ->required()
       ->transform(CLI::AsNumberWithUnit(units, CLI::AsNumberWithUnit::UNIT_REQUIRED));
-  command.callback([options] { act(control::kShelve, *options, true); });
+  command.callback([options] { act(protocol::kShelve, *options, true); });
 }
 
 void add_unshelve(CLI::App& command, int& /*exit_code*/) {
   const auto options = std::make_shared<Options>();
-  add_order_options(command, options->common);
+  control::add_order_options(command, options->common);
   command.add_option("alarm", options->alarm, "SOURCE.NAME, as `alarms` lists it")->required();
-  command.callback([options] { act(control::kUnshelve, *options, false); });
+  command.callback([options] { act(protocol::kUnshelve, *options, false); });
 }
 
 }  // namespace workbench::cli

@@ -7,7 +7,7 @@ namespace CLI {
 class App;
 }
 
-namespace workbench {
+namespace workbench::cli {
 
 /// Declares options on `command` and sets its callback, which writes what the program shall return
 /// to `exit_code` (0 when it does not). Errors that prevent a start are config::schema::Error.
@@ -54,4 +54,4 @@ void add_stop(CLI::App& command, int& exit_code);
 void add_train(CLI::App& command, int& exit_code);
 void add_unshelve(CLI::App& command, int& exit_code);
 
-}  // namespace workbench
+}  // namespace workbench::cli

@@ -13,31 +13,31 @@ namespace workbench::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-namespace control = monitor::control;
+namespace protocol = monitor::control;
 
 struct Options {
-  OrderOptions common;
+  control::OrderOptions common;
   double centre_m = 0.0;
   double amplitude_m = 0.0;
   double frequency_Hz = 0.0;
 };
 
-int order(const Json& request, const OrderOptions& options) {
-  const Json answer = give_order(request, options);
+int order(const Json& request, const control::OrderOptions& options) {
+  const Json answer = control::give_order(request, options);
   if (options.json == "-") return 0;
-  if (request.at(control::key::kCommand) == control::kStatus) {
-    print_status(answer, std::cout);
+  if (request.at(protocol::key::kCommand) == protocol::kStatus) {
+    control::print_status(answer, std::cout);
   } else {
-    std::cout << answer.at(control::key::kState).get<std::string>() << '\n';
+    std::cout << answer.at(protocol::key::kState).get<std::string>() << '\n';
   }
   return 0;
 }
 
 void add_word(CLI::App& command, int& exit_code, const char* word) {
-  const auto options = std::make_shared<OrderOptions>();
-  add_order_options(command, *options);
+  const auto options = std::make_shared<control::OrderOptions>();
+  control::add_order_options(command, *options);
   command.callback([options, word, &exit_code] {
-    exit_code = order({{control::key::kCommand, word}}, *options);
+    exit_code = order({{protocol::key::kCommand, word}}, *options);
   });
 }
 
@@ -53,15 +53,15 @@ void add_hold(CLI::App& command, int& exit_code) { add_word(command, exit_code, 
 
 void add_reference(CLI::App& command, int& exit_code) {
   const auto options = std::make_shared<Options>();
-  add_order_options(command, options->common);
+  control::add_order_options(command, options->common);
   command.add_option("--centre", options->centre_m, "middle of the motion, m")->required();
   command.add_option("--amplitude", options->amplitude_m, "m")->capture_default_str();
   command.add_option("--frequency", options->frequency_Hz, "Hz")->capture_default_str();
   command.callback([options, &exit_code] {
-    exit_code = order({{control::key::kCommand, control::kReference},
-                       {control::key::kCentre, options->centre_m},
-                       {control::key::kAmplitude, options->amplitude_m},
-                       {control::key::kFrequency, options->frequency_Hz}},
+    exit_code = order({{protocol::key::kCommand, protocol::kReference},
+                       {protocol::key::kCentre, options->centre_m},
+                       {protocol::key::kAmplitude, options->amplitude_m},
+                       {protocol::key::kFrequency, options->frequency_Hz}},
                       options->common);
   });
 }

@@ -16,28 +16,6 @@
 #include "workbench/fit/outcome.h"
 
 namespace workbench::cli {
-namespace fit {
-
-std::string to_model(const Outcome& o) {
-  const Estimation& e = o.estimation;
-  std::string text = "# Fitted by: " + o.prepared->command + "\n";
-  for (const auto& record : o.prepared->task.evidence.records)
-    text += "# record " + record.name + "\n";
-  text += "# error " + config::units::length_words(e.before.rms_m) + " -> " +
-          config::units::length_words(e.after.rms_m) + " RMS" +
-          (e.interrupted ? "; interrupted, the best so far" : "") + "\n";
-  for (const Parameter& p : e.parameters) {
-    char line[200];
-    std::snprintf(line, sizeof line, "# %s %.6g, 95 %% from %.6g to %.6g", p.search.name.c_str(),
-                  p.value, p.low, p.high);
-    const std::string more = remark(p);
-    text += line + (more.empty() ? "" : "; " + more) + "\n";
-  }
-  return text + plant_sim::print_model(e.better);
-}
-
-}  // namespace fit
-
 namespace {
 
 using fit::Request;
@@ -71,7 +49,7 @@ int run(const Request& request) {
   outcome.prepared = &prepared;
   outcome.noise_floor_m = prepared.noise_floor_m;
   outcome.output = request.output;
-  outcome.estimation = estimate(prepared.task);
+  outcome.estimation = estimator::greybox::estimate(prepared.task);
   if (shown) std::cerr << "\r\x1b[K" << std::flush;
   outcome.runtime_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

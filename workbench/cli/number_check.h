@@ -6,7 +6,7 @@ namespace CLI {  // NOLINT(readability-identifier-naming): the library's own nam
 class Validator;
 }
 
-namespace workbench {
+namespace workbench::cli {
 
 /// Above 0 and finite.
 [[nodiscard]] CLI::Validator positive_number();
@@ -15,4 +15,4 @@ namespace workbench {
 /// Neither NaN nor infinite.
 [[nodiscard]] CLI::Validator finite_number();
 
-}  // namespace workbench
+}  // namespace workbench::cli

@@ -12,7 +12,7 @@ namespace workbench::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-namespace control = monitor::control;
+namespace protocol = monitor::control;
 
 void print(const Json& answer, const char* key, const char* what) {
   const auto list = answer.find(key);
@@ -22,8 +22,8 @@ void print(const Json& answer, const char* key, const char* what) {
   }
 }
 
-void reload(const OrderOptions& options) {
-  const Json answer = give_order({{control::key::kCommand, control::kReload}}, options);
+void reload(const control::OrderOptions& options) {
+  const Json answer = control::give_order({{protocol::key::kCommand, protocol::kReload}}, options);
   if (options.json == "-") return;
   const auto changed = answer.find("changed");
   if (changed == answer.end() || changed->empty()) std::cout << "no key has changed\n";
@@ -36,8 +36,8 @@ void reload(const OrderOptions& options) {
 }  // namespace
 
 void add_reload(CLI::App& command, int& /*exit_code*/) {
-  const auto options = std::make_shared<OrderOptions>();
-  add_order_options(command, *options);
+  const auto options = std::make_shared<control::OrderOptions>();
+  control::add_order_options(command, *options);
   command.callback([options] { reload(*options); });
 }
 

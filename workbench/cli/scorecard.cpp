@@ -27,7 +27,6 @@ namespace workbench::cli {
 namespace {
 
 using namespace scorecard;
-using Interrupt;
 
 struct Options {
   std::vector<std::string> methods;

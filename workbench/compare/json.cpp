@@ -32,7 +32,7 @@ ordered_json json_of(const validation::Bin& bin) {
 
 ordered_json json_of(const validation::Failing& failing) {
   ordered_json out{{"variable", failing.ranges.front().variable}};
-  out.update(live::json_of(failing.figures));
+  out.update(json_of(failing.figures));
   out["stands_out"] = failing.stands_out;
   return out;
 }
@@ -75,14 +75,14 @@ std::string to_json(const validation::Comparison& c) {
   out["whiteness_p"] = number(c.whiteness_p);
   out["independence_p"] = number(c.independence_p);
   out["worst"] = ordered_json::array();
-  for (const validation::Failing& failing : c.worst) out["worst"].push_back(live::json_of(failing));
+  for (const validation::Failing& failing : c.worst) out["worst"].push_back(json_of(failing));
   out["gain_ratio"] = number(c.explained.gain_ratio);
   out["offset_mps"] = number(c.explained.offset_mps);
   out["explained_share"] = number(c.explained.share);
   out["regions"] = ordered_json::object();
   for (const validation::Region& region : c.regions) {
     ordered_json bins = ordered_json::array();
-    for (const validation::Bin& bin : region.bins) bins.push_back(live::json_of(bin));
+    for (const validation::Bin& bin : region.bins) bins.push_back(json_of(bin));
     out["regions"][region.variable] = std::move(bins);
   }
   out["observer_per_s"] = number(c.observer_per_s);

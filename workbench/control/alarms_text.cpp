@@ -7,7 +7,7 @@
 
 #include "daemon/control/protocol.h"
 
-namespace workbench {
+namespace workbench::control {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -87,4 +87,4 @@ void print_alarms(const Json& answer, bool all, std::ostream& out) {
   if (shown == 0) out << "no alarms\n";
 }
 
-}  // namespace workbench
+}  // namespace workbench::control

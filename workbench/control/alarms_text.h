@@ -4,9 +4,9 @@
 #include <iosfwd>
 #include <nlohmann/json.hpp>
 
-namespace workbench {
+namespace workbench::control {
 
 /// `all`: those that are normal too.
 void print_alarms(const nlohmann::ordered_json& answer, bool all, std::ostream& out);
 
-}  // namespace workbench
+}  // namespace workbench::control

@@ -11,7 +11,7 @@
 #include "config/schema/error.h"
 #include "daemon/control/protocol.h"
 
-namespace workbench {
+namespace workbench::control {
 namespace {
 
 using config::schema::Error;
@@ -89,4 +89,4 @@ nlohmann::ordered_json ask_daemon(const std::string& socket,
   return answer;
 }
 
-}  // namespace workbench
+}  // namespace workbench::control

@@ -4,11 +4,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace workbench {
+namespace workbench::control {
 
 /// Sends one request and returns the answer. Throws config::schema::Error (exit 1) when no daemon
 /// answers there within some seconds.
 [[nodiscard]] nlohmann::ordered_json ask_daemon(const std::string& socket,
                                                 const nlohmann::ordered_json& request);
 
-}  // namespace workbench
+}  // namespace workbench::control

@@ -7,13 +7,13 @@
 #include "config/schema/error.h"
 #include "workbench/control/client.h"
 
-namespace workbench {
+namespace workbench::control {
 namespace {
 
 using config::schema::Error;
 using config::schema::ExitCode;
 using Json = nlohmann::ordered_json;
-namespace control = monitor::control;
+namespace protocol = monitor::control;
 
 void write_json(const Json& answer, const std::string& file) {
   const std::string text = answer.dump(2) + '\n';
@@ -38,13 +38,13 @@ void add_order_options(CLI::App& command, OrderOptions& options) {
 Json give_order(const Json& request, const OrderOptions& options) {
   Json answer = ask_daemon(options.socket, request);
   if (!options.json.empty()) write_json(answer, options.json);
-  if (answer.at(control::key::kOk).get<bool>()) return answer;
-  const auto reason = answer.find(control::key::kReason);
+  if (answer.at(protocol::key::kOk).get<bool>()) return answer;
+  const auto reason = answer.find(protocol::key::kReason);
   throw Error(ExitCode::failed,
               "refused: " +
                   (reason != answer.end() && reason->is_string() ? reason->get<std::string>()
                                                                  : std::string("no reason given")) +
-                  " (the state is " + answer.at(control::key::kState).get<std::string>() + ")");
+                  " (the state is " + answer.at(protocol::key::kState).get<std::string>() + ")");
 }
 
-}  // namespace workbench
+}  // namespace workbench::control

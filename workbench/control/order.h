@@ -10,7 +10,7 @@ namespace CLI {  // NOLINT(readability-identifier-naming): the library's own nam
 class App;
 }
 
-namespace workbench {
+namespace workbench::control {
 
 struct OrderOptions {
   std::string socket = monitor::control::kDefaultSocket;
@@ -25,4 +25,4 @@ void add_order_options(CLI::App& command, OrderOptions& options);
 nlohmann::ordered_json give_order(const nlohmann::ordered_json& request,
                                   const OrderOptions& options);
 
-}  // namespace workbench
+}  // namespace workbench::control

@@ -7,7 +7,7 @@
 
 #include "config/units/quantity.h"
 
-namespace workbench {
+namespace workbench::control {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -64,7 +64,6 @@ void print_rods(const Json& status, std::ostream& out) {
 void print_detectable(const Json& status, std::ostream& out) {
   const auto sources = status.find("detectable");
   if (sources == status.end() || !sources->is_array()) return;
-  namespace tracking = monitor::tracking;
   for (const Json& source : *sources) {
     out << "  " << text_of(source, "source") << " would detect now:";
     const char* before = " ";
@@ -116,4 +115,4 @@ void print_status(const Json& status, std::ostream& out) {
   }
 }
 
-}  // namespace workbench
+}  // namespace workbench::control

@@ -4,8 +4,8 @@
 #include <iosfwd>
 #include <nlohmann/json.hpp>
 
-namespace workbench {
+namespace workbench::control {
 
 void print_status(const nlohmann::ordered_json& status, std::ostream& out);
 
-}  // namespace workbench
+}  // namespace workbench::control

@@ -148,32 +148,28 @@ std::string formula_words(const selection::Where& where, const std::string& plan
 std::string motion_words(const monitor::control::ReferenceConfig& reference, double duration_s) {
   std::string text;
   if (reference.kind == "multisine") {
-    text = "a multisine of " + config::units::number(reference.frequencies_Hz.front()) + " to " +
-           config::units::number(reference.frequencies_Hz.back()) + " Hz";
+    text = "a multisine of " + number(reference.frequencies_Hz.front()) + " to " +
+           number(reference.frequencies_Hz.back()) + " Hz";
   } else if (reference.kind == "steps") {
     const bool slow = reference.rise_s < 0.1 * reference.hold_s;
-    text = std::string(slow ? "slow steps" : "fast steps") + " every " +
-           config::units::number(reference.hold_s) + " s, each over " +
-           config::units::number(reference.rise_s) + " s,";
+    text = std::string(slow ? "slow steps" : "fast steps") + " every " + number(reference.hold_s) +
+           " s, each over " + number(reference.rise_s) + " s,";
   } else if (reference.kind == "chirp") {
-    text = "a chirp from " + config::units::number(reference.frequency_Hz) + " to " +
-           config::units::number(reference.frequency_end_Hz) + " Hz";
+    text = "a chirp from " + number(reference.frequency_Hz) + " to " +
+           number(reference.frequency_end_Hz) + " Hz";
   } else if (reference.kind == "prbs") {
-    text =
-        "a random binary motion (prbs) of " + config::units::number(reference.hold_s) + " s a bit";
+    text = "a random binary motion (prbs) of " + number(reference.hold_s) + " s a bit";
   } else {
-    text = "a sine of " + config::units::number(reference.frequency_Hz) + " Hz";
+    text = "a sine of " + number(reference.frequency_Hz) + " Hz";
   }
-  return text + " within " + config::units::number(1e3 * reference.amplitude_m) + " mm of " +
-         config::units::number(1e3 * reference.centre_m) + " mm for " +
-         config::units::number(duration_s) + " s";
+  return text + " within " + number(1e3 * reference.amplitude_m) + " mm of " +
+         number(1e3 * reference.centre_m) + " mm for " + number(duration_s) + " s";
 }
 
 std::string words_for_motion(const std::vector<std::string>& names, const std::string& motion,
                              double separation) {
   return "Run " + motion + ": a wrong choice among " + listed(names, " and ") +
-         " would then leave an error of at least " + config::units::number(separation) +
-         " times the noise.";
+         " would then leave an error of at least " + number(separation) + " times the noise.";
 }
 
 std::string words_for_sensor(const plant_sim::ModelFile& model,
@@ -207,7 +203,7 @@ std::string words_for_unexplained(const std::vector<selection::Where>& where,
   const selection::Where& first = where.front();
   std::string text = std::string("What is left goes ") + of(kVariables, first.variable) +
                      " and enters " + of(axis ? kAxisEnters : kEnters, first.enters) + " (" +
-                     config::units::number(100.0 * std::clamp(first.explained_ratio, 0.0, 1.0)) +
+                     number(100.0 * std::clamp(first.explained_ratio, 0.0, 1.0)) +
                      " % of the held-out squared error): ";
   const auto& drift = axis ? kAxisDrift : kDrift;
   const auto& record = axis ? kAxisRecord : kRecord;

@@ -64,7 +64,7 @@ std::vector<Option> options_for(const selection::Workshop& shop,
     Option& option = options[i];
     option.truths = truths(shop, rivals, option.motion);
     if (!option.truths.empty()) {
-      option.expected = closest(shop, rivals, option.truths, expected_separation);
+      option.expected = closest(shop, rivals, option.truths, selection::expected_separation);
     }
   });
   std::stable_sort(options.begin(), options.end(),
@@ -81,7 +81,7 @@ Advice advise(const selection::Workshop& shop, const std::vector<greybox::Fitted
   for (std::size_t i = 0; i < std::min(kTried, options.size()); ++i) {
     Option& option = options[i];
     if (option.expected < kSeparates || shop.cancelled()) break;
-    const double separation = closest(shop, rivals, option.truths, fitted_separation);
+    const double separation = closest(shop, rivals, option.truths, selection::fitted_separation);
     if (separation <= advice.separation) continue;
     advice.separation = separation;
     advice.motion = std::move(option.motion);

@@ -12,7 +12,6 @@ namespace workbench::diagnose {
 
 namespace greybox = estimator::greybox;
 namespace selection = estimator::greybox::selection;
-namespace tracking = estimator::greybox::tracking;
 namespace {
 
 using present::Column;
@@ -33,7 +32,7 @@ std::string joined(const std::vector<std::string>& effects) {
 }
 
 /// One unit for all errors of a page: millimetres where even the least is one or more.
-struct greybox::Scale {
+struct Scale {
   double per_m = 1e6;
   const char* unit = "µm";
 
@@ -47,10 +46,9 @@ struct greybox::Scale {
   }
 };
 
-greybox::Scale scale_of(const selection::Diagnosis& d) {
+Scale scale_of(const selection::Diagnosis& d) {
   constexpr double kMillimetre_m = 1e-3;
-  return std::min(d.rms_before_m, d.rms_after_m) >= kMillimetre_m ? greybox::Scale{1e3, "mm"}
-                                                                  : greybox::Scale{};
+  return std::min(d.rms_before_m, d.rms_after_m) >= kMillimetre_m ? Scale{1e3, "mm"} : Scale{};
 }
 
 std::vector<present::ReferenceLine> floor_line(const selection::Diagnosis& d) {
@@ -67,7 +65,7 @@ bool was_taken(const selection::Candidate& candidate, std::vector<std::string> t
 
 Plot candidates_plot(const selection::Diagnosis& d, std::size_t index) {
   const selection::Round& round = d.ladder.rounds[index];
-  const greybox::Scale scale = scale_of(d);
+  const Scale scale = scale_of(d);
   const std::vector<std::string> taken = taken_in(d.ladder, index);
   Plot plot{.title = "Round " + std::to_string(index + 1),
             .kind = Kind::bars,
@@ -109,7 +107,7 @@ std::string not_fitted_words(const selection::Round& round) {
 
 Table candidates_table(const selection::Diagnosis& d, std::size_t index) {
   const selection::Round& round = d.ladder.rounds[index];
-  const greybox::Scale scale = scale_of(d);
+  const Scale scale = scale_of(d);
   const std::vector<std::string> taken = taken_in(d.ladder, index);
   const std::string with =
       round.before.added.empty() ? "the model as given" : "with " + listed(round.before.added);
@@ -154,7 +152,7 @@ Section falling_error_section(const Outcome& outcome) {
           split_words(outcome) + ").",
       present::kFreeRunMeaning, present::kDriftCorrectedMeaning, present::kNoiseFloorMeaning};
   const std::vector<StepWords> steps = step_words(d);
-  const greybox::Scale scale = scale_of(d);
+  const Scale scale = scale_of(d);
   Plot plot{.title = "Held-out error, step by step",
             .kind = Kind::line,
             .y = {"held-out error", scale.unit, true},

@@ -24,7 +24,7 @@ using present::Tone;
 
 using Values = std::vector<double>;
 
-constexpr double live::kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kCloud = 2'500;
 /// Residuals above this are drawn in millimetres.
 constexpr double kMillimetres_m = 2e-3;
@@ -35,7 +35,7 @@ struct Residuals {
 };
 
 /// One residual in the unit that it is drawn in.
-struct greybox::Scale {
+struct Scale {
   double per_m = 1e6;
   const char* unit = "µm";
 };
@@ -44,7 +44,7 @@ struct Page {
   const greybox::Measured& record;
   greybox::Motion motion;
   Values file_m, before_m, after_m, free_file_m, free_after_m;  ///< NaN where it does not count
-  double noise_floor_m = live::kNone;
+  double noise_floor_m = kNone;
   bool improved = false;  ///< something was added
 };
 
@@ -56,7 +56,7 @@ Values times(const Values& values, double factor) {
 }
 
 Values cut(const Eigen::VectorXd& series_m, std::size_t start, const greybox::Measured& record) {
-  Values out(record.size(), live::kNone);
+  Values out(record.size(), kNone);
   if (series_m.size() == 0) return out;
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (record.settled[i] != 0) out[i] = series_m[static_cast<Eigen::Index>(start + i)];
@@ -64,18 +64,18 @@ Values cut(const Eigen::VectorXd& series_m, std::size_t start, const greybox::Me
   return out;
 }
 
-greybox::Scale scale_of(const Values& residual_m) {
+Scale scale_of(const Values& residual_m) {
   double most_m = 0.0;
   for (const double r : residual_m) {
     if (std::isfinite(r)) most_m = std::max(most_m, std::abs(r));
   }
-  return most_m > kMillimetres_m ? greybox::Scale{1e3, "mm"} : greybox::Scale{};
+  return most_m > kMillimetres_m ? Scale{1e3, "mm"} : Scale{};
 }
 
 /// Nothing is drawn across a gap.
 Values broken_at_gaps(Values values, const greybox::Measured& record) {
   for (const std::size_t start : record.starts) {
-    if (start > 0) values[start] = live::kNone;
+    if (start > 0) values[start] = kNone;
   }
   return values;
 }
@@ -113,7 +113,7 @@ Plot position_plot(const Page& page, bool fitted) {
 
 Plot residual_plot(const Page& page, const std::string& title, const Values& residual_m,
                    Tone tone) {
-  const greybox::Scale scale = scale_of(residual_m);
+  const Scale scale = scale_of(residual_m);
   Plot plot = time_plot(page, title, {"measured − model", scale.unit});
   plot.series.push_back({.name = "residual", .y = times(residual_m, scale.per_m), .tone = tone});
   if (std::isfinite(page.noise_floor_m)) {
@@ -149,7 +149,7 @@ Series cloud(const std::string& name, const Values& x, const Values& y, Tone ton
 }
 
 Plot against(const Page& page, const std::string& what, const std::string& unit, const Values& x) {
-  const greybox::Scale scale = scale_of(page.before_m);
+  const Scale scale = scale_of(page.before_m);
   const Values before = times(page.before_m, scale.per_m);
   const Values after = times(page.after_m, scale.per_m);
   Plot plot{.title = "Residual against " + what,

@@ -14,7 +14,7 @@ namespace {
 using config::schema::Error;
 using config::schema::ExitCode;
 using Json = nlohmann::ordered_json;
-namespace control = monitor::control;
+namespace protocol = monitor::control;
 
 std::string text_of(const Json& status, const char* key) {
   const auto found = status.find(key);
@@ -24,7 +24,8 @@ std::string text_of(const Json& status, const char* key) {
 }  // namespace
 
 RunningDaemon::RunningDaemon(std::string socket) : socket_(std::move(socket)) {
-  const Json status = give_order({{control::key::kCommand, control::kStatus}}, {socket_, ""});
+  const Json status =
+      control::give_order({{protocol::key::kCommand, protocol::kStatus}}, {socket_, ""});
   config_file_ = text_of(status, "config_file");
   recorder_ = text_of(status, "recorder_folder");
   const auto sample_time = status.find("sample_time_s");
@@ -47,7 +48,8 @@ RunningDaemon::RunningDaemon(std::string socket) : socket_(std::move(socket)) {
 }
 
 void RunningDaemon::check() const {
-  const Json status = give_order({{control::key::kCommand, control::kStatus}}, {socket_, ""});
+  const Json status =
+      control::give_order({{protocol::key::kCommand, protocol::kStatus}}, {socket_, ""});
   estimator::fdi::PipelineConfig effective = rules_;
   effective.load_bands(folder_, sample_time_s_);
   char wanted[17];
@@ -62,13 +64,13 @@ void RunningDaemon::check() const {
 
 void RunningDaemon::note(const std::string& text) const {
   constexpr std::size_t kLongest = 400;
-  (void)give_order({{control::key::kCommand, control::kNote},
-                    {control::key::kText, "promote: " + text.substr(0, kLongest)}},
-                   {socket_, ""});
+  (void)control::give_order({{protocol::key::kCommand, protocol::kNote},
+                             {protocol::key::kText, "promote: " + text.substr(0, kLongest)}},
+                            {socket_, ""});
 }
 
 void RunningDaemon::reload() const {
-  (void)give_order({{control::key::kCommand, control::kReload}}, {socket_, ""});
+  (void)control::give_order({{protocol::key::kCommand, protocol::kReload}}, {socket_, ""});
   check();
 }
 

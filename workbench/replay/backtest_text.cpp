@@ -22,7 +22,7 @@ std::string words(const Occurrence& o) {
          (o.direction > 0   ? " high"
           : o.direction < 0 ? " low"
                             : "") +
-         ", " + live::time_text(o.from_s) + " to " + live::time_text(o.to_s);
+         ", " + time_text(o.from_s) + " to " + time_text(o.to_s);
 }
 
 Json json_of(const Occurrence& o) {
@@ -70,7 +70,7 @@ void print_backtest(const BacktestReport& report, std::ostream& out) {
     const Difference& difference = report.differences[i];
     out << std::filesystem::path(run.files.front()).filename().string();
     if (run.files.size() > 1) out << " and " << run.files.size() - 1 << " more";
-    out << ", " << live::time_text(run.from_s) << " to " << live::time_text(run.to_s) << '\n';
+    out << ", " << time_text(run.from_s) << " to " << time_text(run.to_s) << '\n';
     if (!run.has_recorded_alarms && report.old_rules.empty()) {
       out << "  no alarms were recorded here: --old compares with a configuration\n";
     }
@@ -79,8 +79,8 @@ void print_backtest(const BacktestReport& report, std::ostream& out) {
     for (const Shift& s : difference.shifts) {
       char by[48];
       std::snprintf(by, sizeof by, "%+.3f s", s.after.from_s - s.before.from_s);
-      out << "  shifts      " << words(s.before) << " -> " << live::time_text(s.after.from_s)
-          << " to " << live::time_text(s.after.to_s) << " (" << by << ")\n";
+      out << "  shifts      " << words(s.before) << " -> " << time_text(s.after.from_s) << " to "
+          << time_text(s.after.to_s) << " (" << by << ")\n";
     }
     Totals one;
     one.add(difference);

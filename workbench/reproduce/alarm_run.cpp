@@ -38,13 +38,12 @@ class Recorder final : public fdi::Events {
 }  // namespace
 
 double AlarmRun::next(double after_s, int direction) const noexcept {
-  constexpr double live::kNone = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   for (const AlarmChange& change : changes) {
     if (change.t_s < after_s) continue;
-    return change.direction == direction && change.active == (direction != 0) ? change.t_s
-                                                                              : live::kNone;
+    return change.direction == direction && change.active == (direction != 0) ? change.t_s : kNone;
   }
-  return live::kNone;
+  return kNone;
 }
 
 double AlarmRun::first(double after_s, int direction) const noexcept {

@@ -14,7 +14,7 @@ namespace {
 using estimator::Structure;
 
 constexpr double kPrintedOffset = 3.1607e-7;
-void add_batch(std::vector<Row>& rows, const estimate::Judged& whole) {
+void add_batch(std::vector<Row>& rows, const Judged& whole) {
   rows.push_back(judged("batch: J, in step, m2", 9.1157e-4, whole.cost_m2, "cost, in step",
                         "over all 30 periods, the first with its start-up"));
   rows.push_back(judged("batch: J, one sample out of step, m2", 9.1157e-4, whole.cost_late_m2,
@@ -43,7 +43,7 @@ void add_short_buffers(std::vector<Row>& rows, const Structure& structure, const
                         variances, "information"));
 }
 
-void add_recursive(std::vector<Row>& rows, const std::string& name, const estimate::Judged& result,
+void add_recursive(std::vector<Row>& rows, const std::string& name, const Judged& result,
                    const char* offset_rule, const char* spread_rule) {
   rows.push_back(judged(name + ": J, in step, m2", 4.277e-5, result.cost_m2, "recursive cost",
                         text("one sample out of step %.4g", result.cost_late_m2)));
@@ -59,7 +59,7 @@ void add_recursive(std::vector<Row>& rows, const std::string& name, const estima
 std::vector<Row> batch_against_recursive() {
   const Structure structure = estimator::parse_structure("arx111");
   const Record record = run(calibrated(), 60.0);
-  const estimate::Judged whole = judge_batch(structure, record);
+  const Judged whole = judge_batch(structure, record);
   std::vector<Row> rows;
   add_batch(rows, whole);
   add_short_buffers(rows, structure, record);
@@ -68,7 +68,7 @@ std::vector<Row> batch_against_recursive() {
   add_recursive(rows, "recursive, warm start", judge_recursive(structure, record, 1.0, true),
                 "spread", "spread");
   const double forgetting = forgetting_with_offset(structure, record, kPrintedOffset);
-  const estimate::Judged solved = judge_recursive(structure, record, forgetting, true);
+  const Judged solved = judge_recursive(structure, record, forgetting, true);
   add_recursive(rows, text("recursive, forgetting %.4f (solved)", forgetting), solved, "solved for",
                 "spread, recursive");
   rows.push_back(judged("b1 varies more in the recursion than in the batch", std::string("yes"),

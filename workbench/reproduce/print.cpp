@@ -60,8 +60,8 @@ void print_json(std::ostream& out, std::span<const Section> sections) {
   for (const Section& section : sections) {
     for (const Row& row : section.rows) {
       rows.push_back({{"what", row.what},
-                      {"printed", live::json(row.printed)},
-                      {"ours", live::json(row.ours)},
+                      {"printed", json(row.printed)},
+                      {"ours", json(row.ours)},
                       {"agrees", to_string(row.agrees)},
                       {"note", row.note},
                       {"section", section.title},

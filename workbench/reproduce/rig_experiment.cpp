@@ -82,7 +82,7 @@ void add_costs(std::vector<Row>& rows, const Record& record) {
 
 void add_spread(std::vector<Row>& rows, const Record& record) {
   const auto structure = estimator::parse_structure("arx211");
-  const estimate::Judged batch = judge_batch(structure, record);
+  const Judged batch = judge_batch(structure, record);
   rows.push_back(judged("batch: J, m2", 0.0090, batch.cost_m2, "rig figure"));
   rows.push_back(judged("batch: mean b1, m/V", 6.5220e-5, batch.b1.mean, "rig b1"));
   rows.push_back(
@@ -90,7 +90,7 @@ void add_spread(std::vector<Row>& rows, const Record& record) {
   rows.push_back(
       judged("batch: variance of b1, (m/V)2", 2.2573e-14, batch.b1.variance, "rig figure"));
   const double forgetting = 0.998;
-  const estimate::Judged recursive = judge_recursive(structure, record, forgetting, true);
+  const Judged recursive = judge_recursive(structure, record, forgetting, true);
   const std::string name = text("recursive, forgetting %.3f (assumed)", forgetting);
   rows.push_back(judged(name + ": J, m2", 3.9927e-4, recursive.cost_m2, "rig figure"));
   rows.push_back(judged(name + ": mean b1, m/V", 6.4924e-5, recursive.b1.mean, "rig figure"));

@@ -36,9 +36,9 @@ Spread spread_of(const std::vector<double>& values) {
   return out;
 }
 
-estimate::Judged judge_batch(const Structure& structure, const Record& record, std::size_t window) {
+Judged judge_batch(const Structure& structure, const Record& record, std::size_t window) {
   const auto estimates = estimator::fit_periods(structure, record.u_V, record.y_m, window);
-  estimate::Judged out;
+  Judged out;
   std::vector<double> b1;
   for (std::size_t i = 0; i < estimates.size(); ++i) {
     const auto u_V = record.u(i * window, window);
@@ -53,15 +53,15 @@ estimate::Judged judge_batch(const Structure& structure, const Record& record, s
   return out;
 }
 
-estimate::Judged judge_recursive(const Structure& structure, const Record& record,
-                                 double forgetting, bool warm) {
+Judged judge_recursive(const Structure& structure, const Record& record, double forgetting,
+                       bool warm) {
   estimator::RecursiveConfig config;
   config.structure = structure;
   config.forgetting = forgetting;
   config.prior_variance = kPriorVariance;
   config.warmup = warm ? static_cast<int>(kPeriod) : 0;
   estimator::Recursive estimator(config);
-  estimate::Judged out;
+  Judged out;
   std::vector<double> b1;
   std::vector<double> simulated_m = record.y_m;  // measured until the first estimate is there
   for (std::size_t t = 0; t < record.y_m.size(); ++t) {

@@ -14,7 +14,6 @@
 
 namespace workbench::reproduce {
 
-namespace greybox = estimator::greybox;
 namespace {
 
 using estimator::Structure;
@@ -83,8 +82,8 @@ const char* verdict(double e_m2, double energy_m2) {
 void add_representing(std::vector<Row>& rows, const Record& record) {
   for (const Printed& printed : kRepresenting) {
     const std::string name = upper(printed.structure);
-    const Costs costs = greybox::fit(estimator::parse_structure(printed.structure),
-                                     record.u(kFrom, kPeriod), record.y(kFrom, kPeriod));
+    const Costs costs = fit(estimator::parse_structure(printed.structure), record.u(kFrom, kPeriod),
+                            record.y(kFrom, kPeriod));
     rows.push_back(judged("E of " + name + ", in step, m2", printed.cost_m2, costs.in_step_m2,
                           "cost, in step", text("condition %.2g", costs.condition)));
     rows.push_back(judged("E of " + name + ", one sample out of step, m2", printed.cost_m2,
@@ -99,7 +98,7 @@ void add_rounded(std::vector<Row>& rows, const Record& record, double kp_V_per_m
   const auto y_m = six_decimals(record.y(kFrom, kPeriod));
   double first_m2 = 0.0;
   for (const Printed& printed : kRepresenting) {
-    const Costs costs = greybox::fit(estimator::parse_structure(printed.structure), u_V, y_m);
+    const Costs costs = fit(estimator::parse_structure(printed.structure), u_V, y_m);
     if (first_m2 == 0.0) {
       first_m2 = costs.in_step_m2;
       continue;
@@ -120,7 +119,7 @@ void add_failing(std::vector<Row>& rows, const Record& record) {
   for (const Printed& printed : kFailing) {
     const Structure structure = estimator::parse_structure(printed.structure);
     const std::string name = upper(printed.structure);
-    const Costs costs = greybox::fit(structure, u_V, y_m);
+    const Costs costs = fit(structure, u_V, y_m);
     rows.push_back(judged(
         name + ", orthogonal factorisation", std::string("cannot represent"),
         std::string(verdict(costs.in_step_m2, all_m2)), "words, not expected",
@@ -142,8 +141,8 @@ void add_gains(std::vector<Row>& rows) {
     Scenario scenario = calibrated();
     scenario.model.loop.kp_V_per_m = kp_V_per_m;
     const Record record = run(scenario, 10.0);
-    const Costs costs = greybox::fit(estimator::parse_structure("arx111"), record.u(kFrom, kPeriod),
-                                     record.y(kFrom, kPeriod));
+    const Costs costs = fit(estimator::parse_structure("arx111"), record.u(kFrom, kPeriod),
+                            record.y(kFrom, kPeriod));
     rows.push_back(judged(text("E of ARX111, one sample out of step, Kp %.0f, m2", kp_V_per_m),
                           kRepresenting[0].cost_m2, costs.late_m2, "cost, out of step",
                           text("in step %.3g", costs.in_step_m2)));

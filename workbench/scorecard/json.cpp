@@ -9,9 +9,7 @@ namespace {
 
 using nlohmann::json;
 
-json or_null(double value) {
-  return std::isfinite(value) ? live::json(value) : live::json(nullptr);
-}
+json or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 json quiet_json(const QuietFigures& q) {
   const double time_s = 3600.0 * q.hours;
@@ -29,7 +27,7 @@ json fault_json(const FaultFigures& of) {
   for (const Found& found : of.found) {
     if (found.searched) {
       smallest[found.motion][found.direction > 0 ? "up" : "down"] =
-          found.smallest ? live::json(*found.smallest) : live::json(nullptr);
+          found.smallest ? json(*found.smallest) : json(nullptr);
     }
     for (const auto& [verdict, count] : found.verdicts) {
       verdicts[verdict] = verdicts.value(verdict, 0) + count;

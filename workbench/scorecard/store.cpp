@@ -22,7 +22,7 @@ Store::Store(std::string file, std::string key) : file_(std::move(file)), key_(s
   if (file_.empty() || !std::filesystem::exists(file_, ignored)) return;
   const json read = json::parse(std::ifstream(file_), nullptr, /*allow_exceptions=*/false);
   if (!read.is_object() || !read.contains("results") || !read["results"].is_object() ||
-      read.value("schema_version", live::json()) != 1) {
+      read.value("schema_version", json()) != 1) {
     throw config::schema::bad_data(file_, "is not what a scorecard has saved");
   }
   if (read.value("key", "") != key_) {

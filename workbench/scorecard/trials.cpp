@@ -33,7 +33,7 @@ void add(std::atomic<double>& sum, double value) {
 
 json to_json(const Answer& answer) {
   return {{"verdict", to_string(answer.verdict)},
-          {"delay_s", answer.detected() ? live::json(answer.delay_s) : live::json(nullptr)},
+          {"delay_s", answer.detected() ? json(answer.delay_s) : json(nullptr)},
           {"first", answer.first}};
 }
 

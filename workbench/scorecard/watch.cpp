@@ -54,7 +54,7 @@ Quiet& Quiet::operator+=(const Quiet& other) {
 /// Follows which alarms stand.
 class Watch::Listener final : public fdi::Events {
  public:
-  explicit live::Listener(std::vector<std::string> notices) : notices_(std::move(notices)) {}
+  explicit Listener(std::vector<std::string> notices) : notices_(std::move(notices)) {}
   void on_estimate(const fdi::EstimateEvent& /*event*/) override {}
   void on_alarm(const fdi::Alarm& alarm) override {
     const std::string key = alarm.source + "." + alarm.name;
@@ -93,8 +93,7 @@ Watch::Watch(const fdi::PipelineConfig& config, double sample_time_s,
       sample_time_s_(sample_time_s),
       notices_(std::move(notices)) {}
 
-void Watch::take_lead(const Samples& samples, std::size_t end, live::Listener& listener,
-                      Lead* lead) {
+void Watch::take_lead(const Samples& samples, std::size_t end, Listener& listener, Lead* lead) {
   if (lead != nullptr && lead->said != nullptr) {
     estimator::Carrier carrier = estimator::Carrier::restoring(lead->pipeline);
     pipeline_.carry(carrier);
@@ -108,7 +107,7 @@ void Watch::take_lead(const Samples& samples, std::size_t end, live::Listener& l
   if (lead == nullptr) return;
   estimator::Carrier carrier = estimator::Carrier::saving(lead->pipeline);
   pipeline_.carry(carrier);
-  lead->said = std::make_shared<live::Listener>(listener);
+  lead->said = std::make_shared<Listener>(listener);
 }
 
 Answer Watch::fault(const Samples& samples, double at_s, const std::vector<std::string>& names,
@@ -118,7 +117,7 @@ Answer Watch::fault(const Samples& samples, double at_s, const std::vector<std::
   };
   std::size_t k = 0;
   while (k < samples.size() && time_s(k) < at_s) ++k;
-  live::Listener listener(notices_);
+  Listener listener(notices_);
   take_lead(samples, k, listener, lead);
   Answer answer;
   if (listener.standing > 0) {
@@ -142,7 +141,7 @@ Answer Watch::fault(const Samples& samples, double at_s, const std::vector<std::
 
 Quiet Watch::quiet(const Samples& samples) {
   pipeline_.reset();
-  live::Listener listener(notices_);
+  Listener listener(notices_);
   Quiet quiet;
   bool stood = false;
   for (const config::signals::Sample& sample : samples) {

@@ -51,12 +51,12 @@ struct Quiet {
 
 class Watch {
  public:
-  class live::Listener;
+  class Listener;
   /// What a pipeline and its alarms were when the fault came. Of records that are the same until
   /// then, it is found once.
   struct Lead {
     std::vector<std::uint8_t> pipeline;
-    std::shared_ptr<const live::Listener> said;  ///< null: not yet found
+    std::shared_ptr<const Listener> said;  ///< null: not yet found
   };
 
   /// `notices`: SOURCE.NAME of alarms that are no faults.
@@ -73,7 +73,7 @@ class Watch {
 
  private:
   /// Takes the samples before `end`, or goes on from where they were taken.
-  void take_lead(const Samples& samples, std::size_t end, live::Listener& listener, Lead* lead);
+  void take_lead(const Samples& samples, std::size_t end, Listener& listener, Lead* lead);
 
   estimator::fdi::Pipeline pipeline_;
   double sample_time_s_;

@@ -137,7 +137,7 @@ Outcome compare_structures(const Request& request,
   }
   if (candidates.empty()) candidates = usual_candidates(out.delay, request.constant);
 
-  std::vector<estimate::Judged> judged(candidates.size());
+  std::vector<Judged> judged(candidates.size());
   std::mutex mutex;
   std::size_t done = 0;
   const unsigned threads =
@@ -148,11 +148,11 @@ Outcome compare_structures(const Request& request,
     const std::lock_guard lock(mutex);
     progress({candidates[i].name, ++done, candidates.size()});
   });
-  for (estimate::Judged& one : judged) {
+  for (Judged& one : judged) {
     if (!one.candidate.name.empty()) out.judged.push_back(std::move(one));
   }
   out.interrupted = cancel();
-  for (const estimate::Judged& one : out.judged) {
+  for (const Judged& one : out.judged) {
     out.held_out_periods =
         std::max(out.held_out_periods, static_cast<int>(one.period_costs_m2.size()));
   }

@@ -33,7 +33,7 @@ ordered_json bias_of(const structures::BiasTest& test) {
           {"instrumental_std_error", numbers(test.instrumental_error)}};
 }
 
-ordered_json json_of(const estimate::Judged& one) {
+ordered_json json_of(const Judged& one) {
   ordered_json out{{"structure", one.candidate.name},
                    {"family", one.candidate.family()},
                    {"valid", one.fitted.valid},
@@ -96,7 +96,7 @@ std::string to_json(const Outcome& o) {
                    {"notes", o.notes},
                    {"interrupted", o.interrupted},
                    {"runtime_s", number(o.runtime_s)}};
-  for (const estimate::Judged& one : o.judged) out["structures"].push_back(json_of(one));
+  for (const Judged& one : o.judged) out["structures"].push_back(json_of(one));
   return out.dump(2) + "\n";
 }
 

@@ -10,7 +10,6 @@
 
 namespace workbench::select {
 
-namespace greybox = estimator::greybox;
 namespace {
 
 using structures::Stretch;
@@ -18,7 +17,7 @@ using structures::Stretch;
 constexpr double kReached = 1.5;  // of the batch fit's free run
 constexpr int kWhitenessLags = 20;
 
-void score_free_runs(estimate::Judged& judged, const Ground& ground) {
+void score_free_runs(Judged& judged, const Ground& ground) {
   double whole = 0.0;
   int whole_count = 0;
   double periods = 0.0;
@@ -60,7 +59,7 @@ double sd_held_out(const Ground& ground) {
   return std::sqrt(std::max(0.0, square / count - sum * sum / (count * count)));
 }
 
-void score(estimate::Judged& judged, const Ground& ground) {
+void score(Judged& judged, const Ground& ground) {
   double sum = 0.0;
   int count = 0;
   for (const Stretch& stretch : ground.held_out) {
@@ -93,8 +92,7 @@ void score(estimate::Judged& judged, const Ground& ground) {
 char letter_of(const std::string& name) { return name == "constant" ? '\0' : name.front(); }
 
 /// Fits to single periods of the whole record.
-void score_spread(estimate::Judged& judged, const Ground& ground,
-                  const std::function<bool()>& cancel) {
+void score_spread(Judged& judged, const Ground& ground, const std::function<bool()>& cancel) {
   const std::size_t size = judged.fitted.value.size();
   std::vector<double> sum(size, 0.0), square(size, 0.0);
   const int length = std::max(ground.period, judged.candidate.least_samples());
@@ -103,9 +101,9 @@ void score_spread(estimate::Judged& judged, const Ground& ground,
     for (std::size_t from = 0; from + period <= stretch.y_m.size(); from += period) {
       if (cancel()) return;
       const Fitted one =
-          greybox::fit(judged.candidate,
-                       {{stretch.u_V.subspan(from, period), stretch.y_m.subspan(from, period)}},
-                       &judged.fitted, cancel);
+          fit(judged.candidate,
+              {{stretch.u_V.subspan(from, period), stretch.y_m.subspan(from, period)}},
+              &judged.fitted, cancel);
       if (!one.valid) continue;
       ++judged.periods;
       for (std::size_t i = 0; i < size; ++i) {
@@ -139,7 +137,7 @@ void score_spread(estimate::Judged& judged, const Ground& ground,
   judged.spread = std::sqrt(total / counted);
 }
 
-void run_on_line(estimate::Judged& judged, const Ground& ground) {
+void run_on_line(Judged& judged, const Ground& ground) {
   judged.on_line = on_line_form(judged.candidate, judged.fitted);
   const auto* orders = std::get_if<structures::Orders>(&judged.candidate.what);
   if (!judged.on_line.sound || orders == nullptr || orders->size() > estimator::kMaxCoefficients) {
@@ -151,7 +149,7 @@ void run_on_line(estimate::Judged& judged, const Ground& ground) {
     for (std::size_t t = 0; t < stretch.y_m.size(); ++t)
       filter.push(stretch.u_V[t], stretch.y_m[t]);
   }
-  estimate::Judged found;
+  Judged found;
   found.fitted.model = structures::from_values(*orders, filter.value());
   score_free_runs(found, ground);
   judged.on_line.free_run_rms_m = found.free_run_rms_m;
@@ -161,7 +159,7 @@ void run_on_line(estimate::Judged& judged, const Ground& ground) {
   }
 }
 
-void test_closed_loop(estimate::Judged& judged, const Ground& ground) {
+void test_closed_loop(Judged& judged, const Ground& ground) {
   const structures::Orders* const arx = judged.candidate.arx();
   if (arx == nullptr || arx->b == 0) return;
   const estimator::Structure structure{arx->a, arx->b, arx->k, arx->constant};
@@ -196,12 +194,12 @@ double criterion_energy(const Fitted& fitted, const Ground& ground, int& count) 
   return sum;
 }
 
-estimate::Judged judge(const Candidate& candidate, const Ground& ground,
-                       const std::function<bool()>& cancel) {
+Judged judge(const Candidate& candidate, const Ground& ground,
+             const std::function<bool()>& cancel) {
   const auto start = std::chrono::steady_clock::now();
-  estimate::Judged out;
+  Judged out;
   out.candidate = candidate;
-  out.fitted = greybox::fit(candidate, ground.fitted, nullptr, cancel);
+  out.fitted = fit(candidate, ground.fitted, nullptr, cancel);
   out.fit_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!out.fitted.valid) {
     out.on_line = on_line_form(candidate, out.fitted);

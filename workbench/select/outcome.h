@@ -47,7 +47,7 @@ struct OnLine {
   double free_run_rms_m = kMissing;
 };
 
-struct estimate::Judged {
+struct Judged {
   Candidate candidate;
   Fitted fitted;
   double one_step_rms_m = kMissing;        ///< held out
@@ -83,8 +83,8 @@ struct Outcome {
   double period_s = 0.0;
   int held_out_periods = 0;
   double noise_floor_m = kMissing;
-  std::vector<estimate::Judged> judged;  ///< best first
-  int recommended = -1;                  ///< index; -1: none represents the record
+  std::vector<Judged> judged;  ///< best first
+  int recommended = -1;        ///< index; -1: none represents the record
   int most_accurate = -1;
   int watch = -1;  ///< the one to follow on line; -1: none
   std::string reason;

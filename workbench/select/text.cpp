@@ -35,7 +35,7 @@ std::string spread(double value) {
   return percent >= 1000.0 ? "> 1000 %" : number_words(percent, 2) + " %";
 }
 
-std::string bias(const estimate::Judged& judged) {
+std::string bias(const Judged& judged) {
   if (judged.has_bias_test) return text(judged.bias.verdict);
   return "-";
 }
@@ -47,13 +47,13 @@ std::string on_line(const OnLine& form) {
 
 double least_bic(const Outcome& outcome) {
   double out = std::numeric_limits<double>::infinity();
-  for (const estimate::Judged& one : outcome.judged) {
+  for (const Judged& one : outcome.judged) {
     if (std::isfinite(one.bic)) out = std::min(out, one.bic);
   }
   return out;
 }
 
-std::string row(const estimate::Judged& one, double bic, const char* mark) {
+std::string row(const Judged& one, double bic, const char* mark) {
   if (!one.fitted.valid) {
     return line("%s %-11s not fitted: ", mark, one.candidate.name.c_str()) + one.fitted.why + "\n";
   }
@@ -86,7 +86,7 @@ std::string to_text(const Outcome& o) {
   const double bic = least_bic(o);
   bool failed = false;
   for (std::size_t i = 0; i < o.judged.size(); ++i) {
-    const estimate::Judged& one = o.judged[i];
+    const Judged& one = o.judged[i];
     if (one.fitted.valid && !one.represents && !failed) {
       failed = true;
       out += "  cannot represent this record (the free run errs more than the rod moves):\n";
@@ -103,7 +103,7 @@ std::string to_text(const Outcome& o) {
     out += o.reason + ".\n";
   }
   if (o.watch >= 0 && o.watch != o.recommended) {
-    const estimate::Judged& one = o.judged[static_cast<std::size_t>(o.watch)];
+    const Judged& one = o.judged[static_cast<std::size_t>(o.watch)];
     out += "to follow on line: " + one.candidate.name + ", by " + method_words(one.on_line.method) +
            "; its free run errs " +
            more_words(one.free_run_rms_m / o.judged.front().free_run_rms_m) + " the best.\n";

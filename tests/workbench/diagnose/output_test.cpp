@@ -26,7 +26,7 @@ TEST(DiagnosisJson, HasThePublishedKeysInSi) {
   outcome.diagnosis.where = {{"force", "speed", 0.62}};
   const json j = json::parse(to_json(outcome));
   EXPECT_EQ(j["verdict"], "missing");
-  EXPECT_EQ(j["missing"], live::json({"friction"}));
+  EXPECT_EQ(j["missing"], json({"friction"}));
   EXPECT_EQ(j["ambiguous"], json::parse(R"([["friction", "backlash"]])"));
   EXPECT_EQ(j["noise_floor_m"], 2.4e-6);
   EXPECT_EQ(j["rms_before_m"], 26.3e-6);

@@ -17,12 +17,12 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index kSamples = 240;
-constexpr double live::kNone = std::numeric_limits<double>::infinity();
+constexpr double kNone = std::numeric_limits<double>::infinity();
 
 /// Three parameters, the last without a prior; numbers that are the same everywhere.
 greybox::Fitted example() {
   greybox::Fitted fitted;
-  for (const double sd : {0.02, 0.3, live::kNone}) {
+  for (const double sd : {0.02, 0.3, kNone}) {
     greybox::SearchParameter p;
     p.prior_sd = sd;
     fitted.searched.push_back(p);
@@ -112,7 +112,7 @@ TEST(Projection, GivesNoStrengthToASignatureThatCannotBeTold) {
 
 TEST(Projection, TakesFromASignatureWhatTheParametersCanImitate) {
   greybox::Fitted fitted = example();
-  for (greybox::SearchParameter& p : fitted.searched) p.prior_sd = live::kNone;
+  for (greybox::SearchParameter& p : fitted.searched) p.prior_sd = kNone;
   const selection::Projection projection(fitted, VectorXd::Ones(kSamples));
   const VectorXd own_m = 1e-6 * VectorXd::Random(kSamples);
   const VectorXd beyond_m = projection.beyond(own_m + 0.4 * fitted.jacobian.col(0));

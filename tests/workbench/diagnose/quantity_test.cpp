@@ -12,7 +12,7 @@
 namespace workbench::diagnose {
 namespace {
 
-const double live::kNone = std::nan("");
+const double kNone = std::nan("");
 
 std::string said(const char* name, double value, double error) {
   return config::units::words(config::units::quantity(name, value, error));
@@ -27,20 +27,20 @@ TEST(Quantity, IsRoundedToWhatItsErrorLeaves) {
 }
 
 TEST(Quantity, IsShownInTheUnitThatReadsWell) {
-  EXPECT_EQ(said("limit_m3ps", 1e-4, live::kNone), "6 L/min");
-  EXPECT_EQ(said("supply_pressure_Pa", 6.89e6, live::kNone), "68.9 bar");
-  EXPECT_EQ(said("droop.droop_Pa_per_m3ps", 6e9, live::kNone), "1 bar/(L/min)");
-  EXPECT_EQ(said("leak.conductance_m3ps_per_Pa", 1e-11, live::kNone), "60 mL/min/bar");
+  EXPECT_EQ(said("limit_m3ps", 1e-4, kNone), "6 L/min");
+  EXPECT_EQ(said("supply_pressure_Pa", 6.89e6, kNone), "68.9 bar");
+  EXPECT_EQ(said("droop.droop_Pa_per_m3ps", 6e9, kNone), "1 bar/(L/min)");
+  EXPECT_EQ(said("leak.conductance_m3ps_per_Pa", 1e-11, kNone), "60 mL/min/bar");
   EXPECT_EQ(said("flow_asymmetry.asymmetry_ratio", 0.04, 0.002), "4.00 +- 0.20 %");
-  EXPECT_EQ(said("force_ripple.phase_rad", 3.14159265, live::kNone), "180 deg");
-  EXPECT_EQ(said("gain_mps_per_V", 0.0123, live::kNone), "12.3 mm/s/V");
-  EXPECT_EQ(said("quadratic_damping.coefficient_N_s2_per_m2", 8000.0, live::kNone), "8000 N s2/m2");
+  EXPECT_EQ(said("force_ripple.phase_rad", 3.14159265, kNone), "180 deg");
+  EXPECT_EQ(said("gain_mps_per_V", 0.0123, kNone), "12.3 mm/s/V");
+  EXPECT_EQ(said("quadratic_damping.coefficient_N_s2_per_m2", 8000.0, kNone), "8000 N s2/m2");
 }
 
 TEST(Quantity, MissingLimitsAndMissingValuesAreWords) {
-  EXPECT_EQ(said("limit_m3ps", std::numeric_limits<double>::infinity(), live::kNone), "no limit");
-  EXPECT_EQ(said("mass_kg", live::kNone, live::kNone), "unknown");
-  EXPECT_EQ(config::units::length_words(live::kNone), "unknown");
+  EXPECT_EQ(said("limit_m3ps", std::numeric_limits<double>::infinity(), kNone), "no limit");
+  EXPECT_EQ(said("mass_kg", kNone, kNone), "unknown");
+  EXPECT_EQ(config::units::length_words(kNone), "unknown");
 }
 
 TEST(Quantity, LengthsGoFromMicrometresToMetres) {
@@ -62,7 +62,7 @@ TEST(Quantity, ParameterNamesLoseEffectAndUnit) {
 TEST(Chance, IsNotShownFinerThanItIsKnown) {
   EXPECT_EQ(config::units::chance_words(1e-12), "below 1e-06");
   EXPECT_EQ(config::units::chance_words(0.034), "0.034");
-  EXPECT_EQ(config::units::chance_words(live::kNone), "-");
+  EXPECT_EQ(config::units::chance_words(kNone), "-");
 }
 
 /// What a shell makes of the word.

@@ -18,7 +18,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double live::kNone = std::numeric_limits<double>::infinity();
+constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr double kTs = 0.005;
 constexpr double kGain = 0.05;  ///< of the model file
 
@@ -31,10 +31,10 @@ plant_sim::ModelFile servo() {
 }
 
 greybox::SearchParameter gain() {
-  return {"gain_mps_per_V", greybox::Scale::logarithmic, kGain, -1.0, 1.0, 0.0, live::kNone};
+  return {"gain_mps_per_V", greybox::Scale::logarithmic, kGain, -1.0, 1.0, 0.0, kNone};
 }
 greybox::SearchParameter offset() {
-  return {"null_bias.offset_V", greybox::Scale::linear, 0.05, -200.0, 200.0, 0.0, live::kNone};
+  return {"null_bias.offset_V", greybox::Scale::linear, 0.05, -200.0, 200.0, 0.0, kNone};
 }
 
 /// sum of u Ts up to each sample, and time: the two columns of the position.

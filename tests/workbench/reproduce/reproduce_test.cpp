@@ -23,11 +23,11 @@ class Rows {
   explicit Rows(std::vector<Row> rows) : rows_(std::move(rows)) {}
 
   const Row& at(const std::string& what) const {
-    static const Row live::kNone;
+    static const Row kNone;
     const auto found =
         std::find_if(rows_.begin(), rows_.end(), [&](const Row& row) { return row.what == what; });
     if (found == rows_.end()) ADD_FAILURE() << "no row " << what;
-    return found == rows_.end() ? live::kNone : *found;
+    return found == rows_.end() ? kNone : *found;
   }
   double number(const std::string& what) const {
     const auto* value = std::get_if<double>(&at(what).ours);

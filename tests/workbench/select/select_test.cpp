@@ -142,7 +142,7 @@ TEST_F(Select, CostsAndVarianceAreThoseOfTheSource) {
   EXPECT_EQ(arx["periods"], 10);
   EXPECT_LT(arx["spread"].get<double>(), 1e-9);
   EXPECT_NEAR(arx["period_mean"][2].get<double>(), 1.0, 1e-9);
-  EXPECT_EQ(arx["names"], live::json({"a1", "a2", "b1"}));
+  EXPECT_EQ(arx["names"], json({"a1", "a2", "b1"}));
 }
 
 TEST_F(Select, SpreadIsTheScatterThatTheStandardErrorsForetell) {
