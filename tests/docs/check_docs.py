@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Checks the Markdown pages: links, anchors, pictures, and the length of the README.
+"""Checks the Markdown pages: links, anchors, pictures, tables, and the length of the README.
 
   check_docs.py ROOT         the pages of the repository at ROOT
   check_docs.py --planted    does the check find faults that are planted in a folder of its own?
 
 Every relative link must name a file or folder of the repository, every anchor a heading of its page
 (GitHub's rule), and no page under docs/ may be out of reach from README.md. docs/reference/ is
-generated: links into it are checked where it is there.
+generated: links into it are checked where it is there. Each row of a table must have as many cells
+as its head.
 """
 import pathlib
 import re
@@ -43,6 +44,17 @@ def pages_of(root):
         (root / "docs").rglob("*.md"))
 
 
+def ragged_rows(text):
+    """Rows of tables with another number of cells than the head of their table."""
+    cells, found = 0, []
+    for line in prose(text).split("\n"):
+        count = len(re.findall(r"(?<!\\)\|", line)) if line.startswith("|") else 0
+        if count and cells and count != cells:
+            found.append(line)
+        cells = count and (cells or count)
+    return found
+
+
 def faults(root):
     """One line for each fault, and the page that has it."""
     found, reached = [], {}
@@ -51,6 +63,8 @@ def faults(root):
         name = page.relative_to(root)
         text = page.read_text()
         reached[page] = set()
+        found += [f"{name}: this row has more or fewer cells than its head: {row[:60]}"
+                  for row in ragged_rows(text)]
         for link in LINK.findall(re.sub(r"`[^`\n]*`", "", prose(text))):
             if re.match(r"[a-z][a-z0-9+.-]*:", link):
                 continue
@@ -87,11 +101,13 @@ def planted():
             "# Top\n[a](docs/a.md#the-place-a) [b](docs/b.md) [c](docs/reference/c.md) [d](#top)\n"
             "[e](docs/a.md#nowhere) [f](../x) [w](https://example.org/x) ![p](p.png)\n"
             "    [code](none)\n```\n[code](none)\n```\n" + "x" * README_BYTES)
-        (root / "docs/a.md").write_text("## The *place*: `a`\n[back](../README.md#top)\n")
+        (root / "docs/a.md").write_text(
+            "## The *place*: `a`\n[back](../README.md#top)\n\n|a|b|\n|-|-|\n|1|\\|2|\n|1|\n")
         (root / "docs/lost.md").write_text("# Lost\n")
         expected = {"README.md: docs/b.md is not there", "README.md: p.png is not there",
                     "README.md: docs/a.md#nowhere is no heading of that page",
-                    "README.md: ../x leaves the repository", "docs/lost.md is linked from no page"}
+                    "README.md: ../x leaves the repository", "docs/lost.md is linked from no page",
+                    "docs/a.md: this row has more or fewer cells than its head: |1|"}
         found = set(faults(root))
         long = {line for line in found if line.startswith("README.md has ")}
         return [] if found - long == expected and len(long) == 1 else sorted(found ^ expected)
