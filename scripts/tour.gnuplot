@@ -19,8 +19,8 @@ set tmargin at screen 0.93
 set bmargin at screen 0.55
 set offsets 0, 0, 18, 0
 set ylabel "rod position, mm"
-plot time using 1:3 with lines linewidth 1.5 linecolor "#d9822b" title "model file, pure simulation", \
-     time using 1:4 with lines linewidth 4 linecolor "#8fd3b4" title "better model, pure simulation", \
+plot time using 1:3 with lines linewidth 1.5 linecolor "#d9822b" title "model file, free run", \
+     time using 1:4 with lines linewidth 4 linecolor "#8fd3b4" title "better model, free run", \
      time using 1:2 with lines linewidth 1 linecolor "#1f3b57" title "measured"
 
 set offsets 0, 0, 0, 0

@@ -54,7 +54,10 @@ file(GLOB configurations CONFIGURE_DEPENDS config/*.toml)
 install(FILES ${configurations} DESTINATION "${share}")
 install(DIRECTORY config/models config/scorecard config/tour DESTINATION "${share}")
 install(FILES config/messages/spoolwatch.lcm DESTINATION "${share}/messages")
-install(FILES README.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+# The pages with their pictures, laid out as in the repository so that their links hold.
+install(FILES README.md CHANGELOG.md CONTRIBUTING.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" FILES_MATCHING PATTERN "*.md")
+install(FILES scripts/tour.png scripts/demo.png DESTINATION "${CMAKE_INSTALL_DOCDIR}/scripts")
 install(FILES systemd/package/copyright DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 
 # Compressed as Debian wants it, the same bytes from the same input.
@@ -62,7 +65,7 @@ install(CODE "
   file(GLOB texts \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man*/*[18]\")
   set(log \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DOCDIR}/changelog\")
   file(WRITE \"\${log}\" \"spoolwatch (${PROJECT_VERSION}) stable; urgency=medium\\n\\n\"
-    \"  * Version ${PROJECT_VERSION}.\\n\\n\"
+    \"  * Version ${PROJECT_VERSION}: see CHANGELOG.md.\\n\\n\"
     \" -- The Spoolwatch authors <maintainers@example.org>  Thu, 01 Jan 2026 00:00:00 +0000\\n\")
   execute_process(COMMAND gzip -9nf \${texts} \"\${log}\" COMMAND_ERROR_IS_FATAL ANY)")
 
