@@ -26,7 +26,7 @@ class Watcher final : public Listener {
         json_(options.json),
         terminal_(!options.json && isatty(STDOUT_FILENO) == 1) {}
 
-  void on_sample(const spoolwatch::sample_t& s) override {
+  void on(const spoolwatch::sample_t& s) override {
     if (s.quality >= kStaleQuality || !std::isfinite(s.y_m) || !std::isfinite(s.u_applied_V)) {
       return;
     }
