@@ -17,7 +17,7 @@ class alarm_t;
 class health_t;
 }  // namespace spoolwatch
 
-namespace workbench::interchange {
+namespace workbench::exchange {
 
 using Tree = nlohmann::ordered_json;
 
@@ -44,4 +44,4 @@ struct Message {
 /// One line, whatever bytes its texts have.
 [[nodiscard]] std::string text_of(const Tree& tree);
 
-}  // namespace workbench::interchange
+}  // namespace workbench::exchange

@@ -22,7 +22,7 @@ class alarm_t;
 class health_t;
 }  // namespace spoolwatch
 
-namespace workbench {
+namespace workbench::live {
 
 /// Without a health message for so long the daemon counts as silent (it sends one a second).
 inline constexpr std::chrono::seconds kSilence{3};
@@ -85,4 +85,4 @@ class Feed {
   Clock::time_point last_losses_;
 };
 
-}  // namespace workbench
+}  // namespace workbench::live

@@ -10,7 +10,7 @@ class alarm_t;
 class health_t;
 }  // namespace spoolwatch
 
-namespace workbench {
+namespace workbench::live {
 
 /// "2026-11-21 03:15:38.123Z", or "12.345 s" for virtual time, which counts from 0.
 [[nodiscard]] std::string time_text(std::int64_t utc_us);
@@ -29,4 +29,4 @@ namespace workbench {
 [[nodiscard]] std::string json(const spoolwatch::estimate_t& estimate);
 [[nodiscard]] std::string json(const spoolwatch::health_t& health);
 
-}  // namespace workbench
+}  // namespace workbench::live
