@@ -2,12 +2,12 @@
 
 #include <ostream>
 
+#include "config/schema/hash.h"
 #include "daemon/rules.h"
-#include "estimator/fdi/snapshot.h"
 
 namespace monitor {
 AlarmKeeping::AlarmKeeping(DaemonConfig& config, const Rules& rules, const Session& session) {
-  pipeline_hash = estimator::fdi::hash_of(rules.text);
+  pipeline_hash = config::schema::hash_of(rules.text);
   if (!config.evidence.folder.empty()) {
     evidence = std::make_unique<io::Evidence>(
         config.evidence,

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <sstream>
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "config/schema/hash.h"
 #include "daemon/control/calibration.h"
 
 namespace monitor {
@@ -24,12 +24,6 @@ constexpr const char* kWiringKeys[] = {
     "backend", "channel",      "address",          "function",    "type",      "order", "scale",
     "offset",  "sign",         "polarity",         "scale_ratio", "offset_V",  "mode",  "line_a",
     "line_b",  "resolution_m", "counts_per_metre", "range",       "subdevice", "role",  "unit"};
-
-std::uint64_t fnv(const std::string& text) noexcept {
-  std::uint64_t h = 0xcbf29ce484222325U;
-  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
-  return h;
-}
 
 /// A command that stays at the valve for ever needs someone else who takes it away.
 void refuse_without_watchdog(const DaemonConfig& config) {
@@ -152,15 +146,13 @@ std::string wiring(DaemonConfig& config) {
     }
   }
   take();
-  char digits[17];
-  std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(fnv(text)));
-  return digits;
+  return config::schema::hash_text(config::schema::hash_of(text));
 }
 
 std::uint64_t hash(DaemonConfig& config) {
   const std::string text =
       config::schema::print_toml([&](Visitor& v) { config.visit_what_determines_the_data(v); });
-  return fnv(text);
+  return config::schema::hash_of(text);
 }
 
 }  // namespace monitor

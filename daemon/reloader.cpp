@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "config/schema/error.h"
+#include "config/schema/hash.h"
 #include "daemon/rules.h"
-#include "estimator/fdi/snapshot.h"
 
 namespace monitor {
 
@@ -14,8 +14,8 @@ Reloader::Reloader(Parts parts, DaemonConfig& running, double sample_time_s)
     : parts_(std::move(parts)),
       running_(running),
       sample_time_s_(sample_time_s),
-      config_hash_(hash_text(hash(running))),
-      rules_hash_(hash_text(parts_.rules_hash)) {}
+      config_hash_(config::schema::hash_text(hash(running))),
+      rules_hash_(config::schema::hash_text(parts_.rules_hash)) {}
 
 bool Reloader::begin(unsigned uid, const std::string& what) {
   if (busy()) return false;
@@ -49,8 +49,8 @@ void Reloader::prepare(UnderWay& under_way) {
   Rules rules = make_rules(next, sample_time_s_);
   auto change = std::make_shared<rt::RuleChange>();
   change->pipeline = std::move(rules.pipeline);
-  change->pipeline_hash = estimator::fdi::hash_of(rules.text);
-  change->config_hash = hash_text(hash(next));
+  change->pipeline_hash = config::schema::hash_of(rules.text);
+  change->config_hash = config::schema::hash_text(hash(next));
   change->estimators = rules.effective.source_ids();
   if (parts_.evidence) change->evidence_files = evidence_files(next, rules.text);
   if (!to_detector.push(change)) {
@@ -65,7 +65,7 @@ void Reloader::look() {
   running_.alarms.rules = under_way_->next.alarms.rules;
   running_.model = under_way_->next.model;
   config_hash_ = taken->config_hash;
-  rules_hash_ = hash_text(taken->pipeline_hash);
+  rules_hash_ = config::schema::hash_text(taken->pipeline_hash);
   ReloadOutcome done;
   done.changed = under_way_->changed;
   done.warm = taken->warm;

@@ -1,7 +1,6 @@
 #include "daemon/rules.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -13,20 +12,7 @@
 namespace monitor {
 namespace {
 
-using config::schema::Error;
-using config::schema::ExitCode;
 using config::schema::Visitor;
-
-/// What `make` says is wrong with the configuration, with the place in the file put before it.
-template <class Make>
-auto at(const std::string& place, Make make) {
-  try {
-    return make();
-  } catch (const Error& e) {
-    if (e.exit_code() != static_cast<int>(ExitCode::bad_config)) throw;
-    throw Error(ExitCode::bad_config, place + ": " + e.what());
-  }
-}
 
 /// Files that a configuration names and that evidence needs to be read by itself.
 struct NamedFile {
@@ -139,8 +125,9 @@ Rules make_rules(const DaemonConfig& config, double sample_time_s) {
         config.file + ": bands_file: " + (config.folder / bands).string(), "is no file",
         "a file of learned bands (TOML)");
   }
-  at(config.file, [&] { rules.effective.load_bands(config.folder, sample_time_s, config.rig_id); });
-  rules.pipeline = at(config.file, [&] {
+  with_place(config.file,
+             [&] { rules.effective.load_bands(config.folder, sample_time_s, config.rig_id); });
+  rules.pipeline = with_place(config.file, [&] {
     return std::make_unique<estimator::fdi::Pipeline>(rules.effective, sample_time_s);
   });
   rules.pipeline->alarms().set_condition_rules(config.alarms.rules);
@@ -182,12 +169,6 @@ std::vector<std::string> differences(DaemonConfig& before, DaemonConfig& after) 
 bool may_change(const std::string& key, const estimator::fdi::PipelineConfig& pipeline) {
   if (key == "[alarms] folder" || key == "[alarms] audit_bytes") return false;
   return pipeline.owns(key) || key.starts_with("[alarms]") || key.starts_with("[model]");
-}
-
-std::string hash_text(std::uint64_t hash) {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-  return text;
 }
 
 }  // namespace monitor

@@ -2,11 +2,11 @@
 // an alarm comes.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "config/schema/error.h"
 #include "daemon/daemon_config.h"
 #include "daemon/io/evidence.h"
 #include "estimator/fdi/pipeline.h"
@@ -34,7 +34,17 @@ struct Rules {
 [[nodiscard]] bool may_change(const std::string& key,
                               const estimator::fdi::PipelineConfig& pipeline);
 
-/// 16 hexadecimal digits.
-[[nodiscard]] std::string hash_text(std::uint64_t hash);
+/// What `make` returns. A configuration error (exit 78) in it gets `place` put before its text.
+template <class Make>
+auto with_place(const std::string& place, const Make& make) {
+  using config::schema::Error;
+  using config::schema::ExitCode;
+  try {
+    return make();
+  } catch (const Error& error) {
+    if (error.exit_code() != static_cast<int>(ExitCode::bad_config)) throw;
+    throw Error(ExitCode::bad_config, place + ": " + error.what());
+  }
+}
 
 }  // namespace monitor

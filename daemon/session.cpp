@@ -12,6 +12,7 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "config/schema/hash.h"
 #include "daemon/alarm_keeping.h"
 #include "daemon/attendant.h"
 #include "daemon/left_at_null.h"
@@ -40,18 +41,6 @@ struct Prepared {
   std::vector<control::GuardConfig> guards;
   std::string never_arms;  ///< why it may not be armed; empty: it may
 };
-
-/// What `make` says is wrong with the configuration, with the place in the file put before it.
-template <class Make>
-auto at(const std::string& place, Make make) {
-  using config::schema::Error;
-  try {
-    return make();
-  } catch (const Error& e) {
-    if (e.exit_code() != static_cast<int>(config::schema::ExitCode::bad_config)) throw;
-    throw Error(config::schema::ExitCode::bad_config, place + ": " + e.what());
-  }
-}
 
 template <class Named>
 std::vector<std::string> ids_of(const std::vector<Named>& devices) {
@@ -105,12 +94,12 @@ Prepared prepare(DaemonConfig& config, std::string* absent) {
     if (absent == nullptr) throw;
     *absent = e.what();
   }
-  p.guards =
-      at(config.file, [&] { return control::all_guards(config.safety, config.loop.overrun()); });
+  p.guards = with_place(config.file,
+                        [&] { return control::all_guards(config.safety, config.loop.overrun()); });
   p.never_arms = never_arms(config);
   if (!std::isnan(p.devices.sample_time_s)) p.sample_time_s = p.devices.sample_time_s;
   const bool from_file = config.reference.kind == "file";
-  p.reference = at(config.file + ": [reference]" + (from_file ? " file" : ""), [&] {
+  p.reference = with_place(config.file + ": [reference]" + (from_file ? " file" : ""), [&] {
     return control::make_reference(
         config.drives_valve() ? config.reference : control::ReferenceConfig{}, config.folder);
   });
@@ -192,7 +181,8 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
   if (!config.recorder.folder.empty()) {
     recorder = std::make_unique<io::Recorder>(config.recorder, run_id, !virtual_time);
   }
-  AlarmKeeping keeping(config, p.rules, {hash_text(p.hash), run_id, p.sample_time_s, virtual_time});
+  AlarmKeeping keeping(config, p.rules,
+                       {config::schema::hash_text(p.hash), run_id, p.sample_time_s, virtual_time});
   io::Publisher publisher(config.lcm, run_id, p.sample_time_s, recorder.get());
   if (keeping.evidence != nullptr) publisher.attach(*keeping.evidence);
   if (config.rig.measures_pressures()) publisher.tell_pressures();
@@ -224,15 +214,16 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
       {clock, *samples, stats, *p.rules.pipeline, publisher, recorder.get(), &keeping.orders,
        &keeping.answers, keeping.store.get(), keeping.audit.get(), keeping.evidence.get(),
        keeping.pipeline_hash, &reloader.to_detector, &reloader.from_detector, &detectable},
-      {config.rig_id, hash_text(p.hash), grant.text, config.rig.rod_backend(),
+      {config.rig_id, config::schema::hash_text(p.hash), grant.text, config.rig.rod_backend(),
        valve != nullptr ? valve_config.backend : "", ids_of(p.devices.spare_rods),
        ids_of(p.devices.inputs), p.guards, p.sample_time_s});
   keeping.bring_back(*p.rules.pipeline, clock.utc_us(), log);
-  CommandDesk desk({clock, commands, stats, &keeping.orders, &keeping.answers, keeping.audit.get(),
-                    &reloader, &detectable},
-                   {config.rig_id, hash_text(p.hash), p.guards, ids_of(p.devices.spare_rods),
-                    ids_of(p.devices.inputs), inputs_of(p.devices, hal::InputRole::enable),
-                    inputs_of(p.devices, hal::InputRole::e_stop), p.never_arms});
+  CommandDesk desk(
+      {clock, commands, stats, &keeping.orders, &keeping.answers, keeping.audit.get(), &reloader,
+       &detectable},
+      {config.rig_id, config::schema::hash_text(p.hash), p.guards, ids_of(p.devices.spare_rods),
+       ids_of(p.devices.inputs), inputs_of(p.devices, hal::InputRole::enable),
+       inputs_of(p.devices, hal::InputRole::e_stop), p.never_arms});
   Attendant attendant(desk, socket.get(), reloader);
   const io::ServiceManager manager;
   ServiceReport service(manager, clock, stats, valve != nullptr);
@@ -275,7 +266,7 @@ void check_session(DaemonConfig& config, std::ostream& out) {
   if (!config.recorder.folder.empty()) io::check_folder(config.recorder);
   out << config::schema::print_toml([&](config::schema::Visitor& v) { config.visit(v); });
   out << "\n# " << config.file << ": period " << p.sample_time_s * 1e3 << " ms, configuration "
-      << hash_text(p.hash) << "\n";
+      << config::schema::hash_text(p.hash) << "\n";
   for (const std::string& note : config.rig.notes(p.opening)) out << "# " << note << "\n";
   if (!config.drives_valve()) {
     out << "# No valve is driven: state MONITOR, nothing is ever written.\n";

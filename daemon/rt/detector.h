@@ -41,7 +41,7 @@ class Detector final : private estimator::fdi::Events {
     io::AlarmStore* store = nullptr;
     const io::Audit* audit = nullptr;
     io::Evidence* evidence = nullptr;
-    std::uint64_t pipeline_hash = 0;  ///< fdi::hash_of(whole_text), for evidence
+    std::uint64_t pipeline_hash = 0;  ///< schema::hash_of(whole_text), for evidence
     RuleQueue* new_rules = nullptr;   ///< to be taken, with `taken_rules`
     RuleQueue* taken_rules = nullptr;
     io::DetectableBoard* detectable = nullptr;

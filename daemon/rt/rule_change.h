@@ -16,7 +16,7 @@ namespace monitor::rt {
 
 struct RuleChange {
   std::unique_ptr<estimator::fdi::Pipeline> pipeline;  ///< the new one; handed back: the old one
-  std::uint64_t pipeline_hash = 0;                     ///< fdi::hash_of(whole_text)
+  std::uint64_t pipeline_hash = 0;                     ///< schema::hash_of(whole_text)
   std::string config_hash;                             ///< of the whole configuration
   std::vector<std::string> estimators;                 ///< ids of all sources, in their order
   std::vector<io::EvidenceFile> evidence_files;

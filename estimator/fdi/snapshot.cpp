@@ -4,6 +4,7 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "config/schema/hash.h"
 
 namespace estimator::fdi {
 namespace {
@@ -18,16 +19,10 @@ struct Head {
 constexpr char kMagic[8] = {'S', 'W', 'S', 'T', 'A', 'T', 'E', '1'};
 
 std::uint64_t hash_of(std::span<const std::uint8_t> bytes) noexcept {
-  return fdi::hash_of(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  return config::schema::hash_of({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace
-
-std::uint64_t hash_of(std::string_view text) noexcept {
-  std::uint64_t h = 0xcbf29ce484222325U;
-  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
-  return h;
-}
 
 std::string whole_text(const PipelineConfig& config, double sample_time_s) {
   PipelineConfig copy = config;

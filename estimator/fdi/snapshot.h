@@ -7,20 +7,16 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "estimator/fdi/pipeline.h"
 
 namespace estimator::fdi {
 
-/// FNV-1a.
-[[nodiscard]] std::uint64_t hash_of(std::string_view text) noexcept;
-
 /// The text of a pipeline's configuration with nothing left in other files, sample time included.
 [[nodiscard]] std::string whole_text(const PipelineConfig& config, double sample_time_s);
 
-/// Replaces `out`. `tick`: of the sample that comes next. `config`: hash_of(whole_text).
+/// Replaces `out`. `tick`: of the sample that comes next. `config`: schema::hash_of(whole_text).
 void save_snapshot(Pipeline& pipeline, std::uint64_t config, std::int64_t tick,
                    std::vector<std::uint8_t>& out);
 

@@ -1,9 +1,8 @@
 #include "workbench/promotion/running_daemon.h"
 
-#include <cstdio>
-
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "config/schema/hash.h"
 #include "daemon/control/protocol.h"
 #include "estimator/fdi/snapshot.h"
 #include "workbench/control/order.h"
@@ -50,10 +49,8 @@ void RunningDaemon::check() const {
   const Json status = give_order({{control::key::kCommand, control::kStatus}}, {socket_, ""});
   estimator::fdi::PipelineConfig effective = rules_;
   effective.load_bands(folder_, sample_time_s_);
-  char wanted[17];
-  std::snprintf(wanted, sizeof wanted, "%016llx",
-                static_cast<unsigned long long>(estimator::fdi::hash_of(
-                    estimator::fdi::whole_text(effective, sample_time_s_))));
+  const std::string wanted = config::schema::hash_text(
+      config::schema::hash_of(estimator::fdi::whole_text(effective, sample_time_s_)));
   if (text_of(status, "rules_hash") == wanted) return;
   throw Error(ExitCode::failed, "the daemon runs by other rules than " + config_file_ +
                                     " holds now (edited since, or --set); allowed: the same, "

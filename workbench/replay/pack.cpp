@@ -6,7 +6,7 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
-#include "estimator/fdi/snapshot.h"
+#include "config/schema/hash.h"
 
 namespace workbench::replay {
 namespace {
@@ -36,7 +36,7 @@ void read_pipeline(const std::filesystem::path& file, Pack& pack) {
   if (sample_time_s != pack.sample_time_s) {
     throw bad_data(file.string() + ": sample_time_s", "is not that of pack.json");
   }
-  pack.pipeline_hash = estimator::fdi::hash_of(text);
+  pack.pipeline_hash = config::schema::hash_of(text);
 }
 
 }  // namespace
