@@ -4,10 +4,9 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <lcm/lcm-cpp.hpp>
 #include <sstream>
 
-#include "config/record/event_reader.h"
+#include "config/record/log_reader.h"
 #include "tests/soak/books.h"
 #include "tests/soak/quiet.h"
 #include "tests/soak/week.h"
@@ -22,9 +21,9 @@ int reconcile(const std::filesystem::path& folder, const std::string& report, bo
   std::sort(files.begin(), files.end());
   soak::Books books;
   for (const auto& file : files) {
-    config::record::EventReader reader(file.string());
-    while (const lcm::LogEvent* event = reader.next()) {
-      books.take(event->channel, event->data, event->datalen);
+    config::record::LogReader reader(file.string());
+    while (const config::record::LogEvent* event = reader.next()) {
+      books.take(event->channel, event->data.data(), event->size());
     }
     if (!reader.at_end()) {
       std::cerr << file.string() << ": ends with half an event\n";

@@ -41,11 +41,11 @@ class Bridge final : public live::Listener {
         place_(options.udp),
         sample_rate_Hz_(options.sample_rate_Hz) {}
 
-  void on_rods(const spoolwatch::rods_t& rods) override { rods_ = exchange::to_message(rods); }
-  void on_pressures(const spoolwatch::pressures_t& pressures) override {
+  void on(const spoolwatch::rods_t& rods) override { rods_ = exchange::to_message(rods); }
+  void on(const spoolwatch::pressures_t& pressures) override {
     pressures_ = exchange::to_message(pressures);
   }
-  void on_sample(const spoolwatch::sample_t& sample) override {
+  void on(const spoolwatch::sample_t& sample) override {
     const auto rods = std::exchange(rods_, std::nullopt);
     const auto pressures = std::exchange(pressures_, std::nullopt);
     if (sample_rate_Hz_ > 0.0) {
@@ -62,13 +62,9 @@ class Bridge final : public live::Listener {
     if (pressures) send(*pressures);
     send(exchange::to_message(sample));
   }
-  void on_estimate(const spoolwatch::estimate_t& estimate) override {
-    send(exchange::to_message(estimate));
-  }
-  void on_alarm(const spoolwatch::alarm_t& alarm) override { send(exchange::to_message(alarm)); }
-  void on_health(const spoolwatch::health_t& health) override {
-    send(exchange::to_message(health));
-  }
+  void on(const spoolwatch::estimate_t& estimate) override { send(exchange::to_message(estimate)); }
+  void on(const spoolwatch::alarm_t& alarm) override { send(exchange::to_message(alarm)); }
+  void on(const spoolwatch::health_t& health) override { send(exchange::to_message(health)); }
   void on_new_run(std::int64_t run_id, bool first) override {
     last_period_ = -1.0;
     say((first ? "daemon found, run " : "the daemon has been restarted, run ") +

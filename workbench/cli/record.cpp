@@ -38,9 +38,9 @@ class Recording final : public live::Listener {
   explicit Recording(const Options& options)
       : file_(options.out), duration_s_(options.duration_s) {}
 
-  void on_rods(const spoolwatch::rods_t& rods) override { file_.note(rods); }
-  void on_pressures(const spoolwatch::pressures_t& pressures) override { file_.note(pressures); }
-  void on_sample(const spoolwatch::sample_t& sample) override {
+  void on(const spoolwatch::rods_t& rods) override { file_.note(rods); }
+  void on(const spoolwatch::pressures_t& pressures) override { file_.note(pressures); }
+  void on(const spoolwatch::sample_t& sample) override {
     if (complete_ || !ended_.empty()) return;
     if (file_.rows() > 0 && (sample.tick <= tick_ || sample.sample_time_s != sample_time_s_)) {
       ended_ = "the samples begin anew";

@@ -78,7 +78,7 @@ void append(std::string& csv, double t_s, const spoolwatch::alarm_t& alarm) {
   csv += row.end();
 }
 
-class Table final : public Listener {
+class Table final : public config::messages::MessageHandler {
  public:
   Table(double sample_time_s, const char* header) : sample_time_s_(sample_time_s), csv_(header) {}
   void on(const spoolwatch::estimate_t& m) override { append(csv_, time_s(m), m); }

@@ -122,7 +122,7 @@ MatValue structure_of(const std::vector<TimedAlarm>& alarms) {
 }
 
 /// Everything of a log but its samples.
-class Collector final : public Listener {
+class Collector final : public config::messages::MessageHandler {
  public:
   explicit Collector(double sample_time_s) : sample_time_s_(sample_time_s) {}
 

@@ -28,8 +28,11 @@ std::int64_t ns(std::int64_t utc_us) {
 }  // namespace
 
 const std::vector<std::string>& all_kinds() {
-  static const std::vector<std::string> kAll = {"sample",   "rods",  "pressures",
-                                                "estimate", "alarm", "health"};
+  static const std::vector<std::string> kAll = [] {
+    std::vector<std::string> all;
+    for (const auto kind : config::messages::kMessageKinds) all.emplace_back(to_string(kind));
+    return all;
+  }();
   return kAll;
 }
 

@@ -8,14 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace spoolwatch {
-class sample_t;
-class rods_t;
-class pressures_t;
-class estimate_t;
-class alarm_t;
-class health_t;
-}  // namespace spoolwatch
+#include "config/messages/handler.h"
 
 namespace workbench::exchange {
 

@@ -9,73 +9,37 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <lcm/lcm-cpp.hpp>
 #include <limits>
 
-#include "config/messages/decode.h"
-#include "config/record/event_reader.h"
+#include "config/messages/dispatch.h"
 #include "config/record/lcm_reader.h"
+#include "config/record/log_reader.h"
 #include "config/schema/error.h"
-#include "spoolwatch/alarm_t.hpp"
-#include "spoolwatch/estimate_t.hpp"
-#include "spoolwatch/health_t.hpp"
-#include "spoolwatch/pressures_t.hpp"
-#include "spoolwatch/rods_t.hpp"
-#include "spoolwatch/sample_t.hpp"
 
 namespace workbench::exchange {
 namespace {
 
+using config::messages::MessageKind;
+using config::record::LogEvent;
+using config::record::LogReader;
 using config::schema::bad_data;
 
-std::int64_t type_of(const lcm::LogEvent& event) {
-  std::int64_t hash = 0;
-  return __int64_t_decode_array(event.data, 0, event.datalen, &hash, 1) > 0 ? hash : 0;
-}
-
-template <class Message>
-bool is_of(const lcm::LogEvent& event) {
-  return type_of(event) == Message::getHash();
-}
-
-/// A kind of message, and how the names of its channels end.
-struct Kind {
-  const char* name;
-  const char* ending;
-};
-
-/// Hands the event over when it is of this type; `kind` also claims channels by their ending.
-template <class Message>
-bool take_as(const std::string& log, const lcm::LogEvent& event, const Kind& kind,
-             const Kinds& kinds, Listener& listener) {
-  const bool right = is_of<Message>(event);
-  if (!right && !event.channel.ends_with(kind.ending)) return false;
-  if (!kinds.contains(kind.name)) return right;
-  Message message{};
-  if (!config::messages::decode(message, event.data, event.datalen)) {
-    throw bad_data(
-        log + ": event " + std::to_string(event.eventnum),
-        "on " + event.channel + " is of another type",
-        std::string("spoolwatch::") + Message::getTypeName() + " in this version's layout");
+/// Delivers the newest event where its kind is wanted; a kind also claims channels by their ending.
+/// False for a message of another project.
+bool take(const LogReader& log, const Kinds& kinds, config::messages::MessageHandler& handler) {
+  const LogEvent& event = log.event();
+  for (const MessageKind kind : config::messages::kMessageKinds) {
+    const bool right = config::messages::is_of(kind, event.data.data(), event.size());
+    if (!right && !event.channel.ends_with(config::messages::channel_ending(kind))) continue;
+    if (kinds.contains(config::messages::to_string(kind))) log.deliver(kind, handler);
+    if (right) return true;
   }
-  listener.on(message);
-  return right;
+  return false;
 }
 
-bool take(const std::string& log, const lcm::LogEvent& event, const Kinds& kinds,
-          Listener& listener) {
-  using namespace spoolwatch;
-  return take_as<sample_t>(log, event, {"sample", "_SAMPLE"}, kinds, listener) ||
-         take_as<rods_t>(log, event, {"rods", "_RODS"}, kinds, listener) ||
-         take_as<pressures_t>(log, event, {"pressures", "_PRESSURES"}, kinds, listener) ||
-         take_as<estimate_t>(log, event, {"estimate", "_ESTIMATE"}, kinds, listener) ||
-         take_as<alarm_t>(log, event, {"alarm", "_ALARM"}, kinds, listener) ||
-         take_as<health_t>(log, event, {"health", "_HEALTH"}, kinds, listener);
-}
-
-class TreeListener final : public Listener {
+class TreeHandler final : public config::messages::MessageHandler {
  public:
-  explicit TreeListener(const std::function<void(const Message&)>& take) : take_(take) {}
+  explicit TreeHandler(const std::function<void(const Message&)>& take) : take_(take) {}
   void on(const spoolwatch::sample_t& message) override { take_(to_message(message)); }
   void on(const spoolwatch::rods_t& message) override { take_(to_message(message)); }
   void on(const spoolwatch::pressures_t& message) override { take_(to_message(message)); }
@@ -130,26 +94,26 @@ bool is_log(const std::string& file) {
 }
 
 double sample_time_s(const std::string& log) {
-  config::record::EventReader events(log);
-  while (const lcm::LogEvent* event = events.next()) {
-    spoolwatch::sample_t sample{};
-    if (is_of<spoolwatch::sample_t>(*event) &&
-        config::messages::decode(sample, event->data, event->datalen)) {
+  LogReader events(log);
+  spoolwatch::sample_t sample{};
+  while (const LogEvent* event = events.next()) {
+    if (config::messages::decode(sample, event->data.data(), event->size())) {
       return sample.sample_time_s;
     }
   }
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-void read_log(const std::string& log, const Kinds& kinds, Listener& listener) {
+void read_log(const std::string& log, const Kinds& kinds,
+              config::messages::MessageHandler& handler) {
   std::error_code ignored;
   const auto bytes = std::filesystem::file_size(log, ignored);
   bool ours = false;
-  config::record::EventReader events(log);
+  LogReader events(log);
   {
     Progress progress("exporting " + log);
-    while (const lcm::LogEvent* event = events.next()) {
-      const bool taken = take(log, *event, kinds, listener);
+    while (events.next() != nullptr) {
+      const bool taken = take(events, kinds, handler);
       ours = ours || taken;
       progress.at(static_cast<std::size_t>(events.complete()), static_cast<std::size_t>(bytes));
     }
@@ -166,8 +130,8 @@ void read_log(const std::string& log, const Kinds& kinds, Listener& listener) {
 void each_message(const std::string& input, const Kinds& kinds,
                   const std::function<void(const Message&)>& take) {
   if (is_log(input)) {
-    TreeListener listener(take);
-    read_log(input, kinds, listener);
+    TreeHandler handler(take);
+    read_log(input, kinds, handler);
     return;
   }
   const config::record::Record record = config::record::read_record(input);

@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "config/messages/handler.h"
 #include "config/record/record.h"
 #include "workbench/exchange/message.h"
 
@@ -35,21 +36,11 @@ class Progress {
 /// The period of a log's first sample; NaN when it has none.
 [[nodiscard]] double sample_time_s(const std::string& log);
 
-class Listener {
- public:
-  virtual ~Listener() = default;
-  virtual void on(const spoolwatch::sample_t&) {}
-  virtual void on(const spoolwatch::rods_t&) {}
-  virtual void on(const spoolwatch::pressures_t&) {}
-  virtual void on(const spoolwatch::estimate_t&) {}
-  virtual void on(const spoolwatch::alarm_t&) {}
-  virtual void on(const spoolwatch::health_t&) {}
-};
-
 /// Every message of these kinds, in the order of the log. What is on one of their channels and of
 /// another type is an error (65), and so is a log without any message of this project; one that is
 /// cut off is said on standard error.
-void read_log(const std::string& log, const Kinds& kinds, Listener& listener);
+void read_log(const std::string& log, const Kinds& kinds,
+              config::messages::MessageHandler& handler);
 
 /// The same as trees, or the rows of a record as samples: the main columns as y_m and
 /// u_applied_V, the further ones by their names.

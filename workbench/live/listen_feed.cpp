@@ -3,13 +3,7 @@
 #include <cerrno>
 
 #include "config/messages/connect.h"
-#include "config/messages/decode.h"
-#include "spoolwatch/alarm_t.hpp"
-#include "spoolwatch/estimate_t.hpp"
-#include "spoolwatch/health_t.hpp"
-#include "spoolwatch/pressures_t.hpp"
-#include "spoolwatch/rods_t.hpp"
-#include "spoolwatch/sample_t.hpp"
+#include "config/messages/dispatch.h"
 
 namespace workbench::live {
 namespace {
@@ -53,42 +47,22 @@ bool Feed::poll(std::chrono::milliseconds timeout) {
 }
 
 void Feed::received(const lcm::ReceiveBuffer* buffer, const std::string& channel, Feed* feed) {
-  const std::string kind = channel.substr(feed->prefix_.size() + 1);
-  if (kind == "SAMPLE") {
-    spoolwatch::sample_t message;
-    if (feed->decode(*buffer, channel, message)) feed->listener_.on_sample(message);
-  } else if (kind == "RODS") {
-    spoolwatch::rods_t message;
-    if (feed->decode(*buffer, channel, message)) feed->listener_.on_rods(message);
-  } else if (kind == "PRESSURES") {
-    spoolwatch::pressures_t message;
-    if (feed->decode(*buffer, channel, message)) feed->listener_.on_pressures(message);
-  } else if (kind == "ESTIMATE") {
-    spoolwatch::estimate_t message;
-    if (feed->decode(*buffer, channel, message)) feed->listener_.on_estimate(message);
-  } else if (kind == "ALARM") {
-    spoolwatch::alarm_t message;
-    if (feed->decode(*buffer, channel, message)) feed->listener_.on_alarm(message);
-  } else {
-    spoolwatch::health_t message;
-    if (!feed->decode(*buffer, channel, message)) return;
-    feed->last_health_ = Clock::now();
-    feed->watch();
-    feed->listener_.on_health(message);
-  }
-}
-
-template <class Message>
-bool Feed::decode(const lcm::ReceiveBuffer& buffer, const std::string& channel, Message& message) {
-  if (!config::messages::decode(message, buffer.data, static_cast<int>(buffer.data_size))) {
-    if (told_.insert(channel).second) {
-      listener_.on_notice("messages of another type on channel " + channel +
-                          " are left out (another version of the daemon?)");
+  using config::messages::MessageKind;
+  const MessageKind kind =
+      config::messages::kind_of(channel, feed->prefix_).value_or(MessageKind::health);
+  const auto take = [&](const auto& message) {
+    feed->follow(channel, message.run_id, message.seq);
+    if (kind == MessageKind::health) {
+      feed->last_health_ = Clock::now();
+      feed->watch();
     }
-    return false;
+    feed->listener_.on(message);
+  };
+  if (!config::messages::dispatch(kind, buffer->data, static_cast<int>(buffer->data_size), take) &&
+      feed->told_.insert(channel).second) {
+    feed->listener_.on_notice("messages of another type on channel " + channel +
+                              " are left out (another version of the daemon?)");
   }
-  follow(channel, message.run_id, message.seq);
-  return true;
 }
 
 void Feed::follow(const std::string& channel, std::int64_t run_id, std::int64_t seq) {

@@ -9,34 +9,19 @@
 #include <set>
 #include <string>
 
+#include "config/messages/handler.h"
+
 namespace lcm {
 class LCM;
 struct ReceiveBuffer;
 }  // namespace lcm
-namespace spoolwatch {
-class sample_t;
-class rods_t;
-class pressures_t;
-class estimate_t;
-class alarm_t;
-class health_t;
-}  // namespace spoolwatch
-
 namespace workbench::live {
 
 /// Without a health message for so long the daemon counts as silent (it sends one a second).
 inline constexpr std::chrono::seconds kSilence{3};
 
-class Listener {
+class Listener : public config::messages::MessageHandler {
  public:
-  virtual ~Listener() = default;
-  /// These two come just before the sample that they belong to.
-  virtual void on_rods(const spoolwatch::rods_t&) {}
-  virtual void on_pressures(const spoolwatch::pressures_t&) {}
-  virtual void on_sample(const spoolwatch::sample_t&) {}
-  virtual void on_estimate(const spoolwatch::estimate_t&) {}
-  virtual void on_alarm(const spoolwatch::alarm_t&) {}
-  virtual void on_health(const spoolwatch::health_t&) {}
   /// A daemon was heard that was not heard before.
   virtual void on_new_run(std::int64_t run_id, bool first) = 0;
   /// `count` messages of `channel` did not arrive.
@@ -66,8 +51,6 @@ class Feed {
   };
 
   static void received(const lcm::ReceiveBuffer* buffer, const std::string& channel, Feed* feed);
-  template <class Message>
-  bool decode(const lcm::ReceiveBuffer& buffer, const std::string& channel, Message& message);
   void follow(const std::string& channel, std::int64_t run_id, std::int64_t seq);
   void watch();
   void tell_losses();

@@ -22,11 +22,11 @@ std::int64_t now_us() {
 
 }  // namespace
 
-void LinePrinter::on_estimate(const spoolwatch::estimate_t& estimate) {
+void LinePrinter::on(const spoolwatch::estimate_t& estimate) {
   if (!alarms_only_) line(json_ ? json(estimate) : readable(estimate));
 }
 
-void LinePrinter::on_alarm(const spoolwatch::alarm_t& alarm) {
+void LinePrinter::on(const spoolwatch::alarm_t& alarm) {
   if (json_) {
     line(json(alarm));
     return;
@@ -42,7 +42,7 @@ void LinePrinter::on_alarm(const spoolwatch::alarm_t& alarm) {
   }
 }
 
-void LinePrinter::on_health(const spoolwatch::health_t& health) {
+void LinePrinter::on(const spoolwatch::health_t& health) {
   if (json_) line(json(health));
 }
 
@@ -67,7 +67,7 @@ void LinePrinter::on_silence(bool silent) {
       std::numeric_limits<double>::quiet_NaN();
   alarm.reason = silent ? "no health message for 3 s" : "health messages arrive";
   alarm.guidance = "see whether spoolwatchd runs and whether URL and prefix are its own";
-  on_alarm(alarm);
+  on(alarm);
 }
 
 void LinePrinter::on_notice(const std::string& what) { event("notice", what); }

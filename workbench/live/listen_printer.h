@@ -15,10 +15,10 @@ class LinePrinter final : public Listener {
   LinePrinter(std::ostream& out, bool json, bool alarms_only = false)
       : out_(out), json_(json), alarms_only_(alarms_only) {}
 
-  void on_estimate(const spoolwatch::estimate_t& estimate) override;
+  void on(const spoolwatch::estimate_t& estimate) override;
   /// As text, the 1 Hz repeat of an active alarm is printed only when its coming was not seen.
-  void on_alarm(const spoolwatch::alarm_t& alarm) override;
-  void on_health(const spoolwatch::health_t& health) override;
+  void on(const spoolwatch::alarm_t& alarm) override;
+  void on(const spoolwatch::health_t& health) override;
   void on_new_run(std::int64_t run_id, bool first) override;
   void on_lost(const std::string& channel, std::int64_t count) override;
   void on_silence(bool silent) override;

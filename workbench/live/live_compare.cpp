@@ -26,7 +26,7 @@ class Watcher final : public Listener {
         json_(options.json),
         terminal_(!options.json && isatty(STDOUT_FILENO) == 1) {}
 
-  void on_sample(const spoolwatch::sample_t& s) override {
+  void on(const spoolwatch::sample_t& s) override {
     if (s.quality >= kStaleQuality || !std::isfinite(s.y_m) || !std::isfinite(s.u_applied_V)) {
       return;
     }
@@ -88,13 +88,13 @@ void watch(const plant_sim::ModelFile& model, const WatchOptions& options) {
   {
     Feed feed(options.url, options.prefix, true, watcher);
     while (!ending.reached() && std::cout) {
-      if (feed.poll(std::chrono::milliseconds(100)) || Ending::asked()) continue;
+      if (feed.poll(std::chrono::milliseconds(100)) || cli::Ending::asked()) continue;
       if (options.url.starts_with("file:")) break;
       throw Error(ExitCode::failed, "LCM cannot receive on \"" + options.url + "\" any more");
     }
   }
   watcher.end();
-  if (watcher.empty() && !Ending::asked()) {
+  if (watcher.empty() && !cli::Ending::asked()) {
     throw Error(ExitCode::failed, "no samples came on \"" + options.url + "\"");
   }
 }

@@ -30,7 +30,7 @@ std::size_t watched(const spoolwatch::estimate_t& estimate) {
 
 }  // namespace
 
-void LiveState::on_sample(const spoolwatch::sample_t& sample) {
+void LiveState::on(const spoolwatch::sample_t& sample) {
   state_ = sample.state;
   command_V_ = sample.u_applied_V;
   utc_us_ = sample.utc_us;
@@ -38,7 +38,7 @@ void LiveState::on_sample(const spoolwatch::sample_t& sample) {
   forget_older(motion_, kMotionSpan_s);
 }
 
-void LiveState::on_estimate(const spoolwatch::estimate_t& estimate) {
+void LiveState::on(const spoolwatch::estimate_t& estimate) {
   utc_us_ = estimate.utc_us;
   if (estimate.name.empty()) return;
   const std::size_t i = watched(estimate);
@@ -59,7 +59,7 @@ void LiveState::on_estimate(const spoolwatch::estimate_t& estimate) {
   forget_older(track->history, kValueSpan_s);
 }
 
-void LiveState::on_alarm(const spoolwatch::alarm_t& alarm) {
+void LiveState::on(const spoolwatch::alarm_t& alarm) {
   const std::string name = alarm.source + "." + alarm.name;
   auto row = std::find_if(alarms_.begin(), alarms_.end(),
                           [&](const AlarmRow& a) { return a.name == name; });
@@ -81,7 +81,7 @@ void LiveState::on_alarm(const spoolwatch::alarm_t& alarm) {
   alarms_.insert(std::upper_bound(alarms_.begin(), alarms_.end(), now, later), now);
 }
 
-void LiveState::on_health(const spoolwatch::health_t& health) {
+void LiveState::on(const spoolwatch::health_t& health) {
   state_ = health.state;
   utc_us_ = std::max(utc_us_, health.utc_us);
   health_ = {.rig_id = health.rig_id,

@@ -70,10 +70,10 @@ class LiveState final : public Listener {
   static constexpr double kMotionSpan_s = 10.0;
   static constexpr double kValueSpan_s = 60.0;
 
-  void on_sample(const spoolwatch::sample_t& sample) override;
-  void on_estimate(const spoolwatch::estimate_t& estimate) override;
-  void on_alarm(const spoolwatch::alarm_t& alarm) override;
-  void on_health(const spoolwatch::health_t& health) override;
+  void on(const spoolwatch::sample_t& sample) override;
+  void on(const spoolwatch::estimate_t& estimate) override;
+  void on(const spoolwatch::alarm_t& alarm) override;
+  void on(const spoolwatch::health_t& health) override;
   void on_new_run(std::int64_t run_id, bool first) override;
   void on_lost(const std::string& channel, std::int64_t count) override;
   void on_silence(bool silent) override { silent_ = silent; }

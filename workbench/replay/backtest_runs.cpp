@@ -5,11 +5,12 @@
 #include <map>
 #include <memory>
 
-#include "config/record/event_reader.h"
 #include "config/record/lcm_reader.h"
 #include "config/record/record.h"
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "spoolwatch/alarm_t.hpp"
+#include "spoolwatch/sample_t.hpp"
 #include "workbench/replay/log_walk.h"
 #include "workbench/train/record_samples.h"
 #include "workbench/train/rig_table.h"
@@ -50,18 +51,13 @@ class Watch final : private estimator::fdi::Events {
 };
 
 /// One run: samples in, alarms out.
-class Course final : public LogVisitor {
+class Course final : public SampleHandler {
  public:
   Course(const Rules& new_rules, const std::optional<Rules>& old_rules)
       : new_rules_(new_rules), old_rules_(old_rules) {}
 
-  void on_sample(const spoolwatch::sample_t& message, const Beside& beside) override {
-    if (!(message.sample_time_s > 0.0 && message.sample_time_s < 1e3)) {
-      throw bad_data(run.files.back(), "has a sample without a sample time");
-    }
-    take(to_sample(message, beside), message.sample_time_s);
-  }
-  void on_alarm(const spoolwatch::alarm_t& message) override {
+  using SampleHandler::on;
+  void on(const spoolwatch::alarm_t& message) override {
     // Guards and the daemon's own alarms watch no quantity of the fault detection.
     if (run.sample_time_s <= 0.0 || message.quantity.find('.') == std::string::npos) return;
     recorded_.tell(id_of(message.source, message.name),
@@ -91,6 +87,13 @@ class Course final : public LogVisitor {
   BacktestRun run;
 
  private:
+  void take(const Sample& sample, const spoolwatch::sample_t& message) override {
+    if (!(message.sample_time_s > 0.0 && message.sample_time_s < 1e3)) {
+      throw bad_data(run.files.back(), "has a sample without a sample time");
+    }
+    take(sample, message.sample_time_s);
+  }
+
   const Rules& new_rules_;
   const std::optional<Rules>& old_rules_;
   std::unique_ptr<Watch> after_, before_;
@@ -112,10 +115,10 @@ struct Place {
   std::int64_t first_tick = 0;
 };
 
-class FirstSample final : public LogVisitor {
+class FirstSample final : public config::messages::MessageHandler {
  public:
   struct Found {};
-  void on_sample(const spoolwatch::sample_t& message, const Beside& /*beside*/) override {
+  void on(const spoolwatch::sample_t& message) override {
     sample = message;
     throw Found{};
   }
@@ -200,10 +203,9 @@ std::vector<BacktestRun> run_backtest(const Rules& new_rules, const std::optiona
                      [](const Place& a, const Place& b) { return a.first_tick < b.first_tick; });
     Course course(new_rules, old_rules);
     course.run.has_recorded_alarms = true;
-    Newest newest;
     for (const Place& part : parts) {
       course.run.files.push_back(part.file);
-      walk_log(part.file, part.prefix, course, newest);
+      walk_log(part.file, part.prefix, course);
     }
     runs.push_back(course.finish());
   }

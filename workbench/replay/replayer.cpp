@@ -5,6 +5,9 @@
 
 #include "config/schema/error.h"
 #include "estimator/fdi/snapshot.h"
+#include "spoolwatch/alarm_t.hpp"
+#include "spoolwatch/estimate_t.hpp"
+#include "spoolwatch/sample_t.hpp"
 #include "workbench/replay/log_walk.h"
 
 namespace workbench::replay {
@@ -74,7 +77,7 @@ Alarm alarm_of(const spoolwatch::alarm_t& message) {
   return alarm;
 }
 
-class Replayer final : public LogVisitor, private estimator::fdi::Events {
+class Replayer final : public SampleHandler, private estimator::fdi::Events {
  public:
   explicit Replayer(const Pack& pack) : pack_(pack), pipeline_(pack.pipeline, pack.sample_time_s) {
     outcome.derived = from_pipeline(pack.source, pack.name);
@@ -89,19 +92,8 @@ class Replayer final : public LogVisitor, private estimator::fdi::Events {
     }
   }
 
-  void on_sample(const spoolwatch::sample_t& sample, const Beside& beside) override {
-    for (const Told& told : estimates_) differ("estimate of " + told.source + " was not told");
-    for (const Alarm& alarm : alarms_) differ("alarm " + alarm.name + " was not told");
-    outcome.estimates += static_cast<std::int64_t>(estimates_.size());
-    outcome.alarms += static_cast<std::int64_t>(alarms_.size());
-    estimates_.clear();
-    alarms_.clear();
-    ++outcome.samples;
-    tick_ = sample.tick;
-    pipeline_.process(to_sample(sample, beside), *this);
-  }
-
-  void on_estimate(const spoolwatch::estimate_t& message) override {
+  using SampleHandler::on;
+  void on(const spoolwatch::estimate_t& message) override {
     ++outcome.estimates;
     if (estimates_.empty()) return differ("estimate of " + message.source + " is not found again");
     if (same(estimates_.front(), message)) {
@@ -112,7 +104,7 @@ class Replayer final : public LogVisitor, private estimator::fdi::Events {
     estimates_.pop_front();
   }
 
-  void on_alarm(const spoolwatch::alarm_t& message) override {
+  void on(const spoolwatch::alarm_t& message) override {
     if (message.repeat != 0) return;
     if (!from_pipeline(message.source, message.name)) {
       from_elsewhere(message);
@@ -132,6 +124,19 @@ class Replayer final : public LogVisitor, private estimator::fdi::Events {
   ReplayOutcome outcome;
 
  private:
+  void take(const config::signals::Sample& sample,
+            const spoolwatch::sample_t& /*message*/) override {
+    for (const Told& told : estimates_) differ("estimate of " + told.source + " was not told");
+    for (const Alarm& alarm : alarms_) differ("alarm " + alarm.name + " was not told");
+    outcome.estimates += static_cast<std::int64_t>(estimates_.size());
+    outcome.alarms += static_cast<std::int64_t>(alarms_.size());
+    estimates_.clear();
+    alarms_.clear();
+    ++outcome.samples;
+    tick_ = sample.tick;
+    pipeline_.process(sample, *this);
+  }
+
   void on_estimate(const EstimateEvent& event) override {
     Told told{std::string(event.source),
               std::string(event.reason),

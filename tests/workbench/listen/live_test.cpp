@@ -48,16 +48,16 @@ class LiveTest : public testing::Test {
 TEST_F(LiveTest, PutsTheMarkerWhereTheValueIsInItsBand) {
   state_.on_new_run(1, true);
   // The bar shows 0.5 to 3.5 on 56 cells: 1 is at round(55/6), 2 in the middle, 3 at round(55*5/6).
-  state_.on_estimate(b1(2.0, 1.0));
+  state_.on(b1(2.0, 1.0));
   const std::string bar = row_with(L"|=");
   const auto first = bar.find('.');
   EXPECT_EQ(bar.find('|') - first, 9U);
   EXPECT_EQ(bar.rfind('|') - first, 46U);
   EXPECT_EQ(bar.find('#') - first, 28U);
   EXPECT_NE(row_with(L"period.b1").find("inside its band"), std::string::npos);
-  state_.on_estimate(b1(0.7, 2.0));
+  state_.on(b1(0.7, 2.0));
   EXPECT_NE(row_with(L"period.b1").find("BELOW ITS BAND"), std::string::npos);
-  state_.on_estimate(b1(99.0, 3.0));
+  state_.on(b1(99.0, 3.0));
   EXPECT_NE(row_with(L"period.b1").find("ABOVE ITS BAND"), std::string::npos);
   // Off the scale: at the bar's end.
   const std::string off = row_with(L"|=");
@@ -71,7 +71,7 @@ TEST_F(LiveTest, ShowsReferencePositionErrorAndState) {
   sample.u_applied_V = -1.5;
   sample.state = 3;
   state_.on_new_run(1, true);
-  state_.on_sample(sample);
+  state_.on(sample);
   const std::string row = row_with(L"reference");
   EXPECT_NE(row.find("reference +12.500 mm"), std::string::npos) << row;
   EXPECT_NE(row.find("position +12.000 mm"), std::string::npos) << row;
@@ -89,7 +89,7 @@ TEST_F(LiveTest, ShowsTheNewestAlarmChangeFirstAndRepeatsDoNotCountAsChanges) {
     message.utc_us = static_cast<std::int64_t>(t_s * kSecond_us);
     message.severity = active ? 2 : 0;
     message.active = active ? 1 : 0;
-    state_.on_alarm(message);
+    state_.on(message);
   };
   alarm("first", 1.0, true);
   alarm("second", 2.0, true);
@@ -111,7 +111,7 @@ TEST_F(LiveTest, ShowsLatenessAndCounts) {
   health.dropped_samples = 3;
   health.dropped_records = 4;
   state_.on_new_run(1, true);
-  state_.on_health(health);
+  state_.on(health);
   EXPECT_EQ(row_with(L"late p99.9").substr(1, 44), "late p99.9 18.4  max 1234 us  overruns 2  sk");
   EXPECT_NE(row_with(L"late p99.9").find("dropped 7"), std::string::npos);
 }
@@ -121,9 +121,8 @@ TEST_F(LiveTest, DrawsOnAnySizeOfTerminalAndWithAnyNumbers) {
   spoolwatch::sample_t sample{};
   sample.y_m = live::kNone;
   sample.reference_m = HUGE_VAL;
-  state_.on_sample(sample);
-  for (const double value : {live::kNone, HUGE_VAL, -HUGE_VAL, 0.0})
-    state_.on_estimate(b1(value, 1.0));
+  state_.on(sample);
+  for (const double value : {live::kNone, HUGE_VAL, -HUGE_VAL, 0.0}) state_.on(b1(value, 1.0));
   for (const auto& [rows, columns] : {std::pair{1, 1}, {5, 20}, {24, 80}, {60, 300}}) {
     const live::Canvas canvas = live::draw(state_, rows, columns, live::Glyphs::unicode());
     EXPECT_EQ(canvas.rows(), rows);

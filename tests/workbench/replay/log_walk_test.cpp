@@ -73,12 +73,14 @@ std::vector<fs::path> record(const fs::path& folder, int ticks, std::int64_t fil
   return files;
 }
 
-class Collector final : public LogVisitor {
+class Collector final : public SampleHandler {
  public:
-  void on_sample(const spoolwatch::sample_t& sample, const Beside& beside) override {
-    samples.push_back(to_sample(sample, beside));
-  }
   std::vector<Sample> samples;
+
+ private:
+  void take(const Sample& sample, const spoolwatch::sample_t& /*message*/) override {
+    samples.push_back(sample);
+  }
 };
 
 TEST(LogWalk, KeepsASampleAndWhatIsToldBesideItTogetherAcrossFiles) {
@@ -86,8 +88,7 @@ TEST(LogWalk, KeepsASampleAndWhatIsToldBesideItTogetherAcrossFiles) {
   const auto files = record(folder.path() / "log", 400, 4096);
   ASSERT_GT(files.size(), 30U) << "files end at any message";
   Collector together;
-  Newest newest;
-  for (const fs::path& file : files) walk_log(file, "SPOOLWATCH", together, newest);
+  for (const fs::path& file : files) walk_log(file, "SPOOLWATCH", together);
   ASSERT_EQ(together.samples.size(), 400U);
   for (int tick = 0; tick < 400; ++tick) {
     expect_beside(together.samples[static_cast<std::size_t>(tick)], sample_of(tick));
