@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "config/schema/error.h"
-#include "estimator/residual/special.h"
+#include "estimator/residual/distributions.h"
 
 namespace estimator::fdi {
 

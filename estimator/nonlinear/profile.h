@@ -41,7 +41,6 @@ struct Profile {
   double least_cost = 0.0;
   Eigen::VectorXd least_x;
 
-  [[nodiscard]] bool one_sided() const { return low_found != high_found; }
   [[nodiscard]] bool flat() const { return !low_found && !high_found; }
 };
 

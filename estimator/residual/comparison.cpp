@@ -6,16 +6,12 @@
 #include <limits>
 #include <vector>
 
-#include "estimator/residual/special.h"
+#include "estimator/residual/distributions.h"
 
 namespace estimator::residual {
 
-namespace {
-
-/// `difference` of a block's two energies; NaN leaves the block out.
-template <class Difference>
-Comparison compare(std::span<const double> first, std::span<const double> second, int block,
-                   const Difference& difference) {
+Comparison compare_in_proportion(std::span<const double> first, std::span<const double> second,
+                                 int block) {
   assert(first.size() == second.size() && block > 0);
   Comparison out;
   std::vector<double> differences;
@@ -37,7 +33,8 @@ Comparison compare(std::span<const double> first, std::span<const double> second
     first_sum += first_energy;
     second_sum += second_energy;
     if (2 * count < length) continue;
-    const double d = difference(first_energy, second_energy) / static_cast<double>(count);
+    if (!(first_energy > 0.0 && second_energy > 0.0)) continue;
+    const double d = std::log(first_energy / second_energy) / static_cast<double>(count);
     if (!std::isnan(d)) differences.push_back(d);
   }
   const auto n = static_cast<double>(differences.size());
@@ -56,20 +53,6 @@ Comparison compare(std::span<const double> first, std::span<const double> second
   out.z = mean / std::sqrt(variance / n);
   out.p = student_two_sided(out.z, n - 1.0);
   return out;
-}
-
-}  // namespace
-
-Comparison compare_residuals(std::span<const double> first, std::span<const double> second,
-                             int block) {
-  return compare(first, second, block, [](double a, double b) { return a - b; });
-}
-
-Comparison compare_in_proportion(std::span<const double> first, std::span<const double> second,
-                                 int block) {
-  return compare(first, second, block, [](double a, double b) {
-    return a > 0.0 && b > 0.0 ? std::log(a / b) : std::numeric_limits<double>::quiet_NaN();
-  });
 }
 
 }  // namespace estimator::residual

@@ -1,7 +1,10 @@
 // Which of two models is better on data that neither was fitted to?
 //
-//   d_b = mean over block b of (first^2 - second^2);   z = mean(d) / (sd(d) / sqrt(blocks))
+//   d_b = log(sum of first^2 / sum of second^2) / samples, over block b;
+//   z = mean(d) / (sd(d) / sqrt(blocks))
 //
+// The logarithm weighs every block alike: a model counts as better when it is steadily so, not
+// where errors are largest.
 // Blocks are long against the residuals' memory, so that their differences are independent; p is
 // two-sided from Student's t with blocks - 1 degrees of freedom. Positive z: the second is better.
 // Source: F. X. Diebold, R. S. Mariano, J. Business and Economic Statistics 13 (1995) 253.
@@ -21,13 +24,7 @@ struct Comparison {
 
 /// Residuals of the same samples under both models; NaN (in either) leaves a sample out: what was
 /// fitted, or is missing. Blocks are stretches of `block` samples of the record (2 s, say); those
-/// with less than half of their samples are left out.
-[[nodiscard]] Comparison compare_residuals(std::span<const double> first,
-                                           std::span<const double> second, int block);
-
-/// The same for the blocks' energies in proportion, d_b = log(first energy / second energy): what
-/// counts is in how many stretches the second is better and how steadily, not where errors are
-/// largest. Blocks without any error in one of them are left out.
+/// with less than half of their samples, or without any error in one of the two, are left out.
 [[nodiscard]] Comparison compare_in_proportion(std::span<const double> first,
                                                std::span<const double> second, int block);
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "estimator/residual/special.h"
+#include "estimator/residual/distributions.h"
 
 namespace estimator::residual {
 namespace {

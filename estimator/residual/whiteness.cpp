@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "estimator/residual/autoregression.h"
-#include "estimator/residual/special.h"
+#include "estimator/residual/distributions.h"
 
 namespace estimator::residual {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimator/residual/special.h"
+#include "estimator/residual/distributions.h"
 
 namespace estimator::structures {
 namespace {

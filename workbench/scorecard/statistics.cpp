@@ -4,26 +4,12 @@
 #include <cmath>
 #include <limits>
 
-#include "estimator/residual/special.h"
+#include "estimator/residual/distributions.h"
 
 namespace workbench::scorecard {
 namespace {
 
 constexpr double kRounding = 1e-9;
-constexpr int kHalvings = 60;
-
-/// P(X >= k), X binomial.
-double at_least(std::int64_t k, std::int64_t n, double p) {
-  double sum = 0.0;
-  for (std::int64_t i = k; i <= n; ++i) {
-    const auto x = static_cast<double>(i);
-    const auto m = static_cast<double>(n);
-    const double ways = std::lgamma(m + 1.0) - std::lgamma(x + 1.0) - std::lgamma(m - x + 1.0);
-    const double missed = i == n ? 0.0 : (m - x) * std::log1p(-p);
-    sum += std::exp(ways + x * std::log(p) + missed);
-  }
-  return sum;
-}
 
 }  // namespace
 
@@ -35,13 +21,8 @@ double poisson_upper(std::int64_t events, double time, double confidence) {
 
 double clopper_pearson_lower(std::int64_t k, std::int64_t n, double confidence) {
   if (k <= 0) return 0.0;
-  double low = 0.0;
-  double high = 1.0;
-  for (int i = 0; i < kHalvings; ++i) {
-    const double p = 0.5 * (low + high);
-    (at_least(k, n, p) < 1.0 - confidence ? low : high) = p;
-  }
-  return 0.5 * (low + high);
+  return estimator::residual::beta_quantile(1.0 - confidence, static_cast<double>(k),
+                                            static_cast<double>(n - k) + 1.0);
 }
 
 double quantile(std::vector<double> values, double share) {

@@ -3,7 +3,8 @@
 //   Poisson          the least rate at which n or fewer events in T would come with probability
 //                    1 - c:  chi2(c; 2 n + 2) / (2 T), chi2 the quantile. No event in 72 h: the
 //                    95 % upper limit is 2.996 / 72 h = 1 / 24.03 h
-//   Clopper-Pearson  the least share p for which k or more of n come with probability 1 - c
+//   Clopper-Pearson  the least share p for which k or more of n come with probability 1 - c:
+//                    the quantile 1 - c of beta(k, n - k + 1)
 //
 // Both are exact, one-sided, and cover c or more.
 // Sources: F. Garwood, Biometrika 28 (1936) 437; C. J. Clopper, E. S. Pearson, Biometrika 26 (1934)

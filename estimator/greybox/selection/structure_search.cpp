@@ -203,10 +203,6 @@ Stage first_stage(const Workshop& shop) {
               start_of(shop.model, shop.standing), options)};
 }
 
-std::vector<Glance> preview(const Workshop& shop, const Stage& stage) {
-  return glances_at(shop, stage, shop.absent);
-}
-
 Ladder climb(const Workshop& shop) {
   const auto begin = std::chrono::steady_clock::now();
   Ladder ladder;

@@ -60,8 +60,6 @@ struct Ladder {
 
 /// Held-out error of the model file as it is.
 [[nodiscard]] double nominal_rms_m(const Workshop& shop);
-/// The quick look alone: every absent effect with its expected share of the error, best first.
-[[nodiscard]] std::vector<Glance> preview(const Workshop& shop, const Stage& stage);
 /// The model as it stands, its parameters fitted.
 [[nodiscard]] Stage first_stage(const Workshop& shop);
 

@@ -158,8 +158,8 @@ TEST(Comparison, HasTheRightSizeAndPower) {
       worse[t] += 0.5 * one[t];
       if (t / 400 % 2 == 0) first[t] = std::nan("");  // fitted blocks
     }
-    wrong += compare_residuals(first, second, 400).p < 0.05;
-    const Comparison found = compare_residuals(worse, second, 400);
+    wrong += compare_in_proportion(first, second, 400).p < 0.05;
+    const Comparison found = compare_in_proportion(worse, second, 400);
     right += found.p < 0.05 && found.z > 0.0 && found.first_rms > found.second_rms;
     EXPECT_EQ(found.blocks, 15);
   }

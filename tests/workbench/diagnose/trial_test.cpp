@@ -18,7 +18,7 @@ using diagnose_test::with_offset;
 TEST(Glances, PutTheHiddenEffectFirstAndSayWhatItWillBring) {
   const selection::Workshop shop = servo_shop({.rate_mps = with_offset(0.06)});
   const selection::Stage stage = selection::first_stage(shop);
-  const std::vector<selection::Glance> glances = selection::preview(shop, stage);
+  const std::vector<selection::Glance> glances = selection::glances_at(shop, stage, shop.absent);
   ASSERT_EQ(glances.size(), shop.absent.size());
   const selection::Glance& first = glances.front();
   EXPECT_EQ(first.effect, "null_bias");
@@ -32,7 +32,7 @@ TEST(Glances, PutTheHiddenEffectFirstAndSayWhatItWillBring) {
 TEST(Glances, BeginTheFitOnTheSideOfTheTruth) {
   const selection::Workshop shop = servo_shop({.rate_mps = with_offset(-0.06)});
   const selection::Stage stage = selection::first_stage(shop);
-  const selection::Glance look = selection::preview(shop, stage).front();
+  const selection::Glance look = selection::glances_at(shop, stage, shop.absent).front();
   ASSERT_EQ(look.searched.back().name, "null_bias.offset_V");
   const double start_V = look.searched.back().value(look.starts.front().tail(1)[0]);
   EXPECT_LT(start_V, 0.0);
@@ -41,7 +41,8 @@ TEST(Glances, BeginTheFitOnTheSideOfTheTruth) {
 
 TEST(Glances, ExpectNothingOfAnyEffectOnAHealthyRecord) {
   const selection::Workshop shop = servo_shop({.rate_mps = with_offset(0.0)});
-  for (const selection::Glance& look : selection::preview(shop, selection::first_stage(shop))) {
+  for (const selection::Glance& look :
+       selection::glances_at(shop, selection::first_stage(shop), shop.absent)) {
     EXPECT_GT(look.expected_ratio, 0.99) << look.effect;
     EXPECT_LE(look.expected_ratio, 1.0) << look.effect;
   }
@@ -53,7 +54,8 @@ TEST(Glances, FindALongWaveOfTheSensorBySizeLengthAndPhase) {
       servo_shop({.rate_mps = with_offset(0.0), .reading_m = [](double y_m, double) {
                     return y_m + 4e-5 * std::sin(kTurn * y_m / 0.031 + 1.0);
                   }});
-  const selection::Glance look = selection::preview(shop, selection::first_stage(shop)).front();
+  const selection::Glance look =
+      selection::glances_at(shop, selection::first_stage(shop), shop.absent).front();
   ASSERT_EQ(look.effect, "encoder_eccentricity");
   const greybox::Fitted fitted = selection::attempt(shop, look, {}).fitted;
   EXPECT_NEAR(fitted.value("encoder_eccentricity.amplitude_m"), 4e-5, 0.02 * 4e-5);
@@ -70,7 +72,7 @@ TEST(Glances, TellOfEachEffectOnceAndStopWhenCancelled) {
       shop, stage, shop.absent, [&](const std::string& effect) { looked.push_back(effect); }));
   EXPECT_EQ(looked.size(), shop.absent.size());
   shop.cancel = [] { return true; };
-  EXPECT_TRUE(selection::preview(shop, stage).empty());
+  EXPECT_TRUE(selection::glances_at(shop, stage, shop.absent).empty());
 }
 
 }  // namespace
