@@ -57,7 +57,7 @@ TEST(PressureInput, ReadsThePlantAtTheSameTickAsThePosition) {
     for (std::size_t i = 0; i < 3; ++i) {
       const InputReading reading = stand.inputs[i]->read(tick(k));
       EXPECT_EQ(reading.value, wanted_Pa[i]) << k << ' ' << i;
-      EXPECT_EQ(reading.quality, Quality::good);
+      EXPECT_EQ(reading.quality, config::signals::Quality::good);
     }
     const double u_V = std::sin(0.05 * static_cast<double>(k));
     stand.rig->write(u_V, tick(k));
@@ -128,13 +128,13 @@ TEST(PressureInput, SuffersTheTroublesThatNameIt) {
     const bool now = k >= 20 && k < 40;
     const InputReading supply = stand.read(k, 0);
     EXPECT_EQ(std::isnan(supply.value), now) << k;
-    EXPECT_EQ(supply.quality == Quality::bad, now) << k;
+    EXPECT_EQ(supply.quality == config::signals::Quality::bad, now) << k;
     const double true_Pa = ideal.read(k, 1).value;
     const InputReading in = stand.inputs[1]->read(tick(k));
     if (!now) frozen_Pa = true_Pa;
     EXPECT_EQ(in.value, frozen_Pa) << k;
-    EXPECT_EQ(in.quality, Quality::good) << "nobody tells that it stands still";
-    const bool is_stale = stand.inputs[2]->read(tick(k)).quality == Quality::stale;
+    EXPECT_EQ(in.quality, config::signals::Quality::good) << "nobody tells that it stands still";
+    const bool is_stale = stand.inputs[2]->read(tick(k)).quality == config::signals::Quality::stale;
     EXPECT_EQ(is_stale, now) << k;
     EXPECT_EQ(stand.rig->read(tick(k)).y_m, ideal.rig->read(tick(k)).y_m) << "the rod is well";
   }

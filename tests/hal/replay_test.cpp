@@ -31,7 +31,7 @@ TEST(ReplaySensor, GivesPositionAndCommandRowByRowThenTheEnd) {
     const Reading reading = sensor.read(tick(i));
     EXPECT_EQ(reading.y_m, 0.001 * i);
     EXPECT_EQ(reading.command_V, 0.5 * i);
-    EXPECT_EQ(reading.quality, Quality::good);
+    EXPECT_EQ(reading.quality, config::signals::Quality::good);
     EXPECT_FALSE(reading.end);
   }
   EXPECT_TRUE(sensor.read(tick(5)).end);
@@ -46,7 +46,7 @@ TEST(ReplaySensor, PeriodsThatTheRecordLacksReadAsMissing) {
   for (int i = 0; i < 3; ++i) EXPECT_EQ(sensor.read(tick(i)).y_m, 0.001 * i);
   for (int i = 3; i < 7; ++i) {
     const Reading reading = sensor.read(tick(i));
-    EXPECT_EQ(reading.quality, Quality::bad);
+    EXPECT_EQ(reading.quality, config::signals::Quality::bad);
     EXPECT_TRUE(std::isnan(reading.y_m));
     EXPECT_FALSE(reading.end);
   }
@@ -64,10 +64,10 @@ TEST(ReplaySensor, KeepsTheQualityThatTheRecordStates) {
   config::record::Record record = ramp(4);
   record.further = {{"quality", {0.0, 1.0, 3.0, std::nan("")}}};
   ReplaySensor sensor(record);
-  EXPECT_EQ(sensor.read(tick(0)).quality, Quality::good);
-  EXPECT_EQ(sensor.read(tick(1)).quality, Quality::uncertain);
-  EXPECT_EQ(sensor.read(tick(2)).quality, Quality::bad);
-  EXPECT_EQ(sensor.read(tick(3)).quality, Quality::good);
+  EXPECT_EQ(sensor.read(tick(0)).quality, config::signals::Quality::good);
+  EXPECT_EQ(sensor.read(tick(1)).quality, config::signals::Quality::uncertain);
+  EXPECT_EQ(sensor.read(tick(2)).quality, config::signals::Quality::bad);
+  EXPECT_EQ(sensor.read(tick(3)).quality, config::signals::Quality::good);
 }
 
 /// Estimates over saturated samples are not valid, on the stand and in a replay.
@@ -91,10 +91,10 @@ TEST(ReplayInput, GivesItsColumnRowByRowAndNothingWhereThereIsNone) {
     const InputReading reading = input.read(tick(i));
     if (std::isnan(wanted_Pa[i])) {
       EXPECT_TRUE(std::isnan(reading.value)) << i;
-      EXPECT_EQ(reading.quality, Quality::bad) << i;
+      EXPECT_EQ(reading.quality, config::signals::Quality::bad) << i;
     } else {
       EXPECT_EQ(reading.value, wanted_Pa[i]) << i;
-      EXPECT_EQ(reading.quality, Quality::good) << i;
+      EXPECT_EQ(reading.quality, config::signals::Quality::good) << i;
     }
   }
 }

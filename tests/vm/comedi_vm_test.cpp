@@ -65,7 +65,7 @@ TEST_P(ComediVm, WhatIsWrittenToTheOutputIsReadBackAtTheInput) {
     EXPECT_NEAR(until(read_V, terminal_V, kStep_V), terminal_V, kStep_V);
     EXPECT_NEAR(offer.rods.at(kRodChannel)->read(tick).y_m, 0.3 + 0.02 * terminal_V,
                 0.02 * kStep_V);
-    EXPECT_EQ(offer.rods.at(kRodChannel)->read(tick).quality, Quality::good);
+    EXPECT_EQ(offer.rods.at(kRodChannel)->read(tick).quality, config::signals::Quality::good);
     EXPECT_TRUE(offer.valve->write(u_V, tick).good);
   }
 }

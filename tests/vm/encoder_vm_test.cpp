@@ -81,7 +81,8 @@ TEST(EncoderVm, FollowsASineExactlyAtAPermittedSpeed) {
   for (std::int64_t k = 0; k < 800; ++k) {
     sleep_until(start_ns + k * 5'000'000);
     const Reading reading = offer.rods.at(kRodChannel)->read(kTick);
-    if (reading.quality == Quality::bad) continue;  // the host had stopped the machine
+    if (reading.quality == config::signals::Quality::bad)
+      continue;  // the host had stopped the machine
     // The driver may be late by what the machine takes: compare with where it may have been.
     double best_m = 1.0;
     const double t_s = static_cast<double>(reading.t_ns - start_ns) * 1e-9;
@@ -90,8 +91,8 @@ TEST(EncoderVm, FollowsASineExactlyAtAPermittedSpeed) {
       best_m = std::min(best_m, std::abs(reading.y_m - y_m));
     }
     worst_m = std::max(worst_m, best_m);
-    EXPECT_NE(reading.quality, Quality::uncertain) << k;
-    good += reading.quality == Quality::good ? 1 : 0;
+    EXPECT_NE(reading.quality, config::signals::Quality::uncertain) << k;
+    good += reading.quality == config::signals::Quality::good ? 1 : 0;
   }
   EXPECT_EQ(driver.wait(), 0);
   EXPECT_LT(worst_m, 1e-12);
@@ -131,7 +132,7 @@ TEST(EncoderVm, LosesNoEdgeOfAFastMotionAndPrintsItsRate) {
   EXPECT_NEAR(reading.y_m, kCount_m * kFarthest / 2, 1e-12);
   EXPECT_EQ(now.edges, kFarthest * 3 / 2);
   EXPECT_EQ(now.times_lost, 0);
-  EXPECT_EQ(reading.quality, Quality::good);
+  EXPECT_EQ(reading.quality, config::signals::Quality::good);
 }
 
 TEST(EncoderVm, IsUncertainAboveThePermittedSpeedUntilTheIndex) {
@@ -145,19 +146,19 @@ TEST(EncoderVm, IsUncertainAboveThePermittedSpeedUntilTheIndex) {
     return settled(offer);
   };
   walk_to(5);
-  EXPECT_EQ(walk_to(-5).quality, Quality::good) << "homed";
+  EXPECT_EQ(walk_to(-5).quality, config::signals::Quality::good) << "homed";
   const Reading before = walk_to(10);
   EXPECT_NEAR(before.y_m, kCount_m * 11, 1.1 * kCount_m);
-  EXPECT_EQ(before.quality, Quality::good);
+  EXPECT_EQ(before.quality, config::signals::Quality::good);
   lines.move_to(60);
   const Reading fast = settled(offer);
   EXPECT_NEAR(fast.y_m, before.y_m + kCount_m * 50, 1e-12) << "nothing was lost, as it happens";
-  EXPECT_EQ(fast.quality, Quality::uncertain);
+  EXPECT_EQ(fast.quality, config::signals::Quality::uncertain);
   EXPECT_GE(snapshot(offer).bursts, 1);
   EXPECT_GE(snapshot(offer).times_too_fast, 1);
-  EXPECT_EQ(walk_to(10).quality, Quality::uncertain);
+  EXPECT_EQ(walk_to(10).quality, config::signals::Quality::uncertain);
   const Reading after = walk_to(-5);
-  EXPECT_EQ(after.quality, Quality::good);
+  EXPECT_EQ(after.quality, config::signals::Quality::good);
   EXPECT_EQ(snapshot(offer).slips, 0);
 }
 
@@ -216,7 +217,7 @@ TEST(EncoderVm, ReadsSwitchesAndSetsThePermitLine) {
   Input& e_stop = *offer.inputs.at("e_stop");
   Input& enable = *offer.inputs.at("enable");
   EXPECT_EQ(e_stop.read(kTick).value, 1.0);
-  EXPECT_EQ(e_stop.read(kTick).quality, Quality::good);
+  EXPECT_EQ(e_stop.read(kTick).quality, config::signals::Quality::good);
   EXPECT_EQ(enable.read(kTick).value, 0.0) << "active low";
   high.set(false);
   low.set(false);

@@ -15,7 +15,7 @@ namespace workbench_test {
 
 /// Parses `arguments` (without the program's name) and so runs the command; errors are thrown as
 /// `main` would see them. Returns the exit code that the command set.
-inline int run_command(cli::Setup setup, std::vector<std::string> arguments) {
+inline int run_command(workbench::cli::Setup setup, std::vector<std::string> arguments) {
   CLI::App app;
   int exit_code = 0;
   setup(app, exit_code);
@@ -25,7 +25,7 @@ inline int run_command(cli::Setup setup, std::vector<std::string> arguments) {
 }
 
 /// What the command prints, while it is expected to set that exit code.
-inline std::string printed_by(cli::Setup setup, std::vector<std::string> arguments,
+inline std::string printed_by(workbench::cli::Setup setup, std::vector<std::string> arguments,
                               int exit_code = 0) {
   testing::internal::CaptureStdout();
   try {

@@ -23,7 +23,7 @@ class HealthyFiles : public testing::Test {
     iso::Healthy healthy{2.5e-6, choice_.file};
     healthy.x[1] = std::log(0.9);
     healthy.chambers = {{5e3, -2e4, 7e3}, {6e3, 3e4, 8e3}, 1.4e4};
-    iso::HealthyFile file = iso::healthy_file(model_, choice_, {}, healthy);
+    tracker::HealthyFile file = tracker::healthy_file(model_, choice_, {}, healthy);
     file.rig_id = "stand-1";
     file.sample_time_s = truth::kSample_s;
     std::ofstream(path_) << config::schema::print_toml([&](auto& v) { file.visit(v); });
@@ -42,7 +42,7 @@ class HealthyFiles : public testing::Test {
   std::string refusal(const plant_sim::ModelFile& model, const iso::Settings& settings,
                       double sample_time_s, const std::string& rig_id) const {
     try {
-      (void)iso::read_healthy(path_, model, settings, choice_, sample_time_s, rig_id);
+      (void)tracker::read_healthy(path_, model, settings, choice_, sample_time_s, rig_id);
     } catch (const config::schema::Error& error) {
       std::string line = error.what();
       EXPECT_EQ(error.exit_code(), 78);
@@ -62,8 +62,8 @@ class HealthyFiles : public testing::Test {
 };
 
 TEST_F(HealthyFiles, ComeBackAsTheyWere) {
-  const auto file = iso::read_healthy(path_, model_, {}, choice_, truth::kSample_s, "stand-1");
-  const iso::Healthy healthy = iso::healthy_of(file, choice_);
+  const auto file = tracker::read_healthy(path_, model_, {}, choice_, truth::kSample_s, "stand-1");
+  const iso::Healthy healthy = tracker::healthy_of(file, choice_);
   EXPECT_EQ(healthy.rms_m, 2.5e-6);
   EXPECT_NEAR(healthy.x[0], 0.0, 1e-12);
   EXPECT_NEAR(healthy.x[1], std::log(0.9), 1e-12);
@@ -84,8 +84,8 @@ TEST_F(HealthyFiles, OfARigWithoutChamberPressuresGoOnWithoutThem) {
         "pressure_offset_sd_Pa = 14000.0\n"}) {
     rewrite(line, "");
   }
-  const auto file = iso::read_healthy(path_, model_, {}, choice_, truth::kSample_s, "stand-1");
-  const iso::Healthy healthy = iso::healthy_of(file, choice_);
+  const auto file = tracker::read_healthy(path_, model_, {}, choice_, truth::kSample_s, "stand-1");
+  const iso::Healthy healthy = tracker::healthy_of(file, choice_);
   EXPECT_FALSE(healthy.chambers.known());
   // What comes with the samples then changes nothing.
   truth::Case of = stand(6.0);

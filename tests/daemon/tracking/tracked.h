@@ -5,13 +5,15 @@
 #include <string>
 #include <vector>
 
+#include "estimator/fdi/tracker/baseline_file.h"
 #include "estimator/greybox/tracking/parameter_tracker.h"
 #include "tests/truth/case.h"
 #include "tests/truth/rig.h"
 
 namespace tracking_test {
 
-namespace iso = monitor::tracking;
+namespace iso = estimator::greybox::tracking;
+namespace tracker = estimator::fdi::tracker;
 
 /// Encoder of 5 um and noise of 2 um.
 inline constexpr double kFloor_m = 2.47e-6;

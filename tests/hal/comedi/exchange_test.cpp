@@ -76,11 +76,11 @@ TEST_P(Both, ReadsAnInputInItsUnit) {
   AnalogInput pressure(rig.exchange, {0, kSpan, {2e6, -1e5}});
   const InputReading reading = pressure.read(rig.next());
   EXPECT_NEAR(reading.value, 2e6 - 1e5, 1e-6) << "1 V";
-  EXPECT_EQ(reading.quality, Quality::good);
+  EXPECT_EQ(reading.quality, config::signals::Quality::good);
   EXPECT_GT(reading.t_ns, 0);
   rig.board->set(0, 2000);
   EXPECT_TRUE(Rig::eventually([&] {
-    return pressure.read(rig.next()).quality == Quality::uncertain;
+    return pressure.read(rig.next()).quality == config::signals::Quality::uncertain;
   })) << "at the end of the range";
 }
 
@@ -91,7 +91,7 @@ TEST_P(Both, AReadingThatFailedIsMissingAndBad) {
   rig.board->fail(true);
   EXPECT_TRUE(Rig::eventually([&] {
     const Reading reading = rod.read(rig.next());
-    return std::isnan(reading.y_m) && reading.quality == Quality::bad;
+    return std::isnan(reading.y_m) && reading.quality == config::signals::Quality::bad;
   }));
 }
 
@@ -146,7 +146,8 @@ TEST(Exchange, ABoardThatHangsNeverHoldsTheLoopAndIsTold) {
   AnalogRod rod(rig.exchange, {0, kSpan, {0.01, 0.0}});
   rig.board->stick(true);
   EXPECT_TRUE(Rig::eventually([&] { return !valve.write(1.0, rig.next()).good; }));
-  EXPECT_TRUE(Rig::eventually([&] { return rod.read(rig.next()).quality == Quality::bad; }));
+  EXPECT_TRUE(Rig::eventually(
+      [&] { return rod.read(rig.next()).quality == config::signals::Quality::bad; }));
   EXPECT_TRUE(std::isnan(rod.read(rig.next()).y_m));
   for (int i = 0; i < 5; ++i) valve.write(2.0 + i, rig.next());
   rig.board->stick(false);
@@ -154,7 +155,8 @@ TEST(Exchange, ABoardThatHangsNeverHoldsTheLoopAndIsTold) {
   EXPECT_TRUE(Rig::eventually([&] { return rig.board->written().back() == 1600U; }))
       << "the newest command, 6 V";
   EXPECT_LE(rig.board->written().size(), 3U) << "those in between are not made up for";
-  EXPECT_TRUE(Rig::eventually([&] { return rod.read(rig.next()).quality == Quality::good; }));
+  EXPECT_TRUE(Rig::eventually(
+      [&] { return rod.read(rig.next()).quality == config::signals::Quality::good; }));
 }
 
 }  // namespace

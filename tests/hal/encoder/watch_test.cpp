@@ -97,35 +97,39 @@ TEST(EncoderRod, GivesTheReferencePlusTheCounts) {
   const auto arrived = [&](const Reading& r) { return std::abs(r.y_m - expected_m) < 1e-12; };
   const Reading reading = rig.read_until(arrived);
   EXPECT_DOUBLE_EQ(reading.y_m, expected_m);
-  EXPECT_EQ(reading.quality, Quality::good);
+  EXPECT_EQ(reading.quality, config::signals::Quality::good);
   EXPECT_LE(reading.t_ns, monotonic_ns());
 }
 
 TEST(EncoderRod, HasNoValueAnyMoreWhileItsThreadHangsAndIsGoodAgainAfterwards) {
   Rig rig;
   rig.stick(true);
-  const Reading bad = rig.read_until([](const Reading& r) { return r.quality == Quality::bad; });
-  EXPECT_EQ(bad.quality, Quality::bad);
+  const Reading bad =
+      rig.read_until([](const Reading& r) { return r.quality == config::signals::Quality::bad; });
+  EXPECT_EQ(bad.quality, config::signals::Quality::bad);
   EXPECT_TRUE(std::isnan(bad.y_m));
   EXPECT_GT(monotonic_ns() - bad.t_ns, kBadPeriods * kPeriod_ns) << "the time says since when";
   rig.stick(false);
-  const Reading good = rig.read_until([](const Reading& r) { return r.quality == Quality::good; });
-  EXPECT_EQ(good.quality, Quality::good);
+  const Reading good =
+      rig.read_until([](const Reading& r) { return r.quality == config::signals::Quality::good; });
+  EXPECT_EQ(good.quality, config::signals::Quality::good);
 }
 
 TEST(Freshness, IsStaleAfterThreePeriodsAndBadAfterSix) {
-  EXPECT_EQ(freshness(15, 5), Quality::good);
-  EXPECT_EQ(freshness(16, 5), Quality::stale);
-  EXPECT_EQ(freshness(30, 5), Quality::stale);
-  EXPECT_EQ(freshness(31, 5), Quality::bad);
+  EXPECT_EQ(freshness(15, 5), config::signals::Quality::good);
+  EXPECT_EQ(freshness(16, 5), config::signals::Quality::stale);
+  EXPECT_EQ(freshness(30, 5), config::signals::Quality::stale);
+  EXPECT_EQ(freshness(31, 5), config::signals::Quality::bad);
 }
 
 TEST(EncoderRod, IsUncertainBeforeTheIndexAndAfterReferNoMore) {
   Rig rig(true);
-  EXPECT_EQ(rig.rod.read({}).quality, Quality::uncertain);
+  EXPECT_EQ(rig.rod.read({}).quality, config::signals::Quality::uncertain);
   rig.watch->refer();
-  EXPECT_EQ(rig.read_until([](const Reading& r) { return r.quality == Quality::good; }).quality,
-            Quality::good);
+  EXPECT_EQ(
+      rig.read_until([](const Reading& r) { return r.quality == config::signals::Quality::good; })
+          .quality,
+      config::signals::Quality::good);
 }
 
 TEST(EncoderRod, ReadingAllocatesNothing) {

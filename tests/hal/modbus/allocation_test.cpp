@@ -25,8 +25,8 @@ TEST(ModbusAllocations, NoneInAnyCallOfTheLoop) {
   const long before = allocations;
   for (int i = 0; i < 60; ++i) {
     const Tick tick{i, i * 20'000'000LL};
-    answered = rod.read(tick).quality == Quality::good || answered;
-    failed = rod.read(tick).quality == Quality::bad || failed;
+    answered = rod.read(tick).quality == config::signals::Quality::good || answered;
+    failed = rod.read(tick).quality == config::signals::Quality::bad || failed;
     input.read(tick);
     offer.valve->write(i, tick);
     offer.valve->go_null();

@@ -17,7 +17,7 @@ TEST(ModbusLink, WritesNothingBeforeTheLoopDoes) {
     Stand stand(tcp(device), kNull_V);
     for (int i = 0; i < 5; ++i) {
       const Reading reading = stand.read();
-      EXPECT_NE(reading.quality, Quality::bad);
+      EXPECT_NE(reading.quality, config::signals::Quality::bad);
       EXPECT_DOUBLE_EQ(reading.y_m, 0.305);
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
@@ -50,7 +50,7 @@ TEST(ModbusLink, ReadsWhatTheDeviceHasNow) {
     EXPECT_TRUE(eventually([&] { return stand.turn(0.0).y_m == raw * 1e-3; }));
   }
   device.set(kPosition, 2500);
-  EXPECT_TRUE(stand.turn_until(Quality::bad, 0.0)) << "beyond its limits";
+  EXPECT_TRUE(stand.turn_until(config::signals::Quality::bad, 0.0)) << "beyond its limits";
 }
 
 TEST(ModbusLink, Function23WritesAndReadsInOneTransaction) {
@@ -71,23 +71,23 @@ TEST(ModbusLink, Function23WritesAndReadsInOneTransaction) {
 TEST(ModbusLink, AnExceptionKeepsTheConnectionAndAgesTheReading) {
   Device device;
   Stand stand(tcp(device, "stale_after_s = 0.1\nbad_after_s = 0.4\n"), kNull_V);
-  ASSERT_TRUE(stand.turn_until(Quality::good, 3.0));
+  ASSERT_TRUE(stand.turn_until(config::signals::Quality::good, 3.0));
   const int before = device.connections();
   device.only_function(3);
   device.answer(Reply::busy);
-  EXPECT_TRUE(stand.turn_until(Quality::stale, 3.0));
-  EXPECT_TRUE(stand.turn_until(Quality::bad, 3.0));
+  EXPECT_TRUE(stand.turn_until(config::signals::Quality::stale, 3.0));
+  EXPECT_TRUE(stand.turn_until(config::signals::Quality::bad, 3.0));
   EXPECT_EQ(device.connections(), before);
   EXPECT_TRUE(stand.applied().good) << "commands are taken";
   device.answer(Reply::normal);
-  EXPECT_TRUE(stand.turn_until(Quality::good, 3.0));
+  EXPECT_TRUE(stand.turn_until(config::signals::Quality::good, 3.0));
   EXPECT_EQ(device.connections(), before);
 }
 
 TEST(ModbusLink, AWriteThatIsRefusedAgainAndAgainHasFailed) {
   Device device;
   Stand stand(tcp(device), kNull_V);
-  ASSERT_TRUE(stand.turn_until(Quality::good, 3.0));
+  ASSERT_TRUE(stand.turn_until(config::signals::Quality::good, 3.0));
   device.only_function(6);
   device.answer(Reply::busy);
   EXPECT_TRUE(eventually([&] {

@@ -19,7 +19,8 @@ TEST_P(ModbusMisdeed, ClosesTheConnectionAndBeginsAgainWithNull) {
   Device device;
   device.set(kPosition, 100);
   Stand stand(tcp(device), kNull_V);
-  ASSERT_TRUE(eventually([&] { return stand.turn(3.0).quality == Quality::good; }));
+  ASSERT_TRUE(
+      eventually([&] { return stand.turn(3.0).quality == config::signals::Quality::good; }));
   const int before = device.connections();
   device.answer(GetParam().reply, 1);
   ASSERT_TRUE(eventually([&] {
@@ -27,7 +28,8 @@ TEST_P(ModbusMisdeed, ClosesTheConnectionAndBeginsAgainWithNull) {
     return device.connections() > before;
   })) << "the connection has not been closed";
   ASSERT_TRUE(eventually([&] {
-    return stand.turn(3.0).quality == Quality::good && device.get(kCommand) == 3000;
+    return stand.turn(3.0).quality == config::signals::Quality::good &&
+           device.get(kCommand) == 3000;
   })) << "it does not come back";
   expect_null_first(device);
 }
@@ -44,19 +46,19 @@ INSTANTIATE_TEST_SUITE_P(Each, ModbusMisdeed,
 TEST(ModbusLink, TurnsBadWithinATimeOutAndStaysSoWhileNothingAnswers) {
   Device device;
   Stand stand(tcp(device), kNull_V);
-  ASSERT_TRUE(stand.turn_until(Quality::good, 3.0));
+  ASSERT_TRUE(stand.turn_until(config::signals::Quality::good, 3.0));
   device.answer(Reply::lost);
-  ASSERT_TRUE(stand.turn_until(Quality::bad, 3.0));
+  ASSERT_TRUE(stand.turn_until(config::signals::Quality::bad, 3.0));
   for (int i = 0; i < 20; ++i) {
     const Reading reading = stand.turn(3.0);
-    EXPECT_EQ(reading.quality, Quality::bad);
+    EXPECT_EQ(reading.quality, config::signals::Quality::bad);
     EXPECT_TRUE(std::isnan(reading.y_m));
   }
   EXPECT_FALSE(stand.applied().good);
   EXPECT_TRUE(std::isnan(stand.applied().u_V));
   expect_null_first(device);
   device.answer(Reply::normal);
-  EXPECT_TRUE(stand.turn_until(Quality::good, 3.0));
+  EXPECT_TRUE(stand.turn_until(config::signals::Quality::good, 3.0));
 }
 
 // The commands wished while the cable was out must not fire when it is in again.
@@ -69,7 +71,7 @@ TEST(ModbusLink, NeverSendsWhatWasWishedWhileTheCableWasOut) {
   }));
   device.unplug();
   for (int i = 0; i < 20; ++i) stand.turn(6.0);
-  EXPECT_EQ(stand.turn(6.0).quality, Quality::bad);
+  EXPECT_EQ(stand.turn(6.0).quality, config::signals::Quality::bad);
   const int before = device.connections();
   device.plug_in();
   ASSERT_TRUE(eventually([&] { return device.connections() > before; }));
@@ -86,7 +88,7 @@ TEST(ModbusLink, ComesBackWithNullAfterTheDeviceHasRebooted) {
   Stand stand(tcp(device, "watchdog_s = 0.05\n",
                   "[modbus.registers.w]\nrole = \"watchdog\"\naddress = 1\nscale = 1e-3\n"),
               kNull_V);
-  ASSERT_TRUE(stand.turn_until(Quality::good, 3.0));
+  ASSERT_TRUE(stand.turn_until(config::signals::Quality::good, 3.0));
   device.reboot(200);
   ASSERT_TRUE(eventually([&] {
     stand.turn(4.0);
@@ -99,12 +101,12 @@ TEST(ModbusLink, ComesBackWithNullAfterTheDeviceHasRebooted) {
 TEST(ModbusLink, GivesUpAConnectionThatIsOnlyHalfOpen) {
   Device device;
   Stand stand(tcp(device), kNull_V);
-  ASSERT_TRUE(stand.turn_until(Quality::good, 3.0));
+  ASSERT_TRUE(stand.turn_until(config::signals::Quality::good, 3.0));
   device.half_open(true);
-  ASSERT_TRUE(stand.turn_until(Quality::bad, 3.0));
-  for (int i = 0; i < 10; ++i) EXPECT_EQ(stand.turn(3.0).quality, Quality::bad);
+  ASSERT_TRUE(stand.turn_until(config::signals::Quality::bad, 3.0));
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(stand.turn(3.0).quality, config::signals::Quality::bad);
   device.half_open(false);
-  EXPECT_TRUE(stand.turn_until(Quality::good, 3.0));
+  EXPECT_TRUE(stand.turn_until(config::signals::Quality::good, 3.0));
   expect_null_first(device);
 }
 

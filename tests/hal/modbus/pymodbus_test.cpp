@@ -211,7 +211,7 @@ TEST(Pymodbus, Function23) {
               entry("u", "valve_command", 1160, "float32", "ABCD"));
   EXPECT_EQ(stand.read().y_m, 4242.0);
   EXPECT_TRUE(written(stand, server, 1.5, "wrote 16 1.5\n"));
-  EXPECT_TRUE(stand.turn_until(Quality::good, 1.5));
+  EXPECT_TRUE(stand.turn_until(config::signals::Quality::good, 1.5));
 }
 
 TEST(Pymodbus, SpeaksRtu) {

@@ -61,7 +61,7 @@ TEST(ModbusRtu, BeginsAgainWithNullAfterABadReply) {
       return false;
     })) << "no null after "
         << static_cast<int>(reply);
-    ASSERT_TRUE(stand.turn_until(Quality::good, 3.0)) << static_cast<int>(reply);
+    ASSERT_TRUE(stand.turn_until(config::signals::Quality::good, 3.0)) << static_cast<int>(reply);
   }
 }
 

@@ -65,7 +65,7 @@ class Stand {
   [[nodiscard]] Offer& offer() noexcept { return offer_; }
 
   /// Turns until a reading has that quality; false when none has in ten seconds.
-  bool turn_until(Quality quality, double u_V) {
+  bool turn_until(config::signals::Quality quality, double u_V) {
     for (int i = 0; i < 500; ++i) {
       if (turn(u_V).quality == quality) return true;
     }

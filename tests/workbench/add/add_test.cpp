@@ -31,12 +31,12 @@ class AddTest : public testing::Test {
   // What the command prints; `arguments` without -o.
   std::string add(std::vector<std::string> arguments) const {
     arguments.insert(arguments.end(), {"-o", out().string()});
-    return workbench_test::printed_by(add_add, std::move(arguments));
+    return workbench_test::printed_by(workbench::cli::add_add, std::move(arguments));
   }
   std::string refusal(std::vector<std::string> arguments, int exit_code = 78) const {
     arguments.insert(arguments.end(), {"-o", out().string()});
     try {
-      run_command(add_add, std::move(arguments));
+      run_command(workbench::cli::add_add, std::move(arguments));
     } catch (const config::schema::Error& error) {
       EXPECT_EQ(error.exit_code(), exit_code);
       EXPECT_THAT(error.what(), Not(HasSubstr("\n")));
@@ -131,12 +131,14 @@ TEST_F(AddTest, RefusesAParameterGivenTwice) {
 
 TEST_F(AddTest, LeavesNothingBehindWhenItCannotWrite) {
   try {
-    run_command(add_add, {kModels + "thesis.toml", "friction", "-o", "/nowhere/better.toml"});
+    run_command(workbench::cli::add_add,
+                {kModels + "thesis.toml", "friction", "-o", "/nowhere/better.toml"});
     ADD_FAILURE() << "there is no such folder";
   } catch (const config::schema::Error& error) {
     EXPECT_EQ(error.exit_code(), 1);
   }
-  EXPECT_THROW(run_command(add_add, {kModels + "thesis.toml", "friction"}), CLI::ParseError);
+  EXPECT_THROW(run_command(workbench::cli::add_add, {kModels + "thesis.toml", "friction"}),
+               CLI::ParseError);
 }
 
 }  // namespace

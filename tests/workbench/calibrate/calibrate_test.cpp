@@ -62,7 +62,7 @@ class Calibrate : public testing::Test {
     std::vector<std::string> arguments{folder_ / "config.toml", folder_ / "healthy.csv", "-o",
                                        folder_ / "bands.toml"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    printed_ = workbench_test::printed_by(add_calibrate, arguments);
+    printed_ = workbench_test::printed_by(workbench::cli::add_calibrate, arguments);
   }
   fdi::PipelineConfig loaded() {
     fdi::PipelineConfig config;

@@ -1,4 +1,5 @@
 #include "estimator/greybox/validation/comparison.h"
+#include "config/record/record.h"
 
 #include <gmock/gmock.h>
 

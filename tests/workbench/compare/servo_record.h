@@ -8,6 +8,7 @@
 #include <random>
 #include <string>
 
+#include "config/record/record.h"
 #include "estimator/greybox/dataset.h"
 #include "plant_sim/model_file.h"
 

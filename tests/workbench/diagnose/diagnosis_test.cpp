@@ -63,9 +63,10 @@ TEST(Diagnosis, SaysNothingIsMissingOfAHealthyRecord) {
 }
 
 TEST(Diagnosis, SaysWhatCarriesAnErrorThatNoEffectExplains) {
-  const AdvisedDiagnosis advised = diagnose(servo_shop({.rate_mps = [](double u_V, double, double t_s) {
-    return kServoGain * u_V * (1.0 - 0.01 * t_s);
-      }})));
+  const AdvisedDiagnosis advised =
+      diagnose(servo_shop({.rate_mps = [](double u_V, double, double t_s) {
+        return kServoGain * u_V * (1.0 - 0.01 * t_s);
+      }}));
   const selection::Diagnosis& d = advised.diagnosis;
   EXPECT_EQ(d.verdict, selection::Verdict::unexplained);
   ASSERT_FALSE(d.where.empty());

@@ -38,7 +38,7 @@ class MeasuredRecord : public testing::Test, public ServoBench {
     std::vector<std::string> arguments{model, data(name), "--json", file("c.json")};
     arguments.insert(arguments.end(), more.begin(), more.end());
     testing::internal::CaptureStdout();
-    EXPECT_EQ(workbench_test::run_command(add_compare, arguments), 0);
+    EXPECT_EQ(workbench_test::run_command(workbench::cli::add_compare, arguments), 0);
     testing::internal::GetCapturedStdout();
     return json_of(file("c.json"));
   }

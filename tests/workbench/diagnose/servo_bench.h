@@ -84,7 +84,7 @@ inline nlohmann::json json_of(const std::string& file) {
 
 inline int diagnose_with(std::vector<std::string> arguments) {
   arguments.emplace_back("--quiet");
-  return workbench_test::run_command(add_diagnose, std::move(arguments));
+  return workbench_test::run_command(workbench::cli::add_diagnose, std::move(arguments));
 }
 
 }  // namespace workbench::diagnose

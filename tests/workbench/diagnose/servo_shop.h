@@ -91,7 +91,7 @@ inline Rate with_offset_and_band(double offset_V, double width_V) {
 /// `before` with effects of one parameter, which start at a value.
 inline selection::Stage stage_with(const selection::Workshop& shop, const selection::Stage& before,
                                    const std::vector<std::pair<std::string, double>>& effects) {
-  using namespace workbench::diagnose::diagnose;
+  using namespace estimator::greybox::selection;
   Selection selection = select(before.fitted, [](const auto&) { return true; });
   Stage stage = before;
   for (const auto& [name, value] : effects) {

@@ -14,7 +14,7 @@ using testing::HasSubstr;
 using workbench_test::run_command;
 
 std::string output(std::vector<std::string> arguments) {
-  return workbench_test::printed_by(add_effects, std::move(arguments));
+  return workbench_test::printed_by(workbench::cli::add_effects, std::move(arguments));
 }
 
 TEST(Effects, ListsEveryEffectWithEquationSitesPlantsAndRanges) {
@@ -60,7 +60,7 @@ TEST(Effects, ListsTheFormulasOfAModelFileBehindTheLibrary) {
 }
 
 TEST(Effects, RefusesAFileThatCannotBeWritten) {
-  EXPECT_THROW(run_command(add_effects, {"--json", "/nowhere/library.json"}),
+  EXPECT_THROW(run_command(workbench::cli::add_effects, {"--json", "/nowhere/library.json"}),
                config::schema::Error);
 }
 

@@ -46,7 +46,7 @@ class Estimate : public testing::Test {
   json run_file(const std::filesystem::path& file, std::vector<std::string> arguments) {
     const std::string out = folder_ / "out.json";
     arguments.insert(arguments.begin(), {file.string(), "--json", out});
-    EXPECT_EQ(workbench_test::run_command(add_estimate, arguments), 0);
+    EXPECT_EQ(workbench_test::run_command(workbench::cli::add_estimate, arguments), 0);
     std::ifstream in(out);
     return json::parse(in);
   }

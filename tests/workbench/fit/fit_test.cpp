@@ -17,7 +17,6 @@
 
 namespace workbench {
 
-namespace greybox = estimator::greybox;
 namespace {
 
 namespace fs = std::filesystem;
@@ -49,14 +48,14 @@ class FitTest : public testing::Test {
   }
 
   static std::string fit(std::vector<std::string> arguments) {
-    return workbench_test::printed_by(add_fit, std::move(arguments));
+    return workbench_test::printed_by(workbench::cli::add_fit, std::move(arguments));
   }
   std::string refusal(std::vector<std::string> arguments, int exit_code) const {
     arguments.insert(arguments.end(), {"-o", path("out.toml"), "--json", path("out.json")});
     testing::internal::CaptureStdout();
     std::string said = "no refusal";
     try {
-      run_command(add_fit, std::move(arguments));
+      run_command(workbench::cli::add_fit, std::move(arguments));
     } catch (const config::schema::Error& error) {
       EXPECT_EQ(error.exit_code(), exit_code) << error.what();
       said = error.what();
@@ -73,8 +72,8 @@ class FitTest : public testing::Test {
 
 TEST_F(FitTest, WritesTheBetterModelAndSaysWhatMoved) {
   const std::string said =
-      greybox::fit({kModels + "thesis.toml", record(), "--fit", "blocks", "-o", path("better.toml"),
-                    "--json", path("fit.json"), "--report", path("fit.html")});
+      fit({kModels + "thesis.toml", record(), "--fit", "blocks", "-o", path("better.toml"),
+           "--json", path("fit.json"), "--report", path("fit.html")});
   EXPECT_THAT(said, AllOf(HasSubstr("RMS, drift taken away"), HasSubstr("On data that were not"),
                           HasSubstr("What the record cannot see"),
                           HasSubstr("starts ended in this minimum"), HasSubstr("Moved:")));
@@ -90,7 +89,7 @@ TEST_F(FitTest, WritesTheBetterModelAndSaysWhatMoved) {
   EXPECT_THAT(text_of(path("fit.html")),
               AllOf(HasSubstr("Correlation of the estimates"), HasSubstr("spoolwatch fit")));
   // What it writes can be fitted again, and there is nothing more to gain.
-  greybox::fit({path("better.toml"), record(), "--fit", "blocks", "--json", path("again.json")});
+  fit({path("better.toml"), record(), "--fit", "blocks", "--json", path("again.json")});
   const auto again = nlohmann::json::parse(text_of(path("again.json")));
   EXPECT_NEAR(double(again["rms_after_m"]) / double(json["rms_after_m"]), 1.0, 0.01);
 }
@@ -124,7 +123,7 @@ TEST_F(FitTest, IgnoredSpansDoNotCount) {
                                        "--profile",
                                        "none"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    return double(nlohmann::json::parse(greybox::fit(arguments))["rms_after_m"]);
+    return double(nlohmann::json::parse(fit(arguments))["rms_after_m"]);
   };
   EXPECT_GT(rms({}), 100e-6);
   // The observer's memory of the nonsense dies away in 3 s.
@@ -164,7 +163,7 @@ TEST_F(FitTest, RefusesARecordWithoutMotionAndNotesASaturatedOne) {
   full << "t_s,u_V,y_m\n";
   for (int k = 0; k < 1000; ++k) full << 0.005 * k << ",1," << 0.05 + 0.0002 * k << "\n";
   full.close();
-  EXPECT_THAT(greybox::fit({kModels + "thesis.toml", path("full.csv"), "--profile", "none"}),
+  EXPECT_THAT(fit({kModels + "thesis.toml", path("full.csv"), "--profile", "none"}),
               HasSubstr("the command never changes"));
 }
 
@@ -176,9 +175,10 @@ TEST(FitEmps, AgreesWithThePublishedParameters) {
   const std::string record = folder + "/emps/train_200Hz.csv";
   if (!fs::exists(record)) GTEST_SKIP() << record << " is not here; set SPOOLWATCH_DATA";
   const auto json = nlohmann::json::parse(workbench_test::printed_by(
-      add_fit, {kModels + "force_driven_axis.toml", record, "--set",
-                "parameters.gain_N_per_V=35.15065", "--set", "effects.friction.coulomb_N=10",
-                "--set", "effects.load_force.force_N=1", "--observer", "0", "--json", "-"}));
+      workbench::cli::add_fit,
+      {kModels + "force_driven_axis.toml", record, "--set", "parameters.gain_N_per_V=35.15065",
+       "--set", "effects.friction.coulomb_N=10", "--set", "effects.load_force.force_N=1",
+       "--observer", "0", "--json", "-"}));
   const std::vector<std::pair<std::string, double>> published{{"mass_kg", 95.11},
                                                               {"damping_N_s_per_m", 203.5},
                                                               {"friction.coulomb_N", 20.39},

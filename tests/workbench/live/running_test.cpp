@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "config/record/record.h"
 #include "config/schema/document.h"
 #include "estimator/greybox/validation/comparison.h"
 #include "tests/workbench/live/healthy_log.h"

@@ -1,3 +1,4 @@
+#include "config/record/record.h"
 #include "estimator/greybox/dataset.h"
 
 #include <gmock/gmock.h>

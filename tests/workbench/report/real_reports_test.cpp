@@ -28,7 +28,7 @@ class Reports : public testing::Test, public ServoBench {
     }
   }
 
-  int quietly(cli::Setup setup, std::vector<std::string> arguments) {
+  int quietly(workbench::cli::Setup setup, std::vector<std::string> arguments) {
     testing::internal::CaptureStdout();
     testing::internal::CaptureStderr();
     const int code = workbench_test::run_command(setup, std::move(arguments));
@@ -85,8 +85,8 @@ std::string shell_words_of(const std::string& page) {
 
 TEST_F(Reports, OfADiagnosisDrawsEveryPlotAndSaysWhatTheJsonSays) {
   const std::string bench = record("it's $HOME & 1.csv", {.offset_V = 0.04});
-  ASSERT_EQ(quietly(add_diagnose, {model(), bench, "--json", file("d.json"), "--report",
-                                   file("d.html"), "--quiet"}),
+  ASSERT_EQ(quietly(workbench::cli::add_diagnose, {model(), bench, "--json", file("d.json"),
+                                                   "--report", file("d.html"), "--quiet"}),
             0);
   const std::string page = text_of(file("d.html"));
   expect_sound(page, 10);  // ladder, one round, position, two residuals, command, clouds
@@ -106,8 +106,9 @@ TEST_F(Reports, OfADiagnosisDrawsEveryPlotAndSaysWhatTheJsonSays) {
 
 TEST_F(Reports, OfAComparisonAndAFitDrawEveryPlot) {
   const std::string bench = record("it's 2.csv", {.offset_V = 0.04});
-  ASSERT_EQ(quietly(add_compare, {model(), bench, "--report", file("c.html")}), 0);
-  ASSERT_EQ(quietly(add_fit, {model(), bench, "-o", file("f.toml"), "--report", file("f.html")}),
+  ASSERT_EQ(quietly(workbench::cli::add_compare, {model(), bench, "--report", file("c.html")}), 0);
+  ASSERT_EQ(quietly(workbench::cli::add_fit,
+                    {model(), bench, "-o", file("f.toml"), "--report", file("f.html")}),
             0);
   expect_sound(text_of(file("c.html")), 14);
   expect_sound(text_of(file("f.html")), 4);

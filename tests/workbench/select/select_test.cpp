@@ -62,7 +62,7 @@ class Select : public testing::Test {
     const std::string file = (folder_ / "out.json").string();
     for (const char* more : {"--quiet", "--json", file.c_str()}) arguments.emplace_back(more);
     const Captured captured;
-    workbench_test::run_command(add_select, arguments);
+    workbench_test::run_command(workbench::cli::add_select, arguments);
     text_ = captured.text.str();
     return json::parse(std::ifstream(file));
   }

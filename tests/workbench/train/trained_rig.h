@@ -93,7 +93,7 @@ class Train : public testing::Test {
     std::vector<std::string> arguments{folder_ / "config.toml", "--healthy",
                                        folder_ / "healthy.csv", "-o", folder_ / "trained.toml"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    printed_ = workbench_test::printed_by(add_train, arguments);
+    printed_ = workbench_test::printed_by(workbench::cli::add_train, arguments);
   }
   fdi::PipelineConfig loaded(const std::string& rig_id = "small", double sample_time_s = 0.005) {
     fdi::PipelineConfig config;
