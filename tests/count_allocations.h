@@ -1,9 +1,6 @@
-// Counts what this thread takes from the heap: malloc and its family are replaced in the program
-// that includes this. In one source file of a program only.
+// Counts what a thread takes from the heap: malloc and its family are replaced in the programs that
+// link test_support and name `allocations`.
 #pragma once
-
-#include <cerrno>
-#include <cstddef>
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define SPOOLWATCH_COUNTS_MALLOC 0  // the sanitizers bring their own malloc
@@ -11,37 +8,4 @@
 #define SPOOLWATCH_COUNTS_MALLOC 1
 #endif
 
-namespace {
-thread_local long allocations = 0;
-}
-
-#if SPOOLWATCH_COUNTS_MALLOC
-extern "C" {
-void* __libc_malloc(std::size_t size);                       // NOLINT: glibc's own names
-void* __libc_calloc(std::size_t count, std::size_t size);    // NOLINT
-void* __libc_realloc(void* memory, std::size_t size);        // NOLINT
-void* __libc_memalign(std::size_t align, std::size_t size);  // NOLINT
-
-void* malloc(std::size_t size) {
-  ++allocations;
-  return __libc_malloc(size);
-}
-void* calloc(std::size_t count, std::size_t size) {
-  ++allocations;
-  return __libc_calloc(count, size);
-}
-void* realloc(void* memory, std::size_t size) {
-  ++allocations;
-  return __libc_realloc(memory, size);
-}
-void* aligned_alloc(std::size_t align, std::size_t size) {
-  ++allocations;
-  return __libc_memalign(align, size);
-}
-int posix_memalign(void** memory, std::size_t align, std::size_t size) {
-  ++allocations;
-  *memory = __libc_memalign(align, size);
-  return *memory == nullptr ? ENOMEM : 0;
-}
-}
-#endif
+extern constinit thread_local long allocations;  ///< by this thread

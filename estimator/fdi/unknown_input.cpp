@@ -4,6 +4,7 @@
 #include <complex>
 
 #include "config/schema/error.h"
+#include "estimator/linear_algebra/decompositions.h"
 
 namespace estimator::fdi {
 namespace {
@@ -17,8 +18,7 @@ constexpr double kRank = 1e-9;  ///< of the greatest singular value
 template <class M>
 int rank(const M& matrix) {
   if (matrix.size() == 0) return 0;
-  const Eigen::JacobiSVD<M> svd(matrix);
-  const auto& s = svd.singularValues();
+  const Eigen::VectorXd s = linear_algebra::singular_values(matrix);
   int count = 0;
   for (Index i = 0; i < s.size(); ++i) count += s(i) > kRank * s(0) && s(i) > 0.0 ? 1 : 0;
   return count;
@@ -50,11 +50,11 @@ bool is_detectable(const MatrixXd& a, const MatrixXd& c, bool discrete) {
   using Complex = Eigen::MatrixXcd;
   constexpr double kEdge = 1e-9;  // modes this near the edge count as not decaying
   const Index n = a.rows();
-  const Eigen::EigenSolver<MatrixXd> solver(a, false);
+  const Eigen::VectorXcd modes = linear_algebra::eigenvalues(a);
   const double size = std::max(a.norm(), 1e-300);
   const double c_size = std::max(c.norm(), 1e-300);
   for (Index i = 0; i < n; ++i) {
-    const std::complex<double> mode = solver.eigenvalues()(i);
+    const std::complex<double> mode = modes(i);
     const bool decays = discrete ? std::abs(mode) < 1.0 - kEdge : mode.real() < -kEdge * size;
     if (decays) continue;
     Complex stacked(n + c.rows(), n);
@@ -73,7 +73,7 @@ MatrixXd predictor_gain(const MatrixXd& a, const MatrixXd& c, double q) {
   MatrixXd gain = MatrixXd::Zero(n, c.rows());
   for (int i = 0; i < 100000; ++i) {
     const MatrixXd s = c * p * c.transpose() + one;
-    gain = s.ldlt().solve(c * p * a.transpose()).transpose();
+    gain = linear_algebra::solve_symmetric(s, MatrixXd(c * p * a.transpose())).transpose();
     MatrixXd next = a * p * a.transpose() - gain * c * p * a.transpose() + noise;
     next = 0.5 * (next + next.transpose()).eval();
     const double change = (next - p).norm();
@@ -97,9 +97,8 @@ Existence unknown_input_existence(const LinearModel& model) {
   const MatrixXd ce = model.c * e;
   out.rank_e = rank(e);
   // What is left of E in y, on the scale of C: rounding is no rank.
-  const Eigen::JacobiSVD<MatrixXd> svd(ce, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  for (Index i = 0; i < svd.singularValues().size(); ++i) {
-    out.rank_ce += svd.singularValues()(i) > kRank * model.c.norm() ? 1 : 0;
+  for (const double value : linear_algebra::singular_values(ce)) {
+    out.rank_ce += value > kRank * model.c.norm() ? 1 : 0;
   }
   if (out.rank_ce != out.rank_e) {
     out.why = "rank(C E) = " + std::to_string(out.rank_ce) +
@@ -107,7 +106,7 @@ Existence unknown_input_existence(const LinearModel& model) {
               ": the outputs do not see at once what the unknown inputs do";
     return out;
   }
-  out.h = e * ce.completeOrthogonalDecomposition().pseudoInverse();
+  out.h = e * linear_algebra::pseudo_inverse(ce);
   out.a1 = model.a - out.h * model.c * model.a;
   out.exists = is_detectable(out.a1, model.c, model.discrete);
   if (!out.exists) {
@@ -135,7 +134,7 @@ UnknownInputObserver unknown_input_observer(const LinearModel& model, const std:
   out.l2 = MatrixXd::Identity(model.c.rows(), model.c.rows()) - model.c * found.h;
   // In the end e = F e + T K f, and r = C e.
   if (model.k.size() > 0) {
-    out.fault_gain = model.c * (MatrixXd::Identity(n, n) - out.f).partialPivLu().solve(t * model.k);
+    out.fault_gain = model.c * linear_algebra::solve(MatrixXd::Identity(n, n) - out.f, t * model.k);
   } else {
     out.fault_gain = MatrixXd::Zero(model.c.rows(), 0);
   }

@@ -20,7 +20,7 @@
 // ch. 3.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <string>
 
 namespace estimator::fdi {

@@ -1,11 +1,11 @@
 #include "estimator/greybox/identifiability_report.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numeric>
 
+#include "estimator/linear_algebra/decompositions.h"
 #include "estimator/nonlinear/difference.h"
 #include "estimator/nonlinear/identifiability.h"
 #include "estimator/nonlinear/linear_model.h"
@@ -87,7 +87,8 @@ class Looker {
     const VectorXd unit = (record_.diagonal().array() + priors.array() + 1e-12).rsqrt();
     H = (unit.asDiagonal() * H * unit.asDiagonal()).eval();
     H.diagonal().array() += kRidge;
-    const MatrixXd inverse = H.ldlt().solve(MatrixXd::Identity(H.rows(), H.cols()));
+    const MatrixXd inverse =
+        linear_algebra::solve_symmetric(H, MatrixXd(MatrixXd::Identity(H.rows(), H.cols())));
     return unit.asDiagonal() * inverse * unit.asDiagonal();
   }
 

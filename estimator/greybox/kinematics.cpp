@@ -1,8 +1,9 @@
 #include "estimator/greybox/kinematics.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+
+#include "estimator/linear_algebra/decompositions.h"
 
 namespace estimator::greybox {
 namespace {
@@ -29,7 +30,8 @@ Weights weights(std::ptrdiff_t first, std::ptrdiff_t last, double sample_time_s)
     const double s = static_cast<double>(first + i);
     powers.row(i) << 1.0, s, s * s;
   }
-  const Eigen::MatrixXd inverse = (powers.transpose() * powers).ldlt().solve(powers.transpose());
+  const Eigen::MatrixXd inverse = linear_algebra::solve_symmetric(
+      powers.transpose() * powers, Eigen::MatrixXd(powers.transpose()));
   Weights result;
   for (Eigen::Index i = 0; i < count; ++i) {
     result.slope.push_back(inverse(1, i) / sample_time_s);

@@ -1,9 +1,9 @@
 #include "estimator/nonlinear/covariance.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/linear_algebra/decompositions.h"
 #include "estimator/nonlinear/linear_model.h"
 #include "estimator/residual/autoregression.h"
 
@@ -177,9 +177,7 @@ Covariance covariance(const Problem& problem, const Solution& solution,
       length[k] = 1.0;
     }
   }
-  const Eigen::JacobiSVD<MatrixXd> svd(R, Eigen::ComputeThinV);
-  const VectorXd& s = svd.singularValues();
-  const MatrixXd& V = svd.matrixV();
+  const auto [s, V] = linear_algebra::right_singular_vectors(R);
   MatrixXd inverse = MatrixXd::Zero(f, f);
   for (Index k = 0; k < f; ++k) {
     if (s[k] > kUnseen * s[0]) {

@@ -1,9 +1,9 @@
 #include "estimator/nonlinear/identifiability.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/linear_algebra/decompositions.h"
 #include "estimator/nonlinear/linear_model.h"
 
 namespace estimator::nonlinear {
@@ -92,9 +92,9 @@ Identifiability identifiability(const Problem& problem, const MatrixXd& jacobian
     K.col(k).head(p) = R.col(j) * scale[j];
     if (options.with_priors && unknown.has_prior()) K(p + k, k) = scale[j] / unknown.prior_sd;
   }
-  const Eigen::JacobiSVD<MatrixXd> svd(K, Eigen::ComputeThinV);
-  out.singular_values = svd.singularValues();
-  const MatrixXd& V = svd.matrixV();
+  const linear_algebra::SingularVectors right = linear_algebra::right_singular_vectors(K);
+  out.singular_values = right.values;
+  const MatrixXd& V = right.vectors;
   const double floor = kInvisible * out.singular_values[0];
 
   MatrixXd unit = K;
@@ -114,7 +114,7 @@ Identifiability identifiability(const Problem& problem, const MatrixXd& jacobian
     }
     out.together[j] = std::sqrt(sum);
   }
-  const VectorXd s = Eigen::JacobiSVD<MatrixXd>(unit).singularValues();
+  const VectorXd s = linear_algebra::singular_values(unit);
   out.condition = s[0] / s[f - 1];
 
   Index first = f;

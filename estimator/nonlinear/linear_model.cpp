@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/linear_algebra/decompositions.h"
+
 namespace estimator::nonlinear {
 namespace {
 
@@ -134,7 +136,7 @@ Eigen::VectorXd box_step(const LinearModel& model, const Eigen::VectorXd& scale,
       }
       Eigen::VectorXd right = Eigen::VectorXd::Zero(p + f);
       right.head(p) = -(model.q + R * held);
-      const Eigen::VectorXd z = rows.colPivHouseholderQr().solve(right);
+      const Eigen::VectorXd z = linear_algebra::pivoted_least_squares(rows, right);
       // Towards z as far as the box allows.
       double reach = 1.0;
       Eigen::Index blocking = -1;

@@ -1,12 +1,12 @@
 #include "estimator/residual/whiteness.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "estimator/linear_algebra/decompositions.h"
 #include "estimator/residual/autoregression.h"
 #include "estimator/residual/distributions.h"
 
@@ -129,11 +129,8 @@ TestResult independence(std::span<const double> residual, std::span<const double
     }
   }
   // A sine has two dimensions only, whatever the number of windows.
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(A);
-  qr.setThreshold(1e-6);
-  const Eigen::Index rank = qr.rank();
+  const auto [rotated, rank] = linear_algebra::pivoted_rotation(A, b, 1e-6);
   if (rank == 0) return out;
-  const Eigen::VectorXd rotated = (qr.householderQ().transpose() * b).eval();
   const double explained = rotated.head(rank).squaredNorm();
   const double left = rotated.tail(n - rank).squaredNorm();
   out.dof = static_cast<double>(rank);

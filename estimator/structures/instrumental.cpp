@@ -1,9 +1,9 @@
 #include "estimator/structures/instrumental.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/linear_algebra/decompositions.h"
 #include "estimator/residual/distributions.h"
 
 namespace estimator::structures {
@@ -33,9 +33,7 @@ void scale(MatrixXd& matrix, VectorXd& length) {
 MatrixXd basis(MatrixXd matrix) {
   VectorXd length;
   scale(matrix, length);
-  Eigen::ColPivHouseholderQR<MatrixXd> qr(matrix);
-  qr.setThreshold(kRank);
-  return qr.householderQ() * MatrixXd::Identity(matrix.rows(), qr.rank());
+  return linear_algebra::orthonormal_basis(matrix, kRank);
 }
 
 /// What `q` leaves of each unit column; columns that are instruments themselves leave rounding.
@@ -97,7 +95,7 @@ VectorXd robust_errors(const MatrixXd& psi, const VectorXd& e, int memory) {
     const MatrixXd cross = scores.bottomRows(rows - lag).transpose() * scores.topRows(rows - lag);
     sum += w * (cross + cross.transpose());
   }
-  const MatrixXd bread = (psi.transpose() * psi).completeOrthogonalDecomposition().pseudoInverse();
+  const MatrixXd bread = linear_algebra::pseudo_inverse(psi.transpose() * psi);
   return (bread * sum * bread).diagonal().cwiseMax(0.0).cwiseSqrt();
 }
 
@@ -115,19 +113,19 @@ BiasTest test_with(const Structure& s, Regression data, Instruments instruments)
   if (rows < 4 * (p + data.z.cols())) return out;
   VectorXd length;
   scale(data.psi, length);
-  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> direct(data.psi);
-  const VectorXd ls = direct.solve(data.y);
+  const linear_algebra::ShortestSolution direct =
+      linear_algebra::shortest_least_squares(data.psi, data.y);
+  const VectorXd& ls = direct.x;
   const VectorXd ls_error = data.y - data.psi * ls;
   const double ls_variance = ls_error.squaredNorm() / static_cast<double>(rows - p);
-  const MatrixXd inverse =
-      (data.psi.transpose() * data.psi).completeOrthogonalDecomposition().pseudoInverse();
+  const MatrixXd inverse = linear_algebra::pseudo_inverse(data.psi.transpose() * data.psi);
   out.least_squares = in_units(ls, length);
   out.least_squares_error =
       in_units((ls_variance * inverse.diagonal()).cwiseMax(0.0).cwiseSqrt(), length);
 
   const MatrixXd q = basis(data.z);
   const MatrixXd projected = q * (q.transpose() * data.psi);
-  const VectorXd iv = projected.completeOrthogonalDecomposition().solve(data.y);
+  const VectorXd iv = linear_algebra::shortest_least_squares(projected, data.y).x;
   out.instrumental = in_units(iv, length);
   out.instrumental_error = in_units(robust_errors(projected, data.y - data.psi * iv, s.n), length);
   out.instrument_count = static_cast<int>(q.cols()) - (s.constant ? 1 : 0);
@@ -139,7 +137,7 @@ BiasTest test_with(const Structure& s, Regression data, Instruments instruments)
   const MatrixXd qz = basis(s.constant ? centred(z) : z);
   double correlation = 0.0;
   if (qx.cols() == moving && qz.cols() >= moving) {
-    const VectorXd all = Eigen::JacobiSVD<MatrixXd>(qx.transpose() * qz).singularValues();
+    const VectorXd all = linear_algebra::singular_values(MatrixXd(qx.transpose() * qz));
     correlation = std::min(all[moving - 1], kMostCorrelation);
   }
   const double square = correlation * correlation;
@@ -150,10 +148,11 @@ BiasTest test_with(const Structure& s, Regression data, Instruments instruments)
   const MatrixXd rest = basis(unexplained(x, q));
   MatrixXd augmented(rows, p + rest.cols());
   augmented << data.psi, rest;
-  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> both(augmented);
-  const double energy = (data.y - augmented * both.solve(data.y)).squaredNorm();
-  out.dof = static_cast<int>(both.rank() - direct.rank());
-  const double variance = energy / static_cast<double>(rows - both.rank());
+  const linear_algebra::ShortestSolution both =
+      linear_algebra::shortest_least_squares(augmented, data.y);
+  const double energy = (data.y - augmented * both.x).squaredNorm();
+  out.dof = static_cast<int>(both.rank - direct.rank);
+  const double variance = energy / static_cast<double>(rows - both.rank);
   out.statistic = variance > 0.0 ? (ls_error.squaredNorm() - energy) / variance : 0.0;
   out.p = out.dof > 0 ? residual::chi_square_upper(out.statistic, out.dof) : 1.0;
   if (out.strength_F >= kWeakInstruments_F) {

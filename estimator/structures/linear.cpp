@@ -1,8 +1,9 @@
 #include "estimator/structures/linear.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+
+#include "estimator/linear_algebra/decompositions.h"
 
 namespace estimator::structures {
 
@@ -42,8 +43,7 @@ VectorXd solve_rows(const Rows& rows) {
   VectorXd length = rows.psi.colwise().norm().transpose();
   for (double& value : length) value = value > 0.0 ? value : 1.0;
   const Eigen::MatrixXd scaled = rows.psi * length.cwiseInverse().asDiagonal();
-  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> qr(scaled);
-  return qr.solve(rows.target).cwiseQuotient(length);
+  return linear_algebra::shortest_least_squares(scaled, rows.target).x.cwiseQuotient(length);
 }
 
 Polynomial fit_arx(const Orders& orders, const Stretches& data) {

@@ -1,11 +1,11 @@
 #include "estimator/structures/narx.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
 
+#include "estimator/linear_algebra/decompositions.h"
 #include "estimator/nonlinear/minimize.h"
 
 namespace estimator::structures {
@@ -97,9 +97,7 @@ double condition_of(MatrixXd jacobian) {
     if (!(length > 0.0)) return std::numeric_limits<double>::infinity();
     jacobian.col(j) /= length;
   }
-  const Eigen::HouseholderQR<MatrixXd> qr(jacobian);
-  const MatrixXd upper = qr.matrixQR().topRows(jacobian.cols()).triangularView<Eigen::Upper>();
-  const VectorXd s = Eigen::JacobiSVD<MatrixXd>(upper).singularValues();
+  const VectorXd s = linear_algebra::singular_values(linear_algebra::upper_triangle(jacobian));
   return s[0] / s[s.size() - 1];
 }
 
@@ -194,7 +192,7 @@ NarxFit fit_narx(const NarxOptions& options, const Stretches& data) {
   }
   MatrixXd linear(fitted, inputs + 1);
   linear << phi.transpose(), VectorXd::Ones(fitted);
-  const VectorXd arx = linear.completeOrthogonalDecomposition().solve(y);
+  const VectorXd arx = linear_algebra::shortest_least_squares(linear, y).x;
   const double noise = (y - linear * arx).norm() / std::sqrt(static_cast<double>(fitted));
 
   nonlinear::Problem problem = problem_of(out, phi, y, unknowns);

@@ -1,6 +1,5 @@
 #include "estimator/structures/polynomial.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -8,6 +7,7 @@
 #include <limits>
 
 #include "config/schema/error.h"
+#include "estimator/linear_algebra/decompositions.h"
 #include "estimator/structure.h"
 
 namespace estimator::structures {
@@ -99,8 +99,7 @@ Signals signals_of(const Polynomial& model, const Stretch& stretch) {
     result.setConstant(kNaN);
     return out;
   }
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(filtered);
-  const Eigen::VectorXd found = qr.solve(Eigen::VectorXd(result));
+  const Eigen::VectorXd found = linear_algebra::pivoted_least_squares(filtered, result);
   result -= filtered * found;
   for (int j = 0; j < nf; ++j) {
     for (int t = 0; t < n; ++t) out.w[t] += found[j] * responses[j][t];
@@ -291,7 +290,7 @@ double largest_root(const std::vector<double>& p) {
   for (Eigen::Index j = 0; j < n; ++j) companion(0, j) = -p[static_cast<std::size_t>(j)];
   for (Eigen::Index i = 1; i < n; ++i) companion(i, i - 1) = 1.0;
   if (!companion.allFinite()) return std::numeric_limits<double>::infinity();
-  return companion.eigenvalues().cwiseAbs().maxCoeff();
+  return linear_algebra::eigenvalues(companion).cwiseAbs().maxCoeff();
 }
 
 }  // namespace estimator::structures

@@ -1,9 +1,9 @@
 #include "estimator/structures/prediction_error.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/linear_algebra/decompositions.h"
 #include "estimator/nonlinear/covariance.h"
 #include "estimator/nonlinear/minimize.h"
 #include "estimator/structures/linear.h"
@@ -114,14 +114,13 @@ std::vector<Polynomial> usual_starts(const Orders& orders, const Stretches& data
 }
 
 double scaled_condition(const MatrixXd& jacobian) {
-  const Eigen::HouseholderQR<MatrixXd> qr(jacobian);
-  MatrixXd upper = qr.matrixQR().topRows(jacobian.cols()).triangularView<Eigen::Upper>();
+  MatrixXd upper = linear_algebra::upper_triangle(jacobian);
   for (Index j = 0; j < upper.cols(); ++j) {
     const double length = upper.col(j).norm();
     if (!(length > 0.0)) return std::numeric_limits<double>::infinity();
     upper.col(j) /= length;
   }
-  const VectorXd s = Eigen::JacobiSVD<MatrixXd>(upper).singularValues();
+  const VectorXd s = linear_algebra::singular_values(upper);
   return s[0] / s[s.size() - 1];
 }
 

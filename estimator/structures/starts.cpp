@@ -1,10 +1,10 @@
 #include "estimator/structures/starts.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 
+#include "estimator/linear_algebra/decompositions.h"
 #include "estimator/structure.h"
 #include "estimator/structures/linear.h"
 
@@ -35,7 +35,7 @@ std::vector<double> stabilised(const std::vector<double>& p, double margin) {
   for (Eigen::Index i = 1; i < n; ++i) companion(i, i - 1) = 1.0;
   if (!companion.allFinite()) return std::vector<double>(p.size(), 0.0);
   std::vector<std::complex<double>> product{1.0};
-  for (std::complex<double> root : companion.eigenvalues()) {
+  for (std::complex<double> root : linear_algebra::eigenvalues(companion)) {
     if (std::abs(root) > 1.0) root = 1.0 / std::conj(root);
     if (std::abs(root) > 1.0 - margin) root *= (1.0 - margin) / std::abs(root);
     product.push_back(0.0);

@@ -1,9 +1,9 @@
 #include "estimator/structures/subspace.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/linear_algebra/decompositions.h"
 #include "estimator/structures/starts.h"
 
 namespace estimator::structures {
@@ -75,10 +75,8 @@ MatrixXd regress(MatrixXd x, const MatrixXd& targets) {
   VectorXd length = x.colwise().norm().transpose();
   for (double& value : length) value = value > 0.0 ? value : 1.0;
   x = x * length.cwiseInverse().asDiagonal();
-  Eigen::CompleteOrthogonalDecomposition<MatrixXd> qr;
-  qr.setThreshold(kRank);
-  qr.compute(x);
-  return length.cwiseInverse().asDiagonal() * qr.solve(targets);
+  return length.cwiseInverse().asDiagonal() *
+         linear_algebra::shortest_least_squares(x, targets, kRank);
 }
 
 MatrixXd with_ones(const MatrixXd& x, bool constant) {
@@ -107,7 +105,7 @@ MatrixXd prediction_map(const SubspaceOptions& o, const Windows& w) {
 
 std::vector<double> characteristic(const MatrixXd& matrix) {
   std::vector<std::complex<double>> product{1.0};
-  const Eigen::VectorXcd roots = matrix.eigenvalues();
+  const Eigen::VectorXcd roots = linear_algebra::eigenvalues(matrix);
   for (const std::complex<double>& root : roots) {
     product.push_back(0.0);
     for (std::size_t i = product.size() - 1; i > 0; --i) product[i] -= root * product[i - 1];
@@ -137,9 +135,7 @@ std::vector<double> numerator(const SubspaceFit& fit, const VectorXd& input,
 
 double condition_of(MatrixXd x) {
   for (Index j = 0; j < x.cols(); ++j) x.col(j) /= std::max(x.col(j).norm(), 1e-300);
-  const Eigen::HouseholderQR<MatrixXd> qr(x);
-  const MatrixXd upper = qr.matrixQR().topRows(x.cols()).triangularView<Eigen::Upper>();
-  const VectorXd s = Eigen::JacobiSVD<MatrixXd>(upper).singularValues();
+  const VectorXd s = linear_algebra::singular_values(linear_algebra::upper_triangle(x));
   return s[0] / s[s.size() - 1];
 }
 
@@ -170,10 +166,10 @@ SubspaceFit fit_subspace(const SubspaceOptions& o, const Stretches& all) {
   // Theta P has the left singular vectors of Theta R', P' = Q R: small matrices.
   const MatrixXd theta = prediction_map(o, w);
   const MatrixXd past = o.constant ? MatrixXd(w.past.rowwise() - w.past.colwise().mean()) : w.past;
-  const Eigen::HouseholderQR<MatrixXd> qr(past);
-  const MatrixXd r = qr.matrixQR().topRows(past.cols()).triangularView<Eigen::Upper>();
-  const Eigen::JacobiSVD<MatrixXd> svd(theta * r.transpose(), Eigen::ComputeThinU);
-  out.singular_values = svd.singularValues();
+  const MatrixXd r = linear_algebra::upper_triangle(past);
+  const linear_algebra::SingularVectors left =
+      linear_algebra::left_singular_vectors(theta * r.transpose());
+  out.singular_values = left.values;
   const auto order = static_cast<Index>(o.order);
   if (!(out.singular_values[order - 1] > 0.0)) {
     out.why = "the data have no such order";
@@ -181,7 +177,7 @@ SubspaceFit fit_subspace(const SubspaceOptions& o, const Stretches& all) {
   }
   const VectorXd root = out.singular_values.head(order).cwiseSqrt();
   const MatrixXd map =
-      root.cwiseInverse().asDiagonal() * svd.matrixU().leftCols(order).transpose() * theta;
+      root.cwiseInverse().asDiagonal() * left.vectors.leftCols(order).transpose() * theta;
   // Singular values grow with the record: states of RMS about 1.
   const MatrixXd raw = w.past * map.transpose();
   const double size = std::max(raw.norm() / std::sqrt(static_cast<double>(raw.size())), 1e-300);

@@ -45,6 +45,11 @@ if(CMAKE_BUILD_TYPE STREQUAL Release)
   target_compile_options(spoolwatch_test_options INTERFACE -O1 -g0)
 endif()
 
+add_library(spoolwatch_test_paths INTERFACE)
+target_compile_definitions(spoolwatch_test_paths INTERFACE
+  SPOOLWATCH_SOURCE_DIR="${CMAKE_SOURCE_DIR}"
+  SPOOLWATCH_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
+
 # spoolwatch_library(name SOURCES... [LIBS...]): a static library; name = folder with _ for /.
 function(spoolwatch_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LIBS" ${ARGN})
@@ -66,26 +71,36 @@ function(spoolwatch_program name)
   spoolwatch_precompile(${name} product)
 endfunction()
 
-# spoolwatch_test(name SOURCES... LIBS... [LABELS...] [TIMEOUT s]): a GoogleTest program; each of
-# its tests becomes a ctest.
+# spoolwatch_test(name [LABELS...] [TIMEOUT s]): a GoogleTest program; each of its tests becomes a
+# ctest. Its sources come from spoolwatch_tests().
 function(spoolwatch_test name)
-  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LIBS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "" "TIMEOUT" "LABELS" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)
   endif()
   if(SPOOLWATCH_SANITIZE)  # simulations run some twenty times as long
     math(EXPR ARG_TIMEOUT "10 * ${ARG_TIMEOUT}")
   endif()
-  add_executable(${name} ${ARG_SOURCES})
-  target_link_libraries(${name} PRIVATE spoolwatch_test_options ${ARG_LIBS} GTest::gmock_main)
+  add_executable(${name})
+  target_link_libraries(${name} PRIVATE spoolwatch_test_options spoolwatch_test_paths
+    GTest::gmock_main)
   spoolwatch_precompile(${name} tests)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
-  target_compile_definitions(${name} PRIVATE
-    SPOOLWATCH_SOURCE_DIR="${CMAKE_SOURCE_DIR}"
-    SPOOLWATCH_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
   set(properties TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
   if(realtime IN_LIST ARG_LABELS)  # two loops of highest priority would disturb each other
     list(APPEND properties RESOURCE_LOCK realtime)
   endif()
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES ${properties})
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
+    PROPERTIES ${properties})
+endfunction()
+
+# spoolwatch_tests(name SOURCES... [LIBS...] [PROGRAMS...]): gives sources to a test program; the
+# PROGRAMS are what they start.
+function(spoolwatch_tests name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBS;PROGRAMS" ${ARGN})
+  target_sources(${name} PRIVATE ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_LIBS})
+  if(ARG_PROGRAMS)
+    add_dependencies(${name} ${ARG_PROGRAMS})
+  endif()
 endfunction()

@@ -1,9 +1,10 @@
 #include "estimator/greybox/selection/discrimination.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "estimator/linear_algebra/decompositions.h"
 
 namespace estimator::greybox::selection {
 namespace {
@@ -75,7 +76,8 @@ double expected_separation(const Workshop& shop, const Evidence& evidence, const
         normal(i, i) += 1e-9 * normal(i, i) + 1e-12;
       }
     }
-    left_m = columns.col(0) - columns.rightCols(count) * normal.ldlt().solve(slope);
+    left_m =
+        columns.col(0) - columns.rightCols(count) * linear_algebra::solve_symmetric(normal, slope);
   }
   return std::sqrt(left_m.cwiseProduct(counted).squaredNorm() / samples) /
          unseen_m(evidence, rival);

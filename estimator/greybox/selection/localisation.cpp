@@ -1,11 +1,11 @@
 #include "estimator/greybox/selection/localisation.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "estimator/greybox/selection/residual_variables.h"
+#include "estimator/linear_algebra/decompositions.h"
 #include "estimator/parallel.h"
 
 namespace estimator::greybox::selection {
@@ -162,7 +162,7 @@ class Regression {
       }
     }
     VectorXd weights(all + 1);
-    weights << -normal.ldlt().solve(slope), 1.0;
+    weights << -linear_algebra::solve_symmetric(normal, slope), 1.0;
     return weights;
   }
 

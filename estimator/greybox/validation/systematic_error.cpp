@@ -1,10 +1,10 @@
 #include "estimator/greybox/validation/systematic_error.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "estimator/greybox/kinematics.h"
+#include "estimator/linear_algebra/decompositions.h"
 
 namespace estimator::greybox::validation {
 namespace {
@@ -15,7 +15,7 @@ constexpr double kSlight = 0.01;
 
 /// Share of the squared error that goes when `signatures` (columns) are taken off as they fit best.
 double share(const Eigen::MatrixXd& signatures, const Eigen::VectorXd& e, Eigen::VectorXd& x) {
-  x = signatures.colPivHouseholderQr().solve(e);
+  x = linear_algebra::pivoted_least_squares(signatures, e);
   const double all = e.squaredNorm();
   return all > 0.0 ? std::clamp(1.0 - (e - signatures * x).squaredNorm() / all, 0.0, 1.0) : 0.0;
 }
