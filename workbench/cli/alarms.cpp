@@ -8,6 +8,7 @@
 #include "config/schema/error.h"
 #include "daemon/control/protocol.h"
 #include "workbench/cli/command.h"
+#include "workbench/cli/order_options.h"
 #include "workbench/control/alarms_text.h"
 #include "workbench/control/order.h"
 
@@ -44,7 +45,7 @@ void act(const char* word, const Options& options, bool with_time) {
 
 void add_alarms(CLI::App& command, int& /*exit_code*/) {
   const auto options = std::make_shared<Options>();
-  control::add_order_options(command, options->common);
+  add_order_options(command, options->common);
   command.add_flag("--all", options->all, "those that are normal too");
   command.callback([options] {
     const Json answer =
@@ -55,7 +56,7 @@ void add_alarms(CLI::App& command, int& /*exit_code*/) {
 
 void add_ack(CLI::App& command, int& /*exit_code*/) {
   const auto options = std::make_shared<Options>();
-  control::add_order_options(command, options->common);
+  add_order_options(command, options->common);
   CLI::Option* alarm =
       command.add_option("alarm", options->alarm, "SOURCE.NAME, as `alarms` lists it");
   command.add_flag("--all", options->all, "every one that nobody has acknowledged")
@@ -70,7 +71,7 @@ void add_ack(CLI::App& command, int& /*exit_code*/) {
 
 void add_shelve(CLI::App& command, int& /*exit_code*/) {
   const auto options = std::make_shared<Options>();
-  control::add_order_options(command, options->common);
+  add_order_options(command, options->common);
   command.add_option("alarm", options->alarm, "SOURCE.NAME, as `alarms` lists it")->required();
   const std::map<std::string, double> units = {{"s", 1.0}, {"min", 60.0}, {"h", 3600.0}};
   command.add_option("--for", options->time_s, "how long: 90s, 10min, 2h")
@@ -81,7 +82,7 @@ void add_shelve(CLI::App& command, int& /*exit_code*/) {
 
 void add_unshelve(CLI::App& command, int& /*exit_code*/) {
   const auto options = std::make_shared<Options>();
-  control::add_order_options(command, options->common);
+  add_order_options(command, options->common);
   command.add_option("alarm", options->alarm, "SOURCE.NAME, as `alarms` lists it")->required();
   command.callback([options] { act(protocol::kUnshelve, *options, false); });
 }

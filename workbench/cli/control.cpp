@@ -6,6 +6,7 @@
 
 #include "daemon/control/protocol.h"
 #include "workbench/cli/command.h"
+#include "workbench/cli/order_options.h"
 #include "workbench/control/order.h"
 #include "workbench/control/status_text.h"
 
@@ -35,7 +36,7 @@ int order(const Json& request, const control::OrderOptions& options) {
 
 void add_word(CLI::App& command, int& exit_code, const char* word) {
   const auto options = std::make_shared<control::OrderOptions>();
-  control::add_order_options(command, *options);
+  add_order_options(command, *options);
   command.callback([options, word, &exit_code] {
     exit_code = order({{protocol::key::kCommand, word}}, *options);
   });
@@ -53,7 +54,7 @@ void add_hold(CLI::App& command, int& exit_code) { add_word(command, exit_code, 
 
 void add_reference(CLI::App& command, int& exit_code) {
   const auto options = std::make_shared<Options>();
-  control::add_order_options(command, options->common);
+  add_order_options(command, options->common);
   command.add_option("--centre", options->centre_m, "middle of the motion, m")->required();
   command.add_option("--amplitude", options->amplitude_m, "m")->capture_default_str();
   command.add_option("--frequency", options->frequency_Hz, "Hz")->capture_default_str();

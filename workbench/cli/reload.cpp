@@ -6,6 +6,7 @@
 
 #include "daemon/control/protocol.h"
 #include "workbench/cli/command.h"
+#include "workbench/cli/order_options.h"
 #include "workbench/control/order.h"
 
 namespace workbench::cli {
@@ -37,7 +38,7 @@ void reload(const control::OrderOptions& options) {
 
 void add_reload(CLI::App& command, int& /*exit_code*/) {
   const auto options = std::make_shared<control::OrderOptions>();
-  control::add_order_options(command, *options);
+  add_order_options(command, *options);
   command.callback([options] { reload(*options); });
 }
 

@@ -1,6 +1,5 @@
 #include "workbench/control/order.h"
 
-#include <CLI/CLI.hpp>
 #include <fstream>
 #include <iostream>
 
@@ -28,12 +27,6 @@ void write_json(const Json& answer, const std::string& file) {
 }
 
 }  // namespace
-
-void add_order_options(CLI::App& command, OrderOptions& options) {
-  command.add_option("--socket", options.socket, "control socket of the daemon")
-      ->capture_default_str();
-  command.add_option("--json", options.json, "write the answer there; - for standard output");
-}
 
 Json give_order(const Json& request, const OrderOptions& options) {
   Json answer = ask_daemon(options.socket, request);

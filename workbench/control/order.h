@@ -6,19 +6,12 @@
 
 #include "daemon/control/protocol.h"
 
-namespace CLI {  // NOLINT(readability-identifier-naming): the library's own name
-class App;
-}
-
 namespace workbench::control {
 
 struct OrderOptions {
   std::string socket = monitor::control::kDefaultSocket;
   std::string json;  ///< file for the answer, "-" for standard output, empty: none
 };
-
-/// --socket and --json; `options` outlives the parsing.
-void add_order_options(CLI::App& command, OrderOptions& options);
 
 /// The daemon's answer, written where --json says. Throws config::schema::Error (exit 1) when it is
 /// a refusal, or when no daemon answers.
