@@ -20,7 +20,7 @@ struct OrderOptions {
 /// --socket and --json; `options` outlives the parsing.
 void add_order_options(CLI::App& command, OrderOptions& options);
 
-/// The daemon's answer, written where --json says. Throws config::schema::Error (exit 1) when it is
+/// The daemon's answer, written where --json says. Throws config::schema::RunError when it is
 /// a refusal, or when no daemon answers.
 nlohmann::ordered_json give_order(const nlohmann::ordered_json& request,
                                   const OrderOptions& options);
