@@ -13,8 +13,7 @@ namespace monitor {
 namespace {
 
 using config::schema::bad_config;
-using config::schema::Error;
-using config::schema::ExitCode;
+using config::schema::UsageError;
 
 /// Of [valve] limit_V, where nothing says how fast the rod can go.
 constexpr double kBlindShare = 0.05;
@@ -54,8 +53,8 @@ control::CommissioningLimits limits_of(const DaemonConfig& config, const Commiss
                              : std::min(kMostShare * limit_V, o.max_travel_m / blind_m_per_V);
   }
   if (limits.authority_V > limit_V) {
-    throw Error(ExitCode::usage, text("--authority: is %g; allowed: up to [valve] limit_V, %g",
-                                      limits.authority_V, limit_V));
+    throw UsageError(text("--authority: is %g; allowed: up to [valve] limit_V, %g",
+                          limits.authority_V, limit_V));
   }
   out << text("Commissioning \"%s\": %.3g V about null %.3g V, rod within %.1f mm, below %.1f mm/s",
               config.rig_id.c_str(), limits.authority_V, config.rig.valve().null_V,
@@ -78,12 +77,12 @@ int commission(DaemonConfig& config, const CommissionOptions& options, std::ostr
                      "a backend that drives a valve");
   }
   if (options.virtual_time && !config.rig.harmless()) {
-    throw Error(ExitCode::usage, "--clock virtual: what moves is real; allowed: realtime");
+    throw UsageError("--clock virtual: what moves is real; allowed: realtime");
   }
   std::error_code ignored;
   const std::filesystem::path folder = std::filesystem::absolute(options.out).parent_path();
   if (!std::filesystem::is_directory(folder, ignored)) {
-    throw Error(ExitCode::usage, "--commission: " + folder.string() + " is no folder");
+    throw UsageError("--commission: " + folder.string() + " is no folder");
   }
   const double sample_time_s = 1.0 / config.loop.rate_Hz;
   const hal::Opening opening{config.file, config.folder, sample_time_s, config.rig.valve().null_V,

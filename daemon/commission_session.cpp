@@ -18,8 +18,7 @@
 namespace monitor {
 namespace {
 
-using config::schema::Error;
-using config::schema::ExitCode;
+using config::schema::RunError;
 using control::Failure;
 using control::Stage;
 
@@ -43,7 +42,7 @@ void write_whole(const std::filesystem::path& file, const std::string& content) 
   if (!written || std::rename(part.c_str(), file.c_str()) != 0) {
     const int why = written ? errno : error;
     unlink(part.c_str());
-    throw Error(ExitCode::failed, file.string() + ": cannot be written: " + std::strerror(why));
+    throw RunError(file.string() + ": cannot be written: " + std::strerror(why));
   }
 }
 
@@ -79,7 +78,7 @@ const char* remedy(Failure failure) noexcept {
 
 void CommissionSession::give_up(const std::string& why) {
   out_ << "given up at null, nothing written: " << why << std::endl;
-  throw Ended{static_cast<int>(ExitCode::failed)};
+  throw Ended{EXIT_FAILURE};
 }
 
 void CommissionSession::agree(const std::string& question) {
@@ -214,9 +213,9 @@ int CommissionSession::run(const hal::Devices& devices, double sample_time_s) {
   loop_ = &loop;
   const int error = loop.start(grant.loop_thread);
   if (error != 0) {
-    throw Error(ExitCode::failed, std::string("cannot start a thread: ") + std::strerror(error));
+    throw RunError(std::string("cannot start a thread: ") + std::strerror(error));
   }
-  int exit_code = static_cast<int>(ExitCode::done);
+  int exit_code = EXIT_SUCCESS;
   try {
     stages();
   } catch (const Ended& ended) {
@@ -225,7 +224,7 @@ int CommissionSession::run(const hal::Devices& devices, double sample_time_s) {
   if (!loop.end()) {
     devices.valve->end_at_null();
     std::fputs("spoolwatchd: a device does not return: null commanded\n", stderr);
-    std::_Exit(static_cast<int>(ExitCode::failed));
+    std::_Exit(EXIT_FAILURE);
   }
   guard.close();
   if (exit_code == 0) write(monotonic_clock.utc_us());

@@ -54,7 +54,7 @@ struct DaemonConfig {
 };
 
 /// Reads the file and applies "table.key=value" assignments; their relative paths start from the
-/// caller's folder. Throws config::schema::Error (exit 78, 2).
+/// caller's folder. Throws config::schema::ConfigError, UsageError.
 void load(const std::filesystem::path& file, const std::vector<std::string>& assignments,
           DaemonConfig& config);
 

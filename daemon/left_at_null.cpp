@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <chrono>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <ostream>
@@ -15,7 +16,7 @@ namespace monitor {
 namespace {
 
 using config::schema::Error;
-using config::schema::ExitCode;
+using config::schema::RunError;
 
 /// A device may have its hands full with the end of the process before.
 constexpr std::chrono::seconds kPatience{2};
@@ -30,8 +31,9 @@ std::string try_null(const DaemonConfig& config, bool& nothing_to_do) {
     nothing_to_do = valve == nullptr;
     if (nothing_to_do || valve->end_at_null().good) return "";
     return config.file + ": [valve]: the device does not take null";
-  } catch (const Error& e) {
-    if (e.exit_code() != static_cast<int>(ExitCode::failed)) throw;
+  } catch (const config::schema::ConnectionFailed& e) {
+    return e.what();
+  } catch (const RunError& e) {
     return e.what();
   }
 }
@@ -48,8 +50,8 @@ DrivingNote::DrivingNote(std::filesystem::path file, DaemonConfig& config)
   std::error_code error;
   if (out) std::filesystem::rename(part, file_, error);
   if (!out || error) {
-    throw Error(ExitCode::failed, "--driving: " + file_.string() + " cannot be written: " +
-                                      (error ? error.message() : std::strerror(errno)));
+    throw RunError("--driving: " + file_.string() +
+                   " cannot be written: " + (error ? error.message() : std::strerror(errno)));
   }
 }
 
@@ -66,19 +68,19 @@ int write_null(const DaemonConfig& config, std::ostream& log) {
     std::this_thread::sleep_for(kPause);
     wrong = try_null(config, nothing_to_do);
   }
-  if (!wrong.empty()) throw Error(ExitCode::failed, wrong);
+  if (!wrong.empty()) throw RunError(wrong);
   log << "spoolwatchd: "
       << (nothing_to_do ? "no valve that could have been left anywhere"
                         : "null written to the valve (" + config.rig.valve().backend + ")")
       << std::endl;
-  return static_cast<int>(ExitCode::done);
+  return EXIT_SUCCESS;
 }
 
 int write_null(const std::filesystem::path& note, std::ostream& log) {
   std::error_code ignored;
   if (!std::filesystem::exists(note, ignored)) {
     log << "spoolwatchd: nothing is driven" << std::endl;
-    return static_cast<int>(ExitCode::done);
+    return EXIT_SUCCESS;
   }
   DaemonConfig config;
   load(note, {}, config);

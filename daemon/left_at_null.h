@@ -13,7 +13,7 @@ namespace monitor {
 /// null has been its last command.
 class DrivingNote {
  public:
-  /// Throws config::schema::Error (exit 1) when it cannot be written. Empty `file`: no note.
+  /// Throws config::schema::RunError when it cannot be written. Empty `file`: no note.
   DrivingNote(std::filesystem::path file, DaemonConfig& config);
   /// Null is at the valve. Not called by a process that dies: then the note stays.
   void withdraw() const;

@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
-#include "config/schema/error.h"
+#include "config/schema/exit_code.h"
 #include "daemon/commission.h"
 #include "daemon/left_at_null.h"
 #include "daemon/null_guard.h"
@@ -13,8 +13,6 @@
 #include "daemon/session.h"
 
 namespace {
-
-using config::schema::ExitCode;
 
 constexpr double kShortest_s = 1e-3;
 constexpr double kLongest_s = 1e9;
@@ -93,12 +91,12 @@ int run(int argc, char** argv) {
     const bool from_note = null && note->count() > 0;
     if (configuration->count() == 0 && !from_note) throw CLI::RequiredError("--config");
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? static_cast<int>(ExitCode::done) : static_cast<int>(ExitCode::usage);
+    return app.exit(e) == 0 ? EXIT_SUCCESS : config::schema::kUsageExitCode;
   }
   if (duration->count() > 0 &&
       !(options.duration_s >= kShortest_s && options.duration_s <= kLongest_s)) {
-    throw config::schema::Error(ExitCode::usage, "--duration: is " + duration->results().front() +
-                                                     "; allowed: 0.001 to 1e9 (seconds)");
+    throw config::schema::UsageError("--duration: is " + duration->results().front() +
+                                     "; allowed: 0.001 to 1e9 (seconds)");
   }
   options.virtual_time = clock == "virtual";
   if (null && note->count() > 0) return monitor::write_null(options.driving, std::cerr);
@@ -112,7 +110,7 @@ int run(int argc, char** argv) {
   if (null) return monitor::write_null(config, std::cerr);
   if (check) {
     monitor::check_session(config, std::cout);
-    return static_cast<int>(ExitCode::done);
+    return EXIT_SUCCESS;
   }
   if (out->count() > 0) {
     commission.virtual_time = options.virtual_time;
@@ -129,11 +127,8 @@ int main(int argc, char** argv) {
   monitor::rt::keep_memory_small();
   try {
     return run(argc, argv);
-  } catch (const config::schema::Error& e) {
-    std::cerr << "spoolwatchd: " << e.what() << '\n';
-    return e.exit_code();
   } catch (const std::exception& e) {
     std::cerr << "spoolwatchd: " << e.what() << '\n';
-    return static_cast<int>(ExitCode::failed);
+    return config::schema::exit_code_of(e);
   }
 }

@@ -54,7 +54,7 @@ void Reloader::prepare(UnderWay& under_way) {
   change->estimators = rules.effective.source_ids();
   if (parts_.evidence) change->evidence_files = evidence_files(next, rules.text);
   if (!to_detector.push(change)) {
-    throw config::schema::Error(config::schema::ExitCode::failed, "the detector takes no rules");
+    throw config::schema::RunError("the detector takes no rules");
   }
 }
 

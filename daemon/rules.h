@@ -20,7 +20,7 @@ struct Rules {
   std::string text;  ///< fdi::whole_text
 };
 
-/// Throws config::schema::Error (exit 78) that names the file.
+/// Throws config::schema::ConfigError that names the file.
 [[nodiscard]] Rules make_rules(const DaemonConfig& config, double sample_time_s);
 
 /// The files that evidence needs to be read by itself; `rules_text`: Rules::text.
@@ -34,16 +34,13 @@ struct Rules {
 [[nodiscard]] bool may_change(const std::string& key,
                               const estimator::fdi::PipelineConfig& pipeline);
 
-/// What `make` returns. A configuration error (exit 78) in it gets `place` put before its text.
+/// Returns what `make` returns; a ConfigError in it gets `place` put before its text.
 template <class Make>
 auto with_place(const std::string& place, const Make& make) {
-  using config::schema::Error;
-  using config::schema::ExitCode;
   try {
     return make();
-  } catch (const Error& error) {
-    if (error.exit_code() != static_cast<int>(ExitCode::bad_config)) throw;
-    throw Error(ExitCode::bad_config, place + ": " + error.what());
+  } catch (const config::schema::ConfigError& error) {
+    throw config::schema::ConfigError(place + ": " + error.what());
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <memory>
@@ -90,7 +91,7 @@ Prepared prepare(DaemonConfig& config, std::string* absent) {
   check_failover(config);
   try {
     p.devices = config.rig.open(p.opening);
-  } catch (const hal::Absent& e) {
+  } catch (const config::schema::DeviceUnavailable& e) {
     if (absent == nullptr) throw;
     *absent = e.what();
   }
@@ -254,8 +255,7 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
   if (!outcome.empty()) log << "spoolwatchd: " << outcome << std::endl;
   if (keeping.evidence != nullptr) keeping.evidence->finish();
   const bool complete = recorder == nullptr || recorded_all(*recorder, log);
-  return static_cast<int>(outcome.empty() && complete ? config::schema::ExitCode::done
-                                                      : config::schema::ExitCode::failed);
+  return outcome.empty() && complete ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 void check_session(DaemonConfig& config, std::ostream& out) {
@@ -281,8 +281,7 @@ void check_session(DaemonConfig& config, std::ostream& out) {
   }
   if (absent.empty()) return;
   out.flush();
-  throw config::schema::Error(config::schema::ExitCode::bad_config,
-                              absent + "; all that can be checked without it is in order");
+  throw config::schema::ConfigError(absent + "; all that can be checked without it is in order");
 }
 
 }  // namespace monitor

@@ -22,7 +22,7 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
 
 /// Opens and validates everything without writing to a device, prints the effective configuration
 /// and, for each failure, how soon null is commanded and how far the rod may travel until then. A
-/// device that cannot be reached is an Error (exit 78) after all that.
+/// device that cannot be reached is a DeviceUnavailable after all that.
 void check_session(DaemonConfig& config, std::ostream& out);
 
 }  // namespace monitor

@@ -60,7 +60,7 @@ Complex response(const Biquad& q, Complex z) {
 }
 
 void check(bool good, const std::string& what) {
-  if (!good) throw config::schema::Error(config::schema::ExitCode::usage, "filter: " + what);
+  if (!good) throw config::schema::UsageError("filter: " + what);
 }
 
 }  // namespace

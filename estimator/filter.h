@@ -29,7 +29,7 @@ class Filter {
 
   /// Passes everything.
   Filter() = default;
-  /// Throws config::schema::Error (usage) for an order or a corner out of range.
+  /// Throws config::schema::UsageError for an order or a corner out of range.
   explicit Filter(const FilterDesign& design);
 
   /// The first sample after construction or reset() is taken as having been there forever, so a

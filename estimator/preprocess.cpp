@@ -13,8 +13,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 Filter anti_alias(int factor) {
   if (factor < 1) {
-    throw config::schema::Error(config::schema::ExitCode::usage,
-                                "decimation " + std::to_string(factor) + "; allowed: at least 1");
+    throw config::schema::UsageError("decimation " + std::to_string(factor) +
+                                     "; allowed: at least 1");
   }
   if (factor == 1) return {};
   return Filter(FilterDesign{.band = Band::low_pass,

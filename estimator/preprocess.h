@@ -40,7 +40,7 @@ struct PreprocessConfig {
 
 class Preprocess {
  public:
-  /// Throws config::schema::Error (usage) for values out of range.
+  /// Throws config::schema::UsageError for values out of range.
   explicit Preprocess(const PreprocessConfig& config);
 
   /// Takes a sample; true when one comes out: u_V() and y_m() hold it. A NaN is a missing sample:

@@ -41,7 +41,7 @@ class Gate {
 };
 
 void check(bool good, const std::string& what) {
-  if (!good) throw config::schema::Error(config::schema::ExitCode::usage, what);
+  if (!good) throw config::schema::UsageError(what);
 }
 
 }  // namespace

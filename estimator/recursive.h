@@ -32,7 +32,7 @@ struct RecursiveConfig {
 
 class Recursive {
  public:
-  /// Throws config::schema::Error (usage) for values out of range.
+  /// Throws config::schema::UsageError for values out of range.
   explicit Recursive(const RecursiveConfig& config);
   ~Recursive();
   Recursive(Recursive&&) noexcept;

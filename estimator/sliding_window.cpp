@@ -120,10 +120,9 @@ struct SlidingWindow::State {
 SlidingWindow::SlidingWindow(const SlidingConfig& config) {
   if (config.window < 1 || config.window > 10'000'000 || config.stride < 1 ||
       config.stride > config.window) {
-    throw config::schema::Error(config::schema::ExitCode::usage,
-                                "sliding window: window " + std::to_string(config.window) +
-                                    ", stride " + std::to_string(config.stride) +
-                                    "; allowed: 1 <= stride <= window <= 10000000 samples");
+    throw config::schema::UsageError("sliding window: window " + std::to_string(config.window) +
+                                     ", stride " + std::to_string(config.stride) +
+                                     "; allowed: 1 <= stride <= window <= 10000000 samples");
   }
   state_ = std::make_unique<State>(config);
 }

@@ -27,7 +27,7 @@ struct SlidingConfig {
 
 class SlidingWindow {
  public:
-  /// Allocates all memory. Throws config::schema::Error (usage) for window or stride out of range.
+  /// Allocates all memory. Throws config::schema::UsageError for window or stride out of range.
   explicit SlidingWindow(const SlidingConfig& config);
   ~SlidingWindow();
   SlidingWindow(SlidingWindow&&) noexcept;

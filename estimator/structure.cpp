@@ -74,10 +74,9 @@ Structure parse_structure(std::string_view text, bool constant) {
       return {(*numbers)[0], (*numbers)[1], (*numbers)[2], constant};
     }
   }
-  throw config::schema::Error(config::schema::ExitCode::usage,
-                              "structure: unknown \"" + std::string(text) +
-                                  "\"; allowed: arxNMK as in arx211, or arx(N,M,K) with orders N, "
-                                  "M 0 to 10 and delay K 0 to 50");
+  throw config::schema::UsageError("structure: unknown \"" + std::string(text) +
+                                   "\"; allowed: arxNMK as in arx211, or arx(N,M,K) with orders N, "
+                                   "M 0 to 10 and delay K 0 to 50");
 }
 
 }  // namespace estimator

@@ -37,7 +37,7 @@ struct Structure {
   friend bool operator==(const Structure&, const Structure&) = default;
 };
 
-/// Reads "arx211", "ARX211" or "arx(10,2,1)". Throws config::schema::Error (usage) otherwise.
+/// Reads "arx211", "ARX211" or "arx(10,2,1)". Throws config::schema::UsageError otherwise.
 [[nodiscard]] Structure parse_structure(std::string_view text, bool constant = false);
 
 }  // namespace estimator

@@ -24,12 +24,6 @@ struct Opening {
   bool exclusive = true;         ///< to be driven: no other process may; else only looked at
 };
 
-/// A device that cannot be reached, which the configuration need not be to blame for.
-class Absent : public config::schema::Error {
- public:
-  explicit Absent(const config::schema::Error& error) : Error(error) {}
-};
-
 /// What one backend has opened. Names (channels) are the backend's or those of its own table.
 struct Offer {
   std::map<std::string, std::shared_ptr<RodSensor>> rods;
@@ -58,8 +52,8 @@ class Backend {
   virtual ~Backend() = default;
   /// Lists the fields of the backend's own table.
   virtual void visit(config::schema::Visitor& v) = 0;
-  /// Opens and checks; throws config::schema::Error, Absent where there is no device. Writes
-  /// nothing to a device.
+  /// Opens and checks; throws config::schema::Error, DeviceUnavailable where there is no
+  /// device. Writes nothing to a device.
   [[nodiscard]] virtual Offer open(const Opening& opening) const = 0;
   /// Moves nothing real, so that it may be armed without a person (`loop.auto_arm`).
   [[nodiscard]] virtual bool harmless() const noexcept = 0;

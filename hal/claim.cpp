@@ -14,8 +14,7 @@
 namespace hal {
 namespace {
 
-using config::schema::Error;
-using config::schema::ExitCode;
+using config::schema::RunError;
 
 struct Address {
   sockaddr_un at{};
@@ -61,10 +60,9 @@ Claim::Claim(const std::string& name, const std::string& where)
   }
   const int error = errno;
   if (file_ >= 0) close(file_);
-  throw Error(ExitCode::failed,
-              where + ": " +
-                  (error == EADDRINUSE ? holder(address) + " drives it; one device, one daemon"
-                                       : std::string(std::strerror(error))));
+  throw RunError(where + ": " +
+                 (error == EADDRINUSE ? holder(address) + " drives it; one device, one daemon"
+                                      : std::string(std::strerror(error))));
 }
 
 Claim::~Claim() { close(file_); }

@@ -10,7 +10,7 @@ namespace hal {
 class Claim {
  public:
   /// `name`: of the device, as every process spells it; `where` opens the message. Throws
-  /// config::schema::Error (exit 1) while another process has it.
+  /// config::schema::RunError while another process has it.
   Claim(const std::string& name, const std::string& where);
   ~Claim();
   Claim(const Claim&) = delete;

@@ -94,7 +94,7 @@ class Rig {
   /// Lists the roles and the tables of the backends that they name.
   void visit(config::schema::Visitor& v);
   /// Opens each backend once. Throws Error when one does not exist or does not do what is asked,
-  /// Absent where a device cannot be reached.
+  /// DeviceUnavailable where a device cannot be reached.
   [[nodiscard]] Devices open(const Opening& opening) const;
 
   /// Opens the valve's backend alone; null where none is driven or it goes with its process. Throws

@@ -47,7 +47,7 @@ class Ensemble {
 };
 
 /// The model's plant with its parameters in all lanes, stepped every step_s instead of the model's
-/// own step. Throws config::schema::Error (exit 78) like make_plant().
+/// own step. Throws config::schema::ConfigError like make_plant().
 [[nodiscard]] std::unique_ptr<Ensemble> make_ensemble(const ModelFile& model, double step_s);
 
 /// Every one gives the same bits; the wider, the faster.

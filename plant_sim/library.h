@@ -39,10 +39,10 @@ struct PlantInfo {
 /// the order of ModelFile::effects. Texts of parameters live as long as the program.
 [[nodiscard]] std::vector<EffectInfo> effects_of(const ModelFile& model);
 
-/// Throws config::schema::Error (exit 78) when the model's plant, if it exists, lacks a site of an
+/// Throws config::schema::ConfigError when the model's plant, if it exists, lacks a site of an
 /// effect that is present, or of a formula that is declared.
 void require_fit(const ModelFile& model, const std::string& file);
-/// Throws config::schema::Error (exit 78) when the plant lacks a site of the effect; `where` is
+/// Throws config::schema::ConfigError when the plant lacks a site of the effect; `where` is
 /// the place in a file, or the file.
 void require_fit(const EffectInfo& effect, const PlantInfo& plant, const std::string& where);
 

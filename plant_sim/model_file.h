@@ -56,7 +56,7 @@ struct ModelFile {
   void visit(config::schema::Visitor& v);
 
   /// Declares a user's own effect, absent, in place of one of the same name. Throws
-  /// config::schema::Error (exit 78) when it is not one that can be simulated; `file` is for the
+  /// config::schema::ConfigError when it is not one that can be simulated; `file` is for the
   /// message.
   void declare(const FormulaEffect& effect, const std::string& file);
   /// The formulas ready for simulation. Throws like declare() when one does not parse.
@@ -70,7 +70,7 @@ struct ModelFile {
   void list_effects();
 };
 
-/// Throws config::schema::Error (exit 78) for a missing file, an unknown key or a bad value.
+/// Throws config::schema::ConfigError for a missing file, an unknown key or a bad value.
 [[nodiscard]] ModelFile load_model(const std::filesystem::path& file);
 /// The same from a document, after `--set` has changed it.
 [[nodiscard]] ModelFile read_model(const config::schema::Document& document);

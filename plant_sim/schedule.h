@@ -28,7 +28,7 @@ struct Change {
 class Schedule {
  public:
   Schedule() = default;
-  /// The plant must outlive the schedule. Throws config::schema::Error (exit 78) for an unknown
+  /// The plant must outlive the schedule. Throws config::schema::ConfigError for an unknown
   /// parameter, for a value outside its range, and for both or neither of value and factor.
   Schedule(std::vector<Change> changes, Plant& plant);
 

@@ -31,7 +31,7 @@ inline constexpr std::array<const char*, 3> kTransducers = {"supply_pressure", "
 
 class Transducers {
  public:
-  /// Those that no entry names are without error. Throws config::schema::Error (exit 78) where two
+  /// Those that no entry names are without error. Throws config::schema::ConfigError where two
   /// are of the same pressure. `seed`: of the noise.
   Transducers(const std::vector<TransducerConfig>& configs, std::uint64_t seed);
 

@@ -41,7 +41,7 @@ class CaughtStderr {
   int caught_;
 };
 
-/// Throws schema::Error (exit 78). Who only sends says so: asking UDP for its descriptor starts a
+/// Throws schema::ConfigError. Who only sends says so: asking UDP for its descriptor starts a
 /// thread of LCM's that receives every message, our own too.
 inline std::unique_ptr<lcm::LCM> connect(const std::string& url, bool receives = true) {
   std::unique_ptr<lcm::LCM> lcm;

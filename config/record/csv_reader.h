@@ -8,7 +8,7 @@
 
 namespace config::record {
 
-/// `text` is the file's content, `name` its name in messages. Throws schema::Error (exit 65).
+/// `text` is the file's content, `name` its name in messages. Throws schema::DataError.
 [[nodiscard]] Record read_csv(std::string_view text, const std::string& name);
 
 }  // namespace config::record

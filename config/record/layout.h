@@ -23,7 +23,7 @@ struct Target {
 [[nodiscard]] bool is_main(const Column& column);
 
 /// Time, command and position by their stem, anything else as a further column of `record`, which
-/// must not be moved afterwards. Throws schema::Error (exit 65) at `where` for a name that is
+/// must not be moved afterwards. Throws schema::DataError at `where` for a name that is
 /// there twice, a wrong unit or none.
 [[nodiscard]] std::vector<Target> lay_out(const std::vector<std::string>& names,
                                           const std::string& where, Record& record);

@@ -12,7 +12,7 @@ namespace config::record {
 [[nodiscard]] bool is_lcm_log(std::string_view head) noexcept;
 
 /// Reads the sample_t events of `channel`, or of the one channel that carries that type when there
-/// is no such channel. Throws schema::Error (exit 65).
+/// is no such channel. Throws schema::DataError.
 [[nodiscard]] Record read_lcm_log(const std::string& file, std::string_view channel);
 
 }  // namespace config::record

@@ -51,7 +51,7 @@ void LogReader::deliver(messages::MessageKind kind, messages::MessageHandler& ha
   if (!messages::dispatch(kind, event_.data.data(), event_.size(), take)) throw wrong_type(kind);
 }
 
-schema::Error LogReader::wrong_type(messages::MessageKind kind) const {
+schema::DataError LogReader::wrong_type(messages::MessageKind kind) const {
   return schema::bad_data(
       where(), "on " + event_.channel + " is of another type",
       std::string("spoolwatch::") + messages::to_string(kind) + "_t in this version's layout");

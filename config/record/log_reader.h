@@ -24,7 +24,7 @@ struct LogEvent {
 
 class LogReader {
  public:
-  /// Throws schema::Error (exit 65) when the file cannot be read.
+  /// Throws schema::DataError when the file cannot be read.
   explicit LogReader(const std::string& file);
 
   /// The next event, valid until the next call; null at the end, and at an event that is not
@@ -32,11 +32,11 @@ class LogReader {
   const LogEvent* next();
   /// The newest of them.
   [[nodiscard]] const LogEvent& event() const noexcept { return event_; }
-  /// Hands the newest event over as a message of this kind. Throws schema::Error (exit 65) when it
+  /// Hands the newest event over as a message of this kind. Throws schema::DataError when it
   /// is of another type.
   void deliver(messages::MessageKind kind, messages::MessageHandler& handler) const;
   /// That error.
-  [[nodiscard]] schema::Error wrong_type(messages::MessageKind kind) const;
+  [[nodiscard]] schema::DataError wrong_type(messages::MessageKind kind) const;
   /// "FILE: event N", of the newest one.
   [[nodiscard]] std::string where() const;
 

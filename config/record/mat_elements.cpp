@@ -61,7 +61,7 @@ Elements Elements::of_file(std::string_view content, const std::string& name) {
 
 Elements Elements::within(std::string_view bytes) const { return {bytes, swapped_, false, *name_}; }
 
-schema::Error Elements::damaged(const std::string& what) const {
+schema::DataError Elements::damaged(const std::string& what) const {
   return schema::bad_data(*name_, "is damaged: a variable's " + what + " make no sense",
                           "a MAT file of version 5 to 7");
 }

@@ -45,7 +45,7 @@ class Elements {
   [[nodiscard]] Elements within(std::string_view bytes) const;
 
   [[nodiscard]] bool at_end() const noexcept { return rest_.empty(); }
-  /// Throws schema::Error (exit 65) when it does not fit into what is left.
+  /// Throws schema::DataError when it does not fit into what is left.
   Element next();
   /// The inside of the matrix that an element of type `compressed` holds; less than it states where
   /// it states too much, as matio does of texts. `total_bytes` counts what a file unpacks to.
@@ -61,7 +61,7 @@ class Elements {
     std::memcpy(&value, raw.data(), sizeof(T));
     return value;
   }
-  [[nodiscard]] schema::Error damaged(const std::string& what) const;
+  [[nodiscard]] schema::DataError damaged(const std::string& what) const;
 
  private:
   Elements(std::string_view bytes, bool swapped, bool top, const std::string& name)

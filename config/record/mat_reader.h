@@ -15,7 +15,7 @@ namespace config::record {
 
 /// `content` is that of a MAT file of version 5, `name` the file's in messages. Rows and columns
 /// are alike; variables that are no vectors of the time's length are left out and noted. Throws
-/// schema::Error (exit 65).
+/// schema::DataError.
 [[nodiscard]] Record read_mat(std::string_view content, const std::string& name);
 
 }  // namespace config::record

@@ -29,7 +29,7 @@ struct MatVariable {
 /// True for the first 128 bytes of a MAT file of version 5.
 [[nodiscard]] bool is_mat_file(std::string_view head) noexcept;
 
-/// `content` is the file's, `name` stands for it in messages. Throws schema::Error (exit 65).
+/// `content` is the file's, `name` stands for it in messages. Throws schema::DataError.
 [[nodiscard]] std::vector<MatVariable> read_mat_variables(std::string_view content,
                                                           const std::string& name);
 

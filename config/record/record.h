@@ -39,14 +39,14 @@ struct Record {
 /// The LCM channel that a record is read from when none is named.
 inline constexpr std::string_view kSampleChannel = "SPOOLWATCH_SAMPLE";
 
-/// Reads CSV, MAT or an LCM event log, told apart by content. Throws schema::Error (exit 65, one
+/// Reads CSV, MAT or an LCM event log, told apart by content. Throws schema::DataError (one
 /// line, "file:line: what; allowed: ...") for bad data. A step in time of a whole number of periods
 /// is a gap (listed); any other uneven step is an error.
 [[nodiscard]] Record read_record(const std::filesystem::path& file,
                                  std::string_view channel = kSampleChannel);
 
 /// Writes t_s,u_V,y_m and the further columns; shortest decimal text that reads back exactly. The
-/// file appears complete or not at all (temporary name, rename). Throws schema::Error (exit 1).
+/// file appears complete or not at all (temporary name, rename). Throws schema::RunError.
 void write_csv(const Record& record, const std::filesystem::path& file);
 
 }  // namespace config::record

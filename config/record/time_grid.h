@@ -13,7 +13,7 @@ struct TimeGrid {
   std::vector<std::size_t> gaps;  ///< index of the first sample after each gap
 };
 
-/// The period is the median step, refined over the whole record. Throws schema::Error (exit 65)
+/// The period is the median step, refined over the whole record. Throws schema::DataError
 /// at `where(index)` when time does not increase or a step is no whole number of periods within 15
 /// % of a period, and when more than a tenth of all steps are gaps.
 [[nodiscard]] TimeGrid find_grid(const std::vector<double>& t_s,

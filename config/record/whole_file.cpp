@@ -44,7 +44,7 @@ void write_whole(const std::filesystem::path& file, std::string_view text) {
     const std::string why = renamed ? renamed.message() : std::strerror(error);
     std::error_code ignored;
     if (!special) std::filesystem::remove(temporary, ignored);
-    throw schema::Error(schema::ExitCode::failed, file.string() + ": cannot be written: " + why);
+    throw schema::RunError(file.string() + ": cannot be written: " + why);
   }
 }
 

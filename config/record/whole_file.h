@@ -7,7 +7,7 @@
 namespace config::record {
 
 /// Writes `text` under a temporary name beside `file` and renames it; a device or a pipe is written
-/// to as it is. Throws schema::Error (exit 1).
+/// to as it is. Throws schema::RunError.
 void write_whole(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace config::record

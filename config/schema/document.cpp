@@ -79,8 +79,8 @@ void Document::set(std::string_view assignment) {
   const std::string path(assignment.substr(0, equals));
   if (equals == std::string_view::npos || path.empty() || path.front() == '.' ||
       path.back() == '.') {
-    throw Error(ExitCode::usage, "--set " + std::string(assignment) +
-                                     ": is no assignment; allowed: table.key=value");
+    throw UsageError("--set " + std::string(assignment) +
+                     ": is no assignment; allowed: table.key=value");
   }
   toml::node* node = &data_->table;
   std::size_t begin = 0;

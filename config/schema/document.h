@@ -15,7 +15,7 @@ inline constexpr std::int64_t kSchemaVersion = 1;
 
 class Document {
  public:
-  /// Throws Error (exit 78) when the file is missing, unreadable or no TOML.
+  /// Throws ConfigError when the file is missing, unreadable or no TOML.
   static Document load(const std::filesystem::path& file);
   /// `name` stands for the file in messages.
   static Document parse(std::string_view text, std::string name);
@@ -24,7 +24,7 @@ class Document {
   /// elements by index: "band.0.high=2.1e-4"). Throws Error with "--set" as the place.
   void set(std::string_view assignment);
 
-  /// Fills the fields that `visit` lists. Throws Error (exit 78) for an unknown key, a wrong type,
+  /// Fills the fields that `visit` lists. Throws ConfigError for an unknown key, a wrong type,
   /// a value out of range, a missing required key, or another schema_version.
   void read(const Visitor::Body& visit) const;
   /// The same for a part of the file: other top-level tables and keys are left to other readers.

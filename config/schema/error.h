@@ -1,7 +1,8 @@
-// The one exception type of this project for "cannot start": what is wrong, where, what is allowed.
+// Errors that prevent a start, by cause. The text is one line: what is wrong, where, what is
+// allowed.
 //
-// It is thrown while files and arguments are read and caught once, in `main`, which prints what()
-// as one line and exits with exit_code().
+// They are thrown while files and arguments are read and caught once, in `main`, which prints
+// what() and exits with exit_code_of() (config/schema/exit_code.h).
 #pragma once
 
 #include <stdexcept>
@@ -9,24 +10,65 @@
 
 namespace config::schema {
 
-/// Exit codes of every program (sysexits.h values where one exists).
-enum class ExitCode : int { done = 0, failed = 1, usage = 2, bad_data = 65, bad_config = 78 };
-
+/// Base of all causes; only the derived types are thrown.
 class Error : public std::runtime_error {
- public:
-  Error(ExitCode code, const std::string& line) : std::runtime_error(line), code_(code) {}
-  [[nodiscard]] int exit_code() const noexcept { return static_cast<int>(code_); }
-
- private:
-  ExitCode code_;
+ protected:
+  using std::runtime_error::runtime_error;
+  Error(const Error&) = default;
+  Error& operator=(const Error&) = default;
 };
 
-/// Bad configuration at `where` ("file:line: [table] key"); `allowed` may be empty.
-[[nodiscard]] Error bad_config(const std::string& where, const std::string& what,
-                               const std::string& allowed = "");
+/// A configuration or model file is wrong.
+class ConfigError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// A record, log or other measured data cannot be used.
+class DataError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// An argument is wrong: an option of the command line, a setting of a library function.
+class UsageError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// The system refuses: a file cannot be written, a thread cannot be started.
+class RunError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// A device cannot be used: there is none, it is in use or silent. Not always the fault of the
+/// configuration that names it.
+class DeviceUnavailable : public Error {
+ public:
+  using Error::Error;
+};
+
+/// The connection to a device cannot be made now; a later attempt may succeed.
+class ConnectionFailed : public DeviceUnavailable {
+ public:
+  using DeviceUnavailable::DeviceUnavailable;
+};
+
+/// The line "where: what; allowed: allowed", without control characters; `allowed` may be empty.
+[[nodiscard]] std::string error_line(const std::string& where, const std::string& what,
+                                     const std::string& allowed = "");
+
+/// Bad configuration at `where` ("file:line: [table] key").
+[[nodiscard]] inline ConfigError bad_config(const std::string& where, const std::string& what,
+                                            const std::string& allowed = "") {
+  return ConfigError(error_line(where, what, allowed));
+}
 
 /// Bad data in a record: `where` is "file:line" or "file".
-[[nodiscard]] Error bad_data(const std::string& where, const std::string& what,
-                             const std::string& allowed = "");
+[[nodiscard]] inline DataError bad_data(const std::string& where, const std::string& what,
+                                        const std::string& allowed = "") {
+  return DataError(error_line(where, what, allowed));
+}
 
 }  // namespace config::schema

@@ -39,7 +39,7 @@ struct Calibration {
   void visit(config::schema::Visitor& v);
 };
 
-/// Throws config::schema::Error (exit 78) when it cannot be read or is of another rig.
+/// Throws config::schema::ConfigError when it cannot be read or is of another rig.
 [[nodiscard]] Calibration load_calibration(const std::filesystem::path& file,
                                            const std::string& rig_id);
 

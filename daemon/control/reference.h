@@ -48,7 +48,7 @@ class Reference {
   [[nodiscard]] virtual double at(double t_s) const noexcept = 0;
 };
 
-/// Relative file names start from `folder`. Throws Error (exit 78) for a bad file or bad
+/// Relative file names start from `folder`. Throws ConfigError for a bad file or bad
 /// frequencies.
 [[nodiscard]] std::unique_ptr<Reference> make_reference(const ReferenceConfig& config,
                                                         const std::filesystem::path& folder = {});

@@ -21,15 +21,15 @@ namespace {
 
 using config::schema::bad_config;
 using config::schema::Error;
-using config::schema::ExitCode;
+using config::schema::RunError;
 
 constexpr gid_t kNoGroup = static_cast<gid_t>(-1);
 constexpr std::size_t kMaxClients = 16;
 constexpr std::size_t kMaxPath = sizeof(sockaddr_un::sun_path) - 1;
 constexpr std::size_t kMaxGroups = 65536;
 
-Error cannot(const std::string& what, int error) {
-  return {ExitCode::failed, what + ": " + std::strerror(error)};
+RunError cannot(const std::string& what, int error) {
+  return RunError(what + ": " + std::strerror(error));
 }
 
 /// Octal permissions, or throws.
@@ -135,7 +135,7 @@ ControlSocket::ControlSocket(const ControlConfig& config, const std::string& fil
   const sockaddr_un address = address_of(path_);
   if (flock(lock_, LOCK_EX | LOCK_NB) != 0 || is_served(address)) {
     close(lock_);
-    throw Error(ExitCode::failed, place + ": another daemon serves it; one rig, one daemon");
+    throw RunError(place + ": another daemon serves it; one rig, one daemon");
   }
   const auto fail = [&](const std::string& what, int error) {
     if (listener_ >= 0) close(listener_);

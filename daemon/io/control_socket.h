@@ -28,7 +28,7 @@ struct ControlConfig {
   void visit(config::schema::Visitor& v);
 };
 
-/// Throws config::schema::Error (exit 78) for a path too long, a bad mode, a group unknown.
+/// Throws config::schema::ConfigError for a path too long, a bad mode, a group unknown.
 void check_control(const ControlConfig& config, const std::string& file);
 
 class ControlSocket {
@@ -40,7 +40,7 @@ class ControlSocket {
     unsigned uid;
   };
 
-  /// Takes the place of a socket that nobody serves any more; throws config::schema::Error (exit 1)
+  /// Takes the place of a socket that nobody serves any more; throws config::schema::RunError
   /// when another process serves it, or when it cannot be made. `file`: for messages.
   ControlSocket(const ControlConfig& config, const std::string& file);
   ~ControlSocket();

@@ -22,7 +22,8 @@ constexpr std::size_t kMaxChannel = 63;  // LCM's own limit
 
 bool means_full(int error) { return error == ENOSPC || error == EDQUOT || error == EFBIG; }
 
-config::schema::Error cannot_record(const std::filesystem::path& where, const std::string& why) {
+config::schema::ConfigError cannot_record(const std::filesystem::path& where,
+                                          const std::string& why) {
   return config::schema::bad_config(where.string(), "cannot record here: " + why);
 }
 

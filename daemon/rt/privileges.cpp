@@ -26,9 +26,8 @@ class Report {
   void refused(const std::string& what, int error, const std::string& allowed) {
     const std::string line = "no " + what + " (" + std::strerror(error) + ")";
     if (required_) {
-      throw config::schema::Error(
-          config::schema::ExitCode::failed,
-          "[loop] privileges = \"require\": " + line + "; allowed: " + allowed + ", or \"try\"");
+      throw config::schema::RunError("[loop] privileges = \"require\": " + line +
+                                     "; allowed: " + allowed + ", or \"try\"");
     }
     got(line);
   }

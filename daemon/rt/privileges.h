@@ -18,7 +18,7 @@ struct Grant {
 /// memory stays small.
 void keep_memory_small() noexcept;
 
-/// Asks for what `[loop] privileges, priority, cpu` say. Throws config::schema::Error (exit 1) when
+/// Asks for what `[loop] privileges, priority, cpu` say. Throws config::schema::RunError when
 /// required and not got. Locks all memory mapped so far and, as it is touched, all that follows.
 [[nodiscard]] Grant ask_privileges(const LoopConfig& config);
 

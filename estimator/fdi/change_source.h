@@ -35,7 +35,7 @@ struct ChangeConfig : TrainedConfig {
 /// change that the test sees), since_s (how long ago that was).
 class ChangeSource : public BlockSource {
  public:
-  /// Throws schema::Error (exit 78) when it is not trained.
+  /// Throws schema::ConfigError when it is not trained.
   ChangeSource(const ChangeConfig& config, const Setting& setting);
 
   [[nodiscard]] std::vector<std::string> names() const final {

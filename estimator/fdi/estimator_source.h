@@ -9,7 +9,7 @@ namespace estimator::fdi {
 
 class EstimatorSource final : public Source {
  public:
-  /// Throws schema::Error (exit 78) naming [[estimator]] and the id.
+  /// Throws schema::ConfigError naming [[estimator]] and the id.
   EstimatorSource(const EstimatorConfig& config, double sample_time_s)
       : stage_(config, sample_time_s),
         interval_s_(config.method == "batch" ? config.window_s : config.stride_s) {}

@@ -45,7 +45,7 @@ struct LearnedLimits {
 };
 
 /// `values` in their order in time, one each interval_s; NaN = no trustworthy estimate. Throws
-/// schema::Error (exit 65) when there are fewer than ten blocks.
+/// schema::DataError when there are fewer than ten blocks.
 [[nodiscard]] LearnedLimits learn_limits(std::span<const double> values, const LearnConfig& config);
 
 /// Period of a periodic signal, from the first high peak of the autocorrelation of its first 80 s

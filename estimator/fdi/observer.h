@@ -37,7 +37,7 @@ struct ObserverConfig final : SourceConfigOf<ObserverConfig> {
   void visit(config::schema::Visitor& v) override;
   [[nodiscard]] std::vector<std::string> inputs() const override;
   [[nodiscard]] std::unique_ptr<Source> make(const Setting& setting) const override;
-  /// Throws schema::Error (exit 78) when the matrices do not fit together.
+  /// Throws schema::ConfigError when the matrices do not fit together.
   [[nodiscard]] LinearModel model() const;
 };
 

@@ -83,7 +83,7 @@ struct PipelineConfig {
   /// Completes it with what stands in other files (relative to `folder`), so that nothing is left
   /// there. Of bands_file the limits go to the bands on the same quantity that give none, or else
   /// make a band of their own; they must have been learned at this sample time and with the same
-  /// estimators. Other sources take in theirs (SourceConfig::load). Else schema::Error, exit 78.
+  /// estimators. Other sources take in theirs (SourceConfig::load). Else schema::ConfigError.
   /// Call once, before Pipeline. `rig_id`: "" when it is not known.
   void load_bands(const std::filesystem::path& folder, double sample_time_s,
                   const std::string& rig_id = "");
@@ -122,7 +122,7 @@ class Events {
 
 class Pipeline {
  public:
-  /// Throws schema::Error (exit 78) for an unknown structure, quantity, double id, sources that
+  /// Throws schema::ConfigError for an unknown structure, quantity, double id, sources that
   /// read each other in a circle, ...
   Pipeline(const PipelineConfig& config, double sample_time_s);
   ~Pipeline();

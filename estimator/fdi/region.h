@@ -22,7 +22,7 @@ namespace estimator::fdi {
 
 class Region {
  public:
-  /// `covariance` row by row. Throws schema::Error (exit 78) at `where` when it is not positive
+  /// `covariance` row by row. Throws schema::ConfigError at `where` when it is not positive
   /// definite or `blocks` are too few for the dimension.
   Region(std::span<const double> mean, std::span<const double> covariance, double blocks,
          const std::string& where);

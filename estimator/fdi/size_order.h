@@ -16,7 +16,7 @@ namespace estimator::fdi {
 
 /// The curve that leads to each class; none to `healthy`, and to one that lies within its region.
 /// `laws` are those of `classes`, `pooled` the covariance in which lengths are measured. Throws
-/// schema::Error (exit 78) at `where`.
+/// schema::ConfigError at `where`.
 [[nodiscard]] std::vector<std::optional<SizePath>> join_sizes(
     const std::vector<TrainedClass>& classes, const std::vector<SizeLaw>& laws,
     const Eigen::MatrixXd& pooled, std::size_t healthy, double rejection, const std::string& where);

@@ -54,7 +54,7 @@ class SizePath {
 
   /// `rejection`: probability of its limit. `healthy`: of a curve that begins there; it counts from
   /// where it has left that region for good, as far as `edge2` (T^2), and may be nowhere(). Throws
-  /// schema::Error (exit 78) at `where`.
+  /// schema::ConfigError at `where`.
   SizePath(const SizeLaw& from, const SizeLaw& to, const Bend& bend, double rejection,
            Region* healthy, double edge2, const std::string& where);
 

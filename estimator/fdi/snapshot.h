@@ -21,7 +21,7 @@ void save_snapshot(Pipeline& pipeline, std::uint64_t config, std::int64_t tick,
                    std::vector<std::uint8_t>& out);
 
 /// Restores into a pipeline of the same configuration; returns the tick that comes next. Throws
-/// schema::Error (exit 65) at `where`; the pipeline is of no use then.
+/// schema::DataError at `where`; the pipeline is of no use then.
 std::int64_t load_snapshot(std::span<const std::uint8_t> bytes, std::uint64_t config,
                            Pipeline& pipeline, const std::string& where);
 

@@ -131,7 +131,7 @@ class Inputs {
  public:
   virtual ~Inputs() = default;
   /// "ESTIMATOR.b1", "sample.following_error_m"; it holds for the pipeline's life. Throws
-  /// schema::Error (exit 78) at `where` when there is no such value.
+  /// schema::ConfigError at `where` when there is no such value.
   [[nodiscard]] virtual Input find(const std::string& quantity, const std::string& where) const = 0;
 };
 
@@ -160,9 +160,9 @@ class SourceConfig {
   /// The quantities that it reads, "SOURCE.name".
   [[nodiscard]] virtual std::vector<std::string> inputs() const { return {}; }
   /// Takes in what stands in other files, and empties the keys that name these. Throws
-  /// schema::Error (exit 78).
+  /// schema::ConfigError.
   virtual void load(const Loading& /*loading*/) {}
-  /// Throws schema::Error (exit 78) that names the list and the id.
+  /// Throws schema::ConfigError that names the list and the id.
   [[nodiscard]] virtual std::unique_ptr<Source> make(const Setting& setting) const = 0;
   [[nodiscard]] virtual std::unique_ptr<SourceConfig> clone() const = 0;
 

@@ -15,7 +15,7 @@ namespace estimator::fdi {
 
 class Stage {
  public:
-  /// Throws schema::Error (exit 78) naming [[estimator]] and the id.
+  /// Throws schema::ConfigError naming [[estimator]] and the id.
   Stage(const EstimatorConfig& config, double sample_time_s);
 
   /// `periods` samples missing before the next one; true when an estimate became due meanwhile.

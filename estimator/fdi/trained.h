@@ -81,8 +81,8 @@ struct TrainedConfig : SourceConfig {
   void check(const TrainedSource& trained, const Loading& loading, const std::string& place) const;
 };
 
-/// Settings of the source of each quantity, as they stand in a trained file. Throws schema::Error
-/// (exit 78) at `where` for a source that is trained itself.
+/// Settings of the source of each quantity, as they stand in a trained file. Throws
+/// schema::ConfigError at `where` for a source that is trained itself.
 [[nodiscard]] std::vector<std::string> settings_of(const std::vector<std::string>& quantities,
                                                    const PipelineConfig& pipeline,
                                                    const std::string& where);

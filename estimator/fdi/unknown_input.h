@@ -44,7 +44,7 @@ struct Existence {
 };
 
 /// Both conditions; ranks by singular values with columns scaled to unit length. Throws
-/// schema::Error (exit 78) when sizes do not fit.
+/// schema::ConfigError when sizes do not fit.
 [[nodiscard]] Existence unknown_input_existence(const LinearModel& model);
 
 struct UnknownInputObserver {
@@ -54,7 +54,7 @@ struct UnknownInputObserver {
   Eigen::MatrixXd fault_gain;
 };
 
-/// Of a discrete model. Throws schema::Error (exit 78) that says why when there is none.
+/// Of a discrete model. Throws schema::ConfigError that says why when there is none.
 /// `q`: of predictor_gain, how fast it follows.
 [[nodiscard]] UnknownInputObserver unknown_input_observer(const LinearModel& model,
                                                           const std::string& where, double q = 1.0);

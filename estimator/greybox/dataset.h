@@ -44,7 +44,7 @@ inline constexpr double kLeastFloor_m = 1e-9;
 /// Segments shorter than this are left out.
 inline constexpr double kShortest_s = 1.0;
 
-/// Throws config::schema::Error (exit 65) when what remains is shorter than 2 s,
+/// Throws config::schema::DataError when what remains is shorter than 2 s,
 /// and for rates below 4 Hz. No sample is
 /// invented: segments between gaps start anew, short ones are left out and noted.
 [[nodiscard]] Measured measured(const config::record::Record& record);

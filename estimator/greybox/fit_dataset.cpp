@@ -22,9 +22,8 @@ Split parse_split(std::string_view text) {
   if (text == "blocks") return Split::blocks;
   if (text == "first-half") return Split::first_half;
   if (text == "second-half") return Split::second_half;
-  throw config::schema::Error(
-      config::schema::ExitCode::usage,
-      "--fit: is " + std::string(text) + "; allowed: blocks, first-half, second-half");
+  throw config::schema::UsageError("--fit: is " + std::string(text) +
+                                   "; allowed: blocks, first-half, second-half");
 }
 
 Evidence evidence(std::vector<Measured> records, std::vector<Measured> holdouts, Split split) {

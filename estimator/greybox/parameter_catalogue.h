@@ -28,7 +28,7 @@ void open_up(Known& known);
 [[nodiscard]] std::vector<std::string> names_worth_showing(const plant_sim::ModelFile& model,
                                                            const std::vector<Known>& known);
 
-/// Throws config::schema::Error (exit 78) that names the option, what was typed, the nearest of
+/// Throws config::schema::ConfigError that names the option, what was typed, the nearest of
 /// `near` and what is allowed.
 [[noreturn]] void refuse_name(const std::string& option, const std::string& typed,
                               const std::vector<std::string>& near,

@@ -200,11 +200,10 @@ Orders parse_orders(const std::string& text, bool constant) {
     if (good && out.a + out.b + out.f > 0) return out;
     break;
   }
-  throw config::schema::Error(
-      config::schema::ExitCode::usage,
+  throw config::schema::UsageError(
       "structure: unknown \"" + text +
-          "\"; allowed: arxNMK, armaxNMCK, oeMFK, bjMCDFK, each order one digit 0 to 9, or "
-          "in brackets with commas 0 to 10, and the delay K to 50");
+      "\"; allowed: arxNMK, armaxNMCK, oeMFK, bjMCDFK, each order one digit 0 to 9, or "
+      "in brackets with commas 0 to 10, and the delay K to 50");
 }
 
 Orders Polynomial::orders(bool constant) const {

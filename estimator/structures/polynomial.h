@@ -41,7 +41,7 @@ struct Orders {
   friend bool operator==(const Orders&, const Orders&) = default;
 };
 
-/// Reads what Orders::text() writes. Throws config::schema::Error (usage) otherwise.
+/// Reads what Orders::text() writes. Throws config::schema::UsageError otherwise.
 [[nodiscard]] Orders parse_orders(const std::string& text, bool constant);
 
 struct Polynomial {

@@ -126,9 +126,7 @@ struct RecursivePredictionError::State {
 };
 
 RecursivePredictionError::RecursivePredictionError(const RecursiveOptions& options) {
-  const auto refuse = [](const char* line) {
-    throw config::schema::Error(config::schema::ExitCode::usage, line);
-  };
+  const auto refuse = [](const char* line) { throw config::schema::UsageError(line); };
   const int size = options.orders.size();
   if (size < 1 || size > kMaxCoefficients) refuse("recursive: 1 to 21 coefficients");
   if (!(options.forgetting > 0.0) || options.forgetting > 1.0) {

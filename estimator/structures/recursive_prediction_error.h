@@ -31,7 +31,7 @@ struct RecursiveOptions {
 
 class RecursivePredictionError {
  public:
-  /// Throws config::schema::Error (usage) for values out of range.
+  /// Throws config::schema::UsageError for values out of range.
   explicit RecursivePredictionError(const RecursiveOptions& options);
   ~RecursivePredictionError();
   RecursivePredictionError(RecursivePredictionError&&) noexcept;

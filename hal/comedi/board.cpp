@@ -55,9 +55,9 @@ ComediBoard::ComediBoard(const std::string& where, const std::string& device) {
     const char* why = access(device.c_str(), F_OK) != 0 ? "no such device"
                       : errno != 0                      ? std::strerror(errno)
                                                         : comedi_strerror(comedi_errno());
-    throw Absent(
-        bad_config(where, "is \"" + device + "\": " + why,
-                   "a configured comedi board such as /dev/comedi0, which this user may open"));
+    throw config::schema::DeviceUnavailable(config::schema::error_line(
+        where, "is \"" + device + "\": " + why,
+        "a configured comedi board such as /dev/comedi0, which this user may open"));
   }
 }
 

@@ -36,8 +36,7 @@ void Exchange::start(bool threaded, int priority) {
   if (!threaded) return;
   const int error = thread_.start("comedi", priority, [this] { pass(); });
   if (error != 0) {
-    throw config::schema::Error(config::schema::ExitCode::failed,
-                                std::string("comedi: no thread: ") + std::strerror(error));
+    throw config::schema::RunError(std::string("comedi: no thread: ") + std::strerror(error));
   }
 }
 

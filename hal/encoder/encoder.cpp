@@ -62,8 +62,7 @@ Watch::Watch(std::unique_ptr<EdgeSource> source, std::vector<std::shared_ptr<Gpi
   pass();
   const int error = thread_.start("encoder", priority, [this] { pass(); });
   if (error != 0) {
-    throw config::schema::Error(config::schema::ExitCode::failed,
-                                std::string("encoder: no thread: ") + std::strerror(error));
+    throw config::schema::RunError(std::string("encoder: no thread: ") + std::strerror(error));
   }
 }
 

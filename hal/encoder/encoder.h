@@ -62,7 +62,7 @@ class Watch {
  public:
   static constexpr std::size_t kInputs = 16;
 
-  /// Starts the thread. `period_ns`: of the loop. Throws config::schema::Error (exit 1) when it
+  /// Starts the thread. `period_ns`: of the loop. Throws config::schema::RunError when it
   /// cannot.
   Watch(std::unique_ptr<EdgeSource> source, std::vector<std::shared_ptr<GpioLine>> inputs,
         const TrackerOptions& options, std::int64_t period_ns, int priority);

@@ -40,8 +40,9 @@ std::shared_ptr<GpioChip> GpioChip::open(const std::string& where, const std::st
   gpiod_chip* chip = gpiod_chip_open_lookup(description.c_str());
   if (chip == nullptr) {
     const int error = errno;
-    throw Absent(bad_config(where, "is \"" + description + "\": " + std::strerror(error),
-                            error == EACCES ? "a GPIO chip that this user may open" : all_chips()));
+    throw config::schema::DeviceUnavailable(config::schema::error_line(
+        where, "is \"" + description + "\": " + std::strerror(error),
+        error == EACCES ? "a GPIO chip that this user may open" : all_chips()));
   }
   return std::shared_ptr<GpioChip>(new GpioChip(chip));
 }

@@ -40,8 +40,7 @@ Link::Link(const LinkConfig& config, Plan plan, std::unique_ptr<Port> port,
   sem_init(&wake_, 0, 0);
   const int error = thread_.start("modbus", config_.priority, [this] { step(); });
   if (error != 0) {
-    throw config::schema::Error(config::schema::ExitCode::failed,
-                                std::string("[modbus]: no thread: ") + std::strerror(error));
+    throw config::schema::RunError(std::string("[modbus]: no thread: ") + std::strerror(error));
   }
 }
 

@@ -12,6 +12,7 @@ namespace hal::modbus {
 namespace {
 
 using config::schema::bad_config;
+using config::schema::DeviceUnavailable;
 
 class Survey {
  public:
@@ -20,7 +21,7 @@ class Survey {
   /// False when the device refuses the request; throws when it does not answer.
   bool read(const Block& block, std::uint16_t* words) {
     const Outcome outcome = port_.read(block, words);
-    if (outcome == Outcome::lost) throw silent("does not answer a request");
+    if (outcome == Outcome::lost) throw DeviceUnavailable(line("does not answer a request"));
     return outcome == Outcome::done;
   }
 
@@ -33,21 +34,22 @@ class Survey {
                      "an address, function and type that it has");
   }
 
-  /// Nobody is there, which the configuration need not be to blame for; or the line is in use.
-  [[nodiscard]] Absent absent() const {
-    if (port_.error() == EBUSY) return silent("is in use by another program");
-    if (port_.error() == ENOENT || port_.error() == EACCES) return silent("cannot be opened");
-    return Absent({config::schema::ExitCode::failed, silent("cannot be connected").what()});
-  }
-
-  [[nodiscard]] Absent silent(const std::string& what) const {
-    return Absent(
-        bad_config(options_.file + ": [modbus] " + options_.device,
-                   what + " (" + modbus_strerror(port_.error()) + ")",
-                   "a device that is switched on, its address or line settings, its unit"));
+  [[noreturn]] void throw_unconnected() const {
+    if (port_.error() == EBUSY) throw DeviceUnavailable(line("is in use by another program"));
+    if (port_.error() == ENOENT || port_.error() == EACCES) {
+      throw DeviceUnavailable(line("cannot be opened"));
+    }
+    throw config::schema::ConnectionFailed(line("cannot be connected"));
   }
 
  private:
+  [[nodiscard]] std::string line(const std::string& what) const {
+    return config::schema::error_line(
+        options_.file + ": [modbus] " + options_.device,
+        what + " (" + modbus_strerror(port_.error()) + ")",
+        "a device that is switched on, its address or line settings, its unit");
+  }
+
   Port& port_;
   const SurveyOptions& options_;
 };
@@ -56,7 +58,7 @@ class Survey {
 
 Snapshot survey(Port& port, const Plan& plan, const SurveyOptions& options) {
   Survey survey(port, options);
-  if (!port.connect()) throw survey.absent();
+  if (!port.connect()) survey.throw_unconnected();
   port.set_timeout(options.first_timeout_s);
   Snapshot snapshot;
   for (std::size_t b = 0; b < plan.blocks.size(); ++b) {

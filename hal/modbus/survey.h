@@ -16,7 +16,7 @@ struct SurveyOptions {
   double timeout_s = 0.004;  ///< that the port is left with
 };
 
-/// Connects and reads each register once. Throws config::schema::Error (exit 78), one line.
+/// Connects and reads each register once. Throws config::schema::ConfigError, one line.
 [[nodiscard]] Snapshot survey(Port& port, const Plan& plan, const SurveyOptions& options);
 
 }  // namespace hal::modbus

@@ -36,8 +36,7 @@ plant_sim::Schedule make_schedule(const RigConfig& config, plant_sim::Plant& pla
   try {
     return {config.sim.faults, plant};
   } catch (const config::schema::Error& e) {
-    throw config::schema::Error(config::schema::ExitCode::bad_config,
-                                config.file + ": [[sim.fault]] " + e.what());
+    throw config::schema::ConfigError(config.file + ": [[sim.fault]] " + e.what());
   }
 }
 
@@ -45,8 +44,7 @@ plant_sim::Transducers make_transducers(const RigConfig& config) {
   try {
     return {config.sim.pressures, static_cast<std::uint64_t>(config.sim.seed)};
   } catch (const config::schema::Error& e) {
-    throw config::schema::Error(config::schema::ExitCode::bad_config,
-                                config.file + ": " + e.what());
+    throw config::schema::ConfigError(config.file + ": " + e.what());
   }
 }
 

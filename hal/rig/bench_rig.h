@@ -31,7 +31,7 @@ enum Status : std::uint16_t {
 
 class BenchRig {
  public:
-  /// Throws config::schema::Error (exit 78).
+  /// Throws config::schema::ConfigError.
   BenchRig(const RigConfig& config, std::int64_t now_ns);
 
   /// All below work at the time of the last call of this; times do not go back.

@@ -8,15 +8,13 @@
 #include <iostream>
 #include <optional>
 
-#include "config/schema/error.h"
+#include "config/schema/exit_code.h"
 #include "hal/device_thread.h"
 #include "hal/rig/moved_lines.h"
 #include "hal/rig/register_map.h"
 #include "hal/rig/server.h"
 
 namespace {
-
-using config::schema::ExitCode;
 
 volatile std::sig_atomic_t stop_asked = 0;
 void on_stop(int) { stop_asked = 1; }
@@ -65,7 +63,7 @@ int serve(const Options& options, bool has_listen, bool has_serial) {
   std::cerr << "spoolwatch-rig: " << counts.requests << " requests of " << counts.clients
             << " clients, " << counts.refused << " refused\n";
   if (lines) std::cerr << "spoolwatch-rig: " << lines->edges() << " edges\n";
-  return static_cast<int>(ExitCode::done);
+  return EXIT_SUCCESS;
 }
 
 int set(const std::string& address, const std::vector<std::string>& texts) {
@@ -73,9 +71,9 @@ int set(const std::string& address, const std::vector<std::string>& texts) {
     const std::string wrong = hal::rig::set_remotely(address, text);
     if (wrong.empty()) continue;
     std::cerr << "spoolwatch-rig: " << text << ": " << wrong << '\n';
-    return static_cast<int>(ExitCode::usage);
+    return config::schema::kUsageExitCode;
   }
-  return static_cast<int>(ExitCode::done);
+  return EXIT_SUCCESS;
 }
 
 int run(int argc, char** argv) {
@@ -100,7 +98,7 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
     if (setting->count() == 0 && file->count() == 0) throw CLI::RequiredError("--config");
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? static_cast<int>(ExitCode::done) : static_cast<int>(ExitCode::usage);
+    return app.exit(e) == 0 ? EXIT_SUCCESS : config::schema::kUsageExitCode;
   }
   if (setting->count() > 0) return set(address, texts);
   return serve(options, listen->count() > 0, serial->count() > 0);
@@ -111,11 +109,8 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     return run(argc, argv);
-  } catch (const config::schema::Error& e) {
-    std::cerr << "spoolwatch-rig: " << e.what() << '\n';
-    return e.exit_code();
   } catch (const std::exception& e) {
     std::cerr << "spoolwatch-rig: " << e.what() << '\n';
-    return static_cast<int>(ExitCode::failed);
+    return config::schema::exit_code_of(e);
   }
 }

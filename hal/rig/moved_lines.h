@@ -11,7 +11,7 @@ namespace hal::rig {
 
 class MovedLines {
  public:
-  /// The rod stands in the index's quarter. Throws config::schema::Error (exit 78).
+  /// The rod stands in the index's quarter. Throws config::schema::ConfigError.
   MovedLines(const RigConfig& config, BenchRig& rig);
 
   /// To where the rig is at its last time: every edge on the way there.

@@ -65,7 +65,7 @@ struct RigConfig {
   void visit(config::schema::Visitor& v);
 };
 
-/// Throws config::schema::Error (exit 78).
+/// Throws config::schema::ConfigError.
 [[nodiscard]] RigConfig load(const std::filesystem::path& file,
                              const std::vector<std::string>& assignments);
 

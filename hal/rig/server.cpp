@@ -231,8 +231,7 @@ void Server::obey_text() {
 
 std::string set_remotely(const std::string& address, const std::string& text) {
   const auto failed = [&](const std::string& what) {
-    return config::schema::Error(config::schema::ExitCode::failed,
-                                 "--address: " + address + ": " + what);
+    return config::schema::RunError("--address: " + address + ": " + what);
   };
   const auto place = split_address(address);
   if (!place) throw failed("is no numeric address and port, 127.0.0.1:1502");

@@ -16,7 +16,7 @@ namespace hal::rig {
 
 class Server {
  public:
-  /// Listens, and opens the serial line. Throws config::schema::Error (exit 78) when it cannot.
+  /// Listens, and opens the serial line. Throws config::schema::ConfigError when it cannot.
   Server(const RigConfig& config, BenchRig& rig);
   ~Server();
   Server(const Server&) = delete;
@@ -67,8 +67,8 @@ class Server {
   Counts counts_;
 };
 
-/// Sends "name=value" to a running rig. Returns "" or what is wrong; throws config::schema::Error
-/// (exit 1) when nobody answers at `address`.
+/// Sends "name=value" to a running rig. Returns "" or what is wrong; throws
+/// config::schema::RunError when nobody answers at `address`.
 std::string set_remotely(const std::string& address, const std::string& text);
 
 }  // namespace hal::rig

@@ -142,7 +142,7 @@ void SimBackend::offer_pressures(const std::string& file, const std::shared_ptr<
     transducers = std::make_shared<plant_sim::Transducers>(
         config_.pressures, static_cast<std::uint64_t>(config_.seed));
   } catch (const config::schema::Error& e) {
-    throw config::schema::Error(config::schema::ExitCode::bad_config, file + ": " + e.what());
+    throw config::schema::ConfigError(file + ": " + e.what());
   }
   const plant_sim::Pressures now = rig->pressures();
   const double values_Pa[] = {now.supply_Pa, now.in_Pa, now.out_Pa};
@@ -173,8 +173,7 @@ Offer SimBackend::open(const Opening& opening) const {
     rig =
         std::make_shared<SimRig>(std::move(plant), config_, opening.sample_time_s, opening.null_V);
   } catch (const config::schema::Error& e) {
-    throw config::schema::Error(config::schema::ExitCode::bad_config,
-                                opening.file + ": [[sim.fault]] " + e.what());
+    throw config::schema::ConfigError(opening.file + ": [[sim.fault]] " + e.what());
   }
   Offer offer;
   offer.rods[kRodChannel] = rig;

@@ -59,12 +59,12 @@ struct PlausibleRanges {
   VariableRange speed_mps{-2.0, 2.0};
 };
 
-/// Checks the names and parses the formula. Throws config::schema::Error (exit 78); `where` is the
+/// Checks the names and parses the formula. Throws config::schema::ConfigError; `where` is the
 /// effect's table in a file.
 [[nodiscard]] Formula compile(const FormulaEffect& effect, const PlausibleRanges& ranges,
                               const std::string& where);
 
-/// Throws config::schema::Error (exit 78) unless the ranges make sense, the formula has no
+/// Throws config::schema::ConfigError unless the ranges make sense, the formula has no
 /// influence when its parameters are neutral, and is finite over the variables' ranges for any of
 /// the parameters' least, largest and neutral values.
 void check(const FormulaEffect& effect, const Formula& formula, const std::string& where);

@@ -122,8 +122,8 @@ const char* reason(int code) {
 }
 
 /// One line for what muParser found wrong; positions count from 1.
-config::schema::Error refusal(const mu::ParserError& error, std::size_t length,
-                              std::vector<std::string> names, const std::string& where) {
+config::schema::ConfigError refusal(const mu::ParserError& error, std::size_t length,
+                                    std::vector<std::string> names, const std::string& where) {
   std::string token = error.GetToken();
   token.erase(std::find_if(token.rbegin(), token.rend(),
                            [](unsigned char c) { return std::isspace(c) == 0; })

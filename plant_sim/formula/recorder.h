@@ -11,7 +11,7 @@
 namespace plant_sim {
 
 /// `variables` (at most Tape::kVariables) and `parameters` are the names that the text may use,
-/// besides pi. Throws config::schema::Error (exit 78) at `where`, with position and token, when the
+/// besides pi. Throws config::schema::ConfigError at `where`, with position and token, when the
 /// text is no single expression of these.
 [[nodiscard]] Tape record_formula(const std::string& text,
                                   const std::vector<std::string>& variables,

@@ -37,8 +37,8 @@ inline ModelFile model_of(const std::string& text) {
 inline std::string refusal_of(const std::string& text) {
   try {
     (void)model_of(text);
-  } catch (const config::schema::Error& error) {
-    return error.exit_code() == 78 ? error.what() : "another exit code";
+  } catch (const config::schema::ConfigError& error) {
+    return error.what();
   }
   return "";
 }

@@ -42,7 +42,6 @@ std::string complaint(const std::string& text) {
   try {
     open(text);
   } catch (const config::schema::Error& e) {
-    EXPECT_EQ(e.exit_code(), 78);
     return e.what();
   }
   return "nothing";

@@ -61,8 +61,7 @@ double number_in(const std::string& assignment, const std::string& text) {
   const char* end = text.data() + text.size();
   const auto [rest, failed] = std::from_chars(text.data(), end, value);
   if (failed != std::errc() || rest != end) {
-    throw config::schema::Error(config::schema::ExitCode::usage,
-                                assignment + ": is no assignment; allowed: parameter=number");
+    throw config::schema::UsageError(assignment + ": is no assignment; allowed: parameter=number");
   }
   return value;
 }
@@ -101,7 +100,7 @@ void add(const Options& options) {
   for (const std::string& assignment : options.assignments) {
     const std::string name = assignment.substr(0, assignment.find('='));
     if (!given.insert(name).second) {
-      throw config::schema::Error(config::schema::ExitCode::usage, name + ": is given twice");
+      throw config::schema::UsageError(name + ": is given twice");
     }
     assign(model, effect, assignment);
   }

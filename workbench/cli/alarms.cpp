@@ -15,8 +15,7 @@
 namespace workbench::cli {
 namespace {
 
-using config::schema::Error;
-using config::schema::ExitCode;
+using config::schema::UsageError;
 using Json = nlohmann::ordered_json;
 namespace protocol = monitor::control;
 
@@ -63,7 +62,7 @@ void add_ack(CLI::App& command, int& /*exit_code*/) {
       ->excludes(alarm);
   command.callback([options] {
     if (options->alarm.empty() && !options->all) {
-      throw Error(ExitCode::usage, "ack: no alarm; allowed: SOURCE.NAME, or --all");
+      throw UsageError("ack: no alarm; allowed: SOURCE.NAME, or --all");
     }
     act(protocol::kAcknowledge, *options, false);
   });

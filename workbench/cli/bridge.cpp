@@ -111,8 +111,7 @@ int bridge(const Options& options) {
     while (!ending.reached()) {
       if (feed.poll(std::chrono::milliseconds(100)) || Ending::asked()) continue;
       if (options.url.starts_with("file:")) break;
-      throw config::schema::Error(config::schema::ExitCode::failed,
-                                  "LCM cannot receive on \"" + options.url + "\" any more");
+      throw config::schema::RunError("LCM cannot receive on \"" + options.url + "\" any more");
     }
   }
   bridge.sum_up();

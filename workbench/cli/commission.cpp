@@ -14,8 +14,7 @@
 namespace workbench::cli {
 namespace {
 
-using config::schema::Error;
-using config::schema::ExitCode;
+using config::schema::RunError;
 
 struct Options {
   std::string config;
@@ -33,7 +32,7 @@ struct Options {
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   execv(program.c_str(), argv.data());
-  throw Error(ExitCode::failed, program + ": " + std::strerror(errno));
+  throw RunError(program + ": " + std::strerror(errno));
 }
 
 }  // namespace

@@ -32,8 +32,7 @@ namespace greybox = estimator::greybox;
 namespace validation = estimator::greybox::validation;
 namespace {
 
-using config::schema::Error;
-using config::schema::ExitCode;
+using config::schema::UsageError;
 
 struct Arguments {
   std::string model;
@@ -85,7 +84,7 @@ greybox::Measured read_measured(const Arguments& a) {
   const std::size_t to = index(a.to_s);
   const double least_s = 2.0;
   if (from >= to || static_cast<double>(to - from) * whole.sample_time_s < least_s) {
-    throw Error(ExitCode::usage, "--from, --to: leave less than 2 s of " + whole.name);
+    throw UsageError("--from, --to: leave less than 2 s of " + whole.name);
   }
   greybox::Measured part = greybox::part(whole, from, to);
   part.notes = whole.notes;
@@ -94,9 +93,8 @@ greybox::Measured read_measured(const Arguments& a) {
 
 void check_observer(const Arguments& a, const greybox::Measured& record) {
   if (a.observer_per_s * record.sample_time_s < 1.0) return;
-  throw Error(ExitCode::usage, "--observer: is too fast for samples every " +
-                                   std::to_string(record.sample_time_s) +
-                                   " s; allowed: below 1 / sample time");
+  throw UsageError("--observer: is too fast for samples every " +
+                   std::to_string(record.sample_time_s) + " s; allowed: below 1 / sample time");
 }
 
 bool utf8_terminal() {
@@ -113,7 +111,7 @@ void run_live(Arguments& a) {
   for (const auto& [given, option] :
        {std::pair(!a.record.empty(), "RECORD"), std::pair(!a.report.empty(), "--report"),
         std::pair(a.all, "--all"), std::pair(!a.json.empty() && a.json != "-", "--json FILE")}) {
-    if (given) throw Error(ExitCode::usage, std::string("--live: not together with ") + option);
+    if (given) throw UsageError(std::string("--live: not together with ") + option);
   }
   a.watch.json = a.json == "-";
   a.watch.observer_per_s = a.observer_per_s;
@@ -122,7 +120,7 @@ void run_live(Arguments& a) {
 
 void run(Arguments& a) {
   if (a.live) return run_live(a);
-  if (a.record.empty()) throw Error(ExitCode::usage, "compare: no RECORD, and not --live");
+  if (a.record.empty()) throw UsageError("compare: no RECORD, and not --live");
   check_outputs({{"--json", a.json}, {"--report", a.report}}, {a.model, {a.record}});
   const plant_sim::ModelFile model = read_model(a);
   const greybox::Measured record = read_measured(a);

@@ -33,8 +33,7 @@ void refuse_unused(const Options& options) {
   const estimate::EstimateOptions& e = options.estimate;
   const auto refuse = [](bool given, const std::string& option, const std::string& beside) {
     if (!given) return;
-    throw config::schema::Error(config::schema::ExitCode::usage,
-                                option + ": has no use with " + beside);
+    throw config::schema::UsageError(option + ": has no use with " + beside);
   };
   const std::string method = "--method " + e.method;
   const std::string filter = "--filter " + e.filter;
@@ -126,19 +125,18 @@ void print_text(const estimate::EstimateResult& result, const Options& options,
 }
 
 void run(Options options) {
-  using config::schema::Error;
-  using config::schema::ExitCode;
+  using config::schema::UsageError;
   options.estimate.structure = estimator::parse_structure(options.structure, options.constant);
   if (options.fit == "first-half") options.estimate.fit_to = 0.5;
   if (options.fit == "second-half") options.estimate.fit_from = 0.5;
   if (!(options.estimate.fit_from < options.estimate.fit_to)) {
-    throw Error(ExitCode::usage, "--fit-from: is not before --fit-to");
+    throw UsageError("--fit-from: is not before --fit-to");
   }
   if (options.estimate.method == "sliding" && std::isnan(options.estimate.window_s)) {
-    throw Error(ExitCode::usage, "--method sliding: needs --window S");
+    throw UsageError("--method sliding: needs --window S");
   }
   if (options.estimate.stride_s > options.estimate.window_s) {
-    throw Error(ExitCode::usage, "--stride: is longer than --window");
+    throw UsageError("--stride: is longer than --window");
   }
   refuse_unused(options);
   const config::record::Record record = config::record::read_record(options.record);

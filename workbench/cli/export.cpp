@@ -17,8 +17,7 @@
 namespace workbench::cli {
 namespace {
 
-using config::schema::Error;
-using config::schema::ExitCode;
+using config::schema::UsageError;
 
 constexpr const char* kFormats = "csv, mat, mcap, json";
 
@@ -47,10 +46,9 @@ void export_log(const std::string& input, const std::string& file, const std::st
   if (form == "csv") {
     if (!channel.empty() && channel != "sample" && channel != "estimate" && channel != "alarm") {
       const bool columns = channel == "rods" || channel == "pressures";
-      throw Error(ExitCode::usage,
-                  "--channel " + channel +
-                      (columns ? ": is among the columns of sample" : ": is no one table") +
-                      "; allowed with CSV: sample, estimate, alarm");
+      throw UsageError("--channel " + channel +
+                       (columns ? ": is among the columns of sample" : ": is no one table") +
+                       "; allowed with CSV: sample, estimate, alarm");
     }
     exchange::export_csv(input, channel.empty() ? "sample" : channel, output);
   } else if (form == "mat") {
@@ -60,8 +58,8 @@ void export_log(const std::string& input, const std::string& file, const std::st
   } else if (form == "json") {
     config::record::write_whole(output, exchange::json_lines(input, kinds_of(channel)));
   } else {
-    throw Error(ExitCode::usage, "--output " + output + ": its ending names no format; allowed: " +
-                                     kFormats + ", or --format");
+    throw UsageError("--output " + output + ": its ending names no format; allowed: " + kFormats +
+                     ", or --format");
   }
 }
 

@@ -12,8 +12,8 @@ namespace workbench::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using config::schema::Error;
-using config::schema::ExitCode;
+using config::schema::RunError;
+using config::schema::UsageError;
 
 bool is_written(const OutputFile& output) { return !output.file.empty() && output.file != "-"; }
 
@@ -27,8 +27,7 @@ void check_inputs_kept(const OutputFile& output, const InputFiles& inputs) {
   if (!output.may_replace_model) kept.push_back(inputs.model);
   for (const std::string& input : kept) {
     if (same_file(output.file, input)) {
-      throw Error(ExitCode::usage,
-                  output.option + " " + output.file + ": would overwrite an input");
+      throw UsageError(output.option + " " + output.file + ": would overwrite an input");
     }
   }
 }
@@ -37,15 +36,15 @@ void check_writable(const OutputFile& output) {
   const std::string what = output.option + " " + output.file;
   std::error_code ignored;
   if (fs::is_directory(output.file, ignored)) {
-    throw Error(ExitCode::failed, what + ": is a folder");
+    throw RunError(what + ": is a folder");
   }
   const fs::path folder = fs::absolute(output.file).parent_path();
   if (!fs::is_directory(folder, ignored)) {
-    throw Error(ExitCode::failed, what + ": the folder " + folder.string() + " does not exist");
+    throw RunError(what + ": the folder " + folder.string() + " does not exist");
   }
   const fs::path asked = is_special(output.file) ? fs::path(output.file) : folder;
   if (access(asked.c_str(), W_OK) != 0) {
-    throw Error(ExitCode::failed, what + ": cannot be written: " + std::strerror(errno));
+    throw RunError(what + ": cannot be written: " + std::strerror(errno));
   }
 }
 
@@ -64,7 +63,7 @@ void check_records(const std::vector<std::string>& records,
     for (std::size_t i = 0; i < side->size(); ++i) {
       for (std::size_t k = 0; k < i; ++k) {
         if (same_file((*side)[i], (*side)[k])) {
-          throw Error(ExitCode::usage, (*side)[i] + ": is given twice");
+          throw UsageError((*side)[i] + ": is given twice");
         }
       }
     }
@@ -74,7 +73,7 @@ void check_records(const std::vector<std::string>& records,
       if (same_file(holdout, record)) {
         std::string what = "--holdout ";
         what.append(holdout).append(": is fitted too; allowed: ").append(instead);
-        throw Error(ExitCode::usage, what);
+        throw UsageError(what);
       }
     }
   }
@@ -92,7 +91,7 @@ void check_outputs(const std::vector<OutputFile>& outputs, const InputFiles& inp
         continue;
       }
       if (same_file(outputs[i].file, outputs[k].file)) {
-        throw Error(ExitCode::usage, outputs[i].file + ": is the file of two outputs");
+        throw UsageError(outputs[i].file + ": is the file of two outputs");
       }
     }
   }

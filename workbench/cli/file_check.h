@@ -9,7 +9,7 @@ namespace workbench::cli {
 /// The same file, however it is spelled.
 [[nodiscard]] bool same_file(const std::string& a, const std::string& b);
 
-/// Throws (exit 2) for a record that is given twice among `records` and `holdouts`: fitted and
+/// Throws UsageError for a record that is given twice among `records` and `holdouts`: fitted and
 /// scored, or counted double. `instead` says what is allowed for one that is on both sides.
 void check_records(const std::vector<std::string>& records,
                    const std::vector<std::string>& holdouts, const std::string& instead);
@@ -25,7 +25,7 @@ struct InputFiles {
   std::vector<std::string> records;
 };
 
-/// Throws config::schema::Error: exit 2 for an output over an input or for two outputs in one file,
+/// Throws config::schema::UsageError for an output over an input or for two outputs in one file,
 /// 1 for one that could not be written in the end (a folder, no folder to stand in, no permission).
 void check_outputs(const std::vector<OutputFile>& outputs, const InputFiles& inputs);
 

@@ -32,8 +32,7 @@ int listen_with_lines(const Options& options) {
   while (!ending.reached()) {
     if (feed.poll(std::chrono::milliseconds(100)) || Ending::asked()) continue;
     if (options.url.starts_with("file:")) return 0;
-    throw config::schema::Error(config::schema::ExitCode::failed,
-                                "LCM cannot receive on \"" + options.url + "\" any more");
+    throw config::schema::RunError("LCM cannot receive on \"" + options.url + "\" any more");
   }
   return 0;
 }

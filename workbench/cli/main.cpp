@@ -5,7 +5,7 @@
 #include <exception>
 #include <iostream>
 
-#include "config/schema/error.h"
+#include "config/schema/exit_code.h"
 #include "workbench/cli/command.h"
 
 namespace {
@@ -68,12 +68,11 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     const bool asked_for_help = error.get_exit_code() == 0;
     app.exit(error);
-    return asked_for_help ? 0 : static_cast<int>(config::schema::ExitCode::usage);
+    return asked_for_help ? 0 : config::schema::kUsageExitCode;
   }
   std::cout.flush();
   if (std::fflush(stdout) != 0 || !std::cout) {
-    throw config::schema::Error(config::schema::ExitCode::failed,
-                                "standard output: cannot be written");
+    throw config::schema::RunError("standard output: cannot be written");
   }
   return exit_code;
 }
@@ -83,11 +82,8 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     return run(argc, argv);
-  } catch (const config::schema::Error& error) {
-    std::fprintf(stderr, "spoolwatch: %s\n", error.what());
-    return error.exit_code();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "spoolwatch: %s\n", error.what());
-    return static_cast<int>(config::schema::ExitCode::failed);
+    return config::schema::exit_code_of(error);
   }
 }

@@ -26,7 +26,8 @@ namespace {
 namespace fs = std::filesystem;
 namespace fdi = estimator::fdi;
 using config::schema::Error;
-using config::schema::ExitCode;
+using config::schema::RunError;
+using config::schema::UsageError;
 using promotion::RunningDaemon;
 
 struct Options {
@@ -82,7 +83,7 @@ class Attempt {
     const std::string figures = "error " + present::length(trial.after_rms_m) + ", before " +
                                 present::length(trial.before_rms_m) + ", noise floor " +
                                 present::length(trial.floor_m);
-    if (trial.worse()) throw Error(ExitCode::failed, "the new model is worse: " + figures);
+    if (trial.worse()) throw RunError("the new model is worse: " + figures);
     step(daemon_, "compared: " + figures);
   }
   void learn() {
@@ -115,8 +116,8 @@ class Attempt {
   void backtest() {
     const std::vector<std::string> alarms = promotion::new_alarms(daemon_, candidate_, files_);
     if (!alarms.empty()) {
-      throw Error(ExitCode::failed, std::to_string(alarms.size()) +
-                                        " new alarms on the healthy records: " + alarms.front());
+      throw RunError(std::to_string(alarms.size()) +
+                     " new alarms on the healthy records: " + alarms.front());
     }
     step(daemon_, "back-tested: no new alarm on " + std::to_string(files_.size()) + " records, " +
                       std::to_string(files_.size() - learned_from()) + " of them not learned from");
@@ -137,9 +138,9 @@ class Attempt {
         daemon_.reload();
       } catch (const Error&) {  // it still runs by the old rules: it took nothing
       }
-      throw Error(ExitCode::failed, std::string("the daemon did not take it, the old files are "
-                                                "back: ") +
-                                        e.what());
+      throw RunError(std::string("the daemon did not take it, the old files are "
+                                 "back: ") +
+                     e.what());
     }
     step(daemon_, "in use; the one before it is kept as version " + std::to_string(version) +
                       ": spoolwatch promote --back");
@@ -156,7 +157,7 @@ class Attempt {
 void go_back(const RunningDaemon& daemon) {
   const std::vector<fs::path> files = {daemon.model_file(), daemon.bands_file()};
   const int version = promotion::newest_version(files);
-  if (version == 0) throw Error(ExitCode::failed, "there is none before " + files[0].string());
+  if (version == 0) throw RunError("there is none before " + files[0].string());
   promotion::bring_back(files, version);
   daemon.reload();
   step(daemon, "version " + std::to_string(version) + " is in use again");
@@ -164,19 +165,19 @@ void go_back(const RunningDaemon& daemon) {
 
 void promote(const Options& options) {
   if (options.back == !options.model.empty()) {
-    throw Error(ExitCode::usage, "promote: either MODEL.toml or --back");
+    throw UsageError("promote: either MODEL.toml or --back");
   }
   const RunningDaemon daemon(options.socket);
   try {
     if (options.back) return go_back(daemon);
     std::error_code ignored;
     if (fs::equivalent(options.model, daemon.model_file(), ignored)) {
-      throw Error(ExitCode::failed, options.model + " is the model in use");
+      throw RunError(options.model + " is the model in use");
     }
     Attempt(daemon, options).run();
   } catch (const Error& e) {
     daemon.note(std::string("refused: ") + e.what());
-    throw Error(ExitCode::failed, std::string("refused: ") + e.what());
+    throw RunError(std::string("refused: ") + e.what());
   }
 }
 

@@ -1,6 +1,7 @@
 // spoolwatch record -o F.csv: a record from the running daemon, off its LCM stream.
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <cstdlib>
 #include <iostream>
 #include <memory>
 
@@ -17,8 +18,7 @@
 namespace workbench::cli {
 namespace {
 
-using config::schema::Error;
-using config::schema::ExitCode;
+using config::schema::RunError;
 using live::SampleFile;
 
 struct Options {
@@ -104,16 +104,16 @@ int record(const Options& options) {
     while (!ending.reached() && !recording.over()) {
       if (feed.poll(std::chrono::milliseconds(20)) || Ending::asked()) continue;
       if (options.url.starts_with("file:")) break;
-      throw Error(ExitCode::failed, "LCM cannot receive on \"" + options.url + "\" any more");
+      throw RunError("LCM cannot receive on \"" + options.url + "\" any more");
     }
   }
   recording.file().finish();
   if (recording.file().rows() == 0) {
-    throw Error(ExitCode::failed, "no sample came on \"" + options.url + "\": nothing is written");
+    throw RunError("no sample came on \"" + options.url + "\": nothing is written");
   }
   recording.sum_up(options.out);
   const bool as_asked = recording.complete() || Ending::asked() || !limited;
-  return static_cast<int>(as_asked ? ExitCode::done : ExitCode::failed);
+  return as_asked ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <memory>
@@ -100,11 +101,10 @@ int run(const Options& options) {
     out << as_json(pack, outcome).dump(2) << '\n';
     out.close();
     if (!out) {
-      throw config::schema::Error(config::schema::ExitCode::failed,
-                                  options.json + ": cannot be written");
+      throw config::schema::RunError(options.json + ": cannot be written");
     }
   }
-  return outcome.same() ? 0 : static_cast<int>(config::schema::ExitCode::failed);
+  return outcome.same() ? 0 : EXIT_FAILURE;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // `spoolwatch reproduce`: the source's figures beside ours.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <memory>
@@ -15,8 +16,7 @@
 namespace workbench::cli {
 namespace {
 
-using config::schema::Error;
-using config::schema::ExitCode;
+using config::schema::RunError;
 
 struct Arguments {
   std::string json;
@@ -38,7 +38,7 @@ void add_reproduce(CLI::App& command, int& exit_code) {
     std::ofstream file;
     if (!arguments->json.empty() && arguments->json != "-") {
       file.open(arguments->json);
-      if (!file) throw Error(ExitCode::failed, arguments->json + ": cannot be written");
+      if (!file) throw RunError(arguments->json + ": cannot be written");
     }
     const auto sections = reproduce::run_all(reproduce::experiments(),
                                              std::max(1U, std::thread::hardware_concurrency()));
@@ -49,12 +49,12 @@ void add_reproduce(CLI::App& command, int& exit_code) {
       if (file.is_open()) reproduce::print_json(file, sections);
     }
     if (file.is_open() && !file.flush()) {
-      throw Error(ExitCode::failed, arguments->json + ": cannot be written");
+      throw RunError(arguments->json + ": cannot be written");
     }
     const bool all = std::none_of(sections.begin(), sections.end(), [](const auto& section) {
       return std::any_of(section.rows.begin(), section.rows.end(), missed);
     });
-    if (arguments->strict && !all) exit_code = static_cast<int>(ExitCode::failed);
+    if (arguments->strict && !all) exit_code = EXIT_FAILURE;
   });
 }
 

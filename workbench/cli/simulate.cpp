@@ -22,8 +22,9 @@ namespace workbench::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using config::schema::Error;
-using config::schema::ExitCode;
+using config::schema::ConfigError;
+using config::schema::RunError;
+using config::schema::UsageError;
 
 /// Samples between two looks at the progress line: ten minutes of the stand.
 constexpr std::int64_t kProgressEvery = 120'000;
@@ -51,10 +52,9 @@ void choose_reference(const std::string& text, config::schema::Document& documen
   }
   std::error_code ignored;
   if (!fs::is_regular_file(text, ignored)) {
-    throw Error(ExitCode::usage,
-                "--reference " + text +
-                    ": is no kind and no file; allowed: sine, triangle, multisine, steps, "
-                    "chirp, prbs, or a CSV file with t_s,reference_m");
+    throw UsageError("--reference " + text +
+                     ": is no kind and no file; allowed: sine, triangle, multisine, steps, "
+                     "chirp, prbs, or a CSV file with t_s,reference_m");
   }
   document.set("reference.kind=\"file\"");
   document.set("reference.file='" + fs::absolute(text).string() + "'");
@@ -76,7 +76,7 @@ void check_output(const std::string& output) {
   const fs::path folder = fs::absolute(output).parent_path();
   std::error_code ignored;
   if (!fs::is_directory(folder, ignored)) {
-    throw Error(ExitCode::failed, output + ": the folder " + folder.string() + " does not exist");
+    throw RunError(output + ": the folder " + folder.string() + " does not exist");
   }
 }
 
@@ -136,14 +136,13 @@ config::record::Record simulate_record(const Arguments& arguments,
 void check_pressures(const Arguments& arguments, const simulate::Scenario& scenario) {
   if (!arguments.pressures) {
     if (!std::isnan(arguments.pressure_noise_Pa)) {
-      throw Error(ExitCode::usage, "--pressure-noise: needs --pressures");
+      throw UsageError("--pressure-noise: needs --pressures");
     }
     return;
   }
   if (std::isfinite(plant_sim::make_plant(scenario.model)->pressures().in_Pa)) return;
-  throw Error(ExitCode::bad_config, arguments.model + ": --pressures: plant " +
-                                        scenario.model.plant +
-                                        " has none; allowed: hydraulic_actuator");
+  throw ConfigError(arguments.model + ": --pressures: plant " + scenario.model.plant +
+                    " has none; allowed: hydraulic_actuator");
 }
 
 }  // namespace

@@ -46,10 +46,9 @@ train::Teaching teaching_of(const std::string& text) {
   }
   if (equals == std::string::npos || teaching.name.empty() ||
       teaching.name == fdi::Trained::kHealthy) {
-    throw config::schema::Error(config::schema::ExitCode::usage,
-                                "--class " + text +
-                                    ": is no class; allowed: NAME=RECORD, NAME+=RECORD (risen), "
-                                    "NAME-=RECORD (fallen)");
+    throw config::schema::UsageError("--class " + text +
+                                     ": is no class; allowed: NAME=RECORD, NAME+=RECORD (risen), "
+                                     "NAME-=RECORD (fallen)");
   }
   teaching.records.push_back(read(text.substr(equals + 1)));
   return teaching;

@@ -14,8 +14,7 @@
 namespace workbench::control {
 namespace {
 
-using config::schema::Error;
-using config::schema::ExitCode;
+using config::schema::RunError;
 
 constexpr timeval kPatience{3, 0};
 constexpr std::size_t kLongestAnswer = 1 << 20;
@@ -66,7 +65,7 @@ class Connection {
 
  private:
   [[noreturn]] void fail(const std::string& why) const {
-    throw Error(ExitCode::failed, "control socket " + path_ + ": " + why);
+    throw RunError("control socket " + path_ + ": " + why);
   }
   std::string path_;
   int file_ = -1;
@@ -84,7 +83,7 @@ nlohmann::ordered_json ask_daemon(const std::string& socket,
                      answer.contains(monitor::control::key::kState) &&
                      answer[monitor::control::key::kState].is_string();
   if (!whole) {
-    throw Error(ExitCode::failed, "control socket " + socket + ": the answer makes no sense");
+    throw RunError("control socket " + socket + ": the answer makes no sense");
   }
   return answer;
 }

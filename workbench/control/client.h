@@ -6,7 +6,7 @@
 
 namespace workbench::control {
 
-/// Sends one request and returns the answer. Throws config::schema::Error (exit 1) when no daemon
+/// Sends one request and returns the answer. Throws config::schema::RunError when no daemon
 /// answers there within some seconds.
 [[nodiscard]] nlohmann::ordered_json ask_daemon(const std::string& socket,
                                                 const nlohmann::ordered_json& request);

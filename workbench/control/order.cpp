@@ -9,8 +9,7 @@
 namespace workbench::control {
 namespace {
 
-using config::schema::Error;
-using config::schema::ExitCode;
+using config::schema::RunError;
 using Json = nlohmann::ordered_json;
 namespace protocol = monitor::control;
 
@@ -23,7 +22,7 @@ void write_json(const Json& answer, const std::string& file) {
   std::ofstream out(file);
   out << text;
   out.close();
-  if (!out) throw Error(ExitCode::failed, file + ": cannot be written");
+  if (!out) throw RunError(file + ": cannot be written");
 }
 
 }  // namespace
@@ -33,11 +32,10 @@ Json give_order(const Json& request, const OrderOptions& options) {
   if (!options.json.empty()) write_json(answer, options.json);
   if (answer.at(protocol::key::kOk).get<bool>()) return answer;
   const auto reason = answer.find(protocol::key::kReason);
-  throw Error(ExitCode::failed,
-              "refused: " +
-                  (reason != answer.end() && reason->is_string() ? reason->get<std::string>()
-                                                                 : std::string("no reason given")) +
-                  " (the state is " + answer.at(protocol::key::kState).get<std::string>() + ")");
+  throw RunError("refused: " +
+                 (reason != answer.end() && reason->is_string() ? reason->get<std::string>()
+                                                                : std::string("no reason given")) +
+                 " (the state is " + answer.at(protocol::key::kState).get<std::string>() + ")");
 }
 
 }  // namespace workbench::control

@@ -13,7 +13,7 @@ struct OrderOptions {
   std::string json;  ///< file for the answer, "-" for standard output, empty: none
 };
 
-/// The daemon's answer, written where --json says. Throws config::schema::Error (exit 1) when it is
+/// The daemon's answer, written where --json says. Throws config::schema::RunError when it is
 /// a refusal, or when no daemon answers.
 nlohmann::ordered_json give_order(const nlohmann::ordered_json& request,
                                   const OrderOptions& options);

@@ -21,9 +21,9 @@ struct Request {
   bool quiet = false;
 };
 
-/// Reads everything. Throws config::schema::Error: exit 2 for a hold-out that is fitted too or for
-/// outputs over inputs, 65 and 78 for files that cannot be used, 1 for outputs that could not be
-/// written in the end.
+/// Reads everything. Throws config::schema::UsageError for a hold-out that is fitted too or for
+/// outputs over inputs, DataError and ConfigError for files that cannot be used, 1 for outputs that
+/// could not be written in the end.
 [[nodiscard]] Outcome prepare(const Request& request);
 
 }  // namespace workbench::diagnose

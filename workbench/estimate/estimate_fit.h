@@ -47,7 +47,7 @@ struct EstimateResult {
 
 /// The errors are taken over the samples that were not fitted (those after fit_to, or else those
 /// before fit_from), or over all when all were fitted; a window's over the window. Each stretch
-/// between gaps starts a free run of its own. Throws schema::Error (exit 65) when the record is
+/// between gaps starts a free run of its own. Throws schema::DataError when the record is
 /// too short for the structure.
 [[nodiscard]] EstimateResult estimate_record(const config::record::Record& record,
                                              const EstimateOptions& options);

@@ -19,8 +19,8 @@ constexpr std::size_t kLongestName = 31;
 /// A variable of version 5 ends at 2 GiB.
 constexpr std::size_t kMostValues = ((std::size_t{1} << 31U) - 4096) / sizeof(double);
 
-config::schema::Error failed(const std::string& why) {
-  return {config::schema::ExitCode::failed, "a MAT file cannot be made: " + why};
+config::schema::RunError failed(const std::string& why) {
+  return config::schema::RunError("a MAT file cannot be made: " + why);
 }
 
 matvar_t* checked(matvar_t* variable) {

@@ -36,7 +36,7 @@ class MatValue {
 
 class MatWriter {
  public:
-  /// Throws config::schema::Error (exit 1) when the system gives no memory for a file.
+  /// Throws config::schema::RunError when the system gives no memory for a file.
   MatWriter();
   ~MatWriter();
   MatWriter(const MatWriter&) = delete;

@@ -13,8 +13,8 @@
 namespace workbench::exchange {
 namespace {
 
-using config::schema::Error;
-using config::schema::ExitCode;
+using config::schema::RunError;
+using config::schema::UsageError;
 
 bool is_port(const std::string& text) {
   int port = 0;
@@ -37,8 +37,7 @@ UdpAddress udp_address(const std::string& text) {
     }
   }
   if (address.host.empty() || !is_port(address.port)) {
-    throw Error(ExitCode::usage,
-                "--udp " + text + ": is no address; allowed: HOST:PORT, [IPV6]:PORT");
+    throw UsageError("--udp " + text + ": is no address; allowed: HOST:PORT, [IPV6]:PORT");
   }
   return address;
 }
@@ -49,7 +48,7 @@ UdpSender::UdpSender(const UdpAddress& address) {
   addrinfo* found = nullptr;
   const int error = getaddrinfo(address.host.c_str(), address.port.c_str(), &hints, &found);
   const std::string place = "--udp " + address.host + ": ";
-  if (error != 0) throw Error(ExitCode::failed, place + gai_strerror(error));
+  if (error != 0) throw RunError(place + gai_strerror(error));
   int why = 0;
   for (const addrinfo* a = found; a != nullptr && socket_ < 0; a = a->ai_next) {
     socket_ = socket(a->ai_family, a->ai_socktype | SOCK_CLOEXEC | SOCK_NONBLOCK, a->ai_protocol);
@@ -60,7 +59,7 @@ UdpSender::UdpSender(const UdpAddress& address) {
     socket_ = -1;
   }
   freeaddrinfo(found);
-  if (socket_ < 0) throw Error(ExitCode::failed, place + std::strerror(why));
+  if (socket_ < 0) throw RunError(place + std::strerror(why));
 }
 
 UdpSender::~UdpSender() { close(socket_); }

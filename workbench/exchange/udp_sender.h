@@ -11,13 +11,13 @@ struct UdpAddress {
   std::string port;
 };
 
-/// "HOST:PORT", "[ADDRESS]:PORT" for IPv6. Throws config::schema::Error (exit 2) for anything
+/// "HOST:PORT", "[ADDRESS]:PORT" for IPv6. Throws config::schema::UsageError for anything
 /// else, a port out of 1 to 65535 among it.
 [[nodiscard]] UdpAddress udp_address(const std::string& text);
 
 class UdpSender {
  public:
-  /// Throws config::schema::Error (exit 1) for a host that is not known.
+  /// Throws config::schema::RunError for a host that is not known.
   explicit UdpSender(const UdpAddress& address);
   ~UdpSender();
   UdpSender(const UdpSender&) = delete;

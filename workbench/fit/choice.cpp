@@ -16,8 +16,7 @@ namespace greybox = estimator::greybox;
 namespace {
 
 using config::schema::bad_config;
-using config::schema::Error;
-using config::schema::ExitCode;
+using config::schema::UsageError;
 using greybox::Known;
 using greybox::known_parameters;
 using greybox::names_worth_showing;
@@ -53,7 +52,7 @@ class Chooser {
     Choice choice;
     for (const std::size_t i : picked_) choice.searched.push_back(known_[i].search);
     if (choice.searched.empty()) {
-      throw Error(ExitCode::usage, "--free, --fix: leave nothing to fit");
+      throw UsageError("--free, --fix: leave nothing to fit");
     }
     choice.start = greybox::start_of(model_, choice.searched);
     return choice;
@@ -95,8 +94,8 @@ class Chooser {
   Known& subject(const std::string& option, const std::string& text, std::string& value) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos) {
-      throw Error(ExitCode::usage, option + " " + text + ": lacks an equals sign; allowed: name=" +
-                                       (option == "--prior" ? "mean+-sd" : "low:high"));
+      throw UsageError(option + " " + text + ": lacks an equals sign; allowed: name=" +
+                       (option == "--prior" ? "mean+-sd" : "low:high"));
     }
     const std::string name = text.substr(0, equals);
     value = text.substr(equals + 1);
@@ -128,9 +127,9 @@ class Chooser {
     if (relative) spread.pop_back();
     const double sd = number_in(spread) * (relative ? 0.01 * std::abs(mean) : 1.0);
     if (!std::isfinite(mean) || !(sd > 0.0)) {
-      throw Error(ExitCode::usage, "--prior " + text +
-                                       ": is no prior; allowed: name=mean+-sd with sd above 0 (or "
-                                       "in %), name=none");
+      throw UsageError("--prior " + text +
+                       ": is no prior; allowed: name=mean+-sd with sd above 0 (or "
+                       "in %), name=none");
     }
     SearchParameter& p = known.search;
     const bool positive = p.scale != Scale::linear;
@@ -155,9 +154,9 @@ class Chooser {
     const double high =
         colon == std::string::npos ? std::nan("") : end(value.substr(colon + 1), known.info.max);
     if (!(low < high)) {
-      throw Error(ExitCode::usage, "--bounds " + text +
-                                       ": are no bounds; allowed: name=low:high with low below "
-                                       "high (--fix name holds a value)");
+      throw UsageError("--bounds " + text +
+                       ": are no bounds; allowed: name=low:high with low below "
+                       "high (--fix name holds a value)");
     }
     if (low < known.info.min || high > known.info.max) {
       throw bad_config("--bounds " + known.name, "are wider than the parameter's range",

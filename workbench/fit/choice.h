@@ -29,8 +29,8 @@ struct Choice {
   Eigen::VectorXd start;
 };
 
-/// Throws config::schema::Error: exit 2 for a word that is not one of the above, 78 for an unknown
-/// parameter or a value that it cannot have.
+/// Throws config::schema::UsageError for a word that is not one of the above, ConfigError for an
+/// unknown parameter or a value that it cannot have.
 [[nodiscard]] Choice choose(const plant_sim::ModelFile& model, const Wishes& wishes);
 
 /// A finite number and nothing else; NaN otherwise.

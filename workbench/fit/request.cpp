@@ -18,8 +18,7 @@ namespace greybox = estimator::greybox;
 namespace {
 
 namespace fs = std::filesystem;
-using config::schema::Error;
-using config::schema::ExitCode;
+using config::schema::UsageError;
 using greybox::Evidence;
 using greybox::Measured;
 
@@ -83,8 +82,7 @@ void ignore(const std::string& text, Evidence& evidence, Eigen::VectorXd& mask) 
       colon == std::string::npos ? std::nan("") : number_in(span.substr(0, colon));
   const double to_s = colon == std::string::npos ? std::nan("") : number_in(span.substr(colon + 1));
   if (!(from_s < to_s)) {
-    throw Error(ExitCode::usage,
-                "--ignore " + text + ": is no span; allowed: from:to or RECORD@from:to, in s");
+    throw UsageError("--ignore " + text + ": is no span; allowed: from:to or RECORD@from:to, in s");
   }
   bool met = false;
   for (std::size_t r = 0; r < evidence.records.size(); ++r) {
@@ -96,15 +94,15 @@ void ignore(const std::string& text, Evidence& evidence, Eigen::VectorXd& mask) 
       met = true;
     }
   }
-  if (!met) throw Error(ExitCode::usage, "--ignore " + text + ": no sample lies there");
+  if (!met) throw UsageError("--ignore " + text + ": no sample lies there");
 }
 
 void weigh(const Request& request, greybox::Task& task) {
   Evidence& evidence = task.evidence;
   if (!request.weights.empty() && request.weights.size() != request.records.size()) {
-    throw Error(ExitCode::usage, "--weight: has " + std::to_string(request.weights.size()) +
-                                     " numbers; allowed: one for each of the " +
-                                     std::to_string(request.records.size()) + " records");
+    throw UsageError("--weight: has " + std::to_string(request.weights.size()) +
+                     " numbers; allowed: one for each of the " +
+                     std::to_string(request.records.size()) + " records");
   }
   Eigen::VectorXd mask = Eigen::VectorXd::Ones(evidence.size());
   for (const std::string& text : request.ignored) ignore(text, evidence, mask);
@@ -122,10 +120,10 @@ void weigh(const Request& request, greybox::Task& task) {
   }
   const auto least = static_cast<double>(10 * task.searched.size());
   if ((task.weights.array() > 0.0).cast<double>().sum() < least) {
-    throw Error(ExitCode::usage,
-                "--ignore, --weight, --fit: leave fewer than 10 samples for each "
-                "of the " +
-                    std::to_string(task.searched.size()) + " parameters");
+    throw UsageError(
+        "--ignore, --weight, --fit: leave fewer than 10 samples for each "
+        "of the " +
+        std::to_string(task.searched.size()) + " parameters");
   }
 }
 
@@ -211,9 +209,8 @@ Prepared prepare(const Request& request) {
     for (const std::string& note : record.notes) out.notes.push_back(record.name + ": " + note);
     note_saturation(record, out.notes);
     if (request.observer_per_s * record.sample_time_s >= 1.0) {
-      throw Error(ExitCode::usage, "--observer: is too fast for samples every " +
-                                       shown(record.sample_time_s) +
-                                       " s; allowed: below 1 / sample time");
+      throw UsageError("--observer: is too fast for samples every " + shown(record.sample_time_s) +
+                       " s; allowed: below 1 / sample time");
     }
   }
   out.noise_floor_m = task.evidence.noise_floor_m;

@@ -37,8 +37,8 @@ struct Prepared {
   std::string command;  ///< as it was typed
 };
 
-/// Reads everything. Throws config::schema::Error: exit 2 for contradictory options, 65 and 78 for
-/// files that cannot be used.
+/// Reads everything. Throws config::schema::UsageError for contradictory options, DataError and
+/// ConfigError for files that cannot be used.
 [[nodiscard]] Prepared prepare(const Request& request);
 
 }  // namespace workbench::fit

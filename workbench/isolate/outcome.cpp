@@ -24,8 +24,7 @@ namespace tracking = estimator::greybox::tracking;
 namespace {
 
 using config::record::Record;
-using config::schema::Error;
-using config::schema::ExitCode;
+using config::schema::UsageError;
 using config::units::number;
 
 /// A healthy error above so many noise floors, and a healthy value so far off the file's, are
@@ -49,7 +48,7 @@ Span span(const std::string& text) {
     const Span out{fit::number_in(text.substr(0, colon)), fit::number_in(text.substr(colon + 1))};
     if (out.from_s < out.to_s) return out;
   }
-  throw Error(ExitCode::usage, "--healthy " + text + ": is no span; allowed: from:to, in s");
+  throw UsageError("--healthy " + text + ": is no span; allowed: from:to, in s");
 }
 
 /// Null: the record has none of that name.
@@ -141,17 +140,16 @@ void check(const Request& request, const Record& record) {
   const double least_s = request.settings.window_s + tracking::kLead_s;
   const double length_s = static_cast<double>(record.size()) * record.sample_time_s;
   if (request.settings.window_s < kLeastSamples * record.sample_time_s) {
-    throw Error(ExitCode::usage, "--window: is too short for samples every " +
-                                     number("%.3g", record.sample_time_s) +
-                                     " s; allowed: 20 samples or more");
+    throw UsageError("--window: is too short for samples every " +
+                     number("%.3g", record.sample_time_s) + " s; allowed: 20 samples or more");
   }
   if (length_s < least_s) {
     throw config::schema::bad_data(record.name, "is too short: " + number("%.3g", length_s) + " s",
                                    "a window and its lead-in, " + number("%.3g", least_s) + " s");
   }
   if (request.settings.observer_per_s * record.sample_time_s >= 1.0) {
-    throw Error(ExitCode::usage, "--observer: is too fast for samples every " +
-                                     number("%.3g", record.sample_time_s) + " s");
+    throw UsageError("--observer: is too fast for samples every " +
+                     number("%.3g", record.sample_time_s) + " s");
   }
 }
 
@@ -267,7 +265,7 @@ Outcome isolate(const Request& request) {
   };
   if (request.healthy_rms_m > 0.0) {
     if (!request.learn.empty()) {
-      throw Error(ExitCode::usage, "--learn: nothing is learnt with --healthy-rms");
+      throw UsageError("--learn: nothing is learnt with --healthy-rms");
     }
     out.healthy = {request.healthy_rms_m, out.choice.file, {}};
   } else {

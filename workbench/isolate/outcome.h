@@ -52,8 +52,8 @@ struct Outcome {
   std::vector<std::string> notes;
 };
 
-/// Reads everything and tracks. Throws config::schema::Error: exit 2 for options, 65 and 78 for
-/// files that cannot be used.
+/// Reads everything and tracks. Throws config::schema::UsageError for options, DataError and
+/// ConfigError for files that cannot be used.
 [[nodiscard]] Outcome isolate(const Request& request);
 
 [[nodiscard]] std::string to_text(const Outcome& outcome, bool all_windows);

@@ -81,8 +81,7 @@ class Watcher final : public Listener {
 }  // namespace
 
 void watch(const plant_sim::ModelFile& model, const WatchOptions& options) {
-  using config::schema::Error;
-  using config::schema::ExitCode;
+  using config::schema::RunError;
   const cli::Ending ending(options.duration_s);
   Watcher watcher(model, options);
   {
@@ -90,12 +89,12 @@ void watch(const plant_sim::ModelFile& model, const WatchOptions& options) {
     while (!ending.reached() && std::cout) {
       if (feed.poll(std::chrono::milliseconds(100)) || cli::Ending::asked()) continue;
       if (options.url.starts_with("file:")) break;
-      throw Error(ExitCode::failed, "LCM cannot receive on \"" + options.url + "\" any more");
+      throw RunError("LCM cannot receive on \"" + options.url + "\" any more");
     }
   }
   watcher.end();
   if (watcher.empty() && !cli::Ending::asked()) {
-    throw Error(ExitCode::failed, "no samples came on \"" + options.url + "\"");
+    throw RunError("no samples came on \"" + options.url + "\"");
   }
 }
 

@@ -36,8 +36,7 @@ SampleFile::~SampleFile() {
 }
 
 void SampleFile::fail() const {
-  throw config::schema::Error(config::schema::ExitCode::failed,
-                              part_ + ": " + std::strerror(errno));
+  throw config::schema::RunError(part_ + ": " + std::strerror(errno));
 }
 
 void SampleFile::add(const spoolwatch::sample_t& s) {

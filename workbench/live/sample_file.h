@@ -18,7 +18,7 @@ namespace workbench::live {
 
 class SampleFile {
  public:
-  /// Throws config::schema::Error (exit 1) when it cannot be made.
+  /// Throws config::schema::RunError when it cannot be made.
   explicit SampleFile(std::string file);
   /// What is not finished stays as FILE.part.
   ~SampleFile();
@@ -33,7 +33,7 @@ class SampleFile {
   }
   /// Ticks ascend. A sample without a good position and command gives no row: a gap.
   void add(const spoolwatch::sample_t& sample);
-  /// Gives the file its name; without a row there is none. Throws config::schema::Error (exit 1).
+  /// Gives the file its name; without a row there is none. Throws config::schema::RunError.
   void finish();
 
   [[nodiscard]] std::int64_t rows() const noexcept { return rows_; }

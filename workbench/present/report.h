@@ -103,7 +103,7 @@ struct Report {
 /// The whole page. Long series are thinned for drawing, which their caption then says.
 [[nodiscard]] std::string render(const Report& report);
 
-/// Writes render(report) complete or not at all. Throws config::schema::Error (exit 1).
+/// Writes render(report) complete or not at all. Throws config::schema::RunError.
 void write_report(const Report& report, const std::filesystem::path& file);
 
 }  // namespace workbench::present

@@ -10,8 +10,7 @@
 namespace workbench::promotion {
 namespace {
 
-using config::schema::Error;
-using config::schema::ExitCode;
+using config::schema::RunError;
 using Json = nlohmann::ordered_json;
 namespace protocol = monitor::control;
 
@@ -29,7 +28,7 @@ RunningDaemon::RunningDaemon(std::string socket) : socket_(std::move(socket)) {
   recorder_ = text_of(status, "recorder_folder");
   const auto sample_time = status.find("sample_time_s");
   if (config_file_.empty() || sample_time == status.end() || !sample_time->is_number()) {
-    throw Error(ExitCode::failed, socket_ + ": the daemon does not say by which file it runs");
+    throw RunError(socket_ + ": the daemon does not say by which file it runs");
   }
   sample_time_s_ = sample_time->get<double>();
   const auto document = config::schema::Document::load(config_file_);
@@ -54,9 +53,9 @@ void RunningDaemon::check() const {
   const std::string wanted = config::schema::hash_text(
       config::schema::hash_of(estimator::fdi::whole_text(effective, sample_time_s_)));
   if (text_of(status, "rules_hash") == wanted) return;
-  throw Error(ExitCode::failed, "the daemon runs by other rules than " + config_file_ +
-                                    " holds now (edited since, or --set); allowed: the same, "
-                                    "after `spoolwatch reload`");
+  throw RunError("the daemon runs by other rules than " + config_file_ +
+                 " holds now (edited since, or --set); allowed: the same, "
+                 "after `spoolwatch reload`");
 }
 
 void RunningDaemon::note(const std::string& text) const {

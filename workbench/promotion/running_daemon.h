@@ -20,10 +20,10 @@ class RunningDaemon {
   /// for one without [model] file and bands_file.
   explicit RunningDaemon(std::string socket);
 
-  /// A line for the audit file. Throws config::schema::Error (exit 1) when that is not permitted.
+  /// A line for the audit file. Throws config::schema::RunError when that is not permitted.
   void note(const std::string& text) const;
   /// Lets it read its configuration again and checks that it runs by it. Throws
-  /// config::schema::Error (exit 1).
+  /// config::schema::RunError.
   void reload() const;
 
   [[nodiscard]] const std::string& config_file() const noexcept { return config_file_; }

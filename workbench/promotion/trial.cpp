@@ -16,8 +16,8 @@ namespace validation = estimator::greybox::validation;
 namespace {
 
 namespace fs = std::filesystem;
-using config::schema::Error;
-using config::schema::ExitCode;
+using config::schema::DataError;
+using config::schema::RunError;
 
 /// Alarms that come so near are the same one, as in `backtest`.
 constexpr double kTolerance_s = 10.0;
@@ -51,8 +51,7 @@ ModelTrial try_model(const plant_sim::ModelFile& before, const plant_sim::ModelF
       squares_after += n * new_one.rms_m * new_one.rms_m;
       samples += n;
       trial.floor_m = std::fmin(trial.floor_m, new_one.noise_floor_m);
-    } catch (const Error& e) {
-      if (e.exit_code() != static_cast<int>(ExitCode::bad_data)) throw;
+    } catch (const DataError& e) {
       trial.notes.emplace_back(e.what());
     }
   }
@@ -100,14 +99,12 @@ std::vector<std::string> healthy_logs(const RunningDaemon& daemon) {
       if (runs.front().after.empty() && runs.front().before.empty()) {
         healthy.push_back(log.string());
       }
-    } catch (const Error& e) {
-      if (e.exit_code() != static_cast<int>(ExitCode::bad_data)) throw;
+    } catch (const DataError&) {  // a log that cannot be replayed is no healthy one
     }
   }
   if (!healthy.empty()) return healthy;
-  throw Error(ExitCode::failed, "no log without an alarm in the recorder's folder \"" +
-                                    daemon.recorder_folder().string() +
-                                    "\"; allowed: healthy ones by --record");
+  throw RunError("no log without an alarm in the recorder's folder \"" +
+                 daemon.recorder_folder().string() + "\"; allowed: healthy ones by --record");
 }
 
 }  // namespace workbench::promotion

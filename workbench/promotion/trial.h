@@ -22,7 +22,7 @@ struct ModelTrial {
   [[nodiscard]] bool worse() const noexcept { return after_rms_m > 1.01 * before_rms_m; }
 };
 
-/// Throws config::schema::Error (exit 65) when no record is left.
+/// Throws config::schema::DataError when no record is left.
 [[nodiscard]] ModelTrial try_model(const plant_sim::ModelFile& before,
                                    const plant_sim::ModelFile& after,
                                    const std::vector<config::record::Record>& records);
@@ -34,7 +34,7 @@ struct ModelTrial {
                                                   const std::vector<std::string>& files);
 
 /// The newest logs of the daemon's recorder on which its rules tell no alarm. Throws
-/// config::schema::Error (exit 1) when there is none.
+/// config::schema::RunError when there is none.
 [[nodiscard]] std::vector<std::string> healthy_logs(const RunningDaemon& daemon);
 
 }  // namespace workbench::promotion

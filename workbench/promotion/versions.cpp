@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using config::schema::Error;
-using config::schema::ExitCode;
+using config::schema::RunError;
 
 bool there(const fs::path& file) {
   std::error_code ignored;
@@ -24,8 +24,8 @@ bool there(const fs::path& file) {
 std::string read_whole(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::string text(std::istreambuf_iterator<char>(in), {});
-  if (!in && !in.eof()) throw Error(ExitCode::failed, file.string() + ": cannot be read");
-  if (!in.is_open()) throw Error(ExitCode::failed, file.string() + ": cannot be read");
+  if (!in && !in.eof()) throw RunError(file.string() + ": cannot be read");
+  if (!in.is_open()) throw RunError(file.string() + ": cannot be read");
   return text;
 }
 

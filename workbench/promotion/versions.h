@@ -22,14 +22,14 @@ struct Replacement {
 [[nodiscard]] std::filesystem::path version_of(const std::filesystem::path& file, int version);
 
 /// Keeps the files as a new version and replaces them, each whole or not at all. Returns the
-/// version. Throws config::schema::Error (exit 1); then the files are as they were.
+/// version. Throws config::schema::RunError; then the files are as they were.
 int replace(const std::vector<Replacement>& replacements);
 
 /// Brings a version back; it is used up, and what was in use becomes FILE.withdrawn. Throws
-/// config::schema::Error (exit 1).
+/// config::schema::RunError.
 void bring_back(const std::vector<std::filesystem::path>& files, int version);
 
-/// The file's bytes. Throws config::schema::Error (exit 1).
+/// The file's bytes. Throws config::schema::RunError.
 [[nodiscard]] std::string read_whole(const std::filesystem::path& file);
 
 }  // namespace workbench::promotion

@@ -23,7 +23,7 @@ struct Rules {
   estimator::fdi::PipelineConfig pipeline{tracker::source_kinds()};
 };
 
-/// Throws config::schema::Error (exit 78).
+/// Throws config::schema::ConfigError.
 [[nodiscard]] Rules read_rules(const std::string& file);
 
 /// One run of the daemon, or one CSV record.
@@ -38,7 +38,7 @@ struct BacktestRun {
 };
 
 /// `logs`: LCM event logs, folders of them, records. Logs of one run are put together. `old_rules`
-/// empty: what was recorded. Throws config::schema::Error (exit 65, 78).
+/// empty: what was recorded. Throws config::schema::DataError ( 78).
 [[nodiscard]] std::vector<BacktestRun> run_backtest(const Rules& new_rules,
                                                     const std::optional<Rules>& old_rules,
                                                     const std::vector<std::string>& logs);

@@ -28,7 +28,7 @@ class SampleHandler : public config::messages::MessageHandler {
 };
 
 /// Messages on channels of `prefix`, health aside; a last event that is cut off is left out. Throws
-/// config::schema::Error (exit 65) for a file that cannot be read or a message of another type.
+/// config::schema::DataError for a file that cannot be read or a message of another type.
 void walk_log(const std::string& file, const std::string& prefix,
               config::messages::MessageHandler& handler);
 

@@ -25,7 +25,7 @@ struct Pack {
   std::int64_t tick = 0;
 };
 
-/// Throws config::schema::Error: exit 65 for what is no such folder, damaged, or cannot be
+/// Throws config::schema::DataError for what is no such folder, damaged, or cannot be
 /// replayed.
 [[nodiscard]] Pack read_pack(const std::filesystem::path& folder);
 

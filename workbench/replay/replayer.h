@@ -31,7 +31,7 @@ struct ReplayOutcome {
   }
 };
 
-/// Throws config::schema::Error (exit 65, 78) for a folder that is damaged.
+/// Throws config::schema::DataError ( 78) for a folder that is damaged.
 [[nodiscard]] ReplayOutcome replay(const Pack& pack);
 
 }  // namespace workbench::replay

@@ -30,8 +30,7 @@ class Unpacked {
   Unpacked() {
     std::string name = (fs::temp_directory_path() / "spoolwatch-scorecard-XXXXXX").string();
     if (mkdtemp(name.data()) == nullptr) {
-      throw config::schema::Error(config::schema::ExitCode::failed,
-                                  name + ": cannot be made: " + std::strerror(errno));
+      throw config::schema::RunError(name + ": cannot be made: " + std::strerror(errno));
     }
     folder_ = name;
     for (const char* sub : {"models", "scorecard"}) fs::create_directory(folder_ / sub);
@@ -120,9 +119,8 @@ Method load_method(const std::string& file) {
   }
   try {  // before hours are simulated for nothing
     const fdi::Pipeline checked(limited, simulate::kSampleTime_s);
-  } catch (const config::schema::Error& error) {
-    throw config::schema::Error(static_cast<config::schema::ExitCode>(error.exit_code()),
-                                file + ": " + error.what());
+  } catch (const config::schema::ConfigError& error) {
+    throw config::schema::ConfigError(file + ": " + error.what());
   }
   return method;
 }

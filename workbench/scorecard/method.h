@@ -30,7 +30,7 @@ struct Method {
   void visit(config::schema::Visitor& v);
 };
 
-/// A file, or the name of a shipped method. Throws config::schema::Error (exit 78).
+/// A file, or the name of a shipped method. Throws config::schema::ConfigError.
 [[nodiscard]] Method load_method(const std::string& file);
 
 /// Records of one motion to learn from.

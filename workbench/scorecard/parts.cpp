@@ -9,8 +9,8 @@
 namespace workbench::scorecard {
 namespace {
 
-config::schema::Error not_in_plan(const std::string& what, const std::string& allowed) {
-  return {config::schema::ExitCode::usage, what + ": is not in the plan; allowed: " + allowed};
+config::schema::UsageError not_in_plan(const std::string& what, const std::string& allowed) {
+  return config::schema::UsageError(what + ": is not in the plan; allowed: " + allowed);
 }
 
 constexpr double kHour_s = 3600.0;

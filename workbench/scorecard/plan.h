@@ -83,7 +83,7 @@ struct Bench {
   std::string text;            ///< plan and model as they are in effect: what results depend on
 };
 
-/// `file` empty: the shipped one. Throws config::schema::Error (exit 78).
+/// `file` empty: the shipped one. Throws config::schema::ConfigError.
 [[nodiscard]] Bench load_bench(const std::string& file);
 
 }  // namespace workbench::scorecard

@@ -28,8 +28,8 @@ struct Injected {
                                          const Benign& benign);
 
 /// In closed loop at 200 Hz. Two more rod sensors of the same kind read along (sample.rod_2_m,
-/// sample.rod_3_m), which no sensor fault touches, and the pressures. Throws config::schema::Error
-/// (exit 78) for a change that the rig does not take.
+/// sample.rod_3_m), which no sensor fault touches, and the pressures. Throws
+/// config::schema::ConfigError for a change that the rig does not take.
 [[nodiscard]] Samples run(const simulate::Scenario& scenario, double duration_s,
                           std::uint64_t seed);
 

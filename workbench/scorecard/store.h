@@ -20,7 +20,7 @@ class Store {
 
   [[nodiscard]] const nlohmann::json* find(const std::string& part,
                                            const std::string& method) const;
-  /// Saved at once when the last time is some seconds ago. Throws config::schema::Error (exit 1).
+  /// Saved at once when the last time is some seconds ago. Throws config::schema::RunError.
   void put(const std::string& part, const std::string& method, nlohmann::json result);
   void save();
 

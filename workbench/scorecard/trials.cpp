@@ -104,8 +104,7 @@ const Trials::Trained& Trials::trained(std::size_t motion) {
       estimator::fdi::PipelineConfig config = method.pipeline;
       try {
         config = learn(method, taught);
-      } catch (const config::schema::Error& error) {
-        if (error.exit_code() != static_cast<int>(config::schema::ExitCode::bad_data)) throw;
+      } catch (const config::schema::DataError& error) {
         why = error.what();
       }
       out.configs.push_back(std::move(config));

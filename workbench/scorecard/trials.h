@@ -54,7 +54,7 @@ struct Part {
   }
 };
 
-/// Parts of what is asked for. Throws config::schema::Error (exit 2) for an unknown name.
+/// Parts of what is asked for. Throws config::schema::UsageError for an unknown name.
 [[nodiscard]] std::vector<Part> parts_of(const Bench& bench, const Scope& scope);
 
 class Trials {

@@ -43,11 +43,11 @@ Candidate network(int n, int m, int delay, int hidden) {
   return {named.text(), options};
 }
 
-config::schema::Error unknown(const std::string& name) {
-  return {config::schema::ExitCode::usage,
-          "--structures: unknown \"" + name +
-              "\"; allowed: arxNMK, armaxNMCK, oeMFK, bjMCDFK, ssN, n4sidN (N 1 to 9), "
-              "narxNMK/H (H 1 to 20 neurons)"};
+config::schema::UsageError unknown(const std::string& name) {
+  return config::schema::UsageError(
+      "--structures: unknown \"" + name +
+      "\"; allowed: arxNMK, armaxNMCK, oeMFK, bjMCDFK, ssN, n4sidN (N 1 to 9), "
+      "narxNMK/H (H 1 to 20 neurons)");
 }
 
 /// The number after `prefix`, 1 to `most`; 0 otherwise.

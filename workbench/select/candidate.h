@@ -30,7 +30,7 @@ struct Candidate {
 
 /// One or more of every family.
 [[nodiscard]] std::vector<Candidate> usual_candidates(int delay, bool constant);
-/// Reads a name as above; state spaces and networks have `delay`. Throws schema::Error (usage).
+/// Reads a name as above; state spaces and networks have `delay`. Throws schema::UsageError.
 [[nodiscard]] Candidate parse_candidate(const std::string& name, int delay, bool constant);
 
 struct Fitted {

@@ -101,8 +101,8 @@ struct Progress {
   std::size_t of = 0;
 };
 
-/// Throws config::schema::Error: exit 65 for a record that cannot be compared on, 2 for a wish that
-/// cannot be granted.
+/// Throws config::schema::DataError for a record that cannot be compared on, UsageError for a wish
+/// that cannot be granted.
 [[nodiscard]] Outcome compare_structures(const Request& request,
                                          const std::function<void(const Progress&)>& progress,
                                          const std::function<bool()>& cancel);

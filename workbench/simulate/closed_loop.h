@@ -33,7 +33,7 @@ struct LoopRow {
 
 class ClosedLoop {
  public:
-  /// Throws config::schema::Error (exit 78) for a bad reference file, fault or step.
+  /// Throws config::schema::ConfigError for a bad reference file, fault or step.
   ClosedLoop(const Scenario& scenario, std::uint64_t seed);
 
   /// The next sample; the plant then moves on by one period.

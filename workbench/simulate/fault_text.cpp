@@ -20,10 +20,9 @@ bool parse_number(std::string_view text, double& value) {
 
 plant_sim::Change parse_fault(const std::string& text) {
   const auto refuse = [&] {
-    return config::schema::Error(config::schema::ExitCode::usage,
-                                 "--fault " + text +
-                                     ": is no fault; allowed: PARAMETER=VALUE@SECONDS or "
-                                     "PARAMETER*FACTOR@SECONDS, then +SECONDS for a ramp");
+    return config::schema::UsageError("--fault " + text +
+                                      ": is no fault; allowed: PARAMETER=VALUE@SECONDS or "
+                                      "PARAMETER*FACTOR@SECONDS, then +SECONDS for a ramp");
   };
   const std::size_t mark = text.find_first_of("=*");
   const std::size_t at = text.find('@');

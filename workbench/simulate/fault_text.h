@@ -9,7 +9,7 @@
 
 namespace workbench::simulate {
 
-/// Throws config::schema::Error (exit 2) when the text is not of that form.
+/// Throws config::schema::UsageError when the text is not of that form.
 [[nodiscard]] plant_sim::Change parse_fault(const std::string& text);
 
 }  // namespace workbench::simulate

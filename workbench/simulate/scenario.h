@@ -46,7 +46,7 @@ struct Scenario {
   void visit(config::schema::Visitor& v);
 };
 
-/// Throws config::schema::Error (exit 78) for an unknown key or a bad value.
+/// Throws config::schema::ConfigError for an unknown key or a bad value.
 [[nodiscard]] Scenario read_scenario(const config::schema::Document& document);
 
 }  // namespace workbench::simulate

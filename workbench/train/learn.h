@@ -31,14 +31,14 @@ struct Teaching {
 /// Block means, one row a block, record by record.
 using Blocks = std::vector<std::vector<std::vector<double>>>;
 
-/// Of n blocks of d values: what a TrainedClass says. Throws schema::Error (exit 65) at `where` for
+/// Of n blocks of d values: what a TrainedClass says. Throws schema::DataError at `where` for
 /// fewer than twenty, or than three for each value.
 [[nodiscard]] estimator::fdi::TrainedClass summarise(const Blocks& blocks, const Teaching& teaching,
                                                      const std::string& where);
 
 /// `file`: of the configuration, for messages. The first of `teachings` is healthy; sources that
-/// need no classes learn from that alone. Throws schema::Error: exit 78 when nothing in the
-/// configuration is trained, 65 for records too short or of different sample times.
+/// need no classes learn from that alone. Throws schema::ConfigError when nothing in the
+/// configuration is trained, DataError for records too short or of different sample times.
 [[nodiscard]] estimator::fdi::Trained learn(const estimator::fdi::PipelineConfig& pipeline,
                                             const std::vector<Teaching>& teachings,
                                             const std::string& rig_id, const std::string& file);

@@ -20,13 +20,13 @@ struct LearnOptions {
   double period_s = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The quantities of bands without limits, or else of all bands. Throws config::schema::Error
-/// (exit 78) when there is none.
+/// The quantities of bands without limits, or else of all bands. Throws config::schema::ConfigError
+/// when there is none.
 [[nodiscard]] std::vector<std::string> wanted_quantities(
     const estimator::fdi::PipelineConfig& pipeline, const std::string& file);
 
 /// Each record is run through estimators that begin anew; all of one sample time. At least one
-/// record. Throws config::schema::Error: exit 78 for a quantity that nothing estimates, 65 for
+/// record. Throws config::schema::ConfigError for a quantity that nothing estimates, DataError for
 /// records too short or without valid estimates.
 [[nodiscard]] estimator::fdi::LearnedBands learn_bands(
     const estimator::fdi::PipelineConfig& pipeline, const std::vector<std::string>& quantities,

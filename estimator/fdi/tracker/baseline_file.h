@@ -41,7 +41,7 @@ struct HealthyFile {
                                        const greybox::tracking::Settings& settings,
                                        const greybox::tracking::Healthy& healthy);
 
-/// Throws config::schema::Error: exit 78 for a file of another version, model, window, observer,
+/// Throws config::schema::ConfigError for a file of another version, model, window, observer,
 /// sample time, rig (where both are known) or list of tracked parameters, whatever its order: what
 /// one of them was found to be depends on which others were free.
 [[nodiscard]] HealthyFile read_healthy(const std::filesystem::path& file,

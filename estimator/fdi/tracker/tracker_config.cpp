@@ -81,9 +81,8 @@ void TrackerConfig::load(const estimator::fdi::Loading& loading) {
   try {
     learnt = read_healthy(loading.folder / healthy, read, settings, choice, loading.sample_time_s,
                           loading.rig_id);
-  } catch (const config::schema::Error& error) {
-    throw config::schema::Error(static_cast<config::schema::ExitCode>(error.exit_code()),
-                                where() + ": healthy: " + error.what());
+  } catch (const config::schema::ConfigError& error) {
+    throw config::schema::ConfigError(where() + ": healthy: " + error.what());
   }
   const greybox::tracking::Healthy known = healthy_of(learnt, choice);
   learnt.values.clear();

@@ -23,7 +23,7 @@ struct Healthy {
 [[nodiscard]] bool teaches(const Window& window, const Choice& choice);
 
 /// The medians over the windows of a record without a fault; what is not tracked is as in the file.
-/// Throws config::schema::Error (exit 65) when none is usable.
+/// Throws config::schema::DataError when none is usable.
 [[nodiscard]] Healthy learn(const std::vector<Window>& windows, const Choice& choice,
                             double noise_floor_m, const std::string& where);
 

@@ -36,7 +36,7 @@ class SlowChange {
  public:
   static constexpr double kGain = 0.2;
 
-  /// Throws config::schema::Error (exit 78) that begins with `where` for one that is not tracked.
+  /// Throws config::schema::ConfigError that begins with `where` for one that is not tracked.
   SlowChange(const Choice& choice, const Following& following, const std::string& where = "follow");
 
   /// Search values of the healthy rig, of every parameter.

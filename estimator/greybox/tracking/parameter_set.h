@@ -25,7 +25,7 @@ struct Choice {
   [[nodiscard]] double supply_Pa() const;
 };
 
-/// `lists` of names as in model files, by comma. Throws config::schema::Error (exit 78) that begins
+/// `lists` of names as in model files, by comma. Throws config::schema::ConfigError that begins
 /// with `option` for an unknown name.
 [[nodiscard]] Choice choose(const plant_sim::ModelFile& model,
                             const std::vector<std::string>& lists, const std::string& option);

@@ -61,8 +61,8 @@ struct Comparison {
 /// An error of up to this many noise floors counts as noise.
 inline constexpr double kAtFloor = 1.15;
 
-/// Throws config::schema::Error: exit 65 for a record without motion, 78 for a model that cannot be
-/// built. Observer gain in 1/s; above 0 and below 1 / sample time.
+/// Throws config::schema::DataError for a record without motion, ConfigError for a model that
+/// cannot be built. Observer gain in 1/s; above 0 and below 1 / sample time.
 [[nodiscard]] Comparison compare(const plant_sim::ModelFile& model, const Measured& record,
                                  double observer_per_s = kObserver_per_s);
 

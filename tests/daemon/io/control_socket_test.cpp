@@ -12,7 +12,7 @@
 #include <cerrno>
 #include <fstream>
 
-#include "config/schema/error.h"
+#include "config/schema/exit_code.h"
 #include "daemon/control/protocol.h"
 
 namespace monitor::io {
@@ -66,7 +66,7 @@ class ControlSocketTest : public testing::Test {
     try {
       const ControlSocket socket(config_, "rig.toml");
     } catch (const config::schema::Error& e) {
-      EXPECT_EQ(e.exit_code(), exit_code);
+      EXPECT_EQ(config::schema::exit_code_of(e), exit_code);
       return e.what();
     }
     return "accepted";

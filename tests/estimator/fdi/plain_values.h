@@ -68,8 +68,8 @@ class PlainValues final : public estimator::fdi::Events {
 inline std::string refusal(const std::string& rules) {
   try {
     estimator::fdi::Pipeline(read_rules(rules), 1.0);
-  } catch (const config::schema::Error& error) {
-    return error.exit_code() == 78 ? error.what() : "another exit code";
+  } catch (const config::schema::ConfigError& error) {
+    return error.what();
   }
   return "";
 }

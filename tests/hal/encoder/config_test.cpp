@@ -7,8 +7,8 @@
 namespace hal::encoder {
 namespace {
 
+using config::schema::ConfigError;
 using config::schema::Document;
-using config::schema::Error;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
@@ -26,8 +26,7 @@ EncoderConfig read(const std::string& text) {
 std::string complaint(const std::string& more, const std::string& table = kTable) {
   try {
     read(table + more).check("rig.toml");
-  } catch (const Error& e) {
-    EXPECT_EQ(e.exit_code(), 78);
+  } catch (const ConfigError& e) {
     return e.what();
   }
   return "";
@@ -84,8 +83,7 @@ TEST(EncoderBackend, RefusesAChipThatThereIsNot) {
   try {
     const Offer offer = backend.open({"rig.toml", ".", 0.005, 0.0});
     FAIL() << "opened";
-  } catch (const Error& e) {
-    EXPECT_EQ(e.exit_code(), 78);
+  } catch (const config::schema::DeviceUnavailable& e) {
     EXPECT_THAT(e.what(), AllOf(HasSubstr("rig.toml: [encoder] chip"),
                                 HasSubstr("/dev/gpiochip_none"), HasSubstr("allowed")));
   }

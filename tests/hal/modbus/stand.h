@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "config/schema/document.h"
-#include "config/schema/error.h"
+#include "config/schema/exit_code.h"
 #include "hal/device_thread.h"
 #include "hal/modbus/modbus.h"
 
@@ -33,7 +33,7 @@ inline std::string refusal_of(const std::string& text, double null_V = 0.0, int 
   try {
     (void)open_text(text, null_V);
   } catch (const config::schema::Error& e) {
-    EXPECT_EQ(e.exit_code(), exit_code);
+    EXPECT_EQ(config::schema::exit_code_of(e), exit_code);
     EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos) << "more than one line";
     return e.what();
   }

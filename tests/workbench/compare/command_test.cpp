@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "config/record/record.h"
-#include "config/schema/error.h"
+#include "config/schema/exit_code.h"
 #include "tests/workbench/compare/servo_record.h"
 #include "tests/workbench/run_command.h"
 
@@ -68,7 +68,7 @@ class CompareCommand : public testing::Test {
       run(arguments);
       ADD_FAILURE() << "accepted: " << saying;
     } catch (const config::schema::Error& error) {
-      EXPECT_EQ(error.exit_code(), code) << error.what();
+      EXPECT_EQ(config::schema::exit_code_of(error), code) << error.what();
       EXPECT_THAT(error.what(), HasSubstr(saying));
       EXPECT_THAT(error.what(), testing::Not(HasSubstr("\n")));
     }
@@ -155,7 +155,7 @@ TEST_F(CompareCommand, RefusesToWriteOverWhatItReadsOrTwiceToOneFile) {
       run(arguments);
       ADD_FAILURE() << "accepted: " << outputs[1];
     } catch (const config::schema::Error& error) {
-      EXPECT_EQ(error.exit_code(), code) << error.what();
+      EXPECT_EQ(config::schema::exit_code_of(error), code) << error.what();
     }
   };
   refused({"--json", record}, 2);

@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include "config/schema/error.h"
+#include "config/schema/exit_code.h"
 #include "tests/workbench/diagnose/servo_bench.h"
 
 namespace workbench::diagnose {
@@ -24,7 +24,7 @@ class DiagnoseRequest : public testing::Test, public ServoBench {
       (void)prepare(request_);
       ADD_FAILURE() << "is taken";
     } catch (const Error& error) {
-      EXPECT_EQ(error.exit_code(), exit_code) << error.what();
+      EXPECT_EQ(config::schema::exit_code_of(error), exit_code) << error.what();
       EXPECT_THAT(error.what(), HasSubstr(words));
       EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
     }

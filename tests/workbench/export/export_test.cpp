@@ -10,7 +10,7 @@
 #include <string>
 
 #include "config/record/record.h"
-#include "config/schema/error.h"
+#include "config/schema/exit_code.h"
 #include "daemon/io/publisher.h"
 #include "daemon/io/recorder.h"
 #include "estimator/fdi/pipeline.h"
@@ -50,7 +50,7 @@ class ExportTest : public testing::Test {
     try {
       action();
     } catch (const config::schema::Error& error) {
-      EXPECT_EQ(error.exit_code(), exit_code);
+      EXPECT_EQ(config::schema::exit_code_of(error), exit_code);
       return error.what();
     }
     return "no error";

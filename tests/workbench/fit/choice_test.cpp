@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "config/schema/error.h"
+#include "config/schema/exit_code.h"
 
 namespace workbench::fit {
 namespace {
@@ -27,7 +27,7 @@ std::string refusal(const Wishes& wishes, int exit_code) {
   try {
     (void)choose(plant_sim::load_model(kModels + "rig_2000psi.toml"), wishes);
   } catch (const config::schema::Error& error) {
-    EXPECT_EQ(error.exit_code(), exit_code) << error.what();
+    EXPECT_EQ(config::schema::exit_code_of(error), exit_code) << error.what();
     EXPECT_THAT(error.what(), Not(HasSubstr("\n")));
     return error.what();
   }

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "config/schema/error.h"
+#include "config/schema/exit_code.h"
 #include "plant_sim/model_file.h"
 #include "tests/truth/case.h"
 #include "tests/truth/rig.h"
@@ -57,7 +57,7 @@ class FitTest : public testing::Test {
     try {
       run_command(workbench::cli::add_fit, std::move(arguments));
     } catch (const config::schema::Error& error) {
-      EXPECT_EQ(error.exit_code(), exit_code) << error.what();
+      EXPECT_EQ(config::schema::exit_code_of(error), exit_code) << error.what();
       said = error.what();
     }
     EXPECT_EQ(testing::internal::GetCapturedStdout(), "");

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "config/schema/error.h"
+#include "config/schema/exit_code.h"
 #include "estimator/fdi/tracker/baseline_file.h"
 #include "tests/daemon/tracking/tracked.h"
 #include "tests/truth/case.h"
@@ -45,7 +45,7 @@ class IsolateCommand : public testing::Test {
       run(more);
     } catch (const config::schema::Error& error) {
       line = error.what();
-      return error.exit_code();
+      return config::schema::exit_code_of(error);
     }
     return 0;
   }

@@ -61,8 +61,7 @@ TEST(Measured, RefusesLessThanTwoSecondsOfConnectedSamples) {
   try {
     (void)greybox::measured(record(390, {95, 190, 285}));  // four times just under a second
     FAIL();
-  } catch (const config::schema::Error& error) {
-    EXPECT_EQ(error.exit_code(), 65);
+  } catch (const config::schema::DataError& error) {
     EXPECT_THAT(error.what(), HasSubstr("too short: of 3.9 s in 4 segments, the longest 1.05 s"));
   }
   try {
@@ -79,8 +78,7 @@ TEST(Measured, RefusesSamplesFarApart) {
   try {
     (void)greybox::measured(slow);
     FAIL();
-  } catch (const config::schema::Error& error) {
-    EXPECT_EQ(error.exit_code(), 65);
+  } catch (const config::schema::DataError& error) {
     EXPECT_THAT(error.what(), HasSubstr("is sampled every 0.5 s; allowed: every 0.25 s or faster"));
   }
 }

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "config/schema/error.h"
+#include "config/schema/exit_code.h"
 #include "tests/workbench/report/page_check.h"
 #include "tests/workbench/run_command.h"
 
@@ -95,7 +95,7 @@ class ScorecardCommand : public testing::Test {
     try {
       run(arguments);
     } catch (const config::schema::Error& error) {
-      code_ = error.exit_code();
+      code_ = config::schema::exit_code_of(error);
       return error.what();
     }
     return "";

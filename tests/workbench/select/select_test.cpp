@@ -11,7 +11,7 @@
 #include <stdexcept>
 
 #include "config/record/record.h"
-#include "config/schema/error.h"
+#include "config/schema/exit_code.h"
 #include "tests/estimator/structures/data.h"
 #include "tests/workbench/run_command.h"
 #include "workbench/select/outcome.h"
@@ -71,7 +71,7 @@ class Select : public testing::Test {
       run(arguments);
     } catch (const config::schema::Error& error) {
       line = error.what();
-      return error.exit_code();
+      return config::schema::exit_code_of(error);
     }
     return 0;
   }

@@ -105,8 +105,8 @@ class Train : public testing::Test {
   std::string refusal(const std::string& rig_id = "small", double sample_time_s = 0.005) {
     try {
       (void)loaded(rig_id, sample_time_s);
-    } catch (const config::schema::Error& error) {
-      return error.exit_code() == 78 ? error.what() : "another exit code";
+    } catch (const config::schema::ConfigError& error) {
+      return error.what();
     }
     return "";
   }
