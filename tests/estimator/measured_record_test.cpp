@@ -52,7 +52,7 @@ TEST(MeasuredRecord, GivesTheReferenceErrorsInOneStepAndFreeRun) {
   for (int order = 1; order <= 4; ++order) {
     const Structure s{order, order, 1, true};
     const Estimate fit = fit_batch(s, u_V.first(half), y_m.first(half));
-    ASSERT_TRUE(fit.valid) << s.text() << ": " << text(fit.reason);
+    ASSERT_TRUE(fit.valid) << s.text() << ": " << to_string(fit.reason);
     const std::span theta(fit.value.data(), static_cast<std::size_t>(fit.size));
     const double one_step_mm =
         1e3 * summarize(one_step_errors(s, theta, u_V.subspan(half), y_m.subspan(half))).rms_m;
