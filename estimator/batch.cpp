@@ -4,17 +4,17 @@
 #include <cassert>
 #include <cmath>
 
+#include "estimator/incremental_qr.h"
 #include "estimator/solve.h"
-#include "estimator/tall.h"
 
 namespace estimator {
 namespace {
 
 /// Adds to `factor` the rows whose targets are [first, end); the samples before them are there.
 void add_rows(const Structure& structure, const double* u_V, const double* y_m, std::size_t first,
-              std::size_t end, TallFactor& factor) {
-  for (std::size_t start = first; start < end; start += TallFactor::kChunk) {
-    const int rows = static_cast<int>(std::min<std::size_t>(TallFactor::kChunk, end - start));
+              std::size_t end, IncrementalQr& factor) {
+  for (std::size_t start = first; start < end; start += IncrementalQr::kChunk) {
+    const int rows = static_cast<int>(std::min<std::size_t>(IncrementalQr::kChunk, end - start));
     int column = 0;
     for (int i = 1; i <= structure.n; ++i) {
       std::transform(y_m + start - i, y_m + start - i + rows, factor.column(column++),
@@ -29,7 +29,7 @@ void add_rows(const Structure& structure, const double* u_V, const double* y_m, 
   }
 }
 
-Small triangle(const TallFactor& factor) {
+Small triangle(const IncrementalQr& factor) {
   Small out = Small::Zero(factor.columns(), factor.columns());
   for (int i = 0; i < factor.columns(); ++i) {
     for (int j = i; j < factor.columns(); ++j) out(i, j) = factor.element(i, j);
@@ -41,7 +41,7 @@ Estimate fit_stretch(const Structure& structure, std::span<const double> u_V,
                      std::span<const double> y_m, std::size_t first, std::size_t end,
                      std::span<const std::size_t> gaps, const Limits& limits) {
   const auto history = static_cast<std::size_t>(structure.history());
-  TallFactor factor(structure.size() + 1);
+  IncrementalQr factor(structure.size() + 1);
   Span span;
   std::size_t rows = 0;
   // Runs of samples without a gap or a missing value, one after the other.

@@ -2,7 +2,7 @@
 
 namespace estimator {
 
-const char* text(Reason reason) noexcept {
+const char* to_string(Reason reason) noexcept {
   switch (reason) {
     case Reason::none:
       return "";

@@ -31,7 +31,7 @@ enum class Reason : std::uint8_t {
 };
 
 /// One phrase in plain English, "" for none.
-[[nodiscard]] const char* text(Reason reason) noexcept;
+[[nodiscard]] const char* to_string(Reason reason) noexcept;
 
 struct Estimate {
   int size = 0;                                      ///< coefficients in use

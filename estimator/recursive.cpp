@@ -6,7 +6,7 @@
 #include "config/schema/error.h"
 #include "estimator/regressor.h"
 #include "estimator/solve.h"
-#include "estimator/ud.h"
+#include "estimator/ud_filter.h"
 
 namespace estimator {
 namespace {
@@ -70,7 +70,7 @@ struct Recursive::State {
     prior_weight = 1.0 / config.prior_variance;
   }
 
-  Factor batch() noexcept { return {size + 1, batch_memory.values.data()}; }
+  SquareRootInformation batch() noexcept { return {size + 1, batch_memory.values.data()}; }
 
   bool take_row() noexcept {
     if (warming > 0) {
@@ -94,7 +94,7 @@ struct Recursive::State {
     weights = lambda * weights + 1.0;
     weights_squared = lambda * lambda * weights_squared + 1.0;
     if (lambda < 1.0) {
-      update.inform(p, next_informed, (1.0 - lambda) * size / config.prior_variance);
+      update.add_information(p, next_informed, (1.0 - lambda) * size / config.prior_variance);
       next_informed = next_informed + 1 == size ? 0 : next_informed + 1;
     }
     return true;
@@ -148,7 +148,7 @@ struct Recursive::State {
   Regressor regressor;
   Gate gate;
   UdFactor p{};
-  FactorMemory batch_memory{};
+  SquareRootInformationMemory batch_memory{};
   std::array<double, kMaxCoefficients> theta{};
   int warming = 0;
   int next_informed = 0;
@@ -187,20 +187,20 @@ void Recursive::gap() noexcept { state_->regressor.reset(); }
 
 void Recursive::reset() noexcept { state_->reset(); }
 
-void Recursive::carry(Carrier& carrier) {
+void Recursive::serialize(StateArchive& archive) {
   State& s = *state_;
-  carrier.value(s.regressor);
-  carrier.value(s.gate);
-  carrier.value(s.p);
-  carrier.value(s.batch_memory);
-  carrier.value(s.theta);
-  carrier.value(s.warming);
-  carrier.value(s.next_informed);
+  archive.value(s.regressor);
+  archive.value(s.gate);
+  archive.value(s.p);
+  archive.value(s.batch_memory);
+  archive.value(s.theta);
+  archive.value(s.warming);
+  archive.value(s.next_informed);
   for (double* number : {&s.error_m, &s.cost_m2, &s.prior_weight, &s.weights, &s.weights_squared}) {
-    carrier.value(*number);
+    archive.value(*number);
   }
   if (s.next_informed < 0 || s.next_informed >= s.size) {
-    carrier.fail();
+    archive.fail();
     reset();
   }
 }

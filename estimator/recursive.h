@@ -15,8 +15,8 @@
 
 #include <memory>
 
-#include "estimator/carrier.h"
 #include "estimator/estimate.h"
+#include "estimator/state_archive.h"
 
 namespace estimator {
 
@@ -44,7 +44,7 @@ class Recursive {
   void gap() noexcept;
   /// Back to the start.
   void reset() noexcept;
-  void carry(Carrier& carrier);
+  void serialize(StateArchive& archive);
 
   /// Coefficients with standard errors and condition, computed on each call. Never allocates.
   /// While the gate is closed: the kept values, invalid with not_excited.

@@ -29,7 +29,7 @@ struct SlidingWindow::State {
         block(std::gcd(c.window, c.stride)),
         blocks(c.window / block),
         columns(c.structure.size() + 1),
-        memory(Factor::size(columns) * static_cast<std::size_t>(blocks + 1)),
+        memory(SquareRootInformation::size(columns) * static_cast<std::size_t>(blocks + 1)),
         tallies(static_cast<std::size_t>(blocks + 1)),
         regressor(c.structure) {
     reset();
@@ -51,12 +51,13 @@ struct SlidingWindow::State {
   // Slots form a ring of blocks + 1: `old_side` merged ones from `head`, then `new_side` single
   // ones, then the one being filled.
   int slot(int i) const noexcept { return (head + i) % (blocks + 1); }
-  Factor factor(int i) noexcept {
-    return {columns, memory.data() + Factor::size(columns) * static_cast<std::size_t>(slot(i))};
+  SquareRootInformation factor(int i) noexcept {
+    return {columns, memory.data() +
+                         SquareRootInformation::size(columns) * static_cast<std::size_t>(slot(i))};
   }
   Tally& tally(int i) noexcept { return tallies[static_cast<std::size_t>(slot(i))]; }
-  Factor open() noexcept { return factor(old_side + new_side); }
-  Factor running() noexcept { return {columns, running_memory.values.data()}; }
+  SquareRootInformation open() noexcept { return factor(old_side + new_side); }
+  SquareRootInformation running() noexcept { return {columns, running_memory.values.data()}; }
 
   /// True when an estimate is due after this sample.
   bool end_sample() noexcept {
@@ -92,7 +93,7 @@ struct SlidingWindow::State {
   }
 
   /// The window's factor, in `out`.
-  void whole(Factor out, Tally& out_tally) noexcept {
+  void whole(SquareRootInformation out, Tally& out_tally) noexcept {
     out.copy(running());
     out_tally = running_tally;
     if (old_side > 0) {
@@ -108,7 +109,7 @@ struct SlidingWindow::State {
   std::vector<double> memory;
   std::vector<Tally> tallies;
   Regressor regressor;
-  FactorMemory running_memory{};
+  SquareRootInformationMemory running_memory{};
   Tally running_tally;
   int head = 0;
   int old_side = 0;
@@ -154,28 +155,28 @@ bool SlidingWindow::gap(long long samples) noexcept {
 
 void SlidingWindow::reset() noexcept { state_->reset(); }
 
-void SlidingWindow::carry(Carrier& carrier) {
+void SlidingWindow::serialize(StateArchive& archive) {
   State& s = *state_;
-  carrier.fixed(s.memory);
-  carrier.fixed(s.tallies);
-  carrier.value(s.regressor);
-  carrier.value(s.running_memory);
-  carrier.value(s.running_tally);
+  archive.fixed(s.memory);
+  archive.fixed(s.tallies);
+  archive.value(s.regressor);
+  archive.value(s.running_memory);
+  archive.value(s.running_tally);
   for (int* count : {&s.head, &s.old_side, &s.new_side, &s.in_block, &s.blocks_to_estimate}) {
-    carrier.value(*count);
+    archive.value(*count);
   }
   const bool sane = s.head >= 0 && s.head <= s.blocks && s.old_side >= 0 && s.new_side >= 0 &&
                     s.old_side + s.new_side <= s.blocks && s.in_block >= 0 && s.in_block < s.block;
   if (!sane) {
-    carrier.fail();
+    archive.fail();
     reset();
   }
 }
 
 Estimate SlidingWindow::estimate() const noexcept {
   State& s = *state_;
-  FactorMemory memory;
-  Factor whole(s.columns, memory.values.data());
+  SquareRootInformationMemory memory;
+  SquareRootInformation whole(s.columns, memory.values.data());
   Tally tally;
   s.whole(whole, tally);
   Estimate out = solve(triangle(whole), tally.rows, s.config.limits);
@@ -194,8 +195,8 @@ Estimate SlidingWindow::estimate() const noexcept {
 }
 
 bool SlidingWindow::coefficients(double* value) const noexcept {
-  FactorMemory memory;
-  Factor whole(state_->columns, memory.values.data());
+  SquareRootInformationMemory memory;
+  SquareRootInformation whole(state_->columns, memory.values.data());
   Tally tally;
   state_->whole(whole, tally);
   return whole.solve(value);

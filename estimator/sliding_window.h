@@ -13,8 +13,8 @@
 
 #include <memory>
 
-#include "estimator/carrier.h"
 #include "estimator/estimate.h"
+#include "estimator/state_archive.h"
 
 namespace estimator {
 
@@ -41,7 +41,7 @@ class SlidingWindow {
   bool gap(long long samples) noexcept;
   /// Forgets everything.
   void reset() noexcept;
-  void carry(Carrier& carrier);
+  void serialize(StateArchive& archive);
 
   /// Over the window at the last due moment, computed on each call. Never allocates.
   [[nodiscard]] Estimate estimate() const noexcept;

@@ -27,7 +27,7 @@ void shortest_solution(const Small& scaled, const Vector& scale, const Vector& z
 
 }  // namespace
 
-Small triangle(const Factor& factor) noexcept {
+Small triangle(const SquareRootInformation& factor) noexcept {
   const int columns = factor.columns();
   Small out = Small::Zero(columns, columns);
   for (int i = 0; i < columns; ++i) {

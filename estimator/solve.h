@@ -10,7 +10,7 @@
 #include <Eigen/Core>
 
 #include "estimator/estimate.h"
-#include "estimator/factor.h"
+#include "estimator/square_root_information.h"
 
 namespace estimator {
 
@@ -19,7 +19,7 @@ using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMa
                             kMaxColumns>;
 
 /// D^(1/2) U.
-[[nodiscard]] Small triangle(const Factor& factor) noexcept;
+[[nodiscard]] Small triangle(const SquareRootInformation& factor) noexcept;
 
 /// 2-norm condition of the upper triangle with its columns scaled to unit length; infinite when
 /// singular.

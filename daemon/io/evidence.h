@@ -6,7 +6,7 @@
 // keeps the newest messages in a bounded ring and writes the folders. In virtual time (`background`
 // false) that is done at once. What does not fit or cannot be written is counted. A snapshot of the
 // state goes through the queue every few seconds, so that each folder begins with one: a pipeline
-// restored from it goes on exactly, whatever its estimators' memory (estimator/carrier.h).
+// restored from it goes on exactly, whatever its estimators' memory (estimator/state_archive.h).
 #pragma once
 
 #include <atomic>

@@ -15,8 +15,8 @@
 #include <string_view>
 #include <vector>
 
-#include "estimator/carrier.h"
 #include "estimator/fdi/alarm.h"
+#include "estimator/state_archive.h"
 
 namespace estimator::fdi {
 
@@ -125,8 +125,8 @@ class AlarmBook {
   /// that have come up. Before inherit().
   void adopt_conditions(const AlarmBook& before);
 
-  /// Saves or restores every bit (carrier.h).
-  void carry(Carrier& carrier);
+  /// Saves or restores every bit (state_archive.h).
+  void serialize(StateArchive& archive);
 
   /// Calls `f(const Alarm&)` for each alarm that is active and not shelved: what is sent again at
   /// 1 Hz.

@@ -10,15 +10,15 @@ namespace {
 /// An alarm acknowledged before the restart stays so when its cause is found again this soon.
 constexpr double kResume_s = 60.0;
 
-void carry_name(Carrier& carrier, Alarm& alarm) {
+void serialize_fault_name(StateArchive& archive, Alarm& alarm) {
   constexpr std::uint64_t kMostNames = 1000;
-  carrier.text(alarm.parameter);
+  archive.text(alarm.parameter);
   auto names = static_cast<std::uint64_t>(alarm.ambiguity_group.size());
-  carrier.value(names);
-  if (names > kMostNames) carrier.fail();
-  if (!carrier.good()) return;
+  archive.value(names);
+  if (names > kMostNames) archive.fail();
+  if (!archive.good()) return;
   alarm.ambiguity_group.resize(static_cast<std::size_t>(names));
-  for (std::string& name : alarm.ambiguity_group) carrier.text(name);
+  for (std::string& name : alarm.ambiguity_group) archive.text(name);
 }
 
 }  // namespace
@@ -154,60 +154,60 @@ void AlarmBook::show(std::size_t number, const Alarm& told) {
   ++changes_;
 }
 
-void AlarmBook::carry(Carrier& carrier) {
+void AlarmBook::serialize(StateArchive& archive) {
   constexpr std::size_t kMostAlarms = 10000;
   auto size = static_cast<std::uint64_t>(alarms_.size());
-  carrier.value(size);
-  if (size > kMostAlarms) carrier.fail();
-  for (std::size_t i = 0; carrier.good() && i < size; ++i) {
+  archive.value(size);
+  if (size > kMostAlarms) archive.fail();
+  for (std::size_t i = 0; archive.good() && i < size; ++i) {
     Alarm alarm;
     if (i < alarms_.size()) alarm = alarms_[i];
     for (std::string* text :
          {&alarm.source, &alarm.name, &alarm.reason, &alarm.acknowledged_by, &alarm.shelved_by}) {
-      carrier.text(*text);
+      archive.text(*text);
     }
-    carrier.value(alarm.rules);
-    if (i == alarms_.size() && carrier.good()) declare(alarm);
-    if (!carrier.good() || i >= alarms_.size()) break;
-    if (alarm.source != alarms_[i].source || alarm.name != alarms_[i].name) return carrier.fail();
+    archive.value(alarm.rules);
+    if (i == alarms_.size() && archive.good()) declare(alarm);
+    if (!archive.good() || i >= alarms_.size()) break;
+    if (alarm.source != alarms_[i].source || alarm.name != alarms_[i].name) return archive.fail();
     Alarm& to = alarms_[i];
     to.reason = alarm.reason;
     to.acknowledged_by = alarm.acknowledged_by;
     to.shelved_by = alarm.shelved_by;
     for (bool* flag :
          {&to.active, &to.first_up, &to.latched, &to.acknowledged, &to.shelved, &to.chattering}) {
-      carrier.value(*flag);
+      archive.value(*flag);
     }
     for (std::int64_t* number :
          {&to.tick, &to.shelved_until, &to.came_tick, &to.came_utc_us, &to.times}) {
-      carrier.value(*number);
+      archive.value(*number);
     }
     for (double* number : {&to.value, &to.std_error, &to.low, &to.high, &to.confidence}) {
-      carrier.value(*number);
+      archive.value(*number);
     }
-    if (to.named_at_run_time) carry_name(carrier, to);
-    carrier.value(to.severity);
-    carrier.value(to.direction);
+    if (to.named_at_run_time) serialize_fault_name(archive, to);
+    archive.value(to.severity);
+    archive.value(to.direction);
     Memory& memory = memories_[i];
     for (Recent* recent : {&memory.comings, &memory.arrivals}) {
-      carrier.fixed(recent->ticks);
-      carrier.value(recent->next);
-      carrier.value(recent->filled);
-      if (recent->next > recent->ticks.size()) carrier.fail();
+      archive.fixed(recent->ticks);
+      archive.value(recent->next);
+      archive.value(recent->filled);
+      if (recent->next > recent->ticks.size()) archive.fail();
     }
     for (bool* flag : {&memory.admitted, &memory.timed, &memory.resumes_known}) {
-      carrier.value(*flag);
+      archive.value(*flag);
     }
     for (std::int64_t* number : {&memory.turned_tick, &memory.resume_until}) {
-      carrier.value(*number);
+      archive.value(*number);
     }
-    carrier.value(memory.severity);
-    carrier.value(memory.direction);
-    carrier.value(memory.seen);
+    archive.value(memory.severity);
+    archive.value(memory.direction);
+    archive.value(memory.seen);
   }
-  carrier.value(tick_);
-  carrier.value(utc_us_);
-  carrier.value(changes_);
+  archive.value(tick_);
+  archive.value(utc_us_);
+  archive.value(changes_);
   recount();
 }
 

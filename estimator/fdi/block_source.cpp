@@ -75,14 +75,14 @@ void BlockSource::reset() {
   forget();
 }
 
-void BlockSource::carry(Carrier& carrier) {
-  carrier.fixed(sums_);
-  carrier.fixed(means_);
-  carrier.value(samples_);
-  carrier.value(valid_);
-  carrier.value(warming_up_);
+void BlockSource::serialize(StateArchive& archive) {
+  archive.fixed(sums_);
+  archive.fixed(means_);
+  archive.value(samples_);
+  archive.value(valid_);
+  archive.value(warming_up_);
   // Which input was unusable is told with the block, not later.
-  carry_memory(carrier);
+  serialize_state(archive);
 }
 
 }  // namespace estimator::fdi

@@ -23,7 +23,7 @@ class BlockSource : public Source {
   bool push(const config::signals::Sample& sample, double y_m) noexcept final;
   Finding find(std::span<NamedValue> values) noexcept final;
   void reset() final;
-  void carry(Carrier& carrier) final;
+  void serialize(StateArchive& archive) final;
   [[nodiscard]] double interval_s() const noexcept final { return interval_s_; }
 
  protected:
@@ -31,7 +31,7 @@ class BlockSource : public Source {
   virtual void take(std::span<const double> means) noexcept = 0;
   virtual void show(std::span<NamedValue> values) const noexcept = 0;
   virtual void forget() noexcept = 0;
-  virtual void carry_memory(Carrier& carrier) = 0;
+  virtual void serialize_state(StateArchive& archive) = 0;
   /// Nothing is known before the first block.
   [[nodiscard]] bool valid() const noexcept { return valid_; }
 

@@ -107,9 +107,9 @@ AlarmState ChangeSource::own_alarm(std::size_t /*number*/) const noexcept {
   return state;
 }
 
-void ChangeSource::carry_verdict(Carrier& carrier) {
-  carrier.value(verdict_);
-  carrier.value(out_);
+void ChangeSource::serialize_verdict(StateArchive& archive) {
+  archive.value(verdict_);
+  archive.value(out_);
 }
 
 }  // namespace estimator::fdi

@@ -60,7 +60,7 @@ class ChangeSource : public BlockSource {
   void take(std::span<const double> means) noexcept final;
   void show(std::span<NamedValue> values) const noexcept final;
   void forget_verdict() noexcept { verdict_ = {}, out_ = false; }
-  void carry_verdict(Carrier& carrier);
+  void serialize_verdict(StateArchive& archive);
 
  private:
   std::shared_ptr<const ChangeConfig> config_;

@@ -93,13 +93,13 @@ class Classifier final : public BlockSource {
     in_a_row_ = 0;
     out_ = false;
   }
-  void carry_memory(Carrier& carrier) override {
-    carrier.value(answer_);
-    carrier.value(told_);
-    carrier.value(probabilities_);
-    carrier.value(told_probabilities_);
-    carrier.value(in_a_row_);
-    carrier.value(out_);
+  void serialize_state(StateArchive& archive) override {
+    archive.value(answer_);
+    archive.value(told_);
+    archive.value(probabilities_);
+    archive.value(told_probabilities_);
+    archive.value(in_a_row_);
+    archive.value(out_);
     const int classes = static_cast<int>(regions_.size());
     for (Answer* each : {&answer_, &told_}) {
       if (each->found < classes && each->nearest < classes && each->found >= kNone &&
@@ -107,7 +107,7 @@ class Classifier final : public BlockSource {
         continue;
       }
       *each = {};
-      carrier.fail();
+      archive.fail();
     }
   }
 

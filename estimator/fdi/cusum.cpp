@@ -47,10 +47,10 @@ class Cusum final : public ChangeSource {
     up_ = down_ = {};
     forget_verdict();
   }
-  void carry_memory(Carrier& carrier) override {
-    carrier.value(up_);
-    carrier.value(down_);
-    carry_verdict(carrier);
+  void serialize_state(StateArchive& archive) override {
+    archive.value(up_);
+    archive.value(down_);
+    serialize_verdict(archive);
   }
 
   double k_, h_;

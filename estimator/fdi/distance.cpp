@@ -58,10 +58,10 @@ class Distance final : public BlockSource {
     values[1].value = limit_;
   }
   void forget() noexcept override { distance2_ = 0.0, most_ = 0; }
-  void carry_memory(Carrier& carrier) override {
-    carrier.value(distance2_);
-    carrier.value(most_);
-    if (most_ >= config_.features.size()) most_ = 0, carrier.fail();
+  void serialize_state(StateArchive& archive) override {
+    archive.value(distance2_);
+    archive.value(most_);
+    if (most_ >= config_.features.size()) most_ = 0, archive.fail();
   }
 
   DistanceConfig config_;

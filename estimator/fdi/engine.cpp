@@ -19,7 +19,7 @@ class WindowEngine final : public Engine {
   bool push(double u_V, double y_m) noexcept override { return window_.push(u_V, y_m); }
   bool gap(long long samples) noexcept override { return window_.gap(samples); }
   void reset() noexcept override { window_.reset(); }
-  void carry(Carrier& carrier) override { window_.carry(carrier); }
+  void serialize(StateArchive& archive) override { window_.serialize(archive); }
   [[nodiscard]] Estimate estimate() const noexcept override { return window_.estimate(); }
 
  private:
@@ -55,11 +55,11 @@ class DetrendedBatch final : public Engine {
     y_m_.clear();
     window_.reset();
   }
-  void carry(Carrier& carrier) override {
-    window_.carry(carrier);
-    carrier.growing(u_V_, length_);
-    carrier.growing(y_m_, length_);
-    carrier.value(estimate_);
+  void serialize(StateArchive& archive) override {
+    window_.serialize(archive);
+    archive.growing(u_V_, length_);
+    archive.growing(y_m_, length_);
+    archive.value(estimate_);
   }
   [[nodiscard]] Estimate estimate() const noexcept override { return estimate_; }
 
@@ -103,9 +103,9 @@ class RecursiveEngine final : public Engine {
     recursion_.reset();
     since_ = 0;
   }
-  void carry(Carrier& carrier) override {
-    recursion_.carry(carrier);
-    carrier.value(since_);
+  void serialize(StateArchive& archive) override {
+    recursion_.serialize(archive);
+    archive.value(since_);
   }
   [[nodiscard]] Estimate estimate() const noexcept override { return recursion_.estimate(); }
 

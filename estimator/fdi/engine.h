@@ -4,9 +4,9 @@
 
 #include <memory>
 
-#include "estimator/carrier.h"
 #include "estimator/estimate.h"
 #include "estimator/fdi/pipeline.h"
+#include "estimator/state_archive.h"
 
 namespace estimator::fdi {
 
@@ -18,7 +18,7 @@ class Engine {
   /// So many samples missing; true when an estimate became due meanwhile.
   virtual bool gap(long long samples) noexcept = 0;
   virtual void reset() noexcept = 0;
-  virtual void carry(Carrier& carrier) = 0;
+  virtual void serialize(StateArchive& archive) = 0;
   [[nodiscard]] virtual Estimate estimate() const noexcept = 0;
 };
 

@@ -12,7 +12,8 @@ Finding EstimatorSource::find(std::span<NamedValue> values) noexcept {
   }
   values[static_cast<std::size_t>(size)].value = found.residual_rms_m;
   values[static_cast<std::size_t>(size) + 1].value = found.condition;
-  return {found.valid, stage_.warming_up(), text(found.reason), found.condition, found.samples};
+  return {found.valid, stage_.warming_up(), to_string(found.reason), found.condition,
+          found.samples};
 }
 
 }  // namespace estimator::fdi

@@ -23,7 +23,7 @@ class EstimatorSource final : public Source {
   }
   Finding find(std::span<NamedValue> values) noexcept override;
   void reset() override { stage_.reset(); }
-  void carry(Carrier& carrier) override { stage_.carry(carrier); }
+  void serialize(StateArchive& archive) override { stage_.serialize(archive); }
   [[nodiscard]] double interval_s() const noexcept override { return interval_s_; }
 
  private:

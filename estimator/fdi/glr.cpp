@@ -34,15 +34,15 @@ class Glr final : public ChangeSource {
     next_ = filled_ = 0;
     forget_verdict();
   }
-  void carry_memory(Carrier& carrier) override {
-    carrier.fixed(z_);
-    carrier.value(next_);
-    carrier.value(filled_);
+  void serialize_state(StateArchive& archive) override {
+    archive.fixed(z_);
+    archive.value(next_);
+    archive.value(filled_);
     if (next_ >= z_.size() || filled_ > z_.size()) {
       next_ = filled_ = 0;
-      carrier.fail();
+      archive.fail();
     }
-    carry_verdict(carrier);
+    serialize_verdict(archive);
   }
 
   double b_;

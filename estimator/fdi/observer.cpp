@@ -59,11 +59,11 @@ class Running {
     std::fill(squares_.begin(), squares_.end(), 0.0);
     at_ = 0;
   }
-  void carry(Carrier& carrier) {
-    for (Index i = 0; i < z_.size(); ++i) carrier.value(z_(i));
-    carrier.fixed(squares_);
-    carrier.value(at_);
-    if (at_ >= squares_.size()) at_ = 0, carrier.fail();
+  void serialize(StateArchive& archive) {
+    for (Index i = 0; i < z_.size(); ++i) archive.value(z_(i));
+    archive.fixed(squares_);
+    archive.value(at_);
+    if (at_ >= squares_.size()) at_ = 0, archive.fail();
   }
 
  private:
@@ -195,13 +195,13 @@ class Observer final : public Source {
     start_again();
     since_ = 0;
   }
-  void carry(Carrier& carrier) override {
-    for (Running& each : bank_) each.carry(carrier);
-    carrier.fixed(rms_);
-    carrier.value(since_);
-    carrier.value(settled_);
-    carrier.value(missing_);
-    carrier.value(valid_);
+  void serialize(StateArchive& archive) override {
+    for (Running& each : bank_) each.serialize(archive);
+    archive.fixed(rms_);
+    archive.value(since_);
+    archive.value(settled_);
+    archive.value(missing_);
+    archive.value(valid_);
   }
   [[nodiscard]] double interval_s() const noexcept override { return interval_s_; }
 

@@ -135,8 +135,8 @@ class Pipeline {
 
   /// Saves every bit that later results depend on, or restores it into a pipeline of the same
   /// configuration and sample time, which then goes on exactly as the saved one would have. When
-  /// carrier.complete() is false afterwards, it is of no use.
-  void carry(Carrier& carrier);
+  /// archive.complete() is false afterwards, it is of no use.
+  void serialize(StateArchive& archive);
 
   /// Takes the place of the pipeline before it between two samples: sources whose settings are the
   /// same, and those of the sources that they read, go on, the others warm up; bands and alarms

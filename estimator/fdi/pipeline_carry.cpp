@@ -3,19 +3,19 @@
 
 namespace estimator::fdi {
 
-void Pipeline::carry(Carrier& carrier) {
+void Pipeline::serialize(StateArchive& archive) {
   Impl& impl = *impl_;
-  carrier.value(impl.started);
-  carrier.value(impl.last_tick);
+  archive.value(impl.started);
+  archive.value(impl.last_tick);
   for (Worker& worker : impl.workers) {
-    worker.source->carry(carrier);
-    worker.outlet->carry(carrier);
+    worker.source->serialize(archive);
+    worker.outlet->serialize(archive);
     for (std::vector<Watch>& watches : worker.watches) {
-      for (Watch& watch : watches) carrier.value(watch.state);
+      for (Watch& watch : watches) archive.value(watch.state);
     }
   }
-  for (SampleWatch& watched : impl.sample_watches) carrier.value(watched.watch.state);
-  impl.book.carry(carrier);
+  for (SampleWatch& watched : impl.sample_watches) archive.value(watched.watch.state);
+  impl.book.serialize(archive);
 }
 
 std::vector<bool> Pipeline::inherit(Pipeline& before) {
@@ -29,12 +29,12 @@ std::vector<bool> Pipeline::inherit(Pipeline& before) {
     Worker* const old = from.worker(worker.id);
     if (old == nullptr || old->settings != worker.settings) continue;
     bytes.clear();
-    Carrier out = Carrier::saving(bytes);
-    old->source->carry(out);
-    old->outlet->carry(out);
-    Carrier in = Carrier::restoring(bytes);
-    worker.source->carry(in);
-    worker.outlet->carry(in);
+    StateArchive out = StateArchive::saving(bytes);
+    old->source->serialize(out);
+    old->outlet->serialize(out);
+    StateArchive in = StateArchive::restoring(bytes);
+    worker.source->serialize(in);
+    worker.outlet->serialize(in);
     goes_on[worker.number] = true;
   }
   to.for_each_watch([&](Watch& watch) {

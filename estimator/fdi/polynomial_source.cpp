@@ -94,10 +94,10 @@ class PolynomialSource final : public Source {
     monitor_.reset();
     now_ = {};
   }
-  void carry(Carrier& carrier) override {
-    filter_.carry(carrier);
-    monitor_.carry(carrier);
-    carrier.value(now_);
+  void serialize(StateArchive& archive) override {
+    filter_.serialize(archive);
+    monitor_.serialize(archive);
+    archive.value(now_);
   }
   [[nodiscard]] double interval_s() const noexcept override { return config_.stride_s; }
 

@@ -36,8 +36,8 @@ std::string whole_text(const PipelineConfig& config, double sample_time_s) {
 void save_snapshot(Pipeline& pipeline, std::uint64_t config, std::int64_t tick,
                    std::vector<std::uint8_t>& out) {
   out.assign(sizeof(Head), 0);
-  Carrier carrier = Carrier::saving(out);
-  pipeline.carry(carrier);
+  StateArchive archive = StateArchive::saving(out);
+  pipeline.serialize(archive);
   const auto state = std::span<const std::uint8_t>(out).subspan(sizeof(Head));
   Head head{{}, config, hash_of(state), tick, state.size()};
   std::memcpy(head.magic, kMagic, sizeof kMagic);
@@ -56,9 +56,9 @@ std::int64_t load_snapshot(std::span<const std::uint8_t> bytes, std::uint64_t co
   if (head.config != config) {
     throw config::schema::bad_data(where, "is the state of another configuration");
   }
-  Carrier carrier = Carrier::restoring(state);
-  pipeline.carry(carrier);
-  if (!carrier.complete()) {
+  StateArchive archive = StateArchive::restoring(state);
+  pipeline.serialize(archive);
+  if (!archive.complete()) {
     throw config::schema::bad_data(where, "was written by another version of the program");
   }
   return head.tick;

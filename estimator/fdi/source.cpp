@@ -26,14 +26,14 @@ void Outlet::reset() noexcept {
   for (NamedValue& v : values) v.value = v.std_error = std::numeric_limits<double>::quiet_NaN();
 }
 
-void Outlet::carry(Carrier& carrier) {
+void Outlet::serialize(StateArchive& archive) {
   for (NamedValue& v : values) {
-    carrier.value(v.value);
-    carrier.value(v.std_error);
+    archive.value(v.value);
+    archive.value(v.std_error);
   }
-  carrier.value(finding.valid);
-  carrier.value(finding.warming_up);
-  carrier.value(reason);
+  archive.value(finding.valid);
+  archive.value(finding.warming_up);
+  archive.value(reason);
   reason[kReason - 1] = '\0';
   finding.reason = reason;
 }

@@ -31,8 +31,8 @@
 
 #include "config/schema/visitor.h"
 #include "config/signals/sample.h"
-#include "estimator/carrier.h"
 #include "estimator/fdi/alarm_book.h"
+#include "estimator/state_archive.h"
 
 namespace estimator::fdi {
 
@@ -82,8 +82,8 @@ class Source {
 
   /// As at the start.
   virtual void reset() = 0;
-  /// Every bit that later values depend on (carrier.h).
-  virtual void carry(Carrier& carrier) = 0;
+  /// Every bit that later values depend on (state_archive.h).
+  virtual void serialize(StateArchive& archive) = 0;
   /// Between two findings, s; NaN when they come irregularly.
   [[nodiscard]] virtual double interval_s() const noexcept {
     return std::numeric_limits<double>::quiet_NaN();
@@ -104,7 +104,7 @@ struct Outlet {
   double interval_s = std::numeric_limits<double>::quiet_NaN();
 
   void reset() noexcept;
-  void carry(Carrier& carrier);
+  void serialize(StateArchive& archive);
 };
 
 /// A value of another source, or of the sample.

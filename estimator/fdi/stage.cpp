@@ -104,13 +104,13 @@ void Stage::reset() {
   saturated_ = false;
 }
 
-void Stage::carry(Carrier& carrier) {
-  carrier.value(preprocess_);
-  engine_->carry(carrier);
-  monitor_.carry(carrier);
-  carrier.value(samples_);
-  carrier.value(previous_y_m_);
-  carrier.value(saturated_);
+void Stage::serialize(StateArchive& archive) {
+  archive.value(preprocess_);
+  engine_->serialize(archive);
+  monitor_.serialize(archive);
+  archive.value(samples_);
+  archive.value(previous_y_m_);
+  archive.value(saturated_);
 }
 
 bool Stage::warming_up() const noexcept { return samples_ <= warmup_samples_ || !monitor_.full(); }

@@ -5,11 +5,11 @@
 #include <memory>
 #include <vector>
 
-#include "estimator/carrier.h"
 #include "estimator/estimate.h"
 #include "estimator/fdi/engine.h"
 #include "estimator/fdi/window_monitor.h"
 #include "estimator/preprocess.h"
+#include "estimator/state_archive.h"
 
 namespace estimator::fdi {
 
@@ -23,7 +23,7 @@ class Stage {
   /// A sample; NaN in u or y is a missing one. True when an estimate is due.
   bool push(double u_V, double y_m, bool saturated) noexcept;
   void reset();
-  void carry(Carrier& carrier);
+  void serialize(StateArchive& archive);
 
   /// Of the window that became due last; its reason covers gaps, saturation and excitation too.
   [[nodiscard]] Estimate estimate() const noexcept;

@@ -81,9 +81,9 @@ class Trend final : public BlockSource {
     trend_ = make();
     out_ = false;
   }
-  void carry_memory(Carrier& carrier) override {
-    carrier.value(trend_);
-    carrier.value(out_);
+  void serialize_state(StateArchive& archive) override {
+    archive.value(trend_);
+    archive.value(out_);
   }
 
   TrendConfig config_;

@@ -61,10 +61,10 @@ class Voter final : public Source {
     vote_.reset();
     samples_ = 0;
   }
-  void carry(Carrier& carrier) override {
-    carrier.value(vote_);
-    carrier.value(samples_);
-    if (vote_.count() != inputs_.size()) carrier.fail();
+  void serialize(StateArchive& archive) override {
+    archive.value(vote_);
+    archive.value(samples_);
+    if (vote_.count() != inputs_.size()) archive.fail();
   }
   [[nodiscard]] double interval_s() const noexcept override {
     return static_cast<double>(stride_) * sample_time_s_;

@@ -32,11 +32,11 @@ void WindowMonitor::reset() noexcept {
   missing_ = 0;
 }
 
-void WindowMonitor::carry(Carrier& carrier) {
-  carrier.fixed(u_V_);
-  carrier.fixed(flags_);
-  for (std::size_t* count : {&next_, &seen_, &saturated_, &missing_}) carrier.value(*count);
-  if (next_ >= flags_.size() || seen_ > flags_.size()) carrier.fail();
+void WindowMonitor::serialize(StateArchive& archive) {
+  archive.fixed(u_V_);
+  archive.fixed(flags_);
+  for (std::size_t* count : {&next_, &seen_, &saturated_, &missing_}) archive.value(*count);
+  if (next_ >= flags_.size() || seen_ > flags_.size()) archive.fail();
 }
 
 }  // namespace estimator::fdi

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "estimator/carrier.h"
+#include "estimator/state_archive.h"
 
 namespace estimator::fdi {
 
@@ -17,7 +17,7 @@ class WindowMonitor {
   void push(double u_V, bool saturated) noexcept { add(u_V, saturated ? kSaturated : 0); }
   void push_missing() noexcept { add(0.0, kMissing); }
   void reset() noexcept;
-  void carry(Carrier& carrier);
+  void serialize(StateArchive& archive);
 
   /// True once it has seen `length` samples, missing ones included.
   [[nodiscard]] bool full() const noexcept { return seen_ >= flags_.size(); }

@@ -185,7 +185,7 @@ Solution Search::run(const Eigen::VectorXd& start) {
   return out_;
 }
 
-const char* text(Stop stop) {
+const char* to_string(Stop stop) {
   switch (stop) {
     case Stop::kNoFurtherDecrease:
       return "no further decrease in sight";

@@ -163,7 +163,7 @@ BiasTest test_with(const Structure& s, Regression data, Instruments instruments)
 
 }  // namespace
 
-const char* text(BiasVerdict verdict) noexcept {
+const char* to_string(BiasVerdict verdict) noexcept {
   switch (verdict) {
     case BiasVerdict::kNoBiasSeen:
       return "no bias seen";
@@ -175,7 +175,7 @@ const char* text(BiasVerdict verdict) noexcept {
   return "cannot tell";
 }
 
-const char* text(Instruments instruments) noexcept {
+const char* to_string(Instruments instruments) noexcept {
   return instruments == Instruments::kReference ? "reference" : "delayed samples";
 }
 

@@ -33,8 +33,8 @@ enum class BiasVerdict : std::uint8_t {
   kUndetermined,  ///< the instruments are too weak to tell
 };
 /// "no bias seen", "biased", "cannot tell".
-[[nodiscard]] const char* text(BiasVerdict verdict) noexcept;
-[[nodiscard]] const char* text(Instruments instruments) noexcept;
+[[nodiscard]] const char* to_string(BiasVerdict verdict) noexcept;
+[[nodiscard]] const char* to_string(Instruments instruments) noexcept;
 
 struct BiasTest {
   std::vector<double> least_squares;  ///< in the order of Structure::names()

@@ -8,7 +8,7 @@
 
 #include "config/schema/error.h"
 #include "estimator/structure.h"
-#include "estimator/ud.h"
+#include "estimator/ud_filter.h"
 
 namespace estimator::structures {
 namespace {
@@ -216,7 +216,7 @@ void RecursivePredictionError::gap() noexcept {
 
 void RecursivePredictionError::reset() noexcept { state_->start(); }
 
-void RecursivePredictionError::carry(Carrier& carrier) { carrier.value(state_->now); }
+void RecursivePredictionError::serialize(StateArchive& archive) { archive.value(state_->now); }
 
 const double* RecursivePredictionError::value() const noexcept { return state_->now.theta.data(); }
 

@@ -17,7 +17,7 @@
 
 #include <memory>
 
-#include "estimator/carrier.h"
+#include "estimator/state_archive.h"
 #include "estimator/structures/polynomial.h"
 
 namespace estimator::structures {
@@ -43,7 +43,7 @@ class RecursivePredictionError {
   /// Coefficients are kept, the past is forgotten.
   void gap() noexcept;
   void reset() noexcept;
-  void carry(Carrier& carrier);
+  void serialize(StateArchive& archive);
 
   /// Orders::size() values each, in the order of Orders::names().
   [[nodiscard]] const double* value() const noexcept;

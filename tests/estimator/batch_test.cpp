@@ -14,7 +14,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Batch, AgreesWithNumPyInCoefficientsErrorsAndCondition) {
   const Estimate fit = fit_batch({3, 2, 2, true}, lcg(200, 1), lcg(200, 2));
-  ASSERT_TRUE(fit.valid) << text(fit.reason);
+  ASSERT_TRUE(fit.valid) << to_string(fit.reason);
   ASSERT_EQ(fit.size, 6);
   EXPECT_EQ(fit.samples, 197);
   for (int i = 0; i < 6; ++i) {
@@ -29,7 +29,7 @@ TEST(Batch, KeepsTheDigitsThatExactArithmeticSaysIllConditionedDataLeave) {
   std::vector<double> u_V;
   for (int t = 0; t < 40; ++t) u_V.push_back(std::pow(t - 20, 9));
   const Estimate fit = fit_batch({0, 9, 1, false}, u_V, lcg(40, 3));
-  ASSERT_TRUE(fit.valid) << text(fit.reason);
+  ASSERT_TRUE(fit.valid) << to_string(fit.reason);
   EXPECT_NEAR(fit.condition / reference::kPolynomialCondition, 1.0, 1e-6);
   // Orthogonal: errors of some condition * epsilon; normal equations would lose condition^2.
   const double tolerance = 100 * 2.2e-16 * reference::kPolynomialCondition;
@@ -49,7 +49,7 @@ TEST(Batch, RecoversEveryOrderUpToTenWithoutNoise) {
       const std::vector<double> u_V = lcg(1000, 7);
       const std::vector<double> y_m = simulate(s, theta, u_V, 0.0, random);
       const Estimate fit = fit_batch(s, u_V, y_m);
-      ASSERT_TRUE(fit.valid) << s.text() << text(fit.reason);
+      ASSERT_TRUE(fit.valid) << s.text() << to_string(fit.reason);
       for (int i = 0; i < s.size(); ++i) EXPECT_NEAR(fit.value[i], theta[i], 1e-10) << s.text();
       EXPECT_LT(fit.residual_rms_m, 1e-14);
     }

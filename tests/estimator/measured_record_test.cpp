@@ -53,7 +53,7 @@ Errors errors_of(const Data& data, int order) {
   const std::span y_m(data.y_m);
   const Structure s{order, order, 1, true};
   const Estimate fit = fit_batch(s, u_V.first(half), y_m.first(half));
-  EXPECT_TRUE(fit.valid) << s.text() << ": " << text(fit.reason);
+  EXPECT_TRUE(fit.valid) << s.text() << ": " << to_string(fit.reason);
   const std::span theta(fit.value.data(), static_cast<std::size_t>(fit.size));
   const auto one_step = one_step_errors(s, theta, u_V.subspan(half), y_m.subspan(half));
   const auto run = free_run(s, theta, u_V.subspan(half), y_m.subspan(half));

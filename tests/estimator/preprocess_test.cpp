@@ -181,7 +181,7 @@ TEST(Preprocess, FilteringBothSidesLeavesTheDifferenceEquationAsItIs) {
   // After the start-up transient of the two filters.
   const Estimate fit =
       fit_batch(kTruth, std::span(data.u_V).subspan(200), std::span(data.y_m).subspan(200));
-  ASSERT_TRUE(fit.valid) << text(fit.reason);
+  ASSERT_TRUE(fit.valid) << to_string(fit.reason);
   for (int i = 0; i < fit.size; ++i) EXPECT_NEAR(fit.value[i], kTruthTheta[i], 1e-9);
 }
 

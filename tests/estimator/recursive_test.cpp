@@ -153,7 +153,7 @@ TEST(Recursive, StaysFiniteAndBoundedOverAMillionSamplesOfASineAndRecovers) {
       filter.gap();
       feed(filter, {u_V, simulate(config.structure, theta, u_V, 1e-4, random)});
       const Estimate after = filter.estimate();
-      ASSERT_TRUE(after.valid) << text(after.reason);
+      ASSERT_TRUE(after.valid) << to_string(after.reason);
       for (int i = 0; i < 8; ++i) {
         EXPECT_NEAR(after.value[i], theta[i], 6.0 * after.std_error[i]) << forgetting;
       }

@@ -28,7 +28,7 @@ Estimate fresh(const Structure& s, const Data& data, int window, int end,
 }
 
 void expect_same(const Estimate& a, const Estimate& b, double relative) {
-  ASSERT_EQ(a.valid, b.valid) << text(a.reason) << text(b.reason);
+  ASSERT_EQ(a.valid, b.valid) << to_string(a.reason) << to_string(b.reason);
   ASSERT_EQ(a.samples, b.samples);
   EXPECT_NEAR(a.condition / b.condition, 1.0, 1e-7);
   EXPECT_NEAR(a.residual_rms_m / b.residual_rms_m, 1.0, 1e-7);

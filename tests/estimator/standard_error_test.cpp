@@ -22,7 +22,7 @@ void expect_honest(const Estimator& estimate_of) {
   for (int record = 0; record < kRecords; ++record) {
     const Data data = excited(kSamples, 1e-5, 1000 + static_cast<std::uint64_t>(record));
     const Estimate fit = estimate_of(data);
-    ASSERT_TRUE(fit.valid) << text(fit.reason);
+    ASSERT_TRUE(fit.valid) << to_string(fit.reason);
     for (int i = 0; i < 5; ++i) {
       const double z = (fit.value[i] - kTruthTheta[i]) / fit.std_error[i];
       sum[i] += z;

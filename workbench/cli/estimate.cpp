@@ -68,7 +68,7 @@ void add_fields(ordered_json& out, const estimate::Judged& judged,
   out["one_step_rms_m"] = judged.one_step_rms_m;
   out["free_run_rms_m"] = judged.free_run_rms_m;
   out["valid"] = e.valid;
-  out["reason"] = text(e.reason);
+  out["reason"] = to_string(e.reason);
   out["from_s"] = judged.from_s;
   out["to_s"] = judged.to_s;
 }
@@ -109,7 +109,7 @@ void print_text(const estimate::EstimateResult& result, const Options& options,
       "free run %.4g mm\n",
       e.condition, result.scored_from_s, result.scored_to_s, result.whole.cost_m2,
       1e3 * result.whole.one_step_rms_m, 1e3 * result.whole.free_run_rms_m);
-  if (!e.valid) std::printf("  NOT VALID: %s\n", text(e.reason));
+  if (!e.valid) std::printf("  NOT VALID: %s\n", to_string(e.reason));
   if (!result.windows.empty()) {
     std::printf("%10s %10s", "from_s", "to_s");
     for (const std::string& name : names) std::printf(" %14s", name.c_str());
@@ -120,7 +120,7 @@ void print_text(const estimate::EstimateResult& result, const Options& options,
     for (std::size_t i = 0; i < names.size(); ++i) {
       std::printf(" %14.7g", window.estimate.value[i]);
     }
-    std::printf(" %12.5g %s\n", window.cost_m2, text(window.estimate.reason));
+    std::printf(" %12.5g %s\n", window.cost_m2, to_string(window.estimate.reason));
   }
 }
 

@@ -59,7 +59,7 @@ Costs fit(const Structure& structure, std::span<const double> u_V, std::span<con
   const auto estimate = estimator::fit_batch(structure, u_V, y_m);
   const std::span<const double> theta(estimate.value.data(), structure.size());
   return {cost_m2(structure, theta, u_V, y_m, 0), cost_m2(structure, theta, u_V, y_m, 1),
-          estimate.condition, estimator::text(estimate.reason)};
+          estimate.condition, estimator::to_string(estimate.reason)};
 }
 
 /// As text files with six decimals hold numbers ("%f").

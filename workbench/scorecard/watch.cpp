@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "estimator/carrier.h"
+#include "estimator/state_archive.h"
 
 namespace workbench::scorecard {
 
@@ -95,9 +95,9 @@ Watch::Watch(const fdi::PipelineConfig& config, double sample_time_s,
 
 void Watch::take_lead(const Samples& samples, std::size_t end, Listener& listener, Lead* lead) {
   if (lead != nullptr && lead->said != nullptr) {
-    estimator::Carrier carrier = estimator::Carrier::restoring(lead->pipeline);
-    pipeline_.carry(carrier);
-    assert(carrier.complete());
+    estimator::StateArchive archive = estimator::StateArchive::restoring(lead->pipeline);
+    pipeline_.serialize(archive);
+    assert(archive.complete());
     listener = *lead->said;
     return;
   }
@@ -105,8 +105,8 @@ void Watch::take_lead(const Samples& samples, std::size_t end, Listener& listene
   for (std::size_t k = 0; k < end; ++k) pipeline_.process(samples[k], listener);
   listener.came.clear();
   if (lead == nullptr) return;
-  estimator::Carrier carrier = estimator::Carrier::saving(lead->pipeline);
-  pipeline_.carry(carrier);
+  estimator::StateArchive archive = estimator::StateArchive::saving(lead->pipeline);
+  pipeline_.serialize(archive);
   lead->said = std::make_shared<Listener>(listener);
 }
 

@@ -20,11 +20,11 @@ ordered_json numbers(const std::vector<double>& values) {
 }
 
 ordered_json bias_of(const structures::BiasTest& test) {
-  return {{"verdict", text(test.verdict)},
+  return {{"verdict", to_string(test.verdict)},
           {"p", number(test.p)},
           {"statistic", number(test.statistic)},
           {"dof", test.dof},
-          {"instruments", text(test.instruments)},
+          {"instruments", to_string(test.instruments)},
           {"instrument_count", test.instrument_count},
           {"strength_F", number(test.strength_F)},
           {"least_squares", numbers(test.least_squares)},

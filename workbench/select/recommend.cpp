@@ -83,7 +83,8 @@ std::string bias_words(const Outcome& outcome) {
   if (about == nullptr) return "";
   const structures::BiasTest& test = about->bias;
   const std::string of = (itself ? "" : "the best ARX, " + about->candidate.name + ": ");
-  const std::string beside = std::string("instrumental variables (") + text(test.instruments) + ")";
+  const std::string beside =
+      std::string("instrumental variables (") + to_string(test.instruments) + ")";
   const auto orders = about->candidate.arx();
   const auto b1 = static_cast<std::size_t>(orders->a);
   switch (test.verdict) {

@@ -36,7 +36,7 @@ std::string spread(double value) {
 }
 
 std::string bias(const Judged& judged) {
-  if (judged.has_bias_test) return text(judged.bias.verdict);
+  if (judged.has_bias_test) return to_string(judged.bias.verdict);
   return "-";
 }
 

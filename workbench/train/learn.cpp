@@ -41,7 +41,7 @@ class Collect final : public fdi::BlockSource {
   }
   void show(std::span<fdi::NamedValue> /*values*/) const noexcept override {}
   void forget() noexcept override {}
-  void carry_memory(estimator::Carrier& /*carrier*/) override {}
+  void serialize_state(estimator::StateArchive& /*archive*/) override {}
   std::shared_ptr<Rows> rows_;
 };
 

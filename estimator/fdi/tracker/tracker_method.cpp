@@ -281,18 +281,18 @@ void TrackerSource::reset() {
   say();
 }
 
-void TrackerSource::carry(estimator::Carrier& carrier) {
-  tracker_.carry(carrier);
-  carrier.value(broken_);
-  carrier.value(missing_);
-  carrier.growing(learning_, lessons_ * (kErrors + tracker_.choice().tracked));
-  carrier.fixed(found_);
-  carrier.text(why_);
-  carrier.text(note_);
-  carrier.value(rms_m_);
-  carrier.value(samples_);
-  carrier.value(unexplained_);
-  if (carrier.restores() && carrier.good()) say();
+void TrackerSource::serialize(estimator::StateArchive& archive) {
+  tracker_.serialize(archive);
+  archive.value(broken_);
+  archive.value(missing_);
+  archive.growing(learning_, lessons_ * (kErrors + tracker_.choice().tracked));
+  archive.fixed(found_);
+  archive.text(why_);
+  archive.text(note_);
+  archive.value(rms_m_);
+  archive.value(samples_);
+  archive.value(unexplained_);
+  if (archive.restores() && archive.good()) say();
 }
 
 }  // namespace estimator::fdi::tracker

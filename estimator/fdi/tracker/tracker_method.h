@@ -26,7 +26,7 @@ class TrackerSource final : public estimator::fdi::Source {
   estimator::fdi::Finding find(std::span<estimator::fdi::NamedValue> values) noexcept override;
   [[nodiscard]] estimator::fdi::AlarmState own_alarm(std::size_t number) const noexcept override;
   void reset() override;
-  void carry(estimator::Carrier& carrier) override;
+  void serialize(estimator::StateArchive& archive) override;
   [[nodiscard]] double interval_s() const noexcept override { return stride_s_; }
 
  private:

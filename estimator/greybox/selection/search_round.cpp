@@ -8,7 +8,7 @@
 #include <mutex>
 
 #include "estimator/parallel.h"
-#include "estimator/residual/comparison.h"
+#include "estimator/residual/diebold_mariano.h"
 
 namespace estimator::greybox::selection {
 namespace {
@@ -113,8 +113,8 @@ double chance(const Workshop& shop, const Fitted& earlier, const Fitted& later) 
   };
   const int block =
       std::max(8, static_cast<int>(std::lround(kComparedBlock_s / shop.evidence.sample_time_s)));
-  const estimator::residual::Comparison comparison =
-      estimator::residual::compare_in_proportion(scored(earlier), scored(later), block);
+  const estimator::residual::DieboldMarianoResult comparison =
+      estimator::residual::diebold_mariano_test(scored(earlier), scored(later), block);
   if (!std::isfinite(comparison.p)) return 1.0;
   return comparison.z > 0.0 ? 0.5 * comparison.p : 1.0 - 0.5 * comparison.p;
 }

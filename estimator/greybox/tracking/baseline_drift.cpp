@@ -73,6 +73,6 @@ int SlowChange::at_end(std::size_t number, const Eigen::VectorXd& healthy) const
   return off >= kEnd * one.above ? 1 : 0;
 }
 
-void SlowChange::carry(estimator::Carrier& carrier) { carrier.fixed(followed_); }
+void SlowChange::serialize(estimator::StateArchive& archive) { archive.fixed(followed_); }
 
 }  // namespace estimator::greybox::tracking

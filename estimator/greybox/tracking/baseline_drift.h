@@ -18,10 +18,10 @@
 #include <string>
 #include <vector>
 
-#include "estimator/carrier.h"
 #include "estimator/greybox/tracking/change_detector.h"
 #include "estimator/greybox/tracking/parameter_set.h"
 #include "estimator/greybox/tracking/window_result.h"
+#include "estimator/state_archive.h"
 
 namespace estimator::greybox::tracking {
 
@@ -52,7 +52,7 @@ class SlowChange {
   [[nodiscard]] int at_end(std::size_t number, const Eigen::VectorXd& healthy) const;
   [[nodiscard]] double learnt(std::size_t number) const { return followed_[number].learnt; }
 
-  void carry(estimator::Carrier& carrier);
+  void serialize(estimator::StateArchive& archive);
 
  private:
   struct Followed {

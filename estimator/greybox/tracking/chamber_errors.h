@@ -14,7 +14,7 @@
 #pragma once
 
 #include "config/schema/visitor.h"
-#include "estimator/carrier.h"
+#include "estimator/state_archive.h"
 
 namespace estimator::greybox::tracking {
 
@@ -36,8 +36,8 @@ struct ChamberErrors {
   }
   /// Keys of what is healthy, all optional.
   void visit(config::schema::Visitor& v);
-  /// Bit for bit (carrier.h).
-  void carry(estimator::Carrier& carrier);
+  /// Bit for bit (state_archive.h).
+  void serialize(estimator::StateArchive& archive);
 };
 
 /// How far a window is from the model, and by what its residuals are weighed.

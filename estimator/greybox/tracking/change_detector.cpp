@@ -51,25 +51,25 @@ void AlarmBook::forget_cleared() {
   alarms_.swap(kept);
 }
 
-void AlarmBook::carry(estimator::Carrier& carrier, const Choice& choice) {
-  carrier.fixed(tracks_);
+void AlarmBook::serialize(estimator::StateArchive& archive, const Choice& choice) {
+  archive.fixed(tracks_);
   auto count = static_cast<std::uint64_t>(alarms_.size());
-  carrier.value(count);
-  if (count > choice.tracked) carrier.fail();
-  if (!carrier.good()) return;
+  archive.value(count);
+  if (count > choice.tracked) archive.fail();
+  if (!archive.good()) return;
   alarms_.resize(static_cast<std::size_t>(count));
   for (Alarm& alarm : alarms_) {
     std::vector<Named> one{alarm.named};
-    tracking::carry(carrier, one, choice);
-    if (one.size() != 1) carrier.fail();
-    if (!carrier.good()) return;
+    tracking::serialize(archive, one, choice);
+    if (one.size() != 1) archive.fail();
+    if (!archive.good()) return;
     alarm.named = one.front();
-    carrier.value(alarm.raised_s);
-    carrier.value(alarm.cleared_s);
-    carrier.value(alarm.confidence);
+    archive.value(alarm.raised_s);
+    archive.value(alarm.cleared_s);
+    archive.value(alarm.confidence);
   }
   for (const Track& track : tracks_) {
-    if (track.active >= static_cast<int>(alarms_.size())) carrier.fail();
+    if (track.active >= static_cast<int>(alarms_.size())) archive.fail();
   }
 }
 

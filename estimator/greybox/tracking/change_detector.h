@@ -41,8 +41,8 @@ class AlarmBook {
   [[nodiscard]] const Alarm* active(std::size_t parameter) const;
   /// Keeps active alarms alone, for a tracking without an end.
   void forget_cleared();
-  /// Bit for bit (carrier.h), after forget_cleared().
-  void carry(estimator::Carrier& carrier, const Choice& choice);
+  /// Bit for bit (state_archive.h), after forget_cleared().
+  void serialize(estimator::StateArchive& archive, const Choice& choice);
 
  private:
   struct Track {

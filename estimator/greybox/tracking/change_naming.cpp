@@ -191,35 +191,35 @@ std::vector<Named> name_changes(WindowFit& fit, const Choice& choice, const Cut&
   return Namer(fit, choice, cut, found, healthy, errors, thresholds, held).run(memory);
 }
 
-void carry(estimator::Carrier& carrier, std::vector<Named>& named, const Choice& choice) {
+void serialize(estimator::StateArchive& archive, std::vector<Named>& named, const Choice& choice) {
   auto count = static_cast<std::uint64_t>(named.size());
-  carrier.value(count);
-  if (count > choice.tracked) carrier.fail();
-  if (!carrier.good()) return;
+  archive.value(count);
+  if (count > choice.tracked) archive.fail();
+  if (!archive.good()) return;
   named.resize(static_cast<std::size_t>(count));
   for (Named& one : named) {
-    carrier.value(one.parameter);
-    carrier.value(one.x);
-    carrier.value(one.std_error);
-    carrier.value(one.deviation);
-    carrier.value(one.sensed.supply);
-    carrier.value(one.sensed.chambers);
+    archive.value(one.parameter);
+    archive.value(one.x);
+    archive.value(one.std_error);
+    archive.value(one.deviation);
+    archive.value(one.sensed.supply);
+    archive.value(one.sensed.chambers);
     auto rivals = static_cast<std::uint64_t>(one.rivals.size());
-    carrier.value(rivals);
-    if (one.parameter >= choice.tracked || rivals > choice.parameters.size()) carrier.fail();
-    if (!carrier.good()) return;
+    archive.value(rivals);
+    if (one.parameter >= choice.tracked || rivals > choice.parameters.size()) archive.fail();
+    if (!archive.good()) return;
     one.rivals.resize(static_cast<std::size_t>(rivals));
     for (Rival& rival : one.rivals) {
-      carrier.text(rival.name);
-      carrier.value(rival.value);
+      archive.text(rival.name);
+      archive.value(rival.value);
     }
   }
 }
 
-void Memory::carry(estimator::Carrier& carrier, const Choice& choice) {
-  carrier.growing(directions, choice.tracked);
-  carrier.value(left);
-  tracking::carry(carrier, named, choice);
+void Memory::serialize(estimator::StateArchive& archive, const Choice& choice) {
+  archive.growing(directions, choice.tracked);
+  archive.value(left);
+  tracking::serialize(archive, named, choice);
 }
 
 }  // namespace estimator::greybox::tracking

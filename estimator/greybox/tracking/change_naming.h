@@ -17,9 +17,9 @@
 #include <string>
 #include <vector>
 
-#include "estimator/carrier.h"
 #include "estimator/greybox/tracking/parameter_set.h"
 #include "estimator/greybox/tracking/window_fit.h"
+#include "estimator/state_archive.h"
 
 namespace estimator::greybox::tracking {
 
@@ -70,7 +70,7 @@ struct Memory {
   int left = 0;                         ///< windows for which it may be kept
   std::vector<Named> named;
 
-  void carry(estimator::Carrier& carrier, const Choice& choice);
+  void serialize(estimator::StateArchive& archive, const Choice& choice);
 };
 
 inline constexpr std::size_t kNotMeasured = static_cast<std::size_t>(-1);
@@ -88,7 +88,7 @@ struct Held {
                                               const Thresholds& thresholds, Memory& memory,
                                               const Held& held = {});
 
-/// Bit for bit (carrier.h).
-void carry(estimator::Carrier& carrier, std::vector<Named>& named, const Choice& choice);
+/// Bit for bit (state_archive.h).
+void serialize(estimator::StateArchive& archive, std::vector<Named>& named, const Choice& choice);
 
 }  // namespace estimator::greybox::tracking

@@ -245,29 +245,29 @@ void Tracker::reset() {
   alarms_ = AlarmBook(choice_, settings_.thresholds);
 }
 
-void Tracker::carry(estimator::Carrier& carrier) {
-  const auto vector = [&carrier](Eigen::VectorXd& x) {
-    for (double& value : x) carrier.value(value);
+void Tracker::serialize(estimator::StateArchive& archive) {
+  const auto vector = [&archive](Eigen::VectorXd& x) {
+    for (double& value : x) archive.value(value);
   };
-  samples_.carry(carrier);
-  carrier.value(until_);
-  carrier.value(pressures_out_);
+  samples_.serialize(archive);
+  archive.value(until_);
+  archive.value(pressures_out_);
   bool knows = healthy_.has_value();
-  carrier.value(knows);
-  if (carrier.restores()) {
+  archive.value(knows);
+  if (archive.restores()) {
     healthy_.reset();
     if (knows) healthy_ = Healthy{0.0, choice_.file, {}};
   }
   if (healthy_) {
-    carrier.value(healthy_->rms_m);
+    archive.value(healthy_->rms_m);
     vector(healthy_->x);
-    healthy_->chambers.carry(carrier);
+    healthy_->chambers.serialize(archive);
   }
-  slow_.carry(carrier);
+  slow_.serialize(archive);
   vector(near_);
-  pool_.carry(carrier);
-  memory_.carry(carrier, choice_);
-  alarms_.carry(carrier, choice_);
+  pool_.serialize(archive);
+  memory_.serialize(archive, choice_);
+  alarms_.serialize(archive, choice_);
 }
 
 }  // namespace estimator::greybox::tracking

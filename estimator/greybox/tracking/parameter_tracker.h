@@ -78,8 +78,8 @@ class Tracker {
 
   /// As at the start, the healthy rig forgotten.
   void reset();
-  /// Bit for bit (carrier.h), after forget_cleared().
-  void carry(estimator::Carrier& carrier);
+  /// Bit for bit (state_archive.h), after forget_cleared().
+  void serialize(estimator::StateArchive& archive);
 
  private:
   /// Fits the tracked parameters from `near`, but those that are held.

@@ -55,12 +55,12 @@ const double* Samples::supply_Pa(std::size_t samples) const noexcept {
   return read ? last - samples : nullptr;
 }
 
-void Samples::carry(estimator::Carrier& carrier) {
+void Samples::serialize(estimator::StateArchive& archive) {
   for (std::vector<double>* column : {&u_V_, &y_m_, &supply_Pa_, &in_Pa_, &out_Pa_}) {
-    carrier.fixed(*column);
+    archive.fixed(*column);
   }
-  carrier.value(kept_);
-  if (carrier.restores() && kept_ > u_V_.size()) carrier.fail();
+  archive.value(kept_);
+  if (archive.restores() && kept_ > u_V_.size()) archive.fail();
 }
 
 }  // namespace estimator::greybox::tracking

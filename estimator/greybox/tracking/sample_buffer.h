@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "config/signals/pressures.h"
-#include "estimator/carrier.h"
 #include "estimator/greybox/tracking/window_fit.h"
+#include "estimator/state_archive.h"
 
 namespace estimator::greybox::tracking {
 
@@ -26,8 +26,8 @@ class Samples {
   /// Their supply pressures; null unless it was read in all of them.
   [[nodiscard]] const double* supply_Pa(std::size_t samples) const noexcept;
 
-  /// Bit for bit (carrier.h).
-  void carry(estimator::Carrier& carrier);
+  /// Bit for bit (state_archive.h).
+  void serialize(estimator::StateArchive& archive);
 
  private:
   std::size_t lead_;

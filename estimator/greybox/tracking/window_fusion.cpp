@@ -64,9 +64,9 @@ Pooled Pool::pooled() const {
   return out;
 }
 
-void Pool::carry(estimator::Carrier& carrier) {
-  carrier.fixed(ring_);
-  carrier.value(looks_);
+void Pool::serialize(estimator::StateArchive& archive) {
+  archive.fixed(ring_);
+  archive.value(looks_);
 }
 
 }  // namespace estimator::greybox::tracking

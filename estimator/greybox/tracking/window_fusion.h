@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "estimator/carrier.h"
+#include "estimator/state_archive.h"
 
 namespace estimator::greybox::tracking {
 
@@ -30,7 +30,7 @@ class Pool {
   void add(const Eigen::VectorXd& x, const Eigen::MatrixXd& covariance, bool good);
   void clear() noexcept { looks_ = 0; }
   [[nodiscard]] Pooled pooled() const;
-  void carry(estimator::Carrier& carrier);
+  void serialize(estimator::StateArchive& archive);
 
  private:
   [[nodiscard]] std::size_t at(std::size_t looks_ago) const noexcept;

@@ -152,11 +152,11 @@ TEST(EveryKind, GoesOnBitForBitFromAnyMoment) {
     Bytes before;
     for (int i = 0; i < at; ++i) whole.process(stream.next(), before);
     std::vector<std::uint8_t> snapshot;
-    Carrier out = Carrier::saving(snapshot);
-    whole.carry(out);
+    StateArchive out = StateArchive::saving(snapshot);
+    whole.serialize(out);
     Pipeline restored(config, 1.0);
-    Carrier in = Carrier::restoring(snapshot);
-    restored.carry(in);
+    StateArchive in = StateArchive::restoring(snapshot);
+    restored.serialize(in);
     ASSERT_TRUE(in.complete()) << at;
     Bytes a;
     Bytes b;

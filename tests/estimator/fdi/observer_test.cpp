@@ -188,11 +188,11 @@ TEST(ObserverBank, GoesOnBitForBitAfterASnapshot) {
   PlainValues one(bank("bank = true\n"));
   for (int i = 0; i < 75; ++i) one.feed(std::sin(0.2 * i), std::cos(0.3 * i), 0.1 * i);
   std::vector<std::uint8_t> bytes;
-  Carrier out = Carrier::saving(bytes);
-  one.pipeline.carry(out);
+  StateArchive out = StateArchive::saving(bytes);
+  one.pipeline.serialize(out);
   PlainValues two(bank("bank = true\n"));
-  Carrier in = Carrier::restoring(bytes);
-  two.pipeline.carry(in);
+  StateArchive in = StateArchive::restoring(bytes);
+  two.pipeline.serialize(in);
   ASSERT_TRUE(in.complete());
   two.tick = one.tick;
   for (int i = 0; i < 10; ++i) {

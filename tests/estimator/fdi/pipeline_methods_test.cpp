@@ -73,7 +73,7 @@ TEST_P(EveryMethod, IsInvalidAfterALongGapAndValidAgainOneWindowLater) {
   run(pipeline, plant, 99, seen);
   ASSERT_EQ(seen.alarms.size(), 1U);
   EXPECT_EQ(seen.alarms[0].severity, Severity::invalid);
-  EXPECT_EQ(seen.estimates.back().reason, text(Reason::gap));
+  EXPECT_EQ(seen.estimates.back().reason, to_string(Reason::gap));
   run(pipeline, plant, 400, seen);
   ASSERT_EQ(seen.alarms.size(), 2U);
   EXPECT_EQ(seen.alarms[1].severity, Severity::ok);
@@ -105,7 +105,7 @@ TEST_P(EveryMethod, IsInvalidWhenReadingsAreBadOrMissing) {
       if (i % 10 == 0 && !nan) s.quality = config::signals::Quality::bad;
       pipeline.process(s, seen);
     }
-    EXPECT_EQ(seen.estimates.back().reason, text(Reason::gap));
+    EXPECT_EQ(seen.estimates.back().reason, to_string(Reason::gap));
     EXPECT_FALSE(seen.estimates.back().valid);
   }
 }
@@ -120,7 +120,7 @@ TEST_P(EveryMethod, IsInvalidWhileTheCommandIsSaturated) {
     s.saturated = i % 5 == 0;  // 20 % of the window, 10 % are allowed
     pipeline.process(s, seen);
   }
-  EXPECT_EQ(seen.estimates.back().reason, text(Reason::saturated));
+  EXPECT_EQ(seen.estimates.back().reason, to_string(Reason::saturated));
   ASSERT_EQ(seen.alarms.size(), 1U);
   EXPECT_EQ(seen.alarms[0].severity, Severity::invalid);
 }

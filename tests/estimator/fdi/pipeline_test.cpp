@@ -26,7 +26,7 @@ TEST(Pipeline, CallsAWindowWithLittleCommandNotExcited) {
   plant.amplitude_V = 1.3;  // 0.92 V rms
   Recorder seen;
   run(pipeline, plant, 600, seen);
-  EXPECT_EQ(seen.estimates.back().reason, text(Reason::not_excited));
+  EXPECT_EQ(seen.estimates.back().reason, to_string(Reason::not_excited));
 }
 
 TEST(Pipeline, StaysSilentWhenTheRecordIsShorterThanItsWindow) {
@@ -47,7 +47,7 @@ TEST(Pipeline, MarksEstimatesBeforeTheFirstFullWindowAsTooShort) {
   for (const auto& estimate : seen.estimates) {
     EXPECT_FALSE(estimate.valid);
     EXPECT_TRUE(estimate.warming_up);
-    EXPECT_EQ(estimate.reason, text(Reason::too_short));
+    EXPECT_EQ(estimate.reason, to_string(Reason::too_short));
   }
   EXPECT_TRUE(seen.alarms.empty());
 }

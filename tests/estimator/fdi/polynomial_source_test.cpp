@@ -115,10 +115,10 @@ TEST(PolynomialSource, GoesOnBitForBitAfterASnapshot) {
   Last seen, other;
   run(one, rod, 1500, seen);
   std::vector<std::uint8_t> bytes;
-  Carrier out = Carrier::saving(bytes);
-  one.carry(out);
-  Carrier in = Carrier::restoring(bytes);
-  two.carry(in);
+  StateArchive out = StateArchive::saving(bytes);
+  one.serialize(out);
+  StateArchive in = StateArchive::restoring(bytes);
+  two.serialize(in);
   ASSERT_TRUE(in.complete());
   for (int i = 0; i < 500; ++i) {
     const config::signals::Sample sample = rod.next();

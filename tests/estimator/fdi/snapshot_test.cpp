@@ -111,12 +111,12 @@ TEST(Snapshot, GoesOnBitForBitFromAnyMoment) {
     whole.alarms().set_condition("recorder", "disk_full", Severity::minor, true, "full", 1);
     if (at > 1000) whole.alarms().shelve(0, 2.0, "ann");
     std::vector<std::uint8_t> snapshot;
-    Carrier saver = Carrier::saving(snapshot);
-    whole.carry(saver);
+    StateArchive saver = StateArchive::saving(snapshot);
+    whole.serialize(saver);
 
     Pipeline restored(config, 0.005);
-    Carrier loader = Carrier::restoring(snapshot);
-    restored.carry(loader);
+    StateArchive loader = StateArchive::restoring(snapshot);
+    restored.serialize(loader);
     ASSERT_TRUE(loader.complete()) << at;
     Bytes a;
     Bytes b;
@@ -135,19 +135,19 @@ TEST(Snapshot, OfAnotherConfigurationOrCutOffIsRefused) {
   Bytes events;
   for (const config::signals::Sample& s : samples()) one.process(s, events);
   std::vector<std::uint8_t> snapshot;
-  Carrier saver = Carrier::saving(snapshot);
-  one.carry(saver);
+  StateArchive saver = StateArchive::saving(snapshot);
+  one.serialize(saver);
 
   PipelineConfig other = config;
   other.estimators[2].window_s = 0.5;
   Pipeline another(other, 0.005);
-  Carrier loader = Carrier::restoring(snapshot);
-  another.carry(loader);
+  StateArchive loader = StateArchive::restoring(snapshot);
+  another.serialize(loader);
   EXPECT_FALSE(loader.complete());
   for (const std::size_t size : {std::size_t{0}, std::size_t{100}, snapshot.size() - 1}) {
     Pipeline same(config, 0.005);
-    Carrier cut = Carrier::restoring(std::span(snapshot).first(size));
-    same.carry(cut);
+    StateArchive cut = StateArchive::restoring(std::span(snapshot).first(size));
+    same.serialize(cut);
     EXPECT_FALSE(cut.complete()) << size;
   }
 }

@@ -75,9 +75,9 @@ class CounterSource final : public Source {
     return state;
   }
   void reset() override { count_ = sum_ = 0.0; }
-  void carry(Carrier& carrier) override {
-    carrier.value(count_);
-    carrier.value(sum_);
+  void serialize(StateArchive& archive) override {
+    archive.value(count_);
+    archive.value(sum_);
   }
 
  private:
@@ -187,11 +187,11 @@ TEST(Source, GoesOnBitForBitAfterASnapshotAndTakesItsNameAlong) {
   Values seen;
   for (std::int64_t tick = 0; tick < 7; ++tick) one.process(at(tick, 2.5), seen);
   std::vector<std::uint8_t> bytes;
-  Carrier out = Carrier::saving(bytes);
-  one.carry(out);
+  StateArchive out = StateArchive::saving(bytes);
+  one.serialize(out);
   Pipeline two(config, kSampleTime_s);
-  Carrier in = Carrier::restoring(bytes);
-  two.carry(in);
+  StateArchive in = StateArchive::restoring(bytes);
+  two.serialize(in);
   ASSERT_TRUE(in.complete());
   const Alarm& alarm = two.alarms().alarm(two.alarms().find("c.high"));
   EXPECT_EQ(alarm.ambiguity_group, (std::vector<std::string>{"a", "b"}));

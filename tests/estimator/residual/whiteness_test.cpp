@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "estimator/residual/autoregression.h"
-#include "estimator/residual/comparison.h"
+#include "estimator/residual/diebold_mariano.h"
 
 namespace estimator::residual {
 namespace {
@@ -141,7 +141,7 @@ TEST(Autoregression, FindsOrderCoefficientsAndEffectiveSamples) {
   EXPECT_TRUE(fit_autoregression(autoregressive(5000, 0.0, engine)).a.empty());
 }
 
-TEST(Comparison, HasTheRightSizeAndPower) {
+TEST(DieboldMariano, HasTheRightSizeAndPower) {
   std::mt19937_64 engine(7);
   int wrong = 0;
   int right = 0;
@@ -158,8 +158,8 @@ TEST(Comparison, HasTheRightSizeAndPower) {
       worse[t] += 0.5 * one[t];
       if (t / 400 % 2 == 0) first[t] = std::nan("");  // fitted blocks
     }
-    wrong += compare_in_proportion(first, second, 400).p < 0.05;
-    const Comparison found = compare_in_proportion(worse, second, 400);
+    wrong += diebold_mariano_test(first, second, 400).p < 0.05;
+    const DieboldMarianoResult found = diebold_mariano_test(worse, second, 400);
     right += found.p < 0.05 && found.z > 0.0 && found.first_rms > found.second_rms;
     EXPECT_EQ(found.blocks, 15);
   }

@@ -117,10 +117,10 @@ TEST_P(OnLine, NeverAllocatesAndIsCarriedBitForBit) {
   RecursivePredictionError other({.orders = GetParam().orders, .extended = GetParam().extended});
   for (std::size_t t = 0; t < 500; ++t) whole.push(record.u_V[t], record.y_m[t]);
   std::vector<std::uint8_t> bytes;
-  Carrier out = Carrier::saving(bytes);
-  whole.carry(out);
-  Carrier in = Carrier::restoring(bytes);
-  other.carry(in);
+  StateArchive out = StateArchive::saving(bytes);
+  whole.serialize(out);
+  StateArchive in = StateArchive::restoring(bytes);
+  other.serialize(in);
   ASSERT_TRUE(in.complete());
   const long before = allocations;
   for (std::size_t t = 500; t < 1000; ++t) whole.push(record.u_V[t], record.y_m[t]);

@@ -1,4 +1,4 @@
-#include "estimator/ud.h"
+#include "estimator/ud_filter.h"
 
 #include <array>
 #include <cmath>
@@ -53,7 +53,7 @@ double measure(UdFactor& p, const double* psi, double r, double forgetting, doub
 }
 
 template <int kSize>
-void inform(UdFactor& p, int i, double information) noexcept {
+void add_information(UdFactor& p, int i, double information) noexcept {
   constexpr int kStride = padded(kSize);
   double f[kSize];
   double v[kSize];
@@ -71,7 +71,7 @@ void inform(UdFactor& p, int i, double information) noexcept {
 template <int... kIndex>
 constexpr std::array<UdUpdate, sizeof...(kIndex)> table(
     std::integer_sequence<int, kIndex...> /*size less one*/) {
-  return {UdUpdate{&measure<kIndex + 1>, &inform<kIndex + 1>}...};
+  return {UdUpdate{&measure<kIndex + 1>, &add_information<kIndex + 1>}...};
 }
 
 constexpr auto kTable = table(std::make_integer_sequence<int, kMaxCoefficients>{});

@@ -11,15 +11,15 @@
 
 #include <array>
 
-#include "estimator/rotations.h"
+#include "estimator/givens_update.h"
 
 namespace estimator {
 
-class TallFactor {
+class IncrementalQr {
  public:
   static constexpr int kChunk = 128;
 
-  explicit TallFactor(int columns) noexcept : columns_(columns) {}
+  explicit IncrementalQr(int columns) noexcept : columns_(columns) {}
 
   /// Column j of the chunk to be filled: kChunk places, 16-byte aligned.
   double* column(int j) noexcept { return chunk_.data() + kChunk * j; }

@@ -9,7 +9,7 @@
 // Source: G. J. Bierman, Factorization Methods for Discrete Sequential Estimation, 1977, chapter V.
 #pragma once
 
-#include "estimator/rotations.h"
+#include "estimator/givens_update.h"
 
 namespace estimator {
 
@@ -26,7 +26,7 @@ struct UdUpdate {
   double (*measure)(UdFactor& p, const double* psi, double r, double forgetting,
                     double* gain) noexcept;
   /// Adds `information` about coefficient `i` alone.
-  void (*inform)(UdFactor& p, int i, double information) noexcept;
+  void (*add_information)(UdFactor& p, int i, double information) noexcept;
 };
 
 /// The update compiled for this number of coefficients, 1 to kMaxCoefficients.

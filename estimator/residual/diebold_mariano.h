@@ -14,7 +14,7 @@
 
 namespace estimator::residual {
 
-struct Comparison {
+struct DieboldMarianoResult {
   double first_rms = 0.0;
   double second_rms = 0.0;
   double z = 0.0;
@@ -25,7 +25,7 @@ struct Comparison {
 /// Residuals of the same samples under both models; NaN (in either) leaves a sample out: what was
 /// fitted, or is missing. Blocks are stretches of `block` samples of the record (2 s, say); those
 /// with less than half of their samples, or without any error in one of the two, are left out.
-[[nodiscard]] Comparison compare_in_proportion(std::span<const double> first,
-                                               std::span<const double> second, int block);
+[[nodiscard]] DieboldMarianoResult diebold_mariano_test(std::span<const double> first,
+                                                        std::span<const double> second, int block);
 
 }  // namespace estimator::residual

@@ -1,7 +1,7 @@
 // Carries the state of an object out into bytes and back, bit for bit: an object that is restored
 // goes on exactly as the saved one would have. Each class lists its changing members once, in
-// `carry(Carrier&)`; the same list saves and restores. The bytes belong to this build of the
-// program and to an object of the same configuration: whoever stores them must check both.
+// `serialize(StateArchive&)`; the same list saves and restores. The bytes belong to this build of
+// the program and to an object of the same configuration: whoever stores them must check both.
 #pragma once
 
 #include <cstddef>
@@ -14,12 +14,14 @@
 
 namespace estimator {
 
-class Carrier {
+class StateArchive {
  public:
   /// Appends to `bytes`, which outlives this.
-  static Carrier saving(std::vector<std::uint8_t>& bytes) noexcept { return Carrier(&bytes, {}); }
-  static Carrier restoring(std::span<const std::uint8_t> bytes) noexcept {
-    return Carrier(nullptr, bytes);
+  static StateArchive saving(std::vector<std::uint8_t>& bytes) noexcept {
+    return StateArchive(&bytes, {});
+  }
+  static StateArchive restoring(std::span<const std::uint8_t> bytes) noexcept {
+    return StateArchive(nullptr, bytes);
   }
 
   template <class T>
@@ -58,7 +60,7 @@ class Carrier {
  private:
   static constexpr std::size_t kLongestText = 1 << 16;
 
-  Carrier(std::vector<std::uint8_t>* out, std::span<const std::uint8_t> in) noexcept
+  StateArchive(std::vector<std::uint8_t>* out, std::span<const std::uint8_t> in) noexcept
       : out_(out), in_(in) {}
 
   template <class Container>

@@ -1,4 +1,4 @@
-#include "estimator/residual/comparison.h"
+#include "estimator/residual/diebold_mariano.h"
 
 #include <algorithm>
 #include <cassert>
@@ -10,10 +10,10 @@
 
 namespace estimator::residual {
 
-Comparison compare_in_proportion(std::span<const double> first, std::span<const double> second,
-                                 int block) {
+DieboldMarianoResult diebold_mariano_test(std::span<const double> first,
+                                          std::span<const double> second, int block) {
   assert(first.size() == second.size() && block > 0);
-  Comparison out;
+  DieboldMarianoResult out;
   std::vector<double> differences;
   double first_sum = 0.0;
   double second_sum = 0.0;

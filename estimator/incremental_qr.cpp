@@ -1,4 +1,4 @@
-#include "estimator/tall.h"
+#include "estimator/incremental_qr.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +30,7 @@ double square(const double* x, int pairs) noexcept {
 /// turns x_j into v below its leading 1.
 template <int kCount>
 void reflect(const double* v, double scale, double tau, double* x, double* r, int pairs) noexcept {
-  constexpr int kStride = TallFactor::kChunk / 2;
+  constexpr int kStride = IncrementalQr::kChunk / 2;
   const Lanes* a = lanes(v);
   Lanes* b = lanes(x);
   Lanes dot[2 * kCount] = {};
@@ -56,7 +56,7 @@ void reflect(const double* v, double scale, double tau, double* x, double* r, in
 
 }  // namespace
 
-void TallFactor::absorb(int rows) noexcept {
+void IncrementalQr::absorb(int rows) noexcept {
   // Rows of zeros up to a multiple of the unrolled loops change nothing.
   const int whole = (rows + 7) / 8 * 8;
   for (int j = 0; j < columns_; ++j) std::fill(column(j) + rows, column(j) + whole, 0.0);

@@ -6,14 +6,14 @@
 #include <array>
 #include <cstddef>
 
-#include "estimator/rotations.h"
+#include "estimator/givens_update.h"
 
 namespace estimator {
 
 /// View of a factor in memory owned elsewhere (16-byte aligned, size(columns) places).
-class Factor {
+class SquareRootInformation {
  public:
-  Factor(int columns, double* memory) noexcept
+  SquareRootInformation(int columns, double* memory) noexcept
       : columns_(columns), memory_(memory), absorb_(absorb_row(columns)) {}
 
   static constexpr std::size_t size(int columns) noexcept {
@@ -24,14 +24,16 @@ class Factor {
     std::fill_n(memory_, size(columns_), 0.0);
     for (int i = 0; i < columns_; ++i) memory_[padded(columns_) * (i + 1) + i] = 1.0;
   }
-  void copy(const Factor& other) noexcept { std::copy_n(other.memory_, size(columns_), memory_); }
+  void copy(const SquareRootInformation& other) noexcept {
+    std::copy_n(other.memory_, size(columns_), memory_);
+  }
   /// `row`: the augmented row, columns() values.
   void absorb(const double* row) noexcept {
     Row copy{};
     std::copy_n(row, columns_, copy.values.data());
     absorb_(memory_, copy.values.data(), 1.0, 0);
   }
-  void merge(const Factor& other) noexcept {
+  void merge(const SquareRootInformation& other) noexcept {
     for (int i = 0; i < columns_; ++i) {
       const double weight = other.memory_[i];
       if (weight == 0.0) continue;
@@ -63,8 +65,8 @@ class Factor {
 };
 
 /// Memory for one factor of any size.
-struct FactorMemory {
-  alignas(16) std::array<double, Factor::size(kMaxColumns)> values;
+struct SquareRootInformationMemory {
+  alignas(16) std::array<double, SquareRootInformation::size(kMaxColumns)> values;
 };
 
 }  // namespace estimator

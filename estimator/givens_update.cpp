@@ -1,4 +1,4 @@
-#include "estimator/rotations.h"
+#include "estimator/givens_update.h"
 
 #include <array>
 #include <utility>

@@ -1,8 +1,8 @@
-#include "estimator/factor.h"
+#include "estimator/square_root_information.h"
 
 namespace estimator {
 
-bool Factor::solve(double* value) const noexcept {
+bool SquareRootInformation::solve(double* value) const noexcept {
   const int p = columns_ - 1;
   for (int i = p - 1; i >= 0; --i) {
     if (!(memory_[i] > 0.0)) return false;
