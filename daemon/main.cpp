@@ -6,7 +6,9 @@
 #include <iostream>
 
 #include "config/schema/exit_code.h"
+#include "config/schema/product_version.h"
 #include "daemon/commission.h"
+#include "daemon/configuration_reference.h"
 #include "daemon/left_at_null.h"
 #include "daemon/null_guard.h"
 #include "daemon/rt/privileges.h"
@@ -61,6 +63,8 @@ const CLI::Option* add_commission(CLI::App& app, monitor::CommissionOptions& opt
 
 int run(int argc, char** argv) {
   CLI::App app("Runs a servo-hydraulic test stand and watches it for faults.", "spoolwatchd");
+  app.set_version_flag("--version",
+                       "spoolwatchd " + std::string(config::schema::product_version()));
   std::string file;
   std::string clock = "realtime";
   std::string lcm_url;
@@ -84,14 +88,21 @@ int run(int argc, char** argv) {
   app.add_flag("--null", null,
                "write null and nothing else; with --driving: only where a "
                "daemon that died has left such a file");
+  bool reference = false;
+  app.add_flag("--configuration-reference", reference)->group("");  // hidden: scripts/reference
   monitor::CommissionOptions commission;
   const CLI::Option* out = add_commission(app, commission);
   try {
     app.parse(argc, argv);
     const bool from_note = null && note->count() > 0;
-    if (configuration->count() == 0 && !from_note) throw CLI::RequiredError("--config");
+    if (configuration->count() == 0 && !from_note && !reference)
+      throw CLI::RequiredError("--config");
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? EXIT_SUCCESS : config::schema::kUsageExitCode;
+  }
+  if (reference) {
+    std::cout << monitor::configuration_reference();
+    return EXIT_SUCCESS;
   }
   if (duration->count() > 0 &&
       !(options.duration_s >= kShortest_s && options.duration_s <= kLongest_s)) {

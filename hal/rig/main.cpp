@@ -9,6 +9,8 @@
 #include <optional>
 
 #include "config/schema/exit_code.h"
+#include "config/schema/product_version.h"
+#include "config/schema/reference.h"
 #include "hal/device_thread.h"
 #include "hal/rig/moved_lines.h"
 #include "hal/rig/register_map.h"
@@ -78,6 +80,8 @@ int set(const std::string& address, const std::vector<std::string>& texts) {
 
 int run(int argc, char** argv) {
   CLI::App app("A simulated rig in real time that speaks Modbus TCP and RTU.", "spoolwatch-rig");
+  app.set_version_flag("--version",
+                       "spoolwatch-rig " + std::string(config::schema::product_version()));
   app.footer(hal::rig::kRegisterMapText);
   Options options;
   auto* file = app.add_option("--config", options.file, "the rig (TOML)");
@@ -88,6 +92,8 @@ int run(int argc, char** argv) {
       ->check(CLI::Range(1e-3, 1e9));
   app.add_option("--set", options.assignments, "table.key=value, instead of the file's")
       ->allow_extra_args(false);
+  bool reference = false;
+  app.add_flag("--configuration-reference", reference)->group("");  // hidden: scripts/reference
   CLI::App* setting = app.add_subcommand("set", "changes a running rig: a fault, the e-stop");
   std::string address = "127.0.0.1:1502";
   std::vector<std::string> texts;
@@ -96,9 +102,16 @@ int run(int argc, char** argv) {
       ->required();
   try {
     app.parse(argc, argv);
-    if (setting->count() == 0 && file->count() == 0) throw CLI::RequiredError("--config");
+    if (setting->count() == 0 && file->count() == 0 && !reference)
+      throw CLI::RequiredError("--config");
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? EXIT_SUCCESS : config::schema::kUsageExitCode;
+  }
+  if (reference) {
+    std::cout << "\n## Bench rig\n\nRead by `spoolwatch-rig --config FILE`.\n"
+              << config::schema::print_reference(
+                     [](config::schema::Visitor& v) { hal::rig::RigConfig().visit(v); });
+    return EXIT_SUCCESS;
   }
   if (setting->count() > 0) return set(address, texts);
   return serve(options, listen->count() > 0, serial->count() > 0);

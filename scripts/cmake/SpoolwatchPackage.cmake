@@ -8,23 +8,39 @@ set(share "${CMAKE_INSTALL_DATADIR}/spoolwatch")
 set(made "${CMAKE_BINARY_DIR}/packaging")
 file(MAKE_DIRECTORY "${made}")
 
+# What is missing is built first: cpack does not, and scripts/demo builds only a part.
+install(CODE "
+  execute_process(COMMAND \"${CMAKE_COMMAND}\" --build \"${CMAKE_BINARY_DIR}\" --target pages
+    COMMAND_ERROR_IS_FATAL ANY)")
+
 # Man pages and completion, from what the programs say of themselves.
 set(pages "${CMAKE_SOURCE_DIR}/systemd/package/pages")
 function(spoolwatch_page output depends)
   add_custom_command(OUTPUT "${made}/${output}"
     COMMAND sh -c "\"$@\" > '${made}/${output}.part' && mv '${made}/${output}.part' '${made}/${output}'"
       sh "${Python3_EXECUTABLE}" "${pages}" ${ARGN}
-    DEPENDS "${pages}" ${depends} VERBATIM)
+    DEPENDS "${pages}" "${CMAKE_SOURCE_DIR}/systemd/package/help_text.py" ${depends} VERBATIM)
 endfunction()
 set(programs spoolwatchd spoolwatch spoolwatch-rig)
-set(sections 8 1 1)
+set(package "${CMAKE_SOURCE_DIR}/systemd/package")
+set(tool $<TARGET_FILE:spoolwatch>)
+# A page for each program, each group of commands and each file format; NAME.SECTION.roff adds to it.
 set(outputs "")
-foreach(program section IN ZIP_LISTS programs sections)
-  set(extra "${CMAKE_SOURCE_DIR}/systemd/package/${program}.roff")
-  spoolwatch_page(${program}.${section} "${program};${extra}"
-    man $<TARGET_FILE:${program}> ${section} ${PROJECT_VERSION} "${extra}")
-  list(APPEND outputs "${made}/${program}.${section}")
-  install(FILES "${made}/${program}.${section}" DESTINATION "${CMAKE_INSTALL_MANDIR}/man${section}")
+function(spoolwatch_man name section depends)
+  set(extra "${package}/${name}.${section}.roff")
+  spoolwatch_page(${name}.${section} "${depends};${extra}" ${ARGN} ${PROJECT_VERSION} "${extra}")
+  install(FILES "${made}/${name}.${section}" DESTINATION "${CMAKE_INSTALL_MANDIR}/man${section}")
+  list(APPEND outputs "${made}/${name}.${section}")
+  set(outputs "${outputs}" PARENT_SCOPE)
+endfunction()
+spoolwatch_man(spoolwatchd 8 spoolwatchd man $<TARGET_FILE:spoolwatchd> 8)
+spoolwatch_man(spoolwatch 1 spoolwatch man ${tool} 1)
+spoolwatch_man(spoolwatch-rig 1 spoolwatch-rig man $<TARGET_FILE:spoolwatch-rig> 1)
+foreach(group model data detection stand exchange)
+  spoolwatch_man(spoolwatch-${group} 1 spoolwatch group ${tool} ${group})
+endforeach()
+foreach(format record model)
+  spoolwatch_man(spoolwatch-${format} 5 "" format spoolwatch-${format} 5)
 endforeach()
 spoolwatch_page(completion "${programs}" bash
   $<TARGET_FILE:spoolwatch> $<TARGET_FILE:spoolwatchd> $<TARGET_FILE:spoolwatch-rig>)
@@ -56,13 +72,15 @@ install(DIRECTORY config/models config/scorecard config/tour DESTINATION "${shar
 install(FILES config/messages/spoolwatch.lcm DESTINATION "${share}/messages")
 # The pages with their pictures, laid out as in the repository so that their links hold.
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
-install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" FILES_MATCHING PATTERN "*.md")
+install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}"
+  FILES_MATCHING PATTERN "*.md" PATTERN "*.schema.json")
+install(DIRECTORY examples DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 install(FILES scripts/tour.png scripts/demo.png DESTINATION "${CMAKE_INSTALL_DOCDIR}/scripts")
 install(FILES systemd/package/copyright DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 
 # Compressed as Debian wants it, the same bytes from the same input.
 install(CODE "
-  file(GLOB texts \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man*/*[18]\")
+  file(GLOB texts \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man*/*[158]\")
   set(log \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DOCDIR}/changelog\")
   file(WRITE \"\${log}\" \"spoolwatch (${PROJECT_VERSION}) stable; urgency=medium\\n\\n\"
     \"  * Version ${PROJECT_VERSION}: see CHANGELOG.md.\\n\\n\"

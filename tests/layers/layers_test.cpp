@@ -21,7 +21,7 @@ struct Layer {
 
 // The standard library and POSIX are open to all, save for the real-time parts named in kGuarded.
 const std::vector<Layer> kLayers{
-    {"config/schema", {}, {"toml++"}},
+    {"config/schema", {"config/units"}, {"toml++"}},
     {"config/signals", {}, {}},
     {"config/units", {}, {}},
     {"config/messages", {"config/schema"}, {"lcm", "spoolwatch"}},

@@ -71,6 +71,7 @@ void add_calibrate(CLI::App& command, int& /*exit_code*/) {
       .add_option("--period-s", options->period_s,
                   "period of the motion, 0 for none; default: found in the record")
       ->check(number_within(0.0, 1e6));
+  command.alias("learn-bands");
   command.callback([options] { run(*options); });
 }
 

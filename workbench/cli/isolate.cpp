@@ -95,6 +95,7 @@ void add_isolate(CLI::App& command, int& /*exit_code*/) {
   command.add_flag("--windows", request->all_windows, "print every window");
   command.add_option("--json", request->json, "file for JSON, - for standard output");
   command.add_option("--report", request->report, "file for a report with plots (HTML)");
+  command.alias("track");
   command.callback([request] { run(*request); });
 }
 

@@ -1,70 +1,86 @@
-// spoolwatch: the engineer's tool. One line per command; every error that prevents a start is
-// caught here, once, and printed as one line.
+// spoolwatch: the engineer's tool. Every error that prevents a start is caught here, once, and
+// printed as one line.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <iostream>
 
+#include "config/schema/document.h"
 #include "config/schema/exit_code.h"
+#include "config/schema/product_version.h"
 #include "workbench/cli/command.h"
+#include "workbench/cli/configuration_reference.h"
 
 namespace {
 
-constexpr workbench::cli::Command kCommands[] = {
-    {"status", "what the running daemon does, and what forbids to arm it",
-     workbench::cli::add_status},
-    {"alarms", "the alarms of the running daemon, and what to do about them",
-     workbench::cli::add_alarms},
-    {"ack", "acknowledge an alarm, or all", workbench::cli::add_ack},
-    {"shelve", "put an alarm aside for a time", workbench::cli::add_shelve},
-    {"unshelve", "take it off the shelf", workbench::cli::add_unshelve},
-    {"reload", "let the running daemon read its configuration again", workbench::cli::add_reload},
-    {"commission", "find out how a rig is wired, and write its calibration file",
-     workbench::cli::add_commission},
-    {"arm", "let the running daemon be started", workbench::cli::add_arm},
-    {"disarm", "null, from RUN or ARMED", workbench::cli::add_disarm},
-    {"start", "run the reference signal from where the rod is; resume after a hold",
-     workbench::cli::add_start},
-    {"stop", "null at once, still ARMED", workbench::cli::add_stop},
-    {"reset", "from LATCHED to DISARMED", workbench::cli::add_reset},
-    {"hold", "freeze the reference where the rod is", workbench::cli::add_hold},
-    {"reference", "another sine for the running daemon", workbench::cli::add_reference},
-    {"reproduce", "the source's figures beside ours", workbench::cli::add_reproduce},
-    {"simulate", "a record from a model file, in closed loop", workbench::cli::add_simulate},
-    {"listen", "print alarms and estimates as they arrive", workbench::cli::add_listen},
-    {"record", "a record from the running daemon", workbench::cli::add_record},
-    {"estimate", "fit an ARX structure to a record", workbench::cli::add_estimate},
-    {"select", "every model structure on a record, and which to take", workbench::cli::add_select},
-    {"compare", "where a model fails against a record", workbench::cli::add_compare},
-    {"fit", "a model's parameters estimated from records", workbench::cli::add_fit},
-    {"diagnose", "which physical effect a model misses", workbench::cli::add_diagnose},
-    {"isolate", "which physical parameter has changed, window by window",
-     workbench::cli::add_isolate},
-    {"calibrate", "learn alarm bands from a healthy record", workbench::cli::add_calibrate},
-    {"scorecard", "what each method detects, how late, and how often it cries wolf",
-     workbench::cli::add_scorecard},
-    {"train", "teach the fault detection from records, healthy and faulty",
-     workbench::cli::add_train},
-    {"backtest", "which alarms new rules would have told on old logs",
-     workbench::cli::add_backtest},
-    {"promote", "a better model and its bands into the running daemon",
-     workbench::cli::add_promote},
-    {"replay", "from the evidence of an alarm to the same alarm", workbench::cli::add_replay},
-    {"effects", "the library of physical effects", workbench::cli::add_effects},
-    {"add", "a model file with an effect more", workbench::cli::add_add},
-    {"export", "a log or record as CSV, MAT, MCAP or JSON", workbench::cli::add_export},
-    {"bridge", "live values to PlotJuggler, JSON over UDP", workbench::cli::add_bridge},
+/// Headings of --help.
+namespace group {
+constexpr char model[] = "Model";
+constexpr char data[] = "Data";
+constexpr char detection[] = "Detection";
+constexpr char stand[] = "Running stand";
+constexpr char exchange[] = "Exchange";
+}  // namespace group
+
+struct Command {
+  const char* name;
+  const char* group;
+  const char* what;
+  workbench::cli::Setup setup;
 };
+
+constexpr Command kCommands[] = {
+#define COMMAND(heading, name, what) {#name, group::heading, what, workbench::cli::add_##name},
+#include "workbench/cli/commands.def"
+#undef COMMAND
+};
+
+/// Throws UsageError for a first word that is no command; options and nothing are left to
+/// CLI11.
+void require_command(const CLI::App& app, const std::string& word) {
+  if (word.empty() || word.front() == '-') return;
+  if (app.get_subcommand_no_throw(word) != nullptr) return;
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    names.push_back(command->get_name());
+    for (const std::string& alias : command->get_aliases()) names.push_back(alias);
+  }
+  const std::string near = config::schema::nearest(word, names);
+  throw config::schema::UsageError(
+      "command " + word + " is unknown" +
+      (near.empty() ? "; spoolwatch --help lists all" : ", did you mean " + near + "?"));
+}
 
 int run(int argc, char** argv) {
   int exit_code = 0;
-  CLI::App app{"Spoolwatch: watch a servo-hydraulic test stand, and find what its model misses"};
-  app.require_subcommand(1);
-  for (const auto& command : kCommands) {
-    command.setup(*app.add_subcommand(command.name, command.what), exit_code);
+  CLI::App app{"Spoolwatch: watch a servo-hydraulic test stand, and find what its model misses",
+               "spoolwatch"};
+  for (const Command& command : kCommands) {
+    CLI::App* const added = app.add_subcommand(command.name, command.what);
+    added->group(command.group);
+    command.setup(*added, exit_code);
   }
+  app.require_subcommand(1);
+  app.set_version_flag("--version", "spoolwatch " + std::string(config::schema::product_version()));
+  app.add_flag_callback("--configuration-reference",
+                        [] {  // hidden: scripts/reference
+                          std::cout << workbench::cli::configuration_reference();
+                          throw CLI::Success();
+                        })
+      ->group("");
+  app.footer("spoolwatch help COMMAND explains one command.");
+  std::vector<std::string> words(argv + 1, argv + argc);
+  if (!words.empty() && words.front() == "help") {  // `help fit` is `fit --help`
+    words.erase(words.begin());
+    words.resize(std::min<std::size_t>(words.size(), 1));
+    words.emplace_back("--help");
+  }
+  if (words.empty()) throw config::schema::UsageError("no command; spoolwatch --help lists all");
+  require_command(app, words.front());
   try {
-    app.parse(argc, argv);
+    std::reverse(words.begin(), words.end());  // as CLI11 takes them
+    app.parse(words);
   } catch (const CLI::ParseError& error) {
     const bool asked_for_help = error.get_exit_code() == 0;
     app.exit(error);

@@ -258,7 +258,6 @@ present::Report make_report(const validation::Comparison& c, const std::string& 
   fact("one step ahead, RMS", c.k_step.front().rms_m);
   made.command = command;
   made.sections = sections(c);
-  made.made_with = "spoolwatch compare";
   return made;
 }
 

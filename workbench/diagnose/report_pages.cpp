@@ -68,7 +68,6 @@ present::Report report_of(const Outcome& outcome) {
   report.next_command = next_command(outcome);
   report.facts = facts_of(outcome);
   report.command = outcome.command;
-  report.made_with = std::string("spoolwatch ") + SPOOLWATCH_VERSION;
   if (outcome.fitted()) {
     report.sections.push_back(falling_error_section(outcome));
     if (!d.ladder.rounds.empty()) report.sections.push_back(candidates_section(outcome));

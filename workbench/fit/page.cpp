@@ -241,7 +241,6 @@ present::Report to_report(const Outcome& o) {
     made.sections.push_back(profile_section(e));
   }
   made.sections.push_back(sight_section(e));
-  made.made_with = "spoolwatch fit";
   return made;
 }
 

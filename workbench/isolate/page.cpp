@@ -98,7 +98,6 @@ present::Report to_report(const Outcome& o) {
                 {"healthy error", number("%.3g", 1e6 * o.healthy.rms_m), "um"},
                 {"noise floor", number("%.3g", 1e6 * o.noise_floor_m), "um"}};
   page.command = o.command;
-  page.made_with = "spoolwatch isolate";
   if (!o.alarms.empty()) {
     present::Section alarms;
     alarms.heading = "Changes";

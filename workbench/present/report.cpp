@@ -5,6 +5,7 @@
 #include <ctime>
 
 #include "config/record/whole_file.h"
+#include "config/schema/product_version.h"
 #include "workbench/present/assets.h"
 #include "workbench/present/plot_data.h"
 #include "workbench/present/text.h"
@@ -113,7 +114,7 @@ std::string section_text(const Section& section, std::size_t number, std::string
 }
 
 std::string footer(const Report& report) {
-  return "<footer><p>" + html(report.made_with) + (report.made_with.empty() ? "" : ", ") +
+  return "<footer><p>spoolwatch " + html(std::string(config::schema::product_version())) + ", " +
          html(report.made_at.empty() ? now() : report.made_at) +
          ". Drag in a plot to zoom, double-click to see all of it again. Plots by Chart.js (MIT "
          "licence, in this file).</p></footer>\n";

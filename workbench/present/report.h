@@ -96,8 +96,7 @@ struct Report {
   std::string command{};               ///< the exact command that made it
   std::string next_command{};          ///< the command to type next; empty: none
   std::vector<Section> sections{};
-  std::string made_with{};  ///< program and version
-  std::string made_at{};    ///< empty: now, local time
+  std::string made_at{};  ///< empty: now, local time
 };
 
 /// The whole page. Long series are thinned for drawing, which their caption then says.

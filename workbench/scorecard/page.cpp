@@ -243,7 +243,6 @@ present::Report to_report(const Card& card) {
                 {"time to detect", number("%.3g", card.watch_s), "s"},
                 {"computed in", number("%.0f", card.runtime_s), "s"}};
   page.command = card.command;
-  page.made_with = "spoolwatch scorecard";
   page.sections = {false_alarms(card)};
   if (!faults_of(card).empty()) {
     page.sections.push_back(smallest(card));

@@ -175,7 +175,6 @@ inline present::Report example_report(std::size_t n = 6000) {
       .command =
           "spoolwatch diagnose rig_2000psi.toml bench_0412.csv "
           "--report report.html -o rig_better.toml",
-      .made_with = "spoolwatch 0.1.0",
       .made_at = "2026-03-02 14:05"};
   present::Section overview{.heading = "Measured against model"};
   overview.plots.push_back(

@@ -86,7 +86,7 @@ TEST(Report, HostileTextStaysText) {
   plot.x_values.clear();
   plot.categories = {evil};
   report.sections[0].plots.push_back(plot);
-  report.title = report.verdict = report.command = report.made_with = report.made_at = evil;
+  report.title = report.verdict = report.command = report.made_at = evil;
   report.summary = {evil};
   report.facts = {{evil, evil, evil}};
   report.sections[0].heading = evil;

@@ -1,0 +1,307 @@
+#include "config/schema/reference.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "config/units/unit_suffix.h"
+
+namespace config::schema {
+namespace {
+
+std::string shown(double value) {
+  char buffer[32];
+  const auto result = std::to_chars(std::begin(buffer), std::end(buffer), value);
+  return {std::begin(buffer), result.ptr};
+}
+
+/// "0 to 10", "0 and more", "" for any number.
+template <class T>
+std::string allowed_in(T min, T max, T lowest, T highest) {
+  const auto text = [](T value) {
+    if constexpr (std::is_integral_v<T>) {
+      return std::to_string(value);
+    } else {
+      return shown(value);
+    }
+  };
+  if (min == lowest && max == highest) return "";
+  if (max == highest) return text(min) + " and more";
+  if (min == lowest) return text(max) + " and less";
+  return text(min) + " to " + text(max);
+}
+
+std::string allowed_in(Range range) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  return allowed_in(range.min, range.max, -kInfinity, kInfinity);
+}
+
+std::string code(const std::string& text) { return "`" + text + "`"; }
+
+std::string cell(std::string text) {
+  for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) {
+    text.insert(at, "\\");
+  }
+  return text;
+}
+
+struct Row {
+  std::string table;  ///< dotted path
+  std::string key;
+  std::string type;
+  std::string allowed;
+  std::string otherwise;  ///< its default
+  std::string what;
+
+  auto operator<=>(const Row&) const = default;
+};
+
+struct Table {
+  std::string path;
+  std::string heading;
+  std::string what;
+};
+
+struct Choice {
+  std::vector<std::string> values;
+  std::string taken;
+};
+
+using Assignments = std::map<std::string, std::string>;  ///< of choices, by dotted path
+
+/// What one visit lists, with some choices made otherwise than by default.
+struct Listing {
+  std::vector<Table> tables;
+  std::vector<Row> rows;
+  std::vector<std::pair<std::string, Choice>> choices;
+};
+
+class Collector final : public Visitor {
+ public:
+  Collector(Listing& listing, const Assignments& assignments,
+            const std::vector<Alternatives>& texts, std::string path)
+      : listing_(listing), assignments_(assignments), texts_(texts), path_(std::move(path)) {}
+
+  void boolean(Key key, bool& value) override { add(key, "boolean", "", value ? "true" : "false"); }
+  void integer(Key key, std::int64_t& value, IntRange range) override {
+    using Limits = std::numeric_limits<std::int64_t>;
+    add(key, "integer", allowed_in(range.min, range.max, Limits::min(), Limits::max()),
+        std::to_string(value));
+  }
+  void number(Key key, double& value, Range range) override {
+    add(key, "number", allowed_in(range), std::isnan(value) ? "" : shown(value));
+  }
+  void text(Key key, std::string& value) override {
+    const std::string before = value;
+    for (const Alternatives& text : texts_) {
+      if (text.key == key.name) choose(key, value, text.values);
+    }
+    add(key, "text", "", before.empty() ? "" : '"' + before + '"');
+  }
+  void choice(Key key, std::string& value, const std::vector<std::string_view>& allowed) override {
+    const std::string before = value;
+    choose(key, value, {allowed.begin(), allowed.end()});
+    std::string list;
+    for (const std::string_view one : allowed) {
+      list += (list.empty() ? "" : ", ") + code(std::string(one));
+    }
+    add(key, "text", list, before.empty() ? "" : '"' + before + '"');
+  }
+  void numbers(Key key, std::vector<double>& value, Range range) override {
+    std::string list;
+    for (const double one : value) list += (list.empty() ? "" : ", ") + shown(one);
+    add(key, "numbers", allowed_in(range), list.empty() ? "" : '[' + list + ']');
+  }
+  void texts(Key key, std::vector<std::string>& value) override {
+    std::string list;
+    for (const std::string& one : value) list += (list.empty() ? "\"" : ", \"") + one + '"';
+    add(key, "texts", "", list.empty() ? "" : '[' + list + ']');
+  }
+  void table(Key key, const Body& body) override { nested(key, "[", "]", body); }
+  void optional_table(Key key, bool& present, const Body& body) override {
+    present = true;
+    nested(key, "[", "]", body);
+  }
+  std::vector<std::string> names(Key, const std::vector<std::string>&) override { return {"NAME"}; }
+  std::size_t list(Key, std::size_t) override { return 1; }
+  void element(Key key, std::size_t, const Body& body) override { nested(key, "[[", "]]", body); }
+
+ private:
+  [[nodiscard]] std::string below(Key key) const {
+    return path_.empty() ? std::string(key.name) : path_ + '.' + std::string(key.name);
+  }
+  void choose(Key key, std::string& value, const std::vector<std::string>& values) {
+    const auto given = assignments_.find(below(key));
+    if (given != assignments_.end()) value = given->second;
+    listing_.choices.push_back({below(key), {values, value}});
+  }
+  void add(Key key, const std::string& type, const std::string& allowed,
+           const std::string& otherwise) {
+    const std::string unit = units::unit_of(key.name);
+    listing_.rows.push_back({path_, std::string(key.name), type + (unit.empty() ? "" : ", " + unit),
+                             allowed, key.required ? "must be given" : otherwise,
+                             std::string(key.what)});
+  }
+  void nested(Key key, const std::string& open, const std::string& close, const Body& body) {
+    listing_.tables.push_back({below(key), open + below(key) + close, std::string(key.what)});
+    Collector inner(listing_, assignments_, texts_, below(key));
+    body(inner);
+  }
+
+  Listing& listing_;
+  const Assignments& assignments_;
+  const std::vector<Alternatives>& texts_;
+  std::string path_;
+};
+
+class Reference {
+ public:
+  Reference(const Visitor::Body& visit_default, const std::vector<Alternatives>& texts)
+      : visit_default_(visit_default), texts_(texts) {
+    Assignments none;
+    explore(none);
+  }
+
+  [[nodiscard]] std::string markdown(const std::string& hashes) const {
+    std::string text;
+    for (const Table& table : tables_) {
+      std::vector<const Row*> rows;
+      for (const Row& row : rows_) {
+        if (row.table == table.path) rows.push_back(&row);
+      }
+      if (rows.empty()) continue;
+      const std::string shared = condition(*rows.front());
+      const bool all = std::all_of(rows.begin(), rows.end(),
+                                   [&](const Row* row) { return condition(*row) == shared; });
+      text += '\n' + hashes + ' ' + (table.path.empty() ? "Top of the file" : code(table.heading));
+      text += "\n\n";
+      std::string intro = table.what;
+      if (all && !shared.empty()) intro += (intro.empty() ? "" : "; ") + ("with " + shared);
+      if (!intro.empty()) {
+        intro.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(intro.front())));
+        text += intro + ".\n\n";
+      }
+      text += "| key | type, unit | allowed | default | meaning |\n|---|---|---|---|---|\n";
+      for (const Row* row : rows) {
+        const std::string when = all ? "" : condition(*row);
+        const std::string meaning =
+            row->what + (when.empty() ? "" : (row->what.empty() ? "" : "; ") + ("with " + when));
+        text += "| " + code(row->key) + " | " + row->type + " | " + cell(row->allowed) + " | " +
+                cell(row->otherwise) + " | " + cell(meaning) + " |\n";
+      }
+    }
+    return text;
+  }
+
+ private:
+  [[nodiscard]] Listing list(const Assignments& assignments) const {
+    Listing listing;
+    listing.tables.push_back({"", "", ""});
+    Collector collector(listing, assignments, texts_, "");
+    visit_default_(collector);
+    return listing;
+  }
+
+  /// Inserts what is new behind what stands before it in `listing`.
+  void merge(const Listing& listing) {
+    const auto into = [](auto& all, const auto& added, const auto& same) {
+      std::size_t at = 0;
+      for (const auto& one : added) {
+        const auto known =
+            std::find_if(all.begin(), all.end(), [&](const auto& old) { return same(old, one); });
+        if (known != all.end()) {
+          at = static_cast<std::size_t>(known - all.begin()) + 1;
+        } else {
+          all.insert(all.begin() + static_cast<std::ptrdiff_t>(at++), one);
+        }
+      }
+    };
+    into(tables_, listing.tables, [](const Table& a, const Table& b) { return a.path == b.path; });
+    into(rows_, listing.rows, [](const Row& a, const Row& b) { return a == b; });
+  }
+
+  void explore(const Assignments& assignments) {
+    const Listing base = list(assignments);
+    merge(base);
+    for (const auto& [path, choice] : base.choices) {
+      if (!explored_.insert(path).second) continue;
+      std::map<Row, std::vector<std::string>> present;
+      for (const std::string& value : choice.values) {
+        Assignments other = assignments;
+        other[path] = value;
+        const Listing listing = value == choice.taken ? base : list(other);
+        merge(listing);
+        for (const Row& row : std::set<Row>(listing.rows.begin(), listing.rows.end())) {
+          present[row].push_back(value);
+        }
+      }
+      for (const auto& [row, values] : present) {
+        if (values.size() < choice.values.size()) {
+          conditions_[row].push_back({path, values, choice.values});
+        }
+      }
+      for (const std::string& value : choice.values) {
+        Assignments other = assignments;
+        other[path] = value;
+        if (value != choice.taken) explore(other);
+      }
+    }
+  }
+
+  struct Condition {
+    std::string path;
+    std::vector<std::string> values;
+    std::vector<std::string> all;
+  };
+
+  /// "`plant` velocity_servo", "" for a key that is always read.
+  [[nodiscard]] std::string condition(const Row& row) const {
+    const auto found = conditions_.find(row);
+    if (found == conditions_.end()) return "";
+    std::map<std::string, std::string> by_key;  // last part of the path -> whole condition
+    std::vector<std::string> order;
+    for (const Condition& one : found->second) {
+      const std::string key = one.path.substr(one.path.rfind('.') + 1);
+      const bool again = by_key.count(key) > 0;
+      const bool beside = one.path.substr(0, one.path.size() - key.size()) ==
+                          (row.table.empty() ? "" : row.table + '.');
+      std::string text = code(again || beside ? key : one.path) + ' ';
+      if (one.values.size() + 1 == one.all.size() && one.all.size() > 2) {
+        for (const std::string& value : one.all) {
+          if (std::find(one.values.begin(), one.values.end(), value) == one.values.end()) {
+            text += "other than \"" + value + '"';
+          }
+        }
+      } else {
+        text += "= ";
+        for (std::size_t i = 0; i < one.values.size(); ++i) {
+          text += (i == 0 ? "\"" : " or \"") + one.values[i] + '"';
+        }
+      }
+      if (!again) order.push_back(key);
+      by_key[key] = text;
+    }
+    std::string text;
+    for (const std::string& key : order) text += (text.empty() ? "" : ", ") + by_key[key];
+    return text;
+  }
+
+  const Visitor::Body& visit_default_;
+  const std::vector<Alternatives>& texts_;
+  std::vector<Table> tables_;
+  std::vector<Row> rows_;
+  std::set<std::string> explored_;
+  std::map<Row, std::vector<Condition>> conditions_;
+};
+
+}  // namespace
+
+std::string print_reference(const Visitor::Body& visit_default, int level,
+                            const std::vector<Alternatives>& texts) {
+  return Reference(visit_default, texts)
+      .markdown(std::string(static_cast<std::size_t>(level), '#'));
+}
+
+}  // namespace config::schema

@@ -1,0 +1,41 @@
+#include "workbench/cli/configuration_reference.h"
+
+#include "config/schema/reference.h"
+#include "estimator/fdi/learned_bands.h"
+#include "estimator/fdi/tracker/baseline_file.h"
+#include "estimator/fdi/trained.h"
+#include "workbench/scorecard/method.h"
+#include "workbench/scorecard/plan.h"
+#include "workbench/simulate/scenario.h"
+
+namespace workbench::cli {
+namespace {
+
+template <class T>
+std::string section(const std::string& heading, const std::string& text) {
+  return "\n## " + heading + "\n\n" + text + "\n" +
+         config::schema::print_reference([](config::schema::Visitor& v) { T().visit(v); });
+}
+
+}  // namespace
+
+std::string configuration_reference() {
+  return section<simulate::Scenario>(
+             "Model file",
+             "Read by `compare`, `diagnose`, `fit` and all other commands that take a model; "
+             "`[reference]`,\n`[instruments]`, `[[fault]]` and `[[sensor_fault]]` by `simulate` "
+             "alone.") +
+         section<estimator::fdi::LearnedBands>(
+             "Learned bands", "Written by `calibrate` and `promote`, named by `bands_file`.") +
+         section<estimator::fdi::Trained>(
+             "Trained methods", "Written by `train`, named by `file` of the methods that learn.") +
+         section<estimator::fdi::tracker::HealthyFile>(
+             "Healthy parameters",
+             "Written by `isolate --learn`, named by `healthy` of `[[tracker]]`.") +
+         section<scorecard::Plan>("Scorecard plan", "Read by `scorecard --plan`.") +
+         section<scorecard::Method>(
+             "Scorecard method",
+             "Read by `scorecard`; the fault detection in it is configured as the daemon's is.");
+}
+
+}  // namespace workbench::cli
