@@ -1,8 +1,9 @@
 // spoolwatch replay FOLDER: from the evidence of an alarm to the same alarm, bit for bit.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <bit>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
@@ -26,16 +27,11 @@ struct Options {
 };
 
 std::string hex(double value) {
-  char text[20];
-  std::snprintf(text, sizeof text, "%016llx",
-                static_cast<unsigned long long>(std::bit_cast<std::uint64_t>(value)));
-  return text;
+  return fmt::format("{:016x}", std::bit_cast<std::uint64_t>(value));
 }
 
 std::string seconds(const Pack& pack, std::int64_t tick) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f s", static_cast<double>(tick) * pack.sample_time_s);
-  return text;
+  return fmt::format("{:.3f} s", static_cast<double>(tick) * pack.sample_time_s);
 }
 
 void print(const Pack& pack, const ReplayOutcome& outcome, std::ostream& out) {
@@ -48,10 +44,8 @@ void print(const Pack& pack, const ReplayOutcome& outcome, std::ostream& out) {
     out << "  " << to_string(outcome.alarm.severity) << " at sample " << outcome.alarm.tick << ", "
         << seconds(pack, outcome.alarm.tick) << ": ";
     if (std::isfinite(outcome.alarm.value)) {
-      char value[40];
-      std::snprintf(value, sizeof value, "%.9g", outcome.alarm.value);
-      out << outcome.alarm.quantity << " = " << value << ", bits " << hex(outcome.alarm.value)
-          << '\n';
+      out << fmt::format("{} = {:.9g}, bits {}\n", outcome.alarm.quantity, outcome.alarm.value,
+                         hex(outcome.alarm.value));
     } else {
       out << outcome.alarm.reason << '\n';
     }

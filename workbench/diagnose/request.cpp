@@ -1,7 +1,8 @@
 #include "workbench/diagnose/request.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <thread>
 
 #include "config/record/record.h"
@@ -36,10 +37,11 @@ plant_sim::ModelFile model_of(const Request& request) {
 void require_rate(const greybox::Measured& record) {
   constexpr double kSlowest_s = 0.05;
   if (record.sample_time_s <= kSlowest_s * (1.0 + 1e-6)) return;
-  char text[96];
-  std::snprintf(text, sizeof text, "%.3g samples a second are too few to tell noise from motion",
-                1.0 / record.sample_time_s);
-  throw config::schema::bad_data(record.name, text, "20 Hz or more; compare and fit take less");
+  throw config::schema::bad_data(
+      record.name,
+      fmt::format("{:.3g} samples a second are too few to tell noise from motion",
+                  1.0 / record.sample_time_s),
+      "20 Hz or more; compare and fit take less");
 }
 
 std::vector<greybox::Measured> records_of(const std::vector<std::string>& files) {

@@ -1,8 +1,9 @@
 #include "workbench/fit/request.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <thread>
 
@@ -46,11 +47,11 @@ void require_motion(const Evidence& evidence) {
     const auto [low, high] = std::minmax_element(record.y_m.begin(), record.y_m.end());
     const double floor_m = std::isfinite(evidence.noise_floor_m) ? evidence.noise_floor_m : 0.0;
     if (*high - *low <= 2.0 * kLeastMotion * floor_m || !(*high > *low)) {
-      char text[120];
-      std::snprintf(text, sizeof text, "the rod does not move: y stays within %.3g um of itself",
-                    1e6 * (*high - *low));
-      throw config::schema::bad_data(record.name, text,
-                                     "a record with motion well above the position's noise");
+      throw config::schema::bad_data(
+          record.name,
+          fmt::format("the rod does not move: y stays within {:.3g} um of itself",
+                      1e6 * (*high - *low)),
+          "a record with motion well above the position's noise");
     }
   }
 }
@@ -65,10 +66,8 @@ void note_saturation(const Measured& record, std::vector<std::string>& notes) {
   if (!(*high > *low)) {
     notes.push_back(record.name + ": the command never changes");
   } else if (share > 0.2) {
-    char text[96];
-    std::snprintf(text, sizeof text, ": the command stands at its limit for %.0f %% of the time",
-                  100.0 * share);
-    notes.push_back(record.name + text);
+    notes.push_back(fmt::format("{}: the command stands at its limit for {:.0f} % of the time",
+                                record.name, 100.0 * share));
   }
 }
 
@@ -147,11 +146,7 @@ void choose_profiles(const Request& request, greybox::Task& task) {
   }
 }
 
-std::string shown(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
-}
+std::string shown(double value) { return fmt::format("{:.9g}", value); }
 
 std::string command_of(const Request& request) {
   std::vector<std::string> words{"spoolwatch", "fit", request.model};
