@@ -5,13 +5,14 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "config/schema/error.h"
 #include "workbench/cli/command.h"
+#include "workbench/cli/common_options.h"
+#include "workbench/present/json.h"
 #include "workbench/replay/replayer.h"
 
 namespace workbench::cli {
@@ -85,18 +86,8 @@ Json as_json(const Pack& pack, const ReplayOutcome& outcome) {
 int run(const Options& options) {
   const Pack pack = replay::read_pack(options.folder);
   const ReplayOutcome outcome = replay::replay(pack);
-  if (options.json == "-") {
-    std::cout << as_json(pack, outcome).dump(2) << '\n';
-  } else {
+  if (!present::write_json(as_json(pack, outcome).dump(2) + '\n', options.json)) {
     print(pack, outcome, std::cout);
-  }
-  if (!options.json.empty() && options.json != "-") {
-    std::ofstream out(options.json);
-    out << as_json(pack, outcome).dump(2) << '\n';
-    out.close();
-    if (!out) {
-      throw config::schema::RunError(options.json + ": cannot be written");
-    }
   }
   return outcome.same() ? 0 : EXIT_FAILURE;
 }
@@ -107,7 +98,7 @@ void add_replay(CLI::App& command, int& exit_code) {
   const auto options = std::make_shared<Options>();
   command.add_option("folder", options->folder, "evidence of an alarm, as spoolwatchd wrote it")
       ->required();
-  command.add_option("--json", options->json, "write the outcome there; - for standard output");
+  add_json(command, options->json);
   command.footer("Exit code 0: the same alarm came again, bit for bit; 1: it did not.");
   command.callback([options, &exit_code] { exit_code = run(*options); });
 }

@@ -154,45 +154,6 @@ void check(const Request& request, const Record& record) {
   }
 }
 
-std::string command_of(const Request& request) {
-  std::vector<std::string> words{"spoolwatch", "isolate", request.model, request.record};
-  const auto add = [&](const char* option, const std::string& value) {
-    words.emplace_back(option);
-    words.push_back(value);
-  };
-  if (request.parameters != Request{}.parameters) {
-    for (const std::string& names : request.parameters) add("--parameters", names);
-  }
-  if (request.settings.window_s != Settings{}.window_s) {
-    add("--window", fmt::format("{:.9g}", request.settings.window_s));
-  }
-  if (request.settings.stride_s != Settings{}.stride_s) {
-    add("--stride", fmt::format("{:.9g}", request.settings.stride_s));
-  }
-  if (request.settings.observer_per_s != Settings{}.observer_per_s) {
-    add("--observer", fmt::format("{:.9g}", request.settings.observer_per_s));
-  }
-  if (request.settings.most_ratio != Settings{}.most_ratio) {
-    add("--limit", fmt::format("{:.9g}", request.settings.most_ratio));
-  }
-  if (request.settings.thresholds.suspect_position_sensor) {
-    words.emplace_back("--suspect-position-sensor");
-  }
-  const tracking::Following& following = request.settings.following;
-  for (const std::string& name : following.parameters) add("--follow", name);
-  if (following.ratio_per_h != Settings{}.following.ratio_per_h) {
-    add("--follow-per-hour", fmt::format("{:.9g}", following.ratio_per_h));
-  }
-  if (request.no_pressures) words.emplace_back("--no-pressures");
-  if (request.healthy_rms_m > 0.0) {
-    add("--healthy-rms", fmt::format("{:.9g}", request.healthy_rms_m));
-  } else if (request.healthy != Request{}.healthy) {
-    add("--healthy", request.healthy);
-  }
-  for (const std::string& assignment : request.assignments) add("--set", assignment);
-  return present::shell_command(words);
-}
-
 void note_calibration(Outcome& out) {
   const double times = out.healthy.rms_m / out.noise_floor_m;
   if (times > kUncalibrated) {
@@ -244,15 +205,13 @@ Outcome isolate(const Request& request) {
   cli::check_outputs(
       {{"--json", request.json}, {"--report", request.report}, {"--learn", request.learn}},
       {request.model, {request.record}});
-  auto document = config::schema::Document::load(request.model);
-  for (const std::string& assignment : request.assignments) document.set(assignment);
-  const plant_sim::ModelFile model = plant_sim::read_model(document);
+  const plant_sim::ModelFile model = plant_sim::load_model(request.model, request.assignments);
   const Record record = config::record::read_record(request.record);
   check(request, record);
   Outcome out;
   out.model = request.model;
   out.record = request.record;
-  out.command = command_of(request);
+  out.command = present::typed_command();
   out.settings = request.settings;
   out.notes = record.notes;
   const Readings readings = readings_of(record, request);
