@@ -1,8 +1,9 @@
 #include "daemon/commission.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <ostream>
 
@@ -18,13 +19,6 @@ using config::schema::UsageError;
 /// Of [valve] limit_V, where nothing says how fast the rod can go.
 constexpr double kBlindShare = 0.05;
 constexpr double kMostShare = 0.1;
-
-template <class... Values>
-std::string text(const char* format, Values... values) {
-  char line[300];
-  std::snprintf(line, sizeof line, format, values...);
-  return line;
-}
 
 /// While it is held no daemon serves this rig, and where one does, this throws. Nothing where no
 /// daemon could have its socket.
@@ -53,18 +47,20 @@ control::CommissioningLimits limits_of(const DaemonConfig& config, const Commiss
                              : std::min(kMostShare * limit_V, o.max_travel_m / blind_m_per_V);
   }
   if (limits.authority_V > limit_V) {
-    throw UsageError(text("--authority: is %g; allowed: up to [valve] limit_V, %g",
-                          limits.authority_V, limit_V));
+    throw UsageError(fmt::format("--authority: is {:g}; allowed: up to [valve] limit_V, {:g}",
+                                 limits.authority_V, limit_V));
   }
-  out << text("Commissioning \"%s\": %.3g V about null %.3g V, rod within %.1f mm, below %.1f mm/s",
-              config.rig_id.c_str(), limits.authority_V, config.rig.valve().null_V,
-              limits.max_travel_m * 1e3, limits.max_speed_mps * 1e3)
+  out << fmt::format(
+             "Commissioning \"{}\": {:.3g} V about null {:.3g} V, rod within {:.1f} mm, below "
+             "{:.1f} mm/s",
+             config.rig_id, limits.authority_V, config.rig.valve().null_V,
+             limits.max_travel_m * 1e3, limits.max_speed_mps * 1e3)
       << '\n';
   out << (std::isnan(blind_m_per_V)
               ? std::string("If the sensor is dead nothing limits the travel but the authority: "
                             "the backend does not say how fast the rod can go")
-              : text("If the sensor is dead the rod moves by %.1f mm at most",
-                     blind_m_per_V * limits.authority_V * 1e3))
+              : fmt::format("If the sensor is dead the rod moves by {:.1f} mm at most",
+                            blind_m_per_V * limits.authority_V * 1e3))
       << std::endl;
   return limits;
 }

@@ -1,6 +1,7 @@
 #include "daemon/commission_session.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -21,13 +22,6 @@ namespace {
 using config::schema::RunError;
 using control::Failure;
 using control::Stage;
-
-template <class... Values>
-std::string text(const char* format, Values... values) {
-  char line[300];
-  std::snprintf(line, sizeof line, format, values...);
-  return line;
-}
 
 /// The file appears whole or not at all.
 void write_whole(const std::filesystem::path& file, const std::string& content) {
@@ -97,18 +91,18 @@ void CommissionSession::stage(const char* name, const std::function<void()>& beg
     throw Ended{kStoppedExitCode};
   }
   if (loop_->stop() != CommissionLoop::Stop::none) {
-    give_up(text("%s: %s", name, words_of(loop_->stop())));
+    give_up(fmt::format("{}: {}", name, words_of(loop_->stop())));
   }
   const Failure failure = procedure_.failure();
   if (failure == Failure::none || failure == Failure::reversed) return;
-  give_up(text("%s: %s (travel %.2f mm, at last %.1f mm/s)%s", name, words_of(failure),
-               procedure_.travel_m() * 1e3, procedure_.speed_mps() * 1e3, remedy(failure)));
+  give_up(fmt::format("{}: {} (travel {:.2f} mm, at last {:.1f} mm/s){}", name, words_of(failure),
+                      procedure_.travel_m() * 1e3, procedure_.speed_mps() * 1e3, remedy(failure)));
 }
 
 void CommissionSession::sign() {
   stage("sign", [this] { procedure_.begin(Stage::sign); });
   const control::Findings& f = procedure_.findings();
-  out_ << text("sign:   %+.3f V moved the reading by %+.3f mm", f.sign_V, f.sign_m * 1e3)
+  out_ << fmt::format("sign:   {:+.3f} V moved the reading by {:+.3f} mm", f.sign_V, f.sign_m * 1e3)
        << std::endl;
   const bool fits = procedure_.failure() == Failure::none;
   std::string wrong = fits ? "" : "valve or rod sensor is reversed";
@@ -132,18 +126,22 @@ void CommissionSession::speeds() {
   found_.dead_zone_V = f.dead_zone_V;
   found_.gain_mps_per_V = f.gain_mps_per_V;
   found_.latency_s = f.latency_s;
-  out_ << text("speeds: null %.4f V, dead zone %.4f V wide, gain %.2f mm/s per V, latency %.1f ms",
-               found_.null_V, f.dead_zone_V, f.gain_mps_per_V * 1e3, f.latency_s * 1e3)
+  out_ << fmt::format(
+              "speeds: null {:.4f} V, dead zone {:.4f} V wide, gain {:.2f} mm/s per V, latency "
+              "{:.1f} ms",
+              found_.null_V, f.dead_zone_V, f.gain_mps_per_V * 1e3, f.latency_s * 1e3)
        << std::endl;
 }
 
 double CommissionSession::home(int direction, bool index) {
   const char* where = direction > 0 ? "above" : "below";
-  agree(text("Drive to the %s %s, up to %.0f mm, at %.1f mm/s?", index ? "index" : "stop", where,
-             limits_.home_travel_m * 1e3, procedure_.target_mps() * 1e3));
+  agree(fmt::format("Drive to the {} {}, up to {:.0f} mm, at {:.1f} mm/s?",
+                    index ? "index" : "stop", where, limits_.home_travel_m * 1e3,
+                    procedure_.target_mps() * 1e3));
   stage("home", [&] { procedure_.begin_home(direction, index); });
   const double y_m = procedure_.findings().home_m;
-  out_ << text("home:   %s %s at a reading of %.3f mm", index ? "index" : "stop", where, y_m * 1e3)
+  out_ << fmt::format("home:   {} {} at a reading of {:.3f} mm", index ? "index" : "stop", where,
+                      y_m * 1e3)
        << std::endl;
   return y_m;
 }
@@ -153,7 +151,7 @@ void CommissionSession::homes() {
     const double below_m = home(-1, false);
     const double above_m = home(1, false);
     found_.rod_scale = options_.stroke_m / (above_m - below_m);
-    out_ << text("scale:  a metre of reading is %.5f m", found_.rod_scale) << std::endl;
+    out_ << fmt::format("scale:  a metre of reading is {:.5f} m", found_.rod_scale) << std::endl;
     found_.home = "stop_above";
     found_.home_m = above_m;
     return;
@@ -172,14 +170,14 @@ void CommissionSession::stages() {
   stage("rest", [this] { procedure_.begin(Stage::rest); });
   const control::Findings& f = procedure_.findings();
   found_.noise_m = f.noise_m;
-  out_ << text("rest:   noise %.2f um, drift %.2f mm/s at %.3g V", f.noise_m * 1e6,
-               f.drift_mps * 1e3, config_.rig.valve().null_V)
+  out_ << fmt::format("rest:   noise {:.2f} um, drift {:.2f} mm/s at {:.3g} V", f.noise_m * 1e6,
+                      f.drift_mps * 1e3, config_.rig.valve().null_V)
        << std::endl;
-  agree(text("Pulses up and down, up to %.3g V and %.1f mm?", limits_.authority_V,
-             limits_.max_travel_m * 1e3));
+  agree(fmt::format("Pulses up and down, up to {:.3g} V and {:.1f} mm?", limits_.authority_V,
+                    limits_.max_travel_m * 1e3));
   sign();
-  agree(text("Pulses both ways at up to %.1f mm/s, within %.1f mm?", procedure_.target_mps() * 1e3,
-             limits_.max_travel_m * 1e3));
+  agree(fmt::format("Pulses both ways at up to {:.1f} mm/s, within {:.1f} mm?",
+                    procedure_.target_mps() * 1e3, limits_.max_travel_m * 1e3));
   speeds();
   homes();
 }

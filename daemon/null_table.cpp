@@ -1,7 +1,8 @@
 #include "daemon/null_table.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
-#include <cstdio>
 #include <ostream>
 
 #include "daemon/rt/loop.h"
@@ -93,23 +94,16 @@ std::vector<NullRow> null_rows(const NullFacts& facts) {
 }
 
 void print_null_table(const NullFacts& facts, std::ostream& out) {
-  char line[200];
-  std::snprintf(line, sizeof line, "# %-24s %-8s %16s %18s\n", "failure", "valve",
-                "worst time (ms)", "worst travel (mm)");
-  out << line;
-  const auto number = [](const char* format, double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, format, value);
-    return std::string(std::isnan(value) ? "-" : text);
-  };
+  out << fmt::format("# {:24} {:8} {:>16} {:>18}\n", "failure", "valve", "worst time (ms)",
+                     "worst travel (mm)");
   for (const NullRow& row : null_rows(facts)) {
     const bool never = std::isnan(row.time_s);
-    const std::string time = never ? "never" : number("%.1f", row.time_s * 1e3);
-    const std::string travel = number("%.2f", row.time_s * facts.speed_mps * 1e3);
+    const std::string time = never ? "never" : fmt::format("{:.1f}", row.time_s * 1e3);
+    const double travel_mm = row.time_s * facts.speed_mps * 1e3;
+    const std::string travel = std::isnan(travel_mm) ? "-" : fmt::format("{:.2f}", travel_mm);
     const std::string note = never ? "  (" + row.note + ")" : "";
-    std::snprintf(line, sizeof line, "# %-24s %-8s %16s %18s%s\n", row.failure.c_str(),
-                  facts.backend.c_str(), time.c_str(), travel.c_str(), note.c_str());
-    out << line;
+    out << fmt::format("# {:24} {:8} {:>16} {:>18}{}\n", row.failure, facts.backend, time, travel,
+                       note);
   }
 }
 

@@ -1,6 +1,6 @@
 #include "daemon/service_report.h"
 
-#include <cstdio>
+#include <fmt/format.h>
 
 #include "daemon/control/protocol.h"
 
@@ -52,14 +52,13 @@ void ServiceReport::say(std::int64_t now_ns) {
 
 std::string ServiceReport::line() const {
   if (!ready_) return "waiting for the first good cycles";
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "%s, active alarms: %d, lateness p99.9 %.2f ms, lost periods: %lld",
-                control::to_string(stats_.state.load(std::memory_order_relaxed)),
-                static_cast<int>(stats_.active_alarms.load(std::memory_order_relaxed)),
-                static_cast<double>(stats_.lateness.quantile_ns(0.999)) * 1e-6,
-                static_cast<long long>(stats_.skipped_periods.value()));
-  return remark_.empty() ? text : text + ("; " + remark_);
+  const std::string text =
+      fmt::format("{}, active alarms: {}, lateness p99.9 {:.2f} ms, lost periods: {}",
+                  control::to_string(stats_.state.load(std::memory_order_relaxed)),
+                  static_cast<int>(stats_.active_alarms.load(std::memory_order_relaxed)),
+                  static_cast<double>(stats_.lateness.quantile_ns(0.999)) * 1e-6,
+                  stats_.skipped_periods.value());
+  return remark_.empty() ? text : text + "; " + remark_;
 }
 
 }  // namespace monitor

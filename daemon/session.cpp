@@ -1,10 +1,10 @@
 #include "daemon/session.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cmath>
 #include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
@@ -128,16 +128,14 @@ void report(const rt::LoopStats& stats, std::ostream& log) {
               {"read", stats.read},
               {"control", stats.control},
               {"write", stats.write}};
-  char line[160];
   log << "spoolwatchd: " << stats.ticks.value() << " ticks, " << stats.overruns.value()
       << " overruns, " << stats.skipped_periods.value() << " periods skipped, "
       << stats.dropped_samples.value() << " samples dropped; of each period:\n";
   for (const auto& row : rows) {
     const auto us = [&](double q) { return static_cast<double>(row.times.quantile_ns(q)) * 1e-3; };
-    std::snprintf(line, sizeof line,
-                  "  %-8s p50 %.1f us  p99 %.1f us  p99.9 %.1f us  max %.1f us\n", row.what,
-                  us(0.5), us(0.99), us(0.999), static_cast<double>(row.times.max_ns()) * 1e-3);
-    log << line;
+    log << fmt::format("  {:8} p50 {:.1f} us  p99 {:.1f} us  p99.9 {:.1f} us  max {:.1f} us\n",
+                       row.what, us(0.5), us(0.99), us(0.999),
+                       static_cast<double>(row.times.max_ns()) * 1e-3);
   }
 }
 

@@ -179,8 +179,11 @@ double* ModelFile::value(std::string_view dotted) {
   return nullptr;
 }
 
-ModelFile load_model(const std::filesystem::path& file) {
-  return read_model(config::schema::Document::load(file));
+ModelFile load_model(const std::filesystem::path& file,
+                     const std::vector<std::string>& assignments) {
+  auto document = config::schema::Document::load(file);
+  for (const std::string& assignment : assignments) document.set(assignment);
+  return read_model(document);
 }
 
 ModelFile read_model(const config::schema::Document& document) {

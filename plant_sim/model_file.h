@@ -71,8 +71,9 @@ struct ModelFile {
 };
 
 /// Throws config::schema::ConfigError for a missing file, an unknown key or a bad value.
-[[nodiscard]] ModelFile load_model(const std::filesystem::path& file);
-/// The same from a document, after `--set` has changed it.
+[[nodiscard]] ModelFile load_model(const std::filesystem::path& file,
+                                   const std::vector<std::string>& assignments = {});
+/// The same from a document.
 [[nodiscard]] ModelFile read_model(const config::schema::Document& document);
 /// TOML text that load_model() reads back to the same values.
 [[nodiscard]] std::string print_model(const ModelFile& model);

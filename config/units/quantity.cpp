@@ -1,9 +1,10 @@
 #include "config/units/quantity.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "config/units/unit_suffix.h"
 
@@ -74,21 +75,15 @@ int decimals_for(double value, double error) {
 }
 
 std::string fixed(double value, int decimals) {
-  char text[64];
   const bool plain = std::abs(value) < 1e6 && decimals <= 9;
-  if (plain) {
-    std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  } else {
-    std::snprintf(text, sizeof text, "%.4g", value);
-  }
-  return text;
+  return plain ? fmt::format("{:.{}f}", value, decimals) : fmt::format("{:.4g}", value);
 }
 
 /// Three digits, without an exponent where it reads well.
 std::string rounded(double value) {
   const double size = std::abs(value);
-  if (size >= 100.0 && size < 1e5) return number("%.0f", value);
-  return number("%.3g", value);
+  if (size >= 100.0 && size < 1e5) return fmt::format("{:.0f}", value);
+  return fmt::format("{:.3g}", value);
 }
 
 void replace_all(std::string& text, const std::string& from, const std::string& to) {
@@ -98,12 +93,6 @@ void replace_all(std::string& text, const std::string& from, const std::string& 
 }
 
 }  // namespace
-
-std::string number(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 Quantity quantity(std::string_view name, double value, double std_error, double reference) {
   if (std::isinf(value)) return {"no limit", "", ""};
@@ -118,7 +107,8 @@ Quantity quantity(std::string_view name, double value, double std_error, double 
   if (error > 1e3 * std::abs(shown)) return {rounded(shown), rounded(error), unit.unit};
   const int decimals = decimals_for(shown, error);
   const bool lost = error < 0.5 * std::pow(10.0, -decimals);
-  return {fixed(shown, decimals), lost ? number("%.1g", error) : fixed(error, decimals), unit.unit};
+  return {fixed(shown, decimals), lost ? fmt::format("{:.1g}", error) : fixed(error, decimals),
+          unit.unit};
 }
 
 std::string words(const Quantity& quantity) {
@@ -134,12 +124,12 @@ std::string length_words(double length_m) {
 std::string chance_words(double p) {
   constexpr double kLeast = 1e-6;
   if (!std::isfinite(p)) return "-";
-  return p < kLeast ? "below " + number("%.0e", kLeast) : number("%.2g", p);
+  return p < kLeast ? fmt::format("below {:.0e}", kLeast) : fmt::format("{:.2g}", p);
 }
 
 std::string times_words(double ratio) {
   if (!std::isfinite(ratio)) return "-";
-  return number(ratio < 10.0 ? "%.2f" : ratio < 100.0 ? "%.1f" : "%.0f", ratio);
+  return fmt::format("{:.{}f}", ratio, ratio < 10.0 ? 2 : ratio < 100.0 ? 1 : 0);
 }
 
 std::string parameter_words(std::string_view name) {

@@ -34,9 +34,6 @@ struct Quantity {
 /// "1.12", "53", "12339": how many times.
 [[nodiscard]] std::string times_words(double ratio);
 
-/// printf-like, for doubles: "%.3g".
-[[nodiscard]] std::string number(const char* format, double value);
-
 /// Text for the page: "um" as the micrometre sign has it, "+-" as one sign.
 [[nodiscard]] std::string typeset(std::string text);
 

@@ -1,7 +1,8 @@
 #include "daemon/control/calibration.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
-#include <cstdio>
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
@@ -57,21 +58,18 @@ std::string contradiction(const Calibration& calibration, double null_V, double 
                           const std::string& wiring) {
   constexpr double kNullShare = 0.01;
   constexpr double kScaleShare = 0.01;
-  char line[200];
   if (calibration.valve_sign < 0) return "the valve is reversed: a positive command retracts";
   if (calibration.rod_sign < 0) {
     return "the rod sensor is reversed: the reading falls as the rod extends";
   }
   if (std::abs(calibration.rod_scale - 1.0) > kScaleShare) {
-    std::snprintf(line, sizeof line, "a metre of reading is %.4g m: correct the rod sensor's scale",
-                  calibration.rod_scale);
-    return line;
+    return fmt::format("a metre of reading is {:.4g} m: correct the rod sensor's scale",
+                       calibration.rod_scale);
   }
   const double allowed_V = 0.5 * calibration.dead_zone_V + kNullShare * limit_V;
   if (!(std::abs(null_V - calibration.null_V) <= allowed_V)) {
-    std::snprintf(line, sizeof line, "[valve] null_V is %.4g; the rod stands at %.4g +- %.2g",
-                  null_V, calibration.null_V, allowed_V);
-    return line;
+    return fmt::format("[valve] null_V is {:.4g}; the rod stands at {:.4g} +- {:.2g}", null_V,
+                       calibration.null_V, allowed_V);
   }
   if (!calibration.wiring.empty() && calibration.wiring != wiring) {
     return "the configuration of valve or rod sensor has changed since: commission the rig again";

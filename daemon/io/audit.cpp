@@ -1,12 +1,12 @@
 #include "daemon/io/audit.h"
 
 #include <fcntl.h>
+#include <fmt/chrono.h>
 #include <pwd.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
-#include <cstdio>
 #include <ctime>
 #include <nlohmann/json.hpp>
 #include <system_error>
@@ -22,11 +22,7 @@ std::string utc_text(std::int64_t utc_us) {
   const std::time_t seconds = utc_us / 1'000'000;
   std::tm utc{};
   gmtime_r(&seconds, &utc);
-  std::array<char, 48> out{};
-  const std::size_t length = std::strftime(out.data(), out.size(), "%Y-%m-%dT%H:%M:%S", &utc);
-  std::snprintf(out.data() + length, out.size() - length, ".%03dZ",
-                static_cast<int>(utc_us / 1000 % 1000));
-  return out.data();
+  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", utc, utc_us / 1000 % 1000);
 }
 
 std::string user_name(unsigned uid) {

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "config/schema/hash.h"
 #include "daemon/io/audit.h"
 #include "daemon/io/event_log.h"
 
@@ -70,12 +71,6 @@ int write_events(const fs::path& file, const PackContents& contents) {
   return out.close();
 }
 
-std::string hex(std::uint64_t value) {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
-  return text;
-}
-
 std::string folder_name(const EvidenceTrigger& trigger) {
   std::string name = utc_text(trigger.utc_us).substr(0, 19) + "Z-" + trigger.source + "." +
                      trigger.name + "-" + std::to_string(trigger.tick);
@@ -93,29 +88,30 @@ std::string manifest(const fs::path& folder, const EvidenceFacts& facts,
   ordered_json files = ordered_json::array({"log.lcmlog"});
   if (contents.inexact.empty()) files.push_back("state.bin");
   for (const EvidenceFile& file : facts.files) files.push_back(file.name);
-  ordered_json whole = {{"format", "spoolwatch evidence"},
-                        {"version", 1},
-                        {"rig_id", facts.rig_id},
-                        {"config_hash", facts.config_hash},
-                        {"run_id", facts.run_id},
-                        {"prefix", facts.prefix},
-                        {"sample_time_s", facts.sample_time_s},
-                        {"alarm",
-                         {{"source", t.source},
-                          {"name", t.name},
-                          {"tick", t.tick},
-                          {"utc", utc_text(t.utc_us)},
-                          {"severity", t.severity},
-                          {"direction", t.direction},
-                          {"first_up", t.first_up},
-                          {"value", std::isfinite(t.value) ? json(t.value) : json(nullptr)},
-                          {"value_bits", hex(std::bit_cast<std::uint64_t>(t.value))}}},
-                        {"first_tick", contents.first_tick},
-                        {"last_tick", contents.last_tick},
-                        {"exact", contents.inexact.empty()},
-                        {"why_not", contents.inexact},
-                        {"replay", "spoolwatch replay " + fs::absolute(folder).string()},
-                        {"files", std::move(files)}};
+  ordered_json whole = {
+      {"format", "spoolwatch evidence"},
+      {"version", 1},
+      {"rig_id", facts.rig_id},
+      {"config_hash", facts.config_hash},
+      {"run_id", facts.run_id},
+      {"prefix", facts.prefix},
+      {"sample_time_s", facts.sample_time_s},
+      {"alarm",
+       {{"source", t.source},
+        {"name", t.name},
+        {"tick", t.tick},
+        {"utc", utc_text(t.utc_us)},
+        {"severity", t.severity},
+        {"direction", t.direction},
+        {"first_up", t.first_up},
+        {"value", std::isfinite(t.value) ? json(t.value) : json(nullptr)},
+        {"value_bits", config::schema::hash_text(std::bit_cast<std::uint64_t>(t.value))}}},
+      {"first_tick", contents.first_tick},
+      {"last_tick", contents.last_tick},
+      {"exact", contents.inexact.empty()},
+      {"why_not", contents.inexact},
+      {"replay", "spoolwatch replay " + fs::absolute(folder).string()},
+      {"files", std::move(files)}};
   return whole.dump(2, ' ', false, json::error_handler_t::replace) + '\n';
 }
 

@@ -1,8 +1,9 @@
 #include "estimator/fdi/trained.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
@@ -18,11 +19,7 @@ using config::schema::Visitor;
 /// Two sample times are the same within clock accuracy.
 constexpr double kSameSampleTime = 1e-3;
 
-std::string seconds(double s) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g s", s);
-  return text;
-}
+std::string seconds(double s) { return fmt::format("{:.6g} s", s); }
 
 std::string joined(const std::vector<std::string>& names) {
   std::string text;

@@ -1,8 +1,9 @@
 #include "estimator/greybox/dataset.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "config/record/record.h"
 #include "config/schema/error.h"
@@ -50,11 +51,7 @@ void append(Measured& to, const config::record::Record& from, std::size_t begin,
   }
 }
 
-std::string seconds(double s) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g s", s);
-  return text;
-}
+std::string seconds(double s) { return fmt::format("{:.3g} s", s); }
 
 }  // namespace
 

@@ -1,8 +1,9 @@
 #include "estimator/greybox/identifiability_report.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 
 #include "estimator/linear_algebra/decompositions.h"
@@ -26,9 +27,7 @@ constexpr std::size_t kMostPartners = 4;
 std::string power_of(const std::string& name, double exponent) {
   if (std::abs(exponent - 1.0) < 0.1) return name;
   if (std::abs(exponent - 0.5) < 0.05) return "sqrt(" + name + ")";
-  char text[32];
-  std::snprintf(text, sizeof text, "^%.2g", exponent);
-  return name + text;
+  return fmt::format("{}^{:.2g}", name, exponent);
 }
 
 /// What stays the same when b follows a with d ln b / d ln a = slope.

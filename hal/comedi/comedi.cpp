@@ -1,8 +1,9 @@
 #include "hal/comedi/comedi.h"
 
+#include <fmt/format.h>
+
 #include <bit>
 #include <cmath>
-#include <cstdio>
 
 #include "config/schema/error.h"
 #include "hal/comedi/devices.h"
@@ -12,11 +13,7 @@ namespace {
 
 using config::schema::bad_config;
 
-std::string text(double value) {
-  char line[32];
-  std::snprintf(line, sizeof line, "%.6g", value);
-  return line;
-}
+std::string text(double value) { return fmt::format("{:.6g}", value); }
 
 /// The range must reach null and, where it is known, a whole limit_V to both sides of it.
 void check_reach(const std::string& table, const Span& span, const Linear& terminal_V,

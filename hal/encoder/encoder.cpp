@@ -1,6 +1,7 @@
 #include "hal/encoder/encoder.h"
 
-#include <cstdio>
+#include <fmt/format.h>
+
 #include <cstring>
 
 #include "config/schema/error.h"
@@ -38,15 +39,11 @@ class SwitchOutput final : public Output {
 };
 
 std::string summary(const Snapshot& rod) {
-  char line[240];
-  std::snprintf(
-      line, sizeof line,
-      "encoder: %lld edges; count uncertain %lld times (%lld illegal, %lld overflows, %lld "
-      "disagreements, %lld bursts), too fast %lld times, %lld index slips",
-      static_cast<long long>(rod.edges), static_cast<long long>(rod.times_lost),
-      static_cast<long long>(rod.illegal), static_cast<long long>(rod.overflows),
-      static_cast<long long>(rod.disagreements), static_cast<long long>(rod.bursts),
-      static_cast<long long>(rod.times_too_fast), static_cast<long long>(rod.slips));
+  std::string line = fmt::format(
+      "encoder: {} edges; count uncertain {} times ({} illegal, {} overflows, {} disagreements, {} "
+      "bursts), too fast {} times, {} index slips",
+      rod.edges, rod.times_lost, rod.illegal, rod.overflows, rod.disagreements, rod.bursts,
+      rod.times_too_fast, rod.slips);
   return line;
 }
 
@@ -133,13 +130,11 @@ Offer EncoderBackend::open(const Opening& opening) const {
 }
 
 std::vector<std::string> EncoderBackend::notes(const Opening&) const {
-  char line[160];
-  std::snprintf(line, sizeof line,
-                "encoder: %.4g um per count (%s), %.0f edges/s sustained: permitted speed %.4g "
-                "m/s, uncertain from %.4g m/s",
-                config_.count_m() * 1e6, config_.mode.c_str(), config_.max_edges_per_s,
-                config_.permitted_speed_mps(), kWarnRatio * config_.permitted_speed_mps());
-  return {line};
+  return {fmt::format(
+      "encoder: {:.4g} um per count ({}), {:.0f} edges/s sustained: permitted speed {:.4g} m/s, "
+      "uncertain from {:.4g} m/s",
+      config_.count_m() * 1e6, config_.mode, config_.max_edges_per_s, config_.permitted_speed_mps(),
+      kWarnRatio * config_.permitted_speed_mps())};
 }
 
 }  // namespace hal::encoder

@@ -1,8 +1,7 @@
 #include "hal/modbus/counters.h"
 
+#include <fmt/format.h>
 #include <modbus/modbus.h>
-
-#include <cstdio>
 
 namespace hal::modbus {
 
@@ -25,11 +24,9 @@ std::int64_t RoundTrips::quantile_ns(double q) const noexcept {
 
 std::string summary(const Counters& c) {
   const auto times = [](const RoundTrips& t) {
-    char text[120];
     const auto us = [&](double q) { return static_cast<double>(t.quantile_ns(q)) * 1e-3; };
-    std::snprintf(text, sizeof text, "p50 %.0f us  p99 %.0f us  p99.9 %.0f us  max %.0f us",
-                  us(0.5), us(0.99), us(0.999), static_cast<double>(t.max_ns()) * 1e-3);
-    return std::string(text);
+    return fmt::format("p50 {:.0f} us  p99 {:.0f} us  p99.9 {:.0f} us  max {:.0f} us", us(0.5),
+                       us(0.99), us(0.999), static_cast<double>(t.max_ns()) * 1e-3);
   };
   std::string text =
       std::to_string(c.transactions.load()) + " transactions, round trip " + times(c.round_trips);

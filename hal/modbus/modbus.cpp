@@ -1,10 +1,10 @@
 #include "hal/modbus/modbus.h"
 
 #include <arpa/inet.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
 #include "config/schema/error.h"
@@ -202,11 +202,7 @@ Offer ModbusBackend::open(const Opening& opening) const {
 
 std::vector<std::string> ModbusBackend::notes(const Opening& opening) const {
   const LinkConfig link = link_config(opening);
-  const auto ms = [](double s) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g ms", s * 1e3);
-    return std::string(text);
-  };
+  const auto ms = [](double s) { return fmt::format("{:.3g} ms", s * 1e3); };
   return {"modbus " + (config_.address.empty() ? config_.serial : config_.address) +
           ": a reply within " + ms(link.port.timeout_s) + ", position read " +
           (link.read_ahead_s > 0.0 ? ms(link.read_ahead_s) + " before its period"

@@ -7,6 +7,7 @@ find_package(nlohmann_json REQUIRED)
 find_package(Boost 1.74 REQUIRED)
 find_package(tomlplusplus REQUIRED)
 find_package(muparser 2.3 REQUIRED)
+find_package(fmt 9.1 REQUIRED)
 find_package(ZLIB REQUIRED)
 include(GoogleTest)
 

@@ -22,6 +22,7 @@ endif()
 
 add_library(spoolwatch_options INTERFACE)
 target_include_directories(spoolwatch_options INTERFACE "${CMAKE_SOURCE_DIR}")
+target_link_libraries(spoolwatch_options INTERFACE $<LINK_ONLY:fmt::fmt>)
 target_compile_options(spoolwatch_options INTERFACE -Wall -Wextra -Wshadow -Wconversion
   -Wno-sign-conversion -Wnon-virtual-dtor -Wold-style-cast -Werror
   # Square roots as one instruction: nobody here reads errno. No multiplication and addition in one:

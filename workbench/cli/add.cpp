@@ -14,6 +14,7 @@
 #include "plant_sim/library.h"
 #include "plant_sim/model_file.h"
 #include "workbench/cli/command.h"
+#include "workbench/cli/common_options.h"
 
 namespace workbench::cli {
 namespace {
@@ -123,7 +124,7 @@ void add(const Options& options) {
 
 void add_add(CLI::App& command, int&) {
   auto options = std::make_shared<Options>();
-  command.add_option("MODEL", options->model, "a model file")->required();
+  add_model(command, options->model);
   command.add_option("EFFECT", options->effect, "its name, see `spoolwatch effects`")->required();
   command.add_option("key=value", options->assignments, "parameters; others stay as they are");
   command.add_option("-o,--output", options->output, "the model file to write")->required();

@@ -4,9 +4,10 @@
 #include <memory>
 #include <optional>
 
-#include "config/record/whole_file.h"
 #include "workbench/cli/command.h"
+#include "workbench/cli/common_options.h"
 #include "workbench/cli/number_check.h"
+#include "workbench/present/json.h"
 #include "workbench/replay/backtest_text.h"
 
 namespace workbench::cli {
@@ -32,13 +33,8 @@ void run(const Options& options) {
     report.differences.push_back(
         replay::compare(each.before, each.after, options.tolerance_s, 0.5 * each.sample_time_s));
   }
-  if (options.json == "-") {
-    std::cout << replay::backtest_json(report).dump(2) << '\n';
-    return;
-  }
-  replay::print_backtest(report, std::cout);
-  if (!options.json.empty()) {
-    config::record::write_whole(options.json, replay::backtest_json(report).dump(2) + '\n');
+  if (!present::write_json(replay::backtest_json(report).dump(2) + '\n', options.json)) {
+    replay::print_backtest(report, std::cout);
   }
 }
 
@@ -59,7 +55,7 @@ void add_backtest(CLI::App& command, int& /*exit_code*/) {
                   "alarms that come so near, or overlap, are the same one, s")
       ->capture_default_str()
       ->check(number_within(0.0, 1e6));
-  command.add_option("--json", options->json, "write the outcome there; - for standard output");
+  add_json(command, options->json);
   command.callback([options] { run(*options); });
 }
 

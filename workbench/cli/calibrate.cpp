@@ -11,6 +11,7 @@
 #include "estimator/fdi/learned_bands.h"
 #include "estimator/fdi/pipeline.h"
 #include "workbench/cli/command.h"
+#include "workbench/cli/common_options.h"
 #include "workbench/cli/number_check.h"
 #include "workbench/train/learn_bands.h"
 
@@ -58,7 +59,7 @@ void add_calibrate(CLI::App& command, int& /*exit_code*/) {
   auto options = std::make_shared<Options>();
   command.add_option("config", options->config, "configuration with [[estimator]] and [[band]]")
       ->required();
-  command.add_option("record", options->record, "healthy record: CSV, MAT or LCM log")->required();
+  add_record(command, options->record);
   command.add_option("-o,--output", options->out, "file for the learned bands")->required();
   command
       .add_option("--false-alarm-time-s", options->false_alarm_time_s,

@@ -12,18 +12,18 @@
 
 #include "config/messages/channels.h"
 #include "config/record/record.h"
-#include "config/record/whole_file.h"
-#include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "estimator/greybox/validation/comparison.h"
 #include "plant_sim/model_file.h"
 #include "workbench/cli/command.h"
+#include "workbench/cli/common_options.h"
 #include "workbench/cli/file_check.h"
 #include "workbench/cli/number_check.h"
 #include "workbench/compare/json.h"
 #include "workbench/compare/sections.h"
 #include "workbench/compare/text.h"
 #include "workbench/live/live_compare.h"
+#include "workbench/present/json.h"
 #include "workbench/present/shell_command.h"
 
 namespace workbench::cli {
@@ -47,29 +47,6 @@ struct Arguments {
   bool live = false;
   live::WatchOptions watch{config::messages::kDefaultUrl, config::messages::kDefaultPrefix};
 };
-
-std::string command_line(const Arguments& a) {
-  std::string line =
-      "spoolwatch compare " + present::shell_word(a.model) + " " + present::shell_word(a.record);
-  const auto number = [&](const char* option, double value) {
-    char text[48];
-    std::snprintf(text, sizeof text, " %s %.9g", option, value);
-    line += text;
-  };
-  if (std::isfinite(a.from_s)) number("--from", a.from_s);
-  if (std::isfinite(a.to_s)) number("--to", a.to_s);
-  if (a.observer_per_s != greybox::kObserver_per_s) number("--observer", a.observer_per_s);
-  for (const std::string& assignment : a.assignments)
-    line += " --set " + present::shell_word(assignment);
-  if (!a.json.empty()) line += " --json " + present::shell_word(a.json);
-  return line + " --report " + present::shell_word(a.report);
-}
-
-plant_sim::ModelFile read_model(const Arguments& a) {
-  auto document = config::schema::Document::load(a.model);
-  for (const std::string& assignment : a.assignments) document.set(assignment);
-  return plant_sim::read_model(document);
-}
 
 /// The record's samples from --from to --to.
 greybox::Measured read_measured(const Arguments& a) {
@@ -115,46 +92,38 @@ void run_live(Arguments& a) {
   }
   a.watch.json = a.json == "-";
   a.watch.observer_per_s = a.observer_per_s;
-  live::watch(read_model(a), a.watch);
+  live::watch(plant_sim::load_model(a.model, a.assignments), a.watch);
 }
 
 void run(Arguments& a) {
   if (a.live) return run_live(a);
   if (a.record.empty()) throw UsageError("compare: no RECORD, and not --live");
   check_outputs({{"--json", a.json}, {"--report", a.report}}, {a.model, {a.record}});
-  const plant_sim::ModelFile model = read_model(a);
+  const plant_sim::ModelFile model = plant_sim::load_model(a.model, a.assignments);
   const greybox::Measured record = read_measured(a);
   check_observer(a, record);
   const validation::Comparison comparison = validation::compare(model, record, a.observer_per_s);
   if (!a.report.empty()) {
-    present::write_report(compare::make_report(comparison, command_line(a)), a.report);
+    present::write_report(compare::make_report(comparison, present::typed_command()), a.report);
   }
-  if (a.json == "-") {
-    std::cout << compare::to_json(comparison);
-    return;
+  if (!present::write_json(compare::to_json(comparison), a.json)) {
+    std::cout << compare::to_text(comparison, utf8_terminal(), a.all);
   }
-  if (!a.json.empty()) config::record::write_whole(a.json, compare::to_json(comparison));
-  std::cout << compare::to_text(comparison, utf8_terminal(), a.all);
 }
 
 }  // namespace
 
 void add_compare(CLI::App& command, int& /*exit_code*/) {
   auto arguments = std::make_shared<Arguments>();
-  command.add_option("model", arguments->model, "model file (TOML)")->required();
-  command.add_option("record", arguments->record, "CSV (t_s,u_V,y_m) or LCM log");
-  command.add_option("--json", arguments->json, "file for JSON, - for standard output");
-  command.add_option("--report", arguments->report, "file for a report with plots (HTML)");
+  add_model(command, arguments->model);
+  add_record(command, arguments->record)->required(false);
+  add_json(command, arguments->json);
+  add_report(command, arguments->report);
   command.add_option("--from", arguments->from_s, "s: leave out what is before")
       ->check(finite_number());
   command.add_option("--to", arguments->to_s, "s: leave out what is after")->check(finite_number());
-  command
-      .add_option("--observer", arguments->observer_per_s,
-                  "1/s: how fast drift is led back to the measured position")
-      ->check(positive_number())
-      ->capture_default_str();
-  command.add_option("--set", arguments->assignments, "table.key=value of the model file")
-      ->allow_extra_args(false);
+  add_observer(command, arguments->observer_per_s)->check(positive_number());
+  add_set(command, arguments->assignments);
   command.add_flag("--all", arguments->all, "the error by every variable, not the most telling");
   CLI::Option* live =
       command.add_flag("--live", arguments->live, "with the running daemon, a line each second");

@@ -7,8 +7,8 @@
 
 #include "config/record/whole_file.h"
 #include "workbench/cli/command.h"
+#include "workbench/cli/common_options.h"
 #include "workbench/cli/interrupt.h"
-#include "workbench/cli/number_check.h"
 #include "workbench/diagnose/better_model.h"
 #include "workbench/diagnose/experiment_design.h"
 #include "workbench/diagnose/json.h"
@@ -16,6 +16,7 @@
 #include "workbench/diagnose/report_pages.h"
 #include "workbench/diagnose/request.h"
 #include "workbench/diagnose/text_output.h"
+#include "workbench/present/json.h"
 
 namespace workbench::cli {
 
@@ -25,11 +26,8 @@ namespace {
 using diagnose::Outcome;
 using diagnose::Request;
 
-constexpr int kMostThreads = 256;
-
 void write(const Outcome& outcome, const Request& request) {
-  const bool stdout_is_json = request.json == "-";
-  if (!stdout_is_json) print(outcome, std::cout);
+  if (request.json != "-") print(outcome, std::cout);
   if (!request.output.empty()) {
     if (outcome.fitted()) {
       config::record::write_whole(request.output, better_model_text(outcome));
@@ -39,11 +37,7 @@ void write(const Outcome& outcome, const Request& request) {
     }
   }
   if (!request.report.empty()) write_report(report_of(outcome), request.report);
-  if (stdout_is_json) {
-    std::cout << to_json(outcome);
-  } else if (!request.json.empty()) {
-    config::record::write_whole(request.json, to_json(outcome));
-  }
+  present::write_json(to_json(outcome), request.json);
 }
 
 int run(const Request& request) {
@@ -70,33 +64,22 @@ int run(const Request& request) {
 
 void add_diagnose(CLI::App& command, int& exit_code) {
   auto request = std::make_shared<Request>();
-  command.add_option("MODEL", request->model, "a model file (TOML)")->required();
-  command
-      .add_option(
-          "RECORD", request->records,
-          "CSV or MAT (t_s,u_V,y_m), or LCM log; several are fitted together, each at its own rate")
-      ->required();
-  CLI::Option* const holdout =
-      command.add_option("--holdout", request->holdouts, "a record that only scores, not fitted")
-          ->allow_extra_args(false);
+  add_model(command, request->model);
+  add_records(command, request->records);
+  CLI::Option* const holdout = add_holdouts(command, request->holdouts);
   command.add_option("--fit", request->fit, "part of each record that is fitted; the rest scores")
       ->check(CLI::IsMember({"blocks", "first-half", "second-half"}))
       ->capture_default_str()
       ->excludes(holdout);
-  command.add_option("--json", request->json, "file for JSON, - for standard output");
-  command.add_option("--report", request->report, "file for the report, one HTML page");
+  add_json(command, request->json);
+  add_report(command, request->report);
   command.add_option("-o,--output", request->output,
                      "the better model: what is missing added, all parameters fitted; with nothing "
                      "missing, the model with its parameters fitted");
-  command.add_option("--threads", request->threads, "default: one for each processor")
-      ->check(number_within(1, kMostThreads));
-  command
-      .add_option("--set", request->assignments, "table.key=value of the model file, for this run")
-      ->allow_extra_args(false);
-  command.add_flag("--quiet", request->quiet, "no progress on standard error");
-  command.footer(
-      "Ctrl-C ends it early: the best so far is printed and written, marked as interrupted, and "
-      "the exit code is 130; a second Ctrl-C ends the program at once.");
+  add_threads(command, request->threads);
+  add_set(command, request->assignments);
+  add_quiet(command, request->quiet);
+  add_interrupt_footer(command);
   command.callback([request, &exit_code] { exit_code = run(*request); });
 }
 

@@ -8,11 +8,12 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "config/record/whole_file.h"
 #include "config/units/unit_suffix.h"
 #include "plant_sim/library.h"
 #include "plant_sim/model_file.h"
 #include "workbench/cli/command.h"
+#include "workbench/cli/common_options.h"
+#include "workbench/present/json.h"
 
 namespace workbench::cli {
 namespace {
@@ -21,6 +22,7 @@ using nlohmann::ordered_json;
 using plant_sim::EffectInfo;
 using plant_sim::ParameterInfo;
 using plant_sim::PlantInfo;
+using present::number_or_null;
 
 bool fits(const EffectInfo& effect, const PlantInfo& plant) {
   return std::all_of(effect.sites.begin(), effect.sites.end(), [&](const std::string& site) {
@@ -42,21 +44,16 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-// JSON has no infinity: null, as for every missing number.
-ordered_json finite(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
-
 ordered_json json_of(const std::vector<ParameterInfo>& parameters, const char* last) {
   ordered_json list = ordered_json::array();
   for (const ParameterInfo& p : parameters) {
     list.push_back({{"name", p.name},
                     {"what", p.what},
                     {"unit", config::units::unit_of(p.name)},
-                    {"min", finite(p.min)},
-                    {"max", finite(p.max)},
-                    {"typical", finite(p.typical)},
-                    {last, finite(p.neutral)}});
+                    {"min", number_or_null(p.min)},
+                    {"max", number_or_null(p.max)},
+                    {"typical", number_or_null(p.typical)},
+                    {last, number_or_null(p.neutral)}});
   }
   return list;
 }
@@ -99,18 +96,13 @@ void add_effects(CLI::App& command, int&) {
   auto json = std::make_shared<std::string>();
   auto model = std::make_shared<std::string>();
   command.add_option("MODEL", *model, "a model file, to list its own effects too");
-  command.add_option("--json", *json, "write as JSON; - is standard output");
+  add_json(command, *json);
   command.callback([json, model] {
     const std::vector<EffectInfo> listed =
         model->empty() ? plant_sim::effect_library()
                        : plant_sim::effects_of(plant_sim::load_model(*model));
-    if (json->empty()) {
-      print_library(listed);
-    } else if (*json == "-") {
-      std::printf("%s\n", library_json(listed).dump(2).c_str());
-    } else {
-      config::record::write_whole(*json, library_json(listed).dump(2) + "\n");
-    }
+    if (json->empty()) return print_library(listed);
+    present::write_json(library_json(listed).dump(2) + "\n", *json);
   });
 }
 

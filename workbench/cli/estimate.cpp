@@ -1,16 +1,16 @@
 // `spoolwatch estimate RECORD`: an ARX structure fitted to a record, as text or JSON.
 #include <CLI/CLI.hpp>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "config/record/record.h"
-#include "config/record/whole_file.h"
 #include "config/schema/error.h"
 #include "workbench/cli/command.h"
+#include "workbench/cli/common_options.h"
 #include "workbench/cli/number_check.h"
 #include "workbench/estimate/estimate_fit.h"
+#include "workbench/present/json.h"
 
 namespace workbench::cli {
 namespace {
@@ -148,12 +148,7 @@ void run(Options options) {
     print_text(result, options, record);
     return;
   }
-  const std::string text = to_json(result, options, record).dump(2) + "\n";
-  if (options.json == "-") {
-    std::cout << text;
-  } else {
-    config::record::write_whole(options.json, text);
-  }
+  present::write_json(to_json(result, options, record).dump(2) + "\n", options.json);
 }
 
 }  // namespace
@@ -161,7 +156,7 @@ void run(Options options) {
 void add_estimate(CLI::App& command, int& /*exit_code*/) {
   auto options = std::make_shared<Options>();
   estimate::EstimateOptions& e = options->estimate;
-  command.add_option("record", options->record, "CSV (t_s,u_V,y_m) or LCM log")->required();
+  add_record(command, options->record);
   command.add_option("--structure", options->structure, "arx211, arx(10,2,1), ...")
       ->capture_default_str();
   command.add_option("--method", e.method, "how the coefficients are found")
@@ -210,7 +205,7 @@ void add_estimate(CLI::App& command, int& /*exit_code*/) {
   command.add_option("--fit-to", e.fit_to, "the same as a share of the record")
       ->check(number_within(0.0, 1.0))
       ->excludes(fit);
-  command.add_option("--json", options->json, "file for JSON, - for standard output");
+  add_json(command, options->json);
   command.callback([options] { run(*options); });
 }
 

@@ -11,9 +11,11 @@
 #include "config/record/whole_file.h"
 #include "config/units/quantity.h"
 #include "workbench/cli/command.h"
+#include "workbench/cli/common_options.h"
 #include "workbench/cli/interrupt.h"
 #include "workbench/cli/number_check.h"
 #include "workbench/fit/outcome.h"
+#include "workbench/present/json.h"
 
 namespace workbench::cli {
 namespace {
@@ -21,17 +23,11 @@ namespace {
 using fit::Request;
 
 constexpr int kMostStarts = 1000;
-constexpr int kMostThreads = 256;
 
 void write(const fit::Outcome& outcome, const Request& request) {
   if (!request.output.empty()) config::record::write_whole(request.output, to_model(outcome));
   if (!request.report.empty()) write_report(to_report(outcome), request.report);
-  if (request.json == "-") {
-    std::cout << to_json(outcome);
-    return;
-  }
-  if (!request.json.empty()) config::record::write_whole(request.json, to_json(outcome));
-  std::cout << to_text(outcome);
+  if (!present::write_json(to_json(outcome), request.json)) std::cout << to_text(outcome);
 }
 
 int run(const Request& request) {
@@ -78,16 +74,11 @@ void declare_choice(CLI::App& command, Request& request) {
 
 void add_fit(CLI::App& command, int& exit_code) {
   auto request = std::make_shared<Request>();
-  command.add_option("MODEL", request->model, "a model file (TOML)")->required();
-  command
-      .add_option("RECORD", request->records,
-                  "CSV or MAT (t_s,u_V,y_m), or LCM log; several are fitted together")
-      ->required();
+  add_model(command, request->model);
+  add_records(command, request->records);
   command.add_option("-o,--output", request->output, "the model file to write");
   declare_choice(command, *request);
-  CLI::Option* const holdout =
-      command.add_option("--holdout", request->holdouts, "a record that only scores, not fitted")
-          ->allow_extra_args(false);
+  CLI::Option* const holdout = add_holdouts(command, request->holdouts);
   command.add_option("--fit", request->fit, "part of each record that is fitted; the rest scores")
       ->check(CLI::IsMember({"all", "blocks", "first-half", "second-half"}))
       ->capture_default_str()
@@ -99,21 +90,13 @@ void add_fit(CLI::App& command, int& exit_code) {
       .add_option("--profile", request->profiles,
                   "walk the likelihood of: a parameter's name, doubtful (default), none")
       ->allow_extra_args(false);
-  command
-      .add_option("--observer", request->observer_per_s,
-                  "1/s: how fast drift is led back to the measured position")
-      ->check(number_within(0.0, 1e4))
-      ->capture_default_str();
-  command.add_option("--threads", request->threads, "default: one for each processor")
-      ->check(number_within(1, kMostThreads));
-  command.add_option("--set", request->assignments, "table.key=value of the model file")
-      ->allow_extra_args(false);
-  command.add_option("--json", request->json, "file for JSON, - for standard output");
-  command.add_option("--report", request->report, "file for a report with plots (HTML)");
-  command.add_flag("--quiet", request->quiet, "no progress on standard error");
-  command.footer(
-      "Ctrl-C ends it early: the best so far is printed and written, marked as interrupted, and "
-      "the exit code is 130; a second Ctrl-C ends the program at once.");
+  add_observer(command, request->observer_per_s)->check(number_within(0.0, 1e4));
+  add_threads(command, request->threads);
+  add_set(command, request->assignments);
+  add_json(command, request->json);
+  add_report(command, request->report);
+  add_quiet(command, request->quiet);
+  add_interrupt_footer(command);
   command.callback([request, &exit_code] { exit_code = run(*request); });
 }
 

@@ -3,10 +3,11 @@
 #include <iostream>
 #include <memory>
 
-#include "config/record/whole_file.h"
 #include "workbench/cli/command.h"
+#include "workbench/cli/common_options.h"
 #include "workbench/cli/number_check.h"
 #include "workbench/isolate/outcome.h"
+#include "workbench/present/json.h"
 
 namespace workbench::cli {
 namespace {
@@ -17,12 +18,9 @@ using isolate::Request;
 void run(const Request& request) {
   const Outcome outcome = isolate::isolate(request);
   if (!request.report.empty()) write_report(to_report(outcome), request.report);
-  if (request.json == "-") {
-    std::cout << to_json(outcome);
-    return;
+  if (!present::write_json(to_json(outcome), request.json)) {
+    std::cout << to_text(outcome, request.all_windows);
   }
-  if (!request.json.empty()) config::record::write_whole(request.json, to_json(outcome));
-  std::cout << to_text(outcome, request.all_windows);
 }
 
 void declare_judging(CLI::App& command, Request& request) {
@@ -65,9 +63,8 @@ void declare_judging(CLI::App& command, Request& request) {
 
 void add_isolate(CLI::App& command, int& /*exit_code*/) {
   auto request = std::make_shared<Request>();
-  command.add_option("MODEL", request->model, "a model file (TOML), calibrated when healthy")
-      ->required();
-  command.add_option("RECORD", request->record, "CSV or MAT (t_s,u_V,y_m), or LCM log")->required();
+  add_model(command, request->model);
+  add_record(command, request->record);
   command
       .add_option("--parameters", request->parameters,
                   "name[,name...] as in model files, such as null_bias.offset_V, mass_kg")
@@ -79,22 +76,17 @@ void add_isolate(CLI::App& command, int& /*exit_code*/) {
   command.add_option("--stride", request->settings.stride_s, "s: from window to window")
       ->check(number_within(1e-3, 1e3))
       ->capture_default_str();
-  command
-      .add_option("--observer", request->settings.observer_per_s,
-                  "1/s: how fast drift is led back to the measured position")
-      ->check(number_within(0.0, 1e3))
-      ->capture_default_str();
+  add_observer(command, request->settings.observer_per_s)->check(number_within(0.0, 1e3));
   declare_judging(command, *request);
   command.add_flag("--no-pressures", request->no_pressures,
                    "supply_pressure_Pa, pressure_in_Pa, pressure_out_Pa of RECORD are not used");
-  command.add_option("--set", request->assignments, "table.key=value of the model file")
-      ->allow_extra_args(false);
+  add_set(command, request->assignments);
   command.add_option("--learn", request->learn,
                      "file for what is healthy, which [[tracker]] healthy names");
   command.add_option("--rig", request->rig_id, "rig id, noted in that file; another is refused");
   command.add_flag("--windows", request->all_windows, "print every window");
-  command.add_option("--json", request->json, "file for JSON, - for standard output");
-  command.add_option("--report", request->report, "file for a report with plots (HTML)");
+  add_json(command, request->json);
+  add_report(command, request->report);
   command.alias("track");
   command.callback([request] { run(*request); });
 }

@@ -1,5 +1,7 @@
 // spoolwatch promote MODEL2.toml: a better model, and bands learned beside it, into the running
 // daemon; refused when it would be worse. `promote --back` brings the one before it back.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -107,9 +109,7 @@ class Attempt {
     config::record::write_whole(candidate_, bands_);
     std::string text = "bands learned:";
     for (const fdi::LearnedBand& band : learned.bands) {
-      char limits[96];
-      std::snprintf(limits, sizeof limits, " %.6g to %.6g;", band.low, band.high);
-      text += ' ' + band.quantity + limits;
+      text += fmt::format(" {} {:.6g} to {:.6g};", band.quantity, band.low, band.high);
     }
     step(daemon_, text);
   }

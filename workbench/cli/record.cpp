@@ -1,4 +1,6 @@
 // spoolwatch record -o F.csv: a record from the running daemon, off its LCM stream.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdlib>
@@ -74,14 +76,11 @@ class Recording final : public live::Listener {
 
   /// One line, and whether the record is what was asked for.
   void sum_up(const std::string& out) const {
-    char text[256];
-    std::snprintf(text, sizeof text,
-                  "%s: %lld samples, %.6g s; %lld gaps of %lld periods together (%lld datagrams "
-                  "lost, %lld samples without a good position)",
-                  out.c_str(), static_cast<long long>(file_.rows()), file_.duration_s(),
-                  static_cast<long long>(file_.gaps()), static_cast<long long>(file_.missing()),
-                  static_cast<long long>(lost_), static_cast<long long>(file_.unusable()));
-    std::cout << text << '\n';
+    std::cout << fmt::format(
+        "{}: {} samples, {:.6g} s; {} gaps of {} periods together ({} datagrams lost, {} samples "
+        "without a good position)\n",
+        out, file_.rows(), file_.duration_s(), file_.gaps(), file_.missing(), lost_,
+        file_.unusable());
     if (!ended_.empty()) say(ended_ + ": the record ends there");
   }
 

@@ -1,16 +1,18 @@
 // spoolwatch replay FOLDER: from the evidence of an alarm to the same alarm, bit for bit.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <bit>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "config/schema/error.h"
 #include "workbench/cli/command.h"
+#include "workbench/cli/common_options.h"
+#include "workbench/present/json.h"
 #include "workbench/replay/replayer.h"
 
 namespace workbench::cli {
@@ -26,16 +28,11 @@ struct Options {
 };
 
 std::string hex(double value) {
-  char text[20];
-  std::snprintf(text, sizeof text, "%016llx",
-                static_cast<unsigned long long>(std::bit_cast<std::uint64_t>(value)));
-  return text;
+  return fmt::format("{:016x}", std::bit_cast<std::uint64_t>(value));
 }
 
 std::string seconds(const Pack& pack, std::int64_t tick) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f s", static_cast<double>(tick) * pack.sample_time_s);
-  return text;
+  return fmt::format("{:.3f} s", static_cast<double>(tick) * pack.sample_time_s);
 }
 
 void print(const Pack& pack, const ReplayOutcome& outcome, std::ostream& out) {
@@ -48,10 +45,8 @@ void print(const Pack& pack, const ReplayOutcome& outcome, std::ostream& out) {
     out << "  " << to_string(outcome.alarm.severity) << " at sample " << outcome.alarm.tick << ", "
         << seconds(pack, outcome.alarm.tick) << ": ";
     if (std::isfinite(outcome.alarm.value)) {
-      char value[40];
-      std::snprintf(value, sizeof value, "%.9g", outcome.alarm.value);
-      out << outcome.alarm.quantity << " = " << value << ", bits " << hex(outcome.alarm.value)
-          << '\n';
+      out << fmt::format("{} = {:.9g}, bits {}\n", outcome.alarm.quantity, outcome.alarm.value,
+                         hex(outcome.alarm.value));
     } else {
       out << outcome.alarm.reason << '\n';
     }
@@ -91,18 +86,8 @@ Json as_json(const Pack& pack, const ReplayOutcome& outcome) {
 int run(const Options& options) {
   const Pack pack = replay::read_pack(options.folder);
   const ReplayOutcome outcome = replay::replay(pack);
-  if (options.json == "-") {
-    std::cout << as_json(pack, outcome).dump(2) << '\n';
-  } else {
+  if (!present::write_json(as_json(pack, outcome).dump(2) + '\n', options.json)) {
     print(pack, outcome, std::cout);
-  }
-  if (!options.json.empty() && options.json != "-") {
-    std::ofstream out(options.json);
-    out << as_json(pack, outcome).dump(2) << '\n';
-    out.close();
-    if (!out) {
-      throw config::schema::RunError(options.json + ": cannot be written");
-    }
   }
   return outcome.same() ? 0 : EXIT_FAILURE;
 }
@@ -113,7 +98,7 @@ void add_replay(CLI::App& command, int& exit_code) {
   const auto options = std::make_shared<Options>();
   command.add_option("folder", options->folder, "evidence of an alarm, as spoolwatchd wrote it")
       ->required();
-  command.add_option("--json", options->json, "write the outcome there; - for standard output");
+  add_json(command, options->json);
   command.footer("Exit code 0: the same alarm came again, bit for bit; 1: it did not.");
   command.callback([options, &exit_code] { exit_code = run(*options); });
 }

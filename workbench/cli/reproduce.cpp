@@ -10,6 +10,7 @@
 
 #include "config/schema/error.h"
 #include "workbench/cli/command.h"
+#include "workbench/cli/common_options.h"
 #include "workbench/reproduce/experiment.h"
 #include "workbench/reproduce/print.h"
 
@@ -31,7 +32,7 @@ bool missed(const reproduce::Row& row) {
 
 void add_reproduce(CLI::App& command, int& exit_code) {
   auto arguments = std::make_shared<Arguments>();
-  command.add_option("--json", arguments->json, "write the rows to this file; - for output");
+  add_json(command, arguments->json);
   command.add_flag("--strict", arguments->strict,
                    "exit 1 when a figure that is meant to agree does not");
   command.callback([arguments, &exit_code] {

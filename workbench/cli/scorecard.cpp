@@ -15,9 +15,11 @@
 #include "config/schema/error.h"
 #include "estimator/parallel.h"
 #include "workbench/cli/command.h"
+#include "workbench/cli/common_options.h"
 #include "workbench/cli/file_check.h"
 #include "workbench/cli/interrupt.h"
 #include "workbench/cli/number_check.h"
+#include "workbench/present/json.h"
 #include "workbench/present/shell_command.h"
 #include "workbench/scorecard/card.h"
 #include "workbench/scorecard/progress.h"
@@ -48,27 +50,6 @@ std::vector<Method> load_methods(const std::vector<std::string>& files) {
     }
   }
   return methods;
-}
-
-std::string command_of(const Options& o) {
-  std::vector<std::string> words{"spoolwatch", "scorecard"};
-  words.insert(words.end(), o.methods.begin(), o.methods.end());
-  const auto add = [&](const char* option, const std::string& value) {
-    if (value.empty()) return;
-    words.emplace_back(option);
-    words.push_back(value);
-  };
-  if (o.scope.full) words.emplace_back("--full");
-  if (o.scope.seeds != Scope{}.seeds) add("--seeds", std::to_string(o.scope.seeds));
-  if (o.scope.seed != Scope{}.seed) add("--seed", std::to_string(o.scope.seed));
-  if (o.scope.hours >= 0.0) add("--hours", number_words(o.scope.hours));
-  for (const std::string& motion : o.scope.motions) add("--motion", motion);
-  for (const std::string& fault : o.scope.faults) add("--fault", fault);
-  add("--plan", o.plan);
-  add("--resume", o.resume);
-  add("--json", o.json);
-  add("--report", o.report);
-  return present::shell_command(words);
 }
 
 void work(const std::vector<Part>& parts, const std::vector<Method>& methods, Trials& trials,
@@ -135,16 +116,11 @@ int run(const Options& o) {
     stopped = Interrupt::exit_code();
   }
   Card card = make_card(bench, methods, o.scope, parts, store, trials);
-  card.command = command_of(o);
+  card.command = present::typed_command();
   card.runtime_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (!o.report.empty()) write_report(to_report(card), o.report);
   if (!o.markdown.empty()) config::record::write_whole(o.markdown, to_markdown(card));
-  if (o.json == "-") {
-    std::cout << to_json(card);
-  } else {
-    if (!o.json.empty()) config::record::write_whole(o.json, to_json(card));
-    std::cout << to_text(card, o.details);
-  }
+  if (!present::write_json(to_json(card), o.json)) std::cout << to_text(card, o.details);
   return stopped;
 }
 
@@ -173,8 +149,8 @@ void add_scorecard(CLI::App& command, int& exit_code) {
   command.add_option("--threads", o->threads, "default: one for each processor")
       ->check(CLI::Range(1, 1024));
   command.add_flag("--details", o->details, "print which names came first, too");
-  command.add_option("--json", o->json, "file for JSON, - for standard output");
-  command.add_option("--report", o->report, "file for a page with plots (HTML)");
+  add_json(command, o->json);
+  add_report(command, o->report);
   command.add_option("--markdown", o->markdown, "file for the tables (Markdown)");
   command.callback([o, &exit_code] { exit_code = run(*o); });
 }

@@ -5,11 +5,12 @@
 #include <iostream>
 #include <memory>
 
-#include "config/record/whole_file.h"
 #include "workbench/cli/command.h"
+#include "workbench/cli/common_options.h"
 #include "workbench/cli/file_check.h"
 #include "workbench/cli/interrupt.h"
 #include "workbench/cli/number_check.h"
+#include "workbench/present/json.h"
 #include "workbench/select/outcome.h"
 
 namespace workbench::cli {
@@ -18,7 +19,6 @@ namespace {
 using select::Outcome;
 using select::Request;
 
-constexpr int kMostThreads = 256;
 constexpr const char* kWipe = "\r\x1b[K";
 
 int run(const Request& request) {
@@ -33,12 +33,7 @@ int run(const Request& request) {
   };
   const Outcome outcome = compare_structures(request, show, [] { return Interrupt::requested(); });
   if (renewed && !request.quiet) std::cerr << kWipe << std::flush;
-  if (request.json == "-") {
-    std::cout << to_json(outcome);
-  } else {
-    if (!request.json.empty()) config::record::write_whole(request.json, to_json(outcome));
-    std::cout << to_text(outcome);
-  }
+  if (!present::write_json(to_json(outcome), request.json)) std::cout << to_text(outcome);
   return Interrupt::exit_code();
 }
 
@@ -46,7 +41,7 @@ int run(const Request& request) {
 
 void add_select(CLI::App& command, int& exit_code) {
   auto request = std::make_shared<Request>();
-  command.add_option("RECORD", request->record, "CSV or MAT (t_s,u_V,y_m), or LCM log")->required();
+  add_record(command, request->record);
   command
       .add_option("--structures", request->structures,
                   "name[,name...]: arxNMK, armaxNMCK, oeMFK, bjMCDFK, ssN, n4sidN, narxNMK/H; "
@@ -67,10 +62,9 @@ void add_select(CLI::App& command, int& exit_code) {
       ->capture_default_str();
   command.add_flag("!--no-constant", request->constant, "estimate no constant term");
   command.add_flag("!--keep-offset", request->de_mean, "take no mean off y");
-  command.add_option("--threads", request->threads, "default: one for each processor")
-      ->check(number_within(1, kMostThreads));
-  command.add_option("--json", request->json, "file for JSON, - for standard output");
-  command.add_flag("--quiet", request->quiet, "no progress on standard error");
+  add_threads(command, request->threads);
+  add_json(command, request->json);
+  add_quiet(command, request->quiet);
   command.callback([request, &exit_code] { exit_code = run(*request); });
 }
 

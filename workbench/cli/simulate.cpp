@@ -13,6 +13,7 @@
 #include "config/schema/error.h"
 #include "plant_sim/plant.h"
 #include "workbench/cli/command.h"
+#include "workbench/cli/common_options.h"
 #include "workbench/cli/number_check.h"
 #include "workbench/simulate/closed_loop.h"
 #include "workbench/simulate/fault_text.h"
@@ -149,7 +150,7 @@ void check_pressures(const Arguments& arguments, const simulate::Scenario& scena
 
 void add_simulate(CLI::App& command, int& /*exit_code*/) {
   auto arguments = std::make_shared<Arguments>();
-  command.add_option("model", arguments->model, "model file (TOML)")->required();
+  add_model(command, arguments->model);
   command
       .add_option(
           "-o,--output", arguments->output,

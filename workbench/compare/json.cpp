@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "workbench/compare/words.h"
+#include "workbench/present/json.h"
 
 namespace workbench::compare {
 
@@ -11,22 +12,19 @@ namespace validation = estimator::greybox::validation;
 namespace {
 
 using nlohmann::ordered_json;
-
-ordered_json number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
+using present::number_or_null;
 
 ordered_json json_of(const validation::Bin& bin) {
-  ordered_json out{{"from", number(bin.from)}, {"to", number(bin.to)}};
+  ordered_json out{{"from", number_or_null(bin.from)}, {"to", number_or_null(bin.to)}};
   if (!bin.name.empty()) out["name"] = bin.name;
-  out["rms_m"] = number(bin.rms_m);
-  out["mean_m"] = number(bin.mean_m);
+  out["rms_m"] = number_or_null(bin.rms_m);
+  out["mean_m"] = number_or_null(bin.mean_m);
   out["samples"] = bin.count;
-  out["time_share"] = number(bin.time_share);
-  out["error_share"] = number(bin.error_share);
-  out["speed_error_mps"] = number(bin.speed_error_mps);
-  out["arising_rms_mps"] = number(bin.arising_rms_mps);
-  out["arising_share"] = number(bin.arising_share);
+  out["time_share"] = number_or_null(bin.time_share);
+  out["error_share"] = number_or_null(bin.error_share);
+  out["speed_error_mps"] = number_or_null(bin.speed_error_mps);
+  out["arising_rms_mps"] = number_or_null(bin.arising_rms_mps);
+  out["arising_share"] = number_or_null(bin.arising_share);
   return out;
 }
 
@@ -61,35 +59,35 @@ std::string to_json(const validation::Comparison& c) {
   out["judgement"] = text(said.judgement);
   out["verdict"] = said.verdict;
   out["findings"] = said.lines;
-  out["rms_m"] = number(c.rms_m);
-  out["free_run_rms_m"] = number(c.free_run_rms_m);
-  out["fit_percent"] = number(c.fit_percent);
-  out["noise_floor_m"] = number(c.noise_floor_m);
-  out["encoder_step_m"] = number(c.encoder_step_m);
-  out["one_step_rms_m"] = number(c.k_step.front().rms_m);
+  out["rms_m"] = number_or_null(c.rms_m);
+  out["free_run_rms_m"] = number_or_null(c.free_run_rms_m);
+  out["fit_percent"] = number_or_null(c.fit_percent);
+  out["noise_floor_m"] = number_or_null(c.noise_floor_m);
+  out["encoder_step_m"] = number_or_null(c.encoder_step_m);
+  out["one_step_rms_m"] = number_or_null(c.k_step.front().rms_m);
   out["k_step"] = ordered_json::array();
   for (const validation::KStep& k : c.k_step) {
     out["k_step"].push_back(
-        {{"samples", k.samples}, {"rms_m", number(k.rms_m)}, {"count", k.count}});
+        {{"samples", k.samples}, {"rms_m", number_or_null(k.rms_m)}, {"count", k.count}});
   }
-  out["whiteness_p"] = number(c.whiteness_p);
-  out["independence_p"] = number(c.independence_p);
+  out["whiteness_p"] = number_or_null(c.whiteness_p);
+  out["independence_p"] = number_or_null(c.independence_p);
   out["worst"] = ordered_json::array();
   for (const validation::Failing& failing : c.worst) out["worst"].push_back(json_of(failing));
-  out["gain_ratio"] = number(c.explained.gain_ratio);
-  out["offset_mps"] = number(c.explained.offset_mps);
-  out["explained_share"] = number(c.explained.share);
+  out["gain_ratio"] = number_or_null(c.explained.gain_ratio);
+  out["offset_mps"] = number_or_null(c.explained.offset_mps);
+  out["explained_share"] = number_or_null(c.explained.share);
   out["regions"] = ordered_json::object();
   for (const validation::Region& region : c.regions) {
     ordered_json bins = ordered_json::array();
     for (const validation::Bin& bin : region.bins) bins.push_back(json_of(bin));
     out["regions"][region.variable] = std::move(bins);
   }
-  out["observer_per_s"] = number(c.observer_per_s);
-  out["sample_time_s"] = number(c.record.sample_time_s);
+  out["observer_per_s"] = number_or_null(c.observer_per_s);
+  out["sample_time_s"] = number_or_null(c.record.sample_time_s);
   out["samples"] = c.record.size();
   out["segments"] = c.record.starts.size();
-  out["duration_s"] = number(c.duration_s());
+  out["duration_s"] = number_or_null(c.duration_s());
   out["notes"] = c.notes;
   return out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }

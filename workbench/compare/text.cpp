@@ -1,8 +1,9 @@
 #include "workbench/compare/text.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
 #include "workbench/compare/words.h"
@@ -38,13 +39,6 @@ std::string wrapped(const std::string& text, const std::string& first, const std
   return out + "\n";
 }
 
-template <class... Values>
-std::string line(const char* format, Values... values) {
-  char text[256];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
-
 std::string bar(double share, bool unicode) {
   const int eighths = static_cast<int>(std::lround(8.0 * kBarWidth * std::clamp(share, 0.0, 1.0)));
   std::string text;
@@ -61,7 +55,7 @@ std::string numbers(const validation::Comparison& c) {
   std::string out;
   const auto row = [&](const std::string& name, const std::string& value,
                        const std::string& beside) {
-    out += line("  %-22s %10s   %s", name.c_str(), value.c_str(), beside.c_str());
+    out += fmt::format("  {:22} {:>10}   {}", name, value, beside);
     out.erase(out.find_last_not_of(' ') + 1);
     out += "\n";
   };
@@ -74,7 +68,8 @@ std::string numbers(const validation::Comparison& c) {
       "fit " + present::three_digits(c.fit_percent) + " %");
   for (const validation::KStep& k : c.k_step) {
     const double ahead_s = static_cast<double>(k.samples) * c.record.sample_time_s;
-    row(line("%zu sample%s ahead", k.samples, k.samples == 1 ? "" : "s"), present::length(k.rms_m),
+    row(fmt::format("{} sample{} ahead", k.samples, k.samples == 1 ? "" : "s"),
+        present::length(k.rms_m),
         k.count == 0 ? "no stretch is long enough"
                      : "over " + present::three_digits(1e3 * ahead_s) + " ms");
   }
@@ -91,14 +86,14 @@ std::string chart(const validation::Region& region, bool unicode) {
   for (const validation::Bin& bin : region.bins) most = std::max(most, bin.arising_rms_mps);
   const std::string head =
       unit.text[0] != '\0' ? std::string(unit.name) + ", " + unit.text : std::string(unit.name);
-  std::string out =
-      line("  %-20s %9s %10s %6s %6s\n", head.c_str(), "error RMS", "speed err.", "time", "share");
+  std::string out = fmt::format("  {:20} {:>9} {:>10} {:>6} {:>6}\n", head, "error RMS",
+                                "speed err.", "time", "share");
   for (const validation::Bin& bin : region.bins) {
-    out +=
-        line("  %-20s %9s %10s %5.0f%% %5.0f%% ", present::bin_text(region.variable, bin).c_str(),
-             present::length(bin.rms_m).c_str(), present::speed(bin.arising_rms_mps).c_str(),
-             100.0 * bin.time_share, 100.0 * bin.arising_share) +
-        bar(most > 0.0 ? bin.arising_rms_mps / most : 0.0, unicode) + "\n";
+    out += fmt::format("  {:20} {:>9} {:>10} {:5.0f}% {:5.0f}% ",
+                       present::bin_text(region.variable, bin), present::length(bin.rms_m),
+                       present::speed(bin.arising_rms_mps), 100.0 * bin.time_share,
+                       100.0 * bin.arising_share) +
+           bar(most > 0.0 ? bin.arising_rms_mps / most : 0.0, unicode) + "\n";
   }
   return out;
 }
@@ -130,11 +125,10 @@ std::vector<const validation::Region*> shown(const validation::Comparison& c, bo
 
 std::string to_text(const validation::Comparison& c, bool unicode, bool all) {
   const Words said = words(c);
-  std::string out =
-      line("%s against %s: %s s, %zu samples at %s Hz", c.model.c_str(), c.record.name.c_str(),
-           present::three_digits(c.duration_s()).c_str(), c.record.size(),
-           present::three_digits(1.0 / c.record.sample_time_s).c_str());
-  if (c.record.starts.size() > 1) out += line(", %zu segments", c.record.starts.size());
+  std::string out = fmt::format("{} against {}: {} s, {} samples at {} Hz", c.model, c.record.name,
+                                present::three_digits(c.duration_s()), c.record.size(),
+                                present::three_digits(1.0 / c.record.sample_time_s));
+  if (c.record.starts.size() > 1) out += fmt::format(", {} segments", c.record.starts.size());
   out += "\n";
   for (const std::string& note : c.notes) out += wrapped("note: " + note, "  ", "        ");
   out += "\n" + wrapped(said.verdict, "  ", "  ");

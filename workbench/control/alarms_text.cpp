@@ -1,7 +1,8 @@
 #include "workbench/control/alarms_text.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
-#include <cstdio>
 #include <ostream>
 #include <string>
 
@@ -28,13 +29,8 @@ bool is_set(const Json& alarm, const char* key) {
 }
 
 std::string time_left(double time_s) {
-  char text[32];
-  if (time_s < 120.0) {
-    std::snprintf(text, sizeof text, "%.0f s", std::ceil(time_s));
-  } else {
-    std::snprintf(text, sizeof text, "%.0f min", std::ceil(time_s / 60.0));
-  }
-  return text;
+  return time_s < 120.0 ? fmt::format("{:.0f} s", std::ceil(time_s))
+                        : fmt::format("{:.0f} min", std::ceil(time_s / 60.0));
 }
 
 std::string notes_on(const Json& alarm) {
@@ -57,10 +53,7 @@ std::string notes_on(const Json& alarm) {
 
 void print_row(const std::string& life, const std::string& severity, const std::string& name,
                const std::string& came, const std::string& notes, std::ostream& out) {
-  char line[256];
-  std::snprintf(line, sizeof line, "%-15s %-8s %-32s %-24s ", life.c_str(), severity.c_str(),
-                name.c_str(), came.c_str());
-  std::string whole = line + notes;
+  std::string whole = fmt::format("{:15} {:8} {:32} {:24} {}", life, severity, name, came, notes);
   whole.erase(whole.find_last_not_of(' ') + 1);
   out << whole << '\n';
 }

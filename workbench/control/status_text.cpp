@@ -1,7 +1,8 @@
 #include "workbench/control/status_text.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
-#include <cstdio>
 #include <ostream>
 #include <string>
 
@@ -20,9 +21,7 @@ std::string text_of(const Json& object, const char* key) {
 std::string number_of(const Json& object, const char* key, double scale, const char* unit) {
   const auto found = object.find(key);
   if (found == object.end() || !found->is_number()) return "-";
-  char text[48];
-  std::snprintf(text, sizeof text, "%.4g%s", found->get<double>() * scale, unit);
-  return text;
+  return fmt::format("{:.4g}{}", found->get<double>() * scale, unit);
 }
 
 bool is_set(const Json& object, const char* key) {

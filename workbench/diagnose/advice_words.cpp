@@ -1,8 +1,9 @@
 #include "workbench/diagnose/advice_words.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
-#include <cstdio>
 
 #include "plant_sim/library.h"
 
@@ -11,11 +12,7 @@ namespace workbench::diagnose {
 namespace selection = estimator::greybox::selection;
 namespace {
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
+std::string number(double value) { return fmt::format("{:.3g}", value); }
 
 std::string listed(const std::vector<std::string>& names, const char* last) {
   std::string text;

@@ -4,15 +4,15 @@
 #include <nlohmann/json.hpp>
 
 #include "workbench/diagnose/words.h"
+#include "workbench/present/json.h"
 
 namespace workbench::diagnose {
 
 namespace selection = estimator::greybox::selection;
 namespace {
 
+using present::number_or_null;
 using Json = nlohmann::ordered_json;
-
-Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 /// Effects tried together are one name with a plus.
 std::string joined(const std::vector<std::string>& effects) {

@@ -1,4 +1,6 @@
 // The sections of the report that tell how the better model was found, and what it is.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -40,7 +42,8 @@ struct Scale {
   [[nodiscard]] std::string words(double length_m) const {
     if (!std::isfinite(length_m)) return "";
     const double shown = per_m * length_m;
-    std::string text = config::units::number(shown < 1000.0 ? "%#.3g" : "%.0f", shown);
+    std::string text =
+        shown < 1000.0 ? fmt::format("{:#.3g}", shown) : fmt::format("{:.0f}", shown);
     if (text.back() == '.') text.pop_back();
     return text;
   }
@@ -138,7 +141,7 @@ std::string variable_words(const std::string& variable) {
 
 std::string change_words(double value, double before) {
   if (before == 0.0 || !std::isfinite(before) || !std::isfinite(value)) return "";
-  return config::units::number("%+.1f", 100.0 * (value / before - 1.0));
+  return fmt::format("{:+.1f}", 100.0 * (value / before - 1.0));
 }
 
 }  // namespace
@@ -178,7 +181,7 @@ Section candidates_section(const Outcome& outcome) {
   section.paragraphs = {
       "Each round fits every absent effect together with all that the model has already, and "
       "scores it on held-out data. An effect is taken when it lowers that error by " +
-      config::units::number("%g", 100.0 * selection::kWorthwhile) +
+      fmt::format("{:g}", 100.0 * selection::kWorthwhile) +
       " % or more and the gain is more than chance: p is the probability of such a gain by chance "
       "alone. The bars end at the held-out error, the dashed line is the noise floor."};
   for (std::size_t i = 0; i < d.ladder.rounds.size(); ++i) {
@@ -234,7 +237,7 @@ Section where_section(const Outcome& outcome) {
   for (const selection::Where& where : outcome.diagnosis.where) {
     table.rows.push_back({where.enters, variable_words(where.variable),
                           where.explained_ratio > 0.0
-                              ? config::units::number("%.1f", 100.0 * where.explained_ratio)
+                              ? fmt::format("{:.1f}", 100.0 * where.explained_ratio)
                               : "none"});
   }
   if (!table.rows.empty()) table.marked_rows = {0};

@@ -1,11 +1,11 @@
 #include "workbench/diagnose/request.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <thread>
 
 #include "config/record/record.h"
-#include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "workbench/cli/file_check.h"
 #include "workbench/present/shell_command.h"
@@ -26,20 +26,15 @@ void check_files(const Request& request) {
       inputs);
 }
 
-plant_sim::ModelFile model_of(const Request& request) {
-  auto document = config::schema::Document::load(request.model);
-  for (const std::string& assignment : request.assignments) document.set(assignment);
-  return plant_sim::read_model(document);
-}
-
 /// What noise explains is told from how smooth a motion is, which takes samples close enough.
 void require_rate(const greybox::Measured& record) {
   constexpr double kSlowest_s = 0.05;
   if (record.sample_time_s <= kSlowest_s * (1.0 + 1e-6)) return;
-  char text[96];
-  std::snprintf(text, sizeof text, "%.3g samples a second are too few to tell noise from motion",
-                1.0 / record.sample_time_s);
-  throw config::schema::bad_data(record.name, text, "20 Hz or more; compare and fit take less");
+  throw config::schema::bad_data(
+      record.name,
+      fmt::format("{:.3g} samples a second are too few to tell noise from motion",
+                  1.0 / record.sample_time_s),
+      "20 Hz or more; compare and fit take less");
 }
 
 std::vector<greybox::Measured> records_of(const std::vector<std::string>& files) {
@@ -51,23 +46,6 @@ std::vector<greybox::Measured> records_of(const std::vector<std::string>& files)
   return records;
 }
 
-std::string command_of(const Request& request) {
-  std::vector<std::string> words{"spoolwatch", "diagnose", request.model};
-  words.insert(words.end(), request.records.begin(), request.records.end());
-  const auto add = [&](const char* option, const std::string& value) {
-    if (value.empty()) return;
-    words.emplace_back(option);
-    words.push_back(value);
-  };
-  for (const std::string& holdout : request.holdouts) add("--holdout", holdout);
-  if (request.fit != "blocks") add("--fit", request.fit);
-  for (const std::string& assignment : request.assignments) add("--set", assignment);
-  add("--json", request.json);
-  add("--report", request.report);
-  add("-o", request.output);
-  return present::shell_command(words);
-}
-
 }  // namespace
 
 Outcome prepare(const Request& request) {
@@ -75,7 +53,7 @@ Outcome prepare(const Request& request) {
   Outcome outcome;
   outcome.split = greybox::parse_split(request.fit);
   outcome.shop = selection::workshop(
-      model_of(request),
+      plant_sim::load_model(request.model, request.assignments),
       greybox::evidence(records_of(request.records), records_of(request.holdouts), outcome.split));
   const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
   outcome.shop.threads = request.threads > 0 ? request.threads : processors;
@@ -83,7 +61,7 @@ Outcome prepare(const Request& request) {
   outcome.records = request.records;
   outcome.holdouts = request.holdouts;
   outcome.output = request.output;
-  outcome.command = command_of(request);
+  outcome.command = present::typed_command();
   return outcome;
 }
 

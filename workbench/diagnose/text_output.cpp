@@ -1,5 +1,7 @@
 #include "workbench/diagnose/text_output.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <ostream>
@@ -138,8 +140,8 @@ void print(const Outcome& outcome, std::ostream& out) {
     print_candidates(d, out);
     print_parameters(outcome, out);
     out << '\n'
-        << wrapped(outcome.model_file + ": " + split_words(outcome) + "; " +
-                   config::units::number("%.1f", d.runtime_s) + " s.");
+        << wrapped(outcome.model_file + ": " + split_words(outcome) +
+                   fmt::format("; {:.1f} s.", d.runtime_s));
   }
   for (const std::string& note : d.notes) out << wrapped("note: " + note);
   const std::string next = next_command(outcome);

@@ -1,5 +1,7 @@
 #include "workbench/diagnose/words.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +14,7 @@ namespace greybox = estimator::greybox;
 namespace selection = estimator::greybox::selection;
 namespace {
 
-std::string percent(double ratio) { return config::units::number("%.0f", 100.0 * ratio) + " %"; }
+std::string percent(double ratio) { return fmt::format("{:.0f} %", 100.0 * ratio); }
 
 /// "2.7 um held-out, 1.1 times the noise floor of 2.4 um".
 std::string beside_floor(const selection::Diagnosis& d, double rms_m) {
@@ -218,8 +220,7 @@ std::string split_words(const Outcome& outcome) {
     case greybox::Split::blocks:
       break;
   }
-  return "fitted to every other " + config::units::number("%g", greybox::kBlock_s) +
-         " s, scored on the rest";
+  return fmt::format("fitted to every other {:g} s, scored on the rest", greybox::kBlock_s);
 }
 
 std::vector<StepWords> step_words(const selection::Diagnosis& diagnosis) {

@@ -1,9 +1,10 @@
 #include "workbench/fit/choice.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "config/schema/document.h"
@@ -28,11 +29,7 @@ using greybox::split_names;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-std::string shown(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
+std::string shown(double value) { return fmt::format("{:.6g}", value); }
 
 class Chooser {
  public:

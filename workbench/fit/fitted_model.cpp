@@ -1,4 +1,4 @@
-#include <cstdio>
+#include <fmt/format.h>
 
 #include "config/units/quantity.h"
 #include "workbench/fit/outcome.h"
@@ -14,11 +14,9 @@ std::string to_model(const Outcome& o) {
           config::units::length_words(e.after.rms_m) + " RMS" +
           (e.interrupted ? "; interrupted, the best so far" : "") + "\n";
   for (const greybox::Parameter& p : e.parameters) {
-    char line[200];
-    std::snprintf(line, sizeof line, "# %s %.6g, 95 %% from %.6g to %.6g", p.search.name.c_str(),
-                  p.value, p.low, p.high);
     const std::string more = remark(p);
-    text += line + (more.empty() ? "" : "; " + more) + "\n";
+    text += fmt::format("# {} {:.6g}, 95 % from {:.6g} to {:.6g}{}{}\n", p.search.name, p.value,
+                        p.low, p.high, more.empty() ? "" : "; ", more);
   }
   return text + plant_sim::print_model(e.better);
 }

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "workbench/fit/outcome.h"
+#include "workbench/present/json.h"
 
 namespace workbench::fit {
 
@@ -10,31 +11,29 @@ namespace greybox = estimator::greybox;
 namespace {
 
 using nlohmann::ordered_json;
-
-ordered_json number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
+using present::number_or_null;
 
 ordered_json json_of(const greybox::Parameter& p) {
   ordered_json out;
-  out["value"] = number(p.value);
-  out["std_error"] = number(p.std_error);
-  out["low"] = number(p.low);
-  out["high"] = number(p.high);
+  out["value"] = number_or_null(p.value);
+  out["std_error"] = number_or_null(p.std_error);
+  out["low"] = number_or_null(p.low);
+  out["high"] = number_or_null(p.high);
   out["at_bound"] = p.at_bound;
-  out["start"] = number(p.start);
+  out["start"] = number_or_null(p.start);
   const bool prior = std::isfinite(p.search.prior_sd);
   const double mean = p.search.value(p.search.prior_mean);
-  out["prior_mean"] = prior ? number(mean) : nullptr;
+  out["prior_mean"] = prior ? number_or_null(mean) : nullptr;
   out["prior_sd"] =
-      prior ? number(p.search.prior_sd * p.search.slope(p.search.prior_mean)) : nullptr;
-  out["record_share"] = number(p.record_share);
+      prior ? number_or_null(p.search.prior_sd * p.search.slope(p.search.prior_mean)) : nullptr;
+  out["record_share"] = number_or_null(p.record_share);
   out["interval"] = p.from_profile ? "profile" : "normal";
   out["remark"] = remark(p);
   if (!p.profile.empty()) {
     out["profile"] = ordered_json::array();
     for (const auto& point : p.profile) {
-      out["profile"].push_back({{"value", number(point.value)}, {"rise", number(point.rise)}});
+      out["profile"].push_back(
+          {{"value", number_or_null(point.value)}, {"rise", number_or_null(point.rise)}});
     }
     out["low_found"] = p.low_found;
     out["high_found"] = p.high_found;
@@ -43,7 +42,8 @@ ordered_json json_of(const greybox::Parameter& p) {
 }
 
 ordered_json json_of(const greybox::Sight& sight) {
-  ordered_json out{{"condition", number(sight.condition)}, {"unseen", ordered_json::array()}};
+  ordered_json out{{"condition", number_or_null(sight.condition)},
+                   {"unseen", ordered_json::array()}};
   for (const greybox::Unseen& unseen : sight.unseen) {
     out["unseen"].push_back({{"parameter", unseen.name},
                              {"partners", unseen.partners},
@@ -63,17 +63,17 @@ std::string to_json(const Outcome& o) {
   for (const auto& record : o.prepared->task.evidence.records)
     out["records"].push_back(record.name);
   out["words"] = words(o);
-  out["rms_before_m"] = number(e.before.rms_m);
-  out["rms_after_m"] = number(e.after.rms_m);
-  out["heldout_before_m"] = number(e.before.heldout_rms_m);
-  out["heldout_after_m"] = number(e.after.heldout_rms_m);
-  out["free_run_before_m"] = number(e.before.free_run_rms_m);
-  out["free_run_after_m"] = number(e.after.free_run_rms_m);
-  out["fit_percent_before"] = number(e.before.fit_percent);
-  out["fit_percent_after"] = number(e.after.fit_percent);
-  out["noise_floor_m"] = number(o.noise_floor_m);
-  out["sigma_m"] = number(e.fitted.sigma_m);  // that weighted the squared residuals
-  out["effective_samples"] = number(e.effective_samples);
+  out["rms_before_m"] = number_or_null(e.before.rms_m);
+  out["rms_after_m"] = number_or_null(e.after.rms_m);
+  out["heldout_before_m"] = number_or_null(e.before.heldout_rms_m);
+  out["heldout_after_m"] = number_or_null(e.after.heldout_rms_m);
+  out["free_run_before_m"] = number_or_null(e.before.free_run_rms_m);
+  out["free_run_after_m"] = number_or_null(e.after.free_run_rms_m);
+  out["fit_percent_before"] = number_or_null(e.before.fit_percent);
+  out["fit_percent_after"] = number_or_null(e.after.fit_percent);
+  out["noise_floor_m"] = number_or_null(o.noise_floor_m);
+  out["sigma_m"] = number_or_null(e.fitted.sigma_m);  // that weighted the squared residuals
+  out["effective_samples"] = number_or_null(e.effective_samples);
   for (const greybox::Parameter& p : e.parameters) out["parameters"][p.search.name] = json_of(p);
   out["starts"] = {{"tried", e.starts.tried},
                    {"same", e.starts.same},
@@ -86,17 +86,17 @@ std::string to_json(const Outcome& o) {
     names.push_back(e.parameters[static_cast<std::size_t>(i)].search.name);
     ordered_json row = ordered_json::array();
     for (Eigen::Index j = 0; j < e.correlation.cols(); ++j)
-      row.push_back(number(e.correlation(i, j)));
+      row.push_back(number_or_null(e.correlation(i, j)));
     matrix.push_back(row);
   }
   out["correlation"] = {{"names", names}, {"matrix", matrix}};
-  out["observer_per_s"] = number(o.prepared->task.observer_per_s);
+  out["observer_per_s"] = number_or_null(o.prepared->task.observer_per_s);
   out["interrupted"] = e.interrupted;
   out["notes"] = o.prepared->notes;
   out["command"] = o.prepared->command;
   out["evaluations"] = e.evaluations;
-  out["fit_s"] = number(e.fit_s);
-  out["runtime_s"] = number(o.runtime_s);
+  out["fit_s"] = number_or_null(e.fit_s);
+  out["runtime_s"] = number_or_null(o.runtime_s);
   return out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 

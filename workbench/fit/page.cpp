@@ -1,4 +1,6 @@
 // A fit as a report.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -14,7 +16,6 @@ namespace workbench::fit {
 namespace greybox = estimator::greybox;
 namespace {
 
-using config::units::number;
 using present::Plot;
 using present::Section;
 using present::Tone;
@@ -138,7 +139,7 @@ Section parameter_section(const greybox::Estimation& e) {
     };
     table.rows.push_back({name, config::units::quantity(name, p.start, kNaN, largest).value,
                           q.value, q.error, shown(p.low), shown(p.high), q.unit,
-                          number("%.0f", 100.0 * p.record_share), remark(p)});
+                          fmt::format("{:.0f}", 100.0 * p.record_share), remark(p)});
     if (p.at_bound != 0) table.marked_rows.push_back(table.rows.size() - 1);
   }
   section.tables.push_back(table);
@@ -157,7 +158,7 @@ Section sight_section(const greybox::Estimation& e) {
       list += (list.empty() ? "" : "; ") + unseen.words;
     section.paragraphs.push_back(
         text + (list.empty() ? "every fitted parameter is seen" : list) +
-        number(". Condition of the scaled Jacobian: %.3g.", sight.condition));
+        fmt::format(". Condition of the scaled Jacobian: {:.3g}.", sight.condition));
   }
   present::Table table;
   table.caption = "Correlation of the estimates";
@@ -167,7 +168,7 @@ Section sight_section(const greybox::Estimation& e) {
     std::vector<std::string> row{e.parameters[static_cast<std::size_t>(i)].search.name};
     for (Eigen::Index j = 0; j < e.correlation.cols(); ++j) {
       const double value = e.correlation(i, j);
-      row.push_back(std::isnan(value) ? "-" : number("%.2f", value));
+      row.push_back(std::isnan(value) ? "-" : fmt::format("{:.2f}", value));
     }
     table.rows.push_back(row);
   }
@@ -224,13 +225,13 @@ present::Report to_report(const Outcome& o) {
   made.state = at_floor && !e.interrupted ? present::State::good : present::State::warn;
   const auto fact = [&](const char* label, double metres) {
     const LengthUnit unit = unit_for(metres);
-    made.facts.push_back({label, number("%.3g", unit.per_m * metres), unit.name});
+    made.facts.push_back({label, fmt::format("{:.3g}", unit.per_m * metres), unit.name});
   };
   fact("error before", e.before.rms_m);
   fact("error after", e.after.rms_m);
   if (std::isfinite(e.after.heldout_rms_m)) fact("not fitted, after", e.after.heldout_rms_m);
   if (std::isfinite(o.noise_floor_m)) fact("noise floor", o.noise_floor_m);
-  made.facts.push_back({"fit of the free run", number("%.4g", e.after.fit_percent), "%"});
+  made.facts.push_back({"fit of the free run", fmt::format("{:.4g}", e.after.fit_percent), "%"});
   made.command = o.prepared->command;
   made.sections.push_back(parameter_section(e));
   for (std::size_t r = 0; r < o.prepared->task.evidence.records.size(); ++r) {

@@ -1,8 +1,9 @@
 #include "workbench/fit/request.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <thread>
 
@@ -46,11 +47,11 @@ void require_motion(const Evidence& evidence) {
     const auto [low, high] = std::minmax_element(record.y_m.begin(), record.y_m.end());
     const double floor_m = std::isfinite(evidence.noise_floor_m) ? evidence.noise_floor_m : 0.0;
     if (*high - *low <= 2.0 * kLeastMotion * floor_m || !(*high > *low)) {
-      char text[120];
-      std::snprintf(text, sizeof text, "the rod does not move: y stays within %.3g um of itself",
-                    1e6 * (*high - *low));
-      throw config::schema::bad_data(record.name, text,
-                                     "a record with motion well above the position's noise");
+      throw config::schema::bad_data(
+          record.name,
+          fmt::format("the rod does not move: y stays within {:.3g} um of itself",
+                      1e6 * (*high - *low)),
+          "a record with motion well above the position's noise");
     }
   }
 }
@@ -65,10 +66,8 @@ void note_saturation(const Measured& record, std::vector<std::string>& notes) {
   if (!(*high > *low)) {
     notes.push_back(record.name + ": the command never changes");
   } else if (share > 0.2) {
-    char text[96];
-    std::snprintf(text, sizeof text, ": the command stands at its limit for %.0f %% of the time",
-                  100.0 * share);
-    notes.push_back(record.name + text);
+    notes.push_back(fmt::format("{}: the command stands at its limit for {:.0f} % of the time",
+                                record.name, 100.0 * share));
   }
 }
 
@@ -147,42 +146,7 @@ void choose_profiles(const Request& request, greybox::Task& task) {
   }
 }
 
-std::string shown(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
-}
-
-std::string command_of(const Request& request) {
-  std::vector<std::string> words{"spoolwatch", "fit", request.model};
-  words.insert(words.end(), request.records.begin(), request.records.end());
-  const auto add = [&](const char* option, const std::string& value) {
-    if (value.empty()) return;
-    words.emplace_back(option);
-    words.push_back(value);
-  };
-  const auto add_all = [&](const char* option, const std::vector<std::string>& values) {
-    for (const std::string& value : values) add(option, value);
-  };
-  add_all("--holdout", request.holdouts);
-  if (request.fit != "all") add("--fit", request.fit);
-  add_all("--free", request.wishes.free);
-  add_all("--fix", request.wishes.fix);
-  add_all("--prior", request.wishes.priors);
-  add_all("--bounds", request.wishes.bounds);
-  add_all("--ignore", request.ignored);
-  for (const double weight : request.weights) add("--weight", shown(weight));
-  if (request.starts != Request{}.starts) add("--starts", std::to_string(request.starts));
-  add_all("--profile", request.profiles);
-  if (request.observer_per_s != greybox::kObserver_per_s) {
-    add("--observer", shown(request.observer_per_s));
-  }
-  add_all("--set", request.assignments);
-  add("-o", request.output);
-  add("--json", request.json);
-  add("--report", request.report);
-  return present::shell_command(words);
-}
+std::string shown(double value) { return fmt::format("{:.9g}", value); }
 
 }  // namespace
 
@@ -190,9 +154,7 @@ Prepared prepare(const Request& request) {
   check_files(request);
   Prepared out;
   greybox::Task& task = out.task;
-  auto document = config::schema::Document::load(request.model);
-  for (const std::string& assignment : request.assignments) document.set(assignment);
-  task.model = plant_sim::read_model(document);
+  task.model = plant_sim::load_model(request.model, request.assignments);
   const Choice choice = choose(task.model, request.wishes);
   task.searched = choice.searched;
   task.start = choice.start;
@@ -220,7 +182,7 @@ Prepared prepare(const Request& request) {
   task.observer_per_s = request.observer_per_s;
   task.threads =
       request.threads > 0 ? request.threads : std::max(1U, std::thread::hardware_concurrency());
-  out.command = command_of(request);
+  out.command = present::typed_command();
   return out;
 }
 

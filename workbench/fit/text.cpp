@@ -1,7 +1,8 @@
 // A fit for the terminal.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "config/units/quantity.h"
 #include "config/units/unit_suffix.h"
@@ -11,8 +12,6 @@ namespace workbench::fit {
 
 namespace greybox = estimator::greybox;
 namespace {
-
-using config::units::number;
 
 constexpr std::size_t kColumns = 92;
 constexpr int kPlotWidth = 61;
@@ -40,7 +39,7 @@ std::string wrapped(const std::string& text, const std::string& indent) {
   return out + "\n";
 }
 
-std::string five(double value) { return std::isnan(value) ? "-" : number("%.5g", value); }
+std::string five(double value) { return std::isnan(value) ? "-" : fmt::format("{:.5g}", value); }
 
 std::string table(const std::vector<greybox::Parameter>& parameters) {
   std::size_t width = 9;
@@ -48,18 +47,15 @@ std::string table(const std::vector<greybox::Parameter>& parameters) {
   const auto row = [&](const std::string& name, const std::string& start, const std::string& value,
                        const std::string& error, const std::string& low, const std::string& high,
                        const std::string& what) {
-    char text[320];
-    std::snprintf(text, sizeof text, "  %-*s %11s %11s %10s %11s %11s  %s", static_cast<int>(width),
-                  name.c_str(), start.c_str(), value.c_str(), error.c_str(), low.c_str(),
-                  high.c_str(), what.c_str());
-    std::string line = text;
+    std::string line = fmt::format("  {:{}} {:>11} {:>11} {:>10} {:>11} {:>11}  {}", name, width,
+                                   start, value, error, low, high, what);
     line.erase(line.find_last_not_of(' ') + 1);
     return line + "\n";
   };
   std::string out = row("parameter", "start", "fitted", "+-", "95 % from", "to", "");
   for (const greybox::Parameter& p : parameters) {
     const bool shows = p.at_bound == 0 || p.from_profile;
-    out += row(p.search.name, five(p.start), five(p.value), number("%.2g", p.std_error),
+    out += row(p.search.name, five(p.start), five(p.value), fmt::format("{:.2g}", p.std_error),
                shows ? five(p.low) : "-", shows ? five(p.high) : "-", remark(p));
   }
   return out;

@@ -1,4 +1,6 @@
 // What a fit comes to, in plain words.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -12,7 +14,6 @@ namespace greybox = estimator::greybox;
 namespace {
 
 using config::units::length_words;
-using config::units::number;
 
 constexpr double kAtFloor = 1.15;
 /// Moves under this many standard errors and this share are no news.
@@ -23,7 +24,7 @@ std::string move_words(const greybox::Parameter& p) {
   const config::units::Quantity q = config::units::quantity(p.search.name, p.value, p.std_error);
   std::string text = p.search.name;
   if (p.start > 0.0 && p.value > 0.0 && std::isfinite(p.start) && std::isfinite(p.value)) {
-    text += number(" %+.2g %%", 100.0 * (p.value / p.start - 1.0)) + " to " + words(q);
+    text += fmt::format(" {:+.2g} % to ", 100.0 * (p.value / p.start - 1.0)) + words(q);
   } else {
     text += " from " +
             words(config::units::quantity(p.search.name, p.start, std::nan(""), p.value)) + " to " +
@@ -47,13 +48,14 @@ std::string size_words(const Outcome& o) {
     const double ratio = e.after.rms_m / o.noise_floor_m;
     text += "; noise floor " + length_words(o.noise_floor_m);
     text += ratio <= kAtFloor ? ": the model now explains all but the noise"
-                              : number(": still %.3g times as much", ratio);
+                              : fmt::format(": still {:.3g} times as much", ratio);
   } else {
     text += "; the noise floor cannot be told from this record";
   }
   return text + ". Pure simulation: " + length_words(e.before.free_run_rms_m) + " -> " +
-         length_words(e.after.free_run_rms_m) + number(" RMS, fit %.4g", e.before.fit_percent) +
-         number(" -> %.4g %%.", e.after.fit_percent);
+         length_words(e.after.free_run_rms_m) +
+         fmt::format(" RMS, fit {:.4g}", e.before.fit_percent) +
+         fmt::format(" -> {:.4g} %.", e.after.fit_percent);
 }
 
 std::string heldout_words(const greybox::Estimation& e) {

@@ -5,6 +5,7 @@
 
 #include "estimator/greybox/tracking/words.h"
 #include "workbench/isolate/outcome.h"
+#include "workbench/present/json.h"
 
 namespace workbench::isolate {
 
@@ -14,34 +15,31 @@ namespace {
 
 using Eigen::Index;
 using nlohmann::ordered_json;
-
-ordered_json number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
+using present::number_or_null;
 
 ordered_json json_of(const Window& window, const Choice& choice) {
   ordered_json out{{"t_s", window.t_s}, {"from_s", window.from_s}};
   for (std::size_t i = 0; i < choice.tracked; ++i) {
     const tracking::Estimate& estimate = window.estimates[i];
-    out[choice.parameters[i].name] = {{"value", number(estimate.value)},
-                                      {"std_error", number(estimate.std_error)},
-                                      {"smallest", number(estimate.smallest)},
+    out[choice.parameters[i].name] = {{"value", number_or_null(estimate.value)},
+                                      {"std_error", number_or_null(estimate.std_error)},
+                                      {"smallest", number_or_null(estimate.smallest)},
                                       {"valid", estimate.valid}};
   }
   out["correlation"] = ordered_json::array();
   for (Index i = 0; i < window.correlation.rows(); ++i) {
     ordered_json row = ordered_json::array();
     for (Index j = 0; j < window.correlation.cols(); ++j) {
-      row.push_back(number(window.correlation(i, j)));
+      row.push_back(number_or_null(window.correlation(i, j)));
     }
     out["correlation"].push_back(row);
   }
-  out["rms_m"] = number(window.rms_m);
+  out["rms_m"] = number_or_null(window.rms_m);
   if (std::isfinite(window.in.rms_Pa)) {
-    out["pressures"] = {{"in_error_Pa", number(window.in.rms_Pa)},
-                        {"in_offset_Pa", number(window.in.mean_Pa)},
-                        {"out_error_Pa", number(window.out.rms_Pa)},
-                        {"out_offset_Pa", number(window.out.mean_Pa)}};
+    out["pressures"] = {{"in_error_Pa", number_or_null(window.in.rms_Pa)},
+                        {"in_offset_Pa", number_or_null(window.in.mean_Pa)},
+                        {"out_error_Pa", number_or_null(window.out.rms_Pa)},
+                        {"out_offset_Pa", number_or_null(window.out.mean_Pa)}};
   }
   if (!window.left_out.empty()) out["left_out"] = window.left_out;
   out["valid"] = window.valid;
@@ -59,19 +57,19 @@ ordered_json json_of(const Alarm& alarm, const Outcome& o) {
   ordered_json rivals = ordered_json::array();
   for (const Rival& rival : named.rivals) {
     group.push_back(rival.name);
-    rivals.push_back({{"parameter", rival.name}, {"value", number(rival.value)}});
+    rivals.push_back({{"parameter", rival.name}, {"value", number_or_null(rival.value)}});
   }
   return {{"parameter", p.name},
           {"direction", value > healthy ? "high" : "low"},
-          {"value", number(value)},
-          {"std_error", number(named.std_error * p.slope(named.x))},
-          {"healthy", number(healthy)},
-          {"change_ratio", number(healthy != 0.0 ? value / healthy - 1.0 : NAN)},
-          {"confidence", number(alarm.confidence)},
+          {"value", number_or_null(value)},
+          {"std_error", number_or_null(named.std_error * p.slope(named.x))},
+          {"healthy", number_or_null(healthy)},
+          {"change_ratio", number_or_null(healthy != 0.0 ? value / healthy - 1.0 : NAN)},
+          {"confidence", number_or_null(alarm.confidence)},
           {"ambiguity_group", named.rivals.empty() ? ordered_json::array() : group},
           {"rivals", rivals},
           {"raised_s", alarm.raised_s},
-          {"cleared_s", number(alarm.cleared_s)},
+          {"cleared_s", number_or_null(alarm.cleared_s)},
           {"advice", tracking::advice_words(o.choice, named)},
           {"words", tracking::change_words(o.choice, named, o.healthy.x)}};
 }
@@ -93,14 +91,14 @@ std::string to_json(const Outcome& o) {
   for (std::size_t i = 0; i < o.choice.tracked; ++i) {
     const greybox::SearchParameter& p = o.choice.parameters[i];
     names.push_back(p.name);
-    values[p.name] = number(p.value(o.healthy.x[static_cast<Index>(i)]));
+    values[p.name] = number_or_null(p.value(o.healthy.x[static_cast<Index>(i)]));
   }
   out["parameters"] = names;
-  out["noise_floor_m"] = number(o.noise_floor_m);
+  out["noise_floor_m"] = number_or_null(o.noise_floor_m);
   out["healthy"] = {{"learnt", o.learnt},
-                    {"from_s", o.learnt ? number(o.healthy_from_s) : nullptr},
-                    {"to_s", o.learnt ? number(o.healthy_to_s) : nullptr},
-                    {"rms_m", number(o.healthy.rms_m)},
+                    {"from_s", o.learnt ? number_or_null(o.healthy_from_s) : nullptr},
+                    {"to_s", o.learnt ? number_or_null(o.healthy_to_s) : nullptr},
+                    {"rms_m", number_or_null(o.healthy.rms_m)},
                     {"values", values}};
   const tracking::ChamberErrors& chambers = o.healthy.chambers;
   if (chambers.known()) {
@@ -110,13 +108,13 @@ std::string to_json(const Outcome& o) {
                                    {"out_offset_Pa", chambers.out.offset_Pa},
                                    {"offset_sd_Pa", chambers.offset_sd_Pa}};
   }
-  out["limit_m"] = number(o.settings.most_ratio * o.healthy.rms_m);
+  out["limit_m"] = number_or_null(o.settings.most_ratio * o.healthy.rms_m);
   out["alarms"] = ordered_json::array();
   for (const Alarm& alarm : o.alarms) out["alarms"].push_back(json_of(alarm, o));
   out["windows"] = ordered_json::array();
   for (const Window& window : o.windows) out["windows"].push_back(json_of(window, o.choice));
   out["notes"] = o.notes;
-  out["fit_s"] = number(median_fit_s(o.windows));
+  out["fit_s"] = number_or_null(median_fit_s(o.windows));
   return out.dump(2) + "\n";
 }
 

@@ -1,5 +1,7 @@
 #include "workbench/isolate/outcome.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,7 +9,6 @@
 #include "config/record/whole_file.h"
 #include "config/schema/document.h"
 #include "config/schema/error.h"
-#include "config/units/quantity.h"
 #include "estimator/fdi/tracker/baseline_file.h"
 #include "estimator/greybox/parameter_catalogue.h"
 #include "estimator/greybox/tracking/words.h"
@@ -25,7 +26,6 @@ namespace {
 
 using config::record::Record;
 using config::schema::UsageError;
-using config::units::number;
 
 /// A healthy error above so many noise floors, and a healthy value so far off the file's, are
 /// worth a note.
@@ -140,62 +140,24 @@ void check(const Request& request, const Record& record) {
   const double least_s = request.settings.window_s + tracking::kLead_s;
   const double length_s = static_cast<double>(record.size()) * record.sample_time_s;
   if (request.settings.window_s < kLeastSamples * record.sample_time_s) {
-    throw UsageError("--window: is too short for samples every " +
-                     number("%.3g", record.sample_time_s) + " s; allowed: 20 samples or more");
+    throw UsageError(fmt::format(
+        "--window: is too short for samples every {:.3g} s; allowed: 20 samples or more",
+        record.sample_time_s));
   }
   if (length_s < least_s) {
-    throw config::schema::bad_data(record.name, "is too short: " + number("%.3g", length_s) + " s",
-                                   "a window and its lead-in, " + number("%.3g", least_s) + " s");
+    throw config::schema::bad_data(record.name, fmt::format("is too short: {:.3g} s", length_s),
+                                   fmt::format("a window and its lead-in, {:.3g} s", least_s));
   }
   if (request.settings.observer_per_s * record.sample_time_s >= 1.0) {
-    throw UsageError("--observer: is too fast for samples every " +
-                     number("%.3g", record.sample_time_s) + " s");
+    throw UsageError(fmt::format("--observer: is too fast for samples every {:.3g} s",
+                                 record.sample_time_s));
   }
-}
-
-std::string command_of(const Request& request) {
-  std::vector<std::string> words{"spoolwatch", "isolate", request.model, request.record};
-  const auto add = [&](const char* option, const std::string& value) {
-    words.emplace_back(option);
-    words.push_back(value);
-  };
-  if (request.parameters != Request{}.parameters) {
-    for (const std::string& names : request.parameters) add("--parameters", names);
-  }
-  if (request.settings.window_s != Settings{}.window_s) {
-    add("--window", number("%.9g", request.settings.window_s));
-  }
-  if (request.settings.stride_s != Settings{}.stride_s) {
-    add("--stride", number("%.9g", request.settings.stride_s));
-  }
-  if (request.settings.observer_per_s != Settings{}.observer_per_s) {
-    add("--observer", number("%.9g", request.settings.observer_per_s));
-  }
-  if (request.settings.most_ratio != Settings{}.most_ratio) {
-    add("--limit", number("%.9g", request.settings.most_ratio));
-  }
-  if (request.settings.thresholds.suspect_position_sensor) {
-    words.emplace_back("--suspect-position-sensor");
-  }
-  const tracking::Following& following = request.settings.following;
-  for (const std::string& name : following.parameters) add("--follow", name);
-  if (following.ratio_per_h != Settings{}.following.ratio_per_h) {
-    add("--follow-per-hour", number("%.9g", following.ratio_per_h));
-  }
-  if (request.no_pressures) words.emplace_back("--no-pressures");
-  if (request.healthy_rms_m > 0.0) {
-    add("--healthy-rms", number("%.9g", request.healthy_rms_m));
-  } else if (request.healthy != Request{}.healthy) {
-    add("--healthy", request.healthy);
-  }
-  for (const std::string& assignment : request.assignments) add("--set", assignment);
-  return present::shell_command(words);
 }
 
 void note_calibration(Outcome& out) {
   const double times = out.healthy.rms_m / out.noise_floor_m;
   if (times > kUncalibrated) {
-    out.notes.push_back("the healthy error is " + number("%.3g", times) +
+    out.notes.push_back(fmt::format("the healthy error is {:.3g}", times) +
                         " times the noise floor: the model lacks something that healthy data "
                         "show; calibrate it first (spoolwatch diagnose, fit)");
   }
@@ -205,9 +167,9 @@ void note_calibration(Outcome& out) {
     if (p.scale != greybox::Scale::logarithmic) continue;
     const double off = std::exp(out.healthy.x[at] - out.choice.file[at]) - 1.0;
     if (std::abs(off) < kOffFile) continue;
-    out.notes.push_back("when healthy, " + tracking::name_words(p.name) + " is " +
-                        number("%+.3g", 100.0 * off) +
-                        " % off the model file; changes count from there");
+    out.notes.push_back(
+        "when healthy, " + tracking::name_words(p.name) +
+        fmt::format(" is {:+.3g} % off the model file; changes count from there", 100.0 * off));
   }
 }
 
@@ -243,15 +205,13 @@ Outcome isolate(const Request& request) {
   cli::check_outputs(
       {{"--json", request.json}, {"--report", request.report}, {"--learn", request.learn}},
       {request.model, {request.record}});
-  auto document = config::schema::Document::load(request.model);
-  for (const std::string& assignment : request.assignments) document.set(assignment);
-  const plant_sim::ModelFile model = plant_sim::read_model(document);
+  const plant_sim::ModelFile model = plant_sim::load_model(request.model, request.assignments);
   const Record record = config::record::read_record(request.record);
   check(request, record);
   Outcome out;
   out.model = request.model;
   out.record = request.record;
-  out.command = command_of(request);
+  out.command = present::typed_command();
   out.settings = request.settings;
   out.notes = record.notes;
   const Readings readings = readings_of(record, request);

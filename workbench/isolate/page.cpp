@@ -1,9 +1,10 @@
 // A tracking as a report.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <filesystem>
 #include <limits>
 
-#include "config/units/quantity.h"
 #include "estimator/greybox/tracking/words.h"
 #include "workbench/isolate/outcome.h"
 
@@ -13,7 +14,6 @@ namespace greybox = estimator::greybox;
 namespace tracking = estimator::greybox::tracking;
 namespace {
 
-using config::units::number;
 using present::Plot;
 using present::Series;
 using present::Tone;
@@ -72,10 +72,10 @@ present::Table alarm_table(const Outcome& o) {
                    {"confidence", ""},
                    {"or as well", "", false}};
   for (const Alarm& alarm : o.alarms) {
-    table.rows.push_back({number("%.2f", alarm.raised_s),
-                          alarm.active() ? "" : number("%.2f", alarm.cleared_s),
+    table.rows.push_back({fmt::format("{:.2f}", alarm.raised_s),
+                          alarm.active() ? "" : fmt::format("{:.2f}", alarm.cleared_s),
                           tracking::change_words(o.choice, alarm.named, o.healthy.x),
-                          number("%.4f", std::min(alarm.confidence, 0.9999)),
+                          fmt::format("{:.4f}", std::min(alarm.confidence, 0.9999)),
                           tracking::group_words(o.choice, alarm.named)});
   }
   return table;
@@ -95,8 +95,8 @@ present::Report to_report(const Outcome& o) {
   page.summary = o.notes;
   page.facts = {{"windows", std::to_string(o.windows.size()), ""},
                 {"invalid", std::to_string(invalid), ""},
-                {"healthy error", number("%.3g", 1e6 * o.healthy.rms_m), "um"},
-                {"noise floor", number("%.3g", 1e6 * o.noise_floor_m), "um"}};
+                {"healthy error", fmt::format("{:.3g}", 1e6 * o.healthy.rms_m), "um"},
+                {"noise floor", fmt::format("{:.3g}", 1e6 * o.noise_floor_m), "um"}};
   page.command = o.command;
   if (!o.alarms.empty()) {
     present::Section alarms;

@@ -1,4 +1,6 @@
 // A tracking for the terminal.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -14,19 +16,17 @@ namespace tracking = estimator::greybox::tracking;
 namespace {
 
 using config::units::length_words;
-using config::units::number;
 
 std::string pressure(double value_Pa) {
   return config::units::words(config::units::quantity("pressure_Pa", value_Pa, NAN));
 }
 
-std::string seconds(double s) { return number("%.4g", s) + " s"; }
+std::string seconds(double s) { return fmt::format("{:.4g} s", s); }
 
 std::string healthy_line(const Outcome& o) {
   std::string text = "healthy";
-  text += o.learnt
-              ? " (" + number("%.4g", o.healthy_from_s) + " to " + seconds(o.healthy_to_s) + ")"
-              : " (given)";
+  text += o.learnt ? fmt::format(" ({:.4g} to ", o.healthy_from_s) + seconds(o.healthy_to_s) + ")"
+                   : " (given)";
   text +=
       ": error " + length_words(o.healthy.rms_m) + ", noise floor " + length_words(o.noise_floor_m);
   const tracking::ChamberErrors& chambers = o.healthy.chambers;
@@ -45,8 +45,8 @@ std::string healthy_line(const Outcome& o) {
 std::string alarm_lines(const Outcome& o, const Alarm& alarm) {
   std::string text = "ALARM " + seconds(alarm.raised_s) +
                      (alarm.active() ? "" : " to " + seconds(alarm.cleared_s)) + ": " +
-                     tracking::change_words(o.choice, alarm.named, o.healthy.x) + " (confidence " +
-                     number("%.4f", std::min(alarm.confidence, 0.9999)) + ")\n";
+                     tracking::change_words(o.choice, alarm.named, o.healthy.x) +
+                     fmt::format(" (confidence {:.4f})\n", std::min(alarm.confidence, 0.9999));
   const std::string group = tracking::group_words(o.choice, alarm.named);
   return group.empty() ? text : text + "      " + group + "\n";
 }
@@ -87,7 +87,7 @@ std::string window_lines(const Outcome& o) {
 }
 
 std::string window_line(const Outcome& o, const Window& window) {
-  std::string text = number("%9.3f", window.t_s) + " s ";
+  std::string text = fmt::format("{:9.3f} s ", window.t_s);
   for (std::size_t i = 0; i < o.choice.tracked; ++i) {
     const greybox::SearchParameter& p = o.choice.parameters[i];
     const tracking::Estimate& estimate = window.estimates[i];

@@ -1,8 +1,9 @@
 #include "workbench/live/listen_lines.h"
 
+#include <fmt/chrono.h>
+
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <ctime>
 #include <nlohmann/json.hpp>
 
@@ -50,18 +51,11 @@ std::string text(const ordered_json& object) {
 }  // namespace
 
 std::string time_text(std::int64_t utc_us) {
-  std::array<char, 48> out{};
-  if (utc_us < kYear2000_us) {
-    std::snprintf(out.data(), out.size(), "%.3f s", static_cast<double>(utc_us) * 1e-6);
-    return out.data();
-  }
+  if (utc_us < kYear2000_us) return fmt::format("{:.3f} s", static_cast<double>(utc_us) * 1e-6);
   const std::time_t seconds = utc_us / 1'000'000;
   std::tm utc{};
   gmtime_r(&seconds, &utc);
-  const std::size_t length = std::strftime(out.data(), out.size(), "%Y-%m-%d %H:%M:%S", &utc);
-  std::snprintf(out.data() + length, out.size() - length, ".%03dZ",
-                static_cast<int>(utc_us / 1000 % 1000));
-  return out.data();
+  return fmt::format("{:%Y-%m-%d %H:%M:%S}.{:03}Z", utc, utc_us / 1000 % 1000);
 }
 
 constexpr int kInvalid = 3;  // severity of alarm_t
@@ -78,9 +72,7 @@ const char* state_text(int state) {
 
 std::string number_text(double value, int digits) {
   if (std::isnan(value)) return "-";
-  std::array<char, 40> out{};
-  std::snprintf(out.data(), out.size(), "%.*g", digits, value);
-  return out.data();
+  return fmt::format("{:.{}g}", value, digits);
 }
 
 std::string readable(const spoolwatch::alarm_t& alarm) {

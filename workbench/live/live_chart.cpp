@@ -1,8 +1,9 @@
 #include "workbench/live/live_chart.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
 #include "workbench/live/listen_lines.h"
@@ -95,9 +96,7 @@ void chart_motion(Canvas& canvas, Area area, const std::deque<MotionPoint>& poin
   if (points.empty() || !std::isfinite(span.low) || area.columns <= kLabel) return;
   for (const auto& [row, value] :
        {std::pair{area.row, span.high}, std::pair{area.row + area.rows - 1, span.low}}) {
-    char label[24];
-    std::snprintf(label, sizeof label, "%.2f mm", value * 1e3);
-    right_aligned(canvas, row, area.column + kLabel - 1, label);
+    right_aligned(canvas, row, area.column + kLabel - 1, fmt::format("{:.2f} mm", value * 1e3));
   }
   Dots dots({area.row, area.column + kLabel, area.rows, area.columns - kLabel}, glyphs);
   const auto draw = [&](double MotionPoint::*member, Style style) {

@@ -1,6 +1,7 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 #include "workbench/live/listen_lines.h"
@@ -14,22 +15,15 @@ constexpr int kChartRows = 5;
 constexpr int kTrackRows = 3;
 
 std::string millimetres(double value_m) {
-  if (std::isnan(value_m)) return "-";
-  char text[32];
-  std::snprintf(text, sizeof text, "%+.3f mm", value_m * 1e3);
-  return text;
+  return std::isnan(value_m) ? "-" : fmt::format("{:+.3f} mm", value_m * 1e3);
 }
 
 std::string steady_number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%#.5g", value);  // trailing zeros kept: the width stays
-  return std::isnan(value) ? "-" : text;
+  return std::isnan(value) ? "-" : fmt::format("{:#.5g}", value);  // zeros kept: the width stays
 }
 
 std::string microseconds(double value_us) {
-  char text[32];
-  std::snprintf(text, sizeof text, value_us < 100.0 ? "%.1f" : "%.0f", value_us);
-  return std::isnan(value_us) ? "-" : text;
+  return std::isnan(value_us) ? "-" : fmt::format("{:.{}f}", value_us, value_us < 100.0 ? 1 : 0);
 }
 
 Style severity_style(int severity) {
@@ -110,9 +104,8 @@ class Page {
     column = canvas_.text(row_, 48, "error ", Style::dim);
     canvas_.text(row_, column, millimetres(reference_m - y_m), Style::bold);
     column = canvas_.text(row_, 68, "u ", Style::dim);
-    char volts[24];
-    std::snprintf(volts, sizeof volts, "%+.3f V", state_.command_V());
-    canvas_.text(row_++, column, std::isnan(state_.command_V()) ? "-" : volts);
+    const double u_V = state_.command_V();
+    canvas_.text(row_++, column, std::isnan(u_V) ? "-" : fmt::format("{:+.3f} V", u_V));
     chart_motion(canvas_, {row_, 1, kChartRows, canvas_.columns() - 2}, state_.motion(), glyphs_);
     row_ += kChartRows;
   }

@@ -1,8 +1,9 @@
 #include "workbench/live/online_residual.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -131,13 +132,10 @@ void Running::find_worst(Figures& f) const {
 }
 
 std::string line_of(const Figures& f) {
-  char text[256];
-  std::snprintf(
-      text, sizeof text, "%9.1f s  rms %-9s fit %7s  %6s x floor", f.t_s,
-      present::length(f.rms_m).c_str(),
-      std::isfinite(f.fit_percent) ? (present::three_digits(f.fit_percent) + " %").c_str() : "-",
-      present::three_digits(f.floor_ratio).c_str());
-  std::string line = text;
+  std::string line =
+      fmt::format("{:9.1f} s  rms {:9} fit {:>7}  {:>6} x floor", f.t_s, present::length(f.rms_m),
+                  std::isfinite(f.fit_percent) ? present::three_digits(f.fit_percent) + " %" : "-",
+                  present::three_digits(f.floor_ratio));
   if (!f.worst.empty()) line += "  worst " + f.worst + " (" + present::length(f.worst_rms_m) + ")";
   if (!f.note.empty()) line += "  " + f.note;
   return line;

@@ -1,22 +1,17 @@
 #include "workbench/present/compare_units.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
-#include <cstdio>
 
 namespace workbench::present {
 
 namespace validation = estimator::greybox::validation;
 namespace {
 
-std::string print(const char* format, double value) {
-  char text[48];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
 /// Bounds are round numbers, or a record's extremes, which nobody needs exactly.
 std::string bound(double value, const Unit& unit) {
-  return print("%.4g", std::abs(value) < 1e-12 ? 0.0 : unit.factor * value);
+  return fmt::format("{:.4g}", std::abs(value) < 1e-12 ? 0.0 : unit.factor * value);
 }
 
 }  // namespace
@@ -33,7 +28,7 @@ Unit unit_of(const std::string& variable) {
 
 std::string three_digits(double value) {
   if (!std::isfinite(value)) return "-";
-  return print(std::abs(value) >= 999.5 ? "%.0f" : "%.3g", value);
+  return std::abs(value) >= 999.5 ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
 }
 
 std::string length(double metres) {
@@ -52,12 +47,12 @@ std::string percent(double share) {
   if (!std::isfinite(share)) return "-";
   if (share > 0.0 && share < 0.01) return "under 1 %";
   if (share < 1.0 && share > 0.995) return "over 99 %";
-  return print("%.0f", 100.0 * share) + " %";
+  return fmt::format("{:.0f} %", 100.0 * share);
 }
 
 std::string probability(double p) {
   if (!std::isfinite(p)) return "-";
-  return p < 1e-6 ? "< 1e-6" : print("%.2g", p);
+  return p < 1e-6 ? "< 1e-6" : fmt::format("{:.2g}", p);
 }
 
 std::string bin_text(const std::string& variable, const validation::Bin& bin) {

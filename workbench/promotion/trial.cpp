@@ -1,8 +1,9 @@
 #include "workbench/promotion/trial.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "config/schema/error.h"
@@ -73,9 +74,8 @@ std::vector<std::string> new_alarms(const RunningDaemon& daemon, const fs::path&
     const replay::Difference difference =
         replay::compare(run.before, run.after, kTolerance_s, 0.5 * run.sample_time_s);
     for (const replay::Occurrence& each : difference.appears) {
-      char when[48];
-      std::snprintf(when, sizeof when, " at %.1f s in ", each.from_s);
-      found.push_back(each.alarm + when + run.files.front());
+      found.push_back(
+          fmt::format("{} at {:.1f} s in {}", each.alarm, each.from_s, run.files.front()));
     }
   }
   return found;

@@ -1,7 +1,8 @@
 #include "workbench/replay/backtest_text.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <ostream>
 
@@ -11,10 +12,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string time_text(double t_s) {
-  if (std::isnan(t_s)) return "the end";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f s", t_s);
-  return text;
+  return std::isnan(t_s) ? "the end" : fmt::format("{:.3f} s", t_s);
 }
 
 std::string words(const Occurrence& o) {
@@ -77,10 +75,9 @@ void print_backtest(const BacktestReport& report, std::ostream& out) {
     for (const Occurrence& o : difference.appears) out << "  appears     " << words(o) << '\n';
     for (const Occurrence& o : difference.disappears) out << "  disappears  " << words(o) << '\n';
     for (const Shift& s : difference.shifts) {
-      char by[48];
-      std::snprintf(by, sizeof by, "%+.3f s", s.after.from_s - s.before.from_s);
       out << "  shifts      " << words(s.before) << " -> " << time_text(s.after.from_s) << " to "
-          << time_text(s.after.to_s) << " (" << by << ")\n";
+          << time_text(s.after.to_s)
+          << fmt::format(" ({:+.3f} s)\n", s.after.from_s - s.before.from_s);
     }
     Totals one;
     one.add(difference);

@@ -3,9 +3,10 @@
 // The source prints neither the start nor the weights of its recursion. Both starts are shown; the
 // forgetting factor is solved so that the greatest offset is the printed one, and the printed
 // variance then judges it.
+#include <fmt/format.h>
+
 #include "workbench/reproduce/experiment.h"
 #include "workbench/reproduce/spread.h"
-#include "workbench/reproduce/text.h"
 #include "workbench/reproduce/tolerance.h"
 
 namespace workbench::reproduce {
@@ -33,8 +34,8 @@ void add_short_buffers(std::vector<Row>& rows, const Structure& structure, const
   std::string variances;
   for (const std::size_t window : {399, 398, 397, 396}) {
     const Spread b1 = judge_batch(structure, record, window).b1;
-    offsets += text("%s%.1e", offsets.empty() ? "" : ", ", b1.offset);
-    variances += text("%s%.1e", variances.empty() ? "" : ", ", b1.variance);
+    offsets += fmt::format("{}{:.1e}", offsets.empty() ? "" : ", ", b1.offset);
+    variances += fmt::format("{}{:.1e}", variances.empty() ? "" : ", ", b1.variance);
   }
   rows.push_back(judged("batch over 399, 398, 397, 396 samples: offset of b1, m/V", 4.193e-9,
                         offsets, "information",
@@ -46,7 +47,7 @@ void add_short_buffers(std::vector<Row>& rows, const Structure& structure, const
 void add_recursive(std::vector<Row>& rows, const std::string& name, const Judged& result,
                    const char* offset_rule, const char* spread_rule) {
   rows.push_back(judged(name + ": J, in step, m2", 4.277e-5, result.cost_m2, "recursive cost",
-                        text("one sample out of step %.4g", result.cost_late_m2)));
+                        fmt::format("one sample out of step {:.4g}", result.cost_late_m2)));
   rows.push_back(judged(name + ": mean b1, m/V", 1.9672e-4, result.b1.mean, "mean b1, recursive"));
   rows.push_back(
       judged(name + ": greatest offset of b1, m/V", kPrintedOffset, result.b1.offset, offset_rule));
@@ -69,8 +70,8 @@ std::vector<Row> batch_against_recursive() {
                 "spread", "spread");
   const double forgetting = forgetting_with_offset(structure, record, kPrintedOffset);
   const Judged solved = judge_recursive(structure, record, forgetting, true);
-  add_recursive(rows, text("recursive, forgetting %.4f (solved)", forgetting), solved, "solved for",
-                "spread, recursive");
+  add_recursive(rows, fmt::format("recursive, forgetting {:.4f} (solved)", forgetting), solved,
+                "solved for", "spread, recursive");
   rows.push_back(judged("b1 varies more in the recursion than in the batch", std::string("yes"),
                         std::string(solved.b1.variance > whole.b1.variance ? "yes" : "no"), "words",
                         "printed: 1.2269e4 times"));

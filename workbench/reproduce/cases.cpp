@@ -1,9 +1,10 @@
 // Cases I and II: one kind of fault, bands on b1, the alarms' coming and going.
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "workbench/reproduce/alarm_run.h"
 #include "workbench/reproduce/experiment.h"
-#include "workbench/reproduce/text.h"
 #include "workbench/reproduce/tolerance.h"
 
 namespace workbench::reproduce {
@@ -36,15 +37,15 @@ std::vector<Row> timeline(const char* parameter, double normal, double low, doub
                       1, Keep::estimates);
   std::vector<Row> rows;
   for (const double t_s : {14.0, 16.0, 18.0, 32.0, 46.0, 48.0}) {
-    rows.push_back(judged(text("b1 of the period that ends at %.0f s, m/V", t_s), {},
+    rows.push_back(judged(fmt::format("b1 of the period that ends at {:.0f} s, m/V", t_s), {},
                           b1_at(found, t_s), "information"));
   }
-  rows.push_back(judged(text("alarm on (%s), s", name(first)), 18.0, found.next(15.0, first),
+  rows.push_back(judged(fmt::format("alarm on ({}), s", name(first)), 18.0, found.next(15.0, first),
                         "alarm time", "fault at 15 s"));
   rows.push_back(
       judged("alarm off, s", 32.0, found.next(18.0, 0), "alarm time", "normal again at 30 s"));
-  rows.push_back(judged(text("alarm on (%s), s", name(-first)), 48.0, found.next(45.0, -first),
-                        "alarm time", "fault at 45 s"));
+  rows.push_back(judged(fmt::format("alarm on ({}), s", name(-first)), 48.0,
+                        found.next(45.0, -first), "alarm time", "fault at 45 s"));
   rows.push_back(judged("changes of the alarm in 60 s", 3.0,
                         static_cast<double>(found.changes.size()), "count",
                         "no others; the first period is warm-up without alarms"));

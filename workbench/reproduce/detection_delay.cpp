@@ -1,6 +1,8 @@
 // How long a case I fault goes unseen, with a 5 um encoder, a 12-bit D/A converter and 2 um noise:
 // whole periods buffered, as in the source, against a sliding window. 40 fault times spread over a
 // period of the reference, both directions; and one healthy hour.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,7 +10,6 @@
 
 #include "workbench/reproduce/alarm_run.h"
 #include "workbench/reproduce/experiment.h"
-#include "workbench/reproduce/text.h"
 #include "workbench/reproduce/tolerance.h"
 
 namespace workbench::reproduce {
@@ -32,8 +33,8 @@ Watch whole_periods() {
 Watch shipped_sliding() {
   const estimator::fdi::PipelineConfig config = shipped_sliding_window();
   const estimator::fdi::EstimatorConfig& estimator = config.estimators.front();
-  return {text("sliding %s, %.3g s every %.3g s", estimator.structure.c_str(), estimator.window_s,
-               estimator.stride_s),
+  return {fmt::format("sliding {}, {:.3g} s every {:.3g} s", estimator.structure,
+                      estimator.window_s, estimator.stride_s),
           config, true};
 }
 
@@ -67,10 +68,10 @@ double false_alarms(const estimator::fdi::PipelineConfig& config) {
 void add(std::vector<Row>& rows, const Watch& watch) {
   for (const double factor : {1.25, 0.75}) {
     const Delay found = delay(watch.config, factor);
-    const std::string name = watch.name + text("; Ps %.0f psi: ", 1000.0 * factor);
+    const std::string name = watch.name + fmt::format("; Ps {:.0f} psi: ", 1000.0 * factor);
     rows.push_back(judged(name + "median delay, s", watch.sliding ? Value() : Value(3.0),
                           found.median_s, watch.sliding ? "median 0.3 s" : "about 3 s, any phase",
-                          text("%d fault times over a period", kTimes) +
+                          fmt::format("{} fault times over a period", kTimes) +
                               (watch.sliding ? "" : "; printed for one, as in cases I and II")));
     rows.push_back(judged(name + "worst delay, s", {}, found.worst_s,
                           watch.sliding ? "worst 0.6 s" : "information"));

@@ -1,12 +1,13 @@
 // Case III: either parameter may fail. That the two are not isolated is judged three ways: the
 // range of b1 over d lies inside that over Ps; the bands of case I miss every d fault; the bands of
 // case II give the same alarm for both. And a Ps that leaves the very trace of a d fault.
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "workbench/reproduce/alarm_run.h"
 #include "workbench/reproduce/experiment.h"
 #include "workbench/reproduce/sweep.h"
-#include "workbench/reproduce/text.h"
 #include "workbench/reproduce/tolerance.h"
 
 namespace workbench::reproduce {
@@ -39,10 +40,10 @@ Row mistaken() {
   const Coefficients damped = fifth_period(with(calibrated(), "damping_N_s_per_m", 1250.0));
   const double pressure_Pa = pressure_with_b1(damped.b1);
   const Coefficients weak = fifth_period(with(calibrated(), "supply_pressure_Pa", pressure_Pa));
-  return judged("Ps at which b1 is that of d = 1250 N s/m, psi", {}, pressure_Pa / kPa_per_psi,
-                "information",
-                text("b1 %.6e and %.6e, a1 %.6f and %.6f: one point of the feature space", weak.b1,
-                     damped.b1, weak.a1, damped.a1));
+  return judged(
+      "Ps at which b1 is that of d = 1250 N s/m, psi", {}, pressure_Pa / kPa_per_psi, "information",
+      fmt::format("b1 {:.6e} and {:.6e}, a1 {:.6f} and {:.6f}: one point of the feature space",
+                  weak.b1, damped.b1, weak.a1, damped.a1));
 }
 
 }  // namespace
@@ -51,10 +52,11 @@ std::vector<Row> isolation() {
   const Range pressure = b1_range(sweep("supply_pressure_Pa", kNormalPs_Pa));
   const Range damping = b1_range(sweep("damping_N_s_per_m", 1000.0));
   std::vector<Row> rows;
-  rows.push_back(judged(
-      "b1 range of d lies inside that of Ps (both 50 to 150 %)", std::string("yes"),
-      yes_no(damping.low > pressure.low && damping.high < pressure.high), "words",
-      text("%.4e..%.4e in %.4e..%.4e", damping.low, damping.high, pressure.low, pressure.high)));
+  rows.push_back(judged("b1 range of d lies inside that of Ps (both 50 to 150 %)",
+                        std::string("yes"),
+                        yes_no(damping.low > pressure.low && damping.high < pressure.high), "words",
+                        fmt::format("{:.4e}..{:.4e} in {:.4e}..{:.4e}", damping.low, damping.high,
+                                    pressure.low, pressure.high)));
   bool missed = true;
   for (const double d : {500.0, 750.0, 1250.0, 1500.0}) {
     missed = missed && alarm("damping_N_s_per_m", d, kCase1Low, kCase1High) == "none";

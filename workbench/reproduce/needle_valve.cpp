@@ -2,6 +2,8 @@
 // ARX211 tell? They can when the ranges of one of them, over the periods of a minute, do not
 // overlap. No mass, damping or needle figure is printed: those of the model file are assumed, and
 // others around them are tried.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -10,7 +12,6 @@
 #include "estimator/batch.h"
 #include "workbench/reproduce/experiment.h"
 #include "workbench/reproduce/rig.h"
-#include "workbench/reproduce/text.h"
 #include "workbench/reproduce/tolerance.h"
 
 namespace workbench::reproduce {
@@ -56,7 +57,8 @@ std::string separating(const Ranges& a, const Ranges& b) {
 std::string verdict(const std::string& by) { return by.empty() ? "not separable" : "separable"; }
 
 std::string shown(const Ranges& r) {
-  return text("b1 %.3e..%.3e, a1 %.4f..%.4f", r.low[2], r.high[2], r.low[0], r.high[0]);
+  return fmt::format("b1 {:.3e}..{:.3e}, a1 {:.4f}..{:.4f}", r.low[2], r.high[2], r.low[0],
+                     r.high[0]);
 }
 
 /// In how many of the tried presets both verdicts come out as printed.
@@ -75,7 +77,7 @@ Row around(const Ranges& alone, const Scenario& slaves) {
       }
     }
   }
-  return judged(text("both verdicts hold, of %d presets around it", tried), {},
+  return judged(fmt::format("both verdicts hold, of {} presets around it", tried), {},
                 static_cast<double>(held), "information",
                 "5 to 100 kg, 2000 to 10000 N s/m, needle 5 to 100 N s2/m2 open, 25 times closed");
 }

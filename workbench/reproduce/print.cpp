@@ -1,12 +1,12 @@
 #include "workbench/reproduce/print.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <nlohmann/json.hpp>
 #include <ostream>
-
-#include "workbench/reproduce/text.h"
 
 namespace workbench::reproduce {
 namespace {
@@ -15,7 +15,7 @@ constexpr std::size_t kWhatWidth = 78;
 constexpr std::size_t kValueWidth = 22;
 
 std::string shown(const Value& value) {
-  if (const auto* number = std::get_if<double>(&value)) return text("%.6g", *number);
+  if (const auto* number = std::get_if<double>(&value)) return fmt::format("{:.6g}", *number);
   if (const auto* words = std::get_if<std::string>(&value)) return *words;
   return "-";
 }

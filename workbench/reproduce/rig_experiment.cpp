@@ -1,5 +1,7 @@
 // The test stand at 2,000 psi, as a preset: ARX211 over whole periods, its bands, and the supply
 // pressure going to 2,500 and then to 1,500 psi. How fast the real pressure moved is not printed.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <vector>
 
@@ -9,7 +11,6 @@
 #include "workbench/reproduce/experiment.h"
 #include "workbench/reproduce/rig.h"
 #include "workbench/reproduce/spread.h"
-#include "workbench/reproduce/text.h"
 #include "workbench/reproduce/tolerance.h"
 
 namespace workbench::reproduce {
@@ -38,20 +39,20 @@ Row low_alarm(const AlarmRun& found, const std::string& when) {
 
 void add_timeline(std::vector<Row>& rows) {
   const AlarmRun found = pressure_test(kRamp_s);
-  const std::string when = text("pressure ramps over %.1f s", kRamp_s);
+  const std::string when = fmt::format("pressure ramps over {:.1f} s", kRamp_s);
   rows.push_back(high_alarm(found, when));
   rows.push_back(low_alarm(found, when));
-  rows.push_back(judged("changes of the alarm in 40 s", 2.0,
-                        static_cast<double>(found.changes.size()), "rig count",
-                        text("first at %.3f s: while the pressure moves, a1 and a2 bend and b1 is "
-                             "low for a period",
-                             found.changes.empty() ? NAN : found.changes.front().t_s)));
+  rows.push_back(judged(
+      "changes of the alarm in 40 s", 2.0, static_cast<double>(found.changes.size()), "rig count",
+      fmt::format("first at {:.3f} s: while the pressure moves, a1 and a2 bend and b1 is "
+                  "low for a period",
+                  found.changes.empty() ? NAN : found.changes.front().t_s)));
   std::string fitting;
   for (const double ramp_s : {0.0, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0}) {
     const AlarmRun other = pressure_test(ramp_s);
     if (high_alarm(other, "").agrees == Agreement::yes &&
         low_alarm(other, "").agrees == Agreement::yes) {
-      fitting += (fitting.empty() ? "" : ", ") + text("%.2f", ramp_s);
+      fitting += (fitting.empty() ? "" : ", ") + fmt::format("{:.2f}", ramp_s);
     }
   }
   rows.push_back(judged("ramps that give both printed times, s", {},
@@ -73,10 +74,10 @@ void add_costs(std::vector<Row>& rows, const Record& record) {
     const auto estimate = estimator::fit_batch(structure, u_V, y_m);
     const auto simulated =
         estimator::free_run(structure, std::span(estimate.value).first(structure.size()), u_V, y_m);
-    rows.push_back(judged(text("E of %s, m2", cost.structure), cost.printed_m2,
+    rows.push_back(judged(fmt::format("E of {}, m2", cost.structure), cost.printed_m2,
                           estimator::compare(y_m, simulated).cost_m2, "rig figure",
-                          text("one sample out of step %.4g; exponents as inferred",
-                               estimator::compare(y_m, simulated, 0, 1).cost_m2)));
+                          fmt::format("one sample out of step {:.4g}; exponents as inferred",
+                                      estimator::compare(y_m, simulated, 0, 1).cost_m2)));
   }
 }
 
@@ -91,7 +92,7 @@ void add_spread(std::vector<Row>& rows, const Record& record) {
       judged("batch: variance of b1, (m/V)2", 2.2573e-14, batch.b1.variance, "rig figure"));
   const double forgetting = 0.998;
   const Judged recursive = judge_recursive(structure, record, forgetting, true);
-  const std::string name = text("recursive, forgetting %.3f (assumed)", forgetting);
+  const std::string name = fmt::format("recursive, forgetting {:.3f} (assumed)", forgetting);
   rows.push_back(judged(name + ": J, m2", 3.9927e-4, recursive.cost_m2, "rig figure"));
   rows.push_back(judged(name + ": mean b1, m/V", 6.4924e-5, recursive.b1.mean, "rig figure"));
   rows.push_back(

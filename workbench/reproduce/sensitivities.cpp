@@ -1,12 +1,13 @@
 // What supply pressure and damping do to the coefficients of ARX111: +-10 %, and from half to one
 // and a half of the normal value. Each figure is of the fifth period at constant conditions.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <vector>
 
 #include "workbench/reproduce/alarm_run.h"
 #include "workbench/reproduce/experiment.h"
 #include "workbench/reproduce/sweep.h"
-#include "workbench/reproduce/text.h"
 #include "workbench/reproduce/tolerance.h"
 
 namespace workbench::reproduce {
@@ -46,7 +47,8 @@ std::vector<Row> pressure_sensitivity() {
                  std::string(swept[kNormal - 1].b1 > kCase1Low && swept[kNormal + 1].b1 < kCase1High
                                  ? "yes"
                                  : "no"),
-                 "words", text("%.4e to %.4e", swept[kNormal - 1].b1, swept[kNormal + 1].b1))};
+                 "words",
+                 fmt::format("{:.4e} to {:.4e}", swept[kNormal - 1].b1, swept[kNormal + 1].b1))};
 }
 
 std::vector<Row> damping_sensitivity() {
@@ -66,7 +68,8 @@ std::vector<Row> damping_sensitivity() {
                  std::string(swept[kNormal + 1].b1 > kCase2Low && swept[kNormal - 1].b1 < kCase2High
                                  ? "yes"
                                  : "no"),
-                 "words", text("%.5e to %.5e", swept[kNormal + 1].b1, swept[kNormal - 1].b1))};
+                 "words",
+                 fmt::format("{:.5e} to {:.5e}", swept[kNormal + 1].b1, swept[kNormal - 1].b1))};
 }
 
 }  // namespace workbench::reproduce

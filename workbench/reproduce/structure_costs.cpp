@@ -1,5 +1,7 @@
 // E of each model structure: batch least squares over the fifth period, then a free run of the same
 // period with the measured start; and two guesses at how the printed figures came about.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -9,7 +11,6 @@
 #include "workbench/reproduce/experiment.h"
 #include "workbench/reproduce/normal_equations.h"
 #include "workbench/reproduce/stand.h"
-#include "workbench/reproduce/text.h"
 #include "workbench/reproduce/tolerance.h"
 
 namespace workbench::reproduce {
@@ -85,7 +86,7 @@ void add_representing(std::vector<Row>& rows, const Record& record) {
     const Costs costs = fit(estimator::parse_structure(printed.structure), record.u(kFrom, kPeriod),
                             record.y(kFrom, kPeriod));
     rows.push_back(judged("E of " + name + ", in step, m2", printed.cost_m2, costs.in_step_m2,
-                          "cost, in step", text("condition %.2g", costs.condition)));
+                          "cost, in step", fmt::format("condition {:.2g}", costs.condition)));
     rows.push_back(judged("E of " + name + ", one sample out of step, m2", printed.cost_m2,
                           costs.late_m2, "cost, out of step",
                           "what a free run read one sample late would give"));
@@ -103,12 +104,12 @@ void add_rounded(std::vector<Row>& rows, const Record& record, double kp_V_per_m
       first_m2 = costs.in_step_m2;
       continue;
     }
-    rows.push_back(judged("E of " + upper(printed.structure) +
-                              text(" over ARX111, six decimals kept, Kp %.0f", kp_V_per_m),
-                          printed.cost_m2 / kRepresenting[0].cost_m2, costs.in_step_m2 / first_m2,
-                          "fall of the cost",
-                          text("rounding makes E fall with n alike, not its size: E %.3g in step",
-                               costs.in_step_m2)));
+    rows.push_back(judged(
+        "E of " + upper(printed.structure) +
+            fmt::format(" over ARX111, six decimals kept, Kp {:.0f}", kp_V_per_m),
+        printed.cost_m2 / kRepresenting[0].cost_m2, costs.in_step_m2 / first_m2, "fall of the cost",
+        fmt::format("rounding makes E fall with n alike, not its size: E {:.3g} in step",
+                    costs.in_step_m2)));
   }
 }
 
@@ -120,18 +121,20 @@ void add_failing(std::vector<Row>& rows, const Record& record) {
     const Structure structure = estimator::parse_structure(printed.structure);
     const std::string name = upper(printed.structure);
     const Costs costs = fit(structure, u_V, y_m);
-    rows.push_back(judged(
-        name + ", orthogonal factorisation", std::string("cannot represent"),
-        std::string(verdict(costs.in_step_m2, all_m2)), "words, not expected",
-        text("E %.3g in step, %.3g out, condition %.2g%s%s; printed %s with an "
-             "unreadable exponent; energy of y %.3g",
-             costs.in_step_m2, costs.late_m2, costs.condition,
-             *costs.reason == 0 ? "" : ", flagged: ", costs.reason, printed.reading, all_m2)));
+    rows.push_back(
+        judged(name + ", orthogonal factorisation", std::string("cannot represent"),
+               std::string(verdict(costs.in_step_m2, all_m2)), "words, not expected",
+               fmt::format("E {:.3g} in step, {:.3g} out, condition {:.2g}{}{}; printed {} with an "
+                           "unreadable exponent; energy of y {:.3g}",
+                           costs.in_step_m2, costs.late_m2, costs.condition,
+                           *costs.reason == 0 ? "" : ", flagged: ", costs.reason, printed.reading,
+                           all_m2)));
     const double e_m2 =
         cost_m2(structure, solve_normal_equations(structure, u_V, y_m), u_V, y_m, 0);
-    rows.push_back(judged(name + ", normal equations", std::string("cannot represent"),
-                          std::string(verdict(e_m2, all_m2)), "words, not expected",
-                          text("E %.3g: condition %.2g squared", e_m2, costs.condition)));
+    rows.push_back(
+        judged(name + ", normal equations", std::string("cannot represent"),
+               std::string(verdict(e_m2, all_m2)), "words, not expected",
+               fmt::format("E {:.3g}: condition {:.2g} squared", e_m2, costs.condition)));
   }
 }
 
@@ -143,9 +146,10 @@ void add_gains(std::vector<Row>& rows) {
     const Record record = run(scenario, 10.0);
     const Costs costs = fit(estimator::parse_structure("arx111"), record.u(kFrom, kPeriod),
                             record.y(kFrom, kPeriod));
-    rows.push_back(judged(text("E of ARX111, one sample out of step, Kp %.0f, m2", kp_V_per_m),
-                          kRepresenting[0].cost_m2, costs.late_m2, "cost, out of step",
-                          text("in step %.3g", costs.in_step_m2)));
+    rows.push_back(
+        judged(fmt::format("E of ARX111, one sample out of step, Kp {:.0f}, m2", kp_V_per_m),
+               kRepresenting[0].cost_m2, costs.late_m2, "cost, out of step",
+               fmt::format("in step {:.3g}", costs.in_step_m2)));
     if (kp_V_per_m == 400.0) add_rounded(rows, record, kp_V_per_m);
   }
 }

@@ -1,6 +1,7 @@
 // A scorecard as JSON.
 #include <cmath>
 
+#include "workbench/present/json.h"
 #include "workbench/scorecard/card.h"
 #include "workbench/scorecard/statistics.h"
 
@@ -8,17 +9,16 @@ namespace workbench::scorecard {
 namespace {
 
 using nlohmann::json;
-
-json or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+using present::number_or_null;
 
 json quiet_json(const QuietFigures& q) {
   const double time_s = 3600.0 * q.hours;
   return {{"hours", q.hours},
           {"alarms", q.counted.alarms},
-          {"per_hour", or_null(q.per_hour())},
-          {"per_hour_upper_95", or_null(q.per_hour_upper())},
-          {"alarm_ratio", or_null(q.counted.alarm_s / time_s)},
-          {"invalid_ratio", or_null(q.counted.invalid_s / time_s)}};
+          {"per_hour", number_or_null(q.per_hour())},
+          {"per_hour_upper_95", number_or_null(q.per_hour_upper())},
+          {"alarm_ratio", number_or_null(q.counted.alarm_s / time_s)},
+          {"invalid_ratio", number_or_null(q.counted.invalid_s / time_s)}};
 }
 
 json fault_json(const FaultFigures& of) {
@@ -39,8 +39,8 @@ json fault_json(const FaultFigures& of) {
           {"stated", of.fault->stated},
           {"smallest", smallest},
           {"delay_s",
-           {{"median", or_null(quantile(delays_s, 0.5))},
-            {"p95", or_null(quantile(delays_s, kDetected))}}},
+           {{"median", number_or_null(quantile(delays_s, 0.5))},
+            {"p95", number_or_null(quantile(delays_s, kDetected))}}},
           {"trials", of.trials()},
           {"verdicts", verdicts}};
 }
@@ -59,7 +59,7 @@ json split(const std::string& names) {
 json method_json(const MethodFigures& method) {
   json out = {{"name", method.name},
               {"what", method.what},
-              {"load_ratio", or_null(method.load_ratio)},
+              {"load_ratio", number_or_null(method.load_ratio)},
               {"healthy", quiet_json(method.healthy)},
               {"healthy_motions", json::object()},
               {"benign", json::object()},

@@ -1,8 +1,9 @@
 // A scorecard as a page with plots.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
-#include "config/units/quantity.h"
 #include "workbench/scorecard/card.h"
 #include "workbench/scorecard/statistics.h"
 #include "workbench/scorecard/words.h"
@@ -10,7 +11,6 @@
 namespace workbench::scorecard {
 namespace {
 
-using config::units::number;
 using present::Plot;
 using present::Table;
 
@@ -42,9 +42,10 @@ present::Section false_alarms(const Card& card) {
   for (const MethodFigures& method : card.methods) {
     const QuietFigures& q = method.healthy;
     const bool any = q.hours > 0.0;
-    std::vector<std::string> row{
-        method.name, number("%.3g", q.hours), std::to_string(q.counted.alarms),
-        any ? number("%.2g", q.per_hour()) : "", any ? number("%.2g", q.per_hour_upper()) : ""};
+    std::vector<std::string> row{method.name, fmt::format("{:.3g}", q.hours),
+                                 std::to_string(q.counted.alarms),
+                                 any ? fmt::format("{:.2g}", q.per_hour()) : "",
+                                 any ? fmt::format("{:.2g}", q.per_hour_upper()) : ""};
     for (const Benign& change : card.benign) {
       const auto at = method.benign.find(change.id);
       row.push_back(at == method.benign.end() ? "" : benign_words(at->second));
@@ -171,7 +172,7 @@ Table matrix(const MethodFigures& method) {
   table.columns.push_back({"alarm before", "%"});
   for (const FaultFigures& of : method.faults) {
     const auto percent = [&](int count) {
-      return count == 0 ? "" : number("%.0f", 100.0 * count / of.trials());
+      return count == 0 ? "" : fmt::format("{:.0f}", 100.0 * count / of.trials());
     };
     std::vector<std::string> row{sized_words(*of.fault)};
     for (const auto& [names, count] : columns) {
@@ -203,7 +204,7 @@ present::Section names(const Card& card) {
                                   Verdict::missed, Verdict::standing}) {
       row.push_back(method.trials() == 0
                         ? ""
-                        : number("%.1f", 100.0 * method.verdict(verdict) / method.trials()));
+                        : fmt::format("{:.1f}", 100.0 * method.verdict(verdict) / method.trials()));
     }
     judged.rows.push_back(row);
   }
@@ -239,9 +240,9 @@ present::Report to_report(const Card& card) {
     healthy_h = std::max(healthy_h, method.healthy.hours);
   }
   page.facts = {{"trials of a fault", std::to_string(card.seeds), "each"},
-                {"healthy", number("%.3g", healthy_h), "h"},
-                {"time to detect", number("%.3g", card.watch_s), "s"},
-                {"computed in", number("%.0f", card.runtime_s), "s"}};
+                {"healthy", fmt::format("{:.3g}", healthy_h), "h"},
+                {"time to detect", fmt::format("{:.3g}", card.watch_s), "s"},
+                {"computed in", fmt::format("{:.0f}", card.runtime_s), "s"}};
   page.command = card.command;
   page.sections = {false_alarms(card)};
   if (!faults_of(card).empty()) {

@@ -1,16 +1,15 @@
 #include "workbench/scorecard/progress.h"
 
-#include <cstdio>
+#include <fmt/format.h>
+
 #include <ostream>
 
 namespace workbench::scorecard {
 namespace {
 
 std::string clock(double time_s) {
-  char out[32];
   const auto whole = static_cast<long>(time_s);
-  std::snprintf(out, sizeof out, "%ld:%02ld", whole / 60, whole % 60);
-  return out;
+  return fmt::format("{}:{:02}", whole / 60, whole % 60);
 }
 
 }  // namespace
@@ -34,12 +33,6 @@ void Progress::add(double work, const std::string& part) {
 
 void Progress::end() {
   if (renewed_ && done_ > 0) out_ << "\r\x1b[K" << std::flush;
-}
-
-std::string number_words(double value) {
-  char out[32];
-  std::snprintf(out, sizeof out, "%.9g", value);
-  return out;
 }
 
 }  // namespace workbench::scorecard

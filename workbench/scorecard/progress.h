@@ -29,7 +29,4 @@ class Progress {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-/// "%.9g"
-[[nodiscard]] std::string number_words(double value);
-
 }  // namespace workbench::scorecard

@@ -1,6 +1,7 @@
 #include "workbench/scorecard/store.h"
 
-#include <cstdio>
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <fstream>
 
@@ -53,10 +54,6 @@ void Store::save() {
   changed_ = false;
 }
 
-std::string digest(const std::string& text) {
-  char out[32];
-  std::snprintf(out, sizeof out, "%016llx", static_cast<unsigned long long>(seed_of(0, text)));
-  return out;
-}
+std::string digest(const std::string& text) { return fmt::format("{:016x}", seed_of(0, text)); }
 
 }  // namespace workbench::scorecard

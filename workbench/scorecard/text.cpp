@@ -1,8 +1,9 @@
 // A scorecard as text: what a terminal and a README show.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
-#include "config/units/quantity.h"
 #include "workbench/scorecard/card.h"
 #include "workbench/scorecard/statistics.h"
 #include "workbench/scorecard/words.h"
@@ -10,7 +11,6 @@
 namespace workbench::scorecard {
 namespace {
 
-using config::units::number;
 using Rows = std::vector<std::vector<std::string>>;
 
 /// Characters, not bytes.
@@ -69,8 +69,8 @@ Rows quiet_rows(const Card& card) {
     row.push_back(share_words(method.verdict(Verdict::right), method.trials()));
     row.push_back(share_words(method.verdict(Verdict::group), method.trials()));
     row.push_back(share_words(method.verdict(Verdict::wrong), method.trials()));
-    row.push_back(std::isnan(method.load_ratio) ? "–"
-                                                : number("%.2g", 100.0 * method.load_ratio) + " %");
+    row.push_back(
+        std::isnan(method.load_ratio) ? "–" : fmt::format("{:.2g} %", 100.0 * method.load_ratio));
     rows.push_back(row);
   }
   return rows;

@@ -1,27 +1,27 @@
 #include "workbench/scorecard/words.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
-#include "config/units/quantity.h"
 #include "workbench/scorecard/statistics.h"
 
 namespace workbench::scorecard {
-
-using config::units::number;
 
 namespace {
 
 std::string share_of_time(double share) {
   const double percent = 100.0 * share;
-  return number(percent < 1.0 ? "%.2g" : "%.0f", percent) + " % of time";
+  return (percent < 1.0 ? fmt::format("{:.2g}", percent) : fmt::format("{:.0f}", percent)) +
+         " % of time";
 }
 
 }  // namespace
 
 std::string alarms_words(const QuietFigures& q) {
   if (!(q.hours > 0.0)) return "–";
-  return std::to_string(q.counted.alarms) + " in " + number("%.3g", q.hours) + " h";
+  return std::to_string(q.counted.alarms) + fmt::format(" in {:.3g} h", q.hours);
 }
 
 std::string unusable_words(const std::string& motion, const std::string& why) {
@@ -30,13 +30,13 @@ std::string unusable_words(const std::string& motion, const std::string& why) {
 
 std::string rate_words(const QuietFigures& q) {
   if (!(q.hours > 0.0)) return "–";
-  return number("%.2g", q.per_hour()) + " (< " + number("%.2g", q.per_hour_upper()) + ")";
+  return fmt::format("{:.2g} (< ", q.per_hour()) + fmt::format("{:.2g})", q.per_hour_upper());
 }
 
 std::string benign_words(const QuietFigures& q) {
   if (!(q.hours > 0.0)) return "–";
   const double share = q.counted.alarm_s / (3600.0 * q.hours);
-  std::string out = number("%.2g", q.per_hour()) + " /h";
+  std::string out = fmt::format("{:.2g} /h", q.per_hour());
   if (q.counted.alarms > 0) out += ", " + share_of_time(share);
   return out;
 }
@@ -47,7 +47,7 @@ std::string share_words(int count, int of) {
   // Never rounded to all or none.
   if (count > 0 && percent < 0.5) return "< 1 %";
   if (count < of && percent > 99.5) return "> 99 %";
-  return number("%.0f", percent) + " %";
+  return fmt::format("{:.0f} %", percent);
 }
 
 std::string fault_words(const Fault& fault) {
@@ -64,11 +64,11 @@ std::string stated_words(const Fault& fault) {
   if (fault.stated == 0.0) return "";
   const bool both = fault.directions().size() > 1;
   const std::string sign = both ? "±" : (fault.directions().front() > 0 ? "+" : "−");
-  return sign + number("%.3g", fault.stated) + " " + fault.unit;
+  return sign + fmt::format("{:.3g} ", fault.stated) + fault.unit;
 }
 
 std::string size_words(const FaultFigures::Smallest& smallest) {
-  return (smallest.beyond ? "> " : "") + number("%.3g", smallest.size);
+  return (smallest.beyond ? "> " : "") + fmt::format("{:.3g}", smallest.size);
 }
 
 std::string smallest_words(const Card& card, const MethodFigures& method, const Fault& fault) {
@@ -90,7 +90,7 @@ std::string delay_words(const MethodFigures& method, const Fault& fault) {
   const FaultFigures* const of = figures_of(method, fault);
   if (of == nullptr || of->trials() == 0) return "–";
   const auto words = [](double delay_s) {
-    return std::isfinite(delay_s) ? number("%.2g", delay_s) : std::string("–");
+    return std::isfinite(delay_s) ? fmt::format("{:.2g}", delay_s) : std::string("–");
   };
   const double median_s = quantile(of->delays_s(), 0.5);
   const double late_s = quantile(of->delays_s(), kDetected);
@@ -113,10 +113,12 @@ std::string detected_words(const Card& card) {
   const auto n = card.seeds;
   auto k = n;
   while (k > 0 && enough(k - 1, n, kDetected)) --k;
-  return "Detected: an alarm within " + number("%.3g", card.watch_s) + " s in " +
-         std::to_string(k) + " of " + std::to_string(n) +
-         " trials at least, none standing before (Clopper-Pearson: a share of " +
-         number("%.2f", clopper_pearson_lower(k, n)) + " or more with 95 %); the worse direction.";
+  return fmt::format("Detected: an alarm within {:.3g} s in ", card.watch_s) + std::to_string(k) +
+         " of " + std::to_string(n) +
+         fmt::format(
+             " trials at least, none standing before (Clopper-Pearson: a share of {:.2f} or more "
+             "with 95 %); the worse direction.",
+             clopper_pearson_lower(k, n));
 }
 
 std::vector<const Fault*> faults_of(const Card& card) {

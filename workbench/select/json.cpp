@@ -2,31 +2,29 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "workbench/present/json.h"
 #include "workbench/select/outcome.h"
 
 namespace workbench::select {
 namespace {
 
 using nlohmann::ordered_json;
-
-ordered_json number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
+using present::number_or_null;
 
 ordered_json numbers(const std::vector<double>& values) {
   ordered_json out = ordered_json::array();
-  for (const double value : values) out.push_back(number(value));
+  for (const double value : values) out.push_back(number_or_null(value));
   return out;
 }
 
 ordered_json bias_of(const structures::BiasTest& test) {
   return {{"verdict", to_string(test.verdict)},
-          {"p", number(test.p)},
-          {"statistic", number(test.statistic)},
+          {"p", number_or_null(test.p)},
+          {"statistic", number_or_null(test.statistic)},
           {"dof", test.dof},
           {"instruments", to_string(test.instruments)},
           {"instrument_count", test.instrument_count},
-          {"strength_F", number(test.strength_F)},
+          {"strength_F", number_or_null(test.strength_F)},
           {"least_squares", numbers(test.least_squares)},
           {"least_squares_std_error", numbers(test.least_squares_error)},
           {"instrumental", numbers(test.instrumental)},
@@ -43,17 +41,17 @@ ordered_json json_of(const Judged& one) {
                    {"names", one.fitted.names},
                    {"value", numbers(one.fitted.value)},
                    {"std_error", numbers(one.fitted.std_error)},
-                   {"one_step_rms_m", number(one.one_step_rms_m)},
-                   {"free_run_rms_m", number(one.free_run_rms_m)},
-                   {"free_run_whole_rms_m", number(one.free_run_whole_rms_m)},
-                   {"cost_m2", number(one.cost_m2)},
+                   {"one_step_rms_m", number_or_null(one.one_step_rms_m)},
+                   {"free_run_rms_m", number_or_null(one.free_run_rms_m)},
+                   {"free_run_whole_rms_m", number_or_null(one.free_run_whole_rms_m)},
+                   {"cost_m2", number_or_null(one.cost_m2)},
                    {"period_costs_m2", numbers(one.period_costs_m2)},
-                   {"fit_percent", number(one.fit_percent)},
-                   {"aicc", number(one.aicc)},
-                   {"bic", number(one.bic)},
-                   {"whiteness_p", number(one.whiteness_p)},
-                   {"condition", number(one.fitted.condition)},
-                   {"spread", number(one.spread)},
+                   {"fit_percent", number_or_null(one.fit_percent)},
+                   {"aicc", number_or_null(one.aicc)},
+                   {"bic", number_or_null(one.bic)},
+                   {"whiteness_p", number_or_null(one.whiteness_p)},
+                   {"condition", number_or_null(one.fitted.condition)},
+                   {"spread", number_or_null(one.spread)},
                    {"period_mean", numbers(one.period_mean)},
                    {"period_variance", numbers(one.period_variance)},
                    {"periods", one.periods},
@@ -61,9 +59,9 @@ ordered_json json_of(const Judged& one) {
                     {{"sound", one.on_line.sound},
                      {"method", one.on_line.method},
                      {"why", one.on_line.why},
-                     {"free_run_rms_m", number(one.on_line.free_run_rms_m)}}},
+                     {"free_run_rms_m", number_or_null(one.on_line.free_run_rms_m)}}},
                    {"bias", one.has_bias_test ? bias_of(one.bias) : ordered_json(nullptr)},
-                   {"fit_s", number(one.fit_s)}};
+                   {"fit_s", number_or_null(one.fit_s)}};
   return out;
 }
 
@@ -86,7 +84,7 @@ std::string to_json(const Outcome& o) {
                    {"fitted_to_s", o.fitted_to_s},
                    {"scored_to_s", o.scored_to_s},
                    {"scored_periods", o.held_out_periods},
-                   {"noise_floor_m", number(o.noise_floor_m)},
+                   {"noise_floor_m", number_or_null(o.noise_floor_m)},
                    {"recommended", name_of(o, o.recommended)},
                    {"on_line", name_of(o, o.watch)},
                    {"most_accurate", name_of(o, o.most_accurate)},
@@ -95,7 +93,7 @@ std::string to_json(const Outcome& o) {
                    {"structures", ordered_json::array()},
                    {"notes", o.notes},
                    {"interrupted", o.interrupted},
-                   {"runtime_s", number(o.runtime_s)}};
+                   {"runtime_s", number_or_null(o.runtime_s)}};
   for (const Judged& one : o.judged) out["structures"].push_back(json_of(one));
   return out.dump(2) + "\n";
 }

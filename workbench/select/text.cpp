@@ -1,7 +1,8 @@
 // The comparison as a table for people, best first.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "workbench/select/outcome.h"
 #include "workbench/select/words.h"
@@ -12,12 +13,6 @@ namespace {
 constexpr double kMicro = 1e6;
 constexpr double kMilli = 1e3;
 
-std::string line(const char* format, auto... values) {
-  char out[256];
-  std::snprintf(out, sizeof out, format, values...);
-  return out;
-}
-
 /// Micrometres, or millimetres with their unit where those have too many digits.
 std::string length(double value_m) {
   if (!std::isfinite(value_m) || value_m > 1e3) return "diverges";
@@ -26,7 +21,7 @@ std::string length(double value_m) {
 }
 
 std::string condition(double value) {
-  return std::isfinite(value) ? line("%.0e", value) : std::string("-");
+  return std::isfinite(value) ? fmt::format("{:.0e}", value) : std::string("-");
 }
 
 std::string spread(double value) {
@@ -55,34 +50,35 @@ double least_bic(const Outcome& outcome) {
 
 std::string row(const Judged& one, double bic, const char* mark) {
   if (!one.fitted.valid) {
-    return line("%s %-11s not fitted: ", mark, one.candidate.name.c_str()) + one.fitted.why + "\n";
+    return fmt::format("{} {:11} not fitted: ", mark, one.candidate.name) + one.fitted.why + "\n";
   }
-  return line(
-      "%s %-11s %4d %10s %10s %10s %9s %8s %7s %9s  %-12s %s\n", mark, one.candidate.name.c_str(),
-      one.fitted.parameters, length(one.one_step_rms_m).c_str(), length(one.free_run_rms_m).c_str(),
-      length(one.free_run_whole_rms_m).c_str(),
-      std::isfinite(one.cost_m2) && one.represents ? line("%.2e", one.cost_m2).c_str() : "-",
-      std::isfinite(one.bic) ? line("%.0f", one.bic - bic).c_str() : "-",
-      condition(one.fitted.condition).c_str(), spread(one.spread).c_str(), bias(one).c_str(),
-      on_line(one.on_line).c_str());
+  return fmt::format(
+      "{} {:11} {:4} {:>10} {:>10} {:>10} {:>9} {:>8} {:>7} {:>9}  {:12} {}\n", mark,
+      one.candidate.name, one.fitted.parameters, length(one.one_step_rms_m),
+      length(one.free_run_rms_m), length(one.free_run_whole_rms_m),
+      std::isfinite(one.cost_m2) && one.represents ? fmt::format("{:.2e}", one.cost_m2) : "-",
+      std::isfinite(one.bic) ? fmt::format("{:.0f}", one.bic - bic) : "-",
+      condition(one.fitted.condition), spread(one.spread), bias(one), on_line(one.on_line));
 }
 
 }  // namespace
 
 std::string to_text(const Outcome& o) {
-  std::string out = line("%s: %zu samples every %s ms, %zu gaps", o.name.c_str(), o.samples,
-                         number_words(1e3 * o.sample_time_s, 4).c_str(), o.gaps);
-  out += line("; delay %d; fitted from %s s to %s s, scored to %s s in %d periods of %s s\n",
-              o.delay, number_words(o.from_s, 4).c_str(), number_words(o.fitted_to_s, 4).c_str(),
-              number_words(o.scored_to_s, 4).c_str(), o.held_out_periods,
-              number_words(o.period_s, 3).c_str());
+  std::string out = fmt::format("{}: {} samples every {} ms, {} gaps", o.name, o.samples,
+                                number_words(1e3 * o.sample_time_s, 4), o.gaps);
+  out +=
+      fmt::format("; delay {}; fitted from {} s to {} s, scored to {} s in {} periods of {} s\n",
+                  o.delay, number_words(o.from_s, 4), number_words(o.fitted_to_s, 4),
+                  number_words(o.scored_to_s, 4), o.held_out_periods, number_words(o.period_s, 3));
   if (std::isfinite(o.noise_floor_m)) {
     out += "noise of the position: " + length(o.noise_floor_m) + "\n";
   }
-  out += line("\n%-13s %4s %10s %10s %10s %9s %8s %7s %9s  %-12s %s\n", "", "coef", "one step",
-              "free run,", "free run,", "E,", "BIC over", "condi-", "spread of", "LS bias", "on");
-  out += line("%-13s %4s %10s %10s %10s %9s %8s %7s %9s  %-12s %s\n", "  structure", "", "",
-              "1 period", "all", "m2", "the best", "tion", "coef", "(DWH)", "line");
+  out += fmt::format("\n{:13} {:>4} {:>10} {:>10} {:>10} {:>9} {:>8} {:>7} {:>9}  {:12} {}\n", "",
+                     "coef", "one step", "free run,", "free run,", "E,", "BIC over", "condi-",
+                     "spread of", "LS bias", "on");
+  out += fmt::format("{:13} {:>4} {:>10} {:>10} {:>10} {:>9} {:>8} {:>7} {:>9}  {:12} {}\n",
+                     "  structure", "", "", "1 period", "all", "m2", "the best", "tion", "coef",
+                     "(DWH)", "line");
   const double bic = least_bic(o);
   bool failed = false;
   for (std::size_t i = 0; i < o.judged.size(); ++i) {

@@ -1,23 +1,19 @@
 #include "workbench/select/words.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
-#include <cstdio>
 
 namespace workbench::select {
 
 std::string number_words(double value, int digits) {
   if (!std::isfinite(value)) return "-";
-  char out[40];
   const double size = std::abs(value);
-  if (size != 0.0 && (size < 1e-3 || size >= 1e6)) {
-    std::snprintf(out, sizeof out, "%.*e", digits - 1, value);
-    return out;
-  }
+  if (size != 0.0 && (size < 1e-3 || size >= 1e6)) return fmt::format("{:.{}e}", value, digits - 1);
   const int before = size >= 1.0 ? static_cast<int>(std::floor(std::log10(size))) + 1 : 1;
   int after = digits - before;
   if (size < 1.0 && size > 0.0) after = digits - 1 - static_cast<int>(std::floor(std::log10(size)));
-  std::snprintf(out, sizeof out, "%.*f", after > 0 ? after : 0, value);
-  return out;
+  return fmt::format("{:.{}f}", value, after > 0 ? after : 0);
 }
 
 std::string more_words(double ratio) {

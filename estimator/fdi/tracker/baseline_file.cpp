@@ -1,8 +1,9 @@
 #include "estimator/fdi/tracker/baseline_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
@@ -18,11 +19,7 @@ using config::schema::Visitor;
 /// Two sample times are the same within clock accuracy.
 constexpr double kSameSampleTime = 1e-3;
 
-std::string text_of(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
-}
+std::string text_of(double value) { return fmt::format("{:.9g}", value); }
 
 std::vector<std::string> sorted(std::vector<std::string> names) {
   std::sort(names.begin(), names.end());

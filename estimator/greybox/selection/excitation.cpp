@@ -1,8 +1,9 @@
 #include "estimator/greybox/selection/excitation.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace estimator::greybox::selection {
 namespace {
@@ -12,11 +13,7 @@ constexpr double kLeastTravel = 50.0;
 /// Share of samples at the largest or smallest command from which the command is a constant.
 constexpr double kStuck = 0.98;
 
-std::string millimetres(double m) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g mm", 1e3 * m);
-  return text;
-}
+std::string millimetres(double m) { return fmt::format("{:.3g} mm", 1e3 * m); }
 
 }  // namespace
 

@@ -1,5 +1,7 @@
 #include "estimator/greybox/tracking/excitation_design.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -81,10 +83,10 @@ std::optional<Probe> best_probe(const plant_sim::ModelFile& healthy, const Probe
 }
 
 std::string probe_words(const Probe& probe) {
-  return "probe with a sine of " + config::units::length_words(probe.amplitude_m) + " at " +
-         config::units::number("%.3g", probe.frequency_Hz) + " Hz about " +
-         config::units::length_words(probe.centre_m) + " for " +
-         config::units::number("%.2g", probe.duration_s) + " s";
+  return "probe with a sine of " + config::units::length_words(probe.amplitude_m) +
+         fmt::format(" at {:.3g} Hz about ", probe.frequency_Hz) +
+         config::units::length_words(probe.centre_m) +
+         fmt::format(" for {:.2g} s", probe.duration_s);
 }
 
 }  // namespace estimator::greybox::tracking

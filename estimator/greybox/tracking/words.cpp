@@ -1,5 +1,7 @@
 #include "estimator/greybox/tracking/words.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -13,16 +15,15 @@ using Eigen::Index;
 /// Cosine above which it is another parameter that hides one.
 constexpr double kAlike = 0.98;
 
-std::string percent(double ratio) { return config::units::number("%.3g", 100.0 * ratio) + " %"; }
+std::string percent(double ratio) { return fmt::format("{:.3g} %", 100.0 * ratio); }
 
 bool is_logarithmic(const SearchParameter& p) { return p.scale == Scale::logarithmic; }
 
 /// "12 %" of the value, or "0.3 times its typical size".
 std::string error_words(const SearchParameter& p, double std_error) {
   if (!std::isfinite(std_error)) return "not at all";
-  return is_logarithmic(p)
-             ? "to +- " + percent(std_error) + " only"
-             : "to +- " + config::units::number("%.2g", std_error) + " of its typical size only";
+  return is_logarithmic(p) ? "to +- " + percent(std_error) + " only"
+                           : fmt::format("to +- {:.2g} of its typical size only", std_error);
 }
 
 /// Whose effect is most like that of parameter `at`; -1: there is no other.
@@ -58,8 +59,8 @@ std::string chamber_words(const std::string& name, const ChamberFit& found,
   const Beyond by = beyond(found, healthy, offset_sd_Pa, most_ratio);
   if (by.error >= by.offset) {
     return "the model does not explain the " + name + ": error " + pressure_words(found.rms_Pa) +
-           ", healthy " + pressure_words(healthy.rms_Pa) + ", limit " +
-           config::units::number("%.3g", most_ratio) + " times that";
+           ", healthy " + pressure_words(healthy.rms_Pa) +
+           fmt::format(", limit {:.3g} times that", most_ratio);
   }
   return "the " + name + " is off the model: by " + pressure_words(found.mean_Pa) +
          " from when it was healthy, limit " + pressure_words(kMostOffset * offset_sd_Pa);
@@ -81,7 +82,7 @@ std::string value_words(const SearchParameter& p, double x, double std_error) {
 }
 
 std::string still_words(double moved_m, double noise_floor_m, double window_s) {
-  return "no motion: within " + config::units::number("%.3g", window_s) + " s the rod moves " +
+  return fmt::format("no motion: within {:.3g} s the rod moves ", window_s) +
          config::units::length_words(moved_m) + ", the position's noise is " +
          config::units::length_words(noise_floor_m);
 }
@@ -89,8 +90,8 @@ std::string still_words(double moved_m, double noise_floor_m, double window_s) {
 std::string misfit_words(const WindowEstimate& found, const Errors& healthy, double most_ratio) {
   if (found.rms_m > most_ratio * healthy.rms_m) {
     return "the model does not explain it: error " + config::units::length_words(found.rms_m) +
-           ", healthy " + config::units::length_words(healthy.rms_m) + ", limit " +
-           config::units::number("%.3g", most_ratio) + " times that";
+           ", healthy " + config::units::length_words(healthy.rms_m) +
+           fmt::format(", limit {:.3g} times that", most_ratio);
   }
   if (!found.with_chambers()) return {};
   const ChamberErrors& chambers = healthy.chambers;
@@ -115,12 +116,13 @@ std::string unseen_words(const Choice& choice, const WindowEstimate& found, std:
   }
   return "the motion does not separate " + name_words(p.name) + " from " +
          name_words(choice.parameters[static_cast<std::size_t>(partner)].name) +
-         " (their effects are alike to " +
-         config::units::number("%.4f", std::abs(found.likeness(at, partner))) + "): " + known;
+         fmt::format(" (their effects are alike to {:.4f}): ",
+                     std::abs(found.likeness(at, partner))) +
+         known;
 }
 
 std::string part_words(const Choice& choice, const WindowEstimate& found, double length_s) {
-  std::string text = "its last " + config::units::number("%.3g", length_s) + " s alone:";
+  std::string text = fmt::format("its last {:.3g} s alone:", length_s);
   for (std::size_t i = 0; i < choice.tracked; ++i) {
     const auto at = static_cast<Index>(i);
     text += (i == 0 ? " " : ", ") + name_words(choice.parameters[i].name) + " " +
@@ -135,16 +137,14 @@ std::string change_words(const Choice& choice, const Named& named, const Eigen::
   const double now = p.value(named.x);
   const std::string direction = now > before ? " high" : " low";
   const std::string size =
-      is_logarithmic(p) ? config::units::number("%+.1f", 100.0 * (now / before - 1.0)) + " %, "
-                        : std::string();
+      is_logarithmic(p) ? fmt::format("{:+.1f} %, ", 100.0 * (now / before - 1.0)) : std::string();
   return name_words(p.name) + direction + ", " + size + value_words(p, named.x, named.std_error);
 }
 
 std::string slow_words(const SearchParameter& p, double learnt, double x) {
   const std::string far =
-      is_logarithmic(p)
-          ? config::units::number("%+.1f", 100.0 * (p.value(x) / p.value(learnt) - 1.0)) + " %"
-          : config::units::number("%+.2g", x - learnt) + " times its typical size";
+      is_logarithmic(p) ? fmt::format("{:+.1f} %", 100.0 * (p.value(x) / p.value(learnt) - 1.0))
+                        : fmt::format("{:+.2g} times its typical size", x - learnt);
   return name_words(p.name) + " came by and by to " +
          config::units::words(config::units::quantity(p.name, p.value(x), NAN)) + ", " + far +
          " from what was learnt; slow changes are followed no further";

@@ -1,8 +1,9 @@
 #include "estimator/greybox/validation/comparison.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numeric>
 
@@ -69,12 +70,6 @@ double spread(const std::vector<double>& values) {
   return std::sqrt(squares / n);
 }
 
-std::string number(const char* format, double a, double b = 0.0) {
-  char text[160];
-  std::snprintf(text, sizeof text, format, a, b);
-  return text;
-}
-
 void require_motion(const Measured& record, double noise_m) {
   const double sd_m = spread(record.y_m);
   const double least_m = std::max(kLeastMotion_m, std::isfinite(noise_m) ? noise_m : 0.0);
@@ -83,7 +78,8 @@ void require_motion(const Measured& record, double noise_m) {
   if (sd_m < kLeastMotion * least_m && *high - *low < 2.0 * kLeastMotion * least_m) {
     throw config::schema::bad_data(
         record.name,
-        number("the rod does not move: y stays within %.3g um of itself", 1e6 * (*high - *low)),
+        fmt::format("the rod does not move: y stays within {:.3g} um of itself",
+                    1e6 * (*high - *low)),
         "a record with motion well above the position's noise");
   }
 }
@@ -94,7 +90,7 @@ void note_command(Comparison& c) {
   if (!(*high > *low)) {
     c.limited_share = 1.0;
     c.notes.push_back(
-        number("the command stays at %.4g V: the model is tried at this one value", *low));
+        fmt::format("the command stays at {:.4g} V: the model is tried at this one value", *low));
     return;
   }
   const double most_V = std::max(std::abs(*low), std::abs(*high));
@@ -103,12 +99,13 @@ void note_command(Comparison& c) {
   c.limited_share = static_cast<double>(at_limit) / static_cast<double>(u_V.size());
   if (c.limited_share > kAlwaysLimited) {
     c.notes.push_back(
-        number("the command is at +-%.4g V in %.0f %% of the samples: smaller "
-               "commands are hardly tried",
-               most_V, 100.0 * c.limited_share));
+        fmt::format("the command is at +-{:.4g} V in {:.0f} % of the samples: smaller "
+                    "commands are hardly tried",
+                    most_V, 100.0 * c.limited_share));
   } else if (c.limited_share > kOftenLimited) {
-    c.notes.push_back(number("the command is at its limit of +-%.4g V in %.0f %% of the samples",
-                             most_V, 100.0 * c.limited_share));
+    c.notes.push_back(
+        fmt::format("the command is at its limit of +-{:.4g} V in {:.0f} % of the samples", most_V,
+                    100.0 * c.limited_share));
   }
 }
 
@@ -117,11 +114,9 @@ void note_stroke(Comparison& c, const plant_sim::ModelFile& model) {
     if (parameter.name != "stroke_m") continue;
     const auto [low, high] = std::minmax_element(c.record.y_m.begin(), c.record.y_m.end());
     if (*low < 0.0 || *high > parameter.value) {
-      char text[160];
-      std::snprintf(text, sizeof text,
-                    "y runs from %.4g to %.4g mm, outside the model's stroke of 0 to %.4g mm",
-                    1e3 * *low, 1e3 * *high, 1e3 * parameter.value);
-      c.notes.emplace_back(text);
+      c.notes.push_back(fmt::format(
+          "y runs from {:.4g} to {:.4g} mm, outside the model's stroke of 0 to {:.4g} mm",
+          1e3 * *low, 1e3 * *high, 1e3 * parameter.value));
     }
   }
 }

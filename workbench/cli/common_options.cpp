@@ -1,0 +1,70 @@
+#include "workbench/cli/common_options.h"
+
+#include <CLI/CLI.hpp>
+
+#include "workbench/cli/number_check.h"
+
+namespace workbench::cli {
+namespace {
+
+constexpr int kMostThreads = 256;
+
+}  // namespace
+
+CLI::Option* add_model(CLI::App& command, std::string& file) {
+  return command.add_option("MODEL", file, "a model file (TOML)")->required();
+}
+
+CLI::Option* add_record(CLI::App& command, std::string& file) {
+  return command.add_option("RECORD", file, "CSV or MAT (t_s,u_V,y_m), or LCM log")->required();
+}
+
+CLI::Option* add_records(CLI::App& command, std::vector<std::string>& files) {
+  return command
+      .add_option("RECORD", files,
+                  "CSV or MAT (t_s,u_V,y_m), or LCM log; several are fitted together, each at its "
+                  "own rate")
+      ->required();
+}
+
+CLI::Option* add_holdouts(CLI::App& command, std::vector<std::string>& files) {
+  return command.add_option("--holdout", files, "a record that only scores, not fitted")
+      ->allow_extra_args(false);
+}
+
+CLI::Option* add_json(CLI::App& command, std::string& file) {
+  return command.add_option("--json", file, "file for JSON, - for standard output");
+}
+
+CLI::Option* add_report(CLI::App& command, std::string& file) {
+  return command.add_option("--report", file, "file for a report with plots (HTML)");
+}
+
+CLI::Option* add_set(CLI::App& command, std::vector<std::string>& assignments) {
+  return command.add_option("--set", assignments, "table.key=value of the model file, for this run")
+      ->allow_extra_args(false);
+}
+
+CLI::Option* add_observer(CLI::App& command, double& observer_per_s) {
+  return command
+      .add_option("--observer", observer_per_s,
+                  "1/s: gain that corrects the simulated position towards the measured one")
+      ->capture_default_str();
+}
+
+CLI::Option* add_threads(CLI::App& command, unsigned& threads) {
+  return command.add_option("--threads", threads, "default: one for each processor")
+      ->check(number_within(1, kMostThreads));
+}
+
+CLI::Option* add_quiet(CLI::App& command, bool& quiet) {
+  return command.add_flag("--quiet", quiet, "no progress on standard error");
+}
+
+void add_interrupt_footer(CLI::App& command) {
+  command.footer(
+      "Ctrl-C ends it early: the best so far is printed and written, marked as interrupted, and "
+      "the exit code is 130; a second Ctrl-C ends the program at once.");
+}
+
+}  // namespace workbench::cli

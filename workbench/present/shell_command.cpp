@@ -1,0 +1,35 @@
+#include "workbench/present/shell_command.h"
+
+#include <filesystem>
+#include <fstream>
+
+namespace workbench::present {
+
+std::string shell_word(std::string_view word) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=:,@%+-";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string_view::npos) {
+    return std::string(word);
+  }
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string shell_command(const std::vector<std::string>& words) {
+  std::string command;
+  for (const std::string& word : words) {
+    command += (command.empty() ? "" : " ") + shell_word(word);
+  }
+  return command;
+}
+
+std::string typed_command() {
+  std::ifstream arguments("/proc/self/cmdline", std::ios::binary);
+  std::vector<std::string> words;
+  for (std::string word; std::getline(arguments, word, '\0');) words.push_back(word);
+  if (!words.empty()) words[0] = std::filesystem::path(words[0]).filename().string();
+  return shell_command(words);
+}
+
+}  // namespace workbench::present
