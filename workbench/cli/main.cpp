@@ -40,12 +40,12 @@ constexpr Command kCommands[] = {
 /// CLI11.
 void require_command(const CLI::App& app, const std::string& word) {
   if (word.empty() || word.front() == '-') return;
-  if (app.get_subcommand_no_throw(word) != nullptr) return;
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands({})) {
     names.push_back(command->get_name());
     for (const std::string& alias : command->get_aliases()) names.push_back(alias);
   }
+  if (std::find(names.begin(), names.end(), word) != names.end()) return;
   const std::string near = config::schema::nearest(word, names);
   throw config::schema::UsageError(
       "command " + word + " is unknown" +
