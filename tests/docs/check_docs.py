@@ -16,7 +16,7 @@ import tempfile
 
 README_BYTES = 12000
 GENERATED = "docs/reference"
-PAGES = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "config/tour/README.md"]
+PAGES = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "config/tour/README.md", "examples/README.md"]
 LINK = re.compile(r"\[[^\]]*\]\(\s*<?([^)\s>]+)>?(?:\s+\"[^\"]*\")?\s*\)")
 HEADING = re.compile(r"^#{1,6}\s+(.*?)\s*#*$", re.MULTILINE)
 

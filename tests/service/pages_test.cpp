@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -14,6 +15,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::IsSupersetOf;
+using testing::Not;
 
 std::string output_of(const std::string& command) {
   std::string text;
@@ -50,6 +52,8 @@ std::set<std::string> offered(const std::string& line) {
   return result;
 }
 
+constexpr const char* kGroups[] = {"Model", "Data", "Detection", "Running stand", "Exchange"};
+
 /// First words of the lines under that heading of --help.
 std::set<std::string> listed(const std::string& program, const std::string& heading) {
   std::istringstream lines(output_of(SPOOLWATCH_BIN_DIR "/" + program + " --help"));
@@ -67,6 +71,14 @@ std::set<std::string> listed(const std::string& program, const std::string& head
   return words;
 }
 
+std::set<std::string> commands_of(const std::string& group = "") {
+  std::set<std::string> all;
+  for (const char* const one : kGroups) {
+    if (group.empty() || group == one) all.merge(listed("spoolwatch", one));
+  }
+  return all;
+}
+
 std::string page(const std::string& name) {
   std::ifstream in(SPOOLWATCH_PAGES_DIR "/" + name);
   std::string text((std::istreambuf_iterator<char>(in)), {});
@@ -75,8 +87,9 @@ std::string page(const std::string& name) {
 }
 
 TEST(Completion, OffersEveryCommand) {
-  const std::set<std::string> commands = listed("spoolwatch", "Subcommands");
+  std::set<std::string> commands = commands_of();
   ASSERT_GT(commands.size(), 15U);
+  commands.insert("help");
   EXPECT_EQ(offered("spoolwatch "), commands);
   EXPECT_THAT(offered("spoolwatch di"), ElementsAre("diagnose", "disarm"));
 }
@@ -91,13 +104,47 @@ TEST(Completion, OffersTheOptionsOfTheCommandAndTheirValues) {
 
 TEST(Completion, LeavesFilesToTheShell) {
   EXPECT_THAT(offered("spoolwatchd --config "), IsEmpty());
-  EXPECT_THAT(offered("spoolwatch compare "), IsEmpty());
+  EXPECT_THAT(offered("spoolwatch compare m.toml --report "), IsEmpty());
+}
+
+TEST(Completion, OffersModelsAndRecordsWhereTheyBelong) {
+  const std::filesystem::path before = std::filesystem::current_path();
+  const std::filesystem::path folder = testing::TempDir() + "completion";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder / "runs");
+  for (const char* const name : {"m.toml", "r.csv", "r.mat", "log.lcmlog", "notes.txt"}) {
+    std::ofstream(folder / name) << "";
+  }
+  std::filesystem::current_path(folder);
+  EXPECT_THAT(offered("spoolwatch compare "), ElementsAre("m.toml", "runs"));
+  EXPECT_THAT(offered("spoolwatch compare m.toml "),
+              ElementsAre("log.lcmlog", "r.csv", "r.mat", "runs"));
+  EXPECT_THAT(offered("spoolwatch diagnose m.toml --quiet r.csv "), Contains("r.mat"));
+  EXPECT_THAT(offered("spoolwatch track m.toml r"), ElementsAre("r.csv", "r.mat", "runs"));
+  std::filesystem::current_path(before);
+}
+
+TEST(Completion, OffersEffectsAndParameters) {
+  EXPECT_THAT(offered("spoolwatch add m.toml fric"), ElementsAre("friction"));
+  EXPECT_THAT(offered("spoolwatch add m.toml deadband "), ElementsAre("half_width_V="));
+  EXPECT_THAT(offered("spoolwatch compare m.toml r.csv --set effects.deadb"),
+              ElementsAre("effects.deadband.half_width_V="));
+  EXPECT_THAT(offered("spoolwatch isolate --parameters mass"), ElementsAre("mass_kg"));
 }
 
 TEST(ManPage, HasEveryCommandAndOption) {
-  const std::string tool = page("spoolwatch.1");
-  for (const std::string& command : listed("spoolwatch", "Subcommands")) {
-    EXPECT_THAT(tool, HasSubstr("\n.SS " + command)) << command;
+  const std::string overview = page("spoolwatch.1");
+  for (const char* const group : kGroups) {
+    const std::string name = std::string(group) == "Running stand" ? "Stand" : group;
+    const std::string in_group =
+        page("spoolwatch-" + std::string(1, static_cast<char>(std::tolower(name[0]))) +
+             name.substr(1) + ".1");
+    EXPECT_THAT(in_group, HasSubstr("\n.SH EXAMPLES\n")) << group;
+    EXPECT_THAT(commands_of(group), Not(IsEmpty())) << group;
+    for (const std::string& command : commands_of(group)) {
+      EXPECT_THAT(in_group, HasSubstr("\n.SS " + command)) << command;
+      EXPECT_THAT(overview, HasSubstr("\\fB" + command + "\\fR")) << command;
+    }
   }
   for (const std::string& option : listed("spoolwatchd", "Options")) {
     EXPECT_THAT(page("spoolwatchd.8"), HasSubstr("\\fB" + option)) << option;
@@ -106,13 +153,42 @@ TEST(ManPage, HasEveryCommandAndOption) {
 }
 
 TEST(ManPage, IsUnderstoodByManWithoutAWarning) {
-  for (const char* name : {"spoolwatch.1", "spoolwatchd.8", "spoolwatch-rig.1"}) {
+  for (const char* name :
+       {"spoolwatch.1", "spoolwatch-model.1", "spoolwatch-data.1", "spoolwatch-detection.1",
+        "spoolwatch-stand.1", "spoolwatch-exchange.1", "spoolwatch-rig.1", "spoolwatch-model.5",
+        "spoolwatch-record.5", "spoolwatchd.8"}) {
     EXPECT_EQ(
         output_of(std::string("command -v groff >/dev/null || exit 0; groff -man -Tutf8 -ww -b "
                               "-z " SPOOLWATCH_PAGES_DIR "/") +
                   name + " 2>&1"),
         "");
   }
+}
+
+/// Exit code and the text of standard error.
+std::pair<int, std::string> refused(const std::string& arguments) {
+  const std::string text =
+      output_of(SPOOLWATCH_BIN_DIR "/spoolwatch " + arguments + " 2>&1 >/dev/null; echo \"$?\"");
+  const std::size_t code = text.rfind('\n', text.size() - 2) + 1;
+  return {std::stoi(text.substr(code)), text.substr(0, code)};
+}
+
+TEST(Commands, AMistypedCommandNamesTheNearOne) {
+  EXPECT_EQ(refused("diagnos m.toml"),
+            (std::pair<int, std::string>{
+                2, "spoolwatch: command diagnos is unknown, did you mean diagnose?\n"}));
+  EXPECT_EQ(refused("trak").second, "spoolwatch: command trak is unknown, did you mean track?\n");
+  EXPECT_EQ(refused("xyzzy").second,
+            "spoolwatch: command xyzzy is unknown; spoolwatch --help lists all\n");
+  EXPECT_EQ(refused("").first, 2);
+}
+
+TEST(Commands, HelpExplainsACommand) {
+  const std::string tool = SPOOLWATCH_BIN_DIR "/spoolwatch ";
+  EXPECT_EQ(output_of(tool + "help"), output_of(tool + "--help"));
+  EXPECT_EQ(output_of(tool + "help compare"), output_of(tool + "compare --help"));
+  EXPECT_THAT(output_of(tool + "help track"), HasSubstr("Usage: spoolwatch isolate"));
+  EXPECT_EQ(refused("help diagnos").first, 2);
 }
 
 }  // namespace
