@@ -9,24 +9,23 @@ namespace {
 /// Rounding only; the operations are the same.
 constexpr double kAgree = 1e-12;
 
-TEST(Lanes, DoArithmeticAndSelectionLaneByLane) {
-  Lanes a;
-  Lanes b;
-  for (std::size_t i = 0; i < Lanes::kSize; ++i) {
+TEST(SimdVector, DoArithmeticAndSelectionLaneByLane) {
+  Simd a;
+  Simd b;
+  for (std::size_t i = 0; i < Simd::kSize; ++i) {
     a.set(i, static_cast<double>(i) - 3.5);
     b.set(i, 1.0 + 0.25 * static_cast<double>(i));
   }
-  const Lanes mixed =
-      select(a < b, a * b, a / b) + sqrt(abs(a)) - exp(-b) + clamp(a, Lanes(-1.0), b);
-  for (std::size_t i = 0; i < Lanes::kSize; ++i) {
+  const Simd mixed = select(a < b, a * b, a / b) + sqrt(abs(a)) - exp(-b) + clamp(a, Simd(-1.0), b);
+  for (std::size_t i = 0; i < Simd::kSize; ++i) {
     const double x = a[i];
     const double y = b[i];
     EXPECT_EQ(mixed[i], (x < y ? x * y : x / y) + std::sqrt(std::fabs(x)) - std::exp(-y) +
                             std::min(std::max(x, -1.0), y));
   }
-  EXPECT_TRUE(all(a < Lanes(4.0)));
-  EXPECT_FALSE(all(a < b - Lanes(0.5)));
-  EXPECT_EQ(widest(a), 3.5);
+  EXPECT_TRUE(all(a < Simd(4.0)));
+  EXPECT_FALSE(all(a < b - Simd(0.5)));
+  EXPECT_EQ(reduce_max(a), 3.5);
 }
 
 /// Rounding of a state, by the size that its unit usually has.
@@ -44,9 +43,9 @@ template <template <class> class Plant>
 void expect_agreement(unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> spread(0.5, 2.0);
-  auto together = std::make_unique<Plant<Lanes>>();
-  std::array<std::unique_ptr<Plant<double>>, Lanes::kSize> alone;
-  for (std::size_t lane = 0; lane < Lanes::kSize; ++lane) {
+  auto together = std::make_unique<Plant<Simd>>();
+  std::array<std::unique_ptr<Plant<double>>, Simd::kSize> alone;
+  for (std::size_t lane = 0; lane < Simd::kSize; ++lane) {
     alone[lane] = std::make_unique<Plant<double>>();
     std::vector<double> values;
     alone[lane]->parameters.visit([&](const ParameterInfo& info, double& value) {
@@ -55,7 +54,7 @@ void expect_agreement(unsigned seed) {
     });
     std::size_t next = 0;
     together->parameters.visit(
-        [&](const ParameterInfo&, Lanes& value) { value.set(lane, values[next++]); });
+        [&](const ParameterInfo&, Simd& value) { value.set(lane, values[next++]); });
     std::vector<double> of_effects;
     alone[lane]->effects.each([&](auto, auto& parameters) {
       // one of three without, so that neutral stands beside active
@@ -68,7 +67,7 @@ void expect_agreement(unsigned seed) {
     next = 0;
     together->effects.each([&](auto, auto& parameters) {
       parameters.visit(
-          [&](const ParameterInfo&, Lanes& value) { value.set(lane, of_effects[next++]); });
+          [&](const ParameterInfo&, Simd& value) { value.set(lane, of_effects[next++]); });
     });
     alone[lane]->prepare(1e-3);
     alone[lane]->reset();
@@ -79,8 +78,8 @@ void expect_agreement(unsigned seed) {
     const double u_V = (k < 1500 ? 3.0 : 10.0) * std::sin(k * 0.004);
     together->step(u_V);
     const auto many = values_of(together->state);
-    const Lanes reading_m = together->effects.reading_m(together->state.y_m);
-    for (std::size_t lane = 0; lane < Lanes::kSize; ++lane) {
+    const Simd reading_m = together->effects.reading_m(together->state.y_m);
+    for (std::size_t lane = 0; lane < Simd::kSize; ++lane) {
       alone[lane]->step(u_V);
       const auto one = values_of(alone[lane]->state);
       for (std::size_t i = 0; i < one.size(); ++i) {
@@ -92,13 +91,13 @@ void expect_agreement(unsigned seed) {
   }
 }
 
-TEST(Lanes, AgreeWithSingleRunsForEightActuatorsWithEffectsIncludingStops) {
+TEST(SimdVector, AgreeWithSingleRunsForEightActuatorsWithEffectsIncludingStops) {
   for (unsigned seed = 1; seed <= 12 && !HasFatalFailure(); ++seed) {
     expect_agreement<HydraulicActuator>(seed);
   }
 }
 
-TEST(Lanes, AgreeWithSingleRunsForEightServosAndEightAxes) {
+TEST(SimdVector, AgreeWithSingleRunsForEightServosAndEightAxes) {
   for (unsigned seed = 1; seed <= 6 && !HasFatalFailure(); ++seed) {
     expect_agreement<VelocityServo>(seed);
     expect_agreement<ForceDrivenAxis>(seed);

@@ -1,4 +1,4 @@
-#include "plant_sim/formula/recording.h"
+#include "plant_sim/formula/expression_graph.h"
 
 #include <bit>
 #include <cmath>
@@ -29,13 +29,13 @@ std::size_t operands(Op op) {
 
 }  // namespace
 
-std::size_t Recording::node_of(Handle handle) {
+std::size_t ExpressionGraph::node_of(Handle handle) {
   if (handle < 0.0) return static_cast<std::size_t>(-1.0 - handle);
   return add({Kind::constant, handle, Op::add, 0, 0, 0});
 }
 
-std::size_t Recording::add(const Node& node) {
-  for (std::size_t i = Tape::kVariables + parameters_; i < nodes_.size(); ++i) {
+std::size_t ExpressionGraph::add(const Node& node) {
+  for (std::size_t i = ExpressionProgram::kVariables + parameters_; i < nodes_.size(); ++i) {
     const Node& n = nodes_[i];
     const bool same = n.kind == Kind::constant
                           ? same_bits(n.value, node.value)
@@ -46,11 +46,11 @@ std::size_t Recording::add(const Node& node) {
   return nodes_.size() - 1;
 }
 
-Recording::Handle Recording::constant(double value) {
+ExpressionGraph::Handle ExpressionGraph::constant(double value) {
   return handle(add({Kind::constant, value, Op::add, 0, 0, 0}));
 }
 
-std::size_t Recording::record(Op op, std::size_t a, std::size_t b, std::size_t c) {
+std::size_t ExpressionGraph::record(Op op, std::size_t a, std::size_t b, std::size_t c) {
   const std::size_t count = operands(op);
   if (count < 2) b = 0;
   if (count < 3) c = 0;
@@ -62,7 +62,7 @@ std::size_t Recording::record(Op op, std::size_t a, std::size_t b, std::size_t c
   return add({Kind::operation, 0.0, op, a, b, c});
 }
 
-std::size_t Recording::power(std::size_t base, std::size_t exponent) {
+std::size_t ExpressionGraph::power(std::size_t base, std::size_t exponent) {
   const double n = nodes_[exponent].value;
   if (n == 0.5) return record(Op::sqrt, base, 0, 0);
   if (n != std::floor(n) || std::abs(n) > kMostProducts || n == 0.0) {
@@ -73,21 +73,21 @@ std::size_t Recording::power(std::size_t base, std::size_t exponent) {
   return record(Op::divide, add({Kind::constant, 1.0, Op::add, 0, 0, 0}), whole, 0);
 }
 
-std::size_t Recording::product(std::size_t base, int exponent) {
+std::size_t ExpressionGraph::product(std::size_t base, int exponent) {
   if (exponent == 1) return base;
   const std::size_t half = product(base, exponent / 2);
   const std::size_t even = record(Op::multiply, half, half, 0);
   return exponent % 2 == 0 ? even : record(Op::multiply, even, base, 0);
 }
 
-Recording::Handle Recording::operation(Op op, Handle a, Handle b, Handle c) {
+ExpressionGraph::Handle ExpressionGraph::operation(Op op, Handle a, Handle b, Handle c) {
   const std::size_t first = node_of(a);
   const std::size_t second = node_of(b);
   const std::size_t third = node_of(c);
   return handle(record(op, first, second, third));
 }
 
-Tape Recording::tape(Handle result) {
+ExpressionProgram ExpressionGraph::program(Handle result) {
   const std::size_t end = node_of(result);
   std::vector<bool> needed(nodes_.size());
   std::vector<bool> moves(nodes_.size());
@@ -105,43 +105,49 @@ Tape Recording::tape(Handle result) {
     const std::size_t count = operands(n.op);
     moves[i] = n.kind == Kind::operation
                    ? moves[n.a] || (count > 1 && moves[n.b]) || (count > 2 && moves[n.c])
-                   : i < Tape::kVariables;
+                   : i < ExpressionProgram::kVariables;
   }
 
-  Tape tape;
-  tape.parameters = parameters_;
+  ExpressionProgram program;
+  program.parameters = parameters_;
   std::vector<std::uint16_t> place(nodes_.size());
   std::uint16_t next = 0;
-  for (std::size_t i = 0; i < Tape::kVariables + parameters_; ++i) {
+  for (std::size_t i = 0; i < ExpressionProgram::kVariables + parameters_; ++i) {
     place[i] = next++;
-    if (i >= Tape::kVariables) tape.uses.push_back(needed[i]);
+    if (i >= ExpressionProgram::kVariables) program.uses.push_back(needed[i]);
   }
   const auto each_needed = [&](Kind kind, bool moving, auto&& f) {
-    for (std::size_t i = Tape::kVariables + parameters_; i < nodes_.size(); ++i) {
+    for (std::size_t i = ExpressionProgram::kVariables + parameters_; i < nodes_.size(); ++i) {
       if (!needed[i] || nodes_[i].kind != kind || moves[i] != moving) continue;
       f(nodes_[i]);
       place[i] = next++;
     }
   };
-  each_needed(Kind::constant, false, [&](const Node& n) { tape.constants.push_back(n.value); });
+  each_needed(Kind::constant, false, [&](const Node& n) { program.constants.push_back(n.value); });
   each_needed(Kind::operation, false, [&](const Node& n) {
-    tape.steady.push_back({n.op, place[n.a], place[n.b], place[n.c]});
+    program.steady.push_back({n.op, place[n.a], place[n.b], place[n.c]});
   });
   each_needed(Kind::operation, true, [&](const Node& n) {
-    tape.moving.push_back({n.op, place[n.a], place[n.b], place[n.c]});
+    program.moving.push_back({n.op, place[n.a], place[n.b], place[n.c]});
   });
-  tape.result = place[end];
-  return tape;
+  program.result = place[end];
+  return program;
 }
 
-TapeView view_of(const Tape& tape) {
-  const auto part = [](const std::vector<Tape::Instruction>& all) -> TapeView::Part {
+ExpressionProgramView view_of(const ExpressionProgram& program) {
+  const auto part =
+      [](const std::vector<ExpressionProgram::Instruction>& all) -> ExpressionProgramView::Part {
     return {all.data(), all.data() + all.size()};
   };
-  const std::size_t registers = Tape::kVariables + tape.parameters + tape.constants.size() +
-                                tape.steady.size() + tape.moving.size();
-  return {tape.parameters,   tape.constants.data(), tape.constants.size(),
-          part(tape.steady), part(tape.moving),     tape.result,
+  const std::size_t registers = ExpressionProgram::kVariables + program.parameters +
+                                program.constants.size() + program.steady.size() +
+                                program.moving.size();
+  return {program.parameters,
+          program.constants.data(),
+          program.constants.size(),
+          part(program.steady),
+          part(program.moving),
+          program.result,
           registers};
 }
 

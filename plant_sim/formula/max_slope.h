@@ -1,4 +1,4 @@
-// How fast a formula changes, by differences: what tells the plants to take shorter steps. It errs
+// Upper bound on the slope of a formula, from differences; decides the plants' step length. It errs
 // to the large side; only what is narrower than the distance of the points tried is overlooked.
 #pragma once
 
@@ -12,7 +12,7 @@ namespace plant_sim {
 
 /// |f(x + near) - f(x - near)| / (2 near).
 template <class S, class F>
-S steepness_at(F&& f, const S& x, double near) {
+S slope_at(F&& f, const S& x, double near) {
   return abs(f(x + S(near)) - f(x - S(near))) * S(0.5 / near);
 }
 
@@ -29,8 +29,8 @@ S steepest_m3ps_per_Pa(const VariableRange& pressure_Pa, F&& leak_m3ps) {
       const S out_Pa = pressure_Pa.min + way_Pa * j;
       const auto by_in = [&](const S& p) { return leak_m3ps(p, out_Pa); };
       const auto by_out = [&](const S& p) { return leak_m3ps(in_Pa, p); };
-      most = max(most, steepness_at(by_in, in_Pa, near_Pa));
-      most = max(most, steepness_at(by_out, out_Pa, near_Pa));
+      most = max(most, slope_at(by_in, in_Pa, near_Pa));
+      most = max(most, slope_at(by_out, out_Pa, near_Pa));
     }
   }
   return most;
@@ -39,7 +39,7 @@ S steepest_m3ps_per_Pa(const VariableRange& pressure_Pa, F&& leak_m3ps) {
 /// Slope and stiffness of a force F(y, v), found once per change of parameters. Speeds are divided
 /// into octaves from 0.1 mm/s to beyond the speed guard.
 template <class S>
-class Steepness {
+class MaxSlope {
  public:
   template <class F>
   void prepare(const VariableRange& position_m, const VariableRange& speed_mps, F&& force_N) {
@@ -50,8 +50,7 @@ class Steepness {
       for (const double part : {-1.0, -0.03, 0.0, 0.03, 1.0}) {
         const S v_mps = part * speed_mps.max;
         const auto by_position = [&](const S& y) { return force_N(y, v_mps); };
-        stiffness_N_per_m_ =
-            max(stiffness_N_per_m_, steepness_at(by_position, y_m, kNear_m * way_m));
+        stiffness_N_per_m_ = max(stiffness_N_per_m_, slope_at(by_position, y_m, kNear_m * way_m));
       }
     }
     S most = 0.0;
@@ -103,7 +102,7 @@ class Steepness {
       const S v_mps = from_mps + part_mps * i;
       const S after_N = force_N(v_mps);
       most = max(most, abs(after_N - before_N) * S(1.0 / size_mps));
-      most = max(most, steepness_at(force_N, v_mps, 0.01 * size_mps));
+      most = max(most, slope_at(force_N, v_mps, 0.01 * size_mps));
       before_N = after_N;
     }
     return most;

@@ -1,24 +1,23 @@
-// The operations of one formula while it is being read: each is a node that knows its operands.
-// Equal operations become one node, those of constants are done at once, small whole powers are
-// products.
+// Expression graph of one formula during parsing: each operation is a node with its operands. Equal
+// operations share a node, constant operations are folded, small integer powers become products.
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
-#include "plant_sim/formula/tape.h"
+#include "plant_sim/formula/expression_program.h"
 
 namespace plant_sim {
 
-class Recording {
+class ExpressionGraph {
  public:
-  /// What stands for a node while muParser passes it on as a number: a negative one. A number that
-  /// is not negative is a constant of the text.
+  /// Node handle, encoded as a negative double, because muParser passes only numbers. A
+  /// non-negative number is a constant of the text.
   using Handle = double;
   static constexpr std::size_t kMostNodes = 1000;
 
-  explicit Recording(std::size_t parameters) : parameters_(parameters) {
-    nodes_.resize(Tape::kVariables + parameters);
+  explicit ExpressionGraph(std::size_t parameters) : parameters_(parameters) {
+    nodes_.resize(ExpressionProgram::kVariables + parameters);
   }
 
   [[nodiscard]] static Handle input(std::size_t index) { return handle(index); }
@@ -26,7 +25,7 @@ class Recording {
   Handle operation(Op op, Handle a, Handle b, Handle c);
   [[nodiscard]] bool too_long() const { return nodes_.size() > kMostNodes; }
 
-  [[nodiscard]] Tape tape(Handle result);
+  [[nodiscard]] ExpressionProgram program(Handle result);
 
  private:
   enum class Kind { input, constant, operation };

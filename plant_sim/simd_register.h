@@ -1,4 +1,4 @@
-// One machine word of lanes and what its instruction set can do in one go: two doubles (SSE2, or
+// One SIMD register and its operations: two doubles (SSE2, or
 // any machine by GCC's vector extension), four (AVX2) or eight (AVX-512). Every operation gives in
 // each lane the bits that the double version in scalar.h gives.
 //
@@ -19,10 +19,10 @@
 namespace plant_sim {
 
 template <std::size_t kWidth>
-struct LaneWord;
+struct SimdRegister;
 
 template <>
-struct LaneWord<2> {
+struct SimdRegister<2> {
   using Vector = double __attribute__((vector_size(16)));
   using Bits = std::int64_t __attribute__((vector_size(16)));
   using Mask = Bits;
@@ -30,7 +30,7 @@ struct LaneWord<2> {
   static Vector every(double a) { return Vector{a, a}; }
   static Mask less(Vector a, Vector b) { return a < b; }
   static Mask at_most(Vector a, Vector b) { return a <= b; }
-  static Mask both(Mask a, Mask b) { return a & b; }
+  static Mask bit_and(Mask a, Mask b) { return a & b; }
   static bool all(Mask m) { return (m[0] & m[1]) != 0; }
   static Vector select(Mask m, Vector yes, Vector no) { return m ? yes : no; }
 #ifdef __SSE2__
@@ -48,7 +48,7 @@ struct LaneWord<2> {
 
 #ifdef __AVX2__
 template <>
-struct LaneWord<4> {
+struct SimdRegister<4> {
   using Vector = double __attribute__((vector_size(32)));
   using Bits = std::int64_t __attribute__((vector_size(32)));
   using Mask = Vector;
@@ -56,7 +56,7 @@ struct LaneWord<4> {
   static Vector every(double a) { return _mm256_set1_pd(a); }
   static Mask less(Vector a, Vector b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
   static Mask at_most(Vector a, Vector b) { return _mm256_cmp_pd(a, b, _CMP_LE_OQ); }
-  static Mask both(Mask a, Mask b) { return _mm256_and_pd(a, b); }
+  static Mask bit_and(Mask a, Mask b) { return _mm256_and_pd(a, b); }
   static bool all(Mask m) { return _mm256_movemask_pd(m) == 0xf; }
   static Vector select(Mask m, Vector yes, Vector no) { return _mm256_blendv_pd(no, yes, m); }
   static Vector min(Vector a, Vector b) { return _mm256_min_pd(a, b); }
@@ -69,7 +69,7 @@ struct LaneWord<4> {
 
 #ifdef __AVX512F__
 template <>
-struct LaneWord<8> {
+struct SimdRegister<8> {
   using Vector = double __attribute__((vector_size(64)));
   using Bits = std::int64_t __attribute__((vector_size(64)));
   using Mask = __mmask8;
@@ -79,7 +79,7 @@ struct LaneWord<8> {
   static Vector every(double a) { return _mm512_set1_pd(a); }
   static Mask less(Vector a, Vector b) { return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ); }
   static Mask at_most(Vector a, Vector b) { return _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ); }
-  static Mask both(Mask a, Mask b) { return static_cast<Mask>(a & b); }
+  static Mask bit_and(Mask a, Mask b) { return static_cast<Mask>(a & b); }
   static bool all(Mask m) { return m == kEvery; }
   static Vector select(Mask m, Vector yes, Vector no) { return _mm512_mask_blend_pd(m, no, yes); }
   static Vector min(Vector a, Vector b) { return _mm512_maskz_min_pd(kEvery, a, b); }
