@@ -30,7 +30,7 @@ std::unique_ptr<io::ControlSocket> claim(const DaemonConfig& config) {
 }
 
 control::CommissioningLimits limits_of(const DaemonConfig& config, const CommissionOptions& o,
-                                       const hal::Opening& opening, std::ostream& out) {
+                                       const hal::OpenContext& opening, std::ostream& out) {
   control::CommissioningLimits limits;
   limits.max_travel_m = o.max_travel_m;
   limits.home_travel_m = o.home_travel_m;
@@ -81,8 +81,8 @@ int commission(DaemonConfig& config, const CommissionOptions& options, std::ostr
     throw UsageError("--commission: " + folder.string() + " is no folder");
   }
   const double sample_time_s = 1.0 / config.loop.rate_Hz;
-  const hal::Opening opening{config.file, config.folder, sample_time_s, config.rig.valve().null_V,
-                             config.rig.valve().limit_V};
+  const hal::OpenContext opening{config.file, config.folder, sample_time_s,
+                                 config.rig.valve().null_V, config.rig.valve().limit_V};
   Dialogue dialogue(out, options.yes);
   std::unique_ptr<io::ControlSocket> claimed;
   if (!options.virtual_time) claimed = claim(config);

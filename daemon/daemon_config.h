@@ -21,7 +21,7 @@
 #include "daemon/rt/loop.h"
 #include "estimator/fdi/pipeline.h"
 #include "estimator/fdi/tracker/source_kinds.h"
-#include "hal/roles.h"
+#include "hal/rig.h"
 
 namespace monitor {
 

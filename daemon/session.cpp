@@ -34,7 +34,7 @@ constexpr std::int64_t kCommandLife_ns = 1'000'000'000;
 /// What a session consists of before it runs: nothing has been written to a device yet.
 struct Prepared {
   double sample_time_s;
-  hal::Opening opening;
+  hal::OpenContext opening;
   hal::Devices devices;
   std::unique_ptr<control::Reference> reference;
   std::uint64_t hash;

@@ -1,4 +1,4 @@
-// A backend as configuration sees it: its TOML table, and the devices that it offers by name.
+// Interface of a hardware backend: its TOML table and the devices that it provides by name.
 #pragma once
 
 #include <filesystem>
@@ -14,36 +14,36 @@
 
 namespace hal {
 
-/// What every backend is told about the rig when it opens.
-struct Opening {
+/// Facts about the rig that every backend receives in open().
+struct OpenContext {
   std::string file;              ///< configuration file, for messages
   std::filesystem::path folder;  ///< relative paths of the file start here
   double sample_time_s = 0.005;  ///< period of the loop
   double null_V = 0.0;           ///< the commanded safe voltage
   double limit_V = kMissing;     ///< greatest distance of a command from null
-  bool exclusive = true;         ///< to be driven: no other process may; else only looked at
+  bool exclusive = true;  ///< true: drive the devices, no other process may; false: only read
 };
 
-/// What one backend has opened. Names (channels) are the backend's or those of its own table.
-struct Offer {
+/// Devices that one backend has opened, by channel name.
+struct BackendDevices {
   std::map<std::string, std::shared_ptr<RodSensor>> rods;
   std::shared_ptr<ValveDrive> valve;  ///< null when the backend drives none
   std::map<std::string, std::shared_ptr<Input>> inputs;
   std::map<std::string, std::shared_ptr<Output>> outputs;
   double sample_time_s = kMissing;       ///< period that the device dictates (a record's), else NaN
-  bool fast = false;                     ///< as fast as possible: nothing waits for the wall clock
-  std::function<std::string()> summary;  ///< one line of counters for people, or none
+  bool fast = false;                     ///< run as fast as possible, independent of the wall clock
+  std::function<std::string()> summary;  ///< one readable line of counters; may be empty
 };
 
-/// Channel of a backend that has one rod sensor.
+/// Channel name in a backend with a single rod sensor.
 inline constexpr const char* kRodChannel = "position";
 
-/// How long the valve may keep a command of the law, in s; NaN: for ever.
+/// Longest time that the valve may hold a command of the controller, in s; NaN: for ever.
 struct NullTimes {
-  double bus_lost_s = kMissing;      ///< the device no longer hears us, but runs
-  double process_dead_s = kMissing;  ///< nobody writes any more (SIGKILL, SIGSTOP)
+  double bus_lost_s = kMissing;      ///< the device runs but receives nothing
+  double process_dead_s = kMissing;  ///< the process is gone (SIGKILL)
   double latency_s = 0.0;            ///< from a write of the loop to the voltage at the valve
-  /// The process stands still (SIGSTOP); NaN: as process_dead_s.
+  /// The process is stopped (SIGSTOP); NaN: as process_dead_s.
   double process_stopped_s = kMissing;
 };
 
@@ -54,25 +54,26 @@ class Backend {
   virtual void visit(config::schema::Visitor& v) = 0;
   /// Opens and checks; throws config::schema::Error, DeviceUnavailable where there is no
   /// device. Writes nothing to a device.
-  [[nodiscard]] virtual Offer open(const Opening& opening) const = 0;
-  /// Moves nothing real, so that it may be armed without a person (`loop.auto_arm`).
+  [[nodiscard]] virtual BackendDevices open(const OpenContext& context) const = 0;
+  /// Moves nothing real, so that `loop.auto_arm` is allowed.
   [[nodiscard]] virtual bool harmless() const noexcept = 0;
-  /// Fastest the rod can move under a command held at +-limit_V, NaN when it cannot be said.
-  [[nodiscard]] virtual double worst_speed_mps(const Opening& opening, double limit_V) const = 0;
-  /// What the valve does by itself when it is left alone.
+  /// Fastest rod speed under a command held at +-limit_V; NaN when unknown.
+  [[nodiscard]] virtual double worst_speed_mps(const OpenContext& context,
+                                               double limit_V) const = 0;
+  /// Behaviour of the valve when commands stop.
   [[nodiscard]] virtual NullTimes null_times() const { return {}; }
-  /// The valve is there and keeps a command when this process has gone.
+  /// The valve keeps its last command after this process has ended.
   [[nodiscard]] virtual bool outlives_process() const noexcept { return true; }
-  /// Lines that `--check` prints: what follows from the table and a person should know.
-  [[nodiscard]] virtual std::vector<std::string> notes(const Opening& /*opening*/) const {
+  /// Lines that `--check` prints: consequences of the table that an operator should know.
+  [[nodiscard]] virtual std::vector<std::string> notes(const OpenContext& /*context*/) const {
     return {};
   }
 };
 
-/// `text` as a path, relative ones from the configuration file's folder.
-[[nodiscard]] inline std::filesystem::path resolve(const Opening& opening,
+/// `text` as a path; relative paths start from the configuration file's folder.
+[[nodiscard]] inline std::filesystem::path resolve(const OpenContext& context,
                                                    const std::string& text) {
-  return opening.folder / text;
+  return context.folder / text;
 }
 
 }  // namespace hal

@@ -1,11 +1,11 @@
-// What the loop needs of hardware, by role: read the rod's position, drive the valve, go to null,
-// read an auxiliary input, set an output.
+// Device interfaces of the control loop, by role: read the rod's position, drive the valve, go to
+// null, read an auxiliary input, set an output.
 //
-// A backend (hal/sim, hal/replay, ...) offers some of these. Units and signs are those of the
-// field, set right once inside the backend: metres, volts, pascals, positive command extends. Times
+// A backend (hal/sim, hal/replay, ...) implements some of these. Units and signs are those of the
+// field, converted once inside the backend: metres, volts, pascals, positive command extends. Times
 // are of CLOCK_MONOTONIC. Every function here is called from the loop: noexcept, no allocation, no
-// lock, no blocking call; a device that blocks has a thread of its own and hands over what it read
-// last.
+// lock, no blocking call; a device that blocks runs its own thread and returns the value it
+// read last.
 #pragma once
 
 #include <cmath>
@@ -18,7 +18,7 @@ namespace hal {
 
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-/// A device calls a reading bad when it has been stale for too long.
+/// Finite and not bad; devices turn readings bad after too long a stale period.
 [[nodiscard]] inline bool trusted(config::signals::Quality quality, double value) noexcept {
   return quality != config::signals::Quality::bad && std::isfinite(value);
 }
@@ -30,16 +30,16 @@ struct Tick {
 };
 
 struct Reading {
-  double y_m = kMissing;        ///< rod position, NaN when there is none
-  std::int64_t t_ns = 0;        ///< when it was measured; 0: when it was asked for
-  double command_V = kMissing;  ///< the valve's command as the device sees it, NaN when it does not
+  double y_m = kMissing;        ///< rod position; NaN: none
+  std::int64_t t_ns = 0;        ///< time of measurement; 0: time of the call
+  double command_V = kMissing;  ///< valve command as the device reports it; NaN: not reported
   config::signals::Quality quality = config::signals::Quality::bad;
-  bool saturated = false;  ///< that command was at a limit, as far as the device knows
-  bool end = false;        ///< nothing more will come (end of a record), and this is no reading
+  bool saturated = false;  ///< the reported command was at a limit
+  bool end = false;        ///< end of a record; this is not a reading
 };
 
 struct Applied {
-  double u_V = kMissing;  ///< what the valve was given after resolution and range
+  double u_V = kMissing;  ///< voltage after resolution and range
   bool good = false;
 };
 
@@ -55,15 +55,15 @@ class ValveDrive {
   virtual Applied write(double u_V, const Tick& tick) noexcept = 0;
   /// The safe voltage `valve.null_V`. Also called from a crash handler: async-signal-safe.
   virtual Applied go_null() noexcept = 0;
-  /// Null for good: later writes are null too. Waits, 0.1 s at most, until the device has it, for
-  /// the process may end next; not for the loop. Async-signal-safe.
+  /// Null for good: later writes are null too. Waits at most 0.1 s for the device's confirmation,
+  /// because the process may end next; not for use in the loop. Async-signal-safe.
   virtual Applied end_at_null() noexcept { return go_null(); }
 };
 
 /// An auxiliary signal: volts, pascals, or 0 and 1 of a switch.
 struct InputReading {
-  double value = kMissing;  ///< NaN when there is none
-  std::int64_t t_ns = 0;    ///< when it was measured; 0: when it was asked for
+  double value = kMissing;  ///< NaN: none
+  std::int64_t t_ns = 0;    ///< time of measurement; 0: time of the call
   config::signals::Quality quality = config::signals::Quality::bad;
 };
 
@@ -77,7 +77,7 @@ class Input {
 class Output {
  public:
   virtual ~Output() = default;
-  /// False when the device did not take it.
+  /// False when the device rejected the command.
   virtual bool set(bool on) noexcept = 0;
 };
 

@@ -1,5 +1,5 @@
-// A thread of a device that may block: it takes no signals but a crash's (those are the main
-// thread's) and asks for a real-time priority, which it does without where it may not have one.
+// Thread of a device that may block. Signals other than those of a crash stay with the main thread;
+// a real-time priority is requested and used where granted.
 #pragma once
 
 #include <pthread.h>

@@ -1,4 +1,4 @@
-// How far a value that a device's thread read some time ago can be relied on.
+// Quality of a value by the time since a device thread read it.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@ namespace hal {
 inline constexpr std::int64_t kStalePeriods = 3;
 inline constexpr std::int64_t kBadPeriods = 6;
 
-/// Good, stale after three periods of the loop, bad (no value any more) after six: the thread
-/// hangs, and a switch that reads as it did may have moved.
+/// Good, stale after three periods of the loop, bad (no value) after six: the thread hangs, and a
+/// switch may have moved since.
 inline config::signals::Quality freshness(std::int64_t age_ns, std::int64_t period_ns) noexcept {
   if (age_ns > kBadPeriods * period_ns) return config::signals::Quality::bad;
   return age_ns > kStalePeriods * period_ns ? config::signals::Quality::stale

@@ -1,7 +1,7 @@
-// The newest value of one thread for another: wait-free on both sides, one writer and one reader.
+// Hands the newest value from one writer thread to one reader thread, wait-free on both sides.
 //
 // Three slots: the writer fills its own and exchanges it with the middle one, the reader exchanges
-// its own with the middle one when that is fresh. Nobody waits, and no value is ever torn.
+// its own with the middle one when that is fresh. Neither waits, and no value is ever torn.
 #pragma once
 
 #include <array>

@@ -24,7 +24,7 @@ std::unique_ptr<LaneEnsemble> made(const ModelFile& model, double step_s, Instru
       break;
 #endif
     default:
-      lanes = new_lanes<Lanes>(plant, formulas, step_s);
+      lanes = new_lanes<Simd>(plant, formulas, step_s);
       break;
   }
   return std::unique_ptr<LaneEnsemble>(lanes);

@@ -52,9 +52,9 @@ class Ensemble {
 
 /// Every one gives the same bits; the wider, the faster.
 enum class InstructionSet { baseline, avx2, avx512 };
-/// Whether this machine, and this build, has it.
+/// True when this machine and this build support it.
 [[nodiscard]] bool runs_here(InstructionSet set) noexcept;
-/// What make_ensemble() uses when it is not told.
+/// Default of make_ensemble().
 [[nodiscard]] InstructionSet fastest_here() noexcept;
 /// With one that runs here.
 [[nodiscard]] std::unique_ptr<Ensemble> make_ensemble(const ModelFile& model, double step_s,

@@ -4,7 +4,7 @@
 namespace plant_sim {
 
 LaneEnsemble* new_avx512_lanes(const char* plant, const Formulas& formulas, double step_s) {
-  return new_lanes<BasicLanes<8>>(plant, formulas, step_s);
+  return new_lanes<SimdVector<8>>(plant, formulas, step_s);
 }
 
 }  // namespace plant_sim

@@ -76,7 +76,7 @@ class ForceDrivenAxis {
     effects.reset();
   }
 
-  /// To be called before step() after any parameter has changed, with the length of the step.
+  /// Call before step() after any parameter has changed, with the length of the step.
   void prepare(double step_s) {
     parameters.visit([](const ParameterInfo& info, S& value) {
       value = clamp(value, S(info.min), S(info.max));
@@ -93,7 +93,7 @@ class ForceDrivenAxis {
     const S drive_N = parameters.gain_N_per_V * effects.command_V(limits::known_V(u_V));
     const S parts = divisions();
     const S part_s = S(step_s_) / parts;
-    const int most = static_cast<int>(widest(parts));
+    const int most = static_cast<int>(reduce_max(parts));
     for (int i = 0; i < most; ++i) {
       integrate(drive_N, select(S(static_cast<double>(i)) < parts, part_s, S(0.0)));
     }
@@ -114,7 +114,7 @@ class ForceDrivenAxis {
     const auto rate = [&](const State& x) -> State {
       const S free_N = drive_N - parameters.damping_N_s_per_m * x.v_mps;
       const S force_N =
-          effects.remaining_N(x.y_m, {x.v_mps, x.y_m - from_m, free_N, arrest_kg_per_s_});
+          effects.net_force_N(x.y_m, {x.v_mps, x.y_m - from_m, free_N, arrest_kg_per_s_});
       return {x.v_mps, force_N * inverse_mass_};
     };
     state = runge_kutta_step(state, step_s, rate);

@@ -1,4 +1,4 @@
-// Numerical guards that every plant shares: far beyond anything real, they keep states finite.
+// Numerical guards shared by all plants: far beyond physical values, they keep states finite.
 #pragma once
 
 #include "plant_sim/scalar.h"

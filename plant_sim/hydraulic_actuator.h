@@ -98,7 +98,7 @@ class HydraulicActuator {
 
   /// To the initial state, with the parameters as they are.
   void reset();
-  /// To be called before step() after any parameter has changed, with the length of the step.
+  /// Call before step() after any parameter has changed, with the length of the step.
   void prepare(double step_s);
   /// One step with u_V held; u_V that is not a number counts as 0.
   void step(const S& u_V);

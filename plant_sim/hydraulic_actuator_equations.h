@@ -31,7 +31,7 @@ S HydraulicActuator<S>::valve_flow(const State& x) const {
   return derived_.orifice * opening_m;
 }
 
-/// What the flow drawn leaves of the supply pressure.
+/// Supply pressure that remains under the drawn flow.
 template <class S>
 template <bool kEffects>
 S HydraulicActuator<S>::inlet_Pa(const State& x, const S& flow) const {
@@ -87,7 +87,7 @@ typename HydraulicActuator<S>::State HydraulicActuator<S>::rate(const State& x, 
     in_beta_Pa = effects.bulk_modulus_Pa(in_beta_Pa, x.in_Pa);
     out_beta_Pa = effects.bulk_modulus_Pa(out_beta_Pa, x.out_Pa);
     force_N =
-        effects.remaining_N(y_m, {v_mps, x.y_m - from_y_m, force_N, derived_.arrest_kg_per_s});
+        effects.net_force_N(y_m, {v_mps, x.y_m - from_y_m, force_N, derived_.arrest_kg_per_s});
   }
   State r;
   r.y_m = v_mps;

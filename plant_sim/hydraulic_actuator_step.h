@@ -58,7 +58,7 @@ void HydraulicActuator<S>::prepare(double step_s) {
   derived_.conductance_m3ps_per_Pa = effects.conductance_m3ps_per_Pa();
 }
 
-/// The widest opening that the step can come to.
+/// The reduce_max opening that the step can come to.
 template <class S>
 S HydraulicActuator<S>::reach_m(const S& u_V) const {
   const S spool_m = max(abs(state.spool_m), parameters.valve_gain_m_per_V * abs(u_V)) +
@@ -75,7 +75,7 @@ S HydraulicActuator<S>::fast_mps() const {
   const S v_mps = state.v_mps;
   if (!effects.any()) return abs(v_mps);
   const S push_N =
-      effects.remaining_N(state.y_m, {v_mps, S(0.0), S(0.0), derived_.arrest_kg_per_s});
+      effects.net_force_N(state.y_m, {v_mps, S(0.0), S(0.0), derived_.arrest_kg_per_s});
   return abs(v_mps) + abs(push_N) * derived_.inverse_mass * S(derived_.step_s);
 }
 
@@ -93,7 +93,7 @@ auto HydraulicActuator<S>::ordinary(const S& u_V) const {
   const S small_m3 = min(in_m3, out_m3);
   const S low_Pa = min(x.in_Pa, x.out_Pa);
   const S high_Pa = max(x.in_Pa, x.out_Pa);
-  // the smallest drop over any open or shut orifice, and the widest opening within the step
+  // the smallest drop over any open or shut orifice, and the reduce_max opening within the step
   const S drop_Pa =
       min(min(abs(p.supply_pressure_Pa - x.in_Pa), abs(p.supply_pressure_Pa - x.out_Pa)),
           low_Pa - p.return_pressure_Pa);
@@ -105,21 +105,21 @@ auto HydraulicActuator<S>::ordinary(const S& u_V) const {
   const S leak_m3 = derived_.conductance_m3ps_per_Pa * p.bulk_modulus_Pa * step_s;
   const S slope = p.damping_N_s_per_m + effects.slope_N_s_per_m(speed_mps);
   constexpr double kSquare = limits::kRateStep * limits::kRateStep;
-  const auto place = both(room_m > travel_m, derived_.steady_rate * step_s <= S(limits::kRateStep));
+  const auto place = (room_m > travel_m) & (derived_.steady_rate * step_s <= S(limits::kRateStep));
   const auto pressure =
-      both(low_Pa > S(limits::kLowPressure_Pa), high_Pa < S(limits::kHighPressure_Pa));
-  const auto drop = both(drop_Pa > S(limits::kSmoothDrop_Pa),
-                         flow_rate * flow_rate < allowed * allowed * drop_Pa);
+      (low_Pa > S(limits::kLowPressure_Pa)) & (high_Pa < S(limits::kHighPressure_Pa));
+  const auto drop =
+      (drop_Pa > S(limits::kSmoothDrop_Pa)) & (flow_rate * flow_rate < allowed * allowed * drop_Pa);
   // less than the lower pressure can come or go within the step
   const S to_spare = S(0.5) * low_Pa * small_m3;
   const S largest_Pa = max(high_Pa, p.supply_pressure_Pa);
-  const auto change = both(flow_rate * flow_rate * largest_Pa < to_spare * to_spare,
-                           p.area_m2 * speed_mps * p.bulk_modulus_Pa * step_s < to_spare);
-  const auto stiff = both(stiffness < S(kSquare) * derived_.mass_kg * in_m3 * out_m3,
-                          slope * step_s <= S(limits::kRateStep) * derived_.mass_kg);
-  const auto leak = both(leak_m3 <= S(limits::kRateStep) * small_m3, leak_m3 * high_Pa <= to_spare);
+  const auto change = (flow_rate * flow_rate * largest_Pa < to_spare * to_spare) &
+                      (p.area_m2 * speed_mps * p.bulk_modulus_Pa * step_s < to_spare);
+  const auto stiff = (stiffness < S(kSquare) * derived_.mass_kg * in_m3 * out_m3) &
+                     (slope * step_s <= S(limits::kRateStep) * derived_.mass_kg);
+  const auto leak = (leak_m3 <= S(limits::kRateStep) * small_m3) & (leak_m3 * high_Pa <= to_spare);
   const auto free = spool_reach_mps(u_V) < derived_.spool_limit_mps;
-  return both(both(both(place, pressure), both(drop, stiff)), both(both(change, leak), free));
+  return ((place & pressure) & (drop & stiff)) & ((change & leak) & free);
 }
 
 /// The fastest that the spool can become within the step.
@@ -144,7 +144,7 @@ void HydraulicActuator<S>::step(const S& u_V) {
   }
   const S parts = select(whole, S(1.0), divisions(drive_V));
   const S part_s = S(derived_.step_s) / parts;
-  const int most = static_cast<int>(widest(parts));
+  const int most = static_cast<int>(reduce_max(parts));
   for (int i = 0; i < most; ++i) {
     integrate<true, true>(drive_V, select(S(static_cast<double>(i)) < parts, part_s, S(0.0)));
   }

@@ -1,4 +1,4 @@
-// What stands between the plant and the computer: the encoder's steps and noise, the D/A
+// Instruments between plant and computer: the encoder's steps and noise, the D/A
 // converter's bits and range. Seeded and self-contained: the same seed gives the same bytes
 // everywhere.
 #pragma once

@@ -1,4 +1,4 @@
-// How an Ensemble is put together: what any machine runs (LaneEnsemble, in ensemble.cpp) and the
+// Implementation of Ensemble: what any machine runs (LaneEnsemble, in ensemble.cpp) and the
 // physics at eight lanes (InLanes), compiled once for each instruction set.
 //
 // A file compiled for a wide instruction set instantiates InLanes and nothing else: it must not

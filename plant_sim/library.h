@@ -1,4 +1,4 @@
-// What can be simulated, as data: plants and effects with their parameters. For reading model
+// Catalogue of plants and effects with their parameters. For reading model
 // files, for the engineer's listing, and for tests that must hold for every effect.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What a plant or an effect tells about each of its parameters: the one list from which model files
+// Description of each parameter of a plant or an effect: the one list from which model files
 // are read, changes are checked and the library is printed.
 #pragma once
 
@@ -15,7 +15,8 @@ struct ParameterInfo {
   double typical;  ///< a size worth noticing: where searches start
   double neutral;  ///< the value without influence (effects), or the default (plants)
   /// Plants: how far a rig may be from its model file, as a relative standard deviation; 0 = taken
-  /// as known, because the record cannot tell it from the others or because it is easily measured.
+  /// as known, because the record cannot separate it from the others or because it is easily
+  /// measured.
   double uncertainty_ratio = 0.0;
   /// Effects: 0 = what the effect is; above, the number of a refinement of it, whose parameters
   /// come and go together and have to earn their place.

@@ -5,6 +5,7 @@
 #include "config/schema/error.h"
 #include "plant_sim/library.h"
 #include "plant_sim/plants.h"
+#include "plant_sim/pressures.h"
 
 namespace plant_sim {
 namespace {
@@ -47,8 +48,9 @@ class Simulated final : public Plant {
     return model_.effects.reading_m(model_.state.y_m);
   }
   [[nodiscard]] double speed_mps() const noexcept override { return model_.speed_mps(); }
-  [[nodiscard]] Pressures pressures() const noexcept override {
-    return pressures_of<double>(model_);
+  [[nodiscard]] config::signals::Pressures pressures() const noexcept override {
+    const PressuresOf<double> p = pressures_of<double>(model_);
+    return {p.supply_Pa, p.in_Pa, p.out_Pa};
   }
   [[nodiscard]] double step_s() const noexcept override { return step_s_; }
 

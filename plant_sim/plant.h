@@ -1,5 +1,5 @@
-// The runtime face of a simulated plant: voltage in, rod position out. The equations behind it are
-// templates (hydraulic_actuator.h); this is what hal/sim and the workbench hold.
+// Run-time interface of a simulated plant: voltage in, rod position out. The equations behind it
+// are templates (hydraulic_actuator.h); this is what hal/sim and the workbench hold.
 #pragma once
 
 #include <memory>
@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
+#include "config/signals/pressures.h"
 #include "plant_sim/model_file.h"
 #include "plant_sim/parameter.h"
-#include "plant_sim/pressures.h"
 
 namespace plant_sim {
 
@@ -33,10 +33,10 @@ class Plant {
   /// The position that the sensor sees, before encoder steps and noise (instruments.h).
   [[nodiscard]] virtual double reading_m() const noexcept = 0;
   [[nodiscard]] virtual double speed_mps() const noexcept = 0;
-  /// What transducers at the valve's inlet and in the chambers would show, without error, with the
+  /// Pressures at the valve's inlet and in the chambers, without transducer error, with the
   /// parameters as they are now; not numbers where the plant has none (velocity_servo,
   /// force_driven_axis). No allocation.
-  [[nodiscard]] virtual Pressures pressures() const noexcept = 0;
+  [[nodiscard]] virtual config::signals::Pressures pressures() const noexcept = 0;
   [[nodiscard]] virtual double step_s() const noexcept = 0;
 
   /// A parameter by name: "supply_pressure_Pa", or with its effect, "friction.coulomb_N", whether

@@ -1,22 +1,21 @@
-// The pressures that a plant has, as transducers without error would show them: at the valve's
-// inlet and in both chambers. Not a number: the plant has no such pressure.
+// Pressures of a plant template, without transducer error: at the valve's inlet and in both
+// chambers. NaN: the plant has no such pressure. Plant::pressures() gives them as
+// config::signals::Pressures.
 #pragma once
 
 #include <limits>
 
 namespace plant_sim {
 
-/// T: a double, or lanes.
+/// T: double or a SIMD vector.
 template <class T>
 struct PressuresOf {
-  T supply_Pa;  ///< at the valve's inlet: what effects such as supply_droop leave of the supply
-  T in_Pa;      ///< of the chamber that extends the rod
-  T out_Pa;     ///< of the chamber that retracts it
+  T supply_Pa;  ///< at the valve's inlet, after effects such as supply_droop
+  T in_Pa;      ///< chamber that extends the rod
+  T out_Pa;     ///< chamber that retracts it
 };
 
-using Pressures = PressuresOf<double>;
-
-/// Of a plant template over S; not numbers where it has none.
+/// Pressures of a plant template over S; NaN where it has none.
 template <class S, class Model>
 PressuresOf<S> pressures_of(const Model& model) {
   if constexpr (requires { model.pressures(); }) {

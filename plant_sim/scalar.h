@@ -1,5 +1,5 @@
-// The two kinds of number that the physics is written for: double, and lanes (lanes.h), eight
-// doubles that go through the same operations side by side (eight parameter sets on one input).
+// Scalar types of the physics: double, and SIMD vectors of eight doubles (simd_vector.h), eight
+// parameter sets on one input.
 //
 // Code templated on Scalar uses + - * / and the functions below, never a branch on a value:
 // select() takes both sides. Each lane does exactly the operations of the double version.
@@ -9,7 +9,7 @@
 #include <cstddef>
 
 #include "plant_sim/elementary.h"
-#include "plant_sim/lanes.h"
+#include "plant_sim/simd_vector.h"
 
 namespace plant_sim {
 
@@ -27,16 +27,15 @@ inline double ceil(double a) { return std::ceil(a); }
 inline double floor(double a) { return std::floor(a); }
 inline double abs(double a) { return std::fabs(a); }
 inline bool all(bool mask) { return mask; }
-inline bool both(bool a, bool b) { return a && b; }
-/// The largest value of any lane.
-inline double widest(double a) { return a; }
+/// Largest lane.
+inline double reduce_max(double a) { return a; }
 /// at(index), where at gives a number for a whole index; of lanes, each with its own index.
 template <class At>
 double pick(double index, At&& at) {
   return at(static_cast<std::size_t>(index));
 }
 
-/// Within lo..hi; what is not a number becomes lo.
+/// Limited to lo..hi; NaN becomes lo.
 template <class Scalar>
 Scalar clamp(const Scalar& a, const Scalar& lo, const Scalar& hi) {
   return min(max(a, lo), hi);

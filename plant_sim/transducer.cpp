@@ -38,7 +38,8 @@ Transducers::Transducers(const std::vector<TransducerConfig>& configs, std::uint
   }
 }
 
-double Transducers::read(std::size_t which, const Pressures& true_Pa, double t_s) noexcept {
+double Transducers::read(std::size_t which, const config::signals::Pressures& true_Pa,
+                         double t_s) noexcept {
   Transducer& own = all_[which];
   const double p_Pa = which == 0 ? true_Pa.supply_Pa : which == 1 ? true_Pa.in_Pa : true_Pa.out_Pa;
   return own.converter.read(p_Pa + (t_s >= own.config.from_s ? own.config.offset_Pa : 0.0));

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "config/schema/visitor.h"
+#include "config/signals/pressures.h"
 #include "plant_sim/instruments.h"
-#include "plant_sim/pressures.h"
 
 namespace plant_sim {
 
@@ -31,12 +31,12 @@ inline constexpr std::array<const char*, 3> kTransducers = {"supply_pressure", "
 
 class Transducers {
  public:
-  /// Those that no entry names are without error. Throws config::schema::ConfigError where two
+  /// Transducers without an entry have no error. Throws config::schema::ConfigError where two
   /// are of the same pressure. `seed`: of the noise.
   Transducers(const std::vector<TransducerConfig>& configs, std::uint64_t seed);
 
   /// The reading of one (in the order of kTransducers), with a fresh sample of its noise.
-  double read(std::size_t which, const Pressures& true_Pa, double t_s) noexcept;
+  double read(std::size_t which, const config::signals::Pressures& true_Pa, double t_s) noexcept;
 
  private:
   struct Transducer {

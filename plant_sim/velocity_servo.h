@@ -72,7 +72,7 @@ class VelocityServo {
     effects.reset();
   }
 
-  /// To be called before step() after any parameter has changed, with the length of the step.
+  /// Call before step() after any parameter has changed, with the length of the step.
   void prepare(double step_s) {
     parameters.visit([](const ParameterInfo& info, S& value) {
       value = clamp(value, S(info.min), S(info.max));
@@ -111,7 +111,7 @@ class VelocityServo {
     return exp(-min(S(time_s) / max(parameters.time_constant_s, S(1e-12)), S(700.0))) *
            select(parameters.time_constant_s > S(0.0), S(1.0), S(0.0));
   }
-  /// What the effects add to a straight valve.
+  /// Contribution of the effects to a linear valve.
   S bent(const S& drive_mps) const {
     return effects.opening_m(drive_mps, parameters.gain_mps_per_V) - drive_mps;
   }

@@ -1,4 +1,4 @@
-// A TOML file as declared structures read it, and the text that prints them back.
+// A TOML file that fills declared structures, and the printer that writes them back.
 #pragma once
 
 #include <filesystem>
@@ -17,7 +17,7 @@ class Document {
  public:
   /// Throws ConfigError when the file is missing, unreadable or no TOML.
   static Document load(const std::filesystem::path& file);
-  /// `name` stands for the file in messages.
+  /// `name` replaces the file name in messages.
   static Document parse(std::string_view text, std::string name);
 
   /// Replaces one value, "table.key=value" (the value as TOML, or else as a bare string; [[list]]

@@ -1,4 +1,4 @@
-// The hash that tells one configuration or state from another.
+// Hash that identifies a configuration or a state.
 #pragma once
 
 #include <cstdint>

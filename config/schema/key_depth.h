@@ -1,5 +1,5 @@
-// How deep a TOML text nests tables by dotted keys. toml++ limits the depth of values but not of
-// keys, and takes a table apart by calling itself: a key of many thousand parts ends the program.
+// Nesting depth of the dotted keys of a TOML text. toml++ limits the depth of values but not of
+// keys and destroys tables recursively: a key of many thousand parts would overflow the stack.
 #pragma once
 
 #include <algorithm>
@@ -8,10 +8,10 @@
 
 namespace config::schema {
 
-/// Far above what any of our files has.
+/// Far above the depth of any shipped file.
 inline constexpr std::size_t kMostKeyParts = 64;
 
-/// The most parts that stand in a row with dots between them: no dotted key has more.
+/// Upper bound on the number of parts of any dotted key in `text`.
 [[nodiscard]] inline std::size_t most_key_parts(std::string_view text) noexcept {
   std::size_t most = 0;
   std::size_t parts = 0;

@@ -1,4 +1,4 @@
-// The Visitor that prints: scalar fields of a table first, as TOML demands, then its sub-tables.
+// Visitor that prints: scalar fields of a table first, as TOML requires, then its sub-tables.
 #include <charconv>
 #include <cmath>
 #include <sstream>

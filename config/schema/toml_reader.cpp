@@ -38,7 +38,7 @@ std::string TomlReader::where(std::string_view key, const toml::node* node) cons
   std::string place = file_;
   if (node != nullptr) {
     const toml::source_region& source = node->source();
-    // What --set adds without parsing (a bare string, a table) has no source at all.
+    // Nodes that --set adds without parsing (a bare string, a table) have no source position.
     if (source.begin.line == 0 || (source.path && *source.path == kAssignments)) {
       place = kAssignments;
     } else {

@@ -1,4 +1,4 @@
-// The Visitor that reads: one table at a time, remembering which keys were asked for.
+// Visitor that reads one table at a time and records which keys were requested.
 #pragma once
 
 #include <toml++/toml.h>
@@ -8,7 +8,7 @@
 
 namespace config::schema {
 
-/// Where values come from that --set gave.
+/// Source name of values given by --set.
 inline constexpr std::string_view kAssignments = "--set";
 
 class TomlReader final : public Visitor {
@@ -29,7 +29,7 @@ class TomlReader final : public Visitor {
   std::size_t list(Key key, std::size_t size) override;
   void element(Key key, std::size_t index, const Body& body) override;
 
-  /// Throws Error for the first key that nothing asked for.
+  /// Throws ConfigError for the first key that no field requested.
   void refuse_unknown_keys() const;
 
  private:

@@ -1,6 +1,6 @@
-// How a declared structure tells its fields: each lists them once, in a `visit(Visitor&)`, with
-// key, range and meaning. A reader fills them from TOML, a printer writes the effective values;
-// both see the same list, so nothing can be read that is not printed or the other way round.
+// Visitor over the fields of a declared structure: each structure lists its fields once, in
+// `visit(Visitor&)`, with key, range and meaning. A reader fills them from TOML, a printer writes
+// the effective values; both see the same list, so exactly what is read is also printed.
 #pragma once
 
 #include <cstddef>

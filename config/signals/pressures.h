@@ -1,4 +1,4 @@
-// Pressures of the hydraulics beside a sample, where the rig reads them.
+// Hydraulic pressures that accompany a sample, on rigs that measure them.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// How far a reading can be trusted. The numbers are those of sample_t and rods_t.
+// Trustworthiness of a reading. The values equal those in sample_t and rods_t.
 #pragma once
 
 #include <cstdint>

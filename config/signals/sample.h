@@ -1,5 +1,5 @@
-// One tick of the loop as the fault detection sees it: a plain value that passes through lock-free
-// queues.
+// One tick of the loop as input of the fault detection: trivially copyable, passed through
+// lock-free queues.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace config::signals {
 
-/// Rod sensors that a sample has room for.
+/// Maximum number of rod sensors in a sample.
 inline constexpr std::size_t kMaxRods = 5;
 
 constexpr std::array<double, kMaxRods> no_rods() noexcept {
@@ -38,14 +38,15 @@ struct Sample {
   bool saturated = false;  ///< a limit of range or slew was active
   std::int32_t gap = 0;    ///< periods missing just before this one
 
-  // Where the rig has several rod sensors, each of them, the configured one first.
-  std::uint8_t rod_count = 0;      ///< 0: there is one alone, and y_m is its reading
-  std::uint8_t rod_in_charge = 0;  ///< whose reading y_m is
-  bool rod_changed = false;        ///< another than in the sample before: y_m may have a step here
-  std::int64_t rod_since = 0;      ///< tick from which on it has been in charge
+  // Individual readings of a rig with several rod sensors, the configured one first.
+  std::uint8_t rod_count = 0;      ///< 0: a single sensor, whose reading is y_m
+  std::uint8_t rod_in_charge = 0;  ///< index of the sensor that y_m comes from
+  bool rod_changed = false;        ///< sensor changed since the previous sample: y_m may step here
+  std::int64_t rod_since = 0;      ///< first tick with this sensor in charge
   std::array<double, kMaxRods> rod_m = no_rods();
   std::array<Quality, kMaxRods> rod_quality{};
-  std::array<std::uint8_t, kMaxRods> rod_fault{};  ///< why it is out, as in rods_t; 0: it is in
+  std::array<std::uint8_t, kMaxRods>
+      rod_fault{};  ///< reason for exclusion, as in rods_t; 0: in use
 
   Pressures pressures;
 };

@@ -21,7 +21,7 @@ struct Unit {
 constexpr double kLitrePerMinute_m3ps = 1e-3 / 60.0;
 constexpr double kBar_Pa = 1e5;
 
-/// Of one SI unit the largest first.
+/// Units of one SI unit are sorted by size, largest first.
 constexpr std::array kUnits{
     Unit{"m", "m", 1.0, 1.0},
     Unit{"m", "mm", 1e-3, 1e-3},

@@ -8,7 +8,7 @@
 #include "daemon/control/rod_choice.h"
 #include "daemon/rt/clock.h"
 #include "daemon/rt/loop_stats.h"
-#include "hal/roles.h"
+#include "hal/rig.h"
 
 namespace monitor::rt {
 

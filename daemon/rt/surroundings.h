@@ -7,7 +7,7 @@
 
 #include "config/signals/pressures.h"
 #include "daemon/rt/loop_stats.h"
-#include "hal/roles.h"
+#include "hal/rig.h"
 
 namespace monitor::rt {
 

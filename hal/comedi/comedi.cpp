@@ -17,10 +17,10 @@ std::string text(double value) { return fmt::format("{:.6g}", value); }
 
 /// The range must reach null and, where it is known, a whole limit_V to both sides of it.
 void check_reach(const std::string& table, const Span& span, const Linear& terminal_V,
-                 const Opening& opening) {
-  const double limit_V = std::isnan(opening.limit_V) ? 0.0 : opening.limit_V;
+                 const OpenContext& context) {
+  const double limit_V = std::isnan(context.limit_V) ? 0.0 : context.limit_V;
   for (const double side : {-1.0, 1.0}) {
-    const double command_V = opening.null_V + side * limit_V;
+    const double command_V = context.null_V + side * limit_V;
     const double volts = terminal_V.forward(command_V);
     // The last code of a converter may be one step short of the round number.
     if (volts < span.min_V - span.step_V() || volts > span.max_V + span.step_V()) {
@@ -50,9 +50,9 @@ std::string summary(Exchange& exchange) {
 
 }  // namespace
 
-Offer ComediBackend::open(const Opening& opening) const {
-  config_.check(opening.file);
-  const std::string prefix = opening.file + ": [comedi";
+BackendDevices ComediBackend::open(const OpenContext& context) const {
+  config_.check(context.file);
+  const std::string prefix = context.file + ": [comedi";
   const auto board = std::make_shared<ComediBoard>(prefix + "] device", config_.device);
   std::vector<Place> places;
   const auto place = [&](const std::string& table, Kind kind, const Channel& channel) {
@@ -62,7 +62,7 @@ Offer ComediBackend::open(const Opening& opening) const {
   std::vector<Analog> inputs;
   for (std::size_t i = 0; i < config_.inputs.size(); ++i) {
     const InputConfig& input = config_.inputs[i];
-    const std::string table = opening.file + ": [[comedi.input]] " + std::to_string(i + 1);
+    const std::string table = context.file + ": [[comedi.input]] " + std::to_string(i + 1);
     const std::size_t index = place(table, Kind::analog_input, input.channel);
     inputs.push_back({index, board->span(table, places[index]), {input.scale_per_V, input.offset}});
   }
@@ -79,34 +79,34 @@ Offer ComediBackend::open(const Opening& opening) const {
     const std::string table = prefix + ".output]";
     output = board->find(table, Kind::analog_output, config_.output.channel);
     output_span = board->span(table, output);
-    check_reach(table, output_span, config_.output.terminal_V(), opening);
+    check_reach(table, output_span, config_.output.terminal_V(), context);
     board->lock(table, output);
   }
 
   const auto exchange = std::make_shared<Exchange>(
-      board, places, output, static_cast<std::int64_t>(opening.sample_time_s * 1e9));
-  Offer offer;
+      board, places, output, static_cast<std::int64_t>(context.sample_time_s * 1e9));
+  BackendDevices devices;
   if (config_.has_rod && counter) {
     const int bits = counter_bits(rod_table, rod.bits, board->max_code(places[rod_index]));
-    offer.rods[kRodChannel] = std::make_shared<CounterRod>(
+    devices.rods[kRodChannel] = std::make_shared<CounterRod>(
         exchange, rod_index, bits,
         Linear{static_cast<double>(rod.sign) * rod.resolution_m, rod.offset_m});
   } else if (config_.has_rod) {
-    offer.rods[kRodChannel] =
+    devices.rods[kRodChannel] =
         std::make_shared<AnalogRod>(exchange, Analog{rod_index,
                                                      board->span(rod_table, places[rod_index]),
                                                      {rod.scale_m_per_V, rod.offset_m}});
   }
   if (config_.has_output) {
-    offer.valve = std::make_shared<AnalogValve>(exchange, output_span, config_.output.terminal_V(),
-                                                opening.null_V);
+    devices.valve = std::make_shared<AnalogValve>(exchange, output_span,
+                                                  config_.output.terminal_V(), context.null_V);
   }
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    offer.inputs[config_.inputs[i].name] = std::make_shared<AnalogInput>(exchange, inputs[i]);
+    devices.inputs[config_.inputs[i].name] = std::make_shared<AnalogInput>(exchange, inputs[i]);
   }
   exchange->start(config_.threaded, static_cast<int>(config_.priority));
-  offer.summary = [exchange] { return summary(*exchange); };
-  return offer;
+  devices.summary = [exchange] { return summary(*exchange); };
+  return devices;
 }
 
 }  // namespace hal::comedi

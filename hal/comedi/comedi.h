@@ -65,19 +65,19 @@ struct ComediConfig {
   std::vector<InputConfig> inputs;
 
   void visit(config::schema::Visitor& v);
-  /// What visit() cannot see. `file` for messages. Throws config::schema::Error.
+  /// Checks across fields. `file` is for messages. Throws config::schema::ConfigError.
   void check(const std::string& file) const;
 };
 
 class ComediBackend final : public Backend {
  public:
   void visit(config::schema::Visitor& v) override { config_.visit(v); }
-  [[nodiscard]] Offer open(const Opening& opening) const override;
+  [[nodiscard]] BackendDevices open(const OpenContext& context) const override;
   /// Without an output nothing moves.
   [[nodiscard]] bool harmless() const noexcept override {
     return !config_.has_output || config_.bench_rig;
   }
-  [[nodiscard]] double worst_speed_mps(const Opening&, double) const override {
+  [[nodiscard]] double worst_speed_mps(const OpenContext&, double) const override {
     return config_.has_output ? config_.max_speed_mps : 0.0;
   }
   /// The converter holds its last code for ever.

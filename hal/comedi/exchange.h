@@ -52,7 +52,7 @@ class Exchange {
   bool write(std::uint32_t code, const Tick& tick) noexcept;
   /// From any thread and from a signal handler: also past a thread that no longer runs.
   bool write_now(std::uint32_t code) noexcept;
-  /// Of input `index` as it was read for `view`, at `now_ns`.
+  /// Quality at `now_ns` of input `index` of `view`.
   [[nodiscard]] config::signals::Quality quality(const View& view, std::size_t index,
                                                  std::int64_t now_ns) const noexcept {
     return view.good[index] ? freshness(now_ns - view.read_ns, period_ns_)

@@ -1,4 +1,4 @@
-// What comes from the lines of an encoder: edges with their time, and levels.
+// Events of encoder lines: edges with their time, and levels.
 #pragma once
 
 #include <cstdint>

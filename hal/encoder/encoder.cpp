@@ -93,9 +93,9 @@ Reading EncoderRod::read(const Tick&) noexcept {
   return reading;
 }
 
-Offer EncoderBackend::open(const Opening& opening) const {
-  config_.check(opening.file);
-  const std::string table = opening.file + ": [encoder] ";
+BackendDevices EncoderBackend::open(const OpenContext& context) const {
+  config_.check(context.file);
+  const std::string table = context.file + ": [encoder] ";
   const std::shared_ptr<GpioChip> chip = GpioChip::open(table + "chip", config_.chip);
   const Wiring wiring{false, config_.bias};
   const auto edges = [&](const char* key, std::int64_t line) {
@@ -110,26 +110,26 @@ Offer EncoderBackend::open(const Opening& opening) const {
     inputs.push_back(chip->request(table + "input \"" + item.name + "\" line", item.line,
                                    Use::input, item.wiring));
   }
-  Offer offer;
+  BackendDevices devices;
   for (const SwitchConfig& item : config_.outputs) {
-    offer.outputs[item.name] = std::make_shared<SwitchOutput>(chip->request(
+    devices.outputs[item.name] = std::make_shared<SwitchOutput>(chip->request(
         table + "output \"" + item.name + "\" line", item.line, Use::output, item.wiring));
   }
   const TrackerOptions options{config_.per_cycle(), config_.max_edges_per_s, index != nullptr};
   const auto watch = std::make_shared<Watch>(
       std::make_unique<GpioSource>(std::move(a), std::move(b), std::move(index)), std::move(inputs),
-      options, static_cast<std::int64_t>(opening.sample_time_s * 1e9),
+      options, static_cast<std::int64_t>(context.sample_time_s * 1e9),
       static_cast<int>(config_.priority));
-  offer.rods[kRodChannel] = std::make_shared<EncoderRod>(
+  devices.rods[kRodChannel] = std::make_shared<EncoderRod>(
       watch, static_cast<double>(config_.sign) * config_.count_m(), config_.reference_m);
   for (std::size_t i = 0; i < config_.inputs.size(); ++i) {
-    offer.inputs[config_.inputs[i].name] = std::make_shared<SwitchInput>(watch, i);
+    devices.inputs[config_.inputs[i].name] = std::make_shared<SwitchInput>(watch, i);
   }
-  offer.summary = [watch] { return summary(watch->view().rod); };
-  return offer;
+  devices.summary = [watch] { return summary(watch->view().rod); };
+  return devices;
 }
 
-std::vector<std::string> EncoderBackend::notes(const Opening&) const {
+std::vector<std::string> EncoderBackend::notes(const OpenContext&) const {
   return {fmt::format(
       "encoder: {:.4g} um per count ({}), {:.0f} edges/s sustained: permitted speed {:.4g} m/s, "
       "uncertain from {:.4g} m/s",

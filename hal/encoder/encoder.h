@@ -1,8 +1,8 @@
 // An incremental encoder on lines of a GPIO chip, and switches and relays on others of its lines.
 //
-// A thread of its own blocks on the edges; the loop's read is wait-free and gives the count of now.
-// Inputs are read by the same thread, at least every half period. Outputs are set by the loop
-// itself: a chip that needs a bus for that (an I2C expander) is no place for one.
+// A separate thread blocks on the edges; the loop's read is wait-free and returns the current
+// count. Inputs are read by the same thread, at least every half period. Outputs are set by the
+// loop itself: a chip that needs a bus for that (an I2C expander) is no place for one.
 #pragma once
 
 #include <atomic>
@@ -46,10 +46,10 @@ struct EncoderConfig {
   std::vector<SwitchConfig> outputs;
 
   void visit(config::schema::Visitor& v);
-  /// What visit() cannot see. `file` for messages. Throws config::schema::Error.
+  /// Checks across fields. `file` is for messages. Throws config::schema::ConfigError.
   void check(const std::string& file) const;
   [[nodiscard]] int per_cycle() const noexcept { return mode[1] - '0'; }
-  /// Of one count.
+  /// Rod travel per count.
   [[nodiscard]] double count_m() const noexcept;
   [[nodiscard]] double edges_per_metre() const noexcept { return 4.0 / (per_cycle() * count_m()); }
   [[nodiscard]] double permitted_speed_mps() const noexcept {
@@ -57,7 +57,7 @@ struct EncoderConfig {
   }
 };
 
-/// What one thread reads, for a rod sensor and any number of inputs.
+/// State that one thread reads, for a rod sensor and any number of inputs.
 class Watch {
  public:
   static constexpr std::size_t kInputs = 16;
@@ -76,7 +76,7 @@ class Watch {
   const View& view() noexcept { return latest_.get(); }
   /// The position of now is the origin; takes effect within a period. From any thread.
   void refer() noexcept { refer_.store(true, std::memory_order_relaxed); }
-  /// Of what was known to be all at `t_ns`.
+  /// Quality of the state that was complete at `t_ns`.
   [[nodiscard]] config::signals::Quality quality(std::int64_t t_ns,
                                                  std::int64_t now_ns) const noexcept {
     return freshness(now_ns - t_ns, period_ns_);
@@ -114,11 +114,11 @@ class EncoderRod final : public RodSensor {
 class EncoderBackend final : public Backend {
  public:
   void visit(config::schema::Visitor& v) override { config_.visit(v); }
-  [[nodiscard]] Offer open(const Opening& opening) const override;
+  [[nodiscard]] BackendDevices open(const OpenContext& context) const override;
   /// An encoder moves nothing.
   [[nodiscard]] bool harmless() const noexcept override { return true; }
-  [[nodiscard]] double worst_speed_mps(const Opening&, double) const override { return 0.0; }
-  [[nodiscard]] std::vector<std::string> notes(const Opening& opening) const override;
+  [[nodiscard]] double worst_speed_mps(const OpenContext&, double) const override { return 0.0; }
+  [[nodiscard]] std::vector<std::string> notes(const OpenContext& context) const override;
 
  private:
   EncoderConfig config_;

@@ -14,7 +14,7 @@ inline constexpr const char* kConsumer = "spoolwatch";
 
 enum class Use : std::uint8_t { edges, input, output };
 
-/// How a line is wired. `bias`: as_is, pull_up, pull_down, disabled.
+/// Wiring of a line. `bias`: as_is, pull_up, pull_down, disabled.
 struct Wiring {
   bool active_low = false;
   std::string bias = "as_is";

@@ -45,7 +45,7 @@ void QuadratureDecoder::resync(Levels levels) noexcept {
   lost_ = true;
   if (levels.a != levels_.a && levels.b != levels_.b) {
     levels_ = levels;
-    quarters_ += 2;  // up or down cannot be told; the phase is kept right
+    quarters_ += 2;  // direction unknown; the phase stays right
   } else if (!(levels == levels_)) {
     move_to(levels);
   }

@@ -1,5 +1,5 @@
 // Follows an encoder over what a kernel does to its edges: they arrive in batches, line by line and
-// now and then late, and when nobody fetches them in time the newest are dropped without a word.
+// now and then late, and the newest are dropped silently when the queue is not read in time.
 //
 // Late edges are put in their place by time. Missing ones show as an edge to the level that was, as
 // a batch as long as the kernel's memory, or as levels that stay different from the decoder's while
@@ -17,7 +17,7 @@
 
 namespace hal::encoder {
 
-/// What the loop gets to see.
+/// Snapshot for the loop.
 struct Snapshot {
   std::int64_t counts = 0;    ///< from the origin
   std::int64_t edge_ns = 0;   ///< time of the newest edge, 0 before the first

@@ -1,4 +1,4 @@
-// What the traffic with a device came to. The thread that talks to it counts, any thread reads.
+// Traffic counters of a device. The polling thread writes, any thread reads.
 #pragma once
 
 #include <array>
@@ -46,13 +46,13 @@ class RoundTrips {
 struct Counters {
   using Count = std::atomic<std::uint64_t>;
   Count transactions{0};           ///< requests that were answered, exceptions included
-  Count timeouts{0};               ///< replies that did not come in time
-  Count bad_replies{0};            ///< garbled, or not the answer to what was asked
+  Count timeouts{0};               ///< replies missing at the time-out
+  Count bad_replies{0};            ///< corrupted, or not matching the request
   Count link_errors{0};            ///< connection refused, closed or reset
-  Count exceptions{0};             ///< the device's own refusals
+  Count exceptions{0};             ///< exception replies of the device
   Count reconnects{0};             ///< connections made again after a loss
-  Count expired_commands{0};       ///< too old when their turn came: null was written instead
-  Count silences{0};               ///< the loop gave no command for too long: null was written
+  Count expired_commands{0};       ///< too old when due: null was written instead
+  Count silences{0};               ///< no command from the loop for too long: null was written
   std::atomic<int> last_error{0};  ///< errno of the last loss or exception, libmodbus's included
   RoundTrips round_trips;
   RoundTrips reactions;  ///< from the measurement of a position to the command it led to, taken

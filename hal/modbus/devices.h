@@ -1,11 +1,11 @@
-// The loop's view of a Modbus device: one object for each channel of the map, over one link.
+// The loop's view of a Modbus device: one object for each channel of the map, over one poll thread.
 #pragma once
 
 #include <memory>
 #include <string>
 
 #include "hal/backend.h"
-#include "hal/modbus/link.h"
+#include "hal/modbus/poll_thread.h"
 
 namespace hal::modbus {
 
@@ -17,7 +17,7 @@ struct Freshness {
 };
 
 /// `label` opens the summary: "modbus 127.0.0.1:502".
-[[nodiscard]] Offer make_devices(const std::shared_ptr<Link>& link, const Freshness& freshness,
-                                 const std::string& label);
+[[nodiscard]] BackendDevices make_devices(const std::shared_ptr<PollThread>& poll_thread,
+                                          const Freshness& freshness, const std::string& label);
 
 }  // namespace hal::modbus

@@ -8,9 +8,9 @@
 #include <optional>
 
 #include "config/schema/error.h"
-#include "hal/claim.h"
+#include "hal/device_lock.h"
 #include "hal/modbus/devices.h"
-#include "hal/modbus/survey.h"
+#include "hal/modbus/probe.h"
 
 namespace hal::modbus {
 namespace {
@@ -18,28 +18,28 @@ namespace {
 using config::schema::bad_config;
 
 /// A device of this process's own for as long as the link to it lasts.
-struct Claimed {
-  std::unique_ptr<Claim> claim;
-  std::optional<Link> link;
+struct LockedDevice {
+  std::unique_ptr<DeviceLock> lock;
+  std::optional<PollThread> poll;
 };
 
 constexpr std::int64_t kBauds[] = {1200,  2400,   4800,   9600,   19200, 38400,
                                    57600, 115200, 230400, 460800, 921600};
 
 /// "192.168.0.7:502" into its parts; false when it is none.
-bool split(const std::string& address, PortConfig& port) {
+bool split(const std::string& address, ConnectionConfig& connection) {
   const std::size_t colon = address.rfind(':');
   in_addr ignored{};
   if (colon == std::string::npos) return false;
-  port.host = address.substr(0, colon);
+  connection.host = address.substr(0, colon);
   const std::string digits = address.substr(colon + 1);
-  if (inet_pton(AF_INET, port.host.c_str(), &ignored) != 1) return false;
+  if (inet_pton(AF_INET, connection.host.c_str(), &ignored) != 1) return false;
   if (digits.empty() || digits.size() > 5 ||
       !std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '9'; })) {
     return false;
   }
-  port.port = std::stoi(digits);
-  return port.port >= 1 && port.port <= 65535;
+  connection.port = std::stoi(digits);
+  return connection.port >= 1 && connection.port <= 65535;
 }
 
 }  // namespace
@@ -87,15 +87,15 @@ void ModbusConfig::visit(config::schema::Visitor& v) {
   });
 }
 
-LinkConfig ModbusBackend::link_config(const Opening& opening) const {
-  const std::string where = opening.file + ": [modbus] ";
-  LinkConfig link;
+PollThreadConfig ModbusBackend::poll_thread_config(const OpenContext& context) const {
+  const std::string where = context.file + ": [modbus] ";
+  PollThreadConfig poll;
   if (config_.address.empty() == config_.serial.empty()) {
     throw bad_config(where + "address",
                      config_.address.empty() ? "is missing" : "stands beside serial",
                      "address of a TCP device or serial line of an RTU device");
   }
-  if (!config_.address.empty() && !split(config_.address, link.port)) {
+  if (!config_.address.empty() && !split(config_.address, poll.connection)) {
     throw bad_config(where + "address", "is \"" + config_.address + "\"",
                      "a numeric address and a port, 192.168.0.7:502");
   }
@@ -106,108 +106,110 @@ LinkConfig ModbusBackend::link_config(const Opening& opening) const {
       allowed += (allowed.empty() ? "" : ", ") + std::to_string(b);
     throw bad_config(where + "baud", "is " + std::to_string(config_.baud), allowed);
   }
-  link.port.serial = config_.serial;
-  link.port.baud = static_cast<int>(config_.baud);
-  link.port.parity = config_.parity == "none" ? 'N' : config_.parity == "odd" ? 'O' : 'E';
-  link.port.stop_bits = static_cast<int>(config_.stop_bits);
-  link.port.unit = static_cast<int>(config_.unit);
-  link.port.timeout_s =
-      std::isnan(config_.timeout_s) ? 0.8 * opening.sample_time_s : config_.timeout_s;
-  link.port.connect_timeout_s = config_.connect_timeout_s;
-  link.port.multiple_only = config_.multiple_only;
-  link.period_s = opening.sample_time_s;
-  link.null_V = opening.null_V;
-  link.watchdog_s = config_.watchdog_s;
-  link.combined = config_.combined;
-  link.read_ahead_s = config_.read_ahead_s;
-  link.hand_over_s = config_.hand_over_s;
-  link.stale_after_s =
-      std::isnan(config_.stale_after_s) ? 2.5 * opening.sample_time_s : config_.stale_after_s;
-  link.longest_pause_s = config_.longest_pause_s;
-  link.priority = static_cast<int>(config_.priority);
-  return link;
+  poll.connection.serial = config_.serial;
+  poll.connection.baud = static_cast<int>(config_.baud);
+  poll.connection.parity = config_.parity == "none" ? 'N' : config_.parity == "odd" ? 'O' : 'E';
+  poll.connection.stop_bits = static_cast<int>(config_.stop_bits);
+  poll.connection.unit = static_cast<int>(config_.unit);
+  poll.connection.timeout_s =
+      std::isnan(config_.timeout_s) ? 0.8 * context.sample_time_s : config_.timeout_s;
+  poll.connection.connect_timeout_s = config_.connect_timeout_s;
+  poll.connection.multiple_only = config_.multiple_only;
+  poll.period_s = context.sample_time_s;
+  poll.null_V = context.null_V;
+  poll.watchdog_s = config_.watchdog_s;
+  poll.combined = config_.combined;
+  poll.read_ahead_s = config_.read_ahead_s;
+  poll.hand_over_s = config_.hand_over_s;
+  poll.stale_after_s =
+      std::isnan(config_.stale_after_s) ? 2.5 * context.sample_time_s : config_.stale_after_s;
+  poll.longest_pause_s = config_.longest_pause_s;
+  poll.priority = static_cast<int>(config_.priority);
+  return poll;
 }
 
-void ModbusBackend::check(const Opening& opening, const LinkConfig& link, const Plan& plan) const {
-  const std::string where = opening.file + ": [modbus] ";
-  if (link.read_ahead_s > 0.0 && (link.combined || link.read_ahead_s >= 0.9 * link.period_s)) {
+void ModbusBackend::check(const OpenContext& context, const PollThreadConfig& poll,
+                          const RegisterMap& map) const {
+  const std::string where = context.file + ": [modbus] ";
+  if (poll.read_ahead_s > 0.0 && (poll.combined || poll.read_ahead_s >= 0.9 * poll.period_s)) {
     throw bad_config(where + "read_ahead_s",
-                     link.combined ? "is set, and combined reads with the write"
+                     poll.combined ? "is set, and combined reads with the write"
                                    : "is a whole period or nearly so",
-                     link.combined ? "0 where combined is true" : "below 0.9 periods");
+                     poll.combined ? "0 where combined is true" : "below 0.9 periods");
   }
-  if (plan.watchdog && std::isnan(config_.watchdog_s)) {
+  if (map.watchdog && std::isnan(config_.watchdog_s)) {
     throw bad_config(where + "watchdog_s",
-                     "is missing for [modbus.registers." + plan.watchdog->name + "]",
+                     "is missing for [modbus.registers." + map.watchdog->name + "]",
                      "the time-out in s that the device shall have");
   }
-  if (plan.watchdog) {
-    const Codec& codec = plan.watchdog->codec;
+  if (map.watchdog) {
+    const Codec& codec = map.watchdog->codec;
     const double written_s = codec.decode(codec.encode(config_.watchdog_s));
     if (!(std::abs(written_s - config_.watchdog_s) <= codec.resolution() * 1.001) ||
         written_s <= 0.0) {
       throw bad_config(where + "watchdog_s",
                        "is " + std::to_string(config_.watchdog_s) + ", and [modbus.registers." +
-                           plan.watchdog->name + "] can only take " + std::to_string(written_s),
+                           map.watchdog->name + "] can only take " + std::to_string(written_s),
                        "what scale, low and high of that register allow");
     }
   }
-  if (plan.valve) {
-    const Codec& codec = plan.valve->codec;
-    const double written_V = codec.decode(codec.encode(opening.null_V));
-    const double slack_V = codec.resolution() * 1.001 + 1e-6 * std::abs(opening.null_V);
-    if (!(std::abs(written_V - opening.null_V) <= slack_V)) {
-      throw bad_config(opening.file + ": [valve] null_V",
-                       "is " + std::to_string(opening.null_V) + ", and [modbus.registers." +
-                           plan.valve->name + "] can only take " + std::to_string(written_V),
+  if (map.valve) {
+    const Codec& codec = map.valve->codec;
+    const double written_V = codec.decode(codec.encode(context.null_V));
+    const double slack_V = codec.resolution() * 1.001 + 1e-6 * std::abs(context.null_V);
+    if (!(std::abs(written_V - context.null_V) <= slack_V)) {
+      throw bad_config(context.file + ": [valve] null_V",
+                       "is " + std::to_string(context.null_V) + ", and [modbus.registers." +
+                           map.valve->name + "] can only take " + std::to_string(written_V),
                        "what scale, low and high of that register allow");
     }
   }
   const double bad_after_s =
-      std::isnan(config_.bad_after_s) ? 2.0 * link.stale_after_s : config_.bad_after_s;
-  if (bad_after_s < link.stale_after_s) {
+      std::isnan(config_.bad_after_s) ? 2.0 * poll.stale_after_s : config_.bad_after_s;
+  if (bad_after_s < poll.stale_after_s) {
     throw bad_config(where + "bad_after_s", "is below stale_after_s", "at least stale_after_s");
   }
 }
 
-Offer ModbusBackend::open(const Opening& opening) const {
-  const LinkConfig config = link_config(opening);
-  Plan plan = make_plan(opening.file, config_.registers, config_.combined);
-  check(opening, config, plan);
+BackendDevices ModbusBackend::open(const OpenContext& context) const {
+  const PollThreadConfig config = poll_thread_config(context);
+  RegisterMap map = make_register_map(context.file, config_.registers, config_.combined);
+  check(context, config, map);
   auto counters = std::make_unique<Counters>();
-  auto port = std::make_unique<Port>(config.port, *counters);
+  auto connection = std::make_unique<Connection>(config.connection, *counters);
   const std::string device = config_.address.empty() ? "serial \"" + config_.serial + "\" at " +
                                                            std::to_string(config_.baud) +
                                                            " baud, parity " + config_.parity
                                                      : "address \"" + config_.address + "\"";
-  const auto claimed = std::make_shared<Claimed>();
-  const bool writes = plan.valve || plan.watchdog || !plan.outputs.empty();
-  if (opening.exclusive && writes && !config_.address.empty()) {  // a serial line is locked itself
-    claimed->claim = std::make_unique<Claim>(
-        "modbus/" + config.port.host + ":" + std::to_string(config.port.port),
-        opening.file + ": [modbus] " + device);
+  const auto locked = std::make_shared<LockedDevice>();
+  const bool writes = map.valve || map.watchdog || !map.outputs.empty();
+  if (context.exclusive && writes && !config_.address.empty()) {  // a serial line is locked itself
+    locked->lock = std::make_unique<DeviceLock>(
+        "modbus/" + config.connection.host + ":" + std::to_string(config.connection.port),
+        context.file + ": [modbus] " + device);
   }
   const Snapshot first =
-      survey(*port, plan, {opening.file, device, config_.connect_timeout_s, config.port.timeout_s});
-  claimed->link.emplace(config, std::move(plan), std::move(port), std::move(counters), first);
-  const std::shared_ptr<Link> link(claimed, &*claimed->link);
+      probe(*connection, map,
+            {context.file, device, config_.connect_timeout_s, config.connection.timeout_s});
+  locked->poll.emplace(config, std::move(map), std::move(connection), std::move(counters), first);
+  const std::shared_ptr<PollThread> poll(locked, &*locked->poll);
   Freshness freshness;
   freshness.stale_after_s = config.stale_after_s;
   freshness.bad_after_s =
       std::isnan(config_.bad_after_s) ? 2.0 * config.stale_after_s : config_.bad_after_s;
   freshness.jitter_s = std::isnan(config_.jitter_s) ? 0.1 * config.period_s : config_.jitter_s;
-  return make_devices(link, freshness,
+  return make_devices(poll, freshness,
                       "modbus " + (config_.address.empty() ? config_.serial : config_.address));
 }
 
-std::vector<std::string> ModbusBackend::notes(const Opening& opening) const {
-  const LinkConfig link = link_config(opening);
+std::vector<std::string> ModbusBackend::notes(const OpenContext& context) const {
+  const PollThreadConfig poll = poll_thread_config(context);
   const auto ms = [](double s) { return fmt::format("{:.3g} ms", s * 1e3); };
   return {"modbus " + (config_.address.empty() ? config_.serial : config_.address) +
-          ": a reply within " + ms(link.port.timeout_s) + ", position read " +
-          (link.read_ahead_s > 0.0 ? ms(link.read_ahead_s) + " before its period"
+          ": a reply within " + ms(poll.connection.timeout_s) + ", position read " +
+          (poll.read_ahead_s > 0.0 ? ms(poll.read_ahead_s) + " before its period"
                                    : std::string("with the command before")) +
-          ", a command sent within " + ms(link.hand_over_s) + ", declared delay " +
+          ", a command sent within " + ms(poll.hand_over_s) + ", declared delay " +
           ms(config_.delay_s) + " from there to the valve, " +
           (std::isnan(config_.watchdog_s) ? std::string("no time-out of the device")
                                           : "device at null after " + ms(config_.watchdog_s))};

@@ -9,19 +9,17 @@
 //   role = "rod"                      # valve_command, valve_readback, input, output, watchdog
 //   address = 4
 //   type = "float32"
-//
-// Requests wait for answers in a thread of their own (link.h); registers.h and plan.h say what a
-// map may hold. A reading is good while it is fresh; stale when it is older than stale_after_s, has
-// been handed out before, or was measured further than jitter_s from its usual moment of the
-// period; bad when it is older than bad_after_s, out of its limits, or while there is no
-// connection.
+// Requests run in a separate thread (poll_thread.h); registers.h and register_map.h define what a
+// map may hold. A reading is good while it is fresh; stale when it is older than stale_after_s, is
+// a repetition, or was measured further than jitter_s from its usual moment of the period; bad when
+// it is older than bad_after_s, out of its limits, or while there is no connection.
 #pragma once
 
 #include <memory>
 #include <vector>
 
 #include "hal/backend.h"
-#include "hal/modbus/link.h"
+#include "hal/modbus/poll_thread.h"
 #include "hal/modbus/registers.h"
 
 namespace hal::modbus {
@@ -57,11 +55,11 @@ struct ModbusConfig {
 class ModbusBackend final : public Backend {
  public:
   void visit(config::schema::Visitor& v) override { config_.visit(v); }
-  /// Connects and reads every register once; see link.h for what happens then.
-  [[nodiscard]] Offer open(const Opening& opening) const override;
+  /// Connects and reads every register once; see poll_thread.h for what happens then.
+  [[nodiscard]] BackendDevices open(const OpenContext& context) const override;
   /// Only when the configuration says that the other side is a simulated rig.
   [[nodiscard]] bool harmless() const noexcept override { return config_.bench_rig; }
-  [[nodiscard]] double worst_speed_mps(const Opening&, double) const override {
+  [[nodiscard]] double worst_speed_mps(const OpenContext&, double) const override {
     return config_.max_speed_mps;
   }
   /// The device's own time-out ends a command, whichever side has gone.
@@ -70,11 +68,12 @@ class ModbusBackend final : public Backend {
             .process_dead_s = config_.watchdog_s,
             .latency_s = config_.hand_over_s + config_.delay_s};
   }
-  [[nodiscard]] std::vector<std::string> notes(const Opening& opening) const override;
+  [[nodiscard]] std::vector<std::string> notes(const OpenContext& context) const override;
 
  private:
-  [[nodiscard]] LinkConfig link_config(const Opening& opening) const;
-  void check(const Opening& opening, const LinkConfig& link, const Plan& plan) const;
+  [[nodiscard]] PollThreadConfig poll_thread_config(const OpenContext& context) const;
+  void check(const OpenContext& context, const PollThreadConfig& poll,
+             const RegisterMap& map) const;
 
   ModbusConfig config_;
 };

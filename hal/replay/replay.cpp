@@ -75,25 +75,25 @@ InputReading ReplayInput::read(const Tick& tick) noexcept {
   return {column_[row], 0, config::signals::Quality::good};
 }
 
-Offer ReplayBackend::open(const Opening& opening) const {
-  const std::filesystem::path file = resolve(opening, config_.record);
+BackendDevices ReplayBackend::open(const OpenContext& context) const {
+  const std::filesystem::path file = resolve(context, config_.record);
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) {
-    throw config::schema::bad_config(opening.file + ": [replay] record",
+    throw config::schema::bad_config(context.file + ": [replay] record",
                                      "is \"" + file.string() + "\", which is no file",
                                      "a CSV file, a MAT file or an LCM event log");
   }
   const auto record =
       std::make_shared<const config::record::Record>(config::record::read_record(file));
-  Offer offer;
-  offer.sample_time_s = record->sample_time_s;
-  offer.fast = config_.pace == "fast";
-  offer.rods[kRodChannel] = std::make_shared<ReplaySensor>(record);
+  BackendDevices devices;
+  devices.sample_time_s = record->sample_time_s;
+  devices.fast = config_.pace == "fast";
+  devices.rods[kRodChannel] = std::make_shared<ReplaySensor>(record);
   for (const auto& [channel, name] : kColumns) {
     const std::vector<double>* column = record->column(name);
-    if (column != nullptr) offer.inputs[channel] = std::make_shared<ReplayInput>(record, *column);
+    if (column != nullptr) devices.inputs[channel] = std::make_shared<ReplayInput>(record, *column);
   }
-  return offer;
+  return devices;
 }
 
 }  // namespace hal::replay

@@ -65,10 +65,10 @@ class ReplayInput final : public Input {
 class ReplayBackend final : public Backend {
  public:
   void visit(config::schema::Visitor& v) override { config_.visit(v); }
-  [[nodiscard]] Offer open(const Opening& opening) const override;
+  [[nodiscard]] BackendDevices open(const OpenContext& context) const override;
   [[nodiscard]] bool harmless() const noexcept override { return true; }
   /// Nothing is written, so nothing moves.
-  [[nodiscard]] double worst_speed_mps(const Opening&, double) const override { return 0.0; }
+  [[nodiscard]] double worst_speed_mps(const OpenContext&, double) const override { return 0.0; }
 
  private:
   ReplayConfig config_;

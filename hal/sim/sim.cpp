@@ -9,20 +9,20 @@
 namespace hal::sim {
 namespace {
 
-/// How long the valve is held open to find the fastest speed: many time constants of any rod.
+/// Duration of the open-valve run that finds the fastest speed: many time constants of any rod.
 constexpr double kSpeedSearch_s = 0.5;
-/// How far a period may be from a whole number of integration steps, in steps.
+/// Largest deviation of a period from a whole number of integration steps, in steps.
 constexpr double kWholeSteps = 1e-6;
 
 /// Throws where it names no transducer, or a rod sensor as well.
-void check_pressure(const std::string& file, const Trouble& trouble) {
+void check_pressure(const std::string& file, const InjectedFault& fault) {
   const auto& known = plant_sim::kTransducers;
   const std::string where = file + ": [[sim.trouble]] pressure";
-  if (!trouble.rod.empty()) {
+  if (!fault.rod.empty()) {
     throw config::schema::bad_config(where, "stands beside rod", "one of the two");
   }
-  if (std::find(known.begin(), known.end(), trouble.pressure) != known.end()) return;
-  throw config::schema::bad_config(where, "is \"" + trouble.pressure + "\"",
+  if (std::find(known.begin(), known.end(), fault.pressure) != known.end()) return;
+  throw config::schema::bad_config(where, "is \"" + fault.pressure + "\"",
                                    std::string(known[0]) + ", " + known[1] + ", " + known[2]);
 }
 
@@ -34,7 +34,7 @@ void SimConfig::visit(config::schema::Visitor& v) {
            command_timeout_s, {1e-3, std::numeric_limits<double>::infinity()});
   v.boolean({"pretend_real", "obey the rules of a rig that moves something"}, pretend_real);
   config::schema::visit_list(v, {"trouble", "what goes wrong with a sensor or the valve"},
-                             troubles);
+                             injected_faults);
   config::schema::visit_list(v, {"rod", "a spare rod sensor"}, rods);
   config::schema::visit_list(v, {"input", "a switch or another signal"}, inputs);
 }
@@ -54,7 +54,7 @@ SimRig::SimRig(std::unique_ptr<plant_sim::Plant> plant, const SimConfig& config,
               ? std::max(1LL, std::llround(std::floor(config.command_timeout_s / sample_time_s +
                                                       kWholeSteps)))
               : std::numeric_limits<std::int64_t>::max()),
-      spoilt_(config.troubles, "") {}
+      faulty_(config.injected_faults, "") {}
 
 Reading SimRig::read(const Tick& tick) noexcept {
   double u_V = held_V_.load(std::memory_order_relaxed);
@@ -70,12 +70,12 @@ Reading SimRig::read(const Tick& tick) noexcept {
   reading.command_V = u_V;
   reading.quality = config::signals::Quality::good;
   const double t_s = static_cast<double>(tick.index) * sample_time_s_;
-  deaf_.store(spoilt_.spoil(reading, t_s), std::memory_order_relaxed);
+  valve_unresponsive_.store(faulty_.apply(reading, t_s), std::memory_order_relaxed);
   return reading;
 }
 
 Applied SimRig::take(double u_V) noexcept {
-  if (deaf_.load(std::memory_order_relaxed)) return {kMissing, false};
+  if (valve_unresponsive_.load(std::memory_order_relaxed)) return {kMissing, false};
   const double applied_V = dac_.apply(u_V);
   held_V_.store(applied_V, std::memory_order_relaxed);
   return {applied_V, true};
@@ -94,7 +94,7 @@ Reading SpareRod::read(const Tick& tick) noexcept {
   Reading reading;
   reading.y_m = encoder_.read(rig_->position_m() + (t_s >= from_s_ ? offset_m_ : 0.0));
   reading.quality = config::signals::Quality::good;
-  spoilt_.spoil(reading, t_s);
+  faulty_.apply(reading, t_s);
   return reading;
 }
 
@@ -102,41 +102,41 @@ InputReading PressureInput::read(const Tick& tick) noexcept {
   const double t_s = static_cast<double>(tick.nominal_ns) * 1e-9;
   InputReading reading{transducers_->read(which_, rig_->pressures(), t_s), 0,
                        config::signals::Quality::good};
-  spoilt_.spoil(reading, t_s);
+  faulty_.apply(reading, t_s);
   return reading;
 }
 
-std::unique_ptr<plant_sim::Plant> SimBackend::load(const Opening& opening) const {
-  const std::filesystem::path file = resolve(opening, config_.model);
+std::unique_ptr<plant_sim::Plant> SimBackend::load(const OpenContext& context) const {
+  const std::filesystem::path file = resolve(context, config_.model);
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) {
-    throw config::schema::bad_config(opening.file + ": [sim] model",
+    throw config::schema::bad_config(context.file + ": [sim] model",
                                      "is \"" + file.string() + "\", which is no file",
                                      "a model file (TOML)");
   }
   return plant_sim::make_plant(plant_sim::load_model(file));
 }
 
-void SimBackend::check_troubles(const Opening& opening) const {
+void SimBackend::check_injected_faults(const OpenContext& context) const {
   std::string known;
   for (const SpareConfig& spare : config_.rods) known += (known.empty() ? "" : ", ") + spare.id;
-  for (const Trouble& trouble : config_.troubles) {
-    if (!trouble.pressure.empty()) {
-      check_pressure(opening.file, trouble);
+  for (const InjectedFault& fault : config_.injected_faults) {
+    if (!fault.pressure.empty()) {
+      check_pressure(context.file, fault);
       continue;
     }
-    const auto is_it = [&](const SpareConfig& spare) { return spare.id == trouble.rod; };
-    if (trouble.rod.empty() || std::any_of(config_.rods.begin(), config_.rods.end(), is_it)) {
+    const auto is_it = [&](const SpareConfig& spare) { return spare.id == fault.rod; };
+    if (fault.rod.empty() || std::any_of(config_.rods.begin(), config_.rods.end(), is_it)) {
       continue;
     }
-    throw config::schema::bad_config(opening.file + ": [[sim.trouble]] rod",
-                                     "is \"" + trouble.rod + "\", which is no [[sim.rod]]",
+    throw config::schema::bad_config(context.file + ": [[sim.trouble]] rod",
+                                     "is \"" + fault.rod + "\", which is no [[sim.rod]]",
                                      known.empty() ? "none is there" : known);
   }
 }
 
-void SimBackend::offer_pressures(const std::string& file, const std::shared_ptr<SimRig>& rig,
-                                 Offer& offer) const {
+void SimBackend::add_pressures(const std::string& file, const std::shared_ptr<SimRig>& rig,
+                               BackendDevices& devices) const {
   std::shared_ptr<plant_sim::Transducers> transducers;
   try {
     transducers = std::make_shared<plant_sim::Transducers>(
@@ -144,50 +144,51 @@ void SimBackend::offer_pressures(const std::string& file, const std::shared_ptr<
   } catch (const config::schema::Error& e) {
     throw config::schema::ConfigError(file + ": " + e.what());
   }
-  const plant_sim::Pressures now = rig->pressures();
+  const config::signals::Pressures now = rig->pressures();
   const double values_Pa[] = {now.supply_Pa, now.in_Pa, now.out_Pa};
   for (std::size_t i = 0; i < plant_sim::kTransducers.size(); ++i) {
     if (std::isnan(values_Pa[i])) continue;  // such a plant has none
-    offer.inputs[plant_sim::kTransducers[i]] =
-        std::make_shared<PressureInput>(rig, transducers, i, config_.troubles);
+    devices.inputs[plant_sim::kTransducers[i]] =
+        std::make_shared<PressureInput>(rig, transducers, i, config_.injected_faults);
   }
 }
 
-Offer SimBackend::open(const Opening& opening) const {
-  check_troubles(opening);
-  std::unique_ptr<plant_sim::Plant> plant = load(opening);
-  const double steps = opening.sample_time_s / plant->step_s();
+BackendDevices SimBackend::open(const OpenContext& context) const {
+  check_injected_faults(context);
+  std::unique_ptr<plant_sim::Plant> plant = load(context);
+  const double steps = context.sample_time_s / plant->step_s();
   if (std::abs(steps - std::round(steps)) > kWholeSteps) {
     throw config::schema::bad_config(
-        opening.file + ": [loop] rate_hz",
+        context.file + ": [loop] rate_hz",
         "makes a period of " + std::to_string(steps) + " integration steps of the model",
         "a whole number of steps");
   }
-  if (std::abs(opening.null_V) > config_.dac_range_V) {
-    throw config::schema::bad_config(opening.file + ": [valve] null_V",
+  if (std::abs(context.null_V) > config_.dac_range_V) {
+    throw config::schema::bad_config(context.file + ": [valve] null_V",
                                      "is outside the range of the D/A converter",
                                      "at most [sim] dac_range_V in magnitude");
   }
   std::shared_ptr<SimRig> rig;
   try {
     rig =
-        std::make_shared<SimRig>(std::move(plant), config_, opening.sample_time_s, opening.null_V);
+        std::make_shared<SimRig>(std::move(plant), config_, context.sample_time_s, context.null_V);
   } catch (const config::schema::Error& e) {
-    throw config::schema::ConfigError(opening.file + ": [[sim.fault]] " + e.what());
+    throw config::schema::ConfigError(context.file + ": [[sim.fault]] " + e.what());
   }
-  Offer offer;
-  offer.rods[kRodChannel] = rig;
-  offer.valve = rig;
+  BackendDevices devices;
+  devices.rods[kRodChannel] = rig;
+  devices.valve = rig;
   std::uint64_t seed = static_cast<std::uint64_t>(config_.seed);
   for (const SpareConfig& spare : config_.rods) {
-    offer.rods[spare.id] = std::make_shared<SpareRod>(rig, spare, config_.troubles, ++seed);
+    devices.rods[spare.id] =
+        std::make_shared<SpareRod>(rig, spare, config_.injected_faults, ++seed);
   }
-  offer_pressures(opening.file, rig, offer);
+  add_pressures(context.file, rig, devices);
   for (const SwitchConfig& input : config_.inputs) {
-    offer.inputs[input.id] = std::make_shared<Switch>(input);
+    devices.inputs[input.id] = std::make_shared<Switch>(input);
   }
-  offer.outputs["permit"] = std::make_shared<Line>();
-  return offer;
+  devices.outputs["permit"] = std::make_shared<Line>();
+  return devices;
 }
 
 NullTimes SimBackend::null_times() const {
@@ -199,14 +200,14 @@ NullTimes SimBackend::null_times() const {
   return times;
 }
 
-double SimBackend::worst_speed_mps(const Opening& opening, double limit_V) const {
-  const std::unique_ptr<plant_sim::Plant> plant = load(opening);
+double SimBackend::worst_speed_mps(const OpenContext& context, double limit_V) const {
+  const std::unique_ptr<plant_sim::Plant> plant = load(context);
   double worst_mps = 0.0;
   for (const double u_V : {limit_V, -limit_V}) {
     plant->reset();
     const auto steps = static_cast<int>(kSpeedSearch_s / plant->step_s());
     for (int i = 0; i < steps; ++i) {
-      plant->advance(opening.null_V + u_V, plant->step_s());
+      plant->advance(context.null_V + u_V, plant->step_s());
       worst_mps = std::max(worst_mps, std::abs(plant->speed_mps()));
     }
   }

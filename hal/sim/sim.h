@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "hal/backend.h"
-#include "hal/sim/trouble.h"
+#include "hal/sim/injected_fault.h"
 #include "plant_sim/bench_plant.h"
 #include "plant_sim/instruments.h"
 #include "plant_sim/schedule.h"
@@ -22,7 +22,7 @@ namespace hal::sim {
 struct SimConfig : plant_sim::BenchPlant {
   double command_timeout_s = std::numeric_limits<double>::infinity();
   bool pretend_real = false;  ///< under the rules of a rig that moves something
-  std::vector<Trouble> troubles;
+  std::vector<InjectedFault> injected_faults;
   std::vector<SpareConfig> rods;
   std::vector<SwitchConfig> inputs;
 
@@ -41,7 +41,7 @@ class SimRig final : public RodSensor, public ValveDrive {
   /// The plant's own position, after the tick read last.
   [[nodiscard]] double position_m() const noexcept { return plant_->reading_m(); }
   /// Likewise, its pressures.
-  [[nodiscard]] plant_sim::Pressures pressures() const noexcept { return plant_->pressures(); }
+  [[nodiscard]] config::signals::Pressures pressures() const noexcept { return plant_->pressures(); }
 
  private:
   Applied take(double u_V) noexcept;
@@ -53,31 +53,31 @@ class SimRig final : public RodSensor, public ValveDrive {
   double sample_time_s_;
   double null_V_;
   std::atomic<double> held_V_;  ///< go_null() may come from another thread
-  std::atomic<bool> deaf_{false};
+  std::atomic<bool> valve_unresponsive_{false};
   std::atomic<std::int64_t> written_{0};  ///< tick of the last write
   std::int64_t index_ = 0;                ///< tick that the plant stands at
   std::int64_t timeout_ticks_;
-  SpoiltRod spoilt_;
+  FaultyRod faulty_;
 };
 
 /// A spare sensor on the rod of a SimRig, to be read after it.
 class SpareRod final : public RodSensor {
  public:
-  /// `troubles`: of all rods; `seed`: of its noise.
+  /// `injected_faults`: of all sensors; `seed`: of the noise.
   SpareRod(std::shared_ptr<const SimRig> rig, const SpareConfig& config,
-           const std::vector<Trouble>& troubles = {}, std::uint64_t seed = 1)
+           const std::vector<InjectedFault>& injected_faults = {}, std::uint64_t seed = 1)
       : rig_(std::move(rig)),
         offset_m_(config.offset_m),
         from_s_(config.from_s),
         encoder_(config.encoder_resolution_m, config.noise_m, seed),
-        spoilt_(troubles, config.id) {}
+        faulty_(injected_faults, config.id) {}
   Reading read(const Tick& tick) noexcept override;
 
  private:
   std::shared_ptr<const SimRig> rig_;
   double offset_m_, from_s_;
   plant_sim::Encoder encoder_;
-  SpoiltRod spoilt_;
+  FaultyRod faulty_;
 };
 
 /// A pressure of a SimRig's plant, to be read after the rig.
@@ -86,36 +86,36 @@ class PressureInput final : public Input {
   /// `which` of plant_sim::kTransducers; `transducers` are shared by all of a rig.
   PressureInput(std::shared_ptr<const SimRig> rig,
                 std::shared_ptr<plant_sim::Transducers> transducers, std::size_t which,
-                const std::vector<Trouble>& troubles = {})
+                const std::vector<InjectedFault>& injected_faults = {})
       : rig_(std::move(rig)),
         transducers_(std::move(transducers)),
         which_(which),
-        spoilt_(troubles, plant_sim::kTransducers.at(which)) {}
+        faulty_(injected_faults, plant_sim::kTransducers.at(which)) {}
   InputReading read(const Tick& tick) noexcept override;
 
  private:
   std::shared_ptr<const SimRig> rig_;
   std::shared_ptr<plant_sim::Transducers> transducers_;
   std::size_t which_;
-  SpoiltPressure spoilt_;
+  FaultyPressure faulty_;
 };
 
 class SimBackend final : public Backend {
  public:
   void visit(config::schema::Visitor& v) override { config_.visit(v); }
-  [[nodiscard]] Offer open(const Opening& opening) const override;
+  [[nodiscard]] BackendDevices open(const OpenContext& context) const override;
   [[nodiscard]] bool harmless() const noexcept override { return !config_.pretend_real; }
   [[nodiscard]] bool outlives_process() const noexcept override { return false; }
   /// The simulated valve ends with the process, unless it pretends to be a real one.
   [[nodiscard]] NullTimes null_times() const override;
-  [[nodiscard]] double worst_speed_mps(const Opening& opening, double limit_V) const override;
+  [[nodiscard]] double worst_speed_mps(const OpenContext& context, double limit_V) const override;
 
  private:
-  [[nodiscard]] std::unique_ptr<plant_sim::Plant> load(const Opening& opening) const;
-  void check_troubles(const Opening& opening) const;
+  [[nodiscard]] std::unique_ptr<plant_sim::Plant> load(const OpenContext& context) const;
+  void check_injected_faults(const OpenContext& context) const;
   /// Offers the pressures that the plant has.
-  void offer_pressures(const std::string& file, const std::shared_ptr<SimRig>& rig,
-                       Offer& offer) const;
+  void add_pressures(const std::string& file, const std::shared_ptr<SimRig>& rig,
+                     BackendDevices& devices) const;
 
   SimConfig config_;
 };

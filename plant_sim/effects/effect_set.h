@@ -1,5 +1,5 @@
-// All effects of the table in one object, as a plant sees them: per site the sum or the chain of
-// what the active ones contribute (site.h says what each means).
+// All effects of the table in one object: per site, the sum or chain of the contributions of the
+// active effects (site.h defines the sites).
 #pragma once
 
 #include <limits>
@@ -16,45 +16,45 @@ class EffectSet : public EffectStore<S, E...> {
   using Store::formulas_;
 
  public:
-  /// To be called once per step, and no oftener.
+  /// Call exactly once per step.
   [[nodiscard]] S command_V(S u_V) {
-    this->template act<Site::command>(
+    this->template for_each_active<Site::command>(
         [&]<class T>(Tag<T>, const auto& p, auto& memory) { u_V = T::command_V(p, memory, u_V); });
-    return handed_on<Site::command>(u_V);
+    return apply_formulas<Site::command>(u_V);
   }
 
   [[nodiscard]] S spool_limit_mps() const {
     S least = std::numeric_limits<double>::infinity();
-    this->template act<Site::spool>([&]<class T>(Tag<T>, const auto& p, const auto&) {
+    this->template for_each_active<Site::spool>([&]<class T>(Tag<T>, const auto& p, const auto&) {
       least = min(least, T::spool_limit_mps(p));
     });
     return least;
   }
 
   [[nodiscard]] S opening_m(S x_m, const S& gain_m_per_V) const {
-    this->template act<Site::opening>([&]<class T>(Tag<T>, const auto& p, const auto&) {
+    this->template for_each_active<Site::opening>([&]<class T>(Tag<T>, const auto& p, const auto&) {
       x_m = T::opening_m(p, x_m, gain_m_per_V);
     });
-    return handed_on<Site::opening>(x_m);
+    return apply_formulas<Site::opening>(x_m);
   }
 
   [[nodiscard]] S supply_Pa(S supply_Pa, const S& port_Pa, const S& flow) const {
-    this->template act<Site::supply>([&]<class T>(Tag<T>, const auto& p, const auto&) {
+    this->template for_each_active<Site::supply>([&]<class T>(Tag<T>, const auto& p, const auto&) {
       supply_Pa = T::supply_Pa(p, supply_Pa, port_Pa, flow);
     });
     return supply_Pa;
   }
 
   [[nodiscard]] S flow_m3ps(S flow_m3ps) const {
-    this->template act<Site::flow>([&]<class T>(Tag<T>, const auto& p, const auto&) {
+    this->template for_each_active<Site::flow>([&]<class T>(Tag<T>, const auto& p, const auto&) {
       flow_m3ps = T::flow_m3ps(p, flow_m3ps);
     });
-    return handed_on<Site::flow>(flow_m3ps);
+    return apply_formulas<Site::flow>(flow_m3ps);
   }
 
   [[nodiscard]] Leak<S> leak(const S& in_Pa, const S& out_Pa) const {
     Leak<S> sum;
-    this->template act<Site::leakage>([&]<class T>(Tag<T>, const auto& p, const auto&) {
+    this->template for_each_active<Site::leakage>([&]<class T>(Tag<T>, const auto& p, const auto&) {
       const Leak<S> one = T::leak(p, in_Pa, out_Pa);
       sum.in_m3ps += one.in_m3ps;
       sum.out_m3ps += one.out_m3ps;
@@ -69,75 +69,81 @@ class EffectSet : public EffectStore<S, E...> {
 
   [[nodiscard]] S conductance_m3ps_per_Pa() const {
     S sum = 0.0;
-    this->template act<Site::leakage>(
+    this->template for_each_active<Site::leakage>(
         [&]<class T>(Tag<T>, const auto& p, const auto&) { sum += T::conductance_m3ps_per_Pa(p); });
     return sum + formulas_.conductance_m3ps_per_Pa();
   }
 
   [[nodiscard]] S bulk_modulus_Pa(S modulus_Pa, const S& at_Pa) const {
-    this->template act<Site::bulk_modulus>([&]<class T>(Tag<T>, const auto& p, const auto&) {
-      modulus_Pa = T::bulk_modulus_Pa(p, modulus_Pa, at_Pa);
-    });
+    this->template for_each_active<Site::bulk_modulus>(
+        [&]<class T>(Tag<T>, const auto& p, const auto&) {
+          modulus_Pa = T::bulk_modulus_Pa(p, modulus_Pa, at_Pa);
+        });
     return modulus_Pa;
   }
 
   [[nodiscard]] S added_mass_kg() const {
     S sum = 0.0;
-    this->template act<Site::inertia>(
+    this->template for_each_active<Site::inertia>(
         [&]<class T>(Tag<T>, const auto& p, const auto&) { sum += T::added_mass_kg(p); });
     return sum;
   }
 
-  /// The force that is left of contact.drive_N; of several frictions each sees what the earlier
-  /// ones left.
-  [[nodiscard]] S remaining_N(const S& y_m, DryContact<S> contact) const {
+  /// contact.drive_N less all resisting forces and dry friction; each dry friction sees the force
+  /// that remains after those before it.
+  [[nodiscard]] S net_force_N(const S& y_m, DryContact<S> contact) const {
     S resisting_N = 0.0;
-    this->template act<Site::force>([&]<class T>(Tag<T>, const auto& p, const auto&) {
+    this->template for_each_active<Site::force>([&]<class T>(Tag<T>, const auto& p, const auto&) {
       resisting_N += T::resisting_N(p, y_m, contact.v_mps);
     });
     if (formulas_.acts_on(Site::force)) {
       resisting_N += formulas_.sum(Site::force, y_m, contact.v_mps);
     }
     contact.drive_N -= resisting_N;
-    this->template act<Site::dry_friction>([&]<class T>(Tag<T>, const auto& p, const auto& memory) {
-      contact.drive_N -= T::friction_N(p, memory, contact);
-    });
+    this->template for_each_active<Site::dry_friction>(
+        [&]<class T>(Tag<T>, const auto& p, const auto& memory) {
+          contact.drive_N -= T::friction_N(p, memory, contact);
+        });
     return contact.drive_N;
   }
 
   [[nodiscard]] S slope_N_s_per_m(const S& v_mps) const {
     S sum = 0.0;
-    this->template act<Site::force>([&]<class T>(Tag<T>, const auto& p, const auto&) {
+    this->template for_each_active<Site::force>([&]<class T>(Tag<T>, const auto& p, const auto&) {
       if constexpr (requires { T::slope_N_s_per_m(p, v_mps); }) sum += T::slope_N_s_per_m(p, v_mps);
     });
-    this->template act<Site::dry_friction>([&]<class T>(Tag<T>, const auto& p, const auto&) {
-      if constexpr (requires { T::slope_N_s_per_m(p, v_mps); }) sum += T::slope_N_s_per_m(p, v_mps);
-    });
+    this->template for_each_active<Site::dry_friction>(
+        [&]<class T>(Tag<T>, const auto& p, const auto&) {
+          if constexpr (requires { T::slope_N_s_per_m(p, v_mps); })
+            sum += T::slope_N_s_per_m(p, v_mps);
+        });
     if (formulas_.acts_on(Site::force)) sum += formulas_.slope_N_s_per_m(v_mps);
     return sum;
   }
 
   [[nodiscard]] S stiffness_N_per_m() const {
     S sum = 0.0;
-    this->template act<Site::force>([&]<class T>(Tag<T>, const auto& p, const auto&) {
+    this->template for_each_active<Site::force>([&]<class T>(Tag<T>, const auto& p, const auto&) {
       if constexpr (requires { T::stiffness_N_per_m(p); }) sum += T::stiffness_N_per_m(p);
     });
-    this->template act<Site::dry_friction>([&]<class T>(Tag<T>, const auto& p, const auto&) {
-      if constexpr (requires { T::stiffness_N_per_m(p); }) sum += T::stiffness_N_per_m(p);
-    });
+    this->template for_each_active<Site::dry_friction>(
+        [&]<class T>(Tag<T>, const auto& p, const auto&) {
+          if constexpr (requires { T::stiffness_N_per_m(p); }) sum += T::stiffness_N_per_m(p);
+        });
     return sum + formulas_.stiffness_N_per_m();
   }
 
   [[nodiscard]] S reading_m(S y_m) const {
-    this->template act<Site::sensor>([&]<class T>(Tag<T>, const auto& p, const auto& memory) {
-      y_m = T::reading_m(p, memory, y_m);
-    });
-    return handed_on<Site::sensor>(y_m);
+    this->template for_each_active<Site::sensor>(
+        [&]<class T>(Tag<T>, const auto& p, const auto& memory) {
+          y_m = T::reading_m(p, memory, y_m);
+        });
+    return apply_formulas<Site::sensor>(y_m);
   }
 
-  /// To be called once per accepted integration step.
+  /// Call once per accepted integration step.
   void accept(const S& travel_m, const S& v_mps) {
-    this->act_on_memory([&]<class T>(Tag<T>, const auto& p, auto& memory) {
+    this->for_each_active([&]<class T>(Tag<T>, const auto& p, auto& memory) {
       if constexpr (requires { T::accept(p, memory, travel_m, v_mps); }) {
         T::accept(p, memory, travel_m, v_mps);
       }
@@ -145,9 +151,9 @@ class EffectSet : public EffectStore<S, E...> {
   }
 
  private:
-  /// What the formulas of a site make of what the effects before them gave.
+  /// Chains the formulas of a site behind its effects.
   template <Site kSite>
-  [[nodiscard]] S handed_on(const S& x) const {
+  [[nodiscard]] S apply_formulas(const S& x) const {
     return formulas_.acts_on(kSite) ? formulas_.chain(kSite, x) : x;
   }
 };

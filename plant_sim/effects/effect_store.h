@@ -1,5 +1,5 @@
-// The effects of a plant as data: parameters, memory, and which of them are active. An effect with
-// every parameter neutral is skipped.
+// Parameters, memory and activity of a plant's effects. An effect whose parameters are all neutral
+// is skipped.
 #pragma once
 
 #include <array>
@@ -26,8 +26,8 @@ class EffectStore {
     each_index([&](auto i) { f(Tag<Effect<i>>{}, std::get<i>(parameters_)); });
   }
 
-  /// To be called after parameters have changed: brings them into their ranges and finds out which
-  /// effects are active. Allocates at the first call and when the step changes, at no other.
+  /// Call after a change of parameters: clamps them to their ranges and determines the active
+  /// effects. Allocates only at the first call and when the step changes.
   void prepare(double step_s) {
     if (step_s == step_s_ && unchanged() && formulas_.unchanged()) return;
     formulas_.prepare(always_);
@@ -36,7 +36,7 @@ class EffectStore {
       bool neutral = true;
       std::get<i>(parameters_).visit([&](const ParameterInfo& info, S& value) {
         value = clamp(value, S(info.min), S(info.max));
-        neutral = neutral && all(both(value <= S(info.neutral), value >= S(info.neutral)));
+        neutral = neutral && all((value <= S(info.neutral)) & (value >= S(info.neutral)));
       });
       active_[i] = !neutral || always_;
       for (const Site site : Effect<i>::kSites) used_sites_ |= active_[i] ? bit(site) : 0U;
@@ -47,10 +47,10 @@ class EffectStore {
     step_s_ = step_s;
   }
 
-  /// The formulas of the model file; to be declared before the first prepare().
+  /// The formulas of the model file; declare them before the first prepare().
   [[nodiscard]] FormulaSet<S>& formulas() { return formulas_; }
 
-  /// For tests: neutral effects take part too.
+  /// For tests: evaluates neutral effects too.
   void set_always(bool always) {
     always_ = always;
     step_s_ = 0.0;
@@ -80,7 +80,7 @@ class EffectStore {
 
   /// Calls f(tag, parameters, memory) for each active effect of the site.
   template <Site kSite, class F>
-  void act(F&& f) const {
+  void for_each_active(F&& f) const {
     if ((used_sites_ & bit(kSite)) == 0) return;
     each_index([&](auto i) {
       if constexpr (has_site(Effect<i>::kSites, kSite)) {
@@ -89,7 +89,7 @@ class EffectStore {
     });
   }
   template <Site kSite, class F>
-  void act(F&& f) {
+  void for_each_active(F&& f) {
     if ((used_sites_ & bit(kSite)) == 0) return;
     each_index([&](auto i) {
       if constexpr (has_site(Effect<i>::kSites, kSite)) {
@@ -97,9 +97,9 @@ class EffectStore {
       }
     });
   }
-  /// The same for those of every site.
+  /// Calls f(tag, parameters, memory) for each active effect of any site.
   template <class F>
-  void act_on_memory(F&& f) {
+  void for_each_active(F&& f) {
     each_index([&](auto i) {
       if (active_[i]) f(Tag<Effect<i>>{}, std::get<i>(parameters_), std::get<i>(memory_));
     });
@@ -112,7 +112,7 @@ class EffectStore {
 
   static constexpr unsigned bit(Site site) { return 1U << static_cast<unsigned>(site); }
 
-  /// Bit for bit: also what is no number is found again.
+  /// Compares bit for bit, so that NaN equals itself.
   [[nodiscard]] bool unchanged() const {
     // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): numbers only, without padding
     return std::memcmp(&parameters_, &prepared_, sizeof(AllParameters)) == 0;

@@ -71,7 +71,7 @@ struct Friction {
   };
 
   static S friction_N(const Parameters& p, const Memory& memory, const DryContact<S>& at) {
-    const bool known = all(both(at.v_mps <= memory.v_mps, at.v_mps >= memory.v_mps));
+    const bool known = all((at.v_mps <= memory.v_mps) & (at.v_mps >= memory.v_mps));
     const S rise = known ? memory.rise_ratio : rise_ratio(p, at.v_mps);
     const S forward_N = level_at_N(p, S(1.0), rise);
     const S backward_N = level_at_N(p, S(-1.0), rise);

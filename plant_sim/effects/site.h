@@ -15,8 +15,8 @@
 //   dry_friction  S friction_N(p, memory, DryContact)        sees the other forces: may hold them
 //   sensor        S reading_m(p, memory, y_m)                what the position sensor shows
 //
-// Those of one site act in the order of the table. What would be too fast for the integration step
-// tells so, and shorter steps are taken: `S slope_N_s_per_m(p, v_mps)` dF/dv,
+// Effects of one site act in the order of the table. An effect too fast for the integration step
+// declares its slopes, and shorter steps are taken: `S slope_N_s_per_m(p, v_mps)` dF/dv,
 // `S stiffness_N_per_m(p)` the most that F changes with y, `S conductance_m3ps_per_Pa(p)`.
 //
 // An effect with memory has a struct Memory, owned by the plant, and may have
@@ -65,7 +65,7 @@ constexpr bool fits() {
   return true;
 }
 
-/// What a dry friction sees of the moving part at one instant of an integration step.
+/// State of the moving part that a dry friction acts on, at one instant of an integration step.
 template <class S>
 struct DryContact {
   S v_mps;

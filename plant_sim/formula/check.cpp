@@ -1,4 +1,4 @@
-// What a declared formula must fulfil before it is simulated (formula.h).
+// Checks on a declared formula before simulation (formula.h).
 #include <charconv>
 #include <cmath>
 
@@ -38,7 +38,7 @@ void check_parameter(const FormulaEffect::Parameter& p, bool used, const std::st
 
 /// Calls f(values, result) on a grid over the variables' ranges, until it returns false.
 template <class F>
-void each_point(const Formula& formula, const TapeRun<double>& run, F&& f) {
+void each_point(const Formula& formula, const ExpressionEvaluator<double>& run, F&& f) {
   const auto& [first, second] = formula.ranges;
   const bool alone = *formula.place.variables[1] == '\0';
   const int many = alone ? kPointsAlone : kPointsEach;
@@ -65,7 +65,8 @@ std::string point(const Formula& formula, double a, double b, const std::vector<
   return text;
 }
 
-void check_neutral(const Formula& formula, TapeRun<double>& run, const std::string& where) {
+void check_neutral(const Formula& formula, ExpressionEvaluator<double>& run,
+                   const std::string& where) {
   std::vector<double> neutral;
   for (const ParameterInfo& p : formula.parameters) neutral.push_back(p.neutral);
   run.set_parameters(neutral.data());
@@ -80,7 +81,8 @@ void check_neutral(const Formula& formula, TapeRun<double>& run, const std::stri
   });
 }
 
-void check_finite(const Formula& formula, TapeRun<double>& run, const std::string& where) {
+void check_finite(const Formula& formula, ExpressionEvaluator<double>& run,
+                  const std::string& where) {
   const std::size_t count = formula.parameters.size();
   std::size_t combinations = 1;
   for (std::size_t i = 0; i < count; ++i) combinations *= 3;
@@ -117,9 +119,9 @@ void check(const FormulaEffect& effect, const Formula& formula, const std::strin
   }
   for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
     const FormulaEffect::Parameter& p = effect.parameters[i];
-    check_parameter(p, formula.tape.uses[i], where + " parameters." + p.name);
+    check_parameter(p, formula.program.uses[i], where + " parameters." + p.name);
   }
-  TapeRun<double> run(view_of(formula.tape));
+  ExpressionEvaluator<double> run(view_of(formula.program));
   check_finite(formula, run, where + " formula");
   check_neutral(formula, run, where + " formula");
 }

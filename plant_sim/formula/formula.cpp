@@ -13,7 +13,8 @@ namespace {
 
 using config::schema::bad_config;
 
-std::array<VariableRange, Tape::kVariables> ranges_of(Site site, const PlausibleRanges& ranges) {
+std::array<VariableRange, ExpressionProgram::kVariables> ranges_of(Site site,
+                                                                   const PlausibleRanges& ranges) {
   switch (site) {
     case Site::command:
       return {ranges.command_V, {}};
@@ -99,7 +100,7 @@ Formulas::Formulas(std::vector<Formula> formulas)
                       f.place.site,
                       f.place.guard,
                       f.parameters.data(),
-                      view_of(f.tape),
+                      view_of(f.program),
                       {f.ranges[0], f.ranges[1]}});
   }
 }

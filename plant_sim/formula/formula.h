@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "plant_sim/formula/expression_program.h"
 #include "plant_sim/formula/formula_effect.h"
-#include "plant_sim/formula/tape.h"
 #include "plant_sim/parameter.h"
 
 namespace plant_sim {
 
-/// Between what a variable of a formula plausibly lies, in its own unit.
+/// Plausible range of a formula's variable, in its own unit.
 struct VariableRange {
   double min = 0.0;
   double max = 0.0;
@@ -21,22 +21,23 @@ struct VariableRange {
 struct Formula {
   std::string name;
   FormulaSite place;
-  Tape tape;
+  ExpressionProgram program;
   std::vector<ParameterInfo> parameters;
-  std::array<VariableRange, Tape::kVariables> ranges;  ///< of the site's variables; none is 0..0
+  std::array<VariableRange, ExpressionProgram::kVariables>
+      ranges;  ///< of the site's variables; none is 0..0
 };
 
-/// A formula as plain pointers into it, for what simulates it.
+/// A formula as plain pointers, for simulation.
 struct FormulaView {
   const char* name;
   Site site;
   double guard;
   const ParameterInfo* parameters;
-  TapeView tape;
-  VariableRange ranges[Tape::kVariables];
+  ExpressionProgramView program;
+  VariableRange ranges[ExpressionProgram::kVariables];
 };
 
-/// The formulas of a model. Whatever simulates them must not outlive it.
+/// The formulas of a model. Must outlive the simulation that uses them.
 class Formulas {
  public:
   Formulas() = default;
@@ -49,7 +50,7 @@ class Formulas {
   std::vector<FormulaView> views_;
 };
 
-/// What plants tell of the ranges of a formula's variables.
+/// Plausible ranges of a formula's variables, given by the plant.
 struct PlausibleRanges {
   VariableRange command_V{-10.0, 10.0};
   VariableRange opening_m;

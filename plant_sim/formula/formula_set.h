@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "plant_sim/formula/formula.h"
-#include "plant_sim/formula/steepness.h"
+#include "plant_sim/formula/max_slope.h"
 
 namespace plant_sim {
 
@@ -35,7 +35,7 @@ class FormulaSet {
     }
   }
 
-  /// Whether prepare() has seen these values, bit for bit.
+  /// True when the values equal those of the last prepare(), bit for bit.
   [[nodiscard]] bool unchanged() const {
     for (const Effect& effect : effects_) {
       if (std::memcmp(static_cast<const void*>(effect.values.data()),
@@ -57,7 +57,7 @@ class FormulaSet {
         const ParameterInfo& info = effect.formula.parameters[i];
         S& value = effect.values[i];
         value = clamp(value, S(info.min), S(info.max));
-        neutral = neutral && all(both(value <= S(info.neutral), value >= S(info.neutral)));
+        neutral = neutral && all((value <= S(info.neutral)) & (value >= S(info.neutral)));
         effect.prepared[i] = value;
       }
       effect.active = !neutral || always;
@@ -65,7 +65,7 @@ class FormulaSet {
       sites_ |= bit(effect.formula.site);
       effect.run.set_parameters(effect.values.data());
       if (effect.formula.site == Site::force) {
-        effect.steepness.prepare(
+        effect.max_slope.prepare(
             effect.formula.ranges[0], effect.formula.ranges[1],
             [&](const S& y_m, const S& v_mps) { return effect.contribution(y_m, v_mps); });
       }
@@ -101,7 +101,7 @@ class FormulaSet {
   [[nodiscard]] S slope_N_s_per_m(const S& v_mps) const {
     S total = 0.0;
     each_active(Site::force,
-                [&](const Effect& effect) { total += effect.steepness.slope_N_s_per_m(v_mps); });
+                [&](const Effect& effect) { total += effect.max_slope.slope_N_s_per_m(v_mps); });
     return total;
   }
 
@@ -109,7 +109,7 @@ class FormulaSet {
   [[nodiscard]] S stiffness_N_per_m() const {
     S total = 0.0;
     each_active(Site::force,
-                [&](const Effect& effect) { total += effect.steepness.stiffness_N_per_m(); });
+                [&](const Effect& effect) { total += effect.max_slope.stiffness_N_per_m(); });
     return total;
   }
 
@@ -123,9 +123,9 @@ class FormulaSet {
 
  private:
   struct Effect {
-    explicit Effect(const FormulaView& declared) : formula(declared), run(declared.tape) {
-      values.reserve(declared.tape.parameters);
-      for (std::size_t i = 0; i < declared.tape.parameters; ++i) {
+    explicit Effect(const FormulaView& declared) : formula(declared), run(declared.program) {
+      values.reserve(declared.program.parameters);
+      for (std::size_t i = 0; i < declared.program.parameters; ++i) {
         values.emplace_back(declared.parameters[i].neutral);
       }
       prepared = values;
@@ -143,10 +143,10 @@ class FormulaSet {
     }
 
     FormulaView formula;
-    TapeRun<S> run;
+    ExpressionEvaluator<S> run;
     std::vector<S> values;
     std::vector<S> prepared;  ///< as the last prepare() left them
-    Steepness<S> steepness;
+    MaxSlope<S> max_slope;
     S conductance_m3ps_per_Pa = 0.0;
     bool active = false;
   };

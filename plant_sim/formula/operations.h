@@ -1,4 +1,4 @@
-// What a formula can be made of: its operators and functions, for double and for lanes.
+// Operators and functions of a formula, for double and for SIMD lanes.
 //
 // Truth is 1, everything but 0 is true. Nothing branches on a value: if(condition, yes, no) finds
 // both sides and takes one, so that each lane does exactly the operations of the double version.
@@ -76,7 +76,7 @@ template <class S>
 S apply(Op op, const S& a, const S& b, const S& c) {
   const S zero = 0.0;
   const S one = 1.0;
-  const auto is_zero = [&](const S& x) { return both(x <= zero, x >= zero); };
+  const auto is_zero = [&](const S& x) { return (x <= zero) & (x >= zero); };
   switch (op) {
     case Op::add:
       return a + b;
@@ -99,9 +99,9 @@ S apply(Op op, const S& a, const S& b, const S& c) {
     case Op::greater_equal:
       return select(a >= b, one, zero);
     case Op::equal:
-      return select(both(a <= b, a >= b), one, zero);
+      return select((a <= b) & (a >= b), one, zero);
     case Op::unequal:
-      return select(both(a <= b, a >= b), zero, one);
+      return select((a <= b) & (a >= b), zero, one);
     case Op::both:
       return select(is_zero(a), zero, select(is_zero(b), zero, one));
     case Op::either:

@@ -8,7 +8,7 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
-#include "plant_sim/formula/recording.h"
+#include "plant_sim/formula/expression_graph.h"
 
 namespace plant_sim {
 namespace {
@@ -16,11 +16,11 @@ namespace {
 using config::schema::bad_config;
 
 /// muParser calls plain functions: this is where they record.
-thread_local Recording* recording = nullptr;
+thread_local ExpressionGraph* graph = nullptr;
 
 double recorded(Op op, double a, double b = -1.0, double c = -1.0) {
-  if (recording->too_long()) throw mu::ParserError(mu::ecEXPRESSION_TOO_LONG);
-  return recording->operation(op, a, b, c);
+  if (graph->too_long()) throw mu::ParserError(mu::ecEXPRESSION_TOO_LONG);
+  return graph->operation(op, a, b, c);
 }
 template <Op kOp>
 double of_one(double a) {
@@ -167,8 +167,9 @@ const std::vector<std::string>& formula_words() {
   return words;
 }
 
-Tape record_formula(const std::string& text, const std::vector<std::string>& variables,
-                    const std::vector<std::string>& parameters, const std::string& where) {
+ExpressionProgram record_formula(const std::string& text, const std::vector<std::string>& variables,
+                                 const std::vector<std::string>& parameters,
+                                 const std::string& where) {
   const std::size_t quote = text.find_first_of("\"'");
   if (quote != std::string::npos) {
     throw bad_config(where, "a string at character " + std::to_string(quote + 1), "numbers");
@@ -183,10 +184,10 @@ Tape record_formula(const std::string& text, const std::vector<std::string>& var
   }
   std::vector<std::string> names = variables;
   names.insert(names.end(), parameters.begin(), parameters.end());
-  Recording here(parameters.size());
+  ExpressionGraph here(parameters.size());
   struct Scope {
-    explicit Scope(Recording& to) { recording = &to; }
-    ~Scope() { recording = nullptr; }
+    explicit Scope(ExpressionGraph& to) { graph = &to; }
+    ~Scope() { graph = nullptr; }
   } const scope(here);
   try {
     mu::Parser parser = bare_parser();
@@ -195,16 +196,17 @@ Tape record_formula(const std::string& text, const std::vector<std::string>& var
       handles.push_back(handle);
       parser.DefineVar(name, &handles.back());
     };
-    for (std::size_t i = 0; i < variables.size(); ++i) define(variables[i], Recording::input(i));
+    for (std::size_t i = 0; i < variables.size(); ++i)
+      define(variables[i], ExpressionGraph::input(i));
     for (std::size_t i = 0; i < parameters.size(); ++i) {
-      define(parameters[i], Recording::input(Tape::kVariables + i));
+      define(parameters[i], ExpressionGraph::input(ExpressionProgram::kVariables + i));
     }
     define(kPi, here.constant(3.141592653589793));
     parser.SetExpr(text);
     int count = 0;
     const double* results = parser.Eval(count);
     if (count != 1) throw bad_config(where, "has a comma outside of a function", "one expression");
-    return here.tape(results[0]);
+    return here.program(results[0]);
   } catch (const mu::ParserError& error) {
     throw refusal(error, text.size(), names, where);
   }

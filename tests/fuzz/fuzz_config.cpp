@@ -9,7 +9,7 @@
 #include "daemon/io/control_socket.h"
 #include "daemon/io/recorder.h"
 #include "hal/modbus/modbus.h"
-#include "hal/modbus/plan.h"
+#include "hal/modbus/register_map.h"
 #include "plant_sim/model_file.h"
 #include "tests/fuzz/input.h"
 
@@ -45,7 +45,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       hal::modbus::ModbusConfig modbus;
       document.read_part(
           [&](Visitor& v) { v.table("modbus", [&](Visitor& t) { modbus.visit(t); }); });
-      (void)hal::modbus::make_plan("fuzz", modbus.registers, modbus.combined);
+      (void)hal::modbus::make_register_map("fuzz", modbus.registers, modbus.combined);
     });
     const plant_sim::ModelFile model = plant_sim::read_model(document);
     const std::string text = plant_sim::print_model(model);

@@ -37,7 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                             .pressure_Pa = {0.0, 2e7},
                                             .position_m = {0.0, 0.6}};
     const plant_sim::Formula formula = plant_sim::compile(effect, ranges, "fuzz");
-    plant_sim::TapeRun<double> run(view_of(formula.tape));
+    plant_sim::ExpressionEvaluator<double> run(view_of(formula.program));
     const double values[] = {1.0, 2.0};
     run.set_parameters(values);
     (void)run(0.1, 0.2);

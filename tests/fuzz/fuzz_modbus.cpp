@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "hal/modbus/port.h"
+#include "hal/modbus/connection.h"
 #include "tests/fuzz/input.h"
 
 namespace {
@@ -82,12 +82,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const unsigned choice = data[0];
   device.set_reply(std::string(fuzz::text_of(data + 1, size - 1)), (choice & 0x80U) != 0);
   Counters counters;
-  PortConfig config;
+  ConnectionConfig config;
   config.host = "127.0.0.1";
   config.port = device.port();
   config.timeout_s = 0.5;
-  Port port(config, counters);
-  if (!port.connect()) return 0;  // no port left for a moment
+  Connection connection(config, counters);
+  if (!connection.connect()) return 0;  // no port left for a moment
   constexpr std::array kTables = {Table::holding, Table::input, Table::coil, Table::discrete};
   const Table table = kTables[choice & 3U];
   const WriteChannel channel{"u", table == Table::coil ? Table::coil : Table::holding, 5,
@@ -96,20 +96,20 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   // As many as asked for, and not one more: what a reply claims must not be believed.
   const Block block{table, 3, of_bits ? 9 : 4};
   std::vector<std::uint16_t> into(static_cast<std::size_t>(block.count));
-  Outcome outcome = Outcome::lost;
+  RequestResult outcome = RequestResult::lost;
   switch (choice >> 2U & 3U) {
     case 0:
     case 1:
-      outcome = port.read(block, into.data());
+      outcome = connection.read(block, into.data());
       break;
     case 2:
-      outcome = port.write(channel, choice);
+      outcome = connection.write(channel, choice);
       break;
     default:
-      outcome = port.exchange(channel, choice, {Table::holding, 3, 4}, into.data());
+      outcome = connection.exchange(channel, choice, {Table::holding, 3, 4}, into.data());
       break;
   }
-  if (outcome == Outcome::lost && port.is_open()) std::abort();
+  if (outcome == RequestResult::lost && connection.is_open()) std::abort();
   for (const char* type : {"int16", "uint16", "int32", "uint32", "float32"}) {
     const Codec codec = codec_of(type);
     const double value = codec.decode(codec.load(into.data()));

@@ -6,7 +6,7 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
-#include "hal/roles.h"
+#include "hal/rig.h"
 #include "hal/sim/sim.h"
 
 namespace hal::sim {
@@ -26,7 +26,8 @@ struct Stand {
         std::make_shared<SimRig>(plant_sim::make_plant(plant_sim::ModelFile()), config, kTs_s, 0.0);
     const auto transducers = std::make_shared<plant_sim::Transducers>(config.pressures, 1);
     for (std::size_t i = 0; i < 3; ++i) {
-      inputs.push_back(std::make_shared<PressureInput>(rig, transducers, i, config.troubles));
+      inputs.push_back(
+          std::make_shared<PressureInput>(rig, transducers, i, config.injected_faults));
     }
   }
   /// Reads the rig, then one pressure, and goes on with u_V.
@@ -52,7 +53,7 @@ TEST(PressureInput, ReadsThePlantAtTheSameTickAsThePosition) {
   Stand stand({});
   for (std::int64_t k = 0; k < 100; ++k) {
     stand.rig->read(tick(k));
-    const plant_sim::Pressures wanted = twin->pressures();
+    const config::signals::Pressures wanted = twin->pressures();
     const double wanted_Pa[] = {wanted.supply_Pa, wanted.in_Pa, wanted.out_Pa};
     for (std::size_t i = 0; i < 3; ++i) {
       const InputReading reading = stand.inputs[i]->read(tick(k));
@@ -116,7 +117,7 @@ TEST(PressureInput, HasTheErrorsThatItsTransducerIsDeclaredWith) {
 TEST(PressureInput, SuffersTheTroublesThatNameIt) {
   SimConfig config;
   const auto trouble = [&](const char* kind, const char* pressure, double from_s, double to_s) {
-    config.troubles.push_back({kind, "", from_s, to_s, 0.0, 0.0, pressure});
+    config.injected_faults.push_back({kind, "", from_s, to_s, 0.0, 0.0, pressure});
   };
   trouble("missing", "supply_pressure", 0.1, 0.2);
   trouble("frozen", "pressure_in", 0.1, 0.2);
@@ -147,9 +148,9 @@ std::string outcome(const std::string& more, const std::string& model = "models/
                                         "[sim]\nmodel = \"" + model + "\"\n",
                                     "rig.toml")
         .read([&](config::schema::Visitor& v) { rig.visit(v); });
-    const Opening opening{"rig.toml", kFolder, 0.005, 0.0};
-    (void)rig.open(opening);
-    const auto notes = rig.notes(opening);
+    const OpenContext context{"rig.toml", kFolder, 0.005, 0.0};
+    (void)rig.open(context);
+    const auto notes = rig.notes(context);
     return notes.empty() ? "" : notes.front();
   } catch (const config::schema::ConfigError& e) {
     return e.what();

@@ -107,7 +107,7 @@ TEST(ReplayBackend, OffersThePressuresThatTheRecordHas) {
   config::schema::Document::parse("schema_version = 1\nrecord = \"" + file.string() + "\"\n",
                                   "test")
       .read([&](config::schema::Visitor& v) { backend.visit(v); });
-  const Offer devices = backend.open({"test", {}, 0.005, 0.0});
+  const BackendDevices devices = backend.open({"test", {}, 0.005, 0.0});
   std::filesystem::remove(file);
   ASSERT_EQ(devices.inputs.size(), 1U);
   // A bar is 1e5 Pa; the product may miss it by a rounding.
@@ -121,7 +121,7 @@ TEST(ReplayBackend, TakesThePeriodFromTheRecordAndDrivesNothing) {
   config::schema::Document::parse(
       "schema_version = 1\nrecord = \"" + file.string() + "\"\npace = \"fast\"\n", "test")
       .read([&](config::schema::Visitor& v) { backend.visit(v); });
-  const Offer devices = backend.open({"test", {}, 0.005, 0.0});
+  const BackendDevices devices = backend.open({"test", {}, 0.005, 0.0});
   EXPECT_DOUBLE_EQ(devices.sample_time_s, 0.02);
   EXPECT_TRUE(devices.fast);
   EXPECT_EQ(devices.valve, nullptr);

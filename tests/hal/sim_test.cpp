@@ -114,23 +114,23 @@ TEST(SimRig, RefusesAFaultOfAParameterThatThereIsNot) {
 
 TEST(SpareRod, HasNoiseAndTroublesOfItsOwn) {
   SimConfig config = ideal();
-  Trouble drift;
+  InjectedFault drift;
   drift.kind = "drift";
   drift.rod = "b";
   drift.from_s = 0.1;
   drift.rate_mps = 0.01;
-  Trouble frozen;
+  InjectedFault frozen;
   frozen.kind = "frozen";  // the rig's own
   frozen.from_s = 0.1;
-  config.troubles = {drift, frozen};
+  config.injected_faults = {drift, frozen};
   const auto rig = std::make_shared<SimRig>(plant(), config, kTs_s, 0.0);
   SpareConfig spare;
   spare.id = "b";
   spare.offset_m = 1e-3;
-  SpareRod b(rig, spare, config.troubles);
+  SpareRod b(rig, spare, config.injected_faults);
   spare.id = "c";
   spare.noise_m = 1e-5;
-  SpareRod c(rig, spare, config.troubles, 7);
+  SpareRod c(rig, spare, config.injected_faults, 7);
   double squares = 0.0;
   double frozen_at_m = 0.0;
   for (std::int64_t k = 0; k < 400; ++k) {

@@ -3,7 +3,7 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
-#include "hal/roles.h"
+#include "hal/rig.h"
 
 namespace hal {
 namespace {

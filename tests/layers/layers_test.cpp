@@ -68,7 +68,7 @@ const std::vector<Layer> kLayers{
     {"hal/modbus", {"config/schema", "config/signals", "hal"}, {"modbus"}},
     {"hal/encoder", {"config/schema", "config/signals", "hal"}, {"gpiod"}},
     {"hal/comedi", {"config/schema", "config/signals", "hal"}, {"comedilib"}},
-    {"hal/rig", {"config/schema", "hal", "plant_sim"}, {"modbus", "gpiod", "CLI"}},
+    {"hal/hil_rig", {"config/schema", "hal", "plant_sim"}, {"modbus", "gpiod", "CLI"}},
     {"daemon/control", {"config/schema"}, {}},
     {"daemon/rt",
      {"config", "estimator", "estimator/fdi", "hal", "hal/sim", "hal/replay", "plant_sim",

@@ -26,10 +26,10 @@ template <class F, class Exact, class Draw>
 double worst(F f, Exact exact, Draw draw) {
   double most = 0.0;
   for (int i = 0; i < 50000; ++i) {
-    Lanes many;
-    for (std::size_t lane = 0; lane < Lanes::kSize; ++lane) many.set(lane, draw());
-    const Lanes result = f(many);
-    for (std::size_t lane = 0; lane < Lanes::kSize; ++lane) {
+    Simd many;
+    for (std::size_t lane = 0; lane < Simd::kSize; ++lane) many.set(lane, draw());
+    const Simd result = f(many);
+    for (std::size_t lane = 0; lane < Simd::kSize; ++lane) {
       const double one = f(many[lane]);
       EXPECT_EQ(result[lane], one) << many[lane];
       most = std::max(most, ulps(one, exact(static_cast<long double>(many[lane]))));
@@ -67,7 +67,7 @@ TEST(Decay, HasTheBitsOfTheExponentialDownToItsEnd) {
   std::uniform_real_distribution<double> narrow(0.0, 1.0);
   const auto check = [](double x) {
     EXPECT_EQ(decay(x), exp(-x)) << x;
-    EXPECT_EQ(decay(Lanes(x))[1], decay(x)) << x;
+    EXPECT_EQ(decay(Simd(x))[1], decay(x)) << x;
   };
   for (const double x : {0.0, 1e-300, 700.0}) check(x);
   for (int i = 0; i < 50000; ++i) {
@@ -110,7 +110,7 @@ TEST(Sin, IsTheLibrarysBeyondAndHasNoValueAtInfinity) {
   EXPECT_EQ(sin(0.0), 0.0);
   EXPECT_EQ(sin(1e12), std::sin(1e12));
   EXPECT_TRUE(std::isnan(sin(kInfinity)));
-  Lanes mixed = 1.0;
+  Simd mixed = 1.0;
   mixed.set(3, 1e12);
   EXPECT_EQ(sin(mixed)[3], std::sin(1e12));
   EXPECT_EQ(sin(mixed)[2], sin(1.0));

@@ -104,7 +104,7 @@ class Side {
                          const std::string& what) const {
     const PressuresOf<Ensemble::Values> first = together_[0]->pressures();
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const Pressures alone = alone_[lane]->pressures();
+      const config::signals::Pressures alone = alone_[lane]->pressures();
       const auto near = [&](double lanes_Pa, double baseline_Pa, double alone_Pa) {
         const std::string where = what + " lane " + std::to_string(lane);
         if (std::isnan(alone_Pa)) {

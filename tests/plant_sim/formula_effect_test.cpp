@@ -138,15 +138,15 @@ void expect_lanes_agree(const Twin& twin) {
   const auto k_of = [&](std::size_t lane) {
     return std::stod(twin.value) * static_cast<double>(lane) / 7.0;
   };
-  auto together = std::make_unique<Model<Lanes>>();
+  auto together = std::make_unique<Model<Simd>>();
   declare(*together, formulas);
-  together->effects.formulas().each([&](const FormulaView&, const ParameterInfo&, Lanes& value) {
-    for (std::size_t lane = 0; lane < Lanes::kSize; ++lane) value.set(lane, k_of(lane));
+  together->effects.formulas().each([&](const FormulaView&, const ParameterInfo&, Simd& value) {
+    for (std::size_t lane = 0; lane < Simd::kSize; ++lane) value.set(lane, k_of(lane));
   });
   together->prepare(1e-3);
   together->reset();
-  std::array<Model<double>, Lanes::kSize> alone;
-  for (std::size_t lane = 0; lane < Lanes::kSize; ++lane) {
+  std::array<Model<double>, Simd::kSize> alone;
+  for (std::size_t lane = 0; lane < Simd::kSize; ++lane) {
     declare(alone[lane], formulas);
     alone[lane].effects.formulas().each(
         [&](const FormulaView&, const ParameterInfo&, double& value) { value = k_of(lane); });
@@ -156,8 +156,8 @@ void expect_lanes_agree(const Twin& twin) {
   for (int k = 0; k < 2000; ++k) {
     const double u_V = drive_V(k / 5, twin.full_V);
     together->step(u_V);
-    const Lanes reading_m = together->effects.reading_m(together->state.y_m);
-    for (std::size_t lane = 0; lane < Lanes::kSize; ++lane) {
+    const Simd reading_m = together->effects.reading_m(together->state.y_m);
+    for (std::size_t lane = 0; lane < Simd::kSize; ++lane) {
       alone[lane].step(u_V);
       ASSERT_NEAR(reading_m[lane], alone[lane].effects.reading_m(alone[lane].state.y_m), kAgree)
           << twin.formula << " lane " << lane << " step " << k;

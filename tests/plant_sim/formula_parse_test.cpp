@@ -16,16 +16,16 @@ using ::testing::HasSubstr;
 
 /// With variables x, y and parameter k.
 double value(const std::string& text, double x, double y, double k) {
-  const Tape tape = record_formula(text, {"x", "y"}, {"k"}, "here");
-  TapeRun<double> run(view_of(tape));
+  const ExpressionProgram program = record_formula(text, {"x", "y"}, {"k"}, "here");
+  ExpressionEvaluator<double> run(view_of(program));
   run.set_parameters(&k);
   const double alone = run(x, y);
 
-  TapeRun<Lanes> lanes(view_of(tape));
-  Lanes many = 0.25;
+  ExpressionEvaluator<Simd> lanes(view_of(program));
+  Simd many = 0.25;
   many.set(5, k);
   lanes.set_parameters(&many);
-  const double among = lanes(Lanes(x), Lanes(y))[5];
+  const double among = lanes(Simd(x), Simd(y))[5];
   EXPECT_TRUE(among == alone || (std::isnan(among) && std::isnan(alone)) ||
               std::abs(among - alone) <= 1e-12 * std::abs(alone))
       << text;
@@ -71,10 +71,11 @@ TEST(Formula, HasTheFunctionsOfTheMathLibrary) {
 }
 
 TEST(Formula, FindsWhatDependsOnParametersAloneOnce) {
-  const Tape tape = record_formula("exp(k)*sqrt(k)*x + exp(k)*2*pi", {"x"}, {"k", "unused"}, "");
-  EXPECT_EQ(tape.moving.size(), 2U);  // times x, plus
-  EXPECT_EQ(tape.constants.size(), 2U);
-  EXPECT_EQ(tape.uses, (std::vector<bool>{true, false}));
+  const ExpressionProgram program =
+      record_formula("exp(k)*sqrt(k)*x + exp(k)*2*pi", {"x"}, {"k", "unused"}, "");
+  EXPECT_EQ(program.moving.size(), 2U);  // times x, plus
+  EXPECT_EQ(program.constants.size(), 2U);
+  EXPECT_EQ(program.uses, (std::vector<bool>{true, false}));
 }
 
 /// The refusal of a force whose formula this is.

@@ -12,7 +12,7 @@ namespace {
 TEST(Pressures, AreThoseOfTheChambersAndOfTheSupply) {
   const auto plant = make_plant(ModelFile());
   plant->advance(1.0, 3.0);
-  const Pressures found = plant->pressures();
+  const config::signals::Pressures found = plant->pressures();
   // steady speed, equal drops over both orifices: in + out = supply, in - out = d v / A
   EXPECT_EQ(found.supply_Pa, 6.89e6);
   EXPECT_NEAR(found.in_Pa + found.out_Pa, 6.89e6, 1e3);
@@ -38,7 +38,7 @@ TEST(Pressures, AreNoNumbersWhereAPlantHasNone) {
     model.plant = name;
     model.parameters.clear();
     model.initial.clear();
-    const Pressures found = make_plant(model)->pressures();
+    const config::signals::Pressures found = make_plant(model)->pressures();
     EXPECT_TRUE(std::isnan(found.supply_Pa)) << name;
     EXPECT_TRUE(std::isnan(found.in_Pa)) << name;
     EXPECT_TRUE(std::isnan(found.out_Pa)) << name;

@@ -9,7 +9,7 @@ import re
 import subprocess
 import sys
 
-OURS = re.compile(r"BasicLanes<[48]|LaneWord<[48]|LaneMask<[48]|__vector\([48]\)"
+OURS = re.compile(r"SimdVector<[48]|SimdRegister<[48]|SimdMask<[48]|__vector\([48]\)"
                   r"|new_avx(2|512)_lanes\(|^DW\.ref\.")
 
 

@@ -13,10 +13,10 @@
 #include <string>
 #include <thread>
 
-#include "hal/rig/server.h"
+#include "hal/hil_rig/server.h"
 #include "tests/daemon/program/bench_watch.h"
 #include "tests/daemon/program/subprocess.h"
-#include "tests/hal/rig/rig_process.h"
+#include "tests/hal/hil_rig/rig_process.h"
 #include "tests/service/machine.h"
 
 namespace service {
@@ -165,7 +165,7 @@ class Service {
   }
 
   RigFile file_;
-  hal::rig::RigProcess rig_;
+  hal::hil_rig::RigProcess rig_;
   std::unique_ptr<program::Watcher> watcher_;
   Machine machine_;
 };

@@ -49,7 +49,7 @@ class Life : public testing::Test {
   void SetUp() override {
     ASSERT_FALSE(HasFatalFailure());
     service_->machine_.run("systemctl reset-failed spoolwatchd");
-    EXPECT_EQ(hal::rig::set_remotely(service_->rig_.address(), "command_timeout_s=0.05"), "");
+    EXPECT_EQ(hal::hil_rig::set_remotely(service_->rig_.address(), "command_timeout_s=0.05"), "");
   }
   void run_anew() {
     s().configure();
@@ -126,7 +126,7 @@ TEST_F(Life, C_ArmedItRunsAndAnotherProcessHearsItsAlarms) {
   EXPECT_TRUE(machine().becomes("StatusText", "RUN"));
   std::this_thread::sleep_for(std::chrono::seconds(4));  // the estimators' warm-up
   const std::int64_t begin_ns = hal::monotonic_ns();
-  EXPECT_EQ(hal::rig::set_remotely(s().rig_.address(), "supply_pressure_Pa=x0.75"), "");
+  EXPECT_EQ(hal::hil_rig::set_remotely(s().rig_.address(), "supply_pressure_Pa=x0.75"), "");
   const std::string alarm =
       listener.hears("\"name\":\"supply_pressure_fast\",\"severity\":\"MAJOR\"");
   std::printf("# %-46s %7.0f ms\n", "from the fault to the alarm elsewhere",
@@ -135,7 +135,7 @@ TEST_F(Life, C_ArmedItRunsAndAnotherProcessHearsItsAlarms) {
   ASSERT_NE(at, std::string::npos) << "no alarm";
   EXPECT_GT(std::stoll(alarm.substr(at + 10)), begin_ns) << "an alarm without a fault";
   EXPECT_THAT(alarm, HasSubstr("supply_pressure_Pa"));
-  EXPECT_EQ(hal::rig::set_remotely(s().rig_.address(), "supply_pressure_Pa=x1"), "");
+  EXPECT_EQ(hal::hil_rig::set_remotely(s().rig_.address(), "supply_pressure_Pa=x1"), "");
 }
 
 TEST_F(Life, C_ReloadedItRunsOnByTheNewRulesAndKeepsTheOldOnesWhenTheyAreBroken) {
@@ -192,7 +192,7 @@ TEST_F(Life, E_KilledItIsStartedAgainDisarmed) {
 TEST_F(Life, F_KilledWithABrokenConfigurationNullIsWrittenAndItStaysDown) {
   run_anew();
   // Nothing but what is run after the daemon's end takes this device's command away.
-  ASSERT_EQ(hal::rig::set_remotely(s().rig_.address(), "command_timeout_s=0"), "");
+  ASSERT_EQ(hal::hil_rig::set_remotely(s().rig_.address(), "command_timeout_s=0"), "");
   machine().write(kConfiguration, "schema_version = \"none\"\n");
   const pid_t before = machine().daemon();
   s().far_from_null();
@@ -233,7 +233,7 @@ TEST_F(Life, I_WaitsForARigThatIsSwitchedOnLater) {
   machine().run("systemctl stop spoolwatchd");
   std::string address;
   {
-    const hal::rig::RigProcess another({"--config", s().file_.path()});
+    const hal::hil_rig::RigProcess another({"--config", s().file_.path()});
     address = another.address();
   }
   std::string text = s().configuration();
@@ -242,7 +242,7 @@ TEST_F(Life, I_WaitsForARigThatIsSwitchedOnLater) {
   machine().run("systemctl start --no-block spoolwatchd");
   ASSERT_TRUE(machine().becomes("NRestarts", "2")) << s().journal();
   EXPECT_THAT(s().journal(), HasSubstr("cannot be connected (Connection refused)"));
-  const hal::rig::RigProcess another({"--config", s().file_.path()}, address);
+  const hal::hil_rig::RigProcess another({"--config", s().file_.path()}, address);
   EXPECT_TRUE(machine().becomes("ActiveState", "active")) << s().journal();
   EXPECT_TRUE(machine().becomes("StatusText", "DISARMED"));
   machine().run("systemctl stop spoolwatchd");

@@ -15,7 +15,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-Offer open(const std::string& text, double null_V = 0.0, double limit_V = 10.0) {
+BackendDevices open(const std::string& text, double null_V = 0.0, double limit_V = 10.0) {
   ComediBackend backend;
   config::schema::Document::parse("schema_version = 1\n" + text, "rig.toml").read([&](auto& v) {
     backend.visit(v);
@@ -48,38 +48,39 @@ constexpr double kStep_V = 20.0 / 65'535.0;  // range 0 of the board: 16 bits ov
 class ComediVm : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(ComediVm, WhatIsWrittenToTheOutputIsReadBackAtTheInput) {
-  const Offer offer = open(std::string(GetParam()) +
-                           "[output]\nchannel = 2\npolarity = -1\nscale_ratio = 0.5\n"
-                           "offset_V = 0.1\n[rod]\nchannel = 2\nscale_m_per_V = 0.02\n"
-                           "offset_m = 0.3\n[[input]]\nname = \"command\"\nchannel = 2\n");
+  const BackendDevices devices =
+      open(std::string(GetParam()) +
+           "[output]\nchannel = 2\npolarity = -1\nscale_ratio = 0.5\n"
+           "offset_V = 0.1\n[rod]\nchannel = 2\nscale_m_per_V = 0.02\n"
+           "offset_m = 0.3\n[[input]]\nname = \"command\"\nchannel = 2\n");
   Tick tick;
   for (const double u_V : {0.0, 3.3, -7.7, 10.0, -10.0}) {
-    const Applied applied = offer.valve->write(u_V, tick);
+    const Applied applied = devices.valve->write(u_V, tick);
     EXPECT_NEAR(applied.u_V, u_V, kStep_V);
     const double terminal_V = 0.1 - 0.5 * u_V;
     const auto read_V = [&] {
       ++tick.index;
-      return offer.inputs.at("command")->read(tick).value;
+      return devices.inputs.at("command")->read(tick).value;
     };
     EXPECT_NEAR(until(read_V, terminal_V, kStep_V), terminal_V, kStep_V);
-    EXPECT_NEAR(offer.rods.at(kRodChannel)->read(tick).y_m, 0.3 + 0.02 * terminal_V,
+    EXPECT_NEAR(devices.rods.at(kRodChannel)->read(tick).y_m, 0.3 + 0.02 * terminal_V,
                 0.02 * kStep_V);
-    EXPECT_EQ(offer.rods.at(kRodChannel)->read(tick).quality, config::signals::Quality::good);
-    EXPECT_TRUE(offer.valve->write(u_V, tick).good);
+    EXPECT_EQ(devices.rods.at(kRodChannel)->read(tick).quality, config::signals::Quality::good);
+    EXPECT_TRUE(devices.valve->write(u_V, tick).good);
   }
 }
 
 TEST_P(ComediVm, GoesToNullWithoutTheThread) {
-  const Offer offer =
+  const BackendDevices devices =
       open(std::string(GetParam()) +
                "[output]\nchannel = 1\n[[input]]\nname = \"command\"\nchannel = 1\n",
            0.4, 5.0);
   Tick tick;
-  offer.valve->write(4.0, tick);
-  EXPECT_TRUE(offer.valve->go_null().good);
+  devices.valve->write(4.0, tick);
+  EXPECT_TRUE(devices.valve->go_null().good);
   const auto read_V = [&] {
     ++tick.index;
-    return offer.inputs.at("command")->read(tick).value;
+    return devices.inputs.at("command")->read(tick).value;
   };
   EXPECT_NEAR(until(read_V, 0.4, kStep_V), 0.4, kStep_V);
 }
@@ -112,7 +113,7 @@ TEST(ComediVmRefuses, ARangeThatDoesNotReachNullAndLimit) {
 }
 
 TEST(ComediVmRefuses, AnOutputThatAnotherProgramDrives) {
-  const Offer offer = open("[output]\nchannel = 0\n");
+  const BackendDevices devices = open("[output]\nchannel = 0\n");
   EXPECT_THAT(complaint("[output]\nchannel = 1\n"), HasSubstr("another program has locked"));
 }
 

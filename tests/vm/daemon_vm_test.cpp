@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "hal/comedi/board.h"
-#include "hal/rig/gpio_lines.h"
+#include "hal/hil_rig/gpio_lines.h"
 #include "plant_sim/model_file.h"
 #include "plant_sim/plant.h"
 #include "tests/daemon/program/log.h"
@@ -38,7 +38,7 @@ class Rig {
  public:
   explicit Rig(const std::function<void(double t_s)>& at_s)
       : process_([at_s] {
-          hal::rig::SimEncoder lines(chip(), 2, 3);
+          hal::hil_rig::SimEncoder lines(chip(), 2, 3);
           const std::unique_ptr<plant_sim::Plant> plant =
               plant_sim::make_plant(plant_sim::ModelFile());
           hal::comedi::ComediBoard board("rig", "/dev/comedi0");
@@ -155,7 +155,7 @@ double volts_now() {
 }
 
 TEST(DaemonVm, StandsDisarmedWithTheValveAtNull) {
-  hal::rig::SimLine e_stop(chip(), 6);
+  hal::hil_rig::SimLine e_stop(chip(), 6);
   e_stop.set(true);
   const Rig rig([](double) {});
   const program::Log log = watch(configuration(kDriven), "false", 2.0);
@@ -168,7 +168,7 @@ TEST(DaemonVm, StandsDisarmedWithTheValveAtNull) {
 }
 
 TEST(DaemonVm, MovesTheRodAndTripsOnTheEmergencyStop) {
-  hal::rig::SimLine e_stop(chip(), 6);
+  hal::hil_rig::SimLine e_stop(chip(), 6);
   e_stop.set(true);
   const Rig rig([&](double t_s) {
     if (t_s > 6.0) e_stop.set(false);
@@ -192,7 +192,7 @@ TEST(DaemonVm, MovesTheRodAndTripsOnTheEmergencyStop) {
 }
 
 TEST(DaemonVm, WatchesARigThatAnotherControllerMovesAndWritesNothing) {
-  hal::rig::SimLine e_stop(chip(), 6);
+  hal::hil_rig::SimLine e_stop(chip(), 6);
   e_stop.set(true);
   const auto command_V = [](double t_s) {
     return kNull_V + std::sin(2.0 * std::numbers::pi * 0.5 * t_s);

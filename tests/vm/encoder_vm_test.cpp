@@ -10,7 +10,7 @@
 #include "config/schema/error.h"
 #include "hal/encoder/encoder.h"
 #include "hal/encoder/gpio_source.h"
-#include "hal/rig/gpio_lines.h"
+#include "hal/hil_rig/gpio_lines.h"
 #include "tests/vm/process.h"
 
 namespace hal::encoder {
@@ -32,7 +32,7 @@ std::string table(const std::string& more = "") {
          "\"\nline_a = 2\nline_b = 3\nresolution_m = 5e-5\n" + more;
 }
 
-Offer open(const std::string& text) {
+BackendDevices open(const std::string& text) {
   EncoderBackend backend;
   config::schema::Document::parse(text, "rig.toml").read([&](auto& v) { backend.visit(v); });
   return backend.open({"rig.toml", ".", 0.005, 0.0});
@@ -47,14 +47,14 @@ std::string complaint(const std::string& text) {
   return "nothing";
 }
 
-const Snapshot& snapshot(const Offer& offer) {
-  return static_cast<EncoderRod&>(*offer.rods.at(kRodChannel)).snapshot();
+const Snapshot& snapshot(const BackendDevices& devices) {
+  return static_cast<EncoderRod&>(*devices.rods.at(kRodChannel)).snapshot();
 }
 
 /// The position when nothing has moved for a tenth of a second.
-Reading settled(const Offer& offer) {
+Reading settled(const BackendDevices& devices) {
   sleep_until(monotonic_ns() + kSecond_ns / 10);
-  return offer.rods.at(kRodChannel)->read(kTick);
+  return devices.rods.at(kRodChannel)->read(kTick);
 }
 
 /// y in quarters; at most 300 edges a second.
@@ -64,7 +64,7 @@ double sine_quarters(double t_s) {
 
 TEST(EncoderVm, FollowsASineExactlyAtAPermittedSpeed) {
   rig::SimEncoder lines(chip(), 2, 3);
-  const Offer offer = open(table());
+  const BackendDevices devices = open(table());
   const std::int64_t start_ns = monotonic_ns();
   constexpr double kEnd_s = 4.0;
   const auto target = [](double t_s) { return std::llround(std::floor(sine_quarters(t_s))); };
@@ -79,7 +79,7 @@ TEST(EncoderVm, FollowsASineExactlyAtAPermittedSpeed) {
   int good = 0;
   for (std::int64_t k = 0; k < 800; ++k) {
     sleep_until(start_ns + k * 5'000'000);
-    const Reading reading = offer.rods.at(kRodChannel)->read(kTick);
+    const Reading reading = devices.rods.at(kRodChannel)->read(kTick);
     if (reading.quality == config::signals::Quality::bad)
       continue;  // the host had stopped the machine
     // The driver may be late by what the machine takes: compare with where it may have been.
@@ -96,10 +96,10 @@ TEST(EncoderVm, FollowsASineExactlyAtAPermittedSpeed) {
   EXPECT_EQ(driver.wait(), 0);
   EXPECT_LT(worst_m, 1e-12);
   EXPECT_GT(good, 400);
-  EXPECT_NEAR(settled(offer).y_m, kCount_m * static_cast<double>(target(kEnd_s)), 1e-12);
-  EXPECT_GT(snapshot(offer).edges, 400);
-  EXPECT_EQ(snapshot(offer).illegal, 0);
-  EXPECT_EQ(snapshot(offer).times_lost, 0);
+  EXPECT_NEAR(settled(devices).y_m, kCount_m * static_cast<double>(target(kEnd_s)), 1e-12);
+  EXPECT_GT(snapshot(devices).edges, 400);
+  EXPECT_EQ(snapshot(devices).illegal, 0);
+  EXPECT_EQ(snapshot(devices).times_lost, 0);
 }
 
 constexpr std::int64_t kFarthest = 10'000;
@@ -120,10 +120,10 @@ TEST(EncoderVm, LosesNoEdgeOfAFastMotionAndPrintsItsRate) {
   rig::SimEncoder unwatched(chip(), 2, 3);
   const double alone_per_s = fast_motion(unwatched);
   rig::SimEncoder lines(chip(), 2, 3);
-  const Offer offer = open(table("max_edges_per_s = 1e6"));
+  const BackendDevices devices = open(table("max_edges_per_s = 1e6"));
   const double rate_per_s = fast_motion(lines);
-  const Reading reading = settled(offer);
-  const Snapshot& now = snapshot(offer);
+  const Reading reading = settled(devices);
+  const Snapshot& now = snapshot(devices);
   std::printf(
       "encoder: %.0f edges/s without loss on this machine (the driver of the lines alone: "
       "%.0f edges/s); %lld edges, %lld late\n",
@@ -136,13 +136,13 @@ TEST(EncoderVm, LosesNoEdgeOfAFastMotionAndPrintsItsRate) {
 
 TEST(EncoderVm, IsUncertainAboveThePermittedSpeedUntilTheIndex) {
   rig::SimEncoder lines(chip(), 2, 3, 4);
-  const Offer offer = open(table("max_edges_per_s = 300.0\nline_index = 4\n"));
+  const BackendDevices devices = open(table("max_edges_per_s = 300.0\nline_index = 4\n"));
   const auto walk_to = [&](std::int64_t to) {  // at most 100 edges a second
     while (lines.quarter() != to) {
       lines.move_to(lines.quarter() + (to > lines.quarter() ? 1 : -1));
       sleep_until(monotonic_ns() + 10'000'000);
     }
-    return settled(offer);
+    return settled(devices);
   };
   walk_to(5);
   EXPECT_EQ(walk_to(-5).quality, config::signals::Quality::good) << "homed";
@@ -150,15 +150,15 @@ TEST(EncoderVm, IsUncertainAboveThePermittedSpeedUntilTheIndex) {
   EXPECT_NEAR(before.y_m, kCount_m * 11, 1.1 * kCount_m);
   EXPECT_EQ(before.quality, config::signals::Quality::good);
   lines.move_to(60);
-  const Reading fast = settled(offer);
+  const Reading fast = settled(devices);
   EXPECT_NEAR(fast.y_m, before.y_m + kCount_m * 50, 1e-12) << "nothing was lost, as it happens";
   EXPECT_EQ(fast.quality, config::signals::Quality::uncertain);
-  EXPECT_GE(snapshot(offer).bursts, 1);
-  EXPECT_GE(snapshot(offer).times_too_fast, 1);
+  EXPECT_GE(snapshot(devices).bursts, 1);
+  EXPECT_GE(snapshot(devices).times_too_fast, 1);
   EXPECT_EQ(walk_to(10).quality, config::signals::Quality::uncertain);
   const Reading after = walk_to(-5);
   EXPECT_EQ(after.quality, config::signals::Quality::good);
-  EXPECT_EQ(snapshot(offer).slips, 0);
+  EXPECT_EQ(snapshot(devices).slips, 0);
 }
 
 TEST(EncoderVm, SaysThatTheCountIsUncertainWhenTheKernelDropsEdgesAndTheIndexMendsIt) {
@@ -209,12 +209,12 @@ TEST(EncoderVm, ReadsSwitchesAndSetsThePermitLine) {
   rig::SimLine low(chip(), 7);
   high.set(true);
   low.set(true);
-  const Offer offer =
+  const BackendDevices devices =
       open(table("[[input]]\nname = \"e_stop\"\nline = 6\n[[input]]\nname = \"enable\"\nline = 7\n"
                  "active_low = true\n[[output]]\nname = \"permit\"\nline = 8\n"));
   sleep_until(monotonic_ns() + kSecond_ns / 50);
-  Input& e_stop = *offer.inputs.at("e_stop");
-  Input& enable = *offer.inputs.at("enable");
+  Input& e_stop = *devices.inputs.at("e_stop");
+  Input& enable = *devices.inputs.at("enable");
   EXPECT_EQ(e_stop.read(kTick).value, 1.0);
   EXPECT_EQ(e_stop.read(kTick).quality, config::signals::Quality::good);
   EXPECT_EQ(enable.read(kTick).value, 0.0) << "active low";
@@ -223,7 +223,7 @@ TEST(EncoderVm, ReadsSwitchesAndSetsThePermitLine) {
   sleep_until(monotonic_ns() + kSecond_ns / 50);
   EXPECT_EQ(e_stop.read(kTick).value, 0.0);
   EXPECT_EQ(enable.read(kTick).value, 1.0);
-  Output& permit = *offer.outputs.at("permit");
+  Output& permit = *devices.outputs.at("permit");
   EXPECT_EQ(driven(8), '0') << "off until it is set";
   for (const bool on : {true, false, true}) {
     EXPECT_TRUE(permit.set(on));
@@ -232,7 +232,7 @@ TEST(EncoderVm, ReadsSwitchesAndSetsThePermitLine) {
 }
 
 TEST(EncoderVm, RefusesLinesThatItCannotHave) {
-  const Offer held = open(table());
+  const BackendDevices held = open(table());
   EXPECT_THAT(complaint(table()),
               AllOf(HasSubstr("[encoder] line_a"), HasSubstr("in use by \"spoolwatch\"")));
   EXPECT_THAT(complaint("schema_version = 1\nchip = \"" + chip() +

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "hal/comedi/board.h"
-#include "hal/rig/gpio_lines.h"
+#include "hal/hil_rig/gpio_lines.h"
 #include "plant_sim/model_file.h"
 #include "plant_sim/plant.h"
 #include "tests/daemon/program/null_watch.h"
@@ -67,7 +67,7 @@ class NullRig {
   };
 
   int work(const std::string& chip) {
-    hal::rig::SimEncoder lines(chip, 2, 3);
+    hal::hil_rig::SimEncoder lines(chip, 2, 3);
     const std::unique_ptr<plant_sim::Plant> plant = plant_sim::make_plant(plant_sim::ModelFile());
     hal::comedi::ComediBoard board("rig", "/dev/comedi0");
     board.write({1, 0, 0, 0}, kSpan.code(kValveNull_V));  // it keeps what a killed daemon wrote

@@ -103,8 +103,8 @@ struct Stand {
   }
 
   program::Folder folder;
-  hal::rig::SimLine e_stop;
-  hal::rig::SimLine enable;
+  hal::hil_rig::SimLine e_stop;
+  hal::hil_rig::SimLine enable;
   std::unique_ptr<vm::NullRig> rig;
 };
 

@@ -11,7 +11,7 @@
 
 #include "tests/daemon/program/log.h"
 #include "tests/daemon/program/subprocess.h"
-#include "tests/hal/rig/rig_process.h"
+#include "tests/hal/hil_rig/rig_process.h"
 
 namespace {
 
@@ -60,7 +60,7 @@ std::string mixed_configuration(const std::string& address) {
 }
 
 TEST(RigVm, MovesTheLinesAsTheValveIsToldOverModbusUntilItsEmergencyStopIsPressed) {
-  const hal::rig::RigProcess rig(rig_arguments());
+  const hal::hil_rig::RigProcess rig(rig_arguments());
   ASSERT_FALSE(rig.address().empty());
   const program::Folder folder;
   const std::string file = (folder.path() / "rig.toml").string();
@@ -80,7 +80,7 @@ TEST(RigVm, MovesTheLinesAsTheValveIsToldOverModbusUntilItsEmergencyStopIsPresse
   }
   program::Daemon daemon(words);
   std::this_thread::sleep_for(std::chrono::duration<double>(kPressed_s));
-  ASSERT_EQ(hal::rig::run_rig({"set", "--address", rig.address(), "e_stop=0"}).exit_code, 0);
+  ASSERT_EQ(hal::hil_rig::run_rig({"set", "--address", rig.address(), "e_stop=0"}).exit_code, 0);
   const program::Result result = daemon.wait();
   ASSERT_EQ(result.exit_code, 0) << result.err;
   std::printf("%s", result.err.c_str());

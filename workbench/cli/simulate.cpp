@@ -95,7 +95,7 @@ std::vector<double> further_of(const simulate::LoopRow& row,
                                std::optional<simulate::Transducers>& transducers) {
   std::vector<double> values{row.reference_m, row.u_requested_V, row.saturated ? 1.0 : 0.0};
   if (!transducers) return values;
-  const plant_sim::Pressures read = transducers->read(row.pressures);
+  const config::signals::Pressures read = transducers->read(row.pressures);
   values.insert(values.end(), {read.supply_Pa, read.in_Pa, read.out_Pa});
   return values;
 }

@@ -82,7 +82,7 @@ Samples run(const simulate::Scenario& scenario, double duration_s, std::uint64_t
     s.u_requested_V = row.u_requested_V;
     s.u_applied_V = row.u_applied_V;
     s.saturated = row.saturated;
-    const plant_sim::Pressures read = transducers.read(row.pressures);
+    const config::signals::Pressures read = transducers.read(row.pressures);
     s.pressures = {read.supply_Pa, read.in_Pa, read.out_Pa};
     s.rod_count = 1;
     s.rod_m[0] = row.y_m;

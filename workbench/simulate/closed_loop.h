@@ -28,7 +28,7 @@ struct LoopRow {
   double u_requested_V;
   double u_applied_V;  ///< after the limit and the D/A converter
   bool saturated;
-  plant_sim::Pressures pressures;  ///< when y was sampled, without a transducer's error
+  config::signals::Pressures pressures;  ///< when y was sampled, without a transducer's error
 };
 
 class ClosedLoop {

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
+#include "config/signals/pressures.h"
 #include "plant_sim/instruments.h"
-#include "plant_sim/pressures.h"
 #include "workbench/simulate/scenario.h"
 
 namespace workbench::simulate {
@@ -15,7 +15,7 @@ class Transducers {
   Transducers(const Instruments& instruments, std::uint64_t seed)
       : noise_Pa_(instruments.pressure_noise_Pa), chance_(seed + kApart) {}
 
-  [[nodiscard]] plant_sim::Pressures read(plant_sim::Pressures p) noexcept {
+  [[nodiscard]] config::signals::Pressures read(config::signals::Pressures p) noexcept {
     for (double* pressure_Pa : {&p.supply_Pa, &p.in_Pa, &p.out_Pa}) {
       *pressure_Pa += noise_Pa_ * chance_.next();
     }

@@ -13,7 +13,7 @@
 namespace {
 
 using plant_sim::HydraulicActuator;
-using plant_sim::Lanes;
+using plant_sim::Simd;
 using Actuator = HydraulicActuator<double>;
 
 constexpr int kSteps = 10000;  // ten seconds
@@ -47,9 +47,9 @@ void ours(benchmark::State& bench) {
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 BENCHMARK(ours<double>)->Name("plant_sim")->Unit(benchmark::kMicrosecond);
-BENCHMARK(ours<Lanes>)->Name("plant_sim_eight_lanes")->Unit(benchmark::kMicrosecond);
+BENCHMARK(ours<Simd>)->Name("plant_sim_eight_lanes")->Unit(benchmark::kMicrosecond);
 BENCHMARK(ours<double, true>)->Name("plant_sim_every_effect")->Unit(benchmark::kMicrosecond);
-BENCHMARK(ours<Lanes, true>)->Name("plant_sim_every_effect_lanes")->Unit(benchmark::kMicrosecond);
+BENCHMARK(ours<Simd, true>)->Name("plant_sim_every_effect_lanes")->Unit(benchmark::kMicrosecond);
 
 void odeint(benchmark::State& bench) {
   using State = std::array<double, 6>;

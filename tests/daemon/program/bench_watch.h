@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "hal/device_thread.h"
-#include "hal/rig/register_map.h"
+#include "hal/hil_rig/register_map.h"
 #include "tests/daemon/program/null_watch.h"
 
 namespace program {
@@ -65,11 +65,11 @@ class Watcher {
     while (!ended_) {
       Look look{};
       look.before_ns = hal::monotonic_ns();
-      if (modbus_read_registers(bus_, hal::rig::kCommand, 8, words) != 8) continue;
+      if (modbus_read_registers(bus_, hal::hil_rig::kCommand, 8, words) != 8) continue;
       look.after_ns = hal::monotonic_ns();
       look.command_V = real(words);
-      look.rod_m = real(words + hal::rig::kPosition - hal::rig::kCommand);
-      look.valve_V = real(words + hal::rig::kValve - hal::rig::kCommand);
+      look.rod_m = real(words + hal::hil_rig::kPosition - hal::hil_rig::kCommand);
+      look.valve_V = real(words + hal::hil_rig::kValve - hal::hil_rig::kCommand);
       {
         const std::lock_guard lock(mutex_);
         looks_.push_back(look);

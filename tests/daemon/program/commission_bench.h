@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "hal/rig/server.h"
+#include "hal/hil_rig/server.h"
 #include "tests/daemon/program/bench_watch.h"
 #include "tests/daemon/program/subprocess.h"
-#include "tests/hal/rig/rig_process.h"
+#include "tests/hal/hil_rig/rig_process.h"
 
 namespace program {
 
@@ -68,12 +68,12 @@ class Bench {
   }
   [[nodiscard]] int port() const { return rig_.port(); }
   /// No answers to anybody, from 0.1 s from now on, for a second.
-  void mute() const { EXPECT_EQ(hal::rig::set_remotely(rig_.address(), "mute_s=1"), ""); }
+  void mute() const { EXPECT_EQ(hal::hil_rig::set_remotely(rig_.address(), "mute_s=1"), ""); }
 
  private:
   static std::vector<std::string> rig_arguments(const std::vector<std::string>& field,
                                                 const std::string& model) {
-    std::vector<std::string> words{"--config", hal::rig::shipped_config("bench_rig.toml")};
+    std::vector<std::string> words{"--config", hal::hil_rig::shipped_config("bench_rig.toml")};
     if (!model.empty()) words.insert(words.end(), {"--set", "sim.model=" + model});
     for (const std::string& setting : field) {
       words.emplace_back("--set");
@@ -83,7 +83,7 @@ class Bench {
   }
 
   Folder folder_;
-  hal::rig::RigProcess rig_;
+  hal::hil_rig::RigProcess rig_;
 };
 
 /// Greatest way from the first look.

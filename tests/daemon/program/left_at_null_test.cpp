@@ -35,9 +35,9 @@ class LeftAtNull : public testing::Test {
   /// Until the valve is far from null, under a command that the device keeps for ever.
   void moves() {
     ASSERT_TRUE(watcher_.wait_for([](const Look& look) { return look.valve_V > kFar_V; }));
-    EXPECT_EQ(
-        hal::rig::set_remotely("127.0.0.1:" + std::to_string(bench_.port()), "command_timeout_s=0"),
-        "");
+    EXPECT_EQ(hal::hil_rig::set_remotely("127.0.0.1:" + std::to_string(bench_.port()),
+                                         "command_timeout_s=0"),
+              "");
     ASSERT_TRUE(watcher_.wait_for([](const Look& look) { return look.valve_V < -kFar_V; }));
   }
   Result null_by_note() const { return run({"--null", "--driving", note()}); }

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "hal/device_thread.h"
-#include "hal/rig/server.h"
+#include "hal/hil_rig/server.h"
 #include "tests/daemon/program/bench_watch.h"
 #include "tests/daemon/program/subprocess.h"
-#include "tests/hal/rig/rig_process.h"
+#include "tests/hal/hil_rig/rig_process.h"
 
 namespace program {
 
@@ -80,7 +80,7 @@ address = 0
 class Bench {
  public:
   explicit Bench(const std::string& more = kGuards)
-      : rig_({"--config", hal::rig::shipped_config("bench_rig.toml")}),
+      : rig_({"--config", hal::hil_rig::shipped_config("bench_rig.toml")}),
         cable_(rig_.port()),
         watcher_(rig_.port()) {
     std::ifstream in(shipped("bench_modbus.toml"));
@@ -100,14 +100,14 @@ class Bench {
     return watcher_.wait_for([](const Look& look) { return look.valve_V > kFar_V; });
   }
   void set(const std::string& text) const {
-    EXPECT_EQ(hal::rig::set_remotely(rig_.address(), text), "");
+    EXPECT_EQ(hal::hil_rig::set_remotely(rig_.address(), text), "");
   }
   /// The rig's register of that name, read on a connection of its own.
   [[nodiscard]] int status() const {
     modbus_t* bus = modbus_new_tcp("127.0.0.1", rig_.port());
     std::uint16_t word = 0;
-    const bool read =
-        modbus_connect(bus) == 0 && modbus_read_registers(bus, hal::rig::kStatus, 1, &word) == 1;
+    const bool read = modbus_connect(bus) == 0 &&
+                      modbus_read_registers(bus, hal::hil_rig::kStatus, 1, &word) == 1;
     modbus_close(bus);
     modbus_free(bus);
     return read ? word : 0;
@@ -117,7 +117,7 @@ class Bench {
 
  private:
   Folder folder_;
-  hal::rig::RigProcess rig_;
+  hal::hil_rig::RigProcess rig_;
   Cable cable_;
   Watcher watcher_;
 };

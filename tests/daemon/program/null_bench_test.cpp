@@ -155,7 +155,7 @@ TEST(Permit, LetsARelayTakeTheCommandAwayWhenTheDaemonTripsOrDies) {
         [](const Look& look) { return std::abs(look.valve_V) < kNull_V; }));
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     EXPECT_LT(std::abs(bench.watcher().looks().back().valve_V), kNull_V);
-    EXPECT_NE(bench.status() & hal::rig::kPermitMissing, 0);
+    EXPECT_NE(bench.status() & hal::hil_rig::kPermitMissing, 0);
   }
 }
 

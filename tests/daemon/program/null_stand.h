@@ -9,7 +9,7 @@
 #include "config/schema/document.h"
 #include "daemon/null_table.h"
 #include "daemon/rt/loop.h"
-#include "hal/roles.h"
+#include "hal/rig.h"
 #include "hal/sim/sim.h"
 
 namespace monitor {
@@ -172,7 +172,7 @@ class Stand {
   Plan plan_;
   control::Sine reference_;
   hal::Rig rig_;
-  hal::Opening opening_{"rig.toml", SPOOLWATCH_SOURCE_DIR "/config", kTs_s, kNull_V};
+  hal::OpenContext opening_{"rig.toml", SPOOLWATCH_SOURCE_DIR "/config", kTs_s, kNull_V};
   hal::Devices devices_;
   rt::LoopConfig config_;
   rt::SafetyRules rules_;

@@ -65,7 +65,7 @@ TEST(Pressures, AreToldBesideEverySampleAsThePlantHasThem) {
     ASSERT_EQ(told.tick, sample.tick);
     ASSERT_EQ(told.run_id, sample.run_id);
     ASSERT_EQ(told.utc_us, sample.utc_us);
-    const plant_sim::Pressures wanted = twin->pressures();
+    const config::signals::Pressures wanted = twin->pressures();
     ASSERT_EQ(told.supply_Pa, wanted.supply_Pa) << k;
     ASSERT_EQ(told.in_Pa, wanted.in_Pa) << k;
     ASSERT_EQ(told.out_Pa, wanted.out_Pa) << k;

@@ -81,7 +81,7 @@ TEST(EncoderBackend, RefusesAChipThatThereIsNot) {
   EncoderBackend backend;
   Document::parse(kTable, "rig.toml").read([&](auto& v) { backend.visit(v); });
   try {
-    const Offer offer = backend.open({"rig.toml", ".", 0.005, 0.0});
+    const BackendDevices devices = backend.open({"rig.toml", ".", 0.005, 0.0});
     FAIL() << "opened";
   } catch (const config::schema::DeviceUnavailable& e) {
     EXPECT_THAT(e.what(), AllOf(HasSubstr("rig.toml: [encoder] chip"),

@@ -43,7 +43,7 @@ INSTANTIATE_TEST_SUITE_P(Each, ModbusMisdeed,
                                          Misdeed{"Closed", Reply::close}),
                          [](const auto& test) { return test.param.name; });
 
-TEST(ModbusLink, TurnsBadWithinATimeOutAndStaysSoWhileNothingAnswers) {
+TEST(ModbusPollThread, TurnsBadWithinATimeOutAndStaysSoWhileNothingAnswers) {
   Device device;
   Stand stand(tcp(device), kNull_V);
   ASSERT_TRUE(stand.turn_until(config::signals::Quality::good, 3.0));
@@ -62,7 +62,7 @@ TEST(ModbusLink, TurnsBadWithinATimeOutAndStaysSoWhileNothingAnswers) {
 }
 
 // The commands wished while the cable was out must not fire when it is in again.
-TEST(ModbusLink, NeverSendsWhatWasWishedWhileTheCableWasOut) {
+TEST(ModbusPollThread, NeverSendsWhatWasWishedWhileTheCableWasOut) {
   Device device;
   Stand stand(tcp(device), kNull_V);
   ASSERT_TRUE(eventually([&] {
@@ -83,7 +83,7 @@ TEST(ModbusLink, NeverSendsWhatWasWishedWhileTheCableWasOut) {
   expect_null_first(device);
 }
 
-TEST(ModbusLink, ComesBackWithNullAfterTheDeviceHasRebooted) {
+TEST(ModbusPollThread, ComesBackWithNullAfterTheDeviceHasRebooted) {
   Device device;
   Stand stand(tcp(device, "watchdog_s = 0.05\n",
                   "[modbus.registers.w]\nrole = \"watchdog\"\naddress = 1\nscale = 1e-3\n"),
@@ -98,7 +98,7 @@ TEST(ModbusLink, ComesBackWithNullAfterTheDeviceHasRebooted) {
   expect_null_first(device);
 }
 
-TEST(ModbusLink, GivesUpAConnectionThatIsOnlyHalfOpen) {
+TEST(ModbusPollThread, GivesUpAConnectionThatIsOnlyHalfOpen) {
   Device device;
   Stand stand(tcp(device), kNull_V);
   ASSERT_TRUE(stand.turn_until(config::signals::Quality::good, 3.0));

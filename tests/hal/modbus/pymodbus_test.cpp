@@ -144,8 +144,8 @@ TEST(Pymodbus, ReadsEveryTypeInEveryOrderAsPythonsStructWritesThem) {
         ++index;
       }
     }
-    const Offer offer = open_text(text);
-    for (const auto& [name, input] : offer.inputs) {
+    const BackendDevices devices = open_text(text);
+    for (const auto& [name, input] : devices.inputs) {
       const int i = std::stoi(name.substr(1));
       EXPECT_EQ(input->read({0, 0}).value, kKinds[i / 4].value)
           << kKinds[i / 4].type << " " << kOrders[i % 4];
@@ -183,7 +183,7 @@ TEST(Pymodbus, WritesEveryTypeInEveryOrderAsPythonsStructReadsThem) {
 TEST(Pymodbus, ReadsCoilsAndDiscreteInputsAndSetsCoils) {
   Server server;
   ASSERT_TRUE(server.up());
-  const Offer offer =
+  const BackendDevices devices =
       open_text(server.address() + kWaits +
                 "[modbus.registers.coil1]\nrole=\"input\"\naddress=1\nfunction=\"coil\"\n"
                 "[modbus.registers.coil2]\nrole=\"input\"\naddress=2\nfunction=\"coil\"\n"
@@ -191,14 +191,14 @@ TEST(Pymodbus, ReadsCoilsAndDiscreteInputsAndSetsCoils) {
                 "[modbus.registers.d1]\nrole=\"input\"\naddress=1\nfunction=\"discrete\"\n"
                 "[modbus.registers.permit]\nrole=\"output\"\naddress=3\nfunction=\"coil\"\n"
                 "[modbus.registers.seen]\nrole=\"input\"\naddress=0\nfunction=\"coil\"\n");
-  EXPECT_EQ(offer.inputs.at("coil1")->read({0, 0}).value, 1.0);
-  EXPECT_EQ(offer.inputs.at("coil2")->read({0, 0}).value, 0.0);
-  EXPECT_EQ(offer.inputs.at("d0")->read({0, 0}).value, 1.0);
-  EXPECT_EQ(offer.inputs.at("d1")->read({0, 0}).value, 0.0);
-  EXPECT_TRUE(offer.outputs.at("permit")->set(false));
-  const Offer watcher = open_text(server.address() + kWaits +
-                                  "[modbus.registers.c]\nrole=\"input\"\naddress=3\n"
-                                  "function=\"coil\"\n");
+  EXPECT_EQ(devices.inputs.at("coil1")->read({0, 0}).value, 1.0);
+  EXPECT_EQ(devices.inputs.at("coil2")->read({0, 0}).value, 0.0);
+  EXPECT_EQ(devices.inputs.at("d0")->read({0, 0}).value, 1.0);
+  EXPECT_EQ(devices.inputs.at("d1")->read({0, 0}).value, 0.0);
+  EXPECT_TRUE(devices.outputs.at("permit")->set(false));
+  const BackendDevices watcher = open_text(server.address() + kWaits +
+                                           "[modbus.registers.c]\nrole=\"input\"\naddress=3\n"
+                                           "function=\"coil\"\n");
   std::int64_t tick = 0;
   EXPECT_TRUE(eventually([&] { return watcher.inputs.at("c")->read({++tick, 0}).value == 0.0; }));
 }
@@ -223,7 +223,7 @@ TEST(Pymodbus, SpeaksRtu) {
               entry("u", "valve_command", 1160, "float32", "ABCD") +
               entry("int", "input", 80, "int32", "ABCD"));
   EXPECT_EQ(stand.read().y_m, 4242.0);
-  EXPECT_EQ(stand.offer().inputs.at("int")->read({1, 0}).value, -123456789.0);
+  EXPECT_EQ(stand.devices().inputs.at("int")->read({1, 0}).value, -123456789.0);
   EXPECT_TRUE(written(stand, server, 1.5, "wrote 16 1.5\n"));
 }
 

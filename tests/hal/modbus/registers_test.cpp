@@ -5,8 +5,8 @@
 
 #include <array>
 
-#include "hal/modbus/mailbox.h"
-#include "hal/modbus/phase.h"
+#include "hal/modbus/command_slot.h"
+#include "hal/modbus/jitter_check.h"
 #include "tests/hal/modbus/stand.h"
 
 namespace hal::modbus {
@@ -71,8 +71,8 @@ TEST(Codec, ClampsToItsTypeAndItsLimits) {
   EXPECT_TRUE(Codec(r).plausible(-5.0));
 }
 
-TEST(CommandBox, KeepsTheNewestCommandAndItsTime) {
-  CommandBox box;
+TEST(CommandSlot, KeepsTheNewestCommandAndItsTime) {
+  CommandSlot box;
   EXPECT_FALSE(box.take(0).has_value());
   for (const std::int64_t t_ns :
        {std::int64_t{5'000'000}, std::int64_t{1} << 47, (std::int64_t{1} << 48) + 123'456'789}) {
@@ -87,8 +87,8 @@ TEST(CommandBox, KeepsTheNewestCommandAndItsTime) {
 }
 
 // A command given before the clock has wrapped, taken after.
-TEST(CommandBox, KnowsTheAgeOfACommandAcrossTheWrapOfItsStamp) {
-  CommandBox box;
+TEST(CommandSlot, KnowsTheAgeOfACommandAcrossTheWrapOfItsStamp) {
+  CommandSlot box;
   const std::int64_t wrap_ns = std::int64_t{1} << 48;
   box.put(7, wrap_ns - 1'000'000);
   const auto command = box.take(wrap_ns + 2'000'000);
@@ -97,20 +97,20 @@ TEST(CommandBox, KnowsTheAgeOfACommandAcrossTheWrapOfItsStamp) {
 }
 
 // Readings every 5 ms, 1.5 ms before their tick; times in us.
-TEST(Phase, KeepsReadingsOfTheUsualMomentOnly) {
-  Phase phase(500'000);
-  const auto keeps = [&](std::int64_t t_us, std::int64_t tick) {
-    return phase.keeps(t_us * 1000, tick * 5'000'000);
+TEST(JitterCheck, KeepsReadingsOfTheUsualMomentOnly) {
+  JitterCheck phase(500'000);
+  const auto accepts = [&](std::int64_t t_us, std::int64_t tick) {
+    return phase.accepts(t_us * 1000, tick * 5'000'000);
   };
-  EXPECT_TRUE(keeps(98'500, 0)) << "the first one sets it";
-  EXPECT_TRUE(keeps(103'600, 1));
-  EXPECT_FALSE(keeps(103'600, 2)) << "handed out before";
-  EXPECT_FALSE(keeps(114'600, 3)) << "1.1 ms late";
-  EXPECT_TRUE(keeps(118'500, 4));
-  EXPECT_FALSE(keeps(123'500, 7)) << "of a tick that was skipped";
-  for (int tick = 8; tick < 11; ++tick) EXPECT_FALSE(keeps(100'000 + 5000 * tick, tick));
-  EXPECT_TRUE(keeps(155'000, 11)) << "a new habit";
-  EXPECT_TRUE(keeps(160'000, 12));
+  EXPECT_TRUE(accepts(98'500, 0)) << "the first one sets it";
+  EXPECT_TRUE(accepts(103'600, 1));
+  EXPECT_FALSE(accepts(103'600, 2)) << "handed out before";
+  EXPECT_FALSE(accepts(114'600, 3)) << "1.1 ms late";
+  EXPECT_TRUE(accepts(118'500, 4));
+  EXPECT_FALSE(accepts(123'500, 7)) << "of a tick that was skipped";
+  for (int tick = 8; tick < 11; ++tick) EXPECT_FALSE(accepts(100'000 + 5000 * tick, tick));
+  EXPECT_TRUE(accepts(155'000, 11)) << "a new habit";
+  EXPECT_TRUE(accepts(160'000, 12));
 }
 
 const std::string kAddress = "address = \"127.0.0.1:9\"\n";

@@ -88,7 +88,7 @@ TEST(ModbusRtu, LetsNullPassWhenTheThreadStandsStill) {
     stand.turn(3.0);
     return device.get(2) == 3000;
   }));
-  stand.offer().valve->end_at_null();
+  stand.devices().valve->end_at_null();
   EXPECT_TRUE(eventually([&] { return device.get(2) == kNullRaw; }));
 }
 

@@ -19,7 +19,7 @@ namespace hal::modbus {
 /// Slow enough for a machine that has other things to do.
 inline constexpr double kPeriod_s = 0.02;
 
-inline Offer open_text(const std::string& text, double null_V = 0.0) {
+inline BackendDevices open_text(const std::string& text, double null_V = 0.0) {
   ModbusBackend backend;
   config::schema::Document::parse("schema_version = 1\n[modbus]\n" + text, "stand.toml")
       .read([&](config::schema::Visitor& v) {
@@ -51,18 +51,19 @@ inline bool eventually(const std::function<bool()>& condition) {
 
 class Stand {
  public:
-  explicit Stand(const std::string& text, double null_V = 0.0) : offer_(open_text(text, null_V)) {}
+  explicit Stand(const std::string& text, double null_V = 0.0)
+      : devices_(open_text(text, null_V)) {}
 
   /// One period: reads, writes, waits for the next.
   Reading turn(double u_V) {
     const Reading reading = read();
-    applied_ = offer_.valve->write(u_V, {tick_, nominal_ns()});
+    applied_ = devices_.valve->write(u_V, {tick_, nominal_ns()});
     std::this_thread::sleep_for(std::chrono::duration<double>(kPeriod_s));
     return reading;
   }
-  Reading read() { return offer_.rods.at("position")->read({++tick_, nominal_ns()}); }
+  Reading read() { return devices_.rods.at("position")->read({++tick_, nominal_ns()}); }
   [[nodiscard]] const Applied& applied() const noexcept { return applied_; }
-  [[nodiscard]] Offer& offer() noexcept { return offer_; }
+  [[nodiscard]] BackendDevices& devices() noexcept { return devices_; }
 
   /// Turns until a reading has that quality; false when none has in ten seconds.
   bool turn_until(config::signals::Quality quality, double u_V) {
@@ -76,7 +77,7 @@ class Stand {
   /// Its periods are as long as the machine makes them.
   [[nodiscard]] std::int64_t nominal_ns() const { return monotonic_ns() - start_ns_; }
 
-  Offer offer_;
+  BackendDevices devices_;
   std::int64_t start_ns_ = monotonic_ns();
   std::int64_t tick_ = 0;
   Applied applied_;

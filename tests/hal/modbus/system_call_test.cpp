@@ -45,9 +45,9 @@ enum class Ticks { quiet, disturbed, not_possible };
 
 /// Half a second of a loop that reads, writes and sets its permit. Disturbed: a tick came so late
 /// that it had to wake the thread.
-Ticks run_loop(const Offer& offer) {
-  RodSensor& rod = *offer.rods.at("position");
-  Output& permit = *offer.outputs.at("permit");
+Ticks run_loop(const BackendDevices& devices) {
+  RodSensor& rod = *devices.rods.at("position");
+  Output& permit = *devices.outputs.at("permit");
   const std::int64_t start_ns = monotonic_ns();
   std::int64_t before_ns = start_ns;
   for (std::int64_t i = 0; i < kTicks; ++i) {
@@ -59,7 +59,7 @@ Ticks run_loop(const Offer& offer) {
     if (i == 2 && !forbid_system_calls()) return Ticks::not_possible;  // the first wakes the thread
     before_ns = monotonic_ns();
     rod.read(tick);
-    offer.valve->write(static_cast<double>(i) * 0.1, tick);
+    devices.valve->write(static_cast<double>(i) * 0.1, tick);
     permit.set(i % 2 == 0);
   }
   return Ticks::quiet;
@@ -72,11 +72,11 @@ TEST(ModbusSystemCalls, NoneInATickThatComesAfterAnother) {
   Ticks ran = Ticks::disturbed;
   for (int attempt = 0; attempt < 20 && ran == Ticks::disturbed; ++attempt) {
     Device device;
-    const Offer offer =
+    const BackendDevices devices =
         open_text(tcp(device, "", "[modbus.registers.permit]\nrole = \"output\"\naddress = 6\n"));
     int counted = 0;
     std::thread loop([&] {
-      ran = run_loop(offer);
+      ran = run_loop(devices);
       counted = calls;
     });
     loop.join();

@@ -1,0 +1,103 @@
+#include "hal/sim/injected_fault.h"
+
+namespace hal::sim {
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+void InjectedFault::visit(config::schema::Visitor& v) {
+  v.choice({"kind", "what goes wrong", true}, kind,
+           {"missing", "frozen", "jump", "drift", "stale", "deaf"});
+  if (kind != "deaf") v.text({"rod", "id of a spare rod sensor; empty: the rig's own"}, rod);
+  if (kind == "missing" || kind == "frozen" || kind == "stale") {
+    v.text({"pressure", "the transducer that it is of, in place of a rod sensor"}, pressure);
+  }
+  v.number({"from_s", "when it begins"}, from_s, {0.0, kInfinite});
+  v.number({"to_s", "when it is over"}, to_s, {0.0, kInfinite});
+  if (kind == "jump") v.number({"size_m", "added to the reading"}, size_m, {-100.0, 100.0});
+  if (kind == "drift") v.number({"rate_mps", "of the reading off the rod"}, rate_mps, {-1.0, 1.0});
+}
+
+FaultyRod::FaultyRod(const std::vector<InjectedFault>& all, const std::string& id) {
+  for (const InjectedFault& fault : all) {
+    if (fault.rod == id && fault.pressure.empty()) faults_.push_back(fault);
+  }
+}
+
+bool FaultyRod::apply(Reading& reading, double t_s) noexcept {
+  const double y_m = reading.y_m;
+  bool frozen = false;
+  bool valve_unresponsive = false;
+  for (const InjectedFault& fault : faults_) {
+    if (!fault.at(t_s)) continue;
+    if (fault.kind == "missing") {
+      reading.y_m = kMissing;
+      reading.quality = config::signals::Quality::bad;
+    } else if (fault.kind == "frozen") {
+      reading.y_m = last_y_m_;
+      frozen = true;
+    } else if (fault.kind == "jump") {
+      reading.y_m += fault.size_m;
+    } else if (fault.kind == "drift") {
+      reading.y_m += fault.rate_mps * (t_s - fault.from_s);
+    } else if (fault.kind == "stale") {
+      reading.y_m = last_y_m_;
+      reading.quality = config::signals::Quality::stale;
+      frozen = true;
+    } else {
+      valve_unresponsive = true;
+    }
+  }
+  if (!frozen) last_y_m_ = y_m;
+  return valve_unresponsive;
+}
+
+FaultyPressure::FaultyPressure(const std::vector<InjectedFault>& all, const std::string& id) {
+  for (const InjectedFault& fault : all) {
+    if (fault.pressure == id) faults_.push_back(fault);
+  }
+}
+
+void FaultyPressure::apply(InputReading& reading, double t_s) noexcept {
+  const double value_Pa = reading.value;
+  bool frozen = false;
+  for (const InjectedFault& fault : faults_) {
+    if (!fault.at(t_s)) continue;
+    if (fault.kind == "missing") {
+      reading = {};
+      continue;
+    }
+    frozen = true;
+    reading.value = last_Pa_;
+    if (fault.kind == "stale") reading.quality = config::signals::Quality::stale;
+  }
+  if (!frozen) last_Pa_ = value_Pa;
+}
+
+void SpareConfig::visit(config::schema::Visitor& v) {
+  v.text({"id", "its channel", true}, id);
+  v.number({"offset_m", "added to the position"}, offset_m, {-100.0, 100.0});
+  v.number({"from_s", "when the offset begins"}, from_s, {0.0, kInfinite});
+  v.number({"encoder_resolution_m", "its step; 0: none"}, encoder_resolution_m, {0.0, 1e-2});
+  v.number({"noise_m", "standard deviation of its noise"}, noise_m, {0.0, 1e-2});
+}
+
+void SwitchConfig::visit(config::schema::Visitor& v) {
+  v.text({"id", "its channel", true}, id);
+  v.number({"value", "what it reads"}, value, {-1e12, 1e12});
+  v.number({"from_s", "from then on"}, from_s, {0.0, kInfinite});
+  v.number({"to_s", "until then"}, to_s, {0.0, kInfinite});
+  v.number({"meanwhile", "it reads this"}, meanwhile, {-1e12, 1e12});
+  v.boolean({"missing", "or nothing"}, missing);
+}
+
+InputReading Switch::read(const Tick& tick) noexcept {
+  const double t_s = static_cast<double>(tick.nominal_ns) * 1e-9;
+  const bool now = t_s >= from_s_ && t_s < to_s_;
+  if (now && missing_) return {};
+  return {now ? meanwhile_ : value_, 0, config::signals::Quality::good};
+}
+
+}  // namespace hal::sim
