@@ -194,12 +194,13 @@ present::Table number_table(const validation::Comparison& c) {
   present::Table table;
   table.columns = {{"figure", "", false}, {"value", ""}, {"meaning", "", false}};
   const std::string gain = present::three_digits(c.observer_per_s);
-  table.rows.push_back({"drift-corrected RMS", present::length(c.rms_m),
-                        "driven by the measured command; the position led back to the measured one "
-                        "at " +
-                            gain + " 1/s"});
+  table.rows.push_back(
+      {"drift-corrected RMS", present::length(c.rms_m),
+       "driven by the measured command; the position corrected towards the measured one "
+       "at " +
+           gain + " 1/s"});
   table.rows.push_back({"free-run RMS", present::length(c.free_run_rms_m),
-                        "pure simulation from each segment's first sample"});
+                        "simulation from each segment's first sample, nothing corrected"});
   table.rows.push_back({"fit", present::three_digits(c.fit_percent) + " %",
                         "100 (1 - |error| / |y - mean|), of the free run"});
   for (const validation::KStep& k : c.k_step) {
@@ -255,7 +256,7 @@ present::Report make_report(const validation::Comparison& c, const std::string& 
   fact("noise floor", c.noise_floor_m);
   fact("free-run RMS", c.free_run_rms_m);
   made.facts.push_back({"fit of the free run", present::three_digits(c.fit_percent), "%"});
-  fact("one step ahead, RMS", c.k_step.front().rms_m);
+  fact("one-step prediction, RMS", c.k_step.front().rms_m);
   made.command = command;
   made.sections = sections(c);
   return made;

@@ -188,7 +188,7 @@ std::vector<std::string> remarks(const Outcome& outcome) {
     out.push_back(text + ".");
   }
   if (std::isfinite(outcome.free_run_before_m)) {
-    out.push_back("Pure simulation from the first sample is off by " +
+    out.push_back("The free run from the first sample is off by " +
                   config::units::length_words(outcome.free_run_before_m) +
                   " RMS with the model file as it is, by " +
                   config::units::length_words(outcome.free_run_after_m) +

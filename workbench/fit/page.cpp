@@ -182,7 +182,7 @@ Section profile_section(const greybox::Estimation& e) {
   section.paragraphs.push_back(
       "How the least cost rises when one parameter is held away from its best value and all others "
       "follow. The 95 % interval is where it stays under 3.84. A parabola means that the standard "
-      "error tells all.");
+      "error suffices.");
   for (const greybox::Parameter& p : e.parameters) {
     if (p.profile.size() < 3) continue;
     Plot plot;

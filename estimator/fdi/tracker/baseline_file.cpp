@@ -44,7 +44,8 @@ void HealthyFile::visit(Visitor& v) {
   v.numbers({"values", "of the parameters, SI", true}, values);
   v.number({"sample_time_s", "of the record", true}, sample_time_s, {1e-6, 1e3});
   v.number({"window_s", "length of the windows", true}, window_s, {1e-6, 1e6});
-  v.number({"observer_per_s", "how fast drift was led back", true}, observer_per_s, {0.0, 1e3});
+  v.number({"observer_per_s", "gain that corrected the simulated position", true}, observer_per_s,
+           {0.0, 1e3});
   v.number({"rms_m", "of a healthy window's error", true}, rms_m, {1e-12, 1.0});
   v.number({"noise_floor_m", "of the position"}, noise_floor_m, {0.0, 1.0});
   chambers.visit(v);
