@@ -45,7 +45,7 @@ struct Arguments {
   std::vector<std::string> assignments;
   bool all = false;
   bool live = false;
-  live::WatchOptions watch{config::messages::kDefaultUrl, config::messages::kDefaultPrefix};
+  live::LiveCompareOptions watch{config::messages::kDefaultUrl, config::messages::kDefaultPrefix};
 };
 
 /// The record's samples from --from to --to.

@@ -7,6 +7,7 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 #include "estimator/fdi/fingerprint.h"
 #include "estimator/greybox/parameter_catalogue.h"
 
@@ -102,9 +103,10 @@ HealthyFile read_healthy(const std::filesystem::path& path, const plant_sim::Mod
   std::vector<std::string> tracked;
   for (std::size_t i = 0; i < choice.tracked; ++i) tracked.push_back(choice.parameters[i].name);
   if (sorted(file.parameters) != sorted(tracked)) {
-    throw bad_config(where + ": parameters",
-                     "was learnt while " + greybox::joined_names(file.parameters) + " were tracked",
-                     greybox::joined_names(tracked));
+    throw bad_config(
+        where + ": parameters",
+        "was learnt while " + config::schema::joined(file.parameters) + " were tracked",
+        config::schema::joined(tracked));
   }
   return file;
 }
