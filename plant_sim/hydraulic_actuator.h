@@ -11,7 +11,7 @@
 //
 // y v rod position and speed; Pi Po chamber pressures; xv spool position; u command. The command
 // chain ahead of xv, the opening behind it, supply, flows, beta, m and F are where effects act.
-// Beyond the source, and without a bit of influence inside the stroke at ordinary pressures:
+// Beyond the thesis, and without a bit of influence inside the stroke at ordinary pressures:
 // - q(p) = sign(p) sqrt|p|, and under 1 bar a cubic through zero with the same value and slope at
 //   1 bar: a reversed orifice flows back, and the slope stays finite.
 // - End stops are inelastic: at y = 0 and y = L the rod loses its speed and is held while pushed

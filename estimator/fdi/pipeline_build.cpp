@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 #include "estimator/fdi/estimator_source.h"
 #include "estimator/fdi/pipeline_impl.h"
 
@@ -15,12 +16,6 @@ using config::schema::bad_config;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 double given(double limit) noexcept { return std::isinf(limit) ? kNan : limit; }
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string all;
-  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
-  return all;
-}
 
 Alarm alarm_for(const BandConfig& band, std::string_view source) {
   Alarm alarm;
@@ -155,7 +150,7 @@ std::pair<std::size_t, std::size_t> Pipeline::Impl::place(const std::string& qua
       if (kSampleQuantities[i].name == name) return {workers.size(), i};
       known.emplace_back(kSampleQuantities[i].name);
     }
-    throw bad_config(where, "a sample has no " + std::string(name), joined(known));
+    throw bad_config(where, "a sample has no " + std::string(name), config::schema::joined(known));
   }
   std::vector<std::string> ids{std::string(kSampleSource)};
   for (std::size_t i = 0; i < workers.size(); ++i) {
@@ -164,9 +159,11 @@ std::pair<std::size_t, std::size_t> Pipeline::Impl::place(const std::string& qua
     const auto& names = workers[i].names;
     const auto found = std::find(names.begin(), names.end(), name);
     if (found != names.end()) return {i, static_cast<std::size_t>(found - names.begin())};
-    throw bad_config(where, workers[i].id + " estimates no " + std::string(name), joined(names));
+    throw bad_config(where, workers[i].id + " estimates no " + std::string(name),
+                     config::schema::joined(names));
   }
-  throw bad_config(where, "'" + quantity + "' names no estimator or other source", joined(ids));
+  throw bad_config(where, "'" + quantity + "' names no estimator or other source",
+                   config::schema::joined(ids));
 }
 
 Input Pipeline::Impl::find(const std::string& quantity, const std::string& where) const {

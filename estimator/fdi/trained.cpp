@@ -7,6 +7,7 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 #include "estimator/fdi/fingerprint.h"
 #include "estimator/fdi/pipeline.h"
 
@@ -20,12 +21,6 @@ using config::schema::Visitor;
 constexpr double kSameSampleTime = 1e-3;
 
 std::string seconds(double s) { return fmt::format("{:.6g} s", s); }
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
 
 /// `at`: what led here; a source that reads itself in a circle is refused elsewhere.
 std::string settings_behind(std::string_view source, const PipelineConfig& pipeline,
@@ -133,7 +128,8 @@ void TrainedConfig::load(const Loading& loading) {
 void TrainedConfig::check(const TrainedSource& trained, const Loading& loading,
                           const std::string& place) const {
   if (trained.quantities != quantities()) {
-    throw bad_config(place, "was trained on " + joined(trained.quantities), joined(quantities()));
+    throw bad_config(place, "was trained on " + config::schema::joined(trained.quantities),
+                     config::schema::joined(quantities()));
   }
   if (trained.block_s != block_s) {
     throw bad_config(place, "was trained on blocks of " + seconds(trained.block_s),

@@ -15,7 +15,7 @@ void find_errors(const Task& task, const VectorXd& fitted, Errors& before, Error
       of->heldout_rms_m = rms(of->residual_m, task.evidence.scores);
     }
   }
-  // Pure simulation of every sample, as `compare` has it.
+  // Free run over every sample, as `compare` has it.
   Evidence all = task.evidence;
   for (Measured& record : all.records) {
     std::fill(record.settled.begin(), record.settled.end(), 1);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "config/schema/joined.h"
 #include "estimator/linear_algebra/decompositions.h"
 #include "estimator/nonlinear/difference.h"
 #include "estimator/nonlinear/identifiability.h"
@@ -175,11 +176,7 @@ class Looker {
 
   static std::string list(const std::vector<std::string>& names) {
     if (names.empty()) return "the others together";
-    std::string text = names.front();
-    for (std::size_t i = 1; i < names.size(); ++i) {
-      text += (i + 1 == names.size() ? " and " : ", ") + names[i];
-    }
-    return text;
+    return config::schema::listed(names);
   }
 
   const std::vector<SearchParameter>& searched_;

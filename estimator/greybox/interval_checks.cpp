@@ -73,7 +73,7 @@ void look_for_bends(const Problem& problem, const Solution& solution, const Cova
     const double expected = -estimator::nonlinear::predicted_decrease(model, ends[i].step);
     // An interval that is cut at a bound rises little: its profile says so too.
     if (!(std::abs(rise - expected) < kBent * std::max(expected, 1.0))) {
-      found[static_cast<std::size_t>(ends[i].j)] = "the likelihood is no parabola";
+      found[static_cast<std::size_t>(ends[i].j)] = "the likelihood is not quadratic";
     }
   }
 }

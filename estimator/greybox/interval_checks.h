@@ -9,7 +9,7 @@
 namespace estimator::greybox {
 
 /// One text for each parameter, empty where there is no doubt: at a bound, a large standard error
-/// that no prior explains, or a cost that is no parabola where the interval ends.
+/// that no prior explains, or a cost that is not quadratic where the interval ends.
 [[nodiscard]] std::vector<std::string> doubts(const estimator::nonlinear::Problem& problem,
                                               const estimator::nonlinear::Solution& solution,
                                               const estimator::nonlinear::Covariance& known,

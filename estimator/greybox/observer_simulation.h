@@ -3,7 +3,7 @@
 //
 //   yh(k) = reading(k),   then  yh += l Ts (y(k) - yh(k)),   then u(k) held for Ts
 //
-// y yh measured and modelled position; l the observer's gain, 1/s. l = 0 is pure simulation from
+// y yh measured and modelled position; l the observer's gain, 1/s. l = 0 is the free run from
 // each segment's start; a small l takes away the drift of an integrating plant and leaves what is
 // faster than 1/l as it is. A segment that begins in the midst of a motion is led at
 // kLeading_per_s while it settles.
@@ -20,7 +20,7 @@
 
 namespace estimator::greybox {
 
-/// Found to work for the source's actuator: fast enough against drift, slow enough for slow
+/// Found to work for the thesis's actuator: fast enough against drift, slow enough for slow
 /// effects.
 inline constexpr double kObserver_per_s = 2.0;
 

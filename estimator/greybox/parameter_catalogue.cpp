@@ -79,7 +79,7 @@ void refuse_name(const std::string& option, const std::string& typed,
       option + " " + typed,
       "is no parameter of this model" +
           (best.empty() ? std::string() : ", did you mean " + best + "?"),
-      joined_names(shown_names) + "; or an effect's, see `spoolwatch effects`");
+      config::schema::joined(shown_names) + "; or an effect's, see `spoolwatch effects`");
 }
 
 std::vector<std::string> split_names(const std::vector<std::string>& lists) {
@@ -93,12 +93,6 @@ std::vector<std::string> split_names(const std::vector<std::string>& lists) {
     }
   }
   return words;
-}
-
-std::string joined_names(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
 }
 
 }  // namespace estimator::greybox

@@ -37,7 +37,4 @@ void open_up(Known& known);
 /// Words of lists "a,b,c", one after the other.
 [[nodiscard]] std::vector<std::string> split_names(const std::vector<std::string>& lists);
 
-/// "a, b, c".
-[[nodiscard]] std::string joined_names(const std::vector<std::string>& names);
-
 }  // namespace estimator::greybox

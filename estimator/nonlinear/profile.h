@@ -4,7 +4,7 @@
 //   rise(v) = (min over the others of cost(x_j = v) - cost(solution)) / inflation;
 //   the 95 % interval is where rise < 3.84 (chi-square, one degree of freedom)
 //
-// Honest where the cost is no parabola: near bounds, for widths and dead zones, along curved
+// Honest where the cost is not quadratic: near bounds, for widths and dead zones, along curved
 // valleys. sqrt(rise) is nearly straight, so a few points find each end.
 // Source: G. A. F. Seber, C. J. Wild, Nonlinear Regression, 5.4; A. Raue et al., Bioinformatics 25
 // (2009) 1923.

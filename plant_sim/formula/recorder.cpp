@@ -8,6 +8,7 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 #include "plant_sim/formula/expression_graph.h"
 
 namespace plant_sim {
@@ -88,12 +89,6 @@ mu::Parser bare_parser() {
   return parser;
 }
 
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 const char* reason(int code) {
   switch (code) {
     case mu::ecUNEXPECTED_EOF:
@@ -144,7 +139,7 @@ config::schema::ConfigError refusal(const mu::ParserError& error, std::size_t le
       return bad_config(
           where,
           "unknown name " + token + place + (near.empty() ? "" : ", did you mean " + near + "?"),
-          listed(names));
+          config::schema::joined(names));
     }
     if (token[0] == '=') {
       return bad_config(where, "an assignment" + place, "one expression; == compares");

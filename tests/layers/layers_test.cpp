@@ -89,7 +89,7 @@ const std::vector<Layer> kLayers{
     {"workbench/simulate", {"config", "daemon/control", "plant_sim"}, {}},
     {"workbench/estimate", {"config", "estimator"}, {"Eigen"}},
     {"workbench/select",
-     {"config", "estimator", "estimator/residual", "estimator/structures"},
+     {"config", "estimator", "estimator/residual", "estimator/structures", "workbench/present"},
      {"Eigen", "nlohmann"}},
     {"workbench/train", {"config", "estimator", "estimator/fdi"}, {"Eigen"}},
     {"workbench/compare",

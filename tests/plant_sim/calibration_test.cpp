@@ -16,7 +16,7 @@ struct Log {
   std::vector<double> y, u;
 };
 
-/// The 200 Hz loop on the source's sine: y is read, then u written and held.
+/// The 200 Hz loop on the thesis's sine: y is read, then u written and held.
 Log closed_loop(const std::string& name, double seconds, bool instruments,
                 double needle_N_s2_per_m2 = -1.0) {
   ModelFile model =

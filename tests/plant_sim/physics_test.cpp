@@ -73,7 +73,7 @@ TEST(HydraulicActuator, KeepsPressuresAboveVapourWhenAHeavyLoadPullsAChamberEmpt
   EXPECT_EQ(least_Pa, 0.0);
 }
 
-/// The printed regime, by the source's equations alone, step by step.
+/// The printed regime, by the thesis's equations alone, step by step.
 TEST(HydraulicActuator, IsTheSourcesEquationsToTheLastBitsInsideThePrintedRegime) {
   auto with_limits = at_rest();
   Actuator::State plain = with_limits->state;

@@ -9,7 +9,7 @@
 //                     g = Fc (1 +- r) + (Fs - Fc)+ exp(-(v/vs)^2)
 //
 // Heun's method with a fixed step of 25 us (12.5 us with friction). Orifices are plain signed
-// square roots; pressures are floored at zero. Symbols as in the source, effects as in the
+// square roots; pressures are floored at zero. Symbols as in the thesis, effects as in the
 // product's library; Hidden lists them with the parameter names of the product.
 // Sources: Song (2002) chapter 4; Canudas de Wit, Olsson, Astrom, Lischinsky (1995) for LuGre;
 // Merritt (1967) for valve, leakage, supply and oil.

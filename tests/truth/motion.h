@@ -4,7 +4,7 @@
 //   multisine    ten sines at 0.1 x 1.45^i Hz, amplitude 12.7 mm/(1 + f/Hz), random phases
 //   fast_steps   random levels within +-45 mm, held 0.35 s, through two lags of 0.11 s
 //   slow_steps   random levels within +-50 mm, held 1.5 s, through two lags of 0.04 s
-//   sine         25.4 mm at 0.5 Hz (the source's)
+//   sine         25.4 mm at 0.5 Hz (the thesis's)
 //   triangle     20 to 35 mm at 0.2 to 0.4 Hz
 //   chirp        0.1 to 2.5 Hz, logarithmic, amplitude 30 mm/(1 + f/Hz)
 #pragma once

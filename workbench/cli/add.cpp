@@ -10,6 +10,7 @@
 #include "config/record/whole_file.h"
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 #include "config/units/unit_suffix.h"
 #include "plant_sim/library.h"
 #include "plant_sim/model_file.h"
@@ -26,11 +27,9 @@ using plant_sim::ParameterInfo;
 
 [[noreturn]] void refuse_name(const std::string& where, const std::string& typed,
                               const std::vector<std::string>& names) {
-  std::string known;
-  for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
   const std::string near = config::schema::nearest(typed, names);
   throw bad_config(where, "is unknown" + (near.empty() ? "" : ", did you mean " + near + "?"),
-                   known);
+                   config::schema::joined(names));
 }
 
 /// Of the library, or a formula that the model file declares.

@@ -34,7 +34,7 @@ struct Options {
 
 void say(const std::string& line) { std::cerr << "spoolwatch bridge: " << line << std::endl; }
 
-class Bridge final : public live::Listener {
+class Bridge final : public live::FeedListener {
  public:
   explicit Bridge(const Options& options)
       : sender_(exchange::udp_address(options.udp)),
@@ -104,12 +104,12 @@ class Bridge final : public live::Listener {
 };
 
 int bridge(const Options& options) {
-  const Ending ending(options.duration_s);
+  const StopCondition stop(options.duration_s);
   Bridge bridge(options);
   {
-    live::Feed feed(options.url, options.prefix, true, bridge);
-    while (!ending.reached()) {
-      if (feed.poll(std::chrono::milliseconds(100)) || Ending::asked()) continue;
+    live::ListenFeed feed(options.url, options.prefix, true, bridge);
+    while (!stop.reached()) {
+      if (feed.poll(std::chrono::milliseconds(100)) || StopCondition::asked()) continue;
       if (options.url.starts_with("file:")) break;
       throw config::schema::RunError("LCM cannot receive on \"" + options.url + "\" any more");
     }

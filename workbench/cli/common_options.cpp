@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "workbench/cli/number_check.h"
+#include "workbench/present/shell_command.h"
 
 namespace workbench::cli {
 namespace {
@@ -41,7 +42,8 @@ CLI::Option* add_report(CLI::App& command, std::string& file) {
 }
 
 CLI::Option* add_set(CLI::App& command, std::vector<std::string>& assignments) {
-  return command.add_option("--set", assignments, "table.key=value of the model file, for this run")
+  return command
+      .add_option("--set", assignments, "table.key=value of the model file, for this run")
       ->allow_extra_args(false);
 }
 
@@ -59,6 +61,21 @@ CLI::Option* add_threads(CLI::App& command, unsigned& threads) {
 
 CLI::Option* add_quiet(CLI::App& command, bool& quiet) {
   return command.add_flag("--quiet", quiet, "no progress on standard error");
+}
+
+std::string command_line(const std::string& name, const CLI::App& command) {
+  std::vector<std::string> words{"spoolwatch", name};
+  for (const bool positional : {true, false}) {
+    for (const CLI::Option* option : command.get_options()) {
+      if (option->count() == 0 || option->get_positional() != positional) continue;
+      const bool flag = option->get_items_expected_max() == 0;
+      for (const std::string& value : option->results()) {
+        if (!positional) words.push_back(option->get_name());
+        if (!flag) words.push_back(value);
+      }
+    }
+  }
+  return present::shell_command(words);
 }
 
 void add_interrupt_footer(CLI::App& command) {

@@ -32,6 +32,10 @@ CLI::Option* add_threads(CLI::App& command, unsigned& threads);
 /// --quiet.
 CLI::Option* add_quiet(CLI::App& command, bool& quiet);
 
+/// The command as it can be typed again: what was given of its positionals and options. Only once
+/// `command` is parsed.
+[[nodiscard]] std::string command_line(const std::string& name, const CLI::App& command);
+
 /// Help text on Ctrl-C for commands that return what they have found so far.
 void add_interrupt_footer(CLI::App& command);
 

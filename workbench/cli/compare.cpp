@@ -24,7 +24,6 @@
 #include "workbench/compare/text.h"
 #include "workbench/live/live_compare.h"
 #include "workbench/present/json.h"
-#include "workbench/present/shell_command.h"
 
 namespace workbench::cli {
 
@@ -44,8 +43,9 @@ struct Arguments {
   double observer_per_s = greybox::kObserver_per_s;
   std::vector<std::string> assignments;
   bool all = false;
+  std::string command;
   bool live = false;
-  live::WatchOptions watch{config::messages::kDefaultUrl, config::messages::kDefaultPrefix};
+  live::LiveCompareOptions watch{config::messages::kDefaultUrl, config::messages::kDefaultPrefix};
 };
 
 /// The record's samples from --from to --to.
@@ -104,7 +104,7 @@ void run(Arguments& a) {
   check_observer(a, record);
   const validation::Comparison comparison = validation::compare(model, record, a.observer_per_s);
   if (!a.report.empty()) {
-    present::write_report(compare::make_report(comparison, present::typed_command()), a.report);
+    present::write_report(compare::make_report(comparison, a.command), a.report);
   }
   if (!present::write_json(compare::to_json(comparison), a.json)) {
     std::cout << compare::to_text(comparison, utf8_terminal(), a.all);
@@ -137,7 +137,10 @@ void add_compare(CLI::App& command, int& /*exit_code*/) {
   command.add_option("--duration", arguments->watch.duration_s, "of --live, s (0: until Ctrl-C)")
       ->needs(live)
       ->check(CLI::NonNegativeNumber);
-  command.callback([arguments] { run(*arguments); });
+  command.callback([arguments, &command] {
+    arguments->command = command_line("compare", command);
+    run(*arguments);
+  });
 }
 
 }  // namespace workbench::cli

@@ -80,7 +80,10 @@ void add_diagnose(CLI::App& command, int& exit_code) {
   add_set(command, request->assignments);
   add_quiet(command, request->quiet);
   add_interrupt_footer(command);
-  command.callback([request, &exit_code] { exit_code = run(*request); });
+  command.callback([request, &exit_code, &command] {
+    request->command = command_line("diagnose", command);
+    exit_code = run(*request);
+  });
 }
 
 }  // namespace workbench::cli

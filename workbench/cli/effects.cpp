@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "config/schema/joined.h"
 #include "config/units/unit_suffix.h"
 #include "plant_sim/library.h"
 #include "plant_sim/model_file.h"
@@ -36,12 +37,6 @@ std::vector<std::string> plants_of(const EffectInfo& effect) {
     if (fits(effect, plant)) names.push_back(plant.name);
   }
   return names;
-}
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
 }
 
 ordered_json json_of(const std::vector<ParameterInfo>& parameters, const char* last) {
@@ -82,7 +77,8 @@ void print_library(const std::vector<EffectInfo>& listed) {
   for (const EffectInfo& effect : listed) {
     const std::string what = effect.what.empty() ? "" : "  " + effect.what + "\n";
     std::printf("%s\n  %s\n%s  acts on %s; for %s\n", effect.name.c_str(), effect.equation.c_str(),
-                what.c_str(), joined(effect.sites).c_str(), joined(plants_of(effect)).c_str());
+                what.c_str(), config::schema::joined(effect.sites).c_str(),
+                config::schema::joined(plants_of(effect)).c_str());
     for (const ParameterInfo& p : effect.parameters) {
       std::printf("    %-30s %g to %g %s, typically %g: %s\n", p.name, p.min, p.max,
                   config::units::unit_of(p.name).c_str(), p.typical, p.what);

@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <iostream>
 #include <memory>
 
@@ -97,7 +96,10 @@ void add_fit(CLI::App& command, int& exit_code) {
   add_report(command, request->report);
   add_quiet(command, request->quiet);
   add_interrupt_footer(command);
-  command.callback([request, &exit_code] { exit_code = run(*request); });
+  command.callback([request, &exit_code, &command] {
+    request->command = command_line("fit", command);
+    exit_code = run(*request);
+  });
 }
 
 }  // namespace workbench::cli

@@ -88,7 +88,10 @@ void add_isolate(CLI::App& command, int& /*exit_code*/) {
   add_json(command, request->json);
   add_report(command, request->report);
   command.alias("track");
-  command.callback([request] { run(*request); });
+  command.callback([request, &command] {
+    request->command = command_line("isolate", command);
+    run(*request);
+  });
 }
 
 }  // namespace workbench::cli

@@ -27,10 +27,10 @@ struct Options {
 
 int listen_with_lines(const Options& options) {
   live::LinePrinter printer(std::cout, options.json, options.alarms_only);
-  const Ending ending(options.duration_s);
-  live::Feed feed(options.url, options.prefix, false, printer);
-  while (!ending.reached()) {
-    if (feed.poll(std::chrono::milliseconds(100)) || Ending::asked()) continue;
+  const StopCondition stop(options.duration_s);
+  live::ListenFeed feed(options.url, options.prefix, false, printer);
+  while (!stop.reached()) {
+    if (feed.poll(std::chrono::milliseconds(100)) || StopCondition::asked()) continue;
     if (options.url.starts_with("file:")) return 0;
     throw config::schema::RunError("LCM cannot receive on \"" + options.url + "\" any more");
   }
@@ -39,11 +39,11 @@ int listen_with_lines(const Options& options) {
 
 int listen_live(const Options& options) {
   live::LiveState state;
-  const Ending ending(options.duration_s);
-  live::Feed feed(options.url, options.prefix, true, state);
+  const StopCondition stop(options.duration_s);
+  live::ListenFeed feed(options.url, options.prefix, true, state);
   live::LiveView view;
   bool more = true;
-  while (!ending.reached() && !view.quit_asked()) {
+  while (!stop.reached() && !view.quit_asked()) {
     // After the end of a log its last picture stays.
     if (more) {
       more = feed.poll(std::chrono::milliseconds(100)) || !options.url.starts_with("file:");

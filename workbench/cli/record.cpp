@@ -35,7 +35,7 @@ constexpr double kPatience_s = 5.0;
 
 void say(const std::string& line) { std::cerr << "spoolwatch record: " << line << std::endl; }
 
-class Recording final : public live::Listener {
+class Recording final : public live::FeedListener {
  public:
   explicit Recording(const Options& options)
       : file_(options.out), duration_s_(options.duration_s) {}
@@ -96,12 +96,12 @@ class Recording final : public live::Listener {
 
 int record(const Options& options) {
   const bool limited = options.duration_s > 0.0;
-  const Ending ending(limited ? options.duration_s + kPatience_s : 0.0);
+  const StopCondition stop(limited ? options.duration_s + kPatience_s : 0.0);
   Recording recording(options);
   {
-    live::Feed feed(options.url, options.prefix, true, recording);
-    while (!ending.reached() && !recording.over()) {
-      if (feed.poll(std::chrono::milliseconds(20)) || Ending::asked()) continue;
+    live::ListenFeed feed(options.url, options.prefix, true, recording);
+    while (!stop.reached() && !recording.over()) {
+      if (feed.poll(std::chrono::milliseconds(20)) || StopCondition::asked()) continue;
       if (options.url.starts_with("file:")) break;
       throw RunError("LCM cannot receive on \"" + options.url + "\" any more");
     }
@@ -111,7 +111,7 @@ int record(const Options& options) {
     throw RunError("no sample came on \"" + options.url + "\": nothing is written");
   }
   recording.sum_up(options.out);
-  const bool as_asked = recording.complete() || Ending::asked() || !limited;
+  const bool as_asked = recording.complete() || StopCondition::asked() || !limited;
   return as_asked ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 

@@ -1,4 +1,4 @@
-// `spoolwatch reproduce`: the source's figures beside ours.
+// `spoolwatch reproduce`: the thesis's figures beside ours.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>

@@ -20,7 +20,6 @@
 #include "workbench/cli/interrupt.h"
 #include "workbench/cli/number_check.h"
 #include "workbench/present/json.h"
-#include "workbench/present/shell_command.h"
 #include "workbench/scorecard/card.h"
 #include "workbench/scorecard/progress.h"
 #include "workbench/scorecard/shipped.h"
@@ -32,7 +31,7 @@ using namespace scorecard;
 
 struct Options {
   std::vector<std::string> methods;
-  std::string plan, json, report, markdown, resume;
+  std::string plan, json, report, markdown, resume, command;
   Scope scope;
   unsigned threads = 0;
   bool details = false;
@@ -116,7 +115,7 @@ int run(const Options& o) {
     stopped = Interrupt::exit_code();
   }
   Card card = make_card(bench, methods, o.scope, parts, store, trials);
-  card.command = present::typed_command();
+  card.command = o.command;
   card.runtime_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (!o.report.empty()) write_report(to_report(card), o.report);
   if (!o.markdown.empty()) config::record::write_whole(o.markdown, to_markdown(card));
@@ -152,7 +151,10 @@ void add_scorecard(CLI::App& command, int& exit_code) {
   add_json(command, o->json);
   add_report(command, o->report);
   command.add_option("--markdown", o->markdown, "file for the tables (Markdown)");
-  command.callback([o, &exit_code] { exit_code = run(*o); });
+  command.callback([o, &exit_code, &command] {
+    o->command = command_line("scorecard", command);
+    exit_code = run(*o);
+  });
 }
 
 }  // namespace workbench::cli

@@ -1,4 +1,4 @@
-// spoolwatch select: every structure of the source on one record, and which to take.
+// spoolwatch select: every structure of the thesis on one record, and which to take.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>

@@ -11,7 +11,7 @@ void ask_to_stop(int) { stop_asked = 1; }
 
 }  // namespace
 
-Ending::Ending(double duration_s)
+StopCondition::StopCondition(double duration_s)
     : limited_(duration_s > 0.0),
       at_(Clock::now() + std::chrono::duration_cast<Clock::duration>(
                              std::chrono::duration<double>(limited_ ? duration_s : 0.0))) {
@@ -20,8 +20,8 @@ Ending::Ending(double duration_s)
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
 }
 
-bool Ending::reached() const { return asked() || (limited_ && Clock::now() >= at_); }
+bool StopCondition::reached() const { return asked() || (limited_ && Clock::now() >= at_); }
 
-bool Ending::asked() noexcept { return stop_asked != 0; }
+bool StopCondition::asked() noexcept { return stop_asked != 0; }
 
 }  // namespace workbench::cli

@@ -5,10 +5,10 @@
 
 namespace workbench::cli {
 
-class Ending {
+class StopCondition {
  public:
   /// SIGINT, SIGTERM and SIGHUP end it; so do `duration_s` seconds, unless they are 0.
-  explicit Ending(double duration_s);
+  explicit StopCondition(double duration_s);
   [[nodiscard]] bool reached() const;
   /// By a signal.
   [[nodiscard]] static bool asked() noexcept;

@@ -35,7 +35,7 @@ ordered_json json_of(const validation::Failing& failing) {
   return out;
 }
 
-const char* text(Judgement judgement) {
+const char* to_string(Judgement judgement) {
   switch (judgement) {
     case Judgement::at_floor:
       return "at_floor";
@@ -56,7 +56,7 @@ std::string to_json(const validation::Comparison& c) {
   ordered_json out;
   out["model"] = c.model;
   out["record"] = c.record.name;
-  out["judgement"] = text(said.judgement);
+  out["judgement"] = to_string(said.judgement);
   out["verdict"] = said.verdict;
   out["findings"] = said.lines;
   out["rms_m"] = number_or_null(c.rms_m);

@@ -8,6 +8,7 @@
 #include "workbench/present/binned.h"
 #include "workbench/present/compare_units.h"
 #include "workbench/present/error_definitions.h"
+#include "workbench/present/record_section.h"
 
 namespace workbench::compare {
 
@@ -46,20 +47,9 @@ std::vector<double> times(const greybox::Measured& record) {
   return out;
 }
 
-/// Micrometres or millimetres, whichever suits an error of that size.
-present::Unit error_unit(double rms_m) {
-  return rms_m < 0.5e-3 ? present::Unit{"error", "um", 1e6} : present::Unit{"error", "mm", 1e3};
-}
-
 Plot over_time(const validation::Comparison& c, const std::string& title, const present::Axis& y,
                const std::string& prefix) {
-  Plot plot;
-  plot.title = title;
-  plot.x = {"time", "s"};
-  plot.y = y;
-  plot.x_values = times(c.record);
-  plot.zoom_group = prefix + "time";
-  return plot;
+  return present::over_time(times(c.record), title, y, prefix + "time");
 }
 
 Series named(const std::string& name, Tone tone, std::vector<double> y) {
@@ -77,29 +67,23 @@ Section time_section(const validation::Comparison& c, const std::string& prefix)
   section.paragraphs = {present::kFreeRunMeaning, present::kDriftCorrectedMeaning,
                         present::kNoiseFloorMeaning};
   Plot position = over_time(c, "Position", {"position", "mm"}, prefix);
-  position.series.push_back(
-      named("measured", Tone::measured, series(r, [&](auto k) { return 1e3 * r.y_m[k]; })));
-  position.series.push_back(named("model, free run", Tone::model, series(r, [&](auto k) {
-                                    return 1e3 * (r.y_m[k] - c.free_error_m[k]);
-                                  })));
-  const present::Unit unit = error_unit(c.rms_m);
-  Plot error = over_time(c, "Error, drift-corrected", {"measured less model", unit.text}, prefix);
-  error.series.push_back(named("error", Tone::residual,
-                               series(
-                                   r, [&](auto k) { return unit.factor * c.error_m[k]; }, true)));
-  if (std::isfinite(c.noise_floor_m)) {
-    const double twice = 2.0 * unit.factor * c.noise_floor_m;
-    error.lines = {{twice, "± twice the noise floor,"}, {-twice, ""}};
-  }
-  const present::Unit free_unit = error_unit(c.free_run_rms_m);
+  present::add_series(position, "measured", Tone::measured,
+                      series(r, [&](auto k) { return 1e3 * r.y_m[k]; }));
+  present::add_series(position, "model, free run", Tone::model,
+                      series(r, [&](auto k) { return 1e3 * (r.y_m[k] - c.free_error_m[k]); }));
+  const present::ErrorUnit unit = present::error_unit(c.rms_m);
+  Plot error = over_time(c, "Error, drift-corrected", {"measured less model", unit.name}, prefix);
+  present::add_series(error, "error", Tone::residual,
+                      series(
+                          r, [&](auto k) { return unit.per_m * c.error_m[k]; }, true));
+  present::add_noise_band(error, c.noise_floor_m, unit.per_m);
+  const present::ErrorUnit free_unit = present::error_unit(c.free_run_rms_m);
   Plot free =
-      over_time(c, "Error of the free run", {"measured less model", free_unit.text}, prefix);
-  free.series.push_back(named("error", Tone::accent, series(r, [&](auto k) {
-                                return free_unit.factor * c.free_error_m[k];
-                              })));
+      over_time(c, "Error of the free run", {"measured less model", free_unit.name}, prefix);
+  present::add_series(free, "error", Tone::accent,
+                      series(r, [&](auto k) { return free_unit.per_m * c.free_error_m[k]; }));
   Plot command = over_time(c, "Command", {"command", "V"}, prefix);
-  command.series.push_back(
-      named("command", Tone::muted, series(r, [&](auto k) { return r.u_V[k]; })));
+  present::add_series(command, "command", Tone::muted, series(r, [&](auto k) { return r.u_V[k]; }));
   section.plots = {position, error, free, command};
   return section;
 }
@@ -194,12 +178,13 @@ present::Table number_table(const validation::Comparison& c) {
   present::Table table;
   table.columns = {{"figure", "", false}, {"value", ""}, {"meaning", "", false}};
   const std::string gain = present::three_digits(c.observer_per_s);
-  table.rows.push_back({"drift-corrected RMS", present::length(c.rms_m),
-                        "driven by the measured command; the position led back to the measured one "
-                        "at " +
-                            gain + " 1/s"});
+  table.rows.push_back(
+      {"drift-corrected RMS", present::length(c.rms_m),
+       "driven by the measured command; the position corrected towards the measured one "
+       "at " +
+           gain + " 1/s"});
   table.rows.push_back({"free-run RMS", present::length(c.free_run_rms_m),
-                        "pure simulation from each segment's first sample"});
+                        "simulation from each segment's first sample, nothing corrected"});
   table.rows.push_back({"fit", present::three_digits(c.fit_percent) + " %",
                         "100 (1 - |error| / |y - mean|), of the free run"});
   for (const validation::KStep& k : c.k_step) {
@@ -255,7 +240,7 @@ present::Report make_report(const validation::Comparison& c, const std::string& 
   fact("noise floor", c.noise_floor_m);
   fact("free-run RMS", c.free_run_rms_m);
   made.facts.push_back({"fit of the free run", present::three_digits(c.fit_percent), "%"});
-  fact("one step ahead, RMS", c.k_step.front().rms_m);
+  fact("one-step prediction, RMS", c.k_step.front().rms_m);
   made.command = command;
   made.sections = sections(c);
   return made;

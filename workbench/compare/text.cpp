@@ -64,12 +64,11 @@ std::string numbers(const validation::Comparison& c) {
     return present::three_digits(rms_m / c.noise_floor_m) + " x the noise floor";
   };
   row("drift-corrected", present::length(c.rms_m), times_floor(c.rms_m));
-  row("pure simulation", present::length(c.free_run_rms_m),
+  row("free run", present::length(c.free_run_rms_m),
       "fit " + present::three_digits(c.fit_percent) + " %");
   for (const validation::KStep& k : c.k_step) {
     const double ahead_s = static_cast<double>(k.samples) * c.record.sample_time_s;
-    row(fmt::format("{} sample{} ahead", k.samples, k.samples == 1 ? "" : "s"),
-        present::length(k.rms_m),
+    row(fmt::format("{}-step prediction", k.samples), present::length(k.rms_m),
         k.count == 0 ? "no stretch is long enough"
                      : "over " + present::three_digits(1e3 * ahead_s) + " ms");
   }

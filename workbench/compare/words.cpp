@@ -32,7 +32,7 @@ std::string in_proportion(double gain_ratio) {
 
 std::string by_a_constant(double offset_mps) {
   return "drifts " + present::speed(std::abs(offset_mps)) +
-         (offset_mps < 0.0 ? " inwards" : " outwards") + " of it";
+         (offset_mps < 0.0 ? " towards retraction" : " towards extension");
 }
 
 std::string plain_words(const validation::Explained& explained) {
@@ -66,14 +66,14 @@ std::string beyond_words(const validation::Comparison& c) {
 }
 
 std::string size_words(const validation::Comparison& c) {
-  std::string text = "Error " + present::length(c.rms_m) + " RMS, drift taken away";
+  std::string text = "Error " + present::length(c.rms_m) + " RMS, drift-corrected";
   if (std::isfinite(c.noise_floor_m)) {
     text += ": " + present::three_digits(c.floor_ratio()) + " times the noise floor of " +
             present::length(c.noise_floor_m);
   } else {
     text += "; the noise floor cannot be told from this record";
   }
-  return text + ". Pure simulation: " + present::length(c.free_run_rms_m) + " RMS, fit " +
+  return text + ". Free run: " + present::length(c.free_run_rms_m) + " RMS, fit " +
          present::three_digits(c.fit_percent) + " %.";
 }
 
@@ -86,7 +86,7 @@ const validation::Bin* direction(const validation::Comparison& c, const char* na
   return nullptr;
 }
 
-/// Which way the pure simulation runs off; empty where it stays.
+/// Direction in which the free run drifts; empty where it does not.
 std::string drift_words(const validation::Comparison& c) {
   if (c.free_run_rms_m < 2.0 * c.rms_m) return {};
   double squares = 0.0;
@@ -106,7 +106,7 @@ std::string drift_words(const validation::Comparison& c) {
   }
   if (text.empty()) return {};
   const double end_m = c.free_error_m.back();
-  return "Drifts in pure simulation, " + present::length(std::abs(end_m)) +
+  return "Drifts in the free run, " + present::length(std::abs(end_m)) +
          " at the end: the rod runs " + text + ".";
 }
 

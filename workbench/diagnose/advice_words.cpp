@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "config/schema/joined.h"
 #include "plant_sim/library.h"
 
 namespace workbench::diagnose {
@@ -13,15 +14,6 @@ namespace selection = estimator::greybox::selection;
 namespace {
 
 std::string number(double value) { return fmt::format("{:.3g}", value); }
-
-std::string listed(const std::vector<std::string>& names, const char* last) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (i > 0) text += i + 1 == names.size() ? last : ", ";
-    text += names[i];
-  }
-  return text;
-}
 
 /// Whether all of them act at one of the sites.
 bool all_at(const plant_sim::ModelFile& model, const std::vector<std::string>& names,
@@ -165,7 +157,7 @@ std::string motion_words(const monitor::control::ReferenceConfig& reference, dou
 
 std::string words_for_motion(const std::vector<std::string>& names, const std::string& motion,
                              double separation) {
-  return "Run " + motion + ": a wrong choice among " + listed(names, " and ") +
+  return "Run " + motion + ": a wrong choice among " + config::schema::listed(names) +
          " would then leave an error of at least " + number(separation) + " times the noise.";
 }
 
@@ -181,7 +173,7 @@ std::string words_for_sensor(const plant_sim::ModelFile& model,
   } else if (any_at(model, names, "sensor")) {
     sensor = "a second position sensor would";
   }
-  return "From command and position alone no motion tried tells " + listed(names, " and ") +
+  return "From command and position alone no motion tried tells " + config::schema::listed(names) +
          " apart; " + sensor + ".";
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "config/schema/joined.h"
 #include "config/units/quantity.h"
 #include "workbench/diagnose/words.h"
 
@@ -31,9 +32,10 @@ std::string comment(const std::string& text) {
 
 std::string better_model_text(const Outcome& outcome) {
   const selection::Diagnosis& d = outcome.diagnosis;
-  std::string text = comment("Made by spoolwatch diagnose from " + outcome.model_file + "; " +
-                             (outcome.holdouts.empty() ? listed(outcome.records) + ", " : "") +
-                             split_words(outcome) + ".");
+  std::string text =
+      comment("Made by spoolwatch diagnose from " + outcome.model_file + "; " +
+              (outcome.holdouts.empty() ? config::schema::listed(outcome.records) + ", " : "") +
+              split_words(outcome) + ".");
   if (outcome.interrupted) {
     text += comment("INTERRUPTED: the best so far, not everything was tried.");
   }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "config/schema/joined.h"
 #include "workbench/diagnose/words.h"
 #include "workbench/present/json.h"
 
@@ -14,20 +15,13 @@ namespace {
 using present::number_or_null;
 using Json = nlohmann::ordered_json;
 
-/// Effects tried together are one name with a plus.
-std::string joined(const std::vector<std::string>& effects) {
-  std::string text;
-  for (const std::string& effect : effects) text += (text.empty() ? "" : "+") + effect;
-  return text;
-}
-
 Json candidates_of(const selection::Ladder& ladder) {
   Json list = Json::array();
   for (std::size_t r = 0; r < ladder.rounds.size(); ++r) {
     for (const selection::Candidate& c : ladder.rounds[r].candidates) {
       Json one;
       one["round"] = r + 1;
-      one["effect"] = joined(c.effects);
+      one["effect"] = config::schema::joined(c.effects, "+");
       one["rms_heldout_m"] = c.fitted_at_all ? number_or_null(c.score_rms_m) : Json(nullptr);
       one["p_value"] = c.fitted_at_all ? number_or_null(c.p_value) : Json(nullptr);
       one["expected_ratio"] = number_or_null(c.expected_ratio);

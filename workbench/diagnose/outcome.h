@@ -25,7 +25,7 @@ struct Outcome {
   std::string command;                ///< that made this, as for a shell
   greybox::Split split = greybox::Split::blocks;
   bool interrupted = false;
-  /// Pure simulation from each segment's first sample, all samples; NaN when nothing was fitted.
+  /// Free run from each segment's first sample, all samples; NaN when nothing was fitted.
   double free_run_before_m = std::numeric_limits<double>::quiet_NaN();  ///< the file as it is
   double free_run_after_m = std::numeric_limits<double>::quiet_NaN();   ///< the better model
 

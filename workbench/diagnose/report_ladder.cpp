@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/schema/joined.h"
 #include "config/units/quantity.h"
 #include "estimator/greybox/selection/structure_search.h"
 #include "workbench/diagnose/report_pages.h"
@@ -26,12 +27,6 @@ using present::Tone;
 constexpr std::size_t kDrawnCandidates = 14;
 /// Candidates that do worse than none by more than this are left to the table.
 constexpr double kWorse = 1.05;
-
-std::string joined(const std::vector<std::string>& effects) {
-  std::string text;
-  for (const std::string& effect : effects) text += (text.empty() ? "" : " + ") + effect;
-  return text;
-}
 
 /// One unit for all errors of a page: millimetres where even the least is one or more.
 struct Scale {
@@ -88,7 +83,8 @@ Plot candidates_plot(const selection::Diagnosis& d, std::size_t index) {
   for (const selection::Candidate& candidate : round.candidates) {
     const bool worse = candidate.score_rms_m > kWorse * round.before.fitted.score_rms_m;
     if (!candidate.fitted_at_all || worse || plot.categories.size() == kDrawnCandidates) break;
-    add(joined(candidate.effects), candidate.score_rms_m, was_taken(candidate, taken) ? 0 : 1);
+    add(config::schema::joined(candidate.effects, " + "), candidate.score_rms_m,
+        was_taken(candidate, taken) ? 0 : 1);
   }
   add("nothing added", round.before.fitted.score_rms_m, 2);
   const auto unused = [](const present::Series& series) {
@@ -103,23 +99,26 @@ Plot candidates_plot(const selection::Diagnosis& d, std::size_t index) {
 std::string not_fitted_words(const selection::Round& round) {
   std::vector<std::string> names;
   for (const selection::Candidate& candidate : round.candidates) {
-    if (!candidate.fitted_at_all) names.push_back(joined(candidate.effects));
+    if (!candidate.fitted_at_all) names.push_back(config::schema::joined(candidate.effects, " + "));
   }
-  return names.empty() ? "" : "Of no use at first sight and not fitted: " + listed(names) + ".";
+  return names.empty()
+             ? ""
+             : "Of no use at first sight and not fitted: " + config::schema::listed(names) + ".";
 }
 
 Table candidates_table(const selection::Diagnosis& d, std::size_t index) {
   const selection::Round& round = d.ladder.rounds[index];
   const Scale scale = scale_of(d);
   const std::vector<std::string> taken = taken_in(d.ladder, index);
-  const std::string with =
-      round.before.added.empty() ? "the model as given" : "with " + listed(round.before.added);
+  const std::string with = round.before.added.empty()
+                               ? "the model as given"
+                               : "with " + config::schema::listed(round.before.added);
   Table table{
       .caption = "Round " + std::to_string(index + 1) + ", " + with,
       .columns = {Column{"effect", "", false}, Column{"held-out error", scale.unit},
                   Column{"× noise floor", ""}, Column{"chance p", ""}, Column{"", "", false}}};
   for (const selection::Candidate& candidate : round.candidates) {
-    std::vector<std::string> row{joined(candidate.effects)};
+    std::vector<std::string> row{config::schema::joined(candidate.effects, " + ")};
     if (!candidate.fitted_at_all) continue;
     const bool took = was_taken(candidate, taken);
     row.push_back(scale.words(candidate.score_rms_m));

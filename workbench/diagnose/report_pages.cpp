@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "config/schema/joined.h"
 #include "config/units/quantity.h"
 #include "workbench/diagnose/words.h"
 
@@ -30,7 +31,7 @@ present::Fact length_fact(const std::string& label, double length_m) {
 std::string title_of(const Outcome& outcome) {
   const auto names = [](std::vector<std::string> files) {
     for (std::string& file : files) file = file_name(file);
-    return listed(files);
+    return config::schema::listed(files);
   };
   std::string title = file_name(outcome.model_file) + " against " + names(outcome.records);
   if (!outcome.holdouts.empty()) title += ", held out " + names(outcome.holdouts);

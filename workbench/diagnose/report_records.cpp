@@ -8,6 +8,7 @@
 #include "workbench/diagnose/report_pages.h"
 #include "workbench/diagnose/words.h"
 #include "workbench/present/binned.h"
+#include "workbench/present/record_section.h"
 #include "workbench/present/thin.h"
 
 namespace workbench::diagnose {
@@ -81,11 +82,7 @@ Values broken_at_gaps(Values values, const greybox::Measured& record) {
 }
 
 Plot time_plot(const Page& page, const std::string& title, const present::Axis& y) {
-  return {.title = title,
-          .x = {"time", "s"},
-          .y = y,
-          .x_values = page.record.t_s,
-          .zoom_group = page.record.name};
+  return present::over_time(page.record.t_s, title, y, page.record.name);
 }
 
 Values model_mm(const Page& page, const Values& residual_m) {
@@ -116,10 +113,7 @@ Plot residual_plot(const Page& page, const std::string& title, const Values& res
   const Scale scale = scale_of(residual_m);
   Plot plot = time_plot(page, title, {"measured − model", scale.unit});
   plot.series.push_back({.name = "residual", .y = times(residual_m, scale.per_m), .tone = tone});
-  if (std::isfinite(page.noise_floor_m)) {
-    const double twice = 2.0 * scale.per_m * page.noise_floor_m;
-    plot.lines = {{twice, "± twice the noise floor,"}, {-twice, ""}};
-  }
+  present::add_noise_band(plot, page.noise_floor_m, scale.per_m);
   return plot;
 }
 

@@ -8,7 +8,6 @@
 #include "config/record/record.h"
 #include "config/schema/error.h"
 #include "workbench/cli/file_check.h"
-#include "workbench/present/shell_command.h"
 
 namespace workbench::diagnose {
 
@@ -61,7 +60,7 @@ Outcome prepare(const Request& request) {
   outcome.records = request.records;
   outcome.holdouts = request.holdouts;
   outcome.output = request.output;
-  outcome.command = present::typed_command();
+  outcome.command = request.command;
   return outcome;
 }
 

@@ -19,6 +19,7 @@ struct Request {
   unsigned threads = 0;  ///< 0: one for each processor
   std::vector<std::string> assignments;
   bool quiet = false;
+  std::string command;  ///< the command line as it was typed, for reports and model files
 };
 
 /// Reads everything. Throws config::schema::UsageError for a hold-out that is fitted too or for

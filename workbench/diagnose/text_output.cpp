@@ -7,6 +7,7 @@
 #include <ostream>
 #include <sstream>
 
+#include "config/schema/joined.h"
 #include "config/units/quantity.h"
 #include "workbench/diagnose/words.h"
 
@@ -99,7 +100,7 @@ void print_candidates(const selection::Diagnosis& d, std::ostream& out) {
     if (!candidate.fitted_at_all || shown == kShownCandidates) break;
     std::vector<std::string> effects = candidate.effects;
     std::sort(effects.begin(), effects.end());
-    out << "  " << padded(listed(candidate.effects), 34) << "  "
+    out << "  " << padded(config::schema::listed(candidate.effects), 34) << "  "
         << padded(config::units::length_words(candidate.score_rms_m), 10, true) << "  p "
         << (effects == taken ? padded(config::units::chance_words(candidate.p_value), 11) +
                                    (stayed(d.ladder, taken) ? "  taken" : "  taken, dropped later")

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/schema/joined.h"
 #include "config/units/quantity.h"
 #include "workbench/present/shell_command.h"
 
@@ -47,7 +48,7 @@ std::vector<std::string> undisputed(const selection::Diagnosis& d) {
 std::string undetermined_words(const selection::Diagnosis& d) {
   std::string groups;
   for (const auto& group : d.ambiguous)
-    groups += (groups.empty() ? "" : "; ") + listed(group, "or");
+    groups += (groups.empty() ? "" : "; ") + config::schema::listed(group, "or");
   const std::vector<std::string> sure = undisputed(d);
   std::string text = "Undetermined: " + groups + " is missing, and this motion cannot tell which.";
   if (!sure.empty()) {
@@ -63,14 +64,15 @@ std::string undetermined_words(const selection::Diagnosis& d) {
 std::string unexplained_words(const selection::Diagnosis& d) {
   const std::string rest = "an error of " + beside_floor(d, d.rms_after_m) + ", remains";
   if (d.ladder.interrupted) {
-    return "Not decided: " + (d.missing.empty() ? "" : "found so far " + listed(d.missing) + "; ") +
+    return "Not decided: " +
+           (d.missing.empty() ? "" : "found so far " + config::schema::listed(d.missing) + "; ") +
            rest + ".";
   }
   if (d.missing.empty()) {
     return "Unexplained: " + rest + ", and no effect of the library takes it away.";
   }
-  return "Not the whole story: " + listed(d.missing) + (d.missing.size() > 1 ? " are" : " is") +
-         " missing, but " + rest + ".";
+  return "Not the whole story: " + config::schema::listed(d.missing) +
+         (d.missing.size() > 1 ? " are" : " is") + " missing, but " + rest + ".";
 }
 
 std::string reason_of(const selection::Diagnosis& d) {
@@ -83,8 +85,9 @@ std::string fall_words(const selection::Diagnosis& d) {
            config::units::length_words(d.nominal_rms_m) + " to " +
            config::units::length_words(d.rms_before_m) + ".";
   }
-  const std::string with =
-      d.verdict == selection::Verdict::undetermined ? "With " + listed(d.missing) + ", the" : "The";
+  const std::string with = d.verdict == selection::Verdict::undetermined
+                               ? "With " + config::schema::listed(d.missing) + ", the"
+                               : "The";
   return with + " held-out error falls from " + config::units::length_words(d.rms_before_m) +
          " to " + config::units::length_words(d.rms_after_m) + "; the noise floor is " +
          config::units::length_words(d.noise_floor_m) + ".";
@@ -94,26 +97,17 @@ void add_rivals(const selection::Diagnosis& d, std::vector<std::string>& out) {
   if (d.verdict != selection::Verdict::undetermined && !d.ambiguous.empty()) {
     std::string groups;
     for (const auto& group : d.ambiguous)
-      groups += (groups.empty() ? "" : "; ") + listed(group, "or");
+      groups += (groups.empty() ? "" : "; ") + config::schema::listed(group, "or");
     out.push_back("This motion cannot tell apart: " + groups + ".");
   }
   for (const auto& group : d.same_here) {
-    out.push_back("On this plant " + listed(group) +
+    out.push_back("On this plant " + config::schema::listed(group) +
                   " act alike, whatever the motion: the name is a choice, the better model the "
                   "same.");
   }
 }
 
 }  // namespace
-
-std::string listed(const std::vector<std::string>& names, const std::string& last) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (i > 0) text += i + 1 == names.size() ? " " + last + " " : ", ";
-    text += names[i];
-  }
-  return text;
-}
 
 std::string effect_words(const selection::Diagnosis& diagnosis, const std::string& effect) {
   std::string text;
@@ -188,7 +182,7 @@ std::vector<std::string> remarks(const Outcome& outcome) {
     out.push_back(text + ".");
   }
   if (std::isfinite(outcome.free_run_before_m)) {
-    out.push_back("Pure simulation from the first sample is off by " +
+    out.push_back("The free run from the first sample is off by " +
                   config::units::length_words(outcome.free_run_before_m) +
                   " RMS with the model file as it is, by " +
                   config::units::length_words(outcome.free_run_after_m) +
@@ -210,7 +204,8 @@ std::string next_command(const Outcome& outcome) {
 
 std::string split_words(const Outcome& outcome) {
   if (!outcome.holdouts.empty()) {
-    return "fitted to " + listed(outcome.records) + ", scored on " + listed(outcome.holdouts);
+    return "fitted to " + config::schema::listed(outcome.records) + ", scored on " +
+           config::schema::listed(outcome.holdouts);
   }
   switch (outcome.split) {
     case greybox::Split::first_half:

@@ -10,10 +10,6 @@ namespace workbench::diagnose {
 
 namespace selection = estimator::greybox::selection;
 
-/// "a", "a and b", "a, b and c"; with another last word, "a, b or c".
-[[nodiscard]] std::string listed(const std::vector<std::string>& names,
-                                 const std::string& last = "and");
-
 /// "friction: Coulomb 145 +- 2 N, static 181 +- 4 N", with the values of the better model.
 [[nodiscard]] std::string effect_words(const selection::Diagnosis& diagnosis,
                                        const std::string& effect);

@@ -9,6 +9,7 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 #include "estimator/greybox/parameter_catalogue.h"
 
 namespace workbench::fit {
@@ -104,7 +105,7 @@ class Chooser {
     const auto same = [&](const Known& k) { return k.name == name; };
     if (std::any_of(known_.begin(), known_.end(), same)) {
       throw bad_config(option + " " + name, "is not fitted; name it with --free",
-                       greybox::joined_names(fitted));
+                       config::schema::joined(fitted));
     }
     refuse_name(option, name, fitted, fitted);
   }

@@ -10,12 +10,14 @@
 #include "config/units/unit_suffix.h"
 #include "workbench/fit/outcome.h"
 #include "workbench/present/error_definitions.h"
+#include "workbench/present/record_section.h"
 
 namespace workbench::fit {
 
 namespace greybox = estimator::greybox;
 namespace {
 
+using present::add_series;
 using present::Plot;
 using present::Section;
 using present::Tone;
@@ -23,19 +25,9 @@ using Values = std::vector<double>;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kThreshold = 3.841458820694124;
-constexpr double kMillimetres_m = 0.5e-3;
-
-struct LengthUnit {
-  double per_m;
-  const char* name;
-};
 
 std::string file_name(const std::string& file) {
   return std::filesystem::path(file).filename().string();
-}
-
-LengthUnit unit_for(double rms_m) {
-  return rms_m < kMillimetres_m ? LengthUnit{1e6, "um"} : LengthUnit{1e3, "mm"};
 }
 
 /// One record's part of the long series, NaN where it does not count and at gaps.
@@ -54,21 +46,7 @@ Values part(const Eigen::VectorXd& series, std::size_t start, const greybox::Mea
 
 Plot over_time(const greybox::Measured& record, const std::string& title,
                const present::Axis& axis) {
-  Plot plot;
-  plot.title = title;
-  plot.x = {"time", "s"};
-  plot.y = axis;
-  plot.x_values = record.t_s;
-  plot.zoom_group = record.name;
-  return plot;
-}
-
-void add_series(Plot& plot, const std::string& name, Tone tone, Values y) {
-  present::Series series;
-  series.name = name;
-  series.tone = tone;
-  series.y = std::move(y);
-  plot.series.push_back(std::move(series));
+  return present::over_time(record.t_s, title, axis, record.name);
 }
 
 Section record_section(const Outcome& o, std::size_t r) {
@@ -98,17 +76,14 @@ Section record_section(const Outcome& o, std::size_t r) {
   section.plots.push_back(position);
   for (const bool fitted : {false, true}) {
     const greybox::Errors& errors = fitted ? e.after : e.before;
-    const LengthUnit unit = unit_for(errors.rms_m);
+    const present::ErrorUnit unit = present::error_unit(errors.rms_m);
     Plot plot = over_time(
         record,
         fitted ? "Error after the fit, drift-corrected" : "Error before the fit, drift-corrected",
         {"measured less model", unit.name});
     add_series(plot, "error, drift-corrected", fitted ? Tone::improved : Tone::residual,
                part(errors.residual_m, start, record, unit.per_m, true));
-    if (std::isfinite(o.noise_floor_m)) {
-      plot.lines = {{2.0 * unit.per_m * o.noise_floor_m, "± twice the noise floor,"},
-                    {-2.0 * unit.per_m * o.noise_floor_m, ""}};
-    }
+    present::add_noise_band(plot, o.noise_floor_m, unit.per_m);
     section.plots.push_back(plot);
   }
   Plot command = over_time(record, "Command", {"command", "V"});
@@ -182,7 +157,7 @@ Section profile_section(const greybox::Estimation& e) {
   section.paragraphs.push_back(
       "How the least cost rises when one parameter is held away from its best value and all others "
       "follow. The 95 % interval is where it stays under 3.84. A parabola means that the standard "
-      "error tells all.");
+      "error suffices.");
   for (const greybox::Parameter& p : e.parameters) {
     if (p.profile.size() < 3) continue;
     Plot plot;
@@ -224,7 +199,7 @@ present::Report to_report(const Outcome& o) {
   const bool at_floor = std::isfinite(o.noise_floor_m) && e.after.rms_m < 1.15 * o.noise_floor_m;
   made.state = at_floor && !e.interrupted ? present::State::good : present::State::warn;
   const auto fact = [&](const char* label, double metres) {
-    const LengthUnit unit = unit_for(metres);
+    const present::ErrorUnit unit = present::error_unit(metres);
     made.facts.push_back({label, fmt::format("{:.3g}", unit.per_m * metres), unit.name});
   };
   fact("error before", e.before.rms_m);

@@ -11,7 +11,6 @@
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "workbench/cli/file_check.h"
-#include "workbench/present/shell_command.h"
 
 namespace workbench::fit {
 
@@ -182,7 +181,7 @@ Prepared prepare(const Request& request) {
   task.observer_per_s = request.observer_per_s;
   task.threads =
       request.threads > 0 ? request.threads : std::max(1U, std::thread::hardware_concurrency());
-  out.command = present::typed_command();
+  out.command = request.command;
   return out;
 }
 

@@ -28,6 +28,7 @@ struct Request {
   std::string json;  ///< "-": standard output
   std::string report;
   bool quiet = false;
+  std::string command;  ///< the command line as it was typed, for reports and model files
 };
 
 struct Prepared {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "config/units/quantity.h"
 #include "workbench/fit/outcome.h"
@@ -43,7 +42,7 @@ std::string size_words(const Outcome& o) {
   const greybox::Estimation& e = o.estimation;
   std::string text = "Error " + length_words(e.before.rms_m) + " -> " +
                      length_words(e.after.rms_m) + " RMS" +
-                     (o.prepared->task.observer_per_s > 0.0 ? ", drift taken away" : "");
+                     (o.prepared->task.observer_per_s > 0.0 ? ", drift-corrected" : "");
   if (std::isfinite(o.noise_floor_m)) {
     const double ratio = e.after.rms_m / o.noise_floor_m;
     text += "; noise floor " + length_words(o.noise_floor_m);
@@ -52,7 +51,7 @@ std::string size_words(const Outcome& o) {
   } else {
     text += "; the noise floor cannot be told from this record";
   }
-  return text + ". Pure simulation: " + length_words(e.before.free_run_rms_m) + " -> " +
+  return text + ". Free run: " + length_words(e.before.free_run_rms_m) + " -> " +
          length_words(e.after.free_run_rms_m) +
          fmt::format(" RMS, fit {:.4g}", e.before.fit_percent) +
          fmt::format(" -> {:.4g} %.", e.after.fit_percent);

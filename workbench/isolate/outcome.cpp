@@ -15,7 +15,6 @@
 #include "estimator/residual/noise_floor.h"
 #include "workbench/cli/file_check.h"
 #include "workbench/fit/choice.h"
-#include "workbench/present/shell_command.h"
 
 namespace workbench::isolate {
 
@@ -149,8 +148,8 @@ void check(const Request& request, const Record& record) {
                                    fmt::format("a window and its lead-in, {:.3g} s", least_s));
   }
   if (request.settings.observer_per_s * record.sample_time_s >= 1.0) {
-    throw UsageError(fmt::format("--observer: is too fast for samples every {:.3g} s",
-                                 record.sample_time_s));
+    throw UsageError(
+        fmt::format("--observer: is too fast for samples every {:.3g} s", record.sample_time_s));
   }
 }
 
@@ -211,7 +210,7 @@ Outcome isolate(const Request& request) {
   Outcome out;
   out.model = request.model;
   out.record = request.record;
-  out.command = present::typed_command();
+  out.command = request.command;
   out.settings = request.settings;
   out.notes = record.notes;
   const Readings readings = readings_of(record, request);

@@ -34,6 +34,7 @@ struct Request {
   std::string json;  ///< "-": standard output
   std::string report;
   bool all_windows = false;
+  std::string command;  ///< the command line as it was typed, for the report
 };
 
 struct Outcome {

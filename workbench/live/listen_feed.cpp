@@ -14,7 +14,8 @@ constexpr std::chrono::seconds kTellLosses{1};
 
 }  // namespace
 
-Feed::Feed(const std::string& url, const std::string& prefix, bool with_samples, Listener& listener)
+ListenFeed::ListenFeed(const std::string& url, const std::string& prefix, bool with_samples,
+                       FeedListener& listener)
     : lcm_(config::messages::connect(url)),
       prefix_(prefix),
       is_log_(url.starts_with("file:")),
@@ -23,16 +24,16 @@ Feed::Feed(const std::string& url, const std::string& prefix, bool with_samples,
       last_losses_(last_health_) {
   const std::string kinds =
       with_samples ? "(SAMPLE|RODS|PRESSURES|ESTIMATE|ALARM|HEALTH)" : "(ESTIMATE|ALARM|HEALTH)";
-  auto* subscription = lcm_->subscribeFunction(prefix_ + "_" + kinds, &Feed::received, this);
+  auto* subscription = lcm_->subscribeFunction(prefix_ + "_" + kinds, &ListenFeed::received, this);
   if (subscription == nullptr) {
     throw config::schema::bad_config("LCM URL \"" + url + "\"", "LCM cannot receive on it");
   }
   subscription->setQueueCapacity(kQueued);
 }
 
-Feed::~Feed() { tell_losses(); }
+ListenFeed::~ListenFeed() { tell_losses(); }
 
-bool Feed::poll(std::chrono::milliseconds timeout) {
+bool ListenFeed::poll(std::chrono::milliseconds timeout) {
   const auto until = Clock::now() + timeout;
   bool more = true;
   for (auto left = timeout; left.count() >= 0;
@@ -46,7 +47,8 @@ bool Feed::poll(std::chrono::milliseconds timeout) {
   return more;
 }
 
-void Feed::received(const lcm::ReceiveBuffer* buffer, const std::string& channel, Feed* feed) {
+void ListenFeed::received(const lcm::ReceiveBuffer* buffer, const std::string& channel,
+                          ListenFeed* feed) {
   using config::messages::MessageKind;
   const MessageKind kind =
       config::messages::kind_of(channel, feed->prefix_).value_or(MessageKind::health);
@@ -65,7 +67,7 @@ void Feed::received(const lcm::ReceiveBuffer* buffer, const std::string& channel
   }
 }
 
-void Feed::follow(const std::string& channel, std::int64_t run_id, std::int64_t seq) {
+void ListenFeed::follow(const std::string& channel, std::int64_t run_id, std::int64_t seq) {
   if (runs_.empty() || run_id != run_id_) {
     const bool first = runs_.empty();
     if (runs_.insert(run_id).second) {
@@ -81,7 +83,7 @@ void Feed::follow(const std::string& channel, std::int64_t run_id, std::int64_t 
   state.next_seq = seq + 1;
 }
 
-void Feed::watch() {
+void ListenFeed::watch() {
   const auto now = Clock::now();
   if (now - last_losses_ >= kTellLosses) {
     last_losses_ = now;
@@ -94,7 +96,7 @@ void Feed::watch() {
   }
 }
 
-void Feed::tell_losses() {
+void ListenFeed::tell_losses() {
   for (auto& [name, state] : channels_) {
     if (state.lost > 0) listener_.on_lost(name, state.lost);
     state.lost = 0;

@@ -20,7 +20,7 @@ namespace workbench::live {
 /// Without a health message for so long the daemon counts as silent (it sends one a second).
 inline constexpr std::chrono::seconds kSilence{3};
 
-class Listener : public config::messages::MessageHandler {
+class FeedListener : public config::messages::MessageHandler {
  public:
   /// A daemon was heard that was not heard before.
   virtual void on_new_run(std::int64_t run_id, bool first) = 0;
@@ -32,13 +32,14 @@ class Listener : public config::messages::MessageHandler {
   virtual void on_notice(const std::string& what) = 0;
 };
 
-class Feed {
+class ListenFeed {
  public:
   /// Throws config::schema::Error when LCM cannot start on `url`.
-  Feed(const std::string& url, const std::string& prefix, bool with_samples, Listener& listener);
-  ~Feed();
-  Feed(const Feed&) = delete;
-  Feed& operator=(const Feed&) = delete;
+  ListenFeed(const std::string& url, const std::string& prefix, bool with_samples,
+             FeedListener& listener);
+  ~ListenFeed();
+  ListenFeed(const ListenFeed&) = delete;
+  ListenFeed& operator=(const ListenFeed&) = delete;
 
   /// Handles what arrives within `timeout`. False at the end of a log.
   bool poll(std::chrono::milliseconds timeout);
@@ -50,7 +51,8 @@ class Feed {
     std::int64_t lost = 0;       // not yet told
   };
 
-  static void received(const lcm::ReceiveBuffer* buffer, const std::string& channel, Feed* feed);
+  static void received(const lcm::ReceiveBuffer* buffer, const std::string& channel,
+                       ListenFeed* feed);
   void follow(const std::string& channel, std::int64_t run_id, std::int64_t seq);
   void watch();
   void tell_losses();
@@ -58,7 +60,7 @@ class Feed {
   std::unique_ptr<lcm::LCM> lcm_;
   const std::string prefix_;
   const bool is_log_;
-  Listener& listener_;
+  FeedListener& listener_;
   std::map<std::string, Channel> channels_;
   std::set<std::int64_t> runs_;
   std::set<std::string> told_;  // causes of notices

@@ -9,7 +9,7 @@
 
 namespace workbench::live {
 
-class LinePrinter final : public Listener {
+class LinePrinter final : public FeedListener {
  public:
   /// With `alarms_only`, estimates are left out.
   LinePrinter(std::ostream& out, bool json, bool alarms_only = false)

@@ -19,10 +19,10 @@ constexpr std::int8_t kStaleQuality = 2;  // and 3, bad: no new reading
 void say(const std::string& line) { std::cerr << "spoolwatch compare: " << line << std::endl; }
 
 /// On a terminal each line takes the place of the one before.
-class Watcher final : public Listener {
+class Watcher final : public FeedListener {
  public:
-  Watcher(const plant_sim::ModelFile& model, const WatchOptions& options)
-      : running_(model, options.observer_per_s),
+  Watcher(const plant_sim::ModelFile& model, const LiveCompareOptions& options)
+      : residual_(model, options.observer_per_s),
         json_(options.json),
         terminal_(!options.json && isatty(STDOUT_FILENO) == 1) {}
 
@@ -30,7 +30,7 @@ class Watcher final : public Listener {
     if (s.quality >= kStaleQuality || !std::isfinite(s.y_m) || !std::isfinite(s.u_applied_V)) {
       return;
     }
-    running_.add(s.tick, s.sample_time_s, s.u_applied_V, s.y_m);
+    residual_.add(s.tick, s.sample_time_s, s.u_applied_V, s.y_m);
     const auto second =
         static_cast<std::int64_t>(std::floor(static_cast<double>(s.tick) * s.sample_time_s + 1e-9));
     if (told_ && second == second_) return;
@@ -60,7 +60,7 @@ class Watcher final : public Listener {
 
  private:
   void tell() {
-    const Figures figures = running_.figures();
+    const ResidualFigures figures = residual_.figures();
     if (json_) {
       std::cout << json_of(figures) << std::endl;
     } else if (terminal_) {
@@ -71,7 +71,7 @@ class Watcher final : public Listener {
     ++lines_;
   }
 
-  Running running_;
+  OnlineResidual residual_;
   bool json_, terminal_;
   bool told_ = false;
   std::int64_t second_ = 0;
@@ -80,13 +80,13 @@ class Watcher final : public Listener {
 
 }  // namespace
 
-void watch(const plant_sim::ModelFile& model, const WatchOptions& options) {
+void watch(const plant_sim::ModelFile& model, const LiveCompareOptions& options) {
   using config::schema::RunError;
-  const cli::Ending ending(options.duration_s);
+  const cli::StopCondition stop(options.duration_s);
   Watcher watcher(model, options);
   {
-    Feed feed(options.url, options.prefix, true, watcher);
-    while (!ending.reached() && std::cout) {
+    ListenFeed feed(options.url, options.prefix, true, watcher);
+    while (!stop.reached() && std::cout) {
       if (feed.poll(std::chrono::milliseconds(100)) || cli::Ending::asked()) continue;
       if (options.url.starts_with("file:")) break;
       throw RunError("LCM cannot receive on \"" + options.url + "\" any more");

@@ -7,7 +7,7 @@
 
 namespace workbench::live {
 
-struct WatchOptions {
+struct LiveCompareOptions {
   std::string url, prefix;
   double observer_per_s = 0.0;
   double duration_s = 0.0;  ///< 0: until a signal
@@ -15,6 +15,6 @@ struct WatchOptions {
 };
 
 /// Writes to standard output until the end. Throws config::schema::Error.
-void watch(const plant_sim::ModelFile& model, const WatchOptions& options);
+void watch(const plant_sim::ModelFile& model, const LiveCompareOptions& options);
 
 }  // namespace workbench::live

@@ -65,7 +65,7 @@ struct HealthFigures {
   double lateness_max_us = kNone;
 };
 
-class LiveState final : public Listener {
+class LiveState final : public FeedListener {
  public:
   static constexpr double kMotionSpan_s = 10.0;
   static constexpr double kValueSpan_s = 60.0;

@@ -26,10 +26,10 @@ constexpr double kMostLed = 0.5;  // of the error in one sample
 
 }  // namespace
 
-Running::Running(const plant_sim::ModelFile& model, double observer_per_s)
+OnlineResidual::OnlineResidual(const plant_sim::ModelFile& model, double observer_per_s)
     : model_(model), observer_per_s_(observer_per_s) {}
 
-void Running::add(std::int64_t tick, double sample_time_s, double u_V, double y_m) {
+void OnlineResidual::add(std::int64_t tick, double sample_time_s, double u_V, double y_m) {
   if (sample_time_s != sample_time_s_) {
     samples_.clear();
     sample_time_s_ = sample_time_s;
@@ -60,12 +60,12 @@ void Running::add(std::int64_t tick, double sample_time_s, double u_V, double y_
   while (samples_.back().tick - samples_.front().tick >= most) samples_.pop_front();
 }
 
-double Running::error_m() const noexcept {
+double OnlineResidual::error_m() const noexcept {
   return samples_.empty() ? kNaN : samples_.back().error_m;
 }
 
-Figures Running::figures() const {
-  Figures f;
+ResidualFigures OnlineResidual::figures() const {
+  ResidualFigures f;
   f.rms_m = f.fit_percent = f.noise_floor_m = f.floor_ratio = kNaN;
   f.worst_from = f.worst_to = f.worst_rms_m = kNaN;
   if (samples_.empty()) {
@@ -106,7 +106,7 @@ Figures Running::figures() const {
   return f;
 }
 
-void Running::find_worst(Figures& f) const {
+void OnlineResidual::find_worst(ResidualFigures& f) const {
   config::record::Record record;
   record.name = "the last " + std::to_string(std::lround(kLong_s)) + " s";
   record.sample_time_s = sample_time_s_;
@@ -131,7 +131,7 @@ void Running::find_worst(Figures& f) const {
   }
 }
 
-std::string line_of(const Figures& f) {
+std::string line_of(const ResidualFigures& f) {
   std::string line =
       fmt::format("{:9.1f} s  rms {:9} fit {:>7}  {:>6} x floor", f.t_s, present::length(f.rms_m),
                   std::isfinite(f.fit_percent) ? present::three_digits(f.fit_percent) + " %" : "-",
@@ -141,7 +141,7 @@ std::string line_of(const Figures& f) {
   return line;
 }
 
-std::string json_of(const Figures& f) {
+std::string json_of(const ResidualFigures& f) {
   const auto number = [](double value) {
     return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
   };

@@ -19,7 +19,7 @@ namespace workbench::live {
 namespace greybox = estimator::greybox;
 
 /// What there is to say; a number that is not known yet is NaN.
-struct Figures {
+struct ResidualFigures {
   double t_s = 0.0;       ///< of the newest sample
   double window_s = 0.0;  ///< settled samples behind rms_m
   double rms_m = 0.0;
@@ -33,14 +33,14 @@ struct Figures {
   std::string note;  ///< why a figure is missing
 };
 
-class Running {
+class OnlineResidual {
  public:
   /// Over which time error and fit are told, and over which a region is looked for.
   static constexpr double kShort_s = 10.0;
   static constexpr double kLong_s = 30.0;
 
-  explicit Running(const plant_sim::ModelFile& model,
-                   double observer_per_s = greybox::kObserver_per_s);
+  explicit OnlineResidual(const plant_sim::ModelFile& model,
+                          double observer_per_s = greybox::kObserver_per_s);
 
   /// One usable sample. A tick that does not follow the one before begins a new segment. Throws
   /// config::schema::Error for a model that cannot be built at this sample time.
@@ -48,7 +48,7 @@ class Running {
   /// Measured less modelled position of the newest sample; NaN while the model settles.
   [[nodiscard]] double error_m() const noexcept;
   [[nodiscard]] bool empty() const noexcept { return samples_.empty(); }
-  [[nodiscard]] Figures figures() const;
+  [[nodiscard]] ResidualFigures figures() const;
 
  private:
   struct Sample {
@@ -56,7 +56,7 @@ class Running {
     double u_V, y_m, error_m;  ///< error NaN while it settles
     bool starts;               ///< a segment
   };
-  void find_worst(Figures& figures) const;
+  void find_worst(ResidualFigures& figures) const;
 
   plant_sim::ModelFile model_;
   double observer_per_s_;
@@ -67,8 +67,8 @@ class Running {
 };
 
 /// "12 s  rms 24.1 um  fit 99.2 %  4.1 x floor  worst ...".
-[[nodiscard]] std::string line_of(const Figures& figures);
+[[nodiscard]] std::string line_of(const ResidualFigures& figures);
 /// One JSON object, SI, a missing number null.
-[[nodiscard]] std::string json_of(const Figures& figures);
+[[nodiscard]] std::string json_of(const ResidualFigures& figures);
 
 }  // namespace workbench::live

@@ -4,12 +4,12 @@
 namespace workbench::present {
 
 inline constexpr const char* kFreeRunMeaning =
-    "Free run (pure simulation): the measured command alone drives the model from the first "
+    "Free run: the measured command alone drives the model from the first "
     "sample on; it never sees the measured position again, so that errors add up.";
 
 inline constexpr const char* kDriftCorrectedMeaning =
-    "Drift-corrected (drift taken away): the same simulation, but its position is slowly led back "
-    "to the measured one, so that an error shows where it arises and is then forgotten.";
+    "Drift-corrected: the same simulation, but its position is slowly corrected towards the "
+    "measured one, so that an error shows where it arises and then decays.";
 
 inline constexpr const char* kNoiseFloorMeaning =
     "Noise floor: what the sensor's steps and noise leave even with a perfect model; about 95 % of "

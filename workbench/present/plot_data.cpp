@@ -10,12 +10,12 @@ namespace workbench::present {
 
 namespace {
 
-const char* name_of(Kind kind) {
+const char* to_string(Kind kind) {
   constexpr std::array<const char*, 4> kNames{"line", "scatter", "bars", "steps"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
-const char* name_of(Tone tone) {
+const char* to_string(Tone tone) {
   constexpr std::array<const char*, 7> kNames{"automatic", "measured", "model", "residual",
                                               "improved",  "accent",   "muted"};
   return kNames[static_cast<std::size_t>(tone)];
@@ -60,7 +60,7 @@ std::string series_json(const Plot& plot, const Series& series,
                         const std::vector<std::size_t>& shared, Thinned& thinned) {
   const Kind kind = series.kind.value_or(plot.kind);
   std::string out = R"({"name":)" + json_string(typeset(series.name)) + R"(,"kind":")" +
-                    name_of(kind) + R"(","tone":")" + name_of(series.tone) + '"';
+                    to_string(kind) + R"(","tone":")" + to_string(series.tone) + '"';
   if (series.dashed) out += R"(,"dashed":true)";
   if (!plot.categories.empty()) return out + R"(,"y":)" + json_numbers(series.y) + "}";
   const std::vector<double>& x = series.x.empty() ? plot.x_values : series.x;
@@ -101,7 +101,7 @@ PlotText plot_text(const Plot& plot) {
     shares_x = shares_x || (one.x.empty() && one.kind.value_or(plot.kind) != Kind::scatter);
   }
   std::string json = R"({"title":)" + json_string(plot.title) + R"(,"kind":")" +
-                     name_of(plot.kind) + R"(","x":)" + axis_json(plot.x) + R"(,"y":)" +
+                     to_string(plot.kind) + R"(","x":)" + axis_json(plot.x) + R"(,"y":)" +
                      axis_json(plot.y) + R"(,"group":)" + json_string(plot.zoom_group);
   if (plot.horizontal) json += R"(,"horizontal":true)";
   if (!plot.categories.empty()) {

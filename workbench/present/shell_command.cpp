@@ -1,8 +1,5 @@
 #include "workbench/present/shell_command.h"
 
-#include <filesystem>
-#include <fstream>
-
 namespace workbench::present {
 
 std::string shell_word(std::string_view word) {
@@ -22,14 +19,6 @@ std::string shell_command(const std::vector<std::string>& words) {
     command += (command.empty() ? "" : " ") + shell_word(word);
   }
   return command;
-}
-
-std::string typed_command() {
-  std::ifstream arguments("/proc/self/cmdline", std::ios::binary);
-  std::vector<std::string> words;
-  for (std::string word; std::getline(arguments, word, '\0');) words.push_back(word);
-  if (!words.empty()) words[0] = std::filesystem::path(words[0]).filename().string();
-  return shell_command(words);
 }
 
 }  // namespace workbench::present

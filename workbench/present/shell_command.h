@@ -12,7 +12,4 @@ namespace workbench::present {
 
 [[nodiscard]] std::string shell_command(const std::vector<std::string>& words);
 
-/// The command line of this process, the program without its folder.
-[[nodiscard]] std::string typed_command();
-
 }  // namespace workbench::present

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "estimator/fdi/pipeline.h"
-#include "workbench/reproduce/stand.h"
+#include "workbench/reproduce/thesis_scenarios.h"
 
 namespace workbench::reproduce {
 

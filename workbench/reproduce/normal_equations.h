@@ -1,4 +1,4 @@
-// Least squares as the source does it, theta = (Psi' Psi)^-1 Psi' y: squares the condition number.
+// Least squares as the thesis does it, theta = (Psi' Psi)^-1 Psi' y: squares the condition number.
 // Here only to show what comes of it; the product factorises Psi itself.
 #pragma once
 

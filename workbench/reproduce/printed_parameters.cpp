@@ -1,7 +1,7 @@
 // b1 with the parameters as printed, and with the valve constant solved for the printed b1.
 #include "estimator/batch.h"
 #include "workbench/reproduce/experiment.h"
-#include "workbench/reproduce/stand.h"
+#include "workbench/reproduce/thesis_scenarios.h"
 #include "workbench/reproduce/tolerance.h"
 
 namespace workbench::reproduce {

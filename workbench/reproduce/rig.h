@@ -1,7 +1,7 @@
 // The instruments of the test stand's preset, as its model file assumes them.
 #pragma once
 
-#include "workbench/reproduce/stand.h"
+#include "workbench/reproduce/thesis_scenarios.h"
 
 namespace workbench::reproduce {
 

@@ -1,4 +1,4 @@
-// One line of the comparison: what the source printed, what came out here, whether the two agree.
+// One line of the comparison: what the thesis printed, what came out here, whether the two agree.
 #pragma once
 
 #include <string>

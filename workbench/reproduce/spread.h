@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "estimator/structure.h"
-#include "workbench/reproduce/stand.h"
+#include "workbench/reproduce/thesis_scenarios.h"
 
 namespace workbench::reproduce {
 

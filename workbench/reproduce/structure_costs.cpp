@@ -10,7 +10,7 @@
 #include "estimator/free_run.h"
 #include "workbench/reproduce/experiment.h"
 #include "workbench/reproduce/normal_equations.h"
-#include "workbench/reproduce/stand.h"
+#include "workbench/reproduce/thesis_scenarios.h"
 #include "workbench/reproduce/tolerance.h"
 
 namespace workbench::reproduce {

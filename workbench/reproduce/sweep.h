@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "workbench/reproduce/stand.h"
+#include "workbench/reproduce/thesis_scenarios.h"
 
 namespace workbench::reproduce {
 

@@ -12,7 +12,7 @@ constexpr Tolerance kTolerances[] = {
     {"solved for", Rule::none, false, 0, 0, "a free constant was chosen to give this very figure"},
     {"words", Rule::same, true, 0, 0, "the same verdict"},
     {"words, not expected", Rule::same, false, 0, 0,
-     "the same verdict; it depends on how rounding spoils the source's normal equations"},
+     "the same verdict; it depends on how rounding spoils the thesis's normal equations"},
     {"cost, in step", Rule::relative, false, 0.01, 0,
      "1 %: six digits are printed, but gain and valve constant are not given well enough for more"},
     {"cost, out of step", Rule::relative, false, 0.01, 0,

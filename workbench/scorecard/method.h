@@ -10,7 +10,7 @@
 
 #include "estimator/fdi/pipeline.h"
 #include "estimator/fdi/tracker/source_kinds.h"
-#include "workbench/scorecard/stand.h"
+#include "workbench/scorecard/simulated_records.h"
 #include "workbench/train/learn.h"
 
 namespace workbench::scorecard {

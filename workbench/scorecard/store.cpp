@@ -7,7 +7,7 @@
 
 #include "config/record/whole_file.h"
 #include "config/schema/error.h"
-#include "workbench/scorecard/stand.h"
+#include "workbench/scorecard/simulated_records.h"
 
 namespace workbench::scorecard {
 namespace {

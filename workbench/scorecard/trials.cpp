@@ -48,9 +48,9 @@ class Trials::Runners {
     for (const std::size_t method : which) {
       unusable_.push_back(trained.unusable[method]);
       watches_.push_back(trained.unusable[method].empty()
-                             ? std::make_unique<Watch>(trained.configs[method],
-                                                       simulate::kSampleTime_s,
-                                                       trials.methods_[method].notices)
+                             ? std::make_unique<DetectionTrial>(trained.configs[method],
+                                                                simulate::kSampleTime_s,
+                                                                trials.methods_[method].notices)
                              : nullptr);
     }
   }
@@ -61,8 +61,8 @@ class Trials::Runners {
     return usable(i) ? std::move(found) : json{{"unusable", unusable_[i]}};
   }
 
-  [[nodiscard]] Watch& watch(std::size_t i) { return *watches_[i]; }
-  /// `f(Watch&)` with its time taken; `rig_s`: of the record.
+  [[nodiscard]] DetectionTrial& watch(std::size_t i) { return *watches_[i]; }
+  /// `f(DetectionTrial&)` with its time taken; `rig_s`: of the record.
   template <class F>
   auto with(std::size_t i, double rig_s, const F& f) {
     const double begin_s = processor_s();
@@ -77,7 +77,7 @@ class Trials::Runners {
   Trials& trials_;
   const std::vector<std::size_t>& which_;
   std::vector<std::string> unusable_;
-  std::vector<std::unique_ptr<Watch>> watches_;
+  std::vector<std::unique_ptr<DetectionTrial>> watches_;
 };
 
 Trials::Trials(const Bench& bench, std::vector<Method> methods, const Scope& scope)
@@ -149,7 +149,8 @@ void Trials::quiet(Turn& turn) const {
                          : changed(bench_, motion, bench_.plan.benign[turn.part.subject]),
                      record_s, seed_of(scope_.seed, turn.part.id));
   turn.each([&](std::size_t i) {
-    const Quiet q = turn.runners.with(i, record_s, [&](Watch& w) { return w.quiet(samples); });
+    const Quiet q =
+        turn.runners.with(i, record_s, [&](DetectionTrial& w) { return w.quiet(samples); });
     turn.out[i] = {{"hours", bench_.plan.part_h},
                    {"alarms", q.alarms},
                    {"alarm_s", q.alarm_s},
@@ -159,11 +160,11 @@ void Trials::quiet(Turn& turn) const {
 
 /// What a method says of a record with a fault, which ends watch_s after it.
 Answer Trials::answer(Turn& turn, std::size_t method, const Samples& samples, bool to_the_end,
-                      Watch::Lead* lead) const {
+                      DetectionTrial::Lead* lead) const {
   const double end_s = static_cast<double>(samples.size()) * simulate::kSampleTime_s;
   const double at_s = end_s - bench_.plan.watch_s;
   const Fault& fault = bench_.plan.faults[turn.part.subject];
-  const auto judge = [&](Watch& w) {
+  const auto judge = [&](DetectionTrial& w) {
     return w.fault(samples, at_s, fault.names, to_the_end, lead);
   };
   // One that stops early took nobody knows how much of the record.
@@ -184,9 +185,9 @@ void Trials::stated(Turn& turn) const {
 }
 
 /// How often each of the methods detects one size; those whose share is decided stop early.
-std::vector<Trials::Count> Trials::rung(Turn& turn, const std::vector<std::size_t>& methods,
-                                        double size,
-                                        std::vector<std::vector<Watch::Lead>>& leads) const {
+std::vector<Trials::Count> Trials::rung(
+    Turn& turn, const std::vector<std::size_t>& methods, double size,
+    std::vector<std::vector<DetectionTrial::Lead>>& leads) const {
   const Fault& fault = bench_.plan.faults[turn.part.subject];
   const auto trials = static_cast<std::size_t>(scope_.seeds);
   std::vector<Count> counts(methods.size());
@@ -199,7 +200,7 @@ std::vector<Trials::Count> Trials::rung(Turn& turn, const std::vector<std::size_
     for (std::size_t k = 0; k < methods.size(); ++k) {
       if (!open(counts[k])) continue;
       ++counts[k].tried;
-      Watch::Lead& lead = leads[methods[k]][trial];
+      DetectionTrial::Lead& lead = leads[methods[k]][trial];
       if (answer(turn, methods[k], samples, false, &lead).detected()) ++counts[k].detected;
     }
   }
@@ -213,7 +214,8 @@ void Trials::ladder(Turn& turn) const {
   const std::vector<double> sizes =
       bench_.plan.faults[turn.part.subject].sizes(turn.part.direction);
   std::vector<LadderSearch> searches(turn.out.size(), LadderSearch(sizes.size()));
-  std::vector<std::vector<Watch::Lead>> leads(turn.out.size(), std::vector<Watch::Lead>(trials));
+  std::vector<std::vector<DetectionTrial::Lead>> leads(turn.out.size(),
+                                                       std::vector<DetectionTrial::Lead>(trials));
   for (json& one : turn.out) one = {{"smallest", nullptr}, {"rungs", json::array()}};
   for (;;) {
     std::map<std::size_t, std::vector<std::size_t>> asked;

@@ -22,8 +22,8 @@
 #include <string>
 #include <vector>
 
+#include "workbench/scorecard/detection_trial.h"
 #include "workbench/scorecard/method.h"
-#include "workbench/scorecard/watch.h"
 
 namespace workbench::scorecard {
 
@@ -94,11 +94,11 @@ class Trials {
   void stated(Turn& turn) const;
   void ladder(Turn& turn) const;
   /// `leads`: of each method and trial.
-  [[nodiscard]] std::vector<Count> rung(Turn& turn, const std::vector<std::size_t>& methods,
-                                        double size,
-                                        std::vector<std::vector<Watch::Lead>>& leads) const;
+  [[nodiscard]] std::vector<Count> rung(
+      Turn& turn, const std::vector<std::size_t>& methods, double size,
+      std::vector<std::vector<DetectionTrial::Lead>>& leads) const;
   [[nodiscard]] Answer answer(Turn& turn, std::size_t method, const Samples& samples,
-                              bool to_the_end, Watch::Lead* lead = nullptr) const;
+                              bool to_the_end, DetectionTrial::Lead* lead = nullptr) const;
 
   const Bench& bench_;
   std::vector<Method> methods_;

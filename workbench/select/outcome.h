@@ -1,7 +1,7 @@
 // The comparison of structures on one record: how each is judged, and what is recommended.
 //
 // Fitted on the first part of the record, scored on the rest. One period of the motion (2 s unless
-// told) is the unit, as in the source: E is the energy of the free run's error over one held-out
+// told) is the unit, as in the thesis: E is the energy of the free run's error over one held-out
 // period, the free run starting from what the predictor knows after the 0.25 s before; the spread
 // of coefficients is that between fits to single periods of the whole record.
 //

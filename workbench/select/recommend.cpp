@@ -1,4 +1,4 @@
-// Which structure to take, and why: the source's three criteria in its order. A structure must
+// Which structure to take, and why: the thesis's three criteria in its order. A structure must
 // represent the record (its free run errs less than the rod moves); the best held-out E counts,
 // but one a little above it (25 %: 12 % in RMS) is as good; among those a sound recursive form is
 // preferred for watching on line, then the least spread of coefficients between periods.

@@ -17,7 +17,7 @@
 
 namespace workbench::simulate {
 
-/// Control and monitoring at 200 Hz, as in the source.
+/// Control and monitoring at 200 Hz, as in the thesis.
 inline constexpr double kSampleTime_s = 0.005;
 
 struct LoopRow {

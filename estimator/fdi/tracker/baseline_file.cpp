@@ -7,6 +7,7 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 #include "estimator/fdi/fingerprint.h"
 #include "estimator/greybox/parameter_catalogue.h"
 
@@ -44,7 +45,8 @@ void HealthyFile::visit(Visitor& v) {
   v.numbers({"values", "of the parameters, SI", true}, values);
   v.number({"sample_time_s", "of the record", true}, sample_time_s, {1e-6, 1e3});
   v.number({"window_s", "length of the windows", true}, window_s, {1e-6, 1e6});
-  v.number({"observer_per_s", "how fast drift was led back", true}, observer_per_s, {0.0, 1e3});
+  v.number({"observer_per_s", "gain that corrected the simulated position", true}, observer_per_s,
+           {0.0, 1e3});
   v.number({"rms_m", "of a healthy window's error", true}, rms_m, {1e-12, 1.0});
   v.number({"noise_floor_m", "of the position"}, noise_floor_m, {0.0, 1.0});
   chambers.visit(v);
@@ -101,9 +103,10 @@ HealthyFile read_healthy(const std::filesystem::path& path, const plant_sim::Mod
   std::vector<std::string> tracked;
   for (std::size_t i = 0; i < choice.tracked; ++i) tracked.push_back(choice.parameters[i].name);
   if (sorted(file.parameters) != sorted(tracked)) {
-    throw bad_config(where + ": parameters",
-                     "was learnt while " + greybox::joined_names(file.parameters) + " were tracked",
-                     greybox::joined_names(tracked));
+    throw bad_config(
+        where + ": parameters",
+        "was learnt while " + config::schema::joined(file.parameters) + " were tracked",
+        config::schema::joined(tracked));
   }
   return file;
 }

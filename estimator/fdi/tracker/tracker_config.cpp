@@ -30,7 +30,8 @@ void TrackerConfig::visit(Visitor& v) {
   v.texts({"parameters", "tracked, as in model files"}, parameters);
   v.number({"window_s", "length of the window"}, settings.window_s, {0.1, kLongest_s});
   v.number({"stride_s", "between estimates"}, settings.stride_s, {1e-3, kLongest_s});
-  v.number({"observer_per_s", "how fast drift is led back"}, settings.observer_per_s, {0.0, 1e3});
+  v.number({"observer_per_s", "gain that corrects the simulated position"}, settings.observer_per_s,
+           {0.0, 1e3});
   v.number({"limit_ratio", "of the healthy error: beyond, a window is invalid"},
            settings.most_ratio, {1.0, 1e3});
   v.number({"least_ratio", "smaller changes are not named"}, settings.thresholds.least_ratio,

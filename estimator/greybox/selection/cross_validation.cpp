@@ -43,7 +43,7 @@ bool supported(const Workshop& shop, bool explained, const Selection& plain,
   options.final_jacobian = false;
   options.cancel = shop.cancel;
   if (!explained) {
-    // pure simulation: its minimum is narrow, and what is not reached decides wrongly
+    // the free run: its minimum is narrow, and what is not reached decides wrongly
     options.observer_per_s = 0.0;
     options.tolerance = 1e-5;
     options.max_iterations = FitOptions{}.max_iterations;

@@ -3,7 +3,7 @@
 //
 // Held-out blocks between fitted ones share whatever is still wrong; an addition can follow that in
 // both. So it has to lower the error of either half of the records when it is fitted to the other,
-// and where noise does not explain the rest, without the observer's help: in pure simulation.
+// and where noise does not explain the rest, without the observer's help: in the free run.
 #pragma once
 
 #include "estimator/greybox/selection/parameter_subset.h"

@@ -22,7 +22,7 @@ namespace estimator::greybox::selection {
 /// Relative fall of the held-out error that an effect must bring.
 inline constexpr double kWorthwhile = 0.01;
 /// The same where the error is hardly more than noise, which hides much of an effect. Healthy
-/// records of the source's actuator stay below a quarter of it.
+/// records of the thesis's actuator stay below a quarter of it.
 inline constexpr double kWorthwhileInNoise = 0.004;
 /// Held-out error over the noise floor above which something is still unexplained.
 inline constexpr double kUnexplained = 1.15;

@@ -32,7 +32,7 @@ struct Comparison {
 
   // One number for each sample.
   std::vector<double> error_m;       ///< drift-corrected; the unsettled samples too
-  std::vector<double> free_error_m;  ///< of the pure simulation
+  std::vector<double> free_error_m;  ///< of the free run
   std::vector<double> speed_error_mps;
   /// Speed error, a mean over +-50 ms, less what a plain gain and offset explain: by this regions
   /// are told apart.

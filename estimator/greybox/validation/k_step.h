@@ -1,4 +1,4 @@
-// How well the model predicts k samples ahead.
+// Error of the k-step prediction.
 //
 // Every k samples the model's position is put on the measured one; its other states (speed,
 // pressures, spool) stay as its own run under the measured command has them. The error just before

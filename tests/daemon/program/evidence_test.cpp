@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::HasSubstr;
 
-/// Case I of the source with a batch, a sliding window and a recursion, each with its band.
+/// Case I of the thesis with a batch, a sliding window and a recursion, each with its band.
 std::string three_ways(const fs::path& folder) {
   const std::string file = (folder / "three.toml").string();
   std::ifstream shipped_file(shipped("thesis_case1.toml"));

@@ -1,4 +1,4 @@
-// The whole daemon in virtual time: the same bytes for the same seed, the source's alarm times,
+// The whole daemon in virtual time: the same bytes for the same seed, the thesis's alarm times,
 // null as the last command, recorded data of any period.
 #include <gmock/gmock.h>
 

@@ -24,7 +24,7 @@ using program::read_log;
 using testing::HasSubstr;
 
 constexpr double kPeriod_s = 0.005;
-// Case I of the source, shortened: three windows of 2 s for each state of the pressure.
+// Case I of the thesis, shortened: three windows of 2 s for each state of the pressure.
 constexpr double kFaults_s[] = {6.0, 12.0, 18.0};
 constexpr double kEnd_s = 24.0;
 /// The two runs differ by what the real clock spoils (stale readings make a window invalid until it

@@ -33,12 +33,13 @@ TEST(Words, SayThatNothingIsLeftAtTheNoiseFloor) {
 
 TEST(Words, NameABiasAsAConstantSpeedWithItsSign) {
   const Words out = words(compared([](double, double, double) { return 0.002; }));
-  EXPECT_THAT(out.verdict, StartsWith("Off by a constant speed: the rod drifts 2 mm/s outwards"));
+  EXPECT_THAT(out.verdict,
+              StartsWith("Off by a constant speed: the rod drifts 2 mm/s towards extension"));
   EXPECT_THAT(out.lines, Contains(StartsWith("Beyond that it is at the noise floor")));
   EXPECT_THAT(out.lines, Contains(HasSubstr("2 mm/s faster than the model while extending, 2 mm/s "
                                             "slower while retracting")));
   const Words in = words(compared([](double, double, double) { return -0.002; }));
-  EXPECT_THAT(in.verdict, HasSubstr("2 mm/s inwards"));
+  EXPECT_THAT(in.verdict, HasSubstr("2 mm/s towards retraction"));
 }
 
 TEST(Words, NameAGainWithItsSign) {

@@ -35,12 +35,10 @@ class DiagnoseRequest : public testing::Test, public ServoBench {
 
 TEST_F(DiagnoseRequest, IsTakenWithItsRecordsAndCommand) {
   request_.holdouts = {record("other.csv", {.sample_time_s = 0.01})};
-  request_.report = file("it's.html");
+  request_.command = "spoolwatch diagnose";
   const Outcome outcome = prepare(request_);
   EXPECT_EQ(outcome.shop.evidence.records.size(), 2U);
-  EXPECT_EQ(outcome.command, "spoolwatch diagnose " + model() + " " + request_.records[0] +
-                                 " --holdout " + request_.holdouts[0] + " --report '" +
-                                 file("it'\\''s.html") + "'");
+  EXPECT_EQ(outcome.command, "spoolwatch diagnose");
 }
 
 TEST_F(DiagnoseRequest, HoldoutThatIsFittedTooIsRefused) {

@@ -74,7 +74,7 @@ TEST_F(FitTest, WritesTheBetterModelAndSaysWhatMoved) {
   const std::string said =
       fit({kModels + "thesis.toml", record(), "--fit", "blocks", "-o", path("better.toml"),
            "--json", path("fit.json"), "--report", path("fit.html")});
-  EXPECT_THAT(said, AllOf(HasSubstr("RMS, drift taken away"), HasSubstr("On data that were not"),
+  EXPECT_THAT(said, AllOf(HasSubstr("RMS, drift-corrected"), HasSubstr("On data that were not"),
                           HasSubstr("What the record cannot see"),
                           HasSubstr("starts ended in this minimum"), HasSubstr("Moved:")));
   const auto json = nlohmann::json::parse(text_of(path("fit.json")));

@@ -1,4 +1,4 @@
-// The needle valve of the source's stand, open against 80 % closed, where dry friction is there as
+// The needle valve of the thesis's stand, open against 80 % closed, where dry friction is there as
 // well: the model is calibrated on a healthy record, and then tracked. The truth has the LuGre law.
 //
 // Friction needs a start with a bristle (presliding_stiffness_N_per_m above 0): 0 is rigid contact,

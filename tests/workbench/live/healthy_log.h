@@ -10,7 +10,7 @@
 
 namespace live_test {
 
-/// `seconds` of the thesis' motion before its first fault (15 s) unless `more` says otherwise.
+/// `seconds` of the thesis's motion before its first fault (15 s) unless `more` says otherwise.
 inline std::string make_log(const std::filesystem::path& folder, const std::string& seconds,
                             const std::vector<std::string>& more = {}) {
   std::vector<std::string> arguments =

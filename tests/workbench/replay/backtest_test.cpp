@@ -1,4 +1,4 @@
-// New rules on logs that the daemon wrote: case I of the source, alarms at 18 s and 48 s.
+// New rules on logs that the daemon wrote: case I of the thesis, alarms at 18 s and 48 s.
 #include <gmock/gmock.h>
 
 #include <fstream>

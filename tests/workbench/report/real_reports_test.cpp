@@ -99,7 +99,7 @@ TEST_F(Reports, OfADiagnosisDrawsEveryPlotAndSaysWhatTheJsonSays) {
     EXPECT_NEAR(fact_m(page, label), value_m, kThreeDigits * value_m) << label;
   }
   EXPECT_THAT(shell_words_of(page), testing::HasSubstr("\n" + bench + "\n"));
-  for (const char* meaning : {"Free run (pure simulation)", "Drift-corrected", "Noise floor:"}) {
+  for (const char* meaning : {"Free run: ", "Drift-corrected", "Noise floor:"}) {
     EXPECT_THAT(page, testing::HasSubstr(meaning));
   }
 }

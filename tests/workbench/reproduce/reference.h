@@ -1,4 +1,4 @@
-// Printed by reference.py. Figures of the source's plant and loop by NumPy.
+// Printed by reference.py. Figures of the thesis's plant and loop by NumPy.
 #pragma once
 
 namespace workbench::reproduce::reference {

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Independent figures for reproduce_test.cpp: the source's plant and loop in NumPy, integrated by
+"""Independent figures for reproduce_test.cpp: the thesis's plant and loop in NumPy, integrated by
 classical Runge-Kutta with steps of 0.25 ms (checked against scipy.integrate.solve_ivp), structures
 fitted by numpy.linalg.lstsq. Prints reference.h's constants; nothing of the product is used.
 
@@ -113,7 +113,7 @@ def main():
         s = free_run(fit(uu, yy, n, m), uu, yy, n, m)
         out[f"kCost{n}{m}1_m2"] = np.sum((yy - s) ** 2)
         out[f"kCostLate{n}{m}1_m2"] = np.sum((yy[1:] - s[:-1]) ** 2)
-    print("// Printed by reference.py. Figures of the source's plant and loop by NumPy.\n"
+    print("// Printed by reference.py. Figures of the thesis's plant and loop by NumPy.\n"
           "#pragma once\n\nnamespace workbench::reproduce::reference {\n")
     for name, value in out.items():
         print(f"inline constexpr double {name} = {value:.9e};")

@@ -1,5 +1,5 @@
 // Alarms against what was injected, on a signal whose course is known.
-#include "workbench/scorecard/watch.h"
+#include "workbench/scorecard/detection_trial.h"
 
 #include <gmock/gmock.h>
 
@@ -42,26 +42,26 @@ Samples ramp(double from_s, double duration_s) {
 }
 
 Answer answer(const std::vector<fdi::BandConfig>& bands, double fault_s = 1.0) {
-  return Watch(watching(bands), kPeriod_s).fault(ramp(1.0, 4.0), fault_s, {"a"}, true);
+  return DetectionTrial(watching(bands), kPeriod_s).fault(ramp(1.0, 4.0), fault_s, {"a"}, true);
 }
 
-TEST(Watch, MeasuresTheDelayFromTheFaultToTheFirstAlarm) {
+TEST(DetectionTrial, MeasuresTheDelayFromTheFaultToTheFirstAlarm) {
   const Answer found = answer({band("one", 0.5, "a")});
   EXPECT_EQ(found.verdict, Verdict::right);
   EXPECT_NEAR(found.delay_s, 0.505, 1e-9);  // the first sample above 0.5 m
   EXPECT_THAT(found.first, testing::ElementsAre("a"));
 }
 
-TEST(Watch, GoesOnFromALeadAsIfItHadTakenIt) {
+TEST(DetectionTrial, GoesOnFromALeadAsIfItHadTakenIt) {
   const std::vector<fdi::BandConfig> bands{band("one", 0.5, "a", {"a", "b"}),
                                            band("two", 1.5, "c")};
-  Watch watch(watching(bands), kPeriod_s);
-  Watch::Lead lead;
+  DetectionTrial watch(watching(bands), kPeriod_s);
+  DetectionTrial::Lead lead;
   const Samples slow = ramp(1.2, 4.0);
   const Samples late = ramp(2.0, 4.0);
   const Answer first = watch.fault(slow, 1.1, {"a"}, true, &lead);
   ASSERT_NE(lead.said, nullptr);
-  const Answer alone = Watch(watching(bands), kPeriod_s).fault(late, 1.1, {"a"}, true);
+  const Answer alone = DetectionTrial(watching(bands), kPeriod_s).fault(late, 1.1, {"a"}, true);
   const Answer after = watch.fault(late, 1.1, {"a"}, true, &lead);
   EXPECT_NEAR(first.delay_s, 0.605, 1e-9);
   EXPECT_EQ(first.verdict, Verdict::wrong);
@@ -71,14 +71,15 @@ TEST(Watch, GoesOnFromALeadAsIfItHadTakenIt) {
   EXPECT_EQ(after.first, alone.first);
 }
 
-TEST(Watch, CountsNoNotice) {
-  Watch watch(watching({band("one", 0.5, "a"), band("two", 0.7, "b")}), kPeriod_s, {"sample.one"});
+TEST(DetectionTrial, CountsNoNotice) {
+  DetectionTrial watch(watching({band("one", 0.5, "a"), band("two", 0.7, "b")}), kPeriod_s,
+                       {"sample.one"});
   const Answer found = watch.fault(ramp(1.0, 4.0), 1.0, {"b"}, true);
   EXPECT_EQ(found.verdict, Verdict::right);
   EXPECT_NEAR(found.delay_s, 0.705, 1e-9);
 }
 
-TEST(Watch, JudgesTheNamesOfEveryAlarm) {
+TEST(DetectionTrial, JudgesTheNamesOfEveryAlarm) {
   EXPECT_EQ(answer({band("one", 0.5, "a", {"a", "b"})}).verdict, Verdict::group);
   EXPECT_EQ(answer({band("one", 0.5, "b")}).verdict, Verdict::wrong);
   EXPECT_EQ(answer({band("one", 0.5, "a"), band("two", 1.5, "b")}).verdict, Verdict::wrong);
@@ -90,30 +91,30 @@ TEST(Watch, JudgesTheNamesOfEveryAlarm) {
   EXPECT_TRUE(std::isinf(answer({band("one", 9.0, "a")}).delay_s));
 }
 
-TEST(Watch, JoinsTheNamesThatComeTogether) {
+TEST(DetectionTrial, JoinsTheNamesThatComeTogether) {
   EXPECT_THAT(answer({band("one", 0.5, "a"), band("two", 0.5, "b"), band("three", 1.0, "c")}).first,
               testing::ElementsAre("a", "b"));
 }
 
-TEST(Watch, StopsAtTheFirstAlarmWhenTheRestDoesNotCount) {
-  Watch watch(watching({band("one", 0.5, "a"), band("two", 1.0, "b")}), kPeriod_s);
+TEST(DetectionTrial, StopsAtTheFirstAlarmWhenTheRestDoesNotCount) {
+  DetectionTrial watch(watching({band("one", 0.5, "a"), band("two", 1.0, "b")}), kPeriod_s);
   EXPECT_EQ(watch.fault(ramp(1.0, 4.0), 1.0, {"a"}, false).verdict, Verdict::right);
   EXPECT_EQ(watch.fault(ramp(1.0, 4.0), 1.0, {"a"}, true).verdict, Verdict::wrong);
 }
 
-TEST(Watch, DoesNotCountAnAlarmThatStoodBefore) {
+TEST(DetectionTrial, DoesNotCountAnAlarmThatStoodBefore) {
   const Answer found = answer({band("one", 0.5, "a")}, 2.0);
   EXPECT_EQ(found.verdict, Verdict::standing);
   EXPECT_FALSE(found.detected());
 }
 
-TEST(Watch, CountsTimesAndTimeOfFalseAlarms) {
+TEST(DetectionTrial, CountsTimesAndTimeOfFalseAlarms) {
   Samples samples = ramp(100.0, 10.0);  // ten seconds of 0 m
   for (const std::size_t from : {200U, 800U, 1400U}) {
     for (std::size_t k = from; k < from + 100; ++k) samples[k].y_m = 1.0;
   }
   for (std::size_t k = 1700; k < 1800; ++k) samples[k].y_m = std::nan("");
-  Watch watch(watching({band("one", 0.5, "a"), band("two", 0.9, "b")}), kPeriod_s);
+  DetectionTrial watch(watching({band("one", 0.5, "a"), band("two", 0.9, "b")}), kPeriod_s);
   const Quiet quiet = watch.quiet(samples);
   EXPECT_EQ(quiet.alarms, 3);
   EXPECT_NEAR(quiet.alarm_s, 3 * 100 * kPeriod_s, 1e-9);

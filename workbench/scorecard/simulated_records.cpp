@@ -1,4 +1,4 @@
-#include "workbench/scorecard/stand.h"
+#include "workbench/scorecard/simulated_records.h"
 
 #include <array>
 #include <cmath>

@@ -36,26 +36,26 @@ double rms_afterwards_m(const validation::Comparison& c) {
   return std::sqrt(squares / static_cast<double>(n));
 }
 
-TEST(Running, TellsTheErrorThatTheComparisonFindsAfterwards) {
+TEST(OnlineResidual, TellsTheErrorThatTheComparisonFindsAfterwards) {
   const program::Folder folder;
   const std::string log = live_test::make_log(folder.path() / "log", "14");
   const auto record = config::record::read_record(log);
   const plant_sim::ModelFile model = model_with("parameters.damping_N_s_per_m=3000.0");
-  live::Running running(model);
+  live::OnlineResidual running(model);
   for (std::size_t k = 0; k < record.size(); ++k) {
     running.add(std::lround(record.t_s[k] / record.sample_time_s), record.sample_time_s,
                 record.u_V[k], record.y_m[k]);
   }
   const validation::Comparison c = validation::compare(model, greybox::measured(record));
   const double wanted_m = rms_afterwards_m(c);
-  const live::Figures figures = running.figures();
+  const live::ResidualFigures figures = running.figures();
   // What the unknown first state shifted has died away to exp(-2/s 4 s) by then.
   EXPECT_NEAR(figures.rms_m, wanted_m, 1e-3 * wanted_m);
   EXPECT_GT(wanted_m, 1e-7);
   EXPECT_NEAR(figures.window_s, 10.0, 1e-9);
   EXPECT_LT(figures.fit_percent, 100.0);
 
-  live::Running exact(model_with("parameters.damping_N_s_per_m=1000.0"));
+  live::OnlineResidual exact(model_with("parameters.damping_N_s_per_m=1000.0"));
   for (std::size_t k = 0; k < record.size(); ++k) {
     exact.add(std::lround(record.t_s[k] / record.sample_time_s), record.sample_time_s,
               record.u_V[k], record.y_m[k]);
@@ -63,8 +63,8 @@ TEST(Running, TellsTheErrorThatTheComparisonFindsAfterwards) {
   EXPECT_NE(exact.figures().rms_m, figures.rms_m);
 }
 
-TEST(Running, SettlesAnewBehindAGap) {
-  live::Running running(model_with("parameters.damping_N_s_per_m=1000.0"));
+TEST(OnlineResidual, SettlesAnewBehindAGap) {
+  live::OnlineResidual running(model_with("parameters.damping_N_s_per_m=1000.0"));
   for (std::int64_t tick = 0; tick < 200; ++tick) running.add(tick, 0.005, 0.0, 0.3);
   EXPECT_FALSE(std::isnan(running.error_m()));
   running.add(300, 0.005, 0.0, 0.35);
@@ -73,14 +73,14 @@ TEST(Running, SettlesAnewBehindAGap) {
   EXPECT_NEAR(running.error_m(), 0.0, 1e-6) << "the jump counts for no error";
 }
 
-TEST(Running, SaysWhenTheRodDoesNotMove) {
-  live::Running running(model_with("parameters.damping_N_s_per_m=1000.0"));
+TEST(OnlineResidual, SaysWhenTheRodDoesNotMove) {
+  live::OnlineResidual running(model_with("parameters.damping_N_s_per_m=1000.0"));
   for (std::int64_t tick = 0; tick < 1000; ++tick) running.add(tick, 0.005, 0.0, 0.3);
   EXPECT_THAT(running.figures().note, HasSubstr("does not move"));
   EXPECT_THAT(live::line_of(running.figures()), HasSubstr("does not move"));
 }
 
-TEST(Running, IsALineEachSecondFromThePipe) {
+TEST(OnlineResidual, IsALineEachSecondFromThePipe) {
   const program::Folder folder;
   const std::string log = live_test::make_log(folder.path() / "log", "14");
   const std::string words = "compare " + program::shipped("models/thesis_calibrated.toml") +

@@ -1,4 +1,4 @@
-#include "workbench/reproduce/stand.h"
+#include "workbench/reproduce/thesis_scenarios.h"
 
 #include <cassert>
 #include <cmath>

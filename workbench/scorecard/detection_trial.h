@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "estimator/fdi/pipeline.h"
-#include "workbench/scorecard/stand.h"
+#include "workbench/scorecard/simulated_records.h"
 
 namespace workbench::scorecard {
 
@@ -49,7 +49,7 @@ struct Quiet {
   Quiet& operator+=(const Quiet& other);
 };
 
-class Watch {
+class DetectionTrial {
  public:
   class Listener;
   /// What a pipeline and its alarms were when the fault came. Of records that are the same until
@@ -60,11 +60,11 @@ class Watch {
   };
 
   /// `notices`: SOURCE.NAME of alarms that are no faults.
-  Watch(const estimator::fdi::PipelineConfig& config, double sample_time_s,
-        std::vector<std::string> notices = {});
+  DetectionTrial(const estimator::fdi::PipelineConfig& config, double sample_time_s,
+                 std::vector<std::string> notices = {});
 
   /// `names`: that are right. `to_the_end`: names are judged by all alarms until the record ends,
-  /// not by the first ones alone, after which it stops. `lead`: of the samples before, by a watch
+  /// not by the first ones alone, after which it stops. `lead`: of the samples before, by a trial
   /// of the same configuration.
   [[nodiscard]] Answer fault(const Samples& samples, double at_s,
                              const std::vector<std::string>& names, bool to_the_end,

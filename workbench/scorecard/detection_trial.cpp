@@ -1,4 +1,4 @@
-#include "workbench/scorecard/watch.h"
+#include "workbench/scorecard/detection_trial.h"
 
 #include <algorithm>
 #include <cassert>
@@ -52,7 +52,7 @@ Quiet& Quiet::operator+=(const Quiet& other) {
 }
 
 /// Follows which alarms stand.
-class Watch::Listener final : public fdi::Events {
+class DetectionTrial::Listener final : public fdi::Events {
  public:
   explicit Listener(std::vector<std::string> notices) : notices_(std::move(notices)) {}
   void on_estimate(const fdi::EstimateEvent& /*event*/) override {}
@@ -87,13 +87,14 @@ class Watch::Listener final : public fdi::Events {
   std::map<std::string, State> states_;
 };
 
-Watch::Watch(const fdi::PipelineConfig& config, double sample_time_s,
-             std::vector<std::string> notices)
+DetectionTrial::DetectionTrial(const fdi::PipelineConfig& config, double sample_time_s,
+                               std::vector<std::string> notices)
     : pipeline_(config, sample_time_s),
       sample_time_s_(sample_time_s),
       notices_(std::move(notices)) {}
 
-void Watch::take_lead(const Samples& samples, std::size_t end, Listener& listener, Lead* lead) {
+void DetectionTrial::take_lead(const Samples& samples, std::size_t end, Listener& listener,
+                               Lead* lead) {
   if (lead != nullptr && lead->said != nullptr) {
     estimator::StateArchive archive = estimator::StateArchive::restoring(lead->pipeline);
     pipeline_.serialize(archive);
@@ -110,8 +111,8 @@ void Watch::take_lead(const Samples& samples, std::size_t end, Listener& listene
   lead->said = std::make_shared<Listener>(listener);
 }
 
-Answer Watch::fault(const Samples& samples, double at_s, const std::vector<std::string>& names,
-                    bool to_the_end, Lead* lead) {
+Answer DetectionTrial::fault(const Samples& samples, double at_s,
+                             const std::vector<std::string>& names, bool to_the_end, Lead* lead) {
   const auto time_s = [&](std::size_t k) {
     return static_cast<double>(samples[k].tick) * sample_time_s_;
   };
@@ -139,7 +140,7 @@ Answer Watch::fault(const Samples& samples, double at_s, const std::vector<std::
   return answer;
 }
 
-Quiet Watch::quiet(const Samples& samples) {
+Quiet DetectionTrial::quiet(const Samples& samples) {
   pipeline_.reset();
   Listener listener(notices_);
   Quiet quiet;
