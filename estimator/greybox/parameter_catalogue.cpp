@@ -6,6 +6,7 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 
 namespace estimator::greybox {
 namespace {
