@@ -87,13 +87,13 @@ void watch(const plant_sim::ModelFile& model, const LiveCompareOptions& options)
   {
     ListenFeed feed(options.url, options.prefix, true, watcher);
     while (!stop.reached() && std::cout) {
-      if (feed.poll(std::chrono::milliseconds(100)) || cli::Ending::asked()) continue;
+      if (feed.poll(std::chrono::milliseconds(100)) || cli::StopCondition::asked()) continue;
       if (options.url.starts_with("file:")) break;
       throw RunError("LCM cannot receive on \"" + options.url + "\" any more");
     }
   }
   watcher.end();
-  if (watcher.empty() && !cli::Ending::asked()) {
+  if (watcher.empty() && !cli::StopCondition::asked()) {
     throw RunError("no samples came on \"" + options.url + "\"");
   }
 }
