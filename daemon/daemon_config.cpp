@@ -1,29 +1,19 @@
 #include "daemon/daemon_config.h"
 
-#include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "config/schema/flat_visitor.h"
 #include "config/schema/hash.h"
 #include "daemon/control/calibration.h"
 
 namespace monitor {
 namespace {
 
+using config::schema::FlatField;
+using config::schema::FlatTable;
 using config::schema::Visitor;
-
-/// Keys whose values are paths that start from the configuration's folder.
-constexpr const char* kPathKeys[] = {
-    "sim.model",      "replay.record",   "reference.file", "bands_file",      "recorder.folder",
-    "control.socket", "rig.calibration", "alarms.folder",  "evidence.folder", "model.file"};
-
-/// Keys that say how valve and rod sensor are wired and what their signals mean.
-constexpr const char* kWiringKeys[] = {
-    "backend", "channel",      "address",          "function",    "type",      "order", "scale",
-    "offset",  "sign",         "polarity",         "scale_ratio", "offset_V",  "mode",  "line_a",
-    "line_b",  "resolution_m", "counts_per_metre", "range",       "subdevice", "role",  "unit"};
 
 /// A command that stays at the valve for ever needs someone else who takes it away.
 void refuse_without_watchdog(const DaemonConfig& config) {
@@ -40,27 +30,13 @@ void refuse_without_watchdog(const DaemonConfig& config) {
   }
 }
 
-/// "key=value" with the value made absolute where the key names a file.
-std::string from_here(const std::string& assignment) {
-  const std::size_t equals = assignment.find('=');
-  const std::string key = assignment.substr(0, equals);
-  if (equals == std::string::npos ||
-      std::find(std::begin(kPathKeys), std::end(kPathKeys), key) == std::end(kPathKeys)) {
-    return assignment;
-  }
-  std::string path = assignment.substr(equals + 1);
-  if (path.size() >= 2 && path.front() == '"' && path.back() == '"') {
-    path = path.substr(1, path.size() - 2);
-  }
-  return key + "=\"" + (path.empty() ? "" : std::filesystem::absolute(path).string()) + '"';
-}
-
 }  // namespace
 
 void DaemonConfig::visit_what_determines_the_data(Visitor& v) {
   v.table({"rig", "which rig this is"}, [this](Visitor& t) {
     t.text({"id", "its name in messages"}, rig_id);
-    t.text({"calibration", "file that commissioning wrote; needed to arm what moves"}, calibration);
+    t.path({"calibration", "file that commissioning wrote; needed to arm what moves"}, calibration,
+           "calibration.toml");
   });
   v.table({"loop", "the control loop"}, [this](Visitor& t) { loop.visit(t); });
   rig.visit(v);
@@ -75,7 +51,8 @@ void DaemonConfig::visit_what_determines_the_data(Visitor& v) {
 void DaemonConfig::visit(Visitor& v) {
   visit_what_determines_the_data(v);
   v.table({"model", "the physics of the healthy rig"}, [this](Visitor& t) {
-    t.text({"file", "model file that `spoolwatch promote` keeps up to date"}, model);
+    t.path({"file", "model file that `spoolwatch promote` keeps up to date"}, model,
+           "healthy_model.toml");
   });
   v.table({"control", "who may look and act"}, [this](Visitor& t) { control.visit(t); });
   v.table({"alarms", "what becomes of alarms"}, [this](Visitor& t) { alarms.visit(t); });
@@ -87,7 +64,7 @@ void DaemonConfig::visit(Visitor& v) {
 void load(const std::filesystem::path& file, const std::vector<std::string>& assignments,
           DaemonConfig& config) {
   config::schema::Document document = config::schema::Document::load(file);
-  for (const std::string& assignment : assignments) document.set(from_here(assignment));
+  for (const std::string& assignment : assignments) document.set(assignment);
   document.read([&](Visitor& v) { config.visit(v); });
   config.file = document.name();
   config.folder = document.folder();
@@ -120,32 +97,19 @@ std::string never_arms(DaemonConfig& config) {
 }
 
 std::string wiring(DaemonConfig& config) {
-  std::istringstream lines(config::schema::print_toml([&](Visitor& v) { config.rig.visit(v); }));
-  std::string text;   // of all tables that count
-  std::string table;  // the lines that count of this one
-  bool counts = false;
-  const auto take = [&] {
-    if (counts) text += table;
-    table.clear();
-  };
-  for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with('[')) {
-      take();
-      // Lists hold auxiliary inputs and outputs.
-      counts = !line.starts_with("[[") && line != "[permit]";
-      table = line + '\n';
-      continue;
+  std::string text;
+  for (const FlatTable& table : config::schema::flatten([&](Visitor& v) { config.rig.visit(v); })) {
+    // Lists hold auxiliary inputs and outputs, except for the entries of rod and valve.
+    bool counts = !table.element && table.name != "permit";
+    std::string lines = table.header() + '\n';
+    for (const FlatField& field : table.fields) {
+      if (field.key == "role") {
+        counts = field.value.starts_with("\"rod\"") || field.value.starts_with("\"valve_comm");
+      }
+      if (field.wiring) lines += field.key + " = " + field.value + '\n';
     }
-    const std::string key = line.substr(0, line.find(' '));
-    const std::string value = line.substr(std::min(line.size(), line.find('=') + 2));
-    if (key == "role") counts = value.starts_with("\"rod\"") || value.starts_with("\"valve_comm");
-    const bool address_of_a_device = key == "address" && value.starts_with('"');
-    if (std::find(std::begin(kWiringKeys), std::end(kWiringKeys), key) != std::end(kWiringKeys) &&
-        !address_of_a_device) {
-      table += line + '\n';
-    }
+    if (counts && !table.name.empty()) text += lines;
   }
-  take();
   return config::schema::hash_text(config::schema::hash_of(text));
 }
 

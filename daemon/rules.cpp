@@ -7,6 +7,7 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "config/schema/flat_visitor.h"
 #include "estimator/fdi/snapshot.h"
 
 namespace monitor {
@@ -14,59 +15,24 @@ namespace {
 
 using config::schema::Visitor;
 
-/// Files that a configuration names and that evidence needs to be read by itself.
-struct NamedFile {
-  const char* table;
-  const char* key;
-  const char* copy;
-};
-constexpr NamedFile kNamedFiles[] = {{"[sim]", "model", "model.toml"},
-                                     {"", "bands_file", "bands.toml"},
-                                     {"[model]", "file", "healthy_model.toml"},
-                                     {"[rig]", "calibration", "calibration.toml"},
-                                     {"[reference]", "file", "reference.csv"}};
-
-/// The value of a text key in printed TOML, "" when there is none.
-std::string text_of(const std::string& toml, const NamedFile& wanted) {
-  std::istringstream lines(toml);
-  std::string table;
-  const std::string begin = std::string(wanted.key) + " = \"";
-  for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with('[')) table = line;
-    if (table != wanted.table || !line.starts_with(begin)) continue;
-    return line.substr(begin.size(), line.rfind('"') - begin.size());
-  }
-  return "";
+std::vector<config::schema::FlatTable> flatten(DaemonConfig& config) {
+  return config::schema::flatten([&](Visitor& v) { config.visit(v); });
 }
 
-std::string print(DaemonConfig& config) {
-  return config::schema::print_toml([&](Visitor& v) { config.visit(v); });
-}
-
-/// "[table] key" or "[[list]] id: key", and the value as it is printed. Items of a list without an
-/// id are numbered.
-std::map<std::string, std::string> flat(const std::string& toml) {
+/// Maps "[table] key" or "[[list]] id: key" to the printed value. List items without an id are
+/// numbered.
+std::map<std::string, std::string> values_by_key(DaemonConfig& config) {
   std::map<std::string, std::string> values;
   std::map<std::string, int> items;
-  std::istringstream lines(toml);
-  std::string place;
-  for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with("[[")) {
-      place = line + ' ' + std::to_string(++items[line]) + ": ";
-      continue;
+  for (const config::schema::FlatTable& table : flatten(config)) {
+    std::string place = table.name.empty() ? "" : table.header() + ' ';
+    if (table.element) place += std::to_string(++items[table.name]) + ": ";
+    for (const config::schema::FlatField& field : table.fields) {
+      if (field.key == "id" && table.element && field.value.size() > 2) {
+        place = table.header() + ' ' + field.value.substr(1, field.value.size() - 2) + ": ";
+      }
+      values[place + field.key] = field.value;
     }
-    if (line.starts_with('[')) {
-      place = line + ' ';
-      continue;
-    }
-    const std::size_t equals = line.find(" = ");
-    if (equals == std::string::npos) continue;
-    const std::string key = line.substr(0, equals);
-    const std::string value = line.substr(equals + 3);
-    if (key == "id" && place.starts_with("[[") && value.size() > 2) {
-      place = place.substr(0, place.find(']') + 3) + value.substr(1, value.size() - 2) + ": ";
-    }
-    values[place + key] = value;
   }
   return values;
 }
@@ -136,24 +102,25 @@ Rules make_rules(const DaemonConfig& config, double sample_time_s) {
 }
 
 std::vector<io::EvidenceFile> evidence_files(DaemonConfig& config, const std::string& rules_text) {
-  const std::string toml = print(config);
-  std::vector<io::EvidenceFile> files = {{"configuration.toml", toml},
-                                         {"pipeline.toml", rules_text}};
-  for (const NamedFile& wanted : kNamedFiles) {
-    const std::string name = text_of(toml, wanted);
-    if (name.empty()) continue;
-    std::ifstream in(config.folder / name, std::ios::binary);
-    if (!in) continue;
-    std::ostringstream text;
-    text << in.rdbuf();
-    files.push_back({wanted.copy, text.str()});
+  std::vector<io::EvidenceFile> files = {
+      {"configuration.toml", config::schema::print_toml([&](Visitor& v) { config.visit(v); })},
+      {"pipeline.toml", rules_text}};
+  for (const config::schema::FlatTable& table : flatten(config)) {
+    for (const config::schema::FlatField& field : table.fields) {
+      if (field.path.empty() || field.evidence_copy.empty()) continue;
+      std::ifstream in(config.folder / field.path, std::ios::binary);
+      if (!in) continue;
+      std::ostringstream text;
+      text << in.rdbuf();
+      files.push_back({field.evidence_copy, text.str()});
+    }
   }
   return files;
 }
 
 std::vector<std::string> differences(DaemonConfig& before, DaemonConfig& after) {
-  const auto old_values = flat(print(before));
-  const auto new_values = flat(print(after));
+  const auto old_values = values_by_key(before);
+  const auto new_values = values_by_key(after);
   std::vector<std::string> keys;
   for (const auto& [key, value] : old_values) {
     const auto found = new_values.find(key);

@@ -18,6 +18,7 @@ namespace hal {
 namespace {
 
 using config::schema::bad_config;
+using config::schema::wiring;
 
 constexpr const char* kNone = "none";
 
@@ -59,8 +60,8 @@ InputRole role_of(const std::string& name) {
 }
 
 void visit_device(config::schema::Visitor& v, DeviceAddress& device, bool channel_required) {
-  v.text({"backend", "one of the backends", true}, device.backend);
-  v.text({"channel", "which of the backend's devices", channel_required}, device.channel);
+  v.text(wiring({"backend", "one of the backends", true}), device.backend);
+  v.text(wiring({"channel", "which of the backend's devices", channel_required}), device.channel);
 }
 
 template <class Map>
@@ -133,7 +134,7 @@ void SpareRodConfig::visit(config::schema::Visitor& v) {
 
 void InputConfig::visit(config::schema::Visitor& v) {
   v.text({"id", "name of the signal", true}, id);
-  v.choice({"role", "what it is for"}, role,
+  v.choice(wiring({"role", "what it is for"}), role,
            {kRoles[0].first, kRoles[1].first, kRoles[2].first, kRoles[3].first, kRoles[4].first,
             kRoles[5].first, kRoles[6].first, kRoles[7].first});
   visit_device(v, device, true);
@@ -166,7 +167,7 @@ void Rig::visit(config::schema::Visitor& v) {
           [this](config::schema::Visitor& t) { visit_device(t, rod_, false); });
   config::schema::visit_list(v, {"spare_rod", "a further rod sensor"}, spare_rods_);
   v.table({"valve", "what drives the valve"}, [this](config::schema::Visitor& t) {
-    t.text({"backend", "one of the backends, or none"}, valve_.backend);
+    t.text(wiring({"backend", "one of the backends, or none"}), valve_.backend);
     if (valve_.backend == kNone) return;
     t.number({"null_V", "the commanded safe voltage"}, valve_.null_V, {-100.0, 100.0});
     t.number({"limit_V", "greatest distance of a command from null"}, valve_.limit_V,

@@ -5,7 +5,7 @@
 namespace plant_sim {
 
 void BenchPlant::visit(config::schema::Visitor& v) {
-  v.text({"model", "model file (TOML)", true}, model);
+  v.path({"model", "model file (TOML)", true}, model, "model.toml");
   v.number({"encoder_resolution_m", "step of the encoder, 0 for none"}, encoder_resolution_m,
            {0.0, 0.1});
   v.number({"noise_m", "standard deviation of the reading"}, noise_m, {0.0, 0.1});

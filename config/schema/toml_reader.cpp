@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <sstream>
 
 #include "config/schema/document.h"
@@ -29,6 +30,12 @@ std::string interval(T min, T max) {
   return out.str();
 }
 
+/// Nodes that --set adds without parsing (a bare string, a table) have no source position.
+bool is_assigned(const toml::node& node) {
+  const toml::source_region& source = node.source();
+  return source.begin.line == 0 || (source.path && *source.path == kAssignments);
+}
+
 }  // namespace
 
 TomlReader::TomlReader(const toml::table& table, std::string path, const std::string& file)
@@ -37,13 +44,8 @@ TomlReader::TomlReader(const toml::table& table, std::string path, const std::st
 std::string TomlReader::where(std::string_view key, const toml::node* node) const {
   std::string place = file_;
   if (node != nullptr) {
-    const toml::source_region& source = node->source();
-    // Nodes that --set adds without parsing (a bare string, a table) have no source position.
-    if (source.begin.line == 0 || (source.path && *source.path == kAssignments)) {
-      place = kAssignments;
-    } else {
-      place += ":" + std::to_string(source.begin.line);
-    }
+    place = is_assigned(*node) ? std::string(kAssignments)
+                               : place + ":" + std::to_string(node->source().begin.line);
   }
   return place + ": " + (path_.empty() ? "" : "[" + path_ + "] ") + std::string(key);
 }
@@ -100,6 +102,14 @@ void TomlReader::text(Key key, std::string& value) {
   if (const toml::node* node = find(key)) {
     if (!node->is_string()) wrong_type(key, *node, "a string");
     value = node->as_string()->get();
+  }
+}
+
+void TomlReader::path(Key key, std::string& value, std::string_view /*evidence_copy*/) {
+  text(key, value);
+  const toml::node* node = find(key);
+  if (node != nullptr && is_assigned(*node) && !value.empty()) {
+    value = std::filesystem::absolute(value).string();
   }
 }
 

@@ -20,6 +20,8 @@ class TomlReader final : public Visitor {
   void integer(Key key, std::int64_t& value, IntRange range) override;
   void number(Key key, double& value, Range range) override;
   void text(Key key, std::string& value) override;
+  /// A relative path from --set starts from the current folder and becomes absolute.
+  void path(Key key, std::string& value, std::string_view evidence_copy) override;
   void choice(Key key, std::string& value, const std::vector<std::string_view>& allowed) override;
   void numbers(Key key, std::vector<double>& value, Range range) override;
   void texts(Key key, std::vector<std::string>& value) override;

@@ -20,7 +20,14 @@ struct Key {
   std::string_view name;
   std::string_view what;
   bool required;
+  bool wiring = false;  ///< determines sign, scale or location of a device's signal
 };
+
+/// Marks a key that determines sign, scale or location of a device's signal.
+[[nodiscard]] inline Key wiring(Key key) {
+  key.wiring = true;
+  return key;
+}
 
 /// Closed interval of allowed values, in the field's own unit.
 struct Range {
@@ -43,6 +50,11 @@ class Visitor {
   /// NaN stands for "not given" and is not printed; infinities are allowed where the range is.
   virtual void number(Key key, double& value, Range range = {}) = 0;
   virtual void text(Key key, std::string& value) = 0;
+  /// A text that names a file or folder. `evidence_copy`: name under which an evidence folder keeps
+  /// a copy of the file; empty: none.
+  virtual void path(Key key, std::string& value, std::string_view /*evidence_copy*/ = "") {
+    text(key, value);
+  }
   virtual void choice(Key key, std::string& value,
                       const std::vector<std::string_view>& allowed) = 0;
   virtual void numbers(Key key, std::vector<double>& value, Range range = {}) = 0;

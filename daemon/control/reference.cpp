@@ -12,7 +12,7 @@ void ReferenceConfig::visit(config::schema::Visitor& v) {
   v.choice({"kind", "shape of the motion"}, kind,
            {"sine", "triangle", "multisine", "steps", "chirp", "prbs", "file"});
   if (kind == "file") {
-    v.text({"file", "CSV with the columns t_s,reference_m", true}, file);
+    v.path({"file", "CSV with the columns t_s,reference_m", true}, file, "reference.csv");
     return;
   }
   v.number({"centre_m", "middle of the motion"}, centre_m, {-100.0, 100.0});

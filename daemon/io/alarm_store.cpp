@@ -50,7 +50,7 @@ SavedLife life_of(const json& entry, std::int64_t utc_us) {
 }  // namespace
 
 void AlarmConfig::visit(config::schema::Visitor& v) {
-  v.text({"folder", "where alarms.json and audit.log are kept; empty: nowhere"}, folder);
+  v.path({"folder", "where alarms.json and audit.log are kept; empty: nowhere"}, folder);
   v.integer({"audit_bytes", "cap of audit.log"}, audit_bytes, {4096, 1LL << 40});
   rules.visit(v);
 }

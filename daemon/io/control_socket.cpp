@@ -104,7 +104,7 @@ bool is_served(const sockaddr_un& address) {
 }  // namespace
 
 void ControlConfig::visit(config::schema::Visitor& v) {
-  v.text({"socket", "path of the control socket; empty: none"}, socket);
+  v.path({"socket", "path of the control socket; empty: none"}, socket);
   v.text({"mode", "its permissions, octal"}, mode);
   v.text({"group", "of the socket: whose members may connect and look, as mode says"}, group);
   v.text({"act_group", "whose members may act; empty: those of group"}, act_group);

@@ -29,7 +29,7 @@ void copy_text(const std::string& text, char (&to)[n]) {
 }  // namespace
 
 void EvidenceConfig::visit(config::schema::Visitor& v) {
-  v.text({"folder", "where the evidence of each alarm goes; empty: none is kept"}, folder);
+  v.path({"folder", "where the evidence of each alarm goes; empty: none is kept"}, folder);
   v.number({"before_s", "kept from before an alarm"}, before_s, {0.1, 600.0});
   v.number({"after_s", "and from after it"}, after_s, {0.0, 600.0});
   v.integer({"packs", "folders kept, oldest removed first"}, packs, {1, 100000});

@@ -31,7 +31,7 @@ config::schema::ConfigError cannot_record(const std::filesystem::path& where,
 
 void RecorderConfig::visit(config::schema::Visitor& v) {
   constexpr std::int64_t kMiB = 1 << 20;
-  v.text({"folder", "where logs go; empty: nothing is recorded"}, folder);
+  v.path({"folder", "where logs go; empty: nothing is recorded"}, folder);
   v.integer({"file_bytes", "cap of one log file"}, file_bytes, {4096, 1LL << 40});
   v.integer({"files", "logs kept in the folder, oldest removed first"}, files, {1, 100000});
   v.integer({"queue_bytes", "between detector and recorder"}, queue_bytes, {4096, 1024 * kMiB});

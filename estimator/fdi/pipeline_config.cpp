@@ -126,7 +126,7 @@ bool PipelineConfig::owns(std::string_view key) const {
 }
 
 void PipelineConfig::visit(Visitor& v) {
-  v.text({"bands_file", "learned bands, relative to this file's folder"}, bands_file);
+  v.path({"bands_file", "learned bands, relative to this file's folder"}, bands_file, "bands.toml");
   config::schema::visit_list(v, {"estimator", "estimators"}, estimators);
   for (SourceList& list : sources) list.visit(v);
   config::schema::visit_list(v, {"band", "alarm bands"}, bands);

@@ -80,21 +80,22 @@ class TextLineSensor final : public RodSensor {
 
 void TextLineConfig::visit(config::schema::Visitor& v) {
   v.text({"device", "serial line or pipe, relative to the configuration's folder", true}, device);
-  v.number({"sign", "1, or -1 where the reading falls as the rod extends"}, sign, {-1.0, 1.0});
+  v.number(config::schema::wiring({"sign", "1, or -1 where the reading falls as the rod extends"}),
+           sign, {-1.0, 1.0});
 }
 
-Offer TextLineBackend::open(const Opening& opening) const {
-  const std::string path = resolve(opening, config_.device).string();
+BackendDevices TextLineBackend::open(const OpenContext& context) const {
+  const std::string path = resolve(context, config_.device).string();
   // Read and write, so that a pipe without a writer can be opened.
   const int descriptor = ::open(path.c_str(), O_RDWR | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
   if (descriptor < 0) {
-    throw config::schema::DeviceUnavailable(opening.file + ": [text_line] device: " + path + ": " +
+    throw config::schema::DeviceUnavailable(context.file + ": [text_line] device: " + path + ": " +
                                             std::strerror(errno));
   }
-  Offer offer;
-  offer.rods[kRodChannel] =
-      std::make_shared<TextLineSensor>(descriptor, config_.sign, opening.sample_time_s);
-  return offer;
+  BackendDevices devices;
+  devices.rods[kRodChannel] =
+      std::make_shared<TextLineSensor>(descriptor, config_.sign, context.sample_time_s);
+  return devices;
 }
 
 }  // namespace hal::text_line

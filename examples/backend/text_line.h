@@ -20,10 +20,12 @@ struct TextLineConfig {
 class TextLineBackend final : public Backend {
  public:
   void visit(config::schema::Visitor& v) override { config_.visit(v); }
-  [[nodiscard]] Offer open(const Opening& opening) const override;
+  [[nodiscard]] BackendDevices open(const OpenContext& context) const override;
   /// It drives no valve, yet the rod that it measures is real.
   [[nodiscard]] bool harmless() const noexcept override { return false; }
-  [[nodiscard]] double worst_speed_mps(const Opening&, double) const override { return kMissing; }
+  [[nodiscard]] double worst_speed_mps(const OpenContext&, double) const override {
+    return kMissing;
+  }
 
  private:
   TextLineConfig config_;

@@ -1,5 +1,5 @@
-// A data acquisition board as this backend needs it: codes to and from channels. Over comedilib
-// below, and a test's own elsewhere.
+// Data acquisition board as needed by this backend: codes to and from channels. Implemented over
+// comedilib, and by a test double.
 #pragma once
 
 #include <comedilib.h>
@@ -23,7 +23,7 @@ struct Channel {
   std::string aref = "ground";  ///< ground, common, diff, other
 };
 
-/// A channel that was found to exist.
+/// A channel verified to exist.
 struct Place {
   unsigned subdevice = 0;
   unsigned channel = 0;
@@ -34,24 +34,25 @@ struct Place {
 class Board {
  public:
   virtual ~Board() = default;
-  /// May block for as long as the driver does. Any thread; a signal handler too.
+  /// May block as long as the driver does. Any thread; async-signal-safe.
   virtual bool write(const Place& place, std::uint32_t code) noexcept = 0;
   virtual std::optional<std::uint32_t> read(const Place& place) noexcept = 0;
 };
 
 class ComediBoard final : public Board {
  public:
-  /// Throws config::schema::Error; `where`: "file: [comedi] device".
+  /// Throws config::schema::DeviceUnavailable; `where`: "file: [comedi] device".
   ComediBoard(const std::string& where, const std::string& device);
 
-  /// Throws config::schema::Error when the board has no such channel; `table`: "file:
+  /// Throws config::schema::ConfigError when the board has no such channel; `table`: "file:
   /// [comedi.rod]".
   [[nodiscard]] Place find(const std::string& table, Kind kind, const Channel& channel) const;
-  /// Volts of that channel's range.
+  /// Voltage range of the channel.
   [[nodiscard]] Span span(const std::string& table, const Place& place) const;
-  /// Keeps other programs from that subdevice until this one ends. Throws config::schema::Error.
+  /// Locks the subdevice against other programs until this one ends. Throws
+  /// config::schema::ConfigError.
   void lock(const std::string& table, const Place& place) const;
-  /// Largest code of that channel.
+  /// Largest code of the channel.
   [[nodiscard]] std::uint32_t max_code(const Place& place) const;
 
   bool write(const Place& place, std::uint32_t code) noexcept override;

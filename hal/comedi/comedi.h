@@ -2,8 +2,8 @@
 // inputs read pressures or another controller's command, and an analogue input or a counter reads
 // the rod.
 //
-// A D/A converter holds its last code when the process ends: nothing on the board brings the valve
-// to null.
+// A D/A converter holds its last code when the process ends; the board itself does not return the
+// valve to null.
 #pragma once
 
 #include <vector>
@@ -45,7 +45,7 @@ struct RodConfig {
   double resolution_m = kMissing;
   double offset_m = 0.0;
   std::int64_t sign = 1;
-  std::int64_t bits = 0;  ///< of the counter; 0: as the board says
+  std::int64_t bits = 0;  ///< of the counter; 0: as the board reports
 
   void visit(config::schema::Visitor& v);
 };
@@ -73,7 +73,7 @@ class ComediBackend final : public Backend {
  public:
   void visit(config::schema::Visitor& v) override { config_.visit(v); }
   [[nodiscard]] BackendDevices open(const OpenContext& context) const override;
-  /// Without an output nothing moves.
+  /// True without an output: nothing moves.
   [[nodiscard]] bool harmless() const noexcept override {
     return !config_.has_output || config_.bench_rig;
   }

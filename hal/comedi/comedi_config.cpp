@@ -9,12 +9,13 @@ namespace hal::comedi {
 namespace {
 
 using config::schema::bad_config;
+using config::schema::wiring;
 
 void visit_channel(config::schema::Visitor& v, Channel& channel) {
-  v.integer({"subdevice", "number on the board, -1: the first of its kind"}, channel.subdevice,
-            {-1, 255});
-  v.integer({"channel", "number on the subdevice"}, channel.channel, {0, 65'535});
-  v.integer({"range", "number of the range"}, channel.range, {0, 255});
+  v.integer(wiring({"subdevice", "number on the board, -1: the first of its kind"}),
+            channel.subdevice, {-1, 255});
+  v.integer(wiring({"channel", "number on the subdevice"}), channel.channel, {0, 65'535});
+  v.integer(wiring({"range", "number of the range"}), channel.range, {0, 255});
   v.choice({"aref", "what the voltage is measured against"}, channel.aref,
            {"ground", "common", "diff", "other"});
 }
@@ -23,25 +24,25 @@ void visit_channel(config::schema::Visitor& v, Channel& channel) {
 
 void OutputConfig::visit(config::schema::Visitor& v) {
   visit_channel(v, channel);
-  v.number({"scale_ratio", "V at the terminal per V of command"}, scale_ratio, {1e-6, 1e6});
-  v.number({"offset_V", "at the terminal for command 0"}, offset_V, {-100.0, 100.0});
-  v.integer({"polarity", "1, or -1 when a positive voltage retracts"}, polarity, {-1, 1});
+  v.number(wiring({"scale_ratio", "V at the terminal per V of command"}), scale_ratio, {1e-6, 1e6});
+  v.number(wiring({"offset_V", "at the terminal for command 0"}), offset_V, {-100.0, 100.0});
+  v.integer(wiring({"polarity", "1, or -1 when a positive voltage retracts"}), polarity, {-1, 1});
 }
 
 void InputConfig::visit(config::schema::Visitor& v) {
   v.text({"name", "channel of this backend", true}, name);
   visit_channel(v, channel);
   v.number({"scale_per_V", "SI units per V"}, scale_per_V, {-1e12, 1e12});
-  v.number({"offset", "SI units at 0 V"}, offset, {-1e12, 1e12});
+  v.number(wiring({"offset", "SI units at 0 V"}), offset, {-1e12, 1e12});
 }
 
 void RodConfig::visit(config::schema::Visitor& v) {
   v.choice({"kind", "what it is"}, kind, {"analog", "counter"});
   visit_channel(v, channel);
   v.number({"scale_m_per_V", "of an analogue input"}, scale_m_per_V, {-1e3, 1e3});
-  v.number({"resolution_m", "of one count"}, resolution_m, {1e-12, 1.0});
+  v.number(wiring({"resolution_m", "of one count"}), resolution_m, {1e-12, 1.0});
   v.number({"offset_m", "position at 0 V, or of a counter at the start"}, offset_m, {-1e3, 1e3});
-  v.integer({"sign", "of a counter: 1, or -1 when it counts up as the rod retracts"}, sign,
+  v.integer(wiring({"sign", "of a counter: 1, or -1 when it counts up as the rod retracts"}), sign,
             {-1, 1});
   v.integer({"bits", "width of the counter, 0: as the board says"}, bits, {0, 32});
 }

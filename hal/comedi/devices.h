@@ -1,4 +1,4 @@
-// The roles that an Exchange fills. Each is used by the loop's thread; go_null() by any.
+// Devices served by an Exchange. Used by the loop's thread; go_null() by any thread.
 #pragma once
 
 #include <memory>

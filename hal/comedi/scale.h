@@ -1,4 +1,4 @@
-// Between a converter's codes and volts, and between a counter's codes and counts.
+// Conversion between a converter's codes and volts, and between a counter's codes and counts.
 #pragma once
 
 #include <algorithm>
@@ -15,12 +15,12 @@ struct Span {
 
   [[nodiscard]] double step_V() const noexcept { return (max_V - min_V) / max_code; }
   [[nodiscard]] double volts(std::uint32_t code) const noexcept { return min_V + code * step_V(); }
-  /// The nearest code; the ends for what lies beyond.
+  /// Nearest code, clamped to the range.
   [[nodiscard]] std::uint32_t code(double volts) const noexcept {
     const double code = std::round((volts - min_V) / step_V());
     return static_cast<std::uint32_t>(std::clamp(code, 0.0, static_cast<double>(max_code)));
   }
-  /// At an end of the range, where the truth may lie beyond.
+  /// At an end of the range: the true value may lie beyond.
   [[nodiscard]] bool at_end(std::uint32_t code) const noexcept {
     return code == 0 || code >= max_code;
   }
@@ -35,7 +35,7 @@ struct Linear {
   [[nodiscard]] double back(double y) const noexcept { return (y - offset) / scale; }
 };
 
-/// Counts on beyond the counter's width; between two readings it must move less than half of it.
+/// Extends a counter beyond its width; it must move less than half the width between readings.
 class Unwrap {
  public:
   explicit Unwrap(int bits) noexcept : shift_(32 - bits) {}

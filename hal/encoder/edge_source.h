@@ -1,4 +1,4 @@
-// Where edges come from: lines of a GPIO chip, or a test's own.
+// Source of encoder edges: lines of a GPIO chip, or a test double.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace hal::encoder {
 
-/// The kernel keeps this many edges of each line, and silently drops those that come then.
+/// Capacity of the kernel's queue per line; further edges are dropped silently.
 inline constexpr std::size_t kFifo = 16;
 /// Enough for one drain: three lines.
 inline constexpr std::size_t kBatch = 3 * kFifo;
@@ -18,16 +18,16 @@ enum class Wake : std::uint8_t { edges, timeout, failed };
 
 struct Drained {
   std::size_t count = 0;
-  bool full = false;  ///< a line had as many as the kernel keeps: some may be missing
+  bool full = false;  ///< a line's queue was full: edges may be missing
 };
 
-/// One thread at a time.
+/// For one thread at a time.
 class EdgeSource {
  public:
   virtual ~EdgeSource() = default;
   /// Returns at the first edge, or after `timeout_ns` (0: at once).
   virtual Wake wait(std::int64_t timeout_ns) noexcept = 0;
-  /// Takes what the last wait() announced, in any order between lines; never blocks.
+  /// Reads the edges that the last wait() announced, in any order between lines; never blocks.
   virtual Drained drain(std::span<Edge, kBatch> into) noexcept = 0;
   /// The present levels; empty when they cannot be read.
   virtual std::optional<Levels> levels() noexcept = 0;

@@ -2,7 +2,7 @@
 //
 // A separate thread blocks on the edges; the loop's read is wait-free and returns the current
 // count. Inputs are read by the same thread, at least every half period. Outputs are set by the
-// loop itself: a chip that needs a bus for that (an I2C expander) is no place for one.
+// loop itself: a chip behind a bus (an I2C expander) is unsuitable for outputs.
 #pragma once
 
 #include <atomic>
@@ -38,7 +38,7 @@ struct EncoderConfig {
   double resolution_m = kMissing;      ///< of one count; or the next
   double counts_per_metre = kMissing;  ///< 1/m
   std::int64_t sign = 1;
-  double reference_m = 0.0;  ///< position at the index, or where there is none at the start
+  double reference_m = 0.0;  ///< position at the index, or without an index at the start
   double max_speed_mps = kMissing;
   double max_edges_per_s = 20'000.0;
   std::int64_t priority = 85;
@@ -72,9 +72,9 @@ class Watch {
     std::int64_t inputs_ns = 0;
     std::array<std::int8_t, kInputs> inputs{};  ///< 0, 1, or -1
   };
-  /// The newest; from one thread only.
+  /// Newest view; call from one thread only.
   const View& view() noexcept { return latest_.get(); }
-  /// The position of now is the origin; takes effect within a period. From any thread.
+  /// Makes the present position the origin within a period. Any thread.
   void refer() noexcept { refer_.store(true, std::memory_order_relaxed); }
   /// Quality of the state that was complete at `t_ns`.
   [[nodiscard]] config::signals::Quality quality(std::int64_t t_ns,
@@ -100,9 +100,10 @@ class EncoderRod final : public RodSensor {
   EncoderRod(std::shared_ptr<Watch> watch, double count_m, double reference_m) noexcept
       : watch_(std::move(watch)), count_m_(count_m), reference_m_(reference_m) {}
 
-  /// y of now, uncertain while edges may be missing, before the index, or near the permitted speed.
+  /// Present y; uncertain while edges may be missing, before the index, or near the permitted
+  /// speed.
   Reading read(const Tick& tick) noexcept override;
-  /// Counters of what went wrong, and the rate; from the loop's thread.
+  /// Error counters and edge rate; loop thread only.
   [[nodiscard]] const Snapshot& snapshot() noexcept { return watch_->view().rod; }
 
  private:
@@ -115,7 +116,7 @@ class EncoderBackend final : public Backend {
  public:
   void visit(config::schema::Visitor& v) override { config_.visit(v); }
   [[nodiscard]] BackendDevices open(const OpenContext& context) const override;
-  /// An encoder moves nothing.
+  /// True: an encoder moves nothing.
   [[nodiscard]] bool harmless() const noexcept override { return true; }
   [[nodiscard]] double worst_speed_mps(const OpenContext&, double) const override { return 0.0; }
   [[nodiscard]] std::vector<std::string> notes(const OpenContext& context) const override;

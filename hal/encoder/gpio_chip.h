@@ -1,5 +1,5 @@
-// A GPIO chip and lines of it, requested for this process: RAII over libgpiod, errors with the
-// place in the configuration.
+// RAII over libgpiod: a GPIO chip and its lines requested by this process. Errors name the place in
+// the configuration.
 #pragma once
 
 #include <gpiod.h>
@@ -22,7 +22,7 @@ struct Wiring {
 
 class GpioChip;
 
-/// One requested line; released at the end.
+/// One requested line; released by the destructor.
 class GpioLine {
  public:
   GpioLine(std::shared_ptr<GpioChip> chip, gpiod_line* line) noexcept
@@ -31,9 +31,9 @@ class GpioLine {
   GpioLine(const GpioLine&) = delete;
   GpioLine& operator=(const GpioLine&) = delete;
 
-  /// 0, 1, or -1: it cannot be read.
+  /// 0, 1, or -1 when the line cannot be read.
   [[nodiscard]] int value() const noexcept { return gpiod_line_get_value(line_); }
-  /// False: it cannot be set.
+  /// False when the line cannot be set.
   bool set(bool on) const noexcept { return gpiod_line_set_value(line_, on ? 1 : 0) == 0; }
   /// Readable while there are edges.
   [[nodiscard]] int fd() const noexcept { return gpiod_line_event_get_fd(line_); }

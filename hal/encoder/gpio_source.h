@@ -17,7 +17,7 @@ class GpioSource final : public EdgeSource {
   GpioSource(std::shared_ptr<GpioLine> a, std::shared_ptr<GpioLine> b,
              std::shared_ptr<GpioLine> index);
 
-  /// After a failure it returns only when the time is over.
+  /// After a failure returns only when the time is over.
   Wake wait(std::int64_t timeout_ns) noexcept override;
   Drained drain(std::span<Edge, kBatch> into) noexcept override;
   std::optional<Levels> levels() noexcept override;

@@ -6,8 +6,8 @@
 // the same quarters by 4, 2 and 1 rounding down, so that a rod that dithers on an edge does not
 // make the count creep.
 //
-// The index pulse sets the origin at its lower flank: where it rises on the way up, where it falls
-// on the way down. Its flank may coincide with one of A or B: one quarter apart is no difference.
+// The index pulse sets the origin at its edge on the retracted side: rising on the way up, falling
+// on the way down. That edge may coincide with one of A or B: one quarter apart is no difference.
 #pragma once
 
 #include <cstdint>
@@ -16,18 +16,18 @@
 
 namespace hal::encoder {
 
-/// Copied freely: a few words.
+/// Cheap to copy: a few words.
 class QuadratureDecoder {
  public:
   explicit QuadratureDecoder(Levels levels = {}) noexcept;
 
-  /// In the order of time.
+  /// Edges in order of time.
   void edge(const Edge& edge) noexcept;
-  /// Takes over levels that contradict the decoder's, one quarter where that is unambiguous.
+  /// Adopts levels that contradict the decoder's; moves one quarter where that is unambiguous.
   void resync(Levels levels) noexcept;
-  /// Says that edges are missing: the count is uncertain until the next index or refer().
+  /// Marks edges as missing: the count is uncertain until the next index or refer().
   void mark_lost() noexcept { lost_ = true; }
-  /// The present position is the origin, and certain.
+  /// Makes the present position the origin, and certain.
   void refer() noexcept;
 
   /// Counts from the origin; `per_cycle`: 1, 2 or 4.
@@ -37,7 +37,7 @@ class QuadratureDecoder {
   [[nodiscard]] bool lost() const noexcept { return lost_; }
   [[nodiscard]] std::int64_t illegal() const noexcept { return illegal_; }
   [[nodiscard]] std::int64_t captures() const noexcept { return captures_; }  ///< index pulses
-  /// Index pulses that were not where the first had been: edges had been missed in between.
+  /// Index pulses at another position than the first: edges were missed in between.
   [[nodiscard]] std::int64_t slips() const noexcept { return slips_; }
 
  private:

@@ -1,11 +1,10 @@
-// Follows an encoder over what a kernel does to its edges: they arrive in batches, line by line and
-// now and then late, and the newest are dropped silently when the queue is not read in time.
+// Tracks an encoder despite the kernel's edge queue: edges arrive in batches, line by line,
+// sometimes late, and the newest are dropped silently when the queue is not read in time.
 //
-// Late edges are put in their place by time. Missing ones show as an edge to the level that was, as
-// a batch as long as the kernel's memory, or as levels that stay different from the decoder's while
-// nothing arrives; and where edges follow each other faster than this machine is known to take
-// them, some may be missing without a trace. Then the count is uncertain until the next index pulse
-// or refer().
+// Late edges are inserted by time. Missing ones show as an edge to the present level, as a batch as
+// long as the kernel's queue, or as levels that stay different from the decoder's while nothing
+// arrives; edges faster than the permitted rate may be lost without a trace. Then the count is
+// uncertain until the next index pulse or refer().
 #pragma once
 
 #include <array>
@@ -21,21 +20,21 @@ namespace hal::encoder {
 struct Snapshot {
   std::int64_t counts = 0;    ///< from the origin
   std::int64_t edge_ns = 0;   ///< time of the newest edge, 0 before the first
-  std::int64_t alive_ns = 0;  ///< when this was known to be all
+  std::int64_t alive_ns = 0;  ///< time at which this view was complete
   bool lost = false;          ///< edges are missing
   bool homed = false;         ///< the index has been passed, or there is none
-  bool too_fast = false;      ///< more edges than 80 % of what is permitted
+  bool too_fast = false;      ///< above 80 % of the permitted edge rate
   bool failed = false;        ///< the lines cannot be read
   double edges_per_s = 0.0;   ///< over the last window
   // Counters since the start.
   std::int64_t edges = 0;
-  std::int64_t illegal = 0;        ///< edges to the level that was
-  std::int64_t overflows = 0;      ///< batches as long as the kernel's memory
-  std::int64_t disagreements = 0;  ///< levels that were not the decoder's
-  std::int64_t bursts = 0;         ///< times that eight edges came faster than permitted
-  std::int64_t late = 0;           ///< edges put in their place afterwards
-  std::int64_t slips = 0;          ///< index pulses in another place than before
-  std::int64_t times_lost = 0;     ///< how often the count became uncertain
+  std::int64_t illegal = 0;        ///< edges to the present level
+  std::int64_t overflows = 0;      ///< batches as long as the kernel's queue
+  std::int64_t disagreements = 0;  ///< levels that contradicted the decoder
+  std::int64_t bursts = 0;         ///< runs of eight edges faster than permitted
+  std::int64_t late = 0;           ///< edges inserted afterwards
+  std::int64_t slips = 0;          ///< index pulses at another position than before
+  std::int64_t times_lost = 0;     ///< transitions to an uncertain count
   std::int64_t times_too_fast = 0;
 };
 
@@ -48,8 +47,8 @@ struct TrackerOptions {
 /// Share of the permitted rate from which the reading is called uncertain.
 inline constexpr double kWarnRatio = 0.8;
 
-/// Levels to start from: those that no edge which is still queued, or comes meanwhile, has made.
-/// Empty when they cannot be read, or change too fast.
+/// Initial levels, free of edges that are still queued or arrive meanwhile. Empty when they cannot
+/// be read or change too fast.
 [[nodiscard]] std::optional<Levels> still_levels(EdgeSource& source) noexcept;
 
 class Tracker {
@@ -57,10 +56,10 @@ class Tracker {
   /// Without levels the count is uncertain from the start.
   Tracker(const TrackerOptions& options, std::optional<Levels> levels) noexcept;
 
-  /// Waits once for at most `timeout_ns`, takes what there is, compares levels now and then.
+  /// Waits once for at most `timeout_ns`, processes the queued edges, compares levels now and then.
   /// `clock`: CLOCK_MONOTONIC in ns.
   void step(EdgeSource& source, std::int64_t timeout_ns, std::int64_t (*clock)()) noexcept;
-  /// The present position is the origin, and certain.
+  /// Makes the present position the origin, and certain.
   void refer() noexcept;
 
   [[nodiscard]] const Snapshot& snapshot() const noexcept { return snapshot_; }
@@ -89,8 +88,8 @@ class Tracker {
   QuadratureDecoder decoder_;
   Snapshot snapshot_;
   std::array<Step, kHistory> history_;  ///< the newest edges, a ring
-  std::uint64_t steps_ = 0;             ///< ever put into it
-  std::uint64_t oldest_ = 0;            ///< before this one nothing can be undone
+  std::uint64_t steps_ = 0;             ///< total number inserted
+  std::uint64_t oldest_ = 0;            ///< oldest step that can still be undone
   bool referred_ = false;
   int disagreeing_ = 0;  ///< comparisons in a row
   std::int64_t compared_ns_ = 0;

@@ -11,9 +11,9 @@ namespace hal::hil_rig {
 namespace {
 
 constexpr std::int64_t kNever_ns = std::numeric_limits<std::int64_t>::max();
-/// A count of an encoder that has no steps.
+/// Count of an encoder without steps.
 constexpr double kIdealCount_m = 1e-6;
-/// Time for the reply to whoever asked for silence.
+/// Time for the reply to the request that asked for silence.
 constexpr std::int64_t kMuteLead_ns = 100'000'000;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -120,7 +120,7 @@ void BenchRig::hold_until(std::int64_t t_ns) {
 }
 
 void BenchRig::advance_to(std::int64_t now_ns) {
-  // The voltage changes by itself where a time-out ends.
+  // The voltage changes at the end of a time-out.
   const std::int64_t ends[] = {deadline_ns(field_.command_timeout_s, command_ns_),
                                deadline_ns(field_.permit_timeout_s, permit_ns_)};
   for (const std::int64_t end : {std::min(ends[0], ends[1]), std::max(ends[0], ends[1])}) {

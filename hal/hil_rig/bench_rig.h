@@ -1,9 +1,9 @@
-// The simulated rig in real time: whoever asks gives the time, and the plant is brought up to it
-// under the voltage that stood at the valve until then.
+// The simulated rig in real time: each request passes the time, and the plant is advanced to it
+// under the voltage held at the valve.
 //
 // The voltage is the command's after the D/A converter, or the device's own null while no command
-// has come for the time-out, the e-stop is pressed, or the permit is missing. At the plant it
-// counts with the wiring: u = valve_sign valve_scale u_converter. The reading is encoder_sign
+// has come for the time-out, the e-stop is pressed, or the permit is missing. The plant sees it
+// through the wiring: u = valve_sign valve_scale u_converter. The reading is encoder_sign
 // encoder_scale y + encoder_offset, before the encoder's steps. Faults by schedule count from the
 // first command.
 #pragma once
@@ -34,7 +34,7 @@ class BenchRig {
   /// Throws config::schema::ConfigError.
   BenchRig(const RigConfig& config, std::int64_t now_ns);
 
-  /// All below work at the time of the last call of this; times do not go back.
+  /// Advances to `now_ns`, the time of all functions below; times do not go back.
   void advance_to(std::int64_t now_ns);
 
   void command(double u_V);
@@ -55,7 +55,7 @@ class BenchRig {
   [[nodiscard]] std::uint32_t time_us() const;
   /// The rod's true position and speed.
   [[nodiscard]] const plant_sim::Plant& plant() const noexcept { return *plant_; }
-  /// No answers to anybody while this holds.
+  /// True while requests stay unanswered.
   [[nodiscard]] bool mute() const noexcept {
     return now_ns_ >= mute_from_ns_ && now_ns_ < mute_until_ns_;
   }
@@ -76,7 +76,7 @@ class BenchRig {
   };
 
   [[nodiscard]] std::int64_t deadline_ns(double timeout_s, std::int64_t last_ns) const;
-  /// Holds the voltage until then.
+  /// Advances the plant under the held voltage.
   void hold_until(std::int64_t t_ns);
   [[nodiscard]] bool timed_out(std::int64_t t_ns) const;
   [[nodiscard]] bool permit_missing(std::int64_t t_ns) const;

@@ -1,4 +1,4 @@
-// Lines of the kernel's simulated GPIO chip (gpio-sim), moved as a rig moves them: an encoder's A,
+// Lines of the kernel's simulated GPIO chip (gpio-sim), driven as by a rig: an encoder's A,
 // B and index in quadrature, and switches. For a virtual machine with that module; as root.
 #pragma once
 
@@ -17,7 +17,7 @@ class SimLine {
   SimLine(const SimLine&) = delete;
   SimLine& operator=(const SimLine&) = delete;
 
-  /// False when the kernel did not take it.
+  /// False when the kernel rejects it.
   bool set(bool high) noexcept;
 
  private:
@@ -30,7 +30,7 @@ class SimEncoder {
   /// `index_line` -1: none; else high in the quarter 0. Starts in quarter 0.
   SimEncoder(const std::string& chip, int line_a, int line_b, int index_line = -1);
 
-  /// Passes every quarter on the way, as fast as it can; returns how many edges that were.
+  /// Passes every quarter on the way as fast as possible; returns the number of edges.
   std::int64_t move_to(std::int64_t quarter) noexcept;
   [[nodiscard]] std::int64_t quarter() const noexcept { return quarter_; }
 

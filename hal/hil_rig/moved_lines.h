@@ -1,5 +1,5 @@
-// The rig's encoder and switches on lines of a simulated GPIO chip, beside the bus: what a daemon
-// with the encoder backend reads, in a virtual machine with gpio-sim.
+// The rig's encoder and switches on lines of a simulated GPIO chip, beside the bus, for a daemon
+// with the encoder backend in a virtual machine with gpio-sim.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@ class MovedLines {
   /// The rod stands in the index's quarter. Throws config::schema::ConfigError.
   MovedLines(const RigConfig& config, BenchRig& rig);
 
-  /// To where the rig is at its last time: every edge on the way there.
+  /// Moves to the rig's present position, with every edge on the way.
   void follow(BenchRig& rig) noexcept;
   [[nodiscard]] std::int64_t edges() const noexcept { return edges_; }
 

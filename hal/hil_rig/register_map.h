@@ -19,10 +19,10 @@
 // clang-format on
 //
 // A pressure that the plant does not have reads -32768. Input registers 0 to 17 (function 4) repeat
-// them. Discrete inputs (function 2): 0 e-stop, 1
-// enable. Coil 0 (functions 1, 5, 15): the permit, watched when [field] permit_timeout_s is given.
-// Holding registers 1000 to 1099 take a text, "supply_pressure_Pa=x0.75", 1100 to 1199 then hold
-// the reply: what `spoolwatch-rig set` uses. Everything else is refused with exception 2.
+// them. Discrete inputs (function 2): 0 e-stop, 1 enable. Coil 0 (functions 1, 5, 15): the permit,
+// watched when [field] permit_timeout_s is given. Holding registers 1000 to 1099 take a text,
+// "supply_pressure_Pa=x0.75", 1100 to 1199 then hold the reply: what `spoolwatch-rig set` uses.
+// Everything else is refused with exception 2.
 #pragma once
 
 namespace hal::hil_rig {

@@ -1,5 +1,5 @@
-// Configuration of spoolwatch-rig: the simulated plant and its faults as [sim] has them, and what
-// stands between them and the bus. TOML tables: [bus], [gpio], [sim], [[sim.fault]], [field].
+// Configuration of spoolwatch-rig: the simulated plant and its faults as [sim] has them, and the
+// instruments between plant and bus. TOML tables: [bus], [gpio], [sim], [[sim.fault]], [field].
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,13 @@
 
 namespace hal::hil_rig {
 
-/// TOML [field]: how valve and encoder are wired, and what the device does when it is left alone.
+/// TOML [field]: wiring of valve and encoder, and behaviour of the device without commands.
 struct FieldConfig {
   double step_s = 1e-4;            ///< of the integration, in place of the model's own
-  double null_V = 0.0;             ///< what the valve gets without a command
+  double null_V = 0.0;             ///< valve voltage without a command
   double command_timeout_s = 0.0;  ///< until a client writes another; 0: none
-  double permit_timeout_s = 0.0;   ///< the permit must change within; 0: not looked at
-  double valve_sign = 1.0;         ///< -1: wired the wrong way round
+  double permit_timeout_s = 0.0;   ///< longest time without a change of the permit; 0: not checked
+  double valve_sign = 1.0;         ///< -1: reversed wiring
   double valve_scale = 1.0;
   double encoder_sign = 1.0;
   double encoder_scale = 1.0;
@@ -49,7 +49,7 @@ struct GpioConfig {
   std::int64_t line_e_stop = -1;  ///< -1: none; high while it is released
   std::int64_t line_enable = -1;  ///< -1: none
   double count_m = 1e-4;          ///< a quarter of a cycle
-  double interval_s = 1e-3;       ///< the lines follow so often
+  double interval_s = 1e-3;       ///< update interval of the lines
 
   void visit(config::schema::Visitor& v);
 };

@@ -25,7 +25,7 @@ namespace {
 using config::schema::bad_config;
 
 constexpr int kMostClients = 16;
-/// A request that does not come whole within this time ends its connection.
+/// A request incomplete after this time ends its connection.
 constexpr std::uint32_t kWhole_us = 20'000;
 
 void put_wide(std::uint16_t* registers, int at, std::uint32_t bits) {
@@ -37,7 +37,7 @@ void put_float(std::uint16_t* registers, int at, double value) {
   put_wide(registers, at, std::bit_cast<std::uint32_t>(static_cast<float>(value)));
 }
 
-/// As int16; the least number where there is no pressure.
+/// kPa as int16; the lowest number for a pressure that the plant lacks.
 std::uint16_t kilopascals(double p_Pa) {
   const double rounded = std::isfinite(p_Pa) ? std::round(p_Pa * 1e-3) : -32768.0;
   return static_cast<std::uint16_t>(

@@ -1,5 +1,5 @@
 // Answers Modbus requests about a BenchRig: TCP to any number of clients, and a serial line. One
-// thread; each request is answered with the plant brought up to the moment it came in.
+// thread; each request is answered with the plant advanced to the request's arrival.
 #pragma once
 
 #include <modbus/modbus.h>
@@ -24,7 +24,7 @@ class Server {
 
   /// "127.0.0.1:41234", "" without TCP.
   [[nodiscard]] const std::string& address() const noexcept { return address_; }
-  /// Answers until `stop` says so, asked that often at least.
+  /// Answers until `stop` returns true; calls it at least every `every_ms`.
   void run(const std::function<bool()>& stop, int every_ms = 5);
 
   struct Counts {
@@ -49,7 +49,7 @@ class Server {
   void listen(const RigConfig& config);
   void open_serial(const RigConfig& config);
   void accept_client();
-  /// False when the connection is over.
+  /// False when the connection has ended.
   bool serve(modbus_t* context);
   void answer(modbus_t* context, const std::uint8_t* query, int length);
   void refresh();
@@ -67,7 +67,7 @@ class Server {
   Counts counts_;
 };
 
-/// Sends "name=value" to a running rig. Returns "" or what is wrong; throws
+/// Sends "name=value" to a running rig. Returns "" or an error; throws
 /// config::schema::RunError when nothing answers at `address`.
 std::string set_remotely(const std::string& address, const std::string& text);
 

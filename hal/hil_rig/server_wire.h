@@ -1,4 +1,4 @@
-// The little that spoolwatch-rig reads of requests and addresses by itself.
+// Parsing of requests and addresses outside libmodbus.
 #pragma once
 
 #include <arpa/inet.h>
@@ -15,7 +15,7 @@ struct Place {
   int port = 0;
 };
 
-/// "127.0.0.1:1502" into its parts; none when it is not that.
+/// Splits "127.0.0.1:1502"; empty for any other form.
 inline std::optional<Place> split_address(const std::string& text) {
   const std::size_t colon = text.rfind(':');
   if (colon == std::string::npos) return std::nullopt;
@@ -67,7 +67,7 @@ class Request {
   const std::uint8_t* pdu_;
 };
 
-/// Two characters a register, the first high; the rest 0.
+/// Two characters per register, the first high; the rest 0.
 inline void put_text(const std::string& text, std::uint16_t* registers, int count) {
   for (int i = 0; i < count; ++i) {
     const auto character = [&](int at) {

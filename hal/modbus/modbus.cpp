@@ -16,6 +16,7 @@ namespace hal::modbus {
 namespace {
 
 using config::schema::bad_config;
+using config::schema::wiring;
 
 /// A device of this process's own for as long as the link to it lasts.
 struct LockedDevice {
@@ -52,7 +53,7 @@ void ModbusConfig::visit(config::schema::Visitor& v) {
     v.choice({"parity", "of the serial line"}, parity, {"none", "even", "odd"});
     v.integer({"stop_bits", "of the serial line"}, stop_bits, {1, 2});
   }
-  v.integer({"unit", "number of the device on its line"}, unit, {0, 247});
+  v.integer(wiring({"unit", "number of the device on its line"}), unit, {0, 247});
   v.number({"timeout_s", "longest wait for a reply"}, timeout_s, {1e-4, 10.0});
   v.number({"connect_timeout_s", "longest wait for a connection"}, connect_timeout_s, {1e-3, 10.0});
   v.number({"longest_pause_s", "between two attempts to connect"}, longest_pause_s, {0.01, 60.0});

@@ -8,6 +8,8 @@
 namespace hal::modbus {
 namespace {
 
+using config::schema::wiring;
+
 constexpr std::int64_t kLastAddress = 65535;
 
 std::uint16_t swapped(std::uint16_t word) noexcept {
@@ -17,21 +19,23 @@ std::uint16_t swapped(std::uint16_t word) noexcept {
 }  // namespace
 
 void Register::visit(config::schema::Visitor& v) {
-  v.choice({"role", "what it is for", true}, role,
+  v.choice(wiring({"role", "what it is for", true}), role,
            {"rod", "valve_command", "valve_readback", "input", "output", "watchdog"});
-  v.integer({"address", "as in the protocol, from 0", true}, address, {0, kLastAddress});
-  v.choice({"function", "table of the device"}, function, {"holding", "input", "coil", "discrete"});
+  v.integer(wiring({"address", "as in the protocol, from 0", true}), address, {0, kLastAddress});
+  v.choice(wiring({"function", "table of the device"}), function,
+           {"holding", "input", "coil", "discrete"});
   const bool bits = table() == Table::coil || table() == Table::discrete;
   if (type.empty()) type = bits ? "bit" : "uint16";
   if (bits) {
-    v.choice({"type", "a bit"}, type, {"bit"});
+    v.choice(wiring({"type", "a bit"}), type, {"bit"});
   } else {
-    v.choice({"type", "of the raw value"}, type, {"int16", "uint16", "int32", "uint32", "float32"});
-    v.choice({"order", "of the bytes, A the most significant"}, order,
+    v.choice(wiring({"type", "of the raw value"}), type,
+             {"int16", "uint16", "int32", "uint32", "float32"});
+    v.choice(wiring({"order", "of the bytes, A the most significant"}), order,
              {"ABCD", "CDAB", "BADC", "DCBA"});
   }
-  v.number({"scale", "SI unit per raw unit"}, scale, {-1e12, 1e12});
-  v.number({"offset", "SI value at raw 0"}, offset, {-1e12, 1e12});
+  v.number(wiring({"scale", "SI unit per raw unit"}), scale, {-1e12, 1e12});
+  v.number(wiring({"offset", "SI value at raw 0"}), offset, {-1e12, 1e12});
   v.number({"low", "lowest value, SI"}, low);
   v.number({"high", "highest value, SI"}, high);
 }

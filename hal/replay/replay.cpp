@@ -10,7 +10,7 @@
 namespace hal::replay {
 namespace {
 
-/// Inputs, and the columns that they are read from.
+/// Inputs and their columns.
 constexpr std::pair<const char*, const char*> kColumns[] = {
     {"supply_pressure", config::record::kSupplyPressure},
     {"pressure_in", config::record::kPressureIn},
@@ -30,7 +30,7 @@ std::vector<std::int64_t> grid(const config::record::Record& record) {
 }  // namespace
 
 void ReplayConfig::visit(config::schema::Visitor& v) {
-  v.text({"record", "CSV, MAT or LCM event log", true}, record);
+  v.path({"record", "CSV, MAT or LCM event log", true}, record);
   v.choice({"pace", "at the recorded pace, or as fast as possible"}, pace, {"recorded", "fast"});
 }
 

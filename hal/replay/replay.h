@@ -1,6 +1,6 @@
-// A recorded experiment as a device: position and command both come from the record, nothing is
-// written. The period of the loop is the record's; a period that the record lacks reads as missing.
-// Inputs supply_pressure, pressure_in and pressure_out where the record has such a column.
+// A recorded experiment as a device: position and command come from the record, nothing is written.
+// The period of the loop is the record's; a period that the record lacks reads as missing. Inputs
+// supply_pressure, pressure_in and pressure_out where the record has such a column.
 #pragma once
 
 #include <memory>
@@ -19,12 +19,12 @@ struct ReplayConfig {
   void visit(config::schema::Visitor& v);
 };
 
-/// Where in a record the loop is.
+/// Position of the loop in a record.
 class Rows {
  public:
   explicit Rows(const config::record::Record& record);
-  /// The row of this period; `size` of the record after its end, and kNone for one that it lacks.
-  /// Ticks do not go back.
+  /// Row of this period; the record's size after its end, kNone for a missing period. Ticks do not
+  /// go back.
   [[nodiscard]] std::size_t at(const Tick& tick) noexcept;
 
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
@@ -43,7 +43,7 @@ class ReplaySensor final : public RodSensor {
 
  private:
   std::shared_ptr<const config::record::Record> record_;
-  const std::vector<double>* quality_;  ///< the record's own column of it, or null
+  const std::vector<double>* quality_;  ///< quality column of the record, or null
   const std::vector<double>* saturated_;
   Rows rows_;
 };
@@ -51,7 +51,7 @@ class ReplaySensor final : public RodSensor {
 /// A column of the record.
 class ReplayInput final : public Input {
  public:
-  /// The column is the record's.
+  /// `column` belongs to the record.
   ReplayInput(std::shared_ptr<const config::record::Record> record,
               const std::vector<double>& column);
   InputReading read(const Tick& tick) noexcept override;
@@ -67,7 +67,7 @@ class ReplayBackend final : public Backend {
   void visit(config::schema::Visitor& v) override { config_.visit(v); }
   [[nodiscard]] BackendDevices open(const OpenContext& context) const override;
   [[nodiscard]] bool harmless() const noexcept override { return true; }
-  /// Nothing is written, so nothing moves.
+  /// True: nothing is written, so nothing moves.
   [[nodiscard]] double worst_speed_mps(const OpenContext&, double) const override { return 0.0; }
 
  private:

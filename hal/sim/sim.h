@@ -41,7 +41,9 @@ class SimRig final : public RodSensor, public ValveDrive {
   /// The plant's own position, after the tick read last.
   [[nodiscard]] double position_m() const noexcept { return plant_->reading_m(); }
   /// Likewise, its pressures.
-  [[nodiscard]] config::signals::Pressures pressures() const noexcept { return plant_->pressures(); }
+  [[nodiscard]] config::signals::Pressures pressures() const noexcept {
+    return plant_->pressures();
+  }
 
  private:
   Applied take(double u_V) noexcept;
