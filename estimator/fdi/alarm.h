@@ -9,14 +9,16 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "config/schema/visitor.h"
+#include "config/signals/nan.h"
 
 namespace estimator::fdi {
+
+using config::signals::kNaN;
 
 /// In rising order, as in alarm_t. invalid = what the alarm watches cannot be trusted.
 enum class Severity : std::int8_t { ok = 0, minor = 1, major = 2, invalid = 3 };
@@ -39,9 +41,16 @@ struct AlarmRules {
   void visit(config::schema::Visitor& v);
 };
 
-enum class Life : std::uint8_t { normal, unacknowledged, acknowledged, returned, latched, shelved };
+enum class AlarmState : std::uint8_t {
+  normal,
+  unacknowledged,
+  acknowledged,
+  returned,
+  latched,
+  shelved
+};
 
-[[nodiscard]] const char* to_string(Life life) noexcept;
+[[nodiscard]] const char* to_string(AlarmState state) noexcept;
 
 /// An alarm and its state; the fields are those of alarm_t.
 struct Alarm {
@@ -58,12 +67,12 @@ struct Alarm {
   std::int8_t direction = 0;          ///< -1 below, +1 above the band, 0 neither
   bool falls_with_parameter = false;  ///< the quantity falls when the parameter rises
   std::int64_t tick = 0;              ///< sample at which the state last changed
-  double value = std::numeric_limits<double>::quiet_NaN();
-  double std_error = std::numeric_limits<double>::quiet_NaN();
-  double low = std::numeric_limits<double>::quiet_NaN();
-  double high = std::numeric_limits<double>::quiet_NaN();
+  double value = kNaN;
+  double std_error = kNaN;
+  double low = kNaN;
+  double high = kNaN;
   /// That the fault is the one named, 0 to 1; NaN where nobody says.
-  double confidence = std::numeric_limits<double>::quiet_NaN();
+  double confidence = kNaN;
   /// Parameter, ambiguity group and confidence are found while it runs, not configured.
   bool named_at_run_time = false;
 
@@ -87,7 +96,7 @@ struct Alarm {
   [[nodiscard]] bool on_quantity() const noexcept {
     return quantity.find('.') != std::string::npos;
   }
-  [[nodiscard]] Life life() const noexcept;
+  [[nodiscard]] AlarmState state() const noexcept;
 };
 
 }  // namespace estimator::fdi

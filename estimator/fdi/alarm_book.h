@@ -9,7 +9,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,33 +23,33 @@ namespace estimator::fdi {
 struct FaultName {
   std::string_view parameter;               ///< "" when several cannot be told apart
   std::span<const std::string_view> group;  ///< those several
-  double confidence = std::numeric_limits<double>::quiet_NaN();
+  double confidence = kNaN;
 };
 
 /// What an alarm's cause changes to.
-struct AlarmState {
+struct AlarmInput {
   Severity severity = Severity::ok;
   std::int8_t direction = 0;
   std::int64_t tick = 0;
-  double value = std::numeric_limits<double>::quiet_NaN();
-  double std_error = std::numeric_limits<double>::quiet_NaN();
+  double value = kNaN;
+  double std_error = kNaN;
   std::string_view reason{};
   const FaultName* fault = nullptr;  ///< of an alarm named at run time, while it is out
 };
 
 /// What became of an act of a person.
-struct ActOutcome {
+struct AlarmActionResult {
   const Alarm* changed = nullptr;  ///< to be published; null when refused
   std::string refusal{};           ///< why not, in one line
 };
 
 /// The part of an alarm's life that outlasts the process.
-struct SavedLife {
+struct PersistedAlarm {
   std::string source, name, reason, acknowledged_by, shelved_by;
   Severity severity = Severity::ok;
   std::int8_t direction = 0;
   bool active = false, latched = false, acknowledged = true, first_up = false;
-  double value = std::numeric_limits<double>::quiet_NaN();
+  double value = kNaN;
   double shelved_for_s = 0.0;  ///< still; 0: it is not shelved
   std::int64_t came_utc_us = 0;
   std::int64_t times = 0;
@@ -69,7 +68,7 @@ class AlarmBook {
   /// Tells an alarm's cause. Returns the alarm when a person or a program should learn of it (a
   /// transition to be published), null otherwise; value and std_error are kept up to date in either
   /// case. An active alarm that is named anew is such a transition.
-  const Alarm* set(std::size_t number, const AlarmState& state);
+  const Alarm* set(std::size_t number, const AlarmInput& state);
 
   /// The same for a condition by name ("recorder", "disk_full"), declared at its first use.
   const Alarm* set_condition(std::string_view source, std::string_view name, Severity severity,
@@ -86,10 +85,10 @@ class AlarmBook {
     }
   }
 
-  ActOutcome acknowledge(std::size_t number, std::string_view who);
+  AlarmActionResult acknowledge(std::size_t number, std::string_view who);
   /// For so long from now on; shelving what is shelved sets another time.
-  ActOutcome shelve(std::size_t number, double time_s, std::string_view who);
-  ActOutcome unshelve(std::size_t number);
+  AlarmActionResult shelve(std::size_t number, double time_s, std::string_view who);
+  AlarmActionResult unshelve(std::size_t number);
 
   /// Shows an alarm as it was told, whatever its cause and rules say: for the replay of a log.
   void show(std::size_t number, const Alarm& told);
@@ -113,8 +112,8 @@ class AlarmBook {
   /// unacknowledged or acknowledged when its cause is found again, what nobody has acknowledged
   /// stays so, and a shelf lasts for what is left of it. Alarms that no longer exist are left out;
   /// conditions are declared. Call before the first sample.
-  [[nodiscard]] std::vector<SavedLife> lives() const;
-  void restore(const std::vector<SavedLife>& lives);
+  [[nodiscard]] std::vector<PersistedAlarm> lives() const;
+  void restore(const std::vector<PersistedAlarm>& lives);
 
   /// Goes on with the lives of the book before it, for new rules on the same alarms: what was
   /// active, latched, acknowledged or shelved there is so here. Alarms that only one of them has

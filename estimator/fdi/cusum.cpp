@@ -13,10 +13,10 @@ constexpr double kCap = 1.25;  // of the threshold
 /// change goes soon after it.
 constexpr double kStillThere = 0.25;
 
-class Cusum final : public ChangeSource {
+class Cusum final : public MeanChangeMethod {
  public:
-  Cusum(const CusumConfig& config, const Setting& setting)
-      : ChangeSource(config, setting),
+  Cusum(const CusumConfig& config, const MethodContext& context)
+      : MeanChangeMethod(config, context),
         k_(0.5 * config.shift_sigma),
         h_(cusum_threshold(k_, run_length(), mean_error())) {}
 
@@ -64,8 +64,8 @@ void CusumConfig::visit(config::schema::Visitor& v) {
   v.number({"shift_sigma", "the shift looked for, in std_dev"}, shift_sigma, {0.01, 20.0});
 }
 
-std::unique_ptr<Source> CusumConfig::make(const Setting& setting) const {
-  return std::make_unique<Cusum>(*this, setting);
+std::unique_ptr<DetectionMethod> CusumConfig::make(const MethodContext& context) const {
+  return std::make_unique<Cusum>(*this, context);
 }
 
 }  // namespace estimator::fdi

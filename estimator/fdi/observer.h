@@ -23,7 +23,7 @@
 namespace estimator::fdi {
 
 /// Values: r1, r2, ... one for each observer.
-struct ObserverConfig final : SourceConfigOf<ObserverConfig> {
+struct ObserverConfig final : DetectionMethodConfigOf<ObserverConfig> {
   std::vector<std::string> u, y;  ///< quantities
   std::vector<double> a, b, c, e;
   std::vector<double> input_offset, output_offset, output_std;
@@ -36,7 +36,7 @@ struct ObserverConfig final : SourceConfigOf<ObserverConfig> {
 
   void visit(config::schema::Visitor& v) override;
   [[nodiscard]] std::vector<std::string> inputs() const override;
-  [[nodiscard]] std::unique_ptr<Source> make(const Setting& setting) const override;
+  [[nodiscard]] std::unique_ptr<DetectionMethod> make(const MethodContext& context) const override;
   /// Throws schema::ConfigError when the matrices do not fit together.
   [[nodiscard]] LinearModel model() const;
 };

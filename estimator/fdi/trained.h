@@ -10,7 +10,8 @@
 #include <vector>
 
 #include "config/schema/visitor.h"
-#include "estimator/fdi/source.h"
+#include "estimator/fdi/alarm.h"
+#include "estimator/fdi/detection_method_config.h"
 
 namespace estimator::fdi {
 
@@ -28,7 +29,7 @@ struct TrainedClass {
 };
 
 /// [[trained]]: what one source needs.
-struct TrainedSource {
+struct TrainedMethod {
   std::string id;
   std::vector<std::string> quantities;
   /// Of the source of each quantity, then "|" and those of the sources that it reads; "" of the
@@ -42,7 +43,7 @@ struct TrainedSource {
   [[nodiscard]] const TrainedClass* healthy() const noexcept;
 };
 
-struct Trained {
+struct TrainedFile {
   static constexpr std::int64_t kVersion = 2;
   static constexpr const char* kHealthy = "healthy";
   /// Of positions, commands and times, and so of all that is estimated from them.
@@ -53,13 +54,13 @@ struct Trained {
   std::string rig_id;
   double sample_time_s = 0.0;
   std::vector<std::string> records;
-  std::vector<TrainedSource> sources;
+  std::vector<TrainedMethod> methods;
 
   void visit(config::schema::Visitor& v);
 };
 
 /// What a source that is trained is configured with.
-struct TrainedConfig : SourceConfig {
+struct TrainedMethodConfig : DetectionMethodConfig {
   double block_s = 0.0;
   std::string file;  ///< "" when the numbers stand in the configuration
 
@@ -69,16 +70,17 @@ struct TrainedConfig : SourceConfig {
   [[nodiscard]] virtual std::vector<std::string> quantities() const = 0;
   /// Whether it needs classes other than healthy.
   [[nodiscard]] virtual bool needs_classes() const { return false; }
-  virtual void adopt(const TrainedSource& trained) = 0;
+  virtual void adopt(const TrainedMethod& trained) = 0;
   [[nodiscard]] virtual const char* list() const = 0;
 
   [[nodiscard]] std::vector<std::string> inputs() const override { return quantities(); }
-  void load(const Loading& loading) override;
+  void load(const ConfigLoadContext& context) override;
   [[nodiscard]] std::string where() const { return std::string("[[") + list() + "]] " + id; }
 
  private:
   /// Throws when `trained` was learned from other values than these.
-  void check(const TrainedSource& trained, const Loading& loading, const std::string& place) const;
+  void check(const TrainedMethod& trained, const ConfigLoadContext& context,
+             const std::string& place) const;
 };
 
 /// Settings of the source of each quantity, as they stand in a trained file. Throws

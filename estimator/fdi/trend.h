@@ -20,9 +20,9 @@
 namespace estimator::fdi {
 
 /// Values: level, slope_per_s, time_to_limit_s.
-struct TrendConfig final : TrainedConfig {
+struct TrendConfig final : TrainedMethodConfig {
   std::string quantity;
-  double std_dev = std::numeric_limits<double>::quiet_NaN();
+  double std_dev = kNaN;
   double memory_s = 3600.0;
   double horizon_s = 86400.0;
   double low = -std::numeric_limits<double>::infinity();
@@ -33,10 +33,10 @@ struct TrendConfig final : TrainedConfig {
 
   void visit(config::schema::Visitor& v) override;
   [[nodiscard]] std::vector<std::string> quantities() const override { return {quantity}; }
-  void adopt(const TrainedSource& trained) override { std_dev = trained.healthy()->long_run[0]; }
+  void adopt(const TrainedMethod& trained) override { std_dev = trained.healthy()->long_run[0]; }
   [[nodiscard]] const char* list() const override { return "trend"; }
-  [[nodiscard]] std::unique_ptr<Source> make(const Setting& setting) const override;
-  [[nodiscard]] std::unique_ptr<SourceConfig> clone() const override {
+  [[nodiscard]] std::unique_ptr<DetectionMethod> make(const MethodContext& context) const override;
+  [[nodiscard]] std::unique_ptr<DetectionMethodConfig> clone() const override {
     return std::make_unique<TrendConfig>(*this);
   }
 };

@@ -15,14 +15,13 @@
 
 #include <array>
 
-#include "estimator/fdi/source.h"
 #include "estimator/fdi/trained.h"
 
 namespace estimator::fdi {
 
 /// Values: value, spread (greatest less least of the channels in), out (number of the channel that
 /// is out, from 1; 0: none, -1: they disagree and nobody knows which).
-struct VoterConfig final : SourceConfigOf<VoterConfig> {
+struct VoterConfig final : DetectionMethodConfigOf<VoterConfig> {
   std::vector<std::string> channels;  ///< quantities, two or three
   double tolerance = 0.0;
   double confirm_s = 0.1;
@@ -32,7 +31,7 @@ struct VoterConfig final : SourceConfigOf<VoterConfig> {
 
   void visit(config::schema::Visitor& v) override;
   [[nodiscard]] std::vector<std::string> inputs() const override { return channels; }
-  [[nodiscard]] std::unique_ptr<Source> make(const Setting& setting) const override;
+  [[nodiscard]] std::unique_ptr<DetectionMethod> make(const MethodContext& context) const override;
 };
 
 /// The vote by itself, once a sample.
@@ -70,8 +69,8 @@ class Vote {
   std::int64_t taken_ = 0;
   std::int64_t apart_ = 0;  ///< samples in a row that two channels differ
   bool disagree_ = false;
-  double value_ = std::numeric_limits<double>::quiet_NaN();
-  double spread_ = std::numeric_limits<double>::quiet_NaN();
+  double value_ = kNaN;
+  double spread_ = kNaN;
 };
 
 }  // namespace estimator::fdi

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "estimator/fdi/size_path.h"
+#include "estimator/fdi/fault_trajectory.h"
 #include "estimator/fdi/trained.h"
 
 namespace estimator::fdi {
@@ -17,8 +17,8 @@ namespace estimator::fdi {
 /// The curve that leads to each class; none to `healthy`, and to one that lies within its region.
 /// `laws` are those of `classes`, `pooled` the covariance in which lengths are measured. Throws
 /// schema::ConfigError at `where`.
-[[nodiscard]] std::vector<std::optional<SizePath>> join_sizes(
-    const std::vector<TrainedClass>& classes, const std::vector<SizeLaw>& laws,
+[[nodiscard]] std::vector<std::optional<FaultTrajectory>> fault_trajectories(
+    const std::vector<TrainedClass>& classes, const std::vector<ClassDistribution>& distributions,
     const Eigen::MatrixXd& pooled, std::size_t healthy, double rejection, const std::string& where);
 
 }  // namespace estimator::fdi

@@ -21,52 +21,55 @@
 #include <string>
 #include <vector>
 
-#include "estimator/fdi/region.h"
+#include "estimator/fdi/hotelling_t2.h"
 
 namespace estimator::fdi {
 
 /// Of the block means at one size.
-struct SizeLaw {
+struct ClassDistribution {
   Eigen::VectorXd mean;
   Eigen::MatrixXd covariance;
   double blocks = 0.0;
 };
 
-[[nodiscard]] Region region_of(const SizeLaw& law, const std::string& where);
+[[nodiscard]] HotellingT2 hotelling_t2(const ClassDistribution& distribution,
+                                       const std::string& where);
 
 /// Of a curve between two sizes: b0 and b1.
-struct Bend {
+struct Curvature {
   Eigen::VectorXd from, to;
 };
 
 /// h^2 times the second divided difference of a, b, c, which lie `ab` and `bc` apart along the
 /// curve.
-[[nodiscard]] Eigen::VectorXd bend_of(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
-                                      const Eigen::VectorXd& c, double ab, double bc, double h);
+[[nodiscard]] Eigen::VectorXd curvature_of(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
+                                           const Eigen::VectorXd& c, double ab, double bc,
+                                           double h);
 
-class SizePath {
+class FaultTrajectory {
  public:
   struct Nearest {
-    double distance2;    ///< T^2
+    double t2;           ///< T^2
     double log_density;  ///< there, but for a constant that depends on the number of values alone
     bool inside;         ///< T^2 is within its limit
   };
 
   /// `rejection`: probability of its limit. `healthy`: of a curve that begins there; it counts from
-  /// where it has left that region for good, as far as `edge2` (T^2), and may be nowhere(). Throws
-  /// schema::ConfigError at `where`.
-  SizePath(const SizeLaw& from, const SizeLaw& to, const Bend& bend, double rejection,
-           Region* healthy, double edge2, const std::string& where);
+  /// where it has left that region for good, as far as `healthy_limit` (T^2), and may be empty().
+  /// Throws schema::ConfigError at `where`.
+  FaultTrajectory(const ClassDistribution& from, const ClassDistribution& to,
+                  const Curvature& curvature, double rejection, HotellingT2* healthy,
+                  double healthy_limit, const std::string& where);
 
-  [[nodiscard]] bool nowhere() const noexcept { return pieces_.empty(); }
+  [[nodiscard]] bool empty() const noexcept { return pieces_.empty(); }
   /// No allocation.
   [[nodiscard]] Nearest nearest(std::span<const double> x) noexcept;
 
  private:
   struct Piece {
-    Region region;              ///< about its begin
+    HotellingT2 region;         ///< about its begin
     std::vector<double> along;  ///< from its begin to its end
-    double length2;             ///< T^2 of its end from its begin
+    double length_t2;           ///< T^2 of its end from its begin
   };
   std::vector<Piece> pieces_;
   double limit_ = 0.0;  ///< of T^2

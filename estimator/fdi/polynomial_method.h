@@ -7,12 +7,12 @@
 // prediction drifts away; `spoolwatch select` says which structure suits a record.
 #pragma once
 
-#include "estimator/fdi/source.h"
+#include "estimator/fdi/detection_method_config.h"
 
 namespace estimator::fdi {
 
 /// Values: the coefficients, residual_rms_m (one step, over window_s).
-struct PolynomialConfig final : SourceConfigOf<PolynomialConfig> {
+struct PolynomialConfig final : DetectionMethodConfigOf<PolynomialConfig> {
   std::string structure = "armax2111";
   std::string method = "prediction-error";  ///< or extended-least-squares, for ARX and ARMAX
   bool constant = true;
@@ -27,7 +27,7 @@ struct PolynomialConfig final : SourceConfigOf<PolynomialConfig> {
   double max_missing = 0.2;
 
   void visit(config::schema::Visitor& v) override;
-  [[nodiscard]] std::unique_ptr<Source> make(const Setting& setting) const override;
+  [[nodiscard]] std::unique_ptr<DetectionMethod> make(const MethodContext& context) const override;
 };
 
 }  // namespace estimator::fdi

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/estimator/fdi/alarm_life.h"
+#include "tests/estimator/fdi/alarm_fixture.h"
 
 namespace estimator::fdi {
 namespace {
@@ -16,7 +16,7 @@ TEST_F(AlarmLife, IsListedUntilSomebodyHasAcknowledgedIt) {
   cause(1, a);
   gone(5, a);
   EXPECT_EQ(book.active_count(), 0U);
-  EXPECT_EQ(book.alarm(a).life(), Life::returned);
+  EXPECT_EQ(book.alarm(a).state(), AlarmState::returned);
   pass(6);
   tell(book.acknowledge(a, "ann").changed);
   EXPECT_EQ(book.alarm(a).acknowledged_by, "ann");
@@ -69,11 +69,11 @@ TEST_F(AlarmLife, GraverThanWhatWasAcknowledgedIsNew) {
   cause(1, a, Severity::minor);
   book.acknowledge(a, "ann");
   cause(2, a, Severity::major);
-  EXPECT_EQ(book.alarm(a).life(), Life::unacknowledged);
+  EXPECT_EQ(book.alarm(a).state(), AlarmState::unacknowledged);
   book.acknowledge(a, "ann");
   cause(3, a, Severity::minor);
   cause(4, a, Severity::major);
-  EXPECT_EQ(book.alarm(a).life(), Life::acknowledged);
+  EXPECT_EQ(book.alarm(a).state(), AlarmState::acknowledged);
 }
 
 TEST_F(AlarmLife, OnTheShelfIsListedButNotActiveAndComesBackByItself) {

@@ -5,14 +5,14 @@
 #include <memory>
 
 #include "estimator/estimate.h"
-#include "estimator/fdi/pipeline.h"
+#include "estimator/fdi/pipeline_config.h"
 #include "estimator/state_archive.h"
 
 namespace estimator::fdi {
 
-class Engine {
+class EstimationMethod {
  public:
-  virtual ~Engine() = default;
+  virtual ~EstimationMethod() = default;
   /// True when an estimate is due. A NaN is a missing sample.
   virtual bool push(double u_V, double y_m) noexcept = 0;
   /// So many samples missing; true when an estimate became due meanwhile.
@@ -23,8 +23,8 @@ class Engine {
 };
 
 /// The engine of `config.method`; `sample_time_s` after decimation. Throws schema::Error.
-[[nodiscard]] std::unique_ptr<Engine> make_engine(const EstimatorConfig& config,
-                                                  const Structure& structure, double sample_time_s);
+[[nodiscard]] std::unique_ptr<EstimationMethod> make_estimation_method(
+    const EstimatorConfig& config, const Structure& structure, double sample_time_s);
 
 /// A time as a whole number of samples, at least 1.
 [[nodiscard]] int samples_in(double time_s, double sample_time_s) noexcept;

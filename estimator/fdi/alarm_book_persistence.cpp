@@ -23,11 +23,11 @@ void serialize_fault_name(StateArchive& archive, Alarm& alarm) {
 
 }  // namespace
 
-std::vector<SavedLife> AlarmBook::lives() const {
-  std::vector<SavedLife> lives;
+std::vector<PersistedAlarm> AlarmBook::lives() const {
+  std::vector<PersistedAlarm> lives;
   for (const Alarm& alarm : alarms_) {
-    if (alarm.life() == Life::normal) continue;
-    SavedLife life;
+    if (alarm.state() == AlarmState::normal) continue;
+    PersistedAlarm life;
     life.source = alarm.source;
     life.name = alarm.name;
     life.reason = alarm.reason;
@@ -48,8 +48,8 @@ std::vector<SavedLife> AlarmBook::lives() const {
   return lives;
 }
 
-void AlarmBook::restore(const std::vector<SavedLife>& lives) {
-  for (const SavedLife& life : lives) {
+void AlarmBook::restore(const std::vector<PersistedAlarm>& lives) {
+  for (const PersistedAlarm& life : lives) {
     std::size_t number = find(life.source + "." + life.name);
     if (number == kNone && (life.source == "loop" || life.source == "recorder")) {
       Alarm alarm;

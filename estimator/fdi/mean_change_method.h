@@ -8,16 +8,16 @@
 // times that (95 %, one side).
 #pragma once
 
-#include "estimator/fdi/block_source.h"
+#include "estimator/fdi/block_method.h"
 #include "estimator/fdi/trained.h"
 
 namespace estimator::fdi {
 
-struct ChangeConfig : TrainedConfig {
+struct MeanChangeConfig : TrainedMethodConfig {
   std::string quantity;
   double false_alarm_time_s = 86400.0;
-  double mean = std::numeric_limits<double>::quiet_NaN();
-  double std_dev = std::numeric_limits<double>::quiet_NaN();
+  double mean = kNaN;
+  double std_dev = kNaN;
   double mean_error = 0.0;  ///< standard error of `mean`, in its unit
   std::string parameter;
   bool falls_with_parameter = false;
@@ -25,7 +25,7 @@ struct ChangeConfig : TrainedConfig {
   AlarmNaming naming;
 
   [[nodiscard]] std::vector<std::string> quantities() const override { return {quantity}; }
-  void adopt(const TrainedSource& trained) override;
+  void adopt(const TrainedMethod& trained) override;
 
  protected:
   void visit_change(config::schema::Visitor& v);
@@ -33,16 +33,16 @@ struct ChangeConfig : TrainedConfig {
 
 /// Values: statistic (1 at the threshold), shift (of the mean, in the quantity's unit, since the
 /// change that the test sees), since_s (how long ago that was).
-class ChangeSource : public BlockSource {
+class MeanChangeMethod : public BlockMethod {
  public:
   /// Throws schema::ConfigError when it is not trained.
-  ChangeSource(const ChangeConfig& config, const Setting& setting);
+  MeanChangeMethod(const MeanChangeConfig& config, const MethodContext& context);
 
   [[nodiscard]] std::vector<std::string> names() const final {
     return {"statistic", "shift", "since_s"};
   }
-  [[nodiscard]] std::vector<Alarm> own_alarms() const final;
-  [[nodiscard]] AlarmState own_alarm(std::size_t number) const noexcept final;
+  [[nodiscard]] std::vector<Alarm> declared_alarms() const final;
+  [[nodiscard]] AlarmInput alarm_input(std::size_t number) const noexcept final;
 
  protected:
   /// What the newest standardised block makes of the test.
@@ -63,7 +63,7 @@ class ChangeSource : public BlockSource {
   void serialize_verdict(StateArchive& archive);
 
  private:
-  std::shared_ptr<const ChangeConfig> config_;
+  std::shared_ptr<const MeanChangeConfig> config_;
   Verdict verdict_;
   bool out_ = false;
   mutable char reason_[160] = "";

@@ -9,19 +9,19 @@
 #include <string>
 #include <vector>
 
-#include "estimator/fdi/source.h"
+#include "estimator/fdi/detection_method.h"
 
 namespace estimator::fdi {
 
-class BlockSource : public Source {
+class BlockMethod : public DetectionMethod {
  public:
   /// `where`: "[[cusum]] id", for messages.
-  BlockSource(const std::vector<std::string>& quantities, double block_s, const Setting& setting,
-              const std::string& where);
+  BlockMethod(const std::vector<std::string>& quantities, double block_s,
+              const MethodContext& context, const std::string& where);
 
-  bool lose(std::int64_t periods) noexcept final;
+  bool on_gap(std::int64_t periods) noexcept final;
   bool push(const config::signals::Sample& sample, double y_m) noexcept final;
-  Finding find(std::span<NamedValue> values) noexcept final;
+  MethodOutput evaluate(std::span<NamedValue> values) noexcept final;
   void reset() final;
   void serialize(StateArchive& archive) final;
   [[nodiscard]] double interval_s() const noexcept final { return interval_s_; }
@@ -43,7 +43,7 @@ class BlockSource : public Source {
   };
   [[nodiscard]] bool close() noexcept;
 
-  std::vector<Input> inputs_;
+  std::vector<MethodInput> inputs_;
   std::vector<Sum> sums_;
   std::vector<double> means_;
   std::int64_t length_ = 0;  ///< samples; 0: every new value
@@ -51,7 +51,7 @@ class BlockSource : public Source {
   double interval_s_;
   bool valid_ = false;
   bool warming_up_ = true;
-  const Input* unusable_ = nullptr;  ///< of the last block
+  const MethodInput* unusable_ = nullptr;  ///< of the last block
 };
 
 }  // namespace estimator::fdi
