@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 #include "estimator/fdi/estimator_channel.h"
 #include "estimator/fdi/pipeline_impl.h"
 
@@ -10,6 +11,7 @@ namespace estimator::fdi {
 namespace {
 
 using config::schema::bad_config;
+using config::schema::joined;
 
 double given(double limit) noexcept { return std::isinf(limit) ? kNaN : limit; }
 

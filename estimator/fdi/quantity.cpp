@@ -25,12 +25,6 @@ QuantityName split_quantity(std::string_view quantity) noexcept {
   return {quantity.substr(0, dot), quantity.substr(dot + 1)};
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 std::vector<std::string> estimate_names(const Structure& structure) {
   std::vector<std::string> names = structure.names();
   names.emplace_back("residual_rms_m");

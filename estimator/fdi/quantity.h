@@ -37,9 +37,6 @@ struct QuantityName {
 };
 [[nodiscard]] QuantityName split_quantity(std::string_view quantity) noexcept;
 
-/// "a, b, c".
-[[nodiscard]] std::string joined(const std::vector<std::string>& names);
-
 /// Names of an estimate's values in their order: coefficients, residual_rms_m, condition.
 [[nodiscard]] std::vector<std::string> estimate_names(const Structure& structure);
 

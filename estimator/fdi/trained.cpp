@@ -16,6 +16,7 @@ namespace estimator::fdi {
 namespace {
 
 using config::schema::bad_config;
+using config::schema::joined;
 using config::schema::Visitor;
 
 /// Two sample times are the same within clock accuracy.
