@@ -123,7 +123,7 @@ LoadedLives AlarmStore::load(std::int64_t utc_us) const {
 void AlarmStore::keep(const estimator::fdi::AlarmBook& book, std::int64_t utc_us) {
   if (book.changes() == saved_) return;
   const bool posted = clerk_.post(
-      [file = file_, error = error_, text = print_lives(book.lives(), rig_id_, utc_us)] {
+      [file = file_, error = error_, text = print_lives(book.persisted_alarms(), rig_id_, utc_us)] {
         std::error_code ignored;
         std::filesystem::create_directories(file.parent_path(), ignored);
         *error = write_durably(file, text);

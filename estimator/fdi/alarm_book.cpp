@@ -84,7 +84,7 @@ const Alarm* AlarmBook::settle(std::size_t number, std::int64_t tick, std::strin
                                          : std::int8_t{0};
   if (active == alarm.active && severity == alarm.severity && direction == alarm.direction &&
       latched == alarm.latched) {
-    if (!active && out) alarm.reason.assign(reason);  // for when it comes
+    if (!active && out) alarm.reason.assign(reason);  // published once the alarm is raised
     return nullptr;
   }
   if (active && !alarm.active) come(number, tick);
@@ -94,8 +94,8 @@ const Alarm* AlarmBook::settle(std::size_t number, std::int64_t tick, std::strin
   alarm.direction = direction;
   alarm.tick = tick;
   if (!reason.empty() || !active) alarm.reason.assign(reason);
-  if (alarm.chattering && active) alarm.reason.append("; it chatters: active until it is quiet");
-  // Graver than what was acknowledged is new.
+  if (alarm.chattering && active) alarm.reason.append("; chattering: active until quiet");
+  // A severity above the acknowledged one must be acknowledged again.
   if (active && severity > memory.seen && (rules.acknowledge || rules.latch)) {
     alarm.acknowledged = false;
   }
@@ -172,7 +172,7 @@ const Alarm* AlarmBook::expire(std::size_t number) {
   }
   const bool out = memories_[number].severity != Severity::ok;
   const Alarm* settled =
-      settle(number, tick_, out ? std::string_view(alarm.reason) : "it has been quiet long enough");
+      settle(number, tick_, out ? std::string_view(alarm.reason) : "quiet for long enough");
   return off_the_shelf ? &alarm : settled;
 }
 
@@ -194,10 +194,10 @@ AlarmActionResult AlarmBook::acknowledge(std::size_t number, std::string_view wh
 AlarmActionResult AlarmBook::shelve(std::size_t number, double time_s, std::string_view who) {
   Alarm& alarm = alarms_[number];
   const double most_s = alarm.rules.shelve_limit_s;
-  if (!(most_s > 0.0)) return {nullptr, "it cannot be shelved (shelve_limit_s = 0)"};
+  if (!(most_s > 0.0)) return {nullptr, "shelving is not allowed (shelve_limit_s = 0)"};
   if (!(time_s > 0.0 && time_s <= most_s)) {
-    return {nullptr, "it can be shelved for " + std::to_string(std::llround(most_s)) +
-                         " s at most (shelve_limit_s)"};
+    return {nullptr, "shelving is limited to " + std::to_string(std::llround(most_s)) +
+                         " s (shelve_limit_s)"};
   }
   alarm.shelved = true;
   alarm.shelved_until = tick_ + std::max<std::int64_t>(ticks(time_s), 1);
@@ -211,7 +211,7 @@ AlarmActionResult AlarmBook::shelve(std::size_t number, double time_s, std::stri
 
 AlarmActionResult AlarmBook::unshelve(std::size_t number) {
   Alarm& alarm = alarms_[number];
-  if (!alarm.shelved) return {nullptr, "it is not shelved"};
+  if (!alarm.shelved) return {nullptr, "not shelved"};
   alarm.shelved_until = tick_;
   expire(number);
   return {&alarm};

@@ -60,7 +60,7 @@ MethodOutput BlockMethod::evaluate(std::span<NamedValue> values) noexcept {
   show(values);
   MethodOutput found;
   found.valid = valid_;
-  // Warming up is told as long as an input does so; one that never becomes usable is INVALID.
+  // Warming up lasts as long as an input warms up; an input that never becomes usable is INVALID.
   found.warming_up = warming_up_ && unusable_ != nullptr && unusable_->warming_up();
   found.reason = valid_ ? "" : unusable_ != nullptr ? unusable_->why() : "no block yet";
   return found;
@@ -81,7 +81,6 @@ void BlockMethod::serialize(StateArchive& archive) {
   archive.value(samples_);
   archive.value(valid_);
   archive.value(warming_up_);
-  // Which input was unusable is told with the block, not later.
   serialize_state(archive);
 }
 

@@ -1,9 +1,10 @@
-// A source that works on block means of other values: estimates of overlapping windows are strongly
+// A detection method on block means of other values: estimates of overlapping windows are strongly
 // correlated, means over blocks as long as the window hardly are.
 //
-// A block is block_s of samples (0: every new value of the first input is one). Its mean of each
-// input is over the new, usable values in it; it counts when at least half of the new values were
-// usable. A block that a gap cuts is dropped. Blocks without means leave the test as it is.
+// A block is block_s of samples (0: each new value of the first input is a block). The mean of each
+// input is taken over the new, usable values in the block; the block is valid when at least half of
+// the new values were usable. A block cut by a gap is dropped. Blocks without means do not change
+// the test.
 #pragma once
 
 #include <string>
@@ -32,7 +33,7 @@ class BlockMethod : public DetectionMethod {
   virtual void show(std::span<NamedValue> values) const noexcept = 0;
   virtual void forget() noexcept = 0;
   virtual void serialize_state(StateArchive& archive) = 0;
-  /// Nothing is known before the first block.
+  /// False before the first block.
   [[nodiscard]] bool valid() const noexcept { return valid_; }
 
  private:

@@ -10,7 +10,7 @@ using Eigen::VectorXd;
 
 constexpr double kSameDirection = 0.5;  ///< cosine
 
-/// The classes' places, measured in one covariance.
+/// Distances between the classes, in the metric of one covariance.
 class FaultSizeOrdering {
  public:
   FaultSizeOrdering(const std::vector<TrainedClass>& classes,
@@ -31,9 +31,9 @@ class FaultSizeOrdering {
     for (std::size_t i = 0; i < count; ++i) smaller_size_.push_back(find_smaller_size(i));
   }
 
-  /// Of a class that is not healthy.
+  /// Next smaller size of a faulty class, or healthy.
   [[nodiscard]] std::size_t smaller_size(std::size_t i) const { return smaller_size_[i]; }
-  /// The bend of the curve from before(i) to i.
+  /// Curvature of the trajectory from before(i) to i.
   [[nodiscard]] Curvature curvature_to(std::size_t i) const {
     const std::size_t from = smaller_size_[i];
     const VectorXd none = VectorXd::Zero(distributions_[i].mean.size());
@@ -91,7 +91,7 @@ class FaultSizeOrdering {
   const std::vector<ClassDistribution>& distributions_;
   std::size_t healthy_;
   Eigen::MatrixXd separation_;
-  std::vector<std::size_t> smaller_size_;  ///< of each: the size before it, or healthy
+  std::vector<std::size_t> smaller_size_;  ///< for each class, or healthy
 };
 
 }  // namespace

@@ -1,8 +1,9 @@
-// Which trained classes are sizes of one fault, in which order, and the curves that join them.
+// Experimental, part of [[classifier]]: which trained classes are sizes of one fault, in which
+// order, and the trajectories that join them.
 //
-// Two classes of one name and direction are sizes of one fault when their means are seen from
-// healthy within 60 degrees of each other, in the pooled covariance's measure; the nearer to
-// healthy is the smaller. A size's curve begins at the greatest of the smaller ones, or at healthy.
+// Two classes of one name and direction are sizes of one fault when their means, seen from healthy,
+// are within 60 degrees of each other in the metric of the pooled covariance; the nearer to healthy
+// is the smaller. The trajectory to a size begins at the next smaller size, or at healthy.
 #pragma once
 
 #include <optional>

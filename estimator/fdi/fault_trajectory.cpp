@@ -9,8 +9,8 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr int kPieces = 16;
-constexpr int kSteps = 256;               ///< in which the edge of the healthy region is looked for
-constexpr double kCurvatureError = 0.25;  ///< of the bend: its standard deviation
+constexpr int kSteps = 256;               ///< of the search for the edge of the healthy region
+constexpr double kCurvatureError = 0.25;  ///< standard deviation, as a share of the curvature
 
 std::span<const double> span_of(const VectorXd& x) {
   return {x.data(), static_cast<std::size_t>(x.size())};
@@ -59,7 +59,8 @@ FaultTrajectory::FaultTrajectory(const ClassDistribution& from, const ClassDistr
          std::min(from.blocks, to.blocks)},
         where);
     const double length_t2 = region.statistic(span_of(last));
-    if (i == 0) limit_ = region.limit(rejection);  // all are of as many blocks
+    if (i == 0)
+      limit_ = region.limit(rejection);  // the same for all pieces: equal numbers of blocks
     const VectorXd along = last - first;
     pieces_.push_back({std::move(region), {along.data(), along.data() + along.size()}, length_t2});
   }
@@ -73,7 +74,7 @@ FaultTrajectory::Nearest FaultTrajectory::nearest(std::span<const double> x) noe
       for (std::size_t j = 0; j < moved_.size(); ++j) moved_[j] = x[j] - share * piece.along[j];
       return piece.region.statistic(moved_);
     };
-    // T^2 along the piece is a parabola: known by its ends and its curvature, length_t2.
+    // T^2 along the piece is a parabola, given by its ends and its curvature, length_t2.
     const double share = piece.length_t2 > 0.0
                              ? 0.5 + 0.5 * (statistic_at(0.0) - statistic_at(1.0)) / piece.length_t2
                              : 0.0;

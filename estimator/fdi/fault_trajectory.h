@@ -1,19 +1,19 @@
-// Where block means lie under a fault of any size between two that were taught: a curve from one
-// mean to the other, with a normal law about each of its points.
+// Experimental, part of [[classifier]]: block means under a fault of any size between two trained
+// sizes, as a curve from one mean to the other with a normal distribution about each point.
 //
 //   m(s) = (1 - s) m0 + s m1 - g(s),   g(s) = s (1 - s) ((1 - s) b0 + s b1),   0 <= s <= 1
 //   S(s) = (1 - s) S0 + s S1 + g g' / 16
 //   T^2(x) = min over s of (x - m(s))' S(s)^-1 (x - m(s))
 //
-// m0 S0 m1 S1  mean and covariance at the two sizes; size nought is healthy
-// b0 b1        how the curve bends: h^2 m[0', 0, 1] and h^2 m[0, 1, 1'], second divided differences
-//              that take in the size before and the one after, h the chord's length; each takes the
-//              other's value where there is no such size, and without both the curve is the chord
-// g g'/16      how far the bend may be off: one standard deviation is a quarter of it
+// m0 S0 m1 S1  mean and covariance at the two sizes; size 0 is healthy
+// b0 b1        curvature: h^2 m[0', 0, 1] and h^2 m[0, 1, 1'], second divided differences with the
+//              next smaller and the next larger size, h the chord's length; where there is no such
+//              size, each equals the other; without both the curve is the chord
+// g g'/16      uncertainty of the curvature: one standard deviation is a quarter of it
 //
 // Two parabolas through three points each, blended: A. W. Overhauser, Analytic definition of curves
-// and surfaces by parabolic blending, Ford Motor Company SL 68-40, 1968. The curve is laid in
-// straight pieces, each with one covariance.
+// and surfaces by parabolic blending, Ford Motor Company SL 68-40, 1968. The curve is
+// approximated by straight pieces, each with one covariance.
 #pragma once
 
 #include <Eigen/Dense>
@@ -25,7 +25,7 @@
 
 namespace estimator::fdi {
 
-/// Of the block means at one size.
+/// Distribution of the block means of one class.
 struct ClassDistribution {
   Eigen::VectorXd mean;
   Eigen::MatrixXd covariance;
@@ -35,7 +35,7 @@ struct ClassDistribution {
 [[nodiscard]] HotellingT2 hotelling_t2(const ClassDistribution& distribution,
                                        const std::string& where);
 
-/// Of a curve between two sizes: b0 and b1.
+/// Curvature of a trajectory between two sizes: b0 and b1.
 struct Curvature {
   Eigen::VectorXd from, to;
 };
@@ -50,7 +50,7 @@ class FaultTrajectory {
  public:
   struct Nearest {
     double t2;           ///< T^2
-    double log_density;  ///< there, but for a constant that depends on the number of values alone
+    double log_density;  ///< up to a constant that depends on the number of values alone
     bool inside;         ///< T^2 is within its limit
   };
 
@@ -67,9 +67,9 @@ class FaultTrajectory {
 
  private:
   struct Piece {
-    HotellingT2 region;         ///< about its begin
-    std::vector<double> along;  ///< from its begin to its end
-    double length_t2;           ///< T^2 of its end from its begin
+    HotellingT2 region;         ///< about the begin
+    std::vector<double> along;  ///< from begin to end
+    double length_t2;           ///< T^2 of the end from the begin
   };
   std::vector<Piece> pieces_;
   double limit_ = 0.0;  ///< of T^2

@@ -131,8 +131,7 @@ void TrainedMethodConfig::load(const ConfigLoadContext& context) {
 void TrainedMethodConfig::check(const TrainedMethod& trained, const ConfigLoadContext& context,
                                 const std::string& place) const {
   if (trained.quantities != quantities()) {
-    throw bad_config(place, "was trained on " + joined(trained.quantities),
-                     joined(quantities()));
+    throw bad_config(place, "was trained on " + joined(trained.quantities), joined(quantities()));
   }
   if (trained.block_s != block_s) {
     throw bad_config(place, "was trained on blocks of " + seconds(trained.block_s),

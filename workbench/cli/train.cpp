@@ -83,9 +83,9 @@ void print(const fdi::TrainedMethod& source, const fdi::TrainedMethodConfig& con
     std::string nearest;
     for (const fdi::TrainedClass& other : source.classes) {
       if (&other == &each) continue;
-      fdi::Region region(other.mean, other.covariance, static_cast<double>(other.blocks),
-                         config.where() + ": class " + other.name);
-      const double distance = std::sqrt(region.distance2(each.mean));
+      fdi::HotellingT2 region(other.mean, other.covariance, static_cast<double>(other.blocks),
+                              config.where() + ": class " + other.name);
+      const double distance = std::sqrt(region.statistic(each.mean));
       if (distance >= least) continue;
       least = distance;
       nearest = shown(other);

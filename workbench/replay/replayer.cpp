@@ -182,7 +182,7 @@ class Replayer final : public SampleHandler, private estimator::fdi::Events {
       fresh.name = message.name;
       number = book.declare(std::move(fresh));
     }
-    book.show(number, alarm);
+    book.force_state(number, alarm);
     look_for_the_alarm(message, alarm, same(alarm, message));
   }
 

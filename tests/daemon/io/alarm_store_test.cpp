@@ -109,7 +109,7 @@ TEST_F(AlarmFiles, AreWrittenOnlyWhenALifeHasChanged) {
 TEST_F(AlarmFiles, DamagedOrOfAnotherRigGiveNothingAndSayWhy) {
   AlarmBook alarms = book();
   come(alarms, 0);
-  const std::string good = print_lives(alarms.lives(), "rig", 5);
+  const std::string good = print_lives(alarms.persisted_alarms(), "rig", 5);
   EXPECT_EQ(parse_lives(good, "rig", 5).lives.size(), 1U);
   EXPECT_EQ(parse_lives(good, "another", 5).wrong, "is of another rig: \"rig\"");
   EXPECT_TRUE(parse_lives(good, "another", 5).lives.empty());

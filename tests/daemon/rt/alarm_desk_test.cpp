@@ -57,8 +57,8 @@ TEST_F(AlarmDeskTest, CarriesOutWhatIsOrderedAndTellsWhatHasChanged) {
 TEST_F(AlarmDeskTest, RefusesInWords) {
   book_.set_condition("s", "a", Severity::minor, true, "", 1);
   EXPECT_THAT(order(Kind::acknowledge, "x").refusal, HasSubstr("there is no alarm \"x\""));
-  EXPECT_EQ(order(Kind::unshelve, "a").refusal, "s.a: it is not shelved");
-  EXPECT_THAT(order(Kind::shelve, "a", 1e9).refusal, HasSubstr("s.a: it can be shelved for"));
+  EXPECT_EQ(order(Kind::unshelve, "a").refusal, "s.a: not shelved");
+  EXPECT_THAT(order(Kind::shelve, "a", 1e9).refusal, HasSubstr("s.a: shelving is limited to"));
   EXPECT_THAT(changed_, IsEmpty());
 }
 

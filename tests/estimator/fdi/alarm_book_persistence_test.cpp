@@ -23,7 +23,7 @@ TEST_F(AlarmRestart, SurvivesARestartAsFarAsItMatters) {
   book.acknowledge(0, "ann");
   book.shelve(3, 100.0, "bob");
   pass(41);
-  const std::vector<PersistedAlarm> lives = book.lives();
+  const std::vector<PersistedAlarm> lives = book.persisted_alarms();
   ASSERT_EQ(lives.size(), 4U);
 
   book = AlarmBook(1.0);
