@@ -17,7 +17,7 @@ namespace {
 using config::schema::bad_config;
 
 constexpr double kLikely = 0.05;  ///< a class of this probability belongs to the ambiguity group
-constexpr std::size_t kMostClasses = 64;
+constexpr std::size_t kMaxClasses = 64;
 constexpr int kNone = -1;
 
 using Square = Eigen::Map<const Eigen::MatrixXd>;
@@ -38,7 +38,7 @@ Eigen::MatrixXd pooled_covariance(const std::vector<TrainedClass>& classes) {
   return pooled / weights;
 }
 
-/// Mean and covariance of each class, drawn towards the pooled one.
+/// Mean and covariance of each class, shrunk towards the pooled one.
 std::vector<ClassDistribution> distributions_of(const ClassifierConfig& config,
                                                 const Eigen::MatrixXd& pooled) {
   std::vector<ClassDistribution> distributions;
@@ -91,19 +91,19 @@ class Classifier final : public BlockMethod {
   void forget() noexcept override {
     answer_ = {};
     answer_.found = static_cast<int>(healthy_);
-    told_ = answer_;
+    confirmed_ = answer_;
     in_a_row_ = 0;
     out_ = false;
   }
   void serialize_state(StateArchive& archive) override {
     archive.value(answer_);
-    archive.value(told_);
+    archive.value(confirmed_);
     archive.value(probabilities_);
-    archive.value(told_probabilities_);
+    archive.value(confirmed_probabilities_);
     archive.value(in_a_row_);
     archive.value(out_);
     const int classes = static_cast<int>(regions_.size());
-    for (Answer* each : {&answer_, &told_}) {
+    for (Answer* each : {&answer_, &confirmed_}) {
       if (each->found < classes && each->nearest < classes && each->found >= kNone &&
           each->nearest >= 0) {
         continue;
@@ -116,16 +116,16 @@ class Classifier final : public BlockMethod {
   ClassifierConfig config_;
   std::vector<HotellingT2> regions_;
   std::vector<double> limits_;
-  std::vector<std::optional<FaultTrajectory>> trajectories_;  ///< that lead to each class
+  std::vector<std::optional<FaultTrajectory>> trajectories_;  ///< to each class
   std::size_t healthy_ = 0;
   Answer answer_;
-  Answer told_;  ///< the last that was confirmed
-  std::array<double, kMostClasses> probabilities_{};
-  std::array<double, kMostClasses> told_probabilities_{};
-  std::int64_t in_a_row_ = 0;  ///< blocks of one answer; negative counts towards healthy
+  Answer confirmed_;  ///< the latest confirmed one
+  std::array<double, kMaxClasses> probabilities_{};
+  std::array<double, kMaxClasses> confirmed_probabilities_{};
+  std::int64_t in_a_row_ = 0;  ///< consecutive blocks of one answer
   bool out_ = false;
   mutable FaultName fault_;
-  mutable std::array<std::string_view, kMostClasses> group_;
+  mutable std::array<std::string_view, kMaxClasses> group_;
   mutable char reason_[200] = "";
 };
 
@@ -171,38 +171,38 @@ void Classifier::take(std::span<const double> means) noexcept {
   answer_ = now;
   if (in_a_row_ < config_.confirm) return;
   out_ = now.found != static_cast<int>(healthy_);
-  told_ = now;
-  told_probabilities_ = probabilities_;
+  confirmed_ = now;
+  confirmed_probabilities_ = probabilities_;
 }
 
 AlarmInput Classifier::alarm_input(std::size_t /*number*/) const noexcept {
   AlarmInput input;
-  input.value = told_.t2;
+  input.value = confirmed_.t2;
   if (!out_) {
-    input.reason = "as when all was well";
+    input.reason = "as in healthy operation";
     return input;
   }
   input.severity = config_.naming.level();
   fault_ = {};
-  if (told_.found == kNone) {
-    std::snprintf(reason_, sizeof reason_,
-                  "none of these: nearest is %s, %.3g away, %.3g is its edge",
-                  config_.classes[static_cast<std::size_t>(told_.nearest)].name.c_str(),
-                  std::sqrt(told_.t2), std::sqrt(limits_[static_cast<std::size_t>(told_.nearest)]));
+  if (confirmed_.found == kNone) {
+    std::snprintf(
+        reason_, sizeof reason_, "none of these: nearest is %s, %.3g away, %.3g is its edge",
+        config_.classes[static_cast<std::size_t>(confirmed_.nearest)].name.c_str(),
+        std::sqrt(confirmed_.t2), std::sqrt(limits_[static_cast<std::size_t>(confirmed_.nearest)]));
   } else {
-    const TrainedClass& found = config_.classes[static_cast<std::size_t>(told_.found)];
+    const TrainedClass& found = config_.classes[static_cast<std::size_t>(confirmed_.found)];
     std::size_t likely = 0;
     for (std::size_t i = 0; i < regions_.size(); ++i) {
       const std::string_view name = config_.classes[i].name;
-      if (told_probabilities_[i] < kLikely) continue;
+      if (confirmed_probabilities_[i] < kLikely) continue;
       if (std::find(group_.begin(), group_.begin() + likely, name) == group_.begin() + likely) {
         group_[likely++] = name;
       }
     }
     input.direction = static_cast<std::int8_t>(likely > 1 ? 0 : found.direction);
-    fault_.confidence = 0.0;  // several laws may have one name
+    fault_.confidence = 0.0;  // several classes may have one name
     for (std::size_t i = 0; i < regions_.size(); ++i) {
-      if (config_.classes[i].name == found.name) fault_.confidence += told_probabilities_[i];
+      if (config_.classes[i].name == found.name) fault_.confidence += confirmed_probabilities_[i];
     }
     if (likely > 1) {
       fault_.group = std::span<const std::string_view>(group_.data(), likely);
@@ -235,7 +235,7 @@ void ClassifierConfig::visit(config::schema::Visitor& v) {
 
 std::unique_ptr<DetectionMethod> ClassifierConfig::make(const MethodContext& context) const {
   if (features.empty()) throw bad_config(where() + ": features", "is empty");
-  if (classes.size() < 2 || classes.size() > kMostClasses) {
+  if (classes.size() < 2 || classes.size() > kMaxClasses) {
     throw bad_config(where(), "is not trained on healthy records and on those of a fault",
                      "file, from spoolwatch train with --class");
   }

@@ -11,7 +11,7 @@
 namespace estimator::fdi {
 namespace {
 
-/// Sliding by `stride`; with stride = window it is a batch for each tumbling window.
+/// Slides by `stride`; with stride = window, a batch for each tumbling window.
 class WindowedMethod final : public EstimationMethod {
  public:
   explicit WindowedMethod(const SlidingConfig& config) : window_(config) {}
@@ -25,8 +25,8 @@ class WindowedMethod final : public EstimationMethod {
   SlidingWindow window_;
 };
 
-/// A batch for each tumbling window with its mean or straight line taken out of u and y. The first
-/// rows of a window have no history, since the window before has another trend.
+/// A batch for each tumbling window, with mean or straight line removed from u and y. The first
+/// rows of a window have no history, since the previous window has another trend.
 class DetrendedBatchMethod final : public EstimationMethod {
  public:
   DetrendedBatchMethod(const SlidingConfig& config, bool linear)

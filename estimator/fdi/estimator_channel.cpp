@@ -24,7 +24,7 @@ PreprocessConfig preprocess_config(const EstimatorConfig& config, double sample_
   return out;
 }
 
-/// Errors of the estimator library, which knows no file, with the place.
+/// Adds the place to errors of the estimator library, which knows no file.
 template <class F>
 auto in_table(const EstimatorConfig& config, F&& make) {
   try {

@@ -92,7 +92,7 @@ HotellingT2::HotellingT2(std::span<const double> mean, std::span<const double> c
     throw bad_config(where, "has a value that does not vary");
   }
   s = scale_.cwiseInverse().asDiagonal() * s * scale_.cwiseInverse().asDiagonal();
-  // Values that follow from others would make the region flat: rounding must not count.
+  // Regularisation: values that depend on others would make the covariance singular.
   constexpr double kLeast = 1e-9;
   s.diagonal().array() += kLeast;
   const Eigen::LLT<Eigen::MatrixXd> factor(s);

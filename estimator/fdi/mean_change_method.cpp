@@ -11,7 +11,7 @@ namespace {
 using config::schema::bad_config;
 
 constexpr double kOneSided95 = 1.645;
-/// The alarm goes when the statistic has come down to this share of the threshold.
+/// The alarm returns when the statistic has fallen to this share of the threshold.
 constexpr double kGone = 0.5;
 
 }  // namespace
@@ -94,7 +94,7 @@ AlarmInput MeanChangeMethod::alarm_input(std::size_t /*number*/) const noexcept 
   input.value = config_->mean + shift;
   input.std_error = config_->std_dev / std::sqrt(std::fmax(verdict_.blocks, 1.0));
   if (!out_) {
-    input.reason = "its mean is what it was when all was well";
+    input.reason = "the mean is the healthy one";
     return input;
   }
   input.severity = config_->naming.level();

@@ -25,10 +25,10 @@ MatrixXd matrix(const std::vector<double>& numbers, Index rows, Index columns,
   return Eigen::Map<const RowMajor>(numbers.data(), rows, columns);
 }
 
-/// One observer of the bank at work: fixed memory once made.
-class Running {
+/// One observer of the bank; allocates at construction only.
+class ObserverState {
  public:
-  Running(const UnknownInputObserver& design, std::vector<Index> outputs, std::size_t window)
+  ObserverState(const UnknownInputObserver& design, std::vector<Index> outputs, std::size_t window)
       : design_(design),
         outputs_(std::move(outputs)),
         z_(VectorXd::Zero(design.f.rows())),
@@ -37,7 +37,7 @@ class Running {
         r_(y_.size()),
         squares_(window, 0.0) {}
 
-  void take(const VectorXd& u, const VectorXd& y) noexcept {
+  void update(const VectorXd& u, const VectorXd& y) noexcept {
     for (Index i = 0; i < y_.size(); ++i) y_(i) = y(outputs_[static_cast<std::size_t>(i)]);
     r_.noalias() = design_.l1 * z_;
     r_.noalias() += design_.l2 * y_;
@@ -119,9 +119,9 @@ class Observer final : public DetectionMethod {
     if (std::isinf(config_.limit)) return {};
     return {config_.naming.alarm("sensor_out")};
   }
-  /// The state is not known after a gap.
+  /// The state is unknown after a gap.
   bool on_gap(std::int64_t /*periods*/) noexcept override {
-    start_again();
+    restart();
     return false;
   }
   bool push(const config::signals::Sample& /*sample*/, double /*y_m*/) noexcept override {
@@ -135,10 +135,10 @@ class Observer final : public DetectionMethod {
       y_(i) = (value(y_in_, i) - config_.output_offset[at]) / config_.output_std[at];
     }
     if (missing_) {
-      start_again();
+      restart();
       missing_ = true;
     } else {
-      for (Running& each : bank_) each.take(u_, y_);
+      for (ObserverState& each : bank_) each.update(u_, y_);
       settled_ = std::min(settled_ + 1, 2 * window_);
     }
     return since_ == 0;
@@ -147,7 +147,7 @@ class Observer final : public DetectionMethod {
     MethodOutput found;
     found.warming_up = settled_ < 2 * window_ && !missing_;
     found.valid = !missing_ && !found.warming_up;
-    found.reason = missing_ ? "an input or output is missing" : found.valid ? "" : "it is settling";
+    found.reason = missing_ ? "an input or output is missing" : found.valid ? "" : "settling";
     for (std::size_t i = 0; i < bank_.size(); ++i) {
       rms_[i] = bank_[i].rms();
       values[i].value = found.valid ? rms_[i] : kNaN;
@@ -191,11 +191,11 @@ class Observer final : public DetectionMethod {
     return input;
   }
   void reset() override {
-    start_again();
+    restart();
     since_ = 0;
   }
   void serialize(StateArchive& archive) override {
-    for (Running& each : bank_) each.serialize(archive);
+    for (ObserverState& each : bank_) each.serialize(archive);
     archive.fixed(rms_);
     archive.value(since_);
     archive.value(settled_);
@@ -210,8 +210,8 @@ class Observer final : public DetectionMethod {
     missing_ = missing_ || !input.usable();
     return input.usable() ? input.value() : 0.0;
   }
-  void start_again() noexcept {
-    for (Running& each : bank_) each.reset();
+  void restart() noexcept {
+    for (ObserverState& each : bank_) each.reset();
     settled_ = 0;
     missing_ = false;
   }
@@ -219,7 +219,7 @@ class Observer final : public DetectionMethod {
   ObserverConfig config_;
   std::vector<MethodInput> u_in_, y_in_;
   VectorXd u_, y_;
-  std::vector<Running> bank_;
+  std::vector<ObserverState> bank_;
   std::vector<double> rms_;
   std::int64_t window_ = 1, stride_ = 1;
   double interval_s_ = 0.0;

@@ -15,7 +15,7 @@ namespace estimator::fdi {
 namespace {
 
 constexpr double kLongest_s = 1e6;
-constexpr int kLeastUpdates = 40;  // for each coefficient, before the first is believed
+constexpr int kLeastUpdates = 40;  ///< per coefficient, before the estimates are valid
 
 structures::RecursiveOptions options_of(const PolynomialConfig& config) {
   const std::string where = "[[polynomial]] " + config.id;

@@ -1,10 +1,10 @@
-// [[polynomial]]: ARMAX, output error or Box-Jenkins followed sample by sample, where [[estimator]]
-// knows ARX alone: coefficients free of the noise's colour, by recursive prediction error
+// [[polynomial]]: recursive ARMAX, output-error or Box-Jenkins estimation, where [[estimator]] has
+// ARX alone: coefficients without bias from coloured noise, by recursive prediction error
 // (estimator/structures/recursive_prediction_error.h has the equations and their source).
 //
-// While the command moves too little the coefficients are kept and nothing is forgotten. Output
-// error and Box-Jenkins are for rods that a spring or a leak holds: behind an integrating rod their
-// prediction drifts away; `spoolwatch select` says which structure suits a record.
+// While the command moves too little, the coefficients are kept and nothing is forgotten. Output
+// error and Box-Jenkins suit rods that a spring or a leak holds: with an integrating rod their
+// prediction drifts; `spoolwatch select` recommends a structure for a record.
 #pragma once
 
 #include "estimator/fdi/detection_method_config.h"
@@ -19,7 +19,7 @@ struct PolynomialConfig final : DetectionMethodConfigOf<PolynomialConfig> {
   double offset_m = 0.0;
   double forgetting = 0.998;
   double prior_variance = 1e10;
-  double window_s = 2.0;  ///< over which the checks below hold
+  double window_s = 2.0;  ///< horizon of the checks below
   double stride_s = 0.1;
   double warmup_s = 0.0;
   double min_u_rms_V = 0.05;

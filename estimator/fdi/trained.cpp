@@ -24,7 +24,7 @@ constexpr double kSameSampleTime = 1e-3;
 
 std::string seconds(double s) { return fmt::format("{:.6g} s", s); }
 
-/// `at`: what led here; a source that reads itself in a circle is refused elsewhere.
+/// `at`: chain of methods visited; circular reads are refused elsewhere.
 std::string settings_behind(std::string_view source, const PipelineConfig& pipeline,
                             const std::string& quantity, const std::string& where,
                             std::vector<std::string_view>& at) {
@@ -125,7 +125,7 @@ void TrainedMethodConfig::load(const ConfigLoadContext& context) {
     file.clear();
     return;
   }
-  throw bad_config(name, "knows nothing of " + where(), "train again");
+  throw bad_config(name, "has no entry for " + where(), "train again");
 }
 
 void TrainedMethodConfig::check(const TrainedMethod& trained, const ConfigLoadContext& context,

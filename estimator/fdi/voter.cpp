@@ -41,7 +41,7 @@ class Voter final : public DetectionMethod {
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
       values[i] = inputs_[i].usable() ? inputs_[i].value() : kNaN;
     }
-    const bool changed = vote_.take(std::span(values).first(inputs_.size()));
+    const bool changed = vote_.update(std::span(values).first(inputs_.size()));
     if (++samples_ < stride_ && !changed) return false;
     samples_ = 0;
     return true;
@@ -103,7 +103,7 @@ AlarmInput Voter::alarm_input(std::size_t /*number*/) const noexcept {
     }
     fault_.group = std::span<const std::string_view>(group_.data(), size);
     input.reason =
-        size > 0 ? "two channels disagree, and nobody knows which is right" : "no channel is left";
+        size > 0 ? "two channels disagree; the wrong one is unknown" : "no channel is left";
     return input;
   }
   if (out < 0) {
@@ -113,9 +113,9 @@ AlarmInput Voter::alarm_input(std::size_t /*number*/) const noexcept {
   const auto number = static_cast<std::size_t>(out);
   input.severity = config_.naming.level();
   fault_.parameter = config_.channels[number];
-  std::snprintf(reason_, sizeof reason_, "channel %s is out since %.3g s; the others go on",
+  std::snprintf(reason_, sizeof reason_, "channel %s voted out %.3g s ago; the others continue",
                 config_.channels[number].c_str(),
-                static_cast<double>(vote_.taken() - vote_.channel(number).since) * sample_time_s_);
+                static_cast<double>(vote_.votes() - vote_.channel(number).since) * sample_time_s_);
   input.reason = reason_;
   return input;
 }
@@ -127,7 +127,7 @@ bool Vote::judge(std::size_t i, bool wrong, bool missing) noexcept {
   channel.against = wrong != channel.out ? channel.against + 1 : 0;
   if (channel.against < (channel.out ? rules_.comes_back : rules_.confirm)) return false;
   if (!channel.out) {
-    channel.since = taken_ - channel.against + 1;
+    channel.since = votes_ - channel.against + 1;
     channel.missed = missing;
   }
   channel.out = !channel.out;
@@ -135,10 +135,10 @@ bool Vote::judge(std::size_t i, bool wrong, bool missing) noexcept {
   return true;
 }
 
-bool Vote::take(std::span<const double> values) noexcept {
-  ++taken_;
-  // The channels that take part: in, and there. Where none is in, those that are there tell each
-  // other whether they may come back.
+bool Vote::update(std::span<const double> values) noexcept {
+  ++votes_;
+  // Participating channels: in use and present. Where none is in use, the present ones are compared
+  // with each other for their return.
   bool none_in = true;
   for (std::size_t i = 0; i < count_; ++i) none_in = none_in && channels_[i].out;
   std::array<double, 3> present{};  // in rising order
@@ -162,7 +162,8 @@ bool Vote::take(std::span<const double> values) noexcept {
   if (none_in) spread_ = kNaN;
   bool changed = disagree_ != was;
   for (std::size_t i = 0; i < count_; ++i) {
-    // Of two that differ none is told to be wrong; nothing comes back while nobody knows.
+    // Of two that differ neither is declared wrong; no channel returns while the wrong one is
+    // unknown.
     const bool missing = !std::isfinite(values[i]);
     const bool tells = size > 1 ? !differ : channels_[i].missed;
     const bool compared = none_in ? tells : !disagree_ && (size != 2 || channels_[i].out);
@@ -182,7 +183,7 @@ void VoterConfig::visit(config::schema::Visitor& v) {
            {0.0, 1e12});
   v.number({"confirm_s", "how long before a channel is out"}, confirm_s, {0.0, 3600.0});
   v.number({"return_s", "how long it must agree to come back"}, return_s, {0.0, 86400.0});
-  v.number({"stride_s", "between two findings"}, stride_s, {1e-4, 3600.0});
+  v.number({"stride_s", "between two outputs"}, stride_s, {1e-4, 3600.0});
   naming.visit(v);
 }
 
