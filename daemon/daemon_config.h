@@ -19,7 +19,7 @@
 #include "daemon/io/publisher.h"
 #include "daemon/io/recorder.h"
 #include "daemon/rt/loop.h"
-#include "estimator/fdi/pipeline.h"
+#include "estimator/fdi/pipeline_config.h"
 #include "estimator/fdi/tracker/source_kinds.h"
 #include "hal/rig.h"
 
@@ -39,7 +39,7 @@ struct DaemonConfig {
   control::ReferenceConfig reference;
   control::ControllerConfig controller;
   control::SafetyConfig safety;
-  estimator::fdi::PipelineConfig pipeline{tracker::source_kinds()};
+  estimator::fdi::PipelineConfig pipeline{tracker::detection_method_kinds()};
   io::ControlConfig control;
   io::AlarmConfig alarms;
   io::EvidenceConfig evidence;

@@ -51,7 +51,7 @@ void Reloader::prepare(UnderWay& under_way) {
   change->pipeline = std::move(rules.pipeline);
   change->pipeline_hash = config::schema::hash_of(rules.text);
   change->config_hash = config::schema::hash_text(hash(next));
-  change->estimators = rules.effective.source_ids();
+  change->estimators = rules.effective.method_ids();
   if (parts_.evidence) change->evidence_files = evidence_files(next, rules.text);
   if (!to_detector.push(change)) {
     throw config::schema::RunError("the detector takes no rules");

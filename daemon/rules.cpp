@@ -63,7 +63,7 @@ void check_sensors(const DaemonConfig& config) {
     throw config::schema::bad_config(config.file + ": " + where,
                                      "reads " + quantity + ", which the rig does not have", needed);
   };
-  for (const auto& list : config.pipeline.sources) {
+  for (const auto& list : config.pipeline.methods) {
     for (const auto& item : list.items) {
       for (const std::string& input : item->inputs()) {
         check("[[" + std::string(list.kind.list) + "]] " + item->id, input);

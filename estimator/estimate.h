@@ -15,9 +15,12 @@
 #include <cstdint>
 #include <limits>
 
+#include "config/signals/nan.h"
 #include "estimator/structure.h"
 
 namespace estimator {
+
+using config::signals::kNaN;
 
 /// Why an estimate is not valid.
 enum class Reason : std::uint8_t {
@@ -37,8 +40,8 @@ struct Estimate {
   int size = 0;                                      ///< coefficients in use
   std::array<double, kMaxCoefficients> value{};      ///< a1..an (1), b1..bm (m/V), constant (m)
   std::array<double, kMaxCoefficients> std_error{};  ///< same units; NaN where not determined
-  double condition = std::numeric_limits<double>::quiet_NaN();
-  double residual_rms_m = std::numeric_limits<double>::quiet_NaN();
+  double condition = kNaN;
+  double residual_rms_m = kNaN;
   int samples = 0;  ///< regression rows behind it (effective number under forgetting)
   bool valid = false;
   Reason reason = Reason::too_short;

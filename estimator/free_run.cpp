@@ -4,8 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "config/signals/nan.h"
+
 namespace estimator {
 namespace {
+
+using config::signals::kNaN;
 
 /// psi' theta at sample t, past outputs taken from `y_m`.
 double predict(const Structure& s, const double* theta, const double* u_V, const double* y_m,
@@ -35,7 +39,7 @@ std::vector<double> one_step_errors(const Structure& structure,
                                     std::span<const double> u_V, std::span<const double> y_m) {
   assert(u_V.size() == y_m.size() &&
          coefficients.size() >= static_cast<std::size_t>(structure.size()));
-  std::vector<double> out(y_m.size(), std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> out(y_m.size(), kNaN);
   for (auto t = static_cast<std::size_t>(structure.history()); t < out.size(); ++t) {
     out[t] = y_m[t] - predict(structure, coefficients.data(), u_V.data(), y_m.data(),
                               static_cast<std::ptrdiff_t>(t));
@@ -65,8 +69,7 @@ Fit summarize(std::span<const double> errors_m) {
     out.cost_m2 += error_m * error_m;
     ++out.samples;
   }
-  out.rms_m = out.samples > 0 ? std::sqrt(out.cost_m2 / out.samples)
-                              : std::numeric_limits<double>::quiet_NaN();
+  out.rms_m = out.samples > 0 ? std::sqrt(out.cost_m2 / out.samples) : kNaN;
   return out;
 }
 

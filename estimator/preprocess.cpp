@@ -1,15 +1,15 @@
 #include "estimator/preprocess.h"
 
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "config/schema/error.h"
+#include "config/signals/nan.h"
 
 namespace estimator {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 
 Filter anti_alias(int factor) {
   if (factor < 1) {
@@ -96,8 +96,8 @@ Preprocess::Preprocess(const PreprocessConfig& config)
 }
 
 bool Preprocess::push(double u_V, double y_m) noexcept {
-  double u = kNan;
-  double y = kNan;
+  double u = kNaN;
+  double y = kNaN;
   if (std::isfinite(u_V) && std::isfinite(y_m)) {
     u = alias_u_.push(filter_u_.push(u_V - config_.offset_u_V));
     y = alias_y_.push(filter_y_.push(y_m - config_.offset_y_m));
@@ -108,8 +108,8 @@ bool Preprocess::push(double u_V, double y_m) noexcept {
   const bool keep = phase_ == 0;
   phase_ = phase_ + 1 == config_.decimation ? 0 : phase_ + 1;
   if (!keep) return false;
-  u_V_ = broken_ ? kNan : u;
-  y_m_ = broken_ ? kNan : y;
+  u_V_ = broken_ ? kNaN : u;
+  y_m_ = broken_ ? kNaN : y;
   broken_ = false;
   return true;
 }

@@ -11,8 +11,6 @@
 namespace estimator {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 /// Open while u and y moved within the last one to two windows of samples.
 class Gate {
  public:
@@ -65,7 +63,7 @@ struct Recursive::State {
     theta.fill(0.0);
     for (int i = 0; i < size; ++i) p.d[i] = config.prior_variance;
     next_informed = 0;
-    error_m = kNan;
+    error_m = kNaN;
     cost_m2 = weights = weights_squared = 0.0;
     prior_weight = 1.0 / config.prior_variance;
   }
@@ -152,7 +150,7 @@ struct Recursive::State {
   std::array<double, kMaxCoefficients> theta{};
   int warming = 0;
   int next_informed = 0;
-  double error_m = kNan;
+  double error_m = kNaN;
   double cost_m2 = 0.0;          // sum of w e^2 of the current coefficients + prior's share
   double prior_weight = 0.0;     // that share per theta' theta
   double weights = 0.0;          // sum of w
@@ -213,8 +211,8 @@ Estimate Recursive::estimate() const noexcept {
   const State& s = *state_;
   Estimate out;
   out.size = s.size;
-  out.value.fill(kNan);
-  out.std_error.fill(kNan);
+  out.value.fill(kNaN);
+  out.std_error.fill(kNaN);
   out.samples = static_cast<int>(std::lround(s.weights));
   const auto refuse = [&out](Reason reason) {
     out.valid = false;

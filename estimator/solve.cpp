@@ -7,7 +7,6 @@
 namespace estimator {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxColumns, 1>;
 
 /// Column lengths, 1 in place of 0.
@@ -63,8 +62,8 @@ Estimate solve(const Small& augmented, int rows, const Limits& limits) noexcept 
   const int p = static_cast<int>(augmented.cols()) - 1;
   out.size = p;
   out.samples = rows;
-  out.value.fill(kNan);
-  out.std_error.fill(kNan);
+  out.value.fill(kNaN);
+  out.std_error.fill(kNaN);
   if (rows <= p) return out;
   if (!augmented.allFinite()) {
     out.reason = Reason::not_finite;

@@ -14,7 +14,7 @@
 namespace monitor::io {
 namespace {
 
-using estimator::fdi::SavedLife;
+using estimator::fdi::PersistedAlarm;
 using estimator::fdi::Severity;
 using nlohmann::json;
 using nlohmann::ordered_json;
@@ -23,8 +23,8 @@ constexpr const char* kFormat = "spoolwatch alarms";
 constexpr int kVersion = 1;
 constexpr std::size_t kLargestFile = 16 << 20;
 
-SavedLife life_of(const json& entry, std::int64_t utc_us) {
-  SavedLife life;
+PersistedAlarm life_of(const json& entry, std::int64_t utc_us) {
+  PersistedAlarm life;
   life.source = entry.at("source");
   life.name = entry.at("name");
   life.reason = entry.at("reason");
@@ -55,10 +55,10 @@ void AlarmConfig::visit(config::schema::Visitor& v) {
   rules.visit(v);
 }
 
-std::string print_lives(const std::vector<SavedLife>& lives, const std::string& rig_id,
+std::string print_lives(const std::vector<PersistedAlarm>& lives, const std::string& rig_id,
                         std::int64_t utc_us) {
   ordered_json list = ordered_json::array();
-  for (const SavedLife& life : lives) {
+  for (const PersistedAlarm& life : lives) {
     const auto until_us = utc_us + std::llround(life.shelved_for_s * 1e6);
     list.push_back({{"source", life.source},
                     {"name", life.name},
@@ -123,7 +123,7 @@ LoadedLives AlarmStore::load(std::int64_t utc_us) const {
 void AlarmStore::keep(const estimator::fdi::AlarmBook& book, std::int64_t utc_us) {
   if (book.changes() == saved_) return;
   const bool posted = clerk_.post(
-      [file = file_, error = error_, text = print_lives(book.lives(), rig_id_, utc_us)] {
+      [file = file_, error = error_, text = print_lives(book.persisted_alarms(), rig_id_, utc_us)] {
         std::error_code ignored;
         std::filesystem::create_directories(file.parent_path(), ignored);
         *error = write_durably(file, text);

@@ -25,11 +25,11 @@ struct AlarmConfig {
   void visit(config::schema::Visitor& v);
 };
 
-[[nodiscard]] std::string print_lives(const std::vector<estimator::fdi::SavedLife>& lives,
+[[nodiscard]] std::string print_lives(const std::vector<estimator::fdi::PersistedAlarm>& lives,
                                       const std::string& rig_id, std::int64_t utc_us);
 
 struct LoadedLives {
-  std::vector<estimator::fdi::SavedLife> lives{};
+  std::vector<estimator::fdi::PersistedAlarm> lives{};
   std::string wrong{};  ///< why there are none, in one line; empty: nothing is wrong
 };
 /// Never throws: what is damaged or of another rig gives no lives.

@@ -188,7 +188,7 @@ std::string print_alarms(control::State state, const std::vector<ControlAlarm>& 
   for (const auto& [alarm, shelved_for_s] : alarms) {
     list.push_back({{"source", alarm.source},
                     {"name", alarm.name},
-                    {"life", estimator::fdi::to_string(alarm.life())},
+                    {"life", estimator::fdi::to_string(alarm.state())},
                     {"severity", estimator::fdi::to_string(alarm.severity)},
                     {"active", alarm.active},
                     {"acknowledged", alarm.acknowledged},

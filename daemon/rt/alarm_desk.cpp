@@ -2,8 +2,8 @@
 
 namespace monitor::rt {
 
-using estimator::fdi::ActOutcome;
 using estimator::fdi::Alarm;
+using estimator::fdi::AlarmActionResult;
 using estimator::fdi::AlarmBook;
 
 namespace {
@@ -20,7 +20,7 @@ void act_on_one(const AlarmOrder& order, AlarmBook& book, const Changed& changed
                      "\", or more than one; allowed: SOURCE.NAME as `spoolwatch alarms` lists it";
     return;
   }
-  const ActOutcome outcome =
+  const AlarmActionResult outcome =
       order.kind == AlarmOrder::Kind::acknowledge ? book.acknowledge(number, order.who)
       : order.kind == AlarmOrder::Kind::shelve    ? book.shelve(number, order.time_s, order.who)
                                                   : book.unshelve(number);
@@ -35,7 +35,7 @@ void act_on_one(const AlarmOrder& order, AlarmBook& book, const Changed& changed
 void acknowledge_all(const AlarmOrder& order, AlarmBook& book, const Changed& changed,
                      AlarmAnswer& answer) {
   for (std::size_t i = 0; i < book.alarms().size(); ++i) {
-    const ActOutcome outcome = book.acknowledge(i, order.who);
+    const AlarmActionResult outcome = book.acknowledge(i, order.who);
     if (outcome.changed == nullptr) continue;
     answer.done.push_back(id_of(*outcome.changed));
     changed(*outcome.changed);

@@ -60,7 +60,7 @@ void GuardAlarms::report(GuardBoard& board, std::int64_t tick,
     const std::uint32_t bit = 1U << i;
     if (((now ^ shown_) & bit) == 0) continue;
     const bool active = (now & bit) != 0;
-    estimator::fdi::AlarmState state;
+    estimator::fdi::AlarmInput state;
     state.severity = active ? entries_[i].severity : Severity::ok;
     state.tick = tick;
     state.value = board.value(i);

@@ -30,29 +30,29 @@ const char* to_string(Severity severity) noexcept {
   return "";
 }
 
-const char* to_string(Life life) noexcept {
-  switch (life) {
-    case Life::normal:
+const char* to_string(AlarmState state) noexcept {
+  switch (state) {
+    case AlarmState::normal:
       return "NORMAL";
-    case Life::unacknowledged:
+    case AlarmState::unacknowledged:
       return "UNACKNOWLEDGED";
-    case Life::acknowledged:
+    case AlarmState::acknowledged:
       return "ACKNOWLEDGED";
-    case Life::returned:
+    case AlarmState::returned:
       return "RETURNED";
-    case Life::latched:
+    case AlarmState::latched:
       return "LATCHED";
-    case Life::shelved:
+    case AlarmState::shelved:
       return "SHELVED";
   }
   return "";
 }
 
-Life Alarm::life() const noexcept {
-  if (shelved) return Life::shelved;
-  if (latched) return Life::latched;
-  if (active) return acknowledged ? Life::acknowledged : Life::unacknowledged;
-  return acknowledged ? Life::normal : Life::returned;
+AlarmState Alarm::state() const noexcept {
+  if (shelved) return AlarmState::shelved;
+  if (latched) return AlarmState::latched;
+  if (active) return acknowledged ? AlarmState::acknowledged : AlarmState::unacknowledged;
+  return acknowledged ? AlarmState::normal : AlarmState::returned;
 }
 
 }  // namespace estimator::fdi

@@ -29,24 +29,24 @@ std::size_t AlarmBook::declare(Alarm alarm) {
   return alarms_.size() - 1;
 }
 
-const Alarm* AlarmBook::set(std::size_t number, const AlarmState& state) {
+const Alarm* AlarmBook::set(std::size_t number, const AlarmInput& input) {
   Alarm& alarm = alarms_[number];
   Memory& memory = memories_[number];
-  alarm.value = state.value;
-  alarm.std_error = state.std_error;
+  alarm.value = input.value;
+  alarm.std_error = input.std_error;
   const bool was_out = memory.severity != Severity::ok;
-  const bool is_out = state.severity != Severity::ok;
-  memory.severity = state.severity;
-  memory.direction = state.direction;
+  const bool is_out = input.severity != Severity::ok;
+  memory.severity = input.severity;
+  memory.direction = input.direction;
   if (is_out != was_out) {
-    memory.turned_tick = state.tick;
-    memory.admitted = is_out && memory.comings.add(state.tick, ticks(alarm.rules.count_window_s));
+    memory.turned_tick = input.tick;
+    memory.admitted = is_out && memory.comings.add(input.tick, ticks(alarm.rules.count_window_s));
   }
-  const bool renamed = is_out && state.fault != nullptr && name(alarm, *state.fault);
-  const Alarm* changed = settle(number, state.tick, state.reason);
+  const bool renamed = is_out && input.fault != nullptr && name(alarm, *input.fault);
+  const Alarm* changed = settle(number, input.tick, input.reason);
   if (changed != nullptr || !renamed || !alarm.active) return changed;
-  alarm.tick = state.tick;
-  alarm.reason.assign(state.reason);
+  alarm.tick = input.tick;
+  alarm.reason.assign(input.reason);
   ++changes_;
   return &alarm;
 }
@@ -84,7 +84,7 @@ const Alarm* AlarmBook::settle(std::size_t number, std::int64_t tick, std::strin
                                          : std::int8_t{0};
   if (active == alarm.active && severity == alarm.severity && direction == alarm.direction &&
       latched == alarm.latched) {
-    if (!active && out) alarm.reason.assign(reason);  // for when it comes
+    if (!active && out) alarm.reason.assign(reason);  // published once the alarm is raised
     return nullptr;
   }
   if (active && !alarm.active) come(number, tick);
@@ -94,8 +94,8 @@ const Alarm* AlarmBook::settle(std::size_t number, std::int64_t tick, std::strin
   alarm.direction = direction;
   alarm.tick = tick;
   if (!reason.empty() || !active) alarm.reason.assign(reason);
-  if (alarm.chattering && active) alarm.reason.append("; it chatters: active until it is quiet");
-  // Graver than what was acknowledged is new.
+  if (alarm.chattering && active) alarm.reason.append("; chattering: active until quiet");
+  // A severity above the acknowledged one must be acknowledged again.
   if (active && severity > memory.seen && (rules.acknowledge || rules.latch)) {
     alarm.acknowledged = false;
   }
@@ -138,11 +138,11 @@ const Alarm* AlarmBook::set_condition(std::string_view source, std::string_view 
     alarm.rules = condition_rules_;
     number = declare(std::move(alarm));
   }
-  AlarmState state;
-  state.severity = active ? severity : Severity::ok;
-  state.tick = tick;
-  state.reason = reason;
-  return set(number, state);
+  AlarmInput input;
+  input.severity = active ? severity : Severity::ok;
+  input.tick = tick;
+  input.reason = reason;
+  return set(number, input);
 }
 
 void AlarmBook::pass_to(std::int64_t tick, std::int64_t utc_us) noexcept {
@@ -172,11 +172,11 @@ const Alarm* AlarmBook::expire(std::size_t number) {
   }
   const bool out = memories_[number].severity != Severity::ok;
   const Alarm* settled =
-      settle(number, tick_, out ? std::string_view(alarm.reason) : "it has been quiet long enough");
+      settle(number, tick_, out ? std::string_view(alarm.reason) : "quiet for long enough");
   return off_the_shelf ? &alarm : settled;
 }
 
-ActOutcome AlarmBook::acknowledge(std::size_t number, std::string_view who) {
+AlarmActionResult AlarmBook::acknowledge(std::size_t number, std::string_view who) {
   Alarm& alarm = alarms_[number];
   if (alarm.acknowledged) return {nullptr, "nothing to acknowledge"};
   alarm.acknowledged = true;
@@ -191,13 +191,13 @@ ActOutcome AlarmBook::acknowledge(std::size_t number, std::string_view who) {
   return {&alarm};
 }
 
-ActOutcome AlarmBook::shelve(std::size_t number, double time_s, std::string_view who) {
+AlarmActionResult AlarmBook::shelve(std::size_t number, double time_s, std::string_view who) {
   Alarm& alarm = alarms_[number];
   const double most_s = alarm.rules.shelve_limit_s;
-  if (!(most_s > 0.0)) return {nullptr, "it cannot be shelved (shelve_limit_s = 0)"};
+  if (!(most_s > 0.0)) return {nullptr, "shelving is not allowed (shelve_limit_s = 0)"};
   if (!(time_s > 0.0 && time_s <= most_s)) {
-    return {nullptr, "it can be shelved for " + std::to_string(std::llround(most_s)) +
-                         " s at most (shelve_limit_s)"};
+    return {nullptr, "shelving is limited to " + std::to_string(std::llround(most_s)) +
+                         " s (shelve_limit_s)"};
   }
   alarm.shelved = true;
   alarm.shelved_until = tick_ + std::max<std::int64_t>(ticks(time_s), 1);
@@ -209,9 +209,9 @@ ActOutcome AlarmBook::shelve(std::size_t number, double time_s, std::string_view
   return {&alarm};
 }
 
-ActOutcome AlarmBook::unshelve(std::size_t number) {
+AlarmActionResult AlarmBook::unshelve(std::size_t number) {
   Alarm& alarm = alarms_[number];
-  if (!alarm.shelved) return {nullptr, "it is not shelved"};
+  if (!alarm.shelved) return {nullptr, "not shelved"};
   alarm.shelved_until = tick_;
   expire(number);
   return {&alarm};
@@ -261,7 +261,7 @@ void AlarmBook::reset() noexcept {
     if (alarm.named_at_run_time) {
       alarm.parameter.clear();
       alarm.ambiguity_group.clear();
-      alarm.confidence = std::numeric_limits<double>::quiet_NaN();
+      alarm.confidence = kNaN;
     }
     memory.admitted = memory.timed = memory.resumes_known = false;
     memory.comings.filled = memory.arrivals.filled = 0;

@@ -1,8 +1,8 @@
 // A band on a named quantity, as declared and as learned.
 //
-// The alarm comes when the quantity has been outside [low, high] for on_delay_s, and goes when it
-// has been inside [low + hysteresis, high - hysteresis] for off_delay_s. Units of low, high and
-// hysteresis are the quantity's own.
+// The alarm is raised when the quantity has been outside [low, high] for on_delay_s, and returns
+// when the quantity has been inside [low + hysteresis, high - hysteresis] for off_delay_s. low,
+// high and hysteresis are in the quantity's unit.
 #pragma once
 
 #include <limits>
@@ -24,20 +24,20 @@ struct BandConfig {
   double hysteresis = 0.0;
   double on_delay_s = 0.0;
   double off_delay_s = 0.0;
-  /// How long the quantity may be missing or untrustworthy before the alarm becomes INVALID; until
-  /// then the last state stands.
+  /// How long the quantity may be missing or untrustworthy before the alarm becomes INVALID; the
+  /// last state holds until then.
   double invalid_delay_s = 0.0;
   std::string severity = "major";
   std::string parameter;
   bool falls_with_parameter = false;  ///< the quantity falls when the parameter rises
   std::vector<std::string> ambiguity_group;
   std::string guidance;
-  AlarmRules rules;  ///< how its alarm lives
+  AlarmRules rules;
 
   void visit(config::schema::Visitor& v);
 };
 
-/// The time behaviour of one band: a state machine on (value, time), without a name or a book.
+/// State machine of one band on (value, time); knows no name and no alarm book.
 class BandState {
  public:
   explicit BandState(const BandConfig& config);
@@ -46,12 +46,12 @@ class BandState {
     Severity severity = Severity::ok;
     int direction = 0;  ///< -1 below, +1 above, 0 neither
   };
-  /// A value at time t_s; NaN cannot be trusted.
+  /// Value at time t_s; NaN counts as untrustworthy.
   Result update(double value, double t_s) noexcept;
-  /// A value that cannot be trusted at time t_s.
+  /// Untrustworthy value at time t_s.
   Result update_invalid(double t_s) noexcept;
   void reset() noexcept;
-  /// Goes on where another stood, with limits and delays of its own.
+  /// Takes over the state of another band, with own limits and delays.
   void inherit(const BandState& before) noexcept;
 
  private:
@@ -63,7 +63,7 @@ class BandState {
   Severity alarm_;
   bool invalid_ = false;
   int direction_ = 0;  ///< kept while invalid
-  int pending_ = 0;    ///< direction that the value asks for, if another
+  int pending_ = 0;    ///< direction of the value, if different
   double pending_since_s_ = 0.0;
   bool missing_ = false;
   double missing_since_s_ = 0.0;

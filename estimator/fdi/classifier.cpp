@@ -7,18 +7,17 @@
 #include <optional>
 
 #include "config/schema/error.h"
-#include "estimator/fdi/block_source.h"
-#include "estimator/fdi/region.h"
-#include "estimator/fdi/size_order.h"
+#include "estimator/fdi/block_method.h"
+#include "estimator/fdi/fault_size_ordering.h"
+#include "estimator/fdi/hotelling_t2.h"
 
 namespace estimator::fdi {
 namespace {
 
 using config::schema::bad_config;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLikely = 0.05;  ///< a class of this probability belongs to the ambiguity group
-constexpr std::size_t kMostClasses = 64;
+constexpr std::size_t kMaxClasses = 64;
 constexpr int kNone = -1;
 
 using Square = Eigen::Map<const Eigen::MatrixXd>;
@@ -39,69 +38,72 @@ Eigen::MatrixXd pooled_covariance(const std::vector<TrainedClass>& classes) {
   return pooled / weights;
 }
 
-/// Mean and covariance of each class, drawn towards the pooled one.
-std::vector<SizeLaw> laws_of(const ClassifierConfig& config, const Eigen::MatrixXd& pooled) {
-  std::vector<SizeLaw> laws;
+/// Mean and covariance of each class, shrunk towards the pooled one.
+std::vector<ClassDistribution> distributions_of(const ClassifierConfig& config,
+                                                const Eigen::MatrixXd& pooled) {
+  std::vector<ClassDistribution> distributions;
   for (const TrainedClass& each : config.classes) {
     const Square own = covariance_of(each);
-    laws.push_back({Eigen::Map<const Eigen::VectorXd>(each.mean.data(), own.rows()),
-                    own + config.pooling * (pooled - own), static_cast<double>(each.blocks)});
+    distributions.push_back({Eigen::Map<const Eigen::VectorXd>(each.mean.data(), own.rows()),
+                             own + config.pooling * (pooled - own),
+                             static_cast<double>(each.blocks)});
   }
-  return laws;
+  return distributions;
 }
 
-class Classifier final : public BlockSource {
+class Classifier final : public BlockMethod {
  public:
-  Classifier(const ClassifierConfig& config, const Setting& setting)
-      : BlockSource(config.features, config.block_s, setting, config.where()), config_(config) {
+  Classifier(const ClassifierConfig& config, const MethodContext& context)
+      : BlockMethod(config.features, config.block_s, context, config.where()), config_(config) {
     const Eigen::MatrixXd pooled = pooled_covariance(config.classes);
-    const std::vector<SizeLaw> laws = laws_of(config, pooled);
-    for (std::size_t i = 0; i < laws.size(); ++i) {
+    const std::vector<ClassDistribution> distributions = distributions_of(config, pooled);
+    for (std::size_t i = 0; i < distributions.size(); ++i) {
       const std::string& name = config.classes[i].name;
-      regions_.push_back(region_of(laws[i], config.where() + ": class " + name));
+      regions_.push_back(hotelling_t2(distributions[i], config.where() + ": class " + name));
       limits_.push_back(regions_[i].limit(config.rejection));
-      if (name == Trained::kHealthy) healthy_ = i;
+      if (name == TrainedFile::kHealthy) healthy_ = i;
     }
-    paths_ = join_sizes(config.classes, laws, pooled, healthy_, config.rejection, config.where());
+    trajectories_ = fault_trajectories(config.classes, distributions, pooled, healthy_,
+                                       config.rejection, config.where());
     answer_.found = static_cast<int>(healthy_);
   }
   [[nodiscard]] std::vector<std::string> names() const override {
     return {"class", "probability", "distance2"};
   }
-  [[nodiscard]] std::vector<Alarm> own_alarms() const override {
+  [[nodiscard]] std::vector<Alarm> declared_alarms() const override {
     return {config_.naming.alarm("fault")};
   }
-  [[nodiscard]] AlarmState own_alarm(std::size_t /*number*/) const noexcept override;
+  [[nodiscard]] AlarmInput alarm_input(std::size_t /*number*/) const noexcept override;
 
  private:
   struct Answer {
     int found = kNone;  ///< class
     int nearest = 0;    ///< by distance
     double probability = 0.0;
-    double distance2 = 0.0;  ///< of the nearest
+    double t2 = 0.0;  ///< of the nearest
   };
   void take(std::span<const double> means) noexcept override;
   void show(std::span<NamedValue> values) const noexcept override {
-    values[0].value = valid() ? answer_.found : kNan;
-    values[1].value = valid() && answer_.found != kNone ? answer_.probability : kNan;
-    values[2].value = valid() ? answer_.distance2 : kNan;
+    values[0].value = valid() ? answer_.found : kNaN;
+    values[1].value = valid() && answer_.found != kNone ? answer_.probability : kNaN;
+    values[2].value = valid() ? answer_.t2 : kNaN;
   }
   void forget() noexcept override {
     answer_ = {};
     answer_.found = static_cast<int>(healthy_);
-    told_ = answer_;
+    confirmed_ = answer_;
     in_a_row_ = 0;
     out_ = false;
   }
   void serialize_state(StateArchive& archive) override {
     archive.value(answer_);
-    archive.value(told_);
+    archive.value(confirmed_);
     archive.value(probabilities_);
-    archive.value(told_probabilities_);
+    archive.value(confirmed_probabilities_);
     archive.value(in_a_row_);
     archive.value(out_);
     const int classes = static_cast<int>(regions_.size());
-    for (Answer* each : {&answer_, &told_}) {
+    for (Answer* each : {&answer_, &confirmed_}) {
       if (each->found < classes && each->nearest < classes && each->found >= kNone &&
           each->nearest >= 0) {
         continue;
@@ -112,30 +114,30 @@ class Classifier final : public BlockSource {
   }
 
   ClassifierConfig config_;
-  std::vector<Region> regions_;
+  std::vector<HotellingT2> regions_;
   std::vector<double> limits_;
-  std::vector<std::optional<SizePath>> paths_;  ///< that lead to each class
+  std::vector<std::optional<FaultTrajectory>> trajectories_;  ///< to each class
   std::size_t healthy_ = 0;
   Answer answer_;
-  Answer told_;  ///< the last that was confirmed
-  std::array<double, kMostClasses> probabilities_{};
-  std::array<double, kMostClasses> told_probabilities_{};
-  std::int64_t in_a_row_ = 0;  ///< blocks of one answer; negative counts towards healthy
+  Answer confirmed_;  ///< the latest confirmed one
+  std::array<double, kMaxClasses> probabilities_{};
+  std::array<double, kMaxClasses> confirmed_probabilities_{};
+  std::int64_t in_a_row_ = 0;  ///< consecutive blocks of one answer
   bool out_ = false;
   mutable FaultName fault_;
-  mutable std::array<std::string_view, kMostClasses> group_;
+  mutable std::array<std::string_view, kMaxClasses> group_;
   mutable char reason_[200] = "";
 };
 
 void Classifier::take(std::span<const double> means) noexcept {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   Answer now;
-  now.distance2 = kInfinite;
+  now.t2 = kInfinite;
   double greatest = -kInfinite;
-  const auto weigh = [&](std::size_t i, double distance2, double log_density) {
+  const auto weigh = [&](std::size_t i, double t2, double log_density) {
     probabilities_[i] = log_density;
-    if (distance2 < now.distance2) {
-      now.distance2 = distance2;
+    if (t2 < now.t2) {
+      now.t2 = t2;
       now.nearest = static_cast<int>(i);
     }
     if (log_density <= greatest) return;
@@ -144,18 +146,18 @@ void Classifier::take(std::span<const double> means) noexcept {
   };
   bool any = false;
   for (std::size_t i = 0; i < regions_.size(); ++i) {
-    const double distance2 = regions_[i].distance2(means);
-    any = any || distance2 <= limits_[i];
-    weigh(i, distance2, regions_[i].log_density());
+    const double t2 = regions_[i].statistic(means);
+    any = any || t2 <= limits_[i];
+    weigh(i, t2, regions_[i].log_density());
   }
   if (!any) {
     now.found = kNone;
     greatest = -kInfinite;
     for (std::size_t i = 0; i < regions_.size(); ++i) {
       probabilities_[i] = -kInfinite;
-      if (!paths_[i]) continue;
-      const SizePath::Nearest on_path = paths_[i]->nearest(means);
-      weigh(i, on_path.distance2, on_path.inside ? on_path.log_density : -kInfinite);
+      if (!trajectories_[i]) continue;
+      const FaultTrajectory::Nearest on_trajectory = trajectories_[i]->nearest(means);
+      weigh(i, on_trajectory.t2, on_trajectory.inside ? on_trajectory.log_density : -kInfinite);
     }
   }
   double sum = 0.0;
@@ -169,38 +171,38 @@ void Classifier::take(std::span<const double> means) noexcept {
   answer_ = now;
   if (in_a_row_ < config_.confirm) return;
   out_ = now.found != static_cast<int>(healthy_);
-  told_ = now;
-  told_probabilities_ = probabilities_;
+  confirmed_ = now;
+  confirmed_probabilities_ = probabilities_;
 }
 
-AlarmState Classifier::own_alarm(std::size_t /*number*/) const noexcept {
-  AlarmState state;
-  state.value = told_.distance2;
+AlarmInput Classifier::alarm_input(std::size_t /*number*/) const noexcept {
+  AlarmInput input;
+  input.value = confirmed_.t2;
   if (!out_) {
-    state.reason = "as when all was well";
-    return state;
+    input.reason = "as in healthy operation";
+    return input;
   }
-  state.severity = config_.naming.level();
+  input.severity = config_.naming.level();
   fault_ = {};
-  if (told_.found == kNone) {
+  if (confirmed_.found == kNone) {
     std::snprintf(
         reason_, sizeof reason_, "none of these: nearest is %s, %.3g away, %.3g is its edge",
-        config_.classes[static_cast<std::size_t>(told_.nearest)].name.c_str(),
-        std::sqrt(told_.distance2), std::sqrt(limits_[static_cast<std::size_t>(told_.nearest)]));
+        config_.classes[static_cast<std::size_t>(confirmed_.nearest)].name.c_str(),
+        std::sqrt(confirmed_.t2), std::sqrt(limits_[static_cast<std::size_t>(confirmed_.nearest)]));
   } else {
-    const TrainedClass& found = config_.classes[static_cast<std::size_t>(told_.found)];
+    const TrainedClass& found = config_.classes[static_cast<std::size_t>(confirmed_.found)];
     std::size_t likely = 0;
     for (std::size_t i = 0; i < regions_.size(); ++i) {
       const std::string_view name = config_.classes[i].name;
-      if (told_probabilities_[i] < kLikely) continue;
+      if (confirmed_probabilities_[i] < kLikely) continue;
       if (std::find(group_.begin(), group_.begin() + likely, name) == group_.begin() + likely) {
         group_[likely++] = name;
       }
     }
-    state.direction = static_cast<std::int8_t>(likely > 1 ? 0 : found.direction);
-    fault_.confidence = 0.0;  // several laws may have one name
+    input.direction = static_cast<std::int8_t>(likely > 1 ? 0 : found.direction);
+    fault_.confidence = 0.0;  // several classes may have one name
     for (std::size_t i = 0; i < regions_.size(); ++i) {
-      if (config_.classes[i].name == found.name) fault_.confidence += told_probabilities_[i];
+      if (config_.classes[i].name == found.name) fault_.confidence += confirmed_probabilities_[i];
     }
     if (likely > 1) {
       fault_.group = std::span<const std::string_view>(group_.data(), likely);
@@ -213,9 +215,9 @@ AlarmState Classifier::own_alarm(std::size_t /*number*/) const noexcept {
                                         : "",
                   fault_.confidence);
   }
-  state.fault = &fault_;
-  state.reason = reason_;
-  return state;
+  input.fault = &fault_;
+  input.reason = reason_;
+  return input;
 }
 
 }  // namespace
@@ -231,15 +233,15 @@ void ClassifierConfig::visit(config::schema::Visitor& v) {
   config::schema::visit_list(v, {"class", "trained classes"}, classes);
 }
 
-std::unique_ptr<Source> ClassifierConfig::make(const Setting& setting) const {
+std::unique_ptr<DetectionMethod> ClassifierConfig::make(const MethodContext& context) const {
   if (features.empty()) throw bad_config(where() + ": features", "is empty");
-  if (classes.size() < 2 || classes.size() > kMostClasses) {
+  if (classes.size() < 2 || classes.size() > kMaxClasses) {
     throw bad_config(where(), "is not trained on healthy records and on those of a fault",
                      "file, from spoolwatch train with --class");
   }
   bool healthy = false;
   for (const TrainedClass& each : classes) {
-    healthy = healthy || each.name == Trained::kHealthy;
+    healthy = healthy || each.name == TrainedFile::kHealthy;
     if (each.mean.size() == features.size() &&
         each.covariance.size() == features.size() * features.size()) {
       continue;
@@ -247,7 +249,7 @@ std::unique_ptr<Source> ClassifierConfig::make(const Setting& setting) const {
     throw bad_config(where() + ": class " + each.name, "has not a number for each feature");
   }
   if (!healthy) throw bad_config(where(), "has no class healthy");
-  return std::make_unique<Classifier>(*this, setting);
+  return std::make_unique<Classifier>(*this, context);
 }
 
 }  // namespace estimator::fdi

@@ -1,21 +1,23 @@
-// [[classifier]]: which of several trained faults the values of an estimator look like, or none.
+// [[classifier]], experimental: which of several trained faults the values of an estimator
+// resemble, or none. In the scorecard the fault named is the right one in 38 % of the alarms.
 //
-// Each class, healthy among them, is a normal law of the block means x (region.h); the covariance
-// is the class's own, drawn towards the pooled one by `pooling` (0: quadratic, 1: linear
+// Each class, healthy among them, is a normal distribution of the block means x (hotelling_t2.h);
+// the class's own covariance is shrunk towards the pooled one by `pooling` (0: quadratic, 1: linear
 // discriminant analysis).
 //
 //   P(class | x) = N(x; class) / sum over classes that do not reject x     (equal priors)
 //   a class rejects x when its T^2 exceeds the limit for probability `rejection`
 //   none of these when every class does
 //
-// What is none of these is held against sizes between those taught: classes of one name and
-// direction, whose means lie one behind the other as seen from healthy, are sizes of one fault, and
-// each also takes what lies on the curve that leads to it from the size before, the smallest from
-// where the curve leaves the healthy region (size_path.h). So a curve turns no block that a class
-// takes into another's. Nothing counts beyond the greatest size but its own law.
+// A block that every class rejects is compared with fault sizes between the trained ones: classes
+// of one name and direction, whose means lie one behind the other as seen from healthy, are sizes
+// of one fault. Each also accepts blocks on the trajectory that leads to it from the next smaller
+// size, the smallest from where the trajectory leaves the healthy region (fault_trajectory.h). A
+// block that a class accepts is never reassigned by a trajectory. Beyond the greatest size only its
+// own distribution counts.
 //
-// The alarm comes after `confirm` blocks in a row of one class that is not healthy (or of none),
-// names it, and gives the classes of 5 % or more as ambiguity group when there are several.
+// The alarm is raised after `confirm` consecutive blocks of one faulty class (or of none), names
+// the class, and gives the classes of 5 % or more as ambiguity group when there are several.
 // Source: T. Hastie, R. Tibshirani, J. Friedman, The Elements of Statistical Learning, 4.3; B. D.
 // Ripley, Pattern Recognition and Neural Networks, 1996, 2.1 (doubt and outliers).
 #pragma once
@@ -24,9 +26,9 @@
 
 namespace estimator::fdi {
 
-/// Values: class (its number in the list, between two sizes the greater's, -1: none of these),
-/// probability, distance2 (of the nearest).
-struct ClassifierConfig final : TrainedConfig {
+/// Values: class (number in the list; between two sizes the greater's; -1: none of these),
+/// probability, distance2 (T^2 of the nearest).
+struct ClassifierConfig final : TrainedMethodConfig {
   std::vector<std::string> features;
   double rejection = 1e-4;  ///< share of a class's own blocks that is rejected
   double pooling = 0.1;
@@ -37,10 +39,10 @@ struct ClassifierConfig final : TrainedConfig {
   void visit(config::schema::Visitor& v) override;
   [[nodiscard]] std::vector<std::string> quantities() const override { return features; }
   [[nodiscard]] bool needs_classes() const override { return true; }
-  void adopt(const TrainedSource& trained) override { classes = trained.classes; }
+  void adopt(const TrainedMethod& trained) override { classes = trained.classes; }
   [[nodiscard]] const char* list() const override { return "classifier"; }
-  [[nodiscard]] std::unique_ptr<Source> make(const Setting& setting) const override;
-  [[nodiscard]] std::unique_ptr<SourceConfig> clone() const override {
+  [[nodiscard]] std::unique_ptr<DetectionMethod> make(const MethodContext& context) const override;
+  [[nodiscard]] std::unique_ptr<DetectionMethodConfig> clone() const override {
     return std::make_unique<ClassifierConfig>(*this);
   }
 };

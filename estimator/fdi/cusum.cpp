@@ -8,31 +8,31 @@
 namespace estimator::fdi {
 namespace {
 
-constexpr double kCap = 1.25;  // of the threshold
-/// Of the shift found: once it is told, what is less no longer adds up. So the alarm of a large
-/// change goes soon after it.
-constexpr double kStillThere = 0.25;
+constexpr double kSaturation = 1.25;  ///< of the threshold
+/// Drift after the alarm, as a share of the shift found: smaller residues no longer accumulate, so
+/// that the alarm of a large change returns soon after it.
+constexpr double kResidualShift = 0.25;
 
-class Cusum final : public ChangeSource {
+class Cusum final : public MeanChangeMethod {
  public:
-  Cusum(const CusumConfig& config, const Setting& setting)
-      : ChangeSource(config, setting),
+  Cusum(const CusumConfig& config, const MethodContext& context)
+      : MeanChangeMethod(config, context),
         k_(0.5 * config.shift_sigma),
         h_(cusum_threshold(k_, run_length(), mean_error())) {}
 
  private:
   struct Side {
     double sum = 0.0;    ///< S
-    double total = 0.0;  ///< of z since S was zero
+    double total = 0.0;  ///< sum of z since S was zero
     double blocks = 0.0;
-    bool told = false;
+    bool alarmed = false;
     [[nodiscard]] double mean() const noexcept { return blocks > 0.0 ? total / blocks : 0.0; }
     void add(double z, double k, double threshold) noexcept {
-      const double drift = told ? std::max(k, kStillThere * mean()) : k;
-      sum = std::min(sum + z - drift, kCap * threshold);
+      const double drift = alarmed ? std::max(k, kResidualShift * mean()) : k;
+      sum = std::min(sum + z - drift, kSaturation * threshold);
       total += z;
       blocks += 1.0;
-      told = told || sum >= threshold;
+      alarmed = alarmed || sum >= threshold;
       if (sum <= 0.0) *this = {};
     }
   };
@@ -64,8 +64,8 @@ void CusumConfig::visit(config::schema::Visitor& v) {
   v.number({"shift_sigma", "the shift looked for, in std_dev"}, shift_sigma, {0.01, 20.0});
 }
 
-std::unique_ptr<Source> CusumConfig::make(const Setting& setting) const {
-  return std::make_unique<Cusum>(*this, setting);
+std::unique_ptr<DetectionMethod> CusumConfig::make(const MethodContext& context) const {
+  return std::make_unique<Cusum>(*this, context);
 }
 
 }  // namespace estimator::fdi

@@ -6,10 +6,10 @@
 namespace estimator::fdi {
 namespace {
 
-constexpr std::size_t kLongest = 160;  ///< of what is shown
+constexpr std::size_t kMaxShown = 160;  ///< characters of a setting
 
 /// Split at blanks, those within quotes and brackets excepted.
-std::vector<std::string> words_of(std::string_view line) {
+std::vector<std::string> split_words(std::string_view line) {
   std::vector<std::string> words(1);
   bool quoted = false;
   int depth = 0;
@@ -28,7 +28,7 @@ std::vector<std::string> words_of(std::string_view line) {
 
 /// "[table] key = value" each.
 std::vector<std::string> settings_of(std::string_view line) {
-  const std::vector<std::string> words = words_of(line);
+  const std::vector<std::string> words = split_words(line);
   std::vector<std::string> settings;
   std::string table;
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -46,7 +46,7 @@ std::vector<std::string> settings_of(std::string_view line) {
 
 std::string shown(const std::vector<std::string>& settings, std::size_t i) {
   if (i >= settings.size()) return "none";
-  return settings[i].size() > kLongest ? settings[i].substr(0, kLongest) + "..." : settings[i];
+  return settings[i].size() > kMaxShown ? settings[i].substr(0, kMaxShown) + "..." : settings[i];
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 namespace estimator::fdi {
 
-/// Printed TOML from its first key after schema_version and id on.
+/// Printed TOML without schema_version and id.
 [[nodiscard]] inline std::string one_line(std::string toml) {
   toml.erase(0, toml.find('\n') + 1);  // schema_version
   if (toml.starts_with("id = ")) toml.erase(0, toml.find('\n') + 1);

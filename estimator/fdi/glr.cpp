@@ -8,10 +8,10 @@
 namespace estimator::fdi {
 namespace {
 
-class Glr final : public ChangeSource {
+class Glr final : public MeanChangeMethod {
  public:
-  Glr(const GlrConfig& config, const Setting& setting)
-      : ChangeSource(config, setting),
+  Glr(const GlrConfig& config, const MethodContext& context)
+      : MeanChangeMethod(config, context),
         b_(glr_threshold(run_length(), static_cast<int>(config.window_blocks), mean_error())),
         z_(static_cast<std::size_t>(config.window_blocks)) {}
 
@@ -58,8 +58,8 @@ void GlrConfig::visit(config::schema::Visitor& v) {
   v.integer({"window_blocks", "how far back a change is looked for"}, window_blocks, {1, 10000});
 }
 
-std::unique_ptr<Source> GlrConfig::make(const Setting& setting) const {
-  return std::make_unique<Glr>(*this, setting);
+std::unique_ptr<DetectionMethod> GlrConfig::make(const MethodContext& context) const {
+  return std::make_unique<Glr>(*this, context);
 }
 
 }  // namespace estimator::fdi

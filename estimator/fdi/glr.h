@@ -2,24 +2,23 @@
 //
 //   G = max over n = 1..window_blocks of |z(t) + ... + z(t-n+1)| / sqrt(n),  alarm when G >= b
 //
-// z: standardised block mean (change_source.h). The n that gives the maximum is the estimate of
-// when the change happened, the mean of those n of how large it is. A large change is found within
-// a block, a small one within at most window_blocks. Source: M. Basseville, I. V. Nikiforov,
-// Detection of Abrupt Changes, 1993, 2.4.3; window: T. L. Lai, Journal of the Royal Statistical
-// Society B 57 (1995) 613.
+// z: standardised block mean (mean_change_method.h). The maximising n estimates the time of change,
+// the mean of those n its size. A large change is detected within one block, a small one within at
+// most window_blocks. Source: M. Basseville, I. V. Nikiforov, Detection of Abrupt Changes, 1993,
+// 2.4.3; window: T. L. Lai, Journal of the Royal Statistical Society B 57 (1995) 613.
 #pragma once
 
-#include "estimator/fdi/change_source.h"
+#include "estimator/fdi/mean_change_method.h"
 
 namespace estimator::fdi {
 
-struct GlrConfig final : ChangeConfig {
+struct GlrConfig final : MeanChangeConfig {
   std::int64_t window_blocks = 64;
 
   void visit(config::schema::Visitor& v) override;
   [[nodiscard]] const char* list() const override { return "glr"; }
-  [[nodiscard]] std::unique_ptr<Source> make(const Setting& setting) const override;
-  [[nodiscard]] std::unique_ptr<SourceConfig> clone() const override {
+  [[nodiscard]] std::unique_ptr<DetectionMethod> make(const MethodContext& context) const override;
+  [[nodiscard]] std::unique_ptr<DetectionMethodConfig> clone() const override {
     return std::make_unique<GlrConfig>(*this);
   }
 };

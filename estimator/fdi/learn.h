@@ -3,8 +3,8 @@
 // Estimates from overlapping windows are correlated, and short windows vary with the phase of the
 // motion, so a quantile of all estimates taken as independent would be wrong. The record is cut
 // into blocks of several windows and whole periods of the motion; the extremes of the blocks are
-// close to independent. Estimates over many samples have nearly normal tails, and of a normal x it
-// is x^2 whose block maxima are close to Gumbel's law, so the law is fitted to
+// close to independent. Estimates over many samples have nearly normal tails; for a normal x the
+// block maxima of x^2 are close to a Gumbel distribution, which is therefore fitted to
 // w = (x - c) |x - c|, c the mean:
 //
 //   P(max w <= z) = exp(-exp(-(z - mu)/beta)),   z(T) = mu - beta ln(-ln(1 - L/(2T)))
@@ -12,12 +12,12 @@
 // L: block length, T: mean time between false alarms (each side gets half of the rate), mu and beta
 // from the first two L-moments. The band is the upper 95 % confidence limit of z(T) for the number
 // of blocks, variance beta^2/n (1.113 + 0.457 y + 0.805 y^2) with y the reduced variate, turned
-// back into x. It never comes closer to an observed extreme than one standard error.
+// back into x. The band keeps a distance of one standard error from the observed extremes.
 //
-// Its limits: it cannot know what the healthy record does not show (drift over a day, another
-// motion); a tail heavier than normal gives more false alarms than stated; where the phase of the
-// motion makes the extremes, w is nearly linear in the noise and the bands come out wider than
-// necessary. On-delays are not counted: they lower the rate further.
+// Limits: behaviour that the healthy record does not contain (drift over a day, another motion) is
+// unknown; a tail heavier than normal gives more false alarms than stated; where the phase of the
+// motion determines the extremes, w is nearly linear in the noise and the bands are wider than
+// necessary. On-delays are ignored: they lower the rate further.
 //
 // Sources: J. R. M. Hosking, J. R. Wallis, Regional Frequency Analysis, 1997 (L-moments);
 // H. N. Phien, Journal of Hydrology 90 (1987) 355 (variance).
@@ -31,8 +31,8 @@ namespace estimator::fdi {
 struct LearnConfig {
   double false_alarm_time_s = 86400.0;  ///< T
   double interval_s = 0.0;              ///< between two values
-  double window_s = 0.0;                ///< that each value is estimated over
-  double period_s = 0.0;                ///< of the motion, 0 when it has none
+  double window_s = 0.0;                ///< of each estimate
+  double period_s = 0.0;                ///< of the motion, 0: not periodic
   double least_margin = 0.0;            ///< beyond the observed extremes, unit of the values
 };
 
@@ -44,7 +44,7 @@ struct LearnedLimits {
   std::size_t blocks = 0;
 };
 
-/// `values` in their order in time, one each interval_s; NaN = no trustworthy estimate. Throws
+/// `values` in time order, one per interval_s; NaN = no trustworthy estimate. Throws
 /// schema::DataError when there are fewer than ten blocks.
 [[nodiscard]] LearnedLimits learn_limits(std::span<const double> values, const LearnConfig& config);
 

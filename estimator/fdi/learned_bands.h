@@ -1,4 +1,4 @@
-// Bands learned from a healthy record: the file that `spoolwatch calibrate` writes and that a
+// Bands learned from a healthy record: the file that `spoolwatch calibrate` writes and a
 // configuration names as bands_file.
 #pragma once
 
@@ -19,7 +19,7 @@ struct LearnedBand {
   double high = 0.0;
   double hysteresis = 0.0;
   double centre = 0.0;         ///< mean of the healthy estimates
-  std::int64_t estimates = 0;  ///< how many there were
+  std::int64_t estimates = 0;  ///< number of them
   double block_s = 0.0;        ///< length of the blocks whose extremes were fitted
 
   void visit(config::schema::Visitor& v);

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "config/schema/error.h"
+#include "estimator/fdi/detection_method.h"
 
 namespace estimator::fdi {
 namespace {
@@ -13,8 +14,6 @@ using config::schema::bad_config;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 MatrixXd matrix(const std::vector<double>& numbers, Index rows, Index columns,
                 const std::string& where) {
@@ -26,10 +25,10 @@ MatrixXd matrix(const std::vector<double>& numbers, Index rows, Index columns,
   return Eigen::Map<const RowMajor>(numbers.data(), rows, columns);
 }
 
-/// One observer of the bank at work: fixed memory once made.
-class Running {
+/// One observer of the bank; allocates at construction only.
+class ObserverState {
  public:
-  Running(const UnknownInputObserver& design, std::vector<Index> outputs, std::size_t window)
+  ObserverState(const UnknownInputObserver& design, std::vector<Index> outputs, std::size_t window)
       : design_(design),
         outputs_(std::move(outputs)),
         z_(VectorXd::Zero(design.f.rows())),
@@ -38,7 +37,7 @@ class Running {
         r_(y_.size()),
         squares_(window, 0.0) {}
 
-  void take(const VectorXd& u, const VectorXd& y) noexcept {
+  void update(const VectorXd& u, const VectorXd& y) noexcept {
     for (Index i = 0; i < y_.size(); ++i) y_(i) = y(outputs_[static_cast<std::size_t>(i)]);
     r_.noalias() = design_.l1 * z_;
     r_.noalias() += design_.l2 * y_;
@@ -74,21 +73,21 @@ class Running {
   std::size_t at_ = 0;
 };
 
-class Observer final : public Source {
+class Observer final : public DetectionMethod {
  public:
-  Observer(const ObserverConfig& config, const Setting& setting)
+  Observer(const ObserverConfig& config, const MethodContext& context)
       : config_(config),
         u_(static_cast<Index>(config.u.size())),
         y_(static_cast<Index>(config.y.size())) {
     const std::string where = "[[observer]] " + config.id;
-    for (const std::string& each : config.u) u_in_.push_back(setting.inputs.find(each, where));
-    for (const std::string& each : config.y) y_in_.push_back(setting.inputs.find(each, where));
+    for (const std::string& each : config.u) u_in_.push_back(context.inputs.find(each, where));
+    for (const std::string& each : config.y) y_in_.push_back(context.inputs.find(each, where));
     const auto samples = [&](double time_s) {
-      return std::max<std::int64_t>(1, std::llround(time_s / setting.sample_time_s));
+      return std::max<std::int64_t>(1, std::llround(time_s / context.sample_time_s));
     };
     window_ = samples(config.window_s);
     stride_ = samples(config.stride_s);
-    interval_s_ = static_cast<double>(stride_) * setting.sample_time_s;
+    interval_s_ = static_cast<double>(stride_) * context.sample_time_s;
     LinearModel model = config.model();
     for (Index i = 0; i < model.c.rows(); ++i) {
       model.c.row(i) /= config.output_std[static_cast<std::size_t>(i)];
@@ -116,13 +115,13 @@ class Observer final : public Source {
     for (std::size_t i = 1; i <= bank_.size(); ++i) names.push_back("r" + std::to_string(i));
     return names;
   }
-  [[nodiscard]] std::vector<Alarm> own_alarms() const override {
+  [[nodiscard]] std::vector<Alarm> declared_alarms() const override {
     if (std::isinf(config_.limit)) return {};
     return {config_.naming.alarm("sensor_out")};
   }
-  /// The state is not known after a gap.
-  bool lose(std::int64_t /*periods*/) noexcept override {
-    start_again();
+  /// The state is unknown after a gap.
+  bool on_gap(std::int64_t /*periods*/) noexcept override {
+    restart();
     return false;
   }
   bool push(const config::signals::Sample& /*sample*/, double /*y_m*/) noexcept override {
@@ -136,28 +135,28 @@ class Observer final : public Source {
       y_(i) = (value(y_in_, i) - config_.output_offset[at]) / config_.output_std[at];
     }
     if (missing_) {
-      start_again();
+      restart();
       missing_ = true;
     } else {
-      for (Running& each : bank_) each.take(u_, y_);
+      for (ObserverState& each : bank_) each.update(u_, y_);
       settled_ = std::min(settled_ + 1, 2 * window_);
     }
     return since_ == 0;
   }
-  Finding find(std::span<NamedValue> values) noexcept override {
-    Finding found;
+  MethodOutput evaluate(std::span<NamedValue> values) noexcept override {
+    MethodOutput found;
     found.warming_up = settled_ < 2 * window_ && !missing_;
     found.valid = !missing_ && !found.warming_up;
-    found.reason = missing_ ? "an input or output is missing" : found.valid ? "" : "it is settling";
+    found.reason = missing_ ? "an input or output is missing" : found.valid ? "" : "settling";
     for (std::size_t i = 0; i < bank_.size(); ++i) {
       rms_[i] = bank_[i].rms();
-      values[i].value = found.valid ? rms_[i] : kNan;
+      values[i].value = found.valid ? rms_[i] : kNaN;
     }
     valid_ = found.valid;
     return found;
   }
-  [[nodiscard]] AlarmState own_alarm(std::size_t /*number*/) const noexcept override {
-    AlarmState state;
+  [[nodiscard]] AlarmInput alarm_input(std::size_t /*number*/) const noexcept override {
+    AlarmInput input;
     std::size_t above = 0;
     std::size_t fits = 0;
     for (std::size_t i = 0; i < rms_.size(); ++i) {
@@ -166,37 +165,37 @@ class Observer final : public Source {
       } else {
         fits = i;
       }
-      if (std::isnan(state.value) || rms_[i] > state.value) state.value = rms_[i];
+      if (std::isnan(input.value) || rms_[i] > input.value) input.value = rms_[i];
     }
     fault_ = {};
-    state.fault = &fault_;
+    input.fault = &fault_;
     if (!valid_) {
-      state.severity = Severity::invalid;
-      state.reason = "an input or output is missing";
+      input.severity = Severity::invalid;
+      input.reason = "an input or output is missing";
     } else if (above == rms_.size()) {
-      state.severity = config_.naming.level();
-      state.direction = 1;
-      state.reason = rms_.size() > 1
+      input.severity = config_.naming.level();
+      input.direction = 1;
+      input.reason = rms_.size() > 1
                          ? "no observer fits: the model, or more than one sensor, is wrong"
                          : "the observer does not fit";
     } else if (above > 0 && above + 1 == rms_.size()) {
-      state.severity = config_.naming.level();
-      state.direction = 1;
+      input.severity = config_.naming.level();
+      input.direction = 1;
       fault_.parameter = config_.y[fits];
       std::snprintf(reason_, sizeof reason_, "all fits without %s, and nothing with it",
                     config_.y[fits].c_str());
-      state.reason = reason_;
+      input.reason = reason_;
     } else {
-      state.reason = "the observers fit";
+      input.reason = "the observers fit";
     }
-    return state;
+    return input;
   }
   void reset() override {
-    start_again();
+    restart();
     since_ = 0;
   }
   void serialize(StateArchive& archive) override {
-    for (Running& each : bank_) each.serialize(archive);
+    for (ObserverState& each : bank_) each.serialize(archive);
     archive.fixed(rms_);
     archive.value(since_);
     archive.value(settled_);
@@ -206,21 +205,21 @@ class Observer final : public Source {
   [[nodiscard]] double interval_s() const noexcept override { return interval_s_; }
 
  private:
-  double value(const std::vector<Input>& inputs, Index i) noexcept {
-    const Input& input = inputs[static_cast<std::size_t>(i)];
+  double value(const std::vector<MethodInput>& inputs, Index i) noexcept {
+    const MethodInput& input = inputs[static_cast<std::size_t>(i)];
     missing_ = missing_ || !input.usable();
     return input.usable() ? input.value() : 0.0;
   }
-  void start_again() noexcept {
-    for (Running& each : bank_) each.reset();
+  void restart() noexcept {
+    for (ObserverState& each : bank_) each.reset();
     settled_ = 0;
     missing_ = false;
   }
 
   ObserverConfig config_;
-  std::vector<Input> u_in_, y_in_;
+  std::vector<MethodInput> u_in_, y_in_;
   VectorXd u_, y_;
-  std::vector<Running> bank_;
+  std::vector<ObserverState> bank_;
   std::vector<double> rms_;
   std::int64_t window_ = 1, stride_ = 1;
   double interval_s_ = 0.0;
@@ -274,7 +273,7 @@ LinearModel ObserverConfig::model() const {
   return out;
 }
 
-std::unique_ptr<Source> ObserverConfig::make(const Setting& setting) const {
+std::unique_ptr<DetectionMethod> ObserverConfig::make(const MethodContext& context) const {
   const std::string where = "[[observer]] " + id;
   if (y.empty() || (bank && y.size() < 2)) {
     throw bad_config(where + ": y", "has too few outputs", bank ? "two or more" : "one or more");
@@ -286,7 +285,7 @@ std::unique_ptr<Source> ObserverConfig::make(const Setting& setting) const {
       output_std.size() != y.size()) {
     throw bad_config(where, "offsets and output_std have not a number for each quantity");
   }
-  return std::make_unique<Observer>(whole, setting);
+  return std::make_unique<Observer>(whole, context);
 }
 
 }  // namespace estimator::fdi

@@ -1,86 +1,84 @@
+#include "estimator/fdi/pipeline.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 
 #include "estimator/fdi/pipeline_impl.h"
 
 namespace estimator::fdi {
-namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
 
 double EstimateEvent::value(std::string_view name) const noexcept {
   for (const NamedValue& v : *this) {
     if (v.name == name) return v.value;
   }
-  return kNan;
+  return kNaN;
 }
 
-void Pipeline::Impl::judge(Watch& watch, const Reading& reading, Events& events) {
-  const double t_s = static_cast<double>(reading.tick) * sample_time_s;
+void Pipeline::Impl::monitor_band(BandMonitor& monitor, const MonitoredValue& value,
+                                  Events& events) {
+  const double t_s = static_cast<double>(value.tick) * sample_time_s;
   const BandState::Result result =
-      reading.trusted ? watch.state.update(reading.value, t_s) : watch.state.update_invalid(t_s);
-  AlarmState state;
-  state.severity = result.severity;
-  state.direction = static_cast<std::int8_t>(result.direction);
-  state.tick = reading.tick;
-  state.value = reading.value;
-  state.std_error = reading.std_error;
-  const Alarm& alarm = book.alarm(watch.alarm);
-  char text[Outlet::kReason + 160] = "";
-  if (alarm.severity != state.severity || alarm.direction != state.direction) {
+      value.trusted ? monitor.state.update(value.value, t_s) : monitor.state.update_invalid(t_s);
+  AlarmInput input;
+  input.severity = result.severity;
+  input.direction = static_cast<std::int8_t>(result.direction);
+  input.tick = value.tick;
+  input.value = value.value;
+  input.std_error = value.std_error;
+  const Alarm& alarm = book.alarm(monitor.alarm);
+  char text[OutputPort::kReason + 160] = "";
+  if (alarm.severity != input.severity || alarm.direction != input.direction) {
     int size = 0;
     if (result.severity == Severity::invalid) {
       size = std::snprintf(text, sizeof text, "%s cannot be trusted: %s", alarm.quantity.c_str(),
-                           reading.why);
+                           value.why);
     } else if (result.direction != 0) {
       size = std::snprintf(text, sizeof text, "%s is %.6g, %s %.6g", alarm.quantity.c_str(),
-                           reading.value, result.direction > 0 ? "above" : "below",
+                           value.value, result.direction > 0 ? "above" : "below",
                            result.direction > 0 ? alarm.high : alarm.low);
     } else {
       size = std::snprintf(text, sizeof text, "%s is %.6g, inside its band", alarm.quantity.c_str(),
-                           reading.value);
+                           value.value);
     }
     end_after_a_word(text, size);
   }
-  state.reason = text;
-  if (const Alarm* changed = book.set(watch.alarm, state)) events.on_alarm(*changed);
+  input.reason = text;
+  if (const Alarm* changed = book.set(monitor.alarm, input)) events.on_alarm(*changed);
 }
 
-void Pipeline::Impl::emit(Worker& worker, std::int64_t tick, std::int64_t utc_us, Events& events) {
-  Outlet& outlet = *worker.outlet;
-  outlet.finding = worker.source->find(outlet.values);
-  end_after_a_word(outlet.reason,
-                   std::snprintf(outlet.reason, sizeof outlet.reason, "%s", outlet.finding.reason));
-  outlet.finding.reason = outlet.reason;
-  outlet.fresh = true;
-  const Finding& found = outlet.finding;
-  events.on_estimate({worker.number, worker.id, tick, utc_us, found.valid, found.warming_up,
-                      outlet.reason, found.condition, found.samples, outlet.values.data(),
-                      outlet.values.data() + outlet.values.size()});
+void Pipeline::Impl::evaluate(MethodSlot& slot, std::int64_t tick, std::int64_t utc_us,
+                              Events& events) {
+  OutputPort& port = *slot.port;
+  port.output = slot.method->evaluate(port.values);
+  end_after_a_word(port.reason,
+                   std::snprintf(port.reason, sizeof port.reason, "%s", port.output.reason));
+  port.output.reason = port.reason;
+  port.fresh = true;
+  const MethodOutput& found = port.output;
+  events.on_estimate({slot.number, slot.id, tick, utc_us, found.valid, found.warming_up,
+                      port.reason, found.condition, found.samples, port.values.data(),
+                      port.values.data() + port.values.size()});
   if (found.warming_up) return;
-  for (std::size_t i = 0; i < outlet.values.size(); ++i) {
-    const NamedValue& value = outlet.values[i];
-    for (Watch& watch : worker.watches[i]) {
-      judge(watch, {value.value, value.std_error, found.valid, outlet.reason, tick}, events);
+  for (std::size_t i = 0; i < port.values.size(); ++i) {
+    const NamedValue& value = port.values[i];
+    for (BandMonitor& monitor : slot.monitors[i]) {
+      monitor_band(monitor, {value.value, value.std_error, found.valid, port.reason, tick}, events);
     }
   }
-  for (std::size_t i = 0; i < worker.own_alarms.size(); ++i) {
-    AlarmState state = worker.source->own_alarm(i);
-    state.tick = tick;
-    if (const Alarm* changed = book.set(worker.own_alarms[i], state)) events.on_alarm(*changed);
+  for (std::size_t i = 0; i < slot.declared_alarms.size(); ++i) {
+    AlarmInput input = slot.method->alarm_input(i);
+    input.tick = tick;
+    if (const Alarm* changed = book.set(slot.declared_alarms[i], input)) events.on_alarm(*changed);
   }
 }
 
-void Pipeline::Impl::take(const config::signals::Sample& taken) {
+void Pipeline::Impl::update_sample(const config::signals::Sample& next) {
   for (std::size_t i = 0; i < kSampleQuantities.size(); ++i) {
-    sample.values[i].value = value_of(kSampleQuantities[i].quantity, taken);
+    sample.values[i].value = value_of(kSampleQuantities[i].quantity, next);
   }
   sample.fresh = true;
-  for (Worker& worker : workers) worker.outlet->fresh = false;
+  for (MethodSlot& slot : slots) slot.port->fresh = false;
 }
 
 Pipeline::Pipeline(const PipelineConfig& config, double sample_time_s)
@@ -93,9 +91,9 @@ void Pipeline::process(const config::signals::Sample& sample, Events& events) {
   Impl& impl = *impl_;
   std::int64_t lost = 0;
   if (impl.started && sample.tick <= impl.last_tick) {
-    for (Worker& worker : impl.workers) {
-      worker.source->reset();
-      worker.outlet->reset();
+    for (MethodSlot& slot : impl.slots) {
+      slot.method->reset();
+      slot.port->reset();
     }
   } else if (impl.started) {
     lost = std::max<std::int64_t>(sample.gap, sample.tick - impl.last_tick - 1);
@@ -104,28 +102,76 @@ void Pipeline::process(const config::signals::Sample& sample, Events& events) {
   impl.last_tick = sample.tick;
   impl.book.advance(sample.tick, sample.utc_us,
                     [&events](const Alarm& alarm) { events.on_alarm(alarm); });
-  impl.take(sample);
+  impl.update_sample(sample);
   const double y_m = usable_y_m(sample);
-  for (Worker& worker : impl.workers) {
-    Source& source = *worker.source;
-    if (lost > 0 && source.lose(lost)) impl.emit(worker, sample.tick - 1, sample.utc_us, events);
-    if (source.push(sample, y_m)) impl.emit(worker, sample.tick, sample.utc_us, events);
+  for (MethodSlot& slot : impl.slots) {
+    DetectionMethod& method = *slot.method;
+    if (lost > 0 && method.on_gap(lost)) {
+      impl.evaluate(slot, sample.tick - 1, sample.utc_us, events);
+    }
+    if (method.push(sample, y_m)) impl.evaluate(slot, sample.tick, sample.utc_us, events);
   }
-  for (SampleWatch& watched : impl.sample_watches) {
-    const double value = impl.sample.values[watched.quantity].value;
-    impl.judge(watched.watch, {value, kNan, std::isfinite(value), "no good reading", sample.tick},
-               events);
+  for (SampleBandMonitor& each : impl.sample_monitors) {
+    const double value = impl.sample.values[each.quantity].value;
+    impl.monitor_band(each.monitor,
+                      {value, kNaN, std::isfinite(value), "no good reading", sample.tick}, events);
   }
 }
 
 void Pipeline::reset() {
   impl_->started = false;
-  for (Worker& worker : impl_->workers) {
-    worker.source->reset();
-    worker.outlet->reset();
+  for (MethodSlot& slot : impl_->slots) {
+    slot.method->reset();
+    slot.port->reset();
   }
-  impl_->for_each_watch([](Watch& watch) { watch.state.reset(); });
+  impl_->for_each_monitor([](BandMonitor& monitor) { monitor.state.reset(); });
   impl_->book.reset();
+}
+
+void Pipeline::serialize(StateArchive& archive) {
+  Impl& impl = *impl_;
+  archive.value(impl.started);
+  archive.value(impl.last_tick);
+  for (MethodSlot& slot : impl.slots) {
+    slot.method->serialize(archive);
+    slot.port->serialize(archive);
+    for (std::vector<BandMonitor>& monitors : slot.monitors) {
+      for (BandMonitor& monitor : monitors) archive.value(monitor.state);
+    }
+  }
+  for (SampleBandMonitor& each : impl.sample_monitors) archive.value(each.monitor.state);
+  impl.book.serialize(archive);
+}
+
+std::vector<bool> Pipeline::inherit(Pipeline& before) {
+  Impl& to = *impl_;
+  Impl& from = *before.impl_;
+  to.started = from.started;
+  to.last_tick = from.last_tick;
+  std::vector<bool> continues(to.slots.size(), false);
+  std::vector<std::uint8_t> bytes;
+  for (MethodSlot& slot : to.slots) {
+    MethodSlot* const old = from.slot(slot.id);
+    if (old == nullptr || old->settings != slot.settings) continue;
+    bytes.clear();
+    StateArchive out = StateArchive::saving(bytes);
+    old->method->serialize(out);
+    old->port->serialize(out);
+    StateArchive in = StateArchive::restoring(bytes);
+    slot.method->serialize(in);
+    slot.port->serialize(in);
+    continues[slot.number] = true;
+  }
+  to.for_each_monitor([&](BandMonitor& monitor) {
+    const Alarm& alarm = to.book.alarm(monitor.alarm);
+    from.for_each_monitor([&](const BandMonitor& old) {
+      const Alarm& was = from.book.alarm(old.alarm);
+      if (was.name == alarm.name && was.quantity == alarm.quantity)
+        monitor.state.inherit(old.state);
+    });
+  });
+  to.book.inherit(from.book);
+  return continues;
 }
 
 AlarmBook& Pipeline::alarms() noexcept { return impl_->book; }

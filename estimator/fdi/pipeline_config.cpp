@@ -1,3 +1,5 @@
+#include "estimator/fdi/pipeline_config.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -5,7 +7,7 @@
 #include "config/schema/error.h"
 #include "estimator/fdi/fingerprint.h"
 #include "estimator/fdi/learned_bands.h"
-#include "estimator/fdi/pipeline.h"
+#include "estimator/fdi/quantity.h"
 
 namespace estimator::fdi {
 namespace {
@@ -79,29 +81,30 @@ std::string EstimatorConfig::fingerprint() const {
   return one_line(config::schema::print_toml([&](Visitor& v) { copy.visit(v); }));
 }
 
-PipelineConfig::PipelineConfig(std::span<const SourceKind> more) {
-  for (const SourceKind& kind : source_kinds()) sources.emplace_back(kind);
-  for (const SourceKind& kind : more) sources.emplace_back(kind);
+PipelineConfig::PipelineConfig(std::span<const DetectionMethodKind> more) {
+  for (const DetectionMethodKind& kind : detection_method_kinds()) methods.emplace_back(kind);
+  for (const DetectionMethodKind& kind : more) methods.emplace_back(kind);
 }
 
-void PipelineConfig::add(std::string_view list, std::unique_ptr<SourceConfig> source) {
-  const auto found = std::find_if(sources.begin(), sources.end(),
-                                  [&](const SourceList& each) { return each.kind.list == list; });
-  if (found == sources.end()) throw bad_config(std::string(list), "is no kind of source");
+void PipelineConfig::add(std::string_view list, std::unique_ptr<DetectionMethodConfig> source) {
+  const auto found =
+      std::find_if(methods.begin(), methods.end(),
+                   [&](const DetectionMethodList& each) { return each.kind.list == list; });
+  if (found == methods.end()) throw bad_config(std::string(list), "is no kind of source");
   found->items.push_back(std::move(source));
 }
 
-std::vector<std::string> PipelineConfig::source_ids() const {
+std::vector<std::string> PipelineConfig::method_ids() const {
   std::vector<std::string> ids;
   for (const EstimatorConfig& estimator : estimators) ids.push_back(estimator.id);
-  for (const SourceList& list : sources) {
+  for (const DetectionMethodList& list : methods) {
     for (const auto& item : list.items) ids.push_back(item->id);
   }
   return ids;
 }
 
-const SourceConfig* PipelineConfig::find_source(std::string_view id) const noexcept {
-  for (const SourceList& list : sources) {
+const DetectionMethodConfig* PipelineConfig::find_method(std::string_view id) const noexcept {
+  for (const DetectionMethodList& list : methods) {
     for (const auto& item : list.items) {
       if (item->id == id) return item.get();
     }
@@ -111,7 +114,7 @@ const SourceConfig* PipelineConfig::find_source(std::string_view id) const noexc
 
 std::string PipelineConfig::fingerprint(std::string_view id) const {
   if (const EstimatorConfig* estimator = find(estimators, id)) return estimator->fingerprint();
-  const SourceConfig* source = find_source(id);
+  const DetectionMethodConfig* source = find_method(id);
   return source != nullptr ? source->fingerprint() : "";
 }
 
@@ -119,7 +122,7 @@ bool PipelineConfig::owns(std::string_view key) const {
   if (key == "bands_file" || key.starts_with("[[estimator]]") || key.starts_with("[[band]]")) {
     return true;
   }
-  return std::any_of(sources.begin(), sources.end(), [&](const SourceList& each) {
+  return std::any_of(methods.begin(), methods.end(), [&](const DetectionMethodList& each) {
     const std::string list = std::string("[[") + each.kind.list;
     return key.starts_with(list + "]]") || key.starts_with(list + ".");
   });
@@ -128,7 +131,7 @@ bool PipelineConfig::owns(std::string_view key) const {
 void PipelineConfig::visit(Visitor& v) {
   v.path({"bands_file", "learned bands, relative to this file's folder"}, bands_file, "bands.toml");
   config::schema::visit_list(v, {"estimator", "estimators"}, estimators);
-  for (SourceList& list : sources) list.visit(v);
+  for (DetectionMethodList& list : methods) list.visit(v);
   config::schema::visit_list(v, {"band", "alarm bands"}, bands);
 }
 
@@ -153,7 +156,7 @@ void LearnedBands::visit(Visitor& v) {
 
 void PipelineConfig::load_bands(const std::filesystem::path& folder, double sample_time_s,
                                 const std::string& rig_id) {
-  for (SourceList& list : sources) {
+  for (DetectionMethodList& list : methods) {
     for (const auto& item : list.items) item->load({folder, sample_time_s, rig_id, *this});
   }
   if (bands_file.empty()) return;

@@ -1,4 +1,4 @@
-// What a Pipeline is made of. For its own files only.
+// Internals of Pipeline, for its own files only.
 #pragma once
 
 #include <cstdint>
@@ -7,17 +7,18 @@
 #include <utility>
 #include <vector>
 
+#include "estimator/fdi/detection_method.h"
 #include "estimator/fdi/pipeline.h"
 
 namespace estimator::fdi {
 
-/// One band at work.
-struct Watch {
+/// A band and its alarm.
+struct BandMonitor {
   BandState state;
   std::size_t alarm;  ///< number in the book
 };
 
-struct Reading {
+struct MonitoredValue {
   double value;
   double std_error;
   bool trusted;
@@ -25,53 +26,54 @@ struct Reading {
   std::int64_t tick;
 };
 
-struct Worker {
-  std::size_t number;  ///< in PipelineConfig::source_ids()
+struct MethodSlot {
+  std::size_t number;  ///< in PipelineConfig::method_ids()
   std::string id;
-  std::unique_ptr<Source> source;
-  std::unique_ptr<Outlet> outlet;
-  std::string settings;                     ///< fingerprint, and those of the sources that it reads
-  std::vector<std::string> names;           ///< of its values
-  std::vector<std::vector<Watch>> watches;  ///< for each value
-  std::vector<std::size_t> own_alarms;      ///< their numbers in the book
+  std::unique_ptr<DetectionMethod> method;
+  std::unique_ptr<OutputPort> port;
+  std::string settings;            ///< fingerprint, then those of the methods that this one reads
+  std::vector<std::string> names;  ///< of the values
+  std::vector<std::vector<BandMonitor>> monitors;  ///< for each value
+  std::vector<std::size_t> declared_alarms;        ///< numbers in the book
 };
 
-struct SampleWatch {
+struct SampleBandMonitor {
   std::size_t quantity;  ///< number in kSampleQuantities
-  Watch watch;
+  BandMonitor monitor;
 };
 
-struct Pipeline::Impl final : private Inputs {
-  std::vector<Worker> workers;  ///< in the order of their work: each after those that it reads
-  Outlet sample;                ///< the present sample's own quantities
-  std::vector<SampleWatch> sample_watches;
+struct Pipeline::Impl final : private InputResolver {
+  std::vector<MethodSlot> slots;  ///< in order of evaluation: each after those that it reads
+  OutputPort sample;              ///< the present sample's own quantities
+  std::vector<SampleBandMonitor> sample_monitors;
   AlarmBook book;
   double sample_time_s = 0.0;
   bool started = false;
   std::int64_t last_tick = 0;
 
   Impl(const PipelineConfig& config, double sample_time);
-  void add_sources(const PipelineConfig& config);
-  void add(std::size_t number, const std::string& id, std::unique_ptr<Source> source,
+  void add_methods(const PipelineConfig& config);
+  void add(std::size_t number, const std::string& id, std::unique_ptr<DetectionMethod> method,
            std::string settings);
   void add(const BandConfig& band);
-  void take(const config::signals::Sample& taken);
-  void emit(Worker& worker, std::int64_t tick, std::int64_t utc_us, Events& events);
-  void judge(Watch& watch, const Reading& reading, Events& events);
-  [[nodiscard]] Worker* worker(std::string_view id) noexcept;
-  /// Numbers of a source (workers.size() for the sample) and of its value. Throws schema::Error at
+  void update_sample(const config::signals::Sample& next);
+  void evaluate(MethodSlot& slot, std::int64_t tick, std::int64_t utc_us, Events& events);
+  void monitor_band(BandMonitor& monitor, const MonitoredValue& value, Events& events);
+  [[nodiscard]] MethodSlot* slot(std::string_view id) noexcept;
+  /// Numbers of the slot (slots.size(): the sample) and of the value. Throws schema::Error at
   /// `where` when there is no such value.
-  [[nodiscard]] std::pair<std::size_t, std::size_t> place(const std::string& quantity,
-                                                          const std::string& where) const;
-  [[nodiscard]] Input find(const std::string& quantity, const std::string& where) const override;
+  [[nodiscard]] std::pair<std::size_t, std::size_t> locate(const std::string& quantity,
+                                                           const std::string& where) const;
+  [[nodiscard]] MethodInput find(const std::string& quantity,
+                                 const std::string& where) const override;
   template <class F>
-  void for_each_watch(F&& f) {
-    for (Worker& worker : workers) {
-      for (std::vector<Watch>& watches : worker.watches) {
-        for (Watch& watch : watches) f(watch);
+  void for_each_monitor(F&& f) {
+    for (MethodSlot& slot : slots) {
+      for (std::vector<BandMonitor>& monitors : slot.monitors) {
+        for (BandMonitor& monitor : monitors) f(monitor);
       }
     }
-    for (SampleWatch& watched : sample_watches) f(watched.watch);
+    for (SampleBandMonitor& each : sample_monitors) f(each.monitor);
   }
 };
 

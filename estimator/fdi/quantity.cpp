@@ -1,16 +1,16 @@
 #include "estimator/fdi/quantity.h"
 
-#include <limits>
+#include "config/signals/nan.h"
 
 namespace estimator::fdi {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 
 double trusted(config::signals::Quality quality, double y_m) noexcept {
   return quality == config::signals::Quality::good || quality == config::signals::Quality::uncertain
              ? y_m
-             : kNan;
+             : kNaN;
 }
 
 constexpr std::size_t index_of(SampleQuantity rod) noexcept {
@@ -33,7 +33,7 @@ std::vector<std::string> estimate_names(const Structure& structure) {
 }
 
 double usable_y_m(const config::signals::Sample& sample) noexcept {
-  return sample.rod_changed ? kNan : trusted(sample.quality, sample.y_m);
+  return sample.rod_changed ? kNaN : trusted(sample.quality, sample.y_m);
 }
 
 std::size_t rod_of(std::string_view quantity) noexcept {
@@ -64,14 +64,14 @@ double value_of(SampleQuantity quantity, const config::signals::Sample& sample) 
     case SampleQuantity::pressure_out:
       return sample.pressures.out_Pa;
     case SampleQuantity::rod_in_charge:
-      return sample.rod_count > 0 ? sample.rod_in_charge + 1.0 : kNan;
+      return sample.rod_count > 0 ? sample.rod_in_charge + 1.0 : kNaN;
     default:
       break;
   }
   const std::size_t rod = index_of(quantity);
   return rod < sample.rod_count && rod < config::signals::kMaxRods
              ? trusted(sample.rod_quality[rod], sample.rod_m[rod])
-             : kNan;
+             : kNaN;
 }
 
 }  // namespace estimator::fdi

@@ -1,13 +1,12 @@
-// Named quantities that a band can watch.
+// Named quantities that a band can monitor.
 //
 //   ESTIMATOR.a1 .b1 .constant .residual_rms_m .condition    of the estimator with that id
-//   SOURCE.name                                              of any other source (source.h)
-//   sample.y_m .u_V .reference_m .following_error_m          of every sample; the following error
-//                                                            is reference minus position
-//   sample.supply_pressure_Pa .pressure_in_Pa .pressure_out_Pa    NaN where the rig does not read
-//   it sample.rod_1_m .rod_2_m ... .rod_5_m .rod_in_charge      of a rig with several rod sensors,
-//   the
-//                                                            configured one first; NaN elsewhere
+//   METHOD.name                     any other detection method (detection_method.h)
+//   sample.y_m .u_V .reference_m    every sample
+//   sample.following_error_m        reference minus position
+//   sample.supply_pressure_Pa .pressure_in_Pa .pressure_out_Pa    NaN where the rig has no sensor
+//   sample.rod_1_m ... .rod_5_m .rod_in_charge    rigs with several position sensors, the
+//                                   configured one first; NaN elsewhere
 #pragma once
 
 #include <array>
@@ -22,7 +21,16 @@ namespace estimator::fdi {
 
 inline constexpr std::string_view kSampleSource = "sample";
 
-/// "period.b1" taken apart at its last dot.
+/// One number of a method, with its uncertainty and limits.
+struct NamedValue {
+  std::string_view name;  ///< a1, b1, constant, residual_rms_m, ...
+  double value;
+  double std_error;  ///< NaN where unknown
+  double low;        ///< band, NaN where none is set
+  double high;
+};
+
+/// "period.b1", split at the last dot.
 struct QuantityName {
   std::string_view source;
   std::string_view name;
@@ -65,15 +73,15 @@ inline constexpr std::array<NamedSampleQuantity, 13> kSampleQuantities = {
      {SampleQuantity::rod_3, "rod_3_m"},
      {SampleQuantity::rod_4, "rod_4_m"},
      {SampleQuantity::rod_5, "rod_5_m"}}};
-/// NaN when it is missing, or its quality stale or bad.
+/// NaN when missing, or of stale or bad quality.
 [[nodiscard]] double value_of(SampleQuantity quantity,
                               const config::signals::Sample& sample) noexcept;
 
-/// Number of the rod sensor, from 1, that "sample.rod_2_m" reads; 0: it reads none.
+/// Number of the position sensor, from 1, that "sample.rod_2_m" names; 0: another quantity.
 [[nodiscard]] std::size_t rod_of(std::string_view quantity) noexcept;
 
-/// Position that an estimator may use: good or uncertain, and of the same sensor as the one before;
-/// NaN otherwise.
+/// Position that an estimator may use: good or uncertain, and from the same sensor as the sample
+/// before; NaN otherwise.
 [[nodiscard]] double usable_y_m(const config::signals::Sample& sample) noexcept;
 
 }  // namespace estimator::fdi

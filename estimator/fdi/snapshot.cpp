@@ -51,7 +51,7 @@ std::int64_t load_snapshot(std::span<const std::uint8_t> bytes, std::uint64_t co
   const auto state = bytes.subspan(std::min(bytes.size(), sizeof head));
   if (std::memcmp(head.magic, kMagic, sizeof kMagic) != 0 || head.size != state.size() ||
       head.state != hash_of(state)) {
-    throw config::schema::bad_data(where, "is no state of the fault detection, or damaged");
+    throw config::schema::bad_data(where, "is not a state of the fault detection, or is damaged");
   }
   if (head.config != config) {
     throw config::schema::bad_data(where, "is the state of another configuration");

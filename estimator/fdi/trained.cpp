@@ -9,12 +9,14 @@
 #include "config/schema/error.h"
 #include "config/schema/joined.h"
 #include "estimator/fdi/fingerprint.h"
-#include "estimator/fdi/pipeline.h"
+#include "estimator/fdi/pipeline_config.h"
+#include "estimator/fdi/quantity.h"
 
 namespace estimator::fdi {
 namespace {
 
 using config::schema::bad_config;
+using config::schema::joined;
 using config::schema::Visitor;
 
 /// Two sample times are the same within clock accuracy.
@@ -22,14 +24,14 @@ constexpr double kSameSampleTime = 1e-3;
 
 std::string seconds(double s) { return fmt::format("{:.6g} s", s); }
 
-/// `at`: what led here; a source that reads itself in a circle is refused elsewhere.
+/// `at`: chain of methods visited; circular reads are refused elsewhere.
 std::string settings_behind(std::string_view source, const PipelineConfig& pipeline,
                             const std::string& quantity, const std::string& where,
                             std::vector<std::string_view>& at) {
   std::string settings = pipeline.fingerprint(source);
-  const SourceConfig* const config = pipeline.find_source(source);
+  const DetectionMethodConfig* const config = pipeline.find_method(source);
   if (config == nullptr || std::find(at.begin(), at.end(), source) != at.end()) return settings;
-  if (dynamic_cast<const TrainedConfig*>(config) != nullptr) {
+  if (dynamic_cast<const TrainedMethodConfig*>(config) != nullptr) {
     throw bad_config(where, "cannot be trained on " + quantity + ", which is trained itself",
                      "values of estimators and of the sample");
   }
@@ -54,7 +56,7 @@ void TrainedClass::visit(Visitor& v) {
   v.numbers({"long_run", "standard deviations with their autocorrelation in them", true}, long_run);
 }
 
-void TrainedSource::visit(Visitor& v) {
+void TrainedMethod::visit(Visitor& v) {
   v.text({"id", "the source that it is for", true}, id);
   v.texts({"quantities", "what it was trained on"}, quantities);
   v.texts({"settings", "of the source of each"}, settings);
@@ -62,53 +64,54 @@ void TrainedSource::visit(Visitor& v) {
   config::schema::visit_list(v, {"class", "kinds of records"}, classes);
 }
 
-const TrainedClass* TrainedSource::healthy() const noexcept {
+const TrainedClass* TrainedMethod::healthy() const noexcept {
   for (const TrainedClass& each : classes) {
-    if (each.name == Trained::kHealthy) return &each;
+    if (each.name == TrainedFile::kHealthy) return &each;
   }
   return nullptr;
 }
 
-void Trained::visit(Visitor& v) {
+void TrainedFile::visit(Visitor& v) {
   v.integer({"trained_version", "layout of this file", true}, version, {kVersion, kVersion});
   v.text({"units", "of position, command and time", true}, units);
   v.text({"rig_id", "of the rig", true}, rig_id);
   v.number({"sample_time_s", "of the records", true}, sample_time_s, {1e-6, 1e3});
   v.texts({"records", "that it was learned from"}, records);
-  config::schema::visit_list(v, {"trained", "for each source"}, sources);
+  config::schema::visit_list(v, {"trained", "for each source"}, methods);
 }
 
-void TrainedConfig::visit_trained(Visitor& v) {
+void TrainedMethodConfig::visit_trained(Visitor& v) {
   v.text({"id", "names its values: ID.name", true}, id);
   v.number({"block_s", "values are averaged over so long; 0: each by itself"}, block_s, {0.0, 1e6});
   v.text({"file", "of spoolwatch train, relative to this file's folder"}, file);
 }
 
-void TrainedConfig::load(const Loading& loading) {
+void TrainedMethodConfig::load(const ConfigLoadContext& context) {
   if (file.empty()) return;
-  const std::string name = (loading.folder / file).string();
-  Trained trained;
+  const std::string name = (context.folder / file).string();
+  TrainedFile trained;
   config::schema::Document::load(name).read([&](Visitor& v) { trained.visit(v); });
-  if (trained.units != Trained::kUnits) {
-    throw bad_config(name + ": units", "was trained in '" + trained.units + "'", Trained::kUnits);
+  if (trained.units != TrainedFile::kUnits) {
+    throw bad_config(name + ": units", "was trained in '" + trained.units + "'",
+                     TrainedFile::kUnits);
   }
-  if (!loading.rig_id.empty() && loading.rig_id != trained.rig_id) {
+  if (!context.rig_id.empty() && context.rig_id != trained.rig_id) {
     throw bad_config(
         name + ": rig_id",
-        "was trained on rig '" + trained.rig_id + "', this is '" + loading.rig_id + "'",
+        "was trained on rig '" + trained.rig_id + "', this is '" + context.rig_id + "'",
         "a file trained on this rig");
   }
-  if (std::abs(trained.sample_time_s - loading.sample_time_s) >
-      kSameSampleTime * loading.sample_time_s) {
+  if (std::abs(trained.sample_time_s - context.sample_time_s) >
+      kSameSampleTime * context.sample_time_s) {
     throw bad_config(name + ": sample_time_s",
                      "was trained at " + seconds(trained.sample_time_s) +
-                         ", the samples come every " + seconds(loading.sample_time_s),
+                         ", the samples come every " + seconds(context.sample_time_s),
                      "a file trained at the same sample time");
   }
-  for (const TrainedSource& source : trained.sources) {
+  for (const TrainedMethod& source : trained.methods) {
     if (source.id != id) continue;
     const std::string place = name + ": [[trained]] " + id;
-    check(source, loading, place);
+    check(source, context, place);
     const std::size_t size = quantities().size();
     for (const TrainedClass& each : source.classes) {
       if (each.mean.size() == size && each.long_run.size() == size &&
@@ -122,20 +125,19 @@ void TrainedConfig::load(const Loading& loading) {
     file.clear();
     return;
   }
-  throw bad_config(name, "knows nothing of " + where(), "train again");
+  throw bad_config(name, "has no entry for " + where(), "train again");
 }
 
-void TrainedConfig::check(const TrainedSource& trained, const Loading& loading,
-                          const std::string& place) const {
+void TrainedMethodConfig::check(const TrainedMethod& trained, const ConfigLoadContext& context,
+                                const std::string& place) const {
   if (trained.quantities != quantities()) {
-    throw bad_config(place, "was trained on " + config::schema::joined(trained.quantities),
-                     config::schema::joined(quantities()));
+    throw bad_config(place, "was trained on " + joined(trained.quantities), joined(quantities()));
   }
   if (trained.block_s != block_s) {
     throw bad_config(place, "was trained on blocks of " + seconds(trained.block_s),
                      "block_s of " + where() + ", " + seconds(block_s));
   }
-  const std::vector<std::string> settings = settings_of(quantities(), loading.pipeline, where());
+  const std::vector<std::string> settings = settings_of(quantities(), context.pipeline, where());
   for (std::size_t i = 0; i < settings.size(); ++i) {
     const std::string found = i < trained.settings.size() ? trained.settings[i] : "";
     if (found == settings[i]) continue;

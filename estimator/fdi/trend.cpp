@@ -5,52 +5,51 @@
 #include <cstdio>
 
 #include "config/schema/error.h"
-#include "estimator/fdi/block_source.h"
+#include "estimator/fdi/block_method.h"
 
 namespace estimator::fdi {
 namespace {
 
 using config::schema::bad_config;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNotByChance = 3.5;
 constexpr double kGone = 2.0;
 
-class Trend final : public BlockSource {
+class Trend final : public BlockMethod {
  public:
-  Trend(const TrendConfig& config, const Setting& setting)
-      : BlockSource({config.quantity}, config.block_s, setting, config.where()),
+  Trend(const TrendConfig& config, const MethodContext& context)
+      : BlockMethod({config.quantity}, config.block_s, context, config.where()),
         config_(config),
         trend_(make()) {}
   [[nodiscard]] std::vector<std::string> names() const override {
     return {"level", "slope_per_s", "time_to_limit_s"};
   }
-  [[nodiscard]] std::vector<Alarm> own_alarms() const override {
+  [[nodiscard]] std::vector<Alarm> declared_alarms() const override {
     Alarm alarm = config_.naming.alarm("drifting");
     alarm.parameter = config_.parameter;
     alarm.falls_with_parameter = config_.falls_with_parameter;
-    alarm.low = std::isinf(config_.low) ? kNan : config_.low;
-    alarm.high = std::isinf(config_.high) ? kNan : config_.high;
+    alarm.low = std::isinf(config_.low) ? kNaN : config_.low;
+    alarm.high = std::isinf(config_.high) ? kNaN : config_.high;
     return {alarm};
   }
-  [[nodiscard]] AlarmState own_alarm(std::size_t /*number*/) const noexcept override {
-    AlarmState state;
-    state.value = trend_.level();
-    state.std_error = trend_.level_error();
+  [[nodiscard]] AlarmInput alarm_input(std::size_t /*number*/) const noexcept override {
+    AlarmInput input;
+    input.value = trend_.level();
+    input.std_error = trend_.level_error();
     if (!out_) {
-      state.reason = "no drift that reaches a limit soon";
-      return state;
+      input.reason = "no drift that reaches a limit soon";
+      return input;
     }
-    state.severity = config_.naming.level();
-    state.direction = trend_.slope() > 0.0 ? std::int8_t{1} : std::int8_t{-1};
+    input.severity = config_.naming.level();
+    input.direction = trend_.slope() > 0.0 ? std::int8_t{1} : std::int8_t{-1};
     std::snprintf(reason_, sizeof reason_,
                   "%s drifts by %+.3g (+-%.1g) an hour from %.6g and reaches %.6g in %.3g h",
                   config_.quantity.c_str(), 3600.0 * trend_.slope(), 3600.0 * trend_.slope_error(),
                   trend_.level(), trend_.slope() > 0.0 ? config_.high : config_.low,
                   time_to_limit_s() / 3600.0);
-    state.reason = reason_;
-    return state;
+    input.reason = reason_;
+    return input;
   }
 
  private:
@@ -71,11 +70,11 @@ class Trend final : public BlockSource {
   }
   void show(std::span<NamedValue> values) const noexcept override {
     const bool known = valid() && trend_.seen() > 1;
-    values[0].value = valid() ? trend_.level() : kNan;
-    values[0].std_error = valid() ? trend_.level_error() : kNan;
-    values[1].value = known ? trend_.slope() : kNan;
-    values[1].std_error = known ? trend_.slope_error() : kNan;
-    values[2].value = known ? time_to_limit_s() : kNan;
+    values[0].value = valid() ? trend_.level() : kNaN;
+    values[0].std_error = valid() ? trend_.level_error() : kNaN;
+    values[1].value = known ? trend_.slope() : kNaN;
+    values[1].std_error = known ? trend_.slope_error() : kNaN;
+    values[2].value = known ? time_to_limit_s() : kNaN;
   }
   void forget() noexcept override {
     trend_ = make();
@@ -156,12 +155,12 @@ void TrendConfig::visit(config::schema::Visitor& v) {
   naming.visit(v);
 }
 
-std::unique_ptr<Source> TrendConfig::make(const Setting& setting) const {
+std::unique_ptr<DetectionMethod> TrendConfig::make(const MethodContext& context) const {
   if (!(std_dev > 0.0)) {
     throw bad_config(where(), "is not trained", "std_dev, or file, from spoolwatch train");
   }
   if (!(block_s > 0.0)) throw bad_config(where() + ": block_s", "is not given", "a length");
-  return std::make_unique<Trend>(*this, setting);
+  return std::make_unique<Trend>(*this, context);
 }
 
 }  // namespace estimator::fdi

@@ -5,50 +5,49 @@
 #include <cstdio>
 
 #include "config/schema/error.h"
+#include "estimator/fdi/detection_method.h"
 
 namespace estimator::fdi {
 namespace {
 
 using config::schema::bad_config;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-class Voter final : public Source {
+class Voter final : public DetectionMethod {
  public:
-  Voter(const VoterConfig& config, const Setting& setting)
+  Voter(const VoterConfig& config, const MethodContext& context)
       : config_(config),
-        sample_time_s_(setting.sample_time_s),
+        sample_time_s_(context.sample_time_s),
         stride_(std::max<std::int64_t>(1, std::llround(config.stride_s / sample_time_s_))),
         vote_(config.channels.size(),
               {config.tolerance,
                std::max<std::int64_t>(1, std::llround(config.confirm_s / sample_time_s_)),
                std::max<std::int64_t>(1, std::llround(config.return_s / sample_time_s_))}) {
     for (const std::string& channel : config.channels) {
-      inputs_.push_back(setting.inputs.find(channel, "[[voter]] " + config.id));
+      inputs_.push_back(context.inputs.find(channel, "[[voter]] " + config.id));
     }
   }
   [[nodiscard]] std::vector<std::string> names() const override {
     return {"value", "spread", "out"};
   }
-  [[nodiscard]] std::vector<Alarm> own_alarms() const override {
+  [[nodiscard]] std::vector<Alarm> declared_alarms() const override {
     return {config_.naming.alarm("channel_out")};
   }
-  bool lose(std::int64_t periods) noexcept override {
+  bool on_gap(std::int64_t periods) noexcept override {
     samples_ += periods;
     return false;
   }
   bool push(const config::signals::Sample& /*sample*/, double /*y_m*/) noexcept override {
     std::array<double, 3> values{};
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
-      values[i] = inputs_[i].usable() ? inputs_[i].value() : kNan;
+      values[i] = inputs_[i].usable() ? inputs_[i].value() : kNaN;
     }
-    const bool changed = vote_.take(std::span(values).first(inputs_.size()));
+    const bool changed = vote_.update(std::span(values).first(inputs_.size()));
     if (++samples_ < stride_ && !changed) return false;
     samples_ = 0;
     return true;
   }
-  Finding find(std::span<NamedValue> values) noexcept override {
-    Finding found;
+  MethodOutput evaluate(std::span<NamedValue> values) noexcept override {
+    MethodOutput found;
     found.valid = !std::isnan(vote_.value());
     found.reason = found.valid ? "" : "the channels disagree or are missing";
     values[0].value = vote_.value();
@@ -56,7 +55,7 @@ class Voter final : public Source {
     values[2].value = vote_.disagree() ? -1.0 : static_cast<double>(first_out() + 1);
     return found;
   }
-  [[nodiscard]] AlarmState own_alarm(std::size_t /*number*/) const noexcept override;
+  [[nodiscard]] AlarmInput alarm_input(std::size_t /*number*/) const noexcept override;
   void reset() override {
     vote_.reset();
     samples_ = 0;
@@ -83,42 +82,42 @@ class Voter final : public Source {
   double sample_time_s_;
   std::int64_t stride_;
   Vote vote_;
-  std::vector<Input> inputs_;
+  std::vector<MethodInput> inputs_;
   std::int64_t samples_ = 0;
   mutable FaultName fault_;
   mutable std::array<std::string_view, 3> group_;
   mutable char reason_[200] = "";
 };
 
-AlarmState Voter::own_alarm(std::size_t /*number*/) const noexcept {
-  AlarmState state;
-  state.value = vote_.spread();
+AlarmInput Voter::alarm_input(std::size_t /*number*/) const noexcept {
+  AlarmInput input;
+  input.value = vote_.spread();
   const int out = first_out();
   fault_ = {};
-  state.fault = &fault_;
+  input.fault = &fault_;
   if (vote_.disagree()) {
-    state.severity = Severity::invalid;
+    input.severity = Severity::invalid;
     std::size_t size = 0;
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
       if (!vote_.channel(i).out) group_[size++] = config_.channels[i];
     }
     fault_.group = std::span<const std::string_view>(group_.data(), size);
-    state.reason =
-        size > 0 ? "two channels disagree, and nobody knows which is right" : "no channel is left";
-    return state;
+    input.reason =
+        size > 0 ? "two channels disagree; the wrong one is unknown" : "no channel is left";
+    return input;
   }
   if (out < 0) {
-    state.reason = "all channels agree";
-    return state;
+    input.reason = "all channels agree";
+    return input;
   }
   const auto number = static_cast<std::size_t>(out);
-  state.severity = config_.naming.level();
+  input.severity = config_.naming.level();
   fault_.parameter = config_.channels[number];
-  std::snprintf(reason_, sizeof reason_, "channel %s is out since %.3g s; the others go on",
+  std::snprintf(reason_, sizeof reason_, "channel %s voted out %.3g s ago; the others continue",
                 config_.channels[number].c_str(),
-                static_cast<double>(vote_.taken() - vote_.channel(number).since) * sample_time_s_);
-  state.reason = reason_;
-  return state;
+                static_cast<double>(vote_.votes() - vote_.channel(number).since) * sample_time_s_);
+  input.reason = reason_;
+  return input;
 }
 
 }  // namespace
@@ -128,7 +127,7 @@ bool Vote::judge(std::size_t i, bool wrong, bool missing) noexcept {
   channel.against = wrong != channel.out ? channel.against + 1 : 0;
   if (channel.against < (channel.out ? rules_.comes_back : rules_.confirm)) return false;
   if (!channel.out) {
-    channel.since = taken_ - channel.against + 1;
+    channel.since = votes_ - channel.against + 1;
     channel.missed = missing;
   }
   channel.out = !channel.out;
@@ -136,10 +135,10 @@ bool Vote::judge(std::size_t i, bool wrong, bool missing) noexcept {
   return true;
 }
 
-bool Vote::take(std::span<const double> values) noexcept {
-  ++taken_;
-  // The channels that take part: in, and there. Where none is in, those that are there tell each
-  // other whether they may come back.
+bool Vote::update(std::span<const double> values) noexcept {
+  ++votes_;
+  // Participating channels: in use and present. Where none is in use, the present ones are compared
+  // with each other for their return.
   bool none_in = true;
   for (std::size_t i = 0; i < count_; ++i) none_in = none_in && channels_[i].out;
   std::array<double, 3> present{};  // in rising order
@@ -150,7 +149,7 @@ bool Vote::take(std::span<const double> values) noexcept {
     for (; at > 0 && present[at - 1] > values[i]; --at) present[at] = present[at - 1];
     present[at] = values[i];
   }
-  spread_ = size > 0 ? present[size - 1] - present[0] : kNan;
+  spread_ = size > 0 ? present[size - 1] - present[0] : kNaN;
   const bool differ = size == 2 && spread_ > rules_.tolerance;
   const bool apart = differ && !none_in;
   apart_ = apart ? apart_ + 1 : 0;
@@ -159,11 +158,12 @@ bool Vote::take(std::span<const double> values) noexcept {
   const double agreed = size == 3   ? present[1]
                         : size == 2 ? 0.5 * (present[0] + present[1])
                                     : present[0];
-  value_ = disagree_ ? kNan : agreed;
-  if (none_in) spread_ = kNan;
+  value_ = disagree_ ? kNaN : agreed;
+  if (none_in) spread_ = kNaN;
   bool changed = disagree_ != was;
   for (std::size_t i = 0; i < count_; ++i) {
-    // Of two that differ none is told to be wrong; nothing comes back while nobody knows.
+    // Of two that differ neither is declared wrong; no channel returns while the wrong one is
+    // unknown.
     const bool missing = !std::isfinite(values[i]);
     const bool tells = size > 1 ? !differ : channels_[i].missed;
     const bool compared = none_in ? tells : !disagree_ && (size != 2 || channels_[i].out);
@@ -183,16 +183,16 @@ void VoterConfig::visit(config::schema::Visitor& v) {
            {0.0, 1e12});
   v.number({"confirm_s", "how long before a channel is out"}, confirm_s, {0.0, 3600.0});
   v.number({"return_s", "how long it must agree to come back"}, return_s, {0.0, 86400.0});
-  v.number({"stride_s", "between two findings"}, stride_s, {1e-4, 3600.0});
+  v.number({"stride_s", "between two outputs"}, stride_s, {1e-4, 3600.0});
   naming.visit(v);
 }
 
-std::unique_ptr<Source> VoterConfig::make(const Setting& setting) const {
+std::unique_ptr<DetectionMethod> VoterConfig::make(const MethodContext& context) const {
   if (channels.size() < 2 || channels.size() > 3) {
     throw bad_config("[[voter]] " + id + ": channels", std::to_string(channels.size()) + " given",
                      "two or three");
   }
-  return std::make_unique<Voter>(*this, setting);
+  return std::make_unique<Voter>(*this, context);
 }
 
 }  // namespace estimator::fdi

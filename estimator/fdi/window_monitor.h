@@ -1,5 +1,5 @@
-// What a window of samples must meet besides its fit: enough command, few saturated and few missing
-// samples. A ring of the last `length` samples; fixed memory.
+// Validity of a window of samples: enough command, few saturated and few missing samples. A ring of
+// the last `length` samples; fixed memory.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ class WindowMonitor {
   void reset() noexcept;
   void serialize(StateArchive& archive);
 
-  /// True once it has seen `length` samples, missing ones included.
+  /// True after `length` samples, missing ones included.
   [[nodiscard]] bool full() const noexcept { return seen_ >= flags_.size(); }
   [[nodiscard]] double saturated_share() const noexcept { return share(saturated_); }
   [[nodiscard]] double missing_share() const noexcept { return share(missing_); }

@@ -10,7 +10,6 @@
 namespace estimator::nonlinear {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kInterval = 1.959963984540054;  // standard deviations to either side, 95 %
 constexpr double kUnseen = 1e-9;  // singular value of the column-scaled triangle, of the largest

@@ -33,7 +33,7 @@ enum class Standing {
 struct CovarianceOptions {
   Colour colour = Colour::kColoured;
   /// The noise's standard deviation where known; NaN: from the residual. The scores ignore it.
-  double noise_sd = std::numeric_limits<double>::quiet_NaN();
+  double noise_sd = kNaN;
   /// First rows of further series that follow the first one in the residual, each with a colour and
   /// size of its own (of kWhite and kColoured), independent of the others; ascending.
   std::vector<Eigen::Index> series;

@@ -81,7 +81,7 @@ Identifiability identifiability(const Problem& problem, const MatrixXd& jacobian
   }
   const auto f = static_cast<Index>(open.size());
   Identifiability out;
-  out.alone = out.together = VectorXd::Constant(p, std::numeric_limits<double>::quiet_NaN());
+  out.alone = out.together = VectorXd::Constant(p, kNaN);
   if (f == 0) return out;
   const VectorXd nothing = VectorXd::Zero(problem.residuals);
   const MatrixXd R = compress_data(problem, nothing, jacobian).R;

@@ -17,16 +17,20 @@
 #include <limits>
 #include <vector>
 
+#include "config/signals/nan.h"
+
 namespace estimator::nonlinear {
+
+using config::signals::kNaN;
 
 struct Unknown {
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();  ///< lower == upper: held there
   double step = 0.0;            ///< finite-difference step: max(step, relative_step |x|)
   double relative_step = 1e-7;  ///< used alone where step is 0
-  double prior_mean = std::numeric_limits<double>::quiet_NaN();  ///< NaN: none
-  double prior_sd = std::numeric_limits<double>::infinity();     ///< infinite or NaN: none
-  double max_step = std::numeric_limits<double>::infinity();     ///< largest move in one iteration
+  double prior_mean = kNaN;     ///< NaN: none
+  double prior_sd = std::numeric_limits<double>::infinity();  ///< infinite or NaN: none
+  double max_step = std::numeric_limits<double>::infinity();  ///< largest move in one iteration
 
   [[nodiscard]] bool has_prior() const {
     return prior_mean == prior_mean && prior_sd > 0.0 &&

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "config/signals/nan.h"
 
 namespace estimator::residual {
+
+using config::signals::kNaN;
 
 std::vector<double> autocovariance(std::span<const double> series, int max_lag) {
   std::vector<double> out(static_cast<std::size_t>(max_lag) + 1, 0.0);
@@ -68,7 +71,7 @@ Autoregression fit_autoregression(std::span<const double> series, int max_order)
 }
 
 std::vector<double> whiten(std::span<const double> series, const Autoregression& model) {
-  std::vector<double> out(series.size(), std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> out(series.size(), kNaN);
   for (std::size_t t = model.a.size(); t < series.size(); ++t) {
     double value = series[t];
     for (std::size_t k = 0; k < model.a.size(); ++k) value -= model.a[k] * series[t - 1 - k];

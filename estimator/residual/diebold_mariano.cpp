@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <vector>
 
+#include "config/signals/nan.h"
 #include "estimator/residual/distributions.h"
 
 namespace estimator::residual {
+
+using config::signals::kNaN;
 
 DieboldMarianoResult diebold_mariano_test(std::span<const double> first,
                                           std::span<const double> second, int block) {
@@ -42,7 +44,7 @@ DieboldMarianoResult diebold_mariano_test(std::span<const double> first,
   out.first_rms = std::sqrt(first_sum / static_cast<double>(samples));
   out.second_rms = std::sqrt(second_sum / static_cast<double>(samples));
   if (out.blocks < 3) {
-    out.p = std::numeric_limits<double>::quiet_NaN();
+    out.p = kNaN;
     return out;
   }
   double mean = 0.0;

@@ -3,10 +3,13 @@
 #include <boost/math/special_functions/beta.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
-#include <limits>
+
+#include "config/signals/nan.h"
 
 namespace estimator::residual {
 namespace {
+
+using config::signals::kNaN;
 
 namespace math = boost::math;
 using math::policies::ignore_error;
@@ -19,7 +22,7 @@ constexpr math::policies::policy<math::policies::domain_error<ignore_error>,
 }  // namespace
 
 double chi_square_upper(double x, double dof) {
-  if (std::isnan(x) || std::isnan(dof)) return std::numeric_limits<double>::quiet_NaN();
+  if (std::isnan(x) || std::isnan(dof)) return kNaN;
   if (!(x > 0.0)) return 1.0;
   if (std::isinf(x)) return 0.0;
   return math::gamma_q(dof / 2.0, x / 2.0, kPolicy);

@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <limits>
 #include <vector>
 
+#include "config/signals/nan.h"
 #include "estimator/residual/distributions.h"
 
 namespace estimator::residual {
 namespace {
+
+using config::signals::kNaN;
 
 constexpr int kOrder = 8;
 constexpr std::size_t kWindow = 32;  // differences in a window
@@ -148,7 +150,7 @@ double encoder_step_m(std::span<const double> y_m) {
 
 NoiseFloor noise_floor(std::span<const double> y_m, double sample_time_s) {
   NoiseFloor out;
-  out.sd_m = std::numeric_limits<double>::quiet_NaN();
+  out.sd_m = kNaN;
   out.encoder_step_m = encoder_step_m(y_m);
   if (y_m.size() < kWindow + kOrder || !(sample_time_s <= kSlowest_s)) return out;
   const Energies energies = windows_of(y_m, out.encoder_step_m);

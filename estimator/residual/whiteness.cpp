@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <vector>
 
+#include "config/signals/nan.h"
 #include "estimator/linear_algebra/decompositions.h"
 #include "estimator/residual/autoregression.h"
 #include "estimator/residual/distributions.h"
@@ -13,7 +13,7 @@
 namespace estimator::residual {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 
 /// Mean of the input over samples t - last .. t - first, NaN when one is missing.
 class PastMeans {

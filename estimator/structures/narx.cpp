@@ -5,17 +5,19 @@
 #include <limits>
 #include <random>
 
+#include "config/signals/nan.h"
 #include "estimator/linear_algebra/decompositions.h"
 #include "estimator/nonlinear/minimize.h"
 
 namespace estimator::structures {
 namespace {
 
+using config::signals::kNaN;
+
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kStep = 1e-6;
 constexpr double kFirstOutput = 1e-3;  // v at the start: the ARX all but alone
 constexpr int kRowsPerWeight = 3;

@@ -7,13 +7,14 @@
 #include <limits>
 
 #include "config/schema/error.h"
+#include "config/signals/nan.h"
 #include "estimator/linear_algebra/decompositions.h"
 #include "estimator/structure.h"
 
 namespace estimator::structures {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 
 /// (1 + p1 q^-1 + ...) x at t, x = 0 before `first`.
 double apply(const std::vector<double>& p, const std::vector<double>& x, int t, int first) {

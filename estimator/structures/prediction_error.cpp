@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/signals/nan.h"
 #include "estimator/linear_algebra/decompositions.h"
 #include "estimator/nonlinear/covariance.h"
 #include "estimator/nonlinear/minimize.h"
@@ -12,11 +13,12 @@
 namespace estimator::structures {
 namespace {
 
+using config::signals::kNaN;
+
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kStep = 1e-8;  // of a coefficient about 1: w of an integrator feels it n-fold
 constexpr int kRowsPerCoefficient = 3;
 constexpr double kTolerance = 1e-9;

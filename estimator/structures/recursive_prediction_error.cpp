@@ -3,15 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <type_traits>
 
 #include "config/schema/error.h"
+#include "config/signals/nan.h"
 #include "estimator/structure.h"
 #include "estimator/ud_filter.h"
 
 namespace estimator::structures {
 namespace {
+
+using config::signals::kNaN;
 
 constexpr int kLength = 64;  // of a series: delay and order fit
 static_assert(kLength > kMaxDelay + kMaxOrder);
@@ -64,7 +66,7 @@ struct RecursivePredictionError::State {
     UdFactor p{};
     double variance_m2 = 0.0;
     double weight = 0.0;
-    double error_m = std::numeric_limits<double>::quiet_NaN();
+    double error_m = kNaN;
     double deficit = 1.0 - kFirstForgetting;
     int filled = 0;
     int updates = 0;

@@ -27,7 +27,7 @@ std::string configuration_reference() {
              "alone.") +
          section<estimator::fdi::LearnedBands>(
              "Learned bands", "Written by `calibrate` and `promote`, named by `bands_file`.") +
-         section<estimator::fdi::Trained>(
+         section<estimator::fdi::TrainedFile>(
              "Trained methods", "Written by `train`, named by `file` of the methods that learn.") +
          section<estimator::fdi::tracker::HealthyFile>(
              "Healthy parameters",

@@ -9,7 +9,7 @@
 #include "config/record/whole_file.h"
 #include "config/schema/document.h"
 #include "config/schema/error.h"
-#include "estimator/fdi/region.h"
+#include "estimator/fdi/hotelling_t2.h"
 #include "workbench/cli/command.h"
 #include "workbench/train/learn.h"
 #include "workbench/train/rig_table.h"
@@ -45,7 +45,7 @@ train::Teaching teaching_of(const std::string& text) {
     teaching.name.pop_back();
   }
   if (equals == std::string::npos || teaching.name.empty() ||
-      teaching.name == fdi::Trained::kHealthy) {
+      teaching.name == fdi::TrainedFile::kHealthy) {
     throw config::schema::UsageError("--class " + text +
                                      ": is no class; allowed: NAME=RECORD, NAME+=RECORD (risen), "
                                      "NAME-=RECORD (fallen)");
@@ -58,7 +58,7 @@ std::string shown(const fdi::TrainedClass& each) {
   return each.name + (each.direction > 0 ? "+" : each.direction < 0 ? "-" : "");
 }
 
-void print(const fdi::TrainedSource& source, const fdi::TrainedConfig& config) {
+void print(const fdi::TrainedMethod& source, const fdi::TrainedMethodConfig& config) {
   std::cout << config.where() << ": ";
   if (source.block_s > 0.0) {
     std::cout << "blocks of " << source.block_s << " s:";
@@ -83,9 +83,9 @@ void print(const fdi::TrainedSource& source, const fdi::TrainedConfig& config) {
     std::string nearest;
     for (const fdi::TrainedClass& other : source.classes) {
       if (&other == &each) continue;
-      fdi::Region region(other.mean, other.covariance, static_cast<double>(other.blocks),
-                         config.where() + ": class " + other.name);
-      const double distance = std::sqrt(region.distance2(each.mean));
+      fdi::HotellingT2 region(other.mean, other.covariance, static_cast<double>(other.blocks),
+                              config.where() + ": class " + other.name);
+      const double distance = std::sqrt(region.statistic(each.mean));
       if (distance >= least) continue;
       least = distance;
       nearest = shown(other);
@@ -103,12 +103,12 @@ void run(const Options& options) {
     train::visit_rig(v, rig_id);
   });
   std::vector<train::Teaching> teachings(1);
-  teachings[0].name = fdi::Trained::kHealthy;
+  teachings[0].name = fdi::TrainedFile::kHealthy;
   for (const std::string& file : options.healthy) teachings[0].records.push_back(read(file));
   for (const std::string& text : options.classes) teachings.push_back(teaching_of(text));
-  fdi::Trained trained = train::learn(pipeline, teachings, rig_id, options.config);
-  for (const fdi::TrainedSource& source : trained.sources) {
-    print(source, dynamic_cast<const fdi::TrainedConfig&>(*pipeline.find_source(source.id)));
+  fdi::TrainedFile trained = train::learn(pipeline, teachings, rig_id, options.config);
+  for (const fdi::TrainedMethod& source : trained.methods) {
+    print(source, dynamic_cast<const fdi::TrainedMethodConfig&>(*pipeline.find_method(source.id)));
   }
   config::record::write_whole(options.out,
                               config::schema::print_toml([&](auto& v) { trained.visit(v); }));

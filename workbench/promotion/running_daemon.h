@@ -40,7 +40,7 @@ class RunningDaemon {
 
   std::string socket_, config_file_, model_;
   std::filesystem::path folder_, recorder_;
-  estimator::fdi::PipelineConfig rules_{tracker::source_kinds()};
+  estimator::fdi::PipelineConfig rules_{tracker::detection_method_kinds()};
   double sample_time_s_ = 0.0;
 };
 

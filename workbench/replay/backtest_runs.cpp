@@ -176,7 +176,7 @@ Rules read_rules(const std::string& file) {
   });
   rules.folder = document.folder();
   const bool none_by_itself =
-      std::all_of(rules.pipeline.sources.begin(), rules.pipeline.sources.end(),
+      std::all_of(rules.pipeline.methods.begin(), rules.pipeline.methods.end(),
                   [](const auto& list) { return list.items.empty(); });
   if (rules.pipeline.bands.empty() && rules.pipeline.bands_file.empty() && none_by_itself) {
     throw config::schema::bad_config(

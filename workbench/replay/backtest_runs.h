@@ -20,7 +20,7 @@ struct Rules {
   std::string file;
   std::filesystem::path folder;  ///< bands_file starts here
   std::string rig_id;            ///< "" where the file does not say
-  estimator::fdi::PipelineConfig pipeline{tracker::source_kinds()};
+  estimator::fdi::PipelineConfig pipeline{tracker::detection_method_kinds()};
 };
 
 /// Throws config::schema::ConfigError.

@@ -17,7 +17,7 @@ struct Pack {
   std::filesystem::path log;
   std::string rig_id, prefix;
   double sample_time_s = 0.0;
-  estimator::fdi::PipelineConfig pipeline{tracker::source_kinds()};
+  estimator::fdi::PipelineConfig pipeline{tracker::detection_method_kinds()};
   std::uint64_t pipeline_hash = 0;
   std::vector<std::uint8_t> state;  ///< before the first sample
   std::int64_t first_tick = 0;

@@ -160,7 +160,7 @@ class Replayer final : public SampleHandler, private estimator::fdi::Events {
   }
 
   [[nodiscard]] bool from_pipeline(const std::string& source, const std::string& name) const {
-    if (pack_.pipeline.find_source(source) != nullptr) return true;
+    if (pack_.pipeline.find_method(source) != nullptr) return true;
     return std::any_of(
         pack_.pipeline.bands.begin(), pack_.pipeline.bands.end(), [&](const auto& band) {
           return band.id == name && estimator::fdi::split_quantity(band.quantity).source == source;
@@ -182,7 +182,7 @@ class Replayer final : public SampleHandler, private estimator::fdi::Events {
       fresh.name = message.name;
       number = book.declare(std::move(fresh));
     }
-    book.show(number, alarm);
+    book.force_state(number, alarm);
     look_for_the_alarm(message, alarm, same(alarm, message));
   }
 

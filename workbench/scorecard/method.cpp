@@ -64,9 +64,9 @@ std::string shipped_name(const std::string& text) {
 
 template <class F>
 void for_each_trained(fdi::PipelineConfig& pipeline, const F& f) {
-  for (fdi::SourceList& list : pipeline.sources) {
+  for (fdi::DetectionMethodList& list : pipeline.methods) {
     for (const auto& item : list.items) {
-      if (auto* const trained = dynamic_cast<fdi::TrainedConfig*>(item.get())) f(*trained);
+      if (auto* const trained = dynamic_cast<fdi::TrainedMethodConfig*>(item.get())) f(*trained);
     }
   }
 }
@@ -74,7 +74,7 @@ void for_each_trained(fdi::PipelineConfig& pipeline, const F& f) {
 std::size_t trained_count(const Method& method) {
   std::size_t count = 0;
   fdi::PipelineConfig copy = method.pipeline;
-  for_each_trained(copy, [&](const fdi::TrainedConfig&) { ++count; });
+  for_each_trained(copy, [&](const fdi::TrainedMethodConfig&) { ++count; });
   return count;
 }
 
@@ -131,7 +131,8 @@ constexpr double kTaughtShares[] = {0.4, 0.7, 1.5, 2.5};
 bool needs_faults(const Method& method) {
   bool needs = false;
   fdi::PipelineConfig copy = method.pipeline;
-  for_each_trained(copy, [&](const fdi::TrainedConfig& t) { needs = needs || t.needs_classes(); });
+  for_each_trained(copy,
+                   [&](const fdi::TrainedMethodConfig& t) { needs = needs || t.needs_classes(); });
   return needs;
 }
 
@@ -163,13 +164,13 @@ Lessons lessons(const Bench& bench, const Motion& motion, std::uint64_t seed, bo
 fdi::PipelineConfig learn(const Method& method, const Lessons& lessons) {
   fdi::PipelineConfig trained = method.pipeline;
   if (trained_count(method) > 0) {
-    std::vector<train::Teaching> teachings{{fdi::Trained::kHealthy, 0, {lessons.healthy}}};
+    std::vector<train::Teaching> teachings{{fdi::TrainedFile::kHealthy, 0, {lessons.healthy}}};
     if (needs_faults(method)) {
       teachings.insert(teachings.end(), lessons.faults.begin(), lessons.faults.end());
     }
-    const fdi::Trained taught = train::learn(method.pipeline, teachings, "", method.file);
-    for_each_trained(trained, [&](fdi::TrainedConfig& config) {
-      for (const fdi::TrainedSource& source : taught.sources) {
+    const fdi::TrainedFile taught = train::learn(method.pipeline, teachings, "", method.file);
+    for_each_trained(trained, [&](fdi::TrainedMethodConfig& config) {
+      for (const fdi::TrainedMethod& source : taught.methods) {
         if (source.id == config.id) config.adopt(source);
       }
     });

@@ -23,7 +23,7 @@ struct Method {
   double false_alarm_time_s = 86400.0;  ///< of each learned band, aimed at
   double healthy_share = 1.0;        ///< of the plan's hours without a fault, where it takes long
   std::vector<std::string> notices;  ///< alarms that are no faults, and are not counted
-  estimator::fdi::PipelineConfig pipeline{tracker::source_kinds()};
+  estimator::fdi::PipelineConfig pipeline{tracker::detection_method_kinds()};
   std::string file;
   std::string text;  ///< as it is in effect: what results depend on
 

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "config/schema/error.h"
-#include "estimator/fdi/block_source.h"
+#include "estimator/fdi/block_method.h"
 #include "workbench/train/record_samples.h"
 
 namespace workbench::train {
@@ -19,19 +19,20 @@ using config::schema::bad_data;
 using Rows = std::vector<std::vector<double>>;
 
 /// Keeps the block means instead of testing them.
-struct CollectConfig final : fdi::SourceConfigOf<CollectConfig> {
+struct CollectConfig final : fdi::DetectionMethodConfigOf<CollectConfig> {
   std::vector<std::string> quantities;
   double block_s = 0.0;
   std::shared_ptr<Rows> rows;
   void visit(config::schema::Visitor& /*v*/) override {}
   [[nodiscard]] std::vector<std::string> inputs() const override { return quantities; }
-  [[nodiscard]] std::unique_ptr<fdi::Source> make(const fdi::Setting& setting) const override;
+  [[nodiscard]] std::unique_ptr<fdi::DetectionMethod> make(
+      const fdi::MethodContext& context) const override;
 };
 
-class Collect final : public fdi::BlockSource {
+class Collect final : public fdi::BlockMethod {
  public:
-  Collect(const CollectConfig& config, const fdi::Setting& setting)
-      : BlockSource(config.quantities, config.block_s, setting, "training " + config.id),
+  Collect(const CollectConfig& config, const fdi::MethodContext& context)
+      : BlockMethod(config.quantities, config.block_s, context, "training " + config.id),
         rows_(config.rows) {}
   [[nodiscard]] std::vector<std::string> names() const override { return {}; }
 
@@ -45,8 +46,8 @@ class Collect final : public fdi::BlockSource {
   std::shared_ptr<Rows> rows_;
 };
 
-std::unique_ptr<fdi::Source> CollectConfig::make(const fdi::Setting& setting) const {
-  return std::make_unique<Collect>(*this, setting);
+std::unique_ptr<fdi::DetectionMethod> CollectConfig::make(const fdi::MethodContext& context) const {
+  return std::make_unique<Collect>(*this, context);
 }
 
 class Silence final : public fdi::Events {
@@ -55,11 +56,11 @@ class Silence final : public fdi::Events {
   void on_alarm(const fdi::Alarm& /*alarm*/) override {}
 };
 
-std::vector<const fdi::TrainedConfig*> trained_of(const fdi::PipelineConfig& pipeline) {
-  std::vector<const fdi::TrainedConfig*> found;
-  for (const fdi::SourceList& list : pipeline.sources) {
+std::vector<const fdi::TrainedMethodConfig*> trained_of(const fdi::PipelineConfig& pipeline) {
+  std::vector<const fdi::TrainedMethodConfig*> found;
+  for (const fdi::DetectionMethodList& list : pipeline.methods) {
     for (const auto& item : list.items) {
-      const auto* trained = dynamic_cast<const fdi::TrainedConfig*>(item.get());
+      const auto* trained = dynamic_cast<const fdi::TrainedMethodConfig*>(item.get());
       if (trained != nullptr) found.push_back(trained);
     }
   }
@@ -68,18 +69,18 @@ std::vector<const fdi::TrainedConfig*> trained_of(const fdi::PipelineConfig& pip
 
 /// The pipeline without what is trained, with a collector for each instead.
 fdi::PipelineConfig collecting(const fdi::PipelineConfig& pipeline,
-                               const std::vector<const fdi::TrainedConfig*>& sources,
+                               const std::vector<const fdi::TrainedMethodConfig*>& sources,
                                std::vector<std::shared_ptr<Rows>>& rows) {
   fdi::PipelineConfig config = pipeline;
   config.bands.clear();
   config.bands_file.clear();
-  for (fdi::SourceList& list : config.sources) {
+  for (fdi::DetectionMethodList& list : config.methods) {
     std::erase_if(list.items, [](const auto& item) {
-      return dynamic_cast<const fdi::TrainedConfig*>(item.get()) != nullptr;
+      return dynamic_cast<const fdi::TrainedMethodConfig*>(item.get()) != nullptr;
     });
   }
-  config.sources.emplace_back(fdi::source_kind<CollectConfig>("collect", "for training"));
-  for (const fdi::TrainedConfig* source : sources) {
+  config.methods.emplace_back(fdi::detection_method_kind<CollectConfig>("collect", "for training"));
+  for (const fdi::TrainedMethodConfig* source : sources) {
     auto collect = std::make_unique<CollectConfig>();
     collect->id = source->id;
     collect->quantities = source->quantities();
@@ -152,23 +153,23 @@ fdi::TrainedClass summarise(const Blocks& blocks, const Teaching& teaching,
   return out;
 }
 
-fdi::Trained learn(const fdi::PipelineConfig& pipeline, const std::vector<Teaching>& teachings,
-                   const std::string& rig_id, const std::string& file) {
-  const std::vector<const fdi::TrainedConfig*> sources = trained_of(pipeline);
+fdi::TrainedFile learn(const fdi::PipelineConfig& pipeline, const std::vector<Teaching>& teachings,
+                       const std::string& rig_id, const std::string& file) {
+  const std::vector<const fdi::TrainedMethodConfig*> sources = trained_of(pipeline);
   if (sources.empty()) {
     throw bad_config(file, "has nothing that is trained",
                      "[[cusum]], [[glr]], [[distance]], [[classifier]], [[trend]]");
   }
-  fdi::Trained out;
+  fdi::TrainedFile out;
   out.rig_id = rig_id;
   out.sample_time_s = teachings.front().records.front().sample_time_s;
-  for (const fdi::TrainedConfig* source : sources) {
-    fdi::TrainedSource entry;
+  for (const fdi::TrainedMethodConfig* source : sources) {
+    fdi::TrainedMethod entry;
     entry.id = source->id;
     entry.quantities = source->quantities();
     entry.settings = fdi::settings_of(entry.quantities, pipeline, source->where());
     entry.block_s = source->block_s;
-    out.sources.push_back(std::move(entry));
+    out.methods.push_back(std::move(entry));
   }
   Silence silence;
   for (const Teaching& teaching : teachings) {
@@ -183,10 +184,10 @@ fdi::Trained learn(const fdi::PipelineConfig& pipeline, const std::vector<Teachi
       for (const config::signals::Sample& sample : to_samples(record)) run.process(sample, silence);
       for (std::size_t i = 0; i < sources.size(); ++i) blocks[i].push_back(std::move(*rows[i]));
     }
-    const bool healthy = teaching.name == fdi::Trained::kHealthy;
+    const bool healthy = teaching.name == fdi::TrainedFile::kHealthy;
     for (std::size_t i = 0; i < sources.size(); ++i) {
       if (!healthy && !sources[i]->needs_classes()) continue;
-      out.sources[i].classes.push_back(summarise(blocks[i], teaching, sources[i]->where()));
+      out.methods[i].classes.push_back(summarise(blocks[i], teaching, sources[i]->where()));
     }
   }
   return out;

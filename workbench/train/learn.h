@@ -23,7 +23,7 @@ namespace workbench::train {
 
 /// Records of one kind.
 struct Teaching {
-  std::string name;            ///< estimator::fdi::Trained::kHealthy, or what has changed
+  std::string name;            ///< estimator::fdi::TrainedFile::kHealthy, or what has changed
   std::int64_t direction = 0;  ///< in which it has
   std::vector<config::record::Record> records;
 };
@@ -39,7 +39,7 @@ using Blocks = std::vector<std::vector<std::vector<double>>>;
 /// `file`: of the configuration, for messages. The first of `teachings` is healthy; sources that
 /// need no classes learn from that alone. Throws schema::ConfigError when nothing in the
 /// configuration is trained, DataError for records too short or of different sample times.
-[[nodiscard]] estimator::fdi::Trained learn(const estimator::fdi::PipelineConfig& pipeline,
+[[nodiscard]] estimator::fdi::TrainedFile learn(const estimator::fdi::PipelineConfig& pipeline,
                                             const std::vector<Teaching>& teachings,
                                             const std::string& rig_id, const std::string& file);
 

@@ -3,10 +3,11 @@
 
 #include <span>
 
-#include "estimator/fdi/source.h"
+#include "estimator/fdi/detection_method_config.h"
 
 namespace estimator::fdi::tracker {
 
-[[nodiscard]] std::span<const estimator::fdi::SourceKind> source_kinds() noexcept;
+[[nodiscard]] std::span<const estimator::fdi::DetectionMethodKind>
+detection_method_kinds() noexcept;
 
 }  // namespace estimator::fdi::tracker

@@ -9,17 +9,17 @@ namespace {
 
 using config::schema::bad_config;
 using config::schema::Visitor;
-using estimator::fdi::SourceKind;
+using estimator::fdi::DetectionMethodKind;
 
 constexpr double kLongest_s = 1e3;
 constexpr double kLeastSamples = 20.0;
 
-const SourceKind kKinds[] = {estimator::fdi::source_kind<TrackerConfig>(
+const DetectionMethodKind kKinds[] = {estimator::fdi::detection_method_kind<TrackerConfig>(
     "tracker", "physical parameters of a model, fitted to a sliding window")};
 
 }  // namespace
 
-std::span<const SourceKind> source_kinds() noexcept { return kKinds; }
+std::span<const DetectionMethodKind> detection_method_kinds() noexcept { return kKinds; }
 
 TrackerConfig::TrackerConfig() { learnt.rms_m = 0.0; }
 
@@ -69,9 +69,9 @@ void TrackerConfig::visit(Visitor& v) {
   rules.visit(v);
 }
 
-void TrackerConfig::load(const estimator::fdi::Loading& loading) {
+void TrackerConfig::load(const estimator::fdi::ConfigLoadContext& context) {
   if (!model.empty()) {
-    model_toml = plant_sim::print_model(plant_sim::load_model(loading.folder / model));
+    model_toml = plant_sim::print_model(plant_sim::load_model(context.folder / model));
     model.clear();
   }
   if (healthy.empty()) return;
@@ -80,8 +80,8 @@ void TrackerConfig::load(const estimator::fdi::Loading& loading) {
   const greybox::tracking::Choice choice =
       greybox::tracking::choose(read, parameters, where() + ": parameters");
   try {
-    learnt = read_healthy(loading.folder / healthy, read, settings, choice, loading.sample_time_s,
-                          loading.rig_id);
+    learnt = read_healthy(context.folder / healthy, read, settings, choice, context.sample_time_s,
+                          context.rig_id);
   } catch (const config::schema::ConfigError& error) {
     throw config::schema::ConfigError(where() + ": healthy: " + error.what());
   }
@@ -93,12 +93,12 @@ void TrackerConfig::load(const estimator::fdi::Loading& loading) {
   healthy.clear();
 }
 
-std::unique_ptr<estimator::fdi::Source> TrackerConfig::make(
-    const estimator::fdi::Setting& setting) const {
+std::unique_ptr<estimator::fdi::DetectionMethod> TrackerConfig::make(
+    const estimator::fdi::MethodContext& context) const {
   if (model_toml.empty()) {
     throw bad_config(where() + ": model", "is not given", "a model file (TOML)");
   }
-  const double sample_time_s = setting.sample_time_s;
+  const double sample_time_s = context.sample_time_s;
   if (settings.window_s < kLeastSamples * sample_time_s) {
     throw bad_config(where() + ": window_s", "is too short", "20 samples or more");
   }

@@ -26,14 +26,15 @@
 #include <string>
 #include <vector>
 
-#include "estimator/fdi/source.h"
+#include "estimator/fdi/alarm.h"
+#include "estimator/fdi/detection_method_config.h"
 #include "estimator/fdi/tracker/baseline_file.h"
 #include "estimator/fdi/tracker/source_kinds.h"
 #include "estimator/greybox/tracking/parameter_tracker.h"
 
 namespace estimator::fdi::tracker {
 
-struct TrackerConfig final : estimator::fdi::SourceConfigOf<TrackerConfig> {
+struct TrackerConfig final : estimator::fdi::DetectionMethodConfigOf<TrackerConfig> {
   TrackerConfig();
 
   std::string model;       ///< file, relative to the configuration; read by load()
@@ -48,9 +49,9 @@ struct TrackerConfig final : estimator::fdi::SourceConfigOf<TrackerConfig> {
   estimator::fdi::AlarmRules rules;
 
   void visit(config::schema::Visitor& v) override;
-  void load(const estimator::fdi::Loading& loading) override;
-  [[nodiscard]] std::unique_ptr<estimator::fdi::Source> make(
-      const estimator::fdi::Setting& setting) const override;
+  void load(const estimator::fdi::ConfigLoadContext& context) override;
+  [[nodiscard]] std::unique_ptr<estimator::fdi::DetectionMethod> make(
+      const estimator::fdi::MethodContext& context) const override;
 
  private:
   [[nodiscard]] std::string where() const { return "[[tracker]] " + id; }

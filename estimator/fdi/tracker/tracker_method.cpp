@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "config/units/quantity.h"
@@ -12,12 +11,11 @@ namespace estimator::fdi::tracker {
 namespace {
 
 using config::signals::Sample;
-using estimator::fdi::AlarmState;
-using estimator::fdi::Finding;
+using estimator::fdi::AlarmInput;
+using estimator::fdi::MethodOutput;
 using estimator::fdi::NamedValue;
 using estimator::fdi::Severity;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// The model has stopped explaining the rig when this many windows' lengths in a row say so: a
 /// window across a change says it as well, and is over after one.
 constexpr double kLong = 1.5;
@@ -70,7 +68,7 @@ std::vector<std::string> TrackerSource::names() const {
   return names;
 }
 
-std::vector<estimator::fdi::Alarm> TrackerSource::own_alarms() const {
+std::vector<estimator::fdi::Alarm> TrackerSource::declared_alarms() const {
   const std::vector<std::string> all = names();
   std::vector<std::string> wanted(
       all.begin(), all.begin() + static_cast<std::ptrdiff_t>(tracker_.choice().tracked));
@@ -90,14 +88,14 @@ bool TrackerSource::is_due(std::int64_t missing) noexcept {
   missing_ += missing;
   if (static_cast<double>(missing_) * sample_time_s_ < stride_s_) return false;
   missing_ = 0;
-  std::fill(found_.begin(), found_.end(), kNan);
+  std::fill(found_.begin(), found_.end(), kNaN);
   why_ = "samples are missing";
-  rms_m_ = kNan;
+  rms_m_ = kNaN;
   samples_ = 0;
   return true;
 }
 
-bool TrackerSource::lose(std::int64_t periods) noexcept { return is_due(periods); }
+bool TrackerSource::on_gap(std::int64_t periods) noexcept { return is_due(periods); }
 
 bool TrackerSource::push(const Sample& sample, double y_m) noexcept {
   if (!std::isfinite(y_m) || !std::isfinite(sample.u_applied_V)) return is_due(1);
@@ -115,9 +113,9 @@ void TrackerSource::take(const greybox::tracking::Window& window) {
   const std::size_t tracked = tracker_.choice().tracked;
   for (std::size_t i = 0; i < tracked; ++i) {
     const greybox::tracking::Estimate& one = window.estimates[i];
-    found_[i] = one.valid ? one.value : kNan;
-    found_[tracked + i] = one.valid ? one.std_error : kNan;
-    found_[2 * tracked + i] = window.explained ? one.smallest : kNan;
+    found_[i] = one.valid ? one.value : kNaN;
+    found_[tracked + i] = one.valid ? one.std_error : kNaN;
+    found_[2 * tracked + i] = window.explained ? one.smallest : kNaN;
   }
   rms_m_ = window.rms_m;
   samples_ = static_cast<int>(std::lround(window_s_ / sample_time_s_));
@@ -224,7 +222,7 @@ void TrackerSource::say_slow() {
     const double x = tracker_.healthy()->x[static_cast<Eigen::Index>(at)];
     said.reason = greybox::tracking::slow_words(p, slow.learnt(i), x);
     said.parameter = p.name;
-    said.fault = {said.parameter, {}, kNan};
+    said.fault = {said.parameter, {}, kNaN};
     said.state.severity = Severity::minor;
     said.state.direction = end < 0 ? -1 : 1;
     said.state.value = p.value(x);
@@ -233,16 +231,16 @@ void TrackerSource::say_slow() {
   }
 }
 
-Finding TrackerSource::find(std::span<NamedValue> values) noexcept {
+MethodOutput TrackerSource::evaluate(std::span<NamedValue> values) noexcept {
   const std::size_t tracked = tracker_.choice().tracked;
   for (std::size_t i = 0; i < tracked; ++i) {
     values[i].value = found_[i];
     values[i].std_error = found_[tracked + i];
     values[tracked + i].value = found_[2 * tracked + i];
-    values[tracked + i].std_error = kNan;
+    values[tracked + i].std_error = kNaN;
   }
   values[2 * tracked].value = rms_m_;
-  values[2 * tracked].std_error = kNan;
+  values[2 * tracked].std_error = kNaN;
   const greybox::tracking::SlowChange& slow = tracker_.slow_change();
   for (std::size_t i = 0; i < slow.size(); ++i) {
     const std::size_t at = slow.parameter(i);
@@ -250,18 +248,18 @@ Finding TrackerSource::find(std::span<NamedValue> values) noexcept {
     NamedValue& value = values[2 * tracked + 1 + i];
     value.value =
         healthy ? tracker_.choice().parameters[at].value(healthy->x[static_cast<Eigen::Index>(at)])
-                : kNan;
-    value.std_error = kNan;
+                : kNaN;
+    value.std_error = kNaN;
   }
-  Finding finding;
-  finding.warming_up = !tracker_.healthy().has_value();
-  finding.valid = why_.empty();
-  finding.reason = (finding.valid ? note_ : why_).c_str();
-  finding.samples = samples_;
-  return finding;
+  MethodOutput output;
+  output.warming_up = !tracker_.healthy().has_value();
+  output.valid = why_.empty();
+  output.reason = (output.valid ? note_ : why_).c_str();
+  output.samples = samples_;
+  return output;
 }
 
-AlarmState TrackerSource::own_alarm(std::size_t number) const noexcept {
+AlarmInput TrackerSource::alarm_input(std::size_t number) const noexcept {
   return said_[number].state;
 }
 
@@ -271,10 +269,10 @@ void TrackerSource::reset() {
   broken_ = true;
   missing_ = 0;
   learning_.clear();
-  found_.assign(3 * tracker_.choice().tracked, kNan);
+  found_.assign(3 * tracker_.choice().tracked, kNaN);
   why_.clear();
   note_.clear();
-  rms_m_ = kNan;
+  rms_m_ = kNaN;
   samples_ = 0;
   unexplained_ = 0;
   probe_.reset();

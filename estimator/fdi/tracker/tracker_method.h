@@ -7,12 +7,12 @@
 #include <string_view>
 #include <vector>
 
-#include "estimator/fdi/source.h"
+#include "estimator/fdi/detection_method.h"
 #include "estimator/fdi/tracker/tracker_config.h"
 
 namespace estimator::fdi::tracker {
 
-class TrackerSource final : public estimator::fdi::Source {
+class TrackerSource final : public estimator::fdi::DetectionMethod {
  public:
   /// `healthy`: none = learnt from the first windows that teach.
   TrackerSource(const TrackerConfig& config, const plant_sim::ModelFile& model,
@@ -20,11 +20,12 @@ class TrackerSource final : public estimator::fdi::Source {
                 std::optional<greybox::tracking::Healthy> healthy, double sample_time_s);
 
   [[nodiscard]] std::vector<std::string> names() const override;
-  [[nodiscard]] std::vector<estimator::fdi::Alarm> own_alarms() const override;
-  bool lose(std::int64_t periods) noexcept override;
+  [[nodiscard]] std::vector<estimator::fdi::Alarm> declared_alarms() const override;
+  bool on_gap(std::int64_t periods) noexcept override;
   bool push(const config::signals::Sample& sample, double y_m) noexcept override;
-  estimator::fdi::Finding find(std::span<estimator::fdi::NamedValue> values) noexcept override;
-  [[nodiscard]] estimator::fdi::AlarmState own_alarm(std::size_t number) const noexcept override;
+  estimator::fdi::MethodOutput evaluate(
+      std::span<estimator::fdi::NamedValue> values) noexcept override;
+  [[nodiscard]] estimator::fdi::AlarmInput alarm_input(std::size_t number) const noexcept override;
   void reset() override;
   void serialize(estimator::StateArchive& archive) override;
   [[nodiscard]] double interval_s() const noexcept override { return stride_s_; }
@@ -37,7 +38,7 @@ class TrackerSource final : public estimator::fdi::Source {
     std::vector<std::string> group;
     std::vector<std::string_view> views;
     estimator::fdi::FaultName fault;
-    estimator::fdi::AlarmState state;
+    estimator::fdi::AlarmInput state;
   };
 
   void take(const greybox::tracking::Window& window);

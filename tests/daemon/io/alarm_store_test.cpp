@@ -18,8 +18,8 @@ namespace {
 
 using estimator::fdi::Alarm;
 using estimator::fdi::AlarmBook;
+using estimator::fdi::AlarmInput;
 using estimator::fdi::AlarmState;
-using estimator::fdi::Life;
 using estimator::fdi::Severity;
 using testing::HasSubstr;
 
@@ -49,12 +49,12 @@ class AlarmFiles : public testing::Test {
     return book;
   }
   static void come(AlarmBook& book, std::size_t number) {
-    AlarmState state;
-    state.severity = Severity::major;
-    state.direction = -1;
-    state.value = 1.5;
-    state.reason = "too \"low\"";
-    book.set(number, state);
+    AlarmInput input;
+    input.severity = Severity::major;
+    input.direction = -1;
+    input.value = 1.5;
+    input.reason = "too \"low\"";
+    book.set(number, input);
   }
 
   std::filesystem::path folder_;
@@ -85,8 +85,8 @@ TEST_F(AlarmFiles, GiveBackEveryLifeThatWasSaved) {
   EXPECT_EQ(loaded.lives[1].shelved_by, "bob");
   AlarmBook after = book();
   after.restore(loaded.lives);
-  EXPECT_EQ(after.alarm(0).life(), Life::returned);
-  EXPECT_EQ(after.alarm(1).life(), Life::shelved);
+  EXPECT_EQ(after.alarm(0).state(), AlarmState::returned);
+  EXPECT_EQ(after.alarm(1).state(), AlarmState::shelved);
   // A clock that was set back does not make the shelf longer, one that ran on ends it.
   EXPECT_EQ(store.load(500'000'000).lives[1].shelved_for_s, 100.0);
   EXPECT_EQ(store.load(2'000'000'000).lives[1].shelved_for_s, 0.0);
@@ -109,7 +109,7 @@ TEST_F(AlarmFiles, AreWrittenOnlyWhenALifeHasChanged) {
 TEST_F(AlarmFiles, DamagedOrOfAnotherRigGiveNothingAndSayWhy) {
   AlarmBook alarms = book();
   come(alarms, 0);
-  const std::string good = print_lives(alarms.lives(), "rig", 5);
+  const std::string good = print_lives(alarms.persisted_alarms(), "rig", 5);
   EXPECT_EQ(parse_lives(good, "rig", 5).lives.size(), 1U);
   EXPECT_EQ(parse_lives(good, "another", 5).wrong, "is of another rig: \"rig\"");
   EXPECT_TRUE(parse_lives(good, "another", 5).lives.empty());

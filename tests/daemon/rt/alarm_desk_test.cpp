@@ -13,7 +13,7 @@ namespace {
 using estimator::fdi::Alarm;
 using estimator::fdi::AlarmBook;
 using estimator::fdi::AlarmRules;
-using estimator::fdi::Life;
+using estimator::fdi::AlarmState;
 using estimator::fdi::Severity;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -57,8 +57,8 @@ TEST_F(AlarmDeskTest, CarriesOutWhatIsOrderedAndTellsWhatHasChanged) {
 TEST_F(AlarmDeskTest, RefusesInWords) {
   book_.set_condition("s", "a", Severity::minor, true, "", 1);
   EXPECT_THAT(order(Kind::acknowledge, "x").refusal, HasSubstr("there is no alarm \"x\""));
-  EXPECT_EQ(order(Kind::unshelve, "a").refusal, "s.a: it is not shelved");
-  EXPECT_THAT(order(Kind::shelve, "a", 1e9).refusal, HasSubstr("s.a: it can be shelved for"));
+  EXPECT_EQ(order(Kind::unshelve, "a").refusal, "s.a: not shelved");
+  EXPECT_THAT(order(Kind::shelve, "a", 1e9).refusal, HasSubstr("s.a: shelving is limited to"));
   EXPECT_THAT(changed_, IsEmpty());
 }
 
@@ -83,19 +83,19 @@ TEST(GuardAlarms, LiveByTheRulesOfAllThatIsNoBand) {
   GuardAlarms alarms(guards, book);
   const std::size_t e_stop = book.find("loop.e_stop");
   ASSERT_NE(e_stop, AlarmBook::kNone);
-  std::vector<Life> lives;
+  std::vector<AlarmState> lives;
   const auto report = [&](bool pressed, std::int64_t tick) {
     safety.set(control::GuardKind::e_stop, pressed, 0.0);
     board.show(safety);
     book.advance(tick, 0, [](const Alarm&) {});
-    alarms.report(board, tick, [&](const Alarm& alarm) { lives.push_back(alarm.life()); });
+    alarms.report(board, tick, [&](const Alarm& alarm) { lives.push_back(alarm.state()); });
   };
   report(true, 1);
   report(false, 2);  // shown as active once more: it was, since the last look
   report(false, 3);
-  EXPECT_THAT(lives, ElementsAre(Life::unacknowledged, Life::latched));
+  EXPECT_THAT(lives, ElementsAre(AlarmState::unacknowledged, AlarmState::latched));
   book.acknowledge(e_stop, "ann");
-  EXPECT_EQ(book.alarm(e_stop).life(), Life::normal);
+  EXPECT_EQ(book.alarm(e_stop).state(), AlarmState::normal);
 }
 
 }  // namespace

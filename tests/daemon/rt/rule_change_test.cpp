@@ -82,21 +82,21 @@ TEST(RuleChange, KeepsALatchedAlarmWhoseThresholdHasChanged) {
   bench.detector.poll();
   bench.feed(10, 0.1);
   bench.detector.poll();
-  ASSERT_EQ(bench.alarm("sample.far_out").life(), fdi::Life::latched);
+  ASSERT_EQ(bench.alarm("sample.far_out").state(), fdi::AlarmState::latched);
   const auto taken = bench.change(rules(0.5, true));
   EXPECT_EQ(taken->warm, std::vector<std::string>{"gain"});
   EXPECT_TRUE(taken->ended.empty());
-  EXPECT_EQ(bench.alarm("sample.far_out").life(), fdi::Life::latched);
+  EXPECT_EQ(bench.alarm("sample.far_out").state(), fdi::AlarmState::latched);
   EXPECT_EQ(bench.alarm("sample.far_out").high, 0.5);
   EXPECT_EQ(bench.alarm("sample.far_out").times, 1);
   bench.feed(10, 0.3);  // inside the new limits
   bench.detector.poll();
-  EXPECT_EQ(bench.alarm("sample.far_out").life(), fdi::Life::latched);
+  EXPECT_EQ(bench.alarm("sample.far_out").state(), fdi::AlarmState::latched);
   bench.pipeline.alarms().acknowledge(bench.pipeline.alarms().find("far_out"), "ann");
-  EXPECT_EQ(bench.alarm("sample.far_out").life(), fdi::Life::normal);
+  EXPECT_EQ(bench.alarm("sample.far_out").state(), fdi::AlarmState::normal);
   bench.feed(1, 0.6);  // outside the new ones
   bench.detector.poll();
-  EXPECT_EQ(bench.alarm("sample.far_out").life(), fdi::Life::unacknowledged);
+  EXPECT_EQ(bench.alarm("sample.far_out").state(), fdi::AlarmState::unacknowledged);
 }
 
 TEST(RuleChange, KeepsWhatPeopleDidAndConditionsFromElsewhere) {
@@ -109,10 +109,10 @@ TEST(RuleChange, KeepsWhatPeopleDidAndConditionsFromElsewhere) {
   book.acknowledge(book.find("sample.far_out"), "ann");
   book.shelve(book.find("sample.far_out"), 600.0, "ann");
   (void)bench.change(rules(0.25, false));
-  EXPECT_EQ(bench.alarm("sample.far_out").life(), fdi::Life::shelved);
+  EXPECT_EQ(bench.alarm("sample.far_out").state(), fdi::AlarmState::shelved);
   EXPECT_EQ(bench.alarm("sample.far_out").acknowledged_by, "ann");
   EXPECT_NEAR(bench.pipeline.alarms().shelved_for_s(bench.alarm("sample.far_out")), 600.0, 0.1);
-  EXPECT_EQ(bench.alarm("recorder.disk_full").life(), fdi::Life::unacknowledged);
+  EXPECT_EQ(bench.alarm("recorder.disk_full").state(), fdi::AlarmState::unacknowledged);
   EXPECT_EQ(bench.alarm("recorder.disk_full").reason, "full");
 }
 
@@ -126,7 +126,7 @@ TEST(RuleChange, EndsAnAlarmThatIsNoLongerThereAndSaysSo) {
   EXPECT_EQ(taken->tick, 9);
   bench.feed(1, 0.3);
   bench.detector.poll();
-  EXPECT_EQ(bench.alarm("sample.other").life(), fdi::Life::unacknowledged);
+  EXPECT_EQ(bench.alarm("sample.other").state(), fdi::AlarmState::unacknowledged);
 }
 
 TEST(RuleChange, WarmsUpAnEstimatorWithOtherSettings) {

@@ -42,7 +42,7 @@ struct Log final : fdi::Events {
 };
 
 fdi::PipelineConfig watching(std::vector<std::string> parameters = usual()) {
-  fdi::PipelineConfig config(tracker::source_kinds());
+  fdi::PipelineConfig config(tracker::detection_method_kinds());
   auto tracker = std::make_unique<tracker::TrackerConfig>();
   tracker->id = "physics";
   tracker->model_toml = plant_sim::print_model(printed_model());
@@ -150,7 +150,7 @@ TEST(TrackerSource, TellsTheValveGainByPressuresThatTheSamplesCarry) {
 
 TEST(TrackerSource, LeavesPressuresAloneWhereItIsTold) {
   const truth::Record record = gain_falls(true, true);
-  fdi::PipelineConfig config(tracker::source_kinds());
+  fdi::PipelineConfig config(tracker::detection_method_kinds());
   auto tracker = std::make_unique<tracker::TrackerConfig>();
   tracker->id = "physics";
   tracker->model_toml = plant_sim::print_model(printed_model());
@@ -262,7 +262,7 @@ TEST(TrackerSource, SuggestsAMotionWithinItsLimitsWhereTheRodStandsStill) {
     record.u_V.push_back(0.0);
     record.y_m.push_back(record.y_m.back());
   }
-  fdi::PipelineConfig config(tracker::source_kinds());
+  fdi::PipelineConfig config(tracker::detection_method_kinds());
   auto tracker = std::make_unique<tracker::TrackerConfig>();
   tracker->id = "physics";
   tracker->model_toml = plant_sim::print_model(printed_model());

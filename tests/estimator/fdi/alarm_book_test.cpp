@@ -52,17 +52,17 @@ TEST(AlarmBook, MarksTheFirstOfSeveralAlarms) {
 TEST(AlarmBook, TakesAChangeOfSeverityOrDirectionForATransition) {
   AlarmBook book;
   const std::size_t number = book.declare({});
-  AlarmState state;
-  state.severity = Severity::major;
-  state.direction = 1;
-  EXPECT_NE(book.set(number, state), nullptr);
-  state.value = 5.0;
-  EXPECT_EQ(book.set(number, state), nullptr);
+  AlarmInput input;
+  input.severity = Severity::major;
+  input.direction = 1;
+  EXPECT_NE(book.set(number, input), nullptr);
+  input.value = 5.0;
+  EXPECT_EQ(book.set(number, input), nullptr);
   EXPECT_EQ(book.alarm(number).value, 5.0);
-  state.direction = -1;
-  EXPECT_NE(book.set(number, state), nullptr);
-  state.severity = Severity::invalid;
-  EXPECT_NE(book.set(number, state), nullptr);
+  input.direction = -1;
+  EXPECT_NE(book.set(number, input), nullptr);
+  input.severity = Severity::invalid;
+  EXPECT_NE(book.set(number, input), nullptr);
   EXPECT_EQ(book.active_count(), 1U);
 }
 

@@ -26,7 +26,7 @@ class Bytes final : public Events {
     ++alarms;
     put(static_cast<double>(alarm.tick));
     put(alarm.value);
-    put(static_cast<double>(alarm.life()));
+    put(static_cast<double>(alarm.state()));
     put(alarm.first_up ? 1.0 : 0.0);
     text += alarm.name + alarm.reason;
   }

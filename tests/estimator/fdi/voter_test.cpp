@@ -17,7 +17,7 @@ constexpr Vote::Rules kRules{1.0, 3, 5};
 
 /// The same channels `times` times.
 void take(Vote& vote, std::vector<double> values, int times) {
-  for (int i = 0; i < times; ++i) vote.take(values);
+  for (int i = 0; i < times; ++i) vote.update(values);
 }
 
 TEST(Vote, OfThreeFollowsTheMiddleWhileOneGoesAway) {
@@ -83,7 +83,7 @@ TEST(Vote, GoesOnWithThoseThatComeBackAfterAllWereMissing) {
     Vote vote(channels, kRules);
     const auto feed = [&](double a, double b, double c, int times) {
       const double values[] = {a, b, c};
-      for (int i = 0; i < times; ++i) vote.take(std::span(values).first(channels));
+      for (int i = 0; i < times; ++i) vote.update(std::span(values).first(channels));
     };
     feed(none, none, none, 10);  // from the start, as estimators are while they warm up
     EXPECT_TRUE(vote.disagree());

@@ -1,6 +1,6 @@
 // Sources other than estimators: kinds handed in by the caller, values that bands and other sources
 // read, alarms that a source sets and names itself.
-#include "estimator/fdi/source.h"
+#include "estimator/fdi/detection_method.h"
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ using fdi_test::Recorder;
 
 /// How often its input came fresh, the input's sum, and an alarm of its own while the input is
 /// above a limit: named "a" up to twice that limit, one of {a, b} beyond.
-struct CounterConfig final : SourceConfigOf<CounterConfig> {
+struct CounterConfig final : DetectionMethodConfigOf<CounterConfig> {
   std::string quantity;
   double limit = 1e9;
   void visit(Visitor& v) override {
@@ -32,47 +32,47 @@ struct CounterConfig final : SourceConfigOf<CounterConfig> {
     v.number({"limit"}, limit);
   }
   [[nodiscard]] std::vector<std::string> inputs() const override { return {quantity}; }
-  [[nodiscard]] std::unique_ptr<Source> make(const Setting& setting) const override;
+  [[nodiscard]] std::unique_ptr<DetectionMethod> make(const MethodContext& context) const override;
 };
 
-class CounterSource final : public Source {
+class CounterMethod final : public DetectionMethod {
  public:
-  CounterSource(const CounterConfig& config, const Setting& setting)
-      : input_(setting.inputs.find(config.quantity, "[[counter]] " + config.id)),
+  CounterMethod(const CounterConfig& config, const MethodContext& context)
+      : input_(context.inputs.find(config.quantity, "[[counter]] " + config.id)),
         limit_(config.limit) {}
   [[nodiscard]] std::vector<std::string> names() const override { return {"count", "sum"}; }
-  [[nodiscard]] std::vector<Alarm> own_alarms() const override {
+  [[nodiscard]] std::vector<Alarm> declared_alarms() const override {
     Alarm alarm;
     alarm.name = "high";
     return {alarm};
   }
-  bool lose(std::int64_t /*periods*/) noexcept override { return false; }
+  bool on_gap(std::int64_t /*periods*/) noexcept override { return false; }
   bool push(const config::signals::Sample& /*sample*/, double /*y_m*/) noexcept override {
     if (!input_.fresh()) return false;
     ++count_;
     if (input_.usable()) sum_ += input_.value();
     return true;
   }
-  Finding find(std::span<NamedValue> values) noexcept override {
+  MethodOutput evaluate(std::span<NamedValue> values) noexcept override {
     values[0].value = count_;
     values[1].value = sum_;
-    Finding found;
+    MethodOutput found;
     found.valid = input_.usable();
     found.reason = found.valid ? "" : input_.why();
     return found;
   }
-  [[nodiscard]] AlarmState own_alarm(std::size_t /*number*/) const noexcept override {
+  [[nodiscard]] AlarmInput alarm_input(std::size_t /*number*/) const noexcept override {
     static constexpr std::array<std::string_view, 2> kBoth{"a", "b"};
     static constexpr FaultName kOne{"a", {}, 0.9};
     static constexpr FaultName kGroup{"", kBoth, 0.5};
-    AlarmState state;
-    if (!input_.usable() || input_.value() <= limit_) return state;
-    state.severity = Severity::major;
-    state.direction = 1;
-    state.value = input_.value();
-    state.reason = "above";
-    state.fault = input_.value() > 2.0 * limit_ ? &kGroup : &kOne;
-    return state;
+    AlarmInput input;
+    if (!input_.usable() || input_.value() <= limit_) return input;
+    input.severity = Severity::major;
+    input.direction = 1;
+    input.value = input_.value();
+    input.reason = "above";
+    input.fault = input_.value() > 2.0 * limit_ ? &kGroup : &kOne;
+    return input;
   }
   void reset() override { count_ = sum_ = 0.0; }
   void serialize(StateArchive& archive) override {
@@ -81,17 +81,18 @@ class CounterSource final : public Source {
   }
 
  private:
-  Input input_;
+  MethodInput input_;
   double limit_;
   double count_ = 0.0;
   double sum_ = 0.0;
 };
 
-std::unique_ptr<Source> CounterConfig::make(const Setting& setting) const {
-  return std::make_unique<CounterSource>(*this, setting);
+std::unique_ptr<DetectionMethod> CounterConfig::make(const MethodContext& context) const {
+  return std::make_unique<CounterMethod>(*this, context);
 }
 
-constexpr std::array<SourceKind, 1> kKinds{source_kind<CounterConfig>("counter", "for tests")};
+constexpr std::array<DetectionMethodKind, 1> kKinds{
+    detection_method_kind<CounterConfig>("counter", "for tests")};
 
 PipelineConfig read(const std::string& text) {
   PipelineConfig config(kKinds);
@@ -134,10 +135,10 @@ class Values final : public Events {
   double last = 0.0, sum = 0.0;
 };
 
-TEST(Source, ReadsTheSampleOrAnEstimatorOrAnotherSourceWhateverTheOrderInTheFile) {
+TEST(DetectionMethod, ReadsTheSampleOrAnEstimatorOrAnotherSourceWhateverTheOrderInTheFile) {
   const PipelineConfig config =
       read(counter("third", "second.sum") + counter("second", "e.b1") + kEstimator);
-  EXPECT_EQ(config.source_ids(), (std::vector<std::string>{"e", "third", "second"}));
+  EXPECT_EQ(config.method_ids(), (std::vector<std::string>{"e", "third", "second"}));
   Pipeline pipeline(config, kSampleTime_s);
   Integrator plant;
   Recorder seen;
@@ -151,7 +152,7 @@ TEST(Source, ReadsTheSampleOrAnEstimatorOrAnotherSourceWhateverTheOrderInTheFile
   EXPECT_TRUE(seen.estimates[35].valid);
 }
 
-TEST(Source, ItsValuesAreWatchedByBands) {
+TEST(DetectionMethod, ItsValuesAreWatchedByBands) {
   Pipeline pipeline(read(counter("c", "sample.y_m") +
                          "[[band]]\nid = 'many'\nquantity = 'c.count'\nhigh = 3.5\n"),
                     kSampleTime_s);
@@ -165,7 +166,7 @@ TEST(Source, ItsValuesAreWatchedByBands) {
   EXPECT_EQ(seen.alarms[0].value, 4.0);
 }
 
-TEST(Source, NamesTheFaultOfItsOwnAlarmAndTellsWhenTheNameChanges) {
+TEST(DetectionMethod, NamesTheFaultOfItsOwnAlarmAndTellsWhenTheNameChanges) {
   Pipeline pipeline(read(counter("c", "sample.y_m", 1.0)), kSampleTime_s);
   Values seen;
   std::int64_t tick = 0;
@@ -181,7 +182,7 @@ TEST(Source, NamesTheFaultOfItsOwnAlarmAndTellsWhenTheNameChanges) {
   EXPECT_EQ(seen.alarms[2].severity, Severity::ok);
 }
 
-TEST(Source, GoesOnBitForBitAfterASnapshotAndTakesItsNameAlong) {
+TEST(DetectionMethod, GoesOnBitForBitAfterASnapshotAndTakesItsNameAlong) {
   const PipelineConfig config = read(counter("c", "sample.y_m", 1.0) + counter("d", "c.sum"));
   Pipeline one(config, kSampleTime_s);
   Values seen;
@@ -205,7 +206,7 @@ TEST(Source, GoesOnBitForBitAfterASnapshotAndTakesItsNameAlong) {
   EXPECT_TRUE(b.alarms.empty()) << "the alarm stands already";
 }
 
-TEST(Source, GoesOnUnderNewRulesWhenItsSettingsAndThoseOfWhatItReadsAreTheSame) {
+TEST(DetectionMethod, GoesOnUnderNewRulesWhenItsSettingsAndThoseOfWhatItReadsAreTheSame) {
   const std::string rest = counter("c", "e.b1") + counter("d", "sample.y_m");
   Pipeline before(read(kEstimator + rest), kSampleTime_s);
   Integrator plant;
@@ -217,7 +218,7 @@ TEST(Source, GoesOnUnderNewRulesWhenItsSettingsAndThoseOfWhatItReadsAreTheSame) 
   EXPECT_EQ(other.inherit(before), (std::vector<bool>{false, false, true}));
 }
 
-TEST(Source, IsRefusedWhenItReadsWhatIsNotThereOrInACircle) {
+TEST(DetectionMethod, IsRefusedWhenItReadsWhatIsNotThereOrInACircle) {
   const auto refusal = [](const std::string& text) -> std::string {
     try {
       Pipeline(read(text), kSampleTime_s);
@@ -237,14 +238,14 @@ TEST(Source, IsRefusedWhenItReadsWhatIsNotThereOrInACircle) {
             std::string::npos);
 }
 
-TEST(Source, MeansTheSameAfterPrintingAndReadingAndInACopy) {
+TEST(DetectionMethod, MeansTheSameAfterPrintingAndReadingAndInACopy) {
   PipelineConfig config = read(counter("c", "sample.y_m", 2.5));
   PipelineConfig copy = config;
   const auto print = [](PipelineConfig& c) {
     return config::schema::print_toml([&](Visitor& v) { c.visit(v); });
   };
   EXPECT_EQ(print(copy), print(config));
-  EXPECT_NE(copy.find_source("c"), config.find_source("c"));
+  EXPECT_NE(copy.find_method("c"), config.find_method("c"));
   EXPECT_EQ(config.fingerprint("c"), "quantity = 'sample.y_m' limit = 2.5");
   EXPECT_TRUE(config.owns("[[counter]] c: limit"));
   EXPECT_FALSE(config.owns("[[count]] c: limit"));

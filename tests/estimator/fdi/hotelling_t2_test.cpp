@@ -1,5 +1,5 @@
 // Distance from a healthy region, slow trends.
-#include "estimator/fdi/region.h"
+#include "estimator/fdi/hotelling_t2.h"
 
 #include <gtest/gtest.h>
 
@@ -15,24 +15,24 @@ namespace {
 using fdi_test::PlainValues;
 using fdi_test::refusal;
 
-TEST(Region, MeasuresTheDistanceInItsOwnSpreadAndNamesTheValueItComesFrom) {
+TEST(HotellingT2, MeasuresTheDistanceInItsOwnSpreadAndNamesTheValueItComesFrom) {
   // S = [4 3; 3 9], S^-1 = [9 -3; -3 4]/27. x - mean = (2, -3): T^2 = (36 + 36 + 36)/27 = 4.
   const double mean[] = {10.0, 20.0};
   const double covariance[] = {4.0, 3.0, 3.0, 9.0};
-  Region region(mean, covariance, 100.0, "here");
+  HotellingT2 region(mean, covariance, 100.0, "here");
   const double x[] = {12.0, 17.0};
-  EXPECT_NEAR(region.distance2(x), 4.0, 1e-6);
+  EXPECT_NEAR(region.statistic(x), 4.0, 1e-6);
   // Given the other: x1 | x2 has mean 10 + 3/9 (-3) = 9 and variance 3, (12 - 9)^2/3 = 3;
   // x2 | x1: 20 + 3/4 2 = 21.5 and 6.75, 4.5^2/6.75 = 3. A step in x2 alone is x2's.
   const double y[] = {10.0, 26.0};
-  EXPECT_NEAR(region.distance2(y), 4.0 * 36.0 / 27.0, 1e-6);
-  EXPECT_EQ(region.most(), 1U);
+  EXPECT_NEAR(region.statistic(y), 4.0 * 36.0 / 27.0, 1e-6);
+  EXPECT_EQ(region.main_contributor(), 1U);
   // d (n + 1)(n - 1)/(n (n - d)) F(p; d, n - d) with n = 52: 2*53*51/(52*50) * 5.056610865
-  Region few(mean, covariance, 52.0, "here");
+  HotellingT2 few(mean, covariance, 52.0, "here");
   EXPECT_NEAR(few.limit(0.01), 2.0 * 53.0 * 51.0 / (52.0 * 50.0) * 5.056610865, 1e-6);
 }
 
-TEST(Region, SayHowOftenAHealthyBlockIsOutside) {
+TEST(HotellingT2, SayHowOftenAHealthyBlockIsOutside) {
   // Mean and covariance from 20 blocks each time: chi-square would be exceeded by 4.6 %, not 1 %.
   std::mt19937_64 random(8);
   std::normal_distribution<double> normal;
@@ -55,8 +55,8 @@ TEST(Region, SayHowOftenAHealthyBlockIsOutside) {
         s[j] += (x[i][j / 2] - mean[j / 2]) * (x[i][j % 2] - mean[j % 2]) / (kBlocks - 1);
       }
     }
-    Region region(mean, s, kBlocks, "here");
-    outside += region.distance2(x[kBlocks]) > region.limit(0.01) ? 1 : 0;
+    HotellingT2 region(mean, s, kBlocks, "here");
+    outside += region.statistic(x[kBlocks]) > region.limit(0.01) ? 1 : 0;
   }
   EXPECT_NEAR(outside, 0.01 * kRuns, 4.0 * std::sqrt(0.01 * kRuns));
 }

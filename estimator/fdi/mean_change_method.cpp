@@ -1,4 +1,4 @@
-#include "estimator/fdi/change_source.h"
+#include "estimator/fdi/mean_change_method.h"
 
 #include <cmath>
 #include <cstdio>
@@ -11,13 +11,12 @@ namespace {
 using config::schema::bad_config;
 
 constexpr double kOneSided95 = 1.645;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-/// The alarm goes when the statistic has come down to this share of the threshold.
+/// The alarm returns when the statistic has fallen to this share of the threshold.
 constexpr double kGone = 0.5;
 
 }  // namespace
 
-void ChangeConfig::visit_change(config::schema::Visitor& v) {
+void MeanChangeConfig::visit_change(config::schema::Visitor& v) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   visit_trained(v);
   v.text({"quantity", "what is tested: ESTIMATOR.b1, sample.following_error_m, ...", true},
@@ -35,15 +34,15 @@ void ChangeConfig::visit_change(config::schema::Visitor& v) {
   naming.visit(v);
 }
 
-void ChangeConfig::adopt(const TrainedSource& trained) {
+void MeanChangeConfig::adopt(const TrainedMethod& trained) {
   const TrainedClass& healthy = *trained.healthy();
   mean = healthy.mean[0];
   std_dev = healthy.long_run[0];
   mean_error = std_dev / std::sqrt(static_cast<double>(healthy.blocks));
 }
 
-ChangeSource::ChangeSource(const ChangeConfig& config, const Setting& setting)
-    : BlockSource({config.quantity}, config.block_s, setting, config.where()) {
+MeanChangeMethod::MeanChangeMethod(const MeanChangeConfig& config, const MethodContext& context)
+    : BlockMethod({config.quantity}, config.block_s, context, config.where()) {
   if (!std::isfinite(config.mean) || !(config.std_dev > 0.0)) {
     throw bad_config(config.where(), "is not trained",
                      "mean and std_dev, or file, from spoolwatch train");
@@ -56,19 +55,19 @@ ChangeSource::ChangeSource(const ChangeConfig& config, const Setting& setting)
   if (!(config.false_alarm_time_s > 10.0 * interval_s())) {
     throw bad_config(config.where() + ": false_alarm_time_s", "is less than ten blocks");
   }
-  config_ = std::shared_ptr<const ChangeConfig>(
-      static_cast<const ChangeConfig*>(config.clone().release()));
+  config_ = std::shared_ptr<const MeanChangeConfig>(
+      static_cast<const MeanChangeConfig*>(config.clone().release()));
 }
 
-double ChangeSource::run_length() const noexcept {
+double MeanChangeMethod::run_length() const noexcept {
   return config_->false_alarm_time_s / interval_s();
 }
 
-double ChangeSource::mean_error() const noexcept {
+double MeanChangeMethod::mean_error() const noexcept {
   return kOneSided95 * config_->mean_error / config_->std_dev;
 }
 
-std::vector<Alarm> ChangeSource::own_alarms() const {
+std::vector<Alarm> MeanChangeMethod::declared_alarms() const {
   Alarm alarm = config_->naming.alarm("changed");
   alarm.parameter = config_->parameter;
   alarm.falls_with_parameter = config_->falls_with_parameter;
@@ -76,38 +75,38 @@ std::vector<Alarm> ChangeSource::own_alarms() const {
   return {alarm};
 }
 
-void ChangeSource::take(std::span<const double> means) noexcept {
+void MeanChangeMethod::take(std::span<const double> means) noexcept {
   verdict_ = test((means[0] - config_->mean) / config_->std_dev);
   out_ = verdict_.statistic >= (out_ ? kGone : 1.0);
 }
 
-void ChangeSource::show(std::span<NamedValue> values) const noexcept {
-  values[0].value = valid() ? verdict_.statistic : kNan;
-  values[1].value = valid() ? verdict_.shift * config_->std_dev : kNan;
+void MeanChangeMethod::show(std::span<NamedValue> values) const noexcept {
+  values[0].value = valid() ? verdict_.statistic : kNaN;
+  values[1].value = valid() ? verdict_.shift * config_->std_dev : kNaN;
   values[1].std_error =
-      verdict_.blocks > 0.0 ? config_->std_dev / std::sqrt(verdict_.blocks) : kNan;
-  values[2].value = valid() ? verdict_.blocks * interval_s() : kNan;
+      verdict_.blocks > 0.0 ? config_->std_dev / std::sqrt(verdict_.blocks) : kNaN;
+  values[2].value = valid() ? verdict_.blocks * interval_s() : kNaN;
 }
 
-AlarmState ChangeSource::own_alarm(std::size_t /*number*/) const noexcept {
-  AlarmState state;
+AlarmInput MeanChangeMethod::alarm_input(std::size_t /*number*/) const noexcept {
+  AlarmInput input;
   const double shift = verdict_.shift * config_->std_dev;
-  state.value = config_->mean + shift;
-  state.std_error = config_->std_dev / std::sqrt(std::fmax(verdict_.blocks, 1.0));
+  input.value = config_->mean + shift;
+  input.std_error = config_->std_dev / std::sqrt(std::fmax(verdict_.blocks, 1.0));
   if (!out_) {
-    state.reason = "its mean is what it was when all was well";
-    return state;
+    input.reason = "the mean is the healthy one";
+    return input;
   }
-  state.severity = config_->naming.level();
-  state.direction = shift > 0.0 ? std::int8_t{1} : std::int8_t{-1};
+  input.severity = config_->naming.level();
+  input.direction = shift > 0.0 ? std::int8_t{1} : std::int8_t{-1};
   std::snprintf(reason_, sizeof reason_, "%s has changed by %+.3g (+-%.1g) from %.6g, %.3g s ago",
-                config_->quantity.c_str(), shift, state.std_error, config_->mean,
+                config_->quantity.c_str(), shift, input.std_error, config_->mean,
                 verdict_.blocks * interval_s());
-  state.reason = reason_;
-  return state;
+  input.reason = reason_;
+  return input;
 }
 
-void ChangeSource::serialize_verdict(StateArchive& archive) {
+void MeanChangeMethod::serialize_verdict(StateArchive& archive) {
   archive.value(verdict_);
   archive.value(out_);
 }

@@ -1,25 +1,25 @@
-#include "estimator/fdi/block_source.h"
+#include "estimator/fdi/block_method.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace estimator::fdi {
 
-BlockSource::BlockSource(const std::vector<std::string>& quantities, double block_s,
-                         const Setting& setting, const std::string& where)
+BlockMethod::BlockMethod(const std::vector<std::string>& quantities, double block_s,
+                         const MethodContext& context, const std::string& where)
     : sums_(quantities.size()), means_(quantities.size()) {
   for (const std::string& quantity : quantities) {
-    inputs_.push_back(setting.inputs.find(quantity, where));
+    inputs_.push_back(context.inputs.find(quantity, where));
   }
   if (block_s > 0.0) {
-    length_ = std::max<std::int64_t>(1, std::llround(block_s / setting.sample_time_s));
-    interval_s_ = static_cast<double>(length_) * setting.sample_time_s;
+    length_ = std::max<std::int64_t>(1, std::llround(block_s / context.sample_time_s));
+    interval_s_ = static_cast<double>(length_) * context.sample_time_s;
   } else {
     interval_s_ = inputs_.front().interval_s();
   }
 }
 
-bool BlockSource::lose(std::int64_t periods) noexcept {
+bool BlockMethod::on_gap(std::int64_t periods) noexcept {
   samples_ += periods;
   if (length_ == 0 || samples_ < length_) return false;
   samples_ %= length_;
@@ -27,7 +27,7 @@ bool BlockSource::lose(std::int64_t periods) noexcept {
   return false;
 }
 
-bool BlockSource::push(const config::signals::Sample& /*sample*/, double /*y_m*/) noexcept {
+bool BlockMethod::push(const config::signals::Sample& /*sample*/, double /*y_m*/) noexcept {
   ++samples_;
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     if (!inputs_[i].fresh()) continue;
@@ -41,7 +41,7 @@ bool BlockSource::push(const config::signals::Sample& /*sample*/, double /*y_m*/
   return close();
 }
 
-bool BlockSource::close() noexcept {
+bool BlockMethod::close() noexcept {
   valid_ = true;
   unusable_ = nullptr;
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
@@ -56,17 +56,17 @@ bool BlockSource::close() noexcept {
   return true;
 }
 
-Finding BlockSource::find(std::span<NamedValue> values) noexcept {
+MethodOutput BlockMethod::evaluate(std::span<NamedValue> values) noexcept {
   show(values);
-  Finding found;
+  MethodOutput found;
   found.valid = valid_;
-  // Warming up is told as long as an input does so; one that never becomes usable is INVALID.
+  // Warming up lasts as long as an input warms up; an input that never becomes usable is INVALID.
   found.warming_up = warming_up_ && unusable_ != nullptr && unusable_->warming_up();
   found.reason = valid_ ? "" : unusable_ != nullptr ? unusable_->why() : "no block yet";
   return found;
 }
 
-void BlockSource::reset() {
+void BlockMethod::reset() {
   std::fill(sums_.begin(), sums_.end(), Sum{});
   samples_ = 0;
   valid_ = false;
@@ -75,13 +75,12 @@ void BlockSource::reset() {
   forget();
 }
 
-void BlockSource::serialize(StateArchive& archive) {
+void BlockMethod::serialize(StateArchive& archive) {
   archive.fixed(sums_);
   archive.fixed(means_);
   archive.value(samples_);
   archive.value(valid_);
   archive.value(warming_up_);
-  // Which input was unusable is told with the block, not later.
   serialize_state(archive);
 }
 

@@ -25,17 +25,17 @@ class AlarmLife : public testing::Test {
   }
   void cause(std::int64_t tick, std::size_t number, Severity severity = Severity::major) {
     pass(tick);
-    AlarmState state;
-    state.severity = severity;
-    state.tick = tick;
-    state.reason = severity == Severity::ok ? "inside" : "outside";
-    tell(book.set(number, state));
+    AlarmInput input;
+    input.severity = severity;
+    input.tick = tick;
+    input.reason = severity == Severity::ok ? "inside" : "outside";
+    tell(book.set(number, input));
   }
   void gone(std::int64_t tick, std::size_t number) { cause(tick, number, Severity::ok); }
   void tell(const Alarm* alarm) {
     if (alarm == nullptr) return;
     told.push_back(std::to_string(alarm->tick) + " " + alarm->name + " " +
-                   to_string(alarm->life()));
+                   to_string(alarm->state()));
   }
 
   AlarmBook book{1.0};

@@ -1,11 +1,12 @@
-#include "estimator/fdi/polynomial_source.h"
+#include "estimator/fdi/polynomial_method.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "config/schema/error.h"
-#include "estimator/fdi/engine.h"
+#include "estimator/fdi/detection_method.h"
+#include "estimator/fdi/estimation_method.h"
 #include "estimator/fdi/window_monitor.h"
 #include "estimator/structure.h"
 #include "estimator/structures/recursive_prediction_error.h"
@@ -13,9 +14,8 @@
 namespace estimator::fdi {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLongest_s = 1e6;
-constexpr int kLeastUpdates = 40;  // for each coefficient, before the first is believed
+constexpr int kLeastUpdates = 40;  ///< per coefficient, before the estimates are valid
 
 structures::RecursiveOptions options_of(const PolynomialConfig& config) {
   const std::string where = "[[polynomial]] " + config.id;
@@ -32,23 +32,23 @@ structures::RecursiveOptions options_of(const PolynomialConfig& config) {
   return out;
 }
 
-class PolynomialSource final : public Source {
+class PolynomialMethod final : public DetectionMethod {
  public:
-  PolynomialSource(const PolynomialConfig& config, const Setting& setting)
+  PolynomialMethod(const PolynomialConfig& config, const MethodContext& context)
       : config_(config),
         options_(options_of(config)),
         filter_(options_),
-        monitor_(static_cast<std::size_t>(samples_in(config.window_s, setting.sample_time_s))),
-        stride_(samples_in(config.stride_s, setting.sample_time_s)),
-        warmup_(static_cast<std::int64_t>(config.warmup_s / setting.sample_time_s)),
-        keep_(1.0 - 1.0 / samples_in(config.window_s, setting.sample_time_s)) {}
+        monitor_(static_cast<std::size_t>(samples_in(config.window_s, context.sample_time_s))),
+        stride_(samples_in(config.stride_s, context.sample_time_s)),
+        warmup_(static_cast<std::int64_t>(config.warmup_s / context.sample_time_s)),
+        keep_(1.0 - 1.0 / samples_in(config.window_s, context.sample_time_s)) {}
 
   [[nodiscard]] std::vector<std::string> names() const override {
     std::vector<std::string> out = options_.orders.names();
     out.emplace_back("residual_rms_m");
     return out;
   }
-  bool lose(std::int64_t periods) noexcept override {
+  bool on_gap(std::int64_t periods) noexcept override {
     filter_.gap();
     const auto length = static_cast<std::int64_t>(1.0 / (1.0 - keep_)) + 1;
     for (std::int64_t i = 0; i < std::min(periods, length); ++i) monitor_.push_missing();
@@ -56,7 +56,7 @@ class PolynomialSource final : public Source {
   }
   bool push(const config::signals::Sample& sample, double y_m) noexcept override {
     const double u_V = sample.u_applied_V;
-    if (!std::isfinite(u_V) || !std::isfinite(y_m)) return lose(1);
+    if (!std::isfinite(u_V) || !std::isfinite(y_m)) return on_gap(1);
     monitor_.push(u_V, sample.saturated);
     if (now_.excited) {
       if (filter_.push(u_V, y_m - config_.offset_m)) {
@@ -69,7 +69,7 @@ class PolynomialSource final : public Source {
     }
     return advance(1);
   }
-  Finding find(std::span<NamedValue> values) noexcept override {
+  MethodOutput evaluate(std::span<NamedValue> values) noexcept override {
     const int size = options_.orders.size();
     std::array<double, kMaxCoefficients> errors{};
     filter_.std_error(errors.data());
@@ -81,8 +81,8 @@ class PolynomialSource final : public Source {
       finite = finite && std::isfinite(v.value) && std::isfinite(v.std_error);
     }
     values[static_cast<std::size_t>(size)].value =
-        now_.weight > 0.0 ? std::sqrt(now_.energy_m2 / now_.weight) : kNan;
-    Finding out;
+        now_.weight > 0.0 ? std::sqrt(now_.energy_m2 / now_.weight) : kNaN;
+    MethodOutput out;
     out.reason = why_not(finite);
     out.valid = *out.reason == '\0';
     out.warming_up = now_.samples < warmup_;
@@ -156,8 +156,8 @@ void PolynomialConfig::visit(config::schema::Visitor& v) {
   v.number({"max_missing", "share of missing samples in a window"}, max_missing, {0.0, 1.0});
 }
 
-std::unique_ptr<Source> PolynomialConfig::make(const Setting& setting) const {
-  return std::make_unique<PolynomialSource>(*this, setting);
+std::unique_ptr<DetectionMethod> PolynomialConfig::make(const MethodContext& context) const {
+  return std::make_unique<PolynomialMethod>(*this, context);
 }
 
 }  // namespace estimator::fdi

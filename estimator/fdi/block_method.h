@@ -1,27 +1,28 @@
-// A source that works on block means of other values: estimates of overlapping windows are strongly
+// A detection method on block means of other values: estimates of overlapping windows are strongly
 // correlated, means over blocks as long as the window hardly are.
 //
-// A block is block_s of samples (0: every new value of the first input is one). Its mean of each
-// input is over the new, usable values in it; it counts when at least half of the new values were
-// usable. A block that a gap cuts is dropped. Blocks without means leave the test as it is.
+// A block is block_s of samples (0: each new value of the first input is a block). The mean of each
+// input is taken over the new, usable values in the block; the block is valid when at least half of
+// the new values were usable. A block cut by a gap is dropped. Blocks without means do not change
+// the test.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "estimator/fdi/source.h"
+#include "estimator/fdi/detection_method.h"
 
 namespace estimator::fdi {
 
-class BlockSource : public Source {
+class BlockMethod : public DetectionMethod {
  public:
   /// `where`: "[[cusum]] id", for messages.
-  BlockSource(const std::vector<std::string>& quantities, double block_s, const Setting& setting,
-              const std::string& where);
+  BlockMethod(const std::vector<std::string>& quantities, double block_s,
+              const MethodContext& context, const std::string& where);
 
-  bool lose(std::int64_t periods) noexcept final;
+  bool on_gap(std::int64_t periods) noexcept final;
   bool push(const config::signals::Sample& sample, double y_m) noexcept final;
-  Finding find(std::span<NamedValue> values) noexcept final;
+  MethodOutput evaluate(std::span<NamedValue> values) noexcept final;
   void reset() final;
   void serialize(StateArchive& archive) final;
   [[nodiscard]] double interval_s() const noexcept final { return interval_s_; }
@@ -32,7 +33,7 @@ class BlockSource : public Source {
   virtual void show(std::span<NamedValue> values) const noexcept = 0;
   virtual void forget() noexcept = 0;
   virtual void serialize_state(StateArchive& archive) = 0;
-  /// Nothing is known before the first block.
+  /// False before the first block.
   [[nodiscard]] bool valid() const noexcept { return valid_; }
 
  private:
@@ -43,7 +44,7 @@ class BlockSource : public Source {
   };
   [[nodiscard]] bool close() noexcept;
 
-  std::vector<Input> inputs_;
+  std::vector<MethodInput> inputs_;
   std::vector<Sum> sums_;
   std::vector<double> means_;
   std::int64_t length_ = 0;  ///< samples; 0: every new value
@@ -51,7 +52,7 @@ class BlockSource : public Source {
   double interval_s_;
   bool valid_ = false;
   bool warming_up_ = true;
-  const Input* unusable_ = nullptr;  ///< of the last block
+  const MethodInput* unusable_ = nullptr;  ///< of the last block
 };
 
 }  // namespace estimator::fdi

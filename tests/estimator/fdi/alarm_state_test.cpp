@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/estimator/fdi/alarm_life.h"
+#include "tests/estimator/fdi/alarm_fixture.h"
 
 namespace estimator::fdi {
 namespace {
@@ -16,7 +16,7 @@ TEST_F(AlarmLife, IsListedUntilSomebodyHasAcknowledgedIt) {
   cause(1, a);
   gone(5, a);
   EXPECT_EQ(book.active_count(), 0U);
-  EXPECT_EQ(book.alarm(a).life(), Life::returned);
+  EXPECT_EQ(book.alarm(a).state(), AlarmState::returned);
   pass(6);
   tell(book.acknowledge(a, "ann").changed);
   EXPECT_EQ(book.alarm(a).acknowledged_by, "ann");
@@ -69,11 +69,11 @@ TEST_F(AlarmLife, GraverThanWhatWasAcknowledgedIsNew) {
   cause(1, a, Severity::minor);
   book.acknowledge(a, "ann");
   cause(2, a, Severity::major);
-  EXPECT_EQ(book.alarm(a).life(), Life::unacknowledged);
+  EXPECT_EQ(book.alarm(a).state(), AlarmState::unacknowledged);
   book.acknowledge(a, "ann");
   cause(3, a, Severity::minor);
   cause(4, a, Severity::major);
-  EXPECT_EQ(book.alarm(a).life(), Life::acknowledged);
+  EXPECT_EQ(book.alarm(a).state(), AlarmState::acknowledged);
 }
 
 TEST_F(AlarmLife, OnTheShelfIsListedButNotActiveAndComesBackByItself) {
@@ -83,7 +83,7 @@ TEST_F(AlarmLife, OnTheShelfIsListedButNotActiveAndComesBackByItself) {
   tell(book.shelve(a, 10.0, "ann").changed);
   EXPECT_EQ(book.active_count(), 0U);
   book.for_each_active([](const Alarm&) { FAIL() << "sent again from the shelf"; });
-  EXPECT_EQ(book.lives().size(), 1U);
+  EXPECT_EQ(book.persisted_alarms().size(), 1U);
   pass(11);
   EXPECT_EQ(book.shelved_for_s(book.alarm(a)), 1.0);
   pass(12);
@@ -93,7 +93,7 @@ TEST_F(AlarmLife, OnTheShelfIsListedButNotActiveAndComesBackByItself) {
   tell(book.unshelve(a).changed);
   EXPECT_THAT(told, ElementsAre("1 a UNACKNOWLEDGED", "2 a SHELVED", "12 a UNACKNOWLEDGED",
                                 "12 a SHELVED", "14 a SHELVED", "14 a RETURNED"));
-  EXPECT_EQ(book.unshelve(a).refusal, "it is not shelved");
+  EXPECT_EQ(book.unshelve(a).refusal, "not shelved");
 }
 
 TEST_F(AlarmLife, IsNotShelvedForLongerThanItsLimit) {
@@ -102,11 +102,10 @@ TEST_F(AlarmLife, IsNotShelvedForLongerThanItsLimit) {
   const std::size_t a = declare("a", rules);
   rules.shelve_limit_s = 0.0;
   const std::size_t never = declare("never", rules);
-  EXPECT_EQ(book.shelve(a, 61.0, "ann").refusal,
-            "it can be shelved for 60 s at most (shelve_limit_s)");
+  EXPECT_EQ(book.shelve(a, 61.0, "ann").refusal, "shelving is limited to 60 s (shelve_limit_s)");
   EXPECT_EQ(book.shelve(a, 0.0, "ann").changed, nullptr);
   EXPECT_NE(book.shelve(a, 60.0, "ann").changed, nullptr);
-  EXPECT_EQ(book.shelve(never, 1.0, "ann").refusal, "it cannot be shelved (shelve_limit_s = 0)");
+  EXPECT_EQ(book.shelve(never, 1.0, "ann").refusal, "shelving is not allowed (shelve_limit_s = 0)");
 }
 
 TEST_F(AlarmLife, MarksTheFirstOfABurstUntilAllAreGoneAndAcknowledged) {
@@ -174,7 +173,7 @@ TEST_F(AlarmLife, ThatChattersIsOneLongAlarm) {
   }
   EXPECT_THAT(told, ElementsAre("0 a ACKNOWLEDGED", "5 a NORMAL", "10 a ACKNOWLEDGED",
                                 "15 a NORMAL", "20 a ACKNOWLEDGED"));
-  EXPECT_THAT(book.alarm(a).reason, testing::HasSubstr("chatters"));
+  EXPECT_THAT(book.alarm(a).reason, testing::HasSubstr("chattering"));
   pass(254);
   EXPECT_TRUE(book.alarm(a).active);
   pass(255);

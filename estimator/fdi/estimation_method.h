@@ -1,30 +1,30 @@
-// The three ways to estimate, behind one face: a batch per tumbling window, a sliding window, a
-// recursion. Samples come in already pre-processed.
+// Common interface of the estimation methods: a batch per tumbling window, a sliding window, a
+// recursion. Samples are preprocessed.
 #pragma once
 
 #include <memory>
 
 #include "estimator/estimate.h"
-#include "estimator/fdi/pipeline.h"
+#include "estimator/fdi/pipeline_config.h"
 #include "estimator/state_archive.h"
 
 namespace estimator::fdi {
 
-class Engine {
+class EstimationMethod {
  public:
-  virtual ~Engine() = default;
+  virtual ~EstimationMethod() = default;
   /// True when an estimate is due. A NaN is a missing sample.
   virtual bool push(double u_V, double y_m) noexcept = 0;
-  /// So many samples missing; true when an estimate became due meanwhile.
+  /// `samples` are missing; true when an estimate became due meanwhile.
   virtual bool gap(long long samples) noexcept = 0;
   virtual void reset() noexcept = 0;
   virtual void serialize(StateArchive& archive) = 0;
   [[nodiscard]] virtual Estimate estimate() const noexcept = 0;
 };
 
-/// The engine of `config.method`; `sample_time_s` after decimation. Throws schema::Error.
-[[nodiscard]] std::unique_ptr<Engine> make_engine(const EstimatorConfig& config,
-                                                  const Structure& structure, double sample_time_s);
+/// The method of `config.method`; `sample_time_s` after decimation. Throws schema::Error.
+[[nodiscard]] std::unique_ptr<EstimationMethod> make_estimation_method(
+    const EstimatorConfig& config, const Structure& structure, double sample_time_s);
 
 /// A time as a whole number of samples, at least 1.
 [[nodiscard]] int samples_in(double time_s, double sample_time_s) noexcept;

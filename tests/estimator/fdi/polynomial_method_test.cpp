@@ -1,6 +1,6 @@
 // [[polynomial]] in a pipeline: it follows a change of gain under coloured noise, keeps still
 // without excitation, and goes on bit for bit.
-#include "estimator/fdi/polynomial_source.h"
+#include "estimator/fdi/polynomial_method.h"
 
 #include <gtest/gtest.h>
 
@@ -70,7 +70,7 @@ void run(Pipeline& pipeline, Rod& rod, int samples, Last& seen) {
   for (int i = 0; i < samples; ++i) pipeline.process(rod.next(), seen);
 }
 
-TEST(PolynomialSource, FollowsGainAndNoiseModelAndFeedsBands) {
+TEST(PolynomialMethod, FollowsGainAndNoiseModelAndFeedsBands) {
   Pipeline pipeline(read(kArmax + "[[band]]\nid = 'gain'\nquantity = 'p.b1'\nlow = 1.8e-4\n"
                                   "high = 2.2e-4\n"),
                     kSampleTime_s);
@@ -93,7 +93,7 @@ TEST(PolynomialSource, FollowsGainAndNoiseModelAndFeedsBands) {
   EXPECT_EQ(seen.alarms[0].source, "p");
 }
 
-TEST(PolynomialSource, KeepsItsCoefficientsWhileNothingMoves) {
+TEST(PolynomialMethod, KeepsItsCoefficientsWhileNothingMoves) {
   Pipeline pipeline(read(kArmax), kSampleTime_s);
   Rod rod;
   Last seen;
@@ -107,7 +107,7 @@ TEST(PolynomialSource, KeepsItsCoefficientsWhileNothingMoves) {
   EXPECT_NEAR(seen.b1, before, 2e-6);
 }
 
-TEST(PolynomialSource, GoesOnBitForBitAfterASnapshot) {
+TEST(PolynomialMethod, GoesOnBitForBitAfterASnapshot) {
   const PipelineConfig config = read(kArmax);
   Pipeline one(config, kSampleTime_s);
   Pipeline two(config, kSampleTime_s);
@@ -129,7 +129,7 @@ TEST(PolynomialSource, GoesOnBitForBitAfterASnapshot) {
   EXPECT_EQ(seen.rms_m, other.rms_m);
 }
 
-TEST(PolynomialSource, RefusesWhatCannotBe) {
+TEST(PolynomialMethod, RefusesWhatCannotBe) {
   for (const char* bad :
        {"structure = 'armax11'", "structure = 'oe121'\nmethod = 'extended-least-squares'"}) {
     const std::string text = "[[polynomial]]\nid = 'p'\n" + std::string(bad) + "\n";

@@ -1,4 +1,4 @@
-// How the lives of a book outlast it: as a list after a restart, as every bit in a snapshot.
+// Persistence of alarm states: as a list across restarts, bit for bit in a snapshot.
 #include <algorithm>
 #include <utility>
 
@@ -7,7 +7,8 @@
 namespace estimator::fdi {
 namespace {
 
-/// An alarm acknowledged before the restart stays so when its cause is found again this soon.
+/// An alarm acknowledged before the restart stays acknowledged when its cause is found again within
+/// this time.
 constexpr double kResume_s = 60.0;
 
 void serialize_fault_name(StateArchive& archive, Alarm& alarm) {
@@ -23,67 +24,68 @@ void serialize_fault_name(StateArchive& archive, Alarm& alarm) {
 
 }  // namespace
 
-std::vector<SavedLife> AlarmBook::lives() const {
-  std::vector<SavedLife> lives;
+std::vector<PersistedAlarm> AlarmBook::persisted_alarms() const {
+  std::vector<PersistedAlarm> persisted;
   for (const Alarm& alarm : alarms_) {
-    if (alarm.life() == Life::normal) continue;
-    SavedLife life;
-    life.source = alarm.source;
-    life.name = alarm.name;
-    life.reason = alarm.reason;
-    life.acknowledged_by = alarm.acknowledged_by;
-    life.shelved_by = alarm.shelved_by;
-    life.severity = alarm.severity;
-    life.direction = alarm.direction;
-    life.active = alarm.active;
-    life.latched = alarm.latched;
-    life.acknowledged = alarm.acknowledged;
-    life.first_up = alarm.first_up;
-    life.value = alarm.value;
-    life.shelved_for_s = shelved_for_s(alarm);
-    life.came_utc_us = alarm.came_utc_us;
-    life.times = alarm.times;
-    lives.push_back(std::move(life));
+    if (alarm.state() == AlarmState::normal) continue;
+    PersistedAlarm saved;
+    saved.source = alarm.source;
+    saved.name = alarm.name;
+    saved.reason = alarm.reason;
+    saved.acknowledged_by = alarm.acknowledged_by;
+    saved.shelved_by = alarm.shelved_by;
+    saved.severity = alarm.severity;
+    saved.direction = alarm.direction;
+    saved.active = alarm.active;
+    saved.latched = alarm.latched;
+    saved.acknowledged = alarm.acknowledged;
+    saved.first_up = alarm.first_up;
+    saved.value = alarm.value;
+    saved.shelved_for_s = shelved_for_s(alarm);
+    saved.came_utc_us = alarm.came_utc_us;
+    saved.times = alarm.times;
+    persisted.push_back(std::move(saved));
   }
-  return lives;
+  return persisted;
 }
 
-void AlarmBook::restore(const std::vector<SavedLife>& lives) {
-  for (const SavedLife& life : lives) {
-    std::size_t number = find(life.source + "." + life.name);
-    if (number == kNone && (life.source == "loop" || life.source == "recorder")) {
+void AlarmBook::restore(const std::vector<PersistedAlarm>& alarms) {
+  for (const PersistedAlarm& saved : alarms) {
+    std::size_t number = find(saved.source + "." + saved.name);
+    if (number == kNone && (saved.source == "loop" || saved.source == "recorder")) {
       Alarm alarm;
-      alarm.source = life.source;
-      alarm.name = life.name;
+      alarm.source = saved.source;
+      alarm.name = saved.name;
       alarm.rules = condition_rules_;
       number = declare(std::move(alarm));
     }
     if (number == kNone) continue;
     Alarm& alarm = alarms_[number];
     Memory& memory = memories_[number];
-    alarm.reason = life.reason;
-    alarm.came_utc_us = life.came_utc_us;
-    alarm.times = life.times;
-    alarm.first_up = life.first_up && !life.acknowledged;
-    alarm.value = life.value;
-    alarm.acknowledged_by = life.acknowledged_by;
+    alarm.reason = saved.reason;
+    alarm.came_utc_us = saved.came_utc_us;
+    alarm.times = saved.times;
+    alarm.first_up = saved.first_up && !saved.acknowledged;
+    alarm.value = saved.value;
+    alarm.acknowledged_by = saved.acknowledged_by;
     const bool needs_a_person = alarm.rules.acknowledge || alarm.rules.latch;
-    alarm.acknowledged = life.acknowledged || !needs_a_person;
-    // Its cause is not known yet: only a latch makes it active.
-    if (life.active && alarm.rules.latch && !alarm.acknowledged) {
+    alarm.acknowledged = saved.acknowledged || !needs_a_person;
+    // The cause is not known yet: only a latch keeps the alarm active.
+    if (saved.active && alarm.rules.latch && !alarm.acknowledged) {
       alarm.active = alarm.latched = true;
-      alarm.severity = life.severity;
-      alarm.direction = life.direction;
+      alarm.severity = saved.severity;
+      alarm.direction = saved.direction;
     }
-    if (life.active) {
+    if (saved.active) {
       memory.resumes_known = true;
       memory.resume_until = tick_ + ticks(kResume_s);
-      if (alarm.acknowledged) memory.seen = life.severity;
+      if (alarm.acknowledged) memory.seen = saved.severity;
     }
-    if (life.shelved_for_s > 0.0 && alarm.rules.shelve_limit_s > 0.0) {
+    if (saved.shelved_for_s > 0.0 && alarm.rules.shelve_limit_s > 0.0) {
       alarm.shelved = true;
-      alarm.shelved_by = life.shelved_by;
-      alarm.shelved_until = tick_ + ticks(std::min(life.shelved_for_s, alarm.rules.shelve_limit_s));
+      alarm.shelved_by = saved.shelved_by;
+      alarm.shelved_until =
+          tick_ + ticks(std::min(saved.shelved_for_s, alarm.rules.shelve_limit_s));
       memory.timed = true;
     }
   }
@@ -137,18 +139,18 @@ void AlarmBook::adopt_conditions(const AlarmBook& before) {
   }
 }
 
-void AlarmBook::show(std::size_t number, const Alarm& told) {
+void AlarmBook::force_state(std::size_t number, const Alarm& recorded) {
   Alarm& alarm = alarms_[number];
-  alarm.active = told.active;
-  alarm.severity = told.severity;
-  alarm.direction = told.direction;
-  alarm.latched = told.latched;
-  alarm.acknowledged = told.acknowledged;
-  alarm.shelved = told.shelved;
-  alarm.first_up = told.first_up;
-  alarm.tick = told.tick;
-  alarm.value = told.value;
-  alarm.reason = told.reason;
+  alarm.active = recorded.active;
+  alarm.severity = recorded.severity;
+  alarm.direction = recorded.direction;
+  alarm.latched = recorded.latched;
+  alarm.acknowledged = recorded.acknowledged;
+  alarm.shelved = recorded.shelved;
+  alarm.first_up = recorded.first_up;
+  alarm.tick = recorded.tick;
+  alarm.value = recorded.value;
+  alarm.reason = recorded.reason;
   memories_[number].timed = false;
   recount();
   ++changes_;

@@ -1,8 +1,7 @@
-#include "estimator/fdi/engine.h"
+#include "estimator/fdi/estimation_method.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "estimator/preprocess.h"
@@ -12,10 +11,10 @@
 namespace estimator::fdi {
 namespace {
 
-/// Sliding by `stride`; with stride = window it is a batch for each tumbling window.
-class WindowEngine final : public Engine {
+/// Slides by `stride`; with stride = window, a batch for each tumbling window.
+class WindowedMethod final : public EstimationMethod {
  public:
-  explicit WindowEngine(const SlidingConfig& config) : window_(config) {}
+  explicit WindowedMethod(const SlidingConfig& config) : window_(config) {}
   bool push(double u_V, double y_m) noexcept override { return window_.push(u_V, y_m); }
   bool gap(long long samples) noexcept override { return window_.gap(samples); }
   void reset() noexcept override { window_.reset(); }
@@ -26,18 +25,18 @@ class WindowEngine final : public Engine {
   SlidingWindow window_;
 };
 
-/// A batch for each tumbling window with its mean or straight line taken out of u and y. The first
-/// rows of a window have no history, since the window before has another trend.
-class DetrendedBatch final : public Engine {
+/// A batch for each tumbling window, with mean or straight line removed from u and y. The first
+/// rows of a window have no history, since the previous window has another trend.
+class DetrendedBatchMethod final : public EstimationMethod {
  public:
-  DetrendedBatch(const SlidingConfig& config, bool linear)
+  DetrendedBatchMethod(const SlidingConfig& config, bool linear)
       : window_(config), linear_(linear), length_(config.window) {
     u_V_.reserve(length_);
     y_m_.reserve(length_);
   }
   bool push(double u_V, double y_m) noexcept override {
     u_V_.push_back(u_V);
-    y_m_.push_back(std::isfinite(u_V) ? y_m : std::numeric_limits<double>::quiet_NaN());
+    y_m_.push_back(std::isfinite(u_V) ? y_m : kNaN);
     if (u_V_.size() < length_) return false;
     finish();
     return true;
@@ -46,8 +45,7 @@ class DetrendedBatch final : public Engine {
     bool due = false;
     const auto lost = static_cast<std::size_t>(samples) % length_ +
                       (static_cast<std::size_t>(samples) >= length_ ? length_ : 0U);
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    for (std::size_t i = 0; i < lost; ++i) due = push(kNan, kNan) || due;
+    for (std::size_t i = 0; i < lost; ++i) due = push(kNaN, kNaN) || due;
     return due;
   }
   void reset() noexcept override {
@@ -87,9 +85,9 @@ class DetrendedBatch final : public Engine {
   Estimate estimate_;
 };
 
-class RecursiveEngine final : public Engine {
+class RecursiveMethod final : public EstimationMethod {
  public:
-  RecursiveEngine(const RecursiveConfig& config, int stride)
+  RecursiveMethod(const RecursiveConfig& config, int stride)
       : recursion_(config), stride_(stride) {}
   bool push(double u_V, double y_m) noexcept override {
     recursion_.push(u_V, y_m);
@@ -128,8 +126,9 @@ int samples_in(double time_s, double sample_time_s) noexcept {
   return static_cast<int>(std::clamp(std::round(time_s / sample_time_s), 1.0, 1e8));
 }
 
-std::unique_ptr<Engine> make_engine(const EstimatorConfig& config, const Structure& structure,
-                                    double sample_time_s) {
+std::unique_ptr<EstimationMethod> make_estimation_method(const EstimatorConfig& config,
+                                                         const Structure& structure,
+                                                         double sample_time_s) {
   Limits limits;
   limits.max_condition = config.max_condition;
   const int window = samples_in(config.window_s, sample_time_s);
@@ -143,14 +142,14 @@ std::unique_ptr<Engine> make_engine(const EstimatorConfig& config, const Structu
         config.first_batch_s > 0.0 ? samples_in(config.first_batch_s, sample_time_s) : 0;
     recursive.gate_window = window;
     recursive.limits = limits;
-    return std::make_unique<RecursiveEngine>(recursive, stride);
+    return std::make_unique<RecursiveMethod>(recursive, stride);
   }
   const SlidingConfig sliding{structure, window, config.method == "sliding" ? stride : window,
                               limits};
   if (config.detrend != "none") {
-    return std::make_unique<DetrendedBatch>(sliding, config.detrend == "linear");
+    return std::make_unique<DetrendedBatchMethod>(sliding, config.detrend == "linear");
   }
-  return std::make_unique<WindowEngine>(sliding);
+  return std::make_unique<WindowedMethod>(sliding);
 }
 
 }  // namespace estimator::fdi

@@ -1,7 +1,7 @@
 // The life of an alarm through a restart and under new rules.
 #include <gmock/gmock.h>
 
-#include "tests/estimator/fdi/alarm_life.h"
+#include "tests/estimator/fdi/alarm_fixture.h"
 
 namespace estimator::fdi {
 namespace {
@@ -23,7 +23,7 @@ TEST_F(AlarmRestart, SurvivesARestartAsFarAsItMatters) {
   book.acknowledge(0, "ann");
   book.shelve(3, 100.0, "bob");
   pass(41);
-  const std::vector<SavedLife> lives = book.lives();
+  const std::vector<PersistedAlarm> lives = book.persisted_alarms();
   ASSERT_EQ(lives.size(), 4U);
 
   book = AlarmBook(1.0);
@@ -32,11 +32,11 @@ TEST_F(AlarmRestart, SurvivesARestartAsFarAsItMatters) {
   }
   told.clear();
   book.restore(lives);
-  EXPECT_EQ(book.alarm(0).life(), Life::normal) << "until its cause is found again";
-  EXPECT_EQ(book.alarm(1).life(), Life::returned);
-  EXPECT_EQ(book.alarm(2).life(), Life::latched);
-  EXPECT_EQ(book.alarm(3).life(), Life::shelved);
-  EXPECT_EQ(book.alarm(4).life(), Life::normal);
+  EXPECT_EQ(book.alarm(0).state(), AlarmState::normal) << "until its cause is found again";
+  EXPECT_EQ(book.alarm(1).state(), AlarmState::returned);
+  EXPECT_EQ(book.alarm(2).state(), AlarmState::latched);
+  EXPECT_EQ(book.alarm(3).state(), AlarmState::shelved);
+  EXPECT_EQ(book.alarm(4).state(), AlarmState::normal);
   EXPECT_EQ(book.active_count(), 1U);
   EXPECT_EQ(book.alarm(3).shelved_by, "bob");
   cause(5, 0);
@@ -71,10 +71,10 @@ TEST_F(AlarmRestart, GoesOnUnderNewRules) {
   declare("latched", latching);
   declare("active");
   book.inherit(before);
-  EXPECT_EQ(book.alarm(0).life(), Life::normal);
-  EXPECT_EQ(book.alarm(1).life(), Life::shelved);
-  EXPECT_EQ(book.alarm(2).life(), Life::latched);
-  EXPECT_EQ(book.alarm(3).life(), Life::acknowledged);
+  EXPECT_EQ(book.alarm(0).state(), AlarmState::normal);
+  EXPECT_EQ(book.alarm(1).state(), AlarmState::shelved);
+  EXPECT_EQ(book.alarm(2).state(), AlarmState::latched);
+  EXPECT_EQ(book.alarm(3).state(), AlarmState::acknowledged);
   EXPECT_EQ(book.active_count(), 2U);
   cause(11, 3);
   EXPECT_THAT(told, IsEmpty()) << "it is still the same alarm";

@@ -1,7 +1,6 @@
-#include "estimator/fdi/stage.h"
+#include "estimator/fdi/estimator_channel.h"
 
 #include <cmath>
-#include <limits>
 
 #include "config/schema/error.h"
 
@@ -10,8 +9,6 @@ namespace {
 
 using config::schema::bad_config;
 using config::schema::Error;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 PreprocessConfig preprocess_config(const EstimatorConfig& config, double sample_time_s) {
   PreprocessConfig out;
@@ -27,7 +24,7 @@ PreprocessConfig preprocess_config(const EstimatorConfig& config, double sample_
   return out;
 }
 
-/// Errors of the estimator library, which knows no file, with the place.
+/// Adds the place to errors of the estimator library, which knows no file.
 template <class F>
 auto in_table(const EstimatorConfig& config, F&& make) {
   try {
@@ -39,84 +36,86 @@ auto in_table(const EstimatorConfig& config, F&& make) {
 
 }  // namespace
 
-Stage::Stage(const EstimatorConfig& config, double sample_time_s)
+EstimatorChannel::EstimatorChannel(const EstimatorConfig& config, double sample_time_s)
     : config_(config),
       structure_(
           in_table(config, [&] { return parse_structure(config.structure, config.constant); })),
       preprocess_(
           in_table(config, [&] { return Preprocess(preprocess_config(config, sample_time_s)); })),
-      fresh_(preprocess_),
-      engine_(in_table(config,
+      initial_preprocess_(preprocess_),
+      method_(in_table(config,
                        [&] {
-                         return make_engine(config, structure_,
-                                            sample_time_s * static_cast<double>(config.decimation));
+                         return make_estimation_method(
+                             config, structure_,
+                             sample_time_s * static_cast<double>(config.decimation));
                        })),
       monitor_(static_cast<std::size_t>(
           samples_in(config.window_s, sample_time_s * static_cast<double>(config.decimation)))),
-      warmup_samples_(std::llround(config.warmup_s / sample_time_s)),
-      previous_y_m_(kNan) {
+      warmup_samples_(std::llround(config.warmup_s / sample_time_s)) {
   if (config.detrend != "none" && config.method != "batch") {
     throw bad_config("[[estimator]] " + config.id + ": detrend",
                      "needs whole windows, the method is " + config.method, "method = \"batch\"");
   }
 }
 
-bool Stage::lose(std::int64_t periods) noexcept {
+bool EstimatorChannel::on_gap(std::int64_t periods) noexcept {
   samples_ += periods;
-  previous_y_m_ = kNan;
+  previous_y_m_ = kNaN;
   saturated_ = false;
   const std::int64_t lost = preprocess_.gap(periods);
   if (lost == 0) return false;
   for (std::int64_t i = 0; i < lost && !(i > 0 && monitor_.missing_share() >= 1.0); ++i) {
     monitor_.push_missing();
   }
-  return engine_->gap(lost);
+  return method_->gap(lost);
 }
 
-bool Stage::push(double u_V, double y_m, bool saturated) noexcept {
+bool EstimatorChannel::push(const config::signals::Sample& sample, double y_m) noexcept {
   ++samples_;
-  saturated_ = saturated_ || saturated;
-  if (!preprocess_.push(u_V, y_m)) return false;
+  saturated_ = saturated_ || sample.saturated;
+  if (!preprocess_.push(sample.u_applied_V, y_m)) return false;
   const bool due = feed(preprocess_.u_V(), preprocess_.y_m(), saturated_);
   saturated_ = false;
   return due;
 }
 
-bool Stage::feed(double u_V, double y_m, bool saturated) noexcept {
+bool EstimatorChannel::feed(double u_V, double y_m, bool saturated) noexcept {
   if (!std::isfinite(u_V) || !std::isfinite(y_m)) {
     monitor_.push_missing();
-    previous_y_m_ = kNan;
-    return engine_->push(kNan, kNan);
+    previous_y_m_ = kNaN;
+    return method_->push(kNaN, kNaN);
   }
   monitor_.push(u_V, saturated);
-  if (!config_.increments) return engine_->push(u_V, y_m);
+  if (!config_.increments) return method_->push(u_V, y_m);
   const double increment_m = y_m - previous_y_m_;
   previous_y_m_ = y_m;
-  return engine_->push(u_V, increment_m);
+  return method_->push(u_V, increment_m);
 }
 
-void Stage::reset() {
-  preprocess_ = fresh_;
-  engine_->reset();
+void EstimatorChannel::reset() {
+  preprocess_ = initial_preprocess_;
+  method_->reset();
   monitor_.reset();
   samples_ = 0;
-  previous_y_m_ = kNan;
+  previous_y_m_ = kNaN;
   saturated_ = false;
 }
 
-void Stage::serialize(StateArchive& archive) {
+void EstimatorChannel::serialize(StateArchive& archive) {
   archive.value(preprocess_);
-  engine_->serialize(archive);
+  method_->serialize(archive);
   monitor_.serialize(archive);
   archive.value(samples_);
   archive.value(previous_y_m_);
   archive.value(saturated_);
 }
 
-bool Stage::warming_up() const noexcept { return samples_ <= warmup_samples_ || !monitor_.full(); }
+bool EstimatorChannel::warming_up() const noexcept {
+  return samples_ <= warmup_samples_ || !monitor_.full();
+}
 
-Estimate Stage::estimate() const noexcept {
-  Estimate found = engine_->estimate();
+Estimate EstimatorChannel::estimate() const noexcept {
+  Estimate found = method_->estimate();
   Reason reason = found.valid ? Reason::none : found.reason;
   if (!monitor_.full()) {
     reason = Reason::too_short;
@@ -130,6 +129,19 @@ Estimate Stage::estimate() const noexcept {
   found.valid = reason == Reason::none;
   found.reason = reason;
   return found;
+}
+
+MethodOutput EstimatorChannel::evaluate(std::span<NamedValue> values) noexcept {
+  const Estimate found = estimate();
+  const int size = structure_.size();
+  for (int i = 0; i < size; ++i) {
+    NamedValue& v = values[static_cast<std::size_t>(i)];
+    v.value = i < found.size ? found.value[i] : kNaN;
+    v.std_error = i < found.size ? found.std_error[i] : kNaN;
+  }
+  values[static_cast<std::size_t>(size)].value = found.residual_rms_m;
+  values[static_cast<std::size_t>(size) + 1].value = found.condition;
+  return {found.valid, warming_up(), to_string(found.reason), found.condition, found.samples};
 }
 
 }  // namespace estimator::fdi
