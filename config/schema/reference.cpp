@@ -1,8 +1,8 @@
 #include "config/schema/reference.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <set>
 
@@ -12,9 +12,10 @@ namespace config::schema {
 namespace {
 
 std::string shown(double value) {
+  constexpr int kDigits = 12;
   char buffer[32];
-  const auto result = std::to_chars(std::begin(buffer), std::end(buffer), value);
-  return {std::begin(buffer), result.ptr};
+  std::snprintf(buffer, sizeof buffer, "%.*g", kDigits, value);
+  return buffer;
 }
 
 /// "0 to 10", "0 and more", "" for any number.
@@ -40,6 +41,12 @@ std::string allowed_in(Range range) {
 
 std::string code(const std::string& text) { return "`" + text + "`"; }
 
+std::string codes(const std::vector<std::string>& texts) {
+  std::string list;
+  for (const std::string& one : texts) list += (list.empty() ? "" : ", ") + code(one);
+  return list;
+}
+
 std::string cell(std::string text) {
   for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) {
     text.insert(at, "\\");
@@ -49,7 +56,7 @@ std::string cell(std::string text) {
 
 struct Row {
   std::string table;  ///< dotted path
-  std::string key;
+  std::string key;    ///< empty: the table itself
   std::string type;
   std::string allowed;
   std::string otherwise;  ///< its default
@@ -95,19 +102,20 @@ class Collector final : public Visitor {
   }
   void text(Key key, std::string& value) override {
     const std::string before = value;
+    std::string list;
     for (const Alternatives& text : texts_) {
-      if (text.key == key.name) choose(key, value, text.values);
+      if (text.key != key.name && text.key != below(key)) continue;
+      list = codes(text.values);
+      choose(key, value, text.values);
+      break;
     }
-    add(key, "text", "", before.empty() ? "" : '"' + before + '"');
+    add(key, "text", list, before.empty() ? "" : '"' + before + '"');
   }
   void choice(Key key, std::string& value, const std::vector<std::string_view>& allowed) override {
     const std::string before = value;
     choose(key, value, {allowed.begin(), allowed.end()});
-    std::string list;
-    for (const std::string_view one : allowed) {
-      list += (list.empty() ? "" : ", ") + code(std::string(one));
-    }
-    add(key, "text", list, before.empty() ? "" : '"' + before + '"');
+    add(key, "text", codes({allowed.begin(), allowed.end()}),
+        before.empty() ? "" : '"' + before + '"');
   }
   void numbers(Key key, std::vector<double>& value, Range range) override {
     std::string list;
@@ -145,6 +153,7 @@ class Collector final : public Visitor {
                              std::string(key.what)});
   }
   void nested(Key key, const std::string& open, const std::string& close, const Body& body) {
+    listing_.rows.push_back({below(key), "", "", "", "", ""});
     listing_.tables.push_back({below(key), open + below(key) + close, std::string(key.what)});
     Collector inner(listing_, assignments_, texts_, below(key));
     body(inner);
@@ -168,24 +177,28 @@ class Reference {
     std::string text;
     for (const Table& table : tables_) {
       std::vector<const Row*> rows;
+      const Row* itself = nullptr;
       for (const Row& row : rows_) {
-        if (row.table == table.path) rows.push_back(&row);
+        if (row.table != table.path) continue;
+        if (row.key.empty()) {
+          itself = &row;
+        } else {
+          rows.push_back(&row);
+        }
       }
       if (rows.empty()) continue;
-      const std::string shared = condition(*rows.front());
-      const bool all = std::all_of(rows.begin(), rows.end(),
-                                   [&](const Row* row) { return condition(*row) == shared; });
       text += '\n' + hashes + ' ' + (table.path.empty() ? "Top of the file" : code(table.heading));
       text += "\n\n";
       std::string intro = table.what;
-      if (all && !shared.empty()) intro += (intro.empty() ? "" : "; ") + ("with " + shared);
+      const std::string shared = itself == nullptr ? "" : condition(*itself, nullptr);
+      if (!shared.empty()) intro += (intro.empty() ? "" : "; ") + ("with " + shared);
       if (!intro.empty()) {
         intro.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(intro.front())));
         text += intro + ".\n\n";
       }
       text += "| key | type, unit | allowed | default | meaning |\n|---|---|---|---|---|\n";
       for (const Row* row : rows) {
-        const std::string when = all ? "" : condition(*row);
+        const std::string when = condition(*row, itself);
         const std::string meaning =
             row->what + (when.empty() ? "" : (row->what.empty() ? "" : "; ") + ("with " + when));
         text += "| " + code(row->key) + " | " + row->type + " | " + cell(row->allowed) + " | " +
@@ -256,13 +269,22 @@ class Reference {
     std::vector<std::string> all;
   };
 
-  /// "`plant` velocity_servo", "" for a key that is always read.
-  [[nodiscard]] std::string condition(const Row& row) const {
+  /// "`plant` = "velocity_servo"", "" for a key that is always read; what its table says of the
+  /// same choice is left out.
+  [[nodiscard]] std::string condition(const Row& row, const Row* table) const {
     const auto found = conditions_.find(row);
     if (found == conditions_.end()) return "";
+    const auto shared = table == nullptr ? conditions_.end() : conditions_.find(*table);
     std::map<std::string, std::string> by_key;  // last part of the path -> whole condition
     std::vector<std::string> order;
     for (const Condition& one : found->second) {
+      const auto same = [&](const Condition& other) {
+        return other.path == one.path && other.values == one.values;
+      };
+      if (shared != conditions_.end() &&
+          std::any_of(shared->second.begin(), shared->second.end(), same)) {
+        continue;
+      }
       const std::string key = one.path.substr(one.path.rfind('.') + 1);
       const bool again = by_key.count(key) > 0;
       const bool beside = one.path.substr(0, one.path.size() - key.size()) ==

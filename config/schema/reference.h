@@ -8,9 +8,9 @@
 
 namespace config::schema {
 
-/// Values worth trying for each text field of this name, where other fields depend on them.
+/// Values allowed for a text field on which other fields depend.
 struct Alternatives {
-  std::string key;
+  std::string key;  ///< of every field of this name, or of one: its dotted path
   std::vector<std::string> values;
 };
 
