@@ -14,18 +14,19 @@ namespace {
 
 using config::schema::Visitor;
 
-/// Keys whose values are paths that start from the configuration's folder.
+/// Keys whose values are paths relative to the configuration's folder.
 constexpr const char* kPathKeys[] = {
     "sim.model",      "replay.record",   "reference.file", "bands_file",      "recorder.folder",
     "control.socket", "rig.calibration", "alarms.folder",  "evidence.folder", "model.file"};
 
-/// Keys that say how valve and rod sensor are wired and what their signals mean.
+/// Keys that define the wiring and the signals of valve and rod sensors.
 constexpr const char* kWiringKeys[] = {
     "backend", "channel",      "address",          "function",    "type",      "order", "scale",
     "offset",  "sign",         "polarity",         "scale_ratio", "offset_V",  "mode",  "line_a",
     "line_b",  "resolution_m", "counts_per_metre", "range",       "subdevice", "role",  "unit"};
 
-/// A command that stays at the valve for ever needs someone else who takes it away.
+/// Throws when the valve would keep its last command after the daemon's death and nothing else
+/// commands null.
 void refuse_without_watchdog(const DaemonConfig& config) {
   const bool covered = config.rig.harmless() || config.rig.has_permit() ||
                        std::isfinite(config.rig.null_times().process_dead_s) ||
@@ -35,12 +36,12 @@ void refuse_without_watchdog(const DaemonConfig& config) {
         config.file + ": [valve] backend",
         "is \"" + config.rig.valve().backend +
             "\", which keeps its last command when this process dies",
-        "with a command time-out of the device, with a [permit] output for a watchdog relay, or "
-        "with [valve] accept_no_hardware_watchdog = true");
+        "a device with a command time-out, a [permit] output for a watchdog relay, or "
+        "[valve] accept_no_hardware_watchdog = true");
   }
 }
 
-/// "key=value" with the value made absolute where the key names a file.
+/// Makes the value of a "key=value" assignment absolute where the key names a file.
 std::string from_here(const std::string& assignment) {
   const std::size_t equals = assignment.find('=');
   const std::string key = assignment.substr(0, equals);
@@ -58,15 +59,16 @@ std::string from_here(const std::string& assignment) {
 }  // namespace
 
 void DaemonConfig::visit_what_determines_the_data(Visitor& v) {
-  v.table({"rig", "which rig this is"}, [this](Visitor& t) {
-    t.text({"id", "its name in messages"}, rig_id);
-    t.text({"calibration", "file that commissioning wrote; needed to arm what moves"}, calibration);
+  v.table({"rig", "identity of the rig"}, [this](Visitor& t) {
+    t.text({"id", "name in messages"}, rig_id);
+    t.text({"calibration", "file written by commissioning; required to arm a real rig"},
+           calibration);
   });
   v.table({"loop", "the control loop"}, [this](Visitor& t) { loop.visit(t); });
   rig.visit(v);
   if (drives_valve()) {
-    v.table({"reference", "the motion"}, [this](Visitor& t) { reference.visit(t); });
-    v.table({"controller", "the control law"}, [this](Visitor& t) { controller.visit(t); });
+    v.table({"reference", "reference signal"}, [this](Visitor& t) { reference.visit(t); });
+    v.table({"controller", "position controller"}, [this](Visitor& t) { controller.visit(t); });
   }
   safety.visit(v);
   pipeline.visit(v);
@@ -74,14 +76,16 @@ void DaemonConfig::visit_what_determines_the_data(Visitor& v) {
 
 void DaemonConfig::visit(Visitor& v) {
   visit_what_determines_the_data(v);
-  v.table({"model", "the physics of the healthy rig"}, [this](Visitor& t) {
-    t.text({"file", "model file that `spoolwatch promote` keeps up to date"}, model);
+  v.table({"model", "physical model of the healthy rig"}, [this](Visitor& t) {
+    t.text({"file", "model file that `spoolwatch promote` updates"}, model);
   });
-  v.table({"control", "who may look and act"}, [this](Visitor& t) { control.visit(t); });
-  v.table({"alarms", "what becomes of alarms"}, [this](Visitor& t) { alarms.visit(t); });
-  v.table({"evidence", "kept of each alarm"}, [this](Visitor& t) { evidence.visit(t); });
-  v.table({"lcm", "where messages go"}, [this](Visitor& t) { lcm.visit(t); });
-  v.table({"recorder", "where logs go"}, [this](Visitor& t) { recorder.visit(t); });
+  v.table({"control", "access over the control socket"}, [this](Visitor& t) { control.visit(t); });
+  v.table({"alarms", "persistence, audit and rules of alarms"},
+          [this](Visitor& t) { alarms.visit(t); });
+  v.table({"evidence", "evidence folders, one per alarm"},
+          [this](Visitor& t) { evidence.visit(t); });
+  v.table({"lcm", "LCM output"}, [this](Visitor& t) { lcm.visit(t); });
+  v.table({"recorder", "LCM event logs"}, [this](Visitor& t) { recorder.visit(t); });
 }
 
 void load(const std::filesystem::path& file, const std::vector<std::string>& assignments,
@@ -99,7 +103,7 @@ void load(const std::filesystem::path& file, const std::vector<std::string>& ass
   refuse_without_watchdog(config);
   if (config.loop.auto_arm && !config.rig.harmless()) {
     throw config::schema::bad_config(config.file + ": [loop] auto_arm",
-                                     "is true on a rig that moves something real", "false");
+                                     "is true on a rig with real devices", "false");
   }
 }
 
@@ -121,16 +125,16 @@ std::string never_arms(DaemonConfig& config) {
 
 std::string wiring(DaemonConfig& config) {
   std::istringstream lines(config::schema::print_toml([&](Visitor& v) { config.rig.visit(v); }));
-  std::string text;   // of all tables that count
-  std::string table;  // the lines that count of this one
+  std::string text;   // all tables that count
+  std::string table;  // relevant lines of the current table
   bool counts = false;
-  const auto take = [&] {
+  const auto finish_table = [&] {
     if (counts) text += table;
     table.clear();
   };
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with('[')) {
-      take();
+      finish_table();
       // Lists hold auxiliary inputs and outputs.
       counts = !line.starts_with("[[") && line != "[permit]";
       table = line + '\n';
@@ -145,7 +149,7 @@ std::string wiring(DaemonConfig& config) {
       table += line + '\n';
     }
   }
-  take();
+  finish_table();
   return config::schema::hash_text(config::schema::hash_of(text));
 }
 

@@ -56,7 +56,7 @@ TEST_F(AlarmCommandServerTest, CarriesOutWhatIsOrderedAndTellsWhatHasChanged) {
 
 TEST_F(AlarmCommandServerTest, RefusesInWords) {
   book_.set_condition("s", "a", Severity::minor, true, "", 1);
-  EXPECT_THAT(command(Kind::acknowledge, "x").reject_reason, HasSubstr("there is no alarm \"x\""));
+  EXPECT_THAT(command(Kind::acknowledge, "x").reject_reason, HasSubstr("no alarm \"x\""));
   EXPECT_EQ(command(Kind::unshelve, "a").reject_reason, "s.a: it is not shelved");
   EXPECT_THAT(command(Kind::shelve, "a", 1e9).reject_reason,
               HasSubstr("s.a: it can be shelved for"));
