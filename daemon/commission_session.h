@@ -1,5 +1,5 @@
-// One commissioning on open devices: the stages in their order, what a person is asked, what is
-// said, and the file at the end.
+// One commissioning on open devices: runs the stages in order, asks the operator, reports and
+// writes the calibration file.
 #pragma once
 
 #include <functional>
@@ -9,27 +9,27 @@
 #include "daemon/commission.h"
 #include "daemon/commission_loop.h"
 #include "daemon/control/calibration.h"
-#include "daemon/dialogue.h"
+#include "daemon/operator_prompt.h"
 
 namespace monitor {
 
 class CommissionSession {
  public:
   CommissionSession(DaemonConfig& config, const CommissionOptions& options,
-                    const control::CommissioningLimits& limits, Dialogue& dialogue,
+                    const control::CommissioningLimits& limits, OperatorPrompt& prompt,
                     std::ostream& out)
       : config_(config),
         options_(options),
         limits_(limits),
         out_(out),
         procedure_(limits),
-        dialogue_(dialogue) {}
+        prompt_(prompt) {}
 
   /// Returns the exit code; throws config::schema::Error.
   int run(const hal::Devices& devices, double sample_time_s);
 
  private:
-  /// Stopped or refused by a person, or given up; said already.
+  /// Thrown when the operator stops or the procedure aborts; already reported.
   struct Ended {
     int exit_code;
   };
@@ -39,10 +39,10 @@ class CommissionSession {
   void stage(const char* name, const std::function<void()>& begin);
   void sign();
   void speeds();
-  /// The reading at the stop or index.
+  /// Drives to the stop or index and returns the reading there.
   double home(int direction, bool index);
   void homes();
-  [[noreturn]] void give_up(const std::string& why);
+  [[noreturn]] void abort(const std::string& why);
   void write(std::int64_t utc_us);
 
   DaemonConfig& config_;
@@ -51,7 +51,7 @@ class CommissionSession {
   std::ostream& out_;
   control::Commissioning procedure_;
   control::Calibration found_;
-  Dialogue& dialogue_;
+  OperatorPrompt& prompt_;
   CommissionLoop* loop_ = nullptr;
 };
 

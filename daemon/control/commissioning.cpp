@@ -3,26 +3,51 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/control/commissioning_shares.h"
-
 namespace monitor::control {
-using namespace shares;  // NOLINT(google-build-using-namespace)
-
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
+// Shares of max_travel.
+constexpr double kTravelOfPulse = 0.35;  ///< at the target speed
+constexpr double kEndOfPulse = 0.45;
+constexpr double kEndOfStage = 0.8;
+constexpr double kNear = 0.15;    ///< distance from the start within which a pulse may lead away
+constexpr double kSeen = 0.04;    ///< detectable motion
+constexpr double kNoisy = 0.2;    ///< limit of the noise
+constexpr double kAgainst = 0.2;  ///< motion against the command
+constexpr double kBackOff = 0.4;  ///< from a stop
+// Shares of the target speed.
+constexpr double kFastLow = 0.5;
+constexpr double kMoves = 0.1;
+constexpr double kDrift = 0.05;  ///< between pulses, to be corrected
+// Shares of the speed of the faster pulse.
+constexpr double kSlowLow = 0.2;
+constexpr double kSlowHigh = 0.65;
+
+constexpr double kFirstLevel = 1.0 / 32.0;  ///< share of the authority
+constexpr double kSettle = 0.4;             ///< share of a pulse
+/// Share of the settling time: a longer latency has not settled when the line fit begins.
+constexpr double kLatest = 0.6;
+constexpr double kRest_s = 0.4;
+constexpr double kNoises = 10.0;  ///< detectable motion in standard deviations
+/// Allowed difference of the command reported by a device, as a share of the authority: coarser
+/// than any converter, finer than any scaling mistake.
+constexpr double kSameCommand = 0.05;
+constexpr double kStart_s = 0.3;  ///< until a drive must be moving
+constexpr double kStill_s = 0.1;
+
 }  // namespace
 
-const char* words_of(Failure failure) noexcept {
+const char* to_string(Failure failure) noexcept {
   switch (failure) {
     case Failure::none:
       return "done";
     case Failure::travel:
-      return "the rod went too far";
+      return "the rod moved too far";
     case Failure::speed:
-      return "the rod went too fast";
+      return "the rod moved too fast";
     case Failure::wrong_way:
       return "the rod moved against the command";
     case Failure::no_motion:
@@ -32,15 +57,15 @@ const char* words_of(Failure failure) noexcept {
     case Failure::reversed:
       return "the reading falls as the command rises";
     case Failure::too_noisy:
-      return "the reading is too noisy for so small a travel";
+      return "the reading is too noisy for such a small travel";
     case Failure::no_level:
       return "no command gives a steady speed within the travel";
     case Failure::too_slow:
-      return "the rod answers too late for pulses so short";
+      return "the rod responds too late for such short pulses";
     case Failure::no_index:
-      return "a stop came before the index";
+      return "reached a stop before the index";
     case Failure::too_long:
-      return "it takes too long";
+      return "the stage takes too long";
   }
   return "";
 }
@@ -192,8 +217,8 @@ void Commissioning::pause_over(double now_s) noexcept {
       }
       break;
     case Stage::sign:
-      // One way, then the other by as much, so that what a dead sensor does not show goes back.
-      // First against the drift.
+      // A pulse and its opposite, so that travel unseen by a dead sensor is undone. The first one
+      // is against the drift.
       if (sign_level_V_ > 0.0 && direction_ == sign_first_) {
         start_pulse(now_s, -sign_first_, sign_level_V_);
         break;
@@ -282,6 +307,100 @@ void Commissioning::drive(const Input& in) noexcept {
       }
       break;
   }
+}
+
+void Commissioning::speed_pulse_over(double now_s, bool too_far) noexcept {
+  Side& s = side(direction_);
+  const double speed_mps =
+      too_far ? std::numeric_limits<double>::infinity() : direction_ * after_.slope_mps();
+  LevelSearch& search = s.found == 0 ? s.fast : s.slow;
+  const bool in_reach = speed_mps >= kMoves * target_mps_;
+  if (in_reach && !too_far) {
+    const double v = direction_ * speed_mps;
+    ++s.points;
+    s.u += applied_V_;
+    s.v += v;
+    s.uu += applied_V_ * applied_V_;
+    s.uv += applied_V_ * v;
+    // The intersection is as sharp as the slopes differ.
+    const double weight = v * v;
+    latency_sum_ += weight * (after_.meets(before_) - move_s_);
+    latency_weight_ += weight;
+  }
+  if (!too_far) improve_rest();
+  search.update(speed_mps);
+  if (search.state() == LevelSearch::State::at_limit && !in_reach) {
+    fail(Failure::no_motion);
+    return;
+  }
+  if (search.state() == LevelSearch::State::given_up) {
+    fail(Failure::no_level);
+    return;
+  }
+  const bool found = search.state() != LevelSearch::State::searching;
+  if (found) ++s.found;
+  if (found && sides_[0].found == 1 && sides_[1].found == 1) {
+    for (const int direction : {-1, 1}) {
+      Side& one = side(direction);
+      one.slow =
+          LevelSearch::between(kSlowLow * one.fast.speed_mps(), kSlowHigh * one.fast.speed_mps(),
+                               direction * rest_V_, one.fast.level_V());
+    }
+  }
+  if (sides_[0].found == 2 && sides_[1].found == 2) {
+    evaluate();
+  } else {
+    start_pause(now_s);
+  }
+}
+
+void Commissioning::improve_rest() noexcept {
+  const double drift_mps = before_.slope_mps();
+  const double change_mps = after_.slope_mps() - drift_mps;
+  const double change_V = command_V_ - rest_V_;
+  const double least_mps = kDrift * target_mps_;
+  if (std::abs(drift_mps) < least_mps || change_mps * change_V <= 0.0 ||
+      std::abs(change_mps) < least_mps) {
+    return;
+  }
+  rest_V_ = std::clamp(rest_V_ - drift_mps * change_V / change_mps, -limits_.authority_V,
+                       limits_.authority_V);
+}
+
+void Commissioning::next_speed(double now_s) noexcept {
+  const double off_m = last_m_ - start_m_;
+  const int back = off_m > 0.0 ? -1 : 1;
+  int direction = back;
+  if (!wants(side(back))) {
+    if (std::abs(off_m) > kNear * limits_.max_travel_m) {
+      start_drive(Drive::back, now_s, back, side(back).fast.level_V());
+      return;
+    }
+    direction = -back;
+  }
+  const Side& s = side(direction);
+  start_pulse(now_s, direction, (s.found == 0 ? s.fast : s.slow).level_V());
+}
+
+void Commissioning::evaluate() noexcept {
+  double ends_V[2] = {};
+  double gains[2] = {};
+  for (std::size_t i = 0; i < sides_.size(); ++i) {
+    const Side& s = sides_[i];
+    const double n = s.points;
+    gains[i] = (n * s.uv - s.u * s.v) / (n * s.uu - s.u * s.u);
+    ends_V[i] = (s.u - s.v / gains[i]) / n;
+  }
+  if (!(gains[0] > 0.0 && gains[1] > 0.0)) {
+    fail(Failure::no_level);
+    return;
+  }
+  findings_.gain_mps_per_V = 0.5 * (gains[0] + gains[1]);
+  findings_.null_V = 0.5 * (ends_V[0] + ends_V[1]);
+  findings_.dead_zone_V = std::max(0.0, ends_V[1] - ends_V[0]);
+  findings_.latency_s = std::max(0.0, latency_sum_ / latency_weight_);
+  finish();
+  if (findings_.latency_s > kLatest * kSettle * limits_.pulse_s) fail(Failure::too_slow);
 }
 
 }  // namespace monitor::control

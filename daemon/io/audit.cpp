@@ -41,16 +41,16 @@ std::string print_audit(const AuditEntry& entry) {
   line["uid"] = entry.uid;
   line["who"] = entry.who;
   line["what"] = entry.what.substr(0, kLongestRequest);
-  line["done"] = entry.refusal.empty();
-  if (!entry.refusal.empty()) line["reason"] = entry.refusal;
+  line["done"] = entry.reject_reason.empty();
+  if (!entry.reject_reason.empty()) line["reason"] = entry.reject_reason;
   return line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
 }
 
-Audit::Audit(const std::filesystem::path& folder, std::int64_t file_bytes, Clerk& clerk)
-    : file_(std::make_shared<File>(folder / "audit.log", file_bytes)), clerk_(clerk) {}
+Audit::Audit(const std::filesystem::path& folder, std::int64_t file_bytes, BackgroundWriter& writer)
+    : file_(std::make_shared<File>(folder / "audit.log", file_bytes)), writer_(writer) {}
 
 void Audit::note(const AuditEntry& entry) {
-  if (!clerk_.post([file = file_, line = print_audit(entry)] { file->append(line); })) {
+  if (!writer_.post([file = file_, line = print_audit(entry)] { file->append(line); })) {
     ++file_->lost;
   }
 }
@@ -65,7 +65,7 @@ void Audit::File::append(const std::string& line) noexcept {
   const int file = open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0640);
   bool written = false;
   if (file >= 0) {
-    // One write: a line is there whole or, where the disk is full, taken back.
+    // One write, rolled back on a full disk, so that no partial line remains.
     struct stat before {};
     const bool known = fstat(file, &before) == 0;
     const ssize_t n = write(file, line.data(), line.size());

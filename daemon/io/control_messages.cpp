@@ -95,7 +95,7 @@ ordered_json detectable_of(const ControlStatus& status) {
 
 ControlRequest parse_request(const std::string& line) {
   const json object = json::parse(line, nullptr, false);
-  if (!object.is_object()) return bad("no JSON object");
+  if (!object.is_object()) return bad("not a JSON object");
   const auto name = object.find(control::key::kCommand);
   if (name == object.end() || !name->is_string()) return bad("no \"command\"");
   const auto& command = name->get_ref<const std::string&>();
@@ -240,7 +240,7 @@ std::string print_done(control::State state) {
   return line.dump();
 }
 
-std::string print_refused(control::State state, const std::string& reason) {
+std::string print_rejected(control::State state, const std::string& reason) {
   ordered_json line;
   line[control::key::kOk] = false;
   line[control::key::kState] = control::to_string(state);

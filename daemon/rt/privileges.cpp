@@ -15,7 +15,7 @@
 namespace monitor::rt {
 namespace {
 
-/// What must still be possible to map after locking, or a limit on locked memory would starve us.
+/// Memory that must remain mappable after locking; a limit on locked memory could prevent it.
 constexpr std::size_t kRoomAfterLock_bytes = 32U << 20U;
 constexpr std::size_t kStackTouched_bytes = 64 * 1024;
 
@@ -59,12 +59,12 @@ int lock_memory() noexcept {
   return 0;
 }
 
-int try_thread(const ThreadOptions& options) {
-  Thread probe;
+int try_thread(const hal::ThreadOptions& options) {
+  hal::Thread probe;
   return probe.start("probe", options, [] {});
 }
 
-/// Latency of 0 us asked of the power management for as long as the file stays open.
+/// Requests a wake-up latency of 0 us from the power management while the file stays open.
 int keep_awake() noexcept {
   const int file = open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);
   if (file < 0) return errno;
@@ -78,19 +78,19 @@ void keep_memory_small() noexcept {
   mallopt(M_ARENA_MAX, 1);
   pthread_attr_t attributes;
   pthread_attr_init(&attributes);
-  pthread_attr_setstacksize(&attributes, kThreadStack_bytes);
+  pthread_attr_setstacksize(&attributes, hal::kThreadStack_bytes);
   pthread_setattr_default_np(&attributes);
   pthread_attr_destroy(&attributes);
 }
 
-Grant ask_privileges(const LoopConfig& config) {
+Grant request_privileges(const LoopConfig& config) {
   Grant grant;
   if (config.privileges == "off") {
     grant.text = "off";
     return grant;
   }
   Report report(config.privileges == "require");
-  const ThreadOptions fifo{static_cast<int>(config.priority), -1};
+  const hal::ThreadOptions fifo{static_cast<int>(config.priority), -1};
   if (const int error = try_thread(fifo)) {
     report.refused("SCHED_FIFO", error, kRights);
   } else {
@@ -98,7 +98,7 @@ Grant ask_privileges(const LoopConfig& config) {
     report.got("SCHED_FIFO " + std::to_string(fifo.priority));
   }
   if (config.cpu >= 0) {
-    const ThreadOptions pinned{0, static_cast<int>(config.cpu)};
+    const hal::ThreadOptions pinned{0, static_cast<int>(config.cpu)};
     const std::string core = "cpu " + std::to_string(config.cpu);
     if (const int error = try_thread(pinned)) {
       report.refused(core, error, "cpu = the number of a core that this process may use");
