@@ -217,22 +217,30 @@ class Reference {
     return listing;
   }
 
-  /// Inserts what is new behind what stands before it in `listing`.
+  /// Inserts what is new behind what stands before it in `listing`, and behind alternatives to it.
   void merge(const Listing& listing) {
-    const auto into = [](auto& all, const auto& added, const auto& same) {
-      std::size_t at = 0;
-      for (const auto& one : added) {
-        const auto known =
-            std::find_if(all.begin(), all.end(), [&](const auto& old) { return same(old, one); });
-        if (known != all.end()) {
-          at = static_cast<std::size_t>(known - all.begin()) + 1;
-        } else {
-          all.insert(all.begin() + static_cast<std::ptrdiff_t>(at++), one);
-        }
+    const std::set<Row> listed(listing.rows.begin(), listing.rows.end());
+    std::size_t at = 0;
+    for (const Row& row : listing.rows) {
+      const auto known = std::find(rows_.begin(), rows_.end(), row);
+      if (known != rows_.end()) {
+        at = static_cast<std::size_t>(known - rows_.begin()) + 1;
+        continue;
       }
-    };
-    into(tables_, listing.tables, [](const Table& a, const Table& b) { return a.path == b.path; });
-    into(rows_, listing.rows, [](const Row& a, const Row& b) { return a == b; });
+      while (at < rows_.size() && rows_[at].table == row.table && listed.count(rows_[at]) == 0)
+        ++at;
+      rows_.insert(rows_.begin() + static_cast<std::ptrdiff_t>(at++), row);
+    }
+    at = 0;
+    for (const Table& table : listing.tables) {
+      const auto known = std::find_if(tables_.begin(), tables_.end(),
+                                      [&](const Table& old) { return old.path == table.path; });
+      if (known != tables_.end()) {
+        at = static_cast<std::size_t>(known - tables_.begin()) + 1;
+      } else {
+        tables_.insert(tables_.begin() + static_cast<std::ptrdiff_t>(at++), table);
+      }
+    }
   }
 
   void explore(const Assignments& assignments) {

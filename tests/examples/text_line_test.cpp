@@ -37,10 +37,10 @@ TEST(ExampleBackend, ReadsLinesUntilTheyGrowOld) {
   config::schema::Document::parse("schema_version = 1\ndevice = \"text_line_pipe\"\nsign = -1.0\n",
                                   "t.toml")
       .read([&](config::schema::Visitor& v) { backend.visit(v); });
-  hal::Opening opening;
-  opening.folder = folder;
-  const hal::Offer offer = backend.open(opening);
-  hal::RodSensor& rod = *offer.rods.at(hal::kRodChannel);
+  hal::OpenContext context;
+  context.folder = folder;
+  const hal::BackendDevices devices = backend.open(context);
+  hal::RodSensor& rod = *devices.rods.at(hal::kRodChannel);
   EXPECT_EQ(newest(rod).quality, Quality::bad);
 
   std::ofstream out(pipe);

@@ -133,9 +133,9 @@ const std::vector<Layer> kLayers{
       "estimator/greybox", "estimator/greybox/validation", "workbench/control", "workbench/replay"},
      {"nlohmann"}},
     {"workbench/cli",
-     {"config", "daemon/control", "plant_sim", "estimator", "estimator/fdi", "estimator/greybox",
-      "estimator/greybox/selection", "estimator/greybox/tracking", "estimator/greybox/validation",
-      "workbench"},
+     {"config", "daemon/control", "plant_sim", "estimator", "estimator/fdi",
+      "estimator/fdi/tracker", "estimator/greybox", "estimator/greybox/selection",
+      "estimator/greybox/tracking", "estimator/greybox/validation", "workbench"},
      {"CLI", "nlohmann", "lcm", "spoolwatch", "Eigen"}},
 };
 

@@ -17,6 +17,12 @@ std::string section(const std::string& heading, const std::string& text) {
          config::schema::print_reference([](config::schema::Visitor& v) { T().visit(v); });
 }
 
+/// The section up to its second table.
+std::string first_table(const std::string& section) {
+  const std::string heading = "\n### ";
+  return section.substr(0, section.find(heading, section.find(heading) + heading.size()));
+}
+
 }  // namespace
 
 std::string configuration_reference() {
@@ -33,9 +39,9 @@ std::string configuration_reference() {
              "Healthy parameters",
              "Written by `isolate --learn`, named by `healthy` of `[[tracker]]`.") +
          section<scorecard::Plan>("Scorecard plan", "Read by `scorecard --plan`.") +
-         section<scorecard::Method>(
+         first_table(section<scorecard::Method>(
              "Scorecard method",
-             "Read by `scorecard`; the fault detection in it is configured as the daemon's is.");
+             "Read by `scorecard`. The tables of its fault detection are those of the daemon."));
 }
 
 }  // namespace workbench::cli
