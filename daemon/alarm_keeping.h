@@ -8,9 +8,9 @@
 #include <string>
 
 #include "daemon/daemon_config.h"
+#include "daemon/detection/alarm_command_queue.h"
 #include "daemon/io/audit.h"
 #include "daemon/io/clerk.h"
-#include "daemon/rt/alarm_desk.h"
 #include "daemon/rules.h"
 #include "estimator/fdi/pipeline.h"
 
@@ -33,8 +33,8 @@ class AlarmKeeping {
   /// Once all alarms are declared: their lives from before the restart.
   void bring_back(estimator::fdi::Pipeline& pipeline, std::int64_t utc_us, std::ostream& log) const;
 
-  rt::AlarmOrderQueue orders;
-  rt::AlarmAnswerQueue answers;
+  detection::AlarmOrderQueue orders;
+  detection::AlarmAnswerQueue answers;
   /// Null where the configuration asks for none.
   std::unique_ptr<io::AlarmStore> store;
   std::unique_ptr<io::Audit> audit;

@@ -96,15 +96,15 @@ std::string CommandDesk::order_loop(const io::ControlRequest& request) {
 }
 
 std::string CommandDesk::order_alarms(const io::ControlRequest& request) {
-  using OrderKind = rt::AlarmOrder::Kind;
-  rt::AlarmOrder order;
+  using OrderKind = detection::AlarmOrder::Kind;
+  detection::AlarmOrder order;
   order.kind = request.kind == Kind::alarms     ? OrderKind::list
                : request.kind == Kind::shelve   ? OrderKind::shelve
                : request.kind == Kind::unshelve ? OrderKind::unshelve
                : request.alarm.empty()          ? OrderKind::acknowledge_all
                                                 : OrderKind::acknowledge;
   request_acknowledges_ = request.kind == Kind::acknowledge &&
-                          (request.alarm.empty() || rt::RodAlarms::is_one(request.alarm));
+                          (request.alarm.empty() || detection::RodAlarms::is_one(request.alarm));
   order.alarm = request.alarm;
   order.time_s = request.time_s;
   if (acts_) order.who = io::user_name(request_.uid);
@@ -138,7 +138,7 @@ std::string CommandDesk::take_loop_answer() {
 }
 
 std::string CommandDesk::take_alarm_answer() {
-  std::shared_ptr<const rt::AlarmAnswer> answer;
+  std::shared_ptr<const detection::AlarmAnswer> answer;
   while (parts_.alarm_answers->pop(answer)) {
     if (answer->number != number_) continue;  // late, to an order given up
     if (!answer->refusal.empty()) return refuse(answer->refusal);

@@ -8,15 +8,16 @@
 
 #include "daemon/control/guard_config.h"
 #include "daemon/control/refusal.h"
+#include "daemon/detection/alarm_command_queue.h"
+#include "daemon/detection/detectability_monitor.h"
+#include "daemon/detection/rod_alarms.h"
 #include "daemon/io/audit.h"
 #include "daemon/io/control_messages.h"
 #include "daemon/io/control_socket.h"
 #include "daemon/reloader.h"
-#include "daemon/rt/alarm_desk.h"
 #include "daemon/rt/clock.h"
 #include "daemon/rt/loop_stats.h"
 #include "daemon/rt/queues.h"
-#include "daemon/rt/rod_alarms.h"
 
 namespace monitor {
 
@@ -27,11 +28,12 @@ class CommandDesk {
     rt::Clock& clock;
     rt::CommandQueue& commands;
     const rt::LoopStats& stats;
-    rt::AlarmOrderQueue* alarm_orders = nullptr;  ///< null, as `alarm_answers`: none are taken
-    rt::AlarmAnswerQueue* alarm_answers = nullptr;
+    detection::AlarmOrderQueue* alarm_orders =
+        nullptr;  ///< null, as `alarm_answers`: none are taken
+    detection::AlarmAnswerQueue* alarm_answers = nullptr;
     io::Audit* audit = nullptr;
     Reloader* reloader = nullptr;  ///< null: nothing is read again
-    const io::DetectableBoard* detectable = nullptr;
+    const detection::DetectableBoard* detectable = nullptr;
   };
   /// What does not change.
   struct Identity {

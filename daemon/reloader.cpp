@@ -47,7 +47,7 @@ void Reloader::prepare(UnderWay& under_way) {
                                      "[alarms]; everything else at a restart");
   }
   Rules rules = make_rules(next, sample_time_s_);
-  auto change = std::make_shared<rt::RuleChange>();
+  auto change = std::make_shared<detection::RuleChange>();
   change->pipeline = std::move(rules.pipeline);
   change->pipeline_hash = config::schema::hash_of(rules.text);
   change->config_hash = config::schema::hash_text(hash(next));
@@ -59,7 +59,7 @@ void Reloader::prepare(UnderWay& under_way) {
 }
 
 void Reloader::look() {
-  std::shared_ptr<rt::RuleChange> taken;
+  std::shared_ptr<detection::RuleChange> taken;
   if (!busy() || !from_detector.pop(taken)) return;
   running_.pipeline = under_way_->next.pipeline;
   running_.alarms.rules = under_way_->next.alarms.rules;

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "daemon/daemon_config.h"
+#include "daemon/detection/detection_update.h"
 #include "daemon/io/audit.h"
 #include "daemon/rt/clock.h"
-#include "daemon/rt/rule_change.h"
 
 namespace monitor {
 
@@ -58,7 +58,7 @@ class Reloader {
   /// One line when the newest attempt was refused, else empty.
   [[nodiscard]] std::string complaint() const;
 
-  rt::RuleQueue to_detector, from_detector;
+  detection::RuleQueue to_detector, from_detector;
 
  private:
   struct UnderWay {

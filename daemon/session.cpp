@@ -16,11 +16,12 @@
 #include "config/schema/hash.h"
 #include "daemon/alarm_keeping.h"
 #include "daemon/attendant.h"
+#include "daemon/detection/detector.h"
 #include "daemon/left_at_null.h"
 #include "daemon/null_guard.h"
 #include "daemon/null_table.h"
 #include "daemon/reloader.h"
-#include "daemon/rt/run.h"
+#include "daemon/rt/loop_runner.h"
 #include "daemon/rules.h"
 #include "daemon/service_report.h"
 
@@ -208,8 +209,8 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
   Reloader reloader({clock, log, keeping.audit.get(), keeping.evidence != nullptr, options.read,
                      keeping.pipeline_hash},
                     config, p.sample_time_s);
-  io::DetectableBoard detectable;
-  rt::Detector detector(
+  detection::DetectableBoard detectable;
+  detection::Detector detector(
       {clock, *samples, stats, *p.rules.pipeline, publisher, recorder.get(), &keeping.orders,
        &keeping.answers, keeping.store.get(), keeping.audit.get(), keeping.evidence.get(),
        keeping.pipeline_hash, &reloader.to_detector, &reloader.from_detector, &detectable},

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "daemon/control/arming.h"
-#include "daemon/io/detectable.h"
 #include "estimator/fdi/alarm.h"
 
 namespace monitor::io {
@@ -38,6 +37,18 @@ struct ControlRequest {
 
 /// Never throws: what is no request is of kind bad.
 [[nodiscard]] ControlRequest parse_request(const std::string& line);
+
+/// Smallest changes that the fault detection could see in the present motion.
+struct Detectable {
+  struct Change {
+    std::string name;  ///< with its unit, as "supply_pressure_Pa"
+    double smallest;   ///< SI; NaN: not known
+  };
+  std::string source;
+  std::int64_t tick = 0;
+  std::string why;  ///< it tells too little, and which motion would; empty: it tells all
+  std::vector<Change> changes;
+};
 
 /// What is told of the daemon; NaN: not known.
 struct ControlStatus {

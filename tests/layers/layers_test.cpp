@@ -72,9 +72,10 @@ const std::vector<Layer> kLayers{
     {"hal/comedi", {"config/schema", "config/signals", "hal"}, {"comedilib"}},
     {"hal/hil_rig", {"config/schema", "hal", "plant_sim"}, {"modbus", "gpiod", "CLI"}},
     {"daemon/control", {"config/schema"}, {}},
-    {"daemon/rt",
-     {"config", "estimator", "estimator/fdi", "hal", "hal/sim", "hal/replay", "plant_sim",
-      "daemon/control", "daemon/io"},
+    {"daemon/rt", {"config/schema", "config/signals", "hal", "daemon/control"}, {"boost"}},
+    {"daemon/detection",
+     {"config/schema", "config/signals", "estimator/fdi", "daemon/control", "daemon/rt",
+      "daemon/io"},
      {"boost", "spoolwatch"}},
     {"daemon/io",
      {"config", "estimator", "estimator/fdi", "hal", "hal/sim", "hal/replay", "plant_sim",
@@ -82,7 +83,7 @@ const std::vector<Layer> kLayers{
      {"boost", "lcm", "spoolwatch", "systemd", "nlohmann"}},
     {"daemon",
      {"config", "estimator", "estimator/fdi", "estimator/fdi/tracker", "hal", "hal/sim",
-      "hal/replay", "plant_sim", "daemon/control", "daemon/rt", "daemon/io"},
+      "hal/replay", "plant_sim", "daemon/control", "daemon/rt", "daemon/detection", "daemon/io"},
      {"boost", "lcm", "spoolwatch", "systemd", "CLI"}},
     {"workbench/present",
      {"config/schema", "config/record", "config/units", "estimator/greybox/validation"},
@@ -229,6 +230,7 @@ TEST(Layers, PlantedViolationsAreFound) {
   write(root / "estimator/batch.h", "#include <Eigen/Dense>\n#include <lcm/lcm-cpp.hpp>\n");
   write(root / "estimator/fdi/pipeline.h", "#include \"estimator/batch.h\"\n");
   write(root / "daemon/control/arming.h", "  #  include \"daemon/rt/loop.h\"\n");
+  write(root / "daemon/rt/loop.h", "#include \"daemon/io/publisher.h\"\n");
   write(root / "hal/sim/rig.h", "#include \"plant_sim/plant.h\"\n#include \"hal/replay/x.h\"\n");
   write(root / "hal/replay/x.h", "#include \"plant_sim/plant.h\"\n");
   write(root / "workbench/fit/page.cpp", "#include \"daemon/io/recorder.h\"\n");
@@ -240,6 +242,7 @@ TEST(Layers, PlantedViolationsAreFound) {
           "plant_sim/plant.cpp:2 includes estimator/batch.h",
           "estimator/batch.h:2 includes lcm/lcm-cpp.hpp",
           "daemon/control/arming.h:1 includes daemon/rt/loop.h",
+          "daemon/rt/loop.h:1 includes daemon/io/publisher.h",
           "hal/sim/rig.h:2 includes hal/replay/x.h", "hal/replay/x.h:1 includes plant_sim/plant.h",
           "workbench/fit/page.cpp:1 includes daemon/io/recorder.h",
           "workbench/present/report.h:1 includes workbench/fit/outcome.h",

@@ -4,14 +4,16 @@
 
 #include <cmath>
 
-#include "daemon/rt/run.h"
+#include "daemon/detection/detector.h"
+#include "daemon/rt/loop_runner.h"
 #include "estimator/fdi/snapshot.h"
 #include "tests/daemon/rt/fake_rig.h"
 
-namespace monitor::rt {
+namespace monitor::detection {
 namespace {
 
 namespace fdi = estimator::fdi;
+using namespace rt;
 
 /// A band on the position, which the samples put at 0.3 m.
 fdi::PipelineConfig rules(double high_m, bool latch, const char* id = "far_out") {
@@ -222,4 +224,4 @@ TEST(RuleChange, LosesNoSampleOfALoopInRealTime) {
 }
 
 }  // namespace
-}  // namespace monitor::rt
+}  // namespace monitor::detection

@@ -1,10 +1,10 @@
-#include "daemon/rt/rod_alarms.h"
+#include "daemon/detection/rod_alarms.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <utility>
 
-namespace monitor::rt {
+namespace monitor::detection {
 
 using config::signals::Sample;
 using control::RodFault;
@@ -61,4 +61,4 @@ void RodAlarms::report(const Sample& sample, AlarmBook& book,
   }
 }
 
-}  // namespace monitor::rt
+}  // namespace monitor::detection

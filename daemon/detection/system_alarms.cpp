@@ -1,16 +1,16 @@
-#include "daemon/io/conditions.h"
+#include "daemon/detection/system_alarms.h"
 
 #include <cstring>
 #include <string>
 
-namespace monitor::io {
+namespace monitor::detection {
 
 using estimator::fdi::Severity;
 
-void Conditions::report(const PublisherStatus& publisher, const RecorderStatus& recorder,
+void Conditions::report(const io::PublisherStatus& publisher, const io::RecorderStatus& recorder,
                         std::int64_t tick, estimator::fdi::AlarmBook& book,
                         const std::function<void(const estimator::fdi::Alarm&)>& changed,
-                        const EvidenceStatus& evidence) {
+                        const io::EvidenceStatus& evidence) {
   const auto set = [&](const char* source, const char* name, Severity severity, bool active,
                        const std::string& reason) {
     if (const auto* alarm = book.set_condition(source, name, severity, active, reason, tick)) {
@@ -39,4 +39,4 @@ void Conditions::report(const PublisherStatus& publisher, const RecorderStatus& 
   failures_before_ = publisher.send_failures;
 }
 
-}  // namespace monitor::io
+}  // namespace monitor::detection

@@ -9,7 +9,7 @@
 #include "daemon/io/recorder.h"
 #include "estimator/fdi/alarm_book.h"
 
-namespace monitor::io {
+namespace monitor::detection {
 
 /// Sets the conditions recorder.disk_full, recorder.write_failed, recorder.dropping (messages lost
 /// to a full queue since the last call), lcm.send_failed and evidence.failed in `book`, and calls
@@ -17,10 +17,10 @@ namespace monitor::io {
 /// last call.
 class Conditions {
  public:
-  void report(const PublisherStatus& publisher, const RecorderStatus& recorder, std::int64_t tick,
-              estimator::fdi::AlarmBook& book,
+  void report(const io::PublisherStatus& publisher, const io::RecorderStatus& recorder,
+              std::int64_t tick, estimator::fdi::AlarmBook& book,
               const std::function<void(const estimator::fdi::Alarm&)>& changed,
-              const EvidenceStatus& evidence = {});
+              const io::EvidenceStatus& evidence = {});
 
  private:
   std::int64_t dropped_before_ = 0;
@@ -28,4 +28,4 @@ class Conditions {
   std::int64_t no_evidence_before_ = 0;
 };
 
-}  // namespace monitor::io
+}  // namespace monitor::detection

@@ -9,7 +9,7 @@
 #include "daemon/rt/guard_board.h"
 #include "estimator/fdi/alarm_book.h"
 
-namespace monitor::rt {
+namespace monitor::detection {
 
 class GuardAlarms {
  public:
@@ -21,7 +21,7 @@ class GuardAlarms {
 
   /// Sets the alarms as the board shows them; `changed` is called for each that came or went. A
   /// guard that was active for one tick alone gives an alarm all the same, until the next call.
-  void report(GuardBoard& board, std::int64_t tick,
+  void report(rt::GuardBoard& board, std::int64_t tick,
               const std::function<void(const estimator::fdi::Alarm&)>& changed);
 
  private:
@@ -36,4 +36,4 @@ class GuardAlarms {
   std::uint32_t shown_ = 0;
 };
 
-}  // namespace monitor::rt
+}  // namespace monitor::detection

@@ -1,4 +1,4 @@
-#include "daemon/rt/detector.h"
+#include "daemon/detection/detector.h"
 
 #include <algorithm>
 #include <cstring>
@@ -6,10 +6,11 @@
 
 #include "estimator/fdi/snapshot.h"
 
-namespace monitor::rt {
+namespace monitor::detection {
 
 using config::signals::Sample;
 using estimator::fdi::Alarm;
+using estimator::fdi::AlarmBook;
 using estimator::fdi::Severity;
 
 namespace {
@@ -33,8 +34,8 @@ Detector::Detector(const Parts& parts, const Identity& identity)
       guard_alarms_(identity.guards, parts.pipeline.alarms()),
       rod_alarms_(rods_of(identity), identity.sample_time_s),
       alarm_desk_(parts.orders, parts.answers),
-      spare_rods_(std::min(identity.spare_rods.size(), kMaxSpareRods)),
-      inputs_(std::min(identity.inputs.size(), kMaxInputs)),
+      spare_rods_(std::min(identity.spare_rods.size(), rt::kMaxSpareRods)),
+      inputs_(std::min(identity.inputs.size(), rt::kMaxInputs)),
       next_second_ns_(parts.clock.now_ns() + kSecond_ns) {
   parts_.publisher.name_rods(rods_of(identity));
   health_.rig_id = identity.rig_id;
@@ -115,6 +116,47 @@ void Detector::keep_evidence(const Alarm& alarm) {
   if (came) parts_.evidence->alarm(alarm, stamp().utc_us);
 }
 
+void Detector::take_rules() {
+  std::shared_ptr<RuleChange> change;
+  while (parts_.new_rules != nullptr && parts_.new_rules->pop(change)) {
+    change_rules(*change);
+    parts_.taken_rules->push(change);
+  }
+}
+
+void Detector::change_rules(RuleChange& change) {
+  estimator::fdi::Pipeline& next = *change.pipeline;
+  AlarmBook& before = parts_.pipeline.alarms();
+  guard_alarms_.declare_in(next.alarms());
+  next.alarms().adopt_conditions(before);
+  const std::vector<bool> goes_on = next.inherit(parts_.pipeline);
+  for (std::size_t i = 0; i < goes_on.size(); ++i) {
+    (goes_on[i] ? change.warm : change.cold).push_back(change.estimators[i]);
+  }
+  for (const Alarm& alarm : before.alarms()) {
+    const std::string id = alarm.source + "." + alarm.name;
+    if (!alarm.stands() || next.alarms().find(id) != AlarmBook::kNone) continue;
+    Alarm ended = alarm;
+    ended.severity = Severity::ok;
+    ended.active = ended.latched = ended.first_up = ended.shelved = ended.chattering = false;
+    ended.acknowledged = true;
+    ended.direction = 0;
+    ended.tick = tick_;
+    ended.reason = "it is no longer in the configuration";
+    parts_.publisher.alarm(ended, false, stamp());
+    change.ended.push_back(id);
+  }
+  std::swap(parts_.pipeline, next);
+  if (parts_.detectable != nullptr) parts_.detectable->clear();
+  parts_.pipeline_hash = change.pipeline_hash;
+  health_.config_hash = change.config_hash;
+  // An alarm that stood before has its evidence.
+  times_.clear();
+  for (const Alarm& alarm : parts_.pipeline.alarms().alarms()) times_.push_back(alarm.times);
+  if (parts_.evidence != nullptr) parts_.evidence->reconfigure(std::move(change.evidence_files));
+  change.tick = tick_;
+}
+
 void Detector::condition(const char* source, const char* name, Severity severity, bool active,
                          std::string_view reason) {
   const Alarm* alarm = parts_.pipeline.alarms().set_condition(source, name, severity, active,
@@ -131,17 +173,17 @@ std::string Detector::why_latched() const {
   const auto index = parts_.stats.trip_guard.load(std::memory_order_relaxed);
   const std::string id = index < guard_ids_.size() ? guard_ids_[index] : "?";
   switch (parts_.stats.trip.load(std::memory_order_relaxed)) {
-    case Trip::overrun:
+    case rt::Trip::overrun:
       return "too many lost periods: reset, then arm again";
-    case Trip::reading:
+    case rt::Trip::reading:
       return "position missing: reset, then arm again";
-    case Trip::write:
+    case rt::Trip::write:
       return "valve not written: reset, then arm again";
-    case Trip::e_stop:
+    case rt::Trip::e_stop:
       return "emergency stop: release it, reset, then arm again";
-    case Trip::guard:
+    case rt::Trip::guard:
       return "guard " + id + ": reset, then arm again";
-    case Trip::none:
+    case rt::Trip::none:
       break;
   }
   return "";
@@ -181,7 +223,7 @@ void Detector::watch_alarm_files() {
 }
 
 void Detector::health() {
-  const LoopStats& stats = parts_.stats;
+  const rt::LoopStats& stats = parts_.stats;
   health_.state = static_cast<std::int8_t>(stats.state.load(std::memory_order_relaxed));
   health_.ticks = stats.ticks.value();
   health_.overruns = stats.overruns.value();
@@ -202,7 +244,7 @@ void Detector::health() {
   health_.device_good[0] = stats.rod.good.value();
   health_.device_bad[0] = stats.rod.bad.value();
   std::size_t at = 1;
-  const auto next = [&](const Counter& good, const Counter& bad) {
+  const auto next = [&](const rt::Counter& good, const rt::Counter& bad) {
     health_.device_good[at] = good.value();
     health_.device_bad[at++] = bad.value();
   };
@@ -214,4 +256,4 @@ void Detector::health() {
   parts_.publisher.health(health_, stamp());
 }
 
-}  // namespace monitor::rt
+}  // namespace monitor::detection

@@ -1,10 +1,10 @@
-#include "daemon/io/detectable.h"
+#include "daemon/detection/detectability_monitor.h"
 
 #include <algorithm>
 #include <string_view>
 #include <utility>
 
-namespace monitor::io {
+namespace monitor::detection {
 namespace {
 
 constexpr std::string_view kSmallest = "smallest_";
@@ -16,7 +16,7 @@ void DetectableBoard::note(const estimator::fdi::EstimateEvent& event) {
     return std::string_view(value.name).starts_with(kSmallest);
   };
   if (std::none_of(event.begin(), event.end(), tells)) return;
-  Detectable now{std::string(event.source), event.tick, std::string(event.reason), {}};
+  io::Detectable now{std::string(event.source), event.tick, std::string(event.reason), {}};
   for (const estimator::fdi::NamedValue& value : event) {
     if (!tells(value)) continue;
     const std::string_view name = value.name;
@@ -24,7 +24,7 @@ void DetectableBoard::note(const estimator::fdi::EstimateEvent& event) {
   }
   const std::lock_guard lock(mutex_);
   const auto at = std::find_if(sources_.begin(), sources_.end(),
-                               [&](const Detectable& one) { return one.source == now.source; });
+                               [&](const io::Detectable& one) { return one.source == now.source; });
   if (at == sources_.end()) {
     sources_.push_back(std::move(now));
   } else {
@@ -37,9 +37,9 @@ void DetectableBoard::clear() {
   sources_.clear();
 }
 
-std::vector<Detectable> DetectableBoard::read() const {
+std::vector<io::Detectable> DetectableBoard::read() const {
   const std::lock_guard lock(mutex_);
   return sources_;
 }
 
-}  // namespace monitor::io
+}  // namespace monitor::detection

@@ -12,7 +12,7 @@
 #include "daemon/io/evidence.h"
 #include "estimator/fdi/pipeline.h"
 
-namespace monitor::rt {
+namespace monitor::detection {
 
 struct RuleChange {
   std::unique_ptr<estimator::fdi::Pipeline> pipeline;  ///< the new one; handed back: the old one
@@ -31,4 +31,4 @@ struct RuleChange {
 using RuleQueue =
     boost::lockfree::spsc_queue<std::shared_ptr<RuleChange>, boost::lockfree::capacity<2>>;
 
-}  // namespace monitor::rt
+}  // namespace monitor::detection

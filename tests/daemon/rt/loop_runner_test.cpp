@@ -1,11 +1,12 @@
 // From the first tick to the last, in virtual time and on threads: the last thing written is null,
 // whatever ends the run, and no sample is lost on the way to the detector.
-#include "daemon/rt/run.h"
+#include "daemon/rt/loop_runner.h"
 
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
+#include "daemon/detection/detector.h"
 #include "tests/daemon/rt/fake_rig.h"
 
 namespace monitor::rt {
@@ -43,7 +44,7 @@ struct RunBench {
   Loop loop;
   estimator::fdi::Pipeline pipeline;
   io::Publisher publisher;
-  Detector detector;
+  detection::Detector detector;
   std::atomic<bool> stop{false};
 };
 

@@ -8,13 +8,22 @@
 #include <limits>
 #include <string>
 
-#include "daemon/rt/detector.h"
 #include "daemon/rt/loop.h"
 #include "daemon/rt/privileges.h"
 
 namespace monitor::rt {
 
 inline constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
+
+/// Takes the samples off the loop's queue, on a thread of its own; may throw.
+class SampleConsumer {
+ public:
+  virtual ~SampleConsumer() = default;
+  /// Handles all samples queued and whatever else is due.
+  virtual void poll() = 0;
+  /// Handles the last samples; poll() is not called again.
+  virtual void finish() = 0;
+};
 
 /// The life of one loop. Whatever way it ends, the last thing written is null.
 class Run {
@@ -51,11 +60,11 @@ class Run {
 using Outcome = std::string;
 
 /// `stop_asked` is called now and then; once it says so, the next tick is the last.
-Outcome run_virtual(Run& run, Detector& detector, std::atomic<bool>& stop,
+Outcome run_virtual(Run& run, SampleConsumer& consumer, std::atomic<bool>& stop,
                     const std::function<bool()>& stop_asked);
 
 /// `wait_stop_asked` waits up to 100 ms and says whether to stop.
-Outcome run_realtime(Run& run, Detector& detector, const ThreadOptions& loop_thread,
+Outcome run_realtime(Run& run, SampleConsumer& consumer, const ThreadOptions& loop_thread,
                      std::atomic<bool>& stop, hal::ValveDrive* valve,
                      const std::function<bool()>& wait_stop_asked);
 

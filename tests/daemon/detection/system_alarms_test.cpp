@@ -1,10 +1,10 @@
-#include "daemon/io/conditions.h"
+#include "daemon/detection/system_alarms.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <cerrno>
 
-namespace monitor::io {
+namespace monitor::detection {
 namespace {
 
 using testing::ElementsAre;
@@ -22,8 +22,8 @@ class ConditionsTest : public testing::Test {
 
   estimator::fdi::AlarmBook book_;
   Conditions conditions_;
-  PublisherStatus publisher_;
-  RecorderStatus recorder_;
+  io::PublisherStatus publisher_;
+  io::RecorderStatus recorder_;
 };
 
 TEST_F(ConditionsTest, ComeAndGoWithTheirCause) {
@@ -52,4 +52,4 @@ TEST_F(ConditionsTest, LastAsLongAsACountGrows) {
 }
 
 }  // namespace
-}  // namespace monitor::io
+}  // namespace monitor::detection

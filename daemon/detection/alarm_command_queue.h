@@ -11,7 +11,7 @@
 
 #include "estimator/fdi/alarm_book.h"
 
-namespace monitor::rt {
+namespace monitor::detection {
 
 struct AlarmOrder {
   enum class Kind : std::uint8_t { list, acknowledge, acknowledge_all, shelve, unshelve };
@@ -53,4 +53,4 @@ class AlarmDesk {
   AlarmAnswerQueue* answers_;
 };
 
-}  // namespace monitor::rt
+}  // namespace monitor::detection

@@ -7,32 +7,33 @@
 #include <string>
 #include <vector>
 
+#include "daemon/detection/alarm_command_queue.h"
+#include "daemon/detection/detectability_monitor.h"
+#include "daemon/detection/detection_update.h"
+#include "daemon/detection/guard_alarms.h"
+#include "daemon/detection/rod_alarms.h"
+#include "daemon/detection/system_alarms.h"
 #include "daemon/io/alarm_store.h"
 #include "daemon/io/audit.h"
-#include "daemon/io/conditions.h"
-#include "daemon/io/detectable.h"
 #include "daemon/io/evidence.h"
 #include "daemon/io/publisher.h"
 #include "daemon/io/recorder.h"
-#include "daemon/rt/alarm_desk.h"
 #include "daemon/rt/clock.h"
-#include "daemon/rt/guard_alarms.h"
+#include "daemon/rt/loop_runner.h"
 #include "daemon/rt/loop_stats.h"
 #include "daemon/rt/queues.h"
-#include "daemon/rt/rod_alarms.h"
-#include "daemon/rt/rule_change.h"
 #include "estimator/fdi/pipeline.h"
 #include "spoolwatch/health_t.hpp"
 
-namespace monitor::rt {
+namespace monitor::detection {
 
-class Detector final : private estimator::fdi::Events {
+class Detector final : public rt::SampleConsumer, private estimator::fdi::Events {
  public:
   /// What it works with; all of it outlives the detector. `recorder` may be null.
   struct Parts {
-    Clock& clock;
-    SampleQueue& samples;
-    LoopStats& stats;
+    rt::Clock& clock;
+    rt::SampleQueue& samples;
+    rt::LoopStats& stats;
     estimator::fdi::Pipeline& pipeline;
     io::Publisher& publisher;
     const io::Recorder* recorder;
@@ -44,7 +45,7 @@ class Detector final : private estimator::fdi::Events {
     std::uint64_t pipeline_hash = 0;  ///< schema::hash_of(whole_text), for evidence
     RuleQueue* new_rules = nullptr;   ///< to be taken, with `taken_rules`
     RuleQueue* taken_rules = nullptr;
-    io::DetectableBoard* detectable = nullptr;
+    DetectableBoard* detectable = nullptr;
   };
   /// Constant fields of health_t.
   struct Identity {
@@ -61,9 +62,9 @@ class Detector final : private estimator::fdi::Events {
   Detector(const Parts& parts, const Identity& identity);
 
   /// Handles all samples queued; once a second the conditions, active alarms again, and health.
-  void poll();
+  void poll() override;
   /// The last samples and a last health message.
-  void finish();
+  void finish() override;
 
  private:
   void on_estimate(const estimator::fdi::EstimateEvent& event) override;
@@ -90,7 +91,7 @@ class Detector final : private estimator::fdi::Events {
 
   Parts parts_;
   std::function<void(const estimator::fdi::Alarm&)> changed_;
-  io::Conditions conditions_;
+  Conditions conditions_;
   GuardAlarms guard_alarms_;
   RodAlarms rod_alarms_;
   AlarmDesk alarm_desk_;
@@ -108,4 +109,4 @@ class Detector final : private estimator::fdi::Events {
   std::int64_t audit_lost_before_ = 0;
 };
 
-}  // namespace monitor::rt
+}  // namespace monitor::detection

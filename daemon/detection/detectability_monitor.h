@@ -5,23 +5,12 @@
 #pragma once
 
 #include <mutex>
-#include <string>
 #include <vector>
 
+#include "daemon/io/control_messages.h"
 #include "estimator/fdi/pipeline.h"
 
-namespace monitor::io {
-
-struct Detectable {
-  struct Change {
-    std::string name;  ///< with its unit, as "supply_pressure_Pa"
-    double smallest;   ///< SI; NaN: not known
-  };
-  std::string source;
-  std::int64_t tick = 0;
-  std::string why;  ///< it tells too little, and which motion would; empty: it tells all
-  std::vector<Change> changes;
-};
+namespace monitor::detection {
 
 class DetectableBoard {
  public:
@@ -29,11 +18,11 @@ class DetectableBoard {
   void note(const estimator::fdi::EstimateEvent& event);
   /// Its sources may be gone.
   void clear();
-  [[nodiscard]] std::vector<Detectable> read() const;
+  [[nodiscard]] std::vector<io::Detectable> read() const;
 
  private:
   mutable std::mutex mutex_;
-  std::vector<Detectable> sources_;  // under mutex_
+  std::vector<io::Detectable> sources_;  // under mutex_
 };
 
-}  // namespace monitor::io
+}  // namespace monitor::detection

@@ -1,4 +1,4 @@
-#include "daemon/rt/run.h"
+#include "daemon/rt/loop_runner.h"
 
 #include <cstdio>
 #include <cstdlib>
@@ -18,15 +18,15 @@ constexpr std::chrono::milliseconds kStuck{1000};
 /// Once the loop has ended; a network or a disk may take its time with what is queued.
 constexpr std::chrono::milliseconds kDetectorStuck{5000};
 
-void detect(Detector& detector, const std::atomic<bool>& loop_ended, std::atomic<bool>& stop,
-            Outcome& outcome) {
+void consume(SampleConsumer& consumer, const std::atomic<bool>& loop_ended, std::atomic<bool>& stop,
+             Outcome& outcome) {
   try {
     MonotonicClock clock;
     while (!loop_ended.load(std::memory_order_acquire)) {
-      detector.poll();
+      consumer.poll();
       clock.sleep_until_ns(clock.now_ns() + kPoll_ns);
     }
-    detector.finish();
+    consumer.finish();
   } catch (const std::exception& e) {
     outcome = std::string("detector: ") + e.what();
     stop.store(true, std::memory_order_relaxed);
@@ -42,24 +42,25 @@ void detect(Detector& detector, const std::atomic<bool>& loop_ended, std::atomic
 
 }  // namespace
 
-Outcome run_virtual(Run& run, Detector& detector, std::atomic<bool>& stop,
+Outcome run_virtual(Run& run, SampleConsumer& consumer, std::atomic<bool>& stop,
                     const std::function<bool()>& stop_asked) {
   for (int n = 0; run.step(); ++n) {
-    detector.poll();
+    consumer.poll();
     if (n % kTicksBetweenLooks == 0 && stop_asked()) stop.store(true, std::memory_order_relaxed);
   }
-  detector.finish();
+  consumer.finish();
   return {};
 }
 
-Outcome run_realtime(Run& run, Detector& detector, const ThreadOptions& loop_thread,
+Outcome run_realtime(Run& run, SampleConsumer& consumer, const ThreadOptions& loop_thread,
                      std::atomic<bool>& stop, hal::ValveDrive* valve,
                      const std::function<bool()>& wait_stop_asked) {
   std::atomic<bool> loop_ended{false};
   Outcome outcome;
   Thread detecting;
   Thread looping;
-  int error = detecting.start("detector", {}, [&] { detect(detector, loop_ended, stop, outcome); });
+  int error =
+      detecting.start("detector", {}, [&] { consume(consumer, loop_ended, stop, outcome); });
   if (error == 0) {
     error = looping.start("loop", loop_thread, [&] {
       prepare_loop_thread();

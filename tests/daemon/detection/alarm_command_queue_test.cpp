@@ -1,13 +1,13 @@
 // People's acts on their way to the book, and guards that live like any alarm.
-#include "daemon/rt/alarm_desk.h"
+#include "daemon/detection/alarm_command_queue.h"
 
 #include <gmock/gmock.h>
 
 #include "daemon/control/safety.h"
-#include "daemon/rt/guard_alarms.h"
+#include "daemon/detection/guard_alarms.h"
 #include "daemon/rt/guard_board.h"
 
-namespace monitor::rt {
+namespace monitor::detection {
 namespace {
 
 using estimator::fdi::Alarm;
@@ -75,7 +75,7 @@ TEST_F(AlarmDeskTest, ListsEveryAlarmWithWhatIsLeftOfItsShelf) {
 TEST(GuardAlarms, LiveByTheRulesOfAllThatIsNoBand) {
   const auto guards = control::all_guards({}, control::Action::latch);
   control::Safety safety(guards, 0.005);
-  GuardBoard board;
+  rt::GuardBoard board;
   AlarmBook book(0.005);
   AlarmRules rules;
   rules.latch = true;
@@ -99,4 +99,4 @@ TEST(GuardAlarms, LiveByTheRulesOfAllThatIsNoBand) {
 }
 
 }  // namespace
-}  // namespace monitor::rt
+}  // namespace monitor::detection

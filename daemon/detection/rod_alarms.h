@@ -11,7 +11,7 @@
 #include "daemon/control/failover.h"
 #include "estimator/fdi/alarm_book.h"
 
-namespace monitor::rt {
+namespace monitor::detection {
 
 class RodAlarms {
  public:
@@ -34,4 +34,4 @@ class RodAlarms {
   std::array<std::uint8_t, control::kMaxRods> shown_{};
 };
 
-}  // namespace monitor::rt
+}  // namespace monitor::detection

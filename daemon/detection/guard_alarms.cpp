@@ -1,6 +1,6 @@
-#include "daemon/rt/guard_alarms.h"
+#include "daemon/detection/guard_alarms.h"
 
-namespace monitor::rt {
+namespace monitor::detection {
 
 using control::Action;
 using estimator::fdi::Alarm;
@@ -52,7 +52,7 @@ void GuardAlarms::declare_in(estimator::fdi::AlarmBook& book) {
   }
 }
 
-void GuardAlarms::report(GuardBoard& board, std::int64_t tick,
+void GuardAlarms::report(rt::GuardBoard& board, std::int64_t tick,
                          const std::function<void(const Alarm&)>& changed) {
   const std::uint32_t now = board.take_raised() | board.active();
   if (now == shown_) return;
@@ -74,4 +74,4 @@ void GuardAlarms::report(GuardBoard& board, std::int64_t tick,
   shown_ = now;
 }
 
-}  // namespace monitor::rt
+}  // namespace monitor::detection

@@ -1,6 +1,6 @@
-#include "daemon/rt/alarm_desk.h"
+#include "daemon/detection/alarm_command_queue.h"
 
-namespace monitor::rt {
+namespace monitor::detection {
 
 using estimator::fdi::Alarm;
 using estimator::fdi::AlarmActionResult;
@@ -66,4 +66,4 @@ void AlarmDesk::serve(AlarmBook& book, const Changed& changed) {
   }
 }
 
-}  // namespace monitor::rt
+}  // namespace monitor::detection
