@@ -83,12 +83,12 @@ int commission(DaemonConfig& config, const CommissionOptions& options, std::ostr
   const double sample_time_s = 1.0 / config.loop.rate_Hz;
   const hal::OpenContext opening{config.file, config.folder, sample_time_s,
                                  config.rig.valve().null_V, config.rig.valve().limit_V};
-  Dialogue dialogue(out, options.yes);
+  OperatorPrompt prompt(out, options.yes);
   std::unique_ptr<io::ControlSocket> claimed;
   if (!options.virtual_time) claimed = claim(config);
   const control::CommissioningLimits limits = limits_of(config, options, opening, out);
   const hal::Devices devices = config.rig.open(opening);
-  return CommissionSession(config, options, limits, dialogue, out).run(devices, sample_time_s);
+  return CommissionSession(config, options, limits, prompt, out).run(devices, sample_time_s);
 }
 
 }  // namespace monitor

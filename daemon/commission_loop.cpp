@@ -18,7 +18,7 @@ double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 }  // namespace
 
-const char* words_of(CommissionLoop::Stop stop) noexcept {
+const char* to_string(CommissionLoop::Stop stop) noexcept {
   switch (stop) {
     case CommissionLoop::Stop::none:
       break;
@@ -41,7 +41,7 @@ CommissionLoop::CommissionLoop(const Parts& parts, control::Commissioning& proce
       virtual_time_(virtual_time),
       grid_(parts.clock.now_ns() + (virtual_time ? 0 : kLead_ns),
             std::llround(parts.sample_time_s * 1e9)),
-      around_(&parts.devices.inputs, parts.max_bad_in_a_row, stats_),
+      aux_inputs_(&parts.devices.inputs, parts.max_bad_in_a_row, stats_),
       start_s_(seconds(parts.clock.now_ns())) {}
 
 CommissionLoop::~CommissionLoop() { end_.store(true, std::memory_order_relaxed); }
@@ -96,14 +96,14 @@ void CommissionLoop::tick() noexcept {
   }
   in.applied_V =
       (std::isfinite(reading.command_V) ? reading.command_V : applied_V_) - parts_.null_V;
-  around_.read(period.tick);
-  in.disturbed = around_.blind() || bad_writes_ > 0 || period.skipped > 0;
+  aux_inputs_.read(period.tick);
+  in.disturbed = aux_inputs_.blind() || bad_writes_ > 0 || period.skipped > 0;
 
   double command_V = 0.0;
   if (stage_.load(std::memory_order_acquire)) {
     Stop stop = Stop::none;
-    if (!around_.e_stop_released()) stop = Stop::e_stop;
-    if (stop == Stop::none && !around_.enabled()) stop = Stop::not_enabled;
+    if (!aux_inputs_.e_stop_released()) stop = Stop::e_stop;
+    if (stop == Stop::none && !aux_inputs_.enabled()) stop = Stop::not_enabled;
     if (bad_writes_ > parts_.max_bad_in_a_row) stop = Stop::valve_lost;
     if (static_cast<double>(period.skipped) * period_s >= kStoodStill_s) stop = Stop::stood_still;
     const bool abandoned = abandon_.load(std::memory_order_relaxed);
@@ -114,7 +114,7 @@ void CommissionLoop::tick() noexcept {
       command_V = 0.0;
     }
   }
-  if (around_.blind()) command_V = 0.0;
+  if (aux_inputs_.blind()) command_V = 0.0;
   const hal::Applied applied = command_V == 0.0
                                    ? parts_.valve.go_null()
                                    : parts_.valve.write(parts_.null_V + command_V, period.tick);

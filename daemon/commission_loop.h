@@ -7,8 +7,8 @@
 #include <functional>
 
 #include "daemon/control/commissioning.h"
+#include "daemon/rt/auxiliary_inputs.h"
 #include "daemon/rt/grid.h"
-#include "daemon/rt/surroundings.h"
 #include "daemon/rt/thread.h"
 
 namespace monitor {
@@ -53,7 +53,7 @@ class CommissionLoop {
   bool virtual_time_;
   rt::Grid grid_;
   rt::LoopStats stats_;
-  rt::Surroundings around_;
+  rt::AuxiliaryInputs aux_inputs_;
   double start_s_;
   double applied_V_ = hal::kMissing;  ///< of the last write
   std::int64_t bad_writes_ = 0;
@@ -66,6 +66,6 @@ class CommissionLoop {
   rt::Thread thread_;
 };
 
-[[nodiscard]] const char* words_of(CommissionLoop::Stop stop) noexcept;
+[[nodiscard]] const char* to_string(CommissionLoop::Stop stop) noexcept;
 
 }  // namespace monitor

@@ -13,8 +13,8 @@
 #include <ostream>
 
 #include "config/schema/error.h"
-#include "daemon/null_guard.h"
 #include "daemon/rt/privileges.h"
+#include "daemon/safe_state_valve.h"
 
 namespace monitor {
 namespace {
@@ -76,8 +76,8 @@ void CommissionSession::give_up(const std::string& why) {
 }
 
 void CommissionSession::agree(const std::string& question) {
-  const auto answer = dialogue_.ask(question);
-  if (dialogue_.stopped()) {
+  const auto answer = prompt_.ask(question);
+  if (prompt_.stopped()) {
     out_ << "stopped at null, nothing written" << std::endl;
     throw Ended{kStoppedExitCode};
   }
@@ -86,16 +86,16 @@ void CommissionSession::agree(const std::string& question) {
 
 void CommissionSession::stage(const char* name, const std::function<void()>& begin) {
   begin();
-  if (!loop_->run_stage([this] { return options_.virtual_time ? false : dialogue_.wait_stop(); })) {
+  if (!loop_->run_stage([this] { return options_.virtual_time ? false : prompt_.wait_stop(); })) {
     out_ << "stopped at null, nothing written" << std::endl;
     throw Ended{kStoppedExitCode};
   }
   if (loop_->stop() != CommissionLoop::Stop::none) {
-    give_up(fmt::format("{}: {}", name, words_of(loop_->stop())));
+    give_up(fmt::format("{}: {}", name, to_string(loop_->stop())));
   }
   const Failure failure = procedure_.failure();
   if (failure == Failure::none || failure == Failure::reversed) return;
-  give_up(fmt::format("{}: {} (travel {:.2f} mm, at last {:.1f} mm/s){}", name, words_of(failure),
+  give_up(fmt::format("{}: {} (travel {:.2f} mm, at last {:.1f} mm/s){}", name, to_string(failure),
                       procedure_.travel_m() * 1e3, procedure_.speed_mps() * 1e3, remedy(failure)));
 }
 
@@ -106,8 +106,8 @@ void CommissionSession::sign() {
        << std::endl;
   const bool fits = procedure_.failure() == Failure::none;
   std::string wrong = fits ? "" : "valve or rod sensor is reversed";
-  if (dialogue_.asks()) {
-    const auto extended = dialogue_.ask("Did the rod extend?");
+  if (prompt_.asks()) {
+    const auto extended = prompt_.ask("Did the rod extend?");
     if (!extended) agree("");
     const bool retracts = *extended != (f.sign_V > 0.0);
     if (fits && retracts) wrong = "both valve and rod sensor are reversed";
@@ -204,7 +204,7 @@ int CommissionSession::run(const hal::Devices& devices, double sample_time_s) {
       options_.virtual_time ? static_cast<rt::Clock&>(virtual_clock) : monotonic_clock;
   rt::Grant grant;
   if (!options_.virtual_time) grant = rt::ask_privileges(config_.loop);
-  NullGuard guard(devices.valve.get());
+  SafeStateValve guard(devices.valve.get());
   CommissionLoop loop({clock, devices, *guard.valve(), config_.rig.valve().null_V, sample_time_s,
                        config_.loop.max_bad_in_a_row},
                       procedure_, options_.virtual_time);

@@ -9,21 +9,21 @@
 #include "daemon/commission.h"
 #include "daemon/commission_loop.h"
 #include "daemon/control/calibration.h"
-#include "daemon/dialogue.h"
+#include "daemon/operator_prompt.h"
 
 namespace monitor {
 
 class CommissionSession {
  public:
   CommissionSession(DaemonConfig& config, const CommissionOptions& options,
-                    const control::CommissioningLimits& limits, Dialogue& dialogue,
+                    const control::CommissioningLimits& limits, OperatorPrompt& prompt,
                     std::ostream& out)
       : config_(config),
         options_(options),
         limits_(limits),
         out_(out),
         procedure_(limits),
-        dialogue_(dialogue) {}
+        prompt_(prompt) {}
 
   /// Returns the exit code; throws config::schema::Error.
   int run(const hal::Devices& devices, double sample_time_s);
@@ -51,7 +51,7 @@ class CommissionSession {
   std::ostream& out_;
   control::Commissioning procedure_;
   control::Calibration found_;
-  Dialogue& dialogue_;
+  OperatorPrompt& prompt_;
   CommissionLoop* loop_ = nullptr;
 };
 

@@ -9,9 +9,9 @@
 #include "config/schema/product_version.h"
 #include "daemon/commission.h"
 #include "daemon/configuration_reference.h"
-#include "daemon/left_at_null.h"
-#include "daemon/null_guard.h"
 #include "daemon/rt/privileges.h"
+#include "daemon/safe_state_note.h"
+#include "daemon/safe_state_valve.h"
 #include "daemon/session.h"
 
 namespace {

@@ -17,15 +17,15 @@ constexpr double kNever = hal::kMissing;
 constexpr const char* kHolds = "D/A holds; permit/watchdog needed";
 
 /// A reading may be a period old when the loop takes it: devices with a thread of their own.
-double reading_s(const NullFacts& facts) { return facts.sample_time_s; }
+double reading_s(const NullTableInputs& inputs) { return inputs.sample_time_s; }
 
 /// From what a guard watches being so to its action.
-double notice_s(const control::GuardConfig& guard, const NullFacts& facts) {
-  const double period_s = facts.sample_time_s;
+double notice_s(const control::GuardConfig& guard, const NullTableInputs& inputs) {
+  const double period_s = inputs.sample_time_s;
   switch (guard.which()) {
     case GuardKind::missing:
     case GuardKind::bus_lost:
-      return static_cast<double>(facts.max_bad_in_a_row + 1) * period_s;
+      return static_cast<double>(inputs.max_bad_in_a_row + 1) * period_s;
     case GuardKind::stale:
       return guard.age_s + guard.time_s + 2.0 * period_s;
     case GuardKind::frozen:
@@ -35,9 +35,9 @@ double notice_s(const control::GuardConfig& guard, const NullFacts& facts) {
   }
 }
 
-NullRow guard_row(const control::GuardConfig& guard, const NullFacts& facts) {
+NullRow guard_row(const control::GuardConfig& guard, const NullTableInputs& inputs) {
   NullRow row{"guard " + guard.id, kNever, ""};
-  const double time_s = reading_s(facts) + notice_s(guard, facts) + facts.times.latency_s;
+  const double time_s = reading_s(inputs) + notice_s(guard, inputs) + inputs.times.latency_s;
   switch (control::action_of(guard.action)) {
     case Action::none:
     case Action::indicate:
@@ -47,7 +47,7 @@ NullRow guard_row(const control::GuardConfig& guard, const NullFacts& facts) {
       row.note = "reference held";
       break;
     case Action::ramp:
-      row.time_s = time_s + facts.ramp_s + facts.sample_time_s;
+      row.time_s = time_s + inputs.ramp_s + inputs.sample_time_s;
       break;
     case Action::disarm:
     case Action::latch:
@@ -57,52 +57,52 @@ NullRow guard_row(const control::GuardConfig& guard, const NullFacts& facts) {
   return row;
 }
 
-NullRow left_alone(const char* failure, double time_s, const NullFacts& facts) {
+NullRow left_alone(const char* failure, double time_s, const NullTableInputs& inputs) {
   NullRow row{failure, std::isfinite(time_s) ? time_s : kNever, ""};
-  if (std::isnan(row.time_s)) row.note = facts.has_permit ? "the permit's relay" : kHolds;
+  if (std::isnan(row.time_s)) row.note = inputs.has_permit ? "the permit's relay" : kHolds;
   return row;
 }
 
 }  // namespace
 
-std::vector<NullRow> null_rows(const NullFacts& facts) {
-  const double period_s = facts.sample_time_s;
-  const double latency_s = facts.times.latency_s;
+std::vector<NullRow> null_rows(const NullTableInputs& inputs) {
+  const double period_s = inputs.sample_time_s;
+  const double latency_s = inputs.times.latency_s;
   const double null_after_s = static_cast<double>(rt::kNullAfter_ns) * 1e-9;
-  const hal::NullTimes& times = facts.times;
+  const hal::NullTimes& times = inputs.times;
   std::vector<NullRow> rows{
       {"stop, signal or error", 2.0 * period_s + latency_s, ""},
-      {"position missing", reading_s(facts) + period_s + latency_s, ""},
+      {"position missing", reading_s(inputs) + period_s + latency_s, ""},
       // An outage shorter than the 50 ms rule ends with the old law, one as long as it with null.
       {"loop late, then back", null_after_s + period_s + latency_s, ""},
-      left_alone("bus lost", times.bus_lost_s, facts),
-      left_alone("process killed", times.process_dead_s, facts),
+      left_alone("bus lost", times.bus_lost_s, inputs),
+      left_alone("process killed", times.process_dead_s, inputs),
       left_alone(
           "process stopped",
           std::isnan(times.process_stopped_s) ? times.process_dead_s : times.process_stopped_s,
-          facts)};
-  if (facts.has_enable)
-    rows.push_back({"enable lost", reading_s(facts) + period_s + latency_s, ""});
-  for (const control::GuardConfig& guard : facts.guards) {
+          inputs)};
+  if (inputs.has_enable)
+    rows.push_back({"enable lost", reading_s(inputs) + period_s + latency_s, ""});
+  for (const control::GuardConfig& guard : inputs.guards) {
     const GuardKind kind = guard.which();
     // Null comes before these: with the first missing reading, or not at all.
     if (kind == GuardKind::missing || kind == GuardKind::bus_lost) continue;
-    if (kind == GuardKind::e_stop && !facts.has_e_stop) continue;
-    rows.push_back(guard_row(guard, facts));
+    if (kind == GuardKind::e_stop && !inputs.has_e_stop) continue;
+    rows.push_back(guard_row(guard, inputs));
   }
   return rows;
 }
 
-void print_null_table(const NullFacts& facts, std::ostream& out) {
+void print_null_table(const NullTableInputs& inputs, std::ostream& out) {
   out << fmt::format("# {:24} {:8} {:>16} {:>18}\n", "failure", "valve", "worst time (ms)",
                      "worst travel (mm)");
-  for (const NullRow& row : null_rows(facts)) {
+  for (const NullRow& row : null_rows(inputs)) {
     const bool never = std::isnan(row.time_s);
     const std::string time = never ? "never" : fmt::format("{:.1f}", row.time_s * 1e3);
-    const double travel_mm = row.time_s * facts.speed_mps * 1e3;
+    const double travel_mm = row.time_s * inputs.speed_mps * 1e3;
     const std::string travel = std::isnan(travel_mm) ? "-" : fmt::format("{:.2f}", travel_mm);
     const std::string note = never ? "  (" + row.note + ")" : "";
-    out << fmt::format("# {:24} {:8} {:>16} {:>18}{}\n", row.failure, facts.backend, time, travel,
+    out << fmt::format("# {:24} {:8} {:>16} {:>18}{}\n", row.failure, inputs.backend, time, travel,
                        note);
   }
 }

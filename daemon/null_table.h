@@ -12,7 +12,7 @@
 namespace monitor {
 
 /// What the table is worked out from.
-struct NullFacts {
+struct NullTableInputs {
   std::string backend;  ///< of the valve
   hal::NullTimes times;
   double sample_time_s = 0.005;
@@ -31,9 +31,9 @@ struct NullRow {
   std::string note;  ///< instead of a time, or besides it
 };
 
-[[nodiscard]] std::vector<NullRow> null_rows(const NullFacts& facts);
+[[nodiscard]] std::vector<NullRow> null_rows(const NullTableInputs& inputs);
 
 /// The rows as comments of a TOML file, with the travel that goes with each time.
-void print_null_table(const NullFacts& facts, std::ostream& out);
+void print_null_table(const NullTableInputs& inputs, std::ostream& out);
 
 }  // namespace monitor

@@ -6,7 +6,7 @@
 
 #include "config/schema/error.h"
 #include "config/schema/hash.h"
-#include "daemon/rules.h"
+#include "daemon/detection_config.h"
 
 namespace monitor {
 
@@ -24,8 +24,8 @@ bool Reloader::begin(unsigned uid, const std::string& what) {
     prepare(*under_way_);
   } catch (const std::exception& e) {
     ReloadOutcome refused;
-    refused.refusal = e.what();
-    std::replace(refused.refusal.begin(), refused.refusal.end(), '\n', ' ');
+    refused.reject_reason = e.what();
+    std::replace(refused.reject_reason.begin(), refused.reject_reason.end(), '\n', ' ');
     end(std::move(refused));
   }
   return true;
@@ -46,20 +46,20 @@ void Reloader::prepare(UnderWay& under_way) {
                                      "[[estimator]], [[band]], bands_file and the rules in "
                                      "[alarms]; everything else at a restart");
   }
-  Rules rules = make_rules(next, sample_time_s_);
-  auto change = std::make_shared<detection::RuleChange>();
-  change->pipeline = std::move(rules.pipeline);
-  change->pipeline_hash = config::schema::hash_of(rules.text);
+  DetectionConfig made = make_detection_config(next, sample_time_s_);
+  auto change = std::make_shared<detection::DetectionUpdate>();
+  change->pipeline = std::move(made.pipeline);
+  change->pipeline_hash = config::schema::hash_of(made.text);
   change->config_hash = config::schema::hash_text(hash(next));
-  change->estimators = rules.effective.method_ids();
-  if (parts_.evidence) change->evidence_files = evidence_files(next, rules.text);
+  change->estimators = made.effective.method_ids();
+  if (parts_.evidence) change->evidence_files = evidence_files(next, made.text);
   if (!to_detector.push(change)) {
     throw config::schema::RunError("the detector takes no rules");
   }
 }
 
 void Reloader::look() {
-  std::shared_ptr<detection::RuleChange> taken;
+  std::shared_ptr<detection::DetectionUpdate> taken;
   if (!busy() || !from_detector.pop(taken)) return;
   running_.pipeline = under_way_->next.pipeline;
   running_.alarms.rules = under_way_->next.alarms.rules;
@@ -78,15 +78,15 @@ void Reloader::end(ReloadOutcome outcome) {
   outcome.utc_us = parts_.clock.utc_us();
   if (parts_.audit != nullptr) {
     parts_.audit->note({outcome.utc_us, under_way_->uid, io::user_name(under_way_->uid),
-                        under_way_->what, outcome.refusal});
+                        under_way_->what, outcome.reject_reason});
   }
   parts_.log << "spoolwatchd: ";
-  if (outcome.refusal.empty()) {
+  if (outcome.reject_reason.empty()) {
     parts_.log << "new rules, configuration " << config_hash_ << ": " << outcome.changed.size()
                << " keys changed, " << outcome.warm.size() << " estimators go on, "
                << outcome.cold.size() << " warm up, " << outcome.ended.size() << " alarms ended";
   } else {
-    parts_.log << "the old configuration stays: " << outcome.refusal;
+    parts_.log << "the old configuration stays: " << outcome.reject_reason;
   }
   parts_.log << std::endl;
   under_way_.reset();
@@ -94,7 +94,7 @@ void Reloader::end(ReloadOutcome outcome) {
 }
 
 std::string Reloader::complaint() const {
-  return last_.refusal.empty() ? "" : "the old configuration stays: " + last_.refusal;
+  return last_.reject_reason.empty() ? "" : "the old configuration stays: " + last_.reject_reason;
 }
 
 }  // namespace monitor

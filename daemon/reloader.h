@@ -1,7 +1,7 @@
-// Reads the configuration again while the daemon runs: all of it is checked, only rules (rules.h)
-// may differ, and the detector takes them between two samples. Whatever is wrong, the old ones
-// stay. Each attempt is written to the log, to the audit file and into the service manager's
-// status.
+// Reads the configuration again while the daemon runs: all of it is checked, only rules
+// (detection_config.h) may differ, and the detector takes them between two samples. Whatever is
+// wrong, the old ones stay. Each attempt is written to the log, to the audit file and into the
+// service manager's status.
 //
 // One thread, the main one.
 #pragma once
@@ -22,7 +22,7 @@ namespace monitor {
 
 /// What became of an attempt.
 struct ReloadOutcome {
-  std::string refusal;               ///< empty: done
+  std::string reject_reason;         ///< empty: done
   std::vector<std::string> changed;  ///< keys, as differences() names them
   std::vector<std::string> warm, cold, ended;
   std::int64_t utc_us = 0;  ///< 0: there was none
@@ -38,7 +38,7 @@ class Reloader {
     bool evidence;  ///< is kept
     /// Reads the configuration as at the start; throws config::schema::Error.
     std::function<void(DaemonConfig&)> read;
-    std::uint64_t rules_hash;  ///< of the rules at the start, fdi::hash_of(Rules::text)
+    std::uint64_t rules_hash;  ///< of the rules at the start, fdi::hash_of(DetectionConfig::text)
   };
   /// `running`: what the daemon runs by; its rules are kept up to date.
   Reloader(Parts parts, DaemonConfig& running, double sample_time_s);
@@ -58,7 +58,7 @@ class Reloader {
   /// One line when the newest attempt was refused, else empty.
   [[nodiscard]] std::string complaint() const;
 
-  detection::RuleQueue to_detector, from_detector;
+  detection::DetectionUpdateQueue to_detector, from_detector;
 
  private:
   struct UnderWay {

@@ -14,15 +14,15 @@
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "config/schema/hash.h"
-#include "daemon/alarm_keeping.h"
-#include "daemon/attendant.h"
+#include "daemon/alarm_services.h"
 #include "daemon/detection/detector.h"
-#include "daemon/left_at_null.h"
-#include "daemon/null_guard.h"
+#include "daemon/detection_config.h"
+#include "daemon/main_event_loop.h"
 #include "daemon/null_table.h"
 #include "daemon/reloader.h"
 #include "daemon/rt/loop_runner.h"
-#include "daemon/rules.h"
+#include "daemon/safe_state_note.h"
+#include "daemon/safe_state_valve.h"
 #include "daemon/service_report.h"
 
 namespace monitor {
@@ -39,7 +39,7 @@ struct Prepared {
   hal::Devices devices;
   std::unique_ptr<control::Reference> reference;
   std::uint64_t hash;
-  Rules rules;
+  DetectionConfig detection;
   std::vector<control::GuardConfig> guards;
   std::string never_arms;  ///< why it may not be armed; empty: it may
 };
@@ -105,7 +105,7 @@ Prepared prepare(DaemonConfig& config, std::string* absent) {
     return control::make_reference(
         config.drives_valve() ? config.reference : control::ReferenceConfig{}, config.folder);
   });
-  p.rules = make_rules(config, p.sample_time_s);
+  p.detection = make_detection_config(config, p.sample_time_s);
   p.hash = hash(config);
   return p;
 }
@@ -181,10 +181,10 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
   if (!config.recorder.folder.empty()) {
     recorder = std::make_unique<io::Recorder>(config.recorder, run_id, !virtual_time);
   }
-  AlarmKeeping keeping(config, p.rules,
+  AlarmServices alarms(config, p.detection,
                        {config::schema::hash_text(p.hash), run_id, p.sample_time_s, virtual_time});
   io::Publisher publisher(config.lcm, run_id, p.sample_time_s, recorder.get());
-  if (keeping.evidence != nullptr) publisher.attach(*keeping.evidence);
+  if (alarms.evidence != nullptr) publisher.attach(*alarms.evidence);
   if (config.rig.measures_pressures()) publisher.tell_pressures();
 
   auto samples = std::make_unique<rt::SampleQueue>();
@@ -198,33 +198,33 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
   grant.text = "virtual time";
   if (!virtual_time) grant = rt::ask_privileges(config.loop);
   log << "spoolwatchd: real-time privileges: " << grant.text << std::endl;
-  const DrivingNote note(
+  const SafeStateNote note(
       virtual_time || !config.drives_valve() ? std::filesystem::path() : options.driving, config);
-  NullGuard guard(p.devices.valve.get());
-  hal::ValveDrive* valve = guard.valve();
+  SafeStateValve safe_valve(p.devices.valve.get());
+  hal::ValveDrive* valve = safe_valve.valve();
   rt::Loop loop(config.loop,
                 {clock, *p.devices.rod, valve, *p.reference, *samples, commands, stats,
                  &p.devices.spare_rods, &p.devices.inputs, p.devices.permit.get()},
                 controller, p.sample_time_s, {config.safety, p.never_arms.empty()});
-  Reloader reloader({clock, log, keeping.audit.get(), keeping.evidence != nullptr, options.read,
-                     keeping.pipeline_hash},
+  Reloader reloader({clock, log, alarms.audit.get(), alarms.evidence != nullptr, options.read,
+                     alarms.pipeline_hash},
                     config, p.sample_time_s);
-  detection::DetectableBoard detectable;
+  detection::DetectabilityMonitor detectability;
   detection::Detector detector(
-      {clock, *samples, stats, *p.rules.pipeline, publisher, recorder.get(), &keeping.orders,
-       &keeping.answers, keeping.store.get(), keeping.audit.get(), keeping.evidence.get(),
-       keeping.pipeline_hash, &reloader.to_detector, &reloader.from_detector, &detectable},
+      {clock, *samples, stats, *p.detection.pipeline, publisher, recorder.get(), &alarms.commands,
+       &alarms.answers, alarms.store.get(), alarms.audit.get(), alarms.evidence.get(),
+       alarms.pipeline_hash, &reloader.to_detector, &reloader.from_detector, &detectability},
       {config.rig_id, config::schema::hash_text(p.hash), grant.text, config.rig.rod_backend(),
        valve != nullptr ? valve_config.backend : "", ids_of(p.devices.spare_rods),
        ids_of(p.devices.inputs), p.guards, p.sample_time_s});
-  keeping.bring_back(*p.rules.pipeline, clock.utc_us(), log);
-  CommandDesk desk(
-      {clock, commands, stats, &keeping.orders, &keeping.answers, keeping.audit.get(), &reloader,
-       &detectable},
+  alarms.restore(*p.detection.pipeline, clock.utc_us(), log);
+  ControlRequestHandler handler(
+      {clock, commands, stats, &alarms.commands, &alarms.answers, alarms.audit.get(), &reloader,
+       &detectability},
       {config.rig_id, config::schema::hash_text(p.hash), p.guards, ids_of(p.devices.spare_rods),
        ids_of(p.devices.inputs), inputs_of(p.devices, hal::InputRole::enable),
        inputs_of(p.devices, hal::InputRole::e_stop), p.never_arms});
-  Attendant attendant(desk, socket.get(), reloader);
+  MainEventLoop event_loop(handler, socket.get(), reloader);
   const io::ServiceManager manager;
   ServiceReport service(manager, clock, stats, valve != nullptr);
 
@@ -235,14 +235,14 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
   const std::int64_t ticks =
       options.duration_s > 0.0 ? std::llround(options.duration_s / p.sample_time_s) : rt::kForever;
   std::atomic<bool> stop{false};
-  rt::Run run(loop, rt::Grid(start_ns, std::llround(p.sample_time_s * 1e9)), clock, valve, ticks,
-              stop);
-  const rt::Outcome outcome =
-      virtual_time ? rt::run_virtual(run, detector, stop, [&] { return stop_pending(reloader); })
-                   : rt::run_realtime(run, detector, grant.loop_thread, stop, valve, [&] {
+  rt::LoopRunner runner(loop, rt::Grid(start_ns, std::llround(p.sample_time_s * 1e9)), clock, valve,
+                        ticks, stop);
+  const rt::RunError run_error =
+      virtual_time ? rt::run_virtual(runner, detector, stop, [&] { return stop_pending(reloader); })
+                   : rt::run_realtime(runner, detector, grant.loop_thread, stop, valve, [&] {
                        service.remark(reloader.complaint());
                        service.look();
-                       const bool stops = attendant.attend();
+                       const bool stops = event_loop.run_once();
                        if (stops) service.stopping();
                        return stops;
                      });
@@ -251,10 +251,10 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
     report(stats, log);
     for (const auto& summary : p.devices.summaries) log << "spoolwatchd: " << summary() << '\n';
   }
-  if (!outcome.empty()) log << "spoolwatchd: " << outcome << std::endl;
-  if (keeping.evidence != nullptr) keeping.evidence->finish();
+  if (!run_error.empty()) log << "spoolwatchd: " << run_error << std::endl;
+  if (alarms.evidence != nullptr) alarms.evidence->finish();
   const bool complete = recorder == nullptr || recorded_all(*recorder, log);
-  return outcome.empty() && complete ? EXIT_SUCCESS : EXIT_FAILURE;
+  return run_error.empty() && complete ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 void check_session(DaemonConfig& config, std::ostream& out) {

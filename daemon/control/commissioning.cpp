@@ -3,19 +3,44 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/control/commissioning_shares.h"
-
 namespace monitor::control {
-using namespace shares;  // NOLINT(google-build-using-namespace)
-
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
+// Shares of max_travel.
+constexpr double kTravelOfPulse = 0.35;  ///< at the target speed
+constexpr double kEndOfPulse = 0.45;
+constexpr double kEndOfStage = 0.8;
+constexpr double kNear = 0.15;    ///< of the start: a pulse may lead away from it
+constexpr double kSeen = 0.04;    ///< a motion
+constexpr double kNoisy = 0.2;    ///< what a motion must stand out from
+constexpr double kAgainst = 0.2;  ///< a motion against the command
+constexpr double kBackOff = 0.4;  ///< from a stop
+// Shares of the target speed.
+constexpr double kFastLow = 0.5;
+constexpr double kMoves = 0.1;
+constexpr double kDrift = 0.05;  ///< between pulses, worth a correction
+// Shares of the speed that the faster pulse gave.
+constexpr double kSlowLow = 0.2;
+constexpr double kSlowHigh = 0.65;
+
+constexpr double kFirstLevel = 1.0 / 32.0;  ///< share of the authority
+constexpr double kSettle = 0.4;             ///< share of a pulse
+/// Share of the settling time: what is later has not settled when the line begins.
+constexpr double kLatest = 0.6;
+constexpr double kRest_s = 0.4;
+constexpr double kNoises = 10.0;  ///< a motion is that many standard deviations
+/// Share of the authority by which what a device says it gives may differ from the command: coarser
+/// than any converter, finer than any mistake in its scale.
+constexpr double kSameCommand = 0.05;
+constexpr double kStart_s = 0.3;  ///< a drive is under way
+constexpr double kStill_s = 0.1;
+
 }  // namespace
 
-const char* words_of(Failure failure) noexcept {
+const char* to_string(Failure failure) noexcept {
   switch (failure) {
     case Failure::none:
       return "done";
@@ -282,6 +307,100 @@ void Commissioning::drive(const Input& in) noexcept {
       }
       break;
   }
+}
+
+void Commissioning::speed_pulse_over(double now_s, bool too_far) noexcept {
+  Side& s = side(direction_);
+  const double speed_mps =
+      too_far ? std::numeric_limits<double>::infinity() : direction_ * after_.slope_mps();
+  LevelSearch& search = s.found == 0 ? s.fast : s.slow;
+  const bool in_reach = speed_mps >= kMoves * target_mps_;
+  if (in_reach && !too_far) {
+    const double v = direction_ * speed_mps;
+    ++s.points;
+    s.u += applied_V_;
+    s.v += v;
+    s.uu += applied_V_ * applied_V_;
+    s.uv += applied_V_ * v;
+    // The lines meet as sharply as the slopes differ.
+    const double weight = v * v;
+    latency_sum_ += weight * (after_.meets(before_) - move_s_);
+    latency_weight_ += weight;
+  }
+  if (!too_far) improve_rest();
+  search.update(speed_mps);
+  if (search.state() == LevelSearch::State::at_limit && !in_reach) {
+    fail(Failure::no_motion);
+    return;
+  }
+  if (search.state() == LevelSearch::State::given_up) {
+    fail(Failure::no_level);
+    return;
+  }
+  const bool found = search.state() != LevelSearch::State::searching;
+  if (found) ++s.found;
+  if (found && sides_[0].found == 1 && sides_[1].found == 1) {
+    for (const int direction : {-1, 1}) {
+      Side& one = side(direction);
+      one.slow =
+          LevelSearch::between(kSlowLow * one.fast.speed_mps(), kSlowHigh * one.fast.speed_mps(),
+                               direction * rest_V_, one.fast.level_V());
+    }
+  }
+  if (sides_[0].found == 2 && sides_[1].found == 2) {
+    evaluate();
+  } else {
+    start_pause(now_s);
+  }
+}
+
+void Commissioning::improve_rest() noexcept {
+  const double drift_mps = before_.slope_mps();
+  const double change_mps = after_.slope_mps() - drift_mps;
+  const double change_V = command_V_ - rest_V_;
+  const double least_mps = kDrift * target_mps_;
+  if (std::abs(drift_mps) < least_mps || change_mps * change_V <= 0.0 ||
+      std::abs(change_mps) < least_mps) {
+    return;
+  }
+  rest_V_ = std::clamp(rest_V_ - drift_mps * change_V / change_mps, -limits_.authority_V,
+                       limits_.authority_V);
+}
+
+void Commissioning::next_speed(double now_s) noexcept {
+  const double off_m = last_m_ - start_m_;
+  const int back = off_m > 0.0 ? -1 : 1;
+  int direction = back;
+  if (!wants(side(back))) {
+    if (std::abs(off_m) > kNear * limits_.max_travel_m) {
+      start_drive(Drive::back, now_s, back, side(back).fast.level_V());
+      return;
+    }
+    direction = -back;
+  }
+  const Side& s = side(direction);
+  start_pulse(now_s, direction, (s.found == 0 ? s.fast : s.slow).level_V());
+}
+
+void Commissioning::evaluate() noexcept {
+  double ends_V[2] = {};
+  double gains[2] = {};
+  for (std::size_t i = 0; i < sides_.size(); ++i) {
+    const Side& s = sides_[i];
+    const double n = s.points;
+    gains[i] = (n * s.uv - s.u * s.v) / (n * s.uu - s.u * s.u);
+    ends_V[i] = (s.u - s.v / gains[i]) / n;
+  }
+  if (!(gains[0] > 0.0 && gains[1] > 0.0)) {
+    fail(Failure::no_level);
+    return;
+  }
+  findings_.gain_mps_per_V = 0.5 * (gains[0] + gains[1]);
+  findings_.null_V = 0.5 * (ends_V[0] + ends_V[1]);
+  findings_.dead_zone_V = std::max(0.0, ends_V[1] - ends_V[0]);
+  findings_.latency_s = std::max(0.0, latency_sum_ / latency_weight_);
+  finish();
+  if (findings_.latency_s > kLatest * kSettle * limits_.pulse_s) fail(Failure::too_slow);
 }
 
 }  // namespace monitor::control

@@ -59,7 +59,7 @@ enum class Failure : std::uint8_t {
 };
 
 /// One line for people, without the figures.
-[[nodiscard]] const char* words_of(Failure failure) noexcept;
+[[nodiscard]] const char* to_string(Failure failure) noexcept;
 
 /// What came out; NaN until its stage has been.
 struct Findings {

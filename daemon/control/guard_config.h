@@ -9,7 +9,7 @@
 //   frozen     y moves less than least_m while |u - null| > command_V  least_m, command_V
 //   jump       |dy| > limit_m in one period                            limit_m
 //   saturated  the command is at a limit                               -
-//   disagree   rod sensors differ by more than tolerance_m (rod_choice.h)  tolerance_m
+//   disagree   rod sensors differ by more than tolerance_m (position_voter.h)  tolerance_m
 //   overrun    more periods are lost than [loop] allows                -
 //   missing    more positions missing in a row than [loop] allows      -
 //   bus_lost   more writes failed in a row than [loop] allows          -

@@ -36,7 +36,7 @@ class LevelSearch {
   [[nodiscard]] double speed_mps() const noexcept { return speed_mps_; }
 
   /// What level_V() gave; infinite: more than could be measured.
-  void take(double speed_mps) noexcept {
+  void update(double speed_mps) noexcept {
     speed_mps_ = speed_mps;
     if (speed_mps >= low_mps_ && speed_mps <= high_mps_) {
       state_ = State::found;

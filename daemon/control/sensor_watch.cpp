@@ -8,11 +8,11 @@ SensorWatch::SensorWatch(const std::vector<GuardConfig>& guards) {
   }
 }
 
-void SensorWatch::watch(const Facts& facts, double period_s) noexcept {
+void SensorWatch::watch(const GuardInputs& inputs, double period_s) noexcept {
   for (Watched& each : guards_) {
-    each.guard.watch(facts, last_.dy_m(facts), last_.dt_s(facts), period_s);
+    each.guard.watch(inputs, last_.dy_m(inputs), last_.dt_s(inputs), period_s);
   }
-  last_.take(facts);
+  last_.update(inputs);
 }
 
 void SensorWatch::start(double y_m) noexcept {

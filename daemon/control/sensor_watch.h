@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "daemon/control/failover.h"
-#include "daemon/control/safety.h"
+#include "daemon/control/guard_monitor.h"
 
 namespace monitor::control {
 
@@ -19,8 +19,8 @@ class SensorWatch {
   /// `guards` from all_guards().
   explicit SensorWatch(const std::vector<GuardConfig>& guards);
 
-  /// Facts of a tick with this sensor's y and age.
-  void watch(const Facts& facts, double period_s) noexcept;
+  /// GuardInputs of a tick with this sensor's y and age.
+  void watch(const GuardInputs& inputs, double period_s) noexcept;
   void start(double y_m) noexcept;
 
   /// What an active guard says is wrong.

@@ -12,30 +12,31 @@ using Changed = std::function<void(const Alarm&)>;
 
 std::string id_of(const Alarm& alarm) { return alarm.source + "." + alarm.name; }
 
-void act_on_one(const AlarmOrder& order, AlarmBook& book, const Changed& changed,
+void act_on_one(const AlarmCommand& command, AlarmBook& book, const Changed& changed,
                 AlarmAnswer& answer) {
-  const std::size_t number = book.find(order.alarm);
+  const std::size_t number = book.find(command.alarm);
   if (number == AlarmBook::kNone) {
-    answer.refusal = "there is no alarm \"" + order.alarm +
-                     "\", or more than one; allowed: SOURCE.NAME as `spoolwatch alarms` lists it";
+    answer.reject_reason =
+        "there is no alarm \"" + command.alarm +
+        "\", or more than one; allowed: SOURCE.NAME as `spoolwatch alarms` lists it";
     return;
   }
   const AlarmActionResult outcome =
-      order.kind == AlarmOrder::Kind::acknowledge ? book.acknowledge(number, order.who)
-      : order.kind == AlarmOrder::Kind::shelve    ? book.shelve(number, order.time_s, order.who)
+      command.kind == AlarmCommand::Kind::acknowledge ? book.acknowledge(number, command.who)
+      : command.kind == AlarmCommand::Kind::shelve    ? book.shelve(number, command.time_s, command.who)
                                                   : book.unshelve(number);
   if (outcome.changed == nullptr) {
-    answer.refusal = id_of(book.alarm(number)) + ": " + outcome.refusal;
+    answer.reject_reason = id_of(book.alarm(number)) + ": " + outcome.refusal;
     return;
   }
   answer.done.push_back(id_of(*outcome.changed));
   changed(*outcome.changed);
 }
 
-void acknowledge_all(const AlarmOrder& order, AlarmBook& book, const Changed& changed,
+void acknowledge_all(const AlarmCommand& command, AlarmBook& book, const Changed& changed,
                      AlarmAnswer& answer) {
   for (std::size_t i = 0; i < book.alarms().size(); ++i) {
-    const AlarmActionResult outcome = book.acknowledge(i, order.who);
+    const AlarmActionResult outcome = book.acknowledge(i, command.who);
     if (outcome.changed == nullptr) continue;
     answer.done.push_back(id_of(*outcome.changed));
     changed(*outcome.changed);
@@ -44,23 +45,23 @@ void acknowledge_all(const AlarmOrder& order, AlarmBook& book, const Changed& ch
 
 }  // namespace
 
-void AlarmDesk::serve(AlarmBook& book, const Changed& changed) {
-  if (orders_ == nullptr) return;
-  AlarmOrder order;
-  while (orders_->pop(order)) {
+void AlarmCommandServer::serve(AlarmBook& book, const Changed& changed) {
+  if (commands_ == nullptr) return;
+  AlarmCommand command;
+  while (commands_->pop(command)) {
     auto answer = std::make_shared<AlarmAnswer>();
-    answer->number = order.number;
-    switch (order.kind) {
-      case AlarmOrder::Kind::list:
+    answer->number = command.number;
+    switch (command.kind) {
+      case AlarmCommand::Kind::list:
         for (const Alarm& alarm : book.alarms()) {
           answer->alarms.push_back({alarm, book.shelved_for_s(alarm)});
         }
         break;
-      case AlarmOrder::Kind::acknowledge_all:
-        acknowledge_all(order, book, changed, *answer);
+      case AlarmCommand::Kind::acknowledge_all:
+        acknowledge_all(command, book, changed, *answer);
         break;
       default:
-        act_on_one(order, book, changed, *answer);
+        act_on_one(command, book, changed, *answer);
     }
     answers_->push(std::move(answer));
   }

@@ -11,7 +11,7 @@ constexpr std::string_view kSmallest = "smallest_";
 
 }  // namespace
 
-void DetectableBoard::note(const estimator::fdi::EstimateEvent& event) {
+void DetectabilityMonitor::update(const estimator::fdi::EstimateEvent& event) {
   const auto tells = [](const estimator::fdi::NamedValue& value) {
     return std::string_view(value.name).starts_with(kSmallest);
   };
@@ -32,12 +32,12 @@ void DetectableBoard::note(const estimator::fdi::EstimateEvent& event) {
   }
 }
 
-void DetectableBoard::clear() {
+void DetectabilityMonitor::clear() {
   const std::lock_guard lock(mutex_);
   sources_.clear();
 }
 
-std::vector<io::Detectable> DetectableBoard::read() const {
+std::vector<io::Detectable> DetectabilityMonitor::read() const {
   const std::lock_guard lock(mutex_);
   return sources_;
 }

@@ -12,10 +12,10 @@
 
 namespace monitor::detection {
 
-class DetectableBoard {
+class DetectabilityMonitor {
  public:
   /// What it finds; nothing where it has no such value.
-  void note(const estimator::fdi::EstimateEvent& event);
+  void update(const estimator::fdi::EstimateEvent& event);
   /// Its sources may be gone.
   void clear();
   [[nodiscard]] std::vector<io::Detectable> read() const;

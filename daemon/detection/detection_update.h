@@ -14,7 +14,7 @@
 
 namespace monitor::detection {
 
-struct RuleChange {
+struct DetectionUpdate {
   std::unique_ptr<estimator::fdi::Pipeline> pipeline;  ///< the new one; handed back: the old one
   std::uint64_t pipeline_hash = 0;                     ///< schema::hash_of(whole_text)
   std::string config_hash;                             ///< of the whole configuration
@@ -28,7 +28,7 @@ struct RuleChange {
   std::vector<std::string> ended;  ///< alarms that stood and are no more
 };
 
-using RuleQueue =
-    boost::lockfree::spsc_queue<std::shared_ptr<RuleChange>, boost::lockfree::capacity<2>>;
+using DetectionUpdateQueue =
+    boost::lockfree::spsc_queue<std::shared_ptr<DetectionUpdate>, boost::lockfree::capacity<2>>;
 
 }  // namespace monitor::detection

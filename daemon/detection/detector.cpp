@@ -33,7 +33,7 @@ Detector::Detector(const Parts& parts, const Identity& identity)
       changed_([this](const Alarm& alarm) { publish(alarm, false); }),
       guard_alarms_(identity.guards, parts.pipeline.alarms()),
       rod_alarms_(rods_of(identity), identity.sample_time_s),
-      alarm_desk_(parts.orders, parts.answers),
+      alarm_commands_(parts.alarm_commands, parts.alarm_answers),
       spare_rods_(std::min(identity.spare_rods.size(), rt::kMaxSpareRods)),
       inputs_(std::min(identity.inputs.size(), rt::kMaxInputs)),
       next_second_ns_(parts.clock.now_ns() + kSecond_ns) {
@@ -61,8 +61,8 @@ void Detector::drain() {
 }
 
 void Detector::poll() {
-  take_rules();
-  alarm_desk_.serve(parts_.pipeline.alarms(), changed_);
+  apply_updates();
+  alarm_commands_.serve(parts_.pipeline.alarms(), changed_);
   drain();
   if (parts_.store != nullptr) parts_.store->keep(parts_.pipeline.alarms(), parts_.clock.utc_us());
   if (parts_.clock.now_ns() < next_second_ns_) return;
@@ -97,7 +97,7 @@ void Detector::process(const Sample& sample) {
 
 void Detector::on_estimate(const estimator::fdi::EstimateEvent& event) {
   parts_.publisher.estimate(event, stamp());
-  if (parts_.detectable != nullptr) parts_.detectable->note(event);
+  if (parts_.detectability != nullptr) parts_.detectability->update(event);
 }
 
 void Detector::on_alarm(const Alarm& alarm) { publish(alarm, false); }
@@ -116,15 +116,15 @@ void Detector::keep_evidence(const Alarm& alarm) {
   if (came) parts_.evidence->alarm(alarm, stamp().utc_us);
 }
 
-void Detector::take_rules() {
-  std::shared_ptr<RuleChange> change;
-  while (parts_.new_rules != nullptr && parts_.new_rules->pop(change)) {
-    change_rules(*change);
-    parts_.taken_rules->push(change);
+void Detector::apply_updates() {
+  std::shared_ptr<DetectionUpdate> change;
+  while (parts_.updates != nullptr && parts_.updates->pop(change)) {
+    apply_update(*change);
+    parts_.applied_updates->push(change);
   }
 }
 
-void Detector::change_rules(RuleChange& change) {
+void Detector::apply_update(DetectionUpdate& change) {
   estimator::fdi::Pipeline& next = *change.pipeline;
   AlarmBook& before = parts_.pipeline.alarms();
   guard_alarms_.declare_in(next.alarms());
@@ -147,7 +147,7 @@ void Detector::change_rules(RuleChange& change) {
     change.ended.push_back(id);
   }
   std::swap(parts_.pipeline, next);
-  if (parts_.detectable != nullptr) parts_.detectable->clear();
+  if (parts_.detectability != nullptr) parts_.detectability->clear();
   parts_.pipeline_hash = change.pipeline_hash;
   health_.config_hash = change.config_hash;
   // An alarm that stood before has its evidence.
@@ -198,10 +198,11 @@ void Detector::once_a_second() {
             "the detector does not keep up: samples were dropped in the last second");
   overruns_before_ = overruns;
   dropped_before_ = dropped;
-  conditions_.report(parts_.publisher.status(),
-                     parts_.recorder != nullptr ? parts_.recorder->status() : io::RecorderStatus{},
-                     tick_, parts_.pipeline.alarms(), changed_,
-                     parts_.evidence != nullptr ? parts_.evidence->status() : io::EvidenceStatus{});
+  system_alarms_.report(
+      parts_.publisher.status(),
+      parts_.recorder != nullptr ? parts_.recorder->status() : io::RecorderStatus{}, tick_,
+      parts_.pipeline.alarms(), changed_,
+      parts_.evidence != nullptr ? parts_.evidence->status() : io::EvidenceStatus{});
   watch_alarm_files();
   parts_.pipeline.alarms().for_each_active([this](const Alarm& alarm) { publish(alarm, true); });
   health();

@@ -37,15 +37,15 @@ class Detector final : public rt::SampleConsumer, private estimator::fdi::Events
     estimator::fdi::Pipeline& pipeline;
     io::Publisher& publisher;
     const io::Recorder* recorder;
-    AlarmOrderQueue* orders = nullptr;  ///< of people, with `answers`
-    AlarmAnswerQueue* answers = nullptr;
+    AlarmCommandQueue* alarm_commands = nullptr;  ///< of people, with `alarm_answers`
+    AlarmAnswerQueue* alarm_answers = nullptr;
     io::AlarmStore* store = nullptr;
     const io::Audit* audit = nullptr;
     io::Evidence* evidence = nullptr;
-    std::uint64_t pipeline_hash = 0;  ///< schema::hash_of(whole_text), for evidence
-    RuleQueue* new_rules = nullptr;   ///< to be taken, with `taken_rules`
-    RuleQueue* taken_rules = nullptr;
-    DetectableBoard* detectable = nullptr;
+    std::uint64_t pipeline_hash = 0;          ///< schema::hash_of(whole_text), for evidence
+    DetectionUpdateQueue* updates = nullptr;  ///< to be taken, with `applied_updates`
+    DetectionUpdateQueue* applied_updates = nullptr;
+    DetectabilityMonitor* detectability = nullptr;
   };
   /// Constant fields of health_t.
   struct Identity {
@@ -71,8 +71,8 @@ class Detector final : public rt::SampleConsumer, private estimator::fdi::Events
   void on_alarm(const estimator::fdi::Alarm& alarm) override;
 
   /// New rules take the place of the old ones, between two samples.
-  void take_rules();
-  void change_rules(RuleChange& change);
+  void apply_updates();
+  void apply_update(DetectionUpdate& change);
   void drain();
   void process(const config::signals::Sample& sample);
   void publish(const estimator::fdi::Alarm& alarm, bool repeat);
@@ -91,10 +91,10 @@ class Detector final : public rt::SampleConsumer, private estimator::fdi::Events
 
   Parts parts_;
   std::function<void(const estimator::fdi::Alarm&)> changed_;
-  Conditions conditions_;
+  SystemAlarms system_alarms_;
   GuardAlarms guard_alarms_;
   RodAlarms rod_alarms_;
-  AlarmDesk alarm_desk_;
+  AlarmCommandServer alarm_commands_;
   std::vector<std::int64_t> times_;     ///< Alarm::times that evidence was asked for
   std::vector<std::uint8_t> snapshot_;  ///< of the pipeline
   std::vector<std::string> guard_ids_;

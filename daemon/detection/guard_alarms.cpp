@@ -52,18 +52,18 @@ void GuardAlarms::declare_in(estimator::fdi::AlarmBook& book) {
   }
 }
 
-void GuardAlarms::report(rt::GuardBoard& board, std::int64_t tick,
+void GuardAlarms::report(rt::GuardStatus& status, std::int64_t tick,
                          const std::function<void(const Alarm&)>& changed) {
-  const std::uint32_t now = board.take_raised() | board.active();
-  if (now == shown_) return;
+  const std::uint32_t now = status.take_raised() | status.active();
+  if (now == published_) return;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     const std::uint32_t bit = 1U << i;
-    if (((now ^ shown_) & bit) == 0) continue;
+    if (((now ^ published_) & bit) == 0) continue;
     const bool active = (now & bit) != 0;
     estimator::fdi::AlarmInput state;
     state.severity = active ? entries_[i].severity : Severity::ok;
     state.tick = tick;
-    state.value = board.value(i);
+    state.value = status.value(i);
     if (active) {
       const Alarm& limits = book_->alarm(entries_[i].number);
       state.reason = entries_[i].reason;
@@ -71,7 +71,7 @@ void GuardAlarms::report(rt::GuardBoard& board, std::int64_t tick,
     }
     if (const Alarm* alarm = book_->set(entries_[i].number, state)) changed(*alarm);
   }
-  shown_ = now;
+  published_ = now;
 }
 
 }  // namespace monitor::detection

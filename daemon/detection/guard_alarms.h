@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "daemon/control/guard_config.h"
-#include "daemon/rt/guard_board.h"
+#include "daemon/rt/guard_status.h"
 #include "estimator/fdi/alarm_book.h"
 
 namespace monitor::detection {
@@ -19,9 +19,9 @@ class GuardAlarms {
   /// Declares them in another book, which takes the place of the first.
   void declare_in(estimator::fdi::AlarmBook& book);
 
-  /// Sets the alarms as the board shows them; `changed` is called for each that came or went. A
+  /// Sets the alarms as the status shows them; `changed` is called for each that came or went. A
   /// guard that was active for one tick alone gives an alarm all the same, until the next call.
-  void report(rt::GuardBoard& board, std::int64_t tick,
+  void report(rt::GuardStatus& status, std::int64_t tick,
               const std::function<void(const estimator::fdi::Alarm&)>& changed);
 
  private:
@@ -33,7 +33,7 @@ class GuardAlarms {
   std::vector<control::GuardConfig> guards_;
   std::vector<Entry> entries_;
   estimator::fdi::AlarmBook* book_ = nullptr;
-  std::uint32_t shown_ = 0;
+  std::uint32_t published_ = 0;
 };
 
 }  // namespace monitor::detection

@@ -14,7 +14,7 @@ using estimator::fdi::Severity;
 
 namespace {
 
-const char* words_of(RodFault fault) {
+const char* describe(RodFault fault) {
   switch (fault) {
     case RodFault::none:
       break;
@@ -44,19 +44,19 @@ void RodAlarms::report(const Sample& sample, AlarmBook& book,
   if (sample.rod_count == 0) return;
   const std::size_t count = std::min<std::size_t>(sample.rod_count, rods_.size());
   for (std::size_t i = 0; i < count; ++i) {
-    if (sample.rod_fault[i] == shown_[i]) continue;
-    shown_[i] = sample.rod_fault[i];
+    if (sample.rod_fault[i] == published_[i]) continue;
+    published_[i] = sample.rod_fault[i];
     char reason[200] = "";
-    if (shown_[i] != 0) {
+    if (published_[i] != 0) {
       const std::string& in_charge =
           rods_[std::min<std::size_t>(sample.rod_in_charge, rods_.size() - 1)];
       std::snprintf(reason, sizeof reason,
                     "out since %.3f s after the start: %s; the controller works with %.40s",
                     static_cast<double>(sample.tick) * sample_time_s_,
-                    words_of(static_cast<RodFault>(shown_[i])), in_charge.c_str());
+                    describe(static_cast<RodFault>(published_[i])), in_charge.c_str());
     }
-    const Alarm* alarm =
-        book.set_condition("loop", names_[i], Severity::major, shown_[i] != 0, reason, sample.tick);
+    const Alarm* alarm = book.set_condition("loop", names_[i], Severity::major, published_[i] != 0,
+                                            reason, sample.tick);
     if (alarm != nullptr) changed(*alarm);
   }
 }

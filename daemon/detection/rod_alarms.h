@@ -31,7 +31,7 @@ class RodAlarms {
   std::vector<std::string> rods_;
   std::vector<std::string> names_;  ///< of the alarms
   double sample_time_s_;
-  std::array<std::uint8_t, control::kMaxRods> shown_{};
+  std::array<std::uint8_t, control::kMaxRods> published_{};
 };
 
 }  // namespace monitor::detection

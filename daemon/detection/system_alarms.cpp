@@ -7,10 +7,10 @@ namespace monitor::detection {
 
 using estimator::fdi::Severity;
 
-void Conditions::report(const io::PublisherStatus& publisher, const io::RecorderStatus& recorder,
-                        std::int64_t tick, estimator::fdi::AlarmBook& book,
-                        const std::function<void(const estimator::fdi::Alarm&)>& changed,
-                        const io::EvidenceStatus& evidence) {
+void SystemAlarms::report(const io::PublisherStatus& publisher, const io::RecorderStatus& recorder,
+                          std::int64_t tick, estimator::fdi::AlarmBook& book,
+                          const std::function<void(const estimator::fdi::Alarm&)>& changed,
+                          const io::EvidenceStatus& evidence) {
   const auto set = [&](const char* source, const char* name, Severity severity, bool active,
                        const std::string& reason) {
     if (const auto* alarm = book.set_condition(source, name, severity, active, reason, tick)) {

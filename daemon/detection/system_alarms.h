@@ -15,7 +15,7 @@ namespace monitor::detection {
 /// to a full queue since the last call), lcm.send_failed and evidence.failed in `book`, and calls
 /// `changed` for each that came or went. Meant to be called once a second; keeps the counts of the
 /// last call.
-class Conditions {
+class SystemAlarms {
  public:
   void report(const io::PublisherStatus& publisher, const io::RecorderStatus& recorder,
               std::int64_t tick, estimator::fdi::AlarmBook& book,

@@ -105,8 +105,9 @@ LoadedLives parse_lives(const std::string& text, const std::string& rig_id, std:
   return loaded;
 }
 
-AlarmStore::AlarmStore(const std::filesystem::path& folder, std::string rig_id, Clerk& clerk)
-    : file_(folder / "alarms.json"), rig_id_(std::move(rig_id)), clerk_(clerk) {}
+AlarmStore::AlarmStore(const std::filesystem::path& folder, std::string rig_id,
+                       BackgroundWriter& writer)
+    : file_(folder / "alarms.json"), rig_id_(std::move(rig_id)), writer_(writer) {}
 
 LoadedLives AlarmStore::load(std::int64_t utc_us) const {
   std::error_code error;
@@ -122,7 +123,7 @@ LoadedLives AlarmStore::load(std::int64_t utc_us) const {
 
 void AlarmStore::keep(const estimator::fdi::AlarmBook& book, std::int64_t utc_us) {
   if (book.changes() == saved_) return;
-  const bool posted = clerk_.post(
+  const bool posted = writer_.post(
       [file = file_, error = error_, text = print_lives(book.persisted_alarms(), rig_id_, utc_us)] {
         std::error_code ignored;
         std::filesystem::create_directories(file.parent_path(), ignored);

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "config/schema/visitor.h"
-#include "daemon/io/clerk.h"
+#include "daemon/io/background_writer.h"
 #include "estimator/fdi/alarm_book.h"
 
 namespace monitor::io {
@@ -38,8 +38,8 @@ struct LoadedLives {
 
 class AlarmStore {
  public:
-  /// `clerk` writes, also what is queued when this ends.
-  AlarmStore(const std::filesystem::path& folder, std::string rig_id, Clerk& clerk);
+  /// `writer` writes, also what is queued when this ends.
+  AlarmStore(const std::filesystem::path& folder, std::string rig_id, BackgroundWriter& writer);
 
   /// Before the first save(). A file that does not exist is nothing wrong.
   [[nodiscard]] LoadedLives load(std::int64_t utc_us) const;
@@ -54,7 +54,7 @@ class AlarmStore {
  private:
   std::filesystem::path file_;
   std::string rig_id_;
-  Clerk& clerk_;
+  BackgroundWriter& writer_;
   std::uint64_t saved_ = 0;  ///< AlarmBook::changes() of what was saved last
   std::shared_ptr<std::atomic<int>> error_ = std::make_shared<std::atomic<int>>(0);  ///< its jobs'
 };

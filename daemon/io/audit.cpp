@@ -41,16 +41,16 @@ std::string print_audit(const AuditEntry& entry) {
   line["uid"] = entry.uid;
   line["who"] = entry.who;
   line["what"] = entry.what.substr(0, kLongestRequest);
-  line["done"] = entry.refusal.empty();
-  if (!entry.refusal.empty()) line["reason"] = entry.refusal;
+  line["done"] = entry.reject_reason.empty();
+  if (!entry.reject_reason.empty()) line["reason"] = entry.reject_reason;
   return line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
 }
 
-Audit::Audit(const std::filesystem::path& folder, std::int64_t file_bytes, Clerk& clerk)
-    : file_(std::make_shared<File>(folder / "audit.log", file_bytes)), clerk_(clerk) {}
+Audit::Audit(const std::filesystem::path& folder, std::int64_t file_bytes, BackgroundWriter& writer)
+    : file_(std::make_shared<File>(folder / "audit.log", file_bytes)), writer_(writer) {}
 
 void Audit::note(const AuditEntry& entry) {
-  if (!clerk_.post([file = file_, line = print_audit(entry)] { file->append(line); })) {
+  if (!writer_.post([file = file_, line = print_audit(entry)] { file->append(line); })) {
     ++file_->lost;
   }
 }

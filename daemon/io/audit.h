@@ -10,16 +10,16 @@
 #include <string>
 #include <utility>
 
-#include "daemon/io/clerk.h"
+#include "daemon/io/background_writer.h"
 
 namespace monitor::io {
 
 struct AuditEntry {
   std::int64_t utc_us = 0;
   unsigned uid = 0;
-  std::string who;      ///< the user's name
-  std::string what;     ///< the request as it came
-  std::string refusal;  ///< empty: done
+  std::string who;            ///< the user's name
+  std::string what;           ///< the request as it came
+  std::string reject_reason;  ///< empty: done
 };
 
 /// One line with its end.
@@ -27,8 +27,8 @@ struct AuditEntry {
 
 class Audit {
  public:
-  /// `clerk` writes, also what is queued when this ends.
-  Audit(const std::filesystem::path& folder, std::int64_t file_bytes, Clerk& clerk);
+  /// `writer` writes, also what is queued when this ends.
+  Audit(const std::filesystem::path& folder, std::int64_t file_bytes, BackgroundWriter& writer);
 
   /// Does not wait for the disk.
   void note(const AuditEntry& entry);
@@ -36,7 +36,7 @@ class Audit {
   [[nodiscard]] std::int64_t lost() const noexcept { return file_->lost; }
 
  private:
-  /// What the clerk's jobs write to; they share it.
+  /// What the writer's jobs write to; they share it.
   struct File {
     File(std::filesystem::path file, std::int64_t most) : path(std::move(file)), most_bytes(most) {}
 
@@ -48,7 +48,7 @@ class Audit {
   };
 
   std::shared_ptr<File> file_;
-  Clerk& clerk_;
+  BackgroundWriter& writer_;
 };
 
 /// "ann", or the number when the user has no name here.

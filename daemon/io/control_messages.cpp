@@ -240,7 +240,7 @@ std::string print_done(control::State state) {
   return line.dump();
 }
 
-std::string print_refused(control::State state, const std::string& reason) {
+std::string print_rejected(control::State state, const std::string& reason) {
   ordered_json line;
   line[control::key::kOk] = false;
   line[control::key::kState] = control::to_string(state);

@@ -113,6 +113,6 @@ struct ControlReload {
 };
 [[nodiscard]] std::string print_reloaded(control::State state, const ControlReload& reload);
 [[nodiscard]] std::string print_done(control::State state);
-[[nodiscard]] std::string print_refused(control::State state, const std::string& reason);
+[[nodiscard]] std::string print_rejected(control::State state, const std::string& reason);
 
 }  // namespace monitor::io

@@ -9,6 +9,7 @@ using config::signals::Sample;
 using control::Action;
 using control::Event;
 using control::GuardKind;
+using control::RejectReason;
 using control::State;
 
 void LoopConfig::visit(config::schema::Visitor& v) {
@@ -38,15 +39,15 @@ Loop::Loop(const LoopConfig& config, const Parts& parts, const control::Controll
            double sample_time_s, const SafetyRules& rules)
     : parts_(parts),
       controller_(controller),
-      motion_(parts.reference, {rules.safety.blend_s, rules.safety.blend_mps, sample_time_s}),
+      reference_(parts.reference, {rules.safety.blend_s, rules.safety.blend_mps, sample_time_s}),
       ramp_(rules.safety.ramp_s),
-      safety_(control::all_guards(rules.safety, config.overrun()), sample_time_s),
+      guard_monitor_(control::all_guards(rules.safety, config.overrun()), sample_time_s),
       arming_(parts.valve == nullptr),
-      rods_(parts.rod, parts.spare_rods, parts.stats,
-            {rules.safety.failover,
-             control::all_guards(rules.safety, config.overrun()),
-             {sample_time_s, config.max_bad_in_a_row, rules.safety.blend_mps}}),
-      around_(parts.inputs, config.max_bad_in_a_row, parts.stats),
+      position_sensor_(parts.rod, parts.spare_rods, parts.stats,
+                       {rules.safety.failover,
+                        control::all_guards(rules.safety, config.overrun()),
+                        {sample_time_s, config.max_bad_in_a_row, rules.safety.blend_mps}}),
+      aux_inputs_(parts.inputs, config.max_bad_in_a_row, parts.stats),
       overruns_(config.max_lost_in_a_row, config.max_lost_a_minute),
       sample_time_s_(sample_time_s),
       null_V_(controller.null_V()),
@@ -62,15 +63,15 @@ void Loop::apply(Event event) noexcept {
   parts_.stats.state.store(arming_.state(), std::memory_order_relaxed);
 }
 
-void Loop::act(const control::Verdict& verdict, bool measured) noexcept {
+void Loop::act(const control::GuardTrip& trip, bool measured) noexcept {
   const State state = arming_.state();
   if (state != State::run && (measured || state != State::armed)) return;
-  switch (verdict.action) {
+  switch (trip.action) {
     case Action::none:
     case Action::indicate:
       break;
     case Action::hold:
-      if (state == State::run && have_position()) motion_.hold(y_m_);
+      if (state == State::run && have_position()) reference_.hold(y_m_);
       break;
     case Action::ramp:
       if (state == State::armed) leave();
@@ -80,12 +81,12 @@ void Loop::act(const control::Verdict& verdict, bool measured) noexcept {
       leave();
       break;
     case Action::latch:
-      trip(verdict.guard);
+      latch(trip.guard);
       break;
   }
 }
 
-void Loop::trip(int guard) noexcept {
+void Loop::latch(int guard) noexcept {
   constexpr Trip kBuiltInTrips[] = {Trip::e_stop, Trip::reading, Trip::write, Trip::overrun};
   const auto index = static_cast<std::size_t>(guard);
   parts_.stats.trip_guard.store(static_cast<std::uint8_t>(guard), std::memory_order_relaxed);
@@ -98,12 +99,78 @@ void Loop::leave() noexcept {
   if (arming_.state() == State::run || arming_.state() == State::armed) apply(Event::disarm);
 }
 
+RejectReason Loop::obstacle(Event event) const noexcept {
+  if (event != Event::arm && event != Event::start) return RejectReason::none;
+  if (closing_) return RejectReason::closing;
+  if (!may_arm_) return RejectReason::calibration;
+  if (!aux_inputs_.enabled()) return RejectReason::enable;
+  if (guard_monitor_.obstacle() >= 0) return RejectReason::guard;
+  return event == Event::start && !have_position() ? RejectReason::position : RejectReason::none;
+}
+
+RejectReason Loop::carry_out(Event event, bool at_once) noexcept {
+  if (arming_.state() == State::monitor) return RejectReason::monitor;
+  control::Arming after = arming_;
+  const bool resume =
+      event == Event::start && arming_.state() == State::run && reference_.holding();
+  if (!resume && !after.apply(event)) return RejectReason::state;
+  if (const RejectReason reject_reason = obstacle(event); reject_reason != RejectReason::none)
+    return reject_reason;
+  if (event == Event::start) {
+    reference_.start(y_m_, tick_, at_once);
+    guard_monitor_.start(y_m_);
+    position_sensor_.voter().start();
+    if (!resume) controller_.reset();
+  }
+  if (!resume) apply(event);
+  return RejectReason::none;
+}
+
+RejectReason Loop::carry_out(const Command& command) noexcept {
+  if (parts_.clock.now_ns() >= command.expires_ns) {
+    parts_.stats.expired_commands.add();
+    return RejectReason::expired;
+  }
+  if (command.kind == Command::Kind::readmit) {
+    position_sensor_.voter().readmit();
+    return RejectReason::none;
+  }
+  if (command.kind == Command::Kind::event) return carry_out(command.event, command.at_once);
+  if (arming_.state() == State::monitor) return RejectReason::monitor;
+  const bool run = arming_.state() == State::run && !ramp_.active();
+  if (run && !have_position()) return RejectReason::position;
+  if (command.kind == Command::Kind::hold) {
+    if (!run) return RejectReason::state;
+    reference_.hold(y_m_);
+    return RejectReason::none;
+  }
+  // What holds must be able to hold again.
+  if (run) guard_monitor_.start(y_m_);
+  reference_.follow(control::Sine(command.centre_m, command.amplitude_m, command.frequency_Hz),
+                    tick_, run);
+  return RejectReason::none;
+}
+
+void Loop::take_commands() noexcept {
+  Command command;
+  while (parts_.commands.pop(command)) {
+    const RejectReason reject_reason = carry_out(command);
+    if (reject_reason != RejectReason::none && reject_reason != RejectReason::expired) {
+      parts_.stats.rejected_commands.add();
+    }
+    if (command.number == 0) continue;
+    answer_ = {command.number, reject_reason, arming_.state(), 0};
+    if (reject_reason == RejectReason::guard)
+      answer_.guard = static_cast<std::uint8_t>(guard_monitor_.obstacle());
+  }
+}
+
 void Loop::watch_inputs(const hal::Tick& tick) noexcept {
-  around_.read(tick);
-  act(safety_.set(GuardKind::e_stop, !around_.e_stop_released(), 0.0), false);
-  if (!around_.enabled()) leave();
+  aux_inputs_.read(tick);
+  act(guard_monitor_.set(GuardKind::e_stop, !aux_inputs_.e_stop_released(), 0.0), false);
+  if (!aux_inputs_.enabled()) leave();
   const bool missing = bad_readings_ > max_bad_in_a_row_;
-  act(safety_.set(GuardKind::missing, missing, static_cast<double>(bad_readings_)), false);
+  act(guard_monitor_.set(GuardKind::missing, missing, static_cast<double>(bad_readings_)), false);
 }
 
 void Loop::watch_overruns(const Period& period) noexcept {
@@ -114,27 +181,27 @@ void Loop::watch_overruns(const Period& period) noexcept {
     gap_ += period.skipped;
   }
   const bool too_many = overruns_.add(period.skipped, period.tick.nominal_ns);
-  act(safety_.set(GuardKind::overrun, too_many, static_cast<double>(period.skipped)), false);
+  act(guard_monitor_.set(GuardKind::overrun, too_many, static_cast<double>(period.skipped)), false);
 }
 
 void Loop::watch_motion(const hal::Reading& reading, Sample& sample) noexcept {
   const bool follows = arming_.state() == State::run && !ramp_.active();
-  if (follows && interrupted_ && have_position()) motion_.rejoin(y_m_, tick_);
-  if (follows) sample.reference_m = motion_.at(tick_);
-  control::Facts facts;
-  facts.t_s = time_s();
-  facts.y_m = y_m_;
-  facts.called_stale = reading.t_ns == 0 && reading.quality == config::signals::Quality::stale;
+  if (follows && interrupted_ && have_position()) reference_.resume_from(y_m_, tick_);
+  if (follows) sample.reference_m = reference_.at(tick_);
+  control::GuardInputs inputs;
+  inputs.t_s = time_s();
+  inputs.y_m = y_m_;
+  inputs.called_stale = reading.t_ns == 0 && reading.quality == config::signals::Quality::stale;
   if (reading.t_ns != 0) {
-    facts.age_s = static_cast<double>(parts_.clock.now_ns() - reading.t_ns) * 1e-9;
+    inputs.age_s = static_cast<double>(parts_.clock.now_ns() - reading.t_ns) * 1e-9;
   }
-  facts.reference_m = sample.reference_m;
-  facts.command_V = last_V_;
-  facts.saturated = last_limited_;
-  facts.spare_difference_m = rods_.choice().difference_m();
-  facts.other_sensor = rods_.choice().changed();
-  act(safety_.watch(facts, rods_.choice().watch()), true);
-  if (follows && motion_.holding()) sample.reference_m = motion_.at(tick_);
+  inputs.reference_m = sample.reference_m;
+  inputs.command_V = last_V_;
+  inputs.saturated = last_limited_;
+  inputs.spare_difference_m = position_sensor_.voter().difference_m();
+  inputs.other_sensor = position_sensor_.voter().changed();
+  act(guard_monitor_.watch(inputs, position_sensor_.voter().watch()), true);
+  if (follows && reference_.holding()) sample.reference_m = reference_.at(tick_);
 }
 
 void Loop::drive(const Period& period, Sample& sample) noexcept {
@@ -144,12 +211,12 @@ void Loop::drive(const Period& period, Sample& sample) noexcept {
   if (ramp_.active() && (too_long || ramp_.over(time_s()))) leave();
   const bool run = arming_.state() == State::run && !too_long;
   const bool ramp = run && ramp_.active();
-  const bool law = run && !ramp && have_position() && !around_.blind();
+  const bool controlling = run && !ramp && have_position() && !aux_inputs_.blind();
   double command_V = null_V_;
-  if (law) {
+  if (controlling) {
     const int periods = static_cast<int>(std::min<std::int64_t>(period.skipped + 1, 1000));
     const control::Command command =
-        controller_.update(sample.reference_m, y_m_ + rods_.choice().bump_m(), periods);
+        controller_.update(sample.reference_m, y_m_ + position_sensor_.voter().bump_m(), periods);
     sample.u_requested_V = command.requested_V;
     sample.saturated = command.saturated;
     command_V = command.limited_V;
@@ -157,19 +224,19 @@ void Loop::drive(const Period& period, Sample& sample) noexcept {
     controller_.reset();
     if (ramp) command_V = sample.u_requested_V = null_V_ + ramp_.at(time_s());
   }
-  interrupted_ = arming_.state() == State::run && !law && !ramp;
+  interrupted_ = arming_.state() == State::run && !controlling && !ramp;
   last_V_ = command_V - null_V_;
   last_limited_ = sample.saturated;
   sample.t_write_ns = parts_.clock.now_ns();
   parts_.stats.control.add(sample.t_write_ns - start_ns);
   const hal::Applied applied =
-      law || ramp ? parts_.valve->write(command_V, period.tick) : parts_.valve->go_null();
+      controlling || ramp ? parts_.valve->write(command_V, period.tick) : parts_.valve->go_null();
   parts_.stats.write.add(parts_.clock.now_ns() - sample.t_write_ns);
   sample.u_applied_V = applied.u_V;
   (applied.good ? parts_.stats.valve_good : parts_.stats.valve_bad).add();
   bad_writes_ = applied.good ? 0 : bad_writes_ + 1;
   const bool lost = bad_writes_ > max_bad_in_a_row_;
-  act(safety_.set(GuardKind::bus_lost, lost, static_cast<double>(bad_writes_)), false);
+  act(guard_monitor_.set(GuardKind::bus_lost, lost, static_cast<double>(bad_writes_)), false);
 }
 
 void Loop::send(Sample& sample) noexcept {
@@ -182,14 +249,14 @@ void Loop::send(Sample& sample) noexcept {
   }
 }
 
-void Loop::show(const Period& period, const Sample& sample) noexcept {
+void Loop::publish_stats(const Period& period, const Sample& sample) noexcept {
   LoopStats& stats = parts_.stats;
   const bool run = arming_.state() == State::run;
-  stats.guards.show(safety_);
+  stats.guards.update(guard_monitor_);
   stats.y_m.store(sample.y_m, std::memory_order_relaxed);
   stats.u_V.store(sample.u_applied_V, std::memory_order_relaxed);
   stats.reference_m.store(sample.reference_m, std::memory_order_relaxed);
-  stats.holding.store(run && motion_.holding(), std::memory_order_relaxed);
+  stats.holding.store(run && reference_.holding(), std::memory_order_relaxed);
   stats.ramping.store(run && ramp_.active(), std::memory_order_relaxed);
   answer_.state = arming_.state();
   stats.answer.store(control::pack(answer_), std::memory_order_release);
@@ -209,7 +276,8 @@ bool Loop::tick(const Period& period) noexcept {
   sample.utc_us = parts_.clock.utc_us();
   sample.t_read_ns = parts_.clock.now_ns();
   const bool follows = arming_.state() == State::run && !ramp_.active() && !interrupted_;
-  const hal::Reading& reading = rods_.read(period.tick, parts_.clock, time_s(), last_V_, follows);
+  const hal::Reading& reading =
+      position_sensor_.read(period.tick, parts_.clock, time_s(), last_V_, follows);
   parts_.stats.read.add(parts_.clock.now_ns() - sample.t_read_ns);
   if (reading.end) return false;
 
@@ -218,16 +286,16 @@ bool Loop::tick(const Period& period) noexcept {
   y_m_ = good ? reading.y_m : hal::kMissing;
   sample.y_m = y_m_;
   sample.quality = good ? reading.quality : config::signals::Quality::bad;
-  rods_.fill(sample);
+  position_sensor_.fill(sample);
   watch_inputs(period.tick);
-  sample.pressures = around_.pressures();
+  sample.pressures = aux_inputs_.pressures();
   take_commands();
   watch_overruns(period);
   if (closing_) leave();
 
   sample.reference_m = hal::kMissing;
   sample.u_requested_V = hal::kMissing;
-  sample.u_applied_V = around_.has_command() ? around_.command_V() : reading.command_V;
+  sample.u_applied_V = aux_inputs_.has_command() ? aux_inputs_.command_V() : reading.command_V;
   watch_motion(reading, sample);
   if (parts_.valve != nullptr) {
     drive(period, sample);
@@ -238,7 +306,7 @@ bool Loop::tick(const Period& period) noexcept {
   }
   sample.state = static_cast<std::uint8_t>(arming_.state());
   send(sample);
-  show(period, sample);
+  publish_stats(period, sample);
   parts_.stats.ticks.add();
   parts_.stats.tick.add(parts_.clock.now_ns() - start_ns);
   return true;

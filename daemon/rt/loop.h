@@ -4,11 +4,11 @@
 //
 // Null (valve.null_V) is written whenever the state is not RUN (a stop is null at once), in the
 // first tick after 50 ms or more without one, and when the position is missing. Guards (control/
-// safety.h) hold the reference, ramp the command to null or latch; losing the enable input disarms.
-// A start begins where the rod is; a start while a guard holds resumes from there, and so does the
-// law after a null in between.
+// guard_monitor.h) hold the reference, ramp the command to null or latch; losing the enable input
+// disarms. A start begins where the rod is; a start while a guard holds resumes from there, and so
+// does the law after a null in between.
 //
-// Several rod sensors: control/rod_choice.h says which one's reading counts.
+// Several rod sensors: control/position_voter.h says which one's reading counts.
 #pragma once
 
 #include <cstdint>
@@ -18,16 +18,16 @@
 #include "config/schema/visitor.h"
 #include "daemon/control/arming.h"
 #include "daemon/control/controller.h"
-#include "daemon/control/motion.h"
-#include "daemon/control/refusal.h"
-#include "daemon/control/safety.h"
+#include "daemon/control/guard_monitor.h"
+#include "daemon/control/reference_generator.h"
+#include "daemon/control/reject_reason.h"
+#include "daemon/rt/auxiliary_inputs.h"
 #include "daemon/rt/clock.h"
 #include "daemon/rt/grid.h"
 #include "daemon/rt/loop_stats.h"
 #include "daemon/rt/overrun.h"
 #include "daemon/rt/queues.h"
-#include "daemon/rt/rods.h"
-#include "daemon/rt/surroundings.h"
+#include "daemon/rt/redundant_position_sensor.h"
 #include "hal/device.h"
 
 namespace monitor::rt {
@@ -87,14 +87,14 @@ class Loop {
 
  private:
   void take_commands() noexcept;
-  [[nodiscard]] control::Refusal carry_out(const Command& command) noexcept;
-  [[nodiscard]] control::Refusal carry_out(control::Event event, bool at_once) noexcept;
+  [[nodiscard]] control::RejectReason carry_out(const Command& command) noexcept;
+  [[nodiscard]] control::RejectReason carry_out(control::Event event, bool at_once) noexcept;
   /// What forbids to arm or to start.
-  [[nodiscard]] control::Refusal obstacle(control::Event event) const noexcept;
+  [[nodiscard]] control::RejectReason obstacle(control::Event event) const noexcept;
   void apply(control::Event event) noexcept;
   /// Carries out what a guard asks for. `measured`: only in RUN.
-  void act(const control::Verdict& verdict, bool measured) noexcept;
-  void trip(int guard) noexcept;
+  void act(const control::GuardTrip& trip, bool measured) noexcept;
+  void latch(int guard) noexcept;
   /// From RUN or ARMED to DISARMED.
   void leave() noexcept;
   void watch_overruns(const Period& period) noexcept;
@@ -104,7 +104,7 @@ class Loop {
   void watch_motion(const hal::Reading& reading, config::signals::Sample& sample) noexcept;
   void drive(const Period& period, config::signals::Sample& sample) noexcept;
   void send(config::signals::Sample& sample) noexcept;
-  void show(const Period& period, const config::signals::Sample& sample) noexcept;
+  void publish_stats(const Period& period, const config::signals::Sample& sample) noexcept;
   [[nodiscard]] double time_s() const noexcept {
     return static_cast<double>(tick_) * sample_time_s_;
   }
@@ -112,12 +112,12 @@ class Loop {
 
   Parts parts_;
   control::Controller controller_;
-  control::Motion motion_;
+  control::ReferenceGenerator reference_;
   control::Ramp ramp_;
-  control::Safety safety_;
+  control::GuardMonitor guard_monitor_;
   control::Arming arming_;
-  Rods rods_;
-  Surroundings around_;
+  RedundantPositionSensor position_sensor_;
+  AuxiliaryInputs aux_inputs_;
   OverrunRule overruns_;
   double sample_time_s_;
   double null_V_;

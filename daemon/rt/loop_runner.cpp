@@ -19,7 +19,7 @@ constexpr std::chrono::milliseconds kStuck{1000};
 constexpr std::chrono::milliseconds kDetectorStuck{5000};
 
 void consume(SampleConsumer& consumer, const std::atomic<bool>& loop_ended, std::atomic<bool>& stop,
-             Outcome& outcome) {
+             RunError& run_error) {
   try {
     MonotonicClock clock;
     while (!loop_ended.load(std::memory_order_acquire)) {
@@ -28,7 +28,7 @@ void consume(SampleConsumer& consumer, const std::atomic<bool>& loop_ended, std:
     }
     consumer.finish();
   } catch (const std::exception& e) {
-    outcome = std::string("detector: ") + e.what();
+    run_error = std::string("detector: ") + e.what();
     stop.store(true, std::memory_order_relaxed);
   }
 }
@@ -42,9 +42,9 @@ void consume(SampleConsumer& consumer, const std::atomic<bool>& loop_ended, std:
 
 }  // namespace
 
-Outcome run_virtual(Run& run, SampleConsumer& consumer, std::atomic<bool>& stop,
-                    const std::function<bool()>& stop_asked) {
-  for (int n = 0; run.step(); ++n) {
+RunError run_virtual(LoopRunner& runner, SampleConsumer& consumer, std::atomic<bool>& stop,
+                     const std::function<bool()>& stop_asked) {
+  for (int n = 0; runner.step(); ++n) {
     consumer.poll();
     if (n % kTicksBetweenLooks == 0 && stop_asked()) stop.store(true, std::memory_order_relaxed);
   }
@@ -52,19 +52,19 @@ Outcome run_virtual(Run& run, SampleConsumer& consumer, std::atomic<bool>& stop,
   return {};
 }
 
-Outcome run_realtime(Run& run, SampleConsumer& consumer, const ThreadOptions& loop_thread,
-                     std::atomic<bool>& stop, hal::ValveDrive* valve,
-                     const std::function<bool()>& wait_stop_asked) {
+RunError run_realtime(LoopRunner& runner, SampleConsumer& consumer,
+                      const ThreadOptions& loop_thread, std::atomic<bool>& stop,
+                      hal::ValveDrive* valve, const std::function<bool()>& wait_stop_asked) {
   std::atomic<bool> loop_ended{false};
-  Outcome outcome;
+  RunError run_error;
   Thread detecting;
   Thread looping;
   int error =
-      detecting.start("detector", {}, [&] { consume(consumer, loop_ended, stop, outcome); });
+      detecting.start("detector", {}, [&] { consume(consumer, loop_ended, stop, run_error); });
   if (error == 0) {
     error = looping.start("loop", loop_thread, [&] {
       prepare_loop_thread();
-      while (run.step()) {
+      while (runner.step()) {
       }
       loop_ended.store(true, std::memory_order_release);
     });
@@ -84,7 +84,7 @@ Outcome run_realtime(Run& run, SampleConsumer& consumer, const ThreadOptions& lo
   if (!detecting.join_for(kDetectorStuck)) {
     leave_stuck_thread(valve, "spoolwatchd: LCM does not return: the last messages are lost\n");
   }
-  return outcome;
+  return run_error;
 }
 
 }  // namespace monitor::rt

@@ -26,17 +26,17 @@ class SampleConsumer {
 };
 
 /// The life of one loop. Whatever way it ends, the last thing written is null.
-class Run {
+class LoopRunner {
  public:
   /// `ticks`: periods of the grid before the closing one; `valve` may be null.
-  Run(Loop& loop, const Grid& grid, Clock& clock, hal::ValveDrive* valve, std::int64_t ticks,
-      const std::atomic<bool>& stop) noexcept
+  LoopRunner(Loop& loop, const Grid& grid, Clock& clock, hal::ValveDrive* valve, std::int64_t ticks,
+             const std::atomic<bool>& stop) noexcept
       : loop_(loop), grid_(grid), clock_(clock), valve_(valve), ticks_(ticks), stop_(stop) {}
-  ~Run() {
+  ~LoopRunner() {
     if (valve_ != nullptr) valve_->go_null();
   }
-  Run(const Run&) = delete;
-  Run& operator=(const Run&) = delete;
+  LoopRunner(const LoopRunner&) = delete;
+  LoopRunner& operator=(const LoopRunner&) = delete;
 
   /// Waits for the next period and runs it; false after the last.
   bool step() noexcept {
@@ -57,15 +57,15 @@ class Run {
 };
 
 /// How a run ended: "" as it was meant to, else what went wrong, in one line.
-using Outcome = std::string;
+using RunError = std::string;
 
 /// `stop_asked` is called now and then; once it says so, the next tick is the last.
-Outcome run_virtual(Run& run, SampleConsumer& consumer, std::atomic<bool>& stop,
-                    const std::function<bool()>& stop_asked);
+RunError run_virtual(LoopRunner& runner, SampleConsumer& consumer, std::atomic<bool>& stop,
+                     const std::function<bool()>& stop_asked);
 
 /// `wait_stop_asked` waits up to 100 ms and says whether to stop.
-Outcome run_realtime(Run& run, SampleConsumer& consumer, const ThreadOptions& loop_thread,
-                     std::atomic<bool>& stop, hal::ValveDrive* valve,
-                     const std::function<bool()>& wait_stop_asked);
+RunError run_realtime(LoopRunner& runner, SampleConsumer& consumer,
+                      const ThreadOptions& loop_thread, std::atomic<bool>& stop,
+                      hal::ValveDrive* valve, const std::function<bool()>& wait_stop_asked);
 
 }  // namespace monitor::rt

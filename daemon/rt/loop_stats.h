@@ -8,7 +8,7 @@
 
 #include "daemon/control/arming.h"
 #include "daemon/control/failover.h"
-#include "daemon/rt/guard_board.h"
+#include "daemon/rt/guard_status.h"
 #include "daemon/rt/histogram.h"
 
 namespace monitor::rt {
@@ -55,8 +55,8 @@ struct LoopStats {
   Counter skipped_periods;
   Counter dropped_samples;  ///< queue to the detector full
   Counter expired_commands;
-  Counter refused_commands;  ///< not allowed at that moment
-  DeviceStats rod;           ///< the configured sensor
+  Counter rejected_commands;  ///< not allowed at that moment
+  DeviceStats rod;            ///< the configured sensor
   Counter valve_good, valve_bad;
   Counter permit_good, permit_bad;  ///< toggles of the permit output
   std::array<DeviceStats, kMaxSpareRods> spare_rods;
@@ -74,7 +74,7 @@ struct LoopStats {
   std::atomic<double> reference_m{std::numeric_limits<double>::quiet_NaN()};
   std::atomic<double> u_V{std::numeric_limits<double>::quiet_NaN()};
   std::atomic<std::uint64_t> answer{0};  ///< to the newest order: control::unpack
-  GuardBoard guards;
+  GuardStatus guards;
   Counter detected_samples;                    ///< by the detector, through all that it does
   std::atomic<std::int32_t> active_alarms{0};  ///< by the detector, once a second
 };

@@ -13,8 +13,8 @@ namespace monitor::rt {
 
 /// An order to the loop; one that arrives at or after expires_ns is dropped and counted.
 struct Command {
-  /// forgive: rod sensors that were out and are right again may be in again
-  enum class Kind : std::uint8_t { event, sine, hold, forgive };
+  /// readmit: rod sensors that were out and are right again may be in again
+  enum class Kind : std::uint8_t { event, sine, hold, readmit };
   Kind kind = Kind::event;
   control::Event event = control::Event::disarm;  ///< of kind event
   bool at_once = false;                           ///< of start: without blending

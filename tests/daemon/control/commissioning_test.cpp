@@ -33,7 +33,7 @@ TEST_P(Healthy, GivesBackWhatTheServoIsMadeOfWithinTheTravel) {
   CommissioningLimits limits;
   Commissioning procedure(limits);
   ASSERT_EQ(up_to_speeds(procedure, servo), Failure::none)
-      << words_of(procedure.failure()) << ", travel " << procedure.travel_m();
+      << to_string(procedure.failure()) << ", travel " << procedure.travel_m();
   const Findings& found = procedure.findings();
   EXPECT_GT(found.sign_m * found.sign_V, 0.0);
   const double gain_mps_per_V = servo.gain_mps_per_V * 0.5 * (1.0 + servo.down_ratio);
@@ -148,7 +148,7 @@ TEST(AnyServo, StaysWithinTheTravelAndIsFoundOrGivenUp) {
     EXPECT_LT(farthest_m, limits.max_travel_m) << "servo " << n;
     if (servo.valve_sign < 0.0) {
       EXPECT_TRUE(failure == Failure::reversed || failure == Failure::travel)
-          << "servo " << n << ": " << words_of(failure);
+          << "servo " << n << ": " << to_string(failure);
       continue;
     }
     ++healthy;

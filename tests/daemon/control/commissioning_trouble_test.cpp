@@ -20,7 +20,7 @@ TEST(Trouble, AReversalAfterTheSignIsKnownIsStoppedWithinTheTravel) {
     servo.*flipped = -1.0;
     procedure.begin(Stage::speeds);
     run(procedure, servo);
-    EXPECT_EQ(procedure.failure(), Failure::wrong_way) << words_of(procedure.failure());
+    EXPECT_EQ(procedure.failure(), Failure::wrong_way) << to_string(procedure.failure());
     EXPECT_LT(servo.farthest_m, limits.max_travel_m);
   }
 }
@@ -51,7 +51,7 @@ TEST(Trouble, ASensorThatDiesWhileSpeedsAreMeasuredEndsTheStage) {
   servo.dead_sensor = true;
   procedure.begin(Stage::speeds);
   run(procedure, servo);
-  EXPECT_EQ(procedure.failure(), Failure::no_motion) << words_of(procedure.failure());
+  EXPECT_EQ(procedure.failure(), Failure::no_motion) << to_string(procedure.failure());
 }
 
 TEST(Trouble, ARunawayIsGivenUpWithNullAtOnce) {
@@ -97,7 +97,7 @@ TEST(Trouble, NoiseThatHidesTheMotionAndARodThatAnswersLateAreSaid) {
   longer.pulse_s = 0.6;
   Commissioning patient(longer);
   Servo same = with(&Servo::delay_s, 0.06);
-  ASSERT_EQ(up_to_speeds(patient, same), Failure::none) << words_of(patient.failure());
+  ASSERT_EQ(up_to_speeds(patient, same), Failure::none) << to_string(patient.failure());
   EXPECT_NEAR(patient.findings().latency_s, 0.07, kLatencyTolerance_s);
 }
 
@@ -111,7 +111,7 @@ TEST(Home, IsTheStopAndTheRodIsTakenOffIt) {
     ASSERT_EQ(up_to_speeds(procedure, servo), Failure::none);
     procedure.begin_home(direction, false);
     run(procedure, servo);
-    ASSERT_EQ(procedure.failure(), Failure::none) << words_of(procedure.failure());
+    ASSERT_EQ(procedure.failure(), Failure::none) << to_string(procedure.failure());
     const double stop_m = direction > 0 ? 0.32 : 0.28;
     EXPECT_NEAR(procedure.findings().home_m, stop_m, 10e-6);  // noise and rounding
     EXPECT_GT(std::abs(servo.y_m - stop_m), 0.3 * limits.max_travel_m);
@@ -125,7 +125,7 @@ TEST(Home, IsTheIndexWhereTheSensorHasOne) {
   ASSERT_EQ(up_to_speeds(procedure, servo), Failure::none);
   procedure.begin_home(1, true);
   run(procedure, servo);
-  EXPECT_EQ(procedure.failure(), Failure::none) << words_of(procedure.failure());
+  EXPECT_EQ(procedure.failure(), Failure::none) << to_string(procedure.failure());
   EXPECT_NEAR(procedure.findings().home_m, 0.32, 0.01 * kTs_s + 10e-6);
   Servo walled = with(&Servo::index_m, 0.33);
   walled.stop_high_m = 0.32;

@@ -51,13 +51,13 @@ struct Bench {
       samples.push(sample);
     }
   }
-  std::shared_ptr<RuleChange> change(const fdi::PipelineConfig& config) {
-    auto change = std::make_shared<RuleChange>();
+  std::shared_ptr<DetectionUpdate> change(const fdi::PipelineConfig& config) {
+    auto change = std::make_shared<DetectionUpdate>();
     change->pipeline = std::make_unique<fdi::Pipeline>(config, kFakeSampleTime_s);
     for (const auto& estimator : config.estimators) change->estimators.push_back(estimator.id);
     to_detector.push(change);
     detector.poll();
-    std::shared_ptr<RuleChange> taken;
+    std::shared_ptr<DetectionUpdate> taken;
     EXPECT_TRUE(from_detector.pop(taken));
     return taken;
   }
@@ -70,14 +70,14 @@ struct Bench {
   Clock& clock;
   SampleQueue samples;
   LoopStats stats;
-  RuleQueue to_detector, from_detector;
+  DetectionUpdateQueue to_detector, from_detector;
   fdi::Pipeline pipeline;
   io::Publisher publisher;
   Detector detector;
   std::int64_t tick = 0;
 };
 
-TEST(RuleChange, KeepsALatchedAlarmWhoseThresholdHasChanged) {
+TEST(DetectionUpdate, KeepsALatchedAlarmWhoseThresholdHasChanged) {
   VirtualClock clock;
   Bench bench(clock, rules(0.2, true));
   bench.feed(10, 0.3);
@@ -101,7 +101,7 @@ TEST(RuleChange, KeepsALatchedAlarmWhoseThresholdHasChanged) {
   EXPECT_EQ(bench.alarm("sample.far_out").state(), fdi::AlarmState::unacknowledged);
 }
 
-TEST(RuleChange, KeepsWhatPeopleDidAndConditionsFromElsewhere) {
+TEST(DetectionUpdate, KeepsWhatPeopleDidAndConditionsFromElsewhere) {
   VirtualClock clock;
   Bench bench(clock, rules(0.2, false));
   bench.feed(10, 0.3);
@@ -118,7 +118,7 @@ TEST(RuleChange, KeepsWhatPeopleDidAndConditionsFromElsewhere) {
   EXPECT_EQ(bench.alarm("recorder.disk_full").reason, "full");
 }
 
-TEST(RuleChange, EndsAnAlarmThatIsNoLongerThereAndSaysSo) {
+TEST(DetectionUpdate, EndsAnAlarmThatIsNoLongerThereAndSaysSo) {
   VirtualClock clock;
   Bench bench(clock, rules(0.2, true));
   bench.feed(10, 0.3);
@@ -131,7 +131,7 @@ TEST(RuleChange, EndsAnAlarmThatIsNoLongerThereAndSaysSo) {
   EXPECT_EQ(bench.alarm("sample.other").state(), fdi::AlarmState::unacknowledged);
 }
 
-TEST(RuleChange, WarmsUpAnEstimatorWithOtherSettings) {
+TEST(DetectionUpdate, WarmsUpAnEstimatorWithOtherSettings) {
   VirtualClock clock;
   Bench bench(clock, rules(0.5, false));
   bench.feed(200, 0.3);
@@ -158,7 +158,7 @@ class Estimates final : public fdi::Events {
   std::string text;
 };
 
-TEST(RuleChange, ToTheSameRulesChangesNoBitOfWhatFollows) {
+TEST(DetectionUpdate, ToTheSameRulesChangesNoBitOfWhatFollows) {
   const fdi::PipelineConfig config = rules(0.301, false);
   fdi::Pipeline whole(config, kFakeSampleTime_s);
   auto parted = std::make_unique<fdi::Pipeline>(config, kFakeSampleTime_s);
@@ -183,7 +183,7 @@ TEST(RuleChange, ToTheSameRulesChangesNoBitOfWhatFollows) {
   EXPECT_EQ(one.text, other.text);
 }
 
-TEST(RuleChange, LosesNoSampleOfALoopInRealTime) {
+TEST(DetectionUpdate, LosesNoSampleOfALoopInRealTime) {
   MonotonicClock clock;
   const fdi::PipelineConfig a = rules(0.2, true);
   const fdi::PipelineConfig b = rules(0.25, true);
@@ -199,13 +199,13 @@ TEST(RuleChange, LosesNoSampleOfALoopInRealTime) {
   int handed = 0;
   int taken = 0;
   {
-    rt::Run run(loop, Grid(clock.now_ns(), 1'000'000), clock, &rig, kForever, stop);
-    EXPECT_EQ(run_realtime(run, bench.detector, {}, stop, &rig,
+    rt::LoopRunner runner(loop, Grid(clock.now_ns(), 1'000'000), clock, &rig, kForever, stop);
+    EXPECT_EQ(run_realtime(runner, bench.detector, {}, stop, &rig,
                            [&] {
-                             std::shared_ptr<RuleChange> back;
+                             std::shared_ptr<DetectionUpdate> back;
                              while (bench.from_detector.pop(back)) ++taken;
                              if (handed < 20 && handed == taken) {
-                               auto next = std::make_shared<RuleChange>();
+                               auto next = std::make_shared<DetectionUpdate>();
                                next->pipeline = std::make_unique<fdi::Pipeline>(
                                    handed % 2 == 0 ? b : a, kFakeSampleTime_s);
                                next->estimators = {"gain"};

@@ -10,23 +10,23 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-class ConditionsTest : public testing::Test {
+class SystemAlarmsTest : public testing::Test {
  protected:
   std::vector<std::string> report(std::int64_t tick) {
     std::vector<std::string> changes;
-    conditions_.report(publisher_, recorder_, tick, book_, [&](const auto& alarm) {
+    system_alarms_.report(publisher_, recorder_, tick, book_, [&](const auto& alarm) {
       changes.push_back(alarm.source + "." + alarm.name + (alarm.active ? " on" : " off"));
     });
     return changes;
   }
 
   estimator::fdi::AlarmBook book_;
-  Conditions conditions_;
+  SystemAlarms system_alarms_;
   io::PublisherStatus publisher_;
   io::RecorderStatus recorder_;
 };
 
-TEST_F(ConditionsTest, ComeAndGoWithTheirCause) {
+TEST_F(SystemAlarmsTest, ComeAndGoWithTheirCause) {
   EXPECT_THAT(report(0), IsEmpty());
   recorder_.disk_full = true;
   recorder_.error = ENOSPC;
@@ -42,7 +42,7 @@ TEST_F(ConditionsTest, ComeAndGoWithTheirCause) {
   EXPECT_EQ(book_.alarms()[1].reason, "Input/output error; the newest data is kept in memory");
 }
 
-TEST_F(ConditionsTest, LastAsLongAsACountGrows) {
+TEST_F(SystemAlarmsTest, LastAsLongAsACountGrows) {
   recorder_.dropped_records = 3;
   publisher_.send_failures = 1;
   EXPECT_THAT(report(0), ElementsAre("recorder.dropping on", "lcm.send_failed on"));

@@ -66,13 +66,13 @@ TEST_F(AlarmFiles, GiveBackEveryLifeThatWasSaved) {
   come(before, 1);
   before.shelve(1, 100.0, "bob");
   {
-    Clerk clerk;
-    AlarmStore store(folder_ / "sub", "rig", clerk);
+    BackgroundWriter writer;
+    AlarmStore store(folder_ / "sub", "rig", writer);
     store.keep(before, 1'000'000'000);
-    clerk.finish();
+    writer.finish();
   }
-  Clerk clerk;
-  const AlarmStore store(folder_ / "sub", "rig", clerk);
+  BackgroundWriter writer;
+  const AlarmStore store(folder_ / "sub", "rig", writer);
   const LoadedLives loaded = store.load(1'030'000'000);  // 30 s later
   EXPECT_EQ(loaded.wrong, "");
   ASSERT_EQ(loaded.lives.size(), 2U);
@@ -97,11 +97,11 @@ TEST_F(AlarmFiles, AreWrittenOnlyWhenALifeHasChanged) {
   come(alarms, 0);
   const auto keep = [&](AlarmStore& store, std::int64_t utc_us) { store.keep(alarms, utc_us); };
   {
-    Clerk clerk;
-    AlarmStore store(folder_, "rig", clerk);
+    BackgroundWriter writer;
+    AlarmStore store(folder_, "rig", writer);
     keep(store, 1'000'000);
     keep(store, 2'000'000);
-    clerk.finish();
+    writer.finish();
   }
   EXPECT_THAT(text_of(folder_ / "alarms.json"), HasSubstr("\"saved_utc_us\": 1000000"));
 }
@@ -123,8 +123,8 @@ TEST_F(AlarmFiles, DamagedOrOfAnotherRigGiveNothingAndSayWhy) {
                            "\"alarms\":[{\"source\":1}]}"}) {
     EXPECT_NE(parse_lives(text, "rig", 5).wrong, "") << text;
   }
-  Clerk clerk;
-  EXPECT_EQ(AlarmStore(folder_ / "none", "rig", clerk).load(5).wrong, "");
+  BackgroundWriter writer;
+  EXPECT_EQ(AlarmStore(folder_ / "none", "rig", writer).load(5).wrong, "");
 }
 
 TEST_F(AlarmFiles, ThatCannotBeWrittenLeaveTheOldOne) {
@@ -140,12 +140,12 @@ TEST_F(AlarmFiles, AreWrittenAlsoWhenWhoAskedForItIsGone) {
   come(alarms, 0);
   std::promise<void> go_on;
   {
-    Clerk clerk;
-    clerk.post([done = go_on.get_future().share()] { done.wait(); });
+    BackgroundWriter writer;
+    writer.post([done = go_on.get_future().share()] { done.wait(); });
     {
-      AlarmStore store(folder_, "rig", clerk);
+      AlarmStore store(folder_, "rig", writer);
       store.keep(alarms, 1'000'000);
-      Audit audit(folder_, 4096, clerk);
+      Audit audit(folder_, 4096, writer);
       audit.note({1'000'000, 1000, "ann", "{}", ""});
     }
     go_on.set_value();
@@ -155,12 +155,12 @@ TEST_F(AlarmFiles, AreWrittenAlsoWhenWhoAskedForItIsGone) {
 }
 
 TEST_F(AlarmFiles, AuditHasALineForEachActAndStaysWithinItsSize) {
-  Clerk clerk;
-  Audit audit(folder_, 4096, clerk);
+  BackgroundWriter writer;
+  Audit audit(folder_, 4096, writer);
   for (int i = 0; i < 200; ++i) {
     audit.note({1'000'000LL * i, 1000, "ann", "{\"command\":\"ack\"}", i == 3 ? "no" : ""});
   }
-  clerk.finish();
+  writer.finish();
   EXPECT_EQ(audit.lost(), 0);
   const auto newest = std::filesystem::file_size(folder_ / "audit.log");
   const auto before = std::filesystem::file_size(folder_ / "audit.log.1");

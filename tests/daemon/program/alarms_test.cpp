@@ -119,7 +119,7 @@ TEST_F(Alarms, AreSeenActedOnAndFoundAgainAfterAKill) {
   }
   ASSERT_TRUE(shows("LATCHED         MAJOR    sample.swings")) << order("alarms").out;
 
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the clerk's
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the writer's
   EXPECT_EQ(end(SIGKILL).exit_code, -SIGKILL);
   const std::vector<json> acts = audit();
   ASSERT_EQ(acts.size(), 5U);

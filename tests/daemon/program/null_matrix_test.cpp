@@ -168,21 +168,21 @@ TEST(NullMatrix, OnTheSimulatedRigIsNeverWorseThanStatedWhenGuardsRamp) {
 }
 
 TEST(NullMatrix, SaysNeverWhereNothingButTheProcessTakesTheCommandAway) {
-  NullFacts facts;
-  facts.guards = control::all_guards({}, control::Action::latch);
+  NullTableInputs inputs;
+  inputs.guards = control::all_guards({}, control::Action::latch);
   const auto row = [&](const char* failure) {
-    for (const NullRow& r : null_rows(facts)) {
+    for (const NullRow& r : null_rows(inputs)) {
       if (r.failure == failure) return r;
     }
     return NullRow{"not there", 0.0, ""};
   };
   EXPECT_TRUE(std::isnan(row("process killed").time_s));
   EXPECT_EQ(row("process killed").note, "D/A holds; permit/watchdog needed");
-  facts.has_permit = true;
+  inputs.has_permit = true;
   EXPECT_EQ(row("process stopped").note, "the permit's relay");
-  facts.times.process_dead_s = 0.05;
+  inputs.times.process_dead_s = 0.05;
   EXPECT_EQ(row("process stopped").time_s, 0.05);
-  facts.times.process_stopped_s = std::numeric_limits<double>::infinity();
+  inputs.times.process_stopped_s = std::numeric_limits<double>::infinity();
   EXPECT_TRUE(std::isnan(row("process stopped").time_s));
   EXPECT_EQ(row("guard e_stop").failure, "not there") << "no input of that role";
 }

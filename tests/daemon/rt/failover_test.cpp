@@ -248,12 +248,12 @@ TEST(FailoverOfTwo, GoesBackOnAnOrderOrAStartOnly) {
     EXPECT_EQ(bench.stats.rod_in_charge.load(), 1);
     if (by_order) {
       Command command;
-      command.kind = Command::Kind::forgive;
+      command.kind = Command::Kind::readmit;
       command.expires_ns = INT64_MAX;
       bench.commands.push(command);
     } else {
-      bench.order(control::Event::stop);
-      bench.order(control::Event::start);
+      bench.command(control::Event::stop);
+      bench.command(control::Event::start);
     }
     bench.tick();
     bench.tick();

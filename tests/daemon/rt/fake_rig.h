@@ -109,15 +109,15 @@ class LoopBench {
     }
     return last;
   }
-  void order(control::Event event, std::int64_t life_ns = 1'000'000'000) {
-    Command command;
-    command.event = event;
-    command.expires_ns = clock.now_ns() + life_ns;
-    commands.push(command);
+  void command(control::Event event, std::int64_t life_ns = 1'000'000'000) {
+    Command next;
+    next.event = event;
+    next.expires_ns = clock.now_ns() + life_ns;
+    commands.push(next);
   }
   void run() {
-    order(control::Event::arm);
-    order(control::Event::start);
+    command(control::Event::arm);
+    command(control::Event::start);
     tick();
   }
   Loop& loop() { return loop_; }
@@ -155,7 +155,7 @@ inline control::Answer ask(LoopBench& bench, control::Event event, std::uint32_t
 }
 
 /// What the law asks for with the rod at 0.1 m.
-inline constexpr double kLaw_V = kFakeNull_V + 100.0 * (0.3 - 0.1);
+inline constexpr double kController_V = kFakeNull_V + 100.0 * (0.3 - 0.1);
 inline constexpr double kRounding_V = 1e-12;
 
 }  // namespace monitor::rt

@@ -10,7 +10,7 @@ namespace monitor::rt {
 namespace {
 
 using control::Event;
-using control::Refusal;
+using control::RejectReason;
 using control::State;
 
 constexpr int kMaxBadInARow = 3;  // of LoopConfig
@@ -25,40 +25,40 @@ struct SwitchBench : LoopBench {
 };
 
 TEST(Answer, PassesThroughOneWord) {
-  const control::Answer answer{0xfedcba98U, Refusal::guard, State::latched, 31};
+  const control::Answer answer{0xfedcba98U, RejectReason::guard, State::latched, 31};
   const control::Answer back = control::unpack(control::pack(answer));
   EXPECT_EQ(back.number, answer.number);
-  EXPECT_EQ(back.refusal, answer.refusal);
+  EXPECT_EQ(back.reject_reason, answer.reject_reason);
   EXPECT_EQ(back.state, answer.state);
   EXPECT_EQ(back.guard, answer.guard);
 }
 
 TEST(Arm, IsAnsweredWithTheStateOrTheReason) {
   LoopBench bench;
-  EXPECT_EQ(ask(bench, Event::start).refusal, Refusal::state);
-  EXPECT_EQ(ask(bench, Event::arm).refusal, Refusal::none);
+  EXPECT_EQ(ask(bench, Event::start).reject_reason, RejectReason::state);
+  EXPECT_EQ(ask(bench, Event::arm).reject_reason, RejectReason::none);
   EXPECT_EQ(bench.state(), State::armed);
-  EXPECT_EQ(ask(bench, Event::start).refusal, Refusal::none);
+  EXPECT_EQ(ask(bench, Event::start).reject_reason, RejectReason::none);
   EXPECT_EQ(bench.state(), State::run);
-  EXPECT_EQ(ask(bench, Event::arm).refusal, Refusal::state);
+  EXPECT_EQ(ask(bench, Event::arm).reject_reason, RejectReason::state);
   bench.loop().close();
-  EXPECT_EQ(ask(bench, Event::disarm).refusal, Refusal::none);
-  EXPECT_EQ(ask(bench, Event::arm).refusal, Refusal::closing);
+  EXPECT_EQ(ask(bench, Event::disarm).reject_reason, RejectReason::none);
+  EXPECT_EQ(ask(bench, Event::arm).reject_reason, RejectReason::closing);
   LoopBench monitor({}, false);
-  EXPECT_EQ(ask(monitor, Event::arm).refusal, Refusal::monitor);
+  EXPECT_EQ(ask(monitor, Event::arm).reject_reason, RejectReason::monitor);
 }
 
 TEST(Arm, IsRefusedWithoutACalibration) {
   SafetyRules rules = without_blending();
   rules.may_arm = false;
   LoopBench bench({}, true, rules);
-  EXPECT_EQ(ask(bench, Event::arm).refusal, Refusal::calibration);
+  EXPECT_EQ(ask(bench, Event::arm).reject_reason, RejectReason::calibration);
   EXPECT_EQ(bench.state(), State::disarmed);
 }
 
 TEST(Enable, IsNeededToArmAndItsLossDisarmsAtOnce) {
   SwitchBench bench(hal::InputRole::enable, 0.0);
-  EXPECT_EQ(ask(bench, Event::arm).refusal, Refusal::enable);
+  EXPECT_EQ(ask(bench, Event::arm).reject_reason, RejectReason::enable);
   bench.input->value = 1.0;
   bench.run();
   EXPECT_EQ(bench.state(), State::run);
@@ -106,14 +106,14 @@ TEST(Switches, OneThatCannotBeReadMeansNullAtOnceAndTripsWhenItLasts) {
 TEST(Switches, OneThatHasNeverBeenReadCountsAsOff) {
   SwitchBench bench(hal::InputRole::e_stop, std::nan(""));
   bench.tick();
-  EXPECT_EQ(ask(bench, Event::arm).refusal, Refusal::guard);
+  EXPECT_EQ(ask(bench, Event::arm).reject_reason, RejectReason::guard);
 }
 
 TEST(EmergencyStop, LatchesFromRunAndArmed) {
   for (const bool run : {true, false}) {
     SwitchBench bench(hal::InputRole::e_stop, 1.0);
-    bench.order(Event::arm);
-    if (run) bench.order(Event::start);
+    bench.command(Event::arm);
+    if (run) bench.command(Event::start);
     bench.tick();
     bench.input->value = 0.0;
     bench.tick();
@@ -123,7 +123,7 @@ TEST(EmergencyStop, LatchesFromRunAndArmed) {
     bench.input->value = 1.0;
     bench.tick();
     EXPECT_EQ(bench.state(), State::latched) << "release alone leads nowhere";
-    EXPECT_EQ(ask(bench, Event::reset).refusal, Refusal::none);
+    EXPECT_EQ(ask(bench, Event::reset).reject_reason, RejectReason::none);
     EXPECT_EQ(bench.state(), State::disarmed);
   }
 }
@@ -133,7 +133,7 @@ TEST(EmergencyStop, WiredTheWrongWayStaysDisarmedAndSaysSo) {
   bench.tick();
   EXPECT_EQ(bench.state(), State::disarmed);
   const control::Answer answer = ask(bench, Event::arm);
-  EXPECT_EQ(answer.refusal, Refusal::guard);
+  EXPECT_EQ(answer.reject_reason, RejectReason::guard);
   EXPECT_EQ(answer.guard, static_cast<std::uint8_t>(control::GuardKind::e_stop));
   EXPECT_EQ(bench.stats.guards.active(), 1U) << "the alarm is there all the time";
 }
@@ -171,10 +171,10 @@ TEST(Missing, ForbidsToArmButLatchesNothingThatIsDisarmed) {
   for (int k = 0; k < 10; ++k) bench.tick();
   EXPECT_EQ(bench.state(), State::disarmed);
   const control::Answer answer = ask(bench, Event::arm);
-  EXPECT_EQ(answer.refusal, Refusal::guard);
+  EXPECT_EQ(answer.reject_reason, RejectReason::guard);
   EXPECT_EQ(answer.guard, static_cast<std::uint8_t>(control::GuardKind::missing));
   bench.rig.quality = config::signals::Quality::good;
-  EXPECT_EQ(ask(bench, Event::arm).refusal, Refusal::none);
+  EXPECT_EQ(ask(bench, Event::arm).reject_reason, RejectReason::none);
 }
 
 }  // namespace

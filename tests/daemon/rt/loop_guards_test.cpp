@@ -9,7 +9,7 @@ namespace monitor::rt {
 namespace {
 
 using control::Event;
-using control::Refusal;
+using control::RejectReason;
 using control::State;
 
 control::GuardConfig guard(const char* kind, const char* action) {
@@ -42,7 +42,7 @@ TEST(Hold, FreezesTheReferenceWhereTheRodIsAndAStartResumes) {
   EXPECT_NEAR(sample.u_applied_V, kFakeNull_V + 100.0 * 0.02, kRounding_V) << "the law goes on";
   EXPECT_TRUE(bench.stats.holding.load());
   EXPECT_EQ(bench.state(), State::run);
-  EXPECT_EQ(ask(bench, Event::start).refusal, Refusal::none);
+  EXPECT_EQ(ask(bench, Event::start).reject_reason, RejectReason::none);
   EXPECT_FALSE(bench.stats.holding.load());
   EXPECT_DOUBLE_EQ(bench.sample().reference_m, 0.3);
 }
@@ -72,7 +72,7 @@ TEST(Hold, CanBeOrderedInRunOnly) {
   command.number = 3;
   bench.commands.push(command);
   bench.tick();
-  EXPECT_EQ(control::unpack(bench.stats.answer.load()).refusal, Refusal::state);
+  EXPECT_EQ(control::unpack(bench.stats.answer.load()).reject_reason, RejectReason::state);
   bench.run();
   bench.rig.y_m = 0.17;
   bench.commands.push(command);
@@ -143,11 +143,11 @@ TEST(Guards, SensorsThatDisagreeForbidToArmAndLatch) {
   spare->y_m = 0.1012;
   bench.tick();
   EXPECT_EQ(bench.state(), State::latched);
-  bench.order(Event::reset);
-  EXPECT_EQ(ask(bench, Event::arm).refusal, Refusal::guard);
+  bench.command(Event::reset);
+  EXPECT_EQ(ask(bench, Event::arm).reject_reason, RejectReason::guard);
   spare->quality = config::signals::Quality::bad;
   bench.tick();
-  EXPECT_EQ(ask(bench, Event::arm).refusal, Refusal::none)
+  EXPECT_EQ(ask(bench, Event::arm).reject_reason, RejectReason::none)
       << "a spare without a reading is counted";
   EXPECT_EQ(bench.stats.spare_rods[0].bad.value(), 2);
 }
@@ -199,7 +199,7 @@ TEST(Start, BeginsWhereTheRodIsAndSoDoesTheLawAfterANull) {
   bench.run();
   EXPECT_EQ(bench.last_V(), kFakeNull_V) << "no error, no command";
   for (int k = 0; k < 1000; ++k) bench.tick();
-  EXPECT_NEAR(bench.last_V(), kLaw_V, kRounding_V);
+  EXPECT_NEAR(bench.last_V(), kController_V, kRounding_V);
   bench.rig.quality = config::signals::Quality::bad;
   bench.tick();
   bench.rig.quality = config::signals::Quality::good;
@@ -209,10 +209,10 @@ TEST(Start, BeginsWhereTheRodIsAndSoDoesTheLawAfterANull) {
 
 TEST(Start, NeedsAPosition) {
   LoopBench bench;
-  bench.order(Event::arm);
+  bench.command(Event::arm);
   bench.tick();
   bench.rig.quality = config::signals::Quality::bad;
-  EXPECT_EQ(ask(bench, Event::start).refusal, Refusal::position);
+  EXPECT_EQ(ask(bench, Event::start).reject_reason, RejectReason::position);
 }
 
 TEST(Permit, TogglesWithEveryGoodTickAndStopsWithATrip) {

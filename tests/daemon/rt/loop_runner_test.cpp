@@ -52,11 +52,11 @@ TEST(VirtualRun, TicksForItsDurationThenWritesNull) {
   VirtualClock clock;
   RunBench bench(clock);
   {
-    rt::Run run(bench.loop, Grid(0, kFakePeriod_ns), clock, &bench.rig, 400, bench.stop);
-    EXPECT_EQ(run_virtual(run, bench.detector, bench.stop, [] { return false; }), "");
+    rt::LoopRunner runner(bench.loop, Grid(0, kFakePeriod_ns), clock, &bench.rig, 400, bench.stop);
+    EXPECT_EQ(run_virtual(runner, bench.detector, bench.stop, [] { return false; }), "");
   }
   EXPECT_EQ(bench.stats.ticks.value(), 401);
-  EXPECT_NEAR(bench.rig.writes[399].u_V, kLaw_V, kRounding_V);
+  EXPECT_NEAR(bench.rig.writes[399].u_V, kController_V, kRounding_V);
   EXPECT_EQ(bench.rig.writes[400].u_V, kFakeNull_V);
   EXPECT_EQ(bench.rig.writes.back().u_V, kFakeNull_V);
   EXPECT_EQ(clock.now_ns(), 400 * kFakePeriod_ns);
@@ -66,8 +66,9 @@ TEST(VirtualRun, WritesNullWhenItIsToldToStop) {
   VirtualClock clock;
   RunBench bench(clock);
   int looks = 0;
-  rt::Run run(bench.loop, Grid(0, kFakePeriod_ns), clock, &bench.rig, kForever, bench.stop);
-  EXPECT_EQ(run_virtual(run, bench.detector, bench.stop, [&] { return ++looks == 4; }), "");
+  rt::LoopRunner runner(bench.loop, Grid(0, kFakePeriod_ns), clock, &bench.rig, kForever,
+                        bench.stop);
+  EXPECT_EQ(run_virtual(runner, bench.detector, bench.stop, [&] { return ++looks == 4; }), "");
   EXPECT_EQ(bench.rig.writes.back().u_V, kFakeNull_V);
   EXPECT_EQ(bench.stats.state.load(), control::State::disarmed);
 }
@@ -77,9 +78,10 @@ TEST(VirtualRun, WritesNullWhenTheDeviceEnds) {
   RunBench bench(clock);
   bench.rig.end_tick = 10;
   {
-    rt::Run run(bench.loop, Grid(0, kFakePeriod_ns), clock, &bench.rig, kForever, bench.stop);
-    EXPECT_EQ(run_virtual(run, bench.detector, bench.stop, [] { return false; }), "");
-    EXPECT_NEAR(bench.rig.writes.back().u_V, kLaw_V, kRounding_V);
+    rt::LoopRunner runner(bench.loop, Grid(0, kFakePeriod_ns), clock, &bench.rig, kForever,
+                          bench.stop);
+    EXPECT_EQ(run_virtual(runner, bench.detector, bench.stop, [] { return false; }), "");
+    EXPECT_NEAR(bench.rig.writes.back().u_V, kController_V, kRounding_V);
   }
   EXPECT_EQ(bench.rig.writes.back().u_V, kFakeNull_V);
 }
@@ -88,9 +90,10 @@ TEST(VirtualRun, WritesNullWhenAnExceptionPassesThrough) {
   VirtualClock clock;
   RunBench bench(clock);
   try {
-    rt::Run run(bench.loop, Grid(0, kFakePeriod_ns), clock, &bench.rig, kForever, bench.stop);
+    rt::LoopRunner runner(bench.loop, Grid(0, kFakePeriod_ns), clock, &bench.rig, kForever,
+                          bench.stop);
     int looks = 0;
-    (void)run_virtual(run, bench.detector, bench.stop, [&]() -> bool {
+    (void)run_virtual(runner, bench.detector, bench.stop, [&]() -> bool {
       if (++looks == 3) throw std::runtime_error("test");
       return false;
     });
@@ -105,9 +108,9 @@ TEST(RealtimeRun, TicksOnItsOwnThreadAndWritesNullWhenToldToStop) {
   RunBench bench(clock);
   {
     // One millisecond of period: the test is over soon, and the threads meet often.
-    rt::Run run(bench.loop, Grid(clock.now_ns(), 1'000'000), clock, &bench.rig, kForever,
-                bench.stop);
-    EXPECT_EQ(run_realtime(run, bench.detector, {}, bench.stop, &bench.rig,
+    rt::LoopRunner runner(bench.loop, Grid(clock.now_ns(), 1'000'000), clock, &bench.rig, kForever,
+                          bench.stop);
+    EXPECT_EQ(run_realtime(runner, bench.detector, {}, bench.stop, &bench.rig,
                            [&] {
                              clock.sleep_until_ns(clock.now_ns() + 1'000'000);
                              return bench.stats.ticks.value() > 300;

@@ -22,7 +22,7 @@ TEST(Overrun, HoldsTheOutputMarksTheGapAndGoesOnWithTheLaw) {
   EXPECT_EQ(sample.tick, 5);
   EXPECT_EQ(sample.gap, 3);
   EXPECT_EQ(sample.t_read_ns, 5 * kFakePeriod_ns) << "the phase of the grid is lost";
-  EXPECT_NEAR(sample.u_applied_V, kLaw_V, kRounding_V);
+  EXPECT_NEAR(sample.u_applied_V, kController_V, kRounding_V);
   EXPECT_EQ(bench.stats.overruns.value(), 1);
   EXPECT_EQ(bench.stats.skipped_periods.value(), 3);
   EXPECT_EQ(bench.sample().gap, 0);
@@ -39,7 +39,7 @@ TEST(Overrun, WritesNullInTheFirstTickAfterFiftyMilliseconds) {
     ASSERT_EQ(sample.gap, lost);
     // From tick to tick lost + 1 periods of 5 ms went by: 45 ms, 50 ms, 155 ms.
     EXPECT_EQ(sample.u_applied_V == kFakeNull_V, null) << lost << " periods lost";
-    EXPECT_NEAR(bench.sample().u_applied_V, kLaw_V, kRounding_V);
+    EXPECT_NEAR(bench.sample().u_applied_V, kController_V, kRounding_V);
   }
 }
 
@@ -87,7 +87,7 @@ TEST(Loop, WritesNullWhileThePositionIsMissingAndLatchesAfterTooMany) {
     EXPECT_EQ(bench.state(), State::run);
   }
   bench.rig.quality = config::signals::Quality::good;
-  EXPECT_NEAR(bench.sample().u_applied_V, kLaw_V, kRounding_V);
+  EXPECT_NEAR(bench.sample().u_applied_V, kController_V, kRounding_V);
   bench.rig.y_m = std::nan("");  // no number is no reading, whatever the device says of it
   for (int k = 0; k < 4; ++k) bench.tick();
   EXPECT_EQ(bench.state(), State::latched);
@@ -121,7 +121,7 @@ TEST(Loop, ResetLeadsToDisarmedNotBackToMotion) {
   bench.tick();
   ASSERT_EQ(bench.state(), State::latched);
   bench.rig.quality = config::signals::Quality::good;
-  bench.order(Event::reset);
+  bench.command(Event::reset);
   bench.tick();
   EXPECT_EQ(bench.state(), State::disarmed);
   EXPECT_EQ(bench.stats.trip.load(), Trip::none);
@@ -133,8 +133,8 @@ TEST(Loop, ClosingWritesNullWhateverIsOrdered) {
   bench.run();
   bench.loop().close();
   for (int k = 0; k < 3; ++k) {
-    bench.order(Event::arm);
-    bench.order(Event::start);
+    bench.command(Event::arm);
+    bench.command(Event::start);
     EXPECT_EQ(bench.sample().u_applied_V, kFakeNull_V);
     EXPECT_EQ(bench.state(), State::disarmed);
   }

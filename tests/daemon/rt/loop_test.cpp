@@ -15,15 +15,15 @@ TEST(Loop, WritesNullUntilItIsArmedAndStarted) {
   LoopBench bench;
   bench.tick();
   EXPECT_EQ(bench.last_V(), kFakeNull_V);
-  bench.order(Event::arm);
+  bench.command(Event::arm);
   bench.tick();
   EXPECT_EQ(bench.state(), State::armed);
   EXPECT_EQ(bench.last_V(), kFakeNull_V);
-  bench.order(Event::start);
+  bench.command(Event::start);
   bench.tick();
   EXPECT_EQ(bench.state(), State::run);
-  EXPECT_NEAR(bench.last_V(), kLaw_V, kRounding_V);
-  bench.order(Event::stop);
+  EXPECT_NEAR(bench.last_V(), kController_V, kRounding_V);
+  bench.command(Event::stop);
   bench.tick();
   EXPECT_EQ(bench.last_V(), kFakeNull_V);
 }
@@ -51,8 +51,8 @@ TEST(Loop, WithoutAValveIsMonitorAndPassesOnTheMeasuredCommand) {
   LoopBench bench({}, false);
   bench.rig.command_V = 1.25;
   bench.rig.command_saturated = true;
-  bench.order(Event::arm);
-  bench.order(Event::start);
+  bench.command(Event::arm);
+  bench.command(Event::start);
   const config::signals::Sample sample = bench.sample();
   EXPECT_EQ(bench.state(), State::monitor);
   EXPECT_TRUE(bench.rig.writes.empty());
@@ -61,7 +61,7 @@ TEST(Loop, WithoutAValveIsMonitorAndPassesOnTheMeasuredCommand) {
   EXPECT_TRUE(std::isnan(sample.u_requested_V));
   EXPECT_TRUE(std::isnan(sample.reference_m));
   EXPECT_EQ(sample.t_write_ns, 0);
-  EXPECT_EQ(bench.stats.refused_commands.value(), 2);
+  EXPECT_EQ(bench.stats.rejected_commands.value(), 2);
 }
 
 TEST(Loop, EndsWithTheRecord) {
@@ -77,11 +77,11 @@ TEST(Loop, EndsWithTheRecord) {
 TEST(Loop, DropsCommandsThatHaveExpired) {
   LoopBench bench;
   bench.tick();
-  bench.order(Event::arm, kFakePeriod_ns);  // due at the very time of the next tick: too late
+  bench.command(Event::arm, kFakePeriod_ns);  // due at the very time of the next tick: too late
   bench.tick();
   EXPECT_EQ(bench.state(), State::disarmed);
   EXPECT_EQ(bench.stats.expired_commands.value(), 1);
-  bench.order(Event::arm, kFakePeriod_ns + 1);
+  bench.command(Event::arm, kFakePeriod_ns + 1);
   bench.tick();
   EXPECT_EQ(bench.state(), State::armed);
 }

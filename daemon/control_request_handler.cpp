@@ -1,0 +1,293 @@
+#include "daemon/control_request_handler.h"
+
+#include <algorithm>
+
+#include "daemon/control/protocol.h"
+
+namespace monitor {
+namespace {
+
+using control::RejectReason;
+using Kind = io::ControlRequest::Kind;
+
+/// An order that the loop has not taken by then is dropped by it.
+constexpr std::int64_t kLife_ns = 250'000'000;
+/// Then the answer is that there is none: longer, so that a late one is not called lost.
+constexpr std::int64_t kPatience_ns = 500'000'000;
+/// The detector looks at its queue every 10 ms, unless LCM or a machine without time holds it up.
+constexpr std::int64_t kDetectorPatience_ns = 2'000'000'000;
+/// Requests at a time: a flood of them must not keep the main thread from a signal to stop.
+constexpr int kAtATime = 8;
+
+}  // namespace
+
+ControlRequestHandler::ControlRequestHandler(const Parts& parts, Identity identity)
+    : parts_(parts), identity_(std::move(identity)) {}
+
+bool ControlRequestHandler::serve(io::ControlSocket& socket) {
+  for (int n = 0; n < kAtATime; ++n) {
+    if (waits_for_ != WaitsFor::nothing) {
+      const std::string line = waits_for_ == WaitsFor::loop       ? poll_loop_answer()
+                               : waits_for_ == WaitsFor::detector ? poll_alarm_answer()
+                                                                  : poll_reload_answer();
+      if (line.empty()) return true;
+      waits_for_ = WaitsFor::nothing;
+      socket.answer(request_.client, line);
+    }
+    if (!socket.next(request_)) return false;
+    const std::string line = line_for(io::parse_request(request_.line));
+    if (!line.empty()) socket.answer(request_.client, line);
+  }
+  return true;
+}
+
+std::string ControlRequestHandler::reject(const std::string& why) {
+  audit(why);
+  return io::print_rejected(state(), why);
+}
+
+void ControlRequestHandler::audit(const std::string& reject_reason) {
+  if (!acts_ || parts_.audit == nullptr) return;
+  parts_.audit->note({parts_.clock.utc_us(), request_.uid, io::user_name(request_.uid),
+                      request_.line, reject_reason});
+}
+
+std::string ControlRequestHandler::line_for(const io::ControlRequest& request) {
+  if (request.kind == Kind::bad) return io::print_rejected(state(), request.wrong);
+  acts_ = request.kind != Kind::status && request.kind != Kind::alarms;
+  if (request.kind == Kind::status) return io::print_status(status());
+  if (acts_ && !request_.may_act) {
+    return reject(
+        "not permitted: you may look; the daemon's user, root and the members of [control] "
+        "act_group (or else group) may act");
+  }
+  switch (request.kind) {
+    case Kind::alarms:
+    case Kind::acknowledge:
+    case Kind::shelve:
+    case Kind::unshelve:
+      return send_to_detector(request);
+    case Kind::reload:
+      return begin_reload();
+    case Kind::note:
+      audit("");
+      return io::print_done(state());
+    default:
+      return send_to_loop(request);
+  }
+}
+
+std::string ControlRequestHandler::send_to_loop(const io::ControlRequest& request) {
+  rt::Command command;
+  command.kind = request.kind == Kind::event  ? rt::Command::Kind::event
+                 : request.kind == Kind::sine ? rt::Command::Kind::sine
+                                              : rt::Command::Kind::hold;
+  command.event = request.event;
+  command.centre_m = request.centre_m;
+  command.amplitude_m = request.amplitude_m;
+  command.frequency_Hz = request.frequency_Hz;
+  const std::int64_t now_ns = parts_.clock.now_ns();
+  command.expires_ns = now_ns + kLife_ns;
+  command.number = ++number_;
+  if (!parts_.commands.push(command)) return reject("the loop takes no orders");
+  waits_for_ = WaitsFor::loop;
+  until_ns_ = now_ns + kPatience_ns;
+  return "";
+}
+
+std::string ControlRequestHandler::send_to_detector(const io::ControlRequest& request) {
+  using CommandKind = detection::AlarmCommand::Kind;
+  detection::AlarmCommand command;
+  command.kind = request.kind == Kind::alarms     ? CommandKind::list
+                 : request.kind == Kind::shelve   ? CommandKind::shelve
+                 : request.kind == Kind::unshelve ? CommandKind::unshelve
+                 : request.alarm.empty()          ? CommandKind::acknowledge_all
+                                                  : CommandKind::acknowledge;
+  request_acknowledges_ = request.kind == Kind::acknowledge &&
+                          (request.alarm.empty() || detection::RodAlarms::is_one(request.alarm));
+  command.alarm = request.alarm;
+  command.time_s = request.time_s;
+  if (acts_) command.who = io::user_name(request_.uid);
+  command.number = ++number_;
+  if (parts_.alarm_commands == nullptr || !parts_.alarm_commands->push(command)) {
+    return reject("the detector takes no orders");
+  }
+  waits_for_ = WaitsFor::detector;
+  until_ns_ = parts_.clock.now_ns() + kDetectorPatience_ns;
+  return "";
+}
+
+void ControlRequestHandler::readmit_rods() {
+  rt::Command command;
+  command.kind = rt::Command::Kind::readmit;
+  command.expires_ns = parts_.clock.now_ns() + kLife_ns;
+  parts_.commands.push(command);
+}
+
+std::string ControlRequestHandler::poll_loop_answer() {
+  const control::Answer answer =
+      control::unpack(parts_.stats.answer.load(std::memory_order_acquire));
+  if (answer.number == number_) {
+    const std::string reject_reason =
+        answer.reject_reason == RejectReason::none ? "" : words(answer);
+    audit(reject_reason);
+    return reject_reason.empty() ? io::print_done(answer.state)
+                                 : io::print_rejected(answer.state, reject_reason);
+  }
+  if (parts_.clock.now_ns() <= until_ns_) return "";
+  return reject("the loop does not answer; the order has expired");
+}
+
+std::string ControlRequestHandler::poll_alarm_answer() {
+  std::shared_ptr<const detection::AlarmAnswer> answer;
+  while (parts_.alarm_answers->pop(answer)) {
+    if (answer->number != number_) continue;  // late, to an order given up
+    if (!answer->reject_reason.empty()) return reject(answer->reject_reason);
+    audit("");
+    if (acts_) {
+      if (request_acknowledges_) readmit_rods();
+      return io::print_acted(state(), answer->done);
+    }
+    std::vector<io::ControlAlarm> alarms;
+    for (const auto& listed : answer->alarms) {
+      alarms.push_back({listed.alarm, listed.shelved_for_s});
+    }
+    return io::print_alarms(state(), alarms);
+  }
+  if (parts_.clock.now_ns() <= until_ns_) return "";
+  return reject("the detector does not answer; the order may still be carried out");
+}
+
+std::string ControlRequestHandler::begin_reload() {
+  if (parts_.reloader == nullptr || !parts_.reloader->begin(request_.uid, request_.line)) {
+    return reject("the configuration is just being read again");
+  }
+  waits_for_ = WaitsFor::reloader;
+  until_ns_ = parts_.clock.now_ns() + kDetectorPatience_ns;
+  return poll_reload_answer();
+}
+
+std::string ControlRequestHandler::poll_reload_answer() {
+  parts_.reloader->look();
+  if (!parts_.reloader->busy()) {
+    waits_for_ = WaitsFor::nothing;
+    const ReloadOutcome& outcome = parts_.reloader->last();
+    if (!outcome.reject_reason.empty()) return io::print_rejected(state(), outcome.reject_reason);
+    return io::print_reloaded(state(), {parts_.reloader->config_hash(), outcome.changed,
+                                        outcome.warm, outcome.cold, outcome.ended});
+  }
+  if (parts_.clock.now_ns() <= until_ns_) return "";
+  return io::print_rejected(state(),
+                            "the detector has not taken the rules yet; it may still do so");
+}
+
+std::string ControlRequestHandler::words(const control::Answer& answer) const {
+  switch (answer.reject_reason) {
+    case RejectReason::none:
+      break;
+    case RejectReason::state:
+      return std::string("not possible in state ") + control::to_string(answer.state);
+    case RejectReason::monitor:
+      return "nothing is driven here: [valve] backend = \"none\", or a record is replayed";
+    case RejectReason::expired:
+      return "the order came too late to the loop";
+    case RejectReason::closing:
+      return "the daemon ends";
+    case RejectReason::position:
+      return "no position to begin from";
+    case RejectReason::enable:
+      return "the enable input is not 1";
+    case RejectReason::calibration:
+      return identity_.never_arms;
+    case RejectReason::guard: {
+      const control::GuardConfig& guard = identity_.guards.at(answer.guard);
+      return "guard " + guard.id + ": " + control::reason_of(guard.which());
+    }
+  }
+  return "";
+}
+
+std::string ControlRequestHandler::obstacle() const {
+  if (!identity_.never_arms.empty()) return identity_.never_arms;
+  const auto is_one = [this](std::size_t input) {
+    const double value = parts_.stats.inputs[input].value.load(std::memory_order_relaxed);
+    return value > 0.5 && value < 1.5;
+  };
+  for (const std::size_t input : identity_.e_stops) {
+    if (!is_one(input)) {
+      return "input " + identity_.inputs[input] + ": " +
+             control::reason_of(control::GuardKind::e_stop);
+    }
+  }
+  for (const std::size_t input : identity_.enables) {
+    if (!is_one(input)) return "input " + identity_.inputs[input] + ": the enable input is not 1";
+  }
+  return "";
+}
+
+void ControlRequestHandler::add_rods(io::ControlStatus& status) const {
+  if (identity_.spare_rods.empty()) return;
+  const rt::LoopStats& stats = parts_.stats;
+  const auto since_s = [&](std::int64_t tick) {
+    return static_cast<double>(status.ticks - tick) * status.sample_time_s;
+  };
+  for (std::size_t i = 0; i <= identity_.spare_rods.size(); ++i) {
+    const rt::RodStats& rod = stats.rods[i];
+    const control::RodFault fault = rod.fault.load(std::memory_order_relaxed);
+    const rt::DeviceStats& device = i == 0 ? stats.rod : stats.spare_rods[i - 1];
+    status.rods.push_back({i == 0 ? control::kRodId : identity_.spare_rods[i - 1],
+                           device.value.load(std::memory_order_relaxed),
+                           fault == control::RodFault::none ? "" : control::to_string(fault),
+                           since_s(rod.since_tick.load(std::memory_order_relaxed))});
+  }
+  status.rod_in_charge = status.rods[stats.rod_in_charge.load(std::memory_order_relaxed)].id;
+  status.rod_in_charge_for_s = since_s(stats.rod_since_tick.load(std::memory_order_relaxed));
+}
+
+io::ControlStatus ControlRequestHandler::status() const {
+  const rt::LoopStats& stats = parts_.stats;
+  io::ControlStatus status;
+  status.rig_id = identity_.rig_id;
+  status.config_hash = identity_.config_hash;
+  if (parts_.reloader != nullptr) {
+    status.config_hash = parts_.reloader->config_hash();
+    status.reload_refused = parts_.reloader->last().reject_reason;
+    const DaemonConfig& config = parts_.reloader->running();
+    status.rules_hash = parts_.reloader->rules_hash();
+    status.sample_time_s = parts_.reloader->sample_time_s();
+    status.config_file = std::filesystem::absolute(config.file).string();
+    status.recorder_folder = config.recorder.folder;
+  }
+  status.state = state();
+  status.holding = stats.holding.load(std::memory_order_relaxed);
+  status.ramping = stats.ramping.load(std::memory_order_relaxed);
+  const std::size_t tripped = stats.trip_guard.load(std::memory_order_relaxed);
+  if (status.state == control::State::latched && tripped < identity_.guards.size()) {
+    status.latched_by = identity_.guards[tripped].id;
+  }
+  status.obstacle = obstacle();
+  status.y_m = stats.y_m.load(std::memory_order_relaxed);
+  status.reference_m = stats.reference_m.load(std::memory_order_relaxed);
+  status.u_V = stats.u_V.load(std::memory_order_relaxed);
+  status.ticks = stats.ticks.value();
+  status.overruns = stats.overruns.value();
+  status.active_alarms = stats.active_alarms.load(std::memory_order_relaxed);
+  for (std::size_t i = 0; i < identity_.guards.size(); ++i) {
+    const control::GuardConfig& guard = identity_.guards[i];
+    const bool active = ((stats.guards.active() >> i) & 1U) != 0;
+    status.guards.push_back(
+        {guard.id, guard.kind, guard.action, active,
+         active ? stats.guards.value(i) : std::numeric_limits<double>::quiet_NaN()});
+  }
+  for (std::size_t i = 0; i < identity_.spare_rods.size(); ++i) {
+    status.spare_rods.push_back({identity_.spare_rods[i], stats.spare_rods[i].value.load()});
+  }
+  add_rods(status);
+  if (parts_.detectability != nullptr) status.detectable = parts_.detectability->read();
+  for (std::size_t i = 0; i < identity_.inputs.size(); ++i) {
+    status.inputs.push_back({identity_.inputs[i], stats.inputs[i].value.load()});
+  }
+  return status;
+}
+
+}  // namespace monitor
