@@ -28,7 +28,7 @@ void AlarmServices::restore(estimator::fdi::Pipeline& pipeline, std::int64_t utc
   const io::LoadedLives loaded = store->load(utc_us);
   if (!loaded.wrong.empty()) {
     log << "spoolwatchd: " << store->file().string() << ": " << loaded.wrong
-        << "; all alarms begin anew" << std::endl;
+        << "; all alarms start from their initial state" << std::endl;
   }
   pipeline.alarms().restore(loaded.lives);
 }

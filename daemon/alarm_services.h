@@ -1,5 +1,5 @@
-// What a session keeps of its alarms: their lives across a restart, who did what, evidence, and the
-// way of people's acts to the detector.
+// The services around a session's alarms: persistence across a restart, audit file, evidence
+// folders and the queues that carry operator commands to the detector.
 #pragma once
 
 #include <cstdint>
@@ -18,25 +18,26 @@ namespace monitor {
 
 class AlarmServices {
  public:
-  /// What of the session it needs to know.
+  /// Facts of the session that the services need.
   struct Session {
     std::string config_hash;
     std::int64_t run_id;
     double sample_time_s;
-    bool virtual_time;  ///< nothing of another run is read, nothing is left to the next
+    bool virtual_time;  ///< no alarm state is read from or kept for another run
   };
-  /// Before the detector. Throws config::schema::Error when evidence cannot be kept.
+  /// Construct before the detector. Throws config::schema::Error when the evidence folder is
+  /// unusable.
   AlarmServices(DaemonConfig& config, const DetectionConfig& detection_config,
                 const Session& session);
   AlarmServices(const AlarmServices&) = delete;
   AlarmServices& operator=(const AlarmServices&) = delete;
 
-  /// Once all alarms are declared: their lives from before the restart.
+  /// Restores the alarm states saved before the restart. Call once all alarms are declared.
   void restore(estimator::fdi::Pipeline& pipeline, std::int64_t utc_us, std::ostream& log) const;
 
   detection::AlarmCommandQueue commands;
   detection::AlarmAnswerQueue answers;
-  /// Null where the configuration asks for none.
+  /// Null unless configured.
   std::unique_ptr<io::AlarmStore> store;
   std::unique_ptr<io::Audit> audit;
   std::unique_ptr<io::Evidence> evidence;

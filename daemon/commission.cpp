@@ -16,12 +16,12 @@ namespace {
 using config::schema::bad_config;
 using config::schema::UsageError;
 
-/// Of [valve] limit_V, where nothing says how fast the rod can go.
+/// Share of [valve] limit_V when the backend does not know the fastest rod speed.
 constexpr double kBlindShare = 0.05;
-constexpr double kMostShare = 0.1;
+constexpr double kMaxShare = 0.1;
 
-/// While it is held no daemon serves this rig, and where one does, this throws. Nothing where no
-/// daemon could have its socket.
+/// Holds the control socket, so that no daemon runs on this rig meanwhile; throws when one does.
+/// Null where no daemon could have its socket.
 std::unique_ptr<io::ControlSocket> claim(const DaemonConfig& config) {
   const std::filesystem::path socket = config.control.socket;
   std::error_code ignored;
@@ -37,14 +37,14 @@ control::CommissioningLimits limits_of(const DaemonConfig& config, const Commiss
   limits.pulse_s = o.pulse_s;
   limits.max_speed_mps = std::isnan(o.max_speed_mps) ? o.max_travel_m / 0.1 : o.max_speed_mps;
   const double limit_V = config.rig.valve().limit_V;
-  // A pulse that nobody sees ends up to two periods late.
+  // A pulse without a reading ends up to two periods late.
   const double worst_mps_per_V = config.rig.worst_speed_mps(opening) / limit_V;
   const double blind_m_per_V = worst_mps_per_V * (o.pulse_s + 2.0 * opening.sample_time_s);
   limits.authority_V = o.authority_V;
   if (std::isnan(o.authority_V)) {
     limits.authority_V = std::isnan(blind_m_per_V)
                              ? kBlindShare * limit_V
-                             : std::min(kMostShare * limit_V, o.max_travel_m / blind_m_per_V);
+                             : std::min(kMaxShare * limit_V, o.max_travel_m / blind_m_per_V);
   }
   if (limits.authority_V > limit_V) {
     throw UsageError(fmt::format("--authority: is {:g}; allowed: up to [valve] limit_V, {:g}",
@@ -57,9 +57,9 @@ control::CommissioningLimits limits_of(const DaemonConfig& config, const Commiss
              limits.max_travel_m * 1e3, limits.max_speed_mps * 1e3)
       << '\n';
   out << (std::isnan(blind_m_per_V)
-              ? std::string("If the sensor is dead nothing limits the travel but the authority: "
-                            "the backend does not say how fast the rod can go")
-              : fmt::format("If the sensor is dead the rod moves by {:.1f} mm at most",
+              ? std::string("If the sensor is dead, only the authority limits the travel: the "
+                            "backend does not state the maximum rod speed")
+              : fmt::format("If the sensor is dead, the rod moves by {:.1f} mm at most",
                             blind_m_per_V * limits.authority_V * 1e3))
       << std::endl;
   return limits;
@@ -69,16 +69,16 @@ control::CommissioningLimits limits_of(const DaemonConfig& config, const Commiss
 
 int commission(DaemonConfig& config, const CommissionOptions& options, std::ostream& out) {
   if (!config.drives_valve()) {
-    throw bad_config(config.file + ": [valve] backend", "is \"none\": there is nothing to move",
+    throw bad_config(config.file + ": [valve] backend", "is \"none\", which drives no valve",
                      "a backend that drives a valve");
   }
   if (options.virtual_time && !config.rig.harmless()) {
-    throw UsageError("--clock virtual: what moves is real; allowed: realtime");
+    throw UsageError("--clock virtual: the rig has real devices; allowed: realtime");
   }
   std::error_code ignored;
   const std::filesystem::path folder = std::filesystem::absolute(options.out).parent_path();
   if (!std::filesystem::is_directory(folder, ignored)) {
-    throw UsageError("--commission: " + folder.string() + " is no folder");
+    throw UsageError("--commission: " + folder.string() + " is not a folder");
   }
   const double sample_time_s = 1.0 / config.loop.rate_Hz;
   const hal::OpenContext opening{config.file, config.folder, sample_time_s,

@@ -10,7 +10,7 @@ namespace monitor {
 namespace {
 
 constexpr std::int64_t kLead_ns = 20'000'000;
-/// Without a tick for so long a command cannot be trusted.
+/// An outage this long aborts the stage.
 constexpr double kStoodStill_s = 0.1;
 constexpr std::chrono::milliseconds kStuck{1000};
 
@@ -27,9 +27,9 @@ const char* to_string(CommissionLoop::Stop stop) noexcept {
     case CommissionLoop::Stop::not_enabled:
       return "the enable input is off or cannot be read";
     case CommissionLoop::Stop::valve_lost:
-      return "the valve does not take commands";
+      return "the valve does not accept commands";
     case CommissionLoop::Stop::stood_still:
-      return "the loop stood still";
+      return "the loop was interrupted";
   }
   return "";
 }
@@ -90,7 +90,7 @@ void CommissionLoop::tick() noexcept {
     in.t_s = in.now_s;
     in.usable = in.usable && reading.quality != config::signals::Quality::stale;
   } else {
-    // Its own time says more than being early or late.
+    // The reading's own time stamp is preferred over the quality flag.
     in.t_s = seconds(reading.t_ns) - start_s_;
     in.usable = in.usable && in.now_s - in.t_s <= hal::kStalePeriods * period_s;
   }

@@ -1,6 +1,6 @@
-// The loop of a commissioning: once a period it reads the rod and what is around it, and writes
-// what the procedure says, null between its stages. In real time on a thread of its own, in virtual
-// time on the caller's.
+// The control loop of a commissioning: reads the rod sensor and the auxiliary inputs once a period
+// and writes the procedure's command, null between stages. Runs on its own thread in real time, on
+// the caller's thread in virtual time.
 #pragma once
 
 #include <atomic>
@@ -23,21 +23,21 @@ class CommissionLoop {
     double sample_time_s;
     std::int64_t max_bad_in_a_row;
   };
-  /// Why a stage ended that was not the procedure's doing.
+  /// Why a stage ended for reasons outside the procedure.
   enum class Stop : std::uint8_t { none, e_stop, not_enabled, valve_lost, stood_still };
 
-  /// In virtual time no thread is started, and stages take no time of the wall clock.
+  /// In virtual time no thread is started.
   CommissionLoop(const Parts& parts, control::Commissioning& procedure, bool virtual_time);
   ~CommissionLoop();
   CommissionLoop(const CommissionLoop&) = delete;
   CommissionLoop& operator=(const CommissionLoop&) = delete;
 
-  /// Returns 0 or the errno of what was not granted.
+  /// Returns 0 or an errno.
   int start(const rt::ThreadOptions& options);
-  /// Runs what the procedure has begun. False when `stop_asked`, which may wait a little, said so
-  /// first: null is being written already then.
+  /// Runs the stage that the procedure has begun. Returns false when `stop_asked`, which may wait
+  /// briefly, returned true; null is being written by then.
   bool run_stage(const std::function<bool()>& stop_asked);
-  /// Null and no more ticks. False when a device does not return.
+  /// Writes null and ends the loop. Returns false when a device call does not return.
   bool end();
 
   [[nodiscard]] Stop stop() const noexcept { return stop_.load(std::memory_order_relaxed); }
@@ -55,10 +55,10 @@ class CommissionLoop {
   rt::LoopStats stats_;
   rt::AuxiliaryInputs aux_inputs_;
   double start_s_;
-  double applied_V_ = hal::kMissing;  ///< of the last write
+  double applied_V_ = hal::kMissing;  ///< by the last write
   std::int64_t bad_writes_ = 0;
   bool permit_on_ = false;
-  std::atomic<bool> stage_{false};  ///< the loop has the procedure; else the caller has it
+  std::atomic<bool> stage_{false};  ///< the loop owns the procedure, otherwise the caller
   std::atomic<bool> abandon_{false};
   std::atomic<bool> end_{false};
   std::atomic<Stop> stop_{Stop::none};

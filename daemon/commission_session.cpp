@@ -23,7 +23,7 @@ using config::schema::RunError;
 using control::Failure;
 using control::Stage;
 
-/// The file appears whole or not at all.
+/// Replaces the file atomically.
 void write_whole(const std::filesystem::path& file, const std::string& content) {
   const std::string part = file.string() + ".part";
   const int fd = open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
@@ -49,20 +49,21 @@ std::string today(std::int64_t utc_us) {
   return date;
 }
 
-/// What may help, to be put behind the failure.
+/// Advice appended to the failure.
 const char* remedy(Failure failure) noexcept {
   switch (failure) {
     case Failure::travel:
-      return "; set [valve] null_V nearer to where the rod stands, or allow more with "
+      return "; set [valve] null_V closer to the voltage at which the rod stands still, or "
+             "increase "
              "--max-travel-mm";
     case Failure::speed:
-      return "; a smaller --authority begins with smaller steps";
+      return "; reduce --authority for smaller first steps";
     case Failure::no_motion:
-      return "; look at supply, enable and sensor, or allow more with --authority";
+      return "; check supply, enable and sensor, or increase --authority";
     case Failure::too_noisy:
-      return "; allow more with --max-travel-mm";
+      return "; increase --max-travel-mm";
     case Failure::too_slow:
-      return "; make them longer with --pulse";
+      return "; increase --pulse";
     default:
       return "";
   }
@@ -70,8 +71,8 @@ const char* remedy(Failure failure) noexcept {
 
 }  // namespace
 
-void CommissionSession::give_up(const std::string& why) {
-  out_ << "given up at null, nothing written: " << why << std::endl;
+void CommissionSession::abort(const std::string& why) {
+  out_ << "aborted at null, nothing written: " << why << std::endl;
   throw Ended{EXIT_FAILURE};
 }
 
@@ -81,7 +82,7 @@ void CommissionSession::agree(const std::string& question) {
     out_ << "stopped at null, nothing written" << std::endl;
     throw Ended{kStoppedExitCode};
   }
-  if (!answer.value_or(false)) give_up("not agreed");
+  if (!answer.value_or(false)) abort("not agreed");
 }
 
 void CommissionSession::stage(const char* name, const std::function<void()>& begin) {
@@ -91,12 +92,13 @@ void CommissionSession::stage(const char* name, const std::function<void()>& beg
     throw Ended{kStoppedExitCode};
   }
   if (loop_->stop() != CommissionLoop::Stop::none) {
-    give_up(fmt::format("{}: {}", name, to_string(loop_->stop())));
+    abort(fmt::format("{}: {}", name, to_string(loop_->stop())));
   }
   const Failure failure = procedure_.failure();
   if (failure == Failure::none || failure == Failure::reversed) return;
-  give_up(fmt::format("{}: {} (travel {:.2f} mm, at last {:.1f} mm/s){}", name, to_string(failure),
-                      procedure_.travel_m() * 1e3, procedure_.speed_mps() * 1e3, remedy(failure)));
+  abort(fmt::format("{}: {} (travel {:.2f} mm, final speed {:.1f} mm/s){}", name,
+                    to_string(failure), procedure_.travel_m() * 1e3, procedure_.speed_mps() * 1e3,
+                    remedy(failure)));
 }
 
 void CommissionSession::sign() {
@@ -114,8 +116,8 @@ void CommissionSession::sign() {
     if (!fits) wrong = retracts ? "the valve is reversed" : "the rod sensor is reversed";
   }
   if (!wrong.empty()) {
-    give_up(wrong + ": turn round the sign that the configuration has for it (valve: backend " +
-            config_.rig.valve().backend + ", rod: backend " + config_.rig.rod_backend() + ")");
+    abort(wrong + ": reverse its sign in the configuration (valve: backend " +
+          config_.rig.valve().backend + ", rod: backend " + config_.rig.rod_backend() + ")");
   }
 }
 
@@ -151,7 +153,8 @@ void CommissionSession::homes() {
     const double below_m = home(-1, false);
     const double above_m = home(1, false);
     found_.rod_scale = options_.stroke_m / (above_m - below_m);
-    out_ << fmt::format("scale:  a metre of reading is {:.5f} m", found_.rod_scale) << std::endl;
+    out_ << fmt::format("scale:  1 m of reading is {:.5f} m of travel", found_.rod_scale)
+         << std::endl;
     found_.home = "stop_above";
     found_.home_m = above_m;
     return;
@@ -159,7 +162,7 @@ void CommissionSession::homes() {
   if (options_.home == "none") return;
   const bool index = options_.home.starts_with("index");
   if (index && loop_->quality() == config::signals::Quality::good) {
-    out_ << "home:   the sensor has its index already, or none is wired" << std::endl;
+    out_ << "home:   the sensor has already found its index, or has none" << std::endl;
     return;
   }
   found_.home_m = home(options_.home.ends_with("above") ? 1 : -1, index);
@@ -173,10 +176,10 @@ void CommissionSession::stages() {
   out_ << fmt::format("rest:   noise {:.2f} um, drift {:.2f} mm/s at {:.3g} V", f.noise_m * 1e6,
                       f.drift_mps * 1e3, config_.rig.valve().null_V)
        << std::endl;
-  agree(fmt::format("Pulses up and down, up to {:.3g} V and {:.1f} mm?", limits_.authority_V,
-                    limits_.max_travel_m * 1e3));
+  agree(fmt::format("Apply pulses in both directions, up to {:.3g} V and {:.1f} mm?",
+                    limits_.authority_V, limits_.max_travel_m * 1e3));
   sign();
-  agree(fmt::format("Pulses both ways at up to {:.1f} mm/s, within {:.1f} mm?",
+  agree(fmt::format("Apply pulses in both directions, up to {:.1f} mm/s and {:.1f} mm?",
                     procedure_.target_mps() * 1e3, limits_.max_travel_m * 1e3));
   speeds();
   homes();
@@ -194,7 +197,8 @@ void CommissionSession::write(std::int64_t utc_us) {
   const hal::ValveConfig& valve = config_.rig.valve();
   const std::string against =
       control::contradiction(found_, valve.null_V, valve.limit_V, found_.wiring);
-  if (!against.empty()) out_ << "not armed as configured: " << against << std::endl;
+  if (!against.empty())
+    out_ << "arming will be rejected with this configuration: " << against << std::endl;
 }
 
 int CommissionSession::run(const hal::Devices& devices, double sample_time_s) {
@@ -203,7 +207,7 @@ int CommissionSession::run(const hal::Devices& devices, double sample_time_s) {
   rt::Clock& clock =
       options_.virtual_time ? static_cast<rt::Clock&>(virtual_clock) : monotonic_clock;
   rt::Grant grant;
-  if (!options_.virtual_time) grant = rt::ask_privileges(config_.loop);
+  if (!options_.virtual_time) grant = rt::request_privileges(config_.loop);
   SafeStateValve guard(devices.valve.get());
   CommissionLoop loop({clock, devices, *guard.valve(), config_.rig.valve().null_V, sample_time_s,
                        config_.loop.max_bad_in_a_row},

@@ -1,5 +1,5 @@
-// One commissioning on open devices: the stages in their order, what a person is asked, what is
-// said, and the file at the end.
+// One commissioning on open devices: runs the stages in order, asks the operator, reports and
+// writes the calibration file.
 #pragma once
 
 #include <functional>
@@ -29,7 +29,7 @@ class CommissionSession {
   int run(const hal::Devices& devices, double sample_time_s);
 
  private:
-  /// Stopped or refused by a person, or given up; said already.
+  /// Thrown when the operator stops or the procedure aborts; already reported.
   struct Ended {
     int exit_code;
   };
@@ -39,10 +39,10 @@ class CommissionSession {
   void stage(const char* name, const std::function<void()>& begin);
   void sign();
   void speeds();
-  /// The reading at the stop or index.
+  /// Drives to the stop or index and returns the reading there.
   double home(int direction, bool index);
   void homes();
-  [[noreturn]] void give_up(const std::string& why);
+  [[noreturn]] void abort(const std::string& why);
   void write(std::int64_t utc_us);
 
   DaemonConfig& config_;

@@ -10,14 +10,32 @@ namespace {
 using control::RejectReason;
 using Kind = io::ControlRequest::Kind;
 
-/// An order that the loop has not taken by then is dropped by it.
-constexpr std::int64_t kLife_ns = 250'000'000;
-/// Then the answer is that there is none: longer, so that a late one is not called lost.
-constexpr std::int64_t kPatience_ns = 500'000'000;
-/// The detector looks at its queue every 10 ms, unless LCM or a machine without time holds it up.
-constexpr std::int64_t kDetectorPatience_ns = 2'000'000'000;
-/// Requests at a time: a flood of them must not keep the main thread from a signal to stop.
-constexpr int kAtATime = 8;
+/// The loop drops a command older than this.
+constexpr std::int64_t kCommandLife_ns = 250'000'000;
+/// Longer than the life of a command, so that a late answer still arrives.
+constexpr std::int64_t kLoopTimeout_ns = 500'000'000;
+/// The detector polls its queue every 10 ms unless LCM or a loaded machine delays it.
+constexpr std::int64_t kDetectorTimeout_ns = 2'000'000'000;
+/// Bounds one call of serve(), so that a flood of requests cannot delay a stop signal.
+constexpr int kRequestsPerCall = 8;
+
+/// What to do instead of a command that the state does not allow.
+std::string hint(control::State state) {
+  const std::string prefix = std::string("not possible in state ") + control::to_string(state);
+  switch (state) {
+    case control::State::disarmed:
+      return prefix + ": arm first";
+    case control::State::armed:
+      return prefix + ": start or disarm";
+    case control::State::run:
+      return prefix + ": stop first";
+    case control::State::latched:
+      return prefix + ": reset first";
+    case control::State::monitor:
+      break;
+  }
+  return prefix;
+}
 
 }  // namespace
 
@@ -25,7 +43,7 @@ ControlRequestHandler::ControlRequestHandler(const Parts& parts, Identity identi
     : parts_(parts), identity_(std::move(identity)) {}
 
 bool ControlRequestHandler::serve(io::ControlSocket& socket) {
-  for (int n = 0; n < kAtATime; ++n) {
+  for (int n = 0; n < kRequestsPerCall; ++n) {
     if (waits_for_ != WaitsFor::nothing) {
       const std::string line = waits_for_ == WaitsFor::loop       ? poll_loop_answer()
                                : waits_for_ == WaitsFor::detector ? poll_alarm_answer()
@@ -35,7 +53,7 @@ bool ControlRequestHandler::serve(io::ControlSocket& socket) {
       socket.answer(request_.client, line);
     }
     if (!socket.next(request_)) return false;
-    const std::string line = line_for(io::parse_request(request_.line));
+    const std::string line = handle(io::parse_request(request_.line));
     if (!line.empty()) socket.answer(request_.client, line);
   }
   return true;
@@ -47,19 +65,19 @@ std::string ControlRequestHandler::reject(const std::string& why) {
 }
 
 void ControlRequestHandler::audit(const std::string& reject_reason) {
-  if (!acts_ || parts_.audit == nullptr) return;
+  if (!is_command_ || parts_.audit == nullptr) return;
   parts_.audit->note({parts_.clock.utc_us(), request_.uid, io::user_name(request_.uid),
                       request_.line, reject_reason});
 }
 
-std::string ControlRequestHandler::line_for(const io::ControlRequest& request) {
+std::string ControlRequestHandler::handle(const io::ControlRequest& request) {
   if (request.kind == Kind::bad) return io::print_rejected(state(), request.wrong);
-  acts_ = request.kind != Kind::status && request.kind != Kind::alarms;
+  is_command_ = request.kind != Kind::status && request.kind != Kind::alarms;
   if (request.kind == Kind::status) return io::print_status(status());
-  if (acts_ && !request_.may_act) {
+  if (is_command_ && !request_.may_act) {
     return reject(
-        "not permitted: you may look; the daemon's user, root and the members of [control] "
-        "act_group (or else group) may act");
+        "not permitted: read-only access; commands are reserved for the daemon's user, root and "
+        "members of [control] act_group (default: group)");
   }
   switch (request.kind) {
     case Kind::alarms:
@@ -87,11 +105,11 @@ std::string ControlRequestHandler::send_to_loop(const io::ControlRequest& reques
   command.amplitude_m = request.amplitude_m;
   command.frequency_Hz = request.frequency_Hz;
   const std::int64_t now_ns = parts_.clock.now_ns();
-  command.expires_ns = now_ns + kLife_ns;
+  command.expires_ns = now_ns + kCommandLife_ns;
   command.number = ++number_;
-  if (!parts_.commands.push(command)) return reject("the loop takes no orders");
+  if (!parts_.commands.push(command)) return reject("the loop's command queue is full");
   waits_for_ = WaitsFor::loop;
-  until_ns_ = now_ns + kPatience_ns;
+  deadline_ns_ = now_ns + kLoopTimeout_ns;
   return "";
 }
 
@@ -103,24 +121,24 @@ std::string ControlRequestHandler::send_to_detector(const io::ControlRequest& re
                  : request.kind == Kind::unshelve ? CommandKind::unshelve
                  : request.alarm.empty()          ? CommandKind::acknowledge_all
                                                   : CommandKind::acknowledge;
-  request_acknowledges_ = request.kind == Kind::acknowledge &&
-                          (request.alarm.empty() || detection::RodAlarms::is_one(request.alarm));
+  acknowledges_rod_ = request.kind == Kind::acknowledge &&
+                      (request.alarm.empty() || detection::RodAlarms::is_one(request.alarm));
   command.alarm = request.alarm;
   command.time_s = request.time_s;
-  if (acts_) command.who = io::user_name(request_.uid);
+  if (is_command_) command.who = io::user_name(request_.uid);
   command.number = ++number_;
   if (parts_.alarm_commands == nullptr || !parts_.alarm_commands->push(command)) {
-    return reject("the detector takes no orders");
+    return reject("the detector's command queue is full or missing");
   }
   waits_for_ = WaitsFor::detector;
-  until_ns_ = parts_.clock.now_ns() + kDetectorPatience_ns;
+  deadline_ns_ = parts_.clock.now_ns() + kDetectorTimeout_ns;
   return "";
 }
 
 void ControlRequestHandler::readmit_rods() {
   rt::Command command;
   command.kind = rt::Command::Kind::readmit;
-  command.expires_ns = parts_.clock.now_ns() + kLife_ns;
+  command.expires_ns = parts_.clock.now_ns() + kCommandLife_ns;
   parts_.commands.push(command);
 }
 
@@ -129,23 +147,23 @@ std::string ControlRequestHandler::poll_loop_answer() {
       control::unpack(parts_.stats.answer.load(std::memory_order_acquire));
   if (answer.number == number_) {
     const std::string reject_reason =
-        answer.reject_reason == RejectReason::none ? "" : words(answer);
+        answer.reject_reason == RejectReason::none ? "" : explain(answer);
     audit(reject_reason);
     return reject_reason.empty() ? io::print_done(answer.state)
                                  : io::print_rejected(answer.state, reject_reason);
   }
-  if (parts_.clock.now_ns() <= until_ns_) return "";
-  return reject("the loop does not answer; the order has expired");
+  if (parts_.clock.now_ns() <= deadline_ns_) return "";
+  return reject("the loop does not answer; the command has expired");
 }
 
 std::string ControlRequestHandler::poll_alarm_answer() {
   std::shared_ptr<const detection::AlarmAnswer> answer;
   while (parts_.alarm_answers->pop(answer)) {
-    if (answer->number != number_) continue;  // late, to an order given up
+    if (answer->number != number_) continue;  // late answer to an abandoned command
     if (!answer->reject_reason.empty()) return reject(answer->reject_reason);
     audit("");
-    if (acts_) {
-      if (request_acknowledges_) readmit_rods();
+    if (is_command_) {
+      if (acknowledges_rod_) readmit_rods();
       return io::print_acted(state(), answer->done);
     }
     std::vector<io::ControlAlarm> alarms;
@@ -154,21 +172,21 @@ std::string ControlRequestHandler::poll_alarm_answer() {
     }
     return io::print_alarms(state(), alarms);
   }
-  if (parts_.clock.now_ns() <= until_ns_) return "";
-  return reject("the detector does not answer; the order may still be carried out");
+  if (parts_.clock.now_ns() <= deadline_ns_) return "";
+  return reject("the detector does not answer; the command may still take effect");
 }
 
 std::string ControlRequestHandler::begin_reload() {
   if (parts_.reloader == nullptr || !parts_.reloader->begin(request_.uid, request_.line)) {
-    return reject("the configuration is just being read again");
+    return reject("a reload is already in progress");
   }
   waits_for_ = WaitsFor::reloader;
-  until_ns_ = parts_.clock.now_ns() + kDetectorPatience_ns;
+  deadline_ns_ = parts_.clock.now_ns() + kDetectorTimeout_ns;
   return poll_reload_answer();
 }
 
 std::string ControlRequestHandler::poll_reload_answer() {
-  parts_.reloader->look();
+  parts_.reloader->poll();
   if (!parts_.reloader->busy()) {
     waits_for_ = WaitsFor::nothing;
     const ReloadOutcome& outcome = parts_.reloader->last();
@@ -176,27 +194,27 @@ std::string ControlRequestHandler::poll_reload_answer() {
     return io::print_reloaded(state(), {parts_.reloader->config_hash(), outcome.changed,
                                         outcome.warm, outcome.cold, outcome.ended});
   }
-  if (parts_.clock.now_ns() <= until_ns_) return "";
+  if (parts_.clock.now_ns() <= deadline_ns_) return "";
   return io::print_rejected(state(),
-                            "the detector has not taken the rules yet; it may still do so");
+                            "the detector has not applied the new rules yet; it may still do so");
 }
 
-std::string ControlRequestHandler::words(const control::Answer& answer) const {
+std::string ControlRequestHandler::explain(const control::Answer& answer) const {
   switch (answer.reject_reason) {
     case RejectReason::none:
       break;
     case RejectReason::state:
-      return std::string("not possible in state ") + control::to_string(answer.state);
+      return hint(answer.state);
     case RejectReason::monitor:
-      return "nothing is driven here: [valve] backend = \"none\", or a record is replayed";
+      return "no valve is driven: [valve] backend = \"none\", or a record is replayed";
     case RejectReason::expired:
-      return "the order came too late to the loop";
+      return "the command reached the loop too late";
     case RejectReason::closing:
-      return "the daemon ends";
+      return "the daemon is shutting down";
     case RejectReason::position:
-      return "no position to begin from";
+      return "no valid position to start from";
     case RejectReason::enable:
-      return "the enable input is not 1";
+      return "the enable input is off";
     case RejectReason::calibration:
       return identity_.never_arms;
     case RejectReason::guard: {
@@ -220,7 +238,7 @@ std::string ControlRequestHandler::obstacle() const {
     }
   }
   for (const std::size_t input : identity_.enables) {
-    if (!is_one(input)) return "input " + identity_.inputs[input] + ": the enable input is not 1";
+    if (!is_one(input)) return "input " + identity_.inputs[input] + ": the enable input is off";
   }
   return "";
 }

@@ -1,5 +1,5 @@
-// Orders from the control socket to the loop, on alarms to the detector, and their answers back,
-// one order at a time. Runs on the main thread.
+// Forwards requests from the control socket: commands to the loop, alarm commands to the detector,
+// reloads to the reloader, one at a time, and returns their answers. Runs on the main thread.
 #pragma once
 
 #include <cstdint>
@@ -23,54 +23,54 @@ namespace monitor {
 
 class ControlRequestHandler {
  public:
-  /// What it works with; all of it outlives the desk.
+  /// Collaborators; must outlive this object.
   struct Parts {
     rt::Clock& clock;
     rt::CommandQueue& commands;
     const rt::LoopStats& stats;
     detection::AlarmCommandQueue* alarm_commands =
-        nullptr;  ///< null, as `alarm_answers`: none are taken
+        nullptr;  ///< null like `alarm_answers`: alarm commands are rejected
     detection::AlarmAnswerQueue* alarm_answers = nullptr;
     io::Audit* audit = nullptr;
-    Reloader* reloader = nullptr;  ///< null: nothing is read again
+    Reloader* reloader = nullptr;  ///< null: reloads are rejected
     const detection::DetectabilityMonitor* detectability = nullptr;
   };
-  /// What does not change.
+  /// Facts that stay constant while the daemon runs.
   struct Identity {
     std::string rig_id, config_hash;
     std::vector<control::GuardConfig> guards;  ///< control::all_guards
     std::vector<std::string> spare_rods, inputs;
-    std::vector<std::size_t> enables, e_stops;  ///< which of the inputs
-    std::string never_arms;  ///< why it can never be armed as it is; empty when it can
+    std::vector<std::size_t> enables, e_stops;  ///< indices into `inputs`
+    std::string never_arms;  ///< why the rig cannot be armed as configured; empty: it can
   };
 
   ControlRequestHandler(const Parts& parts, Identity identity);
 
-  /// Takes some requests and gives answers; returns whether to come again soon: an order waits for
-  /// the loop or the detector, or there are more requests.
+  /// Handles a bounded number of requests. Returns true when more work is pending: an outstanding
+  /// answer or further requests.
   bool serve(io::ControlSocket& socket);
 
  private:
   enum class WaitsFor : std::uint8_t { nothing, loop, detector, reloader };
 
-  /// Empty: the answer comes from the loop or the detector.
-  [[nodiscard]] std::string line_for(const io::ControlRequest& request);
+  /// The answer, or an empty string when another thread will provide it.
+  [[nodiscard]] std::string handle(const io::ControlRequest& request);
   [[nodiscard]] std::string send_to_loop(const io::ControlRequest& request);
   [[nodiscard]] std::string send_to_detector(const io::ControlRequest& request);
   [[nodiscard]] std::string begin_reload();
-  /// Empty: not yet.
+  /// An empty string while there is no answer.
   [[nodiscard]] std::string poll_loop_answer();
   [[nodiscard]] std::string poll_alarm_answer();
   [[nodiscard]] std::string poll_reload_answer();
-  /// The answer that refuses the request at hand.
+  /// Audits the rejection of the current request and returns its answer.
   [[nodiscard]] std::string reject(const std::string& why);
-  /// Writes down the act at hand.
+  /// Writes the current command to the audit file.
   void audit(const std::string& reject_reason);
-  [[nodiscard]] std::string words(const control::Answer& answer) const;
+  [[nodiscard]] std::string explain(const control::Answer& answer) const;
   [[nodiscard]] std::string obstacle() const;
   [[nodiscard]] io::ControlStatus status() const;
   void add_rods(io::ControlStatus& status) const;
-  /// Whoever has seen that a rod sensor is out lets it be in again, if it is right.
+  /// Acknowledging a rod sensor's alarm readmits the sensor once its readings are right.
   void readmit_rods();
   [[nodiscard]] control::State state() const noexcept {
     return parts_.stats.state.load(std::memory_order_relaxed);
@@ -78,12 +78,12 @@ class ControlRequestHandler {
 
   Parts parts_;
   Identity identity_;
-  std::uint32_t number_ = 0;  ///< of the newest order
+  std::uint32_t number_ = 0;  ///< of the newest command
   WaitsFor waits_for_ = WaitsFor::nothing;
-  io::ControlSocket::Request request_{};  ///< at hand
-  bool acts_ = false;                     ///< it does more than look
-  bool request_acknowledges_ = false;     ///< that a rod sensor is out, perhaps
-  std::int64_t until_ns_ = 0;
+  io::ControlSocket::Request request_{};  ///< the current one
+  bool is_command_ = false;               ///< the request changes something
+  bool acknowledges_rod_ = false;         ///< the request may acknowledge a rod sensor's alarm
+  std::int64_t deadline_ns_ = 0;          ///< for the outstanding answer
 };
 
 }  // namespace monitor

@@ -15,7 +15,8 @@ using config::schema::FlatField;
 using config::schema::FlatTable;
 using config::schema::Visitor;
 
-/// A command that stays at the valve for ever needs someone else who takes it away.
+/// Throws when the valve would keep its last command after the daemon's death and nothing else
+/// commands null.
 void refuse_without_watchdog(const DaemonConfig& config) {
   const bool covered = config.rig.harmless() || config.rig.has_permit() ||
                        std::isfinite(config.rig.null_times().process_dead_s) ||
@@ -25,24 +26,24 @@ void refuse_without_watchdog(const DaemonConfig& config) {
         config.file + ": [valve] backend",
         "is \"" + config.rig.valve().backend +
             "\", which keeps its last command when this process dies",
-        "with a command time-out of the device, with a [permit] output for a watchdog relay, or "
-        "with [valve] accept_no_hardware_watchdog = true");
+        "a device with a command time-out, a [permit] output for a watchdog relay, or "
+        "[valve] accept_no_hardware_watchdog = true");
   }
 }
 
 }  // namespace
 
 void DaemonConfig::visit_what_determines_the_data(Visitor& v) {
-  v.table({"rig", "which rig this is"}, [this](Visitor& t) {
-    t.text({"id", "its name in messages"}, rig_id);
-    t.path({"calibration", "file that commissioning wrote; needed to arm what moves"}, calibration,
-           "calibration.toml");
+  v.table({"rig", "identity of the rig"}, [this](Visitor& t) {
+    t.text({"id", "name in messages"}, rig_id);
+    t.path({"calibration", "file written by commissioning; required to arm a real rig"},
+           calibration, "calibration.toml");
   });
   v.table({"loop", "the control loop"}, [this](Visitor& t) { loop.visit(t); });
   rig.visit(v);
   if (drives_valve()) {
-    v.table({"reference", "the motion"}, [this](Visitor& t) { reference.visit(t); });
-    v.table({"controller", "the control law"}, [this](Visitor& t) { controller.visit(t); });
+    v.table({"reference", "reference signal"}, [this](Visitor& t) { reference.visit(t); });
+    v.table({"controller", "position controller"}, [this](Visitor& t) { controller.visit(t); });
   }
   safety.visit(v);
   pipeline.visit(v);
@@ -50,15 +51,16 @@ void DaemonConfig::visit_what_determines_the_data(Visitor& v) {
 
 void DaemonConfig::visit(Visitor& v) {
   visit_what_determines_the_data(v);
-  v.table({"model", "the physics of the healthy rig"}, [this](Visitor& t) {
-    t.path({"file", "model file that `spoolwatch promote` keeps up to date"}, model,
-           "healthy_model.toml");
+  v.table({"model", "physical model of the healthy rig"}, [this](Visitor& t) {
+    t.path({"file", "model file that `spoolwatch promote` updates"}, model, "healthy_model.toml");
   });
-  v.table({"control", "who may look and act"}, [this](Visitor& t) { control.visit(t); });
-  v.table({"alarms", "what becomes of alarms"}, [this](Visitor& t) { alarms.visit(t); });
-  v.table({"evidence", "kept of each alarm"}, [this](Visitor& t) { evidence.visit(t); });
-  v.table({"lcm", "where messages go"}, [this](Visitor& t) { lcm.visit(t); });
-  v.table({"recorder", "where logs go"}, [this](Visitor& t) { recorder.visit(t); });
+  v.table({"control", "access over the control socket"}, [this](Visitor& t) { control.visit(t); });
+  v.table({"alarms", "persistence, audit and rules of alarms"},
+          [this](Visitor& t) { alarms.visit(t); });
+  v.table({"evidence", "evidence folders, one per alarm"},
+          [this](Visitor& t) { evidence.visit(t); });
+  v.table({"lcm", "LCM output"}, [this](Visitor& t) { lcm.visit(t); });
+  v.table({"recorder", "LCM event logs"}, [this](Visitor& t) { recorder.visit(t); });
 }
 
 void load(const std::filesystem::path& file, const std::vector<std::string>& assignments,
@@ -76,7 +78,7 @@ void load(const std::filesystem::path& file, const std::vector<std::string>& ass
   refuse_without_watchdog(config);
   if (config.loop.auto_arm && !config.rig.harmless()) {
     throw config::schema::bad_config(config.file + ": [loop] auto_arm",
-                                     "is true on a rig that moves something real", "false");
+                                     "is true on a rig with real devices", "false");
   }
 }
 

@@ -28,11 +28,12 @@ namespace monitor {
 namespace tracker = estimator::fdi::tracker;
 
 struct DaemonConfig {
-  std::string file;              ///< where it was read from, for messages
-  std::filesystem::path folder;  ///< relative paths in it start here
+  std::string file;              ///< source, for messages
+  std::filesystem::path folder;  ///< base of relative paths
   std::string rig_id = "rig";
-  std::string calibration;  ///< file that commissioning wrote; empty: none
-  /// Of the healthy rig's physics, for `spoolwatch promote`; empty: none. The daemon only names it.
+  std::string calibration;  ///< file written by commissioning; empty: none
+  /// Model of the healthy rig for `spoolwatch promote`; empty: none. The daemon only passes the
+  /// name on.
   std::string model;
   rt::LoopConfig loop;
   hal::Rig rig;
@@ -47,26 +48,25 @@ struct DaemonConfig {
   io::RecorderConfig recorder;
 
   void visit(config::schema::Visitor& v);
-  /// All of it but who gives orders and what is done with the results ([control],
-  /// [alarms], [evidence], [lcm], [recorder]).
+  /// Everything except access and outputs ([control], [alarms], [evidence], [lcm], [recorder]).
   void visit_what_determines_the_data(config::schema::Visitor& v);
   [[nodiscard]] bool drives_valve() const { return rig.valve().backend != "none"; }
 };
 
-/// Reads the file and applies "table.key=value" assignments; their relative paths start from the
-/// caller's folder. Throws config::schema::ConfigError, UsageError.
+/// Reads the file and applies "table.key=value" assignments, whose relative paths refer to the
+/// working directory. Throws config::schema::ConfigError, UsageError.
 void load(const std::filesystem::path& file, const std::vector<std::string>& assignments,
           DaemonConfig& config);
 
-/// Why the rig may not be armed as it is configured, in one line; empty: it may. Throws
-/// config::schema::Error for a calibration that does not fit.
+/// Why the rig may not be armed as configured, in one line; empty: it may. Throws
+/// config::schema::Error for a calibration of another rig.
 [[nodiscard]] std::string never_arms(DaemonConfig& config);
 
-/// What determines sign, size and place of command and reading, in 16 hexadecimal digits: backends
-/// and channels of valve and rods, and their signs, scales, lines and registers.
+/// Hash (16 hexadecimal digits) of the wiring: backends and channels of valve and rod sensors,
+/// their signs, scales, lines and registers.
 [[nodiscard]] std::string wiring(DaemonConfig& config);
 
-/// FNV-1a of every value that determines the data; files that it names count by name alone.
+/// FNV-1a of every value that determines the data; referenced files count by name only.
 [[nodiscard]] std::uint64_t hash(DaemonConfig& config);
 
 }  // namespace monitor

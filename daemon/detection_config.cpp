@@ -37,12 +37,12 @@ std::map<std::string, std::string> values_by_key(DaemonConfig& config) {
   return values;
 }
 
-/// What would make the quantity of a sample one that the rig has; empty: it has it. A rod sensor
-/// alone is the sample's y_m.
+/// The hardware that the rig lacks for a sample quantity; empty when the rig provides the quantity.
+/// A single rod sensor is the sample's y_m.
 std::string lacking(const hal::Rig& rig, const std::string& quantity) {
   const std::size_t rods = rig.rods() > 1 ? rig.rods() : 0;
   if (estimator::fdi::rod_of(quantity) > rods) {
-    return rods == 0 ? "a [[spare_rod]]; one sensor alone is sample.y_m"
+    return rods == 0 ? "a [[spare_rod]]; a single sensor is sample.y_m"
                      : "sample.rod_1_m to sample.rod_" + std::to_string(rods) + "_m";
   }
   for (const char* role : {"supply_pressure", "pressure_in", "pressure_out"}) {
@@ -55,7 +55,7 @@ std::string lacking(const hal::Rig& rig, const std::string& quantity) {
   return {};
 }
 
-/// A sensor that is read must be there.
+/// Throws when an estimator or band reads a sensor that the rig does not have.
 void check_sensors(const DaemonConfig& config) {
   const auto check = [&](const std::string& where, const std::string& quantity) {
     const std::string needed = lacking(config.rig, quantity);
@@ -82,13 +82,13 @@ DetectionConfig make_detection_config(const DaemonConfig& config, double sample_
   std::error_code unknown;
   if (!config.model.empty() &&
       !std::filesystem::is_regular_file(config.folder / config.model, unknown)) {
-    throw config::schema::bad_config(config.file + ": [model] file: " + config.model, "is no file",
-                                     "a model file (TOML)");
+    throw config::schema::bad_config(config.file + ": [model] file: " + config.model,
+                                     "does not exist", "a model file (TOML)");
   }
   const std::string& bands = made.effective.bands_file;
   if (!bands.empty() && !std::filesystem::is_regular_file(config.folder / bands, unknown)) {
     throw config::schema::bad_config(
-        config.file + ": bands_file: " + (config.folder / bands).string(), "is no file",
+        config.file + ": bands_file: " + (config.folder / bands).string(), "does not exist",
         "a file of learned bands (TOML)");
   }
   with_place(config.file,
@@ -101,7 +101,8 @@ DetectionConfig make_detection_config(const DaemonConfig& config, double sample_
   return made;
 }
 
-std::vector<io::EvidenceFile> evidence_files(DaemonConfig& config, const std::string& pipeline_text) {
+std::vector<io::EvidenceFile> evidence_files(DaemonConfig& config,
+                                             const std::string& pipeline_text) {
   std::vector<io::EvidenceFile> files = {
       {"configuration.toml", config::schema::print_toml([&](Visitor& v) { config.visit(v); })},
       {"pipeline.toml", pipeline_text}};

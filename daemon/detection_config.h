@@ -1,5 +1,5 @@
-// The part of the configuration that may change while the daemon runs: what is estimated, and when
-// an alarm comes.
+// The part of the configuration that may change while the daemon runs: estimators, bands and alarm
+// rules.
 #pragma once
 
 #include <memory>
@@ -13,24 +13,25 @@
 
 namespace monitor {
 
-/// The rules with the learned bands in them, and a pipeline by them.
+/// The configuration of the fault detection with its learned bands, and a pipeline built from it.
 struct DetectionConfig {
   estimator::fdi::PipelineConfig effective;
   std::unique_ptr<estimator::fdi::Pipeline> pipeline;
   std::string text;  ///< fdi::whole_text
 };
 
-/// Throws config::schema::ConfigError that names the file.
-[[nodiscard]] DetectionConfig make_detection_config(const DaemonConfig& config, double sample_time_s);
+/// Throws config::schema::ConfigError naming the file.
+[[nodiscard]] DetectionConfig make_detection_config(const DaemonConfig& config,
+                                                    double sample_time_s);
 
-/// The files that evidence needs to be read by itself; `pipeline_text`: DetectionConfig::text.
+/// The files that make an evidence folder self-contained; `pipeline_text`: DetectionConfig::text.
 [[nodiscard]] std::vector<io::EvidenceFile> evidence_files(DaemonConfig& config,
                                                            const std::string& pipeline_text);
 
-/// "[[band]] gain: high", ... of what differs between two configurations.
+/// Keys that differ between two configurations, such as "[[band]] gain: high".
 [[nodiscard]] std::vector<std::string> differences(DaemonConfig& before, DaemonConfig& after);
 
-/// Whether such a key may change while the daemon runs.
+/// Whether a key, as differences() names it, may change while the daemon runs.
 [[nodiscard]] bool may_change(const std::string& key,
                               const estimator::fdi::PipelineConfig& pipeline);
 

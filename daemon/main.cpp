@@ -19,7 +19,7 @@ namespace {
 constexpr double kShortest_s = 1e-3;
 constexpr double kLongest_s = 1e9;
 
-/// Where the caller closed a standard stream, a file opened later must not take its place.
+/// Opens standard streams that the caller closed, so that no later file takes their descriptors.
 void keep_standard_streams() {
   int file = 0;
   do {
@@ -28,7 +28,7 @@ void keep_standard_streams() {
   if (file >= 0) close(file);
 }
 
-/// --commission and what belongs to it; lengths in mm on the command line.
+/// --commission and its options; lengths are in mm on the command line.
 const CLI::Option* add_commission(CLI::App& app, monitor::CommissionOptions& options) {
   constexpr double kMetresPerMillimetre = 1e-3;
   const auto millimetres = [&app](const char* name, const char* what, double low_mm, double high_mm,
@@ -39,23 +39,26 @@ const CLI::Option* add_commission(CLI::App& app, monitor::CommissionOptions& opt
         ->check(CLI::Range(low_mm, high_mm));
   };
   CLI::Option* out = app.add_option("--commission", options.out,
-                                    "find out how the rig is wired; the calibration file");
+                                    "commission the rig and write this calibration file");
   CLI::Option* more[] = {
-      millimetres("--max-travel-mm", "of the rod in a stage, 5", 0.1, 1000.0, options.max_travel_m),
-      millimetres("--max-speed-mmps", "of the rod, --max-travel-mm in 0.1 s", 0.1, 10000.0,
-                  options.max_speed_mps),
-      app.add_option("--authority", options.authority_V, "greatest command from null, V")
+      millimetres("--max-travel-mm", "limit of rod travel in a stage, default 5", 0.1, 1000.0,
+                  options.max_travel_m),
+      millimetres("--max-speed-mmps", "limit of rod speed, default --max-travel-mm in 0.1 s", 0.1,
+                  10000.0, options.max_speed_mps),
+      app.add_option("--authority", options.authority_V,
+                     "largest deviation of the command from null, V")
           ->check(CLI::Range(1e-3, 100.0)),
-      app.add_option("--pulse", options.pulse_s, "length of a pulse, s")
+      app.add_option("--pulse", options.pulse_s, "duration of a pulse, s")
           ->check(CLI::Range(0.05, 10.0)),
-      app.add_option("--home", options.home, "where to drive at the end")
+      app.add_option("--home", options.home, "reference position to drive to at the end")
           ->check(
               CLI::IsMember({"none", "stop_above", "stop_below", "index_above", "index_below"})),
-      millimetres("--home-travel-mm", "on the way there, 1000", 1.0, 100000.0,
-                  options.home_travel_m),
-      millimetres("--stroke-mm", "true way between the stops: drive to both, for the scale", 1.0,
+      millimetres("--home-travel-mm", "limit of travel on the way there, default 1000", 1.0,
+                  100000.0, options.home_travel_m),
+      millimetres("--stroke-mm",
+                  "true distance between the stops; drives to both to find the scale", 1.0,
                   100000.0, options.stroke_m),
-      app.add_flag("--yes", options.yes, "ask nobody before a motion")};
+      app.add_flag("--yes", options.yes, "start each motion without asking")};
   for (CLI::Option* option : more) option->needs(out)->group("Commissioning");
   out->group("Commissioning");
   return out;
@@ -73,21 +76,22 @@ int run(int argc, char** argv) {
   bool check = false;
   bool null = false;
   const CLI::Option* configuration = app.add_option("--config", file, "configuration (TOML)");
-  app.add_option("--clock", clock, "virtual: as fast as possible, deterministic")
+  app.add_option("--clock", clock, "realtime, or virtual: deterministic and as fast as possible")
       ->check(CLI::IsMember({"realtime", "virtual"}));
-  const CLI::Option* duration = app.add_option("--duration", options.duration_s,
-                                               "seconds to run; without it, until a signal");
-  CLI::Option* url = app.add_option("--lcm-url", lcm_url, "instead of [lcm] url");
-  app.add_option("--set", assignments, "table.key=value, instead of the file's")
+  const CLI::Option* duration =
+      app.add_option("--duration", options.duration_s, "seconds to run; default: until a signal");
+  CLI::Option* url = app.add_option("--lcm-url", lcm_url, "overrides [lcm] url");
+  app.add_option("--set", assignments, "table.key=value, overrides the file")
       ->allow_extra_args(false);
   app.add_flag("--check", check,
-               "validate, print the effective configuration and what happens at "
-               "each failure, write nothing; 78 also where a device cannot be reached");
-  const CLI::Option* note = app.add_option(
-      "--driving", options.driving, "file that says what is driven, there for as long as it is");
+               "validate without writing to a device; print the effective configuration and the "
+               "consequence of each failure; exit code 78 also for an unreachable device");
+  const CLI::Option* note =
+      app.add_option("--driving", options.driving,
+                     "note of the driven valve; the file exists while the valve is driven");
   app.add_flag("--null", null,
-               "write null and nothing else; with --driving: only where a "
-               "daemon that died has left such a file");
+               "only write null; with --driving: only if a daemon that died left "
+               "that file");
   bool reference = false;
   app.add_flag("--configuration-reference", reference)->group("");  // hidden: scripts/reference
   monitor::CommissionOptions commission;
@@ -134,7 +138,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   keep_standard_streams();
-  monitor::outlive_failed_writes();
+  monitor::ignore_write_signals();
   monitor::rt::keep_memory_small();
   try {
     return run(argc, argv);

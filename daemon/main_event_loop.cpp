@@ -7,9 +7,9 @@
 namespace monitor {
 namespace {
 
-constexpr int kLook_ms = 100;
-/// While there is something to do: the loop owes an answer, or requests wait.
-constexpr int kShortLook_ms = 1;
+constexpr int kIdleWait_ms = 100;
+/// While an answer is outstanding or requests are queued.
+constexpr int kBusyWait_ms = 1;
 
 }  // namespace
 
@@ -35,17 +35,17 @@ int SignalFd::next() const noexcept {
 bool MainEventLoop::run_once() {
   if (socket_ == nullptr) {
     pollfd file{signals_.fd(), POLLIN, 0};
-    poll(&file, 1, kLook_ms);
+    poll(&file, 1, kIdleWait_ms);
   } else {
-    socket_->wait(soon_ ? kShortLook_ms : kLook_ms, signals_.fd());
-    soon_ = handler_.serve(*socket_);
+    socket_->wait(busy_ ? kBusyWait_ms : kIdleWait_ms, signals_.fd());
+    busy_ = handler_.serve(*socket_);
   }
-  reloader_.look();
+  reloader_.poll();
   for (int signal = signals_.next(); signal != 0; signal = signals_.next()) {
     if (signal != SIGHUP) return true;
-    hung_up_ = true;
+    reload_pending_ = true;
   }
-  if (hung_up_ && reloader_.begin(getuid(), "SIGHUP")) hung_up_ = false;
+  if (reload_pending_ && reloader_.begin(getuid(), "SIGHUP")) reload_pending_ = false;
   return false;
 }
 

@@ -1,5 +1,5 @@
-// What the main thread does while the loop runs: it waits for the signals that ask the process to
-// stop or to read its configuration again, and serves the control socket.
+// The main thread's event loop: serves the control socket and handles the signals that stop the
+// process or reload its configuration.
 #pragma once
 
 #include <csignal>
@@ -8,11 +8,11 @@
 
 namespace monitor {
 
-/// SIGTERM, SIGINT, SIGHUP; blocked in every thread, so that they are waited for. In a session
-/// SIGHUP asks for the configuration to be read again.
+/// SIGTERM, SIGINT, SIGHUP; blocked in every thread and received through SignalFd. In a session
+/// SIGHUP reloads the configuration.
 [[nodiscard]] sigset_t stop_signals();
 
-/// Those signals as a file that can be waited for.
+/// A signalfd for stop_signals(), to be used with poll().
 class SignalFd {
  public:
   SignalFd();
@@ -20,9 +20,9 @@ class SignalFd {
   SignalFd(const SignalFd&) = delete;
   SignalFd& operator=(const SignalFd&) = delete;
   [[nodiscard]] int fd() const noexcept { return fd_; }
-  /// Whether any came.
+  /// Whether a signal was pending; consumes one.
   [[nodiscard]] bool pending() const noexcept { return next() != 0; }
-  /// The next that came, 0: none.
+  /// The next pending signal, 0 when there is none.
   [[nodiscard]] int next() const noexcept;
 
  private:
@@ -31,11 +31,11 @@ class SignalFd {
 
 class MainEventLoop {
  public:
-  /// `socket` may be null; all of it outlives this.
+  /// `socket` may be null. All arguments must outlive this object.
   MainEventLoop(ControlRequestHandler& handler, io::ControlSocket* socket, Reloader& reloader)
       : handler_(handler), socket_(socket), reloader_(reloader) {}
 
-  /// Up to 100 ms. Returns whether the daemon is asked to stop.
+  /// Waits up to 100 ms for events and handles them. Returns true on a request to stop.
   bool run_once();
 
  private:
@@ -43,8 +43,8 @@ class MainEventLoop {
   io::ControlSocket* socket_;
   Reloader& reloader_;
   SignalFd signals_;
-  bool hung_up_ = false;  ///< a reload is asked for
-  bool soon_ = false;     ///< there is something to do
+  bool reload_pending_ = false;  ///< SIGHUP has been received
+  bool busy_ = false;            ///< answers or requests are pending
 };
 
 }  // namespace monitor

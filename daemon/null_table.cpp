@@ -16,10 +16,10 @@ using control::GuardKind;
 constexpr double kNever = hal::kMissing;
 constexpr const char* kHolds = "D/A holds; permit/watchdog needed";
 
-/// A reading may be a period old when the loop takes it: devices with a thread of their own.
+/// A device with its own thread may deliver a reading that is one period old.
 double reading_s(const NullTableInputs& inputs) { return inputs.sample_time_s; }
 
-/// From what a guard watches being so to its action.
+/// Time from the onset of a guard's condition to its action.
 double notice_s(const control::GuardConfig& guard, const NullTableInputs& inputs) {
   const double period_s = inputs.sample_time_s;
   switch (guard.which()) {
@@ -73,7 +73,7 @@ std::vector<NullRow> null_rows(const NullTableInputs& inputs) {
   std::vector<NullRow> rows{
       {"stop, signal or error", 2.0 * period_s + latency_s, ""},
       {"position missing", reading_s(inputs) + period_s + latency_s, ""},
-      // An outage shorter than the 50 ms rule ends with the old law, one as long as it with null.
+      // After an outage below 50 ms the controller resumes, after a longer one null is written.
       {"loop late, then back", null_after_s + period_s + latency_s, ""},
       left_alone("bus lost", times.bus_lost_s, inputs),
       left_alone("process killed", times.process_dead_s, inputs),
@@ -85,7 +85,8 @@ std::vector<NullRow> null_rows(const NullTableInputs& inputs) {
     rows.push_back({"enable lost", reading_s(inputs) + period_s + latency_s, ""});
   for (const control::GuardConfig& guard : inputs.guards) {
     const GuardKind kind = guard.which();
-    // Null comes before these: with the first missing reading, or not at all.
+    // These guards never determine the time: null is written at the first missing reading, or
+    // never.
     if (kind == GuardKind::missing || kind == GuardKind::bus_lost) continue;
     if (kind == GuardKind::e_stop && !inputs.has_e_stop) continue;
     rows.push_back(guard_row(guard, inputs));

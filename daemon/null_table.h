@@ -1,5 +1,5 @@
-// How soon, at worst, the valve is at null after a failure, and how far the rod may travel until
-// then: what `--check` prints, and what tests hold measurements against.
+// Worst-case time from a failure to null at the valve, and the rod travel until then. Printed by
+// `--check`; the tests compare measurements with these bounds.
 #pragma once
 
 #include <iosfwd>
@@ -11,12 +11,12 @@
 
 namespace monitor {
 
-/// What the table is worked out from.
+/// The facts that determine the table.
 struct NullTableInputs {
   std::string backend;  ///< of the valve
   hal::NullTimes times;
   double sample_time_s = 0.005;
-  double speed_mps = 0.0;  ///< fastest rod under a held command
+  double speed_mps = 0.0;  ///< fastest rod speed under a held command
   double ramp_s = 0.2;
   std::int64_t max_bad_in_a_row = 3;
   std::vector<control::GuardConfig> guards;  ///< control::all_guards
@@ -28,12 +28,12 @@ struct NullTableInputs {
 struct NullRow {
   std::string failure;
   double time_s;     ///< NaN: never
-  std::string note;  ///< instead of a time, or besides it
+  std::string note;  ///< replaces or explains the time
 };
 
 [[nodiscard]] std::vector<NullRow> null_rows(const NullTableInputs& inputs);
 
-/// The rows as comments of a TOML file, with the travel that goes with each time.
+/// Prints the rows as TOML comments, with the rod travel for each time.
 void print_null_table(const NullTableInputs& inputs, std::ostream& out);
 
 }  // namespace monitor

@@ -9,9 +9,9 @@
 namespace monitor {
 namespace {
 
-constexpr int kLook_ms = 100;
+constexpr int kWait_ms = 100;
 
-/// Before the file for them is made.
+/// Blocks the signals before the signalfd is created; passes `value` through.
 bool block_stop_signals(bool value) {
   const sigset_t signals = stop_signals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
@@ -20,18 +20,18 @@ bool block_stop_signals(bool value) {
 
 }  // namespace
 
-OperatorPrompt::OperatorPrompt(std::ostream& out, bool ask_nobody)
-    : out_(out), ask_nobody_(block_stop_signals(ask_nobody)) {}
+OperatorPrompt::OperatorPrompt(std::ostream& out, bool assume_yes)
+    : out_(out), assume_yes_(block_stop_signals(assume_yes)) {}
 
 bool OperatorPrompt::wait_stop() {
   pollfd file{signals_.fd(), POLLIN, 0};
-  poll(&file, 1, kLook_ms);
+  poll(&file, 1, kWait_ms);
   stopped_ = stopped_ || signals_.pending();
   return stopped_;
 }
 
 std::optional<bool> OperatorPrompt::ask(const std::string& question) {
-  if (ask_nobody_)
+  if (assume_yes_)
     return signals_.pending() ? (stopped_ = true, std::nullopt) : std::optional(true);
   out_ << question << " [y/n] " << std::flush;
   std::string answer;

@@ -1,4 +1,4 @@
-// Questions to the person at the terminal, who may also press Ctrl-C.
+// Yes/no questions to the operator at the terminal; Ctrl-C ends them.
 #pragma once
 
 #include <iosfwd>
@@ -11,21 +11,20 @@ namespace monitor {
 
 class OperatorPrompt {
  public:
-  /// Blocks the stop signals of this thread, so that they are waited for.
-  OperatorPrompt(std::ostream& out, bool ask_nobody);
+  /// Blocks the stop signals in this thread. `assume_yes`: answers every question without asking.
+  OperatorPrompt(std::ostream& out, bool assume_yes);
 
-  /// Asks and waits for y or n; nothing when a signal or the end of the input came first. True
-  /// without asking when nobody is to be asked.
+  /// Asks and waits for y or n. Returns nullopt on a signal or the end of the input.
   std::optional<bool> ask(const std::string& question);
-  /// Waits up to 100 ms; whether a signal has come.
+  /// Waits up to 100 ms for a stop signal. Returns whether one has been received so far.
   bool wait_stop();
-  /// A signal has come, in any of the calls before.
+  /// Whether any call has received a stop signal.
   [[nodiscard]] bool stopped() const noexcept { return stopped_; }
-  [[nodiscard]] bool asks() const noexcept { return !ask_nobody_; }
+  [[nodiscard]] bool asks() const noexcept { return !assume_yes_; }
 
  private:
   std::ostream& out_;
-  bool ask_nobody_;
+  bool assume_yes_;
   bool stopped_ = false;
   SignalFd signals_;
 };

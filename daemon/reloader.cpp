@@ -19,32 +19,32 @@ Reloader::Reloader(Parts parts, DaemonConfig& running, double sample_time_s)
 
 bool Reloader::begin(unsigned uid, const std::string& what) {
   if (busy()) return false;
-  under_way_ = std::make_unique<UnderWay>(UnderWay{uid, what, {}, {}});
+  attempt_ = std::make_unique<Attempt>(Attempt{uid, what, {}, {}});
   try {
-    prepare(*under_way_);
+    prepare(*attempt_);
   } catch (const std::exception& e) {
-    ReloadOutcome refused;
-    refused.reject_reason = e.what();
-    std::replace(refused.reject_reason.begin(), refused.reject_reason.end(), '\n', ' ');
-    end(std::move(refused));
+    ReloadOutcome rejected;
+    rejected.reject_reason = e.what();
+    std::replace(rejected.reject_reason.begin(), rejected.reject_reason.end(), '\n', ' ');
+    end(std::move(rejected));
   }
   return true;
 }
 
-void Reloader::prepare(UnderWay& under_way) {
-  DaemonConfig& next = under_way.next;
+void Reloader::prepare(Attempt& attempt) {
+  DaemonConfig& next = attempt.next;
   parts_.read(next);
-  under_way.changed = differences(running_, next);
-  for (const std::string& key : under_way.changed) {
+  attempt.changed = differences(running_, next);
+  for (const std::string& key : attempt.changed) {
     if (may_change(key, next.pipeline)) continue;
-    const bool acts = key.starts_with("[[guard]]") || key.starts_with("[safety]") ||
-                      key.starts_with("[failover]");
+    const bool safety = key.starts_with("[[guard]]") || key.starts_with("[safety]") ||
+                        key.starts_with("[failover]");
     throw config::schema::bad_config(next.file + ": " + key,
-                                     acts ? "cannot change while the daemon runs, for it decides "
-                                            "what is done with the valve: restart the daemon"
-                                          : "cannot change while the daemon runs",
+                                     safety ? "cannot change while the daemon runs because it "
+                                              "affects the valve: restart the daemon"
+                                            : "cannot change while the daemon runs",
                                      "[[estimator]], [[band]], bands_file and the rules in "
-                                     "[alarms]; everything else at a restart");
+                                     "[alarms]; everything else needs a restart");
   }
   DetectionConfig made = make_detection_config(next, sample_time_s_);
   auto change = std::make_shared<detection::DetectionUpdate>();
@@ -54,47 +54,49 @@ void Reloader::prepare(UnderWay& under_way) {
   change->estimators = made.effective.method_ids();
   if (parts_.evidence) change->evidence_files = evidence_files(next, made.text);
   if (!to_detector.push(change)) {
-    throw config::schema::RunError("the detector takes no rules");
+    throw config::schema::RunError("the detector's update queue is full");
   }
 }
 
-void Reloader::look() {
-  std::shared_ptr<detection::DetectionUpdate> taken;
-  if (!busy() || !from_detector.pop(taken)) return;
-  running_.pipeline = under_way_->next.pipeline;
-  running_.alarms.rules = under_way_->next.alarms.rules;
-  running_.model = under_way_->next.model;
-  config_hash_ = taken->config_hash;
-  rules_hash_ = config::schema::hash_text(taken->pipeline_hash);
+void Reloader::poll() {
+  std::shared_ptr<detection::DetectionUpdate> applied;
+  if (!busy() || !from_detector.pop(applied)) return;
+  running_.pipeline = attempt_->next.pipeline;
+  running_.alarms.rules = attempt_->next.alarms.rules;
+  running_.model = attempt_->next.model;
+  config_hash_ = applied->config_hash;
+  rules_hash_ = config::schema::hash_text(applied->pipeline_hash);
   ReloadOutcome done;
-  done.changed = under_way_->changed;
-  done.warm = taken->warm;
-  done.cold = taken->cold;
-  done.ended = taken->ended;
+  done.changed = attempt_->changed;
+  done.warm = applied->warm;
+  done.cold = applied->cold;
+  done.ended = applied->ended;
   end(std::move(done));
 }
 
 void Reloader::end(ReloadOutcome outcome) {
   outcome.utc_us = parts_.clock.utc_us();
   if (parts_.audit != nullptr) {
-    parts_.audit->note({outcome.utc_us, under_way_->uid, io::user_name(under_way_->uid),
-                        under_way_->what, outcome.reject_reason});
+    parts_.audit->note({outcome.utc_us, attempt_->uid, io::user_name(attempt_->uid), attempt_->what,
+                        outcome.reject_reason});
   }
   parts_.log << "spoolwatchd: ";
   if (outcome.reject_reason.empty()) {
     parts_.log << "new rules, configuration " << config_hash_ << ": " << outcome.changed.size()
-               << " keys changed, " << outcome.warm.size() << " estimators go on, "
+               << " keys changed, " << outcome.warm.size() << " estimators continue, "
                << outcome.cold.size() << " warm up, " << outcome.ended.size() << " alarms ended";
   } else {
-    parts_.log << "the old configuration stays: " << outcome.reject_reason;
+    parts_.log << "the old configuration remains active: " << outcome.reject_reason;
   }
   parts_.log << std::endl;
-  under_way_.reset();
+  attempt_.reset();
   last_ = std::move(outcome);
 }
 
 std::string Reloader::complaint() const {
-  return last_.reject_reason.empty() ? "" : "the old configuration stays: " + last_.reject_reason;
+  return last_.reject_reason.empty()
+             ? ""
+             : "the old configuration remains active: " + last_.reject_reason;
 }
 
 }  // namespace monitor

@@ -1,9 +1,9 @@
-// Reads the configuration again while the daemon runs: all of it is checked, only rules
-// (detection_config.h) may differ, and the detector takes them between two samples. Whatever is
-// wrong, the old ones stay. Each attempt is written to the log, to the audit file and into the
-// service manager's status.
+// Reloads the configuration of the running daemon. The whole file is checked, only the detection
+// configuration (detection_config.h) may differ, and the detector applies the update between two
+// samples. On any error the old configuration stays. Each attempt is written to the log, to the
+// audit file and to the service manager's status.
 //
-// One thread, the main one.
+// Main thread only.
 #pragma once
 
 #include <cstdint>
@@ -20,61 +20,62 @@
 
 namespace monitor {
 
-/// What became of an attempt.
+/// The result of a reload.
 struct ReloadOutcome {
-  std::string reject_reason;         ///< empty: done
-  std::vector<std::string> changed;  ///< keys, as differences() names them
+  std::string reject_reason;         ///< empty: applied
+  std::vector<std::string> changed;  ///< keys as differences() names them
   std::vector<std::string> warm, cold, ended;
-  std::int64_t utc_us = 0;  ///< 0: there was none
+  std::int64_t utc_us = 0;  ///< 0: no attempt yet
 };
 
 class Reloader {
  public:
-  /// What it works with; all of it outlives this. `audit` and `evidence` may be missing.
+  /// Collaborators; must outlive this object. `audit` may be null.
   struct Parts {
     const rt::Clock& clock;
     std::ostream& log;
     io::Audit* audit;
-    bool evidence;  ///< is kept
-    /// Reads the configuration as at the start; throws config::schema::Error.
+    bool evidence;  ///< evidence folders are configured
+    /// Reads the configuration in the same way as at startup; throws config::schema::Error.
     std::function<void(DaemonConfig&)> read;
-    std::uint64_t rules_hash;  ///< of the rules at the start, fdi::hash_of(DetectionConfig::text)
+    std::uint64_t rules_hash;  ///< schema::hash_of(DetectionConfig::text) at startup
   };
-  /// `running`: what the daemon runs by; its rules are kept up to date.
+  /// `running`: the active configuration; updated after each successful reload.
   Reloader(Parts parts, DaemonConfig& running, double sample_time_s);
 
-  /// Begins, unless an attempt is under way: then false. `what`: by which way it was asked for.
+  /// Starts a reload. Returns false while another one is in progress. `what`: the request, for the
+  /// audit file.
   bool begin(unsigned uid, const std::string& what);
-  /// Looks whether the detector has taken the rules.
-  void look();
-  [[nodiscard]] bool busy() const noexcept { return under_way_ != nullptr; }
-  /// Of the newest attempt that has ended.
+  /// Completes the reload once the detector has applied the update.
+  void poll();
+  [[nodiscard]] bool busy() const noexcept { return attempt_ != nullptr; }
+  /// The result of the newest completed attempt.
   [[nodiscard]] const ReloadOutcome& last() const noexcept { return last_; }
   [[nodiscard]] const std::string& config_hash() const noexcept { return config_hash_; }
-  /// Of the rules with the learned bands in them.
+  /// Hash of the detection configuration, learned bands included.
   [[nodiscard]] const std::string& rules_hash() const noexcept { return rules_hash_; }
   [[nodiscard]] const DaemonConfig& running() const noexcept { return running_; }
   [[nodiscard]] double sample_time_s() const noexcept { return sample_time_s_; }
-  /// One line when the newest attempt was refused, else empty.
+  /// One line when the newest attempt was rejected, else empty.
   [[nodiscard]] std::string complaint() const;
 
   detection::DetectionUpdateQueue to_detector, from_detector;
 
  private:
-  struct UnderWay {
+  struct Attempt {
     unsigned uid;
     std::string what;
     DaemonConfig next;
     std::vector<std::string> changed;
   };
-  void prepare(UnderWay& under_way);
+  void prepare(Attempt& attempt);
   void end(ReloadOutcome outcome);
 
   Parts parts_;
   DaemonConfig& running_;
   double sample_time_s_;
   std::string config_hash_, rules_hash_;
-  std::unique_ptr<UnderWay> under_way_;
+  std::unique_ptr<Attempt> attempt_;
   ReloadOutcome last_;
 };
 

@@ -18,11 +18,11 @@ namespace {
 using config::schema::Error;
 using config::schema::RunError;
 
-/// A device may have its hands full with the end of the process before.
-constexpr std::chrono::seconds kPatience{2};
-constexpr std::chrono::milliseconds kPause{100};
+/// A device may still be closing the connection of the process that died.
+constexpr std::chrono::seconds kRetryFor{2};
+constexpr std::chrono::milliseconds kRetryEvery{100};
 
-/// Null at the valve, or why not.
+/// Writes null once. Returns an empty string or why that failed.
 std::string try_null(const DaemonConfig& config, bool& nothing_to_do) {
   try {
     const std::shared_ptr<hal::ValveDrive> valve =
@@ -61,16 +61,16 @@ void SafeStateNote::withdraw() const {
 }
 
 int write_null(const DaemonConfig& config, std::ostream& log) {
-  const auto until = std::chrono::steady_clock::now() + kPatience;
+  const auto until = std::chrono::steady_clock::now() + kRetryFor;
   bool nothing_to_do = false;
   std::string wrong = try_null(config, nothing_to_do);
   while (!wrong.empty() && std::chrono::steady_clock::now() < until) {
-    std::this_thread::sleep_for(kPause);
+    std::this_thread::sleep_for(kRetryEvery);
     wrong = try_null(config, nothing_to_do);
   }
   if (!wrong.empty()) throw RunError(wrong);
   log << "spoolwatchd: "
-      << (nothing_to_do ? "no valve that could have been left anywhere"
+      << (nothing_to_do ? "no valve can have been left away from null"
                         : "null written to the valve (" + config.rig.valve().backend + ")")
       << std::endl;
   return EXIT_SUCCESS;

@@ -1,5 +1,5 @@
-// What a daemon leaves to others when it is killed: a note of what it drives, and the way to write
-// null with nothing but that note.
+// The note that a running daemon leaves on disk, so that another process can command null after the
+// daemon was killed.
 #pragma once
 
 #include <filesystem>
@@ -9,26 +9,26 @@
 
 namespace monitor {
 
-/// A file with the effective configuration, there from before the first write to the valve until
-/// null has been its last command.
+/// A file with the effective configuration. The file exists from before the first write to the
+/// valve until null has been the last command.
 class SafeStateNote {
  public:
   /// Throws config::schema::RunError when it cannot be written. Empty `file`: no note.
   SafeStateNote(std::filesystem::path file, DaemonConfig& config);
-  /// Null is at the valve. Not called by a process that dies: then the note stays.
+  /// Removes the file; call once the valve is at null. A process that dies leaves the file behind.
   void withdraw() const;
 
  private:
   std::filesystem::path file_;
 };
 
-/// Opens the valve alone, writes null and closes it, trying for up to 2 s; says on `log` what it
-/// did. Nothing is done where there is no valve that a dead process can have left anywhere. Returns
-/// the exit code; throws config::schema::Error for what cannot be opened.
+/// Opens only the valve, writes null and closes it, retrying for up to 2 s, and reports on `log`.
+/// Does nothing where no valve can have been left away from null. Returns the exit code; throws
+/// config::schema::Error when the valve cannot be opened.
 int write_null(const DaemonConfig& config, std::ostream& log);
 
-/// The same from the note that a daemon has left; no note: nothing is driven. The note goes with
-/// success.
+/// The same for the configuration in a daemon's note, which is removed on success. Without a note
+/// nothing is written.
 int write_null(const std::filesystem::path& note, std::ostream& log);
 
 }  // namespace monitor

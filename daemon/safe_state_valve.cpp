@@ -7,18 +7,18 @@
 namespace monitor {
 namespace {
 
-/// All that end a process, but those that ask it to stop (session.cpp), those that are ignored, and
-/// SIGKILL.
+/// All signals that end a process, except the stop signals (main_event_loop.h), the ignored ones
+/// and SIGKILL.
 constexpr int kFatal[] = {SIGSEGV, SIGBUS,  SIGFPE,  SIGILL,  SIGABRT, SIGSYS,    SIGTRAP, SIGQUIT,
                           SIGXCPU, SIGUSR1, SIGUSR2, SIGALRM, SIGPROF, SIGVTALRM, SIGIO};
 
-std::atomic<SafeStateValve*> guard_of_process{nullptr};
+std::atomic<SafeStateValve*> valve_of_process{nullptr};
 static_assert(std::atomic<SafeStateValve*>::is_always_lock_free);
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-/// Null, then the signal's own effect.
+/// Commands null, then raises the signal with its default action.
 void on_fatal_signal(int signal) {
-  if (SafeStateValve* guard = guard_of_process.exchange(nullptr)) guard->close();
+  if (SafeStateValve* valve = valve_of_process.exchange(nullptr)) valve->close();
   std::signal(signal, SIG_DFL);
   raise(signal);
 }
@@ -28,7 +28,7 @@ void on_fatal_signal(int signal) {
 SafeStateValve::SafeStateValve(hal::ValveDrive* valve) noexcept : valve_(valve) {
   static rt::SignalStack main_stack;
   main_stack.use();
-  guard_of_process.store(this);
+  valve_of_process.store(this);
   struct sigaction action {};
   action.sa_handler = on_fatal_signal;
   action.sa_flags = SA_ONSTACK;  // a stack that has overflowed can run no handler
@@ -36,7 +36,7 @@ SafeStateValve::SafeStateValve(hal::ValveDrive* valve) noexcept : valve_(valve) 
 }
 
 SafeStateValve::~SafeStateValve() {
-  if (guard_of_process.exchange(nullptr) != nullptr) close();
+  if (valve_of_process.exchange(nullptr) != nullptr) close();
   for (const int signal : kFatal) std::signal(signal, SIG_DFL);
 }
 
@@ -57,7 +57,7 @@ hal::Applied SafeStateValve::end_at_null() noexcept {
   return valve_->end_at_null();
 }
 
-void outlive_failed_writes() noexcept {
+void ignore_write_signals() noexcept {
   for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
 }
 

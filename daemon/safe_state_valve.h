@@ -1,5 +1,5 @@
-// Whatever way the process ends, null is the last command: on leaving the scope, and from a handler
-// of every signal that would end the process.
+// Makes null the last command however the process ends: on leaving the scope and from a handler for
+// every signal that would end the process.
 #pragma once
 
 #include <atomic>
@@ -8,19 +8,19 @@
 
 namespace monitor {
 
-/// The valve as the loop drives it. Once null has been commanded for good, another thread's command
-/// that comes after it is followed by null again. One guard at a time.
+/// Wraps the valve that the loop drives. After close(), a late command of another thread is
+/// followed by null again. One instance at a time.
 class SafeStateValve final : public hal::ValveDrive {
  public:
-  /// `valve` may be null and must outlive the guard.
+  /// `valve` may be null and must outlive this object.
   explicit SafeStateValve(hal::ValveDrive* valve) noexcept;
   ~SafeStateValve() override;
   SafeStateValve(const SafeStateValve&) = delete;
   SafeStateValve& operator=(const SafeStateValve&) = delete;
 
-  /// What the loop shall drive, null when there is no valve.
+  /// The drive to hand to the loop; null without a valve.
   [[nodiscard]] hal::ValveDrive* valve() noexcept { return valve_ == nullptr ? nullptr : this; }
-  /// Null, now and after every later command.
+  /// Commands null now and after every later command.
   void close() noexcept;
 
   hal::Applied write(double u_V, const hal::Tick& tick) noexcept override;
@@ -32,7 +32,8 @@ class SafeStateValve final : public hal::ValveDrive {
   std::atomic<bool> closed_{false};
 };
 
-/// A write to a broken pipe or past a file-size limit returns an error and ends nothing.
-void outlive_failed_writes() noexcept;
+/// Makes a write to a broken pipe or past a file-size limit return an error instead of ending the
+/// process.
+void ignore_write_signals() noexcept;
 
 }  // namespace monitor

@@ -8,8 +8,8 @@ namespace monitor {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
-/// Signs of life in the time after which one is missed.
-constexpr std::int64_t kSigns = 4;
+/// Keep-alives per watchdog time.
+constexpr std::int64_t kKeepAlives = 4;
 
 }  // namespace
 
@@ -19,7 +19,7 @@ bool ServiceReport::works() const noexcept {
          stats_.detected_samples.value() >= kGoodCycles;
 }
 
-void ServiceReport::look() {
+void ServiceReport::poll() {
   const std::int64_t now_ns = clock_.now_ns();
   if (!ready_ && works()) {
     ready_ = true;
@@ -27,11 +27,12 @@ void ServiceReport::look() {
     manager_.ready();
   }
   feed(now_ns);
-  say(now_ns);
+  send_status(now_ns);
 }
 
 void ServiceReport::feed(std::int64_t now_ns) {
-  if (manager_.watchdog_ns() == 0 || now_ns - fed_ns_ < manager_.watchdog_ns() / kSigns) return;
+  if (manager_.watchdog_ns() == 0 || now_ns - fed_ns_ < manager_.watchdog_ns() / kKeepAlives)
+    return;
   const std::int64_t ticks = stats_.ticks.value();
   const std::int64_t detected = stats_.detected_samples.value();
   if (ticks == fed_ticks_ || detected == fed_detected_) return;
@@ -41,13 +42,13 @@ void ServiceReport::feed(std::int64_t now_ns) {
   manager_.alive();
 }
 
-void ServiceReport::say(std::int64_t now_ns) {
+void ServiceReport::send_status(std::int64_t now_ns) {
   if (now_ns < next_line_ns_) return;
   next_line_ns_ = now_ns + kSecond_ns;
   std::string line = this->line();
-  if (line == said_) return;
+  if (line == last_line_) return;
   manager_.status(line);
-  said_ = std::move(line);
+  last_line_ = std::move(line);
 }
 
 std::string ServiceReport::line() const {

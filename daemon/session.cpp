@@ -115,7 +115,7 @@ bool stop_pending(Reloader& reloader) {
   const sigset_t set = stop_signals();
   const timespec now{0, 0};
   const int signal = sigtimedwait(&set, nullptr, &now);
-  reloader.look();
+  reloader.poll();
   if (signal == SIGHUP) reloader.begin(getuid(), "SIGHUP");
   return signal > 0 && signal != SIGHUP;
 }
@@ -185,7 +185,7 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
                        {config::schema::hash_text(p.hash), run_id, p.sample_time_s, virtual_time});
   io::Publisher publisher(config.lcm, run_id, p.sample_time_s, recorder.get());
   if (alarms.evidence != nullptr) publisher.attach(*alarms.evidence);
-  if (config.rig.measures_pressures()) publisher.tell_pressures();
+  if (config.rig.measures_pressures()) publisher.enable_pressures();
 
   auto samples = std::make_unique<rt::SampleQueue>();
   rt::CommandQueue commands;
@@ -196,7 +196,7 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
       p.sample_time_s);
   rt::Grant grant;
   grant.text = "virtual time";
-  if (!virtual_time) grant = rt::ask_privileges(config.loop);
+  if (!virtual_time) grant = rt::request_privileges(config.loop);
   log << "spoolwatchd: real-time privileges: " << grant.text << std::endl;
   const SafeStateNote note(
       virtual_time || !config.drives_valve() ? std::filesystem::path() : options.driving, config);
@@ -241,7 +241,7 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
       virtual_time ? rt::run_virtual(runner, detector, stop, [&] { return stop_pending(reloader); })
                    : rt::run_realtime(runner, detector, grant.loop_thread, stop, valve, [&] {
                        service.remark(reloader.complaint());
-                       service.look();
+                       service.poll();
                        const bool stops = event_loop.run_once();
                        if (stops) service.stopping();
                        return stops;

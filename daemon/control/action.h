@@ -1,8 +1,8 @@
-// What a guard that trips leads to, weakest first.
+// The actions of a tripped guard, weakest first.
 //
 //   indicate  an alarm, nothing else
-//   hold      the reference is frozen at the present position; the law goes on
-//   ramp      the command goes to null in a straight line over ramp_s, then DISARMED
+//   hold      the reference is frozen at the present position; the controller stays active
+//   ramp      the command falls linearly to null over ramp_s, then DISARMED
 //   disarm    null at once, DISARMED
 //   latch     null at once, LATCHED
 #pragma once
@@ -32,7 +32,7 @@ enum class Action : std::uint8_t { none, indicate, hold, ramp, disarm, latch };
   return "";
 }
 
-/// Action::none for a name that is none.
+/// Action::none for an unknown name.
 [[nodiscard]] constexpr Action action_of(std::string_view name) noexcept {
   for (const Action action :
        {Action::indicate, Action::hold, Action::ramp, Action::disarm, Action::latch}) {

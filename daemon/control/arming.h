@@ -1,9 +1,9 @@
-// Arming: whether the law may drive the valve. Pure state machine, no time, no device.
+// Arming: whether the controller may drive the valve. Pure state machine: no time, no device.
 //
-//   MONITOR    nothing is ever written (no valve, or a record is replayed); no event leaves it
+//   MONITOR    nothing is ever written (no valve, or a replayed record); no event leaves this state
 //   DISARMED   null is written                      arm -> ARMED
 //   ARMED      null is written                      start -> RUN, disarm -> DISARMED
-//   RUN        the law is written                   stop -> ARMED, disarm -> DISARMED
+//   RUN        the controller drives                   stop -> ARMED, disarm -> DISARMED
 //   LATCHED    null is written, after a trip        reset -> DISARMED
 //
 // A trip leads from every state but MONITOR to LATCHED.
@@ -22,7 +22,7 @@ class Arming {
       : state_(monitor_only ? State::monitor : State::disarmed) {}
 
   [[nodiscard]] State state() const noexcept { return state_; }
-  /// Returns whether the event was allowed where the machine stood.
+  /// Returns whether the event was allowed in the current state.
   bool apply(Event event) noexcept;
 
  private:

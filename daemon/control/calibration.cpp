@@ -10,31 +10,34 @@
 namespace monitor::control {
 
 void Calibration::visit(config::schema::Visitor& v) {
-  v.text({"rig_id", "[rig] id of the configuration it was made with", true}, rig_id);
-  v.text({"date", "of the commissioning", true}, date);
-  v.text({"wiring", "of the configuration that it was made with"}, wiring);
-  v.number({"latency_s", "from a command to the motion: dead time and lag", true}, latency_s,
+  v.text({"rig_id", "[rig] id at commissioning", true}, rig_id);
+  v.text({"date", "date of commissioning", true}, date);
+  v.text({"wiring", "hash of the wiring at commissioning"}, wiring);
+  v.number({"latency_s", "from command to motion: dead time and lag", true}, latency_s,
            {0.0, 10.0});
-  v.table({"valve", "as found"}, [this](config::schema::Visitor& t) {
+  v.table({"valve", "properties of the valve"}, [this](config::schema::Visitor& t) {
     t.integer({"sign", "1: a higher voltage extends the rod; -1", true}, valve_sign, {-1, 1});
-    t.number({"null_V", "where the rod stands still", true}, null_V, {-100.0, 100.0});
-    t.number({"dead_zone_V", "width of the range in which it does", true}, dead_zone_V,
+    t.number({"null_V", "voltage at which the rod stands still", true}, null_V, {-100.0, 100.0});
+    t.number({"dead_zone_V", "width of the range of voltages without motion", true}, dead_zone_V,
              {0.0, 100.0});
-    t.number({"gain_mps_per_V", "speed by voltage outside of it"}, gain_mps_per_V, {0.0, 1e3});
+    t.number({"gain_mps_per_V", "speed per voltage outside the dead zone"}, gain_mps_per_V,
+             {0.0, 1e3});
   });
-  v.table({"rod", "as found"}, [this](config::schema::Visitor& t) {
+  v.table({"rod", "properties of the rod sensor"}, [this](config::schema::Visitor& t) {
     t.integer({"sign", "1: the reading grows as the rod extends; -1", true}, rod_sign, {-1, 1});
-    t.number({"scale", "true metres a metre of reading", true}, rod_scale, {1e-12, 1e3});
+    t.number({"scale", "true metres per metre of reading", true}, rod_scale, {1e-12, 1e3});
     t.number({"noise_m", "standard deviation at rest", true}, noise_m, {0.0, 1.0});
   });
-  v.table({"home", "a place to be found again"}, [this](config::schema::Visitor& t) {
-    t.choice({"kind", "what it is"}, home, {"none", "stop_above", "stop_below", "index"});
-    if (home != "none") t.number({"position_m", "the reading there", true}, home_m, {-1e3, 1e3});
+  v.table({"home", "reference position"}, [this](config::schema::Visitor& t) {
+    t.choice({"kind", "kind of reference position"}, home,
+             {"none", "stop_above", "stop_below", "index"});
+    if (home != "none")
+      t.number({"position_m", "reading at the reference position", true}, home_m, {-1e3, 1e3});
   });
-  v.table({"limits", "within which it was found"}, [this](config::schema::Visitor& t) {
-    t.number({"authority_V", "greatest distance of a command from null"}, authority_V, {0.0, 1e3});
-    t.number({"max_travel_m", "of the rod"}, max_travel_m, {0.0, 1e3});
-    t.number({"max_speed_mps", "of the rod"}, max_speed_mps, {0.0, 1e3});
+  v.table({"limits", "limits during commissioning"}, [this](config::schema::Visitor& t) {
+    t.number({"authority_V", "largest deviation of a command from null"}, authority_V, {0.0, 1e3});
+    t.number({"max_travel_m", "limit of rod travel"}, max_travel_m, {0.0, 1e3});
+    t.number({"max_speed_mps", "limit of rod speed"}, max_speed_mps, {0.0, 1e3});
   });
 }
 
@@ -63,16 +66,17 @@ std::string contradiction(const Calibration& calibration, double null_V, double 
     return "the rod sensor is reversed: the reading falls as the rod extends";
   }
   if (std::abs(calibration.rod_scale - 1.0) > kScaleShare) {
-    return fmt::format("a metre of reading is {:.4g} m: correct the rod sensor's scale",
+    return fmt::format("1 m of reading is {:.4g} m of travel: correct the rod sensor's scale",
                        calibration.rod_scale);
   }
   const double allowed_V = 0.5 * calibration.dead_zone_V + kNullShare * limit_V;
   if (!(std::abs(null_V - calibration.null_V) <= allowed_V)) {
-    return fmt::format("[valve] null_V is {:.4g}; the rod stands at {:.4g} +- {:.2g}", null_V,
+    return fmt::format("[valve] null_V is {:.4g}; the rod stands still at {:.4g} +- {:.2g}", null_V,
                        calibration.null_V, allowed_V);
   }
   if (!calibration.wiring.empty() && calibration.wiring != wiring) {
-    return "the configuration of valve or rod sensor has changed since: commission the rig again";
+    return "the configuration of valve or rod sensor has changed since commissioning: commission "
+           "again";
   }
   return "";
 }

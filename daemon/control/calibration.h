@@ -1,7 +1,7 @@
-// What commissioning found on a rig, as a file: without one that fits, devices that move something
-// are never armed.
+// The calibration file that commissioning writes. Real devices are never armed without a matching
+// one.
 //
-// Signs and scale are those of what the configuration makes of the devices: 1 and 1 where it fits.
+// Signs and scale are relative to the configuration: 1 where it is right.
 //
 // TOML: schema_version, rig_id, date, wiring, latency_s; [valve] sign, null_V, dead_zone_V,
 // gain_mps_per_V; [rod] sign, scale, noise_m; [home] kind, position_m; [limits] authority_V,
@@ -17,21 +17,21 @@
 namespace monitor::control {
 
 struct Calibration {
-  std::string rig_id;           ///< [rig] id of the configuration it was made with
-  std::string date;             ///< YYYY-MM-DD, of the commissioning
-  std::string wiring;           ///< of the configuration (print_wiring()), empty: not said
+  std::string rig_id;           ///< [rig] id at commissioning
+  std::string date;             ///< of commissioning, YYYY-MM-DD
+  std::string wiring;           ///< hash at commissioning; empty: unknown
   std::int64_t valve_sign = 1;  ///< +1: a higher voltage extends the rod
   double null_V = 0.0;          ///< where the rod stands still
-  double dead_zone_V = 0.0;     ///< width of the range in which it does
-  /// Speed by voltage outside the dead zone; 0: not said.
+  double dead_zone_V = 0.0;     ///< width of the range of voltages without motion
+  /// Speed per voltage outside the dead zone; 0: unknown.
   double gain_mps_per_V = 0.0;
   std::int64_t rod_sign = 1;  ///< +1: the reading grows as the rod extends
-  double rod_scale = 1.0;     ///< true metres a metre of reading; 1 where nobody knew better
+  double rod_scale = 1.0;     ///< true metres per metre of reading; 1 when not measured
   double noise_m = 0.0;       ///< standard deviation of the reading at rest
-  double latency_s = 0.0;     ///< from a command to the motion: dead time and lag
+  double latency_s = 0.0;     ///< from command to motion: dead time and lag
   std::string home = "none";  ///< or stop_above, stop_below, index
   double home_m = std::numeric_limits<double>::quiet_NaN();  ///< the reading there
-  /// Within which it was found; 0: not said.
+  /// Limits during commissioning; 0: unknown.
   double authority_V = 0.0;
   double max_travel_m = 0.0;
   double max_speed_mps = 0.0;
@@ -39,16 +39,16 @@ struct Calibration {
   void visit(config::schema::Visitor& v);
 };
 
-/// Throws config::schema::ConfigError when it cannot be read or is of another rig.
+/// Throws config::schema::ConfigError when the file cannot be read or belongs to another rig.
 [[nodiscard]] Calibration load_calibration(const std::filesystem::path& file,
                                            const std::string& rig_id);
 
-/// What the calibration says against a configuration, in one line; empty: nothing. A command at
-/// `null_V` must let the rod stand: within the dead zone, or next to it by 1 % of limit_V.
+/// How the calibration contradicts a configuration, in one line; empty: it does not. `null_V` must
+/// lie within the dead zone, or at most 1 % of limit_V outside.
 [[nodiscard]] std::string contradiction(const Calibration& calibration, double null_V,
                                         double limit_V, const std::string& wiring);
 
-/// The file's text.
+/// The text of the file.
 [[nodiscard]] std::string print_calibration(Calibration calibration);
 
 }  // namespace monitor::control

@@ -13,29 +13,29 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kTravelOfPulse = 0.35;  ///< at the target speed
 constexpr double kEndOfPulse = 0.45;
 constexpr double kEndOfStage = 0.8;
-constexpr double kNear = 0.15;    ///< of the start: a pulse may lead away from it
-constexpr double kSeen = 0.04;    ///< a motion
-constexpr double kNoisy = 0.2;    ///< what a motion must stand out from
-constexpr double kAgainst = 0.2;  ///< a motion against the command
+constexpr double kNear = 0.15;    ///< distance from the start within which a pulse may lead away
+constexpr double kSeen = 0.04;    ///< detectable motion
+constexpr double kNoisy = 0.2;    ///< limit of the noise
+constexpr double kAgainst = 0.2;  ///< motion against the command
 constexpr double kBackOff = 0.4;  ///< from a stop
 // Shares of the target speed.
 constexpr double kFastLow = 0.5;
 constexpr double kMoves = 0.1;
-constexpr double kDrift = 0.05;  ///< between pulses, worth a correction
-// Shares of the speed that the faster pulse gave.
+constexpr double kDrift = 0.05;  ///< between pulses, to be corrected
+// Shares of the speed of the faster pulse.
 constexpr double kSlowLow = 0.2;
 constexpr double kSlowHigh = 0.65;
 
 constexpr double kFirstLevel = 1.0 / 32.0;  ///< share of the authority
 constexpr double kSettle = 0.4;             ///< share of a pulse
-/// Share of the settling time: what is later has not settled when the line begins.
+/// Share of the settling time: a longer latency has not settled when the line fit begins.
 constexpr double kLatest = 0.6;
 constexpr double kRest_s = 0.4;
-constexpr double kNoises = 10.0;  ///< a motion is that many standard deviations
-/// Share of the authority by which what a device says it gives may differ from the command: coarser
-/// than any converter, finer than any mistake in its scale.
+constexpr double kNoises = 10.0;  ///< detectable motion in standard deviations
+/// Allowed difference of the command reported by a device, as a share of the authority: coarser
+/// than any converter, finer than any scaling mistake.
 constexpr double kSameCommand = 0.05;
-constexpr double kStart_s = 0.3;  ///< a drive is under way
+constexpr double kStart_s = 0.3;  ///< until a drive must be moving
 constexpr double kStill_s = 0.1;
 
 }  // namespace
@@ -45,9 +45,9 @@ const char* to_string(Failure failure) noexcept {
     case Failure::none:
       return "done";
     case Failure::travel:
-      return "the rod went too far";
+      return "the rod moved too far";
     case Failure::speed:
-      return "the rod went too fast";
+      return "the rod moved too fast";
     case Failure::wrong_way:
       return "the rod moved against the command";
     case Failure::no_motion:
@@ -57,15 +57,15 @@ const char* to_string(Failure failure) noexcept {
     case Failure::reversed:
       return "the reading falls as the command rises";
     case Failure::too_noisy:
-      return "the reading is too noisy for so small a travel";
+      return "the reading is too noisy for such a small travel";
     case Failure::no_level:
       return "no command gives a steady speed within the travel";
     case Failure::too_slow:
-      return "the rod answers too late for pulses so short";
+      return "the rod responds too late for such short pulses";
     case Failure::no_index:
-      return "a stop came before the index";
+      return "reached a stop before the index";
     case Failure::too_long:
-      return "it takes too long";
+      return "the stage takes too long";
   }
   return "";
 }
@@ -217,8 +217,8 @@ void Commissioning::pause_over(double now_s) noexcept {
       }
       break;
     case Stage::sign:
-      // One way, then the other by as much, so that what a dead sensor does not show goes back.
-      // First against the drift.
+      // A pulse and its opposite, so that travel unseen by a dead sensor is undone. The first one
+      // is against the drift.
       if (sign_level_V_ > 0.0 && direction_ == sign_first_) {
         start_pulse(now_s, -sign_first_, sign_level_V_);
         break;
@@ -322,7 +322,7 @@ void Commissioning::speed_pulse_over(double now_s, bool too_far) noexcept {
     s.v += v;
     s.uu += applied_V_ * applied_V_;
     s.uv += applied_V_ * v;
-    // The lines meet as sharply as the slopes differ.
+    // The intersection is as sharp as the slopes differ.
     const double weight = v * v;
     latency_sum_ += weight * (after_.meets(before_) - move_s_);
     latency_weight_ += weight;

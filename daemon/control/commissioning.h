@@ -1,25 +1,27 @@
-// Commissioning: short pulses of low authority that find out how valve and rod sensor are wired and
-// what they do. Pure: fed once a tick with the reading, it answers with the command; no device, no
-// thread; after construction nothing allocates.
+// Commissioning: short pulses of low authority that identify the wiring and the properties of valve
+// and rod sensor. Pure: maps the reading of each tick to a command; no device, no thread; no
+// allocation after construction.
 //
-// The rig it expects, u the command counted from valve.null_V, positive extends:
+// Model of the rig; u is the command relative to valve.null_V, positive extends:
 //
 //   y' = gain dead_zone(u - null) behind a delay and a lag
 //
-// Stages, each begun by the caller, each ends at null:
+// Stages, each started by the caller, each ending at null:
 //   rest     null: noise about a straight line, drift
-//   sign     pulses up and down, doubled until the reading leaves the line it was on by 0.04
-//            of max_travel. It must rise with the command: else reversed, and nothing more is done.
-//   speeds   pulses both ways to two speeds each. A line through speed and command of each way
-//            meets speed zero at an end of the dead zone; null is the middle, gain the mean slope.
-//            Latency: from a step to where the lines of the reading before and after it meet.
+//   sign     pulses up and down, doubled until the reading deviates from its line by 0.04 of
+//            max_travel. The reading must rise with the command, otherwise the result is
+//            `reversed`.
+//   speeds   pulses in both directions at two speeds each. The line through speed and command of a
+//            direction reaches zero speed at an end of the dead zone; null is the middle, gain the
+//            mean slope. Latency: from a step to the intersection of the lines fitted to the
+//            reading before and after it.
 //   home     slowly to a stop (or until the sensor has seen its index), and a little back
 //
-// What is disturbed (a lost reply, a period that was skipped) is measured again.
-// The rod stays within max_travel of where a stage began (home: home_travel): a pulse ends after
-// 0.45 of it at most, the next goes or drives back, and at 0.8 the stage is given up; the rest is
-// for the rod to come to a stop. It is given up as well at a speed above max_speed, for motion
-// against the command, for none at full authority, and without a fresh reading for max_gap.
+// A disturbed measurement (a lost reply, a skipped period) is repeated.
+// The rod stays within max_travel of the start of a stage (home: home_travel): a pulse ends after
+// 0.45 of it at most, the next one goes back, and at 0.8 the stage is aborted; the rest is reserved
+// for the rod to come to a stop. The stage is also aborted at a speed above max_speed, for motion
+// against the command, for no motion at full authority, and without a fresh reading for max_gap.
 #pragma once
 
 #include <array>
@@ -32,13 +34,13 @@
 namespace monitor::control {
 
 struct CommissioningLimits {
-  double authority_V = 1.0;  ///< greatest distance of a command from null
+  double authority_V = 1.0;  ///< largest deviation of a command from null
   double max_travel_m = 5e-3;
   double max_speed_mps = 0.05;
   double home_travel_m = 1.0;
-  double pulse_s = 0.2;  ///< the reading settles for 0.4 of it, is measured for the rest
+  double pulse_s = 0.2;  ///< 0.4 of it for settling, the rest for measuring
   double max_gap_s = 0.1;
-  double most_s = 120.0;  ///< of a stage
+  double most_s = 120.0;  ///< longest duration of a stage
 };
 
 enum class Stage : std::uint8_t { rest, sign, speeds, home };
@@ -52,22 +54,22 @@ enum class Failure : std::uint8_t {
   no_reading,
   reversed,
   too_noisy,
-  no_level,  ///< no command gives a speed that can be measured within the travel
-  too_slow,  ///< the rod answers too late for pulses that short
-  no_index,  ///< a stop came first
+  no_level,  ///< no command gives a measurable speed within the travel
+  too_slow,  ///< the rod responds too late for such short pulses
+  no_index,  ///< reached a stop first
   too_long
 };
 
 /// One line for people, without the figures.
 [[nodiscard]] const char* to_string(Failure failure) noexcept;
 
-/// What came out; NaN until its stage has been.
+/// Results; NaN until the stage has run.
 struct Findings {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   double noise_m = kNone;
   double drift_mps = kNone;  ///< at valve.null_V
-  double sign_V = kNone;     ///< the command, from null, that showed the sign
-  double sign_m = kNone;     ///< how far the reading went by it
+  double sign_V = kNone;     ///< the command, relative to null, that revealed the sign
+  double sign_m = kNone;     ///< the resulting change of the reading
   double null_V = kNone;     ///< from valve.null_V
   double dead_zone_V = kNone;
   double gain_mps_per_V = kNone;
@@ -79,32 +81,31 @@ class Commissioning {
  public:
   explicit Commissioning(const CommissioningLimits& limits) noexcept;
 
-  /// speeds after sign after rest; home after speeds.
+  /// Order: rest, sign, speeds, home.
   void begin(Stage stage) noexcept;
-  /// Toward the stop above (1) or below (-1); `index`: until step() is told that it was seen.
+  /// Drives toward the upper (1) or lower (-1) stop; `index`: until step() reports the index.
   void begin_home(int direction, bool index) noexcept;
 
   struct Input {
-    double now_s = 0.0;  ///< of this tick
-    double t_s = 0.0;    ///< when y was measured
+    double now_s = 0.0;  ///< time of this tick
+    double t_s = 0.0;    ///< measurement time of y
     double y_m = 0.0;
-    bool usable = false;  ///< there is a y, and it is not stale
-    bool homed = false;   ///< the sensor has its index
-    /// The valve may not have got what was said since the last tick: what is being measured is
-    /// measured again.
+    bool usable = false;  ///< y is present and not stale
+    bool homed = false;   ///< the sensor has found its index
+    /// A command or reading since the last tick may be lost: the measurement is repeated.
     bool disturbed = false;
-    /// What the valve gets, from valve.null_V, as the device says; NaN when it does not.
+    /// Command reported by the device, relative to valve.null_V; NaN when not reported.
     double applied_V = Findings::kNone;
   };
-  /// The command to be written now, counted from valve.null_V; 0 when the stage is over.
+  /// The command to write, relative to valve.null_V; 0 once the stage is over.
   double step(const Input& in) noexcept;
 
   [[nodiscard]] bool over() const noexcept { return over_; }
   [[nodiscard]] Failure failure() const noexcept { return failure_; }
   [[nodiscard]] const Findings& findings() const noexcept { return findings_; }
-  /// Of the faster pulses, and home.
+  /// Speed of the faster pulses and of homing.
   [[nodiscard]] double target_mps() const noexcept { return target_mps_; }
-  /// Of the stage.
+  /// Rod travel in this stage.
   [[nodiscard]] double travel_m() const noexcept { return travel_m_; }
   [[nodiscard]] double speed_mps() const noexcept { return speed_mps_; }
 
@@ -112,18 +113,18 @@ class Commissioning {
   enum class Move : std::uint8_t { pause, pulse, drive };
   enum class Drive : std::uint8_t { back, home, back_off };
 
-  /// One way, up or down.
+  /// One direction, up or down.
   struct Side {
     LevelSearch fast, slow;
-    int found = 0;  ///< searches that are over: fast, then slow
-    /// Pulses that moved: command and speed.
+    int found = 0;  ///< completed searches: fast, then slow
+    /// Sums over the pulses with motion: command u, speed v.
     int points = 0;
     double u = 0.0, v = 0.0, uu = 0.0, uv = 0.0;
   };
 
   void fail(Failure failure) noexcept;
   void finish() noexcept;
-  /// The guards. Returns whether y is new.
+  /// Checks the limits. Returns whether y is new.
   bool watch(const Input& in) noexcept;
   void start_pause(double now_s) noexcept;
   void start_pulse(double now_s, int direction, double level_V) noexcept;
@@ -132,9 +133,9 @@ class Commissioning {
   void pulse(const Input& in, bool fresh) noexcept;
   void sign_pulse_over(double now_s) noexcept;
   void speed_pulse_over(double now_s, bool too_far) noexcept;
-  /// One secant step toward the command at which the rod stands between pulses.
+  /// One secant step toward the command at which the rod stands still between pulses.
   void improve_rest() noexcept;
-  /// What comes after a pause in the stage of speeds.
+  /// Starts the next pulse of the stage speeds after a pause.
   void next_speed(double now_s) noexcept;
   void evaluate() noexcept;
   void drive(const Input& in) noexcept;

@@ -2,8 +2,8 @@
 //
 //   u = null + Kp (r - y), then |u - null| <= limit, then |u_k - u_{k-1}| <= slew Ts
 //
-// u, null, limit in V; Kp in V/m; slew in V/s. A start begins at null, so that the slew limit makes
-// it free of jumps.
+// u, null, limit in V; Kp in V/m; slew in V/s. A start begins at null, so that the slew limit
+// prevents a jump.
 #pragma once
 
 #include <limits>
@@ -24,9 +24,9 @@ struct ValveLimits {
 };
 
 struct Command {
-  double requested_V = 0.0;  ///< by the law, before limits
-  double limited_V = 0.0;    ///< to be written
-  bool saturated = false;    ///< a limit of range or slew was active
+  double requested_V = 0.0;  ///< before limits
+  double limited_V = 0.0;    ///< to write to the valve
+  bool saturated = false;    ///< the range or slew limit was active
 };
 
 class Controller {
@@ -34,10 +34,10 @@ class Controller {
   Controller(const ControllerConfig& config, const ValveLimits& limits,
              double sample_time_s) noexcept;
 
-  /// From null, as after a start.
+  /// Restarts the slew limit from null.
   void reset() noexcept { last_V_ = limits_.null_V; }
   [[nodiscard]] double null_V() const noexcept { return limits_.null_V; }
-  /// `periods` >= 1: since the last call, so that the slew limit counts time, not calls.
+  /// `periods` >= 1 since the last call, so that the slew limit counts time, not calls.
   Command update(double reference_m, double y_m, int periods = 1) noexcept;
 
  private:

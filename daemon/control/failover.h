@@ -1,6 +1,6 @@
-// What takes a rod sensor out of charge where the rig has several, and what brings it back.
+// Configuration of the failover between redundant rod sensors.
 //
-// TOML [failover]; without it the sensor in charge is the configured one for good.
+// TOML [failover]; without it the configured sensor always stays in charge.
 #pragma once
 
 #include <cstddef>
@@ -14,10 +14,10 @@ namespace monitor::control {
 /// The configured rod sensor and the spare ones.
 inline constexpr std::size_t kMaxRods = 5;
 
-/// The configured one's name; the others' are their ids.
+/// Id of the configured sensor.
 inline constexpr const char* kRodId = "rod";
 
-/// Why a rod sensor is out; the numbers are those of rods_t.
+/// Why a rod sensor is out; the values are those of rods_t.
 enum class RodFault : std::uint8_t { none, missing, stale, frozen, jump, outvoted };
 
 [[nodiscard]] constexpr const char* to_string(RodFault fault) noexcept {
@@ -33,12 +33,14 @@ struct FailoverConfig {
 
   void visit(config::schema::Visitor& v) {
     constexpr double kInfinite = std::numeric_limits<double>::infinity();
-    v.number({"tolerance_m", "by which sensors may differ", true}, tolerance_m, {1e-7, 100.0});
-    v.number({"confirm_s", "off the middle of three or more before it is out"}, confirm_s,
-             {0.0, 60.0});
+    v.number({"tolerance_m", "allowed difference between sensors", true}, tolerance_m,
+             {1e-7, 100.0});
+    v.number(
+        {"confirm_s", "time beyond tolerance_m from the middle of three or more before exclusion"},
+        confirm_s, {0.0, 60.0});
     v.number({"return_s",
-              "right for so long and it is in again; until then only a start or an "
-              "acknowledgement brings it back"},
+              "time with right readings before automatic readmission; a start or an "
+              "acknowledgement readmits earlier"},
              return_s, {0.0, kInfinite});
   }
 };

@@ -16,30 +16,30 @@ struct Kind {
 
 /// In the order of GuardKind.
 constexpr Kind kKinds[] = {
-    {GuardKind::e_stop, "e_stop", "the emergency stop is not released, or its line is dead",
+    {GuardKind::e_stop, "e_stop", "the emergency stop is not released, or its input is dead",
      "Find out why it was pressed; release it, reset, arm."},
     {GuardKind::missing, "missing", "position missing", "Check the rod sensor and its bus."},
     {GuardKind::bus_lost, "bus_lost", "valve not written", "Check the valve drive and its bus."},
     {GuardKind::overrun, "overrun", "too many lost periods",
-     "Check the load of the machine and the real-time privileges."},
+     "Check the machine's load and the real-time privileges."},
     {GuardKind::travel, "travel", "the rod is beyond a travel limit",
-     "Start again to come back; check reference and limits."},
+     "Start again to return within the limits; check reference and limits."},
     {GuardKind::following, "following", "the rod does not follow the reference",
      "Check supply pressure, valve and load."},
     {GuardKind::speed, "speed", "the rod moves too fast", "Check valve, reference and load."},
     {GuardKind::stale, "stale", "the position is too old", "Check the rod sensor and its bus."},
-    {GuardKind::frozen, "frozen", "the reading stands still under a command that moves the rod",
+    {GuardKind::frozen, "frozen", "the reading is frozen under a command that moves the rod",
      "Check the rod sensor, the supply and the valve's cable."},
     {GuardKind::jump, "jump", "the position jumped", "Check the rod sensor and its cable."},
     {GuardKind::saturated, "saturated", "the command has been at its limit for too long",
      "Check supply pressure, load and reference."},
-    {GuardKind::disagree, "disagree", "sensors disagree",
+    {GuardKind::disagree, "disagree", "the rod sensors disagree",
      "Find out which rod sensor is wrong before moving."},
 };
 
 const Kind& kind_of(GuardKind kind) noexcept { return kKinds[static_cast<std::size_t>(kind)]; }
 
-/// A hold needs a position that can be trusted, a ramp a valve that can be written.
+/// A hold needs a valid position, a ramp a working valve.
 std::vector<std::string_view> actions_of(GuardKind kind) {
   switch (kind) {
     case GuardKind::e_stop:
@@ -75,49 +75,52 @@ void GuardConfig::visit(config::schema::Visitor& v) {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   std::vector<std::string_view> names;
   for (const Kind& k : kKinds) names.emplace_back(k.name);
-  v.text({"id", "its name in alarms; the kind's where it is left out"}, id);
-  v.choice({"kind", "what is watched", true}, kind, names);
+  v.text({"id", "name in alarms; default: the kind"}, id);
+  v.choice({"kind", "what is monitored", true}, kind, names);
   if (id.empty()) id = kind;
   const GuardKind w = which();
-  v.choice({"action", "what leaving the limits leads to"}, action, actions_of(w));
+  v.choice({"action", "action when the limits are exceeded"}, action, actions_of(w));
   if (!built_in(w) && w != GuardKind::jump) {
     const double least_s = w == GuardKind::frozen || w == GuardKind::saturated ? 1e-3 : 0.0;
-    v.number({"time_s", "how long it must last", least_s > 0.0}, time_s, {least_s, 1e4});
+    v.number({"time_s", "minimum duration", least_s > 0.0}, time_s, {least_s, 1e4});
   }
   if (w == GuardKind::travel) {
-    v.number({"low_m", "least position"}, low_m, {-kInfinite, 100.0});
-    v.number({"high_m", "greatest position"}, high_m, {low_m, kInfinite});
-    v.number({"braking_mps2", "deceleration that is sure; counts where the rod would stop"},
+    v.number({"low_m", "lowest position"}, low_m, {-kInfinite, 100.0});
+    v.number({"high_m", "highest position"}, high_m, {low_m, kInfinite});
+    v.number({"braking_mps2", "guaranteed deceleration, used to predict the stopping position"},
              braking_mps2, {1e-3, kInfinite});
   }
   if (w == GuardKind::following || w == GuardKind::jump) {
-    v.number({"limit_m", "greatest distance", true}, limit_m, {1e-7, 100.0});
+    v.number({"limit_m", "largest distance", true}, limit_m, {1e-7, 100.0});
   }
-  if (w == GuardKind::speed) v.number({"limit_mps", "fastest", true}, limit_mps, {1e-6, 100.0});
+  if (w == GuardKind::speed)
+    v.number({"limit_mps", "highest speed", true}, limit_mps, {1e-6, 100.0});
   if (w == GuardKind::stale) v.number({"age_s", "oldest reading", true}, age_s, {1e-4, 100.0});
   if (w == GuardKind::frozen) {
-    v.number({"least_m", "motion that counts as one", true}, least_m, {1e-7, 100.0});
-    v.number({"command_V", "distance from null that must move the rod", true}, command_V,
+    v.number({"least_m", "smallest displacement that counts as motion", true}, least_m,
+             {1e-7, 100.0});
+    v.number({"command_V", "deviation from null that must move the rod", true}, command_V,
              {1e-3, 100.0});
   }
   if (w == GuardKind::disagree) {
-    v.number({"tolerance_m", "greatest difference of two sensors", true}, tolerance_m,
+    v.number({"tolerance_m", "largest difference between two sensors", true}, tolerance_m,
              {1e-7, 100.0});
   }
-  v.text({"guidance", "what a person shall do"}, guidance);
+  v.text({"guidance", "advice to the operator"}, guidance);
 }
 
 void SafetyConfig::visit(config::schema::Visitor& v) {
-  v.table({"safety", "how motion begins and ends"}, [this](config::schema::Visitor& t) {
-    t.number({"ramp_s", "from the last command to null, where a guard asks for a ramp"}, ramp_s,
+  v.table({"safety", "how motion starts and stops"}, [this](config::schema::Visitor& t) {
+    t.number({"ramp_s", "duration of a guard's ramp from the last command to null"}, ramp_s,
              {0.0, 10.0});
-    t.number({"blend_s", "from where the rod is to the reference signal"}, blend_s, {0.0, 600.0});
-    t.number({"blend_mps", "fastest reference until it has met the signal"}, blend_mps,
+    t.number({"blend_s", "duration of blending from the rod's position to the reference signal"},
+             blend_s, {0.0, 600.0});
+    t.number({"blend_mps", "speed limit of the reference until it meets the signal"}, blend_mps,
              {1e-5, 10.0});
   });
-  v.optional_table({"failover", "from one rod sensor to another"}, failover.present,
+  v.optional_table({"failover", "failover between rod sensors"}, failover.present,
                    [this](config::schema::Visitor& t) { failover.visit(t); });
-  config::schema::visit_list(v, {"guard", "what is watched, and what it leads to"}, guards);
+  config::schema::visit_list(v, {"guard", "monitored condition and action"}, guards);
 }
 
 std::vector<GuardConfig> all_guards(const SafetyConfig& config, Action overrun_action) {
@@ -132,8 +135,8 @@ std::vector<GuardConfig> all_guards(const SafetyConfig& config, Action overrun_a
     if (kind >= kBuiltIn) {
       all.push_back(guard);
     } else if (named[kind]) {
-      throw config::schema::bad_config(place + " kind", "\"" + guard.kind + "\" is there twice",
-                                       "one of that kind");
+      throw config::schema::bad_config(place + " kind", "\"" + guard.kind + "\" is listed twice",
+                                       "one guard of that kind");
     } else {
       all[kind] = guard;
       named[kind] = true;
@@ -142,8 +145,8 @@ std::vector<GuardConfig> all_guards(const SafetyConfig& config, Action overrun_a
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
       if (all[i].id == all[k].id) {
-        throw config::schema::bad_config("[[guard]] id", "\"" + all[i].id + "\" is there twice",
-                                         "an id for each");
+        throw config::schema::bad_config("[[guard]] id", "\"" + all[i].id + "\" is listed twice",
+                                         "unique ids");
       }
     }
   }

@@ -1,11 +1,11 @@
-// The guards of a rig as configuration lists them: what is watched, within which limits, and what
-// leaving them leads to. One [[guard]] each:
+// The configuration of the guards: what is monitored, within which limits, with which action. One
+// [[guard]] each:
 //
 //   kind       trips when                                              keys
-//   travel     the rod is beyond a limit, or will be after braking     low_m, high_m, braking_mps2
+//   travel     the rod is beyond a limit, or would be after braking    low_m, high_m, braking_mps2
 //   following  |r - y| > limit_m                                       limit_m
 //   speed      |dy/dt| > limit_mps                                     limit_mps
-//   stale      the reading is older than age_s; called stale, when its age is not known   age_s
+//   stale      the reading is older than age_s, or flagged stale without a known age      age_s
 //   frozen     y moves less than least_m while |u - null| > command_V  least_m, command_V
 //   jump       |dy| > limit_m in one period                            limit_m
 //   saturated  the command is at a limit                               -
@@ -16,8 +16,8 @@
 //   e_stop     an input of that role is anything but 1, or cannot be read for longer than [loop]
 //              allows of missing positions (null is written meanwhile)  -
 //
-// `time_s`: how long that must last (travel to disagree, not jump). The last four are there also
-// without an entry, with the action latch (overrun: `[loop] overrun_action`).
+// `time_s`: minimum duration (travel to disagree, not jump). The last four exist without an entry
+// too, with the action latch (overrun: `[loop] overrun_action`).
 #pragma once
 
 #include <cstddef>
@@ -47,7 +47,7 @@ enum class GuardKind : std::uint8_t {
   disagree
 };
 
-/// Guards with an entry or without: e_stop, missing, bus_lost, overrun.
+/// Built-in guards, which need no entry: e_stop, missing, bus_lost, overrun.
 inline constexpr std::size_t kBuiltIn = 4;
 inline constexpr std::size_t kMaxGuards = 32;
 
@@ -67,30 +67,30 @@ struct GuardConfig {
   double least_m = std::numeric_limits<double>::quiet_NaN();
   double command_V = std::numeric_limits<double>::quiet_NaN();
   double tolerance_m = std::numeric_limits<double>::quiet_NaN();
-  std::string guidance;  ///< what a person shall do; empty: the kind's own words
+  std::string guidance;  ///< advice to the operator; empty: the kind's default
 
-  /// Lists the keys of the chosen kind only.
+  /// Visits only the keys of the chosen kind.
   void visit(config::schema::Visitor& v);
   [[nodiscard]] GuardKind which() const noexcept;
 };
 
 /// TOML [safety], [failover] and [[guard]].
 struct SafetyConfig {
-  double ramp_s = 0.2;      ///< of the action ramp
-  double blend_s = 1.0;     ///< from where the rod is to the reference signal
-  double blend_mps = 0.05;  ///< fastest reference until it has met the signal
+  double ramp_s = 0.2;      ///< duration of the action ramp
+  double blend_s = 1.0;     ///< from the rod's position to the reference signal
+  double blend_mps = 0.05;  ///< speed limit of the reference until it meets the signal
   FailoverConfig failover;
   std::vector<GuardConfig> guards;
 
   void visit(config::schema::Visitor& v);
 };
 
-/// All guards: the built-in ones first, in the order of GuardKind, then the others as listed.
-/// Throws config::schema::Error for two of one id, for two of a built-in kind and for too many.
+/// All guards: the built-in ones in the order of GuardKind, then the others as listed. Throws
+/// config::schema::Error for duplicate ids, duplicates of a built-in kind and too many guards.
 [[nodiscard]] std::vector<GuardConfig> all_guards(const SafetyConfig& config,
                                                   Action overrun_action);
 
-/// What is wrong, in words, and what a person shall do.
+/// Default alarm text of a guard: the cause and advice to the operator.
 [[nodiscard]] const char* reason_of(GuardKind kind) noexcept;
 [[nodiscard]] const char* guidance_of(GuardKind kind) noexcept;
 

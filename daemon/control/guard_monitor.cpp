@@ -8,9 +8,9 @@
 namespace monitor::control {
 namespace {
 
-/// Times on the grid are exact to far better than this.
+/// Larger than any rounding error of times on the grid.
 constexpr double kRounding_s = 1e-9;
-/// A rod that comes back into its travel may first go this much further out (noise, a start's
+/// A rod that returns into its travel limits may first move this much further out (noise, starting
 /// jerk).
 constexpr double kReturnMargin_m = 1e-3;
 

@@ -1,5 +1,5 @@
-// Watches one tick's inputs against all guards and says what they lead to. Pure: no device, no
-// thread; after construction nothing allocates.
+// Evaluates all guards once per tick and returns the action they demand. Pure: no device, no
+// thread; no allocation after construction.
 #pragma once
 
 #include <cstdint>
@@ -10,23 +10,23 @@
 
 namespace monitor::control {
 
-/// What is known at a tick, before its command is written. NaN: not known.
+/// Inputs of one tick, before its command is written. NaN: unknown.
 struct GuardInputs {
   double t_s = 0.0;  ///< on the loop's grid
   double y_m = std::numeric_limits<double>::quiet_NaN();
   double age_s = 0.0;  ///< of y
   bool called_stale = false;
-  double reference_m = std::numeric_limits<double>::quiet_NaN();  ///< where y shall be, in RUN
-  double command_V = 0.0;           ///< u - null of the period that ends now
-  bool saturated = false;           ///< that command was at a limit
+  double reference_m = std::numeric_limits<double>::quiet_NaN();  ///< in RUN
+  double command_V = 0.0;           ///< u - null of the previous period
+  bool saturated = false;           ///< the previous command was at a limit
   double spare_difference_m = 0.0;  ///< of the rod sensors, PositionVoter::difference_m()
-  bool other_sensor = false;        ///< y is another sensor's than in the tick before
+  bool other_sensor = false;        ///< the voter switched sensors since the previous tick
 };
 
-/// The reading before this one.
+/// The previous good reading.
 class LastReading {
  public:
-  /// NaN when there is none to compare with.
+  /// NaN without a previous reading.
   [[nodiscard]] double dy_m(const GuardInputs& inputs) const noexcept {
     return dt_s(inputs) > 0.0 ? inputs.y_m - y_m_ : std::numeric_limits<double>::quiet_NaN();
   }
@@ -43,37 +43,38 @@ class LastReading {
   double t_s_ = 0.0;
 };
 
-/// Whether that kind watches a reading, and not the motion.
+/// Whether that kind monitors the sensor rather than the motion.
 [[nodiscard]] constexpr bool watches_a_sensor(GuardKind kind) noexcept {
   return kind == GuardKind::stale || kind == GuardKind::frozen || kind == GuardKind::jump;
 }
 
-/// Which guard asks for what; guard -1: none does.
+/// The demanded action and the index of the guard, -1 when there is none.
 struct GuardTrip {
   Action action = Action::none;
   int guard = -1;
 };
 
-/// One guard: its configuration and what it remembers.
+/// One guard: its configuration and state.
 class Guard {
  public:
   explicit Guard(const GuardConfig& config);
 
-  /// Measured guards. `dy_m` since the last good reading, `dt_s` (> 0) ago; NaN when there is none.
+  /// Evaluates a measured guard. `dy_m`: since the last good reading, `dt_s` (> 0) ago; NaN without
+  /// one.
   void watch(const GuardInputs& inputs, double dy_m, double dt_s, double period_s) noexcept;
-  /// Those that others detect.
+  /// Sets a guard that is detected elsewhere.
   void set(bool active, double value) noexcept;
-  /// A motion begins at y: what lasted starts anew; a rod outside its travel may come back.
+  /// A motion starts at y: timers restart; a rod outside its travel limits may return.
   void start(double y_m) noexcept;
 
   [[nodiscard]] GuardKind kind() const noexcept { return kind_; }
   [[nodiscard]] Action action() const noexcept { return action_; }
   [[nodiscard]] bool active() const noexcept { return active_; }
-  /// Became active in the last call.
+  /// Whether the guard became active in the last call.
   [[nodiscard]] bool rose() const noexcept { return rose_; }
-  /// What was compared with the limit last.
+  /// The value last compared with the limit.
   [[nodiscard]] double value() const noexcept { return value_; }
-  /// How long what it watches has lasted, frozen or not yet.
+  /// How long the condition has lasted so far.
   [[nodiscard]] double lasting_s(double t_s) const noexcept {
     return since_s_ == since_s_ ? t_s - since_s_ : 0.0;
   }
@@ -89,10 +90,10 @@ class Guard {
   GuardKind kind_;
   Action action_;
   double time_s_, low_, high_, braking_mps2_, least_m_, command_V_;
-  double low_now_m_, high_now_m_;  ///< of travel, wider while the rod comes back
+  double low_now_m_, high_now_m_;  ///< travel limits, wider while the rod returns
   double since_s_ = std::numeric_limits<double>::quiet_NaN();
-  double anchor_m_ = 0.0;  ///< of frozen: where y stood at since_s_
-  double sign_ = 0.0;      ///< of frozen: of the command since then
+  double anchor_m_ = 0.0;  ///< frozen: y at since_s_
+  double sign_ = 0.0;      ///< frozen: sign of the command since then
   double value_ = std::numeric_limits<double>::quiet_NaN();
   bool active_ = false;
   bool rose_ = false;
@@ -105,16 +106,16 @@ class GuardMonitor {
   /// `guards` from all_guards().
   GuardMonitor(const std::vector<GuardConfig>& guards, double sample_time_s);
 
-  /// A built-in guard, as another detected it. Its action if it is active.
+  /// Sets a built-in guard and returns its action if it is active.
   GuardTrip set(GuardKind built_in, bool active, double value) noexcept;
-  /// All other guards. The strongest action among those that have just become active.
-  /// `sensor`: watches the reading already, so that its guards' states are taken over; null: it is
-  /// watched here.
+  /// Evaluates all other guards and returns the strongest action among those that just became
+  /// active. `sensor`: has evaluated the sensor guards already, and its states are copied; null:
+  /// they are evaluated here.
   GuardTrip watch(const GuardInputs& inputs, const SensorWatch* sensor = nullptr) noexcept;
-  /// A motion begins at y_m.
+  /// A motion starts at y_m.
   void start(double y_m) noexcept;
-  /// An active guard that forbids to arm and to start (e_stop, missing, bus_lost, stale, disagree,
-  /// if they do more than indicate), or -1.
+  /// Index of an active guard that forbids arming and starting (e_stop, missing, bus_lost, stale,
+  /// disagree, unless they only indicate), or -1.
   [[nodiscard]] int obstacle() const noexcept;
 
   [[nodiscard]] const std::vector<Guard>& guards() const noexcept { return guards_; }

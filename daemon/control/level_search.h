@@ -1,5 +1,5 @@
-// Looks for a command that moves the rod at a speed within a band, each try one pulse: growing
-// steps until the band lies between two tries, then halves. Pure; nothing allocates.
+// Searches a command that moves the rod at a speed within a band, one pulse per try: growing steps
+// until two tries bracket the band, then bisection. Pure; no allocation.
 #pragma once
 
 #include <cmath>
@@ -12,14 +12,14 @@ class LevelSearch {
   enum class State : unsigned char { searching, found, at_limit, given_up };
 
   LevelSearch() = default;
-  /// Speeds in m/s, levels in V; the first try is `start_V`, none is beyond +-limit_V.
+  /// The first try is `start_V`; no try exceeds +-limit_V.
   LevelSearch(double low_mps, double high_mps, double start_V, double limit_V) noexcept
       : low_mps_(low_mps),
         high_mps_(high_mps),
         level_V_(start_V),
         step_V_(start_V),
         limit_V_(limit_V) {}
-  /// Between a level known to be too slow and one known to be too fast.
+  /// Starts between a level known to be too slow and one known to be too fast.
   static LevelSearch between(double low_mps, double high_mps, double slow_V,
                              double fast_V) noexcept {
     LevelSearch search(low_mps, high_mps, 0.5 * (slow_V + fast_V),
@@ -30,12 +30,12 @@ class LevelSearch {
   }
 
   [[nodiscard]] State state() const noexcept { return state_; }
-  /// To be tried next; the one found at the end.
+  /// The level to try next; at the end the level found.
   [[nodiscard]] double level_V() const noexcept { return level_V_; }
-  /// The speed that the found level gave.
+  /// The speed at the level found.
   [[nodiscard]] double speed_mps() const noexcept { return speed_mps_; }
 
-  /// What level_V() gave; infinite: more than could be measured.
+  /// Reports the speed at level_V(); infinite: too fast to measure.
   void update(double speed_mps) noexcept {
     speed_mps_ = speed_mps;
     if (speed_mps >= low_mps_ && speed_mps <= high_mps_) {

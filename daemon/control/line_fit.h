@@ -1,9 +1,9 @@
-// A straight line through readings as they come, by least squares:
+// Incremental least-squares fit of a straight line:
 //
 //   y = y_mean + slope (t - t_mean)
 //
-// y in m, t in s, slope in m/s. Readings are counted from the first, so that nothing is lost to
-// rounding far from zero. Fixed size; nothing allocates.
+// y in m, t in s, slope in m/s. Readings are relative to the first one to avoid rounding errors far
+// from zero. Fixed size; no allocation.
 #pragma once
 
 #include <cmath>
@@ -32,7 +32,7 @@ class LineFit {
   }
 
   [[nodiscard]] int count() const noexcept { return count_; }
-  /// 0 while there is no second moment.
+  /// 0 while all times are equal.
   [[nodiscard]] double slope_mps() const noexcept { return tt_ > 0.0 ? ty_ / tt_ : 0.0; }
   [[nodiscard]] double at(double t_s) const noexcept {
     return y0_m_ + mean_y_ + slope_mps() * (t_s - t0_s_ - mean_t_);
@@ -43,7 +43,7 @@ class LineFit {
     if (count_ < 3) return 0.0;
     return std::sqrt(std::fmax(0.0, yy_ - slope_mps() * ty_) / (count_ - 2));
   }
-  /// When this line meets another, NaN when they are parallel.
+  /// Time at which this line meets another; NaN for parallel lines.
   [[nodiscard]] double meets(const LineFit& other) const noexcept {
     return t0_s_ + (other.at(t0_s_) - at(t0_s_)) / (slope_mps() - other.slope_mps());
   }

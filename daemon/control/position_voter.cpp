@@ -6,7 +6,7 @@
 namespace monitor::control {
 namespace {
 
-/// A device on a bus may take its time for the first reading.
+/// A bus device may need this long for its first reading.
 constexpr double kFirstReading_s = 2.0;
 
 }  // namespace
@@ -66,7 +66,7 @@ void PositionVoter::compare() noexcept {
   middle_m_ = 0.5 * (in[(voters_ - 1) / 2] + in[voters_ / 2]);
   if (voters_ == 2) difference_m_ = in[1] - in[0];
   if (voters_ < 3) return;
-  // One of the two ends is the farthest; what is left has the second-farthest at one of its ends.
+  // One end is the farthest; the second-farthest is an end of the remaining ones.
   const bool top = in[voters_ - 1] - middle_m_ > middle_m_ - in[0];
   const double low_m = middle_m_ - in[top ? 0 : 1];
   const double high_m = in[voters_ - (top ? 2 : 1)] - middle_m_;
@@ -101,7 +101,7 @@ void PositionVoter::judge(std::size_t i, double t_s, bool controlling) noexcept 
   rod.against = rod.right = 0;
 }
 
-void PositionVoter::bring_back(std::size_t i) noexcept {
+void PositionVoter::readmit_if_right(std::size_t i) noexcept {
   Rod& rod = rods_[i];
   if (rod.fault == RodFault::none) return;
   const bool agrees = std::isnan(middle_m_) || std::abs(rod.y_m - middle_m_) <= config_.tolerance_m;
@@ -111,7 +111,7 @@ void PositionVoter::bring_back(std::size_t i) noexcept {
   rod.fault = RodFault::none;
 }
 
-void PositionVoter::put_in_charge(std::size_t rod, bool controlling) noexcept {
+void PositionVoter::transfer_to(std::size_t rod, bool controlling) noexcept {
   const double was_m = std::isfinite(rods_[rod].before_m) ? rods_[rod].before_m : rods_[rod].y_m;
   if (controlling && std::isfinite(given_m_)) bump_m_ = given_m_ - was_m;
   in_charge_ = rod;
@@ -130,12 +130,12 @@ void PositionVoter::update(std::span<const RodReading> rods, double t_s, double 
   bump_m_ -= std::clamp(bump_m_, -step_m, step_m);
 
   for (std::size_t i = 0; i < count_; ++i) judge(i, t_s, controlling);
-  for (std::size_t i = 0; i < count_; ++i) bring_back(i);
+  for (std::size_t i = 0; i < count_; ++i) readmit_if_right(i);
   readmit_ = false;
   for (std::size_t i = 0; i < count_; ++i) {
     const bool better = i < in_charge_ || rods_[in_charge_].fault != RodFault::none;
     if (i == in_charge_ || !better || other(kMaxRods, false, t_s) != i) continue;
-    put_in_charge(i, controlling);
+    transfer_to(i, controlling);
     break;
   }
   const double y_m = rods_[in_charge_].y_m;

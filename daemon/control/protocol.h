@@ -1,14 +1,16 @@
-// The words of the control socket, for both its ends: one JSON object a line, one answer to each.
+// The vocabulary of the control socket, for both ends: one JSON object per line, one answer to
+// each.
 //
 //   {"command": "status"}                                anyone who can connect
-//   {"command": "arm"}, disarm, start, stop, reset, hold  who may act
+//   {"command": "arm"}, disarm, start, stop, reset, hold  commanding users
 //   {"command": "reference", "centre_m": r, "amplitude_m": a, "frequency_Hz": f}
 //   {"command": "alarms"}                                anyone who can connect
-//   {"command": "ack", "alarm": "SOURCE.NAME"}           who may act; without "alarm": all
+//   {"command": "ack", "alarm": "SOURCE.NAME"}           commanding users; without "alarm": all
 //   {"command": "shelve", "alarm": "SOURCE.NAME", "time_s": t}
 //   {"command": "unshelve", "alarm": "SOURCE.NAME"}
-//   {"command": "reload"}                                who may act: the configuration once more
-//   {"command": "note", "text": "..."}                   who may act: a line for the audit file
+//   {"command": "reload"}                                commanding users: reload the configuration
+//   {"command": "note", "text": "..."}                   commanding users: a line for the audit
+//   file
 //
 // Answers: {"ok": true, "state": "ARMED", ...} or {"ok": false, "state": "...", "reason": "..."}.
 #pragma once

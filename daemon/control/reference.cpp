@@ -16,7 +16,7 @@ void ReferenceConfig::visit(config::schema::Visitor& v) {
     return;
   }
   v.number({"centre_m", "middle of the motion"}, centre_m, {-100.0, 100.0});
-  v.number({"amplitude_m", "greatest distance from the middle"}, amplitude_m, {0.0, 100.0});
+  v.number({"amplitude_m", "largest distance from the middle"}, amplitude_m, {0.0, 100.0});
   if (kind == "sine" || kind == "triangle" || kind == "chirp") {
     v.number({"frequency_Hz", "frequency; of a chirp, the first"}, frequency_Hz, {0.0, 1000.0});
   }
@@ -29,7 +29,8 @@ void ReferenceConfig::visit(config::schema::Visitor& v) {
   }
   if (kind == "steps" || kind == "prbs") {
     v.number({"hold_s", "duration of one level"}, hold_s, {1e-3, 1e6});
-    v.integer({"seed", "which sequence"}, seed, {0, std::numeric_limits<std::int64_t>::max()});
+    v.integer({"seed", "seed of the sequence"}, seed,
+              {0, std::numeric_limits<std::int64_t>::max()});
   }
   if (kind == "steps") {
     v.number({"rise_s", "duration of the change of level, at most hold_s"}, rise_s, {0.0, hold_s});

@@ -1,14 +1,13 @@
-// Reference signals: where the rod shall be, as a function of time.
+// Reference signals: the desired rod position as a function of time.
 //
 //   sine       r = centre + amplitude sin(2 pi f t)
-//   triangle   the same frequency and amplitude at constant speed to and fro, upwards from the
-//   centre multisine  sines of the listed frequencies with Schroeder's phases, scaled to peak at
-//   amplitude steps      random levels within +-amplitude, each held for hold_s, joined over rise_s
-//   by a
+//   triangle   constant speed between centre +- amplitude at frequency f, starting upwards
+//   multisine  sines of the listed frequencies with Schroeder's phases; peak = amplitude
+//   steps      random levels within +-amplitude, each held for hold_s, joined over rise_s by a
 //              quintic with zero speed and acceleration at both ends
 //   chirp      frequency rising linearly from f to f_end over sweep_s, then again; phase continuous
-//   prbs       +-amplitude by a maximum-length shift register, one bit each hold_s
-//   file       rows of t_s,reference_m, straight lines between them, held before and after
+//   prbs       +-amplitude by a maximum-length shift register, one bit per hold_s
+//   file       rows of t_s,reference_m, linear interpolation, held before and after
 //
 // t in s since the start of the motion, r in m. Schroeder, IEEE Trans. Inf. Theory 16 (1970) 85.
 #pragma once
@@ -37,19 +36,18 @@ struct ReferenceConfig {
   std::int64_t seed = 1;
   std::string file;
 
-  /// Lists the keys of the chosen kind only.
+  /// Visits only the keys of the chosen kind.
   void visit(config::schema::Visitor& v);
 };
 
 class Reference {
  public:
   virtual ~Reference() = default;
-  /// Position in m at t_s >= 0; no state, safe in the loop.
+  /// Position in m at t_s >= 0. Stateless and real-time safe.
   [[nodiscard]] virtual double at(double t_s) const noexcept = 0;
 };
 
-/// Relative file names start from `folder`. Throws ConfigError for a bad file or bad
-/// frequencies.
+/// Relative file names refer to `folder`. Throws ConfigError for a bad file or bad frequencies.
 [[nodiscard]] std::unique_ptr<Reference> make_reference(const ReferenceConfig& config,
                                                         const std::filesystem::path& folder = {});
 

@@ -5,7 +5,7 @@
 namespace monitor::control {
 namespace {
 
-/// Times on the grid are exact to far better than this.
+/// Larger than any rounding error of times on the grid.
 constexpr double kRounding_s = 1e-9;
 
 }  // namespace

@@ -11,8 +11,7 @@ namespace {
 /// nanosecond is far above the rounding of t_s and far below any period.
 constexpr double kRounding_s = 1e-10;
 
-/// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): a number's hash, so that any level can be asked
-/// for.
+/// SplitMix64 (Steele, Lea, Flood, OOPSLA 2014): a stateless hash, so that any level is accessible.
 std::uint64_t mix(std::uint64_t x) noexcept {
   x += 0x9e3779b97f4a7c15U;
   x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9U;
@@ -57,7 +56,7 @@ Prbs::Prbs(const ReferenceConfig& config)
   const std::uint32_t mask = (1U << n) - 1U;
   const std::uint32_t taps = kTaps.at(n);
   std::uint32_t state = static_cast<std::uint32_t>(config.seed) & mask;
-  if (state == 0) state = mask;  // all zeros would stay so
+  if (state == 0) state = mask;  // a register of zeros would never change
   bits_.reserve(mask);
   for (std::uint32_t i = 0; i < mask; ++i) {
     bits_.push_back((state >> (n - 1U)) != 0U);

@@ -1,4 +1,4 @@
-// Why an order was not carried out, and the loop's answer to one.
+// Why the loop rejected a command, and the answer that carries the reason.
 #pragma once
 
 #include <cstdint>
@@ -8,26 +8,26 @@
 namespace monitor::control {
 
 enum class RejectReason : std::uint8_t {
-  none,         ///< carried out
-  state,        ///< not allowed in the state of the moment
-  monitor,      ///< nothing is driven
-  expired,      ///< came too late to the loop
-  closing,      ///< the daemon ends
-  position,     ///< no position to begin from
-  enable,       ///< the enable input is not 1
+  none,         ///< executed
+  state,        ///< not allowed in the current state
+  monitor,      ///< no valve is driven
+  expired,      ///< reached the loop too late
+  closing,      ///< the daemon is shutting down
+  position,     ///< no valid position to start from
+  enable,       ///< the enable input is off
   guard,        ///< an active guard forbids it
-  calibration,  ///< devices that move something, and no calibration
+  calibration,  ///< real devices without a valid calibration
 };
 
-/// The loop's answer to the order with that number.
+/// The loop's answer to the command with that number.
 struct Answer {
   std::uint32_t number = 0;
   RejectReason reject_reason = RejectReason::none;
   State state = State::disarmed;
-  std::uint8_t guard = 0;  ///< of RejectReason::guard
+  std::uint8_t guard = 0;  ///< index, for RejectReason::guard
 };
 
-/// As one word, for an atomic.
+/// Packs an answer into one word, for an atomic.
 [[nodiscard]] constexpr std::uint64_t pack(const Answer& a) noexcept {
   return (std::uint64_t{a.number} << 32U) | (std::uint64_t{a.guard} << 16U) |
          (static_cast<std::uint64_t>(a.reject_reason) << 8U) | static_cast<std::uint64_t>(a.state);

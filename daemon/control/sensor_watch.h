@@ -1,5 +1,5 @@
-// The guards that watch a reading rather than the motion (stale, frozen, jump), for one of several
-// rod sensors: each sensor has its own, whether it is in charge or not.
+// The sensor guards (stale, frozen, jump) of one rod sensor; each redundant sensor has its own,
+// whether in charge or not.
 #pragma once
 
 #include <vector>
@@ -12,21 +12,21 @@ namespace monitor::control {
 class SensorWatch {
  public:
   struct Watched {
-    std::size_t number;  ///< in `guards`
+    std::size_t number;  ///< index in `guards`
     Guard guard;
   };
 
   /// `guards` from all_guards().
   explicit SensorWatch(const std::vector<GuardConfig>& guards);
 
-  /// GuardInputs of a tick with this sensor's y and age.
+  /// `inputs`: with this sensor's y and age.
   void watch(const GuardInputs& inputs, double period_s) noexcept;
   void start(double y_m) noexcept;
 
-  /// What an active guard says is wrong.
+  /// The fault indicated by an active guard.
   [[nodiscard]] RodFault fault() const noexcept;
-  /// It has stood still under a command for at least half of the time that makes it frozen: it is
-  /// no witness of motion.
+  /// Whether the reading has stood still under a command for at least half of the time that makes
+  /// it frozen, so that it cannot confirm motion.
   [[nodiscard]] bool still(double t_s) const noexcept;
   [[nodiscard]] const std::vector<Watched>& guards() const noexcept { return guards_; }
 

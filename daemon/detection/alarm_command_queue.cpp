@@ -12,13 +12,13 @@ using Changed = std::function<void(const Alarm&)>;
 
 std::string id_of(const Alarm& alarm) { return alarm.source + "." + alarm.name; }
 
-void act_on_one(const AlarmCommand& command, AlarmBook& book, const Changed& changed,
-                AlarmAnswer& answer) {
+void execute_one(const AlarmCommand& command, AlarmBook& book, const Changed& changed,
+                 AlarmAnswer& answer) {
   const std::size_t number = book.find(command.alarm);
   if (number == AlarmBook::kNone) {
     answer.reject_reason =
-        "there is no alarm \"" + command.alarm +
-        "\", or more than one; allowed: SOURCE.NAME as `spoolwatch alarms` lists it";
+        "no alarm \"" + command.alarm +
+        "\", or the name is ambiguous; allowed: SOURCE.NAME as listed by `spoolwatch alarms`";
     return;
   }
   const AlarmActionResult outcome =
@@ -61,7 +61,7 @@ void AlarmCommandServer::serve(AlarmBook& book, const Changed& changed) {
         acknowledge_all(command, book, changed, *answer);
         break;
       default:
-        act_on_one(command, book, changed, *answer);
+        execute_one(command, book, changed, *answer);
     }
     answers_->push(std::move(answer));
   }

@@ -1,6 +1,5 @@
-// Where people's acts on alarms reach the book: commands come from the main thread through a
-// bounded queue, the detector carries them out between two samples, and an answer goes back the
-// same way.
+// Operator commands on alarms: the main thread queues them, the detector executes them between two
+// samples and queues the answer. Both queues are bounded.
 #pragma once
 
 #include <boost/lockfree/spsc_queue.hpp>
@@ -19,33 +18,33 @@ struct AlarmCommand {
   Kind kind = Kind::list;
   std::string alarm;  ///< SOURCE.NAME, or the name alone when it is unique
   std::string who;
-  double time_s = 0.0;  ///< of kind shelve
+  double time_s = 0.0;  ///< kind shelve: duration
   std::uint32_t number = 0;
 };
 
 struct AlarmAnswer {
   struct Listed {
     estimator::fdi::Alarm alarm;
-    double shelved_for_s = 0.0;  ///< still
+    double shelved_for_s = 0.0;  ///< remaining
   };
-  std::uint32_t number = 0;       ///< of the command
-  std::string reject_reason;      ///< empty: done
+  std::uint32_t number = 0;       ///< that of the command
+  std::string reject_reason;      ///< empty: executed
   std::vector<std::string> done;  ///< SOURCE.NAME of each alarm that changed
-  std::vector<Listed> alarms;     ///< of kind list: all of them
+  std::vector<Listed> alarms;     ///< kind list: all alarms
 };
 
 using AlarmCommandQueue = boost::lockfree::spsc_queue<AlarmCommand, boost::lockfree::capacity<16>>;
 using AlarmAnswerQueue =
     boost::lockfree::spsc_queue<std::shared_ptr<const AlarmAnswer>, boost::lockfree::capacity<16>>;
 
-/// The detector's end. Nothing here waits.
+/// The detector's end of the queues. Never blocks.
 class AlarmCommandServer {
  public:
-  /// `commands` and `answers` may be null: then there are none.
+  /// `commands` and `answers` may both be null.
   AlarmCommandServer(AlarmCommandQueue* commands, AlarmAnswerQueue* answers) noexcept
       : commands_(commands), answers_(answers) {}
 
-  /// Carries out what is queued; `changed` for each alarm whose state changed.
+  /// Executes all queued commands; calls `changed` for each alarm whose state changed.
   void serve(estimator::fdi::AlarmBook& book,
              const std::function<void(const estimator::fdi::Alarm&)>& changed);
 

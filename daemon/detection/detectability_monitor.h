@@ -1,7 +1,7 @@
-// What the fault detection could see now: of each source that finds values smallest_NAME, the
-// smallest change of NAME that the present motion would show, and, where it tells too little, why.
+// Detectability: for each source with outputs smallest_NAME, the smallest change of NAME that the
+// present motion would reveal, and why the motion is insufficient where it is.
 //
-// The detector notes, the main thread reads: a lock for as long as a few numbers are copied.
+// Written by the detector, read by the main thread; a mutex is held while a few numbers are copied.
 #pragma once
 
 #include <mutex>
@@ -14,9 +14,9 @@ namespace monitor::detection {
 
 class DetectabilityMonitor {
  public:
-  /// What it finds; nothing where it has no such value.
+  /// Stores the event's smallest_NAME values; ignores events without any.
   void update(const estimator::fdi::EstimateEvent& event);
-  /// Its sources may be gone.
+  /// Forgets all sources, after a change of the configuration.
   void clear();
   [[nodiscard]] std::vector<io::Detectable> read() const;
 

@@ -1,6 +1,6 @@
-// New rules for the fault detection on their way to the detector and back: made and checked on the
-// main thread, handed over through a bounded queue, taken between two samples, and handed back with
-// what became of them and with the old rules, which the main thread then lets go.
+// An update of the fault detection's configuration: built and checked on the main thread, passed to
+// the detector through a bounded queue, applied between two samples, and returned with its effect
+// and the old pipeline, which the main thread then destroys.
 #pragma once
 
 #include <boost/lockfree/spsc_queue.hpp>
@@ -15,17 +15,17 @@
 namespace monitor::detection {
 
 struct DetectionUpdate {
-  std::unique_ptr<estimator::fdi::Pipeline> pipeline;  ///< the new one; handed back: the old one
+  std::unique_ptr<estimator::fdi::Pipeline> pipeline;  ///< new pipeline; on return the old one
   std::uint64_t pipeline_hash = 0;                     ///< schema::hash_of(whole_text)
-  std::string config_hash;                             ///< of the whole configuration
-  std::vector<std::string> estimators;                 ///< ids of all sources, in their order
+  std::string config_hash;                             ///< hash of the whole configuration
+  std::vector<std::string> estimators;                 ///< ids of all sources in order
   std::vector<io::EvidenceFile> evidence_files;
 
-  // What became of it.
-  std::int64_t tick = 0;           ///< of the last sample under the old rules
-  std::vector<std::string> warm;   ///< estimators that go on with their windows
-  std::vector<std::string> cold;   ///< estimators that warm up
-  std::vector<std::string> ended;  ///< alarms that stood and are no more
+  // Filled in by the detector.
+  std::int64_t tick = 0;           ///< last sample processed by the old pipeline
+  std::vector<std::string> warm;   ///< estimators that continue with their windows
+  std::vector<std::string> cold;   ///< estimators that restart
+  std::vector<std::string> ended;  ///< standing alarms that no longer exist
 };
 
 using DetectionUpdateQueue =

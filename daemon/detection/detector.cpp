@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
-/// Of all rod sensors, the configured one first.
+/// Ids of all rod sensors, the configured one first.
 std::vector<std::string> rods_of(const Detector::Identity& identity) {
   std::vector<std::string> rods{control::kRodId};
   rods.insert(rods.end(), identity.spare_rods.begin(), identity.spare_rods.end());
@@ -89,7 +89,7 @@ void Detector::process(const Sample& sample) {
   parts_.publisher.sample(sample);
   if (sample.state != state_) {
     state_ = sample.state;
-    watch_state();
+    update_latched_alarm();
   }
   parts_.pipeline.process(sample, *this);
   parts_.stats.detected_samples.add();
@@ -142,7 +142,7 @@ void Detector::apply_update(DetectionUpdate& change) {
     ended.acknowledged = true;
     ended.direction = 0;
     ended.tick = tick_;
-    ended.reason = "it is no longer in the configuration";
+    ended.reason = "removed from the configuration";
     parts_.publisher.alarm(ended, false, stamp());
     change.ended.push_back(id);
   }
@@ -150,7 +150,7 @@ void Detector::apply_update(DetectionUpdate& change) {
   if (parts_.detectability != nullptr) parts_.detectability->clear();
   parts_.pipeline_hash = change.pipeline_hash;
   health_.config_hash = change.config_hash;
-  // An alarm that stood before has its evidence.
+  // Alarms that stood before the update already have their evidence.
   times_.clear();
   for (const Alarm& alarm : parts_.pipeline.alarms().alarms()) times_.push_back(alarm.times);
   if (parts_.evidence != nullptr) parts_.evidence->reconfigure(std::move(change.evidence_files));
@@ -164,7 +164,7 @@ void Detector::condition(const char* source, const char* name, Severity severity
   if (alarm != nullptr) publish(*alarm, false);
 }
 
-void Detector::watch_state() {
+void Detector::update_latched_alarm() {
   const bool latched = state_ == static_cast<std::uint8_t>(control::State::latched);
   condition("loop", "latched", Severity::major, latched, latched ? why_latched() : "");
 }
@@ -195,7 +195,7 @@ void Detector::once_a_second() {
   condition("loop", "lost_periods", Severity::minor, overruns > overruns_before_,
             "periods were lost in the last second");
   condition("loop", "dropping", Severity::invalid, dropped > dropped_before_,
-            "the detector does not keep up: samples were dropped in the last second");
+            "the detector cannot keep up: samples were dropped in the last second");
   overruns_before_ = overruns;
   dropped_before_ = dropped;
   system_alarms_.report(
@@ -203,23 +203,23 @@ void Detector::once_a_second() {
       parts_.recorder != nullptr ? parts_.recorder->status() : io::RecorderStatus{}, tick_,
       parts_.pipeline.alarms(), changed_,
       parts_.evidence != nullptr ? parts_.evidence->status() : io::EvidenceStatus{});
-  watch_alarm_files();
+  update_alarm_file_alarms();
   parts_.pipeline.alarms().for_each_active([this](const Alarm& alarm) { publish(alarm, true); });
   health();
 }
 
-void Detector::watch_alarm_files() {
+void Detector::update_alarm_file_alarms() {
   if (parts_.store != nullptr) {
     const int error = parts_.store->error();
     condition("alarms", "not_saved", Severity::minor, error != 0,
-              error != 0
-                  ? std::string("alarms would not survive a restart: ") + std::strerror(error)
-                  : "");
+              error != 0 ? std::string("alarm states cannot be saved for a restart: ") +
+                               std::strerror(error)
+                         : "");
   }
   if (parts_.audit == nullptr) return;
   const std::int64_t lost = parts_.audit->lost();
   condition("alarms", "audit_lost", Severity::minor, lost > audit_lost_before_,
-            "who did what could not be written down");
+            "operator commands could not be written to the audit file");
   audit_lost_before_ = lost;
 }
 

@@ -1,6 +1,5 @@
-// What happens to samples off the loop: publish, estimate, raise alarms, and once a second report
-// on the daemon itself. One thread calls poll() again and again; in virtual time the driver does so
-// after every tick.
+// The consumer of the loop's samples: publishes them, runs the estimators, raises alarms and
+// reports on the daemon once a second. Called from one thread; in virtual time after every tick.
 #pragma once
 
 #include <functional>
@@ -29,7 +28,7 @@ namespace monitor::detection {
 
 class Detector final : public rt::SampleConsumer, private estimator::fdi::Events {
  public:
-  /// What it works with; all of it outlives the detector. `recorder` may be null.
+  /// Collaborators; must outlive the detector. Pointers may be null.
   struct Parts {
     rt::Clock& clock;
     rt::SampleQueue& samples;
@@ -37,52 +36,52 @@ class Detector final : public rt::SampleConsumer, private estimator::fdi::Events
     estimator::fdi::Pipeline& pipeline;
     io::Publisher& publisher;
     const io::Recorder* recorder;
-    AlarmCommandQueue* alarm_commands = nullptr;  ///< of people, with `alarm_answers`
+    AlarmCommandQueue* alarm_commands = nullptr;  ///< operator commands; with `alarm_answers`
     AlarmAnswerQueue* alarm_answers = nullptr;
     io::AlarmStore* store = nullptr;
     const io::Audit* audit = nullptr;
     io::Evidence* evidence = nullptr;
     std::uint64_t pipeline_hash = 0;          ///< schema::hash_of(whole_text), for evidence
-    DetectionUpdateQueue* updates = nullptr;  ///< to be taken, with `applied_updates`
+    DetectionUpdateQueue* updates = nullptr;  ///< with `applied_updates`
     DetectionUpdateQueue* applied_updates = nullptr;
     DetectabilityMonitor* detectability = nullptr;
   };
-  /// Constant fields of health_t.
+  /// Constant facts, mostly fields of health_t.
   struct Identity {
     std::string rig_id;
     std::string config_hash;
     std::string privileges;
     std::string rod;
-    std::string valve;                            ///< "" when none is driven
-    std::vector<std::string> spare_rods, inputs;  ///< their ids
+    std::string valve;                            ///< empty without a valve
+    std::vector<std::string> spare_rods, inputs;  ///< ids
     std::vector<control::GuardConfig> guards;     ///< control::all_guards
     double sample_time_s = 0.005;
   };
 
   Detector(const Parts& parts, const Identity& identity);
 
-  /// Handles all samples queued; once a second the conditions, active alarms again, and health.
+  /// Processes all queued samples; once a second also system alarms, repeats and health.
   void poll() override;
-  /// The last samples and a last health message.
+  /// Processes the last samples and publishes a final health message.
   void finish() override;
 
  private:
   void on_estimate(const estimator::fdi::EstimateEvent& event) override;
   void on_alarm(const estimator::fdi::Alarm& alarm) override;
 
-  /// New rules take the place of the old ones, between two samples.
+  /// Applies queued configuration updates between two samples.
   void apply_updates();
   void apply_update(DetectionUpdate& change);
   void drain();
   void process(const config::signals::Sample& sample);
   void publish(const estimator::fdi::Alarm& alarm, bool repeat);
-  /// Evidence of an alarm that has come.
+  /// Requests an evidence folder when the alarm has newly come.
   void keep_evidence(const estimator::fdi::Alarm& alarm);
   void condition(const char* source, const char* name, estimator::fdi::Severity severity,
                  bool active, std::string_view reason);
-  void watch_state();
+  void update_latched_alarm();
   void once_a_second();
-  void watch_alarm_files();
+  void update_alarm_file_alarms();
   void health();
   [[nodiscard]] std::string why_latched() const;
   [[nodiscard]] io::Stamp stamp() const noexcept {
@@ -95,8 +94,8 @@ class Detector final : public rt::SampleConsumer, private estimator::fdi::Events
   GuardAlarms guard_alarms_;
   RodAlarms rod_alarms_;
   AlarmCommandServer alarm_commands_;
-  std::vector<std::int64_t> times_;     ///< Alarm::times that evidence was asked for
-  std::vector<std::uint8_t> snapshot_;  ///< of the pipeline
+  std::vector<std::int64_t> times_;     ///< per alarm, Alarm::times of the last evidence request
+  std::vector<std::uint8_t> snapshot_;  ///< buffer for the pipeline's state
   std::vector<std::string> guard_ids_;
   std::size_t spare_rods_;
   std::size_t inputs_;

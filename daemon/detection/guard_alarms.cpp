@@ -11,13 +11,13 @@ namespace {
 const char* consequence(Action action) {
   switch (action) {
     case Action::hold:
-      return ": in RUN the reference is held; start resumes";
+      return ": in RUN the reference is held until start";
     case Action::ramp:
-      return ": in RUN the command goes to null, then DISARMED";
+      return ": in RUN the command ramps to null, then DISARMED";
     case Action::disarm:
       return ": DISARMED";
     case Action::latch:
-      return ": in RUN LATCHED, reset leads out";
+      return ": in RUN LATCHED until reset";
     default:
       return "";
   }

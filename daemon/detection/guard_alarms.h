@@ -1,4 +1,4 @@
-// Guards as alarms: source "loop", name = the guard's id.
+// Alarms for the guards: source "loop", name = the guard's id.
 #pragma once
 
 #include <functional>
@@ -13,20 +13,21 @@ namespace monitor::detection {
 
 class GuardAlarms {
  public:
-  /// Declares one alarm for each guard (control::all_guards) in `book`, which outlives this.
+  /// Declares one alarm for each guard (control::all_guards) in `book`, which must
+  /// outlive this object.
   GuardAlarms(const std::vector<control::GuardConfig>& guards, estimator::fdi::AlarmBook& book);
 
-  /// Declares them in another book, which takes the place of the first.
+  /// Declares the alarms in another book, which replaces the first.
   void declare_in(estimator::fdi::AlarmBook& book);
 
-  /// Sets the alarms as the status shows them; `changed` is called for each that came or went. A
-  /// guard that was active for one tick alone gives an alarm all the same, until the next call.
+  /// Updates the alarms from `status` and calls `changed` for each alarm that came or went. A guard
+  /// that was active for a single tick raises its alarm until the next call.
   void report(rt::GuardStatus& status, std::int64_t tick,
               const std::function<void(const estimator::fdi::Alarm&)>& changed);
 
  private:
   struct Entry {
-    std::size_t number;  ///< in the book
+    std::size_t number;  ///< index in the book
     estimator::fdi::Severity severity;
     std::string reason;
   };

@@ -19,15 +19,15 @@ const char* describe(RodFault fault) {
     case RodFault::none:
       break;
     case RodFault::missing:
-      return "its position is missing";
+      return "position missing";
     case RodFault::stale:
-      return "its position is too old";
+      return "position too old";
     case RodFault::frozen:
-      return "it stands still while another sees the rod move";
+      return "reading frozen while another sensor sees motion";
     case RodFault::jump:
-      return "its position jumped";
+      return "position jumped";
     case RodFault::outvoted:
-      return "it is off the middle of the others";
+      return "reading off the middle of the others";
   }
   return "";
 }
@@ -51,7 +51,7 @@ void RodAlarms::report(const Sample& sample, AlarmBook& book,
       const std::string& in_charge =
           rods_[std::min<std::size_t>(sample.rod_in_charge, rods_.size() - 1)];
       std::snprintf(reason, sizeof reason,
-                    "out since %.3f s after the start: %s; the controller works with %.40s",
+                    "excluded since %.3f s after the start: %s; the controller uses %.40s",
                     static_cast<double>(sample.tick) * sample_time_s_,
                     describe(static_cast<RodFault>(published_[i])), in_charge.c_str());
     }

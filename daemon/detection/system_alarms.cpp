@@ -33,7 +33,7 @@ void SystemAlarms::report(const io::PublisherStatus& publisher, const io::Record
       no_evidence <= 0      ? ""
       : evidence.error != 0 ? std::string("evidence of an alarm could not be written: ") +
                                   std::strerror(evidence.error)
-                            : "too many alarms at a time: not each has its evidence");
+                            : "too many alarms at once: some have no evidence");
   no_evidence_before_ += no_evidence;
   dropped_before_ = recorder.dropped_records;
   failures_before_ = publisher.send_failures;

@@ -1,4 +1,4 @@
-// What goes wrong in publishing and recording, as alarms.
+// Alarms for failures of publishing, recording and evidence.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@ namespace monitor::detection {
 
 /// Sets the conditions recorder.disk_full, recorder.write_failed, recorder.dropping (messages lost
 /// to a full queue since the last call), lcm.send_failed and evidence.failed in `book`, and calls
-/// `changed` for each that came or went. Meant to be called once a second; keeps the counts of the
-/// last call.
+/// `changed` for each alarm that came or went. Call once a second; the counts refer to the time
+/// since the last call.
 class SystemAlarms {
  public:
   void report(const io::PublisherStatus& publisher, const io::RecorderStatus& recorder,

@@ -39,7 +39,7 @@ PersistedAlarm life_of(const json& entry, std::int64_t utc_us) {
   life.times = entry.at("times");
   life.acknowledged_by = entry.at("acknowledged_by");
   life.shelved_by = entry.at("shelved_by");
-  // A clock set back must not make a shelf longer than it was.
+  // A clock set back must not prolong a shelving.
   const double left_s =
       static_cast<double>(entry.at("shelved_until_utc_us").get<std::int64_t>() - utc_us) * 1e-6;
   life.shelved_for_s =
@@ -50,8 +50,8 @@ PersistedAlarm life_of(const json& entry, std::int64_t utc_us) {
 }  // namespace
 
 void AlarmConfig::visit(config::schema::Visitor& v) {
-  v.path({"folder", "where alarms.json and audit.log are kept; empty: nowhere"}, folder);
-  v.integer({"audit_bytes", "cap of audit.log"}, audit_bytes, {4096, 1LL << 40});
+  v.path({"folder", "folder of alarms.json and audit.log; empty: neither is written"}, folder);
+  v.integer({"audit_bytes", "size limit of audit.log"}, audit_bytes, {4096, 1LL << 40});
   rules.visit(v);
 }
 
@@ -90,11 +90,11 @@ LoadedLives parse_lives(const std::string& text, const std::string& rig_id, std:
   LoadedLives loaded;
   try {
     if (!whole.is_object() || whole.at("format") != kFormat) {
-      loaded.wrong = "is no file of alarms, or damaged";
+      loaded.wrong = "is not an alarm file or is damaged";
     } else if (whole.at("version") != kVersion) {
-      loaded.wrong = "is of another version";
+      loaded.wrong = "has another version";
     } else if (whole.at("rig_id") != rig_id) {
-      loaded.wrong = "is of another rig: " + whole.at("rig_id").dump();
+      loaded.wrong = "belongs to another rig: " + whole.at("rig_id").dump();
     } else {
       for (const json& entry : whole.at("alarms")) loaded.lives.push_back(life_of(entry, utc_us));
     }

@@ -1,6 +1,5 @@
-// The lives of alarms across a restart, in FOLDER/alarms.json: written whole beside it,
-// synchronised and renamed, off the threads that must not wait. Shelves keep their time of day:
-// what passes while the daemon is away counts.
+// Persists alarm states across a restart in FOLDER/alarms.json, written in the background and
+// replaced atomically. Shelving keeps its wall-clock end, so time while the daemon is down counts.
 #pragma once
 
 #include <atomic>
@@ -18,9 +17,9 @@ namespace monitor::io {
 
 /// TOML [alarms].
 struct AlarmConfig {
-  std::string folder;                  ///< of alarms.json and audit.log; empty: neither is kept
-  std::int64_t audit_bytes = 1 << 20;  ///< of audit.log, twice as much with the one before
-  estimator::fdi::AlarmRules rules;    ///< of guards and of the daemon's own alarms
+  std::string folder;                  ///< of alarms.json and audit.log; empty: no files
+  std::int64_t audit_bytes = 1 << 20;  ///< of audit.log; twice as much with audit.log.1
+  estimator::fdi::AlarmRules rules;    ///< for guards and system alarms
 
   void visit(config::schema::Visitor& v);
 };
@@ -30,24 +29,24 @@ struct AlarmConfig {
 
 struct LoadedLives {
   std::vector<estimator::fdi::PersistedAlarm> lives{};
-  std::string wrong{};  ///< why there are none, in one line; empty: nothing is wrong
+  std::string wrong{};  ///< why nothing could be loaded, in one line; empty: no error
 };
-/// Never throws: what is damaged or of another rig gives no lives.
+/// Never throws: a damaged file or one of another rig yields no states.
 [[nodiscard]] LoadedLives parse_lives(const std::string& text, const std::string& rig_id,
                                       std::int64_t utc_us);
 
 class AlarmStore {
  public:
-  /// `writer` writes, also what is queued when this ends.
+  /// `writer` must outlive this object; it also writes what is still queued then.
   AlarmStore(const std::filesystem::path& folder, std::string rig_id, BackgroundWriter& writer);
 
-  /// Before the first save(). A file that does not exist is nothing wrong.
+  /// Call before the first keep(). A missing file is no error.
   [[nodiscard]] LoadedLives load(std::int64_t utc_us) const;
-  /// Saves when the book's lives have changed since the last time; does not wait for the disk. One
+  /// Saves when alarm states have changed since the last call; does not block on the disk. One
   /// thread.
   void keep(const estimator::fdi::AlarmBook& book, std::int64_t utc_us);
 
-  /// errno of the last save, 0 when it went well. Any thread.
+  /// errno of the last save, 0 on success. Any thread.
   [[nodiscard]] int error() const noexcept { return *error_; }
   [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
 
@@ -55,8 +54,9 @@ class AlarmStore {
   std::filesystem::path file_;
   std::string rig_id_;
   BackgroundWriter& writer_;
-  std::uint64_t saved_ = 0;  ///< AlarmBook::changes() of what was saved last
-  std::shared_ptr<std::atomic<int>> error_ = std::make_shared<std::atomic<int>>(0);  ///< its jobs'
+  std::uint64_t saved_ = 0;  ///< AlarmBook::changes() at the last save
+  std::shared_ptr<std::atomic<int>> error_ =
+      std::make_shared<std::atomic<int>>(0);  ///< shared with the jobs
 };
 
 /// Writes the file under a temporary name beside it, synchronises and renames it; 0 or errno.

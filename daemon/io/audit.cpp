@@ -65,7 +65,7 @@ void Audit::File::append(const std::string& line) noexcept {
   const int file = open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0640);
   bool written = false;
   if (file >= 0) {
-    // One write: a line is there whole or, where the disk is full, taken back.
+    // One write, rolled back on a full disk, so that no partial line remains.
     struct stat before {};
     const bool known = fstat(file, &before) == 0;
     const ssize_t n = write(file, line.data(), line.size());

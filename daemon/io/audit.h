@@ -1,6 +1,5 @@
-// Who did what when: one JSON line for each order that somebody gave, done or refused, in a file
-// that only grows, FOLDER/audit.log. At its size limit it becomes audit.log.1, in the place of the
-// one before.
+// The audit trail: one JSON line per operator command, executed or rejected, appended to
+// FOLDER/audit.log. At its size limit the file replaces audit.log.1.
 #pragma once
 
 #include <atomic>
@@ -17,26 +16,26 @@ namespace monitor::io {
 struct AuditEntry {
   std::int64_t utc_us = 0;
   unsigned uid = 0;
-  std::string who;            ///< the user's name
-  std::string what;           ///< the request as it came
-  std::string reject_reason;  ///< empty: done
+  std::string who;            ///< user name
+  std::string what;           ///< the request as received
+  std::string reject_reason;  ///< empty: executed
 };
 
-/// One line with its end.
+/// One line, newline included.
 [[nodiscard]] std::string print_audit(const AuditEntry& entry);
 
 class Audit {
  public:
-  /// `writer` writes, also what is queued when this ends.
+  /// `writer` must outlive this object; it also writes what is still queued then.
   Audit(const std::filesystem::path& folder, std::int64_t file_bytes, BackgroundWriter& writer);
 
-  /// Does not wait for the disk.
+  /// Does not block on the disk.
   void note(const AuditEntry& entry);
   /// Lines that could not be written.
   [[nodiscard]] std::int64_t lost() const noexcept { return file_->lost; }
 
  private:
-  /// What the writer's jobs write to; they share it.
+  /// Shared with the writer's jobs.
   struct File {
     File(std::filesystem::path file, std::int64_t most) : path(std::move(file)), most_bytes(most) {}
 
@@ -51,7 +50,7 @@ class Audit {
   BackgroundWriter& writer_;
 };
 
-/// "ann", or the number when the user has no name here.
+/// The user's name, or the uid when the user is unknown on this machine.
 [[nodiscard]] std::string user_name(unsigned uid);
 
 /// "2026-03-01T12:30:05.250Z".

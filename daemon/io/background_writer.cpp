@@ -38,7 +38,7 @@ bool BackgroundWriter::post(std::function<void()> job) {
 }
 
 void BackgroundWriter::run() {
-  sigset_t all;  // signals are the main thread's
+  sigset_t all;  // the main thread handles signals
   sigfillset(&all);
   pthread_sigmask(SIG_BLOCK, &all, nullptr);
   std::unique_lock lock(mutex_);

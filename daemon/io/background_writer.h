@@ -1,5 +1,5 @@
-// A thread for small files that nobody may wait for: jobs are done in order, off the threads that
-// ask for them. A bounded queue: what does not fit is not done, and counted.
+// Writes small files in the background; callers never block on the disk. Jobs run in order; a full
+// queue drops the newest job and counts it.
 #pragma once
 
 #include <atomic>
@@ -15,15 +15,15 @@ namespace monitor::io {
 class BackgroundWriter {
  public:
   BackgroundWriter();
-  /// As finish().
+  /// Calls finish().
   ~BackgroundWriter();
   BackgroundWriter(const BackgroundWriter&) = delete;
   BackgroundWriter& operator=(const BackgroundWriter&) = delete;
 
-  /// Any thread; waits for nothing longer than another post(). The job must not throw, and owns
-  /// what it uses: whoever posts it may be gone when it is done. False when the queue is full.
+  /// Any thread; blocks no longer than another post(). The job must not throw and must own its
+  /// data, since it may run after its poster is gone. Returns false when the queue is full.
   bool post(std::function<void()> job);
-  /// Does what is queued, and nothing that comes later.
+  /// Runs the queued jobs and rejects later ones.
   void finish();
   [[nodiscard]] std::int64_t dropped() const noexcept { return dropped_; }
 

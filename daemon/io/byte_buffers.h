@@ -1,6 +1,7 @@
-// Two bounded buffers of byte records, both with all memory taken at construction: a lock-free
-// queue between two threads that refuses when full, and a backlog of one thread that overwrites its
-// oldest. A record is a 4-byte length and its bytes, wrapping round the end of the buffer.
+// Two bounded buffers of byte records with all memory allocated at construction: a lock-free queue
+// between two threads that rejects records when full, and a single-threaded backlog that overwrites
+// its oldest record. A record is a 4-byte length and its bytes, wrapping around the end of the
+// buffer.
 #pragma once
 
 #include <atomic>
@@ -16,7 +17,7 @@ class ByteQueue {
  public:
   explicit ByteQueue(std::size_t capacity) : bytes_(capacity) {}
 
-  /// The record is the two parts one after the other; false when there is no room for it.
+  /// Appends the record `first` + `second`; returns false when it does not fit.
   bool push(std::span<const std::uint8_t> head, std::span<const std::uint8_t> tail) noexcept;
   /// Replaces `record` by the oldest record; false when empty.
   bool pop(std::vector<std::uint8_t>& record);
@@ -41,7 +42,7 @@ class ByteBacklog {
   std::uint64_t read(std::uint64_t position, std::vector<std::uint8_t>& record) const;
   [[nodiscard]] std::uint64_t begin() const noexcept { return begin_; }
   [[nodiscard]] std::uint64_t end() const noexcept { return end_; }
-  /// Forgets the oldest record.
+  /// Drops the oldest record.
   void drop_oldest();
 
  private:

@@ -95,7 +95,7 @@ ordered_json detectable_of(const ControlStatus& status) {
 
 ControlRequest parse_request(const std::string& line) {
   const json object = json::parse(line, nullptr, false);
-  if (!object.is_object()) return bad("no JSON object");
+  if (!object.is_object()) return bad("not a JSON object");
   const auto name = object.find(control::key::kCommand);
   if (name == object.end() || !name->is_string()) return bad("no \"command\"");
   const auto& command = name->get_ref<const std::string&>();

@@ -1,4 +1,4 @@
-// The lines of the control socket as values; the words are those of control/protocol.h.
+// The messages of the control socket as structs; the vocabulary is in control/protocol.h.
 #pragma once
 
 #include <cstdint>
@@ -26,31 +26,31 @@ struct ControlRequest {
     bad
   };
   Kind kind = Kind::bad;
-  control::Event event = control::Event::disarm;  ///< of kind event
-  double centre_m = 0.0;                          ///< of kind sine
+  control::Event event = control::Event::disarm;  ///< kind event
+  double centre_m = 0.0;                          ///< kind sine
   double amplitude_m = 0.0;
   double frequency_Hz = 0.0;
-  std::string alarm;    ///< of kinds acknowledge (empty: all), shelve, unshelve
-  double time_s = 0.0;  ///< of kind shelve
-  std::string wrong;    ///< of kind bad: why, in one line
+  std::string alarm;    ///< kinds acknowledge (empty: all), shelve, unshelve
+  double time_s = 0.0;  ///< kind shelve
+  std::string wrong;    ///< kind bad: why, in one line
 };
 
-/// Never throws: what is no request is of kind bad.
+/// Never throws: malformed requests have kind bad.
 [[nodiscard]] ControlRequest parse_request(const std::string& line);
 
-/// Smallest changes that the fault detection could see in the present motion.
+/// The smallest changes that one source could detect in the present motion.
 struct Detectable {
   struct Change {
-    std::string name;  ///< with its unit, as "supply_pressure_Pa"
-    double smallest;   ///< SI; NaN: not known
+    std::string name;  ///< with unit suffix, as "supply_pressure_Pa"
+    double smallest;   ///< SI; NaN: unknown
   };
   std::string source;
   std::int64_t tick = 0;
-  std::string why;  ///< it tells too little, and which motion would; empty: it tells all
+  std::string why;  ///< why the motion is insufficient and which would suffice; empty: sufficient
   std::vector<Change> changes;
 };
 
-/// What is told of the daemon; NaN: not known.
+/// The daemon's status; NaN: unknown.
 struct ControlStatus {
   struct Guard {
     std::string id, kind, action;
@@ -61,23 +61,23 @@ struct ControlStatus {
     std::string id;
     double value = std::numeric_limits<double>::quiet_NaN();
   };
-  /// Of several rod sensors, the configured one first.
+  /// Redundant rod sensors, the configured one first.
   struct Rod {
     std::string id;
     double y_m = std::numeric_limits<double>::quiet_NaN();
-    std::string fault;   ///< why it is out; empty: it is in
-    double for_s = 0.0;  ///< it has been out
+    std::string fault;   ///< why the sensor is out; empty: in
+    double for_s = 0.0;  ///< time out
   };
   std::string rig_id, config_hash;
   control::State state = control::State::disarmed;
   bool holding = false;
   bool ramping = false;
   std::string latched_by;  ///< id of the guard; empty unless LATCHED
-  std::string obstacle;    ///< why it cannot be armed; empty when it can
+  std::string obstacle;    ///< why the rig cannot be armed; empty: it can
   std::string config_file, recorder_folder;
-  std::string rules_hash;  ///< of estimators and bands, the learned ones in them
+  std::string rules_hash;  ///< of estimators and bands, learned bands included
   double sample_time_s = std::numeric_limits<double>::quiet_NaN();
-  std::string reload_refused;  ///< why the newest configuration was not taken; empty: it was
+  std::string reload_refused;  ///< why the newest reload was rejected; empty: it was not
   double y_m = std::numeric_limits<double>::quiet_NaN();
   double reference_m = std::numeric_limits<double>::quiet_NaN();
   double u_V = std::numeric_limits<double>::quiet_NaN();
@@ -86,14 +86,14 @@ struct ControlStatus {
   std::int64_t active_alarms = 0;
   std::vector<Guard> guards;
   std::vector<Input> spare_rods, inputs;
-  std::vector<Rod> rods;  ///< empty: there is one alone
+  std::vector<Rod> rods;  ///< empty: a single sensor
   std::string rod_in_charge;
   double rod_in_charge_for_s = 0.0;
   std::vector<Detectable> detectable;
 };
 
 [[nodiscard]] std::string print_status(const ControlStatus& status);
-/// What is told of an alarm.
+/// An alarm as listed to a client.
 struct ControlAlarm {
   estimator::fdi::Alarm alarm;
   double shelved_for_s = 0.0;
@@ -101,15 +101,15 @@ struct ControlAlarm {
 
 [[nodiscard]] std::string print_alarms(control::State state,
                                        const std::vector<ControlAlarm>& alarms);
-/// `done`: the alarms that an act has changed.
+/// `done`: the alarms that a command has changed.
 [[nodiscard]] std::string print_acted(control::State state, const std::vector<std::string>& done);
-/// What a reload has changed.
+/// The effect of a reload.
 struct ControlReload {
   std::string config_hash;
   std::vector<std::string> changed;  ///< keys
-  std::vector<std::string> warm;     ///< estimators that went on
-  std::vector<std::string> cold;     ///< estimators that began anew
-  std::vector<std::string> ended;    ///< alarms that stood and are no more
+  std::vector<std::string> warm;     ///< estimators that continued
+  std::vector<std::string> cold;     ///< estimators that restarted
+  std::vector<std::string> ended;    ///< standing alarms that no longer exist
 };
 [[nodiscard]] std::string print_reloaded(control::State state, const ControlReload& reload);
 [[nodiscard]] std::string print_done(control::State state);

@@ -48,8 +48,9 @@ gid_t group_of(const std::string& name, const std::string& file, const char* key
   if (name.empty()) return kNoGroup;
   const group* entry = getgrnam(name.c_str());
   if (entry == nullptr) {
-    throw bad_config(file + ": [control] " + key, "is \"" + name + "\", which is no group here",
-                     "a group of this machine, or \"\"");
+    throw bad_config(file + ": [control] " + key,
+                     "is \"" + name + "\", which is not a group on this machine",
+                     "an existing group, or \"\"");
   }
   return entry->gr_gid;
 }
@@ -75,7 +76,7 @@ bool in_group(int file, const ucred& peer, gid_t group) {
   return std::find(groups.begin(), groups.end(), group) != groups.end();
 }
 
-/// Nobody when the kernel does not say.
+/// No rights when the kernel does not identify the peer.
 ucred peer_of(int file) {
   ucred peer{0, static_cast<uid_t>(-1), static_cast<gid_t>(-1)};
   socklen_t size = sizeof peer;
@@ -105,9 +106,9 @@ bool is_served(const sockaddr_un& address) {
 
 void ControlConfig::visit(config::schema::Visitor& v) {
   v.path({"socket", "path of the control socket; empty: none"}, socket);
-  v.text({"mode", "its permissions, octal"}, mode);
-  v.text({"group", "of the socket: whose members may connect and look, as mode says"}, group);
-  v.text({"act_group", "whose members may act; empty: those of group"}, act_group);
+  v.text({"mode", "permissions of the socket, octal"}, mode);
+  v.text({"group", "group of the socket; its members may connect and query as mode allows"}, group);
+  v.text({"act_group", "its members may command; empty: members of group"}, act_group);
 }
 
 void check_control(const ControlConfig& config, const std::string& file) {
@@ -148,7 +149,7 @@ ControlSocket::ControlSocket(const ControlConfig& config, const std::string& fil
     unlink(path_.c_str());
   }
   listener_ = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  // Nobody but the owner gets in before the permissions are set.
+  // Only the owner may connect before the permissions are set.
   if (listener_ < 0 || fchmod(listener_, 0600) != 0 ||
       bind(listener_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     throw fail(place + " cannot be made", errno);
@@ -189,7 +190,7 @@ void ControlSocket::wait(int timeout_ms, int other) {
 void ControlSocket::accept_clients() {
   const int file = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
   if (file < 0) return;
-  // The one that has been silent for longest makes room.
+  // The longest silent client makes room.
   if (clients_.size() >= kMaxClients) {
     const auto idle = std::find_if(clients_.begin(), clients_.end(),
                                    [](const Client& client) { return !client.asking; });

@@ -1,9 +1,9 @@
-// The control socket: a Unix stream socket on which other programs ask and order, one line each way
-// at a time (control/protocol.h). Anyone who can connect may look; the same user, root and members
-// of `act_group` (where there is none, of `group`) may act, as the kernel says who they are
-// (SO_PEERCRED, SO_PEERGROUPS).
+// The control socket: a Unix stream socket for queries and commands, one line each way at a time
+// (control/protocol.h). Anyone who can connect may query; the daemon's user, root and members of
+// `act_group` (default: `group`) may command. The kernel identifies the peers (SO_PEERCRED,
+// SO_PEERGROUPS).
 //
-// One thread. Nothing here blocks but wait(), and that only as long as it is told to.
+// One thread. Only wait() blocks, up to its timeout.
 #pragma once
 
 #include <cstdint>
@@ -22,36 +22,36 @@ namespace monitor::io {
 struct ControlConfig {
   std::string socket;         ///< path; empty: no socket
   std::string mode = "0660";  ///< permissions of the socket, octal
-  std::string group;          ///< of the socket, whose members may connect, as `mode` says
-  std::string act_group;      ///< whose members may act; empty: those of `group`
+  std::string group;          ///< group of the socket; its members may connect as `mode` allows
+  std::string act_group;      ///< its members may command; empty: members of `group`
 
   void visit(config::schema::Visitor& v);
 };
 
-/// Throws config::schema::ConfigError for a path too long, a bad mode, a group unknown.
+/// Throws config::schema::ConfigError for a too long path, a bad mode or an unknown group.
 void check_control(const ControlConfig& config, const std::string& file);
 
 class ControlSocket {
  public:
   struct Request {
-    std::uint64_t client;  ///< whom to answer
+    std::uint64_t client;  ///< recipient of the answer
     std::string line;
     bool may_act;
     unsigned uid;
   };
 
-  /// Takes the place of a socket that nobody serves any more; throws config::schema::RunError
-  /// when another process serves it, or when it cannot be made. `file`: for messages.
+  /// Replaces a stale socket; throws config::schema::RunError when another process serves the
+  /// socket or it cannot be created. `file`: for messages.
   ControlSocket(const ControlConfig& config, const std::string& file);
   ~ControlSocket();
   ControlSocket(const ControlSocket&) = delete;
   ControlSocket& operator=(const ControlSocket&) = delete;
 
-  /// Up to that time, or until something comes here or to `other` (a file descriptor).
+  /// Waits for input here or on the file descriptor `other`, up to the timeout.
   void wait(int timeout_ms, int other);
-  /// The oldest request not yet taken; a client's next line waits until this one is answered.
+  /// The oldest pending request; a client's next line waits until this one is answered.
   bool next(Request& request);
-  /// `line` without its end. A client that has gone is not missed.
+  /// `line` without newline. Ignored when the client has disconnected.
   void answer(std::uint64_t client, const std::string& line);
 
  private:
@@ -60,7 +60,7 @@ class ControlSocket {
     int file;
     bool may_act;
     unsigned uid;
-    bool asking = false;  ///< a request of it has not been answered
+    bool asking = false;  ///< a request is unanswered
     std::string in;
     std::string out;
     bool gone = false;

@@ -27,7 +27,7 @@ void DrainThread::stop() {
 }
 
 void DrainThread::run() {
-  // Signals are the main thread's; a file-size limit is then seen as EFBIG.
+  // The main thread handles signals; a file-size limit is then reported as EFBIG.
   sigset_t all;
   sigfillset(&all);
   pthread_sigmask(SIG_BLOCK, &all, nullptr);

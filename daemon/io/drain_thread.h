@@ -1,5 +1,5 @@
-// A thread of normal priority that empties a queue every now and then: what writes to disk, behind
-// what must not wait.
+// A thread of normal priority that periodically drains a queue to disk, so that producers never
+// block.
 #pragma once
 
 #include <condition_variable>
@@ -18,7 +18,7 @@ class DrainThread {
 
   /// Calls `drain` every 50 ms, with all signals blocked.
   void start(std::function<void()> drain);
-  /// Waits for the call in progress; there is none afterwards.
+  /// Waits for the call in progress; `drain` is not called afterwards.
   void stop();
 
  private:

@@ -107,7 +107,7 @@ EventLog::Written EventLog::write() {
   size_ += static_cast<std::int64_t>(kept);
   events_ += static_cast<std::int64_t>(events);
   if (kept != done) {
-    // Cut the event that did not fit; where that fails, go on in a new file.
+    // Truncate the partial event; if that fails, continue in a new file.
     if (::ftruncate(descriptor_, size_) != 0 || ::lseek(descriptor_, size_, SEEK_SET) < 0) close();
   }
   batch_.clear();

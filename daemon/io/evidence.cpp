@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kMaxChannel = 63;
 constexpr std::size_t kQueueBytes = 4 << 20;
-/// Snapshots come as often as this share of before_s, so that a folder is not much longer.
+/// Snapshot interval as a share of before_s, so that a folder is not much longer.
 constexpr double kStateShare = 0.5;
 constexpr double kLeastState_s = 1.0;
 
@@ -29,12 +29,12 @@ void copy_text(const std::string& text, char (&to)[n]) {
 }  // namespace
 
 void EvidenceConfig::visit(config::schema::Visitor& v) {
-  v.path({"folder", "where the evidence of each alarm goes; empty: none is kept"}, folder);
-  v.number({"before_s", "kept from before an alarm"}, before_s, {0.1, 600.0});
-  v.number({"after_s", "and from after it"}, after_s, {0.0, 600.0});
-  v.integer({"packs", "folders kept, oldest removed first"}, packs, {1, 100000});
-  v.integer({"total_bytes", "of all folders"}, total_bytes, {1 << 20, 1LL << 42});
-  v.integer({"memory_bytes", "of the newest messages, and so of one folder"}, memory_bytes,
+  v.path({"folder", "parent of the evidence folders; empty: no evidence"}, folder);
+  v.number({"before_s", "time before an alarm that is kept"}, before_s, {0.1, 600.0});
+  v.number({"after_s", "time after an alarm that is kept"}, after_s, {0.0, 600.0});
+  v.integer({"packs", "number of folders kept, oldest removed first"}, packs, {1, 100000});
+  v.integer({"total_bytes", "total size of all folders"}, total_bytes, {1 << 20, 1LL << 42});
+  v.integer({"memory_bytes", "memory for the newest messages; bounds one folder"}, memory_bytes,
             {1 << 20, 1LL << 30});
 }
 
@@ -72,12 +72,12 @@ void Evidence::record(std::string_view channel, std::span<const std::uint8_t> da
   if (new_files_ != nullptr) {
     const auto address = std::bit_cast<std::array<std::uint8_t, sizeof(void*)>>(new_files_.get());
     if (push(kFilesChannel, address, utc_us)) {
-      static_cast<void>(new_files_.release());  // the ring's
+      static_cast<void>(new_files_.release());  // owned by the ring now
     }
   }
   if (lost_ || !push(channel, data, utc_us)) {
     lost_ = true;
-    next_state_ = 0;  // what follows can be replayed from a new snapshot only
+    next_state_ = 0;  // replay needs a new snapshot from here on
     dropped_.fetch_add(1, std::memory_order_relaxed);
   }
   if (!background_) drain();

@@ -1,12 +1,12 @@
-// Evidence of each alarm: a folder with what was measured, estimated and told from before_s before
-// to after_s after it, the state of the fault detection at its beginning, the configuration and the
-// model; `spoolwatch replay FOLDER` leads to the same alarm, bit for bit.
+// Evidence of each alarm: a folder with all messages from before_s before to after_s after the
+// alarm, the state of the fault detection at its beginning, the configuration and the model;
+// `spoolwatch replay FOLDER` reproduces the alarm bit for bit.
 //
-// record(), state() and alarm() copy into a bounded lock-free queue and return; a thread of its own
-// keeps the newest messages in a bounded ring and writes the folders. In virtual time (`background`
-// false) that is done at once. What does not fit or cannot be written is counted. A snapshot of the
-// state goes through the queue every few seconds, so that each folder begins with one: a pipeline
-// restored from it goes on exactly, whatever its estimators' memory (estimator/state_archive.h).
+// record(), state() and alarm() copy into a bounded lock-free queue and return; a background
+// thread keeps the newest messages in a bounded ring and writes the folders. In virtual time
+// (`background` false) the calling thread does so. Messages that do not fit and folders that cannot
+// be written are counted. A snapshot of the state is queued every few seconds, so that each folder
+// begins with one, from which a pipeline continues exactly (estimator/state_archive.h).
 #pragma once
 
 #include <atomic>
@@ -28,25 +28,25 @@ class EvidenceRing;
 
 /// TOML [evidence].
 struct EvidenceConfig {
-  std::string folder;  ///< where the folders go; empty: no evidence is kept
+  std::string folder;  ///< parent of the evidence folders; empty: no evidence
   double before_s = 10.0;
   double after_s = 5.0;
   std::int64_t packs = 50;                 ///< folders kept, oldest removed first
-  std::int64_t total_bytes = 512LL << 20;  ///< of all of them
-  std::int64_t memory_bytes = 16 << 20;    ///< of the ring, and so of one folder
+  std::int64_t total_bytes = 512LL << 20;  ///< of all folders
+  std::int64_t memory_bytes = 16 << 20;    ///< size of the ring, which bounds one folder
 
   void visit(config::schema::Visitor& v);
 };
 
-/// A file that each folder gets.
+/// A file copied into each folder.
 struct EvidenceFile {
   std::string name;
   std::string text;
 };
 
-/// What does not change while the daemon runs.
+/// Facts that stay constant while the daemon runs.
 struct EvidenceFacts {
-  std::string rig_id, config_hash, prefix;  ///< prefix of the channels
+  std::string rig_id, config_hash, prefix;  ///< prefix: of the channels
   std::int64_t run_id = 0;
   double sample_time_s = 0.0;
   std::vector<EvidenceFile> files{};
@@ -55,32 +55,32 @@ struct EvidenceFacts {
 struct EvidenceStatus {
   std::int64_t written = 0;  ///< folders
   std::int64_t failed = 0;   ///< folders that could not be written
-  std::int64_t skipped = 0;  ///< alarms without a folder: too many at a time
-  std::int64_t dropped = 0;  ///< messages that did not fit into the queue
+  std::int64_t skipped = 0;  ///< alarms without a folder: too many at once
+  std::int64_t dropped = 0;  ///< messages lost to a full queue
   int error = 0;             ///< errno of the newest failure
 };
 
 class Evidence {
  public:
-  /// Throws config::schema::Error when the folder cannot be made.
+  /// Throws config::schema::Error when the folder cannot be created.
   Evidence(const EvidenceConfig& config, EvidenceFacts facts, bool background);
   ~Evidence();
   Evidence(const Evidence&) = delete;
   Evidence& operator=(const Evidence&) = delete;
 
-  /// One message, as published. This and the next three: one thread.
+  /// Adds a published message. Call this and the next three functions from one thread.
   void record(std::string_view channel, std::span<const std::uint8_t> data,
               std::int64_t utc_us) noexcept;
   /// Whether a snapshot is due before the sample of this tick is published.
   [[nodiscard]] bool wants_state(std::int64_t tick) const noexcept { return tick >= next_state_; }
   void state(std::span<const std::uint8_t> snapshot, std::int64_t tick) noexcept;
-  /// From the next snapshot on another configuration applies: what is asked for is written with
-  /// what there is, and later folders get these files.
+  /// Switches to another configuration at the next snapshot: pending folders are written with the
+  /// messages so far, later folders get these files.
   void reconfigure(std::vector<EvidenceFile> files);
-  /// Asks for a folder: call it after the alarm was published.
+  /// Requests a folder; call after publishing the alarm.
   void alarm(const estimator::fdi::Alarm& alarm, std::int64_t utc_us) noexcept;
 
-  /// Writes what is asked for with what there is, and stops: call it last.
+  /// Writes pending folders with the messages so far and stops. Call last.
   void finish();
   /// Any thread.
   [[nodiscard]] EvidenceStatus status() const noexcept;
@@ -93,14 +93,14 @@ class Evidence {
   const bool background_;
   std::int64_t state_every_;  ///< ticks
   std::int64_t next_state_ = 0;
-  /// Of another configuration, on their way to the ring.
+  /// Files of the new configuration, in transit to the ring.
   std::unique_ptr<std::vector<EvidenceFile>> new_files_;
-  bool lost_ = false;  ///< messages, since the last that fitted
+  bool lost_ = false;  ///< messages have been lost since the last one queued
   std::unique_ptr<ByteQueue> queue_;
-  std::unique_ptr<EvidenceRing> ring_;  ///< of the writing thread
-  std::vector<std::uint8_t> record_;    ///< of the writing thread
+  std::unique_ptr<EvidenceRing> ring_;  ///< writing thread only
+  std::vector<std::uint8_t> record_;    ///< writing thread only
   std::atomic<std::int64_t> dropped_{0};
-  DrainThread thread_;  ///< the last: it uses the others
+  DrainThread thread_;  ///< last member: uses the others
 };
 
 }  // namespace monitor::io

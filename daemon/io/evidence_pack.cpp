@@ -25,7 +25,7 @@ constexpr const char* kName = "alarm-";
 constexpr const char* kPartial = ".partial-";
 constexpr std::size_t kNumberAt = 4;  // of the event number in an event
 
-/// A file written through; the first error stays.
+/// A file written with fsync; keeps the first error.
 class Output {
  public:
   explicit Output(const fs::path& file) : file_(std::fopen(file.c_str(), "wbe")) {
@@ -36,7 +36,7 @@ class Output {
       error_ = errno != 0 ? errno : ENOSPC;
     }
   }
-  /// 0 or errno of all that was done.
+  /// 0 or the first errno.
   [[nodiscard]] int close() noexcept {
     if (file_ != nullptr && std::fclose(file_) != 0 && error_ == 0) error_ = errno;
     file_ = nullptr;

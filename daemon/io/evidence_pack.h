@@ -1,10 +1,10 @@
-// One folder of evidence on disk: it appears whole, under its name, or not at all.
+// One evidence folder on disk, created atomically.
 //
-//   pack.json           what it is, which alarm, how to replay it
-//   README.txt          the same in words
+//   pack.json           identity, alarm, replay command
+//   README.txt          the same as text
 //   log.lcmlog          messages from the snapshot on, an LCM event log
-//   state.bin           the fault detection before the first sample of the log
-//   pipeline.toml       its configuration, nothing left in other files
+//   state.bin           state of the fault detection before the first sample of the log
+//   pipeline.toml       its complete configuration
 //   configuration.toml  the daemon's, and the files that it names (model, bands, ...)
 #pragma once
 
@@ -19,7 +19,7 @@
 
 namespace monitor::io {
 
-/// The alarm that asked for a folder.
+/// The alarm that triggered the folder.
 struct EvidenceTrigger {
   std::int64_t tick = 0;
   std::int64_t utc_us = 0;
@@ -33,11 +33,11 @@ struct EvidenceTrigger {
 
 struct PackContents {
   EvidenceTrigger trigger;
-  std::int64_t first_tick = 0;  ///< of the log's samples
+  std::int64_t first_tick = 0;  ///< first sample of the log
   std::int64_t last_tick = 0;
-  std::string inexact;  ///< why it cannot be replayed; empty: it can
+  std::string inexact;  ///< why the folder cannot be replayed; empty: it can
   std::span<const std::uint8_t> state;
-  /// Calls back with each event of the log, in order.
+  /// Passes each event of the log, in order, to a callback.
   std::function<void(const std::function<void(std::span<std::uint8_t>)>&)> events;
 };
 
@@ -45,7 +45,7 @@ struct PackContents {
 [[nodiscard]] int write_pack(const std::filesystem::path& folder, const EvidenceFacts& facts,
                              const PackContents& contents);
 
-/// Removes the oldest folders beyond the limits, and what an interrupted daemon left half written.
+/// Removes the oldest folders beyond the limits and incomplete folders of an interrupted daemon.
 void prune_packs(const std::filesystem::path& folder, std::int64_t packs, std::int64_t bytes);
 
 }  // namespace monitor::io

@@ -14,7 +14,7 @@
 namespace monitor::io {
 namespace {
 
-/// Alarms that come while so many folders wait for their end get none.
+/// Limit of pending folders; further alarms get none.
 constexpr std::size_t kMostPending = 16;
 
 struct Parts {
@@ -29,7 +29,7 @@ std::uint64_t big_endian(const std::uint8_t* at, int bytes) noexcept {
   return value;
 }
 
-/// Of an event as put_event_header() begins it.
+/// Fields of an event header as written by put_event_header().
 Parts parts_of(std::span<const std::uint8_t> event) noexcept {
   const auto size = static_cast<std::size_t>(big_endian(event.data() + 20, 4));
   const auto body = event.subspan(kEventHeader);
@@ -102,7 +102,7 @@ void EvidenceRing::write_due(bool all) {
 }
 
 void EvidenceRing::write(const Pending& pending) {
-  // The newest snapshot that is early enough, else the oldest before the alarm.
+  // The newest snapshot that is early enough, otherwise the oldest one before the alarm.
   const std::int64_t wanted = pending.trigger.tick - before_;
   auto start = checkpoints_.end();
   for (auto i = checkpoints_.begin(); i != checkpoints_.end(); ++i) {
@@ -123,8 +123,8 @@ void EvidenceRing::write(const Pending& pending) {
   } else {
     contents.first_tick = -1;
     contents.inexact =
-        "the snapshot before the alarm is lost: memory_bytes is too small, or "
-        "messages were dropped";
+        "the snapshot before the alarm is lost: memory_bytes is too small or messages were "
+        "dropped";
   }
   contents.events = [&](const std::function<void(std::span<std::uint8_t>)>& each) {
     for (std::uint64_t at = from; at != ring_.end();) {

@@ -1,4 +1,4 @@
-// The newest messages in a bounded ring, and from them a folder for each alarm. One thread.
+// A bounded ring of the newest messages, from which the evidence folders are written. One thread.
 #pragma once
 
 #include <atomic>
@@ -14,20 +14,20 @@
 
 namespace monitor::io {
 
-/// Channels of records that are no messages.
+/// Channels of internal records.
 inline constexpr std::string_view kStateChannel = "#state";
 inline constexpr std::string_view kAlarmChannel = "#alarm";
 inline constexpr std::string_view kGapChannel = "#gap";
-/// Holds the address of a std::vector<EvidenceFile> that the ring takes over.
+/// Carries the address of a std::vector<EvidenceFile> whose ownership passes to the ring.
 inline constexpr std::string_view kFilesChannel = "#files";
 
 class EvidenceRing {
  public:
   EvidenceRing(const EvidenceConfig& config, EvidenceFacts facts);
 
-  /// The next record: an event of a log, or one of the above.
+  /// Adds a record: a log event or one of the above.
   void take(std::span<const std::uint8_t> record);
-  /// Writes all folders asked for with what there is.
+  /// Writes all pending folders with the messages so far.
   void finish();
 
   [[nodiscard]] EvidenceStatus status() const noexcept;
@@ -52,7 +52,7 @@ class EvidenceRing {
   ByteBacklog ring_;
   std::deque<Checkpoint> checkpoints_;
   std::deque<Pending> pending_;
-  std::int64_t tick_ = 0;  ///< of the newest sample
+  std::int64_t tick_ = 0;  ///< newest sample
   std::vector<std::uint8_t> record_;
   std::atomic<std::int64_t> written_{0}, failed_{0}, skipped_{0};
   std::atomic<int> error_{0};

@@ -1,5 +1,5 @@
-// From the detector's samples, estimates and alarms to the LCM types; run_id, seq and stamp are the
-// publisher's. Strings and arrays of the target are used again, so their memory is kept.
+// Converts samples, estimates and alarms to the LCM types; the publisher sets run_id, seq and
+// stamp. Strings and arrays of the target are reused to avoid allocation.
 #pragma once
 
 #include "config/signals/sample.h"
@@ -15,7 +15,7 @@ namespace monitor::io {
 
 void fill(spoolwatch::sample_t& message, const config::signals::Sample& sample,
           double sample_time_s);
-/// All but the ids, of which there may be fewer than rods.
+/// Fills everything except the ids, which may be fewer than the rods.
 void fill(spoolwatch::rods_t& message, const config::signals::Sample& sample);
 void fill(spoolwatch::pressures_t& message, const config::signals::Sample& sample);
 void fill(spoolwatch::estimate_t& message, const estimator::fdi::EstimateEvent& event);

@@ -12,7 +12,7 @@
 namespace monitor::io {
 namespace {
 
-// More than the largest message of an ordinary configuration; grows once if one is larger.
+// Exceeds the largest message of an ordinary configuration; grows if necessary.
 constexpr std::size_t kBufferBytes = 16 << 10;
 constexpr std::size_t kMaxChannel = 63;  // LCM's own limit
 
@@ -27,8 +27,8 @@ struct Publisher::Messages {
 };
 
 void PublisherConfig::visit(config::schema::Visitor& v) {
-  v.text({"url", "where messages go, as LCM writes it; empty: nowhere"}, url);
-  v.text({"prefix", "of the channel names"}, prefix);
+  v.text({"url", "LCM provider URL; empty: nothing is sent"}, url);
+  v.text({"prefix", "prefix of the channel names"}, prefix);
 }
 
 Publisher::Publisher(const PublisherConfig& config, std::int64_t run_id, double sample_time_s,

@@ -1,9 +1,10 @@
-// Sends what the daemon finds out over LCM and hands the same bytes to the recorder.
+// Publishes samples, estimates, alarms and health over LCM and passes the same bytes to the
+// recorder.
 //
 // Channels PREFIX_SAMPLE, PREFIX_RODS, PREFIX_PRESSURES, PREFIX_ESTIMATE, PREFIX_ALARM,
 // PREFIX_HEALTH (types: config/messages).
-// Each message is encoded once, into a buffer made in advance. A message that LCM cannot send is
-// still recorded; failures are counted and shown by status(). All calls come from one thread.
+// Each message is encoded once into a preallocated buffer. A message that LCM cannot send is still
+// recorded; status() reports the number of failures. One thread.
 #pragma once
 
 #include <atomic>
@@ -43,7 +44,7 @@ struct PublisherConfig {
   void visit(config::schema::Visitor& v);
 };
 
-/// When a message was made: wall clock, and the sender's monotonic clock (virtual: both virtual).
+/// Creation time of a message: wall clock and monotonic clock (both virtual in virtual time).
 struct Stamp {
   std::int64_t utc_us = 0;
   std::int64_t mono_ns = 0;
@@ -63,22 +64,22 @@ class Publisher {
   Publisher(const Publisher&) = delete;
   Publisher& operator=(const Publisher&) = delete;
 
-  /// Hands it every message too; it outlives the publisher.
+  /// Passes every message to `evidence` too, which must outlive the publisher.
   void attach(Evidence& evidence) noexcept { evidence_ = &evidence; }
 
   /// Ids of the rod sensors, the configured one first.
   void name_rods(std::vector<std::string> rods);
 
-  /// The rig measures at least one of the pressures that go with a sample.
-  void tell_pressures() noexcept { tells_pressures_ = true; }
+  /// Enables pressures_t: the rig measures at least one of the pressures.
+  void enable_pressures() noexcept { tells_pressures_ = true; }
 
-  /// A sample carries its own stamp (utc_us, t_read_ns). Several rod sensors and pressures are told
-  /// just before.
+  /// A sample carries its own stamp (utc_us, t_read_ns). rods_t and pressures_t are published
+  /// first.
   void sample(const config::signals::Sample& sample);
   void estimate(const estimator::fdi::EstimateEvent& event, Stamp stamp);
-  /// `repeat`: an active alarm sent again, not a change.
+  /// `repeat`: the alarm is active and unchanged.
   void alarm(const estimator::fdi::Alarm& alarm, bool repeat, Stamp stamp);
-  /// Fills run_id, seq and stamp; the rest is the caller's.
+  /// Fills in run_id, seq and stamp; the caller fills in the rest.
   void health(spoolwatch::health_t& message, Stamp stamp);
 
   /// Any thread.
@@ -92,7 +93,7 @@ class Publisher {
   template <class Message>
   void send(Channel& channel, Message& message, Stamp stamp);
 
-  struct Messages;  // one of each type, used again and again
+  struct Messages;  // one message of each type, reused
 
   std::unique_ptr<lcm::LCM> lcm_;
   std::unique_ptr<Messages> messages_;

@@ -15,7 +15,7 @@
 namespace monitor::io {
 namespace {
 
-// Drains until a failed disk is tried again: about 1 s of time, or of samples at 200 Hz.
+// Drains until the next attempt after a disk failure: about 1 s, or 200 samples in virtual time.
 constexpr int kRetryBackground = 20;
 constexpr int kRetryInline = 200;
 constexpr std::size_t kMaxChannel = 63;  // LCM's own limit
@@ -31,10 +31,12 @@ config::schema::ConfigError cannot_record(const std::filesystem::path& where,
 
 void RecorderConfig::visit(config::schema::Visitor& v) {
   constexpr std::int64_t kMiB = 1 << 20;
-  v.path({"folder", "where logs go; empty: nothing is recorded"}, folder);
-  v.integer({"file_bytes", "cap of one log file"}, file_bytes, {4096, 1LL << 40});
-  v.integer({"files", "logs kept in the folder, oldest removed first"}, files, {1, 100000});
-  v.integer({"queue_bytes", "between detector and recorder"}, queue_bytes, {4096, 1024 * kMiB});
+  v.path({"folder", "folder of the logs; empty: nothing is recorded"}, folder);
+  v.integer({"file_bytes", "size limit of one log file"}, file_bytes, {4096, 1LL << 40});
+  v.integer({"files", "number of logs kept in the folder, oldest removed first"}, files,
+            {1, 100000});
+  v.integer({"queue_bytes", "queue between detector and recorder"}, queue_bytes,
+            {4096, 1024 * kMiB});
   v.integer({"backlog_bytes", "newest data kept in memory while the disk is full"}, backlog_bytes,
             {4096, 1024 * kMiB});
 }
@@ -46,7 +48,7 @@ void check_folder(const RecorderConfig& config) {
     folder = folder.parent_path();
   }
   if (!std::filesystem::is_directory(folder, error)) {
-    throw cannot_record(config.folder, folder.string() + " is no folder");
+    throw cannot_record(config.folder, folder.string() + " is not a folder");
   }
 }
 
@@ -58,7 +60,7 @@ Recorder::Recorder(const RecorderConfig& config, std::int64_t run_id, bool backg
   std::error_code error;
   std::filesystem::create_directories(config.folder, error);
   if (error) throw cannot_record(config.folder, error.message());
-  // A disk that is full at the start is a condition like one that fills later.
+  // A disk that is full at startup is a condition, as if it filled up later.
   const int failed = log_->open();
   if (failed != 0 && !means_full(failed)) throw cannot_record(log_->file(), std::strerror(failed));
   error_ = failed;

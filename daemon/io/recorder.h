@@ -1,7 +1,7 @@
-// Writes every published message to rotating LCM event logs that any LCM tool can read and replay.
+// Records every published message in rotating LCM event logs, readable by any LCM tool.
 //
-// record() copies the encoded bytes into a bounded lock-free queue and returns; a thread of the
-// recorder's own writes them. A full queue drops the newest and counts it. In virtual time
+// record() copies the encoded bytes into a bounded lock-free queue and returns; a background
+// thread writes them. A full queue drops the newest message and counts it. In virtual time
 // (`background` false) record() writes at once, so the same input gives the same bytes.
 // When the disk is full or fails, the newest messages stay in a bounded memory backlog (the oldest
 // are overwritten and counted as lost) and are written when space returns; a file never ends with
@@ -30,43 +30,43 @@ struct RecorderConfig {
   std::string folder;                    // "" records nothing: no Recorder is made
   std::int64_t file_bytes = 64 << 20;    // cap of one file
   std::int64_t files = 16;               // logs kept in the folder, oldest removed first
-  std::int64_t queue_bytes = 2 << 20;    // some 30 s of a disk that stands still
+  std::int64_t queue_bytes = 2 << 20;    // about 30 s of a stalled disk
   std::int64_t backlog_bytes = 4 << 20;  // newest kept in memory while the disk is full
 
   /// Fields of the table [recorder].
   void visit(config::schema::Visitor& v);
 };
 
-/// Throws config::schema::Error when `folder` can never be one; makes and writes nothing.
+/// Throws config::schema::Error when `folder` cannot be a folder; creates and writes nothing.
 void check_folder(const RecorderConfig& config);
 
-/// What the recorder can tell; every figure counts from its start.
+/// Figures since the start of the recorder.
 struct RecorderStatus {
   std::int64_t written_records = 0;
   std::int64_t dropped_records = 0;  // queue full
   std::int64_t lost_records = 0;     // overwritten in memory while the disk was full
   bool disk_full = false;            // no space, quota or file-size limit
   bool write_failed = false;         // any other reason
-  int error = 0;                     // errno of the failure that still lasts
+  int error = 0;                     // errno of the present failure
 };
 
 class Recorder {
  public:
-  /// Opens the first file. Throws config::schema::Error when the folder cannot be made or written;
-  /// a full disk is no error but a condition. `config.folder` must not be empty.
+  /// Opens the first file. Throws config::schema::Error when the folder cannot be created or
+  /// written; a full disk is only a condition. `config.folder` must not be empty.
   Recorder(const RecorderConfig& config, std::int64_t run_id, bool background);
-  /// As finish().
+  /// Calls finish().
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  /// One message; `utc_us` is its time in the log. Call from one thread only. Does not block and
-  /// does not allocate when in the background.
+  /// Records a message with the log time `utc_us`. One thread. Neither blocks nor allocates in
+  /// background mode.
   void record(std::string_view channel, std::span<const std::uint8_t> data,
               std::int64_t utc_us) noexcept;
 
-  /// Writes what is queued, as far as the disk takes it, and stops: call it last. Returns how many
-  /// messages are not on disk.
+  /// Writes the queued messages as far as the disk allows and stops. Call last. Returns the number
+  /// of messages that are not on disk.
   std::int64_t finish();
 
   /// Any thread.
@@ -78,15 +78,15 @@ class Recorder {
 
   std::unique_ptr<EventLog> log_;
   std::unique_ptr<ByteQueue> queue_;      // one producer (record), one consumer (run)
-  std::unique_ptr<ByteBacklog> backlog_;  // of the writing thread
-  std::vector<std::uint8_t> record_;      // of the writing thread
+  std::unique_ptr<ByteBacklog> backlog_;  // writing thread only
+  std::vector<std::uint8_t> record_;      // writing thread only
   const bool background_;
   int retry_in_ = 0;  // drains until the next attempt after a failure
   std::atomic<std::int64_t> written_{0};
   std::atomic<std::int64_t> dropped_{0};
   std::atomic<std::int64_t> lost_{0};
   std::atomic<int> error_{0};
-  DrainThread thread_;  // the last: it uses the others
+  DrainThread thread_;  // last member: uses the others
 };
 
 }  // namespace monitor::io

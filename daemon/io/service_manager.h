@@ -1,5 +1,5 @@
-// What the service manager is told (sd_notify): that the daemon is ready, lives, ends, and what it
-// does. Nothing is sent where none waits for it ($NOTIFY_SOCKET).
+// Notifications to the service manager (sd_notify): ready, keep-alive, stopping, status. Nothing is
+// sent without $NOTIFY_SOCKET.
 //
 // One thread.
 #pragma once
@@ -13,7 +13,7 @@ class ServiceManager {
  public:
   ServiceManager();
 
-  /// How long it waits for alive() before it takes the daemon for dead; 0: for ever.
+  /// Watchdog time: the longest allowed interval between calls of alive(); 0: no watchdog.
   [[nodiscard]] std::int64_t watchdog_ns() const noexcept { return watchdog_ns_; }
 
   void ready() const;

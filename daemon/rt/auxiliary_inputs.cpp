@@ -6,7 +6,7 @@
 namespace monitor::rt {
 namespace {
 
-/// A switch reads 1 or it does not: room for rounding alone.
+/// Tolerance for a switch that reads 1.
 constexpr double kSwitchRounding = 1e-6;
 
 }  // namespace
@@ -32,8 +32,8 @@ bool AuxiliaryInputs::counts_as_on(std::size_t input, bool good, bool on) noexce
   return since_on <= max_unread_;
 }
 
-void AuxiliaryInputs::take_pressure(hal::InputRole role,
-                                    const hal::InputReading& reading) noexcept {
+void AuxiliaryInputs::update_pressure(hal::InputRole role,
+                                      const hal::InputReading& reading) noexcept {
   const bool good =
       reading.quality == config::signals::Quality::good && std::isfinite(reading.value);
   const double value_Pa = good ? reading.value : hal::kMissing;
@@ -59,7 +59,7 @@ void AuxiliaryInputs::read(const hal::Tick& tick) noexcept {
     if (named.role == hal::InputRole::valve_command) {
       command_V_ = good ? reading.value : hal::kMissing;
     }
-    take_pressure(named.role, reading);
+    update_pressure(named.role, reading);
   }
 }
 

@@ -1,4 +1,4 @@
-// What the loop reads besides the rod: auxiliary inputs, and what they say about moving at all.
+// The auxiliary inputs of the loop: interlocks (emergency stop, enable), pressures, valve command.
 #pragma once
 
 #include <array>
@@ -13,35 +13,34 @@ namespace monitor::rt {
 
 class AuxiliaryInputs {
  public:
-  /// The list may be null and outlives this. More than kMaxInputs are not read. max_unread: a
-  /// switch that was on counts as on while it cannot be read for so many times in a row; blind()
-  /// meanwhile.
+  /// The list may be null and must outlive this object; at most kMaxInputs are read. A switch that
+  /// was on counts as on for up to max_unread failed readings in a row, during which blind() is
+  /// true.
   AuxiliaryInputs(const std::vector<hal::NamedInput>* inputs, std::int64_t max_unread,
                   LoopStats& stats) noexcept;
 
-  /// Reads all.
+  /// Reads all inputs.
   void read(const hal::Tick& tick) noexcept;
 
-  /// Every input of that role is 1, as far as is known; true when there is none.
+  /// Whether every input of that role is on as far as known; true without such inputs.
   [[nodiscard]] bool e_stop_released() const noexcept { return e_stop_released_; }
   [[nodiscard]] bool enabled() const noexcept { return enabled_; }
-  /// One of them could not be read this time: nothing but null may be written.
+  /// A switch could not be read in this tick: only null may be written.
   [[nodiscard]] bool blind() const noexcept { return blind_; }
-  /// Of the input valve_command, NaN when there is none.
+  /// Reading of the input valve_command, NaN without one.
   [[nodiscard]] double command_V() const noexcept { return command_V_; }
   [[nodiscard]] bool has_command() const noexcept { return has_command_; }
-  /// Of the inputs that measure them, each NaN where its reading is not good: the fault detection
-  /// takes them for what they were at this tick.
+  /// Measured pressures at this tick, NaN where a reading is not good.
   [[nodiscard]] const config::signals::Pressures& pressures() const noexcept { return pressures_; }
 
  private:
-  /// Whether a switch that reads `good`, `on` counts as on.
+  /// Whether a switch with this reading counts as on.
   bool counts_as_on(std::size_t input, bool good, bool on) noexcept;
-  void take_pressure(hal::InputRole role, const hal::InputReading& reading) noexcept;
+  void update_pressure(hal::InputRole role, const hal::InputReading& reading) noexcept;
 
   const std::vector<hal::NamedInput>* inputs_;
   std::int64_t max_unread_;
-  /// Readings since each switch was last seen on; beyond max_unread_: it is off.
+  /// Readings since each switch was last seen on; off beyond max_unread_.
   std::array<std::int64_t, kMaxInputs> since_on_{};
   LoopStats& stats_;
   bool e_stop_released_ = true;

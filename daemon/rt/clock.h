@@ -1,5 +1,5 @@
-// The time that the loop lives in: the machine's monotonic clock, or a virtual one that jumps to
-// whatever is waited for, so that the same code runs as fast as it can and always alike.
+// The loop's clock: the machine's monotonic clock, or a virtual clock that jumps to each wake-up
+// time, so that the same code runs as fast as possible and deterministically.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ class Clock {
   virtual ~Clock() = default;
   [[nodiscard]] virtual std::int64_t now_ns() const noexcept = 0;
   [[nodiscard]] virtual std::int64_t utc_us() const noexcept = 0;
-  /// Returns at once when that time has passed.
+  /// Returns immediately when the time has passed.
   virtual void sleep_until_ns(std::int64_t time_ns) noexcept = 0;
 };
 
@@ -22,7 +22,7 @@ class MonotonicClock final : public Clock {
   void sleep_until_ns(std::int64_t time_ns) noexcept override;
 };
 
-/// Starts at 0; its wall clock as well.
+/// Starts at 0, and so does its wall clock.
 class VirtualClock final : public Clock {
  public:
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return now_ns_; }
@@ -30,7 +30,7 @@ class VirtualClock final : public Clock {
   void sleep_until_ns(std::int64_t time_ns) noexcept override {
     if (time_ns > now_ns_) now_ns_ = time_ns;
   }
-  /// Lets time pass, as work or a stalled machine does.
+  /// Simulates elapsed time.
   void advance_ns(std::int64_t duration_ns) noexcept { now_ns_ += duration_ns; }
 
  private:

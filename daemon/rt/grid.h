@@ -1,5 +1,5 @@
-// The absolute time grid: period n begins at start + n * period, for ever. A wake-up that is late
-// by a period or more skips whole periods and waits for the next point, so the phase is kept.
+// The absolute time grid: period n begins at start + n * period. A wake-up that is late by a period
+// or more skips whole periods and waits for the next grid point, so the phase is kept.
 #pragma once
 
 #include "daemon/rt/clock.h"
@@ -11,7 +11,7 @@ struct Period {
   hal::Tick tick;
   std::int64_t lateness_ns = 0;  ///< of the wake-up for this tick
   std::int64_t overrun_ns = 0;   ///< lateness of the wake-up that skipped periods, else 0
-  std::int64_t skipped = 0;      ///< periods between the tick before and this one
+  std::int64_t skipped = 0;      ///< periods lost since the previous tick
 };
 
 class Grid {
@@ -33,14 +33,14 @@ class Grid {
         ++index_;
         return period;
       }
-      const std::int64_t gone = late_ns / period_ns_ + 1;
+      const std::int64_t lost = late_ns / period_ns_ + 1;
       if (period.overrun_ns == 0) period.overrun_ns = late_ns;
-      period.skipped += gone;
-      index_ += gone;
+      period.skipped += lost;
+      index_ += lost;
     }
   }
 
-  /// Number of the period that next() will wait for first.
+  /// Index of the period that next() waits for first.
   [[nodiscard]] std::int64_t index() const noexcept { return index_; }
 
  private:

@@ -1,5 +1,5 @@
-// Which guards are active, as the loop shows it to the other threads. The loop writes; one thread
-// takes what has become active, however shortly; any thread reads the rest.
+// Which guards are active, published by the loop. One thread consumes the activations, however
+// brief; any thread reads the rest.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@ namespace monitor::rt {
 
 class GuardStatus {
  public:
-  /// Shows what became of the guards in this tick.
+  /// Publishes the state of all guards after a tick.
   void update(const control::GuardMonitor& monitor) noexcept {
     const auto& guards = monitor.guards();
     std::uint32_t active = 0;
@@ -30,9 +30,9 @@ class GuardStatus {
   [[nodiscard]] std::uint32_t active() const noexcept {
     return active_.load(std::memory_order_relaxed);
   }
-  /// What has become active since the last call.
+  /// Guards that have become active since the last call, as a bit mask.
   std::uint32_t take_raised() noexcept { return raised_.exchange(0, std::memory_order_acquire); }
-  /// What that guard compared with its limit when it was last active.
+  /// The value that the guard compared with its limit when it was last active.
   [[nodiscard]] double value(std::size_t guard) const noexcept {
     return values_[guard].load(std::memory_order_relaxed);
   }

@@ -13,20 +13,20 @@ using control::RejectReason;
 using control::State;
 
 void LoopConfig::visit(config::schema::Visitor& v) {
-  v.number({"rate_hz", "of the loop; a replayed record brings its own"}, rate_Hz, {1.0, 2000.0});
-  v.boolean({"auto_arm", "arm and start by itself; only where nothing real moves"}, auto_arm);
-  v.integer({"max_lost_in_a_row", "periods lost without a good tick between"}, max_lost_in_a_row,
+  v.number({"rate_hz", "loop rate; a replayed record determines its own"}, rate_Hz, {1.0, 2000.0});
+  v.boolean({"auto_arm", "arm and start automatically; only without real devices"}, auto_arm);
+  v.integer({"max_lost_in_a_row", "periods lost in a row before overrun_action"}, max_lost_in_a_row,
             {0, 1000000});
-  v.integer({"max_lost_a_minute", "periods lost within 60 s"}, max_lost_a_minute,
-            {0, kMaxOverrunsAMinute});
-  v.choice({"overrun_action", "what more than that leads to"}, overrun_action,
+  v.integer({"max_lost_a_minute", "periods lost within 60 s before overrun_action"},
+            max_lost_a_minute, {0, kMaxOverrunsAMinute});
+  v.choice({"overrun_action", "action when more periods are lost"}, overrun_action,
            {"count", "disarm", "latch"});
-  v.integer({"max_bad_in_a_row", "missing readings or failed writes before a trip"},
+  v.integer({"max_bad_in_a_row", "missing readings or failed writes in a row before a trip"},
             max_bad_in_a_row, {0, 1000});
   v.choice({"privileges", "real-time scheduling and locked memory"}, privileges,
            {"require", "try", "off"});
-  v.integer({"priority", "of SCHED_FIFO"}, priority, {1, 99});
-  v.integer({"cpu", "core that the loop is pinned to, -1 for any"}, cpu, {-1, 1023});
+  v.integer({"priority", "SCHED_FIFO priority"}, priority, {1, 99});
+  v.integer({"cpu", "CPU that the loop is pinned to, -1 for any"}, cpu, {-1, 1023});
 }
 
 control::Action LoopConfig::overrun() const noexcept {
@@ -144,7 +144,7 @@ RejectReason Loop::carry_out(const Command& command) noexcept {
     reference_.hold(y_m_);
     return RejectReason::none;
   }
-  // What holds must be able to hold again.
+  // Re-arms the guards, so that a held reference can be held again.
   if (run) guard_monitor_.start(y_m_);
   reference_.follow(control::Sine(command.centre_m, command.amplitude_m, command.frequency_Hz),
                     tick_, run);

@@ -1,14 +1,14 @@
-// The control loop: once a period it reads the rod and what is around it, decides, writes the valve
-// and hands the sample on. Row k: y is read at t_k, before u_k is written; u_k holds until the next
-// write.
+// The control loop: once a period it reads the rod sensors and the auxiliary inputs, runs the state
+// machine and the controller, writes the valve and queues the sample. Row k: y is read at t_k,
+// before u_k is written; u_k holds until the next write.
 //
 // Null (valve.null_V) is written whenever the state is not RUN (a stop is null at once), in the
 // first tick after 50 ms or more without one, and when the position is missing. Guards (control/
 // guard_monitor.h) hold the reference, ramp the command to null or latch; losing the enable input
-// disarms. A start begins where the rod is; a start while a guard holds resumes from there, and so
-// does the law after a null in between.
+// disarms. A start begins at the rod's position; a start while a guard holds resumes from there,
+// and so does the controller after an intermediate null.
 //
-// Several rod sensors: control/position_voter.h says which one's reading counts.
+// control/position_voter.h selects among several rod sensors.
 #pragma once
 
 #include <cstdint>
@@ -48,19 +48,19 @@ struct LoopConfig {
   [[nodiscard]] control::Action overrun() const noexcept;
 };
 
-/// What the loop may do with its valve.
+/// Limits on driving the valve.
 struct SafetyRules {
   control::SafetyConfig safety;
-  bool may_arm = true;  ///< false: a calibration is missing
+  bool may_arm = true;  ///< false: no valid calibration
 };
 
-/// After this long without a tick the old law is not trusted with the state it finds.
+/// After an outage this long the controller does not resume with its old state.
 inline constexpr std::int64_t kNullAfter_ns = 50'000'000;
 
 class Loop {
  public:
-  /// What the loop works with; all of it outlives the loop. `valve` null: nothing is ever written
-  /// and the state is MONITOR.
+  /// Collaborators; must outlive the loop. `valve` null: nothing is ever written and the state is
+  /// MONITOR.
   struct Parts {
     Clock& clock;
     hal::RodSensor& rod;
@@ -74,33 +74,32 @@ class Loop {
     hal::Output* permit = nullptr;
   };
 
-  /// Throws config::schema::Error for guards that do not go together.
+  /// Throws config::schema::Error for contradictory guards.
   Loop(const LoopConfig& config, const Parts& parts, const control::Controller& controller,
        double sample_time_s, const SafetyRules& rules = {});
 
-  /// One period. False when the device has nothing more to give (end of a record). Does not
-  /// allocate, lock, log or throw.
+  /// Runs one period. Returns false at the end of a record. Does not allocate, lock, log or throw.
   bool tick(const Period& period) noexcept;
 
-  /// The next tick writes null, whatever commands may say, and so do all after it.
+  /// From the next tick on, only null is written.
   void close() noexcept { closing_ = true; }
 
  private:
   void take_commands() noexcept;
   [[nodiscard]] control::RejectReason carry_out(const Command& command) noexcept;
   [[nodiscard]] control::RejectReason carry_out(control::Event event, bool at_once) noexcept;
-  /// What forbids to arm or to start.
+  /// Why arming or starting is forbidden.
   [[nodiscard]] control::RejectReason obstacle(control::Event event) const noexcept;
   void apply(control::Event event) noexcept;
-  /// Carries out what a guard asks for. `measured`: only in RUN.
+  /// Applies a guard's action. `measured`: acts in RUN only.
   void act(const control::GuardTrip& trip, bool measured) noexcept;
   void latch(int guard) noexcept;
-  /// From RUN or ARMED to DISARMED.
+  /// Goes from RUN or ARMED to DISARMED.
   void leave() noexcept;
   void watch_overruns(const Period& period) noexcept;
   /// Emergency stop, enable, missing positions.
   void watch_inputs(const hal::Tick& tick) noexcept;
-  /// The reference of this tick, and the guards that measure.
+  /// Evaluates the reference and the measuring guards.
   void watch_motion(const hal::Reading& reading, config::signals::Sample& sample) noexcept;
   void drive(const Period& period, config::signals::Sample& sample) noexcept;
   void send(config::signals::Sample& sample) noexcept;
@@ -123,17 +122,17 @@ class Loop {
   double null_V_;
   std::int64_t max_bad_in_a_row_;
   bool may_arm_;
-  control::Answer answer_;  ///< to the newest order, given when the tick is over
+  control::Answer answer_;  ///< to the newest command, published at the end of the tick
   bool closing_ = false;
   bool permit_on_ = false;
-  bool interrupted_ = false;   ///< RUN, but null was written in the tick before
-  double y_m_ = 0.0;           ///< of this tick, NaN when missing
+  bool interrupted_ = false;   ///< in RUN, but the previous tick wrote null
+  double y_m_ = 0.0;           ///< in this tick, NaN when missing
   double last_V_ = 0.0;        ///< u - null of the last command
-  bool last_limited_ = false;  ///< that command was at a limit
+  bool last_limited_ = false;  ///< the last command was at a limit
   std::int64_t bad_readings_ = 0;
   std::int64_t bad_writes_ = 0;
   std::int64_t tick_ = 0;  ///< index of this tick
-  std::int64_t gap_ = 0;   ///< periods that the detector has not been given
+  std::int64_t gap_ = 0;   ///< periods missing from the sample queue
 };
 
 }  // namespace monitor::rt

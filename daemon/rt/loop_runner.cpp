@@ -8,14 +8,14 @@
 namespace monitor::rt {
 namespace {
 
-/// Virtual ticks between two looks at the signals.
-constexpr int kTicksBetweenLooks = 256;
-/// How often the detector looks at its queue: small against any alarm's delay, cheap as a wake-up.
+/// Virtual ticks between two polls of `stop_asked`.
+constexpr int kTicksPerPoll = 256;
+/// Polling period of the consumer: short against any alarm's delay, cheap in wake-ups.
 constexpr std::int64_t kPoll_ns = 10'000'000;
-/// A loop that has not ended this long after it was told to is stuck in a device.
+/// A loop that has not ended this long after a stop is stuck in a device call.
 constexpr std::chrono::milliseconds kStuck{1000};
 
-/// Once the loop has ended; a network or a disk may take its time with what is queued.
+/// After the loop has ended, for what is still queued to network and disk.
 constexpr std::chrono::milliseconds kDetectorStuck{5000};
 
 void consume(SampleConsumer& consumer, const std::atomic<bool>& loop_ended, std::atomic<bool>& stop,
@@ -33,7 +33,7 @@ void consume(SampleConsumer& consumer, const std::atomic<bool>& loop_ended, std:
   }
 }
 
-/// No destructor may wait for a thread that is stuck.
+/// Exits without destructors, which would wait for the stuck thread.
 [[noreturn]] void leave_stuck_thread(hal::ValveDrive* valve, const char* what) {
   if (valve != nullptr) valve->end_at_null();
   std::fputs(what, stderr);
@@ -46,7 +46,7 @@ RunError run_virtual(LoopRunner& runner, SampleConsumer& consumer, std::atomic<b
                      const std::function<bool()>& stop_asked) {
   for (int n = 0; runner.step(); ++n) {
     consumer.poll();
-    if (n % kTicksBetweenLooks == 0 && stop_asked()) stop.store(true, std::memory_order_relaxed);
+    if (n % kTicksPerPoll == 0 && stop_asked()) stop.store(true, std::memory_order_relaxed);
   }
   consumer.finish();
   return {};

@@ -1,5 +1,5 @@
 // Runs a loop from its first tick to the last, which commands null: in virtual time on the calling
-// thread, or in real time on threads of its own. The steps are the same code.
+// thread, in real time on its own threads. Both use the same steps.
 #pragma once
 
 #include <atomic>
@@ -25,10 +25,10 @@ class SampleConsumer {
   virtual void finish() = 0;
 };
 
-/// The life of one loop. Whatever way it ends, the last thing written is null.
+/// Steps one loop. Null is the last command however the run ends.
 class LoopRunner {
  public:
-  /// `ticks`: periods of the grid before the closing one; `valve` may be null.
+  /// `ticks`: periods before the closing one; `valve` may be null.
   LoopRunner(Loop& loop, const Grid& grid, Clock& clock, hal::ValveDrive* valve, std::int64_t ticks,
              const std::atomic<bool>& stop) noexcept
       : loop_(loop), grid_(grid), clock_(clock), valve_(valve), ticks_(ticks), stop_(stop) {}
@@ -56,14 +56,14 @@ class LoopRunner {
   const std::atomic<bool>& stop_;
 };
 
-/// How a run ended: "" as it was meant to, else what went wrong, in one line.
+/// Why a run failed, in one line; empty: success.
 using RunError = std::string;
 
-/// `stop_asked` is called now and then; once it says so, the next tick is the last.
+/// Polls `stop_asked` now and then; once it returns true, the next tick is the last.
 RunError run_virtual(LoopRunner& runner, SampleConsumer& consumer, std::atomic<bool>& stop,
                      const std::function<bool()>& stop_asked);
 
-/// `wait_stop_asked` waits up to 100 ms and says whether to stop.
+/// `wait_stop_asked` waits up to 100 ms and returns whether to stop.
 RunError run_realtime(LoopRunner& runner, SampleConsumer& consumer,
                       const ThreadOptions& loop_thread, std::atomic<bool>& stop,
                       hal::ValveDrive* valve, const std::function<bool()>& wait_stop_asked);

@@ -1,4 +1,5 @@
-// What the loop counts and shows, and how far the detector has come. One writer each, any reader.
+// Counters and state published by the loop, and the detector's progress. One writer each, any
+// reader.
 #pragma once
 
 #include <array>
@@ -13,7 +14,7 @@
 
 namespace monitor::rt {
 
-/// Why the state is LATCHED; `guard`: one of [[guard]].
+/// Why the state is LATCHED; `guard`: a configured [[guard]].
 enum class Trip : std::uint8_t { none, overrun, reading, write, e_stop, guard };
 
 inline constexpr std::size_t kMaxSpareRods = control::kMaxRods - 1;
@@ -31,10 +32,11 @@ class Counter {
   std::atomic<std::int64_t> value_{0};
 };
 
-/// A device's readings.
+/// Read statistics of a device.
 struct DeviceStats {
   Counter good, bad;
-  std::atomic<double> value{std::numeric_limits<double>::quiet_NaN()};  ///< newest, NaN: none
+  std::atomic<double> value{
+      std::numeric_limits<double>::quiet_NaN()};  ///< newest reading, NaN: none
 
   void count(bool is_good, double reading) noexcept {
     (is_good ? good : bad).add();
@@ -43,10 +45,10 @@ struct DeviceStats {
   }
 };
 
-/// A rod sensor's part in the loop, the configured one's first.
+/// A rod sensor's state in the voter; the configured sensor is the first.
 struct RodStats {
-  std::atomic<control::RodFault> fault{control::RodFault::none};  ///< why it is out
-  std::atomic<std::int64_t> since_tick{0};                        ///< it has been out or in
+  std::atomic<control::RodFault> fault{control::RodFault::none};  ///< why the sensor is out
+  std::atomic<std::int64_t> since_tick{0};                        ///< of the last change of `fault`
 };
 
 struct LoopStats {
@@ -55,7 +57,7 @@ struct LoopStats {
   Counter skipped_periods;
   Counter dropped_samples;  ///< queue to the detector full
   Counter expired_commands;
-  Counter rejected_commands;  ///< not allowed at that moment
+  Counter rejected_commands;  ///< not allowed in the current state
   DeviceStats rod;            ///< the configured sensor
   Counter valve_good, valve_bad;
   Counter permit_good, permit_bad;  ///< toggles of the permit output
@@ -63,20 +65,20 @@ struct LoopStats {
   std::array<DeviceStats, kMaxInputs> inputs;
   std::array<RodStats, control::kMaxRods> rods;
   std::atomic<std::uint8_t> rod_in_charge{0};
-  std::atomic<std::int64_t> rod_since_tick{0};  ///< it has been in charge
+  std::atomic<std::int64_t> rod_since_tick{0};  ///< when the sensor in charge took over
   Histogram lateness, read, control, write, tick;
   std::atomic<control::State> state{control::State::disarmed};
   std::atomic<Trip> trip{Trip::none};
-  std::atomic<std::uint8_t> trip_guard{0};  ///< which guard that was
+  std::atomic<std::uint8_t> trip_guard{0};  ///< index of the guard that tripped
   std::atomic<bool> holding{false};         ///< RUN, with the reference frozen
   std::atomic<bool> ramping{false};         ///< RUN, on the way to null
   std::atomic<double> y_m{std::numeric_limits<double>::quiet_NaN()};
   std::atomic<double> reference_m{std::numeric_limits<double>::quiet_NaN()};
   std::atomic<double> u_V{std::numeric_limits<double>::quiet_NaN()};
-  std::atomic<std::uint64_t> answer{0};  ///< to the newest order: control::unpack
+  std::atomic<std::uint64_t> answer{0};  ///< to the newest command: control::unpack
   GuardStatus guards;
-  Counter detected_samples;                    ///< by the detector, through all that it does
-  std::atomic<std::int32_t> active_alarms{0};  ///< by the detector, once a second
+  Counter detected_samples;                    ///< fully processed by the detector
+  std::atomic<std::int32_t> active_alarms{0};  ///< written by the detector once a second
 };
 
 }  // namespace monitor::rt

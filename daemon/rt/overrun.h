@@ -1,5 +1,5 @@
-// When overruns are too many: more than `in_a_row` periods lost without a good tick between, or
-// more than `a_minute` periods lost within 60 s. Fixed memory.
+// Overrun limit: more than `in_a_row` periods lost without a good tick in between, or more than
+// `a_minute` periods lost within 60 s. Fixed memory.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ class OverrunRule {
       : in_a_row_(in_a_row),
         a_minute_(a_minute < kMaxOverrunsAMinute ? a_minute : kMaxOverrunsAMinute) {}
 
-  /// `skipped` periods were lost before the tick at time_ns (0: none). True when that is too many.
+  /// Records `skipped` lost periods before the tick at time_ns. Returns true beyond the limit.
   bool add(std::int64_t skipped, std::int64_t time_ns) noexcept {
     if (skipped == 0) {
       row_ = 0;

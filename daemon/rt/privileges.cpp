@@ -15,7 +15,7 @@
 namespace monitor::rt {
 namespace {
 
-/// What must still be possible to map after locking, or a limit on locked memory would starve us.
+/// Memory that must remain mappable after locking; a limit on locked memory could prevent it.
 constexpr std::size_t kRoomAfterLock_bytes = 32U << 20U;
 constexpr std::size_t kStackTouched_bytes = 64 * 1024;
 
@@ -64,7 +64,7 @@ int try_thread(const ThreadOptions& options) {
   return probe.start("probe", options, [] {});
 }
 
-/// Latency of 0 us asked of the power management for as long as the file stays open.
+/// Requests a wake-up latency of 0 us from the power management while the file stays open.
 int keep_awake() noexcept {
   const int file = open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);
   if (file < 0) return errno;
@@ -83,7 +83,7 @@ void keep_memory_small() noexcept {
   pthread_attr_destroy(&attributes);
 }
 
-Grant ask_privileges(const LoopConfig& config) {
+Grant request_privileges(const LoopConfig& config) {
   Grant grant;
   if (config.privileges == "off") {
     grant.text = "off";

@@ -1,5 +1,5 @@
-// Real-time privileges: SCHED_FIFO, a core, locked memory, no deep idle states. Asked for before
-// anything starts; what was got is said in words, for the log and for health.
+// Real-time privileges: SCHED_FIFO, a CPU, locked memory, no deep idle states. Requested before
+// anything starts; reports what was granted, for the log and health_t.
 #pragma once
 
 #include <string>
@@ -10,19 +10,20 @@
 namespace monitor::rt {
 
 struct Grant {
-  ThreadOptions loop_thread;  ///< what the loop's thread may be given
+  ThreadOptions loop_thread;  ///< options granted to the loop's thread
   std::string text;           ///< "SCHED_FIFO 80; memory locked; ..."
 };
 
-/// At the very start of the process: small stacks for every thread, one heap arena, so that locked
-/// memory stays small.
+/// Call first in the process: small default stacks and a single heap arena keep the locked memory
+/// small.
 void keep_memory_small() noexcept;
 
-/// Asks for what `[loop] privileges, priority, cpu` say. Throws config::schema::RunError when
-/// required and not got. Locks all memory mapped so far and, as it is touched, all that follows.
-[[nodiscard]] Grant ask_privileges(const LoopConfig& config);
+/// Requests what `[loop] privileges, priority, cpu` ask for. Throws config::schema::RunError when
+/// a required privilege is not granted. Locks all memory mapped so far, and later mappings as they
+/// are touched.
+[[nodiscard]] Grant request_privileges(const LoopConfig& config);
 
-/// Touches the stack that the loop will use and asks for prompt timers; on the loop's own thread.
+/// Touches the stack that the loop will use and requests exact timers. Call on the loop's thread.
 void prepare_loop_thread() noexcept;
 
 }  // namespace monitor::rt

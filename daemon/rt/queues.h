@@ -1,5 +1,5 @@
-// What passes between the loop and the other threads: samples out, commands in. Both queues are
-// bounded and lock-free, one producer and one consumer each; a full queue drops the newest.
+// Queues between the loop and the other threads: samples out, commands in. Both are bounded and
+// lock-free with one producer and one consumer; a full queue drops the newest item.
 #pragma once
 
 #include <boost/lockfree/spsc_queue.hpp>
@@ -11,15 +11,15 @@
 
 namespace monitor::rt {
 
-/// An order to the loop; one that arrives at or after expires_ns is dropped and counted.
+/// A command to the loop; a command that arrives at or after expires_ns is dropped and counted.
 struct Command {
-  /// readmit: rod sensors that were out and are right again may be in again
+  /// readmit: rod sensors that are right again may vote again
   enum class Kind : std::uint8_t { event, sine, hold, readmit };
   Kind kind = Kind::event;
-  control::Event event = control::Event::disarm;  ///< of kind event
-  bool at_once = false;                           ///< of start: without blending
-  std::uint32_t number = 0;                       ///< for the answer; 0: none is wanted
-  double centre_m = 0.0;                          ///< of kind sine: the new reference signal
+  control::Event event = control::Event::disarm;  ///< kind event
+  bool at_once = false;                           ///< kind event, start: without blending
+  std::uint32_t number = 0;                       ///< identifies the answer; 0: no answer wanted
+  double centre_m = 0.0;                          ///< kind sine: the new reference signal
   double amplitude_m = 0.0;
   double frequency_Hz = 0.0;
   std::int64_t expires_ns = 0;  ///< on the loop's clock

@@ -1,4 +1,5 @@
-// The rod sensors of a rig: read one after the other, and the one whose reading counts.
+// The redundant rod sensors of a rig: reads all of them and returns the reading of the one in
+// charge.
 #pragma once
 
 #include <array>
@@ -14,16 +15,16 @@ namespace monitor::rt {
 
 class RedundantPositionSensor {
  public:
-  /// `spares` may be null; the devices outlive this. More than kMaxSpareRods are not read.
+  /// `spares` may be null; the devices must outlive this object. At most kMaxSpareRods are read.
   RedundantPositionSensor(hal::RodSensor& rod, const std::vector<hal::NamedRod>* spares,
                           LoopStats& stats, const control::PositionVoter& voter) noexcept
       : rod_(rod), spares_(spares), stats_(stats), voter_(voter) {}
 
-  /// Reads all and decides which one is in charge; see PositionVoter::update. Returns that one's
-  /// reading, with the configured device's word on the valve's command and on the end of a record.
+  /// Reads all sensors and updates the voter (PositionVoter::update). Returns the reading of the
+  /// sensor in charge; valve command and end of record are always the configured sensor's.
   const hal::Reading& read(const hal::Tick& tick, const Clock& clock, double t_s, double command_V,
                            bool controlling) noexcept;
-  /// What each of them read.
+  /// Copies all readings into the sample.
   void fill(config::signals::Sample& sample) const noexcept;
 
   [[nodiscard]] control::PositionVoter& voter() noexcept { return voter_; }

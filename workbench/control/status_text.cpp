@@ -91,7 +91,7 @@ void print_status(const Json& status, std::ostream& out) {
   const std::string obstacle = text_of(status, "obstacle");
   if (!obstacle.empty()) out << "  cannot be armed: " << obstacle << '\n';
   const std::string refused = text_of(status, "reload_refused");
-  if (!refused.empty()) out << "  the old configuration stays: " << refused << '\n';
+  if (!refused.empty()) out << "  the old configuration remains active: " << refused << '\n';
   out << "  rod " << number_of(status, "y_m", 1e3, " mm") << ", reference "
       << number_of(status, "reference_m", 1e3, " mm") << ", valve "
       << number_of(status, "u_V", 1.0, " V") << '\n';

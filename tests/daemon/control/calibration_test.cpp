@@ -105,7 +105,7 @@ TEST(Contradiction, IsSaidInOneLine) {
   const auto said = [](const Calibration& calibration, double null_V = 0.3) {
     return contradiction(calibration, null_V, 10.0, "a");
   };
-  EXPECT_THAT(said(fits, 0.19), testing::HasSubstr("null_V is 0.19; the rod stands at 0.3"));
+  EXPECT_THAT(said(fits, 0.19), testing::HasSubstr("null_V is 0.19; the rod stands still at 0.3"));
   EXPECT_THAT(said(fits, 0.41), testing::HasSubstr("null_V is 0.41"));
   Calibration other = fits;
   other.valve_sign = -1;
@@ -115,7 +115,7 @@ TEST(Contradiction, IsSaidInOneLine) {
   EXPECT_THAT(said(other), testing::HasSubstr("the rod sensor is reversed"));
   other = fits;
   other.rod_scale = 1.02;
-  EXPECT_THAT(said(other), testing::HasSubstr("a metre of reading is 1.02 m"));
+  EXPECT_THAT(said(other), testing::HasSubstr("1 m of reading is 1.02 m"));
   other = fits;
   other.wiring = "b";
   EXPECT_THAT(said(other), testing::HasSubstr("has changed since"));

@@ -56,9 +56,10 @@ TEST_F(AlarmCommandServerTest, CarriesOutWhatIsOrderedAndTellsWhatHasChanged) {
 
 TEST_F(AlarmCommandServerTest, RefusesInWords) {
   book_.set_condition("s", "a", Severity::minor, true, "", 1);
-  EXPECT_THAT(command(Kind::acknowledge, "x").reject_reason, HasSubstr("there is no alarm \"x\""));
+  EXPECT_THAT(command(Kind::acknowledge, "x").reject_reason, HasSubstr("no alarm \"x\""));
   EXPECT_EQ(command(Kind::unshelve, "a").reject_reason, "s.a: not shelved");
-  EXPECT_THAT(command(Kind::shelve, "a", 1e9).reject_reason, HasSubstr("s.a: shelving is limited to"));
+  EXPECT_THAT(command(Kind::shelve, "a", 1e9).reject_reason,
+              HasSubstr("s.a: shelving is limited to"));
   EXPECT_THAT(changed_, IsEmpty());
 }
 

@@ -143,7 +143,7 @@ TEST_F(PublisherTest, TellsPressuresJustBeforeTheirSampleWhereTheRigMeasuresThem
     {
       Recorder recorder({.folder = folder_}, measures ? 11 : 12, false);
       Publisher publisher({.url = "", .prefix = "RIG"}, 11, kSampleTime_s, &recorder);
-      if (measures) publisher.tell_pressures();
+      if (measures) publisher.enable_pressures();
       Sample with = sample(4);
       with.pressures = {7e6, 4.5e6, 2.5e6};
       publisher.sample(with);

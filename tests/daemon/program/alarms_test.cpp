@@ -106,7 +106,7 @@ TEST_F(Alarms, AreSeenActedOnAndFoundAgainAfterAKill) {
   const Result again = order("ack standing");
   EXPECT_EQ(again.exit_code, 1);
   EXPECT_THAT(again.out, HasSubstr("refused: sample.standing: nothing to acknowledge"));
-  EXPECT_THAT(order("ack nothing.there").out, HasSubstr("there is no alarm \"nothing.there\""));
+  EXPECT_THAT(order("ack nothing.there").out, HasSubstr("no alarm \"nothing.there\""));
   EXPECT_THAT(order("shelve standing --for 1h").out, HasSubstr("for 1000 s at most"));
   EXPECT_EQ(order("shelve standing --for soon").exit_code, 2);
   EXPECT_EQ(order("shelve standing --for 10min").out, "sample.standing\n");
@@ -147,7 +147,7 @@ TEST_F(Alarms, OfADamagedFileBeginAnewWithOneLine) {
   EXPECT_TRUE(shows("UNACKNOWLEDGED  MAJOR    sample.standing"));
   const Result result = end();
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_THAT(result.err, HasSubstr("alarms.json: is no file of alarms, or damaged; all alarms "
+  EXPECT_THAT(result.err, HasSubstr("alarms.json: is not an alarm file or is damaged; all alarms "
                                     "begin anew"));
 }
 

@@ -191,7 +191,7 @@ TEST(Commission, IsGivenUpWhenTheRigNoLongerAnswers) {
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(result.out, testing::AnyOf(HasSubstr("the position is missing or stale"),
                                          HasSubstr("cannot be read"),
-                                         HasSubstr("the valve does not take commands")));
+                                         HasSubstr("the valve does not accept commands")));
   EXPECT_FALSE(bench.written());
   EXPECT_TRUE(watcher.wait_for([](const Look& look) { return look.valve_V == 0.0; }));
   EXPECT_LT(travel_m(watcher.looks()), kMaxTravel_m);
@@ -210,7 +210,7 @@ TEST(Commission, WhatCannotBeCommissionedIsSaidInOneLine) {
   const Result nowhere = run({"--config", shipped("spoolwatchd.toml"), "--commission",
                               (folder.path() / "no/c.toml").string(), "--yes"});
   EXPECT_EQ(nowhere.exit_code, 2);
-  EXPECT_THAT(nowhere.err, HasSubstr("is no folder"));
+  EXPECT_THAT(nowhere.err, HasSubstr("is not a folder"));
   const Result alone = run({"--config", shipped("spoolwatchd.toml"), "--yes"});
   EXPECT_EQ(alone.exit_code, 2);
 }
@@ -226,7 +226,9 @@ TEST(Commission, ScaleIsTheTrueStrokeOverTheReadOne) {
   const std::size_t at = result.out.find(before);
   ASSERT_NE(at, std::string::npos) << result.out;
   EXPECT_NEAR(std::stod(result.out.substr(at + before.size())), 1.02, 2.0 * 10e-6 / 0.61);
-  EXPECT_THAT(result.out, HasSubstr("not armed as configured: a metre of reading is 1.02 m"));
+  EXPECT_THAT(
+      result.out,
+      HasSubstr("arming will be rejected with this configuration: 1 m of reading is 1.02 m"));
 }
 
 }  // namespace

@@ -208,7 +208,7 @@ TEST(Configuration, CheckRefusesWhatAStartWouldRefuse) {
   const Result folder = run({"--config", shipped("demo.toml"), "--lcm-url", "", "--set",
                              "recorder.folder=/dev/null/log", "--check"});
   EXPECT_EQ(folder.exit_code, 78);
-  EXPECT_THAT(folder.err, HasSubstr("/dev/null is no folder"));
+  EXPECT_THAT(folder.err, HasSubstr("/dev/null is not a folder"));
 }
 
 TEST(Configuration, CheckPrintsTheWayToNullAlsoWhereADeviceCannotBeReached) {

@@ -77,7 +77,7 @@ void expect_refused(const Result& result, const std::string& why) {
 TEST(Control, ArmsStartsStopsAndSaysTheStateAfterEach) {
   Service service;
   EXPECT_THAT(service.order("status").out, HasSubstr("stand-1: DISARMED"));
-  expect_refused(service.order("start"), "not possible in state DISARMED");
+  expect_refused(service.order("start"), "not possible in state DISARMED: arm first");
   EXPECT_EQ(service.order("arm").out, "ARMED\n");
   EXPECT_EQ(service.order("start").out, "RUN\n");
   EXPECT_EQ(service.order("reference --centre 0.3 --amplitude 0.005 --frequency 1").out, "RUN\n");
@@ -132,7 +132,7 @@ TEST(Control, AnEmergencyStopLatchesAndForbidsToArmUntilItIsReleased) {
   EXPECT_EQ(service.order("arm").exit_code, 0);
   EXPECT_EQ(service.order("start").out, "RUN\n");
   EXPECT_TRUE(service.becomes("LATCHED by e_stop"));
-  expect_refused(service.order("arm"), "not possible in state LATCHED");
+  expect_refused(service.order("arm"), "not possible in state LATCHED: reset first");
   EXPECT_EQ(service.order("reset").out, "DISARMED\n");
   expect_refused(service.order("arm"), "guard e_stop: the emergency stop is not released");
   EXPECT_THAT(service.order("status").out, HasSubstr("cannot be armed: input e_stop"));

@@ -134,7 +134,7 @@ TEST_F(Reload, OfABadFileKeepsTheOldOneAndSaysWhy) {
   EXPECT_THAT(bad.out, HasSubstr("rig.toml"));
   EXPECT_EQ(standing()["high"], 0.2);
   EXPECT_EQ(ask("status")["config_hash"], before["config_hash"]);
-  EXPECT_THAT(order("status").out, HasSubstr("the old configuration stays: "));
+  EXPECT_THAT(order("status").out, HasSubstr("the old configuration remains active: "));
 
   write(-0.1, "bands_file = \"none.toml\"\n");
   EXPECT_THAT(order("reload").out, HasSubstr("none.toml"));
@@ -147,7 +147,7 @@ TEST_F(Reload, OfABadFileKeepsTheOldOneAndSaysWhy) {
   const Result guards = order("reload");
   EXPECT_EQ(guards.exit_code, 1);
   EXPECT_THAT(guards.out, HasSubstr("[[guard]] travel: "));
-  EXPECT_THAT(guards.out, HasSubstr("cannot change while the daemon runs, for it decides what is "
+  EXPECT_THAT(guards.out, HasSubstr("cannot change while the daemon runs because it affects the "
                                     "done with the valve: restart the daemon"));
   EXPECT_EQ(standing()["high"], 0.2) << "nothing of it is taken";
 

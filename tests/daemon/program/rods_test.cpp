@@ -38,11 +38,11 @@ TEST(ThreeRods, FailOneAfterTheOtherAndEachIsNamed) {
   const auto [first_s, first] = came(log, "rod_rod_out");
   EXPECT_GT(first_s, 8.2);
   EXPECT_LT(first_s, 8.4);
-  EXPECT_THAT(first, HasSubstr("off the middle of the others; the controller works with middle"));
+  EXPECT_THAT(first, HasSubstr("off the middle of the others; the controller uses middle"));
   const auto [second_s, second] = came(log, "rod_middle_out");
   EXPECT_GE(second_s, 16.0);
   EXPECT_LT(second_s, 16.2);
-  EXPECT_THAT(second, HasSubstr("the controller works with outer"));
+  EXPECT_THAT(second, HasSubstr("the controller uses outer"));
   EXPECT_EQ(came(log, "rod_outer_out").first, -1.0) << "with nobody left it is the guard's";
   const auto [latched_s, why] = came(log, "latched");
   EXPECT_NEAR(latched_s, 24.015, 1e-9) << "the fourth missing in a row";

@@ -77,7 +77,7 @@ class ServiceReportTest : public testing::Test {
       stats_.valve_good.add();
     }
     if (detector) stats_.detected_samples.add();
-    report_.look();
+    report_.poll();
     for (const std::string& message : ear_.heard()) {
       if (message == "READY=1") ++ready_;
       if (message == "WATCHDOG=1") ++signs_;
@@ -111,7 +111,7 @@ TEST_F(ServiceReportTest, IsNotReadyWithoutReadingsWritesOrDetector) {
   for (int i = 0; i < 100; ++i) cycle(true, true, false);
   EXPECT_EQ(ready_, 0) << "without writes";
   ServiceReport watching(manager_, clock_, stats_, false);
-  watching.look();
+  watching.poll();
   EXPECT_THAT(ear_.heard(), Contains("READY=1")) << "where nothing is driven";
 }
 
@@ -170,7 +170,7 @@ TEST_F(ServiceReportTest, WithoutAWatchdogNoSignOfLifeIsGiven) {
   stats_.ticks.add();
   stats_.detected_samples.add();
   clock_.advance_ns(10'000 * kMillisecond_ns);
-  report.look();
+  report.poll();
   EXPECT_THAT(ear_.heard(), Not(Contains("WATCHDOG=1")));
 }
 

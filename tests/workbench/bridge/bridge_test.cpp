@@ -101,7 +101,7 @@ TEST(Bridge, SendsPressuresAndRodSensorsWithTheSamplesThatItSends) {
   ASSERT_FALSE(port.empty());
   const std::string url = own_url();
   Publisher publisher({.url = url}, 3, 0.005, nullptr);
-  publisher.tell_pressures();
+  publisher.enable_pressures();
   publisher.name_rods({"rod", "outer"});
   Subprocess bridge({kProgram, "bridge", "--lcm-url", url, "--udp", "127.0.0.1:" + port.substr(5),
                      "--sample-rate", "50"});

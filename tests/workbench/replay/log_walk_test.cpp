@@ -63,7 +63,7 @@ std::vector<fs::path> record(const fs::path& folder, int ticks, std::int64_t fil
     config.files = 1000;
     monitor::io::Recorder recorder(config, 3, false);
     monitor::io::Publisher publisher({.url = ""}, 3, 0.005, &recorder);
-    publisher.tell_pressures();
+    publisher.enable_pressures();
     publisher.name_rods({"rod", "outer"});
     for (int tick = 0; tick < ticks; ++tick) publisher.sample(sample_of(tick));
   }
