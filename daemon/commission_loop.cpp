@@ -46,7 +46,7 @@ CommissionLoop::CommissionLoop(const Parts& parts, control::Commissioning& proce
 
 CommissionLoop::~CommissionLoop() { end_.store(true, std::memory_order_relaxed); }
 
-int CommissionLoop::start(const rt::ThreadOptions& options) {
+int CommissionLoop::start(const hal::ThreadOptions& options) {
   if (virtual_time_) return 0;
   return thread_.start("loop", options, [this] {
     rt::prepare_loop_thread();

@@ -9,7 +9,7 @@
 #include "daemon/control/commissioning.h"
 #include "daemon/rt/auxiliary_inputs.h"
 #include "daemon/rt/grid.h"
-#include "daemon/rt/thread.h"
+#include "hal/thread.h"
 
 namespace monitor {
 
@@ -33,7 +33,7 @@ class CommissionLoop {
   CommissionLoop& operator=(const CommissionLoop&) = delete;
 
   /// Returns 0 or an errno.
-  int start(const rt::ThreadOptions& options);
+  int start(const hal::ThreadOptions& options);
   /// Runs the stage that the procedure has begun. Returns false when `stop_asked`, which may wait
   /// briefly, returned true; null is being written by then.
   bool run_stage(const std::function<bool()>& stop_asked);
@@ -63,7 +63,7 @@ class CommissionLoop {
   std::atomic<bool> end_{false};
   std::atomic<Stop> stop_{Stop::none};
   std::atomic<config::signals::Quality> quality_{config::signals::Quality::bad};
-  rt::Thread thread_;
+  hal::Thread thread_;
 };
 
 [[nodiscard]] const char* to_string(CommissionLoop::Stop stop) noexcept;

@@ -2,7 +2,7 @@
 
 #include <csignal>
 
-#include "daemon/rt/thread.h"
+#include "hal/thread.h"
 
 namespace monitor {
 namespace {
@@ -26,7 +26,7 @@ void on_fatal_signal(int signal) {
 }  // namespace
 
 SafeStateValve::SafeStateValve(hal::ValveDrive* valve) noexcept : valve_(valve) {
-  static rt::SignalStack main_stack;
+  static hal::SignalStack main_stack;
   main_stack.use();
   valve_of_process.store(this);
   struct sigaction action {};

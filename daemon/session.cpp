@@ -28,11 +28,11 @@
 namespace monitor {
 namespace {
 
-/// The first period begins this long after everything stands.
+/// Delay from the end of opening to the first period.
 constexpr std::int64_t kLead_ns = 20'000'000;
 constexpr std::int64_t kCommandLife_ns = 1'000'000'000;
 
-/// What a session consists of before it runs: nothing has been written to a device yet.
+/// The opened devices and the checked configuration; nothing has been written to a device yet.
 struct Prepared {
   double sample_time_s;
   hal::OpenContext opening;
@@ -41,7 +41,7 @@ struct Prepared {
   std::uint64_t hash;
   DetectionConfig detection;
   std::vector<control::GuardConfig> guards;
-  std::string never_arms;  ///< why it may not be armed; empty: it may
+  std::string never_arms;  ///< why the rig cannot be armed; empty: it can
 };
 
 template <class Named>
@@ -74,11 +74,11 @@ void check_numbers(const std::string& file, const hal::Rig& rig) {
 void check_failover(const DaemonConfig& config) {
   if (!config.safety.failover.present || config.rig.rods() > 1) return;
   throw config::schema::bad_config(config.file + ": [failover]",
-                                   "has no other rod sensor to go over to", "a [[spare_rod]]");
+                                   "has no second rod sensor to switch to", "a [[spare_rod]]");
 }
 
-/// To run, where no other process may drive the devices; or, with `absent`, to look at, where a
-/// device that cannot be reached is named in it and all else goes on.
+/// Without `absent`: opens the devices exclusively for a run. With `absent`: for inspection; stores
+/// the message about an unreachable device there and continues.
 Prepared prepare(DaemonConfig& config, std::string* absent) {
   Prepared p;
   p.sample_time_s = 1.0 / config.loop.rate_Hz;
@@ -110,7 +110,7 @@ Prepared prepare(DaemonConfig& config, std::string* absent) {
   return p;
 }
 
-/// In virtual time, where nobody serves a socket.
+/// Handles signals in virtual time, which has no control socket. Returns true on a request to stop.
 bool stop_pending(Reloader& reloader) {
   const sigset_t set = stop_signals();
   const timespec now{0, 0};
@@ -120,10 +120,10 @@ bool stop_pending(Reloader& reloader) {
   return signal > 0 && signal != SIGHUP;
 }
 
-void report(const rt::LoopStats& stats, std::ostream& log) {
+void log_statistics(const rt::LoopStats& stats, std::ostream& log) {
   const struct {
     const char* what;
-    const rt::Histogram& times;
+    const hal::Histogram& times;
   } rows[] = {{"lateness", stats.lateness},
               {"tick", stats.tick},
               {"read", stats.read},
@@ -140,7 +140,7 @@ void report(const rt::LoopStats& stats, std::ostream& log) {
   }
 }
 
-/// Closes the log; says so when messages are missing in it.
+/// Closes the log and reports missing messages.
 bool recorded_all(io::Recorder& recorder, std::ostream& log) {
   const std::int64_t missing = recorder.finish();
   if (missing == 0) return true;
@@ -160,101 +160,180 @@ void arm_and_start(rt::CommandQueue& commands, std::int64_t expires_ns) {
   }
 }
 
+/// One run of the daemon, in three steps: open (the constructor), run, report. Members are in the
+/// order in which they are opened; each may refer to those before.
+class Session {
+ public:
+  /// Opens everything; nothing but null has been written to a device afterwards.
+  Session(DaemonConfig& config, const SessionOptions& options, std::ostream& log);
+  /// Runs the loop to its end and leaves the valve at null.
+  void run();
+  /// Logs the statistics and closes the files. Returns the exit code.
+  int report();
+
+ private:
+  rt::Clock& choose_clock();
+  std::unique_ptr<io::ControlSocket> open_socket() const;
+  std::unique_ptr<io::Recorder> open_recorder() const;
+  rt::Grant request_privileges() const;
+  std::vector<std::string> spare_rods() const { return ids_of(prepared_.devices.spare_rods); }
+  std::vector<std::string> inputs() const { return ids_of(prepared_.devices.inputs); }
+  [[nodiscard]] bool handle_events();
+
+  DaemonConfig& config_;
+  const SessionOptions& options_;
+  std::ostream& log_;
+  Prepared prepared_;
+  std::string config_hash_;
+  bool virtual_time_;
+  rt::VirtualClock virtual_clock_;
+  rt::MonotonicClock monotonic_clock_;
+  rt::Clock& clock_;
+  std::unique_ptr<io::ControlSocket> socket_;  ///< null: none
+  std::int64_t run_id_;
+  std::unique_ptr<io::Recorder> recorder_;  ///< null: none
+  AlarmServices alarms_;
+  io::Publisher publisher_;
+  std::unique_ptr<rt::SampleQueue> samples_ = std::make_unique<rt::SampleQueue>();
+  rt::CommandQueue commands_;
+  rt::LoopStats stats_;
+  rt::Grant grant_;
+  SafeStateNote note_;
+  SafeStateValve safe_valve_;
+  hal::ValveDrive* valve_;  ///< null: none
+  rt::Loop loop_;
+  Reloader reloader_;
+  detection::DetectabilityMonitor detectability_;
+  detection::Detector detector_;
+  ControlRequestHandler handler_;
+  MainEventLoop event_loop_;
+  io::ServiceManager manager_;
+  ServiceReport service_;
+  std::string failure_;  ///< of the run; empty: success
+};
+
+Session::Session(DaemonConfig& config, const SessionOptions& options, std::ostream& log)
+    : config_(config),
+      options_(options),
+      log_(log),
+      prepared_(prepare(config, nullptr)),
+      config_hash_(config::schema::hash_text(prepared_.hash)),
+      virtual_time_(options.virtual_time || prepared_.devices.fast),
+      clock_(choose_clock()),
+      socket_(open_socket()),
+      run_id_(virtual_time_ ? static_cast<std::int64_t>(prepared_.hash >> 1U) : clock_.utc_us()),
+      recorder_(open_recorder()),
+      alarms_(config, prepared_.detection,
+              {config_hash_, run_id_, prepared_.sample_time_s, virtual_time_}),
+      publisher_(config.lcm, run_id_, prepared_.sample_time_s, recorder_.get()),
+      grant_(request_privileges()),
+      note_(virtual_time_ || !config.drives_valve() ? std::filesystem::path() : options.driving,
+            config),
+      safe_valve_(prepared_.devices.valve.get()),
+      valve_(safe_valve_.valve()),
+      loop_(config.loop,
+            {clock_, *prepared_.devices.rod, valve_, *prepared_.reference, *samples_, commands_,
+             stats_, &prepared_.devices.spare_rods, &prepared_.devices.inputs,
+             prepared_.devices.permit.get()},
+            control::Controller(config.controller,
+                                {config.rig.valve().null_V, config.rig.valve().limit_V,
+                                 config.rig.valve().slew_V_per_s},
+                                prepared_.sample_time_s),
+            prepared_.sample_time_s, {config.safety, prepared_.never_arms.empty()}),
+      reloader_({clock_, log, alarms_.audit.get(), alarms_.evidence != nullptr, options.read,
+                 alarms_.pipeline_hash},
+                config, prepared_.sample_time_s),
+      detector_({clock_, *samples_, stats_, *prepared_.detection.pipeline, publisher_,
+                 recorder_.get(), &alarms_.commands, &alarms_.answers, alarms_.store.get(),
+                 alarms_.audit.get(), alarms_.evidence.get(), alarms_.pipeline_hash,
+                 &reloader_.to_detector, &reloader_.from_detector, &detectability_},
+                {config.rig_id, config_hash_, grant_.text, config.rig.rod_backend(),
+                 valve_ != nullptr ? config.rig.valve().backend : "", spare_rods(), inputs(),
+                 prepared_.guards, prepared_.sample_time_s}),
+      handler_({clock_, commands_, stats_, &alarms_.commands, &alarms_.answers, alarms_.audit.get(),
+                &reloader_, &detectability_},
+               {config.rig_id, config_hash_, prepared_.guards, spare_rods(), inputs(),
+                inputs_of(prepared_.devices, hal::InputRole::enable),
+                inputs_of(prepared_.devices, hal::InputRole::e_stop), prepared_.never_arms}),
+      event_loop_(handler_, socket_.get(), reloader_),
+      service_(manager_, clock_, stats_, valve_ != nullptr) {
+  if (alarms_.evidence != nullptr) publisher_.attach(*alarms_.evidence);
+  if (config.rig.measures_pressures()) publisher_.enable_pressures();
+  alarms_.restore(*prepared_.detection.pipeline, clock_.utc_us(), log);
+}
+
+/// Also blocks the stop signals, before the first thread starts.
+rt::Clock& Session::choose_clock() {
+  const sigset_t signals = stop_signals();
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  if (virtual_time_) return virtual_clock_;
+  return monotonic_clock_;
+}
+
+std::unique_ptr<io::ControlSocket> Session::open_socket() const {
+  if (config_.control.socket.empty() || virtual_time_) return nullptr;
+  return std::make_unique<io::ControlSocket>(config_.control, config_.file);
+}
+
+std::unique_ptr<io::Recorder> Session::open_recorder() const {
+  if (config_.recorder.folder.empty()) return nullptr;
+  return std::make_unique<io::Recorder>(config_.recorder, run_id_, !virtual_time_);
+}
+
+rt::Grant Session::request_privileges() const {
+  rt::Grant grant;
+  grant.text = "virtual time";
+  if (!virtual_time_) grant = rt::request_privileges(config_.loop);
+  log_ << "spoolwatchd: real-time privileges: " << grant.text << std::endl;
+  return grant;
+}
+
+/// Waits up to 100 ms; returns true on a request to stop.
+bool Session::handle_events() {
+  service_.remark(reloader_.complaint());
+  service_.poll();
+  const bool stop = event_loop_.run_once();
+  if (stop) service_.stopping();
+  return stop;
+}
+
+void Session::run() {
+  const double sample_time_s = prepared_.sample_time_s;
+  const std::int64_t start_ns = clock_.now_ns() + (virtual_time_ ? 0 : kLead_ns);
+  if (config_.loop.auto_arm && valve_ != nullptr) {
+    arm_and_start(commands_, start_ns + kCommandLife_ns);
+  }
+  const std::int64_t ticks =
+      options_.duration_s > 0.0 ? std::llround(options_.duration_s / sample_time_s) : rt::kForever;
+  std::atomic<bool> stop{false};
+  rt::LoopRunner runner(loop_, rt::Grid(start_ns, std::llround(sample_time_s * 1e9)), clock_,
+                        valve_, ticks, stop);
+  failure_ = virtual_time_ ? rt::run_virtual(runner, detector_, stop,
+                                             [this] { return stop_pending(reloader_); })
+                           : rt::run_realtime(runner, detector_, grant_.loop_thread, stop, valve_,
+                                              [this] { return handle_events(); });
+  if (valve_ != nullptr && valve_->end_at_null().good) note_.withdraw();
+}
+
+int Session::report() {
+  if (!virtual_time_) {
+    log_statistics(stats_, log_);
+    for (const auto& summary : prepared_.devices.summaries) {
+      log_ << "spoolwatchd: " << summary() << '\n';
+    }
+  }
+  if (!failure_.empty()) log_ << "spoolwatchd: " << failure_ << std::endl;
+  if (alarms_.evidence != nullptr) alarms_.evidence->finish();
+  const bool complete = recorder_ == nullptr || recorded_all(*recorder_, log_);
+  return failure_.empty() && complete ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
 }  // namespace
 
 int run_session(DaemonConfig& config, const SessionOptions& options, std::ostream& log) {
-  Prepared p = prepare(config, nullptr);
-  const bool virtual_time = options.virtual_time || p.devices.fast;
-  const sigset_t signals = stop_signals();
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-
-  rt::VirtualClock virtual_clock;
-  rt::MonotonicClock monotonic_clock;
-  rt::Clock& clock = virtual_time ? static_cast<rt::Clock&>(virtual_clock) : monotonic_clock;
-  std::unique_ptr<io::ControlSocket> socket;
-  if (!config.control.socket.empty() && !virtual_time) {
-    socket = std::make_unique<io::ControlSocket>(config.control, config.file);
-  }
-  const std::int64_t run_id =
-      virtual_time ? static_cast<std::int64_t>(p.hash >> 1U) : clock.utc_us();
-  std::unique_ptr<io::Recorder> recorder;
-  if (!config.recorder.folder.empty()) {
-    recorder = std::make_unique<io::Recorder>(config.recorder, run_id, !virtual_time);
-  }
-  AlarmServices alarms(config, p.detection,
-                       {config::schema::hash_text(p.hash), run_id, p.sample_time_s, virtual_time});
-  io::Publisher publisher(config.lcm, run_id, p.sample_time_s, recorder.get());
-  if (alarms.evidence != nullptr) publisher.attach(*alarms.evidence);
-  if (config.rig.measures_pressures()) publisher.enable_pressures();
-
-  auto samples = std::make_unique<rt::SampleQueue>();
-  rt::CommandQueue commands;
-  rt::LoopStats stats;
-  const hal::ValveConfig& valve_config = config.rig.valve();
-  const control::Controller controller(
-      config.controller, {valve_config.null_V, valve_config.limit_V, valve_config.slew_V_per_s},
-      p.sample_time_s);
-  rt::Grant grant;
-  grant.text = "virtual time";
-  if (!virtual_time) grant = rt::request_privileges(config.loop);
-  log << "spoolwatchd: real-time privileges: " << grant.text << std::endl;
-  const SafeStateNote note(
-      virtual_time || !config.drives_valve() ? std::filesystem::path() : options.driving, config);
-  SafeStateValve safe_valve(p.devices.valve.get());
-  hal::ValveDrive* valve = safe_valve.valve();
-  rt::Loop loop(config.loop,
-                {clock, *p.devices.rod, valve, *p.reference, *samples, commands, stats,
-                 &p.devices.spare_rods, &p.devices.inputs, p.devices.permit.get()},
-                controller, p.sample_time_s, {config.safety, p.never_arms.empty()});
-  Reloader reloader({clock, log, alarms.audit.get(), alarms.evidence != nullptr, options.read,
-                     alarms.pipeline_hash},
-                    config, p.sample_time_s);
-  detection::DetectabilityMonitor detectability;
-  detection::Detector detector(
-      {clock, *samples, stats, *p.detection.pipeline, publisher, recorder.get(), &alarms.commands,
-       &alarms.answers, alarms.store.get(), alarms.audit.get(), alarms.evidence.get(),
-       alarms.pipeline_hash, &reloader.to_detector, &reloader.from_detector, &detectability},
-      {config.rig_id, config::schema::hash_text(p.hash), grant.text, config.rig.rod_backend(),
-       valve != nullptr ? valve_config.backend : "", ids_of(p.devices.spare_rods),
-       ids_of(p.devices.inputs), p.guards, p.sample_time_s});
-  alarms.restore(*p.detection.pipeline, clock.utc_us(), log);
-  ControlRequestHandler handler(
-      {clock, commands, stats, &alarms.commands, &alarms.answers, alarms.audit.get(), &reloader,
-       &detectability},
-      {config.rig_id, config::schema::hash_text(p.hash), p.guards, ids_of(p.devices.spare_rods),
-       ids_of(p.devices.inputs), inputs_of(p.devices, hal::InputRole::enable),
-       inputs_of(p.devices, hal::InputRole::e_stop), p.never_arms});
-  MainEventLoop event_loop(handler, socket.get(), reloader);
-  const io::ServiceManager manager;
-  ServiceReport service(manager, clock, stats, valve != nullptr);
-
-  const std::int64_t start_ns = clock.now_ns() + (virtual_time ? 0 : kLead_ns);
-  if (config.loop.auto_arm && valve != nullptr) {
-    arm_and_start(commands, start_ns + kCommandLife_ns);
-  }
-  const std::int64_t ticks =
-      options.duration_s > 0.0 ? std::llround(options.duration_s / p.sample_time_s) : rt::kForever;
-  std::atomic<bool> stop{false};
-  rt::LoopRunner runner(loop, rt::Grid(start_ns, std::llround(p.sample_time_s * 1e9)), clock, valve,
-                        ticks, stop);
-  const rt::RunError run_error =
-      virtual_time ? rt::run_virtual(runner, detector, stop, [&] { return stop_pending(reloader); })
-                   : rt::run_realtime(runner, detector, grant.loop_thread, stop, valve, [&] {
-                       service.remark(reloader.complaint());
-                       service.poll();
-                       const bool stops = event_loop.run_once();
-                       if (stops) service.stopping();
-                       return stops;
-                     });
-  if (valve != nullptr && valve->end_at_null().good) note.withdraw();
-  if (!virtual_time) {
-    report(stats, log);
-    for (const auto& summary : p.devices.summaries) log << "spoolwatchd: " << summary() << '\n';
-  }
-  if (!run_error.empty()) log << "spoolwatchd: " << run_error << std::endl;
-  if (alarms.evidence != nullptr) alarms.evidence->finish();
-  const bool complete = recorder == nullptr || recorded_all(*recorder, log);
-  return run_error.empty() && complete ? EXIT_SUCCESS : EXIT_FAILURE;
+  Session session(config, options, log);
+  session.run();
+  return session.report();
 }
 
 void check_session(DaemonConfig& config, std::ostream& out) {
@@ -280,7 +359,8 @@ void check_session(DaemonConfig& config, std::ostream& out) {
   }
   if (absent.empty()) return;
   out.flush();
-  throw config::schema::ConfigError(absent + "; all that can be checked without it is in order");
+  throw config::schema::ConfigError(absent +
+                                    "; everything that can be checked without the device is valid");
 }
 
 }  // namespace monitor

@@ -19,7 +19,7 @@ constexpr std::chrono::milliseconds kStuck{1000};
 constexpr std::chrono::milliseconds kDetectorStuck{5000};
 
 void consume(SampleConsumer& consumer, const std::atomic<bool>& loop_ended, std::atomic<bool>& stop,
-             RunError& run_error) {
+             std::string& failure) {
   try {
     MonotonicClock clock;
     while (!loop_ended.load(std::memory_order_acquire)) {
@@ -28,7 +28,7 @@ void consume(SampleConsumer& consumer, const std::atomic<bool>& loop_ended, std:
     }
     consumer.finish();
   } catch (const std::exception& e) {
-    run_error = std::string("detector: ") + e.what();
+    failure = std::string("detector: ") + e.what();
     stop.store(true, std::memory_order_relaxed);
   }
 }
@@ -42,8 +42,8 @@ void consume(SampleConsumer& consumer, const std::atomic<bool>& loop_ended, std:
 
 }  // namespace
 
-RunError run_virtual(LoopRunner& runner, SampleConsumer& consumer, std::atomic<bool>& stop,
-                     const std::function<bool()>& stop_asked) {
+std::string run_virtual(LoopRunner& runner, SampleConsumer& consumer, std::atomic<bool>& stop,
+                        const std::function<bool()>& stop_asked) {
   for (int n = 0; runner.step(); ++n) {
     consumer.poll();
     if (n % kTicksPerPoll == 0 && stop_asked()) stop.store(true, std::memory_order_relaxed);
@@ -52,15 +52,15 @@ RunError run_virtual(LoopRunner& runner, SampleConsumer& consumer, std::atomic<b
   return {};
 }
 
-RunError run_realtime(LoopRunner& runner, SampleConsumer& consumer,
-                      const ThreadOptions& loop_thread, std::atomic<bool>& stop,
-                      hal::ValveDrive* valve, const std::function<bool()>& wait_stop_asked) {
+std::string run_realtime(LoopRunner& runner, SampleConsumer& consumer,
+                         const hal::ThreadOptions& loop_thread, std::atomic<bool>& stop,
+                         hal::ValveDrive* valve, const std::function<bool()>& wait_stop_asked) {
   std::atomic<bool> loop_ended{false};
-  RunError run_error;
-  Thread detecting;
-  Thread looping;
+  std::string failure;
+  hal::Thread detecting;
+  hal::Thread looping;
   int error =
-      detecting.start("detector", {}, [&] { consume(consumer, loop_ended, stop, run_error); });
+      detecting.start("detector", {}, [&] { consume(consumer, loop_ended, stop, failure); });
   if (error == 0) {
     error = looping.start("loop", loop_thread, [&] {
       prepare_loop_thread();
@@ -84,7 +84,7 @@ RunError run_realtime(LoopRunner& runner, SampleConsumer& consumer,
   if (!detecting.join_for(kDetectorStuck)) {
     leave_stuck_thread(valve, "spoolwatchd: LCM does not return: the last messages are lost\n");
   }
-  return run_error;
+  return failure;
 }
 
 }  // namespace monitor::rt

@@ -56,16 +56,15 @@ class LoopRunner {
   const std::atomic<bool>& stop_;
 };
 
-/// Why a run failed, in one line; empty: success.
-using RunError = std::string;
-
+/// Both return why the run failed, in one line; empty: success.
+///
 /// Polls `stop_asked` now and then; once it returns true, the next tick is the last.
-RunError run_virtual(LoopRunner& runner, SampleConsumer& consumer, std::atomic<bool>& stop,
-                     const std::function<bool()>& stop_asked);
+std::string run_virtual(LoopRunner& runner, SampleConsumer& consumer, std::atomic<bool>& stop,
+                        const std::function<bool()>& stop_asked);
 
 /// `wait_stop_asked` waits up to 100 ms and returns whether to stop.
-RunError run_realtime(LoopRunner& runner, SampleConsumer& consumer,
-                      const ThreadOptions& loop_thread, std::atomic<bool>& stop,
-                      hal::ValveDrive* valve, const std::function<bool()>& wait_stop_asked);
+std::string run_realtime(LoopRunner& runner, SampleConsumer& consumer,
+                         const hal::ThreadOptions& loop_thread, std::atomic<bool>& stop,
+                         hal::ValveDrive* valve, const std::function<bool()>& wait_stop_asked);
 
 }  // namespace monitor::rt

@@ -10,7 +10,7 @@
 #include "daemon/control/arming.h"
 #include "daemon/control/failover.h"
 #include "daemon/rt/guard_status.h"
-#include "daemon/rt/histogram.h"
+#include "hal/histogram.h"
 
 namespace monitor::rt {
 
@@ -66,7 +66,7 @@ struct LoopStats {
   std::array<RodStats, control::kMaxRods> rods;
   std::atomic<std::uint8_t> rod_in_charge{0};
   std::atomic<std::int64_t> rod_since_tick{0};  ///< when the sensor in charge took over
-  Histogram lateness, read, control, write, tick;
+  hal::Histogram lateness, read, control, write, tick;
   std::atomic<control::State> state{control::State::disarmed};
   std::atomic<Trip> trip{Trip::none};
   std::atomic<std::uint8_t> trip_guard{0};  ///< index of the guard that tripped

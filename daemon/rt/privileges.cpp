@@ -59,8 +59,8 @@ int lock_memory() noexcept {
   return 0;
 }
 
-int try_thread(const ThreadOptions& options) {
-  Thread probe;
+int try_thread(const hal::ThreadOptions& options) {
+  hal::Thread probe;
   return probe.start("probe", options, [] {});
 }
 
@@ -78,7 +78,7 @@ void keep_memory_small() noexcept {
   mallopt(M_ARENA_MAX, 1);
   pthread_attr_t attributes;
   pthread_attr_init(&attributes);
-  pthread_attr_setstacksize(&attributes, kThreadStack_bytes);
+  pthread_attr_setstacksize(&attributes, hal::kThreadStack_bytes);
   pthread_setattr_default_np(&attributes);
   pthread_attr_destroy(&attributes);
 }
@@ -90,7 +90,7 @@ Grant request_privileges(const LoopConfig& config) {
     return grant;
   }
   Report report(config.privileges == "require");
-  const ThreadOptions fifo{static_cast<int>(config.priority), -1};
+  const hal::ThreadOptions fifo{static_cast<int>(config.priority), -1};
   if (const int error = try_thread(fifo)) {
     report.refused("SCHED_FIFO", error, kRights);
   } else {
@@ -98,7 +98,7 @@ Grant request_privileges(const LoopConfig& config) {
     report.got("SCHED_FIFO " + std::to_string(fifo.priority));
   }
   if (config.cpu >= 0) {
-    const ThreadOptions pinned{0, static_cast<int>(config.cpu)};
+    const hal::ThreadOptions pinned{0, static_cast<int>(config.cpu)};
     const std::string core = "cpu " + std::to_string(config.cpu);
     if (const int error = try_thread(pinned)) {
       report.refused(core, error, "cpu = the number of a core that this process may use");

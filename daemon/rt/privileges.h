@@ -5,13 +5,13 @@
 #include <string>
 
 #include "daemon/rt/loop.h"
-#include "daemon/rt/thread.h"
+#include "hal/thread.h"
 
 namespace monitor::rt {
 
 struct Grant {
-  ThreadOptions loop_thread;  ///< options granted to the loop's thread
-  std::string text;           ///< "SCHED_FIFO 80; memory locked; ..."
+  hal::ThreadOptions loop_thread;  ///< options granted to the loop's thread
+  std::string text;                ///< "SCHED_FIFO 80; memory locked; ..."
 };
 
 /// Call first in the process: small default stacks and a single heap arena keep the locked memory

@@ -9,9 +9,10 @@
 #include <cstring>
 #include <string>
 
-#include "hal/device_thread.h"
 #include "hal/freshness.h"
 #include "hal/latest.h"
+#include "hal/monotonic.h"
+#include "hal/thread.h"
 
 namespace hal::text_line {
 namespace {
@@ -73,7 +74,7 @@ class TextLineSensor final : public RodSensor {
   std::int64_t period_ns_;
   std::string line_;
   Latest<Reading> latest_;
-  DeviceThread thread_;
+  Thread thread_;
 };
 
 }  // namespace

@@ -34,7 +34,7 @@ void Exchange::start(bool threaded, int priority) {
   read_all();
   latest_.put(own_);
   if (!threaded) return;
-  const int error = thread_.start("comedi", priority, [this] { pass(); });
+  const int error = thread_.start_cyclic("comedi", {priority, -1, false}, [this] { pass(); });
   if (error != 0) {
     throw config::schema::RunError(std::string("comedi: no thread: ") + std::strerror(error));
   }

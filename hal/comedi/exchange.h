@@ -15,9 +15,10 @@
 
 #include "hal/comedi/board.h"
 #include "hal/device.h"
-#include "hal/device_thread.h"
 #include "hal/freshness.h"
 #include "hal/latest.h"
+#include "hal/monotonic.h"
+#include "hal/thread.h"
 
 namespace hal::comedi {
 
@@ -80,7 +81,7 @@ class Exchange {
   std::int64_t last_index_ = -1;
   std::int64_t given_ns_ = 0;  ///< loop only: time of the oldest command not yet accepted
   sem_t wake_;
-  DeviceThread thread_;
+  Thread thread_;
 };
 
 }  // namespace hal::comedi

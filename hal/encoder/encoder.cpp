@@ -57,7 +57,7 @@ Watch::Watch(std::unique_ptr<EdgeSource> source, std::vector<std::shared_ptr<Gpi
       tracker_(options, still_levels(*source_)) {
   view_.inputs.fill(-1);
   pass();
-  const int error = thread_.start("encoder", priority, [this] { pass(); });
+  const int error = thread_.start_cyclic("encoder", {priority, -1, false}, [this] { pass(); });
   if (error != 0) {
     throw config::schema::RunError(std::string("encoder: no thread: ") + std::strerror(error));
   }

@@ -10,11 +10,12 @@
 #include <vector>
 
 #include "hal/backend.h"
-#include "hal/device_thread.h"
 #include "hal/encoder/gpio_chip.h"
 #include "hal/encoder/tracker.h"
 #include "hal/freshness.h"
 #include "hal/latest.h"
+#include "hal/monotonic.h"
+#include "hal/thread.h"
 
 namespace hal::encoder {
 
@@ -92,7 +93,7 @@ class Watch {
   View view_;
   Latest<View> latest_;
   std::atomic<bool> refer_{false};
-  DeviceThread thread_;
+  Thread thread_;
 };
 
 class EncoderRod final : public RodSensor {

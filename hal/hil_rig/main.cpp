@@ -11,10 +11,10 @@
 #include "config/schema/exit_code.h"
 #include "config/schema/product_version.h"
 #include "config/schema/reference.h"
-#include "hal/device_thread.h"
 #include "hal/hil_rig/moved_lines.h"
 #include "hal/hil_rig/register_map.h"
 #include "hal/hil_rig/server.h"
+#include "hal/monotonic.h"
 
 namespace {
 

@@ -15,9 +15,9 @@
 #include <cstring>
 
 #include "config/schema/error.h"
-#include "hal/device_thread.h"
 #include "hal/hil_rig/register_map.h"
 #include "hal/hil_rig/server_wire.h"
+#include "hal/monotonic.h"
 
 namespace hal::hil_rig {
 namespace {

@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "config/schema/error.h"
-#include "hal/device_thread.h"
+#include "hal/monotonic.h"
 
 namespace hal::modbus {
 namespace {

@@ -40,7 +40,8 @@ PollThread::PollThread(const PollThreadConfig& config, RegisterMap map,
   for (auto& output : outputs_) output.store(-1);
   latest_.put(snapshot_);
   sem_init(&wake_, 0, 0);
-  const int error = thread_.start("modbus", config_.priority, [this] { step(); });
+  const int error =
+      thread_.start_cyclic("modbus", {config_.priority, -1, false}, [this] { step(); });
   if (error != 0) {
     throw config::schema::RunError(std::string("[modbus]: no thread: ") + std::strerror(error));
   }

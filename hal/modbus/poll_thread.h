@@ -24,13 +24,14 @@
 #include <string>
 #include <vector>
 
-#include "hal/device_thread.h"
 #include "hal/latest.h"
 #include "hal/modbus/command_slot.h"
 #include "hal/modbus/connection.h"
 #include "hal/modbus/counters.h"
 #include "hal/modbus/poll_schedule.h"
 #include "hal/modbus/register_map.h"
+#include "hal/monotonic.h"
+#include "hal/thread.h"
 
 namespace hal::modbus {
 
@@ -140,7 +141,7 @@ class PollThread {
   std::int64_t read_due_ns_ = kNever_ns;
   std::int64_t retry_ns_ = 0;
   std::int64_t pause_ns_ = 0;
-  DeviceThread thread_;
+  Thread thread_;
 };
 
 }  // namespace hal::modbus

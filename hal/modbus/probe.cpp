@@ -6,7 +6,7 @@
 
 #include "config/schema/error.h"
 #include "hal/backend.h"
-#include "hal/device_thread.h"
+#include "hal/monotonic.h"
 
 namespace hal::modbus {
 namespace {

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "config/schema/document.h"
-#include "hal/device_thread.h"
+#include "hal/monotonic.h"
 
 namespace {
 

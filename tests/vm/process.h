@@ -7,7 +7,7 @@
 
 #include <functional>
 
-#include "hal/device_thread.h"
+#include "hal/monotonic.h"
 
 namespace vm {
 

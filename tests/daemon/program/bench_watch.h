@@ -17,7 +17,7 @@
 #include <thread>
 #include <vector>
 
-#include "hal/device_thread.h"
+#include "hal/monotonic.h"
 #include "hal/hil_rig/register_map.h"
 #include "tests/daemon/program/null_watch.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "hal/device_thread.h"
+#include "hal/monotonic.h"
 #include "hal/hil_rig/server.h"
 #include "tests/daemon/program/bench_watch.h"
 #include "tests/daemon/program/subprocess.h"

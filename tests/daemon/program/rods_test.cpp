@@ -120,7 +120,7 @@ TEST(ThreeRods, AreAskedForInOneLineWhereTheyAreNot) {
                 "allowed: an [[input]] of role \"supply_pressure\""));
   result = refused("[failover]\ntolerance_m = 1e-3\n");
   EXPECT_EQ(result.exit_code, 78);
-  EXPECT_THAT(result.err, HasSubstr("[failover]: has no other rod sensor to go over to"));
+  EXPECT_THAT(result.err, HasSubstr("[failover]: has no second rod sensor to switch to"));
   result = refused("[[sim.trouble]]\nkind = \"drift\"\nrod = \"b\"\n");
   EXPECT_EQ(result.exit_code, 78);
   EXPECT_THAT(result.err, HasSubstr("[[sim.trouble]] rod: is \"b\", which is no [[sim.rod]]"));

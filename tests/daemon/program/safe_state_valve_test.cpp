@@ -8,7 +8,7 @@
 #include <csignal>
 #include <string>
 
-#include "daemon/rt/thread.h"
+#include "hal/thread.h"
 
 namespace monitor {
 namespace {
@@ -72,7 +72,7 @@ TEST(SafeStateValve, CommandsNullWhenTheStackOfAnyThreadOverflows) {
   EXPECT_TRUE(WIFSIGNALED(status));
   EXPECT_EQ(writes_of_child(
                 [] {
-                  rt::Thread thread;
+                  hal::Thread thread;
                   thread.start("deep", {}, [] { overflow(0); });
                 },
                 status),

@@ -11,8 +11,8 @@
 
 #include "config/schema/document.h"
 #include "config/schema/exit_code.h"
-#include "hal/device_thread.h"
 #include "hal/modbus/modbus.h"
+#include "hal/monotonic.h"
 
 namespace hal::modbus {
 

@@ -1,4 +1,4 @@
-#include "daemon/rt/histogram.h"
+#include "hal/histogram.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace monitor::rt {
+namespace hal {
 namespace {
 
 /// Width of a bucket against its lower edge.
@@ -55,4 +55,4 @@ TEST(Histogram, HasNoHoleBetweenBuckets) {
 }
 
 }  // namespace
-}  // namespace monitor::rt
+}  // namespace hal

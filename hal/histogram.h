@@ -1,5 +1,5 @@
-// Times counted in fixed log-linear buckets: 64 to each power of two, so that a quantile is known
-// to 1.6 %. One thread adds, any thread reads; no lock.
+// A histogram of times in fixed log-linear buckets, 64 per power of two: quantiles to 1.6 %. One
+// thread adds, any thread reads; lock-free.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace monitor::rt {
+namespace hal {
 
 class Histogram {
  public:
@@ -71,4 +71,4 @@ class Histogram {
   std::atomic<std::int64_t> max_ns_{0};
 };
 
-}  // namespace monitor::rt
+}  // namespace hal
