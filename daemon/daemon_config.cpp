@@ -36,8 +36,8 @@ void refuse_without_watchdog(const DaemonConfig& config) {
 void DaemonConfig::visit_what_determines_the_data(Visitor& v) {
   v.table({"rig", "identity of the rig"}, [this](Visitor& t) {
     t.text({"id", "name in messages"}, rig_id);
-    t.path({"calibration", "file written by commissioning; required to arm a real rig"}, calibration,
-           "calibration.toml");
+    t.path({"calibration", "file written by commissioning; required to arm a real rig"},
+           calibration, "calibration.toml");
   });
   v.table({"loop", "the control loop"}, [this](Visitor& t) { loop.visit(t); });
   rig.visit(v);
@@ -52,8 +52,7 @@ void DaemonConfig::visit_what_determines_the_data(Visitor& v) {
 void DaemonConfig::visit(Visitor& v) {
   visit_what_determines_the_data(v);
   v.table({"model", "physical model of the healthy rig"}, [this](Visitor& t) {
-    t.path({"file", "model file that `spoolwatch promote` updates"}, model,
-           "healthy_model.toml");
+    t.path({"file", "model file that `spoolwatch promote` updates"}, model, "healthy_model.toml");
   });
   v.table({"control", "access over the control socket"}, [this](Visitor& t) { control.visit(t); });
   v.table({"alarms", "persistence, audit and rules of alarms"},

@@ -101,7 +101,8 @@ DetectionConfig make_detection_config(const DaemonConfig& config, double sample_
   return made;
 }
 
-std::vector<io::EvidenceFile> evidence_files(DaemonConfig& config, const std::string& pipeline_text) {
+std::vector<io::EvidenceFile> evidence_files(DaemonConfig& config,
+                                             const std::string& pipeline_text) {
   std::vector<io::EvidenceFile> files = {
       {"configuration.toml", config::schema::print_toml([&](Visitor& v) { config.visit(v); })},
       {"pipeline.toml", pipeline_text}};

@@ -25,7 +25,7 @@ class TextLineSensor final : public RodSensor {
   /// Owns the descriptor.
   TextLineSensor(int descriptor, double sign, double sample_time_s)
       : descriptor_(descriptor), sign_(sign), period_ns_(std::llround(1e9 * sample_time_s)) {
-    thread_.start("text_line", 0, [this] { receive(); });
+    thread_.start_cyclic("text_line", {}, [this] { receive(); });
   }
   ~TextLineSensor() override {
     thread_.stop();

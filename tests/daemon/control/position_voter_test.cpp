@@ -138,7 +138,7 @@ TEST(PositionVoter, ComesBackWhenForgivenAndRight) {
   bench.tick({kNaN, 0.1});
   bench.voter.readmit();
   bench.tick({kNaN, 0.1});
-  EXPECT_EQ(bench.voter.in_charge(), 1U) << "forgiven, but still missing";
+  EXPECT_EQ(bench.voter.in_charge(), 1U) << "readmitted, but still missing";
   bench.tick({0.1, 0.1});
   EXPECT_EQ(bench.voter.in_charge(), 1U);
   bench.voter.readmit();

@@ -111,7 +111,7 @@ TEST_F(AlarmFiles, DamagedOrOfAnotherRigGiveNothingAndSayWhy) {
   come(alarms, 0);
   const std::string good = print_lives(alarms.persisted_alarms(), "rig", 5);
   EXPECT_EQ(parse_lives(good, "rig", 5).lives.size(), 1U);
-  EXPECT_EQ(parse_lives(good, "another", 5).wrong, "is of another rig: \"rig\"");
+  EXPECT_EQ(parse_lives(good, "another", 5).wrong, "belongs to another rig: \"rig\"");
   EXPECT_TRUE(parse_lives(good, "another", 5).lives.empty());
   for (std::size_t size = 0; size + 2 < good.size(); size += 7) {
     const LoadedLives cut = parse_lives(good.substr(0, size), "rig", 5);

@@ -36,9 +36,9 @@ TEST(ControlRequest, ReadsWhatIsAskedOfAlarms) {
 
 TEST(ControlRequest, SaysInWordsWhatIsWrongWithALine) {
   for (const auto& [line, wrong] :
-       {std::pair{"", "no JSON object"},
-        {"[1]", "no JSON object"},
-        {"{\"command\":\"arm\"", "no JSON object"},
+       {std::pair{"", "not a JSON object"},
+        {"[1]", "not a JSON object"},
+        {"{\"command\":\"arm\"", "not a JSON object"},
         {"{}", "no \"command\""},
         {"{\"command\":7}", "no \"command\""},
         {"{\"command\":\"fly\"}",

@@ -129,7 +129,7 @@ INSTANTIATE_TEST_SUITE_P(
              "0.4"},
         Case{"two_guards_of_one_name", "[reference]",
              "[[guard]]\nkind = \"travel\"\n[[guard]]\nkind = \"travel\"\n[reference]",
-             "[[guard]] id: \"travel\" is there twice", "an id for each"},
+             "[[guard]] id: \"travel\" is listed twice", "unique ids"},
         Case{"real_without_a_watchdog", "[reference]", "pretend_real = true\n[reference]",
              "[valve] backend", "accept_no_hardware_watchdog = true"},
         Case{"real_that_arms_itself", "[reference]",

@@ -111,9 +111,9 @@ TEST_F(TickAllocation, IsNoneOnTheSimulatedRigWhateverTheMotion) {
     fault.ramp_s = 2.0;
     config.faults = {fault};
     config.command_timeout_s = 0.1;
-    for (const char* trouble : {"missing", "frozen", "jump", "drift", "stale", "deaf"}) {
-      const double from_s = 8.0 + static_cast<double>(config.troubles.size());
-      config.troubles.push_back({trouble, "", from_s, from_s + 0.3, 0.01, 0.01});
+    for (const char* injected : {"missing", "frozen", "jump", "drift", "stale", "deaf"}) {
+      const double from_s = 8.0 + static_cast<double>(config.injected_faults.size());
+      config.injected_faults.push_back({injected, "", from_s, from_s + 0.3, 0.01, 0.01});
     }
     const auto rig = std::make_shared<hal::sim::SimRig>(
         plant_sim::make_plant(plant_sim::ModelFile()), config, kTs_s, 0.0);

@@ -15,7 +15,7 @@ namespace {
 
 using control::RodFault;
 using control::State;
-using hal::sim::Trouble;
+using hal::sim::InjectedFault;
 
 constexpr double kTs_s = 0.005;
 constexpr std::int64_t kPeriod_ns = 5'000'000;
@@ -52,22 +52,23 @@ SafetyRules rules() {
   return rules;
 }
 
-Trouble trouble(const char* kind, double from_s, const char* rod = "") {
-  Trouble trouble;
-  trouble.kind = kind;
-  trouble.rod = rod;
-  trouble.from_s = from_s;
-  return trouble;
+InjectedFault fault(const char* kind, double from_s, const char* rod = "") {
+  InjectedFault fault;
+  fault.kind = kind;
+  fault.rod = rod;
+  fault.from_s = from_s;
+  return fault;
 }
 
 /// Eight seconds of the sine with `rods` sensors; the spare ones have an offset of 0.2 mm and
 /// noise of their own.
 class Course {
  public:
-  Course(std::size_t rods, const std::vector<Trouble>& troubles, double offset_m = 2e-4) {
+  Course(std::size_t rods, const std::vector<InjectedFault>& injected_faults,
+         double offset_m = 2e-4) {
     hal::sim::SimConfig config;
     config.noise_m = 2e-6;
-    config.troubles = troubles;
+    config.injected_faults = injected_faults;
     rig_ = std::make_shared<hal::sim::SimRig>(plant_sim::make_plant(plant_sim::ModelFile()), config,
                                               kTs_s, 0.0);
     std::vector<hal::NamedRod> spares;
@@ -77,7 +78,7 @@ class Course {
       spare.offset_m = offset_m;
       spare.noise_m = 5e-6;
       spares.push_back(
-          {spare.id, std::make_shared<hal::sim::SpareRod>(rig_, spare, troubles, 1 + i)});
+          {spare.id, std::make_shared<hal::sim::SpareRod>(rig_, spare, injected_faults, 1 + i)});
     }
     VirtualClock clock;
     const control::Sine reference(kCentre_m, kAmplitude_m, 0.5);
@@ -135,7 +136,7 @@ class Course {
 };
 
 struct Case {
-  Trouble trouble;
+  InjectedFault injected;
   RodFault fault;
   double delay_s;   ///< of the fail-over, at most
   double astray_m;  ///< of the rod, at most
@@ -152,7 +153,7 @@ TEST_P(Failover, LetsTheControllerGoOnWithTheNextSensor) {
   const Course healthy(3, {});
   ASSERT_EQ(healthy.stats.state.load(), State::run);
   ASSERT_EQ(healthy.out(0), -1);
-  const Course course(3, {c.trouble});
+  const Course course(3, {c.injected});
   EXPECT_EQ(course.stats.state.load(), State::run) << "no guard trips";
   EXPECT_EQ(course.stats.rods[0].fault.load(), c.fault);
   EXPECT_EQ(course.stats.rod_in_charge.load(), 1);
@@ -178,14 +179,14 @@ TEST_P(Failover, LetsTheControllerGoOnWithTheNextSensor) {
   }
 }
 
-Trouble jump(double size_m) {
-  Trouble t = trouble("jump", kFault_s);
+InjectedFault jump(double size_m) {
+  InjectedFault t = fault("jump", kFault_s);
   t.size_m = size_m;
   return t;
 }
 
-Trouble drift(double rate_mps) {
-  Trouble t = trouble("drift", kFault_s);
+InjectedFault drift(double rate_mps) {
+  InjectedFault t = fault("drift", kFault_s);
   t.rate_mps = rate_mps;
   return t;
 }
@@ -195,18 +196,18 @@ Trouble drift(double rate_mps) {
 // m/(s V), which is 10 x error a second.
 INSTANTIATE_TEST_SUITE_P(
     OfThree, Failover,
-    testing::Values(Case{trouble("missing", kFault_s), RodFault::missing, 0.0, 0.25e-3},
+    testing::Values(Case{fault("missing", kFault_s), RodFault::missing, 0.0, 0.25e-3},
                     Case{jump(0.01), RodFault::jump, 0.0, 0.25e-3},
                     // 1 mm stays below the jump guard: out-voted after four ticks.
                     Case{jump(0.001), RodFault::outvoted, 0.015, 0.4e-3},
                     // 80 mm/s leave 0.5 mm behind in 7 ms.
-                    Case{trouble("frozen", kFault_s), RodFault::outvoted, 0.035, 0.6e-3},
+                    Case{fault("frozen", kFault_s), RodFault::outvoted, 0.035, 0.6e-3},
                     // 2 mm/s need 0.25 s plus the spares' offset to be off by 0.5 mm.
                     Case{drift(0.002), RodFault::outvoted, 0.4, 1e-3}));
 
 TEST(FailoverOfTwo, NamesTheFrozenSensorSinceTheOtherSawTheRodMove) {
   const Course healthy(2, {});
-  const Course course(2, {trouble("frozen", kFault_s)});
+  const Course course(2, {fault("frozen", kFault_s)});
   EXPECT_EQ(course.stats.state.load(), State::run);
   EXPECT_EQ(course.stats.rods[0].fault.load(), RodFault::frozen);
   // Frozen for 0.05 s and what least_m takes: 10/s x 80 mm/s x t^2/2 = 1.5 mm, and the offset.
@@ -216,7 +217,7 @@ TEST(FailoverOfTwo, NamesTheFrozenSensorSinceTheOtherSawTheRodMove) {
 TEST(FailoverOfTwo, DoesNotKickTheValve) {
   constexpr double kOffset_m = 2e-3;
   const Course healthy(2, {}, kOffset_m);
-  const Course course(2, {trouble("missing", kFault_s)}, kOffset_m);
+  const Course course(2, {fault("missing", kFault_s)}, kOffset_m);
   // The command goes on as before, and the offset fades at gain x speed; the rest is noise and
   // steps of 5 um at 250 V/m, and those of the D/A converter.
   const double noise_V = kGain_V_per_m * 6.0 * 5e-6 + 2.0 * 20.0 / 4096.0;
@@ -265,9 +266,9 @@ TEST(FailoverOfTwo, GoesBackOnAnOrderOrAStartOnly) {
 
 TEST(FailoverOfTwo, ASecondFailureIsTheGuards) {
   for (const char* kind : {"missing", "frozen", "jump"}) {
-    Trouble second = trouble(kind, kFault_s + 1.0, "b");
+    InjectedFault second = fault(kind, kFault_s + 1.0, "b");
     second.size_m = 0.01;
-    const Course course(2, {trouble("missing", kFault_s), second});
+    const Course course(2, {fault("missing", kFault_s), second});
     EXPECT_EQ(course.stats.state.load(), State::latched) << kind;
     EXPECT_EQ(course.samples[kFaultTick + 190].state, static_cast<std::uint8_t>(State::run));
     EXPECT_EQ(course.samples.back().u_applied_V, 0.0) << "null";
