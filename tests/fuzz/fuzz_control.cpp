@@ -45,7 +45,7 @@ class Daemon {
       const io::ControlRequest parsed = io::parse_request(request.line);
       const auto state = monitor::control::State::disarmed;
       const std::string answer = parsed.kind == io::ControlRequest::Kind::bad
-                                     ? io::print_refused(state, parsed.wrong)
+                                     ? io::print_rejected(state, parsed.wrong)
                                      : io::print_done(state);
       if (answer.find('\n') != std::string::npos) std::abort();
       socket_->answer(request.client, answer);

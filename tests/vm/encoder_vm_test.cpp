@@ -63,7 +63,7 @@ double sine_quarters(double t_s) {
 }
 
 TEST(EncoderVm, FollowsASineExactlyAtAPermittedSpeed) {
-  rig::SimEncoder lines(chip(), 2, 3);
+  hil_rig::SimEncoder lines(chip(), 2, 3);
   const BackendDevices devices = open(table());
   const std::int64_t start_ns = monotonic_ns();
   constexpr double kEnd_s = 4.0;
@@ -105,7 +105,7 @@ TEST(EncoderVm, FollowsASineExactlyAtAPermittedSpeed) {
 constexpr std::int64_t kFarthest = 10'000;
 
 /// Up and half way down again as fast as the driver can; edges a second.
-double fast_motion(rig::SimEncoder& lines) {
+double fast_motion(hil_rig::SimEncoder& lines) {
   const std::int64_t start_ns = monotonic_ns();
   Process driver([&] {
     lines.move_to(kFarthest);
@@ -117,9 +117,9 @@ double fast_motion(rig::SimEncoder& lines) {
 }
 
 TEST(EncoderVm, LosesNoEdgeOfAFastMotionAndPrintsItsRate) {
-  rig::SimEncoder unwatched(chip(), 2, 3);
+  hil_rig::SimEncoder unwatched(chip(), 2, 3);
   const double alone_per_s = fast_motion(unwatched);
-  rig::SimEncoder lines(chip(), 2, 3);
+  hil_rig::SimEncoder lines(chip(), 2, 3);
   const BackendDevices devices = open(table("max_edges_per_s = 1e6"));
   const double rate_per_s = fast_motion(lines);
   const Reading reading = settled(devices);
@@ -135,7 +135,7 @@ TEST(EncoderVm, LosesNoEdgeOfAFastMotionAndPrintsItsRate) {
 }
 
 TEST(EncoderVm, IsUncertainAboveThePermittedSpeedUntilTheIndex) {
-  rig::SimEncoder lines(chip(), 2, 3, 4);
+  hil_rig::SimEncoder lines(chip(), 2, 3, 4);
   const BackendDevices devices = open(table("max_edges_per_s = 300.0\nline_index = 4\n"));
   const auto walk_to = [&](std::int64_t to) {  // at most 100 edges a second
     while (lines.quarter() != to) {
@@ -162,7 +162,7 @@ TEST(EncoderVm, IsUncertainAboveThePermittedSpeedUntilTheIndex) {
 }
 
 TEST(EncoderVm, SaysThatTheCountIsUncertainWhenTheKernelDropsEdgesAndTheIndexMendsIt) {
-  rig::SimEncoder lines(chip(), 2, 3, 4);
+  hil_rig::SimEncoder lines(chip(), 2, 3, 4);
   lines.move_to(-20);
   // The lines are watched, but for a while nobody fetches their edges.
   const auto gpio = GpioChip::open("test", chip());
@@ -205,8 +205,8 @@ char driven(int line) {
 }
 
 TEST(EncoderVm, ReadsSwitchesAndSetsThePermitLine) {
-  rig::SimLine high(chip(), 6);
-  rig::SimLine low(chip(), 7);
+  hil_rig::SimLine high(chip(), 6);
+  hil_rig::SimLine low(chip(), 7);
   high.set(true);
   low.set(true);
   const BackendDevices devices =
