@@ -22,12 +22,12 @@ namespace workbench::cli {
 namespace selection = estimator::greybox::selection;
 namespace {
 
-using diagnose::Outcome;
-using diagnose::Request;
+using diagnose::DiagnosisReport;
+using diagnose::DiagnosisRequest;
 
 constexpr int kMostThreads = 256;
 
-void write(const Outcome& outcome, const Request& request) {
+void write(const DiagnosisReport& outcome, const DiagnosisRequest& request) {
   const bool stdout_is_json = request.json == "-";
   if (!stdout_is_json) print(outcome, std::cout);
   if (!request.output.empty()) {
@@ -46,30 +46,29 @@ void write(const Outcome& outcome, const Request& request) {
   }
 }
 
-int run(const Request& request) {
-  Outcome outcome = prepare(request);
+int run(const DiagnosisRequest& request) {
+  diagnose::PreparedDiagnosis prepared = prepare(request);
   const Interrupt interrupt;
   diagnose::ProgressLine line(std::cerr, isatty(STDERR_FILENO) == 1,
-                              outcome.shop.evidence.noise_floor_m);
+                              prepared.problem.data.noise_floor_m);
   if (!request.quiet) {
-    outcome.shop.progress = [&](const selection::Progress& progress) { line.show(progress); };
+    prepared.options.progress = [&](const selection::Progress& progress) { line.show(progress); };
   }
-  outcome.shop.cancel = Interrupt::requested;
-  diagnose::AdvisedDiagnosis found = diagnose::diagnose(outcome.shop);
-  outcome.diagnosis = std::move(found.diagnosis);
-  outcome.advice = std::move(found.advice);
+  prepared.options.cancel = Interrupt::requested;
+  diagnose::AdvisedDiagnosis found = diagnose::diagnose(prepared.problem, prepared.options);
   if (!request.quiet) line.end();
   const int exit_code = Interrupt::exit_code();
-  outcome.interrupted = exit_code != 0 || outcome.diagnosis.ladder.interrupted;
-  simulate_freely(outcome);
-  write(outcome, request);
+  DiagnosisReport report{&prepared, std::move(found.diagnosis), std::move(found.advice)};
+  report.interrupted = exit_code != 0 || report.diagnosis.search.interrupted;
+  simulate_freely(report);
+  write(report, request);
   return exit_code;
 }
 
 }  // namespace
 
 void add_diagnose(CLI::App& command, int& exit_code) {
-  auto request = std::make_shared<Request>();
+  auto request = std::make_shared<DiagnosisRequest>();
   command.add_option("MODEL", request->model, "a model file (TOML)")->required();
   command
       .add_option(

@@ -1,21 +1,21 @@
 #include <cstdio>
 
 #include "config/units/quantity.h"
-#include "workbench/fit/outcome.h"
+#include "workbench/fit/fit_report.h"
 
 namespace workbench::fit {
 
-std::string to_model(const Outcome& o) {
-  const greybox::Estimation& e = o.estimation;
+std::string to_model(const FitReport& o) {
+  const greybox::EstimationSummary& e = o.estimation;
   std::string text = "# Fitted by: " + o.prepared->command + "\n";
-  for (const auto& record : o.prepared->task.evidence.records)
+  for (const auto& record : o.prepared->problem.data.records)
     text += "# record " + record.name + "\n";
   text += "# error " + config::units::length_words(e.before.rms_m) + " -> " +
           config::units::length_words(e.after.rms_m) + " RMS" +
           (e.interrupted ? "; interrupted, the best so far" : "") + "\n";
-  for (const greybox::Parameter& p : e.parameters) {
+  for (const greybox::EstimatedParameter& p : e.parameters) {
     char line[200];
-    std::snprintf(line, sizeof line, "# %s %.6g, 95 %% from %.6g to %.6g", p.search.name.c_str(),
+    std::snprintf(line, sizeof line, "# %s %.6g, 95 %% from %.6g to %.6g", p.free.name.c_str(),
                   p.value, p.low, p.high);
     const std::string more = remark(p);
     text += line + (more.empty() ? "" : "; " + more) + "\n";

@@ -4,26 +4,26 @@
 #include <cmath>
 #include <limits>
 
-#include "workbench/diagnose/outcome.h"
+#include "workbench/diagnose/diagnosis_report.h"
 
 namespace workbench::diagnose {
 
 namespace greybox = estimator::greybox;
 namespace selection = estimator::greybox::selection;
 
-inline greybox::Fitted example_fit(double score_rms_m) {
-  greybox::Fitted fitted;
-  fitted.x = Eigen::VectorXd::Zero(1);
-  fitted.score_rms_m = score_rms_m;
+inline greybox::FitSummary example_fit(double validation_rms_m) {
+  greybox::FitSummary fitted;
+  fitted.theta = Eigen::VectorXd::Zero(1);
+  fitted.validation_rms_m = validation_rms_m;
   return fitted;
 }
 
-inline selection::Candidate example_candidate(const std::string& effect, double score_rms_m,
+inline selection::Candidate example_candidate(const std::string& effect, double validation_rms_m,
                                               double p) {
   selection::Candidate candidate;
   candidate.effects = {effect};
-  candidate.fitted = example_fit(score_rms_m);
-  candidate.score_rms_m = score_rms_m;
+  candidate.fitted = example_fit(validation_rms_m);
+  candidate.validation_rms_m = validation_rms_m;
   candidate.p_value = p;
   candidate.fitted_at_all = true;
   return candidate;
@@ -53,10 +53,10 @@ inline Outcome example_outcome() {
   hopeless.effects = {"backlash"};
   first.candidates = {example_candidate("friction", 2.7e-6, 1e-12),
                       example_candidate("deadband", 9.8e-6, 0.02), hopeless};
-  d.ladder.rounds = {first};
-  d.ladder.final.added = {"friction"};
-  d.ladder.final.fitted = example_fit(2.7e-6);
-  d.final = d.ladder.final.fitted;
+  d.search.rounds = {first};
+  d.search.final.added = {"friction"};
+  d.search.final.fitted = example_fit(2.7e-6);
+  d.final = d.search.final.fitted;
   return outcome;
 }
 
