@@ -283,7 +283,7 @@ IsolationReport isolate(const IsolationRequest& request) {
   ParameterTracker judging = tracker();
   judging.take(out.baseline);
   out.windows = track(judging, record, readings, {-INFINITY, INFINITY});
-  out.alarms = judging.alarms().alarms();
+  out.alarms = judging.detector().changes();
   note_followed(out, judging);
   return out;
 }

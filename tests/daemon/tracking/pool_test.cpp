@@ -22,7 +22,7 @@ TEST(WindowFusion, WeighsWindowsByTheirCovariance) {
   fusion.add(one(2.0), variance(2.0), true);
   const FusedEstimate fused = fusion.fused();
   EXPECT_EQ(fused.windows, 2);
-  EXPECT_NEAR(fused.x[0], (1.0 / 1.0 + 2.0 / 4.0) / (1.0 + 0.25), 1e-12);
+  EXPECT_NEAR(fused.theta[0], (1.0 / 1.0 + 2.0 / 4.0) / (1.0 + 0.25), 1e-12);
   EXPECT_NEAR(fused.covariance(0, 0), 1.0 / 1.25, 1e-12);
 }
 

@@ -76,7 +76,7 @@ inline Tracked tracked(const truth::Record& record, const std::vector<std::strin
   iso::ParameterTracker judging(model, out.set, settings, truth::kSample_s, floor_m);
   judging.take(out.baseline);
   out.windows = run(judging, INFINITY);
-  out.alarms = judging.alarms().alarms();
+  out.alarms = judging.detector().changes();
   return out;
 }
 

@@ -43,7 +43,7 @@ class SineWithAsymmetricFlow : public testing::Test {
     of_ =
         new truth::Case(truth::parse_case("motion=sine,flow_asymmetry.asymmetry_ratio=0.0135", 5));
     context_ = new selection::SearchContext(
-        diagnose_test::problem_with(diagnose_test::dataset_of(truth::simulate(*of_))));
+        diagnose_test::context_with(diagnose_test::dataset_of(truth::simulate(*of_))));
     rivals_ = new std::vector<greybox::FitSummary>{fitted_with(*context_, "flow_asymmetry"),
                                                    fitted_with(*context_, "load_force")};
     advice_ = new Advice(advise(*context_, *rivals_, {"flow_asymmetry", "load_force"}));
@@ -77,7 +77,7 @@ TEST_F(SineWithAsymmetricFlow, GetsAMotionNamedInWordsWithNumbers) {
 }
 
 TEST_F(SineWithAsymmetricFlow, IsResolvedByTheAdvisedMotionOnTheTrueRig) {
-  const selection::SearchContext again = diagnose_test::problem_with(diagnose_test::dataset_of(
+  const selection::SearchContext again = diagnose_test::context_with(diagnose_test::dataset_of(
       diagnose_test::run(*of_, advice_->motion.reference, advice_->motion.duration_s)));
   const greybox::FitSummary right = fitted_with(again, "flow_asymmetry");
   const greybox::FitSummary wrong = fitted_with(again, "load_force");
@@ -112,7 +112,7 @@ TEST(AdviceToExcite, NamesAMotionAboutTheMiddleOfTheStrokeForARodAtRest) {
     record.u_V.push_back(0.0);
     record.y_m.push_back(0.1 + 5e-6 * ((k * k / 7) % 3));
   }
-  const selection::SearchContext context = diagnose_test::problem_with(greybox::dataset_of(record));
+  const selection::SearchContext context = diagnose_test::context_with(greybox::dataset_of(record));
   EXPECT_THAT(advice_to_excite(context), AllOf(HasSubstr("multisine"), HasSubstr("of 305 mm")));
 }
 

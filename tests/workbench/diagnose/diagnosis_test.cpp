@@ -19,9 +19,13 @@ using diagnose_test::with_offset_and_band;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
+AdvisedDiagnosis diagnosed(const selection::SearchContext& context) {
+  return workbench::diagnose::diagnose(context.problem, context.options);
+}
+
 TEST(Diagnosis, NamesWhatIsMissingWithItsValueAndError) {
   const selection::SearchContext context = servo_context({.rate_mps = with_offset(0.06)});
-  const selection::Diagnosis d = diagnose(context).diagnosis;
+  const selection::Diagnosis d = diagnosed(context).diagnosis;
   EXPECT_EQ(d.verdict, selection::Verdict::missing);
   EXPECT_THAT(d.missing, ElementsAre("null_bias"));
   EXPECT_THAT(d.ambiguous, IsEmpty());
@@ -45,16 +49,16 @@ TEST(Diagnosis, NamesWhatIsMissingWithItsValueAndError) {
 TEST(Diagnosis, DoesNotDependOnTheNumberOfThreads) {
   selection::SearchContext context = servo_context({.rate_mps = with_offset_and_band(0.06, 0.1)});
   context.options.threads = 1;
-  const selection::Diagnosis one = diagnose(context).diagnosis;
+  const selection::Diagnosis one = diagnosed(context).diagnosis;
   context.options.threads = 3;
-  const selection::Diagnosis three = diagnose(context).diagnosis;
+  const selection::Diagnosis three = diagnosed(context).diagnosis;
   EXPECT_EQ(one.missing, three.missing);
   EXPECT_NEAR(one.rms_after_m, three.rms_after_m, 1e-3 * one.rms_after_m);
 }
 
 TEST(Diagnosis, SaysNothingIsMissingOfAHealthyRecord) {
   const selection::Diagnosis d =
-      diagnose(servo_context({.rate_mps = [](double u_V, double, double) {
+      diagnosed(servo_context({.rate_mps = [](double u_V, double, double) {
         return 0.98 * kServoGain * u_V;
       }})).diagnosis;
   EXPECT_EQ(d.verdict, selection::Verdict::nothing_missing);
@@ -64,14 +68,16 @@ TEST(Diagnosis, SaysNothingIsMissingOfAHealthyRecord) {
 }
 
 TEST(Diagnosis, SaysWhatCarriesAnErrorThatNoEffectExplains) {
-  const AdvisedDiagnosis advised = diagnose(servo_context({
-  .rate_mps = [](double u_V, double, double t_s) { return kServoGain * u_V * (1.0 - 0.01 * t_s); }}}));
-const selection::Diagnosis& d = advised.diagnosis;
-EXPECT_EQ(d.verdict, selection::Verdict::unexplained);
-ASSERT_FALSE(d.where.empty());
-EXPECT_EQ(d.where[0].site, "gain");
-EXPECT_EQ(d.where[0].variable, "time");
-EXPECT_FALSE(advised.advice.empty());
+  const AdvisedDiagnosis advised =
+      diagnosed(servo_context({.rate_mps = [](double u_V, double, double t_s) {
+        return kServoGain * u_V * (1.0 - 0.01 * t_s);
+      }}));
+  const selection::Diagnosis& d = advised.diagnosis;
+  EXPECT_EQ(d.verdict, selection::Verdict::unexplained);
+  ASSERT_FALSE(d.where.empty());
+  EXPECT_EQ(d.where[0].site, "gain");
+  EXPECT_EQ(d.where[0].variable, "time");
+  EXPECT_FALSE(advised.advice.empty());
 }
 
 TEST(Diagnosis, AsksForMotionWhereThereIsNone) {
@@ -79,7 +85,7 @@ TEST(Diagnosis, AsksForMotionWhereThereIsNone) {
       servo_context({.rate_mps = with_offset(0.0),
                      .command_V = [](double, double) { return 0.0; },
                      .samples = 1000});
-  const AdvisedDiagnosis advised = diagnose(context);
+  const AdvisedDiagnosis advised = diagnosed(context);
   const selection::Diagnosis& d = advised.diagnosis;
   EXPECT_EQ(d.verdict, selection::Verdict::not_excited);
   EXPECT_THAT(d.missing, IsEmpty());
@@ -92,7 +98,7 @@ TEST(Diagnosis, KeepsTheBestSoFarWhenItIsInterrupted) {
   selection::SearchContext context =
       servo_context({.rate_mps = with_offset_and_band(0.06, 0.1), .samples = 2000});
   context.options.cancel = [] { return true; };
-  const selection::Diagnosis d = diagnose(context).diagnosis;
+  const selection::Diagnosis d = diagnosed(context).diagnosis;
   EXPECT_THAT(d.notes, testing::Contains(testing::HasSubstr("interrupted")));
   EXPECT_EQ(d.steps.size(), 1U);
   EXPECT_TRUE(std::isfinite(d.rms_after_m));
@@ -101,7 +107,7 @@ TEST(Diagnosis, KeepsTheBestSoFarWhenItIsInterrupted) {
 TEST(Diagnosis, PassesOnTheRestrictionsOfARecord) {
   selection::SearchContext context = servo_context({.rate_mps = with_offset(0.0), .samples = 1000});
   context.problem.data.records[0].notes = {"a gap at 3 s"};
-  EXPECT_THAT(diagnose(context).diagnosis.notes, testing::Contains("servo: a gap at 3 s"));
+  EXPECT_THAT(diagnosed(context).diagnosis.notes, testing::Contains("servo: a gap at 3 s"));
 }
 
 TEST(Verdict, HasANameOfItsOwn) {

@@ -30,12 +30,20 @@ inline selection::Candidate example_candidate(const std::string& effect, double 
 }
 
 /// Friction found on one record of 26.3 um; the figures are chosen, none is computed.
-inline Outcome example_outcome() {
-  Outcome outcome;
-  outcome.model_file = "rig.toml";
-  outcome.records = {"bench.csv"};
-  outcome.command = "spoolwatch diagnose rig.toml bench.csv";
-  selection::Diagnosis& d = outcome.diagnosis;
+struct ExampleReport : DiagnosisReport {
+  ExampleReport();
+  ExampleReport(const ExampleReport&) = delete;
+  ExampleReport& operator=(const ExampleReport&) = delete;
+
+  PreparedDiagnosis input;
+};
+
+inline ExampleReport::ExampleReport() {
+  prepared = &input;
+  input.model_file = "rig.toml";
+  input.records = {"bench.csv"};
+  input.command = "spoolwatch diagnose rig.toml bench.csv";
+  selection::Diagnosis& d = diagnosis;
   d.verdict = selection::Verdict::missing;
   d.missing = {"friction"};
   d.noise_floor_m = 2.4e-6;
@@ -57,7 +65,6 @@ inline Outcome example_outcome() {
   d.search.final.added = {"friction"};
   d.search.final.fitted = example_fit(2.7e-6);
   d.final = d.search.final.fitted;
-  return outcome;
 }
 
 }  // namespace workbench::diagnose

@@ -25,7 +25,7 @@ Judged judged(const std::string& spec, std::size_t seed) {
   Judged result;
   result.of = truth::parse_case(spec, seed);
   result.diagnosis = diagnose_test::found_in(
-      diagnose_test::problem_with(diagnose_test::dataset_of(truth::simulate(result.of))));
+      diagnose_test::context_with(diagnose_test::dataset_of(truth::simulate(result.of))));
   return result;
 }
 

@@ -24,7 +24,7 @@ inline constexpr double kStdErrors = 3.0;
 inline constexpr double kVisible = 1.5;
 
 inline selection::Diagnosis found_in(const selection::SearchContext& context) {
-  return workbench::diagnose::diagnose(context).diagnosis;
+  return workbench::diagnose::diagnose(context.problem, context.options).diagnosis;
 }
 
 inline std::string said(const selection::Diagnosis& d) {

@@ -191,12 +191,14 @@ TEST(Support, ComesFromHeldOutRecordsWhereThereAreAny) {
       diagnose_test::servo_record({.rate_mps = with_offset(0.06), .seed = 8});
   const greybox::Dataset healthy =
       diagnose_test::servo_record({.rate_mps = with_offset(0.0), .seed = 8});
-  const auto problem_of = [&](const greybox::Dataset& held_out) {
-    return selection::make_problem(diagnose_test::servo_model(),
-                                   greybox::fit_dataset({with}, {held_out}));
+  const auto context_of = [&](const greybox::Dataset& held_out) {
+    return selection::SearchContext{
+        selection::make_problem(diagnose_test::servo_model(),
+                                greybox::fit_dataset({with}, {held_out})),
+        {}};
   };
-  EXPECT_TRUE(is_supported(problem_of(again), true, "null_bias", 0.05));
-  EXPECT_FALSE(is_supported(problem_of(healthy), true, "null_bias", 0.05));
+  EXPECT_TRUE(is_supported(context_of(again), true, "null_bias", 0.05));
+  EXPECT_FALSE(is_supported(context_of(healthy), true, "null_bias", 0.05));
 }
 
 // On a command of +-1 V an offset b and an asymmetry b / 1 V are the same equation.

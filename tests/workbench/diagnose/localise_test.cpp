@@ -18,7 +18,7 @@ using testing::AnyOf;
 using testing::IsEmpty;
 
 std::vector<selection::Localisation> where_of(const std::string& spec) {
-  const selection::SearchContext context = diagnose_test::problem_of(spec);
+  const selection::SearchContext context = diagnose_test::context_of(spec);
   return selection::localise(context, selection::first_stage(context));
 }
 

@@ -36,11 +36,11 @@ class DiagnoseRequest : public testing::Test, public ServoBench {
 TEST_F(DiagnoseRequest, IsTakenWithItsRecordsAndCommand) {
   request_.holdouts = {record("other.csv", {.sample_time_s = 0.01})};
   request_.report = file("it's.html");
-  const Outcome outcome = prepare(request_);
-  EXPECT_EQ(outcome.context.problem.data.records.size(), 2U);
-  EXPECT_EQ(outcome.command, "spoolwatch diagnose " + model() + " " + request_.records[0] +
-                                 " --holdout " + request_.holdouts[0] + " --report '" +
-                                 file("it'\\''s.html") + "'");
+  const PreparedDiagnosis prepared = prepare(request_);
+  EXPECT_EQ(prepared.problem.data.records.size(), 2U);
+  EXPECT_EQ(prepared.command, "spoolwatch diagnose " + model() + " " + request_.records[0] +
+                                  " --holdout " + request_.holdouts[0] + " --report '" +
+                                  file("it'\\''s.html") + "'");
 }
 
 TEST_F(DiagnoseRequest, HoldoutThatIsFittedTooIsRefused) {

@@ -72,7 +72,8 @@ inline plant_sim::ModelFile servo_model() {
 }
 
 inline selection::SearchContext servo_context(const ServoRun& run) {
-  return selection::make_problem(servo_model(), greybox::fit_dataset({servo_record(run)}, {}));
+  return selection::SearchContext{
+      selection::make_problem(servo_model(), greybox::fit_dataset({servo_record(run)}, {})), {}};
 }
 
 /// y' = 0.05 (u + offset).

@@ -33,12 +33,13 @@ inline greybox::Dataset dataset_of(const truth::Record& truth) {
   return greybox::dataset_of(record);
 }
 
-inline selection::SearchContext problem_with(greybox::Dataset record) {
-  return selection::make_problem(thesis(), greybox::fit_dataset({std::move(record)}, {}));
+inline selection::SearchContext context_with(greybox::Dataset record) {
+  return selection::SearchContext{
+      selection::make_problem(thesis(), greybox::fit_dataset({std::move(record)}, {})), {}};
 }
 
-inline selection::SearchContext problem_of(const std::string& spec, std::size_t seed = 1) {
-  return problem_with(dataset_of(truth::simulate(truth::parse_case(spec, seed))));
+inline selection::SearchContext context_of(const std::string& spec, std::size_t seed = 1) {
+  return context_with(dataset_of(truth::simulate(truth::parse_case(spec, seed))));
 }
 
 /// The case's plant in closed loop on a reference of the product.

@@ -32,9 +32,10 @@ Count covered(const std::string& text, const ParameterSelection& selection) {
     const auto seed = static_cast<std::size_t>(1000 + i);
     const std::string motion = "motion=" + motions[static_cast<std::size_t>(i) % motions.size()];
     const truth::Case of = truth::parse_case(motion + text, seed);
-    greybox::EstimationProblem t = workbench_test::problem(model, of, selection);
-    t.starts = 1;
-    const greybox::EstimationSummary e = greybox::estimate(t);
+    const greybox::EstimationProblem t = workbench_test::problem(model, of, selection);
+    greybox::EstimationOptions options = workbench_test::without_profiles();
+    options.starts = 1;
+    const greybox::EstimationSummary e = greybox::estimate(t, options);
     for (const truth::PlantField& field : truth::plant_fields()) {
       for (const greybox::EstimatedParameter& p : e.parameters) {
         if (p.free.name != field.name) continue;

@@ -17,6 +17,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using workbench_test::parameter;
 using workbench_test::problem;
+using workbench_test::without_profiles;
 
 const std::string kModels = SPOOLWATCH_SOURCE_DIR "/config/models/";
 
@@ -59,9 +60,12 @@ struct Straight {
     t.data = greybox::fit_dataset({made}, {});
     t.weights = t.data.all_mask;
     t.data.validation_mask.setZero();
-    t.observer_per_s = 0.0;
-    t.profiling = greybox::Profiling::none;
     return t;
+  }
+  static greybox::EstimationOptions options() {
+    greybox::EstimationOptions pure = without_profiles();
+    pure.observer_per_s = 0.0;
+    return pure;
   }
   /// sum w x^2 and sum w x y of y = gain x.
   std::pair<double, double> sums(const Eigen::VectorXd& weights) const {
@@ -85,7 +89,7 @@ TEST(FitEstimation, IsWeightedLeastSquaresWhereTheModelIsLinear) {
   greybox::EstimationProblem t =
       line.fit({.free = {"gain_mps_per_V"}, .priors = {"gain_mps_per_V=none"}});
   t.weights.head(1000) *= 4.0;
-  const greybox::EstimationSummary e = greybox::estimate(t);
+  const greybox::EstimationSummary e = greybox::estimate(t, Straight::options());
   const auto [xx, xy] = line.sums(t.weights);
   const greybox::EstimatedParameter& gain = parameter(e, "gain_mps_per_V");
   // To the search's tolerance, a hundredth of the standard error.
@@ -105,8 +109,8 @@ TEST(FitEstimation, APriorPullsAsBayesHasIt) {
   const double mean = xy / xx + 4.0 * own;
   char prior[80];
   std::snprintf(prior, sizeof prior, "gain_mps_per_V=%.17g+-%.17g", mean, own);
-  const greybox::EstimationSummary e =
-      greybox::estimate(line.fit({.free = {"gain_mps_per_V"}, .priors = {prior}}));
+  const greybox::EstimationSummary e = greybox::estimate(
+      line.fit({.free = {"gain_mps_per_V"}, .priors = {prior}}), Straight::options());
   const greybox::EstimatedParameter& gain = parameter(e, "gain_mps_per_V");
   EXPECT_NEAR((gain.value - xy / xx) / own, 2.0, 0.15);
   EXPECT_NEAR(gain.std_error / own, std::sqrt(0.5), 0.1);
@@ -116,7 +120,8 @@ TEST(FitEstimation, APriorPullsAsBayesHasIt) {
 TEST(FitEstimation, StopsAtABoundAndSaysSo) {
   const Straight line(0.03);
   const greybox::EstimationSummary e = greybox::estimate(
-      line.fit({.free = {"gain_mps_per_V"}, .bounds = {"gain_mps_per_V=0.01:0.04"}}));
+      line.fit({.free = {"gain_mps_per_V"}, .bounds = {"gain_mps_per_V=0.01:0.04"}}),
+      Straight::options());
   const greybox::EstimatedParameter& gain = parameter(e, "gain_mps_per_V");
   EXPECT_NEAR(gain.value, 0.04, 1e-12);
   EXPECT_EQ(gain.at_bound, 1);
@@ -127,10 +132,11 @@ TEST(FitEstimation, TheProfileOfAParabolaIsTheNormalInterval) {
   const Straight line(0.05);
   greybox::EstimationProblem t =
       line.fit({.free = {"gain_mps_per_V"}, .priors = {"gain_mps_per_V=none"}});
-  const greybox::EstimationSummary plain = greybox::estimate(t);
-  t.profiling = greybox::Profiling::named;
-  t.profiled = {"gain_mps_per_V"};
-  const greybox::EstimationSummary walked = greybox::estimate(t);
+  greybox::EstimationOptions options = Straight::options();
+  const greybox::EstimationSummary plain = greybox::estimate(t, options);
+  options.profiling = greybox::Profiling::named;
+  options.profiled = {"gain_mps_per_V"};
+  const greybox::EstimationSummary walked = greybox::estimate(t, options);
   const greybox::EstimatedParameter& a = plain.parameters[0];
   const greybox::EstimatedParameter& b = walked.parameters[0];
   EXPECT_TRUE(b.from_profile);
@@ -141,7 +147,8 @@ TEST(FitEstimation, TheProfileOfAParabolaIsTheNormalInterval) {
 TEST(FitEstimation, FindsAnotherPlantsParametersWithinItsErrors) {
   const auto model = plant_sim::load_model(kModels + "thesis.toml");
   const truth::Case of = healthy("");
-  const greybox::EstimationSummary e = greybox::estimate(problem(model, of, {}));
+  const greybox::EstimationSummary e =
+      greybox::estimate(problem(model, of, {}), without_profiles());
   for (const truth::PlantField& field : truth::plant_fields()) {
     const greybox::EstimatedParameter& p = parameter(e, field.name);
     EXPECT_LT(std::abs(p.value - of.plant.*field.member), 3.5 * p.std_error) << field.name;
@@ -155,7 +162,8 @@ TEST(FitEstimation, FindsAnotherPlantsParametersWithinItsErrors) {
 
 TEST(FitEstimation, SaysThatOnlyGainTimesTheRootOfThePressureIsVisible) {
   const auto model = plant_sim::load_model(kModels + "thesis.toml");
-  const greybox::EstimationSummary e = greybox::estimate(problem(model, healthy(""), {}));
+  const greybox::EstimationSummary e =
+      greybox::estimate(problem(model, healthy(""), {}), without_profiles());
   for (const greybox::IdentifiabilityReport* report :
        {&e.identifiability_before, &e.identifiability_after}) {
     ASSERT_FALSE(report->unidentifiable.empty());
@@ -173,15 +181,15 @@ TEST(FitEstimation, SaysThatOnlyGainTimesTheRootOfThePressureIsVisible) {
 TEST(FitEstimation, SaysThatOnlyRatiosOfAMassADampingAndAForceAreVisible) {
   // M v' = gain u - d v: the motion is that of gain/M and d/M alone.
   greybox::EstimationProblem t = Straight(0.05).fit({});
+  greybox::EstimationOptions options = without_profiles();
   t.model = plant_sim::load_model(kModels + "force_driven_axis.toml");
   const FreeParameters choice =
       select_parameters(t.model, {.free = {"mass_kg", "damping_N_s_per_m", "gain_N_per_V"},
                                   .priors = {"mass_kg=100+-10", "damping_N_s_per_m=none"}});
   t.parameters = choice.parameters;
   t.start = choice.start;
-  t.observer_per_s = greybox::kObserver_per_s;
-  t.starts = 1;
-  const greybox::EstimationSummary e = greybox::estimate(t);
+  options.starts = 1;
+  const greybox::EstimationSummary e = greybox::estimate(t, options);
   ASSERT_FALSE(e.identifiability_before.unidentifiable.empty());
   const greybox::UnidentifiableParameter& first = e.identifiability_before.unidentifiable[0];
   EXPECT_EQ(first.partners.size(), 2U) << first.words;
@@ -191,10 +199,11 @@ TEST(FitEstimation, SaysThatOnlyRatiosOfAMassADampingAndAForceAreVisible) {
 TEST(FitEstimation, StopsWhenAskedAndKeepsTheBestSoFar) {
   const auto model = plant_sim::load_model(kModels + "thesis.toml");
   greybox::EstimationProblem t = problem(model, healthy(""), {});
+  greybox::EstimationOptions options = without_profiles();
   int asked = 0;
-  t.threads = 1;
-  t.cancel = [&] { return ++asked > 3; };
-  const greybox::EstimationSummary e = greybox::estimate(t);
+  options.threads = 1;
+  options.cancel = [&] { return ++asked > 3; };
+  const greybox::EstimationSummary e = greybox::estimate(t, options);
   EXPECT_TRUE(e.interrupted);
   EXPECT_LE(e.after.rms_m, e.before.rms_m);
   EXPECT_TRUE(std::isfinite(parameter(e, "valve_gain_m_per_V").std_error));
@@ -203,17 +212,18 @@ TEST(FitEstimation, StopsWhenAskedAndKeepsTheBestSoFar) {
 TEST(FitEstimation, GivesTheSameAnswerWhateverTheThreads) {
   const auto model = plant_sim::load_model(kModels + "thesis.toml");
   greybox::EstimationProblem t = problem(model, healthy("", 4), {});
+  greybox::EstimationOptions options = without_profiles();
   const greybox::EstimationSummary one = [&] {
-    t.threads = 1;
-    return greybox::estimate(t);
+    options.threads = 1;
+    return greybox::estimate(t, options);
   }();
-  t.threads = 2;
-  const greybox::EstimationSummary two = greybox::estimate(t);
+  options.threads = 2;
+  const greybox::EstimationSummary two = greybox::estimate(t, options);
   for (std::size_t i = 0; i < one.parameters.size(); ++i) {
     EXPECT_NEAR(one.parameters[i].value, two.parameters[i].value,
                 0.02 * one.parameters[i].std_error);
   }
-  const greybox::EstimationSummary again = greybox::estimate(t);
+  const greybox::EstimationSummary again = greybox::estimate(t, options);
   EXPECT_EQ(again.parameters[1].value, two.parameters[1].value);
 }
 

@@ -35,8 +35,13 @@ inline greybox::EstimationProblem problem(const plant_sim::ModelFile& model, con
   problem.data = greybox::fit_dataset({dataset_of(truth::simulate(of))}, {});
   problem.weights = problem.data.all_mask;
   problem.data.validation_mask.setZero();
-  options.profiling = greybox::Profiling::none;
   return problem;
+}
+
+inline greybox::EstimationOptions without_profiles() {
+  greybox::EstimationOptions options;
+  options.profiling = greybox::Profiling::none;
+  return options;
 }
 
 inline const greybox::EstimatedParameter& parameter(const greybox::EstimationSummary& of,
