@@ -12,7 +12,7 @@ namespace estimator::greybox {
 namespace {
 
 /// Of the error in one sample, where samples are far apart.
-constexpr double kMostLed = 0.5;
+constexpr double kLargestInitialisationGain = 0.5;
 constexpr double kLeast_s = 2.0;
 /// Two samples at least while a segment settles.
 constexpr double kSlowest_s = 0.25;
@@ -37,17 +37,19 @@ bool begins_moving(const config::record::Record& record, std::size_t begin, std:
   return std::abs(first_m) > kMoving * std::sqrt(squares / static_cast<double>(end - begin - 1));
 }
 
-void append(Measured& to, const config::record::Record& from, std::size_t begin, std::size_t end) {
+void append(Dataset& to, const config::record::Record& from, std::size_t begin, std::size_t end) {
   const std::size_t settling = settling_samples(from.sample_time_s);
-  const Led led = begin > 0 ? kLed : begins_moving(from, begin, end) ? kLedWhereObserved : kNotLed;
+  const Initialisation initialising = begin > 0                         ? kInitialising
+                                      : begins_moving(from, begin, end) ? kInitialisingIfObserved
+                                                                        : kNotInitialising;
   to.starts.push_back(to.size());
   for (std::size_t i = begin; i < end; ++i) {
     to.t_s.push_back(from.t_s[i]);
     to.u_V.push_back(from.u_V[i]);
     to.y_m.push_back(from.y_m[i]);
-    const bool settled = i - begin >= settling;
-    to.settled.push_back(settled ? 1 : 0);
-    to.led.push_back(settled ? kNotLed : led);
+    const bool valid = i - begin >= settling;
+    to.valid.push_back(valid ? 1 : 0);
+    to.initialising.push_back(valid ? kNotInitialising : initialising);
   }
 }
 
@@ -55,15 +57,16 @@ std::string seconds(double s) { return fmt::format("{:.3g} s", s); }
 
 }  // namespace
 
-double Measured::share(std::size_t k, double observer_per_s) const noexcept {
+double Dataset::observer_gain(std::size_t k, double observer_per_s) const noexcept {
   const double observed = observer_per_s * sample_time_s;
-  if (k >= led.size() || led[k] == kNotLed) return observed;
-  if (led[k] == kLedWhereObserved && !(observer_per_s > 0.0)) return observed;
-  return std::max(observed, std::min(kMostLed, kLeading_per_s * sample_time_s));
+  if (k >= initialising.size() || initialising[k] == kNotInitialising) return observed;
+  if (initialising[k] == kInitialisingIfObserved && !(observer_per_s > 0.0)) return observed;
+  return std::max(observed,
+                  std::min(kLargestInitialisationGain, kInitialisation_per_s * sample_time_s));
 }
 
-Measured measured(const config::record::Record& record) {
-  Measured result;
+Dataset dataset_of(const config::record::Record& record) {
+  Dataset result;
   result.name = record.name;
   result.sample_time_s = record.sample_time_s;
   result.notes = record.notes;
@@ -107,8 +110,8 @@ Measured measured(const config::record::Record& record) {
   return result;
 }
 
-Measured part(const Measured& whole, std::size_t from, std::size_t to) {
-  Measured result;
+Dataset part(const Dataset& whole, std::size_t from, std::size_t to) {
+  Dataset result;
   result.name = whole.name;
   result.sample_time_s = whole.sample_time_s;
   const auto cut = [&](const auto& values) {
@@ -118,17 +121,17 @@ Measured part(const Measured& whole, std::size_t from, std::size_t to) {
   result.t_s = cut(whole.t_s);
   result.u_V = cut(whole.u_V);
   result.y_m = cut(whole.y_m);
-  result.settled = cut(whole.settled);
-  if (!whole.led.empty()) result.led = cut(whole.led);
+  result.valid = cut(whole.valid);
+  if (!whole.initialising.empty()) result.initialising = cut(whole.initialising);
   result.starts = {0};
   for (const std::size_t start : whole.starts) {
     if (start > from && start < to) result.starts.push_back(start - from);
   }
   if (from == 0) return result;
-  result.led.resize(result.size());
+  result.initialising.resize(result.size());
   for (std::size_t i = 0; i < std::min(settling_samples(whole.sample_time_s), result.size()); ++i) {
-    result.settled[i] = 0;
-    result.led[i] = kLed;
+    result.valid[i] = 0;
+    result.initialising[i] = kInitialising;
   }
   return result;
 }

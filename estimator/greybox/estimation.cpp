@@ -43,90 +43,93 @@ bool is_smooth(const plant_sim::ModelFile& model) {
 
 class Estimator {
  public:
-  explicit Estimator(const Task& task)
-      : task_(task),
-        run_(task.model, task.evidence, task.searched, task.observer_per_s, task.threads),
-        smooth_(is_smooth(task.model)),
-        problem_(problem_of(task.evidence, task.weights, task.searched,
+  Estimator(const EstimationProblem& question, const EstimationOptions& options)
+      : question_(question),
+        options_(options),
+        run_(question.model, question.data, question.parameters, options.observer_per_s,
+             options.threads),
+        smooth_(is_smooth(question.model)),
+        problem_(problem_of(question.data, question.weights, question.parameters,
                             smooth_ ? kFine : kLogarithmStep)) {
     problem_.evaluate = run_.evaluate();
     problem_.lanes = run_.lanes();
   }
 
-  Estimation run() {
+  EstimationSummary run() {
     const auto begin = std::chrono::steady_clock::now();
     say("looking at what the record can tell");
-    derivatives(problem_, task_.start, out_.before.residual_m, start_jacobian_);
-    problem_.sigma = task_.evidence.noise_floor_m > 0.0
-                         ? task_.evidence.noise_floor_m
-                         : std::max(rms(out_.before.residual_m, task_.weights), 1e-12);
-    out_.sight_before = sight(problem_, start_jacobian_, task_.searched, task_.start);
-    if (task_.starts > 1) {
+    derivatives(problem_, question_.start, out_.before.residual_m, start_jacobian_);
+    problem_.sigma = question_.data.noise_floor_m > 0.0
+                         ? question_.data.noise_floor_m
+                         : std::max(rms(out_.before.residual_m, question_.weights), 1e-12);
+    out_.identifiability_before =
+        identifiability_report(problem_, start_jacobian_, question_.parameters, question_.start);
+    if (options_.starts > 1) {
       search();
     } else {
       descend();
     }
-    polish(out_.fitted.x, &out_.fitted);
-    if (task_.starts <= 1) found_.assign(1, as_fitted());
-    tell_starts();
-    know();
+    polish(out_.fitted.theta, &out_.fitted);
+    if (options_.starts <= 1) found_.assign(1, as_fitted());
+    classify_starts();
+    compute_uncertainty();
     out_.fit_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     profile();
-    out_.noise_floor_m = task_.evidence.noise_floor_m;
+    out_.noise_floor_m = question_.data.noise_floor_m;
     out_.evaluations += out_.fitted.evaluations;
-    out_.fitted.x = solution_.x;
+    out_.fitted.theta = solution_.x;
     out_.fitted.sigma_m = problem_.sigma;
     out_.fitted.residual_m = solution_.residual;
     out_.fitted.jacobian = solution_.jacobian;
     out_.fitted.at_bound = solution_.at_bound;
-    out_.fitted.fit_rms_m = rms(solution_.residual, task_.weights);
-    out_.fitted.score_rms_m = rms(solution_.residual, task_.evidence.scores);
-    out_.better = with_values(task_.model, out_.fitted);
+    out_.fitted.training_rms_m = rms(solution_.residual, question_.weights);
+    out_.fitted.validation_rms_m = rms(solution_.residual, question_.data.validation_mask);
+    out_.better = with_values(question_.model, out_.fitted);
     out_.after.residual_m = solution_.residual;
-    find_errors(task_, solution_.x, out_.before, out_.after);
+    compute_errors(question_, solution_.x, out_.before, out_.after);
     out_.interrupted = cancelled();
     return std::move(out_);
   }
 
  private:
-  bool cancelled() const { return task_.cancel && task_.cancel(); }
+  bool cancelled() const { return options_.cancel && options_.cancel(); }
   void say(const std::string& doing) const {
-    if (task_.progress) task_.progress(doing);
+    if (options_.progress) options_.progress(doing);
   }
 
   void search() {
     const std::vector<VectorXd> points =
-        starting_points(task_.searched, task_.start, std::max(1, task_.starts));
+        starting_points(question_.parameters, question_.start, std::max(1, options_.starts));
     found_.resize(points.size());
     say("fitting from " + std::to_string(points.size()) +
         (points.size() == 1 ? " start" : " starts"));
-    const unsigned side_by_side = std::min(task_.threads, static_cast<unsigned>(points.size()));
+    const unsigned side_by_side = std::min(options_.threads, static_cast<unsigned>(points.size()));
     in_parallel(points.size(), side_by_side, [&](std::size_t i) {
       if (i > 0 && cancelled()) return;
-      FitOptions options;
-      options.final_jacobian = false;
-      options.tolerance = kCoarse;  // polished afterwards
-      if (smooth_) options.logarithm_step = kFine;
-      options.observer_per_s = task_.observer_per_s;
-      options.cancel = task_.cancel;
-      options.threads = task_.threads / std::max(1U, side_by_side);
+      FitOptions fit_options;
+      fit_options.final_jacobian = false;
+      fit_options.tolerance = kCoarse;  // polished afterwards
+      if (smooth_) fit_options.logarithm_step = kFine;
+      fit_options.observer_per_s = options_.observer_per_s;
+      fit_options.cancel = options_.cancel;
+      fit_options.threads = options_.threads / std::max(1U, side_by_side);
       if (i == 0) {
-        options.start_residual_m = out_.before.residual_m;
-        options.start_jacobian = start_jacobian_;
+        fit_options.start_residual_m = out_.before.residual_m;
+        fit_options.start_jacobian = start_jacobian_;
       }
-      found_[i] =
-          fit(task_.model, task_.evidence, task_.weights, task_.searched, points[i], options);
+      found_[i] = fit(question_.model, question_.data, question_.weights, question_.parameters,
+                      points[i], fit_options);
     });
     std::size_t best = 0;
     for (std::size_t i = 0; i < found_.size(); ++i) {
-      if (found_[i].x.size() == 0) continue;
+      if (found_[i].theta.size() == 0) continue;
       out_.evaluations += found_[i].evaluations;
-      if (found_[i].fit_rms_m < found_[best].fit_rms_m) best = i;
+      if (found_[i].training_rms_m < found_[best].training_rms_m) best = i;
     }
     // The priors count too: of the fits, the least cost by the measure of the best.
     problem_.sigma = found_[best].sigma_m;
     for (std::size_t i = 0; i < found_.size(); ++i) {
-      if (found_[i].x.size() > 0 && cost(found_[i]) < cost(found_[best])) best = i;
+      if (found_[i].theta.size() > 0 && cost(found_[i]) < cost(found_[best])) best = i;
     }
     out_.fitted = found_[best];
     out_.evaluations -= out_.fitted.evaluations;
@@ -136,14 +139,15 @@ class Estimator {
   /// From the one start: after each step the residual is weighed anew, until its size is known.
   void descend() {
     say("fitting");
-    Fitted& at = out_.fitted;
-    at.searched = task_.searched;
-    at.x = task_.start;
+    FitSummary& at = out_.fitted;
+    at.parameters = question_.parameters;
+    at.theta = question_.start;
     at.residual_m = out_.before.residual_m;
     at.jacobian = start_jacobian_;
     const auto weighed = [&] {
-      return std::max({task_.evidence.noise_floor_m, rms(at.residual_m, task_.weights), 1e-12}) *
-             std::sqrt(correlation_factor(at.residual_m, task_.weights));
+      return std::max(
+                 {question_.data.noise_floor_m, rms(at.residual_m, question_.weights), 1e-12}) *
+             std::sqrt(correlation_factor(at.residual_m, question_.weights));
     };
     at.sigma_m = weighed();
     for (int k = 0; k < kDescent && !cancelled(); ++k) {
@@ -154,9 +158,9 @@ class Estimator {
       how.final_jacobian = false;
       how.start_residual = at.residual_m;
       how.start_jacobian = at.jacobian;
-      solution_ = minimize(problem_, at.x, how);
+      solution_ = minimize(problem_, at.theta, how);
       out_.evaluations += solution_.evaluations;
-      at.x = solution_.x;
+      at.theta = solution_.x;
       at.residual_m = solution_.residual;
       at.jacobian = solution_.jacobian;
       at.sigma_m = weighed();
@@ -165,24 +169,24 @@ class Estimator {
     problem_.sigma = at.sigma_m;
   }
 
-  Fitted as_fitted() const {
-    Fitted fitted = out_.fitted;
-    fitted.x = solution_.x;
+  FitSummary as_fitted() const {
+    FitSummary fitted = out_.fitted;
+    fitted.theta = solution_.x;
     fitted.residual_m = solution_.residual;
     return fitted;
   }
 
-  double cost(const Fitted& fitted) const {
-    return estimator::nonlinear::cost_of(problem_, fitted.x, fitted.residual_m);
+  double cost(const FitSummary& fitted) const {
+    return estimator::nonlinear::cost_of(problem_, fitted.theta, fitted.residual_m);
   }
 
   /// `known`: residual and Jacobian there, or null.
-  void polish(const VectorXd& from, const Fitted* known) {
+  void polish(const VectorXd& from, const FitSummary* known) {
     estimator::nonlinear::Options how;
     how.cost_tolerance = kPolished;
     if (smooth_) how.first_damping = kSlight;
     how.max_iterations = kPolishing;
-    how.cancel = task_.cancel;
+    how.cancel = options_.cancel;
     how.central = !smooth_;
     if (smooth_ && known != nullptr && known->jacobian.size() > 0) {
       how.start_residual = known->residual_m;
@@ -195,15 +199,15 @@ class Estimator {
     solution_.cost = cost_of(problem_, solution_.x, solution_.residual);
   }
 
-  void tell_starts() {
+  void classify_starts() {
     const VectorXd std_error = covariance(problem_, solution_).std_error;
-    for (const Fitted& fitted : found_) {
-      if (fitted.x.size() == 0) continue;
+    for (const FitSummary& fitted : found_) {
+      if (fitted.theta.size() == 0) continue;
       ++out_.starts.tried;
       bool near = true;
-      for (Index j = 0; j < fitted.x.size(); ++j) {
+      for (Index j = 0; j < fitted.theta.size(); ++j) {
         if (std::isfinite(std_error[j])) {
-          near = near && std::abs(fitted.x[j] - solution_.x[j]) < kSamePlace * std_error[j];
+          near = near && std::abs(fitted.theta[j] - solution_.x[j]) < kSamePlace * std_error[j];
         }
       }
       const bool good = cost(fitted) - solution_.cost < kSameCost;
@@ -211,25 +215,26 @@ class Estimator {
     }
   }
 
-  void know() {
+  void compute_uncertainty() {
     known_ = covariance(problem_, solution_);
     out_.effective_samples = known_.effective_samples;
-    out_.sight_after = sight(problem_, solution_.jacobian, task_.searched, solution_.x);
-    const auto n = static_cast<Index>(task_.searched.size());
+    out_.identifiability_after =
+        identifiability_report(problem_, solution_.jacobian, question_.parameters, solution_.x);
+    const auto n = static_cast<Index>(question_.parameters.size());
     out_.parameters.clear();
     out_.correlation.setConstant(n, n, kNaN);
     for (Index j = 0; j < n; ++j) {
       const auto i = static_cast<std::size_t>(j);
-      const SearchParameter& p = task_.searched[i];
-      Parameter q;
-      q.search = p;
-      q.start = p.value(task_.start[j]);
-      q.value = p.value(solution_.x[j]);
+      const FreeParameter& p = question_.parameters[i];
+      EstimatedParameter q;
+      q.free = p;
+      q.start = p.to_physical(question_.start[j]);
+      q.value = p.to_physical(solution_.x[j]);
       q.std_error = known_.std_error[j] * p.slope(solution_.x[j]);
-      q.low = std::min(p.value(known_.low[j]), p.value(known_.high[j]));
-      q.high = std::max(p.value(known_.low[j]), p.value(known_.high[j]));
+      q.low = std::min(p.to_physical(known_.low[j]), p.to_physical(known_.high[j]));
+      q.high = std::max(p.to_physical(known_.low[j]), p.to_physical(known_.high[j]));
       q.at_bound = solution_.at_bound[i] * (p.scale == Scale::reciprocal ? -1 : 1);
-      q.record_share = out_.sight_after.share[j];
+      q.record_share = out_.identifiability_after.share[j];
       out_.parameters.push_back(q);
       for (Index k = 0; k < n; ++k) {
         const double both = known_.matrix(j, j) * known_.matrix(k, k);
@@ -239,12 +244,13 @@ class Estimator {
   }
 
   void profile() {
-    if (task_.profiling == Profiling::none || cancelled()) return;
+    if (options_.profiling == Profiling::none || cancelled()) return;
     std::vector<std::string> why;
     std::vector<estimator::nonlinear::Profile> walked;
     for (int again = 0; again < 2; ++again) {
-      why = doubts(problem_, solution_, known_, task_.searched, out_.sight_after.share);
-      walked = profiles(task_, problem_, solution_, known_, chosen(why));
+      why = doubts(problem_, solution_, known_, question_.parameters,
+                   out_.identifiability_after.share);
+      walked = profiles(question_, options_, problem_, solution_, known_, chosen(why));
       const auto least =
           std::min_element(walked.begin(), walked.end(), [](const auto& a, const auto& b) {
             return (a.least_x.size() > 0 ? a.least_cost : 1e300) <
@@ -256,11 +262,11 @@ class Estimator {
       }
       say("a profile met a better place: looking there");
       polish(least->least_x, nullptr);
-      know();
+      compute_uncertainty();
     }
     for (std::size_t i = 0; i < walked.size(); ++i) {
       out_.parameters[i].doubt = why[i];
-      if (walked[i].points.size() > 1) keep_profile(walked[i], out_.parameters[i]);
+      if (walked[i].points.size() > 1) apply_profile(walked[i], out_.parameters[i]);
     }
   }
 
@@ -268,29 +274,32 @@ class Estimator {
     std::vector<char> which(why.size(), 0);
     std::string names;
     for (std::size_t i = 0; i < why.size(); ++i) {
-      const std::string& name = task_.searched[i].name;
-      const bool named =
-          std::find(task_.profiled.begin(), task_.profiled.end(), name) != task_.profiled.end();
-      which[i] = task_.profiling == Profiling::named ? named : !why[i].empty();
+      const std::string& name = question_.parameters[i].name;
+      const bool named = std::find(options_.profiled.begin(), options_.profiled.end(), name) !=
+                         options_.profiled.end();
+      which[i] = options_.profiling == Profiling::named ? named : !why[i].empty();
       if (which[i] != 0) names += (names.empty() ? "" : ", ") + name;
     }
     if (!names.empty()) say("profile of " + names);
     return which;
   }
 
-  const Task& task_;
-  WideRun run_;
+  const EstimationProblem& question_;
+  const EstimationOptions& options_;
+  ParallelSimulation run_;
   bool smooth_;
   Problem problem_;
-  Estimation out_;
+  EstimationSummary out_;
   Eigen::MatrixXd start_jacobian_;
-  std::vector<Fitted> found_;
+  std::vector<FitSummary> found_;
   Solution solution_;
   Covariance known_;
 };
 
 }  // namespace
 
-Estimation estimate(const Task& task) { return Estimator(task).run(); }
+EstimationSummary estimate(const EstimationProblem& problem, const EstimationOptions& options) {
+  return Estimator(problem, options).run();
+}
 
 }  // namespace estimator::greybox

@@ -24,23 +24,27 @@ namespace estimator::greybox {
 
 enum class Profiling { none, doubtful, named };
 
-struct Task {
+struct EstimationProblem {
   plant_sim::ModelFile model;
-  Evidence evidence;        ///< `scores` may be all 0: nothing is held out
+  FitDataset data;          ///< `validation_mask` may be all 0: nothing is held out
   Eigen::VectorXd weights;  ///< of squared residuals in the fit
-  std::vector<SearchParameter> searched;
-  Eigen::VectorXd start;
-  int starts = 4;
-  Profiling profiling = Profiling::doubtful;
-  std::vector<std::string> profiled;  ///< names, where named
-  double observer_per_s = kObserver_per_s;
-  unsigned threads = 2;
-  std::function<bool()> cancel;                      ///< may be empty
-  std::function<void(const std::string&)> progress;  ///< may be empty; called from this thread
+  std::vector<FreeParameter> parameters;
+  Eigen::VectorXd start;  ///< theta
 };
 
-struct Parameter {
-  SearchParameter search;
+struct EstimationOptions {
+  int starts = 4;
+  Profiling profiling = Profiling::doubtful;
+  std::vector<std::string> profiled;  ///< parameter names, for Profiling::named
+  double observer_per_s = kObserver_per_s;
+  unsigned threads = 2;
+  std::function<bool()> cancel;  ///< may be empty
+  std::function<void(const std::string&)>
+      progress;  ///< called by the caller's thread; may be empty
+};
+
+struct EstimatedParameter {
+  FreeParameter free;
   double start = 0.0;  ///< SI, like what follows; the unit is in the name
   double value = 0.0;
   double std_error = 0.0;  ///< NaN at a bound, infinite where nothing sees it
@@ -55,7 +59,7 @@ struct Parameter {
   std::vector<estimator::nonlinear::ProfilePoint> profile;  ///< SI, ascending; may be empty
 };
 
-struct Starts {
+struct MultistartCounts {
   int tried = 0;
   int same = 0;       ///< ended in the best minimum
   int elsewhere = 0;  ///< as good within chance, at other values
@@ -63,7 +67,7 @@ struct Starts {
 };
 
 /// Errors of one model, measured less modelled.
-struct Errors {
+struct SimulationErrors {
   double rms_m = 0.0;  ///< drift-corrected, the samples that are fitted
   double heldout_rms_m = std::numeric_limits<double>::quiet_NaN();  ///< NaN: none held out
   double free_run_rms_m = 0.0;                                      ///< nothing corrected
@@ -72,23 +76,24 @@ struct Errors {
   Eigen::VectorXd free_run_m;
 };
 
-struct Estimation {
-  std::vector<Parameter> parameters;
-  Fitted fitted;
+struct EstimationSummary {
+  std::vector<EstimatedParameter> parameters;
+  FitSummary fitted;
   plant_sim::ModelFile better;
   double noise_floor_m = 0.0;
-  Errors before;
-  Errors after;
-  Sight sight_before;
-  Sight sight_after;
+  SimulationErrors before;
+  SimulationErrors after;
+  IdentifiabilityReport identifiability_before;
+  IdentifiabilityReport identifiability_after;
   Eigen::MatrixXd correlation;  ///< of the estimates; NaN where there is none
   double effective_samples = 0.0;
-  Starts starts;
+  MultistartCounts starts;
   bool interrupted = false;
   double fit_s = 0.0;   ///< time taken up to the standard errors, profiles left out
   int evaluations = 0;  ///< groups of eight simulations, without the profiles'
 };
 
-[[nodiscard]] Estimation estimate(const Task& task);
+[[nodiscard]] EstimationSummary estimate(const EstimationProblem& problem,
+                                         const EstimationOptions& options);
 
 }  // namespace estimator::greybox

@@ -11,6 +11,7 @@
 #include <functional>
 #include <vector>
 
+#include "estimator/greybox/dataset_simulation.h"
 #include "estimator/greybox/fit_dataset.h"
 #include "estimator/greybox/free_parameter.h"
 #include "estimator/greybox/observer_simulation.h"
@@ -18,24 +19,6 @@
 #include "plant_sim/model_file.h"
 
 namespace estimator::greybox {
-
-/// ModelRun over every record of the evidence.
-class EvidenceRun {
- public:
-  EvidenceRun(const plant_sim::ModelFile& model, const Evidence& evidence,
-              const std::vector<SearchParameter>& searched,
-              double observer_per_s = kObserver_per_s);
-
-  /// evidence.size() x points.cols(); at most ModelRun::kLanes columns.
-  void residuals(const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals_m);
-  /// With what is added to command and load in each lane; both empty or of the size of residuals_m.
-  void residuals(const Eigen::MatrixXd& points, const Eigen::MatrixXd& added_V,
-                 const Eigen::MatrixXd& added_N, Eigen::MatrixXd& residuals_m);
-
- private:
-  std::vector<ModelRun> runs_;
-  std::vector<Eigen::Index> sizes_;
-};
 
 /// Step of the difference quotients of logarithmic parameters: large enough for models with dry
 /// friction, whose cost is ragged.
@@ -45,7 +28,7 @@ struct FitOptions {
   int max_iterations = 30;
   double tolerance = 1e-4;     ///< relative decrease of the cost at which it ends
   int passes = 3;              ///< at most; each weighs the residual anew
-  bool final_jacobian = true;  ///< false: Fitted::jacobian may be stale in some columns
+  bool final_jacobian = true;  ///< false: FitSummary::jacobian may be stale in some columns
   double observer_per_s = kObserver_per_s;
   std::function<bool()> cancel;  ///< true ends the search, keeping the best so far
   unsigned threads = 1;          ///< that simulate side by side within this fit
@@ -55,14 +38,14 @@ struct FitOptions {
   Eigen::MatrixXd start_jacobian;
 };
 
-struct Fitted {
-  std::vector<SearchParameter> searched;
-  Eigen::VectorXd x;           ///< search values
+struct FitSummary {
+  std::vector<FreeParameter> parameters;
+  Eigen::VectorXd theta;       ///< search values
   Eigen::VectorXd residual_m;  ///< of all samples
   Eigen::MatrixXd jacobian;    ///< d residual / d x, all samples
   std::vector<int> at_bound;   ///< -1, 0, +1 for each parameter
-  double fit_rms_m = 0.0;
-  double score_rms_m = 0.0;
+  double training_rms_m = 0.0;
+  double validation_rms_m = 0.0;
   double cost = 0.0;
   double sigma_m = 0.0;  ///< s sqrt(c) of the last pass
   int evaluations = 0;   ///< groups of eight simulations
@@ -72,21 +55,21 @@ struct Fitted {
 };
 
 /// What fit() minimises; `evaluate`, `lanes` and `sigma` are left to the caller.
-[[nodiscard]] estimator::nonlinear::Problem problem_of(const Evidence& evidence,
+[[nodiscard]] estimator::nonlinear::Problem problem_of(const FitDataset& data,
                                                        const Eigen::VectorXd& weights,
-                                                       const std::vector<SearchParameter>& searched,
+                                                       const std::vector<FreeParameter>& parameters,
                                                        double logarithm_step = kLogarithmStep);
 
 /// Weights: which samples count in the fit (Evidence::fits, or counts for the final values).
-[[nodiscard]] Fitted fit(const plant_sim::ModelFile& model, const Evidence& evidence,
-                         const Eigen::VectorXd& weights,
-                         const std::vector<SearchParameter>& searched, const Eigen::VectorXd& start,
-                         const FitOptions& options = {});
+[[nodiscard]] FitSummary fit(const plant_sim::ModelFile& model, const FitDataset& data,
+                             const Eigen::VectorXd& weights,
+                             const std::vector<FreeParameter>& parameters,
+                             const Eigen::VectorXd& start, const FitOptions& options = {});
 
 /// Standard error of each search value, honest for residuals of any colour; NaN at a bound,
 /// infinite where neither record nor prior sees it. `weights` as in the fit.
-[[nodiscard]] Eigen::VectorXd std_errors(const Evidence& evidence, const Eigen::VectorXd& weights,
-                                         const Fitted& fitted);
+[[nodiscard]] Eigen::VectorXd std_errors(const FitDataset& data, const Eigen::VectorXd& weights,
+                                         const FitSummary& fitted);
 
 /// (1 + rho) / (1 - rho) with the residual's correlation rho from one sample to the next, within
 /// 1 to 100.
@@ -94,6 +77,7 @@ struct Fitted {
                                         const Eigen::VectorXd& weights);
 
 /// The model with the values found; effects whose parameters were searched become present.
-[[nodiscard]] plant_sim::ModelFile with_values(plant_sim::ModelFile model, const Fitted& fitted);
+[[nodiscard]] plant_sim::ModelFile with_values(plant_sim::ModelFile model,
+                                               const FitSummary& fitted);
 
 }  // namespace estimator::greybox

@@ -11,7 +11,7 @@
 namespace estimator::greybox {
 namespace {
 
-bool in_fitted_block(const Measured& record, std::size_t i) {
+bool in_fitted_block(const Dataset& record, std::size_t i) {
   const double since_s = record.t_s[i] - record.t_s.front();
   return static_cast<long>(since_s / kBlock_s) % 2 == 0;
 }
@@ -26,33 +26,33 @@ Split parse_split(std::string_view text) {
                                    "; allowed: blocks, first-half, second-half");
 }
 
-Evidence evidence(std::vector<Measured> records, std::vector<Measured> holdouts, Split split) {
+FitDataset fit_dataset(std::vector<Dataset> records, std::vector<Dataset> holdouts, Split split) {
   if (holdouts.empty() && split != Split::blocks) {
-    std::vector<Measured> first;
-    std::vector<Measured> second;
-    for (const Measured& record : records) {
+    std::vector<Dataset> first;
+    std::vector<Dataset> second;
+    for (const Dataset& record : records) {
       first.push_back(part(record, 0, record.size() / 2));
       second.push_back(part(record, record.size() / 2, record.size()));
     }
     if (split == Split::second_half) first.swap(second);
-    return evidence(std::move(first), std::move(second));
+    return fit_dataset(std::move(first), std::move(second));
   }
-  Evidence result;
+  FitDataset result;
   const std::size_t fitted_records = records.size();
   const bool apart = !holdouts.empty();
   result.fitted_records = fitted_records;
   result.sample_time_s = records.front().sample_time_s;
   result.records = std::move(records);
-  for (Measured& record : holdouts) result.records.push_back(std::move(record));
+  for (Dataset& record : holdouts) result.records.push_back(std::move(record));
   std::size_t total = 0;
-  for (const Measured& record : result.records) total += record.size();
-  result.fits.setZero(static_cast<Eigen::Index>(total));
-  result.scores = result.fits;
+  for (const Dataset& record : result.records) total += record.size();
+  result.training_mask.setZero(static_cast<Eigen::Index>(total));
+  result.validation_mask = result.training_mask;
   Eigen::Index at = 0;
   double square_m2 = 0.0;
   std::size_t told = 0;
   for (std::size_t r = 0; r < result.records.size(); ++r) {
-    const Measured& record = result.records[r];
+    const Dataset& record = result.records[r];
     result.starts.push_back(static_cast<std::size_t>(at));
     const double floor_m = estimator::residual::noise_floor(record.y_m, record.sample_time_s).sd_m;
     if (std::isfinite(floor_m)) {
@@ -61,12 +61,12 @@ Evidence evidence(std::vector<Measured> records, std::vector<Measured> holdouts,
       told += record.size();
     }
     for (std::size_t i = 0; i < record.size(); ++i, ++at) {
-      if (record.settled[i] == 0) continue;
+      if (record.valid[i] == 0) continue;
       const bool fitted = apart ? r < fitted_records : in_fitted_block(record, i);
-      (fitted ? result.fits : result.scores)[at] = 1.0;
+      (fitted ? result.training_mask : result.validation_mask)[at] = 1.0;
     }
   }
-  result.counts = result.fits + result.scores;
+  result.all_mask = result.training_mask + result.validation_mask;
   result.noise_floor_m = std::sqrt(square_m2 / static_cast<double>(told));
   return result;
 }

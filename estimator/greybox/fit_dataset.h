@@ -18,29 +18,31 @@ enum class Split { blocks, first_half, second_half };
 
 inline constexpr double kBlock_s = 2.0;  ///< blocks: every other one is fitted
 
-struct Evidence {
-  std::vector<Measured> records;
+struct FitDataset {
+  std::vector<Dataset> records;
   std::vector<std::size_t> starts;  ///< where each record begins in the long series
   // One number for each sample of the long series, 1 or 0; settled samples only.
-  Eigen::VectorXd fits;
-  Eigen::VectorXd scores;
-  Eigen::VectorXd counts;          ///< either
+  Eigen::VectorXd training_mask;
+  Eigen::VectorXd validation_mask;
+  Eigen::VectorXd all_mask;        ///< either
   std::size_t fitted_records = 0;  ///< the first of `records`; the others only score
   /// Over the records that tell one; NaN when none does (below 20 Hz).
   double noise_floor_m = 0.0;
   double sample_time_s = 0.0;  ///< of the first record
 
-  [[nodiscard]] Eigen::Index size() const { return counts.size(); }
+  [[nodiscard]] Eigen::Index size() const { return all_mask.size(); }
   /// Whether whole records are kept for scoring.
-  [[nodiscard]] bool scores_apart() const { return fitted_records < records.size(); }
+  [[nodiscard]] bool has_holdouts() const { return fitted_records < records.size(); }
   /// The samples for final values: all, save for records that are kept for scoring.
-  [[nodiscard]] const Eigen::VectorXd& finally() const { return scores_apart() ? fits : counts; }
+  [[nodiscard]] const Eigen::VectorXd& final_weights() const {
+    return has_holdouts() ? training_mask : all_mask;
+  }
 };
 
 /// `holdouts` are records that only score; with them every sample of `records` is fitted. Halves of
 /// records become records of their own, so that each begins anew. At least one record.
-[[nodiscard]] Evidence evidence(std::vector<Measured> records, std::vector<Measured> holdouts,
-                                Split split = Split::blocks);
+[[nodiscard]] FitDataset fit_dataset(std::vector<Dataset> records, std::vector<Dataset> holdouts,
+                                     Split split = Split::blocks);
 
 /// sqrt(sum w r^2 / sum w).
 [[nodiscard]] double rms(const Eigen::Ref<const Eigen::VectorXd>& residual_m,

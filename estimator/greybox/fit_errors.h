@@ -9,6 +9,7 @@ namespace estimator::greybox {
 
 /// Fills the errors of the task's start and of `fitted` (search values); residual_m of both is
 /// there already.
-void find_errors(const Task& task, const Eigen::VectorXd& fitted, Errors& before, Errors& after);
+void compute_errors(const EstimationProblem& question, const Eigen::VectorXd& fitted,
+                    SimulationErrors& before, SimulationErrors& after);
 
 }  // namespace estimator::greybox

@@ -15,19 +15,19 @@ constexpr double kLargest = 200.0;
 
 }  // namespace
 
-double SearchParameter::value(double s) const {
+double FreeParameter::to_physical(double theta) const {
   switch (scale) {
     case Scale::logarithmic:
-      return unit * std::exp(s);
+      return unit * std::exp(theta);
     case Scale::reciprocal:
-      return s > 0.0 ? unit / s : kInfinite;
+      return theta > 0.0 ? unit / theta : kInfinite;
     case Scale::linear:
       break;
   }
-  return unit * s;
+  return unit * theta;
 }
 
-double SearchParameter::search(double value) const {
+double FreeParameter::to_theta(double value) const {
   switch (scale) {
     case Scale::logarithmic:
       return std::log(value / unit);
@@ -39,20 +39,20 @@ double SearchParameter::search(double value) const {
   return value / unit;
 }
 
-double SearchParameter::slope(double s) const {
+double FreeParameter::slope(double theta) const {
   switch (scale) {
     case Scale::logarithmic:
-      return unit * std::exp(s);
+      return unit * std::exp(theta);
     case Scale::reciprocal:
-      return unit / (s * s);
+      return unit / (theta * theta);
     case Scale::linear:
       break;
   }
   return std::abs(unit);
 }
 
-std::vector<SearchParameter> plant_parameters(const plant_sim::ModelFile& model) {
-  std::vector<SearchParameter> found;
+std::vector<FreeParameter> plant_parameters(const plant_sim::ModelFile& model) {
+  std::vector<FreeParameter> found;
   const plant_sim::PlantInfo& plant = *plant_sim::find_plant(model.plant);
   for (std::size_t i = 0; i < plant.parameters.size(); ++i) {
     const plant_sim::ParameterInfo& info = plant.parameters[i];
@@ -66,12 +66,11 @@ std::vector<SearchParameter> plant_parameters(const plant_sim::ModelFile& model)
   return found;
 }
 
-std::vector<SearchParameter> effect_parameters(const plant_sim::EffectInfo& effect,
-                                               int refinement) {
-  std::vector<SearchParameter> found;
+std::vector<FreeParameter> effect_parameters(const plant_sim::EffectInfo& effect, int refinement) {
+  std::vector<FreeParameter> found;
   for (const plant_sim::ParameterInfo& info : effect.parameters) {
     if (info.refinement > refinement) continue;
-    SearchParameter p;
+    FreeParameter p;
     p.name = effect.name + "." + info.name;
     p.unit = info.typical;
     p.prior_sd = kInfinite;
@@ -89,15 +88,15 @@ std::vector<SearchParameter> effect_parameters(const plant_sim::EffectInfo& effe
   return found;
 }
 
-std::vector<SearchParameter> present_parameters(const plant_sim::ModelFile& model) {
-  std::vector<SearchParameter> found;
+std::vector<FreeParameter> present_parameters(const plant_sim::ModelFile& model) {
+  std::vector<FreeParameter> found;
   plant_sim::ModelFile copy = model;
   for (const plant_sim::EffectInfo& info : plant_sim::effects_of(model)) {
     const auto named = [&](const auto& effect) {
       return effect.present && effect.name == info.name;
     };
     if (std::none_of(model.effects.begin(), model.effects.end(), named)) continue;
-    const std::vector<SearchParameter> all = effect_parameters(info, kEveryRefinement);
+    const std::vector<FreeParameter> all = effect_parameters(info, kEveryRefinement);
     for (std::size_t i = 0; i < all.size(); ++i) {
       const double* value = copy.value(all[i].name);
       if (value != nullptr && *value != info.parameters[i].neutral) found.push_back(all[i]);
@@ -107,15 +106,16 @@ std::vector<SearchParameter> present_parameters(const plant_sim::ModelFile& mode
 }
 
 Eigen::VectorXd start_of(const plant_sim::ModelFile& model,
-                         const std::vector<SearchParameter>& searched) {
+                         const std::vector<FreeParameter>& parameters) {
   plant_sim::ModelFile copy = model;
-  Eigen::VectorXd x(static_cast<Eigen::Index>(searched.size()));
-  for (std::size_t i = 0; i < searched.size(); ++i) {
-    const double* value = copy.value(searched[i].name);
-    const double s = value == nullptr ? 0.0 : searched[i].search(*value);
-    x[static_cast<Eigen::Index>(i)] = std::clamp(s, searched[i].lower, searched[i].upper);
+  Eigen::VectorXd theta(static_cast<Eigen::Index>(parameters.size()));
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const double* value = copy.value(parameters[i].name);
+    const double start = value == nullptr ? 0.0 : parameters[i].to_theta(*value);
+    theta[static_cast<Eigen::Index>(i)] =
+        std::clamp(start, parameters[i].lower, parameters[i].upper);
   }
-  return x;
+  return theta;
 }
 
 }  // namespace estimator::greybox

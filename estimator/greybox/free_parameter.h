@@ -18,7 +18,7 @@ enum class Scale { linear, logarithmic, reciprocal };
 
 inline constexpr int kEveryRefinement = 1000;
 
-struct SearchParameter {
+struct FreeParameter {
   std::string name;  ///< "damping_N_s_per_m", "friction.coulomb_N"
   Scale scale = Scale::linear;
   double unit = 1.0;
@@ -28,25 +28,25 @@ struct SearchParameter {
   double prior_sd = 0.0;    ///< infinite: none
   int refinement = 0;       ///< plant_sim::ParameterInfo::refinement
 
-  [[nodiscard]] double value(double s) const;
-  [[nodiscard]] double search(double value) const;
+  [[nodiscard]] double to_physical(double theta) const;
+  [[nodiscard]] double to_theta(double value) const;
   /// |d value / d s|, for standard errors.
-  [[nodiscard]] double slope(double s) const;
+  [[nodiscard]] double slope(double theta) const;
 };
 
 /// The plant's parameters that a rig may not share with its model file, with their priors about the
 /// file's values (plant_sim::ParameterInfo::uncertainty_ratio).
-[[nodiscard]] std::vector<SearchParameter> plant_parameters(const plant_sim::ModelFile& model);
+[[nodiscard]] std::vector<FreeParameter> plant_parameters(const plant_sim::ModelFile& model);
 
 /// The parameters of effects that the model has and that do not stand at their neutral value.
-[[nodiscard]] std::vector<SearchParameter> present_parameters(const plant_sim::ModelFile& model);
+[[nodiscard]] std::vector<FreeParameter> present_parameters(const plant_sim::ModelFile& model);
 
 /// Search values at which every parameter is as in the model file.
 [[nodiscard]] Eigen::VectorXd start_of(const plant_sim::ModelFile& model,
-                                       const std::vector<SearchParameter>& searched);
+                                       const std::vector<FreeParameter>& parameters);
 
 /// An effect's parameters up to the given refinement, from absence to their largest.
-[[nodiscard]] std::vector<SearchParameter> effect_parameters(const plant_sim::EffectInfo& effect,
-                                                             int refinement);
+[[nodiscard]] std::vector<FreeParameter> effect_parameters(const plant_sim::EffectInfo& effect,
+                                                           int refinement);
 
 }  // namespace estimator::greybox

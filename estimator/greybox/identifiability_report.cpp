@@ -36,17 +36,17 @@ std::string product(const std::string& b, const std::string& a, double slope) {
   return slope < 0.0 ? b + " * " + power_of(a, -slope) : b + " / " + power_of(a, slope);
 }
 
-class Looker {
+class IdentifiabilityAnalysis {
  public:
-  Looker(const estimator::nonlinear::Problem& problem, const MatrixXd& jacobian,
-         const std::vector<SearchParameter>& searched, const VectorXd& x)
-      : searched_(searched), scale_(x.size()), prior_(x.size()) {
-    for (Index j = 0; j < x.size(); ++j) {
-      const auto& p = searched[static_cast<std::size_t>(j)];
+  IdentifiabilityAnalysis(const estimator::nonlinear::Problem& problem, const MatrixXd& jacobian,
+                          const std::vector<FreeParameter>& parameters, const VectorXd& theta)
+      : parameters_(parameters), scale_(theta.size()), prior_(theta.size()) {
+    for (Index j = 0; j < theta.size(); ++j) {
+      const auto& p = parameters[static_cast<std::size_t>(j)];
       const bool prior = std::isfinite(p.prior_sd);
       scale_[j] = prior                           ? p.prior_sd
                   : p.scale == Scale::logarithmic ? 1.0
-                                                  : std::max(std::abs(x[j]), 0.1);
+                                                  : std::max(std::abs(theta[j]), 0.1);
       prior_[j] = prior ? 1.0 : 0.0;
     }
     const VectorXd nothing = VectorXd::Zero(problem.residuals);
@@ -56,9 +56,9 @@ class Looker {
     condition_ = estimator::nonlinear::identifiability(problem, jacobian, scale_).condition;
   }
 
-  Sight look() {
+  IdentifiabilityReport run() {
     const Index n = scale_.size();
-    Sight out;
+    IdentifiabilityReport out;
     out.condition = condition_;
     out.share.resize(n);
     VectorXd spread(n);
@@ -74,7 +74,7 @@ class Looker {
     for (const Index j : order) {
       const double limit = prior_[j] > 0.0 ? kHeld : 1.0;
       if (spread[j] < limit || is_partner(out, j)) continue;
-      out.unseen.push_back(unseen(j));
+      out.unidentifiable.push_back(unseen(j));
     }
     return out;
   }
@@ -93,18 +93,20 @@ class Looker {
   }
 
   /// Without priors a combination leaves several unseen; it is said once.
-  bool is_partner(const Sight& out, Index j) const {
+  bool is_partner(const IdentifiabilityReport& out, Index j) const {
     if (prior_[j] > 0.0) return false;
-    return std::any_of(out.unseen.begin(), out.unseen.end(), [&](const Unseen& u) {
-      return std::find(u.partners.begin(), u.partners.end(), name(j)) != u.partners.end();
-    });
+    return std::any_of(out.unidentifiable.begin(), out.unidentifiable.end(),
+                       [&](const UnidentifiableParameter& u) {
+                         return std::find(u.partners.begin(), u.partners.end(), name(j)) !=
+                                u.partners.end();
+                       });
   }
 
-  const std::string& name(Index j) const { return searched_[static_cast<std::size_t>(j)].name; }
+  const std::string& name(Index j) const { return parameters_[static_cast<std::size_t>(j)].name; }
 
   bool both_logarithmic(Index a, Index b) const {
-    return searched_[static_cast<std::size_t>(a)].scale == Scale::logarithmic &&
-           searched_[static_cast<std::size_t>(b)].scale == Scale::logarithmic;
+    return parameters_[static_cast<std::size_t>(a)].scale == Scale::logarithmic &&
+           parameters_[static_cast<std::size_t>(b)].scale == Scale::logarithmic;
   }
 
   /// How far j can move unnoticed when only k follows.
@@ -113,8 +115,8 @@ class Looker {
     return 1.0 / std::sqrt(std::max(rest, 1e-18));
   }
 
-  Unseen unseen(Index j) const {
-    Unseen out;
+  UnidentifiableParameter unseen(Index j) const {
+    UnidentifiableParameter out;
     out.name = name(j);
     out.has_prior = prior_[j] > 0.0;
     const std::string fate = out.has_prior ? "its prior holds " + out.name
@@ -145,7 +147,7 @@ class Looker {
     return out;
   }
 
-  void followers(Index j, Unseen& out) const {
+  void followers(Index j, UnidentifiableParameter& out) const {
     // Weak, so that the exponents are those of the equations; not none, for the sake of those that
     // nothing else would hold.
     VectorXd others = kWeak * prior_;
@@ -179,7 +181,7 @@ class Looker {
     return config::schema::listed(names);
   }
 
-  const std::vector<SearchParameter>& searched_;
+  const std::vector<FreeParameter>& parameters_;
   VectorXd scale_;
   VectorXd prior_;  ///< precision in those scales: 1, or 0 for none
   MatrixXd record_;
@@ -188,26 +190,28 @@ class Looker {
 
 }  // namespace
 
-Sight sight(const estimator::nonlinear::Problem& problem, const MatrixXd& jacobian,
-            const std::vector<SearchParameter>& searched, const VectorXd& x) {
-  return Looker(problem, jacobian, searched, x).look();
+IdentifiabilityReport identifiability_report(const estimator::nonlinear::Problem& problem,
+                                             const MatrixXd& jacobian,
+                                             const std::vector<FreeParameter>& parameters,
+                                             const VectorXd& theta) {
+  return IdentifiabilityAnalysis(problem, jacobian, parameters, theta).run();
 }
 
-void derivatives(const estimator::nonlinear::Problem& problem, const VectorXd& x,
+void derivatives(const estimator::nonlinear::Problem& problem, const VectorXd& theta,
                  VectorXd& residual, MatrixXd& jacobian) {
   using estimator::nonlinear::Probe;
-  std::vector<Index> columns(static_cast<std::size_t>(x.size()));
+  std::vector<Index> columns(static_cast<std::size_t>(theta.size()));
   std::iota(columns.begin(), columns.end(), 0);
-  const std::vector<Probe> probes = probes_at(problem, x, columns, false);
-  MatrixXd points(x.size(), static_cast<Index>(probes.size()) + 1);
-  points.col(0) = x;
-  points.rightCols(static_cast<Index>(probes.size())) = points_at(x, probes, 0, probes.size());
+  const std::vector<Probe> probes = probes_at(problem, theta, columns, false);
+  MatrixXd points(theta.size(), static_cast<Index>(probes.size()) + 1);
+  points.col(0) = theta;
+  points.rightCols(static_cast<Index>(probes.size())) = points_at(theta, probes, 0, probes.size());
   estimator::nonlinear::Groups groups(problem);
   const MatrixXd results = groups.run(points);
   residual = results.col(0);
-  jacobian.setZero(problem.residuals, x.size());
-  fill_columns(problem, x, residual, probes, results.rightCols(static_cast<Index>(probes.size())),
-               groups, jacobian);
+  jacobian.setZero(problem.residuals, theta.size());
+  fill_columns(problem, theta, residual, probes,
+               results.rightCols(static_cast<Index>(probes.size())), groups, jacobian);
 }
 
 }  // namespace estimator::greybox

@@ -18,7 +18,7 @@
 
 namespace estimator::greybox {
 
-struct Unseen {
+struct UnidentifiableParameter {
   std::string name;
   std::vector<std::string> partners;  ///< those that hide it by moving with it
   std::string visible;                ///< "gain * sqrt(pressure) and mass / pressure", or empty
@@ -26,21 +26,21 @@ struct Unseen {
   std::string words;
 };
 
-struct Sight {
+struct IdentifiabilityReport {
   double condition = 0.0;  ///< of the scaled Jacobian
   /// Share of each parameter's knowledge that is the record's: 1 - (posterior sd / prior sd)^2; 1
   /// without a prior, 0 where neither record nor prior see it.
   Eigen::VectorXd share;
-  std::vector<Unseen> unseen;
+  std::vector<UnidentifiableParameter> unidentifiable;
 };
 
 /// `sigma` of the problem: the noise, white (before a fit: the noise floor).
-[[nodiscard]] Sight sight(const estimator::nonlinear::Problem& problem,
-                          const Eigen::MatrixXd& jacobian,
-                          const std::vector<SearchParameter>& searched, const Eigen::VectorXd& x);
+[[nodiscard]] IdentifiabilityReport identifiability_report(
+    const estimator::nonlinear::Problem& problem, const Eigen::MatrixXd& jacobian,
+    const std::vector<FreeParameter>& parameters, const Eigen::VectorXd& theta);
 
 /// d residual / d x, all columns, and the residual.
-void derivatives(const estimator::nonlinear::Problem& problem, const Eigen::VectorXd& x,
+void derivatives(const estimator::nonlinear::Problem& problem, const Eigen::VectorXd& theta,
                  Eigen::VectorXd& residual, Eigen::MatrixXd& jacobian);
 
 }  // namespace estimator::greybox

@@ -27,11 +27,11 @@ constexpr double kLargeShare = 0.3;
 constexpr double kBent = 0.4;
 constexpr double kSeen = 0.5;
 
-std::string large(const SearchParameter& p, double x, double std_error) {
+std::string large(const FreeParameter& p, double theta, double std_error) {
   if (p.scale == Scale::logarithmic) {
     return std_error > kLargeLogarithm ? "large standard error" : "";
   }
-  return std_error > kLargeShare * std::abs(x) ? "large standard error" : "";
+  return std_error > kLargeShare * std::abs(theta) ? "large standard error" : "";
 }
 
 /// Marks those whose cost, at the ends of their intervals, is not that of the linear model.
@@ -82,25 +82,26 @@ void look_for_bends(const Problem& problem, const Solution& solution, const Cova
 
 std::vector<std::string> doubts(const Problem& problem, const Solution& solution,
                                 const Covariance& known,
-                                const std::vector<SearchParameter>& searched,
+                                const std::vector<FreeParameter>& parameters,
                                 const VectorXd& record_share) {
-  std::vector<std::string> found(searched.size());
-  for (std::size_t i = 0; i < searched.size(); ++i) {
+  std::vector<std::string> found(parameters.size());
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
     const auto j = static_cast<Index>(i);
-    const bool prior = std::isfinite(searched[i].prior_sd);
+    const bool prior = std::isfinite(parameters[i].prior_sd);
     if (solution.at_bound[i] != 0) {
       found[i] = "at its bound";
     } else if (known.standing[i] == Standing::kUnseen) {
       found[i] = "not visible";
     } else if (!prior || record_share[j] > kSeen) {
-      found[i] = large(searched[i], solution.x[j], known.std_error[j]);
+      found[i] = large(parameters[i], solution.x[j], known.std_error[j]);
     }
   }
   look_for_bends(problem, solution, known, found);
   return found;
 }
 
-std::vector<Profile> profiles(const Task& task, const Problem& problem, const Solution& solution,
+std::vector<Profile> profiles(const EstimationProblem& question, const EstimationOptions& options,
+                              const Problem& problem, const Solution& solution,
                               const Covariance& known, const std::vector<char>& chosen) {
   std::vector<std::size_t> which;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
@@ -108,34 +109,36 @@ std::vector<Profile> profiles(const Task& task, const Problem& problem, const So
   }
   std::vector<Profile> found(chosen.size());
   const auto threads = std::max(
-      1U, std::min(task.threads, static_cast<unsigned>(std::max<std::size_t>(1, which.size()))));
+      1U, std::min(options.threads, static_cast<unsigned>(std::max<std::size_t>(1, which.size()))));
   in_parallel(which.size(), threads, [&](std::size_t k) {
     const std::size_t i = which[k];
     const auto j = static_cast<Index>(i);
-    WideRun run(task.model, task.evidence, task.searched, task.observer_per_s,
-                task.threads / threads);
+    ParallelSimulation run(question.model, question.data, question.parameters,
+                           options.observer_per_s, options.threads / threads);
     Problem own = problem;
     own.evaluate = run.evaluate();
     own.lanes = run.lanes();
-    ProfileOptions options;
-    options.minimize.cost_tolerance = 1e-5;
-    options.minimize.max_iterations = 15;
-    options.minimize.renew_all = false;
-    options.minimize.cancel = task.cancel;
-    if (known.inflation[j] > 0.0) options.inflation = known.inflation[j];
-    if (std::isfinite(known.std_error[j])) options.first_step = kInterval * known.std_error[j];
-    found[i] = estimator::nonlinear::profile(own, solution, j, options);
+    ProfileOptions profile_options;
+    profile_options.minimize.cost_tolerance = 1e-5;
+    profile_options.minimize.max_iterations = 15;
+    profile_options.minimize.renew_all = false;
+    profile_options.minimize.cancel = options.cancel;
+    if (known.inflation[j] > 0.0) profile_options.inflation = known.inflation[j];
+    if (std::isfinite(known.std_error[j]))
+      profile_options.first_step = kInterval * known.std_error[j];
+    found[i] = estimator::nonlinear::profile(own, solution, j, profile_options);
   });
   return found;
 }
 
-void keep_profile(const estimator::nonlinear::Profile& walked, Parameter& q) {
-  const SearchParameter& p = q.search;
-  for (const auto& point : walked.points) q.profile.push_back({p.value(point.value), point.rise});
+void apply_profile(const estimator::nonlinear::Profile& walked, EstimatedParameter& q) {
+  const FreeParameter& p = q.free;
+  for (const auto& point : walked.points)
+    q.profile.push_back({p.to_physical(point.value), point.rise});
   q.low_found = walked.low_found;
   q.high_found = walked.high_found;
-  q.low = p.value(walked.low);
-  q.high = p.value(walked.high);
+  q.low = p.to_physical(walked.low);
+  q.high = p.to_physical(walked.high);
   if (p.scale == Scale::reciprocal) {
     std::reverse(q.profile.begin(), q.profile.end());
     std::swap(q.low, q.high);

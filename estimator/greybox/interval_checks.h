@@ -13,16 +13,16 @@ namespace estimator::greybox {
 [[nodiscard]] std::vector<std::string> doubts(const estimator::nonlinear::Problem& problem,
                                               const estimator::nonlinear::Solution& solution,
                                               const estimator::nonlinear::Covariance& known,
-                                              const std::vector<SearchParameter>& searched,
+                                              const std::vector<FreeParameter>& parameters,
                                               const Eigen::VectorXd& record_share);
 
 /// Of the parameters whose `chosen` is not 0, on the task's threads; others stay empty.
 [[nodiscard]] std::vector<estimator::nonlinear::Profile> profiles(
-    const Task& task, const estimator::nonlinear::Problem& problem,
-    const estimator::nonlinear::Solution& solution, const estimator::nonlinear::Covariance& known,
-    const std::vector<char>& chosen);
+    const EstimationProblem& question, const EstimationOptions& options,
+    const estimator::nonlinear::Problem& problem, const estimator::nonlinear::Solution& solution,
+    const estimator::nonlinear::Covariance& known, const std::vector<char>& chosen);
 
 /// What a profile says of a parameter, in the parameter's own unit.
-void keep_profile(const estimator::nonlinear::Profile& walked, Parameter& q);
+void apply_profile(const estimator::nonlinear::Profile& walked, EstimatedParameter& q);
 
 }  // namespace estimator::greybox

@@ -46,7 +46,8 @@ double norm(const std::vector<double>& values) {
   return std::sqrt(sum);
 }
 
-void differentiate(const Measured& record, const Span& span, std::size_t half, Motion& motion) {
+void differentiate(const Dataset& record, const SampleRange& span, std::size_t half,
+                   Kinematics& result) {
   const Weights inner = weights(-static_cast<std::ptrdiff_t>(half),
                                 static_cast<std::ptrdiff_t>(half), record.sample_time_s);
   for (std::size_t k = span.begin; k < span.end; ++k) {
@@ -65,8 +66,8 @@ void differentiate(const Measured& record, const Span& span, std::size_t half, M
       v += used.slope[i - from] * y_m;
       a += used.curvature[i - from] * y_m;
     }
-    motion.speed_mps[k] = v;
-    motion.acceleration_mps2[k] = a;
+    result.speed_mps[k] = v;
+    result.acceleration_mps2[k] = a;
   }
 }
 
@@ -75,15 +76,15 @@ int sign_of(double speed_mps, double rest_mps) {
   return speed_mps > 0.0 ? 1 : -1;
 }
 
-void direct(const Measured& record, const Span& span, Motion& motion) {
+void direct(const Dataset& record, const SampleRange& span, Kinematics& result) {
   const std::size_t longest = samples_in(kLongestReversal_s, record.sample_time_s);
   const std::size_t margin = samples_in(kReversalMargin_s, record.sample_time_s);
   int last_sign = 0;
   std::size_t last = span.begin;
   for (std::size_t k = span.begin; k < span.end; ++k) {
-    const int sign = sign_of(motion.speed_mps[k], motion.rest_mps);
-    if (motion.direction[k] != Direction::reversing) {
-      motion.direction[k] = sign == 0  ? Direction::resting
+    const int sign = sign_of(result.speed_mps[k], result.rest_mps);
+    if (result.direction[k] != Direction::reversing) {
+      result.direction[k] = sign == 0  ? Direction::resting
                             : sign > 0 ? Direction::extending
                                        : Direction::retracting;
     }
@@ -91,7 +92,7 @@ void direct(const Measured& record, const Span& span, Motion& motion) {
     if (sign == -last_sign && k - last <= longest) {
       const std::size_t from = last - std::min(margin, last - span.begin);
       const std::size_t to = std::min(k + margin, span.end - 1);
-      for (std::size_t i = from; i <= to; ++i) motion.direction[i] = Direction::reversing;
+      for (std::size_t i = from; i <= to; ++i) result.direction[i] = Direction::reversing;
     }
     last_sign = sign;
     last = k;
@@ -100,7 +101,7 @@ void direct(const Measured& record, const Span& span, Motion& motion) {
 
 }  // namespace
 
-const char* text(Direction direction) noexcept {
+const char* to_string(Direction direction) noexcept {
   switch (direction) {
     case Direction::extending:
       return "extending";
@@ -114,8 +115,8 @@ const char* text(Direction direction) noexcept {
   return "reversing";
 }
 
-std::vector<Span> segments(const Measured& record) {
-  std::vector<Span> spans;
+std::vector<SampleRange> segments(const Dataset& record) {
+  std::vector<SampleRange> spans;
   for (std::size_t i = 0; i < record.starts.size(); ++i) {
     const std::size_t end = i + 1 < record.starts.size() ? record.starts[i + 1] : record.size();
     spans.push_back({record.starts[i], end});
@@ -123,20 +124,20 @@ std::vector<Span> segments(const Measured& record) {
   return spans;
 }
 
-Motion motion(const Measured& record, double noise_m) {
-  Motion result;
+Kinematics kinematics(const Dataset& record, double noise_m) {
+  Kinematics result;
   result.speed_mps.resize(record.size());
   result.acceleration_mps2.resize(record.size());
   result.direction.resize(record.size(), Direction::resting);
   const std::size_t half =
       std::max<std::size_t>(2, samples_in(kHalfWindow_s, record.sample_time_s));
-  for (const Span& span : segments(record)) differentiate(record, span, half, result);
+  for (const SampleRange& span : segments(record)) differentiate(record, span, half, result);
   const Weights inner = weights(-static_cast<std::ptrdiff_t>(half),
                                 static_cast<std::ptrdiff_t>(half), record.sample_time_s);
   const double rms_mps = norm(result.speed_mps) /
                          std::sqrt(static_cast<double>(std::max<std::size_t>(1, record.size())));
   result.rest_mps = std::max(kRestNoise * noise_m * norm(inner.slope), kRestShare * rms_mps);
-  for (const Span& span : segments(record)) direct(record, span, result);
+  for (const SampleRange& span : segments(record)) direct(record, span, result);
   return result;
 }
 

@@ -16,9 +16,9 @@ namespace estimator::greybox {
 
 enum class Direction { extending, retracting, resting, reversing };
 
-[[nodiscard]] const char* text(Direction direction) noexcept;
+[[nodiscard]] const char* to_string(Direction direction) noexcept;
 
-struct Motion {
+struct Kinematics {
   std::vector<double> speed_mps;  ///< signed, positive extends
   std::vector<double> acceleration_mps2;
   std::vector<Direction> direction;
@@ -30,13 +30,13 @@ inline constexpr double kHalfWindow_s = 0.05;
 /// A rod slower than four standard deviations of the speed's noise, and slower than 1 % of its RMS
 /// speed, counts as at rest; noise_m is the position's. "Reversing" is from 50 ms before the rod
 /// leaves one direction until 50 ms after it goes the other way, where that takes at most 0.5 s.
-[[nodiscard]] Motion motion(const Measured& record, double noise_m);
+[[nodiscard]] Kinematics kinematics(const Dataset& record, double noise_m);
 
 /// First and one past the last sample of each segment.
-struct Span {
+struct SampleRange {
   std::size_t begin = 0;
   std::size_t end = 0;
 };
-[[nodiscard]] std::vector<Span> segments(const Measured& record);
+[[nodiscard]] std::vector<SampleRange> segments(const Dataset& record);
 
 }  // namespace estimator::greybox

@@ -7,7 +7,6 @@
 namespace estimator::greybox {
 namespace {
 
-
 constexpr std::uint64_t kSeed = 20020601;
 
 /// Numbers that are the same with every standard library.
@@ -23,7 +22,7 @@ class Draw {
   std::mt19937_64 engine_{kSeed};
 };
 
-double drawn(const SearchParameter& p, double start, Draw& draw) {
+double drawn(const FreeParameter& p, double start, Draw& draw) {
   const double z = draw.normal();
   const double sign = draw.uniform() < 0.5 ? -1.0 : 1.0;
   if (std::isfinite(p.prior_sd)) return p.prior_mean + p.prior_sd * z;
@@ -35,17 +34,17 @@ double drawn(const SearchParameter& p, double start, Draw& draw) {
 
 }  // namespace
 
-std::vector<Eigen::VectorXd> starting_points(const std::vector<SearchParameter>& searched,
+std::vector<Eigen::VectorXd> starting_points(const std::vector<FreeParameter>& parameters,
                                              const Eigen::VectorXd& start, int count) {
   std::vector<Eigen::VectorXd> points{start};
   Draw draw;
   while (static_cast<int>(points.size()) < count) {
-    Eigen::VectorXd x = start;
-    for (Eigen::Index j = 0; j < x.size(); ++j) {
-      const SearchParameter& p = searched[static_cast<std::size_t>(j)];
-      x[j] = std::clamp(drawn(p, start[j], draw), p.lower, p.upper);
+    Eigen::VectorXd theta = start;
+    for (Eigen::Index j = 0; j < theta.size(); ++j) {
+      const FreeParameter& p = parameters[static_cast<std::size_t>(j)];
+      theta[j] = std::clamp(drawn(p, start[j], draw), p.lower, p.upper);
     }
-    points.push_back(x);
+    points.push_back(theta);
   }
   return points;
 }

@@ -13,6 +13,6 @@ namespace estimator::greybox {
 /// 0.5 about the start, a size of an effect within a factor of about three of it (of its typical
 /// size where the effect starts from nothing).
 [[nodiscard]] std::vector<Eigen::VectorXd> starting_points(
-    const std::vector<SearchParameter>& searched, const Eigen::VectorXd& start, int count);
+    const std::vector<FreeParameter>& parameters, const Eigen::VectorXd& start, int count);
 
 }  // namespace estimator::greybox

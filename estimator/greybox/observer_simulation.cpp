@@ -11,14 +11,14 @@ double step_for(const plant_sim::ModelFile& model, double sample_time_s) {
   return sample_time_s / std::max(1.0, std::ceil(sample_time_s / model.step_s - 1e-6));
 }
 
-ModelRun::ModelRun(const plant_sim::ModelFile& model, const Measured& record,
-                   std::vector<SearchParameter> searched, double observer_per_s)
+ObserverSimulation::ObserverSimulation(const plant_sim::ModelFile& model, const Dataset& record,
+                                       std::vector<FreeParameter> parameters, double observer_per_s)
     : record_(&record),
-      searched_(std::move(searched)),
+      parameters_(std::move(parameters)),
       observer_per_s_(observer_per_s),
       ensemble_(plant_sim::make_ensemble(model, step_for(model, record.sample_time_s))),
       speed_mps_(record.size(), 0.0) {
-  for (const SearchParameter& parameter : searched_) {
+  for (const FreeParameter& parameter : parameters_) {
     const auto index = ensemble_->find(parameter.name);
     if (!index) {
       throw config::schema::bad_config(model.name, "has no parameter " + parameter.name);
@@ -27,35 +27,35 @@ ModelRun::ModelRun(const plant_sim::ModelFile& model, const Measured& record,
   }
 }
 
-void ModelRun::residuals(const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals_m) {
+void ObserverSimulation::residuals(const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals_m) {
   run(points, {}, {}, residuals_m, nullptr);
 }
 
-void ModelRun::residuals(const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals_m,
-                         Chambers& chambers) {
+void ObserverSimulation::residuals(const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals_m,
+                                   Chambers& chambers) {
   const auto samples = static_cast<Eigen::Index>(record_->size());
   chambers.in_Pa.resize(samples, kLanes);
   chambers.out_Pa.resize(samples, kLanes);
   run(points, {}, {}, residuals_m, &chambers);
 }
 
-void ModelRun::residuals(const Eigen::MatrixXd& points, const Eigen::MatrixXd& added_V,
-                         const Eigen::MatrixXd& added_N, Eigen::MatrixXd& residuals_m) {
+void ObserverSimulation::residuals(const Eigen::MatrixXd& points, const Eigen::MatrixXd& added_V,
+                                   const Eigen::MatrixXd& added_N, Eigen::MatrixXd& residuals_m) {
   run(points, added_V, added_N, residuals_m, nullptr);
 }
 
-void ModelRun::run(const Eigen::MatrixXd& points, const Eigen::MatrixXd& added_V,
-                   const Eigen::MatrixXd& added_N, Eigen::MatrixXd& residuals_m,
-                   Chambers* chambers) {
+void ObserverSimulation::run(const Eigen::MatrixXd& points, const Eigen::MatrixXd& added_V,
+                             const Eigen::MatrixXd& added_N, Eigen::MatrixXd& residuals_m,
+                             Chambers* chambers) {
   using plant_sim::Ensemble;
-  const Measured& record = *record_;
+  const Dataset& record = *record_;
   const Eigen::Index lanes = points.cols();
   const auto samples = static_cast<Eigen::Index>(record.size());
   residuals_m.resize(samples, lanes);
-  for (std::size_t p = 0; p < searched_.size(); ++p) {
+  for (std::size_t p = 0; p < parameters_.size(); ++p) {
     for (Eigen::Index lane = 0; lane < kLanes; ++lane) {
-      const double s = points(static_cast<Eigen::Index>(p), std::min(lane, lanes - 1));
-      ensemble_->set(index_[p], static_cast<std::size_t>(lane), searched_[p].value(s));
+      const double theta = points(static_cast<Eigen::Index>(p), std::min(lane, lanes - 1));
+      ensemble_->set(index_[p], static_cast<std::size_t>(lane), parameters_[p].to_physical(theta));
     }
   }
   const auto found = ensemble_->find("load_force.force_N");
@@ -70,12 +70,12 @@ void ModelRun::run(const Eigen::MatrixXd& points, const Eigen::MatrixXd& added_V
       ++segment;
     }
     const Ensemble::Values reading_m = ensemble_->reading_m();
-    const double share = record.share(row, observer_per_s_);
+    const double gain = record.observer_gain(row, observer_per_s_);
     Ensemble::Values by_m{};
     for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) {
-      by_m[lane] = share * (record.y_m[row] - reading_m[lane]);
+      by_m[lane] = gain * (record.y_m[row] - reading_m[lane]);
     }
-    const double counts = record.settled[row] != 0 ? 1.0 : 0.0;
+    const double counts = record.valid[row] != 0 ? 1.0 : 0.0;
     for (Eigen::Index lane = 0; lane < lanes; ++lane) {
       residuals_m(k, lane) = counts * (record.y_m[row] - reading_m[static_cast<std::size_t>(lane)]);
     }
@@ -87,7 +87,7 @@ void ModelRun::run(const Eigen::MatrixXd& points, const Eigen::MatrixXd& added_V
         chambers->out_Pa(k, lane) = model.out_Pa[static_cast<std::size_t>(lane)];
       }
     }
-    if (share > 0.0) ensemble_->shift(by_m);
+    if (gain > 0.0) ensemble_->shift(by_m);
     Ensemble::Values u_V;
     u_V.fill(record.u_V[row]);
     for (Eigen::Index lane = 0; lane < added_V.cols(); ++lane) {

@@ -24,14 +24,15 @@ namespace estimator::greybox {
 /// effects.
 inline constexpr double kObserver_per_s = 2.0;
 
-class ModelRun {
+class ObserverSimulation {
  public:
   static constexpr Eigen::Index kLanes = plant_sim::Ensemble::kLanes;
 
   /// Searched parameters that the model knows; the others stay as in the model file. The record
   /// must outlive this object. Throws config::schema::Error for a model that cannot be built.
-  ModelRun(const plant_sim::ModelFile& model, const Measured& record,
-           std::vector<SearchParameter> searched, double observer_per_s = kObserver_per_s);
+  ObserverSimulation(const plant_sim::ModelFile& model, const Dataset& record,
+                     std::vector<FreeParameter> parameters,
+                     double observer_per_s = kObserver_per_s);
 
   /// Measured less modelled position, size() x points.cols(), for each column of search values
   /// (searched().size() rows, at most kLanes columns). Samples before a segment has settled give 0.
@@ -51,7 +52,7 @@ class ModelRun {
   /// but that the rod is elsewhere.
   void residuals(const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals_m, Chambers& chambers);
 
-  [[nodiscard]] const std::vector<SearchParameter>& searched() const { return searched_; }
+  [[nodiscard]] const std::vector<FreeParameter>& parameters() const { return parameters_; }
   [[nodiscard]] std::size_t size() const { return record_->size(); }
   /// The model's speed of lane 0 in the latest run, one for each sample.
   [[nodiscard]] const std::vector<double>& speed_mps() const { return speed_mps_; }
@@ -60,8 +61,8 @@ class ModelRun {
   void run(const Eigen::MatrixXd& points, const Eigen::MatrixXd& added_V,
            const Eigen::MatrixXd& added_N, Eigen::MatrixXd& residuals_m, Chambers* chambers);
 
-  const Measured* record_;
-  std::vector<SearchParameter> searched_;
+  const Dataset* record_;
+  std::vector<FreeParameter> parameters_;
   double observer_per_s_;
   std::unique_ptr<plant_sim::Ensemble> ensemble_;
   std::vector<std::size_t> index_;

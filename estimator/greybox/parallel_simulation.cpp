@@ -5,28 +5,29 @@
 
 namespace estimator::greybox {
 
-WideRun::WideRun(const plant_sim::ModelFile& model, const Evidence& evidence,
-                 const std::vector<SearchParameter>& searched, double observer_per_s,
-                 unsigned threads) {
+ParallelSimulation::ParallelSimulation(const plant_sim::ModelFile& model, const FitDataset& data,
+                                       const std::vector<FreeParameter>& parameters,
+                                       double observer_per_s, unsigned threads) {
   for (unsigned i = 0; i < std::max(1U, threads); ++i) {
-    runs_.emplace_back(model, evidence, searched, observer_per_s);
+    runs_.emplace_back(model, data, parameters, observer_per_s);
   }
 }
 
-Eigen::Index WideRun::lanes() const {
-  return ModelRun::kLanes * static_cast<Eigen::Index>(runs_.size());
+Eigen::Index ParallelSimulation::lanes() const {
+  return ObserverSimulation::kLanes * static_cast<Eigen::Index>(runs_.size());
 }
 
-void WideRun::residuals(const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals_m) {
-  if (points.cols() <= ModelRun::kLanes) {
+void ParallelSimulation::residuals(const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals_m) {
+  if (points.cols() <= ObserverSimulation::kLanes) {
     runs_.front().residuals(points, residuals_m);
     return;
   }
-  const auto groups = static_cast<std::size_t>((points.cols() - 1) / ModelRun::kLanes + 1);
+  const auto groups =
+      static_cast<std::size_t>((points.cols() - 1) / ObserverSimulation::kLanes + 1);
   std::vector<Eigen::MatrixXd> parts(groups);
   const auto group = [&](std::size_t g) {
-    const Eigen::Index first = static_cast<Eigen::Index>(g) * ModelRun::kLanes;
-    const Eigen::Index count = std::min(ModelRun::kLanes, points.cols() - first);
+    const Eigen::Index first = static_cast<Eigen::Index>(g) * ObserverSimulation::kLanes;
+    const Eigen::Index count = std::min(ObserverSimulation::kLanes, points.cols() - first);
     runs_[g].residuals(points.middleCols(first, count), parts[g]);
   };
   {
@@ -42,7 +43,7 @@ void WideRun::residuals(const Eigen::MatrixXd& points, Eigen::MatrixXd& residual
   }
 }
 
-estimator::nonlinear::Evaluate WideRun::evaluate() {
+estimator::nonlinear::Evaluate ParallelSimulation::evaluate() {
   return [this](const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals_m) {
     residuals(points, residuals_m);
   };

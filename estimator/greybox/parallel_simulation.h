@@ -1,18 +1,19 @@
-// More than eight parameter sets at once: an EvidenceRun on each of several threads.
+// More than eight parameter sets at once: an DatasetSimulation on each of several threads.
 #pragma once
 
 #include <vector>
 
-#include "estimator/greybox/fit.h"
+#include "estimator/greybox/dataset_simulation.h"
 #include "estimator/nonlinear/problem.h"
 
 namespace estimator::greybox {
 
-class WideRun {
+class ParallelSimulation {
  public:
   /// `threads` counts the caller's; at least 1.
-  WideRun(const plant_sim::ModelFile& model, const Evidence& evidence,
-          const std::vector<SearchParameter>& searched, double observer_per_s, unsigned threads);
+  ParallelSimulation(const plant_sim::ModelFile& model, const FitDataset& data,
+                     const std::vector<FreeParameter>& parameters, double observer_per_s,
+                     unsigned threads);
 
   [[nodiscard]] Eigen::Index lanes() const;
   /// evidence.size() x points.cols(); at most lanes() columns.
@@ -21,7 +22,7 @@ class WideRun {
   [[nodiscard]] estimator::nonlinear::Evaluate evaluate();
 
  private:
-  std::vector<EvidenceRun> runs_;
+  std::vector<DatasetSimulation> runs_;
 };
 
 }  // namespace estimator::greybox

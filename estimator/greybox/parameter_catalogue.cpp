@@ -15,8 +15,8 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-void open_up(Known& known) {
-  SearchParameter& p = known.search;
+void widen_to_full_range(CatalogueParameter& known) {
+  FreeParameter& p = known.free;
   p.prior_mean = 0.0;
   p.prior_sd = kInfinite;
   if (p.scale == Scale::logarithmic) {
@@ -25,25 +25,25 @@ void open_up(Known& known) {
   }
 }
 
-std::vector<Known> known_parameters(const plant_sim::ModelFile& model) {
-  std::vector<Known> found;
+std::vector<CatalogueParameter> parameter_catalogue(const plant_sim::ModelFile& model) {
+  std::vector<CatalogueParameter> found;
   const plant_sim::PlantInfo& plant = *plant_sim::find_plant(model.plant);
-  const std::vector<SearchParameter> uncertain = plant_parameters(model);
+  const std::vector<FreeParameter> uncertain = plant_parameters(model);
   for (std::size_t i = 0; i < plant.parameters.size(); ++i) {
-    Known known{plant.parameters[i].name, "", plant.parameters[i], {}};
-    const auto same = [&](const SearchParameter& p) { return p.name == known.name; };
+    CatalogueParameter known{plant.parameters[i].name, "", plant.parameters[i], {}};
+    const auto same = [&](const FreeParameter& p) { return p.name == known.name; };
     const auto given = std::find_if(uncertain.begin(), uncertain.end(), same);
     if (given != uncertain.end()) {
-      known.search = *given;
+      known.free = *given;
     } else {
-      SearchParameter& p = known.search;
+      FreeParameter& p = known.free;
       const double value = model.parameters[i].value;
       p.name = known.name;
       p.scale = value > 0.0 ? Scale::logarithmic : Scale::linear;
       p.unit = value > 0.0 ? value : (known.info.typical > 0.0 ? known.info.typical : 1.0);
       p.lower = known.info.min / p.unit;
       p.upper = known.info.max / p.unit;
-      open_up(known);
+      widen_to_full_range(known);
     }
     found.push_back(known);
   }
@@ -60,10 +60,10 @@ std::vector<Known> known_parameters(const plant_sim::ModelFile& model) {
   return found;
 }
 
-std::vector<std::string> names_worth_showing(const plant_sim::ModelFile& model,
-                                             const std::vector<Known>& known) {
+std::vector<std::string> suggested_names(const plant_sim::ModelFile& model,
+                                         const std::vector<CatalogueParameter>& known) {
   std::vector<std::string> names;
-  for (const Known& k : known) {
+  for (const CatalogueParameter& k : known) {
     const auto present = [&](const auto& e) { return e.present && e.name == k.effect; };
     if (k.effect.empty() || std::any_of(model.effects.begin(), model.effects.end(), present)) {
       names.push_back(k.name);
@@ -72,7 +72,7 @@ std::vector<std::string> names_worth_showing(const plant_sim::ModelFile& model,
   return names;
 }
 
-void refuse_name(const std::string& option, const std::string& typed,
+void reject_name(const std::string& option, const std::string& typed,
                  const std::vector<std::string>& near,
                  const std::vector<std::string>& shown_names) {
   const std::string best = config::schema::nearest(typed, near);

@@ -11,26 +11,27 @@
 namespace estimator::greybox {
 
 /// A parameter that may be fitted.
-struct Known {
+struct CatalogueParameter {
   std::string name;
   std::string effect;  ///< empty: the plant's
   plant_sim::ParameterInfo info;
-  SearchParameter search;
+  FreeParameter free;
 };
 
 /// Of the plant, and of every effect that acts where the plant has a site.
-[[nodiscard]] std::vector<Known> known_parameters(const plant_sim::ModelFile& model);
+[[nodiscard]] std::vector<CatalogueParameter> parameter_catalogue(
+    const plant_sim::ModelFile& model);
 
 /// The whole range that the parameter may have, no prior.
-void open_up(Known& known);
+void widen_to_full_range(CatalogueParameter& known);
 
 /// Of the plant and of effects that the model has: what a list of allowed names should show.
-[[nodiscard]] std::vector<std::string> names_worth_showing(const plant_sim::ModelFile& model,
-                                                           const std::vector<Known>& known);
+[[nodiscard]] std::vector<std::string> suggested_names(
+    const plant_sim::ModelFile& model, const std::vector<CatalogueParameter>& known);
 
 /// Throws config::schema::ConfigError that names the option, what was typed, the nearest of
 /// `near` and what is allowed.
-[[noreturn]] void refuse_name(const std::string& option, const std::string& typed,
+[[noreturn]] void reject_name(const std::string& option, const std::string& typed,
                               const std::vector<std::string>& near,
                               const std::vector<std::string>& shown_names);
 

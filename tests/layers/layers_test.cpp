@@ -234,7 +234,7 @@ TEST(Layers, PlantedViolationsAreFound) {
   write(root / "hal/sim/rig.h", "#include \"plant_sim/plant.h\"\n#include \"hal/replay/x.h\"\n");
   write(root / "hal/replay/x.h", "#include \"plant_sim/plant.h\"\n");
   write(root / "workbench/fit/page.cpp", "#include \"daemon/io/recorder.h\"\n");
-  write(root / "workbench/present/report.h", "#include \"workbench/fit/outcome.h\"\n");
+  write(root / "workbench/present/report.h", "#include \"workbench/fit/fit_report.h\"\n");
   write(root / "estimator/greybox/fit.h", "#include \"estimator/greybox/selection/problem.h\"\n");
   EXPECT_THAT(
       violations(root),
@@ -245,7 +245,7 @@ TEST(Layers, PlantedViolationsAreFound) {
           "daemon/rt/loop.h:1 includes daemon/io/publisher.h",
           "hal/sim/rig.h:2 includes hal/replay/x.h", "hal/replay/x.h:1 includes plant_sim/plant.h",
           "workbench/fit/page.cpp:1 includes daemon/io/recorder.h",
-          "workbench/present/report.h:1 includes workbench/fit/outcome.h",
+          "workbench/present/report.h:1 includes workbench/fit/fit_report.h",
           "estimator/greybox/fit.h:1 includes estimator/greybox/selection/problem.h"));
   fs::remove_all(root);
 }

@@ -49,9 +49,9 @@ struct Arguments {
 };
 
 /// The record's samples from --from to --to.
-greybox::Measured read_measured(const Arguments& a) {
+greybox::Dataset read_measured(const Arguments& a) {
   config::record::Record record = config::record::read_record(a.record);
-  greybox::Measured whole = greybox::measured(record);
+  greybox::Dataset whole = greybox::dataset_of(record);
   if (std::isinf(a.from_s) && std::isinf(a.to_s)) return whole;
   const auto index = [&](double t_s) {
     return static_cast<std::size_t>(std::lower_bound(whole.t_s.begin(), whole.t_s.end(), t_s) -
@@ -63,12 +63,12 @@ greybox::Measured read_measured(const Arguments& a) {
   if (from >= to || static_cast<double>(to - from) * whole.sample_time_s < least_s) {
     throw UsageError("--from, --to: leave less than 2 s of " + whole.name);
   }
-  greybox::Measured part = greybox::part(whole, from, to);
+  greybox::Dataset part = greybox::part(whole, from, to);
   part.notes = whole.notes;
   return part;
 }
 
-void check_observer(const Arguments& a, const greybox::Measured& record) {
+void check_observer(const Arguments& a, const greybox::Dataset& record) {
   if (a.observer_per_s * record.sample_time_s < 1.0) return;
   throw UsageError("--observer: is too fast for samples every " +
                    std::to_string(record.sample_time_s) + " s; allowed: below 1 / sample time");
@@ -100,7 +100,7 @@ void run(Arguments& a) {
   if (a.record.empty()) throw UsageError("compare: no RECORD, and not --live");
   check_outputs({{"--json", a.json}, {"--report", a.report}}, {a.model, {a.record}});
   const plant_sim::ModelFile model = plant_sim::load_model(a.model, a.assignments);
-  const greybox::Measured record = read_measured(a);
+  const greybox::Dataset record = read_measured(a);
   check_observer(a, record);
   const validation::Comparison comparison = validation::compare(model, record, a.observer_per_s);
   if (!a.report.empty()) {

@@ -35,7 +35,7 @@ std::string configuration_reference() {
              "Learned bands", "Written by `calibrate` and `promote`, named by `bands_file`.") +
          section<estimator::fdi::TrainedFile>(
              "Trained methods", "Written by `train`, named by `file` of the methods that learn.") +
-         section<estimator::fdi::tracker::HealthyFile>(
+         section<estimator::fdi::tracker::BaselineFile>(
              "Healthy parameters",
              "Written by `isolate --learn`, named by `healthy` of `[[tracker]]`.") +
          section<scorecard::Plan>("Scorecard plan", "Read by `scorecard --plan`.") +

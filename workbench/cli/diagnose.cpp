@@ -23,10 +23,10 @@ namespace workbench::cli {
 namespace selection = estimator::greybox::selection;
 namespace {
 
-using diagnose::Outcome;
-using diagnose::Request;
+using diagnose::DiagnosisReport;
+using diagnose::DiagnosisRequest;
 
-void write(const Outcome& outcome, const Request& request) {
+void write(const DiagnosisReport& outcome, const DiagnosisRequest& request) {
   if (request.json != "-") print(outcome, std::cout);
   if (!request.output.empty()) {
     if (outcome.fitted()) {
@@ -40,30 +40,29 @@ void write(const Outcome& outcome, const Request& request) {
   present::write_json(to_json(outcome), request.json);
 }
 
-int run(const Request& request) {
-  Outcome outcome = prepare(request);
+int run(const DiagnosisRequest& request) {
+  diagnose::PreparedDiagnosis prepared = prepare(request);
   const Interrupt interrupt;
   diagnose::ProgressLine line(std::cerr, isatty(STDERR_FILENO) == 1,
-                              outcome.shop.evidence.noise_floor_m);
+                              prepared.problem.data.noise_floor_m);
   if (!request.quiet) {
-    outcome.shop.progress = [&](const selection::Progress& progress) { line.show(progress); };
+    prepared.options.progress = [&](const selection::Progress& progress) { line.show(progress); };
   }
-  outcome.shop.cancel = Interrupt::requested;
-  diagnose::AdvisedDiagnosis found = diagnose::diagnose(outcome.shop);
-  outcome.diagnosis = std::move(found.diagnosis);
-  outcome.advice = std::move(found.advice);
+  prepared.options.cancel = Interrupt::requested;
+  diagnose::AdvisedDiagnosis found = diagnose::diagnose(prepared.problem, prepared.options);
   if (!request.quiet) line.end();
   const int exit_code = Interrupt::exit_code();
-  outcome.interrupted = exit_code != 0 || outcome.diagnosis.ladder.interrupted;
-  simulate_freely(outcome);
-  write(outcome, request);
+  DiagnosisReport report{&prepared, std::move(found.diagnosis), std::move(found.advice)};
+  report.interrupted = exit_code != 0 || report.diagnosis.search.interrupted;
+  simulate_freely(report);
+  write(report, request);
   return exit_code;
 }
 
 }  // namespace
 
 void add_diagnose(CLI::App& command, int& exit_code) {
-  auto request = std::make_shared<Request>();
+  auto request = std::make_shared<DiagnosisRequest>();
   add_model(command, request->model);
   add_records(command, request->records);
   CLI::Option* const holdout = add_holdouts(command, request->holdouts);

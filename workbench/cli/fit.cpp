@@ -13,38 +13,38 @@
 #include "workbench/cli/common_options.h"
 #include "workbench/cli/interrupt.h"
 #include "workbench/cli/number_check.h"
-#include "workbench/fit/outcome.h"
+#include "workbench/fit/fit_report.h"
 #include "workbench/present/json.h"
 
 namespace workbench::cli {
 namespace {
 
-using fit::Request;
+using fit::FitRequest;
 
 constexpr int kMostStarts = 1000;
 
-void write(const fit::Outcome& outcome, const Request& request) {
+void write(const fit::FitReport& outcome, const FitRequest& request) {
   if (!request.output.empty()) config::record::write_whole(request.output, to_model(outcome));
   if (!request.report.empty()) write_report(to_report(outcome), request.report);
   if (!present::write_json(to_json(outcome), request.json)) std::cout << to_text(outcome);
 }
 
-int run(const Request& request) {
+int run(const FitRequest& request) {
   const auto begin = std::chrono::steady_clock::now();
-  fit::Prepared prepared = prepare(request);
+  fit::PreparedFit prepared = prepare(request);
   const Interrupt interrupt;
-  prepared.task.cancel = Interrupt::requested;
+  prepared.options.cancel = Interrupt::requested;
   const bool shown = !request.quiet && isatty(STDERR_FILENO) == 1;
   if (shown) {
-    prepared.task.progress = [](const std::string& doing) {
+    prepared.options.progress = [](const std::string& doing) {
       std::cerr << "\r\x1b[K" << doing << std::flush;
     };
   }
-  fit::Outcome outcome;
+  fit::FitReport outcome;
   outcome.prepared = &prepared;
   outcome.noise_floor_m = prepared.noise_floor_m;
   outcome.output = request.output;
-  outcome.estimation = estimator::greybox::estimate(prepared.task);
+  outcome.estimation = estimator::greybox::estimate(prepared.problem, prepared.options);
   if (shown) std::cerr << "\r\x1b[K" << std::flush;
   outcome.runtime_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -52,17 +52,17 @@ int run(const Request& request) {
   return Interrupt::exit_code();
 }
 
-void declare_choice(CLI::App& command, Request& request) {
+void declare_choice(CLI::App& command, FitRequest& request) {
   const auto each = [&](const char* name, std::vector<std::string>& values, const char* what) {
     command.add_option(name, values, what)->allow_extra_args(false);
   };
-  each("--free", request.wishes.free,
+  each("--free", request.selection.free,
        "name[,name...]: fit these only; default: the plant's uncertain parameters and those of its "
        "effects");
-  each("--fix", request.wishes.fix, "name[,name...]: leave these as they are");
-  each("--prior", request.wishes.priors,
+  each("--fix", request.selection.fix, "name[,name...]: leave these as they are");
+  each("--prior", request.selection.priors,
        "name=mean+-sd (sd in the unit, or in % of the mean), or name=none");
-  each("--bounds", request.wishes.bounds, "name=low:high");
+  each("--bounds", request.selection.bounds, "name=low:high");
   each("--ignore", request.ignored, "from:to or RECORD@from:to, s: these samples do not count");
   command.add_option("--weight", request.weights, "of each record's squared errors, in order")
       ->allow_extra_args(false)
@@ -72,7 +72,7 @@ void declare_choice(CLI::App& command, Request& request) {
 }  // namespace
 
 void add_fit(CLI::App& command, int& exit_code) {
-  auto request = std::make_shared<Request>();
+  auto request = std::make_shared<FitRequest>();
   add_model(command, request->model);
   add_records(command, request->records);
   command.add_option("-o,--output", request->output, "the model file to write");

@@ -6,32 +6,32 @@
 #include "workbench/cli/command.h"
 #include "workbench/cli/common_options.h"
 #include "workbench/cli/number_check.h"
-#include "workbench/isolate/outcome.h"
+#include "workbench/isolate/isolation.h"
 #include "workbench/present/json.h"
 
 namespace workbench::cli {
 namespace {
 
-using isolate::Outcome;
-using isolate::Request;
+using isolate::IsolationReport;
+using isolate::IsolationRequest;
 
-void run(const Request& request) {
-  const Outcome outcome = isolate::isolate(request);
+void run(const IsolationRequest& request) {
+  const IsolationReport outcome = isolate::isolate(request);
   if (!request.report.empty()) write_report(to_report(outcome), request.report);
   if (!present::write_json(to_json(outcome), request.json)) {
     std::cout << to_text(outcome, request.all_windows);
   }
 }
 
-void declare_judging(CLI::App& command, Request& request) {
-  CLI::Option* const healthy =
-      command.add_option("--healthy", request.healthy, "from:to, s: the part without a fault")
+void declare_judging(CLI::App& command, IsolationRequest& request) {
+  CLI::Option* const baseline =
+      command.add_option("--healthy", request.baseline, "from:to, s: the part without a fault")
           ->capture_default_str();
   command
-      .add_option("--healthy-rms", request.healthy_rms_m,
+      .add_option("--healthy-rms", request.baseline_rms_m,
                   "m: the healthy error, instead of learning it; the file's values are healthy")
       ->check(positive_number())
-      ->excludes(healthy);
+      ->excludes(baseline);
   command
       .add_option("--limit", request.settings.most_ratio,
                   "times the healthy error: windows beyond are invalid")
@@ -44,7 +44,7 @@ void declare_judging(CLI::App& command, Request& request) {
       ->capture_default_str();
   command.add_flag("--suspect-position-sensor", request.settings.thresholds.suspect_position_sensor,
                    "its scale or drift may explain a change as well");
-  auto& following = request.settings.following;
+  auto& following = request.settings.drift;
   CLI::Option* const follow =
       command
           .add_option("--follow", following.parameters,
@@ -62,7 +62,7 @@ void declare_judging(CLI::App& command, Request& request) {
 }  // namespace
 
 void add_isolate(CLI::App& command, int& /*exit_code*/) {
-  auto request = std::make_shared<Request>();
+  auto request = std::make_shared<IsolationRequest>();
   add_model(command, request->model);
   add_record(command, request->record);
   command
@@ -81,7 +81,7 @@ void add_isolate(CLI::App& command, int& /*exit_code*/) {
   command.add_flag("--no-pressures", request->no_pressures,
                    "supply_pressure_Pa, pressure_in_Pa, pressure_out_Pa of RECORD are not used");
   add_set(command, request->assignments);
-  command.add_option("--learn", request->learn,
+  command.add_option("--learn", request->learn_baseline,
                      "file for what is healthy, which [[tracker]] healthy names");
   command.add_option("--rig", request->rig_id, "rig id, noted in that file; another is refused");
   command.add_flag("--windows", request->all_windows, "print every window");

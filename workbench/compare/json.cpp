@@ -23,15 +23,15 @@ ordered_json json_of(const validation::Bin& bin) {
   out["time_share"] = number_or_null(bin.time_share);
   out["error_share"] = number_or_null(bin.error_share);
   out["speed_error_mps"] = number_or_null(bin.speed_error_mps);
-  out["arising_rms_mps"] = number_or_null(bin.arising_rms_mps);
-  out["arising_share"] = number_or_null(bin.arising_share);
+  out["arising_rms_mps"] = number_or_null(bin.local_velocity_error_rms_mps);
+  out["arising_share"] = number_or_null(bin.local_velocity_error_share);
   return out;
 }
 
-ordered_json json_of(const validation::Failing& failing) {
+ordered_json json_of(const validation::SignificantRegion& failing) {
   ordered_json out{{"variable", failing.ranges.front().variable}};
   out.update(json_of(failing.figures));
-  out["stands_out"] = failing.stands_out;
+  out["stands_out"] = failing.significant;
   return out;
 }
 
@@ -73,10 +73,11 @@ std::string to_json(const validation::Comparison& c) {
   out["whiteness_p"] = number_or_null(c.whiteness_p);
   out["independence_p"] = number_or_null(c.independence_p);
   out["worst"] = ordered_json::array();
-  for (const validation::Failing& failing : c.worst) out["worst"].push_back(json_of(failing));
-  out["gain_ratio"] = number_or_null(c.explained.gain_ratio);
-  out["offset_mps"] = number_or_null(c.explained.offset_mps);
-  out["explained_share"] = number_or_null(c.explained.share);
+  for (const validation::SignificantRegion& failing : c.worst)
+    out["worst"].push_back(json_of(failing));
+  out["gain_ratio"] = number_or_null(c.systematic.gain_ratio);
+  out["offset_mps"] = number_or_null(c.systematic.offset_mps);
+  out["explained_share"] = number_or_null(c.systematic.share);
   out["regions"] = ordered_json::object();
   for (const validation::Region& region : c.regions) {
     ordered_json bins = ordered_json::array();

@@ -27,20 +27,20 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Values times a factor, with a break between segments; of settled samples only where asked.
 template <class F>
-std::vector<double> series(const greybox::Measured& record, F value, bool settled_only = false) {
+std::vector<double> series(const greybox::Dataset& record, F value, bool valid_only = false) {
   std::vector<double> out;
-  for (const greybox::Span& span : greybox::segments(record)) {
+  for (const greybox::SampleRange& span : greybox::segments(record)) {
     if (span.begin > 0) out.push_back(kNaN);
     for (std::size_t k = span.begin; k < span.end; ++k) {
-      out.push_back(settled_only && record.settled[k] == 0 ? kNaN : value(k));
+      out.push_back(valid_only && record.valid[k] == 0 ? kNaN : value(k));
     }
   }
   return out;
 }
 
-std::vector<double> times(const greybox::Measured& record) {
+std::vector<double> times(const greybox::Dataset& record) {
   std::vector<double> out;
-  for (const greybox::Span& span : greybox::segments(record)) {
+  for (const greybox::SampleRange& span : greybox::segments(record)) {
     if (span.begin > 0) out.push_back(0.5 * (record.t_s[span.begin - 1] + record.t_s[span.begin]));
     for (std::size_t k = span.begin; k < span.end; ++k) out.push_back(record.t_s[k]);
   }
@@ -61,7 +61,7 @@ Series named(const std::string& name, Tone tone, std::vector<double> y) {
 }
 
 Section time_section(const validation::Comparison& c, const std::string& prefix) {
-  const greybox::Measured& r = c.record;
+  const greybox::Dataset& r = c.record;
   Section section;
   section.heading = "Over time";
   section.paragraphs = {present::kFreeRunMeaning, present::kDriftCorrectedMeaning,
@@ -98,12 +98,12 @@ present::Table worst_table(const validation::Comparison& c) {
                    {"speed error RMS", "mm/s"},
                    {"of the speed error", "%"},
                    {"of the time", "%"}};
-  for (const validation::Failing& failing : c.worst) {
-    if (failing.stands_out) table.marked_rows.push_back(table.rows.size());
+  for (const validation::SignificantRegion& failing : c.worst) {
+    if (failing.significant) table.marked_rows.push_back(table.rows.size());
     table.rows.push_back({present::where(failing),
                           present::three_digits(1e6 * failing.figures.rms_m),
-                          present::three_digits(1e3 * failing.figures.arising_rms_mps),
-                          present::three_digits(100.0 * failing.figures.arising_share),
+                          present::three_digits(1e3 * failing.figures.local_velocity_error_rms_mps),
+                          present::three_digits(100.0 * failing.figures.local_velocity_error_share),
                           present::three_digits(100.0 * failing.figures.time_share)});
   }
   return table;
@@ -116,7 +116,7 @@ Section where_section(const validation::Comparison& c) {
       "The position adds up the speed: an error of position still shows long after it arose. The "
       "speed error, by how much the model's speed is off at the moment, shows where it arises. The "
       "bars show its RMS" +
-      std::string(c.explained.plain == validation::Plain::neither
+      std::string(c.systematic.cause == validation::ErrorCause::neither
                       ? "."
                       : ", after what a plain gain and offset would explain has been taken off."));
   section.tables_first = true;
@@ -132,7 +132,7 @@ Section where_section(const validation::Comparison& c) {
     Series bars = named("speed error RMS", Tone::residual, {});
     for (const validation::Bin& bin : region.bins) {
       plot.categories.push_back(present::bin_text(region.variable, bin));
-      bars.y.push_back(1e3 * bin.arising_rms_mps);
+      bars.y.push_back(1e3 * bin.local_velocity_error_rms_mps);
     }
     plot.series.push_back(bars);
     section.plots.push_back(plot);
@@ -143,7 +143,7 @@ Section where_section(const validation::Comparison& c) {
 Plot against(const validation::Comparison& c, const std::string& variable,
              const std::vector<double>& values) {
   const present::Unit unit = present::unit_of(variable);
-  const greybox::Measured& r = c.record;
+  const greybox::Dataset& r = c.record;
   Plot plot;
   plot.title = std::string("Against ") + unit.name;
   plot.kind = Kind::scatter;
@@ -152,9 +152,10 @@ Plot against(const validation::Comparison& c, const std::string& variable,
   plot.y = {"speed error", "mm/s"};
   plot.x_values = series(
       r, [&](auto k) { return unit.factor * values[k]; }, true);
-  const Series cloud = named("speed error", Tone::residual,
-                             series(
-                                 r, [&](auto k) { return 1e3 * c.arising_mps[k]; }, true));
+  const Series cloud =
+      named("speed error", Tone::residual,
+            series(
+                r, [&](auto k) { return 1e3 * c.local_velocity_error_mps[k]; }, true));
   const present::Binned curves = present::binned(plot.x_values, cloud.y);
   plot.series = {cloud, curves.mean, curves.rms};
   return plot;
@@ -168,9 +169,9 @@ Section against_section(const validation::Comparison& c) {
       "level that is not zero is an offset, a bend is something that grows with speed. The curves "
       "are "
       "mean and RMS over equal stretches.");
-  section.plots = {against(c, "v", c.motion.speed_mps), against(c, "u", c.record.u_V),
+  section.plots = {against(c, "v", c.kinematics.speed_mps), against(c, "u", c.record.u_V),
                    against(c, "y", c.record.y_m),
-                   against(c, "acceleration", c.motion.acceleration_mps2)};
+                   against(c, "acceleration", c.kinematics.acceleration_mps2)};
   return section;
 }
 
@@ -207,7 +208,7 @@ Section number_section(const validation::Comparison& c) {
   section.paragraphs.push_back(
       "Velocity and acceleration: a parabola through the measured positions of 50 ms to either "
       "side. At rest: below " +
-      present::speed(c.motion.rest_mps) +
+      present::speed(c.kinematics.rest_mps) +
       ". Reversing: from 50 ms before the rod leaves one direction until 50 ms after it goes the "
       "other way. The first half second of each segment does not count, except in the free run. "
       "The speed error is a mean over 50 ms to either side.");

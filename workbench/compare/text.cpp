@@ -82,7 +82,8 @@ std::string numbers(const validation::Comparison& c) {
 std::string chart(const validation::Region& region, bool unicode) {
   const present::Unit unit = present::unit_of(region.variable);
   double most = 0.0;
-  for (const validation::Bin& bin : region.bins) most = std::max(most, bin.arising_rms_mps);
+  for (const validation::Bin& bin : region.bins)
+    most = std::max(most, bin.local_velocity_error_rms_mps);
   const std::string head =
       unit.text[0] != '\0' ? std::string(unit.name) + ", " + unit.text : std::string(unit.name);
   std::string out = fmt::format("  {:20} {:>9} {:>10} {:>6} {:>6}\n", head, "error RMS",
@@ -90,9 +91,9 @@ std::string chart(const validation::Region& region, bool unicode) {
   for (const validation::Bin& bin : region.bins) {
     out += fmt::format("  {:20} {:>9} {:>10} {:5.0f}% {:5.0f}% ",
                        present::bin_text(region.variable, bin), present::length(bin.rms_m),
-                       present::speed(bin.arising_rms_mps), 100.0 * bin.time_share,
-                       100.0 * bin.arising_share) +
-           bar(most > 0.0 ? bin.arising_rms_mps / most : 0.0, unicode) + "\n";
+                       present::speed(bin.local_velocity_error_rms_mps), 100.0 * bin.time_share,
+                       100.0 * bin.local_velocity_error_share) +
+           bar(most > 0.0 ? bin.local_velocity_error_rms_mps / most : 0.0, unicode) + "\n";
   }
   return out;
 }
@@ -111,7 +112,7 @@ std::vector<const validation::Region*> shown(const validation::Comparison& c, bo
     for (const validation::Region& region : c.regions) regions.push_back(&region);
     return regions;
   }
-  for (const validation::Failing& failing : c.worst) {
+  for (const validation::SignificantRegion& failing : c.worst) {
     if (failing.ranges.front().variable == "direction") continue;
     regions.push_back(find(c, failing.ranges.front().variable));
     break;

@@ -14,8 +14,9 @@ constexpr double kSignificant = 1e-3;
 /// Speed errors under this part of the rod's RMS speed are no drift worth a word.
 constexpr double kSlightDrift = 0.01;
 
-std::string fails_where(const validation::Failing& failing) {
-  return present::where(failing) + ": " + present::percent(failing.figures.arising_share) +
+std::string fails_where(const validation::SignificantRegion& failing) {
+  return present::where(failing) + ": " +
+         present::percent(failing.figures.local_velocity_error_share) +
          " of the squared speed error arises there, in " +
          present::percent(failing.figures.time_share) + " of the time.";
 }
@@ -35,20 +36,20 @@ std::string by_a_constant(double offset_mps) {
          (offset_mps < 0.0 ? " towards retraction" : " towards extension");
 }
 
-std::string plain_words(const validation::Explained& explained) {
+std::string plain_words(const validation::SystematicError& explained) {
   std::string text;
-  switch (explained.plain) {
-    case validation::Plain::gain:
+  switch (explained.cause) {
+    case validation::ErrorCause::gain:
       text = "Off in proportion: " + in_proportion(explained.gain_ratio);
       break;
-    case validation::Plain::offset:
+    case validation::ErrorCause::offset:
       text = "Off by a constant speed: the rod " + by_a_constant(explained.offset_mps);
       break;
-    case validation::Plain::both:
+    case validation::ErrorCause::both:
       text = "Off in proportion and by a constant speed: " + in_proportion(explained.gain_ratio) +
              " and " + by_a_constant(explained.offset_mps);
       break;
-    case validation::Plain::neither:
+    case validation::ErrorCause::neither:
       return {};
   }
   return text + "; this alone would explain " + present::percent(explained.share) +
@@ -57,11 +58,11 @@ std::string plain_words(const validation::Explained& explained) {
 
 /// What is left when the plain part is taken off.
 std::string beyond_words(const validation::Comparison& c) {
-  const double left_m = c.explained.left_rms_m;
+  const double left_m = c.systematic.left_rms_m;
   if (left_m <= validation::kAtFloor * c.noise_floor_m)
     return "Beyond that it is at the noise floor.";
   const std::string left = "Beyond that " + present::length(left_m) + " are left";
-  if (!c.headline.stands_out) return left + ", with no range standing out.";
+  if (!c.headline.significant) return left + ", with no range standing out.";
   return left + "; it fails " + fails_where(c.headline);
 }
 
@@ -90,9 +91,9 @@ const validation::Bin* direction(const validation::Comparison& c, const char* na
 std::string drift_words(const validation::Comparison& c) {
   if (c.free_run_rms_m < 2.0 * c.rms_m) return {};
   double squares = 0.0;
-  for (const double v : c.motion.speed_mps) squares += v * v;
+  for (const double v : c.kinematics.speed_mps) squares += v * v;
   const double least_mps =
-      kSlightDrift * std::sqrt(squares / static_cast<double>(c.motion.speed_mps.size()));
+      kSlightDrift * std::sqrt(squares / static_cast<double>(c.kinematics.speed_mps.size()));
   std::string text;
   for (const bool out : {true, false}) {
     const char* const name = out ? "extending" : "retracting";
@@ -144,8 +145,8 @@ Words words(const validation::Comparison& c) {
     }
     return w;
   }
-  const bool somewhere = c.headline.stands_out;
-  const std::string plain = plain_words(c.explained);
+  const bool somewhere = c.headline.significant;
+  const std::string plain = plain_words(c.systematic);
   if (!plain.empty()) {
     w.judgement = Judgement::fails_throughout;
     w.verdict = plain;

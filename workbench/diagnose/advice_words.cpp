@@ -107,16 +107,16 @@ bool has_site(const std::string& plant, const std::string& site) {
 }
 
 /// Which site of a formula has the variable; empty where none of the plant's does.
-std::string formula_words(const selection::Where& where, const std::string& plant) {
+std::string formula_words(const selection::Localisation& where, const std::string& plant) {
   std::string site;
   std::string variable;
-  if (where.enters == "force") {
+  if (where.site == "force") {
     site = "force";
     if (where.variable == "y") variable = "y_m";
     if (where.variable == "v" || where.variable == "speed" || where.variable == "direction") {
       variable = "v_mps";
     }
-  } else if (where.enters == "measurement") {
+  } else if (where.site == "measurement") {
     site = "sensor";
     if (where.variable == "y") variable = "y_m";
   } else if (where.variable == "u") {
@@ -181,7 +181,7 @@ std::string words_to_excite(const std::string& motion) {
   return "Run " + motion + ", with the command free of its limits, and diagnose that record.";
 }
 
-std::string words_for_unexplained(const std::vector<selection::Where>& where,
+std::string words_for_unexplained(const std::vector<selection::Localisation>& where,
                                   const std::string& plant) {
   const bool axis = !has_site(plant, "opening");
   if (where.empty()) {
@@ -189,14 +189,14 @@ std::string words_for_unexplained(const std::vector<selection::Where>& where,
            (axis ? "the motor's current and the force on the load."
                  : "the chamber pressures and the spool position.");
   }
-  const selection::Where& first = where.front();
+  const selection::Localisation& first = where.front();
   std::string text = std::string("What is left goes ") + of(kVariables, first.variable) +
-                     " and enters " + of(axis ? kAxisEnters : kEnters, first.enters) + " (" +
+                     " and enters " + of(axis ? kAxisEnters : kEnters, first.site) + " (" +
                      number(100.0 * std::clamp(first.explained_ratio, 0.0, 1.0)) +
                      " % of the held-out squared error): ";
   const auto& drift = axis ? kAxisDrift : kDrift;
   const auto& record = axis ? kAxisRecord : kRecord;
-  text += of(first.variable == "time" ? drift : record, first.enters);
+  text += of(first.variable == "time" ? drift : record, first.site);
   const std::string formula = formula_words(first, plant);
   if (!formula.empty()) text += ", " + formula;
   return text + ".";

@@ -23,7 +23,7 @@ namespace selection = estimator::greybox::selection;
                                            const std::vector<std::string>& names);
 [[nodiscard]] std::string words_to_excite(const std::string& motion);
 /// What to record, and which formula to try, on a plant of that name.
-[[nodiscard]] std::string words_for_unexplained(const std::vector<selection::Where>& where,
+[[nodiscard]] std::string words_for_unexplained(const std::vector<selection::Localisation>& where,
                                                 const std::string& plant);
 
 }  // namespace workbench::diagnose

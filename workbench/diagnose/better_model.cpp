@@ -30,12 +30,13 @@ std::string comment(const std::string& text) {
 
 }  // namespace
 
-std::string better_model_text(const Outcome& outcome) {
+std::string better_model_text(const DiagnosisReport& outcome) {
   const selection::Diagnosis& d = outcome.diagnosis;
-  std::string text =
-      comment("Made by spoolwatch diagnose from " + outcome.model_file + "; " +
-              (outcome.holdouts.empty() ? config::schema::listed(outcome.records) + ", " : "") +
-              split_words(outcome) + ".");
+  std::string text = comment(
+      "Made by spoolwatch diagnose from " + outcome.prepared->model_file + "; " +
+      (outcome.prepared->holdouts.empty() ? config::schema::listed(outcome.prepared->records) + ", "
+                                          : "") +
+      split_words(outcome) + ".");
   if (outcome.interrupted) {
     text += comment("INTERRUPTED: the best so far, not everything was tried.");
   }
@@ -48,7 +49,7 @@ std::string better_model_text(const Outcome& outcome) {
   }
   text += comment(fall + "; noise floor " + config::units::length_words(d.noise_floor_m) + ".");
   text += comment("The plant's own parameters are fitted too.");
-  std::string command = outcome.command;
+  std::string command = outcome.prepared->command;
   std::replace(command.begin(), command.end(), '\n', ' ');
   text += "# " + command + "\n";
   // TOML allows no control characters in comments, file names may have any.

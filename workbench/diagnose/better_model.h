@@ -3,12 +3,12 @@
 
 #include <string>
 
-#include "workbench/diagnose/outcome.h"
+#include "workbench/diagnose/diagnosis_report.h"
 
 namespace workbench::diagnose {
 
 /// With nothing missing it is the given model with its fitted parameters. Outcome::fitted() must
 /// hold.
-[[nodiscard]] std::string better_model_text(const Outcome& outcome);
+[[nodiscard]] std::string better_model_text(const DiagnosisReport& outcome);
 
 }  // namespace workbench::diagnose

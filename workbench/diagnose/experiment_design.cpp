@@ -21,29 +21,31 @@ constexpr std::size_t kTried = 3;
 constexpr double kClearly = 2.0;
 
 /// One motion with every rival in turn as the truth; empty where one cannot run it.
-std::vector<greybox::Evidence> truths(const selection::Workshop& shop,
-                                      const std::vector<greybox::Fitted>& rivals,
-                                      const TestMotion& motion) {
-  std::vector<greybox::Evidence> result;
-  for (const greybox::Fitted& rival : rivals) {
-    auto record = simulated(shop, greybox::with_values(shop.model, rival), motion, kSeed);
+std::vector<greybox::FitDataset> truths(const selection::SearchContext& context,
+                                        const std::vector<greybox::FitSummary>& rivals,
+                                        const TestMotion& motion) {
+  std::vector<greybox::FitDataset> result;
+  for (const greybox::FitSummary& rival : rivals) {
+    auto record = simulated(context.problem, greybox::with_values(context.problem.model, rival),
+                            motion, kSeed);
     if (!record) return {};
-    result.push_back(greybox::evidence({std::move(*record)}, {}));
+    result.push_back(greybox::fit_dataset({std::move(*record)}, {}));
   }
   return result;
 }
 
-using Separation = double (*)(const selection::Workshop&, const greybox::Evidence&,
-                              const greybox::Fitted&);
+using Separation = double (*)(const selection::SearchContext&, const greybox::FitDataset&,
+                              const greybox::FitSummary&);
 
 /// Of the closest pair, either way round.
-double closest(const selection::Workshop& shop, const std::vector<greybox::Fitted>& rivals,
-               const std::vector<greybox::Evidence>& truths, Separation separation) {
+double closest(const selection::SearchContext& context,
+               const std::vector<greybox::FitSummary>& rivals,
+               const std::vector<greybox::FitDataset>& truths, Separation separation) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t truth = 0; truth < truths.size(); ++truth) {
     for (std::size_t other = 0; other < rivals.size(); ++other) {
-      if (other == truth || shop.cancelled()) continue;
-      least = std::min(least, separation(shop, truths[truth], rivals[other]));
+      if (other == truth || context.cancelled()) continue;
+      least = std::min(least, separation(context, truths[truth], rivals[other]));
     }
   }
   return least;
@@ -52,19 +54,20 @@ double closest(const selection::Workshop& shop, const std::vector<greybox::Fitte
 struct Option {
   TestMotion motion;
   double expected = 0.0;
-  std::vector<greybox::Evidence> truths;
+  std::vector<greybox::FitDataset> truths;
 };
 
-std::vector<Option> options_for(const selection::Workshop& shop,
-                                const std::vector<greybox::Fitted>& rivals) {
+std::vector<Option> options_for(const selection::SearchContext& context,
+                                const std::vector<greybox::FitSummary>& rivals) {
   std::vector<Option> options;
-  for (TestMotion& motion : test_motions(shop)) options.push_back({std::move(motion), 0.0, {}});
-  estimator::in_parallel(options.size(), shop.threads, [&](std::size_t i) {
-    if (shop.cancelled()) return;
+  for (TestMotion& motion : test_motions(context.problem))
+    options.push_back({std::move(motion), 0.0, {}});
+  estimator::in_parallel(options.size(), context.options.threads, [&](std::size_t i) {
+    if (context.cancelled()) return;
     Option& option = options[i];
-    option.truths = truths(shop, rivals, option.motion);
+    option.truths = truths(context, rivals, option.motion);
     if (!option.truths.empty()) {
-      option.expected = closest(shop, rivals, option.truths, selection::expected_separation);
+      option.expected = closest(context, rivals, option.truths, selection::expected_separation);
     }
   });
   std::stable_sort(options.begin(), options.end(),
@@ -74,14 +77,15 @@ std::vector<Option> options_for(const selection::Workshop& shop,
 
 }  // namespace
 
-Advice advise(const selection::Workshop& shop, const std::vector<greybox::Fitted>& rivals,
+Advice advise(const selection::SearchContext& context,
+              const std::vector<greybox::FitSummary>& rivals,
               const std::vector<std::string>& names) {
-  std::vector<Option> options = options_for(shop, rivals);
+  std::vector<Option> options = options_for(context, rivals);
   Advice advice;
   for (std::size_t i = 0; i < std::min(kTried, options.size()); ++i) {
     Option& option = options[i];
-    if (option.expected < kSeparates || shop.cancelled()) break;
-    const double separation = closest(shop, rivals, option.truths, selection::fitted_separation);
+    if (option.expected < kSeparates || context.cancelled()) break;
+    const double separation = closest(context, rivals, option.truths, selection::fitted_separation);
     if (separation <= advice.separation) continue;
     advice.separation = separation;
     advice.motion = std::move(option.motion);
@@ -89,34 +93,35 @@ Advice advise(const selection::Workshop& shop, const std::vector<greybox::Fitted
   }
   advice.separates = advice.separation >= kSeparates;
   advice.words = advice.separates ? words_for_motion(names, advice.motion.words, advice.separation)
-                                  : words_for_sensor(shop.model, names);
+                                  : words_for_sensor(context.problem.model, names);
   return advice;
 }
 
-std::string advice_to_excite(const selection::Workshop& shop) {
-  return words_to_excite(test_motions(shop).front().words);
+std::string advice_to_excite(const selection::DiagnosisProblem& problem) {
+  return words_to_excite(test_motions(problem).front().words);
 }
 
-std::string advice_for_unexplained(const std::vector<selection::Where>& where,
+std::string advice_for_unexplained(const std::vector<selection::Localisation>& where,
                                    const std::string& plant) {
   return words_for_unexplained(where, plant);
 }
 
-AdvisedDiagnosis diagnose(const selection::Workshop& shop) {
+AdvisedDiagnosis diagnose(const selection::DiagnosisProblem& problem,
+                          selection::DiagnosisOptions options) {
   std::string for_rivals;
-  const auto separable = [&](const selection::Workshop& searched,
-                             const std::vector<greybox::Fitted>& explanations,
-                             const std::vector<std::string>& names) {
-    const Advice advice = advise(searched, explanations, names);
+  options.separable = [&](const selection::SearchContext& context,
+                          const std::vector<greybox::FitSummary>& explanations,
+                          const std::vector<std::string>& names) {
+    const Advice advice = advise(context, explanations, names);
     for_rivals += (for_rivals.empty() ? "" : " ") + advice.words;
     return advice.separates;
   };
-  AdvisedDiagnosis result{selection::diagnose(shop, separable), ""};
+  AdvisedDiagnosis result{selection::diagnose(problem, options), ""};
   const selection::Diagnosis& found = result.diagnosis;
   if (found.verdict == selection::Verdict::not_excited) {
-    result.advice = advice_to_excite(shop);
+    result.advice = advice_to_excite(problem);
   } else if (found.verdict == selection::Verdict::unexplained) {
-    result.advice = advice_for_unexplained(found.where, shop.model.plant);
+    result.advice = advice_for_unexplained(found.where, problem.model.plant);
   }
   if (!result.advice.empty() && !for_rivals.empty()) result.advice += " ";
   result.advice += for_rivals;

@@ -28,15 +28,15 @@ struct Advice {
 };
 
 /// `names` of the rivals, one for each. At least two rivals.
-[[nodiscard]] Advice advise(const selection::Workshop& shop,
-                            const std::vector<greybox::Fitted>& rivals,
+[[nodiscard]] Advice advise(const selection::SearchContext& context,
+                            const std::vector<greybox::FitSummary>& rivals,
                             const std::vector<std::string>& names);
 
 /// For a record that does not move enough.
-[[nodiscard]] std::string advice_to_excite(const selection::Workshop& shop);
+[[nodiscard]] std::string advice_to_excite(const selection::DiagnosisProblem& problem);
 
 /// For a residual that no effect explains; `where` as localise() gives it, may be empty.
-[[nodiscard]] std::string advice_for_unexplained(const std::vector<selection::Where>& where,
+[[nodiscard]] std::string advice_for_unexplained(const std::vector<selection::Localisation>& where,
                                                  const std::string& plant = "hydraulic_actuator");
 
 struct AdvisedDiagnosis {
@@ -45,6 +45,7 @@ struct AdvisedDiagnosis {
 };
 
 /// selection::diagnose() with the advice that follows from it.
-[[nodiscard]] AdvisedDiagnosis diagnose(const selection::Workshop& shop);
+[[nodiscard]] AdvisedDiagnosis diagnose(const selection::DiagnosisProblem& problem,
+                                        selection::DiagnosisOptions options);
 
 }  // namespace workbench::diagnose

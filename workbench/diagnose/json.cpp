@@ -15,14 +15,14 @@ namespace {
 using present::number_or_null;
 using Json = nlohmann::ordered_json;
 
-Json candidates_of(const selection::Ladder& ladder) {
+Json candidates_of(const selection::StructureSearch& search) {
   Json list = Json::array();
-  for (std::size_t r = 0; r < ladder.rounds.size(); ++r) {
-    for (const selection::Candidate& c : ladder.rounds[r].candidates) {
+  for (std::size_t r = 0; r < search.rounds.size(); ++r) {
+    for (const selection::Candidate& c : search.rounds[r].candidates) {
       Json one;
       one["round"] = r + 1;
       one["effect"] = config::schema::joined(c.effects, "+");
-      one["rms_heldout_m"] = c.fitted_at_all ? number_or_null(c.score_rms_m) : Json(nullptr);
+      one["rms_heldout_m"] = c.fitted_at_all ? number_or_null(c.validation_rms_m) : Json(nullptr);
       one["p_value"] = c.fitted_at_all ? number_or_null(c.p_value) : Json(nullptr);
       one["expected_ratio"] = number_or_null(c.expected_ratio);
       list.push_back(std::move(one));
@@ -43,12 +43,12 @@ Json parameters_of(const selection::Diagnosis& d) {
 
 }  // namespace
 
-std::string to_json(const Outcome& outcome) {
+std::string to_json(const DiagnosisReport& outcome) {
   const selection::Diagnosis& d = outcome.diagnosis;
   const bool fitted = outcome.fitted();
   const auto error_m = [&](double value) { return fitted ? number_or_null(value) : Json(nullptr); };
   Json json;
-  json["verdict"] = selection::text(d.verdict);
+  json["verdict"] = selection::to_string(d.verdict);
   json["missing"] = d.missing;
   json["ambiguous"] = d.ambiguous;
   json["same_here"] = d.same_here;
@@ -59,10 +59,10 @@ std::string to_json(const Outcome& outcome) {
   json["free_run_before_m"] = number_or_null(outcome.free_run_before_m);
   json["free_run_after_m"] = number_or_null(outcome.free_run_after_m);
   json["parameters"] = parameters_of(d);
-  json["candidates"] = candidates_of(d.ladder);
+  json["candidates"] = candidates_of(d.search);
   json["where"] = Json::array();
-  for (const selection::Where& where : d.where) {
-    json["where"].push_back({{"class", where.enters},
+  for (const selection::Localisation& where : d.where) {
+    json["where"].push_back({{"class", where.site},
                              {"variable", where.variable},
                              {"explained_ratio", number_or_null(where.explained_ratio)}});
   }
@@ -70,18 +70,18 @@ std::string to_json(const Outcome& outcome) {
   for (const selection::Step& step : d.steps) {
     Json one;
     one["added"] = step.added.empty() ? Json(nullptr) : Json(step.added);
-    one["rms_heldout_m"] = number_or_null(step.score_rms_m);
+    one["rms_heldout_m"] = number_or_null(step.validation_rms_m);
     json["steps"].push_back(std::move(one));
   }
   json["advice"] = outcome.advice;
   json["words"] = verdict_words(d);
   json["notes"] = d.notes;
   json["interrupted"] = outcome.interrupted;
-  json["model"] = outcome.model_file;
-  json["records"] = outcome.records;
-  json["holdouts"] = outcome.holdouts;
-  json["command"] = outcome.command;
-  json["preview_s"] = number_or_null(d.ladder.preview_s);
+  json["model"] = outcome.prepared->model_file;
+  json["records"] = outcome.prepared->records;
+  json["holdouts"] = outcome.prepared->holdouts;
+  json["command"] = outcome.prepared->command;
+  json["preview_s"] = number_or_null(d.search.preview_s);
   json["runtime_s"] = number_or_null(d.runtime_s);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -3,10 +3,10 @@
 
 #include <string>
 
-#include "workbench/diagnose/outcome.h"
+#include "workbench/diagnose/diagnosis_report.h"
 
 namespace workbench::diagnose {
 
-[[nodiscard]] std::string to_json(const Outcome& outcome);
+[[nodiscard]] std::string to_json(const DiagnosisReport& outcome);
 
 }  // namespace workbench::diagnose

@@ -62,9 +62,9 @@ bool was_taken(const selection::Candidate& candidate, std::vector<std::string> t
 }
 
 Plot candidates_plot(const selection::Diagnosis& d, std::size_t index) {
-  const selection::Round& round = d.ladder.rounds[index];
+  const selection::Round& round = d.search.rounds[index];
   const Scale scale = scale_of(d);
-  const std::vector<std::string> taken = taken_in(d.ladder, index);
+  const std::vector<std::string> taken = taken_in(d.search, index);
   Plot plot{.title = "Round " + std::to_string(index + 1),
             .kind = Kind::bars,
             .y = {"held-out error", scale.unit},
@@ -81,12 +81,12 @@ Plot candidates_plot(const selection::Diagnosis& d, std::size_t index) {
     }
   };
   for (const selection::Candidate& candidate : round.candidates) {
-    const bool worse = candidate.score_rms_m > kWorse * round.before.fitted.score_rms_m;
+    const bool worse = candidate.validation_rms_m > kWorse * round.before.fitted.validation_rms_m;
     if (!candidate.fitted_at_all || worse || plot.categories.size() == kDrawnCandidates) break;
-    add(config::schema::joined(candidate.effects, " + "), candidate.score_rms_m,
+    add(config::schema::joined(candidate.effects, " + "), candidate.validation_rms_m,
         was_taken(candidate, taken) ? 0 : 1);
   }
-  add("nothing added", round.before.fitted.score_rms_m, 2);
+  add("nothing added", round.before.fitted.validation_rms_m, 2);
   const auto unused = [](const present::Series& series) {
     return std::none_of(series.y.begin(), series.y.end(), [](double y) { return !std::isnan(y); });
   };
@@ -107,9 +107,9 @@ std::string not_fitted_words(const selection::Round& round) {
 }
 
 Table candidates_table(const selection::Diagnosis& d, std::size_t index) {
-  const selection::Round& round = d.ladder.rounds[index];
+  const selection::Round& round = d.search.rounds[index];
   const Scale scale = scale_of(d);
-  const std::vector<std::string> taken = taken_in(d.ladder, index);
+  const std::vector<std::string> taken = taken_in(d.search, index);
   const std::string with = round.before.added.empty()
                                ? "the model as given"
                                : "with " + config::schema::listed(round.before.added);
@@ -121,10 +121,10 @@ Table candidates_table(const selection::Diagnosis& d, std::size_t index) {
     std::vector<std::string> row{config::schema::joined(candidate.effects, " + ")};
     if (!candidate.fitted_at_all) continue;
     const bool took = was_taken(candidate, taken);
-    row.push_back(scale.words(candidate.score_rms_m));
-    row.push_back(config::units::times_words(candidate.score_rms_m / d.noise_floor_m));
+    row.push_back(scale.words(candidate.validation_rms_m));
+    row.push_back(config::units::times_words(candidate.validation_rms_m / d.noise_floor_m));
     row.push_back(config::units::chance_words(candidate.p_value));
-    row.emplace_back(!took ? "" : stayed(d.ladder, taken) ? "taken" : "taken, dropped later");
+    row.emplace_back(!took ? "" : stayed(d.search, taken) ? "taken" : "taken, dropped later");
     if (took) table.marked_rows.push_back(table.rows.size());
     table.rows.push_back(std::move(row));
   }
@@ -145,7 +145,7 @@ std::string change_words(double value, double before) {
 
 }  // namespace
 
-Section falling_error_section(const Outcome& outcome) {
+Section falling_error_section(const DiagnosisReport& outcome) {
   const selection::Diagnosis& d = outcome.diagnosis;
   Section section{.heading = "The falling error"};
   section.paragraphs = {
@@ -174,7 +174,7 @@ Section falling_error_section(const Outcome& outcome) {
   return section;
 }
 
-Section candidates_section(const Outcome& outcome) {
+Section candidates_section(const DiagnosisReport& outcome) {
   const selection::Diagnosis& d = outcome.diagnosis;
   Section section{.heading = "The candidates"};
   section.paragraphs = {
@@ -183,8 +183,8 @@ Section candidates_section(const Outcome& outcome) {
       fmt::format("{:g}", 100.0 * selection::kWorthwhile) +
       " % or more and the gain is more than chance: p is the probability of such a gain by chance "
       "alone. The bars end at the held-out error, the dashed line is the noise floor."};
-  for (std::size_t i = 0; i < d.ladder.rounds.size(); ++i) {
-    const std::string not_fitted = not_fitted_words(d.ladder.rounds[i]);
+  for (std::size_t i = 0; i < d.search.rounds.size(); ++i) {
+    const std::string not_fitted = not_fitted_words(d.search.rounds[i]);
     Plot plot = candidates_plot(d, i);
     if (plot.categories.size() > 1) {
       plot.caption = not_fitted;
@@ -199,17 +199,18 @@ Section candidates_section(const Outcome& outcome) {
   return section;
 }
 
-Section parameters_section(const Outcome& outcome) {
+Section parameters_section(const DiagnosisReport& outcome) {
   const selection::Diagnosis& d = outcome.diagnosis;
   Section section{.heading = "The better model's parameters"};
   section.paragraphs = {
       "Fitted to all samples. The error is one standard error; none is given for a value at its "
       "bound."};
-  if (!outcome.output.empty()) section.paragraphs.push_back("Written to " + outcome.output + ".");
+  if (!outcome.prepared->output.empty())
+    section.paragraphs.push_back("Written to " + outcome.prepared->output + ".");
   Table table{.columns = {Column{"parameter", "", false}, Column{"value"}, Column{"± std. error"},
                           Column{"unit", "", false}, Column{"in the file"}, Column{"change", "%"},
                           Column{"", "", false}}};
-  plant_sim::ModelFile file = outcome.shop.model;
+  plant_sim::ModelFile file = outcome.prepared->problem.model;
   for (const selection::ParameterValue& p : d.parameters) {
     const config::units::Quantity q = config::units::quantity(p.name, p.value, p.std_error);
     const double* before = file.value(p.name);
@@ -226,15 +227,15 @@ Section parameters_section(const Outcome& outcome) {
   return section;
 }
 
-Section where_section(const Outcome& outcome) {
+Section where_section(const DiagnosisReport& outcome) {
   Section section{.heading = "Where the rest enters"};
   section.paragraphs = {
       "The remaining residual, explained by smooth functions of one variable each, as a flow, a "
       "force, a change of the gain or an error of the measurement; scored on held-out data."};
   Table table{.columns = {Column{"enters", "", false}, Column{"variable", "", false},
                           Column{"explains of the squared residual", "%"}}};
-  for (const selection::Where& where : outcome.diagnosis.where) {
-    table.rows.push_back({where.enters, variable_words(where.variable),
+  for (const selection::Localisation& where : outcome.diagnosis.where) {
+    table.rows.push_back({where.site, variable_words(where.variable),
                           where.explained_ratio > 0.0
                               ? fmt::format("{:.1f}", 100.0 * where.explained_ratio)
                               : "none"});

@@ -11,7 +11,7 @@ namespace workbench::diagnose {
 namespace selection = estimator::greybox::selection;
 namespace {
 
-present::State state_of(const Outcome& outcome) {
+present::State state_of(const DiagnosisReport& outcome) {
   if (outcome.interrupted) return present::State::warn;
   switch (outcome.diagnosis.verdict) {
     case selection::Verdict::nothing_missing:
@@ -28,17 +28,19 @@ present::Fact length_fact(const std::string& label, double length_m) {
   return {.label = label, .value = q.value, .unit = config::units::typeset(" " + q.unit).substr(1)};
 }
 
-std::string title_of(const Outcome& outcome) {
+std::string title_of(const DiagnosisReport& outcome) {
   const auto names = [](std::vector<std::string> files) {
     for (std::string& file : files) file = file_name(file);
     return config::schema::listed(files);
   };
-  std::string title = file_name(outcome.model_file) + " against " + names(outcome.records);
-  if (!outcome.holdouts.empty()) title += ", held out " + names(outcome.holdouts);
+  std::string title =
+      file_name(outcome.prepared->model_file) + " against " + names(outcome.prepared->records);
+  if (!outcome.prepared->holdouts.empty())
+    title += ", held out " + names(outcome.prepared->holdouts);
   return title;
 }
 
-std::vector<present::Fact> facts_of(const Outcome& outcome) {
+std::vector<present::Fact> facts_of(const DiagnosisReport& outcome) {
   const selection::Diagnosis& d = outcome.diagnosis;
   std::vector<present::Fact> facts;
   if (outcome.fitted()) {
@@ -56,7 +58,7 @@ std::vector<present::Fact> facts_of(const Outcome& outcome) {
 
 }  // namespace
 
-present::Report report_of(const Outcome& outcome) {
+present::Report report_of(const DiagnosisReport& outcome) {
   const selection::Diagnosis& d = outcome.diagnosis;
   present::Report report;
   report.title = title_of(outcome);
@@ -68,10 +70,10 @@ present::Report report_of(const Outcome& outcome) {
     report.summary.push_back("Note: " + config::units::typeset(note) + ".");
   report.next_command = next_command(outcome);
   report.facts = facts_of(outcome);
-  report.command = outcome.command;
+  report.command = outcome.prepared->command;
   if (outcome.fitted()) {
     report.sections.push_back(falling_error_section(outcome));
-    if (!d.ladder.rounds.empty()) report.sections.push_back(candidates_section(outcome));
+    if (!d.search.rounds.empty()) report.sections.push_back(candidates_section(outcome));
     report.sections.push_back(parameters_section(outcome));
     if (!d.where.empty()) report.sections.push_back(where_section(outcome));
   }

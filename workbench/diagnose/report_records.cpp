@@ -42,8 +42,8 @@ struct Scale {
 };
 
 struct Page {
-  const greybox::Measured& record;
-  greybox::Motion motion;
+  const greybox::Dataset& record;
+  greybox::Kinematics kinematics;
   Values file_m, before_m, after_m, free_file_m, free_after_m;  ///< NaN where it does not count
   double noise_floor_m = kNone;
   bool improved = false;  ///< something was added
@@ -56,11 +56,11 @@ Values times(const Values& values, double factor) {
   return out;
 }
 
-Values cut(const Eigen::VectorXd& series_m, std::size_t start, const greybox::Measured& record) {
+Values cut(const Eigen::VectorXd& series_m, std::size_t start, const greybox::Dataset& record) {
   Values out(record.size(), kNone);
   if (series_m.size() == 0) return out;
   for (std::size_t i = 0; i < out.size(); ++i) {
-    if (record.settled[i] != 0) out[i] = series_m[static_cast<Eigen::Index>(start + i)];
+    if (record.valid[i] != 0) out[i] = series_m[static_cast<Eigen::Index>(start + i)];
   }
   return out;
 }
@@ -74,7 +74,7 @@ Scale scale_of(const Values& residual_m) {
 }
 
 /// Nothing is drawn across a gap.
-Values broken_at_gaps(Values values, const greybox::Measured& record) {
+Values broken_at_gaps(Values values, const greybox::Dataset& record) {
   for (const std::size_t start : record.starts) {
     if (start > 0) values[start] = kNone;
   }
@@ -164,13 +164,13 @@ Plot against(const Page& page, const std::string& what, const std::string& unit,
 }
 
 void add_clouds(const Page& page, Section& section) {
-  Values speed = times(page.motion.speed_mps, 1e3);
+  Values speed = times(page.kinematics.speed_mps, 1e3);
   section.plots.push_back(against(page, "position", "mm", times(page.record.y_m, 1e3)));
   section.plots.push_back(against(page, "velocity", "mm/s", speed));
   section.plots.push_back(against(page, "command", "V", page.record.u_V));
   for (double& v : speed) v = std::abs(v);
   section.plots.push_back(against(page, "speed", "mm/s", speed));
-  section.plots.push_back(against(page, "acceleration", "m/s²", page.motion.acceleration_mps2));
+  section.plots.push_back(against(page, "acceleration", "m/s²", page.kinematics.acceleration_mps2));
   section.plots.push_back(against(page, "time", "s", page.record.t_s));
 }
 
@@ -201,41 +201,41 @@ Section section_of(const Page& page, bool fitted, const std::string& heading) {
   return section;
 }
 
-Residuals residuals_of(const Outcome& outcome) {
+Residuals residuals_of(const DiagnosisReport& outcome) {
   Residuals all;
   if (!outcome.fitted()) return all;
   const selection::Diagnosis& d = outcome.diagnosis;
-  const selection::Workshop& shop = outcome.shop;
-  const selection::Stage& before =
-      d.ladder.rounds.empty() ? d.ladder.final : d.ladder.rounds.front().before;
-  all.file_m = residual_of_file_m(shop, greybox::kObserver_per_s);
-  all.before_m = residual_of_m(shop, before.fitted, greybox::kObserver_per_s);
-  all.after_m = residual_of_m(shop, d.final, greybox::kObserver_per_s);
-  all.free_file_m = residual_of_file_m(shop, 0.0);
-  all.free_after_m = residual_of_m(shop, d.final, 0.0);
+  const selection::DiagnosisProblem& problem = outcome.prepared->problem;
+  const selection::ModelStage& before =
+      d.search.rounds.empty() ? d.search.final : d.search.rounds.front().before;
+  all.file_m = residual_of_file_m(problem, greybox::kObserver_per_s);
+  all.before_m = residual_of_m(problem, before.fitted, greybox::kObserver_per_s);
+  all.after_m = residual_of_m(problem, d.final, greybox::kObserver_per_s);
+  all.free_file_m = residual_of_file_m(problem, 0.0);
+  all.free_after_m = residual_of_m(problem, d.final, 0.0);
   return all;
 }
 
 }  // namespace
 
-std::vector<Section> record_sections(const Outcome& outcome) {
-  const greybox::Evidence& evidence = outcome.shop.evidence;
+std::vector<Section> record_sections(const DiagnosisReport& outcome) {
+  const greybox::FitDataset& data = outcome.prepared->problem.data;
   const Residuals all = residuals_of(outcome);
   std::vector<Section> sections;
-  for (std::size_t r = 0; r < evidence.records.size(); ++r) {
-    const greybox::Measured& record = evidence.records[r];
-    const std::size_t start = evidence.starts[r];
-    const double noise_m = std::isfinite(evidence.noise_floor_m) ? evidence.noise_floor_m : 0.0;
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    const greybox::Dataset& record = data.records[r];
+    const std::size_t start = data.starts[r];
+    const double noise_m = std::isfinite(data.noise_floor_m) ? data.noise_floor_m : 0.0;
     const Page page{.record = record,
-                    .motion = greybox::motion(record, noise_m),
+                    .kinematics = greybox::kinematics(record, noise_m),
                     .file_m = cut(all.file_m, start, record),
                     .before_m = cut(all.before_m, start, record),
                     .after_m = cut(all.after_m, start, record),
                     .free_file_m = cut(all.free_file_m, start, record),
                     .free_after_m = cut(all.free_after_m, start, record),
-                    .noise_floor_m = evidence.noise_floor_m,
+                    .noise_floor_m = data.noise_floor_m,
                     .improved = !outcome.diagnosis.missing.empty()};
-    const bool held_out = r >= outcome.records.size();
+    const bool held_out = r >= outcome.prepared->records.size();
     sections.push_back(section_of(page, outcome.fitted(),
                                   (held_out ? "Held out: " : "Record ") + file_name(record.name)));
   }

@@ -15,7 +15,7 @@ namespace greybox = estimator::greybox;
 namespace selection = estimator::greybox::selection;
 namespace {
 
-void check_files(const Request& request) {
+void check_files(const DiagnosisRequest& request) {
   cli::check_records(request.records, request.holdouts,
                      "another record, or --fit first-half to score on part of this one");
   cli::InputFiles inputs{request.model, request.records};
@@ -26,7 +26,7 @@ void check_files(const Request& request) {
 }
 
 /// What noise explains is told from how smooth a motion is, which takes samples close enough.
-void require_rate(const greybox::Measured& record) {
+void require_rate(const greybox::Dataset& record) {
   constexpr double kSlowest_s = 0.05;
   if (record.sample_time_s <= kSlowest_s * (1.0 + 1e-6)) return;
   throw config::schema::bad_data(
@@ -36,10 +36,10 @@ void require_rate(const greybox::Measured& record) {
       "20 Hz or more; compare and fit take less");
 }
 
-std::vector<greybox::Measured> records_of(const std::vector<std::string>& files) {
-  std::vector<greybox::Measured> records;
+std::vector<greybox::Dataset> records_of(const std::vector<std::string>& files) {
+  std::vector<greybox::Dataset> records;
   for (const std::string& file : files) {
-    records.push_back(greybox::measured(config::record::read_record(file)));
+    records.push_back(greybox::dataset_of(config::record::read_record(file)));
     require_rate(records.back());
   }
   return records;
@@ -47,21 +47,22 @@ std::vector<greybox::Measured> records_of(const std::vector<std::string>& files)
 
 }  // namespace
 
-Outcome prepare(const Request& request) {
+PreparedDiagnosis prepare(const DiagnosisRequest& request) {
   check_files(request);
-  Outcome outcome;
-  outcome.split = greybox::parse_split(request.fit);
-  outcome.shop = selection::workshop(
-      plant_sim::load_model(request.model, request.assignments),
-      greybox::evidence(records_of(request.records), records_of(request.holdouts), outcome.split));
+  PreparedDiagnosis prepared;
+  prepared.split = greybox::parse_split(request.fit);
+  prepared.problem =
+      selection::make_problem(plant_sim::load_model(request.model, request.assignments),
+                              greybox::fit_dataset(records_of(request.records),
+                                                   records_of(request.holdouts), prepared.split));
   const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
-  outcome.shop.threads = request.threads > 0 ? request.threads : processors;
-  outcome.model_file = request.model;
-  outcome.records = request.records;
-  outcome.holdouts = request.holdouts;
-  outcome.output = request.output;
-  outcome.command = request.command;
-  return outcome;
+  prepared.options.threads = request.threads > 0 ? request.threads : processors;
+  prepared.model_file = request.model;
+  prepared.records = request.records;
+  prepared.holdouts = request.holdouts;
+  prepared.output = request.output;
+  prepared.command = request.command;
+  return prepared;
 }
 
 }  // namespace workbench::diagnose

@@ -1,14 +1,18 @@
-// What `spoolwatch diagnose` is asked for, checked before anything is computed.
+// The request of `spoolwatch diagnose`, checked before anything is computed.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "workbench/diagnose/outcome.h"
+#include "estimator/greybox/fit_dataset.h"
+#include "estimator/greybox/selection/problem.h"
 
 namespace workbench::diagnose {
 
-struct Request {
+namespace greybox = estimator::greybox;
+namespace selection = estimator::greybox::selection;
+
+struct DiagnosisRequest {
   std::string model;
   std::vector<std::string> records;
   std::vector<std::string> holdouts;
@@ -22,9 +26,20 @@ struct Request {
   std::string command;  ///< the command line as it was typed, for reports and model files
 };
 
-/// Reads everything. Throws config::schema::UsageError for a hold-out that is fitted too or for
-/// outputs over inputs, DataError and ConfigError for files that cannot be used, 1 for outputs that
-/// could not be written in the end.
-[[nodiscard]] Outcome prepare(const Request& request);
+/// The input of a diagnosis: problem and options, and the names that its results are printed under.
+struct PreparedDiagnosis {
+  selection::DiagnosisProblem problem;
+  selection::DiagnosisOptions options;
+  std::string model_file;
+  std::vector<std::string> records;   ///< as given: fitted, and scored by the split
+  std::vector<std::string> holdouts;  ///< as given: scored only
+  std::string output;                 ///< file of the better model; empty: none is written
+  std::string command;                ///< shell command that repeats this diagnosis
+  greybox::Split split = greybox::Split::blocks;
+};
+
+/// Reads all files. Throws config::schema::UsageError for a hold-out that is fitted too or for
+/// outputs over inputs, DataError and ConfigError for unusable files.
+[[nodiscard]] PreparedDiagnosis prepare(const DiagnosisRequest& request);
 
 }  // namespace workbench::diagnose

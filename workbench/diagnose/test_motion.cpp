@@ -58,26 +58,26 @@ double stroke_of(const plant_sim::ModelFile& model) {
   return stroke_m == nullptr ? std::nan("") : *stroke_m;
 }
 
-Room room_of(const selection::Workshop& shop) {
-  const greybox::Evidence& evidence = shop.evidence;
-  double low_m = evidence.records.front().y_m.front();
+Room room_of(const selection::DiagnosisProblem& problem) {
+  const greybox::FitDataset& data = problem.data;
+  double low_m = data.records.front().y_m.front();
   double high_m = low_m;
   double fastest_mps = 0.0;
-  for (const greybox::Measured& record : evidence.records) {
+  for (const greybox::Dataset& record : data.records) {
     const auto [low, high] = std::minmax_element(record.y_m.begin(), record.y_m.end());
     low_m = std::min(low_m, *low);
     high_m = std::max(high_m, *high);
-    for (const double v_mps : greybox::motion(record, evidence.noise_floor_m).speed_mps) {
+    for (const double v_mps : greybox::kinematics(record, data.noise_floor_m).speed_mps) {
       fastest_mps = std::max(fastest_mps, std::abs(v_mps));
     }
   }
   Room room;
   room.centre_m = std::round(500.0 * (low_m + high_m)) * 1e-3;
   const double half_m = 0.5 * (high_m - low_m);
-  const double stroke_m = stroke_of(shop.model);
-  const greybox::Measured& first = evidence.records.front();
+  const double stroke_m = stroke_of(problem.model);
+  const greybox::Dataset& first = data.records.front();
   const double noise_m =
-      std::max(evidence.noise_floor_m, estimator::residual::encoder_step_m(first.y_m));
+      std::max(data.noise_floor_m, estimator::residual::encoder_step_m(first.y_m));
   if (half_m > kLeastTravel * noise_m) {
     room.amplitude_m = kFurther * half_m;
     room.frequency_Hz = std::clamp(fastest_mps / (kTwoPi * half_m), kSlowest_Hz, kFastest_Hz);
@@ -119,8 +119,8 @@ ReferenceConfig steps(const Room& room, double hold_periods, double rise_periods
 
 }  // namespace
 
-std::vector<TestMotion> test_motions(const selection::Workshop& shop) {
-  const Room room = room_of(shop);
+std::vector<TestMotion> test_motions(const selection::DiagnosisProblem& problem) {
+  const Room room = room_of(problem);
   const double duration_s =
       std::round(std::clamp(kPeriods / room.frequency_Hz, kShortest_s, kLongest_s));
   ReferenceConfig chirp = reference_in(room, "chirp", 0.4);
@@ -140,10 +140,10 @@ std::vector<TestMotion> test_motions(const selection::Workshop& shop) {
   return result;
 }
 
-std::optional<greybox::Measured> simulated(const selection::Workshop& shop,
-                                           plant_sim::ModelFile model, const TestMotion& motion,
-                                           std::uint64_t seed) {
-  const greybox::Measured& like = shop.evidence.records.front();
+std::optional<greybox::Dataset> simulated(const selection::DiagnosisProblem& problem,
+                                          plant_sim::ModelFile model, const TestMotion& motion,
+                                          std::uint64_t seed) {
+  const greybox::Dataset& like = problem.data.records.front();
   const estimator::residual::NoiseFloor floor =
       estimator::residual::noise_floor(like.y_m, like.sample_time_s);
   simulate::Scenario scenario;
@@ -181,7 +181,7 @@ std::optional<greybox::Measured> simulated(const selection::Workshop& shop,
   if (static_cast<double>(saturated) > kMostSaturated * static_cast<double>(samples)) {
     return std::nullopt;
   }
-  return greybox::measured(record);
+  return greybox::dataset_of(record);
 }
 
 }  // namespace workbench::diagnose

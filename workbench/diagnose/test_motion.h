@@ -24,13 +24,13 @@ struct TestMotion {
 /// Sines, multisines, steps, chirp and random binary motions about where the records move, up to
 /// half as far again or a tenth of the stroke either way, within the stroke; without a motion in
 /// the records, about the middle of the stroke.
-[[nodiscard]] std::vector<TestMotion> test_motions(const selection::Workshop& shop);
+[[nodiscard]] std::vector<TestMotion> test_motions(const selection::DiagnosisProblem& problem);
 
 /// The model's record in closed loop with its own gain, a 12-bit D/A and the records' encoder and
 /// noise. None when the rod does not follow: the command saturates, or the numbers end.
-[[nodiscard]] std::optional<greybox::Measured> simulated(const selection::Workshop& shop,
-                                                         plant_sim::ModelFile model,
-                                                         const TestMotion& motion,
-                                                         std::uint64_t seed);
+[[nodiscard]] std::optional<greybox::Dataset> simulated(const selection::DiagnosisProblem& problem,
+                                                        plant_sim::ModelFile model,
+                                                        const TestMotion& motion,
+                                                        std::uint64_t seed);
 
 }  // namespace workbench::diagnose

@@ -88,12 +88,12 @@ void print_steps(const selection::Diagnosis& d, std::ostream& out) {
 }
 
 void print_candidates(const selection::Diagnosis& d, std::ostream& out) {
-  if (d.ladder.rounds.empty()) return;
-  const std::size_t index = deciding_round(d.ladder);
-  const selection::Round& round = d.ladder.rounds[index];
+  if (d.search.rounds.empty()) return;
+  const std::size_t index = deciding_round(d.search);
+  const selection::Round& round = d.search.rounds[index];
   out << "\ncandidates of round " << index + 1 << ": "
-      << config::units::length_words(round.before.fitted.score_rms_m) << " without any\n";
-  std::vector<std::string> taken = taken_in(d.ladder, index);
+      << config::units::length_words(round.before.fitted.validation_rms_m) << " without any\n";
+  std::vector<std::string> taken = taken_in(d.search, index);
   std::sort(taken.begin(), taken.end());
   std::size_t shown = 0;
   for (const selection::Candidate& candidate : round.candidates) {
@@ -101,9 +101,9 @@ void print_candidates(const selection::Diagnosis& d, std::ostream& out) {
     std::vector<std::string> effects = candidate.effects;
     std::sort(effects.begin(), effects.end());
     out << "  " << padded(config::schema::listed(candidate.effects), 34) << "  "
-        << padded(config::units::length_words(candidate.score_rms_m), 10, true) << "  p "
+        << padded(config::units::length_words(candidate.validation_rms_m), 10, true) << "  p "
         << (effects == taken ? padded(config::units::chance_words(candidate.p_value), 11) +
-                                   (stayed(d.ladder, taken) ? "  taken" : "  taken, dropped later")
+                                   (stayed(d.search, taken) ? "  taken" : "  taken, dropped later")
                              : config::units::chance_words(candidate.p_value))
         << '\n';
     ++shown;
@@ -111,10 +111,10 @@ void print_candidates(const selection::Diagnosis& d, std::ostream& out) {
   if (shown == 0) out << "  none: at first sight every one leaves the error as it is\n";
 }
 
-void print_parameters(const Outcome& outcome, std::ostream& out) {
+void print_parameters(const DiagnosisReport& outcome, std::ostream& out) {
   const selection::Diagnosis& d = outcome.diagnosis;
   if (d.parameters.empty()) return;
-  plant_sim::ModelFile file = outcome.shop.model;
+  plant_sim::ModelFile file = outcome.prepared->problem.model;
   std::size_t width = 0;
   for (const selection::ParameterValue& p : d.parameters) width = std::max(width, p.name.size());
   out << "\nparameters of the better model\n";
@@ -132,7 +132,7 @@ void print_parameters(const Outcome& outcome, std::ostream& out) {
 
 }  // namespace
 
-void print(const Outcome& outcome, std::ostream& out) {
+void print(const DiagnosisReport& outcome, std::ostream& out) {
   const selection::Diagnosis& d = outcome.diagnosis;
   out << wrapped(verdict_words(d));
   for (const std::string& remark : remarks(outcome)) out << wrapped(remark);
@@ -141,7 +141,7 @@ void print(const Outcome& outcome, std::ostream& out) {
     print_candidates(d, out);
     print_parameters(outcome, out);
     out << '\n'
-        << wrapped(outcome.model_file + ": " + split_words(outcome) +
+        << wrapped(outcome.prepared->model_file + ": " + split_words(outcome) +
                    fmt::format("; {:.1f} s.", d.runtime_s));
   }
   for (const std::string& note : d.notes) out << wrapped("note: " + note);

@@ -3,10 +3,10 @@
 
 #include <iosfwd>
 
-#include "workbench/diagnose/outcome.h"
+#include "workbench/diagnose/diagnosis_report.h"
 
 namespace workbench::diagnose {
 
-void print(const Outcome& outcome, std::ostream& out);
+void print(const DiagnosisReport& outcome, std::ostream& out);
 
 }  // namespace workbench::diagnose

@@ -63,7 +63,7 @@ std::string undetermined_words(const selection::Diagnosis& d) {
 
 std::string unexplained_words(const selection::Diagnosis& d) {
   const std::string rest = "an error of " + beside_floor(d, d.rms_after_m) + ", remains";
-  if (d.ladder.interrupted) {
+  if (d.search.interrupted) {
     return "Not decided: " +
            (d.missing.empty() ? "" : "found so far " + config::schema::listed(d.missing) + "; ") +
            rest + ".";
@@ -128,11 +128,11 @@ bool was_added(const selection::Diagnosis& diagnosis, const std::string& paramet
          names.end();
 }
 
-std::string where_words(const selection::Where& where) {
-  const std::string enters = where.enters == "flow"    ? "as a flow"
-                             : where.enters == "force" ? "as a force"
-                             : where.enters == "gain"  ? "as a change of the gain"
-                                                       : "as an error of the measurement";
+std::string where_words(const selection::Localisation& where) {
+  const std::string enters = where.site == "flow"    ? "as a flow"
+                             : where.site == "force" ? "as a force"
+                             : where.site == "gain"  ? "as a change of the gain"
+                                                     : "as an error of the measurement";
   const std::string variable = where.variable == "y"   ? "the position y"
                                : where.variable == "v" ? "the velocity v"
                                : where.variable == "u" ? "the command u"
@@ -143,7 +143,7 @@ std::string where_words(const selection::Where& where) {
 std::string verdict_words(const selection::Diagnosis& d) {
   switch (d.verdict) {
     case selection::Verdict::nothing_missing:
-      if (d.ladder.interrupted) {
+      if (d.search.interrupted) {
         return "Not decided: the model, its own parameters adjusted, is left with " +
                beside_floor(d, d.rms_after_m) + " so far.";
       }
@@ -161,7 +161,7 @@ std::string verdict_words(const selection::Diagnosis& d) {
   return "The record cannot tell: " + reason_of(d) + ".";
 }
 
-std::vector<std::string> remarks(const Outcome& outcome) {
+std::vector<std::string> remarks(const DiagnosisReport& outcome) {
   const selection::Diagnosis& d = outcome.diagnosis;
   std::vector<std::string> out;
   if (outcome.interrupted) {
@@ -192,22 +192,23 @@ std::vector<std::string> remarks(const Outcome& outcome) {
   return out;
 }
 
-std::string next_command(const Outcome& outcome) {
+std::string next_command(const DiagnosisReport& outcome) {
   if (!outcome.fitted()) return "";
-  const std::string& record =
-      outcome.holdouts.empty() ? outcome.records.front() : outcome.holdouts.front();
-  if (!outcome.output.empty()) {
-    return present::shell_command({"spoolwatch", "compare", outcome.output, record});
+  const std::string& record = outcome.prepared->holdouts.empty()
+                                  ? outcome.prepared->records.front()
+                                  : outcome.prepared->holdouts.front();
+  if (!outcome.prepared->output.empty()) {
+    return present::shell_command({"spoolwatch", "compare", outcome.prepared->output, record});
   }
-  return outcome.command + " -o better.toml";
+  return outcome.prepared->command + " -o better.toml";
 }
 
-std::string split_words(const Outcome& outcome) {
-  if (!outcome.holdouts.empty()) {
-    return "fitted to " + config::schema::listed(outcome.records) + ", scored on " +
-           config::schema::listed(outcome.holdouts);
+std::string split_words(const DiagnosisReport& outcome) {
+  if (!outcome.prepared->holdouts.empty()) {
+    return "fitted to " + config::schema::listed(outcome.prepared->records) + ", scored on " +
+           config::schema::listed(outcome.prepared->holdouts);
   }
-  switch (outcome.split) {
+  switch (outcome.prepared->split) {
     case greybox::Split::first_half:
       return "fitted to the first half, scored on the second";
     case greybox::Split::second_half:
@@ -224,7 +225,7 @@ std::vector<StepWords> step_words(const selection::Diagnosis& diagnosis) {
   steps.push_back({"model file as it is", diagnosis.nominal_rms_m});
   for (const selection::Step& step : diagnosis.steps) {
     steps.push_back(
-        {step.added.empty() ? "its parameters fitted" : "+ " + step.added, step.score_rms_m});
+        {step.added.empty() ? "its parameters fitted" : "+ " + step.added, step.validation_rms_m});
   }
   // Refinements of what was added may come and go in the end.
   constexpr double kSame = 1e-3;

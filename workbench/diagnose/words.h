@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "workbench/diagnose/outcome.h"
+#include "workbench/diagnose/diagnosis_report.h"
 
 namespace workbench::diagnose {
 
@@ -19,13 +19,13 @@ namespace selection = estimator::greybox::selection;
 
 /// What it rests on and what follows from it, one paragraph each: the fallen error, rivals, where
 /// the rest enters, advice.
-[[nodiscard]] std::vector<std::string> remarks(const Outcome& outcome);
+[[nodiscard]] std::vector<std::string> remarks(const DiagnosisReport& outcome);
 
 /// The command to type next; empty when there is none.
-[[nodiscard]] std::string next_command(const Outcome& outcome);
+[[nodiscard]] std::string next_command(const DiagnosisReport& outcome);
 
 /// "every other 2 s is fitted, the rest scores", ...
-[[nodiscard]] std::string split_words(const Outcome& outcome);
+[[nodiscard]] std::string split_words(const DiagnosisReport& outcome);
 
 /// "model file as it is", "+ friction", ...
 struct StepWords {
@@ -41,6 +41,6 @@ struct StepWords {
 [[nodiscard]] bool was_added(const selection::Diagnosis& diagnosis, const std::string& parameter);
 
 /// "as a force that goes with the speed".
-[[nodiscard]] std::string where_words(const selection::Where& where);
+[[nodiscard]] std::string where_words(const selection::Localisation& where);
 
 }  // namespace workbench::diagnose

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "workbench/fit/outcome.h"
+#include "workbench/fit/fit_report.h"
 #include "workbench/present/json.h"
 
 namespace workbench::fit {
@@ -13,7 +13,7 @@ namespace {
 using nlohmann::ordered_json;
 using present::number_or_null;
 
-ordered_json json_of(const greybox::Parameter& p) {
+ordered_json json_of(const greybox::EstimatedParameter& p) {
   ordered_json out;
   out["value"] = number_or_null(p.value);
   out["std_error"] = number_or_null(p.std_error);
@@ -21,11 +21,11 @@ ordered_json json_of(const greybox::Parameter& p) {
   out["high"] = number_or_null(p.high);
   out["at_bound"] = p.at_bound;
   out["start"] = number_or_null(p.start);
-  const bool prior = std::isfinite(p.search.prior_sd);
-  const double mean = p.search.value(p.search.prior_mean);
+  const bool prior = std::isfinite(p.free.prior_sd);
+  const double mean = p.free.to_physical(p.free.prior_mean);
   out["prior_mean"] = prior ? number_or_null(mean) : nullptr;
   out["prior_sd"] =
-      prior ? number_or_null(p.search.prior_sd * p.search.slope(p.search.prior_mean)) : nullptr;
+      prior ? number_or_null(p.free.prior_sd * p.free.slope(p.free.prior_mean)) : nullptr;
   out["record_share"] = number_or_null(p.record_share);
   out["interval"] = p.from_profile ? "profile" : "normal";
   out["remark"] = remark(p);
@@ -41,10 +41,10 @@ ordered_json json_of(const greybox::Parameter& p) {
   return out;
 }
 
-ordered_json json_of(const greybox::Sight& sight) {
-  ordered_json out{{"condition", number_or_null(sight.condition)},
+ordered_json json_of(const greybox::IdentifiabilityReport& report) {
+  ordered_json out{{"condition", number_or_null(report.condition)},
                    {"unseen", ordered_json::array()}};
-  for (const greybox::Unseen& unseen : sight.unseen) {
+  for (const greybox::UnidentifiableParameter& unseen : report.unidentifiable) {
     out["unseen"].push_back({{"parameter", unseen.name},
                              {"partners", unseen.partners},
                              {"visible", unseen.visible},
@@ -55,13 +55,12 @@ ordered_json json_of(const greybox::Sight& sight) {
 
 }  // namespace
 
-std::string to_json(const Outcome& o) {
-  const greybox::Estimation& e = o.estimation;
+std::string to_json(const FitReport& o) {
+  const greybox::EstimationSummary& e = o.estimation;
   ordered_json out;
-  out["model"] = o.prepared->task.model.name;
+  out["model"] = o.prepared->problem.model.name;
   out["records"] = ordered_json::array();
-  for (const auto& record : o.prepared->task.evidence.records)
-    out["records"].push_back(record.name);
+  for (const auto& record : o.prepared->problem.data.records) out["records"].push_back(record.name);
   out["words"] = words(o);
   out["rms_before_m"] = number_or_null(e.before.rms_m);
   out["rms_after_m"] = number_or_null(e.after.rms_m);
@@ -74,23 +73,25 @@ std::string to_json(const Outcome& o) {
   out["noise_floor_m"] = number_or_null(o.noise_floor_m);
   out["sigma_m"] = number_or_null(e.fitted.sigma_m);  // that weighted the squared residuals
   out["effective_samples"] = number_or_null(e.effective_samples);
-  for (const greybox::Parameter& p : e.parameters) out["parameters"][p.search.name] = json_of(p);
+  for (const greybox::EstimatedParameter& p : e.parameters)
+    out["parameters"][p.free.name] = json_of(p);
   out["starts"] = {{"tried", e.starts.tried},
                    {"same", e.starts.same},
                    {"elsewhere", e.starts.elsewhere},
                    {"worse", e.starts.worse}};
-  out["identifiability"] = {{"before", json_of(e.sight_before)}, {"after", json_of(e.sight_after)}};
+  out["identifiability"] = {{"before", json_of(e.identifiability_before)},
+                            {"after", json_of(e.identifiability_after)}};
   ordered_json names = ordered_json::array();
   ordered_json matrix = ordered_json::array();
   for (Eigen::Index i = 0; i < e.correlation.rows(); ++i) {
-    names.push_back(e.parameters[static_cast<std::size_t>(i)].search.name);
+    names.push_back(e.parameters[static_cast<std::size_t>(i)].free.name);
     ordered_json row = ordered_json::array();
     for (Eigen::Index j = 0; j < e.correlation.cols(); ++j)
       row.push_back(number_or_null(e.correlation(i, j)));
     matrix.push_back(row);
   }
   out["correlation"] = {{"names", names}, {"matrix", matrix}};
-  out["observer_per_s"] = number_or_null(o.prepared->task.observer_per_s);
+  out["observer_per_s"] = number_or_null(o.prepared->options.observer_per_s);
   out["interrupted"] = e.interrupted;
   out["notes"] = o.prepared->notes;
   out["command"] = o.prepared->command;

@@ -8,7 +8,7 @@
 
 #include "config/units/quantity.h"
 #include "config/units/unit_suffix.h"
-#include "workbench/fit/outcome.h"
+#include "workbench/fit/fit_report.h"
 #include "workbench/present/error_definitions.h"
 #include "workbench/present/record_section.h"
 
@@ -31,11 +31,11 @@ std::string file_name(const std::string& file) {
 }
 
 /// One record's part of the long series, NaN where it does not count and at gaps.
-Values part(const Eigen::VectorXd& series, std::size_t start, const greybox::Measured& record,
-            double factor, bool settled_only) {
+Values part(const Eigen::VectorXd& series, std::size_t start, const greybox::Dataset& record,
+            double factor, bool valid_only) {
   Values out(record.size(), kNaN);
   for (std::size_t i = 0; i < out.size(); ++i) {
-    if (settled_only && record.settled[i] == 0) continue;
+    if (valid_only && record.valid[i] == 0) continue;
     out[i] = factor * series[static_cast<Eigen::Index>(start + i)];
   }
   for (const std::size_t begin : record.starts) {
@@ -44,16 +44,16 @@ Values part(const Eigen::VectorXd& series, std::size_t start, const greybox::Mea
   return out;
 }
 
-Plot over_time(const greybox::Measured& record, const std::string& title,
+Plot over_time(const greybox::Dataset& record, const std::string& title,
                const present::Axis& axis) {
   return present::over_time(record.t_s, title, axis, record.name);
 }
 
-Section record_section(const Outcome& o, std::size_t r) {
-  const greybox::Evidence& evidence = o.prepared->task.evidence;
-  const greybox::Measured& record = evidence.records[r];
-  const std::size_t start = evidence.starts[r];
-  const greybox::Estimation& e = o.estimation;
+Section record_section(const FitReport& o, std::size_t r) {
+  const greybox::FitDataset& data = o.prepared->problem.data;
+  const greybox::Dataset& record = data.records[r];
+  const std::size_t start = data.starts[r];
+  const greybox::EstimationSummary& e = o.estimation;
   Section section;
   section.heading = "Record " + file_name(record.name);
   if (r == 0) {
@@ -75,7 +75,7 @@ Section record_section(const Outcome& o, std::size_t r) {
   add_series(position, "fitted model", Tone::model, modelled(e.after.free_run_m));
   section.plots.push_back(position);
   for (const bool fitted : {false, true}) {
-    const greybox::Errors& errors = fitted ? e.after : e.before;
+    const greybox::SimulationErrors& errors = fitted ? e.after : e.before;
     const present::ErrorUnit unit = present::error_unit(errors.rms_m);
     Plot plot = over_time(
         record,
@@ -92,7 +92,7 @@ Section record_section(const Outcome& o, std::size_t r) {
   return section;
 }
 
-Section parameter_section(const greybox::Estimation& e) {
+Section parameter_section(const greybox::EstimationSummary& e) {
   Section section;
   section.heading = "Parameters";
   section.paragraphs.push_back(
@@ -103,8 +103,8 @@ Section parameter_section(const greybox::Estimation& e) {
   table.columns = {{"parameter", "", false}, {"start", ""},           {"fitted", ""},
                    {"± std. error", ""},     {"95 % from", ""},       {"to", ""},
                    {"unit", "", false},      {"record's share", "%"}, {"remark", "", false}};
-  for (const greybox::Parameter& p : e.parameters) {
-    const std::string& name = p.search.name;
+  for (const greybox::EstimatedParameter& p : e.parameters) {
+    const std::string& name = p.free.name;
     const config::units::Quantity q = config::units::quantity(name, p.value, p.std_error, p.start);
     const double largest = std::max(std::abs(p.value), std::abs(p.start));
     // The ends of the interval with the digits of the value.
@@ -122,25 +122,27 @@ Section parameter_section(const greybox::Estimation& e) {
   return section;
 }
 
-Section sight_section(const greybox::Estimation& e) {
+Section sight_section(const greybox::EstimationSummary& e) {
   Section section;
   section.heading = "What the record cannot see";
   for (const bool after : {false, true}) {
-    const greybox::Sight& sight = after ? e.sight_after : e.sight_before;
+    const greybox::IdentifiabilityReport& report =
+        after ? e.identifiability_after : e.identifiability_before;
     std::string text = after ? "After the fit: " : "Before the fit, at the model file's values: ";
     std::string list;
-    for (const greybox::Unseen& unseen : sight.unseen)
+    for (const greybox::UnidentifiableParameter& unseen : report.unidentifiable)
       list += (list.empty() ? "" : "; ") + unseen.words;
     section.paragraphs.push_back(
         text + (list.empty() ? "every fitted parameter is seen" : list) +
-        fmt::format(". Condition of the scaled Jacobian: {:.3g}.", sight.condition));
+        fmt::format(". Condition of the scaled Jacobian: {:.3g}.", report.condition));
   }
   present::Table table;
   table.caption = "Correlation of the estimates";
   table.columns.push_back({"", "", false});
-  for (const greybox::Parameter& p : e.parameters) table.columns.push_back({p.search.name, ""});
+  for (const greybox::EstimatedParameter& p : e.parameters)
+    table.columns.push_back({p.free.name, ""});
   for (Eigen::Index i = 0; i < e.correlation.rows(); ++i) {
-    std::vector<std::string> row{e.parameters[static_cast<std::size_t>(i)].search.name};
+    std::vector<std::string> row{e.parameters[static_cast<std::size_t>(i)].free.name};
     for (Eigen::Index j = 0; j < e.correlation.cols(); ++j) {
       const double value = e.correlation(i, j);
       row.push_back(std::isnan(value) ? "-" : fmt::format("{:.2f}", value));
@@ -151,19 +153,19 @@ Section sight_section(const greybox::Estimation& e) {
   return section;
 }
 
-Section profile_section(const greybox::Estimation& e) {
+Section profile_section(const greybox::EstimationSummary& e) {
   Section section;
   section.heading = "Profiles of the likelihood";
   section.paragraphs.push_back(
       "How the least cost rises when one parameter is held away from its best value and all others "
       "follow. The 95 % interval is where it stays under 3.84. A parabola means that the standard "
       "error suffices.");
-  for (const greybox::Parameter& p : e.parameters) {
+  for (const greybox::EstimatedParameter& p : e.parameters) {
     if (p.profile.size() < 3) continue;
     Plot plot;
-    plot.title = p.search.name;
+    plot.title = p.free.name;
     plot.width = present::Width::half;
-    plot.x = {p.search.name, config::units::unit_of(p.search.name)};
+    plot.x = {p.free.name, config::units::unit_of(p.free.name)};
     plot.y = {"rise of the cost", ""};
     present::Series series;
     series.name = "profile";
@@ -183,14 +185,14 @@ Section profile_section(const greybox::Estimation& e) {
 
 }  // namespace
 
-present::Report to_report(const Outcome& o) {
-  const greybox::Estimation& e = o.estimation;
+present::Report to_report(const FitReport& o) {
+  const greybox::EstimationSummary& e = o.estimation;
   const std::vector<std::string> said = words(o);
   present::Report made;
-  made.title = o.prepared->task.model.name + " fitted to ";
-  for (const greybox::Measured& record : o.prepared->task.evidence.records) {
-    made.title += (&record == &o.prepared->task.evidence.records.front() ? "" : ", ") +
-                  file_name(record.name);
+  made.title = o.prepared->problem.model.name + " fitted to ";
+  for (const greybox::Dataset& record : o.prepared->problem.data.records) {
+    made.title +=
+        (&record == &o.prepared->problem.data.records.front() ? "" : ", ") + file_name(record.name);
   }
   made.verdict = said.front();
   for (std::size_t i = 1; i < said.size(); ++i) {  // its own section tells what cannot be seen
@@ -209,10 +211,10 @@ present::Report to_report(const Outcome& o) {
   made.facts.push_back({"fit of the free run", fmt::format("{:.4g}", e.after.fit_percent), "%"});
   made.command = o.prepared->command;
   made.sections.push_back(parameter_section(e));
-  for (std::size_t r = 0; r < o.prepared->task.evidence.records.size(); ++r) {
+  for (std::size_t r = 0; r < o.prepared->problem.data.records.size(); ++r) {
     made.sections.push_back(record_section(o, r));
   }
-  const auto profiled = [](const greybox::Parameter& p) { return p.profile.size() > 2; };
+  const auto profiled = [](const greybox::EstimatedParameter& p) { return p.profile.size() > 2; };
   if (std::any_of(e.parameters.begin(), e.parameters.end(), profiled)) {
     made.sections.push_back(profile_section(e));
   }

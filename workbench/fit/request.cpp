@@ -19,13 +19,13 @@ namespace {
 
 namespace fs = std::filesystem;
 using config::schema::UsageError;
-using greybox::Evidence;
-using greybox::Measured;
+using greybox::Dataset;
+using greybox::FitDataset;
 
 /// A rod that moves less than this many noise floors does not tell a parameter.
 constexpr double kLeastMotion = 5.0;
 
-void check_files(const Request& request) {
+void check_files(const FitRequest& request) {
   cli::check_records(request.records, request.holdouts,
                      "another record, or --fit to score on part of this one");
   cli::InputFiles inputs{request.model, request.records};
@@ -35,16 +35,16 @@ void check_files(const Request& request) {
       inputs);
 }
 
-Measured read(const std::string& file) {
-  Measured record = greybox::measured(config::record::read_record(file));
+Dataset read(const std::string& file) {
+  Dataset record = greybox::dataset_of(config::record::read_record(file));
   record.name = file;
   return record;
 }
 
-void require_motion(const Evidence& evidence) {
-  for (const Measured& record : evidence.records) {
+void require_motion(const FitDataset& data) {
+  for (const Dataset& record : data.records) {
     const auto [low, high] = std::minmax_element(record.y_m.begin(), record.y_m.end());
-    const double floor_m = std::isfinite(evidence.noise_floor_m) ? evidence.noise_floor_m : 0.0;
+    const double floor_m = std::isfinite(data.noise_floor_m) ? data.noise_floor_m : 0.0;
     if (*high - *low <= 2.0 * kLeastMotion * floor_m || !(*high > *low)) {
       throw config::schema::bad_data(
           record.name,
@@ -55,7 +55,7 @@ void require_motion(const Evidence& evidence) {
   }
 }
 
-void note_saturation(const Measured& record, std::vector<std::string>& notes) {
+void note_saturation(const Dataset& record, std::vector<std::string>& notes) {
   const auto [low, high] = std::minmax_element(record.u_V.begin(), record.u_V.end());
   const double most_V = std::max(std::abs(*low), std::abs(*high));
   const auto limited = std::count_if(record.u_V.begin(), record.u_V.end(), [&](double u_V) {
@@ -71,7 +71,7 @@ void note_saturation(const Measured& record, std::vector<std::string>& notes) {
 }
 
 /// Takes the samples of a span out of fit and score.
-void ignore(const std::string& text, Evidence& evidence, Eigen::VectorXd& mask) {
+void ignore(const std::string& text, FitDataset& data, Eigen::VectorXd& mask) {
   const std::size_t at = text.rfind('@');
   const std::string name = at == std::string::npos ? "" : text.substr(0, at);
   const std::string span = at == std::string::npos ? text : text.substr(at + 1);
@@ -83,54 +83,55 @@ void ignore(const std::string& text, Evidence& evidence, Eigen::VectorXd& mask) 
     throw UsageError("--ignore " + text + ": is no span; allowed: from:to or RECORD@from:to, in s");
   }
   bool met = false;
-  for (std::size_t r = 0; r < evidence.records.size(); ++r) {
-    const Measured& record = evidence.records[r];
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    const Dataset& record = data.records[r];
     if (!name.empty() && record.name != name && fs::path(record.name).filename() != name) continue;
     for (std::size_t i = 0; i < record.size(); ++i) {
       if (record.t_s[i] < from_s || record.t_s[i] > to_s) continue;
-      mask[static_cast<Eigen::Index>(evidence.starts[r] + i)] = 0.0;
+      mask[static_cast<Eigen::Index>(data.starts[r] + i)] = 0.0;
       met = true;
     }
   }
   if (!met) throw UsageError("--ignore " + text + ": no sample lies there");
 }
 
-void weigh(const Request& request, greybox::Task& task) {
-  Evidence& evidence = task.evidence;
+void weigh(const FitRequest& request, greybox::EstimationProblem& problem) {
+  FitDataset& data = problem.data;
   if (!request.weights.empty() && request.weights.size() != request.records.size()) {
     throw UsageError("--weight: has " + std::to_string(request.weights.size()) +
                      " numbers; allowed: one for each of the " +
                      std::to_string(request.records.size()) + " records");
   }
-  Eigen::VectorXd mask = Eigen::VectorXd::Ones(evidence.size());
-  for (const std::string& text : request.ignored) ignore(text, evidence, mask);
+  Eigen::VectorXd mask = Eigen::VectorXd::Ones(data.size());
+  for (const std::string& text : request.ignored) ignore(text, data, mask);
   if (request.fit == "all" && request.holdouts.empty()) {
-    evidence.fits = evidence.counts;
-    evidence.scores.setZero();
+    data.training_mask = data.all_mask;
+    data.validation_mask.setZero();
   }
-  evidence.fits = evidence.fits.cwiseProduct(mask);
-  evidence.scores = evidence.scores.cwiseProduct(mask);
-  evidence.counts = evidence.counts.cwiseProduct(mask);
-  task.weights = evidence.fits;
+  data.training_mask = data.training_mask.cwiseProduct(mask);
+  data.validation_mask = data.validation_mask.cwiseProduct(mask);
+  data.all_mask = data.all_mask.cwiseProduct(mask);
+  problem.weights = data.training_mask;
   for (std::size_t r = 0; r < request.weights.size(); ++r) {
-    const auto size = static_cast<Eigen::Index>(evidence.records[r].size());
-    task.weights.segment(static_cast<Eigen::Index>(evidence.starts[r]), size) *= request.weights[r];
+    const auto size = static_cast<Eigen::Index>(data.records[r].size());
+    problem.weights.segment(static_cast<Eigen::Index>(data.starts[r]), size) *= request.weights[r];
   }
-  const auto least = static_cast<double>(10 * task.searched.size());
-  if ((task.weights.array() > 0.0).cast<double>().sum() < least) {
+  const auto least = static_cast<double>(10 * problem.parameters.size());
+  if ((problem.weights.array() > 0.0).cast<double>().sum() < least) {
     throw UsageError(
         "--ignore, --weight, --fit: leave fewer than 10 samples for each "
         "of the " +
-        std::to_string(task.searched.size()) + " parameters");
+        std::to_string(problem.parameters.size()) + " parameters");
   }
 }
 
-void choose_profiles(const Request& request, greybox::Task& task) {
+void choose_profiles(const FitRequest& request, const greybox::EstimationProblem& problem,
+                     greybox::EstimationOptions& options) {
   for (const std::string& name : request.profiles) {
-    if (name == "none") task.profiling = greybox::Profiling::none;
+    if (name == "none") options.profiling = greybox::Profiling::none;
     if (name == "none" || name == "doubtful") continue;
     std::vector<std::string> names;
-    for (const auto& p : task.searched) names.push_back(p.name);
+    for (const auto& p : problem.parameters) names.push_back(p.name);
     if (std::find(names.begin(), names.end(), name) == names.end()) {
       std::string allowed = "none, doubtful";
       for (const std::string& known : names) allowed += ", " + known;
@@ -140,8 +141,8 @@ void choose_profiles(const Request& request, greybox::Task& task) {
           "is not fitted" + (near.empty() ? std::string() : ", did you mean " + near + "?"),
           allowed);
     }
-    task.profiling = greybox::Profiling::named;
-    task.profiled.push_back(name);
+    options.profiling = greybox::Profiling::named;
+    options.profiled.push_back(name);
   }
 }
 
@@ -149,24 +150,25 @@ std::string shown(double value) { return fmt::format("{:.9g}", value); }
 
 }  // namespace
 
-Prepared prepare(const Request& request) {
+PreparedFit prepare(const FitRequest& request) {
   check_files(request);
-  Prepared out;
-  greybox::Task& task = out.task;
-  task.model = plant_sim::load_model(request.model, request.assignments);
-  const Choice choice = choose(task.model, request.wishes);
-  task.searched = choice.searched;
-  task.start = choice.start;
-  choose_profiles(request, task);
-  std::vector<Measured> records;
-  std::vector<Measured> holdouts;
+  PreparedFit out;
+  greybox::EstimationProblem& problem = out.problem;
+  greybox::EstimationOptions& options = out.options;
+  problem.model = plant_sim::load_model(request.model, request.assignments);
+  const FreeParameters choice = select_parameters(problem.model, request.selection);
+  problem.parameters = choice.parameters;
+  problem.start = choice.start;
+  choose_profiles(request, problem, options);
+  std::vector<Dataset> records;
+  std::vector<Dataset> holdouts;
   for (const std::string& file : request.records) records.push_back(read(file));
   for (const std::string& file : request.holdouts) holdouts.push_back(read(file));
   const greybox::Split split =
       request.fit == "all" ? greybox::Split::blocks : greybox::parse_split(request.fit);
-  task.evidence = greybox::evidence(std::move(records), std::move(holdouts), split);
-  require_motion(task.evidence);
-  for (const Measured& record : task.evidence.records) {
+  problem.data = greybox::fit_dataset(std::move(records), std::move(holdouts), split);
+  require_motion(problem.data);
+  for (const Dataset& record : problem.data.records) {
     for (const std::string& note : record.notes) out.notes.push_back(record.name + ": " + note);
     note_saturation(record, out.notes);
     if (request.observer_per_s * record.sample_time_s >= 1.0) {
@@ -174,12 +176,12 @@ Prepared prepare(const Request& request) {
                        " s; allowed: below 1 / sample time");
     }
   }
-  out.noise_floor_m = task.evidence.noise_floor_m;
-  if (!std::isfinite(out.noise_floor_m)) task.evidence.noise_floor_m = 0.0;
-  weigh(request, task);
-  task.starts = request.starts;
-  task.observer_per_s = request.observer_per_s;
-  task.threads =
+  out.noise_floor_m = problem.data.noise_floor_m;
+  if (!std::isfinite(out.noise_floor_m)) problem.data.noise_floor_m = 0.0;
+  weigh(request, problem);
+  options.starts = request.starts;
+  options.observer_per_s = request.observer_per_s;
+  options.threads =
       request.threads > 0 ? request.threads : std::max(1U, std::thread::hardware_concurrency());
   out.command = request.command;
   return out;

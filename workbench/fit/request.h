@@ -5,18 +5,18 @@
 #include <vector>
 
 #include "estimator/greybox/estimation.h"
-#include "workbench/fit/choice.h"
+#include "workbench/fit/parameter_selection.h"
 
 namespace workbench::fit {
 
 namespace greybox = estimator::greybox;
 
-struct Request {
+struct FitRequest {
   std::string model;
   std::vector<std::string> records;
   std::vector<std::string> holdouts;
   std::string fit = "all";
-  Wishes wishes;
+  ParameterSelection selection;
   std::vector<std::string> ignored;  ///< "from:to" in s, or "RECORD@from:to"
   std::vector<double> weights;       ///< of the records; empty: all 1
   int starts = 4;
@@ -31,8 +31,9 @@ struct Request {
   std::string command;  ///< the command line as it was typed, for reports and model files
 };
 
-struct Prepared {
-  greybox::Task task;
+struct PreparedFit {
+  greybox::EstimationProblem problem;
+  greybox::EstimationOptions options;
   double noise_floor_m = 0.0;  ///< NaN: cannot be told
   std::vector<std::string> notes;
   std::string command;  ///< as it was typed
@@ -40,6 +41,6 @@ struct Prepared {
 
 /// Reads everything. Throws config::schema::UsageError for contradictory options, DataError and
 /// ConfigError for files that cannot be used.
-[[nodiscard]] Prepared prepare(const Request& request);
+[[nodiscard]] PreparedFit prepare(const FitRequest& request);
 
 }  // namespace workbench::fit

@@ -6,7 +6,7 @@
 
 #include "config/units/quantity.h"
 #include "config/units/unit_suffix.h"
-#include "workbench/fit/outcome.h"
+#include "workbench/fit/fit_report.h"
 
 namespace workbench::fit {
 
@@ -41,9 +41,10 @@ std::string wrapped(const std::string& text, const std::string& indent) {
 
 std::string five(double value) { return std::isnan(value) ? "-" : fmt::format("{:.5g}", value); }
 
-std::string table(const std::vector<greybox::Parameter>& parameters) {
+std::string table(const std::vector<greybox::EstimatedParameter>& parameters) {
   std::size_t width = 9;
-  for (const greybox::Parameter& p : parameters) width = std::max(width, p.search.name.size());
+  for (const greybox::EstimatedParameter& p : parameters)
+    width = std::max(width, p.free.name.size());
   const auto row = [&](const std::string& name, const std::string& start, const std::string& value,
                        const std::string& error, const std::string& low, const std::string& high,
                        const std::string& what) {
@@ -53,20 +54,20 @@ std::string table(const std::vector<greybox::Parameter>& parameters) {
     return line + "\n";
   };
   std::string out = row("parameter", "start", "fitted", "+-", "95 % from", "to", "");
-  for (const greybox::Parameter& p : parameters) {
+  for (const greybox::EstimatedParameter& p : parameters) {
     const bool shows = p.at_bound == 0 || p.from_profile;
-    out += row(p.search.name, five(p.start), five(p.value), fmt::format("{:.2g}", p.std_error),
+    out += row(p.free.name, five(p.start), five(p.value), fmt::format("{:.2g}", p.std_error),
                shows ? five(p.low) : "-", shows ? five(p.high) : "-", remark(p));
   }
   return out;
 }
 
 /// The rise of the cost over the parameter's value, up to twice the threshold.
-std::string plot(const greybox::Parameter& p) {
+std::string plot(const greybox::EstimatedParameter& p) {
   const auto& points = p.profile;
   const double least = points.front().value;
   const double most = points.back().value;
-  std::string out = "Profile of " + p.search.name + ": 95 % from " + five(p.low) +
+  std::string out = "Profile of " + p.free.name + ": 95 % from " + five(p.low) +
                     (p.low_found ? "" : " (its bound)") + " to " + five(p.high) +
                     (p.high_found ? "" : " (its bound)") + (p.doubt.empty() ? "" : "; " + p.doubt) +
                     "\n";
@@ -99,23 +100,23 @@ std::string plot(const greybox::Parameter& p) {
   const std::string right = five(most);
   const std::size_t used = left.size() + right.size();
   out += "       " + left + std::string(used < kPlotWidth ? kPlotWidth - used : 1, ' ') + right +
-         " " + config::units::unit_of(p.search.name) + "\n";
+         " " + config::units::unit_of(p.free.name) + "\n";
   return out;
 }
 
 }  // namespace
 
-std::string to_text(const Outcome& o) {
-  const Prepared& prepared = *o.prepared;
+std::string to_text(const FitReport& o) {
+  const PreparedFit& prepared = *o.prepared;
   std::string names;
   std::size_t r = 0;
-  for (const auto& record : prepared.task.evidence.records) {
+  for (const auto& record : prepared.problem.data.records) {
     names += (r++ == 0 ? "" : ", ") + record.name;
   }
-  std::string out = prepared.task.model.name + " fitted to " + names + "\n\n";
+  std::string out = prepared.problem.model.name + " fitted to " + names + "\n\n";
   for (const std::string& line : words(o)) out += wrapped(line, "  ");
   out += "\n" + table(o.estimation.parameters);
-  for (const greybox::Parameter& p : o.estimation.parameters) {
+  for (const greybox::EstimatedParameter& p : o.estimation.parameters) {
     if (p.profile.size() > 2) out += "\n" + plot(p);
   }
   if (!o.output.empty()) out += "\n" + o.output + " holds the fitted model.\n";

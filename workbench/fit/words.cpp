@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "config/units/quantity.h"
-#include "workbench/fit/outcome.h"
+#include "workbench/fit/fit_report.h"
 
 namespace workbench::fit {
 
@@ -19,30 +19,29 @@ constexpr double kAtFloor = 1.15;
 constexpr double kNews = 2.0;
 constexpr std::size_t kMostMoved = 4;
 
-std::string move_words(const greybox::Parameter& p) {
-  const config::units::Quantity q = config::units::quantity(p.search.name, p.value, p.std_error);
-  std::string text = p.search.name;
+std::string move_words(const greybox::EstimatedParameter& p) {
+  const config::units::Quantity q = config::units::quantity(p.free.name, p.value, p.std_error);
+  std::string text = p.free.name;
   if (p.start > 0.0 && p.value > 0.0 && std::isfinite(p.start) && std::isfinite(p.value)) {
     text += fmt::format(" {:+.2g} % to ", 100.0 * (p.value / p.start - 1.0)) + words(q);
   } else {
-    text += " from " +
-            words(config::units::quantity(p.search.name, p.start, std::nan(""), p.value)) + " to " +
-            words(q);
+    text += " from " + words(config::units::quantity(p.free.name, p.start, std::nan(""), p.value)) +
+            " to " + words(q);
   }
   return text;
 }
 
-double errors_moved(const greybox::Parameter& p) {
+double errors_moved(const greybox::EstimatedParameter& p) {
   const double moved = std::abs(p.value - p.start);
   if (!(moved > 0.0)) return 0.0;
   return std::isfinite(p.std_error) && p.std_error > 0.0 ? moved / p.std_error : 1e6;
 }
 
-std::string size_words(const Outcome& o) {
-  const greybox::Estimation& e = o.estimation;
+std::string size_words(const FitReport& o) {
+  const greybox::EstimationSummary& e = o.estimation;
   std::string text = "Error " + length_words(e.before.rms_m) + " -> " +
                      length_words(e.after.rms_m) + " RMS" +
-                     (o.prepared->task.observer_per_s > 0.0 ? ", drift-corrected" : "");
+                     (o.prepared->options.observer_per_s > 0.0 ? ", drift-corrected" : "");
   if (std::isfinite(o.noise_floor_m)) {
     const double ratio = e.after.rms_m / o.noise_floor_m;
     text += "; noise floor " + length_words(o.noise_floor_m);
@@ -57,7 +56,7 @@ std::string size_words(const Outcome& o) {
          fmt::format(" -> {:.4g} %.", e.after.fit_percent);
 }
 
-std::string heldout_words(const greybox::Estimation& e) {
+std::string heldout_words(const greybox::EstimationSummary& e) {
   if (!std::isfinite(e.after.heldout_rms_m)) return "";
   std::string text = "On data that were not fitted: " + length_words(e.before.heldout_rms_m) +
                      " -> " + length_words(e.after.heldout_rms_m) + " RMS.";
@@ -67,9 +66,9 @@ std::string heldout_words(const greybox::Estimation& e) {
   return text;
 }
 
-std::string moved_words(const greybox::Estimation& e) {
-  std::vector<const greybox::Parameter*> moved;
-  for (const greybox::Parameter& p : e.parameters) {
+std::string moved_words(const greybox::EstimationSummary& e) {
+  std::vector<const greybox::EstimatedParameter*> moved;
+  for (const greybox::EstimatedParameter& p : e.parameters) {
     if (errors_moved(p) > kNews) moved.push_back(&p);
   }
   if (moved.empty()) return "No parameter moved by more than chance.";
@@ -86,17 +85,17 @@ std::string moved_words(const greybox::Estimation& e) {
   return text + ".";
 }
 
-std::string bound_words(const greybox::Estimation& e) {
+std::string bound_words(const greybox::EstimationSummary& e) {
   std::string text;
-  for (const greybox::Parameter& p : e.parameters) {
+  for (const greybox::EstimatedParameter& p : e.parameters) {
     if (p.at_bound == 0) continue;
-    text += (text.empty() ? "" : ", ") + p.search.name +
+    text += (text.empty() ? "" : ", ") + p.free.name +
             (p.at_bound < 0 ? " at its lower" : " at its upper") + " bound";
   }
   return text.empty() ? text : "Pressed against a limit: " + text + ".";
 }
 
-std::string starts_words(const greybox::Starts& s) {
+std::string starts_words(const greybox::MultistartCounts& s) {
   if (s.tried < 2) return "";
   std::string text =
       std::to_string(s.same) + " of " + std::to_string(s.tried) + " starts ended in this minimum";
@@ -107,9 +106,9 @@ std::string starts_words(const greybox::Starts& s) {
   return text + ".";
 }
 
-std::string sight_words(const greybox::Sight& sight, const std::string& when) {
+std::string sight_words(const greybox::IdentifiabilityReport& report, const std::string& when) {
   std::string text;
-  for (const greybox::Unseen& unseen : sight.unseen) {
+  for (const greybox::UnidentifiableParameter& unseen : report.unidentifiable) {
     text += (text.empty() ? "" : "; ") + unseen.words;
   }
   return text.empty() ? "" : when + text + ".";
@@ -117,20 +116,20 @@ std::string sight_words(const greybox::Sight& sight, const std::string& when) {
 
 }  // namespace
 
-std::string remark(const greybox::Parameter& p) {
+std::string remark(const greybox::EstimatedParameter& p) {
   if (p.at_bound < 0) return "at its lower bound";
   if (p.at_bound > 0) return "at its upper bound";
   if (std::isinf(p.std_error)) return "not visible";
-  if (std::isfinite(p.search.prior_sd) && p.record_share < 0.51) return "held by its prior";
+  if (std::isfinite(p.free.prior_sd) && p.record_share < 0.51) return "held by its prior";
   if (p.from_profile) return p.doubt.empty() ? "profile" : "profile: " + p.doubt;
   return p.doubt;
 }
 
-std::vector<std::string> words(const Outcome& o) {
-  const greybox::Estimation& e = o.estimation;
+std::vector<std::string> words(const FitReport& o) {
+  const greybox::EstimationSummary& e = o.estimation;
   std::vector<std::string> said{size_words(o), heldout_words(e), moved_words(e), bound_words(e)};
-  const std::string before = sight_words(e.sight_before, "");
-  const std::string after = sight_words(e.sight_after, "");
+  const std::string before = sight_words(e.identifiability_before, "");
+  const std::string after = sight_words(e.identifiability_after, "");
   if (before == after && !before.empty()) {
     said.push_back("What the record cannot see, before the fit and after it: " + before);
   } else {

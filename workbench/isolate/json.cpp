@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "estimator/greybox/tracking/words.h"
-#include "workbench/isolate/outcome.h"
+#include "workbench/isolate/isolation.h"
 #include "workbench/present/json.h"
 
 namespace workbench::isolate {
@@ -17,14 +17,14 @@ using Eigen::Index;
 using nlohmann::ordered_json;
 using present::number_or_null;
 
-ordered_json json_of(const Window& window, const Choice& choice) {
+ordered_json json_of(const WindowResult& window, const ParameterSet& set) {
   ordered_json out{{"t_s", window.t_s}, {"from_s", window.from_s}};
-  for (std::size_t i = 0; i < choice.tracked; ++i) {
-    const tracking::Estimate& estimate = window.estimates[i];
-    out[choice.parameters[i].name] = {{"value", number_or_null(estimate.value)},
-                                      {"std_error", number_or_null(estimate.std_error)},
-                                      {"smallest", number_or_null(estimate.smallest)},
-                                      {"valid", estimate.valid}};
+  for (std::size_t i = 0; i < set.tracked; ++i) {
+    const tracking::ParameterEstimate& estimate = window.estimates[i];
+    out[set.parameters[i].name] = {{"value", number_or_null(estimate.value)},
+                                   {"std_error", number_or_null(estimate.std_error)},
+                                   {"smallest", number_or_null(estimate.smallest)},
+                                   {"valid", estimate.valid}};
   }
   out["correlation"] = ordered_json::array();
   for (Index i = 0; i < window.correlation.rows(); ++i) {
@@ -48,11 +48,11 @@ ordered_json json_of(const Window& window, const Choice& choice) {
   return out;
 }
 
-ordered_json json_of(const Alarm& alarm, const Outcome& o) {
-  const Named& named = alarm.named;
-  const greybox::SearchParameter& p = o.choice.parameters[named.parameter];
-  const double healthy = p.value(o.healthy.x[static_cast<Index>(named.parameter)]);
-  const double value = p.value(named.x);
+ordered_json json_of(const DetectedChange& alarm, const IsolationReport& o) {
+  const ParameterChange& named = alarm.named;
+  const greybox::FreeParameter& p = o.set.parameters[named.parameter];
+  const double baseline = p.to_physical(o.baseline.theta[static_cast<Index>(named.parameter)]);
+  const double value = p.to_physical(named.theta);
   ordered_json group = ordered_json::array({p.name});
   ordered_json rivals = ordered_json::array();
   for (const Rival& rival : named.rivals) {
@@ -60,47 +60,47 @@ ordered_json json_of(const Alarm& alarm, const Outcome& o) {
     rivals.push_back({{"parameter", rival.name}, {"value", number_or_null(rival.value)}});
   }
   return {{"parameter", p.name},
-          {"direction", value > healthy ? "high" : "low"},
+          {"direction", value > baseline ? "high" : "low"},
           {"value", number_or_null(value)},
-          {"std_error", number_or_null(named.std_error * p.slope(named.x))},
-          {"healthy", number_or_null(healthy)},
-          {"change_ratio", number_or_null(healthy != 0.0 ? value / healthy - 1.0 : NAN)},
+          {"std_error", number_or_null(named.std_error * p.slope(named.theta))},
+          {"healthy", number_or_null(baseline)},
+          {"change_ratio", number_or_null(baseline != 0.0 ? value / baseline - 1.0 : NAN)},
           {"confidence", number_or_null(alarm.confidence)},
           {"ambiguity_group", named.rivals.empty() ? ordered_json::array() : group},
           {"rivals", rivals},
           {"raised_s", alarm.raised_s},
           {"cleared_s", number_or_null(alarm.cleared_s)},
-          {"advice", tracking::advice_words(o.choice, named)},
-          {"words", tracking::change_words(o.choice, named, o.healthy.x)}};
+          {"advice", tracking::advice_words(o.set, named)},
+          {"words", tracking::change_words(o.set, named, o.baseline.theta)}};
 }
 
-double median_fit_s(std::vector<Window> windows) {
+double median_fit_s(std::vector<WindowResult> windows) {
   if (windows.empty()) return NAN;
   const auto middle = windows.begin() + static_cast<std::ptrdiff_t>(windows.size() / 2);
   std::nth_element(windows.begin(), middle, windows.end(),
-                   [](const Window& a, const Window& b) { return a.fit_s < b.fit_s; });
+                   [](const WindowResult& a, const WindowResult& b) { return a.fit_s < b.fit_s; });
   return middle->fit_s;
 }
 
 }  // namespace
 
-std::string to_json(const Outcome& o) {
+std::string to_json(const IsolationReport& o) {
   ordered_json out{{"model", o.model}, {"record", o.record}, {"command", o.command}};
   ordered_json names = ordered_json::array();
   ordered_json values = ordered_json::object();
-  for (std::size_t i = 0; i < o.choice.tracked; ++i) {
-    const greybox::SearchParameter& p = o.choice.parameters[i];
+  for (std::size_t i = 0; i < o.set.tracked; ++i) {
+    const greybox::FreeParameter& p = o.set.parameters[i];
     names.push_back(p.name);
-    values[p.name] = number_or_null(p.value(o.healthy.x[static_cast<Index>(i)]));
+    values[p.name] = number_or_null(p.to_physical(o.baseline.theta[static_cast<Index>(i)]));
   }
   out["parameters"] = names;
   out["noise_floor_m"] = number_or_null(o.noise_floor_m);
   out["healthy"] = {{"learnt", o.learnt},
-                    {"from_s", o.learnt ? number_or_null(o.healthy_from_s) : nullptr},
-                    {"to_s", o.learnt ? number_or_null(o.healthy_to_s) : nullptr},
-                    {"rms_m", number_or_null(o.healthy.rms_m)},
+                    {"from_s", o.learnt ? number_or_null(o.baseline_from_s) : nullptr},
+                    {"to_s", o.learnt ? number_or_null(o.baseline_to_s) : nullptr},
+                    {"rms_m", number_or_null(o.baseline.rms_m)},
                     {"values", values}};
-  const tracking::ChamberErrors& chambers = o.healthy.chambers;
+  const tracking::ChamberErrors& chambers = o.baseline.chambers;
   if (chambers.known()) {
     out["healthy"]["pressures"] = {{"in_error_Pa", chambers.in.rms_Pa},
                                    {"in_offset_Pa", chambers.in.offset_Pa},
@@ -108,11 +108,11 @@ std::string to_json(const Outcome& o) {
                                    {"out_offset_Pa", chambers.out.offset_Pa},
                                    {"offset_sd_Pa", chambers.offset_sd_Pa}};
   }
-  out["limit_m"] = number_or_null(o.settings.most_ratio * o.healthy.rms_m);
+  out["limit_m"] = number_or_null(o.settings.most_ratio * o.baseline.rms_m);
   out["alarms"] = ordered_json::array();
-  for (const Alarm& alarm : o.alarms) out["alarms"].push_back(json_of(alarm, o));
+  for (const DetectedChange& alarm : o.alarms) out["alarms"].push_back(json_of(alarm, o));
   out["windows"] = ordered_json::array();
-  for (const Window& window : o.windows) out["windows"].push_back(json_of(window, o.choice));
+  for (const WindowResult& window : o.windows) out["windows"].push_back(json_of(window, o.set));
   out["notes"] = o.notes;
   out["fit_s"] = number_or_null(median_fit_s(o.windows));
   return out.dump(2) + "\n";

@@ -7,7 +7,7 @@
 
 #include "config/units/quantity.h"
 #include "estimator/greybox/tracking/words.h"
-#include "workbench/isolate/outcome.h"
+#include "workbench/isolate/isolation.h"
 
 namespace workbench::isolate {
 
@@ -23,31 +23,31 @@ std::string pressure(double value_Pa) {
 
 std::string seconds(double s) { return fmt::format("{:.4g} s", s); }
 
-std::string healthy_line(const Outcome& o) {
+std::string healthy_line(const IsolationReport& o) {
   std::string text = "healthy";
-  text += o.learnt ? fmt::format(" ({:.4g} to ", o.healthy_from_s) + seconds(o.healthy_to_s) + ")"
+  text += o.learnt ? fmt::format(" ({:.4g} to ", o.baseline_from_s) + seconds(o.baseline_to_s) + ")"
                    : " (given)";
-  text +=
-      ": error " + length_words(o.healthy.rms_m) + ", noise floor " + length_words(o.noise_floor_m);
-  const tracking::ChamberErrors& chambers = o.healthy.chambers;
+  text += ": error " + length_words(o.baseline.rms_m) + ", noise floor " +
+          length_words(o.noise_floor_m);
+  const tracking::ChamberErrors& chambers = o.baseline.chambers;
   if (chambers.known()) {
     text += ", pressures in " + pressure(chambers.in.rms_Pa) + " and out " +
             pressure(chambers.out.rms_Pa);
   }
-  for (std::size_t i = 0; i < o.choice.tracked; ++i) {
-    const greybox::SearchParameter& p = o.choice.parameters[i];
+  for (std::size_t i = 0; i < o.set.tracked; ++i) {
+    const greybox::FreeParameter& p = o.set.parameters[i];
     text += ", " + tracking::name_words(p.name) + " " +
-            tracking::value_words(p, o.healthy.x[static_cast<Eigen::Index>(i)], NAN);
+            tracking::value_words(p, o.baseline.theta[static_cast<Eigen::Index>(i)], NAN);
   }
   return text + "\n";
 }
 
-std::string alarm_lines(const Outcome& o, const Alarm& alarm) {
+std::string alarm_lines(const IsolationReport& o, const DetectedChange& alarm) {
   std::string text = "ALARM " + seconds(alarm.raised_s) +
                      (alarm.active() ? "" : " to " + seconds(alarm.cleared_s)) + ": " +
-                     tracking::change_words(o.choice, alarm.named, o.healthy.x) +
+                     tracking::change_words(o.set, alarm.named, o.baseline.theta) +
                      fmt::format(" (confidence {:.4f})\n", std::min(alarm.confidence, 0.9999));
-  const std::string group = tracking::group_words(o.choice, alarm.named);
+  const std::string group = tracking::group_words(o.set, alarm.named);
   return group.empty() ? text : text + "      " + group + "\n";
 }
 
@@ -55,9 +55,9 @@ std::string alarm_lines(const Outcome& o, const Alarm& alarm) {
 std::string kind_of(const std::string& why) { return why.substr(0, why.find_first_of(":(")); }
 
 /// The windows that say something, one line for each kind of it.
-std::string kind_lines(const Outcome& o, std::string Window::*words) {
-  std::map<std::string, std::pair<int, const Window*>> kinds;
-  for (const Window& window : o.windows) {
+std::string kind_lines(const IsolationReport& o, std::string WindowResult::*words) {
+  std::map<std::string, std::pair<int, const WindowResult*>> kinds;
+  for (const WindowResult& window : o.windows) {
     if ((window.*words).empty()) continue;
     auto& kind = kinds[kind_of(window.*words)];
     if (kind.first++ == 0) kind.second = &window;
@@ -70,30 +70,30 @@ std::string kind_lines(const Outcome& o, std::string Window::*words) {
   return text;
 }
 
-std::string window_lines(const Outcome& o) {
+std::string window_lines(const IsolationReport& o) {
   const auto invalid = std::count_if(o.windows.begin(), o.windows.end(),
-                                     [](const Window& window) { return !window.valid; });
-  const auto left_out = std::count_if(o.windows.begin(), o.windows.end(), [](const Window& window) {
-    return !window.left_out.empty();
-  });
+                                     [](const WindowResult& window) { return !window.valid; });
+  const auto left_out =
+      std::count_if(o.windows.begin(), o.windows.end(),
+                    [](const WindowResult& window) { return !window.left_out.empty(); });
   std::string text = std::to_string(o.windows.size()) + " windows of " +
                      seconds(o.settings.window_s) + ", " + std::to_string(invalid) + " invalid\n" +
-                     kind_lines(o, &Window::why);
+                     kind_lines(o, &WindowResult::why);
   if (left_out > 0) {
     text += std::to_string(left_out) + " windows by position alone\n" +
-            kind_lines(o, &Window::left_out);
+            kind_lines(o, &WindowResult::left_out);
   }
   return text;
 }
 
-std::string window_line(const Outcome& o, const Window& window) {
+std::string window_line(const IsolationReport& o, const WindowResult& window) {
   std::string text = fmt::format("{:9.3f} s ", window.t_s);
-  for (std::size_t i = 0; i < o.choice.tracked; ++i) {
-    const greybox::SearchParameter& p = o.choice.parameters[i];
-    const tracking::Estimate& estimate = window.estimates[i];
+  for (std::size_t i = 0; i < o.set.tracked; ++i) {
+    const greybox::FreeParameter& p = o.set.parameters[i];
+    const tracking::ParameterEstimate& estimate = window.estimates[i];
     text += " " + config::units::words(
                       config::units::quantity(p.name, estimate.value, estimate.std_error));
-    text += i + 1 < o.choice.tracked ? "," : "";
+    text += i + 1 < o.set.tracked ? "," : "";
   }
   text += ", error " + length_words(window.rms_m);
   if (!window.valid) text += "; INVALID, " + window.why;
@@ -104,14 +104,14 @@ std::string window_line(const Outcome& o, const Window& window) {
 
 }  // namespace
 
-std::string to_text(const Outcome& o, bool all_windows) {
+std::string to_text(const IsolationReport& o, bool all_windows) {
   std::string text = healthy_line(o);
   for (const std::string& note : o.notes) text += "note: " + note + "\n";
-  for (const Alarm& alarm : o.alarms) text += alarm_lines(o, alarm);
+  for (const DetectedChange& alarm : o.alarms) text += alarm_lines(o, alarm);
   if (o.alarms.empty()) text += "no change named\n";
   text += window_lines(o);
   if (all_windows) {
-    for (const Window& window : o.windows) text += window_line(o, window);
+    for (const WindowResult& window : o.windows) text += window_line(o, window);
   }
   return text;
 }

@@ -22,7 +22,7 @@ namespace validation = estimator::greybox::validation;
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kMostLed = 0.5;  // of the error in one sample
+constexpr double kLargestInitialisationGain = 0.5;  // of the error in one sample
 
 }  // namespace
 
@@ -46,7 +46,8 @@ void OnlineResidual::add(std::int64_t tick, double sample_time_s, double u_V, do
   const bool settles = in_segment_ < std::llround(greybox::kSettling_s / sample_time_s_);
   double share = observer_per_s_ * sample_time_s_;
   if (settles) {
-    share = std::max(share, std::min(kMostLed, greybox::kLeading_per_s * sample_time_s_));
+    share = std::max(share, std::min(kLargestInitialisationGain,
+                                     greybox::kInitialisation_per_s * sample_time_s_));
   }
   plant_sim::Ensemble::Values by_m;
   by_m.fill(share * error_m);
@@ -118,8 +119,8 @@ void OnlineResidual::find_worst(ResidualFigures& f) const {
   }
   try {
     const validation::Comparison c =
-        validation::compare(model_, greybox::measured(record), observer_per_s_);
-    if (!c.headline.stands_out || c.headline.ranges.empty()) return;
+        validation::compare(model_, greybox::dataset_of(record), observer_per_s_);
+    if (!c.headline.significant || c.headline.ranges.empty()) return;
     const validation::Range& range = c.headline.ranges.front();
     f.worst = present::where(c.headline);
     f.worst_variable = range.variable;

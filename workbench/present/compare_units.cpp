@@ -91,7 +91,7 @@ std::string where(const validation::Range& range) {
   return head + (plain ? "between " : "from ") + low + (plain ? " and " : " to ") + high + tail;
 }
 
-std::string where(const validation::Failing& failing) {
+std::string where(const validation::SignificantRegion& failing) {
   std::string text;
   for (const validation::Range& range : failing.ranges)
     text += (text.empty() ? "" : " ") + where(range);

@@ -33,6 +33,6 @@ struct Unit {
 /// "below 5 mm/s", "while reversing", "at positions above 330 mm".
 [[nodiscard]] std::string where(const validation::Range& range);
 /// Of all ranges: "below 5 mm/s while reversing".
-[[nodiscard]] std::string where(const validation::Failing& failing);
+[[nodiscard]] std::string where(const validation::SignificantRegion& failing);
 
 }  // namespace workbench::present

@@ -44,10 +44,10 @@ ModelTrial try_model(const plant_sim::ModelFile& before, const plant_sim::ModelF
   double samples = 0.0;
   for (const config::record::Record& record : records) {
     try {
-      const greybox::Measured measured = greybox::measured(record);
-      const validation::Comparison old_one = validation::compare(before, measured);
-      const validation::Comparison new_one = validation::compare(after, measured);
-      const auto n = static_cast<double>(measured.size());
+      const greybox::Dataset dataset = greybox::dataset_of(record);
+      const validation::Comparison old_one = validation::compare(before, dataset);
+      const validation::Comparison new_one = validation::compare(after, dataset);
+      const auto n = static_cast<double>(dataset.size());
       squares_before += n * old_one.rms_m * old_one.rms_m;
       squares_after += n * new_one.rms_m * new_one.rms_m;
       samples += n;

@@ -35,7 +35,7 @@ void compare(const std::string& where, double found, double expected, const char
 
 }  // namespace
 
-void HealthyFile::visit(Visitor& v) {
+void BaselineFile::visit(Visitor& v) {
   v.integer({"healthy_version", "layout of this file", true}, version, {kVersion, kVersion});
   v.text({"rig_id", "of the rig; empty: of any"}, rig_id);
   v.text({"model", "its name", true}, model);
@@ -56,29 +56,30 @@ std::string values_line(const plant_sim::ModelFile& model) {
   return estimator::fdi::one_line(plant_sim::print_model(model));
 }
 
-HealthyFile healthy_file(const plant_sim::ModelFile& model, const greybox::tracking::Choice& choice,
-                         const greybox::tracking::Settings& settings,
-                         const greybox::tracking::Healthy& healthy) {
-  HealthyFile file;
+BaselineFile baseline_file(const plant_sim::ModelFile& model,
+                           const greybox::tracking::ParameterSet& set,
+                           const greybox::tracking::TrackerSettings& settings,
+                           const greybox::tracking::Baseline& baseline) {
+  BaselineFile file;
   file.model = model.name;
   file.model_values = values_line(model);
   file.window_s = settings.window_s;
   file.observer_per_s = settings.observer_per_s;
-  for (std::size_t i = 0; i < choice.tracked; ++i) {
-    const greybox::SearchParameter& p = choice.parameters[i];
+  for (std::size_t i = 0; i < set.tracked; ++i) {
+    const greybox::FreeParameter& p = set.parameters[i];
     file.parameters.push_back(p.name);
-    file.values.push_back(p.value(healthy.x[static_cast<Eigen::Index>(i)]));
+    file.values.push_back(p.to_physical(baseline.theta[static_cast<Eigen::Index>(i)]));
   }
-  file.rms_m = healthy.rms_m;
-  file.chambers = healthy.chambers;
+  file.rms_m = baseline.rms_m;
+  file.chambers = baseline.chambers;
   return file;
 }
 
-HealthyFile read_healthy(const std::filesystem::path& path, const plant_sim::ModelFile& model,
-                         const greybox::tracking::Settings& settings,
-                         const greybox::tracking::Choice& choice, double sample_time_s,
-                         const std::string& rig_id) {
-  HealthyFile file;
+BaselineFile read_baseline(const std::filesystem::path& path, const plant_sim::ModelFile& model,
+                           const greybox::tracking::TrackerSettings& settings,
+                           const greybox::tracking::ParameterSet& set, double sample_time_s,
+                           const std::string& rig_id) {
+  BaselineFile file;
   config::schema::Document::load(path).read([&](Visitor& v) { file.visit(v); });
   const std::string where = path.string();
   const std::string values = values_line(model);
@@ -101,7 +102,7 @@ HealthyFile read_healthy(const std::filesystem::path& path, const plant_sim::Mod
     throw bad_config(where + ": values", "are not as many as parameters");
   }
   std::vector<std::string> tracked;
-  for (std::size_t i = 0; i < choice.tracked; ++i) tracked.push_back(choice.parameters[i].name);
+  for (std::size_t i = 0; i < set.tracked; ++i) tracked.push_back(set.parameters[i].name);
   if (sorted(file.parameters) != sorted(tracked)) {
     throw bad_config(
         where + ": parameters",
@@ -111,19 +112,19 @@ HealthyFile read_healthy(const std::filesystem::path& path, const plant_sim::Mod
   return file;
 }
 
-greybox::tracking::Healthy healthy_of(const HealthyFile& file,
-                                      const greybox::tracking::Choice& choice) {
-  greybox::tracking::Healthy healthy;
-  healthy.rms_m = file.rms_m;
-  healthy.chambers = file.chambers;
-  healthy.x = choice.file;
-  for (std::size_t i = 0; i < choice.tracked; ++i) {
+greybox::tracking::Baseline baseline_of(const BaselineFile& file,
+                                        const greybox::tracking::ParameterSet& set) {
+  greybox::tracking::Baseline baseline;
+  baseline.rms_m = file.rms_m;
+  baseline.chambers = file.chambers;
+  baseline.theta = set.file;
+  for (std::size_t i = 0; i < set.tracked; ++i) {
     for (std::size_t j = 0; j < file.parameters.size(); ++j) {
-      if (file.parameters[j] != choice.parameters[i].name) continue;
-      healthy.x[static_cast<Eigen::Index>(i)] = choice.parameters[i].search(file.values[j]);
+      if (file.parameters[j] != set.parameters[i].name) continue;
+      baseline.theta[static_cast<Eigen::Index>(i)] = set.parameters[i].to_theta(file.values[j]);
     }
   }
-  return healthy;
+  return baseline;
 }
 
 }  // namespace estimator::fdi::tracker

@@ -13,7 +13,7 @@
 
 namespace estimator::fdi::tracker {
 
-struct HealthyFile {
+struct BaselineFile {
   static constexpr std::int64_t kVersion = 2;
 
   std::int64_t version = kVersion;
@@ -36,22 +36,22 @@ struct HealthyFile {
 /// All that the model is, as one line (estimator/fdi/fingerprint.h).
 [[nodiscard]] std::string values_line(const plant_sim::ModelFile& model);
 
-[[nodiscard]] HealthyFile healthy_file(const plant_sim::ModelFile& model,
-                                       const greybox::tracking::Choice& choice,
-                                       const greybox::tracking::Settings& settings,
-                                       const greybox::tracking::Healthy& healthy);
+[[nodiscard]] BaselineFile baseline_file(const plant_sim::ModelFile& model,
+                                         const greybox::tracking::ParameterSet& set,
+                                         const greybox::tracking::TrackerSettings& settings,
+                                         const greybox::tracking::Baseline& baseline);
 
 /// Throws config::schema::ConfigError for a file of another version, model, window, observer,
 /// sample time, rig (where both are known) or list of tracked parameters, whatever its order: what
 /// one of them was found to be depends on which others were free.
-[[nodiscard]] HealthyFile read_healthy(const std::filesystem::path& file,
-                                       const plant_sim::ModelFile& model,
-                                       const greybox::tracking::Settings& settings,
-                                       const greybox::tracking::Choice& choice,
-                                       double sample_time_s, const std::string& rig_id);
+[[nodiscard]] BaselineFile read_baseline(const std::filesystem::path& file,
+                                         const plant_sim::ModelFile& model,
+                                         const greybox::tracking::TrackerSettings& settings,
+                                         const greybox::tracking::ParameterSet& set,
+                                         double sample_time_s, const std::string& rig_id);
 
 /// Search values of every parameter of the choice.
-[[nodiscard]] greybox::tracking::Healthy healthy_of(const HealthyFile& file,
-                                                    const greybox::tracking::Choice& choice);
+[[nodiscard]] greybox::tracking::Baseline baseline_of(const BaselineFile& file,
+                                                      const greybox::tracking::ParameterSet& set);
 
 }  // namespace estimator::fdi::tracker

@@ -42,9 +42,9 @@ void TrackerConfig::visit(Visitor& v) {
            settings.most_std_error, {1e-6, 1.0});
   v.number({"most_std_error_of_typical", "the same of an effect, over its typical size"},
            settings.most_of_typical, {1e-6, 10.0});
-  v.integer({"pooled", "windows that a value is taken from while they agree"}, settings.pooled,
+  v.integer({"pooled", "windows that a value is taken from while they agree"}, settings.fused,
             {1, 100});
-  v.text({"healthy", "file of spoolwatch isolate --learn"}, healthy);
+  v.text({"healthy", "file of spoolwatch isolate --learn"}, baseline);
   v.number({"learn_s", "motion to learn what is healthy from, without a file"}, learn_s,
            {0.0, 1e6});
   v.number({"healthy_rms_m", "in place of the file: a healthy window's error"}, learnt.rms_m,
@@ -54,11 +54,11 @@ void TrackerConfig::visit(Visitor& v) {
   v.boolean({"pressures", "supply and chamber pressures are used where the rig reads them"},
             pressures);
   learnt.chambers.visit(v);
-  v.texts({"follow", "parameters whose slow changes are no faults"}, settings.following.parameters);
-  v.number({"follow_ratio_per_h", "how fast, of the healthy value"}, settings.following.ratio_per_h,
+  v.texts({"follow", "parameters whose slow changes are no faults"}, settings.drift.parameters);
+  v.number({"follow_ratio_per_h", "how fast, of the healthy value"}, settings.drift.ratio_per_h,
            {1e-3, 100.0});
   v.number({"follow_most_ratio", "how far from what was learnt; then alarm slow_NAME"},
-           settings.following.most_ratio, {1e-3, 10.0});
+           settings.drift.most_ratio, {1e-3, 10.0});
   v.number({"probe_low_m", "least position of a probing motion that is suggested"},
            settings.probe.low_m, {-1e3, 1e3});
   v.number({"probe_high_m", "greatest; not above the least: none is suggested"},
@@ -74,23 +74,24 @@ void TrackerConfig::load(const estimator::fdi::ConfigLoadContext& context) {
     model_toml = plant_sim::print_model(plant_sim::load_model(context.folder / model));
     model.clear();
   }
-  if (healthy.empty()) return;
+  if (baseline.empty()) return;
   const auto document = config::schema::Document::parse(model_toml, where() + ": model");
   const plant_sim::ModelFile read = plant_sim::read_model(document);
-  const greybox::tracking::Choice choice =
+  const greybox::tracking::ParameterSet set =
       greybox::tracking::choose(read, parameters, where() + ": parameters");
   try {
-    learnt = read_healthy(context.folder / healthy, read, settings, choice, context.sample_time_s,
-                          context.rig_id);
+    learnt = read_baseline(context.folder / baseline, read, settings, set, context.sample_time_s,
+                           context.rig_id);
   } catch (const config::schema::ConfigError& error) {
     throw config::schema::ConfigError(where() + ": healthy: " + error.what());
   }
-  const greybox::tracking::Healthy known = healthy_of(learnt, choice);
+  const greybox::tracking::Baseline known = baseline_of(learnt, set);
   learnt.values.clear();
-  for (std::size_t i = 0; i < choice.tracked; ++i) {
-    learnt.values.push_back(choice.parameters[i].value(known.x[static_cast<Eigen::Index>(i)]));
+  for (std::size_t i = 0; i < set.tracked; ++i) {
+    learnt.values.push_back(
+        set.parameters[i].to_physical(known.theta[static_cast<Eigen::Index>(i)]));
   }
-  healthy.clear();
+  baseline.clear();
 }
 
 std::unique_ptr<estimator::fdi::DetectionMethod> TrackerConfig::make(
@@ -108,20 +109,20 @@ std::unique_ptr<estimator::fdi::DetectionMethod> TrackerConfig::make(
   }
   const auto document = config::schema::Document::parse(model_toml, where() + ": model");
   const plant_sim::ModelFile read = plant_sim::read_model(document);
-  const greybox::tracking::Choice choice =
+  const greybox::tracking::ParameterSet set =
       greybox::tracking::choose(read, parameters, where() + ": parameters");
-  const greybox::tracking::SlowChange follows(choice, settings.following, where() + ": follow");
-  std::optional<greybox::tracking::Healthy> known;
+  const greybox::tracking::BaselineDrift follows(set, settings.drift, where() + ": follow");
+  std::optional<greybox::tracking::Baseline> known;
   if (learnt.rms_m > 0.0) {
-    if (learnt.values.size() != choice.tracked) {
+    if (learnt.values.size() != set.tracked) {
       throw bad_config(where() + ": healthy_values", "are not as many as parameters");
     }
-    known = greybox::tracking::Healthy{learnt.rms_m, choice.file, learnt.chambers};
-    for (std::size_t i = 0; i < choice.tracked; ++i) {
-      known->x[static_cast<Eigen::Index>(i)] = choice.parameters[i].search(learnt.values[i]);
+    known = greybox::tracking::Baseline{learnt.rms_m, set.file, learnt.chambers};
+    for (std::size_t i = 0; i < set.tracked; ++i) {
+      known->theta[static_cast<Eigen::Index>(i)] = set.parameters[i].to_theta(learnt.values[i]);
     }
   }
-  return std::make_unique<TrackerSource>(*this, read, choice, known, sample_time_s);
+  return std::make_unique<TrackerSource>(*this, read, set, known, sample_time_s);
 }
 
 }  // namespace estimator::fdi::tracker

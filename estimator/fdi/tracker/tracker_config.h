@@ -40,11 +40,11 @@ struct TrackerConfig final : estimator::fdi::DetectionMethodConfigOf<TrackerConf
   std::string model;       ///< file, relative to the configuration; read by load()
   std::string model_toml;  ///< what stood in it
   std::vector<std::string> parameters{"supply_pressure_Pa", "damping_N_s_per_m"};
-  greybox::tracking::Settings settings;
-  std::string healthy;  ///< file; "": learnt from the first learn_s of motion
+  greybox::tracking::TrackerSettings settings;
+  std::string baseline;  ///< file; "": learnt from the first learn_s of motion
   double learn_s = 10.0;
   bool pressures = true;  ///< those of the samples are used
-  HealthyFile learnt;     ///< what stood in the file
+  BaselineFile learnt;    ///< what stood in the file
   std::string severity = "major";
   estimator::fdi::AlarmRules rules;
 

@@ -36,8 +36,8 @@ std::string value_name(std::string name) {
 }  // namespace
 
 TrackerSource::TrackerSource(const TrackerConfig& config, const plant_sim::ModelFile& model,
-                             const greybox::tracking::Choice& choice,
-                             std::optional<greybox::tracking::Healthy> healthy,
+                             const greybox::tracking::ParameterSet& set,
+                             std::optional<greybox::tracking::Baseline> baseline,
                              double sample_time_s)
     : sample_time_s_(sample_time_s),
       stride_s_(config.settings.stride_s),
@@ -47,21 +47,21 @@ TrackerSource::TrackerSource(const TrackerConfig& config, const plant_sim::Model
       lessons_(count_of(config.learn_s, config.settings.stride_s)),
       severity_(config.severity == "minor" ? Severity::minor : Severity::major),
       rules_(config.rules),
-      given_(std::move(healthy)),
-      tracker_(model, choice, config.settings, sample_time_s, noise_floor_m_),
-      said_(choice.tracked + tracker_.slow_change().size() + 1) {
+      given_(std::move(baseline)),
+      tracker_(model, set, config.settings, sample_time_s, noise_floor_m_),
+      said_(set.tracked + tracker_.baseline_drift().size() + 1) {
   reset();
 }
 
 std::vector<std::string> TrackerSource::names() const {
   std::vector<std::string> names;
-  const greybox::tracking::Choice& choice = tracker_.choice();
-  for (std::size_t i = 0; i < choice.tracked; ++i) {
-    names.push_back(value_name(choice.parameters[i].name));
+  const greybox::tracking::ParameterSet& set = tracker_.set();
+  for (std::size_t i = 0; i < set.tracked; ++i) {
+    names.push_back(value_name(set.parameters[i].name));
   }
-  for (std::size_t i = 0; i < choice.tracked; ++i) names.push_back("smallest_" + names[i]);
+  for (std::size_t i = 0; i < set.tracked; ++i) names.push_back("smallest_" + names[i]);
   names.emplace_back("residual_rms_m");
-  const greybox::tracking::SlowChange& slow = tracker_.slow_change();
+  const greybox::tracking::BaselineDrift& slow = tracker_.baseline_drift();
   for (std::size_t i = 0; i < slow.size(); ++i) {
     names.push_back("healthy_" + names[slow.parameter(i)]);
   }
@@ -71,8 +71,8 @@ std::vector<std::string> TrackerSource::names() const {
 std::vector<estimator::fdi::Alarm> TrackerSource::declared_alarms() const {
   const std::vector<std::string> all = names();
   std::vector<std::string> wanted(
-      all.begin(), all.begin() + static_cast<std::ptrdiff_t>(tracker_.choice().tracked));
-  const greybox::tracking::SlowChange& slow = tracker_.slow_change();
+      all.begin(), all.begin() + static_cast<std::ptrdiff_t>(tracker_.set().tracked));
+  const greybox::tracking::BaselineDrift& slow = tracker_.baseline_drift();
   for (std::size_t i = 0; i < slow.size(); ++i) wanted.push_back("slow_" + all[slow.parameter(i)]);
   wanted.emplace_back("unexplained");
   std::vector<estimator::fdi::Alarm> alarms(wanted.size());
@@ -100,7 +100,7 @@ bool TrackerSource::on_gap(std::int64_t periods) noexcept { return is_due(period
 bool TrackerSource::push(const Sample& sample, double y_m) noexcept {
   if (!std::isfinite(y_m) || !std::isfinite(sample.u_applied_V)) return is_due(1);
   const double t_s = static_cast<double>(sample.tick) * sample_time_s_;
-  const std::optional<greybox::tracking::Window> window =
+  const std::optional<greybox::tracking::WindowResult> window =
       tracker_.push(t_s, sample.u_applied_V, y_m, std::exchange(broken_, false),
                     pressures_ ? sample.pressures : config::signals::Pressures{});
   missing_ = 0;
@@ -109,10 +109,10 @@ bool TrackerSource::push(const Sample& sample, double y_m) noexcept {
   return true;
 }
 
-void TrackerSource::take(const greybox::tracking::Window& window) {
-  const std::size_t tracked = tracker_.choice().tracked;
+void TrackerSource::take(const greybox::tracking::WindowResult& window) {
+  const std::size_t tracked = tracker_.set().tracked;
   for (std::size_t i = 0; i < tracked; ++i) {
-    const greybox::tracking::Estimate& one = window.estimates[i];
+    const greybox::tracking::ParameterEstimate& one = window.estimates[i];
     found_[i] = one.valid ? one.value : kNaN;
     found_[tracked + i] = one.valid ? one.std_error : kNaN;
     found_[2 * tracked + i] = window.explained ? one.smallest : kNaN;
@@ -121,7 +121,7 @@ void TrackerSource::take(const greybox::tracking::Window& window) {
   samples_ = static_cast<int>(std::lround(window_s_ / sample_time_s_));
   why_ = window.why;
   unexplained_ = window.fits ? 0 : unexplained_ + 1;
-  if (!tracker_.healthy()) {
+  if (!tracker_.baseline()) {
     learn_from(window);
   } else {
     suggest(window);
@@ -131,39 +131,40 @@ void TrackerSource::take(const greybox::tracking::Window& window) {
   say();
 }
 
-void TrackerSource::learn_from(const greybox::tracking::Window& window) {
-  const greybox::tracking::Choice& choice = tracker_.choice();
+void TrackerSource::learn_from(const greybox::tracking::WindowResult& window) {
+  const greybox::tracking::ParameterSet& set = tracker_.set();
   why_ = "learning what is healthy" + (window.why.empty() ? "" : "; " + window.why);
-  if (!greybox::tracking::teaches(window, choice)) return;
+  if (!greybox::tracking::qualifies_for_baseline(window, set)) return;
   learning_.push_back(window.rms_m);
   for (const greybox::tracking::ChamberFit& one : {window.in, window.out}) {
     for (const double value : {one.rms_Pa, one.mean_Pa, one.weight_Pa_per_m}) {
       learning_.push_back(value);
     }
   }
-  for (const greybox::tracking::Estimate& one : window.estimates) learning_.push_back(one.x);
-  const std::size_t length = kErrors + choice.tracked;
+  for (const greybox::tracking::ParameterEstimate& one : window.estimates)
+    learning_.push_back(one.theta);
+  const std::size_t length = kErrors + set.tracked;
   if (learning_.size() < lessons_ * length) return;
-  std::vector<greybox::tracking::Window> windows(lessons_);
+  std::vector<greybox::tracking::WindowResult> windows(lessons_);
   for (std::size_t k = 0; k < lessons_; ++k) {
     windows[k].explained = true;
     const double* const lesson = learning_.data() + k * length;
     windows[k].rms_m = lesson[0];
     windows[k].in = {lesson[1], lesson[2], lesson[3]};
     windows[k].out = {lesson[4], lesson[5], lesson[6]};
-    windows[k].estimates.resize(choice.tracked);
-    for (std::size_t i = 0; i < choice.tracked; ++i) {
-      windows[k].estimates[i].x = lesson[kErrors + i];
+    windows[k].estimates.resize(set.tracked);
+    for (std::size_t i = 0; i < set.tracked; ++i) {
+      windows[k].estimates[i].theta = lesson[kErrors + i];
     }
   }
-  tracker_.take(greybox::tracking::learn(windows, choice, noise_floor_m_, "healthy motion"));
+  tracker_.take(greybox::tracking::learn_baseline(windows, set, noise_floor_m_, "healthy motion"));
   learning_.clear();
 }
 
-void TrackerSource::suggest(const greybox::tracking::Window& window) {
+void TrackerSource::suggest(const greybox::tracking::WindowResult& window) {
   if (!window.poor) return;
   if (!probe_) {
-    const std::optional<greybox::tracking::Probe> probe = tracker_.probe();
+    const std::optional<greybox::tracking::ExcitationDesign> probe = tracker_.probe();
     probe_ = probe ? greybox::tracking::probe_words(*probe) : "";
   }
   if (probe_->empty()) return;
@@ -174,16 +175,16 @@ void TrackerSource::suggest(const greybox::tracking::Window& window) {
 }
 
 void TrackerSource::say() {
-  const greybox::tracking::Choice& choice = tracker_.choice();
-  for (std::size_t i = 0; i < choice.tracked; ++i) {
+  const greybox::tracking::ParameterSet& set = tracker_.set();
+  for (std::size_t i = 0; i < set.tracked; ++i) {
     Said& said = said_[i];
     said.state = {};
-    const greybox::tracking::Alarm* const alarm = tracker_.alarms().active(i);
+    const greybox::tracking::DetectedChange* const alarm = tracker_.detector().active(i);
     if (alarm == nullptr) continue;
-    const greybox::tracking::Named& named = alarm->named;
-    const greybox::SearchParameter& p = choice.parameters[i];
-    const std::string group = greybox::tracking::group_words(choice, named);
-    said.reason = greybox::tracking::change_words(choice, named, tracker_.healthy()->x) +
+    const greybox::tracking::ParameterChange& named = alarm->named;
+    const greybox::FreeParameter& p = set.parameters[i];
+    const std::string group = greybox::tracking::group_words(set, named);
+    said.reason = greybox::tracking::change_words(set, named, tracker_.baseline()->theta) +
                   (group.empty() ? "" : "; " + group);
     said.parameter = named.rivals.empty() ? p.name : "";
     said.group.clear();
@@ -193,8 +194,8 @@ void TrackerSource::say() {
     said.fault = {said.parameter, said.views, alarm->confidence};
     said.state.severity = severity_;
     said.state.direction = named.deviation > 0.0 ? 1 : -1;
-    said.state.value = p.value(named.x);
-    said.state.std_error = named.std_error * p.slope(named.x);
+    said.state.value = p.to_physical(named.theta);
+    said.state.std_error = named.std_error * p.slope(named.theta);
     said.state.reason = said.reason;
     said.state.fault = &said.fault;
   }
@@ -210,29 +211,29 @@ void TrackerSource::say() {
 }
 
 void TrackerSource::say_slow() {
-  const greybox::tracking::Choice& choice = tracker_.choice();
-  const greybox::tracking::SlowChange& slow = tracker_.slow_change();
+  const greybox::tracking::ParameterSet& set = tracker_.set();
+  const greybox::tracking::BaselineDrift& slow = tracker_.baseline_drift();
   for (std::size_t i = 0; i < slow.size(); ++i) {
-    Said& said = said_[choice.tracked + i];
+    Said& said = said_[set.tracked + i];
     said.state = {};
-    const int end = tracker_.healthy() ? slow.at_end(i, tracker_.healthy()->x) : 0;
+    const int end = tracker_.baseline() ? slow.at_end(i, tracker_.baseline()->theta) : 0;
     if (end == 0) continue;
     const std::size_t at = slow.parameter(i);
-    const greybox::SearchParameter& p = choice.parameters[at];
-    const double x = tracker_.healthy()->x[static_cast<Eigen::Index>(at)];
-    said.reason = greybox::tracking::slow_words(p, slow.learnt(i), x);
+    const greybox::FreeParameter& p = set.parameters[at];
+    const double theta = tracker_.baseline()->theta[static_cast<Eigen::Index>(at)];
+    said.reason = greybox::tracking::slow_words(p, slow.learnt(i), theta);
     said.parameter = p.name;
     said.fault = {said.parameter, {}, kNaN};
     said.state.severity = Severity::minor;
     said.state.direction = end < 0 ? -1 : 1;
-    said.state.value = p.value(x);
+    said.state.value = p.to_physical(theta);
     said.state.reason = said.reason;
     said.state.fault = &said.fault;
   }
 }
 
 MethodOutput TrackerSource::evaluate(std::span<NamedValue> values) noexcept {
-  const std::size_t tracked = tracker_.choice().tracked;
+  const std::size_t tracked = tracker_.set().tracked;
   for (std::size_t i = 0; i < tracked; ++i) {
     values[i].value = found_[i];
     values[i].std_error = found_[tracked + i];
@@ -241,18 +242,18 @@ MethodOutput TrackerSource::evaluate(std::span<NamedValue> values) noexcept {
   }
   values[2 * tracked].value = rms_m_;
   values[2 * tracked].std_error = kNaN;
-  const greybox::tracking::SlowChange& slow = tracker_.slow_change();
+  const greybox::tracking::BaselineDrift& slow = tracker_.baseline_drift();
   for (std::size_t i = 0; i < slow.size(); ++i) {
     const std::size_t at = slow.parameter(i);
-    const std::optional<greybox::tracking::Healthy>& healthy = tracker_.healthy();
+    const std::optional<greybox::tracking::Baseline>& baseline = tracker_.baseline();
     NamedValue& value = values[2 * tracked + 1 + i];
-    value.value =
-        healthy ? tracker_.choice().parameters[at].value(healthy->x[static_cast<Eigen::Index>(at)])
-                : kNaN;
+    value.value = baseline ? tracker_.set().parameters[at].to_physical(
+                                 baseline->theta[static_cast<Eigen::Index>(at)])
+                           : kNaN;
     value.std_error = kNaN;
   }
   MethodOutput output;
-  output.warming_up = !tracker_.healthy().has_value();
+  output.warming_up = !tracker_.baseline().has_value();
   output.valid = why_.empty();
   output.reason = (output.valid ? note_ : why_).c_str();
   output.samples = samples_;
@@ -269,7 +270,7 @@ void TrackerSource::reset() {
   broken_ = true;
   missing_ = 0;
   learning_.clear();
-  found_.assign(3 * tracker_.choice().tracked, kNaN);
+  found_.assign(3 * tracker_.set().tracked, kNaN);
   why_.clear();
   note_.clear();
   rms_m_ = kNaN;
@@ -283,7 +284,7 @@ void TrackerSource::serialize(estimator::StateArchive& archive) {
   tracker_.serialize(archive);
   archive.value(broken_);
   archive.value(missing_);
-  archive.growing(learning_, lessons_ * (kErrors + tracker_.choice().tracked));
+  archive.growing(learning_, lessons_ * (kErrors + tracker_.set().tracked));
   archive.fixed(found_);
   archive.text(why_);
   archive.text(note_);

@@ -16,8 +16,8 @@ class TrackerSource final : public estimator::fdi::DetectionMethod {
  public:
   /// `healthy`: none = learnt from the first windows that teach.
   TrackerSource(const TrackerConfig& config, const plant_sim::ModelFile& model,
-                const greybox::tracking::Choice& choice,
-                std::optional<greybox::tracking::Healthy> healthy, double sample_time_s);
+                const greybox::tracking::ParameterSet& set,
+                std::optional<greybox::tracking::Baseline> baseline, double sample_time_s);
 
   [[nodiscard]] std::vector<std::string> names() const override;
   [[nodiscard]] std::vector<estimator::fdi::Alarm> declared_alarms() const override;
@@ -41,9 +41,9 @@ class TrackerSource final : public estimator::fdi::DetectionMethod {
     estimator::fdi::AlarmInput state;
   };
 
-  void take(const greybox::tracking::Window& window);
-  void learn_from(const greybox::tracking::Window& window);
-  void suggest(const greybox::tracking::Window& window);
+  void take(const greybox::tracking::WindowResult& window);
+  void learn_from(const greybox::tracking::WindowResult& window);
+  void suggest(const greybox::tracking::WindowResult& window);
   void say();
   void say_slow();
   [[nodiscard]] bool is_due(std::int64_t missing) noexcept;
@@ -56,8 +56,8 @@ class TrackerSource final : public estimator::fdi::DetectionMethod {
   std::size_t lessons_;  ///< windows that are learnt from
   estimator::fdi::Severity severity_;
   estimator::fdi::AlarmRules rules_;
-  std::optional<greybox::tracking::Healthy> given_;
-  greybox::tracking::Tracker tracker_;
+  std::optional<greybox::tracking::Baseline> given_;
+  greybox::tracking::ParameterTracker tracker_;
   bool broken_ = true;            ///< samples are missing before the next one
   std::int64_t missing_ = 0;      ///< samples since the latest finding, in a row
   std::vector<double> learning_;  ///< of each window: errors, then x of the parameters

@@ -11,57 +11,57 @@ namespace {
 /// The records in two halves, each begun anew, fitted to one and scored on the other; records that
 /// were kept for scoring are one of the halves.
 struct Halves {
-  Evidence forth;
-  Evidence back;
+  FitDataset forth;
+  FitDataset back;
 };
 
-Halves halves_of(const Evidence& evidence) {
-  std::vector<Measured> first;
-  std::vector<Measured> second;
-  if (evidence.scores_apart()) {
-    const auto kept =
-        evidence.records.begin() + static_cast<std::ptrdiff_t>(evidence.fitted_records);
-    first.assign(evidence.records.begin(), kept);
-    second.assign(kept, evidence.records.end());
-    return {greybox::evidence(first, second), greybox::evidence(second, first)};
+Halves halves_of(const FitDataset& data) {
+  std::vector<Dataset> first;
+  std::vector<Dataset> second;
+  if (data.has_holdouts()) {
+    const auto kept = data.records.begin() + static_cast<std::ptrdiff_t>(data.fitted_records);
+    first.assign(data.records.begin(), kept);
+    second.assign(kept, data.records.end());
+    return {greybox::fit_dataset(first, second), greybox::fit_dataset(second, first)};
   }
-  for (const Measured& record : evidence.records) {
+  for (const Dataset& record : data.records) {
     first.push_back(part(record, 0, record.size() / 2));
     second.push_back(part(record, record.size() / 2, record.size()));
   }
-  return {greybox::evidence(first, second), greybox::evidence(second, first)};
+  return {greybox::fit_dataset(first, second), greybox::fit_dataset(second, first)};
 }
 
 }  // namespace
 
-bool supported(const Workshop& shop, bool explained, const Selection& plain,
-               const Selection& more) {
-  const Halves halves = halves_of(shop.evidence);
+bool cross_validates(const SearchContext& context, bool explained, const ParameterSubset& plain,
+                     const ParameterSubset& more) {
+  const Halves halves = halves_of(context.problem.data);
   FitOptions options;
   options.tolerance = 1e-4;
   options.max_iterations = 15;
   options.final_jacobian = false;
-  options.cancel = shop.cancel;
+  options.cancel = context.options.cancel;
   if (!explained) {
     // the free run: its minimum is narrow, and what is not reached decides wrongly
     options.observer_per_s = 0.0;
     options.tolerance = 1e-5;
     options.max_iterations = FitOptions{}.max_iterations;
   }
-  std::array<double, 4> score_rms_m{};
-  in_parallel(score_rms_m.size(), shop.threads, [&](std::size_t i) {
-    const Selection& selection = i % 2 == 0 ? plain : more;
-    const Evidence& evidence = i < 2 ? halves.forth : halves.back;
-    score_rms_m[i] =
-        fit(shop.model, evidence, evidence.fits, selection.searched, selection.start, options)
-            .score_rms_m;
+  std::array<double, 4> validation_rms_m{};
+  in_parallel(validation_rms_m.size(), context.options.threads, [&](std::size_t i) {
+    const ParameterSubset& selection = i % 2 == 0 ? plain : more;
+    const FitDataset& data = i < 2 ? halves.forth : halves.back;
+    validation_rms_m[i] = fit(context.problem.model, data, data.training_mask, selection.parameters,
+                              selection.start, options)
+                              .validation_rms_m;
   });
-  const double enough = 1.0 - worthwhile_at(shop, score_rms_m[0]);
-  return score_rms_m[1] < enough * score_rms_m[0] && score_rms_m[3] < enough * score_rms_m[2];
+  const double enough = 1.0 - worthwhile_at(context, validation_rms_m[0]);
+  return validation_rms_m[1] < enough * validation_rms_m[0] &&
+         validation_rms_m[3] < enough * validation_rms_m[2];
 }
 
-bool is_explained(const Workshop& shop, const Stage& stage) {
-  return stage.fitted.score_rms_m <= kUnexplained * shop.evidence.noise_floor_m;
+bool is_explained(const SearchContext& context, const ModelStage& stage) {
+  return stage.fitted.validation_rms_m <= kUnexplained * context.problem.data.noise_floor_m;
 }
 
 }  // namespace estimator::greybox::selection

@@ -12,10 +12,10 @@
 namespace estimator::greybox::selection {
 
 /// `more` has the parameters of `plain` and others. With `explained` the observer helps.
-[[nodiscard]] bool supported(const Workshop& shop, bool explained, const Selection& plain,
-                             const Selection& more);
+[[nodiscard]] bool cross_validates(const SearchContext& context, bool explained,
+                                   const ParameterSubset& plain, const ParameterSubset& more);
 
 /// Whether noise explains what is left of the stage's held-out error.
-[[nodiscard]] bool is_explained(const Workshop& shop, const Stage& stage);
+[[nodiscard]] bool is_explained(const SearchContext& context, const ModelStage& stage);
 
 }  // namespace estimator::greybox::selection

@@ -16,58 +16,65 @@ namespace {
 constexpr double kAsClear = 0.9;  ///< explained share of what is left over that of the whole
 
 /// The better model's parameters on all samples, with what the record says of each.
-void settle(const Workshop& shop, Diagnosis& result) {
-  const Stage& stage = result.ladder.final;
-  const Selection all = select(stage.fitted, [](const auto&) { return true; });
-  const bool explained = stage.fitted.score_rms_m <= kUnexplained * shop.evidence.noise_floor_m;
+void fit_final_parameters(const SearchContext& context, Diagnosis& result) {
+  const ModelStage& stage = result.search.final;
+  const ParameterSubset all = subset(stage.fitted, [](const auto&) { return true; });
+  const bool explained =
+      stage.fitted.validation_rms_m <= kUnexplained * context.problem.data.noise_floor_m;
   // what is left of the error is no noise: then the values are those that simulate best
-  result.final = shop.cancelled() ? stage.fitted
-                 : explained      ? refit(shop, all, shop.evidence.finally(), shop.threads)
-                                  : refit(shop, all, shop.evidence.finally(), shop.threads, 0.0);
-  result.better = with_values(shop.model, result.final);
-  const Eigen::VectorXd errors = std_errors(shop.evidence, shop.evidence.finally(), result.final);
-  for (std::size_t i = 0; i < result.final.searched.size(); ++i) {
+  result.final =
+      context.cancelled() ? stage.fitted
+      : explained
+          ? refit(context, all, context.problem.data.final_weights(), context.options.threads)
+          : refit(context, all, context.problem.data.final_weights(), context.options.threads, 0.0);
+  result.better = with_values(context.problem.model, result.final);
+  const Eigen::VectorXd errors =
+      std_errors(context.problem.data, context.problem.data.final_weights(), result.final);
+  for (std::size_t i = 0; i < result.final.parameters.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    const SearchParameter& p = result.final.searched[i];
+    const FreeParameter& p = result.final.parameters[i];
     const bool at_bound = result.final.at_bound[i] != 0;
-    const double error = at_bound ? std::nan("") : errors[k] * p.slope(result.final.x[k]);
-    result.parameters.push_back({p.name, p.value(result.final.x[k]), error, at_bound});
+    const double error = at_bound ? std::nan("") : errors[k] * p.slope(result.final.theta[k]);
+    result.parameters.push_back({p.name, p.to_physical(result.final.theta[k]), error, at_bound});
   }
 }
 
 void list_steps(Diagnosis& result) {
-  for (const Stage& stage : result.ladder.way) {
+  for (const ModelStage& stage : result.search.path) {
     result.steps.push_back(
-        {stage.added.empty() ? "" : stage.added.back(), stage.fitted.score_rms_m});
+        {stage.added.empty() ? "" : stage.added.back(), stage.fitted.validation_rms_m});
   }
 }
 
 /// What carries the residual that nothing explains. Effects that were taken for want of the right
 /// one have swallowed part of it: then the model as given shows it more clearly.
-std::vector<Where> carriers(const Workshop& shop, const Stage& first, const Stage& final) {
-  std::vector<Where> left = localise(shop, final);
+std::vector<Localisation> localise_remainder(const SearchContext& context, const ModelStage& first,
+                                             const ModelStage& final) {
+  std::vector<Localisation> left = localise(context, final);
   if (final.added.empty()) return left;
-  std::vector<Where> whole = localise(shop, first);
-  const auto share = [](const std::vector<Where>& where) {
+  std::vector<Localisation> whole = localise(context, first);
+  const auto share = [](const std::vector<Localisation>& where) {
     return where.empty() ? 0.0 : where.front().explained_ratio;
   };
   return share(left) >= kAsClear * share(whole) ? left : whole;
 }
 
 /// Groups that a motion could separate make the verdict undetermined; others are the same equation.
-void weigh_rivals(const Workshop& shop, const Stage& found, const Separable& separable,
-                  Diagnosis& result) {
-  for (const Rivalry& rivalry : rivalries(shop, result.ladder.rounds, found)) {
-    std::vector<std::string> group{rivalry.found};
-    group.insert(group.end(), rivalry.others.begin(), rivalry.others.end());
-    const bool separates = separable(shop, rivalry.explanations, group);
+void classify_indistinguishable(const SearchContext& context, const ModelStage& found,
+                                Diagnosis& result) {
+  for (const IndistinguishableModels& models :
+       find_indistinguishable(context, result.search.rounds, found)) {
+    std::vector<std::string> group{models.found};
+    group.insert(group.end(), models.others.begin(), models.others.end());
+    const Separable& separable = context.options.separable;
+    const bool separates = separable && separable(context, models.explanations, group);
     (separates ? result.ambiguous : result.same_here).push_back(std::move(group));
   }
 }
 
 }  // namespace
 
-const char* text(Verdict verdict) {
+const char* to_string(Verdict verdict) {
   switch (verdict) {
     case Verdict::nothing_missing:
       return "nothing_missing";
@@ -83,46 +90,48 @@ const char* text(Verdict verdict) {
   return "not_excited";
 }
 
-Diagnosis diagnose(const Workshop& shop, const Separable& separable) {
+Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
+  const SearchContext context{problem, options};
   Diagnosis result;
-  result.noise_floor_m = shop.evidence.noise_floor_m;
-  for (const Measured& record : shop.evidence.records) {
+  result.noise_floor_m = problem.data.noise_floor_m;
+  for (const Dataset& record : problem.data.records) {
     for (const std::string& note : record.notes) result.notes.push_back(record.name + ": " + note);
   }
-  const Excitation excitation = excitation_of(shop.evidence);
+  const Excitation excitation = excitation_of(problem.data);
   if (!excitation.enough) {
     result.verdict = Verdict::not_excited;
     result.notes.push_back(excitation.why);
-    result.better = shop.model;
+    result.better = problem.model;
     return result;
   }
-  const Workshop search = for_search(shop);
-  result.ladder = climb(search);
-  const Stage found = result.ladder.final;
-  if (searches_in_part(search, shop)) {
-    carry_to_whole(shop, result.ladder);
-    result.notes.push_back(note_of_search(search, shop));
+  const SearchContext search = for_search(context);
+  result.search = search_structure(search);
+  const ModelStage found = result.search.final;
+  if (uses_segments(search, context)) {
+    refit_to_whole(context, result.search);
+    result.notes.push_back(note_of_search(search, context));
   }
-  const Stage& final = result.ladder.final;
-  result.nominal_rms_m = result.ladder.nominal_rms_m;
+  const ModelStage& final = result.search.final;
+  result.nominal_rms_m = result.search.nominal_rms_m;
   list_steps(result);
-  result.rms_before_m = result.steps.front().score_rms_m;
-  result.rms_after_m = final.fitted.score_rms_m;
+  result.rms_before_m = result.steps.front().validation_rms_m;
+  result.rms_after_m = final.fitted.validation_rms_m;
   result.missing = final.added;
-  settle(shop, result);
-  if (final.fitted.score_rms_m > kUnexplained * result.noise_floor_m) {
+  fit_final_parameters(context, result);
+  if (final.fitted.validation_rms_m > kUnexplained * result.noise_floor_m) {
     result.verdict = Verdict::unexplained;
-    const bool begun = !result.ladder.rounds.empty();
-    result.where = carriers(search, begun ? result.ladder.rounds.front().before : found, found);
-    weigh_rivals(search, found, separable, result);
+    const bool begun = !result.search.rounds.empty();
+    result.where =
+        localise_remainder(search, begun ? result.search.rounds.front().before : found, found);
+    classify_indistinguishable(search, found, result);
   } else {
-    weigh_rivals(search, found, separable, result);
+    classify_indistinguishable(search, found, result);
     result.verdict = final.added.empty()        ? Verdict::nothing_missing
                      : result.ambiguous.empty() ? Verdict::missing
                                                 : Verdict::undetermined;
   }
-  if (result.ladder.interrupted) result.notes.emplace_back("interrupted: the best so far");
+  if (result.search.interrupted) result.notes.emplace_back("interrupted: the best so far");
   result.runtime_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;

@@ -1,7 +1,6 @@
 // What a diagnosis says in the end, and what it rests on.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -11,7 +10,7 @@ namespace estimator::greybox::selection {
 
 enum class Verdict { nothing_missing, missing, undetermined, unexplained, not_excited };
 /// "nothing_missing", ...
-[[nodiscard]] const char* text(Verdict verdict);
+[[nodiscard]] const char* to_string(Verdict verdict);
 
 struct ParameterValue {
   std::string name;
@@ -21,15 +20,15 @@ struct ParameterValue {
 };
 
 /// Where a residual enters the equations, and which variable it goes with.
-struct Where {
-  std::string enters;            ///< "flow", "force", "gain", "measurement"
+struct Localisation {
+  std::string site;              ///< "flow", "force", "gain", "measurement"
   std::string variable;          ///< "y", "v", "u", "speed", "acceleration", "time", "direction"
   double explained_ratio = 0.0;  ///< of the held-out squared error
 };
 
 struct Step {
   std::string added;  ///< empty: the model as given, its parameters fitted
-  double score_rms_m = 0.0;
+  double validation_rms_m = 0.0;
 };
 
 struct Diagnosis {
@@ -43,22 +42,17 @@ struct Diagnosis {
   double rms_before_m = 0.0;               ///< held-out, its parameters fitted
   double rms_after_m = 0.0;                ///< held-out, with what is missing
   std::vector<ParameterValue> parameters;  ///< of the better model, fitted to all samples
-  std::vector<Where> where;                ///< best first; empty when nothing is left to explain
+  std::vector<Localisation> where;         ///< best first; empty when nothing is left to explain
   std::vector<Step> steps;
   std::vector<std::string> notes;  ///< restrictions: gaps, interrupted, ...
-  Ladder ladder;
-  Fitted final;                 ///< the better model on all samples
+  StructureSearch search;
+  FitSummary final;             ///< the better model on all samples
   plant_sim::ModelFile better;  ///< the model file with it
   double runtime_s = 0.0;
 };
 
-/// Whether some motion would tell explanations apart that describe the record about as well;
-/// `names` has one name for each. Groups for which it says yes make a verdict undetermined.
-using Separable = std::function<bool(
-    const Workshop&, const std::vector<Fitted>& explanations, const std::vector<std::string>& names)>;
-
-/// The whole diagnosis. Ends early, with the best so far and a note, when the workshop's cancel
-/// says so.
-[[nodiscard]] Diagnosis diagnose(const Workshop& shop, const Separable& separable);
+/// Runs the whole diagnosis. Ends early, with the best result so far and a note, once
+/// `options.cancel` returns true.
+[[nodiscard]] Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& options);
 
 }  // namespace estimator::greybox::selection

@@ -20,58 +20,60 @@ constexpr int kIterations = 15;
 constexpr double kTolerance = 1e-3;
 
 /// Residual and its derivatives at the rival's values.
-MatrixXd with_derivatives(const Workshop& shop, const Evidence& evidence, const Fitted& rival) {
-  EvidenceRun run(shop.model, evidence, rival.searched);
-  const Index count = rival.x.size();
-  MatrixXd points = rival.x.replicate(1, count + 1);
+MatrixXd with_derivatives(const SearchContext& context, const FitDataset& data,
+                          const FitSummary& rival) {
+  DatasetSimulation run(context.problem.model, data, rival.parameters);
+  const Index count = rival.theta.size();
+  MatrixXd points = rival.theta.replicate(1, count + 1);
   for (Index i = 0; i < count; ++i) {
-    const auto& parameter = rival.searched[static_cast<std::size_t>(i)];
-    const bool up = rival.x[i] + kDifference <= parameter.upper;
+    const auto& parameter = rival.parameters[static_cast<std::size_t>(i)];
+    const bool up = rival.theta[i] + kDifference <= parameter.upper;
     points(i, i + 1) += up ? kDifference : -kDifference;
   }
-  MatrixXd residuals_m(evidence.size(), count + 1);
+  MatrixXd residuals_m(data.size(), count + 1);
   MatrixXd some_m;
-  for (Index from = 0; from <= count; from += ModelRun::kLanes) {
-    const Index lanes = std::min<Index>(ModelRun::kLanes, count + 1 - from);
+  for (Index from = 0; from <= count; from += ObserverSimulation::kLanes) {
+    const Index lanes = std::min<Index>(ObserverSimulation::kLanes, count + 1 - from);
     run.residuals(points.middleCols(from, lanes), some_m);
     residuals_m.middleCols(from, lanes) = some_m;
   }
   for (Index i = 0; i < count; ++i) {
     residuals_m.col(i + 1) =
-        (residuals_m.col(i + 1) - residuals_m.col(0)) / (points(i, i + 1) - rival.x[i]);
+        (residuals_m.col(i + 1) - residuals_m.col(0)) / (points(i, i + 1) - rival.theta[i]);
   }
   return residuals_m;
 }
 
 /// What a difference has to stand out from: noise, or a small part of what the rival leaves
 /// unexplained anyway.
-double unseen_m(const Evidence& evidence, const Fitted& rival) {
-  return std::max(evidence.noise_floor_m, kPart * rival.score_rms_m);
+double unseen_m(const FitDataset& data, const FitSummary& rival) {
+  return std::max(data.noise_floor_m, kPart * rival.validation_rms_m);
 }
 
 }  // namespace
 
-double expected_separation(const Workshop& shop, const Evidence& evidence, const Fitted& rival) {
-  const MatrixXd columns = with_derivatives(shop, evidence, rival);
+double expected_separation(const SearchContext& context, const FitDataset& data,
+                           const FitSummary& rival) {
+  const MatrixXd columns = with_derivatives(context, data, rival);
   if (!columns.allFinite()) return std::numeric_limits<double>::infinity();
-  const Index count = rival.x.size();
-  const MatrixXd weighted = evidence.counts.asDiagonal() * columns;
+  const Index count = rival.theta.size();
+  const MatrixXd weighted = data.all_mask.asDiagonal() * columns;
   const MatrixXd products = weighted.transpose() * weighted;
-  const VectorXd counted = evidence.counts;
+  const VectorXd counted = data.all_mask;
   const double samples = counted.sum();
   VectorXd left_m = columns.col(0);
   for (int pass = 0; pass < kReweightings; ++pass) {
-    const double sigma_m = std::max(evidence.noise_floor_m, rms(left_m, counted)) *
+    const double sigma_m = std::max(data.noise_floor_m, rms(left_m, counted)) *
                            std::sqrt(correlation_factor(left_m, counted));
     const double per_square = 1.0 / (sigma_m * sigma_m);
     MatrixXd normal = per_square * products.bottomRightCorner(count, count);
     VectorXd slope = per_square * products.col(0).tail(count);
     for (Index i = 0; i < count; ++i) {
-      const auto& parameter = rival.searched[static_cast<std::size_t>(i)];
+      const auto& parameter = rival.parameters[static_cast<std::size_t>(i)];
       const double sd = parameter.prior_sd;
       if (std::isfinite(sd)) {
         normal(i, i) += 1.0 / (sd * sd);
-        slope[i] += (rival.x[i] - parameter.prior_mean) / (sd * sd);
+        slope[i] += (rival.theta[i] - parameter.prior_mean) / (sd * sd);
       } else {
         normal(i, i) += 1e-9 * normal(i, i) + 1e-12;
       }
@@ -79,18 +81,19 @@ double expected_separation(const Workshop& shop, const Evidence& evidence, const
     left_m =
         columns.col(0) - columns.rightCols(count) * linear_algebra::solve_symmetric(normal, slope);
   }
-  return std::sqrt(left_m.cwiseProduct(counted).squaredNorm() / samples) /
-         unseen_m(evidence, rival);
+  return std::sqrt(left_m.cwiseProduct(counted).squaredNorm() / samples) / unseen_m(data, rival);
 }
 
-double fitted_separation(const Workshop& shop, const Evidence& evidence, const Fitted& rival) {
+double fitted_separation(const SearchContext& context, const FitDataset& data,
+                         const FitSummary& rival) {
   FitOptions options;
   options.max_iterations = kIterations;
   options.tolerance = kTolerance;
   options.final_jacobian = false;
-  options.cancel = shop.cancel;
-  const Fitted fitted = fit(shop.model, evidence, evidence.fits, rival.searched, rival.x, options);
-  return fitted.score_rms_m / unseen_m(evidence, rival);
+  options.cancel = context.options.cancel;
+  const FitSummary fitted =
+      fit(context.problem.model, data, data.training_mask, rival.parameters, rival.theta, options);
+  return fitted.validation_rms_m / unseen_m(data, rival);
 }
 
 }  // namespace estimator::greybox::selection

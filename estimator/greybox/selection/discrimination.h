@@ -10,11 +10,11 @@ namespace estimator::greybox::selection {
 
 /// Error that `rival` leaves on the evidence, its parameters adjusted linearly against their
 /// priors. About 20 ms for 30 s.
-[[nodiscard]] double expected_separation(const Workshop& shop, const Evidence& evidence,
-                                         const Fitted& rival);
+[[nodiscard]] double expected_separation(const SearchContext& context, const FitDataset& data,
+                                         const FitSummary& rival);
 
 /// The same with the rival fitted for good, held out.
-[[nodiscard]] double fitted_separation(const Workshop& shop, const Evidence& evidence,
-                                       const Fitted& rival);
+[[nodiscard]] double fitted_separation(const SearchContext& context, const FitDataset& data,
+                                       const FitSummary& rival);
 
 }  // namespace estimator::greybox::selection

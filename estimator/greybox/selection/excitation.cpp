@@ -17,11 +17,11 @@ std::string millimetres(double m) { return fmt::format("{:.3g} mm", 1e3 * m); }
 
 }  // namespace
 
-Excitation excitation_of(const Evidence& evidence) {
+Excitation excitation_of(const FitDataset& data) {
   double travel_m = 0.0;
   double free_samples = 0.0;
   double samples = 0.0;
-  for (const Measured& record : evidence.records) {
+  for (const Dataset& record : data.records) {
     const auto [low_m, high_m] = std::minmax_element(record.y_m.begin(), record.y_m.end());
     travel_m = std::max(travel_m, *high_m - *low_m);
     const auto [low_V, high_V] = std::minmax_element(record.u_V.begin(), record.u_V.end());
@@ -31,9 +31,9 @@ Excitation excitation_of(const Evidence& evidence) {
       free_samples += std::abs(u_V) < most_V * (1.0 - 1e-6) ? 1.0 : 0.0;
     }
   }
-  if (!(travel_m >= kLeastTravel * evidence.noise_floor_m)) {
+  if (!(travel_m >= kLeastTravel * data.noise_floor_m)) {
     return {false, "the rod moves by " + millimetres(travel_m) + " in all, " +
-                       millimetres(evidence.noise_floor_m) + " of it noise"};
+                       millimetres(data.noise_floor_m) + " of it noise"};
   }
   if (free_samples < (1.0 - kStuck) * samples) {
     return {false, "the command stays at its limit throughout"};

@@ -12,6 +12,6 @@ struct Excitation {
   std::string why;  ///< in words, when it is not
 };
 
-[[nodiscard]] Excitation excitation_of(const Evidence& evidence);
+[[nodiscard]] Excitation excitation_of(const FitDataset& data);
 
 }  // namespace estimator::greybox::selection

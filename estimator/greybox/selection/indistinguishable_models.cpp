@@ -39,77 +39,83 @@ const Round* round_of(const std::vector<Round>& rounds, const std::string& effec
 }
 
 /// The final model with `candidate` instead of `effect`.
-Fitted replaced(const Workshop& shop, const Stage& final, const std::string& effect,
-                const Candidate& candidate) {
-  Selection selection = select(final.fitted, [&](const auto& p) { return !belongs(p, effect); });
-  const Selection own = select(
-      candidate.fitted, [&](const auto& p) { return belongs(p, candidate.effects.front()); });
+FitSummary replaced(const SearchContext& context, const ModelStage& final,
+                    const std::string& effect, const Candidate& candidate) {
+  ParameterSubset selection =
+      subset(final.fitted, [&](const auto& p) { return !belongs_to(p, effect); });
+  const ParameterSubset own = subset(
+      candidate.fitted, [&](const auto& p) { return belongs_to(p, candidate.effects.front()); });
   append(selection, own);
-  return refit_if_hopeful(shop, selection, final.fitted.score_rms_m);
+  return refit_if_hopeful(context, selection, final.fitted.validation_rms_m);
 }
 
-bool contains(const Workshop& shop, const Fitted& larger, const Fitted& smaller) {
-  if (larger.searched.size() <= smaller.searched.size()) return false;
-  const double apart_m = rms(larger.residual_m - smaller.residual_m, shop.evidence.counts);
-  return apart_m < kSameMotion * smaller.score_rms_m;
+bool contains(const SearchContext& context, const FitSummary& larger, const FitSummary& smaller) {
+  if (larger.parameters.size() <= smaller.parameters.size()) return false;
+  const double apart_m = rms(larger.residual_m - smaller.residual_m, context.problem.data.all_mask);
+  return apart_m < kSameMotion * smaller.validation_rms_m;
 }
 
-bool explains_alike(const Workshop& shop, const Fitted& found, const Fitted& other) {
-  return other.score_rms_m <= (1.0 + kRivals) * found.score_rms_m &&
-         chance(shop, other, found) > kTold && !contains(shop, other, found);
+bool explains_alike(const SearchContext& context, const FitSummary& found,
+                    const FitSummary& other) {
+  return other.validation_rms_m <= (1.0 + kRivals) * found.validation_rms_m &&
+         chance(context, other, found) > kTold && !contains(context, other, found);
 }
 
-bool brings_enough(double without_m, const Fitted& found, const Fitted& other) {
-  const double gain = 1.0 - found.score_rms_m / without_m;
-  const double other_gain = 1.0 - other.score_rms_m / without_m;
+bool brings_enough(double without_m, const FitSummary& found, const FitSummary& other) {
+  const double gain = 1.0 - found.validation_rms_m / without_m;
+  const double other_gain = 1.0 - other.validation_rms_m / without_m;
   return other_gain >= kShareOfGain * gain;
 }
 
 }  // namespace
 
-std::vector<Rivalry> rivalries(const Workshop& shop, const std::vector<Round>& rounds,
-                               const Stage& final) {
-  std::vector<Rivalry> result;
+std::vector<IndistinguishableModels> find_indistinguishable(const SearchContext& context,
+                                                            const std::vector<Round>& rounds,
+                                                            const ModelStage& final) {
+  std::vector<IndistinguishableModels> result;
   for (const std::string& effect : final.added) {
     const Round* round = round_of(rounds, effect);
-    if (round == nullptr || shop.cancelled()) continue;
+    if (round == nullptr || context.cancelled()) continue;
     double chosen_m = 0.0;
     for (const Candidate& candidate : round->candidates) {
-      if (candidate.effects == std::vector<std::string>{effect}) chosen_m = candidate.score_rms_m;
+      if (candidate.effects == std::vector<std::string>{effect})
+        chosen_m = candidate.validation_rms_m;
     }
     std::vector<const Candidate*> others;
     for (const Candidate& candidate : round->candidates) {
       const bool taken = std::find(final.added.begin(), final.added.end(),
                                    candidate.effects.front()) != final.added.end();
       if (candidate.effects.size() > 1 || taken || !candidate.fitted_at_all ||
-          candidate.score_rms_m > kWorthARefit * chosen_m || others.size() >= kMostRefits) {
+          candidate.validation_rms_m > kWorthARefit * chosen_m || others.size() >= kMostRefits) {
         continue;
       }
       others.push_back(&candidate);
     }
-    std::vector<Fitted> fits(others.size());
-    in_parallel(others.size(), shop.threads,
-                [&](std::size_t i) { fits[i] = replaced(shop, final, effect, *others[i]); });
-    if (std::none_of(fits.begin(), fits.end(),
-                     [&](const Fitted& fit) { return explains_alike(shop, final.fitted, fit); })) {
+    std::vector<FitSummary> fits(others.size());
+    in_parallel(others.size(), context.options.threads,
+                [&](std::size_t i) { fits[i] = replaced(context, final, effect, *others[i]); });
+    if (std::none_of(fits.begin(), fits.end(), [&](const FitSummary& fit) {
+          return explains_alike(context, final.fitted, fit);
+        })) {
       continue;
     }
     const double without_m =
         final.added.size() == 1
-            ? round->before.fitted.score_rms_m
-            : refit(shop, select(final.fitted, [&](const auto& p) { return !belongs(p, effect); }),
-                    shop.evidence.fits)
-                  .score_rms_m;
-    Rivalry rivalry{effect, {}, {final.fitted}};
-    for (std::size_t i = 0; i < fits.size() && rivalry.others.size() + 1 < kLargestGroup; ++i) {
-      if (!explains_alike(shop, final.fitted, fits[i]) ||
+            ? round->before.fitted.validation_rms_m
+            : refit(context,
+                    subset(final.fitted, [&](const auto& p) { return !belongs_to(p, effect); }),
+                    context.problem.data.training_mask)
+                  .validation_rms_m;
+    IndistinguishableModels group{effect, {}, {final.fitted}};
+    for (std::size_t i = 0; i < fits.size() && group.others.size() + 1 < kLargestGroup; ++i) {
+      if (!explains_alike(context, final.fitted, fits[i]) ||
           !brings_enough(without_m, final.fitted, fits[i])) {
         continue;
       }
-      rivalry.others.push_back(others[i]->effects.front());
-      rivalry.explanations.push_back(std::move(fits[i]));
+      group.others.push_back(others[i]->effects.front());
+      group.explanations.push_back(std::move(fits[i]));
     }
-    if (!rivalry.others.empty()) result.push_back(std::move(rivalry));
+    if (!group.others.empty()) result.push_back(std::move(group));
   }
   return result;
 }

@@ -9,15 +9,15 @@
 namespace estimator::greybox::selection {
 
 /// One of the found effects, and the fits in which another effect stands in its place.
-struct Rivalry {
+struct IndistinguishableModels {
   std::string found;
-  std::vector<std::string> others;   ///< best first
-  std::vector<Fitted> explanations;  ///< with `found`, then one for each of the others
+  std::vector<std::string> others;       ///< best first
+  std::vector<FitSummary> explanations;  ///< with `found`, then one for each of the others
 };
 
 /// Empty when every found effect stands alone. Effects that contain a found one as a special case
 /// (a spring so long that it is a constant force) are no rivals.
-[[nodiscard]] std::vector<Rivalry> rivalries(const Workshop& shop, const std::vector<Round>& rounds,
-                                             const Stage& final);
+[[nodiscard]] std::vector<IndistinguishableModels> find_indistinguishable(
+    const SearchContext& context, const std::vector<Round>& rounds, const ModelStage& final);
 
 }  // namespace estimator::greybox::selection

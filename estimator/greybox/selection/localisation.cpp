@@ -46,8 +46,8 @@ double rms_of(const VectorXd& values) {
 }
 
 struct Place {
-  const Workshop& shop;
-  const Stage& stage;
+  const SearchContext& context;
+  const ModelStage& stage;
   const Variables& variables;
 };
 
@@ -69,10 +69,10 @@ MatrixXd disturbance(const Place& at, Form form, const Variable& variable) {
 }
 
 /// What the observer makes of something added to the reading: no model is needed.
-MatrixXd seen_by_observer(const Workshop& shop, MatrixXd added) {
+MatrixXd seen_by_observer(const SearchContext& context, MatrixXd added) {
   for (Index column = 0; column < added.cols(); ++column) {
     Index at = 0;
-    for (const Measured& record : shop.evidence.records) {
+    for (const Dataset& record : context.problem.data.records) {
       std::size_t segment = 0;
       double shifted_m = 0.0;
       for (std::size_t k = 0; k < record.size(); ++k, ++at) {
@@ -82,8 +82,8 @@ MatrixXd seen_by_observer(const Workshop& shop, MatrixXd added) {
           ++segment;
         }
         seen += shifted_m;
-        shifted_m -= record.share(k, kObserver_per_s) * seen;
-        seen *= record.settled[k] != 0 ? -1.0 : 0.0;
+        shifted_m -= record.observer_gain(k, kObserver_per_s) * seen;
+        seen *= record.valid[k] != 0 ? -1.0 : 0.0;
       }
     }
   }
@@ -94,15 +94,16 @@ MatrixXd seen_by_observer(const Workshop& shop, MatrixXd added) {
 MatrixXd signatures(const Place& at, Form form, const Variable& variable) {
   MatrixXd added = disturbance(at, form, variable);
   if (form == Form::reading || form == Form::scale) {
-    return seen_by_observer(at.shop, std::move(added));
+    return seen_by_observer(at.context, std::move(added));
   }
   const bool force = form == Form::force || form == Form::drag;
   const double whole = rms_of(added.rowwise().sum());
   if (!(whole > 0.0)) return MatrixXd::Zero(added.rows(), added.cols());
   const double size = force ? kSmall_N : kSmall_ratio * rms_of(at.variables.command_V);
   added *= size / whole;
-  EvidenceRun run(at.shop.model, at.shop.evidence, at.stage.fitted.searched);
-  const MatrixXd points = at.stage.fitted.x.replicate(1, added.cols());
+  DatasetSimulation run(at.context.problem.model, at.context.problem.data,
+                        at.stage.fitted.parameters);
+  const MatrixXd points = at.stage.fitted.theta.replicate(1, added.cols());
   MatrixXd residuals_m;
   const MatrixXd none;
   run.residuals(points, force ? none : added, force ? added : none, residuals_m);
@@ -125,10 +126,10 @@ class Regression {
       : fitted_(at.stage.fitted), parameters_(fitted_.jacobian.cols()) {
     MatrixXd columns(signatures.rows(), parameters_ + signatures.cols() + 1);
     columns << fitted_.jacobian, signatures, fitted_.residual_m;
-    const Evidence& evidence = at.shop.evidence;
-    const bool holds_out = evidence.scores.sum() > 0.0;
-    fits_ = products(columns, evidence.fits);
-    scores_ = holds_out ? products(columns, evidence.scores) : fits_;
+    const FitDataset& data = at.context.problem.data;
+    const bool holds_out = data.validation_mask.sum() > 0.0;
+    fits_ = products(columns, data.training_mask);
+    scores_ = holds_out ? products(columns, data.validation_mask) : fits_;
   }
 
   /// Held-out squared error that remains, over that without signatures and adjustment.
@@ -148,11 +149,11 @@ class Regression {
     for (Index i = 0; i < all; ++i) {
       const double own = normal(i, i);
       if (i < parameters_) {
-        const auto& parameter = fitted_.searched[static_cast<std::size_t>(i)];
+        const auto& parameter = fitted_.parameters[static_cast<std::size_t>(i)];
         const double sd = parameter.prior_sd;
         if (std::isfinite(sd)) {
           normal(i, i) += 1.0 / (sd * sd);
-          slope[i] += (fitted_.x[i] - parameter.prior_mean) / (sd * sd);
+          slope[i] += (fitted_.theta[i] - parameter.prior_mean) / (sd * sd);
         } else {
           normal(i, i) += 1e-6 * own + 1e-12;
         }
@@ -166,7 +167,7 @@ class Regression {
     return weights;
   }
 
-  const Fitted& fitted_;
+  const FitSummary& fitted_;
   Index parameters_;
   MatrixXd fits_, scores_;
 };
@@ -179,10 +180,10 @@ struct Attempt {
 
 }  // namespace
 
-std::vector<Where> localise(const Workshop& shop, const Stage& stage) {
-  const Variables variables = selection::variables(shop, stage);
-  const Place at{shop, stage, variables};
-  const plant_sim::PlantInfo& plant = *plant_sim::find_plant(shop.model.plant);
+std::vector<Localisation> localise(const SearchContext& context, const ModelStage& stage) {
+  const Variables variables = selection::variables(context, stage);
+  const Place at{context, stage, variables};
+  const plant_sim::PlantInfo& plant = *plant_sim::find_plant(context.problem.model.plant);
   const bool forces =
       std::find(plant.sites.begin(), plant.sites.end(), "force") != plant.sites.end();
   std::vector<Attempt> attempts;
@@ -193,25 +194,26 @@ std::vector<Where> localise(const Workshop& shop, const Stage& stage) {
       attempts.push_back({form, i});
     }
   }
-  in_parallel(attempts.size(), shop.threads, [&](std::size_t i) {
-    if (shop.cancelled()) return;
-    Attempt& attempt = attempts[i];
-    const MatrixXd found = signatures(at, attempt.form, variables.all[attempt.variable]);
+  in_parallel(attempts.size(), context.options.threads, [&](std::size_t i) {
+    if (context.cancelled()) return;
+    Attempt& refine = attempts[i];
+    const MatrixXd found = signatures(at, refine.form, variables.all[refine.variable]);
     if (!found.allFinite()) return;
-    attempt.remaining_ratio = Regression(at, found).remaining_ratio();
+    refine.remaining_ratio = Regression(at, found).remaining_ratio();
   });
-  if (shop.cancelled()) return {};
+  if (context.cancelled()) return {};
   const auto paid = [&](const Attempt& a) {
     const auto pieces = static_cast<double>(variables.all[a.variable].pieces.cols());
     return a.remaining_ratio * (1.0 + kPerPiece * pieces);
   };
   std::stable_sort(attempts.begin(), attempts.end(),
                    [&](const Attempt& a, const Attempt& b) { return paid(a) < paid(b); });
-  std::vector<Where> result;
+  std::vector<Localisation> result;
   for (const Attempt& a : attempts) {
     const std::string& name = variables.all[a.variable].name;
-    const bool named = std::any_of(result.begin(), result.end(),
-                                   [&](const Where& where) { return where.variable == name; });
+    const bool named = std::any_of(result.begin(), result.end(), [&](const Localisation& where) {
+      return where.variable == name;
+    });
     if (named || !std::isfinite(a.remaining_ratio)) continue;
     result.push_back({class_of(a.form), name, 1.0 - a.remaining_ratio});
   }

@@ -26,6 +26,7 @@ namespace estimator::greybox::selection {
 /// One entry for each variable, with the class in which it explains most; best first, of those that
 /// do about as well the one with the fewest pieces. Empty when the workshop's cancel says so. The
 /// stage's Jacobian must be that of its values.
-[[nodiscard]] std::vector<Where> localise(const Workshop& shop, const Stage& stage);
+[[nodiscard]] std::vector<Localisation> localise(const SearchContext& context,
+                                                 const ModelStage& stage);
 
 }  // namespace estimator::greybox::selection

@@ -8,35 +8,35 @@
 
 namespace estimator::greybox::selection {
 
-Workshop for_search(const Workshop& shop) {
-  Workshop search = shop;
-  if (length_s(shop.evidence) > kLong_s) {
-    search.evidence = stretches_of(shop.evidence);
+SearchContext for_search(const SearchContext& context) {
+  SearchContext search = context;
+  if (length_s(context.problem.data) > kLong_s) {
+    search.problem.data = representative_segments(context.problem.data);
   }
   return search;
 }
 
-bool searches_in_part(const Workshop& search, const Workshop& shop) {
-  return search.evidence.size() < shop.evidence.size();
+bool uses_segments(const SearchContext& search, const SearchContext& context) {
+  return search.problem.data.size() < context.problem.data.size();
 }
 
-void carry_to_whole(const Workshop& shop, Ladder& ladder) {
-  ladder.nominal_rms_m = nominal_rms_m(shop);
-  in_parallel(ladder.way.size(), shop.threads, [&](std::size_t i) {
-    Stage& stage = ladder.way[i];
-    stage.fitted =
-        refit(shop, select(stage.fitted, [](const auto&) { return true; }), shop.evidence.fits);
+void refit_to_whole(const SearchContext& context, StructureSearch& search) {
+  search.nominal_rms_m = nominal_rms_m(context);
+  in_parallel(search.path.size(), context.options.threads, [&](std::size_t i) {
+    ModelStage& stage = search.path[i];
+    stage.fitted = refit(context, subset(stage.fitted, [](const auto&) { return true; }),
+                         context.problem.data.training_mask);
     stage.fitted.jacobian.resize(0, 0);  // large, and of no use any more
   });
-  ladder.final = ladder.way.back();
-  ladder.interrupted = ladder.interrupted || shop.cancelled();
+  search.final = search.path.back();
+  search.interrupted = search.interrupted || context.cancelled();
 }
 
-std::string note_of_search(const Workshop& search, const Workshop& shop) {
-  const auto seconds = [](const Workshop& of) {
-    return std::to_string(std::lround(length_s(of.evidence)));
+std::string note_of_search(const SearchContext& search, const SearchContext& context) {
+  const auto seconds = [](const SearchContext& of) {
+    return std::to_string(std::lround(length_s(of.problem.data)));
   };
-  return "effects were searched for in " + seconds(search) + " of " + seconds(shop) +
+  return "effects were searched for in " + seconds(search) + " of " + seconds(context) +
          " s; values and errors are those of all samples";
 }
 

@@ -9,15 +9,15 @@
 namespace estimator::greybox::selection {
 
 /// The same workshop, with stretches for evidence when the records are long (stretches.h).
-[[nodiscard]] Workshop for_search(const Workshop& shop);
+[[nodiscard]] SearchContext for_search(const SearchContext& context);
 /// Whether `search` has stretches only.
-[[nodiscard]] bool searches_in_part(const Workshop& search, const Workshop& shop);
+[[nodiscard]] bool uses_segments(const SearchContext& search, const SearchContext& context);
 
 /// The ladder's way and final model fitted to all of the evidence and scored there. Rounds keep the
 /// errors that they had in the search, and their candidates' residuals.
-void carry_to_whole(const Workshop& shop, Ladder& ladder);
+void refit_to_whole(const SearchContext& context, StructureSearch& search);
 
 /// "effects were searched for in 60 of 600 s; ..."
-[[nodiscard]] std::string note_of_search(const Workshop& search, const Workshop& shop);
+[[nodiscard]] std::string note_of_search(const SearchContext& search, const SearchContext& context);
 
 }  // namespace estimator::greybox::selection

@@ -31,7 +31,7 @@ constexpr double kFar = 3.0;
 
 struct Effect {
   std::string name;
-  std::vector<SearchParameter> own;
+  std::vector<FreeParameter> own;
   MatrixXd sizes;
 };
 
@@ -39,26 +39,27 @@ struct Couple {
   const Effect* first = nullptr;
   const Effect* second = nullptr;
   double cost = std::numeric_limits<double>::infinity();
-  std::vector<SearchParameter> searched;
+  std::vector<FreeParameter> parameters;
   std::vector<VectorXd> starts;  ///< one seen from each base
 };
 
-std::vector<Effect> effects_of(const Workshop& shop, const std::vector<std::string>& without) {
+std::vector<Effect> effects_of(const SearchContext& context,
+                               const std::vector<std::string>& without) {
   std::vector<Effect> effects;
-  for (const plant_sim::EffectInfo& info : shop.absent) {
+  for (const plant_sim::EffectInfo& info : context.problem.candidate_effects) {
     if (std::find(without.begin(), without.end(), info.name) != without.end()) continue;
     Effect effect{info.name, effect_parameters(info, kFirstRefinements), {}};
     if (is_periodic(effect.own)) continue;
-    effect.sizes = trial_sizes(effect.own, shop.evidence).rightCols(kSizes);
+    effect.sizes = trial_sizes(effect.own, context.problem.data).rightCols(kSizes);
     effects.push_back(std::move(effect));
   }
   return effects;
 }
 
 /// The best combination of sizes, the model's own parameters being at `base`.
-void look(const plant_sim::ModelFile& model, const Evidence& evidence, const Projection& projection,
-          const VectorXd& base, Couple& couple) {
-  EvidenceRun run(model, evidence, couple.searched);
+void screened(const plant_sim::ModelFile& model, const FitDataset& data,
+              const Projection& projection, const VectorXd& base, Couple& couple) {
+  DatasetSimulation run(model, data, couple.parameters);
   const Index first = couple.first->sizes.rows();
   const Index second = couple.second->sizes.rows();
   MatrixXd points(base.size() + first + second, kSizes * kSizes);
@@ -70,8 +71,8 @@ void look(const plant_sim::ModelFile& model, const Evidence& evidence, const Pro
   double least = std::numeric_limits<double>::infinity();
   Index best = 0;
   MatrixXd residuals_m;
-  for (Index from = 0; from < points.cols(); from += ModelRun::kLanes) {
-    const Index lanes = std::min<Index>(ModelRun::kLanes, points.cols() - from);
+  for (Index from = 0; from < points.cols(); from += ObserverSimulation::kLanes) {
+    const Index lanes = std::min<Index>(ObserverSimulation::kLanes, points.cols() - from);
     run.residuals(points.middleCols(from, lanes), residuals_m);
     for (Index lane = 0; lane < lanes; ++lane) {
       if (!residuals_m.col(lane).allFinite()) continue;
@@ -86,14 +87,15 @@ void look(const plant_sim::ModelFile& model, const Evidence& evidence, const Pro
 }
 
 /// Looks at all couples from all bases and keeps the `most` best, the best first.
-void look_at(const Workshop& shop, const Evidence& evidence, const Projection& projection,
+void look_at(const SearchContext& context, const FitDataset& data, const Projection& projection,
              const std::array<const VectorXd*, 2>& bases, std::size_t most,
              std::vector<Couple>& couples) {
-  in_parallel(couples.size(), shop.threads, [&](std::size_t i) {
+  in_parallel(couples.size(), context.options.threads, [&](std::size_t i) {
     couples[i].cost = std::numeric_limits<double>::infinity();
     couples[i].starts.clear();
     for (const VectorXd* base : bases) {
-      if (!shop.cancelled()) look(shop.model, evidence, projection, *base, couples[i]);
+      if (!context.cancelled())
+        screened(context.problem.model, data, projection, *base, couples[i]);
     }
   });
   std::stable_sort(couples.begin(), couples.end(),
@@ -101,57 +103,60 @@ void look_at(const Workshop& shop, const Evidence& evidence, const Projection& p
   couples.resize(std::min(couples.size(), most));
 }
 
-Candidate tried(const Workshop& shop, const Stage& stage, const Couple& couple, int iterations) {
-  const Glance glance{couple.first->name, 1.0, couple.searched, couple.starts};
-  Candidate candidate = tried(shop, stage, glance, iterations);
+Candidate quick_fit(const SearchContext& context, const ModelStage& stage, const Couple& couple,
+                    int iterations) {
+  const ScreeningResult screened{couple.first->name, 1.0, couple.parameters, couple.starts};
+  Candidate candidate = quick_fit(context, stage, screened, iterations);
   candidate.effects.push_back(couple.second->name);
   return candidate;
 }
 
 }  // namespace
 
-std::vector<Candidate> two_at_once(const Workshop& shop, const Stage& stage,
+std::vector<Candidate> pair_search(const SearchContext& context, const ModelStage& stage,
                                    const std::vector<std::string>& without) {
-  const std::vector<Effect> effects = effects_of(shop, without);
-  const VectorXd nominal = with_file_values(shop, stage);
-  const std::array<const VectorXd*, 2> bases{&nominal, &stage.fitted.x};
+  const std::vector<Effect> effects = effects_of(context, without);
+  const VectorXd nominal = with_file_values(context, stage);
+  const std::array<const VectorXd*, 2> bases{&nominal, &stage.fitted.theta};
   std::vector<Couple> couples;
   for (std::size_t i = 0; i < effects.size(); ++i) {
     for (std::size_t k = i + 1; k < effects.size(); ++k) {
       Couple couple;
       couple.first = &effects[i];
       couple.second = &effects[k];
-      couple.searched = stage.fitted.searched;
+      couple.parameters = stage.fitted.parameters;
       for (const Effect* effect : {couple.first, couple.second}) {
-        couple.searched.insert(couple.searched.end(), effect->own.begin(), effect->own.end());
+        couple.parameters.insert(couple.parameters.end(), effect->own.begin(), effect->own.end());
       }
       couples.push_back(std::move(couple));
     }
   }
-  const Excerpt excerpt = excerpt_of(shop.evidence, stage.fitted);
-  const Projection there(excerpt.fitted, excerpt.evidence.counts);
-  look_at(shop, excerpt.evidence, there, bases, kLookedAt, couples);
-  look_at(shop, shop.evidence, Projection(stage.fitted, shop.evidence.fits), bases, kFitted,
-          couples);
-  Workshop on_stretch = shop;
-  on_stretch.evidence = excerpt.evidence;
-  const Stage before{stage.added, excerpt.fitted};
+  const ScreeningSegment segment = screening_segment(context.problem.data, stage.fitted);
+  const Projection there(segment.fitted, segment.data.all_mask);
+  look_at(context, segment.data, there, bases, kLookedAt, couples);
+  look_at(context, context.problem.data,
+          Projection(stage.fitted, context.problem.data.training_mask), bases, kFitted, couples);
+  SearchContext on_segment = context;
+  on_segment.problem.data = segment.data;
+  const ModelStage before{stage.added, segment.fitted};
   std::vector<Candidate> begun(couples.size());
-  in_parallel(couples.size(), shop.threads, [&](std::size_t i) {
-    if (!shop.cancelled()) begun[i] = tried(on_stretch, before, couples[i], kFirstIterations);
+  in_parallel(couples.size(), context.options.threads, [&](std::size_t i) {
+    if (!context.cancelled())
+      begun[i] = quick_fit(on_segment, before, couples[i], kFirstIterations);
   });
   double best_m = std::numeric_limits<double>::infinity();
-  for (const Candidate& candidate : begun) best_m = std::min(best_m, candidate.score_rms_m);
+  for (const Candidate& candidate : begun) best_m = std::min(best_m, candidate.validation_rms_m);
   std::vector<Candidate> candidates(couples.size());
   std::atomic<bool> explained = false;
-  in_parallel(couples.size(), shop.threads, [&](std::size_t i) {
-    if (shop.cancelled() || explained || !(begun[i].score_rms_m < kFar * best_m)) return;
-    couples[i].starts = {begun[i].fitted.x};
-    candidates[i] = tried(shop, stage, couples[i], kQuickIterations);
-    if (candidates[i].score_rms_m < kUnexplained * shop.evidence.noise_floor_m) explained = true;
+  in_parallel(couples.size(), context.options.threads, [&](std::size_t i) {
+    if (context.cancelled() || explained || !(begun[i].validation_rms_m < kFar * best_m)) return;
+    couples[i].starts = {begun[i].fitted.theta};
+    candidates[i] = quick_fit(context, stage, couples[i], kQuickIterations);
+    if (candidates[i].validation_rms_m < kUnexplained * context.problem.data.noise_floor_m)
+      explained = true;
   });
   std::erase_if(candidates, [](const Candidate& c) { return !c.fitted_at_all; });
-  finish(shop, stage, candidates);
+  refine_best(context, stage, candidates);
   return candidates;
 }
 

@@ -14,7 +14,8 @@ namespace estimator::greybox::selection {
 
 /// On top of a stage that has its Jacobian, best first by held-out error. `without`: effects that
 /// have been tried with every other one already.
-[[nodiscard]] std::vector<Candidate> two_at_once(const Workshop& shop, const Stage& stage,
+[[nodiscard]] std::vector<Candidate> pair_search(const SearchContext& context,
+                                                 const ModelStage& stage,
                                                  const std::vector<std::string>& without);
 
 }  // namespace estimator::greybox::selection

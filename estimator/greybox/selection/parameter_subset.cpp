@@ -18,52 +18,56 @@ constexpr int kMostStrides = 8;
 
 }  // namespace
 
-void append(Selection& to, const Selection& more) {
+void append(ParameterSubset& to, const ParameterSubset& more) {
   Eigen::VectorXd start(to.start.size() + more.start.size());
   start << to.start, more.start;
   to.start = std::move(start);
-  to.searched.insert(to.searched.end(), more.searched.begin(), more.searched.end());
+  to.parameters.insert(to.parameters.end(), more.parameters.begin(), more.parameters.end());
 }
 
-Fitted refit(const Workshop& shop, const Selection& selection, const Eigen::VectorXd& weights,
-             unsigned threads, double observer_per_s) {
+FitSummary refit(const SearchContext& context, const ParameterSubset& selection,
+                 const Eigen::VectorXd& weights, unsigned threads, double observer_per_s) {
   FitOptions options;
   options.threads = threads;
   options.tolerance = 1e-5;
   options.observer_per_s = observer_per_s;
-  options.cancel = shop.cancel;
-  return fit(shop.model, shop.evidence, weights, selection.searched, selection.start, options);
+  options.cancel = context.options.cancel;
+  return fit(context.problem.model, context.problem.data, weights, selection.parameters,
+             selection.start, options);
 }
 
-Fitted refit_if_hopeful(const Workshop& shop, const Selection& selection, double than_m,
-                        unsigned threads) {
+FitSummary refit_if_hopeful(const SearchContext& context, const ParameterSubset& selection,
+                            double than_m, unsigned threads) {
   FitOptions stride;
   stride.threads = threads;
   stride.max_iterations = kStride;
   stride.passes = 1;
   stride.final_jacobian = false;
-  stride.cancel = shop.cancel;
-  Fitted at;
-  at.x = selection.start;
+  stride.cancel = context.options.cancel;
+  FitSummary at;
+  at.theta = selection.start;
   double before_m = std::numeric_limits<double>::infinity();
   for (int k = 0; k < kMostStrides; ++k) {
-    at = fit(shop.model, shop.evidence, shop.evidence.fits, selection.searched, at.x, stride);
-    const double left_m = at.score_rms_m - kNear * than_m;
+    at = fit(context.problem.model, context.problem.data, context.problem.data.training_mask,
+             selection.parameters, at.theta, stride);
+    const double left_m = at.validation_rms_m - kNear * than_m;
     if (left_m <= 0.0) break;
     const double hopeless = k == 0 ? kHopelessAtFirst : kHopeless;
-    if (at.score_rms_m > hopeless * than_m || left_m > kPatience * (before_m - at.score_rms_m)) {
+    if (at.validation_rms_m > hopeless * than_m ||
+        left_m > kPatience * (before_m - at.validation_rms_m)) {
       return at;
     }
-    before_m = at.score_rms_m;
+    before_m = at.validation_rms_m;
     stride.start_residual_m = at.residual_m;
     stride.start_jacobian = at.jacobian;
   }
-  return refit(shop, {selection.searched, at.x}, shop.evidence.fits, threads);
+  return refit(context, {selection.parameters, at.theta}, context.problem.data.training_mask,
+               threads);
 }
 
-Fitted finished(const Workshop& shop, const Fitted& fitted) {
-  return refit(shop, select(fitted, [](const auto&) { return true; }), shop.evidence.fits,
-               shop.threads);
+FitSummary refit_to_convergence(const SearchContext& context, const FitSummary& fitted) {
+  return refit(context, subset(fitted, [](const auto&) { return true; }),
+               context.problem.data.training_mask, context.options.threads);
 }
 
 }  // namespace estimator::greybox::selection

@@ -30,15 +30,15 @@ std::vector<EffectInfo> absent_effects(const ModelFile& model) {
   return absent;
 }
 
-Workshop workshop(ModelFile model, Evidence evidence) {
-  Workshop result;
-  result.absent = absent_effects(model);
-  result.standing = plant_parameters(model);
-  for (SearchParameter& p : present_parameters(model)) {
-    result.standing.push_back(std::move(p));
+DiagnosisProblem make_problem(ModelFile model, FitDataset data) {
+  DiagnosisProblem result;
+  result.candidate_effects = absent_effects(model);
+  result.plant_parameters = plant_parameters(model);
+  for (FreeParameter& p : present_parameters(model)) {
+    result.plant_parameters.push_back(std::move(p));
   }
   result.model = std::move(model);
-  result.evidence = std::move(evidence);
+  result.data = std::move(data);
   return result;
 }
 

@@ -1,11 +1,14 @@
-// What every step of a diagnosis works with: the model as it was given, the evidence, the effects
-// that may be missing, and who wants to know how it goes.
+// A structure selection: which physical effects does a model lack, judged by records?
+//
+// DiagnosisProblem is the question, DiagnosisOptions how it is answered; every step of the search
+// works on both, as a SearchContext.
 #pragma once
 
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "estimator/greybox/fit.h"
 #include "estimator/greybox/fit_dataset.h"
 #include "estimator/greybox/free_parameter.h"
 #include "plant_sim/library.h"
@@ -13,32 +16,48 @@
 
 namespace estimator::greybox::selection {
 
-/// What is being done, for a line that is renewed while it runs.
+/// State of a running search, for a progress line.
 struct Progress {
   std::string doing;  ///< "round 1: trying friction"
   int done = 0;
   int of = 0;
-  std::string best;  ///< the leading effect so far, may be empty
+  std::string best;  ///< leading effect so far, may be empty
   double best_rms_m = 0.0;
-  std::vector<std::string> expected;  ///< the quick look's ranking, once it is known
+  std::vector<std::string> expected;  ///< ranking by screening, once known
 };
 
-struct Workshop {
+struct DiagnosisProblem {
   plant_sim::ModelFile model;
-  Evidence evidence;
-  std::vector<plant_sim::EffectInfo> absent;  ///< effects that the plant can have and has not
-  std::vector<SearchParameter> standing;      ///< the plant's and present effects' parameters
-  unsigned threads = 2;
-  std::function<void(const Progress&)>
-      progress;                  ///< called from one thread at a time; may be empty
-  std::function<bool()> cancel;  ///< asked from any thread; may be empty
-
-  [[nodiscard]] bool cancelled() const { return cancel && cancel(); }
+  FitDataset data;
+  std::vector<plant_sim::EffectInfo> candidate_effects;  ///< offered by the plant, absent so far
+  std::vector<FreeParameter> plant_parameters;           ///< of the plant and of present effects
 };
 
-/// Effects that the plant can have and that are absent from the model, or neutral in it.
+struct SearchContext;
+
+/// True when some motion would separate explanations that describe the record about equally well;
+/// `names` has one name per explanation. Such a group makes the verdict undetermined.
+using Separable =
+    std::function<bool(const SearchContext&, const std::vector<FitSummary>& explanations,
+                       const std::vector<std::string>& names)>;
+
+struct DiagnosisOptions {
+  unsigned threads = 2;
+  std::function<void(const Progress&)> progress;  ///< serialised calls; may be empty
+  std::function<bool()> cancel;                   ///< called from any thread; may be empty
+  Separable separable;                            ///< empty: no motion separates anything
+};
+
+struct SearchContext {
+  DiagnosisProblem problem;
+  DiagnosisOptions options;
+
+  [[nodiscard]] bool cancelled() const { return options.cancel && options.cancel(); }
+};
+
+/// Effects offered by the plant that are absent from the model, or neutral in it.
 [[nodiscard]] std::vector<plant_sim::EffectInfo> absent_effects(const plant_sim::ModelFile& model);
 
-[[nodiscard]] Workshop workshop(plant_sim::ModelFile model, Evidence evidence);
+[[nodiscard]] DiagnosisProblem make_problem(plant_sim::ModelFile model, FitDataset data);
 
 }  // namespace estimator::greybox::selection

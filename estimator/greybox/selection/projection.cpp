@@ -7,12 +7,12 @@ namespace estimator::greybox::selection {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-Projection::Projection(const Fitted& fitted, const VectorXd& weights)
+Projection::Projection(const FitSummary& fitted, const VectorXd& weights)
     : weights_(weights), jacobian_(fitted.jacobian), per_sigma_(1.0 / fitted.sigma_m) {
   weighted_jacobian_ = weights_.asDiagonal() * fitted.jacobian * per_sigma_;
   Eigen::MatrixXd normal = weighted_jacobian_.transpose() * weighted_jacobian_;
   for (Index i = 0; i < normal.rows(); ++i) {
-    const double sd = fitted.searched[static_cast<std::size_t>(i)].prior_sd;
+    const double sd = fitted.parameters[static_cast<std::size_t>(i)].prior_sd;
     // what neither the record nor a prior holds does not move here
     normal(i, i) += std::isfinite(sd) ? 1.0 / (sd * sd) : 1e-9 * normal(i, i) + 1e-12;
   }

@@ -17,7 +17,7 @@ namespace estimator::greybox::selection {
 class Projection {
  public:
   /// Of a fitted model, over the samples that `weights` (0 or 1) counts.
-  Projection(const Fitted& fitted, const Eigen::VectorXd& weights);
+  Projection(const FitSummary& fitted, const Eigen::VectorXd& weights);
 
   /// With the fitted model's own residual and no signature.
   [[nodiscard]] double cost() const { return cost_; }

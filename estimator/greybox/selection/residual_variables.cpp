@@ -22,9 +22,9 @@ struct Series {
 };
 
 /// Central differences within a segment.
-void differentiate(const Measured& record, Index at, const VectorXd& speed_mps,
+void differentiate(const Dataset& record, Index at, const VectorXd& speed_mps,
                    VectorXd& acceleration_mps2) {
-  for (const Span& span : segments(record)) {
+  for (const SampleRange& span : segments(record)) {
     for (std::size_t k = span.begin; k < span.end; ++k) {
       const std::size_t before = std::max(k, span.begin + 1) - 1;
       const std::size_t after = std::min(k + 1, span.end - 1);
@@ -37,14 +37,14 @@ void differentiate(const Measured& record, Index at, const VectorXd& speed_mps,
   }
 }
 
-Series series(const Workshop& shop, const Stage& stage) {
-  const Index size = shop.evidence.size();
+Series series(const SearchContext& context, const ModelStage& stage) {
+  const Index size = context.problem.data.size();
   Series s{VectorXd(size), VectorXd(size), VectorXd(size), VectorXd(size), VectorXd(size)};
   MatrixXd ignored;
   Index at = 0;
-  for (const Measured& record : shop.evidence.records) {
-    ModelRun run(shop.model, record, stage.fitted.searched);
-    run.residuals(stage.fitted.x, ignored);
+  for (const Dataset& record : context.problem.data.records) {
+    ObserverSimulation run(context.problem.model, record, stage.fitted.parameters);
+    run.residuals(stage.fitted.theta, ignored);
     for (std::size_t k = 0; k < record.size(); ++k) {
       const Index row = at + static_cast<Index>(k);
       s.command_V[row] = record.u_V[k];
@@ -105,9 +105,9 @@ MatrixXd pieces_of(const VectorXd& values, const VectorXd& counts) {
   return pieces;
 }
 
-Variables variables(const Workshop& shop, const Stage& stage) {
-  const VectorXd& counts = shop.evidence.counts;
-  const Series s = series(shop, stage);
+Variables variables(const SearchContext& context, const ModelStage& stage) {
+  const VectorXd& counts = context.problem.data.all_mask;
+  const Series s = series(context, stage);
   Variables result;
   const auto add = [&](const char* name, MatrixXd pieces) {
     if (pieces.cols() > 0) result.all.push_back({name, std::move(pieces), {}});

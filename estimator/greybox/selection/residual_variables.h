@@ -35,7 +35,7 @@ struct Variables {
 /// The command as measured; position, speed and acceleration of the stage's model, because a
 /// measured position carries the very noise that it would then explain; time since each record
 /// began.
-[[nodiscard]] Variables variables(const Workshop& shop, const Stage& stage);
+[[nodiscard]] Variables variables(const SearchContext& context, const ModelStage& stage);
 
 /// h_i of one variable over the samples that `counts` (0 or 1) tells. At least two columns, or
 /// none where the variable does not vary.

@@ -21,35 +21,35 @@ constexpr double kFurthest = 3.0;
 /// Wavelengths of the coarse scan that are looked at more closely.
 constexpr std::size_t kFollowed = 4;
 
-struct Promise {
+struct ScoredStart {
   double cost = std::numeric_limits<double>::infinity();
   VectorXd start;
 };
 
 /// Where to look from, and the residual there without any further effect.
 struct Base {
-  VectorXd x;
+  VectorXd theta;
   VectorXd residual_m;
 };
 
-std::vector<Base> bases_of(const Workshop& shop, const Stage& stage) {
-  const VectorXd nominal = with_file_values(shop, stage);
-  EvidenceRun run(shop.model, shop.evidence, stage.fitted.searched);
+std::vector<Base> bases_of(const SearchContext& context, const ModelStage& stage) {
+  const VectorXd nominal = with_file_values(context, stage);
+  DatasetSimulation run(context.problem.model, context.problem.data, stage.fitted.parameters);
   MatrixXd residual_m;
   run.residuals(nominal, residual_m);
-  return {{stage.fitted.x, stage.fitted.residual_m}, {nominal, residual_m.col(0)}};
+  return {{stage.fitted.theta, stage.fitted.residual_m}, {nominal, residual_m.col(0)}};
 }
 
 /// The best of several sizes of an effect, seen from one base.
-Promise look(EvidenceRun& run, const Projection& projection, const Base& base,
-             const std::vector<SearchParameter>& own, const MatrixXd& sizes) {
-  Promise best;
+ScoredStart look(DatasetSimulation& run, const Projection& projection, const Base& base,
+                 const std::vector<FreeParameter>& own, const MatrixXd& sizes) {
+  ScoredStart best;
   MatrixXd residuals_m;
-  const Index base_size = base.x.size();
-  for (Index from = 0; from < sizes.cols(); from += ModelRun::kLanes) {
-    const Index lanes = std::min<Index>(ModelRun::kLanes, sizes.cols() - from);
+  const Index base_size = base.theta.size();
+  for (Index from = 0; from < sizes.cols(); from += ObserverSimulation::kLanes) {
+    const Index lanes = std::min<Index>(ObserverSimulation::kLanes, sizes.cols() - from);
     MatrixXd points(base_size + sizes.rows(), lanes);
-    points.topRows(base_size) = base.x.replicate(1, lanes);
+    points.topRows(base_size) = base.theta.replicate(1, lanes);
     points.bottomRows(sizes.rows()) = sizes.middleCols(from, lanes);
     run.residuals(points, residuals_m);
     for (Index lane = 0; lane < lanes; ++lane) {
@@ -76,22 +76,23 @@ struct Wave {
 };
 
 /// How well waves of so many turns over the motion explain a residual, best first.
-std::vector<Wave> waves_at(const Workshop& shop, const Evidence& evidence,
+std::vector<Wave> waves_at(const SearchContext& context, const FitDataset& data,
                            const Projection& projection, const Base& base,
-                           const std::vector<SearchParameter>& searched,
-                           const std::vector<SearchParameter>& own,
+                           const std::vector<FreeParameter>& parameters,
+                           const std::vector<FreeParameter>& own,
                            const std::vector<double>& turns) {
-  constexpr std::size_t kTogether = ModelRun::kLanes / 2;
-  EvidenceRun run(shop.model, evidence, searched);
+  constexpr std::size_t kTogether = ObserverSimulation::kLanes / 2;
+  DatasetSimulation run(context.problem.model, data, parameters);
   std::vector<Wave> found;
   MatrixXd residuals_m;
   for (std::size_t from = 0; from < turns.size(); from += kTogether) {
     const std::size_t count = std::min(kTogether, turns.size() - from);
-    MatrixXd points(base.x.size() + static_cast<Index>(own.size()), static_cast<Index>(2 * count));
-    points.topRows(base.x.size()) = base.x.replicate(1, points.cols());
+    MatrixXd points(base.theta.size() + static_cast<Index>(own.size()),
+                    static_cast<Index>(2 * count));
+    points.topRows(base.theta.size()) = base.theta.replicate(1, points.cols());
     for (std::size_t i = 0; i < count; ++i) {
       points.bottomRows(static_cast<Index>(own.size())).middleCols(static_cast<Index>(2 * i), 2) =
-          waves(own, shop.evidence, turns[from + i]);
+          waves(own, context.problem.data, turns[from + i]);
     }
     run.residuals(points, residuals_m);
     for (std::size_t i = 0; i < count; ++i) {
@@ -112,55 +113,57 @@ std::vector<Wave> waves_at(const Workshop& shop, const Evidence& evidence,
 
 /// The best waves: all that the motion resolves on a short stretch of the record, then finer on the
 /// whole of it about the most promising.
-std::vector<Wave> scanned(const Workshop& shop, const Stage& stage, const Projection& projection,
-                          const std::vector<SearchParameter>& searched,
-                          const std::vector<SearchParameter>& own) {
-  const Excerpt excerpt = excerpt_of(shop.evidence, stage.fitted);
-  const Projection there(excerpt.fitted, excerpt.evidence.counts);
+std::vector<Wave> scanned(const SearchContext& context, const ModelStage& stage,
+                          const Projection& projection,
+                          const std::vector<FreeParameter>& parameters,
+                          const std::vector<FreeParameter>& own) {
+  const ScreeningSegment segment = screening_segment(context.problem.data, stage.fitted);
+  const Projection there(segment.fitted, segment.data.all_mask);
   const std::vector<Wave> coarse =
-      waves_at(shop, excerpt.evidence, there, {stage.fitted.x, excerpt.fitted.residual_m}, searched,
-               own, turns_over(shop.evidence));
+      waves_at(context, segment.data, there, {stage.fitted.theta, segment.fitted.residual_m},
+               parameters, own, turns_over(context.problem.data));
   std::vector<double> finer;
   for (std::size_t i = 0; i < std::min(kFollowed, coarse.size()); ++i) {
     for (const double by : {-0.375, -0.25, -0.125, 0.0, 0.125, 0.25, 0.375}) {
       finer.push_back(coarse[i].turns + by);
     }
   }
-  return waves_at(shop, shop.evidence, projection, {stage.fitted.x, stage.fitted.residual_m},
-                  searched, own, finer);
+  return waves_at(context, context.problem.data, projection,
+                  {stage.fitted.theta, stage.fitted.residual_m}, parameters, own, finer);
 }
 
-Glance glance(const Workshop& shop, const Stage& stage, const std::vector<Base>& bases,
-              const Projection& projection, const plant_sim::EffectInfo& effect) {
-  Glance result;
+ScreeningResult screen_effect(const SearchContext& context, const ModelStage& stage,
+                              const std::vector<Base>& bases, const Projection& projection,
+                              const plant_sim::EffectInfo& effect) {
+  ScreeningResult result;
   result.effect = effect.name;
-  result.searched = stage.fitted.searched;
-  const std::vector<SearchParameter> own = effect_parameters(effect, kFirstRefinements);
-  result.searched.insert(result.searched.end(), own.begin(), own.end());
+  result.parameters = stage.fitted.parameters;
+  const std::vector<FreeParameter> own = effect_parameters(effect, kFirstRefinements);
+  result.parameters.insert(result.parameters.end(), own.begin(), own.end());
   const auto own_size = static_cast<Index>(own.size());
-  std::vector<Promise> promises;
+  std::vector<ScoredStart> starts;
   if (is_periodic(own)) {
-    std::vector<Wave> found = scanned(shop, stage, projection, result.searched, own);
+    std::vector<Wave> found = scanned(context, stage, projection, result.parameters, own);
     if (!found.empty()) {
-      VectorXd start(stage.fitted.x.size() + own_size);
-      start << stage.fitted.x, found.front().own;
-      const auto first = static_cast<std::ptrdiff_t>(stage.fitted.searched.size());
+      VectorXd start(stage.fitted.theta.size() + own_size);
+      start << stage.fitted.theta, found.front().own;
+      const auto first = static_cast<std::ptrdiff_t>(stage.fitted.parameters.size());
       hold_wavelength(effect, found.front().own,
-                      {result.searched.begin() + first, result.searched.end()});
-      promises.push_back({found.front().cost, std::move(start)});
+                      {result.parameters.begin() + first, result.parameters.end()});
+      starts.push_back({found.front().cost, std::move(start)});
     }
   } else {
-    const MatrixXd sizes = trial_sizes(own, shop.evidence);
-    EvidenceRun run(shop.model, shop.evidence, result.searched);
-    for (const Base& base : bases) promises.push_back(look(run, projection, base, own, sizes));
+    const MatrixXd sizes = trial_sizes(own, context.problem.data);
+    DatasetSimulation run(context.problem.model, context.problem.data, result.parameters);
+    for (const Base& base : bases) starts.push_back(look(run, projection, base, own, sizes));
   }
-  std::stable_sort(promises.begin(), promises.end(),
-                   [](const Promise& a, const Promise& b) { return a.cost < b.cost; });
+  std::stable_sort(starts.begin(), starts.end(),
+                   [](const ScoredStart& a, const ScoredStart& b) { return a.cost < b.cost; });
   double least = projection.cost();
-  for (Promise& promise : promises) {
-    if (promise.start.size() == 0) continue;
-    least = std::min(least, promise.cost);
-    result.starts.push_back(std::move(promise.start));
+  for (ScoredStart& scored : starts) {
+    if (scored.start.size() == 0) continue;
+    least = std::min(least, scored.cost);
+    result.starts.push_back(std::move(scored.start));
   }
   result.expected_ratio = std::sqrt(std::max(least, 0.0) / projection.cost());
   return result;
@@ -168,41 +171,44 @@ Glance glance(const Workshop& shop, const Stage& stage, const std::vector<Base>&
 
 }  // namespace
 
-VectorXd with_file_values(const Workshop& shop, const Stage& stage) {
-  VectorXd point = stage.fitted.x;
-  const VectorXd file = start_of(shop.model, shop.standing);
+VectorXd with_file_values(const SearchContext& context, const ModelStage& stage) {
+  VectorXd point = stage.fitted.theta;
+  const VectorXd file = start_of(context.problem.model, context.problem.plant_parameters);
   point.head(file.size()) = file;
   return point;
 }
 
-std::vector<Glance> glances_at(const Workshop& shop, const Stage& stage,
-                               const std::vector<plant_sim::EffectInfo>& effects,
-                               const std::function<void(const std::string&)>& looked) {
-  if (shop.cancelled() || stage.fitted.jacobian.size() == 0) return {};
-  const std::vector<Base> bases = bases_of(shop, stage);
-  const Projection projection(stage.fitted, shop.evidence.fits);
-  std::vector<Glance> glances(effects.size());
-  in_parallel(effects.size(), shop.threads, [&](std::size_t i) {
-    if (shop.cancelled()) return;
-    glances[i] = glance(shop, stage, bases, projection, effects[i]);
-    if (looked) looked(effects[i].name);
+std::vector<ScreeningResult> screen(const SearchContext& context, const ModelStage& stage,
+                                    const std::vector<plant_sim::EffectInfo>& effects,
+                                    const std::function<void(const std::string&)>& on_screened) {
+  if (context.cancelled() || stage.fitted.jacobian.size() == 0) return {};
+  const std::vector<Base> bases = bases_of(context, stage);
+  const Projection projection(stage.fitted, context.problem.data.training_mask);
+  std::vector<ScreeningResult> screened(effects.size());
+  in_parallel(effects.size(), context.options.threads, [&](std::size_t i) {
+    if (context.cancelled()) return;
+    screened[i] = screen_effect(context, stage, bases, projection, effects[i]);
+    if (on_screened) on_screened(effects[i].name);
   });
-  std::erase_if(glances, [](const Glance& look) { return look.effect.empty(); });
-  std::stable_sort(glances.begin(), glances.end(), [](const Glance& a, const Glance& b) {
-    return a.expected_ratio < b.expected_ratio;
-  });
-  return glances;
+  std::erase_if(screened, [](const ScreeningResult& look) { return look.effect.empty(); });
+  std::stable_sort(screened.begin(), screened.end(),
+                   [](const ScreeningResult& a, const ScreeningResult& b) {
+                     return a.expected_ratio < b.expected_ratio;
+                   });
+  return screened;
 }
 
-Trial attempt(const Workshop& shop, const Glance& glance, const FitOptions& options) {
-  Trial best;
-  best.effect = glance.effect;
-  best.fitted.fit_rms_m = std::numeric_limits<double>::infinity();
-  for (const VectorXd& start : glance.starts) {
-    Fitted fitted =
-        fit(shop.model, shop.evidence, shop.evidence.fits, glance.searched, start, options);
-    if (fitted.fit_rms_m < best.fitted.fit_rms_m) best.fitted = std::move(fitted);
-    if (shop.cancelled()) break;
+RefinedCandidate refine(const SearchContext& context, const ScreeningResult& screened,
+                        const FitOptions& options) {
+  RefinedCandidate best;
+  best.effect = screened.effect;
+  best.fitted.training_rms_m = std::numeric_limits<double>::infinity();
+  for (const VectorXd& start : screened.starts) {
+    FitSummary fitted =
+        fit(context.problem.model, context.problem.data, context.problem.data.training_mask,
+            screened.parameters, start, options);
+    if (fitted.training_rms_m < best.fitted.training_rms_m) best.fitted = std::move(fitted);
+    if (context.cancelled()) break;
   }
   return best;
 }

@@ -20,35 +20,38 @@ namespace estimator::greybox::selection {
 inline constexpr int kFirstRefinements = 2;
 
 /// A model as far as it has come: effects added, and all parameters fitted.
-struct Stage {
+struct ModelStage {
   std::vector<std::string> added;  ///< in order
-  Fitted fitted;
+  FitSummary fitted;
 };
 
 /// The stage's search values, those of the plant and its present effects as in the model file.
-[[nodiscard]] Eigen::VectorXd with_file_values(const Workshop& shop, const Stage& stage);
+[[nodiscard]] Eigen::VectorXd with_file_values(const SearchContext& context,
+                                               const ModelStage& stage);
 
-struct Glance {
+struct ScreeningResult {
   std::string effect;
   /// Expected score RMS over that of the stage: 1 = of no use.
   double expected_ratio = 1.0;
-  std::vector<SearchParameter> searched;  ///< the stage's, then the effect's
+  std::vector<FreeParameter> parameters;  ///< the stage's, then the effect's
   std::vector<Eigen::VectorXd> starts;    ///< where to begin, the most promising first
 };
 
 /// A quick look at each effect, the most promising first. It looks from the stage's own parameters
 /// and from the model file's: a single start misses effects that the fit of the stage has bent its
 /// parameters to follow. `looked` is called after each, from any thread; it may be empty.
-[[nodiscard]] std::vector<Glance> glances_at(
-    const Workshop& shop, const Stage& stage, const std::vector<plant_sim::EffectInfo>& effects,
-    const std::function<void(const std::string&)>& looked = {});
+[[nodiscard]] std::vector<ScreeningResult> screen(
+    const SearchContext& context, const ModelStage& stage,
+    const std::vector<plant_sim::EffectInfo>& effects,
+    const std::function<void(const std::string&)>& on_screened = {});
 
-struct Trial {
+struct RefinedCandidate {
   std::string effect;
-  Fitted fitted;
+  FitSummary fitted;
 };
 
 /// Fits from every start of the glance and keeps the best by the fitted samples.
-[[nodiscard]] Trial attempt(const Workshop& shop, const Glance& glance, const FitOptions& options);
+[[nodiscard]] RefinedCandidate refine(const SearchContext& context, const ScreeningResult& screened,
+                                      const FitOptions& options);
 
 }  // namespace estimator::greybox::selection

@@ -6,14 +6,14 @@
 
 namespace estimator::greybox::selection {
 
-inline constexpr double kExcerpt_s = 8.0;
+inline constexpr double kScreeningSegment_s = 8.0;
 
-struct Excerpt {
-  Evidence evidence;  ///< all of it counts
-  Fitted fitted;      ///< the model fitted to the whole, its residual there
+struct ScreeningSegment {
+  FitDataset data;    ///< all of it counts
+  FitSummary fitted;  ///< the model fitted to the whole, its residual there
 };
 
 /// The stretch of the first record with the longest way, kExcerpt_s long or the whole record.
-[[nodiscard]] Excerpt excerpt_of(const Evidence& evidence, const Fitted& fitted);
+[[nodiscard]] ScreeningSegment screening_segment(const FitDataset& data, const FitSummary& fitted);
 
 }  // namespace estimator::greybox::selection

@@ -37,28 +37,28 @@ constexpr std::size_t kAllStarts = 1000;
 constexpr std::size_t kPairable = 5;
 constexpr double kComparedBlock_s = 1.0;
 
-FitOptions quick(const Workshop& shop) {
+FitOptions quick(const SearchContext& context) {
   FitOptions options;
   options.max_iterations = kQuickIterations;
   options.tolerance = kQuickTolerance;
   options.final_jacobian = false;
-  options.cancel = shop.cancel;
+  options.cancel = context.options.cancel;
   return options;
 }
 
 /// Tells the workshop how a round goes; from any thread.
 class Reporter {
  public:
-  Reporter(const Workshop& shop, int round, std::size_t tasks) : shop_(&shop) {
+  Reporter(const SearchContext& context, int round, std::size_t tasks) : context_(&context) {
     begin_ = "round " + std::to_string(round) + ": ";
     progress_.of = static_cast<int>(tasks);
   }
-  void looked(const std::string& effect) { tell("looking at " + effect, nullptr); }
-  void expect(const std::vector<Glance>& glances) {
+  void on_screened(const std::string& effect) { tell("looking at " + effect, nullptr); }
+  void expect(const std::vector<ScreeningResult>& screened) {
     const std::lock_guard lock(mutex_);
-    for (const Glance& look : glances) progress_.expected.push_back(look.effect);
+    for (const ScreeningResult& one : screened) progress_.expected.push_back(one.effect);
   }
-  void tried(const Candidate& candidate) {
+  void on_fitted(const Candidate& candidate) {
     tell("trying " + candidate.effects.front(), candidate.fitted_at_all ? &candidate : nullptr);
   }
 
@@ -68,27 +68,27 @@ class Reporter {
     ++progress_.done;
     progress_.doing = begin_ + doing;
     if (finished != nullptr &&
-        (progress_.best.empty() || finished->score_rms_m < progress_.best_rms_m)) {
+        (progress_.best.empty() || finished->validation_rms_m < progress_.best_rms_m)) {
       progress_.best = finished->effects.front();
-      progress_.best_rms_m = finished->score_rms_m;
+      progress_.best_rms_m = finished->validation_rms_m;
     }
-    if (shop_->progress) shop_->progress(progress_);
+    if (context_->options.progress) context_->options.progress(progress_);
   }
 
-  const Workshop* shop_;
+  const SearchContext* context_;
   std::string begin_;
   std::mutex mutex_;
   Progress progress_;
 };
 
-Candidate candidate_of(const Workshop& shop, const Stage& stage, const Glance& glance,
-                       Trial trial) {
+Candidate candidate_of(const SearchContext& context, const ModelStage& stage,
+                       const ScreeningResult& screened, RefinedCandidate trial) {
   Candidate candidate;
-  candidate.effects = {glance.effect};
-  candidate.expected_ratio = glance.expected_ratio;
-  candidate.score_rms_m = trial.fitted.score_rms_m;
+  candidate.effects = {screened.effect};
+  candidate.expected_ratio = screened.expected_ratio;
+  candidate.validation_rms_m = trial.fitted.validation_rms_m;
   candidate.fitted_at_all = true;
-  candidate.p_value = chance(shop, stage.fitted, trial.fitted);
+  candidate.p_value = chance(context, stage.fitted, trial.fitted);
   candidate.fitted = std::move(trial.fitted);
   return candidate;
 }
@@ -96,59 +96,64 @@ Candidate candidate_of(const Workshop& shop, const Stage& stage, const Glance& g
 void sort_by_score(std::vector<Candidate>& candidates) {
   std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
     if (a.fitted_at_all != b.fitted_at_all) return a.fitted_at_all;
-    return a.fitted_at_all ? a.score_rms_m < b.score_rms_m : a.expected_ratio < b.expected_ratio;
+    return a.fitted_at_all ? a.validation_rms_m < b.validation_rms_m
+                           : a.expected_ratio < b.expected_ratio;
   });
 }
 
 }  // namespace
 
-double chance(const Workshop& shop, const Fitted& earlier, const Fitted& later) {
-  const auto scored = [&](const Fitted& fitted) {
+double chance(const SearchContext& context, const FitSummary& earlier, const FitSummary& later) {
+  const auto scored = [&](const FitSummary& fitted) {
     std::vector<double> series(fitted.residual_m.data(),
                                fitted.residual_m.data() + fitted.residual_m.size());
     for (std::size_t i = 0; i < series.size(); ++i) {
-      if (shop.evidence.scores[static_cast<Index>(i)] == 0.0) series[i] = std::nan("");
+      if (context.problem.data.validation_mask[static_cast<Index>(i)] == 0.0)
+        series[i] = std::nan("");
     }
     return series;
   };
-  const int block =
-      std::max(8, static_cast<int>(std::lround(kComparedBlock_s / shop.evidence.sample_time_s)));
+  const int block = std::max(
+      8, static_cast<int>(std::lround(kComparedBlock_s / context.problem.data.sample_time_s)));
   const estimator::residual::DieboldMarianoResult comparison =
       estimator::residual::diebold_mariano_test(scored(earlier), scored(later), block);
   if (!std::isfinite(comparison.p)) return 1.0;
   return comparison.z > 0.0 ? 0.5 * comparison.p : 1.0 - 0.5 * comparison.p;
 }
 
-Candidate tried(const Workshop& shop, const Stage& stage, const Glance& glance, int iterations) {
-  FitOptions options = quick(shop);
+Candidate quick_fit(const SearchContext& context, const ModelStage& stage,
+                    const ScreeningResult& screened, int iterations) {
+  FitOptions options = quick(context);
   options.max_iterations = iterations;
-  return candidate_of(shop, stage, glance, attempt(shop, glance, options));
+  return candidate_of(context, stage, screened, refine(context, screened, options));
 }
 
-void finish(const Workshop& shop, const Stage& stage, std::vector<Candidate>& candidates) {
+void refine_best(const SearchContext& context, const ModelStage& stage,
+                 std::vector<Candidate>& candidates) {
   sort_by_score(candidates);
   if (candidates.empty()) return;
-  const double best_m = candidates.front().score_rms_m;
+  const double best_m = candidates.front().validation_rms_m;
   std::size_t contenders = 0;
   while (contenders < std::min(kMostContenders, candidates.size()) &&
          candidates[contenders].fitted_at_all &&
-         candidates[contenders].score_rms_m <= (1.0 + kContender) * best_m &&
-         candidates[contenders].score_rms_m <=
-             (1.0 - 0.5 * kWorthwhile) * stage.fitted.score_rms_m) {
+         candidates[contenders].validation_rms_m <= (1.0 + kContender) * best_m &&
+         candidates[contenders].validation_rms_m <=
+             (1.0 - 0.5 * kWorthwhile) * stage.fitted.validation_rms_m) {
     ++contenders;
   }
   FitOptions options;
   options.max_iterations = kThoroughIterations;
   options.tolerance = kThoroughTolerance;
-  options.cancel = shop.cancel;
-  in_parallel(contenders, shop.threads, [&](std::size_t i) {
+  options.cancel = context.options.cancel;
+  in_parallel(contenders, context.options.threads, [&](std::size_t i) {
     Candidate& candidate = candidates[i];
-    Fitted fitted = fit(shop.model, shop.evidence, shop.evidence.fits, candidate.fitted.searched,
-                        candidate.fitted.x, options);
-    if (fitted.fit_rms_m > candidate.fitted.fit_rms_m * (1.0 + 1e-3)) return;
+    FitSummary fitted =
+        fit(context.problem.model, context.problem.data, context.problem.data.training_mask,
+            candidate.fitted.parameters, candidate.fitted.theta, options);
+    if (fitted.training_rms_m > candidate.fitted.training_rms_m * (1.0 + 1e-3)) return;
     candidate.fitted = std::move(fitted);
-    candidate.score_rms_m = candidate.fitted.score_rms_m;
-    candidate.p_value = chance(shop, stage.fitted, candidate.fitted);
+    candidate.validation_rms_m = candidate.fitted.validation_rms_m;
+    candidate.p_value = chance(context, stage.fitted, candidate.fitted);
   });
   sort_by_score(candidates);
   for (std::size_t i = contenders; i < candidates.size(); ++i) {
@@ -156,71 +161,74 @@ void finish(const Workshop& shop, const Stage& stage, std::vector<Candidate>& ca
   }
 }
 
-Stage with(const Stage& stage, const Candidate& candidate) {
-  Stage next = stage;
+ModelStage with(const ModelStage& stage, const Candidate& candidate) {
+  ModelStage next = stage;
   next.added.insert(next.added.end(), candidate.effects.begin(), candidate.effects.end());
   next.fitted = candidate.fitted;
   return next;
 }
 
-Round single_round(const Workshop& shop, const Stage& stage, int number) {
+Round single_round(const SearchContext& context, const ModelStage& stage, int number) {
   Round round;
   round.before = stage;
   std::vector<plant_sim::EffectInfo> effects;
-  for (const plant_sim::EffectInfo& effect : shop.absent) {
+  for (const plant_sim::EffectInfo& effect : context.problem.candidate_effects) {
     if (std::find(stage.added.begin(), stage.added.end(), effect.name) == stage.added.end()) {
       effects.push_back(effect);
     }
   }
-  Reporter reporter(shop, number, 2 * effects.size());
+  Reporter reporter(context, number, 2 * effects.size());
   const auto begin = std::chrono::steady_clock::now();
-  const std::vector<Glance> glances =
-      glances_at(shop, stage, effects, [&](const std::string& effect) { reporter.looked(effect); });
-  round.looked_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  reporter.expect(glances);
-  const bool at_floor = stage.fitted.score_rms_m < kAtFloor * shop.evidence.noise_floor_m;
-  round.candidates.resize(glances.size());
+  const std::vector<ScreeningResult> screened = screen(
+      context, stage, effects, [&](const std::string& effect) { reporter.on_screened(effect); });
+  round.screening_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  reporter.expect(screened);
+  const bool at_floor =
+      stage.fitted.validation_rms_m < kAtFloor * context.problem.data.noise_floor_m;
+  round.candidates.resize(screened.size());
   std::atomic<bool> explained = false;
   const auto work = [&](std::size_t i, std::size_t first_start, std::size_t starts) {
-    Glance look = glances[i];
-    look.starts.erase(look.starts.begin(),
-                      look.starts.begin() + static_cast<std::ptrdiff_t>(first_start));
-    look.starts.resize(std::min(look.starts.size(), starts));
-    if (shop.cancelled() || look.starts.empty()) return;
-    FitOptions options = quick(shop);
+    ScreeningResult result = screened[i];
+    result.starts.erase(result.starts.begin(),
+                        result.starts.begin() + static_cast<std::ptrdiff_t>(first_start));
+    result.starts.resize(std::min(result.starts.size(), starts));
+    if (context.cancelled() || result.starts.empty()) return;
+    FitOptions options = quick(context);
     // once the record is explained, others only have to show whether they come near
     if (explained) options.max_iterations = kGlimpseIterations;
-    Candidate found = candidate_of(shop, stage, look, attempt(shop, look, options));
+    Candidate found = candidate_of(context, stage, result, refine(context, result, options));
     Candidate& candidate = round.candidates[i];
-    if (!candidate.fitted_at_all || found.fitted.fit_rms_m < candidate.fitted.fit_rms_m) {
+    if (!candidate.fitted_at_all || found.fitted.training_rms_m < candidate.fitted.training_rms_m) {
       candidate = std::move(found);
     }
-    if (candidate.score_rms_m < kUnexplained * shop.evidence.noise_floor_m) explained = true;
+    if (candidate.validation_rms_m < kUnexplained * context.problem.data.noise_floor_m)
+      explained = true;
   };
-  in_parallel(glances.size(), shop.threads, [&](std::size_t i) {
-    round.candidates[i].effects = {glances[i].effect};
-    round.candidates[i].expected_ratio = glances[i].expected_ratio;
-    const bool hopeless = (at_floor && glances[i].expected_ratio > 1.0 - kExpectable) ||
+  in_parallel(screened.size(), context.options.threads, [&](std::size_t i) {
+    round.candidates[i].effects = {screened[i].effect};
+    round.candidates[i].expected_ratio = screened[i].expected_ratio;
+    const bool hopeless = (at_floor && screened[i].expected_ratio > 1.0 - kExpectable) ||
                           (!stage.added.empty() && i >= kLookedThrough);
     if (!hopeless) work(i, 0, 1);
-    reporter.tried(round.candidates[i]);
+    reporter.on_fitted(round.candidates[i]);
   });
   double best_m = std::numeric_limits<double>::infinity();
   for (const Candidate& candidate : round.candidates) {
-    best_m = std::min(best_m, candidate.score_rms_m);
+    best_m = std::min(best_m, candidate.validation_rms_m);
   }
-  in_parallel(glances.size(), shop.threads, [&](std::size_t i) {
+  in_parallel(screened.size(), context.options.threads, [&](std::size_t i) {
     const Candidate& candidate = round.candidates[i];
-    const bool far = explained && candidate.score_rms_m > kFar * best_m;
+    const bool far = explained && candidate.validation_rms_m > kFar * best_m;
     // later stages have bent their parameters less
     const bool later = !stage.added.empty() && i >= kAgain;
     if (candidate.fitted_at_all && !far && !later) work(i, 1, kAllStarts);
   });
-  finish(shop, stage, round.candidates);
+  refine_best(context, stage, round.candidates);
   return round;
 }
 
-std::vector<Candidate> pair_round(const Workshop& shop, const Round& singles) {
+std::vector<Candidate> pair_round(const SearchContext& context, const Round& singles) {
   const std::size_t count = std::min(kPairable, singles.candidates.size());
   struct Pair {
     std::size_t first, second;
@@ -230,24 +238,24 @@ std::vector<Candidate> pair_round(const Workshop& shop, const Round& singles) {
     for (std::size_t k = i + 1; k < count; ++k) pairs.push_back({i, k});
   }
   std::vector<Candidate> candidates(pairs.size());
-  const auto base = static_cast<Index>(singles.before.fitted.searched.size());
-  in_parallel(pairs.size(), shop.threads, [&](std::size_t i) {
+  const auto base = static_cast<Index>(singles.before.fitted.parameters.size());
+  in_parallel(pairs.size(), context.options.threads, [&](std::size_t i) {
     const Candidate& first = singles.candidates[pairs[i].first];
     const Candidate& second = singles.candidates[pairs[i].second];
-    if (shop.cancelled() || !first.fitted_at_all || !second.fitted_at_all) return;
-    Glance look;
-    look.effect = first.effects.front();
-    look.searched = first.fitted.searched;
-    look.searched.insert(look.searched.end(), second.fitted.searched.begin() + base,
-                         second.fitted.searched.end());
-    VectorXd start(static_cast<Index>(look.searched.size()));
-    start << first.fitted.x, second.fitted.x.tail(second.fitted.x.size() - base);
-    look.starts = {start};
-    candidates[i] = tried(shop, singles.before, look);
+    if (context.cancelled() || !first.fitted_at_all || !second.fitted_at_all) return;
+    ScreeningResult screened;
+    screened.effect = first.effects.front();
+    screened.parameters = first.fitted.parameters;
+    screened.parameters.insert(screened.parameters.end(), second.fitted.parameters.begin() + base,
+                               second.fitted.parameters.end());
+    VectorXd start(static_cast<Index>(screened.parameters.size()));
+    start << first.fitted.theta, second.fitted.theta.tail(second.fitted.theta.size() - base);
+    screened.starts = {start};
+    candidates[i] = quick_fit(context, singles.before, screened);
     candidates[i].effects.push_back(second.effects.front());
   });
   std::erase_if(candidates, [](const Candidate& c) { return !c.fitted_at_all; });
-  finish(shop, singles.before, candidates);
+  refine_best(context, singles.before, candidates);
   return candidates;
 }
 

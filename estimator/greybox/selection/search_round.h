@@ -10,18 +10,21 @@ namespace estimator::greybox::selection {
 /// Of a quick fit.
 inline constexpr int kQuickIterations = 8;
 
-[[nodiscard]] Round single_round(const Workshop& shop, const Stage& stage, int number);
+[[nodiscard]] Round single_round(const SearchContext& context, const ModelStage& stage, int number);
 /// The most promising effects of a round two by two.
-[[nodiscard]] std::vector<Candidate> pair_round(const Workshop& shop, const Round& singles);
+[[nodiscard]] std::vector<Candidate> pair_round(const SearchContext& context, const Round& singles);
 
 /// Quick fits from every start of a glance; the best as a candidate of its effect.
-[[nodiscard]] Candidate tried(const Workshop& shop, const Stage& stage, const Glance& glance,
-                              int iterations = kQuickIterations);
+[[nodiscard]] Candidate quick_fit(const SearchContext& context, const ModelStage& stage,
+                                  const ScreeningResult& screened,
+                                  int iterations = kQuickIterations);
 /// The best candidates fitted to the end, with their Jacobians; all sorted, best first.
-void finish(const Workshop& shop, const Stage& stage, std::vector<Candidate>& candidates);
+void refine_best(const SearchContext& context, const ModelStage& stage,
+                 std::vector<Candidate>& candidates);
 
-[[nodiscard]] Stage with(const Stage& stage, const Candidate& candidate);
+[[nodiscard]] ModelStage with(const ModelStage& stage, const Candidate& candidate);
 /// Probability that `later` scores better than `earlier` by chance.
-[[nodiscard]] double chance(const Workshop& shop, const Fitted& earlier, const Fitted& later);
+[[nodiscard]] double chance(const SearchContext& context, const FitSummary& earlier,
+                            const FitSummary& later);
 
 }  // namespace estimator::greybox::selection

@@ -10,10 +10,11 @@ namespace estimator::greybox::selection {
 
 /// Stages from `first` (nothing added) to `final`, both included; `added` is in the order of the
 /// way in all of them.
-[[nodiscard]] std::vector<Stage> way_to(const Workshop& shop, const Stage& first,
-                                        const Stage& final);
+[[nodiscard]] std::vector<ModelStage> path_to(const SearchContext& context, const ModelStage& first,
+                                              const ModelStage& final);
 
 /// The way with those effects only that support.h supports, each on top of those kept before it.
-[[nodiscard]] std::vector<Stage> supported_way(const Workshop& shop, const std::vector<Stage>& way);
+[[nodiscard]] std::vector<ModelStage> cross_validated_path(const SearchContext& context,
+                                                           const std::vector<ModelStage>& path);
 
 }  // namespace estimator::greybox::selection

@@ -17,9 +17,9 @@ namespace {
 
 constexpr std::size_t kMostEffects = 4;
 /// One after another; when these do not explain the record, two at once are tried before any more.
-constexpr std::size_t kBeforeTwoAtOnce = 2;
+constexpr std::size_t kBeforePairSearch = 2;
 /// Of the first round, that many are tried as the first effect when the best leads nowhere.
-constexpr std::size_t kDetours = 3;
+constexpr std::size_t kAlternativeStarts = 3;
 /// They have to leave less than this share of the error, and by another way than the best: two
 /// effects together may look like a third one, which then comes far before either.
 constexpr double kHelpful = 0.7;
@@ -34,21 +34,21 @@ constexpr double kStrain = 6.0;
 
 /// Whether the effect wants to be larger, or a wave longer, than such an effect can be: then it
 /// stands for something else.
-bool leaves_its_range(const Stage& stage, const Candidate& candidate) {
-  const Fitted& fitted = candidate.fitted;
-  for (std::size_t i = stage.fitted.searched.size(); i < fitted.searched.size(); ++i) {
-    const SearchParameter& p = fitted.searched[i];
+bool leaves_its_range(const ModelStage& stage, const Candidate& candidate) {
+  const FitSummary& fitted = candidate.fitted;
+  for (std::size_t i = stage.fitted.parameters.size(); i < fitted.parameters.size(); ++i) {
+    const FreeParameter& p = fitted.parameters[i];
     const bool is_angle = p.name.find(".phase_rad") != std::string::npos;
-    const bool absent = fitted.x[static_cast<Eigen::Index>(i)] == 0.0;
+    const bool absent = fitted.theta[static_cast<Eigen::Index>(i)] == 0.0;
     if (p.refinement == 0 && fitted.at_bound[i] != 0 && !absent && !is_angle) return true;
   }
   return false;
 }
 
-bool is_gain(const Workshop& shop, const Stage& stage, const Candidate& candidate) {
-  const double worthwhile = worthwhile_at(shop, stage.fitted.score_rms_m);
-  const double gain = 1.0 - candidate.score_rms_m / stage.fitted.score_rms_m;
-  const double fit_gain = 1.0 - candidate.fitted.fit_rms_m / stage.fitted.fit_rms_m;
+bool is_gain(const SearchContext& context, const ModelStage& stage, const Candidate& candidate) {
+  const double worthwhile = worthwhile_at(context, stage.fitted.validation_rms_m);
+  const double gain = 1.0 - candidate.validation_rms_m / stage.fitted.validation_rms_m;
+  const double fit_gain = 1.0 - candidate.fitted.training_rms_m / stage.fitted.training_rms_m;
   const double enough = worthwhile * static_cast<double>(candidate.effects.size());
   // chance: steadily better wherever it was scored, or as much better where it was fitted
   return candidate.fitted_at_all && gain > enough && !leaves_its_range(stage, candidate) &&
@@ -56,11 +56,11 @@ bool is_gain(const Workshop& shop, const Stage& stage, const Candidate& candidat
 }
 
 /// How far the parameters have gone from what was expected of them, in squared standard deviations.
-double strain(const Fitted& fitted) {
+double strain(const FitSummary& fitted) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < fitted.searched.size(); ++i) {
-    const SearchParameter& p = fitted.searched[i];
-    const double off = (fitted.x[static_cast<Eigen::Index>(i)] - p.prior_mean) / p.prior_sd;
+  for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+    const FreeParameter& p = fitted.parameters[i];
+    const double off = (fitted.theta[static_cast<Eigen::Index>(i)] - p.prior_mean) / p.prior_sd;
     if (std::isfinite(off)) sum += off * off;
   }
   return sum;
@@ -68,15 +68,15 @@ double strain(const Fitted& fitted) {
 
 /// Of candidates that explain the record alike, the one with the fewest parameters; not one that
 /// needs the plant to be another than was expected.
-const Candidate& simplest(const Workshop& shop, const std::vector<Candidate>& candidates) {
+const Candidate& simplest(const SearchContext& context, const std::vector<Candidate>& candidates) {
   const Candidate* chosen = &candidates.front();
   for (const Candidate& other : candidates) {
     if (!other.fitted_at_all || other.effects.size() > chosen->effects.size()) continue;
-    if (other.fitted.searched.size() < chosen->fitted.searched.size() &&
+    if (other.fitted.parameters.size() < chosen->fitted.parameters.size() &&
         strain(other.fitted) < strain(candidates.front().fitted) + kStrain &&
-        other.score_rms_m <
-            (1.0 + worthwhile_at(shop, other.score_rms_m)) * candidates.front().score_rms_m &&
-        chance(shop, other.fitted, candidates.front().fitted) > kChance) {
+        other.validation_rms_m < (1.0 + worthwhile_at(context, other.validation_rms_m)) *
+                                     candidates.front().validation_rms_m &&
+        chance(context, other.fitted, candidates.front().fitted) > kChance) {
       chosen = &other;
     }
   }
@@ -84,27 +84,27 @@ const Candidate& simplest(const Workshop& shop, const std::vector<Candidate>& ca
 }
 
 /// Rounds from a stage until it has `most` effects or nothing helps any more: then false.
-bool go_on(const Workshop& shop, Stage& stage, std::vector<Round>& rounds, bool pairs_too,
-           std::size_t most = kMostEffects) {
-  while (stage.added.size() < most && !shop.cancelled()) {
-    Round round = single_round(shop, stage, static_cast<int>(rounds.size()) + 1);
+bool extend_branch(const SearchContext& context, ModelStage& stage, std::vector<Round>& rounds,
+                   bool pairs_too, std::size_t most = kMostEffects) {
+  while (stage.added.size() < most && !context.cancelled()) {
+    Round round = single_round(context, stage, static_cast<int>(rounds.size()) + 1);
     if (round.candidates.empty()) return false;
     // those that cannot be taken go behind those that can
     std::stable_partition(
         round.candidates.begin(), round.candidates.end(),
-        [&](const Candidate& candidate) { return is_gain(shop, stage, candidate); });
-    const bool single = is_gain(shop, stage, round.candidates.front());
-    if (pairs_too && !single && !is_explained(shop, stage) && !shop.cancelled()) {
-      std::vector<Candidate> pairs = pair_round(shop, round);
-      if (!pairs.empty() && is_gain(shop, stage, pairs.front())) {
+        [&](const Candidate& candidate) { return is_gain(context, stage, candidate); });
+    const bool single = is_gain(context, stage, round.candidates.front());
+    if (pairs_too && !single && !is_explained(context, stage) && !context.cancelled()) {
+      std::vector<Candidate> pairs = pair_round(context, round);
+      if (!pairs.empty() && is_gain(context, stage, pairs.front())) {
         round.candidates.insert(round.candidates.begin(), pairs.front());
       }
     }
-    const bool gain = is_gain(shop, stage, round.candidates.front());
+    const bool gain = is_gain(context, stage, round.candidates.front());
     if (gain) {
-      stage = with(stage, simplest(shop, round.candidates));
+      stage = with(stage, simplest(context, round.candidates));
       if (stage.fitted.jacobian.size() == 0) {
-        stage.fitted = finished(shop, stage.fitted);
+        stage.fitted = refit_to_convergence(context, stage.fitted);
       }
     }
     rounds.push_back(std::move(round));
@@ -114,18 +114,18 @@ bool go_on(const Workshop& shop, Stage& stage, std::vector<Round>& rounds, bool 
 }
 
 /// A search from the first stage to where nothing helped any more.
-struct Trodden {
-  Stage stage;
+struct SearchBranch {
+  ModelStage stage;
   std::vector<Round> rounds;
 };
 
 /// The search from `first` with a candidate as its beginning, after the round `begun`.
-Trodden trodden_from(const Workshop& shop, const Stage& first, const Candidate& candidate,
-                     const Round& begun) {
-  Trodden other{with(first, candidate), {begun}};
-  end_unhindered(shop, other.stage);
-  go_on(shop, other.stage, other.rounds, false);
-  look_over(shop, other.stage, Look::on_the_way);
+SearchBranch branch_from(const SearchContext& context, const ModelStage& first,
+                         const Candidate& candidate, const Round& begun) {
+  SearchBranch other{with(first, candidate), {begun}};
+  refit_without_refinements(context, other.stage);
+  extend_branch(context, other.stage, other.rounds, false);
+  eliminate_backward(context, other.stage, EliminationPass::intermediate);
   if (candidate.effects.size() > 1) {
     auto& candidates = other.rounds.front().candidates;
     candidates.insert(candidates.begin(), candidate);
@@ -133,103 +133,106 @@ Trodden trodden_from(const Workshop& shop, const Stage& first, const Candidate& 
   return other;
 }
 
-bool leads_further(const Trodden& other, const Trodden& best) {
-  return other.stage.fitted.score_rms_m < (1.0 - kRivals) * best.stage.fitted.score_rms_m;
+bool improves_on(const SearchBranch& other, const SearchBranch& best) {
+  return other.stage.fitted.validation_rms_m < (1.0 - kRivals) * best.stage.fitted.validation_rms_m;
 }
 
 /// Two effects together as the beginning, where one after another has not explained the record.
-std::optional<Trodden> start_with_two(const Workshop& shop, const Stage& first,
-                                      const Trodden& best) {
-  if (best.rounds.empty() || is_explained(shop, best.stage) || shop.cancelled()) return {};
+std::optional<SearchBranch> start_with_pair(const SearchContext& context, const ModelStage& first,
+                                            const SearchBranch& best) {
+  if (best.rounds.empty() || is_explained(context, best.stage) || context.cancelled()) return {};
   std::vector<std::string> begun;  // on which the second round has tried all others
   if (best.rounds.size() > 1) begun = best.rounds[1].before.added;
-  const std::vector<Candidate> pairs = two_at_once(shop, first, begun);
-  if (pairs.empty() || !is_gain(shop, first, pairs.front())) return {};
-  return trodden_from(shop, first, pairs.front(), best.rounds.front());
+  const std::vector<Candidate> pairs = pair_search(context, first, begun);
+  if (pairs.empty() || !is_gain(context, first, pairs.front())) return {};
+  return branch_from(context, first, pairs.front(), best.rounds.front());
 }
 
 /// The search one effect after another, or with two at once where that leads further.
-Trodden search(const Workshop& shop, const Stage& first) {
-  Trodden best{first, {}};
-  const bool may_go_on = go_on(shop, best.stage, best.rounds, true, kBeforeTwoAtOnce);
-  std::optional<Trodden> other = start_with_two(shop, first, best);
-  if (other && is_explained(shop, other->stage) && leads_further(*other, best)) return *other;
-  if (may_go_on) go_on(shop, best.stage, best.rounds, true);
-  look_over(shop, best.stage, Look::on_the_way);
-  return other && leads_further(*other, best) ? *other : best;
+SearchBranch search_forward(const SearchContext& context, const ModelStage& first) {
+  SearchBranch best{first, {}};
+  const bool may_go_on = extend_branch(context, best.stage, best.rounds, true, kBeforePairSearch);
+  std::optional<SearchBranch> other = start_with_pair(context, first, best);
+  if (other && is_explained(context, other->stage) && improves_on(*other, best)) return *other;
+  if (may_go_on) extend_branch(context, best.stage, best.rounds, true);
+  eliminate_backward(context, best.stage, EliminationPass::intermediate);
+  return other && improves_on(*other, best) ? *other : best;
 }
 
 /// The next best effects of the first round as the beginning.
-void detour(const Workshop& shop, const Stage& first, Trodden& best) {
+void try_alternative_starts(const SearchContext& context, const ModelStage& first,
+                            SearchBranch& best) {
   if (best.rounds.empty()) return;
   const std::vector<Candidate> firsts = best.rounds.front().candidates;
-  for (std::size_t i = 1; i < std::min(kDetours, firsts.size()); ++i) {
-    if (best.stage.fitted.score_rms_m < kLost * shop.evidence.noise_floor_m || shop.cancelled() ||
-        !is_gain(shop, first, firsts[i]) ||
-        firsts[i].score_rms_m > kHelpful * first.fitted.score_rms_m) {
+  for (std::size_t i = 1; i < std::min(kAlternativeStarts, firsts.size()); ++i) {
+    if (best.stage.fitted.validation_rms_m < kLost * context.problem.data.noise_floor_m ||
+        context.cancelled() || !is_gain(context, first, firsts[i]) ||
+        firsts[i].validation_rms_m > kHelpful * first.fitted.validation_rms_m) {
       break;
     }
-    const double apart_m =
-        rms(firsts[i].fitted.residual_m - firsts.front().fitted.residual_m, shop.evidence.counts);
-    if (apart_m < kSamePath * firsts[i].score_rms_m) continue;
+    const double apart_m = rms(firsts[i].fitted.residual_m - firsts.front().fitted.residual_m,
+                               context.problem.data.all_mask);
+    if (apart_m < kSamePath * firsts[i].validation_rms_m) continue;
     const auto& added = best.stage.added;
     if (std::find(added.begin(), added.end(), firsts[i].effects.front()) != added.end()) continue;
-    Trodden other = trodden_from(shop, first, firsts[i], best.rounds.front());
-    if (leads_further(other, best)) best = std::move(other);
+    SearchBranch other = branch_from(context, first, firsts[i], best.rounds.front());
+    if (improves_on(other, best)) best = std::move(other);
   }
 }
 
 }  // namespace
 
-double worthwhile_at(const Workshop& shop, double score_rms_m) {
-  return score_rms_m < kUnexplained * shop.evidence.noise_floor_m ? kWorthwhileInNoise
-                                                                  : kWorthwhile;
+double worthwhile_at(const SearchContext& context, double validation_rms_m) {
+  return validation_rms_m < kUnexplained * context.problem.data.noise_floor_m ? kWorthwhileInNoise
+                                                                              : kWorthwhile;
 }
 
-double nominal_rms_m(const Workshop& shop) {
-  EvidenceRun run(shop.model, shop.evidence, shop.standing);
+double nominal_rms_m(const SearchContext& context) {
+  DatasetSimulation run(context.problem.model, context.problem.data,
+                        context.problem.plant_parameters);
   Eigen::MatrixXd residuals_m;
-  run.residuals(start_of(shop.model, shop.standing), residuals_m);
-  return rms(residuals_m.col(0), shop.evidence.scores);
+  run.residuals(start_of(context.problem.model, context.problem.plant_parameters), residuals_m);
+  return rms(residuals_m.col(0), context.problem.data.validation_mask);
 }
 
-Stage first_stage(const Workshop& shop) {
+ModelStage first_stage(const SearchContext& context) {
   FitOptions options;
   options.tolerance = 1e-5;
-  options.cancel = shop.cancel;
-  options.threads = shop.threads;
+  options.cancel = context.options.cancel;
+  options.threads = context.options.threads;
   return {{},
-          fit(shop.model, shop.evidence, shop.evidence.fits, shop.standing,
-              start_of(shop.model, shop.standing), options)};
+          fit(context.problem.model, context.problem.data, context.problem.data.training_mask,
+              context.problem.plant_parameters,
+              start_of(context.problem.model, context.problem.plant_parameters), options)};
 }
 
-Ladder climb(const Workshop& shop) {
+StructureSearch search_structure(const SearchContext& context) {
   const auto begin = std::chrono::steady_clock::now();
-  Ladder ladder;
-  ladder.nominal_rms_m = nominal_rms_m(shop);
-  const Stage first = first_stage(shop);
-  ladder.preview_s =
+  StructureSearch search;
+  search.nominal_rms_m = nominal_rms_m(context);
+  const ModelStage first = first_stage(context);
+  search.preview_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  Trodden best = search(shop, first);
-  if (!best.rounds.empty()) ladder.preview_s += best.rounds.front().looked_s;
-  detour(shop, first, best);
-  const Stage& stage = best.stage;
-  ladder.rounds = std::move(best.rounds);
-  ladder.way = way_to(shop, first, stage);
-  if (!is_explained(shop, stage)) {
-    std::vector<Stage> supported = supported_way(shop, ladder.way);
+  SearchBranch best = search_forward(context, first);
+  if (!best.rounds.empty()) search.preview_s += best.rounds.front().screening_s;
+  try_alternative_starts(context, first, best);
+  const ModelStage& stage = best.stage;
+  search.rounds = std::move(best.rounds);
+  search.path = path_to(context, first, stage);
+  if (!is_explained(context, stage)) {
+    std::vector<ModelStage> validated = cross_validated_path(context, search.path);
     // interrupted in the midst of it: what was found stays
-    if (!shop.cancelled()) {
-      Stage last = supported.back();
-      look_over(shop, last, Look::final);
-      const bool dropped = last.added.size() < supported.back().added.size();
-      ladder.way = dropped ? way_to(shop, first, last) : std::move(supported);
-      if (!dropped) ladder.way.back() = std::move(last);
+    if (!context.cancelled()) {
+      ModelStage last = validated.back();
+      eliminate_backward(context, last, EliminationPass::final);
+      const bool dropped = last.added.size() < validated.back().added.size();
+      search.path = dropped ? path_to(context, first, last) : std::move(validated);
+      if (!dropped) search.path.back() = std::move(last);
     }
   }
-  ladder.final = ladder.way.back();
-  ladder.interrupted = shop.cancelled();
-  return ladder;
+  search.final = search.path.back();
+  search.interrupted = context.cancelled();
+  return search;
 }
 
 }  // namespace estimator::greybox::selection

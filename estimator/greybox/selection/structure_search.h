@@ -30,37 +30,37 @@ inline constexpr double kUnexplained = 1.15;
 inline constexpr double kRivals = 0.05;
 
 /// One of the two, for a held-out error.
-[[nodiscard]] double worthwhile_at(const Workshop& shop, double score_rms_m);
+[[nodiscard]] double worthwhile_at(const SearchContext& context, double validation_rms_m);
 
 struct Candidate {
   std::vector<std::string> effects;  ///< one, or two tried together
   double expected_ratio = 1.0;       ///< of the quick look; 1 for pairs
-  Fitted fitted;                     ///< with the stage's parameters
-  double score_rms_m = std::numeric_limits<double>::infinity();
+  FitSummary fitted;                 ///< with the stage's parameters
+  double validation_rms_m = std::numeric_limits<double>::infinity();
   double p_value = 1.0;  ///< that its gain over the stage is chance
   bool fitted_at_all = false;
 };
 
 struct Round {
-  Stage before;
+  ModelStage before;
   std::vector<Candidate> candidates;  ///< best first
-  double looked_s = 0.0;              ///< what the quick look at all effects took
+  double screening_s = 0.0;           ///< what the quick look at all effects took
 };
 
-struct Ladder {
-  double nominal_rms_m = 0.0;  ///< held-out, the model file as it is
-  std::vector<Round> rounds;   ///< of the search that led to the final model
-  std::vector<Stage> way;      ///< from the model as given to the final one, an effect at a time
-  Stage final;                 ///< the last of them
+struct StructureSearch {
+  double nominal_rms_m = 0.0;    ///< held-out, the model file as it is
+  std::vector<Round> rounds;     ///< of the search that led to the final model
+  std::vector<ModelStage> path;  ///< from the model as given to the final one, an effect at a time
+  ModelStage final;              ///< the last of them
   bool interrupted = false;
   double preview_s = 0.0;  ///< until the first ranking of all effects was known
 };
 
-[[nodiscard]] Ladder climb(const Workshop& shop);
+[[nodiscard]] StructureSearch search_structure(const SearchContext& context);
 
 /// Held-out error of the model file as it is.
-[[nodiscard]] double nominal_rms_m(const Workshop& shop);
+[[nodiscard]] double nominal_rms_m(const SearchContext& context);
 /// The model as it stands, its parameters fitted.
-[[nodiscard]] Stage first_stage(const Workshop& shop);
+[[nodiscard]] ModelStage first_stage(const SearchContext& context);
 
 }  // namespace estimator::greybox::selection

@@ -37,9 +37,9 @@ struct Span {
   double most_m;
 };
 
-Span span_of(const Evidence& evidence) {
-  Span span{evidence.records.front().y_m.front(), evidence.records.front().y_m.front()};
-  for (const Measured& record : evidence.records) {
+Span span_of(const FitDataset& data) {
+  Span span{data.records.front().y_m.front(), data.records.front().y_m.front()};
+  for (const Dataset& record : data.records) {
     const auto [least, most] = std::minmax_element(record.y_m.begin(), record.y_m.end());
     span.least_m = std::min(span.least_m, *least);
     span.most_m = std::max(span.most_m, *most);
@@ -48,31 +48,31 @@ Span span_of(const Evidence& evidence) {
 }
 
 /// All parameters at their typical sizes, rest positions in the middle of the motion.
-VectorXd typical_point(const std::vector<SearchParameter>& searched, const Span& span) {
-  VectorXd point = VectorXd::Ones(static_cast<Index>(searched.size()));
-  for (std::size_t i = 0; i < searched.size(); ++i) {
-    const SearchParameter& p = searched[i];
+VectorXd typical_point(const std::vector<FreeParameter>& parameters, const Span& span) {
+  VectorXd point = VectorXd::Ones(static_cast<Index>(parameters.size()));
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const FreeParameter& p = parameters[i];
     double s = 1.0;
-    if (ends_with(p.name, ".rest_m")) s = p.search(0.5 * (span.least_m + span.most_m));
+    if (ends_with(p.name, ".rest_m")) s = p.to_theta(0.5 * (span.least_m + span.most_m));
     point[static_cast<Index>(i)] = std::clamp(s, p.lower, p.upper);
   }
   return point;
 }
 
-Index index_of(const std::vector<SearchParameter>& searched, const std::string& ending) {
-  for (std::size_t i = 0; i < searched.size(); ++i) {
-    if (ends_with(searched[i].name, ending)) return static_cast<Index>(i);
+Index index_of(const std::vector<FreeParameter>& parameters, const std::string& ending) {
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (ends_with(parameters[i].name, ending)) return static_cast<Index>(i);
   }
   return -1;
 }
 
 }  // namespace
 
-MatrixXd trial_sizes(const std::vector<SearchParameter>& searched, const Evidence& evidence) {
-  const Span span = span_of(evidence);
-  const VectorXd typical = typical_point(searched, span);
-  const bool is_limit = searched.front().scale == Scale::reciprocal;
-  const bool both_signs = searched.front().lower < 0.0;
+MatrixXd trial_sizes(const std::vector<FreeParameter>& parameters, const FitDataset& data) {
+  const Span span = span_of(data);
+  const VectorXd typical = typical_point(parameters, span);
+  const bool is_limit = parameters.front().scale == Scale::reciprocal;
+  const bool both_signs = parameters.front().lower < 0.0;
   MatrixXd points(typical.size(), kSizes);
   for (Index k = 0; k < kSizes; ++k) {
     const double size =
@@ -80,87 +80,86 @@ MatrixXd trial_sizes(const std::vector<SearchParameter>& searched, const Evidenc
                          (k % 2 ? -1.0 : 1.0)
                    : std::pow(kPositiveRatio, static_cast<double>(k) - (is_limit ? 2.0 : 6.0));
     points.col(k) = typical;
-    scale_size(searched, size, points.col(k));
+    scale_size(parameters, size, points.col(k));
   }
   return points;
 }
 
-bool is_periodic(const std::vector<SearchParameter>& searched) {
-  return index_of(searched, ".wavelength_m") >= 0 && index_of(searched, ".phase_rad") >= 0;
+bool is_periodic(const std::vector<FreeParameter>& parameters) {
+  return index_of(parameters, ".wavelength_m") >= 0 && index_of(parameters, ".phase_rad") >= 0;
 }
 
-std::vector<double> turns_over(const Evidence& /*evidence*/) {
+std::vector<double> turns_over(const FitDataset& /*evidence*/) {
   std::vector<double> turns;
   for (double t = kFewestTurns; t <= kFinestTurns; t += kTurnStep) turns.push_back(t);
   return turns;
 }
 
-MatrixXd waves(const std::vector<SearchParameter>& searched, const Evidence& evidence,
-               double turns) {
-  const Span span = span_of(evidence);
+MatrixXd waves(const std::vector<FreeParameter>& parameters, const FitDataset& data, double turns) {
+  const Span span = span_of(data);
   const double range_m = std::max(span.most_m - span.least_m, 1e-6);
-  const Index wavelength = index_of(searched, ".wavelength_m");
-  const Index phase = index_of(searched, ".phase_rad");
-  const SearchParameter& length = searched[static_cast<std::size_t>(wavelength)];
-  const SearchParameter& angle = searched[static_cast<std::size_t>(phase)];
-  MatrixXd points(static_cast<Index>(searched.size()), 2);
+  const Index wavelength = index_of(parameters, ".wavelength_m");
+  const Index phase = index_of(parameters, ".phase_rad");
+  const FreeParameter& length = parameters[static_cast<std::size_t>(wavelength)];
+  const FreeParameter& angle = parameters[static_cast<std::size_t>(phase)];
+  MatrixXd points(static_cast<Index>(parameters.size()), 2);
   for (Index quarter = 0; quarter < 2; ++quarter) {
-    points.col(quarter) = typical_point(searched, span);
+    points.col(quarter) = typical_point(parameters, span);
     points(0, quarter) *= kSmall;
     points(wavelength, quarter) =
-        std::clamp(length.search(range_m / turns), length.lower, length.upper);
-    points(phase, quarter) = angle.search(kHalfPi * static_cast<double>(quarter));
+        std::clamp(length.to_theta(range_m / turns), length.lower, length.upper);
+    points(phase, quarter) = angle.to_theta(kHalfPi * static_cast<double>(quarter));
   }
   return points;
 }
 
-VectorXd wave_of(const std::vector<SearchParameter>& searched, const VectorXd& wave, double first,
+VectorXd wave_of(const std::vector<FreeParameter>& parameters, const VectorXd& wave, double first,
                  double second) {
   VectorXd found = wave;
-  const Index phase = index_of(searched, ".phase_rad");
-  const SearchParameter& size = searched.front();
+  const Index phase = index_of(parameters, ".phase_rad");
+  const FreeParameter& size = parameters.front();
   found[0] = std::clamp(wave[0] * std::hypot(first, second), size.lower, size.upper);
-  found[phase] = searched[static_cast<std::size_t>(phase)].search(std::atan2(second, first));
+  found[phase] = parameters[static_cast<std::size_t>(phase)].to_theta(std::atan2(second, first));
   return found;
 }
 
 void hold_wavelength(const plant_sim::EffectInfo& effect, const VectorXd& own,
-                     std::span<SearchParameter> searched) {
+                     std::span<FreeParameter> parameters) {
   double wavelength_m = 0.0;
-  for (std::size_t i = 0; i < searched.size(); ++i) {
-    SearchParameter& p = searched[i];
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    FreeParameter& p = parameters[i];
     if (!ends_with(p.name, ".wavelength_m")) continue;
     const double s = own[static_cast<Index>(i)];
-    wavelength_m = p.value(s);
+    wavelength_m = p.to_physical(s);
     p.lower = std::max(p.lower, s / kNeighbourhood);
     p.upper = std::min(p.upper, s * kNeighbourhood);
   }
   const bool of_sensor =
       std::find(effect.sites.begin(), effect.sites.end(), "sensor") != effect.sites.end();
   if (of_sensor && wavelength_m > 0.0) {
-    SearchParameter& size = searched.front();
-    const double most = size.search(kSteepestReading * wavelength_m / (4.0 * kHalfPi));
+    FreeParameter& size = parameters.front();
+    const double most = size.to_theta(kSteepestReading * wavelength_m / (4.0 * kHalfPi));
     size.upper = std::min(size.upper, most);
   }
 }
 
-bool scale_size(const std::vector<SearchParameter>& searched, double share,
+bool scale_size(const std::vector<FreeParameter>& parameters, double share,
                 Eigen::Ref<VectorXd> own) {
   bool possible = true;
-  if (share < 0.0 && !(searched.front().lower < 0.0)) {
-    const Index phase = index_of(searched, ".phase_rad");
+  if (share < 0.0 && !(parameters.front().lower < 0.0)) {
+    const Index phase = index_of(parameters, ".phase_rad");
     possible = phase >= 0;
     if (possible) {
-      const SearchParameter& angle = searched[static_cast<std::size_t>(phase)];
-      own[phase] = angle.search(angle.value(own[phase]) - 2.0 * kHalfPi);
+      const FreeParameter& angle = parameters[static_cast<std::size_t>(phase)];
+      own[phase] = angle.to_theta(angle.to_physical(own[phase]) - 2.0 * kHalfPi);
     }
     share = -share;
   }
-  const std::string unit = config::units::unit_of(searched.front().name);
-  for (std::size_t i = 0; i < searched.size(); ++i) {
-    if (i > 0 && config::units::unit_of(searched[i].name) != unit) continue;
+  const std::string unit = config::units::unit_of(parameters.front().name);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (i > 0 && config::units::unit_of(parameters[i].name) != unit) continue;
     const auto k = static_cast<Index>(i);
-    own[k] = std::clamp(own[k] * share, searched[i].lower, searched[i].upper);
+    own[k] = std::clamp(own[k] * share, parameters[i].lower, parameters[i].upper);
   }
   return possible;
 }

@@ -41,12 +41,12 @@ ChamberError median_of(const std::vector<ChamberFit>& windows, double rms_m, dou
 }
 
 /// Not known where few windows had them, or the plant has none.
-ChamberErrors learn_chambers(const std::vector<Window>& windows, const Choice& choice,
+ChamberErrors learn_chambers(const std::vector<WindowResult>& windows, const ParameterSet& set,
                              double rms_m) {
   std::vector<ChamberFit> in;
   std::vector<ChamberFit> out;
   std::size_t explained = 0;
-  for (const Window& window : windows) {
+  for (const WindowResult& window : windows) {
     if (!window.explained) continue;
     ++explained;
     if (!std::isfinite(window.in.rms_Pa) || !std::isfinite(window.out.rms_Pa)) continue;
@@ -54,7 +54,7 @@ ChamberErrors learn_chambers(const std::vector<Window>& windows, const Choice& c
     out.push_back(window.out);
   }
   ChamberErrors errors;
-  const double supply_Pa = choice.supply_Pa();
+  const double supply_Pa = set.supply_Pa();
   if (!(supply_Pa > 0.0) || in.empty() || 2 * in.size() < explained) return errors;
   double in_spread_Pa = 0.0;
   double out_spread_Pa = 0.0;
@@ -66,43 +66,43 @@ ChamberErrors learn_chambers(const std::vector<Window>& windows, const Choice& c
 
 }  // namespace
 
-bool teaches(const Window& window, const Choice& choice) {
-  for (std::size_t i = 0; i < choice.tracked; ++i) {
-    const Estimate& one = window.estimates[i];
-    const double slope = choice.parameters[i].slope(one.x);
+bool qualifies_for_baseline(const WindowResult& window, const ParameterSet& set) {
+  for (std::size_t i = 0; i < set.tracked; ++i) {
+    const ParameterEstimate& one = window.estimates[i];
+    const double slope = set.parameters[i].slope(one.theta);
     if (!window.explained || !(one.std_error <= kLeastKnown * slope)) return false;
   }
   return window.explained;
 }
 
-Healthy learn(const std::vector<Window>& windows, const Choice& choice, double noise_floor_m,
-              const std::string& where) {
+Baseline learn_baseline(const std::vector<WindowResult>& windows, const ParameterSet& set,
+                        double noise_floor_m, const std::string& where) {
   std::vector<double> rms_m;
-  std::vector<std::vector<double>> x(choice.tracked);
-  std::vector<std::string> why(choice.tracked, "has no whole window");
-  for (const Window& window : windows) {
+  std::vector<std::vector<double>> theta(set.tracked);
+  std::vector<std::string> why(set.tracked, "has no whole window");
+  for (const WindowResult& window : windows) {
     if (window.explained) rms_m.push_back(window.rms_m);
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const Estimate& one = window.estimates[i];
-      const SearchParameter& p = choice.parameters[i];
-      if (!window.explained || !(one.std_error <= kLeastKnown * p.slope(one.x))) {
+    for (std::size_t i = 0; i < theta.size(); ++i) {
+      const ParameterEstimate& one = window.estimates[i];
+      const FreeParameter& p = set.parameters[i];
+      if (!window.explained || !(one.std_error <= kLeastKnown * p.slope(one.theta))) {
         why[i] = "has no usable window: " + one.why;
       } else {
-        x[i].push_back(one.x);
+        theta[i].push_back(one.theta);
       }
     }
   }
-  Healthy healthy;
-  healthy.x = choice.file;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (x[i].empty()) {
+  Baseline baseline;
+  baseline.theta = set.file;
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    if (theta[i].empty()) {
       throw config::schema::bad_data(where, why[i], "a healthy motion that tells the parameters");
     }
-    healthy.x[static_cast<Index>(i)] = median(x[i]);
+    baseline.theta[static_cast<Index>(i)] = median(theta[i]);
   }
-  healthy.rms_m = std::max({median(rms_m), noise_floor_m, kLeastFloor_m});
-  healthy.chambers = learn_chambers(windows, choice, healthy.rms_m);
-  return healthy;
+  baseline.rms_m = std::max({median(rms_m), noise_floor_m, kLeastFloor_m});
+  baseline.chambers = learn_chambers(windows, set, baseline.rms_m);
+  return baseline;
 }
 
 }  // namespace estimator::greybox::tracking

@@ -11,20 +11,21 @@
 namespace estimator::greybox::tracking {
 
 /// What the rig is like without a fault.
-struct Healthy {
-  double rms_m = 0.0;  ///< of a window's error; not under the noise floor
-  Eigen::VectorXd x;   ///< every parameter of the choice, search units
+struct Baseline {
+  double rms_m = 0.0;     ///< of a window's error; not under the noise floor
+  Eigen::VectorXd theta;  ///< every parameter of the choice, search units
   ChamberErrors chambers{};
 
-  [[nodiscard]] Errors errors() const { return {rms_m, chambers}; }
+  [[nodiscard]] ErrorScales errors() const { return {rms_m, chambers}; }
 };
 
 /// Whether a window may serve to learn from: explained, every parameter known to some per cent.
-[[nodiscard]] bool teaches(const Window& window, const Choice& choice);
+[[nodiscard]] bool qualifies_for_baseline(const WindowResult& window, const ParameterSet& set);
 
 /// The medians over the windows of a record without a fault; what is not tracked is as in the file.
 /// Throws config::schema::DataError when none is usable.
-[[nodiscard]] Healthy learn(const std::vector<Window>& windows, const Choice& choice,
-                            double noise_floor_m, const std::string& where);
+[[nodiscard]] Baseline learn_baseline(const std::vector<WindowResult>& windows,
+                                      const ParameterSet& set, double noise_floor_m,
+                                      const std::string& where);
 
 }  // namespace estimator::greybox::tracking

@@ -16,63 +16,65 @@ constexpr double kHour_s = 3600.0;
 /// Of the distance: at its end, but for the last step's rounding.
 constexpr double kEnd = 1.0 - 1e-9;
 
-std::size_t tracked_index(const Choice& choice, const std::string& name, const std::string& where) {
+std::size_t tracked_index(const ParameterSet& set, const std::string& name,
+                          const std::string& where) {
   std::string names;
-  for (std::size_t i = 0; i < choice.tracked; ++i) {
-    if (choice.parameters[i].name == name) return i;
-    names += (i == 0 ? "" : ", ") + choice.parameters[i].name;
+  for (std::size_t i = 0; i < set.tracked; ++i) {
+    if (set.parameters[i].name == name) return i;
+    names += (i == 0 ? "" : ", ") + set.parameters[i].name;
   }
   throw config::schema::bad_config(where, "names " + name + ", which is not tracked", names);
 }
 
 }  // namespace
 
-SlowChange::SlowChange(const Choice& choice, const Following& following, const std::string& where)
+BaselineDrift::BaselineDrift(const ParameterSet& set, const DriftSettings& following,
+                             const std::string& where)
     : rate_per_s_(following.ratio_per_h / kHour_s) {
   const double most = following.most_ratio;
   for (const std::string& name : following.parameters) {
-    const std::size_t index = tracked_index(choice, name, where);
+    const std::size_t index = tracked_index(set, name, where);
     const auto same = [index](const Followed& one) { return one.index == index; };
     if (std::any_of(followed_.begin(), followed_.end(), same)) continue;
-    const bool ratio = choice.parameters[index].scale == Scale::logarithmic;
+    const bool ratio = set.parameters[index].scale == Scale::logarithmic;
     const double below = ratio ? -std::log(std::max(0.0, 1.0 - most)) : most;
     const double above = ratio ? std::log1p(most) : most;
-    followed_.push_back({index, choice.file[static_cast<Index>(index)], below, above, kNan});
+    followed_.push_back({index, set.file[static_cast<Index>(index)], below, above, kNan});
   }
 }
 
-void SlowChange::take(const Eigen::VectorXd& learnt) {
+void BaselineDrift::take(const Eigen::VectorXd& learnt) {
   for (Followed& one : followed_) {
     one.learnt = learnt[static_cast<Index>(one.index)];
     one.told_s = kNan;
   }
 }
 
-void SlowChange::follow(const Window& window, bool explained, const AlarmBook& alarms,
-                        Eigen::VectorXd& healthy) {
+void BaselineDrift::follow(const WindowResult& window, bool explained,
+                           const ChangeDetector& detector, Eigen::VectorXd& baseline) {
   for (Followed& one : followed_) {
-    const Estimate& found = window.estimates[one.index];
-    const auto its = [&](const Named& named) { return named.parameter == one.index; };
+    const ParameterEstimate& found = window.estimates[one.index];
+    const auto its = [&](const ParameterChange& named) { return named.parameter == one.index; };
     const bool named = std::any_of(window.named.begin(), window.named.end(), its);
-    const bool quiet = explained && !named && alarms.active(one.index) == nullptr;
+    const bool quiet = explained && !named && detector.active(one.index) == nullptr;
     if (quiet && !found.valid) continue;
     const double since_s = std::isfinite(one.told_s) ? window.t_s - one.told_s : 0.0;
     one.told_s = window.t_s;
     if (!quiet) continue;
-    double& at = healthy[static_cast<Index>(one.index)];
+    double& at = baseline[static_cast<Index>(one.index)];
     const double most = rate_per_s_ * since_s;
-    at += std::clamp(kGain * (found.x - at), -most, most);
+    at += std::clamp(kGain * (found.theta - at), -most, most);
     at = std::clamp(at, one.learnt - one.below, one.learnt + one.above);
   }
 }
 
-int SlowChange::at_end(std::size_t number, const Eigen::VectorXd& healthy) const {
+int BaselineDrift::at_end(std::size_t number, const Eigen::VectorXd& baseline) const {
   const Followed& one = followed_[number];
-  const double off = healthy[static_cast<Index>(one.index)] - one.learnt;
+  const double off = baseline[static_cast<Index>(one.index)] - one.learnt;
   if (off <= -kEnd * one.below) return -1;
   return off >= kEnd * one.above ? 1 : 0;
 }
 
-void SlowChange::serialize(estimator::StateArchive& archive) { archive.fixed(followed_); }
+void BaselineDrift::serialize(estimator::StateArchive& archive) { archive.fixed(followed_); }
 
 }  // namespace estimator::greybox::tracking

@@ -26,30 +26,31 @@
 namespace estimator::greybox::tracking {
 
 /// Ratios are of the healthy value; of an effect's parameter: of its typical size.
-struct Following {
+struct DriftSettings {
   std::vector<std::string> parameters;  ///< of the tracked ones
   double ratio_per_h = 0.5;
   double most_ratio = 0.3;
 };
 
-class SlowChange {
+class BaselineDrift {
  public:
   static constexpr double kGain = 0.2;
 
   /// Throws config::schema::ConfigError that begins with `where` for one that is not tracked.
-  SlowChange(const Choice& choice, const Following& following, const std::string& where = "follow");
+  BaselineDrift(const ParameterSet& set, const DriftSettings& following,
+                const std::string& where = "follow");
 
   /// Search values of the healthy rig, of every parameter.
   void take(const Eigen::VectorXd& learnt);
   /// A look at a window that is judged and named. `explained`: by the model, moving or not.
-  void follow(const Window& window, bool explained, const AlarmBook& alarms,
-              Eigen::VectorXd& healthy);
+  void follow(const WindowResult& window, bool explained, const ChangeDetector& detector,
+              Eigen::VectorXd& baseline);
 
   [[nodiscard]] std::size_t size() const noexcept { return followed_.size(); }
   /// Which tracked parameter the number-th is.
   [[nodiscard]] std::size_t parameter(std::size_t number) const { return followed_[number].index; }
   /// At the end of the distance that is followed: -1 below, +1 above; 0: within.
-  [[nodiscard]] int at_end(std::size_t number, const Eigen::VectorXd& healthy) const;
+  [[nodiscard]] int at_end(std::size_t number, const Eigen::VectorXd& baseline) const;
   [[nodiscard]] double learnt(std::size_t number) const { return followed_[number].learnt; }
 
   void serialize(estimator::StateArchive& archive);

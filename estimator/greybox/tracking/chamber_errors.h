@@ -41,7 +41,7 @@ struct ChamberErrors {
 };
 
 /// How far a window is from the model, and by what its residuals are weighed.
-struct Errors {
+struct ErrorScales {
   double rms_m = 0.0;        ///< of the position
   ChamberErrors chambers{};  ///< not known: the position alone counts
 };

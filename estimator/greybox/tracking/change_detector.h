@@ -12,8 +12,9 @@
 
 namespace estimator::greybox::tracking {
 
-struct Alarm {
-  Named named;  ///< as known best: of the latest whole window that named it, else of its first part
+struct DetectedChange {
+  ParameterChange
+      named;  ///< as known best: of the latest whole window that named it, else of its first part
   double raised_s = 0.0;
   double cleared_s = std::numeric_limits<double>::quiet_NaN();  ///< NaN: still there
   double confidence = 0.0;  ///< that the change is more than the least
@@ -22,27 +23,27 @@ struct Alarm {
 };
 
 /// A tracked parameter as a window saw it.
-struct Seen {
-  double x = 0.0;
+struct TrackedValue {
+  double theta = 0.0;
   double std_error = 0.0;
 };
 
-class AlarmBook {
+class ChangeDetector {
  public:
-  AlarmBook() = default;
-  AlarmBook(const Choice& choice, const Thresholds& thresholds);
+  ChangeDetector() = default;
+  ChangeDetector(const ParameterSet& set, const Thresholds& thresholds);
 
   /// `seen` has all tracked parameters; `whole`: of a whole window, not of a part.
-  void update(double t_s, const std::vector<Named>& named, const std::vector<Seen>& seen,
-              const Eigen::VectorXd& healthy, bool whole);
+  void update(double t_s, const std::vector<ParameterChange>& named,
+              const std::vector<TrackedValue>& seen, const Eigen::VectorXd& baseline, bool whole);
 
-  [[nodiscard]] const std::vector<Alarm>& alarms() const { return alarms_; }
+  [[nodiscard]] const std::vector<DetectedChange>& changes() const { return changes_; }
   /// The active one that names the tracked parameter; null: there is none.
-  [[nodiscard]] const Alarm* active(std::size_t parameter) const;
+  [[nodiscard]] const DetectedChange* active(std::size_t parameter) const;
   /// Keeps active alarms alone, for a tracking without an end.
   void forget_cleared();
   /// Bit for bit (state_archive.h), after forget_cleared().
-  void serialize(estimator::StateArchive& archive, const Choice& choice);
+  void serialize(estimator::StateArchive& archive, const ParameterSet& set);
 
  private:
   struct Track {
@@ -51,11 +52,11 @@ class AlarmBook {
     int active = -1;    ///< index of its alarm
     bool whole = false;
   };
-  void raise(double t_s, Track& track, const Named& named, bool whole);
+  void raise(double t_s, Track& track, const ParameterChange& named, bool whole);
 
   Thresholds thresholds_;
   std::vector<Track> tracks_;
-  std::vector<Alarm> alarms_;
+  std::vector<DetectedChange> changes_;
 };
 
 }  // namespace estimator::greybox::tracking

@@ -13,58 +13,61 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-class Namer {
+class ChangeNaming {
  public:
-  Namer(WindowFit& fit, const Choice& choice, const Cut& cut, const WindowEstimate& found,
-        const VectorXd& healthy, const Errors& errors, const Thresholds& thresholds,
-        const Held& held)
+  ChangeNaming(WindowFit& fit, const ParameterSet& set, const WindowData& data,
+               const WindowFitSummary& found, const VectorXd& baseline, const ErrorScales& errors,
+               const Thresholds& thresholds, const HeldParameters& held)
       : fit_(fit),
         thresholds_(thresholds),
-        choice_(choice),
-        cut_(cut),
+        set_(set),
+        data_(data),
         found_(found),
-        healthy_(healthy),
+        baseline_(baseline),
         held_(held),
-        base_(healthy),
+        base_(baseline),
         errors_(own(errors, found)),
         chi_square_(found.chi_square * errors.rms_m * errors.rms_m /
                     (errors_.rms_m * errors_.rms_m)) {
-    if (with_chambers()) chi_square_ = fit_.fit(cut_, {}, found.x, errors_).chi_square;
+    if (with_chambers()) chi_square_ = fit_.fit(data_, {}, found.theta, errors_).chi_square;
     const std::size_t read = held.measured;
-    if (read != kNotMeasured) base_[static_cast<Index>(read)] = found.x[static_cast<Index>(read)];
-    if (held.healthy != kNotMeasured) rivals_.push_back(held.healthy);
-    for (std::size_t a = choice.tracked; a < choice.parameters.size(); ++a) rivals_.push_back(a);
+    if (read != kNotMeasured)
+      base_[static_cast<Index>(read)] = found.theta[static_cast<Index>(read)];
+    if (held.baseline != kNotMeasured) rivals_.push_back(held.baseline);
+    for (std::size_t a = set.tracked; a < set.parameters.size(); ++a) rivals_.push_back(a);
   }
 
-  std::vector<Named> run(Memory& memory) {
-    std::vector<Named> named;
-    std::vector<Named> read;
-    std::vector<signed char> directions(choice_.tracked, 0);
-    for (std::size_t i = 0; i < choice_.tracked; ++i) {
+  std::vector<ParameterChange> run(NamingCache& cache) {
+    std::vector<ParameterChange> named;
+    std::vector<ParameterChange> read;
+    std::vector<signed char> directions(set_.tracked, 0);
+    for (std::size_t i = 0; i < set_.tracked; ++i) {
       const auto at = static_cast<Index>(i);
-      Named one{i, found_.x[at], found_.std_error[at], found_.x[at] - healthy_[at], {}, sensed()};
+      ParameterChange one{
+          i,  found_.theta[at], found_.std_error[at], found_.theta[at] - baseline_[at],
+          {}, sensed()};
       const double needed =
-          std::max(least_of(choice_, i, thresholds_), thresholds_.sure * one.std_error);
+          std::max(least_change(set_, i, thresholds_), thresholds_.sure * one.std_error);
       if (std::abs(one.deviation) < needed) continue;
       (i == held_.measured ? read : named).push_back(one);
       directions[i] = one.deviation > 0.0 ? 1 : -1;
     }
-    if (memory.left > 0 && directions == memory.directions) {
-      --memory.left;
-      return as_before(memory.named);
+    if (cache.left > 0 && directions == cache.directions) {
+      --cache.left;
+      return as_before(cache.named);
     }
     if (named.size() < 2 || !one_cause(named)) {
       const VectorXd others = others_of(named);
-      for (Named& one : named) find_rivals(one, others);
+      for (ParameterChange& one : named) find_rivals(one, others);
     }
     named.insert(named.end(), read.begin(), read.end());
-    memory = {directions, Memory::kAnew, named};
+    cache = {directions, NamingCache::kAnew, named};
     return named;
   }
 
  private:
   /// The window's own noise: what is beyond it is not chance.
-  static Errors own(Errors errors, const WindowEstimate& found) {
+  static ErrorScales own(ErrorScales errors, const WindowFitSummary& found) {
     errors.rms_m = std::min(errors.rms_m, found.rms_m);
     if (!found.with_chambers()) {
       errors.chambers = {};
@@ -75,41 +78,44 @@ class Namer {
     return errors;
   }
   [[nodiscard]] bool with_chambers() const { return errors_.chambers.known(); }
-  [[nodiscard]] Sensed sensed() const { return {held_.measured != kNotMeasured, with_chambers()}; }
-  [[nodiscard]] bool as_good(const WindowEstimate& other) const {
+  [[nodiscard]] SensedPressures sensed() const {
+    return {held_.measured != kNotMeasured, with_chambers()};
+  }
+  [[nodiscard]] bool as_good(const WindowFitSummary& other) const {
     return !(other.rms_m > kAsGood * found_.rms_m) &&
            !(other.in.rms_Pa > kAsGood * found_.in.rms_Pa) &&
            !(other.out.rms_Pa > kAsGood * found_.out.rms_Pa);
   }
 
-  std::vector<Named> as_before(std::vector<Named> named) const {
-    for (Named& one : named) {
+  std::vector<ParameterChange> as_before(std::vector<ParameterChange> named) const {
+    for (ParameterChange& one : named) {
       const auto at = static_cast<Index>(one.parameter);
-      one.x = found_.x[at];
+      one.theta = found_.theta[at];
       one.std_error = found_.std_error[at];
-      one.deviation = found_.x[at] - healthy_[at];
+      one.deviation = found_.theta[at] - baseline_[at];
       one.sensed = sensed();
     }
     return named;
   }
 
-  std::string name(std::size_t i) const { return choice_.parameters[i].name; }
-  double value(std::size_t i, const VectorXd& x) const {
-    return choice_.parameters[i].value(x[static_cast<Index>(i)]);
+  std::string name(std::size_t i) const { return set_.parameters[i].name; }
+  double value(std::size_t i, const VectorXd& theta) const {
+    return set_.parameters[i].to_physical(theta[static_cast<Index>(i)]);
   }
 
-  bool one_cause(std::vector<Named>& named) {
+  bool one_cause(std::vector<ParameterChange>& named) {
     std::vector<Rival> causes;
     for (const std::size_t a : rivals_) {
-      const WindowEstimate alone = fit_.fit(cut_, {a}, base_, errors_);
-      if (alone.chi_square < chi_square_ + kChance) causes.push_back({name(a), value(a, alone.x)});
+      const WindowFitSummary alone = fit_.fit(data_, {a}, base_, errors_);
+      if (alone.chi_square < chi_square_ + kChance)
+        causes.push_back({name(a), value(a, alone.theta)});
     }
     add_sensor(base_, causes);
     if (causes.empty()) return false;
     std::size_t best = 0;
     double least = INFINITY;
     for (std::size_t i = 0; i < named.size(); ++i) {
-      const auto one = fit_.fit(cut_, {named[i].parameter}, base_, errors_);
+      const auto one = fit_.fit(data_, {named[i].parameter}, base_, errors_);
       if (one.chi_square >= least) continue;
       least = one.chi_square;
       best = i;
@@ -120,93 +126,96 @@ class Namer {
   }
 
   /// What has changed as it was found, all else healthy.
-  VectorXd others_of(const std::vector<Named>& named) const {
-    VectorXd x = base_;
-    for (const Named& one : named) x[static_cast<Index>(one.parameter)] = one.x;
-    return x;
+  VectorXd others_of(const std::vector<ParameterChange>& named) const {
+    VectorXd theta = base_;
+    for (const ParameterChange& one : named) theta[static_cast<Index>(one.parameter)] = one.theta;
+    return theta;
   }
 
-  void find_rivals(Named& one, VectorXd without) {
+  void find_rivals(ParameterChange& one, VectorXd without) {
     const auto at = static_cast<Index>(one.parameter);
-    without[at] = healthy_[at];
-    const double effect = fit_.fit(cut_, {}, without, errors_).chi_square - chi_square_;
+    without[at] = baseline_[at];
+    const double effect = fit_.fit(data_, {}, without, errors_).chi_square - chi_square_;
     for (const std::size_t a : rivals_) {
-      const WindowEstimate instead = fit_.fit(cut_, {a}, without, errors_);
+      const WindowFitSummary instead = fit_.fit(data_, {a}, without, errors_);
       const double left = instead.chi_square - chi_square_;
       if (left > std::max(kChance, kLeft * effect)) continue;
-      const WindowEstimate best = let_follow(a, one.parameter, instead.x);
+      const WindowFitSummary best = let_follow(a, one.parameter, instead.theta);
       if (!as_good(best)) continue;
-      one.rivals.push_back({name(a), value(a, best.x)});
+      one.rivals.push_back({name(a), value(a, best.theta)});
     }
     add_sensor(without, one.rivals);
   }
 
-  void add_sensor(const VectorXd& x, std::vector<Rival>& rivals) const {
+  void add_sensor(const VectorXd& theta, std::vector<Rival>& rivals) const {
     if (!thresholds_.suspect_position_sensor) return;
-    for (const SensorRival& sensor : sensor_rivals(fit_, cut_, x, errors_, fit_.sample_time_s())) {
+    for (const SensorHypothesis& sensor :
+         sensor_hypotheses(fit_, data_, theta, errors_, fit_.sample_time_s())) {
       if (sensor.chi_square < chi_square_ + kChance) rivals.push_back({sensor.name, sensor.value});
     }
   }
 
-  WindowEstimate let_follow(std::size_t rival, std::size_t instead_of, const VectorXd& from) {
-    VectorXd prior_sd = choice_.uncertainty;
+  WindowFitSummary let_follow(std::size_t rival, std::size_t instead_of, const VectorXd& from) {
+    VectorXd prior_sd = set_.uncertainty;
     std::vector<std::size_t> free;
-    for (std::size_t i = 0; i < choice_.parameters.size(); ++i) {
+    for (std::size_t i = 0; i < set_.parameters.size(); ++i) {
       const auto at = static_cast<Index>(i);
-      const bool open = i == rival || (i < choice_.tracked && i != held_.healthy);
+      const bool open = i == rival || (i < set_.tracked && i != held_.baseline);
       if (open) prior_sd[at] = std::numeric_limits<double>::infinity();
       if (i != instead_of && i != held_.measured && (open || prior_sd[at] <= kMostUncertain_ratio))
         free.push_back(i);
     }
-    return fit_.fit(cut_, free, from, errors_, prior_sd);
+    return fit_.fit(data_, free, from, errors_, prior_sd);
   }
 
   WindowFit& fit_;
   const Thresholds& thresholds_;
-  const Choice& choice_;
-  const Cut& cut_;
-  const WindowEstimate& found_;
-  const VectorXd& healthy_;
-  Held held_;
+  const ParameterSet& set_;
+  const WindowData& data_;
+  const WindowFitSummary& found_;
+  const VectorXd& baseline_;
+  HeldParameters held_;
   VectorXd base_;  ///< healthy, but for what was read
-  Errors errors_;
+  ErrorScales errors_;
   double chi_square_;
   std::vector<std::size_t> rivals_;
 };
 
 }  // namespace
 
-double least_of(const Choice& choice, std::size_t parameter, const Thresholds& thresholds) {
-  if (choice.parameters[parameter].scale == Scale::logarithmic) {
+double least_change(const ParameterSet& set, std::size_t parameter, const Thresholds& thresholds) {
+  if (set.parameters[parameter].scale == Scale::logarithmic) {
     return std::log1p(thresholds.least_ratio);
   }
-  const double present = std::abs(choice.file[static_cast<Index>(parameter)]);
+  const double present = std::abs(set.file[static_cast<Index>(parameter)]);
   return present > 0.0 ? std::min(present, kLeastOfTypical) : kLeastOfTypical;
 }
 
-std::vector<Named> name_changes(WindowFit& fit, const Choice& choice, const Cut& cut,
-                                const WindowEstimate& found, const VectorXd& healthy,
-                                const Errors& errors, const Thresholds& thresholds, Memory& memory,
-                                const Held& held) {
-  return Namer(fit, choice, cut, found, healthy, errors, thresholds, held).run(memory);
+std::vector<ParameterChange> name_changes(WindowFit& fit, const ParameterSet& set,
+                                          const WindowData& data, const WindowFitSummary& found,
+                                          const VectorXd& baseline, const ErrorScales& errors,
+                                          const Thresholds& thresholds, NamingCache& cache,
+                                          const HeldParameters& held) {
+  return ChangeNaming(fit, set, data, found, baseline, errors, thresholds, held).run(cache);
 }
 
-void serialize(estimator::StateArchive& archive, std::vector<Named>& named, const Choice& choice) {
+void serialize(estimator::StateArchive& archive, std::vector<ParameterChange>& named,
+               const ParameterSet& set) {
   auto count = static_cast<std::uint64_t>(named.size());
   archive.value(count);
-  if (count > choice.tracked) archive.fail();
+  if (count > set.tracked) archive.fail();
   if (!archive.good()) return;
   named.resize(static_cast<std::size_t>(count));
-  for (Named& one : named) {
+  for (ParameterChange& one : named) {
     archive.value(one.parameter);
-    archive.value(one.x);
+    archive.value(one.theta);
     archive.value(one.std_error);
     archive.value(one.deviation);
     archive.value(one.sensed.supply);
     archive.value(one.sensed.chambers);
     auto rivals = static_cast<std::uint64_t>(one.rivals.size());
     archive.value(rivals);
-    if (one.parameter >= choice.tracked || rivals > choice.parameters.size()) archive.fail();
+    if (one.parameter >= set.tracked || rivals > set.parameters.size()) archive.fail();
     if (!archive.good()) return;
     one.rivals.resize(static_cast<std::size_t>(rivals));
     for (Rival& rival : one.rivals) {
@@ -216,10 +225,10 @@ void serialize(estimator::StateArchive& archive, std::vector<Named>& named, cons
   }
 }
 
-void Memory::serialize(estimator::StateArchive& archive, const Choice& choice) {
-  archive.growing(directions, choice.tracked);
+void NamingCache::serialize(estimator::StateArchive& archive, const ParameterSet& set) {
+  archive.growing(directions, set.tracked);
   archive.value(left);
-  tracking::serialize(archive, named, choice);
+  tracking::serialize(archive, named, set);
 }
 
 }  // namespace estimator::greybox::tracking

@@ -39,8 +39,8 @@ inline constexpr double kAsGood = 1.05;  ///< of the error's RMS
 inline constexpr double kMostUncertain_ratio = 0.1;
 
 /// Least change of a parameter, search units: of an effect that the model has, no more than it is.
-[[nodiscard]] double least_of(const Choice& choice, std::size_t parameter,
-                              const Thresholds& thresholds);
+[[nodiscard]] double least_change(const ParameterSet& set, std::size_t parameter,
+                                  const Thresholds& thresholds);
 
 struct Rival {
   std::string name;
@@ -48,47 +48,47 @@ struct Rival {
 };
 
 /// Pressures that a window was looked at with.
-struct Sensed {
+struct SensedPressures {
   bool supply = false;
   bool chambers = false;
 };
 
-struct Named {
+struct ParameterChange {
   std::size_t parameter = 0;  ///< index of the choice
-  double x = 0.0;             ///< search value
+  double theta = 0.0;         ///< search value
   double std_error = 0.0;     ///< search units
   double deviation = 0.0;     ///< from healthy, search units
   std::vector<Rival> rivals;  ///< empty: the name stands alone
-  Sensed sensed;              ///< what was looked at beside command and position
+  SensedPressures sensed;     ///< what was looked at beside command and position
 };
 
 /// The names of the window before: the same parameters, off in the same directions, keep their
 /// rivals, which cost most of the time to find; they are looked for anew every kAnew windows.
-struct Memory {
+struct NamingCache {
   static constexpr int kAnew = 10;
   std::vector<signed char> directions;  ///< of each tracked parameter; empty: nothing to keep
   int left = 0;                         ///< windows for which it may be kept
-  std::vector<Named> named;
+  std::vector<ParameterChange> named;
 
-  void serialize(estimator::StateArchive& archive, const Choice& choice);
+  void serialize(estimator::StateArchive& archive, const ParameterSet& set);
 };
 
 inline constexpr std::size_t kNotMeasured = static_cast<std::size_t>(-1);
 
 /// Tracked parameters that were not fitted.
-struct Held {
+struct HeldParameters {
   std::size_t measured = kNotMeasured;  ///< was read, and so has no rivals
-  std::size_t healthy = kNotMeasured;   ///< stands at its healthy value, and is a rival of others
+  std::size_t baseline = kNotMeasured;  ///< stands at its healthy value, and is a rival of others
 };
 
 /// `healthy`: search values of every parameter; `found`: the fit of the tracked ones to `cut`.
-[[nodiscard]] std::vector<Named> name_changes(WindowFit& fit, const Choice& choice, const Cut& cut,
-                                              const WindowEstimate& found,
-                                              const Eigen::VectorXd& healthy, const Errors& errors,
-                                              const Thresholds& thresholds, Memory& memory,
-                                              const Held& held = {});
+[[nodiscard]] std::vector<ParameterChange> name_changes(
+    WindowFit& fit, const ParameterSet& set, const WindowData& data, const WindowFitSummary& found,
+    const Eigen::VectorXd& baseline, const ErrorScales& errors, const Thresholds& thresholds,
+    NamingCache& cache, const HeldParameters& held = {});
 
 /// Bit for bit (state_archive.h).
-void serialize(estimator::StateArchive& archive, std::vector<Named>& named, const Choice& choice);
+void serialize(estimator::StateArchive& archive, std::vector<ParameterChange>& named,
+               const ParameterSet& set);
 
 }  // namespace estimator::greybox::tracking

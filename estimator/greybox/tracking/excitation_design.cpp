@@ -21,20 +21,21 @@ constexpr double kFrequencies_Hz[] = {0.25, 0.5, 1.0, 2.0, 4.0};
 constexpr double kShares[] = {1.0, 0.5};  ///< of the greatest amplitude
 constexpr double kSwinging_s = 1.0;       ///< before what is judged
 
-struct Motion {
+struct SimulatedMotion {
   std::vector<double> u_V;
   std::vector<double> y_m;
 };
 
 /// The model in its loop; empty where the command would leave its limits.
-Motion driven(const plant_sim::ModelFile& model, const ProbeLimits& limits, const Probe& probe,
-              std::size_t samples, double sample_time_s, double noise_m) {
+SimulatedMotion driven(const plant_sim::ModelFile& model, const ExcitationLimits& limits,
+                       const ExcitationDesign& probe, std::size_t samples, double sample_time_s,
+                       double noise_m) {
   const auto ensemble = plant_sim::make_ensemble(model, step_for(model, sample_time_s));
   ensemble->start(probe.centre_m);
   std::mt19937_64 random(1);
   std::normal_distribution<double> noise(0.0, noise_m);
   const auto settling = static_cast<std::size_t>(std::ceil(kSwinging_s / sample_time_s));
-  Motion out;
+  SimulatedMotion out;
   for (std::size_t k = 0; k < settling + samples; ++k) {
     const double t_s = static_cast<double>(k) * sample_time_s;
     const double reference_m =
@@ -56,14 +57,15 @@ Motion driven(const plant_sim::ModelFile& model, const ProbeLimits& limits, cons
 
 }  // namespace
 
-std::optional<Probe> best_probe(const plant_sim::ModelFile& healthy, const ProbeLimits& limits,
-                                std::size_t samples, double sample_time_s, double noise_m,
-                                const Foresee& foresee) {
-  std::optional<Probe> best;
+std::optional<ExcitationDesign> design_excitation(const plant_sim::ModelFile& baseline,
+                                                  const ExcitationLimits& limits,
+                                                  std::size_t samples, double sample_time_s,
+                                                  double noise_m, const Foresee& foresee) {
+  std::optional<ExcitationDesign> best;
   double least = INFINITY;
   for (const double frequency_Hz : kFrequencies_Hz) {
     for (const double share : kShares) {
-      Probe probe;
+      ExcitationDesign probe;
       probe.centre_m = 0.5 * (limits.low_m + limits.high_m);
       probe.frequency_Hz = frequency_Hz;
       // A tenth is left for what the loop overshoots.
@@ -71,7 +73,8 @@ std::optional<Probe> best_probe(const plant_sim::ModelFile& healthy, const Probe
           share * std::min(0.45 * (limits.high_m - limits.low_m),
                            0.9 * limits.speed_mps / (2.0 * std::numbers::pi * frequency_Hz));
       probe.duration_s = kSwinging_s + static_cast<double>(samples) * sample_time_s;
-      const Motion motion = driven(healthy, limits, probe, samples, sample_time_s, noise_m);
+      const SimulatedMotion motion =
+          driven(baseline, limits, probe, samples, sample_time_s, noise_m);
       if (motion.u_V.empty()) continue;
       probe.std_error = foresee(motion.u_V.data(), motion.y_m.data());
       if (!probe.std_error.allFinite() || !(probe.std_error.maxCoeff() < least)) continue;
@@ -82,7 +85,7 @@ std::optional<Probe> best_probe(const plant_sim::ModelFile& healthy, const Probe
   return best;
 }
 
-std::string probe_words(const Probe& probe) {
+std::string probe_words(const ExcitationDesign& probe) {
   return "probe with a sine of " + config::units::length_words(probe.amplitude_m) +
          fmt::format(" at {:.3g} Hz about ", probe.frequency_Hz) +
          config::units::length_words(probe.centre_m) +

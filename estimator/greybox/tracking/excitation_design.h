@@ -11,7 +11,7 @@
 
 namespace estimator::greybox::tracking {
 
-struct ProbeLimits {
+struct ExcitationLimits {
   double low_m = 0.0;
   double high_m = 0.0;      ///< not above low_m: no probe is suggested
   double speed_mps = 0.05;  ///< greatest
@@ -20,7 +20,7 @@ struct ProbeLimits {
   [[nodiscard]] bool given() const { return high_m > low_m; }
 };
 
-struct Probe {
+struct ExcitationDesign {
   double centre_m = 0.0;
   double amplitude_m = 0.0;
   double frequency_Hz = 0.0;
@@ -32,12 +32,11 @@ struct Probe {
 using Foresee = std::function<Eigen::VectorXd(const double* u_V, const double* y_m)>;
 
 /// None where no sine within the limits tells every parameter. `samples`: lead-in and window.
-[[nodiscard]] std::optional<Probe> best_probe(const plant_sim::ModelFile& healthy,
-                                              const ProbeLimits& limits, std::size_t samples,
-                                              double sample_time_s, double noise_m,
-                                              const Foresee& foresee);
+[[nodiscard]] std::optional<ExcitationDesign> design_excitation(
+    const plant_sim::ModelFile& baseline, const ExcitationLimits& limits, std::size_t samples,
+    double sample_time_s, double noise_m, const Foresee& foresee);
 
 /// "probe with a sine of 20 mm at 1 Hz about 305 mm for 3.8 s"
-[[nodiscard]] std::string probe_words(const Probe& probe);
+[[nodiscard]] std::string probe_words(const ExcitationDesign& probe);
 
 }  // namespace estimator::greybox::tracking

@@ -25,7 +25,7 @@ Eigen::MatrixXd widened(const Eigen::MatrixXd& matrix, Index at, double diagonal
 
 }  // namespace
 
-Reading reading_of(const double* values, std::size_t samples) {
+MeasuredMean measured_mean(const double* values, std::size_t samples) {
   const Eigen::Map<const Eigen::ArrayXd> read(values, static_cast<Index>(samples));
   const double mean = read.mean();
   const auto count = static_cast<double>(samples);
@@ -33,7 +33,7 @@ Reading reading_of(const double* values, std::size_t samples) {
                          kLeastOfReading * mean)};
 }
 
-WindowEstimate with_held(WindowEstimate found, std::size_t held, double std_error) {
+WindowFitSummary with_held(WindowFitSummary found, std::size_t held, double std_error) {
   const auto at = static_cast<Index>(held);
   found.covariance = widened(found.covariance, at, std_error * std_error);
   found.correlation = widened(found.correlation, at, 1.0);

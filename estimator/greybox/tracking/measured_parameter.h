@@ -7,16 +7,17 @@
 
 namespace estimator::greybox::tracking {
 
-struct Reading {
+struct MeasuredMean {
   double mean = 0.0;
   double std_error = 0.0;  ///< of the mean
 };
 
 /// Two samples or more of one quantity, in its own unit.
-[[nodiscard]] Reading reading_of(const double* values, std::size_t samples);
+[[nodiscard]] MeasuredMean measured_mean(const double* values, std::size_t samples);
 
 /// What was fitted, and the parameter `held` in its place among the tracked; `std_error` in search
 /// units, of what is known of it without the fit; infinite: nothing is.
-[[nodiscard]] WindowEstimate with_held(WindowEstimate found, std::size_t held, double std_error);
+[[nodiscard]] WindowFitSummary with_held(WindowFitSummary found, std::size_t held,
+                                         double std_error);
 
 }  // namespace estimator::greybox::tracking

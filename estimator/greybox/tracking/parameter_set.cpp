@@ -45,39 +45,39 @@ std::vector<std::string> rivals(const plant_sim::ModelFile& model) {
 
 }  // namespace
 
-std::vector<std::size_t> Choice::tracked_indices() const {
+std::vector<std::size_t> ParameterSet::tracked_indices() const {
   std::vector<std::size_t> indices(tracked);
   std::iota(indices.begin(), indices.end(), 0);
   return indices;
 }
 
-double Choice::supply_Pa() const {
+double ParameterSet::supply_Pa() const {
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     if (parameters[i].name != "supply_pressure_Pa") continue;
-    return parameters[i].value(file[static_cast<Eigen::Index>(i)]);
+    return parameters[i].to_physical(file[static_cast<Eigen::Index>(i)]);
   }
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-Choice choose(const plant_sim::ModelFile& model, const std::vector<std::string>& lists,
-              const std::string& option) {
-  const std::vector<Known> known = known_parameters(model);
-  Choice out;
+ParameterSet choose(const plant_sim::ModelFile& model, const std::vector<std::string>& lists,
+                    const std::string& option) {
+  const std::vector<CatalogueParameter> known = parameter_catalogue(model);
+  ParameterSet out;
   const auto add = [&](const std::string& name) {
     bool found = false;
-    for (const Known& k : known) {
+    for (const CatalogueParameter& k : known) {
       if (k.name != name && k.effect != name) continue;
       found = true;
       const auto same = [&](const auto& p) { return p.name == k.name; };
       if (std::none_of(out.parameters.begin(), out.parameters.end(), same)) {
-        out.parameters.push_back(k.search);
+        out.parameters.push_back(k.free);
       }
     }
     if (found) return;
     std::vector<std::string> all;
     all.reserve(known.size());
-    for (const Known& k : known) all.push_back(k.name);
-    refuse_name(option, name, all, names_worth_showing(model, known));
+    for (const CatalogueParameter& k : known) all.push_back(k.name);
+    reject_name(option, name, all, suggested_names(model, known));
   };
   for (const std::string& name : split_names(lists)) add(name);
   out.tracked = out.parameters.size();
@@ -89,7 +89,7 @@ Choice choose(const plant_sim::ModelFile& model, const std::vector<std::string>&
   out.uncertainty = Eigen::VectorXd::Constant(out.file.size(), kNone);
   const auto uncertain = plant_parameters(model);
   for (std::size_t i = 0; i < out.parameters.size(); ++i) {
-    SearchParameter& p = out.parameters[i];
+    FreeParameter& p = out.parameters[i];
     const auto same = std::find_if(uncertain.begin(), uncertain.end(),
                                    [&](const auto& other) { return other.name == p.name; });
     if (same != uncertain.end()) out.uncertainty[static_cast<Eigen::Index>(i)] = same->prior_sd;

@@ -12,8 +12,8 @@ namespace estimator::greybox::tracking {
 
 /// Tracked parameters first, then their rivals: every uncertain parameter of the plant, and effects
 /// that may arise while a rig runs.
-struct Choice {
-  std::vector<SearchParameter> parameters;
+struct ParameterSet {
+  std::vector<FreeParameter> parameters;
   std::size_t tracked = 0;
   Eigen::VectorXd file;  ///< search values of the model file
   /// How far a plant's value may be off its file (plant_sim::ParameterInfo::uncertainty_ratio);
@@ -27,7 +27,7 @@ struct Choice {
 
 /// `lists` of names as in model files, by comma. Throws config::schema::ConfigError that begins
 /// with `option` for an unknown name.
-[[nodiscard]] Choice choose(const plant_sim::ModelFile& model,
-                            const std::vector<std::string>& lists, const std::string& option);
+[[nodiscard]] ParameterSet choose(const plant_sim::ModelFile& model,
+                                  const std::vector<std::string>& lists, const std::string& option);
 
 }  // namespace estimator::greybox::tracking

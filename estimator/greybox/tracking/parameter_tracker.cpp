@@ -29,53 +29,54 @@ std::size_t samples_in(double duration_s, double sample_time_s) {
   return static_cast<std::size_t>(std::lround(duration_s / sample_time_s));
 }
 
-std::size_t tracked_index(const Choice& choice, std::string_view name) {
-  for (std::size_t i = 0; i < choice.tracked; ++i) {
-    if (choice.parameters[i].name == name) return i;
+std::size_t tracked_index(const ParameterSet& set, std::string_view name) {
+  for (std::size_t i = 0; i < set.tracked; ++i) {
+    if (set.parameters[i].name == name) return i;
   }
   return kNotMeasured;
 }
 
-double motion_m(const Cut& cut) {
-  const double* const y_m = cut.y_m + cut.lead;
-  const auto [low, high] = std::minmax_element(y_m, y_m + cut.samples);
+double motion_m(const WindowData& data) {
+  const double* const y_m = data.y_m + data.lead;
+  const auto [low, high] = std::minmax_element(y_m, y_m + data.samples);
   return *high - *low;
 }
 
 }  // namespace
 
-Tracker::Tracker(const plant_sim::ModelFile& model, const Choice& choice, const Settings& settings,
-                 double sample_time_s, double noise_floor_m)
+ParameterTracker::ParameterTracker(const plant_sim::ModelFile& model, const ParameterSet& set,
+                                   const TrackerSettings& settings, double sample_time_s,
+                                   double noise_floor_m)
     : model_(model),
-      choice_(choice),
+      set_(set),
       settings_(settings),
       sample_time_s_(sample_time_s),
       noise_floor_m_(std::max(noise_floor_m, kLeastFloor_m)),
       lead_(samples_in(kLead_s, sample_time_s)),
       window_(samples_in(settings.window_s, sample_time_s)),
-      supply_(tracked_index(choice, "supply_pressure_Pa")),
-      gain_(tracked_index(choice, "valve_gain_m_per_V")),
+      supply_(tracked_index(set, "supply_pressure_Pa")),
+      gain_(tracked_index(set, "valve_gain_m_per_V")),
       stride_(std::max<std::size_t>(1, samples_in(settings.stride_s, sample_time_s))),
-      fit_(model, choice.parameters, sample_time_s, lead_ + window_, settings.observer_per_s),
+      fit_(model, set.parameters, sample_time_s, lead_ + window_, settings.observer_per_s),
       samples_(lead_, window_),
-      slow_(choice, settings.following),
-      near_(choice.file),
-      pool_(choice.tracked, (window_ + stride_ - 1) / stride_,
-            static_cast<std::size_t>(std::max<std::int64_t>(1, settings.pooled))),
-      alarms_(choice, settings.thresholds) {}
+      drift_(set, settings.drift),
+      near_(set.file),
+      fusion_(set.tracked, (window_ + stride_ - 1) / stride_,
+              static_cast<std::size_t>(std::max<std::int64_t>(1, settings.fused))),
+      detector_(set, settings.thresholds) {}
 
-void Tracker::take(const Healthy& healthy) {
-  healthy_ = healthy;
-  slow_.take(healthy.x);
-  near_ = healthy.x;
+void ParameterTracker::take(const Baseline& baseline) {
+  baseline_ = baseline;
+  drift_.take(baseline.theta);
+  near_ = baseline.theta;
 }
 
-std::optional<Window> Tracker::push(double t_s, double u_V, double y_m, bool first,
-                                    const config::signals::Pressures& pressures) {
+std::optional<WindowResult> ParameterTracker::push(double t_s, double u_V, double y_m, bool first,
+                                                   const config::signals::Pressures& pressures) {
   if (first) {
     samples_.clear();
     until_ = samples_.needed();
-    pool_.clear();
+    fusion_.clear();
   }
   samples_.push(u_V, y_m, pressures);
   if (until_ > 0) --until_;
@@ -84,28 +85,28 @@ std::optional<Window> Tracker::push(double t_s, double u_V, double y_m, bool fir
   return look(t_s);
 }
 
-Window Tracker::look(double t_s) {
-  Window window;
+WindowResult ParameterTracker::look(double t_s) {
+  WindowResult window;
   window.t_s = t_s;
   window.from_s = t_s - static_cast<double>(window_ - 1) * sample_time_s_;
-  Cut cut = usable(window_, window.left_out);
+  WindowData data = usable(window_, window.left_out);
   const auto begin = std::chrono::steady_clock::now();
-  WindowEstimate found = healthy_ ? fit(cut, near_, healthy_->errors()) : first_fit(cut);
+  WindowFitSummary found = baseline_ ? fit(data, near_, baseline_->errors()) : first_fit(data);
   window.fit_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   window.evaluations = found.evaluations;
   std::string misfit = this->misfit(found, settings_.most_ratio);
   if (misfit.empty()) pressures_out_ = false;
   bool part = false;
-  if (!misfit.empty() && moves(cut) && found.with_chambers()) {
-    part = look_at_part(window, cut);
+  if (!misfit.empty() && moves(data) && found.with_chambers()) {
+    part = look_at_part(window, data);
     if (!part) {
-      const Cut with = std::exchange(cut, cut.without_pressures());
-      const Errors errors = healthy_->errors();
-      WindowEstimate instead = fit(cut, near_, errors);
+      const WindowData with = std::exchange(data, data.without_pressures());
+      const ErrorScales errors = baseline_->errors();
+      WindowFitSummary instead = fit(data, near_, errors);
       if (this->misfit(instead, settings_.most_ratio).empty()) {
         // Which of the two it is shows where they have not drawn the fit to them.
         const std::string shown =
-            this->misfit(fit_.fit(with, {}, instead.x, errors), settings_.most_ratio);
+            this->misfit(fit_.fit(with, {}, instead.theta, errors), settings_.most_ratio);
         if (!shown.empty()) misfit = shown;
         window.left_out = "chamber pressures left out because " + misfit;
         pressures_out_ = true;
@@ -119,60 +120,62 @@ Window Tracker::look(double t_s) {
   window.out = found.out;
   window.correlation = found.correlation;
   window.fits = misfit.empty();
-  window.explained = moves(cut) && window.fits;
+  window.explained = moves(data) && window.fits;
   estimate(window, found);
-  judge(window, cut, found, misfit);
-  if (window.explained) near_ = found.x;
-  if (!healthy_ || !moves(cut)) return window;
+  judge(window, data, found, misfit);
+  if (window.explained) near_ = found.theta;
+  if (!baseline_ || !moves(data)) return window;
   if (window.fits) {
-    tell(window, cut, found);
+    name_changes_in(window, data, found);
   } else if (!part && (pressures_out_ || !found.with_chambers())) {
-    look_at_part(window, cut);
+    look_at_part(window, data);
   }
-  slow_.follow(window, window.fits, alarms_, healthy_->x);
+  drift_.follow(window, window.fits, detector_, baseline_->theta);
   return window;
 }
 
-bool Tracker::moves(const Cut& cut) const { return motion_m(cut) > kLeastMotion * noise_m(); }
-
-double Tracker::noise_m() const {
-  return std::max(noise_floor_m_, healthy_ ? kLeastOfHealthy * healthy_->rms_m : 0.0);
+bool ParameterTracker::moves(const WindowData& data) const {
+  return motion_m(data) > kLeastMotion * noise_m();
 }
 
-void Tracker::estimate(Window& window, const WindowEstimate& found) {
-  const Eigen::VectorXd own = found.x.head(static_cast<Index>(choice_.tracked));
+double ParameterTracker::noise_m() const {
+  return std::max(noise_floor_m_, baseline_ ? kLeastOfHealthy * baseline_->rms_m : 0.0);
+}
+
+void ParameterTracker::estimate(WindowResult& window, const WindowFitSummary& found) {
+  const Eigen::VectorXd own = found.theta.head(static_cast<Index>(set_.tracked));
   const bool bounded =
       std::any_of(found.at_bound.begin(), found.at_bound.end(), [](int side) { return side != 0; });
-  pool_.add(own, found.covariance, window.explained && !bounded && found.std_error.allFinite());
-  const Pooled pooled = pool_.pooled();
-  for (std::size_t i = 0; i < choice_.tracked; ++i) {
+  fusion_.add(own, found.covariance, window.explained && !bounded && found.std_error.allFinite());
+  const FusedEstimate fused = fusion_.fused();
+  for (std::size_t i = 0; i < set_.tracked; ++i) {
     const auto at = static_cast<Index>(i);
-    const SearchParameter& p = choice_.parameters[i];
-    const bool many = pooled.windows > 1;
-    Estimate one;
-    one.x = many ? pooled.x[at] : own[at];
-    const double error = many ? std::sqrt(pooled.covariance(at, at)) : found.std_error[at];
-    one.value = p.value(one.x);
-    one.std_error = error * p.slope(one.x);
-    const double named = std::max(least_of(choice_, i, settings_.thresholds),
+    const FreeParameter& p = set_.parameters[i];
+    const bool many = fused.windows > 1;
+    ParameterEstimate one;
+    one.theta = many ? fused.theta[at] : own[at];
+    const double error = many ? std::sqrt(fused.covariance(at, at)) : found.std_error[at];
+    one.value = p.to_physical(one.theta);
+    one.std_error = error * p.slope(one.theta);
+    const double named = std::max(least_change(set_, i, settings_.thresholds),
                                   settings_.thresholds.sure * found.std_error[at]);
-    one.smallest = (named + kMostly * found.std_error[at]) * p.slope(one.x);
+    one.smallest = (named + kMostly * found.std_error[at]) * p.slope(one.theta);
     window.estimates.push_back(one);
   }
 }
 
-void Tracker::judge(Window& window, const Cut& cut, const WindowEstimate& found,
-                    const std::string& misfit) const {
+void ParameterTracker::judge(WindowResult& window, const WindowData& data,
+                             const WindowFitSummary& found, const std::string& misfit) const {
   std::string why;
-  if (!moves(cut)) {
-    why = still_words(motion_m(cut), noise_m(), settings_.window_s);
+  if (!moves(data)) {
+    why = still_words(motion_m(data), noise_m(), settings_.window_s);
   } else if (!window.explained) {
     why = misfit;
   }
   bool unseen = false;
-  for (std::size_t i = 0; i < choice_.tracked; ++i) {
-    Estimate& one = window.estimates[i];
-    const SearchParameter& p = choice_.parameters[i];
+  for (std::size_t i = 0; i < set_.tracked; ++i) {
+    ParameterEstimate& one = window.estimates[i];
+    const FreeParameter& p = set_.parameters[i];
     const double most =
         p.scale == Scale::logarithmic ? settings_.most_std_error : settings_.most_of_typical;
     one.why = why;
@@ -180,94 +183,95 @@ void Tracker::judge(Window& window, const Cut& cut, const WindowEstimate& found,
         std::isinf(found.std_error[static_cast<Index>(i)])) {
       one.why = "position alone does not tell valve gain from supply pressure: " + window.left_out;
     } else if (why.empty()) {
-      one.why = unseen_words(choice_, found, i, one.std_error / p.slope(one.x), most);
+      one.why = unseen_words(set_, found, i, one.std_error / p.slope(one.theta), most);
       unseen = unseen || !one.why.empty();
     }
     one.valid = one.why.empty();
     if (window.why.empty()) window.why = one.why;
   }
   window.valid = window.why.empty();
-  window.poor = !moves(cut) || (window.explained && unseen);
+  window.poor = !moves(data) || (window.explained && unseen);
 }
 
-bool Tracker::look_at_part(Window& window, const Cut& whole) {
-  Eigen::VectorXd near = healthy_->x;
+bool ParameterTracker::look_at_part(WindowResult& window, const WindowData& whole) {
+  Eigen::VectorXd near = baseline_->theta;
   for (const double share : kParts) {
     const auto samples = static_cast<std::size_t>(share * static_cast<double>(window_));
     std::string left_out;
-    Cut cut = usable(samples, left_out);
-    if (whole.in_Pa == nullptr) cut = cut.without_pressures();
-    const WindowEstimate part = fit(cut, near, healthy_->errors());
+    WindowData data = usable(samples, left_out);
+    if (whole.in_Pa == nullptr) data = data.without_pressures();
+    const WindowFitSummary part = fit(data, near, baseline_->errors());
     const double most = std::max(
         settings_.most_ratio, 1.0 + kChanceOfRms / std::sqrt(2.0 * static_cast<double>(samples)));
     if (!misfit(part, most).empty()) continue;
-    if (!moves(cut)) return true;
-    window.part = part_words(choice_, part, static_cast<double>(samples) * sample_time_s_);
-    tell(window, cut, part);
-    near_ = part.x;
+    if (!moves(data)) return true;
+    window.part = part_words(set_, part, static_cast<double>(samples) * sample_time_s_);
+    name_changes_in(window, data, part);
+    near_ = part.theta;
     return true;
   }
   return false;
 }
 
-void Tracker::tell(Window& window, const Cut& cut, const WindowEstimate& found) {
-  const bool whole = cut.samples == window_;
-  Memory once;  // the rivals of a part are not those of the whole window
-  const Errors errors = healthy_->errors();
-  window.named = name_changes(fit_, choice_, cut, found, healthy_->x, errors, settings_.thresholds,
-                              whole ? memory_ : once, held(cut, errors));
+void ParameterTracker::name_changes_in(WindowResult& window, const WindowData& data,
+                                       const WindowFitSummary& found) {
+  const bool whole = data.samples == window_;
+  NamingCache once;  // the rivals of a part are not those of the whole window
+  const ErrorScales errors = baseline_->errors();
+  window.named = name_changes(fit_, set_, data, found, baseline_->theta, errors,
+                              settings_.thresholds, whole ? cache_ : once, held(data, errors));
   if (whole) refine(window);
-  std::vector<Seen> seen;
-  for (std::size_t i = 0; i < choice_.tracked; ++i) {
-    seen.push_back({found.x[static_cast<Index>(i)], found.std_error[static_cast<Index>(i)]});
+  std::vector<TrackedValue> seen;
+  for (std::size_t i = 0; i < set_.tracked; ++i) {
+    seen.push_back({found.theta[static_cast<Index>(i)], found.std_error[static_cast<Index>(i)]});
   }
-  alarms_.update(window.t_s, window.named, seen, healthy_->x, whole);
+  detector_.update(window.t_s, window.named, seen, baseline_->theta, whole);
 }
 
 /// What is named has the values of the windows that agree with this one.
-void Tracker::refine(Window& window) const {
-  for (Named& one : window.named) {
-    const Estimate& best = window.estimates[one.parameter];
-    one.x = best.x;
-    one.std_error = best.std_error / choice_.parameters[one.parameter].slope(best.x);
-    one.deviation = best.x - healthy_->x[static_cast<Index>(one.parameter)];
+void ParameterTracker::refine(WindowResult& window) const {
+  for (ParameterChange& one : window.named) {
+    const ParameterEstimate& best = window.estimates[one.parameter];
+    one.theta = best.theta;
+    one.std_error = best.std_error / set_.parameters[one.parameter].slope(best.theta);
+    one.deviation = best.theta - baseline_->theta[static_cast<Index>(one.parameter)];
   }
 }
 
-void Tracker::reset() {
+void ParameterTracker::reset() {
   samples_.clear();
   until_ = 0;
-  healthy_.reset();
-  near_ = choice_.file;
-  pool_.clear();
-  memory_ = {};
+  baseline_.reset();
+  near_ = set_.file;
+  fusion_.clear();
+  cache_ = {};
   pressures_out_ = false;
-  alarms_ = AlarmBook(choice_, settings_.thresholds);
+  detector_ = ChangeDetector(set_, settings_.thresholds);
 }
 
-void Tracker::serialize(estimator::StateArchive& archive) {
-  const auto vector = [&archive](Eigen::VectorXd& x) {
-    for (double& value : x) archive.value(value);
+void ParameterTracker::serialize(estimator::StateArchive& archive) {
+  const auto vector = [&archive](Eigen::VectorXd& theta) {
+    for (double& value : theta) archive.value(value);
   };
   samples_.serialize(archive);
   archive.value(until_);
   archive.value(pressures_out_);
-  bool knows = healthy_.has_value();
+  bool knows = baseline_.has_value();
   archive.value(knows);
   if (archive.restores()) {
-    healthy_.reset();
-    if (knows) healthy_ = Healthy{0.0, choice_.file, {}};
+    baseline_.reset();
+    if (knows) baseline_ = Baseline{0.0, set_.file, {}};
   }
-  if (healthy_) {
-    archive.value(healthy_->rms_m);
-    vector(healthy_->x);
-    healthy_->chambers.serialize(archive);
+  if (baseline_) {
+    archive.value(baseline_->rms_m);
+    vector(baseline_->theta);
+    baseline_->chambers.serialize(archive);
   }
-  slow_.serialize(archive);
+  drift_.serialize(archive);
   vector(near_);
-  pool_.serialize(archive);
-  memory_.serialize(archive, choice_);
-  alarms_.serialize(archive, choice_);
+  fusion_.serialize(archive);
+  cache_.serialize(archive, set_);
+  detector_.serialize(archive, set_);
 }
 
 }  // namespace estimator::greybox::tracking

@@ -40,41 +40,41 @@
 
 namespace estimator::greybox::tracking {
 
-struct Settings {
+struct TrackerSettings {
   double window_s = 2.0;
   double stride_s = 0.5;
   double observer_per_s = kObserver_per_s;
   double most_ratio = 1.2;       ///< of the healthy error, beyond which a window is invalid
   double most_std_error = 0.01;  ///< ratio, beyond which a value is invalid
   double most_of_typical = 0.1;  ///< the same of an effect, over its typical size
-  std::int64_t pooled = 4;       ///< windows that a value is taken from while they agree (pool.h)
+  std::int64_t fused = 4;        ///< windows that a value is taken from while they agree (pool.h)
   Thresholds thresholds;
-  Following following;
-  ProbeLimits probe;
+  DriftSettings drift;
+  ExcitationLimits probe;
 };
 
-class Tracker {
+class ParameterTracker {
  public:
-  Tracker(const plant_sim::ModelFile& model, const Choice& choice, const Settings& settings,
-          double sample_time_s, double noise_floor_m);
+  ParameterTracker(const plant_sim::ModelFile& model, const ParameterSet& set,
+                   const TrackerSettings& settings, double sample_time_s, double noise_floor_m);
 
   /// From now on windows are judged and changes named; before, they are only fitted.
-  void take(const Healthy& healthy);
+  void take(const Baseline& baseline);
   /// The window that ends with this sample, when one does. `first`: samples before it are missing.
-  std::optional<Window> push(double t_s, double u_V, double y_m, bool first,
-                             const config::signals::Pressures& pressures = {});
+  std::optional<WindowResult> push(double t_s, double u_V, double y_m, bool first,
+                                   const config::signals::Pressures& pressures = {});
 
-  [[nodiscard]] const AlarmBook& alarms() const { return alarms_; }
+  [[nodiscard]] const ChangeDetector& detector() const { return detector_; }
   /// AlarmBook::forget_cleared().
-  void forget_cleared() { alarms_.forget_cleared(); }
+  void forget_cleared() { detector_.forget_cleared(); }
   /// What changes are counted from: as learnt, but for what has changed slowly (slow_change.h).
-  [[nodiscard]] const std::optional<Healthy>& healthy() const { return healthy_; }
-  [[nodiscard]] const SlowChange& slow_change() const { return slow_; }
-  [[nodiscard]] const Choice& choice() const { return choice_; }
+  [[nodiscard]] const std::optional<Baseline>& baseline() const { return baseline_; }
+  [[nodiscard]] const BaselineDrift& baseline_drift() const { return drift_; }
+  [[nodiscard]] const ParameterSet& set() const { return set_; }
 
   /// What motion within the limits of the settings would tell; a tenth of a second or so. Once the
   /// healthy rig is known.
-  [[nodiscard]] std::optional<Probe> probe();
+  [[nodiscard]] std::optional<ExcitationDesign> probe();
 
   /// As at the start, the healthy rig forgotten.
   void reset();
@@ -83,26 +83,27 @@ class Tracker {
 
  private:
   /// Fits the tracked parameters from `near`, but those that are held.
-  [[nodiscard]] WindowEstimate fit(const Cut& cut, Eigen::VectorXd near, const Errors& errors);
+  [[nodiscard]] WindowFitSummary fit(const WindowData& data, Eigen::VectorXd near,
+                                     const ErrorScales& errors);
   /// Before the healthy rig is known.
-  [[nodiscard]] WindowEstimate first_fit(const Cut& cut);
-  [[nodiscard]] Held held(const Cut& cut, const Errors& errors) const;
-  [[nodiscard]] Cut usable(std::size_t samples, std::string& left_out) const;
-  [[nodiscard]] std::string misfit(const WindowEstimate& found, double most_ratio) const;
-  Window look(double t_s);
-  void estimate(Window& window, const WindowEstimate& found);
-  void judge(Window& window, const Cut& cut, const WindowEstimate& found,
+  [[nodiscard]] WindowFitSummary first_fit(const WindowData& data);
+  [[nodiscard]] HeldParameters held(const WindowData& data, const ErrorScales& errors) const;
+  [[nodiscard]] WindowData usable(std::size_t samples, std::string& left_out) const;
+  [[nodiscard]] std::string misfit(const WindowFitSummary& found, double most_ratio) const;
+  WindowResult look(double t_s);
+  void estimate(WindowResult& window, const WindowFitSummary& found);
+  void judge(WindowResult& window, const WindowData& data, const WindowFitSummary& found,
              const std::string& misfit) const;
-  [[nodiscard]] bool moves(const Cut& cut) const;
+  [[nodiscard]] bool moves(const WindowData& data) const;
   [[nodiscard]] double noise_m() const;
   /// Whether a part was explained; by position alone where the cut has no pressures.
-  bool look_at_part(Window& window, const Cut& whole);
-  void tell(Window& window, const Cut& cut, const WindowEstimate& found);
-  void refine(Window& window) const;
+  bool look_at_part(WindowResult& window, const WindowData& whole);
+  void name_changes_in(WindowResult& window, const WindowData& data, const WindowFitSummary& found);
+  void refine(WindowResult& window) const;
 
   plant_sim::ModelFile model_;
-  const Choice choice_;
-  Settings settings_;
+  const ParameterSet set_;
+  TrackerSettings settings_;
   double sample_time_s_;
   double noise_floor_m_;
   std::size_t lead_;
@@ -111,15 +112,15 @@ class Tracker {
   std::size_t gain_;    ///< the same of the valve gain
   std::size_t stride_;
   WindowFit fit_;
-  Samples samples_;
+  SampleBuffer samples_;
   std::size_t until_ = 0;       ///< samples until the next look
   bool pressures_out_ = false;  ///< chamber pressures have not belonged to the model lately
-  std::optional<Healthy> healthy_;
-  SlowChange slow_;
+  std::optional<Baseline> baseline_;
+  BaselineDrift drift_;
   Eigen::VectorXd near_;  ///< where the next search begins
-  Pool pool_;
-  Memory memory_;
-  AlarmBook alarms_;
+  WindowFusion fusion_;
+  NamingCache cache_;
+  ChangeDetector detector_;
 };
 
 }  // namespace estimator::greybox::tracking

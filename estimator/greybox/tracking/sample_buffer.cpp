@@ -11,7 +11,7 @@ constexpr double kNotRead = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-Samples::Samples(std::size_t lead, std::size_t window)
+SampleBuffer::SampleBuffer(std::size_t lead, std::size_t window)
     : lead_(lead),
       needed_(lead + window),
       u_V_(2 * needed_),
@@ -20,7 +20,7 @@ Samples::Samples(std::size_t lead, std::size_t window)
       in_Pa_(u_V_.size(), kNotRead),
       out_Pa_(u_V_.size(), kNotRead) {}
 
-void Samples::push(double u_V, double y_m, const config::signals::Pressures& pressures) {
+void SampleBuffer::push(double u_V, double y_m, const config::signals::Pressures& pressures) {
   if (kept_ == u_V_.size()) {
     for (std::vector<double>* column : {&u_V_, &y_m_, &supply_Pa_, &in_Pa_, &out_Pa_}) {
       std::copy(column->end() - static_cast<std::ptrdiff_t>(needed_), column->end(),
@@ -36,26 +36,26 @@ void Samples::push(double u_V, double y_m, const config::signals::Pressures& pre
   ++kept_;
 }
 
-Cut Samples::latest(std::size_t samples) const noexcept {
+WindowData SampleBuffer::latest(std::size_t samples) const noexcept {
   const std::size_t from = kept_ - samples - lead_;
-  Cut cut{u_V_.data() + from, y_m_.data() + from, lead_, samples};
+  WindowData data{u_V_.data() + from, y_m_.data() + from, lead_, samples};
   const auto read = [&](const std::vector<double>& column) {
     return std::all_of(column.data() + from, column.data() + kept_,
                        [](double value) { return std::isfinite(value); });
   };
-  if (!read(in_Pa_) || !read(out_Pa_)) return cut;
-  cut.in_Pa = in_Pa_.data() + from;
-  cut.out_Pa = out_Pa_.data() + from;
-  return cut;
+  if (!read(in_Pa_) || !read(out_Pa_)) return data;
+  data.in_Pa = in_Pa_.data() + from;
+  data.out_Pa = out_Pa_.data() + from;
+  return data;
 }
 
-const double* Samples::supply_Pa(std::size_t samples) const noexcept {
+const double* SampleBuffer::supply_Pa(std::size_t samples) const noexcept {
   const double* const last = supply_Pa_.data() + kept_;
   const bool read = std::all_of(last - samples, last, [](double value) { return value > 0.0; });
   return read ? last - samples : nullptr;
 }
 
-void Samples::serialize(estimator::StateArchive& archive) {
+void SampleBuffer::serialize(estimator::StateArchive& archive) {
   for (std::vector<double>* column : {&u_V_, &y_m_, &supply_Pa_, &in_Pa_, &out_Pa_}) {
     archive.fixed(*column);
   }

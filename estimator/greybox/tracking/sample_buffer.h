@@ -10,9 +10,9 @@
 
 namespace estimator::greybox::tracking {
 
-class Samples {
+class SampleBuffer {
  public:
-  Samples(std::size_t lead, std::size_t window);
+  SampleBuffer(std::size_t lead, std::size_t window);
 
   /// Nothing before now belongs together with what comes.
   void clear() noexcept { kept_ = 0; }
@@ -22,7 +22,7 @@ class Samples {
   [[nodiscard]] std::size_t needed() const noexcept { return needed_; }
   [[nodiscard]] bool enough() const noexcept { return kept_ >= needed_; }
   /// The latest, with the lead-in before them; with chamber pressures where both were read in all.
-  [[nodiscard]] Cut latest(std::size_t samples) const noexcept;
+  [[nodiscard]] WindowData latest(std::size_t samples) const noexcept;
   /// Their supply pressures; null unless it was read in all of them.
   [[nodiscard]] const double* supply_Pa(std::size_t samples) const noexcept;
 

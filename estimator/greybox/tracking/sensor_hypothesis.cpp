@@ -22,41 +22,42 @@ double least(double a, double b, double c, double step) {
 
 }  // namespace
 
-std::vector<SensorRival> sensor_rivals(WindowFit& fit, const Cut& cut, const Eigen::VectorXd& x,
-                                       const Errors& errors, double sample_time_s) {
-  const std::size_t all = cut.lead + cut.samples;
-  const double* const end = cut.y_m + all;
+std::vector<SensorHypothesis> sensor_hypotheses(WindowFit& fit, const WindowData& data,
+                                                const Eigen::VectorXd& theta,
+                                                const ErrorScales& errors, double sample_time_s) {
+  const std::size_t all = data.lead + data.samples;
+  const double* const end = data.y_m + all;
   const double centre_m =
-      std::accumulate(cut.y_m + cut.lead, end, 0.0) / static_cast<double>(cut.samples);
-  const double middle = static_cast<double>(cut.lead) + 0.5 * static_cast<double>(cut.samples);
-  SensorRival scaled;
+      std::accumulate(data.y_m + data.lead, end, 0.0) / static_cast<double>(data.samples);
+  const double middle = static_cast<double>(data.lead) + 0.5 * static_cast<double>(data.samples);
+  SensorHypothesis scaled;
   scaled.name = "position_sensor.scale_ratio";
-  SensorRival drifting;
+  SensorHypothesis drifting;
   drifting.name = "position_sensor.drift_mps";
   scaled.y_m.resize(all);
   drifting.y_m.resize(all);
   double position = 0.0;
   const auto by_scale = [&](double less) {  // 1 / s = 1 + less
     for (std::size_t k = 0; k < all; ++k) {
-      scaled.y_m[k] = centre_m + (1.0 + less) * (cut.y_m[k] - centre_m);
+      scaled.y_m[k] = centre_m + (1.0 + less) * (data.y_m[k] - centre_m);
     }
     scaled.scale = 1.0 / (1.0 + less);
     scaled.value = scaled.scale - 1.0;
-    const WindowEstimate held = fit.fit(scaled.cut(cut), {}, x, errors);
+    const WindowFitSummary held = fit.fit(scaled.data(data), {}, theta, errors);
     position = held.position_chi_square;
     scaled.chi_square = held.chi_square;
     return scaled.chi_square;
   };
   const auto by_drift = [&](double rate_mps) {
     for (std::size_t k = 0; k < all; ++k) {
-      drifting.y_m[k] = cut.y_m[k] - rate_mps * sample_time_s * (static_cast<double>(k) - middle);
+      drifting.y_m[k] = data.y_m[k] - rate_mps * sample_time_s * (static_cast<double>(k) - middle);
     }
     drifting.value = rate_mps;
-    drifting.chi_square = fit.fit(drifting.cut(cut), {}, x, errors).chi_square;
+    drifting.chi_square = fit.fit(drifting.data(data), {}, theta, errors).chi_square;
     return drifting.chi_square;
   };
   const double as_read = by_scale(0.0);
-  std::vector<SensorRival> found;
+  std::vector<SensorHypothesis> found;
   const double less = least(by_scale(-kScaleStep), as_read, by_scale(kScaleStep), kScaleStep);
   if (std::abs(less) < kMostScale) {
     by_scale(less);

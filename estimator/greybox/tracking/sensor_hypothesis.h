@@ -18,15 +18,15 @@
 namespace estimator::greybox::tracking {
 
 /// A window as a faulty sensor would have read it, set right.
-struct SensorRival {
+struct SensorHypothesis {
   const char* name = "";  ///< position_sensor.scale_ratio (its change), position_sensor.drift_mps
   double value = 0.0;
   double scale = 1.0;  ///< s: residuals of the window set right, times this, are in the reading's
   double chi_square = 0.0;
   std::vector<double> y_m;  ///< y', lead-in and window
 
-  [[nodiscard]] Cut cut(const Cut& as_read) const {
-    Cut right = as_read;
+  [[nodiscard]] WindowData data(const WindowData& as_read) const {
+    WindowData right = as_read;
     right.y_m = y_m.data();
     return right;
   }
@@ -34,8 +34,10 @@ struct SensorRival {
 
 /// The scale and the drift that explain the window best where the model is as `x` has it; those
 /// beyond what a sensor may show (a third, 10 mm/s) are left out.
-[[nodiscard]] std::vector<SensorRival> sensor_rivals(WindowFit& fit, const Cut& cut,
-                                                     const Eigen::VectorXd& x, const Errors& errors,
-                                                     double sample_time_s);
+[[nodiscard]] std::vector<SensorHypothesis> sensor_hypotheses(WindowFit& fit,
+                                                              const WindowData& data,
+                                                              const Eigen::VectorXd& theta,
+                                                              const ErrorScales& errors,
+                                                              double sample_time_s);
 
 }  // namespace estimator::greybox::tracking

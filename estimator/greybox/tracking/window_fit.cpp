@@ -20,23 +20,23 @@ constexpr double kTolerance = 1e-5;
 /// Nearly Gauss and Newton's step: windows follow each other, the start is near.
 constexpr double kSlight = 1e-6;
 
-Measured room_for(std::size_t most, double sample_time_s) {
-  Measured window;
+Dataset room_for(std::size_t most, double sample_time_s) {
+  Dataset window;
   window.sample_time_s = sample_time_s;
   window.starts = {0};
   window.t_s.assign(most, 0.0);
   window.u_V.assign(most, 0.0);
   window.y_m.assign(most, 0.0);
-  window.settled.assign(most, 1);
-  window.led.assign(most, kNotLed);
+  window.valid.assign(most, 1);
+  window.initialising.assign(most, kNotInitialising);
   return window;
 }
 
 /// What the position at the window's start leaves, of length one; 0 in the lead-in.
-VectorXd start_shape(const Cut& cut, double keep) {
-  VectorXd shape = VectorXd::Zero(static_cast<Index>(cut.lead + cut.samples));
+VectorXd start_shape(const WindowData& data, double keep) {
+  VectorXd shape = VectorXd::Zero(static_cast<Index>(data.lead + data.samples));
   double value = 1.0;
-  for (auto k = static_cast<Index>(cut.lead); k < shape.size(); ++k, value *= keep) {
+  for (auto k = static_cast<Index>(data.lead); k < shape.size(); ++k, value *= keep) {
     shape[k] = value;
   }
   return shape.normalized();
@@ -60,14 +60,14 @@ double left_of_mean(Index samples, const ChamberError& error, const ChamberError
 }
 
 /// The errors of each quantity from the residual as WindowFit::compare() makes it.
-void tell_errors(const Cut& cut, const Errors& errors, const VectorXd& residual,
-                 WindowEstimate& out) {
-  const auto all = static_cast<Index>(cut.lead + cut.samples);
-  const auto samples = static_cast<Index>(cut.samples);
+void tell_errors(const WindowData& data, const ErrorScales& errors, const VectorXd& residual,
+                 WindowFitSummary& out) {
+  const auto all = static_cast<Index>(data.lead + data.samples);
+  const auto samples = static_cast<Index>(data.samples);
   const double square = residual.segment(all - samples, samples).squaredNorm();
   out.rms_m = std::sqrt(square / static_cast<double>(samples));
   out.position_chi_square = square / (errors.rms_m * errors.rms_m);
-  if (!with_chambers(cut, errors)) return;
+  if (!with_chambers(data, errors)) return;
   const auto chamber = [&](Index from, const ChamberError& error) {
     const VectorXd r = residual.segment(from, samples) * (error.weight_Pa / errors.rms_m);
     const double mean = r.mean();
@@ -83,38 +83,38 @@ void tell_errors(const Cut& cut, const Errors& errors, const VectorXd& residual,
 
 }  // namespace
 
-WindowFit::WindowFit(const plant_sim::ModelFile& model, std::vector<SearchParameter> parameters,
+WindowFit::WindowFit(const plant_sim::ModelFile& model, std::vector<FreeParameter> parameters,
                      double sample_time_s, std::size_t most, double observer_per_s)
     : observer_per_s_(observer_per_s),
       window_(room_for(most, sample_time_s)),
       run_(model, window_, std::move(parameters), observer_per_s) {}
 
-void WindowFit::take(const Cut& cut) {
-  const std::size_t all = cut.lead + cut.samples;
+void WindowFit::take(const WindowData& data) {
+  const std::size_t all = data.lead + data.samples;
   window_.t_s.resize(all);
-  window_.u_V.assign(cut.u_V, cut.u_V + all);
-  window_.y_m.assign(cut.y_m, cut.y_m + all);
-  window_.settled.assign(all, 1);
-  window_.led.assign(all, kNotLed);
-  std::fill_n(window_.settled.begin(), cut.lead, static_cast<char>(0));
-  std::fill_n(window_.led.begin(), cut.lead, static_cast<char>(kLed));
+  window_.u_V.assign(data.u_V, data.u_V + all);
+  window_.y_m.assign(data.y_m, data.y_m + all);
+  window_.valid.assign(all, 1);
+  window_.initialising.assign(all, kNotInitialising);
+  std::fill_n(window_.valid.begin(), data.lead, static_cast<char>(0));
+  std::fill_n(window_.initialising.begin(), data.lead, static_cast<char>(kInitialising));
 }
 
-void WindowFit::compare(const Cut& cut, const Errors& errors, const MatrixXd& points,
+void WindowFit::compare(const WindowData& data, const ErrorScales& errors, const MatrixXd& points,
                         MatrixXd& residuals) {
-  if (!with_chambers(cut, errors)) {
+  if (!with_chambers(data, errors)) {
     run_.residuals(points, residuals);
     return;
   }
-  const auto all = static_cast<Index>(cut.lead + cut.samples);
-  const auto samples = static_cast<Index>(cut.samples);
+  const auto all = static_cast<Index>(data.lead + data.samples);
+  const auto samples = static_cast<Index>(data.samples);
   const Index sets = points.cols();
   run_.residuals(points, position_m_, chambers_);
   residuals.resize(all + 2 * samples, sets);
   residuals.topRows(all) = position_m_;
   const auto place = [&](Index from, const double* read_Pa, const MatrixXd& model_Pa,
                          const ChamberError& error) {
-    const Eigen::Map<const VectorXd> read(read_Pa + cut.lead, samples);
+    const Eigen::Map<const VectorXd> read(read_Pa + data.lead, samples);
     const double scale = errors.rms_m / error.weight_Pa;
     const double left = left_of_mean(samples, error, errors.chambers);
     for (Index set = 0; set < sets; ++set) {
@@ -124,28 +124,28 @@ void WindowFit::compare(const Cut& cut, const Errors& errors, const MatrixXd& po
       column *= scale;
     }
   };
-  place(all, cut.in_Pa, chambers_.in_Pa, errors.chambers.in);
-  place(all + samples, cut.out_Pa, chambers_.out_Pa, errors.chambers.out);
+  place(all, data.in_Pa, chambers_.in_Pa, errors.chambers.in);
+  place(all + samples, data.out_Pa, chambers_.out_Pa, errors.chambers.out);
 }
 
-WindowEstimate WindowFit::fit(const Cut& cut, const std::vector<std::size_t>& free,
-                              const VectorXd& start, const Errors& errors,
-                              const VectorXd& prior_sd) {
-  take(cut);
-  const VectorXd shape = start_shape(cut, 1.0 - observer_per_s_ * window_.sample_time_s);
+WindowFitSummary WindowFit::fit(const WindowData& data, const std::vector<std::size_t>& free,
+                                const VectorXd& start, const ErrorScales& errors,
+                                const VectorXd& prior_sd) {
+  take(data);
+  const VectorXd shape = start_shape(data, 1.0 - observer_per_s_ * window_.sample_time_s);
   const auto count = static_cast<Index>(free.size());
   const Index all = shape.size();
-  const auto samples = static_cast<Index>(cut.samples);
+  const auto samples = static_cast<Index>(data.samples);
   estimator::nonlinear::Problem problem;
-  problem.residuals = all + (with_chambers(cut, errors) ? 2 * samples : 0);
-  problem.lanes = ModelRun::kLanes;
+  problem.residuals = all + (with_chambers(data, errors) ? 2 * samples : 0);
+  problem.lanes = ObserverSimulation::kLanes;
   problem.sigma = errors.rms_m;
   problem.weights = VectorXd::Zero(problem.residuals);
-  problem.weights.tail(problem.residuals - static_cast<Index>(cut.lead)).setOnes();
-  VectorXd x(count);
+  problem.weights.tail(problem.residuals - static_cast<Index>(data.lead)).setOnes();
+  VectorXd theta(count);
   for (Index i = 0; i < count; ++i) {
     const std::size_t at = free[static_cast<std::size_t>(i)];
-    const SearchParameter& p = run_.searched()[at];
+    const FreeParameter& p = run_.parameters()[at];
     estimator::nonlinear::Unknown unknown;
     unknown.lower = p.lower;
     unknown.upper = p.upper;
@@ -156,7 +156,7 @@ WindowEstimate WindowFit::fit(const Cut& cut, const std::vector<std::size_t>& fr
       unknown.prior_sd = prior_sd[static_cast<Index>(at)];
     }
     problem.unknowns.push_back(unknown);
-    x[i] = start[static_cast<Index>(at)];
+    theta[i] = start[static_cast<Index>(at)];
   }
   MatrixXd every;
   problem.evaluate = [&](const MatrixXd& points, MatrixXd& residuals) {
@@ -164,30 +164,30 @@ WindowEstimate WindowFit::fit(const Cut& cut, const std::vector<std::size_t>& fr
     for (Index i = 0; i < count; ++i) {
       every.row(static_cast<Index>(free[static_cast<std::size_t>(i)])) = points.row(i);
     }
-    compare(cut, errors, every, residuals);
+    compare(data, errors, every, residuals);
     const Eigen::RowVectorXd along = shape.transpose() * residuals.topRows(all);
     residuals.topRows(all).noalias() -= shape * along;
   };
-  WindowEstimate out;
-  out.x = start;
+  WindowFitSummary out;
+  out.theta = start;
   if (free.empty()) {
     MatrixXd residual;
     problem.evaluate(MatrixXd(0, 1), residual);
     out.chi_square = residual.squaredNorm() / (errors.rms_m * errors.rms_m);
     out.evaluations = 1;
-    tell_errors(cut, errors, residual.col(0), out);
+    tell_errors(data, errors, residual.col(0), out);
     return out;
   }
   estimator::nonlinear::Options how;
   how.max_iterations = kMostIterations;
   how.cost_tolerance = kTolerance;
   how.first_damping = kSlight;
-  const estimator::nonlinear::Solution solution = minimize(problem, x, how);
+  const estimator::nonlinear::Solution solution = minimize(problem, theta, how);
   estimator::nonlinear::CovarianceOptions of;
   if (problem.residuals > all) of.series = {all, all + samples};
   const estimator::nonlinear::Covariance known = covariance(problem, solution, of);
   for (Index i = 0; i < count; ++i) {
-    out.x[static_cast<Index>(free[static_cast<std::size_t>(i)])] = solution.x[i];
+    out.theta[static_cast<Index>(free[static_cast<std::size_t>(i)])] = solution.x[i];
   }
   out.std_error = known.std_error;
   out.covariance = known.matrix;
@@ -197,7 +197,7 @@ WindowEstimate WindowFit::fit(const Cut& cut, const std::vector<std::size_t>& fr
   out.at_bound = solution.at_bound;
   out.chi_square = solution.cost;
   out.evaluations = solution.evaluations;
-  tell_errors(cut, errors, solution.residual, out);
+  tell_errors(data, errors, solution.residual, out);
   return out;
 }
 

@@ -37,7 +37,7 @@ namespace estimator::greybox::tracking {
 inline constexpr double kLead_s = 0.75;
 
 /// Consecutive samples without a gap: the lead-in's, then the window's.
-struct Cut {
+struct WindowData {
   const double* u_V = nullptr;
   const double* y_m = nullptr;
   std::size_t lead = 0;
@@ -45,7 +45,7 @@ struct Cut {
   const double* in_Pa = nullptr;  ///< null: not read in all of them; as the next
   const double* out_Pa = nullptr;
 
-  [[nodiscard]] Cut without_pressures() const { return {u_V, y_m, lead, samples}; }
+  [[nodiscard]] WindowData without_pressures() const { return {u_V, y_m, lead, samples}; }
 };
 
 /// Of one chamber's pressure, measured less modelled less learnt offset.
@@ -56,12 +56,12 @@ struct ChamberFit {
 };
 
 /// Whether the cut's chamber pressures count in a fit with these errors.
-[[nodiscard]] inline bool with_chambers(const Cut& cut, const Errors& errors) {
-  return errors.chambers.known() && cut.in_Pa != nullptr && cut.out_Pa != nullptr;
+[[nodiscard]] inline bool with_chambers(const WindowData& data, const ErrorScales& errors) {
+  return errors.chambers.known() && data.in_Pa != nullptr && data.out_Pa != nullptr;
 }
 
-struct WindowEstimate {
-  Eigen::VectorXd x;           ///< every parameter; those that were held as they were given
+struct WindowFitSummary {
+  Eigen::VectorXd theta;       ///< every parameter; those that were held as they were given
   Eigen::VectorXd std_error;   ///< of the free ones, search units; infinite: not seen
   Eigen::MatrixXd covariance;  ///< of the free ones
   Eigen::MatrixXd correlation;
@@ -83,7 +83,7 @@ struct WindowEstimate {
 class WindowFit {
  public:
   /// `most` samples, lead-in and window together, is the longest that will come.
-  WindowFit(const plant_sim::ModelFile& model, std::vector<SearchParameter> parameters,
+  WindowFit(const plant_sim::ModelFile& model, std::vector<FreeParameter> parameters,
             double sample_time_s, std::size_t most, double observer_per_s = kObserver_per_s);
   WindowFit(const WindowFit&) = delete;
   WindowFit& operator=(const WindowFit&) = delete;
@@ -91,24 +91,24 @@ class WindowFit {
   /// The parameters at `free` (indices) are fitted from `start`, which has every parameter. Those
   /// with a finite prior_sd (search units, one for each parameter, or empty) are held to the start
   /// by it. Chamber pressures count where the cut has them and `errors` knows theirs.
-  [[nodiscard]] WindowEstimate fit(const Cut& cut, const std::vector<std::size_t>& free,
-                                   const Eigen::VectorXd& start, const Errors& errors,
-                                   const Eigen::VectorXd& prior_sd = {});
+  [[nodiscard]] WindowFitSummary fit(const WindowData& data, const std::vector<std::size_t>& free,
+                                     const Eigen::VectorXd& start, const ErrorScales& errors,
+                                     const Eigen::VectorXd& prior_sd = {});
 
-  [[nodiscard]] const std::vector<SearchParameter>& parameters() const { return run_.searched(); }
+  [[nodiscard]] const std::vector<FreeParameter>& parameters() const { return run_.parameters(); }
   [[nodiscard]] double sample_time_s() const { return window_.sample_time_s; }
 
  private:
-  void take(const Cut& cut);
+  void take(const WindowData& data);
   /// What of the residuals is the position's, all rows, and of pressures, the window's.
-  void compare(const Cut& cut, const Errors& errors, const Eigen::MatrixXd& points,
+  void compare(const WindowData& data, const ErrorScales& errors, const Eigen::MatrixXd& points,
                Eigen::MatrixXd& residuals);
 
   double observer_per_s_;
-  Measured window_;
-  ModelRun run_;
+  Dataset window_;
+  ObserverSimulation run_;
   Eigen::MatrixXd position_m_;
-  ModelRun::Chambers chambers_;
+  ObserverSimulation::Chambers chambers_;
 };
 
 }  // namespace estimator::greybox::tracking

@@ -14,22 +14,22 @@
 
 namespace estimator::greybox::tracking {
 
-struct Pooled {
-  Eigen::VectorXd x;
+struct FusedEstimate {
+  Eigen::VectorXd theta;
   Eigen::MatrixXd covariance;
   int windows = 0;  ///< 0: the newest one is of no use
 };
 
-class Pool {
+class WindowFusion {
  public:
   /// Of so many parameters; `apart` looks lie between two windows that do not overlap; `most`
   /// windows are pooled.
-  Pool(std::size_t parameters, std::size_t apart, std::size_t most);
+  WindowFusion(std::size_t parameters, std::size_t apart, std::size_t most);
 
   /// What the newest look found; `good`: it may be pooled.
-  void add(const Eigen::VectorXd& x, const Eigen::MatrixXd& covariance, bool good);
+  void add(const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance, bool good);
   void clear() noexcept { looks_ = 0; }
-  [[nodiscard]] Pooled pooled() const;
+  [[nodiscard]] FusedEstimate fused() const;
   void serialize(estimator::StateArchive& archive);
 
  private:

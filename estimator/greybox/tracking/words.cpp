@@ -17,10 +17,10 @@ constexpr double kAlike = 0.98;
 
 std::string percent(double ratio) { return fmt::format("{:.3g} %", 100.0 * ratio); }
 
-bool is_logarithmic(const SearchParameter& p) { return p.scale == Scale::logarithmic; }
+bool is_logarithmic(const FreeParameter& p) { return p.scale == Scale::logarithmic; }
 
 /// "12 %" of the value, or "0.3 times its typical size".
-std::string error_words(const SearchParameter& p, double std_error) {
+std::string error_words(const FreeParameter& p, double std_error) {
   if (!std::isfinite(std_error)) return "not at all";
   return is_logarithmic(p) ? "to +- " + percent(std_error) + " only"
                            : fmt::format("to +- {:.2g} of its typical size only", std_error);
@@ -48,18 +48,18 @@ struct Beyond {
   [[nodiscard]] double most() const { return std::max(error, offset); }
 };
 
-Beyond beyond(const ChamberFit& found, const ChamberError& healthy, double offset_sd_Pa,
+Beyond beyond(const ChamberFit& found, const ChamberError& baseline, double offset_sd_Pa,
               double most_ratio) {
-  return {found.rms_Pa / (most_ratio * healthy.rms_Pa),
+  return {found.rms_Pa / (most_ratio * baseline.rms_Pa),
           std::abs(found.mean_Pa) / (kMostOffset * offset_sd_Pa)};
 }
 
 std::string chamber_words(const std::string& name, const ChamberFit& found,
-                          const ChamberError& healthy, double offset_sd_Pa, double most_ratio) {
-  const Beyond by = beyond(found, healthy, offset_sd_Pa, most_ratio);
+                          const ChamberError& baseline, double offset_sd_Pa, double most_ratio) {
+  const Beyond by = beyond(found, baseline, offset_sd_Pa, most_ratio);
   if (by.error >= by.offset) {
     return "the model does not explain the " + name + ": error " + pressure_words(found.rms_Pa) +
-           ", healthy " + pressure_words(healthy.rms_Pa) +
+           ", healthy " + pressure_words(baseline.rms_Pa) +
            fmt::format(", limit {:.3g} times that", most_ratio);
   }
   return "the " + name + " is off the model: by " + pressure_words(found.mean_Pa) +
@@ -77,8 +77,9 @@ std::string name_words(const std::string& name) {
   return config::units::parameter_words(name);
 }
 
-std::string value_words(const SearchParameter& p, double x, double std_error) {
-  return config::units::words(config::units::quantity(p.name, p.value(x), std_error * p.slope(x)));
+std::string value_words(const FreeParameter& p, double theta, double std_error) {
+  return config::units::words(
+      config::units::quantity(p.name, p.to_physical(theta), std_error * p.slope(theta)));
 }
 
 std::string still_words(double moved_m, double noise_floor_m, double window_s) {
@@ -87,14 +88,15 @@ std::string still_words(double moved_m, double noise_floor_m, double window_s) {
          config::units::length_words(noise_floor_m);
 }
 
-std::string misfit_words(const WindowEstimate& found, const Errors& healthy, double most_ratio) {
-  if (found.rms_m > most_ratio * healthy.rms_m) {
+std::string misfit_words(const WindowFitSummary& found, const ErrorScales& baseline,
+                         double most_ratio) {
+  if (found.rms_m > most_ratio * baseline.rms_m) {
     return "the model does not explain it: error " + config::units::length_words(found.rms_m) +
-           ", healthy " + config::units::length_words(healthy.rms_m) +
+           ", healthy " + config::units::length_words(baseline.rms_m) +
            fmt::format(", limit {:.3g} times that", most_ratio);
   }
   if (!found.with_chambers()) return {};
-  const ChamberErrors& chambers = healthy.chambers;
+  const ChamberErrors& chambers = baseline.chambers;
   const double sd_Pa = chambers.offset_sd_Pa;
   const double in = beyond(found.in, chambers.in, sd_Pa, most_ratio).most();
   const double out = beyond(found.out, chambers.out, sd_Pa, most_ratio).most();
@@ -103,9 +105,9 @@ std::string misfit_words(const WindowEstimate& found, const Errors& healthy, dou
                    : chamber_words("pressure out", found.out, chambers.out, sd_Pa, most_ratio);
 }
 
-std::string unseen_words(const Choice& choice, const WindowEstimate& found, std::size_t i,
+std::string unseen_words(const ParameterSet& set, const WindowFitSummary& found, std::size_t i,
                          double std_error, double most) {
-  const SearchParameter& p = choice.parameters[i];
+  const FreeParameter& p = set.parameters[i];
   if (found.at_bound[i] != 0) return name_words(p.name) + " ran to the end of its range";
   if (std_error <= most) return {};
   const std::string known = name_words(p.name) + " is known " + error_words(p, std_error);
@@ -115,42 +117,45 @@ std::string unseen_words(const Choice& choice, const WindowEstimate& found, std:
     return "the motion does not show it: " + known;
   }
   return "the motion does not separate " + name_words(p.name) + " from " +
-         name_words(choice.parameters[static_cast<std::size_t>(partner)].name) +
+         name_words(set.parameters[static_cast<std::size_t>(partner)].name) +
          fmt::format(" (their effects are alike to {:.4f}): ",
                      std::abs(found.likeness(at, partner))) +
          known;
 }
 
-std::string part_words(const Choice& choice, const WindowEstimate& found, double length_s) {
+std::string part_words(const ParameterSet& set, const WindowFitSummary& found, double length_s) {
   std::string text = fmt::format("its last {:.3g} s alone:", length_s);
-  for (std::size_t i = 0; i < choice.tracked; ++i) {
+  for (std::size_t i = 0; i < set.tracked; ++i) {
     const auto at = static_cast<Index>(i);
-    text += (i == 0 ? " " : ", ") + name_words(choice.parameters[i].name) + " " +
-            value_words(choice.parameters[i], found.x[at], found.std_error[at]);
+    text += (i == 0 ? " " : ", ") + name_words(set.parameters[i].name) + " " +
+            value_words(set.parameters[i], found.theta[at], found.std_error[at]);
   }
   return text;
 }
 
-std::string change_words(const Choice& choice, const Named& named, const Eigen::VectorXd& healthy) {
-  const SearchParameter& p = choice.parameters[named.parameter];
-  const double before = p.value(healthy[static_cast<Index>(named.parameter)]);
-  const double now = p.value(named.x);
+std::string change_words(const ParameterSet& set, const ParameterChange& named,
+                         const Eigen::VectorXd& baseline) {
+  const FreeParameter& p = set.parameters[named.parameter];
+  const double before = p.to_physical(baseline[static_cast<Index>(named.parameter)]);
+  const double now = p.to_physical(named.theta);
   const std::string direction = now > before ? " high" : " low";
   const std::string size =
       is_logarithmic(p) ? fmt::format("{:+.1f} %, ", 100.0 * (now / before - 1.0)) : std::string();
-  return name_words(p.name) + direction + ", " + size + value_words(p, named.x, named.std_error);
+  return name_words(p.name) + direction + ", " + size +
+         value_words(p, named.theta, named.std_error);
 }
 
-std::string slow_words(const SearchParameter& p, double learnt, double x) {
+std::string slow_words(const FreeParameter& p, double learnt, double theta) {
   const std::string far =
-      is_logarithmic(p) ? fmt::format("{:+.1f} %", 100.0 * (p.value(x) / p.value(learnt) - 1.0))
-                        : fmt::format("{:+.2g} times its typical size", x - learnt);
+      is_logarithmic(p)
+          ? fmt::format("{:+.1f} %", 100.0 * (p.to_physical(theta) / p.to_physical(learnt) - 1.0))
+          : fmt::format("{:+.2g} times its typical size", theta - learnt);
   return name_words(p.name) + " came by and by to " +
-         config::units::words(config::units::quantity(p.name, p.value(x), NAN)) + ", " + far +
-         " from what was learnt; slow changes are followed no further";
+         config::units::words(config::units::quantity(p.name, p.to_physical(theta), NAN)) + ", " +
+         far + " from what was learnt; slow changes are followed no further";
 }
 
-std::string group_words(const Choice& choice, const Named& named) {
+std::string group_words(const ParameterSet& set, const ParameterChange& named) {
   if (named.rivals.empty()) return {};
   std::string text = "or";
   for (std::size_t i = 0; i < named.rivals.size(); ++i) {
@@ -161,12 +166,12 @@ std::string group_words(const Choice& choice, const Named& named) {
   return text +
          (named.sensed.chambers ? ": command, position and chamber pressures cannot tell; "
                                 : ": command and position cannot tell; ") +
-         advice_words(choice, named);
+         advice_words(set, named);
 }
 
-std::string advice_words(const Choice& choice, const Named& named) {
+std::string advice_words(const ParameterSet& set, const ParameterChange& named) {
   if (named.rivals.empty()) return {};
-  std::string all = choice.parameters[named.parameter].name;
+  std::string all = set.parameters[named.parameter].name;
   for (const Rival& rival : named.rivals) all += " " + rival.name;
   const auto has = [&](const char* word) { return all.find(word) != std::string::npos; };
   const bool sensor = has("position_sensor");

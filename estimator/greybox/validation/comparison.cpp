@@ -25,23 +25,23 @@ constexpr double kOftenLimited = 0.1;
 constexpr double kAlwaysLimited = 0.9;
 
 /// `values` with a missing sample between segments and where `counts` is 0.
-std::vector<double> broken(const Measured& record, const std::vector<double>& values,
-                           bool settled_only) {
+std::vector<double> broken(const Dataset& record, const std::vector<double>& values,
+                           bool valid_only) {
   std::vector<double> series;
-  for (const Span& span : segments(record)) {
+  for (const SampleRange& span : segments(record)) {
     if (span.begin > 0) series.push_back(kNaN);
     for (std::size_t k = span.begin; k < span.end; ++k) {
-      series.push_back(settled_only && record.settled[k] == 0 ? kNaN : values[k]);
+      series.push_back(valid_only && record.valid[k] == 0 ? kNaN : values[k]);
     }
   }
   return series;
 }
 
-std::vector<double> run(const plant_sim::ModelFile& model, const Measured& record,
+std::vector<double> run(const plant_sim::ModelFile& model, const Dataset& record,
                         double observer_per_s) {
-  Measured all = record;
-  std::fill(all.settled.begin(), all.settled.end(), char{1});
-  ModelRun run(model, all, {}, observer_per_s);
+  Dataset all = record;
+  std::fill(all.valid.begin(), all.valid.end(), char{1});
+  ObserverSimulation run(model, all, {}, observer_per_s);
   Eigen::MatrixXd residual_m;
   run.residuals(Eigen::MatrixXd(0, 1), residual_m);
   std::vector<double> errors_m(record.size());
@@ -70,7 +70,7 @@ double spread(const std::vector<double>& values) {
   return std::sqrt(squares / n);
 }
 
-void require_motion(const Measured& record, double noise_m) {
+void require_motion(const Dataset& record, double noise_m) {
   const double sd_m = spread(record.y_m);
   const double least_m = std::max(kLeastMotion_m, std::isfinite(noise_m) ? noise_m : 0.0);
   const auto [low, high] = std::minmax_element(record.y_m.begin(), record.y_m.end());
@@ -123,9 +123,9 @@ void note_stroke(Comparison& c, const plant_sim::ModelFile& model) {
 
 void find_speed_error(Comparison& c) {
   c.speed_error_mps.assign(c.record.size(), 0.0);
-  for (const Span& span : segments(c.record)) {
+  for (const SampleRange& span : segments(c.record)) {
     for (std::size_t k = span.begin; k + 1 < span.end; ++k) {
-      const double kept = 1.0 - c.record.share(k, c.observer_per_s);
+      const double kept = 1.0 - c.record.observer_gain(k, c.observer_per_s);
       c.speed_error_mps[k] = (c.error_m[k + 1] - kept * c.error_m[k]) / c.record.sample_time_s;
     }
   }
@@ -139,8 +139,8 @@ std::size_t half_window(const Comparison& c) {
 void find_arising(Comparison& c) {
   const std::size_t half = half_window(c);
   const double sample_time_s = c.record.sample_time_s;
-  c.arising_mps.assign(c.record.size(), 0.0);
-  for (const Span& span : segments(c.record)) {
+  c.local_velocity_error_mps.assign(c.record.size(), 0.0);
+  for (const SampleRange& span : segments(c.record)) {
     for (std::size_t k = span.begin; k < span.end; ++k) {
       const std::size_t from = k - std::min(half, k - span.begin);
       const std::size_t to = std::min(k + half, span.end - 1);
@@ -150,24 +150,25 @@ void find_arising(Comparison& c) {
       const double mean_mps = sum_mps / steps;
       const double modelled_mps =
           (c.record.y_m[to] - c.record.y_m[from]) / (steps * sample_time_s) - mean_mps;
-      c.arising_mps[k] = mean_mps - c.explained.gain_ratio * modelled_mps - c.explained.offset_mps;
+      c.local_velocity_error_mps[k] =
+          mean_mps - c.systematic.gain_ratio * modelled_mps - c.systematic.offset_mps;
     }
   }
 }
 
 void find_regions(Comparison& c) {
-  Sorted sorted;
+  SortedErrors sorted;
   sorted.record = &c.record;
-  sorted.motion = &c.motion;
+  sorted.kinematics = &c.kinematics;
   sorted.error_m = &c.error_m;
   sorted.speed_error_mps = &c.speed_error_mps;
-  sorted.arising_mps = &c.arising_mps;
-  sorted.counts = c.record.settled;
+  sorted.local_velocity_error_mps = &c.local_velocity_error_mps;
+  sorted.counts = c.record.valid;
   const double window_s = 2.0 * static_cast<double>(half_window(c)) * c.record.sample_time_s;
   sorted.noise_mps =
       std::isfinite(c.noise_floor_m) ? std::sqrt(2.0) * c.noise_floor_m / window_s : 0.0;
   c.regions = sort_by_region(sorted);
-  c.worst = failing_regions(sorted, c.regions);
+  c.worst = significant_regions(sorted, c.regions);
   c.headline = narrowed(sorted, c.regions, c.worst);
 }
 
@@ -177,7 +178,7 @@ double Comparison::duration_s() const {
   return static_cast<double>(record.size()) * record.sample_time_s;
 }
 
-Comparison compare(const plant_sim::ModelFile& model, const Measured& record,
+Comparison compare(const plant_sim::ModelFile& model, const Dataset& record,
                    double observer_per_s) {
   Comparison c;
   c.model = model.name;
@@ -193,7 +194,7 @@ Comparison compare(const plant_sim::ModelFile& model, const Measured& record,
   note_stroke(c, model);
   c.error_m = run(model, record, observer_per_s);
   c.free_error_m = run(model, record, 0.0);
-  c.rms_m = rms(c.error_m, record.settled);
+  c.rms_m = rms(c.error_m, record.valid);
   c.free_run_rms_m = rms(c.free_error_m, std::vector<char>(record.size(), 1));
   c.fit_percent = 100.0 * (1.0 - c.free_run_rms_m / spread(record.y_m));
   c.k_step = k_step_errors(model, record);
@@ -201,9 +202,9 @@ Comparison compare(const plant_sim::ModelFile& model, const Measured& record,
   c.whiteness_p = estimator::residual::whiteness(residual).p;
   c.independence_p =
       estimator::residual::independence(residual, broken(record, record.u_V, false)).p;
-  c.motion = motion(record, std::isfinite(floor.sd_m) ? floor.sd_m : 0.0);
+  c.kinematics = greybox::kinematics(record, std::isfinite(floor.sd_m) ? floor.sd_m : 0.0);
   find_speed_error(c);
-  c.explained = explained(record, c.error_m, c.speed_error_mps, observer_per_s);
+  c.systematic = systematic_error(record, c.error_m, c.speed_error_mps, observer_per_s);
   find_arising(c);
   find_regions(c);
   return c;

@@ -26,8 +26,8 @@ namespace estimator::greybox::validation {
 
 struct Comparison {
   std::string model;
-  Measured record;
-  Motion motion;
+  Dataset record;
+  Kinematics kinematics;
   double observer_per_s = 0.0;
 
   // One number for each sample.
@@ -36,7 +36,7 @@ struct Comparison {
   std::vector<double> speed_error_mps;
   /// Speed error, a mean over +-50 ms, less what a plain gain and offset explain: by this regions
   /// are told apart.
-  std::vector<double> arising_mps;
+  std::vector<double> local_velocity_error_mps;
 
   double rms_m = 0.0;           ///< drift-corrected, settled samples
   double free_run_rms_m = 0.0;  ///< all samples
@@ -49,9 +49,9 @@ struct Comparison {
   double limited_share = 0.0;   ///< of the samples: command at its greatest magnitude
 
   std::vector<Region> regions;
-  std::vector<Failing> worst;  ///< by one variable each, most telling first
-  Failing headline;            ///< the most telling, by one variable or two
-  Explained explained;
+  std::vector<SignificantRegion> worst;  ///< by one variable each, most telling first
+  SignificantRegion headline;            ///< the most telling, by one variable or two
+  SystematicError systematic;
   std::vector<std::string> notes;  ///< restrictions
 
   [[nodiscard]] double floor_ratio() const { return rms_m / noise_floor_m; }
@@ -61,9 +61,9 @@ struct Comparison {
 /// An error of up to this many noise floors counts as noise.
 inline constexpr double kAtFloor = 1.15;
 
-/// Throws config::schema::DataError for a record without motion, ConfigError for a model that
-/// cannot be built. Observer gain in 1/s; above 0 and below 1 / sample time.
-[[nodiscard]] Comparison compare(const plant_sim::ModelFile& model, const Measured& record,
+/// Throws config::schema::Error: exit 65 for a record without motion, 78 for a model that cannot be
+/// built. Observer gain in 1/s; above 0 and below 1 / sample time.
+[[nodiscard]] Comparison compare(const plant_sim::ModelFile& model, const Dataset& record,
                                  double observer_per_s = kObserver_per_s);
 
 }  // namespace estimator::greybox::validation

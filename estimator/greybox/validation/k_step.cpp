@@ -28,13 +28,13 @@ std::vector<Lane> lanes() {
 
 }  // namespace
 
-std::vector<KStep> k_step_errors(const plant_sim::ModelFile& model, const Measured& record) {
+std::vector<KStep> k_step_errors(const plant_sim::ModelFile& model, const Dataset& record) {
   std::vector<KStep> result{{1}, {10}, {100}};
   const std::vector<Lane> all = lanes();
   static_assert(Ensemble::kLanes == 8);
   const auto ensemble = plant_sim::make_ensemble(model, step_for(model, record.sample_time_s));
   std::vector<double> squares(result.size(), 0.0);
-  for (const Span& span : segments(record)) {
+  for (const SampleRange& span : segments(record)) {
     ensemble->start(record.y_m[span.begin]);
     std::vector<std::size_t> synchronised(all.size(), span.begin);
     for (std::size_t k = span.begin; k < span.end; ++k) {
@@ -44,7 +44,7 @@ std::vector<KStep> k_step_errors(const plant_sim::ModelFile& model, const Measur
         const Lane& lane = all[i];
         if ((k - span.begin) % lane.samples != lane.offset % lane.samples) continue;
         const double error_m = record.y_m[k] - reading_m[i];
-        if (k - synchronised[i] == lane.samples && record.settled[synchronised[i]] != 0) {
+        if (k - synchronised[i] == lane.samples && record.valid[synchronised[i]] != 0) {
           squares[lane.horizon] += error_m * error_m;
           ++result[lane.horizon].count;
         }

@@ -23,6 +23,6 @@ struct KStep {
 
 /// k = 1, 10 and 100.
 [[nodiscard]] std::vector<KStep> k_step_errors(const plant_sim::ModelFile& model,
-                                               const Measured& record);
+                                               const Dataset& record);
 
 }  // namespace estimator::greybox::validation

@@ -84,8 +84,8 @@ std::vector<double> fewer(const std::vector<double>& edges, std::vector<double> 
   return left;
 }
 
-Region by_number(const Sorted& sorted, const char* variable, const std::vector<double>& values,
-                 bool graded, double correlation) {
+Region by_number(const SortedErrors& sorted, const char* variable,
+                 const std::vector<double>& values, bool graded, double correlation) {
   const std::vector<double> kept = counted(values, sorted.counts);
   const std::vector<double> edges = fewer(graded ? graded_edges(kept) : even_edges(kept), kept);
   Region region;
@@ -108,10 +108,10 @@ Region by_number(const Sorted& sorted, const char* variable, const std::vector<d
   return region;
 }
 
-Region by_direction(const Sorted& sorted, double correlation) {
+Region by_direction(const SortedErrors& sorted, double correlation) {
   Region region;
   region.variable = "direction";
-  const std::vector<Direction>& direction = sorted.motion->direction;
+  const std::vector<Direction>& direction = sorted.kinematics->direction;
   region.bin_of.assign(direction.size(), -1);
   for (const Direction which :
        {Direction::extending, Direction::retracting, Direction::resting, Direction::reversing}) {
@@ -123,7 +123,7 @@ Region by_direction(const Sorted& sorted, double correlation) {
     Bin bin = figures(sorted, in, correlation);
     if (bin.count == 0) continue;
     bin.from = bin.to = kNaN;
-    bin.name = text(which);
+    bin.name = to_string(which);
     region.bins.push_back(bin);
   }
   return region;
@@ -131,8 +131,8 @@ Region by_direction(const Sorted& sorted, double correlation) {
 
 }  // namespace
 
-double correlation_length(const Sorted& sorted) {
-  const std::vector<double>& e = *sorted.arising_mps;
+double correlation_length(const SortedErrors& sorted) {
+  const std::vector<double>& e = *sorted.local_velocity_error_mps;
   const auto longest =
       static_cast<std::size_t>(std::ceil(kLongest_s / sorted.record->sample_time_s));
   const std::size_t stride = std::max<std::size_t>(1, longest / 400);
@@ -151,7 +151,7 @@ double correlation_length(const Sorted& sorted) {
   return std::min(length, static_cast<double>(longest));
 }
 
-Bin figures(const Sorted& sorted, const std::vector<char>& in, double length) {
+Bin figures(const SortedErrors& sorted, const std::vector<char>& in, double length) {
   Bin bin;
   double all_squares = 0.0;
   double squares = 0.0;
@@ -162,7 +162,7 @@ Bin figures(const Sorted& sorted, const std::vector<char>& in, double length) {
   for (std::size_t k = 0; k < in.size(); ++k) {
     if (sorted.counts[k] == 0) continue;
     const double e = (*sorted.error_m)[k];
-    const double a = (*sorted.arising_mps)[k];
+    const double a = (*sorted.local_velocity_error_mps)[k];
     all_squares += e * e;
     all_arising += a * a;
     ++all;
@@ -173,7 +173,7 @@ Bin figures(const Sorted& sorted, const std::vector<char>& in, double length) {
     bin.speed_error_mps += (*sorted.speed_error_mps)[k];
     ++bin.count;
     if (static_cast<double>(k) >= next) {
-      bin.looks += 1.0;
+      bin.effective_samples += 1.0;
       next = static_cast<double>(k) + length;
     }
   }
@@ -182,25 +182,25 @@ Bin figures(const Sorted& sorted, const std::vector<char>& in, double length) {
   bin.time_share = n / static_cast<double>(all);
   bin.error_share = all_squares > 0.0 ? squares / all_squares : 0.0;
   bin.rms_m = std::sqrt(squares / n);
-  bin.arising_share = all_arising > 0.0 ? arising / all_arising : 0.0;
-  bin.arising_rms_mps = std::sqrt(arising / n);
+  bin.local_velocity_error_share = all_arising > 0.0 ? arising / all_arising : 0.0;
+  bin.local_velocity_error_rms_mps = std::sqrt(arising / n);
   bin.mean_m /= n;
   bin.speed_error_mps /= n;
   return bin;
 }
 
-std::vector<Region> sort_by_region(const Sorted& sorted) {
-  const Motion& motion = *sorted.motion;
+std::vector<Region> sort_by_region(const SortedErrors& sorted) {
+  const Kinematics& kinematics = *sorted.kinematics;
   const double length = correlation_length(sorted);
-  std::vector<double> speed_mps(motion.speed_mps.size());
-  std::transform(motion.speed_mps.begin(), motion.speed_mps.end(), speed_mps.begin(),
+  std::vector<double> speed_mps(kinematics.speed_mps.size());
+  std::transform(kinematics.speed_mps.begin(), kinematics.speed_mps.end(), speed_mps.begin(),
                  [](double v) { return std::abs(v); });
   std::vector<Region> regions;
   regions.push_back(by_number(sorted, "y", sorted.record->y_m, false, length));
-  regions.push_back(by_number(sorted, "v", motion.speed_mps, false, length));
+  regions.push_back(by_number(sorted, "v", kinematics.speed_mps, false, length));
   regions.push_back(by_number(sorted, "speed", speed_mps, true, length));
   regions.push_back(by_number(sorted, "u", sorted.record->u_V, false, length));
-  regions.push_back(by_number(sorted, "acceleration", motion.acceleration_mps2, false, length));
+  regions.push_back(by_number(sorted, "acceleration", kinematics.acceleration_mps2, false, length));
   regions.push_back(by_direction(sorted, length));
   regions.push_back(by_number(sorted, "time", sorted.record->t_s, false, length));
   return regions;

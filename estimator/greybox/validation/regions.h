@@ -11,14 +11,15 @@
 namespace estimator::greybox::validation {
 
 /// What is sorted and by what; all series have the record's length, SI.
-struct Sorted {
-  const Measured* record = nullptr;
-  const Motion* motion = nullptr;
+struct SortedErrors {
+  const Dataset* record = nullptr;
+  const Kinematics* kinematics = nullptr;
   const std::vector<double>* error_m = nullptr;
   const std::vector<double>* speed_error_mps = nullptr;  ///< measured less modelled speed
-  const std::vector<double>* arising_mps = nullptr;      ///< by which regions are told apart
-  std::vector<char> counts;                              ///< 0: the sample is left out
-  double noise_mps = 0.0;                                ///< of arising_mps, from the sensor
+  const std::vector<double>* local_velocity_error_mps =
+      nullptr;               ///< by which regions are told apart
+  std::vector<char> counts;  ///< 0: the sample is left out
+  double noise_mps = 0.0;    ///< of arising_mps, from the sensor
 };
 
 struct Bin {
@@ -31,10 +32,10 @@ struct Bin {
   double rms_m = 0.0;        ///< of the position error
   double mean_m = 0.0;
   double speed_error_mps = 0.0;  ///< mean; positive: the rod moves out more than the model
-  double arising_rms_mps = 0.0;
-  double arising_share = 0.0;  ///< of the squared speed error
+  double local_velocity_error_rms_mps = 0.0;
+  double local_velocity_error_share = 0.0;  ///< of the squared speed error
   /// How many samples at least a correlation length apart: what the RMS is worth.
-  double looks = 0.0;
+  double effective_samples = 0.0;
 };
 
 struct Region {
@@ -44,12 +45,12 @@ struct Region {
 };
 
 /// Over how many samples arising errors hang together: 1 + 2 sum rho(k)^2, that of their squares.
-[[nodiscard]] double correlation_length(const Sorted& sorted);
+[[nodiscard]] double correlation_length(const SortedErrors& sorted);
 
 /// Edges are round numbers; a bin of too few samples is joined with its neighbour.
-[[nodiscard]] std::vector<Region> sort_by_region(const Sorted& sorted);
+[[nodiscard]] std::vector<Region> sort_by_region(const SortedErrors& sorted);
 
 /// Figures of the samples where `in` is not 0; from, to and name are left to the caller.
-[[nodiscard]] Bin figures(const Sorted& sorted, const std::vector<char>& in, double length);
+[[nodiscard]] Bin figures(const SortedErrors& sorted, const std::vector<char>& in, double length);
 
 }  // namespace estimator::greybox::validation

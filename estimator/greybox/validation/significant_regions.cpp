@@ -18,29 +18,30 @@ constexpr double kNarrowing = 1.3;  ///< by how much a second variable must rais
 double gain(const Bin& in, double all_looks, double all_mean_square) {
   // Where the rod comes by often, looks at the region and at the rest alternate.
   const double out = all_looks * std::min(1.0, 2.0 * (1.0 - in.time_share));
-  if (in.looks < kLeastLooks || out < kLeastLooks) return 0.0;
+  if (in.effective_samples < kLeastLooks || out < kLeastLooks) return 0.0;
   const double out_mean_square =
-      all_mean_square *
-      std::max(kLeastOutside, (1.0 - in.arising_share) / std::max(1e-12, 1.0 - in.time_share));
-  const double in_mean_square = in.arising_rms_mps * in.arising_rms_mps;
+      all_mean_square * std::max(kLeastOutside, (1.0 - in.local_velocity_error_share) /
+                                                    std::max(1e-12, 1.0 - in.time_share));
+  const double in_mean_square = in.local_velocity_error_rms_mps * in.local_velocity_error_rms_mps;
   if (!(in_mean_square > out_mean_square) || !(out_mean_square > 0.0)) return 0.0;
-  const double pooled = (in.looks * in_mean_square + out * out_mean_square) / (in.looks + out);
-  return 0.5 * ((in.looks + out) * std::log(pooled) - in.looks * std::log(in_mean_square) -
-                out * std::log(out_mean_square));
+  const double pooled = (in.effective_samples * in_mean_square + out * out_mean_square) /
+                        (in.effective_samples + out);
+  return 0.5 * ((in.effective_samples + out) * std::log(pooled) -
+                in.effective_samples * std::log(in_mean_square) - out * std::log(out_mean_square));
 }
 
 struct All {
   double length = 1.0;
-  double looks = 0.0;
+  double effective_samples = 0.0;
   double mean_square = 0.0;
 };
 
-All all_of(const Sorted& sorted) {
+All all_of(const SortedErrors& sorted) {
   All all;
   all.length = correlation_length(sorted);
   const Bin whole = figures(sorted, sorted.counts, all.length);
-  all.looks = whole.looks;
-  all.mean_square = whole.arising_rms_mps * whole.arising_rms_mps;
+  all.effective_samples = whole.effective_samples;
+  all.mean_square = whole.local_velocity_error_rms_mps * whole.local_velocity_error_rms_mps;
   return all;
 }
 
@@ -48,19 +49,19 @@ All all_of(const Sorted& sorted) {
 constexpr double kAcceleration = 0.8;
 constexpr double kVelocity = 0.99;  ///< "below 5 mm/s" before "from -5 to 5 mm/s"
 
-void judge(Failing& failing, const Sorted& sorted, const All& all) {
+void judge(SignificantRegion& failing, const SortedErrors& sorted, const All& all) {
   const Bin& in = failing.figures;
-  failing.gain = gain(in, all.looks, all.mean_square);
+  failing.gain = gain(in, all.effective_samples, all.mean_square);
   if (failing.ranges.back().variable == "acceleration") failing.gain *= kAcceleration;
   if (failing.ranges.back().variable == "v") failing.gain *= kVelocity;
   const double least_mps =
       std::max(kLeastRatio * std::sqrt(all.mean_square), kLeastNoise * sorted.noise_mps);
-  failing.stands_out =
-      failing.gain > kLeastGain && in.arising_rms_mps > least_mps && in.time_share < kWidest;
+  failing.significant = failing.gain > kLeastGain && in.local_velocity_error_rms_mps > least_mps &&
+                        in.time_share < kWidest;
 }
 
-bool better(const Failing& a, const Failing& b) {
-  if (b.ranges.empty() || a.stands_out != b.stands_out) return b.ranges.empty() || a.stands_out;
+bool better(const SignificantRegion& a, const SignificantRegion& b) {
+  if (b.ranges.empty() || a.significant != b.significant) return b.ranges.empty() || a.significant;
   return a.gain > b.gain;
 }
 
@@ -76,11 +77,11 @@ Range range(const Region& region, std::size_t first, std::size_t last) {
 }
 
 struct Found {
-  Failing failing;
+  SignificantRegion failing;
   std::vector<char> in;
 };
 
-Found best_of(const Sorted& sorted, const Region& region, const All& all) {
+Found best_of(const SortedErrors& sorted, const Region& region, const All& all) {
   Found best;
   const std::size_t bins = region.bins.size();
   const bool named = region.variable == "direction";
@@ -93,7 +94,7 @@ Found best_of(const Sorted& sorted, const Region& region, const All& all) {
         in[k] = region.bin_of[k] >= static_cast<int>(first) &&
                 region.bin_of[k] <= static_cast<int>(last);
       }
-      Failing failing{{range(region, first, last)}, figures(sorted, in, all.length)};
+      SignificantRegion failing{{range(region, first, last)}, figures(sorted, in, all.length)};
       judge(failing, sorted, all);
       failing.figures.from = failing.ranges[0].from;
       failing.figures.to = failing.ranges[0].to;
@@ -104,7 +105,7 @@ Found best_of(const Sorted& sorted, const Region& region, const All& all) {
   return best;
 }
 
-std::vector<Found> found_in(const Sorted& sorted, const std::vector<Region>& regions,
+std::vector<Found> found_in(const SortedErrors& sorted, const std::vector<Region>& regions,
                             const All& all) {
   std::vector<Found> found;
   for (const Region& region : regions) {
@@ -118,30 +119,31 @@ std::vector<Found> found_in(const Sorted& sorted, const std::vector<Region>& reg
 
 }  // namespace
 
-std::vector<Failing> failing_regions(const Sorted& sorted, const std::vector<Region>& regions) {
-  std::vector<Failing> failing;
+std::vector<SignificantRegion> significant_regions(const SortedErrors& sorted,
+                                                   const std::vector<Region>& regions) {
+  std::vector<SignificantRegion> failing;
   for (const Found& found : found_in(sorted, regions, all_of(sorted))) {
     failing.push_back(found.failing);
   }
   return failing;
 }
 
-Failing narrowed(const Sorted& sorted, const std::vector<Region>& regions,
-                 const std::vector<Failing>& singles) {
+SignificantRegion narrowed(const SortedErrors& sorted, const std::vector<Region>& regions,
+                           const std::vector<SignificantRegion>& singles) {
   if (singles.empty()) return {};
   const All all = all_of(sorted);
   const std::vector<Found> found = found_in(sorted, regions, all);
-  Failing best = found.front().failing;
+  SignificantRegion best = found.front().failing;
   const double least = kNarrowing * best.gain;
   for (std::size_t other = 1; other < found.size(); ++other) {
     std::vector<char> both(found[other].in.size());
     for (std::size_t k = 0; k < both.size(); ++k) {
       both[k] = found.front().in[k] != 0 && found[other].in[k] != 0;
     }
-    Failing joint{{found.front().failing.ranges[0], found[other].failing.ranges[0]},
-                  figures(sorted, both, all.length)};
+    SignificantRegion joint{{found.front().failing.ranges[0], found[other].failing.ranges[0]},
+                            figures(sorted, both, all.length)};
     judge(joint, sorted, all);
-    if (joint.stands_out && joint.gain > std::max(least, best.gain)) best = joint;
+    if (joint.significant && joint.gain > std::max(least, best.gain)) best = joint;
   }
   return best;
 }

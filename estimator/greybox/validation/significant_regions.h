@@ -27,19 +27,20 @@ struct Range {
   bool highest = false;  ///< ends with its highest
 };
 
-struct Failing {
+struct SignificantRegion {
   std::vector<Range> ranges;  ///< one or two
   Bin figures;
-  double gain = 0.0;        ///< G
-  bool stands_out = false;  ///< beyond chance, and worth a word
+  double gain = 0.0;         ///< G
+  bool significant = false;  ///< beyond chance, and worth a word
 };
 
 /// The best range of each variable, the most telling first. Empty when nothing can be compared.
-[[nodiscard]] std::vector<Failing> failing_regions(const Sorted& sorted,
-                                                   const std::vector<Region>& regions);
+[[nodiscard]] std::vector<SignificantRegion> significant_regions(
+    const SortedErrors& sorted, const std::vector<Region>& regions);
 
 /// The most telling region once more, narrowed by a second variable where that tells more.
-[[nodiscard]] Failing narrowed(const Sorted& sorted, const std::vector<Region>& regions,
-                               const std::vector<Failing>& singles);
+[[nodiscard]] SignificantRegion narrowed(const SortedErrors& sorted,
+                                         const std::vector<Region>& regions,
+                                         const std::vector<SignificantRegion>& singles);
 
 }  // namespace estimator::greybox::validation

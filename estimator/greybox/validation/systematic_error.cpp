@@ -22,16 +22,17 @@ double share(const Eigen::MatrixXd& signatures, const Eigen::VectorXd& e, Eigen:
 
 }  // namespace
 
-Explained explained(const Measured& record, const std::vector<double>& error_m,
-                    const std::vector<double>& speed_error_mps, double observer_per_s) {
+SystematicError systematic_error(const Dataset& record, const std::vector<double>& error_m,
+                                 const std::vector<double>& speed_error_mps,
+                                 double observer_per_s) {
   const auto n = static_cast<Eigen::Index>(record.size());
   Eigen::MatrixXd signatures = Eigen::MatrixXd::Zero(n, 2);
   Eigen::VectorXd e = Eigen::VectorXd::Zero(n);
-  for (const Span& span : segments(record)) {
+  for (const SampleRange& span : segments(record)) {
     double by_speed = 0.0;
     double by_one = 0.0;
     for (std::size_t k = span.begin; k < span.end; ++k) {
-      if (record.settled[k] != 0) {
+      if (record.valid[k] != 0) {
         const auto row = static_cast<Eigen::Index>(k);
         signatures.row(row) << by_speed, by_one;
         e(row) = error_m[k];
@@ -39,7 +40,7 @@ Explained explained(const Measured& record, const std::vector<double>& error_m,
       if (k + 1 == span.end) break;
       const double modelled_m =
           record.y_m[k + 1] - record.y_m[k] - speed_error_mps[k] * record.sample_time_s;
-      const double kept = 1.0 - record.share(k, observer_per_s);
+      const double kept = 1.0 - record.observer_gain(k, observer_per_s);
       by_speed = kept * by_speed + modelled_m;
       by_one = kept * by_one + record.sample_time_s;
     }
@@ -52,17 +53,18 @@ Explained explained(const Measured& record, const std::vector<double>& error_m,
   const double by_both = share(signatures, e, both);
   const double all_m = std::sqrt(
       e.squaredNorm() / std::max<double>(1.0, static_cast<double>(std::count_if(
-                                                  record.settled.begin(), record.settled.end(),
-                                                  [](char settled) { return settled != 0; }))));
+                                                  record.valid.begin(), record.valid.end(),
+                                                  [](char valid) { return valid != 0; }))));
   const auto left_m = [&](double by) { return all_m * std::sqrt(1.0 - by); };
-  if (by_both < kLeast) return {Plain::neither, 0.0, 0.0, 0.0, all_m};
+  if (by_both < kLeast) return {ErrorCause::neither, 0.0, 0.0, 0.0, all_m};
   // Of two explanations that differ little the one with a single number is told.
   const double nearly = 1.0 - std::max(kNearly * (1.0 - by_both), kSlight);
   if (by_gain >= nearly && by_gain >= by_offset) {
-    return {Plain::gain, by_gain, gain(0), 0.0, left_m(by_gain)};
+    return {ErrorCause::gain, by_gain, gain(0), 0.0, left_m(by_gain)};
   }
-  if (by_offset >= nearly) return {Plain::offset, by_offset, 0.0, offset(0), left_m(by_offset)};
-  return {Plain::both, by_both, both(0), both(1), left_m(by_both)};
+  if (by_offset >= nearly)
+    return {ErrorCause::offset, by_offset, 0.0, offset(0), left_m(by_offset)};
+  return {ErrorCause::both, by_both, both(0), both(1), left_m(by_both)};
 }
 
 }  // namespace estimator::greybox::validation

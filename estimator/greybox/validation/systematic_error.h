@@ -12,18 +12,19 @@
 
 namespace estimator::greybox::validation {
 
-enum class Plain { neither, gain, offset, both };
+enum class ErrorCause { neither, gain, offset, both };
 
-struct Explained {
-  Plain plain = Plain::neither;  ///< what explains at least half, as simply as possible
-  double share = 0.0;            ///< of the squared error, by that
-  double gain_ratio = 0.0;       ///< g: the rod moves 1 + g times as far as the model; 0: not used
-  double offset_mps = 0.0;       ///< b; 0: not used
-  double left_rms_m = 0.0;       ///< of the error without what they explain
+struct SystematicError {
+  ErrorCause cause = ErrorCause::neither;  ///< what explains at least half, as simply as possible
+  double share = 0.0;                      ///< of the squared error, by that
+  double gain_ratio = 0.0;  ///< g: the rod moves 1 + g times as far as the model; 0: not used
+  double offset_mps = 0.0;  ///< b; 0: not used
+  double left_rms_m = 0.0;  ///< of the error without what they explain
 };
 
-[[nodiscard]] Explained explained(const Measured& record, const std::vector<double>& error_m,
-                                  const std::vector<double>& speed_error_mps,
-                                  double observer_per_s);
+[[nodiscard]] SystematicError systematic_error(const Dataset& record,
+                                               const std::vector<double>& error_m,
+                                               const std::vector<double>& speed_error_mps,
+                                               double observer_per_s);
 
 }  // namespace estimator::greybox::validation

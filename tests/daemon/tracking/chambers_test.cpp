@@ -42,7 +42,7 @@ TEST(Chambers, TellValveGainFromSupplyPressureWithoutAReadingOfTheSupply) {
       ASSERT_EQ(t.alarms.size(), 1u) << name;
       EXPECT_EQ(t.name(t.alarms[0]), name);
       EXPECT_THAT(t.alarms[0].named.rivals, IsEmpty());
-      EXPECT_NEAR(std::exp(t.alarms[0].named.x), factor, 0.01);
+      EXPECT_NEAR(std::exp(t.alarms[0].named.theta), factor, 0.01);
       EXPECT_LT(t.alarms[0].raised_s, 15.2 + 1.2);
     }
   }
@@ -86,7 +86,7 @@ TEST(Chambers, OfAFailedTransducerAreLeftOutWithAReasonAndNameNothing) {
       fail(record, in ? record.in_Pa : record.out_Pa, 14.3, failure);
       const Tracked t = tracked(record, with_gain());
       EXPECT_THAT(t.alarms, IsEmpty()) << what << " " << t.name(t.alarms[0]);
-      for (const iso::Window& window : t.windows) {
+      for (const iso::WindowResult& window : t.windows) {
         const bool right = window.t_s < 14.3;
         EXPECT_EQ(window.left_out.empty(), right || !window.fits) << what << " " << window.t_s;
         if (window.from_s < 14.3) continue;
@@ -127,14 +127,14 @@ TEST(Chambers, OfAFailedTransducerLeaveTheGroupAndTheDampingToThePosition) {
 /// Standard errors of the tracked parameters over the window's own value, in a healthy record.
 std::vector<double> errors_of(const truth::Record& record, const std::vector<std::string>& names,
                               const plant_sim::ModelFile& model) {
-  iso::Settings settings;
-  settings.pooled = 1;
+  iso::TrackerSettings settings;
+  settings.fused = 1;
   const Tracked t = tracked(record, names, settings, model);
   EXPECT_THAT(t.alarms, IsEmpty());
   std::vector<double> mean(names.size(), 0.0);
-  for (const iso::Window& window : t.windows) {
+  for (const iso::WindowResult& window : t.windows) {
     for (std::size_t i = 0; i < names.size(); ++i) {
-      const iso::Estimate& one = window.estimates[i];
+      const iso::ParameterEstimate& one = window.estimates[i];
       mean[i] += one.std_error / one.value / static_cast<double>(t.windows.size());
     }
   }
@@ -168,11 +168,11 @@ TEST(Chambers, HaveEstimatesWithinTheirStandardErrors) {
   for (const std::size_t seed : {1, 2, 3, 4}) {
     truth::Case of = sensed(40.0, seed);
     of.plant.damping_N_s_per_m *= 1.25;
-    iso::Settings settings;
-    settings.pooled = 1;
+    iso::TrackerSettings settings;
+    settings.fused = 1;
     const Tracked t = tracked(truth::simulate(of), with_gain(), settings);
     for (std::size_t i = 0; i < t.windows.size(); i += 6) {  // that have no window in common
-      const iso::Estimate& damping = t.windows[i].estimates[1];
+      const iso::ParameterEstimate& damping = t.windows[i].estimates[1];
       squares += std::pow((damping.value - of.plant.damping_N_s_per_m) / damping.std_error, 2);
       ++count;
     }
@@ -189,7 +189,7 @@ TEST(Chambers, NameNothingWhileTheRigIsHealthy) {
       const Tracked t = tracked(truth::simulate(of), with_gain());
       EXPECT_THAT(t.alarms, IsEmpty()) << motion << " " << seed;
       int left_out = 0;
-      for (const iso::Window& window : t.windows) left_out += window.left_out.empty() ? 0 : 1;
+      for (const iso::WindowResult& window : t.windows) left_out += window.left_out.empty() ? 0 : 1;
       EXPECT_EQ(left_out, 0) << motion << " " << seed;
     }
   }
@@ -198,19 +198,19 @@ TEST(Chambers, NameNothingWhileTheRigIsHealthy) {
 TEST(Chambers, CountAnOffsetByItsOwnAndTheNoisesVariance) {
   const truth::Record record = truth::simulate(sensed(3.0));
   const plant_sim::ModelFile model = printed_model();
-  const iso::Choice choice = iso::choose(model, usual(), "parameters");
+  const iso::ParameterSet set = iso::choose(model, usual(), "parameters");
   constexpr std::size_t kLead = 150;
   constexpr std::size_t kSamples = 400;
-  iso::WindowFit fit(model, choice.parameters, truth::kSample_s, kLead + kSamples);
-  iso::Cut cut{record.u_V.data(), record.y_m.data(), kLead, kSamples};
-  cut.in_Pa = record.in_Pa.data();
-  cut.out_Pa = record.out_Pa.data();
-  const iso::Errors errors{kFloor_m, {{5e3, 0.0, 5e3}, {6e3, 0.0, 6e3}, 2e3}};
-  const iso::WindowEstimate before = fit.fit(cut, {}, choice.file, errors);
+  iso::WindowFit fit(model, set.parameters, truth::kSample_s, kLead + kSamples);
+  iso::WindowData data{record.u_V.data(), record.y_m.data(), kLead, kSamples};
+  data.in_Pa = record.in_Pa.data();
+  data.out_Pa = record.out_Pa.data();
+  const iso::ErrorScales errors{kFloor_m, {{5e3, 0.0, 5e3}, {6e3, 0.0, 6e3}, 2e3}};
+  const iso::WindowFitSummary before = fit.fit(data, {}, set.file, errors);
   std::vector<double> off_Pa = record.in_Pa;
   for (double& value : off_Pa) value += 3e4;
-  cut.in_Pa = off_Pa.data();
-  const iso::WindowEstimate after = fit.fit(cut, {}, choice.file, errors);
+  data.in_Pa = off_Pa.data();
+  const iso::WindowFitSummary after = fit.fit(data, {}, set.file, errors);
   EXPECT_NEAR(after.in.mean_Pa - before.in.mean_Pa, 3e4, 1e-3);
   EXPECT_NEAR(after.in.rms_Pa, before.in.rms_Pa, 1e-6);
   EXPECT_NEAR(after.out.mean_Pa, before.out.mean_Pa, 1e-6);
@@ -222,19 +222,20 @@ TEST(Chambers, CountAnOffsetByItsOwnAndTheNoisesVariance) {
 }
 
 TEST(Chambers, AreNotAskedForWhereTheyAreRead) {
-  const iso::Choice choice = iso::choose(printed_model(), usual(), "parameters");
-  iso::Named named{1, 0.1, 0.01, 0.1, {{"internal_leakage.conductance_m3ps_per_Pa", 1e-12}}, {}};
-  EXPECT_EQ(iso::advice_words(choice, named), "a reading of the chamber pressures would");
-  EXPECT_THAT(iso::group_words(choice, named), HasSubstr(": command and position cannot tell"));
+  const iso::ParameterSet set = iso::choose(printed_model(), usual(), "parameters");
+  iso::ParameterChange named{
+      1, 0.1, 0.01, 0.1, {{"internal_leakage.conductance_m3ps_per_Pa", 1e-12}}, {}};
+  EXPECT_EQ(iso::advice_words(set, named), "a reading of the chamber pressures would");
+  EXPECT_THAT(iso::group_words(set, named), HasSubstr(": command and position cannot tell"));
   named.sensed.chambers = true;
-  EXPECT_EQ(iso::advice_words(choice, named),
+  EXPECT_EQ(iso::advice_words(set, named),
             "a motion of other speeds and accelerations would");  // damping
-  EXPECT_THAT(iso::group_words(choice, named),
+  EXPECT_THAT(iso::group_words(set, named),
               HasSubstr("command, position and chamber pressures cannot tell"));
   named.rivals = {{"supply_droop.droop_Pa_per_m3ps", 1e10}};
-  EXPECT_EQ(iso::advice_words(choice, named), "a reading of the supply pressure would");
+  EXPECT_EQ(iso::advice_words(set, named), "a reading of the supply pressure would");
   named.sensed.supply = true;
-  EXPECT_THAT(iso::advice_words(choice, named), Not(HasSubstr("supply")));
+  EXPECT_THAT(iso::advice_words(set, named), Not(HasSubstr("supply")));
 }
 
 }  // namespace

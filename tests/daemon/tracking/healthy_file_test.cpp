@@ -16,14 +16,14 @@ using namespace tracking_test;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
-class HealthyFiles : public testing::Test {
+class BaselineFiles : public testing::Test {
  protected:
   void SetUp() override {
-    choice_ = iso::choose(model_, usual(), "parameters");
-    iso::Healthy healthy{2.5e-6, choice_.file};
-    healthy.x[1] = std::log(0.9);
-    healthy.chambers = {{5e3, -2e4, 7e3}, {6e3, 3e4, 8e3}, 1.4e4};
-    tracker::HealthyFile file = tracker::healthy_file(model_, choice_, {}, healthy);
+    set_ = iso::choose(model_, usual(), "parameters");
+    iso::Baseline baseline{2.5e-6, set_.file};
+    baseline.theta[1] = std::log(0.9);
+    baseline.chambers = {{5e3, -2e4, 7e3}, {6e3, 3e4, 8e3}, 1.4e4};
+    tracker::BaselineFile file = tracker::baseline_file(model_, set_, {}, baseline);
     file.rig_id = "stand-1";
     file.sample_time_s = truth::kSample_s;
     std::ofstream(path_) << config::schema::print_toml([&](auto& v) { file.visit(v); });
@@ -39,10 +39,10 @@ class HealthyFiles : public testing::Test {
   }
 
   /// One line; "" when it is not refused.
-  std::string refusal(const plant_sim::ModelFile& model, const iso::Settings& settings,
+  std::string refusal(const plant_sim::ModelFile& model, const iso::TrackerSettings& settings,
                       double sample_time_s, const std::string& rig_id) const {
     try {
-      (void)tracker::read_healthy(path_, model, settings, choice_, sample_time_s, rig_id);
+      (void)tracker::read_baseline(path_, model, settings, set_, sample_time_s, rig_id);
     } catch (const config::schema::ConfigError& error) {
       std::string line = error.what();
       EXPECT_THAT(line, HasSubstr(path_.string()));
@@ -54,28 +54,28 @@ class HealthyFiles : public testing::Test {
   std::string refusal() const { return refusal(model_, {}, truth::kSample_s, "stand-1"); }
 
   plant_sim::ModelFile model_ = printed_model();
-  iso::Choice choice_;
+  iso::ParameterSet set_;
   fs::path path_ =
       fs::path(testing::TempDir()) /
       (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + ".toml");
 };
 
-TEST_F(HealthyFiles, ComeBackAsTheyWere) {
-  const auto file = tracker::read_healthy(path_, model_, {}, choice_, truth::kSample_s, "stand-1");
-  const iso::Healthy healthy = tracker::healthy_of(file, choice_);
-  EXPECT_EQ(healthy.rms_m, 2.5e-6);
-  EXPECT_NEAR(healthy.x[0], 0.0, 1e-12);
-  EXPECT_NEAR(healthy.x[1], std::log(0.9), 1e-12);
-  EXPECT_EQ(healthy.chambers.in.rms_Pa, 5e3);
-  EXPECT_EQ(healthy.chambers.in.offset_Pa, -2e4);
-  EXPECT_EQ(healthy.chambers.out.rms_Pa, 6e3);
-  EXPECT_EQ(healthy.chambers.out.offset_Pa, 3e4);
-  EXPECT_EQ(healthy.chambers.in.weight_Pa, 7e3);
-  EXPECT_EQ(healthy.chambers.out.weight_Pa, 8e3);
-  EXPECT_EQ(healthy.chambers.offset_sd_Pa, 1.4e4);
+TEST_F(BaselineFiles, ComeBackAsTheyWere) {
+  const auto file = tracker::read_baseline(path_, model_, {}, set_, truth::kSample_s, "stand-1");
+  const iso::Baseline baseline = tracker::baseline_of(file, set_);
+  EXPECT_EQ(baseline.rms_m, 2.5e-6);
+  EXPECT_NEAR(baseline.theta[0], 0.0, 1e-12);
+  EXPECT_NEAR(baseline.theta[1], std::log(0.9), 1e-12);
+  EXPECT_EQ(baseline.chambers.in.rms_Pa, 5e3);
+  EXPECT_EQ(baseline.chambers.in.offset_Pa, -2e4);
+  EXPECT_EQ(baseline.chambers.out.rms_Pa, 6e3);
+  EXPECT_EQ(baseline.chambers.out.offset_Pa, 3e4);
+  EXPECT_EQ(baseline.chambers.in.weight_Pa, 7e3);
+  EXPECT_EQ(baseline.chambers.out.weight_Pa, 8e3);
+  EXPECT_EQ(baseline.chambers.offset_sd_Pa, 1.4e4);
 }
 
-TEST_F(HealthyFiles, OfARigWithoutChamberPressuresGoOnWithoutThem) {
+TEST_F(BaselineFiles, OfARigWithoutChamberPressuresGoOnWithoutThem) {
   for (const char* line :
        {"pressure_in_error_Pa = 5000.0\n", "pressure_out_error_Pa = 6000.0\n",
         "pressure_in_weight_Pa = 7000.0\n", "pressure_out_weight_Pa = 8000.0\n",
@@ -83,17 +83,17 @@ TEST_F(HealthyFiles, OfARigWithoutChamberPressuresGoOnWithoutThem) {
         "pressure_offset_sd_Pa = 14000.0\n"}) {
     rewrite(line, "");
   }
-  const auto file = tracker::read_healthy(path_, model_, {}, choice_, truth::kSample_s, "stand-1");
-  const iso::Healthy healthy = tracker::healthy_of(file, choice_);
-  EXPECT_FALSE(healthy.chambers.known());
+  const auto file = tracker::read_baseline(path_, model_, {}, set_, truth::kSample_s, "stand-1");
+  const iso::Baseline baseline = tracker::baseline_of(file, set_);
+  EXPECT_FALSE(baseline.chambers.known());
   // What comes with the samples then changes nothing.
   truth::Case of = stand(6.0);
   of.pressure_noise_Pa = 5e3;
   const truth::Record record = truth::simulate(of);
-  iso::Tracker with(model_, choice_, {}, truth::kSample_s, kFloor_m);
-  iso::Tracker without(model_, choice_, {}, truth::kSample_s, kFloor_m);
-  with.take(healthy);
-  without.take(healthy);
+  iso::ParameterTracker with(model_, set_, {}, truth::kSample_s, kFloor_m);
+  iso::ParameterTracker without(model_, set_, {}, truth::kSample_s, kFloor_m);
+  with.take(baseline);
+  without.take(baseline);
   int windows = 0;
   for (std::size_t k = 0; k < record.t_s.size(); ++k) {
     config::signals::Pressures chambers;
@@ -111,7 +111,7 @@ TEST_F(HealthyFiles, OfARigWithoutChamberPressuresGoOnWithoutThem) {
   EXPECT_GT(windows, 5);
 }
 
-TEST_F(HealthyFiles, AreRefusedForAnotherRigOrSampleTime) {
+TEST_F(BaselineFiles, AreRefusedForAnotherRigOrSampleTime) {
   EXPECT_EQ(refusal(), "");
   EXPECT_EQ(refusal(model_, {}, truth::kSample_s, ""), "") << "of any rig";
   EXPECT_THAT(refusal(model_, {}, truth::kSample_s, "stand-2"),
@@ -120,8 +120,8 @@ TEST_F(HealthyFiles, AreRefusedForAnotherRigOrSampleTime) {
               HasSubstr("sample_time_s: is 0.005 s; allowed: 0.01 s"));
 }
 
-TEST_F(HealthyFiles, AreRefusedForAnotherWindowOrObserver) {
-  iso::Settings other;
+TEST_F(BaselineFiles, AreRefusedForAnotherWindowOrObserver) {
+  iso::TrackerSettings other;
   other.window_s = 3.0;
   EXPECT_THAT(refusal(model_, other, truth::kSample_s, "stand-1"),
               HasSubstr("window_s: was learnt with 2 s; allowed: 3 s"));
@@ -131,7 +131,7 @@ TEST_F(HealthyFiles, AreRefusedForAnotherWindowOrObserver) {
               HasSubstr("observer_per_s: was learnt with 2 1/s; allowed: 1 1/s"));
 }
 
-TEST_F(HealthyFiles, AreRefusedForAModelWithAnotherValueOrEffectAndSayWhich) {
+TEST_F(BaselineFiles, AreRefusedForAModelWithAnotherValueOrEffectAndSayWhich) {
   plant_sim::ModelFile other = model_;
   *other.value("mass_kg") = 51.0;
   EXPECT_THAT(refusal(other, {}, truth::kSample_s, "stand-1"),
@@ -141,15 +141,15 @@ TEST_F(HealthyFiles, AreRefusedForAModelWithAnotherValueOrEffectAndSayWhich) {
   EXPECT_THAT(refusal(other, {}, truth::kSample_s, "stand-1"), HasSubstr("another model, printed"));
 }
 
-TEST_F(HealthyFiles, AreRefusedWhereOtherParametersWereTracked) {
-  choice_ = iso::choose(model_, {"supply_pressure_Pa"}, "parameters");
+TEST_F(BaselineFiles, AreRefusedWhereOtherParametersWereTracked) {
+  set_ = iso::choose(model_, {"supply_pressure_Pa"}, "parameters");
   EXPECT_THAT(refusal(), HasSubstr("parameters: was learnt while supply_pressure_Pa, "
                                    "damping_N_s_per_m were tracked; allowed: supply_pressure_Pa"));
-  choice_ = iso::choose(model_, {"damping_N_s_per_m", "supply_pressure_Pa"}, "parameters");
+  set_ = iso::choose(model_, {"damping_N_s_per_m", "supply_pressure_Pa"}, "parameters");
   EXPECT_EQ(refusal(), "") << "the order does not matter";
 }
 
-TEST_F(HealthyFiles, AreRefusedInAnotherLayout) {
+TEST_F(BaselineFiles, AreRefusedInAnotherLayout) {
   rewrite("healthy_version = 2", "healthy_version = 1");
   EXPECT_THAT(refusal(), HasSubstr("healthy_version"));
 }

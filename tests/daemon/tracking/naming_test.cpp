@@ -16,13 +16,13 @@ constexpr double kOnTimeDamping_s = 3.0;
 /// Has an alarm for the parameter, in that direction, raised within the delay after at_s.
 bool names(const Tracked& t, const std::string& parameter, int direction, double at_s,
            double delay_s) {
-  return std::any_of(t.alarms.begin(), t.alarms.end(), [&](const iso::Alarm& alarm) {
+  return std::any_of(t.alarms.begin(), t.alarms.end(), [&](const iso::DetectedChange& alarm) {
     return t.name(alarm) == parameter && alarm.named.deviation * direction > 0.0 &&
            alarm.raised_s >= at_s && alarm.raised_s < at_s + delay_s;
   });
 }
 
-bool has_rival(const iso::Alarm& alarm, const std::string& name) {
+bool has_rival(const iso::DetectedChange& alarm, const std::string& name) {
   const auto& rivals = alarm.named.rivals;
   return std::any_of(rivals.begin(), rivals.end(),
                      [&](const iso::Rival& rival) { return rival.name == name; });
@@ -40,8 +40,8 @@ TEST(Isolation, NamesTheSupplyPressureAndNothingElseInCaseOne) {
   EXPECT_GT(t.alarms[0].cleared_s, 30.0);
   EXPECT_LT(t.alarms[0].cleared_s, 33.0);
   EXPECT_TRUE(t.alarms[1].active());
-  EXPECT_NEAR(std::exp(t.alarms[0].named.x), 1.25, 0.0025);
-  EXPECT_NEAR(std::exp(t.alarms[1].named.x), 0.75, 0.0015);
+  EXPECT_NEAR(std::exp(t.alarms[0].named.theta), 1.25, 0.0025);
+  EXPECT_NEAR(std::exp(t.alarms[1].named.theta), 0.75, 0.0015);
 }
 
 TEST(Isolation, NamesTheDampingAndNothingElseInCaseTwo) {
@@ -53,8 +53,8 @@ TEST(Isolation, NamesTheDampingAndNothingElseInCaseTwo) {
   ASSERT_EQ(t.alarms.size(), 2u);
   EXPECT_TRUE(names(t, "damping_N_s_per_m", 1, 15.0, kOnTimeDamping_s));
   EXPECT_TRUE(names(t, "damping_N_s_per_m", -1, 45.0, kOnTimeDamping_s));
-  EXPECT_NEAR(std::exp(t.alarms[0].named.x), 1.25, 0.03 * 1.25);
-  EXPECT_NEAR(std::exp(t.alarms[1].named.x), 0.75, 0.03 * 0.75);
+  EXPECT_NEAR(std::exp(t.alarms[0].named.theta), 1.25, 0.03 * 1.25);
+  EXPECT_NEAR(std::exp(t.alarms[1].named.theta), 0.75, 0.03 * 0.75);
 }
 
 TEST(Isolation, TellsTheTwoApartInCaseThreeAloneAndTogether) {
@@ -142,9 +142,9 @@ TEST(Isolation, SeparatesTheNeedleValveThatIsClosedByFourFifths) {
               model, 0.75e-6);
   ASSERT_EQ(t.alarms.size(), 1u);
   EXPECT_EQ(t.name(t.alarms[0]), "coupled_slaves.needle_N_s2_per_m2");
-  const auto& p = t.choice.parameters[t.alarms[0].named.parameter];
-  const double needle = p.value(t.alarms[0].named.x);
-  EXPECT_NEAR(needle, 500.0, 5.0 * t.alarms[0].named.std_error * p.slope(t.alarms[0].named.x));
+  const auto& p = t.set.parameters[t.alarms[0].named.parameter];
+  const double needle = p.to_physical(t.alarms[0].named.theta);
+  EXPECT_NEAR(needle, 500.0, 5.0 * t.alarms[0].named.std_error * p.slope(t.alarms[0].named.theta));
   EXPECT_NEAR(needle, 500.0, 100.0);
 }
 
@@ -169,7 +169,7 @@ TEST(Isolation, TellsValveGainFromSupplyPressureWithAReadingOfThePressure) {
     EXPECT_EQ(t.name(t.alarms[0]), name);
     EXPECT_TRUE(t.alarms[0].named.rivals.empty() || !has_rival(t.alarms[0], "supply_pressure_Pa"));
     EXPECT_FALSE(has_rival(t.alarms[0], "valve_gain_m_per_V"));
-    EXPECT_NEAR(std::exp(t.alarms[0].named.x), 0.9, 0.002);
+    EXPECT_NEAR(std::exp(t.alarms[0].named.theta), 0.9, 0.002);
   }
 }
 
@@ -185,8 +185,8 @@ TEST(Isolation, TracksOtherParametersThatAreAskedFor) {
   const Tracked t = tracked(truth::simulate(of), {"supply_pressure_Pa", "null_bias.offset_V"});
   ASSERT_EQ(t.alarms.size(), 1u);
   EXPECT_EQ(t.name(t.alarms[0]), "null_bias.offset_V");
-  const auto& p = t.choice.parameters[t.alarms[0].named.parameter];
-  EXPECT_NEAR(p.value(t.alarms[0].named.x), 0.05, 0.0005);
+  const auto& p = t.set.parameters[t.alarms[0].named.parameter];
+  EXPECT_NEAR(p.to_physical(t.alarms[0].named.theta), 0.05, 0.0005);
 }
 
 }  // namespace

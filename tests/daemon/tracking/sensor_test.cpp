@@ -28,13 +28,13 @@ truth::Record scaled(double s, std::size_t seed) {
   return whole;
 }
 
-iso::Settings suspecting() {
-  iso::Settings settings;
+iso::TrackerSettings suspecting() {
+  iso::TrackerSettings settings;
   settings.thresholds.suspect_position_sensor = true;
   return settings;
 }
 
-bool has_sensor(const iso::Alarm& alarm) {
+bool has_sensor(const iso::DetectedChange& alarm) {
   return std::any_of(alarm.named.rivals.begin(), alarm.named.rivals.end(), [](const auto& rival) {
     return rival.name.rfind("position_sensor.", 0) == 0;
   });
@@ -45,7 +45,7 @@ TEST(Sensor, OfAnotherScaleIsInTheGroupOfEveryAlarmThatItRaises) {
     const Tracked t = tracked(scaled(s, 1), usual(), suspecting());
     ASSERT_FALSE(t.alarms.empty()) << s;
     bool is_scale = false;
-    for (const iso::Alarm& alarm : t.alarms) {
+    for (const iso::DetectedChange& alarm : t.alarms) {
       EXPECT_TRUE(has_sensor(alarm)) << t.name(alarm) << ' ' << s << ' ' << alarm.raised_s;
       for (const iso::Rival& rival : alarm.named.rivals) {
         if (rival.name != "position_sensor.scale_ratio") continue;
@@ -71,7 +71,8 @@ TEST(Sensor, IsNoRivalOfADampingThatChanges) {
 TEST(Sensor, IsInNoGroupWhereItIsNotSuspected) {
   const Tracked t = tracked(scaled(1.05, 1));
   ASSERT_FALSE(t.alarms.empty());
-  for (const iso::Alarm& alarm : t.alarms) EXPECT_FALSE(has_sensor(alarm)) << t.name(alarm);
+  for (const iso::DetectedChange& alarm : t.alarms)
+    EXPECT_FALSE(has_sensor(alarm)) << t.name(alarm);
 }
 
 }  // namespace

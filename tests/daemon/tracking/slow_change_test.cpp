@@ -15,71 +15,71 @@ using testing::HasSubstr;
 
 constexpr double kStride_s = 0.5;
 
-iso::Choice usual_choice() { return iso::choose(printed_model(), usual(), "parameters"); }
+iso::ParameterSet usual_choice() { return iso::choose(printed_model(), usual(), "parameters"); }
 
 /// An explained window in which damping is found at `x`.
-iso::Window window_at(double t_s, double x, bool valid = true) {
-  iso::Window window;
+iso::WindowResult window_at(double t_s, double x, bool valid = true) {
+  iso::WindowResult window;
   window.t_s = t_s;
   window.estimates.resize(2);
-  window.estimates[1].x = x;
+  window.estimates[1].theta = x;
   window.estimates[1].valid = valid;
   return window;
 }
 
 struct Followed {
-  iso::Choice choice = usual_choice();
-  iso::AlarmBook alarms{choice, {}};
-  iso::SlowChange slow;
-  Eigen::VectorXd healthy = choice.file;
+  iso::ParameterSet set = usual_choice();
+  iso::ChangeDetector alarms{set, {}};
+  iso::BaselineDrift slow;
+  Eigen::VectorXd baseline = set.file;
 
   explicit Followed(double ratio_per_h, double most_ratio)
-      : slow(choice, {{"damping_N_s_per_m"}, ratio_per_h, most_ratio}) {
-    slow.take(healthy);
+      : slow(set, {{"damping_N_s_per_m"}, ratio_per_h, most_ratio}) {
+    slow.take(baseline);
   }
 };
 
-TEST(SlowChange, GoesNoFasterThanItsRate) {
+TEST(BaselineDrift, GoesNoFasterThanItsRate) {
   Followed f(0.36, 0.3);  // 1e-4 a second
   for (int k = 0; k <= 200; ++k) {
-    f.slow.follow(window_at(k * kStride_s, -0.2), true, f.alarms, f.healthy);
+    f.slow.follow(window_at(k * kStride_s, -0.2), true, f.alarms, f.baseline);
   }
-  EXPECT_NEAR(f.healthy[1], -100.0 * 1e-4, 1e-12);  // 100 s
-  EXPECT_EQ(f.healthy[0], f.choice.file[0]);
-  EXPECT_EQ(f.slow.at_end(0, f.healthy), 0);
+  EXPECT_NEAR(f.baseline[1], -100.0 * 1e-4, 1e-12);  // 100 s
+  EXPECT_EQ(f.baseline[0], f.set.file[0]);
+  EXPECT_EQ(f.slow.at_end(0, f.baseline), 0);
 }
 
-TEST(SlowChange, TellsTheEndOfTheDistanceThatIsFollowed) {
+TEST(BaselineDrift, TellsTheEndOfTheDistanceThatIsFollowed) {
   Followed f(36.0, 0.3);
   for (int k = 0; k <= 200; ++k) {
-    f.slow.follow(window_at(k * kStride_s, 0.5), true, f.alarms, f.healthy);
+    f.slow.follow(window_at(k * kStride_s, 0.5), true, f.alarms, f.baseline);
   }
-  EXPECT_NEAR(std::exp(f.healthy[1]), 1.3, 1e-12);
-  EXPECT_EQ(f.slow.at_end(0, f.healthy), 1);
+  EXPECT_NEAR(std::exp(f.baseline[1]), 1.3, 1e-12);
+  EXPECT_EQ(f.slow.at_end(0, f.baseline), 1);
 }
 
-TEST(SlowChange, CountsTheTimeInWhichTheMotionToldNothing) {
+TEST(BaselineDrift, CountsTheTimeInWhichTheMotionToldNothing) {
   Followed f(0.36, 0.3);
-  f.slow.follow(window_at(0.0, -0.05), true, f.alarms, f.healthy);
+  f.slow.follow(window_at(0.0, -0.05), true, f.alarms, f.baseline);
   for (int k = 1; k < 200; ++k) {
-    f.slow.follow(window_at(k * kStride_s, -0.05, false), true, f.alarms, f.healthy);
+    f.slow.follow(window_at(k * kStride_s, -0.05, false), true, f.alarms, f.baseline);
   }
-  EXPECT_EQ(f.healthy[1], 0.0);
-  f.slow.follow(window_at(100.0, -0.05), true, f.alarms, f.healthy);  // 1e-2 are allowed by now
-  EXPECT_NEAR(f.healthy[1], -0.2 * 0.05, 1e-12);
+  EXPECT_EQ(f.baseline[1], 0.0);
+  f.slow.follow(window_at(100.0, -0.05), true, f.alarms, f.baseline);  // 1e-2 are allowed by now
+  EXPECT_NEAR(f.baseline[1], -0.2 * 0.05, 1e-12);
 }
 
-TEST(SlowChange, StandsStillWhereTheModelDoesNotExplainTheRig) {
+TEST(BaselineDrift, StandsStillWhereTheModelDoesNotExplainTheRig) {
   Followed f(0.36, 0.3);
   for (int k = 0; k <= 200; ++k) {
-    f.slow.follow(window_at(k * kStride_s, -0.2), false, f.alarms, f.healthy);
+    f.slow.follow(window_at(k * kStride_s, -0.2), false, f.alarms, f.baseline);
   }
-  EXPECT_EQ(f.healthy[1], 0.0);
+  EXPECT_EQ(f.baseline[1], 0.0);
 }
 
-TEST(SlowChange, RefusesAParameterThatIsNotTracked) {
+TEST(BaselineDrift, RefusesAParameterThatIsNotTracked) {
   try {
-    iso::SlowChange(usual_choice(), {{"mass_kg"}, 0.5, 0.3}, "[[tracker]] physics: follow");
+    iso::BaselineDrift(usual_choice(), {{"mass_kg"}, 0.5, 0.3}, "[[tracker]] physics: follow");
     FAIL() << "was taken";
   } catch (const config::schema::ConfigError& error) {
     EXPECT_THAT(error.what(), HasSubstr("[[tracker]] physics: follow: names mass_kg"));
@@ -98,13 +98,13 @@ truth::Record warming(double fault_at_s) {
   return truth::simulate(of);
 }
 
-iso::Settings following() {
-  iso::Settings settings;
-  settings.following = {{"damping_N_s_per_m"}, 2.0, 0.3};
+iso::TrackerSettings following() {
+  iso::TrackerSettings settings;
+  settings.drift = {{"damping_N_s_per_m"}, 2.0, 0.3};
   return settings;
 }
 
-TEST(SlowChange, OfDampingIsNoAlarmWhereItIsFollowed) {
+TEST(BaselineDrift, OfDampingIsNoAlarmWhereItIsFollowed) {
   const truth::Record record = warming(0.0);
   EXPECT_FALSE(tracked(record).alarms.empty());
   const Tracked followed = tracked(record, usual(), following());
@@ -113,7 +113,7 @@ TEST(SlowChange, OfDampingIsNoAlarmWhereItIsFollowed) {
   EXPECT_NEAR(followed.windows.back().estimates[1].value, 900.0, 30.0);
 }
 
-TEST(SlowChange, LeavesAFaultOfDampingToBeNamed) {
+TEST(BaselineDrift, LeavesAFaultOfDampingToBeNamed) {
   const Tracked found = tracked(warming(200.0), usual(), following());
   ASSERT_EQ(found.alarms.size(), 1u);
   EXPECT_EQ(found.name(found.alarms[0]), "damping_N_s_per_m");

@@ -201,19 +201,19 @@ TEST(TrackerSource, SaysWhyItGoesOnByPositionAlone) {
 /// A pipeline that is saved and restored at a cut, and one that never was.
 void expect_the_same(const fdi::PipelineConfig& config, const truth::Record& record,
                      const std::vector<std::size_t>& cuts) {
-  for (const std::size_t cut : cuts) {
-    const std::size_t end = cut + 900;
+  for (const std::size_t data : cuts) {
+    const std::size_t end = data + 900;
     fdi::Pipeline whole(config, truth::kSample_s);
     Log unused;
-    run(whole, record, 0, cut, unused);
+    run(whole, record, 0, data, unused);
     std::vector<std::uint8_t> bytes;
-    fdi::save_snapshot(whole, 1, static_cast<std::int64_t>(cut), bytes);
+    fdi::save_snapshot(whole, 1, static_cast<std::int64_t>(data), bytes);
     fdi::Pipeline restored(config, truth::kSample_s);
-    ASSERT_EQ(fdi::load_snapshot(bytes, 1, restored, "test"), static_cast<std::int64_t>(cut));
+    ASSERT_EQ(fdi::load_snapshot(bytes, 1, restored, "test"), static_cast<std::int64_t>(data));
     Log expected;
     Log found;
-    run(whole, record, cut, end, expected);
-    run(restored, record, cut, end, found);
+    run(whole, record, data, end, expected);
+    run(restored, record, data, end, found);
     ASSERT_EQ(found.values.size(), expected.values.size());
     for (std::size_t i = 0; i < found.values.size(); ++i) {
       EXPECT_EQ(found.reasons[i], expected.reasons[i]);

@@ -31,13 +31,13 @@ inline void fault(truth::Case& of, double at_s, double truth::Plant::*member, do
 }
 
 struct Tracked {
-  iso::Choice choice;
-  iso::Healthy healthy;
-  std::vector<iso::Window> windows;
-  std::vector<iso::Alarm> alarms;
+  iso::ParameterSet set;
+  iso::Baseline baseline;
+  std::vector<iso::WindowResult> windows;
+  std::vector<iso::DetectedChange> alarms;
 
-  [[nodiscard]] const std::string& name(const iso::Alarm& alarm) const {
-    return choice.parameters[alarm.named.parameter].name;
+  [[nodiscard]] const std::string& name(const iso::DetectedChange& alarm) const {
+    return set.parameters[alarm.named.parameter].name;
   }
 };
 
@@ -54,13 +54,13 @@ inline plant_sim::ModelFile printed_model() {
 
 /// Chamber pressures are used where the record has them, its supply pressure only as `supply_Pa`.
 inline Tracked tracked(const truth::Record& record, const std::vector<std::string>& names = usual(),
-                       const iso::Settings& settings = {},
+                       const iso::TrackerSettings& settings = {},
                        const plant_sim::ModelFile& model = printed_model(),
                        double floor_m = kFloor_m, const std::vector<double>& supply_Pa = {}) {
   Tracked out;
-  out.choice = iso::choose(model, names, "parameters");
-  const auto run = [&](iso::Tracker& tracker, double until_s) {
-    std::vector<iso::Window> windows;
+  out.set = iso::choose(model, names, "parameters");
+  const auto run = [&](iso::ParameterTracker& tracker, double until_s) {
+    std::vector<iso::WindowResult> windows;
     for (std::size_t k = 0; k < record.t_s.size() && record.t_s[k] < until_s; ++k) {
       config::signals::Pressures pressures;
       if (!supply_Pa.empty()) pressures.supply_Pa = supply_Pa[k];
@@ -71,12 +71,12 @@ inline Tracked tracked(const truth::Record& record, const std::vector<std::strin
     }
     return windows;
   };
-  iso::Tracker learning(model, out.choice, settings, truth::kSample_s, floor_m);
-  out.healthy = iso::learn(run(learning, kHealthy_s), out.choice, floor_m, "truth");
-  iso::Tracker judging(model, out.choice, settings, truth::kSample_s, floor_m);
-  judging.take(out.healthy);
+  iso::ParameterTracker learning(model, out.set, settings, truth::kSample_s, floor_m);
+  out.baseline = iso::learn_baseline(run(learning, kHealthy_s), out.set, floor_m, "truth");
+  iso::ParameterTracker judging(model, out.set, settings, truth::kSample_s, floor_m);
+  judging.take(out.baseline);
   out.windows = run(judging, INFINITY);
-  out.alarms = judging.alarms().alarms();
+  out.alarms = judging.detector().changes();
   return out;
 }
 

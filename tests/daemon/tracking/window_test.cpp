@@ -10,7 +10,7 @@ namespace {
 using namespace tracking_test;
 using testing::HasSubstr;
 
-TEST(Window, FindsPressureWithinTwoPerMilleAndDampingWithinItsStandardErrors) {
+TEST(WindowResult, FindsPressureWithinTwoPerMilleAndDampingWithinItsStandardErrors) {
   double squares = 0.0;
   double worst = 0.0;
   int count = 0;
@@ -20,7 +20,7 @@ TEST(Window, FindsPressureWithinTwoPerMilleAndDampingWithinItsStandardErrors) {
     of.plant.damping_N_s_per_m *= 1.25;
     const Tracked t = tracked(truth::simulate(of));
     for (std::size_t i = 0; i < t.windows.size(); i += 16) {  // that have no window in common
-      const iso::Window& window = t.windows[i];
+      const iso::WindowResult& window = t.windows[i];
       ASSERT_TRUE(window.valid) << window.why;
       EXPECT_NEAR(window.estimates[0].value, of.plant.supply_pressure_Pa,
                   0.002 * of.plant.supply_pressure_Pa);
@@ -35,11 +35,11 @@ TEST(Window, FindsPressureWithinTwoPerMilleAndDampingWithinItsStandardErrors) {
   EXPECT_LT(worst, 0.03);
 }
 
-TEST(Window, IsInvalidWhereTheRigDoesWhatTheModelDoesNotHave) {
+TEST(WindowResult, IsInvalidWhereTheRigDoesWhatTheModelDoesNotHave) {
   truth::Case of = stand(25.0);
   of.changes.push_back({15.0, nullptr, &truth::Hidden::backlash_m, 60e-6});
   const Tracked t = tracked(truth::simulate(of));
-  for (const iso::Window& window : t.windows) {
+  for (const iso::WindowResult& window : t.windows) {
     if (window.t_s < 15.0) {
       EXPECT_TRUE(window.valid) << window.t_s;
     } else if (window.from_s > 15.5) {
@@ -50,7 +50,7 @@ TEST(Window, IsInvalidWhereTheRigDoesWhatTheModelDoesNotHave) {
   EXPECT_TRUE(t.alarms.empty());
 }
 
-TEST(Window, IsInvalidWithoutMotion) {
+TEST(WindowResult, IsInvalidWithoutMotion) {
   truth::Record record = truth::simulate(stand(12.0));
   truth::Random random(7);
   for (std::size_t k = 0; k < 2000; ++k) {
@@ -59,21 +59,21 @@ TEST(Window, IsInvalidWithoutMotion) {
     record.y_m.push_back(5e-6 * std::round((0.305 + 2e-6 * random.normal()) / 5e-6));
   }
   const Tracked t = tracked(record);
-  const iso::Window& last = t.windows.back();
+  const iso::WindowResult& last = t.windows.back();
   EXPECT_FALSE(last.valid);
   EXPECT_THAT(last.why, HasSubstr("no motion"));
   EXPECT_TRUE(t.alarms.empty());
 }
 
-TEST(Window, TellsThePressureWhereATriangleDoesNotTellTheDamping) {
+TEST(WindowResult, TellsThePressureWhereATriangleDoesNotTellTheDamping) {
   truth::Case of = truth::parse_case("motion=triangle,plant=printed", 1);
   of.length_s = 40.0;
   fault(of, 20.0, &truth::Plant::supply_pressure_Pa, 0.9);
-  iso::Settings settings;
-  settings.pooled = 1;
+  iso::TrackerSettings settings;
+  settings.fused = 1;
   const Tracked t = tracked(truth::simulate(of), usual(), settings);
   int poor = 0;
-  for (const iso::Window& window : t.windows) {
+  for (const iso::WindowResult& window : t.windows) {
     if (window.from_s < 20.0) continue;
     EXPECT_TRUE(window.estimates[0].valid) << window.estimates[0].why;
     EXPECT_NEAR(window.estimates[0].value, 0.9 * 6.89e6, 0.002 * 6.89e6);
@@ -88,14 +88,14 @@ TEST(Window, TellsThePressureWhereATriangleDoesNotTellTheDamping) {
   EXPECT_GT(poor, 0);
 }
 
-TEST(Window, SaysWhatTheMotionDoesNotSeparate) {
+TEST(WindowResult, SaysWhatTheMotionDoesNotSeparate) {
   const truth::Record record = truth::simulate(stand(8.0));
   const plant_sim::ModelFile model = printed_model();
   // Both only appear as their product.
-  const iso::Choice choice =
+  const iso::ParameterSet set =
       iso::choose(model, {"valve_gain_m_per_V", "discharge_coefficient"}, "parameters");
-  iso::Tracker tracker(model, choice, {}, truth::kSample_s, kFloor_m);
-  iso::Window last;
+  iso::ParameterTracker tracker(model, set, {}, truth::kSample_s, kFloor_m);
+  iso::WindowResult last;
   for (std::size_t k = 0; k < record.t_s.size(); ++k) {
     auto window = tracker.push(record.t_s[k], record.u_V[k], record.y_m[k], k == 0);
     if (window) last = *window;
@@ -104,11 +104,11 @@ TEST(Window, SaysWhatTheMotionDoesNotSeparate) {
   EXPECT_THAT(last.why, HasSubstr("does not separate valve gain from discharge coefficient"));
 }
 
-TEST(Window, NeverReachesAcrossAGap) {
+TEST(WindowResult, NeverReachesAcrossAGap) {
   const truth::Record record = truth::simulate(stand(20.0));
   const plant_sim::ModelFile model = printed_model();
-  iso::Tracker tracker(model, iso::choose(model, usual(), "parameters"), {}, truth::kSample_s,
-                       kFloor_m);
+  iso::ParameterTracker tracker(model, iso::choose(model, usual(), "parameters"), {},
+                                truth::kSample_s, kFloor_m);
   for (std::size_t k = 0; k < record.t_s.size(); ++k) {
     const bool gap = k == 2001;  // behind 10 s the record goes on 0.7 s later
     if (k > 2001 && k < 2141) continue;

@@ -26,7 +26,7 @@ constexpr double kObserver = 2.0;
 constexpr double kRounding_m = 1e-11;
 
 validation::Comparison compared(const compare_test::Fault& fault, double noise_m = 0.0) {
-  return validation::compare(servo(), greybox::measured(servo_record(fault, 30.0, noise_m)));
+  return validation::compare(servo(), greybox::dataset_of(servo_record(fault, 30.0, noise_m)));
 }
 
 double bias(double, double, double) { return kGain * kBias_V; }
@@ -45,8 +45,8 @@ TEST(Comparison, HasTheClosedFormErrorOfAServoWithABias) {
       return last_m + (e0_m - last_m) * std::pow(1.0 - rate_per_s * kTs, after);
     };
     const double e_m =
-        k <= 100 ? from(0.0, greybox::kLeading_per_s, steps)
-                 : from(from(0.0, greybox::kLeading_per_s, 100.0), kObserver, steps - 100.0);
+        k <= 100 ? from(0.0, greybox::kInitialisation_per_s, steps)
+                 : from(from(0.0, greybox::kInitialisation_per_s, 100.0), kObserver, steps - 100.0);
     const double free_m = kGain * kBias_V * kTs * steps;
     ASSERT_NEAR(c.error_m[k], e_m, kRounding_m) << k;
     ASSERT_NEAR(c.free_error_m[k], free_m, kRounding_m) << k;
@@ -82,15 +82,15 @@ TEST(Comparison, GivesTheFitOfTheFreeRunInPercent) {
 
 TEST(Comparison, ExplainsABiasByAConstantSpeedAndAGainInProportion) {
   const validation::Comparison offset = compared(bias);
-  EXPECT_EQ(offset.explained.plain, validation::Plain::offset);
-  EXPECT_NEAR(offset.explained.offset_mps, kGain * kBias_V, 1e-8);
-  EXPECT_GT(offset.explained.share, 0.999);
+  EXPECT_EQ(offset.systematic.cause, validation::ErrorCause::offset);
+  EXPECT_NEAR(offset.systematic.offset_mps, kGain * kBias_V, 1e-8);
+  EXPECT_GT(offset.systematic.share, 0.999);
   const validation::Comparison gain =
       compared([](double, double u, double) { return 0.03 * kGain * u; });
-  EXPECT_EQ(gain.explained.plain, validation::Plain::gain);
+  EXPECT_EQ(gain.systematic.cause, validation::ErrorCause::gain);
   // Led back to the measurement, the model's own speed is a little more than g u.
-  EXPECT_NEAR(gain.explained.gain_ratio, 0.03, 0.002);
-  EXPECT_GT(gain.explained.share, 0.99);
+  EXPECT_NEAR(gain.systematic.gain_ratio, 0.03, 0.002);
+  EXPECT_GT(gain.systematic.share, 0.99);
 }
 
 TEST(Comparison, FindsTheNoiseFloorAndNothingElseInAHealthyRecord) {
@@ -102,8 +102,8 @@ TEST(Comparison, FindsTheNoiseFloorAndNothingElseInAHealthyRecord) {
   EXPECT_NEAR(c.k_step[0].rms_m, std::sqrt(2.0) * floor_m, 0.1 * floor_m);
   EXPECT_GT(c.whiteness_p, 1e-3);
   EXPECT_GT(c.independence_p, 1e-3);
-  EXPECT_FALSE(c.headline.stands_out);
-  for (const validation::Failing& failing : c.worst) EXPECT_FALSE(failing.stands_out);
+  EXPECT_FALSE(c.headline.significant);
+  for (const validation::SignificantRegion& failing : c.worst) EXPECT_FALSE(failing.significant);
 }
 
 /// A fault somewhere, and the variable and range that must come out first.
@@ -146,12 +146,12 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_P(FailingIn, ComesOutFirst) {
   const validation::Comparison c = compared(GetParam().fault, 2e-6);
   ASSERT_FALSE(c.worst.empty());
-  const validation::Failing& first = c.worst.front();
-  EXPECT_TRUE(first.stands_out);
+  const validation::SignificantRegion& first = c.worst.front();
+  EXPECT_TRUE(first.significant);
   EXPECT_EQ(first.ranges.front().variable, GetParam().variable);
   EXPECT_NEAR(first.figures.from, GetParam().from, GetParam().tolerance);
   EXPECT_NEAR(first.figures.to, GetParam().to, GetParam().tolerance);
-  EXPECT_GT(first.figures.arising_share, GetParam().share);
+  EXPECT_GT(first.figures.local_velocity_error_share, GetParam().share);
 }
 
 TEST(Regions, ShareTimeAndErrorOutCompletely) {
@@ -159,7 +159,7 @@ TEST(Regions, ShareTimeAndErrorOutCompletely) {
   ASSERT_EQ(c.regions.size(), 7U);
   double squares = 0.0;
   for (std::size_t k = 0; k < c.record.size(); ++k) {
-    if (c.record.settled[k] != 0) squares += c.error_m[k] * c.error_m[k];
+    if (c.record.valid[k] != 0) squares += c.error_m[k] * c.error_m[k];
   }
   for (const validation::Region& region : c.regions) {
     std::size_t count = 0;
@@ -201,12 +201,12 @@ TEST(Comparison, StartsAnewBehindAGap) {
     column->erase(column->begin() + 3000, column->begin() + 3100);
   }
   record.gaps = {3000};
-  const validation::Comparison c = validation::compare(servo(), greybox::measured(record));
+  const validation::Comparison c = validation::compare(servo(), greybox::dataset_of(record));
   EXPECT_EQ(c.record.starts.size(), 2U);
   EXPECT_NEAR(c.free_error_m[2999], kGain * kBias_V * kTs * 2999.0, kRounding_m);
   EXPECT_NEAR(c.free_error_m[3000], 0.0, kRounding_m);
   // led for half a second, which leaves g b / l, and free from there
-  const double led_m = kGain * kBias_V / greybox::kLeading_per_s;
+  const double led_m = kGain * kBias_V / greybox::kInitialisation_per_s;
   EXPECT_NEAR(c.free_error_m[3200], led_m + kGain * kBias_V * kTs * 100.0, 1e-4 * led_m);
   EXPECT_NEAR(c.k_step[0].rms_m, kGain * kBias_V * kTs, kRounding_m);
 }
@@ -214,8 +214,8 @@ TEST(Comparison, StartsAnewBehindAGap) {
 TEST(Comparison, SaysTheSameAtOtherRates) {
   for (const double sample_time_s : {0.001, 0.02}) {
     const validation::Comparison c = validation::compare(
-        servo(), greybox::measured(servo_record(bias, 20.0, 2e-6, sample_time_s)));
-    EXPECT_NEAR(c.explained.offset_mps, kGain * kBias_V, 1e-5) << sample_time_s;
+        servo(), greybox::dataset_of(servo_record(bias, 20.0, 2e-6, sample_time_s)));
+    EXPECT_NEAR(c.systematic.offset_mps, kGain * kBias_V, 1e-5) << sample_time_s;
     EXPECT_NEAR(c.rms_m, kGain * kBias_V / kObserver, 0.05 * c.rms_m) << sample_time_s;
   }
 }
@@ -223,7 +223,7 @@ TEST(Comparison, SaysTheSameAtOtherRates) {
 TEST(Sections, HavePlotsWhoseSeriesAreAsLongAsTheirAxis) {
   config::record::Record record = servo_record(bias, 20.0, 2e-6);
   record.gaps = {2000};
-  const validation::Comparison c = validation::compare(servo(), greybox::measured(record));
+  const validation::Comparison c = validation::compare(servo(), greybox::dataset_of(record));
   const std::vector<present::Section> all = sections(c, "first ");
   std::size_t plots = 0;
   for (const present::Section& section : all) {

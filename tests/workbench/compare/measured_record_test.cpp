@@ -32,9 +32,9 @@ plant_sim::ModelFile model(const std::string& name) {
 
 TEST(MeasuredRecord, OfTheFatigueRigDriftsAsTheReferenceSays) {
   SKIP_WITHOUT(data("faster/faster.csv"));
-  const greybox::Measured whole =
-      greybox::measured(config::record::read_record(data("faster/faster.csv")));
-  const greybox::Measured half = greybox::part(whole, 0, whole.size() / 2);
+  const greybox::Dataset whole =
+      greybox::dataset_of(config::record::read_record(data("faster/faster.csv")));
+  const greybox::Dataset half = greybox::part(whole, 0, whole.size() / 2);
   // v = k u by least squares on the free run: y(k) - y(0) = k Ts sum u.
   double moved = 0.0;
   double xy = 0.0;
@@ -58,8 +58,8 @@ TEST(MeasuredRecord, OfTheLinearAxisLeavesAtLeastTheReferenceErrorToAViscousMode
   *axis.value("mass_kg") = 95.11;
   *axis.value("damping_N_s_per_m") = 203.5;
   *axis.value("gain_N_per_V") = 35.15065;
-  const greybox::Measured record =
-      greybox::measured(config::record::read_record(data("emps/train_200Hz.csv")));
+  const greybox::Dataset record =
+      greybox::dataset_of(config::record::read_record(data("emps/train_200Hz.csv")));
   const validation::Comparison plain = validation::compare(axis, record);
   EXPECT_GT(1e3 * plain.free_run_rms_m, 90.0);
   EXPECT_EQ(words(plain).judgement, Judgement::fails_throughout);
@@ -74,10 +74,10 @@ TEST(MeasuredRecord, WithHiddenFrictionOrBacklashFailsWhileReversing) {
   for (const char* name : {"hidden/case01.csv", "hidden/case06.csv"}) {
     SKIP_WITHOUT(data(name));
     const validation::Comparison c = validation::compare(
-        model("thesis"), greybox::measured(config::record::read_record(data(name))));
-    ASSERT_TRUE(c.headline.stands_out) << name;
+        model("thesis"), greybox::dataset_of(config::record::read_record(data(name))));
+    ASSERT_TRUE(c.headline.significant) << name;
     EXPECT_EQ(c.headline.ranges.front().name, "reversing") << name;
-    EXPECT_GT(c.headline.figures.arising_share, 0.8) << name;
+    EXPECT_GT(c.headline.figures.local_velocity_error_share, 0.8) << name;
   }
 }
 
@@ -85,8 +85,8 @@ TEST(MeasuredRecord, WithAnEffectThatGrowsWithSpeedFailsAtHighSpeed) {
   for (const char* name : {"hidden/case07.csv", "hidden/case13.csv"}) {
     SKIP_WITHOUT(data(name));
     const validation::Comparison c = validation::compare(
-        model("thesis"), greybox::measured(config::record::read_record(data(name))));
-    ASSERT_TRUE(c.headline.stands_out) << name;
+        model("thesis"), greybox::dataset_of(config::record::read_record(data(name))));
+    ASSERT_TRUE(c.headline.significant) << name;
     EXPECT_EQ(c.worst.front().ranges.front().variable, "speed") << name;
     EXPECT_TRUE(c.worst.front().ranges.front().highest) << name;
   }
@@ -95,10 +95,10 @@ TEST(MeasuredRecord, WithAnEffectThatGrowsWithSpeedFailsAtHighSpeed) {
 TEST(MeasuredRecord, WithANullBiasIsOffByItsConstantSpeed) {
   SKIP_WITHOUT(data("hidden/case04.csv"));
   const validation::Comparison c = validation::compare(
-      model("thesis"), greybox::measured(config::record::read_record(data("hidden/case04.csv"))));
-  EXPECT_EQ(c.explained.plain, validation::Plain::offset);
-  EXPECT_LT(c.explained.offset_mps, 0.0);  // a bias of -0.07 V
-  EXPECT_GT(c.explained.share, 0.98);
+      model("thesis"), greybox::dataset_of(config::record::read_record(data("hidden/case04.csv"))));
+  EXPECT_EQ(c.systematic.cause, validation::ErrorCause::offset);
+  EXPECT_LT(c.systematic.offset_mps, 0.0);  // a bias of -0.07 V
+  EXPECT_GT(c.systematic.share, 0.98);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ using testing::StartsWith;
 
 validation::Comparison compared(const compare_test::Fault& fault) {
   return validation::compare(compare_test::servo(),
-                             greybox::measured(compare_test::servo_record(fault, 30.0, 2e-6)));
+                             greybox::dataset_of(compare_test::servo_record(fault, 30.0, 2e-6)));
 }
 
 TEST(Words, SayThatNothingIsLeftAtTheNoiseFloor) {

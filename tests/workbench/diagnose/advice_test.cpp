@@ -19,17 +19,20 @@ using testing::Not;
 using testing::StartsWith;
 
 /// The model with one effect added, fitted to the shop's record.
-greybox::Fitted fitted_with(const selection::Workshop& shop, const std::string& effect) {
-  std::vector<greybox::SearchParameter> searched = shop.standing;
+greybox::FitSummary fitted_with(const selection::SearchContext& context,
+                                const std::string& effect) {
+  std::vector<greybox::FreeParameter> parameters = context.problem.plant_parameters;
   const auto own = greybox::effect_parameters(*plant_sim::find_effect(effect), 0);
-  searched.insert(searched.end(), own.begin(), own.end());
-  greybox::Fitted best;
+  parameters.insert(parameters.end(), own.begin(), own.end());
+  greybox::FitSummary best;
   for (const double size : {-1.0, 1.0}) {
-    Eigen::VectorXd start = greybox::start_of(shop.model, searched);
+    Eigen::VectorXd start = greybox::start_of(context.problem.model, parameters);
     start[start.size() - 1] = size;
-    greybox::Fitted fitted =
-        greybox::fit(shop.model, shop.evidence, shop.evidence.fits, searched, start);
-    if (best.x.size() == 0 || fitted.fit_rms_m < best.fit_rms_m) best = std::move(fitted);
+    greybox::FitSummary fitted =
+        greybox::fit(context.problem.model, context.problem.data,
+                     context.problem.data.training_mask, parameters, start);
+    if (best.theta.size() == 0 || fitted.training_rms_m < best.training_rms_m)
+      best = std::move(fitted);
   }
   return best;
 }
@@ -39,30 +42,30 @@ class SineWithAsymmetricFlow : public testing::Test {
   static void SetUpTestSuite() {
     of_ =
         new truth::Case(truth::parse_case("motion=sine,flow_asymmetry.asymmetry_ratio=0.0135", 5));
-    shop_ = new selection::Workshop(
-        diagnose_test::shop_with(diagnose_test::measured(truth::simulate(*of_))));
-    rivals_ = new std::vector<greybox::Fitted>{fitted_with(*shop_, "flow_asymmetry"),
-                                               fitted_with(*shop_, "load_force")};
-    advice_ = new Advice(advise(*shop_, *rivals_, {"flow_asymmetry", "load_force"}));
+    context_ = new selection::SearchContext(
+        diagnose_test::context_with(diagnose_test::dataset_of(truth::simulate(*of_))));
+    rivals_ = new std::vector<greybox::FitSummary>{fitted_with(*context_, "flow_asymmetry"),
+                                                   fitted_with(*context_, "load_force")};
+    advice_ = new Advice(advise(*context_, *rivals_, {"flow_asymmetry", "load_force"}));
   }
   static void TearDownTestSuite() {
     delete advice_;
     delete rivals_;
-    delete shop_;
+    delete context_;
     delete of_;
   }
   static truth::Case* of_;
-  static selection::Workshop* shop_;
-  static std::vector<greybox::Fitted>* rivals_;
+  static selection::SearchContext* context_;
+  static std::vector<greybox::FitSummary>* rivals_;
   static Advice* advice_;
 };
 truth::Case* SineWithAsymmetricFlow::of_ = nullptr;
-selection::Workshop* SineWithAsymmetricFlow::shop_ = nullptr;
-std::vector<greybox::Fitted>* SineWithAsymmetricFlow::rivals_ = nullptr;
+selection::SearchContext* SineWithAsymmetricFlow::context_ = nullptr;
+std::vector<greybox::FitSummary>* SineWithAsymmetricFlow::rivals_ = nullptr;
 Advice* SineWithAsymmetricFlow::advice_ = nullptr;
 
 TEST_F(SineWithAsymmetricFlow, IsExplainedAsWellByALoad) {
-  EXPECT_LT((*rivals_)[1].score_rms_m, 1.05 * (*rivals_)[0].score_rms_m);
+  EXPECT_LT((*rivals_)[1].validation_rms_m, 1.05 * (*rivals_)[0].validation_rms_m);
 }
 
 TEST_F(SineWithAsymmetricFlow, GetsAMotionNamedInWordsWithNumbers) {
@@ -74,27 +77,29 @@ TEST_F(SineWithAsymmetricFlow, GetsAMotionNamedInWordsWithNumbers) {
 }
 
 TEST_F(SineWithAsymmetricFlow, IsResolvedByTheAdvisedMotionOnTheTrueRig) {
-  const selection::Workshop again = diagnose_test::shop_with(diagnose_test::measured(
+  const selection::SearchContext again = diagnose_test::context_with(diagnose_test::dataset_of(
       diagnose_test::run(*of_, advice_->motion.reference, advice_->motion.duration_s)));
-  const greybox::Fitted right = fitted_with(again, "flow_asymmetry");
-  const greybox::Fitted wrong = fitted_with(again, "load_force");
-  EXPECT_LT(right.score_rms_m, 1.1 * again.evidence.noise_floor_m);
-  EXPECT_GT(wrong.score_rms_m, 1.15 * right.score_rms_m);
+  const greybox::FitSummary right = fitted_with(again, "flow_asymmetry");
+  const greybox::FitSummary wrong = fitted_with(again, "load_force");
+  EXPECT_LT(right.validation_rms_m, 1.1 * again.data.noise_floor_m);
+  EXPECT_GT(wrong.validation_rms_m, 1.15 * right.validation_rms_m);
 }
 
 TEST_F(SineWithAsymmetricFlow, IsAskedForASensorWhereTwoExplanationsAreOneEquation) {
-  const Advice advice = advise(*shop_, {(*rivals_)[0], (*rivals_)[0]}, {"load_force", "friction"});
+  const Advice advice =
+      advise(*context_, {(*rivals_)[0], (*rivals_)[0]}, {"load_force", "friction"});
   EXPECT_FALSE(advice.separates);
   EXPECT_THAT(advice.words, AllOf(HasSubstr("load_force and friction"), HasSubstr("load cell"),
                                   Not(HasSubstr("Run "))));
 }
 
 TEST_F(SineWithAsymmetricFlow, LeavesTheStrokeToEveryMotionTried) {
-  for (const TestMotion& motion : test_motions(*shop_)) {
+  for (const TestMotion& motion : test_motions(*context_)) {
     EXPECT_GT(motion.reference.centre_m - motion.reference.amplitude_m, 0.0);
     EXPECT_LT(motion.reference.centre_m + motion.reference.amplitude_m, 0.61);
     EXPECT_LE(motion.reference.amplitude_m, 0.07);
-    EXPECT_TRUE(simulated(*shop_, shop_->model, motion, 1).has_value()) << motion.words;
+    EXPECT_TRUE(simulated(*context_, context->problem.model, motion, 1).has_value())
+        << motion.words;
   }
 }
 
@@ -107,8 +112,8 @@ TEST(AdviceToExcite, NamesAMotionAboutTheMiddleOfTheStrokeForARodAtRest) {
     record.u_V.push_back(0.0);
     record.y_m.push_back(0.1 + 5e-6 * ((k * k / 7) % 3));
   }
-  const selection::Workshop shop = diagnose_test::shop_with(greybox::measured(record));
-  EXPECT_THAT(advice_to_excite(shop), AllOf(HasSubstr("multisine"), HasSubstr("of 305 mm")));
+  const selection::SearchContext context = diagnose_test::context_with(greybox::dataset_of(record));
+  EXPECT_THAT(advice_to_excite(context), AllOf(HasSubstr("multisine"), HasSubstr("of 305 mm")));
 }
 
 TEST(AdviceForUnexplained, NamesVariableSensorAndFormula) {

@@ -13,15 +13,19 @@ namespace selection = estimator::greybox::selection;
 namespace {
 
 using diagnose_test::kServoGain;
-using diagnose_test::servo_shop;
+using diagnose_test::servo_context;
 using diagnose_test::with_offset;
 using diagnose_test::with_offset_and_band;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
+AdvisedDiagnosis diagnosed(const selection::SearchContext& context) {
+  return workbench::diagnose::diagnose(context.problem, context.options);
+}
+
 TEST(Diagnosis, NamesWhatIsMissingWithItsValueAndError) {
-  const selection::Workshop shop = servo_shop({.rate_mps = with_offset(0.06)});
-  const selection::Diagnosis d = diagnose(shop).diagnosis;
+  const selection::SearchContext context = servo_context({.rate_mps = with_offset(0.06)});
+  const selection::Diagnosis d = diagnosed(context).diagnosis;
   EXPECT_EQ(d.verdict, selection::Verdict::missing);
   EXPECT_THAT(d.missing, ElementsAre("null_bias"));
   EXPECT_THAT(d.ambiguous, IsEmpty());
@@ -35,7 +39,7 @@ TEST(Diagnosis, NamesWhatIsMissingWithItsValueAndError) {
   }
   ASSERT_EQ(d.steps.size(), 2U);
   EXPECT_EQ(d.steps[1].added, "null_bias");
-  EXPECT_EQ(d.rms_before_m, d.steps[0].score_rms_m);
+  EXPECT_EQ(d.rms_before_m, d.steps[0].validation_rms_m);
   EXPECT_LE(d.rms_after_m, 1.1 * d.noise_floor_m);
   EXPECT_THAT(d.where, IsEmpty());
   plant_sim::ModelFile better = d.better;
@@ -43,19 +47,20 @@ TEST(Diagnosis, NamesWhatIsMissingWithItsValueAndError) {
 }
 
 TEST(Diagnosis, DoesNotDependOnTheNumberOfThreads) {
-  selection::Workshop shop = servo_shop({.rate_mps = with_offset_and_band(0.06, 0.1)});
-  shop.threads = 1;
-  const selection::Diagnosis one = diagnose(shop).diagnosis;
-  shop.threads = 3;
-  const selection::Diagnosis three = diagnose(shop).diagnosis;
+  selection::SearchContext context = servo_context({.rate_mps = with_offset_and_band(0.06, 0.1)});
+  context.options.threads = 1;
+  const selection::Diagnosis one = diagnosed(context).diagnosis;
+  context.options.threads = 3;
+  const selection::Diagnosis three = diagnosed(context).diagnosis;
   EXPECT_EQ(one.missing, three.missing);
   EXPECT_NEAR(one.rms_after_m, three.rms_after_m, 1e-3 * one.rms_after_m);
 }
 
 TEST(Diagnosis, SaysNothingIsMissingOfAHealthyRecord) {
-  const selection::Diagnosis d = diagnose(servo_shop({.rate_mps = [](double u_V, double, double) {
-                                   return 0.98 * kServoGain * u_V;
-                                 }})).diagnosis;
+  const selection::Diagnosis d =
+      diagnosed(servo_context({.rate_mps = [](double u_V, double, double) {
+        return 0.98 * kServoGain * u_V;
+      }})).diagnosis;
   EXPECT_EQ(d.verdict, selection::Verdict::nothing_missing);
   EXPECT_THAT(d.missing, IsEmpty());
   EXPECT_EQ(d.steps.size(), 1U);
@@ -64,44 +69,45 @@ TEST(Diagnosis, SaysNothingIsMissingOfAHealthyRecord) {
 
 TEST(Diagnosis, SaysWhatCarriesAnErrorThatNoEffectExplains) {
   const AdvisedDiagnosis advised =
-      diagnose(servo_shop({.rate_mps = [](double u_V, double, double t_s) {
+      diagnosed(servo_context({.rate_mps = [](double u_V, double, double t_s) {
         return kServoGain * u_V * (1.0 - 0.01 * t_s);
       }}));
   const selection::Diagnosis& d = advised.diagnosis;
   EXPECT_EQ(d.verdict, selection::Verdict::unexplained);
   ASSERT_FALSE(d.where.empty());
-  EXPECT_EQ(d.where[0].enters, "gain");
+  EXPECT_EQ(d.where[0].site, "gain");
   EXPECT_EQ(d.where[0].variable, "time");
   EXPECT_FALSE(advised.advice.empty());
 }
 
 TEST(Diagnosis, AsksForMotionWhereThereIsNone) {
-  const selection::Workshop shop = servo_shop({.rate_mps = with_offset(0.0),
-                                               .command_V = [](double, double) { return 0.0; },
-                                               .samples = 1000});
-  const AdvisedDiagnosis advised = diagnose(shop);
+  const selection::SearchContext context =
+      servo_context({.rate_mps = with_offset(0.0),
+                     .command_V = [](double, double) { return 0.0; },
+                     .samples = 1000});
+  const AdvisedDiagnosis advised = diagnosed(context);
   const selection::Diagnosis& d = advised.diagnosis;
   EXPECT_EQ(d.verdict, selection::Verdict::not_excited);
   EXPECT_THAT(d.missing, IsEmpty());
   EXPECT_FALSE(d.notes.empty());
   EXPECT_FALSE(advised.advice.empty());
-  EXPECT_EQ(d.final.x.size(), 0);
+  EXPECT_EQ(d.final.theta.size(), 0);
 }
 
 TEST(Diagnosis, KeepsTheBestSoFarWhenItIsInterrupted) {
-  selection::Workshop shop =
-      servo_shop({.rate_mps = with_offset_and_band(0.06, 0.1), .samples = 2000});
-  shop.cancel = [] { return true; };
-  const selection::Diagnosis d = diagnose(shop).diagnosis;
+  selection::SearchContext context =
+      servo_context({.rate_mps = with_offset_and_band(0.06, 0.1), .samples = 2000});
+  context.options.cancel = [] { return true; };
+  const selection::Diagnosis d = diagnosed(context).diagnosis;
   EXPECT_THAT(d.notes, testing::Contains(testing::HasSubstr("interrupted")));
   EXPECT_EQ(d.steps.size(), 1U);
   EXPECT_TRUE(std::isfinite(d.rms_after_m));
 }
 
 TEST(Diagnosis, PassesOnTheRestrictionsOfARecord) {
-  selection::Workshop shop = servo_shop({.rate_mps = with_offset(0.0), .samples = 1000});
-  shop.evidence.records[0].notes = {"a gap at 3 s"};
-  EXPECT_THAT(diagnose(shop).diagnosis.notes, testing::Contains("servo: a gap at 3 s"));
+  selection::SearchContext context = servo_context({.rate_mps = with_offset(0.0), .samples = 1000});
+  context.problem.data.records[0].notes = {"a gap at 3 s"};
+  EXPECT_THAT(diagnosed(context).diagnosis.notes, testing::Contains("servo: a gap at 3 s"));
 }
 
 TEST(Verdict, HasANameOfItsOwn) {
@@ -110,7 +116,7 @@ TEST(Verdict, HasANameOfItsOwn) {
        {selection::Verdict::nothing_missing, selection::Verdict::missing,
         selection::Verdict::undetermined, selection::Verdict::unexplained,
         selection::Verdict::not_excited}) {
-    names.insert(selection::text(verdict));
+    names.insert(selection::to_string(verdict));
   }
   EXPECT_THAT(names, ElementsAre("missing", "not_excited", "nothing_missing", "undetermined",
                                  "unexplained"));

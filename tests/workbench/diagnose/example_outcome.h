@@ -4,38 +4,46 @@
 #include <cmath>
 #include <limits>
 
-#include "workbench/diagnose/outcome.h"
+#include "workbench/diagnose/diagnosis_report.h"
 
 namespace workbench::diagnose {
 
 namespace greybox = estimator::greybox;
 namespace selection = estimator::greybox::selection;
 
-inline greybox::Fitted example_fit(double score_rms_m) {
-  greybox::Fitted fitted;
-  fitted.x = Eigen::VectorXd::Zero(1);
-  fitted.score_rms_m = score_rms_m;
+inline greybox::FitSummary example_fit(double validation_rms_m) {
+  greybox::FitSummary fitted;
+  fitted.theta = Eigen::VectorXd::Zero(1);
+  fitted.validation_rms_m = validation_rms_m;
   return fitted;
 }
 
-inline selection::Candidate example_candidate(const std::string& effect, double score_rms_m,
+inline selection::Candidate example_candidate(const std::string& effect, double validation_rms_m,
                                               double p) {
   selection::Candidate candidate;
   candidate.effects = {effect};
-  candidate.fitted = example_fit(score_rms_m);
-  candidate.score_rms_m = score_rms_m;
+  candidate.fitted = example_fit(validation_rms_m);
+  candidate.validation_rms_m = validation_rms_m;
   candidate.p_value = p;
   candidate.fitted_at_all = true;
   return candidate;
 }
 
 /// Friction found on one record of 26.3 um; the figures are chosen, none is computed.
-inline Outcome example_outcome() {
-  Outcome outcome;
-  outcome.model_file = "rig.toml";
-  outcome.records = {"bench.csv"};
-  outcome.command = "spoolwatch diagnose rig.toml bench.csv";
-  selection::Diagnosis& d = outcome.diagnosis;
+struct ExampleReport : DiagnosisReport {
+  ExampleReport();
+  ExampleReport(const ExampleReport&) = delete;
+  ExampleReport& operator=(const ExampleReport&) = delete;
+
+  PreparedDiagnosis input;
+};
+
+inline ExampleReport::ExampleReport() {
+  prepared = &input;
+  input.model_file = "rig.toml";
+  input.records = {"bench.csv"};
+  input.command = "spoolwatch diagnose rig.toml bench.csv";
+  selection::Diagnosis& d = diagnosis;
   d.verdict = selection::Verdict::missing;
   d.missing = {"friction"};
   d.noise_floor_m = 2.4e-6;
@@ -53,11 +61,10 @@ inline Outcome example_outcome() {
   hopeless.effects = {"backlash"};
   first.candidates = {example_candidate("friction", 2.7e-6, 1e-12),
                       example_candidate("deadband", 9.8e-6, 0.02), hopeless};
-  d.ladder.rounds = {first};
-  d.ladder.final.added = {"friction"};
-  d.ladder.final.fitted = example_fit(2.7e-6);
-  d.final = d.ladder.final.fitted;
-  return outcome;
+  d.search.rounds = {first};
+  d.search.final.added = {"friction"};
+  d.search.final.fitted = example_fit(2.7e-6);
+  d.final = d.search.final.fitted;
 }
 
 }  // namespace workbench::diagnose

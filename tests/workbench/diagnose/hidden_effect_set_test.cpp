@@ -42,7 +42,7 @@ Count count_of(const std::string& plan, std::size_t records, const Right& right)
     truth::Record record;
     const truth::Planned planned = truth::plan_record(plan, kSeed, i, record);
     const selection::Diagnosis d =
-        diagnose_test::found_in(diagnose_test::shop_with(diagnose_test::measured(record)));
+        diagnose_test::found_in(diagnose_test::context_with(diagnose_test::dataset_of(record)));
     ++count.records;
     if (right(planned, d)) {
       ++count.right;
@@ -96,7 +96,7 @@ TEST(HiddenEffects, OutsideTheLibraryAreUnexplainedByTheRightVariable) {
 }
 
 TEST(HiddenEffects, FrictionAndANullBiasAreBothNamed) {
-  const selection::Diagnosis d = diagnose_test::found_in(diagnose_test::shop_of(
+  const selection::Diagnosis d = diagnose_test::found_in(diagnose_test::context_of(
       "motion=multisine,friction.coulomb_N=150,null_bias.offset_V=0.07", 14));
   EXPECT_EQ(d.verdict, selection::Verdict::missing) << said(d);
   EXPECT_THAT(d.missing, testing::UnorderedElementsAre("friction", "null_bias")) << said(d);
@@ -105,10 +105,10 @@ TEST(HiddenEffects, FrictionAndANullBiasAreBothNamed) {
 
 TEST(HiddenEffects, ADragWithTheCubeOfTheSpeedIsUnexplainedBySpeedAndForce) {
   const selection::Diagnosis d = diagnose_test::found_in(
-      diagnose_test::shop_of("motion=multisine,left_out=cubic_damping,left_out.size=2.5e5", 16));
+      diagnose_test::context_of("motion=multisine,left_out=cubic_damping,left_out.size=2.5e5", 16));
   EXPECT_EQ(d.verdict, selection::Verdict::unexplained) << said(d);
   ASSERT_FALSE(d.where.empty());
-  EXPECT_EQ(d.where[0].enters, "force") << said(d);
+  EXPECT_EQ(d.where[0].site, "force") << said(d);
   EXPECT_THAT(d.where[0].variable, testing::AnyOf("speed", "v")) << said(d);
 }
 

@@ -25,7 +25,7 @@ Judged judged(const std::string& spec, std::size_t seed) {
   Judged result;
   result.of = truth::parse_case(spec, seed);
   result.diagnosis = diagnose_test::found_in(
-      diagnose_test::shop_with(diagnose_test::measured(truth::simulate(result.of))));
+      diagnose_test::context_with(diagnose_test::dataset_of(truth::simulate(result.of))));
   return result;
 }
 
@@ -57,8 +57,8 @@ TEST(HiddenEffect, TwoAtOnceAreBothNamed) {
       judged("motion=multisine,length_s=20,deadband.half_width_V=0.2,null_bias.offset_V=0.07", 14);
   expect_found(j);
   ASSERT_EQ(j.diagnosis.steps.size(), 3U);
-  EXPECT_GT(j.diagnosis.steps[0].score_rms_m, j.diagnosis.steps[1].score_rms_m);
-  EXPECT_GT(j.diagnosis.steps[1].score_rms_m, j.diagnosis.steps[2].score_rms_m);
+  EXPECT_GT(j.diagnosis.steps[0].validation_rms_m, j.diagnosis.steps[1].validation_rms_m);
+  EXPECT_GT(j.diagnosis.steps[1].validation_rms_m, j.diagnosis.steps[2].validation_rms_m);
 }
 
 TEST(HiddenEffect, NoneIsFoundOnAHealthyPlantThatTheModelDoesNotMatch) {

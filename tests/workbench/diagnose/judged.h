@@ -23,12 +23,12 @@ inline constexpr double kStdErrors = 3.0;
 /// Held-out error over the noise floor up to which a hidden effect need not be seen.
 inline constexpr double kVisible = 1.5;
 
-inline selection::Diagnosis found_in(const selection::Workshop& shop) {
-  return workbench::diagnose::diagnose(shop).diagnosis;
+inline selection::Diagnosis found_in(const selection::SearchContext& context) {
+  return workbench::diagnose::diagnose(context.problem, context.options).diagnosis;
 }
 
 inline std::string said(const selection::Diagnosis& d) {
-  std::string words = selection::text(d.verdict);
+  std::string words = selection::to_string(d.verdict);
   for (const std::string& name : d.missing) words += " " + name;
   for (const auto& group : d.ambiguous) {
     words += " {";
@@ -37,7 +37,7 @@ inline std::string said(const selection::Diagnosis& d) {
   }
   words += ", error / floor " + std::to_string(d.rms_before_m / d.noise_floor_m) + " -> " +
            std::to_string(d.rms_after_m / d.noise_floor_m);
-  for (const auto& where : d.where) words += ", " + where.enters + "/" + where.variable;
+  for (const auto& where : d.where) words += ", " + where.site + "/" + where.variable;
   return words;
 }
 

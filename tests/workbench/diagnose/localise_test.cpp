@@ -17,14 +17,14 @@ namespace {
 using testing::AnyOf;
 using testing::IsEmpty;
 
-std::vector<selection::Where> where_of(const std::string& spec) {
-  const selection::Workshop shop = diagnose_test::shop_of(spec);
-  return selection::localise(shop, selection::first_stage(shop));
+std::vector<selection::Localisation> where_of(const std::string& spec) {
+  const selection::SearchContext context = diagnose_test::context_of(spec);
+  return selection::localise(context, selection::first_stage(context));
 }
 
-selection::Workshop servo_shop(const diagnose_test::Rate& rate_mps,
-                               const diagnose_test::Reading& reading_m) {
-  return diagnose_test::servo_shop({.rate_mps = rate_mps, .reading_m = reading_m});
+selection::SearchContext servo_context(const diagnose_test::Rate& rate_mps,
+                                       const diagnose_test::Reading& reading_m) {
+  return diagnose_test::servo_context({.rate_mps = rate_mps, .reading_m = reading_m});
 }
 
 using diagnose_test::plain_reading;
@@ -32,7 +32,7 @@ using diagnose_test::plain_reading;
 TEST(Localise, NamesSpeedAndForceForADragWithTheCubeOfTheSpeed) {
   const auto where = where_of("motion=multisine,left_out=cubic_damping,left_out.size=2.5e5");
   ASSERT_GE(where.size(), 2U);
-  EXPECT_EQ(where[0].enters, "force");
+  EXPECT_EQ(where[0].site, "force");
   EXPECT_THAT(where[0].variable, AnyOf("speed", "v"));
   EXPECT_GT(where[0].explained_ratio, 0.9);
 }
@@ -40,7 +40,7 @@ TEST(Localise, NamesSpeedAndForceForADragWithTheCubeOfTheSpeed) {
 TEST(Localise, NamesPositionAndForceForAStiffeningSpring) {
   const auto where = where_of("motion=fast_steps,left_out=stiffening_spring,left_out.size=5e6");
   ASSERT_FALSE(where.empty());
-  EXPECT_EQ(where[0].enters, "force");
+  EXPECT_EQ(where[0].site, "force");
   EXPECT_EQ(where[0].variable, "y");
   EXPECT_GT(where[0].explained_ratio, 0.9);
 }
@@ -48,21 +48,21 @@ TEST(Localise, NamesPositionAndForceForAStiffeningSpring) {
 TEST(Localise, NamesAccelerationForAMountThatYields) {
   const auto where = where_of("motion=multisine,left_out=mount_compliance,left_out.size=2e-5");
   ASSERT_GE(where.size(), 2U);
-  EXPECT_EQ(where[0].enters, "measurement");
+  EXPECT_EQ(where[0].site, "measurement");
   EXPECT_TRUE(where[0].variable == "acceleration" || where[1].variable == "acceleration");
 }
 
 TEST(Localise, NamesTimeAndFlowForANullThatWanders) {
   const auto where = where_of("motion=chirp,left_out=null_drift,left_out.size=0.05");
   ASSERT_FALSE(where.empty());
-  EXPECT_EQ(where[0].enters, "flow");
+  EXPECT_EQ(where[0].site, "flow");
   EXPECT_EQ(where[0].variable, "time");
 }
 
 TEST(Localise, NamesTheCommandForAValveThatOpensTwiceAsFastAboutItsMiddle) {
   const auto where = where_of("motion=fast_steps,left_out=underlap,left_out.size=0.12");
   ASSERT_GE(where.size(), 2U);
-  EXPECT_THAT(where[0].enters, AnyOf("flow", "gain"));
+  EXPECT_THAT(where[0].site, AnyOf("flow", "gain"));
   EXPECT_TRUE(where[0].variable == "u" || where[1].variable == "u");
 }
 
@@ -74,48 +74,50 @@ TEST(Localise, NamesTimeForALoadThatIsSetDownInTheMiddle) {
 }
 
 TEST(Localise, NamesTimeAndGainForAServoThatGrowsSlower) {
-  const selection::Workshop shop =
-      servo_shop([](double u_V, double, double t_s) { return 0.05 * u_V * (1.0 - 0.01 * t_s); },
-                 plain_reading);
-  const auto where = selection::localise(shop, selection::first_stage(shop));
+  const selection::SearchContext context =
+      servo_context([](double u_V, double, double t_s) { return 0.05 * u_V * (1.0 - 0.01 * t_s); },
+                    plain_reading);
+  const auto where = selection::localise(context, selection::first_stage(context));
   ASSERT_FALSE(where.empty());
-  EXPECT_EQ(where[0].enters, "gain");
+  EXPECT_EQ(where[0].site, "gain");
   EXPECT_EQ(where[0].variable, "time");
   EXPECT_GT(where[0].explained_ratio, 0.9);
 }
 
 TEST(Localise, NamesPositionAndMeasurementForASensorWithADent) {
-  const selection::Workshop shop = servo_shop(
+  const selection::SearchContext context = servo_context(
       [](double u_V, double, double) { return 0.05 * u_V; },
       [](double y_m, double) { return y_m + 2e-4 * std::exp(-std::pow((y_m - 0.3) / 0.02, 2)); });
-  const auto where = selection::localise(shop, selection::first_stage(shop));
+  const auto where = selection::localise(context, selection::first_stage(context));
   ASSERT_FALSE(where.empty());
-  EXPECT_EQ(where[0].enters, "measurement");
+  EXPECT_EQ(where[0].site, "measurement");
   EXPECT_EQ(where[0].variable, "y");
 }
 
 TEST(Localise, LeavesForcesOutForAPlantThatHasNone) {
-  const selection::Workshop shop =
-      servo_shop([](double u_V, double, double t_s) { return 0.05 * u_V + 1e-3 * std::sin(t_s); },
-                 plain_reading);
-  for (const selection::Where& where : selection::localise(shop, selection::first_stage(shop)))
-    EXPECT_NE(where.enters, "force");
+  const selection::SearchContext context = servo_context(
+      [](double u_V, double, double t_s) { return 0.05 * u_V + 1e-3 * std::sin(t_s); },
+      plain_reading);
+  for (const selection::Localisation& where :
+       selection::localise(context, selection::first_stage(context)))
+    EXPECT_NE(where.site, "force");
 }
 
 TEST(Localise, FindsNothingInNoise) {
-  const selection::Workshop shop =
-      servo_shop([](double u_V, double, double) { return 0.05 * u_V; }, plain_reading);
-  for (const selection::Where& where : selection::localise(shop, selection::first_stage(shop))) {
-    EXPECT_LT(where.explained_ratio, 0.05) << where.enters << " " << where.variable;
+  const selection::SearchContext context =
+      servo_context([](double u_V, double, double) { return 0.05 * u_V; }, plain_reading);
+  for (const selection::Localisation& where :
+       selection::localise(context, selection::first_stage(context))) {
+    EXPECT_LT(where.explained_ratio, 0.05) << where.site << " " << where.variable;
   }
 }
 
 TEST(Localise, SaysNothingOnceItIsCancelled) {
-  selection::Workshop shop =
-      servo_shop([](double u_V, double, double) { return 0.05 * u_V; }, plain_reading);
-  const selection::Stage stage = selection::first_stage(shop);
-  shop.cancel = [] { return true; };
-  EXPECT_THAT(selection::localise(shop, stage), IsEmpty());
+  selection::SearchContext context =
+      servo_context([](double u_V, double, double) { return 0.05 * u_V; }, plain_reading);
+  const selection::ModelStage stage = selection::first_stage(context);
+  context.options.cancel = [] { return true; };
+  EXPECT_THAT(selection::localise(context, stage), IsEmpty());
 }
 
 TEST(Pieces, AddUpToOneAndEachIsOneAtItsOwnKnot) {

@@ -21,7 +21,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 TEST(DiagnosisJson, HasThePublishedKeysInSi) {
-  Outcome outcome = example_outcome();
+  ExampleReport outcome;
   outcome.diagnosis.ambiguous = {{"friction", "backlash"}};
   outcome.diagnosis.where = {{"force", "speed", 0.62}};
   const json j = json::parse(to_json(outcome));
@@ -52,7 +52,7 @@ TEST(DiagnosisJson, HasThePublishedKeysInSi) {
 }
 
 TEST(DiagnosisJson, MissingNumbersAreNull) {
-  Outcome outcome = example_outcome();
+  ExampleReport outcome;
   outcome.diagnosis = {};
   outcome.diagnosis.verdict = selection::Verdict::not_excited;
   outcome.diagnosis.noise_floor_m = std::nan("");
@@ -66,8 +66,8 @@ TEST(DiagnosisJson, MissingNumbersAreNull) {
 }
 
 TEST(DiagnosisText, BeginsWithTheVerdictAndEndsWithTheNextCommand) {
-  Outcome outcome = example_outcome();
-  outcome.output = "better.toml";
+  ExampleReport outcome;
+  outcome.input.output = "better.toml";
   std::ostringstream out;
   print(outcome, out);
   const std::string text = out.str();
@@ -81,8 +81,8 @@ TEST(DiagnosisText, BeginsWithTheVerdictAndEndsWithTheNextCommand) {
 }
 
 TEST(BetterModel, SaysAtItsTopWhatWasAddedAndReadsBack) {
-  Outcome outcome = example_outcome();
-  outcome.records = {"bench\r\nmass_kg = 1.csv"};  // no comment ends early
+  ExampleReport outcome;
+  outcome.input.records = {"bench\r\nmass_kg = 1.csv"};  // no comment ends early
   *outcome.diagnosis.better.value("friction.coulomb_N") = 145.31;
   outcome.interrupted = true;
   const std::string text = better_model_text(outcome);

@@ -20,14 +20,14 @@ constexpr Index kSamples = 240;
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
 /// Three parameters, the last without a prior; numbers that are the same everywhere.
-greybox::Fitted example() {
-  greybox::Fitted fitted;
+greybox::FitSummary example() {
+  greybox::FitSummary fitted;
   for (const double sd : {0.02, 0.3, kNone}) {
-    greybox::SearchParameter p;
+    greybox::FreeParameter p;
     p.prior_sd = sd;
-    fitted.searched.push_back(p);
+    fitted.parameters.push_back(p);
   }
-  fitted.x = VectorXd::Zero(3);
+  fitted.theta = VectorXd::Zero(3);
   fitted.sigma_m = 3e-6;
   std::srand(3);
   fitted.jacobian = 1e-5 * MatrixXd::Random(kSamples, 3);
@@ -47,7 +47,7 @@ struct Dense {
 };
 
 /// The sum of the header with further columns, as one tall least-squares problem.
-Dense dense(const greybox::Fitted& fitted, const VectorXd& weights, const VectorXd& residual_m,
+Dense dense(const greybox::FitSummary& fitted, const VectorXd& weights, const VectorXd& residual_m,
             const MatrixXd& signatures_m) {
   const Index parameters = fitted.jacobian.cols();
   MatrixXd a = MatrixXd::Zero(kSamples + parameters, parameters + signatures_m.cols());
@@ -55,7 +55,7 @@ Dense dense(const greybox::Fitted& fitted, const VectorXd& weights, const Vector
   a.topRightCorner(kSamples, signatures_m.cols()) =
       weights.asDiagonal() * signatures_m / fitted.sigma_m;
   for (Index i = 0; i < parameters; ++i) {
-    a(kSamples + i, i) = 1.0 / fitted.searched[static_cast<std::size_t>(i)].prior_sd;
+    a(kSamples + i, i) = 1.0 / fitted.parameters[static_cast<std::size_t>(i)].prior_sd;
   }
   VectorXd b = VectorXd::Zero(kSamples + parameters);
   b.head(kSamples) = -weights.cwiseProduct(residual_m) / fitted.sigma_m;
@@ -64,7 +64,7 @@ Dense dense(const greybox::Fitted& fitted, const VectorXd& weights, const Vector
 }
 
 TEST(Projection, LeavesWhatTheParametersCannotTakeAwayWithinTheirPriors) {
-  const greybox::Fitted fitted = example();
+  const greybox::FitSummary fitted = example();
   const VectorXd weights = every_third_left_out();
   const selection::Projection projection(fitted, weights);
   const Dense expected = dense(fitted, weights, fitted.residual_m, MatrixXd(kSamples, 0));
@@ -72,7 +72,7 @@ TEST(Projection, LeavesWhatTheParametersCannotTakeAwayWithinTheirPriors) {
 }
 
 TEST(Projection, FindsTheStrengthOfASignatureBesideAdjustingParameters) {
-  const greybox::Fitted fitted = example();
+  const greybox::FitSummary fitted = example();
   const VectorXd weights = every_third_left_out();
   const selection::Projection projection(fitted, weights);
   const VectorXd residual_m = fitted.residual_m + 2e-6 * VectorXd::Random(kSamples);
@@ -84,7 +84,7 @@ TEST(Projection, FindsTheStrengthOfASignatureBesideAdjustingParameters) {
 }
 
 TEST(Projection, FindsTwoStrengthsTogether) {
-  const greybox::Fitted fitted = example();
+  const greybox::FitSummary fitted = example();
   const VectorXd weights = every_third_left_out();
   const selection::Projection projection(fitted, weights);
   MatrixXd both_m = 4e-6 * MatrixXd::Random(kSamples, 2);
@@ -98,7 +98,7 @@ TEST(Projection, FindsTwoStrengthsTogether) {
 }
 
 TEST(Projection, GivesNoStrengthToASignatureThatCannotBeTold) {
-  const greybox::Fitted fitted = example();
+  const greybox::FitSummary fitted = example();
   const selection::Projection projection(fitted, every_third_left_out());
   const auto [cost, strength] = projection.with(fitted.residual_m, VectorXd::Zero(kSamples));
   EXPECT_DOUBLE_EQ(cost, projection.cost());
@@ -111,8 +111,8 @@ TEST(Projection, GivesNoStrengthToASignatureThatCannotBeTold) {
 }
 
 TEST(Projection, TakesFromASignatureWhatTheParametersCanImitate) {
-  greybox::Fitted fitted = example();
-  for (greybox::SearchParameter& p : fitted.searched) p.prior_sd = kNone;
+  greybox::FitSummary fitted = example();
+  for (greybox::FreeParameter& p : fitted.parameters) p.prior_sd = kNone;
   const selection::Projection projection(fitted, VectorXd::Ones(kSamples));
   const VectorXd own_m = 1e-6 * VectorXd::Random(kSamples);
   const VectorXd beyond_m = projection.beyond(own_m + 0.4 * fitted.jacobian.col(0));

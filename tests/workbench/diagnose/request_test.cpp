@@ -30,15 +30,15 @@ class DiagnoseRequest : public testing::Test, public ServoBench {
     }
   }
 
-  Request request_;
+  DiagnosisRequest request_;
 };
 
 TEST_F(DiagnoseRequest, IsTakenWithItsRecordsAndCommand) {
   request_.holdouts = {record("other.csv", {.sample_time_s = 0.01})};
   request_.command = "spoolwatch diagnose";
-  const Outcome outcome = prepare(request_);
-  EXPECT_EQ(outcome.shop.evidence.records.size(), 2U);
-  EXPECT_EQ(outcome.command, "spoolwatch diagnose");
+  const PreparedDiagnosis prepared = prepare(request_);
+  EXPECT_EQ(prepared.problem.data.records.size(), 2U);
+  EXPECT_EQ(prepared.command, "spoolwatch diagnose");
 }
 
 TEST_F(DiagnoseRequest, HoldoutThatIsFittedTooIsRefused) {

@@ -40,7 +40,7 @@ struct ServoRun {
 };
 
 /// In steps of 0.1 ms, 200 Hz, 2 um noise, 5 um encoder.
-inline greybox::Measured servo_record(const ServoRun& run) {
+inline greybox::Dataset servo_record(const ServoRun& run) {
   std::mt19937 random(run.seed);
   std::normal_distribution<double> noise_m(0.0, 2e-6);
   std::uniform_real_distribution<double> level(-1.0, 1.0);
@@ -61,7 +61,7 @@ inline greybox::Measured servo_record(const ServoRun& run) {
     record.y_m.push_back(5e-6 * std::round((run.reading_m(y_m, t_s) + noise_m(random)) / 5e-6));
     for (int i = 0; i < 50; ++i) y_m += 1e-4 * run.rate_mps(u_V, y_m, t_s + 1e-4 * i);
   }
-  return greybox::measured(record);
+  return greybox::dataset_of(record);
 }
 
 inline plant_sim::ModelFile servo_model() {
@@ -71,8 +71,9 @@ inline plant_sim::ModelFile servo_model() {
   return model;
 }
 
-inline selection::Workshop servo_shop(const ServoRun& run) {
-  return selection::workshop(servo_model(), greybox::evidence({servo_record(run)}, {}));
+inline selection::SearchContext servo_context(const ServoRun& run) {
+  return selection::SearchContext{
+      selection::make_problem(servo_model(), greybox::fit_dataset({servo_record(run)}, {})), {}};
 }
 
 /// y' = 0.05 (u + offset).
@@ -89,20 +90,22 @@ inline Rate with_offset_and_band(double offset_V, double width_V) {
 }
 
 /// `before` with effects of one parameter, which start at a value.
-inline selection::Stage stage_with(const selection::Workshop& shop, const selection::Stage& before,
-                                   const std::vector<std::pair<std::string, double>>& effects) {
+inline selection::ModelStage stage_with(
+    const selection::SearchContext& context, const selection::ModelStage& before,
+    const std::vector<std::pair<std::string, double>>& effects) {
   using namespace estimator::greybox::selection;
-  Selection selection = select(before.fitted, [](const auto&) { return true; });
-  Stage stage = before;
+  ParameterSubset selection = subset(before.fitted, [](const auto&) { return true; });
+  ModelStage stage = before;
   for (const auto& [name, value] : effects) {
-    const auto info = std::find_if(shop.absent.begin(), shop.absent.end(),
+    const auto info = std::find_if(context.problem.candidate_effects.begin(),
+                                   context.problem.candidate_effects.end(),
                                    [&](const auto& absent) { return absent.name == name; });
-    Selection own{greybox::effect_parameters(*info, 0), Eigen::VectorXd(1)};
-    own.start[0] = own.searched.front().search(value);
+    ParameterSubset own{greybox::effect_parameters(*info, 0), Eigen::VectorXd(1)};
+    own.start[0] = own.parameters.front().to_theta(value);
     append(selection, own);
     stage.added.push_back(name);
   }
-  stage.fitted = refit(shop, selection, shop.evidence.fits);
+  stage.fitted = refit(context, selection, context.problem.data.training_mask);
   return stage;
 }
 

@@ -15,7 +15,7 @@ namespace greybox = estimator::greybox;
 namespace selection = estimator::greybox::selection;
 namespace {
 
-using greybox::SearchParameter;
+using greybox::FreeParameter;
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -30,45 +30,45 @@ const plant_sim::EffectInfo& info(const std::string& name) {
                        [&](const auto& effect) { return effect.name == name; });
 }
 
-std::vector<greybox::SearchParameter> own(const std::string& name) {
+std::vector<greybox::FreeParameter> own(const std::string& name) {
   return greybox::effect_parameters(info(name), 2);
 }
 
-std::size_t at(const std::vector<greybox::SearchParameter>& searched, const std::string& ending) {
-  for (std::size_t i = 0; i < searched.size(); ++i) {
-    if (searched[i].name.ends_with(ending)) return i;
+std::size_t at(const std::vector<greybox::FreeParameter>& parameters, const std::string& ending) {
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].name.ends_with(ending)) return i;
   }
-  return searched.size();
+  return parameters.size();
 }
 
 /// Between 0.25 and 0.35 m.
-greybox::Evidence motion() {
-  greybox::Evidence evidence;
-  evidence.records.resize(2);
-  evidence.records[0].y_m = {0.30, 0.35, 0.31};
-  evidence.records[1].y_m = {0.29, 0.25};
-  return evidence;
+greybox::FitDataset motion() {
+  greybox::FitDataset data;
+  data.records.resize(2);
+  data.records[0].y_m = {0.30, 0.35, 0.31};
+  data.records[1].y_m = {0.29, 0.25};
+  return data;
 }
 
 TEST(TrialSizes, StayWithinBoundsAndCoverThreeDecades) {
   for (const plant_sim::EffectInfo& effect : library()) {
-    const std::vector<greybox::SearchParameter> searched = greybox::effect_parameters(effect, 2);
-    const Eigen::MatrixXd sizes = selection::trial_sizes(searched, motion());
-    ASSERT_EQ(sizes.rows(), static_cast<Eigen::Index>(searched.size())) << effect.name;
-    std::set<double> tried;
+    const std::vector<greybox::FreeParameter> parameters = greybox::effect_parameters(effect, 2);
+    const Eigen::MatrixXd sizes = selection::trial_sizes(parameters, motion());
+    ASSERT_EQ(sizes.rows(), static_cast<Eigen::Index>(parameters.size())) << effect.name;
+    std::set<double> quick_fit;
     for (Eigen::Index k = 0; k < sizes.cols(); ++k) {
-      tried.insert(sizes(0, k));
+      quick_fit.insert(sizes(0, k));
       for (Eigen::Index i = 0; i < sizes.rows(); ++i) {
-        const greybox::SearchParameter& p = searched[static_cast<std::size_t>(i)];
+        const greybox::FreeParameter& p = parameters[static_cast<std::size_t>(i)];
         EXPECT_GE(sizes(i, k), p.lower) << p.name;
         EXPECT_LE(sizes(i, k), p.upper) << p.name;
       }
     }
-    const bool both_signs = searched.front().lower < 0.0;
-    EXPECT_EQ(*tried.begin() < 0.0, both_signs) << effect.name;
+    const bool both_signs = parameters.front().lower < 0.0;
+    EXPECT_EQ(*quick_fit.begin() < 0.0, both_signs) << effect.name;
     double least = 1e9;
     double most = 0.0;
-    for (const double size : tried) {
+    for (const double size : quick_fit) {
       least = std::min(least, std::abs(size));
       most = std::max(most, std::abs(size));
     }
@@ -77,19 +77,20 @@ TEST(TrialSizes, StayWithinBoundsAndCoverThreeDecades) {
 }
 
 TEST(TrialSizes, PutARestPositionWhereTheMotionIs) {
-  const std::vector<greybox::SearchParameter> searched = own("load_spring");
-  const std::size_t rest = at(searched, ".rest_m");
-  ASSERT_LT(rest, searched.size());
-  const Eigen::MatrixXd sizes = selection::trial_sizes(searched, motion());
+  const std::vector<greybox::FreeParameter> parameters = own("load_spring");
+  const std::size_t rest = at(parameters, ".rest_m");
+  ASSERT_LT(rest, parameters.size());
+  const Eigen::MatrixXd sizes = selection::trial_sizes(parameters, motion());
   for (Eigen::Index k = 0; k < sizes.cols(); ++k) {
-    EXPECT_NEAR(searched[rest].value(sizes(static_cast<Eigen::Index>(rest), k)), 0.30, 1e-12);
+    EXPECT_NEAR(parameters[rest].to_physical(sizes(static_cast<Eigen::Index>(rest), k)), 0.30,
+                1e-12);
   }
 }
 
 TEST(TrialSizes, TakeParametersOfTheSameUnitAlong) {
-  const std::vector<greybox::SearchParameter> searched = own("friction");
-  const auto breakaway = static_cast<Eigen::Index>(at(searched, ".static_N"));
-  const Eigen::MatrixXd sizes = selection::trial_sizes(searched, motion());
+  const std::vector<greybox::FreeParameter> parameters = own("friction");
+  const auto breakaway = static_cast<Eigen::Index>(at(parameters, ".static_N"));
+  const Eigen::MatrixXd sizes = selection::trial_sizes(parameters, motion());
   for (Eigen::Index k = 1; k < sizes.cols(); ++k) {
     EXPECT_NEAR(sizes(breakaway, k) / sizes(breakaway, 0), sizes(0, k) / sizes(0, 0), 1e-9);
   }
@@ -105,30 +106,30 @@ TEST(Waves, AreOnlyOfPeriodicEffects) {
 }
 
 /// a sin(2 pi y / wavelength + phase)
-double sine(const std::vector<greybox::SearchParameter>& searched, const Eigen::VectorXd& x,
+double sine(const std::vector<greybox::FreeParameter>& parameters, const Eigen::VectorXd& x,
             double y_m) {
   const auto value = [&](std::size_t i) {
-    return searched[i].value(x[static_cast<Eigen::Index>(i)]);
+    return parameters[i].to_physical(x[static_cast<Eigen::Index>(i)]);
   };
-  return value(0) * std::sin(2.0 * kPi * y_m / value(at(searched, ".wavelength_m")) +
-                             value(at(searched, ".phase_rad")));
+  return value(0) * std::sin(2.0 * kPi * y_m / value(at(parameters, ".wavelength_m")) +
+                             value(at(parameters, ".phase_rad")));
 }
 
 TEST(Waves, AddUpToAWaveOfAnySizeAndPhase) {
   for (const char* effect : {"force_ripple", "encoder_eccentricity"}) {
-    const std::vector<greybox::SearchParameter> searched = own(effect);
-    const Eigen::MatrixXd two = selection::waves(searched, motion(), 5.0);
-    EXPECT_NEAR(searched[at(searched, ".wavelength_m")].value(
-                    two(static_cast<Eigen::Index>(at(searched, ".wavelength_m")), 0)),
+    const std::vector<greybox::FreeParameter> parameters = own(effect);
+    const Eigen::MatrixXd two = selection::waves(parameters, motion(), 5.0);
+    EXPECT_NEAR(parameters[at(parameters, ".wavelength_m")].to_physical(
+                    two(static_cast<Eigen::Index>(at(parameters, ".wavelength_m")), 0)),
                 0.02, 1e-12);
     for (const auto& [first, second] :
          {std::pair{0.7, 0.4}, {-1.2, 0.3}, {0.2, -2.0}, {-0.5, -0.5}, {0.0, 1.0}}) {
-      const Eigen::VectorXd found = selection::wave_of(searched, two.col(0), first, second);
+      const Eigen::VectorXd found = selection::wave_of(parameters, two.col(0), first, second);
       for (const double y_m : {0.25, 0.263, 0.301, 0.35}) {
         EXPECT_NEAR(
-            sine(searched, found, y_m),
-            first * sine(searched, two.col(0), y_m) + second * sine(searched, two.col(1), y_m),
-            1e-9 * searched[0].unit)
+            sine(parameters, found, y_m),
+            first * sine(parameters, two.col(0), y_m) + second * sine(parameters, two.col(1), y_m),
+            1e-9 * parameters[0].unit)
             << effect;
       }
     }
@@ -144,16 +145,16 @@ TEST(Waves, AreSoughtFromOneAndAHalfToSixtyTurns) {
 }
 
 TEST(Waves, KeepTheirLengthAndLeaveAReadingMonotonic) {
-  std::vector<greybox::SearchParameter> searched = own("encoder_eccentricity");
-  const std::size_t length = at(searched, ".wavelength_m");
-  const Eigen::VectorXd found = selection::waves(searched, motion(), 5.0).col(0);
-  selection::hold_wavelength(info("encoder_eccentricity"), found, searched);
-  EXPECT_NEAR(searched[length].value(searched[length].upper), 0.021, 1e-9);
-  EXPECT_NEAR(searched[length].value(searched[length].lower), 0.02 / 1.05, 1e-9);
-  const double most_m = searched[0].value(searched[0].upper);
+  std::vector<greybox::FreeParameter> parameters = own("encoder_eccentricity");
+  const std::size_t length = at(parameters, ".wavelength_m");
+  const Eigen::VectorXd found = selection::waves(parameters, motion(), 5.0).col(0);
+  selection::hold_wavelength(info("encoder_eccentricity"), found, parameters);
+  EXPECT_NEAR(parameters[length].to_physical(parameters[length].upper), 0.021, 1e-9);
+  EXPECT_NEAR(parameters[length].to_physical(parameters[length].lower), 0.02 / 1.05, 1e-9);
+  const double most_m = parameters[0].to_physical(parameters[0].upper);
   EXPECT_NEAR(2.0 * kPi * most_m / 0.02, 0.3, 1e-9);  // d reading / d y
 
-  std::vector<greybox::SearchParameter> force = own("force_ripple");
+  std::vector<greybox::FreeParameter> force = own("force_ripple");
   const double before = force[0].upper;
   selection::hold_wavelength(info("force_ripple"), selection::waves(force, motion(), 5.0).col(0),
                              force);
@@ -161,21 +162,21 @@ TEST(Waves, KeepTheirLengthAndLeaveAReadingMonotonic) {
 }
 
 TEST(ScaleSize, TurnsAWaveInsteadOfMakingItNegative) {
-  const std::vector<greybox::SearchParameter> searched = own("force_ripple");
-  const Eigen::VectorXd before = selection::waves(searched, motion(), 7.0).col(1);
+  const std::vector<greybox::FreeParameter> parameters = own("force_ripple");
+  const Eigen::VectorXd before = selection::waves(parameters, motion(), 7.0).col(1);
   Eigen::VectorXd after = before;
-  EXPECT_TRUE(selection::scale_size(searched, -1.5, after));
+  EXPECT_TRUE(selection::scale_size(parameters, -1.5, after));
   for (const double y_m : {0.25, 0.2812, 0.33}) {
-    EXPECT_NEAR(sine(searched, after, y_m), -1.5 * sine(searched, before, y_m), 1e-9);
+    EXPECT_NEAR(sine(parameters, after, y_m), -1.5 * sine(parameters, before, y_m), 1e-9);
   }
 }
 
 TEST(ScaleSize, SaysWhereANegativeSizeIsNotPossible) {
-  const std::vector<greybox::SearchParameter> width = own("deadband");
+  const std::vector<greybox::FreeParameter> width = own("deadband");
   Eigen::VectorXd own_size = Eigen::VectorXd::Constant(1, 2.0);
   EXPECT_FALSE(selection::scale_size(width, -0.5, own_size));
   EXPECT_DOUBLE_EQ(own_size[0], 1.0);
-  const std::vector<greybox::SearchParameter> offset = own("null_bias");
+  const std::vector<greybox::FreeParameter> offset = own("null_bias");
   own_size[0] = 2.0;
   EXPECT_TRUE(selection::scale_size(offset, -0.5, own_size));
   EXPECT_DOUBLE_EQ(own_size[0], -1.0);

@@ -23,22 +23,23 @@ inline plant_sim::ModelFile thesis() {
   return plant_sim::load_model(std::string(SPOOLWATCH_SOURCE_DIR) + "/config/models/thesis.toml");
 }
 
-inline greybox::Measured measured(const truth::Record& truth) {
+inline greybox::Dataset dataset_of(const truth::Record& truth) {
   config::record::Record record;
   record.name = "truth";
   record.sample_time_s = 0.005;
   record.t_s = truth.t_s;
   record.u_V = truth.u_V;
   record.y_m = truth.y_m;
-  return greybox::measured(record);
+  return greybox::dataset_of(record);
 }
 
-inline selection::Workshop shop_with(greybox::Measured record) {
-  return selection::workshop(thesis(), greybox::evidence({std::move(record)}, {}));
+inline selection::SearchContext context_with(greybox::Dataset record) {
+  return selection::SearchContext{
+      selection::make_problem(thesis(), greybox::fit_dataset({std::move(record)}, {})), {}};
 }
 
-inline selection::Workshop shop_of(const std::string& spec, std::size_t seed = 1) {
-  return shop_with(measured(truth::simulate(truth::parse_case(spec, seed))));
+inline selection::SearchContext context_of(const std::string& spec, std::size_t seed = 1) {
+  return context_with(dataset_of(truth::simulate(truth::parse_case(spec, seed))));
 }
 
 /// The case's plant in closed loop on a reference of the product.

@@ -15,7 +15,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 TEST(Words, MissingEffectIsNamedWithItsValuesAndTheirErrors) {
-  const Outcome outcome = example_outcome();
+  const ExampleReport outcome;
   EXPECT_EQ(verdict_words(outcome.diagnosis),
             "Missing: friction: Coulomb 145.3 +- 1.9 N, static 181 +- 4 N, Stribeck speed 500 mm/s "
             "(at its bound).");
@@ -24,7 +24,7 @@ TEST(Words, MissingEffectIsNamedWithItsValuesAndTheirErrors) {
 }
 
 TEST(Words, NothingMissingIsSaidBesideTheNoiseFloor) {
-  Outcome outcome = example_outcome();
+  ExampleReport outcome;
   outcome.diagnosis.verdict = selection::Verdict::nothing_missing;
   outcome.diagnosis.missing.clear();
   EXPECT_THAT(verdict_words(outcome.diagnosis),
@@ -35,7 +35,7 @@ TEST(Words, NothingMissingIsSaidBesideTheNoiseFloor) {
 }
 
 TEST(Words, RivalsAreNamedWithWhatIsSureInAnyCase) {
-  Outcome outcome = example_outcome();
+  ExampleReport outcome;
   selection::Diagnosis& d = outcome.diagnosis;
   d.verdict = selection::Verdict::undetermined;
   d.missing = {"friction", "flow_asymmetry"};
@@ -48,7 +48,7 @@ TEST(Words, RivalsAreNamedWithWhatIsSureInAnyCase) {
 }
 
 TEST(Words, UnexplainedErrorSaysWhereItEnters) {
-  Outcome outcome = example_outcome();
+  ExampleReport outcome;
   selection::Diagnosis& d = outcome.diagnosis;
   d.verdict = selection::Verdict::unexplained;
   d.rms_after_m = 12e-6;
@@ -66,7 +66,7 @@ TEST(Words, UnexplainedErrorSaysWhereItEnters) {
 }
 
 TEST(Words, RecordWithoutMotionGivesItsReasonAndNoFigures) {
-  Outcome outcome = example_outcome();
+  ExampleReport outcome;
   selection::Diagnosis& d = outcome.diagnosis;
   d = {};
   d.verdict = selection::Verdict::not_excited;
@@ -78,22 +78,22 @@ TEST(Words, RecordWithoutMotionGivesItsReasonAndNoFigures) {
 }
 
 TEST(Words, InterruptionIsSaidFirst) {
-  Outcome outcome = example_outcome();
+  ExampleReport outcome;
   outcome.interrupted = true;
   EXPECT_THAT(remarks(outcome).front(), HasSubstr("Interrupted: this is the best so far"));
 }
 
 TEST(Words, NextCommandHoldsTheBetterModelAgainstTheRecord) {
-  Outcome outcome = example_outcome();
+  ExampleReport outcome;
   EXPECT_EQ(next_command(outcome), "spoolwatch diagnose rig.toml bench.csv -o better.toml");
-  outcome.output = "my rig.toml";
+  outcome.input.output = "my rig.toml";
   EXPECT_EQ(next_command(outcome), "spoolwatch compare 'my rig.toml' bench.csv");
-  outcome.holdouts = {"other.csv"};
+  outcome.input.holdouts = {"other.csv"};
   EXPECT_EQ(next_command(outcome), "spoolwatch compare 'my rig.toml' other.csv");
 }
 
 TEST(Words, EffectsThatActAlikeOnThisPlantAreNamed) {
-  Outcome outcome = example_outcome();
+  ExampleReport outcome;
   outcome.diagnosis.same_here = {{"friction", "my_formula"}};
   EXPECT_THAT(remarks(outcome),
               Contains(HasSubstr("On this plant friction and my_formula act alike")));

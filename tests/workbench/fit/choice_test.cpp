@@ -1,4 +1,4 @@
-#include "workbench/fit/choice.h"
+#include "workbench/fit/parameter_selection.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,15 +17,15 @@ using testing::Not;
 
 const std::string kModels = SPOOLWATCH_SOURCE_DIR "/config/models/";
 
-std::vector<std::string> names(const Choice& choice) {
+std::vector<std::string> names(const FreeParameters& choice) {
   std::vector<std::string> out;
-  for (const auto& p : choice.searched) out.push_back(p.name);
+  for (const auto& p : choice.parameters) out.push_back(p.name);
   return out;
 }
 
-std::string refusal(const Wishes& wishes, int exit_code) {
+std::string refusal(const ParameterSelection& selection, int exit_code) {
   try {
-    (void)choose(plant_sim::load_model(kModels + "rig_2000psi.toml"), wishes);
+    (void)select_parameters(plant_sim::load_model(kModels + "rig_2000psi.toml"), selection);
   } catch (const config::schema::Error& error) {
     EXPECT_EQ(config::schema::exit_code_of(error), exit_code) << error.what();
     EXPECT_THAT(error.what(), Not(HasSubstr("\n")));
@@ -37,7 +37,7 @@ std::string refusal(const Wishes& wishes, int exit_code) {
 TEST(FitChoice, TakesTheUncertainOnesAndThoseOfTheEffects) {
   const auto model = plant_sim::load_model(kModels + "rig_2000psi.toml");
   EXPECT_THAT(
-      names(choose(model, {})),
+      names(select_parameters(model, {})),
       ElementsAre("mass_kg", "damping_N_s_per_m", "bulk_modulus_Pa", "dead_volume_m3",
                   "supply_pressure_Pa", "valve_gain_m_per_V", "valve_natural_frequency_rad_per_s",
                   "valve_damping_ratio", "friction.coulomb_N"));
@@ -45,33 +45,36 @@ TEST(FitChoice, TakesTheUncertainOnesAndThoseOfTheEffects) {
 
 TEST(FitChoice, FreesAndFixesByNameOrByEffect) {
   const auto model = plant_sim::load_model(kModels + "rig_2000psi.toml");
-  EXPECT_THAT(names(choose(model, {.free = {"area_m2,friction.coulomb_N", "mass_kg"}})),
+  EXPECT_THAT(names(select_parameters(model, {.free = {"area_m2,friction.coulomb_N", "mass_kg"}})),
               ElementsAre("area_m2", "friction.coulomb_N", "mass_kg"));
   EXPECT_THAT(
-      names(choose(model, {.free = {"mass_kg", "friction"}, .fix = {"friction.static_N"}})),
+      names(select_parameters(model,
+                              {.free = {"mass_kg", "friction"}, .fix = {"friction.static_N"}})),
       AllOf(testing::Contains("friction.coulomb_N"), Not(testing::Contains("friction.static_N"))));
-  EXPECT_THAT(names(choose(model, {.fix = {"friction,supply_pressure_Pa"}})),
+  EXPECT_THAT(names(select_parameters(model, {.fix = {"friction,supply_pressure_Pa"}})),
               AllOf(Not(testing::Contains("friction.coulomb_N")),
                     Not(testing::Contains("supply_pressure_Pa"))));
 }
 
 TEST(FitChoice, ReadsPriorsAndBoundsInTheParametersUnit) {
   const auto model = plant_sim::load_model(kModels + "rig_2000psi.toml");
-  const Choice choice = choose(model, {.free = {"mass_kg", "friction.coulomb_N"},
-                                       .priors = {"mass_kg=55+-11", "friction.coulomb_N=250+-10%"},
-                                       .bounds = {"mass_kg=40:", "friction.coulomb_N=100:400"}});
-  const auto& mass = choice.searched[0];
-  EXPECT_NEAR(mass.value(mass.prior_mean), 55.0, 1e-9);
+  const FreeParameters choice =
+      select_parameters(model, {.free = {"mass_kg", "friction.coulomb_N"},
+                                .priors = {"mass_kg=55+-11", "friction.coulomb_N=250+-10%"},
+                                .bounds = {"mass_kg=40:", "friction.coulomb_N=100:400"}});
+  const auto& mass = choice.parameters[0];
+  EXPECT_NEAR(mass.to_physical(mass.prior_mean), 55.0, 1e-9);
   EXPECT_NEAR(mass.prior_sd, 0.2, 1e-12);  // a logarithm: relative
-  EXPECT_NEAR(mass.value(mass.lower), 40.0, 1e-9);
-  const auto& friction = choice.searched[1];
-  EXPECT_NEAR(friction.value(friction.prior_mean), 250.0, 1e-9);
+  EXPECT_NEAR(mass.to_physical(mass.lower), 40.0, 1e-9);
+  const auto& friction = choice.parameters[1];
+  EXPECT_NEAR(friction.to_physical(friction.prior_mean), 250.0, 1e-9);
   EXPECT_NEAR(friction.prior_sd * friction.slope(1.0), 25.0, 1e-9);
-  EXPECT_NEAR(friction.value(friction.lower), 100.0, 1e-9);
-  EXPECT_NEAR(friction.value(friction.upper), 400.0, 1e-9);
-  EXPECT_NEAR(friction.value(choice.start[1]), 300.0, 1e-9);
-  EXPECT_TRUE(std::isinf(
-      choose(model, {.free = {"mass_kg"}, .priors = {"mass_kg=none"}}).searched[0].prior_sd));
+  EXPECT_NEAR(friction.to_physical(friction.lower), 100.0, 1e-9);
+  EXPECT_NEAR(friction.to_physical(friction.upper), 400.0, 1e-9);
+  EXPECT_NEAR(friction.to_physical(choice.start[1]), 300.0, 1e-9);
+  EXPECT_TRUE(std::isinf(select_parameters(model, {.free = {"mass_kg"}, .priors = {"mass_kg=none"}})
+                             .parameters[0]
+                             .prior_sd));
 }
 
 TEST(FitChoice, RefusesInOneLineWithTheNearName) {

@@ -23,7 +23,7 @@ struct Count {
 };
 
 /// Fits 40 records of `text` and counts how often the interval holds the truth, per parameter.
-Count covered(const std::string& text, const Wishes& wishes) {
+Count covered(const std::string& text, const ParameterSelection& selection) {
   const auto model = plant_sim::load_model(kModels + "thesis.toml");
   const std::vector<std::string> motions{"multisine", "fast_steps", "chirp", "slow_steps"};
   Count all;
@@ -32,12 +32,13 @@ Count covered(const std::string& text, const Wishes& wishes) {
     const auto seed = static_cast<std::size_t>(1000 + i);
     const std::string motion = "motion=" + motions[static_cast<std::size_t>(i) % motions.size()];
     const truth::Case of = truth::parse_case(motion + text, seed);
-    greybox::Task t = workbench_test::task(model, of, wishes);
-    t.starts = 1;
-    const greybox::Estimation e = greybox::estimate(t);
+    const greybox::EstimationProblem t = workbench_test::problem(model, of, selection);
+    greybox::EstimationOptions options = workbench_test::without_profiles();
+    options.starts = 1;
+    const greybox::EstimationSummary e = greybox::estimate(t, options);
     for (const truth::PlantField& field : truth::plant_fields()) {
-      for (const greybox::Parameter& p : e.parameters) {
-        if (p.search.name != field.name) continue;
+      for (const greybox::EstimatedParameter& p : e.parameters) {
+        if (p.free.name != field.name) continue;
         const double value = of.plant.*field.member;
         const double z = (value - p.value) / p.std_error;
         for (Count* count : {&all, &each[field.name]}) {

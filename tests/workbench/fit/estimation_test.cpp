@@ -16,7 +16,8 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using workbench_test::parameter;
-using workbench_test::task;
+using workbench_test::problem;
+using workbench_test::without_profiles;
 
 const std::string kModels = SPOOLWATCH_SOURCE_DIR "/config/models/";
 
@@ -44,24 +45,27 @@ struct Straight {
       record.u_V.push_back(std::sin(2.0 * 0.005 * k) + 0.3 * std::sin(9.0 * 0.005 * k));
       y_m += 0.005 * kGain * record.u_V.back();
     }
-    made = greybox::measured(record);
+    made = greybox::dataset_of(record);
     model = plant_sim::load_model(kModels + "velocity_servo.toml");
     *model.value("gain_mps_per_V") = start;
     *model.value("time_constant_s") = 0.0;
   }
 
-  greybox::Task fit(const Wishes& wishes) const {
-    greybox::Task t;
+  greybox::EstimationProblem fit(const ParameterSelection& selection) const {
+    greybox::EstimationProblem t;
     t.model = model;
-    const Choice choice = choose(model, wishes);
-    t.searched = choice.searched;
+    const FreeParameters choice = select_parameters(model, selection);
+    t.parameters = choice.parameters;
     t.start = choice.start;
-    t.evidence = greybox::evidence({made}, {});
-    t.weights = t.evidence.counts;
-    t.evidence.scores.setZero();
-    t.observer_per_s = 0.0;
-    t.profiling = greybox::Profiling::none;
+    t.data = greybox::fit_dataset({made}, {});
+    t.weights = t.data.all_mask;
+    t.data.validation_mask.setZero();
     return t;
+  }
+  static greybox::EstimationOptions options() {
+    greybox::EstimationOptions pure = without_profiles();
+    pure.observer_per_s = 0.0;
+    return pure;
   }
   /// sum w x^2 and sum w x y of y = gain x.
   std::pair<double, double> sums(const Eigen::VectorXd& weights) const {
@@ -76,17 +80,18 @@ struct Straight {
   }
 
   std::vector<double> reach_Vs;
-  greybox::Measured made;
+  greybox::Dataset made;
   plant_sim::ModelFile model;
 };
 
 TEST(FitEstimation, IsWeightedLeastSquaresWhereTheModelIsLinear) {
   const Straight line(0.03);
-  greybox::Task t = line.fit({.free = {"gain_mps_per_V"}, .priors = {"gain_mps_per_V=none"}});
+  greybox::EstimationProblem t =
+      line.fit({.free = {"gain_mps_per_V"}, .priors = {"gain_mps_per_V=none"}});
   t.weights.head(1000) *= 4.0;
-  const greybox::Estimation e = greybox::estimate(t);
+  const greybox::EstimationSummary e = greybox::estimate(t, Straight::options());
   const auto [xx, xy] = line.sums(t.weights);
-  const greybox::Parameter& gain = parameter(e, "gain_mps_per_V");
+  const greybox::EstimatedParameter& gain = parameter(e, "gain_mps_per_V");
   // To the search's tolerance, a hundredth of the standard error.
   EXPECT_NEAR(gain.value, xy / xx, 1e-2 * gain.std_error);
   EXPECT_EQ(e.starts.same, 4);
@@ -104,9 +109,9 @@ TEST(FitEstimation, APriorPullsAsBayesHasIt) {
   const double mean = xy / xx + 4.0 * own;
   char prior[80];
   std::snprintf(prior, sizeof prior, "gain_mps_per_V=%.17g+-%.17g", mean, own);
-  const greybox::Estimation e =
-      greybox::estimate(line.fit({.free = {"gain_mps_per_V"}, .priors = {prior}}));
-  const greybox::Parameter& gain = parameter(e, "gain_mps_per_V");
+  const greybox::EstimationSummary e = greybox::estimate(
+      line.fit({.free = {"gain_mps_per_V"}, .priors = {prior}}), Straight::options());
+  const greybox::EstimatedParameter& gain = parameter(e, "gain_mps_per_V");
   EXPECT_NEAR((gain.value - xy / xx) / own, 2.0, 0.15);
   EXPECT_NEAR(gain.std_error / own, std::sqrt(0.5), 0.1);
   EXPECT_NEAR(gain.record_share, 0.5, 0.1);
@@ -114,9 +119,10 @@ TEST(FitEstimation, APriorPullsAsBayesHasIt) {
 
 TEST(FitEstimation, StopsAtABoundAndSaysSo) {
   const Straight line(0.03);
-  const greybox::Estimation e = greybox::estimate(
-      line.fit({.free = {"gain_mps_per_V"}, .bounds = {"gain_mps_per_V=0.01:0.04"}}));
-  const greybox::Parameter& gain = parameter(e, "gain_mps_per_V");
+  const greybox::EstimationSummary e = greybox::estimate(
+      line.fit({.free = {"gain_mps_per_V"}, .bounds = {"gain_mps_per_V=0.01:0.04"}}),
+      Straight::options());
+  const greybox::EstimatedParameter& gain = parameter(e, "gain_mps_per_V");
   EXPECT_NEAR(gain.value, 0.04, 1e-12);
   EXPECT_EQ(gain.at_bound, 1);
   EXPECT_TRUE(std::isnan(gain.std_error));
@@ -124,13 +130,15 @@ TEST(FitEstimation, StopsAtABoundAndSaysSo) {
 
 TEST(FitEstimation, TheProfileOfAParabolaIsTheNormalInterval) {
   const Straight line(0.05);
-  greybox::Task t = line.fit({.free = {"gain_mps_per_V"}, .priors = {"gain_mps_per_V=none"}});
-  const greybox::Estimation plain = greybox::estimate(t);
-  t.profiling = greybox::Profiling::named;
-  t.profiled = {"gain_mps_per_V"};
-  const greybox::Estimation walked = greybox::estimate(t);
-  const greybox::Parameter& a = plain.parameters[0];
-  const greybox::Parameter& b = walked.parameters[0];
+  greybox::EstimationProblem t =
+      line.fit({.free = {"gain_mps_per_V"}, .priors = {"gain_mps_per_V=none"}});
+  greybox::EstimationOptions options = Straight::options();
+  const greybox::EstimationSummary plain = greybox::estimate(t, options);
+  options.profiling = greybox::Profiling::named;
+  options.profiled = {"gain_mps_per_V"};
+  const greybox::EstimationSummary walked = greybox::estimate(t, options);
+  const greybox::EstimatedParameter& a = plain.parameters[0];
+  const greybox::EstimatedParameter& b = walked.parameters[0];
   EXPECT_TRUE(b.from_profile);
   EXPECT_NEAR(b.low, a.low, 0.1 * a.std_error);
   EXPECT_NEAR(b.high, a.high, 0.1 * a.std_error);
@@ -139,9 +147,10 @@ TEST(FitEstimation, TheProfileOfAParabolaIsTheNormalInterval) {
 TEST(FitEstimation, FindsAnotherPlantsParametersWithinItsErrors) {
   const auto model = plant_sim::load_model(kModels + "thesis.toml");
   const truth::Case of = healthy("");
-  const greybox::Estimation e = greybox::estimate(task(model, of, {}));
+  const greybox::EstimationSummary e =
+      greybox::estimate(problem(model, of, {}), without_profiles());
   for (const truth::PlantField& field : truth::plant_fields()) {
-    const greybox::Parameter& p = parameter(e, field.name);
+    const greybox::EstimatedParameter& p = parameter(e, field.name);
     EXPECT_LT(std::abs(p.value - of.plant.*field.member), 3.5 * p.std_error) << field.name;
   }
   EXPECT_LT(e.after.rms_m, 1.1 * e.fitted.sigma_m);
@@ -153,12 +162,17 @@ TEST(FitEstimation, FindsAnotherPlantsParametersWithinItsErrors) {
 
 TEST(FitEstimation, SaysThatOnlyGainTimesTheRootOfThePressureIsVisible) {
   const auto model = plant_sim::load_model(kModels + "thesis.toml");
-  const greybox::Estimation e = greybox::estimate(task(model, healthy(""), {}));
-  for (const greybox::Sight* sight : {&e.sight_before, &e.sight_after}) {
-    ASSERT_FALSE(sight->unseen.empty());
-    const auto pressure = [](const greybox::Unseen& u) { return u.name == "supply_pressure_Pa"; };
-    const auto found = std::find_if(sight->unseen.begin(), sight->unseen.end(), pressure);
-    ASSERT_NE(found, sight->unseen.end());
+  const greybox::EstimationSummary e =
+      greybox::estimate(problem(model, healthy(""), {}), without_profiles());
+  for (const greybox::IdentifiabilityReport* report :
+       {&e.identifiability_before, &e.identifiability_after}) {
+    ASSERT_FALSE(report->unidentifiable.empty());
+    const auto pressure = [](const greybox::UnidentifiableParameter& u) {
+      return u.name == "supply_pressure_Pa";
+    };
+    const auto found =
+        std::find_if(report->unidentifiable.begin(), report->unidentifiable.end(), pressure);
+    ASSERT_NE(found, report->unidentifiable.end());
     EXPECT_THAT(found->visible, HasSubstr("valve_gain_m_per_V * sqrt(supply_pressure_Pa)"));
     EXPECT_THAT(found->words, HasSubstr("its prior holds supply_pressure_Pa"));
   }
@@ -166,28 +180,30 @@ TEST(FitEstimation, SaysThatOnlyGainTimesTheRootOfThePressureIsVisible) {
 
 TEST(FitEstimation, SaysThatOnlyRatiosOfAMassADampingAndAForceAreVisible) {
   // M v' = gain u - d v: the motion is that of gain/M and d/M alone.
-  greybox::Task t = Straight(0.05).fit({});
+  greybox::EstimationProblem t = Straight(0.05).fit({});
+  greybox::EstimationOptions options = without_profiles();
   t.model = plant_sim::load_model(kModels + "force_driven_axis.toml");
-  const Choice choice = choose(t.model, {.free = {"mass_kg", "damping_N_s_per_m", "gain_N_per_V"},
-                                         .priors = {"mass_kg=100+-10", "damping_N_s_per_m=none"}});
-  t.searched = choice.searched;
+  const FreeParameters choice =
+      select_parameters(t.model, {.free = {"mass_kg", "damping_N_s_per_m", "gain_N_per_V"},
+                                  .priors = {"mass_kg=100+-10", "damping_N_s_per_m=none"}});
+  t.parameters = choice.parameters;
   t.start = choice.start;
-  t.observer_per_s = greybox::kObserver_per_s;
-  t.starts = 1;
-  const greybox::Estimation e = greybox::estimate(t);
-  ASSERT_FALSE(e.sight_before.unseen.empty());
-  const greybox::Unseen& first = e.sight_before.unseen[0];
+  options.starts = 1;
+  const greybox::EstimationSummary e = greybox::estimate(t, options);
+  ASSERT_FALSE(e.identifiability_before.unidentifiable.empty());
+  const greybox::UnidentifiableParameter& first = e.identifiability_before.unidentifiable[0];
   EXPECT_EQ(first.partners.size(), 2U) << first.words;
   EXPECT_THAT(first.visible, HasSubstr(" / "));
 }
 
 TEST(FitEstimation, StopsWhenAskedAndKeepsTheBestSoFar) {
   const auto model = plant_sim::load_model(kModels + "thesis.toml");
-  greybox::Task t = task(model, healthy(""), {});
+  greybox::EstimationProblem t = problem(model, healthy(""), {});
+  greybox::EstimationOptions options = without_profiles();
   int asked = 0;
-  t.threads = 1;
-  t.cancel = [&] { return ++asked > 3; };
-  const greybox::Estimation e = greybox::estimate(t);
+  options.threads = 1;
+  options.cancel = [&] { return ++asked > 3; };
+  const greybox::EstimationSummary e = greybox::estimate(t, options);
   EXPECT_TRUE(e.interrupted);
   EXPECT_LE(e.after.rms_m, e.before.rms_m);
   EXPECT_TRUE(std::isfinite(parameter(e, "valve_gain_m_per_V").std_error));
@@ -195,18 +211,19 @@ TEST(FitEstimation, StopsWhenAskedAndKeepsTheBestSoFar) {
 
 TEST(FitEstimation, GivesTheSameAnswerWhateverTheThreads) {
   const auto model = plant_sim::load_model(kModels + "thesis.toml");
-  greybox::Task t = task(model, healthy("", 4), {});
-  const greybox::Estimation one = [&] {
-    t.threads = 1;
-    return greybox::estimate(t);
+  greybox::EstimationProblem t = problem(model, healthy("", 4), {});
+  greybox::EstimationOptions options = without_profiles();
+  const greybox::EstimationSummary one = [&] {
+    options.threads = 1;
+    return greybox::estimate(t, options);
   }();
-  t.threads = 2;
-  const greybox::Estimation two = greybox::estimate(t);
+  options.threads = 2;
+  const greybox::EstimationSummary two = greybox::estimate(t, options);
   for (std::size_t i = 0; i < one.parameters.size(); ++i) {
     EXPECT_NEAR(one.parameters[i].value, two.parameters[i].value,
                 0.02 * one.parameters[i].std_error);
   }
-  const greybox::Estimation again = greybox::estimate(t);
+  const greybox::EstimationSummary again = greybox::estimate(t, options);
   EXPECT_EQ(again.parameters[1].value, two.parameters[1].value);
 }
 

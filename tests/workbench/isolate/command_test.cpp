@@ -80,9 +80,9 @@ TEST_F(IsolateCommand, WritesWindowsAndAlarmsAsJsonAndAPage) {
 TEST_F(IsolateCommand, WritesWhatIsHealthyForTheDaemon) {
   run({"--learn", file("healthy.toml"), "--rig", "stand-1"});
   const plant_sim::ModelFile model = plant_sim::load_model(file("model.toml"));
-  const tracking::Choice choice = tracking::choose(model, usual(), "parameters");
+  const tracking::ParameterSet set = tracking::choose(model, usual(), "parameters");
   const auto learnt =
-      tracker::read_healthy(file("healthy.toml"), model, {}, choice, truth::kSample_s, "stand-1");
+      tracker::read_baseline(file("healthy.toml"), model, {}, set, truth::kSample_s, "stand-1");
   EXPECT_NEAR(learnt.values[0], 6.89e6, 0.002 * 6.89e6);
   EXPECT_NEAR(learnt.values[1], 1000.0, 20.0);
   EXPECT_NEAR(learnt.rms_m, kFloor_m, 0.1 * kFloor_m);
@@ -128,10 +128,10 @@ TEST_F(IsolateCommand, UsesTheChamberPressuresOfTheRecord) {
   EXPECT_NEAR(json["healthy"]["pressures"]["in_error_Pa"].get<double>(), 5e3, 300.0);
   EXPECT_NEAR(json["windows"].back()["pressures"]["out_error_Pa"].get<double>(), 5e3, 1000.0);
   const plant_sim::ModelFile model = plant_sim::load_model(file("model.toml"));
-  const tracking::Choice choice = tracking::choose(
+  const tracking::ParameterSet set = tracking::choose(
       model, {"supply_pressure_Pa,damping_N_s_per_m,valve_gain_m_per_V"}, "parameters");
   const auto learnt =
-      tracker::read_healthy(file("healthy.toml"), model, {}, choice, truth::kSample_s, "");
+      tracker::read_baseline(file("healthy.toml"), model, {}, set, truth::kSample_s, "");
   EXPECT_TRUE(learnt.chambers.known());
 
   run({"--json", file("out.json"), "--no-pressures"});

@@ -46,7 +46,7 @@ TEST(OnlineResidual, TellsTheErrorThatTheComparisonFindsAfterwards) {
     running.add(std::lround(record.t_s[k] / record.sample_time_s), record.sample_time_s,
                 record.u_V[k], record.y_m[k]);
   }
-  const validation::Comparison c = validation::compare(model, greybox::measured(record));
+  const validation::Comparison c = validation::compare(model, greybox::dataset_of(record));
   const double wanted_m = rms_afterwards_m(c);
   const live::ResidualFigures figures = running.figures();
   // What the unknown first state shifted has died away to exp(-2/s 4 s) by then.
@@ -101,7 +101,7 @@ TEST(OnlineResidual, IsALineEachSecondFromThePipe) {
   EXPECT_EQ(count, 14);
   const validation::Comparison c =
       validation::compare(model_with("parameters.damping_N_s_per_m=3000.0"),
-                          greybox::measured(config::record::read_record(log)));
+                          greybox::dataset_of(config::record::read_record(log)));
   EXPECT_NEAR(last["rms_m"].get<double>(), rms_afterwards_m(c), 0.01 * rms_afterwards_m(c));
   EXPECT_EQ(program::spoolwatch("compare model.toml").exit_code, 2);
 }

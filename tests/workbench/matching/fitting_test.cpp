@@ -30,10 +30,10 @@ plant_sim::ModelFile servo() {
   return model;
 }
 
-greybox::SearchParameter gain() {
+greybox::FreeParameter gain() {
   return {"gain_mps_per_V", greybox::Scale::logarithmic, kGain, -1.0, 1.0, 0.0, kNone};
 }
-greybox::SearchParameter offset() {
+greybox::FreeParameter offset() {
   return {"null_bias.offset_V", greybox::Scale::linear, 0.05, -200.0, 200.0, 0.0, kNone};
 }
 
@@ -44,11 +44,11 @@ struct Columns {
 };
 
 /// Noise with memory `phi` from sample to sample and standard deviation noise_m; none at the start.
-greybox::Evidence made(double gain_mps_per_V, double offset_V, double noise_m, unsigned seed,
-                       double phi = 0.0, Columns* columns = nullptr, std::size_t samples = 2000) {
+greybox::FitDataset made(double gain_mps_per_V, double offset_V, double noise_m, unsigned seed,
+                         double phi = 0.0, Columns* columns = nullptr, std::size_t samples = 2000) {
   std::mt19937 random(seed);
   std::normal_distribution<double> white(0.0, noise_m * std::sqrt(1.0 - phi * phi));
-  greybox::Measured m;
+  greybox::Dataset m;
   m.name = "made";
   m.sample_time_s = kTs;
   m.starts = {0};
@@ -68,11 +68,11 @@ greybox::Evidence made(double gain_mps_per_V, double offset_V, double noise_m, u
     m.t_s.push_back(t_s);
     m.u_V.push_back(u_V);
     m.y_m.push_back(0.3 + gain_mps_per_V * (sum_Vs + offset_V * t_s) + noise);
-    m.settled.push_back(k < 100 ? 0 : 1);
+    m.valid.push_back(k < 100 ? 0 : 1);
     sum_Vs += u_V * kTs;
     noise = phi * noise + white(random);
   }
-  return greybox::evidence({m}, {});
+  return greybox::fit_dataset({m}, {});
 }
 
 greybox::FitOptions freely() {
@@ -82,16 +82,16 @@ greybox::FitOptions freely() {
   return options;
 }
 
-VectorXd position_m(const greybox::Evidence& evidence) {
-  const std::vector<double>& y = evidence.records[0].y_m;
+VectorXd position_m(const greybox::FitDataset& data) {
+  const std::vector<double>& y = data.records[0].y_m;
   return Eigen::Map<const VectorXd>(y.data(), static_cast<Index>(y.size())).array() - y[0];
 }
 
 TEST(Fit, IsLinearLeastSquaresWhereThePositionIsLinear) {
   Columns columns;
-  const greybox::Evidence e = made(0.0537, -0.021, 4e-4, 5, 0.0, &columns);
-  for (const VectorXd& weights : {e.fits, e.counts}) {
-    const greybox::Fitted fitted =
+  const greybox::FitDataset e = made(0.0537, -0.021, 4e-4, 5, 0.0, &columns);
+  for (const VectorXd& weights : {e.training_mask, e.all_mask}) {
+    const greybox::FitSummary fitted =
         greybox::fit(servo(), e, weights, {gain(), offset()}, VectorXd::Zero(2), freely());
     MatrixXd a(e.size(), 2);
     a << columns.command_Vs, columns.t_s;
@@ -103,66 +103,68 @@ TEST(Fit, IsLinearLeastSquaresWhereThePositionIsLinear) {
     EXPECT_NEAR(fitted.value("gain_mps_per_V"), c[0], 1e-6 * c[0]);
     EXPECT_NEAR(fitted.value("null_bias.offset_V"), c[1] / c[0], 1e-6);
     const VectorXd expected_m = position_m(e) - a * c;
-    EXPECT_LT((fitted.residual_m - expected_m).cwiseProduct(e.counts).cwiseAbs().maxCoeff(), 1e-8);
-    EXPECT_NEAR(fitted.fit_rms_m, greybox::rms(expected_m, weights), 1e-9);
-    EXPECT_NEAR(fitted.score_rms_m, greybox::rms(expected_m, e.scores), 1e-9);
+    EXPECT_LT((fitted.residual_m - expected_m).cwiseProduct(e.all_mask).cwiseAbs().maxCoeff(),
+              1e-8);
+    EXPECT_NEAR(fitted.training_rms_m, greybox::rms(expected_m, weights), 1e-9);
+    EXPECT_NEAR(fitted.validation_rms_m, greybox::rms(expected_m, e.validation_mask), 1e-9);
   }
 }
 
 TEST(Fit, GivesTheSameFromFarAwayAndOnSeveralThreads) {
-  const greybox::Evidence e = made(0.0537, -0.021, 4e-6, 5);
-  const greybox::Fitted near =
-      greybox::fit(servo(), e, e.fits, {gain(), offset()}, VectorXd::Zero(2), freely());
+  const greybox::FitDataset e = made(0.0537, -0.021, 4e-6, 5);
+  const greybox::FitSummary near =
+      greybox::fit(servo(), e, e.training_mask, {gain(), offset()}, VectorXd::Zero(2), freely());
   greybox::FitOptions options = freely();
   options.threads = 2;
   VectorXd start(2);
   start << 7.0, -30.0;  // the gain's is beyond its bound
-  const greybox::Fitted far = greybox::fit(servo(), e, e.fits, {gain(), offset()}, start, options);
-  EXPECT_NEAR(far.x[0], near.x[0], 1e-7);
-  EXPECT_NEAR(far.x[1], near.x[1], 1e-6);
+  const greybox::FitSummary far =
+      greybox::fit(servo(), e, e.training_mask, {gain(), offset()}, start, options);
+  EXPECT_NEAR(far.theta[0], near.theta[0], 1e-7);
+  EXPECT_NEAR(far.theta[1], near.theta[1], 1e-6);
 }
 
 TEST(Fit, WeighsThePriorAgainstTheRecord) {
   constexpr double kNoise_m = 0.02;
   Columns columns;
-  const greybox::Evidence e = made(kGain, 0.05, kNoise_m, 7, 0.0, &columns);
-  greybox::SearchParameter p = offset();
+  const greybox::FitDataset e = made(kGain, 0.05, kNoise_m, 7, 0.0, &columns);
+  greybox::FreeParameter p = offset();
   p.prior_mean = 1.06;
   p.prior_sd = 0.03;
-  const greybox::Fitted fitted =
-      greybox::fit(servo(), e, e.fits, {p}, VectorXd::Constant(1, 1.06), freely());
-  const VectorXd x = (kGain * p.unit * columns.t_s).cwiseProduct(e.fits);
+  const greybox::FitSummary fitted =
+      greybox::fit(servo(), e, e.training_mask, {p}, VectorXd::Constant(1, 1.06), freely());
+  const VectorXd x = (kGain * p.unit * columns.t_s).cwiseProduct(e.training_mask);
   const VectorXd y = position_m(e) - kGain * columns.command_Vs;
   const double of_record = 1.0 / (fitted.sigma_m * fitted.sigma_m);
   const double of_prior = 1.0 / (p.prior_sd * p.prior_sd);
   const double expected =
       (x.dot(y) * of_record + p.prior_mean * of_prior) / (x.squaredNorm() * of_record + of_prior);
-  EXPECT_NEAR(fitted.x[0], expected, 1e-4);
+  EXPECT_NEAR(fitted.theta[0], expected, 1e-4);
   EXPECT_GT(std::abs(expected - p.prior_mean), 0.005);  // neither of the two decides alone
   EXPECT_GT(std::abs(expected - x.dot(y) / x.squaredNorm()), 0.005);
   EXPECT_NEAR(fitted.sigma_m, kNoise_m, 0.1 * kNoise_m);
 }
 
 TEST(Fit, StopsAtABoundAndSaysSo) {
-  const greybox::Evidence e = made(0.0537, 0.0, 1e-5, 3);
-  greybox::SearchParameter p = gain();
+  const greybox::FitDataset e = made(0.0537, 0.0, 1e-5, 3);
+  greybox::FreeParameter p = gain();
   p.upper = 0.03;  // log(0.0537 / 0.05) is 0.071
-  const greybox::Fitted fitted =
-      greybox::fit(servo(), e, e.fits, {p, offset()}, VectorXd::Zero(2), freely());
-  EXPECT_EQ(fitted.x[0], 0.03);
+  const greybox::FitSummary fitted =
+      greybox::fit(servo(), e, e.training_mask, {p, offset()}, VectorXd::Zero(2), freely());
+  EXPECT_EQ(fitted.theta[0], 0.03);
   EXPECT_THAT(fitted.at_bound, testing::ElementsAre(1, 0));
-  const VectorXd errors = greybox::std_errors(e, e.fits, fitted);
+  const VectorXd errors = greybox::std_errors(e, e.training_mask, fitted);
   EXPECT_TRUE(std::isnan(errors[0]));
   EXPECT_TRUE(std::isfinite(errors[1]));
 }
 
 TEST(Fit, KeepsWhatItHasWhenItIsCancelled) {
-  const greybox::Evidence e = made(0.0537, 0.0, 1e-5, 3);
+  const greybox::FitDataset e = made(0.0537, 0.0, 1e-5, 3);
   greybox::FitOptions options = freely();
   options.cancel = [] { return true; };
-  const greybox::Fitted fitted =
-      greybox::fit(servo(), e, e.fits, {gain()}, VectorXd::Constant(1, 0.2), options);
-  EXPECT_EQ(fitted.x[0], 0.2);
+  const greybox::FitSummary fitted =
+      greybox::fit(servo(), e, e.training_mask, {gain()}, VectorXd::Constant(1, 0.2), options);
+  EXPECT_EQ(fitted.theta[0], 0.2);
   EXPECT_EQ(fitted.residual_m.size(), e.size());
 }
 
@@ -173,11 +175,11 @@ VectorXd scatter_over_error(double phi) {
   MatrixXd x(2, kDraws);
   VectorXd error = VectorXd::Zero(2);
   for (int i = 0; i < kDraws; ++i) {
-    const greybox::Evidence e = made(0.0537, -0.021, 5e-5, 100U + static_cast<unsigned>(i), phi);
-    const greybox::Fitted fitted =
-        greybox::fit(servo(), e, e.counts, {gain(), offset()}, VectorXd::Zero(2), freely());
-    x.col(i) = fitted.x;
-    error += greybox::std_errors(e, e.counts, fitted) / kDraws;
+    const greybox::FitDataset e = made(0.0537, -0.021, 5e-5, 100U + static_cast<unsigned>(i), phi);
+    const greybox::FitSummary fitted =
+        greybox::fit(servo(), e, e.all_mask, {gain(), offset()}, VectorXd::Zero(2), freely());
+    x.col(i) = fitted.theta;
+    error += greybox::std_errors(e, e.all_mask, fitted) / kDraws;
   }
   const MatrixXd off = x.colwise() - x.rowwise().mean();
   const VectorXd scatter = (off.rowwise().squaredNorm() / (kDraws - 1)).cwiseSqrt();
@@ -227,11 +229,11 @@ TEST(CorrelationFactor, StaysBetweenOneAndAHundred) {
   EXPECT_EQ(greybox::correlation_factor(VectorXd::Zero(50), VectorXd::Ones(50)), 1.0);
 }
 
-TEST(Fitted, PutsItsValuesIntoTheModelAndMakesEffectsPresent) {
-  greybox::Fitted fitted;
-  fitted.searched = {gain(), offset()};
-  fitted.x.resize(2);
-  fitted.x << std::log(1.1), 2.0;
+TEST(FitSummary, PutsItsValuesIntoTheModelAndMakesEffectsPresent) {
+  greybox::FitSummary fitted;
+  fitted.parameters = {gain(), offset()};
+  fitted.theta.resize(2);
+  fitted.theta << std::log(1.1), 2.0;
   plant_sim::ModelFile model = greybox::with_values(servo(), fitted);
   EXPECT_NEAR(*model.value("gain_mps_per_V"), 0.055, 1e-12);
   EXPECT_DOUBLE_EQ(*model.value("null_bias.offset_V"), 0.1);

@@ -31,24 +31,24 @@ config::record::Record record(std::size_t samples, std::vector<std::size_t> gaps
   return r;
 }
 
-TEST(Measured, HasOneSegmentWhereNothingIsMissing) {
-  const greybox::Measured m = greybox::measured(record(300));
+TEST(Dataset, HasOneSegmentWhereNothingIsMissing) {
+  const greybox::Dataset m = greybox::dataset_of(record(300));
   EXPECT_EQ(m.size(), 300U);
   EXPECT_THAT(m.starts, ElementsAre(0U));
   EXPECT_TRUE(m.notes.empty());
 }
 
-TEST(Measured, DoesNotCountTheFirstHalfSecondOfEachSegment) {
-  const greybox::Measured m = greybox::measured(record(300, {150}));
+TEST(Dataset, DoesNotCountTheFirstHalfSecondOfEachSegment) {
+  const greybox::Dataset m = greybox::dataset_of(record(300, {150}));
   ASSERT_THAT(m.starts, ElementsAre(0U, 150U));
   for (std::size_t k = 0; k < 300; ++k) {
-    EXPECT_EQ(m.settled[k] != 0, k % 150 >= 50) << k;
+    EXPECT_EQ(m.valid[k] != 0, k % 150 >= 50) << k;
   }
 }
 
-TEST(Measured, LeavesOutShortSegmentsAndSaysSo) {
-  const greybox::Measured m =
-      greybox::measured(record(500, {200, 299}));  // 0.99 s between the gaps
+TEST(Dataset, LeavesOutShortSegmentsAndSaysSo) {
+  const greybox::Dataset m =
+      greybox::dataset_of(record(500, {200, 299}));  // 0.99 s between the gaps
   EXPECT_THAT(m.starts, ElementsAre(0U, 200U));
   EXPECT_EQ(m.size(), 401U);
   EXPECT_EQ(m.y_m[199], 199.0);
@@ -57,41 +57,41 @@ TEST(Measured, LeavesOutShortSegmentsAndSaysSo) {
   EXPECT_THAT(m.notes[1], HasSubstr("99 samples"));
 }
 
-TEST(Measured, RefusesLessThanTwoSecondsOfConnectedSamples) {
+TEST(Dataset, RefusesLessThanTwoSecondsOfConnectedSamples) {
   try {
-    (void)greybox::measured(record(390, {95, 190, 285}));  // four times just under a second
+    (void)greybox::dataset_of(record(390, {95, 190, 285}));  // four times just under a second
     FAIL();
   } catch (const config::schema::DataError& error) {
     EXPECT_THAT(error.what(), HasSubstr("too short: of 3.9 s in 4 segments, the longest 1.05 s"));
   }
   try {
-    (void)greybox::measured(record(150));
+    (void)greybox::dataset_of(record(150));
     FAIL();
   } catch (const config::schema::Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("too short: 1.5 s"));
   }
 }
 
-TEST(Measured, RefusesSamplesFarApart) {
+TEST(Dataset, RefusesSamplesFarApart) {
   config::record::Record slow = record(300);
   slow.sample_time_s = 0.5;
   try {
-    (void)greybox::measured(slow);
+    (void)greybox::dataset_of(slow);
     FAIL();
   } catch (const config::schema::DataError& error) {
     EXPECT_THAT(error.what(), HasSubstr("is sampled every 0.5 s; allowed: every 0.25 s or faster"));
   }
 }
 
-TEST(Measured, GivesAPartWithItsOwnSegmentsAndSettling) {
-  const greybox::Measured whole = greybox::measured(record(600, {300}));
-  const greybox::Measured p = greybox::part(whole, 200, 500);
+TEST(Dataset, GivesAPartWithItsOwnSegmentsAndSettling) {
+  const greybox::Dataset whole = greybox::dataset_of(record(600, {300}));
+  const greybox::Dataset p = greybox::part(whole, 200, 500);
   EXPECT_EQ(p.size(), 300U);
   EXPECT_EQ(p.y_m.front(), 200.0);
   EXPECT_THAT(p.starts, ElementsAre(0U, 100U));
-  EXPECT_EQ(std::accumulate(p.settled.begin(), p.settled.end(), 0), 200);
-  EXPECT_EQ(p.settled[49], 0);
-  EXPECT_EQ(p.settled[50], 1);
+  EXPECT_EQ(std::accumulate(p.valid.begin(), p.valid.end(), 0), 200);
+  EXPECT_EQ(p.valid[49], 0);
+  EXPECT_EQ(p.valid[50], 1);
 }
 
 }  // namespace

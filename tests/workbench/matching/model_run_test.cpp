@@ -22,8 +22,8 @@ plant_sim::ModelFile model(const std::string& name) {
 }
 
 /// A made-up motion, which no model fits; a second segment begins in the middle.
-greybox::Measured record(std::size_t samples = 600, double sample_time_s = kTs) {
-  greybox::Measured m;
+greybox::Dataset record(std::size_t samples = 600, double sample_time_s = kTs) {
+  greybox::Dataset m;
   m.name = "made";
   m.sample_time_s = sample_time_s;
   for (std::size_t k = 0; k < samples; ++k) {
@@ -31,7 +31,7 @@ greybox::Measured record(std::size_t samples = 600, double sample_time_s = kTs) 
     m.t_s.push_back(t_s);
     m.u_V.push_back(1.5 * std::sin(4.0 * t_s) + 0.3 * std::cos(23.0 * t_s));
     m.y_m.push_back(0.3 + 0.02 * std::sin(4.0 * t_s + 0.5));
-    m.settled.push_back(1);
+    m.valid.push_back(1);
   }
   m.starts = {0, samples / 2};
   return m;
@@ -46,7 +46,7 @@ void set_position(plant_sim::Plant& plant, double position_m) {
 }
 
 /// The equations of the header with the single plant, which shares no loop with the ensemble.
-std::vector<double> by_single_plant(plant_sim::ModelFile file, const greybox::Measured& m,
+std::vector<double> by_single_plant(plant_sim::ModelFile file, const greybox::Dataset& m,
                                     double l_per_s, double added_V = 0.0, double added_N = 0.0) {
   if (added_N != 0.0) *file.value("load_force.force_N") += added_N;
   std::vector<double> e;
@@ -73,9 +73,9 @@ INSTANTIATE_TEST_SUITE_P(Plants, ModelRunOf,
 TEST_P(ModelRunOf, EqualsTheSinglePlantWithAndWithoutTheObserver) {
   plant_sim::ModelFile file = model(GetParam());
   if (file.plant != "velocity_servo") *file.value("friction.coulomb_N") = 30.0;
-  const greybox::Measured m = record();
+  const greybox::Dataset m = record();
   for (const double l_per_s : {0.0, 2.0}) {
-    greybox::ModelRun run(file, m, {}, l_per_s);
+    greybox::ObserverSimulation run(file, m, {}, l_per_s);
     Eigen::MatrixXd residuals_m;
     run.residuals(Eigen::MatrixXd(0, 1), residuals_m);
     const std::vector<double> expected = by_single_plant(file, m, l_per_s);
@@ -86,12 +86,12 @@ TEST_P(ModelRunOf, EqualsTheSinglePlantWithAndWithoutTheObserver) {
   }
 }
 
-TEST(ModelRun, PutsEachColumnIntoALaneOfItsOwn) {
+TEST(ObserverSimulation, PutsEachColumnIntoALaneOfItsOwn) {
   const plant_sim::ModelFile file = model("thesis");
-  const greybox::Measured m = record();
-  const greybox::SearchParameter damping{"damping_N_s_per_m", greybox::Scale::logarithmic, 1000.0,
-                                         -1.0, 1.0};
-  greybox::ModelRun run(file, m, {damping}, 2.0);
+  const greybox::Dataset m = record();
+  const greybox::FreeParameter damping{"damping_N_s_per_m", greybox::Scale::logarithmic, 1000.0,
+                                       -1.0, 1.0};
+  greybox::ObserverSimulation run(file, m, {damping}, 2.0);
   Eigen::MatrixXd points(1, 2);
   points << 0.0, std::log(2.0);
   Eigen::MatrixXd residuals_m;
@@ -107,10 +107,10 @@ TEST(ModelRun, PutsEachColumnIntoALaneOfItsOwn) {
   EXPECT_GT(std::abs(first.back() - second.back()), 1e-7);
 }
 
-TEST(ModelRun, AddsToCommandAndLoadOfOneLane) {
+TEST(ObserverSimulation, AddsToCommandAndLoadOfOneLane) {
   const plant_sim::ModelFile file = model("thesis");
-  const greybox::Measured m = record();
-  greybox::ModelRun run(file, m, {}, 2.0);
+  const greybox::Dataset m = record();
+  greybox::ObserverSimulation run(file, m, {}, 2.0);
   const auto n = static_cast<Eigen::Index>(m.size());
   Eigen::MatrixXd added_V = Eigen::MatrixXd::Zero(n, 3);
   Eigen::MatrixXd added_N = Eigen::MatrixXd::Zero(n, 3);
@@ -131,10 +131,10 @@ TEST(ModelRun, AddsToCommandAndLoadOfOneLane) {
   EXPECT_NEAR(residuals_m(n - 1, 0), plain.back(), 1e-12);
 }
 
-TEST(ModelRun, GivesNothingBeforeASegmentHasSettled) {
-  greybox::Measured m = record();
-  for (std::size_t k = 0; k < 100; ++k) m.settled[k] = 0;
-  greybox::ModelRun run(model("velocity_servo"), m, {}, 2.0);
+TEST(ObserverSimulation, GivesNothingBeforeASegmentHasSettled) {
+  greybox::Dataset m = record();
+  for (std::size_t k = 0; k < 100; ++k) m.valid[k] = 0;
+  greybox::ObserverSimulation run(model("velocity_servo"), m, {}, 2.0);
   Eigen::MatrixXd residuals_m;
   run.residuals(Eigen::MatrixXd(0, 1), residuals_m);
   EXPECT_EQ(residuals_m.topRows(100).cwiseAbs().maxCoeff(), 0.0);
@@ -143,33 +143,34 @@ TEST(ModelRun, GivesNothingBeforeASegmentHasSettled) {
 
 /// The right model over the second half of its own motion, of which it knows neither speed nor
 /// pressures at the beginning.
-double error_after_settling_m(double observer_per_s, bool led) {
+double error_after_settling_m(double observer_per_s, bool initialising) {
   const plant_sim::ModelFile file = model("thesis");
   const std::unique_ptr<plant_sim::Plant> plant = plant_sim::make_plant(file);
-  greybox::Measured whole = record(2000);
+  greybox::Dataset whole = record(2000);
   whole.starts = {0};
   for (std::size_t k = 0; k < whole.size(); ++k) {
     whole.y_m[k] = plant->reading_m();
     plant->advance(whole.u_V[k], kTs);
   }
-  greybox::Measured half = greybox::part(whole, 1000, 2000);
-  if (!led) half.led.clear();
-  greybox::ModelRun run(file, half, {}, observer_per_s);
+  greybox::Dataset half = greybox::part(whole, 1000, 2000);
+  if (!initialising) half.initialising.clear();
+  greybox::ObserverSimulation run(file, half, {}, observer_per_s);
   Eigen::MatrixXd residuals_m;
   run.residuals(Eigen::MatrixXd(0, 1), residuals_m);
   return residuals_m.cwiseAbs().maxCoeff();
 }
 
-TEST(ModelRun, CatchesAMotionThatItsSegmentBeginsIn) {
+TEST(ObserverSimulation, CatchesAMotionThatItsSegmentBeginsIn) {
   for (const double observer_per_s : {0.0, 2.0}) {
     EXPECT_LT(error_after_settling_m(observer_per_s, true), 2e-7) << observer_per_s;
     EXPECT_GT(error_after_settling_m(observer_per_s, false), 2e-5) << observer_per_s;
   }
 }
 
-TEST(ModelRun, RefusesAParameterThatTheModelDoesNotHave) {
-  const greybox::Measured m = record();
-  EXPECT_THROW(greybox::ModelRun(model("velocity_servo"), m, {{"mass_kg"}}), config::schema::Error);
+TEST(ObserverSimulation, RefusesAParameterThatTheModelDoesNotHave) {
+  const greybox::Dataset m = record();
+  EXPECT_THROW(greybox::ObserverSimulation(model("velocity_servo"), m, {{"mass_kg"}}),
+               config::schema::Error);
 }
 
 TEST(StepFor, DividesTheSampleTimeAndIsNeverLongerThanTheModelsOwn) {
@@ -182,21 +183,21 @@ TEST(StepFor, DividesTheSampleTimeAndIsNeverLongerThanTheModelsOwn) {
 }
 
 // y' = g u has the same position at common times whatever the rate, u held.
-TEST(ModelRun, ReachesTheSamePositionAtFiftyHertzAsAtAThousand) {
+TEST(ObserverSimulation, ReachesTheSamePositionAtFiftyHertzAsAtAThousand) {
   plant_sim::ModelFile file = model("velocity_servo");
   *file.value("time_constant_s") = 0.0;
   for (const double sample_time_s : {0.02, 0.005, 0.001, 0.0077531}) {
-    greybox::Measured m;
+    greybox::Dataset m;
     m.sample_time_s = sample_time_s;
     const auto samples = static_cast<std::size_t>(std::lround(4.0 / sample_time_s));
     for (std::size_t k = 0; k < samples; ++k) {
       m.t_s.push_back(sample_time_s * static_cast<double>(k));
       m.u_V.push_back(0.4);
       m.y_m.push_back(0.1 + 0.05 * 0.4 * m.t_s.back());
-      m.settled.push_back(1);
+      m.valid.push_back(1);
     }
     m.starts = {0};
-    greybox::ModelRun run(file, m, {}, 0.0);
+    greybox::ObserverSimulation run(file, m, {}, 0.0);
     Eigen::MatrixXd residuals_m;
     run.residuals(Eigen::MatrixXd(0, 1), residuals_m);
     EXPECT_LT(residuals_m.cwiseAbs().maxCoeff(), 1e-12) << sample_time_s;

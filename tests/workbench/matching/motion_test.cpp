@@ -12,15 +12,15 @@ namespace workbench::matching {
 namespace greybox = estimator::greybox;
 namespace {
 
-greybox::Measured record(double sample_time_s, std::size_t samples,
-                         const std::function<double(double)>& y_m) {
-  greybox::Measured m;
+greybox::Dataset record(double sample_time_s, std::size_t samples,
+                        const std::function<double(double)>& y_m) {
+  greybox::Dataset m;
   m.sample_time_s = sample_time_s;
   for (std::size_t k = 0; k < samples; ++k) {
     m.t_s.push_back(sample_time_s * static_cast<double>(k));
     m.u_V.push_back(0.0);
     m.y_m.push_back(y_m(m.t_s.back()));
-    m.settled.push_back(1);
+    m.valid.push_back(1);
   }
   m.starts = {0};
   return m;
@@ -28,9 +28,9 @@ greybox::Measured record(double sample_time_s, std::size_t samples,
 
 TEST(Motion, IsExactForConstantAccelerationAtAnyRateAndAtTheEnds) {
   for (const double sample_time_s : {0.02, 0.0077531, 0.005, 0.001}) {
-    const greybox::Measured m =
+    const greybox::Dataset m =
         record(sample_time_s, 300, [](double t) { return 0.3 - 0.05 * t + 0.5 * 0.2 * t * t; });
-    const greybox::Motion found = greybox::motion(m, 0.0);
+    const greybox::Kinematics found = greybox::kinematics(m, 0.0);
     for (std::size_t k = 0; k < m.size(); ++k) {
       ASSERT_NEAR(found.speed_mps[k], -0.05 + 0.2 * m.t_s[k], 1e-9);
       ASSERT_NEAR(found.acceleration_mps2[k], 0.2, 1e-6);
@@ -42,8 +42,8 @@ TEST(Motion, IsExactForConstantAccelerationAtAnyRateAndAtTheEnds) {
 TEST(Motion, HasTheNoiseOfALeastSquaresSlope) {
   std::mt19937 random(1);
   std::normal_distribution<double> noise(0.0, 2.5e-6);
-  const greybox::Measured m = record(0.005, 20000, [&](double) { return noise(random); });
-  const greybox::Motion found = greybox::motion(m, 2.5e-6);
+  const greybox::Dataset m = record(0.005, 20000, [&](double) { return noise(random); });
+  const greybox::Kinematics found = greybox::kinematics(m, 2.5e-6);
   double squares = 0.0;
   for (const double v : found.speed_mps) squares += v * v;
   const double expected_mps = 2.5e-6 / (0.005 * std::sqrt(10.0 * 11.0 * 21.0 / 3.0));
@@ -53,9 +53,9 @@ TEST(Motion, HasTheNoiseOfALeastSquaresSlope) {
 
 TEST(Motion, TellsExtendingReversingAndRetractingOfASineApart) {
   // 0.5 Hz: turns at 0.5 s, 1.5 s, ...
-  const greybox::Measured m =
+  const greybox::Dataset m =
       record(0.005, 1000, [](double t) { return 0.02 * std::sin(M_PI * t); });
-  const greybox::Motion found = greybox::motion(m, 0.0);
+  const greybox::Kinematics found = greybox::kinematics(m, 0.0);
   EXPECT_EQ(found.direction[40], greybox::Direction::extending);   // 0.2 s
   EXPECT_EQ(found.direction[100], greybox::Direction::reversing);  // 0.5 s
   EXPECT_EQ(found.direction[105], greybox::Direction::reversing);
@@ -66,10 +66,10 @@ TEST(Motion, TellsExtendingReversingAndRetractingOfASineApart) {
 
 TEST(Motion, CallsAStandstillRestAndNotAReversal) {
   // Out for one second, still for two, back for one.
-  const greybox::Measured m = record(0.005, 800, [](double t) {
+  const greybox::Dataset m = record(0.005, 800, [](double t) {
     return t < 1.0 ? 0.05 * t : (t < 3.0 ? 0.05 : 0.05 - 0.05 * (t - 3.0));
   });
-  const greybox::Motion found = greybox::motion(m, 1e-6);
+  const greybox::Kinematics found = greybox::kinematics(m, 1e-6);
   EXPECT_EQ(found.direction[100], greybox::Direction::extending);
   EXPECT_EQ(found.direction[400], greybox::Direction::resting);
   EXPECT_EQ(found.direction[700], greybox::Direction::retracting);
@@ -78,10 +78,10 @@ TEST(Motion, CallsAStandstillRestAndNotAReversal) {
 }
 
 TEST(Motion, DoesNotLookAcrossAGap) {
-  greybox::Measured m =
+  greybox::Dataset m =
       record(0.005, 600, [](double t) { return t < 1.5 ? 0.01 * t : 0.2 - 0.01 * t; });
   m.starts = {0, 300};
-  const greybox::Motion found = greybox::motion(m, 0.0);
+  const greybox::Kinematics found = greybox::kinematics(m, 0.0);
   EXPECT_NEAR(found.speed_mps[299], 0.01, 1e-9);
   EXPECT_NEAR(found.speed_mps[300], -0.01, 1e-9);
   EXPECT_EQ(

@@ -19,8 +19,8 @@ using testing::SizeIs;
 constexpr double kSample_s = 0.05;
 
 /// 20 Hz; the rod moves only from `busy_s` on for `busy_for_s` of every two minutes.
-greybox::Measured record(double length_s, double busy_s = 0.0, double busy_for_s = 120.0) {
-  greybox::Measured m;
+greybox::Dataset record(double length_s, double busy_s = 0.0, double busy_for_s = 120.0) {
+  greybox::Dataset m;
   m.name = "made";
   m.sample_time_s = kSample_s;
   const auto samples = static_cast<std::size_t>(std::lround(length_s / kSample_s));
@@ -33,14 +33,14 @@ greybox::Measured record(double length_s, double busy_s = 0.0, double busy_for_s
     m.u_V.push_back(t_s);
     m.y_m.push_back(y_m);
   }
-  m.settled.assign(samples, 1);
+  m.valid.assign(samples, 1);
   m.starts = {0};
   return m;
 }
 
 TEST(Stretches, OfTenMinutesAreOneTenth) {
-  const greybox::Evidence whole = greybox::evidence({record(600.0)}, {});
-  const greybox::Evidence found = greybox::stretches_of(whole);
+  const greybox::FitDataset whole = greybox::fit_dataset({record(600.0)}, {});
+  const greybox::FitDataset found = greybox::representative_segments(whole);
   EXPECT_NEAR(greybox::length_s(whole), 600.0, 1e-9);
   EXPECT_NEAR(greybox::length_s(found), 60.0, 1e-9);
   EXPECT_THAT(found.records.front().starts, SizeIs(5));
@@ -48,9 +48,9 @@ TEST(Stretches, OfTenMinutesAreOneTenth) {
 }
 
 TEST(Stretches, LieWhereTheRodMovesInEachPartOfTheRecord) {
-  const greybox::Evidence found =
-      greybox::stretches_of(greybox::evidence({record(600.0, 60.0, 15.0)}, {}));
-  const greybox::Measured& kept = found.records.front();
+  const greybox::FitDataset found =
+      greybox::representative_segments(greybox::fit_dataset({record(600.0, 60.0, 15.0)}, {}));
+  const greybox::Dataset& kept = found.records.front();
   ASSERT_THAT(kept.starts, SizeIs(5));
   for (std::size_t i = 0; i < 5; ++i) {
     const double from_s = kept.t_s[kept.starts[i]] - 120.0 * static_cast<double>(i);
@@ -59,43 +59,45 @@ TEST(Stretches, LieWhereTheRodMovesInEachPartOfTheRecord) {
 }
 
 TEST(Stretches, KeepWhatEachSampleIsFor) {
-  const greybox::Evidence whole = greybox::evidence({record(600.0)}, {});
-  const greybox::Evidence found = greybox::stretches_of(whole);
-  const greybox::Measured& kept = found.records.front();
+  const greybox::FitDataset whole = greybox::fit_dataset({record(600.0)}, {});
+  const greybox::FitDataset found = greybox::representative_segments(whole);
+  const greybox::Dataset& kept = found.records.front();
   double settling = 0.0;
   for (std::size_t k = 0; k < kept.size(); ++k) {
     const auto there = static_cast<Eigen::Index>(std::lround(kept.t_s[k] / kSample_s));
     const auto here = static_cast<Eigen::Index>(k);
     EXPECT_EQ(kept.y_m[k], whole.records.front().y_m[static_cast<std::size_t>(there)]);
-    if (kept.settled[k] == 0) {
+    if (kept.valid[k] == 0) {
       ++settling;
-      EXPECT_EQ(found.counts[here], 0.0);
+      EXPECT_EQ(found.all_mask[here], 0.0);
       continue;
     }
-    EXPECT_EQ(found.fits[here], whole.fits[there]);
-    EXPECT_EQ(found.scores[here], whole.scores[there]);
+    EXPECT_EQ(found.training_mask[here], whole.training_mask[there]);
+    EXPECT_EQ(found.validation_mask[here], whole.validation_mask[there]);
   }
   EXPECT_EQ(settling, 5 * 10);
-  EXPECT_NEAR(found.fits.sum(), found.scores.sum(), 50.0);
+  EXPECT_NEAR(found.training_mask.sum(), found.validation_mask.sum(), 50.0);
 }
 
 TEST(Stretches, AreTakenOfEveryRecordAndShortOnesStayWhole) {
-  const greybox::Evidence whole = greybox::evidence({record(500.0), record(15.0)}, {record(85.0)});
-  const greybox::Evidence found = greybox::stretches_of(whole);
+  const greybox::FitDataset whole =
+      greybox::fit_dataset({record(500.0), record(15.0)}, {record(85.0)});
+  const greybox::FitDataset found = greybox::representative_segments(whole);
   ASSERT_THAT(found.records, SizeIs(3));
   EXPECT_EQ(found.fitted_records, 2U);
   EXPECT_THAT(found.records[0].starts, SizeIs(4));
   EXPECT_EQ(found.records[1].size(), whole.records[1].size());
   EXPECT_THAT(found.records[2].starts, SizeIs(1));
   EXPECT_THAT(found.starts, testing::ElementsAre(0, 960, 1260));
-  EXPECT_EQ(found.fits.tail(240).sum(), 0.0);
-  EXPECT_EQ(found.scores.head(1260).sum(), 0.0);
+  EXPECT_EQ(found.training_mask.tail(240).sum(), 0.0);
+  EXPECT_EQ(found.validation_mask.head(1260).sum(), 0.0);
 }
 
 TEST(Stretches, BeginAnewAfterGapsOfTheRecord) {
-  greybox::Measured gappy = record(600.0);
+  greybox::Dataset gappy = record(600.0);
   gappy.starts = {0, 30, 2430};
-  const greybox::Evidence found = greybox::stretches_of(greybox::evidence({gappy}, {}));
+  const greybox::FitDataset found =
+      greybox::representative_segments(greybox::fit_dataset({gappy}, {}));
   for (const std::size_t start : found.records.front().starts) {
     EXPECT_LT(start, found.records.front().size());
   }

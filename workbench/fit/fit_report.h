@@ -12,21 +12,21 @@ namespace workbench::fit {
 
 namespace greybox = estimator::greybox;
 
-struct Outcome {
-  const Prepared* prepared = nullptr;  ///< must outlive this
-  greybox::Estimation estimation;
+struct FitReport {
+  const PreparedFit* prepared = nullptr;  ///< must outlive this
+  greybox::EstimationSummary estimation;
   double noise_floor_m = 0.0;  ///< NaN: cannot be told
   double runtime_s = 0.0;
   std::string output;  ///< the model file that is written, or empty
 };
 
 /// What it comes to in plain words, most important first.
-[[nodiscard]] std::vector<std::string> words(const Outcome& outcome);
+[[nodiscard]] std::vector<std::string> words(const FitReport& outcome);
 /// "held by its prior", "at its lower bound", ... or empty.
-[[nodiscard]] std::string remark(const greybox::Parameter& parameter);
+[[nodiscard]] std::string remark(const greybox::EstimatedParameter& parameter);
 
 /// Words, table, profiles.
-[[nodiscard]] std::string to_text(const Outcome& outcome);
+[[nodiscard]] std::string to_text(const FitReport& outcome);
 
 /// SI throughout; a missing number is null. Keys: parameters.NAME.{value, std_error, low, high,
 /// at_bound (-1, 0, 1), start, prior_mean, prior_sd, record_share, interval ("normal", "profile"),
@@ -36,11 +36,11 @@ struct Outcome {
 /// identifiability.{before, after}.{condition, unseen: [{parameter, partners, visible, words}]},
 /// correlation.{names, matrix}, interrupted, fit_s (without
 /// reading, profiles and writing), runtime_s.
-[[nodiscard]] std::string to_json(const Outcome& outcome);
+[[nodiscard]] std::string to_json(const FitReport& outcome);
 
-[[nodiscard]] present::Report to_report(const Outcome& outcome);
+[[nodiscard]] present::Report to_report(const FitReport& outcome);
 
 /// The model with what was found; its head says how.
-[[nodiscard]] std::string to_model(const Outcome& outcome);
+[[nodiscard]] std::string to_model(const FitReport& outcome);
 
 }  // namespace workbench::fit

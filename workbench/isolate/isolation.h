@@ -11,25 +11,25 @@ namespace workbench::isolate {
 
 namespace tracking = estimator::greybox::tracking;
 
-using tracking::Alarm;
-using tracking::Choice;
-using tracking::Healthy;
-using tracking::Named;
+using tracking::Baseline;
+using tracking::DetectedChange;
+using tracking::ParameterChange;
+using tracking::ParameterSet;
+using tracking::ParameterTracker;
 using tracking::Rival;
-using tracking::Settings;
-using tracking::Tracker;
-using tracking::Window;
+using tracking::TrackerSettings;
+using tracking::WindowResult;
 
-struct Request {
+struct IsolationRequest {
   std::string model;
   std::string record;
   std::vector<std::string> parameters{"supply_pressure_Pa,damping_N_s_per_m"};
-  Settings settings;
-  std::string healthy = "0:10";  ///< from:to, s
-  double healthy_rms_m = 0.0;  ///< above 0: given instead of learnt; the file's values are healthy
-  std::string learn;           ///< file for what was learnt, for [[tracker]] healthy
-  std::string rig_id;          ///< noted in it
-  bool no_pressures = false;   ///< the record's are not used
+  TrackerSettings settings;
+  std::string baseline = "0:10";  ///< from:to, s
+  double baseline_rms_m = 0.0;  ///< above 0: given instead of learnt; the file's values are healthy
+  std::string learn_baseline;   ///< file for what was learnt, for [[tracker]] healthy
+  std::string rig_id;           ///< noted in it
+  bool no_pressures = false;    ///< the record's are not used
   std::vector<std::string> assignments;
   std::string json;  ///< "-": standard output
   std::string report;
@@ -37,27 +37,27 @@ struct Request {
   std::string command;  ///< the command line as it was typed, for the report
 };
 
-struct Outcome {
+struct IsolationReport {
   std::string model;
   std::string record;
   std::string command;
-  Choice choice;
-  Settings settings;
-  Healthy healthy;
+  ParameterSet set;
+  TrackerSettings settings;
+  Baseline baseline;
   bool learnt = false;
-  double healthy_from_s = 0.0;
-  double healthy_to_s = 0.0;
+  double baseline_from_s = 0.0;
+  double baseline_to_s = 0.0;
   double noise_floor_m = 0.0;  ///< NaN: cannot be told
-  std::vector<Window> windows;
-  std::vector<Alarm> alarms;
+  std::vector<WindowResult> windows;
+  std::vector<DetectedChange> alarms;
   std::vector<std::string> notes;
 };
 
 /// Reads everything and tracks. Throws config::schema::UsageError for options, DataError and
 /// ConfigError for files that cannot be used.
-[[nodiscard]] Outcome isolate(const Request& request);
+[[nodiscard]] IsolationReport isolate(const IsolationRequest& request);
 
-[[nodiscard]] std::string to_text(const Outcome& outcome, bool all_windows);
+[[nodiscard]] std::string to_text(const IsolationReport& outcome, bool all_windows);
 
 /// SI, a missing number is null: windows: [{t_s, from_s, NAME: {value, std_error, smallest, valid},
 /// correlation, rms_m, pressures: {in_error_Pa, in_offset_Pa, out_error_Pa, out_offset_Pa} (where
@@ -65,8 +65,8 @@ struct Outcome {
 /// ("high", "low"), value, std_error, healthy, change_ratio, confidence, ambiguity_group, rivals:
 /// [{parameter, value}], raised_s, cleared_s, advice, words}], healthy: {rms_m, from_s, to_s,
 /// values, pressures}, noise_floor_m, parameters, limit_m, notes, fit_s (median of a window).
-[[nodiscard]] std::string to_json(const Outcome& outcome);
+[[nodiscard]] std::string to_json(const IsolationReport& outcome);
 
-[[nodiscard]] present::Report to_report(const Outcome& outcome);
+[[nodiscard]] present::Report to_report(const IsolationReport& outcome);
 
 }  // namespace workbench::isolate

@@ -1,4 +1,4 @@
-#include "workbench/fit/choice.h"
+#include "workbench/fit/parameter_selection.h"
 
 #include <fmt/format.h>
 
@@ -19,40 +19,40 @@ namespace {
 
 using config::schema::bad_config;
 using config::schema::UsageError;
-using greybox::Known;
-using greybox::known_parameters;
-using greybox::names_worth_showing;
-using greybox::open_up;
-using greybox::refuse_name;
+using greybox::CatalogueParameter;
+using greybox::FreeParameter;
+using greybox::parameter_catalogue;
+using greybox::reject_name;
 using greybox::Scale;
-using greybox::SearchParameter;
 using greybox::split_names;
+using greybox::suggested_names;
+using greybox::widen_to_full_range;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 std::string shown(double value) { return fmt::format("{:.6g}", value); }
 
-class Chooser {
+class ParameterSelector {
  public:
-  Chooser(const plant_sim::ModelFile& model, const Wishes& wishes)
-      : model_(model), wishes_(wishes), known_(known_parameters(model)) {
-    for (const Known& k : known_) {
+  ParameterSelector(const plant_sim::ModelFile& model, const ParameterSelection& selection)
+      : model_(model), selection_(selection), catalogue_(parameter_catalogue(model)) {
+    for (const CatalogueParameter& k : catalogue_) {
       all_.push_back(k.name);
       if (!k.effect.empty()) all_.push_back(k.effect);
     }
-    shown_ = names_worth_showing(model, known_);
+    shown_ = suggested_names(model, catalogue_);
   }
 
-  Choice run() {
+  FreeParameters run() {
     pick();
-    for (const std::string& text : wishes_.priors) prior(text);
-    for (const std::string& text : wishes_.bounds) bounds(text);
-    Choice choice;
-    for (const std::size_t i : picked_) choice.searched.push_back(known_[i].search);
-    if (choice.searched.empty()) {
+    for (const std::string& text : selection_.priors) prior(text);
+    for (const std::string& text : selection_.bounds) bounds(text);
+    FreeParameters choice;
+    for (const std::size_t i : picked_) choice.parameters.push_back(catalogue_[i].free);
+    if (choice.parameters.empty()) {
       throw UsageError("--free, --fix: leave nothing to fit");
     }
-    choice.start = greybox::start_of(model_, choice.searched);
+    choice.start = greybox::start_of(model_, choice.parameters);
     return choice;
   }
 
@@ -60,10 +60,10 @@ class Chooser {
   /// Indices of a parameter, or of all those of an effect.
   std::vector<std::size_t> find(const std::string& option, const std::string& name) const {
     std::vector<std::size_t> found;
-    for (std::size_t i = 0; i < known_.size(); ++i) {
-      if (known_[i].name == name || known_[i].effect == name) found.push_back(i);
+    for (std::size_t i = 0; i < catalogue_.size(); ++i) {
+      if (catalogue_[i].name == name || catalogue_[i].effect == name) found.push_back(i);
     }
-    if (found.empty()) refuse_name(option, name, all_, shown_);
+    if (found.empty()) reject_name(option, name, all_, shown_);
     return found;
   }
 
@@ -71,17 +71,17 @@ class Chooser {
     const auto add = [&](std::size_t i) {
       if (std::find(picked_.begin(), picked_.end(), i) == picked_.end()) picked_.push_back(i);
     };
-    if (wishes_.free.empty()) {
-      std::vector<SearchParameter> usual = greybox::plant_parameters(model_);
+    if (selection_.free.empty()) {
+      std::vector<FreeParameter> usual = greybox::plant_parameters(model_);
       for (const auto& p : greybox::present_parameters(model_)) usual.push_back(p);
-      for (const SearchParameter& p : usual) {
+      for (const FreeParameter& p : usual) {
         for (const std::size_t i : find("--free", p.name)) add(i);
       }
     }
-    for (const std::string& name : split_names(wishes_.free)) {
+    for (const std::string& name : split_names(selection_.free)) {
       for (const std::size_t i : find("--free", name)) add(i);
     }
-    for (const std::string& name : split_names(wishes_.fix)) {
+    for (const std::string& name : split_names(selection_.fix)) {
       for (const std::size_t i : find("--fix", name)) {
         picked_.erase(std::remove(picked_.begin(), picked_.end(), i), picked_.end());
       }
@@ -89,7 +89,8 @@ class Chooser {
   }
 
   /// The fitted parameter that "name=..." is about, and what stands behind the equals sign.
-  Known& subject(const std::string& option, const std::string& text, std::string& value) {
+  CatalogueParameter& subject(const std::string& option, const std::string& text,
+                              std::string& value) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos) {
       throw UsageError(option + " " + text + ": lacks an equals sign; allowed: name=" +
@@ -99,22 +100,22 @@ class Chooser {
     value = text.substr(equals + 1);
     std::vector<std::string> fitted;
     for (const std::size_t i : picked_) {
-      if (known_[i].name == name) return known_[i];
-      fitted.push_back(known_[i].name);
+      if (catalogue_[i].name == name) return catalogue_[i];
+      fitted.push_back(catalogue_[i].name);
     }
-    const auto same = [&](const Known& k) { return k.name == name; };
-    if (std::any_of(known_.begin(), known_.end(), same)) {
+    const auto same = [&](const CatalogueParameter& k) { return k.name == name; };
+    if (std::any_of(catalogue_.begin(), catalogue_.end(), same)) {
       throw bad_config(option + " " + name, "is not fitted; name it with --free",
                        config::schema::joined(fitted));
     }
-    refuse_name(option, name, fitted, fitted);
+    reject_name(option, name, fitted, fitted);
   }
 
   void prior(const std::string& text) {
     std::string value;
-    Known& known = subject("--prior", text, value);
+    CatalogueParameter& known = subject("--prior", text, value);
     if (value == "none") {
-      open_up(known);
+      widen_to_full_range(known);
       return;
     }
     std::size_t sign = value.rfind("+-");
@@ -129,20 +130,20 @@ class Chooser {
                        ": is no prior; allowed: name=mean+-sd with sd above 0 (or "
                        "in %), name=none");
     }
-    SearchParameter& p = known.search;
+    FreeParameter& p = known.free;
     const bool positive = p.scale != Scale::linear;
     if (mean < known.info.min || mean > known.info.max || (positive && mean <= 0.0)) {
       throw bad_config("--prior " + known.name, "has the mean " + shown(mean) + ", out of range",
                        shown(known.info.min) + " to " + shown(known.info.max));
     }
-    open_up(known);
-    p.prior_mean = p.search(mean);
+    widen_to_full_range(known);
+    p.prior_mean = p.to_theta(mean);
     p.prior_sd = sd / p.slope(p.prior_mean);
   }
 
   void bounds(const std::string& text) {
     std::string value;
-    Known& known = subject("--bounds", text, value);
+    CatalogueParameter& known = subject("--bounds", text, value);
     const std::size_t colon = value.find(':');
     const auto end = [&](const std::string& word, double open) {
       return word.empty() ? open : number_in(word);
@@ -160,17 +161,17 @@ class Chooser {
       throw bad_config("--bounds " + known.name, "are wider than the parameter's range",
                        shown(known.info.min) + " to " + shown(known.info.max));
     }
-    SearchParameter& p = known.search;
+    FreeParameter& p = known.free;
     const double infinite = p.scale == Scale::logarithmic ? -20.0 : kInfinite;
-    const double a = low > 0.0 || p.scale == Scale::linear ? p.search(low) : infinite;
-    const double b = p.search(high);
+    const double a = low > 0.0 || p.scale == Scale::linear ? p.to_theta(low) : infinite;
+    const double b = p.to_theta(high);
     p.lower = std::min(a, b);
     p.upper = std::max(a, b);
   }
 
   const plant_sim::ModelFile& model_;
-  const Wishes& wishes_;
-  std::vector<Known> known_;
+  const ParameterSelection& selection_;
+  std::vector<CatalogueParameter> catalogue_;
   std::vector<std::string> all_;
   std::vector<std::string> shown_;
   std::vector<std::size_t> picked_;
@@ -185,8 +186,9 @@ double number_in(std::string_view text) {
   return failed == std::errc() && rest == end && std::isfinite(value) ? value : std::nan("");
 }
 
-Choice choose(const plant_sim::ModelFile& model, const Wishes& wishes) {
-  return Chooser(model, wishes).run();
+FreeParameters select_parameters(const plant_sim::ModelFile& model,
+                                 const ParameterSelection& selection) {
+  return ParameterSelector(model, selection).run();
 }
 
 }  // namespace workbench::fit

@@ -1,4 +1,4 @@
-#include "workbench/isolate/outcome.h"
+#include "workbench/isolate/isolation.h"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@
 #include "estimator/greybox/tracking/words.h"
 #include "estimator/residual/noise_floor.h"
 #include "workbench/cli/file_check.h"
-#include "workbench/fit/choice.h"
+#include "workbench/fit/parameter_selection.h"
 
 namespace workbench::isolate {
 
@@ -80,12 +80,12 @@ bool mostly_read(const std::vector<double>* column) {
              static_cast<std::ptrdiff_t>(column->size());
 }
 
-Readings readings_of(const Record& record, const Request& request) {
+Readings readings_of(const Record& record, const IsolationRequest& request) {
   Readings out;
   if (request.no_pressures) return out;
   out.supply_Pa = column(record, kSupply);
   // What the chambers are like when healthy has to be learnt.
-  if (request.healthy_rms_m > 0.0) return out;
+  if (request.baseline_rms_m > 0.0) return out;
   if (!mostly_read(column(record, kIn)) || !mostly_read(column(record, kOut))) return out;
   out.in_Pa = column(record, kIn);
   out.out_Pa = column(record, kOut);
@@ -94,7 +94,7 @@ Readings readings_of(const Record& record, const Request& request) {
 
 /// With a reading of the supply pressure or of both chambers' the valve gain can be told, and is
 /// tracked as well.
-std::vector<std::string> tracked_names(const Request& request, const Readings& readings,
+std::vector<std::string> tracked_names(const IsolationRequest& request, const Readings& readings,
                                        std::vector<std::string>& notes) {
   std::vector<std::string> names = greybox::split_names(request.parameters);
   const auto has = [&](const char* name) {
@@ -115,9 +115,9 @@ std::vector<std::string> tracked_names(const Request& request, const Readings& r
 }
 
 /// Every window of [from, to) of the record.
-std::vector<Window> track(Tracker& tracker, const Record& record, const Readings& readings,
-                          const Span& within) {
-  std::vector<Window> windows;
+std::vector<WindowResult> track(ParameterTracker& tracker, const Record& record,
+                                const Readings& readings, const Span& within) {
+  std::vector<WindowResult> windows;
   std::size_t gap = 0;
   bool first = true;
   for (std::size_t k = 0; k < record.size(); ++k) {
@@ -135,7 +135,7 @@ std::vector<Window> track(Tracker& tracker, const Record& record, const Readings
   return windows;
 }
 
-void check(const Request& request, const Record& record) {
+void check(const IsolationRequest& request, const Record& record) {
   const double least_s = request.settings.window_s + tracking::kLead_s;
   const double length_s = static_cast<double>(record.size()) * record.sample_time_s;
   if (request.settings.window_s < kLeastSamples * record.sample_time_s) {
@@ -153,18 +153,18 @@ void check(const Request& request, const Record& record) {
   }
 }
 
-void note_calibration(Outcome& out) {
-  const double times = out.healthy.rms_m / out.noise_floor_m;
+void note_calibration(IsolationReport& out) {
+  const double times = out.baseline.rms_m / out.noise_floor_m;
   if (times > kUncalibrated) {
     out.notes.push_back(fmt::format("the healthy error is {:.3g}", times) +
                         " times the noise floor: the model lacks something that healthy data "
                         "show; calibrate it first (spoolwatch diagnose, fit)");
   }
-  for (std::size_t i = 0; i < out.choice.tracked; ++i) {
-    const greybox::SearchParameter& p = out.choice.parameters[i];
+  for (std::size_t i = 0; i < out.set.tracked; ++i) {
+    const greybox::FreeParameter& p = out.set.parameters[i];
     const auto at = static_cast<Eigen::Index>(i);
     if (p.scale != greybox::Scale::logarithmic) continue;
-    const double off = std::exp(out.healthy.x[at] - out.choice.file[at]) - 1.0;
+    const double off = std::exp(out.baseline.theta[at] - out.set.file[at]) - 1.0;
     if (std::abs(off) < kOffFile) continue;
     out.notes.push_back(
         "when healthy, " + tracking::name_words(p.name) +
@@ -172,76 +172,77 @@ void note_calibration(Outcome& out) {
   }
 }
 
-void note_followed(Outcome& out, const Tracker& tracker) {
-  const tracking::SlowChange& slow = tracker.slow_change();
+void note_followed(IsolationReport& out, const ParameterTracker& tracker) {
+  const tracking::BaselineDrift& slow = tracker.baseline_drift();
   for (std::size_t i = 0; i < slow.size(); ++i) {
     const std::size_t at = slow.parameter(i);
-    const greybox::SearchParameter& p = out.choice.parameters[at];
-    const Eigen::VectorXd& healthy = tracker.healthy()->x;
+    const greybox::FreeParameter& p = out.set.parameters[at];
+    const Eigen::VectorXd& baseline = tracker.baseline()->theta;
     out.notes.push_back(
-        slow.at_end(i, healthy) != 0
-            ? tracking::slow_words(p, slow.learnt(i), healthy[static_cast<Eigen::Index>(at)])
+        slow.at_end(i, baseline) != 0
+            ? tracking::slow_words(p, slow.learnt(i), baseline[static_cast<Eigen::Index>(at)])
             : tracking::name_words(p.name) + " was followed from " +
                   tracking::value_words(p, slow.learnt(i), NAN) + " to " +
-                  tracking::value_words(p, healthy[static_cast<Eigen::Index>(at)], NAN));
+                  tracking::value_words(p, baseline[static_cast<Eigen::Index>(at)], NAN));
   }
 }
 
-void write_learnt(const Request& request, const plant_sim::ModelFile& model, const Record& record,
-                  const Outcome& out) {
-  tracker::HealthyFile file = tracker::healthy_file(model, out.choice, out.settings, out.healthy);
+void write_learnt(const IsolationRequest& request, const plant_sim::ModelFile& model,
+                  const Record& record, const IsolationReport& out) {
+  tracker::BaselineFile file = tracker::baseline_file(model, out.set, out.settings, out.baseline);
   file.rig_id = request.rig_id;
   file.source = record.name;
   file.sample_time_s = record.sample_time_s;
   file.noise_floor_m = std::isfinite(out.noise_floor_m) ? out.noise_floor_m : 0.0;
-  config::record::write_whole(request.learn,
+  config::record::write_whole(request.learn_baseline,
                               config::schema::print_toml([&](auto& v) { file.visit(v); }));
 }
 
 }  // namespace
 
-Outcome isolate(const Request& request) {
+IsolationReport isolate(const IsolationRequest& request) {
   cli::check_outputs(
-      {{"--json", request.json}, {"--report", request.report}, {"--learn", request.learn}},
+      {{"--json", request.json}, {"--report", request.report}, {"--learn", request.learn_baseline}},
       {request.model, {request.record}});
   const plant_sim::ModelFile model = plant_sim::load_model(request.model, request.assignments);
   const Record record = config::record::read_record(request.record);
   check(request, record);
-  Outcome out;
+  IsolationReport out;
   out.model = request.model;
   out.record = request.record;
   out.command = request.command;
   out.settings = request.settings;
   out.notes = record.notes;
   const Readings readings = readings_of(record, request);
-  out.choice = tracking::choose(model, tracked_names(request, readings, out.notes), "--parameters");
+  out.set = tracking::choose(model, tracked_names(request, readings, out.notes), "--parameters");
   const auto floor = estimator::residual::noise_floor(record.y_m, record.sample_time_s);
   out.noise_floor_m = floor.sd_m;
   const double floor_m = std::isfinite(floor.sd_m) ? floor.sd_m : 0.0;
-  const tracking::SlowChange follows(out.choice, request.settings.following, "--follow");
+  const tracking::BaselineDrift follows(out.set, request.settings.drift, "--follow");
   const auto tracker = [&] {
-    return Tracker(model, out.choice, request.settings, record.sample_time_s, floor_m);
+    return ParameterTracker(model, out.set, request.settings, record.sample_time_s, floor_m);
   };
-  if (request.healthy_rms_m > 0.0) {
-    if (!request.learn.empty()) {
+  if (request.baseline_rms_m > 0.0) {
+    if (!request.learn_baseline.empty()) {
       throw UsageError("--learn: nothing is learnt with --healthy-rms");
     }
-    out.healthy = {request.healthy_rms_m, out.choice.file, {}};
+    out.baseline = {request.baseline_rms_m, out.set.file, {}};
   } else {
-    const Span healthy = span(request.healthy);
-    Tracker learning = tracker();
-    out.healthy = tracking::learn(track(learning, record, readings, healthy), out.choice, floor_m,
-                                  record.name + ": --healthy " + request.healthy);
+    const Span baseline = span(request.baseline);
+    ParameterTracker learning = tracker();
+    out.baseline =
+        tracking::learn_baseline(track(learning, record, readings, baseline), out.set, floor_m,
+                                 record.name + ": --healthy " + request.baseline);
     out.learnt = true;
-    out.healthy_from_s = healthy.from_s;
-    out.healthy_to_s = healthy.to_s;
+    out.baseline_from_s = baseline.from_s;
+    out.baseline_to_s = baseline.to_s;
     note_calibration(out);
-    if (!request.learn.empty()) write_learnt(request, model, record, out);
+    if (!request.learn_baseline.empty()) write_learnt(request, model, record, out);
   }
-  Tracker judging = tracker();
-  judging.take(out.healthy);
+  ParameterTracker judging = tracker();
+  judging.take(out.baseline);
   out.windows = track(judging, record, readings, {-INFINITY, INFINITY});
-  out.alarms = judging.alarms().alarms();
+  out.alarms = judging.detector().changes();
   note_followed(out, judging);
   return out;
 }

@@ -17,21 +17,22 @@ namespace workbench::fit {
 
 namespace greybox = estimator::greybox;
 
-struct Wishes {
+struct ParameterSelection {
   std::vector<std::string> free{};  ///< empty: the plant's uncertain ones and those of its effects
   std::vector<std::string> fix{};
   std::vector<std::string> priors{};
   std::vector<std::string> bounds{};
 };
 
-struct Choice {
-  std::vector<greybox::SearchParameter> searched;
+struct FreeParameters {
+  std::vector<greybox::FreeParameter> parameters;
   Eigen::VectorXd start;
 };
 
 /// Throws config::schema::UsageError for a word that is not one of the above, ConfigError for an
 /// unknown parameter or a value that it cannot have.
-[[nodiscard]] Choice choose(const plant_sim::ModelFile& model, const Wishes& wishes);
+[[nodiscard]] FreeParameters select_parameters(const plant_sim::ModelFile& model,
+                                               const ParameterSelection& selection);
 
 /// A finite number and nothing else; NaN otherwise.
 [[nodiscard]] double number_in(std::string_view text);
