@@ -107,7 +107,7 @@ TEST_F(Alarms, AreSeenActedOnAndFoundAgainAfterAKill) {
   EXPECT_EQ(again.exit_code, 1);
   EXPECT_THAT(again.out, HasSubstr("refused: sample.standing: nothing to acknowledge"));
   EXPECT_THAT(order("ack nothing.there").out, HasSubstr("no alarm \"nothing.there\""));
-  EXPECT_THAT(order("shelve standing --for 1h").out, HasSubstr("for 1000 s at most"));
+  EXPECT_THAT(order("shelve standing --for 1h").out, HasSubstr("limited to 1000 s"));
   EXPECT_EQ(order("shelve standing --for soon").exit_code, 2);
   EXPECT_EQ(order("shelve standing --for 10min").out, "sample.standing\n");
   const json listed = json::parse(order("alarms --json -").out);
@@ -127,7 +127,7 @@ TEST_F(Alarms, AreSeenActedOnAndFoundAgainAfterAKill) {
   EXPECT_THAT(acts[0]["what"].get<std::string>(), HasSubstr("\"ack\""));
   EXPECT_EQ(acts[0]["done"], true);
   EXPECT_EQ(acts[1]["done"], false);
-  EXPECT_THAT(acts[3]["reason"].get<std::string>(), HasSubstr("1000 s at most"));
+  EXPECT_THAT(acts[3]["reason"].get<std::string>(), HasSubstr("limited to 1000 s"));
 
   start();
   ASSERT_TRUE(shows("SHELVED         MAJOR    sample.standing"));
@@ -148,7 +148,7 @@ TEST_F(Alarms, OfADamagedFileBeginAnewWithOneLine) {
   const Result result = end();
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_THAT(result.err, HasSubstr("alarms.json: is not an alarm file or is damaged; all alarms "
-                                    "begin anew"));
+                                    "start from their initial state"));
 }
 
 TEST_F(Alarms, ThatCannotBeSavedAreAnAlarmThemselves) {

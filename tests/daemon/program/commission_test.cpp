@@ -69,7 +69,7 @@ TEST(Commission, LetsARealRigBeArmedAndItMovesTheRightWay) {
   const struct {
     const char* setting;
     const char* reason;
-  } contradictions[] = {{"valve.null_V=0.5", "null_V is 0.5; the rod stands at"},
+  } contradictions[] = {{"valve.null_V=0.5", "null_V is 0.5; the rod stands still at"},
                         {"modbus.registers.command.scale=-1.0", "has changed since"}};
   for (const auto& [setting, reason] : contradictions) {
     const auto daemon = start({"--set", setting});
@@ -222,7 +222,7 @@ TEST(Commission, ScaleIsTheTrueStrokeOverTheReadOne) {
   const Result result = run({"--config", shipped("spoolwatchd.toml"), "--commission", out, "--yes",
                              "--clock", "virtual", "--stroke-mm", "622.2"});
   ASSERT_EQ(result.exit_code, 0) << result.out << result.err;
-  const std::string before = "scale:  a metre of reading is ";
+  const std::string before = "scale:  1 m of reading is ";
   const std::size_t at = result.out.find(before);
   ASSERT_NE(at, std::string::npos) << result.out;
   EXPECT_NEAR(std::stod(result.out.substr(at + before.size())), 1.02, 2.0 * 10e-6 / 0.61);

@@ -116,7 +116,7 @@ INSTANTIATE_TEST_SUITE_P(
              "[[sim.fault]]\nparameter = \"oil\"\nat_s = 1.0\nfactor = 2.0\n[reference]", "oil",
              ""},
         Case{"guard_without_a_kind", "[reference]", "[[guard]]\naction = \"hold\"\n[reference]",
-             "[guard.0] kind", "what is watched"},
+             "[guard.0] kind", "what is monitored"},
         Case{"guard_of_nothing", "[reference]", "[[guard]]\nkind = \"mood\"\n[reference]", "kind",
              "travel"},
         Case{"guard_without_its_limit", "[reference]", "[[guard]]\nkind = \"speed\"\n[reference]",
@@ -137,7 +137,7 @@ INSTANTIATE_TEST_SUITE_P(
              "false"},
         Case{"socket_of_no_group", "[reference]",
              "[control]\ngroup = \"nobody-knows-this\"\n[reference]", "[control] group",
-             "a group of this machine"},
+             "a group on this machine"},
         Case{"bands_not_there", "schema_version = 1",
              "schema_version = 1\nbands_file = \"no.toml\"", "bands_file", "learned bands"}),
     [](const auto& test) { return std::string(test.param.what); });

@@ -148,7 +148,7 @@ TEST_F(Reload, OfABadFileKeepsTheOldOneAndSaysWhy) {
   EXPECT_EQ(guards.exit_code, 1);
   EXPECT_THAT(guards.out, HasSubstr("[[guard]] travel: "));
   EXPECT_THAT(guards.out, HasSubstr("cannot change while the daemon runs because it affects the "
-                                    "done with the valve: restart the daemon"));
+                                    "valve: restart the daemon"));
   EXPECT_EQ(standing()["high"], 0.2) << "nothing of it is taken";
 
   write(0.3, "");

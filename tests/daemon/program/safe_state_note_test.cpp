@@ -109,7 +109,7 @@ TEST_F(LeftAtNull, ADeviceThatIsNotThereIsOneLineAndTheNoteStays) {
 TEST_F(LeftAtNull, ASimulatedValveGoesWithItsProcess) {
   const Result result = run({"--config", shipped("demo.toml"), "--null"});
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_EQ(result.err, "spoolwatchd: no valve that could have been left anywhere\n");
+  EXPECT_EQ(result.err, "spoolwatchd: no valve can have been left away from null\n");
 }
 
 TEST_F(LeftAtNull, WithoutConfigurationAndNoteIsAUsageError) {

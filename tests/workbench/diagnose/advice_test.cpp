@@ -81,7 +81,7 @@ TEST_F(SineWithAsymmetricFlow, IsResolvedByTheAdvisedMotionOnTheTrueRig) {
       diagnose_test::run(*of_, advice_->motion.reference, advice_->motion.duration_s)));
   const greybox::FitSummary right = fitted_with(again, "flow_asymmetry");
   const greybox::FitSummary wrong = fitted_with(again, "load_force");
-  EXPECT_LT(right.validation_rms_m, 1.1 * again.data.noise_floor_m);
+  EXPECT_LT(right.validation_rms_m, 1.1 * again.problem.data.noise_floor_m);
   EXPECT_GT(wrong.validation_rms_m, 1.15 * right.validation_rms_m);
 }
 
@@ -94,11 +94,11 @@ TEST_F(SineWithAsymmetricFlow, IsAskedForASensorWhereTwoExplanationsAreOneEquati
 }
 
 TEST_F(SineWithAsymmetricFlow, LeavesTheStrokeToEveryMotionTried) {
-  for (const TestMotion& motion : test_motions(*context_)) {
+  for (const TestMotion& motion : test_motions(context_->problem)) {
     EXPECT_GT(motion.reference.centre_m - motion.reference.amplitude_m, 0.0);
     EXPECT_LT(motion.reference.centre_m + motion.reference.amplitude_m, 0.61);
     EXPECT_LE(motion.reference.amplitude_m, 0.07);
-    EXPECT_TRUE(simulated(*context_, context->problem.model, motion, 1).has_value())
+    EXPECT_TRUE(simulated(context_->problem, context_->problem.model, motion, 1).has_value())
         << motion.words;
   }
 }
@@ -113,7 +113,8 @@ TEST(AdviceToExcite, NamesAMotionAboutTheMiddleOfTheStrokeForARodAtRest) {
     record.y_m.push_back(0.1 + 5e-6 * ((k * k / 7) % 3));
   }
   const selection::SearchContext context = diagnose_test::context_with(greybox::dataset_of(record));
-  EXPECT_THAT(advice_to_excite(context), AllOf(HasSubstr("multisine"), HasSubstr("of 305 mm")));
+  EXPECT_THAT(advice_to_excite(context.problem),
+              AllOf(HasSubstr("multisine"), HasSubstr("of 305 mm")));
 }
 
 TEST(AdviceForUnexplained, NamesVariableSensorAndFormula) {

@@ -39,7 +39,7 @@ TEST_F(Train, IsRefusedForAnotherRigSampleTimeOrEstimatorInOneLineWithExitCode78
          "was trained on blocks of 2 s; allowed: block_s of [[cusum]] gain, 1 s");
   expect(refused_with("[\"sliding.a1\", \"sliding.b1\"]", "[\"sliding.b1\"]"),
          "was trained on sliding.a1, sliding.b1; allowed: sliding.b1");
-  expect(refused_with("id = \"gain\"", "id = \"new\""), "knows nothing of [[cusum]] new");
+  expect(refused_with("id = \"gain\"", "id = \"new\""), "has no entry for [[cusum]] new");
 }
 
 TEST_F(Train, IsRefusedInAnotherLayoutOrOtherUnits) {
