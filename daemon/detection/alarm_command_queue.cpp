@@ -21,10 +21,11 @@ void execute_one(const AlarmCommand& command, AlarmBook& book, const Changed& ch
         "\", or the name is ambiguous; allowed: SOURCE.NAME as listed by `spoolwatch alarms`";
     return;
   }
-  const AlarmActionResult outcome =
-      command.kind == AlarmCommand::Kind::acknowledge ? book.acknowledge(number, command.who)
-      : command.kind == AlarmCommand::Kind::shelve    ? book.shelve(number, command.time_s, command.who)
-                                                  : book.unshelve(number);
+  const AlarmActionResult outcome = command.kind == AlarmCommand::Kind::acknowledge
+                                        ? book.acknowledge(number, command.who)
+                                    : command.kind == AlarmCommand::Kind::shelve
+                                        ? book.shelve(number, command.time_s, command.who)
+                                        : book.unshelve(number);
   if (outcome.changed == nullptr) {
     answer.reject_reason = id_of(book.alarm(number)) + ": " + outcome.refusal;
     return;

@@ -40,7 +40,7 @@ using Blocks = std::vector<std::vector<std::vector<double>>>;
 /// need no classes learn from that alone. Throws schema::ConfigError when nothing in the
 /// configuration is trained, DataError for records too short or of different sample times.
 [[nodiscard]] estimator::fdi::TrainedFile learn(const estimator::fdi::PipelineConfig& pipeline,
-                                            const std::vector<Teaching>& teachings,
-                                            const std::string& rig_id, const std::string& file);
+                                                const std::vector<Teaching>& teachings,
+                                                const std::string& rig_id, const std::string& file);
 
 }  // namespace workbench::train

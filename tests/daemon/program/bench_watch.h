@@ -17,8 +17,8 @@
 #include <thread>
 #include <vector>
 
-#include "hal/monotonic.h"
 #include "hal/hil_rig/register_map.h"
+#include "hal/monotonic.h"
 #include "tests/daemon/program/null_watch.h"
 
 namespace program {

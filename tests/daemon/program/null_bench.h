@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "hal/monotonic.h"
 #include "hal/hil_rig/server.h"
+#include "hal/monotonic.h"
 #include "tests/daemon/program/bench_watch.h"
 #include "tests/daemon/program/subprocess.h"
 #include "tests/hal/hil_rig/rig_process.h"
