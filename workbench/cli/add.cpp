@@ -86,12 +86,12 @@ void assign(ModelFile& model, const EffectInfo& effect, const std::string& assig
   *model.value(effect.name + "." + name) = value;
 }
 
-struct Options {
+struct AddOptions {
   std::string model, effect, output;
   std::vector<std::string> assignments;
 };
 
-void add(const Options& options) {
+void add(const AddOptions& options) {
   ModelFile model = plant_sim::load_model(options.model);
   const EffectInfo effect = effect_named(model, options.effect);
   plant_sim::require_fit(effect, *plant_sim::find_plant(model.plant), options.model);
@@ -122,7 +122,7 @@ void add(const Options& options) {
 }  // namespace
 
 void add_add(CLI::App& command, int&) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<AddOptions>();
   add_model(command, options->model);
   command.add_option("EFFECT", options->effect, "its name, see `spoolwatch effects`")->required();
   command.add_option("key=value", options->assignments, "parameters; others stay as they are");

@@ -19,14 +19,14 @@ using config::schema::UsageError;
 using Json = nlohmann::ordered_json;
 namespace protocol = monitor::control;
 
-struct Options {
+struct AlarmsOptions {
   control::OrderOptions common;
   std::string alarm;
   bool all = false;
   double time_s = 0.0;
 };
 
-void act(const char* word, const Options& options, bool with_time) {
+void act(const char* word, const AlarmsOptions& options, bool with_time) {
   Json request = {{protocol::key::kCommand, word}};
   if (!options.alarm.empty()) request[protocol::key::kAlarm] = options.alarm;
   if (with_time) request[protocol::key::kTime] = options.time_s;
@@ -43,7 +43,7 @@ void act(const char* word, const Options& options, bool with_time) {
 }  // namespace
 
 void add_alarms(CLI::App& command, int& /*exit_code*/) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<AlarmsOptions>();
   add_order_options(command, options->common);
   command.add_flag("--all", options->all, "those that are normal too");
   command.callback([options] {
@@ -54,7 +54,7 @@ void add_alarms(CLI::App& command, int& /*exit_code*/) {
 }
 
 void add_ack(CLI::App& command, int& /*exit_code*/) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<AlarmsOptions>();
   add_order_options(command, options->common);
   CLI::Option* alarm =
       command.add_option("alarm", options->alarm, "SOURCE.NAME, as `alarms` lists it");
@@ -69,7 +69,7 @@ void add_ack(CLI::App& command, int& /*exit_code*/) {
 }
 
 void add_shelve(CLI::App& command, int& /*exit_code*/) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<AlarmsOptions>();
   add_order_options(command, options->common);
   command.add_option("alarm", options->alarm, "SOURCE.NAME, as `alarms` lists it")->required();
   const std::map<std::string, double> units = {{"s", 1.0}, {"min", 60.0}, {"h", 3600.0}};
@@ -80,7 +80,7 @@ void add_shelve(CLI::App& command, int& /*exit_code*/) {
 }
 
 void add_unshelve(CLI::App& command, int& /*exit_code*/) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<AlarmsOptions>();
   add_order_options(command, options->common);
   command.add_option("alarm", options->alarm, "SOURCE.NAME, as `alarms` lists it")->required();
   command.callback([options] { act(protocol::kUnshelve, *options, false); });

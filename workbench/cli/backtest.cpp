@@ -13,7 +13,7 @@
 namespace workbench::cli {
 namespace {
 
-struct Options {
+struct BacktestOptions {
   std::string configuration;
   std::vector<std::string> logs;
   std::string old;
@@ -21,7 +21,7 @@ struct Options {
   double tolerance_s = 10.0;
 };
 
-void run(const Options& options) {
+void run(const BacktestOptions& options) {
   const replay::Rules new_rules = replay::read_rules(options.configuration);
   std::optional<replay::Rules> old_rules;
   if (!options.old.empty()) old_rules = replay::read_rules(options.old);
@@ -41,7 +41,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_backtest(CLI::App& command, int& /*exit_code*/) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<BacktestOptions>();
   command
       .add_option("configuration", options->configuration,
                   "the new [[estimator]], [[band]] and bands_file")

@@ -24,7 +24,7 @@
 namespace workbench::cli {
 namespace {
 
-struct Options {
+struct BridgeOptions {
   std::string url = config::messages::kDefaultUrl;
   std::string prefix = config::messages::kDefaultPrefix;
   std::string udp = "127.0.0.1:9870";  // PlotJuggler's own default
@@ -36,7 +36,7 @@ void say(const std::string& line) { std::cerr << "spoolwatch bridge: " << line <
 
 class Bridge final : public live::FeedListener {
  public:
-  explicit Bridge(const Options& options)
+  explicit Bridge(const BridgeOptions& options)
       : sender_(exchange::udp_address(options.udp)),
         place_(options.udp),
         sample_rate_Hz_(options.sample_rate_Hz) {}
@@ -103,7 +103,7 @@ class Bridge final : public live::FeedListener {
   bool told_ = false;
 };
 
-int bridge(const Options& options) {
+int bridge(const BridgeOptions& options) {
   const StopCondition stop(options.duration_s);
   Bridge bridge(options);
   {
@@ -121,7 +121,7 @@ int bridge(const Options& options) {
 }  // namespace
 
 void add_bridge(CLI::App& command, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BridgeOptions>();
   command.add_option("--lcm-url", options->url, "LCM URL; file:///LOG?mode=r replays a log")
       ->capture_default_str();
   command.add_option("--prefix", options->prefix, "of the channel names")->capture_default_str();

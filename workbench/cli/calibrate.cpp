@@ -20,7 +20,7 @@ namespace {
 
 namespace fdi = estimator::fdi;
 
-struct Options {
+struct CalibrateOptions {
   std::string config;
   std::string record;
   std::string out;
@@ -29,7 +29,7 @@ struct Options {
   double period_s = std::numeric_limits<double>::quiet_NaN();
 };
 
-void run(const Options& options) {
+void run(const CalibrateOptions& options) {
   fdi::PipelineConfig pipeline_config;
   config::schema::Document::load(options.config).read_part([&](config::schema::Visitor& v) {
     pipeline_config.visit(v);
@@ -56,7 +56,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_calibrate(CLI::App& command, int& /*exit_code*/) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CalibrateOptions>();
   command.add_option("config", options->config, "configuration with [[estimator]] and [[band]]")
       ->required();
   add_record(command, options->record);

@@ -33,7 +33,7 @@ namespace {
 
 using config::schema::UsageError;
 
-struct Arguments {
+struct CompareArguments {
   std::string model;
   std::string record;
   std::string json;
@@ -49,7 +49,7 @@ struct Arguments {
 };
 
 /// The record's samples from --from to --to.
-greybox::Dataset read_measured(const Arguments& a) {
+greybox::Dataset read_measured(const CompareArguments& a) {
   config::record::Record record = config::record::read_record(a.record);
   greybox::Dataset whole = greybox::dataset_of(record);
   if (std::isinf(a.from_s) && std::isinf(a.to_s)) return whole;
@@ -68,7 +68,7 @@ greybox::Dataset read_measured(const Arguments& a) {
   return part;
 }
 
-void check_observer(const Arguments& a, const greybox::Dataset& record) {
+void check_observer(const CompareArguments& a, const greybox::Dataset& record) {
   if (a.observer_per_s * record.sample_time_s < 1.0) return;
   throw UsageError("--observer: is too fast for samples every " +
                    std::to_string(record.sample_time_s) + " s; allowed: below 1 / sample time");
@@ -84,7 +84,7 @@ bool utf8_terminal() {
   return false;
 }
 
-void run_live(Arguments& a) {
+void run_live(CompareArguments& a) {
   for (const auto& [given, option] :
        {std::pair(!a.record.empty(), "RECORD"), std::pair(!a.report.empty(), "--report"),
         std::pair(a.all, "--all"), std::pair(!a.json.empty() && a.json != "-", "--json FILE")}) {
@@ -95,7 +95,7 @@ void run_live(Arguments& a) {
   live::watch(plant_sim::load_model(a.model, a.assignments), a.watch);
 }
 
-void run(Arguments& a) {
+void run(CompareArguments& a) {
   if (a.live) return run_live(a);
   if (a.record.empty()) throw UsageError("compare: no RECORD, and not --live");
   check_outputs({{"--json", a.json}, {"--report", a.report}}, {a.model, {a.record}});
@@ -114,7 +114,7 @@ void run(Arguments& a) {
 }  // namespace
 
 void add_compare(CLI::App& command, int& /*exit_code*/) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CompareArguments>();
   add_model(command, arguments->model);
   add_record(command, arguments->record)->required(false);
   add_json(command, arguments->json);

@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace protocol = monitor::control;
 
-struct Options {
+struct ControlOptions {
   control::OrderOptions common;
   double centre_m = 0.0;
   double amplitude_m = 0.0;
@@ -53,7 +53,7 @@ void add_reset(CLI::App& command, int& exit_code) { add_word(command, exit_code,
 void add_hold(CLI::App& command, int& exit_code) { add_word(command, exit_code, "hold"); }
 
 void add_reference(CLI::App& command, int& exit_code) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ControlOptions>();
   add_order_options(command, options->common);
   command.add_option("--centre", options->centre_m, "middle of the motion, m")->required();
   command.add_option("--amplitude", options->amplitude_m, "m")->capture_default_str();

@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct Options {
+struct EstimateOptions {
   std::string record;
   std::string structure = "arx211";
   bool constant = false;
@@ -29,7 +29,7 @@ struct Options {
 };
 
 /// An option that the method or the filter does not use would be a wish silently not granted.
-void refuse_unused(const Options& options) {
+void refuse_unused(const EstimateOptions& options) {
   const estimate::EstimateOptions& e = options.estimate;
   const auto refuse = [](bool given, const std::string& option, const std::string& beside) {
     if (!given) return;
@@ -73,7 +73,7 @@ void add_fields(ordered_json& out, const estimate::Judged& judged,
   out["to_s"] = judged.to_s;
 }
 
-ordered_json to_json(const estimate::EstimateResult& result, const Options& options,
+ordered_json to_json(const estimate::EstimateResult& result, const EstimateOptions& options,
                      const config::record::Record& record) {
   ordered_json out;
   out["structure"] = options.estimate.structure.text();
@@ -93,7 +93,7 @@ ordered_json to_json(const estimate::EstimateResult& result, const Options& opti
   return out;
 }
 
-void print_text(const estimate::EstimateResult& result, const Options& options,
+void print_text(const estimate::EstimateResult& result, const EstimateOptions& options,
                 const config::record::Record& record) {
   const estimator::Structure& structure = options.estimate.structure;
   const estimator::Estimate& e = result.whole.estimate;
@@ -124,7 +124,7 @@ void print_text(const estimate::EstimateResult& result, const Options& options,
   }
 }
 
-void run(Options options) {
+void run(EstimateOptions options) {
   using config::schema::UsageError;
   options.estimate.structure = estimator::parse_structure(options.structure, options.constant);
   if (options.fit == "first-half") options.estimate.fit_to = 0.5;
@@ -154,7 +154,7 @@ void run(Options options) {
 }  // namespace
 
 void add_estimate(CLI::App& command, int& /*exit_code*/) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<EstimateOptions>();
   estimate::EstimateOptions& e = options->estimate;
   add_record(command, options->record);
   command.add_option("--structure", options->structure, "arx211, arx(10,2,1), ...")

@@ -64,10 +64,10 @@ void export_log(const std::string& input, const std::string& file, const std::st
 }
 
 void add_export(CLI::App& command, int&) {
-  struct Options {
+  struct ExportOptions {
     std::string input, output, channel, format;
   };
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExportOptions>();
   command.add_option("RECORD", options->input, "an LCM event log, or a record: CSV or MAT")
       ->required();
   command

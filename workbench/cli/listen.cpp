@@ -16,7 +16,7 @@
 namespace workbench::cli {
 namespace {
 
-struct Options {
+struct ListenOptions {
   std::string url = config::messages::kDefaultUrl;
   std::string prefix = config::messages::kDefaultPrefix;
   bool json = false;
@@ -25,7 +25,7 @@ struct Options {
   double duration_s = 0.0;
 };
 
-int listen_with_lines(const Options& options) {
+int listen_with_lines(const ListenOptions& options) {
   live::LinePrinter printer(std::cout, options.json, options.alarms_only);
   const StopCondition stop(options.duration_s);
   live::ListenFeed feed(options.url, options.prefix, false, printer);
@@ -37,7 +37,7 @@ int listen_with_lines(const Options& options) {
   return 0;
 }
 
-int listen_live(const Options& options) {
+int listen_live(const ListenOptions& options) {
   live::LiveState state;
   const StopCondition stop(options.duration_s);
   live::ListenFeed feed(options.url, options.prefix, true, state);
@@ -55,7 +55,7 @@ int listen_live(const Options& options) {
   return 0;
 }
 
-int listen(const Options& options) {
+int listen(const ListenOptions& options) {
   const bool terminal = ::isatty(STDOUT_FILENO) == 1 && ::isatty(STDIN_FILENO) == 1;
   return options.live && !options.json && terminal ? listen_live(options)
                                                    : listen_with_lines(options);
@@ -64,7 +64,7 @@ int listen(const Options& options) {
 }  // namespace
 
 void add_listen(CLI::App& command, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ListenOptions>();
   command.add_option("--lcm-url", options->url, "LCM URL; file:///LOG?mode=r replays a log")
       ->capture_default_str();
   command.add_option("--prefix", options->prefix, "of the channel names")->capture_default_str();

@@ -32,7 +32,7 @@ using config::schema::RunError;
 using config::schema::UsageError;
 using promotion::RunningDaemon;
 
-struct Options {
+struct PromoteOptions {
   std::string model;
   std::vector<std::string> records;
   std::string socket = monitor::control::kDefaultSocket;
@@ -53,7 +53,7 @@ void step(const RunningDaemon& daemon, const std::string& text) {
 
 class Attempt {
  public:
-  Attempt(const RunningDaemon& daemon, const Options& options)
+  Attempt(const RunningDaemon& daemon, const PromoteOptions& options)
       : daemon_(daemon), options_(options), candidate_(daemon.bands_file().string() + ".new") {}
   ~Attempt() {
     std::error_code ignored;
@@ -147,7 +147,7 @@ class Attempt {
   }
 
   const RunningDaemon& daemon_;
-  const Options& options_;
+  const PromoteOptions& options_;
   fs::path candidate_;
   std::vector<std::string> files_;
   std::vector<config::record::Record> records_;
@@ -163,7 +163,7 @@ void go_back(const RunningDaemon& daemon) {
   step(daemon, "version " + std::to_string(version) + " is in use again");
 }
 
-void promote(const Options& options) {
+void promote(const PromoteOptions& options) {
   if (options.back == !options.model.empty()) {
     throw UsageError("promote: either MODEL.toml or --back");
   }
@@ -184,7 +184,7 @@ void promote(const Options& options) {
 }  // namespace
 
 void add_promote(CLI::App& command, int& /*exit_code*/) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PromoteOptions>();
   command.add_option("model", options->model, "the better model (TOML)");
   command.add_option("--record", options->records,
                      "healthy records; the last of several tries the bands that the others "

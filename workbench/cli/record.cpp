@@ -23,7 +23,7 @@ namespace {
 using config::schema::RunError;
 using live::SampleFile;
 
-struct Options {
+struct RecordOptions {
   std::string url = config::messages::kDefaultUrl;
   std::string prefix = config::messages::kDefaultPrefix;
   std::string out;
@@ -37,7 +37,7 @@ void say(const std::string& line) { std::cerr << "spoolwatch record: " << line <
 
 class Recording final : public live::FeedListener {
  public:
-  explicit Recording(const Options& options)
+  explicit Recording(const RecordOptions& options)
       : file_(options.out), duration_s_(options.duration_s) {}
 
   void on(const spoolwatch::rods_t& rods) override { file_.note(rods); }
@@ -94,7 +94,7 @@ class Recording final : public live::FeedListener {
   std::string ended_;
 };
 
-int record(const Options& options) {
+int record(const RecordOptions& options) {
   const bool limited = options.duration_s > 0.0;
   const StopCondition stop(limited ? options.duration_s + kPatience_s : 0.0);
   Recording recording(options);
@@ -118,7 +118,7 @@ int record(const Options& options) {
 }  // namespace
 
 void add_record(CLI::App& command, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RecordOptions>();
   command.add_option("-o,--output", options->out, "the record (CSV)")->required();
   command.add_option("--duration", options->duration_s, "s of samples (0: until Ctrl-C)")
       ->check(CLI::NonNegativeNumber);

@@ -22,7 +22,7 @@ using replay::Pack;
 using replay::ReplayOutcome;
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct ReplayOptions {
   std::string folder;
   std::string json;
 };
@@ -83,7 +83,7 @@ Json as_json(const Pack& pack, const ReplayOutcome& outcome) {
           {"differences", outcome.differences}};
 }
 
-int run(const Options& options) {
+int run(const ReplayOptions& options) {
   const Pack pack = replay::read_pack(options.folder);
   const ReplayOutcome outcome = replay::replay(pack);
   if (!present::write_json(as_json(pack, outcome).dump(2) + '\n', options.json)) {
@@ -95,7 +95,7 @@ int run(const Options& options) {
 }  // namespace
 
 void add_replay(CLI::App& command, int& exit_code) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ReplayOptions>();
   command.add_option("folder", options->folder, "evidence of an alarm, as spoolwatchd wrote it")
       ->required();
   add_json(command, options->json);

@@ -19,7 +19,7 @@ namespace {
 
 using config::schema::RunError;
 
-struct Arguments {
+struct ReproduceArguments {
   std::string json;
   bool strict = false;
 };
@@ -31,7 +31,7 @@ bool missed(const reproduce::Row& row) {
 }  // namespace
 
 void add_reproduce(CLI::App& command, int& exit_code) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ReproduceArguments>();
   add_json(command, arguments->json);
   command.add_flag("--strict", arguments->strict,
                    "exit 1 when a figure that is meant to agree does not");

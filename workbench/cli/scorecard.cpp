@@ -29,7 +29,7 @@ namespace {
 
 using namespace scorecard;
 
-struct Options {
+struct ScorecardOptions {
   std::vector<std::string> methods;
   std::string plan, json, report, markdown, resume, command;
   Scope scope;
@@ -94,7 +94,7 @@ void work(const std::vector<Part>& parts, const std::vector<Method>& methods, Tr
   store.save();
 }
 
-int run(const Options& o) {
+int run(const ScorecardOptions& o) {
   std::vector<OutputFile> outputs{{"--json", o.json},
                                   {"--report", o.report},
                                   {"--markdown", o.markdown},
@@ -126,7 +126,7 @@ int run(const Options& o) {
 }  // namespace
 
 void add_scorecard(CLI::App& command, int& exit_code) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<ScorecardOptions>();
   command.add_option("METHOD", o->methods,
                      "files of methods, or names of shipped ones; default: all that are shipped");
   command.add_flag("--full", o->scope.full, "the hours that one false alarm in 24 h needs: 72");

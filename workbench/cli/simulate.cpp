@@ -30,7 +30,7 @@ using config::schema::UsageError;
 /// Samples between two looks at the progress line: ten minutes of the stand.
 constexpr std::int64_t kProgressEvery = 120'000;
 
-struct Arguments {
+struct SimulateArguments {
   std::string model;
   std::string output;
   std::string reference;
@@ -61,7 +61,7 @@ void choose_reference(const std::string& text, config::schema::Document& documen
   document.set("reference.file='" + fs::absolute(text).string() + "'");
 }
 
-simulate::Scenario read_scenario(const Arguments& arguments) {
+simulate::Scenario read_scenario(const SimulateArguments& arguments) {
   auto document = config::schema::Document::load(arguments.model);
   choose_reference(arguments.reference, document);
   for (const std::string& assignment : arguments.assignments) document.set(assignment);
@@ -82,7 +82,7 @@ void check_output(const std::string& output) {
 }
 
 /// The columns beside t_s,u_V,y_m.
-std::vector<const char*> column_names(const Arguments& arguments) {
+std::vector<const char*> column_names(const SimulateArguments& arguments) {
   std::vector<const char*> names{"reference_m", "u_requested_V", "saturated"};
   if (arguments.pressures) {
     names.insert(names.end(), {"supply_pressure_Pa", "pressure_in_Pa", "pressure_out_Pa"});
@@ -100,7 +100,7 @@ std::vector<double> further_of(const simulate::LoopRow& row,
   return values;
 }
 
-config::record::Record simulate_record(const Arguments& arguments,
+config::record::Record simulate_record(const SimulateArguments& arguments,
                                        const simulate::Scenario& scenario) {
   simulate::ClosedLoop loop(scenario, arguments.seed);
   std::optional<simulate::Transducers> transducers;
@@ -134,7 +134,7 @@ config::record::Record simulate_record(const Arguments& arguments,
   return record;
 }
 
-void check_pressures(const Arguments& arguments, const simulate::Scenario& scenario) {
+void check_pressures(const SimulateArguments& arguments, const simulate::Scenario& scenario) {
   if (!arguments.pressures) {
     if (!std::isnan(arguments.pressure_noise_Pa)) {
       throw UsageError("--pressure-noise: needs --pressures");
@@ -149,7 +149,7 @@ void check_pressures(const Arguments& arguments, const simulate::Scenario& scena
 }  // namespace
 
 void add_simulate(CLI::App& command, int& /*exit_code*/) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SimulateArguments>();
   add_model(command, arguments->model);
   command
       .add_option(

@@ -20,7 +20,7 @@ namespace {
 namespace fdi = estimator::fdi;
 using config::record::Record;
 
-struct Options {
+struct TrainOptions {
   std::string config;
   std::vector<std::string> healthy;
   std::vector<std::string> classes;
@@ -95,7 +95,7 @@ void print(const fdi::TrainedMethod& source, const fdi::TrainedMethodConfig& con
   }
 }
 
-void run(const Options& options) {
+void run(const TrainOptions& options) {
   fdi::PipelineConfig pipeline;
   std::string rig_id = "rig";
   config::schema::Document::load(options.config).read_part([&](config::schema::Visitor& v) {
@@ -117,7 +117,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_train(CLI::App& command, int& /*exit_code*/) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TrainOptions>();
   command.add_option("config", options->config, "configuration with what is to be trained")
       ->required();
   command.add_option("--healthy", options->healthy, "records when all is well: CSV, MAT, LCM log")
