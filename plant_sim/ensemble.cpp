@@ -73,6 +73,10 @@ void LaneEnsemble::enter(const char* owner, const char* name, void* lanes) {
   }
 }
 
+void LaneEnsemble::enter_state(const char* name, void* lanes) {
+  states_.push_back({name, lanes});
+}
+
 void LaneEnsemble::take(const ModelFile& model) {
   const auto assign = [](const std::vector<Entry>& to, const std::string& name, double value) {
     Values every;
@@ -91,11 +95,30 @@ void LaneEnsemble::take(const ModelFile& model) {
   for (const NamedValue& given : model.initial) assign(initial_, given.name, given.value);
 }
 
-std::optional<std::size_t> LaneEnsemble::find(std::string_view dotted) const {
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
-    if (entries_[i].name == dotted) return i;
+std::optional<std::size_t> LaneEnsemble::find_in(const std::vector<Entry>& entries,
+                                                 std::string_view name) {
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (entries[i].name == name) return i;
   }
   return std::nullopt;
+}
+
+std::optional<std::size_t> LaneEnsemble::find(std::string_view dotted) const {
+  return find_in(entries_, dotted);
+}
+
+std::optional<std::size_t> LaneEnsemble::find_state(std::string_view name) const {
+  return find_in(states_, name);
+}
+
+Ensemble::Values LaneEnsemble::state(std::size_t index) const noexcept {
+  Values values;
+  std::memcpy(values.data(), states_[index].lanes, sizeof(values));
+  return values;
+}
+
+void LaneEnsemble::set_state(std::size_t index, const Values& values) noexcept {
+  std::memcpy(states_[index].lanes, values.data(), sizeof(values));
 }
 
 void LaneEnsemble::set(std::size_t parameter, std::size_t lane, double value) noexcept {

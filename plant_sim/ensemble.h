@@ -40,6 +40,12 @@ class Ensemble {
   /// Moves the rod, and with it what the sensor shows, without any physics.
   virtual void shift(const Values& by_m) noexcept = 0;
 
+  /// The integration state of that name ("v_mps", "in_Pa") for state() and set_state(); none when
+  /// the plant has no such state.
+  [[nodiscard]] virtual std::optional<std::size_t> find_state(std::string_view name) const = 0;
+  [[nodiscard]] virtual Values state(std::size_t index) const noexcept = 0;
+  virtual void set_state(std::size_t index, const Values& values) noexcept = 0;
+
   [[nodiscard]] virtual Values reading_m() const noexcept = 0;
   [[nodiscard]] virtual Values speed_mps() const noexcept = 0;
   /// As Plant::pressures(); not numbers where the plant has none.

@@ -30,10 +30,15 @@ class LaneEnsemble : public Ensemble {
   [[nodiscard]] std::optional<std::size_t> find(std::string_view dotted) const final;
   void set(std::size_t parameter, std::size_t lane, double value) noexcept final;
   [[nodiscard]] double get(std::size_t parameter, std::size_t lane) const noexcept final;
+  [[nodiscard]] std::optional<std::size_t> find_state(std::string_view name) const final;
+  [[nodiscard]] Values state(std::size_t index) const noexcept final;
+  void set_state(std::size_t index, const Values& values) noexcept final;
 
  protected:
   /// Tells of eight lanes that live as long as *this; owner is an effect, "initial" or null.
   void enter(const char* owner, const char* name, void* lanes);
+  /// The same for an integration state.
+  void enter_state(const char* name, void* lanes);
   [[nodiscard]] double step_s() const { return step_s_; }
   [[nodiscard]] const Formulas& formulas() const { return formulas_; }
 
@@ -42,10 +47,14 @@ class LaneEnsemble : public Ensemble {
     std::string name;
     void* lanes;
   };
+  [[nodiscard]] static std::optional<std::size_t> find_in(const std::vector<Entry>& entries,
+                                                          std::string_view name);
+
   double step_s_;
   Formulas formulas_;
   std::vector<Entry> entries_;
   std::vector<Entry> initial_;
+  std::vector<Entry> states_;
 };
 
 /// A template of physics at eight lanes, behind the runtime face.
@@ -67,6 +76,7 @@ class InLanes final : public LaneEnsemble {
                                        S& value) { enter(formula.name, info.name, &value); });
     model_.initial.visit(
         [&](const ParameterInfo& info, S& value) { enter("initial", info.name, &value); });
+    model_.state.visit([&](const char* name, S& value) { enter_state(name, &value); });
   }
 
   void start(double reading_m) noexcept override {

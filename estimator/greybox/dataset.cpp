@@ -7,6 +7,7 @@
 
 #include "config/record/record.h"
 #include "config/schema/error.h"
+#include "estimator/greybox/innovation_gains.h"
 
 namespace estimator::greybox {
 namespace {
@@ -122,6 +123,10 @@ Dataset part(const Dataset& whole, std::size_t from, std::size_t to) {
   result.u_V = cut(whole.u_V);
   result.y_m = cut(whole.y_m);
   result.valid = cut(whole.valid);
+  if (whole.innovations) {
+    result.innovations = std::make_shared<const InnovationGains>(whole.innovations->part(
+        static_cast<Eigen::Index>(from), static_cast<Eigen::Index>(to)));
+  }
   if (!whole.initialising.empty()) result.initialising = cut(whole.initialising);
   result.starts = {0};
   for (const std::size_t start : whole.starts) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,8 @@ struct Record;
 }
 
 namespace estimator::greybox {
+
+struct InnovationGains;
 
 /// Of a sample while its segment settles. A record's very first state is the model file's: pure
 /// simulation begins there; a state behind a gap nobody knows.
@@ -26,6 +29,9 @@ struct Dataset {
   std::vector<char> valid;          ///< 0 while a segment's unknown initial state dies away
   std::vector<char> initialising;   ///< where that state is a motion: the model is led, see Led
   std::vector<std::string> notes;   ///< restrictions that a reader of results should know
+  /// Where set, residuals are scaled innovations of these gains instead of the errors of a
+  /// simulation with the weak observer.
+  std::shared_ptr<const InnovationGains> innovations;
 
   [[nodiscard]] std::size_t size() const noexcept { return t_s.size(); }
   /// By which share of its error the model's position is set right at sample k.

@@ -1,6 +1,7 @@
 #include "estimator/greybox/observer_simulation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "config/schema/error.h"
@@ -44,6 +45,105 @@ void ObserverSimulation::residuals(const Eigen::MatrixXd& points, const Eigen::M
   run(points, added_V, added_N, residuals_m, nullptr);
 }
 
+void ObserverSimulation::take(const Eigen::MatrixXd& points) {
+  for (std::size_t p = 0; p < parameters_.size(); ++p) {
+    for (Eigen::Index lane = 0; lane < kLanes; ++lane) {
+      const double theta =
+          points(static_cast<Eigen::Index>(p), std::min(lane, points.cols() - 1));
+      ensemble_->set(index_[p], static_cast<std::size_t>(lane), parameters_[p].to_physical(theta));
+    }
+  }
+}
+
+void ObserverSimulation::innovations(const Eigen::MatrixXd& points,
+                                     std::span<const InnovationGains> gains,
+                                     Eigen::MatrixXd& residuals_m) {
+  std::array<const InnovationGains*, kLanes> each;
+  for (std::size_t lane = 0; lane < each.size(); ++lane) {
+    each[lane] = &gains[std::min(lane, gains.size() - 1)];
+  }
+  predict(points, {}, {}, each, residuals_m);
+}
+
+void ObserverSimulation::predict(const Eigen::MatrixXd& points, const Eigen::MatrixXd& added_V,
+                                 const Eigen::MatrixXd& added_N,
+                                 std::span<const InnovationGains* const> gains,
+                                 Eigen::MatrixXd& residuals_m) {
+  using plant_sim::Ensemble;
+  const Dataset& record = *record_;
+  const auto lanes = static_cast<std::size_t>(points.cols());
+  const auto samples = static_cast<Eigen::Index>(record.size());
+  residuals_m.resize(samples, points.cols());
+  take(points);
+  std::vector<std::size_t> states;
+  for (const std::string& name : gains.front()->states) {
+    states.push_back(ensemble_->find_state(name).value());
+  }
+  const auto disturbed = static_cast<Eigen::Index>(states.size());
+  const auto load = ensemble_->find("load_force.force_N");
+  const bool forces = load.has_value();  // otherwise the disturbance is a speed
+  Ensemble::Values own_N{};
+  for (std::size_t lane = 0; load && lane < Ensemble::kLanes; ++lane) {
+    own_N[lane] = ensemble_->get(*load, lane);
+  }
+  Ensemble::Values disturbance{};
+  std::size_t segment = 0;
+  for (Eigen::Index k = 0; k < samples; ++k) {
+    const auto row = static_cast<std::size_t>(k);
+    if (segment < record.starts.size() && record.starts[segment] == row) {
+      if (forces) {
+        for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) {
+          ensemble_->set(*load, lane, own_N[lane]);
+        }
+      }
+      ensemble_->start(record.y_m[row]);
+      disturbance.fill(0.0);
+      ++segment;
+    }
+    const Ensemble::Values reading_m = ensemble_->reading_m();
+    speed_mps_[row] = ensemble_->speed_mps()[0];
+    Ensemble::Values error_m{};
+    for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) {
+      error_m[lane] = record.y_m[row] - reading_m[lane];
+    }
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      residuals_m(k, static_cast<Eigen::Index>(lane)) =
+          record.valid[row] != 0 ? error_m[lane] * gains[lane]->scale[k] : 0.0;
+    }
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      Ensemble::Values values = ensemble_->state(states[i]);
+      for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) {
+        values[lane] += gains[lane]->gain(static_cast<Eigen::Index>(i), k) * error_m[lane];
+      }
+      ensemble_->set_state(states[i], values);
+    }
+    Ensemble::Values moved_m{};
+    for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) {
+      disturbance[lane] += gains[lane]->gain(disturbed, k) * error_m[lane];
+      const auto column = static_cast<Eigen::Index>(lane);
+      const double added = column < added_N.cols() ? added_N(k, column) : 0.0;
+      if (forces) {
+        ensemble_->set(*load, lane, own_N[lane] + disturbance[lane] + added);
+      } else {
+        moved_m[lane] = disturbance[lane] * record.sample_time_s;
+      }
+    }
+    Ensemble::Values u_V;
+    u_V.fill(record.u_V[row]);
+    for (Eigen::Index lane = 0; lane < added_V.cols(); ++lane) {
+      u_V[static_cast<std::size_t>(lane)] += added_V(k, lane);
+    }
+    ensemble_->advance(u_V, record.sample_time_s);
+    if (!forces) ensemble_->shift(moved_m);
+    for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) {
+      disturbance[lane] *= gains[lane]->decay;
+    }
+  }
+  for (std::size_t lane = 0; forces && lane < Ensemble::kLanes; ++lane) {
+    ensemble_->set(*load, lane, own_N[lane]);
+  }
+}
+
 void ObserverSimulation::run(const Eigen::MatrixXd& points, const Eigen::MatrixXd& added_V,
                              const Eigen::MatrixXd& added_N, Eigen::MatrixXd& residuals_m,
                              Chambers* chambers) {
@@ -51,13 +151,16 @@ void ObserverSimulation::run(const Eigen::MatrixXd& points, const Eigen::MatrixX
   const Dataset& record = *record_;
   const Eigen::Index lanes = points.cols();
   const auto samples = static_cast<Eigen::Index>(record.size());
-  residuals_m.resize(samples, lanes);
-  for (std::size_t p = 0; p < parameters_.size(); ++p) {
-    for (Eigen::Index lane = 0; lane < kLanes; ++lane) {
-      const double theta = points(static_cast<Eigen::Index>(p), std::min(lane, lanes - 1));
-      ensemble_->set(index_[p], static_cast<std::size_t>(lane), parameters_[p].to_physical(theta));
-    }
+  if (record.innovations && chambers == nullptr) {
+    std::array<const InnovationGains*, kLanes> every;
+    every.fill(record.innovations.get());
+    predict(points, added_V, added_N, every, residuals_m);
+    const Eigen::MatrixXd& lines = record.innovations->lines;
+    if (lines.cols() > 0) residuals_m -= lines * (lines.transpose() * residuals_m).eval();
+    return;
   }
+  residuals_m.resize(samples, lanes);
+  take(points);
   const auto found = ensemble_->find("load_force.force_N");
   const bool loads = added_N.size() > 0 && found.has_value();
   const std::size_t load = found.value_or(0);

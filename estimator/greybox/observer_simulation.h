@@ -11,11 +11,13 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "estimator/greybox/dataset.h"
 #include "estimator/greybox/free_parameter.h"
+#include "estimator/greybox/innovation_gains.h"
 #include "plant_sim/ensemble.h"
 
 namespace estimator::greybox {
@@ -54,12 +56,21 @@ class ObserverSimulation {
 
   [[nodiscard]] const std::vector<FreeParameter>& parameters() const { return parameters_; }
   [[nodiscard]] std::size_t size() const { return record_->size(); }
+  /// Scaled innovations with gains of their own in each lane, size() x points.cols(); no lines are
+  /// projected out. Every element of `gains` has the states of the first.
+  void innovations(const Eigen::MatrixXd& points, std::span<const InnovationGains> gains,
+                   Eigen::MatrixXd& residuals_m);
+
   /// The model's speed of lane 0 in the latest run, one for each sample.
   [[nodiscard]] const std::vector<double>& speed_mps() const { return speed_mps_; }
 
  private:
+  void take(const Eigen::MatrixXd& points);
   void run(const Eigen::MatrixXd& points, const Eigen::MatrixXd& added_V,
            const Eigen::MatrixXd& added_N, Eigen::MatrixXd& residuals_m, Chambers* chambers);
+  void predict(const Eigen::MatrixXd& points, const Eigen::MatrixXd& added_V,
+               const Eigen::MatrixXd& added_N, std::span<const InnovationGains* const> gains,
+               Eigen::MatrixXd& residuals_m);
 
   const Dataset* record_;
   std::vector<FreeParameter> parameters_;

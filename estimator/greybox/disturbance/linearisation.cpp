@@ -1,0 +1,135 @@
+#include "estimator/greybox/disturbance/linearisation.h"
+
+#include <algorithm>
+#include <array>
+
+#include "estimator/greybox/observer_simulation.h"
+#include "plant_sim/ensemble.h"
+#include "plant_sim/library.h"
+
+namespace estimator::greybox::disturbance {
+namespace {
+
+using plant_sim::Ensemble;
+
+struct Perturbed {
+  const char* name;
+  double size;
+};
+/// Large enough for differences to rise above rounding, small enough to stay linear.
+constexpr std::array kPerturbed = {Perturbed{"y_m", 1e-6}, Perturbed{"v_mps", 1e-5},
+                                   Perturbed{"pressure_in_Pa", 1e3},
+                                   Perturbed{"pressure_out_Pa", 1e3}};
+constexpr double kForce_N = 1.0;
+constexpr double kSupply_Pa = 1e3;
+/// Lane 0 is the model itself; the quotients start from lane 1, which has no friction and no play.
+constexpr std::size_t kOwn = 0;
+constexpr std::size_t kSmooth = 1;
+
+/// Parameters that make the step of a model jump.
+std::vector<std::size_t> ragged_parameters(const Ensemble& ensemble,
+                                           const plant_sim::ModelFile& model) {
+  std::vector<std::size_t> found;
+  for (const plant_sim::EffectInfo& effect : plant_sim::effects_of(model)) {
+    const auto acts_at = [&](const char* site) {
+      return std::find(effect.sites.begin(), effect.sites.end(), site) != effect.sites.end();
+    };
+    if (!acts_at("dry_friction") && !acts_at("sensor")) continue;
+    for (const plant_sim::ParameterInfo& parameter : effect.parameters) {
+      if (parameter.refinement > 0) continue;
+      const auto index = ensemble.find(effect.name + "." + parameter.name);
+      if (index) found.push_back(*index);
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+Linearisation linearise(const plant_sim::ModelFile& model, const Dataset& record,
+                        const std::vector<FreeParameter>& parameters,
+                        const Eigen::VectorXd& theta) {
+  const std::unique_ptr<Ensemble> ensemble =
+      plant_sim::make_ensemble(model, step_for(model, record.sample_time_s));
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const std::size_t index = ensemble->find(parameters[i].name).value();
+    const double value = parameters[i].to_physical(theta[static_cast<Eigen::Index>(i)]);
+    for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) ensemble->set(index, lane, value);
+  }
+  for (const std::size_t index : ragged_parameters(*ensemble, model)) {
+    for (std::size_t lane = kSmooth; lane < Ensemble::kLanes; ++lane) {
+      ensemble->set(index, lane, 0.0);
+    }
+  }
+  Linearisation result;
+  std::vector<std::size_t> states;
+  std::vector<double> sizes;
+  for (const Perturbed& state : kPerturbed) {
+    const auto index = ensemble->find_state(state.name);
+    if (!index) continue;
+    result.states.emplace_back(state.name);
+    states.push_back(*index);
+    sizes.push_back(state.size);
+  }
+  const std::size_t count = states.size();
+  const std::size_t force_lane = kSmooth + count + 1;
+  const std::size_t supply_lane = force_lane + 1;
+  if (const auto load = ensemble->find("load_force.force_N")) {
+    result.force = true;
+    ensemble->set(*load, force_lane, ensemble->get(*load, force_lane) + kForce_N);
+  }
+  if (const auto supply = ensemble->find("supply_pressure_Pa")) {
+    result.supply = true;
+    ensemble->set(*supply, supply_lane, ensemble->get(*supply, supply_lane) + kSupply_Pa);
+  }
+  std::vector<std::size_t> every;  // all states that a lane must share with the model before a step
+  for (const char* name : {"y_m", "v_mps", "pressure_in_Pa", "pressure_out_Pa", "spool_m",
+                           "spool_mps", "drive_mps"}) {
+    if (const auto index = ensemble->find_state(name)) every.push_back(*index);
+  }
+  const std::size_t samples = record.size();
+  result.transition.assign(samples, StateMatrix::Zero());
+  result.from_supply.assign(samples, StateVector::Zero());
+  result.speed_mps.resize(samples);
+  std::size_t segment = 0;
+  for (std::size_t k = 0; k < samples; ++k) {
+    if (segment < record.starts.size() && record.starts[segment] == k) {
+      ensemble->start(record.y_m[k]);
+      ++segment;
+    }
+    result.speed_mps[k] = ensemble->speed_mps()[kOwn];
+    Ensemble::Values shift_m{};
+    shift_m[kOwn] = record.observer_gain(k, kObserver_per_s) *
+                    (record.y_m[k] - ensemble->reading_m()[kOwn]);
+    ensemble->shift(shift_m);
+    for (const std::size_t state : every) {
+      Ensemble::Values values = ensemble->state(state);
+      values.fill(values[kOwn]);
+      for (std::size_t i = 0; i < count; ++i) {
+        if (states[i] == state) values[kSmooth + 1 + i] += sizes[i];
+      }
+      ensemble->set_state(state, values);
+    }
+    Ensemble::Values u_V;
+    u_V.fill(record.u_V[k]);
+    ensemble->advance(u_V, record.sample_time_s);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Ensemble::Values after = ensemble->state(states[i]);
+      const auto row = static_cast<Eigen::Index>(i);
+      for (std::size_t j = 0; j < count; ++j) {
+        result.transition[k](row, static_cast<Eigen::Index>(j)) =
+            (after[kSmooth + 1 + j] - after[kSmooth]) / sizes[j];
+      }
+      if (result.force) {
+        result.transition[k](row, kMostStates - 1) = (after[force_lane] - after[kSmooth]) / kForce_N;
+      }
+      if (result.supply) {
+        result.from_supply[k][row] = (after[supply_lane] - after[kSmooth]) / kSupply_Pa;
+      }
+    }
+    if (!result.force) result.transition[k](0, kMostStates - 1) = record.sample_time_s;
+  }
+  return result;
+}
+
+}  // namespace estimator::greybox::disturbance

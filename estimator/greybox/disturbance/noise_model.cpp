@@ -1,0 +1,228 @@
+#include "estimator/greybox/disturbance/noise_model.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "estimator/greybox/observer_simulation.h"
+#include "estimator/linear_algebra/decompositions.h"
+#include "estimator/parallel.h"
+
+namespace estimator::greybox::disturbance {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr auto kLanes = static_cast<std::size_t>(ObserverSimulation::kLanes);
+/// Walk of the position per sample over the sensor's noise: the gain of a stationary filter that
+/// knows nothing else, so that the least is a tenth of the weak observer's.
+constexpr double kLeastWalk_ratio = 0.1;
+constexpr double kMostWalk_ratio = 30.0;
+constexpr double kLeastCorner_Hz = 0.02;
+constexpr double kMostCorner_ratio = 0.2;  ///< of the sampling rate
+constexpr double kLeastSensor_ratio = 0.8;
+constexpr double kMostSensor_ratio = 3.0;
+/// The search ends when its steps, factors of e^step, are smaller.
+constexpr double kFirstStep = 1.2;
+constexpr double kLastStep = 0.08;
+constexpr int kMostRounds = 24;
+
+/// Logarithms of the disturbance's intensity, its standard deviation times the root of its corner,
+/// of its corner, walk and sensor noise. Above the corner the intensity alone is seen.
+using Point = Eigen::Vector4d;
+
+struct Bounds {
+  Point lower, upper;
+};
+
+NoiseParameters noise_of(const Point& point) {
+  return {std::exp(point[0] - 0.5 * point[1]), std::exp(point[1]), std::exp(point[2]),
+          std::exp(point[3])};
+}
+
+Point point_of(const NoiseParameters& noise) {
+  return {std::log(noise.disturbance_sd * std::sqrt(noise.corner_Hz)), std::log(noise.corner_Hz),
+          std::log(noise.walk_m), std::log(noise.sensor_m)};
+}
+
+/// RMS of the position that a constant unit of F moves within a second.
+double reach_per_unit_m(const Linearisations& models, const FitDataset& data) {
+  double sum_m2 = 0.0;
+  double windows = 0.0;
+  for (std::size_t r = 0; r < models.size(); ++r) {
+    const auto length = static_cast<std::size_t>(
+        std::max(1.0, std::round(1.0 / data.records[r].sample_time_s)));
+    const std::size_t samples = models[r].transition.size();
+    for (std::size_t from = 0; from + length <= samples; from += length) {
+      StateVector z = StateVector::Zero();
+      for (std::size_t k = from; k < from + length; ++k) {
+        z[kMostStates - 1] = 1.0;
+        z = (models[r].transition[k] * z).eval();
+      }
+      sum_m2 += z[0] * z[0];
+      windows += 1.0;
+    }
+  }
+  return std::sqrt(sum_m2 / std::max(windows, 1.0));
+}
+
+MatrixXd line_responses(const Linearisation& model, const Dataset& record,
+                        const InnovationGains& gains, const std::vector<SpectralLine>& lines) {
+  MatrixXd columns(static_cast<Index>(record.size()), 2 * static_cast<Index>(lines.size()));
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    columns.middleCols(2 * static_cast<Index>(i), 2) =
+        line_response(model, record, gains, lines[i]);
+  }
+  return columns;
+}
+
+/// Columns of very different sizes (m per Pa, per N) scaled alike before their rank is judged.
+MatrixXd basis_of(MatrixXd columns) {
+  for (Index i = 0; i < columns.cols(); ++i) {
+    const double norm = columns.col(i).norm();
+    if (norm > 0.0) columns.col(i) /= norm;
+  }
+  return linear_algebra::orthonormal_basis(columns, 1e-6);
+}
+
+class Likelihood {
+ public:
+  Likelihood(const plant_sim::ModelFile& model, const FitDataset& data,
+             const std::vector<FreeParameter>& parameters, const VectorXd& theta,
+             const Linearisations& models, const std::vector<SpectralLine>& lines, unsigned threads)
+      : data_(&data), theta_(&theta), models_(&models), lines_(&lines), threads_(threads) {
+    for (const Dataset& record : data.records) {
+      Dataset& plain = records_.emplace_back(record);
+      plain.innovations.reset();
+    }
+    for (const Dataset& record : records_) runs_.emplace_back(model, record, parameters);
+  }
+
+  /// -2 log L of up to eight points.
+  std::vector<double> operator()(const std::vector<Point>& points) {
+    std::vector<double> cost(points.size(), 0.0);
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      std::vector<KalmanGains> gains(points.size());
+      std::vector<MatrixXd> lines(points.size());
+      in_parallel(points.size(), threads_, [&](std::size_t i) {
+        gains[i] = kalman_gains((*models_)[r], records_[r], noise_of(points[i]),
+                                data_->noise_floor_m);
+        if (!lines_->empty()) {
+          lines[i] = basis_of(line_responses((*models_)[r], records_[r], gains[i].gains, *lines_));
+        }
+      });
+      std::vector<InnovationGains> each;
+      each.reserve(gains.size());
+      for (KalmanGains& one : gains) each.push_back(std::move(one.gains));
+      MatrixXd residuals_m;
+      runs_[r].innovations(theta_->replicate(1, static_cast<Index>(points.size())), each,
+                           residuals_m);
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto e = residuals_m.col(static_cast<Index>(i));
+        double square_m2 = e.squaredNorm();
+        if (lines[i].cols() > 0) square_m2 -= (lines[i].transpose() * e).squaredNorm();
+        const double value =
+            square_m2 / (data_->noise_floor_m * data_->noise_floor_m) + gains[i].log_determinant;
+        cost[i] += std::isfinite(value) ? value : 1e300;
+      }
+    }
+    return cost;
+  }
+
+ private:
+  const FitDataset* data_;
+  const VectorXd* theta_;
+  const Linearisations* models_;
+  const std::vector<SpectralLine>* lines_;
+  unsigned threads_;
+  std::vector<Dataset> records_;
+  std::vector<ObserverSimulation> runs_;
+};
+
+}  // namespace
+
+Linearisations linearise(const plant_sim::ModelFile& model, const FitDataset& data,
+                         const std::vector<FreeParameter>& parameters, const VectorXd& theta) {
+  Linearisations models;
+  models.reserve(data.records.size());
+  for (const Dataset& record : data.records) {
+    models.push_back(linearise(model, record, parameters, theta));
+  }
+  return models;
+}
+
+InnovationData innovation_data(const FitDataset& data, const Linearisations& models,
+                               const NoiseModel& noise) {
+  InnovationData result{data, 0.0};
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    Dataset& record = result.data.records[r];
+    KalmanGains gains = kalman_gains(models[r], record, noise.noise, data.noise_floor_m);
+    if (!noise.lines.empty()) {
+      gains.gains.lines = basis_of(line_responses(models[r], record, gains.gains, noise.lines));
+    }
+    result.log_determinant += gains.log_determinant;
+    record.innovations = std::make_shared<const InnovationGains>(std::move(gains.gains));
+  }
+  result.data.training_mask = data.all_mask;
+  result.data.validation_mask = data.all_mask;
+  return result;
+}
+
+NoiseEstimate estimate_noise(const plant_sim::ModelFile& model, const FitDataset& data,
+                             const std::vector<FreeParameter>& parameters, const VectorXd& theta,
+                             const Linearisations& models, const NoiseModel& start,
+                             unsigned threads) {
+  Likelihood likelihood(model, data, parameters, theta, models, start.lines, threads);
+  const double floor_m = data.noise_floor_m;
+  const double observer = kObserver_per_s * data.sample_time_s;
+  // a disturbance that moves the rod by the sensor's noise within a second, and what moves it by
+  // ten thousand times as much
+  const double unit = floor_m / std::max(reach_per_unit_m(models, data), 1e-300);
+  const double walk_m = observer * floor_m;
+  const Bounds bounds{
+      Point(std::log(1e-2 * unit), std::log(kLeastCorner_Hz), std::log(kLeastWalk_ratio * walk_m),
+            std::log(kLeastSensor_ratio * floor_m)),
+      Point(std::log(1e5 * unit), std::log(kMostCorner_ratio / data.sample_time_s),
+            std::log(kMostWalk_ratio * walk_m), std::log(kMostSensor_ratio * floor_m))};
+  const auto within = [&](const Point& point) -> Point {
+    return point.cwiseMax(bounds.lower).cwiseMin(bounds.upper);
+  };
+  std::vector<Point> points;
+  for (const double ratio : {0.1, 3.0, 30.0, 300.0}) {
+    for (const double corner_Hz : {0.4, 4.0}) {
+      points.push_back(within(point_of({ratio * unit, corner_Hz, walk_m, floor_m})));
+    }
+  }
+  if (start.noise.sensor_m > 0.0) points.back() = within(point_of(start.noise));
+  std::vector<double> costs = likelihood(points);
+  auto least = std::min_element(costs.begin(), costs.end());
+  Point best = points[static_cast<std::size_t>(least - costs.begin())];
+  double best_cost = *least;
+  double step = kFirstStep;
+  Point direction = Point::Zero();
+  for (int round = 0; round < kMostRounds && step > kLastStep; ++round) {
+    points.clear();
+    for (Index i = 0; i < Point::RowsAtCompileTime; ++i) {
+      for (const double sign : {-1.0, 1.0}) {
+        points.push_back(within(best + sign * step * Point::Unit(i) + 0.5 * direction));
+      }
+    }
+    costs = likelihood(points);
+    least = std::min_element(costs.begin(), costs.end());
+    if (*least < best_cost) {
+      const Point next = points[static_cast<std::size_t>(least - costs.begin())];
+      direction = next - best;
+      best = next;
+      best_cost = *least;
+    } else {
+      direction.setZero();
+      step *= 0.5;
+    }
+  }
+  return {{noise_of(best), start.lines}, best_cost};
+}
+
+}  // namespace estimator::greybox::disturbance

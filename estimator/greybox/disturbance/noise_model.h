@@ -1,0 +1,54 @@
+// What disturbs a rig beyond its sensor's noise, estimated by maximum likelihood of the innovations
+// of a model with given parameters.
+//
+//   -2 log L = sum over valid samples of  log S(k) + e(k)^2 / S(k)
+//
+// Searched are the standard deviation and corner of the disturbance F, the walk of the position and
+// the sensor's noise, within bounds that keep a missing effect from passing as noise without limit.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "estimator/greybox/disturbance/kalman_gains.h"
+#include "estimator/greybox/disturbance/spectral_lines.h"
+#include "estimator/greybox/fit_dataset.h"
+#include "estimator/greybox/free_parameter.h"
+#include "plant_sim/model_file.h"
+
+namespace estimator::greybox::disturbance {
+
+struct NoiseModel {
+  NoiseParameters noise;
+  std::vector<SpectralLine> lines;
+};
+
+/// One per record of a data set.
+using Linearisations = std::vector<Linearisation>;
+
+[[nodiscard]] Linearisations linearise(const plant_sim::ModelFile& model, const FitDataset& data,
+                                       const std::vector<FreeParameter>& parameters,
+                                       const Eigen::VectorXd& theta);
+
+/// The data set with innovations as residuals; every valid sample is fitted and scored.
+struct InnovationData {
+  FitDataset data;
+  double log_determinant = 0.0;  ///< KalmanGains', over all records
+};
+[[nodiscard]] InnovationData innovation_data(const FitDataset& data, const Linearisations& models,
+                                             const NoiseModel& noise);
+
+struct NoiseEstimate {
+  NoiseModel noise;
+  double minus_two_log_likelihood = 0.0;  ///< up to a constant; residuals per noise floor
+};
+
+/// `start`: lines are kept, its noise is one of the starts when its sensor_m is positive.
+[[nodiscard]] NoiseEstimate estimate_noise(const plant_sim::ModelFile& model,
+                                           const FitDataset& data,
+                                           const std::vector<FreeParameter>& parameters,
+                                           const Eigen::VectorXd& theta,
+                                           const Linearisations& models, const NoiseModel& start,
+                                           unsigned threads);
+
+}  // namespace estimator::greybox::disturbance

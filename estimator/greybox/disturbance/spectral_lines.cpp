@@ -1,0 +1,169 @@
+#include "estimator/greybox/disturbance/spectral_lines.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <numeric>
+#include <unsupported/Eigen/FFT>
+
+namespace estimator::greybox::disturbance {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr Index kDisturbance = kMostStates - 1;
+/// Of the highest peaks over the local median, and of the highest in power.
+constexpr std::size_t kSharpest = 3;
+constexpr std::size_t kStrongest = 2;
+/// Half width of the local median, in bins.
+constexpr std::size_t kNeighbourhood = 40;
+/// Turns over the record below which a line is a drift.
+constexpr double kFewestTurns = 8.0;
+
+StateMatrix transition_at(const Linearisation& model, const InnovationGains& gains, std::size_t k) {
+  StateMatrix a = model.transition[k];
+  a(kDisturbance, kDisturbance) = gains.decay;
+  return a;
+}
+
+StateVector gain_at(const InnovationGains& gains, Index k) {
+  StateVector gain = StateVector::Zero();
+  const Index count = gains.gain.rows() - 1;
+  gain.head(count) = gains.gain.col(k).head(count);
+  gain[kDisturbance] = gains.gain(count, k);
+  return gain;
+}
+
+StateVector input_of(const Linearisation& model, LineSite site, std::size_t k) {
+  if (site == LineSite::supply) return model.from_supply[k];
+  StateVector b = model.transition[k].col(kDisturbance);
+  b[kDisturbance] = 0.0;
+  return b;
+}
+
+std::vector<LineSite> sites_of(const Linearisation& model) {
+  std::vector<LineSite> sites{LineSite::force, LineSite::sensor};
+  if (model.supply) sites.push_back(LineSite::supply);
+  return sites;
+}
+
+/// d (half the squared innovations) / d w(k).
+VectorXd influence(const Linearisation& model, const InnovationGains& gains, LineSite site,
+                   const VectorXd& innovations) {
+  const Index samples = innovations.size();
+  VectorXd result(samples);
+  StateVector adjoint = StateVector::Zero();  // of z(k + 1)
+  for (Index k = samples - 1; k >= 0; --k) {
+    const auto row = static_cast<std::size_t>(k);
+    const StateMatrix a = transition_at(model, gains, row);
+    const double own = innovations[k] * gains.scale[k];
+    const StateVector back = a.transpose() * adjoint;
+    const double through_gain = gain_at(gains, k).dot(back);
+    result[k] = site == LineSite::sensor ? own - through_gain
+                                         : input_of(model, site, row).dot(adjoint);
+    adjoint = back;
+    adjoint[0] += own - through_gain;
+  }
+  return result;
+}
+
+std::vector<double> peaks_of(const VectorXd& series, double sample_time_s) {
+  Eigen::FFT<double> fft;
+  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  std::vector<double> padded(static_cast<std::size_t>(2 * series.size()), 0.0);
+  std::copy(series.data(), series.data() + series.size(), padded.begin());
+  std::vector<std::complex<double>> spectrum;
+  fft.fwd(spectrum, padded);
+  std::vector<double> power(spectrum.size());
+  std::transform(spectrum.begin(), spectrum.end(), power.begin(),
+                 [](const auto& value) { return std::norm(value); });
+  const double step_Hz = 1.0 / (sample_time_s * static_cast<double>(padded.size()));
+  const auto first = static_cast<std::size_t>(2.0 * kFewestTurns);
+  struct Peak {
+    std::size_t bin;
+    double power, sharpness;
+  };
+  std::vector<Peak> peaks;
+  for (std::size_t i = std::max<std::size_t>(first, 1); i + 1 < power.size(); ++i) {
+    if (power[i] < power[i - 1] || power[i] < power[i + 1]) continue;
+    const std::size_t from = i > kNeighbourhood ? i - kNeighbourhood : 0;
+    const std::size_t to = std::min(power.size(), i + kNeighbourhood + 1);
+    std::vector<double> near(power.begin() + static_cast<std::ptrdiff_t>(from),
+                             power.begin() + static_cast<std::ptrdiff_t>(to));
+    const auto middle = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2);
+    std::nth_element(near.begin(), middle, near.end());
+    peaks.push_back({i, power[i], power[i] / std::max(*middle, 1e-300)});
+  }
+  std::vector<double> found;
+  const auto take = [&](auto better, std::size_t most) {
+    std::stable_sort(peaks.begin(), peaks.end(), better);
+    for (std::size_t i = 0; i < std::min(most, peaks.size()); ++i) {
+      const double frequency_Hz = static_cast<double>(peaks[i].bin) * step_Hz;
+      if (std::find(found.begin(), found.end(), frequency_Hz) == found.end()) {
+        found.push_back(frequency_Hz);
+      }
+    }
+  };
+  take([](const Peak& a, const Peak& b) { return a.sharpness > b.sharpness; }, kSharpest);
+  take([](const Peak& a, const Peak& b) { return a.power > b.power; }, kStrongest);
+  return found;
+}
+
+}  // namespace
+
+const char* to_string(LineSite site) {
+  switch (site) {
+    case LineSite::force:
+      return "force";
+    case LineSite::supply:
+      return "pressure";
+    case LineSite::sensor:
+      break;
+  }
+  return "sensor";
+}
+
+MatrixXd line_response(const Linearisation& model, const Dataset& record,
+                       const InnovationGains& gains, const SpectralLine& line) {
+  using Pair = Eigen::Matrix<double, kMostStates, 2>;
+  const auto samples = static_cast<Index>(record.size());
+  MatrixXd result(samples, 2);
+  Pair z = Pair::Zero();
+  std::size_t segment = 0;
+  for (Index k = 0; k < samples; ++k) {
+    const auto row = static_cast<std::size_t>(k);
+    if (segment < record.starts.size() && record.starts[segment] == row) {
+      z.setZero();
+      ++segment;
+    }
+    const double angle = 2.0 * std::numbers::pi * line.frequency_Hz * record.t_s[row];
+    const Eigen::RowVector2d w(std::sin(angle), std::cos(angle));
+    Eigen::RowVector2d e = z.row(0);
+    if (line.site == LineSite::sensor) e += w;
+    result.row(k) = record.valid[row] != 0 ? Eigen::RowVector2d(e * gains.scale[k])
+                                           : Eigen::RowVector2d(0.0, 0.0);
+    z -= gain_at(gains, k) * e;
+    z = (transition_at(model, gains, row) * z).eval();
+    if (line.site != LineSite::sensor) z += input_of(model, line.site, row) * w;
+  }
+  return result;
+}
+
+std::vector<SpectralLine> promising_lines(const Linearisation& model, const Dataset& record,
+                                          const InnovationGains& gains,
+                                          const VectorXd& innovations) {
+  std::vector<SpectralLine> lines;
+  for (const LineSite site : sites_of(model)) {
+    const VectorXd series = influence(model, gains, site, innovations);
+    for (const double frequency_Hz : peaks_of(series, record.sample_time_s)) {
+      lines.push_back({site, frequency_Hz});
+    }
+  }
+  return lines;
+}
+
+}  // namespace estimator::greybox::disturbance

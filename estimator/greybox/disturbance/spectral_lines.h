@@ -1,0 +1,43 @@
+// Periodic disturbances: a pump's pulsation on the supply pressure, a periodic force, a sensor
+// mount that shakes. Each leaves a spectral line in the innovations, shaped by the plant on its way.
+//
+//   w(t) = a sin(2 pi f t) + b cos(2 pi f t)
+//   z(k+1) = A (I - K c') z(k) - A K m(k) + b w(k),   e(k) = c' z(k) + m(k)
+//
+// w enters as a force (b = A's column of F), as a supply pressure (b = b_p, whose sign turns with
+// the valve's opening) or as the reading m itself. The response to any w is linear, so a and b are
+// projected out of residuals; one backward pass over the innovations tells how much each sample's w
+// matters, and its periodogram shows all frequencies at once.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "estimator/greybox/disturbance/linearisation.h"
+#include "estimator/greybox/innovation_gains.h"
+
+namespace estimator::greybox::disturbance {
+
+enum class LineSite { force, supply, sensor };
+/// "force", "pressure", "sensor".
+[[nodiscard]] const char* to_string(LineSite site);
+
+struct SpectralLine {
+  LineSite site = LineSite::force;
+  double frequency_Hz = 0.0;
+};
+
+/// Scaled innovations (samples x 2) that a unit sine and a unit cosine at the site cause; zero for
+/// samples that are not valid. Unit: of `gains.scale` times m per N (m/s where the plant has no
+/// force), per Pa, per m.
+[[nodiscard]] Eigen::MatrixXd line_response(const Linearisation& model, const Dataset& record,
+                                            const InnovationGains& gains, const SpectralLine& line);
+
+/// The most promising lines of the innovations (samples, scaled), at most `most` per site: the
+/// highest peaks of the periodogram over its local median and the highest in power.
+[[nodiscard]] std::vector<SpectralLine> promising_lines(const Linearisation& model,
+                                                        const Dataset& record,
+                                                        const InnovationGains& gains,
+                                                        const Eigen::VectorXd& innovations);
+
+}  // namespace estimator::greybox::disturbance

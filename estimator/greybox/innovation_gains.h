@@ -1,0 +1,28 @@
+// Kalman gains that turn a simulation into a one-step predictor whose residual is white where the
+// process is disturbed as its noise model says (disturbance/kalman_gains.h computes them).
+//
+//   e(k) = y(k) - yh(k),   r(k) = scale(k) e(k),   x(k) += K(k) e(k),   F(k+1) = decay (F(k) + K_F e)
+//
+// x  states of the plant, F  process disturbance (a force, or a speed where the plant has no force).
+// The gains are frozen: every candidate model is simulated with those of the model that it extends.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace estimator::greybox {
+
+struct InnovationGains {
+  std::vector<std::string> states;  ///< corrected, in the order of the rows of `gain`
+  Eigen::MatrixXd gain;             ///< (states + 1) x samples; the last row is that of F
+  double decay = 0.0;               ///< of F from sample to sample
+  Eigen::VectorXd scale;            ///< sensor noise over the standard deviation of e
+  /// samples x 2 columns per spectral line: orthonormal signatures that are projected out of r.
+  Eigen::MatrixXd lines;
+
+  /// Samples [from, to).
+  [[nodiscard]] InnovationGains part(Eigen::Index from, Eigen::Index to) const;
+};
+
+}  // namespace estimator::greybox
