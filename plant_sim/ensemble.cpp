@@ -73,9 +73,7 @@ void LaneEnsemble::enter(const char* owner, const char* name, void* lanes) {
   }
 }
 
-void LaneEnsemble::enter_state(const char* name, void* lanes) {
-  states_.push_back({name, lanes});
-}
+void LaneEnsemble::enter_state(const char* name, void* lanes) { states_.push_back({name, lanes}); }
 
 void LaneEnsemble::take(const ModelFile& model) {
   const auto assign = [](const std::vector<Entry>& to, const std::string& name, double value) {

@@ -124,8 +124,8 @@ Dataset part(const Dataset& whole, std::size_t from, std::size_t to) {
   result.y_m = cut(whole.y_m);
   result.valid = cut(whole.valid);
   if (whole.innovations) {
-    result.innovations = std::make_shared<const InnovationGains>(whole.innovations->part(
-        static_cast<Eigen::Index>(from), static_cast<Eigen::Index>(to)));
+    result.innovations = std::make_shared<const InnovationGains>(
+        whole.innovations->part(static_cast<Eigen::Index>(from), static_cast<Eigen::Index>(to)));
   }
   if (!whole.initialising.empty()) result.initialising = cut(whole.initialising);
   result.starts = {0};

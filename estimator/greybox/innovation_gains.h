@@ -1,10 +1,12 @@
 // Kalman gains that turn a simulation into a one-step predictor whose residual is white where the
 // process is disturbed as its noise model says (disturbance/kalman_gains.h computes them).
 //
-//   e(k) = y(k) - yh(k),   r(k) = scale(k) e(k),   x(k) += K(k) e(k),   F(k+1) = decay (F(k) + K_F e)
+//   e(k) = y(k) - yh(k),   r(k) = scale(k) e(k),   x(k) += K(k) e(k),   F(k+1) = decay (F(k) + K_F
+//   e)
 //
-// x  states of the plant, F  process disturbance (a force, or a speed where the plant has no force).
-// The gains are frozen: every candidate model is simulated with those of the model that it extends.
+// x  states of the plant, F  process disturbance (a force, or a speed where the plant has no
+// force). The gains are frozen: every candidate model is simulated with those of the model that it
+// extends.
 #pragma once
 
 #include <Eigen/Core>

@@ -48,8 +48,7 @@ void ObserverSimulation::residuals(const Eigen::MatrixXd& points, const Eigen::M
 void ObserverSimulation::take(const Eigen::MatrixXd& points) {
   for (std::size_t p = 0; p < parameters_.size(); ++p) {
     for (Eigen::Index lane = 0; lane < kLanes; ++lane) {
-      const double theta =
-          points(static_cast<Eigen::Index>(p), std::min(lane, points.cols() - 1));
+      const double theta = points(static_cast<Eigen::Index>(p), std::min(lane, points.cols() - 1));
       ensemble_->set(index_[p], static_cast<std::size_t>(lane), parameters_[p].to_physical(theta));
     }
   }

@@ -20,7 +20,7 @@ struct NoiseParameters {
 };
 
 struct KalmanGains {
-  InnovationGains gains;  ///< scale: `floor_m` over the standard deviation of e; no lines
+  InnovationGains gains;         ///< scale: `floor_m` over the standard deviation of e; no lines
   double log_determinant = 0.0;  ///< sum over valid samples of log(S / floor_m^2)
 };
 

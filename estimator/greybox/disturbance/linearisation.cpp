@@ -83,8 +83,8 @@ Linearisation linearise(const plant_sim::ModelFile& model, const Dataset& record
     ensemble->set(*supply, supply_lane, ensemble->get(*supply, supply_lane) + kSupply_Pa);
   }
   std::vector<std::size_t> every;  // all states that a lane must share with the model before a step
-  for (const char* name : {"y_m", "v_mps", "pressure_in_Pa", "pressure_out_Pa", "spool_m",
-                           "spool_mps", "drive_mps"}) {
+  for (const char* name :
+       {"y_m", "v_mps", "pressure_in_Pa", "pressure_out_Pa", "spool_m", "spool_mps", "drive_mps"}) {
     if (const auto index = ensemble->find_state(name)) every.push_back(*index);
   }
   const std::size_t samples = record.size();
@@ -99,8 +99,8 @@ Linearisation linearise(const plant_sim::ModelFile& model, const Dataset& record
     }
     result.speed_mps[k] = ensemble->speed_mps()[kOwn];
     Ensemble::Values shift_m{};
-    shift_m[kOwn] = record.observer_gain(k, kObserver_per_s) *
-                    (record.y_m[k] - ensemble->reading_m()[kOwn]);
+    shift_m[kOwn] =
+        record.observer_gain(k, kObserver_per_s) * (record.y_m[k] - ensemble->reading_m()[kOwn]);
     ensemble->shift(shift_m);
     for (const std::size_t state : every) {
       Ensemble::Values values = ensemble->state(state);
@@ -121,7 +121,8 @@ Linearisation linearise(const plant_sim::ModelFile& model, const Dataset& record
             (after[kSmooth + 1 + j] - after[kSmooth]) / sizes[j];
       }
       if (result.force) {
-        result.transition[k](row, kMostStates - 1) = (after[force_lane] - after[kSmooth]) / kForce_N;
+        result.transition[k](row, kMostStates - 1) =
+            (after[force_lane] - after[kSmooth]) / kForce_N;
       }
       if (result.supply) {
         result.from_supply[k][row] = (after[supply_lane] - after[kSmooth]) / kSupply_Pa;

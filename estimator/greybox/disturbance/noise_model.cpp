@@ -53,8 +53,8 @@ double reach_per_unit_m(const Linearisations& models, const FitDataset& data) {
   double sum_m2 = 0.0;
   double windows = 0.0;
   for (std::size_t r = 0; r < models.size(); ++r) {
-    const auto length = static_cast<std::size_t>(
-        std::max(1.0, std::round(1.0 / data.records[r].sample_time_s)));
+    const auto length =
+        static_cast<std::size_t>(std::max(1.0, std::round(1.0 / data.records[r].sample_time_s)));
     const std::size_t samples = models[r].transition.size();
     for (std::size_t from = 0; from + length <= samples; from += length) {
       StateVector z = StateVector::Zero();
@@ -108,8 +108,8 @@ class Likelihood {
       std::vector<KalmanGains> gains(points.size());
       std::vector<MatrixXd> lines(points.size());
       in_parallel(points.size(), threads_, [&](std::size_t i) {
-        gains[i] = kalman_gains((*models_)[r], records_[r], noise_of(points[i]),
-                                data_->noise_floor_m);
+        gains[i] =
+            kalman_gains((*models_)[r], records_[r], noise_of(points[i]), data_->noise_floor_m);
         if (!lines_->empty()) {
           lines[i] = basis_of(line_responses((*models_)[r], records_[r], gains[i].gains, *lines_));
         }

@@ -8,6 +8,9 @@
 #include <numeric>
 #include <unsupported/Eigen/FFT>
 
+#include "estimator/greybox/observer_simulation.h"
+#include "estimator/linear_algebra/decompositions.h"
+
 namespace estimator::greybox::disturbance {
 namespace {
 
@@ -63,8 +66,8 @@ VectorXd influence(const Linearisation& model, const InnovationGains& gains, Lin
     const double own = innovations[k] * gains.scale[k];
     const StateVector back = a.transpose() * adjoint;
     const double through_gain = gain_at(gains, k).dot(back);
-    result[k] = site == LineSite::sensor ? own - through_gain
-                                         : input_of(model, site, row).dot(adjoint);
+    result[k] =
+        site == LineSite::sensor ? own - through_gain : input_of(model, site, row).dot(adjoint);
     adjoint = back;
     adjoint[0] += own - through_gain;
   }
@@ -151,6 +154,38 @@ MatrixXd line_response(const Linearisation& model, const Dataset& record,
     if (line.site != LineSite::sensor) z += input_of(model, line.site, row) * w;
   }
   return result;
+}
+
+std::vector<LineAmplitude> line_amplitudes(const Linearisation& model, const Dataset& record,
+                                           const InnovationGains& gains,
+                                           const std::vector<SpectralLine>& lines,
+                                           const VectorXd& innovations) {
+  const auto samples = static_cast<Index>(record.size());
+  const auto columns = 2 * static_cast<Index>(lines.size());
+  MatrixXd responses(samples, columns);
+  VectorXd norms(columns);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    responses.middleCols(2 * static_cast<Index>(i), 2) =
+        line_response(model, record, gains, lines[i]);
+  }
+  for (Index i = 0; i < columns; ++i) {
+    norms[i] = std::max(responses.col(i).norm(), 1e-300);
+    responses.col(i) /= norms[i];
+  }
+  const VectorXd found = linear_algebra::shortest_least_squares(responses, innovations).x;
+  InnovationGains weak{
+      {"y_m"}, MatrixXd::Zero(2, samples), gains.decay, VectorXd::Ones(samples), {}};
+  for (Index k = 0; k < samples; ++k) {
+    weak.gain(0, k) = record.observer_gain(static_cast<std::size_t>(k), kObserver_per_s);
+  }
+  std::vector<LineAmplitude> amplitudes;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const auto at = 2 * static_cast<Index>(i);
+    const Eigen::Vector2d w(found[at] / norms[at], found[at + 1] / norms[at + 1]);
+    const VectorXd seen = line_response(model, record, weak, lines[i]) * w;
+    amplitudes.push_back({w.norm(), std::sqrt(seen.squaredNorm() / static_cast<double>(samples))});
+  }
+  return amplitudes;
 }
 
 std::vector<SpectralLine> promising_lines(const Linearisation& model, const Dataset& record,

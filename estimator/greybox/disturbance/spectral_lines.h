@@ -1,5 +1,6 @@
 // Periodic disturbances: a pump's pulsation on the supply pressure, a periodic force, a sensor
-// mount that shakes. Each leaves a spectral line in the innovations, shaped by the plant on its way.
+// mount that shakes. Each leaves a spectral line in the innovations, shaped by the plant on its
+// way.
 //
 //   w(t) = a sin(2 pi f t) + b cos(2 pi f t)
 //   z(k+1) = A (I - K c') z(k) - A K m(k) + b w(k),   e(k) = c' z(k) + m(k)
@@ -32,6 +33,18 @@ struct SpectralLine {
 /// force), per Pa, per m.
 [[nodiscard]] Eigen::MatrixXd line_response(const Linearisation& model, const Dataset& record,
                                             const InnovationGains& gains, const SpectralLine& line);
+
+/// Amplitudes of the lines in the units of their sites, fitted together to scaled innovations from
+/// which no line was projected out.
+struct LineAmplitude {
+  double amplitude = 0.0;  ///< N (m/s), Pa or m
+  double rms_m = 0.0;      ///< of the weak observer's residual that it causes
+};
+[[nodiscard]] std::vector<LineAmplitude> line_amplitudes(const Linearisation& model,
+                                                         const Dataset& record,
+                                                         const InnovationGains& gains,
+                                                         const std::vector<SpectralLine>& lines,
+                                                         const Eigen::VectorXd& innovations);
 
 /// The most promising lines of the innovations (samples, scaled), at most `most` per site: the
 /// highest peaks of the periodogram over its local median and the highest in power.

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "estimator/greybox/selection/cross_validation.h"
 #include "estimator/greybox/selection/excitation.h"
 #include "estimator/greybox/selection/indistinguishable_models.h"
 #include "estimator/greybox/selection/localisation.h"
@@ -14,6 +15,17 @@ namespace estimator::greybox::selection {
 namespace {
 
 constexpr double kAsClear = 0.9;  ///< explained share of what is left over that of the whole
+
+/// `errors` are those of the search values.
+void report_parameters(const Eigen::VectorXd& errors, Diagnosis& result) {
+  for (std::size_t i = 0; i < result.final.parameters.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const FreeParameter& p = result.final.parameters[i];
+    const bool at_bound = result.final.at_bound[i] != 0;
+    const double error = at_bound ? std::nan("") : errors[k] * p.slope(result.final.theta[k]);
+    result.parameters.push_back({p.name, p.to_physical(result.final.theta[k]), error, at_bound});
+  }
+}
 
 /// The better model's parameters on all samples, with what the record says of each.
 void fit_final_parameters(const SearchContext& context, Diagnosis& result) {
@@ -28,15 +40,16 @@ void fit_final_parameters(const SearchContext& context, Diagnosis& result) {
           ? refit(context, all, context.problem.data.final_weights(), context.options.threads)
           : refit(context, all, context.problem.data.final_weights(), context.options.threads, 0.0);
   result.better = with_values(context.problem.model, result.final);
-  const Eigen::VectorXd errors =
-      std_errors(context.problem.data, context.problem.data.final_weights(), result.final);
-  for (std::size_t i = 0; i < result.final.parameters.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    const FreeParameter& p = result.final.parameters[i];
-    const bool at_bound = result.final.at_bound[i] != 0;
-    const double error = at_bound ? std::nan("") : errors[k] * p.slope(result.final.theta[k]);
-    result.parameters.push_back({p.name, p.to_physical(result.final.theta[k]), error, at_bound});
-  }
+  report_parameters(
+      std_errors(context.problem.data, context.problem.data.final_weights(), result.final), result);
+}
+
+/// The model that the innovations chose, as it is.
+void take_parameters(const InnovationStage& stage, Diagnosis& result) {
+  const FitDataset& data = stage.context.problem.data;
+  result.final = stage.model.fitted;
+  result.better = with_values(stage.context.problem.model, result.final);
+  report_parameters(std_errors(data, data.all_mask, result.final), result);
 }
 
 void list_steps(Diagnosis& result) {
@@ -72,6 +85,65 @@ void classify_indistinguishable(const SearchContext& context, const ModelStage& 
   }
 }
 
+void take_errors(Diagnosis& result) {
+  result.nominal_rms_m = result.search.nominal_rms_m;
+  list_steps(result);
+  result.rms_before_m = result.steps.front().validation_rms_m;
+  result.rms_after_m = result.search.final.fitted.validation_rms_m;
+  result.missing = result.search.final.added;
+}
+
+/// A verdict by the held-out errors of simulations.
+void conclude(const SearchContext& context, const SearchContext& search, Diagnosis& result) {
+  const ModelStage found = result.search.final;
+  if (uses_segments(search, context)) {
+    refit_to_whole(context, result.search);
+    result.notes.push_back(note_of_search(search, context));
+  }
+  take_errors(result);
+  const ModelStage& final = result.search.final;
+  fit_final_parameters(context, result);
+  if (final.fitted.validation_rms_m > kUnexplained * result.noise_floor_m) {
+    result.verdict = Verdict::unexplained;
+    const bool begun = !result.search.rounds.empty();
+    result.where =
+        localise_remainder(search, begun ? result.search.rounds.front().before : found, found);
+    classify_indistinguishable(search, found, result);
+  } else {
+    classify_indistinguishable(search, found, result);
+    result.verdict = final.added.empty()        ? Verdict::nothing_missing
+                     : result.ambiguous.empty() ? Verdict::missing
+                                                : Verdict::undetermined;
+  }
+}
+
+/// A verdict by the likelihood of innovations.
+void conclude(const SearchContext& search, const ModelStage& first,
+              const InnovationSearch& innovations, Diagnosis& result) {
+  const double nominal_m = result.search.nominal_rms_m;
+  const double preview_s = result.search.preview_s;
+  result.search = structure_search_of(search, first, innovations);
+  result.search.nominal_rms_m = nominal_m;
+  result.search.preview_s = preview_s;
+  result.search.interrupted = search.cancelled();
+  take_errors(result);
+  take_parameters(innovations.final, result);
+  result.disturbance = disturbance_of(search, innovations);
+  if (result.disturbance) {
+    result.disturbed_floor_m = std::hypot(result.noise_floor_m, result.disturbance->rms_m);
+  }
+  for (const InnovationRivals& rivals : innovations.rivals) {
+    if (search.options.separable) {
+      (void)search.options.separable(search, rivals.explanations, rivals.names);
+    }
+    result.ambiguous.push_back(rivals.names);
+  }
+  result.verdict = result.search.interrupted  ? Verdict::unexplained
+                   : result.missing.empty()   ? Verdict::nothing_missing
+                   : result.ambiguous.empty() ? Verdict::missing
+                                              : Verdict::undetermined;
+}
+
 }  // namespace
 
 const char* to_string(Verdict verdict) {
@@ -95,6 +167,7 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
   const SearchContext context{problem, options};
   Diagnosis result;
   result.noise_floor_m = problem.data.noise_floor_m;
+  result.disturbed_floor_m = result.noise_floor_m;
   for (const Dataset& record : problem.data.records) {
     for (const std::string& note : record.notes) result.notes.push_back(record.name + ": " + note);
   }
@@ -106,30 +179,19 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
     return result;
   }
   const SearchContext search = for_search(context);
-  result.search = search_structure(search);
-  const ModelStage found = result.search.final;
-  if (uses_segments(search, context)) {
-    refit_to_whole(context, result.search);
-    result.notes.push_back(note_of_search(search, context));
-  }
-  const ModelStage& final = result.search.final;
-  result.nominal_rms_m = result.search.nominal_rms_m;
-  list_steps(result);
-  result.rms_before_m = result.steps.front().validation_rms_m;
-  result.rms_after_m = final.fitted.validation_rms_m;
-  result.missing = final.added;
-  fit_final_parameters(context, result);
-  if (final.fitted.validation_rms_m > kUnexplained * result.noise_floor_m) {
-    result.verdict = Verdict::unexplained;
-    const bool begun = !result.search.rounds.empty();
-    result.where =
-        localise_remainder(search, begun ? result.search.rounds.front().before : found, found);
-    classify_indistinguishable(search, found, result);
+  result.search = search_structure(search, SearchEffort::brief);
+  const ModelStage first = result.search.path.front();
+  if (is_explained(search, result.search.final) || context.cancelled() ||
+      !std::isfinite(result.noise_floor_m)) {
+    conclude(context, search, result);
   } else {
-    classify_indistinguishable(search, found, result);
-    result.verdict = final.added.empty()        ? Verdict::nothing_missing
-                     : result.ambiguous.empty() ? Verdict::missing
-                                                : Verdict::undetermined;
+    const InnovationSearch innovations = search_innovations(search, first);
+    if (context.cancelled() || innovations.curve_nats <= kCurve_nats) {
+      conclude(search, first, innovations, result);
+    } else {
+      result.search = search_structure(search, SearchEffort::full);
+      conclude(context, search, result);
+    }
   }
   if (result.search.interrupted) result.notes.emplace_back("interrupted: the best so far");
   result.runtime_s =

@@ -1,9 +1,12 @@
 // What a diagnosis says in the end, and what it rests on.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "estimator/greybox/selection/disturbance_report.h"
+#include "estimator/greybox/selection/localisation.h"
 #include "estimator/greybox/selection/structure_search.h"
 
 namespace estimator::greybox::selection {
@@ -17,13 +20,6 @@ struct ParameterValue {
   double value = 0.0;      ///< SI, the unit in the name
   double std_error = 0.0;  ///< NaN where the record does not say (at a bound)
   bool at_bound = false;
-};
-
-/// Where a residual enters the equations, and which variable it goes with.
-struct Localisation {
-  std::string site;              ///< "flow", "force", "gain", "measurement"
-  std::string variable;          ///< "y", "v", "u", "speed", "acceleration", "time", "direction"
-  double explained_ratio = 0.0;  ///< of the held-out squared error
 };
 
 struct Step {
@@ -44,6 +40,10 @@ struct Diagnosis {
   std::vector<ParameterValue> parameters;  ///< of the better model, fitted to all samples
   std::vector<Localisation> where;         ///< best first; empty when nothing is left to explain
   std::vector<Step> steps;
+  /// What disturbs the rig, where the record was judged by innovations and shows any.
+  std::optional<Disturbance> disturbance;
+  /// The error of a simulation that sensor and disturbance cause; the sensor's alone without one.
+  double disturbed_floor_m = 0.0;
   std::vector<std::string> notes;  ///< restrictions: gaps, interrupted, ...
   StructureSearch search;
   FitSummary final;             ///< the better model on all samples

@@ -117,9 +117,8 @@ std::vector<CurveGain> curve_gains(const InnovationStage& stage) {
         responses(stage, all, inputs(all, *attempt.variable, attempt.form), attempt.form);
     if (columns.cols() > 0 && columns.allFinite()) attempt.gain_nats = gain_nats(stage, columns);
   });
-  std::stable_sort(attempts.begin(), attempts.end(), [](const Attempt& a, const Attempt& b) {
-    return a.gain_nats > b.gain_nats;
-  });
+  std::stable_sort(attempts.begin(), attempts.end(),
+                   [](const Attempt& a, const Attempt& b) { return a.gain_nats > b.gain_nats; });
   std::vector<CurveGain> gains;
   for (const Attempt& attempt : attempts) {
     gains.push_back({site_of(attempt.form), attempt.variable->name, attempt.gain_nats});

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -39,6 +41,8 @@ constexpr double kTolerance = 1e-5;
 /// Fall of -2 log L below which another turn of noise model and parameters is of no use.
 constexpr double kSettled = 1.0;
 constexpr int kMostTurns = 5;
+/// Amplitude of the motion over the RMS of a line at the same frequency.
+constexpr double kFollows = 4.0;
 constexpr double kParametersOfLine = 3.0;
 /// A rival this far behind with the stage's gains may be level with a noise model of its own.
 constexpr double kWorthSettling_nats = 60.0;
@@ -89,7 +93,8 @@ void refit(const SearchContext& plain, InnovationStage& stage, bool from_file_to
     all.start = with_file_values(stage.context, stage.model);
     FitSummary other = fit_innovations(stage.context, all, threads, false);
     const double floor_m = plain.problem.data.noise_floor_m;
-    if (squares(other, floor_m) + prior_cost(other) < squares(fitted, floor_m) + prior_cost(fitted)) {
+    if (squares(other, floor_m) + prior_cost(other) <
+        squares(fitted, floor_m) + prior_cost(fitted)) {
       fitted = std::move(other);
     }
   }
@@ -111,10 +116,10 @@ InnovationStage settled(const SearchContext& plain, ModelStage model, const Nois
     const FitSummary& fitted = stage.model.fitted;
     stage.linear = disturbance::linearise(plain.problem.model, plain.problem.data,
                                           fitted.parameters, fitted.theta);
-    stage.noise = disturbance::estimate_noise(plain.problem.model, plain.problem.data,
-                                              fitted.parameters, fitted.theta, stage.linear,
-                                              stage.noise, threads)
-                      .noise;
+    stage.noise =
+        disturbance::estimate_noise(plain.problem.model, plain.problem.data, fitted.parameters,
+                                    fitted.theta, stage.linear, stage.noise, threads)
+            .noise;
     refit(plain, stage, i == 0, threads);
     const double gain = best.minus_two_log - stage.minus_two_log;
     if (gain > 0.0) best = stage;
@@ -131,8 +136,8 @@ struct ScoredLine {
 double line_gain_nats(const InnovationStage& stage, const Projection& projection,
                       const SpectralLine& line, std::size_t record, Index at) {
   const FitDataset& data = stage.context.problem.data;
-  const MatrixXd response = disturbance::line_response(
-      stage.linear[record], data.records[record], *data.records[record].innovations, line);
+  const MatrixXd response = disturbance::line_response(stage.linear[record], data.records[record],
+                                                       *data.records[record].innovations, line);
   MatrixXd whole = MatrixXd::Zero(data.size(), 2);
   whole.middleRows(at, response.rows()) = response;
   const double size = whole.norm();
@@ -144,8 +149,33 @@ double line_gain_nats(const InnovationStage& stage, const Projection& projection
   return 0.5 * (projection.cost() - two.cost) * sigma * sigma;
 }
 
+/// Amplitude of a series at a frequency, Hann's window.
+double amplitude_at(const VectorXd& series, double frequency_Hz, double sample_time_s) {
+  const double size = static_cast<double>(series.size());
+  const double mean = series.mean();
+  std::complex<double> sum = 0.0;
+  for (Index k = 0; k < series.size(); ++k) {
+    const double at = static_cast<double>(k);
+    const double window = 1.0 - std::cos(2.0 * std::numbers::pi * at / size);
+    sum += window * (series[k] - mean) *
+           std::polar(1.0, -2.0 * std::numbers::pi * frequency_Hz * sample_time_s * at);
+  }
+  return 2.0 * std::abs(sum) / size;
+}
+
+/// A line where the model itself moves is a fault of the model, no disturbance.
+bool follows_motion(const InnovationStage& stage, std::size_t record, const VectorXd& motion_m,
+                    const VectorXd& innovations, const SpectralLine& line) {
+  const Dataset& data = stage.context.problem.data.records[record];
+  const double own_m = disturbance::line_amplitudes(stage.linear[record], data, *data.innovations,
+                                                    {line}, innovations)
+                           .front()
+                           .rms_m;
+  return amplitude_at(motion_m, line.frequency_Hz, data.sample_time_s) > kFollows * own_m;
+}
+
 /// The best spectral line about each promising frequency, best first; of the longest record.
-std::vector<ScoredLine> lines_of(const InnovationStage& stage) {
+std::vector<ScoredLine> lines_of(const SearchContext& plain, const InnovationStage& stage) {
   const FitDataset& data = stage.context.problem.data;
   std::size_t record = 0;
   for (std::size_t r = 1; r < data.records.size(); ++r) {
@@ -153,21 +183,22 @@ std::vector<ScoredLine> lines_of(const InnovationStage& stage) {
   }
   const auto at = static_cast<Index>(data.starts[record]);
   const Dataset& longest = data.records[record];
+  const auto size = static_cast<Index>(longest.size());
   const Projection projection(stage.model.fitted, data.training_mask);
-  const VectorXd innovations =
-      stage.model.fitted.residual_m.segment(at, static_cast<Index>(longest.size()));
+  const VectorXd innovations = stage.model.fitted.residual_m.segment(at, size);
+  const VectorXd motion_m = Eigen::Map<const VectorXd>(longest.y_m.data(), size) -
+                            simulated(plain, stage.model.fitted).residual_m.segment(at, size);
   std::vector<SpectralLine> promising = disturbance::promising_lines(
       stage.linear[record], longest, *longest.innovations, innovations);
   std::vector<ScoredLine> scored(promising.size());
-  const double bin_Hz =
-      1.0 / (longest.sample_time_s * static_cast<double>(std::max<std::size_t>(longest.size(), 1)));
+  const double bin_Hz = 1.0 / (longest.sample_time_s * static_cast<double>(size));
   in_parallel(promising.size(), stage.context.options.threads, [&](std::size_t i) {
     SpectralLine line = promising[i];
     double best = line_gain_nats(stage, projection, line, record, at);
     for (double step_Hz = 0.5 * bin_Hz; step_Hz > 0.02 * bin_Hz; step_Hz *= 0.5) {
       for (const double sign : {-1.0, 1.0}) {
-        SpectralLine moved = promising[i];
-        moved.frequency_Hz = line.frequency_Hz + sign * step_Hz;
+        SpectralLine moved = line;
+        moved.frequency_Hz += sign * step_Hz;
         const double gain = line_gain_nats(stage, projection, moved, record, at);
         if (gain > best) {
           best = gain;
@@ -176,8 +207,11 @@ std::vector<ScoredLine> lines_of(const InnovationStage& stage) {
         }
       }
     }
-    scored[i] = {line, best};
+    const bool disturbs =
+        best > kPerParameter_nats && !follows_motion(stage, record, motion_m, innovations, line);
+    scored[i] = {line, disturbs ? best : 0.0};
   });
+  std::erase_if(scored, [](const ScoredLine& line) { return !(line.gain_nats > 0.0); });
   std::stable_sort(scored.begin(), scored.end(), [](const ScoredLine& a, const ScoredLine& b) {
     return a.gain_nats > b.gain_nats;
   });
@@ -244,8 +278,7 @@ std::vector<Trial> effect_trials(const InnovationStage& stage) {
       if (context.cancelled()) return;
       FitSummary fitted = fit_innovations(context, {screened[i].parameters, start}, 1, true);
       const double penalty = penalty_nats(fitted, stage.model.fitted);
-      const double gain =
-          0.5 * (before - squares(fitted, floor_m) - prior_cost(fitted)) - penalty;
+      const double gain = 0.5 * (before - squares(fitted, floor_m) - prior_cost(fitted)) - penalty;
       if (!(gain > trial.candidate.gain_nats)) continue;
       trial.candidate.gain_nats = gain;
       trial.penalty_nats = penalty;
@@ -263,8 +296,7 @@ void add_simulated_starts(const SearchContext& plain, const InnovationStage& sta
   ParameterSubset all = subset(stage.model.fitted, [](const auto&) { return true; });
   simulated.fitted = fit(plain.problem.model, plain.problem.data, plain.problem.data.training_mask,
                          all.parameters, all.start, simulation_options(plain, true));
-  std::vector<ScreeningResult> screened =
-      screen(plain, simulated, absent_from(plain, simulated));
+  std::vector<ScreeningResult> screened = screen(plain, simulated, absent_from(plain, simulated));
   screened.resize(std::min(screened.size(), kSimulated));
   std::vector<FitSummary> fits(screened.size());
   in_parallel(screened.size(), plain.options.threads, [&](std::size_t i) {
@@ -279,9 +311,8 @@ void add_simulated_starts(const SearchContext& plain, const InnovationStage& sta
     FitSummary& fitted = fits[order[k]];
     const std::string& effect = screened[order[k]].effect;
     if (!(fitted.training_rms_m < kWorthSimulating * simulated.fitted.training_rms_m)) break;
-    auto trial = std::find_if(trials.begin(), trials.end(), [&](const Trial& known) {
-      return known.candidate.effect == effect;
-    });
+    auto trial = std::find_if(trials.begin(), trials.end(),
+                              [&](const Trial& known) { return known.candidate.effect == effect; });
     if (trial == trials.end()) {
       trials.emplace_back();
       trial = trials.end() - 1;
@@ -327,14 +358,14 @@ InnovationStage settled(const SearchContext& plain, const InnovationStage& stage
 
 /// One round: false when nothing gains enough.
 bool extend(const SearchContext& plain, InnovationStage& stage,
-            std::vector<std::vector<InnovationCandidate>>& rounds) {
+            std::vector<InnovationRound>& rounds) {
   std::vector<Trial> trials;
   if (stage.model.added.size() < kMostEffects) {
     trials = effect_trials(stage);
     add_simulated_starts(plain, stage, trials);
   }
   if (stage.noise.lines.size() < kMostLines) {
-    std::vector<ScoredLine> lines = lines_of(stage);
+    std::vector<ScoredLine> lines = lines_of(plain, stage);
     for (std::size_t i = 0; i < std::min<std::size_t>(lines.size(), 2); ++i) {
       Trial trial;
       trial.candidate.line = lines[i].line;
@@ -360,20 +391,25 @@ bool extend(const SearchContext& plain, InnovationStage& stage,
     const Trial& trial = trials[i];
     if (!trial.candidate.settled || trial.candidate.gain_nats < kEvidence_nats) continue;
     if (leaves_its_range(stages[i].model, stage.model)) continue;
-    if (chosen == trials.size() ||
-        trial.candidate.gain_nats > trials[chosen].candidate.gain_nats) {
+    if (chosen == trials.size() || trial.candidate.gain_nats > trials[chosen].candidate.gain_nats) {
       chosen = i;
     }
   }
-  std::vector<InnovationCandidate> round;
-  if (chosen < trials.size()) round.push_back(trials[chosen].candidate);
+  in_parallel(trials.size(), plain.options.threads, [&](std::size_t i) {
+    trials[i].candidate.penalty_nats = trials[i].penalty_nats;
+    if (trials[i].candidate.settled) {
+      trials[i].candidate.fitted = simulated(plain, stages[i].model.fitted);
+    }
+  });
+  InnovationRound round{{stage.model.added, simulated(plain, stage.model.fitted)}, {}};
+  if (chosen < trials.size()) round.candidates.push_back(trials[chosen].candidate);
   for (std::size_t i = 0; i < trials.size(); ++i) {
-    if (i != chosen) round.push_back(trials[i].candidate);
+    if (i != chosen) round.candidates.push_back(trials[i].candidate);
   }
   rounds.push_back(std::move(round));
   if (chosen == trials.size()) return false;
-  stage = settled(plain, stages[chosen].model, stages[chosen].noise, kMostTurns,
-                  plain.options.threads);
+  stage =
+      settled(plain, stages[chosen].model, stages[chosen].noise, kMostTurns, plain.options.threads);
   return true;
 }
 
@@ -418,10 +454,9 @@ void eliminate(const SearchContext& plain, InnovationStage& stage) {
 }
 
 /// For each effect found, those that explain the record about as well in its place.
-std::vector<std::vector<std::string>> groups_of(const SearchContext& plain,
-                                                const InnovationStage& final,
-                                                const InnovationStage& before) {
-  std::vector<std::vector<std::string>> groups;
+std::vector<InnovationRivals> rivals_of(const SearchContext& plain, const InnovationStage& final,
+                                        const InnovationStage& before) {
+  std::vector<InnovationRivals> groups;
   for (const std::string& effect : final.model.added) {
     if (plain.cancelled()) break;
     const InnovationStage without = final.model.added.size() == 1 && final.noise.lines.empty()
@@ -434,7 +469,7 @@ std::vector<std::vector<std::string>> groups_of(const SearchContext& plain,
     for (const Trial& rival : rivals) {
       if (rival.candidate.effect == effect) best = rival.candidate.gain_nats;
     }
-    std::vector<std::string> group{effect};
+    InnovationRivals group{{effect}, {final.model.fitted}};
     std::size_t tried = 0;
     for (const Trial& rival : rivals) {
       const std::string& name = rival.candidate.effect;
@@ -445,20 +480,33 @@ std::vector<std::vector<std::string>> groups_of(const SearchContext& plain,
         continue;
       }
       const InnovationStage other = settled(plain, without, rival);
-      const double behind = 0.5 * (other.minus_two_log - final.minus_two_log) +
-                            kPerParameter_nats *
-                                (static_cast<double>(other.model.fitted.parameters.size()) -
-                                 static_cast<double>(final.model.fitted.parameters.size()));
+      const double behind =
+          0.5 * (other.minus_two_log - final.minus_two_log) +
+          kPerParameter_nats * (static_cast<double>(other.model.fitted.parameters.size()) -
+                                static_cast<double>(final.model.fitted.parameters.size()));
       if (behind < kRivals_nats && !leaves_its_range(other.model, without.model)) {
-        group.push_back(name);
+        group.names.push_back(name);
+        group.explanations.push_back(other.model.fitted);
       }
     }
-    if (group.size() > 1) groups.push_back(std::move(group));
+    if (group.names.size() > 1) groups.push_back(std::move(group));
   }
   return groups;
 }
 
 }  // namespace
+
+FitSummary simulated(const SearchContext& context, const FitSummary& fitted) {
+  DatasetSimulation run(context.problem.model, context.problem.data, fitted.parameters);
+  FitSummary result = fitted;
+  result.jacobian.resize(0, 0);
+  MatrixXd residual_m;
+  run.residuals(fitted.theta, residual_m);
+  result.residual_m = residual_m.col(0);
+  result.training_rms_m = rms(result.residual_m, context.problem.data.training_mask);
+  result.validation_rms_m = rms(result.residual_m, context.problem.data.validation_mask);
+  return result;
+}
 
 InnovationSearch search_innovations(const SearchContext& context, const ModelStage& first) {
   InnovationSearch search;
@@ -467,11 +515,10 @@ InnovationSearch search_innovations(const SearchContext& context, const ModelSta
   while (!context.cancelled() && extend(context, stage, search.rounds)) {
   }
   eliminate(context, stage);
-  if (!stage.model.added.empty()) search.groups = groups_of(context, stage, search.before);
+  if (!stage.model.added.empty()) search.rivals = rivals_of(context, stage, search.before);
   const std::vector<CurveGain> curves = curve_gains(stage);
   if (!curves.empty()) search.curve_nats = curves.front().gain_nats;
-  const double all =
-      0.5 * squares(stage.model.fitted, stage.context.problem.data.noise_floor_m);
+  const double all = 0.5 * squares(stage.model.fitted, stage.context.problem.data.noise_floor_m);
   for (const CurveGain& curve : curves) {
     if (curve.gain_nats > kCurve_nats) {
       search.where.push_back({curve.site, curve.variable, curve.gain_nats / all});

@@ -15,13 +15,20 @@
 // s / (s + l). a and b are fitted to the fitted samples and scored on the others.
 #pragma once
 
+#include <string>
 #include <vector>
 
-#include "estimator/greybox/selection/diagnosis.h"
 #include "estimator/greybox/selection/problem.h"
 #include "estimator/greybox/selection/screening.h"
 
 namespace estimator::greybox::selection {
+
+/// Where a residual enters the equations, and which variable it goes with.
+struct Localisation {
+  std::string site;              ///< "flow", "force", "gain", "measurement"
+  std::string variable;          ///< "y", "v", "u", "speed", "acceleration", "time", "direction"
+  double explained_ratio = 0.0;  ///< of the held-out squared error
+};
 
 /// One entry for each variable, with the class in which it explains most; best first, of those that
 /// do about as well the one with the fewest pieces. Empty when the workshop's cancel says so. The

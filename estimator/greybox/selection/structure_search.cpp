@@ -149,9 +149,12 @@ std::optional<SearchBranch> start_with_pair(const SearchContext& context, const 
 }
 
 /// The search one effect after another, or with two at once where that leads further.
-SearchBranch search_forward(const SearchContext& context, const ModelStage& first) {
+SearchBranch search_forward(const SearchContext& context, const ModelStage& first,
+                            SearchEffort effort) {
   SearchBranch best{first, {}};
-  const bool may_go_on = extend_branch(context, best.stage, best.rounds, true, kBeforePairSearch);
+  const bool may_go_on = extend_branch(context, best.stage, best.rounds,
+                                       effort == SearchEffort::full, kBeforePairSearch);
+  if (effort == SearchEffort::brief && !is_explained(context, best.stage)) return best;
   std::optional<SearchBranch> other = start_with_pair(context, first, best);
   if (other && is_explained(context, other->stage) && improves_on(*other, best)) return *other;
   if (may_go_on) extend_branch(context, best.stage, best.rounds, true);
@@ -206,15 +209,21 @@ ModelStage first_stage(const SearchContext& context) {
               start_of(context.problem.model, context.problem.plant_parameters), options)};
 }
 
-StructureSearch search_structure(const SearchContext& context) {
+StructureSearch search_structure(const SearchContext& context, SearchEffort effort) {
   const auto begin = std::chrono::steady_clock::now();
   StructureSearch search;
   search.nominal_rms_m = nominal_rms_m(context);
   const ModelStage first = first_stage(context);
   search.preview_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  SearchBranch best = search_forward(context, first);
+  SearchBranch best = search_forward(context, first, effort);
   if (!best.rounds.empty()) search.preview_s += best.rounds.front().screening_s;
+  if (effort == SearchEffort::brief && !is_explained(context, best.stage)) {
+    search.path = {first};
+    search.final = first;
+    search.interrupted = context.cancelled();
+    return search;
+  }
   try_alternative_starts(context, first, best);
   const ModelStage& stage = best.stage;
   search.rounds = std::move(best.rounds);

@@ -56,7 +56,9 @@ struct StructureSearch {
   double preview_s = 0.0;  ///< until the first ranking of all effects was known
 };
 
-[[nodiscard]] StructureSearch search_structure(const SearchContext& context);
+/// brief: given up as soon as kBeforePairSearch effects one after another leave more than noise.
+enum class SearchEffort { brief, full };
+[[nodiscard]] StructureSearch search_structure(const SearchContext& context, SearchEffort effort);
 
 /// Held-out error of the model file as it is.
 [[nodiscard]] double nominal_rms_m(const SearchContext& context);

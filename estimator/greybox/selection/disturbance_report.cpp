@@ -1,0 +1,129 @@
+#include "estimator/greybox/selection/disturbance_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimator/residual/distributions.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+using Eigen::Index;
+
+/// A disturbance of less than this share of the sensor's noise, RMS, is none.
+constexpr double kSeen = 0.3;
+
+struct RecordDisturbance {
+  double random_m2 = 0.0;
+  std::vector<disturbance::LineAmplitude> lines;
+};
+
+RecordDisturbance disturbance_of(const InnovationStage& stage, std::size_t r) {
+  const Dataset& record = stage.context.problem.data.records[r];
+  RecordDisturbance result;
+  const double all_m = disturbance::disturbed_rms_m(stage.linear[r], record, stage.noise.noise);
+  result.random_m2 = std::max(0.0, all_m * all_m - std::pow(stage.noise.noise.sensor_m, 2));
+  if (stage.noise.lines.empty()) return result;
+  Dataset without = record;
+  InnovationGains gains = *record.innovations;
+  gains.lines.resize(0, 0);
+  without.innovations = std::make_shared<const InnovationGains>(gains);
+  ObserverSimulation run(stage.context.problem.model, without, stage.model.fitted.parameters);
+  Eigen::MatrixXd innovations;
+  run.residuals(stage.model.fitted.theta, innovations);
+  result.lines = disturbance::line_amplitudes(stage.linear[r], record, gains, stage.noise.lines,
+                                              innovations.col(0));
+  return result;
+}
+
+std::string site_of(const InnovationStage& stage, disturbance::LineSite site) {
+  if (site == disturbance::LineSite::force && !stage.linear.front().force) return "speed";
+  return disturbance::to_string(site);
+}
+
+Candidate candidate_of(const InnovationCandidate& found, const ModelStage& before) {
+  Candidate candidate;
+  candidate.effects = {found.effect};
+  candidate.fitted_at_all = found.settled;
+  if (!found.settled) return candidate;
+  candidate.fitted = found.fitted;
+  candidate.validation_rms_m = found.fitted.validation_rms_m;
+  candidate.expected_ratio =
+      found.fitted.validation_rms_m / std::max(before.fitted.validation_rms_m, 1e-300);
+  const double raw_nats = std::max(0.0, found.gain_nats + found.penalty_nats);
+  candidate.p_value =
+      residual::chi_square_upper(2.0 * raw_nats, found.penalty_nats / kPerParameter_nats);
+  return candidate;
+}
+
+}  // namespace
+
+std::optional<Disturbance> disturbance_of(const SearchContext& context,
+                                          const InnovationSearch& search) {
+  const InnovationStage& stage = search.final;
+  const FitDataset& data = context.problem.data;
+  Disturbance result;
+  double random_m2 = 0.0;
+  double total_m2 = 0.0;
+  double counted = 0.0;
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    const RecordDisturbance one = disturbance_of(stage, r);
+    const auto samples = static_cast<double>(data.records[r].size());
+    counted += samples;
+    random_m2 += samples * one.random_m2;
+    total_m2 += samples * one.random_m2;
+    result.lines.resize(one.lines.size());
+    for (std::size_t i = 0; i < one.lines.size(); ++i) {
+      result.lines[i].amplitude += samples * std::pow(one.lines[i].amplitude, 2);
+      result.lines[i].rms_m += samples * std::pow(one.lines[i].rms_m, 2);
+      total_m2 += samples * std::pow(one.lines[i].rms_m, 2);
+    }
+  }
+  for (std::size_t i = 0; i < result.lines.size(); ++i) {
+    DisturbanceLine& line = result.lines[i];
+    line.as = site_of(stage, stage.noise.lines[i].site);
+    line.frequency_Hz = stage.noise.lines[i].frequency_Hz;
+    line.amplitude = std::sqrt(line.amplitude / counted);
+    line.rms_m = std::sqrt(line.rms_m / counted);
+  }
+  result.as = site_of(stage, disturbance::LineSite::force);
+  if (std::sqrt(random_m2 / counted) > kSeen * data.noise_floor_m) {
+    result.value = stage.noise.noise.disturbance_sd;
+    result.corner_Hz = stage.noise.noise.corner_Hz;
+  }
+  result.rms_m = std::sqrt(total_m2 / counted);
+  const double error_m = rms(simulated(context, stage.model.fitted).residual_m, data.all_mask);
+  result.share = std::min(1.0, std::pow(result.rms_m / error_m, 2));
+  if (!(result.rms_m > kSeen * data.noise_floor_m)) return {};
+  return result;
+}
+
+StructureSearch structure_search_of(const SearchContext& context, const ModelStage& first,
+                                    const InnovationSearch& search) {
+  StructureSearch result;
+  result.path.push_back(first);
+  for (const InnovationRound& round : search.rounds) {
+    Round one;
+    one.before = round.before;
+    for (const InnovationCandidate& candidate : round.candidates) {
+      if (!candidate.effect.empty())
+        one.candidates.push_back(candidate_of(candidate, round.before));
+    }
+    const bool grew = round.before.added.size() + 1 > result.path.size();
+    if (grew && !round.before.added.empty()) result.path.push_back(round.before);
+    result.rounds.push_back(std::move(one));
+  }
+  ModelStage final{search.final.model.added, simulated(context, search.final.model.fitted)};
+  std::erase_if(result.path, [&](const ModelStage& stage) {
+    return !stage.added.empty() && stage.added.size() >= final.added.size();
+  });
+  if (!final.added.empty()) {
+    result.path.push_back(final);
+  } else {
+    result.path.back() = final;
+  }
+  result.final = std::move(final);
+  return result;
+}
+
+}  // namespace estimator::greybox::selection

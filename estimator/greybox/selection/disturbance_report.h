@@ -1,0 +1,39 @@
+// What disturbs a rig, as far as a record with a model tells.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "estimator/greybox/selection/innovation_search.h"
+#include "estimator/greybox/selection/structure_search.h"
+
+namespace estimator::greybox::selection {
+
+struct DisturbanceLine {
+  std::string as;  ///< "force", "pressure", "sensor"; "speed" where the plant has no force
+  double frequency_Hz = 0.0;
+  double amplitude = 0.0;  ///< N, Pa, m; m/s
+  double rms_m = 0.0;      ///< of the simulation's error that it causes
+};
+
+struct Disturbance {
+  std::string as;          ///< of the random part: "force", or "speed" where the plant has no force
+  double value = 0.0;      ///< RMS, N or m/s; 0 where only lines are seen
+  double corner_Hz = 0.0;  ///< below which most of it lies
+  double rms_m = 0.0;      ///< of the simulation's error that all of it causes
+  double share = 0.0;      ///< of the final model's mean squared error
+  std::vector<DisturbanceLine> lines;
+};
+
+/// Nothing where what is found stays below the sensor's noise.
+[[nodiscard]] std::optional<Disturbance> disturbance_of(const SearchContext& context,
+                                                        const InnovationSearch& search);
+
+/// The search in the form of the other one, with held-out errors of simulations: a round for each
+/// candidate taken, `p_value` of the likelihood ratio.
+[[nodiscard]] StructureSearch structure_search_of(const SearchContext& context,
+                                                  const ModelStage& first,
+                                                  const InnovationSearch& search);
+
+}  // namespace estimator::greybox::selection
