@@ -47,7 +47,7 @@ class Estimator {
       : question_(question),
         options_(options),
         run_(question.model, question.data, question.parameters, options.observer_per_s,
-             options.threads),
+             wide(options.threads)),
         smooth_(is_smooth(question.model)),
         problem_(problem_of(question.data, question.weights, question.parameters,
                             smooth_ ? kFine : kLogarithmStep)) {
@@ -103,8 +103,7 @@ class Estimator {
     found_.resize(points.size());
     say("fitting from " + std::to_string(points.size()) +
         (points.size() == 1 ? " start" : " starts"));
-    const unsigned side_by_side = std::min(options_.threads, static_cast<unsigned>(points.size()));
-    in_parallel(points.size(), side_by_side, [&](std::size_t i) {
+    in_parallel(points.size(), options_.threads, [&](std::size_t i) {
       if (i > 0 && cancelled()) return;
       FitOptions fit_options;
       fit_options.final_jacobian = false;
@@ -112,7 +111,7 @@ class Estimator {
       if (smooth_) fit_options.logarithm_step = kFine;
       fit_options.observer_per_s = options_.observer_per_s;
       fit_options.cancel = options_.cancel;
-      fit_options.threads = options_.threads / std::max(1U, side_by_side);
+      if (points.size() == 1) fit_options.width = wide(options_.threads);
       if (i == 0) {
         fit_options.start_residual_m = out_.before.residual_m;
         fit_options.start_jacobian = start_jacobian_;

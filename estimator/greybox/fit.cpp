@@ -60,7 +60,7 @@ double correlation_factor(const Eigen::VectorXd& residual_m, const Eigen::Vector
 FitSummary fit(const plant_sim::ModelFile& model, const FitDataset& data,
                const Eigen::VectorXd& weights, const std::vector<FreeParameter>& parameters,
                const Eigen::VectorXd& start, const FitOptions& options) {
-  ParallelSimulation run(model, data, parameters, options.observer_per_s, options.threads);
+  ParallelSimulation run(model, data, parameters, options.observer_per_s, options.width);
   estimator::nonlinear::Problem problem =
       problem_of(data, weights, parameters, options.logarithm_step);
   problem.evaluate = run.evaluate();

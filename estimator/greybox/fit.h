@@ -15,6 +15,7 @@
 #include "estimator/greybox/fit_dataset.h"
 #include "estimator/greybox/free_parameter.h"
 #include "estimator/greybox/observer_simulation.h"
+#include "estimator/greybox/parallel_simulation.h"
 #include "estimator/nonlinear/problem.h"
 #include "plant_sim/model_file.h"
 
@@ -31,7 +32,7 @@ struct FitOptions {
   bool final_jacobian = true;  ///< false: FitSummary::jacobian may be stale in some columns
   double observer_per_s = kObserver_per_s;
   std::function<bool()> cancel;  ///< true ends the search, keeping the best so far
-  unsigned threads = 1;          ///< that simulate side by side within this fit
+  Width width;                   ///< of the evaluations
   double logarithm_step = kLogarithmStep;
   // Of the start, where known already; otherwise empty.
   Eigen::VectorXd start_residual_m;

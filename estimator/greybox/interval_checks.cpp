@@ -108,13 +108,12 @@ std::vector<Profile> profiles(const EstimationProblem& question, const Estimatio
     if (chosen[i] != 0) which.push_back(i);
   }
   std::vector<Profile> found(chosen.size());
-  const auto threads = std::max(
-      1U, std::min(options.threads, static_cast<unsigned>(std::max<std::size_t>(1, which.size()))));
-  in_parallel(which.size(), threads, [&](std::size_t k) {
+  const Width width = which.size() == 1 ? wide(options.threads) : Width{};
+  in_parallel(which.size(), options.threads, [&](std::size_t k) {
     const std::size_t i = which[k];
     const auto j = static_cast<Index>(i);
     ParallelSimulation run(question.model, question.data, question.parameters,
-                           options.observer_per_s, options.threads / threads);
+                           options.observer_per_s, width);
     Problem own = problem;
     own.evaluate = run.evaluate();
     own.lanes = run.lanes();

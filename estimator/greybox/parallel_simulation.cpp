@@ -1,14 +1,16 @@
 #include "estimator/greybox/parallel_simulation.h"
 
 #include <algorithm>
-#include <thread>
+
+#include "estimator/parallel.h"
 
 namespace estimator::greybox {
 
 ParallelSimulation::ParallelSimulation(const plant_sim::ModelFile& model, const FitDataset& data,
                                        const std::vector<FreeParameter>& parameters,
-                                       double observer_per_s, unsigned threads) {
-  for (unsigned i = 0; i < std::max(1U, threads); ++i) {
+                                       double observer_per_s, Width width)
+    : threads_(width.threads) {
+  for (unsigned i = 0; i < std::max(1U, width.groups); ++i) {
     runs_.emplace_back(model, data, parameters, observer_per_s);
   }
 }
@@ -25,16 +27,11 @@ void ParallelSimulation::residuals(const Eigen::MatrixXd& points, Eigen::MatrixX
   const auto groups =
       static_cast<std::size_t>((points.cols() - 1) / ObserverSimulation::kLanes + 1);
   std::vector<Eigen::MatrixXd> parts(groups);
-  const auto group = [&](std::size_t g) {
+  in_parallel(groups, threads_, [&](std::size_t g) {
     const Eigen::Index first = static_cast<Eigen::Index>(g) * ObserverSimulation::kLanes;
     const Eigen::Index count = std::min(ObserverSimulation::kLanes, points.cols() - first);
     runs_[g].residuals(points.middleCols(first, count), parts[g]);
-  };
-  {
-    std::vector<std::jthread> helpers;
-    for (std::size_t g = 1; g < groups; ++g) helpers.emplace_back(group, g);
-    group(0);
-  }
+  });
   residuals_m.resize(parts.front().rows(), points.cols());
   Eigen::Index at = 0;
   for (const Eigen::MatrixXd& part : parts) {

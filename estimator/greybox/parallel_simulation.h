@@ -8,12 +8,20 @@
 
 namespace estimator::greybox {
 
+/// Groups of eight parameter sets that one evaluation takes, and the threads that share them. A
+/// search tries as many points at once as there are lanes: the number of groups is part of its
+/// result and never follows from the number of threads.
+struct Width {
+  unsigned groups = 1;
+  unsigned threads = 1;  ///< the caller's included
+};
+[[nodiscard]] constexpr Width wide(unsigned threads) { return {2, threads}; }
+
 class ParallelSimulation {
  public:
-  /// `threads` counts the caller's; at least 1.
   ParallelSimulation(const plant_sim::ModelFile& model, const FitDataset& data,
                      const std::vector<FreeParameter>& parameters, double observer_per_s,
-                     unsigned threads);
+                     Width width);
 
   [[nodiscard]] Eigen::Index lanes() const;
   /// evidence.size() x points.cols(); at most lanes() columns.
@@ -23,6 +31,7 @@ class ParallelSimulation {
 
  private:
   std::vector<DatasetSimulation> runs_;
+  unsigned threads_;
 };
 
 }  // namespace estimator::greybox

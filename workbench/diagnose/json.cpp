@@ -41,6 +41,24 @@ Json parameters_of(const selection::Diagnosis& d) {
   return all;
 }
 
+Json disturbance_of(const selection::Diagnosis& d) {
+  if (!d.disturbance) return nullptr;
+  Json json;
+  json["rms_m"] = number_or_null(d.disturbance->rms_m);
+  json["share"] = number_or_null(d.disturbance->share);
+  json["as"] = d.disturbance->as;
+  json["value"] = number_or_null(d.disturbance->value);
+  json["corner_Hz"] = number_or_null(d.disturbance->corner_Hz);
+  json["lines"] = Json::array();
+  for (const selection::DisturbanceLine& line : d.disturbance->lines) {
+    json["lines"].push_back({{"frequency_Hz", number_or_null(line.frequency_Hz)},
+                             {"as", line.as},
+                             {"amplitude", number_or_null(line.amplitude)},
+                             {"amplitude_m", number_or_null(std::sqrt(2.0) * line.rms_m)}});
+  }
+  return json;
+}
+
 }  // namespace
 
 std::string to_json(const DiagnosisReport& outcome) {
@@ -66,6 +84,9 @@ std::string to_json(const DiagnosisReport& outcome) {
                              {"variable", where.variable},
                              {"explained_ratio", number_or_null(where.explained_ratio)}});
   }
+  json["disturbance"] = disturbance_of(d);
+  json["floor"] = {{"sensor_m", number_or_null(d.noise_floor_m)},
+                   {"disturbed_m", number_or_null(d.disturbed_floor_m)}};
   json["steps"] = Json::array();
   for (const selection::Step& step : d.steps) {
     Json one;

@@ -7,6 +7,7 @@
 
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
+#include "workbench/diagnose/disturbance_words.h"
 #include "workbench/present/shell_command.h"
 
 namespace workbench::diagnose {
@@ -20,8 +21,9 @@ std::string percent(double ratio) { return fmt::format("{:.0f} %", 100.0 * ratio
 /// "2.7 um held-out, 1.1 times the noise floor of 2.4 um".
 std::string beside_floor(const selection::Diagnosis& d, double rms_m) {
   return config::units::length_words(rms_m) + " on held-out data, " +
-         config::units::times_words(rms_m / d.noise_floor_m) + " times the noise floor of " +
-         config::units::length_words(d.noise_floor_m);
+         config::units::times_words(rms_m / d.disturbed_floor_m) + " times the " +
+         (d.disturbance ? "floor that sensor and disturbance set, " : "noise floor of ") +
+         config::units::length_words(d.disturbed_floor_m);
 }
 
 std::string effects_words(const selection::Diagnosis& d) {
@@ -89,8 +91,9 @@ std::string fall_words(const selection::Diagnosis& d) {
                                ? "With " + config::schema::listed(d.missing) + ", the"
                                : "The";
   return with + " held-out error falls from " + config::units::length_words(d.rms_before_m) +
-         " to " + config::units::length_words(d.rms_after_m) + "; the noise floor is " +
-         config::units::length_words(d.noise_floor_m) + ".";
+         " to " + config::units::length_words(d.rms_after_m) + "; the " +
+         (d.disturbance ? "floor that sensor and disturbance set is " : "noise floor is ") +
+         config::units::length_words(d.disturbed_floor_m) + ".";
 }
 
 void add_rivals(const selection::Diagnosis& d, std::vector<std::string>& out) {
@@ -172,6 +175,10 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
   if (d.verdict != selection::Verdict::not_excited) out.push_back(fall_words(d));
   const bool named = d.verdict == selection::Verdict::missing || d.missing.empty();
   if (!named) out.push_back("Taken for the better model: " + effects_words(d) + ".");
+  if (d.disturbance) {
+    out.push_back("What remains does not follow from command or motion: " +
+                  disturbance_words(*d.disturbance) + ".");
+  }
   add_rivals(d, out);
   if (!d.where.empty()) {
     std::string text = "What is left enters " + where_words(d.where[0]) + " (" +

@@ -131,7 +131,7 @@ void add_refinements(const SearchContext& context, ModelStage& stage) {
       more.start.head(plain.start.size()) = plain.start;
       if (!cross_validates(context, is_explained(context, stage), plain, more)) continue;
       stage.fitted =
-          refit(context, more, context.problem.data.training_mask, context.options.threads);
+          refit(context, more, context.problem.data.training_mask, wide(context.options.threads));
     }
   }
 }
@@ -149,11 +149,9 @@ void refit_without_refinements(const SearchContext& context, ModelStage& stage) 
   begin.max_iterations = kFirstIterations;
   begin.final_jacobian = false;
   begin.cancel = context.options.cancel;
-  const auto side_by_side =
-      std::min(context.options.threads, static_cast<unsigned>(without.size()));
-  begin.threads = context.options.threads / side_by_side;
+  if (without.size() == 1) begin.width = wide(context.options.threads);
   std::vector<FitSummary> fits(without.size());
-  in_parallel(without.size(), side_by_side, [&](std::size_t i) {
+  in_parallel(without.size(), context.options.threads, [&](std::size_t i) {
     fits[i] = fit(context.problem.model, context.problem.data, context.problem.data.training_mask,
                   without[i].parameters, without[i].start, begin);
   });

@@ -34,11 +34,11 @@ void fit_final_parameters(const SearchContext& context, Diagnosis& result) {
   const bool explained =
       stage.fitted.validation_rms_m <= kUnexplained * context.problem.data.noise_floor_m;
   // what is left of the error is no noise: then the values are those that simulate best
-  result.final =
-      context.cancelled() ? stage.fitted
-      : explained
-          ? refit(context, all, context.problem.data.final_weights(), context.options.threads)
-          : refit(context, all, context.problem.data.final_weights(), context.options.threads, 0.0);
+  result.final = context.cancelled() ? stage.fitted
+                 : explained         ? refit(context, all, context.problem.data.final_weights(),
+                                             wide(context.options.threads))
+                                     : refit(context, all, context.problem.data.final_weights(),
+                                             wide(context.options.threads), 0.0);
   result.better = with_values(context.problem.model, result.final);
   report_parameters(
       std_errors(context.problem.data, context.problem.data.final_weights(), result.final), result);

@@ -68,30 +68,29 @@ SearchContext with_data(const SearchContext& context, FitDataset data) {
 }
 
 FitSummary fit_innovations(const SearchContext& context, const ParameterSubset& parameters,
-                           unsigned threads, bool quick) {
+                           Width width, bool quick) {
   FitOptions options;
   options.max_iterations = quick ? kQuickIterations : kIterations;
   options.tolerance = quick ? kQuickTolerance : kTolerance;
   options.passes = quick ? 1 : 2;
   options.final_jacobian = !quick;
   options.cancel = context.options.cancel;
-  options.threads = threads;
+  options.width = width;
   return fit(context.problem.model, context.problem.data, context.problem.data.training_mask,
              parameters.parameters, parameters.start, options);
 }
 
 /// The stage's data, likelihood and parameters for its noise model. The parameters start where they
 /// are and, as a disturbance that was not known may have bent them, where the model file has them.
-void refit(const SearchContext& plain, InnovationStage& stage, bool from_file_too,
-           unsigned threads) {
+void refit(const SearchContext& plain, InnovationStage& stage, bool from_file_too, Width width) {
   const disturbance::InnovationData data =
       disturbance::innovation_data(plain.problem.data, stage.linear, stage.noise);
   stage.context = with_data(plain, data.data);
   ParameterSubset all = subset(stage.model.fitted, [](const auto&) { return true; });
-  FitSummary fitted = fit_innovations(stage.context, all, threads, false);
+  FitSummary fitted = fit_innovations(stage.context, all, width, false);
   if (from_file_too) {
     all.start = with_file_values(stage.context, stage.model);
-    FitSummary other = fit_innovations(stage.context, all, threads, false);
+    FitSummary other = fit_innovations(stage.context, all, width, false);
     const double floor_m = plain.problem.data.noise_floor_m;
     if (squares(other, floor_m) + prior_cost(other) <
         squares(fitted, floor_m) + prior_cost(fitted)) {
@@ -105,7 +104,7 @@ void refit(const SearchContext& plain, InnovationStage& stage, bool from_file_to
 
 /// Noise model and parameters in turn, at most `times` over, keeping the best.
 InnovationStage settled(const SearchContext& plain, ModelStage model, const NoiseModel& start,
-                        int times, unsigned threads) {
+                        int times, Width width) {
   InnovationStage stage;
   stage.model = std::move(model);
   stage.noise = start;
@@ -118,9 +117,9 @@ InnovationStage settled(const SearchContext& plain, ModelStage model, const Nois
                                           fitted.parameters, fitted.theta);
     stage.noise =
         disturbance::estimate_noise(plain.problem.model, plain.problem.data, fitted.parameters,
-                                    fitted.theta, stage.linear, stage.noise, threads)
+                                    fitted.theta, stage.linear, stage.noise, width.threads)
             .noise;
-    refit(plain, stage, i == 0, threads);
+    refit(plain, stage, i == 0, width);
     const double gain = best.minus_two_log - stage.minus_two_log;
     if (gain > 0.0) best = stage;
     if (gain < kSettled) break;
@@ -276,7 +275,7 @@ std::vector<Trial> effect_trials(const InnovationStage& stage) {
     trial.candidate.gain_nats = -std::numeric_limits<double>::infinity();
     for (const VectorXd& start : screened[i].starts) {
       if (context.cancelled()) return;
-      FitSummary fitted = fit_innovations(context, {screened[i].parameters, start}, 1, true);
+      FitSummary fitted = fit_innovations(context, {screened[i].parameters, start}, Width{}, true);
       const double penalty = penalty_nats(fitted, stage.model.fitted);
       const double gain = 0.5 * (before - squares(fitted, floor_m) - prior_cost(fitted)) - penalty;
       if (!(gain > trial.candidate.gain_nats)) continue;
@@ -350,7 +349,7 @@ InnovationStage settled(const SearchContext& plain, const InnovationStage& stage
   InnovationStage best;
   best.minus_two_log = std::numeric_limits<double>::infinity();
   for (const ModelStage& start : trial.starts) {
-    InnovationStage one = settled(plain, start, noise, 1, 1);
+    InnovationStage one = settled(plain, start, noise, 1, Width{});
     if (one.minus_two_log < best.minus_two_log) best = std::move(one);
   }
   return best;
@@ -408,8 +407,8 @@ bool extend(const SearchContext& plain, InnovationStage& stage,
   }
   rounds.push_back(std::move(round));
   if (chosen == trials.size()) return false;
-  stage =
-      settled(plain, stages[chosen].model, stages[chosen].noise, kMostTurns, plain.options.threads);
+  stage = settled(plain, stages[chosen].model, stages[chosen].noise, kMostTurns,
+                  wide(plain.options.threads));
   return true;
 }
 
@@ -432,8 +431,8 @@ InnovationStage exchanged(const SearchContext& plain, const InnovationStage& sta
   }
   model.fitted.parameters = parameters.parameters;
   model.fitted.theta = parameters.start;
-  model.fitted = fit_innovations(stage.context, parameters, plain.options.threads, false);
-  return settled(plain, std::move(model), stage.noise, 1, plain.options.threads);
+  model.fitted = fit_innovations(stage.context, parameters, wide(plain.options.threads), false);
+  return settled(plain, std::move(model), stage.noise, 1, wide(plain.options.threads));
 }
 
 /// Effects whose absence costs less than they are worth.
@@ -510,7 +509,7 @@ FitSummary simulated(const SearchContext& context, const FitSummary& fitted) {
 
 InnovationSearch search_innovations(const SearchContext& context, const ModelStage& first) {
   InnovationSearch search;
-  InnovationStage stage = settled(context, first, {}, kMostTurns, context.options.threads);
+  InnovationStage stage = settled(context, first, {}, kMostTurns, wide(context.options.threads));
   search.before = stage;
   while (!context.cancelled() && extend(context, stage, search.rounds)) {
   }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <limits>
 
 #include "estimator/greybox/selection/projection.h"
@@ -28,6 +27,8 @@ constexpr std::size_t kFitted = 6;
 /// whole record.
 constexpr int kFirstIterations = 4;
 constexpr double kFar = 3.0;
+/// Fitted side by side before it is asked whether one explains the record.
+constexpr std::size_t kWave = 2;
 
 struct Effect {
   std::string name;
@@ -147,14 +148,21 @@ std::vector<Candidate> pair_search(const SearchContext& context, const ModelStag
   double best_m = std::numeric_limits<double>::infinity();
   for (const Candidate& candidate : begun) best_m = std::min(best_m, candidate.validation_rms_m);
   std::vector<Candidate> candidates(couples.size());
-  std::atomic<bool> explained = false;
-  in_parallel(couples.size(), context.options.threads, [&](std::size_t i) {
-    if (context.cancelled() || explained || !(begun[i].validation_rms_m < kFar * best_m)) return;
-    couples[i].starts = {begun[i].fitted.theta};
-    candidates[i] = quick_fit(context, stage, couples[i], kQuickIterations);
-    if (candidates[i].validation_rms_m < kUnexplained * context.problem.data.noise_floor_m)
-      explained = true;
-  });
+  for (std::size_t from = 0; from < couples.size(); from += kWave) {
+    in_parallel(std::min(kWave, couples.size() - from), context.options.threads,
+                [&](std::size_t k) {
+                  const std::size_t i = from + k;
+                  if (context.cancelled() || !(begun[i].validation_rms_m < kFar * best_m)) return;
+                  couples[i].starts = {begun[i].fitted.theta};
+                  candidates[i] = quick_fit(context, stage, couples[i], kQuickIterations);
+                });
+    if (std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& c) {
+          return c.fitted_at_all &&
+                 c.validation_rms_m < kUnexplained * context.problem.data.noise_floor_m;
+        })) {
+      break;
+    }
+  }
   std::erase_if(candidates, [](const Candidate& c) { return !c.fitted_at_all; });
   refine_best(context, stage, candidates);
   return candidates;

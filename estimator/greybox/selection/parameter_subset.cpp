@@ -26,9 +26,9 @@ void append(ParameterSubset& to, const ParameterSubset& more) {
 }
 
 FitSummary refit(const SearchContext& context, const ParameterSubset& selection,
-                 const Eigen::VectorXd& weights, unsigned threads, double observer_per_s) {
+                 const Eigen::VectorXd& weights, Width width, double observer_per_s) {
   FitOptions options;
-  options.threads = threads;
+  options.width = width;
   options.tolerance = 1e-5;
   options.observer_per_s = observer_per_s;
   options.cancel = context.options.cancel;
@@ -37,9 +37,9 @@ FitSummary refit(const SearchContext& context, const ParameterSubset& selection,
 }
 
 FitSummary refit_if_hopeful(const SearchContext& context, const ParameterSubset& selection,
-                            double than_m, unsigned threads) {
+                            double than_m, Width width) {
   FitOptions stride;
-  stride.threads = threads;
+  stride.width = width;
   stride.max_iterations = kStride;
   stride.passes = 1;
   stride.final_jacobian = false;
@@ -62,12 +62,12 @@ FitSummary refit_if_hopeful(const SearchContext& context, const ParameterSubset&
     stride.start_jacobian = at.jacobian;
   }
   return refit(context, {selection.parameters, at.theta}, context.problem.data.training_mask,
-               threads);
+               width);
 }
 
 FitSummary refit_to_convergence(const SearchContext& context, const FitSummary& fitted) {
   return refit(context, subset(fitted, [](const auto&) { return true; }),
-               context.problem.data.training_mask, context.options.threads);
+               context.problem.data.training_mask, wide(context.options.threads));
 }
 
 }  // namespace estimator::greybox::selection

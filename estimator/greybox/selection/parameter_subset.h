@@ -36,15 +36,16 @@ template <class Keep>
 
 void append(ParameterSubset& to, const ParameterSubset& more);
 
-/// FitSummary to the end on the samples that `weights` counts. `threads` is 1 within in_parallel.
+/// FitSummary to the end on the samples that `weights` counts. `width` is the default within
+/// in_parallel.
 [[nodiscard]] FitSummary refit(const SearchContext& context, const ParameterSubset& selection,
-                               const Eigen::VectorXd& weights, unsigned threads = 1,
+                               const Eigen::VectorXd& weights, Width width = {},
                                double observer_per_s = kObserver_per_s);
 /// On the samples that fit, but given up, as far as it came, when after a few iterations it is
 /// still several times `than_m`, with which it is to be compared, or comes too slowly to get there.
 [[nodiscard]] FitSummary refit_if_hopeful(const SearchContext& context,
                                           const ParameterSubset& selection, double than_m,
-                                          unsigned threads = 1);
+                                          Width width = {});
 /// A stage's fit, to the end, on all of the workshop's threads.
 [[nodiscard]] FitSummary refit_to_convergence(const SearchContext& context,
                                               const FitSummary& fitted);

@@ -1,7 +1,6 @@
 #include "estimator/greybox/selection/search_round.h"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -34,6 +33,9 @@ constexpr std::size_t kLookedThrough = 9;
 /// And that many are tried from other starts too.
 constexpr std::size_t kAgain = 3;
 constexpr std::size_t kAllStarts = 1000;
+/// Fitted side by side before it is asked whether one explains the record: a number of its own, so
+/// that the answer does not depend on the threads.
+constexpr std::size_t kWave = 4;
 constexpr std::size_t kPairable = 5;
 constexpr double kComparedBlock_s = 1.0;
 
@@ -187,7 +189,7 @@ Round single_round(const SearchContext& context, const ModelStage& stage, int nu
   const bool at_floor =
       stage.fitted.validation_rms_m < kAtFloor * context.problem.data.noise_floor_m;
   round.candidates.resize(screened.size());
-  std::atomic<bool> explained = false;
+  bool explained = false;
   const auto work = [&](std::size_t i, std::size_t first_start, std::size_t starts) {
     ScreeningResult result = screened[i];
     result.starts.erase(result.starts.begin(),
@@ -202,17 +204,23 @@ Round single_round(const SearchContext& context, const ModelStage& stage, int nu
     if (!candidate.fitted_at_all || found.fitted.training_rms_m < candidate.fitted.training_rms_m) {
       candidate = std::move(found);
     }
-    if (candidate.validation_rms_m < kUnexplained * context.problem.data.noise_floor_m)
-      explained = true;
   };
-  in_parallel(screened.size(), context.options.threads, [&](std::size_t i) {
-    round.candidates[i].effects = {screened[i].effect};
-    round.candidates[i].expected_ratio = screened[i].expected_ratio;
-    const bool hopeless = (at_floor && screened[i].expected_ratio > 1.0 - kExpectable) ||
-                          (!stage.added.empty() && i >= kLookedThrough);
-    if (!hopeless) work(i, 0, 1);
-    reporter.on_fitted(round.candidates[i]);
-  });
+  for (std::size_t from = 0; from < screened.size(); from += kWave) {
+    const std::size_t count = std::min(kWave, screened.size() - from);
+    in_parallel(count, context.options.threads, [&](std::size_t k) {
+      const std::size_t i = from + k;
+      round.candidates[i].effects = {screened[i].effect};
+      round.candidates[i].expected_ratio = screened[i].expected_ratio;
+      const bool hopeless = (at_floor && screened[i].expected_ratio > 1.0 - kExpectable) ||
+                            (!stage.added.empty() && i >= kLookedThrough);
+      if (!hopeless) work(i, 0, 1);
+      reporter.on_fitted(round.candidates[i]);
+    });
+    explained = std::any_of(round.candidates.begin(), round.candidates.end(), [&](const auto& c) {
+      return c.fitted_at_all &&
+             c.validation_rms_m < kUnexplained * context.problem.data.noise_floor_m;
+    });
+  }
   double best_m = std::numeric_limits<double>::infinity();
   for (const Candidate& candidate : round.candidates) {
     best_m = std::min(best_m, candidate.validation_rms_m);

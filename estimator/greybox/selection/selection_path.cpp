@@ -49,13 +49,13 @@ ModelStage best_of(const SearchContext& context, const ModelStage& before, const
   };
   const double least_m = std::min_element(fits.begin(), fits.end(), lower)->validation_rms_m;
   const auto far = [&](const auto& fit) { return fit.validation_rms_m > kFar * least_m; };
-  const auto near = static_cast<unsigned>(fits.size()) -
-                    static_cast<unsigned>(std::count_if(fits.begin(), fits.end(), far));
-  const unsigned side_by_side = std::clamp(near, 1U, context.options.threads);
-  in_parallel(effects.size(), side_by_side, [&](std::size_t i) {
+  const auto near =
+      static_cast<std::ptrdiff_t>(fits.size()) - std::count_if(fits.begin(), fits.end(), far);
+  const Width width = near == 1 ? wide(context.options.threads) : Width{};
+  in_parallel(effects.size(), context.options.threads, [&](std::size_t i) {
     if (far(fits[i])) return;
     fits[i] = refit(context, {subsets[i].parameters, fits[i].theta},
-                    context.problem.data.training_mask, context.options.threads / side_by_side);
+                    context.problem.data.training_mask, width);
   });
   const auto best = std::min_element(fits.begin(), fits.end(), lower);
   return taken(before, effects[static_cast<std::size_t>(best - fits.begin())], std::move(*best));
@@ -87,9 +87,10 @@ std::vector<ModelStage> cross_validated_path(const SearchContext& context,
   };
   for (std::size_t i = 1; i < path.size() && !context.cancelled(); ++i) {
     const std::string& effect = path[i].added.back();
-    ModelStage more = taken(kept.back(), effect,
-                            refit(context, taking(kept.back(), path.back(), effect),
-                                  context.problem.data.training_mask, context.options.threads));
+    ModelStage more =
+        taken(kept.back(), effect,
+              refit(context, taking(kept.back(), path.back(), effect),
+                    context.problem.data.training_mask, wide(context.options.threads)));
     const bool plain_to_see =
         more.fitted.validation_rms_m < kPlainToSee * kept.back().fitted.validation_rms_m;
     if (plain_to_see || cross_validates(context, false, all(kept.back()), all(more))) {

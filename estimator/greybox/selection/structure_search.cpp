@@ -202,7 +202,7 @@ ModelStage first_stage(const SearchContext& context) {
   FitOptions options;
   options.tolerance = 1e-5;
   options.cancel = context.options.cancel;
-  options.threads = context.options.threads;
+  options.width = wide(context.options.threads);
   return {{},
           fit(context.problem.model, context.problem.data, context.problem.data.training_mask,
               context.problem.plant_parameters,
