@@ -56,7 +56,7 @@ double Actuator::resisting_N(double y_m, double v_mps, double t_s) const {
     force_N += hidden.ripple_N *
                std::sin(kTwoPi * y_m / hidden.ripple_wavelength_m + hidden.ripple_phase_rad);
   }
-  return force_N + left_out.force_N(y_m, v_mps, t_s);
+  return force_N + outside_N + left_out.force_N(y_m, v_mps, t_s);
 }
 
 double Actuator::opening_m(double spool_m, double y_m, double t_s) const {
@@ -85,7 +85,7 @@ double Actuator::drawn_m3ps(double k, double supply_Pa, double port_Pa) const {
 }
 
 double Actuator::inlet_Pa(const State& x, double t_s) const {
-  const double supply_Pa = plant.supply_pressure_Pa * left_out.supply_factor(t_s);
+  const double supply_Pa = plant.supply_pressure_Pa * left_out.supply_factor(t_s) + outside_Pa;
   const double open_m = opening_m(x[4], x[0], t_s);
   const double port_Pa = open_m >= 0.0 ? x[2] : x[3];
   if (hidden.droop_Pa_per_m3ps <= 0.0) return supply_Pa;
@@ -97,7 +97,7 @@ State Actuator::rate(const State& x, double u_V, double t_s) const {
   const auto [y_m, v_mps, in_Pa, out_Pa, spool_m, spool_mps, z_m] = x;
   const double open_m = opening_m(spool_m, y_m, t_s);
   const double k = orifice_ * std::abs(open_m);
-  const double supply_Pa = plant.supply_pressure_Pa * left_out.supply_factor(t_s);
+  const double supply_Pa = plant.supply_pressure_Pa * left_out.supply_factor(t_s) + outside_Pa;
   const double return_Pa = plant.return_pressure_Pa;
   double in_m3ps = 0.0;
   double out_m3ps = 0.0;

@@ -100,6 +100,9 @@ class Actuator {
   Plant plant;
   Hidden hidden;
   LeftOut left_out;
+  /// From outside, as they are now.
+  double outside_N = 0.0;
+  double outside_Pa = 0.0;
 
  private:
   [[nodiscard]] double bristle_rate_mps(double z_m, double v_mps) const;

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace truth {
 namespace {
@@ -25,6 +26,16 @@ double number(const std::string& key, const std::string& value) {
   throw std::invalid_argument(key + ": '" + value + "' is not a number");
 }
 
+const std::vector<std::pair<std::string, double Outside::*>>& outside_fields() {
+  using O = Outside;
+  static const std::vector<std::pair<std::string, double O::*>> table{
+      {"outside.force_N", &O::force_N},           {"outside.corner_Hz", &O::corner_Hz},
+      {"outside.pulsation_Pa", &O::pulsation_Pa}, {"outside.pulsation_Hz", &O::pulsation_Hz},
+      {"outside.shake_m", &O::shake_m},           {"outside.shake_Hz", &O::shake_Hz},
+  };
+  return table;
+}
+
 /// Sets a value by its key; false when there is no such key.
 bool set_number(Case& of, const std::string& key, double value) {
   if (key == "mismatched") return of.mismatched = value != 0.0, true;
@@ -35,6 +46,9 @@ bool set_number(Case& of, const std::string& key, double value) {
   if (key == "pressure_noise_Pa") return of.pressure_noise_Pa = value, true;
   if (key == "left_out.size") return of.left_out.size = value, true;
   if (key == "left_out.where") return of.left_out.where = value, true;
+  for (const auto& [name, member] : outside_fields()) {
+    if (key == name) return of.outside.*member = value, true;
+  }
   for (const Parameter& parameter : parameters()) {
     if (key == parameter.effect + "." + parameter.name) {
       return of.hidden.*parameter.member = value, true;
@@ -226,6 +240,9 @@ std::string to_text(const Case& of) {
     text += ",left_out=" + info->name;
     add("left_out.size", of.left_out.size);
     add("left_out.where", of.left_out.where);
+  }
+  for (const auto& [name, member] : outside_fields()) {
+    if (of.outside.any()) add(name, of.outside.*member);
   }
   for (const PlantField& field : plant_fields()) add("plant." + field.name, of.plant.*field.member);
   for (const Change& change : of.changes) {

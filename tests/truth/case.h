@@ -6,10 +6,11 @@
 //   motion=sine,plant=printed,at15:plant.supply_pressure_Pa=8.61e6,at30:plant.supply_pressure_Pa=...
 //
 // Keys: motion, mismatched, length_s, kp_V_per_m, noise_m, encoder_m, pressure_noise_Pa (makes
-// columns supply_pressure_Pa, pressure_in_Pa, pressure_out_Pa), EFFECT.PARAMETER (the
-// product's names, SI), left_out, left_out.size, left_out.where, plant.NAME, plant=printed;
-// atSECONDS: before a plant's or an effect's key makes it a change at that time. What is not given
-// is neutral; the plant's own values are drawn from the seed: gain +-3 %, damping and bulk modulus
+// columns supply_pressure_Pa, pressure_in_Pa, pressure_out_Pa), outside.NAME (outside.h),
+// EFFECT.PARAMETER (the product's names, SI), left_out, left_out.size, left_out.where, plant.NAME,
+// plant=printed; atSECONDS: before a plant's or an effect's key makes it a change at that time.
+// What is not given is neutral; the plant's own values are drawn from the seed: gain +-3 %, damping
+// and bulk modulus
 // +-8 %, and when mismatched natural frequency +-12 %, damping ratio +-12 %, mass +-8 %, dead
 // volume +-20 %, supply pressure +-5 %.
 #pragma once

@@ -20,6 +20,7 @@ using Names = std::vector<std::string>;
 constexpr int kDraws = 8;
 constexpr double kShows = 1.8;
 constexpr double kLeftOutShows = 3.0;
+constexpr double kDisturbedShows = 5.0;
 
 const Names kMotions{"multisine",  "fast_steps", "chirp",    "multisine",  "fast_steps",
                      "slow_steps", "multisine",  "triangle", "fast_steps", "sine"};
@@ -143,12 +144,14 @@ const Names& variants() {
 Wanted wanted(const std::string& plan, std::size_t index, Random& random) {
   Wanted want;
   want.first_motion = index;
-  if (plan == "single") {
+  const bool disturbed = plan == "disturbed";
+  if (plan == "single" || disturbed) {
     const std::size_t count = variants().size();
     want.effects = {variants()[index % count]};
     want.first_motion = index / count;
     // Slow motions only reach a rate that would stop the loop from working.
-    if (want.effects.front() == "spool_rate_limit") want.motions = kRich;
+    if (want.effects.front() == "spool_rate_limit" || disturbed) want.motions = kRich;
+    if (disturbed) want.shows = kDisturbedShows;
   } else if (plan == "pairs") {
     Names all;
     for (const auto& [name, of] : classes()) all.push_back(name);
@@ -166,9 +169,10 @@ Wanted wanted(const std::string& plan, std::size_t index, Random& random) {
     want.motions = kRich;
     want.first_motion = index / count + index;
     want.shows = kLeftOutShows;
-  } else if (plan != "healthy") {
-    throw std::invalid_argument("no plan '" + plan +
-                                "'; there are single, healthy, pairs, leftout");
+  } else if (plan != "healthy" && plan != "disturbed_healthy") {
+    throw std::invalid_argument(
+        "no plan '" + plan +
+        "'; there are single, healthy, pairs, leftout, disturbed, disturbed_healthy");
   }
   return want;
 }
@@ -186,6 +190,19 @@ Case draw(const Wanted& want, std::size_t motion, double push, Case of, Random& 
     of.left_out.where = random.uniform(want.left_out->where_low, want.left_out->where_high);
   }
   return of;
+}
+
+/// Which of the disturbances act goes by the record's number.
+Outside draw_outside(std::size_t index, Random& random) {
+  Outside outside;
+  const std::size_t kind = index % 4;
+  if (kind != 2) outside.force_N = random.around(28.0, 1.5);
+  outside.corner_Hz = random.uniform(1.5, 4.5);
+  if (kind == 1 || kind == 2) outside.pulsation_Pa = random.around(1.3e5, 1.6);
+  outside.pulsation_Hz = random.uniform(12.0, 38.0);
+  if (kind == 3) outside.shake_m = random.around(1e-5, 1.4);
+  outside.shake_Hz = random.uniform(25.0, 60.0);
+  return outside;
 }
 
 Planned answer(const Case& of, Record& record) {
@@ -215,7 +232,8 @@ Planned answer(const Case& of, Record& record) {
 }  // namespace
 
 const std::vector<std::string>& plans() {
-  static const std::vector<std::string> names{"single", "healthy", "pairs", "leftout"};
+  static const std::vector<std::string> names{"single",  "healthy",   "pairs",
+                                              "leftout", "disturbed", "disturbed_healthy"};
   return names;
 }
 
@@ -228,6 +246,9 @@ Planned plan_record(const std::string& plan, std::size_t seed, std::size_t index
   of.seed = seed * 100000 + salt % 997 * 10000 + index + 1;
   of.mismatched = (index + (plan == "single" ? index / variants().size() : 0)) % 2 == 1;
   of.plant = draw_plant(of.seed, of.mismatched);
+  if (plan.rfind("disturbed", 0) == 0) {
+    of.outside = draw_outside(index + index / variants().size(), random);
+  }
   double push = 1.0;
   std::size_t motion = 0;
   Planned best;

@@ -5,6 +5,8 @@
 //   healthy  nothing hidden, every motion, half mismatched
 //   pairs    two effects of different classes that physics can tell apart
 //   leftout  one effect that the library does not have
+//   disturbed, disturbed_healthy   single and healthy under a random force, a pulsating supply, a
+//            shaking sensor mount, or two of these
 //
 // Sizes are drawn log-uniform within a factor of two of a typical one. A draw that hardly shows
 // (visibility.h), leaves the stroke or runs into cavitation is drawn anew, larger or on the next

@@ -17,9 +17,11 @@ double play(double output, double input, double half_width) {
 
 }  // namespace
 
-Rig::Rig(const Plant& plant, const Hidden& hidden, const LeftOut& left_out, int steps)
+Rig::Rig(const Plant& plant, const Hidden& hidden, const LeftOut& left_out, int steps,
+         const Outside& outside, std::size_t seed)
     : actuator_(plant, hidden, left_out),
       steps_(steps > 0 ? steps : (hidden.coulomb_N > 0.0 ? 400 : 200)),
+      disturber_(outside, seed),
       played_m_(kCentre_m) {
   x = actuator_.rest(kCentre_m);
   least_Pa = x[2];
@@ -40,7 +42,8 @@ void Rig::hold(double u_V) {
 }
 
 void Rig::change(const Plant& plant, const Hidden& hidden) {
-  actuator_ = Actuator(plant, hidden, actuator_.left_out);
+  const LeftOut left_out = actuator_.left_out;
+  actuator_ = Actuator(plant, hidden, left_out);
 }
 
 void Rig::advance(double u_V, double span_s) {
@@ -50,6 +53,8 @@ void Rig::advance(double u_V, double span_s) {
   for (int i = 0; i < count; ++i) {
     const double biased_V = actuator_.left_out.command_V(u_V, t_s_) + h.null_bias_V;
     played_V_ = play(played_V_, biased_V, h.hysteresis_V);
+    actuator_.outside_N = disturber_.force_N(t_s_);
+    actuator_.outside_Pa = disturber_.pulsation_Pa(t_s_);
     actuator_.step(x, played_V_, t_s_, step_s);
     t_s_ += step_s;
     spool_speed_mps.back() = std::max(spool_speed_mps.back(), std::abs(x[5]));
@@ -70,14 +75,14 @@ double Rig::reading_m() const {
                                            h.eccentricity_phase_rad);
   }
   const double acceleration_mps2 = actuator_.rate(x, reached_V_, t_s_)[1];
-  return actuator_.left_out.reading_m(reading, acceleration_mps2, t_s_);
+  return actuator_.left_out.reading_m(reading, acceleration_mps2, t_s_) + disturber_.shake_m(t_s_);
 }
 
 Record simulate(const Case& of, int steps) {
   const auto samples = static_cast<std::size_t>(std::lround(of.length_s / kSample_s));
   Random random(of.seed);
   const std::vector<double> r_m = reference_m(of.motion, samples, random);
-  Rig rig(of.plant, of.hidden, of.left_out, steps);
+  Rig rig(of.plant, of.hidden, of.left_out, steps, of.outside, of.seed);
   Plant plant = of.plant;
   Hidden hidden = of.hidden;
   Record record;
@@ -121,7 +126,7 @@ Record simulate(const Case& of, int steps) {
 }
 
 std::vector<double> replay(const Case& of, const std::vector<double>& u_V, int steps) {
-  Rig rig(of.plant, of.hidden, of.left_out, steps);
+  Rig rig(of.plant, of.hidden, of.left_out, steps, of.outside, of.seed);
   std::vector<double> reading_m;
   for (const double u : u_V) {
     reading_m.push_back(rig.reading_m());

@@ -13,6 +13,7 @@
 
 #include "tests/truth/actuator.h"
 #include "tests/truth/motion.h"
+#include "tests/truth/outside.h"
 
 namespace truth {
 
@@ -20,7 +21,8 @@ namespace truth {
 class Rig {
  public:
   /// steps: integration steps per sample; 0 takes 200, or 400 with friction.
-  Rig(const Plant& plant, const Hidden& hidden, const LeftOut& left_out, int steps = 0);
+  Rig(const Plant& plant, const Hidden& hidden, const LeftOut& left_out, int steps = 0,
+      const Outside& outside = {}, std::size_t seed = 0);
 
   /// Holds the command for one sample.
   void hold(double u_V);
@@ -42,6 +44,7 @@ class Rig {
 
   Actuator actuator_;
   int steps_;
+  Disturber disturber_;
   double t_s_ = 0.0;
   double played_V_ = 0.0;
   double reached_V_ = 0.0;
@@ -71,6 +74,7 @@ struct Case {
   Plant plant;
   Hidden hidden;
   LeftOut left_out;
+  Outside outside;
   std::vector<Change> changes;  ///< in any order; of the loop's record, not of replay()
 };
 

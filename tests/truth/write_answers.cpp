@@ -51,6 +51,15 @@ std::string left_out(const Planned& planned) {
   return text.str();
 }
 
+std::string outside(const Outside& of) {
+  if (!of.any()) return "null";
+  std::ostringstream text;
+  text << "{\"force_N\": " << of.force_N << ", \"corner_Hz\": " << of.corner_Hz
+       << ", \"pulsation_Pa\": " << of.pulsation_Pa << ", \"pulsation_Hz\": " << of.pulsation_Hz
+       << ", \"shake_m\": " << of.shake_m << ", \"shake_Hz\": " << of.shake_Hz << "}";
+  return text.str();
+}
+
 }  // namespace
 
 void write_answers(const std::string& file, const std::string& plan, std::size_t seed,
@@ -68,7 +77,8 @@ void write_answers(const std::string& file, const std::string& plan, std::size_t
         << one.of.motion << "\", \"mismatched\": " << (one.of.mismatched ? "true" : "false")
         << ", \"floor_m\": " << floors_m[i]
         << ", \"within_limits\": " << (one.within_limits ? "true" : "false") << ",\n  \"hidden\": ["
-        << hidden << "],\n  \"left_out\": " << left_out(one) << ",\n  \"seed\": " << one.of.seed
+        << hidden << "],\n  \"outside\": " << outside(one.of.outside)
+        << ",\n  \"left_out\": " << left_out(one) << ",\n  \"seed\": " << one.of.seed
         << ", \"spec\": \"" << one.text << "\"}";
   }
   out << "\n]}\n";
