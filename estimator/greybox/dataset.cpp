@@ -87,14 +87,7 @@ Dataset dataset_of(const config::record::Record& record) {
       left_out += end - begin;
     }
   }
-  if (!record.gaps.empty()) {
-    result.notes.push_back(std::to_string(record.gaps.size()) + " gaps: the model starts anew in " +
-                           std::to_string(result.starts.size()) + " segments");
-  }
-  if (left_out > 0) {
-    result.notes.push_back(std::to_string(left_out) + " samples in segments shorter than " +
-                           seconds(kShortest_s) + " are left out");
-  }
+  result.gaps = {record.gaps.size(), result.starts.size(), left_out};
   const double length_s = static_cast<double>(result.size()) * result.sample_time_s;
   if (length_s < kLeast_s) {
     const std::string all = seconds(static_cast<double>(record.size()) * record.sample_time_s);

@@ -18,6 +18,7 @@ using Eigen::VectorXd;
 using estimator::nonlinear::Covariance;
 using estimator::nonlinear::Problem;
 using estimator::nonlinear::Solution;
+using Step = EstimationProgress::Step;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// A fall of the cost by this is worth another look.
@@ -57,7 +58,7 @@ class Estimator {
 
   EstimationSummary run() {
     const auto begin = std::chrono::steady_clock::now();
-    say("looking at what the record can tell");
+    report({Step::identifiability, 0, {}});
     derivatives(problem_, question_.start, out_.before.residual_m, start_jacobian_);
     problem_.sigma = question_.data.noise_floor_m > 0.0
                          ? question_.data.noise_floor_m
@@ -93,16 +94,15 @@ class Estimator {
 
  private:
   bool cancelled() const { return options_.cancel && options_.cancel(); }
-  void say(const std::string& doing) const {
-    if (options_.progress) options_.progress(doing);
+  void report(const EstimationProgress& progress) const {
+    if (options_.progress) options_.progress(progress);
   }
 
   void search() {
     const std::vector<VectorXd> points =
         starting_points(question_.parameters, question_.start, std::max(1, options_.starts));
     found_.resize(points.size());
-    say("fitting from " + std::to_string(points.size()) +
-        (points.size() == 1 ? " start" : " starts"));
+    report({Step::multistart, points.size(), {}});
     const unsigned side_by_side = std::min(options_.threads, static_cast<unsigned>(points.size()));
     in_parallel(points.size(), side_by_side, [&](std::size_t i) {
       if (i > 0 && cancelled()) return;
@@ -138,7 +138,7 @@ class Estimator {
 
   /// From the one start: after each step the residual is weighed anew, until its size is known.
   void descend() {
-    say("fitting");
+    report({Step::descent, 0, {}});
     FitSummary& at = out_.fitted;
     at.parameters = question_.parameters;
     at.theta = question_.start;
@@ -245,7 +245,7 @@ class Estimator {
 
   void profile() {
     if (options_.profiling == Profiling::none || cancelled()) return;
-    std::vector<std::string> why;
+    std::vector<IntervalDoubt> why;
     std::vector<estimator::nonlinear::Profile> walked;
     for (int again = 0; again < 2; ++again) {
       why = doubts(problem_, solution_, known_, question_.parameters,
@@ -260,7 +260,7 @@ class Estimator {
           least->least_cost > solution_.cost - kBetter) {
         break;
       }
-      say("a profile met a better place: looking there");
+      report({Step::restart, 0, {}});
       polish(least->least_x, nullptr);
       compute_uncertainty();
     }
@@ -270,17 +270,17 @@ class Estimator {
     }
   }
 
-  std::vector<char> chosen(const std::vector<std::string>& why) const {
+  std::vector<char> chosen(const std::vector<IntervalDoubt>& why) const {
     std::vector<char> which(why.size(), 0);
-    std::string names;
+    std::vector<std::string> names;
     for (std::size_t i = 0; i < why.size(); ++i) {
       const std::string& name = question_.parameters[i].name;
       const bool named = std::find(options_.profiled.begin(), options_.profiled.end(), name) !=
                          options_.profiled.end();
-      which[i] = options_.profiling == Profiling::named ? named : !why[i].empty();
-      if (which[i] != 0) names += (names.empty() ? "" : ", ") + name;
+      which[i] = options_.profiling == Profiling::named ? named : why[i] != IntervalDoubt::none;
+      if (which[i] != 0) names.push_back(name);
     }
-    if (!names.empty()) say("profile of " + names);
+    if (!names.empty()) report({Step::profile, 0, names});
     return which;
   }
 

@@ -1,9 +1,9 @@
-// A model's parameters estimated from records: several starts, the best one polished, how well each
-// parameter is known, and what the records cannot see.
+// Estimation of a model's parameters from records: several starts, a final fit from the best one,
+// uncertainty and identifiability of each parameter.
 //
-// cost as in greybox/fit.h; the intervals are x +- 1.96 standard errors of the search value
-// (honest for residuals of any colour, estimator/nonlinear/covariance.h), or where the profile of
-// the likelihood was walked, the profile's.
+// The cost is that of greybox/fit.h. Intervals are theta +- 1.96 standard errors, valid for
+// coloured residuals (estimator/nonlinear/covariance.h), or those of the likelihood profile where
+// one was computed.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,6 +24,24 @@ namespace estimator::greybox {
 
 enum class Profiling { none, doubtful, named };
 
+/// Reason why the standard error describes a parameter's uncertainty badly.
+enum class IntervalDoubt {
+  none,
+  at_bound,
+  not_visible,
+  large_std_error,  ///< no prior explains it
+  not_quadratic     ///< the cost at the ends of the interval is not that of the linear model
+};
+
+/// Step of a running estimation.
+struct EstimationProgress {
+  enum class Step { identifiability, multistart, descent, restart, profile };
+
+  Step step = Step::identifiability;
+  std::size_t starts = 0;               ///< multistart
+  std::vector<std::string> parameters;  ///< profile: names
+};
+
 struct EstimationProblem {
   plant_sim::ModelFile model;
   FitDataset data;          ///< `validation_mask` may be all 0: nothing is held out
@@ -39,8 +57,8 @@ struct EstimationOptions {
   double observer_per_s = kObserver_per_s;
   unsigned threads = 2;
   std::function<bool()> cancel;  ///< may be empty
-  std::function<void(const std::string&)>
-      progress;  ///< called by the caller's thread; may be empty
+  /// Called by the caller's thread; may be empty.
+  std::function<void(const EstimationProgress&)> progress;
 };
 
 struct EstimatedParameter {
@@ -51,8 +69,8 @@ struct EstimatedParameter {
   double low = 0.0;        ///< 95 % interval
   double high = 0.0;
   int at_bound = 0;           ///< -1, 0, +1: of the values
-  double record_share = 1.0;  ///< Sight::share after the fit
-  std::string doubt;          ///< why a profile is called for; empty: none
+  double record_share = 1.0;  ///< IdentifiabilityReport::share after the fit
+  IntervalDoubt doubt = IntervalDoubt::none;
   bool from_profile = false;  ///< the interval
   bool low_found = true;      ///< false: no end within the bounds
   bool high_found = true;

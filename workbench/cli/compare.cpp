@@ -65,6 +65,7 @@ greybox::Dataset read_measured(const CompareArguments& a) {
   }
   greybox::Dataset part = greybox::part(whole, from, to);
   part.notes = whole.notes;
+  part.gaps = whole.gaps;
   return part;
 }
 

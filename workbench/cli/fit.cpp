@@ -36,8 +36,8 @@ int run(const FitRequest& request) {
   prepared.options.cancel = Interrupt::requested;
   const bool shown = !request.quiet && isatty(STDERR_FILENO) == 1;
   if (shown) {
-    prepared.options.progress = [](const std::string& doing) {
-      std::cerr << "\r\x1b[K" << doing << std::flush;
+    prepared.options.progress = [](const estimator::greybox::EstimationProgress& progress) {
+      std::cerr << "\r\x1b[K" << fit::progress_words(progress) << std::flush;
     };
   }
   fit::FitReport outcome;

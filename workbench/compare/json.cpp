@@ -89,7 +89,7 @@ std::string to_json(const validation::Comparison& c) {
   out["samples"] = c.record.size();
   out["segments"] = c.record.starts.size();
   out["duration_s"] = number_or_null(c.duration_s());
-  out["notes"] = c.notes;
+  out["notes"] = notes(c);
   return out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 

@@ -212,7 +212,7 @@ Section number_section(const validation::Comparison& c) {
       ". Reversing: from 50 ms before the rod leaves one direction until 50 ms after it goes the "
       "other way. The first half second of each segment does not count, except in the free run. "
       "The speed error is a mean over 50 ms to either side.");
-  for (const std::string& note : c.notes) section.paragraphs.push_back("Note: " + note + ".");
+  for (const std::string& note : notes(c)) section.paragraphs.push_back("Note: " + note + ".");
   return section;
 }
 

@@ -130,7 +130,7 @@ std::string to_text(const validation::Comparison& c, bool unicode, bool all) {
                                 present::three_digits(1.0 / c.record.sample_time_s));
   if (c.record.starts.size() > 1) out += fmt::format(", {} segments", c.record.starts.size());
   out += "\n";
-  for (const std::string& note : c.notes) out += wrapped("note: " + note, "  ", "        ");
+  for (const std::string& note : notes(c)) out += wrapped("note: " + note, "  ", "        ");
   out += "\n" + wrapped(said.verdict, "  ", "  ");
   for (const std::string& sentence : said.lines) out += wrapped(sentence, "  - ", "    ");
   out += "\n" + numbers(c);

@@ -1,8 +1,11 @@
 #include "workbench/compare/words.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "workbench/present/compare_units.h"
+#include "workbench/present/dataset_notes.h"
 
 namespace workbench::compare {
 
@@ -161,6 +164,38 @@ Words words(const validation::Comparison& c) {
   add(drift_words(c));
   add(dependence_words(c));
   return w;
+}
+
+std::vector<std::string> notes(const validation::Comparison& c) {
+  using Limitation = validation::CommandRange::Limitation;
+  std::vector<std::string> out = present::notes_of(c.record);
+  const double percent = 100.0 * c.command.limited_share;
+  switch (c.command.limitation) {
+    case Limitation::none:
+      break;
+    case Limitation::constant:
+      out.push_back(fmt::format(
+          "the command stays at {:.4g} V: the model is tried at this one value", c.command.most_V));
+      break;
+    case Limitation::always_limited:
+      out.push_back(
+          fmt::format("the command is at +-{:.4g} V in {:.0f} % of the samples: smaller "
+                      "commands are hardly tried",
+                      c.command.most_V, percent));
+      break;
+    case Limitation::often_limited:
+      out.push_back(
+          fmt::format("the command is at its limit of +-{:.4g} V in {:.0f} % of the samples",
+                      c.command.most_V, percent));
+      break;
+  }
+  if (c.beyond_stroke) {
+    out.push_back(
+        fmt::format("y runs from {:.4g} to {:.4g} mm, outside the model's stroke of 0 to {:.4g} mm",
+                    1e3 * c.beyond_stroke->low_m, 1e3 * c.beyond_stroke->high_m,
+                    1e3 * c.beyond_stroke->stroke_m));
+  }
+  return out;
 }
 
 }  // namespace workbench::compare

@@ -1,4 +1,4 @@
-// What a comparison says in plain words: the verdict, then what supports it, most useful first.
+// Comparison as sentences: the verdict, then its support, most useful first.
 #pragma once
 
 #include <string>
@@ -19,5 +19,8 @@ struct Words {
 };
 
 [[nodiscard]] Words words(const validation::Comparison& comparison);
+
+/// Restrictions of the record: gaps, limited command, positions outside the stroke.
+[[nodiscard]] std::vector<std::string> notes(const validation::Comparison& comparison);
 
 }  // namespace workbench::compare

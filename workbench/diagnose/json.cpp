@@ -75,7 +75,7 @@ std::string to_json(const DiagnosisReport& outcome) {
   }
   json["advice"] = outcome.advice;
   json["words"] = verdict_words(d);
-  json["notes"] = d.notes;
+  json["notes"] = notes(outcome);
   json["interrupted"] = outcome.interrupted;
   json["model"] = outcome.prepared->model_file;
   json["records"] = outcome.prepared->records;

@@ -1,9 +1,8 @@
-// How far a diagnosis is: one line that is renewed on a terminal, a line for each round elsewhere.
+// Progress of a diagnosis: one line that is renewed on a terminal, elsewhere one line per round.
 #pragma once
 
 #include <chrono>
 #include <iosfwd>
-#include <string>
 
 #include "estimator/greybox/selection/problem.h"
 
@@ -26,8 +25,8 @@ class ProgressLine {
   std::ostream& out_;
   bool renewed_;
   double noise_floor_m_;
-  std::string round_;   ///< of which a line has been written
-  std::string ranked_;  ///< of which the quick look has been written
+  int round_ = 0;   ///< latest round with a line of its own
+  int ranked_ = 0;  ///< latest round whose ranking was written
   std::chrono::steady_clock::time_point last_{};
 };
 

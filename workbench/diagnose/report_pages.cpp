@@ -66,7 +66,7 @@ present::Report report_of(const DiagnosisReport& outcome) {
   report.state = state_of(outcome);
   for (const std::string& remark : remarks(outcome))
     report.summary.push_back(config::units::typeset(remark));
-  for (const std::string& note : d.notes)
+  for (const std::string& note : notes(outcome))
     report.summary.push_back("Note: " + config::units::typeset(note) + ".");
   report.next_command = next_command(outcome);
   report.facts = facts_of(outcome);

@@ -144,7 +144,7 @@ void print(const DiagnosisReport& outcome, std::ostream& out) {
         << wrapped(outcome.prepared->model_file + ": " + split_words(outcome) +
                    fmt::format("; {:.1f} s.", d.runtime_s));
   }
-  for (const std::string& note : d.notes) out << wrapped("note: " + note);
+  for (const std::string& note : notes(outcome)) out << wrapped("note: " + note);
   const std::string next = next_command(outcome);
   if (!next.empty()) out << "next: " << next << '\n';
 }

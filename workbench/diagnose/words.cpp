@@ -7,6 +7,8 @@
 
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
+#include "estimator/greybox/representative_segments.h"
+#include "workbench/present/dataset_notes.h"
 #include "workbench/present/shell_command.h"
 
 namespace workbench::diagnose {
@@ -75,10 +77,6 @@ std::string unexplained_words(const selection::Diagnosis& d) {
          (d.missing.size() > 1 ? " are" : " is") + " missing, but " + rest + ".";
 }
 
-std::string reason_of(const selection::Diagnosis& d) {
-  return d.notes.empty() ? "the records hardly move" : d.notes.back();
-}
-
 std::string fall_words(const selection::Diagnosis& d) {
   if (d.missing.empty()) {
     return "With the plant's own parameters fitted, the held-out error goes from " +
@@ -140,6 +138,40 @@ std::string where_words(const selection::Localisation& where) {
   return enters + " that goes with " + variable;
 }
 
+std::string excitation_words(const selection::Excitation& excitation) {
+  using Cause = selection::Excitation::Cause;
+  const auto millimetres = [](double m) { return fmt::format("{:.3g} mm", 1e3 * m); };
+  switch (excitation.cause) {
+    case Cause::sufficient:
+      break;
+    case Cause::no_motion:
+      return "the rod moves by " + millimetres(excitation.travel_m) + " in all, " +
+             millimetres(excitation.noise_floor_m) + " of it noise";
+    case Cause::command_at_limit:
+      return "the command stays at its limit throughout";
+  }
+  return "the records hardly move";
+}
+
+std::vector<std::string> notes(const DiagnosisReport& outcome) {
+  const selection::Diagnosis& d = outcome.diagnosis;
+  const greybox::FitDataset& data = outcome.prepared->problem.data;
+  std::vector<std::string> out;
+  for (const greybox::Dataset& record : data.records) {
+    for (const std::string& note : present::notes_of(record)) {
+      out.push_back(record.name + ": " + note);
+    }
+  }
+  if (!d.excitation.sufficient()) out.push_back(excitation_words(d.excitation));
+  if (d.searched_s) {
+    out.push_back("effects were searched for in " + std::to_string(std::lround(*d.searched_s)) +
+                  " of " + std::to_string(std::lround(greybox::length_s(data))) +
+                  " s; values and errors are those of all samples");
+  }
+  if (d.search.interrupted) out.emplace_back("interrupted: the best so far");
+  return out;
+}
+
 std::string verdict_words(const selection::Diagnosis& d) {
   switch (d.verdict) {
     case selection::Verdict::nothing_missing:
@@ -158,7 +190,7 @@ std::string verdict_words(const selection::Diagnosis& d) {
     case selection::Verdict::not_excited:
       break;
   }
-  return "The record cannot tell: " + reason_of(d) + ".";
+  return "The record cannot tell: " + excitation_words(d.excitation) + ".";
 }
 
 std::vector<std::string> remarks(const DiagnosisReport& outcome) {

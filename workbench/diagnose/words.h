@@ -1,4 +1,4 @@
-// What a diagnosis found, in sentences.
+// Result of a diagnosis as sentences.
 #pragma once
 
 #include <string>
@@ -14,14 +14,19 @@ namespace selection = estimator::greybox::selection;
 [[nodiscard]] std::string effect_words(const selection::Diagnosis& diagnosis,
                                        const std::string& effect);
 
+/// "the rod moves by 0.01 mm in all, 0.001 mm of it noise"
+[[nodiscard]] std::string excitation_words(const selection::Excitation& excitation);
+
+/// Restrictions: gaps of the records, long records, interruption.
+[[nodiscard]] std::vector<std::string> notes(const DiagnosisReport& outcome);
+
 /// The verdict, one sentence.
 [[nodiscard]] std::string verdict_words(const selection::Diagnosis& diagnosis);
 
-/// What it rests on and what follows from it, one paragraph each: the fallen error, rivals, where
-/// the rest enters, advice.
+/// One paragraph each: fall of the error, rivals, site of the remaining error, advice.
 [[nodiscard]] std::vector<std::string> remarks(const DiagnosisReport& outcome);
 
-/// The command to type next; empty when there is none.
+/// Command that follows; empty where there is none.
 [[nodiscard]] std::string next_command(const DiagnosisReport& outcome);
 
 /// "every other 2 s is fitted, the rest scores", ...

@@ -131,7 +131,7 @@ Section sight_section(const greybox::EstimationSummary& e) {
     std::string text = after ? "After the fit: " : "Before the fit, at the model file's values: ";
     std::string list;
     for (const greybox::UnidentifiableParameter& unseen : report.unidentifiable)
-      list += (list.empty() ? "" : "; ") + unseen.words;
+      list += (list.empty() ? "" : "; ") + unidentifiable_words(unseen, e.parameters);
     section.paragraphs.push_back(
         text + (list.empty() ? "every fitted parameter is seen" : list) +
         fmt::format(". Condition of the scaled Jacobian: {:.3g}.", report.condition));
@@ -177,7 +177,7 @@ Section profile_section(const greybox::EstimationSummary& e) {
     }
     plot.series.push_back(series);
     plot.lines.push_back({kThreshold, "95 %"});
-    plot.caption = p.doubt;
+    plot.caption = to_string(p.doubt);
     section.plots.push_back(plot);
   }
   return section;

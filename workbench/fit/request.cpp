@@ -11,6 +11,7 @@
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "workbench/cli/file_check.h"
+#include "workbench/present/dataset_notes.h"
 
 namespace workbench::fit {
 
@@ -169,7 +170,8 @@ PreparedFit prepare(const FitRequest& request) {
   problem.data = greybox::fit_dataset(std::move(records), std::move(holdouts), split);
   require_motion(problem.data);
   for (const Dataset& record : problem.data.records) {
-    for (const std::string& note : record.notes) out.notes.push_back(record.name + ": " + note);
+    for (const std::string& note : present::notes_of(record))
+      out.notes.push_back(record.name + ": " + note);
     note_saturation(record, out.notes);
     if (request.observer_per_s * record.sample_time_s >= 1.0) {
       throw UsageError("--observer: is too fast for samples every " + shown(record.sample_time_s) +

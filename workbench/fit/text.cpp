@@ -69,7 +69,8 @@ std::string plot(const greybox::EstimatedParameter& p) {
   const double most = points.back().value;
   std::string out = "Profile of " + p.free.name + ": 95 % from " + five(p.low) +
                     (p.low_found ? "" : " (its bound)") + " to " + five(p.high) +
-                    (p.high_found ? "" : " (its bound)") + (p.doubt.empty() ? "" : "; " + p.doubt) +
+                    (p.high_found ? "" : " (its bound)") +
+                    (p.doubt == greybox::IntervalDoubt::none ? "" : "; " + to_string(p.doubt)) +
                     "\n";
   if (!(most > least)) return out;
   std::vector<std::string> rows(kPlotHeight + 1, std::string(kPlotWidth, ' '));

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "config/units/quantity.h"
-#include "estimator/greybox/tracking/words.h"
+#include "estimator/fdi/tracker/tracking_text.h"
 
 namespace estimator::fdi::tracker {
 namespace {
@@ -119,21 +119,21 @@ void TrackerSource::take(const greybox::tracking::WindowResult& window) {
   }
   rms_m_ = window.rms_m;
   samples_ = static_cast<int>(std::lround(window_s_ / sample_time_s_));
-  why_ = window.why;
+  why_ = invalid_words(tracker_.set(), window.invalid);
   unexplained_ = window.fits ? 0 : unexplained_ + 1;
   if (!tracker_.baseline()) {
     learn_from(window);
   } else {
     suggest(window);
   }
-  note_ = window.left_out;
+  note_ = left_out_words(window.left_out);
   tracker_.forget_cleared();
   say();
 }
 
 void TrackerSource::learn_from(const greybox::tracking::WindowResult& window) {
   const greybox::tracking::ParameterSet& set = tracker_.set();
-  why_ = "learning what is healthy" + (window.why.empty() ? "" : "; " + window.why);
+  why_ = "learning what is healthy" + (why_.empty() ? "" : "; " + why_);
   if (!greybox::tracking::qualifies_for_baseline(window, set)) return;
   learning_.push_back(window.rms_m);
   for (const greybox::tracking::ChamberFit& one : {window.in, window.out}) {
@@ -157,7 +157,7 @@ void TrackerSource::learn_from(const greybox::tracking::WindowResult& window) {
       windows[k].estimates[i].theta = lesson[kErrors + i];
     }
   }
-  tracker_.take(greybox::tracking::learn_baseline(windows, set, noise_floor_m_, "healthy motion"));
+  tracker_.take(greybox::tracking::learn_baseline(windows, set, noise_floor_m_));
   learning_.clear();
 }
 
@@ -165,7 +165,7 @@ void TrackerSource::suggest(const greybox::tracking::WindowResult& window) {
   if (!window.poor) return;
   if (!probe_) {
     const std::optional<greybox::tracking::ExcitationDesign> probe = tracker_.probe();
-    probe_ = probe ? greybox::tracking::probe_words(*probe) : "";
+    probe_ = probe ? probe_words(*probe) : "";
   }
   if (probe_->empty()) return;
   // Short, for what hands reasons on cuts them.
@@ -183,9 +183,9 @@ void TrackerSource::say() {
     if (alarm == nullptr) continue;
     const greybox::tracking::ParameterChange& named = alarm->named;
     const greybox::FreeParameter& p = set.parameters[i];
-    const std::string group = greybox::tracking::group_words(set, named);
-    said.reason = greybox::tracking::change_words(set, named, tracker_.baseline()->theta) +
-                  (group.empty() ? "" : "; " + group);
+    const std::string group = group_words(set, named);
+    said.reason =
+        change_words(set, named, tracker_.baseline()->theta) + (group.empty() ? "" : "; " + group);
     said.parameter = named.rivals.empty() ? p.name : "";
     said.group.clear();
     if (!named.rivals.empty()) said.group.push_back(p.name);
@@ -221,7 +221,7 @@ void TrackerSource::say_slow() {
     const std::size_t at = slow.parameter(i);
     const greybox::FreeParameter& p = set.parameters[at];
     const double theta = tracker_.baseline()->theta[static_cast<Eigen::Index>(at)];
-    said.reason = greybox::tracking::slow_words(p, slow.learnt(i), theta);
+    said.reason = slow_words(p, slow.learnt(i), theta);
     said.parameter = p.name;
     said.fault = {said.parameter, {}, kNaN};
     said.state.severity = Severity::minor;

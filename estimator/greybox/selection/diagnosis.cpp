@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "estimator/greybox/representative_segments.h"
 #include "estimator/greybox/selection/excitation.h"
 #include "estimator/greybox/selection/indistinguishable_models.h"
 #include "estimator/greybox/selection/localisation.h"
@@ -95,13 +96,9 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
   const SearchContext context{problem, options};
   Diagnosis result;
   result.noise_floor_m = problem.data.noise_floor_m;
-  for (const Dataset& record : problem.data.records) {
-    for (const std::string& note : record.notes) result.notes.push_back(record.name + ": " + note);
-  }
-  const Excitation excitation = excitation_of(problem.data);
-  if (!excitation.enough) {
+  result.excitation = excitation_of(problem.data);
+  if (!result.excitation.sufficient()) {
     result.verdict = Verdict::not_excited;
-    result.notes.push_back(excitation.why);
     result.better = problem.model;
     return result;
   }
@@ -110,7 +107,7 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
   const ModelStage found = result.search.final;
   if (uses_segments(search, context)) {
     refit_to_whole(context, result.search);
-    result.notes.push_back(note_of_search(search, context));
+    result.searched_s = length_s(search.problem.data);
   }
   const ModelStage& final = result.search.final;
   result.nominal_rms_m = result.search.nominal_rms_m;
@@ -131,7 +128,6 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
                      : result.ambiguous.empty() ? Verdict::missing
                                                 : Verdict::undetermined;
   }
-  if (result.search.interrupted) result.notes.emplace_back("interrupted: the best so far");
   result.runtime_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;

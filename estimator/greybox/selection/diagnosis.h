@@ -1,9 +1,11 @@
-// What a diagnosis says in the end, and what it rests on.
+// Result of a diagnosis and the search that led to it.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "estimator/greybox/selection/excitation.h"
 #include "estimator/greybox/selection/structure_search.h"
 
 namespace estimator::greybox::selection {
@@ -19,7 +21,7 @@ struct ParameterValue {
   bool at_bound = false;
 };
 
-/// Where a residual enters the equations, and which variable it goes with.
+/// Site at which a residual enters the equations and the variable it correlates with.
 struct Localisation {
   std::string site;              ///< "flow", "force", "gain", "measurement"
   std::string variable;          ///< "y", "v", "u", "speed", "acceleration", "time", "direction"
@@ -44,15 +46,16 @@ struct Diagnosis {
   std::vector<ParameterValue> parameters;  ///< of the better model, fitted to all samples
   std::vector<Localisation> where;         ///< best first; empty when nothing is left to explain
   std::vector<Step> steps;
-  std::vector<std::string> notes;  ///< restrictions: gaps, interrupted, ...
+  Excitation excitation;             ///< insufficient: Verdict::not_excited
+  std::optional<double> searched_s;  ///< length of the segments searched; none: all samples
   StructureSearch search;
   FitSummary final;             ///< the better model on all samples
   plant_sim::ModelFile better;  ///< the model file with it
   double runtime_s = 0.0;
 };
 
-/// Runs the whole diagnosis. Ends early, with the best result so far and a note, once
-/// `options.cancel` returns true.
+/// Runs the whole diagnosis. Ends early with the best result so far once `options.cancel` returns
+/// true; `search.interrupted` is then set.
 [[nodiscard]] Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& options);
 
 }  // namespace estimator::greybox::selection

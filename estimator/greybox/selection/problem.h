@@ -18,10 +18,12 @@ namespace estimator::greybox::selection {
 
 /// State of a running search, for a progress line.
 struct Progress {
-  std::string doing;  ///< "round 1: trying friction"
-  int done = 0;
+  int round = 0;
+  bool screening = false;  ///< false: `effect` is being fitted
+  std::string effect;
+  int done = 0;  ///< steps of this round
   int of = 0;
-  std::string best;  ///< leading effect so far, may be empty
+  std::string best;  ///< leading effect so far; may be empty
   double best_rms_m = 0.0;
   std::vector<std::string> expected;  ///< ranking by screening, once known
 };

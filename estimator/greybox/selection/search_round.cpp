@@ -46,27 +46,28 @@ FitOptions quick(const SearchContext& context) {
   return options;
 }
 
-/// Tells the workshop how a round goes; from any thread.
+/// Reports the progress of a round; thread-safe.
 class Reporter {
  public:
   Reporter(const SearchContext& context, int round, std::size_t tasks) : context_(&context) {
-    begin_ = "round " + std::to_string(round) + ": ";
+    progress_.round = round;
     progress_.of = static_cast<int>(tasks);
   }
-  void on_screened(const std::string& effect) { tell("looking at " + effect, nullptr); }
+  void on_screened(const std::string& effect) { report(effect, true, nullptr); }
   void expect(const std::vector<ScreeningResult>& screened) {
     const std::lock_guard lock(mutex_);
     for (const ScreeningResult& one : screened) progress_.expected.push_back(one.effect);
   }
   void on_fitted(const Candidate& candidate) {
-    tell("trying " + candidate.effects.front(), candidate.fitted_at_all ? &candidate : nullptr);
+    report(candidate.effects.front(), false, candidate.fitted_at_all ? &candidate : nullptr);
   }
 
  private:
-  void tell(const std::string& doing, const Candidate* finished) {
+  void report(const std::string& effect, bool screening, const Candidate* finished) {
     const std::lock_guard lock(mutex_);
     ++progress_.done;
-    progress_.doing = begin_ + doing;
+    progress_.effect = effect;
+    progress_.screening = screening;
     if (finished != nullptr &&
         (progress_.best.empty() || finished->validation_rms_m < progress_.best_rms_m)) {
       progress_.best = finished->effects.front();
@@ -76,7 +77,6 @@ class Reporter {
   }
 
   const SearchContext* context_;
-  std::string begin_;
   std::mutex mutex_;
   Progress progress_;
 };

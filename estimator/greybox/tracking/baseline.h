@@ -3,7 +3,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <string>
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "estimator/greybox/tracking/window_result.h"
@@ -22,10 +23,14 @@ struct Baseline {
 /// Whether a window may serve to learn from: explained, every parameter known to some per cent.
 [[nodiscard]] bool qualifies_for_baseline(const WindowResult& window, const ParameterSet& set);
 
-/// The medians over the windows of a record without a fault; what is not tracked is as in the file.
-/// Throws config::schema::DataError when none is usable.
+/// Index of the first tracked parameter that no window determines well enough; none: the windows
+/// suffice for learn_baseline().
+[[nodiscard]] std::optional<std::size_t> undetermined_parameter(
+    const std::vector<WindowResult>& windows, const ParameterSet& set);
+
+/// Medians over the explained windows of a record without a fault; parameters that are not tracked
+/// keep the model file's values. Requires that no parameter is undetermined.
 [[nodiscard]] Baseline learn_baseline(const std::vector<WindowResult>& windows,
-                                      const ParameterSet& set, double noise_floor_m,
-                                      const std::string& where);
+                                      const ParameterSet& set, double noise_floor_m);
 
 }  // namespace estimator::greybox::tracking

@@ -85,11 +85,4 @@ std::optional<ExcitationDesign> design_excitation(const plant_sim::ModelFile& ba
   return best;
 }
 
-std::string probe_words(const ExcitationDesign& probe) {
-  return "probe with a sine of " + config::units::length_words(probe.amplitude_m) +
-         fmt::format(" at {:.3g} Hz about ", probe.frequency_Hz) +
-         config::units::length_words(probe.centre_m) +
-         fmt::format(" for {:.2g} s", probe.duration_s);
-}
-
 }  // namespace estimator::greybox::tracking

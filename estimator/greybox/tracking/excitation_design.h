@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <functional>
 #include <optional>
-#include <string>
 
 #include "plant_sim/model_file.h"
 
@@ -35,8 +34,5 @@ using Foresee = std::function<Eigen::VectorXd(const double* u_V, const double* y
 [[nodiscard]] std::optional<ExcitationDesign> design_excitation(
     const plant_sim::ModelFile& baseline, const ExcitationLimits& limits, std::size_t samples,
     double sample_time_s, double noise_m, const Foresee& foresee);
-
-/// "probe with a sine of 20 mm at 1 Hz about 305 mm for 3.8 s"
-[[nodiscard]] std::string probe_words(const ExcitationDesign& probe);
 
 }  // namespace estimator::greybox::tracking

@@ -88,12 +88,12 @@ class ParameterTracker {
   /// Before the healthy rig is known.
   [[nodiscard]] WindowFitSummary first_fit(const WindowData& data);
   [[nodiscard]] HeldParameters held(const WindowData& data, const ErrorScales& errors) const;
-  [[nodiscard]] WindowData usable(std::size_t samples, std::string& left_out) const;
-  [[nodiscard]] std::string misfit(const WindowFitSummary& found, double most_ratio) const;
+  [[nodiscard]] WindowData usable(std::size_t samples, PressuresLeftOut& left_out) const;
+  [[nodiscard]] Misfit misfit(const WindowFitSummary& found, double most_ratio) const;
   WindowResult look(double t_s);
   void estimate(WindowResult& window, const WindowFitSummary& found);
   void judge(WindowResult& window, const WindowData& data, const WindowFitSummary& found,
-             const std::string& misfit) const;
+             const Misfit& misfit) const;
   [[nodiscard]] bool moves(const WindowData& data) const;
   [[nodiscard]] double noise_m() const;
   /// Whether a part was explained; by position alone where the cut has no pressures.

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <functional>
 
-#include "estimator/greybox/tracking/words.h"
 #include "tests/daemon/tracking/tracked.h"
 
 namespace {
@@ -88,14 +87,18 @@ TEST(Chambers, OfAFailedTransducerAreLeftOutWithAReasonAndNameNothing) {
       EXPECT_THAT(t.alarms, IsEmpty()) << what << " " << t.name(t.alarms[0]);
       for (const iso::WindowResult& window : t.windows) {
         const bool right = window.t_s < 14.3;
-        EXPECT_EQ(window.left_out.empty(), right || !window.fits) << what << " " << window.t_s;
+        EXPECT_EQ(!window.left_out, right || !window.fits) << what << " " << window.t_s;
         if (window.from_s < 14.3) continue;
-        EXPECT_TRUE(window.fits) << what << " " << window.t_s << " " << window.why;
+        EXPECT_TRUE(window.fits) << what << " " << window.t_s << " "
+                                 << tracker::invalid_words(t.set, window.invalid);
         if (std::string(what) != "not read") {
-          EXPECT_THAT(window.left_out, HasSubstr(in ? "pressure in" : "pressure out")) << what;
+          EXPECT_THAT(tracker::left_out_words(window.left_out),
+                      HasSubstr(in ? "pressure in" : "pressure out"))
+              << what;
         }
         // Damping goes on by position alone; supply pressure and valve gain are one number then.
-        EXPECT_TRUE(window.estimates[1].valid) << what << " " << window.estimates[1].why;
+        EXPECT_TRUE(window.estimates[1].valid)
+            << what << " " << tracker::invalid_words(t.set, window.estimates[1].invalid);
         EXPECT_NEAR(window.estimates[1].value, 1000.0, 50.0) << what;
         EXPECT_FALSE(window.estimates[2].valid) << what;
       }
@@ -189,7 +192,7 @@ TEST(Chambers, NameNothingWhileTheRigIsHealthy) {
       const Tracked t = tracked(truth::simulate(of), with_gain());
       EXPECT_THAT(t.alarms, IsEmpty()) << motion << " " << seed;
       int left_out = 0;
-      for (const iso::WindowResult& window : t.windows) left_out += window.left_out.empty() ? 0 : 1;
+      for (const iso::WindowResult& window : t.windows) left_out += window.left_out ? 1 : 0;
       EXPECT_EQ(left_out, 0) << motion << " " << seed;
     }
   }
@@ -225,17 +228,17 @@ TEST(Chambers, AreNotAskedForWhereTheyAreRead) {
   const iso::ParameterSet set = iso::choose(printed_model(), usual(), "parameters");
   iso::ParameterChange named{
       1, 0.1, 0.01, 0.1, {{"internal_leakage.conductance_m3ps_per_Pa", 1e-12}}, {}};
-  EXPECT_EQ(iso::advice_words(set, named), "a reading of the chamber pressures would");
-  EXPECT_THAT(iso::group_words(set, named), HasSubstr(": command and position cannot tell"));
+  EXPECT_EQ(tracker::advice_words(set, named), "a reading of the chamber pressures would");
+  EXPECT_THAT(tracker::group_words(set, named), HasSubstr(": command and position cannot tell"));
   named.sensed.chambers = true;
-  EXPECT_EQ(iso::advice_words(set, named),
+  EXPECT_EQ(tracker::advice_words(set, named),
             "a motion of other speeds and accelerations would");  // damping
-  EXPECT_THAT(iso::group_words(set, named),
+  EXPECT_THAT(tracker::group_words(set, named),
               HasSubstr("command, position and chamber pressures cannot tell"));
   named.rivals = {{"supply_droop.droop_Pa_per_m3ps", 1e10}};
-  EXPECT_EQ(iso::advice_words(set, named), "a reading of the supply pressure would");
+  EXPECT_EQ(tracker::advice_words(set, named), "a reading of the supply pressure would");
   named.sensed.supply = true;
-  EXPECT_THAT(iso::advice_words(set, named), Not(HasSubstr("supply")));
+  EXPECT_THAT(tracker::advice_words(set, named), Not(HasSubstr("supply")));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "estimator/fdi/tracker/baseline_file.h"
+#include "estimator/fdi/tracker/tracking_text.h"
 #include "estimator/greybox/tracking/parameter_tracker.h"
 #include "tests/truth/case.h"
 #include "tests/truth/rig.h"
@@ -72,7 +73,7 @@ inline Tracked tracked(const truth::Record& record, const std::vector<std::strin
     return windows;
   };
   iso::ParameterTracker learning(model, out.set, settings, truth::kSample_s, floor_m);
-  out.baseline = iso::learn_baseline(run(learning, kHealthy_s), out.set, floor_m, "truth");
+  out.baseline = iso::learn_baseline(run(learning, kHealthy_s), out.set, floor_m);
   iso::ParameterTracker judging(model, out.set, settings, truth::kSample_s, floor_m);
   judging.take(out.baseline);
   out.windows = run(judging, INFINITY);

@@ -21,7 +21,7 @@ TEST(WindowResult, FindsPressureWithinTwoPerMilleAndDampingWithinItsStandardErro
     const Tracked t = tracked(truth::simulate(of));
     for (std::size_t i = 0; i < t.windows.size(); i += 16) {  // that have no window in common
       const iso::WindowResult& window = t.windows[i];
-      ASSERT_TRUE(window.valid) << window.why;
+      ASSERT_TRUE(window.valid) << tracker::invalid_words(t.set, window.invalid);
       EXPECT_NEAR(window.estimates[0].value, of.plant.supply_pressure_Pa,
                   0.002 * of.plant.supply_pressure_Pa);
       const double off = window.estimates[1].value - of.plant.damping_N_s_per_m;
@@ -44,7 +44,8 @@ TEST(WindowResult, IsInvalidWhereTheRigDoesWhatTheModelDoesNotHave) {
       EXPECT_TRUE(window.valid) << window.t_s;
     } else if (window.from_s > 15.5) {
       EXPECT_FALSE(window.valid) << window.t_s;
-      EXPECT_THAT(window.why, HasSubstr("the model does not explain it"));
+      EXPECT_THAT(tracker::invalid_words(t.set, window.invalid),
+                  HasSubstr("the model does not explain it"));
     }
   }
   EXPECT_TRUE(t.alarms.empty());
@@ -61,7 +62,7 @@ TEST(WindowResult, IsInvalidWithoutMotion) {
   const Tracked t = tracked(record);
   const iso::WindowResult& last = t.windows.back();
   EXPECT_FALSE(last.valid);
-  EXPECT_THAT(last.why, HasSubstr("no motion"));
+  EXPECT_THAT(tracker::invalid_words(t.set, last.invalid), HasSubstr("no motion"));
   EXPECT_TRUE(t.alarms.empty());
 }
 
@@ -75,14 +76,15 @@ TEST(WindowResult, TellsThePressureWhereATriangleDoesNotTellTheDamping) {
   int poor = 0;
   for (const iso::WindowResult& window : t.windows) {
     if (window.from_s < 20.0) continue;
-    EXPECT_TRUE(window.estimates[0].valid) << window.estimates[0].why;
+    EXPECT_TRUE(window.estimates[0].valid)
+        << tracker::invalid_words(t.set, window.estimates[0].invalid);
     EXPECT_NEAR(window.estimates[0].value, 0.9 * 6.89e6, 0.002 * 6.89e6);
     if (window.estimates[1].valid) {
       EXPECT_NEAR(window.estimates[1].value, 1000.0, 30.0) << window.t_s;
     } else {
       ++poor;
       EXPECT_FALSE(window.valid);
-      EXPECT_THAT(window.why, HasSubstr("damping is known to"));
+      EXPECT_THAT(tracker::invalid_words(t.set, window.invalid), HasSubstr("damping is known to"));
     }
   }
   EXPECT_GT(poor, 0);
@@ -101,7 +103,8 @@ TEST(WindowResult, SaysWhatTheMotionDoesNotSeparate) {
     if (window) last = *window;
   }
   EXPECT_FALSE(last.valid);
-  EXPECT_THAT(last.why, HasSubstr("does not separate valve gain from discharge coefficient"));
+  EXPECT_THAT(estimator::fdi::tracker::invalid_words(set, last.invalid),
+              HasSubstr("does not separate valve gain from discharge coefficient"));
 }
 
 TEST(WindowResult, NeverReachesAcrossAGap) {

@@ -96,9 +96,10 @@ TEST(BetterModel, SaysAtItsTopWhatWasAddedAndReadsBack) {
   EXPECT_NE(*read.value("mass_kg"), 1.0);
 }
 
-selection::Progress step(const std::string& doing, int done) {
+selection::Progress step(int round, const std::string& effect, int done) {
   selection::Progress progress;
-  progress.doing = doing;
+  progress.round = round;
+  progress.effect = effect;
   progress.done = done;
   progress.of = 36;
   progress.best = "friction";
@@ -109,26 +110,26 @@ selection::Progress step(const std::string& doing, int done) {
 TEST(ProgressLine, IsOneLineForEachRoundWhereNoTerminalIs) {
   std::ostringstream out;
   ProgressLine line(out, false, 2.4e-6);
-  line.show(step("round 1: trying friction", 1));
-  selection::Progress ranked = step("round 1: trying backlash", 2);
+  line.show(step(1, "friction", 1));
+  selection::Progress ranked = step(1, "backlash", 2);
   ranked.expected = {"friction", "backlash", "deadband"};
   line.show(ranked);
   line.show(ranked);
-  line.show(step("round 2: trying backlash", 1));
+  line.show(step(2, "backlash", 1));
   line.end();
   EXPECT_EQ(out.str(),
             "round 1: 36 steps, best friction 2.71 um, noise floor 2.4 um\n"
-            "round 1: at first sight friction, backlash, deadband\n"
+            "round 1: ranked by screening: friction, backlash, deadband\n"
             "round 2: 36 steps, best friction 2.71 um, noise floor 2.4 um\n");
 }
 
 TEST(ProgressLine, IsRenewedOnATerminalAndWipedInTheEnd) {
   std::ostringstream out;
   ProgressLine line(out, true, 2.4e-6);
-  line.show(step("round 1: trying friction", 7));
+  line.show(step(1, "friction", 7));
   line.end();
   EXPECT_EQ(out.str(),
-            "\r\x1b[Kround 1: trying friction, 7 of 36; best friction 2.71 um, noise floor 2.4 um"
+            "\r\x1b[Kround 1: fitting friction, 7 of 36; best friction 2.71 um, noise floor 2.4 um"
             "\r\x1b[K");
 }
 

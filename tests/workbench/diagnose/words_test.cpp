@@ -70,11 +70,27 @@ TEST(Words, RecordWithoutMotionGivesItsReasonAndNoFigures) {
   selection::Diagnosis& d = outcome.diagnosis;
   d = {};
   d.verdict = selection::Verdict::not_excited;
-  d.notes = {"the rod moves by 0.01 mm in all"};
+  d.excitation = {selection::Excitation::Cause::no_motion, 1e-5, 1e-6};
   outcome.advice = "Move more.";
-  EXPECT_EQ(verdict_words(d), "The record cannot tell: the rod moves by 0.01 mm in all.");
+  EXPECT_EQ(verdict_words(d),
+            "The record cannot tell: the rod moves by 0.01 mm in all, 0.001 mm of it noise.");
   EXPECT_THAT(remarks(outcome), testing::ElementsAre("Move more."));
   EXPECT_EQ(next_command(outcome), "");
+}
+
+TEST(Words, NotesNameTheRecordTheGapsAndTheInterruption) {
+  ExampleReport outcome;
+  greybox::Dataset record;
+  record.name = "servo";
+  record.notes = {"a gap at 3 s"};
+  record.gaps = {1, 2, 99};
+  outcome.input.problem.data.records = {record};
+  outcome.diagnosis.search.interrupted = true;
+  EXPECT_THAT(notes(outcome),
+              testing::ElementsAre("servo: a gap at 3 s",
+                                   "servo: 1 gaps: the simulation restarts in each of 2 segments",
+                                   "servo: 99 samples in segments shorter than 1 s are left out",
+                                   "interrupted: the best so far"));
 }
 
 TEST(Words, InterruptionIsSaidFirst) {

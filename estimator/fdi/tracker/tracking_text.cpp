@@ -1,4 +1,4 @@
-#include "estimator/greybox/tracking/words.h"
+#include "estimator/fdi/tracker/tracking_text.h"
 
 #include <fmt/format.h>
 
@@ -7,13 +7,11 @@
 
 #include "config/units/quantity.h"
 
-namespace estimator::greybox::tracking {
+namespace estimator::fdi::tracker {
 namespace {
 
 using Eigen::Index;
-
-/// Cosine above which it is another parameter that hides one.
-constexpr double kAlike = 0.98;
+using greybox::Scale;
 
 std::string percent(double ratio) { return fmt::format("{:.3g} %", 100.0 * ratio); }
 
@@ -26,44 +24,8 @@ std::string error_words(const FreeParameter& p, double std_error) {
                            : fmt::format("to +- {:.2g} of its typical size only", std_error);
 }
 
-/// Whose effect is most like that of parameter `at`; -1: there is no other.
-Index alike(const Eigen::MatrixXd& likeness, Index at) {
-  Index best = -1;
-  for (Index j = 0; j < likeness.cols(); ++j) {
-    if (j == at) continue;
-    if (best < 0 || std::abs(likeness(at, j)) > std::abs(likeness(at, best))) best = j;
-  }
-  return best;
-}
-
 std::string pressure_words(double value_Pa) {
   return config::units::words(config::units::quantity("pressure_Pa", value_Pa, NAN));
-}
-
-/// How often a chamber's error is its limit, and its offset that of offsets.
-struct Beyond {
-  double error = 0.0;
-  double offset = 0.0;
-
-  [[nodiscard]] double most() const { return std::max(error, offset); }
-};
-
-Beyond beyond(const ChamberFit& found, const ChamberError& baseline, double offset_sd_Pa,
-              double most_ratio) {
-  return {found.rms_Pa / (most_ratio * baseline.rms_Pa),
-          std::abs(found.mean_Pa) / (kMostOffset * offset_sd_Pa)};
-}
-
-std::string chamber_words(const std::string& name, const ChamberFit& found,
-                          const ChamberError& baseline, double offset_sd_Pa, double most_ratio) {
-  const Beyond by = beyond(found, baseline, offset_sd_Pa, most_ratio);
-  if (by.error >= by.offset) {
-    return "the model does not explain the " + name + ": error " + pressure_words(found.rms_Pa) +
-           ", healthy " + pressure_words(baseline.rms_Pa) +
-           fmt::format(", limit {:.3g} times that", most_ratio);
-  }
-  return "the " + name + " is off the model: by " + pressure_words(found.mean_Pa) +
-         " from when it was healthy, limit " + pressure_words(kMostOffset * offset_sd_Pa);
 }
 
 }  // namespace
@@ -82,53 +44,76 @@ std::string value_words(const FreeParameter& p, double theta, double std_error) 
       config::units::quantity(p.name, p.to_physical(theta), std_error * p.slope(theta)));
 }
 
-std::string still_words(double moved_m, double noise_floor_m, double window_s) {
-  return fmt::format("no motion: within {:.3g} s the rod moves ", window_s) +
-         config::units::length_words(moved_m) + ", the position's noise is " +
-         config::units::length_words(noise_floor_m);
-}
-
-std::string misfit_words(const WindowFitSummary& found, const ErrorScales& baseline,
-                         double most_ratio) {
-  if (found.rms_m > most_ratio * baseline.rms_m) {
-    return "the model does not explain it: error " + config::units::length_words(found.rms_m) +
-           ", healthy " + config::units::length_words(baseline.rms_m) +
-           fmt::format(", limit {:.3g} times that", most_ratio);
+std::string misfit_words(const Misfit& misfit) {
+  const std::string chamber = misfit.inlet ? "pressure in" : "pressure out";
+  switch (misfit.cause) {
+    case Misfit::Cause::none:
+      break;
+    case Misfit::Cause::position:
+      return "the model does not explain it: error " + config::units::length_words(misfit.found) +
+             ", healthy " + config::units::length_words(misfit.healthy) +
+             fmt::format(", limit {:.3g} times that", misfit.limit);
+    case Misfit::Cause::pressure_error:
+      return "the model does not explain the " + chamber + ": error " +
+             pressure_words(misfit.found) + ", healthy " + pressure_words(misfit.healthy) +
+             fmt::format(", limit {:.3g} times that", misfit.limit);
+    case Misfit::Cause::pressure_offset:
+      return "the " + chamber + " is off the model: by " + pressure_words(misfit.found) +
+             " from when it was healthy, limit " + pressure_words(misfit.limit);
   }
-  if (!found.with_chambers()) return {};
-  const ChamberErrors& chambers = baseline.chambers;
-  const double sd_Pa = chambers.offset_sd_Pa;
-  const double in = beyond(found.in, chambers.in, sd_Pa, most_ratio).most();
-  const double out = beyond(found.out, chambers.out, sd_Pa, most_ratio).most();
-  if (in <= 1.0 && out <= 1.0) return {};
-  return in >= out ? chamber_words("pressure in", found.in, chambers.in, sd_Pa, most_ratio)
-                   : chamber_words("pressure out", found.out, chambers.out, sd_Pa, most_ratio);
+  return {};
 }
 
-std::string unseen_words(const ParameterSet& set, const WindowFitSummary& found, std::size_t i,
-                         double std_error, double most) {
-  const FreeParameter& p = set.parameters[i];
-  if (found.at_bound[i] != 0) return name_words(p.name) + " ran to the end of its range";
-  if (std_error <= most) return {};
-  const std::string known = name_words(p.name) + " is known " + error_words(p, std_error);
-  const auto at = static_cast<Index>(i);
-  const Index partner = alike(found.likeness, at);
-  if (partner < 0 || !(std::abs(found.likeness(at, partner)) > kAlike)) {
-    return "the motion does not show it: " + known;
+std::string left_out_words(const PressuresLeftOut& left_out) {
+  const std::string begin = "chamber pressures left out because ";
+  switch (left_out.cause) {
+    case PressuresLeftOut::Cause::none:
+      break;
+    case PressuresLeftOut::Cause::not_read:
+      return begin + "they were not read in the whole window";
+    case PressuresLeftOut::Cause::inlet_still:
+      return begin + "the reading of the pressure in stands still";
+    case PressuresLeftOut::Cause::outlet_still:
+      return begin + "the reading of the pressure out stands still";
+    case PressuresLeftOut::Cause::misfit:
+      return begin + misfit_words(left_out.misfit);
   }
-  return "the motion does not separate " + name_words(p.name) + " from " +
-         name_words(set.parameters[static_cast<std::size_t>(partner)].name) +
-         fmt::format(" (their effects are alike to {:.4f}): ",
-                     std::abs(found.likeness(at, partner))) +
-         known;
+  return {};
 }
 
-std::string part_words(const ParameterSet& set, const WindowFitSummary& found, double length_s) {
-  std::string text = fmt::format("its last {:.3g} s alone:", length_s);
+std::string invalid_words(const ParameterSet& set, const InvalidReason& reason) {
+  const FreeParameter& p = set.parameters[reason.parameter];
+  const std::string known = name_words(p.name) + " is known " + error_words(p, reason.std_error);
+  switch (reason.cause) {
+    case InvalidReason::Cause::none:
+      break;
+    case InvalidReason::Cause::no_motion:
+      return fmt::format("no motion: within {:.3g} s the rod moves ", reason.window_s) +
+             config::units::length_words(reason.motion_m) + ", the position's noise is " +
+             config::units::length_words(reason.noise_m);
+    case InvalidReason::Cause::misfit:
+      return misfit_words(reason.misfit);
+    case InvalidReason::Cause::needs_pressures:
+      return "position alone does not tell valve gain from supply pressure: " +
+             left_out_words(reason.left_out);
+    case InvalidReason::Cause::at_bound:
+      return name_words(p.name) + " ran to the end of its range";
+    case InvalidReason::Cause::not_excited:
+      return "the motion does not show it: " + known;
+    case InvalidReason::Cause::not_separable:
+      return "the motion does not separate " + name_words(p.name) + " from " +
+             name_words(set.parameters[reason.partner].name) +
+             fmt::format(" (their effects are alike to {:.4f}): ", reason.likeness) + known;
+  }
+  return {};
+}
+
+std::string part_words(const ParameterSet& set, const PartialFit& part) {
+  std::string text = fmt::format("its last {:.3g} s alone:", part.length_s);
   for (std::size_t i = 0; i < set.tracked; ++i) {
     const auto at = static_cast<Index>(i);
     text += (i == 0 ? " " : ", ") + name_words(set.parameters[i].name) + " " +
-            value_words(set.parameters[i], found.theta[at], found.std_error[at]);
+            value_words(set.parameters[i], part.theta[at], part.std_error[at]);
   }
   return text;
 }
@@ -190,4 +175,11 @@ std::string advice_words(const ParameterSet& set, const ParameterChange& named) 
   return "another motion may";
 }
 
-}  // namespace estimator::greybox::tracking
+std::string probe_words(const ExcitationDesign& probe) {
+  return "probe with a sine of " + config::units::length_words(probe.amplitude_m) +
+         fmt::format(" at {:.3g} Hz about ", probe.frequency_Hz) +
+         config::units::length_words(probe.centre_m) +
+         fmt::format(" for {:.2g} s", probe.duration_s);
+}
+
+}  // namespace estimator::fdi::tracker
