@@ -134,7 +134,7 @@ void SpareRodConfig::visit(config::schema::Visitor& v) {
 
 void InputConfig::visit(config::schema::Visitor& v) {
   v.text({"id", "name of the signal", true}, id);
-  v.choice(wiring({"role", "what it is for"}), role,
+  v.choice(wiring({"role", "role"}), role,
            {kRoles[0].first, kRoles[1].first, kRoles[2].first, kRoles[3].first, kRoles[4].first,
             kRoles[5].first, kRoles[6].first, kRoles[7].first});
   visit_device(v, device, true);
@@ -163,7 +163,7 @@ std::vector<std::string> Rig::used() const {
 }
 
 void Rig::visit(config::schema::Visitor& v) {
-  v.table({"rod", "what reads the rod"},
+  v.table({"rod", "device that reads the rod"},
           [this](config::schema::Visitor& t) { visit_device(t, rod_, false); });
   config::schema::visit_list(v, {"spare_rod", "a further rod sensor"}, spare_rods_);
   v.table({"valve", "what drives the valve"}, [this](config::schema::Visitor& t) {
@@ -174,7 +174,7 @@ void Rig::visit(config::schema::Visitor& v) {
              {1e-3, 100.0});
     t.number({"slew_V_per_s", "fastest change of a command"}, valve_.slew_V_per_s,
              {1e-3, std::numeric_limits<double>::infinity()});
-    t.boolean({"accept_no_hardware_watchdog", "drive it though nothing but this process stops it"},
+    t.boolean({"accept_no_hardware_watchdog", "drive the valve without a hardware watchdog"},
               valve_.accept_no_hardware_watchdog);
   });
   config::schema::visit_list(v, {"input", "an auxiliary signal"}, inputs_);

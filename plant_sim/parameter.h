@@ -12,8 +12,8 @@ struct ParameterInfo {
   const char* what;
   double min;      ///< smallest allowed value
   double max;      ///< largest allowed value
-  double typical;  ///< a size worth noticing: where searches start
-  double neutral;  ///< the value without influence (effects), or the default (plants)
+  double typical;  ///< typical size: where searches start
+  double neutral;  ///< value without effect (effects), or the default (plants)
   /// Plants: how far a rig may be from its model file, as a relative standard deviation; 0 = taken
   /// as known, because the record cannot separate it from the others or because it is easily
   /// measured.

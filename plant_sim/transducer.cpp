@@ -17,8 +17,8 @@ void TransducerConfig::visit(config::schema::Visitor& v) {
   v.number({"offset_Pa", "added to the pressure"}, offset_Pa, {-kMost_Pa, kMost_Pa});
   v.number({"from_s", "when the offset begins"}, from_s,
            {0.0, std::numeric_limits<double>::infinity()});
-  v.number({"noise_Pa", "standard deviation of its noise"}, noise_Pa, {0.0, kMost_Pa});
-  v.number({"resolution_Pa", "its step; 0: none"}, resolution_Pa, {0.0, kMost_Pa});
+  v.number({"noise_Pa", "standard deviation of the noise"}, noise_Pa, {0.0, kMost_Pa});
+  v.number({"resolution_Pa", "resolution; 0: none"}, resolution_Pa, {0.0, kMost_Pa});
 }
 
 Transducers::Transducers(const std::vector<TransducerConfig>& configs, std::uint64_t seed) {

@@ -37,7 +37,7 @@ void InputConfig::visit(config::schema::Visitor& v) {
 }
 
 void RodConfig::visit(config::schema::Visitor& v) {
-  v.choice({"kind", "what it is"}, kind, {"analog", "counter"});
+  v.choice({"kind", "kind of input"}, kind, {"analog", "counter"});
   visit_channel(v, channel);
   v.number({"scale_m_per_V", "of an analogue input"}, scale_m_per_V, {-1e3, 1e3});
   v.number(wiring({"resolution_m", "of one count"}), resolution_m, {1e-12, 1.0});
@@ -57,7 +57,7 @@ void ComediConfig::visit(config::schema::Visitor& v) {
   v.boolean({"bench_rig", "the other side is a simulated rig: nothing real moves"}, bench_rig);
   v.optional_table({"output", "the analogue output that drives the valve"}, has_output,
                    [this](config::schema::Visitor& t) { output.visit(t); });
-  v.optional_table({"rod", "what reads the rod"}, has_rod,
+  v.optional_table({"rod", "device that reads the rod"}, has_rod,
                    [this](config::schema::Visitor& t) { rod.visit(t); });
   config::schema::visit_list(v, {"input", "an analogue input"}, inputs);
 }
@@ -85,7 +85,7 @@ void ComediConfig::check(const std::string& file) const {
   for (const InputConfig& input : inputs) {
     if (!names.insert(input.name).second) {
       throw bad_config(file + ": [[comedi.input]] name", "is \"" + input.name + "\" twice",
-                       "its own name");
+                       "a unique name");
     }
   }
 }

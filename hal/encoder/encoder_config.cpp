@@ -55,9 +55,10 @@ double EncoderConfig::count_m() const noexcept {
 void EncoderConfig::check(const std::string& file) const {
   const std::string table = file + ": [encoder] ";
   if (std::isnan(resolution_m) == std::isnan(counts_per_metre)) {
-    throw bad_config(table + "resolution_m",
-                     std::isnan(resolution_m) ? "is missing" : "stands beside counts_per_metre",
-                     "one of resolution_m, counts_per_metre");
+    throw bad_config(
+        table + "resolution_m",
+        std::isnan(resolution_m) ? "is missing" : "is given together with counts_per_metre",
+        "one of resolution_m, counts_per_metre");
   }
   if (sign == 0) throw bad_config(table + "sign", "is 0", "1 or -1");
   if (inputs.size() > Watch::kInputs) {
@@ -71,7 +72,7 @@ void EncoderConfig::check(const std::string& file) const {
     if (!is_new) {
       throw bad_config(file + ": [encoder] " + key,
                        "is " + std::to_string(line) + ", the line of " + known->second,
-                       "a line of its own");
+                       "a line that no other entry uses");
     }
   };
   use("line_b", line_b);
@@ -81,7 +82,7 @@ void EncoderConfig::check(const std::string& file) const {
       const std::string kind = list == &inputs ? "input " : "output ";
       use(kind + "\"" + item.name + "\" line", item.line);
       if (++names[kind + item.name] > 1) {
-        throw bad_config(table + kind + "name", "is \"" + item.name + "\" twice", "its own name");
+        throw bad_config(table + kind + "name", "is \"" + item.name + "\" twice", "a unique name");
       }
     }
   }

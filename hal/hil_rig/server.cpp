@@ -234,7 +234,7 @@ std::string set_remotely(const std::string& address, const std::string& text) {
     return config::schema::RunError("--address: " + address + ": " + what);
   };
   const auto place = split_address(address);
-  if (!place) throw failed("is no numeric address and port, 127.0.0.1:1502");
+  if (!place) throw failed("is not a numeric address and port, 127.0.0.1:1502");
   modbus_t* context = modbus_new_tcp(place->host.c_str(), place->port);
   modbus_set_response_timeout(context, 1, 0);
   std::uint16_t registers[kTextRegisters];

@@ -42,7 +42,7 @@ Connection::Connection(const ConnectionConfig& config, Counters& counters)
     modbus_free(context_);
     throw config::schema::bad_config(
         "[modbus] " + std::string(config.host.empty() ? "serial" : "address"),
-        "is nothing that can be connected", "127.0.0.1:502, /dev/ttyS0");
+        "is not a usable address or serial line", "127.0.0.1:502, /dev/ttyS0");
   }
   // The library's own recovery retries for ever: off. One time-out for the whole reply, not per
   // byte.

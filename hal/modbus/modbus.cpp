@@ -93,7 +93,7 @@ PollThreadConfig ModbusBackend::poll_thread_config(const OpenContext& context) c
   PollThreadConfig poll;
   if (config_.address.empty() == config_.serial.empty()) {
     throw bad_config(where + "address",
-                     config_.address.empty() ? "is missing" : "stands beside serial",
+                     config_.address.empty() ? "is missing" : "is given together with serial",
                      "address of a TCP device or serial line of an RTU device");
   }
   if (!config_.address.empty() && !split(config_.address, poll.connection)) {
@@ -141,7 +141,7 @@ void ModbusBackend::check(const OpenContext& context, const PollThreadConfig& po
   if (map.watchdog && std::isnan(config_.watchdog_s)) {
     throw bad_config(where + "watchdog_s",
                      "is missing for [modbus.registers." + map.watchdog->name + "]",
-                     "the time-out in s that the device shall have");
+                     "the time-out of the device in s");
   }
   if (map.watchdog) {
     const Codec& codec = map.watchdog->codec;
@@ -151,7 +151,7 @@ void ModbusBackend::check(const OpenContext& context, const PollThreadConfig& po
       throw bad_config(where + "watchdog_s",
                        "is " + std::to_string(config_.watchdog_s) + ", and [modbus.registers." +
                            map.watchdog->name + "] can only take " + std::to_string(written_s),
-                       "what scale, low and high of that register allow");
+                       "a value within scale, low and high of that register");
     }
   }
   if (map.valve) {
@@ -162,7 +162,7 @@ void ModbusBackend::check(const OpenContext& context, const PollThreadConfig& po
       throw bad_config(context.file + ": [valve] null_V",
                        "is " + std::to_string(context.null_V) + ", and [modbus.registers." +
                            map.valve->name + "] can only take " + std::to_string(written_V),
-                       "what scale, low and high of that register allow");
+                       "a value within scale, low and high of that register");
     }
   }
   const double bad_after_s =

@@ -19,7 +19,7 @@ std::uint16_t swapped(std::uint16_t word) noexcept {
 }  // namespace
 
 void Register::visit(config::schema::Visitor& v) {
-  v.choice(wiring({"role", "what it is for", true}), role,
+  v.choice(wiring({"role", "role", true}), role,
            {"rod", "valve_command", "valve_readback", "input", "output", "watchdog"});
   v.integer(wiring({"address", "as in the protocol, from 0", true}), address, {0, kLastAddress});
   v.choice(wiring({"function", "table of the device"}), function,

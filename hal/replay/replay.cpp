@@ -80,7 +80,7 @@ BackendDevices ReplayBackend::open(const OpenContext& context) const {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) {
     throw config::schema::bad_config(context.file + ": [replay] record",
-                                     "is \"" + file.string() + "\", which is no file",
+                                     "is \"" + file.string() + "\", which is not a file",
                                      "a CSV file, a MAT file or an LCM event log");
   }
   const auto record =

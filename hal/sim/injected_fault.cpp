@@ -80,13 +80,13 @@ void SpareConfig::visit(config::schema::Visitor& v) {
   v.text({"id", "its channel", true}, id);
   v.number({"offset_m", "added to the position"}, offset_m, {-100.0, 100.0});
   v.number({"from_s", "when the offset begins"}, from_s, {0.0, kInfinite});
-  v.number({"encoder_resolution_m", "its step; 0: none"}, encoder_resolution_m, {0.0, 1e-2});
-  v.number({"noise_m", "standard deviation of its noise"}, noise_m, {0.0, 1e-2});
+  v.number({"encoder_resolution_m", "resolution; 0: none"}, encoder_resolution_m, {0.0, 1e-2});
+  v.number({"noise_m", "standard deviation of the noise"}, noise_m, {0.0, 1e-2});
 }
 
 void SwitchConfig::visit(config::schema::Visitor& v) {
   v.text({"id", "its channel", true}, id);
-  v.number({"value", "what it reads"}, value, {-1e12, 1e12});
+  v.number({"value", "reading"}, value, {-1e12, 1e12});
   v.number({"from_s", "from then on"}, from_s, {0.0, kInfinite});
   v.number({"to_s", "until then"}, to_s, {0.0, kInfinite});
   v.number({"meanwhile", "it reads this"}, meanwhile, {-1e12, 1e12});

@@ -19,7 +19,7 @@ void check_pressure(const std::string& file, const InjectedFault& fault) {
   const auto& known = plant_sim::kTransducers;
   const std::string where = file + ": [[sim.trouble]] pressure";
   if (!fault.rod.empty()) {
-    throw config::schema::bad_config(where, "stands beside rod", "one of the two");
+    throw config::schema::bad_config(where, "is given together with rod", "one of the two");
   }
   if (std::find(known.begin(), known.end(), fault.pressure) != known.end()) return;
   throw config::schema::bad_config(where, "is \"" + fault.pressure + "\"",
@@ -33,7 +33,7 @@ void SimConfig::visit(config::schema::Visitor& v) {
   v.number({"command_timeout_s", "without a write for so long the valve goes to null"},
            command_timeout_s, {1e-3, std::numeric_limits<double>::infinity()});
   v.boolean({"pretend_real", "obey the rules of a rig that moves something"}, pretend_real);
-  config::schema::visit_list(v, {"trouble", "what goes wrong with a sensor or the valve"},
+  config::schema::visit_list(v, {"trouble", "injected fault of a sensor or the valve"},
                              injected_faults);
   config::schema::visit_list(v, {"rod", "a spare rod sensor"}, rods);
   config::schema::visit_list(v, {"input", "a switch or another signal"}, inputs);
@@ -111,7 +111,7 @@ std::unique_ptr<plant_sim::Plant> SimBackend::load(const OpenContext& context) c
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) {
     throw config::schema::bad_config(context.file + ": [sim] model",
-                                     "is \"" + file.string() + "\", which is no file",
+                                     "is \"" + file.string() + "\", which is not a file",
                                      "a model file (TOML)");
   }
   return plant_sim::make_plant(plant_sim::load_model(file));
@@ -130,7 +130,7 @@ void SimBackend::check_injected_faults(const OpenContext& context) const {
       continue;
     }
     throw config::schema::bad_config(context.file + ": [[sim.trouble]] rod",
-                                     "is \"" + fault.rod + "\", which is no [[sim.rod]]",
+                                     "is \"" + fault.rod + "\", which is not a [[sim.rod]]",
                                      known.empty() ? "none is there" : known);
   }
 }

@@ -31,7 +31,7 @@ void check_parameter(const FormulaEffect::Parameter& p, bool used, const std::st
     throw bad_config(where + " typical", "is " + shown(p.typical) + ", out of range", range);
   }
   if (p.typical == p.neutral) {
-    throw bad_config(where + " typical", "is the neutral value", "a size worth noticing");
+    throw bad_config(where + " typical", "is the neutral value", "a value other than neutral");
   }
   if (!used) throw bad_config(where, "is not in the formula");
 }

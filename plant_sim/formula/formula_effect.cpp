@@ -14,8 +14,8 @@ void FormulaEffect::Parameter::visit(Visitor& v) {
   v.text({"what", "meaning in one phrase"}, what);
   v.number({"min", "smallest allowed value", true}, min, kFinite);
   v.number({"max", "largest allowed value", true}, max, kFinite);
-  v.number({"typical", "a size worth noticing", true}, typical, kFinite);
-  v.number({"neutral", "the value without influence"}, neutral, kFinite);
+  v.number({"typical", "typical size", true}, typical, kFinite);
+  v.number({"neutral", "value without effect"}, neutral, kFinite);
 }
 
 void FormulaEffect::visit(Visitor& v) {

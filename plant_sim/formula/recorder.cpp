@@ -92,7 +92,7 @@ mu::Parser bare_parser() {
 const char* reason(int code) {
   switch (code) {
     case mu::ecUNEXPECTED_EOF:
-      return "it ends too early";
+      return "unexpected end";
     case mu::ecUNEXPECTED_OPERATOR:
       return "an operator without a value before it";
     case mu::ecUNEXPECTED_ARG_SEP:
@@ -102,17 +102,17 @@ const char* reason(int code) {
     case mu::ecUNEXPECTED_FUN:
       return "an operator is missing before it";
     case mu::ecUNEXPECTED_PARENS:
-      return "a parenthesis that fits nowhere";
+      return "unexpected parenthesis";
     case mu::ecMISSING_PARENS:
-      return "a parenthesis is not closed";
+      return "unclosed parenthesis";
     case mu::ecTOO_MANY_PARAMS:
       return "too many arguments";
     case mu::ecTOO_FEW_PARAMS:
       return "too few arguments";
     case mu::ecEXPRESSION_TOO_LONG:
-      return "it is too long";
+      return "the expression is too long";
     default:
-      return "it is no expression";
+      return "not an expression";
   }
 }
 

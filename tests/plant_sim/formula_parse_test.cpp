@@ -90,10 +90,10 @@ TEST(Formula, IsRefusedWithPositionAndTokenWhenItDoesNotParse) {
                                     "log10, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, "
                                     "floor, atan2, min, max");
   EXPECT_EQ(refused("k*(v_mps"),
-            at + "does not parse at character 9, near \")\": a parenthesis is not closed");
+            at + "does not parse at character 9, near \")\": unclosed parenthesis");
   EXPECT_EQ(refused("k*v_mps)"),
-            at + "does not parse at character 8, near \")\": a parenthesis that fits nowhere");
-  EXPECT_EQ(refused("k*"), at + "does not parse at character 3: it ends too early");
+            at + "does not parse at character 8, near \")\": unexpected parenthesis");
+  EXPECT_EQ(refused("k*"), at + "does not parse at character 3: unexpected end");
   EXPECT_EQ(refused("k v_mps"),
             at + "does not parse at character 3, near \"v_mps\": an operator is missing before it");
   EXPECT_EQ(refused("k = v_mps"),
@@ -110,7 +110,7 @@ TEST(Formula, IsRefusedWithPositionAndTokenWhenItDoesNotParse) {
   EXPECT_THAT(refused("k # v_mps"), HasSubstr("does not parse at character 3"));
   std::string longer = "k";
   for (int i = 0; i < 2000; ++i) longer += " + v_mps^" + std::to_string(i) + "*k";
-  EXPECT_THAT(refused(longer), HasSubstr("it is too long"));
+  EXPECT_THAT(refused(longer), HasSubstr("the expression is too long"));
   EXPECT_EQ(refused("k*v_mps"), "");
 }
 

@@ -58,8 +58,7 @@ void add_ack(CLI::App& command, int& /*exit_code*/) {
   add_order_options(command, options->common);
   CLI::Option* alarm =
       command.add_option("alarm", options->alarm, "SOURCE.NAME, as `alarms` lists it");
-  command.add_flag("--all", options->all, "every one that nobody has acknowledged")
-      ->excludes(alarm);
+  command.add_flag("--all", options->all, "all unacknowledged alarms")->excludes(alarm);
   command.callback([options] {
     if (options->alarm.empty() && !options->all) {
       throw UsageError("ack: no alarm; allowed: SOURCE.NAME, or --all");

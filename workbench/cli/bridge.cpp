@@ -129,9 +129,9 @@ void add_bridge(CLI::App& command, int& exit_code) {
       ->capture_default_str();
   command
       .add_option("--sample-rate", options->sample_rate_Hz,
-                  "at most so many samples a second, Hz (0: all)")
+                  "maximum sample rate, Hz (0: all samples)")
       ->check(CLI::Range(0.0, 1e6));
-  command.add_option("--duration", options->duration_s, "stop after so many seconds (0: never)")
+  command.add_option("--duration", options->duration_s, "run time, s (0: unlimited)")
       ->check(CLI::NonNegativeNumber);
   command.callback([options, &exit_code] { exit_code = bridge(*options); });
 }

@@ -120,9 +120,10 @@ void add_compare(CLI::App& command, int& /*exit_code*/) {
   add_record(command, arguments->record)->required(false);
   add_json(command, arguments->json);
   add_report(command, arguments->report);
-  command.add_option("--from", arguments->from_s, "s: leave out what is before")
+  command.add_option("--from", arguments->from_s, "s: ignore samples before this time")
       ->check(finite_number());
-  command.add_option("--to", arguments->to_s, "s: leave out what is after")->check(finite_number());
+  command.add_option("--to", arguments->to_s, "s: ignore samples after this time")
+      ->check(finite_number());
   add_observer(command, arguments->observer_per_s)->check(positive_number());
   add_set(command, arguments->assignments);
   command.add_flag("--all", arguments->all, "the error by every variable, not the most telling");

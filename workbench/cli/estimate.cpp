@@ -190,7 +190,9 @@ void add_estimate(CLI::App& command, int& /*exit_code*/) {
       ->check(positive_number());
   command.add_option("--filter-high-Hz", e.filter_high_Hz, "upper corner, of low and band")
       ->check(positive_number());
-  command.add_option("--decimate", e.decimation, "keep one of so many samples, low-passed before")
+  command
+      .add_option("--decimate", e.decimation,
+                  "decimation factor; a low-pass filter is applied first")
       ->check(number_within(1, 1000))
       ->capture_default_str();
   CLI::Option* const fit =

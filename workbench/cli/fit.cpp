@@ -82,7 +82,7 @@ void add_fit(CLI::App& command, int& exit_code) {
       ->check(CLI::IsMember({"all", "blocks", "first-half", "second-half"}))
       ->capture_default_str()
       ->excludes(holdout);
-  command.add_option("--starts", request->starts, "searches from so many places")
+  command.add_option("--starts", request->starts, "number of starting points")
       ->check(number_within(1, kMostStarts))
       ->capture_default_str();
   command

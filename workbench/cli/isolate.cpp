@@ -53,7 +53,7 @@ void declare_judging(CLI::App& command, IsolationRequest& request) {
           ->allow_extra_args(false);
   command
       .add_option("--follow-per-hour", following.ratio_per_h,
-                  "ratio: how much of its value a parameter is followed in an hour")
+                  "ratio per hour: fastest slow change that the healthy value follows")
       ->check(number_within(1e-3, 1e3))
       ->needs(follow)
       ->capture_default_str();
@@ -82,7 +82,7 @@ void add_isolate(CLI::App& command, int& /*exit_code*/) {
                    "supply_pressure_Pa, pressure_in_Pa, pressure_out_Pa of RECORD are not used");
   add_set(command, request->assignments);
   command.add_option("--learn", request->learn_baseline,
-                     "file for what is healthy, which [[tracker]] healthy names");
+                     "file for the healthy values, to be named by [[tracker]] healthy");
   command.add_option("--rig", request->rig_id, "rig id, noted in that file; another is refused");
   command.add_flag("--windows", request->all_windows, "print every window");
   add_json(command, request->json);

@@ -68,7 +68,7 @@ void add_listen(CLI::App& command, int& exit_code) {
   command.add_option("--lcm-url", options->url, "LCM URL; file:///LOG?mode=r replays a log")
       ->capture_default_str();
   command.add_option("--prefix", options->prefix, "of the channel names")->capture_default_str();
-  command.add_option("--duration", options->duration_s, "stop after so many seconds (0: never)")
+  command.add_option("--duration", options->duration_s, "run time, s (0: unlimited)")
       ->check(CLI::NonNegativeNumber);
   command.add_flag("--json", options->json, "one JSON object per line");
   command.add_flag("--alarms", options->alarms_only, "leave out the estimates");

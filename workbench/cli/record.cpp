@@ -45,7 +45,7 @@ class Recording final : public live::FeedListener {
   void on(const spoolwatch::sample_t& sample) override {
     if (complete_ || !ended_.empty()) return;
     if (file_.rows() > 0 && (sample.tick <= tick_ || sample.sample_time_s != sample_time_s_)) {
-      ended_ = "the samples begin anew";
+      ended_ = "the sample counter restarted";
       return;
     }
     if (file_.rows() == 0) first_tick_ = sample.tick;

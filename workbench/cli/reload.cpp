@@ -29,7 +29,7 @@ void reload(const control::OrderOptions& options) {
   const auto changed = answer.find("changed");
   if (changed == answer.end() || changed->empty()) std::cout << "no key has changed\n";
   print(answer, "changed", "changed: ");
-  print(answer, "warm", "estimator goes on: ");
+  print(answer, "warm", "estimator continues: ");
   print(answer, "cold", "estimator warms up: ");
   print(answer, "ended", "alarm is no more: ");
 }

@@ -45,7 +45,7 @@ std::vector<Method> load_methods(const std::vector<std::string>& files) {
     if (!seen.insert(methods.back().name).second) {
       throw config::schema::bad_config(file + ": name",
                                        "'" + methods.back().name + "' is that of another method",
-                                       "a name of its own");
+                                       "a unique name");
     }
   }
   return methods;
@@ -144,7 +144,7 @@ void add_scorecard(CLI::App& command, int& exit_code) {
   command.add_option("--plan", o->plan, "another plan (TOML) than the shipped one")
       ->check(CLI::ExistingFile);
   command.add_option("--resume", o->resume,
-                     "file that keeps what is done, and that a later run goes on from");
+                     "file of finished parts, from which a later run continues");
   command.add_option("--threads", o->threads, "default: one for each processor")
       ->check(CLI::Range(1, 1024));
   command.add_flag("--details", o->details, "print which names came first, too");

@@ -124,7 +124,7 @@ void add_train(CLI::App& command, int& /*exit_code*/) {
       ->required();
   command.add_option("--class", options->classes,
                      "NAME=RECORD of a fault; NAME+= when it has risen, NAME-= when fallen");
-  command.add_option("-o,--output", options->out, "file for what is learned")->required();
+  command.add_option("-o,--output", options->out, "output file (TOML)")->required();
   command.callback([options] { run(*options); });
 }
 

@@ -75,7 +75,7 @@ std::string size_words(const validation::Comparison& c) {
     text += ": " + present::three_digits(c.floor_ratio()) + " times the noise floor of " +
             present::length(c.noise_floor_m);
   } else {
-    text += "; the noise floor cannot be told from this record";
+    text += "; the noise floor cannot be determined from this record";
   }
   return text + ". Free run: " + present::length(c.free_run_rms_m) + " RMS, fit " +
          present::three_digits(c.fit_percent) + " %.";

@@ -39,7 +39,7 @@ std::string notes_on(const Json& alarm) {
     notes += (notes.empty() ? "" : ", ") + note;
   };
   if (is_set(alarm, "first_up")) add("first up");
-  if (is_set(alarm, "chattering")) add("chatters");
+  if (is_set(alarm, "chattering")) add("chattering");
   const double shelved_for_s = number_of(alarm, "shelved_for_s");
   if (std::isfinite(shelved_for_s)) {
     add("shelved for " + time_left(shelved_for_s) + " by " + text_of(alarm, "shelved_by"));

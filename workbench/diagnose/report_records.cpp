@@ -183,7 +183,7 @@ Section section_of(const Page& page, bool fitted, const std::string& heading) {
         std::string(page.improved ? ". Before: the model's own parameters fitted, nothing added; "
                                     "after: the better model."
                                   : ".") +
-        " In the clouds an even choice of the samples and their outline is drawn; a curve that "
+        " Point clouds show an even selection of the samples and their outline; a curve that "
         "leaves zero is physics that the model lacks."};
     if (page.improved) {
       section.plots.push_back(

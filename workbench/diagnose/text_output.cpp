@@ -108,7 +108,7 @@ void print_candidates(const selection::Diagnosis& d, std::ostream& out) {
         << '\n';
     ++shown;
   }
-  if (shown == 0) out << "  none: at first sight every one leaves the error as it is\n";
+  if (shown == 0) out << "  none: in the screening no candidate reduces the error\n";
 }
 
 void print_parameters(const DiagnosisReport& outcome, std::ostream& out) {

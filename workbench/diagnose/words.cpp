@@ -71,9 +71,9 @@ std::string unexplained_words(const selection::Diagnosis& d) {
            rest + ".";
   }
   if (d.missing.empty()) {
-    return "Unexplained: " + rest + ", and no effect of the library takes it away.";
+    return "Unexplained: " + rest + ", and no effect of the library explains it.";
   }
-  return "Not the whole story: " + config::schema::listed(d.missing) +
+  return "Incomplete: " + config::schema::listed(d.missing) +
          (d.missing.size() > 1 ? " are" : " is") + " missing, but " + rest + ".";
 }
 
@@ -100,7 +100,7 @@ void add_rivals(const selection::Diagnosis& d, std::vector<std::string>& out) {
   }
   for (const auto& group : d.same_here) {
     out.push_back("On this plant " + config::schema::listed(group) +
-                  " act alike, whatever the motion: the name is a choice, the better model the "
+                  " are equivalent for every motion: the name is a choice, the better model the "
                   "same.");
   }
 }
@@ -203,10 +203,10 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
   }
   if (d.verdict != selection::Verdict::not_excited) out.push_back(fall_words(d));
   const bool named = d.verdict == selection::Verdict::missing || d.missing.empty();
-  if (!named) out.push_back("Taken for the better model: " + effects_words(d) + ".");
+  if (!named) out.push_back("Used in the better model: " + effects_words(d) + ".");
   add_rivals(d, out);
   if (!d.where.empty()) {
-    std::string text = "What is left enters " + where_words(d.where[0]) + " (" +
+    std::string text = "The remaining error enters " + where_words(d.where[0]) + " (" +
                        percent(d.where[0].explained_ratio) + " of its square)";
     if (d.where.size() > 1) {
       text += ", or " + where_words(d.where[1]) + " (" + percent(d.where[1].explained_ratio) + ")";

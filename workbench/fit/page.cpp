@@ -97,7 +97,7 @@ Section parameter_section(const greybox::EstimationSummary& e) {
   section.heading = "Parameters";
   section.paragraphs.push_back(
       "Standard errors allow for residuals of any colour; the 95 % interval is that of the "
-      "likelihood's profile where one was walked. The record's share tells how much of what is "
+      "likelihood profile where one was computed. The record's share tells how much of what is "
       "known comes from the record rather than from the prior.");
   present::Table table;
   table.columns = {{"parameter", "", false}, {"start", ""},           {"fitted", ""},
@@ -124,7 +124,7 @@ Section parameter_section(const greybox::EstimationSummary& e) {
 
 Section sight_section(const greybox::EstimationSummary& e) {
   Section section;
-  section.heading = "What the record cannot see";
+  section.heading = "Parameters that the record does not determine";
   for (const bool after : {false, true}) {
     const greybox::IdentifiabilityReport& report =
         after ? e.identifiability_after : e.identifiability_before;
@@ -133,7 +133,7 @@ Section sight_section(const greybox::EstimationSummary& e) {
     for (const greybox::UnidentifiableParameter& unseen : report.unidentifiable)
       list += (list.empty() ? "" : "; ") + unidentifiable_words(unseen, e.parameters);
     section.paragraphs.push_back(
-        text + (list.empty() ? "every fitted parameter is seen" : list) +
+        text + (list.empty() ? "every fitted parameter is determined" : list) +
         fmt::format(". Condition of the scaled Jacobian: {:.3g}.", report.condition));
   }
   present::Table table;
@@ -157,9 +157,9 @@ Section profile_section(const greybox::EstimationSummary& e) {
   Section section;
   section.heading = "Profiles of the likelihood";
   section.paragraphs.push_back(
-      "How the least cost rises when one parameter is held away from its best value and all others "
-      "follow. The 95 % interval is where it stays under 3.84. A parabola means that the standard "
-      "error suffices.");
+      "Rise of the least cost when one parameter is held away from its best value and all others "
+      "are fitted again. The 95 % interval ends where the rise reaches 3.84. Where the curve is a "
+      "parabola, the standard error describes the uncertainty.");
   for (const greybox::EstimatedParameter& p : e.parameters) {
     if (p.profile.size() < 3) continue;
     Plot plot;
@@ -196,7 +196,8 @@ present::Report to_report(const FitReport& o) {
   }
   made.verdict = said.front();
   for (std::size_t i = 1; i < said.size(); ++i) {  // its own section tells what cannot be seen
-    if (said[i].rfind("What the record cannot see", 0) != 0) made.summary.push_back(said[i]);
+    if (said[i].rfind("Parameters that the record does not determine", 0) != 0)
+      made.summary.push_back(said[i]);
   }
   const bool at_floor = std::isfinite(o.noise_floor_m) && e.after.rms_m < 1.15 * o.noise_floor_m;
   made.state = at_floor && !e.interrupted ? present::State::good : present::State::warn;

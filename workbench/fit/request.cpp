@@ -81,7 +81,8 @@ void ignore(const std::string& text, FitDataset& data, Eigen::VectorXd& mask) {
       colon == std::string::npos ? std::nan("") : number_in(span.substr(0, colon));
   const double to_s = colon == std::string::npos ? std::nan("") : number_in(span.substr(colon + 1));
   if (!(from_s < to_s)) {
-    throw UsageError("--ignore " + text + ": is no span; allowed: from:to or RECORD@from:to, in s");
+    throw UsageError("--ignore " + text +
+                     ": is not a span; allowed: from:to or RECORD@from:to, in s");
   }
   bool met = false;
   for (std::size_t r = 0; r < data.records.size(); ++r) {

@@ -49,7 +49,7 @@ std::string size_words(const FitReport& o) {
     text += ratio <= kAtFloor ? ": the model now explains all but the noise"
                               : fmt::format(": still {:.3g} times as much", ratio);
   } else {
-    text += "; the noise floor cannot be told from this record";
+    text += "; the noise floor cannot be determined from this record";
   }
   return text + ". Free run: " + length_words(e.before.free_run_rms_m) + " -> " +
          length_words(e.after.free_run_rms_m) +
@@ -93,7 +93,7 @@ std::string bound_words(const greybox::EstimationSummary& e) {
     text += (text.empty() ? "" : ", ") + p.free.name +
             (p.at_bound < 0 ? " at its lower" : " at its upper") + " bound";
   }
-  return text.empty() ? text : "Pressed against a limit: " + text + ".";
+  return text.empty() ? text : "At a limit: " + text + ".";
 }
 
 std::string starts_words(const greybox::MultistartCounts& s) {
@@ -213,11 +213,14 @@ std::vector<std::string> words(const FitReport& o) {
   const std::string before = sight_words(e.identifiability_before, e.parameters);
   const std::string after = sight_words(e.identifiability_after, e.parameters);
   if (before == after && !before.empty()) {
-    said.push_back("What the record cannot see, before the fit and after it: " + before);
+    said.push_back("Parameters that the record does not determine, before the fit and after it: " +
+                   before);
   } else {
-    if (!before.empty()) said.push_back("What the record cannot see, at the start: " + before);
-    if (!after.empty()) said.push_back("What the record cannot see, after the fit: " + after);
-    if (after.empty()) said.push_back("The record sees every fitted parameter.");
+    if (!before.empty())
+      said.push_back("Parameters that the record does not determine, at the start: " + before);
+    if (!after.empty())
+      said.push_back("Parameters that the record does not determine, after the fit: " + after);
+    if (after.empty()) said.push_back("The record determines every fitted parameter.");
   }
   said.push_back(starts_words(e.starts));
   if (e.interrupted) said.insert(said.begin(), "Interrupted: this is the best so far.");

@@ -48,7 +48,7 @@ Span span(const std::string& text) {
     const Span out{fit::number_in(text.substr(0, colon)), fit::number_in(text.substr(colon + 1))};
     if (out.from_s < out.to_s) return out;
   }
-  throw UsageError("--healthy " + text + ": is no span; allowed: from:to, in s");
+  throw UsageError("--healthy " + text + ": is not a span; allowed: from:to, in s");
 }
 
 /// Null: the record has none of that name.
@@ -237,7 +237,7 @@ IsolationReport isolate(const IsolationRequest& request) {
   };
   if (request.baseline_rms_m > 0.0) {
     if (!request.learn_baseline.empty()) {
-      throw UsageError("--learn: nothing is learnt with --healthy-rms");
+      throw UsageError("--learn: not possible with --healthy-rms");
     }
     out.baseline = {request.baseline_rms_m, out.set.file, {}};
   } else {

@@ -84,8 +84,8 @@ std::string series_json(const Plot& plot, const Series& series,
 std::string note_of(const Thinned& thinned) {
   if (thinned.from == 0) return "";
   return "Drawn with " + std::to_string(thinned.to) + " of " + std::to_string(thinned.from) +
-         (thinned.cloud ? " points: an even choice and the outline."
-                        : " samples: the least and the greatest of each stretch.");
+         (thinned.cloud ? " points: an even selection and the outline."
+                        : " samples: minimum and maximum of each interval.");
 }
 
 }  // namespace

@@ -126,8 +126,8 @@ class Replayer final : public SampleHandler, private estimator::fdi::Events {
  private:
   void take(const config::signals::Sample& sample,
             const spoolwatch::sample_t& /*message*/) override {
-    for (const Told& told : estimates_) differ("estimate of " + told.source + " was not told");
-    for (const Alarm& alarm : alarms_) differ("alarm " + alarm.name + " was not told");
+    for (const Told& told : estimates_) differ("estimate of " + told.source + " is missing");
+    for (const Alarm& alarm : alarms_) differ("alarm " + alarm.name + " is missing");
     outcome.estimates += static_cast<std::int64_t>(estimates_.size());
     outcome.alarms += static_cast<std::int64_t>(alarms_.size());
     estimates_.clear();

@@ -24,7 +24,7 @@ void check_ids(const std::vector<T>& items, const std::string& where) {
   for (const T& item : items) {
     if (item.id.empty() || item.id.find('/') != std::string::npos || !seen.insert(item.id).second) {
       throw bad_config(where + " id", "'" + item.id + "' is empty, has a / or is there twice",
-                       "a name of its own");
+                       "a unique name");
     }
   }
 }

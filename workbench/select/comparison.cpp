@@ -129,7 +129,7 @@ Outcome compare_structures(const Request& request,
   out.noise_floor_m = estimator::residual::noise_floor(record.y_m, record.sample_time_s).sd_m;
   out.delay = request.delay >= 0 ? request.delay : find_delay(ground);
   if (request.delay < 0 && out.delay == kMostDelay) {
-    out.notes.push_back("the delay found is the longest tried: look whether --delay does better");
+    out.notes.push_back("the delay found is the longest one tried; try a longer one with --delay");
   }
   std::vector<Candidate> candidates;
   for (const std::string& name : request.structures) {

@@ -155,7 +155,7 @@ void run_on_line(Judged& judged, const Ground& ground) {
   judged.on_line.free_run_rms_m = found.free_run_rms_m;
   if (!(found.free_run_rms_m <= kReached * judged.free_run_rms_m)) {
     judged.on_line.sound = false;
-    judged.on_line.why = "its recursion does not come to the batch fit on this record";
+    judged.on_line.why = "its recursion does not converge to the batch fit on this record";
   }
 }
 

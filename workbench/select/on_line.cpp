@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kMostPole = 0.999;  // of F: the recursive filter's own limit
 constexpr const char* kIntegrates =
-    "its poles reach the unit circle: the prediction, which never looks at y, would drift away";
+    "its poles reach the unit circle: the prediction, never corrected by y, would diverge";
 
 }  // namespace
 
@@ -24,12 +24,12 @@ OnLine on_line_form(const Candidate& candidate, const Fitted& fitted) {
   out.method = "none";
   if (std::holds_alternative<structures::SubspaceOptions>(candidate.what)) {
     out.why =
-        "recursive subspace methods turn their basis as they go; ARMAX follows the same "
+        "recursive subspace methods change their state basis over time; ARMAX represents the same "
         "transfer functions";
     return out;
   }
   if (std::holds_alternative<structures::NarxOptions>(candidate.what)) {
-    out.why = "its weights are not determined one by one, and no recursion is proved to converge";
+    out.why = "its weights are not determined individually, and no recursion is proven to converge";
     return out;
   }
   const structures::Orders& o = std::get<structures::Orders>(candidate.what);

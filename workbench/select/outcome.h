@@ -67,7 +67,7 @@ struct Judged {
   bool has_bias_test = false;  ///< ARX alone
   structures::BiasTest bias;
   double fit_s = 0.0;
-  bool represents = false;  ///< its free run errs less than y moves
+  bool represents = false;  ///< its free-run error is less than y moves
 };
 
 struct Outcome {

@@ -1,5 +1,5 @@
 // Which structure to take, and why: the thesis's three criteria in its order. A structure must
-// represent the record (its free run errs less than the rod moves); the best held-out E counts,
+// represent the record (its free-run error is less than the rod moves); the best held-out E counts,
 // but one a little above it (25 %: 12 % in RMS) is as good; among those a sound recursive form is
 // preferred for watching on line, then the least spread of coefficients between periods.
 #include <algorithm>
@@ -48,8 +48,8 @@ int choose(const Outcome& outcome, bool on_line, double limit) {
 }
 
 std::string against_best(const Judged& chosen, const Judged& best) {
-  if (chosen.candidate.name == best.candidate.name) return "its free run errs least";
-  return "its free run errs " + more_words(chosen.free_run_rms_m / best.free_run_rms_m) +
+  if (chosen.candidate.name == best.candidate.name) return "its free-run error is the smallest";
+  return "its free-run error is " + more_words(chosen.free_run_rms_m / best.free_run_rms_m) +
          " the best, " + best.candidate.name;
 }
 
@@ -104,7 +104,7 @@ std::string bias_words(const Outcome& outcome) {
   return of + "least squares is biased beside " + beside + ", Durbin-Wu-Hausman p " +
          probability_words(test.p) +
          (sure ? ": b1 by " + number_words(off, 2) + " %" : ": b1 itself is uncertain there") +
-         "; bands learnt on the same motion still hold, physical figures from it do not";
+         "; bands learned on the same motion remain valid, physical values derived from it do not";
 }
 
 }  // namespace
@@ -116,8 +116,8 @@ void recommend(Outcome& outcome) {
   outcome.bias_words = bias_words(outcome);
   if (outcome.judged.empty() || !outcome.judged.front().represents) {
     outcome.reason =
-        "no structure represents this record: every free run errs more than the rod "
-        "moves";
+        "no structure represents this record: every free-run error exceeds the rod's "
+        "motion";
     return;
   }
   outcome.most_accurate = 0;

@@ -85,7 +85,7 @@ std::string to_text(const Outcome& o) {
     const Judged& one = o.judged[i];
     if (one.fitted.valid && !one.represents && !failed) {
       failed = true;
-      out += "  cannot represent this record (the free run errs more than the rod moves):\n";
+      out += "  cannot represent this record (free-run error above the rod's motion):\n";
     }
     const bool chosen = static_cast<int>(i) == o.recommended;
     out += row(one, bic, chosen ? ">" : " ");
@@ -101,7 +101,7 @@ std::string to_text(const Outcome& o) {
   if (o.watch >= 0 && o.watch != o.recommended) {
     const Judged& one = o.judged[static_cast<std::size_t>(o.watch)];
     out += "to follow on line: " + one.candidate.name + ", by " + method_words(one.on_line.method) +
-           "; its free run errs " +
+           "; its free-run error is " +
            more_words(one.free_run_rms_m / o.judged.front().free_run_rms_m) + " the best.\n";
   }
   if (!o.bias_words.empty()) out += "bias: " + o.bias_words + ".\n";

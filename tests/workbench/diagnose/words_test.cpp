@@ -53,14 +53,14 @@ TEST(Words, UnexplainedErrorSaysWhereItEnters) {
   d.verdict = selection::Verdict::unexplained;
   d.rms_after_m = 12e-6;
   d.where = {{"force", "speed", 0.62}, {"flow", "v", 0.4}};
-  EXPECT_THAT(verdict_words(d),
-              HasSubstr("Not the whole story: friction is missing, but an error of"));
+  EXPECT_THAT(verdict_words(d), HasSubstr("Incomplete: friction is missing, but an error of"));
   EXPECT_THAT(remarks(outcome),
-              Contains(HasSubstr("Taken for the better model: friction: Coulomb 145.3 +- 1.9 N")));
+              Contains(HasSubstr("Used in the better model: friction: Coulomb 145.3 +- 1.9 N")));
   EXPECT_THAT(verdict_words(d), HasSubstr("12 um on held-out data, 5.00 times the noise floor"));
-  EXPECT_THAT(remarks(outcome),
-              Contains("What is left enters as a force that goes with the speed (62 % of its "
-                       "square), or as a flow that goes with the velocity v (40 %)."));
+  EXPECT_THAT(
+      remarks(outcome),
+      Contains("The remaining error enters as a force that goes with the speed (62 % of its "
+               "square), or as a flow that goes with the velocity v (40 %)."));
   d.missing.clear();
   EXPECT_THAT(verdict_words(d), HasSubstr("Unexplained: an error of 12 um"));
 }

@@ -111,7 +111,7 @@ TEST(Report, ValuesAndGapsArriveAsTheyWere) {
 TEST(Report, ALongRecordIsThinnedAndSaysSo) {
   const std::string page = present::render(example_report(120'000));
   EXPECT_LT(page.size(), 2'000'000U);
-  EXPECT_THAT(page, HasSubstr("of 120000 samples: the least and the greatest of each stretch."));
+  EXPECT_THAT(page, HasSubstr("of 120000 samples: minimum and maximum of each interval."));
   EXPECT_THAT(page, HasSubstr("of 120000 points"));
   const nlohmann::json plot = data_of(page)[0];
   EXPECT_EQ(plot["xs"].size(), plot["series"][0]["y"].size());

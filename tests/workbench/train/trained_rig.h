@@ -1,4 +1,4 @@
-// A rig's configuration with what is to be trained, records of the small rig, and the command.
+// A rig's configuration with the methods to train, records of the small rig, and the command.
 #pragma once
 
 #include <gtest/gtest.h>
