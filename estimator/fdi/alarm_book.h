@@ -90,7 +90,7 @@ class AlarmBook {
   AlarmActionResult shelve(std::size_t number, double time_s, std::string_view who);
   AlarmActionResult unshelve(std::size_t number);
 
-  /// Forces a recorded state, whatever cause and rules say (log replay only).
+  /// Forces a recorded state regardless of cause and rules (log replay only).
   void force_state(std::size_t number, const Alarm& recorded);
 
   /// kNone when there is no such alarm. `id`: "SOURCE.NAME", or the name when it is unique.

@@ -67,7 +67,7 @@ double glr_run_length(double b, int window) {
 }
 
 double glr_threshold(double run_length, int window, double mean_error) {
-  constexpr double kShorter = 1.2;  // than the asymptotic formula says
+  constexpr double kShorter = 1.2;  // safety factor on the asymptotic formula
   const double wanted = std::log(window > 1 ? kShorter * run_length : run_length);
   const double b =
       root(1.5, 5.0, [&](double x) { return std::log(glr_run_length(x, window)) - wanted; });

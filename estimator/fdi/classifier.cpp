@@ -78,9 +78,9 @@ class Classifier final : public BlockMethod {
  private:
   struct Answer {
     int found = kNone;  ///< class
-    int nearest = 0;    ///< by distance
+    int nearest = 0;    ///< index with the smallest distance
     double probability = 0.0;
-    double t2 = 0.0;  ///< of the nearest
+    double t2 = 0.0;  ///< T^2 of `nearest`
   };
   void take(std::span<const double> means) noexcept override;
   void show(std::span<NamedValue> values) const noexcept override {

@@ -8,7 +8,7 @@
 namespace estimator::fdi {
 namespace {
 
-constexpr double kSaturation = 1.25;  ///< of the threshold
+constexpr double kSaturation = 1.25;  ///< ratio to the threshold
 /// Drift after the alarm, as a share of the shift found: smaller residues no longer accumulate, so
 /// that the alarm of a large change returns soon after it.
 constexpr double kResidualShift = 0.25;

@@ -29,7 +29,7 @@ struct PipelineConfig;
 
 /// Completes a method's configuration before the method is made.
 struct ConfigLoadContext {
-  std::filesystem::path folder;  ///< of the configuration file
+  std::filesystem::path folder;  ///< folder of the configuration file
   double sample_time_s;
   std::string rig_id;              ///< "" when unknown
   const PipelineConfig& pipeline;  ///< settings of the other methods

@@ -9,7 +9,7 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr int kPieces = 16;
-constexpr int kSteps = 256;               ///< of the search for the edge of the healthy region
+constexpr int kSteps = 256;  ///< steps of the search for the edge of the healthy region
 constexpr double kCurvatureError = 0.25;  ///< standard deviation, as a share of the curvature
 
 std::span<const double> span_of(const VectorXd& x) {

@@ -40,8 +40,7 @@ struct Curvature {
   Eigen::VectorXd from, to;
 };
 
-/// h^2 times the second divided difference of a, b, c, which lie `ab` and `bc` apart along the
-/// curve.
+/// h^2 times the second divided difference of a, b, c, at distances `ab` and `bc` along the curve.
 [[nodiscard]] Eigen::VectorXd curvature_of(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
                                            const Eigen::VectorXd& c, double ab, double bc,
                                            double h);
@@ -72,7 +71,7 @@ class FaultTrajectory {
     double length_t2;           ///< T^2 of the end from the begin
   };
   std::vector<Piece> pieces_;
-  double limit_ = 0.0;  ///< of T^2
+  double limit_ = 0.0;  ///< limit of T^2
   std::vector<double> moved_;
 };
 

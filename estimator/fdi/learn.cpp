@@ -51,7 +51,7 @@ double margin(const std::vector<double>& extremes, double centre, double side, d
 struct BlockExtremes {
   std::vector<double> greatest;
   std::vector<double> least;
-  double mean = 0.0;  ///< of all values
+  double mean = 0.0;  ///< mean of all values
 };
 
 BlockExtremes find_extremes(std::span<const double> values, std::size_t length) {

@@ -31,8 +31,8 @@ namespace estimator::fdi {
 struct LearnConfig {
   double false_alarm_time_s = 86400.0;  ///< T
   double interval_s = 0.0;              ///< between two values
-  double window_s = 0.0;                ///< of each estimate
-  double period_s = 0.0;                ///< of the motion, 0: not periodic
+  double window_s = 0.0;                ///< window of each estimate
+  double period_s = 0.0;                ///< period of the motion; 0: not periodic
   double least_margin = 0.0;            ///< beyond the observed extremes, unit of the values
 };
 

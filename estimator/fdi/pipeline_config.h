@@ -38,7 +38,7 @@ struct EstimatorConfig {
   double first_batch_s = 0.0;    ///< recursive: an initial batch gives the start values
   double warmup_s = 0.0;         ///< from the first sample; no band acts before
   double min_u_rms_V = 0.0;      ///< a window with less command is not excited
-  double max_condition = 1e8;    ///< of the scaled regressors; beyond it INVALID
+  double max_condition = 1e8;    ///< limit of the scaled regressors' condition; above it INVALID
   double max_saturated = 0.1;    ///< greatest share of saturated samples in a window
   double max_missing = 0.05;     ///< greatest share of missing samples in a window
 

@@ -32,7 +32,7 @@ struct MethodSlot {
   std::unique_ptr<DetectionMethod> method;
   std::unique_ptr<OutputPort> port;
   std::string settings;            ///< fingerprint, then those of the methods that this one reads
-  std::vector<std::string> names;  ///< of the values
+  std::vector<std::string> names;  ///< names of the values
   std::vector<std::vector<BandMonitor>> monitors;  ///< for each value
   std::vector<std::size_t> declared_alarms;        ///< numbers in the book
 };

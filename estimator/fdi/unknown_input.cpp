@@ -13,7 +13,7 @@ using config::schema::bad_config;
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr double kRank = 1e-9;  ///< of the greatest singular value
+constexpr double kRank = 1e-9;  ///< ratio to the greatest singular value
 
 template <class M>
 int rank(const M& matrix) {
@@ -96,7 +96,7 @@ Existence unknown_input_existence(const LinearModel& model) {
   const MatrixXd e = unit_columns(model.e);
   const MatrixXd ce = model.c * e;
   out.rank_e = rank(e);
-  // What is left of E in y, on the scale of C: rounding is no rank.
+  // Part of E in y on the scale of C: rounding does not count as rank.
   for (const double value : linear_algebra::singular_values(ce)) {
     out.rank_ce += value > kRank * model.c.norm() ? 1 : 0;
   }

@@ -162,7 +162,8 @@ bool Vote::update(std::span<const double> values) noexcept {
   if (none_in) spread_ = kNaN;
   bool changed = disagree_ != was;
   for (std::size_t i = 0; i < count_; ++i) {
-    // Of two that differ neither is declared wrong; no channel returns while the wrong one is
+    // Where two channels differ, neither is declared wrong; no channel returns while the wrong one
+    // is
     // unknown.
     const bool missing = !std::isfinite(values[i]);
     const bool tells = size > 1 ? !differ : channels_[i].missed;

@@ -27,7 +27,7 @@ std::vector<std::string> sorted(std::vector<std::string> names) {
   return names;
 }
 
-/// Throws unless what was found when it was learnt is what is expected now.
+/// Throws when the value learned differs from the value expected.
 void compare(const std::string& where, double found, double expected, const char* unit) {
   if (text_of(found) == text_of(expected)) return;
   throw bad_config(where, "was learnt with " + text_of(found) + unit, text_of(expected) + unit);

@@ -1,6 +1,7 @@
-// What a tracking has learnt of a healthy rig, as a file: written by `spoolwatch isolate --learn`,
-// read by [[tracker]]. It says of which model with all its values, rig, sample time, window,
-// observer and tracked parameters it is; others are refused.
+// Baseline file: healthy values of a rig, written by `spoolwatch isolate --learn`, read by
+// [[tracker]]. The file states model with all values, rig, sample time, window, observer and
+// tracked
+// parameters; a file that differs in any of these is rejected.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +20,7 @@ struct BaselineFile {
   std::int64_t version = kVersion;
   std::string rig_id;                   ///< "": of any rig
   std::string model;                    ///< its name
-  std::string model_values;             ///< values_line() of it
+  std::string model_values;             ///< values_line() of the model
   std::string source;                   ///< the record
   std::vector<std::string> parameters;  ///< tracked
   std::vector<double> values;           ///< SI
@@ -42,8 +43,9 @@ struct BaselineFile {
                                          const greybox::tracking::Baseline& baseline);
 
 /// Throws config::schema::ConfigError for a file of another version, model, window, observer,
-/// sample time, rig (where both are known) or list of tracked parameters, whatever its order: what
-/// one of them was found to be depends on which others were free.
+/// sample
+/// time, rig (where both are known) or set of tracked parameters in any order: the estimate of one
+/// parameter depends on which others were free.
 [[nodiscard]] BaselineFile read_baseline(const std::filesystem::path& file,
                                          const plant_sim::ModelFile& model,
                                          const greybox::tracking::TrackerSettings& settings,

@@ -16,8 +16,9 @@ using estimator::fdi::MethodOutput;
 using estimator::fdi::NamedValue;
 using estimator::fdi::Severity;
 
-/// The model has stopped explaining the rig when this many windows' lengths in a row say so: a
-/// window across a change says it as well, and is over after one.
+/// Ratio of the total length of unexplained windows in a row to one window, above which the model
+/// no
+/// longer explains the rig. A window across a change is unexplained as well, but only once.
 constexpr double kLong = 1.5;
 constexpr std::size_t kMostLessons = 100000;
 /// Numbers of a lesson before its parameters: error, then each chamber's (ChamberFit).
@@ -168,7 +169,7 @@ void TrackerSource::suggest(const greybox::tracking::WindowResult& window) {
     probe_ = probe ? probe_words(*probe) : "";
   }
   if (probe_->empty()) return;
-  // Short, for what hands reasons on cuts them.
+  // Kept short, because receivers truncate reasons.
   const std::size_t colon = why_.find(':');
   why_ =
       (window.explained ? "this motion tells too little" : why_.substr(0, colon)) + "; " + *probe_;

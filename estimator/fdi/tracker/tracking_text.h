@@ -1,6 +1,6 @@
-// Findings of the parameter tracking as text: reasons of alarms and of invalid windows.
+// Results of the parameter tracking as text: reasons of alarms and of invalid windows.
 //
-// The texts are part of recorded evidence, which a replay compares: changing one is a change of
+// The texts are part of recorded evidence that a replay compares: a changed text is a change of
 // format.
 #pragma once
 
@@ -39,7 +39,8 @@ using greybox::tracking::Rival;
 /// "supply pressure high, +10.0 %"; the value for a parameter of an effect.
 [[nodiscard]] std::string change_words(const ParameterSet& set, const ParameterChange& named,
                                        const Eigen::VectorXd& baseline);
-/// Slow change that has reached the end of what the baseline follows. `learnt`, `theta`: search
+/// Slow change that has reached the end of the range of the baseline drift. `learnt`, `theta`:
+/// search
 /// units.
 [[nodiscard]] std::string slow_words(const FreeParameter& parameter, double learnt, double theta);
 /// Other parameters that would explain the change, and the reading or motion that separates them;
