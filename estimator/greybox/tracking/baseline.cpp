@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Standard error, search units, up to which a window serves to learn what is healthy.
+/// Standard error, search units, up to which a window qualifies for the baseline.
 constexpr double kLeastKnown = 0.05;
 /// Normal numbers: their standard deviation over the median of their distances.
 constexpr double kOfMedian = 1.4826;
@@ -21,7 +21,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// What the windows say of a chamber; `spread_Pa`: of their offsets, as a standard deviation.
+/// Medians of one chamber over the windows; `spread_Pa`: standard deviation of their offsets.
 ChamberError median_of(const std::vector<ChamberFit>& windows, double rms_m, double least_Pa,
                        double& spread_Pa) {
   std::vector<double> rms_Pa;
@@ -39,7 +39,7 @@ ChamberError median_of(const std::vector<ChamberFit>& windows, double rms_m, dou
   return out;
 }
 
-/// Not known where few windows had them, or the plant has none.
+/// Unknown where few windows had pressures, or the plant has none.
 ChamberErrors learn_chambers(const std::vector<WindowResult>& windows, const ParameterSet& set,
                              double rms_m) {
   std::vector<ChamberFit> in;

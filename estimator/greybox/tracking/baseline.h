@@ -1,5 +1,6 @@
-// What the rig is like without a fault, learnt from windows of healthy motion: the median of each
-// tracked parameter, of the window's error, and of what chamber pressures are off the model.
+// Baseline of the rig without a fault, learned from windows of healthy motion: medians of each
+// tracked
+// parameter, of the window's error and of the chamber pressures' errors.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,9 +12,9 @@
 
 namespace estimator::greybox::tracking {
 
-/// What the rig is like without a fault.
+/// Healthy values and errors of a rig.
 struct Baseline {
-  double rms_m = 0.0;     ///< of a window's error; not under the noise floor
+  double rms_m = 0.0;     ///< error of a window; at least the noise floor
   Eigen::VectorXd theta;  ///< every parameter of the choice, search units
   ChamberErrors chambers{};
 

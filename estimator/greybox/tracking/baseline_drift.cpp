@@ -13,7 +13,7 @@ using Eigen::Index;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kHour_s = 3600.0;
-/// Of the distance: at its end, but for the last step's rounding.
+/// Share of the distance at which the end counts as reached, despite rounding.
 constexpr double kEnd = 1.0 - 1e-9;
 
 std::size_t tracked_index(const ParameterSet& set, const std::string& name,

@@ -1,16 +1,15 @@
-// What is known of the rig's chamber pressures when it is healthy: how far a window's readings are
-// from the model.
+// Chamber pressure errors of the healthy rig.
 //
 //   p(k) = ph(k) + b + c + e(k)
 //
 // p ph  measured and modelled pressure of one chamber
-// b     learnt offset of the transducer (and of the model): the median of healthy windows' means
-// c     what is left of it in one window, unknown but small: its standard deviation is s
-// e     the rest; its RMS is the chamber's error, beyond which a window is not the healthy rig's
+// b     learned offset of transducer and model: median of the healthy windows' means
+// c     remaining offset of one window, unknown but small: standard deviation S
+// e     remainder; its RMS is the chamber's error, above which a window is not healthy
 //
-// In the fit a chamber has the weight of its error where the position alone is fitted. Where the
-// model is right that is the same; where it lacks something, pressures do not draw the parameters
-// away from what the position says, and they count in every window as they did when it was learnt.
+// In the fit a chamber has the weight of its error where only the position is fitted. For a right
+// model that makes no difference; for an incomplete model pressures do not bias the parameters, and
+// they count in every window as they did during learning.
 #pragma once
 
 #include "config/schema/visitor.h"
@@ -18,9 +17,9 @@
 
 namespace estimator::greybox::tracking {
 
-/// Of one chamber.
+/// Errors of one chamber.
 struct ChamberError {
-  double rms_Pa = 0.0;     ///< of e; 0: not known
+  double rms_Pa = 0.0;     ///< RMS of e; 0: unknown
   double offset_Pa = 0.0;  ///< b
   double weight_Pa = 0.0;  ///< sigma of the fit where the position's is its healthy error
 };
@@ -34,7 +33,7 @@ struct ChamberErrors {
   [[nodiscard]] bool known() const noexcept {
     return in.rms_Pa > 0.0 && out.rms_Pa > 0.0 && in.weight_Pa > 0.0 && out.weight_Pa > 0.0;
   }
-  /// Keys of what is healthy, all optional.
+  /// Keys of the baseline file, all optional.
   void visit(config::schema::Visitor& v);
   /// Bit for bit (state_archive.h).
   void serialize(estimator::StateArchive& archive);
@@ -42,12 +41,12 @@ struct ChamberErrors {
 
 /// How far a window is from the model, and by what its residuals are weighed.
 struct ErrorScales {
-  double rms_m = 0.0;        ///< of the position
+  double rms_m = 0.0;        ///< position
   ChamberErrors chambers{};  ///< not known: the position alone counts
 };
 
-// Of the model's supply pressure:
-/// How far an offset may be off what was learnt, at the least.
+// Ratios to the model's supply pressure:
+/// Smallest allowed drift of an offset, as a ratio to the model's supply pressure.
 inline constexpr double kDrift_ratio = 0.002;
 /// The least error that a chamber pressure is taken to have: better than any transducer.
 inline constexpr double kLeastError_ratio = 1e-4;

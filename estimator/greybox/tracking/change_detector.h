@@ -1,8 +1,9 @@
-// From changes named window by window to alarms with a beginning and an end.
+// Alarms with a beginning and an end from changes named window by window.
 //
-// A change is told at once when it is `at_once` standard errors off, or when two windows in a row
-// name it in the same direction. It ends with a window that puts the parameter back to within its
-// least change, by two standard errors.
+// A change is detected at once when it is `at_once` standard errors off, or when two windows in a
+// row
+// name it in the same direction. It ends with a window in which the parameter is within its least
+// change, by two standard errors.
 #pragma once
 
 #include <limits>
@@ -13,8 +14,7 @@
 namespace estimator::greybox::tracking {
 
 struct DetectedChange {
-  ParameterChange
-      named;  ///< as known best: of the latest whole window that named it, else of its first part
+  ParameterChange named;  ///< from the latest whole window that named it, else from its first part
   double raised_s = 0.0;
   double cleared_s = std::numeric_limits<double>::quiet_NaN();  ///< NaN: still there
   double confidence = 0.0;  ///< that the change is more than the least
@@ -48,7 +48,7 @@ class ChangeDetector {
  private:
   struct Track {
     double least = 0.0;
-    int direction = 0;  ///< of the latest window that named it; 0: it did not
+    int direction = 0;  ///< in the latest window that named it; 0: not named
     int active = -1;    ///< index of its alarm
     bool whole = false;
   };

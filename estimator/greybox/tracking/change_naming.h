@@ -24,18 +24,20 @@
 namespace estimator::greybox::tracking {
 
 struct Thresholds {
-  double least_ratio = 0.03;  ///< of the healthy value; linear parameters: see kLeastOfTypical
+  double least_ratio = 0.03;  ///< ratio to the healthy value; linear parameters: kLeastOfTypical
   double sure = 5.0;          ///< standard errors
   double at_once = 20.0;      ///< standard errors at which one window is enough for an alarm
   bool suspect_position_sensor = false;  ///< it may have changed, too, and joins the groups
 };
 
-/// Of an effect's typical size: the least change of an effect's parameter.
+/// Least change of an effect's parameter, as a ratio to its typical size.
 inline constexpr double kLeastOfTypical = 0.2;
 inline constexpr double kChance = 16.0;  ///< chi-square
 inline constexpr double kLeft = 1e-3;
-inline constexpr double kAsGood = 1.05;  ///< of the error's RMS
-/// Of a plant's value: less sure ones are calibrated by healthy records, and do not follow.
+inline constexpr double kAsGood = 1.05;  ///< ratio of the RMS errors
+/// Prior width, as a ratio to the value, up to which a plant parameter may be a rival: less certain
+/// ones
+/// are calibrated by healthy records.
 inline constexpr double kMostUncertain_ratio = 0.1;
 
 /// Least change of a parameter, search units: of an effect that the model has, no more than it is.
@@ -58,15 +60,16 @@ struct ParameterChange {
   double theta = 0.0;         ///< search value
   double std_error = 0.0;     ///< search units
   double deviation = 0.0;     ///< from healthy, search units
-  std::vector<Rival> rivals;  ///< empty: the name stands alone
-  SensedPressures sensed;     ///< what was looked at beside command and position
+  std::vector<Rival> rivals;  ///< empty: the name is unique
+  SensedPressures sensed;     ///< readings used beside command and position
 };
 
-/// The names of the window before: the same parameters, off in the same directions, keep their
-/// rivals, which cost most of the time to find; they are looked for anew every kAnew windows.
+/// Names of the previous window: the same parameters changed in the same directions keep their
+/// rivals,
+/// whose search takes most of the time; the rivals are searched again every kAnew windows.
 struct NamingCache {
   static constexpr int kAnew = 10;
-  std::vector<signed char> directions;  ///< of each tracked parameter; empty: nothing to keep
+  std::vector<signed char> directions;  ///< per tracked parameter; empty: nothing cached
   int left = 0;                         ///< windows for which it may be kept
   std::vector<ParameterChange> named;
 
@@ -78,10 +81,10 @@ inline constexpr std::size_t kNotMeasured = static_cast<std::size_t>(-1);
 /// Tracked parameters that were not fitted.
 struct HeldParameters {
   std::size_t measured = kNotMeasured;  ///< was read, and so has no rivals
-  std::size_t baseline = kNotMeasured;  ///< stands at its healthy value, and is a rival of others
+  std::size_t baseline = kNotMeasured;  ///< held at its healthy value; a rival of other parameters
 };
 
-/// `healthy`: search values of every parameter; `found`: the fit of the tracked ones to `cut`.
+/// `baseline`: theta of every parameter; `found`: the fit of the tracked ones to `data`.
 [[nodiscard]] std::vector<ParameterChange> name_changes(
     WindowFit& fit, const ParameterSet& set, const WindowData& data, const WindowFitSummary& found,
     const Eigen::VectorXd& baseline, const ErrorScales& errors, const Thresholds& thresholds,

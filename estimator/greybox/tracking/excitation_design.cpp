@@ -18,8 +18,8 @@ namespace {
 using plant_sim::Ensemble;
 
 constexpr double kFrequencies_Hz[] = {0.25, 0.5, 1.0, 2.0, 4.0};
-constexpr double kShares[] = {1.0, 0.5};  ///< of the greatest amplitude
-constexpr double kSwinging_s = 1.0;       ///< before what is judged
+constexpr double kShares[] = {1.0, 0.5};  ///< shares of the greatest amplitude
+constexpr double kSwinging_s = 1.0;       ///< lead time before the evaluated window
 
 struct SimulatedMotion {
   std::vector<double> u_V;

@@ -1,5 +1,6 @@
-// Which short motion would tell the tracked parameters best: sines within given limits are driven
-// through the model in its loop, with the healthy error as noise, and each fitted as a window is.
+// Design of a short motion that determines the tracked parameters best: sines within given limits
+// are
+// simulated in closed loop with the healthy error as noise, and each is fitted like a window.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,13 +25,13 @@ struct ExcitationDesign {
   double amplitude_m = 0.0;
   double frequency_Hz = 0.0;
   double duration_s = 0.0;
-  Eigen::VectorXd std_error;  ///< of the tracked parameters, search units
+  Eigen::VectorXd std_error;  ///< tracked parameters, search units
 };
 
-/// Standard errors of the tracked parameters from so many samples of command and position.
+/// Standard errors of the tracked parameters for given samples of command and position.
 using Foresee = std::function<Eigen::VectorXd(const double* u_V, const double* y_m)>;
 
-/// None where no sine within the limits tells every parameter. `samples`: lead-in and window.
+/// None where no sine within the limits determines every parameter. `samples`: lead-in and window.
 [[nodiscard]] std::optional<ExcitationDesign> design_excitation(
     const plant_sim::ModelFile& baseline, const ExcitationLimits& limits, std::size_t samples,
     double sample_time_s, double noise_m, const Foresee& foresee);

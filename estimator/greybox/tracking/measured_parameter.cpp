@@ -8,7 +8,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Of a reading: its standard error is not less, whatever its noise.
+/// Least standard error of a reading, as a ratio to the reading.
 constexpr double kLeastOfReading = 1e-4;
 
 /// The matrix with a row and a column more at `at`, `diagonal` where they meet.

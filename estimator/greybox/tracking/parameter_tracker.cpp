@@ -17,9 +17,9 @@ using Eigen::Index;
 constexpr double kParts[] = {0.75, 0.5, 0.25};
 /// How far a part's error may be above the healthy one: in chance's standard deviations.
 constexpr double kChanceOfRms = 3.5;
-/// A rod that moves less than this many noise floors tells nothing.
+/// Travel, in noise floors, below which a window counts as no motion.
 constexpr double kLeastMotion = 10.0;
-/// Of the healthy error: what the noise floor is at least taken for.
+/// Least noise floor, as a ratio to the healthy error.
 constexpr double kLeastOfHealthy = 0.2;
 /// Standard errors: one-sided, 95 %.
 constexpr double kMostly = 1.645;
@@ -232,7 +232,7 @@ void ParameterTracker::name_changes_in(WindowResult& window, const WindowData& d
   detector_.update(window.t_s, window.named, seen, baseline_->theta, whole);
 }
 
-/// What is named has the values of the windows that agree with this one.
+/// Replaces the values of named changes by those fused from agreeing windows.
 void ParameterTracker::refine(WindowResult& window) const {
   for (ParameterChange& one : window.named) {
     const ParameterEstimate& best = window.estimates[one.parameter];

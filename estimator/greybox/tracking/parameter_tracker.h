@@ -1,22 +1,23 @@
 // Physical parameters tracked over a sliding window, sample by sample.
 //
-// Each stride: the tracked parameters are fitted to the latest window (window_fit.h), the window is
-// judged (a model that does not explain it, or a motion that cannot tell the parameters, makes it
-// invalid, with the reason), and changes are named (naming.h). A window in which the rig changed
-// explains nothing: then its latest part alone is looked at, which is how a change is named before
-// the window is over. One call of push() does at most one such look; all others only keep the
-// sample.
+// Each stride, the tracked parameters are fitted to the latest window (window_fit.h), the window is
+// judged (invalid with a reason when the model does not explain it or the motion does not determine
+// the parameters), and changes are named (change_naming.h). The model cannot explain a window in
+// which the rig changed; its latest part is then fitted alone, which names a change before the
+// window
+// is over. One call of push() runs at most one such fit; all other calls only store the sample.
 //
 // Pressures, where they come with every sample of a window:
-// - The supply's mean takes the place of that parameter's fit.
-// - The chambers' count in the fit beside the position, once the healthy rig knows their errors.
-//   Before, each window is fitted by its position alone, and then with the errors that it showed;
-//   where both supply pressure and valve gain are tracked, the gain is the file's.
-//   Where they do not belong to the model while the position does (a failed transducer, or a change
-//   that is not tracked), or a transducer stands still, the window is looked at by position alone,
-//   and says so (Window::left_out). By position alone valve gain and supply pressure are one
-//   number: where both are tracked the gain is held then, and a change is told as the group of the
-//   two.
+// - The mean supply pressure replaces the fit of that parameter.
+// - The chamber pressures are fitted beside the position once the baseline has their errors.
+// Before,
+//   each window is fitted by its position alone, then with the errors it showed; where both supply
+//   pressure and valve gain are tracked, the gain is the file's.
+//   Where the pressures misfit while the position fits (a failed transducer, or a change that is
+// not
+//   tracked), or a transducer's reading stands still, the window is fitted by position alone
+//   (WindowResult::left_out). By position alone valve gain and supply pressure are not separable:
+//   where both are tracked the gain is held, and a change is named as the group of the two.
 #pragma once
 
 #include <Eigen/Core>
@@ -44,7 +45,7 @@ struct TrackerSettings {
   double window_s = 2.0;
   double stride_s = 0.5;
   double observer_per_s = kObserver_per_s;
-  double most_ratio = 1.2;       ///< of the healthy error, beyond which a window is invalid
+  double most_ratio = 1.2;       ///< ratio to the healthy error above which a window is invalid
   double most_std_error = 0.01;  ///< ratio, beyond which a value is invalid
   double most_of_typical = 0.1;  ///< the same of an effect, over its typical size
   std::int64_t fused = 4;        ///< windows that a value is taken from while they agree (pool.h)
@@ -67,16 +68,17 @@ class ParameterTracker {
   [[nodiscard]] const ChangeDetector& detector() const { return detector_; }
   /// AlarmBook::forget_cleared().
   void forget_cleared() { detector_.forget_cleared(); }
-  /// What changes are counted from: as learnt, but for what has changed slowly (slow_change.h).
+  /// Reference of changes: as learned, corrected for slow drift (baseline_drift.h).
   [[nodiscard]] const std::optional<Baseline>& baseline() const { return baseline_; }
   [[nodiscard]] const BaselineDrift& baseline_drift() const { return drift_; }
   [[nodiscard]] const ParameterSet& set() const { return set_; }
 
-  /// What motion within the limits of the settings would tell; a tenth of a second or so. Once the
-  /// healthy rig is known.
+  /// Motion within the limits of the settings that determines the parameters best; takes about 0.1
+  /// s. None
+  /// without a baseline.
   [[nodiscard]] std::optional<ExcitationDesign> probe();
 
-  /// As at the start, the healthy rig forgotten.
+  /// Back to the initial state, without baseline.
   void reset();
   /// Bit for bit (state_archive.h), after forget_cleared().
   void serialize(estimator::StateArchive& archive);
@@ -96,7 +98,7 @@ class ParameterTracker {
              const Misfit& misfit) const;
   [[nodiscard]] bool moves(const WindowData& data) const;
   [[nodiscard]] double noise_m() const;
-  /// Whether a part was explained; by position alone where the cut has no pressures.
+  /// Whether a part was explained; by position alone where the window has no pressures.
   bool look_at_part(WindowResult& window, const WindowData& whole);
   void name_changes_in(WindowResult& window, const WindowData& data, const WindowFitSummary& found);
   void refine(WindowResult& window) const;
@@ -113,7 +115,7 @@ class ParameterTracker {
   std::size_t stride_;
   WindowFit fit_;
   SampleBuffer samples_;
-  std::size_t until_ = 0;       ///< samples until the next look
+  std::size_t until_ = 0;       ///< samples until the next window
   bool pressures_out_ = false;  ///< chamber pressures have not belonged to the model lately
   std::optional<Baseline> baseline_;
   BaselineDrift drift_;

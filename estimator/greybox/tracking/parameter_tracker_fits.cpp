@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Standard error, search units, of what is held while the healthy rig is learnt.
+/// Standard error, search units, of a held parameter while the baseline is learned.
 constexpr double kHeld = 1e-4;
 
 bool stands_still(const double* values, const WindowData& data) {

@@ -1,13 +1,14 @@
-// What the position sensor alone would explain: a scale or a drift of its reading in place of a
-// change of the rig.
+// Position sensor hypothesis: a scale or a drift of the reading in place of a change of the rig.
 //
 //   scale   y' = yc + (y - yc) / s        drift   y' = y - r (t - tc)
 //
-// y  as read    y'  where the rod is then    yc tc  middle of the window
+// y  reading    y'  true position under the hypothesis    yc tc  middle of the window
 //
-// The model is held against y'. Its residual is linear in 1 / s and in r, but for what little the
-// plant depends on y: chi-square is a parabola, which three values give. It counts in the reading's
-// own noise, that is times s^2; what chamber pressures say of the model stays as it is.
+// The model is compared with y'. The residual is linear in 1 / s and in r, apart from the plant's
+// weak
+// dependence on y: chi-square is a parabola, given by three values. It is evaluated in the
+// reading's
+// own noise, that is times s^2; the chamber pressures' part stays unchanged.
 #pragma once
 
 #include <Eigen/Core>

@@ -26,7 +26,7 @@ struct PressuresLeftOut {
   enum class Cause { none, not_read, inlet_still, outlet_still, misfit };
 
   Cause cause = Cause::none;
-  Misfit misfit;  ///< of Cause::misfit
+  Misfit misfit;  ///< for Cause::misfit
 
   explicit operator bool() const { return cause != Cause::none; }
 };
