@@ -14,7 +14,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// Of a fit that only has to show whether it ends lower.
+/// Iterations of a fit that only has to show whether it ends lower.
 constexpr int kFirstIterations = 10;
 
 bool costs_little(const SearchContext& context, const FitSummary& without, const FitSummary& with) {
@@ -51,7 +51,7 @@ void drop_effects(const SearchContext& context, ModelStage& stage) {
   }
 }
 
-/// Those of an effect that are searched, the last first.
+/// Refinements of an effect that are in the search, the last first.
 std::set<int, std::greater<>> refinements_of(const FitSummary& fitted, const std::string& effect) {
   std::set<int, std::greater<>> refinements;
   for (const FreeParameter& p : fitted.parameters) {

@@ -1,5 +1,4 @@
-// The backward look over a stage: what is not worth its place goes, what refines an effect may
-// come.
+// Backward elimination of a stage, then forward addition of refinements.
 #pragma once
 
 #include "estimator/greybox/selection/problem.h"
@@ -7,7 +6,7 @@
 
 namespace estimator::greybox::selection {
 
-/// Whether what is left over at the end of a search is looked over, or at the end of all of them.
+/// Pass within the search, or the final one over its result.
 enum class EliminationPass { intermediate, final };
 
 /// Drops effects, then refinements of effects, as long as the held-out error suffers less than an

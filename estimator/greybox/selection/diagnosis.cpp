@@ -14,15 +14,15 @@
 namespace estimator::greybox::selection {
 namespace {
 
-constexpr double kAsClear = 0.9;  ///< explained share of what is left over that of the whole
+constexpr double kAsClear = 0.9;  ///< ratio of the remainder's explained share to that of the whole
 
-/// The better model's parameters on all samples, with what the record says of each.
+/// Parameters of the better model fitted to all samples, with their standard errors.
 void fit_final_parameters(const SearchContext& context, Diagnosis& result) {
   const ModelStage& stage = result.search.final;
   const ParameterSubset all = subset(stage.fitted, [](const auto&) { return true; });
   const bool explained =
       stage.fitted.validation_rms_m <= kUnexplained * context.problem.data.noise_floor_m;
-  // what is left of the error is no noise: then the values are those that simulate best
+  // the remaining error exceeds the noise: use the values that simulate best
   result.final =
       context.cancelled() ? stage.fitted
       : explained
@@ -47,8 +47,9 @@ void list_steps(Diagnosis& result) {
   }
 }
 
-/// What carries the residual that nothing explains. Effects that were taken for want of the right
-/// one have swallowed part of it: then the model as given shows it more clearly.
+/// Localises the unexplained residual. Effects taken in place of the right one have absorbed part
+/// of
+/// it; the model as given then shows it more clearly.
 std::vector<Localisation> localise_remainder(const SearchContext& context, const ModelStage& first,
                                              const ModelStage& final) {
   std::vector<Localisation> left = localise(context, final);

@@ -17,7 +17,7 @@ enum class Verdict { nothing_missing, missing, undetermined, unexplained, not_ex
 struct ParameterValue {
   std::string name;
   double value = 0.0;      ///< SI, the unit in the name
-  double std_error = 0.0;  ///< NaN where the record does not say (at a bound)
+  double std_error = 0.0;  ///< NaN where the record does not determine it (at a bound)
   bool at_bound = false;
 };
 
@@ -25,7 +25,7 @@ struct ParameterValue {
 struct Localisation {
   std::string site;              ///< "flow", "force", "gain", "measurement"
   std::string variable;          ///< "y", "v", "u", "speed", "acceleration", "time", "direction"
-  double explained_ratio = 0.0;  ///< of the held-out squared error
+  double explained_ratio = 0.0;  ///< share of the held-out squared error
 };
 
 struct Step {
@@ -38,12 +38,12 @@ struct Diagnosis {
   std::vector<std::string> missing;                 ///< in the order added
   std::vector<std::vector<std::string>> ambiguous;  ///< groups of two or three names
   std::vector<std::vector<std::string>>
-      same_here;  ///< one equation on this plant, whatever the motion
+      same_here;  ///< groups that are equivalent on this plant for every motion
   double noise_floor_m = 0.0;
   double nominal_rms_m = 0.0;              ///< held-out, the model file as it is
   double rms_before_m = 0.0;               ///< held-out, its parameters fitted
-  double rms_after_m = 0.0;                ///< held-out, with what is missing
-  std::vector<ParameterValue> parameters;  ///< of the better model, fitted to all samples
+  double rms_after_m = 0.0;                ///< held-out, better model
+  std::vector<ParameterValue> parameters;  ///< better model, fitted to all samples
   std::vector<Localisation> where;         ///< best first; empty when nothing is left to explain
   std::vector<Step> steps;
   Excitation excitation;             ///< insufficient: Verdict::not_excited

@@ -8,8 +8,9 @@
 
 namespace estimator::greybox::selection {
 
-/// Error that `rival` leaves on the evidence, its parameters adjusted linearly against their
-/// priors. About 20 ms for 30 s.
+/// RMS error [m] that `rival` leaves on the data, its parameters adjusted linearly against their
+/// priors.
+/// Takes about 20 ms for 30 s.
 [[nodiscard]] double expected_separation(const SearchContext& context, const FitDataset& data,
                                          const FitSummary& rival);
 

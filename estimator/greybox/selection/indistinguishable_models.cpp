@@ -19,7 +19,7 @@ constexpr double kWorthARefit = 2.0;
 constexpr std::size_t kMostRefits = 4;
 /// A rival brings at least this share of what the found effect brings.
 constexpr double kShareOfGain = 0.5;
-/// Probability of chance below which the held-out data do tell the found effect from a rival.
+/// Probability of chance below which the held-out data separate the found effect from a rival.
 constexpr double kTold = 1e-3;
 /// Two fits whose residuals differ by less than this share of the error are the same motion.
 constexpr double kSameMotion = 0.3;

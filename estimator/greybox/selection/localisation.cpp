@@ -68,7 +68,7 @@ MatrixXd disturbance(const Place& at, Form form, const Variable& variable) {
   return variable.signed_pieces.cols() > 0 ? variable.signed_pieces : variable.pieces;
 }
 
-/// What the observer makes of something added to the reading: no model is needed.
+/// Response of the observer to an addition to the reading; independent of the model.
 MatrixXd seen_by_observer(const SearchContext& context, MatrixXd added) {
   for (Index column = 0; column < added.cols(); ++column) {
     Index at = 0;

@@ -45,7 +45,7 @@ void append(ParameterSubset& to, const ParameterSubset& more);
 [[nodiscard]] FitSummary refit_if_hopeful(const SearchContext& context,
                                           const ParameterSubset& selection, double than_m,
                                           unsigned threads = 1);
-/// A stage's fit, to the end, on all of the workshop's threads.
+/// Fit of a stage to convergence, on all threads of the options.
 [[nodiscard]] FitSummary refit_to_convergence(const SearchContext& context,
                                               const FitSummary& fitted);
 

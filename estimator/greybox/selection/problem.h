@@ -32,7 +32,7 @@ struct DiagnosisProblem {
   plant_sim::ModelFile model;
   FitDataset data;
   std::vector<plant_sim::EffectInfo> candidate_effects;  ///< offered by the plant, absent so far
-  std::vector<FreeParameter> plant_parameters;           ///< of the plant and of present effects
+  std::vector<FreeParameter> plant_parameters;           ///< plant and present effects
 };
 
 struct SearchContext;

@@ -1,9 +1,9 @@
-// One more effect tried on top of what is already in the model: a quick look first, then the fit.
+// Screening of one further effect before it is fitted.
 //
-// The quick look simulates the effect in several sizes, all side by side, and asks how far the
-// error falls when its size and all other parameters may still adjust, linearly:
+// The effect is simulated in several sizes side by side; the result is the error that remains when
+// its size and all other parameters adjust linearly:
 //   min |r - J a - d b|^2 / s^2 + prior(a)         d = (r(size) - r(0)) / size
-// It ranks the effects before anything is fitted, and says where the fit should begin.
+// The screening ranks the effects and gives the start of each fit.
 #pragma once
 
 #include <Eigen/Core>
@@ -37,9 +37,11 @@ struct ScreeningResult {
   std::vector<Eigen::VectorXd> starts;    ///< where to begin, the most promising first
 };
 
-/// A quick look at each effect, the most promising first. It looks from the stage's own parameters
-/// and from the model file's: a single start misses effects that the fit of the stage has bent its
-/// parameters to follow. `looked` is called after each, from any thread; it may be empty.
+/// Screens each effect, most promising first, from the stage's parameters and from the model
+/// file's: a
+/// single start misses effects that the parameters of the stage imitate. `looked` is called after
+/// each
+/// effect, from any thread; may be empty.
 [[nodiscard]] std::vector<ScreeningResult> screen(
     const SearchContext& context, const ModelStage& stage,
     const std::vector<plant_sim::EffectInfo>& effects,

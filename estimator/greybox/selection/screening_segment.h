@@ -1,4 +1,4 @@
-// A short stretch of the evidence, for looking at many things quickly.
+// Short segment of the data for screening.
 #pragma once
 
 #include "estimator/greybox/fit.h"
@@ -9,7 +9,7 @@ namespace estimator::greybox::selection {
 inline constexpr double kScreeningSegment_s = 8.0;
 
 struct ScreeningSegment {
-  FitDataset data;    ///< all of it counts
+  FitDataset data;    ///< all samples count
   FitSummary fitted;  ///< the model fitted to the whole, its residual there
 };
 

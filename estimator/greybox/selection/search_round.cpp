@@ -22,7 +22,7 @@ constexpr double kThoroughTolerance = 3e-5;
 /// Candidates within this of the best are fitted to the end.
 constexpr double kContender = 0.5;
 constexpr std::size_t kMostContenders = 3;
-/// At the noise floor the quick look is as good as the fit: what it does not expect is not there.
+/// At the noise floor the screening is as reliable as the fit: effects it rejects are absent.
 constexpr double kAtFloor = 1.05;
 constexpr double kExpectable = 0.002;
 /// Iterations for effects that come after one that explains the record.

@@ -1,4 +1,4 @@
-// One round of the ladder: every absent effect on top of a stage, best first.
+// One round of the search: every absent effect added to a stage, best first.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace estimator::greybox::selection {
 
-/// Of a quick fit.
+/// Iteration limit of a quick fit.
 inline constexpr int kQuickIterations = 8;
 
 [[nodiscard]] Round single_round(const SearchContext& context, const ModelStage& stage, int number);

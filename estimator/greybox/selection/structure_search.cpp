@@ -18,22 +18,24 @@ namespace {
 constexpr std::size_t kMostEffects = 4;
 /// One after another; when these do not explain the record, two at once are tried before any more.
 constexpr std::size_t kBeforePairSearch = 2;
-/// Of the first round, that many are tried as the first effect when the best leads nowhere.
+/// Effects of the first round that are tried as alternative starts when the best leads nowhere.
 constexpr std::size_t kAlternativeStarts = 3;
-/// They have to leave less than this share of the error, and by another way than the best: two
-/// effects together may look like a third one, which then comes far before either.
+/// Largest remaining error ratio of an alternative start. Two effects together may resemble a third
+/// one,
+/// which then ranks far before either; the start must differ from the best in kind.
 constexpr double kHelpful = 0.7;
-/// And what is left must be this many times the noise.
+/// Remaining error over the noise above which alternative starts are tried.
 constexpr double kLost = 2.0;
 constexpr double kSamePath = 0.1;
 /// A gain must also be more than chance, unless it is a large one.
 constexpr double kChance = 0.01;
 constexpr double kLargeGain = 0.1;
-/// Of the parameters, more than between two explanations that are alike.
+/// Shift of the parameters, in prior widths, above which an explanation is implausible.
 constexpr double kStrain = 6.0;
 
-/// Whether the effect wants to be larger, or a wave longer, than such an effect can be: then it
-/// stands for something else.
+/// Whether a size or a wavelength reaches the limit of what the effect can be; the effect then
+/// stands in
+/// for something else.
 bool leaves_its_range(const ModelStage& stage, const Candidate& candidate) {
   const FitSummary& fitted = candidate.fitted;
   for (std::size_t i = stage.fitted.parameters.size(); i < fitted.parameters.size(); ++i) {
@@ -66,8 +68,9 @@ double strain(const FitSummary& fitted) {
   return sum;
 }
 
-/// Of candidates that explain the record alike, the one with the fewest parameters; not one that
-/// needs the plant to be another than was expected.
+/// The candidate with the fewest parameters among those that explain the record alike, except one
+/// that
+/// moves the plant far from its expected values.
 const Candidate& simplest(const SearchContext& context, const std::vector<Candidate>& candidates) {
   const Candidate* chosen = &candidates.front();
   for (const Candidate& other : candidates) {
@@ -89,7 +92,7 @@ bool extend_branch(const SearchContext& context, ModelStage& stage, std::vector<
   while (stage.added.size() < most && !context.cancelled()) {
     Round round = single_round(context, stage, static_cast<int>(rounds.size()) + 1);
     if (round.candidates.empty()) return false;
-    // those that cannot be taken go behind those that can
+    // candidates that cannot be taken go last
     std::stable_partition(
         round.candidates.begin(), round.candidates.end(),
         [&](const Candidate& candidate) { return is_gain(context, stage, candidate); });
@@ -221,7 +224,7 @@ StructureSearch search_structure(const SearchContext& context) {
   search.path = path_to(context, first, stage);
   if (!is_explained(context, stage)) {
     std::vector<ModelStage> validated = cross_validated_path(context, search.path);
-    // interrupted in the midst of it: what was found stays
+    // interrupted: keeps what was found
     if (!context.cancelled()) {
       ModelStage last = validated.back();
       eliminate_backward(context, last, EliminationPass::final);

@@ -18,9 +18,10 @@ constexpr double kHalfPi = 1.5707963267948966;
 constexpr Index kSizes = 8;
 constexpr double kSignedRatio = 4.0;    ///< between the sizes of one sign
 constexpr double kPositiveRatio = 3.0;  ///< between the sizes of an effect of one sign
-constexpr double kSmall = 0.2;          ///< of its typical size: a wave's response is then linear
-constexpr double kFewestTurns = 1.5;    ///< a wave is one that is seen more than once
-constexpr double kFinestTurns = 60.0;   ///< turns of the finest wavelength over the motion
+constexpr double kSmall =
+    0.2;  ///< share of the typical size: the response of a wave is then linear
+constexpr double kFewestTurns = 1.5;   ///< a wave is one that is seen more than once
+constexpr double kFinestTurns = 60.0;  ///< turns of the finest wavelength over the motion
 /// How far a wavelength may move from where the scan found it.
 constexpr double kNeighbourhood = 1.05;
 /// Largest relative error of speed that a sensor's periodic error may show.
