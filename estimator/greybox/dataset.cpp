@@ -11,7 +11,7 @@
 namespace estimator::greybox {
 namespace {
 
-/// Of the error in one sample, where samples are far apart.
+/// Limit of the correction in one sample, where samples are far apart.
 constexpr double kLargestInitialisationGain = 0.5;
 constexpr double kLeast_s = 2.0;
 /// Two samples at least while a segment settles.
@@ -25,7 +25,7 @@ std::size_t settling_samples(double sample_time_s) {
   return static_cast<std::size_t>(std::lround(kSettling_s / sample_time_s));
 }
 
-/// Of [begin, end); the speed at the start by the parabola through three samples.
+/// Segment [begin, end); the speed at its start is that of a parabola through three samples.
 bool begins_moving(const config::record::Record& record, std::size_t begin, std::size_t end) {
   if (end - begin < 3) return true;
   const double* y_m = &record.y_m[begin];

@@ -21,7 +21,7 @@ using estimator::nonlinear::Solution;
 using Step = EstimationProgress::Step;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-/// A fall of the cost by this is worth another look.
+/// A lower cost by this amount restarts the fit from there.
 constexpr double kBetter = 0.1;
 /// Costs within this of the best, and values within one standard error, are the same minimum.
 constexpr double kSameCost = 0.5;
@@ -136,7 +136,8 @@ class Estimator {
     problem_.sigma = out_.fitted.sigma_m;
   }
 
-  /// From the one start: after each step the residual is weighed anew, until its size is known.
+  /// Descent from the single start: after each step the residual is weighted again, until its size
+  /// settles.
   void descend() {
     report({Step::descent, 0, {}});
     FitSummary& at = out_.fitted;

@@ -45,7 +45,7 @@ struct EstimationProgress {
 struct EstimationProblem {
   plant_sim::ModelFile model;
   FitDataset data;          ///< `validation_mask` may be all 0: nothing is held out
-  Eigen::VectorXd weights;  ///< of squared residuals in the fit
+  Eigen::VectorXd weights;  ///< weights of the squared residuals in the fit
   std::vector<FreeParameter> parameters;
   Eigen::VectorXd start;  ///< theta
 };
@@ -80,7 +80,7 @@ struct EstimatedParameter {
 struct MultistartCounts {
   int tried = 0;
   int same = 0;       ///< ended in the best minimum
-  int elsewhere = 0;  ///< as good within chance, at other values
+  int elsewhere = 0;  ///< equally good within chance, at other values
   int worse = 0;
 };
 
@@ -89,7 +89,7 @@ struct SimulationErrors {
   double rms_m = 0.0;  ///< drift-corrected, the samples that are fitted
   double heldout_rms_m = std::numeric_limits<double>::quiet_NaN();  ///< NaN: none held out
   double free_run_rms_m = 0.0;                                      ///< nothing corrected
-  double fit_percent = 0.0;                                         ///< of the free run
+  double fit_percent = 0.0;                                         ///< free run
   Eigen::VectorXd residual_m;                                       ///< all samples
   Eigen::VectorXd free_run_m;
 };
@@ -103,7 +103,7 @@ struct EstimationSummary {
   SimulationErrors after;
   IdentifiabilityReport identifiability_before;
   IdentifiabilityReport identifiability_after;
-  Eigen::MatrixXd correlation;  ///< of the estimates; NaN where there is none
+  Eigen::MatrixXd correlation;  ///< correlation of the estimates; NaN where undefined
   double effective_samples = 0.0;
   MultistartCounts starts;
   bool interrupted = false;

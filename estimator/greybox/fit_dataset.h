@@ -26,9 +26,9 @@ struct FitDataset {
   Eigen::VectorXd validation_mask;
   Eigen::VectorXd all_mask;        ///< either
   std::size_t fitted_records = 0;  ///< the first of `records`; the others only score
-  /// Over the records that tell one; NaN when none does (below 20 Hz).
+  /// Mean over the records with a known noise floor; NaN when there is none (below 20 Hz).
   double noise_floor_m = 0.0;
-  double sample_time_s = 0.0;  ///< of the first record
+  double sample_time_s = 0.0;  ///< first record
 
   [[nodiscard]] Eigen::Index size() const { return all_mask.size(); }
   /// Whether whole records are kept for scoring.
@@ -39,8 +39,9 @@ struct FitDataset {
   }
 };
 
-/// `holdouts` are records that only score; with them every sample of `records` is fitted. Halves of
-/// records become records of their own, so that each begins anew. At least one record.
+/// `holdouts` are records for validation only; with them every sample of `records` is fitted.
+/// Halves
+/// of records become records of their own, each with its own start. Requires at least one record.
 [[nodiscard]] FitDataset fit_dataset(std::vector<Dataset> records, std::vector<Dataset> holdouts,
                                      Split split = Split::blocks);
 

@@ -1,8 +1,9 @@
-// A model parameter as a search sees it: a number near 0 or 1 with bounds, whatever its unit.
+// A model parameter as a free parameter of a fit: a number near 0 or 1 with bounds, whatever its
+// unit.
 //
-//   linear       value = unit s              effects: s = 0 is their absence
-//   logarithmic  value = unit exp(s)         plants: s = 0 is the model file's value
-//   reciprocal   value = unit / s            limits: s = 0 is no limit
+//   linear       value = unit theta          effects: theta = 0 is their absence
+//   logarithmic  value = unit exp(theta)     plants: theta = 0 is the model file's value
+//   reciprocal   value = unit / theta        limits: theta = 0 is no limit
 #pragma once
 
 #include <Eigen/Core>
@@ -38,7 +39,7 @@ struct FreeParameter {
 /// file's values (plant_sim::ParameterInfo::uncertainty_ratio).
 [[nodiscard]] std::vector<FreeParameter> plant_parameters(const plant_sim::ModelFile& model);
 
-/// The parameters of effects that the model has and that do not stand at their neutral value.
+/// Parameters of effects that the model has and that are not neutral.
 [[nodiscard]] std::vector<FreeParameter> present_parameters(const plant_sim::ModelFile& model);
 
 /// Search values at which every parameter is as in the model file.

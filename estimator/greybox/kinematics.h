@@ -1,11 +1,13 @@
-// What the measured rod does at each sample: speed and acceleration from the position alone, and
-// which way it goes. By these the errors of a model are sorted.
+// Speed, acceleration and direction of the measured rod at each sample, from the position alone;
+// the
+// model's errors are grouped by them.
 //
 //   y(t + s) ~ c0 + c1 s + c2 s^2  by least squares over |s| <= 50 ms   (Savitzky, Golay 1964)
 //   v = c1,  a = 2 c2
 //
-// At least two samples to either side are used (at 50 Hz, 40 ms); at a segment's ends the window is
-// cut and the parabola read off its middle. No sample of another segment is looked at.
+// At least two samples to either side are used (at 50 Hz, 40 ms); at the ends of a segment the
+// window
+// is truncated and the parabola is evaluated off its middle. No sample of another segment is used.
 #pragma once
 
 #include <vector>

@@ -1,12 +1,12 @@
-// A model driven by the measured command, up to eight parameter sets side by side, over all
-// segments of a record.
+// Simulation of a model driven by the measured command over all segments of a record, up to eight
+// parameter sets side by side.
 //
 //   yh(k) = reading(k),   then  yh += l Ts (y(k) - yh(k)),   then u(k) held for Ts
 //
-// y yh measured and modelled position; l the observer's gain, 1/s. l = 0 is the free run from
-// each segment's start; a small l takes away the drift of an integrating plant and leaves what is
-// faster than 1/l as it is. A segment that begins in the midst of a motion is led at
-// kLeading_per_s while it settles.
+// y, yh measured and modelled position; l the observer gain, 1/s. l = 0 is the free run from each
+// segment's start; a small l removes the drift of an integrating plant and leaves components faster
+// than 1/l unchanged. A segment that begins during a motion uses the gain kInitialisation_per_s
+// while it settles.
 #pragma once
 
 #include <Eigen/Core>
@@ -38,8 +38,9 @@ class ObserverSimulation {
   /// (searched().size() rows, at most kLanes columns). Samples before a segment has settled give 0.
   void residuals(const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals_m);
 
-  /// The same, with what is added to command and load in each lane (size() x points.cols(), or
-  /// empty): for finding out where a residual enters.
+  /// The same with additions to command and load in each lane (size() x points.cols(), or empty):
+  /// locates
+  /// the site at which a residual enters.
   void residuals(const Eigen::MatrixXd& points, const Eigen::MatrixXd& added_V,
                  const Eigen::MatrixXd& added_N, Eigen::MatrixXd& residuals_m);
 

@@ -16,7 +16,7 @@ class ParallelSimulation {
                      unsigned threads);
 
   [[nodiscard]] Eigen::Index lanes() const;
-  /// evidence.size() x points.cols(); at most lanes() columns.
+  /// Residuals in m, data.size() x points.cols(); at most lanes() columns.
   void residuals(const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals_m);
   /// For Problem::evaluate; refers to this object.
   [[nodiscard]] estimator::nonlinear::Evaluate evaluate();

@@ -8,7 +8,7 @@ namespace estimator::greybox {
 
 /// Records longer than this together are searched in stretches.
 inline constexpr double kLong_s = 240.0;
-/// What the stretches come to together, about.
+/// Approximate total length of the segments.
 inline constexpr double kSearched_s = 60.0;
 /// One of them: three blocks that are fitted and three that score (Split::blocks).
 inline constexpr double kSegment_s = 6.0 * kBlock_s;
@@ -16,10 +16,11 @@ inline constexpr double kSegment_s = 6.0 * kBlock_s;
 /// Length of all records together.
 [[nodiscard]] double length_s(const FitDataset& data);
 
-/// Each record in equal parts, of each part the stretch with the longest way of the rod; a record
-/// shorter than two stretches stays whole. The stretches of a record are segments of it: the model
-/// starts anew in each. Samples keep the weights that they have in `whole`, save those that have
-/// not settled.
+/// Splits each record in equal parts and takes the segment with the longest travel from each part;
+/// a
+/// record shorter than two segments stays whole. The simulation restarts in each segment. Samples
+/// keep
+/// their masks of `whole`, except those that have not settled.
 [[nodiscard]] FitDataset representative_segments(const FitDataset& whole);
 
 }  // namespace estimator::greybox

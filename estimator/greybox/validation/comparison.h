@@ -50,7 +50,7 @@ struct Comparison {
 
   // One number per sample.
   std::vector<double> error_m;       ///< drift-corrected, unsettled samples included
-  std::vector<double> free_error_m;  ///< of the free run
+  std::vector<double> free_error_m;  ///< free run
   std::vector<double> speed_error_mps;
   /// Speed error, mean over +-50 ms, less the share that a gain and an offset explain; the regions
   /// are found in this.
@@ -66,7 +66,7 @@ struct Comparison {
   double independence_p = 1.0;  ///< independence of e from past commands
 
   std::vector<Region> regions;
-  std::vector<SignificantRegion> worst;  ///< by one variable each, most telling first
+  std::vector<SignificantRegion> worst;  ///< by one variable each, most significant first
   SignificantRegion headline;            ///< the most telling, by one variable or two
   SystematicError systematic;
   CommandRange command;

@@ -10,30 +10,30 @@
 
 namespace estimator::greybox::validation {
 
-/// What is sorted and by what; all series have the record's length, SI.
+/// Errors and the variables they are grouped by; all series have the record's length, SI.
 struct SortedErrors {
   const Dataset* record = nullptr;
   const Kinematics* kinematics = nullptr;
   const std::vector<double>* error_m = nullptr;
   const std::vector<double>* speed_error_mps = nullptr;  ///< measured less modelled speed
   const std::vector<double>* local_velocity_error_mps =
-      nullptr;               ///< by which regions are told apart
+      nullptr;               ///< series by which regions are found
   std::vector<char> counts;  ///< 0: the sample is left out
-  double noise_mps = 0.0;    ///< of arising_mps, from the sensor
+  double noise_mps = 0.0;    ///< sensor noise of local_velocity_error
 };
 
 struct Bin {
   double from = 0.0;  ///< SI; of direction: NaN
   double to = 0.0;
-  std::string name;  ///< of direction: "extending"; empty otherwise
+  std::string name;  ///< for direction: "extending"; else empty
   std::size_t count = 0;
   double time_share = 0.0;
-  double error_share = 0.0;  ///< of the squared position error
-  double rms_m = 0.0;        ///< of the position error
+  double error_share = 0.0;  ///< share of the squared position error
+  double rms_m = 0.0;        ///< position error
   double mean_m = 0.0;
   double speed_error_mps = 0.0;  ///< mean; positive: the rod moves out more than the model
   double local_velocity_error_rms_mps = 0.0;
-  double local_velocity_error_share = 0.0;  ///< of the squared speed error
+  double local_velocity_error_share = 0.0;  ///< share of the squared speed error
   /// How many samples at least a correlation length apart: what the RMS is worth.
   double effective_samples = 0.0;
 };
@@ -41,7 +41,7 @@ struct Bin {
 struct Region {
   std::string variable;  ///< y, v, speed, u, acceleration, direction, time
   std::vector<Bin> bins;
-  std::vector<int> bin_of;  ///< of each sample; -1: left out
+  std::vector<int> bin_of;  ///< per sample; -1: left out
 };
 
 /// Over how many samples arising errors hang together: 1 + 2 sum rho(k)^2, that of their squares.

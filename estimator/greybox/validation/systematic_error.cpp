@@ -57,7 +57,7 @@ SystematicError systematic_error(const Dataset& record, const std::vector<double
                                                   [](char valid) { return valid != 0; }))));
   const auto left_m = [&](double by) { return all_m * std::sqrt(1.0 - by); };
   if (by_both < kLeast) return {ErrorCause::neither, 0.0, 0.0, 0.0, all_m};
-  // Of two explanations that differ little the one with a single number is told.
+  // The explanation with a single number is preferred where two differ little.
   const double nearly = 1.0 - std::max(kNearly * (1.0 - by_both), kSlight);
   if (by_gain >= nearly && by_gain >= by_offset) {
     return {ErrorCause::gain, by_gain, gain(0), 0.0, left_m(by_gain)};

@@ -15,11 +15,11 @@ namespace estimator::greybox::validation {
 enum class ErrorCause { neither, gain, offset, both };
 
 struct SystematicError {
-  ErrorCause cause = ErrorCause::neither;  ///< what explains at least half, as simply as possible
-  double share = 0.0;                      ///< of the squared error, by that
+  ErrorCause cause = ErrorCause::neither;  ///< simplest cause that explains at least half
+  double share = 0.0;                      ///< share of the squared error that the cause explains
   double gain_ratio = 0.0;  ///< g: the rod moves 1 + g times as far as the model; 0: not used
   double offset_mps = 0.0;  ///< b; 0: not used
-  double left_rms_m = 0.0;  ///< of the error without what they explain
+  double left_rms_m = 0.0;  ///< error without that share
 };
 
 [[nodiscard]] SystematicError systematic_error(const Dataset& record,
