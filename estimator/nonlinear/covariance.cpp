@@ -92,7 +92,7 @@ struct Stretch {
   Index rows = 0;
   residual::Autoregression model;
   double variance = 0.0;
-  double share = 0.0;  ///< of the residuals that count
+  double share = 0.0;  ///< share of the residuals that count
 };
 
 std::vector<Stretch> colours(const Problem& problem, const Solution& solution,

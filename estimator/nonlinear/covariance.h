@@ -41,13 +41,14 @@ struct CovarianceOptions {
 
 struct Covariance {
   Eigen::VectorXd std_error;
-  Eigen::VectorXd low;  ///< of the 95 % interval, cut at the bounds
+  Eigen::VectorXd low;  ///< 95 % interval, limited by the bounds
   Eigen::VectorXd high;
   Eigen::MatrixXd matrix;  ///< zero rows and columns where not kEstimated
   std::vector<Standing> standing;
-  Eigen::VectorXd inflation;       ///< (std_error / that for white noise of Problem::sigma)^2
-  double noise_sd = 0.0;           ///< used, or found in the residual
-  double effective_samples = 0.0;  ///< of the residual: what its mean is worth
+  Eigen::VectorXd inflation;  ///< (std_error / that for white noise of Problem::sigma)^2
+  double noise_sd = 0.0;      ///< used, or found in the residual
+  double effective_samples =
+      0.0;  ///< number of independent samples with the same error of the mean
 };
 
 [[nodiscard]] Covariance covariance(const Problem& problem, const Solution& solution,

@@ -30,8 +30,8 @@ struct Combination {
 };
 
 struct Identifiability {
-  Eigen::VectorXd singular_values;  ///< of K, largest first; held unknowns left out
-  double condition = 0.0;           ///< of K with its columns scaled to length 1
+  Eigen::VectorXd singular_values;  ///< singular values of K, largest first; held unknowns left out
+  double condition = 0.0;           ///< condition of K with its columns scaled to length 1
   Eigen::VectorXd alone;            ///< std error in scales if all others were known; NaN: held
   Eigen::VectorXd together;         ///< std error in scales with all unknown; NaN: held
   std::vector<Combination> unseen;

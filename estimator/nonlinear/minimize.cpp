@@ -34,7 +34,7 @@ bool Search::iterate() {
 
   const Eigen::VectorXd step = step_for(lambda_);
   const Eigen::VectorXd trial = inside(x_ + step);
-  // What goes with the trial: perturbed points around it, other dampings in the lanes left over.
+  // Columns beside the trial: perturbed points around it, other dampings in the remaining lanes.
   for (int& age : age_) ++age;
   const std::vector<Eigen::Index> order = stale();
   for (int& age : age_) --age;

@@ -54,7 +54,7 @@ struct Options {
 struct Solution {
   Eigen::VectorXd x;
   double cost = 0.0;
-  double rms = 0.0;          ///< of the residuals that count, their unit
+  double rms = 0.0;          ///< residuals that count, in their unit
   Eigen::VectorXd residual;  ///< as evaluated, without weights
   Eigen::MatrixXd jacobian;  ///< d residual / d x, residuals x unknowns; 0 for held unknowns
   int iterations = 0;

@@ -1,12 +1,12 @@
-// Bounded, weighted, Bayesian non-linear least squares: what is to be minimised.
+// Bounded, weighted, Bayesian non-linear least squares: the problem.
 //
 //   cost(x) = sum_i w_i r_i(x)^2 / sigma^2 + sum_j ((x_j - prior_mean_j) / prior_sd_j)^2,
 //   lower_j <= x_j <= upper_j
 //
-//   r      residuals, any unit; sigma: their noise's standard deviation, same unit
+//   r      residuals, any unit; sigma: standard deviation of their noise, same unit
 //   w      weight of a squared residual: 0 leaves it out (it may then be NaN)
-//   x      the search variables: the caller's choice of scale (logarithms of positive quantities
-//          say); bounds, steps and priors are in that scale
+//   x      search variables in the caller's scale, for example logarithms of positive quantities;
+//          bounds, steps and priors are in that scale
 //
 // With sigma right, cost is a chi-square: minus twice the logarithm of likelihood times prior.
 #pragma once

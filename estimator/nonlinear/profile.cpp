@@ -9,7 +9,7 @@
 namespace estimator::nonlinear {
 namespace {
 
-constexpr double kCloseEnough = 0.02;  // of the root of the threshold
+constexpr double kCloseEnough = 0.02;  // share of the root of the threshold
 constexpr double kFurthest = 4.0;      // growth of the distance from one point to the next
 constexpr double kNearest = 1.3;
 
@@ -55,7 +55,7 @@ class Walker {
 
   double first_step() const {
     if (options_.first_step > 0.0) return options_.first_step;
-    // As if all others were known: never too far.
+    // Bound on the first step: assumes all other unknowns known.
     const LinearModel model =
         compress(problem_, solution_.x, solution_.residual, solution_.jacobian);
     const double curvature = model.R.col(j_).norm();

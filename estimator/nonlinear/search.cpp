@@ -6,7 +6,7 @@
 namespace estimator::nonlinear {
 namespace {
 
-constexpr double kMemory = 0.5;  // of the largest column norms, from one iteration to the next
+constexpr double kMemory = 0.5;  // weight of the previous iteration's largest column norms
 
 }  // namespace
 
