@@ -10,7 +10,7 @@
 namespace estimator {
 namespace {
 
-/// What a block, or several merged, knows besides its factor.
+/// Contents of a block, or of several merged ones, besides the factor.
 struct Tally {
   int rows = 0;
   Span span;

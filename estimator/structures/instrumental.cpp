@@ -13,8 +13,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kRank = 1e-9;            // of a column-scaled matrix
-constexpr double kOwnInstrument = 1e-10;  // of a column's length
+constexpr double kRank = 1e-9;            // for a column-scaled matrix
+constexpr double kOwnInstrument = 1e-10;  // ratio to a column's length
 constexpr double kMostCorrelation = 1.0 - 1e-12;
 
 struct Regression {
@@ -36,7 +36,7 @@ MatrixXd basis(MatrixXd matrix) {
   return linear_algebra::orthonormal_basis(matrix, kRank);
 }
 
-/// What `q` leaves of each unit column; columns that are instruments themselves leave rounding.
+/// Part of each unit column outside the span of `q`; columns that are instruments leave rounding.
 MatrixXd unexplained(const MatrixXd& x, const MatrixXd& q) {
   const MatrixXd rest = x - q * (q.transpose() * x);
   std::vector<Index> kept;

@@ -30,7 +30,7 @@ enum class Instruments : std::uint8_t { kReference, kDelayed };
 enum class BiasVerdict : std::uint8_t {
   kNoBiasSeen,
   kBiased,
-  kUndetermined,  ///< the instruments are too weak to tell
+  kUndetermined,  ///< the instruments are too weak
 };
 /// "no bias seen", "biased", "cannot tell".
 [[nodiscard]] const char* to_string(BiasVerdict verdict) noexcept;

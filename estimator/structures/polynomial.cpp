@@ -70,7 +70,7 @@ Signals signals_of(const Polynomial& model, const Stretch& stretch) {
   if (n <= first) return out;
   const int nf = static_cast<int>(model.f.size());
 
-  // What the input alone makes of w, w = 0 before `first`; the unknown first values come after.
+  // w from the input alone, w = 0 before `first`; the unknown initial values are added later.
   for (int t = first; t < n; ++t) out.w[t] = input_at(model, stretch.u_V, t);
   divide(model.f, out.w, first, first);
   for (int t = first; t < n; ++t) {

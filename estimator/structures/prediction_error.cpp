@@ -19,7 +19,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kStep = 1e-8;  // of a coefficient about 1: w of an integrator feels it n-fold
+constexpr double kStep =
+    1e-8;  // step of a coefficient about 1; w of an integrator is n times as sensitive
 constexpr int kRowsPerCoefficient = 3;
 constexpr double kTolerance = 1e-9;
 

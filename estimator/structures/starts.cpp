@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kLongOrder = kMaxOrder;
 constexpr int kRounds = 12;
-constexpr double kMargin = 0.02;  // of C from the unit circle, at a start
+constexpr double kMargin = 0.02;  // distance of C from the unit circle at a start
 constexpr double kMostPole = 1.0;
 
 /// 1/F of both, from rest at the first value, so that an offset makes no transient.
@@ -88,7 +88,7 @@ std::vector<Polynomial> steiglitz_mcbride(const Orders& orders, const Stretches&
     now = fit_arx(arx, prefiltered);
     if (!std::all_of(now.a.begin(), now.a.end(), [](double x) { return std::isfinite(x); })) break;
     if (round + 1 == kRounds / 3 || round + 1 == kRounds) {
-      // The constant of filtered data is not that of the equation: found anew with F fixed.
+      // The constant of filtered data differs from the equation's: solved again with F fixed.
       const Polynomial keep = now;
       if (orders.constant) now.constant_m = 0.0;
       add();

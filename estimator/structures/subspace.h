@@ -40,8 +40,8 @@ struct SubspaceFit {
   Eigen::VectorXd B;  ///< 1/V: y is scaled back in C
   Eigen::RowVectorXd C;
   Eigen::VectorXd K;
-  Eigen::VectorXd singular_values;  ///< of Theta P, all of them, largest first; no unit
-  double condition = 0.0;           ///< of the regression on the past, columns scaled to length 1
+  Eigen::VectorXd singular_values;  ///< singular values of Theta P, largest first, dimensionless
+  double condition = 0.0;  ///< condition of the regression on the past, columns scaled to length 1
   /// The same model as a difference equation: characteristic polynomials of A (a) and of A - K C
   /// (c), numerator (b): free of the choice of basis.
   Polynomial model;
