@@ -20,7 +20,7 @@ struct BenchPlant {
   double dac_range_V = 10.0;
   std::int64_t seed = 1;
   std::vector<Change> faults;
-  std::vector<TransducerConfig> pressures;  ///< those that are not without error
+  std::vector<TransducerConfig> pressures;  ///< transducers with errors
 
   void visit(config::schema::Visitor& v);
 };

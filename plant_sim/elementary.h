@@ -100,10 +100,10 @@ inline V log(V x) {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   const V at_zero = x < 0.0 ? V{} + std::numeric_limits<double>::quiet_NaN() : V{} - kInfinite;
   const V finite = x <= 0.0 ? at_zero : y;
-  return x < kInfinite ? finite : x;  // what is not a number, too
+  return x < kInfinite ? finite : x;  // NaN passes as well
 }
 
-/// For |x| <= kSinReach.
+/// Valid for |x| <= kSinReach.
 inline constexpr double kSinReach = 1e6;
 template <class V>
 inline V sin(V x) {

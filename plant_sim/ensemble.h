@@ -1,9 +1,10 @@
-// Up to eight parameter sets of one plant in lockstep, one in each SIMD lane: what fitting a model
-// needs, where nearly all time goes into simulations that differ a little in a parameter or two.
+// Up to eight parameter sets of one plant in lockstep, one per SIMD lane: a fit spends nearly all
+// its
+// time in simulations that differ in one or two parameters.
 //
-// A lane does the operations of the single plant (plant.h); what is said there of parameters, steps
-// and commands holds here. Between samples a lane's position may be shifted, which is how an
-// observer corrects it towards the measurement.
+// A lane performs the operations of the single plant (plant.h); its rules for parameters, steps and
+// commands apply here. Between samples a lane's position may be shifted: the observer's correction
+// towards the measurement.
 #pragma once
 
 #include <array>
@@ -42,7 +43,7 @@ class Ensemble {
 
   [[nodiscard]] virtual Values reading_m() const noexcept = 0;
   [[nodiscard]] virtual Values speed_mps() const noexcept = 0;
-  /// As Plant::pressures(); not numbers where the plant has none.
+  /// As Plant::pressures(); NaN where the plant has none.
   [[nodiscard]] virtual PressuresOf<Values> pressures() const noexcept = 0;
 };
 

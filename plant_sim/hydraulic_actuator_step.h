@@ -18,7 +18,8 @@ inline constexpr double kLowPressure_Pa = 1e5;    ///< from here down cavitation
 inline constexpr double kHighPressure_Pa = 1e10;  ///< numerical guard, beyond any oil
 inline constexpr double kSpool_m = 1.0;           ///< numerical guard
 inline constexpr double kSpool_mps = 1e5;         ///< numerical guard
-inline constexpr double kCornerDivisions = 8.0;   ///< of a step in which the spool meets its limit
+inline constexpr double kCornerDivisions =
+    8.0;  ///< divisions of a step in which the spool meets its limit
 
 }  // namespace limits
 

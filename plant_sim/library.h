@@ -18,7 +18,7 @@ struct EffectInfo {
   std::vector<std::string> sites;  ///< where it attaches (effects/site.h)
   bool dissipative;                ///< can only take energy out
   std::vector<ParameterInfo> parameters;
-  std::string what = {};  ///< of a formula of the model file: its meaning, as given there
+  std::string what = {};  ///< for a formula of the model file: its stated meaning
 };
 
 struct PlantInfo {

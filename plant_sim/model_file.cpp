@@ -90,7 +90,7 @@ ModelFile::ModelFile() {
   list_effects();
 }
 
-/// Brings `effects` in line with what is declared; those that stay keep their values.
+/// Matches `effects` with the declared ones; effects that stay keep their values.
 void ModelFile::list_effects() {
   const std::vector<EffectInfo> all = effects_of(*this);
   effects.resize(all.size());

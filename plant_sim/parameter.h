@@ -6,7 +6,7 @@
 
 namespace plant_sim {
 
-/// All numbers in the unit that the name's suffix says.
+/// All numbers in the unit of the name's suffix.
 struct ParameterInfo {
   const char* name;
   const char* what;
@@ -18,8 +18,9 @@ struct ParameterInfo {
   /// as known, because the record cannot separate it from the others or because it is easily
   /// measured.
   double uncertainty_ratio = 0.0;
-  /// Effects: 0 = what the effect is; above, the number of a refinement of it, whose parameters
-  /// come and go together and have to earn their place.
+  /// Effects: 0 = main parameters; above 0, the number of a refinement, whose parameters are added
+  /// and
+  /// removed together.
   int refinement = 0;
 };
 

@@ -127,7 +127,7 @@ class EffectStore {
   }
 
   AllParameters parameters_;
-  AllParameters prepared_;  ///< as the last prepare() left them
+  AllParameters prepared_;  ///< state of the last prepare()
   std::tuple<typename E<S>::Memory...> memory_;
   std::array<bool, kCount> active_{};
   unsigned used_sites_ = 0;

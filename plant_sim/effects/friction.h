@@ -129,7 +129,8 @@ struct Friction {
   /// levels at both ends, which makes the error of a step one of its third order.
   static S deflected_m(const Parameters& p, const Memory& memory, const S& travel_m,
                        const S& rise) {
-    if (all(abs(travel_m) <= S(0.0))) return memory.deflection_m;  // what follows comes to the same
+    if (all(abs(travel_m) <= S(0.0)))
+      return memory.deflection_m;  // avoids a division by zero; the result is the same
     const S direction = select(travel_m < S(0.0), S(-1.0), S(1.0));
     const S mean_ratio = S(0.5) * (memory.rise_ratio + rise);
     const S level = max(level_at_N(p, direction, mean_ratio), S(kLeastLevel_N));

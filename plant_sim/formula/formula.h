@@ -24,7 +24,7 @@ struct Formula {
   ExpressionProgram program;
   std::vector<ParameterInfo> parameters;
   std::array<VariableRange, ExpressionProgram::kVariables>
-      ranges;  ///< of the site's variables; none is 0..0
+      ranges;  ///< ranges of the site's variables; none is 0..0
 };
 
 /// A formula as plain pointers, for simulation.

@@ -60,10 +60,10 @@ struct FormulaEffect {
   void visit(config::schema::Visitor& v);
 };
 
-/// A site that a formula can stand for.
+/// A site that accepts a formula.
 struct FormulaSite {
   Site site;
-  const char* result;                    ///< what the formula gives, as equations are printed
+  const char* result;                    ///< result of the formula, as printed in equations
   std::array<const char*, 2> variables;  ///< "" is none
   bool chained;  ///< without influence it gives its first variable; else 0, and it is added
   double guard;  ///< numerical bound of the result, far beyond anything real
@@ -78,7 +78,7 @@ inline constexpr std::array kFormulaSites = {
     FormulaSite{Site::sensor, "reading", {"y_m", ""}, true, 1e9},
 };
 
-/// Null when a formula cannot stand there.
+/// Null for a site that accepts no formula.
 [[nodiscard]] const FormulaSite* find_formula_site(std::string_view name);
 
 }  // namespace plant_sim

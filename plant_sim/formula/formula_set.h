@@ -84,13 +84,13 @@ class FormulaSet {
   [[nodiscard]] unsigned sites() const { return sites_; }
   [[nodiscard]] bool acts_on(Site site) const { return (sites_ & bit(site)) != 0; }
 
-  /// For the sites that hand a value on: what the formulas make of x one after the other.
+  /// Chained sites: applies the formulas to x one after the other.
   [[nodiscard]] S chain(Site site, S x) const {
     each_active(site, [&](const Effect& effect) { x = effect.result(x, S(0.0), x); });
     return x;
   }
 
-  /// For force and leakage: the sum of what they give.
+  /// Force and leakage: sum of the formulas.
   [[nodiscard]] S sum(Site site, const S& first, const S& second) const {
     S total = 0.0;
     each_active(site, [&](const Effect& effect) { total += effect.contribution(first, second); });
@@ -145,7 +145,7 @@ class FormulaSet {
     FormulaView formula;
     ExpressionEvaluator<S> run;
     std::vector<S> values;
-    std::vector<S> prepared;  ///< as the last prepare() left them
+    std::vector<S> prepared;  ///< state of the last prepare()
     MaxSlope<S> max_slope;
     S conductance_m3ps_per_Pa = 0.0;
     bool active = false;

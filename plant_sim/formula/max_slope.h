@@ -1,5 +1,6 @@
-// Upper bound on the slope of a formula, from differences; decides the plants' step length. It errs
-// to the large side; only what is narrower than the distance of the points tried is overlooked.
+// Upper bound on the slope of a formula, from differences; determines the plants' step length. The
+// bound
+// errs to the large side; only features narrower than the distance of the sample points are missed.
 #pragma once
 
 #include <array>
@@ -86,7 +87,7 @@ class MaxSlope {
 
  private:
   static constexpr int kPositions = 33;
-  static constexpr double kNear_m = 1e-3;  ///< of the range
+  static constexpr double kNear_m = 1e-3;  ///< distance within the range
   static constexpr std::size_t kOctaves = 24;
   static constexpr double kLeast_mps = 1e-4;
 
