@@ -14,11 +14,12 @@ namespace {
 /// Limit of the correction in one sample, where samples are far apart.
 constexpr double kLargestInitialisationGain = 0.5;
 constexpr double kLeast_s = 2.0;
-/// Two samples at least while a segment settles.
+/// At least two samples fall in the settling time of a segment.
 constexpr double kSlowest_s = 0.25;
 
-/// Speed at a record's first sample, over the RMS speed of the record, above which it begins in the
-/// midst of a motion. A start from rest under a command stays below a few per cent.
+/// Ratio of the speed at a record's first sample to its RMS speed above which the record begins
+/// during a
+/// motion. A start from rest under a command stays below a few per cent.
 constexpr double kMoving = 0.05;
 
 std::size_t settling_samples(double sample_time_s) {

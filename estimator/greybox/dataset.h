@@ -30,7 +30,7 @@ struct Dataset {
   std::vector<double> u_V;
   std::vector<double> y_m;
   std::vector<std::size_t> starts;  ///< first sample of each segment, ascending, the first is 0
-  std::vector<char> valid;          ///< 0 while a segment's unknown initial state dies away
+  std::vector<char> valid;          ///< 0 while a segment's unknown initial state decays
   std::vector<char> initialising;   ///< Initialisation; the observer corrects the model there
   std::vector<std::string> notes;   ///< restrictions stated by the record's reader
   GapSummary gaps;
@@ -48,7 +48,7 @@ inline constexpr double kInitialisation_per_s = 20.0;
 
 /// Below any rod sensor's noise; simulated records may show none at all.
 inline constexpr double kLeastFloor_m = 1e-9;
-/// Segments shorter than this are left out.
+/// Shorter segments are left out.
 inline constexpr double kShortest_s = 1.0;
 
 /// No sample is interpolated: each segment between gaps starts a new simulation, short segments are

@@ -23,20 +23,20 @@ using Step = EstimationProgress::Step;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// A lower cost by this amount restarts the fit from there.
 constexpr double kBetter = 0.1;
-/// Costs within this of the best, and values within one standard error, are the same minimum.
+/// Fits with a cost within this of the best and values within one standard error share a minimum.
 constexpr double kSameCost = 0.5;
 constexpr double kSamePlace = 1.0;
-/// Difference step of a plant's parameters, in logarithms: small, for nearly collinear ones.
+/// Difference step of the plant's parameters, logarithms: small, for nearly collinear ones.
 constexpr double kFine = 2e-5;
 constexpr double kCoarse = 3e-5;
 constexpr int kDescent = 30;
 constexpr double kSameSigma = 1.2;
-/// Damping to begin with: nearly Gauss and Newton's step, which collinear parameters need.
+/// Initial damping: nearly a Gauss-Newton step, which collinear parameters need.
 constexpr double kSlight = 1e-7;
 constexpr double kPolished = 1e-7;
 constexpr int kPolishing = 8;
 
-/// Effects such as dry friction or play make the cost ragged.
+/// Effects such as dry friction or play make the cost discontinuous.
 bool is_smooth(const plant_sim::ModelFile& model) {
   return std::none_of(model.effects.begin(), model.effects.end(),
                       [](const auto& effect) { return effect.present; });
@@ -108,7 +108,7 @@ class Estimator {
       if (i > 0 && cancelled()) return;
       FitOptions fit_options;
       fit_options.final_jacobian = false;
-      fit_options.tolerance = kCoarse;  // polished afterwards
+      fit_options.tolerance = kCoarse;  // the final fit is tighter
       if (smooth_) fit_options.logarithm_step = kFine;
       fit_options.observer_per_s = options_.observer_per_s;
       fit_options.cancel = options_.cancel;
@@ -126,7 +126,7 @@ class Estimator {
       out_.evaluations += found_[i].evaluations;
       if (found_[i].training_rms_m < found_[best].training_rms_m) best = i;
     }
-    // The priors count too: of the fits, the least cost by the measure of the best.
+    // Costs include the priors, so the fits are compared with the sigma of the best.
     problem_.sigma = found_[best].sigma_m;
     for (std::size_t i = 0; i < found_.size(); ++i) {
       if (found_[i].theta.size() > 0 && cost(found_[i]) < cost(found_[best])) best = i;
@@ -181,7 +181,7 @@ class Estimator {
     return estimator::nonlinear::cost_of(problem_, fitted.theta, fitted.residual_m);
   }
 
-  /// `known`: residual and Jacobian there, or null.
+  /// `known`: residual and Jacobian at `from`, or null.
   void polish(const VectorXd& from, const FitSummary* known) {
     estimator::nonlinear::Options how;
     how.cost_tolerance = kPolished;

@@ -63,16 +63,16 @@ struct EstimationOptions {
 
 struct EstimatedParameter {
   FreeParameter free;
-  double start = 0.0;  ///< SI, like what follows; the unit is in the name
+  double start = 0.0;  ///< SI like the following members; the unit is in the name
   double value = 0.0;
-  double std_error = 0.0;  ///< NaN at a bound, infinite where nothing sees it
+  double std_error = 0.0;  ///< NaN at a bound, infinite where not visible
   double low = 0.0;        ///< 95 % interval
   double high = 0.0;
-  int at_bound = 0;           ///< -1, 0, +1: of the values
+  int at_bound = 0;           ///< -1, 0, +1: bound reached by the value
   double record_share = 1.0;  ///< IdentifiabilityReport::share after the fit
   IntervalDoubt doubt = IntervalDoubt::none;
-  bool from_profile = false;  ///< the interval
-  bool low_found = true;      ///< false: no end within the bounds
+  bool from_profile = false;  ///< the interval is that of the profile
+  bool low_found = true;      ///< false: the profile reached the bound
   bool high_found = true;
   std::vector<estimator::nonlinear::ProfilePoint> profile;  ///< SI, ascending; may be empty
 };
@@ -86,9 +86,9 @@ struct MultistartCounts {
 
 /// Errors of one model, measured less modelled.
 struct SimulationErrors {
-  double rms_m = 0.0;  ///< drift-corrected, the samples that are fitted
+  double rms_m = 0.0;  ///< drift-corrected, training samples
   double heldout_rms_m = std::numeric_limits<double>::quiet_NaN();  ///< NaN: none held out
-  double free_run_rms_m = 0.0;                                      ///< nothing corrected
+  double free_run_rms_m = 0.0;                                      ///< without correction
   double fit_percent = 0.0;                                         ///< free run
   Eigen::VectorXd residual_m;                                       ///< all samples
   Eigen::VectorXd free_run_m;
@@ -107,8 +107,8 @@ struct EstimationSummary {
   double effective_samples = 0.0;
   MultistartCounts starts;
   bool interrupted = false;
-  double fit_s = 0.0;   ///< time taken up to the standard errors, profiles left out
-  int evaluations = 0;  ///< groups of eight simulations, without the profiles'
+  double fit_s = 0.0;   ///< time up to the standard errors, without profiles
+  int evaluations = 0;  ///< groups of eight simulations, without profiles
 };
 
 [[nodiscard]] EstimationSummary estimate(const EstimationProblem& problem,

@@ -21,18 +21,19 @@
 
 namespace estimator::greybox {
 
-/// Step of the difference quotients of logarithmic parameters: large enough for models with dry
-/// friction, whose cost is ragged.
+/// Difference step of logarithmic parameters: large enough for models with dry friction, whose cost
+/// is
+/// discontinuous.
 inline constexpr double kLogarithmStep = 1e-3;
 
 struct FitOptions {
   int max_iterations = 30;
-  double tolerance = 1e-4;     ///< relative decrease of the cost at which it ends
+  double tolerance = 1e-4;     ///< relative decrease of the cost at convergence
   int passes = 3;              ///< upper limit; each pass weights the residual again
   bool final_jacobian = true;  ///< false: FitSummary::jacobian may be stale in some columns
   double observer_per_s = kObserver_per_s;
   std::function<bool()> cancel;  ///< true ends the search, keeping the best so far
-  unsigned threads = 1;          ///< that simulate side by side within this fit
+  unsigned threads = 1;          ///< threads for simulations within this fit
   double logarithm_step = kLogarithmStep;
   // Residual at the start, where already known; otherwise empty.
   Eigen::VectorXd start_residual_m;
@@ -43,15 +44,15 @@ struct FitSummary {
   std::vector<FreeParameter> parameters;
   Eigen::VectorXd theta;       ///< search values
   Eigen::VectorXd residual_m;  ///< all samples
-  Eigen::MatrixXd jacobian;    ///< d residual / d x, all samples
-  std::vector<int> at_bound;   ///< -1, 0, +1 for each parameter
+  Eigen::MatrixXd jacobian;    ///< d residual / d theta, all samples
+  std::vector<int> at_bound;   ///< -1, 0, +1 per parameter
   double training_rms_m = 0.0;
   double validation_rms_m = 0.0;
   double cost = 0.0;
   double sigma_m = 0.0;  ///< s sqrt(c) of the last pass
   int evaluations = 0;   ///< groups of eight simulations
 
-  /// The value found for a parameter, NaN when it was not searched.
+  /// Value of a fitted parameter; NaN for any other.
   [[nodiscard]] double value(std::string_view name) const;
 };
 
@@ -61,7 +62,8 @@ struct FitSummary {
                                                        const std::vector<FreeParameter>& parameters,
                                                        double logarithm_step = kLogarithmStep);
 
-/// Weights: which samples count in the fit (Evidence::fits, or counts for the final values).
+/// `weights`: samples that count in the fit (FitDataset::training_mask, or all_mask for final
+/// values).
 [[nodiscard]] FitSummary fit(const plant_sim::ModelFile& model, const FitDataset& data,
                              const Eigen::VectorXd& weights,
                              const std::vector<FreeParameter>& parameters,
@@ -73,12 +75,11 @@ struct FitSummary {
 [[nodiscard]] Eigen::VectorXd std_errors(const FitDataset& data, const Eigen::VectorXd& weights,
                                          const FitSummary& fitted);
 
-/// (1 + rho) / (1 - rho) with the residual's correlation rho from one sample to the next, within
-/// 1 to 100.
+/// (1 + rho) / (1 - rho) with the residual's lag-1 autocorrelation rho; within 1 to 100.
 [[nodiscard]] double correlation_factor(const Eigen::VectorXd& residual_m,
                                         const Eigen::VectorXd& weights);
 
-/// The model with the values found; effects whose parameters were searched become present.
+/// The model with the fitted values; effects with fitted parameters become present.
 [[nodiscard]] plant_sim::ModelFile with_values(plant_sim::ModelFile model,
                                                const FitSummary& fitted);
 

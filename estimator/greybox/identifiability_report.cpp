@@ -151,7 +151,7 @@ class IdentifiabilityAnalysis {
 
   const std::vector<FreeParameter>& parameters_;
   VectorXd scale_;
-  VectorXd prior_;  ///< precision in those scales: 1, or 0 for none
+  VectorXd prior_;  ///< precision in scaled units: 1; 0 without prior
   MatrixXd record_;
   double condition_ = 0.0;
 };

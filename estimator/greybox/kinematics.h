@@ -24,14 +24,16 @@ struct Kinematics {
   std::vector<double> speed_mps;  ///< signed, positive extends
   std::vector<double> acceleration_mps2;
   std::vector<Direction> direction;
-  double rest_mps = 0.0;  ///< slower than this is at rest
+  double rest_mps = 0.0;  ///< speeds below count as at rest
 };
 
 inline constexpr double kHalfWindow_s = 0.05;
 
 /// A rod slower than four standard deviations of the speed's noise, and slower than 1 % of its RMS
-/// speed, counts as at rest; noise_m is the position's. "Reversing" is from 50 ms before the rod
-/// leaves one direction until 50 ms after it goes the other way, where that takes at most 0.5 s.
+/// speed,
+/// is at rest; noise_m: noise of the position. "Reversing" lasts from 50 ms before the rod leaves
+/// one
+/// direction until 50 ms after it moves the other way, where the reversal takes at most 0.5 s.
 [[nodiscard]] Kinematics kinematics(const Dataset& record, double noise_m);
 
 /// First and one past the last sample of each segment.

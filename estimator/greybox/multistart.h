@@ -1,5 +1,6 @@
-// Where searches begin: the model file's values first, then values drawn about them, the same each
-// time.
+// Starting points of a multistart search: the model file's values first, then reproducible random
+// values
+// about them.
 #pragma once
 
 #include <Eigen/Core>

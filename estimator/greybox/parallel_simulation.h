@@ -1,4 +1,4 @@
-// More than eight parameter sets at once: an DatasetSimulation on each of several threads.
+// Simulation of more than eight parameter sets: one DatasetSimulation on each of several threads.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@ namespace estimator::greybox {
 
 class ParallelSimulation {
  public:
-  /// `threads` counts the caller's; at least 1.
+  /// `threads` includes the calling thread; at least 1.
   ParallelSimulation(const plant_sim::ModelFile& model, const FitDataset& data,
                      const std::vector<FreeParameter>& parameters, double observer_per_s,
                      unsigned threads);

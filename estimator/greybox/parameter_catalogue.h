@@ -1,4 +1,4 @@
-// Every parameter that a model may be searched for, by the names of model files.
+// Catalogue of every parameter that can be fitted, by the names of model files.
 #pragma once
 
 #include <string>
@@ -10,10 +10,10 @@
 
 namespace estimator::greybox {
 
-/// A parameter that may be fitted.
+/// A parameter that can be fitted.
 struct CatalogueParameter {
   std::string name;
-  std::string effect;  ///< empty: the plant's
+  std::string effect;  ///< empty: a plant parameter
   plant_sim::ParameterInfo info;
   FreeParameter free;
 };
@@ -22,7 +22,7 @@ struct CatalogueParameter {
 [[nodiscard]] std::vector<CatalogueParameter> parameter_catalogue(
     const plant_sim::ModelFile& model);
 
-/// The whole range that the parameter may have, no prior.
+/// Widens to the parameter's whole range, without prior.
 void widen_to_full_range(CatalogueParameter& known);
 
 /// Names for a list of allowed values: parameters of the plant and of effects in the model.
@@ -36,7 +36,7 @@ void widen_to_full_range(CatalogueParameter& known);
                               const std::vector<std::string>& near,
                               const std::vector<std::string>& shown_names);
 
-/// Words of lists "a,b,c", one after the other.
+/// Names of comma-separated lists, concatenated.
 [[nodiscard]] std::vector<std::string> split_names(const std::vector<std::string>& lists);
 
 }  // namespace estimator::greybox

@@ -17,7 +17,7 @@ namespace {
 using config::schema::bad_config;
 using config::schema::Visitor;
 
-/// Two sample times are the same within clock accuracy.
+/// Relative difference up to which two sample times are equal.
 constexpr double kSameSampleTime = 1e-3;
 
 std::string text_of(double value) { return fmt::format("{:.9g}", value); }

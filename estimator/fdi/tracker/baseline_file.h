@@ -19,22 +19,22 @@ struct BaselineFile {
 
   std::int64_t version = kVersion;
   std::string rig_id;                   ///< "": of any rig
-  std::string model;                    ///< its name
+  std::string model;                    ///< name of the model
   std::string model_values;             ///< values_line() of the model
-  std::string source;                   ///< the record
-  std::vector<std::string> parameters;  ///< tracked
+  std::string source;                   ///< name of the record
+  std::vector<std::string> parameters;  ///< tracked parameters
   std::vector<double> values;           ///< SI
   double sample_time_s = 0.0;
   double window_s = 0.0;
   double observer_per_s = 0.0;
   double rms_m = 0.0;
   double noise_floor_m = 0.0;
-  greybox::tracking::ChamberErrors chambers;  ///< not known: chamber pressures are not used
+  greybox::tracking::ChamberErrors chambers;  ///< unknown: chamber pressures are not used
 
   void visit(config::schema::Visitor& v);
 };
 
-/// All that the model is, as one line (estimator/fdi/fingerprint.h).
+/// The whole model as one line (estimator/fdi/fingerprint.h).
 [[nodiscard]] std::string values_line(const plant_sim::ModelFile& model);
 
 [[nodiscard]] BaselineFile baseline_file(const plant_sim::ModelFile& model,
@@ -52,7 +52,7 @@ struct BaselineFile {
                                          const greybox::tracking::ParameterSet& set,
                                          double sample_time_s, const std::string& rig_id);
 
-/// Search values of every parameter of the choice.
+/// theta of every parameter of the set.
 [[nodiscard]] greybox::tracking::Baseline baseline_of(const BaselineFile& file,
                                                       const greybox::tracking::ParameterSet& set);
 

@@ -1,4 +1,4 @@
-// The kinds of sources that know physics, for PipelineConfig: [[tracker]] (tracker_config.h).
+// Detection methods that use a physical model, for PipelineConfig: [[tracker]] (tracker_config.h).
 #pragma once
 
 #include <span>

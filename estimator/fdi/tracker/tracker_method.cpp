@@ -21,7 +21,8 @@ using estimator::fdi::Severity;
 /// longer explains the rig. A window across a change is unexplained as well, but only once.
 constexpr double kLong = 1.5;
 constexpr std::size_t kMostLessons = 100000;
-/// Numbers of a lesson before its parameters: error, then each chamber's (ChamberFit).
+/// Numbers per learned window before its parameters: position error, then each chamber's
+/// (ChamberFit).
 constexpr std::size_t kErrors = 7;
 
 std::size_t count_of(double duration_s, double each_s) {

@@ -67,7 +67,7 @@ class TrackerSource final : public estimator::fdi::DetectionMethod {
   std::optional<std::string> probe_;  ///< suggested motion, once it was computed
   double rms_m_ = 0.0;
   int samples_ = 0;
-  std::int64_t unexplained_ = 0;  ///< windows in a row
+  std::int64_t unexplained_ = 0;  ///< consecutive unexplained windows
   std::vector<Said>
       said_;  ///< one per tracked parameter, one per followed parameter, then "unexplained"
 };

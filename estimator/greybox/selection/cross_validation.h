@@ -10,7 +10,7 @@
 
 namespace estimator::greybox::selection {
 
-/// `more` has the parameters of `plain` and others. With `explained` the observer helps.
+/// `more` has the parameters of `plain` and further ones. `explained`: score with the observer.
 [[nodiscard]] bool cross_validates(const SearchContext& context, bool explained,
                                    const ParameterSubset& plain, const ParameterSubset& more);
 

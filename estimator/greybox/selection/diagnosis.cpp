@@ -61,7 +61,7 @@ std::vector<Localisation> localise_remainder(const SearchContext& context, const
   return share(left) >= kAsClear * share(whole) ? left : whole;
 }
 
-/// Groups that a motion could separate make the verdict undetermined; others are the same equation.
+/// Groups that a motion could separate make the verdict undetermined; other groups are equivalent.
 void classify_indistinguishable(const SearchContext& context, const ModelStage& found,
                                 Diagnosis& result) {
   for (const IndistinguishableModels& models :

@@ -40,11 +40,11 @@ struct Diagnosis {
   std::vector<std::vector<std::string>>
       same_here;  ///< groups that are equivalent on this plant for every motion
   double noise_floor_m = 0.0;
-  double nominal_rms_m = 0.0;              ///< held-out, the model file as it is
+  double nominal_rms_m = 0.0;              ///< held-out, the model file unchanged
   double rms_before_m = 0.0;               ///< held-out, its parameters fitted
   double rms_after_m = 0.0;                ///< held-out, better model
   std::vector<ParameterValue> parameters;  ///< better model, fitted to all samples
-  std::vector<Localisation> where;         ///< best first; empty when nothing is left to explain
+  std::vector<Localisation> where;         ///< best first; empty when everything is explained
   std::vector<Step> steps;
   Excitation excitation;             ///< insufficient: Verdict::not_excited
   std::optional<double> searched_s;  ///< length of the segments searched; none: all samples

@@ -19,7 +19,7 @@ constexpr int kReweightings = 3;
 constexpr int kIterations = 15;
 constexpr double kTolerance = 1e-3;
 
-/// Residual and its derivatives at the rival's values.
+/// Residual and its derivatives at the rival's theta.
 MatrixXd with_derivatives(const SearchContext& context, const FitDataset& data,
                           const FitSummary& rival) {
   DatasetSimulation run(context.problem.model, data, rival.parameters);

@@ -1,4 +1,4 @@
-// Which other effects explain the record about as well as those that were found.
+// Other effects that explain the record about as well as the found ones.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace estimator::greybox::selection {
 struct IndistinguishableModels {
   std::string found;
   std::vector<std::string> others;       ///< best first
-  std::vector<FitSummary> explanations;  ///< with `found`, then one for each of the others
+  std::vector<FitSummary> explanations;  ///< with `found`, then one per entry of `others`
 };
 
 /// Empty when no found effect has a rival. Effects that contain a found one as a special case (a

@@ -39,7 +39,7 @@ struct Couple {
   const Effect* second = nullptr;
   double cost = std::numeric_limits<double>::infinity();
   std::vector<FreeParameter> parameters;
-  std::vector<VectorXd> starts;  ///< one seen from each base
+  std::vector<VectorXd> starts;  ///< one per base
 };
 
 std::vector<Effect> effects_of(const SearchContext& context,
@@ -55,7 +55,7 @@ std::vector<Effect> effects_of(const SearchContext& context,
   return effects;
 }
 
-/// The best combination of sizes, the model's own parameters being at `base`.
+/// Best combination of sizes with the model's own parameters at `base`.
 void screened(const plant_sim::ModelFile& model, const FitDataset& data,
               const Projection& projection, const VectorXd& base, Couple& couple) {
   DatasetSimulation run(model, data, couple.parameters);

@@ -13,8 +13,9 @@
 
 namespace estimator::greybox::selection {
 
-/// On top of a stage that has its Jacobian, best first by held-out error. `without`: effects that
-/// have been tried with every other one already.
+/// For a stage with its Jacobian; best first by held-out error. `without`: effects already combined
+/// with
+/// every other one.
 [[nodiscard]] std::vector<Candidate> pair_search(const SearchContext& context,
                                                  const ModelStage& stage,
                                                  const std::vector<std::string>& without);

@@ -10,7 +10,7 @@ constexpr int kStride = 8;
 /// Error ratio to the best at the first check above which a fit is stopped.
 constexpr double kHopeless = 3.0;
 constexpr double kHopelessAtFirst = 10.0;
-/// This much worse is near.
+/// Error ratio that counts as near.
 constexpr double kNear = 1.1;
 /// Limit of the remaining decrease, in decreases like that of the last check.
 constexpr double kPatience = 4.0;

@@ -1,7 +1,8 @@
-// A structure selection: which physical effects does a model lack, judged by records?
+// Structure selection: the problem of which physical effects a model lacks, judged by records.
 //
-// DiagnosisProblem is the question, DiagnosisOptions how it is answered; every step of the search
-// works on both, as a SearchContext.
+// DiagnosisProblem is the question, DiagnosisOptions the procedure; every step of the search works
+// on
+// both as a SearchContext.
 #pragma once
 
 #include <functional>

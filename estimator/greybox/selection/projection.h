@@ -21,10 +21,11 @@ class Projection {
 
   /// With the fitted model's own residual and no signature.
   [[nodiscard]] double cost() const { return cost_; }
-  /// With another residual, its prior taken as that of the fitted model.
+  /// With another residual; its prior is that of the fitted model.
   [[nodiscard]] double remaining(const Eigen::Ref<const Eigen::VectorXd>& residual_m) const;
-  /// The cost and b with another residual (its prior taken as that of the fitted model) and a
-  /// signature, both as long as the weights.
+  /// Cost and b with another residual (its prior is that of the fitted model) and a signature, both
+  /// as long
+  /// as the weights.
   [[nodiscard]] std::pair<double, double> with(
       const Eigen::Ref<const Eigen::VectorXd>& residual_m,
       const Eigen::Ref<const Eigen::VectorXd>& signature_m) const;
@@ -46,7 +47,7 @@ class Projection {
                                  const Eigen::VectorXd& other_onto) const;
 
   Eigen::VectorXd weights_;
-  Eigen::MatrixXd weighted_jacobian_;  ///< per s, only counted samples
+  Eigen::MatrixXd weighted_jacobian_;  ///< divided by s, counted samples only
   Eigen::MatrixXd jacobian_;
   Eigen::LLT<Eigen::MatrixXd> normal_;
   double per_sigma_ = 0.0;

@@ -30,13 +30,13 @@ struct Variable {
 struct Variables {
   std::vector<Variable> all;  ///< "u" twice: by its size, the same either way, and as it is
   Eigen::VectorXd command_V;
-  Eigen::VectorXd position_m;  ///< the model's, about its mean over the counted samples
-  Eigen::VectorXd speed_mps;   ///< the model's
+  Eigen::VectorXd position_m;  ///< modelled, about its mean over the counted samples
+  Eigen::VectorXd speed_mps;   ///< modelled
 };
 
-/// The command as measured; position, speed and acceleration of the stage's model, because a
-/// measured position carries the very noise that it would then explain; time since each record
-/// began.
+/// Command as measured; position, speed and acceleration of the stage's model, because a measured
+/// position
+/// carries the noise it would then explain; time since each record's start.
 [[nodiscard]] Variables variables(const SearchContext& context, const ModelStage& stage);
 
 /// h_i of one variable over the samples with `counts` 1 (0: ignored). Two columns or more; none

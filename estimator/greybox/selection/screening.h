@@ -16,25 +16,25 @@
 
 namespace estimator::greybox::selection {
 
-/// Refinements that take part from the start; later ones are tried when the effect is settled.
+/// Refinements included from the start; later ones are tried once the effect has settled.
 inline constexpr int kFirstRefinements = 2;
 
-/// A model as far as it has come: effects added, and all parameters fitted.
+/// Stage of the search: effects added so far, all parameters fitted.
 struct ModelStage {
   std::vector<std::string> added;  ///< in order
   FitSummary fitted;
 };
 
-/// The stage's search values, those of the plant and its present effects as in the model file.
+/// The stage's theta with the model file's values for the plant and its present effects.
 [[nodiscard]] Eigen::VectorXd with_file_values(const SearchContext& context,
                                                const ModelStage& stage);
 
 struct ScreeningResult {
   std::string effect;
-  /// Expected score RMS over that of the stage: 1 = of no use.
+  /// Expected validation RMS relative to the stage's; 1 = no gain.
   double expected_ratio = 1.0;
   std::vector<FreeParameter> parameters;  ///< the stage's, then the effect's
-  std::vector<Eigen::VectorXd> starts;    ///< where to begin, the most promising first
+  std::vector<Eigen::VectorXd> starts;    ///< starting points, most promising first
 };
 
 /// Screens each effect, most promising first, from the stage's parameters and from the model
@@ -52,7 +52,7 @@ struct RefinedCandidate {
   FitSummary fitted;
 };
 
-/// Fits from every start of the glance and keeps the best by the fitted samples.
+/// Fits from every start of the screening and keeps the best by training error.
 [[nodiscard]] RefinedCandidate refine(const SearchContext& context, const ScreeningResult& screened,
                                       const FitOptions& options);
 

@@ -10,10 +10,10 @@ inline constexpr double kScreeningSegment_s = 8.0;
 
 struct ScreeningSegment {
   FitDataset data;    ///< all samples count
-  FitSummary fitted;  ///< the model fitted to the whole, its residual there
+  FitSummary fitted;  ///< fitted to all samples, with its residual on the segment
 };
 
-/// The stretch of the first record with the longest way, kExcerpt_s long or the whole record.
+/// Segment of the first record with the longest travel, or the whole of a short record.
 [[nodiscard]] ScreeningSegment screening_segment(const FitDataset& data, const FitSummary& fitted);
 
 }  // namespace estimator::greybox::selection

@@ -19,19 +19,19 @@ using Eigen::VectorXd;
 constexpr double kQuickTolerance = 2e-3;
 constexpr int kThoroughIterations = 15;
 constexpr double kThoroughTolerance = 3e-5;
-/// Candidates within this of the best are fitted to the end.
+/// Ratio within which candidates are fitted to convergence.
 constexpr double kContender = 0.5;
 constexpr std::size_t kMostContenders = 3;
 /// At the noise floor the screening is as reliable as the fit: effects it rejects are absent.
 constexpr double kAtFloor = 1.05;
 constexpr double kExpectable = 0.002;
-/// Iterations for effects that come after one that explains the record.
+/// Iterations for effects after one that explains the record.
 constexpr int kGlimpseIterations = 4;
-/// Then, other starts are tried only for effects within this factor of the best.
+/// Ratio to the best within which other starts are tried then.
 constexpr double kFar = 3.0;
-/// After the first effect, that many of the most promising others are fitted.
+/// Number of further effects that are fitted after the first one was added.
 constexpr std::size_t kLookedThrough = 9;
-/// And that many are tried from other starts too.
+/// Number of these that are tried from other starts.
 constexpr std::size_t kAgain = 3;
 constexpr std::size_t kAllStarts = 1000;
 constexpr std::size_t kPairable = 5;
@@ -157,7 +157,7 @@ void refine_best(const SearchContext& context, const ModelStage& stage,
   });
   sort_by_score(candidates);
   for (std::size_t i = contenders; i < candidates.size(); ++i) {
-    candidates[i].fitted.jacobian.resize(0, 0);  // large, and of no use any more
+    candidates[i].fitted.jacobian.resize(0, 0);  // large and no longer needed
   }
 }
 
@@ -220,7 +220,7 @@ Round single_round(const SearchContext& context, const ModelStage& stage, int nu
   in_parallel(screened.size(), context.options.threads, [&](std::size_t i) {
     const Candidate& candidate = round.candidates[i];
     const bool far = explained && candidate.validation_rms_m > kFar * best_m;
-    // later stages have bent their parameters less
+    // later stages depend less on the start
     const bool later = !stage.added.empty() && i >= kAgain;
     if (candidate.fitted_at_all && !far && !later) work(i, 1, kAllStarts);
   });

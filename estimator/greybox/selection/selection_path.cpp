@@ -15,7 +15,7 @@ constexpr double kFar = 1.5;
 /// An effect that removes this share of the held-out error needs no cross-validation.
 constexpr double kPlainToSee = 0.5;
 
-/// `before` with one effect more, which starts as it is in the final model.
+/// `before` with one further effect, which starts at its value in the final model.
 ParameterSubset taking(const ModelStage& before, const ModelStage& final,
                        const std::string& effect) {
   ParameterSubset selection = subset(before.fitted, [](const auto&) { return true; });

@@ -16,7 +16,7 @@ namespace estimator::greybox::selection {
 namespace {
 
 constexpr std::size_t kMostEffects = 4;
-/// One after another; when these do not explain the record, two at once are tried before any more.
+/// Number of effects added one by one before pairs are tried on an unexplained record.
 constexpr std::size_t kBeforePairSearch = 2;
 /// Effects of the first round that are tried as alternative starts when the best leads nowhere.
 constexpr std::size_t kAlternativeStarts = 3;
@@ -27,7 +27,7 @@ constexpr double kHelpful = 0.7;
 /// Remaining error over the noise above which alternative starts are tried.
 constexpr double kLost = 2.0;
 constexpr double kSamePath = 0.1;
-/// A gain must also be more than chance, unless it is a large one.
+/// Largest probability of chance of a gain, unless the gain is large.
 constexpr double kChance = 0.01;
 constexpr double kLargeGain = 0.1;
 /// Shift of the parameters, in prior widths, above which an explanation is implausible.
@@ -52,12 +52,13 @@ bool is_gain(const SearchContext& context, const ModelStage& stage, const Candid
   const double gain = 1.0 - candidate.validation_rms_m / stage.fitted.validation_rms_m;
   const double fit_gain = 1.0 - candidate.fitted.training_rms_m / stage.fitted.training_rms_m;
   const double enough = worthwhile * static_cast<double>(candidate.effects.size());
-  // chance: steadily better wherever it was scored, or as much better where it was fitted
+  // not chance: better on the validation samples throughout, or equally better on the training
+  // samples
   return candidate.fitted_at_all && gain > enough && !leaves_its_range(stage, candidate) &&
          (gain > kLargeGain || candidate.p_value < kChance || fit_gain > enough);
 }
 
-/// How far the parameters have gone from what was expected of them, in squared standard deviations.
+/// Squared shift of the parameters from their priors, in standard deviations.
 double strain(const FitSummary& fitted) {
   double sum = 0.0;
   for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
@@ -86,7 +87,7 @@ const Candidate& simplest(const SearchContext& context, const std::vector<Candid
   return *chosen;
 }
 
-/// Rounds from a stage until it has `most` effects or nothing helps any more: then false.
+/// Rounds from a stage until it has `most` effects; false when nothing helps any more.
 bool extend_branch(const SearchContext& context, ModelStage& stage, std::vector<Round>& rounds,
                    bool pairs_too, std::size_t most = kMostEffects) {
   while (stage.added.size() < most && !context.cancelled()) {
@@ -116,13 +117,13 @@ bool extend_branch(const SearchContext& context, ModelStage& stage, std::vector<
   return true;
 }
 
-/// A search from the first stage to where nothing helped any more.
+/// A search from the first stage to its end.
 struct SearchBranch {
   ModelStage stage;
   std::vector<Round> rounds;
 };
 
-/// The search from `first` with a candidate as its beginning, after the round `begun`.
+/// Search from `first` with a candidate as its beginning, after the round `begun`.
 SearchBranch branch_from(const SearchContext& context, const ModelStage& first,
                          const Candidate& candidate, const Round& begun) {
   SearchBranch other{with(first, candidate), {begun}};
@@ -140,18 +141,18 @@ bool improves_on(const SearchBranch& other, const SearchBranch& best) {
   return other.stage.fitted.validation_rms_m < (1.0 - kRivals) * best.stage.fitted.validation_rms_m;
 }
 
-/// Two effects together as the beginning, where one after another has not explained the record.
+/// Pair of effects as the beginning, where a stepwise search has not explained the record.
 std::optional<SearchBranch> start_with_pair(const SearchContext& context, const ModelStage& first,
                                             const SearchBranch& best) {
   if (best.rounds.empty() || is_explained(context, best.stage) || context.cancelled()) return {};
-  std::vector<std::string> begun;  // on which the second round has tried all others
+  std::vector<std::string> begun;  // beginning with which the second round has tried all others
   if (best.rounds.size() > 1) begun = best.rounds[1].before.added;
   const std::vector<Candidate> pairs = pair_search(context, first, begun);
   if (pairs.empty() || !is_gain(context, first, pairs.front())) return {};
   return branch_from(context, first, pairs.front(), best.rounds.front());
 }
 
-/// The search one effect after another, or with two at once where that leads further.
+/// Stepwise search, with pairs where these lead further.
 SearchBranch search_forward(const SearchContext& context, const ModelStage& first) {
   SearchBranch best{first, {}};
   const bool may_go_on = extend_branch(context, best.stage, best.rounds, true, kBeforePairSearch);
@@ -162,7 +163,7 @@ SearchBranch search_forward(const SearchContext& context, const ModelStage& firs
   return other && improves_on(*other, best) ? *other : best;
 }
 
-/// The next best effects of the first round as the beginning.
+/// Searches from the next best effects of the first round.
 void try_alternative_starts(const SearchContext& context, const ModelStage& first,
                             SearchBranch& best) {
   if (best.rounds.empty()) return;

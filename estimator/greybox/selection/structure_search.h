@@ -25,20 +25,20 @@ inline constexpr double kWorthwhile = 0.01;
 /// The same limit where the error is hardly more than noise, which hides much of an effect. Healthy
 /// records of the thesis's actuator stay below a quarter of this value.
 inline constexpr double kWorthwhileInNoise = 0.004;
-/// Held-out error over the noise floor above which something is still unexplained.
+/// Ratio of held-out error to noise floor above which the record is unexplained.
 inline constexpr double kUnexplained = 1.15;
-/// Rivals within this of the best, in held-out error, explain the record about as well.
+/// Ratio of held-out errors within which rivals explain the record about as well as the best.
 inline constexpr double kRivals = 0.05;
 
-/// One of the two, for a held-out error.
+/// The applicable one of the two limits at a held-out error.
 [[nodiscard]] double worthwhile_at(const SearchContext& context, double validation_rms_m);
 
 struct Candidate {
-  std::vector<std::string> effects;  ///< one, or two tried together
+  std::vector<std::string> effects;  ///< one, or a pair
   double expected_ratio = 1.0;       ///< by the screening; 1 for pairs
   FitSummary fitted;                 ///< with the stage's parameters
   double validation_rms_m = std::numeric_limits<double>::infinity();
-  double p_value = 1.0;  ///< that its gain over the stage is chance
+  double p_value = 1.0;  ///< probability that the gain over the stage is chance
   bool fitted_at_all = false;
 };
 
@@ -49,17 +49,17 @@ struct Round {
 };
 
 struct StructureSearch {
-  double nominal_rms_m = 0.0;    ///< held-out, the model file as it is
+  double nominal_rms_m = 0.0;    ///< held-out, the model file unchanged
   std::vector<Round> rounds;     ///< rounds of the path that led to the final model
-  std::vector<ModelStage> path;  ///< from the model as given to the final one, an effect at a time
-  ModelStage final;              ///< the last of them
+  std::vector<ModelStage> path;  ///< from the model as given to the final one, one effect at a time
+  ModelStage final;              ///< last stage of the path
   bool interrupted = false;
-  double preview_s = 0.0;  ///< until the first ranking of all effects was known
+  double preview_s = 0.0;  ///< time to the first ranking of all effects
 };
 
 [[nodiscard]] StructureSearch search_structure(const SearchContext& context);
 
-/// Held-out error of the model file as it is.
+/// Held-out error of the model file unchanged.
 [[nodiscard]] double nominal_rms_m(const SearchContext& context);
 /// The model as given with its parameters fitted.
 [[nodiscard]] ModelStage first_stage(const SearchContext& context);

@@ -1,4 +1,4 @@
-// The sizes of an effect that are tried before anything is fitted.
+// Trial sizes of an effect for the screening.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,8 +28,9 @@ namespace estimator::greybox::selection {
 /// linear combinations are the effect with any size and phase.
 [[nodiscard]] Eigen::MatrixXd waves(const std::vector<FreeParameter>& parameters,
                                     const FitDataset& data, double turns);
-/// The effect of size and phase such that it is `first` times the first of waves() and `second`
-/// times the second.
+/// Size and phase with which the effect is `first` times the first column of waves() plus `second`
+/// times
+/// the second.
 [[nodiscard]] Eigen::VectorXd wave_of(const std::vector<FreeParameter>& parameters,
                                       const Eigen::VectorXd& wave, double first, double second);
 /// Limits a search to the neighbourhood of the wavelength at `own`, and keeps the sensor's reading
@@ -37,9 +38,11 @@ namespace estimator::greybox::selection {
 void hold_wavelength(const plant_sim::EffectInfo& effect, const Eigen::VectorXd& own,
                      std::span<FreeParameter> parameters);
 
-/// Scales the effect's size by `share`, within its bounds; a negative share of a size that cannot
-/// be negative turns a periodic effect by half a period. False where that is not possible: the size
-/// is then scaled by the amount alone.
+/// Scales the effect's size by `share` within its bounds; a negative share of a non-negative size
+/// shifts a
+/// periodic effect by half a period. Returns false where that is not possible: the size is then
+/// scaled
+/// by the magnitude alone.
 bool scale_size(const std::vector<FreeParameter>& parameters, double share,
                 Eigen::Ref<Eigen::VectorXd> own);
 

@@ -12,7 +12,7 @@ using Eigen::Index;
 
 /// Standard error, search units, up to which a window qualifies for the baseline.
 constexpr double kLeastKnown = 0.05;
-/// Normal numbers: their standard deviation over the median of their distances.
+/// Standard deviation over median absolute deviation of a normal distribution.
 constexpr double kOfMedian = 1.4826;
 
 double median(std::vector<double> values) {

@@ -15,13 +15,13 @@ namespace estimator::greybox::tracking {
 /// Healthy values and errors of a rig.
 struct Baseline {
   double rms_m = 0.0;     ///< error of a window; at least the noise floor
-  Eigen::VectorXd theta;  ///< every parameter of the choice, search units
+  Eigen::VectorXd theta;  ///< every parameter of the set, search units
   ChamberErrors chambers{};
 
   [[nodiscard]] ErrorScales errors() const { return {rms_m, chambers}; }
 };
 
-/// Whether a window may serve to learn from: explained, every parameter known to some per cent.
+/// Whether a window qualifies for the baseline: explained, every parameter known to a few per cent.
 [[nodiscard]] bool qualifies_for_baseline(const WindowResult& window, const ParameterSet& set);
 
 /// Index of the first tracked parameter that no window determines well enough; none: the windows

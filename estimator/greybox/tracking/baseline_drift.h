@@ -27,7 +27,7 @@
 
 namespace estimator::greybox::tracking {
 
-/// Ratios are of the healthy value; of an effect's parameter: of its typical size.
+/// Ratios to the healthy value; for an effect's parameter to its typical size.
 struct DriftSettings {
   std::vector<std::string> parameters;  ///< names of tracked parameters
   double ratio_per_h = 0.5;
@@ -38,20 +38,21 @@ class BaselineDrift {
  public:
   static constexpr double kGain = 0.2;
 
-  /// Throws config::schema::ConfigError that begins with `where` for one that is not tracked.
+  /// Throws config::schema::ConfigError that begins with `where` for a parameter that is not
+  /// tracked.
   BaselineDrift(const ParameterSet& set, const DriftSettings& following,
                 const std::string& where = "follow");
 
-  /// Search values of the healthy rig, of every parameter.
+  /// theta of every parameter of the healthy rig.
   void take(const Eigen::VectorXd& learnt);
   /// One window. `explained`: by the model, with or without motion.
   void follow(const WindowResult& window, bool explained, const ChangeDetector& detector,
               Eigen::VectorXd& baseline);
 
   [[nodiscard]] std::size_t size() const noexcept { return followed_.size(); }
-  /// Which tracked parameter the number-th is.
+  /// Index of the tracked parameter.
   [[nodiscard]] std::size_t parameter(std::size_t number) const { return followed_[number].index; }
-  /// At the end of the distance that is followed: -1 below, +1 above; 0: within.
+  /// -1: at the lower end of the range, +1: at the upper end; 0: within.
   [[nodiscard]] int at_end(std::size_t number, const Eigen::VectorXd& baseline) const;
   [[nodiscard]] double learnt(std::size_t number) const { return followed_[number].learnt; }
 

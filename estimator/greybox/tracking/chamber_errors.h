@@ -21,36 +21,36 @@ namespace estimator::greybox::tracking {
 struct ChamberError {
   double rms_Pa = 0.0;     ///< RMS of e; 0: unknown
   double offset_Pa = 0.0;  ///< b
-  double weight_Pa = 0.0;  ///< sigma of the fit where the position's is its healthy error
+  double weight_Pa = 0.0;  ///< sigma of the fit when the position has its healthy error
 };
 
 struct ChamberErrors {
   ChamberError in;
   ChamberError out;
-  double offset_sd_Pa = 0.0;  ///< s, of either
+  double offset_sd_Pa = 0.0;  ///< S, of both chambers
 
-  /// Otherwise pressures are not used.
+  /// False: pressures are not used.
   [[nodiscard]] bool known() const noexcept {
     return in.rms_Pa > 0.0 && out.rms_Pa > 0.0 && in.weight_Pa > 0.0 && out.weight_Pa > 0.0;
   }
   /// Keys of the baseline file, all optional.
   void visit(config::schema::Visitor& v);
-  /// Bit for bit (state_archive.h).
+  /// Bit-exact (state_archive.h).
   void serialize(estimator::StateArchive& archive);
 };
 
-/// How far a window is from the model, and by what its residuals are weighed.
+/// Healthy errors that weight a window's residuals.
 struct ErrorScales {
   double rms_m = 0.0;        ///< position
-  ChamberErrors chambers{};  ///< not known: the position alone counts
+  ChamberErrors chambers{};  ///< unknown: the position alone counts
 };
 
 // Ratios to the model's supply pressure:
 /// Smallest allowed drift of an offset, as a ratio to the model's supply pressure.
 inline constexpr double kDrift_ratio = 0.002;
-/// The least error that a chamber pressure is taken to have: better than any transducer.
+/// Least assumed error of a chamber pressure: below any transducer's.
 inline constexpr double kLeastError_ratio = 1e-4;
-/// Standard deviations s of c: beyond, the readings do not belong to the model.
+/// Limit of c in standard deviations S, above which the readings do not fit the model.
 inline constexpr double kMostOffset = 5.0;
 
 }  // namespace estimator::greybox::tracking

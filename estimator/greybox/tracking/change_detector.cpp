@@ -98,7 +98,7 @@ void ChangeDetector::update(double t_s, const std::vector<ParameterChange>& name
     }
     track.direction = 0;
     const double off = std::abs(seen[i].theta - baseline[static_cast<Eigen::Index>(i)]);
-    // The change of another cause may show here: then nothing is known of this one.
+    // Another change may hide this one: without a named change the return is certain.
     const bool back = named.empty() || off < track.least;
     if (track.active >= 0 && back && off + kBack * seen[i].std_error < track.least) {
       changes_[static_cast<std::size_t>(track.active)].cleared_s = t_s;

@@ -16,13 +16,13 @@ namespace estimator::greybox::tracking {
 struct DetectedChange {
   ParameterChange named;  ///< from the latest whole window that named it, else from its first part
   double raised_s = 0.0;
-  double cleared_s = std::numeric_limits<double>::quiet_NaN();  ///< NaN: still there
-  double confidence = 0.0;  ///< that the change is more than the least
+  double cleared_s = std::numeric_limits<double>::quiet_NaN();  ///< NaN: active
+  double confidence = 0.0;  ///< probability that the change exceeds the least change
 
   [[nodiscard]] bool active() const { return !(cleared_s == cleared_s); }
 };
 
-/// A tracked parameter as a window saw it.
+/// A tracked parameter's estimate in one window.
 struct TrackedValue {
   double theta = 0.0;
   double std_error = 0.0;
@@ -33,16 +33,16 @@ class ChangeDetector {
   ChangeDetector() = default;
   ChangeDetector(const ParameterSet& set, const Thresholds& thresholds);
 
-  /// `seen` has all tracked parameters; `whole`: of a whole window, not of a part.
+  /// `seen`: all tracked parameters; `whole`: a whole window, not a part.
   void update(double t_s, const std::vector<ParameterChange>& named,
               const std::vector<TrackedValue>& seen, const Eigen::VectorXd& baseline, bool whole);
 
   [[nodiscard]] const std::vector<DetectedChange>& changes() const { return changes_; }
-  /// The active one that names the tracked parameter; null: there is none.
+  /// Active alarm that names the tracked parameter; null: none.
   [[nodiscard]] const DetectedChange* active(std::size_t parameter) const;
-  /// Keeps active alarms alone, for a tracking without an end.
+  /// Drops cleared alarms, for tracking without end.
   void forget_cleared();
-  /// Bit for bit (state_archive.h), after forget_cleared().
+  /// Bit-exact (state_archive.h), after forget_cleared().
   void serialize(estimator::StateArchive& archive, const ParameterSet& set);
 
  private:

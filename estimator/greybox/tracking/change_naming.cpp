@@ -175,7 +175,7 @@ class ChangeNaming {
   const WindowFitSummary& found_;
   const VectorXd& baseline_;
   HeldParameters held_;
-  VectorXd base_;  ///< healthy, but for what was read
+  VectorXd base_;  ///< healthy, except readings
   ErrorScales errors_;
   double chi_square_;
   std::vector<std::size_t> rivals_;

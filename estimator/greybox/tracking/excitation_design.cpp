@@ -26,7 +26,7 @@ struct SimulatedMotion {
   std::vector<double> y_m;
 };
 
-/// The model in its loop; empty where the command would leave its limits.
+/// Closed-loop simulation; empty where the command would exceed its limits.
 SimulatedMotion driven(const plant_sim::ModelFile& model, const ExcitationLimits& limits,
                        const ExcitationDesign& probe, std::size_t samples, double sample_time_s,
                        double noise_m) {
@@ -68,7 +68,7 @@ std::optional<ExcitationDesign> design_excitation(const plant_sim::ModelFile& ba
       ExcitationDesign probe;
       probe.centre_m = 0.5 * (limits.low_m + limits.high_m);
       probe.frequency_Hz = frequency_Hz;
-      // A tenth is left for what the loop overshoots.
+      // A tenth of the range is left for overshoot.
       probe.amplitude_m =
           share * std::min(0.45 * (limits.high_m - limits.low_m),
                            0.9 * limits.speed_mps / (2.0 * std::numbers::pi * frequency_Hz));

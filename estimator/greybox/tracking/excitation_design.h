@@ -14,8 +14,8 @@ namespace estimator::greybox::tracking {
 struct ExcitationLimits {
   double low_m = 0.0;
   double high_m = 0.0;      ///< not above low_m: no probe is suggested
-  double speed_mps = 0.05;  ///< greatest
-  double command_V = 10.0;  ///< greatest
+  double speed_mps = 0.05;  ///< upper limit
+  double command_V = 10.0;  ///< upper limit
 
   [[nodiscard]] bool given() const { return high_m > low_m; }
 };

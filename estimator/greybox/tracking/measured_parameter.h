@@ -1,4 +1,4 @@
-// A tracked parameter that a sensor reads: its mean over the window takes the place of a fit.
+// A tracked parameter that a sensor reads: its mean over the window replaces the fit.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ struct MeasuredMean {
   double std_error = 0.0;  ///< standard error of the mean
 };
 
-/// Two samples or more of one quantity, in its own unit.
+/// Requires two samples or more of one quantity, in its own unit.
 [[nodiscard]] MeasuredMean measured_mean(const double* values, std::size_t samples);
 
 /// Inserts the held parameter `held` into a fit without it. `std_error`, search units: knowledge of

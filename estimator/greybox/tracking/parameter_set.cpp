@@ -10,7 +10,7 @@
 namespace estimator::greybox::tracking {
 namespace {
 
-/// Logarithms: a parameter falls or rises to about a third or threefold.
+/// Range in logarithms: a factor of about three either way.
 constexpr double kWidest = 1.2;
 constexpr double kNone = std::numeric_limits<double>::infinity();
 

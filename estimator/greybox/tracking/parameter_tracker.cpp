@@ -13,15 +13,15 @@ namespace {
 
 using Eigen::Index;
 
-/// Parts of a window that are looked at when it is not explained, the longest first.
+/// Parts of an unexplained window that are fitted alone, longest first.
 constexpr double kParts[] = {0.75, 0.5, 0.25};
-/// How far a part's error may be above the healthy one: in chance's standard deviations.
+/// Excess of a part's error over the healthy one allowed by chance, in standard deviations.
 constexpr double kChanceOfRms = 3.5;
 /// Travel, in noise floors, below which a window counts as no motion.
 constexpr double kLeastMotion = 10.0;
 /// Least noise floor, as a ratio to the healthy error.
 constexpr double kLeastOfHealthy = 0.2;
-/// Standard errors: one-sided, 95 %.
+/// One-sided 95 % quantile, in standard errors.
 constexpr double kMostly = 1.645;
 std::size_t samples_in(double duration_s, double sample_time_s) {
   return static_cast<std::size_t>(std::lround(duration_s / sample_time_s));
@@ -102,7 +102,7 @@ WindowResult ParameterTracker::look(double t_s) {
       const ErrorScales errors = baseline_->errors();
       WindowFitSummary instead = fit(data, near_, errors);
       if (!this->misfit(instead, settings_.most_ratio)) {
-        // Which of the two it is shows where they have not drawn the fit to them.
+        // A fit without the pressures shows which of the two chambers misfits.
         const Misfit shown =
             this->misfit(fit_.fit(with, {}, instead.theta, errors), settings_.most_ratio);
         if (shown) misfit = shown;
@@ -220,7 +220,7 @@ bool ParameterTracker::look_at_part(WindowResult& window, const WindowData& whol
 void ParameterTracker::name_changes_in(WindowResult& window, const WindowData& data,
                                        const WindowFitSummary& found) {
   const bool whole = data.samples == window_;
-  NamingCache once;  // the rivals of a part are not those of the whole window
+  NamingCache once;  // the rivals of a part differ from those of the whole window
   const ErrorScales errors = baseline_->errors();
   window.named = name_changes(fit_, set_, data, found, baseline_->theta, errors,
                               settings_.thresholds, whole ? cache_ : once, held(data, errors));

@@ -46,9 +46,9 @@ struct TrackerSettings {
   double stride_s = 0.5;
   double observer_per_s = kObserver_per_s;
   double most_ratio = 1.2;       ///< ratio to the healthy error above which a window is invalid
-  double most_std_error = 0.01;  ///< ratio, beyond which a value is invalid
-  double most_of_typical = 0.1;  ///< the same of an effect, over its typical size
-  std::int64_t fused = 4;        ///< windows that a value is taken from while they agree (pool.h)
+  double most_std_error = 0.01;  ///< ratio above which a value is invalid
+  double most_of_typical = 0.1;  ///< the same for an effect, relative to its typical size
+  std::int64_t fused = 4;        ///< limit of agreeing windows that are fused (window_fusion.h)
   Thresholds thresholds;
   DriftSettings drift;
   ExcitationLimits probe;
@@ -59,14 +59,15 @@ class ParameterTracker {
   ParameterTracker(const plant_sim::ModelFile& model, const ParameterSet& set,
                    const TrackerSettings& settings, double sample_time_s, double noise_floor_m);
 
-  /// From now on windows are judged and changes named; before, they are only fitted.
+  /// From now on windows are judged and changes named; before, windows are only fitted.
   void take(const Baseline& baseline);
-  /// The window that ends with this sample, when one does. `first`: samples before it are missing.
+  /// Returns the window that ends with this sample, if one does. `first`: samples before it are
+  /// missing.
   std::optional<WindowResult> push(double t_s, double u_V, double y_m, bool first,
                                    const config::signals::Pressures& pressures = {});
 
   [[nodiscard]] const ChangeDetector& detector() const { return detector_; }
-  /// AlarmBook::forget_cleared().
+  /// ChangeDetector::forget_cleared().
   void forget_cleared() { detector_.forget_cleared(); }
   /// Reference of changes: as learned, corrected for slow drift (baseline_drift.h).
   [[nodiscard]] const std::optional<Baseline>& baseline() const { return baseline_; }
@@ -80,14 +81,14 @@ class ParameterTracker {
 
   /// Back to the initial state, without baseline.
   void reset();
-  /// Bit for bit (state_archive.h), after forget_cleared().
+  /// Bit-exact (state_archive.h), after forget_cleared().
   void serialize(estimator::StateArchive& archive);
 
  private:
-  /// Fits the tracked parameters from `near`, but those that are held.
+  /// Fits the tracked parameters from `near`, except held ones.
   [[nodiscard]] WindowFitSummary fit(const WindowData& data, Eigen::VectorXd near,
                                      const ErrorScales& errors);
-  /// Before the healthy rig is known.
+  /// Fit before the baseline is known.
   [[nodiscard]] WindowFitSummary first_fit(const WindowData& data);
   [[nodiscard]] HeldParameters held(const WindowData& data, const ErrorScales& errors) const;
   [[nodiscard]] WindowData usable(std::size_t samples, PressuresLeftOut& left_out) const;
@@ -110,16 +111,16 @@ class ParameterTracker {
   double noise_floor_m_;
   std::size_t lead_;
   std::size_t window_;
-  std::size_t supply_;  ///< index of the supply pressure where it is tracked; else kNotMeasured
-  std::size_t gain_;    ///< the same of the valve gain
+  std::size_t supply_;  ///< index of the tracked supply pressure, or kNotMeasured
+  std::size_t gain_;    ///< index of the tracked valve gain, or kNotMeasured
   std::size_t stride_;
   WindowFit fit_;
   SampleBuffer samples_;
   std::size_t until_ = 0;       ///< samples until the next window
-  bool pressures_out_ = false;  ///< chamber pressures have not belonged to the model lately
+  bool pressures_out_ = false;  ///< chamber pressures misfit in the latest windows
   std::optional<Baseline> baseline_;
   BaselineDrift drift_;
-  Eigen::VectorXd near_;  ///< where the next search begins
+  Eigen::VectorXd near_;  ///< start of the next fit
   WindowFusion fusion_;
   NamingCache cache_;
   ChangeDetector detector_;

@@ -1,4 +1,4 @@
-// How a window is fitted: with which samples, which parameters, which weights.
+// Fits of a window: samples, free parameters, weights.
 #include <algorithm>
 #include <cmath>
 
@@ -20,7 +20,7 @@ bool stands_still(const double* values, const WindowData& data) {
 
 }  // namespace
 
-/// The latest samples; without chamber pressures, and why, where they cannot be right.
+/// The latest samples; without chamber pressures, and with the reason, where they cannot be right.
 WindowData ParameterTracker::usable(std::size_t samples, PressuresLeftOut& left_out) const {
   const WindowData data = samples_.latest(samples);
   const bool wanted = set_.supply_Pa() > 0.0 && (!baseline_ || baseline_->chambers.known());
@@ -81,7 +81,7 @@ WindowFitSummary ParameterTracker::first_fit(const WindowData& data) {
   own.out.rms_Pa = std::max(seen.out.rms_Pa, kLeastError_ratio * supply_Pa);
   own.in.weight_Pa = own.in.rms_Pa;
   own.out.weight_Pa = own.out.rms_Pa;
-  own.offset_sd_Pa = supply_Pa;  // any
+  own.offset_sd_Pa = supply_Pa;  // unlimited
   return fit(data, found.theta, {std::max(noise_floor_m_, found.rms_m), own});
 }
 

@@ -18,11 +18,11 @@
 
 namespace estimator::greybox::tracking {
 
-/// A window as a faulty sensor would have read it, set right.
+/// A window corrected for a faulty sensor.
 struct SensorHypothesis {
   const char* name = "";  ///< position_sensor.scale_ratio (its change), position_sensor.drift_mps
   double value = 0.0;
-  double scale = 1.0;  ///< s: residuals of the window set right, times this, are in the reading's
+  double scale = 1.0;  ///< s: residuals of the corrected window times s are in the reading's noise
   double chi_square = 0.0;
   std::vector<double> y_m;  ///< y', lead-in and window
 
@@ -33,8 +33,9 @@ struct SensorHypothesis {
   }
 };
 
-/// The scale and the drift that explain the window best where the model is as `x` has it; those
-/// beyond what a sensor may show (a third, 10 mm/s) are left out.
+/// Scale and drift that explain the window best with the model at `x`; values beyond a plausible
+/// sensor
+/// fault (a third, 10 mm/s) are left out.
 [[nodiscard]] std::vector<SensorHypothesis> sensor_hypotheses(WindowFit& fit,
                                                               const WindowData& data,
                                                               const Eigen::VectorXd& theta,

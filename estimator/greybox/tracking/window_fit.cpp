@@ -18,7 +18,7 @@ constexpr int kMostIterations = 12;
 /// Relative cost tolerance; the cost is about the number of samples, so the rest is far below one
 /// chi-square.
 constexpr double kTolerance = 1e-5;
-/// Nearly Gauss and Newton's step: windows follow each other, the start is near.
+/// Initial damping: nearly a Gauss-Newton step, because successive windows start near the solution.
 constexpr double kSlight = 1e-6;
 
 Dataset room_for(std::size_t most, double sample_time_s) {
@@ -60,7 +60,7 @@ double left_of_mean(Index samples, const ChamberError& error, const ChamberError
   return 1.0 / std::sqrt(1.0 + static_cast<double>(samples) * ratio * ratio);
 }
 
-/// The errors of each quantity from the residual as WindowFit::compare() makes it.
+/// Errors of each quantity from the residual of WindowFit::compare().
 void tell_errors(const WindowData& data, const ErrorScales& errors, const VectorXd& residual,
                  WindowFitSummary& out) {
   const auto all = static_cast<Index>(data.lead + data.samples);

@@ -37,13 +37,13 @@ namespace estimator::greybox::tracking {
 
 inline constexpr double kLead_s = 0.75;
 
-/// Consecutive samples without a gap: the lead-in's, then the window's.
+/// Consecutive samples without a gap: the lead-in, then the window.
 struct WindowData {
   const double* u_V = nullptr;
   const double* y_m = nullptr;
   std::size_t lead = 0;
   std::size_t samples = 0;        ///< samples of the window
-  const double* in_Pa = nullptr;  ///< null: not read in all of them; as the next
+  const double* in_Pa = nullptr;  ///< null: not read throughout; same for out_Pa
   const double* out_Pa = nullptr;
 
   [[nodiscard]] WindowData without_pressures() const { return {u_V, y_m, lead, samples}; }
@@ -51,9 +51,10 @@ struct WindowData {
 
 /// Pressure of one chamber, measured less modelled less learned offset.
 struct ChamberFit {
-  double rms_Pa = std::numeric_limits<double>::quiet_NaN();  ///< about its mean; NaN: not used
+  double rms_Pa = std::numeric_limits<double>::quiet_NaN();  ///< about the mean; NaN: not used
   double mean_Pa = std::numeric_limits<double>::quiet_NaN();
-  double weight_Pa_per_m = std::numeric_limits<double>::quiet_NaN();  ///< sigma over the position's
+  double weight_Pa_per_m =
+      std::numeric_limits<double>::quiet_NaN();  ///< sigma relative to the position's
 };
 
 /// Whether the window's chamber pressures count in a fit with these errors.
@@ -62,12 +63,12 @@ struct ChamberFit {
 }
 
 struct WindowFitSummary {
-  Eigen::VectorXd theta;       ///< every parameter; those that were held as they were given
+  Eigen::VectorXd theta;       ///< every parameter; held ones at their given values
   Eigen::VectorXd std_error;   ///< free parameters, search units; infinite: not visible
   Eigen::MatrixXd covariance;  ///< free parameters
   Eigen::MatrixXd correlation;
-  Eigen::MatrixXd likeness;   ///< cosines between their effects on the position
-  std::vector<int> at_bound;  ///< -1, 0, +1 of the free ones
+  Eigen::MatrixXd likeness;   ///< cosines between the parameters' effects on the position
+  std::vector<int> at_bound;  ///< -1, 0, +1 per free parameter
   double rms_m = 0.0;         ///< position
   ChamberFit in;
   ChamberFit out;
@@ -82,7 +83,7 @@ struct WindowFitSummary {
 /// Fits one model's parameters to window after window without allocating again. Not thread-safe.
 class WindowFit {
  public:
-  /// `most` samples, lead-in and window together, is the longest that will come.
+  /// `most`: largest number of samples, lead-in and window together.
   WindowFit(const plant_sim::ModelFile& model, std::vector<FreeParameter> parameters,
             double sample_time_s, std::size_t most, double observer_per_s = kObserver_per_s);
   WindowFit(const WindowFit&) = delete;

@@ -17,7 +17,7 @@ namespace estimator::greybox::tracking {
 struct FusedEstimate {
   Eigen::VectorXd theta;
   Eigen::MatrixXd covariance;
-  int windows = 0;  ///< 0: the newest one is of no use
+  int windows = 0;  ///< 0: the newest window is not usable
 };
 
 class WindowFusion {
@@ -41,7 +41,7 @@ class WindowFusion {
   std::size_t most_;
   std::size_t length_;        ///< numbers per window: good, theta, covariance
   std::vector<double> ring_;  ///< latest windows
-  std::size_t looks_ = 0;     ///< so far
+  std::size_t looks_ = 0;     ///< windows so far
 };
 
 }  // namespace estimator::greybox::tracking

@@ -14,7 +14,7 @@ struct ParameterEstimate {
   double theta = 0.0;      ///< search value
   double value = 0.0;      ///< SI
   double std_error = 0.0;  ///< SI
-  double smallest = 0.0;   ///< change, SI, that this motion would show in 95 of 100 windows
+  double smallest = 0.0;   ///< change, SI, that this motion shows in 95 of 100 windows
   bool valid = false;
   InvalidReason invalid;  ///< Cause::none where valid
 };

@@ -16,15 +16,15 @@ namespace estimator::greybox::validation {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-/// A rod whose positions spread by less than this many noise floors does not move.
+/// Spread of the positions, in noise floors, below which the rod does not move.
 constexpr double kLeastMotion = 10.0;
 constexpr double kLeastMotion_m = 1e-9;
-/// Command within this part of its greatest magnitude counts as at its limit.
+/// Ratio to the greatest magnitude above which a command is at its limit.
 constexpr double kAtLimit = 0.999;
 constexpr double kOftenLimited = 0.1;
 constexpr double kAlwaysLimited = 0.9;
 
-/// `values` with a missing sample between segments and where `counts` is 0.
+/// `values` with NaN between segments and where `counts` is 0.
 std::vector<double> broken(const Dataset& record, const std::vector<double>& values,
                            bool valid_only) {
   std::vector<double> series;

@@ -67,7 +67,7 @@ struct Comparison {
 
   std::vector<Region> regions;
   std::vector<SignificantRegion> worst;  ///< by one variable each, most significant first
-  SignificantRegion headline;            ///< the most telling, by one variable or two
+  SignificantRegion headline;            ///< most significant, by one variable or two
   SystematicError systematic;
   CommandRange command;
   std::optional<StrokeExcess> beyond_stroke;
@@ -76,7 +76,7 @@ struct Comparison {
   [[nodiscard]] double duration_s() const;
 };
 
-/// An error of up to this many noise floors counts as noise.
+/// Error, in noise floors, up to which it counts as noise.
 inline constexpr double kAtFloor = 1.15;
 
 /// Observer gain in 1/s: above 0 and below 1 / sample time. Throws config::schema::DataError for a

@@ -1,5 +1,5 @@
-// A model's error sorted by what the rod was doing: bins over position, velocity, speed, command,
-// acceleration, direction and time, and what the error is in each.
+// Errors of a model grouped by the rod's motion: bins over position, velocity, speed, command,
+// acceleration, direction and time, with the error in each.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,7 @@ struct SortedErrors {
 };
 
 struct Bin {
-  double from = 0.0;  ///< SI; of direction: NaN
+  double from = 0.0;  ///< SI; NaN for direction
   double to = 0.0;
   std::string name;  ///< for direction: "extending"; else empty
   std::size_t count = 0;
@@ -31,10 +31,10 @@ struct Bin {
   double error_share = 0.0;  ///< share of the squared position error
   double rms_m = 0.0;        ///< position error
   double mean_m = 0.0;
-  double speed_error_mps = 0.0;  ///< mean; positive: the rod moves out more than the model
+  double speed_error_mps = 0.0;  ///< mean; positive: the rod extends faster than the model
   double local_velocity_error_rms_mps = 0.0;
   double local_velocity_error_share = 0.0;  ///< share of the squared speed error
-  /// How many samples at least a correlation length apart: what the RMS is worth.
+  /// Number of samples at least a correlation length apart.
   double effective_samples = 0.0;
 };
 
@@ -44,13 +44,13 @@ struct Region {
   std::vector<int> bin_of;  ///< per sample; -1: left out
 };
 
-/// Over how many samples arising errors hang together: 1 + 2 sum rho(k)^2, that of their squares.
+/// Correlation length of the squared velocity errors in samples: 1 + 2 sum rho(k)^2.
 [[nodiscard]] double correlation_length(const SortedErrors& sorted);
 
-/// Edges are round numbers; a bin of too few samples is joined with its neighbour.
+/// Edges are round numbers; a bin of too few samples is merged with its neighbour.
 [[nodiscard]] std::vector<Region> sort_by_region(const SortedErrors& sorted);
 
-/// Figures of the samples where `in` is not 0; from, to and name are left to the caller.
+/// Figures of the samples with `in` not 0; the caller sets from, to and name.
 [[nodiscard]] Bin figures(const SortedErrors& sorted, const std::vector<char>& in, double length);
 
 }  // namespace estimator::greybox::validation

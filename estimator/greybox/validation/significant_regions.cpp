@@ -10,7 +10,7 @@ namespace {
 constexpr double kLeastGain = 8.0;
 constexpr double kLeastRatio = 1.2;     ///< ratio of the region's RMS to the overall RMS
 constexpr double kLeastNoise = 2.0;     ///< ratio of the region's RMS to the sensor's noise
-constexpr double kLeastOutside = 0.05;  ///< mean square outside, to that of all
+constexpr double kLeastOutside = 0.05;  ///< mean square outside, relative to the overall one
 constexpr double kLeastLooks = 4.0;
 constexpr double kWidest = 0.5;     ///< share of the time
 constexpr double kNarrowing = 1.3;  ///< factor by which a second variable must raise G

@@ -21,7 +21,7 @@ namespace estimator::greybox::validation {
 
 struct Range {
   std::string variable;
-  double from = 0.0;  ///< SI; of direction: NaN
+  double from = 0.0;  ///< SI; NaN for direction
   double to = 0.0;
   std::string name;      ///< for direction: "reversing"
   bool lowest = false;   ///< begins with the variable's lowest bin
@@ -32,10 +32,10 @@ struct SignificantRegion {
   std::vector<Range> ranges;  ///< one or two
   Bin figures;
   double gain = 0.0;         ///< G
-  bool significant = false;  ///< beyond chance, and worth a word
+  bool significant = false;  ///< beyond chance and large enough to report
 };
 
-/// The best range of each variable, the most telling first. Empty when nothing can be compared.
+/// Best range of each variable, most significant first. Empty without comparable samples.
 [[nodiscard]] std::vector<SignificantRegion> significant_regions(
     const SortedErrors& sorted, const std::vector<Region>& regions);
 

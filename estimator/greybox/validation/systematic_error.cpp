@@ -9,11 +9,11 @@
 namespace estimator::greybox::validation {
 namespace {
 
-constexpr double kLeast = 0.5;   ///< share worth telling
-constexpr double kNearly = 1.1;  ///< how much more may be left over by one number than by two
+constexpr double kLeast = 0.5;   ///< least share that is reported
+constexpr double kNearly = 1.1;  ///< ratio of the errors left by one number and by two
 constexpr double kSlight = 0.01;
 
-/// Share of the squared error that goes when `signatures` (columns) are taken off as they fit best.
+/// Share of the squared error that the least-squares fit of `signatures` (columns) removes.
 double share(const Eigen::MatrixXd& signatures, const Eigen::VectorXd& e, Eigen::VectorXd& x) {
   x = linear_algebra::pivoted_least_squares(signatures, e);
   const double all = e.squaredNorm();

@@ -1,5 +1,6 @@
-// Two plain things that make a model's position run away from the measured one, and how much of the
-// error they would explain: a speed that is off in proportion, and one that is off by a constant.
+// Two systematic causes of a drifting model position, and the share of the error that they explain:
+// a
+// proportional speed error and a constant one.
 //
 //   e(k) ~ g z_v(k) + b z_1(k),   z(k+1) = (1 - l Ts) z(k) + Ts x(k),   x = modelled speed, 1
 //
