@@ -14,7 +14,7 @@
 
 namespace estimator {
 
-/// Subtracts the mean. NaN samples stay NaN and count for nothing. Returns the mean.
+/// Subtracts the mean. NaN samples stay NaN and are not counted. Returns the mean.
 double remove_mean(std::span<double> values);
 
 struct Line {
@@ -50,7 +50,7 @@ class Preprocess {
   /// row
   /// crosses the gap. The grid of kept samples does not move.
   bool push(double u_V, double y_m) noexcept;
-  /// `samples` periods without data. Returns how many outputs fell into the gap.
+  /// `samples` periods without data. Returns the number of outputs in the gap.
   long long gap(long long samples) noexcept;
 
   [[nodiscard]] double u_V() const noexcept { return u_V_; }

@@ -38,7 +38,7 @@ class Ensemble {
   virtual void start(double reading_m) noexcept = 0;
   /// Holds u_V, one voltage for each lane, for duration_s (a whole number of steps).
   virtual void advance(const Values& u_V, double duration_s) noexcept = 0;
-  /// Moves the rod, and with it what the sensor shows, without any physics.
+  /// Moves the rod, and with it the sensor's reading, without physics.
   virtual void shift(const Values& by_m) noexcept = 0;
 
   [[nodiscard]] virtual Values reading_m() const noexcept = 0;
@@ -57,7 +57,7 @@ enum class InstructionSet { baseline, avx2, avx512 };
 [[nodiscard]] bool runs_here(InstructionSet set) noexcept;
 /// Default of make_ensemble().
 [[nodiscard]] InstructionSet fastest_here() noexcept;
-/// With one that runs here.
+/// Uses an instruction set that this machine supports.
 [[nodiscard]] std::unique_ptr<Ensemble> make_ensemble(const ModelFile& model, double step_s,
                                                       InstructionSet set);
 

@@ -102,7 +102,7 @@ class ForceDrivenAxis {
   [[nodiscard]] S speed_mps() const { return state.v_mps; }
 
  private:
-  /// Into how many parts the step is divided, so that damping and springs are followed.
+  /// Number of parts of a step, fine enough for damping and springs.
   S divisions() const {
     const S slope = parameters.damping_N_s_per_m + effects.slope_N_s_per_m(state.v_mps);
     const S fastest = max(slope * inverse_mass_, spring_rate_);

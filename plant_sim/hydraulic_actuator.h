@@ -96,7 +96,7 @@ class HydraulicActuator {
   State state;
   Effects<S> effects;
 
-  /// To the initial state, with the parameters as they are.
+  /// Resets to the initial state; parameters are kept.
   void reset();
   /// Call before step() after any parameter has changed, with the length of the step.
   void prepare(double step_s);

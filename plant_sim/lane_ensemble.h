@@ -24,7 +24,7 @@ class LaneEnsemble : public Ensemble {
   LaneEnsemble& operator=(const LaneEnsemble&) = delete;
   ~LaneEnsemble() override;
 
-  /// All lanes to the model's values.
+  /// Sets all lanes to the model's values.
   void take(const ModelFile& model);
 
   [[nodiscard]] std::optional<std::size_t> find(std::string_view dotted) const final;
@@ -32,7 +32,7 @@ class LaneEnsemble : public Ensemble {
   [[nodiscard]] double get(std::size_t parameter, std::size_t lane) const noexcept final;
 
  protected:
-  /// Tells of eight lanes that live as long as *this; owner is an effect, "initial" or null.
+  /// Registers eight lanes that live as long as *this; owner is an effect, "initial" or null.
   void enter(const char* owner, const char* name, void* lanes);
   [[nodiscard]] double step_s() const { return step_s_; }
   [[nodiscard]] const Formulas& formulas() const { return formulas_; }
@@ -104,7 +104,7 @@ class InLanes final : public LaneEnsemble {
   Model model_;
 };
 
-/// The plant of that name at eight lanes; null when there is none. For the caller to own.
+/// The named plant at eight lanes, owned by the caller; null for an unknown name.
 template <class S>
 LaneEnsemble* new_lanes(const char* plant, const Formulas& formulas, double step_s) {
   LaneEnsemble* made = nullptr;

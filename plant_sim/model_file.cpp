@@ -48,8 +48,9 @@ double value_or(const ModelFile& model, std::string_view name, double otherwise)
   return otherwise;
 }
 
-/// Where the variables of formulas plausibly are on this plant: commands of +-10 V, the whole
-/// stroke, twice the supply pressure.
+/// Plausible ranges of formula variables on this plant: commands of +-10 V, the whole stroke, twice
+/// the
+/// supply pressure.
 PlausibleRanges plausible(const ModelFile& model) {
   constexpr double kFullCommand_V = 10.0;
   PlausibleRanges ranges;

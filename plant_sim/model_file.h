@@ -45,7 +45,7 @@ struct ModelFile {
   std::string name;
   std::string plant = "hydraulic_actuator";
   double step_s = 0.001;
-  std::vector<NamedValue> parameters;  ///< all of the plant's, defaults filled in
+  std::vector<NamedValue> parameters;  ///< all parameters of the plant, defaults filled in
   std::vector<NamedValue> initial;     ///< NaN = the plant's own choice (half supply pressure)
   std::vector<FormulaEffect> formula_effects;  ///< as declared
   std::vector<Effect> effects;                 ///< the library's, then the formulas; present or not

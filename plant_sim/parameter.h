@@ -14,9 +14,9 @@ struct ParameterInfo {
   double max;      ///< largest allowed value
   double typical;  ///< typical size: where searches start
   double neutral;  ///< value without effect (effects), or the default (plants)
-  /// Plants: how far a rig may be from its model file, as a relative standard deviation; 0 = taken
-  /// as known, because the record cannot separate it from the others or because it is easily
-  /// measured.
+  /// Plants: relative standard deviation between rig and model file; 0 = taken as known, because
+  /// the record
+  /// cannot separate it from the others or because it is easily measured.
   double uncertainty_ratio = 0.0;
   /// Effects: 0 = main parameters; above 0, the number of a refinement, whose parameters are added
   /// and
@@ -24,7 +24,7 @@ struct ParameterInfo {
   int refinement = 0;
 };
 
-/// A value by its name, as model files hold them.
+/// A named value of a model file.
 struct NamedValue {
   std::string name;
   double value;

@@ -52,7 +52,7 @@ class Schedule {
   double apply(double t_s) noexcept;
 
   std::vector<Entry> entries_;  ///< in the order of at_s
-  std::size_t next_ = 0;        ///< all before it are done
+  std::size_t next_ = 0;        ///< index of the first pending entry
 };
 
 }  // namespace plant_sim

@@ -17,7 +17,7 @@ namespace plant_sim {
 /// TOML [[sim.pressure]].
 struct TransducerConfig {
   std::string of;          ///< one of kTransducers
-  double offset_Pa = 0.0;  ///< from from_s on
+  double offset_Pa = 0.0;  ///< added from from_s on
   double from_s = 0.0;
   double noise_Pa = 0.0;       ///< standard deviation
   double resolution_Pa = 0.0;  ///< 0: none
@@ -41,7 +41,7 @@ class Transducers {
  private:
   struct Transducer {
     TransducerConfig config;
-    Encoder converter;  ///< its steps and noise are in Pa here
+    Encoder converter;  ///< its steps and noise are in Pa
   };
   std::vector<Transducer> all_;
 };

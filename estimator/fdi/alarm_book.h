@@ -173,7 +173,7 @@ class AlarmBook {
   std::vector<Alarm> alarms_;
   std::vector<Memory> memories_;  ///< one for each alarm
   std::size_t active_count_ = 0;
-  std::size_t standing_ = 0;  ///< not normal and not shelved
+  std::size_t standing_ = 0;  ///< alarms not normal and not shelved
   std::int64_t tick_ = 0;
   std::int64_t utc_us_ = 0;
   std::uint64_t changes_ = 0;

@@ -45,8 +45,7 @@ class DetectionMethodConfig {
   virtual void visit(config::schema::Visitor& v) = 0;
   /// Quantities that the method reads, "SOURCE.name".
   [[nodiscard]] virtual std::vector<std::string> inputs() const { return {}; }
-  /// Reads what other files hold, and clears the keys that name those files. Throws
-  /// schema::ConfigError.
+  /// Reads the referenced files and clears the keys that name them. Throws schema::ConfigError.
   virtual void load(const ConfigLoadContext& /*context*/) {}
   /// Throws schema::ConfigError that names the list and the id.
   [[nodiscard]] virtual std::unique_ptr<DetectionMethod> make(

@@ -15,9 +15,10 @@
 
 namespace estimator::fdi {
 
-/// The curve that leads to each class; none to `healthy`, and to one that lies within its region.
-/// `laws` are those of `classes`, `pooled` the covariance in which lengths are measured. Throws
-/// schema::ConfigError at `where`.
+/// Trajectory to each class; none for `healthy` and for a class within its region. `laws` are those
+/// of
+/// `classes`, `pooled` the covariance in which lengths are measured. Throws schema::ConfigError at
+/// `where`.
 [[nodiscard]] std::vector<std::optional<FaultTrajectory>> fault_trajectories(
     const std::vector<TrainedClass>& classes, const std::vector<ClassDistribution>& distributions,
     const Eigen::MatrixXd& pooled, std::size_t healthy, double rejection, const std::string& where);

@@ -59,8 +59,7 @@ FaultTrajectory::FaultTrajectory(const ClassDistribution& from, const ClassDistr
          std::min(from.blocks, to.blocks)},
         where);
     const double length_t2 = region.statistic(span_of(last));
-    if (i == 0)
-      limit_ = region.limit(rejection);  // the same for all pieces: equal numbers of blocks
+    if (i == 0) limit_ = region.limit(rejection);  // equal for all pieces: equal numbers of blocks
     const VectorXd along = last - first;
     pieces_.push_back({std::move(region), {along.data(), along.data() + along.size()}, length_t2});
   }

@@ -39,7 +39,7 @@ double gumbel_level(std::vector<double> maxima, double rate) {
 double signed_square(double x) { return x * std::abs(x); }
 double signed_root(double x) { return std::copysign(std::sqrt(std::abs(x)), x); }
 
-/// How far the band reaches from `centre`, upward (side 1) or downward (side -1).
+/// Distance of the limit from `centre`, upward (side 1) or downward (side -1).
 double margin(const std::vector<double>& extremes, double centre, double side, double rate) {
   std::vector<double> squares;
   squares.reserve(extremes.size());

@@ -22,7 +22,7 @@ struct MonitoredValue {
   double value;
   double std_error;
   bool trusted;
-  const char* why;  ///< when not trusted
+  const char* why;  ///< reason of an untrusted value
   std::int64_t tick;
 };
 
@@ -43,7 +43,7 @@ struct SampleBandMonitor {
 };
 
 struct Pipeline::Impl final : private InputResolver {
-  std::vector<MethodSlot> slots;  ///< in order of evaluation: each after those that it reads
+  std::vector<MethodSlot> slots;  ///< in order of evaluation: each after its inputs
   OutputPort sample;              ///< the present sample's own quantities
   std::vector<SampleBandMonitor> sample_monitors;
   AlarmBook book;
@@ -60,8 +60,9 @@ struct Pipeline::Impl final : private InputResolver {
   void evaluate(MethodSlot& slot, std::int64_t tick, std::int64_t utc_us, Events& events);
   void monitor_band(BandMonitor& monitor, const MonitoredValue& value, Events& events);
   [[nodiscard]] MethodSlot* slot(std::string_view id) noexcept;
-  /// Numbers of the slot (slots.size(): the sample) and of the value. Throws schema::Error at
-  /// `where` when there is no such value.
+  /// Indices of the slot (slots.size(): the sample) and of the value. Throws schema::Error at
+  /// `where` for an
+  /// unknown value.
   [[nodiscard]] std::pair<std::size_t, std::size_t> locate(const std::string& quantity,
                                                            const std::string& where) const;
   [[nodiscard]] MethodInput find(const std::string& quantity,

@@ -13,8 +13,8 @@
 
 namespace estimator::fdi {
 
-/// Text of a pipeline's complete configuration, including what other files held and the sample
-/// time.
+/// Text of a pipeline's complete configuration, with the contents of referenced files and the
+/// sample time.
 [[nodiscard]] std::string whole_text(const PipelineConfig& config, double sample_time_s);
 
 /// Replaces `out`. `tick`: of the next sample. `config`: schema::hash_of(whole_text).

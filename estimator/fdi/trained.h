@@ -39,7 +39,7 @@ struct TrainedMethod {
   std::vector<TrainedClass> classes;
 
   void visit(config::schema::Visitor& v);
-  /// Null when there is none.
+  /// The healthy class; null when there is none.
   [[nodiscard]] const TrainedClass* healthy() const noexcept;
 };
 

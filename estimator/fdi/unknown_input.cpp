@@ -132,7 +132,7 @@ UnknownInputObserver unknown_input_observer(const LinearModel& model, const std:
   out.g = k1 + out.f * found.h;
   out.l1 = -model.c;
   out.l2 = MatrixXd::Identity(model.c.rows(), model.c.rows()) - model.c * found.h;
-  // In the end e = F e + T K f, and r = C e.
+  // Final form: e = F e + T K f, and r = C e.
   if (model.k.size() > 0) {
     out.fault_gain = model.c * linear_algebra::solve(MatrixXd::Identity(n, n) - out.f, t * model.k);
   } else {

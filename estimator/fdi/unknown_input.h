@@ -43,7 +43,7 @@ struct Existence {
   std::string why;  ///< why not, in one line
 };
 
-/// Both conditions; ranks by singular values with columns scaled to unit length. Throws
+/// Checks both conditions; ranks by singular values with columns scaled to unit length. Throws
 /// schema::ConfigError when sizes do not fit.
 [[nodiscard]] Existence unknown_input_existence(const LinearModel& model);
 
@@ -54,8 +54,9 @@ struct UnknownInputObserver {
   Eigen::MatrixXd fault_gain;
 };
 
-/// Observer of a discrete model. Throws schema::ConfigError that says why when there is none.
-/// `q`: process noise of predictor_gain(); larger follows faster.
+/// Observer of a discrete model. Throws schema::ConfigError with the reason when none exists. `q`:
+/// process
+/// noise of predictor_gain(); a larger one follows faster.
 [[nodiscard]] UnknownInputObserver unknown_input_observer(const LinearModel& model,
                                                           const std::string& where, double q = 1.0);
 

@@ -163,7 +163,7 @@ Covariance covariance(const Problem& problem, const Solution& solution,
   out.noise_sd = std::sqrt(variance);
   if (open.empty()) return out;
 
-  // H by its triangle, columns scaled to length 1, so that nothing is squared before it must be.
+  // H by its triangular factor, columns scaled to length 1: avoids early squaring.
   const LinearModel linear = compress(problem, solution.x, solution.residual, solution.jacobian);
   MatrixXd R(p, f);
   for (Index k = 0; k < f; ++k) R.col(k) = linear.R.col(open[static_cast<std::size_t>(k)]);

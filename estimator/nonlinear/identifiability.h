@@ -24,9 +24,10 @@ struct Term {
 };
 
 struct Combination {
-  std::vector<Term> terms;    ///< largest first; those below 0.1 are left out
-  double uncertainty = 0.0;   ///< 1 / |K v|, in scales; infinite: invisible
-  std::vector<Term> visible;  ///< with two terms: the combination of the two that the data do see
+  std::vector<Term> terms;   ///< largest first; those below 0.1 are left out
+  double uncertainty = 0.0;  ///< 1 / |K v|, in scales; infinite: invisible
+  std::vector<Term>
+      visible;  ///< with two terms: the combination of the two that the data determine
 };
 
 struct Identifiability {
@@ -38,7 +39,7 @@ struct Identifiability {
 };
 
 struct IdentifiabilityOptions {
-  double limit = 1.0;        ///< uncertainty, in scales, from which a direction is unseen
+  double limit = 1.0;        ///< uncertainty, in scales, above which a direction is invisible
   bool with_priors = false;  ///< true: data and priors together
 };
 

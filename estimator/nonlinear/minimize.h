@@ -47,7 +47,8 @@ struct Options {
   bool final_jacobian = true;    ///< false: stale columns may be left in Solution::jacobian
   std::function<bool()> cancel;  ///< true ends the search, keeping the best so far
   std::function<void(const Progress&)> progress;
-  Eigen::VectorXd start_residual;  ///< r(start) where known already: saves evaluations; else empty
+  Eigen::VectorXd
+      start_residual;  ///< r(start) where already known, to save evaluations; else empty
   Eigen::MatrixXd start_jacobian;  ///< likewise; columns that start with NaN are evaluated
 };
 

@@ -39,9 +39,11 @@ struct Unknown {
   [[nodiscard]] bool is_held() const { return !(lower < upper); }
 };
 
-/// Residuals of several parameter sets at once. `points` has one column per set and at most
-/// Problem::lanes of them; `residuals` comes sized residuals x columns and is to be filled. A set
-/// that cannot be evaluated gets a NaN anywhere in its column.
+/// Residuals of several parameter sets at once. `points` has one column per set, at most
+/// Problem::lanes of
+/// them; `residuals` is sized residuals x columns and to be filled. A set that cannot be evaluated
+/// gets
+/// a NaN anywhere in its column.
 using Evaluate = std::function<void(const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals)>;
 
 struct Problem {

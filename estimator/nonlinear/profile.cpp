@@ -87,7 +87,7 @@ class Walker {
         return true;
       }
       const int now = z < goal ? -1 : 1;
-      const bool same = now == last;  // the same end moved twice: the line misleads, halve
+      const bool same = now == last;  // the same end moved twice: halve the step
       last = now;
       if (z < goal) {
         inside = distance;

@@ -95,7 +95,7 @@ Energies windows_of(std::span<const double> y_m, double step_m) {
   return out;
 }
 
-/// Mean square of pure noise from windows some of which hold motion as well.
+/// Mean square of pure noise from windows, some of which contain motion.
 double level_of(std::vector<double> e) {
   const auto k = static_cast<std::ptrdiff_t>(kQuantile * static_cast<double>(e.size()));
   std::nth_element(e.begin(), e.begin() + k, e.end());

@@ -53,8 +53,9 @@ std::vector<double> whitened(const Polynomial& model, const std::vector<double>&
   return e;
 }
 
-/// w, v = A y - w and e, as the equations name them; before the first error w is what was found for
-/// it, v is 0 and e is NaN.
+/// w, v = A y - w and e, named as in the equations; before the first error w is the fitted start, v
+/// is 0
+/// and e is NaN.
 struct Signals {
   std::vector<double> w;
   std::vector<double> v;

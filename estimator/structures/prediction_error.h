@@ -39,7 +39,7 @@ struct PolynomialFit {
   int starts = 0;   ///< tried
   bool converged = false;
   bool valid = false;
-  std::string why;  ///< not valid: in words
+  std::string why;  ///< reason of an invalid fit
 };
 
 [[nodiscard]] PolynomialFit fit_prediction_error(const Orders& orders, const Stretches& data,

@@ -169,7 +169,7 @@ bool RecursivePredictionError::push(double u_V, double y_m) noexcept {
   double v = y_m + State::past(s.a(), n.a, now.y) - w;
   double e = v + State::past(s.d(), n.d, now.v) - State::past(s.c(), n.c, now.e);
   if (!ready) {
-    if (n.f > 0) w = y_m + State::past(s.a(), n.a, now.y);  // the first values are not known
+    if (n.f > 0) w = y_m + State::past(s.a(), n.a, now.y);  // the first values are unknown
     v = e = 0.0;
     ++now.filled;
   } else {

@@ -66,7 +66,7 @@ struct Friction {
     S rise_ratio = 1.0;  ///< Stribeck's exponential at the speed of that moment
     S v_mps = std::numeric_limits<double>::quiet_NaN();  ///< that speed
 
-    /// Parameters have changed: nothing is known of the exponential.
+    /// Marks the cached exponential as invalid after a change of parameters.
     void prepare(double /*step_s*/) { v_mps = std::numeric_limits<double>::quiet_NaN(); }
   };
 
@@ -125,8 +125,9 @@ struct Friction {
     return coulomb_N + max(p.static_N - coulomb_N, S(0.0)) * rise_ratio;
   }
 
-  /// The bristle after a travel of the rod: z goes to +-g/k exponentially, at the mean of the
-  /// levels at both ends, which makes the error of a step one of its third order.
+  /// The bristle after a travel of the rod: z approaches +-g/k exponentially, with g the mean of
+  /// the levels
+  /// at both ends; the error of a step is of third order.
   static S deflected_m(const Parameters& p, const Memory& memory, const S& travel_m,
                        const S& rise) {
     if (all(abs(travel_m) <= S(0.0)))

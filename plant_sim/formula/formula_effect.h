@@ -65,7 +65,7 @@ struct FormulaSite {
   Site site;
   const char* result;                    ///< result of the formula, as printed in equations
   std::array<const char*, 2> variables;  ///< "" is none
-  bool chained;  ///< without influence it gives its first variable; else 0, and it is added
+  bool chained;  ///< without influence it returns its first variable; else 0, and it is added
   double guard;  ///< numerical bound of the result, far beyond anything real
 };
 

@@ -16,7 +16,7 @@ class FormulaSet {
  public:
   FormulaSet() = default;
 
-  /// Replaces what was declared; all values are neutral. What is viewed must outlive *this.
+  /// Replaces the declared formulas; all values are neutral. The viewed data must outlive *this.
   void declare(const FormulaView* formulas, std::size_t count) {
     effects_.clear();
     effects_.reserve(count);

@@ -71,7 +71,7 @@ S by_lane(F f, const S& a, const S& b) {
   }
 }
 
-/// One operation; operands that it does not take are ignored.
+/// One operation; surplus operands are ignored.
 template <class S>
 S apply(Op op, const S& a, const S& b, const S& c) {
   const S zero = 0.0;

@@ -116,7 +116,7 @@ const char* reason(int code) {
   }
 }
 
-/// One line for what muParser found wrong; positions count from 1.
+/// Error message for a muParser error; positions count from 1.
 config::schema::ConfigError refusal(const mu::ParserError& error, std::size_t length,
                                     std::vector<std::string> names, const std::string& where) {
   std::string token = error.GetToken();

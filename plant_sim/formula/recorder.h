@@ -11,8 +11,10 @@
 namespace plant_sim {
 
 /// `variables` (at most ExpressionProgram::kVariables) and `parameters` are the names that the text
-/// may use, besides pi. Throws config::schema::ConfigError at `where`, with position and token,
-/// when the text is no single expression of these.
+/// may
+/// use, besides pi. Throws config::schema::ConfigError at `where`, with position and token, when
+/// the
+/// text is not a single expression of these.
 [[nodiscard]] ExpressionProgram record_formula(const std::string& text,
                                                const std::vector<std::string>& variables,
                                                const std::vector<std::string>& parameters,
