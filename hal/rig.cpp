@@ -61,7 +61,7 @@ InputRole role_of(const std::string& name) {
 
 void visit_device(config::schema::Visitor& v, DeviceAddress& device, bool channel_required) {
   v.text(wiring({"backend", "one of the backends", true}), device.backend);
-  v.text(wiring({"channel", "which of the backend's devices", channel_required}), device.channel);
+  v.text(wiring({"channel", "device of the backend", channel_required}), device.channel);
 }
 
 template <class Map>
@@ -166,7 +166,7 @@ void Rig::visit(config::schema::Visitor& v) {
   v.table({"rod", "device that reads the rod"},
           [this](config::schema::Visitor& t) { visit_device(t, rod_, false); });
   config::schema::visit_list(v, {"spare_rod", "a further rod sensor"}, spare_rods_);
-  v.table({"valve", "what drives the valve"}, [this](config::schema::Visitor& t) {
+  v.table({"valve", "device that drives the valve"}, [this](config::schema::Visitor& t) {
     t.text(wiring({"backend", "one of the backends, or none"}), valve_.backend);
     if (valve_.backend == kNone) return;
     t.number({"null_V", "the commanded safe voltage"}, valve_.null_V, {-100.0, 100.0});

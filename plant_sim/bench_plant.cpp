@@ -11,7 +11,7 @@ void BenchPlant::visit(config::schema::Visitor& v) {
   v.number({"noise_m", "standard deviation of the reading"}, noise_m, {0.0, 0.1});
   v.integer({"dac_bits", "resolution of the D/A converter, 0 for none"}, dac_bits, {0, 24});
   v.number({"dac_range_V", "range of the D/A converter, both ways"}, dac_range_V, {1e-3, 1e3});
-  v.integer({"seed", "of the noise"}, seed, {0, std::numeric_limits<std::int64_t>::max()});
+  v.integer({"seed", "seed of the noise"}, seed, {0, std::numeric_limits<std::int64_t>::max()});
   config::schema::visit_list(v, {"fault", "a scheduled change of a parameter"}, faults);
   config::schema::visit_list(v, {"pressure", "errors of a pressure transducer"}, pressures);
 }

@@ -110,7 +110,7 @@ void ModelFile::list_effects() {
 void ModelFile::visit(Visitor& v) {
   v.text({"name", "the model's name", true}, name);
   const std::string before = plant;
-  v.choice({"plant", "which plant", true}, plant, plant_names());
+  v.choice({"plant", "plant of the model", true}, plant, plant_names());
   const PlantInfo& info = *find_plant(plant);
   if (plant != before) {
     parameters = defaults(info.parameters);

@@ -12,10 +12,10 @@ constexpr double kMost_Pa = 1e9;
 }  // namespace
 
 void TransducerConfig::visit(config::schema::Visitor& v) {
-  v.choice({"of", "which pressure it measures", true}, of,
+  v.choice({"of", "measured pressure", true}, of,
            {kTransducers[0], kTransducers[1], kTransducers[2]});
   v.number({"offset_Pa", "added to the pressure"}, offset_Pa, {-kMost_Pa, kMost_Pa});
-  v.number({"from_s", "when the offset begins"}, from_s,
+  v.number({"from_s", "start time of the offset"}, from_s,
            {0.0, std::numeric_limits<double>::infinity()});
   v.number({"noise_Pa", "standard deviation of the noise"}, noise_Pa, {0.0, kMost_Pa});
   v.number({"resolution_Pa", "resolution; 0: none"}, resolution_Pa, {0.0, kMost_Pa});

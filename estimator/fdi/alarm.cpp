@@ -4,14 +4,18 @@ namespace estimator::fdi {
 
 void AlarmRules::visit(config::schema::Visitor& v) {
   constexpr double kDay_s = 86400.0;
-  v.boolean({"acknowledge", "stays listed until somebody acknowledges it"}, acknowledge);
-  v.boolean({"latch", "stays active until then"}, latch);
-  v.integer({"count", "the alarm comes with so many times within count_window_s"}, count, {1, 100});
-  v.number({"count_window_s", "or when it lasts that long"}, count_window_s, {0.0, kDay_s});
-  v.integer({"chatter_count", "so many times within chatter_window_s are one long alarm; 0: never"},
+  v.boolean({"acknowledge", "stays listed until acknowledged"}, acknowledge);
+  v.boolean({"latch", "stays active until acknowledged"}, latch);
+  v.integer({"count", "number of occurrences within count_window_s that raises the alarm"}, count,
+            {1, 100});
+  v.number({"count_window_s", "window of count; a cause that lasts this long raises the alarm too"},
+           count_window_s, {0.0, kDay_s});
+  v.integer({"chatter_count",
+             "occurrences within chatter_window_s that are merged into one alarm; 0: never"},
             chatter_count, {0, 100});
-  v.number({"chatter_window_s", "and how long it must be quiet then"}, chatter_window_s,
-           {0.0, kDay_s});
+  v.number(
+      {"chatter_window_s", "window of chatter_count, and quiet time that ends the merged alarm"},
+      chatter_window_s, {0.0, kDay_s});
   v.number({"shelve_limit_s", "longest time it can be shelved for; 0: it cannot"}, shelve_limit_s,
            {0.0, 7.0 * kDay_s});
 }

@@ -227,7 +227,8 @@ void ClassifierConfig::visit(config::schema::Visitor& v) {
   v.texts({"features", "the values taken together", true}, features);
   v.number({"rejection", "share of a class's own blocks that is none of these"}, rejection,
            {1e-12, 0.5});
-  v.number({"pooling", "of the covariances; 0: each its own, 1: one for all"}, pooling, {0.0, 1.0});
+  v.number({"pooling", "share of the pooled covariance; 0: one per class, 1: one for all"}, pooling,
+           {0.0, 1.0});
   v.integer({"confirm", "blocks in a row that an alarm needs"}, confirm, {1, 1000});
   naming.visit(v);
   config::schema::visit_list(v, {"class", "trained classes"}, classes);

@@ -55,7 +55,7 @@ class Glr final : public MeanChangeMethod {
 
 void GlrConfig::visit(config::schema::Visitor& v) {
   visit_change(v);
-  v.integer({"window_blocks", "how far back a change is looked for"}, window_blocks, {1, 10000});
+  v.integer({"window_blocks", "longest age of a change, in blocks"}, window_blocks, {1, 10000});
 }
 
 std::unique_ptr<DetectionMethod> GlrConfig::make(const MethodContext& context) const {

@@ -19,18 +19,18 @@ constexpr double kGone = 0.5;
 void MeanChangeConfig::visit_change(config::schema::Visitor& v) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   visit_trained(v);
-  v.text({"quantity", "what is tested: ESTIMATOR.b1, sample.following_error_m, ...", true},
+  v.text({"quantity", "monitored quantity: ESTIMATOR.b1, sample.following_error_m, ...", true},
          quantity);
   v.number({"false_alarm_time_s", "mean time between false alarms"}, false_alarm_time_s,
            {1e-3, 1e10});
-  v.number({"mean", "of the quantity when all is well"}, mean);
-  v.number({"std_dev", "of its block means, their autocorrelation in it"}, std_dev,
+  v.number({"mean", "healthy mean of the quantity"}, mean);
+  v.number({"std_dev", "standard deviation of its block means, autocorrelation included"}, std_dev,
            {1e-300, kInfinity});
   v.number({"mean_error", "standard error of mean"}, mean_error, {0.0, kInfinity});
   v.text({"parameter", "the physical parameter meant"}, parameter);
   v.boolean({"falls_with_parameter", "the quantity falls when the parameter rises"},
             falls_with_parameter);
-  v.texts({"ambiguity_group", "parameters that cannot be told apart here"}, ambiguity_group);
+  v.texts({"ambiguity_group", "parameters that this quantity cannot separate"}, ambiguity_group);
   naming.visit(v);
 }
 

@@ -234,22 +234,22 @@ class Observer final : public DetectionMethod {
 }  // namespace
 
 void ObserverConfig::visit(config::schema::Visitor& v) {
-  v.text({"id", "names its values: ID.r1", true}, id);
+  v.text({"id", "name; prefix of its values: ID.r1", true}, id);
   v.texts({"u", "quantities that drive the model", true}, u);
   v.texts({"y", "quantities that it gives", true}, y);
   v.numbers({"a", "row by row", true}, a);
   v.numbers({"b", "row by row", true}, b);
   v.numbers({"c", "row by row", true}, c);
-  v.numbers({"e", "how unknown inputs act, row by row"}, e);
-  v.numbers({"input_offset", "of u at the operating point"}, input_offset);
-  v.numbers({"output_offset", "of y at the operating point"}, output_offset);
+  v.numbers({"e", "input matrix of the unknown inputs, row by row"}, e);
+  v.numbers({"input_offset", "u at the operating point"}, input_offset);
+  v.numbers({"output_offset", "y at the operating point"}, output_offset);
   v.numbers({"output_std", "noise of each y", true}, output_std, {1e-300, 1e300});
   v.number({"process_std", "noise of each state a sample; the more, the faster it follows", true},
            process_std, {1e-150, 1e150});
-  v.number({"window_s", "over which residuals are averaged"}, window_s, {1e-4, 1e4});
-  v.number({"stride_s", "between two findings"}, stride_s, {1e-4, 1e4});
+  v.number({"window_s", "averaging time of the residuals"}, window_s, {1e-4, 1e4});
+  v.number({"stride_s", "time between outputs"}, stride_s, {1e-4, 1e4});
   v.boolean({"bank", "one observer without each output"}, bank);
-  v.number({"limit", "of the residuals, in output_std"}, limit,
+  v.number({"limit", "limit of the residuals, in output_std"}, limit,
            {0.0, std::numeric_limits<double>::infinity()});
   naming.visit(v);
 }

@@ -28,7 +28,7 @@ std::string whole_text(const PipelineConfig& config, double sample_time_s) {
   PipelineConfig copy = config;
   copy.bands_file.clear();
   return config::schema::print_toml([&](config::schema::Visitor& v) {
-    v.number({"sample_time_s", "between two samples"}, sample_time_s);
+    v.number({"sample_time_s", "sample time"}, sample_time_s);
     copy.visit(v);
   });
 }

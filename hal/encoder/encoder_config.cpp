@@ -31,19 +31,19 @@ void EncoderConfig::visit(config::schema::Visitor& v) {
   v.text({"chip", "path, name or label of the GPIO chip", true}, chip);
   v.integer(wiring({"line_a", "number on the chip", true}), line_a, {0, kLastLine});
   v.integer(wiring({"line_b", "number on the chip", true}), line_b, {0, kLastLine});
-  v.integer({"line_index", "of the index pulse, -1: none"}, line_index, {-1, kLastLine});
+  v.integer({"line_index", "line of the index pulse; -1: none"}, line_index, {-1, kLastLine});
   visit_bias(v, bias);
   v.choice(wiring({"mode", "counts per cycle of the lines"}), mode, {"x1", "x2", "x4"});
-  v.number(wiring({"resolution_m", "of one count"}), resolution_m, {1e-12, 1.0});
+  v.number(wiring({"resolution_m", "travel per count"}), resolution_m, {1e-12, 1.0});
   v.number(wiring({"counts_per_metre", "instead of resolution_m"}), counts_per_metre, {1.0, 1e12});
   v.integer(wiring({"sign", "1, or -1 when A leads B as the rod retracts"}), sign, {-1, 1});
   v.number({"reference_m", "position at the index; without one, at the start"}, reference_m,
            {-1e3, 1e3});
   v.number({"max_speed_mps", "fastest that the rod is expected to move"}, max_speed_mps,
            {1e-6, 1e3});
-  v.number({"max_edges_per_s", "what this machine sustains without loss"}, max_edges_per_s,
-           {1.0, 1e8});
-  v.integer({"priority", "of the thread under SCHED_FIFO, where permitted"}, priority, {0, 99});
+  v.number({"max_edges_per_s", "edge rate that this machine sustains without loss"},
+           max_edges_per_s, {1.0, 1e8});
+  v.integer({"priority", "SCHED_FIFO priority of the thread, where permitted"}, priority, {0, 99});
   config::schema::visit_list(v, {"input", "a switch"}, inputs);
   config::schema::visit_list(v, {"output", "a relay"}, outputs);
 }

@@ -46,17 +46,18 @@ bool split(const std::string& address, ConnectionConfig& connection) {
 }  // namespace
 
 void ModbusConfig::visit(config::schema::Visitor& v) {
-  v.text({"address", "of a TCP device, numeric, with its port"}, address);
+  v.text({"address", "numeric address and port of a TCP device"}, address);
   v.text({"serial", "serial line of an RTU device, instead of address"}, serial);
   if (!serial.empty()) {
-    v.integer({"baud", "of the serial line"}, baud, {kBauds[0], 921600});
-    v.choice({"parity", "of the serial line"}, parity, {"none", "even", "odd"});
-    v.integer({"stop_bits", "of the serial line"}, stop_bits, {1, 2});
+    v.integer({"baud", "baud rate of the serial line"}, baud, {kBauds[0], 921600});
+    v.choice({"parity", "parity of the serial line"}, parity, {"none", "even", "odd"});
+    v.integer({"stop_bits", "stop bits of the serial line"}, stop_bits, {1, 2});
   }
   v.integer(wiring({"unit", "number of the device on its line"}), unit, {0, 247});
   v.number({"timeout_s", "longest wait for a reply"}, timeout_s, {1e-4, 10.0});
   v.number({"connect_timeout_s", "longest wait for a connection"}, connect_timeout_s, {1e-3, 10.0});
-  v.number({"longest_pause_s", "between two attempts to connect"}, longest_pause_s, {0.01, 60.0});
+  v.number({"longest_pause_s", "longest time between two attempts to connect"}, longest_pause_s,
+           {0.01, 60.0});
   v.number({"stale_after_s", "age from which a reading is stale"}, stale_after_s, {1e-3, 10.0});
   v.number({"bad_after_s", "age from which it is none"}, bad_after_s, {1e-3, 10.0});
   v.number({"jitter_s", "stale when measured further from its usual moment of the period"},
@@ -68,11 +69,12 @@ void ModbusConfig::visit(config::schema::Visitor& v) {
   v.number({"hand_over_s", "longest that a command waits for the thread that sends it"},
            hand_over_s, {2e-5, 0.01});
   v.number({"watchdog_s", "the device's own time-out for commands"}, watchdog_s, {1e-3, 60.0});
-  v.number({"delay_s", "from the sending of a command to the voltage at the valve"}, delay_s,
+  v.number({"delay_s", "time from the sending of a command to the voltage at the valve"}, delay_s,
            {0.0, 1.0});
   v.number({"max_speed_mps", "fastest that the rod can move"}, max_speed_mps, {0.0, 100.0});
   v.boolean({"bench_rig", "the other side is a simulated rig: nothing real moves"}, bench_rig);
-  v.integer({"priority", "of the thread in SCHED_FIFO, where allowed; 0: none"}, priority, {0, 99});
+  v.integer({"priority", "SCHED_FIFO priority of the thread, where permitted; 0: none"}, priority,
+            {0, 99});
 
   std::vector<std::string> printed;
   for (const Register& r : registers) printed.push_back(r.name);

@@ -31,7 +31,7 @@ std::vector<std::int64_t> grid(const config::record::Record& record) {
 
 void ReplayConfig::visit(config::schema::Visitor& v) {
   v.path({"record", "CSV, MAT or LCM event log", true}, record);
-  v.choice({"pace", "at the recorded pace, or as fast as possible"}, pace, {"recorded", "fast"});
+  v.choice({"pace", "recorded pace, or as fast as possible"}, pace, {"recorded", "fast"});
 }
 
 Rows::Rows(const config::record::Record& record) : tick_(grid(record)) {}

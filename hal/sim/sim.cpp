@@ -30,7 +30,7 @@ void check_pressure(const std::string& file, const InjectedFault& fault) {
 
 void SimConfig::visit(config::schema::Visitor& v) {
   BenchPlant::visit(v);
-  v.number({"command_timeout_s", "without a write for so long the valve goes to null"},
+  v.number({"command_timeout_s", "time without a write after which the valve goes to null"},
            command_timeout_s, {1e-3, std::numeric_limits<double>::infinity()});
   v.boolean({"pretend_real", "obey the rules of a rig that moves something"}, pretend_real);
   config::schema::visit_list(v, {"trouble", "injected fault of a sensor or the valve"},

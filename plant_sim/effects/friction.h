@@ -44,8 +44,8 @@ struct Friction {
     template <class V>
     void visit(V&& v) {
       v(ParameterInfo{"coulomb_N", "sliding friction", 0.0, 1e6, 200.0, 0.0}, coulomb_N);
-      v(ParameterInfo{"static_N", "friction at standstill; below coulomb_N it has no influence",
-                      0.0, 1e6, 300.0, 0.0, 0.0, 1},
+      v(ParameterInfo{"static_N", "friction at standstill; no effect below coulomb_N", 0.0, 1e6,
+                      300.0, 0.0, 0.0, 1},
         static_N);
       v(ParameterInfo{"stribeck_mps", "speed over which static falls to sliding friction", 0.0,
                       10.0, 0.01, 0.0, 0.0, 1},

@@ -22,7 +22,7 @@ void FormulaEffect::visit(Visitor& v) {
   std::vector<std::string_view> sites;
   sites.reserve(std::size(kFormulaSites));
   for (const FormulaSite& one : kFormulaSites) sites.emplace_back(site_name(one.site));
-  v.choice({"site", "where it acts", true}, site, sites);
+  v.choice({"site", "site of the effect", true}, site, sites);
   v.text({"formula", "an expression of the site's variables and its parameters", true}, formula);
   v.text({"what", "meaning in one phrase"}, what);
   std::vector<std::string> names;

@@ -95,7 +95,7 @@ Plot candidates_plot(const selection::Diagnosis& d, std::size_t index) {
   return plot;
 }
 
-/// "Of no use at first sight and not fitted: backlash, ..."
+/// "Rejected by the screening and not fitted: backlash, ..."
 std::string not_fitted_words(const selection::Round& round) {
   std::vector<std::string> names;
   for (const selection::Candidate& candidate : round.candidates) {
@@ -103,7 +103,7 @@ std::string not_fitted_words(const selection::Round& round) {
   }
   return names.empty()
              ? ""
-             : "Of no use at first sight and not fitted: " + config::schema::listed(names) + ".";
+             : "Rejected by the screening and not fitted: " + config::schema::listed(names) + ".";
 }
 
 Table candidates_table(const selection::Diagnosis& d, std::size_t index) {

@@ -30,7 +30,7 @@ void read_pipeline(const std::filesystem::path& file, Pack& pack) {
   double sample_time_s = 0.0;
   const std::string text = text_of(file);
   config::schema::Document::parse(text, file.string()).read([&](config::schema::Visitor& v) {
-    v.number({"sample_time_s", "between two samples", true}, sample_time_s, {1e-6, 1e3});
+    v.number({"sample_time_s", "sample time", true}, sample_time_s, {1e-6, 1e3});
     pack.pipeline.visit(v);
   });
   if (sample_time_s != pack.sample_time_s) {

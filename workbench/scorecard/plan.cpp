@@ -46,23 +46,23 @@ void check(const Plan& plan, const std::string& file) {
 }  // namespace
 
 void Motion::visit(Visitor& v) {
-  v.text({"id", "names it in the results", true}, id);
+  v.text({"id", "name in the results", true}, id);
   reference.visit(v);
 }
 
 void Fault::visit(Visitor& v) {
-  v.text({"id", "names it in the results", true}, id);
-  v.text({"parameter", "of the model"}, parameter);
+  v.text({"id", "name in the results", true}, id);
+  v.text({"parameter", "parameter of the model"}, parameter);
   v.text({"sensor", "offset, drift, scale or freeze"}, sensor);
   v.choice({"how", "ratio: old (1 +- size); value: +-size"}, how, {"ratio", "value"});
-  v.choice({"direction", "of the change"}, direction, {"up", "down", "both"});
-  v.text({"unit", "of the sizes, as shown"}, unit);
+  v.choice({"direction", "direction of the change"}, direction, {"up", "down", "both"});
+  v.text({"unit", "unit of the sizes in the results"}, unit);
   v.number({"per_unit", "SI, or a ratio, of one unit"}, per_unit, {1e-18, 1e6});
   v.number({"stated", "size at which delay and names are judged; 0: it has no size"}, stated,
            {0.0, 1e9});
   v.number({"least", "smallest size tried"}, least, {0.0, 1e9});
   v.number({"greatest", "greatest size tried"}, greatest, {0.0, 1e9});
-  v.texts({"names", "that alarms may give it; empty: the parameter"}, names);
+  v.texts({"names", "names that alarms may use for it; empty: the parameter"}, names);
   if (names.empty() && !parameter.empty()) names = {parameter};
 }
 
@@ -88,19 +88,19 @@ std::vector<double> Fault::sizes(int sign) const {
 }
 
 void Benign::visit(Visitor& v) {
-  v.text({"id", "names it in the results", true}, id);
-  v.text({"what", "in words"}, what);
-  v.text({"parameter", "of the model; empty: none changes"}, parameter);
-  v.number({"factor", "of its value"}, factor, {1e-3, 1e3});
-  v.number({"ramp_s", "time that it takes; 0: so from the beginning"}, ramp_s, {0.0, kDay_s});
-  v.number({"amplitude_ratio", "of the motion's amplitude"}, amplitude_ratio, {0.0, 10.0});
-  v.number({"frequency_ratio", "of the motion's speed"}, frequency_ratio, {1e-2, 10.0});
+  v.text({"id", "name in the results", true}, id);
+  v.text({"what", "description"}, what);
+  v.text({"parameter", "parameter of the model; empty: none changes"}, parameter);
+  v.number({"factor", "factor on its value"}, factor, {1e-3, 1e3});
+  v.number({"ramp_s", "duration of the change; 0: present from the start"}, ramp_s, {0.0, kDay_s});
+  v.number({"amplitude_ratio", "ratio to the motion's amplitude"}, amplitude_ratio, {0.0, 10.0});
+  v.number({"frequency_ratio", "ratio to the motion's speed"}, frequency_ratio, {1e-2, 10.0});
 }
 
 void Plan::visit(Visitor& v) {
-  v.text({"model", "of the rig, from this file's folder", true}, model);
+  v.text({"model", "model of the rig, relative to this file's folder", true}, model);
   v.number({"lead_s", "healthy, before the earliest fault"}, lead_s, {1.0, kDay_s});
-  v.number({"phase_s", "the fault comes at random within"}, phase_s, {0.0, kDay_s});
+  v.number({"phase_s", "the fault starts at a random time within"}, phase_s, {0.0, kDay_s});
   v.number({"watch_s", "time to detect it"}, watch_s, {0.1, kDay_s});
   v.number({"training_s", "healthy record that methods learn from"}, training_s, {10.0, kDay_s});
   v.number({"healthy_h", "hours without a fault, over all motions"}, healthy_h, {0.0, 1e4});

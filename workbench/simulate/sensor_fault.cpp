@@ -11,9 +11,8 @@ constexpr double kSlack_s = 1e-9;
 }  // namespace
 
 void SensorFault::visit(config::schema::Visitor& v) {
-  v.choice({"kind", "what becomes of the reading", true}, kind,
-           {"offset", "drift", "scale", "freeze"});
-  v.number({"at_s", "when it starts", true}, at_s, {0.0, 1e9});
+  v.choice({"kind", "kind of fault", true}, kind, {"offset", "drift", "scale", "freeze"});
+  v.number({"at_s", "start time", true}, at_s, {0.0, 1e9});
   if (kind != "freeze") v.number({"size", "m, m/s or a ratio", true}, size, {-10.0, 10.0});
 }
 

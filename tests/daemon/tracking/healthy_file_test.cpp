@@ -124,11 +124,11 @@ TEST_F(BaselineFiles, AreRefusedForAnotherWindowOrObserver) {
   iso::TrackerSettings other;
   other.window_s = 3.0;
   EXPECT_THAT(refusal(model_, other, truth::kSample_s, "stand-1"),
-              HasSubstr("window_s: was learnt with 2 s; allowed: 3 s"));
+              HasSubstr("window_s: was learned with 2 s; allowed: 3 s"));
   other = {};
   other.observer_per_s = 1.0;
   EXPECT_THAT(refusal(model_, other, truth::kSample_s, "stand-1"),
-              HasSubstr("observer_per_s: was learnt with 2 1/s; allowed: 1 1/s"));
+              HasSubstr("observer_per_s: was learned with 2 1/s; allowed: 1 1/s"));
 }
 
 TEST_F(BaselineFiles, AreRefusedForAModelWithAnotherValueOrEffectAndSayWhich) {
@@ -143,7 +143,7 @@ TEST_F(BaselineFiles, AreRefusedForAModelWithAnotherValueOrEffectAndSayWhich) {
 
 TEST_F(BaselineFiles, AreRefusedWhereOtherParametersWereTracked) {
   set_ = iso::choose(model_, {"supply_pressure_Pa"}, "parameters");
-  EXPECT_THAT(refusal(), HasSubstr("parameters: was learnt while supply_pressure_Pa, "
+  EXPECT_THAT(refusal(), HasSubstr("parameters: was learned while supply_pressure_Pa, "
                                    "damping_N_s_per_m were tracked; allowed: supply_pressure_Pa"));
   set_ = iso::choose(model_, {"damping_N_s_per_m", "supply_pressure_Pa"}, "parameters");
   EXPECT_EQ(refusal(), "") << "the order does not matter";
