@@ -88,16 +88,16 @@ int run(int argc, char** argv) {
   auto* listen = app.add_option("--listen", options.listen,
                                 "address:port instead of [bus] listen; 0: any free port");
   auto* serial = app.add_option("--serial", options.serial, "instead of [bus] serial");
-  app.add_option("--duration", options.duration_s, "seconds to run; without it, until a signal")
+  app.add_option("--duration", options.duration_s, "seconds to run; default: until a signal")
       ->check(CLI::Range(1e-3, 1e9));
-  app.add_option("--set", options.assignments, "table.key=value, instead of the file's")
+  app.add_option("--set", options.assignments, "table.key=value, overrides the file")
       ->allow_extra_args(false);
   bool reference = false;
   app.add_flag("--configuration-reference", reference)->group("");  // hidden: scripts/reference
   CLI::App* setting = app.add_subcommand("set", "changes a running rig: a fault, the e-stop");
   std::string address = "127.0.0.1:1502";
   std::vector<std::string> texts;
-  setting->add_option("--address", address, "where the rig listens");
+  setting->add_option("--address", address, "address of the rig");
   setting->add_option("parameter", texts, "name=value or name=xFACTOR (e_stop=0, mass_kg=x1.2)")
       ->required();
   try {

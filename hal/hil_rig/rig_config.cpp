@@ -8,8 +8,9 @@ namespace hal::hil_rig {
 void FieldConfig::visit(config::schema::Visitor& v) {
   v.number({"step_s", "integration step"}, step_s, {1e-6, 1e-2});
   v.number({"null_V", "valve voltage without a command"}, null_V, {-100.0, 100.0});
-  v.number({"command_timeout_s", "null without a command for so long, 0: never"}, command_timeout_s,
-           {0.0, 60.0});
+  v.number(
+      {"command_timeout_s", "time without a command after which the valve goes to null; 0: never"},
+      command_timeout_s, {0.0, 60.0});
   v.number({"permit_timeout_s", "the permit must change within, 0: not looked at"},
            permit_timeout_s, {0.0, 60.0});
   v.number({"valve_sign", "1, or -1 for a valve wired the wrong way round"}, valve_sign,

@@ -64,8 +64,9 @@ void ModbusConfig::visit(config::schema::Visitor& v) {
            jitter_s, {1e-5, 10.0});
   v.boolean({"combined", "function 23: command and reading in one transaction"}, combined);
   v.boolean({"multiple_only", "the device knows function 16 but not 6"}, multiple_only);
-  v.number({"read_ahead_s", "read so long before the loop's next period; 0: after the write"},
-           read_ahead_s, {0.0, 1.0});
+  v.number(
+      {"read_ahead_s", "lead of the read before the loop's next period; 0: read after the write"},
+      read_ahead_s, {0.0, 1.0});
   v.number({"hand_over_s", "longest that a command waits for the thread that sends it"},
            hand_over_s, {2e-5, 0.01});
   v.number({"watchdog_s", "the device's own time-out for commands"}, watchdog_s, {1e-3, 60.0});

@@ -45,7 +45,7 @@ void act(const char* word, const AlarmsOptions& options, bool with_time) {
 void add_alarms(CLI::App& command, int& /*exit_code*/) {
   const auto options = std::make_shared<AlarmsOptions>();
   add_order_options(command, options->common);
-  command.add_flag("--all", options->all, "those that are normal too");
+  command.add_flag("--all", options->all, "include normal alarms");
   command.callback([options] {
     const Json answer =
         control::give_order({{protocol::key::kCommand, protocol::kAlarms}}, options->common);
@@ -72,7 +72,7 @@ void add_shelve(CLI::App& command, int& /*exit_code*/) {
   add_order_options(command, options->common);
   command.add_option("alarm", options->alarm, "SOURCE.NAME, as `alarms` lists it")->required();
   const std::map<std::string, double> units = {{"s", 1.0}, {"min", 60.0}, {"h", 3600.0}};
-  command.add_option("--for", options->time_s, "how long: 90s, 10min, 2h")
+  command.add_option("--for", options->time_s, "duration: 90s, 10min, 2h")
       ->required()
       ->transform(CLI::AsNumberWithUnit(units, CLI::AsNumberWithUnit::UNIT_REQUIRED));
   command.callback([options] { act(protocol::kShelve, *options, true); });

@@ -124,7 +124,8 @@ void add_bridge(CLI::App& command, int& exit_code) {
   auto options = std::make_shared<BridgeOptions>();
   command.add_option("--lcm-url", options->url, "LCM URL; file:///LOG?mode=r replays a log")
       ->capture_default_str();
-  command.add_option("--prefix", options->prefix, "of the channel names")->capture_default_str();
+  command.add_option("--prefix", options->prefix, "prefix of the channel names")
+      ->capture_default_str();
   command.add_option("--udp", options->udp, "HOST:PORT or [IPV6]:PORT to send to")
       ->capture_default_str();
   command

@@ -126,17 +126,21 @@ void add_compare(CLI::App& command, int& /*exit_code*/) {
       ->check(finite_number());
   add_observer(command, arguments->observer_per_s)->check(positive_number());
   add_set(command, arguments->assignments);
-  command.add_flag("--all", arguments->all, "the error by every variable, not the most telling");
-  CLI::Option* live =
-      command.add_flag("--live", arguments->live, "with the running daemon, a line each second");
+  command.add_flag("--all", arguments->all,
+                   "the error by every variable, not only the most significant");
+  CLI::Option* live = command.add_flag("--live", arguments->live,
+                                       "compare with the running daemon, one line per second");
   command
-      .add_option("--lcm-url", arguments->watch.url, "of --live; file:///LOG?mode=r takes a log")
+      .add_option("--lcm-url", arguments->watch.url,
+                  "LCM URL of --live; file:///LOG?mode=r reads a log")
       ->needs(live)
       ->capture_default_str();
-  command.add_option("--prefix", arguments->watch.prefix, "of --live: of the channel names")
+  command.add_option("--prefix", arguments->watch.prefix, "prefix of the channel names of --live")
       ->needs(live)
       ->capture_default_str();
-  command.add_option("--duration", arguments->watch.duration_s, "of --live, s (0: until Ctrl-C)")
+  command
+      .add_option("--duration", arguments->watch.duration_s,
+                  "run time of --live, s (0: until Ctrl-C)")
       ->needs(live)
       ->check(CLI::NonNegativeNumber);
   command.callback([arguments, &command] {

@@ -66,7 +66,8 @@ void add_diagnose(CLI::App& command, int& exit_code) {
   add_model(command, request->model);
   add_records(command, request->records);
   CLI::Option* const holdout = add_holdouts(command, request->holdouts);
-  command.add_option("--fit", request->fit, "part of each record that is fitted; the rest scores")
+  command
+      .add_option("--fit", request->fit, "part of each record that is fitted; the rest validates")
       ->check(CLI::IsMember({"blocks", "first-half", "second-half"}))
       ->capture_default_str()
       ->excludes(holdout);

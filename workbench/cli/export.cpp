@@ -75,9 +75,11 @@ void add_export(CLI::App& command, int&) {
                   "the file to write: .csv .mat .mcap .json; - into a pipe")
       ->required();
   command
-      .add_option("--channel", options->channel, "which messages; all by default, samples as CSV")
+      .add_option("--channel", options->channel,
+                  "messages to export; default: all, for CSV samples")
       ->check(CLI::IsMember({"sample", "rods", "pressures", "estimate", "alarm", "health", "all"}));
-  command.add_option("--format", options->format, "whatever the file is called")
+  command
+      .add_option("--format", options->format, "format of the output; default: by the file name")
       ->check(CLI::IsMember({"csv", "mat", "mcap", "json"}));
   command.callback([options] {
     export_log(options->input, options->output, options->channel, options->format);

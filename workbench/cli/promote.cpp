@@ -196,7 +196,7 @@ void add_promote(CLI::App& command, int& /*exit_code*/) {
                   "mean time between false alarms of each band")
       ->capture_default_str()
       ->check(positive_number());
-  command.add_flag("--back", options->back, "the one before it again");
+  command.add_flag("--back", options->back, "restore the previous model");
   command.callback([options] { promote(*options); });
 }
 

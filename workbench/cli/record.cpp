@@ -120,11 +120,13 @@ int record(const RecordOptions& options) {
 void add_record(CLI::App& command, int& exit_code) {
   auto options = std::make_shared<RecordOptions>();
   command.add_option("-o,--output", options->out, "the record (CSV)")->required();
-  command.add_option("--duration", options->duration_s, "s of samples (0: until Ctrl-C)")
+  command
+      .add_option("--duration", options->duration_s, "length of the record, s (0: until Ctrl-C)")
       ->check(CLI::NonNegativeNumber);
-  command.add_option("--lcm-url", options->url, "LCM URL; file:///LOG?mode=r takes a log")
+  command.add_option("--lcm-url", options->url, "LCM URL; file:///LOG?mode=r reads a log")
       ->capture_default_str();
-  command.add_option("--prefix", options->prefix, "of the channel names")->capture_default_str();
+  command.add_option("--prefix", options->prefix, "prefix of the channel names")
+      ->capture_default_str();
   command.callback([options, &exit_code] { exit_code = record(*options); });
 }
 

@@ -31,7 +31,7 @@ void reload(const control::OrderOptions& options) {
   print(answer, "changed", "changed: ");
   print(answer, "warm", "estimator continues: ");
   print(answer, "cold", "estimator warms up: ");
-  print(answer, "ended", "alarm is no more: ");
+  print(answer, "ended", "alarm ended: ");
 }
 
 }  // namespace

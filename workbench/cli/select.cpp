@@ -52,7 +52,7 @@ void add_select(CLI::App& command, int& exit_code) {
       .add_option("--delay", request->delay,
                   "samples from u to y, of the usual structures; without it found in the record")
       ->check(number_within(0, 50));
-  command.add_option("--period", request->period_s, "s: the motion's period, or another unit")
+  command.add_option("--period", request->period_s, "s: period of the motion, or another unit")
       ->check(positive_number())
       ->capture_default_str();
   command

@@ -159,7 +159,9 @@ void add_simulate(CLI::App& command, int& /*exit_code*/) {
   command.add_option("--duration", arguments->duration_s, "seconds to simulate")
       ->check(number_within(simulate::kSampleTime_s, 1e6))
       ->capture_default_str();
-  command.add_option("--seed", arguments->seed, "of the noise; same seed, same bytes")
+  command
+      .add_option("--seed", arguments->seed,
+                  "seed of the noise; the same seed gives the same bytes")
       ->check(number_within(0.0, 1e18))
       ->capture_default_str();
   command.add_option(

@@ -120,7 +120,8 @@ void add_train(CLI::App& command, int& /*exit_code*/) {
   auto options = std::make_shared<TrainOptions>();
   command.add_option("config", options->config, "configuration with what is to be trained")
       ->required();
-  command.add_option("--healthy", options->healthy, "records when all is well: CSV, MAT, LCM log")
+  command
+      .add_option("--healthy", options->healthy, "records of the healthy rig: CSV, MAT, LCM log")
       ->required();
   command.add_option("--class", options->classes,
                      "NAME=RECORD of a fault; NAME+= when it has risen, NAME-= when fallen");

@@ -104,7 +104,7 @@ Plot position_plot(const Page& page, bool fitted) {
   plot.series.push_back({.name = "better model, free run",
                          .y = model_mm(page, page.free_after_m),
                          .tone = Tone::improved});
-  plot.caption = "Free run: nothing is corrected, errors add up.";
+  plot.caption = "Free run: without correction, errors accumulate.";
   return plot;
 }
 

@@ -90,9 +90,9 @@ std::string bias_words(const Outcome& outcome) {
   switch (test.verdict) {
     case structures::BiasVerdict::kUndetermined:
       return of +
-             "whether least squares is biased cannot be told: the motion leaves the "
+             "the bias of least squares cannot be determined: the motion leaves the "
              "instruments too weak (F " +
-             number_words(test.strength_F, 2) + ", 10 is needed); a richer reference would tell";
+             number_words(test.strength_F, 2) + ", 10 is needed); a richer reference would decide";
     case structures::BiasVerdict::kNoBiasSeen:
       return of + "no bias of least squares is seen beside " + beside + ", Durbin-Wu-Hausman p " +
              number_words(test.p, 2);

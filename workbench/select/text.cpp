@@ -37,7 +37,7 @@ std::string bias(const Judged& judged) {
 
 std::string on_line(const OnLine& form) {
   if (form.sound || form.method == "none") return form.method;
-  return form.method + ", not here";
+  return form.method + ", unsuitable here";
 }
 
 double least_bic(const Outcome& outcome) {
