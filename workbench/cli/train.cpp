@@ -118,7 +118,7 @@ void run(const TrainOptions& options) {
 
 void add_train(CLI::App& command, int& /*exit_code*/) {
   auto options = std::make_shared<TrainOptions>();
-  command.add_option("config", options->config, "configuration with what is to be trained")
+  command.add_option("config", options->config, "configuration with the methods to train")
       ->required();
   command
       .add_option("--healthy", options->healthy, "records of the healthy rig: CSV, MAT, LCM log")
