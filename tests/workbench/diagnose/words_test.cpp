@@ -88,7 +88,7 @@ TEST(Words, NotesNameTheRecordTheGapsAndTheInterruption) {
   outcome.diagnosis.search.interrupted = true;
   EXPECT_THAT(notes(outcome),
               testing::ElementsAre("servo: a gap at 3 s",
-                                   "servo: 1 gaps: the simulation restarts in each of 2 segments",
+                                   "servo: 1 gap: the simulation restarts in each of 2 segments",
                                    "servo: 99 samples in segments shorter than 1 s are left out",
                                    "interrupted: the best so far"));
 }
