@@ -112,7 +112,7 @@ TEST(Words, EffectsThatActAlikeOnThisPlantAreNamed) {
   ExampleReport outcome;
   outcome.diagnosis.same_here = {{"friction", "my_formula"}};
   EXPECT_THAT(remarks(outcome),
-              Contains(HasSubstr("On this plant friction and my_formula act alike")));
+              Contains(HasSubstr("On this plant friction and my_formula are equivalent")));
 }
 
 }  // namespace
