@@ -9,7 +9,7 @@
 #include "hal/rig.h"
 #include "hal/sim/sim.h"
 
-namespace hal::sim {
+namespace hal {
 namespace {
 
 constexpr double kTs_s = 0.005;
@@ -195,4 +195,4 @@ TEST(PressureRoles, AreRefusedInOneLineWhereTheirErrorsOrTroublesContradict) {
 }
 
 }  // namespace
-}  // namespace hal::sim
+}  // namespace hal

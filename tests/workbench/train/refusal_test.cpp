@@ -4,7 +4,7 @@
 #include "estimator/fdi/fingerprint.h"
 #include "tests/workbench/train/trained_rig.h"
 
-namespace workbench {
+namespace workbench::train {
 namespace {
 
 TEST_F(Train, IsRefusedForAnotherRigSampleTimeOrEstimatorInOneLineWithExitCode78) {
@@ -79,4 +79,4 @@ TEST_F(Train, HasTheSettingsOfEverySourceBehindTheOneThatItIsTrainedOn) {
 }
 
 }  // namespace
-}  // namespace workbench
+}  // namespace workbench::train
