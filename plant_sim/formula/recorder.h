@@ -8,7 +8,7 @@
 
 #include "plant_sim/formula/expression_program.h"
 
-namespace plant_sim {
+namespace plant_sim::formula {
 
 /// `variables` (at most ExpressionProgram::kVariables) and `parameters` are the names that the text
 /// may use, besides pi. Throws config::schema::ConfigError at `where`, with position and token,
@@ -21,4 +21,4 @@ namespace plant_sim {
 /// Names that no parameter can have: functions and pi.
 [[nodiscard]] const std::vector<std::string>& formula_words();
 
-}  // namespace plant_sim
+}  // namespace plant_sim::formula

@@ -148,16 +148,16 @@ TEST(EveryDissipativeEffect, TakesPowerAtEveryInstant) {
           value = std::clamp(2.0 * info.typical * unit(random), info.min, info.max);
         });
         const double v = unit(random), in = 1e7 * unit(random), out = 1e7 * unit(random);
-        if constexpr (has_site(Effect::kSites, Site::force)) {
+        if constexpr (effects::has_site(Effect::kSites, effects::Site::force)) {
           EXPECT_GE(Effect::resisting_N(p, unit(random), v) * v, 0.0) << Effect::kName;
           ++checked;
         }
-        if constexpr (has_site(Effect::kSites, Site::leakage)) {
-          const Leak<double> leak = Effect::leak(p, in, out);
+        if constexpr (effects::has_site(Effect::kSites, effects::Site::leakage)) {
+          const effects::Leak<double> leak = Effect::leak(p, in, out);
           EXPECT_GE(leak.in_m3ps * in + leak.out_m3ps * out, 0.0) << Effect::kName;
           ++checked;
         }
-        if constexpr (has_site(Effect::kSites, Site::supply)) {
+        if constexpr (effects::has_site(Effect::kSites, effects::Site::supply)) {
           const double ahead = Effect::supply_Pa(p, 7e6, in, std::abs(1e-7 * v));
           EXPECT_GE((7e6 - ahead) * (ahead - in), 0.0) << Effect::kName;
           ++checked;

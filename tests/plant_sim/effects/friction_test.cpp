@@ -6,7 +6,7 @@
 namespace plant_sim::testing {
 namespace {
 
-using F = Friction<double>;
+using F = effects::Friction<double>;
 
 TEST(Friction, HoldsTheRodUntilThePressureForceExceedsIt) {
   auto plant = at_rest();
@@ -74,7 +74,7 @@ TEST(Friction, IsThatOfNewParametersAtOnce) {
   p.stribeck_mps = 0.01;
   F::Memory memory;
   F::accept(p, memory, 1e-6, 0.005);
-  const DryContact<double> at{0.005, 0.0, 1e4, 0.0};
+  const effects::DryContact<double> at{0.005, 0.0, 1e4, 0.0};
   EXPECT_NEAR(F::friction_N(p, memory, at), 200.0 + 100.0 * std::exp(-0.25), 1e-9);
   p.stribeck_mps = 0.004;
   memory.prepare(1e-3);
@@ -90,7 +90,8 @@ TEST(Friction, NeverDrivesTheRod) {
     p.static_N = 1000.0 * std::abs(unit(random));
     p.stribeck_mps = 0.1 * std::abs(unit(random));
     p.direction_ratio = unit(random);
-    DryContact<double> at{0.1 * std::pow(unit(random), 3), 0.0, 3000.0 * unit(random), 5e4};
+    effects::DryContact<double> at{0.1 * std::pow(unit(random), 3), 0.0, 3000.0 * unit(random),
+                                   5e4};
     EXPECT_GE(F::friction_N(p, {}, at) * at.v_mps, 0.0);
   }
 }

@@ -29,7 +29,7 @@ TEST(ExternalLeakage, LetsBothPressuresFallExponentially) {
 TEST(EntrainedAir, IsTheModulusOfOilAndBubblesSqueezedTogether) {
   // volume against pressure: oil 1 - p/beta, air alpha (pa/p)^(1/1.4); beta_eff = -V dp/dV
   for (const double alpha : {0.001, 0.02, 0.3}) {
-    const EntrainedAir<double>::Parameters p{alpha};
+    const effects::EntrainedAir<double>::Parameters p{alpha};
     double last_Pa = 0.0;
     for (const double gauge_Pa : {0.0, 1e5, 3.4e6, 6.89e6}) {
       const double p_Pa = gauge_Pa + 1.01e5;
@@ -37,7 +37,7 @@ TEST(EntrainedAir, IsTheModulusOfOilAndBubblesSqueezedTogether) {
       const double h_Pa = 1e-4 * p_Pa;
       const double shrinks_per_Pa =
           1.0 / 6.89e8 + (air(p_Pa - h_Pa) - air(p_Pa + h_Pa)) / (2.0 * h_Pa);
-      const double found_Pa = EntrainedAir<double>::bulk_modulus_Pa(p, 6.89e8, gauge_Pa);
+      const double found_Pa = effects::EntrainedAir<double>::bulk_modulus_Pa(p, 6.89e8, gauge_Pa);
       EXPECT_NEAR(found_Pa * shrinks_per_Pa / (1.0 + air(p_Pa)), 1.0, 1e-6);
       EXPECT_GT(found_Pa, last_Pa);
       EXPECT_LT(found_Pa, 6.89e8);

@@ -124,10 +124,10 @@ TEST(SupplyDroop, SatisfiesBothOfItsEquations) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   for (int i = 0; i < 10000; ++i) {
-    const SupplyDroop<double>::Parameters p{1e12 * std::pow(unit(random), 4)};
+    const effects::SupplyDroop<double>::Parameters p{1e12 * std::pow(unit(random), 4)};
     const double port_Pa = 1.4e7 * unit(random);
     const double g = 1e-7 * unit(random);
-    const double ahead_Pa = SupplyDroop<double>::supply_Pa(p, 7e6, port_Pa, g);
+    const double ahead_Pa = effects::SupplyDroop<double>::supply_Pa(p, 7e6, port_Pa, g);
     const double drop_Pa = ahead_Pa - port_Pa;
     const double q_m3ps = g * std::copysign(std::sqrt(std::abs(drop_Pa)), drop_Pa);
     EXPECT_NEAR(7e6 - p.droop_Pa_per_m3ps * q_m3ps, ahead_Pa, 1e-2);

@@ -100,7 +100,7 @@ TEST(FormulaEffect, ChangesNotOneBitWhileItsParametersAreNeutral) {
 
 /// The formulas of the model in a plant of any kind of number.
 template <class Model>
-void declare(Model& plant, const Formulas& formulas) {
+void declare(Model& plant, const formula::Formulas& formulas) {
   plant.effects.formulas().declare(formulas.data(), formulas.size());
 }
 
@@ -108,7 +108,7 @@ void declare(Model& plant, const Formulas& formulas) {
 TEST(FormulaEffect, ChangesNotOneBitWhenNeutralAndEvaluated) {
   for (const Twin& twin : kTwins) {
     if (std::string(twin.plant) != "hydraulic_actuator") continue;
-    const Formulas formulas =
+    const formula::Formulas formulas =
         model_of(plant_text(twin.plant) + own_text(twin.site, twin.formula, "-1e6", "1e6"))
             .formulas();
     Actuator with, without;
@@ -132,7 +132,7 @@ TEST(FormulaEffect, ChangesNotOneBitWhenNeutralAndEvaluated) {
 /// Eight different values of k, one of them neutral, together and alone.
 template <template <class> class Model>
 void expect_lanes_agree(const Twin& twin) {
-  const Formulas formulas =
+  const formula::Formulas formulas =
       model_of(plant_text(twin.plant) + own_text(twin.site, twin.formula, "-1e6", "1e6"))
           .formulas();
   const auto k_of = [&](std::size_t lane) {
@@ -140,16 +140,17 @@ void expect_lanes_agree(const Twin& twin) {
   };
   auto together = std::make_unique<Model<Simd>>();
   declare(*together, formulas);
-  together->effects.formulas().each([&](const FormulaView&, const ParameterInfo&, Simd& value) {
-    for (std::size_t lane = 0; lane < Simd::kSize; ++lane) value.set(lane, k_of(lane));
-  });
+  together->effects.formulas().each(
+      [&](const formula::FormulaView&, const ParameterInfo&, Simd& value) {
+        for (std::size_t lane = 0; lane < Simd::kSize; ++lane) value.set(lane, k_of(lane));
+      });
   together->prepare(1e-3);
   together->reset();
   std::array<Model<double>, Simd::kSize> alone;
   for (std::size_t lane = 0; lane < Simd::kSize; ++lane) {
     declare(alone[lane], formulas);
-    alone[lane].effects.formulas().each(
-        [&](const FormulaView&, const ParameterInfo&, double& value) { value = k_of(lane); });
+    alone[lane].effects.formulas().each([&](const formula::FormulaView&, const ParameterInfo&,
+                                            double& value) { value = k_of(lane); });
     alone[lane].prepare(1e-3);
     alone[lane].reset();
   }

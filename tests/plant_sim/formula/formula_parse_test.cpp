@@ -16,12 +16,13 @@ using ::testing::HasSubstr;
 
 /// With variables x, y and parameter k.
 double value(const std::string& text, double x, double y, double k) {
-  const ExpressionProgram program = record_formula(text, {"x", "y"}, {"k"}, "here");
-  ExpressionEvaluator<double> run(view_of(program));
+  const formula::ExpressionProgram program =
+      formula::record_formula(text, {"x", "y"}, {"k"}, "here");
+  formula::ExpressionEvaluator<double> run(view_of(program));
   run.set_parameters(&k);
   const double alone = run(x, y);
 
-  ExpressionEvaluator<Simd> lanes(view_of(program));
+  formula::ExpressionEvaluator<Simd> lanes(view_of(program));
   Simd many = 0.25;
   many.set(5, k);
   lanes.set_parameters(&many);
@@ -71,8 +72,8 @@ TEST(Formula, HasTheFunctionsOfTheMathLibrary) {
 }
 
 TEST(Formula, FindsWhatDependsOnParametersAloneOnce) {
-  const ExpressionProgram program =
-      record_formula("exp(k)*sqrt(k)*x + exp(k)*2*pi", {"x"}, {"k", "unused"}, "");
+  const formula::ExpressionProgram program =
+      formula::record_formula("exp(k)*sqrt(k)*x + exp(k)*2*pi", {"x"}, {"k", "unused"}, "");
   EXPECT_EQ(program.moving.size(), 2U);  // times x, plus
   EXPECT_EQ(program.constants.size(), 2U);
   EXPECT_EQ(program.uses, (std::vector<bool>{true, false}));
@@ -125,7 +126,7 @@ TEST(Formula, SurvivesAnyText) {
       text += pieces[(random >> 16) % std::size(pieces)];
     }
     try {
-      (void)record_formula(text, {"v_mps"}, {"k"}, "here");
+      (void)formula::record_formula(text, {"v_mps"}, {"k"}, "here");
     } catch (const config::schema::ConfigError& error) {
       EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << text;
     }
