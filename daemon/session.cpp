@@ -151,7 +151,7 @@ bool recorded_all(io::Recorder& recorder, std::ostream& log) {
 }
 
 void arm_and_start(rt::CommandQueue& commands, std::int64_t expires_ns) {
-  rt::Command command;
+  rt::LoopCommand command;
   command.expires_ns = expires_ns;
   for (const control::Event event : {control::Event::arm, control::Event::start}) {
     command.event = event;

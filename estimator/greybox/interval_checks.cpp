@@ -46,7 +46,7 @@ void look_for_bends(const Problem& problem, const Solution& solution, const Cova
   };
   std::vector<End> ends;
   for (Index j = 0; j < n; ++j) {
-    if (known.standing[static_cast<std::size_t>(j)] != Standing::kEstimated) continue;
+    if (known.standing[static_cast<std::size_t>(j)] != Standing::estimated) continue;
     const double variance = known.matrix(j, j);
     if (!found[static_cast<std::size_t>(j)].empty() || !(variance > 0.0)) continue;
     for (const double side : {-kInterval, kInterval}) {
@@ -90,7 +90,7 @@ std::vector<std::string> doubts(const Problem& problem, const Solution& solution
     const bool prior = std::isfinite(parameters[i].prior_sd);
     if (solution.at_bound[i] != 0) {
       found[i] = "at its bound";
-    } else if (known.standing[i] == Standing::kUnseen) {
+    } else if (known.standing[i] == Standing::unseen) {
       found[i] = "not visible";
     } else if (!prior || record_share[j] > kSeen) {
       found[i] = large(parameters[i], solution.x[j], known.std_error[j]);

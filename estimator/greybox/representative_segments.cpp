@@ -4,13 +4,10 @@
 #include <cmath>
 #include <span>
 
+#include "estimator/greybox/kinematics.h"
+
 namespace estimator::greybox {
 namespace {
-
-struct SampleRange {
-  std::size_t begin;
-  std::size_t end;
-};
 
 /// Of [begin, end) the `length` samples with the longest way of the rod, of those that begin
 /// every quarter of it.

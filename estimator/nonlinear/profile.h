@@ -21,7 +21,7 @@ struct ProfileOptions {
   double inflation = 1.0;   ///< Covariance::inflation of the unknown: sigma wrong, or colour
   double first_step = 0.0;  ///< where to look first, e.g. two standard errors; 0: from the Jacobian
   int max_points = 12;      ///< to either side
-  Options minimize;         ///< of the others
+  MinimizeOptions minimize;  ///< of the others
 };
 
 struct ProfilePoint {

@@ -19,7 +19,7 @@ class Channel {
 
   [[nodiscard]] InputReading read(const Tick& tick) const noexcept {
     poll_thread_->pace(tick);
-    const Snapshot& snapshot = poll_thread_->newest();
+    const RegisterSnapshot& snapshot = poll_thread_->newest();
     const ReadChannel& r = poll_thread_->map().reads[index_];
     InputReading reading;
     reading.t_ns = snapshot.t_ns[r.block];

@@ -84,7 +84,7 @@ void SpareConfig::visit(config::schema::Visitor& v) {
   v.number({"noise_m", "standard deviation of its noise"}, noise_m, {0.0, 1e-2});
 }
 
-void SwitchConfig::visit(config::schema::Visitor& v) {
+void SimSwitchConfig::visit(config::schema::Visitor& v) {
   v.text({"id", "its channel", true}, id);
   v.number({"value", "what it reads"}, value, {-1e12, 1e12});
   v.number({"from_s", "from then on"}, from_s, {0.0, kInfinite});

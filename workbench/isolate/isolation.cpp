@@ -180,7 +180,7 @@ void note_followed(IsolationReport& out, const ParameterTracker& tracker) {
     const Eigen::VectorXd& baseline = tracker.baseline()->theta;
     out.notes.push_back(
         slow.at_end(i, baseline) != 0
-            ? tracking::slow_words(p, slow.learnt(i), baseline[static_cast<Eigen::Index>(at)])
+            ? tracking::drift_words(p, slow.learnt(i), baseline[static_cast<Eigen::Index>(at)])
             : tracking::name_words(p.name) + " was followed from " +
                   tracking::value_words(p, slow.learnt(i), NAN) + " to " +
                   tracking::value_words(p, baseline[static_cast<Eigen::Index>(at)], NAN));

@@ -17,7 +17,7 @@
 //
 // Its values: each parameter by its name (a dot in it becomes "_"), NaN where the window does not
 // tell it; smallest_NAME, the change that the present motion would show; residual_rms_m;
-// healthy_NAME of each parameter of `follow`, which changes are counted from (slow_change.h). Its
+// healthy_NAME of each parameter of `follow`, which changes are counted from (baseline_drift.h). Its
 // alarms: each parameter by the same name, which name the parameter or the group that cannot be
 // told apart; slow_NAME when one of `follow` has come further by and by than is followed; and
 // "unexplained" when the model no longer explains the rig.
@@ -29,7 +29,7 @@
 #include "estimator/fdi/alarm.h"
 #include "estimator/fdi/detection_method_config.h"
 #include "estimator/fdi/tracker/baseline_file.h"
-#include "estimator/fdi/tracker/source_kinds.h"
+#include "estimator/fdi/tracker/detection_method_kinds.h"
 #include "estimator/greybox/tracking/parameter_tracker.h"
 
 namespace estimator::fdi::tracker {

@@ -26,7 +26,7 @@ struct Localisation {
   double explained_ratio = 0.0;  ///< of the held-out squared error
 };
 
-struct Step {
+struct SelectionStep {
   std::string added;  ///< empty: the model as given, its parameters fitted
   double validation_rms_m = 0.0;
 };
@@ -43,7 +43,7 @@ struct Diagnosis {
   double rms_after_m = 0.0;                ///< held-out, with what is missing
   std::vector<ParameterValue> parameters;  ///< of the better model, fitted to all samples
   std::vector<Localisation> where;         ///< best first; empty when nothing is left to explain
-  std::vector<Step> steps;
+  std::vector<SelectionStep> steps;
   std::vector<std::string> notes;  ///< restrictions: gaps, interrupted, ...
   StructureSearch search;
   FitSummary final;             ///< the better model on all samples

@@ -4,7 +4,7 @@
 //   r ~ -J a - sum b_i s_i,     s_i = response to the disturbance  f(t) h_i(x(t))
 //
 // r residual of the stage, J its Jacobian (the model's parameters may adjust, held by their
-// priors), h_i the pieces of a variable x (variables.h). A disturbance enters as
+// priors), h_i the pieces of a variable x (residual_variables.h). A disturbance enters as
 //
 //   flow         h_i volts beside the command
 //   gain         u h_i volts beside the command

@@ -17,7 +17,7 @@
 namespace estimator::greybox::selection {
 
 /// State of a running search, for a progress line.
-struct Progress {
+struct SearchProgress {
   std::string doing;  ///< "round 1: trying friction"
   int done = 0;
   int of = 0;
@@ -43,9 +43,9 @@ using Separable =
 
 struct DiagnosisOptions {
   unsigned threads = 2;
-  std::function<void(const Progress&)> progress;  ///< serialised calls; may be empty
-  std::function<bool()> cancel;                   ///< called from any thread; may be empty
-  Separable separable;                            ///< empty: no motion separates anything
+  std::function<void(const SearchProgress&)> progress;  ///< serialised calls; may be empty
+  std::function<bool()> cancel;                         ///< called from any thread; may be empty
+  Separable separable;                                  ///< empty: no motion separates anything
 };
 
 struct SearchContext {

@@ -10,7 +10,7 @@
 //     ones (within kAsGood) once others may follow: the tracked ones freely, those of the plant
 //     that are hardly seen as far as the file may be off. It joins that parameter's group.
 // Where the position sensor is suspected as well, it joins where its scale or drift in place of the
-// parameter, the others as they are, leaves no more within kChance (sensor_rival.h): its scale is
+// parameter, the others as they are, leaves no more within kChance (sensor_hypothesis.h): its scale is
 // to command and position nearly what the valve gain is, and its drift what a null bias is.
 #pragma once
 

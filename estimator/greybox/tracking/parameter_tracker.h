@@ -2,7 +2,7 @@
 //
 // Each stride: the tracked parameters are fitted to the latest window (window_fit.h), the window is
 // judged (a model that does not explain it, or a motion that cannot tell the parameters, makes it
-// invalid, with the reason), and changes are named (naming.h). A window in which the rig changed
+// invalid, with the reason), and changes are named (change_naming.h). A window in which the rig changed
 // explains nothing: then its latest part alone is looked at, which is how a change is named before
 // the window is over. One call of push() does at most one such look; all others only keep the
 // sample.
@@ -47,7 +47,7 @@ struct TrackerSettings {
   double most_ratio = 1.2;       ///< of the healthy error, beyond which a window is invalid
   double most_std_error = 0.01;  ///< ratio, beyond which a value is invalid
   double most_of_typical = 0.1;  ///< the same of an effect, over its typical size
-  std::int64_t fused = 4;        ///< windows that a value is taken from while they agree (pool.h)
+  std::int64_t fused = 4;        ///< windows that a value is taken from while they agree (window_fusion.h)
   Thresholds thresholds;
   DriftSettings drift;
   ExcitationLimits probe;
@@ -67,7 +67,7 @@ class ParameterTracker {
   [[nodiscard]] const ChangeDetector& detector() const { return detector_; }
   /// AlarmBook::forget_cleared().
   void forget_cleared() { detector_.forget_cleared(); }
-  /// What changes are counted from: as learnt, but for what has changed slowly (slow_change.h).
+  /// What changes are counted from: as learnt, but for what has changed slowly (baseline_drift.h).
   [[nodiscard]] const std::optional<Baseline>& baseline() const { return baseline_; }
   [[nodiscard]] const BaselineDrift& baseline_drift() const { return drift_; }
   [[nodiscard]] const ParameterSet& set() const { return set_; }

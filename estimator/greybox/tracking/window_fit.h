@@ -10,8 +10,8 @@
 // c s     what an unknown position at the window's start leaves: s(k) = (1 - l Ts)^k
 // l       the observer's gain
 // Pi Po   chamber pressures, h: modelled; bi bo the transducers' learnt offsets
-// ci co   what a window is off them, S how far that may be (chambers.h)
-// sigma   errors of healthy windows, of pressures as chambers.h says
+// ci co   what a window is off them, S how far that may be (chamber_errors.h)
+// sigma   errors of healthy windows, of pressures as chamber_errors.h says
 //
 // The model starts at rest a lead-in before the window and is led to the measured position there
 // (Measured::led), so that speed and pressures are its own when the window begins; what is left of

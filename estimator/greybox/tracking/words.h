@@ -31,7 +31,7 @@ namespace estimator::greybox::tracking {
 [[nodiscard]] std::string change_words(const ParameterSet& set, const ParameterChange& named,
                                        const Eigen::VectorXd& baseline);
 /// "damping came by and by to 700 N s/m, -30.0 % from what was learnt".
-[[nodiscard]] std::string slow_words(const FreeParameter& parameter, double learnt, double theta);
+[[nodiscard]] std::string drift_words(const FreeParameter& parameter, double learnt, double theta);
 /// Which other parameters would explain it, and what would tell; empty: none.
 [[nodiscard]] std::string group_words(const ParameterSet& set, const ParameterChange& named);
 /// What would tell the members of the group apart.

@@ -96,8 +96,8 @@ TEST(BetterModel, SaysAtItsTopWhatWasAddedAndReadsBack) {
   EXPECT_NE(*read.value("mass_kg"), 1.0);
 }
 
-selection::Progress step(const std::string& doing, int done) {
-  selection::Progress progress;
+selection::SearchProgress step(const std::string& doing, int done) {
+  selection::SearchProgress progress;
   progress.doing = doing;
   progress.done = done;
   progress.of = 36;
@@ -110,7 +110,7 @@ TEST(ProgressLine, IsOneLineForEachRoundWhereNoTerminalIs) {
   std::ostringstream out;
   ProgressLine line(out, false, 2.4e-6);
   line.show(step("round 1: trying friction", 1));
-  selection::Progress ranked = step("round 1: trying backlash", 2);
+  selection::SearchProgress ranked = step("round 1: trying backlash", 2);
   ranked.expected = {"friction", "backlash", "deadband"};
   line.show(ranked);
   line.show(ranked);

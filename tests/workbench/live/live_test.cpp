@@ -24,9 +24,9 @@ spoolwatch::estimate_t b1(double value, double t_s) {
   estimate.size = 2;
   estimate.name = {"a1", "b1"};
   estimate.value = {-1.0, value};
-  estimate.std_error = {live::kNone, 1e-6};
-  estimate.low = {live::kNone, 1.0};
-  estimate.high = {live::kNone, 3.0};
+  estimate.std_error = {config::signals::kNaN, 1e-6};
+  estimate.low = {config::signals::kNaN, 1.0};
+  estimate.high = {config::signals::kNaN, 3.0};
   return estimate;
 }
 
@@ -119,10 +119,11 @@ TEST_F(LiveTest, ShowsLatenessAndCounts) {
 TEST_F(LiveTest, DrawsOnAnySizeOfTerminalAndWithAnyNumbers) {
   state_.on_new_run(1, true);
   spoolwatch::sample_t sample{};
-  sample.y_m = live::kNone;
+  sample.y_m = config::signals::kNaN;
   sample.reference_m = HUGE_VAL;
   state_.on(sample);
-  for (const double value : {live::kNone, HUGE_VAL, -HUGE_VAL, 0.0}) state_.on(b1(value, 1.0));
+  for (const double value : {config::signals::kNaN, HUGE_VAL, -HUGE_VAL, 0.0})
+    state_.on(b1(value, 1.0));
   for (const auto& [rows, columns] : {std::pair{1, 1}, {5, 20}, {24, 80}, {60, 300}}) {
     const live::Canvas canvas = live::draw(state_, rows, columns, live::Glyphs::unicode());
     EXPECT_EQ(canvas.rows(), rows);

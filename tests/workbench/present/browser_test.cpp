@@ -89,7 +89,7 @@ TEST_F(Browser, APlotThatFailsSaysSoAndCurvesThatAreMissingAreNoticed) {
 TEST_F(Browser, ACloudAloneIsSeenWhole) {
   present::Report report{.title = "cloud"};
   present::Plot plot{.title = "Cloud",
-                     .kind = present::Kind::scatter,
+                     .kind = present::PlotKind::scatter,
                      .x = {"velocity", "mm/s"},
                      .y = {"error", "um"}};
   for (int i = 0; i < 600; ++i) {  // ends in the middle of what it passes through

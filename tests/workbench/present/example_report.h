@@ -50,7 +50,7 @@ inline present::Series binned_rms(const std::vector<double>& x, const std::vecto
     count[static_cast<std::size_t>(at)] += 1.0;
   }
   present::Series series{
-      .name = "RMS per stretch", .tone = present::Tone::measured, .kind = present::Kind::line};
+      .name = "RMS per stretch", .tone = present::Tone::measured, .kind = present::PlotKind::line};
   for (std::size_t b = 0; b < sum.size(); ++b) {
     series.x.push_back(low + (high - low) * (static_cast<double>(b) + 0.5) / bins);
     series.y.push_back(count[b] > 0.0 ? std::sqrt(sum[b] / count[b]) : kNan);
@@ -71,7 +71,7 @@ inline present::Plot time_plot(const std::string& title, const present::Axis& y,
 inline present::Plot cloud(const std::string& title, const present::Axis& x,
                            const std::vector<double>& values, double reach, const ExampleData& d) {
   return {.title = title,
-          .kind = present::Kind::scatter,
+          .kind = present::PlotKind::scatter,
           .x = x,
           .y = {"residual", "µm"},
           .x_values = values,
@@ -91,7 +91,7 @@ inline present::Section where_section(const ExampleData& d) {
       cloud("Residual against position", {"position", "mm"}, d.measured_mm, 52.0, d));
   section.plots.push_back(cloud("Residual against command", {"command", "V"}, d.command_V, 9.0, d));
   present::Plot whiteness{.title = "Autocorrelation of the residual",
-                          .kind = present::Kind::bars,
+                          .kind = present::PlotKind::bars,
                           .x = {"lag", "s"},
                           .y = {"correlation", ""},
                           .lines = {{0.026, "95 % limit"}},
@@ -123,7 +123,7 @@ inline present::Section ladder_section() {
                      "of the record. Bars that reach the dashed line explain all that "
                      "the sensor lets one see."}};
   section.plots.push_back({.title = "Error step by step",
-                           .kind = present::Kind::line,
+                           .kind = present::PlotKind::line,
                            .x = {"", ""},
                            .y = {"held-out RMS", "µm", true},
                            .categories = {"as given", "+ null_bias", "+ friction", "refitted"},
@@ -134,7 +134,7 @@ inline present::Section ladder_section() {
                            .width = present::Width::half});
   section.plots.push_back(
       {.title = "Candidates, first round",
-       .kind = present::Kind::bars,
+       .kind = present::PlotKind::bars,
        .y = {"held-out RMS", "µm"},
        .categories = {"friction", "backlash", "quadratic_damping", "deadband", "supply_droop",
                       "internal_leakage", "load_force", "entrained_air", "force_ripple"},
@@ -163,7 +163,7 @@ inline present::Report example_report(std::size_t n = 6000) {
   present::Report report{
       .title = "rig_2000psi.toml against bench_0412.csv",
       .verdict = "Friction is missing: 182 ± 2 N of Coulomb friction on the rod.",
-      .state = present::State::warn,
+      .state = present::ReportState::warn,
       .summary = {"The model fails below 5 mm/s and while reversing. With friction "
                   "added, the error on held-out data falls from 38.5 µm to 2.6 µm, "
                   "1.02 times the noise floor."},
@@ -190,7 +190,7 @@ inline present::Report example_report(std::size_t n = 6000) {
                                      {{.name = "command",
                                        .y = d.command_V,
                                        .tone = present::Tone::muted,
-                                       .kind = present::Kind::steps}}));
+                                       .kind = present::PlotKind::steps}}));
   report.sections = {overview, where_section(d), ladder_section()};
   return report;
 }

@@ -74,7 +74,7 @@ truth::Record case_three() {
   return truth::simulate(of);
 }
 
-TEST(TrackerSource, TellsDampingAndSupplyPressureApartOnLine) {
+TEST(TrackerMethod, TellsDampingAndSupplyPressureApartOnLine) {
   const truth::Record record = case_three();
   fdi::Pipeline pipeline(watching(), truth::kSample_s);
   Log log;
@@ -132,7 +132,7 @@ truth::Record gain_falls(bool chambers, bool supply) {
   return record;
 }
 
-TEST(TrackerSource, TellsTheValveGainByPressuresThatTheSamplesCarry) {
+TEST(TrackerMethod, TellsTheValveGainByPressuresThatTheSamplesCarry) {
   for (const bool chambers : {true, false}) {
     const truth::Record record = gain_falls(chambers, !chambers);
     fdi::Pipeline pipeline(watching(kWithGain), truth::kSample_s);
@@ -148,7 +148,7 @@ TEST(TrackerSource, TellsTheValveGainByPressuresThatTheSamplesCarry) {
   }
 }
 
-TEST(TrackerSource, LeavesPressuresAloneWhereItIsTold) {
+TEST(TrackerMethod, LeavesPressuresAloneWhereItIsTold) {
   const truth::Record record = gain_falls(true, true);
   fdi::PipelineConfig config(tracker::detection_method_kinds());
   auto tracker = std::make_unique<tracker::TrackerConfig>();
@@ -184,7 +184,7 @@ TEST(TrackerConfig, KeepsWhatIsHealthyOfPressuresWhenItIsPrinted) {
   EXPECT_EQ(chambers.offset_sd_Pa, 1.4e4);
 }
 
-TEST(TrackerSource, SaysWhyItGoesOnByPositionAlone) {
+TEST(TrackerMethod, SaysWhyItGoesOnByPositionAlone) {
   truth::Record record = gain_falls(true, false);
   for (std::size_t k = 2000; k < record.in_Pa.size(); ++k) record.in_Pa[k] = record.in_Pa[2000];
   fdi::Pipeline pipeline(watching(kWithGain), truth::kSample_s);
@@ -231,19 +231,19 @@ void expect_the_same(const fdi::PipelineConfig& config, const truth::Record& rec
   }
 }
 
-TEST(TrackerSource, GoesOnBitForBitFromASnapshot) {
+TEST(TrackerMethod, GoesOnBitForBitFromASnapshot) {
   const truth::Record record = case_three();
   const fdi::PipelineConfig config = watching();
   expect_the_same(config, record, {700u, 2517u});  // while it learns; while an alarm stands
 }
 
-TEST(TrackerSource, GoesOnBitForBitWithPressures) {
+TEST(TrackerMethod, GoesOnBitForBitWithPressures) {
   truth::Record record = gain_falls(true, false);
   for (std::size_t k = 3600; k < record.in_Pa.size(); ++k) record.in_Pa[k] = record.in_Pa[3600];
   expect_the_same(watching(kWithGain), record, {700u, 2900u, 3700u});
 }
 
-TEST(TrackerSource, AlarmsWhenTheModelNoLongerExplainsTheRig) {
+TEST(TrackerMethod, AlarmsWhenTheModelNoLongerExplainsTheRig) {
   truth::Case of = stand(20.0);
   of.changes.push_back({12.0, nullptr, &truth::Hidden::backlash_m, 60e-6});
   const truth::Record record = truth::simulate(of);
@@ -256,7 +256,7 @@ TEST(TrackerSource, AlarmsWhenTheModelNoLongerExplainsTheRig) {
   EXPECT_LT(log.alarms[0].t_s, 16.5);
 }
 
-TEST(TrackerSource, SuggestsAMotionWithinItsLimitsWhereTheRodStandsStill) {
+TEST(TrackerMethod, SuggestsAMotionWithinItsLimitsWhereTheRodStandsStill) {
   truth::Record record = truth::simulate(stand(9.0));
   for (int k = 0; k < 1000; ++k) {
     record.u_V.push_back(0.0);
@@ -278,7 +278,7 @@ TEST(TrackerSource, SuggestsAMotionWithinItsLimitsWhereTheRodStandsStill) {
   EXPECT_TRUE(log.alarms.empty());
 }
 
-TEST(TrackerSource, SaysThatSamplesAreMissing) {
+TEST(TrackerMethod, SaysThatSamplesAreMissing) {
   const truth::Record record = truth::simulate(stand(4.0));
   fdi::Pipeline pipeline(watching(), truth::kSample_s);
   Log log;

@@ -94,8 +94,8 @@ TEST(Chance, IsCertainWithTooLittleToCount) {
 TEST(SingleRound, RanksTheHiddenEffectFirstAndTellsHowItGoes) {
   SearchContext context =
       diagnose_test::servo_context({.rate_mps = diagnose_test::with_offset(0.06)});
-  std::vector<Progress> told;
-  context.options.progress = [&](const Progress& progress) { told.push_back(progress); };
+  std::vector<SearchProgress> told;
+  context.options.progress = [&](const SearchProgress& progress) { told.push_back(progress); };
   const Round round = single_round(context, first_stage(context), 1);
   ASSERT_EQ(round.candidates.size(), context.problem.candidate_effects.size());
   const Candidate& best = round.candidates.front();

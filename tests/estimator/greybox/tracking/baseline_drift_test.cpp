@@ -1,4 +1,4 @@
-// What changes slowly is followed, by the rule of slow_change.h and on records of the independent
+// What changes slowly is followed, by the rule of baseline_drift.h and on records of the independent
 // generator.
 #include "estimator/greybox/tracking/baseline_drift.h"
 
