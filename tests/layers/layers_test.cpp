@@ -258,6 +258,7 @@ std::vector<std::string> foreign_namespaces(const fs::path& root) {
         if (lines[i] == last) last.clear();
         continue;
       }
+      if (lines[i] == "namespace {") last = "}  // namespace";
       if (!std::regex_search(lines[i], match, opening)) continue;
       const std::string name = match[1];
       if (name == own || (name.rfind(own + "::", 0) == 0 && folders.count(name) == 0)) {

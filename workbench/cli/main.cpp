@@ -16,11 +16,11 @@ namespace {
 
 /// Headings of --help.
 namespace group {
-constexpr char kModel[] = "Model";
-constexpr char kData[] = "Data";
-constexpr char kDetection[] = "Detection";
-constexpr char kStand[] = "Running stand";
-constexpr char kExchange[] = "Exchange";
+constexpr char model[] = "Model";
+constexpr char data[] = "Data";
+constexpr char detection[] = "Detection";
+constexpr char stand[] = "Running stand";
+constexpr char exchange[] = "Exchange";
 }  // namespace group
 
 struct Command {

@@ -17,8 +17,8 @@
 //
 // Its values: each parameter by its name (a dot in it becomes "_"), NaN where the window does not
 // tell it; smallest_NAME, the change that the present motion would show; residual_rms_m;
-// healthy_NAME of each parameter of `follow`, which changes are counted from (baseline_drift.h). Its
-// alarms: each parameter by the same name, which name the parameter or the group that cannot be
+// healthy_NAME of each parameter of `follow`, which changes are counted from (baseline_drift.h).
+// Its alarms: each parameter by the same name, which name the parameter or the group that cannot be
 // told apart; slow_NAME when one of `follow` has come further by and by than is followed; and
 // "unexplained" when the model no longer explains the rig.
 #pragma once

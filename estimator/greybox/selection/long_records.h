@@ -8,7 +8,8 @@
 
 namespace estimator::greybox::selection {
 
-/// The same workshop, with stretches for evidence when the records are long (representative_segments.h).
+/// The same workshop, with stretches for evidence when the records are long
+/// (representative_segments.h).
 [[nodiscard]] SearchContext for_search(const SearchContext& context);
 /// Whether `search` has stretches only.
 [[nodiscard]] bool uses_segments(const SearchContext& search, const SearchContext& context);

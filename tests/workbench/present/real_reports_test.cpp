@@ -9,7 +9,7 @@
 #include "tests/workbench/diagnose/servo_bench.h"
 #include "tests/workbench/present/page_check.h"
 
-namespace workbench::present {
+namespace workbench::diagnose {
 namespace {
 
 using nlohmann::json;
@@ -23,7 +23,7 @@ constexpr double kThreeDigits = 0.006;
 class Reports : public testing::Test, public ServoBench {
  protected:
   void SetUp() override {
-    if (!report::have_browser()) {
+    if (!present::have_browser()) {
       GTEST_SKIP() << "chromium is missing: scripts/install-packages browser";
     }
   }
@@ -38,8 +38,8 @@ class Reports : public testing::Test, public ServoBench {
   }
 
   static void expect_sound(const std::string& page, std::size_t plots) {
-    const report::Visit seen = report::visit(report::with_check(page, false));
-    const json check = report::check_of(seen);
+    const present::Visit seen = present::visit(present::with_check(page, false));
+    const json check = present::check_of(seen);
     ASSERT_TRUE(check.contains("drawn")) << check.dump();
     EXPECT_THAT(seen.requests, IsEmpty());
     EXPECT_THAT(check["errors"], IsEmpty()) << check["errors"].dump();
@@ -118,4 +118,4 @@ TEST_F(Reports, OfAComparisonAndAFitDrawEveryPlot) {
 }
 
 }  // namespace
-}  // namespace workbench::present
+}  // namespace workbench::diagnose

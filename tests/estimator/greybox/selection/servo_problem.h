@@ -18,6 +18,9 @@
 
 namespace diagnose_test {
 
+namespace greybox = estimator::greybox;
+namespace selection = estimator::greybox::selection;
+
 inline constexpr double kServoGain = 0.05;  ///< m/s per V
 
 using Rate = std::function<double(double u_V, double y_m, double t_s)>;
@@ -68,9 +71,9 @@ inline plant_sim::ModelFile servo_model() {
   return model;
 }
 
-inline SearchContext servo_context(const ServoRun& run) {
-  return SearchContext{make_problem(servo_model(), greybox::fit_dataset({servo_record(run)}, {})),
-                       {}};
+inline selection::SearchContext servo_context(const ServoRun& run) {
+  return selection::SearchContext{
+      selection::make_problem(servo_model(), greybox::fit_dataset({servo_record(run)}, {})), {}};
 }
 
 /// y' = 0.05 (u + offset).
@@ -87,8 +90,9 @@ inline Rate with_offset_and_band(double offset_V, double width_V) {
 }
 
 /// `before` with effects of one parameter, which start at a value.
-inline ModelStage stage_with(const SearchContext& context, const ModelStage& before,
-                             const std::vector<std::pair<std::string, double>>& effects) {
+inline selection::ModelStage stage_with(
+    const selection::SearchContext& context, const selection::ModelStage& before,
+    const std::vector<std::pair<std::string, double>>& effects) {
   using namespace estimator::greybox::selection;
   ParameterSubset selection = subset(before.fitted, [](const auto&) { return true; });
   ModelStage stage = before;

@@ -9,7 +9,7 @@
 #include "hal/rig.h"
 #include "hal/sim/sim.h"
 
-namespace hal {
+namespace hal::sim {
 namespace {
 
 constexpr double kTs_s = 0.005;
@@ -195,4 +195,4 @@ TEST(PressureRoles, AreRefusedInOneLineWhereTheirErrorsOrTroublesContradict) {
 }
 
 }  // namespace
-}  // namespace hal
+}  // namespace hal::sim
