@@ -66,7 +66,7 @@ class ControlRequestHandler {
   [[nodiscard]] std::string reject(const std::string& why);
   /// Writes the current command to the audit file.
   void audit(const std::string& reject_reason);
-  [[nodiscard]] std::string explain(const control::Answer& answer) const;
+  [[nodiscard]] std::string explain(const control::CommandAnswer& answer) const;
   [[nodiscard]] std::string obstacle() const;
   [[nodiscard]] io::ControlStatus status() const;
   void add_rods(io::ControlStatus& status) const;

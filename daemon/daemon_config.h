@@ -20,7 +20,7 @@
 #include "daemon/io/recorder.h"
 #include "daemon/rt/loop.h"
 #include "estimator/fdi/pipeline_config.h"
-#include "estimator/fdi/tracker/source_kinds.h"
+#include "estimator/fdi/tracker/detection_method_kinds.h"
 #include "hal/rig.h"
 
 namespace monitor {

@@ -23,8 +23,9 @@ template <class S>
 class ForceDrivenAxis {
  public:
   static constexpr const char* kName = "force_driven_axis";
-  static constexpr std::array kSites = {Site::command, Site::inertia, Site::force,
-                                        Site::dry_friction, Site::sensor};
+  static constexpr std::array kSites = {effects::Site::command, effects::Site::inertia,
+                                        effects::Site::force, effects::Site::dry_friction,
+                                        effects::Site::sensor};
 
   struct Parameters {
     S mass_kg = 100.0;
@@ -69,7 +70,7 @@ class ForceDrivenAxis {
   Parameters parameters;
   Initial initial;
   State state;
-  Effects<S> effects;
+  effects::Effects<S> effects;
 
   void reset() {
     state = {initial.y_m, initial.v_mps};

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/signals/nan.h"
+
 namespace monitor::control {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 // Shares of max_travel.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/signals/nan.h"
 #include "daemon/control/sensor_watch.h"
 
 namespace monitor::control {
@@ -14,7 +15,7 @@ constexpr double kRounding_s = 1e-9;
 /// jerk).
 constexpr double kReturnMargin_m = 1e-3;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 
 double upper_limit(const GuardConfig& config) noexcept {
   switch (config.which()) {

@@ -9,7 +9,7 @@
 //     std::unique_ptr<DetectionMethod> make(const MethodContext& context) const override;
 //   };
 //
-// and one line in kDetectionMethodKinds (detection_method_kinds.cpp). Code above this library,
+// and one line in kDetectionMethodKinds (detection_method_config.cpp). Code above this library,
 // which may know physics, passes kinds of its own to PipelineConfig's constructor instead.
 #pragma once
 

@@ -51,7 +51,7 @@ std::string shown(const std::vector<std::string>& settings, std::size_t i) {
 
 }  // namespace
 
-Difference difference(std::string_view found, std::string_view expected) {
+FingerprintDifference difference(std::string_view found, std::string_view expected) {
   const std::vector<std::string> one = settings_of(found);
   const std::vector<std::string> other = settings_of(expected);
   std::size_t i = 0;

@@ -20,10 +20,10 @@ namespace estimator::fdi {
 
 /// The first setting in which two such lines differ, "[table] key = value"; "none" where a line
 /// lacks it.
-struct Difference {
+struct FingerprintDifference {
   std::string found;
   std::string expected;
 };
-[[nodiscard]] Difference difference(std::string_view found, std::string_view expected);
+[[nodiscard]] FingerprintDifference difference(std::string_view found, std::string_view expected);
 
 }  // namespace estimator::fdi

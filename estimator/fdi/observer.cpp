@@ -88,13 +88,13 @@ class Observer final : public DetectionMethod {
     window_ = samples(config.window_s);
     stride_ = samples(config.stride_s);
     interval_s_ = static_cast<double>(stride_) * context.sample_time_s;
-    LinearModel model = config.model();
+    StateSpaceModel model = config.model();
     for (Index i = 0; i < model.c.rows(); ++i) {
       model.c.row(i) /= config.output_std[static_cast<std::size_t>(i)];
     }
     const std::size_t observers = config.bank ? config.y.size() : 1;
     for (std::size_t left_out = 0; left_out < observers; ++left_out) {
-      LinearModel part = model;
+      StateSpaceModel part = model;
       std::vector<Index> used;
       for (Index i = 0; i < model.c.rows(); ++i) {
         if (!config.bank || i != static_cast<Index>(left_out)) used.push_back(i);
@@ -260,11 +260,11 @@ std::vector<std::string> ObserverConfig::inputs() const {
   return all;
 }
 
-LinearModel ObserverConfig::model() const {
+StateSpaceModel ObserverConfig::model() const {
   const std::string where = "[[observer]] " + id;
   const auto n = static_cast<Index>(std::llround(std::sqrt(static_cast<double>(a.size()))));
   if (n == 0) throw bad_config(where + ": a", "is empty", "n x n numbers");
-  LinearModel out;
+  StateSpaceModel out;
   out.a = matrix(a, n, n, where + ": a");
   out.b = matrix(b, n, static_cast<Index>(u.size()), where + ": b");
   out.c = matrix(c, static_cast<Index>(y.size()), n, where + ": c");

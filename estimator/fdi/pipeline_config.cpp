@@ -179,7 +179,7 @@ void PipelineConfig::load_bands(const std::filesystem::path& folder, double samp
       throw bad_config(where, "there is no such estimator", "the id of an [[estimator]]");
     }
     if (estimator->fingerprint() != band.estimator) {
-      const Difference differs = difference(band.estimator, estimator->fingerprint());
+      const FingerprintDifference differs = difference(band.estimator, estimator->fingerprint());
       throw bad_config(where, "was learned with other settings of the estimator: " + differs.found,
                        differs.expected);
     }

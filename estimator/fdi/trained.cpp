@@ -141,7 +141,7 @@ void TrainedMethodConfig::check(const TrainedMethod& trained, const ConfigLoadCo
   for (std::size_t i = 0; i < settings.size(); ++i) {
     const std::string found = i < trained.settings.size() ? trained.settings[i] : "";
     if (found == settings[i]) continue;
-    const Difference differs = difference(found, settings[i]);
+    const FingerprintDifference differs = difference(found, settings[i]);
     throw bad_config(place,
                      trained.quantities[i] + " was trained with other settings: " + differs.found,
                      differs.expected);

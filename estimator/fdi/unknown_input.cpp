@@ -33,7 +33,7 @@ MatrixXd unit_columns(MatrixXd matrix) {
   return matrix;
 }
 
-void check(const LinearModel& m) {
+void check(const StateSpaceModel& m) {
   const Index n = m.a.rows();
   const bool fits = n > 0 && m.a.cols() == n && m.b.rows() == n && m.c.cols() == n &&
                     m.c.rows() > 0 && (m.e.size() == 0 || m.e.rows() == n) &&
@@ -83,7 +83,7 @@ MatrixXd predictor_gain(const MatrixXd& a, const MatrixXd& c, double q) {
   return gain;
 }
 
-Existence unknown_input_existence(const LinearModel& model) {
+Existence unknown_input_existence(const StateSpaceModel& model) {
   check(model);
   Existence out;
   if (model.e.size() == 0) {
@@ -117,7 +117,7 @@ Existence unknown_input_existence(const LinearModel& model) {
   return out;
 }
 
-UnknownInputObserver unknown_input_observer(const LinearModel& model, const std::string& where,
+UnknownInputObserver unknown_input_observer(const StateSpaceModel& model, const std::string& where,
                                             double q) {
   const Existence found = unknown_input_existence(model);
   if (!found.exists) throw bad_config(where, "has no unknown input observer: " + found.why);

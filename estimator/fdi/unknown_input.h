@@ -25,7 +25,7 @@
 
 namespace estimator::fdi {
 
-struct LinearModel {
+struct StateSpaceModel {
   Eigen::MatrixXd a;     ///< n x n
   Eigen::MatrixXd b;     ///< n x inputs
   Eigen::MatrixXd c;     ///< outputs x n
@@ -45,7 +45,7 @@ struct Existence {
 
 /// Checks both conditions; ranks by singular values with columns scaled to unit length. Throws
 /// schema::ConfigError when sizes do not fit.
-[[nodiscard]] Existence unknown_input_existence(const LinearModel& model);
+[[nodiscard]] Existence unknown_input_existence(const StateSpaceModel& model);
 
 struct UnknownInputObserver {
   Eigen::MatrixXd f, j, g, l1, l2, h;
@@ -57,7 +57,7 @@ struct UnknownInputObserver {
 /// Observer of a discrete model. Throws schema::ConfigError with the reason when none exists. `q`:
 /// process
 /// noise of predictor_gain(); a larger one follows faster.
-[[nodiscard]] UnknownInputObserver unknown_input_observer(const LinearModel& model,
+[[nodiscard]] UnknownInputObserver unknown_input_observer(const StateSpaceModel& model,
                                                           const std::string& where, double q = 1.0);
 
 /// Gain K1 of the steady Kalman filter x+ = A x + w, y = C x + v, cov w = q I, cov v = I, as

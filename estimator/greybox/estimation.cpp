@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "config/signals/nan.h"
 #include "estimator/greybox/fit_errors.h"
 #include "estimator/greybox/interval_checks.h"
 #include "estimator/greybox/multistart.h"
@@ -20,7 +21,7 @@ using estimator::nonlinear::Problem;
 using estimator::nonlinear::Solution;
 using Step = EstimationProgress::Step;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 /// A lower cost by this amount restarts the fit from there.
 constexpr double kBetter = 0.1;
 /// Fits with a cost within this of the best and values within one standard error share a minimum.
@@ -153,7 +154,7 @@ class Estimator {
     at.sigma_m = weighed();
     for (int k = 0; k < kDescent && !cancelled(); ++k) {
       problem_.sigma = at.sigma_m;
-      estimator::nonlinear::Options how;
+      estimator::nonlinear::MinimizeOptions how;
       how.max_iterations = 1;
       if (smooth_) how.first_damping = kSlight;
       how.final_jacobian = false;
@@ -183,7 +184,7 @@ class Estimator {
 
   /// `known`: residual and Jacobian at `from`, or null.
   void polish(const VectorXd& from, const FitSummary* known) {
-    estimator::nonlinear::Options how;
+    estimator::nonlinear::MinimizeOptions how;
     how.cost_tolerance = kPolished;
     if (smooth_) how.first_damping = kSlight;
     how.max_iterations = kPolishing;
@@ -195,7 +196,7 @@ class Estimator {
     }
     solution_ = minimize(problem_, from, how);
     out_.evaluations += solution_.evaluations;
-    if (solution_.reason != estimator::nonlinear::Stop::kCancelled) return;
+    if (solution_.reason != estimator::nonlinear::StopReason::cancelled) return;
     derivatives(problem_, solution_.x, solution_.residual, solution_.jacobian);
     solution_.cost = cost_of(problem_, solution_.x, solution_.residual);
   }

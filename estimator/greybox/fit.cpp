@@ -65,7 +65,7 @@ FitSummary fit(const plant_sim::ModelFile& model, const FitDataset& data,
       problem_of(data, weights, parameters, options.logarithm_step);
   problem.evaluate = run.evaluate();
   problem.lanes = run.lanes();
-  estimator::nonlinear::Options how;
+  estimator::nonlinear::MinimizeOptions how;
   how.cost_tolerance = options.tolerance;
   how.renew_all = false;
   how.final_jacobian = false;

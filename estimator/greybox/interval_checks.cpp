@@ -44,7 +44,7 @@ void check_curvature(const Problem& problem, const Solution& solution, const Cov
   };
   std::vector<End> ends;
   for (Index j = 0; j < n; ++j) {
-    if (known.standing[static_cast<std::size_t>(j)] != Standing::kEstimated) continue;
+    if (known.standing[static_cast<std::size_t>(j)] != Standing::estimated) continue;
     const double variance = known.matrix(j, j);
     if (found[static_cast<std::size_t>(j)] != IntervalDoubt::none || !(variance > 0.0)) continue;
     for (const double side : {-kInterval, kInterval}) {
@@ -88,7 +88,7 @@ std::vector<IntervalDoubt> doubts(const Problem& problem, const Solution& soluti
     const bool prior = std::isfinite(parameters[i].prior_sd);
     if (solution.at_bound[i] != 0) {
       found[i] = IntervalDoubt::at_bound;
-    } else if (known.standing[i] == Standing::kUnseen) {
+    } else if (known.standing[i] == Standing::unseen) {
       found[i] = IntervalDoubt::not_visible;
     } else if (!prior || record_share[j] > kSeen) {
       if (is_large(parameters[i], solution.x[j], known.std_error[j])) {

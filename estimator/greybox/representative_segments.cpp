@@ -4,13 +4,10 @@
 #include <cmath>
 #include <span>
 
+#include "estimator/greybox/kinematics.h"
+
 namespace estimator::greybox {
 namespace {
-
-struct SampleRange {
-  std::size_t begin;
-  std::size_t end;
-};
 
 /// The `length` samples of [begin, end) with the longest travel, starts a quarter length apart.
 SampleRange longest_travel(const Dataset& record, std::size_t begin, std::size_t end,

@@ -25,7 +25,7 @@ bool Search::iterate() {
   if (hopeless || small_ >= kSmallInARow) {
     const std::vector<Eigen::Index> old = stale();
     if (old.empty()) {
-      return stop(hopeless ? Stop::kNoFurtherDecrease : Stop::kSmallDecrease, true);
+      return stop(hopeless ? StopReason::no_further_decrease : StopReason::small_decrease, true);
     }
     small_ = 0;
     renew(old);
@@ -112,7 +112,7 @@ bool Search::iterate() {
 bool Search::scan() {
   const Eigen::Index count = std::max<Eigen::Index>(kScanLeast, problem_.lanes);
   for (;;) {
-    if (options_.cancel && options_.cancel()) return stop(Stop::kCancelled, false);
+    if (options_.cancel && options_.cancel()) return stop(StopReason::cancelled, false);
     Eigen::MatrixXd points(p_, count);
     std::vector<double> lambda(static_cast<std::size_t>(count));
     for (Eigen::Index k = 0; k < count; ++k) {
@@ -140,7 +140,7 @@ bool Search::scan() {
       return true;
     }
     if (is_small(points.col(count - 1) - x_) || lambda_ > 1e20) {
-      return stop(Stop::kSmallStep, true);
+      return stop(StopReason::small_step, true);
     }
   }
 }
@@ -148,12 +148,12 @@ bool Search::scan() {
 Solution Search::run(const Eigen::VectorXd& start) {
   assert(start.size() == p_ && problem_.sigma > 0.0);
   if (!begin(start)) {
-    stop(Stop::kStartNotFinite, false);
+    stop(StopReason::start_not_finite, false);
   } else {
-    out_.reason = Stop::kIterationLimit;
+    out_.reason = StopReason::iteration_limit;
     for (int round = 0; round < options_.max_iterations; ++round) {
       if (options_.cancel && options_.cancel()) {
-        stop(Stop::kCancelled, false);
+        stop(StopReason::cancelled, false);
         break;
       }
       const bool more = iterate();
@@ -162,7 +162,7 @@ Solution Search::run(const Eigen::VectorXd& start) {
       }
       if (!more) break;
     }
-    if (options_.final_jacobian && out_.reason != Stop::kCancelled) {
+    if (options_.final_jacobian && out_.reason != StopReason::cancelled) {
       const std::vector<Eigen::Index> old = stale();
       if (!old.empty()) renew(old);
     }
@@ -185,25 +185,26 @@ Solution Search::run(const Eigen::VectorXd& start) {
   return out_;
 }
 
-const char* to_string(Stop stop) {
+const char* to_string(StopReason stop) {
   switch (stop) {
-    case Stop::kNoFurtherDecrease:
+    case StopReason::no_further_decrease:
       return "no further decrease in sight";
-    case Stop::kSmallDecrease:
+    case StopReason::small_decrease:
       return "the last steps gained next to nothing";
-    case Stop::kSmallStep:
+    case StopReason::small_step:
       return "no step lowers the cost";
-    case Stop::kIterationLimit:
+    case StopReason::iteration_limit:
       return "iteration limit reached";
-    case Stop::kCancelled:
+    case StopReason::cancelled:
       return "cancelled";
-    case Stop::kStartNotFinite:
+    case StopReason::start_not_finite:
       return "the model cannot be evaluated at the start";
   }
   return "";
 }
 
-Solution minimize(const Problem& problem, const Eigen::VectorXd& start, const Options& options) {
+Solution minimize(const Problem& problem, const Eigen::VectorXd& start,
+                  const MinimizeOptions& options) {
   return Search(problem, options).run(start);
 }
 

@@ -38,11 +38,11 @@ class Walker {
     unknown.lower = unknown.upper = value;
     Eigen::VectorXd start = warm;
     start[j_] = value;
-    Options minimizing = options_.minimize;
+    MinimizeOptions minimizing = options_.minimize;
     minimizing.final_jacobian = false;
     const Solution s = minimize(held_, start, minimizing);
     out_.evaluations += s.evaluations;
-    if (s.reason == Stop::kCancelled) out_.cancelled = true;
+    if (s.reason == StopReason::cancelled) out_.cancelled = true;
     if (s.cost < out_.least_cost) {
       out_.least_cost = s.cost;
       out_.least_x = s.x;

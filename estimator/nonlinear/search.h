@@ -13,7 +13,7 @@ namespace estimator::nonlinear {
 /// One search: the point, its linearisation, the damping.
 class Search {
  public:
-  Search(const Problem& problem, const Options& options)
+  Search(const Problem& problem, const MinimizeOptions& options)
       : problem_(problem), options_(options), groups_(problem), p_(problem.size()) {}
 
   Solution run(const Eigen::VectorXd& start);
@@ -31,14 +31,14 @@ class Search {
   [[nodiscard]] Eigen::VectorXd inside(Eigen::VectorXd x) const;
   [[nodiscard]] std::vector<Eigen::Index> stale() const;
   [[nodiscard]] bool is_small(const Eigen::VectorXd& step) const;
-  bool stop(Stop reason, bool converged) {
+  bool stop(StopReason reason, bool converged) {
     out_.reason = reason;
     out_.converged = converged;
     return false;
   }
 
   const Problem& problem_;
-  const Options& options_;
+  const MinimizeOptions& options_;
   Groups groups_;
   Eigen::Index p_;
   Eigen::VectorXd x_;

@@ -139,7 +139,7 @@ PolynomialFit refused(const Orders& orders, const std::string& why) {
 
 nonlinear::Solution best_of(const nonlinear::Problem& problem, const std::vector<VectorXd>& starts,
                             const PredictionErrorOptions& options) {
-  nonlinear::Options search;
+  nonlinear::MinimizeOptions search;
   search.max_iterations = options.max_iterations;
   search.cost_tolerance = kTolerance;
   search.cancel = options.cancel;
@@ -147,7 +147,7 @@ nonlinear::Solution best_of(const nonlinear::Problem& problem, const std::vector
   best.cost = std::numeric_limits<double>::infinity();
   for (const VectorXd& start : starts) {
     nonlinear::Solution solution = nonlinear::minimize(problem, start, search);
-    const bool usable = solution.reason != nonlinear::Stop::kStartNotFinite;
+    const bool usable = solution.reason != nonlinear::StopReason::start_not_finite;
     if (usable && solution.cost < best.cost) best = std::move(solution);
   }
   return best;
@@ -199,8 +199,8 @@ PolynomialFit fit_prediction_error(const Orders& orders, const Stretches& all,
   out.condition = kNaN;
   if (options.errors) {
     nonlinear::CovarianceOptions how;
-    how.colour = orders.c > 0 || orders.d > 0 || orders.f == 0 ? nonlinear::Colour::kWhite
-                                                               : nonlinear::Colour::kColoured;
+    how.colour = orders.c > 0 || orders.d > 0 || orders.f == 0 ? nonlinear::Colour::white
+                                                               : nonlinear::Colour::coloured;
     const VectorXd errors = nonlinear::covariance(problem, solution, how).std_error;
     out.std_error.assign(errors.begin(), errors.end());
     out.condition = scaled_condition(solution.jacobian);

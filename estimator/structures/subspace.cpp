@@ -89,7 +89,7 @@ MatrixXd with_ones(const MatrixXd& x, bool constant) {
 /// Theta: future x past.
 MatrixXd prediction_map(const SubspaceOptions& o, const Windows& w) {
   const Index width = w.past.cols();
-  if (o.method == SubspaceMethod::kN4sid) {
+  if (o.method == SubspaceMethod::n4sid) {
     MatrixXd x(w.past.rows(), width + w.future_u.cols());
     x << w.past, w.future_u;
     return regress(with_ones(x, o.constant), w.future_y).topRows(width).transpose();

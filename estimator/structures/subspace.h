@@ -24,13 +24,13 @@
 
 namespace estimator::structures {
 
-enum class SubspaceMethod : std::uint8_t { kN4sid, kPredictor };
+enum class SubspaceMethod : std::uint8_t { n4sid, predictor };
 
 struct SubspaceOptions {
   int order = 2;
   int k = 1;
   bool constant = true;
-  SubspaceMethod method = SubspaceMethod::kPredictor;
+  SubspaceMethod method = SubspaceMethod::predictor;
   int past = 15;    ///< samples
   int future = 10;  ///< samples, more than `order`
 };

@@ -11,7 +11,7 @@ namespace {
 using config::schema::bad_config;
 using config::schema::wiring;
 
-void visit_channel(config::schema::Visitor& v, Channel& channel) {
+void visit_channel(config::schema::Visitor& v, ChannelConfig& channel) {
   v.integer(wiring({"subdevice", "number on the board, -1: the first of its kind"}),
             channel.subdevice, {-1, 255});
   v.integer(wiring({"channel", "number on the subdevice"}), channel.channel, {0, 65'535});
@@ -29,7 +29,7 @@ void OutputConfig::visit(config::schema::Visitor& v) {
   v.integer(wiring({"polarity", "1, or -1 when a positive voltage retracts"}), polarity, {-1, 1});
 }
 
-void InputConfig::visit(config::schema::Visitor& v) {
+void ComediInputConfig::visit(config::schema::Visitor& v) {
   v.text({"name", "channel of this backend", true}, name);
   visit_channel(v, channel);
   v.number({"scale_per_V", "SI units per V"}, scale_per_V, {-1e12, 1e12});
@@ -82,7 +82,7 @@ void ComediConfig::check(const std::string& file) const {
                      "at most " + std::to_string(Exchange::kInputs - 1));
   }
   std::set<std::string> names;
-  for (const InputConfig& input : inputs) {
+  for (const ComediInputConfig& input : inputs) {
     if (!names.insert(input.name).second) {
       throw bad_config(file + ": [[comedi.input]] name", "is \"" + input.name + "\" twice",
                        "a unique name");

@@ -5,11 +5,11 @@
 
 namespace hal::encoder {
 
-enum class Line : std::uint8_t { a, b, index };
+enum class EncoderLine : std::uint8_t { a, b, index };
 
 struct Edge {
   std::int64_t t_ns = 0;  ///< CLOCK_MONOTONIC
-  Line line = Line::a;
+  EncoderLine line = EncoderLine::a;
   bool level = false;  ///< after the edge
 };
 

@@ -20,7 +20,7 @@ void visit_bias(config::schema::Visitor& v, std::string& bias) {
 
 }  // namespace
 
-void SwitchConfig::visit(config::schema::Visitor& v) {
+void GpioSwitchConfig::visit(config::schema::Visitor& v) {
   v.text({"name", "channel of this backend", true}, name);
   v.integer({"line", "number on the chip", true}, line, {0, kLastLine});
   v.boolean({"active_low", "1 means a low voltage"}, wiring.active_low);
@@ -61,9 +61,9 @@ void EncoderConfig::check(const std::string& file) const {
         "one of resolution_m, counts_per_metre");
   }
   if (sign == 0) throw bad_config(table + "sign", "is 0", "1 or -1");
-  if (inputs.size() > Watch::kInputs) {
+  if (inputs.size() > EncoderWatch::kInputs) {
     throw bad_config(table + "input", "has " + std::to_string(inputs.size()) + " entries",
-                     "at most " + std::to_string(Watch::kInputs));
+                     "at most " + std::to_string(EncoderWatch::kInputs));
   }
   std::map<std::int64_t, std::string> lines{{line_a, "line_a"}};
   std::map<std::string, int> names;
@@ -78,7 +78,7 @@ void EncoderConfig::check(const std::string& file) const {
   use("line_b", line_b);
   if (line_index >= 0) use("line_index", line_index);
   for (const auto* list : {&inputs, &outputs}) {
-    for (const SwitchConfig& item : *list) {
+    for (const GpioSwitchConfig& item : *list) {
       const std::string kind = list == &inputs ? "input " : "output ";
       use(kind + "\"" + item.name + "\" line", item.line);
       if (++names[kind + item.name] > 1) {

@@ -39,7 +39,7 @@ Drained GpioSource::drain(std::span<Edge, kBatch> into) noexcept {
       const gpiod_line_event& event = events[static_cast<std::size_t>(k)];
       into[drained.count++] = {
           static_cast<std::int64_t>(event.ts.tv_sec) * 1'000'000'000 + event.ts.tv_nsec,
-          static_cast<Line>(i), event.event_type == GPIOD_LINE_EVENT_RISING_EDGE};
+          static_cast<EncoderLine>(i), event.event_type == GPIOD_LINE_EVENT_RISING_EDGE};
     }
   }
   return drained;

@@ -21,7 +21,7 @@ namespace {
 volatile std::sig_atomic_t stop_asked = 0;
 void on_stop(int) { stop_asked = 1; }
 
-struct Options {
+struct RigOptions {
   std::string file;
   std::string listen;
   std::string serial;
@@ -29,7 +29,7 @@ struct Options {
   double duration_s = 0.0;
 };
 
-int serve(const Options& options, bool has_listen, bool has_serial) {
+int serve(const RigOptions& options, bool has_listen, bool has_serial) {
   hal::hil_rig::RigConfig config = hal::hil_rig::load(options.file, options.assignments);
   if (has_listen) config.bus.listen = options.listen == "0" ? "127.0.0.1:0" : options.listen;
   if (has_serial) config.bus.serial = options.serial;
@@ -83,7 +83,7 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version",
                        "spoolwatch-rig " + std::string(config::schema::product_version()));
   app.footer(hal::hil_rig::kRegisterMapText);
-  Options options;
+  RigOptions options;
   auto* file = app.add_option("--config", options.file, "the rig (TOML)");
   auto* listen = app.add_option("--listen", options.listen,
                                 "address:port instead of [bus] listen; 0: any free port");

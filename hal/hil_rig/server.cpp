@@ -161,7 +161,7 @@ bool Server::serve(modbus_t* context) {
 void Server::answer(modbus_t* context, const std::uint8_t* query, int length) {
   ++counts_.requests;
   rig_.advance_to(monotonic_ns());
-  const Request request(query + modbus_get_header_length(context));
+  const ModbusRequest request(query + modbus_get_header_length(context));
   const bool of_text = request.address() >= kText;
   refresh();
   const auto written = request.written();

@@ -192,7 +192,7 @@ BackendDevices ModbusBackend::open(const OpenContext& context) const {
         "modbus/" + config.connection.host + ":" + std::to_string(config.connection.port),
         context.file + ": [modbus] " + device);
   }
-  const Snapshot first =
+  const RegisterSnapshot first =
       probe(*connection, map,
             {context.file, device, config_.connect_timeout_s, config.connection.timeout_s});
   locked->poll.emplace(config, std::move(map), std::move(connection), std::move(counters), first);

@@ -24,7 +24,7 @@ void Register::visit(config::schema::Visitor& v) {
   v.integer(wiring({"address", "protocol address, from 0", true}), address, {0, kLastAddress});
   v.choice(wiring({"function", "table of the device"}), function,
            {"holding", "input", "coil", "discrete"});
-  const bool bits = table() == Table::coil || table() == Table::discrete;
+  const bool bits = table() == RegisterTable::coil || table() == RegisterTable::discrete;
   if (type.empty()) type = bits ? "bit" : "uint16";
   if (bits) {
     v.choice(wiring({"type", "a bit"}), type, {"bit"});
@@ -40,11 +40,11 @@ void Register::visit(config::schema::Visitor& v) {
   v.number({"high", "highest value, SI"}, high);
 }
 
-Table Register::table() const noexcept {
-  if (function == "input") return Table::input;
-  if (function == "coil") return Table::coil;
-  if (function == "discrete") return Table::discrete;
-  return Table::holding;
+RegisterTable Register::table() const noexcept {
+  if (function == "input") return RegisterTable::input;
+  if (function == "coil") return RegisterTable::coil;
+  if (function == "discrete") return RegisterTable::discrete;
+  return RegisterTable::holding;
 }
 
 int Register::words() const noexcept {

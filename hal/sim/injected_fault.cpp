@@ -84,7 +84,7 @@ void SpareConfig::visit(config::schema::Visitor& v) {
   v.number({"noise_m", "standard deviation of the noise"}, noise_m, {0.0, 1e-2});
 }
 
-void SwitchConfig::visit(config::schema::Visitor& v) {
+void SimSwitchConfig::visit(config::schema::Visitor& v) {
   v.text({"id", "name of the channel", true}, id);
   v.number({"value", "reading"}, value, {-1e12, 1e12});
   v.number({"from_s", "start time"}, from_s, {0.0, kInfinite});

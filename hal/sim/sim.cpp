@@ -184,10 +184,10 @@ BackendDevices SimBackend::open(const OpenContext& context) const {
         std::make_shared<SpareRod>(rig, spare, config_.injected_faults, ++seed);
   }
   add_pressures(context.file, rig, devices);
-  for (const SwitchConfig& input : config_.inputs) {
+  for (const SimSwitchConfig& input : config_.inputs) {
     devices.inputs[input.id] = std::make_shared<Switch>(input);
   }
-  devices.outputs["permit"] = std::make_shared<Line>();
+  devices.outputs["permit"] = std::make_shared<CountingLine>();
   return devices;
 }
 

@@ -23,7 +23,7 @@
 #include "plant_sim/parameter.h"
 #include "plant_sim/scalar.h"
 
-namespace plant_sim {
+namespace plant_sim::effects {
 
 template <class S>
 struct Friction {
@@ -141,4 +141,4 @@ struct Friction {
   }
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::effects

@@ -12,7 +12,7 @@
 #include "plant_sim/parameter.h"
 #include "plant_sim/scalar.h"
 
-namespace plant_sim {
+namespace plant_sim::effects {
 
 template <class S>
 struct NullBias {
@@ -36,4 +36,4 @@ struct NullBias {
   }
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::effects

@@ -5,7 +5,7 @@
 #include "config/schema/error.h"
 #include "plant_sim/formula/formula.h"
 
-namespace plant_sim {
+namespace plant_sim::formula {
 namespace {
 
 using config::schema::bad_config;
@@ -126,4 +126,4 @@ void check(const FormulaEffect& effect, const Formula& formula, const std::strin
   check_neutral(formula, run, where + " formula");
 }
 
-}  // namespace plant_sim
+}  // namespace plant_sim::formula

@@ -3,7 +3,7 @@
 #include <bit>
 #include <cmath>
 
-namespace plant_sim {
+namespace plant_sim::formula {
 namespace {
 
 constexpr double kMostProducts = 8.0;  // larger powers are left to pow()
@@ -151,4 +151,4 @@ ExpressionProgramView view_of(const ExpressionProgram& program) {
           registers};
 }
 
-}  // namespace plant_sim
+}  // namespace plant_sim::formula

@@ -7,7 +7,7 @@
 
 #include "plant_sim/formula/expression_program.h"
 
-namespace plant_sim {
+namespace plant_sim::formula {
 
 class ExpressionGraph {
  public:
@@ -48,4 +48,4 @@ class ExpressionGraph {
   std::vector<Node> nodes_;  ///< variables and parameters first; operands before their results
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::formula

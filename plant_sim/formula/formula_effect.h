@@ -37,7 +37,7 @@ namespace config::schema {
 class Visitor;
 }
 
-namespace plant_sim {
+namespace plant_sim::formula {
 
 struct FormulaEffect {
   struct Parameter {
@@ -62,7 +62,7 @@ struct FormulaEffect {
 
 /// A site that accepts a formula.
 struct FormulaSite {
-  Site site;
+  effects::Site site;
   const char* result;                    ///< result of the formula, as printed in equations
   std::array<const char*, 2> variables;  ///< "" is none
   bool chained;  ///< without influence it returns its first variable; else 0, and it is added
@@ -70,15 +70,15 @@ struct FormulaSite {
 };
 
 inline constexpr std::array kFormulaSites = {
-    FormulaSite{Site::command, "u_out", {"u_V", ""}, true, 1e4},
-    FormulaSite{Site::opening, "opening", {"x_m", ""}, true, 1e6},
-    FormulaSite{Site::flow, "Q", {"q_m3ps", ""}, true, 1e3},
-    FormulaSite{Site::leakage, "Q", {"in_Pa", "out_Pa"}, false, 1e3},
-    FormulaSite{Site::force, "F", {"y_m", "v_mps"}, false, 1e9},
-    FormulaSite{Site::sensor, "reading", {"y_m", ""}, true, 1e9},
+    FormulaSite{effects::Site::command, "u_out", {"u_V", ""}, true, 1e4},
+    FormulaSite{effects::Site::opening, "opening", {"x_m", ""}, true, 1e6},
+    FormulaSite{effects::Site::flow, "Q", {"q_m3ps", ""}, true, 1e3},
+    FormulaSite{effects::Site::leakage, "Q", {"in_Pa", "out_Pa"}, false, 1e3},
+    FormulaSite{effects::Site::force, "F", {"y_m", "v_mps"}, false, 1e9},
+    FormulaSite{effects::Site::sensor, "reading", {"y_m", ""}, true, 1e9},
 };
 
 /// Null for a site that accepts no formula.
 [[nodiscard]] const FormulaSite* find_formula_site(std::string_view name);
 
-}  // namespace plant_sim
+}  // namespace plant_sim::formula

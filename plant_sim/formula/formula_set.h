@@ -9,7 +9,7 @@
 #include "plant_sim/formula/formula.h"
 #include "plant_sim/formula/max_slope.h"
 
-namespace plant_sim {
+namespace plant_sim::formula {
 
 template <class S>
 class FormulaSet {
@@ -64,12 +64,12 @@ class FormulaSet {
       if (!effect.active) continue;
       sites_ |= bit(effect.formula.site);
       effect.run.set_parameters(effect.values.data());
-      if (effect.formula.site == Site::force) {
+      if (effect.formula.site == effects::Site::force) {
         effect.max_slope.prepare(
             effect.formula.ranges[0], effect.formula.ranges[1],
             [&](const S& y_m, const S& v_mps) { return effect.contribution(y_m, v_mps); });
       }
-      if (effect.formula.site == Site::leakage) {
+      if (effect.formula.site == effects::Site::leakage) {
         effect.conductance_m3ps_per_Pa =
             S(2.0) *
             steepest_m3ps_per_Pa<S>(effect.formula.ranges[0], [&](const S& in_Pa, const S& out_Pa) {
@@ -82,16 +82,16 @@ class FormulaSet {
 
   /// A bit per site, as the store of effects counts them.
   [[nodiscard]] unsigned sites() const { return sites_; }
-  [[nodiscard]] bool acts_on(Site site) const { return (sites_ & bit(site)) != 0; }
+  [[nodiscard]] bool acts_on(effects::Site site) const { return (sites_ & bit(site)) != 0; }
 
   /// Chained sites: applies the formulas to x one after the other.
-  [[nodiscard]] S chain(Site site, S x) const {
+  [[nodiscard]] S chain(effects::Site site, S x) const {
     each_active(site, [&](const Effect& effect) { x = effect.result(x, S(0.0), x); });
     return x;
   }
 
   /// Force and leakage: sum of the formulas.
-  [[nodiscard]] S sum(Site site, const S& first, const S& second) const {
+  [[nodiscard]] S sum(effects::Site site, const S& first, const S& second) const {
     S total = 0.0;
     each_active(site, [&](const Effect& effect) { total += effect.contribution(first, second); });
     return total;
@@ -100,7 +100,7 @@ class FormulaSet {
   /// The largest |dF/dv| at any speed up to |v_mps|, estimated.
   [[nodiscard]] S slope_N_s_per_m(const S& v_mps) const {
     S total = 0.0;
-    each_active(Site::force,
+    each_active(effects::Site::force,
                 [&](const Effect& effect) { total += effect.max_slope.slope_N_s_per_m(v_mps); });
     return total;
   }
@@ -108,7 +108,7 @@ class FormulaSet {
   /// The largest |dF/dy| over the plausible positions and speeds, estimated.
   [[nodiscard]] S stiffness_N_per_m() const {
     S total = 0.0;
-    each_active(Site::force,
+    each_active(effects::Site::force,
                 [&](const Effect& effect) { total += effect.max_slope.stiffness_N_per_m(); });
     return total;
   }
@@ -116,7 +116,7 @@ class FormulaSet {
   /// Twice the largest |dQ/dp| over the plausible pressures, estimated: both chambers see it.
   [[nodiscard]] S conductance_m3ps_per_Pa() const {
     S total = 0.0;
-    each_active(Site::leakage,
+    each_active(effects::Site::leakage,
                 [&](const Effect& effect) { total += effect.conductance_m3ps_per_Pa; });
     return total;
   }
@@ -151,10 +151,10 @@ class FormulaSet {
     bool active = false;
   };
 
-  static constexpr unsigned bit(Site site) { return 1U << static_cast<unsigned>(site); }
+  static constexpr unsigned bit(effects::Site site) { return 1U << static_cast<unsigned>(site); }
 
   template <class F>
-  void each_active(Site site, F&& f) const {
+  void each_active(effects::Site site, F&& f) const {
     for (const Effect& effect : effects_) {
       if (effect.active && effect.formula.site == site) f(effect);
     }
@@ -165,4 +165,4 @@ class FormulaSet {
   bool fresh_ = false;
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::formula

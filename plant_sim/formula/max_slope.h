@@ -9,7 +9,7 @@
 #include "plant_sim/formula/formula.h"
 #include "plant_sim/scalar.h"
 
-namespace plant_sim {
+namespace plant_sim::formula {
 
 /// |f(x + near) - f(x - near)| / (2 near).
 template <class S, class F>
@@ -113,4 +113,4 @@ class MaxSlope {
   S stiffness_N_per_m_;
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::formula

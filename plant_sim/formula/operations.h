@@ -10,7 +10,7 @@
 
 #include "plant_sim/scalar.h"
 
-namespace plant_sim {
+namespace plant_sim::formula {
 
 enum class Op : std::uint8_t {
   add,
@@ -150,4 +150,4 @@ S apply(Op op, const S& a, const S& b, const S& c) {
   return zero;
 }
 
-}  // namespace plant_sim
+}  // namespace plant_sim::formula

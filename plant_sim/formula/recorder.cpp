@@ -11,7 +11,7 @@
 #include "config/schema/joined.h"
 #include "plant_sim/formula/expression_graph.h"
 
-namespace plant_sim {
+namespace plant_sim::formula {
 namespace {
 
 using config::schema::bad_config;
@@ -207,4 +207,4 @@ ExpressionProgram record_formula(const std::string& text, const std::vector<std:
   }
 }
 
-}  // namespace plant_sim
+}  // namespace plant_sim::formula

@@ -8,7 +8,7 @@
 
 #include "plant_sim/formula/expression_program.h"
 
-namespace plant_sim {
+namespace plant_sim::formula {
 
 /// `variables` (at most ExpressionProgram::kVariables) and `parameters` are the names that the text
 /// may
@@ -23,4 +23,4 @@ namespace plant_sim {
 /// Names that no parameter can have: functions and pi.
 [[nodiscard]] const std::vector<std::string>& formula_words();
 
-}  // namespace plant_sim
+}  // namespace plant_sim::formula

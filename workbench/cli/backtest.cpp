@@ -22,8 +22,8 @@ struct BacktestOptions {
 };
 
 void run(const BacktestOptions& options) {
-  const replay::Rules new_rules = replay::read_rules(options.configuration);
-  std::optional<replay::Rules> old_rules;
+  const replay::BacktestRules new_rules = replay::read_rules(options.configuration);
+  std::optional<replay::BacktestRules> old_rules;
   if (!options.old.empty()) old_rules = replay::read_rules(options.old);
   replay::BacktestReport report;
   report.new_rules = options.configuration;

@@ -46,7 +46,9 @@ int run(const DiagnosisRequest& request) {
   diagnose::ProgressLine line(std::cerr, isatty(STDERR_FILENO) == 1,
                               prepared.problem.data.noise_floor_m);
   if (!request.quiet) {
-    prepared.options.progress = [&](const selection::Progress& progress) { line.show(progress); };
+    prepared.options.progress = [&](const selection::SearchProgress& progress) {
+      line.show(progress);
+    };
   }
   prepared.options.cancel = Interrupt::requested;
   diagnose::AdvisedDiagnosis found = diagnose::diagnose(prepared.problem, prepared.options);

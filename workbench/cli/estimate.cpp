@@ -54,7 +54,7 @@ ordered_json coefficients(const std::array<double, estimator::kMaxCoefficients>&
 }
 
 /// The keys that the whole record and each window share.
-void add_fields(ordered_json& out, const estimate::Judged& judged,
+void add_fields(ordered_json& out, const estimate::JudgedEstimate& judged,
                 const estimator::Structure& structure) {
   const estimator::Estimate& e = judged.estimate;
   out["a"] = coefficients(e.value, 0, structure.n);
@@ -85,7 +85,7 @@ ordered_json to_json(const estimate::EstimateResult& result, const EstimateOptio
   out["samples"] = record.size();
   out["gaps"] = record.gaps.size();
   out["windows"] = ordered_json::array();
-  for (const estimate::Judged& window : result.windows) {
+  for (const estimate::JudgedEstimate& window : result.windows) {
     ordered_json item;
     add_fields(item, window, options.estimate.structure);
     out["windows"].push_back(std::move(item));
@@ -115,7 +115,7 @@ void print_text(const estimate::EstimateResult& result, const EstimateOptions& o
     for (const std::string& name : names) std::printf(" %14s", name.c_str());
     std::printf(" %12s\n", "cost_m2");
   }
-  for (const estimate::Judged& window : result.windows) {
+  for (const estimate::JudgedEstimate& window : result.windows) {
     std::printf("%10.4f %10.4f", window.from_s, window.to_s);
     for (std::size_t i = 0; i < names.size(); ++i) {
       std::printf(" %14.7g", window.estimate.value[i]);

@@ -24,7 +24,7 @@ struct ReproduceArguments {
   bool strict = false;
 };
 
-bool missed(const reproduce::Row& row) {
+bool missed(const reproduce::ReproducedRow& row) {
   return row.expected && row.agrees == reproduce::Agreement::no;
 }
 

@@ -71,7 +71,7 @@ void work(const std::vector<Part>& parts, const std::vector<Method>& methods, Tr
   });
   double all_s = 0.0;
   for (const auto& [part, which] : open) all_s += part->work_s * static_cast<double>(which.size());
-  Progress progress(std::cerr, isatty(STDERR_FILENO) == 1, open.size(), all_s);
+  ScorecardProgress progress(std::cerr, isatty(STDERR_FILENO) == 1, open.size(), all_s);
   std::mutex mutex;
   try {
     estimator::in_parallel(open.size(), threads, [&](std::size_t i) {

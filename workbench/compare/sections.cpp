@@ -2,8 +2,8 @@
 
 #include <cmath>
 #include <filesystem>
-#include <limits>
 
+#include "config/signals/nan.h"
 #include "workbench/compare/words.h"
 #include "workbench/present/binned.h"
 #include "workbench/present/compare_units.h"
@@ -16,14 +16,14 @@ namespace greybox = estimator::greybox;
 namespace validation = estimator::greybox::validation;
 namespace {
 
-using present::Kind;
 using present::Plot;
+using present::PlotKind;
 using present::Section;
 using present::Series;
 using present::Tone;
 using present::Width;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 
 /// Values times a factor, with a break between segments; of settled samples only where asked.
 template <class F>
@@ -122,10 +122,10 @@ Section where_section(const validation::Comparison& c) {
   section.tables_first = true;
   section.tables.push_back(worst_table(c));
   for (const validation::Region& region : c.regions) {
-    const present::Unit unit = present::unit_of(region.variable);
+    const present::DisplayUnit unit = present::unit_of(region.variable);
     Plot plot;
     plot.title = std::string("By ") + unit.name;
-    plot.kind = Kind::bars;
+    plot.kind = PlotKind::bars;
     plot.width = Width::half;
     plot.x = {unit.name, unit.text};
     plot.y = {"speed error RMS", "mm/s"};
@@ -142,11 +142,11 @@ Section where_section(const validation::Comparison& c) {
 
 Plot against(const validation::Comparison& c, const std::string& variable,
              const std::vector<double>& values) {
-  const present::Unit unit = present::unit_of(variable);
+  const present::DisplayUnit unit = present::unit_of(variable);
   const greybox::Dataset& r = c.record;
   Plot plot;
   plot.title = std::string("Against ") + unit.name;
-  plot.kind = Kind::scatter;
+  plot.kind = PlotKind::scatter;
   plot.width = Width::half;
   plot.x = {unit.name, unit.text};
   plot.y = {"speed error", "mm/s"};
@@ -228,9 +228,9 @@ present::Report make_report(const validation::Comparison& c, const std::string& 
   made.title = c.model + " against " + std::filesystem::path(c.record.name).filename().string();
   made.verdict = said.verdict;
   made.summary = said.lines;
-  made.state = said.judgement == Judgement::at_floor  ? present::State::good
-               : said.judgement == Judgement::useless ? present::State::bad
-                                                      : present::State::warn;
+  made.state = said.judgement == Judgement::at_floor  ? present::ReportState::good
+               : said.judgement == Judgement::useless ? present::ReportState::bad
+                                                      : present::ReportState::warn;
   const auto fact = [&](const char* label, double metres) {
     const std::string said_so = present::length(metres);  // as in the words: "381 um"
     const auto gap = said_so.rfind(' ');

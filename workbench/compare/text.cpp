@@ -80,7 +80,7 @@ std::string numbers(const validation::Comparison& c) {
 }
 
 std::string chart(const validation::Region& region, bool unicode) {
-  const present::Unit unit = present::unit_of(region.variable);
+  const present::DisplayUnit unit = present::unit_of(region.variable);
   double most = 0.0;
   for (const validation::Bin& bin : region.bins)
     most = std::max(most, bin.local_velocity_error_rms_mps);

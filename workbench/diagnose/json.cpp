@@ -67,7 +67,7 @@ std::string to_json(const DiagnosisReport& outcome) {
                              {"explained_ratio", number_or_null(where.explained_ratio)}});
   }
   json["steps"] = Json::array();
-  for (const selection::Step& step : d.steps) {
+  for (const selection::SelectionStep& step : d.steps) {
     Json one;
     one["added"] = step.added.empty() ? Json(nullptr) : Json(step.added);
     one["rms_heldout_m"] = number_or_null(step.validation_rms_m);

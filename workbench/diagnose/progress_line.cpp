@@ -23,7 +23,7 @@ std::size_t columns() {
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kColumns;
 }
 
-std::string best_words(const selection::Progress& progress, double noise_floor_m) {
+std::string best_words(const selection::SearchProgress& progress, double noise_floor_m) {
   std::string floor = "noise floor " + config::units::length_words(noise_floor_m);
   if (progress.best.empty()) return floor;
   return "best " + progress.best + " " + config::units::length_words(progress.best_rms_m) + ", " +
@@ -35,7 +35,7 @@ std::string best_words(const selection::Progress& progress, double noise_floor_m
 ProgressLine::ProgressLine(std::ostream& out, bool renewed, double noise_floor_m)
     : out_(out), renewed_(renewed), noise_floor_m_(noise_floor_m) {}
 
-void ProgressLine::rank(const selection::Progress& progress) {
+void ProgressLine::rank(const selection::SearchProgress& progress) {
   if (progress.expected.empty() || progress.round == ranked_) return;
   ranked_ = progress.round;
   std::string names;
@@ -46,7 +46,7 @@ void ProgressLine::rank(const selection::Progress& progress) {
        << ": ranked by screening: " << names << std::endl;
 }
 
-void ProgressLine::show(const selection::Progress& progress) {
+void ProgressLine::show(const selection::SearchProgress& progress) {
   rank(progress);
   if (!renewed_) {
     if (progress.round == round_) return;

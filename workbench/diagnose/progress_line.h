@@ -15,12 +15,12 @@ class ProgressLine {
   /// `renewed`: `out` is a terminal. The stream must outlive this object.
   ProgressLine(std::ostream& out, bool renewed, double noise_floor_m);
 
-  void show(const selection::Progress& progress);
+  void show(const selection::SearchProgress& progress);
   /// Wipes the renewed line.
   void end();
 
  private:
-  void rank(const selection::Progress& progress);
+  void rank(const selection::SearchProgress& progress);
 
   std::ostream& out_;
   bool renewed_;

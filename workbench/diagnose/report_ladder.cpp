@@ -18,8 +18,8 @@ namespace selection = estimator::greybox::selection;
 namespace {
 
 using present::Column;
-using present::Kind;
 using present::Plot;
+using present::PlotKind;
 using present::Section;
 using present::Table;
 using present::Tone;
@@ -66,7 +66,7 @@ Plot candidates_plot(const selection::Diagnosis& d, std::size_t index) {
   const Scale scale = scale_of(d);
   const std::vector<std::string> taken = taken_in(d.search, index);
   Plot plot{.title = "Round " + std::to_string(index + 1),
-            .kind = Kind::bars,
+            .kind = PlotKind::bars,
             .y = {"held-out error", scale.unit},
             .lines = floor_line(d),
             .horizontal = true,
@@ -156,7 +156,7 @@ Section falling_error_section(const DiagnosisReport& outcome) {
   const std::vector<StepWords> steps = step_words(d);
   const Scale scale = scale_of(d);
   Plot plot{.title = "Held-out error, step by step",
-            .kind = Kind::line,
+            .kind = PlotKind::line,
             .y = {"held-out error", scale.unit, true},
             .lines = floor_line(d)};
   plot.series.push_back({.name = "held-out error", .tone = Tone::model});

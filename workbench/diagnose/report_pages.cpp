@@ -11,15 +11,16 @@ namespace workbench::diagnose {
 namespace selection = estimator::greybox::selection;
 namespace {
 
-present::State state_of(const DiagnosisReport& outcome) {
-  if (outcome.interrupted) return present::State::warn;
+present::ReportState state_of(const DiagnosisReport& outcome) {
+  if (outcome.interrupted) return present::ReportState::warn;
   switch (outcome.diagnosis.verdict) {
     case selection::Verdict::nothing_missing:
-      return present::State::good;
+      return present::ReportState::good;
     case selection::Verdict::unexplained:
-      return outcome.diagnosis.missing.empty() ? present::State::bad : present::State::warn;
+      return outcome.diagnosis.missing.empty() ? present::ReportState::bad
+                                               : present::ReportState::warn;
     default:
-      return present::State::warn;
+      return present::ReportState::warn;
   }
 }
 

@@ -1,8 +1,8 @@
 // The sections of the report that hold each record against the model before and after.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "config/signals/nan.h"
 #include "config/units/quantity.h"
 #include "estimator/greybox/kinematics.h"
 #include "workbench/diagnose/report_pages.h"
@@ -17,15 +17,15 @@ namespace greybox = estimator::greybox;
 namespace selection = estimator::greybox::selection;
 namespace {
 
-using present::Kind;
 using present::Plot;
+using present::PlotKind;
 using present::Section;
 using present::Series;
 using present::Tone;
 
 using Values = std::vector<double>;
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 constexpr std::size_t kCloud = 2'500;
 /// Residuals above this are drawn in millimetres.
 constexpr double kMillimetres_m = 2e-3;
@@ -45,7 +45,7 @@ struct Page {
   const greybox::Dataset& record;
   greybox::Kinematics kinematics;
   Values file_m, before_m, after_m, free_file_m, free_after_m;  ///< NaN where it does not count
-  double noise_floor_m = kNone;
+  double noise_floor_m = kNaN;
   bool improved = false;  ///< something was added
 };
 
@@ -57,7 +57,7 @@ Values times(const Values& values, double factor) {
 }
 
 Values cut(const Eigen::VectorXd& series_m, std::size_t start, const greybox::Dataset& record) {
-  Values out(record.size(), kNone);
+  Values out(record.size(), kNaN);
   if (series_m.size() == 0) return out;
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (record.valid[i] != 0) out[i] = series_m[static_cast<Eigen::Index>(start + i)];
@@ -76,7 +76,7 @@ Scale scale_of(const Values& residual_m) {
 /// Nothing is drawn across a gap.
 Values broken_at_gaps(Values values, const greybox::Dataset& record) {
   for (const std::size_t start : record.starts) {
-    if (start > 0) values[start] = kNone;
+    if (start > 0) values[start] = kNaN;
   }
   return values;
 }
@@ -122,7 +122,7 @@ Plot command_plot(const Page& page) {
   plot.series.push_back({.name = "command",
                          .y = broken_at_gaps(page.record.u_V, page.record),
                          .tone = Tone::muted,
-                         .kind = Kind::steps});
+                         .kind = PlotKind::steps});
   return plot;
 }
 
@@ -147,7 +147,7 @@ Plot against(const Page& page, const std::string& what, const std::string& unit,
   const Values before = times(page.before_m, scale.per_m);
   const Values after = times(page.after_m, scale.per_m);
   Plot plot{.title = "Residual against " + what,
-            .kind = Kind::scatter,
+            .kind = PlotKind::scatter,
             .x = {what, unit},
             .y = {"measured − model", scale.unit},
             .width = present::Width::half};

@@ -255,7 +255,7 @@ std::vector<StepWords> step_words(const selection::Diagnosis& diagnosis) {
   std::vector<StepWords> steps;
   if (diagnosis.steps.empty()) return steps;
   steps.push_back({"model file as it is", diagnosis.nominal_rms_m});
-  for (const selection::Step& step : diagnosis.steps) {
+  for (const selection::SelectionStep& step : diagnosis.steps) {
     steps.push_back(
         {step.added.empty() ? "its parameters fitted" : "+ " + step.added, step.validation_rms_m});
   }

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 
+#include "config/signals/nan.h"
 #include "config/units/quantity.h"
 #include "config/units/unit_suffix.h"
 #include "workbench/fit/fit_report.h"
@@ -23,7 +23,7 @@ using present::Section;
 using present::Tone;
 using Values = std::vector<double>;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 constexpr double kThreshold = 3.841458820694124;
 
 std::string file_name(const std::string& file) {
@@ -200,7 +200,7 @@ present::Report to_report(const FitReport& o) {
       made.summary.push_back(said[i]);
   }
   const bool at_floor = std::isfinite(o.noise_floor_m) && e.after.rms_m < 1.15 * o.noise_floor_m;
-  made.state = at_floor && !e.interrupted ? present::State::good : present::State::warn;
+  made.state = at_floor && !e.interrupted ? present::ReportState::good : present::ReportState::warn;
   const auto fact = [&](const char* label, double metres) {
     const present::ErrorUnit unit = present::error_unit(metres);
     made.facts.push_back({label, fmt::format("{:.3g}", unit.per_m * metres), unit.name});

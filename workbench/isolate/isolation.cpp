@@ -193,7 +193,7 @@ void note_followed(IsolationReport& out, const ParameterTracker& tracker) {
     const Eigen::VectorXd& baseline = tracker.baseline()->theta;
     out.notes.push_back(
         slow.at_end(i, baseline) != 0
-            ? tracker::slow_words(p, slow.learnt(i), baseline[static_cast<Eigen::Index>(at)])
+            ? tracker::drift_words(p, slow.learnt(i), baseline[static_cast<Eigen::Index>(at)])
             : tracker::name_words(p.name) + " was followed from " +
                   tracker::value_words(p, slow.learnt(i), NAN) + " to " +
                   tracker::value_words(p, baseline[static_cast<Eigen::Index>(at)], NAN));

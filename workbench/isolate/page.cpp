@@ -3,8 +3,8 @@
 
 #include <cmath>
 #include <filesystem>
-#include <limits>
 
+#include "config/signals/nan.h"
 #include "estimator/fdi/tracker/tracking_text.h"
 #include "workbench/isolate/isolation.h"
 
@@ -19,7 +19,7 @@ using present::Plot;
 using present::Series;
 using present::Tone;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 constexpr double kInterval = 1.96;
 
 Plot over_time(const IsolationReport& o, const std::string& title, const present::Axis& axis) {
@@ -89,7 +89,7 @@ present::Report to_report(const IsolationReport& o) {
   page.title = "Isolation: " + std::filesystem::path(o.record).filename().string();
   std::size_t invalid = 0;
   for (const WindowResult& window : o.windows) invalid += window.valid ? 0 : 1;
-  page.state = o.alarms.empty() ? present::State::good : present::State::warn;
+  page.state = o.alarms.empty() ? present::ReportState::good : present::ReportState::warn;
   page.verdict = o.alarms.empty() ? "No change named."
                                   : std::to_string(o.alarms.size()) +
                                         (o.alarms.size() == 1 ? " change" : " changes") + " named.";

@@ -77,7 +77,7 @@ Span motion_span(const std::deque<MotionPoint>& points) {
 }
 
 // From the band's limits, or what there is of them, a quarter of the band beyond on both sides.
-Span band_span(const Track& track) {
+Span band_span(const TrackedQuantity& track) {
   const double low = std::isfinite(track.low) ? track.low : track.value;
   const double high = std::isfinite(track.high) ? track.high : track.value;
   const double width = std::max(std::abs(high - low), 1e-12 * std::abs(high) + 1e-300);
@@ -113,7 +113,8 @@ void chart_motion(Canvas& canvas, Area area, const std::deque<MotionPoint>& poin
   dots.draw(canvas, L'*');
 }
 
-void draw_band(Canvas& canvas, Area area, const Track& track, Style style, const Glyphs& glyphs) {
+void draw_band(Canvas& canvas, Area area, const TrackedQuantity& track, Style style,
+               const Glyphs& glyphs) {
   const bool has_low = std::isfinite(track.low);
   const bool has_high = std::isfinite(track.high);
   if ((!has_low && !has_high) || !std::isfinite(track.value)) return;
@@ -142,11 +143,11 @@ void draw_band(Canvas& canvas, Area area, const Track& track, Style style, const
              style == Style::good ? Style::bold : style);
 }
 
-void draw_history(Canvas& canvas, Area area, const Track& track, const Glyphs& glyphs) {
+void draw_history(Canvas& canvas, Area area, const TrackedQuantity& track, const Glyphs& glyphs) {
   const int width = area.columns - 2 * kLabel;
   if (width < 8 || track.history.empty()) return;
   struct Bin {
-    double value = kNone;
+    double value = kNaN;
     bool valid = true;
   };
   std::vector<Bin> bins(static_cast<std::size_t>(width));

@@ -21,9 +21,10 @@ void chart_motion(Canvas& canvas, Area area, const std::deque<MotionPoint>& poin
                   const Glyphs& glyphs);
 
 /// The band as a bar between its limits, and the value as a marker on it.
-void draw_band(Canvas& canvas, Area area, const Track& track, Style style, const Glyphs& glyphs);
+void draw_band(Canvas& canvas, Area area, const TrackedQuantity& track, Style style,
+               const Glyphs& glyphs);
 
 /// The value over time as a sparkline, each column in the colour of its state.
-void draw_history(Canvas& canvas, Area area, const Track& track, const Glyphs& glyphs);
+void draw_history(Canvas& canvas, Area area, const TrackedQuantity& track, const Glyphs& glyphs);
 
 }  // namespace workbench::live

@@ -95,8 +95,8 @@ class Page {
 
   void motion() {
     const bool any = !state_.motion().empty();
-    const double reference_m = any ? state_.motion().back().reference_m : kNone;
-    const double y_m = any ? state_.motion().back().y_m : kNone;
+    const double reference_m = any ? state_.motion().back().reference_m : kNaN;
+    const double y_m = any ? state_.motion().back().y_m : kNaN;
     int column = canvas_.text(row_, 1, "reference ", Style::dim);
     canvas_.text(row_, column, millimetres(reference_m), Style::reference);
     column = canvas_.text(row_, 25, "position ", Style::dim);
@@ -127,7 +127,7 @@ class Page {
     }
   }
 
-  void track(const Track& track) {
+  void track(const TrackedQuantity& track) {
     const bool outside = track.value < track.low || track.value > track.high;
     const Style style = !track.valid ? Style::invalid : outside ? Style::major : Style::good;
     int column = canvas_.text(row_, 1, track.source + "." + track.quantity + " ", Style::bold);

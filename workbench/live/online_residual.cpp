@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "config/record/record.h"
 #include "config/schema/error.h"
+#include "config/signals/nan.h"
 #include "estimator/greybox/dataset.h"
 #include "estimator/greybox/validation/comparison.h"
 #include "estimator/residual/noise_floor.h"
@@ -21,7 +21,7 @@ namespace greybox = estimator::greybox;
 namespace validation = estimator::greybox::validation;
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 constexpr double kLargestInitialisationGain = 0.5;  // of the error in one sample
 
 }  // namespace

@@ -19,8 +19,9 @@ struct Sums {
 }  // namespace
 
 Binned binned(const std::vector<double>& x, const std::vector<double>& y, std::size_t stretches) {
-  Binned out{.mean = {.name = "mean", .tone = Tone::model, .kind = Kind::line},
-             .rms = {.name = "RMS", .tone = Tone::measured, .kind = Kind::line, .dashed = true}};
+  Binned out{
+      .mean = {.name = "mean", .tone = Tone::model, .kind = PlotKind::line},
+      .rms = {.name = "RMS", .tone = Tone::measured, .kind = PlotKind::line, .dashed = true}};
   const std::size_t n = std::min(x.size(), y.size());
   const auto counts = [&](std::size_t i) { return std::isfinite(x[i]) && std::isfinite(y[i]); };
   double least = std::numeric_limits<double>::infinity();

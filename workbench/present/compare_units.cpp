@@ -10,13 +10,13 @@ namespace validation = estimator::greybox::validation;
 namespace {
 
 /// Bounds are round numbers, or a record's extremes, which nobody needs exactly.
-std::string bound(double value, const Unit& unit) {
+std::string bound(double value, const DisplayUnit& unit) {
   return fmt::format("{:.4g}", std::abs(value) < 1e-12 ? 0.0 : unit.factor * value);
 }
 
 }  // namespace
 
-Unit unit_of(const std::string& variable) {
+DisplayUnit unit_of(const std::string& variable) {
   if (variable == "y") return {"position", "mm", 1e3};
   if (variable == "v") return {"velocity", "mm/s", 1e3};
   if (variable == "speed") return {"speed", "mm/s", 1e3};
@@ -57,7 +57,7 @@ std::string probability(double p) {
 
 std::string bin_text(const std::string& variable, const validation::Bin& bin) {
   if (!bin.name.empty()) return bin.name;
-  const Unit unit = unit_of(variable);
+  const DisplayUnit unit = unit_of(variable);
   return bound(bin.from, unit) + " to " + bound(bin.to, unit);
 }
 
@@ -65,7 +65,7 @@ std::string where(const validation::Range& range) {
   if (!range.name.empty()) {
     return range.name == "at rest" ? range.name : "while " + range.name;
   }
-  const Unit unit = unit_of(range.variable);
+  const DisplayUnit unit = unit_of(range.variable);
   const std::string low = bound(range.from, unit);
   const std::string high = bound(range.to, unit);
   const std::string tail = std::string(" ") + unit.text;

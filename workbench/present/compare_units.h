@@ -9,14 +9,14 @@ namespace workbench::present {
 
 namespace validation = estimator::greybox::validation;
 
-struct Unit {
+struct DisplayUnit {
   const char* name = "";  ///< "position"
   const char* text = "";  ///< "mm"
   double factor = 1.0;    ///< what is shown = factor * SI
 };
 
 /// Of the variables that errors are sorted by: y, v, speed, u, acceleration, direction, time.
-[[nodiscard]] Unit unit_of(const std::string& variable);
+[[nodiscard]] DisplayUnit unit_of(const std::string& variable);
 
 /// "0.31", "381", "1520"; "-" for a missing number.
 [[nodiscard]] std::string three_digits(double value);

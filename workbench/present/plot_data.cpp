@@ -10,7 +10,7 @@ namespace workbench::present {
 
 namespace {
 
-const char* to_string(Kind kind) {
+const char* to_string(PlotKind kind) {
   constexpr std::array<const char*, 4> kNames{"line", "scatter", "bars", "steps"};
   return kNames[static_cast<std::size_t>(kind)];
 }
@@ -38,7 +38,7 @@ std::vector<double> pick(const std::vector<double>& values, const std::vector<st
 std::vector<std::size_t> shared_rows(const Plot& plot, const std::vector<double>& x) {
   std::vector<const std::vector<double>*> lines;
   for (const Series& series : plot.series) {
-    if (series.x.empty() && series.kind.value_or(plot.kind) != Kind::scatter &&
+    if (series.x.empty() && series.kind.value_or(plot.kind) != PlotKind::scatter &&
         series.y.size() == x.size()) {
       lines.push_back(&series.y);
     }
@@ -58,7 +58,7 @@ struct Thinned {
 
 std::string series_json(const Plot& plot, const Series& series,
                         const std::vector<std::size_t>& shared, Thinned& thinned) {
-  const Kind kind = series.kind.value_or(plot.kind);
+  const PlotKind kind = series.kind.value_or(plot.kind);
   std::string out = R"({"name":)" + json_string(typeset(series.name)) + R"(,"kind":")" +
                     to_string(kind) + R"(","tone":")" + to_string(series.tone) + '"';
   if (series.dashed) out += R"(,"dashed":true)";
@@ -66,7 +66,7 @@ std::string series_json(const Plot& plot, const Series& series,
   const std::vector<double>& x = series.x.empty() ? plot.x_values : series.x;
   const std::size_t n = std::min(x.size(), series.y.size());
   std::vector<std::size_t> rows;
-  if (kind == Kind::scatter) {
+  if (kind == PlotKind::scatter) {
     rows = thin_cloud(x, series.y, kCloudPoints);
     if (n > kCloudPoints && n > thinned.from) thinned = {n, rows.size(), true};
   } else if (series.x.empty() && series.y.size() == x.size()) {
@@ -98,7 +98,7 @@ PlotText plot_text(const Plot& plot) {
   for (const Series& one : plot.series) {
     if (!series.empty()) series += ',';
     series += series_json(plot, one, shared, thinned);
-    shares_x = shares_x || (one.x.empty() && one.kind.value_or(plot.kind) != Kind::scatter);
+    shares_x = shares_x || (one.x.empty() && one.kind.value_or(plot.kind) != PlotKind::scatter);
   }
   std::string json = R"({"title":)" + json_string(plot.title) + R"(,"kind":")" +
                      to_string(plot.kind) + R"(","x":)" + axis_json(plot.x) + R"(,"y":)" +

@@ -31,7 +31,7 @@ std::string now() {
 
 std::string anchor(std::size_t number) { return "section-" + std::to_string(number + 1); }
 
-std::string state_class(State state) {
+std::string state_class(ReportState state) {
   constexpr std::array<const char*, 3> kNames{"good", "warn", "bad"};
   return kNames[static_cast<std::size_t>(state)];
 }

@@ -31,7 +31,7 @@ std::string id_of(const std::string& source, const std::string& name) {
 /// A configuration at work on one run.
 class Watch final : private estimator::fdi::Events {
  public:
-  Watch(const Rules& rules, double sample_time_s) : sample_time_s_(sample_time_s) {
+  Watch(const BacktestRules& rules, double sample_time_s) : sample_time_s_(sample_time_s) {
     estimator::fdi::PipelineConfig config = rules.pipeline;
     config.load_bands(rules.folder, sample_time_s, rules.rig_id);
     pipeline_ = std::make_unique<Pipeline>(config, sample_time_s);
@@ -53,7 +53,7 @@ class Watch final : private estimator::fdi::Events {
 /// One run: samples in, alarms out.
 class Course final : public SampleHandler {
  public:
-  Course(const Rules& new_rules, const std::optional<Rules>& old_rules)
+  Course(const BacktestRules& new_rules, const std::optional<BacktestRules>& old_rules)
       : new_rules_(new_rules), old_rules_(old_rules) {}
 
   using SampleHandler::on;
@@ -94,8 +94,8 @@ class Course final : public SampleHandler {
     take(sample, message.sample_time_s);
   }
 
-  const Rules& new_rules_;
-  const std::optional<Rules>& old_rules_;
+  const BacktestRules& new_rules_;
+  const std::optional<BacktestRules>& old_rules_;
   std::unique_ptr<Watch> after_, before_;
   OccurrenceList recorded_;
 };
@@ -155,8 +155,8 @@ std::vector<std::string> files_of(const std::vector<std::string>& logs) {
   return files;
 }
 
-BacktestRun run_record(const std::string& file, const Rules& new_rules,
-                       const std::optional<Rules>& old_rules) {
+BacktestRun run_record(const std::string& file, const BacktestRules& new_rules,
+                       const std::optional<BacktestRules>& old_rules) {
   Course course(new_rules, old_rules);
   course.run.files = {file};
   const config::record::Record record = config::record::read_record(file);
@@ -166,8 +166,8 @@ BacktestRun run_record(const std::string& file, const Rules& new_rules,
 
 }  // namespace
 
-Rules read_rules(const std::string& file) {
-  Rules rules;
+BacktestRules read_rules(const std::string& file) {
+  BacktestRules rules;
   rules.file = file;
   const config::schema::Document document = config::schema::Document::load(file);
   document.read_part([&](config::schema::Visitor& v) {
@@ -186,7 +186,8 @@ Rules read_rules(const std::string& file) {
   return rules;
 }
 
-std::vector<BacktestRun> run_backtest(const Rules& new_rules, const std::optional<Rules>& old_rules,
+std::vector<BacktestRun> run_backtest(const BacktestRules& new_rules,
+                                      const std::optional<BacktestRules>& old_rules,
                                       const std::vector<std::string>& logs) {
   std::vector<BacktestRun> runs;
   std::map<std::int64_t, std::vector<Place>> places;

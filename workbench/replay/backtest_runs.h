@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "estimator/fdi/pipeline.h"
-#include "estimator/fdi/tracker/source_kinds.h"
+#include "estimator/fdi/tracker/detection_method_kinds.h"
 #include "workbench/replay/occurrences.h"
 
 namespace workbench::replay {
@@ -16,7 +16,7 @@ namespace workbench::replay {
 namespace tracker = estimator::fdi::tracker;
 
 /// The alarms' part of a configuration file.
-struct Rules {
+struct BacktestRules {
   std::string file;
   std::filesystem::path folder;  ///< bands_file starts here
   std::string rig_id;            ///< "" where the file does not say
@@ -24,7 +24,7 @@ struct Rules {
 };
 
 /// Throws config::schema::ConfigError.
-[[nodiscard]] Rules read_rules(const std::string& file);
+[[nodiscard]] BacktestRules read_rules(const std::string& file);
 
 /// One run of the daemon, or one CSV record.
 struct BacktestRun {
@@ -39,8 +39,8 @@ struct BacktestRun {
 
 /// `logs`: LCM event logs, folders of them, records. Logs of one run are put together. `old_rules`
 /// empty: what was recorded. Throws config::schema::DataError ( 78).
-[[nodiscard]] std::vector<BacktestRun> run_backtest(const Rules& new_rules,
-                                                    const std::optional<Rules>& old_rules,
+[[nodiscard]] std::vector<BacktestRun> run_backtest(const BacktestRules& new_rules,
+                                                    const std::optional<BacktestRules>& old_rules,
                                                     const std::vector<std::string>& logs);
 
 }  // namespace workbench::replay

@@ -14,7 +14,7 @@ struct BacktestReport {
   std::string new_rules;
   std::string old_rules;  ///< file, empty: what was recorded
   std::vector<BacktestRun> runs;
-  std::vector<Difference> differences;  ///< one for each run
+  std::vector<OccurrenceDifference> differences;  ///< one for each run
 };
 
 void print_backtest(const BacktestReport& report, std::ostream& out);

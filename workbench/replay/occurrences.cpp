@@ -44,9 +44,10 @@ void OccurrenceList::tell(const std::string& alarm, double t_s, bool active, int
   }
 }
 
-Difference compare(const std::vector<Occurrence>& before, const std::vector<Occurrence>& after,
-                   double tolerance_s, double sample_s) {
-  Difference difference;
+OccurrenceDifference compare(const std::vector<Occurrence>& before,
+                             const std::vector<Occurrence>& after, double tolerance_s,
+                             double sample_s) {
+  OccurrenceDifference difference;
   std::vector<bool> taken(after.size(), false);
   for (const Occurrence& old : before) {
     std::size_t best = after.size();

@@ -32,7 +32,7 @@ struct Shift {
   Occurrence before, after;
 };
 
-struct Difference {
+struct OccurrenceDifference {
   std::vector<Occurrence> appears, disappears;
   std::vector<Shift> shifts;  ///< comes or goes at another time, or in another direction
   std::int64_t same = 0;
@@ -40,8 +40,8 @@ struct Difference {
 
 /// Two of one alarm are the same one when they overlap, or come within `tolerance_s`; each is
 /// matched once, in the order of time. Times that differ by less than `sample_s` are equal.
-[[nodiscard]] Difference compare(const std::vector<Occurrence>& before,
-                                 const std::vector<Occurrence>& after, double tolerance_s,
-                                 double sample_s);
+[[nodiscard]] OccurrenceDifference compare(const std::vector<Occurrence>& before,
+                                           const std::vector<Occurrence>& after, double tolerance_s,
+                                           double sample_s);
 
 }  // namespace workbench::replay

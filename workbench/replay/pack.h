@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "estimator/fdi/pipeline.h"
-#include "estimator/fdi/tracker/source_kinds.h"
+#include "estimator/fdi/tracker/detection_method_kinds.h"
 
 namespace workbench::replay {
 

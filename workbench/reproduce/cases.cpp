@@ -30,12 +30,12 @@ double b1_at(const AlarmRun& found, double t_s) {
 }
 
 /// `first` is the direction in which b1 goes first.
-std::vector<Row> timeline(const char* parameter, double normal, double low, double high,
-                          int first) {
+std::vector<ReproducedRow> timeline(const char* parameter, double normal, double low, double high,
+                                    int first) {
   const auto found =
       run_with_alarms(schedule(parameter, normal), watching_b1(period_estimator(), low, high), 60.0,
                       1, Keep::estimates);
-  std::vector<Row> rows;
+  std::vector<ReproducedRow> rows;
   for (const double t_s : {14.0, 16.0, 18.0, 32.0, 46.0, 48.0}) {
     rows.push_back(judged(fmt::format("b1 of the period that ends at {:.0f} s, m/V", t_s), {},
                           b1_at(found, t_s), "information"));
@@ -56,11 +56,11 @@ std::vector<Row> timeline(const char* parameter, double normal, double low, doub
 
 }  // namespace
 
-std::vector<Row> case_one() {
+std::vector<ReproducedRow> case_one() {
   return timeline("supply_pressure_Pa", 1000.0 * kPa_per_psi, kCase1Low, kCase1High, +1);
 }
 
-std::vector<Row> case_two() {
+std::vector<ReproducedRow> case_two() {
   return timeline("damping_N_s_per_m", 1000.0, kCase2Low, kCase2High, -1);
 }
 

@@ -36,14 +36,14 @@ std::string padded(std::string cell, std::size_t width) {
 
 }  // namespace
 
-void print_table(std::ostream& out, std::span<const Section> sections) {
+void print_table(std::ostream& out, std::span<const ReproducedSection> sections) {
   int counts[3] = {0, 0, 0};
-  for (const Section& section : sections) {
+  for (const ReproducedSection& section : sections) {
     out << '\n'
         << section.title << '\n'
         << padded("", kWhatWidth + 2) << padded("printed", kValueWidth)
         << padded("ours", kValueWidth) << "agrees\n";
-    for (const Row& row : section.rows) {
+    for (const ReproducedRow& row : section.rows) {
       ++counts[static_cast<int>(row.agrees)];
       out << "  " << padded(row.what, kWhatWidth) << padded(shown(row.printed), kValueWidth)
           << padded(shown(row.ours), kValueWidth) << to_string(row.agrees)
@@ -55,10 +55,10 @@ void print_table(std::ostream& out, std::span<const Section> sections) {
       << " have nothing to be compared with.\n";
 }
 
-void print_json(std::ostream& out, std::span<const Section> sections) {
+void print_json(std::ostream& out, std::span<const ReproducedSection> sections) {
   nlohmann::json rows = nlohmann::json::array();
-  for (const Section& section : sections) {
-    for (const Row& row : section.rows) {
+  for (const ReproducedSection& section : sections) {
+    for (const ReproducedRow& row : section.rows) {
       rows.push_back({{"what", row.what},
                       {"printed", json(row.printed)},
                       {"ours", json(row.ours)},

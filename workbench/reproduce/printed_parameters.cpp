@@ -10,7 +10,7 @@ namespace {
 constexpr double kPrintedB1 = 1.9672e-4;
 
 double fifth_period_b1(const Scenario& scenario) {
-  const Record record = run(scenario, 10.0);
+  const ScenarioRecord record = run(scenario, 10.0);
   const auto periods =
       estimator::fit_periods(estimator::parse_structure("arx111"), record.u_V, record.y_m, kPeriod);
   return periods.at(4).value[1];
@@ -18,7 +18,7 @@ double fifth_period_b1(const Scenario& scenario) {
 
 }  // namespace
 
-std::vector<Row> printed_parameters() {
+std::vector<ReproducedRow> printed_parameters() {
   return {judged("b1 of ARX111, parameters as printed, m/V", kPrintedB1,
                  fifth_period_b1(shipped("thesis")), "mean b1, as printed",
                  "outside every printed band: the printed valve constant 2.79e-5 m/V cannot be "

@@ -14,7 +14,7 @@ using Value = std::variant<std::monostate, double, std::string>;
 enum class Agreement { yes, no, not_applicable };
 [[nodiscard]] const char* to_string(Agreement agreement) noexcept;
 
-struct Row {
+struct ReproducedRow {
   std::string what;
   Value printed;
   Value ours;
@@ -24,9 +24,9 @@ struct Row {
   bool expected = false;       ///< is meant to agree: `--strict` fails when it does not
 };
 
-struct Section {
+struct ReproducedSection {
   std::string title;
-  std::vector<Row> rows;
+  std::vector<ReproducedRow> rows;
 };
 
 }  // namespace workbench::reproduce

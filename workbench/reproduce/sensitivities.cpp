@@ -28,10 +28,10 @@ double a1_change_percent(const std::vector<Coefficients>& swept, std::size_t fro
 
 }  // namespace
 
-std::vector<Row> pressure_sensitivity() {
+std::vector<ReproducedRow> pressure_sensitivity() {
   const auto swept = sweep("supply_pressure_Pa", 1000.0 * kPa_per_psi);
   const double normal = swept[kNormal].b1;
-  const Range range = b1_range(swept);
+  const CoefficientRange range = b1_range(swept);
   return {judged("b1 for Ps +10 %, change in %", 5.0, percent(swept[kNormal + 1].b1, normal),
                  "about +5 %"),
           judged("b1 for Ps -10 %, change in %", -5.0, percent(swept[kNormal - 1].b1, normal),
@@ -51,10 +51,10 @@ std::vector<Row> pressure_sensitivity() {
                  fmt::format("{:.4e} to {:.4e}", swept[kNormal - 1].b1, swept[kNormal + 1].b1))};
 }
 
-std::vector<Row> damping_sensitivity() {
+std::vector<ReproducedRow> damping_sensitivity() {
   const auto swept = sweep("damping_N_s_per_m", 1000.0);
   const double normal = swept[kNormal].b1;
-  const Range range = b1_range(swept);
+  const CoefficientRange range = b1_range(swept);
   return {judged("b1 for d +10 %, change in %", -0.07, percent(swept[kNormal + 1].b1, normal),
                  "about -0.07 %"),
           judged("b1 for d -10 %, change in %", 0.07, percent(swept[kNormal - 1].b1, normal),

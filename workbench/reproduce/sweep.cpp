@@ -7,7 +7,7 @@
 namespace workbench::reproduce {
 
 Coefficients fifth_period(const Scenario& scenario) {
-  const Record record = run(scenario, 10.0);
+  const ScenarioRecord record = run(scenario, 10.0);
   const auto periods =
       estimator::fit_periods(estimator::parse_structure("arx111"), record.u_V, record.y_m, kPeriod);
   return {periods.at(4).value[0], periods.at(4).value[1]};
@@ -21,7 +21,7 @@ std::vector<Coefficients> sweep(const char* parameter, double normal) {
   return out;
 }
 
-Range b1_range(const std::vector<Coefficients>& swept) {
+CoefficientRange b1_range(const std::vector<Coefficients>& swept) {
   const auto [low, high] =
       std::minmax_element(swept.begin(), swept.end(),
                           [](const Coefficients& a, const Coefficients& b) { return a.b1 < b.b1; });

@@ -33,7 +33,7 @@ inline constexpr double kPa_per_psi = 6890.0;
 /// 5 um encoder, 12-bit D/A of +-10 V, 2 um noise.
 [[nodiscard]] Scenario with_real_instruments(Scenario scenario);
 
-struct Record {
+struct ScenarioRecord {
   std::vector<double> u_V;
   std::vector<double> y_m;  ///< offset removed
 
@@ -45,6 +45,7 @@ struct Record {
   }
 };
 
-[[nodiscard]] Record run(const Scenario& scenario, double duration_s, std::uint64_t seed = 1);
+[[nodiscard]] ScenarioRecord run(const Scenario& scenario, double duration_s,
+                                 std::uint64_t seed = 1);
 
 }  // namespace workbench::reproduce

@@ -101,9 +101,10 @@ const Tolerance& tolerance(std::string_view name) {
   return *found;
 }
 
-Row judged(std::string what, Value printed, Value ours, std::string_view rule, std::string note) {
+ReproducedRow judged(std::string what, Value printed, Value ours, std::string_view rule,
+                     std::string note) {
   const Tolerance& by = tolerance(rule);
-  Row row;
+  ReproducedRow row;
   row.what = std::move(what);
   row.printed = std::move(printed);
   row.ours = std::move(ours);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/signals/nan.h"
 #include "workbench/scorecard/statistics.h"
 
 namespace workbench::scorecard {
@@ -10,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void add_quiet(QuietFigures& to, const json& result) {
@@ -25,15 +26,15 @@ std::string joined(const json& names) {
   return out;
 }
 
-Found& found_of(FaultFigures& of, const std::string& motion, int direction) {
-  for (Found& found : of.found) {
+FaultDetection& found_of(FaultFigures& of, const std::string& motion, int direction) {
+  for (FaultDetection& found : of.found) {
     if (found.motion == motion && found.direction == direction) return found;
   }
   of.found.push_back({motion, direction, true, false, std::nullopt, 0.0, {}, {}});
   return of.found.back();
 }
 
-void add_stated(FaultFigures& of, Found& found, const json& result) {
+void add_stated(FaultFigures& of, FaultDetection& found, const json& result) {
   for (const json& answer : result["answers"]) {
     ++found.verdicts[answer["verdict"].get<std::string>()];
     const json& delay_s = answer["delay_s"];
@@ -60,7 +61,7 @@ void add(MethodFigures& to, const Bench& bench, const Part& part, const json& re
   auto of = std::find_if(to.faults.begin(), to.faults.end(),
                          [&](const FaultFigures& f) { return f.fault == &fault; });
   if (of == to.faults.end()) of = to.faults.insert(of, FaultFigures{&fault, {}, {}});
-  Found& found = found_of(*of, motion, part.direction);
+  FaultDetection& found = found_of(*of, motion, part.direction);
   found.usable = usable;
   if (!usable) return;
   if (part.kind == Part::Kind::stated) {
@@ -82,7 +83,7 @@ double QuietFigures::per_hour_upper() const { return poisson_upper(counted.alarm
 
 std::optional<FaultFigures::Smallest> FaultFigures::smallest(const std::string& motion) const {
   std::optional<Smallest> worst;
-  for (const Found& one : found) {
+  for (const FaultDetection& one : found) {
     if (one.motion != motion || (!one.searched && one.usable)) continue;
     if (!one.usable) return std::nullopt;
     const Smallest here{one.smallest.value_or(one.greatest), !one.smallest};
@@ -96,13 +97,14 @@ std::optional<FaultFigures::Smallest> FaultFigures::smallest(const std::string& 
 
 std::vector<double> FaultFigures::delays_s() const {
   std::vector<double> all;
-  for (const Found& one : found) all.insert(all.end(), one.delays_s.begin(), one.delays_s.end());
+  for (const FaultDetection& one : found)
+    all.insert(all.end(), one.delays_s.begin(), one.delays_s.end());
   return all;
 }
 
-int FaultFigures::verdict(Verdict verdict) const {
+int FaultFigures::verdict(TrialVerdict verdict) const {
   int count = 0;
-  for (const Found& one : found) {
+  for (const FaultDetection& one : found) {
     const auto at = one.verdicts.find(to_string(verdict));
     if (at != one.verdicts.end()) count += at->second;
   }
@@ -111,7 +113,7 @@ int FaultFigures::verdict(Verdict verdict) const {
 
 int FaultFigures::trials() const { return static_cast<int>(delays_s().size()); }
 
-int MethodFigures::verdict(Verdict verdict) const {
+int MethodFigures::verdict(TrialVerdict verdict) const {
   int count = 0;
   for (const FaultFigures& fault : faults) count += fault.verdict(verdict);
   return count;

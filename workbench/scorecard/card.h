@@ -23,7 +23,7 @@ struct QuietFigures {
 };
 
 /// A fault in one motion and one direction.
-struct Found {
+struct FaultDetection {
   std::string motion;
   int direction = 1;
   bool usable = true;
@@ -37,7 +37,7 @@ struct Found {
 
 struct FaultFigures {
   const Fault* fault = nullptr;
-  std::vector<Found> found;
+  std::vector<FaultDetection> found;
   std::map<std::string, int> first;  ///< how often which names came first; "" without a name
 
   /// The worst of both directions, with `greatest` when it was not found; nullopt: not looked for.
@@ -47,7 +47,7 @@ struct FaultFigures {
   };
   [[nodiscard]] std::optional<Smallest> smallest(const std::string& motion) const;
   [[nodiscard]] std::vector<double> delays_s() const;  ///< of all motions and directions
-  [[nodiscard]] int verdict(Verdict verdict) const;
+  [[nodiscard]] int verdict(TrialVerdict verdict) const;
   [[nodiscard]] int trials() const;
 };
 
@@ -61,7 +61,7 @@ struct MethodFigures {
   std::map<std::string, std::string> unusable;  ///< motion: why
   double load_ratio = std::numeric_limits<double>::quiet_NaN();
 
-  [[nodiscard]] int verdict(Verdict verdict) const;  ///< over all faults
+  [[nodiscard]] int verdict(TrialVerdict verdict) const;  ///< over all faults
   [[nodiscard]] int trials() const;
 };
 

@@ -66,9 +66,9 @@ Rows quiet_rows(const Card& card) {
       const auto at = method.benign.find(change.id);
       row.push_back(at == method.benign.end() ? "–" : benign_words(at->second));
     }
-    row.push_back(share_words(method.verdict(Verdict::right), method.trials()));
-    row.push_back(share_words(method.verdict(Verdict::group), method.trials()));
-    row.push_back(share_words(method.verdict(Verdict::wrong), method.trials()));
+    row.push_back(share_words(method.verdict(TrialVerdict::right), method.trials()));
+    row.push_back(share_words(method.verdict(TrialVerdict::group), method.trials()));
+    row.push_back(share_words(method.verdict(TrialVerdict::wrong), method.trials()));
     row.push_back(
         std::isnan(method.load_ratio) ? "–" : fmt::format("{:.2g} %", 100.0 * method.load_ratio));
     rows.push_back(row);
@@ -118,8 +118,9 @@ std::string method_text(const MethodFigures& method) {
              "names that came first"}};
   for (const FaultFigures& of : method.faults) {
     std::vector<std::string> row{sized_words(*of.fault)};
-    for (const Verdict verdict : {Verdict::right, Verdict::group, Verdict::wrong, Verdict::unnamed,
-                                  Verdict::missed, Verdict::standing}) {
+    for (const TrialVerdict verdict :
+         {TrialVerdict::right, TrialVerdict::group, TrialVerdict::wrong, TrialVerdict::unnamed,
+          TrialVerdict::missed, TrialVerdict::standing}) {
       row.push_back(share_words(of.verdict(verdict), of.trials()));
     }
     row.push_back(first_words(of));

@@ -19,7 +19,7 @@ constexpr const char* kIntegrates =
 
 }  // namespace
 
-OnLine on_line_form(const Candidate& candidate, const Fitted& fitted) {
+OnLine on_line_form(const StructureCandidate& candidate, const Fitted& fitted) {
   OnLine out;
   out.method = "none";
   if (std::holds_alternative<structures::SubspaceOptions>(candidate.what)) {

@@ -30,7 +30,7 @@ std::string spread(double value) {
   return percent >= 1000.0 ? "> 1000 %" : number_words(percent, 2) + " %";
 }
 
-std::string bias(const Judged& judged) {
+std::string bias(const JudgedStructure& judged) {
   if (judged.has_bias_test) return to_string(judged.bias.verdict);
   return "-";
 }
@@ -40,15 +40,15 @@ std::string on_line(const OnLine& form) {
   return form.method + ", unsuitable here";
 }
 
-double least_bic(const Outcome& outcome) {
+double least_bic(const SelectOutcome& outcome) {
   double out = std::numeric_limits<double>::infinity();
-  for (const Judged& one : outcome.judged) {
+  for (const JudgedStructure& one : outcome.judged) {
     if (std::isfinite(one.bic)) out = std::min(out, one.bic);
   }
   return out;
 }
 
-std::string row(const Judged& one, double bic, const char* mark) {
+std::string row(const JudgedStructure& one, double bic, const char* mark) {
   if (!one.fitted.valid) {
     return fmt::format("{} {:11} not fitted: ", mark, one.candidate.name) + one.fitted.why + "\n";
   }
@@ -63,7 +63,7 @@ std::string row(const Judged& one, double bic, const char* mark) {
 
 }  // namespace
 
-std::string to_text(const Outcome& o) {
+std::string to_text(const SelectOutcome& o) {
   std::string out = fmt::format("{}: {} samples every {} ms, {} gaps", o.name, o.samples,
                                 number_words(1e3 * o.sample_time_s, 4), o.gaps);
   out +=
@@ -82,7 +82,7 @@ std::string to_text(const Outcome& o) {
   const double bic = least_bic(o);
   bool failed = false;
   for (std::size_t i = 0; i < o.judged.size(); ++i) {
-    const Judged& one = o.judged[i];
+    const JudgedStructure& one = o.judged[i];
     if (one.fitted.valid && !one.represents && !failed) {
       failed = true;
       out += "  cannot represent this record (free-run error above the rod's motion):\n";
@@ -99,7 +99,7 @@ std::string to_text(const Outcome& o) {
     out += o.reason + ".\n";
   }
   if (o.watch >= 0 && o.watch != o.recommended) {
-    const Judged& one = o.judged[static_cast<std::size_t>(o.watch)];
+    const JudgedStructure& one = o.judged[static_cast<std::size_t>(o.watch)];
     out += "to follow on line: " + one.candidate.name + ", by " + method_words(one.on_line.method) +
            "; its free-run error is " +
            more_words(one.free_run_rms_m / o.judged.front().free_run_rms_m) + " the best.\n";

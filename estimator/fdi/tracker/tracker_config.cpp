@@ -123,7 +123,7 @@ std::unique_ptr<estimator::fdi::DetectionMethod> TrackerConfig::make(
       known->theta[static_cast<Eigen::Index>(i)] = set.parameters[i].to_theta(learnt.values[i]);
     }
   }
-  return std::make_unique<TrackerSource>(*this, read, set, known, sample_time_s);
+  return std::make_unique<TrackerMethod>(*this, read, set, known, sample_time_s);
 }
 
 }  // namespace estimator::fdi::tracker

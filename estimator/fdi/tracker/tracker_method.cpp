@@ -37,7 +37,7 @@ std::string value_name(std::string name) {
 
 }  // namespace
 
-TrackerSource::TrackerSource(const TrackerConfig& config, const plant_sim::ModelFile& model,
+TrackerMethod::TrackerMethod(const TrackerConfig& config, const plant_sim::ModelFile& model,
                              const greybox::tracking::ParameterSet& set,
                              std::optional<greybox::tracking::Baseline> baseline,
                              double sample_time_s)
@@ -55,7 +55,7 @@ TrackerSource::TrackerSource(const TrackerConfig& config, const plant_sim::Model
   reset();
 }
 
-std::vector<std::string> TrackerSource::names() const {
+std::vector<std::string> TrackerMethod::names() const {
   std::vector<std::string> names;
   const greybox::tracking::ParameterSet& set = tracker_.set();
   for (std::size_t i = 0; i < set.tracked; ++i) {
@@ -70,7 +70,7 @@ std::vector<std::string> TrackerSource::names() const {
   return names;
 }
 
-std::vector<estimator::fdi::Alarm> TrackerSource::declared_alarms() const {
+std::vector<estimator::fdi::Alarm> TrackerMethod::declared_alarms() const {
   const std::vector<std::string> all = names();
   std::vector<std::string> wanted(
       all.begin(), all.begin() + static_cast<std::ptrdiff_t>(tracker_.set().tracked));
@@ -85,7 +85,7 @@ std::vector<estimator::fdi::Alarm> TrackerSource::declared_alarms() const {
   return alarms;
 }
 
-bool TrackerSource::is_due(std::int64_t missing) noexcept {
+bool TrackerMethod::is_due(std::int64_t missing) noexcept {
   broken_ = true;
   missing_ += missing;
   if (static_cast<double>(missing_) * sample_time_s_ < stride_s_) return false;
@@ -97,9 +97,9 @@ bool TrackerSource::is_due(std::int64_t missing) noexcept {
   return true;
 }
 
-bool TrackerSource::on_gap(std::int64_t periods) noexcept { return is_due(periods); }
+bool TrackerMethod::on_gap(std::int64_t periods) noexcept { return is_due(periods); }
 
-bool TrackerSource::push(const Sample& sample, double y_m) noexcept {
+bool TrackerMethod::push(const Sample& sample, double y_m) noexcept {
   if (!std::isfinite(y_m) || !std::isfinite(sample.u_applied_V)) return is_due(1);
   const double t_s = static_cast<double>(sample.tick) * sample_time_s_;
   const std::optional<greybox::tracking::WindowResult> window =
@@ -111,7 +111,7 @@ bool TrackerSource::push(const Sample& sample, double y_m) noexcept {
   return true;
 }
 
-void TrackerSource::take(const greybox::tracking::WindowResult& window) {
+void TrackerMethod::take(const greybox::tracking::WindowResult& window) {
   const std::size_t tracked = tracker_.set().tracked;
   for (std::size_t i = 0; i < tracked; ++i) {
     const greybox::tracking::ParameterEstimate& one = window.estimates[i];
@@ -133,7 +133,7 @@ void TrackerSource::take(const greybox::tracking::WindowResult& window) {
   say();
 }
 
-void TrackerSource::learn_from(const greybox::tracking::WindowResult& window) {
+void TrackerMethod::learn_from(const greybox::tracking::WindowResult& window) {
   const greybox::tracking::ParameterSet& set = tracker_.set();
   why_ = "learning what is healthy" + (why_.empty() ? "" : "; " + why_);
   if (!greybox::tracking::qualifies_for_baseline(window, set)) return;
@@ -163,7 +163,7 @@ void TrackerSource::learn_from(const greybox::tracking::WindowResult& window) {
   learning_.clear();
 }
 
-void TrackerSource::suggest(const greybox::tracking::WindowResult& window) {
+void TrackerMethod::suggest(const greybox::tracking::WindowResult& window) {
   if (!window.poor) return;
   if (!probe_) {
     const std::optional<greybox::tracking::ExcitationDesign> probe = tracker_.probe();
@@ -176,7 +176,7 @@ void TrackerSource::suggest(const greybox::tracking::WindowResult& window) {
       (window.explained ? "this motion tells too little" : why_.substr(0, colon)) + "; " + *probe_;
 }
 
-void TrackerSource::say() {
+void TrackerMethod::say() {
   const greybox::tracking::ParameterSet& set = tracker_.set();
   for (std::size_t i = 0; i < set.tracked; ++i) {
     Said& said = said_[i];
@@ -212,7 +212,7 @@ void TrackerSource::say() {
   said.state.reason = said.reason;
 }
 
-void TrackerSource::say_slow() {
+void TrackerMethod::say_slow() {
   const greybox::tracking::ParameterSet& set = tracker_.set();
   const greybox::tracking::BaselineDrift& slow = tracker_.baseline_drift();
   for (std::size_t i = 0; i < slow.size(); ++i) {
@@ -234,7 +234,7 @@ void TrackerSource::say_slow() {
   }
 }
 
-MethodOutput TrackerSource::evaluate(std::span<NamedValue> values) noexcept {
+MethodOutput TrackerMethod::evaluate(std::span<NamedValue> values) noexcept {
   const std::size_t tracked = tracker_.set().tracked;
   for (std::size_t i = 0; i < tracked; ++i) {
     values[i].value = found_[i];
@@ -262,11 +262,11 @@ MethodOutput TrackerSource::evaluate(std::span<NamedValue> values) noexcept {
   return output;
 }
 
-AlarmInput TrackerSource::alarm_input(std::size_t number) const noexcept {
+AlarmInput TrackerMethod::alarm_input(std::size_t number) const noexcept {
   return said_[number].state;
 }
 
-void TrackerSource::reset() {
+void TrackerMethod::reset() {
   tracker_.reset();
   if (given_) tracker_.take(*given_);
   broken_ = true;
@@ -282,7 +282,7 @@ void TrackerSource::reset() {
   say();
 }
 
-void TrackerSource::serialize(estimator::StateArchive& archive) {
+void TrackerMethod::serialize(estimator::StateArchive& archive) {
   tracker_.serialize(archive);
   archive.value(broken_);
   archive.value(missing_);

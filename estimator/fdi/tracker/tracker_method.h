@@ -12,10 +12,10 @@
 
 namespace estimator::fdi::tracker {
 
-class TrackerSource final : public estimator::fdi::DetectionMethod {
+class TrackerMethod final : public estimator::fdi::DetectionMethod {
  public:
   /// `baseline`: none = learned from the first windows that qualify.
-  TrackerSource(const TrackerConfig& config, const plant_sim::ModelFile& model,
+  TrackerMethod(const TrackerConfig& config, const plant_sim::ModelFile& model,
                 const greybox::tracking::ParameterSet& set,
                 std::optional<greybox::tracking::Baseline> baseline, double sample_time_s);
 

@@ -130,7 +130,7 @@ std::string change_words(const ParameterSet& set, const ParameterChange& named,
          value_words(p, named.theta, named.std_error);
 }
 
-std::string slow_words(const FreeParameter& p, double learnt, double theta) {
+std::string drift_words(const FreeParameter& p, double learnt, double theta) {
   const std::string far =
       is_logarithmic(p)
           ? fmt::format("{:+.1f} %", 100.0 * (p.to_physical(theta) / p.to_physical(learnt) - 1.0))

@@ -28,7 +28,7 @@ struct Localisation {
   double explained_ratio = 0.0;  ///< share of the held-out squared error
 };
 
-struct Step {
+struct SelectionStep {
   std::string added;  ///< empty: the model as given, its parameters fitted
   double validation_rms_m = 0.0;
 };
@@ -45,7 +45,7 @@ struct Diagnosis {
   double rms_after_m = 0.0;                ///< held-out, better model
   std::vector<ParameterValue> parameters;  ///< better model, fitted to all samples
   std::vector<Localisation> where;         ///< best first; empty when everything is explained
-  std::vector<Step> steps;
+  std::vector<SelectionStep> steps;
   Excitation excitation;             ///< insufficient: Verdict::not_excited
   std::optional<double> searched_s;  ///< length of the segments searched; none: all samples
   StructureSearch search;

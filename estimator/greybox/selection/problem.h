@@ -18,7 +18,7 @@
 namespace estimator::greybox::selection {
 
 /// State of a running search, for a progress line.
-struct Progress {
+struct SearchProgress {
   int round = 0;
   bool screening = false;  ///< false: `effect` is being fitted
   std::string effect;
@@ -46,9 +46,9 @@ using Separable =
 
 struct DiagnosisOptions {
   unsigned threads = 2;
-  std::function<void(const Progress&)> progress;  ///< serialised calls; may be empty
-  std::function<bool()> cancel;                   ///< called from any thread; may be empty
-  Separable separable;                            ///< empty: no motion separates anything
+  std::function<void(const SearchProgress&)> progress;  ///< serialised calls; may be empty
+  std::function<bool()> cancel;                         ///< called from any thread; may be empty
+  Separable separable;                                  ///< empty: no motion separates anything
 };
 
 struct SearchContext {

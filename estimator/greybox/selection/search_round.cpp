@@ -78,7 +78,7 @@ class Reporter {
 
   const SearchContext* context_;
   std::mutex mutex_;
-  Progress progress_;
+  SearchProgress progress_;
 };
 
 Candidate candidate_of(const SearchContext& context, const ModelStage& stage,

@@ -179,7 +179,7 @@ WindowFitSummary WindowFit::fit(const WindowData& data, const std::vector<std::s
     tell_errors(data, errors, residual.col(0), out);
     return out;
   }
-  estimator::nonlinear::Options how;
+  estimator::nonlinear::MinimizeOptions how;
   how.max_iterations = kMostIterations;
   how.cost_tolerance = kTolerance;
   how.first_damping = kSlight;

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "config/schema/error.h"
+#include "config/signals/nan.h"
 #include "estimator/greybox/dataset.h"
 #include "estimator/residual/noise_floor.h"
 #include "estimator/residual/whiteness.h"
@@ -15,7 +15,7 @@
 namespace estimator::greybox::validation {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 /// Spread of the positions, in noise floors, below which the rod does not move.
 constexpr double kLeastMotion = 10.0;
 constexpr double kLeastMotion_m = 1e-9;

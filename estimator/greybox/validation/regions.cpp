@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "config/signals/nan.h"
 
 namespace estimator::greybox::validation {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 constexpr double kBins = 9.0;
 constexpr std::size_t kFewest = 40;
 constexpr double kSmallestShare = 0.01;

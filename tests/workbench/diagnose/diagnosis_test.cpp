@@ -5,7 +5,7 @@
 
 #include <set>
 
-#include "tests/workbench/diagnose/servo_shop.h"
+#include "tests/estimator/greybox/selection/servo_problem.h"
 
 namespace workbench::diagnose {
 

@@ -96,8 +96,8 @@ TEST(BetterModel, SaysAtItsTopWhatWasAddedAndReadsBack) {
   EXPECT_NE(*read.value("mass_kg"), 1.0);
 }
 
-selection::Progress step(int round, const std::string& effect, int done) {
-  selection::Progress progress;
+selection::SearchProgress step(int round, const std::string& effect, int done) {
+  selection::SearchProgress progress;
   progress.round = round;
   progress.effect = effect;
   progress.done = done;
@@ -111,7 +111,7 @@ TEST(ProgressLine, IsOneLineForEachRoundWhereNoTerminalIs) {
   std::ostringstream out;
   ProgressLine line(out, false, 2.4e-6);
   line.show(step(1, "friction", 1));
-  selection::Progress ranked = step(1, "backlash", 2);
+  selection::SearchProgress ranked = step(1, "backlash", 2);
   ranked.expected = {"friction", "backlash", "deadband"};
   line.show(ranked);
   line.show(ranked);

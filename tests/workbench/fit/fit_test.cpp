@@ -15,7 +15,7 @@
 #include "tests/truth/rig.h"
 #include "tests/workbench/run_command.h"
 
-namespace workbench {
+namespace workbench::fit {
 
 namespace {
 
@@ -199,4 +199,4 @@ TEST(FitEmps, AgreesWithThePublishedParameters) {
 }
 
 }  // namespace
-}  // namespace workbench
+}  // namespace workbench::fit

@@ -7,7 +7,7 @@
 
 #include "config/schema/exit_code.h"
 #include "estimator/fdi/tracker/baseline_file.h"
-#include "tests/daemon/tracking/tracked.h"
+#include "tests/estimator/greybox/tracking/tracked_rig.h"
 #include "tests/truth/case.h"
 #include "tests/workbench/run_command.h"
 
