@@ -223,7 +223,7 @@ void TrackerMethod::say_slow() {
     const std::size_t at = slow.parameter(i);
     const greybox::FreeParameter& p = set.parameters[at];
     const double theta = tracker_.baseline()->theta[static_cast<Eigen::Index>(at)];
-    said.reason = slow_words(p, slow.learnt(i), theta);
+    said.reason = drift_words(p, slow.learnt(i), theta);
     said.parameter = p.name;
     said.fault = {said.parameter, {}, kNaN};
     said.state.severity = Severity::minor;

@@ -42,7 +42,7 @@ using greybox::tracking::Rival;
 /// Slow change that has reached the end of the range of the baseline drift. `learnt`, `theta`:
 /// search
 /// units.
-[[nodiscard]] std::string slow_words(const FreeParameter& parameter, double learnt, double theta);
+[[nodiscard]] std::string drift_words(const FreeParameter& parameter, double learnt, double theta);
 /// Other parameters that would explain the change, and the reading or motion that separates them;
 /// empty without rivals.
 [[nodiscard]] std::string group_words(const ParameterSet& set, const ParameterChange& named);
