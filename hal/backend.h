@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "config/schema/error.h"
 #include "config/schema/visitor.h"
 #include "hal/device.h"
 

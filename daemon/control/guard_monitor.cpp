@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/control/sensor_watch.h"
+#include "daemon/control/position_voter.h"
 
 namespace monitor::control {
 namespace {

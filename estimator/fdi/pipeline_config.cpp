@@ -5,7 +5,7 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
-#include "estimator/fdi/fingerprint.h"
+#include "estimator/fdi/snapshot.h"
 #include "estimator/fdi/learned_bands.h"
 #include "estimator/fdi/quantity.h"
 

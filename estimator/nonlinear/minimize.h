@@ -28,7 +28,6 @@ enum class Stop {
   kCancelled,
   kStartNotFinite,  ///< the start itself could not be evaluated
 };
-[[nodiscard]] const char* to_string(Stop stop);
 
 struct Progress {
   int iteration = 0;

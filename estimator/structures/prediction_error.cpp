@@ -8,7 +8,6 @@
 #include "estimator/nonlinear/covariance.h"
 #include "estimator/nonlinear/minimize.h"
 #include "estimator/structures/linear.h"
-#include "estimator/structures/starts.h"
 
 namespace estimator::structures {
 namespace {

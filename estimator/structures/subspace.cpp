@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "estimator/linear_algebra/decompositions.h"
-#include "estimator/structures/starts.h"
+#include "estimator/structures/linear.h"
 
 namespace estimator::structures {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "hal/backend.h"
 #include "hal/sim/injected_fault.h"
-#include "plant_sim/bench_plant.h"
+#include "plant_sim/transducer.h"
 #include "plant_sim/instruments.h"
 #include "plant_sim/schedule.h"
 

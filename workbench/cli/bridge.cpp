@@ -15,10 +15,9 @@
 #include "spoolwatch/rods_t.hpp"
 #include "spoolwatch/sample_t.hpp"
 #include "workbench/cli/command.h"
-#include "workbench/cli/stop_condition.h"
-#include "workbench/exchange/datagrams.h"
-#include "workbench/exchange/message.h"
+#include "workbench/cli/interrupt.h"
 #include "workbench/exchange/udp_sender.h"
+#include "workbench/exchange/message.h"
 #include "workbench/live/listen_feed.h"
 
 namespace workbench::cli {

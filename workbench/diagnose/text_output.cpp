@@ -1,4 +1,4 @@
-#include "workbench/diagnose/text_output.h"
+#include "workbench/diagnose/diagnosis_report.h"
 
 #include <fmt/format.h>
 
@@ -9,11 +9,8 @@
 
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
-#include "workbench/diagnose/words.h"
 
 namespace workbench::diagnose {
-
-namespace selection = estimator::greybox::selection;
 namespace {
 
 constexpr std::size_t kLine = 96;

@@ -13,8 +13,6 @@
 #include "workbench/cli/file_check.h"
 
 namespace workbench::fit {
-
-namespace greybox = estimator::greybox;
 namespace {
 
 namespace fs = std::filesystem;

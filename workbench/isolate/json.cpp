@@ -10,7 +10,6 @@
 namespace workbench::isolate {
 
 namespace greybox = estimator::greybox;
-namespace tracking = estimator::greybox::tracking;
 namespace {
 
 using Eigen::Index;

@@ -1,7 +1,6 @@
 // A tracking as a report.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
 #include <limits>
 
@@ -11,7 +10,6 @@
 namespace workbench::isolate {
 
 namespace greybox = estimator::greybox;
-namespace tracking = estimator::greybox::tracking;
 namespace {
 
 using present::Plot;

@@ -12,7 +12,6 @@
 namespace workbench::isolate {
 
 namespace greybox = estimator::greybox;
-namespace tracking = estimator::greybox::tracking;
 namespace {
 
 using config::units::length_words;

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "config/schema/document.h"
-#include "workbench/reproduce/shipped_models.h"
+#include "workbench/reproduce/thesis_scenarios.h"
 #include "workbench/simulate/closed_loop.h"
 
 namespace workbench::reproduce {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <cmath>
 
 #include "config/schema/error.h"
 #include "estimator/structure.h"
@@ -167,9 +166,7 @@ std::vector<Candidate> usual_candidates(int k, bool constant) {
   for (int n = 1; n <= 4; ++n) {
     out.push_back(state_space(n, k, constant, SubspaceMethod::kPredictor));
   }
-  for (int n = 2; n <= 3; ++n) {
-    out.push_back(state_space(n, k, constant, SubspaceMethod::kN4sid));
-  }
+  for (int n = 2; n <= 3; ++n) out.push_back(state_space(n, k, constant, SubspaceMethod::kN4sid));
   out.push_back(network(1, 1, k, 3));
   out.push_back(network(2, 1, k, 4));
   return out;

@@ -33,7 +33,7 @@ struct BaselineFile {
   void visit(config::schema::Visitor& v);
 };
 
-/// All that the model is, as one line (estimator/fdi/fingerprint.h).
+/// All that the model is, as one line (estimator/fdi/snapshot.h).
 [[nodiscard]] std::string values_line(const plant_sim::ModelFile& model);
 
 [[nodiscard]] BaselineFile baseline_file(const plant_sim::ModelFile& model,

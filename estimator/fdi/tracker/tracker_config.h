@@ -29,7 +29,6 @@
 #include "estimator/fdi/alarm.h"
 #include "estimator/fdi/detection_method_config.h"
 #include "estimator/fdi/tracker/baseline_file.h"
-#include "estimator/fdi/tracker/source_kinds.h"
 #include "estimator/greybox/tracking/parameter_tracker.h"
 
 namespace estimator::fdi::tracker {

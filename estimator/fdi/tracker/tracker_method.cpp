@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "config/units/quantity.h"
 #include "estimator/greybox/tracking/words.h"
 
 namespace estimator::fdi::tracker {
@@ -56,9 +55,7 @@ TrackerSource::TrackerSource(const TrackerConfig& config, const plant_sim::Model
 std::vector<std::string> TrackerSource::names() const {
   std::vector<std::string> names;
   const greybox::tracking::ParameterSet& set = tracker_.set();
-  for (std::size_t i = 0; i < set.tracked; ++i) {
-    names.push_back(value_name(set.parameters[i].name));
-  }
+  for (std::size_t i = 0; i < set.tracked; ++i) names.push_back(value_name(set.parameters[i].name));
   for (std::size_t i = 0; i < set.tracked; ++i) names.push_back("smallest_" + names[i]);
   names.emplace_back("residual_rms_m");
   const greybox::tracking::BaselineDrift& slow = tracker_.baseline_drift();

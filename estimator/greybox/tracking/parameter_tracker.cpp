@@ -6,7 +6,6 @@
 #include <string_view>
 #include <utility>
 
-#include "config/units/quantity.h"
 #include "estimator/greybox/dataset.h"
 #include "estimator/greybox/tracking/words.h"
 

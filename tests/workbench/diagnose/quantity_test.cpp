@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "workbench/present/shell_command.h"
+#include "workbench/present/text.h"
 
 namespace workbench::diagnose {
 namespace {
@@ -40,7 +40,7 @@ TEST(Quantity, IsShownInTheUnitThatReadsWell) {
 TEST(Quantity, MissingLimitsAndMissingValuesAreWords) {
   EXPECT_EQ(said("limit_m3ps", std::numeric_limits<double>::infinity(), kNone), "no limit");
   EXPECT_EQ(said("mass_kg", kNone, kNone), "unknown");
-  EXPECT_EQ(config::units::length_words(kNone), "unknown");
+  EXPECT_EQ(config::units::length_words(kNone), "-");
 }
 
 TEST(Quantity, LengthsGoFromMicrometresToMetres) {
@@ -60,7 +60,7 @@ TEST(Quantity, ParameterNamesLoseEffectAndUnit) {
 }
 
 TEST(Chance, IsNotShownFinerThanItIsKnown) {
-  EXPECT_EQ(config::units::chance_words(1e-12), "below 1e-06");
+  EXPECT_EQ(config::units::chance_words(1e-12), "below 1e-6");
   EXPECT_EQ(config::units::chance_words(0.034), "0.034");
   EXPECT_EQ(config::units::chance_words(kNone), "-");
 }
