@@ -168,7 +168,7 @@ std::string speed_words(double speed_mps) {
 
 std::string chance_words(double p) {
   if (!std::isfinite(p)) return "-";
-  return p < 1e-6 ? "below 1e-6" : fmt::format("{:.2g}", p);
+  return p < 1e-6 ? "< 1e-6" : fmt::format("{:.2g}", p);
 }
 
 std::string times_words(double ratio) {

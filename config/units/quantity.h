@@ -33,7 +33,7 @@ struct Quantity {
 /// "0.31 mm/s".
 [[nodiscard]] std::string speed_words(double speed_mps);
 
-/// "3.1e-05", "below 1e-6": a probability.
+/// "3.1e-05", "< 1e-6": a probability.
 [[nodiscard]] std::string chance_words(double p);
 
 /// "Coulomb" of "friction.coulomb_N", "half width" of "deadband.half_width_V".

@@ -23,7 +23,7 @@ void add_order_options(CLI::App& command, control::OrderOptions& options) {
   command.add_option("--json", options.json, "write the answer there; - for standard output");
 }
 
-struct ReferenceArguments {
+struct ReferenceOptions {
   control::OrderOptions common;
   double centre_m = 0.0;
   double amplitude_m = 0.0;
@@ -60,7 +60,7 @@ void add_reset(CLI::App& command, int& exit_code) { add_word(command, exit_code,
 void add_hold(CLI::App& command, int& exit_code) { add_word(command, exit_code, "hold"); }
 
 void add_reference(CLI::App& command, int& exit_code) {
-  const auto options = std::make_shared<ReferenceArguments>();
+  const auto options = std::make_shared<ReferenceOptions>();
   add_order_options(command, options->common);
   command.add_option("--centre", options->centre_m, "middle of the motion, m")->required();
   command.add_option("--amplitude", options->amplitude_m, "m")->capture_default_str();
@@ -110,14 +110,14 @@ namespace {
 using config::schema::UsageError;
 using Json = nlohmann::ordered_json;
 
-struct AlarmArguments {
+struct AlarmOptions {
   control::OrderOptions common;
   std::string alarm;
   bool all = false;
   double time_s = 0.0;
 };
 
-void act(const char* word, const AlarmArguments& options, bool with_time) {
+void act(const char* word, const AlarmOptions& options, bool with_time) {
   Json request = {{protocol::key::kCommand, word}};
   if (!options.alarm.empty()) request[protocol::key::kAlarm] = options.alarm;
   if (with_time) request[protocol::key::kTime] = options.time_s;
@@ -134,7 +134,7 @@ void act(const char* word, const AlarmArguments& options, bool with_time) {
 }  // namespace
 
 void add_alarms(CLI::App& command, int& /*exit_code*/) {
-  const auto options = std::make_shared<AlarmArguments>();
+  const auto options = std::make_shared<AlarmOptions>();
   add_order_options(command, options->common);
   command.add_flag("--all", options->all, "those that are normal too");
   command.callback([options] {
@@ -145,7 +145,7 @@ void add_alarms(CLI::App& command, int& /*exit_code*/) {
 }
 
 void add_ack(CLI::App& command, int& /*exit_code*/) {
-  const auto options = std::make_shared<AlarmArguments>();
+  const auto options = std::make_shared<AlarmOptions>();
   add_order_options(command, options->common);
   CLI::Option* alarm =
       command.add_option("alarm", options->alarm, "SOURCE.NAME, as `alarms` lists it");
@@ -160,7 +160,7 @@ void add_ack(CLI::App& command, int& /*exit_code*/) {
 }
 
 void add_shelve(CLI::App& command, int& /*exit_code*/) {
-  const auto options = std::make_shared<AlarmArguments>();
+  const auto options = std::make_shared<AlarmOptions>();
   add_order_options(command, options->common);
   command.add_option("alarm", options->alarm, "SOURCE.NAME, as `alarms` lists it")->required();
   const std::map<std::string, double> units = {{"s", 1.0}, {"min", 60.0}, {"h", 3600.0}};
@@ -171,7 +171,7 @@ void add_shelve(CLI::App& command, int& /*exit_code*/) {
 }
 
 void add_unshelve(CLI::App& command, int& /*exit_code*/) {
-  const auto options = std::make_shared<AlarmArguments>();
+  const auto options = std::make_shared<AlarmOptions>();
   add_order_options(command, options->common);
   command.add_option("alarm", options->alarm, "SOURCE.NAME, as `alarms` lists it")->required();
   command.callback([options] { act(protocol::kUnshelve, *options, false); });

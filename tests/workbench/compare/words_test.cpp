@@ -92,7 +92,7 @@ TEST(Units, GiveThreeDigitsAndNoExponents) {
   EXPECT_EQ(config::units::length_words(std::nan("")), "-");
   EXPECT_EQ(present::percent(0.0042), "under 1 %");
   EXPECT_EQ(present::percent(0.9987), "over 99 %");
-  EXPECT_EQ(config::units::chance_words(1e-9), "below 1e-6");
+  EXPECT_EQ(config::units::chance_words(1e-9), "< 1e-6");
 }
 
 TEST(Text, FitsATerminalAndIsAsciiWhereAskedFor) {

@@ -60,7 +60,7 @@ TEST(Quantity, ParameterNamesLoseEffectAndUnit) {
 }
 
 TEST(Chance, IsNotShownFinerThanItIsKnown) {
-  EXPECT_EQ(config::units::chance_words(1e-12), "below 1e-6");
+  EXPECT_EQ(config::units::chance_words(1e-12), "< 1e-6");
   EXPECT_EQ(config::units::chance_words(0.034), "0.034");
   EXPECT_EQ(config::units::chance_words(kNone), "-");
 }
