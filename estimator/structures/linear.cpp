@@ -153,4 +153,14 @@ NoiseModel fit_noise(const std::vector<std::vector<double>>& series, int c, int 
   return {arma.c, stabilised(arma.a, kMargin)};
 }
 
+double rms(const Stretches& data, bool of_input) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (const Stretch& stretch : data) {
+    for (const double x : of_input ? stretch.u_V : stretch.y_m) sum += x * x;
+    count += stretch.size();
+  }
+  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
+}
+
 }  // namespace estimator::structures

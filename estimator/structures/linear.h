@@ -20,6 +20,9 @@ struct Rows {
 [[nodiscard]] Rows regression_rows(const Orders& orders, const Stretches& data,
                                    const std::vector<std::vector<double>>& errors = {});
 
+/// RMS of u (V) or of y (m) over all stretches; 0 without samples.
+[[nodiscard]] double rms(const Stretches& data, bool of_input);
+
 /// The shortest minimiser (columns scaled to length 1) of |target - psi theta|.
 [[nodiscard]] Eigen::VectorXd solve_rows(const Rows& rows);
 

@@ -28,16 +28,6 @@ struct Windows {
   double u_scale_V = 1.0;
 };
 
-double rms(const Stretches& data, bool of_input) {
-  double sum = 0.0;
-  double count = 0.0;
-  for (const Stretch& stretch : data) {
-    for (const double x : of_input ? stretch.u_V : stretch.y_m) sum += x * x;
-    count += stretch.size();
-  }
-  return std::sqrt(sum / count);
-}
-
 Windows windows_of(const SubspaceOptions& o, const Stretches& data) {
   Windows out;
   out.y_scale_m = rms(data, false);

@@ -81,22 +81,10 @@ void print_alarms(const Json& answer, bool all, std::ostream& out) {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-std::string text_of(const Json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : "";
-}
-
 std::string number_of(const Json& object, const char* key, double scale, const char* unit) {
   const auto found = object.find(key);
   if (found == object.end() || !found->is_number()) return "-";
   return fmt::format("{:.4g}{}", found->get<double>() * scale, unit);
-}
-
-bool is_set(const Json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_boolean() && found->get<bool>();
 }
 
 void print_inputs(const Json& status, const char* key, const char* what, std::ostream& out) {

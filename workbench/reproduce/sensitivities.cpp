@@ -8,6 +8,7 @@
 #include "estimator/batch.h"
 #include "workbench/reproduce/alarm_run.h"
 #include "workbench/reproduce/experiment.h"
+#include "workbench/reproduce/sweep.h"
 #include "workbench/reproduce/tolerance.h"
 
 namespace workbench::reproduce {
