@@ -16,8 +16,8 @@
 #include "spoolwatch/sample_t.hpp"
 #include "workbench/cli/command.h"
 #include "workbench/cli/interrupt.h"
-#include "workbench/exchange/udp_sender.h"
 #include "workbench/exchange/message.h"
+#include "workbench/exchange/udp_sender.h"
 #include "workbench/live/listen_feed.h"
 
 namespace workbench::cli {

@@ -13,6 +13,7 @@
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "config/units/quantity.h"
+#include "daemon/control/protocol.h"
 #include "plant_sim/model_file.h"
 #include "workbench/cli/command.h"
 #include "workbench/cli/number_check.h"

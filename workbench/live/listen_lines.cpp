@@ -15,7 +15,6 @@
 namespace workbench::live {
 namespace {
 
-using nlohmann::json;
 using nlohmann::ordered_json;
 
 constexpr std::int64_t kYear2000_us = 946'684'800'000'000;
@@ -46,7 +45,7 @@ ordered_json head(const char* type, const Message& message) {
 }
 
 std::string text(const ordered_json& object) {
-  return object.dump(-1, ' ', false, json::error_handler_t::replace);
+  return object.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
 }  // namespace
@@ -257,7 +256,7 @@ void LinePrinter::on_notice(const std::string& what) { event("notice", what); }
 
 void LinePrinter::event(const char* kind, const std::string& what) {
   if (json_) {
-    line(nlohmann::ordered_json{{"type", kind}, {"utc_us", now_us()}, {"what", what}}.dump());
+    line(ordered_json{{"type", kind}, {"utc_us", now_us()}, {"what", what}}.dump());
   } else {
     line(time_text(now_us()) + "  " + kind + ": " + what);
   }
