@@ -132,10 +132,6 @@ const Orders* Candidate::arx() const {
   return orders != nullptr && orders->c + orders->d + orders->f == 0 ? orders : nullptr;
 }
 
-int Candidate::delay() const {
-  return std::visit([](const auto& of) { return of.k; }, what);
-}
-
 int Candidate::least_samples() const {
   if (const Orders* orders = std::get_if<Orders>(&what)) return structures::least_samples(*orders);
   if (const auto* s = std::get_if<SubspaceOptions>(&what)) return structures::least_samples(*s);
