@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "config/schema/error.h"
 #include "config/schema/visitor.h"
 #include "hal/device.h"
 
