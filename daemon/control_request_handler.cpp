@@ -1,8 +1,7 @@
 #include "daemon/control_request_handler.h"
 
-#include <algorithm>
-
 #include "daemon/control/protocol.h"
+#include "daemon/detection/system_alarms.h"
 
 namespace monitor {
 namespace {

@@ -10,7 +10,6 @@
 #include "daemon/control/reject_reason.h"
 #include "daemon/detection/alarm_command_queue.h"
 #include "daemon/detection/detectability_monitor.h"
-#include "daemon/detection/rod_alarms.h"
 #include "daemon/io/audit.h"
 #include "daemon/io/control_messages.h"
 #include "daemon/io/control_socket.h"

@@ -69,4 +69,8 @@ void load(const std::filesystem::path& file, const std::vector<std::string>& ass
 /// FNV-1a of every value that determines the data; referenced files count by name only.
 [[nodiscard]] std::uint64_t hash(DaemonConfig& config);
 
+/// Markdown: every key of the daemon's configuration and of calibration files, for
+/// scripts/reference.
+[[nodiscard]] std::string configuration_reference();
+
 }  // namespace monitor

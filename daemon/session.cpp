@@ -21,7 +21,6 @@
 #include "daemon/null_table.h"
 #include "daemon/reloader.h"
 #include "daemon/rt/loop_runner.h"
-#include "daemon/safe_state_note.h"
 #include "daemon/safe_state_valve.h"
 #include "daemon/service_report.h"
 

@@ -51,8 +51,6 @@ class Recursive {
   [[nodiscard]] Estimate estimate() const noexcept;
   /// Current coefficients, structure.size() of them.
   [[nodiscard]] const double* coefficients() const noexcept;
-  /// Last a-priori error y - psi' theta, m; NaN before the first.
-  [[nodiscard]] double prediction_error_m() const noexcept;
 
  private:
   struct State;

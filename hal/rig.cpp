@@ -4,10 +4,12 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <ranges>
 #include <utility>
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 #include "hal/comedi/comedi.h"
 #include "hal/encoder/encoder.h"
 #include "hal/modbus/modbus.h"
@@ -66,9 +68,7 @@ void visit_device(config::schema::Visitor& v, DeviceAddress& device, bool channe
 
 template <class Map>
 std::string names_of(const Map& map) {
-  std::string names;
-  for (const auto& [name, device] : map) names += (names.empty() ? "" : ", ") + name;
-  return names.empty() ? "none" : names;
+  return map.empty() ? "none" : config::schema::joined(std::views::keys(map));
 }
 
 /// Opens each backend on first use.
@@ -120,12 +120,7 @@ std::string indexed(const char* table, std::size_t index) {
 
 }  // namespace
 
-std::string backend_names() {
-  std::string names;
-  for (const Entry& entry : kRegistry)
-    names += (names.empty() ? "" : ", ") + std::string(entry.name);
-  return names;
-}
+std::string backend_names() { return config::schema::joined_by(kRegistry, &Entry::name); }
 
 void SpareRodConfig::visit(config::schema::Visitor& v) {
   v.text({"id", "name of the sensor", true}, id);

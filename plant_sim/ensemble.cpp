@@ -1,7 +1,6 @@
 #include "plant_sim/ensemble.h"
 
 #include <cstring>
-#include <utility>
 
 #include "config/schema/error.h"
 #include "plant_sim/lane_ensemble.h"

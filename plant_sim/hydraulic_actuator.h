@@ -27,10 +27,7 @@
 #include <limits>
 
 #include "plant_sim/effects/table.h"
-#include "plant_sim/parameter.h"
 #include "plant_sim/pressures.h"
-#include "plant_sim/runge_kutta.h"
-#include "plant_sim/scalar.h"
 
 namespace plant_sim {
 

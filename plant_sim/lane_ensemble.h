@@ -7,7 +7,6 @@
 // no exceptions; tests/plant_sim/wide_symbols.py looks at what those files emit.
 #pragma once
 
-#include <cmath>
 #include <string>
 #include <vector>
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 #include "plant_sim/formula/formula.h"
 #include "plant_sim/model_file.h"
 #include "plant_sim/plants.h"
@@ -99,11 +100,9 @@ void require_fit(const ModelFile& model, const std::string& file) {
 void require_fit(const EffectInfo& effect, const PlantInfo& plant, const std::string& where) {
   for (const std::string& site : effect.sites) {
     if (std::find(plant.sites.begin(), plant.sites.end(), site) != plant.sites.end()) continue;
-    std::string offered;
-    for (const std::string& name : plant.sites) offered += (offered.empty() ? "" : ", ") + name;
     throw config::schema::bad_config(
         where, effect.name + " acts on " + site + ", which " + plant.name + " does not have",
-        "effects of its sites " + offered);
+        "effects of its sites " + config::schema::joined(plant.sites));
   }
 }
 

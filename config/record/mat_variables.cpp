@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <limits>
 
 #include "config/record/mat_elements.h"
-#include "config/schema/error.h"
 
 namespace config::record {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "config/signals/nan.h"
-#include "daemon/control/sensor_watch.h"
+#include "daemon/control/position_voter.h"
 
 namespace monitor::control {
 namespace {

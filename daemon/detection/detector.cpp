@@ -46,9 +46,7 @@ Detector::Detector(const Parts& parts, const Identity& identity)
   for (std::size_t i = 0; i < spare_rods_; ++i) {
     health_.device.push_back("spare_rod." + identity.spare_rods[i]);
   }
-  for (std::size_t i = 0; i < inputs_; ++i) {
-    health_.device.push_back("input." + identity.inputs[i]);
-  }
+  for (std::size_t i = 0; i < inputs_; ++i) health_.device.push_back("input." + identity.inputs[i]);
   for (const control::GuardConfig& guard : identity.guards) guard_ids_.push_back(guard.id);
   health_.device_count = static_cast<std::int32_t>(health_.device.size());
   health_.device_good.resize(health_.device.size());

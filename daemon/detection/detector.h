@@ -9,8 +9,6 @@
 #include "daemon/detection/alarm_command_queue.h"
 #include "daemon/detection/detectability_monitor.h"
 #include "daemon/detection/detection_update.h"
-#include "daemon/detection/guard_alarms.h"
-#include "daemon/detection/rod_alarms.h"
 #include "daemon/detection/system_alarms.h"
 #include "daemon/io/alarm_store.h"
 #include "daemon/io/audit.h"

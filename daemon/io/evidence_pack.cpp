@@ -6,13 +6,11 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "config/schema/hash.h"
 #include "daemon/io/audit.h"
-#include "daemon/io/event_log.h"
 
 namespace monitor::io {
 namespace {

@@ -25,7 +25,6 @@
 #include "daemon/rt/clock.h"
 #include "daemon/rt/grid.h"
 #include "daemon/rt/loop_stats.h"
-#include "daemon/rt/overrun.h"
 #include "daemon/rt/queues.h"
 #include "daemon/rt/redundant_position_sensor.h"
 #include "hal/device.h"

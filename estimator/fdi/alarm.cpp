@@ -21,35 +21,14 @@ void AlarmRules::visit(config::schema::Visitor& v) {
 }
 
 const char* to_string(Severity severity) noexcept {
-  switch (severity) {
-    case Severity::ok:
-      return "OK";
-    case Severity::minor:
-      return "MINOR";
-    case Severity::major:
-      return "MAJOR";
-    case Severity::invalid:
-      return "INVALID";
-  }
-  return "";
+  constexpr const char* kTexts[] = {"OK", "MINOR", "MAJOR", "INVALID"};
+  return kTexts[static_cast<std::size_t>(severity)];
 }
 
 const char* to_string(AlarmState state) noexcept {
-  switch (state) {
-    case AlarmState::normal:
-      return "NORMAL";
-    case AlarmState::unacknowledged:
-      return "UNACKNOWLEDGED";
-    case AlarmState::acknowledged:
-      return "ACKNOWLEDGED";
-    case AlarmState::returned:
-      return "RETURNED";
-    case AlarmState::latched:
-      return "LATCHED";
-    case AlarmState::shelved:
-      return "SHELVED";
-  }
-  return "";
+  constexpr const char* kTexts[] = {"NORMAL",   "UNACKNOWLEDGED", "ACKNOWLEDGED",
+                                    "RETURNED", "LATCHED",        "SHELVED"};
+  return kTexts[static_cast<std::size_t>(state)];
 }
 
 AlarmState Alarm::state() const noexcept {

@@ -7,7 +7,6 @@
 
 #include <limits>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "config/schema/visitor.h"

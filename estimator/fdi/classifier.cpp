@@ -8,7 +8,7 @@
 
 #include "config/schema/error.h"
 #include "estimator/fdi/block_method.h"
-#include "estimator/fdi/fault_size_ordering.h"
+#include "estimator/fdi/fault_trajectory.h"
 #include "estimator/fdi/hotelling_t2.h"
 
 namespace estimator::fdi {

@@ -124,9 +124,7 @@ double find_period_s(std::span<const double> signal, double sample_time_s) {
   const auto step = static_cast<std::size_t>(std::max(1.0, std::floor(kStep_s / sample_time_s)));
   std::vector<double> x;
   double mean = 0.0;
-  for (std::size_t i = 0; i < signal.size() && x.size() < kMost; i += step) {
-    x.push_back(signal[i]);
-  }
+  for (std::size_t i = 0; i < signal.size() && x.size() < kMost; i += step) x.push_back(signal[i]);
   for (const double value : x) mean += value / static_cast<double>(x.size());
   for (double& value : x) value -= mean;
   const auto correlation = [&x](std::size_t lag) {

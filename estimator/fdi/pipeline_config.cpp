@@ -5,9 +5,9 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
-#include "estimator/fdi/fingerprint.h"
 #include "estimator/fdi/learned_bands.h"
 #include "estimator/fdi/quantity.h"
+#include "estimator/fdi/snapshot.h"
 
 namespace estimator::fdi {
 namespace {

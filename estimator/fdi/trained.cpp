@@ -8,9 +8,9 @@
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "config/schema/joined.h"
-#include "estimator/fdi/fingerprint.h"
 #include "estimator/fdi/pipeline_config.h"
 #include "estimator/fdi/quantity.h"
+#include "estimator/fdi/snapshot.h"
 
 namespace estimator::fdi {
 namespace {

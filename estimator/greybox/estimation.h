@@ -7,7 +7,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <functional>
 #include <limits>
 #include <optional>

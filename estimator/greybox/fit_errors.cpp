@@ -18,9 +18,7 @@ void compute_errors(const EstimationProblem& question, const VectorXd& fitted,
   }
   // Free run over every sample, as in `compare`.
   FitDataset all = question.data;
-  for (Dataset& record : all.records) {
-    std::fill(record.valid.begin(), record.valid.end(), 1);
-  }
+  for (Dataset& record : all.records) std::fill(record.valid.begin(), record.valid.end(), 1);
   DatasetSimulation free(question.model, all, question.parameters, 0.0);
   Eigen::MatrixXd points(question.start.size(), 2);
   points << question.start, fitted;

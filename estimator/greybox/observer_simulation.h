@@ -11,7 +11,6 @@
 
 #include <Eigen/Core>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "estimator/greybox/dataset.h"

@@ -28,7 +28,6 @@ enum class StopReason {
   cancelled,
   start_not_finite,  ///< the start itself could not be evaluated
 };
-[[nodiscard]] const char* to_string(StopReason stop);
 
 struct MinimizeProgress {
   int iteration = 0;

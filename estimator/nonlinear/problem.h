@@ -12,7 +12,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
 #include <functional>
 #include <limits>
 #include <vector>

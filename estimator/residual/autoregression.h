@@ -33,6 +33,4 @@ struct Autoregression {
 [[nodiscard]] std::vector<double> whiten(std::span<const double> series,
                                          const Autoregression& model);
 
-[[nodiscard]] double effective_samples(std::span<const double> series);
-
 }  // namespace estimator::residual

@@ -164,15 +164,8 @@ BiasTest test_with(const Structure& s, Regression data, Instruments instruments)
 }  // namespace
 
 const char* to_string(BiasVerdict verdict) noexcept {
-  switch (verdict) {
-    case BiasVerdict::no_bias_seen:
-      return "no bias seen";
-    case BiasVerdict::biased:
-      return "biased";
-    case BiasVerdict::undetermined:
-      break;
-  }
-  return "cannot tell";
+  constexpr const char* kTexts[] = {"no bias seen", "biased", "cannot tell"};
+  return kTexts[static_cast<std::size_t>(verdict)];
 }
 
 const char* to_string(Instruments instruments) noexcept {

@@ -8,7 +8,6 @@
 #include "estimator/nonlinear/covariance.h"
 #include "estimator/nonlinear/minimize.h"
 #include "estimator/structures/linear.h"
-#include "estimator/structures/starts.h"
 
 namespace estimator::structures {
 namespace {
@@ -23,16 +22,6 @@ constexpr double kStep =
     1e-8;  // step of a coefficient about 1; w of an integrator is n times as sensitive
 constexpr int kRowsPerCoefficient = 3;
 constexpr double kTolerance = 1e-9;
-
-double rms(const Stretches& data, bool of_input) {
-  double sum = 0.0;
-  double count = 0.0;
-  for (const Stretch& stretch : data) {
-    for (const double x : of_input ? stretch.u_V : stretch.y_m) sum += x * x;
-    count += stretch.size();
-  }
-  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
-}
 
 nonlinear::Problem problem_of(const Orders& orders, const Stretches& data) {
   nonlinear::Problem out;

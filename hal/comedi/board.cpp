@@ -6,7 +6,6 @@
 #include <cstring>
 
 #include "config/schema/error.h"
-#include "hal/backend.h"
 
 namespace hal::comedi {
 namespace {

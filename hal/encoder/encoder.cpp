@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "config/schema/error.h"
-#include "hal/encoder/gpio_source.h"
+#include "hal/encoder/gpio_chip.h"
 
 namespace hal::encoder {
 namespace {

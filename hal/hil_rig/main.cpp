@@ -8,7 +8,7 @@
 #include <iostream>
 #include <optional>
 
-#include "config/schema/exit_code.h"
+#include "config/schema/error.h"
 #include "config/schema/product_version.h"
 #include "config/schema/reference.h"
 #include "hal/hil_rig/moved_lines.h"

@@ -4,11 +4,9 @@
 
 #include <array>
 #include <atomic>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 
-#include "hal/device.h"
 #include "hal/modbus/registers.h"
 
 namespace hal::modbus {

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 #include "hal/device_lock.h"
 #include "hal/modbus/devices.h"
 #include "hal/modbus/probe.h"
@@ -105,10 +106,8 @@ PollThreadConfig ModbusBackend::poll_thread_config(const OpenContext& context) c
   }
   if (!config_.serial.empty() &&
       std::find(std::begin(kBauds), std::end(kBauds), config_.baud) == std::end(kBauds)) {
-    std::string allowed;
-    for (const std::int64_t b : kBauds)
-      allowed += (allowed.empty() ? "" : ", ") + std::to_string(b);
-    throw bad_config(where + "baud", "is " + std::to_string(config_.baud), allowed);
+    throw bad_config(where + "baud", "is " + std::to_string(config_.baud),
+                     config::schema::joined(kBauds));
   }
   poll.connection.serial = config_.serial;
   poll.connection.baud = static_cast<int>(config_.baud);

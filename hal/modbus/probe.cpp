@@ -5,7 +5,6 @@
 #include <cerrno>
 
 #include "config/schema/error.h"
-#include "hal/backend.h"
 #include "hal/monotonic.h"
 
 namespace hal::modbus {

@@ -140,9 +140,7 @@ RegisterMap make_register_map(const std::string& where, const std::vector<Regist
                      "is true without a valve_command and a reading in holding registers", "false");
   }
   std::swap(map.blocks[0], map.blocks[along]);
-  for (ReadChannel& r : map.reads) {
-    r.block = r.block == 0 ? along : r.block == along ? 0 : r.block;
-  }
+  for (ReadChannel& r : map.reads) r.block = r.block == 0 ? along : r.block == along ? 0 : r.block;
   return map;
 }
 

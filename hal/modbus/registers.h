@@ -8,7 +8,6 @@
 // (bytes of each word swapped), DCBA. Of one register BADC and DCBA swap the two bytes.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <string>

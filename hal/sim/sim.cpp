@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 
 namespace hal::sim {
 namespace {
@@ -118,17 +119,14 @@ std::unique_ptr<plant_sim::Plant> SimBackend::load(const OpenContext& context) c
 }
 
 void SimBackend::check_injected_faults(const OpenContext& context) const {
-  std::string known;
-  for (const SpareConfig& spare : config_.rods) known += (known.empty() ? "" : ", ") + spare.id;
+  const std::string known = config::schema::joined_by(config_.rods, &SpareConfig::id);
   for (const InjectedFault& fault : config_.injected_faults) {
     if (!fault.pressure.empty()) {
       check_pressure(context.file, fault);
       continue;
     }
     const auto is_it = [&](const SpareConfig& spare) { return spare.id == fault.rod; };
-    if (fault.rod.empty() || std::any_of(config_.rods.begin(), config_.rods.end(), is_it)) {
-      continue;
-    }
+    if (fault.rod.empty() || std::any_of(config_.rods.begin(), config_.rods.end(), is_it)) continue;
     throw config::schema::bad_config(context.file + ": [[sim.trouble]] rod",
                                      "is \"" + fault.rod + "\", which is not a [[sim.rod]]",
                                      known.empty() ? "none is there" : known);

@@ -12,9 +12,9 @@
 
 #include "hal/backend.h"
 #include "hal/sim/injected_fault.h"
-#include "plant_sim/bench_plant.h"
 #include "plant_sim/instruments.h"
 #include "plant_sim/schedule.h"
+#include "plant_sim/transducer.h"
 
 namespace hal::sim {
 

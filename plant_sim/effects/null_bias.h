@@ -10,7 +10,6 @@
 
 #include "plant_sim/effects/site.h"
 #include "plant_sim/parameter.h"
-#include "plant_sim/scalar.h"
 
 namespace plant_sim::effects {
 

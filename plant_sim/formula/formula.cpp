@@ -6,6 +6,7 @@
 #include <set>
 
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 #include "plant_sim/formula/recorder.h"
 
 namespace plant_sim::formula {
@@ -69,11 +70,9 @@ Formula compile(const FormulaEffect& effect, const PlausibleRanges& ranges,
                 const std::string& where) {
   const FormulaSite* place = find_formula_site(effect.site);
   if (place == nullptr) {
-    std::string sites;
-    for (const FormulaSite& site : kFormulaSites) {
-      sites += (sites.empty() ? "" : ", ") + std::string(effects::site_name(site.site));
-    }
-    throw bad_config(where + " site", "is " + effect.site, sites);
+    const auto name = [](const FormulaSite& site) { return effects::site_name(site.site); };
+    throw bad_config(where + " site", "is " + effect.site,
+                     config::schema::joined_by(kFormulaSites, name));
   }
   check_names(effect, *place, where);
   std::vector<std::string> variables;

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "workbench/cli/number_check.h"
-#include "workbench/present/shell_command.h"
+#include "workbench/present/text.h"
 
 namespace workbench::cli {
 namespace {

@@ -19,9 +19,7 @@
 #include "workbench/cli/common_options.h"
 #include "workbench/cli/file_check.h"
 #include "workbench/cli/number_check.h"
-#include "workbench/compare/json.h"
-#include "workbench/compare/sections.h"
-#include "workbench/compare/text.h"
+#include "workbench/compare/comparison_report.h"
 #include "workbench/live/live_compare.h"
 #include "workbench/present/json.h"
 

@@ -9,13 +9,10 @@
 #include "workbench/cli/command.h"
 #include "workbench/cli/common_options.h"
 #include "workbench/cli/interrupt.h"
-#include "workbench/diagnose/better_model.h"
+#include "workbench/diagnose/diagnosis_report.h"
 #include "workbench/diagnose/experiment_design.h"
-#include "workbench/diagnose/json.h"
 #include "workbench/diagnose/progress_line.h"
-#include "workbench/diagnose/report_pages.h"
 #include "workbench/diagnose/request.h"
-#include "workbench/diagnose/text_output.h"
 #include "workbench/present/json.h"
 
 namespace workbench::cli {

@@ -117,9 +117,7 @@ void print_text(const estimate::EstimateResult& result, const EstimateOptions& o
   }
   for (const estimate::JudgedEstimate& window : result.windows) {
     std::printf("%10.4f %10.4f", window.from_s, window.to_s);
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      std::printf(" %14.7g", window.estimate.value[i]);
-    }
+    for (std::size_t i = 0; i < names.size(); ++i) std::printf(" %14.7g", window.estimate.value[i]);
     std::printf(" %12.5g %s\n", window.cost_m2, to_string(window.estimate.reason));
   }
 }

@@ -2,7 +2,6 @@
 #include "workbench/cli/export.h"
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <filesystem>
 #include <memory>
 
@@ -10,9 +9,7 @@
 #include "config/schema/error.h"
 #include "workbench/cli/command.h"
 #include "workbench/cli/file_check.h"
-#include "workbench/exchange/export_csv.h"
-#include "workbench/exchange/export_json.h"
-#include "workbench/exchange/export_mat.h"
+#include "workbench/exchange/export.h"
 
 namespace workbench::cli {
 namespace {

@@ -3,12 +3,10 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <cmath>
 #include <iostream>
 #include <memory>
 
 #include "config/record/whole_file.h"
-#include "config/units/quantity.h"
 #include "workbench/cli/command.h"
 #include "workbench/cli/common_options.h"
 #include "workbench/cli/interrupt.h"

@@ -8,9 +8,9 @@
 #include "config/messages/channels.h"
 #include "config/schema/error.h"
 #include "workbench/cli/command.h"
-#include "workbench/cli/stop_condition.h"
+#include "workbench/cli/interrupt.h"
 #include "workbench/live/listen_feed.h"
-#include "workbench/live/listen_printer.h"
+#include "workbench/live/listen_lines.h"
 #include "workbench/live/live_view.h"
 
 namespace workbench::cli {

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <cstdlib>
 #include <iostream>
 #include <memory>
@@ -13,7 +12,7 @@
 #include "spoolwatch/rods_t.hpp"
 #include "spoolwatch/sample_t.hpp"
 #include "workbench/cli/command.h"
-#include "workbench/cli/stop_condition.h"
+#include "workbench/cli/interrupt.h"
 #include "workbench/live/listen_feed.h"
 #include "workbench/live/sample_file.h"
 

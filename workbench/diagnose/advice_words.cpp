@@ -9,8 +9,6 @@
 #include "plant_sim/library.h"
 
 namespace workbench::diagnose {
-
-namespace selection = estimator::greybox::selection;
 namespace {
 
 std::string number(double value) { return fmt::format("{:.3g}", value); }

@@ -1,15 +1,11 @@
-#include "workbench/diagnose/json.h"
+#include "workbench/diagnose/diagnosis_report.h"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "config/schema/joined.h"
-#include "workbench/diagnose/words.h"
 #include "workbench/present/json.h"
 
 namespace workbench::diagnose {
-
-namespace selection = estimator::greybox::selection;
 namespace {
 
 using present::number_or_null;

@@ -9,8 +9,6 @@
 #include "config/units/quantity.h"
 
 namespace workbench::diagnose {
-
-namespace selection = estimator::greybox::selection;
 namespace {
 
 constexpr std::chrono::milliseconds kPeriod{100};

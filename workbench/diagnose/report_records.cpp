@@ -3,18 +3,12 @@
 #include <cmath>
 
 #include "config/signals/nan.h"
-#include "config/units/quantity.h"
 #include "estimator/greybox/kinematics.h"
-#include "workbench/diagnose/report_pages.h"
-#include "workbench/diagnose/words.h"
-#include "workbench/present/binned.h"
+#include "workbench/diagnose/diagnosis_report.h"
+#include "workbench/present/plot_data.h"
 #include "workbench/present/record_section.h"
-#include "workbench/present/thin.h"
 
 namespace workbench::diagnose {
-
-namespace greybox = estimator::greybox;
-namespace selection = estimator::greybox::selection;
 namespace {
 
 using present::Plot;

@@ -1,4 +1,4 @@
-#include "workbench/diagnose/text_output.h"
+#include "workbench/diagnose/diagnosis_report.h"
 
 #include <fmt/format.h>
 
@@ -9,11 +9,8 @@
 
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
-#include "workbench/diagnose/words.h"
 
 namespace workbench::diagnose {
-
-namespace selection = estimator::greybox::selection;
 namespace {
 
 constexpr std::size_t kLine = 96;
@@ -102,7 +99,7 @@ void print_candidates(const selection::Diagnosis& d, std::ostream& out) {
     std::sort(effects.begin(), effects.end());
     out << "  " << padded(config::schema::listed(candidate.effects), 34) << "  "
         << padded(config::units::length_words(candidate.validation_rms_m), 10, true) << "  p "
-        << (effects == taken ? padded(config::units::chance_words(candidate.p_value), 11) +
+        << (effects == taken ? padded(config::units::chance_words(candidate.p_value), 7) +
                                    (stayed(d.search, taken) ? "  taken" : "  taken, dropped later")
                              : config::units::chance_words(candidate.p_value))
         << '\n';

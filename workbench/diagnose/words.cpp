@@ -1,4 +1,4 @@
-#include "workbench/diagnose/words.h"
+#include "workbench/diagnose/diagnosis_report.h"
 
 #include <fmt/format.h>
 
@@ -9,12 +9,9 @@
 #include "config/units/quantity.h"
 #include "estimator/greybox/representative_segments.h"
 #include "workbench/present/dataset_notes.h"
-#include "workbench/present/shell_command.h"
+#include "workbench/present/text.h"
 
 namespace workbench::diagnose {
-
-namespace greybox = estimator::greybox;
-namespace selection = estimator::greybox::selection;
 namespace {
 
 std::string percent(double ratio) { return fmt::format("{:.0f} %", 100.0 * ratio); }
@@ -26,12 +23,15 @@ std::string beside_floor(const selection::Diagnosis& d, double rms_m) {
          config::units::length_words(d.noise_floor_m);
 }
 
-std::string effects_words(const selection::Diagnosis& d) {
-  std::string text;
-  for (const std::string& effect : d.missing) {
-    text += (text.empty() ? "" : "; ") + effect_words(d, effect);
-  }
-  return text;
+std::string effects_words(const selection::Diagnosis& d, const std::vector<std::string>& effects) {
+  const auto text = [&](const std::string& effect) { return effect_words(d, effect); };
+  return config::schema::joined_by(effects, text, "; ");
+}
+
+/// "a or b; c or d".
+std::string groups_words(const selection::Diagnosis& d) {
+  const auto text = [](const auto& group) { return config::schema::listed(group, "or"); };
+  return config::schema::joined_by(d.ambiguous, text, "; ");
 }
 
 /// The found effects that no rival disputes.
@@ -48,19 +48,9 @@ std::vector<std::string> undisputed(const selection::Diagnosis& d) {
 }
 
 std::string undetermined_words(const selection::Diagnosis& d) {
-  std::string groups;
-  for (const auto& group : d.ambiguous)
-    groups += (groups.empty() ? "" : "; ") + config::schema::listed(group, "or");
   const std::vector<std::string> sure = undisputed(d);
-  std::string text = "Undetermined: " + groups + " is missing, and this motion cannot tell which.";
-  if (!sure.empty()) {
-    text += " Missing in any case: ";
-    for (std::size_t i = 0; i < sure.size(); ++i) {
-      text += (i == 0 ? "" : "; ") + effect_words(d, sure[i]);
-    }
-    text += ".";
-  }
-  return text;
+  return "Undetermined: " + groups_words(d) + " is missing, and this motion cannot tell which." +
+         (sure.empty() ? "" : " Missing in any case: " + effects_words(d, sure) + ".");
 }
 
 std::string unexplained_words(const selection::Diagnosis& d) {
@@ -93,10 +83,7 @@ std::string fall_words(const selection::Diagnosis& d) {
 
 void add_rivals(const selection::Diagnosis& d, std::vector<std::string>& out) {
   if (d.verdict != selection::Verdict::undetermined && !d.ambiguous.empty()) {
-    std::string groups;
-    for (const auto& group : d.ambiguous)
-      groups += (groups.empty() ? "" : "; ") + config::schema::listed(group, "or");
-    out.push_back("This motion cannot tell apart: " + groups + ".");
+    out.push_back("This motion cannot tell apart: " + groups_words(d) + ".");
   }
   for (const auto& group : d.same_here) {
     out.push_back("On this plant " + config::schema::listed(group) +
@@ -182,7 +169,7 @@ std::string verdict_words(const selection::Diagnosis& d) {
       return "Nothing is missing: the model, its own parameters adjusted, is left with " +
              beside_floor(d, d.rms_after_m) + ", and no effect of the library lowers it further.";
     case selection::Verdict::missing:
-      return "Missing: " + effects_words(d) + ".";
+      return "Missing: " + effects_words(d, d.missing) + ".";
     case selection::Verdict::undetermined:
       return undetermined_words(d);
     case selection::Verdict::unexplained:
@@ -203,7 +190,7 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
   }
   if (d.verdict != selection::Verdict::not_excited) out.push_back(fall_words(d));
   const bool named = d.verdict == selection::Verdict::missing || d.missing.empty();
-  if (!named) out.push_back("Used in the better model: " + effects_words(d) + ".");
+  if (!named) out.push_back("Used in the better model: " + effects_words(d, d.missing) + ".");
   add_rivals(d, out);
   if (!d.where.empty()) {
     std::string text = "The remaining error enters " + where_words(d.where[0]) + " (" +

@@ -1,7 +1,6 @@
 // ARX structures fitted to a record and judged on it: what `spoolwatch estimate` computes.
 #pragma once
 
-#include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "workbench/exchange/export_mat.h"
+#include "workbench/exchange/export.h"
 
 #include <cmath>
 #include <iostream>

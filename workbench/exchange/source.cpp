@@ -12,8 +12,8 @@
 #include <limits>
 
 #include "config/messages/dispatch.h"
-#include "config/record/lcm_reader.h"
 #include "config/record/log_reader.h"
+#include "config/record/readers.h"
 #include "config/schema/error.h"
 
 namespace workbench::exchange {

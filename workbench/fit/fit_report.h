@@ -10,8 +10,6 @@
 
 namespace workbench::fit {
 
-namespace greybox = estimator::greybox;
-
 struct FitReport {
   const PreparedFit* prepared = nullptr;  ///< must outlive this
   greybox::EstimationSummary estimation;

@@ -6,8 +6,6 @@
 #include "workbench/present/json.h"
 
 namespace workbench::fit {
-
-namespace greybox = estimator::greybox;
 namespace {
 
 using nlohmann::ordered_json;

@@ -5,16 +5,13 @@
 #include <cmath>
 #include <filesystem>
 
+#include "config/schema/joined.h"
 #include "config/signals/nan.h"
 #include "config/units/quantity.h"
-#include "config/units/unit_suffix.h"
 #include "workbench/fit/fit_report.h"
-#include "workbench/present/error_definitions.h"
 #include "workbench/present/record_section.h"
 
 namespace workbench::fit {
-
-namespace greybox = estimator::greybox;
 namespace {
 
 using present::add_series;
@@ -128,10 +125,12 @@ Section sight_section(const greybox::EstimationSummary& e) {
   for (const bool after : {false, true}) {
     const greybox::IdentifiabilityReport& report =
         after ? e.identifiability_after : e.identifiability_before;
-    std::string text = after ? "After the fit: " : "Before the fit, at the model file's values: ";
-    std::string list;
-    for (const greybox::UnidentifiableParameter& unseen : report.unidentifiable)
-      list += (list.empty() ? "" : "; ") + unidentifiable_words(unseen, e.parameters);
+    const std::string text =
+        after ? "After the fit: " : "Before the fit, at the model file's values: ";
+    const auto words = [&e](const greybox::UnidentifiableParameter& unseen) {
+      return unidentifiable_words(unseen, e.parameters);
+    };
+    const std::string list = config::schema::joined_by(report.unidentifiable, words, "; ");
     section.paragraphs.push_back(
         text + (list.empty() ? "every fitted parameter is determined" : list) +
         fmt::format(". Condition of the scaled Jacobian: {:.3g}.", report.condition));
@@ -189,11 +188,9 @@ present::Report to_report(const FitReport& o) {
   const greybox::EstimationSummary& e = o.estimation;
   const std::vector<std::string> said = words(o);
   present::Report made;
-  made.title = o.prepared->problem.model.name + " fitted to ";
-  for (const greybox::Dataset& record : o.prepared->problem.data.records) {
-    made.title +=
-        (&record == &o.prepared->problem.data.records.front() ? "" : ", ") + file_name(record.name);
-  }
+  const auto name = [](const greybox::Dataset& record) { return file_name(record.name); };
+  made.title = o.prepared->problem.model.name + " fitted to " +
+               config::schema::joined_by(o.prepared->problem.data.records, name);
   made.verdict = said.front();
   for (std::size_t i = 1; i < said.size(); ++i) {  // its own section tells what cannot be seen
     if (said[i].rfind("Parameters that the record does not determine", 0) != 0)

@@ -13,8 +13,6 @@
 #include "estimator/greybox/parameter_catalogue.h"
 
 namespace workbench::fit {
-
-namespace greybox = estimator::greybox;
 namespace {
 
 using config::schema::bad_config;
@@ -49,9 +47,7 @@ class ParameterSelector {
     for (const std::string& text : selection_.bounds) bounds(text);
     FreeParameters choice;
     for (const std::size_t i : picked_) choice.parameters.push_back(catalogue_[i].free);
-    if (choice.parameters.empty()) {
-      throw UsageError("--free, --fix: leave nothing to fit");
-    }
+    if (choice.parameters.empty()) throw UsageError("--free, --fix: leave nothing to fit");
     choice.start = greybox::start_of(model_, choice.parameters);
     return choice;
   }

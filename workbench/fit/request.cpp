@@ -14,8 +14,6 @@
 #include "workbench/present/dataset_notes.h"
 
 namespace workbench::fit {
-
-namespace greybox = estimator::greybox;
 namespace {
 
 namespace fs = std::filesystem;

@@ -5,12 +5,9 @@
 #include <cmath>
 
 #include "config/units/quantity.h"
-#include "config/units/unit_suffix.h"
 #include "workbench/fit/fit_report.h"
 
 namespace workbench::fit {
-
-namespace greybox = estimator::greybox;
 namespace {
 
 constexpr std::size_t kColumns = 92;

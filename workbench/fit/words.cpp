@@ -9,8 +9,6 @@
 #include "workbench/fit/fit_report.h"
 
 namespace workbench::fit {
-
-namespace greybox = estimator::greybox;
 namespace {
 
 using config::units::length_words;
@@ -100,19 +98,17 @@ std::string starts_words(const greybox::MultistartCounts& s) {
   if (s.tried < 2) return "";
   std::string text =
       std::to_string(s.same) + " of " + std::to_string(s.tried) + " starts ended in this minimum";
-  if (s.elsewhere > 0) {
-    text += ", " + std::to_string(s.elsewhere) + " as good at other values";
-  }
+  if (s.elsewhere > 0) text += ", " + std::to_string(s.elsewhere) + " as good at other values";
   if (s.worse > 0) text += ", " + std::to_string(s.worse) + " in a worse one";
   return text + ".";
 }
 
 std::string sight_words(const greybox::IdentifiabilityReport& report,
                         const std::vector<greybox::EstimatedParameter>& parameters) {
-  std::string text;
-  for (const greybox::UnidentifiableParameter& unseen : report.unidentifiable) {
-    text += (text.empty() ? "" : "; ") + unidentifiable_words(unseen, parameters);
-  }
+  const auto words = [&parameters](const greybox::UnidentifiableParameter& unseen) {
+    return unidentifiable_words(unseen, parameters);
+  };
+  const std::string text = config::schema::joined_by(report.unidentifiable, words, "; ");
   return text.empty() ? "" : text + ".";
 }
 
@@ -227,6 +223,22 @@ std::vector<std::string> words(const FitReport& o) {
   for (const std::string& note : o.prepared->notes) said.push_back("Note: " + note + ".");
   said.erase(std::remove(said.begin(), said.end(), std::string()), said.end());
   return said;
+}
+
+std::string to_model(const FitReport& o) {
+  const greybox::EstimationSummary& e = o.estimation;
+  std::string text = "# Fitted by: " + o.prepared->command + "\n";
+  for (const auto& record : o.prepared->problem.data.records)
+    text += "# record " + record.name + "\n";
+  text += "# error " + config::units::length_words(e.before.rms_m) + " -> " +
+          config::units::length_words(e.after.rms_m) + " RMS" +
+          (e.interrupted ? "; interrupted, the best so far" : "") + "\n";
+  for (const greybox::EstimatedParameter& p : e.parameters) {
+    const std::string more = remark(p);
+    text += fmt::format("# {} {:.6g}, 95 % from {:.6g} to {:.6g}{}{}\n", p.free.name, p.value,
+                        p.low, p.high, more.empty() ? "" : "; ", more);
+  }
+  return text + plant_sim::print_model(e.better);
 }
 
 }  // namespace workbench::fit

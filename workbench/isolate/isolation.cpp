@@ -21,7 +21,6 @@ namespace workbench::isolate {
 
 namespace tracker = estimator::fdi::tracker;
 namespace greybox = estimator::greybox;
-namespace tracking = estimator::greybox::tracking;
 namespace {
 
 using config::record::Record;

@@ -1,7 +1,6 @@
 // A tracking as a report.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
 
 #include "config/signals/nan.h"

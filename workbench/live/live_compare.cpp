@@ -7,7 +7,7 @@
 
 #include "config/schema/error.h"
 #include "spoolwatch/sample_t.hpp"
-#include "workbench/cli/stop_condition.h"
+#include "workbench/cli/interrupt.h"
 #include "workbench/live/listen_feed.h"
 #include "workbench/live/online_residual.h"
 

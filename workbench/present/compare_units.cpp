@@ -5,8 +5,6 @@
 #include <cmath>
 
 namespace workbench::present {
-
-namespace validation = estimator::greybox::validation;
 namespace {
 
 /// Bounds are round numbers, or a record's extremes, which nobody needs exactly.
@@ -26,33 +24,11 @@ DisplayUnit unit_of(const std::string& variable) {
   return {"direction", "", 1.0};
 }
 
-std::string three_digits(double value) {
-  if (!std::isfinite(value)) return "-";
-  return std::abs(value) >= 999.5 ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
-}
-
-std::string length(double metres) {
-  if (!std::isfinite(metres)) return "-";
-  if (std::abs(metres) < 0.9995e-3) return three_digits(1e6 * metres) + " um";
-  return three_digits(1e3 * metres) + " mm";
-}
-
-std::string speed(double mps) {
-  if (!std::isfinite(mps)) return "-";
-  if (std::abs(mps) < 0.9995e-4) return three_digits(1e6 * mps) + " um/s";
-  return three_digits(1e3 * mps) + " mm/s";
-}
-
 std::string percent(double share) {
   if (!std::isfinite(share)) return "-";
   if (share > 0.0 && share < 0.01) return "under 1 %";
   if (share < 1.0 && share > 0.995) return "over 99 %";
   return fmt::format("{:.0f} %", 100.0 * share);
-}
-
-std::string probability(double p) {
-  if (!std::isfinite(p)) return "-";
-  return p < 1e-6 ? "< 1e-6" : fmt::format("{:.2g}", p);
 }
 
 std::string bin_text(const std::string& variable, const validation::Bin& bin) {
@@ -62,9 +38,7 @@ std::string bin_text(const std::string& variable, const validation::Bin& bin) {
 }
 
 std::string where(const validation::Range& range) {
-  if (!range.name.empty()) {
-    return range.name == "at rest" ? range.name : "while " + range.name;
-  }
+  if (!range.name.empty()) return range.name == "at rest" ? range.name : "while " + range.name;
   const DisplayUnit unit = unit_of(range.variable);
   const std::string low = bound(range.from, unit);
   const std::string high = bound(range.to, unit);

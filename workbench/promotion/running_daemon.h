@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "estimator/fdi/pipeline.h"
 #include "estimator/fdi/tracker/detection_method_kinds.h"

@@ -1,4 +1,4 @@
-#include "workbench/replay/backtest_text.h"
+#include "workbench/replay/backtest_runs.h"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 
 #include "config/schema/document.h"
 #include "config/signals/nan.h"
-#include "workbench/reproduce/shipped_models.h"
+#include "workbench/reproduce/thesis_scenarios.h"
 #include "workbench/simulate/closed_loop.h"
 
 namespace workbench::reproduce {

@@ -1,10 +1,11 @@
 // Cases I and II: one kind of fault, bands on b1, the alarms' coming and going.
 #include <fmt/format.h>
-
 #include <cmath>
 
+#include "estimator/batch.h"
 #include "workbench/reproduce/alarm_run.h"
 #include "workbench/reproduce/experiment.h"
+#include "workbench/reproduce/thesis_scenarios.h"
 #include "workbench/reproduce/tolerance.h"
 
 namespace workbench::reproduce {
@@ -62,6 +63,28 @@ std::vector<ReproducedRow> case_one() {
 
 std::vector<ReproducedRow> case_two() {
   return timeline("damping_N_s_per_m", 1000.0, kCase2Low, kCase2High, -1);
+}
+
+namespace {
+
+constexpr double kPrintedB1 = 1.9672e-4;
+
+double fifth_period_b1(const Scenario& scenario) {
+  const ScenarioRecord record = run(scenario, 10.0);
+  const auto periods =
+      estimator::fit_periods(estimator::parse_structure("arx111"), record.u_V, record.y_m, kPeriod);
+  return periods.at(4).value[1];
+}
+
+}  // namespace
+
+std::vector<ReproducedRow> printed_parameters() {
+  return {judged("b1 of ARX111, parameters as printed, m/V", kPrintedB1,
+                 fifth_period_b1(shipped("thesis")), "mean b1, as printed",
+                 "outside every printed band: the printed valve constant 2.79e-5 m/V cannot be "
+                 "the one used"),
+          judged("b1 of ARX111, valve constant calibrated, m/V", kPrintedB1,
+                 fifth_period_b1(calibrated()), "mean b1", "the valve constant was solved for it")};
 }
 
 }  // namespace workbench::reproduce

@@ -3,8 +3,6 @@
 // case II give the same alarm for both. And a Ps that leaves the very trace of a d fault.
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "workbench/reproduce/alarm_run.h"
 #include "workbench/reproduce/experiment.h"
 #include "workbench/reproduce/sweep.h"

@@ -11,7 +11,7 @@
 
 #include "estimator/batch.h"
 #include "workbench/reproduce/experiment.h"
-#include "workbench/reproduce/rig.h"
+#include "workbench/reproduce/thesis_scenarios.h"
 #include "workbench/reproduce/tolerance.h"
 
 namespace workbench::reproduce {

@@ -9,8 +9,8 @@
 #include "estimator/free_run.h"
 #include "workbench/reproduce/alarm_run.h"
 #include "workbench/reproduce/experiment.h"
-#include "workbench/reproduce/rig.h"
 #include "workbench/reproduce/spread.h"
+#include "workbench/reproduce/thesis_scenarios.h"
 #include "workbench/reproduce/tolerance.h"
 
 namespace workbench::reproduce {

@@ -1,6 +1,8 @@
 // One line of the comparison: what the thesis printed, what came out here, whether the two agree.
 #pragma once
 
+#include <iosfwd>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -28,5 +30,11 @@ struct ReproducedSection {
   std::string title;
   std::vector<ReproducedRow> rows;
 };
+
+/// The comparison as a table for people and as JSON for programs.
+void print_table(std::ostream& out, std::span<const ReproducedSection> sections);
+/// {"rows": [{"what", "printed", "ours", "agrees", "note", "section", "tolerance", "expected"}]};
+/// printed and ours are numbers, texts or null, agrees is "yes", "no" or "n.a.".
+void print_json(std::ostream& out, std::span<const ReproducedSection> sections);
 
 }  // namespace workbench::reproduce

@@ -1,19 +1,45 @@
 // E of each model structure: batch least squares over the fifth period, then a free run of the same
 // period with the measured start; and two guesses at how the printed figures came about.
 #include <fmt/format.h>
-
+#include <Eigen/LU>
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include "estimator/batch.h"
 #include "estimator/free_run.h"
+#include "estimator/structure.h"
 #include "workbench/reproduce/experiment.h"
-#include "workbench/reproduce/normal_equations.h"
 #include "workbench/reproduce/thesis_scenarios.h"
 #include "workbench/reproduce/tolerance.h"
 
 namespace workbench::reproduce {
+
+// Least squares as the thesis does it, theta = (Psi' Psi)^-1 Psi' y: squares the condition number.
+// Here only to show what comes of it; the product factorises Psi itself.
+
+[[nodiscard]] std::vector<double> solve_normal_equations(const estimator::Structure& structure,
+                                                         std::span<const double> u_V,
+                                                         std::span<const double> y_m);
+
+std::vector<double> solve_normal_equations(const estimator::Structure& structure,
+                                           std::span<const double> u_V,
+                                           std::span<const double> y_m) {
+  const int p = structure.n + structure.m;
+  Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(p, p);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(p);
+  Eigen::VectorXd psi(p);
+  for (std::size_t t = structure.history(); t < y_m.size(); ++t) {
+    for (int i = 0; i < structure.n; ++i) psi[i] = -y_m[t - 1 - i];
+    for (int j = 0; j < structure.m; ++j) psi[structure.n + j] = u_V[t - structure.k - j];
+    moments += psi * psi.transpose();
+    right += psi * y_m[t];
+  }
+  const Eigen::VectorXd theta = moments.inverse() * right;
+  return {theta.data(), theta.data() + theta.size()};
+}
 
 namespace {
 

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "config/schema/document.h"
-#include "workbench/reproduce/shipped_models.h"
 #include "workbench/simulate/closed_loop.h"
 
 namespace workbench::reproduce {

@@ -1,5 +1,4 @@
 // A scorecard as JSON.
-#include <cmath>
 
 #include "workbench/present/json.h"
 #include "workbench/scorecard/card.h"

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/schema/joined.h"
 #include "config/signals/nan.h"
 #include "workbench/scorecard/card.h"
-#include "workbench/scorecard/statistics.h"
 #include "workbench/scorecard/words.h"
 
 namespace workbench::scorecard {
@@ -104,9 +104,7 @@ present::Section smallest(const Card& card) {
     if (missing > 0) plot.caption = "No bar: not even the greatest size is detected.";
     section.plots.push_back(std::move(plot));
   }
-  std::string motions;
-  for (const std::string& motion : card.motions) motions += (motions.empty() ? "" : " / ") + motion;
-  table.caption = "Motions: " + motions;
+  table.caption = "Motions: " + config::schema::joined(card.motions, " / ");
   section.tables = {table};
   return section;
 }

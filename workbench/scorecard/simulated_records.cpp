@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <string>
 
 #include "workbench/simulate/closed_loop.h"
 #include "workbench/simulate/transducers.h"

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/schema/joined.h"
 #include "workbench/scorecard/card.h"
-#include "workbench/scorecard/statistics.h"
 #include "workbench/scorecard/words.h"
 
 namespace workbench::scorecard {
@@ -95,19 +95,13 @@ Rows delay_rows(const Card& card) {
   for (const MethodFigures& method : card.methods) rows[0].push_back(method.name);
   for (const Fault* fault : faults_of(card)) {
     std::vector<std::string> row{sized_words(*fault)};
-    for (const MethodFigures& method : card.methods) {
-      row.push_back(delay_words(method, *fault));
-    }
+    for (const MethodFigures& method : card.methods) row.push_back(delay_words(method, *fault));
     rows.push_back(row);
   }
   return rows;
 }
 
-std::string motions_words(const Card& card) {
-  std::string out;
-  for (const std::string& motion : card.motions) out += (out.empty() ? "" : " / ") + motion;
-  return out;
-}
+std::string motions_words(const Card& card) { return config::schema::joined(card.motions, " / "); }
 
 std::string method_text(const MethodFigures& method) {
   std::string out = "\n" + method.name + ": " + method.what + "\n";

@@ -1,15 +1,12 @@
 #include "workbench/scorecard/trials.h"
 
 #include <algorithm>
-#include <cmath>
 #include <ctime>
 #include <limits>
 #include <map>
-#include <numeric>
 
 #include "config/schema/error.h"
 #include "workbench/scorecard/search.h"
-#include "workbench/scorecard/statistics.h"
 #include "workbench/simulate/closed_loop.h"
 
 namespace workbench::scorecard {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <cmath>
 
 #include "config/schema/error.h"
 #include "config/signals/nan.h"
@@ -134,10 +133,6 @@ const Orders* StructureCandidate::arx() const {
   return orders != nullptr && orders->c + orders->d + orders->f == 0 ? orders : nullptr;
 }
 
-int StructureCandidate::delay() const {
-  return std::visit([](const auto& of) { return of.k; }, what);
-}
-
 int StructureCandidate::least_samples() const {
   if (const Orders* orders = std::get_if<Orders>(&what)) return structures::least_samples(*orders);
   if (const auto* s = std::get_if<SubspaceOptions>(&what)) return structures::least_samples(*s);
@@ -168,9 +163,7 @@ std::vector<StructureCandidate> usual_candidates(int k, bool constant) {
   for (int n = 1; n <= 4; ++n) {
     out.push_back(state_space(n, k, constant, SubspaceMethod::predictor));
   }
-  for (int n = 2; n <= 3; ++n) {
-    out.push_back(state_space(n, k, constant, SubspaceMethod::n4sid));
-  }
+  for (int n = 2; n <= 3; ++n) out.push_back(state_space(n, k, constant, SubspaceMethod::n4sid));
   out.push_back(network(1, 1, k, 3));
   out.push_back(network(2, 1, k, 4));
   return out;

@@ -23,7 +23,6 @@ struct StructureCandidate {
   [[nodiscard]] std::string family() const;
   /// ARX: its orders; else null.
   [[nodiscard]] const structures::Orders* arx() const;
-  [[nodiscard]] int delay() const;
   /// Least number of consecutive samples that a fit takes.
   [[nodiscard]] int least_samples() const;
 };

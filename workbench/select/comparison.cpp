@@ -8,6 +8,7 @@
 #include "config/schema/error.h"
 #include "estimator/parallel.h"
 #include "estimator/residual/noise_floor.h"
+#include "workbench/select/candidate.h"
 #include "workbench/select/judge.h"
 
 namespace workbench::select {

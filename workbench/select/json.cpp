@@ -1,5 +1,4 @@
 // The comparison as JSON; SI units, a missing number is null.
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "workbench/present/json.h"

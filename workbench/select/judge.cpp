@@ -9,7 +9,6 @@
 #include "estimator/structures/recursive_prediction_error.h"
 
 namespace workbench::select {
-
 namespace {
 
 using structures::Stretch;
@@ -210,6 +209,42 @@ JudgedStructure judge(const StructureCandidate& candidate, const Ground& ground,
   test_closed_loop(out, ground);
   run_on_line(out, ground);
   score_spread(out, ground, cancel);
+  return out;
+}
+
+namespace {
+
+constexpr double kMostPole = 0.999;  // of F: the recursive filter's own limit
+constexpr const char* kIntegrates =
+    "its poles reach the unit circle: the prediction, never corrected by y, would diverge";
+
+}  // namespace
+
+OnLine on_line_form(const StructureCandidate& candidate, const Fitted& fitted) {
+  OnLine out;
+  out.method = "none";
+  if (std::holds_alternative<structures::SubspaceOptions>(candidate.what)) {
+    out.why =
+        "recursive subspace methods change their state basis over time; ARMAX represents the same "
+        "transfer functions";
+    return out;
+  }
+  if (std::holds_alternative<structures::NarxOptions>(candidate.what)) {
+    out.why = "its weights are not determined individually, and no recursion is proven to converge";
+    return out;
+  }
+  const structures::Orders& o = std::get<structures::Orders>(candidate.what);
+  if (o.f > 0) {
+    const auto* model = std::get_if<structures::Polynomial>(&fitted.model);
+    if (!fitted.valid || model == nullptr || structures::largest_root(model->f) > kMostPole) {
+      out.why = kIntegrates;
+      return out;
+    }
+    out.method = "RPEM";
+  } else {
+    out.method = o.c > 0 ? "RML" : "RLS";
+  }
+  out.sound = true;
   return out;
 }
 

@@ -4,8 +4,8 @@
 // preferred for watching on line, then the least spread of coefficients between periods.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "config/units/quantity.h"
 #include "workbench/select/outcome.h"
 #include "workbench/select/words.h"
 
@@ -102,7 +102,7 @@ std::string bias_words(const SelectOutcome& outcome) {
   const double off = 100.0 * (test.least_squares[b1] / test.instrumental[b1] - 1.0);
   const bool sure = std::abs(test.instrumental[b1]) > 2.0 * test.instrumental_error[b1];
   return of + "least squares is biased beside " + beside + ", Durbin-Wu-Hausman p " +
-         probability_words(test.p) +
+         config::units::chance_words(test.p) +
          (sure ? ": b1 by " + number_words(off, 2) + " %" : ": b1 itself is uncertain there") +
          "; bands learned on the same motion remain valid, physical values derived from it do not";
 }

@@ -4,20 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/units/quantity.h"
 #include "workbench/select/outcome.h"
 #include "workbench/select/words.h"
 
 namespace workbench::select {
 namespace {
 
-constexpr double kMicro = 1e6;
-constexpr double kMilli = 1e3;
-
-/// Micrometres, or millimetres with their unit where those have too many digits.
 std::string length(double value_m) {
   if (!std::isfinite(value_m) || value_m > 1e3) return "diverges";
-  if (value_m < 1e-3) return number_words(kMicro * value_m, 3) + " um";
-  return number_words(kMilli * value_m, 3) + " mm";
+  return config::units::length_words(value_m);
 }
 
 std::string condition(double value) {

@@ -8,8 +8,7 @@
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "config/schema/joined.h"
-#include "estimator/fdi/fingerprint.h"
-#include "estimator/greybox/parameter_catalogue.h"
+#include "estimator/fdi/snapshot.h"
 
 namespace estimator::fdi::tracker {
 namespace {

@@ -34,7 +34,7 @@ struct BaselineFile {
   void visit(config::schema::Visitor& v);
 };
 
-/// The whole model as one line (estimator/fdi/fingerprint.h).
+/// The whole model as one line (estimator/fdi/snapshot.h).
 [[nodiscard]] std::string values_line(const plant_sim::ModelFile& model);
 
 [[nodiscard]] BaselineFile baseline_file(const plant_sim::ModelFile& model,

@@ -17,11 +17,10 @@
 //
 // Values: each parameter by its name (a dot becomes "_"), NaN where the window does not determine
 // it; smallest_NAME, the smallest change that the present motion shows; residual_rms_m;
-// healthy_NAME
-// of each parameter of `follow`, the reference of its changes (baseline_drift.h). Alarms: each
-// parameter by the same name, with the parameter or the group that cannot be separated; slow_NAME
-// when a parameter of `follow` has drifted to the end of its range; "unexplained" when the model no
-// longer explains the rig.
+// healthy_NAME of each parameter of `follow`, the reference of its changes (baseline_drift.h).
+// Alarms: each parameter by the same name, with the parameter or the group that cannot be
+// separated; slow_NAME when a parameter of `follow` has drifted to the end of its range;
+// "unexplained" when the model no longer explains the rig.
 #pragma once
 
 #include <string>

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "config/units/quantity.h"
 #include "estimator/fdi/tracker/tracking_text.h"
 
 namespace estimator::fdi::tracker {
@@ -58,9 +57,7 @@ TrackerMethod::TrackerMethod(const TrackerConfig& config, const plant_sim::Model
 std::vector<std::string> TrackerMethod::names() const {
   std::vector<std::string> names;
   const greybox::tracking::ParameterSet& set = tracker_.set();
-  for (std::size_t i = 0; i < set.tracked; ++i) {
-    names.push_back(value_name(set.parameters[i].name));
-  }
+  for (std::size_t i = 0; i < set.tracked; ++i) names.push_back(value_name(set.parameters[i].name));
   for (std::size_t i = 0; i < set.tracked; ++i) names.push_back("smallest_" + names[i]);
   names.emplace_back("residual_rms_m");
   const greybox::tracking::BaselineDrift& slow = tracker_.baseline_drift();

@@ -1,6 +1,5 @@
 #include "estimator/greybox/selection/diagnosis.h"
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 

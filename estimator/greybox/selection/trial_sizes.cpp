@@ -4,8 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "config/units/unit_suffix.h"
-#include "plant_sim/parameter.h"
+#include "config/units/quantity.h"
 
 namespace estimator::greybox::selection {
 namespace {

@@ -18,9 +18,7 @@ double confidence_of(const ParameterChange& named, double least) {
 
 ChangeDetector::ChangeDetector(const ParameterSet& set, const Thresholds& thresholds)
     : thresholds_(thresholds), tracks_(set.tracked) {
-  for (std::size_t i = 0; i < set.tracked; ++i) {
-    tracks_[i].least = least_change(set, i, thresholds);
-  }
+  for (std::size_t i = 0; i < set.tracked; ++i) tracks_[i].least = least_change(set, i, thresholds);
 }
 
 void ChangeDetector::raise(double t_s, Track& track, const ParameterChange& named, bool whole) {

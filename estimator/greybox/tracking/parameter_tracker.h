@@ -22,11 +22,8 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <limits>
-#include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "estimator/greybox/tracking/baseline.h"
 #include "estimator/greybox/tracking/baseline_drift.h"

@@ -1,7 +1,6 @@
 #include "estimator/greybox/tracking/sensor_hypothesis.h"
 
 #include <cmath>
-#include <functional>
 #include <numeric>
 #include <utility>
 

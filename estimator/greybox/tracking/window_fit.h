@@ -26,7 +26,6 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <vector>
 
 #include "estimator/greybox/dataset.h"

@@ -37,7 +37,7 @@ TEST(Quantity, IsShownInTheUnitThatReadsWell) {
 TEST(Quantity, MissingLimitsAndMissingValuesAreWords) {
   EXPECT_EQ(said("limit_m3ps", std::numeric_limits<double>::infinity(), kNone), "no limit");
   EXPECT_EQ(said("mass_kg", kNone, kNone), "unknown");
-  EXPECT_EQ(length_words(kNone), "unknown");
+  EXPECT_EQ(length_words(kNone), "-");
 }
 
 TEST(Quantity, LengthsGoFromMicrometresToMetres) {
@@ -56,7 +56,7 @@ TEST(Quantity, ParameterNamesLoseEffectAndUnit) {
 }
 
 TEST(Chance, IsNotShownFinerThanItIsKnown) {
-  EXPECT_EQ(chance_words(1e-12), "below 1e-06");
+  EXPECT_EQ(chance_words(1e-12), "< 1e-6");
   EXPECT_EQ(chance_words(0.034), "0.034");
   EXPECT_EQ(chance_words(kNone), "-");
 }

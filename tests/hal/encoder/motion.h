@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "hal/encoder/edge.h"
+#include "hal/encoder/edge_source.h"
 
 namespace hal::encoder::testing {
 

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "config/units/unit_suffix.h"
+#include "config/units/quantity.h"
 #include "plant_sim/library.h"
 #include "plant_sim/plant.h"
 #include "tests/plant_sim/formula/formula_support.h"

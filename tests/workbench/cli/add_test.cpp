@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "config/schema/exit_code.h"
+#include "config/schema/error.h"
 #include "plant_sim/plant.h"
 #include "tests/workbench/run_command.h"
 

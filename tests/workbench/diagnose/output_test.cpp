@@ -6,10 +6,8 @@
 
 #include "config/schema/document.h"
 #include "tests/workbench/diagnose/example_outcome.h"
-#include "workbench/diagnose/better_model.h"
-#include "workbench/diagnose/json.h"
+#include "workbench/diagnose/diagnosis_report.h"
 #include "workbench/diagnose/progress_line.h"
-#include "workbench/diagnose/text_output.h"
 
 namespace workbench::diagnose {
 
@@ -73,7 +71,7 @@ TEST(DiagnosisText, BeginsWithTheVerdictAndEndsWithTheNextCommand) {
   const std::string text = out.str();
   EXPECT_TRUE(text.starts_with("Missing: friction: Coulomb 145.3 +- 1.9 N")) << text;
   EXPECT_THAT(text, HasSubstr("+ friction                      2.7 um     1.12  #\n"));
-  EXPECT_THAT(text, testing::ContainsRegex("friction +2.7 um  p below 1e-06  taken\n"));
+  EXPECT_THAT(text, testing::ContainsRegex("friction +2.7 um  p < 1e-6   taken\n"));
   EXPECT_THAT(text, Not(HasSubstr("backlash")));  // never fitted
   EXPECT_TRUE(text.ends_with("next: spoolwatch compare better.toml bench.csv\n")) << text;
   std::istringstream lines(text);

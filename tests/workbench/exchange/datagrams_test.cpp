@@ -1,4 +1,4 @@
-#include "workbench/exchange/datagrams.h"
+#include "workbench/exchange/udp_sender.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

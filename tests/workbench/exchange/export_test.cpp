@@ -10,7 +10,7 @@
 #include <string>
 
 #include "config/record/record.h"
-#include "config/schema/exit_code.h"
+#include "config/schema/error.h"
 #include "daemon/io/publisher.h"
 #include "daemon/io/recorder.h"
 #include "estimator/fdi/pipeline.h"

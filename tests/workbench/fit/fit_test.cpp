@@ -9,7 +9,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "config/schema/exit_code.h"
+#include "config/schema/error.h"
 #include "plant_sim/model_file.h"
 #include "tests/truth/case.h"
 #include "tests/truth/rig.h"

@@ -1,4 +1,4 @@
-#include "workbench/present/binned.h"
+#include "workbench/present/record_section.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "workbench/present/thin.h"
+#include "workbench/present/plot_data.h"
 
 #include <gmock/gmock.h>
 

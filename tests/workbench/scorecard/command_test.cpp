@@ -6,7 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "config/schema/exit_code.h"
+#include "config/schema/error.h"
 #include "tests/workbench/present/page_check.h"
 #include "tests/workbench/run_command.h"
 

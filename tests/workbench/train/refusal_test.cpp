@@ -1,7 +1,7 @@
 // A trained file and a configuration that it does not fit.
 #include <gtest/gtest.h>
 
-#include "estimator/fdi/fingerprint.h"
+#include "estimator/fdi/snapshot.h"
 #include "tests/workbench/train/trained_rig.h"
 
 namespace workbench::train {
