@@ -19,19 +19,11 @@ double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 }  // namespace
 
 const char* to_string(CommissionLoop::Stop stop) noexcept {
-  switch (stop) {
-    case CommissionLoop::Stop::none:
-      break;
-    case CommissionLoop::Stop::e_stop:
-      return "the emergency stop is pressed or cannot be read";
-    case CommissionLoop::Stop::not_enabled:
-      return "the enable input is off or cannot be read";
-    case CommissionLoop::Stop::valve_lost:
-      return "the valve does not accept commands";
-    case CommissionLoop::Stop::stood_still:
-      return "the loop was interrupted";
-  }
-  return "";
+  constexpr const char* kTexts[] = {"", "the emergency stop is pressed or cannot be read",
+                                    "the enable input is off or cannot be read",
+                                    "the valve does not accept commands",
+                                    "the loop was interrupted"};
+  return kTexts[static_cast<std::size_t>(stop)];
 }
 
 CommissionLoop::CommissionLoop(const Parts& parts, control::Commissioning& procedure,

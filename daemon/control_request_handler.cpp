@@ -1,8 +1,7 @@
 #include "daemon/control_request_handler.h"
 
-#include <algorithm>
-
 #include "daemon/control/protocol.h"
+#include "daemon/detection/system_alarms.h"
 
 namespace monitor {
 namespace {
@@ -96,10 +95,10 @@ std::string ControlRequestHandler::handle(const io::ControlRequest& request) {
 }
 
 std::string ControlRequestHandler::send_to_loop(const io::ControlRequest& request) {
-  rt::Command command;
-  command.kind = request.kind == Kind::event  ? rt::Command::Kind::event
-                 : request.kind == Kind::sine ? rt::Command::Kind::sine
-                                              : rt::Command::Kind::hold;
+  rt::LoopCommand command;
+  command.kind = request.kind == Kind::event  ? rt::LoopCommand::Kind::event
+                 : request.kind == Kind::sine ? rt::LoopCommand::Kind::sine
+                                              : rt::LoopCommand::Kind::hold;
   command.event = request.event;
   command.centre_m = request.centre_m;
   command.amplitude_m = request.amplitude_m;
@@ -136,14 +135,14 @@ std::string ControlRequestHandler::send_to_detector(const io::ControlRequest& re
 }
 
 void ControlRequestHandler::readmit_rods() {
-  rt::Command command;
-  command.kind = rt::Command::Kind::readmit;
+  rt::LoopCommand command;
+  command.kind = rt::LoopCommand::Kind::readmit;
   command.expires_ns = parts_.clock.now_ns() + kCommandLife_ns;
   parts_.commands.push(command);
 }
 
 std::string ControlRequestHandler::poll_loop_answer() {
-  const control::Answer answer =
+  const control::CommandAnswer answer =
       control::unpack(parts_.stats.answer.load(std::memory_order_acquire));
   if (answer.number == number_) {
     const std::string reject_reason =
@@ -199,7 +198,7 @@ std::string ControlRequestHandler::poll_reload_answer() {
                             "the detector has not applied the new rules yet; it may still do so");
 }
 
-std::string ControlRequestHandler::explain(const control::Answer& answer) const {
+std::string ControlRequestHandler::explain(const control::CommandAnswer& answer) const {
   switch (answer.reject_reason) {
     case RejectReason::none:
       break;

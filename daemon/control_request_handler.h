@@ -10,7 +10,6 @@
 #include "daemon/control/reject_reason.h"
 #include "daemon/detection/alarm_command_queue.h"
 #include "daemon/detection/detectability_monitor.h"
-#include "daemon/detection/rod_alarms.h"
 #include "daemon/io/audit.h"
 #include "daemon/io/control_messages.h"
 #include "daemon/io/control_socket.h"
@@ -66,7 +65,7 @@ class ControlRequestHandler {
   [[nodiscard]] std::string reject(const std::string& why);
   /// Writes the current command to the audit file.
   void audit(const std::string& reject_reason);
-  [[nodiscard]] std::string explain(const control::Answer& answer) const;
+  [[nodiscard]] std::string explain(const control::CommandAnswer& answer) const;
   [[nodiscard]] std::string obstacle() const;
   [[nodiscard]] io::ControlStatus status() const;
   void add_rods(io::ControlStatus& status) const;

@@ -20,7 +20,7 @@
 #include "daemon/io/recorder.h"
 #include "daemon/rt/loop.h"
 #include "estimator/fdi/pipeline_config.h"
-#include "estimator/fdi/tracker/source_kinds.h"
+#include "estimator/fdi/tracker/detection_method_kinds.h"
 #include "hal/rig.h"
 
 namespace monitor {
@@ -68,5 +68,9 @@ void load(const std::filesystem::path& file, const std::vector<std::string>& ass
 
 /// FNV-1a of every value that determines the data; referenced files count by name only.
 [[nodiscard]] std::uint64_t hash(DaemonConfig& config);
+
+/// Markdown: every key of the daemon's configuration and of calibration files, for
+/// scripts/reference.
+[[nodiscard]] std::string configuration_reference();
 
 }  // namespace monitor

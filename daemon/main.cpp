@@ -5,12 +5,11 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
-#include "config/schema/exit_code.h"
+#include "config/schema/error.h"
 #include "config/schema/product_version.h"
 #include "daemon/commission.h"
-#include "daemon/configuration_reference.h"
+#include "daemon/daemon_config.h"
 #include "daemon/rt/privileges.h"
-#include "daemon/safe_state_note.h"
 #include "daemon/safe_state_valve.h"
 #include "daemon/session.h"
 

@@ -1,7 +1,6 @@
 #include "daemon/reloader.h"
 
 #include <algorithm>
-#include <ostream>
 #include <utility>
 
 #include "config/schema/error.h"

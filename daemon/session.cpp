@@ -21,7 +21,6 @@
 #include "daemon/null_table.h"
 #include "daemon/reloader.h"
 #include "daemon/rt/loop_runner.h"
-#include "daemon/safe_state_note.h"
 #include "daemon/safe_state_valve.h"
 #include "daemon/service_report.h"
 
@@ -151,7 +150,7 @@ bool recorded_all(io::Recorder& recorder, std::ostream& log) {
 }
 
 void arm_and_start(rt::CommandQueue& commands, std::int64_t expires_ns) {
-  rt::Command command;
+  rt::LoopCommand command;
   command.expires_ns = expires_ns;
   for (const control::Event event : {control::Event::arm, control::Event::start}) {
     command.event = event;
@@ -243,10 +242,16 @@ Session::Session(DaemonConfig& config, const SessionOptions& options, std::ostre
       reloader_({clock_, log, alarms_.audit.get(), alarms_.evidence != nullptr, options.read,
                  alarms_.pipeline_hash},
                 config, prepared_.sample_time_s),
-      detector_({clock_, *samples_, stats_, *prepared_.detection.pipeline, publisher_,
-                 recorder_.get(), &alarms_.commands, &alarms_.answers, alarms_.store.get(),
-                 alarms_.audit.get(), alarms_.evidence.get(), alarms_.pipeline_hash,
-                 &reloader_.to_detector, &reloader_.from_detector, &detectability_},
+      detector_({clock_,
+                 *samples_,
+                 stats_,
+                 *prepared_.detection.pipeline,
+                 publisher_,
+                 recorder_.get(),
+                 {&alarms_.commands, &alarms_.answers, alarms_.store.get(), alarms_.audit.get(),
+                  alarms_.evidence.get(), alarms_.pipeline_hash},
+                 {&reloader_.to_detector, &reloader_.from_detector},
+                 &detectability_},
                 {config.rig_id, config_hash_, grant_.text, config.rig.rod_backend(),
                  valve_ != nullptr ? config.rig.valve().backend : "", spare_rods(), inputs(),
                  prepared_.guards, prepared_.sample_time_s}),

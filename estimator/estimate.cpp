@@ -3,23 +3,14 @@
 namespace estimator {
 
 const char* to_string(Reason reason) noexcept {
-  switch (reason) {
-    case Reason::none:
-      return "";
-    case Reason::too_short:
-      return "too few samples";
-    case Reason::not_excited:
-      return "not excited";
-    case Reason::rank_deficient:
-      return "coefficients not separately determined by the data";
-    case Reason::gap:
-      return "too many samples lost at gaps";
-    case Reason::saturated:
-      return "valve command saturated";
-    case Reason::not_finite:
-      return "numbers out of range";
-  }
-  return "";
+  constexpr const char* kTexts[] = {"",
+                                    "too few samples",
+                                    "not excited",
+                                    "coefficients not separately determined by the data",
+                                    "too many samples lost at gaps",
+                                    "valve command saturated",
+                                    "numbers out of range"};
+  return kTexts[static_cast<std::size_t>(reason)];
 }
 
 }  // namespace estimator

@@ -1,14 +1,14 @@
-// What every estimator hands out: coefficients with their standard errors, how well the data
-// determined them, and whether they may be trusted.
+// Result of every estimator: coefficients with standard errors, conditioning of the data, and
+// validity.
 //
 // Standard errors follow the least-squares covariance s^2 (Psi' Psi)^-1, s^2 = residual energy /
-// (rows - coefficients). They hold for white residuals. Dynamics that the structure leaves out
-// repeat with the motion: then the scatter between periods is far smaller than they say. Noise of
-// the position enters the regressors and biases the coefficients (most of all beyond one output
-// lag): no standard error covers that.
+// (rows - coefficients). They hold for white residuals. Dynamics outside the structure repeat with
+// the motion; the scatter between periods is then far smaller than the standard error. Noise of the
+// position enters the regressors and biases the coefficients, most of all beyond one output lag; no
+// standard error covers that bias.
 //
 // The condition number is the 2-norm condition of the regressor matrix with its columns scaled to
-// unit length, so that it does not depend on units.
+// unit length; it is independent of units.
 #pragma once
 
 #include <array>
@@ -47,7 +47,7 @@ struct Estimate {
   Reason reason = Reason::too_short;
 };
 
-/// What an estimate must meet to be valid.
+/// Limits that a valid estimate meets.
 struct Limits {
   double max_condition = 1e10;  ///< above it: rank_deficient
   double min_span_u_V = 0.0;    ///< peak-to-peak at or below it: not_excited

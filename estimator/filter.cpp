@@ -80,7 +80,7 @@ Filter::Filter(const FilterDesign& design) {
   if (design.band == Band::band_pass) {
     check(design.low_Hz < design.high_Hz, "low_Hz must be below high_Hz");
   }
-  // Where the gain is 1: DC, the Nyquist frequency, or the middle of the (warped) band.
+  // Frequency of unit gain: DC, the Nyquist frequency, or the middle of the (warped) band.
   Complex reference(1.0, 0.0);
   Biquad zeros{1.0, 2.0, 1.0, 0.0, 0.0};
   if (design.band == Band::high_pass) {

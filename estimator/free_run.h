@@ -33,9 +33,10 @@ struct Fit {
   int samples = 0;
 };
 
-/// Error of `predicted` against `measured`, sample t of the measurement beside sample t - shift of
-/// the prediction (shift 1: the simulation runs one sample late). The first `skip` samples of both
-/// are left out, and missing (NaN) measurements.
+/// Error of `predicted` against `measured`: sample t of the measurement against sample t - shift of
+/// the
+/// prediction (shift 1: the simulation runs one sample late). The first `skip` samples of both and
+/// missing (NaN) measurements are left out.
 [[nodiscard]] Fit compare(std::span<const double> measured_m, std::span<const double> predicted_m,
                           int skip = 0, int shift = 0);
 

@@ -23,7 +23,7 @@ class IncrementalQr {
 
   /// Column j of the chunk to be filled: kChunk places, 16-byte aligned.
   double* column(int j) noexcept { return chunk_.data() + kChunk * j; }
-  /// Takes in the first `rows` rows of the chunk, whose columns are then free to be filled again.
+  /// Absorbs the first `rows` rows of the chunk; its columns may be filled again afterwards.
   void absorb(int rows) noexcept;
 
   [[nodiscard]] int columns() const noexcept { return columns_; }

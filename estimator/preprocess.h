@@ -1,9 +1,10 @@
-// What is done to u and y before an estimator sees them: removing an offset or a trend, filtering,
-// keeping every n-th sample. Off-line on vectors, on-line as a stream in fixed memory.
+// Preprocessing of u and y for an estimator: removal of an offset or a trend, filtering,
+// decimation.
+// Off line on vectors, on line as a stream in fixed memory.
 //
-// u and y pass through the same linear filters, which leaves the difference equation between them
-// as it is. Decimation filters first (Butterworth, order 8, corner at 0.8 of the new Nyquist
-// frequency) so that nothing above it folds back.
+// u and y pass through the same linear filters, which keeps the difference equation between them.
+// Decimation filters first (Butterworth, order 8, corner at 0.8 of the new Nyquist frequency) to
+// avoid aliasing.
 #pragma once
 
 #include <span>
@@ -13,7 +14,7 @@
 
 namespace estimator {
 
-/// Subtracts the mean. NaN samples stay NaN and count for nothing. Returns the mean.
+/// Subtracts the mean. NaN samples stay NaN and are not counted. Returns the mean.
 double remove_mean(std::span<double> values);
 
 struct Line {
@@ -35,7 +36,7 @@ struct PreprocessConfig {
   double offset_y_m = 0.0;  ///< subtracted first
   bool filter = false;      ///< apply `design` to both
   FilterDesign design;      ///< at the rate of the incoming samples
-  int decimation = 1;       ///< keep one of so many samples, at least 1
+  int decimation = 1;       ///< decimation factor, at least 1
 };
 
 class Preprocess {
@@ -43,11 +44,13 @@ class Preprocess {
   /// Throws config::schema::UsageError for values out of range.
   explicit Preprocess(const PreprocessConfig& config);
 
-  /// Takes a sample; true when one comes out: u_V() and y_m() hold it. A NaN is a missing sample:
-  /// the filters settle anew on the next one, and the next output is NaN, so that no regression row
-  /// reaches across. The grid of kept samples does not move.
+  /// Takes a sample; returns true when an output is available in u_V() and y_m(). A NaN marks a
+  /// missing
+  /// sample: the filters restart at the next one, and the next output is NaN, so that no regression
+  /// row
+  /// crosses the gap. The grid of kept samples does not move.
   bool push(double u_V, double y_m) noexcept;
-  /// `samples` periods without data. Returns how many outputs fell into the gap.
+  /// `samples` periods without data. Returns the number of outputs in the gap.
   long long gap(long long samples) noexcept;
 
   [[nodiscard]] double u_V() const noexcept { return u_V_; }

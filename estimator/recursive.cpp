@@ -205,8 +205,6 @@ void Recursive::serialize(StateArchive& archive) {
 
 const double* Recursive::coefficients() const noexcept { return state_->theta.data(); }
 
-double Recursive::prediction_error_m() const noexcept { return state_->error_m; }
-
 Estimate Recursive::estimate() const noexcept {
   const State& s = *state_;
   Estimate out;

@@ -40,7 +40,7 @@ class Recursive {
 
   /// Takes the next sample; true when it changed the estimate. NaN = missing. Never allocates.
   bool push(double u_V, double y_m) noexcept;
-  /// At a gap: coefficients are kept, rows across it dropped.
+  /// At a gap: keeps the coefficients, drops rows across it.
   void gap() noexcept;
   /// Back to the start.
   void reset() noexcept;
@@ -51,8 +51,6 @@ class Recursive {
   [[nodiscard]] Estimate estimate() const noexcept;
   /// Current coefficients, structure.size() of them.
   [[nodiscard]] const double* coefficients() const noexcept;
-  /// Last a-priori error y - psi' theta, m; NaN before the first.
-  [[nodiscard]] double prediction_error_m() const noexcept;
 
  private:
   struct State;

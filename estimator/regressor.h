@@ -16,11 +16,13 @@ class Regressor {
  public:
   explicit Regressor(const Structure& structure) noexcept : structure_(structure) {}
 
-  /// Takes the next sample. True when it completes a row: then row() and target_m() hold it.
-  /// A NaN or infinite value counts as a missing sample: false, and the history starts again.
+  /// Takes the next sample. Returns true when it completes a row, available in row() and
+  /// target_m().
+  /// A NaN or infinite value counts as a missing sample: returns false, and the history starts
+  /// again.
   bool push(double u_V, double y_m) noexcept;
 
-  /// At a gap in the samples: no row reaches across it.
+  /// Marks a gap: no row crosses it.
   void reset() noexcept { filled_ = 0; }
 
   [[nodiscard]] const Structure& structure() const noexcept { return structure_; }

@@ -10,7 +10,7 @@
 namespace estimator {
 namespace {
 
-/// What a block, or several merged, knows besides its factor.
+/// Contents of a block, or of several merged ones, besides the factor.
 struct Tally {
   int rows = 0;
   Span span;
@@ -145,7 +145,7 @@ bool SlidingWindow::push(double u_V, double y_m) noexcept {
 bool SlidingWindow::gap(long long samples) noexcept {
   State& s = *state_;
   s.regressor.reset();
-  // Past a whole window nothing is left, and whole strides more change nothing.
+  // Beyond a whole window nothing is left; further strides change nothing.
   const long long enough = s.config.window + s.config.stride;
   if (samples > enough) samples -= (samples - enough) / s.config.stride * s.config.stride;
   bool due = false;

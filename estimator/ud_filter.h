@@ -20,9 +20,11 @@ struct UdFactor {
 };
 
 struct UdUpdate {
-  /// Measures psi' theta with variance `r` and then divides P by `forgetting`. `gain` (padded) gets
-  /// b; returns alpha_p = r + psi' P psi, so that theta += b e / alpha_p. When alpha_p is not
-  /// finite nothing is changed.
+  /// Measures psi' theta with variance `r`, then divides P by `forgetting`. `gain` (padded)
+  /// receives b;
+  /// returns alpha_p = r + psi' P psi, so that theta += b e / alpha_p. Changes nothing when alpha_p
+  /// is not
+  /// finite.
   double (*measure)(UdFactor& p, const double* psi, double r, double forgetting,
                     double* gain) noexcept;
   /// Adds `information` about coefficient `i` alone.

@@ -3,8 +3,6 @@
 
 #include <cstdint>
 
-#include "hal/device.h"
-
 namespace hal {
 
 inline constexpr std::int64_t kStalePeriods = 3;

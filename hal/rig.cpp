@@ -4,10 +4,12 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <ranges>
 #include <utility>
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 #include "hal/comedi/comedi.h"
 #include "hal/encoder/encoder.h"
 #include "hal/modbus/modbus.h"
@@ -61,14 +63,12 @@ InputRole role_of(const std::string& name) {
 
 void visit_device(config::schema::Visitor& v, DeviceAddress& device, bool channel_required) {
   v.text(wiring({"backend", "one of the backends", true}), device.backend);
-  v.text(wiring({"channel", "which of the backend's devices", channel_required}), device.channel);
+  v.text(wiring({"channel", "device of the backend", channel_required}), device.channel);
 }
 
 template <class Map>
 std::string names_of(const Map& map) {
-  std::string names;
-  for (const auto& [name, device] : map) names += (names.empty() ? "" : ", ") + name;
-  return names.empty() ? "none" : names;
+  return map.empty() ? "none" : config::schema::joined(std::views::keys(map));
 }
 
 /// Opens each backend on first use.
@@ -120,12 +120,7 @@ std::string indexed(const char* table, std::size_t index) {
 
 }  // namespace
 
-std::string backend_names() {
-  std::string names;
-  for (const Entry& entry : kRegistry)
-    names += (names.empty() ? "" : ", ") + std::string(entry.name);
-  return names;
-}
+std::string backend_names() { return config::schema::joined_by(kRegistry, &Entry::name); }
 
 void SpareRodConfig::visit(config::schema::Visitor& v) {
   v.text({"id", "name of the sensor", true}, id);
@@ -134,7 +129,7 @@ void SpareRodConfig::visit(config::schema::Visitor& v) {
 
 void InputConfig::visit(config::schema::Visitor& v) {
   v.text({"id", "name of the signal", true}, id);
-  v.choice(wiring({"role", "what it is for"}), role,
+  v.choice(wiring({"role", "role"}), role,
            {kRoles[0].first, kRoles[1].first, kRoles[2].first, kRoles[3].first, kRoles[4].first,
             kRoles[5].first, kRoles[6].first, kRoles[7].first});
   visit_device(v, device, true);
@@ -163,10 +158,10 @@ std::vector<std::string> Rig::used() const {
 }
 
 void Rig::visit(config::schema::Visitor& v) {
-  v.table({"rod", "what reads the rod"},
+  v.table({"rod", "device that reads the rod"},
           [this](config::schema::Visitor& t) { visit_device(t, rod_, false); });
   config::schema::visit_list(v, {"spare_rod", "a further rod sensor"}, spare_rods_);
-  v.table({"valve", "what drives the valve"}, [this](config::schema::Visitor& t) {
+  v.table({"valve", "device that drives the valve"}, [this](config::schema::Visitor& t) {
     t.text(wiring({"backend", "one of the backends, or none"}), valve_.backend);
     if (valve_.backend == kNone) return;
     t.number({"null_V", "the commanded safe voltage"}, valve_.null_V, {-100.0, 100.0});
@@ -174,7 +169,7 @@ void Rig::visit(config::schema::Visitor& v) {
              {1e-3, 100.0});
     t.number({"slew_V_per_s", "fastest change of a command"}, valve_.slew_V_per_s,
              {1e-3, std::numeric_limits<double>::infinity()});
-    t.boolean({"accept_no_hardware_watchdog", "drive it though nothing but this process stops it"},
+    t.boolean({"accept_no_hardware_watchdog", "drive the valve without a hardware watchdog"},
               valve_.accept_no_hardware_watchdog);
   });
   config::schema::visit_list(v, {"input", "an auxiliary signal"}, inputs_);

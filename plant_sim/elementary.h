@@ -68,7 +68,7 @@ inline V exp(V x) {
   return x > kLargest ? V{} + std::numeric_limits<double>::infinity() : low;
 }
 
-/// e^-x for 0 <= x <= 700, the same bits without what only tiny and large results need.
+/// e^-x for 0 <= x <= 700, bit-equal, without the branches for tiny and large results.
 template <class V>
 inline V decay(V x) {
   const V n = (-x * 1.4426950408889634 + kRounder) - kRounder;
@@ -82,7 +82,7 @@ inline V log(V x) {
   const V normal = x < kLeastNormal ? x * 18014398509481984.0 : x;  // 2^54
   const V lifted = x < kLeastNormal ? V{} - 54.0 : V{};
   const Bits bits = __builtin_bit_cast(Bits, normal);
-  // so that the mantissa's range begins at sqrt 1/2 instead of 1
+  // the mantissa's range then begins at sqrt 1/2 instead of 1
   const Bits from_half = bits + (0x3ff0000000000000 - 0x3fe6a09e667f3bcd);
   const Bits exponent = ((from_half >> 52) & 0xfff) + 0x4330000000000000;  // 2^52 + it, as a double
   const V e = (__builtin_bit_cast(V, exponent) - (4503599627370496.0 + 1023.0)) + lifted;
@@ -100,10 +100,10 @@ inline V log(V x) {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   const V at_zero = x < 0.0 ? V{} + std::numeric_limits<double>::quiet_NaN() : V{} - kInfinite;
   const V finite = x <= 0.0 ? at_zero : y;
-  return x < kInfinite ? finite : x;  // what is not a number, too
+  return x < kInfinite ? finite : x;  // NaN passes as well
 }
 
-/// For |x| <= kSinReach.
+/// Valid for |x| <= kSinReach.
 inline constexpr double kSinReach = 1e6;
 template <class V>
 inline V sin(V x) {

@@ -1,7 +1,6 @@
 #include "plant_sim/ensemble.h"
 
 #include <cstring>
-#include <utility>
 
 #include "config/schema/error.h"
 #include "plant_sim/lane_ensemble.h"
@@ -12,7 +11,7 @@ namespace {
 
 std::unique_ptr<LaneEnsemble> made(const ModelFile& model, double step_s, InstructionSet set) {
   const char* plant = model.plant.c_str();
-  const Formulas formulas = model.formulas();
+  const formula::Formulas formulas = model.formulas();
   LaneEnsemble* lanes = nullptr;
   switch (set) {
 #ifdef PLANT_SIM_WIDE_LANES
@@ -59,7 +58,7 @@ InstructionSet fastest_here() noexcept {
   return fastest;
 }
 
-LaneEnsemble::LaneEnsemble(const Formulas& formulas, double step_s)
+LaneEnsemble::LaneEnsemble(const formula::Formulas& formulas, double step_s)
     : step_s_(step_s), formulas_(formulas) {}
 LaneEnsemble::~LaneEnsemble() = default;
 

@@ -1,9 +1,10 @@
-// Up to eight parameter sets of one plant in lockstep, one in each SIMD lane: what fitting a model
-// needs, where nearly all time goes into simulations that differ a little in a parameter or two.
+// Up to eight parameter sets of one plant in lockstep, one per SIMD lane: a fit spends nearly all
+// its
+// time in simulations that differ in one or two parameters.
 //
-// A lane does the operations of the single plant (plant.h); what is said there of parameters, steps
-// and commands holds here. Between samples a lane's position may be shifted, which is how an
-// observer corrects it towards the measurement.
+// A lane performs the operations of the single plant (plant.h); its rules for parameters, steps and
+// commands apply here. Between samples a lane's position may be shifted: the observer's correction
+// towards the measurement.
 #pragma once
 
 #include <array>
@@ -37,7 +38,7 @@ class Ensemble {
   virtual void start(double reading_m) noexcept = 0;
   /// Holds u_V, one voltage for each lane, for duration_s (a whole number of steps).
   virtual void advance(const Values& u_V, double duration_s) noexcept = 0;
-  /// Moves the rod, and with it what the sensor shows, without any physics.
+  /// Moves the rod, and with it the sensor's reading, without physics.
   virtual void shift(const Values& by_m) noexcept = 0;
 
   /// The integration state of that name ("v_mps", "in_Pa") for state() and set_state(); none when
@@ -48,7 +49,7 @@ class Ensemble {
 
   [[nodiscard]] virtual Values reading_m() const noexcept = 0;
   [[nodiscard]] virtual Values speed_mps() const noexcept = 0;
-  /// As Plant::pressures(); not numbers where the plant has none.
+  /// As Plant::pressures(); NaN where the plant has none.
   [[nodiscard]] virtual PressuresOf<Values> pressures() const noexcept = 0;
 };
 
@@ -62,7 +63,7 @@ enum class InstructionSet { baseline, avx2, avx512 };
 [[nodiscard]] bool runs_here(InstructionSet set) noexcept;
 /// Default of make_ensemble().
 [[nodiscard]] InstructionSet fastest_here() noexcept;
-/// With one that runs here.
+/// Uses an instruction set that this machine supports.
 [[nodiscard]] std::unique_ptr<Ensemble> make_ensemble(const ModelFile& model, double step_s,
                                                       InstructionSet set);
 

@@ -3,7 +3,7 @@
 
 namespace plant_sim {
 
-LaneEnsemble* new_avx2_lanes(const char* plant, const Formulas& formulas, double step_s) {
+LaneEnsemble* new_avx2_lanes(const char* plant, const formula::Formulas& formulas, double step_s) {
   return new_lanes<SimdVector<4>>(plant, formulas, step_s);
 }
 

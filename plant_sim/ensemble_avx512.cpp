@@ -3,7 +3,8 @@
 
 namespace plant_sim {
 
-LaneEnsemble* new_avx512_lanes(const char* plant, const Formulas& formulas, double step_s) {
+LaneEnsemble* new_avx512_lanes(const char* plant, const formula::Formulas& formulas,
+                               double step_s) {
   return new_lanes<SimdVector<8>>(plant, formulas, step_s);
 }
 

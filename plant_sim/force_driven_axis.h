@@ -23,8 +23,9 @@ template <class S>
 class ForceDrivenAxis {
  public:
   static constexpr const char* kName = "force_driven_axis";
-  static constexpr std::array kSites = {Site::command, Site::inertia, Site::force,
-                                        Site::dry_friction, Site::sensor};
+  static constexpr std::array kSites = {effects::Site::command, effects::Site::inertia,
+                                        effects::Site::force, effects::Site::dry_friction,
+                                        effects::Site::sensor};
 
   struct Parameters {
     S mass_kg = 100.0;
@@ -69,7 +70,7 @@ class ForceDrivenAxis {
   Parameters parameters;
   Initial initial;
   State state;
-  Effects<S> effects;
+  effects::Effects<S> effects;
 
   void reset() {
     state = {initial.y_m, initial.v_mps};
@@ -102,7 +103,7 @@ class ForceDrivenAxis {
   [[nodiscard]] S speed_mps() const { return state.v_mps; }
 
  private:
-  /// Into how many parts the step is divided, so that damping and springs are followed.
+  /// Number of parts of a step, fine enough for damping and springs.
   S divisions() const {
     const S slope = parameters.damping_N_s_per_m + effects.slope_N_s_per_m(state.v_mps);
     const S fastest = max(slope * inverse_mass_, spring_rate_);

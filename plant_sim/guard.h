@@ -12,7 +12,7 @@ inline constexpr double kCommand_V = 1e4;
 inline constexpr double kRateStep = 1.5;
 inline constexpr double kMostDivisions = 64.0;
 
-/// The command within the guard; what is no number counts as 0 V.
+/// The command within the guard; NaN counts as 0 V.
 template <class S>
 S known_V(const S& u_V) {
   return select(abs(u_V) <= S(kCommand_V), u_V,

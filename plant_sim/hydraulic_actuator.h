@@ -27,10 +27,7 @@
 #include <limits>
 
 #include "plant_sim/effects/table.h"
-#include "plant_sim/parameter.h"
 #include "plant_sim/pressures.h"
-#include "plant_sim/runge_kutta.h"
-#include "plant_sim/scalar.h"
 
 namespace plant_sim {
 
@@ -38,10 +35,11 @@ template <class S>
 class HydraulicActuator {
  public:
   static constexpr const char* kName = "hydraulic_actuator";
-  static constexpr std::array kSites = {Site::command,      Site::spool,   Site::opening,
-                                        Site::supply,       Site::flow,    Site::leakage,
-                                        Site::bulk_modulus, Site::inertia, Site::force,
-                                        Site::dry_friction, Site::sensor};
+  static constexpr std::array kSites = {
+      effects::Site::command,      effects::Site::spool,   effects::Site::opening,
+      effects::Site::supply,       effects::Site::flow,    effects::Site::leakage,
+      effects::Site::bulk_modulus, effects::Site::inertia, effects::Site::force,
+      effects::Site::dry_friction, effects::Site::sensor};
 
   /// The printed values (source, table 5.1); V0 is not printed and of no influence there.
   struct Parameters {
@@ -94,9 +92,9 @@ class HydraulicActuator {
   Parameters parameters;
   Initial initial;
   State state;
-  Effects<S> effects;
+  effects::Effects<S> effects;
 
-  /// To the initial state, with the parameters as they are.
+  /// Resets to the initial state; parameters are kept.
   void reset();
   /// Call before step() after any parameter has changed, with the length of the step.
   void prepare(double step_s);

@@ -58,7 +58,7 @@ typename HydraulicActuator<S>::Flows HydraulicActuator<S>::flows(const State& x)
   q.in_m3ps = flow * root(select(extends, supply_Pa - x.in_Pa, x.in_Pa - p.return_pressure_Pa));
   q.out_m3ps = flow * root(select(extends, x.out_Pa - p.return_pressure_Pa, supply_Pa - x.out_Pa));
   if constexpr (kEffects) {
-    const Leak<S> leak = effects.leak(x.in_Pa, x.out_Pa);
+    const effects::Leak<S> leak = effects.leak(x.in_Pa, x.out_Pa);
     q.in_m3ps = effects.flow_m3ps(q.in_m3ps) - leak.in_m3ps;
     q.out_m3ps = effects.flow_m3ps(q.out_m3ps) + leak.out_m3ps;
   }

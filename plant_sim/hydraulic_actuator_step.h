@@ -14,11 +14,12 @@
 namespace plant_sim {
 namespace limits {
 
-inline constexpr double kLowPressure_Pa = 1e5;    ///< from here down cavitation is looked for
+inline constexpr double kLowPressure_Pa = 1e5;    ///< pressures below are checked for cavitation
 inline constexpr double kHighPressure_Pa = 1e10;  ///< numerical guard, beyond any oil
 inline constexpr double kSpool_m = 1.0;           ///< numerical guard
 inline constexpr double kSpool_mps = 1e5;         ///< numerical guard
-inline constexpr double kCornerDivisions = 8.0;   ///< of a step in which the spool meets its limit
+inline constexpr double kCornerDivisions =
+    8.0;  ///< divisions of a step in which the spool meets its limit
 
 }  // namespace limits
 
@@ -79,7 +80,7 @@ S HydraulicActuator<S>::fast_mps() const {
   return abs(v_mps) + abs(push_N) * derived_.inverse_mass * S(derived_.step_s);
 }
 
-/// In which lanes the step can be taken as a whole and cannot reach any limit.
+/// Mask of the lanes in which the whole step reaches no limit.
 template <class S>
 auto HydraulicActuator<S>::ordinary(const S& u_V) const {
   const Parameters& p = parameters;
@@ -110,7 +111,7 @@ auto HydraulicActuator<S>::ordinary(const S& u_V) const {
       (low_Pa > S(limits::kLowPressure_Pa)) & (high_Pa < S(limits::kHighPressure_Pa));
   const auto drop =
       (drop_Pa > S(limits::kSmoothDrop_Pa)) & (flow_rate * flow_rate < allowed * allowed * drop_Pa);
-  // less than the lower pressure can come or go within the step
+  // less than the lower pressure can change within the step
   const S to_spare = S(0.5) * low_Pa * small_m3;
   const S largest_Pa = max(high_Pa, p.supply_pressure_Pa);
   const auto change = (flow_rate * flow_rate * largest_Pa < to_spare * to_spare) &
@@ -164,8 +165,8 @@ PLANT_SIM_WHOLE void HydraulicActuator<S>::integrate(const S& u_V, const S& step
   }
 }
 
-/// Into how many parts the step is divided, so that the fastest of spool, damping, oil column and
-/// orifice is followed.
+/// Number of parts of a step, fine enough for the fastest of spool, damping, oil column and
+/// orifice.
 template <class S>
 S HydraulicActuator<S>::divisions(const S& u_V) const {
   const Parameters& p = parameters;
@@ -190,7 +191,7 @@ S HydraulicActuator<S>::divisions(const S& u_V) const {
       (p.damping_N_s_per_m + effects.slope_N_s_per_m(fast_mps())) * derived_.inverse_mass;
   const S fastest =
       max(max(derived_.steady_rate, damping_rate), max(max(orifice_rate, column_rate), leak_rate));
-  // where the spool runs into its limit the equations have a corner
+  // the equations have a corner where the spool reaches its limit
   const S least_parts =
       select(spool_reach_mps(u_V) < derived_.spool_limit_mps, S(1.0), S(limits::kCornerDivisions));
   return clamp(ceil(fastest * step_s * S(1.0 / limits::kRateStep)), least_parts,

@@ -39,7 +39,7 @@ struct DacRange {
   int bits = 12;
   double range_V = 10.0;
 
-  /// The voltage that comes out for the one asked for; not a number in, 0 V out.
+  /// Output voltage for the requested one; NaN gives 0 V.
   [[nodiscard]] double apply(double u_V) const noexcept;
   /// One code's step; 0 when bits is 0.
   [[nodiscard]] double step_V() const noexcept;

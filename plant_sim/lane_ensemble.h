@@ -7,7 +7,6 @@
 // no exceptions; tests/plant_sim/wide_symbols.py looks at what those files emit.
 #pragma once
 
-#include <cmath>
 #include <string>
 #include <vector>
 
@@ -19,12 +18,12 @@ namespace plant_sim {
 
 class LaneEnsemble : public Ensemble {
  public:
-  LaneEnsemble(const Formulas& formulas, double step_s);
+  LaneEnsemble(const formula::Formulas& formulas, double step_s);
   LaneEnsemble(const LaneEnsemble&) = delete;
   LaneEnsemble& operator=(const LaneEnsemble&) = delete;
   ~LaneEnsemble() override;
 
-  /// All lanes to the model's values.
+  /// Sets all lanes to the model's values.
   void take(const ModelFile& model);
 
   [[nodiscard]] std::optional<std::size_t> find(std::string_view dotted) const final;
@@ -35,12 +34,12 @@ class LaneEnsemble : public Ensemble {
   void set_state(std::size_t index, const Values& values) noexcept final;
 
  protected:
-  /// Tells of eight lanes that live as long as *this; owner is an effect, "initial" or null.
+  /// Registers eight lanes that live as long as *this; owner is an effect, "initial" or null.
   void enter(const char* owner, const char* name, void* lanes);
   /// The same for an integration state.
   void enter_state(const char* name, void* lanes);
   [[nodiscard]] double step_s() const { return step_s_; }
-  [[nodiscard]] const Formulas& formulas() const { return formulas_; }
+  [[nodiscard]] const formula::Formulas& formulas() const { return formulas_; }
 
  private:
   struct Entry {
@@ -51,7 +50,7 @@ class LaneEnsemble : public Ensemble {
                                                           std::string_view name);
 
   double step_s_;
-  Formulas formulas_;
+  formula::Formulas formulas_;
   std::vector<Entry> entries_;
   std::vector<Entry> initial_;
   std::vector<Entry> states_;
@@ -61,18 +60,19 @@ class LaneEnsemble : public Ensemble {
 template <class Model, class S>
 class InLanes final : public LaneEnsemble {
  public:
-  InLanes(const Formulas& declared, double step_s) : LaneEnsemble(declared, step_s) {
+  InLanes(const formula::Formulas& declared, double step_s) : LaneEnsemble(declared, step_s) {
     model_.effects.formulas().declare(formulas().data(), formulas().size());
     model_.parameters.visit(
         [&](const ParameterInfo& info, S& value) { enter(nullptr, info.name, &value); });
     model_.effects.each([&](auto tag, auto& parameters) {
       using Effect = typename decltype(tag)::Type;
-      if constexpr (fits<Effect, Model>()) {
+      if constexpr (effects::fits<Effect, Model>()) {
         parameters.visit(
             [&](const ParameterInfo& info, S& value) { enter(Effect::kName, info.name, &value); });
       }
     });
-    model_.effects.formulas().each([&](const FormulaView& formula, const ParameterInfo& info,
+    model_.effects.formulas().each([&](const formula::FormulaView& formula,
+                                       const ParameterInfo& info,
                                        S& value) { enter(formula.name, info.name, &value); });
     model_.initial.visit(
         [&](const ParameterInfo& info, S& value) { enter("initial", info.name, &value); });
@@ -114,9 +114,9 @@ class InLanes final : public LaneEnsemble {
   Model model_;
 };
 
-/// The plant of that name at eight lanes; null when there is none. For the caller to own.
+/// The named plant at eight lanes, owned by the caller; null for an unknown name.
 template <class S>
-LaneEnsemble* new_lanes(const char* plant, const Formulas& formulas, double step_s) {
+LaneEnsemble* new_lanes(const char* plant, const formula::Formulas& formulas, double step_s) {
   LaneEnsemble* made = nullptr;
   each_plant<S>([&]<class Model>() {
     if (__builtin_strcmp(plant, Model::kName) == 0) made = new InLanes<Model, S>(formulas, step_s);
@@ -124,7 +124,7 @@ LaneEnsemble* new_lanes(const char* plant, const Formulas& formulas, double step
   return made;
 }
 
-LaneEnsemble* new_avx2_lanes(const char* plant, const Formulas& formulas, double step_s);
-LaneEnsemble* new_avx512_lanes(const char* plant, const Formulas& formulas, double step_s);
+LaneEnsemble* new_avx2_lanes(const char* plant, const formula::Formulas& formulas, double step_s);
+LaneEnsemble* new_avx512_lanes(const char* plant, const formula::Formulas& formulas, double step_s);
 
 }  // namespace plant_sim

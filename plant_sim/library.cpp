@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 #include "plant_sim/formula/formula.h"
 #include "plant_sim/model_file.h"
 #include "plant_sim/plants.h"
@@ -22,7 +23,7 @@ template <class Type>
 std::vector<std::string> site_names() {
   std::vector<std::string> names;
   names.reserve(Type::kSites.size());
-  for (const Site site : Type::kSites) names.emplace_back(site_name(site));
+  for (const effects::Site site : Type::kSites) names.emplace_back(effects::site_name(site));
   return names;
 }
 
@@ -39,7 +40,7 @@ const Info* find(const std::vector<Info>& library, std::string_view name) {
 const std::vector<EffectInfo>& effect_library() {
   static const std::vector<EffectInfo> library = [] {
     std::vector<EffectInfo> all;
-    Effects<double> effects;
+    effects::Effects<double> effects;
     effects.each([&](auto tag, auto& parameters) {
       using Effect = typename decltype(tag)::Type;
       EffectInfo info{Effect::kName, Effect::kEquation, {}, Effect::kDissipative, {}};
@@ -71,11 +72,11 @@ const EffectInfo* find_effect(std::string_view name) { return find(effect_librar
 
 std::vector<EffectInfo> effects_of(const ModelFile& model) {
   std::vector<EffectInfo> all = effect_library();
-  for (const FormulaEffect& declared : model.formula_effects) {
-    const FormulaSite* site = find_formula_site(declared.site);
+  for (const formula::FormulaEffect& declared : model.formula_effects) {
+    const formula::FormulaSite* site = formula::find_formula_site(declared.site);
     const std::string result = site != nullptr ? std::string(site->result) + " = " : "";
     EffectInfo info{declared.name, result + declared.formula, {declared.site}, false, {}};
-    for (const FormulaEffect::Parameter& p : declared.parameters) {
+    for (const formula::FormulaEffect::Parameter& p : declared.parameters) {
       info.parameters.push_back(info_of(p));
     }
     info.what = declared.what;
@@ -99,11 +100,9 @@ void require_fit(const ModelFile& model, const std::string& file) {
 void require_fit(const EffectInfo& effect, const PlantInfo& plant, const std::string& where) {
   for (const std::string& site : effect.sites) {
     if (std::find(plant.sites.begin(), plant.sites.end(), site) != plant.sites.end()) continue;
-    std::string offered;
-    for (const std::string& name : plant.sites) offered += (offered.empty() ? "" : ", ") + name;
     throw config::schema::bad_config(
         where, effect.name + " acts on " + site + ", which " + plant.name + " does not have",
-        "effects of its sites " + offered);
+        "effects of its sites " + config::schema::joined(plant.sites));
   }
 }
 

@@ -18,7 +18,7 @@ struct EffectInfo {
   std::vector<std::string> sites;  ///< where it attaches (effects/site.h)
   bool dissipative;                ///< can only take energy out
   std::vector<ParameterInfo> parameters;
-  std::string what = {};  ///< of a formula of the model file: its meaning, as given there
+  std::string what = {};  ///< for a formula of the model file: its stated meaning
 };
 
 struct PlantInfo {
@@ -30,9 +30,9 @@ struct PlantInfo {
 
 [[nodiscard]] const std::vector<EffectInfo>& effect_library();
 [[nodiscard]] const std::vector<PlantInfo>& plant_library();
-/// Null when there is no such plant.
+/// Null for an unknown name.
 [[nodiscard]] const PlantInfo* find_plant(std::string_view name);
-/// Null when there is no such effect.
+/// Null for an unknown name.
 [[nodiscard]] const EffectInfo* find_effect(std::string_view name);
 
 /// Every effect that a model can have: the library's, then the formulas that its file declares, in

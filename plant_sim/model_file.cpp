@@ -48,11 +48,12 @@ double value_or(const ModelFile& model, std::string_view name, double otherwise)
   return otherwise;
 }
 
-/// Where the variables of formulas plausibly are on this plant: commands of +-10 V, the whole
-/// stroke, twice the supply pressure.
-PlausibleRanges plausible(const ModelFile& model) {
+/// Plausible ranges of formula variables on this plant: commands of +-10 V, the whole stroke, twice
+/// the
+/// supply pressure.
+formula::PlausibleRanges plausible(const ModelFile& model) {
   constexpr double kFullCommand_V = 10.0;
-  PlausibleRanges ranges;
+  formula::PlausibleRanges ranges;
   const double gain = value_or(model, "valve_gain_m_per_V", value_or(model, "gain_mps_per_V", 1.0));
   const double opening = std::max(kFullCommand_V * gain, 1e-6);
   const double supply_Pa = std::max(value_or(model, "supply_pressure_Pa", 1e7), 1e5);
@@ -64,21 +65,23 @@ PlausibleRanges plausible(const ModelFile& model) {
   ranges.opening_m = {-opening, opening};
   ranges.flow_m3ps = {-flow_m3ps, flow_m3ps};
   ranges.pressure_Pa = {0.0, 2.0 * supply_Pa};
-  ranges.position_m = stroke_m > 0.0 ? VariableRange{0.0, stroke_m} : VariableRange{-2.0, 2.0};
+  ranges.position_m =
+      stroke_m > 0.0 ? formula::VariableRange{0.0, stroke_m} : formula::VariableRange{-2.0, 2.0};
   return ranges;
 }
 
-std::string table_of(const FormulaEffect& effect, const std::string& file) {
+std::string table_of(const formula::FormulaEffect& effect, const std::string& file) {
   return file + ": [formula_effects." + effect.name + "]";
 }
 
-void check_declared(const ModelFile& model, const FormulaEffect& effect, const std::string& file) {
+void check_declared(const ModelFile& model, const formula::FormulaEffect& effect,
+                    const std::string& file) {
   const std::string where = table_of(effect, file);
   if (find_effect(effect.name) != nullptr || effect.name == "initial") {
     throw config::schema::bad_config(where, "has the name of an effect of the library",
                                      "another name");
   }
-  check(effect, compile(effect, plausible(model), where), where);
+  check(effect, formula::compile(effect, plausible(model), where), where);
 }
 
 }  // namespace
@@ -90,7 +93,7 @@ ModelFile::ModelFile() {
   list_effects();
 }
 
-/// Brings `effects` in line with what is declared; those that stay keep their values.
+/// Matches `effects` with the declared ones; effects that stay keep their values.
 void ModelFile::list_effects() {
   const std::vector<EffectInfo> all = effects_of(*this);
   effects.resize(all.size());
@@ -109,7 +112,7 @@ void ModelFile::list_effects() {
 void ModelFile::visit(Visitor& v) {
   v.text({"name", "the model's name", true}, name);
   const std::string before = plant;
-  v.choice({"plant", "which plant", true}, plant, plant_names());
+  v.choice({"plant", "plant of the model", true}, plant, plant_names());
   const PlantInfo& info = *find_plant(plant);
   if (plant != before) {
     parameters = defaults(info.parameters);
@@ -119,7 +122,7 @@ void ModelFile::visit(Visitor& v) {
   v.table("parameters", [&](Visitor& t) { visit_values(t, info.parameters, parameters); });
   v.table("initial", [&](Visitor& t) { visit_values(t, info.initial, initial); });
   std::vector<std::string> declared;
-  for (const FormulaEffect& effect : formula_effects) declared.push_back(effect.name);
+  for (const formula::FormulaEffect& effect : formula_effects) declared.push_back(effect.name);
   declared = v.names("formula_effects", declared);
   formula_effects.resize(declared.size());
   v.table("formula_effects", [&](Visitor& t) {
@@ -142,9 +145,9 @@ void ModelFile::visit(Visitor& v) {
   });
 }
 
-void ModelFile::declare(const FormulaEffect& effect, const std::string& file) {
+void ModelFile::declare(const formula::FormulaEffect& effect, const std::string& file) {
   check_declared(*this, effect, file);
-  const auto same = [&](const FormulaEffect& other) { return other.name == effect.name; };
+  const auto same = [&](const formula::FormulaEffect& other) { return other.name == effect.name; };
   const auto old = std::find_if(formula_effects.begin(), formula_effects.end(), same);
   if (old == formula_effects.end()) {
     formula_effects.push_back(effect);
@@ -155,13 +158,13 @@ void ModelFile::declare(const FormulaEffect& effect, const std::string& file) {
   list_effects();
 }
 
-Formulas ModelFile::formulas() const {
-  std::vector<Formula> all;
+formula::Formulas ModelFile::formulas() const {
+  std::vector<formula::Formula> all;
   all.reserve(formula_effects.size());
-  for (const FormulaEffect& effect : formula_effects) {
-    all.push_back(compile(effect, plausible(*this), table_of(effect, name)));
+  for (const formula::FormulaEffect& effect : formula_effects) {
+    all.push_back(formula::compile(effect, plausible(*this), table_of(effect, name)));
   }
-  return Formulas(std::move(all));
+  return formula::Formulas(std::move(all));
 }
 
 double* ModelFile::value(std::string_view dotted) {
@@ -190,7 +193,7 @@ ModelFile read_model(const config::schema::Document& document) {
   ModelFile model;
   document.read([&](Visitor& v) { model.visit(v); });
   require_fit(model, document.name());
-  for (const FormulaEffect& effect : model.formula_effects) {
+  for (const formula::FormulaEffect& effect : model.formula_effects) {
     check_declared(model, effect, document.name());
   }
   const double* stroke_m = model.value("stroke_m");

@@ -45,10 +45,10 @@ struct ModelFile {
   std::string name;
   std::string plant = "hydraulic_actuator";
   double step_s = 0.001;
-  std::vector<NamedValue> parameters;  ///< all of the plant's, defaults filled in
+  std::vector<NamedValue> parameters;  ///< all parameters of the plant, defaults filled in
   std::vector<NamedValue> initial;     ///< NaN = the plant's own choice (half supply pressure)
-  std::vector<FormulaEffect> formula_effects;  ///< as declared
-  std::vector<Effect> effects;                 ///< the library's, then the formulas; present or not
+  std::vector<formula::FormulaEffect> formula_effects;  ///< as declared
+  std::vector<Effect> effects;  ///< the library's, then the formulas; present or not
   Loop loop;
 
   /// A model with the plant's defaults and no effect.
@@ -58,9 +58,9 @@ struct ModelFile {
   /// Declares a user's own effect, absent, in place of one of the same name. Throws
   /// config::schema::ConfigError when it is not one that can be simulated; `file` is for the
   /// message.
-  void declare(const FormulaEffect& effect, const std::string& file);
+  void declare(const formula::FormulaEffect& effect, const std::string& file);
   /// The formulas ready for simulation. Throws like declare() when one does not parse.
-  [[nodiscard]] Formulas formulas() const;
+  [[nodiscard]] formula::Formulas formulas() const;
 
   /// The value named "mass_kg", "friction.coulomb_N" or "initial.y_m"; null when unknown. Writing
   /// to an effect's parameter through this makes the effect present.

@@ -6,24 +6,25 @@
 
 namespace plant_sim {
 
-/// All numbers in the unit that the name's suffix says.
+/// All numbers in the unit of the name's suffix.
 struct ParameterInfo {
   const char* name;
   const char* what;
   double min;      ///< smallest allowed value
   double max;      ///< largest allowed value
-  double typical;  ///< a size worth noticing: where searches start
-  double neutral;  ///< the value without influence (effects), or the default (plants)
-  /// Plants: how far a rig may be from its model file, as a relative standard deviation; 0 = taken
-  /// as known, because the record cannot separate it from the others or because it is easily
-  /// measured.
+  double typical;  ///< typical size: where searches start
+  double neutral;  ///< value without effect (effects), or the default (plants)
+  /// Plants: relative standard deviation between rig and model file; 0 = taken as known, because
+  /// the record
+  /// cannot separate it from the others or because it is easily measured.
   double uncertainty_ratio = 0.0;
-  /// Effects: 0 = what the effect is; above, the number of a refinement of it, whose parameters
-  /// come and go together and have to earn their place.
+  /// Effects: 0 = main parameters; above 0, the number of a refinement, whose parameters are added
+  /// and
+  /// removed together.
   int refinement = 0;
 };
 
-/// A value by its name, as model files hold them.
+/// A named value of a model file.
 struct NamedValue {
   std::string name;
   double value;

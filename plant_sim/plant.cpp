@@ -103,14 +103,14 @@ class Simulated final : public Plant {
         [&](const ParameterInfo& info, double& value) { f(info.name, info, value); });
     model_.effects.each([&](auto tag, auto& parameters) {
       using Effect = typename decltype(tag)::Type;
-      if constexpr (fits<Effect, Model>()) {
+      if constexpr (effects::fits<Effect, Model>()) {
         parameters.visit([&](const ParameterInfo& info, double& value) {
           f(std::string(Effect::kName) + "." + info.name, info, value);
         });
       }
     });
     model_.effects.formulas().each(
-        [&](const FormulaView& formula, const ParameterInfo& info, double& value) {
+        [&](const formula::FormulaView& formula, const ParameterInfo& info, double& value) {
           f(std::string(formula.name) + "." + info.name, info, value);
         });
   }
@@ -120,7 +120,7 @@ class Simulated final : public Plant {
   }
 
   double step_s_;
-  Formulas formulas_;
+  formula::Formulas formulas_;
   Model model_;
   std::vector<Entry> infos_;
 };

@@ -24,8 +24,9 @@ class Plant {
   /// Back to the initial state of the model file, with the parameters as they are now.
   virtual void reset() noexcept = 0;
 
-  /// Holds u_V for duration_s: as many whole integration steps as fit, rounded to the nearest. A
-  /// voltage that is no number counts as 0 V. No allocation; states stay finite whatever comes.
+  /// Holds u_V for duration_s: whole integration steps, rounded to the nearest. NaN counts as 0 V.
+  /// No
+  /// allocation; states stay finite for any input.
   virtual void advance(double u_V, double duration_s) noexcept = 0;
 
   /// True rod position, from the retracted end stop.

@@ -29,7 +29,7 @@ inline double abs(double a) { return std::fabs(a); }
 inline bool all(bool mask) { return mask; }
 /// Largest lane.
 inline double reduce_max(double a) { return a; }
-/// at(index), where at gives a number for a whole index; of lanes, each with its own index.
+/// at(index), where `at` returns a number for an integer index; lanes have individual indices.
 template <class At>
 double pick(double index, At&& at) {
   return at(static_cast<std::size_t>(index));

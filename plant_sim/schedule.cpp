@@ -6,6 +6,7 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 
 namespace plant_sim {
 namespace {
@@ -19,7 +20,7 @@ constexpr double kSlack = 1e-6;
 void Change::visit(config::schema::Visitor& v) {
   v.text({"parameter", "a parameter of the model, as effect.name for an effect's", true},
          parameter);
-  v.number({"at_s", "when it starts", true}, at_s, {0.0, 1e9});
+  v.number({"at_s", "start time", true}, at_s, {0.0, 1e9});
   v.number({"value", "the new value"}, value);
   v.number({"factor", "the new value as a factor of the old"}, factor);
   v.number({"ramp_s", "time it takes; 0 is a step"}, ramp_s, {0.0, 1e9});
@@ -33,11 +34,10 @@ Schedule::Schedule(std::vector<Change> changes, Plant& plant) {
     const std::string where = "change of " + change.parameter;
     if (target == nullptr) {
       const std::vector<std::string> names = plant.parameter_names();
-      std::string known;
-      for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
       const std::string near = config::schema::nearest(change.parameter, names);
       throw config::schema::bad_config(
-          where, "no such parameter" + (near.empty() ? "" : ", did you mean " + near + "?"), known);
+          where, "no such parameter" + (near.empty() ? "" : ", did you mean " + near + "?"),
+          config::schema::joined(names));
     }
     if (std::isnan(change.value) == std::isnan(change.factor)) {
       throw config::schema::bad_config(where, "needs one of value and factor", "value or factor");

@@ -18,9 +18,10 @@ namespace plant_sim {
 struct Change {
   std::string parameter;  ///< "supply_pressure_Pa" or "friction.coulomb_N"
   double at_s = 0.0;      ///< when it starts
-  double value = std::numeric_limits<double>::quiet_NaN();   ///< in the parameter's own unit
-  double factor = std::numeric_limits<double>::quiet_NaN();  ///< of the value at construction
-  double ramp_s = 0.0;                                       ///< 0 = a step
+  double value = std::numeric_limits<double>::quiet_NaN();  ///< in the parameter's own unit
+  double factor =
+      std::numeric_limits<double>::quiet_NaN();  ///< factor on the value at construction
+  double ramp_s = 0.0;                           ///< 0 = a step
 
   void visit(config::schema::Visitor& v);
 };
@@ -47,11 +48,11 @@ class Schedule {
     bool started;
     bool done;
   };
-  /// Applies what is due at t_s; returns the time of the next thing to do (infinite: none).
+  /// Applies the changes due at t_s; returns the time of the next one (infinite: none).
   double apply(double t_s) noexcept;
 
   std::vector<Entry> entries_;  ///< in the order of at_s
-  std::size_t next_ = 0;        ///< all before it are done
+  std::size_t next_ = 0;        ///< index of the first pending entry
 };
 
 }  // namespace plant_sim

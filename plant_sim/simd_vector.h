@@ -33,7 +33,7 @@ class SimdVector {
     parts_ = written_out<Parts<Vector>>([&](std::size_t) { return Word::every(all); });
   }
 
-  /// From and to kSize doubles in a row.
+  /// Loads and stores kSize consecutive doubles.
   static SimdVector load(const double* from) {
     SimdVector lanes;
     std::memcpy(&lanes.parts_, from, sizeof(lanes.parts_));
@@ -185,7 +185,7 @@ double reduce_max(const SimdVector<W>& a) {
   for (std::size_t i = 1; i < SimdVector<W>::kSize; ++i) most = most > a[i] ? most : a[i];
   return most;
 }
-/// at(index), where at gives lanes for a whole index; each lane has its own index.
+/// at(index), where `at` returns lanes for an integer index; each lane has its own index.
 template <std::size_t W, class At>
 SimdVector<W> pick(const SimdVector<W>& index, At&& at) {
   SimdVector<W> picked;

@@ -11,13 +11,14 @@
 #include "config/schema/visitor.h"
 #include "config/signals/pressures.h"
 #include "plant_sim/instruments.h"
+#include "plant_sim/schedule.h"
 
 namespace plant_sim {
 
 /// TOML [[sim.pressure]].
 struct TransducerConfig {
   std::string of;          ///< one of kTransducers
-  double offset_Pa = 0.0;  ///< from from_s on
+  double offset_Pa = 0.0;  ///< added from from_s on
   double from_s = 0.0;
   double noise_Pa = 0.0;       ///< standard deviation
   double resolution_Pa = 0.0;  ///< 0: none
@@ -41,9 +42,24 @@ class Transducers {
  private:
   struct Transducer {
     TransducerConfig config;
-    Encoder converter;  ///< its steps and noise are in Pa here
+    Encoder converter;  ///< its steps and noise are in Pa
   };
   std::vector<Transducer> all_;
+};
+
+/// A simulated rig as a configuration describes it: the plant's model file, the instruments between
+/// it and the computer, a schedule of faults. TOML [sim] of the sim backend and of spoolwatch-rig.
+struct BenchPlant {
+  std::string model;
+  double encoder_resolution_m = 5e-6;
+  double noise_m = 0.0;
+  std::int64_t dac_bits = 12;
+  double dac_range_V = 10.0;
+  std::int64_t seed = 1;
+  std::vector<Change> faults;
+  std::vector<TransducerConfig> pressures;  ///< transducers with errors
+
+  void visit(config::schema::Visitor& v);
 };
 
 }  // namespace plant_sim

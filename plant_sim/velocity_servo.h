@@ -24,7 +24,8 @@ template <class S>
 class VelocityServo {
  public:
   static constexpr const char* kName = "velocity_servo";
-  static constexpr std::array kSites = {Site::command, Site::opening, Site::sensor};
+  static constexpr std::array kSites = {effects::Site::command, effects::Site::opening,
+                                        effects::Site::sensor};
 
   struct Parameters {
     S gain_mps_per_V = 0.05;
@@ -65,7 +66,7 @@ class VelocityServo {
   Parameters parameters;
   Initial initial;
   State state;
-  Effects<S> effects;
+  effects::Effects<S> effects;
 
   void reset() {
     state = {initial.y_m, initial.drive_mps};

@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "config/messages/declaration.h"
-
 namespace config::messages {
 namespace {
 

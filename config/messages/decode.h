@@ -19,4 +19,7 @@ template <class Message>
          message.decode(data, 0, size) >= 0;
 }
 
+/// The text of spoolwatch.lcm, as it is built into the program.
+[[nodiscard]] std::string_view declaration();
+
 }  // namespace config::messages

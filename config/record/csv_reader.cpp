@@ -1,12 +1,13 @@
-#include "config/record/csv_reader.h"
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "config/record/layout.h"
-#include "config/record/time_grid.h"
+#include "config/record/readers.h"
+#include "config/record/record.h"
+#include "config/record/whole_file.h"
 #include "config/schema/error.h"
 
 namespace config::record {
@@ -176,6 +177,40 @@ class CsvReader {
 
 Record read_csv(std::string_view text, const std::string& name) {
   return CsvReader(text, name).read();
+}
+
+namespace {
+
+void append(std::string& text, double value) {
+  if (std::isnan(value)) return;  // a missing value is an empty field
+  char buffer[32];
+  const auto result = std::to_chars(std::begin(buffer), std::end(buffer), value);
+  text.append(std::begin(buffer), result.ptr);
+}
+
+std::string csv_text(const Record& record) {
+  std::string text = "t_s,u_V,y_m";
+  for (const auto& [name, values] : record.further) text += "," + name;
+  text += '\n';
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    append(text, record.t_s[i]);
+    text += ',';
+    append(text, record.u_V[i]);
+    text += ',';
+    append(text, record.y_m[i]);
+    for (const auto& [name, values] : record.further) {
+      text += ',';
+      append(text, values[i]);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace
+
+void write_csv(const Record& record, const std::filesystem::path& file) {
+  write_whole(file, csv_text(record));
 }
 
 }  // namespace config::record

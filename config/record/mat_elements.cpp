@@ -4,7 +4,7 @@
 
 #include <bit>
 
-namespace config::record::mat {
+namespace config::record {
 namespace {
 
 constexpr std::size_t kHeaderBytes = 128;
@@ -46,33 +46,35 @@ class Inflater {
 
 }  // namespace
 
-bool is_version_5(std::string_view head) noexcept {
+bool is_mat_version_5(std::string_view head) noexcept {
   if (head.size() < kHeaderBytes) return false;
   const std::string_view version = head.substr(kVersionAt, 4);
   return version == std::string_view("\x00\x01IM", 4) ||
          version == std::string_view("\x01\x00MI", 4);
 }
 
-Elements Elements::of_file(std::string_view content, const std::string& name) {
+MatElements MatElements::of_file(std::string_view content, const std::string& name) {
   const bool little = content.substr(kVersionAt + 2, 2) == "IM";
   return {content.substr(kHeaderBytes), little != (std::endian::native == std::endian::little),
           true, name};
 }
 
-Elements Elements::within(std::string_view bytes) const { return {bytes, swapped_, false, *name_}; }
+MatElements MatElements::within(std::string_view bytes) const {
+  return {bytes, swapped_, false, *name_};
+}
 
-schema::DataError Elements::damaged(const std::string& what) const {
+schema::DataError MatElements::damaged(const std::string& what) const {
   return schema::bad_data(*name_, "is damaged: a variable's " + what + " make no sense",
                           "a MAT file of version 5 to 7");
 }
 
-Element Elements::next() {
+MatElement MatElements::next() {
   const auto cut = [this] {
     return top_ ? schema::bad_data(*name_, "is cut off within a variable") : damaged("parts");
   };
   if (rest_.size() < kTagBytes) throw cut();
   const auto first = load<std::uint32_t>(rest_, 0);
-  Element element{static_cast<Type>(first & 0xFFFFU), {}};
+  MatElement element{static_cast<MatType>(first & 0xFFFFU), {}};
   std::size_t used = kTagBytes;
   if (const std::size_t small = first >> 16U; small != 0) {
     if (small > 4) throw damaged("parts");
@@ -82,17 +84,17 @@ Element Elements::next() {
     if (bytes > rest_.size() - kTagBytes) throw cut();
     element.data = rest_.substr(kTagBytes, bytes);
     used += bytes;
-    if (element.type != Type::compressed) used += (kTagBytes - bytes % kTagBytes) % kTagBytes;
+    if (element.type != MatType::compressed) used += (kTagBytes - bytes % kTagBytes) % kTagBytes;
   }
   rest_.remove_prefix(std::min(used, rest_.size()));
   return element;
 }
 
-std::string Elements::unpack(const Element& element, std::size_t& total_bytes) const {
+std::string MatElements::unpack(const MatElement& element, std::size_t& total_bytes) const {
   Inflater inflater(element.data);
   const std::string tag = inflater.next(kTagBytes);
   if (tag.size() < kTagBytes ||
-      load<std::uint32_t>(tag, 0) != static_cast<unsigned>(Type::matrix)) {
+      load<std::uint32_t>(tag, 0) != static_cast<unsigned>(MatType::matrix)) {
     throw damaged("packed bytes");
   }
   const std::size_t bytes = load<std::uint32_t>(tag, 4);
@@ -104,4 +106,4 @@ std::string Elements::unpack(const Element& element, std::size_t& total_bytes) c
   return inflater.next(bytes);
 }
 
-}  // namespace config::record::mat
+}  // namespace config::record

@@ -12,9 +12,9 @@
 
 #include "config/schema/error.h"
 
-namespace config::record::mat {
+namespace config::record {
 
-enum class Type : std::uint32_t {
+enum class MatType : std::uint32_t {
   int8 = 1,
   uint8 = 2,
   int16 = 3,
@@ -29,27 +29,27 @@ enum class Type : std::uint32_t {
   compressed = 15
 };
 
-struct Element {
-  Type type;
+struct MatElement {
+  MatType type;
   std::string_view data;
 };
 
-[[nodiscard]] bool is_version_5(std::string_view head) noexcept;
+[[nodiscard]] bool is_mat_version_5(std::string_view head) noexcept;
 
 /// Reads elements one after the other, none beyond the bytes that there are.
-class Elements {
+class MatElements {
  public:
   /// After the file's header; `name` stands for the file in messages and must outlive this.
-  static Elements of_file(std::string_view content, const std::string& name);
+  static MatElements of_file(std::string_view content, const std::string& name);
   /// The elements inside `bytes`, which must outlive the result.
-  [[nodiscard]] Elements within(std::string_view bytes) const;
+  [[nodiscard]] MatElements within(std::string_view bytes) const;
 
   [[nodiscard]] bool at_end() const noexcept { return rest_.empty(); }
   /// Throws schema::DataError when it does not fit into what is left.
-  Element next();
+  MatElement next();
   /// The inside of the matrix that an element of type `compressed` holds; less than it states where
   /// it states too much, as matio does of texts. `total_bytes` counts what a file unpacks to.
-  [[nodiscard]] std::string unpack(const Element& element, std::size_t& total_bytes) const;
+  [[nodiscard]] std::string unpack(const MatElement& element, std::size_t& total_bytes) const;
 
   /// The number at bytes[at], which must be there.
   template <class T>
@@ -64,7 +64,7 @@ class Elements {
   [[nodiscard]] schema::DataError damaged(const std::string& what) const;
 
  private:
-  Elements(std::string_view bytes, bool swapped, bool top, const std::string& name)
+  MatElements(std::string_view bytes, bool swapped, bool top, const std::string& name)
       : rest_(bytes), swapped_(swapped), top_(top), name_(&name) {}
 
   std::string_view rest_;
@@ -73,4 +73,4 @@ class Elements {
   const std::string* name_;
 };
 
-}  // namespace config::record::mat
+}  // namespace config::record

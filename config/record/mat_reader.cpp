@@ -1,12 +1,12 @@
-#include "config/record/mat_reader.h"
+#include "config/record/readers.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "config/record/layout.h"
 #include "config/record/mat_variables.h"
-#include "config/record/time_grid.h"
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 
 namespace config::record {
 namespace {
@@ -60,11 +60,7 @@ std::string objection(const MatVariable& variable) {
   if (!variable.numeric) return "is of type " + variable.type;
   if (variable.complex) return "is complex";
   if (!variable.values.empty()) return "";
-  std::string dims;
-  for (const std::size_t extent : variable.dims) {
-    dims += (dims.empty() ? "" : " x ") + std::to_string(extent);
-  }
-  return "is " + dims;
+  return "is " + config::schema::joined(variable.dims, " x ");
 }
 
 class MatReader {

@@ -3,17 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <limits>
 
 #include "config/record/mat_elements.h"
-#include "config/schema/error.h"
 
 namespace config::record {
 namespace {
-
-using mat::Element;
-using mat::Elements;
-using mat::Type;
 
 constexpr int kDeepest = 4;  // structures in structures that are looked into
 constexpr std::size_t kMostValues = std::size_t{1} << 27U;
@@ -28,43 +22,43 @@ constexpr std::array kClasses = {"unknown",       "cell array", "structure", "ob
                                  "uint64",        "function",   "object"};
 
 template <class T>
-void append(const Elements& file, std::string_view bytes, std::vector<double>& values) {
+void append(const MatElements& file, std::string_view bytes, std::vector<double>& values) {
   for (std::size_t at = 0; at + sizeof(T) <= bytes.size(); at += sizeof(T)) {
     values.push_back(static_cast<double>(file.load<T>(bytes, at)));
   }
 }
 
 // The numbers of an element, stored as any type; false when it holds none.
-bool numbers(const Elements& file, const Element& element, std::vector<double>& values) {
+bool numbers(const MatElements& file, const MatElement& element, std::vector<double>& values) {
   switch (element.type) {
-    case Type::int8:
+    case MatType::int8:
       append<std::int8_t>(file, element.data, values);
       return true;
-    case Type::uint8:
+    case MatType::uint8:
       append<std::uint8_t>(file, element.data, values);
       return true;
-    case Type::int16:
+    case MatType::int16:
       append<std::int16_t>(file, element.data, values);
       return true;
-    case Type::uint16:
+    case MatType::uint16:
       append<std::uint16_t>(file, element.data, values);
       return true;
-    case Type::int32:
+    case MatType::int32:
       append<std::int32_t>(file, element.data, values);
       return true;
-    case Type::uint32:
+    case MatType::uint32:
       append<std::uint32_t>(file, element.data, values);
       return true;
-    case Type::int64:
+    case MatType::int64:
       append<std::int64_t>(file, element.data, values);
       return true;
-    case Type::uint64:
+    case MatType::uint64:
       append<std::uint64_t>(file, element.data, values);
       return true;
-    case Type::single:
+    case MatType::single:
       append<float>(file, element.data, values);
       return true;
-    case Type::real:
+    case MatType::real:
       append<double>(file, element.data, values);
       return true;
     default:
@@ -76,9 +70,9 @@ std::string text_of(std::string_view bytes) {
   return std::string(bytes.substr(0, bytes.find('\0')));
 }
 
-void read_dims(const Elements& file, const Element& element, MatVariable& variable) {
+void read_dims(const MatElements& file, const MatElement& element, MatVariable& variable) {
   std::vector<double> extents;
-  if (element.type != Type::int32 || !numbers(file, element, extents) || extents.size() < 2) {
+  if (element.type != MatType::int32 || !numbers(file, element, extents) || extents.size() < 2) {
     throw file.damaged("extents");
   }
   for (const double extent : extents) {
@@ -88,7 +82,7 @@ void read_dims(const Elements& file, const Element& element, MatVariable& variab
 }
 
 /// Number of values; damaged when there cannot be so many.
-std::size_t count_of(const Elements& file, const MatVariable& variable) {
+std::size_t count_of(const MatElements& file, const MatVariable& variable) {
   std::size_t count = 1;
   for (const std::size_t extent : variable.dims) {
     if (extent != 0 && count > kMostValues / extent) throw file.damaged("extents");
@@ -97,31 +91,31 @@ std::size_t count_of(const Elements& file, const MatVariable& variable) {
   return count;
 }
 
-MatVariable read_matrix(Elements file, int depth);
+MatVariable read_matrix(MatElements file, int depth);
 
-void read_fields(Elements& file, int depth, MatVariable& variable) {
-  const Element length = file.next();
+void read_fields(MatElements& file, int depth, MatVariable& variable) {
+  const MatElement length = file.next();
   std::vector<double> bytes;
   if (!numbers(file, length, bytes) || bytes.size() != 1 || !(bytes[0] >= 1.0)) {
     throw file.damaged("field names");
   }
   const auto each = static_cast<std::size_t>(bytes[0]);
-  const Element names = file.next();
+  const MatElement names = file.next();
   for (std::size_t at = 0; at + each <= names.data.size(); at += each) {
-    const Element field = file.next();
-    if (field.type != Type::matrix) throw file.damaged("fields");
+    const MatElement field = file.next();
+    if (field.type != MatType::matrix) throw file.damaged("fields");
     MatVariable value = read_matrix(file.within(field.data), depth + 1);
     value.name = text_of(names.data.substr(at, each));
     variable.fields.push_back(std::move(value));
   }
 }
 
-MatVariable read_matrix(Elements file, int depth) {
+MatVariable read_matrix(MatElements file, int depth) {
   MatVariable variable;
   variable.type = "empty";
   if (file.at_end()) return variable;
-  const Element flags = file.next();
-  if (flags.type != Type::uint32 || flags.data.size() != 8) throw file.damaged("flags");
+  const MatElement flags = file.next();
+  if (flags.type != MatType::uint32 || flags.data.size() != 8) throw file.damaged("flags");
   const auto word = file.load<std::uint32_t>(flags.data, 0);
   const unsigned kind = word & 0xFFU;
   variable.type = kClasses[kind < kClasses.size() ? kind : 0];
@@ -135,7 +129,7 @@ MatVariable read_matrix(Elements file, int depth) {
   if (kind >= kFirstNumeric && kind < kOpaque - 1) {
     variable.numeric = true;
     const std::size_t count = count_of(file, variable);
-    const Element real = file.next();
+    const MatElement real = file.next();
     const auto above_1 = [](std::size_t extent) { return extent > 1; };
     if (std::count_if(variable.dims.begin(), variable.dims.end(), above_1) > 1) return variable;
     if (!numbers(file, real, variable.values) || variable.values.size() != count) {
@@ -151,18 +145,18 @@ MatVariable read_matrix(Elements file, int depth) {
 
 }  // namespace
 
-bool is_mat_file(std::string_view head) noexcept { return mat::is_version_5(head); }
+bool is_mat_file(std::string_view head) noexcept { return is_mat_version_5(head); }
 
 std::vector<MatVariable> read_mat_variables(std::string_view content, const std::string& name) {
-  Elements file = Elements::of_file(content, name);
+  MatElements file = MatElements::of_file(content, name);
   std::vector<MatVariable> variables;
   std::size_t unpacked_bytes = 0;
   while (!file.at_end()) {
-    const Element element = file.next();
-    if (element.type == Type::compressed) {
+    const MatElement element = file.next();
+    if (element.type == MatType::compressed) {
       const std::string unpacked = file.unpack(element, unpacked_bytes);
       variables.push_back(read_matrix(file.within(unpacked), 0));
-    } else if (element.type == Type::matrix) {
+    } else if (element.type == MatType::matrix) {
       variables.push_back(read_matrix(file.within(element.data), 0));
     } else {
       throw file.damaged("type");

@@ -3,10 +3,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "config/record/csv_reader.h"
-#include "config/record/lcm_reader.h"
-#include "config/record/mat_reader.h"
 #include "config/record/mat_variables.h"
+#include "config/record/readers.h"
 #include "config/schema/error.h"
 
 namespace config::record {

@@ -2,7 +2,7 @@
 //
 // CSV: one header line whose names end in their unit (t_s, u_V, y_mm, ...); time, command and
 // position are found by their stem (t, u, y); any further column is kept under its name in SI
-// units (ref_mm becomes ref_m). MAT: vectors of these names (mat_reader.h). LCM: the sample_t
+// units (ref_mm becomes ref_m). MAT: vectors of these names. LCM: the sample_t
 // messages of one channel; the time is tick times sample time, and the further columns are the
 // other fields of the message and what is told beside it (sample_columns.h). Samples of stale or
 // bad quality, or without a command, are left out like any missing sample.

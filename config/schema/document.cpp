@@ -2,15 +2,42 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstddef>
 #include <fstream>
 #include <numeric>
 #include <sstream>
 
 #include "config/schema/error.h"
-#include "config/schema/key_depth.h"
 #include "config/schema/toml_reader.h"
 
 namespace config::schema {
+
+// Nesting depth of the dotted keys of a TOML text. toml++ limits the depth of values but not of
+// keys and destroys tables recursively: a key of many thousand parts would overflow the stack.
+
+/// Far above the depth of any shipped file.
+inline constexpr std::size_t kMostKeyParts = 64;
+
+/// Upper bound on the number of parts of any dotted key in `text`.
+[[nodiscard]] inline std::size_t most_key_parts(std::string_view text) noexcept {
+  std::size_t most = 0;
+  std::size_t parts = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"' || c == '\'') {  // a quoted part may hold anything but the end of the line
+      while (++i < text.size() && text[i] != c && text[i] != '\n') {
+        if (c == '"' && text[i] == '\\') ++i;
+      }
+    } else if (c == '#') {
+      i = std::min(text.find('\n', i), text.size()) - 1;
+    } else if (c == '.') {
+      most = std::max(most, ++parts + 1);
+    } else if (c == '=' || c == '[' || c == '{' || c == ',' || c == '\n') {
+      parts = 0;
+    }
+  }
+  return most;
+}
 
 struct Document::Data {
   std::string name;

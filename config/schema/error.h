@@ -2,9 +2,12 @@
 // allowed.
 //
 // They are thrown while files and arguments are read and caught once, in `main`, which prints
-// what() and exits with exit_code_of() (config/schema/exit_code.h).
+// what() and exits with exit_code_of().
 #pragma once
 
+#include <sysexits.h>
+#include <cstdlib>
+#include <exception>
 #include <stdexcept>
 #include <string>
 
@@ -69,6 +72,21 @@ class ConnectionFailed : public DeviceUnavailable {
 [[nodiscard]] inline DataError bad_data(const std::string& where, const std::string& what,
                                         const std::string& allowed = "") {
   return DataError(error_line(where, what, allowed));
+}
+
+/// Exit codes of the programs: 0 done, 1 failed, 2 usage, 65 bad data, 78 bad configuration. Only
+/// the main functions map errors to codes; a command that ends without an error and yet did not do
+/// what was asked returns EXIT_FAILURE.
+inline constexpr int kUsageExitCode = 2;
+
+[[nodiscard]] inline int exit_code_of(const std::exception& error) noexcept {
+  if (dynamic_cast<const UsageError*>(&error) != nullptr) return kUsageExitCode;
+  if (dynamic_cast<const DataError*>(&error) != nullptr) return EX_DATAERR;
+  if (dynamic_cast<const ConfigError*>(&error) != nullptr) return EX_CONFIG;
+  // 78 keeps a service manager from starting again at once; a lost connection may come back.
+  if (dynamic_cast<const ConnectionFailed*>(&error) != nullptr) return EXIT_FAILURE;
+  if (dynamic_cast<const DeviceUnavailable*>(&error) != nullptr) return EX_CONFIG;
+  return EXIT_FAILURE;
 }
 
 }  // namespace config::schema

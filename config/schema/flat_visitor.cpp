@@ -1,10 +1,10 @@
 // Fields as TOML text: scalar fields of a table first, as TOML requires, then its sub-tables.
 #include <charconv>
 #include <cmath>
-#include <sstream>
 
 #include "config/schema/document.h"
 #include "config/schema/flat_visitor.h"
+#include "config/schema/joined.h"
 
 namespace config::schema {
 namespace {
@@ -59,14 +59,10 @@ void FlatVisitor::choice(Key key, std::string& value, const std::vector<std::str
   add(key, toml_string(value));
 }
 void FlatVisitor::numbers(Key key, std::vector<double>& value, Range) {
-  std::string items;
-  for (const double item : value) items += (items.empty() ? "" : ", ") + shown(item);
-  add(key, "[" + items + "]");
+  add(key, "[" + joined_by(value, shown) + "]");
 }
 void FlatVisitor::texts(Key key, std::vector<std::string>& value) {
-  std::string items;
-  for (const std::string& item : value) items += (items.empty() ? "" : ", ") + toml_string(item);
-  add(key, "[" + items + "]");
+  add(key, "[" + joined_by(value, toml_string) + "]");
 }
 void FlatVisitor::table(Key key, const Body& body) { nested(key, false, body, false); }
 void FlatVisitor::optional_table(Key key, bool& present, const Body& body) {

@@ -6,7 +6,8 @@
 #include <map>
 #include <set>
 
-#include "config/units/unit_suffix.h"
+#include "config/schema/joined.h"
+#include "config/units/quantity.h"
 
 namespace config::schema {
 namespace {
@@ -41,11 +42,7 @@ std::string allowed_in(Range range) {
 
 std::string code(const std::string& text) { return "`" + text + "`"; }
 
-std::string codes(const std::vector<std::string>& texts) {
-  std::string list;
-  for (const std::string& one : texts) list += (list.empty() ? "" : ", ") + code(one);
-  return list;
-}
+std::string codes(const std::vector<std::string>& texts) { return joined_by(texts, code); }
 
 std::string cell(std::string text) {
   for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) {
@@ -118,8 +115,7 @@ class Collector final : public Visitor {
         before.empty() ? "" : '"' + before + '"');
   }
   void numbers(Key key, std::vector<double>& value, Range range) override {
-    std::string list;
-    for (const double one : value) list += (list.empty() ? "" : ", ") + shown(one);
+    const std::string list = joined_by(value, shown);
     add(key, "numbers", allowed_in(range), list.empty() ? "" : '[' + list + ']');
   }
   void texts(Key key, std::vector<std::string>& value) override {
@@ -313,9 +309,7 @@ class Reference {
       if (!again) order.push_back(key);
       by_key[key] = text;
     }
-    std::string text;
-    for (const std::string& key : order) text += (text.empty() ? "" : ", ") + by_key[key];
-    return text;
+    return joined_by(order, [&](const std::string& key) { return by_key[key]; });
   }
 
   const Visitor::Body& visit_default_;

@@ -7,6 +7,7 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 
 namespace config::schema {
 namespace {
@@ -115,8 +116,7 @@ void TomlReader::path(Key key, std::string& value, std::string_view /*evidence_c
 
 void TomlReader::choice(Key key, std::string& value, const std::vector<std::string_view>& allowed) {
   if (const toml::node* node = find(key)) {
-    std::string names;
-    for (std::string_view name : allowed) names += (names.empty() ? "" : ", ") + std::string(name);
+    const std::string names = joined(allowed);
     if (!node->is_string()) wrong_type(key, *node, names.c_str());
     for (std::string_view name : allowed) {
       if (node->as_string()->get() == name) {
@@ -207,11 +207,10 @@ void TomlReader::refuse_unknown_keys() const {
   for (const auto& [name, node] : table_) {
     if (asked_.count(name.str()) != 0) continue;
     const std::vector<std::string> names(asked_.begin(), asked_.end());
-    std::string known;
-    for (const std::string& key : names) known += (known.empty() ? "" : ", ") + key;
     const std::string near = nearest(name.str(), names);
     throw bad_config(where(name.str(), &node),
-                     "is unknown" + (near.empty() ? "" : ", did you mean " + near + "?"), known);
+                     "is unknown" + (near.empty() ? "" : ", did you mean " + near + "?"),
+                     joined(names));
   }
 }
 

@@ -1,14 +1,55 @@
 #include "config/units/quantity.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-
-#include "config/units/unit_suffix.h"
+#include <utility>
 
 namespace config::units {
+namespace {
+
+/// "N" of "N", "s2" of "s2", "m3/s" of "m3ps"; "" when it is no unit.
+std::string unit_word(std::string_view word) {
+  static constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
+      {"m3ps", "m3/s"}, {"mps", "m/s"}, {"rad", "rad"}, {"Pa", "Pa"}, {"kg", "kg"},
+      {"Hz", "Hz"},     {"N", "N"},     {"V", "V"},     {"m", "m"},   {"s", "s"}};
+  for (const auto& [name, unit] : kUnits) {
+    if (word == name) return std::string(unit);
+    const bool power = word.size() == name.size() + 1 && word.starts_with(name) &&
+                       word.back() >= '2' && word.back() <= '9' && unit == name;
+    if (power) return std::string(word);
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string unit_of(std::string_view name) {
+  // From the end, words that are units; one "per" among them divides. The first word is the name.
+  std::string unit;
+  std::string below;
+  bool divided = false;
+  for (std::size_t bar = name.rfind('_'); bar != std::string_view::npos && bar > 0;
+       bar = name.rfind('_')) {
+    const std::string_view word = name.substr(bar + 1);
+    if (word == "per" && !divided && !unit.empty()) {
+      divided = true;
+      std::swap(unit, below);
+    } else {
+      std::string one = unit_word(word);
+      if (one.empty()) break;
+      if (!unit.empty()) one.append(" ").append(unit);
+      unit = std::move(one);
+    }
+    name = name.substr(0, bar);
+  }
+  if (!divided) return unit;
+  if (unit.empty()) return "1/" + below;
+  const bool compound = below.find_first_of(" /") != std::string::npos;
+  return unit + "/" + (compound && below != "s" ? "(" + below + ")" : below);
+}
+
 namespace {
 
 struct Unit {
@@ -20,6 +61,7 @@ struct Unit {
 
 constexpr double kLitrePerMinute_m3ps = 1e-3 / 60.0;
 constexpr double kBar_Pa = 1e5;
+constexpr double kRoundsUp = 0.9995;  // in three digits
 
 /// Units of one SI unit are sorted by size, largest first.
 constexpr std::array kUnits{
@@ -27,7 +69,8 @@ constexpr std::array kUnits{
     Unit{"m", "mm", 1e-3, 1e-3},
     Unit{"m", "um", 1e-6, 0.0},
     Unit{"m/s", "m/s", 1.0, 1.0},
-    Unit{"m/s", "mm/s", 1e-3, 0.0},
+    Unit{"m/s", "mm/s", 1e-3, 1e-4},
+    Unit{"m/s", "um/s", 1e-6, 0.0},
     Unit{"m/s/V", "mm/s/V", 1e-3, 0.0},
     Unit{"m/V", "mm/V", 1e-3, 1e-3},
     Unit{"m/V", "um/V", 1e-6, 0.0},
@@ -59,7 +102,7 @@ std::string si_unit(std::string_view name) {
 
 Unit unit_for(const std::string& si, double size) {
   for (const Unit& unit : kUnits) {
-    if (si == unit.si && size >= unit.from) return unit;
+    if (si == unit.si && size >= kRoundsUp * unit.from) return unit;
   }
   return {si.c_str(), si.c_str(), 1.0, 0.0};
 }
@@ -79,13 +122,6 @@ std::string fixed(double value, int decimals) {
   return plain ? fmt::format("{:.{}f}", value, decimals) : fmt::format("{:.4g}", value);
 }
 
-/// Three digits, without an exponent where it reads well.
-std::string rounded(double value) {
-  const double size = std::abs(value);
-  if (size >= 100.0 && size < 1e5) return fmt::format("{:.0f}", value);
-  return fmt::format("{:.3g}", value);
-}
-
 void replace_all(std::string& text, const std::string& from, const std::string& to) {
   for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
     text.replace(at, from.size(), to);
@@ -93,6 +129,12 @@ void replace_all(std::string& text, const std::string& from, const std::string& 
 }
 
 }  // namespace
+
+std::string three_digits(double value) {
+  if (!std::isfinite(value)) return "-";
+  const double size = std::abs(value);
+  return size >= 100.0 && size < 1e5 ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
+}
 
 Quantity quantity(std::string_view name, double value, double std_error, double reference) {
   if (std::isinf(value)) return {"no limit", "", ""};
@@ -103,8 +145,8 @@ Quantity quantity(std::string_view name, double value, double std_error, double 
   const Unit unit = unit_for(si, size);
   const double shown = value / unit.in_si;
   const double error = std_error / unit.in_si;
-  if (!(error > 0.0) || std::isinf(error)) return {rounded(shown), "", unit.unit};
-  if (error > 1e3 * std::abs(shown)) return {rounded(shown), rounded(error), unit.unit};
+  if (!(error > 0.0) || std::isinf(error)) return {three_digits(shown), "", unit.unit};
+  if (error > 1e3 * std::abs(shown)) return {three_digits(shown), three_digits(error), unit.unit};
   const int decimals = decimals_for(shown, error);
   const bool lost = error < 0.5 * std::pow(10.0, -decimals);
   return {fixed(shown, decimals), lost ? fmt::format("{:.1g}", error) : fixed(error, decimals),
@@ -117,14 +159,16 @@ std::string words(const Quantity& quantity) {
 }
 
 std::string length_words(double length_m) {
-  if (!std::isfinite(length_m)) return "unknown";
-  return words(quantity("length_m", length_m, std::nan("")));
+  return std::isfinite(length_m) ? words(quantity("length_m", length_m, std::nan(""))) : "-";
+}
+
+std::string speed_words(double speed_mps) {
+  return std::isfinite(speed_mps) ? words(quantity("speed_mps", speed_mps, std::nan(""))) : "-";
 }
 
 std::string chance_words(double p) {
-  constexpr double kLeast = 1e-6;
   if (!std::isfinite(p)) return "-";
-  return p < kLeast ? fmt::format("below {:.0e}", kLeast) : fmt::format("{:.2g}", p);
+  return p < 1e-6 ? "< 1e-6" : fmt::format("{:.2g}", p);
 }
 
 std::string times_words(double ratio) {

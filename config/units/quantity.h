@@ -22,10 +22,18 @@ struct Quantity {
 /// "145 +- 2 N"; without the error when it is not known.
 [[nodiscard]] std::string words(const Quantity& quantity);
 
-/// "26.3 um", "1.42 mm"; "unknown" for NaN.
+// Numbers for tables and sentences; "-" for a missing one.
+
+/// "0.31", "381", "1520".
+[[nodiscard]] std::string three_digits(double value);
+
+/// "26.3 um", "1.42 mm".
 [[nodiscard]] std::string length_words(double length_m);
 
-/// "3.1e-05", "below 1e-12": a probability.
+/// "0.31 mm/s".
+[[nodiscard]] std::string speed_words(double speed_mps);
+
+/// "3.1e-05", "< 1e-6": a probability.
 [[nodiscard]] std::string chance_words(double p);
 
 /// "Coulomb" of "friction.coulomb_N", "half width" of "deadband.half_width_V".
@@ -36,5 +44,8 @@ struct Quantity {
 
 /// Text for the page: "um" as the micrometre sign has it, "+-" as one sign.
 [[nodiscard]] std::string typeset(std::string text);
+
+/// "N s/m" for "damping_N_s_per_m"; "" for a number without a unit.
+[[nodiscard]] std::string unit_of(std::string_view name);
 
 }  // namespace config::units

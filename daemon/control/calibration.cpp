@@ -13,11 +13,11 @@ void Calibration::visit(config::schema::Visitor& v) {
   v.text({"rig_id", "[rig] id at commissioning", true}, rig_id);
   v.text({"date", "date of commissioning", true}, date);
   v.text({"wiring", "hash of the wiring at commissioning"}, wiring);
-  v.number({"latency_s", "from command to motion: dead time and lag", true}, latency_s,
+  v.number({"latency_s", "time from command to motion: dead time and lag", true}, latency_s,
            {0.0, 10.0});
   v.table({"valve", "properties of the valve"}, [this](config::schema::Visitor& t) {
     t.integer({"sign", "1: a higher voltage extends the rod; -1", true}, valve_sign, {-1, 1});
-    t.number({"null_V", "voltage at which the rod stands still", true}, null_V, {-100.0, 100.0});
+    t.number({"null_V", "voltage at which the rod does not move", true}, null_V, {-100.0, 100.0});
     t.number({"dead_zone_V", "width of the range of voltages without motion", true}, dead_zone_V,
              {0.0, 100.0});
     t.number({"gain_mps_per_V", "speed per voltage outside the dead zone"}, gain_mps_per_V,

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/signals/nan.h"
+
 namespace monitor::control {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 // Shares of max_travel.
@@ -41,33 +43,19 @@ constexpr double kStill_s = 0.1;
 }  // namespace
 
 const char* to_string(Failure failure) noexcept {
-  switch (failure) {
-    case Failure::none:
-      return "done";
-    case Failure::travel:
-      return "the rod moved too far";
-    case Failure::speed:
-      return "the rod moved too fast";
-    case Failure::wrong_way:
-      return "the rod moved against the command";
-    case Failure::no_motion:
-      return "no motion at full authority";
-    case Failure::no_reading:
-      return "the position is missing or stale";
-    case Failure::reversed:
-      return "the reading falls as the command rises";
-    case Failure::too_noisy:
-      return "the reading is too noisy for such a small travel";
-    case Failure::no_level:
-      return "no command gives a steady speed within the travel";
-    case Failure::too_slow:
-      return "the rod responds too late for such short pulses";
-    case Failure::no_index:
-      return "reached a stop before the index";
-    case Failure::too_long:
-      return "the stage takes too long";
-  }
-  return "";
+  constexpr const char* kTexts[] = {"done",
+                                    "the rod moved too far",
+                                    "the rod moved too fast",
+                                    "the rod moved against the command",
+                                    "no motion at full authority",
+                                    "the position is missing or stale",
+                                    "the reading falls as the command rises",
+                                    "the reading is too noisy for such a small travel",
+                                    "no command gives a steady speed within the travel",
+                                    "the rod responds too late for such short pulses",
+                                    "reached a stop before the index",
+                                    "the stage takes too long"};
+  return kTexts[static_cast<std::size_t>(failure)];
 }
 
 Commissioning::Commissioning(const CommissioningLimits& limits) noexcept
@@ -212,9 +200,7 @@ void Commissioning::pause_over(double now_s) noexcept {
       findings_.noise_m = before_.noise_m();
       findings_.drift_mps = before_.slope_mps();
       finish();
-      if (kNoises * findings_.noise_m > kNoisy * limits_.max_travel_m) {
-        fail(Failure::too_noisy);
-      }
+      if (kNoises * findings_.noise_m > kNoisy * limits_.max_travel_m) fail(Failure::too_noisy);
       break;
     case Stage::sign:
       // A pulse and its opposite, so that travel unseen by a dead sensor is undone. The first one

@@ -15,8 +15,8 @@ Controller::Controller(const ControllerConfig& config, const ValveLimits& limits
       step_V_(limits.slew_V_per_s * sample_time_s),
       last_V_(limits.null_V) {}
 
-Command Controller::update(double reference_m, double y_m, int periods) noexcept {
-  Command command;
+ValveCommand Controller::update(double reference_m, double y_m, int periods) noexcept {
+  ValveCommand command;
   command.requested_V = limits_.null_V + kp_V_per_m_ * (reference_m - y_m);
   const double ranged_V = std::clamp(command.requested_V, limits_.null_V - limits_.limit_V,
                                      limits_.null_V + limits_.limit_V);

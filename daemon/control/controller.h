@@ -23,7 +23,7 @@ struct ValveLimits {
   double slew_V_per_s = std::numeric_limits<double>::infinity();
 };
 
-struct Command {
+struct ValveCommand {
   double requested_V = 0.0;  ///< before limits
   double limited_V = 0.0;    ///< to write to the valve
   bool saturated = false;    ///< the range or slew limit was active
@@ -38,7 +38,7 @@ class Controller {
   void reset() noexcept { last_V_ = limits_.null_V; }
   [[nodiscard]] double null_V() const noexcept { return limits_.null_V; }
   /// `periods` >= 1 since the last call, so that the slew limit counts time, not calls.
-  Command update(double reference_m, double y_m, int periods = 1) noexcept;
+  ValveCommand update(double reference_m, double y_m, int periods = 1) noexcept;
 
  private:
   double kp_V_per_m_;

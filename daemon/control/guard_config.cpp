@@ -76,7 +76,7 @@ void GuardConfig::visit(config::schema::Visitor& v) {
   std::vector<std::string_view> names;
   for (const Kind& k : kKinds) names.emplace_back(k.name);
   v.text({"id", "name in alarms; default: the kind"}, id);
-  v.choice({"kind", "what is monitored", true}, kind, names);
+  v.choice({"kind", "kind of guard", true}, kind, names);
   if (id.empty()) id = kind;
   const GuardKind w = which();
   v.choice({"action", "action when the limits are exceeded"}, action, actions_of(w));
@@ -110,7 +110,7 @@ void GuardConfig::visit(config::schema::Visitor& v) {
 }
 
 void SafetyConfig::visit(config::schema::Visitor& v) {
-  v.table({"safety", "how motion starts and stops"}, [this](config::schema::Visitor& t) {
+  v.table({"safety", "start and stop of motion"}, [this](config::schema::Visitor& t) {
     t.number({"ramp_s", "duration of a guard's ramp from the last command to null"}, ramp_s,
              {0.0, 10.0});
     t.number({"blend_s", "duration of blending from the rod's position to the reference signal"},

@@ -24,13 +24,36 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "config/schema/visitor.h"
-#include "daemon/control/action.h"
 #include "daemon/control/failover.h"
 
 namespace monitor::control {
+
+/// The actions of a tripped guard, weakest first.
+///
+///   indicate  an alarm, nothing else
+///   hold      the reference is frozen at the present position; the controller stays active
+///   ramp      the command falls linearly to null over ramp_s, then DISARMED
+///   disarm    null at once, DISARMED
+///   latch     null at once, LATCHED
+enum class Action : std::uint8_t { none, indicate, hold, ramp, disarm, latch };
+
+[[nodiscard]] constexpr const char* to_string(Action action) noexcept {
+  constexpr const char* kTexts[] = {"none", "indicate", "hold", "ramp", "disarm", "latch"};
+  return kTexts[static_cast<std::size_t>(action)];
+}
+
+/// Action::none for an unknown name.
+[[nodiscard]] constexpr Action action_of(std::string_view name) noexcept {
+  for (const Action action :
+       {Action::indicate, Action::hold, Action::ramp, Action::disarm, Action::latch}) {
+    if (name == to_string(action)) return action;
+  }
+  return Action::none;
+}
 
 enum class GuardKind : std::uint8_t {
   e_stop,

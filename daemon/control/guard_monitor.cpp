@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/control/sensor_watch.h"
+#include "config/signals/nan.h"
+#include "daemon/control/position_voter.h"
 
 namespace monitor::control {
 namespace {
@@ -14,7 +15,7 @@ constexpr double kRounding_s = 1e-9;
 /// jerk).
 constexpr double kReturnMargin_m = 1e-3;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 
 double upper_limit(const GuardConfig& config) noexcept {
   switch (config.which()) {

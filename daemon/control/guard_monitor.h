@@ -2,7 +2,6 @@
 // thread; no allocation after construction.
 #pragma once
 
-#include <cstdint>
 #include <limits>
 #include <vector>
 

@@ -17,7 +17,6 @@
 
 #include <array>
 #include <cstddef>
-#include <string_view>
 
 #include "daemon/control/arming.h"
 

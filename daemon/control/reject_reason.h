@@ -20,7 +20,7 @@ enum class RejectReason : std::uint8_t {
 };
 
 /// The loop's answer to the command with that number.
-struct Answer {
+struct CommandAnswer {
   std::uint32_t number = 0;
   RejectReason reject_reason = RejectReason::none;
   State state = State::disarmed;
@@ -28,12 +28,12 @@ struct Answer {
 };
 
 /// Packs an answer into one word, for an atomic.
-[[nodiscard]] constexpr std::uint64_t pack(const Answer& a) noexcept {
+[[nodiscard]] constexpr std::uint64_t pack(const CommandAnswer& a) noexcept {
   return (std::uint64_t{a.number} << 32U) | (std::uint64_t{a.guard} << 16U) |
          (static_cast<std::uint64_t>(a.reject_reason) << 8U) | static_cast<std::uint64_t>(a.state);
 }
 
-[[nodiscard]] constexpr Answer unpack(std::uint64_t word) noexcept {
+[[nodiscard]] constexpr CommandAnswer unpack(std::uint64_t word) noexcept {
   return {static_cast<std::uint32_t>(word >> 32U),
           static_cast<RejectReason>(static_cast<std::uint8_t>(word >> 8U)),
           static_cast<State>(static_cast<std::uint8_t>(word)),

@@ -33,7 +33,7 @@ Detector::Detector(const Parts& parts, const Identity& identity)
       changed_([this](const Alarm& alarm) { publish(alarm, false); }),
       guard_alarms_(identity.guards, parts.pipeline.alarms()),
       rod_alarms_(rods_of(identity), identity.sample_time_s),
-      alarm_commands_(parts.alarm_commands, parts.alarm_answers),
+      alarm_commands_(parts.alarms.commands, parts.alarms.answers),
       spare_rods_(std::min(identity.spare_rods.size(), rt::kMaxSpareRods)),
       inputs_(std::min(identity.inputs.size(), rt::kMaxInputs)),
       next_second_ns_(parts.clock.now_ns() + kSecond_ns) {
@@ -46,9 +46,7 @@ Detector::Detector(const Parts& parts, const Identity& identity)
   for (std::size_t i = 0; i < spare_rods_; ++i) {
     health_.device.push_back("spare_rod." + identity.spare_rods[i]);
   }
-  for (std::size_t i = 0; i < inputs_; ++i) {
-    health_.device.push_back("input." + identity.inputs[i]);
-  }
+  for (std::size_t i = 0; i < inputs_; ++i) health_.device.push_back("input." + identity.inputs[i]);
   for (const control::GuardConfig& guard : identity.guards) guard_ids_.push_back(guard.id);
   health_.device_count = static_cast<std::int32_t>(health_.device.size());
   health_.device_good.resize(health_.device.size());
@@ -64,7 +62,8 @@ void Detector::poll() {
   apply_updates();
   alarm_commands_.serve(parts_.pipeline.alarms(), changed_);
   drain();
-  if (parts_.store != nullptr) parts_.store->keep(parts_.pipeline.alarms(), parts_.clock.utc_us());
+  if (parts_.alarms.store != nullptr)
+    parts_.alarms.store->keep(parts_.pipeline.alarms(), parts_.clock.utc_us());
   if (parts_.clock.now_ns() < next_second_ns_) return;
   once_a_second();
   next_second_ns_ += kSecond_ns;
@@ -75,14 +74,15 @@ void Detector::poll() {
 void Detector::finish() {
   drain();
   once_a_second();
-  if (parts_.store != nullptr) parts_.store->keep(parts_.pipeline.alarms(), parts_.clock.utc_us());
+  if (parts_.alarms.store != nullptr)
+    parts_.alarms.store->keep(parts_.pipeline.alarms(), parts_.clock.utc_us());
 }
 
 void Detector::process(const Sample& sample) {
   tick_ = sample.tick;
-  if (parts_.evidence != nullptr && parts_.evidence->wants_state(tick_)) {
-    estimator::fdi::save_snapshot(parts_.pipeline, parts_.pipeline_hash, tick_, snapshot_);
-    parts_.evidence->state(snapshot_, tick_);
+  if (parts_.alarms.evidence != nullptr && parts_.alarms.evidence->wants_state(tick_)) {
+    estimator::fdi::save_snapshot(parts_.pipeline, parts_.alarms.pipeline_hash, tick_, snapshot_);
+    parts_.alarms.evidence->state(snapshot_, tick_);
   }
   guard_alarms_.report(parts_.stats.guards, tick_, changed_);
   rod_alarms_.report(sample, parts_.pipeline.alarms(), changed_);
@@ -104,7 +104,7 @@ void Detector::on_alarm(const Alarm& alarm) { publish(alarm, false); }
 
 void Detector::publish(const Alarm& alarm, bool repeat) {
   parts_.publisher.alarm(alarm, repeat, stamp());
-  if (parts_.evidence != nullptr && !repeat) keep_evidence(alarm);
+  if (parts_.alarms.evidence != nullptr && !repeat) keep_evidence(alarm);
 }
 
 void Detector::keep_evidence(const Alarm& alarm) {
@@ -113,14 +113,14 @@ void Detector::keep_evidence(const Alarm& alarm) {
   std::int64_t& times = times_[static_cast<std::size_t>(&alarm - all.data())];
   const bool came = alarm.times != times && alarm.annunciated() && alarm.source != "evidence";
   times = alarm.times;
-  if (came) parts_.evidence->alarm(alarm, stamp().utc_us);
+  if (came) parts_.alarms.evidence->alarm(alarm, stamp().utc_us);
 }
 
 void Detector::apply_updates() {
   std::shared_ptr<DetectionUpdate> change;
-  while (parts_.updates != nullptr && parts_.updates->pop(change)) {
+  while (parts_.updates.pending != nullptr && parts_.updates.pending->pop(change)) {
     apply_update(*change);
-    parts_.applied_updates->push(change);
+    parts_.updates.applied->push(change);
   }
 }
 
@@ -148,12 +148,13 @@ void Detector::apply_update(DetectionUpdate& change) {
   }
   std::swap(parts_.pipeline, next);
   if (parts_.detectability != nullptr) parts_.detectability->clear();
-  parts_.pipeline_hash = change.pipeline_hash;
+  parts_.alarms.pipeline_hash = change.pipeline_hash;
   health_.config_hash = change.config_hash;
   // Alarms that stood before the update already have their evidence.
   times_.clear();
   for (const Alarm& alarm : parts_.pipeline.alarms().alarms()) times_.push_back(alarm.times);
-  if (parts_.evidence != nullptr) parts_.evidence->reconfigure(std::move(change.evidence_files));
+  if (parts_.alarms.evidence != nullptr)
+    parts_.alarms.evidence->reconfigure(std::move(change.evidence_files));
   change.tick = tick_;
 }
 
@@ -202,22 +203,22 @@ void Detector::once_a_second() {
       parts_.publisher.status(),
       parts_.recorder != nullptr ? parts_.recorder->status() : io::RecorderStatus{}, tick_,
       parts_.pipeline.alarms(), changed_,
-      parts_.evidence != nullptr ? parts_.evidence->status() : io::EvidenceStatus{});
+      parts_.alarms.evidence != nullptr ? parts_.alarms.evidence->status() : io::EvidenceStatus{});
   update_alarm_file_alarms();
   parts_.pipeline.alarms().for_each_active([this](const Alarm& alarm) { publish(alarm, true); });
   health();
 }
 
 void Detector::update_alarm_file_alarms() {
-  if (parts_.store != nullptr) {
-    const int error = parts_.store->error();
+  if (parts_.alarms.store != nullptr) {
+    const int error = parts_.alarms.store->error();
     condition("alarms", "not_saved", Severity::minor, error != 0,
               error != 0 ? std::string("alarm states cannot be saved for a restart: ") +
                                std::strerror(error)
                          : "");
   }
-  if (parts_.audit == nullptr) return;
-  const std::int64_t lost = parts_.audit->lost();
+  if (parts_.alarms.audit == nullptr) return;
+  const std::int64_t lost = parts_.alarms.audit->lost();
   condition("alarms", "audit_lost", Severity::minor, lost > audit_lost_before_,
             "operator commands could not be written to the audit file");
   audit_lost_before_ = lost;

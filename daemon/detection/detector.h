@@ -9,8 +9,6 @@
 #include "daemon/detection/alarm_command_queue.h"
 #include "daemon/detection/detectability_monitor.h"
 #include "daemon/detection/detection_update.h"
-#include "daemon/detection/guard_alarms.h"
-#include "daemon/detection/rod_alarms.h"
 #include "daemon/detection/system_alarms.h"
 #include "daemon/io/alarm_store.h"
 #include "daemon/io/audit.h"
@@ -28,6 +26,20 @@ namespace monitor::detection {
 
 class Detector final : public rt::SampleConsumer, private estimator::fdi::Events {
  public:
+  /// Operator commands, persistence and evidence. Pointers may be null.
+  struct AlarmParts {
+    AlarmCommandQueue* commands = nullptr;  ///< with `answers`
+    AlarmAnswerQueue* answers = nullptr;
+    io::AlarmStore* store = nullptr;
+    const io::Audit* audit = nullptr;
+    io::Evidence* evidence = nullptr;
+    std::uint64_t pipeline_hash = 0;  ///< schema::hash_of(whole_text), for evidence
+  };
+  /// Configuration updates: those to apply and those applied. Both or none.
+  struct UpdateQueues {
+    DetectionUpdateQueue* pending = nullptr;
+    DetectionUpdateQueue* applied = nullptr;
+  };
   /// Collaborators; must outlive the detector. Pointers may be null.
   struct Parts {
     rt::Clock& clock;
@@ -36,14 +48,8 @@ class Detector final : public rt::SampleConsumer, private estimator::fdi::Events
     estimator::fdi::Pipeline& pipeline;
     io::Publisher& publisher;
     const io::Recorder* recorder;
-    AlarmCommandQueue* alarm_commands = nullptr;  ///< operator commands; with `alarm_answers`
-    AlarmAnswerQueue* alarm_answers = nullptr;
-    io::AlarmStore* store = nullptr;
-    const io::Audit* audit = nullptr;
-    io::Evidence* evidence = nullptr;
-    std::uint64_t pipeline_hash = 0;          ///< schema::hash_of(whole_text), for evidence
-    DetectionUpdateQueue* updates = nullptr;  ///< with `applied_updates`
-    DetectionUpdateQueue* applied_updates = nullptr;
+    AlarmParts alarms{};
+    UpdateQueues updates{};
     DetectabilityMonitor* detectability = nullptr;
   };
   /// Constant facts, mostly fields of health_t.

@@ -108,7 +108,8 @@ void ControlConfig::visit(config::schema::Visitor& v) {
   v.path({"socket", "path of the control socket; empty: none"}, socket);
   v.text({"mode", "permissions of the socket, octal"}, mode);
   v.text({"group", "group of the socket; its members may connect and query as mode allows"}, group);
-  v.text({"act_group", "its members may command; empty: members of group"}, act_group);
+  v.text({"act_group", "group whose members may send commands; empty: members of group"},
+         act_group);
 }
 
 void check_control(const ControlConfig& config, const std::string& file) {

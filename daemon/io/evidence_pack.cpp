@@ -6,13 +6,11 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "config/schema/hash.h"
 #include "daemon/io/audit.h"
-#include "daemon/io/event_log.h"
 
 namespace monitor::io {
 namespace {
@@ -121,7 +119,7 @@ std::string words(const fs::path& folder, const EvidenceFacts& facts,
   return "Evidence of alarm " + std::string(t.source) + "." + t.name + " on rig " + facts.rig_id +
          ", " + utc_text(t.utc_us) + ", sample " + std::to_string(t.tick) + ".\n" +
          (contents.inexact.empty()
-              ? "Lead the fault detection to the same alarm again, bit for bit:\n  spoolwatch "
+              ? "Replay the fault detection to the same alarm, bit for bit:\n  spoolwatch "
                 "replay " +
                     fs::absolute(folder).string() + "\n"
               : "It cannot be replayed: " + contents.inexact + ".\n") +

@@ -13,7 +13,6 @@
 #include <functional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "daemon/io/evidence.h"
 

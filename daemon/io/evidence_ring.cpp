@@ -89,9 +89,7 @@ void EvidenceRing::take(std::span<const std::uint8_t> record) {
 void EvidenceRing::finish() { write_due(true); }
 
 void EvidenceRing::forget_overwritten() {
-  while (!checkpoints_.empty() && checkpoints_.front().at < ring_.begin()) {
-    checkpoints_.pop_front();
-  }
+  while (!checkpoints_.empty() && checkpoints_.front().at < ring_.begin()) checkpoints_.pop_front();
 }
 
 void EvidenceRing::write_due(bool all) {

@@ -6,7 +6,6 @@
 #include <cstring>
 #include <string>
 #include <system_error>
-#include <vector>
 
 #include "config/schema/error.h"
 #include "daemon/io/byte_buffers.h"
@@ -100,9 +99,7 @@ RecorderStatus Recorder::status() const noexcept {
 }
 
 void Recorder::drain() {
-  while (queue_->pop(record_)) {
-    lost_.fetch_add(backlog_->push(record_), std::memory_order_relaxed);
-  }
+  while (queue_->pop(record_)) lost_.fetch_add(backlog_->push(record_), std::memory_order_relaxed);
   if (retry_in_ > 0) {
     --retry_in_;
   } else {

@@ -126,20 +126,20 @@ RejectReason Loop::carry_out(Event event, bool at_once) noexcept {
   return RejectReason::none;
 }
 
-RejectReason Loop::carry_out(const Command& command) noexcept {
+RejectReason Loop::carry_out(const LoopCommand& command) noexcept {
   if (parts_.clock.now_ns() >= command.expires_ns) {
     parts_.stats.expired_commands.add();
     return RejectReason::expired;
   }
-  if (command.kind == Command::Kind::readmit) {
+  if (command.kind == LoopCommand::Kind::readmit) {
     position_sensor_.voter().readmit();
     return RejectReason::none;
   }
-  if (command.kind == Command::Kind::event) return carry_out(command.event, command.at_once);
+  if (command.kind == LoopCommand::Kind::event) return carry_out(command.event, command.at_once);
   if (arming_.state() == State::monitor) return RejectReason::monitor;
   const bool run = arming_.state() == State::run && !ramp_.active();
   if (run && !have_position()) return RejectReason::position;
-  if (command.kind == Command::Kind::hold) {
+  if (command.kind == LoopCommand::Kind::hold) {
     if (!run) return RejectReason::state;
     reference_.hold(y_m_);
     return RejectReason::none;
@@ -152,7 +152,7 @@ RejectReason Loop::carry_out(const Command& command) noexcept {
 }
 
 void Loop::take_commands() noexcept {
-  Command command;
+  LoopCommand command;
   while (parts_.commands.pop(command)) {
     const RejectReason reject_reason = carry_out(command);
     if (reject_reason != RejectReason::none && reject_reason != RejectReason::expired) {
@@ -215,7 +215,7 @@ void Loop::drive(const Period& period, Sample& sample) noexcept {
   double command_V = null_V_;
   if (controlling) {
     const int periods = static_cast<int>(std::min<std::int64_t>(period.skipped + 1, 1000));
-    const control::Command command =
+    const control::ValveCommand command =
         controller_.update(sample.reference_m, y_m_ + position_sensor_.voter().bump_m(), periods);
     sample.u_requested_V = command.requested_V;
     sample.saturated = command.saturated;

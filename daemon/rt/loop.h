@@ -25,7 +25,6 @@
 #include "daemon/rt/clock.h"
 #include "daemon/rt/grid.h"
 #include "daemon/rt/loop_stats.h"
-#include "daemon/rt/overrun.h"
 #include "daemon/rt/queues.h"
 #include "daemon/rt/redundant_position_sensor.h"
 #include "hal/device.h"
@@ -86,7 +85,7 @@ class Loop {
 
  private:
   void take_commands() noexcept;
-  [[nodiscard]] control::RejectReason carry_out(const Command& command) noexcept;
+  [[nodiscard]] control::RejectReason carry_out(const LoopCommand& command) noexcept;
   [[nodiscard]] control::RejectReason carry_out(control::Event event, bool at_once) noexcept;
   /// Why arming or starting is forbidden.
   [[nodiscard]] control::RejectReason obstacle(control::Event event) const noexcept;
@@ -122,7 +121,7 @@ class Loop {
   double null_V_;
   std::int64_t max_bad_in_a_row_;
   bool may_arm_;
-  control::Answer answer_;  ///< to the newest command, published at the end of the tick
+  control::CommandAnswer answer_;  ///< to the newest command, published at the end of the tick
   bool closing_ = false;
   bool permit_on_ = false;
   bool interrupted_ = false;   ///< in RUN, but the previous tick wrote null

@@ -12,7 +12,7 @@
 namespace monitor::rt {
 
 /// A command to the loop; a command that arrives at or after expires_ns is dropped and counted.
-struct Command {
+struct LoopCommand {
   /// readmit: rod sensors that are right again may vote again
   enum class Kind : std::uint8_t { event, sine, hold, readmit };
   Kind kind = Kind::event;
@@ -24,11 +24,11 @@ struct Command {
   double frequency_Hz = 0.0;
   std::int64_t expires_ns = 0;  ///< on the loop's clock
 };
-static_assert(std::is_trivially_copyable_v<Command>);
+static_assert(std::is_trivially_copyable_v<LoopCommand>);
 
 /// Ten seconds of a 200 Hz loop.
 using SampleQueue =
     boost::lockfree::spsc_queue<config::signals::Sample, boost::lockfree::capacity<2000>>;
-using CommandQueue = boost::lockfree::spsc_queue<Command, boost::lockfree::capacity<32>>;
+using CommandQueue = boost::lockfree::spsc_queue<LoopCommand, boost::lockfree::capacity<32>>;
 
 }  // namespace monitor::rt

@@ -1,7 +1,6 @@
 #include "daemon/rt/redundant_position_sensor.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace monitor::rt {
 

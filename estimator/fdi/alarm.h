@@ -10,7 +10,6 @@
 
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "config/schema/visitor.h"
@@ -78,7 +77,7 @@ struct Alarm {
 
   AlarmRules rules{};
   bool latched = false;            ///< active only because not acknowledged
-  bool acknowledged = true;        ///< or nothing to acknowledge
+  bool acknowledged = true;        ///< true as well when there is nothing to acknowledge
   bool shelved = false;            ///< until shelved_until
   bool chattering = false;         ///< held active until quiet
   std::int64_t shelved_until = 0;  ///< tick
@@ -90,7 +89,7 @@ struct Alarm {
 
   /// Active and not shelved.
   [[nodiscard]] bool annunciated() const noexcept { return active && !shelved; }
-  /// Not normal, shelved or not.
+  /// Active or unacknowledged, shelved or not.
   [[nodiscard]] bool stands() const noexcept { return active || !acknowledged; }
   /// Set by a band on an estimated or measured quantity; not by a guard or the daemon itself.
   [[nodiscard]] bool on_quantity() const noexcept {

@@ -90,7 +90,7 @@ class AlarmBook {
   AlarmActionResult shelve(std::size_t number, double time_s, std::string_view who);
   AlarmActionResult unshelve(std::size_t number);
 
-  /// Forces a recorded state, whatever cause and rules say (log replay only).
+  /// Forces a recorded state regardless of cause and rules (log replay only).
   void force_state(std::size_t number, const Alarm& recorded);
 
   /// kNone when there is no such alarm. `id`: "SOURCE.NAME", or the name when it is unique.
@@ -173,7 +173,7 @@ class AlarmBook {
   std::vector<Alarm> alarms_;
   std::vector<Memory> memories_;  ///< one for each alarm
   std::size_t active_count_ = 0;
-  std::size_t standing_ = 0;  ///< not normal and not shelved
+  std::size_t standing_ = 0;  ///< alarms not normal and not shelved
   std::int64_t tick_ = 0;
   std::int64_t utc_us_ = 0;
   std::uint64_t changes_ = 0;

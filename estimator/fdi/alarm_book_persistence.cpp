@@ -200,9 +200,7 @@ void AlarmBook::serialize(StateArchive& archive) {
     for (bool* flag : {&memory.admitted, &memory.timed, &memory.resumes_known}) {
       archive.value(*flag);
     }
-    for (std::int64_t* number : {&memory.turned_tick, &memory.resume_until}) {
-      archive.value(*number);
-    }
+    for (std::int64_t* number : {&memory.turned_tick, &memory.resume_until}) archive.value(*number);
     archive.value(memory.severity);
     archive.value(memory.direction);
     archive.value(memory.seen);

@@ -53,7 +53,7 @@ double cusum_threshold(double k, double run_length, double mean_error) {
 double glr_run_length(double b, int window) {
   constexpr int kSteps = 2000;
   const double from = b / std::sqrt(static_cast<double>(window));
-  // One value alone has no way between n = 1 and W.
+  // One value alone has no window between n = 1 and W.
   if (window <= 1) return 1.0 / std::erfc(b / kRootTwo);
   const double step = (b - from) / kSteps;
   double integral = 0.0;
@@ -67,7 +67,7 @@ double glr_run_length(double b, int window) {
 }
 
 double glr_threshold(double run_length, int window, double mean_error) {
-  constexpr double kShorter = 1.2;  // than the asymptotic formula says
+  constexpr double kShorter = 1.2;  // safety factor on the asymptotic formula
   const double wanted = std::log(window > 1 ? kShorter * run_length : run_length);
   const double b =
       root(1.5, 5.0, [&](double x) { return std::log(glr_run_length(x, window)) - wanted; });

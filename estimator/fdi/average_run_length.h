@@ -25,7 +25,7 @@ namespace estimator::fdi {
 
 /// Average run length of a one-sided CUSUM from S = 0; k and h in standard deviations, h > 0.
 [[nodiscard]] double cusum_run_length(double k, double h, double shift = 0.0);
-/// h of a two-sided CUSUM whose mean is wrong by `mean_error` to either side.
+/// Threshold h of a two-sided CUSUM whose mean is wrong by `mean_error` to either side.
 [[nodiscard]] double cusum_threshold(double k, double run_length, double mean_error = 0.0);
 
 /// `window`: W, at least 1.

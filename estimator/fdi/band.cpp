@@ -13,20 +13,23 @@ constexpr double kTimeRounding_s = 1e-6;
 void BandConfig::visit(config::schema::Visitor& v) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   v.text({"id", "the alarm's name", true}, id);
-  v.text({"quantity", "what is watched: ESTIMATOR.b1, sample.y_m, ...", true}, quantity);
+  v.text({"quantity", "monitored quantity: ESTIMATOR.b1, sample.y_m, ...", true}, quantity);
   v.number({"low", "alarm below, in the quantity's unit"}, low);
   v.number({"high", "alarm above, in the quantity's unit"}, high);
-  v.number({"hysteresis", "how far inside the band the alarm goes"}, hysteresis, {0.0, kInfinity});
-  v.number({"on_delay_s", "how long outside before the alarm comes"}, on_delay_s, {0.0, 3600.0});
-  v.number({"off_delay_s", "how long inside before it goes"}, off_delay_s, {0.0, 3600.0});
-  v.number({"invalid_delay_s", "how long untrustworthy before INVALID"}, invalid_delay_s,
+  v.number({"hysteresis", "distance inside the band at which the alarm clears"}, hysteresis,
+           {0.0, kInfinity});
+  v.number({"on_delay_s", "time outside the band before the alarm is raised"}, on_delay_s,
            {0.0, 3600.0});
-  v.choice({"severity", "of the alarm"}, severity, {"minor", "major"});
+  v.number({"off_delay_s", "time inside the band before the alarm clears"}, off_delay_s,
+           {0.0, 3600.0});
+  v.number({"invalid_delay_s", "time without a valid value before INVALID"}, invalid_delay_s,
+           {0.0, 3600.0});
+  v.choice({"severity", "severity of the alarm"}, severity, {"minor", "major"});
   v.text({"parameter", "the physical parameter meant"}, parameter);
   v.boolean({"falls_with_parameter", "the quantity falls when the parameter rises"},
             falls_with_parameter);
-  v.texts({"ambiguity_group", "parameters that cannot be told apart here"}, ambiguity_group);
-  v.text({"guidance", "what to look at"}, guidance);
+  v.texts({"ambiguity_group", "parameters that this quantity cannot separate"}, ambiguity_group);
+  v.text({"guidance", "advice to the operator"}, guidance);
   rules.visit(v);
 }
 

@@ -7,7 +7,6 @@
 
 #include <limits>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "config/schema/visitor.h"
@@ -24,8 +23,7 @@ struct BandConfig {
   double hysteresis = 0.0;
   double on_delay_s = 0.0;
   double off_delay_s = 0.0;
-  /// How long the quantity may be missing or untrustworthy before the alarm becomes INVALID; the
-  /// last state holds until then.
+  /// Time without a usable value before the alarm becomes INVALID; the last state holds until then.
   double invalid_delay_s = 0.0;
   std::string severity = "major";
   std::string parameter;

@@ -52,7 +52,7 @@ class BlockMethod : public DetectionMethod {
   double interval_s_;
   bool valid_ = false;
   bool warming_up_ = true;
-  const MethodInput* unusable_ = nullptr;  ///< of the last block
+  const MethodInput* unusable_ = nullptr;  ///< in the last block
 };
 
 }  // namespace estimator::fdi

@@ -8,7 +8,7 @@
 
 #include "config/schema/error.h"
 #include "estimator/fdi/block_method.h"
-#include "estimator/fdi/fault_size_ordering.h"
+#include "estimator/fdi/fault_trajectory.h"
 #include "estimator/fdi/hotelling_t2.h"
 
 namespace estimator::fdi {
@@ -78,9 +78,9 @@ class Classifier final : public BlockMethod {
  private:
   struct Answer {
     int found = kNone;  ///< class
-    int nearest = 0;    ///< by distance
+    int nearest = 0;    ///< index with the smallest distance
     double probability = 0.0;
-    double t2 = 0.0;  ///< of the nearest
+    double t2 = 0.0;  ///< T^2 of `nearest`
   };
   void take(std::span<const double> means) noexcept override;
   void show(std::span<NamedValue> values) const noexcept override {
@@ -227,7 +227,8 @@ void ClassifierConfig::visit(config::schema::Visitor& v) {
   v.texts({"features", "the values taken together", true}, features);
   v.number({"rejection", "share of a class's own blocks that is none of these"}, rejection,
            {1e-12, 0.5});
-  v.number({"pooling", "of the covariances; 0: each its own, 1: one for all"}, pooling, {0.0, 1.0});
+  v.number({"pooling", "share of the pooled covariance; 0: one per class, 1: one for all"}, pooling,
+           {0.0, 1.0});
   v.integer({"confirm", "blocks in a row that an alarm needs"}, confirm, {1, 1000});
   naming.visit(v);
   config::schema::visit_list(v, {"class", "trained classes"}, classes);

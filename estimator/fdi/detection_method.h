@@ -9,7 +9,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,7 +25,8 @@ namespace estimator::fdi {
 struct MethodOutput {
   bool valid = false;
   bool warming_up = false;  ///< no band and no declared alarm acts on the values
-  const char* reason = "";  ///< why not valid; static, or owned by the method until its next call
+  const char* reason =
+      "";  ///< reason of an invalid output; static, or owned by the method until its next call
   double condition = kNaN;
   int samples = 0;  ///< rows used
 };
@@ -112,7 +112,8 @@ class InputResolver {
 /// Environment that a method is made in.
 struct MethodContext {
   double sample_time_s;
-  const InputResolver& inputs;  ///< only what DetectionMethodConfig::inputs() names; do not keep it
+  const InputResolver&
+      inputs;  ///< only quantities of DetectionMethodConfig::inputs(); do not keep the reference
 };
 
 }  // namespace estimator::fdi

@@ -9,7 +9,7 @@
 //     std::unique_ptr<DetectionMethod> make(const MethodContext& context) const override;
 //   };
 //
-// and one line in kDetectionMethodKinds (detection_method_kinds.cpp). Code above this library,
+// and one line in kDetectionMethodKinds (detection_method_config.cpp). Code above this library,
 // which may know physics, passes kinds of its own to PipelineConfig's constructor instead.
 #pragma once
 
@@ -29,7 +29,7 @@ struct PipelineConfig;
 
 /// Completes a method's configuration before the method is made.
 struct ConfigLoadContext {
-  std::filesystem::path folder;  ///< of the configuration file
+  std::filesystem::path folder;  ///< folder of the configuration file
   double sample_time_s;
   std::string rig_id;              ///< "" when unknown
   const PipelineConfig& pipeline;  ///< settings of the other methods
@@ -45,8 +45,7 @@ class DetectionMethodConfig {
   virtual void visit(config::schema::Visitor& v) = 0;
   /// Quantities that the method reads, "SOURCE.name".
   [[nodiscard]] virtual std::vector<std::string> inputs() const { return {}; }
-  /// Reads what other files hold, and clears the keys that name those files. Throws
-  /// schema::ConfigError.
+  /// Reads the referenced files and clears the keys that name them. Throws schema::ConfigError.
   virtual void load(const ConfigLoadContext& /*context*/) {}
   /// Throws schema::ConfigError that names the list and the id.
   [[nodiscard]] virtual std::unique_ptr<DetectionMethod> make(

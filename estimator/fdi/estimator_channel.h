@@ -47,7 +47,7 @@ class EstimatorChannel final : public DetectionMethod {
   std::int64_t warmup_samples_;
   std::int64_t samples_ = 0;    ///< periods since the start, missing ones included
   double previous_y_m_ = kNaN;  ///< NaN when there is none
-  bool saturated_ = false;      ///< any of the samples that one decimated sample stands for
+  bool saturated_ = false;      ///< any sample behind the decimated one was saturated
 };
 
 }  // namespace estimator::fdi

@@ -17,11 +17,13 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "estimator/fdi/hotelling_t2.h"
+#include "estimator/fdi/trained.h"
 
 namespace estimator::fdi {
 
@@ -40,8 +42,7 @@ struct Curvature {
   Eigen::VectorXd from, to;
 };
 
-/// h^2 times the second divided difference of a, b, c, which lie `ab` and `bc` apart along the
-/// curve.
+/// h^2 times the second divided difference of a, b, c, at distances `ab` and `bc` along the curve.
 [[nodiscard]] Eigen::VectorXd curvature_of(const Eigen::VectorXd& a, const Eigen::VectorXd& b,
                                            const Eigen::VectorXd& c, double ab, double bc,
                                            double h);
@@ -72,8 +73,21 @@ class FaultTrajectory {
     double length_t2;           ///< T^2 of the end from the begin
   };
   std::vector<Piece> pieces_;
-  double limit_ = 0.0;  ///< of T^2
+  double limit_ = 0.0;  ///< limit of T^2
   std::vector<double> moved_;
 };
+
+/// Experimental, part of [[classifier]]: which trained classes are sizes of one fault, in which
+/// order, and the trajectories that join them.
+///
+/// Two classes of one name and direction are sizes of one fault when their means, seen from
+/// healthy, are within 60 degrees of each other in the metric of the pooled covariance; the nearer
+/// to healthy is the smaller. The trajectory to a size begins at the next smaller size, or at
+/// healthy. Returns the trajectory to each class; none for `healthy` and for a class within its
+/// region. `distributions` are those of `classes`, `pooled` the covariance in which lengths are
+/// measured. Throws schema::ConfigError at `where`.
+[[nodiscard]] std::vector<std::optional<FaultTrajectory>> fault_trajectories(
+    const std::vector<TrainedClass>& classes, const std::vector<ClassDistribution>& distributions,
+    const Eigen::MatrixXd& pooled, std::size_t healthy, double rejection, const std::string& where);
 
 }  // namespace estimator::fdi

@@ -128,12 +128,12 @@ double HotellingT2::limit(double p) const {
 
 void HotellingT2Config::visit(config::schema::Visitor& v) {
   visit_trained(v);
-  v.texts({"features", "the values taken together", true}, features);
+  v.texts({"features", "values tested together", true}, features);
   v.number({"false_alarm_time_s", "mean time between false alarms"}, false_alarm_time_s,
            {1e-3, 1e10});
   naming.visit(v);
   bool trained = !healthy.mean.empty();
-  v.optional_table({"healthy", "where they lay when all was well"}, trained,
+  v.optional_table({"healthy", "distribution of the healthy values"}, trained,
                    [this](config::schema::Visitor& t) {
                      healthy.name = TrainedFile::kHealthy;
                      healthy.visit(t);

@@ -45,7 +45,7 @@ class HotellingT2 {
 
  private:
   Eigen::VectorXd mean_, scale_, x_, solved_;
-  Eigen::MatrixXd inverse_;  ///< of the correlation matrix
+  Eigen::MatrixXd inverse_;  ///< inverse of the correlation matrix
   double log_det_ = 0.0;
   double blocks_;
   double t2_ = 0.0;

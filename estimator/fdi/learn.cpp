@@ -39,7 +39,7 @@ double gumbel_level(std::vector<double> maxima, double rate) {
 double signed_square(double x) { return x * std::abs(x); }
 double signed_root(double x) { return std::copysign(std::sqrt(std::abs(x)), x); }
 
-/// How far the band reaches from `centre`, upward (side 1) or downward (side -1).
+/// Distance of the limit from `centre`, upward (side 1) or downward (side -1).
 double margin(const std::vector<double>& extremes, double centre, double side, double rate) {
   std::vector<double> squares;
   squares.reserve(extremes.size());
@@ -51,7 +51,7 @@ double margin(const std::vector<double>& extremes, double centre, double side, d
 struct BlockExtremes {
   std::vector<double> greatest;
   std::vector<double> least;
-  double mean = 0.0;  ///< of all values
+  double mean = 0.0;  ///< mean of all values
 };
 
 BlockExtremes find_extremes(std::span<const double> values, std::size_t length) {
@@ -124,9 +124,7 @@ double find_period_s(std::span<const double> signal, double sample_time_s) {
   const auto step = static_cast<std::size_t>(std::max(1.0, std::floor(kStep_s / sample_time_s)));
   std::vector<double> x;
   double mean = 0.0;
-  for (std::size_t i = 0; i < signal.size() && x.size() < kMost; i += step) {
-    x.push_back(signal[i]);
-  }
+  for (std::size_t i = 0; i < signal.size() && x.size() < kMost; i += step) x.push_back(signal[i]);
   for (const double value : x) mean += value / static_cast<double>(x.size());
   for (double& value : x) value -= mean;
   const auto correlation = [&x](std::size_t lag) {

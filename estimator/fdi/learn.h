@@ -31,8 +31,8 @@ namespace estimator::fdi {
 struct LearnConfig {
   double false_alarm_time_s = 86400.0;  ///< T
   double interval_s = 0.0;              ///< between two values
-  double window_s = 0.0;                ///< of each estimate
-  double period_s = 0.0;                ///< of the motion, 0: not periodic
+  double window_s = 0.0;                ///< window of each estimate
+  double period_s = 0.0;                ///< period of the motion; 0: not periodic
   double least_margin = 0.0;            ///< beyond the observed extremes, unit of the values
 };
 
@@ -49,7 +49,8 @@ struct LearnedLimits {
 [[nodiscard]] LearnedLimits learn_limits(std::span<const double> values, const LearnConfig& config);
 
 /// Period of a periodic signal, from the first high peak of the autocorrelation of its first 80 s
-/// (4000 samples, if slower than 50 Hz); 0 when there is none.
+/// (4000
+/// samples below 50 Hz); 0 when the signal is not periodic.
 [[nodiscard]] double find_period_s(std::span<const double> signal, double sample_time_s);
 
 }  // namespace estimator::fdi

@@ -13,7 +13,7 @@ namespace estimator::fdi {
 /// TOML [[learned]]: limits of one quantity, in its own unit.
 struct LearnedBand {
   std::string quantity;
-  std::string structure;  ///< of its estimator, "arx111"
+  std::string structure;  ///< structure of the estimator, "arx111"
   std::string estimator;  ///< EstimatorConfig::fingerprint() of its estimator
   double low = 0.0;
   double high = 0.0;

@@ -88,13 +88,13 @@ class Observer final : public DetectionMethod {
     window_ = samples(config.window_s);
     stride_ = samples(config.stride_s);
     interval_s_ = static_cast<double>(stride_) * context.sample_time_s;
-    LinearModel model = config.model();
+    StateSpaceModel model = config.model();
     for (Index i = 0; i < model.c.rows(); ++i) {
       model.c.row(i) /= config.output_std[static_cast<std::size_t>(i)];
     }
     const std::size_t observers = config.bank ? config.y.size() : 1;
     for (std::size_t left_out = 0; left_out < observers; ++left_out) {
-      LinearModel part = model;
+      StateSpaceModel part = model;
       std::vector<Index> used;
       for (Index i = 0; i < model.c.rows(); ++i) {
         if (!config.bank || i != static_cast<Index>(left_out)) used.push_back(i);
@@ -234,22 +234,22 @@ class Observer final : public DetectionMethod {
 }  // namespace
 
 void ObserverConfig::visit(config::schema::Visitor& v) {
-  v.text({"id", "names its values: ID.r1", true}, id);
+  v.text({"id", "name; prefix of its values: ID.r1", true}, id);
   v.texts({"u", "quantities that drive the model", true}, u);
   v.texts({"y", "quantities that it gives", true}, y);
   v.numbers({"a", "row by row", true}, a);
   v.numbers({"b", "row by row", true}, b);
   v.numbers({"c", "row by row", true}, c);
-  v.numbers({"e", "how unknown inputs act, row by row"}, e);
-  v.numbers({"input_offset", "of u at the operating point"}, input_offset);
-  v.numbers({"output_offset", "of y at the operating point"}, output_offset);
+  v.numbers({"e", "input matrix of the unknown inputs, row by row"}, e);
+  v.numbers({"input_offset", "u at the operating point"}, input_offset);
+  v.numbers({"output_offset", "y at the operating point"}, output_offset);
   v.numbers({"output_std", "noise of each y", true}, output_std, {1e-300, 1e300});
   v.number({"process_std", "noise of each state a sample; the more, the faster it follows", true},
            process_std, {1e-150, 1e150});
-  v.number({"window_s", "over which residuals are averaged"}, window_s, {1e-4, 1e4});
-  v.number({"stride_s", "between two findings"}, stride_s, {1e-4, 1e4});
+  v.number({"window_s", "averaging time of the residuals"}, window_s, {1e-4, 1e4});
+  v.number({"stride_s", "time between outputs"}, stride_s, {1e-4, 1e4});
   v.boolean({"bank", "one observer without each output"}, bank);
-  v.number({"limit", "of the residuals, in output_std"}, limit,
+  v.number({"limit", "limit of the residuals, in output_std"}, limit,
            {0.0, std::numeric_limits<double>::infinity()});
   naming.visit(v);
 }
@@ -260,11 +260,11 @@ std::vector<std::string> ObserverConfig::inputs() const {
   return all;
 }
 
-LinearModel ObserverConfig::model() const {
+StateSpaceModel ObserverConfig::model() const {
   const std::string where = "[[observer]] " + id;
   const auto n = static_cast<Index>(std::llround(std::sqrt(static_cast<double>(a.size()))));
   if (n == 0) throw bad_config(where + ": a", "is empty", "n x n numbers");
-  LinearModel out;
+  StateSpaceModel out;
   out.a = matrix(a, n, n, where + ": a");
   out.b = matrix(b, n, static_cast<Index>(u.size()), where + ": b");
   out.c = matrix(c, static_cast<Index>(y.size()), n, where + ": c");

@@ -38,7 +38,7 @@ struct ObserverConfig final : DetectionMethodConfigOf<ObserverConfig> {
   [[nodiscard]] std::vector<std::string> inputs() const override;
   [[nodiscard]] std::unique_ptr<DetectionMethod> make(const MethodContext& context) const override;
   /// Throws schema::ConfigError when the matrices do not fit together.
-  [[nodiscard]] LinearModel model() const;
+  [[nodiscard]] StateSpaceModel model() const;
 };
 
 }  // namespace estimator::fdi

@@ -38,7 +38,7 @@ struct EstimateEvent {
   [[nodiscard]] std::size_t size() const noexcept {
     return static_cast<std::size_t>(end_values - begin_values);
   }
-  /// NaN when there is no such value.
+  /// NaN when no such value exists.
   [[nodiscard]] double value(std::string_view name) const noexcept;
 };
 

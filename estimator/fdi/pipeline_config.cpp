@@ -5,9 +5,9 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
-#include "estimator/fdi/fingerprint.h"
 #include "estimator/fdi/learned_bands.h"
 #include "estimator/fdi/quantity.h"
+#include "estimator/fdi/snapshot.h"
 
 namespace estimator::fdi {
 namespace {
@@ -50,26 +50,28 @@ void apply(const LearnedBand& learned, std::vector<BandConfig>& bands) {
 }  // namespace
 
 void EstimatorConfig::visit(Visitor& v) {
-  v.text({"id", "names its quantities: ID.b1", true}, id);
+  v.text({"id", "name; prefix of its quantities: ID.b1", true}, id);
   v.text({"structure", "arx111, arx(2,1,1), ..."}, structure);
   v.choice({"method", "batch is a tumbling window"}, method, {"batch", "sliding", "recursive"});
   v.boolean({"constant", "estimate a constant term"}, constant);
   v.boolean({"increments", "y minus its previous value in the place of y"}, increments);
   v.number({"window_s", "length of the window"}, window_s, {1e-4, kLongest_s});
-  v.number({"stride_s", "between estimates, sliding and recursive"}, stride_s, {1e-4, kLongest_s});
+  v.number({"stride_s", "time between estimates, sliding and recursive"}, stride_s,
+           {1e-4, kLongest_s});
   v.number({"offset_m", "subtracted from y"}, offset_m, {-1e3, 1e3});
-  v.choice({"detrend", "of each batch window"}, detrend, {"none", "mean", "linear"});
-  v.choice({"filter", "of u and y alike"}, filter, {"none", "low", "high", "band"});
+  v.choice({"detrend", "removed from each batch window"}, detrend, {"none", "mean", "linear"});
+  v.choice({"filter", "filter of both u and y"}, filter, {"none", "low", "high", "band"});
   v.number({"filter_low_Hz", "lower edge, of high and band"}, filter_low_Hz, {0.0, 1e5});
   v.number({"filter_high_Hz", "upper edge, of low and band"}, filter_high_Hz, {0.0, 1e5});
-  v.integer({"decimation", "keep one of so many samples"}, decimation, {1, 1000});
-  v.number({"forgetting", "of recursive, per sample"}, forgetting, {0.5, 1.0});
-  v.number({"prior_variance", "of recursive, P(0) = C I"}, prior_variance, {1e-12, 1e15});
-  v.number({"first_batch_s", "of recursive: a batch that starts it"}, first_batch_s,
+  v.integer({"decimation", "decimation factor"}, decimation, {1, 1000});
+  v.number({"forgetting", "forgetting factor per sample, recursive"}, forgetting, {0.5, 1.0});
+  v.number({"prior_variance", "P(0) = C I, recursive"}, prior_variance, {1e-12, 1e15});
+  v.number({"first_batch_s", "length of an initial batch, recursive"}, first_batch_s,
            {0.0, kLongest_s});
   v.number({"warmup_s", "no band acts before"}, warmup_s, {0.0, kLongest_s});
   v.number({"min_u_rms_V", "less command is not excited"}, min_u_rms_V, {0.0, 1e3});
-  v.number({"max_condition", "of the scaled regressors"}, max_condition, {1.0, 1e15});
+  v.number({"max_condition", "largest condition of the scaled regressors"}, max_condition,
+           {1.0, 1e15});
   v.number({"max_saturated", "share of saturated samples in a window"}, max_saturated, {0.0, 1.0});
   v.number({"max_missing", "share of missing samples in a window"}, max_missing, {0.0, 1.0});
 }
@@ -136,19 +138,20 @@ void PipelineConfig::visit(Visitor& v) {
 }
 
 void LearnedBand::visit(Visitor& v) {
-  v.text({"quantity", "what the band is for", true}, quantity);
-  v.text({"structure", "of the estimator", true}, structure);
-  v.text({"estimator", "its settings", true}, estimator);
+  v.text({"quantity", "quantity of the band", true}, quantity);
+  v.text({"structure", "structure of the estimator", true}, structure);
+  v.text({"estimator", "settings of the estimator", true}, estimator);
   v.number({"low", "", true}, low);
   v.number({"high", "", true}, high);
   v.number({"hysteresis"}, hysteresis, {0.0, kInfinity});
   v.number({"centre", "mean of the healthy estimates"}, centre);
-  v.integer({"estimates", "how many there were"}, estimates);
+  v.integer({"estimates", "number of estimates"}, estimates);
   v.number({"block_s", "length of the blocks fitted"}, block_s);
 }
 
 void LearnedBands::visit(Visitor& v) {
-  v.number({"sample_time_s", "of the healthy record", true}, sample_time_s, {1e-6, 1e3});
+  v.number({"sample_time_s", "sample time of the healthy record", true}, sample_time_s,
+           {1e-6, 1e3});
   v.text({"source", "the healthy record"}, source);
   v.number({"false_alarm_time_s", "mean time between false alarms aimed at"}, false_alarm_time_s);
   config::schema::visit_list(v, {"learned", "bands"}, bands);
@@ -176,7 +179,7 @@ void PipelineConfig::load_bands(const std::filesystem::path& folder, double samp
       throw bad_config(where, "there is no such estimator", "the id of an [[estimator]]");
     }
     if (estimator->fingerprint() != band.estimator) {
-      const Difference differs = difference(band.estimator, estimator->fingerprint());
+      const FingerprintDifference differs = difference(band.estimator, estimator->fingerprint());
       throw bad_config(where, "was learned with other settings of the estimator: " + differs.found,
                        differs.expected);
     }

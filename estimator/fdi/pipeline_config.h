@@ -29,7 +29,7 @@ struct EstimatorConfig {
   double stride_s = 0.02;        ///< between estimates; sliding and recursive
   double offset_m = 0.0;         ///< subtracted from y
   std::string detrend = "none";  ///< none, mean, linear: of u and y in each batch window
-  std::string filter = "none";   ///< none, low, high, band: of u and y, before all else
+  std::string filter = "none";   ///< none, low, high, band: of u and y, as the first step
   double filter_low_Hz = 0.0;    ///< lower edge; high and band
   double filter_high_Hz = 0.0;   ///< upper edge; low and band
   std::int64_t decimation = 1;   ///< keep every n-th sample, low-passed before
@@ -38,12 +38,12 @@ struct EstimatorConfig {
   double first_batch_s = 0.0;    ///< recursive: an initial batch gives the start values
   double warmup_s = 0.0;         ///< from the first sample; no band acts before
   double min_u_rms_V = 0.0;      ///< a window with less command is not excited
-  double max_condition = 1e8;    ///< of the scaled regressors; beyond it INVALID
+  double max_condition = 1e8;    ///< limit of the scaled regressors' condition; above it INVALID
   double max_saturated = 0.1;    ///< greatest share of saturated samples in a window
   double max_missing = 0.05;     ///< greatest share of missing samples in a window
 
   void visit(config::schema::Visitor& v);
-  /// One line with every setting that the estimates depend on.
+  /// One line with every setting that affects the estimates.
   [[nodiscard]] std::string fingerprint() const;
 };
 
@@ -64,8 +64,7 @@ struct PipelineConfig {
   [[nodiscard]] std::vector<std::string> method_ids() const;
   /// Null when no method, estimators apart, has this id.
   [[nodiscard]] const DetectionMethodConfig* find_method(std::string_view id) const noexcept;
-  /// The settings of the estimator or other method with this id, in one line; "" when there is
-  /// none.
+  /// Settings of the estimator or other method with this id in one line; "" for an unknown id.
   [[nodiscard]] std::string fingerprint(std::string_view id) const;
   /// Whether a key "bands_file", "[[band]] id: high", "[[cusum]] id: ..." belongs here.
   [[nodiscard]] bool owns(std::string_view key) const;

@@ -140,16 +140,15 @@ class PolynomialMethod final : public DetectionMethod {
 }  // namespace
 
 void PolynomialConfig::visit(config::schema::Visitor& v) {
-  v.text({"id", "names its quantities: ID.b1", true}, id);
+  v.text({"id", "name; prefix of its quantities: ID.b1", true}, id);
   v.text({"structure", "armaxNMCK, oeMFK, bjMCDFK, arxNMK"}, structure);
-  v.choice({"method", "how the coefficients follow"}, method,
-           {"prediction-error", "extended-least-squares"});
+  v.choice({"method", "recursive method"}, method, {"prediction-error", "extended-least-squares"});
   v.boolean({"constant", "estimate a constant term"}, constant);
   v.number({"offset_m", "subtracted from y"}, offset_m, {-1e3, 1e3});
   v.number({"forgetting", "per sample"}, forgetting, {0.5, 1.0});
   v.number({"prior_variance", "P(0) = C I"}, prior_variance, {1e-12, 1e15});
-  v.number({"window_s", "over which the checks hold"}, window_s, {1e-3, 3600.0});
-  v.number({"stride_s", "between estimates"}, stride_s, {1e-4, kLongest_s});
+  v.number({"window_s", "window of the validity checks"}, window_s, {1e-3, 3600.0});
+  v.number({"stride_s", "time between estimates"}, stride_s, {1e-4, kLongest_s});
   v.number({"warmup_s", "no band acts before"}, warmup_s, {0.0, kLongest_s});
   v.number({"min_u_rms_V", "less command is not excited"}, min_u_rms_V, {0.0, 1e3});
   v.number({"max_saturated", "share of saturated samples in a window"}, max_saturated, {0.0, 1.0});

@@ -8,9 +8,9 @@
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "config/schema/joined.h"
-#include "estimator/fdi/fingerprint.h"
 #include "estimator/fdi/pipeline_config.h"
 #include "estimator/fdi/quantity.h"
+#include "estimator/fdi/snapshot.h"
 
 namespace estimator::fdi {
 namespace {
@@ -48,18 +48,18 @@ std::string settings_behind(std::string_view source, const PipelineConfig& pipel
 }  // namespace
 
 void TrainedClass::visit(Visitor& v) {
-  v.text({"name", "healthy, or what has changed", true}, name);
-  v.integer({"direction", "in which it has"}, direction, {-1, 1});
-  v.integer({"blocks", "how many it was learned from", true}, blocks, {2, 1'000'000'000});
-  v.numbers({"mean", "of block means", true}, mean);
-  v.numbers({"covariance", "of block means, row by row", true}, covariance);
-  v.numbers({"long_run", "standard deviations with their autocorrelation in them", true}, long_run);
+  v.text({"name", "healthy, or the changed parameter", true}, name);
+  v.integer({"direction", "direction of the change"}, direction, {-1, 1});
+  v.integer({"blocks", "number of blocks it was learned from", true}, blocks, {2, 1'000'000'000});
+  v.numbers({"mean", "mean of the block means", true}, mean);
+  v.numbers({"covariance", "covariance of the block means, row by row", true}, covariance);
+  v.numbers({"long_run", "long-run standard deviations, autocorrelation included", true}, long_run);
 }
 
 void TrainedMethod::visit(Visitor& v) {
-  v.text({"id", "the source that it is for", true}, id);
-  v.texts({"quantities", "what it was trained on"}, quantities);
-  v.texts({"settings", "of the source of each"}, settings);
+  v.text({"id", "id of the detection method", true}, id);
+  v.texts({"quantities", "quantities of the training"}, quantities);
+  v.texts({"settings", "settings of each quantity's source"}, settings);
   v.number({"block_s", "length of the blocks", true}, block_s, {0.0, 1e6});
   config::schema::visit_list(v, {"class", "kinds of records"}, classes);
 }
@@ -73,17 +73,17 @@ const TrainedClass* TrainedMethod::healthy() const noexcept {
 
 void TrainedFile::visit(Visitor& v) {
   v.integer({"trained_version", "layout of this file", true}, version, {kVersion, kVersion});
-  v.text({"units", "of position, command and time", true}, units);
-  v.text({"rig_id", "of the rig", true}, rig_id);
-  v.number({"sample_time_s", "of the records", true}, sample_time_s, {1e-6, 1e3});
-  v.texts({"records", "that it was learned from"}, records);
-  config::schema::visit_list(v, {"trained", "for each source"}, methods);
+  v.text({"units", "units of position, command and time", true}, units);
+  v.text({"rig_id", "id of the rig", true}, rig_id);
+  v.number({"sample_time_s", "sample time of the records", true}, sample_time_s, {1e-6, 1e3});
+  v.texts({"records", "records of the training"}, records);
+  config::schema::visit_list(v, {"trained", "detection methods trained here"}, methods);
 }
 
 void TrainedMethodConfig::visit_trained(Visitor& v) {
-  v.text({"id", "names its values: ID.name", true}, id);
-  v.number({"block_s", "values are averaged over so long; 0: each by itself"}, block_s, {0.0, 1e6});
-  v.text({"file", "of spoolwatch train, relative to this file's folder"}, file);
+  v.text({"id", "name; prefix of its values: ID.name", true}, id);
+  v.number({"block_s", "averaging time of the values; 0: no averaging"}, block_s, {0.0, 1e6});
+  v.text({"file", "file of spoolwatch train, relative to this file's folder"}, file);
 }
 
 void TrainedMethodConfig::load(const ConfigLoadContext& context) {
@@ -141,7 +141,7 @@ void TrainedMethodConfig::check(const TrainedMethod& trained, const ConfigLoadCo
   for (std::size_t i = 0; i < settings.size(); ++i) {
     const std::string found = i < trained.settings.size() ? trained.settings[i] : "";
     if (found == settings[i]) continue;
-    const Difference differs = difference(found, settings[i]);
+    const FingerprintDifference differs = difference(found, settings[i]);
     throw bad_config(place,
                      trained.quantities[i] + " was trained with other settings: " + differs.found,
                      differs.expected);
@@ -160,8 +160,8 @@ std::vector<std::string> settings_of(const std::vector<std::string>& quantities,
 }
 
 void AlarmNaming::visit(Visitor& v) {
-  v.choice({"severity", "of its alarm"}, severity, {"minor", "major"});
-  v.text({"guidance", "what to look at"}, guidance);
+  v.choice({"severity", "severity of its alarm"}, severity, {"minor", "major"});
+  v.text({"guidance", "advice to the operator"}, guidance);
   rules.visit(v);
 }
 

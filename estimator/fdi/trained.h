@@ -18,7 +18,7 @@ namespace estimator::fdi {
 /// Block means of one class of records: healthy, or with one fault.
 struct TrainedClass {
   std::string name;            ///< "healthy", or the parameter that has changed
-  std::int64_t direction = 0;  ///< of the change, 0 when not stated
+  std::int64_t direction = 0;  ///< direction of the change; 0: not stated
   std::int64_t blocks = 0;
   std::vector<double> mean;
   std::vector<double> covariance;  ///< row by row
@@ -39,7 +39,7 @@ struct TrainedMethod {
   std::vector<TrainedClass> classes;
 
   void visit(config::schema::Visitor& v);
-  /// Null when there is none.
+  /// The healthy class; null when there is none.
   [[nodiscard]] const TrainedClass* healthy() const noexcept;
 };
 

@@ -142,11 +142,11 @@ double LocalTrend::slope_error() const noexcept { return std::sqrt(p22_); }
 
 void TrendConfig::visit(config::schema::Visitor& v) {
   visit_trained(v);
-  v.text({"quantity", "whose drift is followed", true}, quantity);
-  v.number({"std_dev", "of its block means, their autocorrelation in it"}, std_dev,
+  v.text({"quantity", "monitored quantity", true}, quantity);
+  v.number({"std_dev", "standard deviation of its block means, autocorrelation included"}, std_dev,
            {1e-300, kInfinity});
-  v.number({"memory_s", "how much of the past counts"}, memory_s, {1e-3, 1e9});
-  v.number({"horizon_s", "a limit that is reached sooner is told"}, horizon_s, {1e-3, 1e10});
+  v.number({"memory_s", "memory of the trend"}, memory_s, {1e-3, 1e9});
+  v.number({"horizon_s", "a limit reached sooner raises the alarm"}, horizon_s, {1e-3, 1e10});
   v.number({"low", "limit below, in the quantity's unit"}, low);
   v.number({"high", "limit above, in the quantity's unit"}, high);
   v.text({"parameter", "the physical parameter meant"}, parameter);

@@ -62,7 +62,7 @@ class LocalTrend {
   double level_ = 0.0, slope_ = 0.0;
   double p11_ = 0.0, p12_ = 0.0, p22_ = 0.0;
   int seen_ = 0;     ///< values, up to 1000
-  int far_off_ = 0;  ///< in a row
+  int far_off_ = 0;  ///< consecutive blocks far off
 };
 
 }  // namespace estimator::fdi

@@ -13,7 +13,7 @@ using config::schema::bad_config;
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr double kRank = 1e-9;  ///< of the greatest singular value
+constexpr double kRank = 1e-9;  ///< ratio to the greatest singular value
 
 template <class M>
 int rank(const M& matrix) {
@@ -33,7 +33,7 @@ MatrixXd unit_columns(MatrixXd matrix) {
   return matrix;
 }
 
-void check(const LinearModel& m) {
+void check(const StateSpaceModel& m) {
   const Index n = m.a.rows();
   const bool fits = n > 0 && m.a.cols() == n && m.b.rows() == n && m.c.cols() == n &&
                     m.c.rows() > 0 && (m.e.size() == 0 || m.e.rows() == n) &&
@@ -83,7 +83,7 @@ MatrixXd predictor_gain(const MatrixXd& a, const MatrixXd& c, double q) {
   return gain;
 }
 
-Existence unknown_input_existence(const LinearModel& model) {
+Existence unknown_input_existence(const StateSpaceModel& model) {
   check(model);
   Existence out;
   if (model.e.size() == 0) {
@@ -96,7 +96,7 @@ Existence unknown_input_existence(const LinearModel& model) {
   const MatrixXd e = unit_columns(model.e);
   const MatrixXd ce = model.c * e;
   out.rank_e = rank(e);
-  // What is left of E in y, on the scale of C: rounding is no rank.
+  // Part of E in y on the scale of C: rounding does not count as rank.
   for (const double value : linear_algebra::singular_values(ce)) {
     out.rank_ce += value > kRank * model.c.norm() ? 1 : 0;
   }
@@ -117,7 +117,7 @@ Existence unknown_input_existence(const LinearModel& model) {
   return out;
 }
 
-UnknownInputObserver unknown_input_observer(const LinearModel& model, const std::string& where,
+UnknownInputObserver unknown_input_observer(const StateSpaceModel& model, const std::string& where,
                                             double q) {
   const Existence found = unknown_input_existence(model);
   if (!found.exists) throw bad_config(where, "has no unknown input observer: " + found.why);
@@ -132,7 +132,7 @@ UnknownInputObserver unknown_input_observer(const LinearModel& model, const std:
   out.g = k1 + out.f * found.h;
   out.l1 = -model.c;
   out.l2 = MatrixXd::Identity(model.c.rows(), model.c.rows()) - model.c * found.h;
-  // In the end e = F e + T K f, and r = C e.
+  // Final form: e = F e + T K f, and r = C e.
   if (model.k.size() > 0) {
     out.fault_gain = model.c * linear_algebra::solve(MatrixXd::Identity(n, n) - out.f, t * model.k);
   } else {

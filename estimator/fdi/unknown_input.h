@@ -25,7 +25,7 @@
 
 namespace estimator::fdi {
 
-struct LinearModel {
+struct StateSpaceModel {
   Eigen::MatrixXd a;     ///< n x n
   Eigen::MatrixXd b;     ///< n x inputs
   Eigen::MatrixXd c;     ///< outputs x n
@@ -43,9 +43,9 @@ struct Existence {
   std::string why;  ///< why not, in one line
 };
 
-/// Both conditions; ranks by singular values with columns scaled to unit length. Throws
+/// Checks both conditions; ranks by singular values with columns scaled to unit length. Throws
 /// schema::ConfigError when sizes do not fit.
-[[nodiscard]] Existence unknown_input_existence(const LinearModel& model);
+[[nodiscard]] Existence unknown_input_existence(const StateSpaceModel& model);
 
 struct UnknownInputObserver {
   Eigen::MatrixXd f, j, g, l1, l2, h;
@@ -54,9 +54,10 @@ struct UnknownInputObserver {
   Eigen::MatrixXd fault_gain;
 };
 
-/// Observer of a discrete model. Throws schema::ConfigError that says why when there is none.
-/// `q`: process noise of predictor_gain(); larger follows faster.
-[[nodiscard]] UnknownInputObserver unknown_input_observer(const LinearModel& model,
+/// Observer of a discrete model. Throws schema::ConfigError with the reason when none exists. `q`:
+/// process
+/// noise of predictor_gain(); a larger one follows faster.
+[[nodiscard]] UnknownInputObserver unknown_input_observer(const StateSpaceModel& model,
                                                           const std::string& where, double q = 1.0);
 
 /// Gain K1 of the steady Kalman filter x+ = A x + w, y = C x + v, cov w = q I, cov v = I, as

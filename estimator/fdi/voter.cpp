@@ -162,7 +162,8 @@ bool Vote::update(std::span<const double> values) noexcept {
   if (none_in) spread_ = kNaN;
   bool changed = disagree_ != was;
   for (std::size_t i = 0; i < count_; ++i) {
-    // Of two that differ neither is declared wrong; no channel returns while the wrong one is
+    // Where two channels differ, neither is declared wrong; no channel returns while the wrong one
+    // is
     // unknown.
     const bool missing = !std::isfinite(values[i]);
     const bool tells = size > 1 ? !differ : channels_[i].missed;
@@ -177,13 +178,14 @@ bool Vote::update(std::span<const double> values) noexcept {
 void Vote::reset() noexcept { *this = Vote(count_, rules_); }
 
 void VoterConfig::visit(config::schema::Visitor& v) {
-  v.text({"id", "names its values: ID.value", true}, id);
+  v.text({"id", "name; prefix of its values: ID.value", true}, id);
   v.texts({"channels", "two or three values of one quantity", true}, channels);
-  v.number({"tolerance", "by which channels may differ, in their unit", true}, tolerance,
+  v.number({"tolerance", "allowed difference of channels, in their unit", true}, tolerance,
            {0.0, 1e12});
-  v.number({"confirm_s", "how long before a channel is out"}, confirm_s, {0.0, 3600.0});
-  v.number({"return_s", "how long it must agree to come back"}, return_s, {0.0, 86400.0});
-  v.number({"stride_s", "between two outputs"}, stride_s, {1e-4, 3600.0});
+  v.number({"confirm_s", "time of disagreement before a channel is voted out"}, confirm_s,
+           {0.0, 3600.0});
+  v.number({"return_s", "time of agreement before a channel returns"}, return_s, {0.0, 86400.0});
+  v.number({"stride_s", "time between outputs"}, stride_s, {1e-4, 3600.0});
   naming.visit(v);
 }
 

@@ -47,7 +47,7 @@ class Vote {
   };
   explicit Vote(std::size_t channels, Rules rules) : rules_(rules), count_(channels) {}
 
-  /// NaN: missing. True when a channel was voted out or returned, or agreement was lost or
+  /// NaN: missing. Returns true when a channel was voted out or returned, or agreement was lost or
   /// regained.
   bool update(std::span<const double> values) noexcept;
   void reset() noexcept;

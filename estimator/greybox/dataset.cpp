@@ -12,21 +12,22 @@
 namespace estimator::greybox {
 namespace {
 
-/// Of the error in one sample, where samples are far apart.
+/// Limit of the correction in one sample, where samples are far apart.
 constexpr double kLargestInitialisationGain = 0.5;
 constexpr double kLeast_s = 2.0;
-/// Two samples at least while a segment settles.
+/// At least two samples fall in the settling time of a segment.
 constexpr double kSlowest_s = 0.25;
 
-/// Speed at a record's first sample, over the RMS speed of the record, above which it begins in the
-/// midst of a motion. A start from rest under a command stays below a few per cent.
+/// Ratio of the speed at a record's first sample to its RMS speed above which the record begins
+/// during a
+/// motion. A start from rest under a command stays below a few per cent.
 constexpr double kMoving = 0.05;
 
 std::size_t settling_samples(double sample_time_s) {
   return static_cast<std::size_t>(std::lround(kSettling_s / sample_time_s));
 }
 
-/// Of [begin, end); the speed at the start by the parabola through three samples.
+/// Segment [begin, end); the speed at its start is that of a parabola through three samples.
 bool begins_moving(const config::record::Record& record, std::size_t begin, std::size_t end) {
   if (end - begin < 3) return true;
   const double* y_m = &record.y_m[begin];
@@ -88,14 +89,7 @@ Dataset dataset_of(const config::record::Record& record) {
       left_out += end - begin;
     }
   }
-  if (!record.gaps.empty()) {
-    result.notes.push_back(std::to_string(record.gaps.size()) + " gaps: the model starts anew in " +
-                           std::to_string(result.starts.size()) + " segments");
-  }
-  if (left_out > 0) {
-    result.notes.push_back(std::to_string(left_out) + " samples in segments shorter than " +
-                           seconds(kShortest_s) + " are left out");
-  }
+  result.gaps = {record.gaps.size(), result.starts.size(), left_out};
   const double length_s = static_cast<double>(result.size()) * result.sample_time_s;
   if (length_s < kLeast_s) {
     const std::string all = seconds(static_cast<double>(record.size()) * record.sample_time_s);

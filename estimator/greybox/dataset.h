@@ -1,4 +1,4 @@
-// A record as a model is held against it: command and position on an even grid, in segments between
+// Record for a comparison with a model: command and position on an even grid, in segments between
 // which samples are missing.
 #pragma once
 
@@ -15,9 +15,16 @@ namespace estimator::greybox {
 
 struct InnovationGains;
 
-/// Of a sample while its segment settles. A record's very first state is the model file's: pure
-/// simulation begins there; a state behind a gap nobody knows.
+/// State of a sample while its segment settles. A record's first state is the model file's, from
+/// which a free run starts; the state after a gap is unknown.
 enum Initialisation : char { kNotInitialising, kInitialisingIfObserved, kInitialising };
+
+/// Gaps of the record that a data set was made from.
+struct GapSummary {
+  std::size_t gaps = 0;
+  std::size_t segments = 0;
+  std::size_t samples_left_out = 0;  ///< in segments shorter than kShortest_s
+};
 
 struct Dataset {
   std::string name;
@@ -26,36 +33,35 @@ struct Dataset {
   std::vector<double> u_V;
   std::vector<double> y_m;
   std::vector<std::size_t> starts;  ///< first sample of each segment, ascending, the first is 0
-  std::vector<char> valid;          ///< 0 while a segment's unknown initial state dies away
-  std::vector<char> initialising;   ///< where that state is a motion: the model is led, see Led
-  std::vector<std::string> notes;   ///< restrictions that a reader of results should know
+  std::vector<char> valid;          ///< 0 while a segment's unknown initial state decays
+  std::vector<char> initialising;   ///< Initialisation; the observer corrects the model there
+  std::vector<std::string> notes;   ///< restrictions stated by the record's reader
+  GapSummary gaps;
   /// Where set, residuals are scaled innovations of these gains instead of the errors of a
   /// simulation with the weak observer.
   std::shared_ptr<const InnovationGains> innovations;
 
   [[nodiscard]] std::size_t size() const noexcept { return t_s.size(); }
-  /// By which share of its error the model's position is set right at sample k.
+  /// Share of the position error that the observer corrects at sample k.
   [[nodiscard]] double observer_gain(std::size_t k, double observer_per_s) const noexcept;
 };
 
-/// How long after a segment's start the error does not count.
+/// Time after a segment's start in which the error does not count.
 inline constexpr double kSettling_s = 0.5;
-/// A segment that begins in the midst of a motion begins with a speed and pressures that the model
-/// does not know. While it settles, the model's position is led to the measured one at this rate:
-/// what the unknown state shifted is gone then, down to a hundred-thousandth.
+/// Observer gain while a segment settles. A segment that begins during a motion has an unknown
+/// speed and unknown pressures; the position offset they cause decays to 1e-5 in the settling time.
 inline constexpr double kInitialisation_per_s = 20.0;
 
-/// Better than any rod's sensor; simulated ones may show no noise at all.
+/// Below any rod sensor's noise; simulated records may show none at all.
 inline constexpr double kLeastFloor_m = 1e-9;
-/// Segments shorter than this are left out.
+/// Shorter segments are left out.
 inline constexpr double kShortest_s = 1.0;
 
-/// Throws config::schema::DataError when what remains is shorter than 2 s,
-/// and for rates below 4 Hz. No sample is
-/// invented: segments between gaps start anew, short ones are left out and noted.
+/// No sample is interpolated: each segment between gaps starts a new simulation, short segments are
+/// left out. Throws config::schema::DataError when less than 2 s remain and for rates below 4 Hz.
 [[nodiscard]] Dataset dataset_of(const config::record::Record& record);
 
-/// Samples [from, to) as a record of their own.
+/// Samples [from, to) as a data set of their own, without notes and gap summary.
 [[nodiscard]] Dataset part(const Dataset& whole, std::size_t from, std::size_t to);
 
 }  // namespace estimator::greybox

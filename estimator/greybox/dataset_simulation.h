@@ -1,4 +1,5 @@
-// A model simulated over all records of a data set: one ObserverSimulation per record, residuals
+// Simulation of a model over all records of a data set: one ObserverSimulation per record,
+// residuals
 // concatenated in the order of the records.
 #pragma once
 
@@ -17,7 +18,7 @@ class DatasetSimulation {
                     const std::vector<FreeParameter>& parameters,
                     double observer_per_s = kObserver_per_s);
 
-  /// data.size() x points.cols(); at most ObserverSimulation::kLanes columns.
+  /// Residuals in m, data.size() x points.cols(); at most ObserverSimulation::kLanes columns.
   void residuals(const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals_m);
   /// Adds `added_V` to the command and `added_N` to the load force of each lane; both are empty or
   /// have the size of residuals_m.

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "config/signals/nan.h"
 #include "estimator/greybox/fit_errors.h"
 #include "estimator/greybox/interval_checks.h"
 #include "estimator/greybox/multistart.h"
@@ -18,24 +19,25 @@ using Eigen::VectorXd;
 using estimator::nonlinear::Covariance;
 using estimator::nonlinear::Problem;
 using estimator::nonlinear::Solution;
+using Step = EstimationProgress::Step;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-/// A fall of the cost by this is worth another look.
+using config::signals::kNaN;
+/// A lower cost by this amount restarts the fit from there.
 constexpr double kBetter = 0.1;
-/// Costs within this of the best, and values within one standard error, are the same minimum.
+/// Fits with a cost within this of the best and values within one standard error share a minimum.
 constexpr double kSameCost = 0.5;
 constexpr double kSamePlace = 1.0;
-/// Difference step of a plant's parameters, in logarithms: small, for nearly collinear ones.
+/// Difference step of the plant's parameters, logarithms: small, for nearly collinear ones.
 constexpr double kFine = 2e-5;
 constexpr double kCoarse = 3e-5;
 constexpr int kDescent = 30;
 constexpr double kSameSigma = 1.2;
-/// Damping to begin with: nearly Gauss and Newton's step, which collinear parameters need.
+/// Initial damping: nearly a Gauss-Newton step, which collinear parameters need.
 constexpr double kSlight = 1e-7;
 constexpr double kPolished = 1e-7;
 constexpr int kPolishing = 8;
 
-/// Effects such as dry friction or play make the cost ragged.
+/// Effects such as dry friction or play make the cost discontinuous.
 bool is_smooth(const plant_sim::ModelFile& model) {
   return std::none_of(model.effects.begin(), model.effects.end(),
                       [](const auto& effect) { return effect.present; });
@@ -57,7 +59,7 @@ class Estimator {
 
   EstimationSummary run() {
     const auto begin = std::chrono::steady_clock::now();
-    say("looking at what the record can tell");
+    report({Step::identifiability, 0, {}});
     derivatives(problem_, question_.start, out_.before.residual_m, start_jacobian_);
     problem_.sigma = question_.data.noise_floor_m > 0.0
                          ? question_.data.noise_floor_m
@@ -93,21 +95,20 @@ class Estimator {
 
  private:
   bool cancelled() const { return options_.cancel && options_.cancel(); }
-  void say(const std::string& doing) const {
-    if (options_.progress) options_.progress(doing);
+  void report(const EstimationProgress& progress) const {
+    if (options_.progress) options_.progress(progress);
   }
 
   void search() {
     const std::vector<VectorXd> points =
         starting_points(question_.parameters, question_.start, std::max(1, options_.starts));
     found_.resize(points.size());
-    say("fitting from " + std::to_string(points.size()) +
-        (points.size() == 1 ? " start" : " starts"));
+    report({Step::multistart, points.size(), {}});
     in_parallel(points.size(), options_.threads, [&](std::size_t i) {
       if (i > 0 && cancelled()) return;
       FitOptions fit_options;
       fit_options.final_jacobian = false;
-      fit_options.tolerance = kCoarse;  // polished afterwards
+      fit_options.tolerance = kCoarse;  // the final fit is tighter
       if (smooth_) fit_options.logarithm_step = kFine;
       fit_options.observer_per_s = options_.observer_per_s;
       fit_options.cancel = options_.cancel;
@@ -125,7 +126,7 @@ class Estimator {
       out_.evaluations += found_[i].evaluations;
       if (found_[i].training_rms_m < found_[best].training_rms_m) best = i;
     }
-    // The priors count too: of the fits, the least cost by the measure of the best.
+    // Costs include the priors, so the fits are compared with the sigma of the best.
     problem_.sigma = found_[best].sigma_m;
     for (std::size_t i = 0; i < found_.size(); ++i) {
       if (found_[i].theta.size() > 0 && cost(found_[i]) < cost(found_[best])) best = i;
@@ -135,9 +136,10 @@ class Estimator {
     problem_.sigma = out_.fitted.sigma_m;
   }
 
-  /// From the one start: after each step the residual is weighed anew, until its size is known.
+  /// Descent from the single start: after each step the residual is weighted again, until its size
+  /// settles.
   void descend() {
-    say("fitting");
+    report({Step::descent, 0, {}});
     FitSummary& at = out_.fitted;
     at.parameters = question_.parameters;
     at.theta = question_.start;
@@ -151,7 +153,7 @@ class Estimator {
     at.sigma_m = weighed();
     for (int k = 0; k < kDescent && !cancelled(); ++k) {
       problem_.sigma = at.sigma_m;
-      estimator::nonlinear::Options how;
+      estimator::nonlinear::MinimizeOptions how;
       how.max_iterations = 1;
       if (smooth_) how.first_damping = kSlight;
       how.final_jacobian = false;
@@ -179,9 +181,9 @@ class Estimator {
     return estimator::nonlinear::cost_of(problem_, fitted.theta, fitted.residual_m);
   }
 
-  /// `known`: residual and Jacobian there, or null.
+  /// `known`: residual and Jacobian at `from`, or null.
   void polish(const VectorXd& from, const FitSummary* known) {
-    estimator::nonlinear::Options how;
+    estimator::nonlinear::MinimizeOptions how;
     how.cost_tolerance = kPolished;
     if (smooth_) how.first_damping = kSlight;
     how.max_iterations = kPolishing;
@@ -193,7 +195,7 @@ class Estimator {
     }
     solution_ = minimize(problem_, from, how);
     out_.evaluations += solution_.evaluations;
-    if (solution_.reason != estimator::nonlinear::Stop::kCancelled) return;
+    if (solution_.reason != estimator::nonlinear::StopReason::cancelled) return;
     derivatives(problem_, solution_.x, solution_.residual, solution_.jacobian);
     solution_.cost = cost_of(problem_, solution_.x, solution_.residual);
   }
@@ -244,7 +246,7 @@ class Estimator {
 
   void profile() {
     if (options_.profiling == Profiling::none || cancelled()) return;
-    std::vector<std::string> why;
+    std::vector<IntervalDoubt> why;
     std::vector<estimator::nonlinear::Profile> walked;
     for (int again = 0; again < 2; ++again) {
       why = doubts(problem_, solution_, known_, question_.parameters,
@@ -259,7 +261,7 @@ class Estimator {
           least->least_cost > solution_.cost - kBetter) {
         break;
       }
-      say("a profile met a better place: looking there");
+      report({Step::restart, 0, {}});
       polish(least->least_x, nullptr);
       compute_uncertainty();
     }
@@ -269,17 +271,17 @@ class Estimator {
     }
   }
 
-  std::vector<char> chosen(const std::vector<std::string>& why) const {
+  std::vector<char> chosen(const std::vector<IntervalDoubt>& why) const {
     std::vector<char> which(why.size(), 0);
-    std::string names;
+    std::vector<std::string> names;
     for (std::size_t i = 0; i < why.size(); ++i) {
       const std::string& name = question_.parameters[i].name;
       const bool named = std::find(options_.profiled.begin(), options_.profiled.end(), name) !=
                          options_.profiled.end();
-      which[i] = options_.profiling == Profiling::named ? named : !why[i].empty();
-      if (which[i] != 0) names += (names.empty() ? "" : ", ") + name;
+      which[i] = options_.profiling == Profiling::named ? named : why[i] != IntervalDoubt::none;
+      if (which[i] != 0) names.push_back(name);
     }
-    if (!names.empty()) say("profile of " + names);
+    if (!names.empty()) report({Step::profile, 0, names});
     return which;
   }
 

@@ -65,7 +65,7 @@ FitSummary fit(const plant_sim::ModelFile& model, const FitDataset& data,
       problem_of(data, weights, parameters, options.logarithm_step);
   problem.evaluate = run.evaluate();
   problem.lanes = run.lanes();
-  estimator::nonlinear::Options how;
+  estimator::nonlinear::MinimizeOptions how;
   how.cost_tolerance = options.tolerance;
   how.renew_all = false;
   how.final_jacobian = false;
@@ -125,7 +125,7 @@ FitSummary fit(const plant_sim::ModelFile& model, const FitDataset& data,
 
 Eigen::VectorXd std_errors(const FitDataset& data, const Eigen::VectorXd& weights,
                            const FitSummary& fitted) {
-  if (fitted.jacobian.size() == 0) {  // of a fit that was ended before it had one
+  if (fitted.jacobian.size() == 0) {  // fit cancelled before its first Jacobian
     return Eigen::VectorXd::Constant(fitted.theta.size(), std::numeric_limits<double>::quiet_NaN());
   }
   estimator::nonlinear::Problem problem = problem_of(data, weights, fitted.parameters);

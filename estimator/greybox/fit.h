@@ -1,10 +1,11 @@
-// A model's parameters fitted to evidence.
+// Fit of a model's parameters to a data set.
 //
-//   min  sum r(k)^2 / (c s^2)  +  sum ((x - mean) / sd)^2
+//   min  sum r(k)^2 / (c s^2)  +  sum ((theta - mean) / sd)^2
 //
-// r measured less modelled position of the fitted samples; s their RMS, not under the noise floor;
-// c by how much neighbouring errors hang together, (1 + rho) / (1 - rho). While a model is wrong
-// its errors are large and slow: the less the record says, the more the priors do.
+// r measured less modelled position of the training samples; s their RMS, at least the noise floor;
+// c inflation for lag-1 autocorrelation, (1 + rho) / (1 - rho). The errors of a wrong model are
+// large
+// and slow, which lowers the weight of the record relative to the priors.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,20 +22,21 @@
 
 namespace estimator::greybox {
 
-/// Step of the difference quotients of logarithmic parameters: large enough for models with dry
-/// friction, whose cost is ragged.
+/// Difference step of logarithmic parameters: large enough for models with dry friction, whose cost
+/// is
+/// discontinuous.
 inline constexpr double kLogarithmStep = 1e-3;
 
 struct FitOptions {
   int max_iterations = 30;
-  double tolerance = 1e-4;     ///< relative decrease of the cost at which it ends
-  int passes = 3;              ///< at most; each weighs the residual anew
+  double tolerance = 1e-4;     ///< relative decrease of the cost at convergence
+  int passes = 3;              ///< upper limit; each pass weights the residual again
   bool final_jacobian = true;  ///< false: FitSummary::jacobian may be stale in some columns
   double observer_per_s = kObserver_per_s;
   std::function<bool()> cancel;  ///< true ends the search, keeping the best so far
   Width width;                   ///< of the evaluations
   double logarithm_step = kLogarithmStep;
-  // Of the start, where known already; otherwise empty.
+  // Residual at the start, where already known; otherwise empty.
   Eigen::VectorXd start_residual_m;
   Eigen::MatrixXd start_jacobian;
 };
@@ -42,42 +44,43 @@ struct FitOptions {
 struct FitSummary {
   std::vector<FreeParameter> parameters;
   Eigen::VectorXd theta;       ///< search values
-  Eigen::VectorXd residual_m;  ///< of all samples
-  Eigen::MatrixXd jacobian;    ///< d residual / d x, all samples
-  std::vector<int> at_bound;   ///< -1, 0, +1 for each parameter
+  Eigen::VectorXd residual_m;  ///< all samples
+  Eigen::MatrixXd jacobian;    ///< d residual / d theta, all samples
+  std::vector<int> at_bound;   ///< -1, 0, +1 per parameter
   double training_rms_m = 0.0;
   double validation_rms_m = 0.0;
   double cost = 0.0;
   double sigma_m = 0.0;  ///< s sqrt(c) of the last pass
   int evaluations = 0;   ///< groups of eight simulations
 
-  /// The value found for a parameter, NaN when it was not searched.
+  /// Value of a fitted parameter; NaN for any other.
   [[nodiscard]] double value(std::string_view name) const;
 };
 
-/// What fit() minimises; `evaluate`, `lanes` and `sigma` are left to the caller.
+/// Problem that fit() minimises; the caller sets `evaluate`, `lanes` and `sigma`.
 [[nodiscard]] estimator::nonlinear::Problem problem_of(const FitDataset& data,
                                                        const Eigen::VectorXd& weights,
                                                        const std::vector<FreeParameter>& parameters,
                                                        double logarithm_step = kLogarithmStep);
 
-/// Weights: which samples count in the fit (Evidence::fits, or counts for the final values).
+/// `weights`: samples that count in the fit (FitDataset::training_mask, or all_mask for final
+/// values).
 [[nodiscard]] FitSummary fit(const plant_sim::ModelFile& model, const FitDataset& data,
                              const Eigen::VectorXd& weights,
                              const std::vector<FreeParameter>& parameters,
                              const Eigen::VectorXd& start, const FitOptions& options = {});
 
-/// Standard error of each search value, honest for residuals of any colour; NaN at a bound,
-/// infinite where neither record nor prior sees it. `weights` as in the fit.
+/// Standard error of each theta, valid for coloured residuals; NaN at a bound, infinite where
+/// neither
+/// record nor prior determines it. `weights` as in the fit.
 [[nodiscard]] Eigen::VectorXd std_errors(const FitDataset& data, const Eigen::VectorXd& weights,
                                          const FitSummary& fitted);
 
-/// (1 + rho) / (1 - rho) with the residual's correlation rho from one sample to the next, within
-/// 1 to 100.
+/// (1 + rho) / (1 - rho) with the residual's lag-1 autocorrelation rho; within 1 to 100.
 [[nodiscard]] double correlation_factor(const Eigen::VectorXd& residual_m,
                                         const Eigen::VectorXd& weights);
 
-/// The model with the values found; effects whose parameters were searched become present.
+/// The model with the fitted values; effects with fitted parameters become present.
 [[nodiscard]] plant_sim::ModelFile with_values(plant_sim::ModelFile model,
                                                const FitSummary& fitted);
 

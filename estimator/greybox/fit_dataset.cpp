@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 #include "config/schema/error.h"
 #include "estimator/greybox/dataset.h"

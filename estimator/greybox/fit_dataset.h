@@ -1,5 +1,4 @@
-// The records that a model is judged by, as one long series: which samples are fitted, which only
-// score.
+// Data set of a fit: records as one long series, split into training and validation samples.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,8 +9,7 @@
 
 namespace estimator::greybox {
 
-/// Which samples of the records are fitted where no record is set aside for scoring; the others
-/// score.
+/// Training samples where no record is held out; the others validate.
 enum class Split { blocks, first_half, second_half };
 /// "blocks", "first-half", "second-half".
 [[nodiscard]] Split parse_split(std::string_view text);
@@ -20,27 +18,28 @@ inline constexpr double kBlock_s = 2.0;  ///< blocks: every other one is fitted
 
 struct FitDataset {
   std::vector<Dataset> records;
-  std::vector<std::size_t> starts;  ///< where each record begins in the long series
-  // One number for each sample of the long series, 1 or 0; settled samples only.
+  std::vector<std::size_t> starts;  ///< start of each record in the long series
+  // Masks with one number per sample of the long series, 1 or 0; settled samples only.
   Eigen::VectorXd training_mask;
   Eigen::VectorXd validation_mask;
-  Eigen::VectorXd all_mask;        ///< either
-  std::size_t fitted_records = 0;  ///< the first of `records`; the others only score
-  /// Over the records that tell one; NaN when none does (below 20 Hz).
+  Eigen::VectorXd all_mask;        ///< training or validation
+  std::size_t fitted_records = 0;  ///< the first of `records`; the others only validate
+  /// Mean over the records with a known noise floor; NaN when there is none (below 20 Hz).
   double noise_floor_m = 0.0;
-  double sample_time_s = 0.0;  ///< of the first record
+  double sample_time_s = 0.0;  ///< first record
 
   [[nodiscard]] Eigen::Index size() const { return all_mask.size(); }
-  /// Whether whole records are kept for scoring.
+  /// Whether whole records are held out.
   [[nodiscard]] bool has_holdouts() const { return fitted_records < records.size(); }
-  /// The samples for final values: all, save for records that are kept for scoring.
+  /// Samples for final values: all except held-out records.
   [[nodiscard]] const Eigen::VectorXd& final_weights() const {
     return has_holdouts() ? training_mask : all_mask;
   }
 };
 
-/// `holdouts` are records that only score; with them every sample of `records` is fitted. Halves of
-/// records become records of their own, so that each begins anew. At least one record.
+/// `holdouts` are records for validation only; with them every sample of `records` is fitted.
+/// Halves
+/// of records become records of their own, each with its own start. Requires at least one record.
 [[nodiscard]] FitDataset fit_dataset(std::vector<Dataset> records, std::vector<Dataset> holdouts,
                                      Split split = Split::blocks);
 

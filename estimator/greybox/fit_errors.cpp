@@ -16,11 +16,9 @@ void compute_errors(const EstimationProblem& question, const VectorXd& fitted,
       of->heldout_rms_m = rms(of->residual_m, question.data.validation_mask);
     }
   }
-  // Free run over every sample, as `compare` has it.
+  // Free run over every sample, as in `compare`.
   FitDataset all = question.data;
-  for (Dataset& record : all.records) {
-    std::fill(record.valid.begin(), record.valid.end(), 1);
-  }
+  for (Dataset& record : all.records) std::fill(record.valid.begin(), record.valid.end(), 1);
   DatasetSimulation free(question.model, all, question.parameters, 0.0);
   Eigen::MatrixXd points(question.start.size(), 2);
   points << question.start, fitted;

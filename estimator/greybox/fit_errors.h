@@ -1,4 +1,4 @@
-// How far a model is off, before and after a fit.
+// Errors of a model before and after a fit.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,8 +7,7 @@
 
 namespace estimator::greybox {
 
-/// Fills the errors of the task's start and of `fitted` (search values); residual_m of both is
-/// there already.
+/// Fills the errors of the start and of `fitted`; residual_m of both is already set.
 void compute_errors(const EstimationProblem& question, const Eigen::VectorXd& fitted,
                     SimulationErrors& before, SimulationErrors& after);
 

@@ -8,9 +8,9 @@ namespace estimator::greybox {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-/// How many standard deviations of its prior a plant's parameter may move.
+/// Range of a plant parameter, in standard deviations of its prior.
 constexpr double kWidest = 3.0;
-/// How many times its typical size an effect may reach.
+/// Range of an effect's parameter, in typical sizes.
 constexpr double kLargest = 200.0;
 
 }  // namespace

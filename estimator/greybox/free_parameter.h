@@ -1,8 +1,9 @@
-// A model parameter as a search sees it: a number near 0 or 1 with bounds, whatever its unit.
+// A model parameter as a free parameter of a fit: a number near 0 or 1 with bounds, whatever its
+// unit.
 //
-//   linear       value = unit s              effects: s = 0 is their absence
-//   logarithmic  value = unit exp(s)         plants: s = 0 is the model file's value
-//   reciprocal   value = unit / s            limits: s = 0 is no limit
+//   linear       value = unit theta          effects: theta = 0 is their absence
+//   logarithmic  value = unit exp(theta)     plants: theta = 0 is the model file's value
+//   reciprocal   value = unit / theta        limits: theta = 0 is no limit
 #pragma once
 
 #include <Eigen/Core>
@@ -22,26 +23,26 @@ struct FreeParameter {
   std::string name;  ///< "damping_N_s_per_m", "friction.coulomb_N"
   Scale scale = Scale::linear;
   double unit = 1.0;
-  double lower = 0.0;  ///< bounds, in s
+  double lower = 0.0;  ///< bounds of theta
   double upper = 0.0;
-  double prior_mean = 0.0;  ///< in s
-  double prior_sd = 0.0;    ///< infinite: none
+  double prior_mean = 0.0;  ///< mean of theta
+  double prior_sd = 0.0;    ///< infinite: no prior
   int refinement = 0;       ///< plant_sim::ParameterInfo::refinement
 
   [[nodiscard]] double to_physical(double theta) const;
   [[nodiscard]] double to_theta(double value) const;
-  /// |d value / d s|, for standard errors.
+  /// |d value / d theta|, for standard errors.
   [[nodiscard]] double slope(double theta) const;
 };
 
-/// The plant's parameters that a rig may not share with its model file, with their priors about the
-/// file's values (plant_sim::ParameterInfo::uncertainty_ratio).
+/// Plant parameters that may differ from the model file, with priors about the file's values
+/// (plant_sim::ParameterInfo::uncertainty_ratio).
 [[nodiscard]] std::vector<FreeParameter> plant_parameters(const plant_sim::ModelFile& model);
 
-/// The parameters of effects that the model has and that do not stand at their neutral value.
+/// Parameters of effects that the model has and that are not neutral.
 [[nodiscard]] std::vector<FreeParameter> present_parameters(const plant_sim::ModelFile& model);
 
-/// Search values at which every parameter is as in the model file.
+/// theta at which every parameter has the model file's value.
 [[nodiscard]] Eigen::VectorXd start_of(const plant_sim::ModelFile& model,
                                        const std::vector<FreeParameter>& parameters);
 

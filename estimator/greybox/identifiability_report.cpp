@@ -1,12 +1,9 @@
 #include "estimator/greybox/identifiability_report.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "config/schema/joined.h"
 #include "estimator/linear_algebra/decompositions.h"
 #include "estimator/nonlinear/difference.h"
 #include "estimator/nonlinear/identifiability.h"
@@ -19,22 +16,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A prior holds a parameter that the record leaves with more than this part of its spread.
+/// The prior determines a parameter whose posterior spread exceeds this share of the prior's.
 constexpr double kHeld = 0.7;
 constexpr double kWeak = 1e-2;
 constexpr double kRidge = 1e-9;
 constexpr std::size_t kMostPartners = 4;
-
-std::string power_of(const std::string& name, double exponent) {
-  if (std::abs(exponent - 1.0) < 0.1) return name;
-  if (std::abs(exponent - 0.5) < 0.05) return "sqrt(" + name + ")";
-  return fmt::format("{}^{:.2g}", name, exponent);
-}
-
-/// What stays the same when b follows a with d ln b / d ln a = slope.
-std::string product(const std::string& b, const std::string& a, double slope) {
-  return slope < 0.0 ? b + " * " + power_of(a, -slope) : b + " / " + power_of(a, slope);
-}
 
 class IdentifiabilityAnalysis {
  public:
@@ -83,7 +69,7 @@ class IdentifiabilityAnalysis {
   MatrixXd inverse(const VectorXd& priors) const {
     MatrixXd H = record_;
     H.diagonal() += priors;
-    // Relative to each parameter's own weight, so that an invisible one stays invisible.
+    // Scaled by each parameter's own weight, so that an invisible one stays invisible.
     const VectorXd unit = (record_.diagonal().array() + priors.array() + 1e-12).rsqrt();
     H = (unit.asDiagonal() * H * unit.asDiagonal()).eval();
     H.diagonal().array() += kRidge;
@@ -92,24 +78,24 @@ class IdentifiabilityAnalysis {
     return unit.asDiagonal() * inverse * unit.asDiagonal();
   }
 
-  /// Without priors a combination leaves several unseen; it is said once.
+  /// Without priors a combination leaves several parameters unidentified; it is reported once.
   bool is_partner(const IdentifiabilityReport& out, Index j) const {
     if (prior_[j] > 0.0) return false;
     return std::any_of(out.unidentifiable.begin(), out.unidentifiable.end(),
                        [&](const UnidentifiableParameter& u) {
-                         return std::find(u.partners.begin(), u.partners.end(), name(j)) !=
+                         return std::find(u.partners.begin(), u.partners.end(), index(j)) !=
                                 u.partners.end();
                        });
   }
 
-  const std::string& name(Index j) const { return parameters_[static_cast<std::size_t>(j)].name; }
+  static std::size_t index(Index j) { return static_cast<std::size_t>(j); }
 
   bool both_logarithmic(Index a, Index b) const {
-    return parameters_[static_cast<std::size_t>(a)].scale == Scale::logarithmic &&
-           parameters_[static_cast<std::size_t>(b)].scale == Scale::logarithmic;
+    return parameters_[index(a)].scale == Scale::logarithmic &&
+           parameters_[index(b)].scale == Scale::logarithmic;
   }
 
-  /// How far j can move unnoticed when only k follows.
+  /// Distance that j can move unnoticed when only k follows.
   double hidden_by(Index j, Index k) const {
     const double rest = record_(j, j) - record_(j, k) * record_(j, k) / record_(k, k);
     return 1.0 / std::sqrt(std::max(rest, 1e-18));
@@ -117,14 +103,9 @@ class IdentifiabilityAnalysis {
 
   UnidentifiableParameter unseen(Index j) const {
     UnidentifiableParameter out;
-    out.name = name(j);
+    out.parameter = index(j);
     out.has_prior = prior_[j] > 0.0;
-    const std::string fate = out.has_prior ? "its prior holds " + out.name
-                                           : out.name + " has no prior and stays arbitrary";
-    if (!(record_(j, j) * kHeld * kHeld > 1.0)) {
-      out.words = "the record hardly depends on " + out.name + ": " + fate;
-      return out;
-    }
+    if (!(record_(j, j) * kHeld * kHeld > 1.0)) return out;
     Index best = -1;
     for (Index k = 0; k < scale_.size(); ++k) {
       if (k == j || !(record_(k, k) > 0.0)) continue;
@@ -132,31 +113,26 @@ class IdentifiabilityAnalysis {
     }
     if (best >= 0 && hidden_by(j, best) > kHeld) {
       const double slope = -record_(j, best) / record_(best, best) * scale_[best] / scale_[j];
-      out.partners = {name(best)};
-      if (both_logarithmic(j, best)) out.visible = product(name(best), out.name, slope);
-      out.words = (out.visible.empty() ? out.name + " and " + name(best) + " cannot be told apart"
-                                       : "only " + out.visible + " is visible") +
-                  ": " + fate;
+      out.cause = UnidentifiableParameter::Cause::one_partner;
+      out.partners = {index(best)};
+      if (both_logarithmic(j, best)) out.visible = {{index(best), slope}};
       return out;
     }
+    out.cause = UnidentifiableParameter::Cause::traded;
     followers(j, out);
-    out.words = (out.visible.empty() ? out.name + " can be traded against " + list(out.partners)
-                 : out.partners.size() == 1 ? "only " + out.visible + " is visible"
-                                            : "only " + out.visible + " are visible") +
-                ": " + fate;
     return out;
   }
 
   void followers(Index j, UnidentifiableParameter& out) const {
-    // Weak, so that the exponents are those of the equations; not none, for the sake of those that
-    // nothing else would hold.
+    // Weak priors leave the exponents of the equations and still bound the parameters that
+    // nothing else determines.
     VectorXd others = kWeak * prior_;
     others[j] = 0.0;
     const VectorXd column = inverse(others).col(j);
     std::vector<std::pair<double, Index>> moved;
     for (Index k = 0; k < column.size(); ++k) {
       if (k == j) continue;
-      // In what the record would notice of k alone.
+      // Relative to the distance of k alone that the record would notice.
       const double noticed = std::abs(column[k] / column[j]) * std::sqrt(record_(k, k));
       if (noticed > 1.0) moved.push_back({noticed, k});
     }
@@ -164,26 +140,18 @@ class IdentifiabilityAnalysis {
     bool products = !moved.empty() && moved.size() <= kMostPartners;
     for (const auto& [noticed, k] : moved) {
       if (out.partners.size() == kMostPartners) break;
-      out.partners.push_back(name(k));
+      out.partners.push_back(index(k));
       products = products && both_logarithmic(j, k);
     }
     if (!products) return;
-    std::vector<std::string> kept;
-    kept.reserve(moved.size());
     for (const auto& [noticed, k] : moved) {
-      kept.push_back(product(name(k), name(j), column[k] / column[j] * scale_[k] / scale_[j]));
+      out.visible.push_back({index(k), column[k] / column[j] * scale_[k] / scale_[j]});
     }
-    out.visible = list(kept);
-  }
-
-  static std::string list(const std::vector<std::string>& names) {
-    if (names.empty()) return "the others together";
-    return config::schema::listed(names);
   }
 
   const std::vector<FreeParameter>& parameters_;
   VectorXd scale_;
-  VectorXd prior_;  ///< precision in those scales: 1, or 0 for none
+  VectorXd prior_;  ///< precision in scaled units: 1; 0 without prior
   MatrixXd record_;
   double condition_ = 0.0;
 };

@@ -1,16 +1,16 @@
-// What a record can tell about each parameter, and what it cannot: from the Jacobian, before and
-// after the fit.
+// Identifiability of each parameter from the Jacobian, before and after the fit.
 //
-//   H = J' W J / sigma^2            what the record says
-//   d = (H + P_others)^-1 e_j       how the others follow when parameter j is moved
+//   H = J' W J / sigma^2            information of the record
+//   d = (H + P_others)^-1 e_j       response of the others when parameter j is moved
 //
-// J W sigma of the fit; P_others the priors of all parameters but j. Where j could move by its
-// prior's standard deviation and the record would not notice, the prior holds it; the parameters
-// that follow name the combination that alone is visible (of logarithms: a product of powers).
+// J, W, sigma are those of the fit; P_others holds the priors of all parameters but j. Where j can
+// move by its prior's standard deviation unnoticed by the record, the prior determines it. The
+// parameters that follow j give the combination that is visible: for logarithmic parameters a
+// product of powers.
 #pragma once
 
 #include <Eigen/Core>
-#include <string>
+#include <cstddef>
 #include <vector>
 
 #include "estimator/greybox/free_parameter.h"
@@ -18,28 +18,41 @@
 
 namespace estimator::greybox {
 
+/// Combination that is visible: partner * parameter^-slope, both logarithmic.
+struct VisibleProduct {
+  std::size_t partner = 0;
+  double slope = 0.0;  ///< d ln partner / d ln parameter along the invisible direction
+};
+
+/// Indices are those of the fitted parameters.
 struct UnidentifiableParameter {
-  std::string name;
-  std::vector<std::string> partners;  ///< those that hide it by moving with it
-  std::string visible;                ///< "gain * sqrt(pressure) and mass / pressure", or empty
-  bool has_prior = false;
-  std::string words;
+  enum class Cause {
+    no_influence,  ///< the record hardly depends on the parameter
+    one_partner,   ///< one other parameter compensates it
+    traded         ///< several others together compensate it
+  };
+
+  std::size_t parameter = 0;
+  Cause cause = Cause::no_influence;
+  std::vector<std::size_t> partners;    ///< parameters that compensate it
+  std::vector<VisibleProduct> visible;  ///< empty where a parameter is not logarithmic
+  bool has_prior = false;               ///< the prior determines it; else it stays arbitrary
 };
 
 struct IdentifiabilityReport {
-  double condition = 0.0;  ///< of the scaled Jacobian
-  /// Share of each parameter's knowledge that is the record's: 1 - (posterior sd / prior sd)^2; 1
-  /// without a prior, 0 where neither record nor prior see it.
+  double condition = 0.0;  ///< scaled Jacobian
+  /// Share of the information on each parameter that the record contributes:
+  /// 1 - (posterior sd / prior sd)^2; 1 without a prior, 0 where neither determines it.
   Eigen::VectorXd share;
   std::vector<UnidentifiableParameter> unidentifiable;
 };
 
-/// `sigma` of the problem: the noise, white (before a fit: the noise floor).
+/// The problem's `sigma` is white noise [m]; before a fit, the noise floor.
 [[nodiscard]] IdentifiabilityReport identifiability_report(
     const estimator::nonlinear::Problem& problem, const Eigen::MatrixXd& jacobian,
     const std::vector<FreeParameter>& parameters, const Eigen::VectorXd& theta);
 
-/// d residual / d x, all columns, and the residual.
+/// Residual [m] and its Jacobian d residual / d theta, all columns.
 void derivatives(const estimator::nonlinear::Problem& problem, const Eigen::VectorXd& theta,
                  Eigen::VectorXd& residual, Eigen::MatrixXd& jacobian);
 

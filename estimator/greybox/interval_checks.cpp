@@ -23,20 +23,18 @@ using estimator::nonlinear::Standing;
 constexpr double kInterval = 1.96;
 constexpr double kLargeLogarithm = 0.2;
 constexpr double kLargeShare = 0.3;
-/// Of the rise that a parabola would have.
+/// Allowed deviation from the rise of a parabola, as a share of that rise.
 constexpr double kBent = 0.4;
 constexpr double kSeen = 0.5;
 
-std::string large(const FreeParameter& p, double theta, double std_error) {
-  if (p.scale == Scale::logarithmic) {
-    return std_error > kLargeLogarithm ? "large standard error" : "";
-  }
-  return std_error > kLargeShare * std::abs(theta) ? "large standard error" : "";
+bool is_large(const FreeParameter& p, double theta, double std_error) {
+  return std_error >
+         (p.scale == Scale::logarithmic ? kLargeLogarithm : kLargeShare * std::abs(theta));
 }
 
-/// Marks those whose cost, at the ends of their intervals, is not that of the linear model.
-void look_for_bends(const Problem& problem, const Solution& solution, const Covariance& known,
-                    std::vector<std::string>& found) {
+/// Marks parameters whose cost at the ends of their intervals differs from the linear model's.
+void check_curvature(const Problem& problem, const Solution& solution, const Covariance& known,
+                     std::vector<IntervalDoubt>& found) {
   const Index n = problem.size();
   const auto model =
       estimator::nonlinear::compress(problem, solution.x, solution.residual, solution.jacobian);
@@ -46,9 +44,9 @@ void look_for_bends(const Problem& problem, const Solution& solution, const Cova
   };
   std::vector<End> ends;
   for (Index j = 0; j < n; ++j) {
-    if (known.standing[static_cast<std::size_t>(j)] != Standing::kEstimated) continue;
+    if (known.standing[static_cast<std::size_t>(j)] != Standing::estimated) continue;
     const double variance = known.matrix(j, j);
-    if (!found[static_cast<std::size_t>(j)].empty() || !(variance > 0.0)) continue;
+    if (found[static_cast<std::size_t>(j)] != IntervalDoubt::none || !(variance > 0.0)) continue;
     for (const double side : {-kInterval, kInterval}) {
       VectorXd step = side / std::sqrt(variance) * known.matrix.col(j);
       for (Index i = 0; i < n; ++i) {
@@ -71,32 +69,34 @@ void look_for_bends(const Problem& problem, const Solution& solution, const Cova
         estimator::nonlinear::cost_of(problem, points.col(column), results.col(column)) -
         solution.cost;
     const double expected = -estimator::nonlinear::predicted_decrease(model, ends[i].step);
-    // An interval that is cut at a bound rises little: its profile says so too.
+    // The cost rises little where a bound cuts the interval; the profile shows that as well.
     if (!(std::abs(rise - expected) < kBent * std::max(expected, 1.0))) {
-      found[static_cast<std::size_t>(ends[i].j)] = "the likelihood is not quadratic";
+      found[static_cast<std::size_t>(ends[i].j)] = IntervalDoubt::not_quadratic;
     }
   }
 }
 
 }  // namespace
 
-std::vector<std::string> doubts(const Problem& problem, const Solution& solution,
-                                const Covariance& known,
-                                const std::vector<FreeParameter>& parameters,
-                                const VectorXd& record_share) {
-  std::vector<std::string> found(parameters.size());
+std::vector<IntervalDoubt> doubts(const Problem& problem, const Solution& solution,
+                                  const Covariance& known,
+                                  const std::vector<FreeParameter>& parameters,
+                                  const VectorXd& record_share) {
+  std::vector<IntervalDoubt> found(parameters.size(), IntervalDoubt::none);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const auto j = static_cast<Index>(i);
     const bool prior = std::isfinite(parameters[i].prior_sd);
     if (solution.at_bound[i] != 0) {
-      found[i] = "at its bound";
-    } else if (known.standing[i] == Standing::kUnseen) {
-      found[i] = "not visible";
+      found[i] = IntervalDoubt::at_bound;
+    } else if (known.standing[i] == Standing::unseen) {
+      found[i] = IntervalDoubt::not_visible;
     } else if (!prior || record_share[j] > kSeen) {
-      found[i] = large(parameters[i], solution.x[j], known.std_error[j]);
+      if (is_large(parameters[i], solution.x[j], known.std_error[j])) {
+        found[i] = IntervalDoubt::large_std_error;
+      }
     }
   }
-  look_for_bends(problem, solution, known, found);
+  check_curvature(problem, solution, known, found);
   return found;
 }
 

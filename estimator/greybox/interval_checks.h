@@ -1,28 +1,26 @@
-// Which parameters the standard error alone does not describe well, and their profiles.
+// Parameters whose standard error alone describes the uncertainty badly, and their profiles.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "estimator/greybox/estimation.h"
 
 namespace estimator::greybox {
 
-/// One text for each parameter, empty where there is no doubt: at a bound, a large standard error
-/// that no prior explains, or a cost that is not quadratic where the interval ends.
-[[nodiscard]] std::vector<std::string> doubts(const estimator::nonlinear::Problem& problem,
-                                              const estimator::nonlinear::Solution& solution,
-                                              const estimator::nonlinear::Covariance& known,
-                                              const std::vector<FreeParameter>& parameters,
-                                              const Eigen::VectorXd& record_share);
+/// One entry per parameter.
+[[nodiscard]] std::vector<IntervalDoubt> doubts(const estimator::nonlinear::Problem& problem,
+                                                const estimator::nonlinear::Solution& solution,
+                                                const estimator::nonlinear::Covariance& known,
+                                                const std::vector<FreeParameter>& parameters,
+                                                const Eigen::VectorXd& record_share);
 
-/// Of the parameters whose `chosen` is not 0, on the task's threads; others stay empty.
+/// Profiles of the parameters with `chosen` not 0, computed in parallel; the others stay empty.
 [[nodiscard]] std::vector<estimator::nonlinear::Profile> profiles(
     const EstimationProblem& question, const EstimationOptions& options,
     const estimator::nonlinear::Problem& problem, const estimator::nonlinear::Solution& solution,
     const estimator::nonlinear::Covariance& known, const std::vector<char>& chosen);
 
-/// What a profile says of a parameter, in the parameter's own unit.
+/// Stores the profile and its interval in `q`, in the parameter's physical unit.
 void apply_profile(const estimator::nonlinear::Profile& walked, EstimatedParameter& q);
 
 }  // namespace estimator::greybox

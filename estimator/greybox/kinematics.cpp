@@ -17,7 +17,7 @@ std::size_t samples_in(double duration_s, double sample_time_s) {
   return static_cast<std::size_t>(std::lround(duration_s / sample_time_s));
 }
 
-/// Slope and curvature of the parabola through samples [from, to], read at sample k.
+/// Slope and curvature of the parabola through samples [from, to], evaluated at sample k.
 struct Weights {
   std::vector<double> slope;
   std::vector<double> curvature;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint64_t kSeed = 20020601;
 
-/// Numbers that are the same with every standard library.
+/// Random numbers independent of the standard library.
 class Draw {
  public:
   double uniform() { return (static_cast<double>(engine_() >> 11U) + 0.5) * 0x1p-53; }

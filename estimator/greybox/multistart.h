@@ -1,5 +1,6 @@
-// Where searches begin: the model file's values first, then values drawn about them, the same each
-// time.
+// Starting points of a multistart search: the model file's values first, then reproducible random
+// values
+// about them.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,9 +10,11 @@
 
 namespace estimator::greybox {
 
-/// `count` points. Those after the first are drawn from the priors; without a prior a logarithm by
-/// 0.5 about the start, a size of an effect within a factor of about three of it (of its typical
-/// size where the effect starts from nothing).
+/// Returns `count` points: the start, then samples of the priors. Without a prior a logarithm is
+/// drawn
+/// with 0.5 about the start, the size of an effect within a factor of about three of the start, or
+/// of
+/// its typical size where the effect starts from nothing.
 [[nodiscard]] std::vector<Eigen::VectorXd> starting_points(
     const std::vector<FreeParameter>& parameters, const Eigen::VectorXd& start, int count);
 

@@ -21,9 +21,7 @@ ObserverSimulation::ObserverSimulation(const plant_sim::ModelFile& model, const 
       speed_mps_(record.size(), 0.0) {
   for (const FreeParameter& parameter : parameters_) {
     const auto index = ensemble_->find(parameter.name);
-    if (!index) {
-      throw config::schema::bad_config(model.name, "has no parameter " + parameter.name);
-    }
+    if (!index) throw config::schema::bad_config(model.name, "has no parameter " + parameter.name);
     index_.push_back(*index);
   }
 }

@@ -1,18 +1,17 @@
-// A model driven by the measured command, up to eight parameter sets side by side, over all
-// segments of a record.
+// Simulation of a model driven by the measured command over all segments of a record, up to eight
+// parameter sets side by side.
 //
 //   yh(k) = reading(k),   then  yh += l Ts (y(k) - yh(k)),   then u(k) held for Ts
 //
-// y yh measured and modelled position; l the observer's gain, 1/s. l = 0 is the free run from
-// each segment's start; a small l takes away the drift of an integrating plant and leaves what is
-// faster than 1/l as it is. A segment that begins in the midst of a motion is led at
-// kLeading_per_s while it settles.
+// y, yh measured and modelled position; l the observer gain, 1/s. l = 0 is the free run from each
+// segment's start; a small l removes the drift of an integrating plant and leaves components faster
+// than 1/l unchanged. A segment that begins during a motion uses the gain kInitialisation_per_s
+// while it settles.
 #pragma once
 
 #include <Eigen/Core>
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "estimator/greybox/dataset.h"
@@ -22,36 +21,38 @@
 
 namespace estimator::greybox {
 
-/// Found to work for the thesis's actuator: fast enough against drift, slow enough for slow
-/// effects.
+/// Default observer gain: fast enough against drift, slow enough for slow effects; established for
+/// the
+/// thesis's actuator.
 inline constexpr double kObserver_per_s = 2.0;
 
 class ObserverSimulation {
  public:
   static constexpr Eigen::Index kLanes = plant_sim::Ensemble::kLanes;
 
-  /// Searched parameters that the model knows; the others stay as in the model file. The record
-  /// must outlive this object. Throws config::schema::Error for a model that cannot be built.
+  /// `parameters`: free parameters known to the model; the others stay as in the model file. The
+  /// record must
+  /// outlive this object. Throws config::schema::ConfigError for a model that cannot be built.
   ObserverSimulation(const plant_sim::ModelFile& model, const Dataset& record,
                      std::vector<FreeParameter> parameters,
                      double observer_per_s = kObserver_per_s);
 
-  /// Measured less modelled position, size() x points.cols(), for each column of search values
-  /// (searched().size() rows, at most kLanes columns). Samples before a segment has settled give 0.
+  /// Measured less modelled position [m], size() x points.cols(), one column per column of theta
+  /// (parameters().size() rows, at most kLanes columns). Samples of an unsettled segment give 0.
   void residuals(const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals_m);
 
-  /// The same, with what is added to command and load in each lane (size() x points.cols(), or
-  /// empty): for finding out where a residual enters.
+  /// The same with additions to command and load in each lane (size() x points.cols(), or empty):
+  /// locates
+  /// the site at which a residual enters.
   void residuals(const Eigen::MatrixXd& points, const Eigen::MatrixXd& added_V,
                  const Eigen::MatrixXd& added_N, Eigen::MatrixXd& residuals_m);
 
-  /// Model pressures of every sample in each lane, size() x kLanes.
+  /// Modelled pressures of every sample in each lane, size() x kLanes.
   struct Chambers {
     Eigen::MatrixXd in_Pa;
     Eigen::MatrixXd out_Pa;
   };
-  /// The same as the first, with the model's chamber pressures; of the observer they feel nothing
-  /// but that the rod is elsewhere.
+  /// As the first, with the modelled chamber pressures; the observer corrects the position alone.
   void residuals(const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals_m, Chambers& chambers);
 
   [[nodiscard]] const std::vector<FreeParameter>& parameters() const { return parameters_; }
@@ -61,7 +62,7 @@ class ObserverSimulation {
   void innovations(const Eigen::MatrixXd& points, std::span<const InnovationGains> gains,
                    Eigen::MatrixXd& residuals_m);
 
-  /// The model's speed of lane 0 in the latest run, one for each sample.
+  /// Modelled speed of lane 0 in the latest run, one per sample.
   [[nodiscard]] const std::vector<double>& speed_mps() const { return speed_mps_; }
 
  private:
@@ -80,7 +81,7 @@ class ObserverSimulation {
   std::vector<double> speed_mps_;
 };
 
-/// Integration step for a record: the model's own, made to divide the record's sample time.
+/// Integration step for a record: the model's own, adjusted to divide the sample time.
 [[nodiscard]] double step_for(const plant_sim::ModelFile& model, double sample_time_s);
 
 }  // namespace estimator::greybox

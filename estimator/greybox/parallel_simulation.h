@@ -1,4 +1,4 @@
-// More than eight parameter sets at once: an DatasetSimulation on each of several threads.
+// Simulation of more than eight parameter sets: one DatasetSimulation on each of several threads.
 #pragma once
 
 #include <vector>
@@ -24,7 +24,7 @@ class ParallelSimulation {
                      Width width);
 
   [[nodiscard]] Eigen::Index lanes() const;
-  /// evidence.size() x points.cols(); at most lanes() columns.
+  /// Residuals in m, data.size() x points.cols(); at most lanes() columns.
   void residuals(const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals_m);
   /// For Problem::evaluate; refers to this object.
   [[nodiscard]] estimator::nonlinear::Evaluate evaluate();

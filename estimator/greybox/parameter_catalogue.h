@@ -1,4 +1,4 @@
-// Every parameter that a model may be searched for, by the names of model files.
+// Catalogue of every parameter that can be fitted, by the names of model files.
 #pragma once
 
 #include <string>
@@ -10,32 +10,33 @@
 
 namespace estimator::greybox {
 
-/// A parameter that may be fitted.
+/// A parameter that can be fitted.
 struct CatalogueParameter {
   std::string name;
-  std::string effect;  ///< empty: the plant's
+  std::string effect;  ///< empty: a plant parameter
   plant_sim::ParameterInfo info;
   FreeParameter free;
 };
 
-/// Of the plant, and of every effect that acts where the plant has a site.
+/// Parameters of the plant and of every effect whose site the plant offers.
 [[nodiscard]] std::vector<CatalogueParameter> parameter_catalogue(
     const plant_sim::ModelFile& model);
 
-/// The whole range that the parameter may have, no prior.
+/// Widens to the parameter's whole range, without prior.
 void widen_to_full_range(CatalogueParameter& known);
 
-/// Of the plant and of effects that the model has: what a list of allowed names should show.
+/// Names for a list of allowed values: parameters of the plant and of effects in the model.
 [[nodiscard]] std::vector<std::string> suggested_names(
     const plant_sim::ModelFile& model, const std::vector<CatalogueParameter>& known);
 
-/// Throws config::schema::ConfigError that names the option, what was typed, the nearest of
-/// `near` and what is allowed.
+/// Throws config::schema::ConfigError with the option, the typed name, the nearest name of `near`
+/// and
+/// the allowed names.
 [[noreturn]] void reject_name(const std::string& option, const std::string& typed,
                               const std::vector<std::string>& near,
                               const std::vector<std::string>& shown_names);
 
-/// Words of lists "a,b,c", one after the other.
+/// Names of comma-separated lists, concatenated.
 [[nodiscard]] std::vector<std::string> split_names(const std::vector<std::string>& lists);
 
 }  // namespace estimator::greybox

@@ -2,18 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
+
+#include "estimator/greybox/kinematics.h"
 
 namespace estimator::greybox {
 namespace {
 
-struct SampleRange {
-  std::size_t begin;
-  std::size_t end;
-};
-
-/// Of [begin, end) the `length` samples with the longest way of the rod, of those that begin
-/// every quarter of it.
+/// The `length` samples of [begin, end) with the longest travel, starts a quarter length apart.
 SampleRange longest_travel(const Dataset& record, std::size_t begin, std::size_t end,
                            std::size_t length) {
   std::vector<double> travel_m(end - begin, 0.0);

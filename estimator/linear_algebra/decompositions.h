@@ -39,7 +39,8 @@ struct ShortestSolution {
   Eigen::Index rank = 0;
 };
 ShortestSolution shortest_least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
-/// One column of x per column of `b`; pivots over `threshold` of the greatest count for the rank.
+/// One column of x per column of `b`; pivots above `threshold` times the greatest count for the
+/// rank.
 Eigen::MatrixXd shortest_least_squares(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b,
                                        double threshold);
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& a);

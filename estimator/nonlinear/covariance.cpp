@@ -92,7 +92,7 @@ struct Stretch {
   Index rows = 0;
   residual::Autoregression model;
   double variance = 0.0;
-  double share = 0.0;  ///< of the residuals that count
+  double share = 0.0;  ///< share of the residuals that count
 };
 
 std::vector<Stretch> colours(const Problem& problem, const Solution& solution,
@@ -112,7 +112,7 @@ std::vector<Stretch> colours(const Problem& problem, const Solution& solution,
       count += 1.0;
     }
     one.model = residual::fit_autoregression(series);
-    if (options.colour == Colour::kWhite) {
+    if (options.colour == Colour::white) {
       one.model.a.clear();
       one.model.innovation_variance = one.model.variance;
     }
@@ -138,14 +138,14 @@ Covariance covariance(const Problem& problem, const Solution& solution,
   out.low = out.high = solution.x;
   out.inflation = VectorXd::Constant(p, kNaN);
   out.matrix = MatrixXd::Zero(p, p);
-  out.standing.assign(static_cast<std::size_t>(p), Standing::kEstimated);
+  out.standing.assign(static_cast<std::size_t>(p), Standing::estimated);
   std::vector<Index> open;
   for (Index j = 0; j < p; ++j) {
     const auto k = static_cast<std::size_t>(j);
     if (problem.unknowns[k].is_held()) {
-      out.standing[k] = Standing::kHeld;
+      out.standing[k] = Standing::held;
     } else if (solution.at_bound[k] != 0) {
-      out.standing[k] = Standing::kAtBound;
+      out.standing[k] = Standing::at_bound;
     } else {
       open.push_back(j);
     }
@@ -163,7 +163,7 @@ Covariance covariance(const Problem& problem, const Solution& solution,
   out.noise_sd = std::sqrt(variance);
   if (open.empty()) return out;
 
-  // H by its triangle, columns scaled to length 1, so that nothing is squared before it must be.
+  // H by its triangular factor, columns scaled to length 1: avoids early squaring.
   const LinearModel linear = compress(problem, solution.x, solution.residual, solution.jacobian);
   MatrixXd R(p, f);
   for (Index k = 0; k < f; ++k) R.col(k) = linear.R.col(open[static_cast<std::size_t>(k)]);
@@ -186,7 +186,7 @@ Covariance covariance(const Problem& problem, const Solution& solution,
     for (Index j = 0; j < f; ++j) {
       if (std::abs(V(j, k)) > kShare) {
         out.standing[static_cast<std::size_t>(open[static_cast<std::size_t>(j)])] =
-            Standing::kUnseen;
+            Standing::unseen;
       }
     }
   }
@@ -195,7 +195,7 @@ Covariance covariance(const Problem& problem, const Solution& solution,
 
   const MatrixXd wj = weighted(problem, solution.jacobian, open);
   MatrixXd middle = MatrixXd::Zero(f, f);
-  if (options.colour == Colour::kScores) {
+  if (options.colour == Colour::scores) {
     middle = scores_middle(wj, solution.residual, problem, correction);
   } else {
     for (const Stretch& stretch : stretches) {
@@ -213,7 +213,7 @@ Covariance covariance(const Problem& problem, const Solution& solution,
   for (Index k = 0; k < f; ++k) {
     const Index j = open[static_cast<std::size_t>(k)];
     const Unknown& unknown = problem.unknowns[static_cast<std::size_t>(j)];
-    if (out.standing[static_cast<std::size_t>(j)] == Standing::kUnseen) {
+    if (out.standing[static_cast<std::size_t>(j)] == Standing::unseen) {
       out.std_error[j] = kInfinity;
       out.low[j] = unknown.lower;
       out.high[j] = unknown.upper;
@@ -225,7 +225,7 @@ Covariance covariance(const Problem& problem, const Solution& solution,
     out.high[j] = std::min(unknown.upper, solution.x[j] + kInterval * out.std_error[j]);
     for (Index i = 0; i < f; ++i) {
       const Index row = open[static_cast<std::size_t>(i)];
-      if (out.standing[static_cast<std::size_t>(row)] == Standing::kEstimated) {
+      if (out.standing[static_cast<std::size_t>(row)] == Standing::estimated) {
         out.matrix(row, j) = C(i, k);
       }
     }

@@ -22,32 +22,33 @@
 
 namespace estimator::nonlinear {
 
-enum class Colour { kWhite, kColoured, kScores };
+enum class Colour { white, coloured, scores };
 enum class Standing {
-  kEstimated,
-  kAtBound,  ///< std_error NaN; low = high = value
-  kHeld,     ///< lower == upper: likewise
-  kUnseen,   ///< neither data nor prior see it: std_error infinite, interval = the bounds
+  estimated,
+  at_bound,  ///< std_error NaN; low = high = value
+  held,      ///< lower == upper: likewise
+  unseen,    ///< neither data nor prior see it: std_error infinite, interval = the bounds
 };
 
 struct CovarianceOptions {
-  Colour colour = Colour::kColoured;
+  Colour colour = Colour::coloured;
   /// The noise's standard deviation where known; NaN: from the residual. The scores ignore it.
   double noise_sd = kNaN;
   /// First rows of further series that follow the first one in the residual, each with a colour and
-  /// size of its own (of kWhite and kColoured), independent of the others; ascending.
+  /// size of its own (of white and coloured), independent of the others; ascending.
   std::vector<Eigen::Index> series;
 };
 
 struct Covariance {
   Eigen::VectorXd std_error;
-  Eigen::VectorXd low;  ///< of the 95 % interval, cut at the bounds
+  Eigen::VectorXd low;  ///< 95 % interval, limited by the bounds
   Eigen::VectorXd high;
-  Eigen::MatrixXd matrix;  ///< zero rows and columns where not kEstimated
+  Eigen::MatrixXd matrix;  ///< zero rows and columns where not estimated
   std::vector<Standing> standing;
-  Eigen::VectorXd inflation;       ///< (std_error / that for white noise of Problem::sigma)^2
-  double noise_sd = 0.0;           ///< used, or found in the residual
-  double effective_samples = 0.0;  ///< of the residual: what its mean is worth
+  Eigen::VectorXd inflation;  ///< (std_error / that for white noise of Problem::sigma)^2
+  double noise_sd = 0.0;      ///< used, or found in the residual
+  double effective_samples =
+      0.0;  ///< number of independent samples with the same error of the mean
 };
 
 [[nodiscard]] Covariance covariance(const Problem& problem, const Solution& solution,

@@ -14,7 +14,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kLeastWeight = 0.1;
-constexpr double kInvisible = 1e-12;  // of the largest singular value: rounding
+constexpr double kInvisible = 1e-12;  // ratio to the largest singular value: rounding
 
 /// Reduced columns of N: each pivot unknown appears in one direction only.
 MatrixXd sparse_basis(MatrixXd N) {

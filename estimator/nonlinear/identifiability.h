@@ -24,21 +24,22 @@ struct Term {
 };
 
 struct Combination {
-  std::vector<Term> terms;    ///< largest first; those below 0.1 are left out
-  double uncertainty = 0.0;   ///< 1 / |K v|, in scales; infinite: invisible
-  std::vector<Term> visible;  ///< with two terms: the combination of the two that the data do see
+  std::vector<Term> terms;   ///< largest first; those below 0.1 are left out
+  double uncertainty = 0.0;  ///< 1 / |K v|, in scales; infinite: invisible
+  std::vector<Term>
+      visible;  ///< with two terms: the combination of the two that the data determine
 };
 
 struct Identifiability {
-  Eigen::VectorXd singular_values;  ///< of K, largest first; held unknowns left out
-  double condition = 0.0;           ///< of K with its columns scaled to length 1
+  Eigen::VectorXd singular_values;  ///< singular values of K, largest first; held unknowns left out
+  double condition = 0.0;           ///< condition of K with its columns scaled to length 1
   Eigen::VectorXd alone;            ///< std error in scales if all others were known; NaN: held
   Eigen::VectorXd together;         ///< std error in scales with all unknown; NaN: held
   std::vector<Combination> unseen;
 };
 
 struct IdentifiabilityOptions {
-  double limit = 1.0;        ///< uncertainty, in scales, from which a direction is unseen
+  double limit = 1.0;        ///< uncertainty, in scales, above which a direction is invisible
   bool with_priors = false;  ///< true: data and priors together
 };
 

@@ -103,7 +103,7 @@ LinearModel compress(const Problem& problem, const Eigen::VectorXd& x,
 Eigen::VectorXd box_step(const LinearModel& model, const Eigen::VectorXd& scale, double lambda,
                          const Eigen::VectorXd& low, const Eigen::VectorXd& high) {
   const Eigen::Index p = scale.size();
-  // In t = D s the damping is a multiple of one.
+  // In t = D s the damping is a multiple of the identity.
   const Eigen::MatrixXd R = model.R * scale.cwiseInverse().asDiagonal();
   const Eigen::VectorXd t_low = low.cwiseProduct(scale);
   const Eigen::VectorXd t_high = high.cwiseProduct(scale);

@@ -4,9 +4,173 @@
 #include <cassert>
 #include <cmath>
 
-#include "estimator/nonlinear/search.h"
+#include "estimator/nonlinear/difference.h"
+#include "estimator/nonlinear/linear_model.h"
 
 namespace estimator::nonlinear {
+
+// The state of one minimisation and its steps; see minimize.h for the method.
+
+/// One search: the point, its linearisation, the damping.
+class Search {
+ public:
+  Search(const Problem& problem, const MinimizeOptions& options)
+      : problem_(problem), options_(options), groups_(problem), p_(problem.size()) {}
+
+  Solution run(const Eigen::VectorXd& start);
+
+ private:
+  bool begin(const Eigen::VectorXd& start);
+  /// One accepted step, or the reason why there is none.
+  bool iterate();
+  bool scan();
+  void linearise();
+  void renew(const std::vector<Eigen::Index>& columns);
+  void broyden(const Eigen::VectorXd& step, const Eigen::VectorXd& residual);
+  void move_to(const Eigen::VectorXd& x, const Eigen::VectorXd& residual, double cost);
+  [[nodiscard]] Eigen::VectorXd step_for(double lambda) const;
+  [[nodiscard]] Eigen::VectorXd inside(Eigen::VectorXd x) const;
+  [[nodiscard]] std::vector<Eigen::Index> stale() const;
+  [[nodiscard]] bool is_small(const Eigen::VectorXd& step) const;
+  bool stop(StopReason reason, bool converged) {
+    out_.reason = reason;
+    out_.converged = converged;
+    return false;
+  }
+
+  const Problem& problem_;
+  const MinimizeOptions& options_;
+  Groups groups_;
+  Eigen::Index p_;
+  Eigen::VectorXd x_;
+  Eigen::VectorXd r_;
+  Eigen::MatrixXd J_;
+  std::vector<int> age_;  // iterations since a column was evaluated; 0 = at x
+  double cost_ = 0.0;
+  LinearModel model_;
+  Eigen::VectorXd D_;
+  Eigen::VectorXd low_;
+  Eigen::VectorXd high_;
+  double lambda_ = 0.0;
+  int small_ = 0;
+  Solution out_;
+};
+
+namespace {
+
+constexpr double kMemory = 0.5;  // weight of the previous iteration's largest column norms
+
+}  // namespace
+
+std::vector<Eigen::Index> Search::stale() const {
+  std::vector<Eigen::Index> out;
+  for (Eigen::Index j = 0; j < p_; ++j) {
+    if (age_[static_cast<std::size_t>(j)] > 0 &&
+        !problem_.unknowns[static_cast<std::size_t>(j)].is_held()) {
+      out.push_back(j);
+    }
+  }
+  std::stable_sort(out.begin(), out.end(), [&](Eigen::Index a, Eigen::Index b) {
+    return age_[static_cast<std::size_t>(a)] > age_[static_cast<std::size_t>(b)];
+  });
+  return out;
+}
+
+Eigen::VectorXd Search::inside(Eigen::VectorXd x) const {
+  for (Eigen::Index j = 0; j < p_; ++j) {
+    const Unknown& unknown = problem_.unknowns[static_cast<std::size_t>(j)];
+    x[j] = std::max(unknown.lower, std::min(unknown.upper, x[j]));
+  }
+  return x;
+}
+
+void Search::renew(const std::vector<Eigen::Index>& columns) {
+  const std::vector<Probe> probes = probes_at(problem_, x_, columns, options_.central);
+  const Eigen::MatrixXd results = groups_.run(points_at(x_, probes, 0, probes.size()));
+  fill_columns(problem_, x_, r_, probes, results, groups_, J_);
+  for (const Eigen::Index j : columns) age_[static_cast<std::size_t>(j)] = 0;
+}
+
+bool Search::begin(const Eigen::VectorXd& start) {
+  x_ = inside(start);
+  J_ = Eigen::MatrixXd::Zero(problem_.residuals, p_);
+  D_ = Eigen::VectorXd::Zero(p_);
+  age_.assign(static_cast<std::size_t>(p_), 1);
+  lambda_ = options_.first_damping;
+  const bool at_start = x_ == start;
+  const Eigen::MatrixXd& known = options_.start_jacobian;
+  for (Eigen::Index j = 0; at_start && known.rows() == problem_.residuals && j < p_; ++j) {
+    if (std::isnan(known(0, j))) continue;
+    J_.col(j) = known.col(j);
+    age_[static_cast<std::size_t>(j)] = 0;
+  }
+  const std::vector<Eigen::Index> missing = stale();
+  if (at_start && options_.start_residual.size() == problem_.residuals) {
+    r_ = options_.start_residual;
+    cost_ = cost_of(problem_, x_, r_);
+    if (!std::isfinite(cost_)) return false;
+    if (!missing.empty()) renew(missing);
+    return true;
+  }
+  const std::vector<Probe> probes = probes_at(problem_, x_, missing, options_.central);
+  const auto count = static_cast<Eigen::Index>(probes.size());
+  Eigen::MatrixXd points(p_, count + 1);
+  points.col(0) = x_;
+  points.rightCols(count) = points_at(x_, probes, 0, probes.size());
+  const Eigen::MatrixXd results = groups_.run(points);
+  r_ = results.col(0);
+  cost_ = cost_of(problem_, x_, r_);
+  if (!std::isfinite(cost_)) return false;
+  fill_columns(problem_, x_, r_, probes, results.rightCols(count), groups_, J_);
+  std::fill(age_.begin(), age_.end(), 0);
+  return true;
+}
+
+void Search::linearise() {
+  model_ = compress(problem_, x_, r_, J_);
+  low_.resize(p_);
+  high_.resize(p_);
+  for (Eigen::Index j = 0; j < p_; ++j) {
+    const Unknown& unknown = problem_.unknowns[static_cast<std::size_t>(j)];
+    low_[j] = std::max(unknown.lower - x_[j], -unknown.max_step);
+    high_[j] = std::min(unknown.upper - x_[j], unknown.max_step);
+    if (unknown.is_held()) low_[j] = high_[j] = 0.0;
+    D_[j] = std::max(kMemory * D_[j], model_.R.col(j).norm());
+    if (!(D_[j] > 0.0)) D_[j] = 1e-12;
+  }
+}
+
+Eigen::VectorXd Search::step_for(double lambda) const {
+  return box_step(model_, D_, lambda, low_, high_);
+}
+
+bool Search::is_small(const Eigen::VectorXd& step) const {
+  for (Eigen::Index j = 0; j < p_; ++j) {
+    const double floor = problem_.unknowns[static_cast<std::size_t>(j)].step;
+    if (std::abs(step[j]) > options_.step_tolerance * std::max(std::abs(x_[j]), floor)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void Search::broyden(const Eigen::VectorXd& step, const Eigen::VectorXd& residual) {
+  const Eigen::VectorXd scaled = D_.cwiseProduct(step);
+  const double square = scaled.squaredNorm();
+  if (!(square > 0.0)) return;
+  const Eigen::VectorXd error = (residual - r_ - J_ * step) / square;
+  if (!is_finite(problem_, error)) return;
+  for (Eigen::Index j = 0; j < p_; ++j) J_.col(j) += error * (scaled[j] * D_[j]);
+}
+
+void Search::move_to(const Eigen::VectorXd& x, const Eigen::VectorXd& residual, double cost) {
+  small_ = cost_ - cost <= options_.cost_tolerance * cost_ ? small_ + 1 : 0;
+  x_ = x;
+  r_ = residual;
+  cost_ = cost;
+  for (int& age : age_) ++age;
+}
+
 namespace {
 
 constexpr double kLeastDamping = 1e-12;
@@ -24,9 +188,8 @@ bool Search::iterate() {
   const bool hopeless = !(promised > options_.cost_tolerance * cost_);
   if (hopeless || small_ >= kSmallInARow) {
     const std::vector<Eigen::Index> old = stale();
-    if (old.empty()) {
-      return stop(hopeless ? Stop::kNoFurtherDecrease : Stop::kSmallDecrease, true);
-    }
+    if (old.empty())
+      return stop(hopeless ? StopReason::no_further_decrease : StopReason::small_decrease, true);
     small_ = 0;
     renew(old);
     return true;
@@ -34,7 +197,7 @@ bool Search::iterate() {
 
   const Eigen::VectorXd step = step_for(lambda_);
   const Eigen::VectorXd trial = inside(x_ + step);
-  // What goes with the trial: perturbed points around it, other dampings in the lanes left over.
+  // Columns beside the trial: perturbed points around it, other dampings in the remaining lanes.
   for (int& age : age_) ++age;
   const std::vector<Eigen::Index> order = stale();
   for (int& age : age_) --age;
@@ -112,7 +275,7 @@ bool Search::iterate() {
 bool Search::scan() {
   const Eigen::Index count = std::max<Eigen::Index>(kScanLeast, problem_.lanes);
   for (;;) {
-    if (options_.cancel && options_.cancel()) return stop(Stop::kCancelled, false);
+    if (options_.cancel && options_.cancel()) return stop(StopReason::cancelled, false);
     Eigen::MatrixXd points(p_, count);
     std::vector<double> lambda(static_cast<std::size_t>(count));
     for (Eigen::Index k = 0; k < count; ++k) {
@@ -139,21 +302,20 @@ bool Search::scan() {
       ++out_.iterations;
       return true;
     }
-    if (is_small(points.col(count - 1) - x_) || lambda_ > 1e20) {
-      return stop(Stop::kSmallStep, true);
-    }
+    if (is_small(points.col(count - 1) - x_) || lambda_ > 1e20)
+      return stop(StopReason::small_step, true);
   }
 }
 
 Solution Search::run(const Eigen::VectorXd& start) {
   assert(start.size() == p_ && problem_.sigma > 0.0);
   if (!begin(start)) {
-    stop(Stop::kStartNotFinite, false);
+    stop(StopReason::start_not_finite, false);
   } else {
-    out_.reason = Stop::kIterationLimit;
+    out_.reason = StopReason::iteration_limit;
     for (int round = 0; round < options_.max_iterations; ++round) {
       if (options_.cancel && options_.cancel()) {
-        stop(Stop::kCancelled, false);
+        stop(StopReason::cancelled, false);
         break;
       }
       const bool more = iterate();
@@ -162,7 +324,7 @@ Solution Search::run(const Eigen::VectorXd& start) {
       }
       if (!more) break;
     }
-    if (options_.final_jacobian && out_.reason != Stop::kCancelled) {
+    if (options_.final_jacobian && out_.reason != StopReason::cancelled) {
       const std::vector<Eigen::Index> old = stale();
       if (!old.empty()) renew(old);
     }
@@ -185,25 +347,8 @@ Solution Search::run(const Eigen::VectorXd& start) {
   return out_;
 }
 
-const char* to_string(Stop stop) {
-  switch (stop) {
-    case Stop::kNoFurtherDecrease:
-      return "no further decrease in sight";
-    case Stop::kSmallDecrease:
-      return "the last steps gained next to nothing";
-    case Stop::kSmallStep:
-      return "no step lowers the cost";
-    case Stop::kIterationLimit:
-      return "iteration limit reached";
-    case Stop::kCancelled:
-      return "cancelled";
-    case Stop::kStartNotFinite:
-      return "the model cannot be evaluated at the start";
-  }
-  return "";
-}
-
-Solution minimize(const Problem& problem, const Eigen::VectorXd& start, const Options& options) {
+Solution minimize(const Problem& problem, const Eigen::VectorXd& start,
+                  const MinimizeOptions& options) {
   return Search(problem, options).run(start);
 }
 

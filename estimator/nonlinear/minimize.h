@@ -20,24 +20,23 @@
 
 namespace estimator::nonlinear {
 
-enum class Stop {
-  kNoFurtherDecrease,  ///< the linear model promises less than cost_tolerance
-  kSmallDecrease,      ///< the last accepted steps gained less than cost_tolerance
-  kSmallStep,          ///< no damping lowers the cost, down to step_tolerance
-  kIterationLimit,
-  kCancelled,
-  kStartNotFinite,  ///< the start itself could not be evaluated
+enum class StopReason {
+  no_further_decrease,  ///< the linear model promises less than cost_tolerance
+  small_decrease,       ///< the last accepted steps gained less than cost_tolerance
+  small_step,           ///< no damping lowers the cost, down to step_tolerance
+  iteration_limit,
+  cancelled,
+  start_not_finite,  ///< the start itself could not be evaluated
 };
-[[nodiscard]] const char* to_string(Stop stop);
 
-struct Progress {
+struct MinimizeProgress {
   int iteration = 0;
   double cost = 0.0;
   double rms = 0.0;
   const Eigen::VectorXd* x = nullptr;  ///< the best so far; valid during the call
 };
 
-struct Options {
+struct MinimizeOptions {
   int max_iterations = 50;
   double cost_tolerance = 1e-7;  ///< relative to the cost
   double step_tolerance = 1e-9;  ///< relative to |x| (or to the difference step, if larger)
@@ -46,22 +45,23 @@ struct Options {
   bool renew_all = true;         ///< false: Broyden for the columns that do not fit into the group
   bool final_jacobian = true;    ///< false: stale columns may be left in Solution::jacobian
   std::function<bool()> cancel;  ///< true ends the search, keeping the best so far
-  std::function<void(const Progress&)> progress;
-  Eigen::VectorXd start_residual;  ///< r(start) where known already: saves evaluations; else empty
+  std::function<void(const MinimizeProgress&)> progress;
+  Eigen::VectorXd
+      start_residual;  ///< r(start) where already known, to save evaluations; else empty
   Eigen::MatrixXd start_jacobian;  ///< likewise; columns that start with NaN are evaluated
 };
 
 struct Solution {
   Eigen::VectorXd x;
   double cost = 0.0;
-  double rms = 0.0;          ///< of the residuals that count, their unit
+  double rms = 0.0;          ///< residuals that count, in their unit
   Eigen::VectorXd residual;  ///< as evaluated, without weights
   Eigen::MatrixXd jacobian;  ///< d residual / d x, residuals x unknowns; 0 for held unknowns
   int iterations = 0;
   int evaluations = 0;  ///< groups
   int points = 0;       ///< parameter sets in them
   bool converged = false;
-  Stop reason = Stop::kIterationLimit;
+  StopReason reason = StopReason::iteration_limit;
   std::vector<int> at_bound;  ///< -1 at lower, +1 at upper, 0 between; held unknowns -1
   double damping = 0.0;       ///< the last lambda
 };
@@ -69,6 +69,6 @@ struct Solution {
 /// `start` is moved into the bounds. The cost never increases; the result lies within the bounds.
 /// Keeps no state: calls may run on several threads if `evaluate` may.
 [[nodiscard]] Solution minimize(const Problem& problem, const Eigen::VectorXd& start,
-                                const Options& options = {});
+                                const MinimizeOptions& options = {});
 
 }  // namespace estimator::nonlinear

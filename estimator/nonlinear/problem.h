@@ -1,18 +1,17 @@
-// Bounded, weighted, Bayesian non-linear least squares: what is to be minimised.
+// Bounded, weighted, Bayesian non-linear least squares: the problem.
 //
 //   cost(x) = sum_i w_i r_i(x)^2 / sigma^2 + sum_j ((x_j - prior_mean_j) / prior_sd_j)^2,
 //   lower_j <= x_j <= upper_j
 //
-//   r      residuals, any unit; sigma: their noise's standard deviation, same unit
+//   r      residuals, any unit; sigma: standard deviation of their noise, same unit
 //   w      weight of a squared residual: 0 leaves it out (it may then be NaN)
-//   x      the search variables: the caller's choice of scale (logarithms of positive quantities
-//          say); bounds, steps and priors are in that scale
+//   x      search variables in the caller's scale, for example logarithms of positive quantities;
+//          bounds, steps and priors are in that scale
 //
 // With sigma right, cost is a chi-square: minus twice the logarithm of likelihood times prior.
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
 #include <functional>
 #include <limits>
 #include <vector>
@@ -39,9 +38,11 @@ struct Unknown {
   [[nodiscard]] bool is_held() const { return !(lower < upper); }
 };
 
-/// Residuals of several parameter sets at once. `points` has one column per set and at most
-/// Problem::lanes of them; `residuals` comes sized residuals x columns and is to be filled. A set
-/// that cannot be evaluated gets a NaN anywhere in its column.
+/// Residuals of several parameter sets at once. `points` has one column per set, at most
+/// Problem::lanes of
+/// them; `residuals` is sized residuals x columns and to be filled. A set that cannot be evaluated
+/// gets
+/// a NaN anywhere in its column.
 using Evaluate = std::function<void(const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals)>;
 
 struct Problem {

@@ -9,7 +9,7 @@
 namespace estimator::nonlinear {
 namespace {
 
-constexpr double kCloseEnough = 0.02;  // of the root of the threshold
+constexpr double kCloseEnough = 0.02;  // share of the root of the threshold
 constexpr double kFurthest = 4.0;      // growth of the distance from one point to the next
 constexpr double kNearest = 1.3;
 
@@ -38,11 +38,11 @@ class Walker {
     unknown.lower = unknown.upper = value;
     Eigen::VectorXd start = warm;
     start[j_] = value;
-    Options minimizing = options_.minimize;
+    MinimizeOptions minimizing = options_.minimize;
     minimizing.final_jacobian = false;
     const Solution s = minimize(held_, start, minimizing);
     out_.evaluations += s.evaluations;
-    if (s.reason == Stop::kCancelled) out_.cancelled = true;
+    if (s.reason == StopReason::cancelled) out_.cancelled = true;
     if (s.cost < out_.least_cost) {
       out_.least_cost = s.cost;
       out_.least_x = s.x;
@@ -55,7 +55,7 @@ class Walker {
 
   double first_step() const {
     if (options_.first_step > 0.0) return options_.first_step;
-    // As if all others were known: never too far.
+    // Bound on the first step: assumes all other unknowns known.
     const LinearModel model =
         compress(problem_, solution_.x, solution_.residual, solution_.jacobian);
     const double curvature = model.R.col(j_).norm();
@@ -87,7 +87,7 @@ class Walker {
         return true;
       }
       const int now = z < goal ? -1 : 1;
-      const bool same = now == last;  // the same end moved twice: the line misleads, halve
+      const bool same = now == last;  // the same end moved twice: halve the step
       last = now;
       if (z < goal) {
         inside = distance;

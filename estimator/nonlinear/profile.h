@@ -18,10 +18,10 @@ namespace estimator::nonlinear {
 
 struct ProfileOptions {
   double threshold = 3.841458820694124;
-  double inflation = 1.0;   ///< Covariance::inflation of the unknown: sigma wrong, or colour
-  double first_step = 0.0;  ///< where to look first, e.g. two standard errors; 0: from the Jacobian
-  int max_points = 12;      ///< to either side
-  Options minimize;         ///< of the others
+  double inflation = 1.0;    ///< Covariance::inflation of the unknown: sigma wrong, or colour
+  double first_step = 0.0;   ///< initial step, e.g. two standard errors; 0: from the Jacobian
+  int max_points = 12;       ///< to each side
+  MinimizeOptions minimize;  ///< options for the other unknowns
 };
 
 struct ProfilePoint {

@@ -80,8 +80,4 @@ std::vector<double> whiten(std::span<const double> series, const Autoregression&
   return out;
 }
 
-double effective_samples(std::span<const double> series) {
-  return fit_autoregression(series).effective_samples();
-}
-
 }  // namespace estimator::residual

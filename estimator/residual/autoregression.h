@@ -1,11 +1,11 @@
-// What colour a residual has: its autocovariance and the autoregression that describes it.
+// Autocovariance of a residual and the autoregression that describes it.
 //
 //   e(t) = sum_k a_k e(t-k) + w(t), w white;   order by least n ln var(w) + order ln n
 //
-// The mean is left in: a residual's mean is part of its error. NaN marks a missing sample; lags are
-// averaged over the pairs that exist.
+// The mean is not removed: a residual's mean is part of its error. NaN marks a missing sample; lags
+// are averaged over the pairs that exist.
 // Effective samples: n var(e) / (spectral density of e at frequency 0) = n var(e) (1 - sum a)^2 /
-// var(w), at most n: as many independent samples would give as good a mean.
+// var(w), at most n: the number of independent samples with the same variance of the mean.
 // Source: P. J. Brockwell, R. A. Davis, Time Series: Theory and Methods, chapters 5, 8 and 9
 // (Levinson-Durbin recursion, order selection).
 #pragma once
@@ -20,7 +20,7 @@ namespace estimator::residual {
 
 struct Autoregression {
   std::vector<double> a;  ///< empty: white
-  double variance = 0.0;  ///< of the series about 0
+  double variance = 0.0;  ///< variance of the series about 0
   double innovation_variance = 0.0;
   int samples = 0;
 
@@ -32,7 +32,5 @@ struct Autoregression {
 /// w(t); NaN where it or one of the samples before it is missing.
 [[nodiscard]] std::vector<double> whiten(std::span<const double> series,
                                          const Autoregression& model);
-
-[[nodiscard]] double effective_samples(std::span<const double> series);
 
 }  // namespace estimator::residual

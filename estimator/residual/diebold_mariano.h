@@ -22,9 +22,10 @@ struct DieboldMarianoResult {
   int blocks = 0;
 };
 
-/// Residuals of the same samples under both models; NaN (in either) leaves a sample out: what was
-/// fitted, or is missing. Blocks are stretches of `block` samples of the record (2 s, say); those
-/// with less than half of their samples, or without any error in one of the two, are left out.
+/// Residuals of the same samples under both models; NaN in either excludes a sample (fitted, or
+/// missing). Blocks have `block` samples (2 s, say); blocks with less than half of their samples,
+/// or
+/// without any error in one of the two, are excluded.
 [[nodiscard]] DieboldMarianoResult diebold_mariano_test(std::span<const double> first,
                                                         std::span<const double> second, int block);
 

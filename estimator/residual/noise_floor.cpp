@@ -17,9 +17,9 @@ constexpr int kOrder = 8;
 constexpr std::size_t kWindow = 32;  // differences in a window
 constexpr double kQuantile = 0.2;
 constexpr double kOutlier = 0.01;      // probability that noise alone looks like motion
-constexpr double kDust = 1e-11;        // of the largest reading: rounding of the arithmetic
-constexpr double kOffGrid = 0.25;      // of a step: the most that decimals may move a reading
-constexpr double kMostSteps = 1000.0;  // beyond that a difference says nothing about the grid
+constexpr double kDust = 1e-11;        // ratio to the largest reading: rounding of the arithmetic
+constexpr double kOffGrid = 0.25;      // share of a step: largest shift of a reading by decimals
+constexpr double kMostSteps = 1000.0;  // larger differences do not constrain the grid
 constexpr double kOnGridShare = 0.98;
 constexpr double kDither =
     0.35;  // noise, in steps, that makes rounding at rest like that in motion
@@ -41,7 +41,7 @@ double equivalent_dof(std::size_t count) {
   return static_cast<double>(count) / sum;
 }
 
-/// A trial step refined on ever larger differences; 0 when they do not lie on its grid.
+/// Refines a trial step on increasing differences; 0 when they do not lie on its grid.
 double refined(double step, const std::vector<double>& sorted) {
   for (double reach = 3.0; reach <= kMostSteps; reach *= 3.0) {
     double above = 0.0;
@@ -83,7 +83,7 @@ Energies windows_of(std::span<const double> y_m, double step_m) {
     if (std::isnan(sum)) continue;
     sum /= static_cast<double>(kWindow) * binomial(2 * kOrder, kOrder);
     out.all.push_back(sum);
-    // Travel: medians of the first and last quarter, so that noise alone is no motion.
+    // Travel between medians of the first and last quarter, insensitive to noise.
     std::vector<double> head(y_m.begin() + static_cast<std::ptrdiff_t>(begin),
                              y_m.begin() + static_cast<std::ptrdiff_t>(begin + kWindow / 4));
     std::vector<double> tail(y_m.begin() + static_cast<std::ptrdiff_t>(begin + kWindow * 3 / 4),
@@ -95,7 +95,7 @@ Energies windows_of(std::span<const double> y_m, double step_m) {
   return out;
 }
 
-/// Mean square of pure noise from windows some of which hold motion as well.
+/// Mean square of pure noise from windows, some of which contain motion.
 double level_of(std::vector<double> e) {
   const auto k = static_cast<std::ptrdiff_t>(kQuantile * static_cast<double>(e.size()));
   std::nth_element(e.begin(), e.begin() + k, e.end());

@@ -34,7 +34,7 @@ struct TestResult {
 /// very series, taken off the degrees of freedom (0 for a simulated model's residual).
 [[nodiscard]] TestResult whiteness(std::span<const double> residual, int lags = 20, int fitted = 0);
 
-/// Both series sampled together; `reach`: how many samples back the windows go.
+/// Both series sampled together; `reach`: number of samples back that the windows cover.
 [[nodiscard]] TestResult independence(std::span<const double> residual,
                                       std::span<const double> input, int reach = 128);
 

@@ -13,8 +13,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kRank = 1e-9;            // of a column-scaled matrix
-constexpr double kOwnInstrument = 1e-10;  // of a column's length
+constexpr double kRank = 1e-9;            // for a column-scaled matrix
+constexpr double kOwnInstrument = 1e-10;  // ratio to a column's length
 constexpr double kMostCorrelation = 1.0 - 1e-12;
 
 struct Regression {
@@ -36,7 +36,7 @@ MatrixXd basis(MatrixXd matrix) {
   return linear_algebra::orthonormal_basis(matrix, kRank);
 }
 
-/// What `q` leaves of each unit column; columns that are instruments themselves leave rounding.
+/// Part of each unit column outside the span of `q`; columns that are instruments leave rounding.
 MatrixXd unexplained(const MatrixXd& x, const MatrixXd& q) {
   const MatrixXd rest = x - q * (q.transpose() * x);
   std::vector<Index> kept;
@@ -54,7 +54,7 @@ Regression regression(const Structure& s, const Stretches& data,
   const int count = 2 * (s.n + s.m);
   const int half = s.n + s.m;
   const int after = std::max(s.n, s.k + s.m - 1) + 1;  // beyond every regressor and e's memory
-  const int reach = instruments == Instruments::kReference ? count : after + half - 1;
+  const int reach = instruments == Instruments::reference ? count : after + half - 1;
   const int first = std::max(s.history(), reach);
   Index rows = 0;
   for (const Stretch& stretch : data) rows += std::max(0, stretch.size() - first);
@@ -71,7 +71,7 @@ Regression regression(const Structure& s, const Stretches& data,
       if (s.constant) out.psi(row, column) = 1.0;
       out.y[row] = stretch.y_m[t];
       column = 0;
-      if (instruments == Instruments::kReference) {
+      if (instruments == Instruments::reference) {
         for (int i = 1; i <= count; ++i) out.z(row, column++) = reference_m[k][t - i];
       } else {
         for (int i = 0; i < half; ++i) out.z(row, column++) = stretch.y_m[t - after - i];
@@ -141,8 +141,8 @@ BiasTest test_with(const Structure& s, Regression data, Instruments instruments)
     correlation = std::min(all[moving - 1], kMostCorrelation);
   }
   const double square = correlation * correlation;
-  out.strength_F = square / (1.0 - square) * static_cast<double>(rows - data.z.cols()) /
-                   static_cast<double>(std::max<Index>(1, qz.cols()));
+  out.f_statistic = square / (1.0 - square) * static_cast<double>(rows - data.z.cols()) /
+                    static_cast<double>(std::max<Index>(1, qz.cols()));
 
   // The part of psi that the instruments do not explain, added to the regression.
   const MatrixXd rest = basis(unexplained(x, q));
@@ -155,8 +155,8 @@ BiasTest test_with(const Structure& s, Regression data, Instruments instruments)
   const double variance = energy / static_cast<double>(rows - both.rank);
   out.statistic = variance > 0.0 ? (ls_error.squaredNorm() - energy) / variance : 0.0;
   out.p = out.dof > 0 ? residual::chi_square_upper(out.statistic, out.dof) : 1.0;
-  if (out.strength_F >= kWeakInstruments_F) {
-    out.verdict = out.p < kBiasLevel ? BiasVerdict::kBiased : BiasVerdict::kNoBiasSeen;
+  if (out.f_statistic >= kWeakInstruments) {
+    out.verdict = out.p < kBiasLevel ? BiasVerdict::biased : BiasVerdict::no_bias_seen;
   }
   return out;
 }
@@ -164,32 +164,25 @@ BiasTest test_with(const Structure& s, Regression data, Instruments instruments)
 }  // namespace
 
 const char* to_string(BiasVerdict verdict) noexcept {
-  switch (verdict) {
-    case BiasVerdict::kNoBiasSeen:
-      return "no bias seen";
-    case BiasVerdict::kBiased:
-      return "biased";
-    case BiasVerdict::kUndetermined:
-      break;
-  }
-  return "cannot tell";
+  constexpr const char* kTexts[] = {"no bias seen", "biased", "cannot tell"};
+  return kTexts[static_cast<std::size_t>(verdict)];
 }
 
 const char* to_string(Instruments instruments) noexcept {
-  return instruments == Instruments::kReference ? "reference" : "delayed samples";
+  return instruments == Instruments::reference ? "reference" : "delayed samples";
 }
 
 BiasTest test_bias(const Structure& structure, const Stretches& data,
                    const std::vector<std::span<const double>>& reference_m) {
   BiasTest delayed =
-      test_with(structure, regression(structure, data, reference_m, Instruments::kDelayed),
-                Instruments::kDelayed);
+      test_with(structure, regression(structure, data, reference_m, Instruments::delayed),
+                Instruments::delayed);
   if (reference_m.size() != data.size()) return delayed;
   BiasTest reference =
-      test_with(structure, regression(structure, data, reference_m, Instruments::kReference),
-                Instruments::kReference);
-  const bool weak = reference.strength_F < kWeakInstruments_F;
-  return weak && delayed.strength_F > reference.strength_F ? delayed : reference;
+      test_with(structure, regression(structure, data, reference_m, Instruments::reference),
+                Instruments::reference);
+  const bool weak = reference.f_statistic < kWeakInstruments;
+  return weak && delayed.f_statistic > reference.f_statistic ? delayed : reference;
 }
 
 }  // namespace estimator::structures

@@ -18,7 +18,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "estimator/structure.h"
@@ -26,11 +25,11 @@
 
 namespace estimator::structures {
 
-enum class Instruments : std::uint8_t { kReference, kDelayed };
+enum class Instruments : std::uint8_t { reference, delayed };
 enum class BiasVerdict : std::uint8_t {
-  kNoBiasSeen,
-  kBiased,
-  kUndetermined,  ///< the instruments are too weak to tell
+  no_bias_seen,
+  biased,
+  undetermined,  ///< the instruments are too weak
 };
 /// "no bias seen", "biased", "cannot tell".
 [[nodiscard]] const char* to_string(BiasVerdict verdict) noexcept;
@@ -41,17 +40,17 @@ struct BiasTest {
   std::vector<double> least_squares_error;
   std::vector<double> instrumental;
   std::vector<double> instrumental_error;
-  Instruments instruments = Instruments::kDelayed;
+  Instruments instruments = Instruments::delayed;
   int instrument_count = 0;
-  double strength_F = 0.0;
+  double f_statistic = 0.0;
   double statistic = 0.0;  ///< chi-square with `dof` under H0
   int dof = 0;
   double p = 1.0;
   int rows = 0;
-  BiasVerdict verdict = BiasVerdict::kUndetermined;
+  BiasVerdict verdict = BiasVerdict::undetermined;
 };
 
-inline constexpr double kWeakInstruments_F = 10.0;
+inline constexpr double kWeakInstruments = 10.0;
 inline constexpr double kBiasLevel = 0.01;  ///< p below it: biased
 
 /// `reference_m`: one span per stretch, as long, or empty: delayed samples are the instruments.

@@ -20,10 +20,40 @@ struct Rows {
 [[nodiscard]] Rows regression_rows(const Orders& orders, const Stretches& data,
                                    const std::vector<std::vector<double>>& errors = {});
 
+/// RMS of u (V) or of y (m) over all stretches; 0 without samples.
+[[nodiscard]] double rms(const Stretches& data, bool of_input);
+
 /// The shortest minimiser (columns scaled to length 1) of |target - psi theta|.
 [[nodiscard]] Eigen::VectorXd solve_rows(const Rows& rows);
 
 /// ARX by least squares; A, B and the constant.
 [[nodiscard]] Polynomial fit_arx(const Orders& orders, const Stretches& data);
+
+/// Where the prediction-error minimisation may start: consistent or nearly so, without iteration or
+/// with a linear one, because the criterion has local minima.
+///
+///   ARMAX        Hannan-Rissanen: errors of a long ARX as if known, then linear least squares
+///   output error ARX's A as F; Steiglitz-McBride: ARX on u and y filtered by 1/F, repeated
+///   Box-Jenkins  F and B of an output-error fit with C, D of an ARMA model of its error, and
+///                ARMAX's A as both F and D
+///
+/// Sources: E. J. Hannan, J. Rissanen, Biometrika 69 (1982) 81; K. Steiglitz, L. E. McBride, IEEE
+/// Trans. AC-10 (1965) 461; L. Ljung, System Identification, 10.5.
+/// A, B, C and the constant of `orders`; D and F empty.
+[[nodiscard]] Polynomial hannan_rissanen(const Orders& orders, const Stretches& data);
+
+/// B, F and the constant of `orders`; the last iterate and those before, best unknown.
+[[nodiscard]] std::vector<Polynomial> steiglitz_mcbride(const Orders& orders,
+                                                        const Stretches& data);
+
+/// C and D of  D v = C e  for series v; `d` and `c` coefficients.
+struct NoiseModel {
+  std::vector<double> c;
+  std::vector<double> d;
+};
+[[nodiscard]] NoiseModel fit_noise(const std::vector<std::vector<double>>& series, int c, int d);
+
+/// Roots outside the unit circle (or nearer to it than `margin`) are drawn inside.
+[[nodiscard]] std::vector<double> stabilised(const std::vector<double>& p, double margin);
 
 }  // namespace estimator::structures

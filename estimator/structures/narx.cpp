@@ -212,11 +212,11 @@ NarxFit fit_narx(const NarxOptions& options, const Stretches& data) {
     const VectorXd x = random_start(out, arx, random);
     VectorXd kept = x;
     double least = stop_energy(x);
-    nonlinear::Options search;
+    nonlinear::MinimizeOptions search;
     search.max_iterations = options.max_iterations;
     search.cost_tolerance = 1e-6;
     search.cancel = options.cancel;
-    search.progress = [&](const nonlinear::Progress& progress) {
+    search.progress = [&](const nonlinear::MinimizeProgress& progress) {
       const double now = stop_energy(*progress.x);
       if (now < least || stop_y.size() == 0) {
         least = now;

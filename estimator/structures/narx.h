@@ -29,21 +29,21 @@ struct NarxOptions {
   int starts = 3;
   std::uint64_t seed = 1;
   int max_iterations = 60;
-  double decay_sd = 2.0;     ///< of the prior on w and v, in scaled units
+  double decay_sd = 2.0;     ///< prior on w and v, scaled units
   double stop_share = 0.25;  ///< last part of each stretch, for early stopping
   std::function<bool()> cancel{};
 };
 
 struct NarxFit {
   NarxOptions options;
-  Eigen::VectorXd mean;   ///< of phi (m, V)
+  Eigen::VectorXd mean;   ///< mean of phi (m, V)
   Eigen::VectorXd scale;  ///< likewise
   double y_mean_m = 0.0;
   double y_scale_m = 1.0;
   Eigen::VectorXd x;            ///< theta (n + m), theta0, then for each j: v, g, w
   double residual_rms_m = 0.0;  ///< one step, over all samples, stopping part included
   double stop_rms_m = 0.0;      ///< over the stopping part
-  double condition = 0.0;       ///< of the Jacobian with columns scaled to length 1
+  double condition = 0.0;       ///< condition of the Jacobian with columns scaled to length 1
   int samples = 0;
   bool valid = false;
   std::string why;
@@ -58,7 +58,8 @@ struct NarxFit {
 };
 
 [[nodiscard]] NarxFit fit_narx(const NarxOptions& options, const Stretches& data);
-/// As for the polynomial model: NaN, or measured samples, for the first history() and those before
+/// As for the polynomial model: NaN, or measured samples, for the first history() and for samples
+/// before
 /// `start`.
 [[nodiscard]] std::vector<double> one_step_errors(const NarxFit& model, const Stretch& stretch);
 [[nodiscard]] std::vector<double> free_run(const NarxFit& model, const Stretch& stretch,

@@ -53,8 +53,9 @@ std::vector<double> whitened(const Polynomial& model, const std::vector<double>&
   return e;
 }
 
-/// w, v = A y - w and e, as the equations name them; before the first error w is what was found for
-/// it, v is 0 and e is NaN.
+/// w, v = A y - w and e, named as in the equations; before the first error w is the fitted start, v
+/// is 0
+/// and e is NaN.
 struct Signals {
   std::vector<double> w;
   std::vector<double> v;
@@ -70,7 +71,7 @@ Signals signals_of(const Polynomial& model, const Stretch& stretch) {
   if (n <= first) return out;
   const int nf = static_cast<int>(model.f.size());
 
-  // What the input alone makes of w, w = 0 before `first`; the unknown first values come after.
+  // w from the input alone, w = 0 before `first`; the unknown initial values are added later.
   for (int t = first; t < n; ++t) out.w[t] = input_at(model, stretch.u_V, t);
   divide(model.f, out.w, first, first);
   for (int t = first; t < n; ++t) {

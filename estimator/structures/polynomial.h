@@ -41,7 +41,7 @@ struct Orders {
   friend bool operator==(const Orders&, const Orders&) = default;
 };
 
-/// Reads what Orders::text() writes. Throws config::schema::UsageError otherwise.
+/// Reads the text of Orders::text(). Throws config::schema::UsageError for any other.
 [[nodiscard]] Orders parse_orders(const std::string& text, bool constant);
 
 struct Polynomial {
@@ -63,9 +63,11 @@ struct Polynomial {
 /// One error per sample; NaN for the first Orders::history() of them.
 [[nodiscard]] std::vector<double> one_step_errors(const Polynomial& model, const Stretch& stretch);
 
-/// Simulated output, as long as the stretch: from sample `start` on u alone drives it, and what the
-/// model's predictor knows from the samples before (w and e; later e are 0). Those before `start`,
-/// at least free_run_history(), are the measured ones. Diverging models give inf or NaN.
+/// Simulated output, as long as the stretch: from sample `start` on driven by u alone, starting
+/// from the
+/// predictor's state of the samples before (w and e; later e are 0). Samples before `start`, at
+/// least
+/// free_run_history(), are measured ones. Diverging models give inf or NaN.
 [[nodiscard]] std::vector<double> free_run(const Polynomial& model, const Stretch& stretch,
                                            int start = 0);
 [[nodiscard]] int free_run_history(const Polynomial& model);

@@ -8,7 +8,6 @@
 #include "estimator/nonlinear/covariance.h"
 #include "estimator/nonlinear/minimize.h"
 #include "estimator/structures/linear.h"
-#include "estimator/structures/starts.h"
 
 namespace estimator::structures {
 namespace {
@@ -19,19 +18,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kStep = 1e-8;  // of a coefficient about 1: w of an integrator feels it n-fold
+constexpr double kStep =
+    1e-8;  // step of a coefficient about 1; w of an integrator is n times as sensitive
 constexpr int kRowsPerCoefficient = 3;
 constexpr double kTolerance = 1e-9;
-
-double rms(const Stretches& data, bool of_input) {
-  double sum = 0.0;
-  double count = 0.0;
-  for (const Stretch& stretch : data) {
-    for (const double x : of_input ? stretch.u_V : stretch.y_m) sum += x * x;
-    count += stretch.size();
-  }
-  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
-}
 
 nonlinear::Problem problem_of(const Orders& orders, const Stretches& data) {
   nonlinear::Problem out;
@@ -138,7 +128,7 @@ PolynomialFit refused(const Orders& orders, const std::string& why) {
 
 nonlinear::Solution best_of(const nonlinear::Problem& problem, const std::vector<VectorXd>& starts,
                             const PredictionErrorOptions& options) {
-  nonlinear::Options search;
+  nonlinear::MinimizeOptions search;
   search.max_iterations = options.max_iterations;
   search.cost_tolerance = kTolerance;
   search.cancel = options.cancel;
@@ -146,7 +136,7 @@ nonlinear::Solution best_of(const nonlinear::Problem& problem, const std::vector
   best.cost = std::numeric_limits<double>::infinity();
   for (const VectorXd& start : starts) {
     nonlinear::Solution solution = nonlinear::minimize(problem, start, search);
-    const bool usable = solution.reason != nonlinear::Stop::kStartNotFinite;
+    const bool usable = solution.reason != nonlinear::StopReason::start_not_finite;
     if (usable && solution.cost < best.cost) best = std::move(solution);
   }
   return best;
@@ -198,8 +188,8 @@ PolynomialFit fit_prediction_error(const Orders& orders, const Stretches& all,
   out.condition = kNaN;
   if (options.errors) {
     nonlinear::CovarianceOptions how;
-    how.colour = orders.c > 0 || orders.d > 0 || orders.f == 0 ? nonlinear::Colour::kWhite
-                                                               : nonlinear::Colour::kColoured;
+    how.colour = orders.c > 0 || orders.d > 0 || orders.f == 0 ? nonlinear::Colour::white
+                                                               : nonlinear::Colour::coloured;
     const VectorXd errors = nonlinear::covariance(problem, solution, how).std_error;
     out.std_error.assign(errors.begin(), errors.end());
     out.condition = scaled_condition(solution.jacobian);

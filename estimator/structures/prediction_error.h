@@ -31,7 +31,7 @@ struct PredictionErrorOptions {
 struct PolynomialFit {
   Orders orders;
   Polynomial model;
-  std::vector<double> value;      ///< as Orders::names()
+  std::vector<double> value;      ///< in the order of Orders::names()
   std::vector<double> std_error;  ///< infinite where the data do not determine it
   double condition = 0.0;         ///< 2-norm, of the Jacobian of e with columns scaled to length 1
   double residual_rms_m = 0.0;
@@ -39,7 +39,7 @@ struct PolynomialFit {
   int starts = 0;   ///< tried
   bool converged = false;
   bool valid = false;
-  std::string why;  ///< not valid: in words
+  std::string why;  ///< reason of an invalid fit
 };
 
 [[nodiscard]] PolynomialFit fit_prediction_error(const Orders& orders, const Stretches& data,

@@ -15,7 +15,7 @@ namespace {
 
 using config::signals::kNaN;
 
-constexpr int kLength = 64;  // of a series: delay and order fit
+constexpr int kLength = 64;  // capacity for delay and order
 static_assert(kLength > kMaxDelay + kMaxOrder);
 constexpr double kFirstForgetting = 0.95;
 constexpr double kForgettingRate = 0.99;
@@ -60,7 +60,7 @@ bool stable(const double* p, int n) noexcept {
 struct RecursivePredictionError::State {
   /// Everything that changes: plain values, carried as they are.
   struct Moving {
-    Series y, u, w, v, e;  // as the equations name them
+    Series y, u, w, v, e;  // named as in the equations
     Series y_dc, u_f, u_dc, w_f, w_dc, e_c, v_c, one_f, one_dc;
     std::array<double, kMaxCoefficients> theta{};
     UdFactor p{};
@@ -100,7 +100,7 @@ struct RecursivePredictionError::State {
   void through_noise(Series& out, const Series& x, double value) noexcept {
     out.push(value + past(d(), o.orders.d, x) - past(c(), o.orders.c, out));
   }
-  /// psi(t) from what is known before y(t).
+  /// psi(t) from data before y(t).
   void gradient(double* psi) const noexcept {
     const Orders& n = o.orders;
     const bool plain = o.extended;
@@ -169,7 +169,7 @@ bool RecursivePredictionError::push(double u_V, double y_m) noexcept {
   double v = y_m + State::past(s.a(), n.a, now.y) - w;
   double e = v + State::past(s.d(), n.d, now.v) - State::past(s.c(), n.c, now.e);
   if (!ready) {
-    if (n.f > 0) w = y_m + State::past(s.a(), n.a, now.y);  // the first values are not known
+    if (n.f > 0) w = y_m + State::past(s.a(), n.a, now.y);  // the first values are unknown
     v = e = 0.0;
     ++now.filled;
   } else {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "estimator/linear_algebra/decompositions.h"
-#include "estimator/structures/starts.h"
+#include "estimator/structures/linear.h"
 
 namespace estimator::structures {
 namespace {
@@ -27,16 +27,6 @@ struct Windows {
   double y_scale_m = 1.0;
   double u_scale_V = 1.0;
 };
-
-double rms(const Stretches& data, bool of_input) {
-  double sum = 0.0;
-  double count = 0.0;
-  for (const Stretch& stretch : data) {
-    for (const double x : of_input ? stretch.u_V : stretch.y_m) sum += x * x;
-    count += stretch.size();
-  }
-  return std::sqrt(sum / count);
-}
 
 Windows windows_of(const SubspaceOptions& o, const Stretches& data) {
   Windows out;
@@ -89,7 +79,7 @@ MatrixXd with_ones(const MatrixXd& x, bool constant) {
 /// Theta: future x past.
 MatrixXd prediction_map(const SubspaceOptions& o, const Windows& w) {
   const Index width = w.past.cols();
-  if (o.method == SubspaceMethod::kN4sid) {
+  if (o.method == SubspaceMethod::n4sid) {
     MatrixXd x(w.past.rows(), width + w.future_u.cols());
     x << w.past, w.future_u;
     return regress(with_ones(x, o.constant), w.future_y).topRows(width).transpose();

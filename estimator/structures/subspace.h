@@ -24,13 +24,13 @@
 
 namespace estimator::structures {
 
-enum class SubspaceMethod : std::uint8_t { kN4sid, kPredictor };
+enum class SubspaceMethod : std::uint8_t { n4sid, predictor };
 
 struct SubspaceOptions {
   int order = 2;
   int k = 1;
   bool constant = true;
-  SubspaceMethod method = SubspaceMethod::kPredictor;
+  SubspaceMethod method = SubspaceMethod::predictor;
   int past = 15;    ///< samples
   int future = 10;  ///< samples, more than `order`
 };
@@ -40,10 +40,11 @@ struct SubspaceFit {
   Eigen::VectorXd B;  ///< 1/V: y is scaled back in C
   Eigen::RowVectorXd C;
   Eigen::VectorXd K;
-  Eigen::VectorXd singular_values;  ///< of Theta P, all of them, largest first; no unit
-  double condition = 0.0;           ///< of the regression on the past, columns scaled to length 1
+  Eigen::VectorXd singular_values;  ///< singular values of Theta P, largest first, dimensionless
+  double condition = 0.0;  ///< condition of the regression on the past, columns scaled to length 1
   /// The same model as a difference equation: characteristic polynomials of A (a) and of A - K C
-  /// (c), numerator (b): free of the choice of basis.
+  /// (c),
+  /// numerator (b); independent of the choice of basis.
   Polynomial model;
   int samples = 0;
   bool valid = false;

@@ -6,7 +6,6 @@
 #include <cstring>
 
 #include "config/schema/error.h"
-#include "hal/backend.h"
 
 namespace hal::comedi {
 namespace {
@@ -23,7 +22,7 @@ constexpr KindNames kKinds[] = {{COMEDI_SUBD_AI, "analogue input", "analogue inp
                                 {COMEDI_SUBD_AO, "analogue output", "analogue outputs"},
                                 {COMEDI_SUBD_COUNTER, "counter", "counters"}};
 
-const KindNames& names(Kind kind) { return kKinds[static_cast<int>(kind)]; }
+const KindNames& names(ChannelKind kind) { return kKinds[static_cast<int>(kind)]; }
 
 unsigned aref_of(const std::string& name) {
   if (name == "common") return AREF_COMMON;
@@ -32,7 +31,7 @@ unsigned aref_of(const std::string& name) {
 }
 
 /// "subdevices 0, 2".
-std::string all_of(comedi_t* board, Kind kind) {
+std::string all_of(comedi_t* board, ChannelKind kind) {
   std::string list;
   for (int i = 0; i < comedi_get_n_subdevices(board); ++i) {
     if (comedi_get_subdevice_type(board, static_cast<unsigned>(i)) != names(kind).type) continue;
@@ -61,7 +60,8 @@ ComediBoard::ComediBoard(const std::string& where, const std::string& device) {
   }
 }
 
-Place ComediBoard::find(const std::string& table, Kind kind, const Channel& wanted) const {
+BoardChannel ComediBoard::find(const std::string& table, ChannelKind kind,
+                               const ChannelConfig& wanted) const {
   comedi_t* board = board_.get();
   const std::string name = comedi_get_board_name(board);
   const std::string fitting = all_of(board, kind);
@@ -85,7 +85,7 @@ Place ComediBoard::find(const std::string& table, Kind kind, const Channel& want
                      up_to("channels", channels) + " of subdevice " + std::to_string(subdevice));
   }
   const auto channel = static_cast<unsigned>(wanted.channel);
-  const int ranges = kind == Kind::counter ? 1 : comedi_get_n_ranges(board, index, channel);
+  const int ranges = kind == ChannelKind::counter ? 1 : comedi_get_n_ranges(board, index, channel);
   if (wanted.range >= ranges) {
     throw bad_config(table + " range", "is " + std::to_string(wanted.range),
                      up_to("ranges", ranges) + " of subdevice " + std::to_string(subdevice));
@@ -93,7 +93,7 @@ Place ComediBoard::find(const std::string& table, Kind kind, const Channel& want
   return {index, channel, static_cast<unsigned>(wanted.range), aref_of(wanted.aref)};
 }
 
-Span ComediBoard::span(const std::string& table, const Place& place) const {
+ConverterSpan ComediBoard::span(const std::string& table, const BoardChannel& place) const {
   const comedi_range* range =
       comedi_get_range(board_.get(), place.subdevice, place.channel, place.range);
   if (range == nullptr || range->unit != UNIT_volt) {
@@ -103,7 +103,7 @@ Span ComediBoard::span(const std::string& table, const Place& place) const {
   return {range->min, range->max, max_code(place)};
 }
 
-void ComediBoard::lock(const std::string& table, const Place& place) const {
+void ComediBoard::lock(const std::string& table, const BoardChannel& place) const {
   if (comedi_lock(board_.get(), place.subdevice) < 0) {
     throw bad_config(table + " subdevice",
                      "is " + std::to_string(place.subdevice) + ", which another program has locked",
@@ -111,16 +111,16 @@ void ComediBoard::lock(const std::string& table, const Place& place) const {
   }
 }
 
-std::uint32_t ComediBoard::max_code(const Place& place) const {
+std::uint32_t ComediBoard::max_code(const BoardChannel& place) const {
   return comedi_get_maxdata(board_.get(), place.subdevice, place.channel);
 }
 
-bool ComediBoard::write(const Place& place, std::uint32_t code) noexcept {
+bool ComediBoard::write(const BoardChannel& place, std::uint32_t code) noexcept {
   return comedi_data_write(board_.get(), place.subdevice, place.channel, place.range, place.aref,
                            code) == 1;
 }
 
-std::optional<std::uint32_t> ComediBoard::read(const Place& place) noexcept {
+std::optional<std::uint32_t> ComediBoard::read(const BoardChannel& place) noexcept {
   lsampl_t code = 0;
   if (comedi_data_read(board_.get(), place.subdevice, place.channel, place.range, place.aref,
                        &code) != 1) {

@@ -13,10 +13,10 @@
 
 namespace hal::comedi {
 
-enum class Kind : std::uint8_t { analog_input, analog_output, counter };
+enum class ChannelKind : std::uint8_t { analog_input, analog_output, counter };
 
 /// One channel, as configured. `subdevice` -1: the first of its kind.
-struct Channel {
+struct ChannelConfig {
   std::int64_t subdevice = -1;
   std::int64_t channel = 0;
   std::int64_t range = 0;
@@ -24,7 +24,7 @@ struct Channel {
 };
 
 /// A channel verified to exist.
-struct Place {
+struct BoardChannel {
   unsigned subdevice = 0;
   unsigned channel = 0;
   unsigned range = 0;
@@ -35,8 +35,8 @@ class Board {
  public:
   virtual ~Board() = default;
   /// May block as long as the driver does. Any thread; async-signal-safe.
-  virtual bool write(const Place& place, std::uint32_t code) noexcept = 0;
-  virtual std::optional<std::uint32_t> read(const Place& place) noexcept = 0;
+  virtual bool write(const BoardChannel& place, std::uint32_t code) noexcept = 0;
+  virtual std::optional<std::uint32_t> read(const BoardChannel& place) noexcept = 0;
 };
 
 class ComediBoard final : public Board {
@@ -46,17 +46,18 @@ class ComediBoard final : public Board {
 
   /// Throws config::schema::ConfigError when the board has no such channel; `table`: "file:
   /// [comedi.rod]".
-  [[nodiscard]] Place find(const std::string& table, Kind kind, const Channel& channel) const;
+  [[nodiscard]] BoardChannel find(const std::string& table, ChannelKind kind,
+                                  const ChannelConfig& channel) const;
   /// Voltage range of the channel.
-  [[nodiscard]] Span span(const std::string& table, const Place& place) const;
+  [[nodiscard]] ConverterSpan span(const std::string& table, const BoardChannel& place) const;
   /// Locks the subdevice against other programs until this one ends. Throws
   /// config::schema::ConfigError.
-  void lock(const std::string& table, const Place& place) const;
+  void lock(const std::string& table, const BoardChannel& place) const;
   /// Largest code of the channel.
-  [[nodiscard]] std::uint32_t max_code(const Place& place) const;
+  [[nodiscard]] std::uint32_t max_code(const BoardChannel& place) const;
 
-  bool write(const Place& place, std::uint32_t code) noexcept override;
-  std::optional<std::uint32_t> read(const Place& place) noexcept override;
+  bool write(const BoardChannel& place, std::uint32_t code) noexcept override;
+  std::optional<std::uint32_t> read(const BoardChannel& place) noexcept override;
 
  private:
   struct Close {

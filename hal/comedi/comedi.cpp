@@ -16,7 +16,7 @@ using config::schema::bad_config;
 std::string text(double value) { return fmt::format("{:.6g}", value); }
 
 /// The range must reach null and, where it is known, a whole limit_V to both sides of it.
-void check_reach(const std::string& table, const Span& span, const Linear& terminal_V,
+void check_reach(const std::string& table, const ConverterSpan& span, const Linear& terminal_V,
                  const OpenContext& context) {
   const double limit_V = std::isnan(context.limit_V) ? 0.0 : context.limit_V;
   for (const double side : {-1.0, 1.0}) {
@@ -54,16 +54,16 @@ BackendDevices ComediBackend::open(const OpenContext& context) const {
   config_.check(context.file);
   const std::string prefix = context.file + ": [comedi";
   const auto board = std::make_shared<ComediBoard>(prefix + "] device", config_.device);
-  std::vector<Place> places;
-  const auto place = [&](const std::string& table, Kind kind, const Channel& channel) {
+  std::vector<BoardChannel> places;
+  const auto place = [&](const std::string& table, ChannelKind kind, const ChannelConfig& channel) {
     places.push_back(board->find(table, kind, channel));
     return places.size() - 1;
   };
   std::vector<Analog> inputs;
   for (std::size_t i = 0; i < config_.inputs.size(); ++i) {
-    const InputConfig& input = config_.inputs[i];
+    const ComediInputConfig& input = config_.inputs[i];
     const std::string table = context.file + ": [[comedi.input]] " + std::to_string(i + 1);
-    const std::size_t index = place(table, Kind::analog_input, input.channel);
+    const std::size_t index = place(table, ChannelKind::analog_input, input.channel);
     inputs.push_back({index, board->span(table, places[index]), {input.scale_per_V, input.offset}});
   }
   const RodConfig& rod = config_.rod;
@@ -71,13 +71,14 @@ BackendDevices ComediBackend::open(const OpenContext& context) const {
   const std::string rod_table = prefix + ".rod]";
   std::size_t rod_index = 0;
   if (config_.has_rod) {
-    rod_index = place(rod_table, counter ? Kind::counter : Kind::analog_input, rod.channel);
+    rod_index =
+        place(rod_table, counter ? ChannelKind::counter : ChannelKind::analog_input, rod.channel);
   }
-  Place output;
-  Span output_span;
+  BoardChannel output;
+  ConverterSpan output_span;
   if (config_.has_output) {
     const std::string table = prefix + ".output]";
-    output = board->find(table, Kind::analog_output, config_.output.channel);
+    output = board->find(table, ChannelKind::analog_output, config_.output.channel);
     output_span = board->span(table, output);
     check_reach(table, output_span, config_.output.terminal_V(), context);
     board->lock(table, output);

@@ -15,7 +15,7 @@ namespace hal::comedi {
 
 /// TOML [comedi.output]: volts at the terminal = polarity * scale_ratio * command + offset_V.
 struct OutputConfig {
-  Channel channel;
+  ChannelConfig channel;
   double scale_ratio = 1.0;  ///< V at the terminal per V of command
   double offset_V = 0.0;
   std::int64_t polarity = 1;
@@ -27,9 +27,9 @@ struct OutputConfig {
 };
 
 /// TOML [[comedi.input]]: value = offset + scale_per_V * volts, in the SI unit of its role.
-struct InputConfig {
+struct ComediInputConfig {
   std::string name;
-  Channel channel;
+  ChannelConfig channel;
   double scale_per_V = 1.0;
   double offset = 0.0;
 
@@ -40,7 +40,7 @@ struct InputConfig {
 /// y = offset_m + sign * resolution_m * counts since the start.
 struct RodConfig {
   std::string kind = "analog";
-  Channel channel;
+  ChannelConfig channel;
   double scale_m_per_V = kMissing;
   double resolution_m = kMissing;
   double offset_m = 0.0;
@@ -62,7 +62,7 @@ struct ComediConfig {
   OutputConfig output;
   bool has_rod = false;
   RodConfig rod;
-  std::vector<InputConfig> inputs;
+  std::vector<ComediInputConfig> inputs;
 
   void visit(config::schema::Visitor& v);
   /// Checks across fields. `file` is for messages. Throws config::schema::ConfigError.

@@ -11,13 +11,12 @@ namespace {
 using config::schema::bad_config;
 using config::schema::wiring;
 
-void visit_channel(config::schema::Visitor& v, Channel& channel) {
+void visit_channel(config::schema::Visitor& v, ChannelConfig& channel) {
   v.integer(wiring({"subdevice", "number on the board, -1: the first of its kind"}),
             channel.subdevice, {-1, 255});
   v.integer(wiring({"channel", "number on the subdevice"}), channel.channel, {0, 65'535});
   v.integer(wiring({"range", "number of the range"}), channel.range, {0, 255});
-  v.choice({"aref", "what the voltage is measured against"}, channel.aref,
-           {"ground", "common", "diff", "other"});
+  v.choice({"aref", "voltage reference"}, channel.aref, {"ground", "common", "diff", "other"});
 }
 
 }  // namespace
@@ -25,11 +24,12 @@ void visit_channel(config::schema::Visitor& v, Channel& channel) {
 void OutputConfig::visit(config::schema::Visitor& v) {
   visit_channel(v, channel);
   v.number(wiring({"scale_ratio", "V at the terminal per V of command"}), scale_ratio, {1e-6, 1e6});
-  v.number(wiring({"offset_V", "at the terminal for command 0"}), offset_V, {-100.0, 100.0});
+  v.number(wiring({"offset_V", "voltage at the terminal for command 0"}), offset_V,
+           {-100.0, 100.0});
   v.integer(wiring({"polarity", "1, or -1 when a positive voltage retracts"}), polarity, {-1, 1});
 }
 
-void InputConfig::visit(config::schema::Visitor& v) {
+void ComediInputConfig::visit(config::schema::Visitor& v) {
   v.text({"name", "channel of this backend", true}, name);
   visit_channel(v, channel);
   v.number({"scale_per_V", "SI units per V"}, scale_per_V, {-1e12, 1e12});
@@ -37,27 +37,27 @@ void InputConfig::visit(config::schema::Visitor& v) {
 }
 
 void RodConfig::visit(config::schema::Visitor& v) {
-  v.choice({"kind", "what it is"}, kind, {"analog", "counter"});
+  v.choice({"kind", "kind of input"}, kind, {"analog", "counter"});
   visit_channel(v, channel);
-  v.number({"scale_m_per_V", "of an analogue input"}, scale_m_per_V, {-1e3, 1e3});
-  v.number(wiring({"resolution_m", "of one count"}), resolution_m, {1e-12, 1.0});
+  v.number({"scale_m_per_V", "scale of an analogue input"}, scale_m_per_V, {-1e3, 1e3});
+  v.number(wiring({"resolution_m", "travel per count"}), resolution_m, {1e-12, 1.0});
   v.number({"offset_m", "position at 0 V, or of a counter at the start"}, offset_m, {-1e3, 1e3});
-  v.integer(wiring({"sign", "of a counter: 1, or -1 when it counts up as the rod retracts"}), sign,
-            {-1, 1});
+  v.integer(wiring({"sign", "sign of a counter: 1, or -1 when it counts up as the rod retracts"}),
+            sign, {-1, 1});
   v.integer({"bits", "width of the counter, 0: as the board says"}, bits, {0, 32});
 }
 
 void ComediConfig::visit(config::schema::Visitor& v) {
   v.text({"device", "file of the board"}, device);
   v.boolean({"threaded", "a thread makes the calls; false: the loop itself"}, threaded);
-  v.integer({"priority", "of the thread under SCHED_FIFO, where permitted"}, priority, {0, 99});
-  v.number({"delay_s", "from a write of the loop to the voltage at the valve"}, delay_s,
+  v.integer({"priority", "SCHED_FIFO priority of the thread, where permitted"}, priority, {0, 99});
+  v.number({"delay_s", "time from a write of the loop to the voltage at the valve"}, delay_s,
            {0.0, 1.0});
   v.number({"max_speed_mps", "fastest that the rod can move"}, max_speed_mps, {0.0, 100.0});
   v.boolean({"bench_rig", "the other side is a simulated rig: nothing real moves"}, bench_rig);
   v.optional_table({"output", "the analogue output that drives the valve"}, has_output,
                    [this](config::schema::Visitor& t) { output.visit(t); });
-  v.optional_table({"rod", "what reads the rod"}, has_rod,
+  v.optional_table({"rod", "device that reads the rod"}, has_rod,
                    [this](config::schema::Visitor& t) { rod.visit(t); });
   config::schema::visit_list(v, {"input", "an analogue input"}, inputs);
 }
@@ -82,10 +82,10 @@ void ComediConfig::check(const std::string& file) const {
                      "at most " + std::to_string(Exchange::kInputs - 1));
   }
   std::set<std::string> names;
-  for (const InputConfig& input : inputs) {
+  for (const ComediInputConfig& input : inputs) {
     if (!names.insert(input.name).second) {
       throw bad_config(file + ": [[comedi.input]] name", "is \"" + input.name + "\" twice",
-                       "its own name");
+                       "a unique name");
     }
   }
 }

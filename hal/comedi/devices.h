@@ -11,7 +11,7 @@ namespace hal::comedi {
 /// An analogue channel as a physical value; uncertain at the ends of the converter's range.
 struct Analog {
   std::size_t index = 0;  ///< among the exchange's inputs
-  Span span;
+  ConverterSpan span;
   Linear value_of_V;
 
   [[nodiscard]] InputReading read(Exchange& exchange, const Tick& tick) const noexcept;
@@ -56,8 +56,8 @@ class CounterRod final : public RodSensor {
 
 class AnalogValve final : public ValveDrive {
  public:
-  AnalogValve(std::shared_ptr<Exchange> exchange, const Span& span, const Linear& terminal_V,
-              double null_V) noexcept
+  AnalogValve(std::shared_ptr<Exchange> exchange, const ConverterSpan& span,
+              const Linear& terminal_V, double null_V) noexcept
       : exchange_(std::move(exchange)), span_(span), terminal_V_(terminal_V), null_V_(null_V) {}
   Applied write(double u_V, const Tick& tick) noexcept override;
   Applied go_null() noexcept override;
@@ -71,7 +71,7 @@ class AnalogValve final : public ValveDrive {
   }
 
   std::shared_ptr<Exchange> exchange_;
-  Span span_;
+  ConverterSpan span_;
   Linear terminal_V_;
   double null_V_;
 };

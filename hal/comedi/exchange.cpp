@@ -14,8 +14,8 @@ constexpr std::uint64_t kNumber = 1ULL << 32U;
 
 }  // namespace
 
-Exchange::Exchange(std::shared_ptr<Board> board, std::vector<Place> inputs, const Place& output,
-                   std::int64_t period_ns)
+Exchange::Exchange(std::shared_ptr<Board> board, std::vector<BoardChannel> inputs,
+                   const BoardChannel& output, std::int64_t period_ns)
     : board_(std::move(board)),
       inputs_(std::move(inputs)),
       output_(output),

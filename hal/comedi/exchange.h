@@ -37,8 +37,8 @@ class Exchange {
   };
 
   /// At most kInputs places. `output` is used by write() only.
-  Exchange(std::shared_ptr<Board> board, std::vector<Place> inputs, const Place& output,
-           std::int64_t period_ns);
+  Exchange(std::shared_ptr<Board> board, std::vector<BoardChannel> inputs,
+           const BoardChannel& output, std::int64_t period_ns);
   ~Exchange();
   Exchange(const Exchange&) = delete;
   Exchange& operator=(const Exchange&) = delete;
@@ -67,8 +67,8 @@ class Exchange {
   void write_newest() noexcept;
 
   std::shared_ptr<Board> board_;
-  std::vector<Place> inputs_;
-  Place output_;
+  std::vector<BoardChannel> inputs_;
+  BoardChannel output_;
   std::int64_t period_ns_;
   std::int64_t lead_ns_;
   bool threaded_ = false;

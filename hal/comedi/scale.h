@@ -8,7 +8,7 @@
 namespace hal::comedi {
 
 /// A converter: code 0 is min_V, max_code is max_V.
-struct Span {
+struct ConverterSpan {
   double min_V = -10.0;
   double max_V = 10.0;
   std::uint32_t max_code = 4095;

@@ -2,12 +2,27 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 
-#include "hal/encoder/edge.h"
-
 namespace hal::encoder {
+
+/// Events of encoder lines: edges with their time, and levels.
+enum class EncoderLine : std::uint8_t { a, b, index };
+
+struct Edge {
+  std::int64_t t_ns = 0;  ///< CLOCK_MONOTONIC
+  EncoderLine line = EncoderLine::a;
+  bool level = false;  ///< after the edge
+};
+
+struct Levels {
+  bool a = false;
+  bool b = false;
+};
+
+inline bool operator==(Levels x, Levels y) noexcept { return x.a == y.a && x.b == y.b; }
 
 /// Capacity of the kernel's queue per line; further edges are dropped silently.
 inline constexpr std::size_t kFifo = 16;

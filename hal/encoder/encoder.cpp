@@ -5,18 +5,18 @@
 #include <cstring>
 
 #include "config/schema/error.h"
-#include "hal/encoder/gpio_source.h"
+#include "hal/encoder/gpio_chip.h"
 
 namespace hal::encoder {
 namespace {
 
 class SwitchInput final : public Input {
  public:
-  SwitchInput(std::shared_ptr<Watch> watch, std::size_t index) noexcept
+  SwitchInput(std::shared_ptr<EncoderWatch> watch, std::size_t index) noexcept
       : watch_(std::move(watch)), index_(index) {}
 
   InputReading read(const Tick&) noexcept override {
-    const Watch::View& view = watch_->view();
+    const EncoderWatch::View& view = watch_->view();
     const int value = view.inputs[index_];
     const config::signals::Quality quality = watch_->quality(view.inputs_ns, monotonic_ns());
     if (value < 0 || quality == config::signals::Quality::bad)
@@ -25,7 +25,7 @@ class SwitchInput final : public Input {
   }
 
  private:
-  std::shared_ptr<Watch> watch_;
+  std::shared_ptr<EncoderWatch> watch_;
   std::size_t index_;
 };
 
@@ -38,7 +38,7 @@ class SwitchOutput final : public Output {
   std::shared_ptr<GpioLine> line_;
 };
 
-std::string summary(const Snapshot& rod) {
+std::string summary(const EncoderSnapshot& rod) {
   std::string line = fmt::format(
       "encoder: {} edges; count uncertain {} times ({} illegal, {} overflows, {} disagreements, {} "
       "bursts), too fast {} times, {} index slips",
@@ -49,8 +49,9 @@ std::string summary(const Snapshot& rod) {
 
 }  // namespace
 
-Watch::Watch(std::unique_ptr<EdgeSource> source, std::vector<std::shared_ptr<GpioLine>> inputs,
-             const TrackerOptions& options, std::int64_t period_ns, int priority)
+EncoderWatch::EncoderWatch(std::unique_ptr<EdgeSource> source,
+                           std::vector<std::shared_ptr<GpioLine>> inputs,
+                           const TrackerOptions& options, std::int64_t period_ns, int priority)
     : source_(std::move(source)),
       inputs_(std::move(inputs)),
       period_ns_(period_ns),
@@ -63,7 +64,7 @@ Watch::Watch(std::unique_ptr<EdgeSource> source, std::vector<std::shared_ptr<Gpi
   }
 }
 
-void Watch::pass() noexcept {
+void EncoderWatch::pass() noexcept {
   const std::int64_t half_ns = period_ns_ / 2;
   tracker_.step(*source_, view_.inputs_ns == 0 ? 0 : half_ns, monotonic_ns);
   if (refer_.exchange(false, std::memory_order_relaxed)) tracker_.refer();
@@ -78,7 +79,7 @@ void Watch::pass() noexcept {
 }
 
 Reading EncoderRod::read(const Tick&) noexcept {
-  const Snapshot& rod = watch_->view().rod;
+  const EncoderSnapshot& rod = watch_->view().rod;
   const std::int64_t now_ns = monotonic_ns();
   Reading reading;
   reading.t_ns = rod.alive_ns;
@@ -106,17 +107,17 @@ BackendDevices EncoderBackend::open(const OpenContext& context) const {
   std::shared_ptr<GpioLine> index =
       config_.line_index < 0 ? nullptr : edges("line_index", config_.line_index);
   std::vector<std::shared_ptr<GpioLine>> inputs;
-  for (const SwitchConfig& item : config_.inputs) {
+  for (const GpioSwitchConfig& item : config_.inputs) {
     inputs.push_back(chip->request(table + "input \"" + item.name + "\" line", item.line,
                                    Use::input, item.wiring));
   }
   BackendDevices devices;
-  for (const SwitchConfig& item : config_.outputs) {
+  for (const GpioSwitchConfig& item : config_.outputs) {
     devices.outputs[item.name] = std::make_shared<SwitchOutput>(chip->request(
         table + "output \"" + item.name + "\" line", item.line, Use::output, item.wiring));
   }
   const TrackerOptions options{config_.per_cycle(), config_.max_edges_per_s, index != nullptr};
-  const auto watch = std::make_shared<Watch>(
+  const auto watch = std::make_shared<EncoderWatch>(
       std::make_unique<GpioSource>(std::move(a), std::move(b), std::move(index)), std::move(inputs),
       options, static_cast<std::int64_t>(context.sample_time_s * 1e9),
       static_cast<int>(config_.priority));

@@ -20,7 +20,7 @@
 namespace hal::encoder {
 
 /// TOML [[encoder.input]] and [[encoder.output]].
-struct SwitchConfig {
+struct GpioSwitchConfig {
   std::string name;
   std::int64_t line = -1;
   Wiring wiring;
@@ -43,8 +43,8 @@ struct EncoderConfig {
   double max_speed_mps = kMissing;
   double max_edges_per_s = 20'000.0;
   std::int64_t priority = 85;
-  std::vector<SwitchConfig> inputs;
-  std::vector<SwitchConfig> outputs;
+  std::vector<GpioSwitchConfig> inputs;
+  std::vector<GpioSwitchConfig> outputs;
 
   void visit(config::schema::Visitor& v);
   /// Checks across fields. `file` is for messages. Throws config::schema::ConfigError.
@@ -59,17 +59,17 @@ struct EncoderConfig {
 };
 
 /// State that one thread reads, for a rod sensor and any number of inputs.
-class Watch {
+class EncoderWatch {
  public:
   static constexpr std::size_t kInputs = 16;
 
   /// Starts the thread. `period_ns`: of the loop. Throws config::schema::RunError when it
   /// cannot.
-  Watch(std::unique_ptr<EdgeSource> source, std::vector<std::shared_ptr<GpioLine>> inputs,
-        const TrackerOptions& options, std::int64_t period_ns, int priority);
+  EncoderWatch(std::unique_ptr<EdgeSource> source, std::vector<std::shared_ptr<GpioLine>> inputs,
+               const TrackerOptions& options, std::int64_t period_ns, int priority);
 
   struct View {
-    Snapshot rod;
+    EncoderSnapshot rod;
     std::int64_t inputs_ns = 0;
     std::array<std::int8_t, kInputs> inputs{};  ///< 0, 1, or -1
   };
@@ -98,17 +98,17 @@ class Watch {
 
 class EncoderRod final : public RodSensor {
  public:
-  EncoderRod(std::shared_ptr<Watch> watch, double count_m, double reference_m) noexcept
+  EncoderRod(std::shared_ptr<EncoderWatch> watch, double count_m, double reference_m) noexcept
       : watch_(std::move(watch)), count_m_(count_m), reference_m_(reference_m) {}
 
   /// Present y; uncertain while edges may be missing, before the index, or near the permitted
   /// speed.
   Reading read(const Tick& tick) noexcept override;
   /// Error counters and edge rate; loop thread only.
-  [[nodiscard]] const Snapshot& snapshot() noexcept { return watch_->view().rod; }
+  [[nodiscard]] const EncoderSnapshot& snapshot() noexcept { return watch_->view().rod; }
 
  private:
-  std::shared_ptr<Watch> watch_;
+  std::shared_ptr<EncoderWatch> watch_;
   double count_m_;  ///< negative for a reversed encoder
   double reference_m_;
 };

@@ -3,9 +3,12 @@
 #pragma once
 
 #include <gpiod.h>
-
+#include <poll.h>
+#include <array>
 #include <memory>
 #include <string>
+
+#include "hal/encoder/edge_source.h"
 
 namespace hal::encoder {
 
@@ -59,6 +62,24 @@ class GpioChip : public std::enable_shared_from_this<GpioChip> {
   explicit GpioChip(gpiod_chip* chip) noexcept : chip_(chip) {}
 
   gpiod_chip* chip_;
+};
+
+/// Edges of the lines of a GPIO chip, with the kernel's time stamps.
+class GpioSource final : public EdgeSource {
+ public:
+  /// Lines requested for edges; `index` may be null.
+  GpioSource(std::shared_ptr<GpioLine> a, std::shared_ptr<GpioLine> b,
+             std::shared_ptr<GpioLine> index);
+
+  /// After a failure returns only when the time is over.
+  Wake wait(std::int64_t timeout_ns) noexcept override;
+  Drained drain(std::span<Edge, kBatch> into) noexcept override;
+  std::optional<Levels> levels() noexcept override;
+
+ private:
+  std::array<std::shared_ptr<GpioLine>, 3> lines_;  ///< in the order of Line
+  std::array<pollfd, 3> polled_{};
+  nfds_t count_;
 };
 
 }  // namespace hal::encoder

@@ -19,13 +19,13 @@ QuadratureDecoder::QuadratureDecoder(Levels levels) noexcept
     : levels_(levels), quarters_(phase_of(levels)), origin_(quarters_) {}
 
 void QuadratureDecoder::edge(const Edge& edge) noexcept {
-  if (edge.line == Line::index) {
+  if (edge.line == EncoderLine::index) {
     const bool lower_flank = direction_ < 0 ? !edge.level : edge.level;
     if (lower_flank) capture();
     return;
   }
   Levels next = levels_;
-  (edge.line == Line::a ? next.a : next.b) = edge.level;
+  (edge.line == EncoderLine::a ? next.a : next.b) = edge.level;
   if (next == levels_) {
     ++illegal_;
     lost_ = true;

@@ -12,7 +12,7 @@
 
 #include <cstdint>
 
-#include "hal/encoder/edge.h"
+#include "hal/encoder/edge_source.h"
 
 namespace hal::encoder {
 

@@ -17,7 +17,7 @@
 namespace hal::encoder {
 
 /// Snapshot for the loop.
-struct Snapshot {
+struct EncoderSnapshot {
   std::int64_t counts = 0;    ///< from the origin
   std::int64_t edge_ns = 0;   ///< time of the newest edge, 0 before the first
   std::int64_t alive_ns = 0;  ///< time at which this view was complete
@@ -62,7 +62,7 @@ class Tracker {
   /// Makes the present position the origin, and certain.
   void refer() noexcept;
 
-  [[nodiscard]] const Snapshot& snapshot() const noexcept { return snapshot_; }
+  [[nodiscard]] const EncoderSnapshot& snapshot() const noexcept { return snapshot_; }
 
  private:
   struct Step {
@@ -86,7 +86,7 @@ class Tracker {
   TrackerOptions options_;
   std::int64_t burst_ns_ = 0;  ///< shortest permitted time of kBurst edges
   QuadratureDecoder decoder_;
-  Snapshot snapshot_;
+  EncoderSnapshot snapshot_;
   std::array<Step, kHistory> history_;  ///< the newest edges, a ring
   std::uint64_t steps_ = 0;             ///< total number inserted
   std::uint64_t oldest_ = 0;            ///< oldest step that can still be undone

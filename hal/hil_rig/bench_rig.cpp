@@ -24,7 +24,7 @@ std::unique_ptr<plant_sim::Plant> load_plant(const RigConfig& config) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) {
     throw config::schema::bad_config(config.file + ": [sim] model",
-                                     "is \"" + file.string() + "\", which is no file",
+                                     "is \"" + file.string() + "\", which is not a file",
                                      "a model file (TOML)");
   }
   plant_sim::ModelFile model = plant_sim::load_model(file);
@@ -175,7 +175,7 @@ std::uint32_t BenchRig::time_us() const {
 
 std::string BenchRig::set(std::string_view text) {
   const std::size_t equals = text.find('=');
-  if (equals == std::string_view::npos) return "is no name=value";
+  if (equals == std::string_view::npos) return "is not name=value";
   const std::string name(text.substr(0, equals));
   std::string number(text.substr(equals + 1));
   const bool factor = !number.empty() && number.front() == 'x';

@@ -8,7 +8,7 @@
 #include <iostream>
 #include <optional>
 
-#include "config/schema/exit_code.h"
+#include "config/schema/error.h"
 #include "config/schema/product_version.h"
 #include "config/schema/reference.h"
 #include "hal/hil_rig/moved_lines.h"
@@ -21,7 +21,7 @@ namespace {
 volatile std::sig_atomic_t stop_asked = 0;
 void on_stop(int) { stop_asked = 1; }
 
-struct Options {
+struct RigOptions {
   std::string file;
   std::string listen;
   std::string serial;
@@ -29,7 +29,7 @@ struct Options {
   double duration_s = 0.0;
 };
 
-int serve(const Options& options, bool has_listen, bool has_serial) {
+int serve(const RigOptions& options, bool has_listen, bool has_serial) {
   hal::hil_rig::RigConfig config = hal::hil_rig::load(options.file, options.assignments);
   if (has_listen) config.bus.listen = options.listen == "0" ? "127.0.0.1:0" : options.listen;
   if (has_serial) config.bus.serial = options.serial;
@@ -83,21 +83,21 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version",
                        "spoolwatch-rig " + std::string(config::schema::product_version()));
   app.footer(hal::hil_rig::kRegisterMapText);
-  Options options;
+  RigOptions options;
   auto* file = app.add_option("--config", options.file, "the rig (TOML)");
   auto* listen = app.add_option("--listen", options.listen,
                                 "address:port instead of [bus] listen; 0: any free port");
   auto* serial = app.add_option("--serial", options.serial, "instead of [bus] serial");
-  app.add_option("--duration", options.duration_s, "seconds to run; without it, until a signal")
+  app.add_option("--duration", options.duration_s, "seconds to run; default: until a signal")
       ->check(CLI::Range(1e-3, 1e9));
-  app.add_option("--set", options.assignments, "table.key=value, instead of the file's")
+  app.add_option("--set", options.assignments, "table.key=value, overrides the file")
       ->allow_extra_args(false);
   bool reference = false;
   app.add_flag("--configuration-reference", reference)->group("");  // hidden: scripts/reference
   CLI::App* setting = app.add_subcommand("set", "changes a running rig: a fault, the e-stop");
   std::string address = "127.0.0.1:1502";
   std::vector<std::string> texts;
-  setting->add_option("--address", address, "where the rig listens");
+  setting->add_option("--address", address, "address of the rig");
   setting->add_option("parameter", texts, "name=value or name=xFACTOR (e_stop=0, mass_kg=x1.2)")
       ->required();
   try {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "config/schema/visitor.h"
-#include "plant_sim/bench_plant.h"
+#include "plant_sim/transducer.h"
 
 namespace hal::hil_rig {
 

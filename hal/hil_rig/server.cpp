@@ -161,7 +161,7 @@ bool Server::serve(modbus_t* context) {
 void Server::answer(modbus_t* context, const std::uint8_t* query, int length) {
   ++counts_.requests;
   rig_.advance_to(monotonic_ns());
-  const Request request(query + modbus_get_header_length(context));
+  const ModbusRequest request(query + modbus_get_header_length(context));
   const bool of_text = request.address() >= kText;
   refresh();
   const auto written = request.written();
@@ -234,7 +234,7 @@ std::string set_remotely(const std::string& address, const std::string& text) {
     return config::schema::RunError("--address: " + address + ": " + what);
   };
   const auto place = split_address(address);
-  if (!place) throw failed("is no numeric address and port, 127.0.0.1:1502");
+  if (!place) throw failed("is not a numeric address and port, 127.0.0.1:1502");
   modbus_t* context = modbus_new_tcp(place->host.c_str(), place->port);
   modbus_set_response_timeout(context, 1, 0);
   std::uint16_t registers[kTextRegisters];

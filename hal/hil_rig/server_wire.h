@@ -10,16 +10,16 @@
 
 namespace hal::hil_rig {
 
-struct Place {
+struct HostPort {
   std::string host;
   int port = 0;
 };
 
 /// Splits "127.0.0.1:1502"; empty for any other form.
-inline std::optional<Place> split_address(const std::string& text) {
+inline std::optional<HostPort> split_address(const std::string& text) {
   const std::size_t colon = text.rfind(':');
   if (colon == std::string::npos) return std::nullopt;
-  Place place{text.substr(0, colon), 0};
+  HostPort place{text.substr(0, colon), 0};
   const std::string digits = text.substr(colon + 1);
   in_addr ignored{};
   const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
@@ -33,14 +33,14 @@ inline std::optional<Place> split_address(const std::string& text) {
 }
 
 /// The part of a request that begins with the function code.
-class Request {
+class ModbusRequest {
  public:
   struct Range {
     int address = 0;
     int count = 0;
   };
 
-  explicit Request(const std::uint8_t* pdu) noexcept : pdu_(pdu) {}
+  explicit ModbusRequest(const std::uint8_t* pdu) noexcept : pdu_(pdu) {}
 
   [[nodiscard]] int address() const noexcept { return word(1); }
   [[nodiscard]] bool of_coils() const noexcept { return pdu_[0] == 5 || pdu_[0] == 15; }

@@ -4,17 +4,15 @@
 
 #include <array>
 #include <atomic>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 
-#include "hal/device.h"
 #include "hal/modbus/registers.h"
 
 namespace hal::modbus {
 
 /// A raw command and the time at which the loop issued it.
-struct Command {
+struct RegisterCommand {
   Bits bits = 0;
   std::int64_t t_ns = 0;  ///< resolution 0.13 ms
 };
@@ -28,13 +26,13 @@ class CommandSlot {
   }
   [[nodiscard]] bool waiting() const noexcept { return slot_.load() != 0; }
   /// Empties the slot. `now_ns` resolves the wrap of the stored time (three days).
-  std::optional<Command> take(std::int64_t now_ns) noexcept {
+  std::optional<RegisterCommand> take(std::int64_t now_ns) noexcept {
     const std::uint64_t packed = slot_.exchange(0, std::memory_order_acquire);
     if (packed == 0) return std::nullopt;
     const auto now = static_cast<std::uint32_t>(static_cast<std::uint64_t>(now_ns) >> kShift) | 1U;
     const auto ago = static_cast<std::int32_t>(now - static_cast<std::uint32_t>(packed >> 32U));
-    return Command{static_cast<Bits>(packed),
-                   now_ns - (static_cast<std::int64_t>(ago) * (1 << kShift))};
+    return RegisterCommand{static_cast<Bits>(packed),
+                           now_ns - (static_cast<std::int64_t>(ago) * (1 << kShift))};
   }
 
  private:
@@ -45,7 +43,7 @@ class CommandSlot {
 };
 
 /// Latest readings, by channel and by block of the register map.
-struct Snapshot {
+struct RegisterSnapshot {
   std::array<std::int64_t, 16> t_ns{};  ///< of each block; 0: never
   std::array<double, 64> value{};       ///< SI, of each channel
 };

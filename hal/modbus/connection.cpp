@@ -42,7 +42,7 @@ Connection::Connection(const ConnectionConfig& config, Counters& counters)
     modbus_free(context_);
     throw config::schema::bad_config(
         "[modbus] " + std::string(config.host.empty() ? "serial" : "address"),
-        "is nothing that can be connected", "127.0.0.1:502, /dev/ttyS0");
+        "is not a usable address or serial line", "127.0.0.1:502, /dev/ttyS0");
   }
   // The library's own recovery retries for ever: off. One time-out for the whole reply, not per
   // byte.
@@ -140,15 +140,16 @@ RequestResult Connection::judge(int result, std::int64_t start_ns) noexcept {
 RequestResult Connection::read(const Block& block, std::uint16_t* words) noexcept {
   if (!in_step()) return lose(errno);
   const std::int64_t start_ns = monotonic_ns();
-  if (block.table == Table::holding) {
+  if (block.table == RegisterTable::holding) {
     return judge(modbus_read_registers(context_, block.address, block.count, words), start_ns);
   }
-  if (block.table == Table::input) {
+  if (block.table == RegisterTable::input) {
     return judge(modbus_read_input_registers(context_, block.address, block.count, words),
                  start_ns);
   }
   std::array<std::uint8_t, kMostBits> bits;
-  const auto read_bits = block.table == Table::coil ? modbus_read_bits : modbus_read_input_bits;
+  const auto read_bits =
+      block.table == RegisterTable::coil ? modbus_read_bits : modbus_read_input_bits;
   const RequestResult outcome =
       judge(read_bits(context_, block.address, block.count, bits.data()), start_ns);
   for (int i = 0; outcome == RequestResult::done && i < block.count; ++i) words[i] = bits[i];
@@ -158,7 +159,7 @@ RequestResult Connection::read(const Block& block, std::uint16_t* words) noexcep
 RequestResult Connection::write(const WriteChannel& channel, Bits bits) noexcept {
   if (!in_step()) return lose(errno);
   const std::int64_t start_ns = monotonic_ns();
-  if (channel.table == Table::coil) {
+  if (channel.table == RegisterTable::coil) {
     return judge(modbus_write_bit(context_, channel.address, bits != 0 ? 1 : 0), start_ns);
   }
   std::uint16_t words[2];

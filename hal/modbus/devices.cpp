@@ -17,9 +17,11 @@ class Channel {
         stale_ns_(std::llround(freshness.stale_after_s * 1e9)),
         bad_ns_(std::llround(freshness.bad_after_s * 1e9)) {}
 
-  [[nodiscard]] InputReading read(const Tick& tick) const noexcept {
-    poll_thread_->pace(tick);
-    const Snapshot& snapshot = poll_thread_->newest();
+  /// Lets the poll thread follow the loop; once a tick, further calls do nothing.
+  void pace(const Tick& tick) const noexcept { poll_thread_->pace(tick); }
+
+  [[nodiscard]] InputReading newest() const noexcept {
+    const RegisterSnapshot& snapshot = poll_thread_->newest();
     const ReadChannel& r = poll_thread_->map().reads[index_];
     InputReading reading;
     reading.t_ns = snapshot.t_ns[r.block];
@@ -45,7 +47,10 @@ class Channel {
 class ModbusInput final : public Input {
  public:
   explicit ModbusInput(Channel channel) : channel_(std::move(channel)) {}
-  InputReading read(const Tick& tick) noexcept override { return channel_.read(tick); }
+  InputReading read(const Tick& tick) noexcept override {
+    channel_.pace(tick);
+    return channel_.newest();
+  }
 
  private:
   Channel channel_;
@@ -59,7 +64,8 @@ class ModbusRod final : public RodSensor {
         jitter_check_(std::llround(jitter_s * 1e9)) {}
 
   Reading read(const Tick& tick) noexcept override {
-    const InputReading position = position_.read(tick);
+    position_.pace(tick);
+    const InputReading position = position_.newest();
     Reading reading;
     reading.y_m = position.value;
     reading.t_ns = position.t_ns;
@@ -67,7 +73,7 @@ class ModbusRod final : public RodSensor {
     const bool in_phase = jitter_check_.accepts(position.t_ns, tick.nominal_ns);
     if (reading.quality == config::signals::Quality::good && !in_phase)
       reading.quality = config::signals::Quality::stale;
-    if (command_ != nullptr) reading.command_V = command_->read(tick).value;
+    if (command_ != nullptr) reading.command_V = command_->newest().value;
     return reading;
   }
 

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 #include "hal/device_lock.h"
 #include "hal/modbus/devices.h"
 #include "hal/modbus/probe.h"
@@ -46,33 +47,36 @@ bool split(const std::string& address, ConnectionConfig& connection) {
 }  // namespace
 
 void ModbusConfig::visit(config::schema::Visitor& v) {
-  v.text({"address", "of a TCP device, numeric, with its port"}, address);
+  v.text({"address", "numeric address and port of a TCP device"}, address);
   v.text({"serial", "serial line of an RTU device, instead of address"}, serial);
   if (!serial.empty()) {
-    v.integer({"baud", "of the serial line"}, baud, {kBauds[0], 921600});
-    v.choice({"parity", "of the serial line"}, parity, {"none", "even", "odd"});
-    v.integer({"stop_bits", "of the serial line"}, stop_bits, {1, 2});
+    v.integer({"baud", "baud rate of the serial line"}, baud, {kBauds[0], 921600});
+    v.choice({"parity", "parity of the serial line"}, parity, {"none", "even", "odd"});
+    v.integer({"stop_bits", "stop bits of the serial line"}, stop_bits, {1, 2});
   }
   v.integer(wiring({"unit", "number of the device on its line"}), unit, {0, 247});
   v.number({"timeout_s", "longest wait for a reply"}, timeout_s, {1e-4, 10.0});
   v.number({"connect_timeout_s", "longest wait for a connection"}, connect_timeout_s, {1e-3, 10.0});
-  v.number({"longest_pause_s", "between two attempts to connect"}, longest_pause_s, {0.01, 60.0});
+  v.number({"longest_pause_s", "longest time between two attempts to connect"}, longest_pause_s,
+           {0.01, 60.0});
   v.number({"stale_after_s", "age from which a reading is stale"}, stale_after_s, {1e-3, 10.0});
   v.number({"bad_after_s", "age from which it is none"}, bad_after_s, {1e-3, 10.0});
   v.number({"jitter_s", "stale when measured further from its usual moment of the period"},
            jitter_s, {1e-5, 10.0});
   v.boolean({"combined", "function 23: command and reading in one transaction"}, combined);
   v.boolean({"multiple_only", "the device knows function 16 but not 6"}, multiple_only);
-  v.number({"read_ahead_s", "read so long before the loop's next period; 0: after the write"},
-           read_ahead_s, {0.0, 1.0});
+  v.number(
+      {"read_ahead_s", "lead of the read before the loop's next period; 0: read after the write"},
+      read_ahead_s, {0.0, 1.0});
   v.number({"hand_over_s", "longest that a command waits for the thread that sends it"},
            hand_over_s, {2e-5, 0.01});
   v.number({"watchdog_s", "the device's own time-out for commands"}, watchdog_s, {1e-3, 60.0});
-  v.number({"delay_s", "from the sending of a command to the voltage at the valve"}, delay_s,
+  v.number({"delay_s", "time from the sending of a command to the voltage at the valve"}, delay_s,
            {0.0, 1.0});
   v.number({"max_speed_mps", "fastest that the rod can move"}, max_speed_mps, {0.0, 100.0});
   v.boolean({"bench_rig", "the other side is a simulated rig: nothing real moves"}, bench_rig);
-  v.integer({"priority", "of the thread in SCHED_FIFO, where allowed; 0: none"}, priority, {0, 99});
+  v.integer({"priority", "SCHED_FIFO priority of the thread, where permitted; 0: none"}, priority,
+            {0, 99});
 
   std::vector<std::string> printed;
   for (const Register& r : registers) printed.push_back(r.name);
@@ -93,7 +97,7 @@ PollThreadConfig ModbusBackend::poll_thread_config(const OpenContext& context) c
   PollThreadConfig poll;
   if (config_.address.empty() == config_.serial.empty()) {
     throw bad_config(where + "address",
-                     config_.address.empty() ? "is missing" : "stands beside serial",
+                     config_.address.empty() ? "is missing" : "is given together with serial",
                      "address of a TCP device or serial line of an RTU device");
   }
   if (!config_.address.empty() && !split(config_.address, poll.connection)) {
@@ -102,10 +106,8 @@ PollThreadConfig ModbusBackend::poll_thread_config(const OpenContext& context) c
   }
   if (!config_.serial.empty() &&
       std::find(std::begin(kBauds), std::end(kBauds), config_.baud) == std::end(kBauds)) {
-    std::string allowed;
-    for (const std::int64_t b : kBauds)
-      allowed += (allowed.empty() ? "" : ", ") + std::to_string(b);
-    throw bad_config(where + "baud", "is " + std::to_string(config_.baud), allowed);
+    throw bad_config(where + "baud", "is " + std::to_string(config_.baud),
+                     config::schema::joined(kBauds));
   }
   poll.connection.serial = config_.serial;
   poll.connection.baud = static_cast<int>(config_.baud);
@@ -141,7 +143,7 @@ void ModbusBackend::check(const OpenContext& context, const PollThreadConfig& po
   if (map.watchdog && std::isnan(config_.watchdog_s)) {
     throw bad_config(where + "watchdog_s",
                      "is missing for [modbus.registers." + map.watchdog->name + "]",
-                     "the time-out in s that the device shall have");
+                     "the time-out of the device in s");
   }
   if (map.watchdog) {
     const Codec& codec = map.watchdog->codec;
@@ -151,7 +153,7 @@ void ModbusBackend::check(const OpenContext& context, const PollThreadConfig& po
       throw bad_config(where + "watchdog_s",
                        "is " + std::to_string(config_.watchdog_s) + ", and [modbus.registers." +
                            map.watchdog->name + "] can only take " + std::to_string(written_s),
-                       "what scale, low and high of that register allow");
+                       "a value within scale, low and high of that register");
     }
   }
   if (map.valve) {
@@ -162,7 +164,7 @@ void ModbusBackend::check(const OpenContext& context, const PollThreadConfig& po
       throw bad_config(context.file + ": [valve] null_V",
                        "is " + std::to_string(context.null_V) + ", and [modbus.registers." +
                            map.valve->name + "] can only take " + std::to_string(written_V),
-                       "what scale, low and high of that register allow");
+                       "a value within scale, low and high of that register");
     }
   }
   const double bad_after_s =
@@ -189,7 +191,7 @@ BackendDevices ModbusBackend::open(const OpenContext& context) const {
         "modbus/" + config.connection.host + ":" + std::to_string(config.connection.port),
         context.file + ": [modbus] " + device);
   }
-  const Snapshot first =
+  const RegisterSnapshot first =
       probe(*connection, map,
             {context.file, device, config_.connect_timeout_s, config.connection.timeout_s});
   locked->poll.emplace(config, std::move(map), std::move(connection), std::move(counters), first);

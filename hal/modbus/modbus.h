@@ -15,7 +15,6 @@
 // it is older than bad_after_s, out of its limits, or while there is no connection.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "hal/backend.h"

@@ -24,7 +24,7 @@ constexpr int kEnd_ms = 10;
 
 PollThread::PollThread(const PollThreadConfig& config, RegisterMap map,
                        std::unique_ptr<Connection> connection, std::unique_ptr<Counters> counters,
-                       const Snapshot& first)
+                       const RegisterSnapshot& first)
     : config_(config),
       map_(std::move(map)),
       counters_(std::move(counters)),
@@ -161,7 +161,7 @@ void PollThread::work(std::int64_t now_ns) noexcept {
   const bool read_was_due = now_ns >= read_due_ns_ || first_round_;
   if (driven && !initialized_ && !initialize_device()) return lost();
 
-  const std::optional<Command> command = driven ? slot_.take(now_ns) : std::nullopt;
+  const std::optional<RegisterCommand> command = driven ? slot_.take(now_ns) : std::nullopt;
   if (command) {
     send(*command, now_ns);
   } else if (initialized_ && !at_null_ && now_ns >= given_ns_.load() + kSilence_ns) {
@@ -184,7 +184,7 @@ void PollThread::work(std::int64_t now_ns) noexcept {
   }
 }
 
-void PollThread::send(const Command& command, std::int64_t now_ns) noexcept {
+void PollThread::send(const RegisterCommand& command, std::int64_t now_ns) noexcept {
   const bool closing = closing_.load();
   const bool old = now_ns - command.t_ns > kOldCommand_periods * period_ns_;
   const bool null = old || closing;

@@ -21,7 +21,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "hal/latest.h"
@@ -55,7 +54,7 @@ class PollThread {
   /// Takes an open connection; `first` holds the readings of the probe.
   PollThread(const PollThreadConfig& config, RegisterMap map,
              std::unique_ptr<Connection> connection, std::unique_ptr<Counters> counters,
-             const Snapshot& first);
+             const RegisterSnapshot& first);
   /// Writes null last, if anything has been written.
   ~PollThread();
   PollThread(const PollThread&) = delete;
@@ -63,7 +62,7 @@ class PollThread {
 
   // The loop's side.
   void pace(const Tick& tick) noexcept;
-  [[nodiscard]] const Snapshot& newest() noexcept { return latest_.get(); }
+  [[nodiscard]] const RegisterSnapshot& newest() noexcept { return latest_.get(); }
   [[nodiscard]] bool online() const noexcept { return online_.load(std::memory_order_acquire); }
   Applied write(double u_V) noexcept;
   Applied go_null() noexcept { return command(null_bits_); }
@@ -91,7 +90,7 @@ class PollThread {
   void lost() noexcept;
   /// Writes null and the device's time-out. False when the connection has been lost.
   bool initialize_device() noexcept;
-  void send(const Command& command, std::int64_t now_ns) noexcept;
+  void send(const RegisterCommand& command, std::int64_t now_ns) noexcept;
   bool write_bits(Bits bits) noexcept;
   /// Time of the last rod reading; 0: none.
   [[nodiscard]] std::int64_t measured() const noexcept;
@@ -125,7 +124,7 @@ class PollThread {
   std::atomic<std::int64_t> next_tick_ns_{0};  ///< start of the loop's next period
 
   // To the loop.
-  Latest<Snapshot> latest_;
+  Latest<RegisterSnapshot> latest_;
   std::atomic<bool> online_{true};
   /// Issue time of the newest command that the device confirmed.
   std::atomic<std::int64_t> taken_ns_{0};
@@ -134,7 +133,7 @@ class PollThread {
   // The thread's own.
   std::atomic<bool> stop_{false};
   std::atomic<pid_t> thread_id_{0};
-  Snapshot snapshot_;
+  RegisterSnapshot snapshot_;
   bool initialized_ = false;  ///< initialize_device() succeeded on this connection
   bool at_null_ = true;       ///< null was the last value written
   bool first_round_ = true;

@@ -5,7 +5,6 @@
 #include <cerrno>
 
 #include "config/schema/error.h"
-#include "hal/backend.h"
 #include "hal/monotonic.h"
 
 namespace hal::modbus {
@@ -57,11 +56,12 @@ class Probe {
 
 }  // namespace
 
-Snapshot probe(Connection& connection, const RegisterMap& map, const ProbeOptions& options) {
+RegisterSnapshot probe(Connection& connection, const RegisterMap& map,
+                       const ProbeOptions& options) {
   Probe probe(connection, options);
   if (!connection.connect()) probe.throw_unconnected();
   connection.set_timeout(options.first_timeout_s);
-  Snapshot snapshot;
+  RegisterSnapshot snapshot;
   for (std::size_t b = 0; b < map.blocks.size(); ++b) {
     const Block& block = map.blocks[b];
     std::uint16_t words[kMostBits];

@@ -18,7 +18,7 @@ struct ProbeOptions {
 
 /// Connects and reads each register once. Throws config::schema::DeviceUnavailable, or ConfigError
 /// for a register that the device does not have.
-[[nodiscard]] Snapshot probe(Connection& connection, const RegisterMap& map,
-                             const ProbeOptions& options);
+[[nodiscard]] RegisterSnapshot probe(Connection& connection, const RegisterMap& map,
+                                     const ProbeOptions& options);
 
 }  // namespace hal::modbus

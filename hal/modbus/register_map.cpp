@@ -14,7 +14,9 @@ constexpr std::int64_t kAddresses = 65536;
 constexpr std::size_t kMostChannels = 64;
 constexpr std::size_t kMostBlocks = 16;
 
-bool is_bits(Table table) { return table == Table::coil || table == Table::discrete; }
+bool is_bits(RegisterTable table) {
+  return table == RegisterTable::coil || table == RegisterTable::discrete;
+}
 bool is_read(const Register& r) {
   return r.role == "rod" || r.role == "valve_readback" || r.role == "input";
 }
@@ -26,11 +28,12 @@ std::string place(const std::string& where, const Register& r, const char* key) 
 /// Requirements of a role on its register.
 void check_role(const std::string& where, const Register& r) {
   const bool whole_or_float = r.role == "valve_command" || r.role == "watchdog";
-  if (whole_or_float && r.table() != Table::holding) {
+  if (whole_or_float && r.table() != RegisterTable::holding) {
     throw bad_config(place(where, r, "function"),
                      "is \"" + r.function + "\", and a " + r.role + " is written", "holding");
   }
-  if (r.role == "output" && r.table() != Table::coil && r.table() != Table::holding) {
+  if (r.role == "output" && r.table() != RegisterTable::coil &&
+      r.table() != RegisterTable::holding) {
     throw bad_config(place(where, r, "function"),
                      "is \"" + r.function + "\", and an output is written", "coil, holding");
   }
@@ -132,14 +135,12 @@ RegisterMap make_register_map(const std::string& where, const std::vector<Regist
   if (!combined) return map;
   const auto rod = map.find_role("rod");
   const std::size_t along = rod ? map.reads[*rod].block : 0;
-  if (!map.valve || map.blocks.empty() || map.blocks[along].table != Table::holding) {
+  if (!map.valve || map.blocks.empty() || map.blocks[along].table != RegisterTable::holding) {
     throw bad_config(where + ": [modbus] combined",
                      "is true without a valve_command and a reading in holding registers", "false");
   }
   std::swap(map.blocks[0], map.blocks[along]);
-  for (ReadChannel& r : map.reads) {
-    r.block = r.block == 0 ? along : r.block == along ? 0 : r.block;
-  }
+  for (ReadChannel& r : map.reads) r.block = r.block == 0 ? along : r.block == along ? 0 : r.block;
   return map;
 }
 

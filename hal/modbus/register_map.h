@@ -16,7 +16,7 @@ inline constexpr int kMostBits = 2000;
 
 /// Registers read by one request.
 struct Block {
-  Table table = Table::holding;
+  RegisterTable table = RegisterTable::holding;
   int address = 0;
   int count = 0;
 };
@@ -33,7 +33,7 @@ struct ReadChannel {
 /// A value written on demand.
 struct WriteChannel {
   std::string name;
-  Table table = Table::holding;
+  RegisterTable table = RegisterTable::holding;
   int address = 0;
   Codec codec;
 };

@@ -19,19 +19,19 @@ std::uint16_t swapped(std::uint16_t word) noexcept {
 }  // namespace
 
 void Register::visit(config::schema::Visitor& v) {
-  v.choice(wiring({"role", "what it is for", true}), role,
+  v.choice(wiring({"role", "role", true}), role,
            {"rod", "valve_command", "valve_readback", "input", "output", "watchdog"});
-  v.integer(wiring({"address", "as in the protocol, from 0", true}), address, {0, kLastAddress});
+  v.integer(wiring({"address", "protocol address, from 0", true}), address, {0, kLastAddress});
   v.choice(wiring({"function", "table of the device"}), function,
            {"holding", "input", "coil", "discrete"});
-  const bool bits = table() == Table::coil || table() == Table::discrete;
+  const bool bits = table() == RegisterTable::coil || table() == RegisterTable::discrete;
   if (type.empty()) type = bits ? "bit" : "uint16";
   if (bits) {
     v.choice(wiring({"type", "a bit"}), type, {"bit"});
   } else {
-    v.choice(wiring({"type", "of the raw value"}), type,
+    v.choice(wiring({"type", "type of the raw value"}), type,
              {"int16", "uint16", "int32", "uint32", "float32"});
-    v.choice(wiring({"order", "of the bytes, A the most significant"}), order,
+    v.choice(wiring({"order", "byte order, A the most significant"}), order,
              {"ABCD", "CDAB", "BADC", "DCBA"});
   }
   v.number(wiring({"scale", "SI unit per raw unit"}), scale, {-1e12, 1e12});
@@ -40,11 +40,11 @@ void Register::visit(config::schema::Visitor& v) {
   v.number({"high", "highest value, SI"}, high);
 }
 
-Table Register::table() const noexcept {
-  if (function == "input") return Table::input;
-  if (function == "coil") return Table::coil;
-  if (function == "discrete") return Table::discrete;
-  return Table::holding;
+RegisterTable Register::table() const noexcept {
+  if (function == "input") return RegisterTable::input;
+  if (function == "coil") return RegisterTable::coil;
+  if (function == "discrete") return RegisterTable::discrete;
+  return RegisterTable::holding;
 }
 
 int Register::words() const noexcept {

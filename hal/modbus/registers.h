@@ -8,7 +8,6 @@
 // (bytes of each word swapped), DCBA. Of one register BADC and DCBA swap the two bytes.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -18,7 +17,7 @@
 namespace hal::modbus {
 
 /// The four tables of a Modbus device.
-enum class Table : std::uint8_t { holding, input, coil, discrete };
+enum class RegisterTable : std::uint8_t { holding, input, coil, discrete };
 
 /// The raw bits of a value, least significant at the right, whatever the order on the wire.
 using Bits = std::uint32_t;
@@ -38,7 +37,7 @@ struct Register {
 
   void visit(config::schema::Visitor& v);
 
-  [[nodiscard]] Table table() const noexcept;
+  [[nodiscard]] RegisterTable table() const noexcept;
   /// Registers that it takes, 1 or 2.
   [[nodiscard]] int words() const noexcept;
   [[nodiscard]] bool overlaps(const Register& other) const noexcept;

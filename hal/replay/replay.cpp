@@ -31,7 +31,7 @@ std::vector<std::int64_t> grid(const config::record::Record& record) {
 
 void ReplayConfig::visit(config::schema::Visitor& v) {
   v.path({"record", "CSV, MAT or LCM event log", true}, record);
-  v.choice({"pace", "at the recorded pace, or as fast as possible"}, pace, {"recorded", "fast"});
+  v.choice({"pace", "recorded pace, or as fast as possible"}, pace, {"recorded", "fast"});
 }
 
 Rows::Rows(const config::record::Record& record) : tick_(grid(record)) {}
@@ -80,7 +80,7 @@ BackendDevices ReplayBackend::open(const OpenContext& context) const {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) {
     throw config::schema::bad_config(context.file + ": [replay] record",
-                                     "is \"" + file.string() + "\", which is no file",
+                                     "is \"" + file.string() + "\", which is not a file",
                                      "a CSV file, a MAT file or an LCM event log");
   }
   const auto record =

@@ -8,16 +8,16 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 }  // namespace
 
 void InjectedFault::visit(config::schema::Visitor& v) {
-  v.choice({"kind", "what goes wrong", true}, kind,
+  v.choice({"kind", "kind of fault", true}, kind,
            {"missing", "frozen", "jump", "drift", "stale", "deaf"});
   if (kind != "deaf") v.text({"rod", "id of a spare rod sensor; empty: the rig's own"}, rod);
   if (kind == "missing" || kind == "frozen" || kind == "stale") {
-    v.text({"pressure", "the transducer that it is of, in place of a rod sensor"}, pressure);
+    v.text({"pressure", "pressure transducer, in place of a rod sensor"}, pressure);
   }
-  v.number({"from_s", "when it begins"}, from_s, {0.0, kInfinite});
-  v.number({"to_s", "when it is over"}, to_s, {0.0, kInfinite});
+  v.number({"from_s", "start time"}, from_s, {0.0, kInfinite});
+  v.number({"to_s", "end time"}, to_s, {0.0, kInfinite});
   if (kind == "jump") v.number({"size_m", "added to the reading"}, size_m, {-100.0, 100.0});
-  if (kind == "drift") v.number({"rate_mps", "of the reading off the rod"}, rate_mps, {-1.0, 1.0});
+  if (kind == "drift") v.number({"rate_mps", "drift of the reading"}, rate_mps, {-1.0, 1.0});
 }
 
 FaultyRod::FaultyRod(const std::vector<InjectedFault>& all, const std::string& id) {
@@ -77,19 +77,19 @@ void FaultyPressure::apply(InputReading& reading, double t_s) noexcept {
 }
 
 void SpareConfig::visit(config::schema::Visitor& v) {
-  v.text({"id", "its channel", true}, id);
+  v.text({"id", "name of the channel", true}, id);
   v.number({"offset_m", "added to the position"}, offset_m, {-100.0, 100.0});
-  v.number({"from_s", "when the offset begins"}, from_s, {0.0, kInfinite});
-  v.number({"encoder_resolution_m", "its step; 0: none"}, encoder_resolution_m, {0.0, 1e-2});
-  v.number({"noise_m", "standard deviation of its noise"}, noise_m, {0.0, 1e-2});
+  v.number({"from_s", "start time"}, from_s, {0.0, kInfinite});
+  v.number({"encoder_resolution_m", "resolution; 0: none"}, encoder_resolution_m, {0.0, 1e-2});
+  v.number({"noise_m", "standard deviation of the noise"}, noise_m, {0.0, 1e-2});
 }
 
-void SwitchConfig::visit(config::schema::Visitor& v) {
-  v.text({"id", "its channel", true}, id);
-  v.number({"value", "what it reads"}, value, {-1e12, 1e12});
-  v.number({"from_s", "from then on"}, from_s, {0.0, kInfinite});
-  v.number({"to_s", "until then"}, to_s, {0.0, kInfinite});
-  v.number({"meanwhile", "it reads this"}, meanwhile, {-1e12, 1e12});
+void SimSwitchConfig::visit(config::schema::Visitor& v) {
+  v.text({"id", "name of the channel", true}, id);
+  v.number({"value", "reading"}, value, {-1e12, 1e12});
+  v.number({"from_s", "start time"}, from_s, {0.0, kInfinite});
+  v.number({"to_s", "end time"}, to_s, {0.0, kInfinite});
+  v.number({"meanwhile", "reading in between"}, meanwhile, {-1e12, 1e12});
   v.boolean({"missing", "or nothing"}, missing);
 }
 

@@ -64,7 +64,7 @@ struct SpareConfig {
 };
 
 /// TOML [[sim.input]]: reads `value`, and between from_s and to_s `meanwhile` or nothing.
-struct SwitchConfig {
+struct SimSwitchConfig {
   std::string id;
   double value = 1.0;
   double from_s = std::numeric_limits<double>::infinity();
@@ -77,7 +77,7 @@ struct SwitchConfig {
 
 class Switch final : public Input {
  public:
-  explicit Switch(const SwitchConfig& config) noexcept
+  explicit Switch(const SimSwitchConfig& config) noexcept
       : value_(config.value),
         from_s_(config.from_s),
         to_s_(config.to_s),
@@ -91,7 +91,7 @@ class Switch final : public Input {
 };
 
 /// A line whose edges are counted.
-class Line final : public Output {
+class CountingLine final : public Output {
  public:
   bool set(bool on) noexcept override {
     if (on_.exchange(on, std::memory_order_relaxed) != on) {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 
 namespace hal::sim {
 namespace {
@@ -19,7 +20,7 @@ void check_pressure(const std::string& file, const InjectedFault& fault) {
   const auto& known = plant_sim::kTransducers;
   const std::string where = file + ": [[sim.trouble]] pressure";
   if (!fault.rod.empty()) {
-    throw config::schema::bad_config(where, "stands beside rod", "one of the two");
+    throw config::schema::bad_config(where, "is given together with rod", "one of the two");
   }
   if (std::find(known.begin(), known.end(), fault.pressure) != known.end()) return;
   throw config::schema::bad_config(where, "is \"" + fault.pressure + "\"",
@@ -30,10 +31,10 @@ void check_pressure(const std::string& file, const InjectedFault& fault) {
 
 void SimConfig::visit(config::schema::Visitor& v) {
   BenchPlant::visit(v);
-  v.number({"command_timeout_s", "without a write for so long the valve goes to null"},
+  v.number({"command_timeout_s", "time without a write after which the valve goes to null"},
            command_timeout_s, {1e-3, std::numeric_limits<double>::infinity()});
   v.boolean({"pretend_real", "obey the rules of a rig that moves something"}, pretend_real);
-  config::schema::visit_list(v, {"trouble", "what goes wrong with a sensor or the valve"},
+  config::schema::visit_list(v, {"trouble", "injected fault of a sensor or the valve"},
                              injected_faults);
   config::schema::visit_list(v, {"rod", "a spare rod sensor"}, rods);
   config::schema::visit_list(v, {"input", "a switch or another signal"}, inputs);
@@ -111,26 +112,23 @@ std::unique_ptr<plant_sim::Plant> SimBackend::load(const OpenContext& context) c
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) {
     throw config::schema::bad_config(context.file + ": [sim] model",
-                                     "is \"" + file.string() + "\", which is no file",
+                                     "is \"" + file.string() + "\", which is not a file",
                                      "a model file (TOML)");
   }
   return plant_sim::make_plant(plant_sim::load_model(file));
 }
 
 void SimBackend::check_injected_faults(const OpenContext& context) const {
-  std::string known;
-  for (const SpareConfig& spare : config_.rods) known += (known.empty() ? "" : ", ") + spare.id;
+  const std::string known = config::schema::joined_by(config_.rods, &SpareConfig::id);
   for (const InjectedFault& fault : config_.injected_faults) {
     if (!fault.pressure.empty()) {
       check_pressure(context.file, fault);
       continue;
     }
     const auto is_it = [&](const SpareConfig& spare) { return spare.id == fault.rod; };
-    if (fault.rod.empty() || std::any_of(config_.rods.begin(), config_.rods.end(), is_it)) {
-      continue;
-    }
+    if (fault.rod.empty() || std::any_of(config_.rods.begin(), config_.rods.end(), is_it)) continue;
     throw config::schema::bad_config(context.file + ": [[sim.trouble]] rod",
-                                     "is \"" + fault.rod + "\", which is no [[sim.rod]]",
+                                     "is \"" + fault.rod + "\", which is not a [[sim.rod]]",
                                      known.empty() ? "none is there" : known);
   }
 }
@@ -184,10 +182,10 @@ BackendDevices SimBackend::open(const OpenContext& context) const {
         std::make_shared<SpareRod>(rig, spare, config_.injected_faults, ++seed);
   }
   add_pressures(context.file, rig, devices);
-  for (const SwitchConfig& input : config_.inputs) {
+  for (const SimSwitchConfig& input : config_.inputs) {
     devices.inputs[input.id] = std::make_shared<Switch>(input);
   }
-  devices.outputs["permit"] = std::make_shared<Line>();
+  devices.outputs["permit"] = std::make_shared<CountingLine>();
   return devices;
 }
 

@@ -12,9 +12,9 @@
 
 #include "hal/backend.h"
 #include "hal/sim/injected_fault.h"
-#include "plant_sim/bench_plant.h"
 #include "plant_sim/instruments.h"
 #include "plant_sim/schedule.h"
+#include "plant_sim/transducer.h"
 
 namespace hal::sim {
 
@@ -24,7 +24,7 @@ struct SimConfig : plant_sim::BenchPlant {
   bool pretend_real = false;  ///< under the rules of a rig that moves something
   std::vector<InjectedFault> injected_faults;
   std::vector<SpareConfig> rods;
-  std::vector<SwitchConfig> inputs;
+  std::vector<SimSwitchConfig> inputs;
 
   void visit(config::schema::Visitor& v);
 };

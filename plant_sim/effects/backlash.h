@@ -12,7 +12,7 @@
 #include "plant_sim/parameter.h"
 #include "plant_sim/scalar.h"
 
-namespace plant_sim {
+namespace plant_sim::effects {
 
 template <class S>
 struct Backlash {
@@ -43,4 +43,4 @@ struct Backlash {
   }
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::effects

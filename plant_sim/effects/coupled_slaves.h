@@ -14,7 +14,7 @@
 #include "plant_sim/parameter.h"
 #include "plant_sim/scalar.h"
 
-namespace plant_sim {
+namespace plant_sim::effects {
 
 template <class S>
 struct CoupledSlaves {
@@ -50,4 +50,4 @@ struct CoupledSlaves {
   }
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::effects

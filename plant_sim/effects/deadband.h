@@ -13,7 +13,7 @@
 #include "plant_sim/parameter.h"
 #include "plant_sim/scalar.h"
 
-namespace plant_sim {
+namespace plant_sim::effects {
 
 template <class S>
 struct Deadband {
@@ -39,4 +39,4 @@ struct Deadband {
   }
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::effects

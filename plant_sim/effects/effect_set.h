@@ -6,7 +6,7 @@
 
 #include "plant_sim/effects/effect_store.h"
 
-namespace plant_sim {
+namespace plant_sim::effects {
 
 template <class S, template <class> class... E>
 class EffectSet : public EffectStore<S, E...> {
@@ -158,4 +158,4 @@ class EffectSet : public EffectStore<S, E...> {
   }
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::effects

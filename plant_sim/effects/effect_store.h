@@ -13,7 +13,7 @@
 #include "plant_sim/parameter.h"
 #include "plant_sim/scalar.h"
 
-namespace plant_sim {
+namespace plant_sim::effects {
 
 template <class S, template <class> class... E>
 class EffectStore {
@@ -48,7 +48,7 @@ class EffectStore {
   }
 
   /// The formulas of the model file; declare them before the first prepare().
-  [[nodiscard]] FormulaSet<S>& formulas() { return formulas_; }
+  [[nodiscard]] formula::FormulaSet<S>& formulas() { return formulas_; }
 
   /// For tests: evaluates neutral effects too.
   void set_always(bool always) {
@@ -71,7 +71,7 @@ class EffectStore {
   [[nodiscard]] bool any() const { return used_sites_ != 0; }
 
  protected:
-  FormulaSet<S> formulas_;
+  formula::FormulaSet<S> formulas_;
 
   template <class T>
   struct Tag {
@@ -127,7 +127,7 @@ class EffectStore {
   }
 
   AllParameters parameters_;
-  AllParameters prepared_;  ///< as the last prepare() left them
+  AllParameters prepared_;  ///< state of the last prepare()
   std::tuple<typename E<S>::Memory...> memory_;
   std::array<bool, kCount> active_{};
   unsigned used_sites_ = 0;
@@ -135,4 +135,4 @@ class EffectStore {
   bool always_ = false;
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::effects

@@ -13,7 +13,7 @@
 #include "plant_sim/parameter.h"
 #include "plant_sim/scalar.h"
 
-namespace plant_sim {
+namespace plant_sim::effects {
 
 template <class S>
 struct EncoderEccentricity {
@@ -47,4 +47,4 @@ struct EncoderEccentricity {
   static constexpr double kLeast_m = 1e-6;
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::effects

@@ -15,7 +15,7 @@
 #include "plant_sim/parameter.h"
 #include "plant_sim/scalar.h"
 
-namespace plant_sim {
+namespace plant_sim::effects {
 
 template <class S>
 struct EntrainedAir {
@@ -50,4 +50,4 @@ struct EntrainedAir {
   static constexpr double kExponent = 1.4;
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::effects

@@ -12,7 +12,7 @@
 #include "plant_sim/parameter.h"
 #include "plant_sim/scalar.h"
 
-namespace plant_sim {
+namespace plant_sim::effects {
 
 template <class S>
 struct ExternalLeakage {
@@ -40,4 +40,4 @@ struct ExternalLeakage {
   static S conductance_m3ps_per_Pa(const Parameters& p) { return p.conductance_m3ps_per_Pa; }
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::effects

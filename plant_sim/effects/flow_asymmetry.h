@@ -12,7 +12,7 @@
 #include "plant_sim/parameter.h"
 #include "plant_sim/scalar.h"
 
-namespace plant_sim {
+namespace plant_sim::effects {
 
 template <class S>
 struct FlowAsymmetry {
@@ -39,4 +39,4 @@ struct FlowAsymmetry {
   }
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::effects

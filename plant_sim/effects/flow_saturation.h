@@ -13,7 +13,7 @@
 #include "plant_sim/parameter.h"
 #include "plant_sim/scalar.h"
 
-namespace plant_sim {
+namespace plant_sim::effects {
 
 template <class S>
 struct FlowSaturation {
@@ -40,4 +40,4 @@ struct FlowSaturation {
   }
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::effects

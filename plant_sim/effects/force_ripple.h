@@ -12,7 +12,7 @@
 #include "plant_sim/parameter.h"
 #include "plant_sim/scalar.h"
 
-namespace plant_sim {
+namespace plant_sim::effects {
 
 template <class S>
 struct ForceRipple {
@@ -52,4 +52,4 @@ struct ForceRipple {
   static S length_m(const Parameters& p) { return max(p.wavelength_m, S(kLeast_m)); }
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::effects

@@ -23,7 +23,7 @@
 #include "plant_sim/parameter.h"
 #include "plant_sim/scalar.h"
 
-namespace plant_sim {
+namespace plant_sim::effects {
 
 template <class S>
 struct Friction {
@@ -44,8 +44,8 @@ struct Friction {
     template <class V>
     void visit(V&& v) {
       v(ParameterInfo{"coulomb_N", "sliding friction", 0.0, 1e6, 200.0, 0.0}, coulomb_N);
-      v(ParameterInfo{"static_N", "friction at standstill; below coulomb_N it has no influence",
-                      0.0, 1e6, 300.0, 0.0, 0.0, 1},
+      v(ParameterInfo{"static_N", "friction at standstill; no effect below coulomb_N", 0.0, 1e6,
+                      300.0, 0.0, 0.0, 1},
         static_N);
       v(ParameterInfo{"stribeck_mps", "speed over which static falls to sliding friction", 0.0,
                       10.0, 0.01, 0.0, 0.0, 1},
@@ -66,7 +66,7 @@ struct Friction {
     S rise_ratio = 1.0;  ///< Stribeck's exponential at the speed of that moment
     S v_mps = std::numeric_limits<double>::quiet_NaN();  ///< that speed
 
-    /// Parameters have changed: nothing is known of the exponential.
+    /// Marks the cached exponential as invalid after a change of parameters.
     void prepare(double /*step_s*/) { v_mps = std::numeric_limits<double>::quiet_NaN(); }
   };
 
@@ -125,11 +125,13 @@ struct Friction {
     return coulomb_N + max(p.static_N - coulomb_N, S(0.0)) * rise_ratio;
   }
 
-  /// The bristle after a travel of the rod: z goes to +-g/k exponentially, at the mean of the
-  /// levels at both ends, which makes the error of a step one of its third order.
+  /// The bristle after a travel of the rod: z approaches +-g/k exponentially, with g the mean of
+  /// the levels
+  /// at both ends; the error of a step is of third order.
   static S deflected_m(const Parameters& p, const Memory& memory, const S& travel_m,
                        const S& rise) {
-    if (all(abs(travel_m) <= S(0.0))) return memory.deflection_m;  // what follows comes to the same
+    if (all(abs(travel_m) <= S(0.0)))
+      return memory.deflection_m;  // avoids a division by zero; the result is the same
     const S direction = select(travel_m < S(0.0), S(-1.0), S(1.0));
     const S mean_ratio = S(0.5) * (memory.rise_ratio + rise);
     const S level = max(level_at_N(p, direction, mean_ratio), S(kLeastLevel_N));
@@ -139,4 +141,4 @@ struct Friction {
   }
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::effects

@@ -12,7 +12,7 @@
 #include "plant_sim/parameter.h"
 #include "plant_sim/scalar.h"
 
-namespace plant_sim {
+namespace plant_sim::effects {
 
 template <class S>
 struct InternalLeakage {
@@ -42,4 +42,4 @@ struct InternalLeakage {
   }
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::effects

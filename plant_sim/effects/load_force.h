@@ -12,7 +12,7 @@
 #include "plant_sim/parameter.h"
 #include "plant_sim/scalar.h"
 
-namespace plant_sim {
+namespace plant_sim::effects {
 
 template <class S>
 struct LoadForce {
@@ -38,4 +38,4 @@ struct LoadForce {
   }
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::effects

@@ -12,7 +12,7 @@
 #include "plant_sim/parameter.h"
 #include "plant_sim/scalar.h"
 
-namespace plant_sim {
+namespace plant_sim::effects {
 
 template <class S>
 struct LoadSpring {
@@ -41,4 +41,4 @@ struct LoadSpring {
   static S stiffness_N_per_m(const Parameters& p) { return p.stiffness_N_per_m; }
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::effects

@@ -10,9 +10,8 @@
 
 #include "plant_sim/effects/site.h"
 #include "plant_sim/parameter.h"
-#include "plant_sim/scalar.h"
 
-namespace plant_sim {
+namespace plant_sim::effects {
 
 template <class S>
 struct NullBias {
@@ -36,4 +35,4 @@ struct NullBias {
   }
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::effects

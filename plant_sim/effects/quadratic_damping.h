@@ -12,7 +12,7 @@
 #include "plant_sim/parameter.h"
 #include "plant_sim/scalar.h"
 
-namespace plant_sim {
+namespace plant_sim::effects {
 
 template <class S>
 struct QuadraticDamping {
@@ -41,4 +41,4 @@ struct QuadraticDamping {
   }
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::effects

@@ -25,7 +25,7 @@
 // A new site is a line here, a call in EffectSet and a place in a plant.
 #pragma once
 
-namespace plant_sim {
+namespace plant_sim::effects {
 
 enum class Site : unsigned {
   command,
@@ -81,4 +81,4 @@ struct Leak {
   S out_m3ps = 0.0;  ///< out of the chamber that retracts
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::effects

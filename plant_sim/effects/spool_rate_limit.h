@@ -13,7 +13,7 @@
 #include "plant_sim/parameter.h"
 #include "plant_sim/scalar.h"
 
-namespace plant_sim {
+namespace plant_sim::effects {
 
 template <class S>
 struct SpoolRateLimit {
@@ -38,4 +38,4 @@ struct SpoolRateLimit {
   static S spool_limit_mps(const Parameters& p) { return p.rate_mps; }
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::effects

@@ -16,7 +16,7 @@
 #include "plant_sim/parameter.h"
 #include "plant_sim/scalar.h"
 
-namespace plant_sim {
+namespace plant_sim::effects {
 
 template <class S>
 struct SupplyDroop {
@@ -49,4 +49,4 @@ struct SupplyDroop {
   static constexpr double kLeast = 1e-150;  ///< without drop and flow nothing is drawn
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::effects

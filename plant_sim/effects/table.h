@@ -23,7 +23,7 @@
 #include "plant_sim/effects/transport_delay.h"
 #include "plant_sim/effects/valve_hysteresis.h"
 
-namespace plant_sim {
+namespace plant_sim::effects {
 
 template <class S>
 using Effects = EffectSet<S,                 //
@@ -47,4 +47,4 @@ using Effects = EffectSet<S,                 //
                           Backlash,          //
                           EncoderEccentricity>;
 
-}  // namespace plant_sim
+}  // namespace plant_sim::effects

@@ -18,7 +18,7 @@
 #include "plant_sim/parameter.h"
 #include "plant_sim/scalar.h"
 
-namespace plant_sim {
+namespace plant_sim::effects {
 
 template <class S>
 struct TransportDelay {
@@ -66,4 +66,4 @@ struct TransportDelay {
   }
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::effects

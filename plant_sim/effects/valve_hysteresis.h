@@ -12,7 +12,7 @@
 #include "plant_sim/parameter.h"
 #include "plant_sim/scalar.h"
 
-namespace plant_sim {
+namespace plant_sim::effects {
 
 template <class S>
 struct ValveHysteresis {
@@ -40,4 +40,4 @@ struct ValveHysteresis {
   }
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::effects

@@ -5,7 +5,7 @@
 #include "config/schema/error.h"
 #include "plant_sim/formula/formula.h"
 
-namespace plant_sim {
+namespace plant_sim::formula {
 namespace {
 
 using config::schema::bad_config;
@@ -31,7 +31,7 @@ void check_parameter(const FormulaEffect::Parameter& p, bool used, const std::st
     throw bad_config(where + " typical", "is " + shown(p.typical) + ", out of range", range);
   }
   if (p.typical == p.neutral) {
-    throw bad_config(where + " typical", "is the neutral value", "a size worth noticing");
+    throw bad_config(where + " typical", "is the neutral value", "a value other than neutral");
   }
   if (!used) throw bad_config(where, "is not in the formula");
 }
@@ -126,4 +126,4 @@ void check(const FormulaEffect& effect, const Formula& formula, const std::strin
   check_neutral(formula, run, where + " formula");
 }
 
-}  // namespace plant_sim
+}  // namespace plant_sim::formula

@@ -11,7 +11,7 @@
 
 #include "plant_sim/formula/operations.h"
 
-namespace plant_sim {
+namespace plant_sim::formula {
 
 struct ExpressionProgram {
   /// Number of variables of every formula, used or not; no site has more.
@@ -87,4 +87,4 @@ class ExpressionEvaluator {
   mutable std::vector<S> registers_;
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::formula

@@ -6,25 +6,26 @@
 #include <set>
 
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 #include "plant_sim/formula/recorder.h"
 
-namespace plant_sim {
+namespace plant_sim::formula {
 namespace {
 
 using config::schema::bad_config;
 
-std::array<VariableRange, ExpressionProgram::kVariables> ranges_of(Site site,
+std::array<VariableRange, ExpressionProgram::kVariables> ranges_of(effects::Site site,
                                                                    const PlausibleRanges& ranges) {
   switch (site) {
-    case Site::command:
+    case effects::Site::command:
       return {ranges.command_V, {}};
-    case Site::opening:
+    case effects::Site::opening:
       return {ranges.opening_m, {}};
-    case Site::flow:
+    case effects::Site::flow:
       return {ranges.flow_m3ps, {}};
-    case Site::leakage:
+    case effects::Site::leakage:
       return {ranges.pressure_Pa, ranges.pressure_Pa};
-    case Site::force:
+    case effects::Site::force:
       return {ranges.position_m, ranges.speed_mps};
     default:
       return {ranges.position_m, {}};
@@ -69,11 +70,9 @@ Formula compile(const FormulaEffect& effect, const PlausibleRanges& ranges,
                 const std::string& where) {
   const FormulaSite* place = find_formula_site(effect.site);
   if (place == nullptr) {
-    std::string sites;
-    for (const FormulaSite& site : kFormulaSites) {
-      sites += (sites.empty() ? "" : ", ") + std::string(site_name(site.site));
-    }
-    throw bad_config(where + " site", "is " + effect.site, sites);
+    const auto name = [](const FormulaSite& site) { return effects::site_name(site.site); };
+    throw bad_config(where + " site", "is " + effect.site,
+                     config::schema::joined_by(kFormulaSites, name));
   }
   check_names(effect, *place, where);
   std::vector<std::string> variables;
@@ -105,4 +104,4 @@ Formulas::Formulas(std::vector<Formula> formulas)
   }
 }
 
-}  // namespace plant_sim
+}  // namespace plant_sim::formula

@@ -10,7 +10,7 @@
 #include "plant_sim/formula/formula_effect.h"
 #include "plant_sim/parameter.h"
 
-namespace plant_sim {
+namespace plant_sim::formula {
 
 /// Plausible range of a formula's variable, in its own unit.
 struct VariableRange {
@@ -24,13 +24,13 @@ struct Formula {
   ExpressionProgram program;
   std::vector<ParameterInfo> parameters;
   std::array<VariableRange, ExpressionProgram::kVariables>
-      ranges;  ///< of the site's variables; none is 0..0
+      ranges;  ///< ranges of the site's variables; none is 0..0
 };
 
 /// A formula as plain pointers, for simulation.
 struct FormulaView {
   const char* name;
-  Site site;
+  effects::Site site;
   double guard;
   const ParameterInfo* parameters;
   ExpressionProgramView program;
@@ -75,4 +75,4 @@ void check(const FormulaEffect& effect, const Formula& formula, const std::strin
 /// `text` where it stays for the life of the program.
 [[nodiscard]] const char* interned(const std::string& text);
 
-}  // namespace plant_sim
+}  // namespace plant_sim::formula

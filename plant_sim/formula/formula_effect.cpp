@@ -4,7 +4,7 @@
 
 #include "config/schema/visitor.h"
 
-namespace plant_sim {
+namespace plant_sim::formula {
 
 using config::schema::Visitor;
 
@@ -14,15 +14,15 @@ void FormulaEffect::Parameter::visit(Visitor& v) {
   v.text({"what", "meaning in one phrase"}, what);
   v.number({"min", "smallest allowed value", true}, min, kFinite);
   v.number({"max", "largest allowed value", true}, max, kFinite);
-  v.number({"typical", "a size worth noticing", true}, typical, kFinite);
-  v.number({"neutral", "the value without influence"}, neutral, kFinite);
+  v.number({"typical", "typical size", true}, typical, kFinite);
+  v.number({"neutral", "value without effect"}, neutral, kFinite);
 }
 
 void FormulaEffect::visit(Visitor& v) {
   std::vector<std::string_view> sites;
   sites.reserve(std::size(kFormulaSites));
-  for (const FormulaSite& one : kFormulaSites) sites.emplace_back(site_name(one.site));
-  v.choice({"site", "where it acts", true}, site, sites);
+  for (const FormulaSite& one : kFormulaSites) sites.emplace_back(effects::site_name(one.site));
+  v.choice({"site", "site of the effect", true}, site, sites);
   v.text({"formula", "an expression of the site's variables and its parameters", true}, formula);
   v.text({"what", "meaning in one phrase"}, what);
   std::vector<std::string> names;
@@ -40,9 +40,9 @@ void FormulaEffect::visit(Visitor& v) {
 
 const FormulaSite* find_formula_site(std::string_view name) {
   for (const FormulaSite& site : kFormulaSites) {
-    if (name == site_name(site.site)) return &site;
+    if (name == effects::site_name(site.site)) return &site;
   }
   return nullptr;
 }
 
-}  // namespace plant_sim
+}  // namespace plant_sim::formula

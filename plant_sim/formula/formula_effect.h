@@ -37,7 +37,7 @@ namespace config::schema {
 class Visitor;
 }
 
-namespace plant_sim {
+namespace plant_sim::formula {
 
 struct FormulaEffect {
   struct Parameter {
@@ -60,25 +60,25 @@ struct FormulaEffect {
   void visit(config::schema::Visitor& v);
 };
 
-/// A site that a formula can stand for.
+/// A site that accepts a formula.
 struct FormulaSite {
-  Site site;
-  const char* result;                    ///< what the formula gives, as equations are printed
+  effects::Site site;
+  const char* result;                    ///< result of the formula, as printed in equations
   std::array<const char*, 2> variables;  ///< "" is none
-  bool chained;  ///< without influence it gives its first variable; else 0, and it is added
+  bool chained;  ///< without influence it returns its first variable; else 0, and it is added
   double guard;  ///< numerical bound of the result, far beyond anything real
 };
 
 inline constexpr std::array kFormulaSites = {
-    FormulaSite{Site::command, "u_out", {"u_V", ""}, true, 1e4},
-    FormulaSite{Site::opening, "opening", {"x_m", ""}, true, 1e6},
-    FormulaSite{Site::flow, "Q", {"q_m3ps", ""}, true, 1e3},
-    FormulaSite{Site::leakage, "Q", {"in_Pa", "out_Pa"}, false, 1e3},
-    FormulaSite{Site::force, "F", {"y_m", "v_mps"}, false, 1e9},
-    FormulaSite{Site::sensor, "reading", {"y_m", ""}, true, 1e9},
+    FormulaSite{effects::Site::command, "u_out", {"u_V", ""}, true, 1e4},
+    FormulaSite{effects::Site::opening, "opening", {"x_m", ""}, true, 1e6},
+    FormulaSite{effects::Site::flow, "Q", {"q_m3ps", ""}, true, 1e3},
+    FormulaSite{effects::Site::leakage, "Q", {"in_Pa", "out_Pa"}, false, 1e3},
+    FormulaSite{effects::Site::force, "F", {"y_m", "v_mps"}, false, 1e9},
+    FormulaSite{effects::Site::sensor, "reading", {"y_m", ""}, true, 1e9},
 };
 
-/// Null when a formula cannot stand there.
+/// Null for a site that accepts no formula.
 [[nodiscard]] const FormulaSite* find_formula_site(std::string_view name);
 
-}  // namespace plant_sim
+}  // namespace plant_sim::formula

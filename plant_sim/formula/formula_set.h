@@ -9,14 +9,14 @@
 #include "plant_sim/formula/formula.h"
 #include "plant_sim/formula/max_slope.h"
 
-namespace plant_sim {
+namespace plant_sim::formula {
 
 template <class S>
 class FormulaSet {
  public:
   FormulaSet() = default;
 
-  /// Replaces what was declared; all values are neutral. What is viewed must outlive *this.
+  /// Replaces the declared formulas; all values are neutral. The viewed data must outlive *this.
   void declare(const FormulaView* formulas, std::size_t count) {
     effects_.clear();
     effects_.reserve(count);
@@ -64,12 +64,12 @@ class FormulaSet {
       if (!effect.active) continue;
       sites_ |= bit(effect.formula.site);
       effect.run.set_parameters(effect.values.data());
-      if (effect.formula.site == Site::force) {
+      if (effect.formula.site == effects::Site::force) {
         effect.max_slope.prepare(
             effect.formula.ranges[0], effect.formula.ranges[1],
             [&](const S& y_m, const S& v_mps) { return effect.contribution(y_m, v_mps); });
       }
-      if (effect.formula.site == Site::leakage) {
+      if (effect.formula.site == effects::Site::leakage) {
         effect.conductance_m3ps_per_Pa =
             S(2.0) *
             steepest_m3ps_per_Pa<S>(effect.formula.ranges[0], [&](const S& in_Pa, const S& out_Pa) {
@@ -82,16 +82,16 @@ class FormulaSet {
 
   /// A bit per site, as the store of effects counts them.
   [[nodiscard]] unsigned sites() const { return sites_; }
-  [[nodiscard]] bool acts_on(Site site) const { return (sites_ & bit(site)) != 0; }
+  [[nodiscard]] bool acts_on(effects::Site site) const { return (sites_ & bit(site)) != 0; }
 
-  /// For the sites that hand a value on: what the formulas make of x one after the other.
-  [[nodiscard]] S chain(Site site, S x) const {
+  /// Chained sites: applies the formulas to x one after the other.
+  [[nodiscard]] S chain(effects::Site site, S x) const {
     each_active(site, [&](const Effect& effect) { x = effect.result(x, S(0.0), x); });
     return x;
   }
 
-  /// For force and leakage: the sum of what they give.
-  [[nodiscard]] S sum(Site site, const S& first, const S& second) const {
+  /// Force and leakage: sum of the formulas.
+  [[nodiscard]] S sum(effects::Site site, const S& first, const S& second) const {
     S total = 0.0;
     each_active(site, [&](const Effect& effect) { total += effect.contribution(first, second); });
     return total;
@@ -100,7 +100,7 @@ class FormulaSet {
   /// The largest |dF/dv| at any speed up to |v_mps|, estimated.
   [[nodiscard]] S slope_N_s_per_m(const S& v_mps) const {
     S total = 0.0;
-    each_active(Site::force,
+    each_active(effects::Site::force,
                 [&](const Effect& effect) { total += effect.max_slope.slope_N_s_per_m(v_mps); });
     return total;
   }
@@ -108,7 +108,7 @@ class FormulaSet {
   /// The largest |dF/dy| over the plausible positions and speeds, estimated.
   [[nodiscard]] S stiffness_N_per_m() const {
     S total = 0.0;
-    each_active(Site::force,
+    each_active(effects::Site::force,
                 [&](const Effect& effect) { total += effect.max_slope.stiffness_N_per_m(); });
     return total;
   }
@@ -116,7 +116,7 @@ class FormulaSet {
   /// Twice the largest |dQ/dp| over the plausible pressures, estimated: both chambers see it.
   [[nodiscard]] S conductance_m3ps_per_Pa() const {
     S total = 0.0;
-    each_active(Site::leakage,
+    each_active(effects::Site::leakage,
                 [&](const Effect& effect) { total += effect.conductance_m3ps_per_Pa; });
     return total;
   }
@@ -145,16 +145,16 @@ class FormulaSet {
     FormulaView formula;
     ExpressionEvaluator<S> run;
     std::vector<S> values;
-    std::vector<S> prepared;  ///< as the last prepare() left them
+    std::vector<S> prepared;  ///< state of the last prepare()
     MaxSlope<S> max_slope;
     S conductance_m3ps_per_Pa = 0.0;
     bool active = false;
   };
 
-  static constexpr unsigned bit(Site site) { return 1U << static_cast<unsigned>(site); }
+  static constexpr unsigned bit(effects::Site site) { return 1U << static_cast<unsigned>(site); }
 
   template <class F>
-  void each_active(Site site, F&& f) const {
+  void each_active(effects::Site site, F&& f) const {
     for (const Effect& effect : effects_) {
       if (effect.active && effect.formula.site == site) f(effect);
     }
@@ -165,4 +165,4 @@ class FormulaSet {
   bool fresh_ = false;
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::formula

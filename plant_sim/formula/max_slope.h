@@ -1,5 +1,6 @@
-// Upper bound on the slope of a formula, from differences; decides the plants' step length. It errs
-// to the large side; only what is narrower than the distance of the points tried is overlooked.
+// Upper bound on the slope of a formula, from differences; determines the plants' step length. The
+// bound
+// errs to the large side; only features narrower than the distance of the sample points are missed.
 #pragma once
 
 #include <array>
@@ -8,7 +9,7 @@
 #include "plant_sim/formula/formula.h"
 #include "plant_sim/scalar.h"
 
-namespace plant_sim {
+namespace plant_sim::formula {
 
 /// |f(x + near) - f(x - near)| / (2 near).
 template <class S, class F>
@@ -86,7 +87,7 @@ class MaxSlope {
 
  private:
   static constexpr int kPositions = 33;
-  static constexpr double kNear_m = 1e-3;  ///< of the range
+  static constexpr double kNear_m = 1e-3;  ///< distance within the range
   static constexpr std::size_t kOctaves = 24;
   static constexpr double kLeast_mps = 1e-4;
 
@@ -112,4 +113,4 @@ class MaxSlope {
   S stiffness_N_per_m_;
 };
 
-}  // namespace plant_sim
+}  // namespace plant_sim::formula

@@ -10,7 +10,7 @@
 
 #include "plant_sim/scalar.h"
 
-namespace plant_sim {
+namespace plant_sim::formula {
 
 enum class Op : std::uint8_t {
   add,
@@ -71,7 +71,7 @@ S by_lane(F f, const S& a, const S& b) {
   }
 }
 
-/// One operation; operands that it does not take are ignored.
+/// One operation; surplus operands are ignored.
 template <class S>
 S apply(Op op, const S& a, const S& b, const S& c) {
   const S zero = 0.0;
@@ -150,4 +150,4 @@ S apply(Op op, const S& a, const S& b, const S& c) {
   return zero;
 }
 
-}  // namespace plant_sim
+}  // namespace plant_sim::formula

@@ -8,11 +8,13 @@
 
 #include "plant_sim/formula/expression_program.h"
 
-namespace plant_sim {
+namespace plant_sim::formula {
 
 /// `variables` (at most ExpressionProgram::kVariables) and `parameters` are the names that the text
-/// may use, besides pi. Throws config::schema::ConfigError at `where`, with position and token,
-/// when the text is no single expression of these.
+/// may
+/// use, besides pi. Throws config::schema::ConfigError at `where`, with position and token, when
+/// the
+/// text is not a single expression of these.
 [[nodiscard]] ExpressionProgram record_formula(const std::string& text,
                                                const std::vector<std::string>& variables,
                                                const std::vector<std::string>& parameters,
@@ -21,4 +23,4 @@ namespace plant_sim {
 /// Names that no parameter can have: functions and pi.
 [[nodiscard]] const std::vector<std::string>& formula_words();
 
-}  // namespace plant_sim
+}  // namespace plant_sim::formula

@@ -65,8 +65,8 @@ class ControlRequestHandlerTest : public testing::Test {
     return {bytes, n > 0 ? static_cast<std::size_t>(n) : 0};
   }
   /// The next command on its way to the loop.
-  rt::Command next_command() {
-    rt::Command command;
+  rt::LoopCommand next_command() {
+    rt::LoopCommand command;
     EXPECT_TRUE(commands_.pop(command));
     return command;
   }
@@ -116,7 +116,7 @@ TEST_F(ControlRequestHandlerTest, NamesTheInputThatPreventsArming) {
 TEST_F(ControlRequestHandlerTest, PassesACommandOnAndReturnsTheAnswerOfTheLoop) {
   send(R"({"command": "arm"})");
   EXPECT_EQ(serve(), "") << "the loop has not answered yet";
-  const rt::Command command = next_command();
+  const rt::LoopCommand command = next_command();
   EXPECT_EQ(command.event, control::Event::arm);
   EXPECT_GT(command.expires_ns, clock_.now_ns());
   answer(command.number, RejectReason::none, State::armed);
@@ -173,7 +173,7 @@ TEST_F(ControlRequestHandlerTest, ReadmitsARodSensorWhoseAlarmIsAcknowledged) {
   done->done = {"loop.rod_b_out"};
   alarm_answers_.push(done);
   EXPECT_THAT(serve(), HasSubstr(R"("done":["loop.rod_b_out"])"));
-  EXPECT_EQ(next_command().kind, rt::Command::Kind::readmit);
+  EXPECT_EQ(next_command().kind, rt::LoopCommand::Kind::readmit);
 }
 
 TEST_F(ControlRequestHandlerTest, ReturnsTheReasonForWhichTheDetectorRejectsACommand) {

@@ -1,7 +1,7 @@
 // A record as CSV: columns of one length, or an error.
 #include <cstdlib>
 
-#include "config/record/csv_reader.h"
+#include "config/record/readers.h"
 #include "tests/fuzz/input.h"
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name

@@ -4,9 +4,8 @@
 
 #include "config/record/record.h"
 #include "tests/fuzz/input.h"
-#include "workbench/exchange/datagrams.h"
-#include "workbench/exchange/export_json.h"
-#include "workbench/exchange/export_mat.h"
+#include "workbench/exchange/export.h"
+#include "workbench/exchange/udp_sender.h"
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

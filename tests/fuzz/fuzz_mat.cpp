@@ -1,8 +1,8 @@
 // A record as a MAT file of version 5: columns of one length, or an error.
 #include <cstdlib>
 
-#include "config/record/mat_reader.h"
 #include "config/record/mat_variables.h"
+#include "config/record/readers.h"
 #include "tests/fuzz/input.h"
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name

@@ -1,11 +1,12 @@
 // Which folder may include what: arrows point down only. The table below is the rule; this test
-// reads every include line of the product against it.
+// reads every include line of the product against it, and every namespace against its folder.
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <regex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -50,7 +51,7 @@ const std::vector<Layer> kLayers{
       "estimator/nonlinear", "estimator/greybox"},
      {"Eigen"}},
     {"estimator/greybox/validation",
-     {"config/schema", "config/units", "plant_sim", "estimator/linear_algebra",
+     {"config/schema", "config/signals", "config/units", "plant_sim", "estimator/linear_algebra",
       "estimator/residual", "estimator/greybox"},
      {"Eigen"}},
     {"estimator/fdi",
@@ -71,7 +72,7 @@ const std::vector<Layer> kLayers{
     {"hal/encoder", {"config/schema", "config/signals", "hal"}, {"gpiod"}},
     {"hal/comedi", {"config/schema", "config/signals", "hal"}, {"comedilib"}},
     {"hal/hil_rig", {"config/schema", "hal", "plant_sim"}, {"modbus", "gpiod", "CLI"}},
-    {"daemon/control", {"config/schema"}, {}},
+    {"daemon/control", {"config/schema", "config/signals"}, {}},
     {"daemon/rt", {"config/schema", "config/signals", "hal", "daemon/control"}, {"boost"}},
     {"daemon/detection",
      {"config/schema", "config/signals", "estimator/fdi", "daemon/control", "daemon/rt",
@@ -86,7 +87,8 @@ const std::vector<Layer> kLayers{
       "hal/replay", "plant_sim", "daemon/control", "daemon/rt", "daemon/detection", "daemon/io"},
      {"boost", "lcm", "spoolwatch", "systemd", "CLI"}},
     {"workbench/present",
-     {"config/schema", "config/record", "config/units", "estimator/greybox/validation"},
+     {"config/schema", "config/record", "config/units", "estimator/greybox",
+      "estimator/greybox/validation"},
      {"nlohmann", "Eigen"}},
     {"workbench/exchange", {"config", "workbench/live"}, {"nlohmann", "spoolwatch", "matio"}},
     {"workbench/simulate", {"config", "daemon/control", "plant_sim"}, {}},
@@ -180,30 +182,102 @@ bool allowed(const Layer& layer, const std::string& file, const std::string& hea
   return true;
 }
 
-/// "file:line includes header" for every include that the table does not allow.
-std::vector<std::string> violations(const fs::path& root) {
-  static const std::regex include(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
-  std::vector<std::string> found;
+/// Every .h and .cpp of the product, relative to `root`.
+std::vector<std::string> sources(const fs::path& root) {
+  std::vector<std::string> files;
   for (const std::string& top : kProject) {
     if (!fs::exists(root / top)) continue;
     for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
       const std::string ending = entry.path().extension().string();
-      if (ending != ".h" && ending != ".cpp") continue;
-      const std::string file = fs::relative(entry.path(), root).string();
-      const Layer* layer = layer_of(file);
-      if (layer == nullptr) {
-        found.push_back(file + " stands in no layer");
-        continue;
-      }
-      std::ifstream in(entry.path());
-      std::string line;
-      for (int number = 1; std::getline(in, line); ++number) {
-        std::smatch match;
-        if (std::regex_search(line, match, include) && !allowed(*layer, file, match[1])) {
-          found.push_back(file + ":" + std::to_string(number) + " includes " + match[1].str());
-        }
+      if (ending == ".h" || ending == ".cpp") {
+        files.push_back(fs::relative(entry.path(), root).string());
       }
     }
+  }
+  return files;
+}
+
+std::vector<std::string> lines_of(const fs::path& file) {
+  std::ifstream in(file);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+/// "file:line includes header" for every include that the table does not allow.
+std::vector<std::string> violations(const fs::path& root) {
+  static const std::regex include(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
+  std::vector<std::string> found;
+  for (const std::string& file : sources(root)) {
+    const Layer* layer = layer_of(file);
+    if (layer == nullptr) {
+      found.push_back(file + " stands in no layer");
+      continue;
+    }
+    int number = 0;
+    for (const std::string& line : lines_of(root / file)) {
+      ++number;
+      std::smatch match;
+      if (std::regex_search(line, match, include) && !allowed(*layer, file, match[1])) {
+        found.push_back(file + ":" + std::to_string(number) + " includes " + match[1].str());
+      }
+    }
+  }
+  return found;
+}
+
+/// The namespace of a folder: its path, where `daemon` is `monitor` (libc declares daemon()).
+std::string namespace_of(const std::string& folder) {
+  std::string name = below(folder, "daemon") ? "monitor" + folder.substr(6) : folder;
+  for (std::size_t at = 0; (at = name.find('/', at)) != std::string::npos;)
+    name.replace(at, 1, "::");
+  return name;
+}
+
+/// "file:line opens namespace" for every namespace that is not the folder's, nor one of the file's
+/// own inside it. Others may be opened to declare types, no more.
+std::vector<std::string> foreign_namespaces(const fs::path& root) {
+  static const std::regex opening(R"(^(?:inline )?namespace ([\w:]+) \{)");
+  static const std::regex declaration(R"(^(struct|class|enum class) [\w: ]+;$)");
+  static const std::regex main_program(R"(^int main\()");
+  const std::vector<std::string> files = sources(root);
+  std::set<std::string> folders;
+  for (const std::string& file : files) {
+    folders.insert(namespace_of(fs::path(file).parent_path().string()));
+  }
+  std::vector<std::string> found;
+  for (const std::string& file : files) {
+    const std::string own = namespace_of(fs::path(file).parent_path().string());
+    const std::vector<std::string> lines = lines_of(root / file);
+    bool inside = false;  // the file opens its folder's namespace
+    bool is_main = false;
+    std::string last;  // closing line of the namespace that is open
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      is_main = is_main || std::regex_search(lines[i], main_program);
+      std::smatch match;
+      if (!last.empty()) {
+        if (lines[i] == last) last.clear();
+        continue;
+      }
+      if (lines[i] == "namespace {") last = "}  // namespace";
+      if (!std::regex_search(lines[i], match, opening)) continue;
+      const std::string name = match[1];
+      if (name == own || (name.rfind(own + "::", 0) == 0 && folders.count(name) == 0)) {
+        inside = true;
+        last = "}  // namespace " + name;
+        continue;
+      }
+      const auto first = lines.begin() + static_cast<std::ptrdiff_t>(i) + 1;
+      const auto end = std::find_if(
+          first, lines.end(), [](const std::string& line) { return line.rfind("}", 0) == 0; });
+      const bool declares = std::all_of(first, end, [](const std::string& line) {
+        return line.empty() || std::regex_search(line, declaration);
+      });
+      if (!declares) {
+        found.push_back(file + ":" + std::to_string(i + 1) + " opens " + name);
+      }
+    }
+    if (!inside && !is_main) found.push_back(file + " opens no " + own);
   }
   return found;
 }
@@ -221,6 +295,10 @@ TEST(Layers, EveryRowNamesAFolderThatExists) {
   for (const Layer& layer : kLayers) {
     EXPECT_TRUE(fs::is_directory(fs::path(SPOOLWATCH_SOURCE_DIR) / layer.folder)) << layer.folder;
   }
+}
+
+TEST(Layers, EveryNamespaceIsThatOfItsFolder) {
+  EXPECT_THAT(foreign_namespaces(SPOOLWATCH_SOURCE_DIR), testing::IsEmpty());
 }
 
 TEST(Layers, PlantedViolationsAreFound) {
@@ -247,6 +325,31 @@ TEST(Layers, PlantedViolationsAreFound) {
           "workbench/fit/page.cpp:1 includes daemon/io/recorder.h",
           "workbench/present/report.h:1 includes workbench/fit/fit_report.h",
           "estimator/greybox/fit.h:1 includes estimator/greybox/selection/problem.h"));
+  fs::remove_all(root);
+}
+
+TEST(Layers, PlantedForeignNamespacesAreFound) {
+  const fs::path root = fs::path(testing::TempDir()) / "namespaces_planted";
+  fs::remove_all(root);
+  write(root / "plant_sim/effects/friction.h",
+        "namespace plant_sim {\nint n;\n}  // namespace plant_sim\n");
+  write(root / "plant_sim/plant.h", "namespace plant_sim::effects {\nint n;\n}\n");
+  write(root / "plant_sim/limits.h",
+        "namespace CLI {\nclass App;\n}\nnamespace plant_sim::limits {\nint n;\n"
+        "}  // namespace plant_sim::limits\n");
+  write(root / "plant_sim/global.h", "int n;\n");
+  write(root / "daemon/control/arming.h", "namespace daemon::control {\nint n;\n}\n");
+  write(root / "daemon/rt/loop.h",
+        "namespace monitor::rt {\nint n;\n}  // namespace monitor::rt\n");
+  write(root / "daemon/main.cpp", "int main() { return 0; }\n");
+  EXPECT_THAT(foreign_namespaces(root),
+              testing::UnorderedElementsAre(
+                  "plant_sim/effects/friction.h:1 opens plant_sim",
+                  "plant_sim/effects/friction.h opens no plant_sim::effects",
+                  "plant_sim/plant.h:1 opens plant_sim::effects",
+                  "plant_sim/plant.h opens no plant_sim", "plant_sim/global.h opens no plant_sim",
+                  "daemon/control/arming.h:1 opens daemon::control",
+                  "daemon/control/arming.h opens no monitor::control"));
   fs::remove_all(root);
 }
 

@@ -211,11 +211,11 @@ TEST_P(EveryEnsemble, HasLanesThatAgreeWithSinglePlantsForAllEffectsAndAtTheLimi
 
 TEST(Ensemble, TakesFormulasOfTheModelFile) {
   ModelFile model;
-  FormulaEffect effect;
+  formula::FormulaEffect effect;
   effect.name = "seal";
   effect.site = "force";
   effect.formula = "a * v_mps / sqrt(v_mps*v_mps + 1e-4) * (1 + 0.3 * sin(40 * y_m))";
-  FormulaEffect::Parameter a;
+  formula::FormulaEffect::Parameter a;
   a.name = "a";
   a.what = "size";
   a.min = 0.0;

@@ -25,9 +25,9 @@ using vm::kSecond_ns;
 constexpr double kCount_m = 1e-4;
 constexpr double kPeriod_s = 0.005;
 constexpr double kNull_V = 0.25;
-constexpr hal::comedi::Span kSpan{-10.0, 10.0, 65'535};
-constexpr hal::comedi::Place kInput{0, 0, 0, 0};
-constexpr hal::comedi::Place kOutput{1, 0, 0, 0};
+constexpr hal::comedi::ConverterSpan kSpan{-10.0, 10.0, 65'535};
+constexpr hal::comedi::BoardChannel kInput{0, 0, 0, 0};
+constexpr hal::comedi::BoardChannel kOutput{1, 0, 0, 0};
 enum State : int { monitor, disarmed, armed, run, latched };
 
 std::string chip() { return std::getenv("SPOOLWATCH_GPIO_CHIP"); }

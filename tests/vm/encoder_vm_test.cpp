@@ -9,7 +9,7 @@
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "hal/encoder/encoder.h"
-#include "hal/encoder/gpio_source.h"
+#include "hal/encoder/gpio_chip.h"
 #include "hal/hil_rig/gpio_lines.h"
 #include "tests/vm/process.h"
 

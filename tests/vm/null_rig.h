@@ -26,7 +26,7 @@ namespace vm {
 inline constexpr double kCount_m = 1e-4;
 inline constexpr double kValveNull_V = 0.25;
 inline constexpr std::int64_t kRelay_ns = 20'000'000;  ///< that the permit may rest
-inline constexpr hal::comedi::Span kSpan{-10.0, 10.0, 65'535};
+inline constexpr hal::comedi::ConverterSpan kSpan{-10.0, 10.0, 65'535};
 
 class NullRig {
  public:

@@ -11,7 +11,7 @@
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "config/schema/joined.h"
-#include "config/units/unit_suffix.h"
+#include "config/units/quantity.h"
 #include "plant_sim/library.h"
 #include "plant_sim/model_file.h"
 #include "workbench/cli/command.h"
@@ -99,9 +99,7 @@ void add(const AddOptions& options) {
   std::set<std::string> given;
   for (const std::string& assignment : options.assignments) {
     const std::string name = assignment.substr(0, assignment.find('='));
-    if (!given.insert(name).second) {
-      throw config::schema::UsageError(name + ": is given twice");
-    }
+    if (!given.insert(name).second) throw config::schema::UsageError(name + ": is given twice");
     assign(model, effect, assignment);
   }
   config::record::write_whole(options.output, plant_sim::print_model(model));

@@ -8,7 +8,7 @@
 #include "workbench/cli/common_options.h"
 #include "workbench/cli/number_check.h"
 #include "workbench/present/json.h"
-#include "workbench/replay/backtest_text.h"
+#include "workbench/replay/backtest_runs.h"
 
 namespace workbench::cli {
 namespace {
@@ -22,8 +22,8 @@ struct BacktestOptions {
 };
 
 void run(const BacktestOptions& options) {
-  const replay::Rules new_rules = replay::read_rules(options.configuration);
-  std::optional<replay::Rules> old_rules;
+  const replay::BacktestRules new_rules = replay::read_rules(options.configuration);
+  std::optional<replay::BacktestRules> old_rules;
   if (!options.old.empty()) old_rules = replay::read_rules(options.old);
   replay::BacktestReport report;
   report.new_rules = options.configuration;

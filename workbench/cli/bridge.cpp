@@ -15,8 +15,7 @@
 #include "spoolwatch/rods_t.hpp"
 #include "spoolwatch/sample_t.hpp"
 #include "workbench/cli/command.h"
-#include "workbench/cli/stop_condition.h"
-#include "workbench/exchange/datagrams.h"
+#include "workbench/cli/interrupt.h"
 #include "workbench/exchange/message.h"
 #include "workbench/exchange/udp_sender.h"
 #include "workbench/live/listen_feed.h"
@@ -124,14 +123,15 @@ void add_bridge(CLI::App& command, int& exit_code) {
   auto options = std::make_shared<BridgeOptions>();
   command.add_option("--lcm-url", options->url, "LCM URL; file:///LOG?mode=r replays a log")
       ->capture_default_str();
-  command.add_option("--prefix", options->prefix, "of the channel names")->capture_default_str();
+  command.add_option("--prefix", options->prefix, "prefix of the channel names")
+      ->capture_default_str();
   command.add_option("--udp", options->udp, "HOST:PORT or [IPV6]:PORT to send to")
       ->capture_default_str();
   command
       .add_option("--sample-rate", options->sample_rate_Hz,
-                  "at most so many samples a second, Hz (0: all)")
+                  "maximum sample rate, Hz (0: all samples)")
       ->check(CLI::Range(0.0, 1e6));
-  command.add_option("--duration", options->duration_s, "stop after so many seconds (0: never)")
+  command.add_option("--duration", options->duration_s, "run time, s (0: unlimited)")
       ->check(CLI::NonNegativeNumber);
   command.callback([options, &exit_code] { exit_code = bridge(*options); });
 }

@@ -9,7 +9,6 @@
 #include "config/record/whole_file.h"
 #include "config/schema/document.h"
 #include "estimator/fdi/learned_bands.h"
-#include "estimator/fdi/pipeline.h"
 #include "workbench/cli/command.h"
 #include "workbench/cli/common_options.h"
 #include "workbench/cli/number_check.h"

@@ -2,6 +2,8 @@
 // and a line of commands.def, from which declarations and the table in main.cpp are made.
 #pragma once
 
+#include <string>
+
 namespace CLI {
 class App;
 }
@@ -15,5 +17,8 @@ using Setup = void (*)(CLI::App& command, int& exit_code);
 #define COMMAND(group, name, what) void add_##name(CLI::App& command, int& exit_code);
 #include "workbench/cli/commands.def"
 #undef COMMAND
+
+/// Markdown: every key of the files that `spoolwatch` reads, for scripts/reference.
+[[nodiscard]] std::string configuration_reference();
 
 }  // namespace workbench::cli

@@ -22,7 +22,8 @@ struct CommissionOptions {
 };
 
 /// Replaces this process, so that signals reach it. Throws Error when it cannot.
-[[noreturn]] void become_daemon(const CommissionOptions& options, const std::vector<std::string>& more) {
+[[noreturn]] void become_daemon(const CommissionOptions& options,
+                                const std::vector<std::string>& more) {
   std::error_code error;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
   std::string program = (self.parent_path() / "spoolwatchd").string();

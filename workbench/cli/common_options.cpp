@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "workbench/cli/number_check.h"
-#include "workbench/present/shell_command.h"
+#include "workbench/present/text.h"
 
 namespace workbench::cli {
 namespace {
@@ -29,7 +29,7 @@ CLI::Option* add_records(CLI::App& command, std::vector<std::string>& files) {
 }
 
 CLI::Option* add_holdouts(CLI::App& command, std::vector<std::string>& files) {
-  return command.add_option("--holdout", files, "a record that only scores, not fitted")
+  return command.add_option("--holdout", files, "validation record, not fitted")
       ->allow_extra_args(false);
 }
 
@@ -55,7 +55,7 @@ CLI::Option* add_observer(CLI::App& command, double& observer_per_s) {
 }
 
 CLI::Option* add_threads(CLI::App& command, unsigned& threads) {
-  return command.add_option("--threads", threads, "default: one for each processor")
+  return command.add_option("--threads", threads, "number of threads; default: one per processor")
       ->check(number_within(1, kMostThreads));
 }
 

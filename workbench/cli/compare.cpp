@@ -19,9 +19,7 @@
 #include "workbench/cli/common_options.h"
 #include "workbench/cli/file_check.h"
 #include "workbench/cli/number_check.h"
-#include "workbench/compare/json.h"
-#include "workbench/compare/sections.h"
-#include "workbench/compare/text.h"
+#include "workbench/compare/comparison_report.h"
 #include "workbench/live/live_compare.h"
 #include "workbench/present/json.h"
 
@@ -65,6 +63,7 @@ greybox::Dataset read_measured(const CompareArguments& a) {
   }
   greybox::Dataset part = greybox::part(whole, from, to);
   part.notes = whole.notes;
+  part.gaps = whole.gaps;
   return part;
 }
 
@@ -119,22 +118,27 @@ void add_compare(CLI::App& command, int& /*exit_code*/) {
   add_record(command, arguments->record)->required(false);
   add_json(command, arguments->json);
   add_report(command, arguments->report);
-  command.add_option("--from", arguments->from_s, "s: leave out what is before")
+  command.add_option("--from", arguments->from_s, "s: ignore samples before this time")
       ->check(finite_number());
-  command.add_option("--to", arguments->to_s, "s: leave out what is after")->check(finite_number());
+  command.add_option("--to", arguments->to_s, "s: ignore samples after this time")
+      ->check(finite_number());
   add_observer(command, arguments->observer_per_s)->check(positive_number());
   add_set(command, arguments->assignments);
-  command.add_flag("--all", arguments->all, "the error by every variable, not the most telling");
-  CLI::Option* live =
-      command.add_flag("--live", arguments->live, "with the running daemon, a line each second");
+  command.add_flag("--all", arguments->all,
+                   "the error by every variable, not only the most significant");
+  CLI::Option* live = command.add_flag("--live", arguments->live,
+                                       "compare with the running daemon, one line per second");
   command
-      .add_option("--lcm-url", arguments->watch.url, "of --live; file:///LOG?mode=r takes a log")
+      .add_option("--lcm-url", arguments->watch.url,
+                  "LCM URL of --live; file:///LOG?mode=r reads a log")
       ->needs(live)
       ->capture_default_str();
-  command.add_option("--prefix", arguments->watch.prefix, "of --live: of the channel names")
+  command.add_option("--prefix", arguments->watch.prefix, "prefix of the channel names of --live")
       ->needs(live)
       ->capture_default_str();
-  command.add_option("--duration", arguments->watch.duration_s, "of --live, s (0: until Ctrl-C)")
+  command
+      .add_option("--duration", arguments->watch.duration_s,
+                  "run time of --live, s (0: until Ctrl-C)")
       ->needs(live)
       ->check(CLI::NonNegativeNumber);
   command.callback([arguments, &command] {

@@ -1,4 +1,4 @@
-#include "workbench/cli/configuration_reference.h"
+#include "workbench/cli/command.h"
 
 #include "config/schema/reference.h"
 #include "estimator/fdi/learned_bands.h"

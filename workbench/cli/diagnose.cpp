@@ -9,13 +9,10 @@
 #include "workbench/cli/command.h"
 #include "workbench/cli/common_options.h"
 #include "workbench/cli/interrupt.h"
-#include "workbench/diagnose/better_model.h"
+#include "workbench/diagnose/diagnosis_report.h"
 #include "workbench/diagnose/experiment_design.h"
-#include "workbench/diagnose/json.h"
 #include "workbench/diagnose/progress_line.h"
-#include "workbench/diagnose/report_pages.h"
 #include "workbench/diagnose/request.h"
-#include "workbench/diagnose/text_output.h"
 #include "workbench/present/json.h"
 
 namespace workbench::cli {
@@ -46,7 +43,9 @@ int run(const DiagnosisRequest& request) {
   diagnose::ProgressLine line(std::cerr, isatty(STDERR_FILENO) == 1,
                               prepared.problem.data.noise_floor_m);
   if (!request.quiet) {
-    prepared.options.progress = [&](const selection::Progress& progress) { line.show(progress); };
+    prepared.options.progress = [&](const selection::SearchProgress& progress) {
+      line.show(progress);
+    };
   }
   prepared.options.cancel = Interrupt::requested;
   diagnose::AdvisedDiagnosis found = diagnose::diagnose(prepared.problem, prepared.options);
@@ -66,7 +65,8 @@ void add_diagnose(CLI::App& command, int& exit_code) {
   add_model(command, request->model);
   add_records(command, request->records);
   CLI::Option* const holdout = add_holdouts(command, request->holdouts);
-  command.add_option("--fit", request->fit, "part of each record that is fitted; the rest scores")
+  command
+      .add_option("--fit", request->fit, "part of each record that is fitted; the rest validates")
       ->check(CLI::IsMember({"blocks", "first-half", "second-half"}))
       ->capture_default_str()
       ->excludes(holdout);

@@ -2,14 +2,13 @@
 // formulas, for reading and as JSON.
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "config/schema/joined.h"
-#include "config/units/unit_suffix.h"
+#include "config/units/quantity.h"
 #include "plant_sim/library.h"
 #include "plant_sim/model_file.h"
 #include "workbench/cli/command.h"

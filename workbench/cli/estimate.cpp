@@ -54,7 +54,7 @@ ordered_json coefficients(const std::array<double, estimator::kMaxCoefficients>&
 }
 
 /// The keys that the whole record and each window share.
-void add_fields(ordered_json& out, const estimate::Judged& judged,
+void add_fields(ordered_json& out, const estimate::JudgedEstimate& judged,
                 const estimator::Structure& structure) {
   const estimator::Estimate& e = judged.estimate;
   out["a"] = coefficients(e.value, 0, structure.n);
@@ -85,7 +85,7 @@ ordered_json to_json(const estimate::EstimateResult& result, const EstimateOptio
   out["samples"] = record.size();
   out["gaps"] = record.gaps.size();
   out["windows"] = ordered_json::array();
-  for (const estimate::Judged& window : result.windows) {
+  for (const estimate::JudgedEstimate& window : result.windows) {
     ordered_json item;
     add_fields(item, window, options.estimate.structure);
     out["windows"].push_back(std::move(item));
@@ -115,11 +115,9 @@ void print_text(const estimate::EstimateResult& result, const EstimateOptions& o
     for (const std::string& name : names) std::printf(" %14s", name.c_str());
     std::printf(" %12s\n", "cost_m2");
   }
-  for (const estimate::Judged& window : result.windows) {
+  for (const estimate::JudgedEstimate& window : result.windows) {
     std::printf("%10.4f %10.4f", window.from_s, window.to_s);
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      std::printf(" %14.7g", window.estimate.value[i]);
-    }
+    for (std::size_t i = 0; i < names.size(); ++i) std::printf(" %14.7g", window.estimate.value[i]);
     std::printf(" %12.5g %s\n", window.cost_m2, to_string(window.estimate.reason));
   }
 }
@@ -159,38 +157,41 @@ void add_estimate(CLI::App& command, int& /*exit_code*/) {
   add_record(command, options->record);
   command.add_option("--structure", options->structure, "arx211, arx(10,2,1), ...")
       ->capture_default_str();
-  command.add_option("--method", e.method, "how the coefficients are found")
+  command.add_option("--method", e.method, "estimation method")
       ->check(CLI::IsMember({"batch", "sliding", "recursive"}))
       ->capture_default_str();
-  command.add_flag("--constant", options->constant, "estimate a constant term too");
+  command.add_flag("--constant", options->constant, "estimate a constant term");
   command
       .add_option("--window", e.window_s,
                   "s; batch: one estimate for each; without it the whole record")
       ->check(positive_number());
-  command.add_option("--stride", e.stride_s, "s between estimates, sliding and recursive")
+  command.add_option("--stride", e.stride_s, "s: time between estimates, sliding and recursive")
       ->check(positive_number());
   options->forgetting =
-      command.add_option("--forgetting", e.forgetting, "of recursive, per sample")
+      command.add_option("--forgetting", e.forgetting, "forgetting factor per sample, recursive")
           ->check(number_within(0.5, 1.0))
           ->capture_default_str();
   options->prior_variance =
-      command.add_option("--prior-variance", e.prior_variance, "of recursive: P(0) = C I")
+      command.add_option("--prior-variance", e.prior_variance, "P(0) = C I, recursive")
           ->check(positive_number())
           ->capture_default_str();
-  command.add_option("--detrend", e.detrend, "u and y of the whole record")
+  command.add_option("--detrend", e.detrend, "trend removed from u and y of the whole record")
       ->check(CLI::IsMember({"none", "mean", "linear"}))
       ->capture_default_str();
   command.add_option("--offset-m", e.offset_m, "subtracted from y")
       ->check(finite_number())
       ->capture_default_str();
-  command.add_option("--filter", e.filter, "of u and y alike: Butterworth, order 4")
+  command.add_option("--filter", e.filter, "filter of both u and y: Butterworth, order 4")
       ->check(CLI::IsMember({"none", "low", "high", "band"}))
       ->capture_default_str();
-  command.add_option("--filter-low-Hz", e.filter_low_Hz, "lower corner, of high and band")
+  command.add_option("--filter-low-Hz", e.filter_low_Hz, "lower corner frequency of high and band")
       ->check(positive_number());
-  command.add_option("--filter-high-Hz", e.filter_high_Hz, "upper corner, of low and band")
+  command
+      .add_option("--filter-high-Hz", e.filter_high_Hz, "upper corner frequency of low and band")
       ->check(positive_number());
-  command.add_option("--decimate", e.decimation, "keep one of so many samples, low-passed before")
+  command
+      .add_option("--decimate", e.decimation,
+                  "decimation factor; a low-pass filter is applied first")
       ->check(number_within(1, 1000))
       ->capture_default_str();
   CLI::Option* const fit =

@@ -2,7 +2,6 @@
 #include "workbench/cli/export.h"
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <filesystem>
 #include <memory>
 
@@ -10,9 +9,7 @@
 #include "config/schema/error.h"
 #include "workbench/cli/command.h"
 #include "workbench/cli/file_check.h"
-#include "workbench/exchange/export_csv.h"
-#include "workbench/exchange/export_json.h"
-#include "workbench/exchange/export_mat.h"
+#include "workbench/exchange/export.h"
 
 namespace workbench::cli {
 namespace {
@@ -75,9 +72,11 @@ void add_export(CLI::App& command, int&) {
                   "the file to write: .csv .mat .mcap .json; - into a pipe")
       ->required();
   command
-      .add_option("--channel", options->channel, "which messages; all by default, samples as CSV")
+      .add_option("--channel", options->channel,
+                  "messages to export; default: all, for CSV samples")
       ->check(CLI::IsMember({"sample", "rods", "pressures", "estimate", "alarm", "health", "all"}));
-  command.add_option("--format", options->format, "whatever the file is called")
+  command
+      .add_option("--format", options->format, "format of the output; default: by the file name")
       ->check(CLI::IsMember({"csv", "mat", "mcap", "json"}));
   command.callback([options] {
     export_log(options->input, options->output, options->channel, options->format);

@@ -35,9 +35,7 @@ void check_inputs_kept(const OutputFile& output, const InputFiles& inputs) {
 void check_writable(const OutputFile& output) {
   const std::string what = output.option + " " + output.file;
   std::error_code ignored;
-  if (fs::is_directory(output.file, ignored)) {
-    throw RunError(what + ": is a folder");
-  }
+  if (fs::is_directory(output.file, ignored)) throw RunError(what + ": is a folder");
   const fs::path folder = fs::absolute(output.file).parent_path();
   if (!fs::is_directory(folder, ignored)) {
     throw RunError(what + ": the folder " + folder.string() + " does not exist");
@@ -62,9 +60,7 @@ void check_records(const std::vector<std::string>& records,
   for (const std::vector<std::string>* side : {&records, &holdouts}) {
     for (std::size_t i = 0; i < side->size(); ++i) {
       for (std::size_t k = 0; k < i; ++k) {
-        if (same_file((*side)[i], (*side)[k])) {
-          throw UsageError((*side)[i] + ": is given twice");
-        }
+        if (same_file((*side)[i], (*side)[k])) throw UsageError((*side)[i] + ": is given twice");
       }
     }
   }

@@ -3,12 +3,10 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <cmath>
 #include <iostream>
 #include <memory>
 
 #include "config/record/whole_file.h"
-#include "config/units/quantity.h"
 #include "workbench/cli/command.h"
 #include "workbench/cli/common_options.h"
 #include "workbench/cli/interrupt.h"
@@ -36,8 +34,8 @@ int run(const FitRequest& request) {
   prepared.options.cancel = Interrupt::requested;
   const bool shown = !request.quiet && isatty(STDERR_FILENO) == 1;
   if (shown) {
-    prepared.options.progress = [](const std::string& doing) {
-      std::cerr << "\r\x1b[K" << doing << std::flush;
+    prepared.options.progress = [](const estimator::greybox::EstimationProgress& progress) {
+      std::cerr << "\r\x1b[K" << fit::progress_words(progress) << std::flush;
     };
   }
   fit::FitReport outcome;
@@ -59,12 +57,13 @@ void declare_choice(CLI::App& command, FitRequest& request) {
   each("--free", request.selection.free,
        "name[,name...]: fit these only; default: the plant's uncertain parameters and those of its "
        "effects");
-  each("--fix", request.selection.fix, "name[,name...]: leave these as they are");
+  each("--fix", request.selection.fix, "name[,name...]: keep these values");
   each("--prior", request.selection.priors,
        "name=mean+-sd (sd in the unit, or in % of the mean), or name=none");
   each("--bounds", request.selection.bounds, "name=low:high");
-  each("--ignore", request.ignored, "from:to or RECORD@from:to, s: these samples do not count");
-  command.add_option("--weight", request.weights, "of each record's squared errors, in order")
+  each("--ignore", request.ignored, "from:to or RECORD@from:to, s: ignore these samples");
+  command
+      .add_option("--weight", request.weights, "weight of each record's squared errors, in order")
       ->allow_extra_args(false)
       ->check(number_within(0.0, 1e6));
 }
@@ -78,11 +77,12 @@ void add_fit(CLI::App& command, int& exit_code) {
   command.add_option("-o,--output", request->output, "the model file to write");
   declare_choice(command, *request);
   CLI::Option* const holdout = add_holdouts(command, request->holdouts);
-  command.add_option("--fit", request->fit, "part of each record that is fitted; the rest scores")
+  command
+      .add_option("--fit", request->fit, "part of each record that is fitted; the rest validates")
       ->check(CLI::IsMember({"all", "blocks", "first-half", "second-half"}))
       ->capture_default_str()
       ->excludes(holdout);
-  command.add_option("--starts", request->starts, "searches from so many places")
+  command.add_option("--starts", request->starts, "number of starting points")
       ->check(number_within(1, kMostStarts))
       ->capture_default_str();
   command

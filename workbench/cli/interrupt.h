@@ -1,6 +1,7 @@
 // Ctrl-C while something long runs: the first asks it to stop, a second one ends the program.
 #pragma once
 
+#include <chrono>
 #include <csignal>
 
 namespace workbench::cli {
@@ -22,6 +23,21 @@ class Interrupt {
  private:
   struct sigaction before_int_ {};
   struct sigaction before_term_ {};
+};
+
+/// When a command that runs until it is told to stop shall end: a signal, or the end of its time.
+class StopCondition {
+ public:
+  /// SIGINT, SIGTERM and SIGHUP end it; so do `duration_s` seconds, unless they are 0.
+  explicit StopCondition(double duration_s);
+  [[nodiscard]] bool reached() const;
+  /// By a signal.
+  [[nodiscard]] static bool asked() noexcept;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  bool limited_;
+  Clock::time_point at_;
 };
 
 }  // namespace workbench::cli

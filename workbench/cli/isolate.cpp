@@ -53,7 +53,7 @@ void declare_judging(CLI::App& command, IsolationRequest& request) {
           ->allow_extra_args(false);
   command
       .add_option("--follow-per-hour", following.ratio_per_h,
-                  "ratio: how much of its value a parameter is followed in an hour")
+                  "ratio per hour: fastest slow change that the healthy value follows")
       ->check(number_within(1e-3, 1e3))
       ->needs(follow)
       ->capture_default_str();
@@ -73,7 +73,7 @@ void add_isolate(CLI::App& command, int& /*exit_code*/) {
   command.add_option("--window", request->settings.window_s, "s: length of a window")
       ->check(number_within(0.1, 1e3))
       ->capture_default_str();
-  command.add_option("--stride", request->settings.stride_s, "s: from window to window")
+  command.add_option("--stride", request->settings.stride_s, "s: time between windows")
       ->check(number_within(1e-3, 1e3))
       ->capture_default_str();
   add_observer(command, request->settings.observer_per_s)->check(number_within(0.0, 1e3));
@@ -82,8 +82,8 @@ void add_isolate(CLI::App& command, int& /*exit_code*/) {
                    "supply_pressure_Pa, pressure_in_Pa, pressure_out_Pa of RECORD are not used");
   add_set(command, request->assignments);
   command.add_option("--learn", request->learn_baseline,
-                     "file for what is healthy, which [[tracker]] healthy names");
-  command.add_option("--rig", request->rig_id, "rig id, noted in that file; another is refused");
+                     "file for the healthy values, to be named by [[tracker]] healthy");
+  command.add_option("--rig", request->rig_id, "rig id stored in that file; other rigs reject it");
   command.add_flag("--windows", request->all_windows, "print every window");
   add_json(command, request->json);
   add_report(command, request->report);

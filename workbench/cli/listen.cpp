@@ -8,9 +8,9 @@
 #include "config/messages/channels.h"
 #include "config/schema/error.h"
 #include "workbench/cli/command.h"
-#include "workbench/cli/stop_condition.h"
+#include "workbench/cli/interrupt.h"
 #include "workbench/live/listen_feed.h"
-#include "workbench/live/listen_printer.h"
+#include "workbench/live/listen_lines.h"
 #include "workbench/live/live_view.h"
 
 namespace workbench::cli {
@@ -67,11 +67,12 @@ void add_listen(CLI::App& command, int& exit_code) {
   auto options = std::make_shared<ListenOptions>();
   command.add_option("--lcm-url", options->url, "LCM URL; file:///LOG?mode=r replays a log")
       ->capture_default_str();
-  command.add_option("--prefix", options->prefix, "of the channel names")->capture_default_str();
-  command.add_option("--duration", options->duration_s, "stop after so many seconds (0: never)")
+  command.add_option("--prefix", options->prefix, "prefix of the channel names")
+      ->capture_default_str();
+  command.add_option("--duration", options->duration_s, "run time, s (0: unlimited)")
       ->check(CLI::NonNegativeNumber);
   command.add_flag("--json", options->json, "one JSON object per line");
-  command.add_flag("--alarms", options->alarms_only, "leave out the estimates");
+  command.add_flag("--alarms", options->alarms_only, "alarms only, without estimates");
   command.add_flag("--live", options->live,
                    "a terminal view; lines when there is no terminal. q quits");
   command.callback([options, &exit_code] { exit_code = listen(*options); });

@@ -7,10 +7,9 @@
 #include <iostream>
 
 #include "config/schema/document.h"
-#include "config/schema/exit_code.h"
+#include "config/schema/error.h"
 #include "config/schema/product_version.h"
 #include "workbench/cli/command.h"
-#include "workbench/cli/configuration_reference.h"
 
 namespace {
 

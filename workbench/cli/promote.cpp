@@ -12,10 +12,11 @@
 #include "config/record/whole_file.h"
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "config/units/quantity.h"
+#include "daemon/control/protocol.h"
 #include "plant_sim/model_file.h"
 #include "workbench/cli/command.h"
 #include "workbench/cli/number_check.h"
-#include "workbench/control/order.h"
 #include "workbench/present/compare_units.h"
 #include "workbench/promotion/running_daemon.h"
 #include "workbench/promotion/trial.h"
@@ -82,9 +83,9 @@ class Attempt {
     const promotion::ModelTrial trial = promotion::try_model(read_model(daemon_.model_file()),
                                                              read_model(options_.model), records_);
     for (const std::string& note : trial.notes) std::cerr << "left out: " << note << '\n';
-    const std::string figures = "error " + present::length(trial.after_rms_m) + ", before " +
-                                present::length(trial.before_rms_m) + ", noise floor " +
-                                present::length(trial.floor_m);
+    const std::string figures = "error " + config::units::length_words(trial.after_rms_m) +
+                                ", before " + config::units::length_words(trial.before_rms_m) +
+                                ", noise floor " + config::units::length_words(trial.floor_m);
     if (trial.worse()) throw RunError("the new model is worse: " + figures);
     step(daemon_, "compared: " + figures);
   }
@@ -196,7 +197,7 @@ void add_promote(CLI::App& command, int& /*exit_code*/) {
                   "mean time between false alarms of each band")
       ->capture_default_str()
       ->check(positive_number());
-  command.add_flag("--back", options->back, "the one before it again");
+  command.add_flag("--back", options->back, "restore the previous model");
   command.callback([options] { promote(*options); });
 }
 

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <cstdlib>
 #include <iostream>
 #include <memory>
@@ -13,7 +12,7 @@
 #include "spoolwatch/rods_t.hpp"
 #include "spoolwatch/sample_t.hpp"
 #include "workbench/cli/command.h"
-#include "workbench/cli/stop_condition.h"
+#include "workbench/cli/interrupt.h"
 #include "workbench/live/listen_feed.h"
 #include "workbench/live/sample_file.h"
 
@@ -45,7 +44,7 @@ class Recording final : public live::FeedListener {
   void on(const spoolwatch::sample_t& sample) override {
     if (complete_ || !ended_.empty()) return;
     if (file_.rows() > 0 && (sample.tick <= tick_ || sample.sample_time_s != sample_time_s_)) {
-      ended_ = "the samples begin anew";
+      ended_ = "the sample counter restarted";
       return;
     }
     if (file_.rows() == 0) first_tick_ = sample.tick;
@@ -120,11 +119,13 @@ int record(const RecordOptions& options) {
 void add_record(CLI::App& command, int& exit_code) {
   auto options = std::make_shared<RecordOptions>();
   command.add_option("-o,--output", options->out, "the record (CSV)")->required();
-  command.add_option("--duration", options->duration_s, "s of samples (0: until Ctrl-C)")
+  command
+      .add_option("--duration", options->duration_s, "length of the record, s (0: until Ctrl-C)")
       ->check(CLI::NonNegativeNumber);
-  command.add_option("--lcm-url", options->url, "LCM URL; file:///LOG?mode=r takes a log")
+  command.add_option("--lcm-url", options->url, "LCM URL; file:///LOG?mode=r reads a log")
       ->capture_default_str();
-  command.add_option("--prefix", options->prefix, "of the channel names")->capture_default_str();
+  command.add_option("--prefix", options->prefix, "prefix of the channel names")
+      ->capture_default_str();
   command.callback([options, &exit_code] { exit_code = record(*options); });
 }
 

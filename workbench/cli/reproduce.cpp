@@ -12,7 +12,7 @@
 #include "workbench/cli/command.h"
 #include "workbench/cli/common_options.h"
 #include "workbench/reproduce/experiment.h"
-#include "workbench/reproduce/print.h"
+#include "workbench/reproduce/row.h"
 
 namespace workbench::cli {
 namespace {
@@ -24,7 +24,7 @@ struct ReproduceArguments {
   bool strict = false;
 };
 
-bool missed(const reproduce::Row& row) {
+bool missed(const reproduce::ReproducedRow& row) {
   return row.expected && row.agrees == reproduce::Agreement::no;
 }
 
@@ -49,9 +49,7 @@ void add_reproduce(CLI::App& command, int& exit_code) {
       reproduce::print_table(std::cout, sections);
       if (file.is_open()) reproduce::print_json(file, sections);
     }
-    if (file.is_open() && !file.flush()) {
-      throw RunError(arguments->json + ": cannot be written");
-    }
+    if (file.is_open() && !file.flush()) throw RunError(arguments->json + ": cannot be written");
     const bool all = std::none_of(sections.begin(), sections.end(), [](const auto& section) {
       return std::any_of(section.rows.begin(), section.rows.end(), missed);
     });

@@ -45,7 +45,7 @@ std::vector<Method> load_methods(const std::vector<std::string>& files) {
     if (!seen.insert(methods.back().name).second) {
       throw config::schema::bad_config(file + ": name",
                                        "'" + methods.back().name + "' is that of another method",
-                                       "a name of its own");
+                                       "a unique name");
     }
   }
   return methods;
@@ -71,7 +71,7 @@ void work(const std::vector<Part>& parts, const std::vector<Method>& methods, Tr
   });
   double all_s = 0.0;
   for (const auto& [part, which] : open) all_s += part->work_s * static_cast<double>(which.size());
-  Progress progress(std::cerr, isatty(STDERR_FILENO) == 1, open.size(), all_s);
+  ScorecardProgress progress(std::cerr, isatty(STDERR_FILENO) == 1, open.size(), all_s);
   std::mutex mutex;
   try {
     estimator::in_parallel(open.size(), threads, [&](std::size_t i) {
@@ -129,25 +129,28 @@ void add_scorecard(CLI::App& command, int& exit_code) {
   auto o = std::make_shared<ScorecardOptions>();
   command.add_option("METHOD", o->methods,
                      "files of methods, or names of shipped ones; default: all that are shipped");
-  command.add_flag("--full", o->scope.full, "the hours that one false alarm in 24 h needs: 72");
+  command.add_flag("--full", o->scope.full,
+                   "72 h without a fault, enough for one false alarm in 24 h");
   command.add_option("--seeds", o->scope.seeds, "trials of each fault, direction, size and motion")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  command.add_option("--seed", o->scope.seed, "of noise and phases; same seed, same figures")
+  command
+      .add_option("--seed", o->scope.seed,
+                  "seed of noise and phases; the same seed gives the same figures")
       ->check(number_within(0.0, 1e18))
       ->capture_default_str();
-  command.add_option("--hours", o->scope.hours, "h without a fault; default: as the plan says")
+  command.add_option("--hours", o->scope.hours, "h without a fault; default: the plan's")
       ->check(number_within(0.0, 1e5));
   command.add_option("--motion", o->scope.motions, "only these of the plan")
       ->allow_extra_args(false);
   command.add_option("--fault", o->scope.faults, "only these of the plan")->allow_extra_args(false);
-  command.add_option("--plan", o->plan, "another plan (TOML) than the shipped one")
+  command.add_option("--plan", o->plan, "plan (TOML); default: the shipped one")
       ->check(CLI::ExistingFile);
   command.add_option("--resume", o->resume,
-                     "file that keeps what is done, and that a later run goes on from");
-  command.add_option("--threads", o->threads, "default: one for each processor")
+                     "file of finished parts, from which a later run continues");
+  command.add_option("--threads", o->threads, "number of threads; default: one per processor")
       ->check(CLI::Range(1, 1024));
-  command.add_flag("--details", o->details, "print which names came first, too");
+  command.add_flag("--details", o->details, "print the first names of alarms as well");
   add_json(command, o->json);
   add_report(command, o->report);
   command.add_option("--markdown", o->markdown, "file for the tables (Markdown)");

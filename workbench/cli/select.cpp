@@ -16,22 +16,23 @@
 namespace workbench::cli {
 namespace {
 
-using select::Outcome;
-using select::Request;
+using select::SelectOutcome;
+using select::SelectRequest;
 
 constexpr const char* kWipe = "\r\x1b[K";
 
-int run(const Request& request) {
+int run(const SelectRequest& request) {
   check_outputs({{.option = "--json", .file = request.json}},
                 {.model = request.record, .records = {}});
   const Interrupt interrupt;
   const bool renewed = isatty(STDERR_FILENO) == 1;
-  const auto show = [&](const select::Progress& progress) {
+  const auto show = [&](const select::SelectProgress& progress) {
     if (request.quiet) return;
     std::cerr << (renewed ? kWipe : "") << progress.done << " of " << progress.of << ": "
               << progress.doing << (renewed ? "" : "\n") << std::flush;
   };
-  const Outcome outcome = compare_structures(request, show, [] { return Interrupt::requested(); });
+  const SelectOutcome outcome =
+      compare_structures(request, show, [] { return Interrupt::requested(); });
   if (renewed && !request.quiet) std::cerr << kWipe << std::flush;
   if (!present::write_json(to_json(outcome), request.json)) std::cout << to_text(outcome);
   return Interrupt::exit_code();
@@ -40,7 +41,7 @@ int run(const Request& request) {
 }  // namespace
 
 void add_select(CLI::App& command, int& exit_code) {
-  auto request = std::make_shared<Request>();
+  auto request = std::make_shared<SelectRequest>();
   add_record(command, request->record);
   command
       .add_option("--structures", request->structures,
@@ -52,7 +53,7 @@ void add_select(CLI::App& command, int& exit_code) {
       .add_option("--delay", request->delay,
                   "samples from u to y, of the usual structures; without it found in the record")
       ->check(number_within(0, 50));
-  command.add_option("--period", request->period_s, "s: the motion's period, or another unit")
+  command.add_option("--period", request->period_s, "s: period of the motion, or another unit")
       ->check(positive_number())
       ->capture_default_str();
   command

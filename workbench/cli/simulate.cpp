@@ -92,7 +92,7 @@ std::vector<const char*> column_names(const SimulateArguments& arguments) {
 
 /// Their values in that order.
 std::vector<double> further_of(const simulate::LoopRow& row,
-                               std::optional<simulate::Transducers>& transducers) {
+                               std::optional<simulate::SimulatedTransducers>& transducers) {
   std::vector<double> values{row.reference_m, row.u_requested_V, row.saturated ? 1.0 : 0.0};
   if (!transducers) return values;
   const config::signals::Pressures read = transducers->read(row.pressures);
@@ -103,7 +103,7 @@ std::vector<double> further_of(const simulate::LoopRow& row,
 config::record::Record simulate_record(const SimulateArguments& arguments,
                                        const simulate::Scenario& scenario) {
   simulate::ClosedLoop loop(scenario, arguments.seed);
-  std::optional<simulate::Transducers> transducers;
+  std::optional<simulate::SimulatedTransducers> transducers;
   if (arguments.pressures) transducers.emplace(scenario.instruments, arguments.seed);
   const auto samples = std::llround(arguments.duration_s / simulate::kSampleTime_s);
   const bool show = isatty(STDERR_FILENO) == 1;
@@ -159,7 +159,9 @@ void add_simulate(CLI::App& command, int& /*exit_code*/) {
   command.add_option("--duration", arguments->duration_s, "seconds to simulate")
       ->check(number_within(simulate::kSampleTime_s, 1e6))
       ->capture_default_str();
-  command.add_option("--seed", arguments->seed, "of the noise; same seed, same bytes")
+  command
+      .add_option("--seed", arguments->seed,
+                  "seed of the noise; the same seed gives the same bytes")
       ->check(number_within(0.0, 1e18))
       ->capture_default_str();
   command.add_option(

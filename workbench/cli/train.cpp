@@ -118,13 +118,14 @@ void run(const TrainOptions& options) {
 
 void add_train(CLI::App& command, int& /*exit_code*/) {
   auto options = std::make_shared<TrainOptions>();
-  command.add_option("config", options->config, "configuration with what is to be trained")
+  command.add_option("config", options->config, "configuration with the methods to train")
       ->required();
-  command.add_option("--healthy", options->healthy, "records when all is well: CSV, MAT, LCM log")
+  command
+      .add_option("--healthy", options->healthy, "records of the healthy rig: CSV, MAT, LCM log")
       ->required();
   command.add_option("--class", options->classes,
                      "NAME=RECORD of a fault; NAME+= when it has risen, NAME-= when fallen");
-  command.add_option("-o,--output", options->out, "file for what is learned")->required();
+  command.add_option("-o,--output", options->out, "output file (TOML)")->required();
   command.callback([options] { run(*options); });
 }
 

@@ -1,14 +1,10 @@
-#include "workbench/compare/json.h"
+#include "workbench/compare/comparison_report.h"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "workbench/compare/words.h"
 #include "workbench/present/json.h"
 
 namespace workbench::compare {
-
-namespace validation = estimator::greybox::validation;
 namespace {
 
 using nlohmann::ordered_json;
@@ -36,17 +32,8 @@ ordered_json json_of(const validation::SignificantRegion& failing) {
 }
 
 const char* to_string(Judgement judgement) {
-  switch (judgement) {
-    case Judgement::at_floor:
-      return "at_floor";
-    case Judgement::fails_somewhere:
-      return "fails_somewhere";
-    case Judgement::fails_throughout:
-      return "fails_throughout";
-    case Judgement::useless:
-      break;
-  }
-  return "useless";
+  constexpr const char* kTexts[] = {"at_floor", "fails_somewhere", "fails_throughout", "useless"};
+  return kTexts[static_cast<std::size_t>(judgement)];
 }
 
 }  // namespace
@@ -89,7 +76,7 @@ std::string to_json(const validation::Comparison& c) {
   out["samples"] = c.record.size();
   out["segments"] = c.record.starts.size();
   out["duration_s"] = number_or_null(c.duration_s());
-  out["notes"] = c.notes;
+  out["notes"] = notes(c);
   return out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 

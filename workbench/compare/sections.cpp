@@ -1,29 +1,26 @@
-#include "workbench/compare/sections.h"
-
-#include <cmath>
 #include <filesystem>
-#include <limits>
 
-#include "workbench/compare/words.h"
-#include "workbench/present/binned.h"
+#include "config/signals/nan.h"
+#include "config/units/quantity.h"
+#include "workbench/compare/comparison_report.h"
 #include "workbench/present/compare_units.h"
-#include "workbench/present/error_definitions.h"
 #include "workbench/present/record_section.h"
 
 namespace workbench::compare {
 
+namespace units = config::units;
+
 namespace greybox = estimator::greybox;
-namespace validation = estimator::greybox::validation;
 namespace {
 
-using present::Kind;
 using present::Plot;
+using present::PlotKind;
 using present::Section;
 using present::Series;
 using present::Tone;
 using present::Width;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 
 /// Values times a factor, with a break between segments; of settled samples only where asked.
 template <class F>
@@ -100,11 +97,10 @@ present::Table worst_table(const validation::Comparison& c) {
                    {"of the time", "%"}};
   for (const validation::SignificantRegion& failing : c.worst) {
     if (failing.significant) table.marked_rows.push_back(table.rows.size());
-    table.rows.push_back({present::where(failing),
-                          present::three_digits(1e6 * failing.figures.rms_m),
-                          present::three_digits(1e3 * failing.figures.local_velocity_error_rms_mps),
-                          present::three_digits(100.0 * failing.figures.local_velocity_error_share),
-                          present::three_digits(100.0 * failing.figures.time_share)});
+    table.rows.push_back({present::where(failing), units::three_digits(1e6 * failing.figures.rms_m),
+                          units::three_digits(1e3 * failing.figures.local_velocity_error_rms_mps),
+                          units::three_digits(100.0 * failing.figures.local_velocity_error_share),
+                          units::three_digits(100.0 * failing.figures.time_share)});
   }
   return table;
 }
@@ -122,10 +118,10 @@ Section where_section(const validation::Comparison& c) {
   section.tables_first = true;
   section.tables.push_back(worst_table(c));
   for (const validation::Region& region : c.regions) {
-    const present::Unit unit = present::unit_of(region.variable);
+    const present::DisplayUnit unit = present::unit_of(region.variable);
     Plot plot;
     plot.title = std::string("By ") + unit.name;
-    plot.kind = Kind::bars;
+    plot.kind = PlotKind::bars;
     plot.width = Width::half;
     plot.x = {unit.name, unit.text};
     plot.y = {"speed error RMS", "mm/s"};
@@ -142,11 +138,11 @@ Section where_section(const validation::Comparison& c) {
 
 Plot against(const validation::Comparison& c, const std::string& variable,
              const std::vector<double>& values) {
-  const present::Unit unit = present::unit_of(variable);
+  const present::DisplayUnit unit = present::unit_of(variable);
   const greybox::Dataset& r = c.record;
   Plot plot;
   plot.title = std::string("Against ") + unit.name;
-  plot.kind = Kind::scatter;
+  plot.kind = PlotKind::scatter;
   plot.width = Width::half;
   plot.x = {unit.name, unit.text};
   plot.y = {"speed error", "mm/s"};
@@ -178,25 +174,25 @@ Section against_section(const validation::Comparison& c) {
 present::Table number_table(const validation::Comparison& c) {
   present::Table table;
   table.columns = {{"figure", "", false}, {"value", ""}, {"meaning", "", false}};
-  const std::string gain = present::three_digits(c.observer_per_s);
+  const std::string gain = units::three_digits(c.observer_per_s);
   table.rows.push_back(
-      {"drift-corrected RMS", present::length(c.rms_m),
+      {"drift-corrected RMS", units::length_words(c.rms_m),
        "driven by the measured command; the position corrected towards the measured one "
        "at " +
            gain + " 1/s"});
-  table.rows.push_back({"free-run RMS", present::length(c.free_run_rms_m),
+  table.rows.push_back({"free-run RMS", units::length_words(c.free_run_rms_m),
                         "simulation from each segment's first sample, nothing corrected"});
-  table.rows.push_back({"fit", present::three_digits(c.fit_percent) + " %",
+  table.rows.push_back({"fit", units::three_digits(c.fit_percent) + " %",
                         "100 (1 - |error| / |y - mean|), of the free run"});
   for (const validation::KStep& k : c.k_step) {
-    table.rows.push_back({std::to_string(k.samples) + " ahead, RMS", present::length(k.rms_m),
+    table.rows.push_back({std::to_string(k.samples) + " ahead, RMS", units::length_words(k.rms_m),
                           "position put on the measured one that many samples before"});
   }
-  table.rows.push_back({"noise floor", present::length(c.noise_floor_m),
+  table.rows.push_back({"noise floor", units::length_words(c.noise_floor_m),
                         "noise and rounding of the position, from its own samples"});
-  table.rows.push_back({"whiteness p", present::probability(c.whiteness_p),
+  table.rows.push_back({"whiteness p", units::chance_words(c.whiteness_p),
                         "small: the residual is more than noise (Ljung-Box)"});
-  table.rows.push_back({"independence p", present::probability(c.independence_p),
+  table.rows.push_back({"independence p", units::chance_words(c.independence_p),
                         "small: the residual depends on earlier commands"});
   return table;
 }
@@ -208,11 +204,11 @@ Section number_section(const validation::Comparison& c) {
   section.paragraphs.push_back(
       "Velocity and acceleration: a parabola through the measured positions of 50 ms to either "
       "side. At rest: below " +
-      present::speed(c.kinematics.rest_mps) +
+      units::speed_words(c.kinematics.rest_mps) +
       ". Reversing: from 50 ms before the rod leaves one direction until 50 ms after it goes the "
       "other way. The first half second of each segment does not count, except in the free run. "
       "The speed error is a mean over 50 ms to either side.");
-  for (const std::string& note : c.notes) section.paragraphs.push_back("Note: " + note + ".");
+  for (const std::string& note : notes(c)) section.paragraphs.push_back("Note: " + note + ".");
   return section;
 }
 
@@ -228,11 +224,11 @@ present::Report make_report(const validation::Comparison& c, const std::string& 
   made.title = c.model + " against " + std::filesystem::path(c.record.name).filename().string();
   made.verdict = said.verdict;
   made.summary = said.lines;
-  made.state = said.judgement == Judgement::at_floor  ? present::State::good
-               : said.judgement == Judgement::useless ? present::State::bad
-                                                      : present::State::warn;
+  made.state = said.judgement == Judgement::at_floor  ? present::ReportState::good
+               : said.judgement == Judgement::useless ? present::ReportState::bad
+                                                      : present::ReportState::warn;
   const auto fact = [&](const char* label, double metres) {
-    const std::string said_so = present::length(metres);  // as in the words: "381 um"
+    const std::string said_so = units::length_words(metres);  // as in the words: "381 um"
     const auto gap = said_so.rfind(' ');
     if (gap == std::string::npos) return;
     made.facts.push_back({label, said_so.substr(0, gap), said_so.substr(gap + 1)});
@@ -240,7 +236,7 @@ present::Report make_report(const validation::Comparison& c, const std::string& 
   fact("drift-corrected RMS", c.rms_m);
   fact("noise floor", c.noise_floor_m);
   fact("free-run RMS", c.free_run_rms_m);
-  made.facts.push_back({"fit of the free run", present::three_digits(c.fit_percent), "%"});
+  made.facts.push_back({"fit of the free run", units::three_digits(c.fit_percent), "%"});
   fact("one-step prediction, RMS", c.k_step.front().rms_m);
   made.command = command;
   made.sections = sections(c);

@@ -1,4 +1,5 @@
-#include "workbench/compare/text.h"
+#include "config/units/quantity.h"
+#include "workbench/compare/comparison_report.h"
 
 #include <fmt/format.h>
 
@@ -6,12 +7,11 @@
 #include <cmath>
 #include <vector>
 
-#include "workbench/compare/words.h"
 #include "workbench/present/compare_units.h"
 
 namespace workbench::compare {
 
-namespace validation = estimator::greybox::validation;
+namespace units = config::units;
 namespace {
 
 constexpr std::size_t kColumns = 88;
@@ -61,26 +61,26 @@ std::string numbers(const validation::Comparison& c) {
   };
   const auto times_floor = [&](double rms_m) {
     if (!std::isfinite(c.noise_floor_m) || !std::isfinite(rms_m)) return std::string();
-    return present::three_digits(rms_m / c.noise_floor_m) + " x the noise floor";
+    return units::three_digits(rms_m / c.noise_floor_m) + " x the noise floor";
   };
-  row("drift-corrected", present::length(c.rms_m), times_floor(c.rms_m));
-  row("free run", present::length(c.free_run_rms_m),
-      "fit " + present::three_digits(c.fit_percent) + " %");
+  row("drift-corrected", units::length_words(c.rms_m), times_floor(c.rms_m));
+  row("free run", units::length_words(c.free_run_rms_m),
+      "fit " + units::three_digits(c.fit_percent) + " %");
   for (const validation::KStep& k : c.k_step) {
     const double ahead_s = static_cast<double>(k.samples) * c.record.sample_time_s;
-    row(fmt::format("{}-step prediction", k.samples), present::length(k.rms_m),
+    row(fmt::format("{}-step prediction", k.samples), units::length_words(k.rms_m),
         k.count == 0 ? "no stretch is long enough"
-                     : "over " + present::three_digits(1e3 * ahead_s) + " ms");
+                     : "over " + units::three_digits(1e3 * ahead_s) + " ms");
   }
-  row("noise floor", present::length(c.noise_floor_m),
-      c.encoder_step_m > 0.0 ? "encoder step " + present::length(c.encoder_step_m) : "");
-  row("white", "p " + present::probability(c.whiteness_p), "");
-  row("independent of command", "p " + present::probability(c.independence_p), "");
+  row("noise floor", units::length_words(c.noise_floor_m),
+      c.encoder_step_m > 0.0 ? "encoder step " + units::length_words(c.encoder_step_m) : "");
+  row("white", "p " + units::chance_words(c.whiteness_p), "");
+  row("independent of command", "p " + units::chance_words(c.independence_p), "");
   return out;
 }
 
 std::string chart(const validation::Region& region, bool unicode) {
-  const present::Unit unit = present::unit_of(region.variable);
+  const present::DisplayUnit unit = present::unit_of(region.variable);
   double most = 0.0;
   for (const validation::Bin& bin : region.bins)
     most = std::max(most, bin.local_velocity_error_rms_mps);
@@ -90,8 +90,8 @@ std::string chart(const validation::Region& region, bool unicode) {
                                 "speed err.", "time", "share");
   for (const validation::Bin& bin : region.bins) {
     out += fmt::format("  {:20} {:>9} {:>10} {:5.0f}% {:5.0f}% ",
-                       present::bin_text(region.variable, bin), present::length(bin.rms_m),
-                       present::speed(bin.local_velocity_error_rms_mps), 100.0 * bin.time_share,
+                       present::bin_text(region.variable, bin), units::length_words(bin.rms_m),
+                       units::speed_words(bin.local_velocity_error_rms_mps), 100.0 * bin.time_share,
                        100.0 * bin.local_velocity_error_share) +
            bar(most > 0.0 ? bin.local_velocity_error_rms_mps / most : 0.0, unicode) + "\n";
   }
@@ -126,11 +126,11 @@ std::vector<const validation::Region*> shown(const validation::Comparison& c, bo
 std::string to_text(const validation::Comparison& c, bool unicode, bool all) {
   const Words said = words(c);
   std::string out = fmt::format("{} against {}: {} s, {} samples at {} Hz", c.model, c.record.name,
-                                present::three_digits(c.duration_s()), c.record.size(),
-                                present::three_digits(1.0 / c.record.sample_time_s));
+                                units::three_digits(c.duration_s()), c.record.size(),
+                                units::three_digits(1.0 / c.record.sample_time_s));
   if (c.record.starts.size() > 1) out += fmt::format(", {} segments", c.record.starts.size());
   out += "\n";
-  for (const std::string& note : c.notes) out += wrapped("note: " + note, "  ", "        ");
+  for (const std::string& note : notes(c)) out += wrapped("note: " + note, "  ", "        ");
   out += "\n" + wrapped(said.verdict, "  ", "  ");
   for (const std::string& sentence : said.lines) out += wrapped(sentence, "  - ", "    ");
   out += "\n" + numbers(c);

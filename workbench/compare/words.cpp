@@ -1,12 +1,16 @@
-#include "workbench/compare/words.h"
+#include "config/units/quantity.h"
+#include "workbench/compare/comparison_report.h"
+
+#include <fmt/format.h>
 
 #include <cmath>
 
 #include "workbench/present/compare_units.h"
+#include "workbench/present/dataset_notes.h"
 
 namespace workbench::compare {
 
-namespace validation = estimator::greybox::validation;
+namespace units = config::units;
 namespace {
 
 /// A p value under this is not chance.
@@ -24,15 +28,15 @@ std::string fails_where(const validation::SignificantRegion& failing) {
 std::string in_proportion(double gain_ratio) {
   if (gain_ratio < -1.0) {
     return "the rod moves the other way than the model, " +
-           present::three_digits(-100.0 * (1.0 + gain_ratio)) +
+           units::three_digits(-100.0 * (1.0 + gain_ratio)) +
            " % as far: the sign of the command or of the position is turned";
   }
-  return "the rod moves " + present::three_digits(100.0 * std::abs(gain_ratio)) + " % " +
+  return "the rod moves " + units::three_digits(100.0 * std::abs(gain_ratio)) + " % " +
          (gain_ratio < 0.0 ? "less" : "more") + " than the model";
 }
 
 std::string by_a_constant(double offset_mps) {
-  return "drifts " + present::speed(std::abs(offset_mps)) +
+  return "drifts " + units::speed_words(std::abs(offset_mps)) +
          (offset_mps < 0.0 ? " towards retraction" : " towards extension");
 }
 
@@ -61,21 +65,21 @@ std::string beyond_words(const validation::Comparison& c) {
   const double left_m = c.systematic.left_rms_m;
   if (left_m <= validation::kAtFloor * c.noise_floor_m)
     return "Beyond that it is at the noise floor.";
-  const std::string left = "Beyond that " + present::length(left_m) + " are left";
+  const std::string left = "Beyond that " + units::length_words(left_m) + " are left";
   if (!c.headline.significant) return left + ", with no range standing out.";
   return left + "; it fails " + fails_where(c.headline);
 }
 
 std::string size_words(const validation::Comparison& c) {
-  std::string text = "Error " + present::length(c.rms_m) + " RMS, drift-corrected";
+  std::string text = "Error " + units::length_words(c.rms_m) + " RMS, drift-corrected";
   if (std::isfinite(c.noise_floor_m)) {
-    text += ": " + present::three_digits(c.floor_ratio()) + " times the noise floor of " +
-            present::length(c.noise_floor_m);
+    text += ": " + units::three_digits(c.floor_ratio()) + " times the noise floor of " +
+            units::length_words(c.noise_floor_m);
   } else {
-    text += "; the noise floor cannot be told from this record";
+    text += "; the noise floor cannot be determined from this record";
   }
-  return text + ". Free run: " + present::length(c.free_run_rms_m) + " RMS, fit " +
-         present::three_digits(c.fit_percent) + " %.";
+  return text + ". Free run: " + units::length_words(c.free_run_rms_m) + " RMS, fit " +
+         units::three_digits(c.fit_percent) + " %.";
 }
 
 const validation::Bin* direction(const validation::Comparison& c, const char* name) {
@@ -101,13 +105,13 @@ std::string drift_words(const validation::Comparison& c) {
     if (bin == nullptr || std::abs(bin->speed_error_mps) < least_mps) continue;
     const bool slower = (bin->speed_error_mps < 0.0) == out;
     const bool text_is_new = text.empty();
-    text += (text_is_new ? "" : ", ") + present::speed(std::abs(bin->speed_error_mps)) +
+    text += (text_is_new ? "" : ", ") + units::speed_words(std::abs(bin->speed_error_mps)) +
             (slower ? " slower" : " faster") + (text_is_new ? " than the model" : "") + " while " +
             name;
   }
   if (text.empty()) return {};
   const double end_m = c.free_error_m.back();
-  return "Drifts in the free run, " + present::length(std::abs(end_m)) +
+  return "Drifts in the free run, " + units::length_words(std::abs(end_m)) +
          " at the end: the rod runs " + text + ".";
 }
 
@@ -161,6 +165,38 @@ Words words(const validation::Comparison& c) {
   add(drift_words(c));
   add(dependence_words(c));
   return w;
+}
+
+std::vector<std::string> notes(const validation::Comparison& c) {
+  using Limitation = validation::CommandRange::Limitation;
+  std::vector<std::string> out = present::notes_of(c.record);
+  const double percent = 100.0 * c.command.limited_share;
+  switch (c.command.limitation) {
+    case Limitation::none:
+      break;
+    case Limitation::constant:
+      out.push_back(fmt::format(
+          "the command stays at {:.4g} V: the model is tried at this one value", c.command.most_V));
+      break;
+    case Limitation::always_limited:
+      out.push_back(
+          fmt::format("the command is at +-{:.4g} V in {:.0f} % of the samples: smaller "
+                      "commands are hardly tried",
+                      c.command.most_V, percent));
+      break;
+    case Limitation::often_limited:
+      out.push_back(
+          fmt::format("the command is at its limit of +-{:.4g} V in {:.0f} % of the samples",
+                      c.command.most_V, percent));
+      break;
+  }
+  if (c.beyond_stroke) {
+    out.push_back(
+        fmt::format("y runs from {:.4g} to {:.4g} mm, outside the model's stroke of 0 to {:.4g} mm",
+                    1e3 * c.beyond_stroke->low_m, 1e3 * c.beyond_stroke->high_m,
+                    1e3 * c.beyond_stroke->stroke_m));
+  }
+  return out;
 }
 
 }  // namespace workbench::compare

@@ -1,15 +1,93 @@
 #include "workbench/control/order.h"
 
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <sys/un.h>
+#include <unistd.h>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <iostream>
 
 #include "config/schema/error.h"
-#include "workbench/control/client.h"
 
 namespace workbench::control {
 namespace {
 
 using config::schema::RunError;
+
+constexpr timeval kPatience{3, 0};
+constexpr std::size_t kLongestAnswer = 1 << 20;
+
+class Connection {
+ public:
+  explicit Connection(const std::string& path) : path_(path) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    if (path.size() >= sizeof address.sun_path) fail("the path is too long");
+    path.copy(address.sun_path, path.size());
+    file_ = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    if (file_ < 0) fail(std::strerror(errno));
+    setsockopt(file_, SOL_SOCKET, SO_RCVTIMEO, &kPatience, sizeof kPatience);
+    setsockopt(file_, SOL_SOCKET, SO_SNDTIMEO, &kPatience, sizeof kPatience);
+    if (connect(file_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+      const int error = errno;
+      close(file_);
+      fail(error == ENOENT || error == ECONNREFUSED ? "no daemon is there" : std::strerror(error));
+    }
+  }
+  ~Connection() { close(file_); }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  void send(const std::string& text) const {
+    std::size_t done = 0;
+    while (done < text.size()) {
+      const ssize_t n = ::send(file_, text.data() + done, text.size() - done, MSG_NOSIGNAL);
+      if (n < 0 && errno != EINTR) fail(std::strerror(errno));
+      if (n > 0) done += static_cast<std::size_t>(n);
+    }
+  }
+
+  [[nodiscard]] std::string line() const {
+    std::string text;
+    while (text.find('\n') == std::string::npos) {
+      char bytes[4096];
+      const ssize_t n = recv(file_, bytes, sizeof bytes, 0);
+      if (n < 0 && errno == EINTR) continue;
+      if (n < 0) fail(errno == EAGAIN ? "the daemon does not answer" : std::strerror(errno));
+      if (n == 0) fail("the daemon closed the connection");
+      text.append(bytes, static_cast<std::size_t>(n));
+      if (text.size() > kLongestAnswer) fail("the answer has no end");
+    }
+    return text.substr(0, text.find('\n'));
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& why) const {
+    throw RunError("control socket " + path_ + ": " + why);
+  }
+  std::string path_;
+  int file_ = -1;
+};
+
+}  // namespace
+
+nlohmann::ordered_json ask_daemon(const std::string& socket,
+                                  const nlohmann::ordered_json& request) {
+  const Connection connection(socket);
+  connection.send(request.dump() + '\n');
+  nlohmann::ordered_json answer = nlohmann::ordered_json::parse(connection.line(), nullptr, false);
+  const bool whole = answer.is_object() && answer.contains(monitor::control::key::kOk) &&
+                     answer[monitor::control::key::kOk].is_boolean() &&
+                     answer.contains(monitor::control::key::kState) &&
+                     answer[monitor::control::key::kState].is_string();
+  if (!whole) throw RunError("control socket " + socket + ": the answer makes no sense");
+  return answer;
+}
+
+namespace {
+
 using Json = nlohmann::ordered_json;
 namespace protocol = monitor::control;
 

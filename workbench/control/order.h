@@ -1,6 +1,7 @@
 // What every command to the running daemon shares: its socket, its answer as JSON, its refusal.
 #pragma once
 
+#include <iosfwd>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -17,5 +18,18 @@ struct OrderOptions {
 /// a refusal, or when no daemon answers.
 nlohmann::ordered_json give_order(const nlohmann::ordered_json& request,
                                   const OrderOptions& options);
+
+/// Sends one request and returns the answer. Throws config::schema::RunError when no daemon
+/// answers there within some seconds.
+[[nodiscard]] nlohmann::ordered_json ask_daemon(const std::string& socket,
+                                                const nlohmann::ordered_json& request);
+
+// The daemon's answer to `alarms`, as a table for people.
+
+/// `all`: those that are normal too.
+void print_alarms(const nlohmann::ordered_json& answer, bool all, std::ostream& out);
+
+/// The daemon's answer to `status`, as lines for people.
+void print_status(const nlohmann::ordered_json& status, std::ostream& out);
 
 }  // namespace workbench::control

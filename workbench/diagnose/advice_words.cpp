@@ -9,8 +9,6 @@
 #include "plant_sim/library.h"
 
 namespace workbench::diagnose {
-
-namespace selection = estimator::greybox::selection;
 namespace {
 
 std::string number(double value) { return fmt::format("{:.3g}", value); }
@@ -185,12 +183,12 @@ std::string words_for_unexplained(const std::vector<selection::Localisation>& wh
                                   const std::string& plant) {
   const bool axis = !has_site(plant, "opening");
   if (where.empty()) {
-    return std::string("No effect of the library explains what is left; record ") +
+    return std::string("No effect of the library explains the remaining error; record ") +
            (axis ? "the motor's current and the force on the load."
                  : "the chamber pressures and the spool position.");
   }
   const selection::Localisation& first = where.front();
-  std::string text = std::string("What is left goes ") + of(kVariables, first.variable) +
+  std::string text = std::string("The remaining error goes ") + of(kVariables, first.variable) +
                      " and enters " + of(axis ? kAxisEnters : kEnters, first.site) + " (" +
                      number(100.0 * std::clamp(first.explained_ratio, 0.0, 1.0)) +
                      " % of the held-out squared error): ";

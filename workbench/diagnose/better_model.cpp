@@ -1,15 +1,12 @@
-#include "workbench/diagnose/better_model.h"
+#include "workbench/diagnose/diagnosis_report.h"
 
 #include <algorithm>
 #include <sstream>
 
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
-#include "workbench/diagnose/words.h"
 
 namespace workbench::diagnose {
-
-namespace selection = estimator::greybox::selection;
 namespace {
 
 /// As comment lines; no line break in `text` may end the comment.

@@ -4,9 +4,6 @@
 
 namespace workbench::diagnose {
 
-namespace greybox = estimator::greybox;
-namespace selection = estimator::greybox::selection;
-
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 

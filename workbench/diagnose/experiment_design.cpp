@@ -9,9 +9,6 @@
 #include "workbench/diagnose/advice_words.h"
 
 namespace workbench::diagnose {
-
-namespace greybox = estimator::greybox;
-namespace selection = estimator::greybox::selection;
 namespace {
 
 constexpr std::uint64_t kSeed = 1;

@@ -14,9 +14,6 @@
 
 namespace workbench::diagnose {
 
-namespace greybox = estimator::greybox;
-namespace selection = estimator::greybox::selection;
-
 /// Error of a wrong explanation, over the noise, from which a motion tells two apart.
 inline constexpr double kSeparates = 1.15;
 

@@ -1,15 +1,11 @@
-#include "workbench/diagnose/json.h"
+#include "workbench/diagnose/diagnosis_report.h"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "config/schema/joined.h"
-#include "workbench/diagnose/words.h"
 #include "workbench/present/json.h"
 
 namespace workbench::diagnose {
-
-namespace selection = estimator::greybox::selection;
 namespace {
 
 using present::number_or_null;
@@ -88,7 +84,7 @@ std::string to_json(const DiagnosisReport& outcome) {
   json["floor"] = {{"sensor_m", number_or_null(d.noise_floor_m)},
                    {"disturbed_m", number_or_null(d.disturbed_floor_m)}};
   json["steps"] = Json::array();
-  for (const selection::Step& step : d.steps) {
+  for (const selection::SelectionStep& step : d.steps) {
     Json one;
     one["added"] = step.added.empty() ? Json(nullptr) : Json(step.added);
     one["rms_heldout_m"] = number_or_null(step.validation_rms_m);
@@ -96,7 +92,7 @@ std::string to_json(const DiagnosisReport& outcome) {
   }
   json["advice"] = outcome.advice;
   json["words"] = verdict_words(d);
-  json["notes"] = d.notes;
+  json["notes"] = notes(outcome);
   json["interrupted"] = outcome.interrupted;
   json["model"] = outcome.prepared->model_file;
   json["records"] = outcome.prepared->records;

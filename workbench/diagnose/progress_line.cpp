@@ -9,8 +9,6 @@
 #include "config/units/quantity.h"
 
 namespace workbench::diagnose {
-
-namespace selection = estimator::greybox::selection;
 namespace {
 
 constexpr std::chrono::milliseconds kPeriod{100};
@@ -23,7 +21,7 @@ std::size_t columns() {
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kColumns;
 }
 
-std::string best_words(const selection::Progress& progress, double noise_floor_m) {
+std::string best_words(const selection::SearchProgress& progress, double noise_floor_m) {
   std::string floor = "noise floor " + config::units::length_words(noise_floor_m);
   if (progress.best.empty()) return floor;
   return "best " + progress.best + " " + config::units::length_words(progress.best_rms_m) + ", " +
@@ -35,32 +33,33 @@ std::string best_words(const selection::Progress& progress, double noise_floor_m
 ProgressLine::ProgressLine(std::ostream& out, bool renewed, double noise_floor_m)
     : out_(out), renewed_(renewed), noise_floor_m_(noise_floor_m) {}
 
-void ProgressLine::rank(const selection::Progress& progress) {
-  const std::string round = progress.doing.substr(0, progress.doing.find(':'));
-  if (progress.expected.empty() || round == ranked_) return;
-  ranked_ = round;
+void ProgressLine::rank(const selection::SearchProgress& progress) {
+  if (progress.expected.empty() || progress.round == ranked_) return;
+  ranked_ = progress.round;
   std::string names;
   for (std::size_t i = 0; i < std::min(kRanked, progress.expected.size()); ++i) {
     names += (i == 0 ? "" : ", ") + progress.expected[i];
   }
-  out_ << (renewed_ ? kWipe : "") << round << ": at first sight " << names << std::endl;
+  out_ << (renewed_ ? kWipe : "") << "round " << progress.round
+       << ": ranked by screening: " << names << std::endl;
 }
 
-void ProgressLine::show(const selection::Progress& progress) {
+void ProgressLine::show(const selection::SearchProgress& progress) {
   rank(progress);
   if (!renewed_) {
-    const std::string round = progress.doing.substr(0, progress.doing.find(':'));
-    if (round == round_) return;
-    round_ = round;
-    out_ << round << ": " << progress.of << " steps, " << best_words(progress, noise_floor_m_)
-         << std::endl;
+    if (progress.round == round_) return;
+    round_ = progress.round;
+    out_ << "round " << progress.round << ": " << progress.of << " steps, "
+         << best_words(progress, noise_floor_m_) << std::endl;
     return;
   }
   const auto now = std::chrono::steady_clock::now();
   if (now - last_ < kPeriod && progress.done < progress.of) return;
   last_ = now;
-  std::string line = progress.doing + ", " + std::to_string(progress.done) + " of " +
-                     std::to_string(progress.of) + "; " + best_words(progress, noise_floor_m_);
+  std::string line = "round " + std::to_string(progress.round) +
+                     (progress.screening ? ": screening " : ": fitting ") + progress.effect + ", " +
+                     std::to_string(progress.done) + " of " + std::to_string(progress.of) + "; " +
+                     best_words(progress, noise_floor_m_);
   line.resize(std::min(line.size(), columns() - 1));
   out_ << kWipe << line << std::flush;
 }

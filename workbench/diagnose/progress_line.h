@@ -1,9 +1,8 @@
-// How far a diagnosis is: one line that is renewed on a terminal, a line for each round elsewhere.
+// Progress of a diagnosis: one line that is renewed on a terminal, elsewhere one line per round.
 #pragma once
 
 #include <chrono>
 #include <iosfwd>
-#include <string>
 
 #include "estimator/greybox/selection/problem.h"
 
@@ -16,18 +15,18 @@ class ProgressLine {
   /// `renewed`: `out` is a terminal. The stream must outlive this object.
   ProgressLine(std::ostream& out, bool renewed, double noise_floor_m);
 
-  void show(const selection::Progress& progress);
+  void show(const selection::SearchProgress& progress);
   /// Wipes the renewed line.
   void end();
 
  private:
-  void rank(const selection::Progress& progress);
+  void rank(const selection::SearchProgress& progress);
 
   std::ostream& out_;
   bool renewed_;
   double noise_floor_m_;
-  std::string round_;   ///< of which a line has been written
-  std::string ranked_;  ///< of which the quick look has been written
+  int round_ = 0;   ///< latest round whose line was written
+  int ranked_ = 0;  ///< latest round whose ranking was written
   std::chrono::steady_clock::time_point last_{};
 };
 

@@ -1,31 +1,25 @@
 // The sections of the report that hold each record against the model before and after.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "config/units/quantity.h"
+#include "config/signals/nan.h"
 #include "estimator/greybox/kinematics.h"
-#include "workbench/diagnose/report_pages.h"
-#include "workbench/diagnose/words.h"
-#include "workbench/present/binned.h"
+#include "workbench/diagnose/diagnosis_report.h"
+#include "workbench/present/plot_data.h"
 #include "workbench/present/record_section.h"
-#include "workbench/present/thin.h"
 
 namespace workbench::diagnose {
-
-namespace greybox = estimator::greybox;
-namespace selection = estimator::greybox::selection;
 namespace {
 
-using present::Kind;
 using present::Plot;
+using present::PlotKind;
 using present::Section;
 using present::Series;
 using present::Tone;
 
 using Values = std::vector<double>;
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 constexpr std::size_t kCloud = 2'500;
 /// Residuals above this are drawn in millimetres.
 constexpr double kMillimetres_m = 2e-3;
@@ -45,7 +39,7 @@ struct Page {
   const greybox::Dataset& record;
   greybox::Kinematics kinematics;
   Values file_m, before_m, after_m, free_file_m, free_after_m;  ///< NaN where it does not count
-  double noise_floor_m = kNone;
+  double noise_floor_m = kNaN;
   bool improved = false;  ///< something was added
 };
 
@@ -57,7 +51,7 @@ Values times(const Values& values, double factor) {
 }
 
 Values cut(const Eigen::VectorXd& series_m, std::size_t start, const greybox::Dataset& record) {
-  Values out(record.size(), kNone);
+  Values out(record.size(), kNaN);
   if (series_m.size() == 0) return out;
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (record.valid[i] != 0) out[i] = series_m[static_cast<Eigen::Index>(start + i)];
@@ -76,7 +70,7 @@ Scale scale_of(const Values& residual_m) {
 /// Nothing is drawn across a gap.
 Values broken_at_gaps(Values values, const greybox::Dataset& record) {
   for (const std::size_t start : record.starts) {
-    if (start > 0) values[start] = kNone;
+    if (start > 0) values[start] = kNaN;
   }
   return values;
 }
@@ -104,7 +98,7 @@ Plot position_plot(const Page& page, bool fitted) {
   plot.series.push_back({.name = "better model, free run",
                          .y = model_mm(page, page.free_after_m),
                          .tone = Tone::improved});
-  plot.caption = "Free run: nothing is corrected, errors add up.";
+  plot.caption = "Free run: without correction, errors accumulate.";
   return plot;
 }
 
@@ -122,7 +116,7 @@ Plot command_plot(const Page& page) {
   plot.series.push_back({.name = "command",
                          .y = broken_at_gaps(page.record.u_V, page.record),
                          .tone = Tone::muted,
-                         .kind = Kind::steps});
+                         .kind = PlotKind::steps});
   return plot;
 }
 
@@ -147,7 +141,7 @@ Plot against(const Page& page, const std::string& what, const std::string& unit,
   const Values before = times(page.before_m, scale.per_m);
   const Values after = times(page.after_m, scale.per_m);
   Plot plot{.title = "Residual against " + what,
-            .kind = Kind::scatter,
+            .kind = PlotKind::scatter,
             .x = {what, unit},
             .y = {"measured − model", scale.unit},
             .width = present::Width::half};
@@ -183,7 +177,7 @@ Section section_of(const Page& page, bool fitted, const std::string& heading) {
         std::string(page.improved ? ". Before: the model's own parameters fitted, nothing added; "
                                     "after: the better model."
                                   : ".") +
-        " In the clouds an even choice of the samples and their outline is drawn; a curve that "
+        " Point clouds show an even selection of the samples and their outline; a curve that "
         "leaves zero is physics that the model lacks."};
     if (page.improved) {
       section.plots.push_back(

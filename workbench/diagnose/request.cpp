@@ -10,9 +10,6 @@
 #include "workbench/cli/file_check.h"
 
 namespace workbench::diagnose {
-
-namespace greybox = estimator::greybox;
-namespace selection = estimator::greybox::selection;
 namespace {
 
 void check_files(const DiagnosisRequest& request) {

@@ -12,9 +12,6 @@
 #include "workbench/simulate/closed_loop.h"
 
 namespace workbench::diagnose {
-
-namespace greybox = estimator::greybox;
-namespace selection = estimator::greybox::selection;
 namespace {
 
 using monitor::control::ReferenceConfig;

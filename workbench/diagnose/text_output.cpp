@@ -1,4 +1,4 @@
-#include "workbench/diagnose/text_output.h"
+#include "workbench/diagnose/diagnosis_report.h"
 
 #include <fmt/format.h>
 
@@ -9,11 +9,8 @@
 
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
-#include "workbench/diagnose/words.h"
 
 namespace workbench::diagnose {
-
-namespace selection = estimator::greybox::selection;
 namespace {
 
 constexpr std::size_t kLine = 96;
@@ -102,13 +99,13 @@ void print_candidates(const selection::Diagnosis& d, std::ostream& out) {
     std::sort(effects.begin(), effects.end());
     out << "  " << padded(config::schema::listed(candidate.effects), 34) << "  "
         << padded(config::units::length_words(candidate.validation_rms_m), 10, true) << "  p "
-        << (effects == taken ? padded(config::units::chance_words(candidate.p_value), 11) +
+        << (effects == taken ? padded(config::units::chance_words(candidate.p_value), 7) +
                                    (stayed(d.search, taken) ? "  taken" : "  taken, dropped later")
                              : config::units::chance_words(candidate.p_value))
         << '\n';
     ++shown;
   }
-  if (shown == 0) out << "  none: at first sight every one leaves the error as it is\n";
+  if (shown == 0) out << "  none: in the screening no candidate reduces the error\n";
 }
 
 void print_parameters(const DiagnosisReport& outcome, std::ostream& out) {
@@ -144,7 +141,7 @@ void print(const DiagnosisReport& outcome, std::ostream& out) {
         << wrapped(outcome.prepared->model_file + ": " + split_words(outcome) +
                    fmt::format("; {:.1f} s.", d.runtime_s));
   }
-  for (const std::string& note : d.notes) out << wrapped("note: " + note);
+  for (const std::string& note : notes(outcome)) out << wrapped("note: " + note);
   const std::string next = next_command(outcome);
   if (!next.empty()) out << "next: " << next << '\n';
 }

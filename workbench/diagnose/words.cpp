@@ -1,4 +1,4 @@
-#include "workbench/diagnose/words.h"
+#include "workbench/diagnose/diagnosis_report.h"
 
 #include <fmt/format.h>
 
@@ -7,13 +7,12 @@
 
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
+#include "estimator/greybox/representative_segments.h"
 #include "workbench/diagnose/disturbance_words.h"
-#include "workbench/present/shell_command.h"
+#include "workbench/present/dataset_notes.h"
+#include "workbench/present/text.h"
 
 namespace workbench::diagnose {
-
-namespace greybox = estimator::greybox;
-namespace selection = estimator::greybox::selection;
 namespace {
 
 std::string percent(double ratio) { return fmt::format("{:.0f} %", 100.0 * ratio); }
@@ -26,12 +25,15 @@ std::string beside_floor(const selection::Diagnosis& d, double rms_m) {
          config::units::length_words(d.disturbed_floor_m);
 }
 
-std::string effects_words(const selection::Diagnosis& d) {
-  std::string text;
-  for (const std::string& effect : d.missing) {
-    text += (text.empty() ? "" : "; ") + effect_words(d, effect);
-  }
-  return text;
+std::string effects_words(const selection::Diagnosis& d, const std::vector<std::string>& effects) {
+  const auto text = [&](const std::string& effect) { return effect_words(d, effect); };
+  return config::schema::joined_by(effects, text, "; ");
+}
+
+/// "a or b; c or d".
+std::string groups_words(const selection::Diagnosis& d) {
+  const auto text = [](const auto& group) { return config::schema::listed(group, "or"); };
+  return config::schema::joined_by(d.ambiguous, text, "; ");
 }
 
 /// The found effects that no rival disputes.
@@ -48,19 +50,9 @@ std::vector<std::string> undisputed(const selection::Diagnosis& d) {
 }
 
 std::string undetermined_words(const selection::Diagnosis& d) {
-  std::string groups;
-  for (const auto& group : d.ambiguous)
-    groups += (groups.empty() ? "" : "; ") + config::schema::listed(group, "or");
   const std::vector<std::string> sure = undisputed(d);
-  std::string text = "Undetermined: " + groups + " is missing, and this motion cannot tell which.";
-  if (!sure.empty()) {
-    text += " Missing in any case: ";
-    for (std::size_t i = 0; i < sure.size(); ++i) {
-      text += (i == 0 ? "" : "; ") + effect_words(d, sure[i]);
-    }
-    text += ".";
-  }
-  return text;
+  return "Undetermined: " + groups_words(d) + " is missing, and this motion cannot tell which." +
+         (sure.empty() ? "" : " Missing in any case: " + effects_words(d, sure) + ".");
 }
 
 std::string unexplained_words(const selection::Diagnosis& d) {
@@ -71,14 +63,10 @@ std::string unexplained_words(const selection::Diagnosis& d) {
            rest + ".";
   }
   if (d.missing.empty()) {
-    return "Unexplained: " + rest + ", and no effect of the library takes it away.";
+    return "Unexplained: " + rest + ", and no effect of the library explains it.";
   }
-  return "Not the whole story: " + config::schema::listed(d.missing) +
+  return "Incomplete: " + config::schema::listed(d.missing) +
          (d.missing.size() > 1 ? " are" : " is") + " missing, but " + rest + ".";
-}
-
-std::string reason_of(const selection::Diagnosis& d) {
-  return d.notes.empty() ? "the records hardly move" : d.notes.back();
 }
 
 std::string fall_words(const selection::Diagnosis& d) {
@@ -98,14 +86,11 @@ std::string fall_words(const selection::Diagnosis& d) {
 
 void add_rivals(const selection::Diagnosis& d, std::vector<std::string>& out) {
   if (d.verdict != selection::Verdict::undetermined && !d.ambiguous.empty()) {
-    std::string groups;
-    for (const auto& group : d.ambiguous)
-      groups += (groups.empty() ? "" : "; ") + config::schema::listed(group, "or");
-    out.push_back("This motion cannot tell apart: " + groups + ".");
+    out.push_back("This motion cannot tell apart: " + groups_words(d) + ".");
   }
   for (const auto& group : d.same_here) {
     out.push_back("On this plant " + config::schema::listed(group) +
-                  " act alike, whatever the motion: the name is a choice, the better model the "
+                  " are equivalent for every motion: the name is a choice, the better model the "
                   "same.");
   }
 }
@@ -143,6 +128,40 @@ std::string where_words(const selection::Localisation& where) {
   return enters + " that goes with " + variable;
 }
 
+std::string excitation_words(const selection::Excitation& excitation) {
+  using Cause = selection::Excitation::Cause;
+  const auto millimetres = [](double m) { return fmt::format("{:.3g} mm", 1e3 * m); };
+  switch (excitation.cause) {
+    case Cause::sufficient:
+      break;
+    case Cause::no_motion:
+      return "the rod moves by " + millimetres(excitation.travel_m) + " in all, " +
+             millimetres(excitation.noise_floor_m) + " of it noise";
+    case Cause::command_at_limit:
+      return "the command stays at its limit throughout";
+  }
+  return "the records hardly move";
+}
+
+std::vector<std::string> notes(const DiagnosisReport& outcome) {
+  const selection::Diagnosis& d = outcome.diagnosis;
+  const greybox::FitDataset& data = outcome.prepared->problem.data;
+  std::vector<std::string> out;
+  for (const greybox::Dataset& record : data.records) {
+    for (const std::string& note : present::notes_of(record)) {
+      out.push_back(record.name + ": " + note);
+    }
+  }
+  if (!d.excitation.sufficient()) out.push_back(excitation_words(d.excitation));
+  if (d.searched_s) {
+    out.push_back("effects were searched for in " + std::to_string(std::lround(*d.searched_s)) +
+                  " of " + std::to_string(std::lround(greybox::length_s(data))) +
+                  " s; values and errors are those of all samples");
+  }
+  if (d.search.interrupted) out.emplace_back("interrupted: the best so far");
+  return out;
+}
+
 std::string verdict_words(const selection::Diagnosis& d) {
   switch (d.verdict) {
     case selection::Verdict::nothing_missing:
@@ -153,7 +172,7 @@ std::string verdict_words(const selection::Diagnosis& d) {
       return "Nothing is missing: the model, its own parameters adjusted, is left with " +
              beside_floor(d, d.rms_after_m) + ", and no effect of the library lowers it further.";
     case selection::Verdict::missing:
-      return "Missing: " + effects_words(d) + ".";
+      return "Missing: " + effects_words(d, d.missing) + ".";
     case selection::Verdict::undetermined:
       return undetermined_words(d);
     case selection::Verdict::unexplained:
@@ -161,7 +180,7 @@ std::string verdict_words(const selection::Diagnosis& d) {
     case selection::Verdict::not_excited:
       break;
   }
-  return "The record cannot tell: " + reason_of(d) + ".";
+  return "The record cannot tell: " + excitation_words(d.excitation) + ".";
 }
 
 std::vector<std::string> remarks(const DiagnosisReport& outcome) {
@@ -174,14 +193,14 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
   }
   if (d.verdict != selection::Verdict::not_excited) out.push_back(fall_words(d));
   const bool named = d.verdict == selection::Verdict::missing || d.missing.empty();
-  if (!named) out.push_back("Taken for the better model: " + effects_words(d) + ".");
+  if (!named) out.push_back("Used in the better model: " + effects_words(d, d.missing) + ".");
   if (d.disturbance) {
     out.push_back("What remains does not follow from command or motion: " +
                   disturbance_words(*d.disturbance) + ".");
   }
   add_rivals(d, out);
   if (!d.where.empty()) {
-    std::string text = "What is left enters " + where_words(d.where[0]) + " (" +
+    std::string text = "The remaining error enters " + where_words(d.where[0]) + " (" +
                        percent(d.where[0].explained_ratio) + " of its square)";
     if (d.where.size() > 1) {
       text += ", or " + where_words(d.where[1]) + " (" + percent(d.where[1].explained_ratio) + ")";
@@ -230,7 +249,7 @@ std::vector<StepWords> step_words(const selection::Diagnosis& diagnosis) {
   std::vector<StepWords> steps;
   if (diagnosis.steps.empty()) return steps;
   steps.push_back({"model file as it is", diagnosis.nominal_rms_m});
-  for (const selection::Step& step : diagnosis.steps) {
+  for (const selection::SelectionStep& step : diagnosis.steps) {
     steps.push_back(
         {step.added.empty() ? "its parameters fitted" : "+ " + step.added, step.validation_rms_m});
   }

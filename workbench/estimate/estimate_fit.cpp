@@ -92,7 +92,8 @@ Data prepare(const Record& record, const EstimateOptions& options) {
   return data;
 }
 
-void score(Judged& judged, const Data& data, Range range, const estimator::Structure& structure) {
+void score(JudgedEstimate& judged, const Data& data, Range range,
+           const estimator::Structure& structure) {
   const std::span coefficients(judged.estimate.value.data(),
                                static_cast<std::size_t>(structure.size()));
   std::vector<std::size_t> edges = gaps_in(data, range);
@@ -120,9 +121,9 @@ void score(Judged& judged, const Data& data, Range range, const estimator::Struc
   judged.one_step_rms_m = std::sqrt(one_step_m2 / one_step_samples);
 }
 
-Judged judged_window(const Data& data, Range range, const estimator::Estimate& estimate,
-                     const estimator::Structure& structure) {
-  Judged judged;
+JudgedEstimate judged_window(const Data& data, Range range, const estimator::Estimate& estimate,
+                             const estimator::Structure& structure) {
+  JudgedEstimate judged;
   judged.estimate = estimate;
   judged.from_s = data.t_s[range.begin];
   judged.to_s = data.t_s[range.end - 1];
@@ -136,9 +137,9 @@ int in_samples(double time_s, double sample_time_s) {
 
 /// Runs `engine` over the fitted range and judges what it gives each time it is due.
 template <class Engine, class Due>
-std::vector<Judged> run_windows(Engine& engine, const Data& data, Range fitted, int window,
-                                const estimator::Structure& structure, Due&& due) {
-  std::vector<Judged> windows;
+std::vector<JudgedEstimate> run_windows(Engine& engine, const Data& data, Range fitted, int window,
+                                        const estimator::Structure& structure, Due&& due) {
+  std::vector<JudgedEstimate> windows;
   for (std::size_t i = fitted.begin; i < fitted.end; ++i) {
     if (i > fitted.begin && std::binary_search(data.gaps.begin(), data.gaps.end(), i)) {
       const double lost = std::round((data.t_s[i] - data.t_s[i - 1]) / data.sample_time_s) - 1.0;

@@ -1,7 +1,6 @@
 // ARX structures fitted to a record and judged on it: what `spoolwatch estimate` computes.
 #pragma once
 
-#include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>
@@ -29,7 +28,7 @@ struct EstimateOptions {
 };
 
 /// Coefficients and how well they predict.
-struct Judged {
+struct JudgedEstimate {
   estimator::Estimate estimate;
   double from_s = 0.0;   ///< first sample fitted
   double to_s = 0.0;     ///< last sample fitted
@@ -39,10 +38,10 @@ struct Judged {
 };
 
 struct EstimateResult {
-  Judged whole;
+  JudgedEstimate whole;
   double scored_from_s = 0.0;  ///< what cost and RMS of `whole` are taken over
   double scored_to_s = 0.0;
-  std::vector<Judged> windows;
+  std::vector<JudgedEstimate> windows;
 };
 
 /// The errors are taken over the samples that were not fitted (those after fit_to, or else those

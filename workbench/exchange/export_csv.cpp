@@ -1,9 +1,8 @@
-#include "workbench/exchange/export_csv.h"
-
 #include <charconv>
 #include <cmath>
 #include <iostream>
 #include <limits>
+#include <map>
 #include <string_view>
 
 #include "config/record/record.h"
@@ -11,6 +10,8 @@
 #include "config/schema/error.h"
 #include "spoolwatch/alarm_t.hpp"
 #include "spoolwatch/estimate_t.hpp"
+#include "workbench/exchange/export.h"
+#include "workbench/exchange/mcap_writer.h"
 #include "workbench/exchange/source.h"
 #include "workbench/live/listen_lines.h"
 
@@ -117,6 +118,49 @@ void export_csv(const std::string& input, const std::string& kind, const std::st
   Table table(sample_time_s(input), kind == "alarm" ? kAlarmHeader : kEstimateHeader);
   read_log(input, {kind}, table);
   config::record::write_whole(output, table.text());
+}
+
+namespace {
+
+constexpr std::size_t kMostTopics = 10'000;
+
+/// The JSON schema of an object like this one; what is missing in it may be a number.
+Tree schema_of(const Tree& value) {
+  if (value.is_boolean()) return {{"type", "boolean"}};
+  if (value.is_string()) return {{"type", "string"}};
+  if (value.is_number_integer()) return {{"type", "integer"}};
+  if (!value.is_object()) return {{"type", "number"}};
+  Tree properties = Tree::object();
+  for (const auto& [key, part] : value.items()) properties[key] = schema_of(part);
+  return {{"type", "object"}, {"properties", properties}};
+}
+
+}  // namespace
+
+std::string json_lines(const std::string& input, const Kinds& kinds) {
+  std::string lines;
+  each_message(input, kinds, [&lines](const Message& message) {
+    lines += text_of(with_timestamp(message)) + '\n';
+  });
+  return lines;
+}
+
+std::string mcap_file(const std::string& input, const Kinds& kinds) {
+  McapWriter writer("spoolwatch");
+  std::map<std::string, std::uint16_t> channels;
+  each_message(input, kinds, [&](const Message& message) {
+    auto channel = channels.find(message.topic);
+    if (channel == channels.end()) {
+      if (channels.size() == kMostTopics) {
+        throw config::schema::bad_data(input, "has more than 10000 sources and alarms");
+      }
+      const std::uint16_t number = writer.add_channel(
+          "/" + message.topic, "spoolwatch." + message.kind, text_of(schema_of(message.values)));
+      channel = channels.emplace(message.topic, number).first;
+    }
+    writer.add(channel->second, message.t_ns, text_of(message.values));
+  });
+  return writer.finish();
 }
 
 }  // namespace workbench::exchange

@@ -1,9 +1,10 @@
-#include "workbench/exchange/export_mat.h"
+#include "workbench/exchange/export.h"
 
 #include <cmath>
 #include <iostream>
 #include <map>
 
+#include "config/signals/nan.h"
 #include "spoolwatch/alarm_t.hpp"
 #include "spoolwatch/estimate_t.hpp"
 #include "spoolwatch/health_t.hpp"
@@ -13,7 +14,7 @@
 namespace workbench::exchange {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 using Columns = std::vector<std::pair<std::string, std::vector<double>>>;
 
 /// Names as identifiers, each once: a second "b1" becomes "b1_2".

@@ -1,7 +1,6 @@
 #include "workbench/exchange/message.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "spoolwatch/alarm_t.hpp"
 #include "spoolwatch/estimate_t.hpp"

@@ -12,8 +12,8 @@
 #include <limits>
 
 #include "config/messages/dispatch.h"
-#include "config/record/lcm_reader.h"
 #include "config/record/log_reader.h"
+#include "config/record/readers.h"
 #include "config/schema/error.h"
 
 namespace workbench::exchange {
@@ -53,7 +53,7 @@ class TreeHandler final : public config::messages::MessageHandler {
 
 void each_row(const config::record::Record& record,
               const std::function<void(const Message&)>& take) {
-  Progress progress("exporting " + record.name);
+  ExportProgress progress("exporting " + record.name);
   for (std::size_t i = 0; i < record.size(); ++i) {
     const double t_ns = std::clamp(std::round(record.t_s[i] * 1e9), 0.0, 9e18);
     Message message{
@@ -69,14 +69,14 @@ void each_row(const config::record::Record& record,
 
 }  // namespace
 
-Progress::Progress(const std::string& doing)
+ExportProgress::ExportProgress(const std::string& doing)
     : doing_(doing), terminal_(::isatty(STDERR_FILENO) == 1) {}
 
-Progress::~Progress() {
+ExportProgress::~ExportProgress() {
   if (shown_ >= 0) std::cerr << "\r\033[K" << std::flush;
 }
 
-void Progress::at(std::size_t done, std::size_t of) {
+void ExportProgress::at(std::size_t done, std::size_t of) {
   if (!terminal_ || of == 0) return;
   const long percent = std::lround(100.0 * static_cast<double>(done) / static_cast<double>(of));
   if (percent == shown_) return;
@@ -111,7 +111,7 @@ void read_log(const std::string& log, const Kinds& kinds,
   bool ours = false;
   LogReader events(log);
   {
-    Progress progress("exporting " + log);
+    ExportProgress progress("exporting " + log);
     while (events.next() != nullptr) {
       const bool taken = take(events, kinds, handler);
       ours = ours || taken;

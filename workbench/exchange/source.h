@@ -16,12 +16,12 @@ namespace workbench::exchange {
 using Kinds = std::set<std::string>;
 
 /// A line on a terminal that says how far the work is, gone at its end; nothing elsewhere.
-class Progress {
+class ExportProgress {
  public:
-  explicit Progress(const std::string& doing);
-  ~Progress();
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
+  explicit ExportProgress(const std::string& doing);
+  ~ExportProgress();
+  ExportProgress(const ExportProgress&) = delete;
+  ExportProgress& operator=(const ExportProgress&) = delete;
   void at(std::size_t done, std::size_t of);
 
  private:

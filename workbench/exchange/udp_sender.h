@@ -1,8 +1,12 @@
 // Sends datagrams to one place, never waiting, and counts those that could not be sent.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
+
+#include "workbench/exchange/message.h"
 
 namespace workbench::exchange {
 
@@ -33,5 +37,14 @@ class UdpSender {
   std::uint64_t sent_ = 0;
   std::uint64_t dropped_ = 0;
 };
+
+/// JSON trees cut into pieces that fit into one UDP datagram each.
+/// No fragments on Ethernet.
+inline constexpr std::size_t kMostDatagramBytes = 1400;
+
+/// The message as one or more objects, each with the time stamp, none longer than `most_bytes`
+/// (200 at least). Texts that are too long for a datagram of their own are cut.
+[[nodiscard]] std::vector<std::string> datagrams_of(const Message& message,
+                                                    std::size_t most_bytes = kMostDatagramBytes);
 
 }  // namespace workbench::exchange

@@ -10,8 +10,6 @@
 
 namespace workbench::fit {
 
-namespace greybox = estimator::greybox;
-
 struct FitReport {
   const PreparedFit* prepared = nullptr;  ///< must outlive this
   greybox::EstimationSummary estimation;
@@ -20,10 +18,21 @@ struct FitReport {
   std::string output;  ///< the model file that is written, or empty
 };
 
-/// What it comes to in plain words, most important first.
+/// Summary as sentences, most important first.
 [[nodiscard]] std::vector<std::string> words(const FitReport& outcome);
 /// "held by its prior", "at its lower bound", ... or empty.
 [[nodiscard]] std::string remark(const greybox::EstimatedParameter& parameter);
+/// "large standard error"; empty for none.
+[[nodiscard]] std::string to_string(greybox::IntervalDoubt doubt);
+/// "fitting from 4 starts"
+[[nodiscard]] std::string progress_words(const greybox::EstimationProgress& progress);
+/// "gain * sqrt(pressure) and mass / pressure"; empty where no product is visible.
+[[nodiscard]] std::string visible_words(const greybox::UnidentifiableParameter& unseen,
+                                        const std::vector<greybox::EstimatedParameter>& parameters);
+/// "only gain * sqrt(pressure) is visible: its prior holds pressure"
+[[nodiscard]] std::string unidentifiable_words(
+    const greybox::UnidentifiableParameter& unseen,
+    const std::vector<greybox::EstimatedParameter>& parameters);
 
 /// Words, table, profiles.
 [[nodiscard]] std::string to_text(const FitReport& outcome);
@@ -40,7 +49,7 @@ struct FitReport {
 
 [[nodiscard]] present::Report to_report(const FitReport& outcome);
 
-/// The model with what was found; its head says how.
+/// Model file with the fitted values; its header states the fit.
 [[nodiscard]] std::string to_model(const FitReport& outcome);
 
 }  // namespace workbench::fit

@@ -6,8 +6,6 @@
 #include "workbench/present/json.h"
 
 namespace workbench::fit {
-
-namespace greybox = estimator::greybox;
 namespace {
 
 using nlohmann::ordered_json;
@@ -41,14 +39,17 @@ ordered_json json_of(const greybox::EstimatedParameter& p) {
   return out;
 }
 
-ordered_json json_of(const greybox::IdentifiabilityReport& report) {
+ordered_json json_of(const greybox::IdentifiabilityReport& report,
+                     const std::vector<greybox::EstimatedParameter>& parameters) {
   ordered_json out{{"condition", number_or_null(report.condition)},
                    {"unseen", ordered_json::array()}};
   for (const greybox::UnidentifiableParameter& unseen : report.unidentifiable) {
-    out["unseen"].push_back({{"parameter", unseen.name},
-                             {"partners", unseen.partners},
-                             {"visible", unseen.visible},
-                             {"words", unseen.words}});
+    ordered_json partners = ordered_json::array();
+    for (const std::size_t i : unseen.partners) partners.push_back(parameters[i].free.name);
+    out["unseen"].push_back({{"parameter", parameters[unseen.parameter].free.name},
+                             {"partners", partners},
+                             {"visible", visible_words(unseen, parameters)},
+                             {"words", unidentifiable_words(unseen, parameters)}});
   }
   return out;
 }
@@ -79,8 +80,8 @@ std::string to_json(const FitReport& o) {
                    {"same", e.starts.same},
                    {"elsewhere", e.starts.elsewhere},
                    {"worse", e.starts.worse}};
-  out["identifiability"] = {{"before", json_of(e.identifiability_before)},
-                            {"after", json_of(e.identifiability_after)}};
+  out["identifiability"] = {{"before", json_of(e.identifiability_before, e.parameters)},
+                            {"after", json_of(e.identifiability_after, e.parameters)}};
   ordered_json names = ordered_json::array();
   ordered_json matrix = ordered_json::array();
   for (Eigen::Index i = 0; i < e.correlation.rows(); ++i) {

@@ -4,17 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 
+#include "config/schema/joined.h"
+#include "config/signals/nan.h"
 #include "config/units/quantity.h"
-#include "config/units/unit_suffix.h"
 #include "workbench/fit/fit_report.h"
-#include "workbench/present/error_definitions.h"
 #include "workbench/present/record_section.h"
 
 namespace workbench::fit {
-
-namespace greybox = estimator::greybox;
 namespace {
 
 using present::add_series;
@@ -23,7 +20,7 @@ using present::Section;
 using present::Tone;
 using Values = std::vector<double>;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 constexpr double kThreshold = 3.841458820694124;
 
 std::string file_name(const std::string& file) {
@@ -97,7 +94,7 @@ Section parameter_section(const greybox::EstimationSummary& e) {
   section.heading = "Parameters";
   section.paragraphs.push_back(
       "Standard errors allow for residuals of any colour; the 95 % interval is that of the "
-      "likelihood's profile where one was walked. The record's share tells how much of what is "
+      "likelihood profile where one was computed. The record's share tells how much of what is "
       "known comes from the record rather than from the prior.");
   present::Table table;
   table.columns = {{"parameter", "", false}, {"start", ""},           {"fitted", ""},
@@ -124,16 +121,18 @@ Section parameter_section(const greybox::EstimationSummary& e) {
 
 Section sight_section(const greybox::EstimationSummary& e) {
   Section section;
-  section.heading = "What the record cannot see";
+  section.heading = "Parameters that the record does not determine";
   for (const bool after : {false, true}) {
     const greybox::IdentifiabilityReport& report =
         after ? e.identifiability_after : e.identifiability_before;
-    std::string text = after ? "After the fit: " : "Before the fit, at the model file's values: ";
-    std::string list;
-    for (const greybox::UnidentifiableParameter& unseen : report.unidentifiable)
-      list += (list.empty() ? "" : "; ") + unseen.words;
+    const std::string text =
+        after ? "After the fit: " : "Before the fit, at the model file's values: ";
+    const auto words = [&e](const greybox::UnidentifiableParameter& unseen) {
+      return unidentifiable_words(unseen, e.parameters);
+    };
+    const std::string list = config::schema::joined_by(report.unidentifiable, words, "; ");
     section.paragraphs.push_back(
-        text + (list.empty() ? "every fitted parameter is seen" : list) +
+        text + (list.empty() ? "every fitted parameter is determined" : list) +
         fmt::format(". Condition of the scaled Jacobian: {:.3g}.", report.condition));
   }
   present::Table table;
@@ -157,9 +156,9 @@ Section profile_section(const greybox::EstimationSummary& e) {
   Section section;
   section.heading = "Profiles of the likelihood";
   section.paragraphs.push_back(
-      "How the least cost rises when one parameter is held away from its best value and all others "
-      "follow. The 95 % interval is where it stays under 3.84. A parabola means that the standard "
-      "error suffices.");
+      "Rise of the least cost when one parameter is held away from its best value and all others "
+      "are fitted again. The 95 % interval ends where the rise reaches 3.84. Where the curve is a "
+      "parabola, the standard error describes the uncertainty.");
   for (const greybox::EstimatedParameter& p : e.parameters) {
     if (p.profile.size() < 3) continue;
     Plot plot;
@@ -177,7 +176,7 @@ Section profile_section(const greybox::EstimationSummary& e) {
     }
     plot.series.push_back(series);
     plot.lines.push_back({kThreshold, "95 %"});
-    plot.caption = p.doubt;
+    plot.caption = to_string(p.doubt);
     section.plots.push_back(plot);
   }
   return section;
@@ -189,17 +188,16 @@ present::Report to_report(const FitReport& o) {
   const greybox::EstimationSummary& e = o.estimation;
   const std::vector<std::string> said = words(o);
   present::Report made;
-  made.title = o.prepared->problem.model.name + " fitted to ";
-  for (const greybox::Dataset& record : o.prepared->problem.data.records) {
-    made.title +=
-        (&record == &o.prepared->problem.data.records.front() ? "" : ", ") + file_name(record.name);
-  }
+  const auto name = [](const greybox::Dataset& record) { return file_name(record.name); };
+  made.title = o.prepared->problem.model.name + " fitted to " +
+               config::schema::joined_by(o.prepared->problem.data.records, name);
   made.verdict = said.front();
   for (std::size_t i = 1; i < said.size(); ++i) {  // its own section tells what cannot be seen
-    if (said[i].rfind("What the record cannot see", 0) != 0) made.summary.push_back(said[i]);
+    if (said[i].rfind("Parameters that the record does not determine", 0) != 0)
+      made.summary.push_back(said[i]);
   }
   const bool at_floor = std::isfinite(o.noise_floor_m) && e.after.rms_m < 1.15 * o.noise_floor_m;
-  made.state = at_floor && !e.interrupted ? present::State::good : present::State::warn;
+  made.state = at_floor && !e.interrupted ? present::ReportState::good : present::ReportState::warn;
   const auto fact = [&](const char* label, double metres) {
     const present::ErrorUnit unit = present::error_unit(metres);
     made.facts.push_back({label, fmt::format("{:.3g}", unit.per_m * metres), unit.name});

@@ -13,8 +13,6 @@
 #include "estimator/greybox/parameter_catalogue.h"
 
 namespace workbench::fit {
-
-namespace greybox = estimator::greybox;
 namespace {
 
 using config::schema::bad_config;
@@ -49,9 +47,7 @@ class ParameterSelector {
     for (const std::string& text : selection_.bounds) bounds(text);
     FreeParameters choice;
     for (const std::size_t i : picked_) choice.parameters.push_back(catalogue_[i].free);
-    if (choice.parameters.empty()) {
-      throw UsageError("--free, --fix: leave nothing to fit");
-    }
+    if (choice.parameters.empty()) throw UsageError("--free, --fix: leave nothing to fit");
     choice.start = greybox::start_of(model_, choice.parameters);
     return choice;
   }
@@ -127,7 +123,7 @@ class ParameterSelector {
     const double sd = number_in(spread) * (relative ? 0.01 * std::abs(mean) : 1.0);
     if (!std::isfinite(mean) || !(sd > 0.0)) {
       throw UsageError("--prior " + text +
-                       ": is no prior; allowed: name=mean+-sd with sd above 0 (or "
+                       ": is not a prior; allowed: name=mean+-sd with sd above 0 (or "
                        "in %), name=none");
     }
     FreeParameter& p = known.free;
@@ -154,7 +150,7 @@ class ParameterSelector {
         colon == std::string::npos ? std::nan("") : end(value.substr(colon + 1), known.info.max);
     if (!(low < high)) {
       throw UsageError("--bounds " + text +
-                       ": are no bounds; allowed: name=low:high with low below "
+                       ": are not bounds; allowed: name=low:high with low below "
                        "high (--fix name holds a value)");
     }
     if (low < known.info.min || high > known.info.max) {

@@ -11,10 +11,9 @@
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "workbench/cli/file_check.h"
+#include "workbench/present/dataset_notes.h"
 
 namespace workbench::fit {
-
-namespace greybox = estimator::greybox;
 namespace {
 
 namespace fs = std::filesystem;
@@ -80,7 +79,8 @@ void ignore(const std::string& text, FitDataset& data, Eigen::VectorXd& mask) {
       colon == std::string::npos ? std::nan("") : number_in(span.substr(0, colon));
   const double to_s = colon == std::string::npos ? std::nan("") : number_in(span.substr(colon + 1));
   if (!(from_s < to_s)) {
-    throw UsageError("--ignore " + text + ": is no span; allowed: from:to or RECORD@from:to, in s");
+    throw UsageError("--ignore " + text +
+                     ": is not a span; allowed: from:to or RECORD@from:to, in s");
   }
   bool met = false;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
@@ -169,7 +169,8 @@ PreparedFit prepare(const FitRequest& request) {
   problem.data = greybox::fit_dataset(std::move(records), std::move(holdouts), split);
   require_motion(problem.data);
   for (const Dataset& record : problem.data.records) {
-    for (const std::string& note : record.notes) out.notes.push_back(record.name + ": " + note);
+    for (const std::string& note : present::notes_of(record))
+      out.notes.push_back(record.name + ": " + note);
     note_saturation(record, out.notes);
     if (request.observer_per_s * record.sample_time_s >= 1.0) {
       throw UsageError("--observer: is too fast for samples every " + shown(record.sample_time_s) +

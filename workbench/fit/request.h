@@ -9,8 +9,6 @@
 
 namespace workbench::fit {
 
-namespace greybox = estimator::greybox;
-
 struct FitRequest {
   std::string model;
   std::vector<std::string> records;

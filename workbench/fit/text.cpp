@@ -5,12 +5,9 @@
 #include <cmath>
 
 #include "config/units/quantity.h"
-#include "config/units/unit_suffix.h"
 #include "workbench/fit/fit_report.h"
 
 namespace workbench::fit {
-
-namespace greybox = estimator::greybox;
 namespace {
 
 constexpr std::size_t kColumns = 92;
@@ -69,7 +66,8 @@ std::string plot(const greybox::EstimatedParameter& p) {
   const double most = points.back().value;
   std::string out = "Profile of " + p.free.name + ": 95 % from " + five(p.low) +
                     (p.low_found ? "" : " (its bound)") + " to " + five(p.high) +
-                    (p.high_found ? "" : " (its bound)") + (p.doubt.empty() ? "" : "; " + p.doubt) +
+                    (p.high_found ? "" : " (its bound)") +
+                    (p.doubt == greybox::IntervalDoubt::none ? "" : "; " + to_string(p.doubt)) +
                     "\n";
   if (!(most > least)) return out;
   std::vector<std::string> rows(kPlotHeight + 1, std::string(kPlotWidth, ' '));

@@ -4,14 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "config/record/record.h"
 #include "config/record/whole_file.h"
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "estimator/fdi/tracker/baseline_file.h"
+#include "estimator/fdi/tracker/tracking_text.h"
 #include "estimator/greybox/parameter_catalogue.h"
-#include "estimator/greybox/tracking/words.h"
 #include "estimator/residual/noise_floor.h"
 #include "workbench/cli/file_check.h"
 #include "workbench/fit/parameter_selection.h"
@@ -20,7 +21,6 @@ namespace workbench::isolate {
 
 namespace tracker = estimator::fdi::tracker;
 namespace greybox = estimator::greybox;
-namespace tracking = estimator::greybox::tracking;
 namespace {
 
 using config::record::Record;
@@ -47,7 +47,7 @@ Span span(const std::string& text) {
     const Span out{fit::number_in(text.substr(0, colon)), fit::number_in(text.substr(colon + 1))};
     if (out.from_s < out.to_s) return out;
   }
-  throw UsageError("--healthy " + text + ": is no span; allowed: from:to, in s");
+  throw UsageError("--healthy " + text + ": is not a span; allowed: from:to, in s");
 }
 
 /// Null: the record has none of that name.
@@ -153,6 +153,18 @@ void check(const IsolationRequest& request, const Record& record) {
   }
 }
 
+void check_determined(const std::vector<WindowResult>& windows, const ParameterSet& set,
+                      const std::string& where) {
+  const std::optional<std::size_t> parameter = tracking::undetermined_parameter(windows, set);
+  if (!parameter) return;
+  const std::string found =
+      windows.empty()
+          ? "has no whole window"
+          : "has no usable window: " +
+                tracker::invalid_words(set, windows.back().estimates[*parameter].invalid);
+  throw config::schema::bad_data(where, found, "a healthy motion that tells the parameters");
+}
+
 void note_calibration(IsolationReport& out) {
   const double times = out.baseline.rms_m / out.noise_floor_m;
   if (times > kUncalibrated) {
@@ -167,7 +179,7 @@ void note_calibration(IsolationReport& out) {
     const double off = std::exp(out.baseline.theta[at] - out.set.file[at]) - 1.0;
     if (std::abs(off) < kOffFile) continue;
     out.notes.push_back(
-        "when healthy, " + tracking::name_words(p.name) +
+        "when healthy, " + tracker::name_words(p.name) +
         fmt::format(" is {:+.3g} % off the model file; changes count from there", 100.0 * off));
   }
 }
@@ -180,10 +192,10 @@ void note_followed(IsolationReport& out, const ParameterTracker& tracker) {
     const Eigen::VectorXd& baseline = tracker.baseline()->theta;
     out.notes.push_back(
         slow.at_end(i, baseline) != 0
-            ? tracking::slow_words(p, slow.learnt(i), baseline[static_cast<Eigen::Index>(at)])
-            : tracking::name_words(p.name) + " was followed from " +
-                  tracking::value_words(p, slow.learnt(i), NAN) + " to " +
-                  tracking::value_words(p, baseline[static_cast<Eigen::Index>(at)], NAN));
+            ? tracker::drift_words(p, slow.learnt(i), baseline[static_cast<Eigen::Index>(at)])
+            : tracker::name_words(p.name) + " was followed from " +
+                  tracker::value_words(p, slow.learnt(i), NAN) + " to " +
+                  tracker::value_words(p, baseline[static_cast<Eigen::Index>(at)], NAN));
   }
 }
 
@@ -224,15 +236,15 @@ IsolationReport isolate(const IsolationRequest& request) {
   };
   if (request.baseline_rms_m > 0.0) {
     if (!request.learn_baseline.empty()) {
-      throw UsageError("--learn: nothing is learnt with --healthy-rms");
+      throw UsageError("--learn: not possible with --healthy-rms");
     }
     out.baseline = {request.baseline_rms_m, out.set.file, {}};
   } else {
     const Span baseline = span(request.baseline);
     ParameterTracker learning = tracker();
-    out.baseline =
-        tracking::learn_baseline(track(learning, record, readings, baseline), out.set, floor_m,
-                                 record.name + ": --healthy " + request.baseline);
+    const std::vector<WindowResult> windows = track(learning, record, readings, baseline);
+    check_determined(windows, out.set, record.name + ": --healthy " + request.baseline);
+    out.baseline = tracking::learn_baseline(windows, out.set, floor_m);
     out.learnt = true;
     out.baseline_from_s = baseline.from_s;
     out.baseline_to_s = baseline.to_s;

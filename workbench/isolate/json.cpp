@@ -3,13 +3,14 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "estimator/greybox/tracking/words.h"
+#include "estimator/fdi/tracker/tracking_text.h"
 #include "workbench/isolate/isolation.h"
 #include "workbench/present/json.h"
 
 namespace workbench::isolate {
 
 namespace greybox = estimator::greybox;
+namespace tracker = estimator::fdi::tracker;
 namespace tracking = estimator::greybox::tracking;
 namespace {
 
@@ -41,10 +42,10 @@ ordered_json json_of(const WindowResult& window, const ParameterSet& set) {
                         {"out_error_Pa", number_or_null(window.out.rms_Pa)},
                         {"out_offset_Pa", number_or_null(window.out.mean_Pa)}};
   }
-  if (!window.left_out.empty()) out["left_out"] = window.left_out;
+  if (window.left_out) out["left_out"] = tracker::left_out_words(window.left_out);
   out["valid"] = window.valid;
-  out["why"] = window.why;
-  if (!window.part.empty()) out["part"] = window.part;
+  out["why"] = tracker::invalid_words(set, window.invalid);
+  if (window.part) out["part"] = tracker::part_words(set, *window.part);
   return out;
 }
 
@@ -70,8 +71,8 @@ ordered_json json_of(const DetectedChange& alarm, const IsolationReport& o) {
           {"rivals", rivals},
           {"raised_s", alarm.raised_s},
           {"cleared_s", number_or_null(alarm.cleared_s)},
-          {"advice", tracking::advice_words(o.set, named)},
-          {"words", tracking::change_words(o.set, named, o.baseline.theta)}};
+          {"advice", tracker::advice_words(o.set, named)},
+          {"words", tracker::change_words(o.set, named, o.baseline.theta)}};
 }
 
 double median_fit_s(std::vector<WindowResult> windows) {

@@ -1,16 +1,16 @@
 // A tracking as a report.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
-#include <limits>
 
-#include "estimator/greybox/tracking/words.h"
+#include "config/signals/nan.h"
+#include "estimator/fdi/tracker/tracking_text.h"
 #include "workbench/isolate/isolation.h"
 
 namespace workbench::isolate {
 
 namespace greybox = estimator::greybox;
+namespace tracker = estimator::fdi::tracker;
 namespace tracking = estimator::greybox::tracking;
 namespace {
 
@@ -18,7 +18,7 @@ using present::Plot;
 using present::Series;
 using present::Tone;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 constexpr double kInterval = 1.96;
 
 Plot over_time(const IsolationReport& o, const std::string& title, const present::Axis& axis) {
@@ -35,9 +35,9 @@ Plot parameter_plot(const IsolationReport& o, std::size_t i) {
   const greybox::FreeParameter& p = o.set.parameters[i];
   const bool relative = p.scale == greybox::Scale::logarithmic;
   const double baseline = p.to_physical(o.baseline.theta[static_cast<Eigen::Index>(i)]);
-  Plot plot = over_time(o, tracking::name_words(p.name),
+  Plot plot = over_time(o, tracker::name_words(p.name),
                         relative ? present::Axis{"of the healthy value", "%"}
-                                 : present::Axis{tracking::name_words(p.name), ""});
+                                 : present::Axis{tracker::name_words(p.name), ""});
   const double factor = relative ? 100.0 / baseline : 1.0;
   Series value{"found", {}, {}, Tone::model, {}, false};
   Series low{"95 %, low", {}, {}, Tone::muted, {}, true};
@@ -74,9 +74,9 @@ present::Table alarm_table(const IsolationReport& o) {
   for (const DetectedChange& alarm : o.alarms) {
     table.rows.push_back({fmt::format("{:.2f}", alarm.raised_s),
                           alarm.active() ? "" : fmt::format("{:.2f}", alarm.cleared_s),
-                          tracking::change_words(o.set, alarm.named, o.baseline.theta),
+                          tracker::change_words(o.set, alarm.named, o.baseline.theta),
                           fmt::format("{:.4f}", std::min(alarm.confidence, 0.9999)),
-                          tracking::group_words(o.set, alarm.named)});
+                          tracker::group_words(o.set, alarm.named)});
   }
   return table;
 }
@@ -88,7 +88,7 @@ present::Report to_report(const IsolationReport& o) {
   page.title = "Isolation: " + std::filesystem::path(o.record).filename().string();
   std::size_t invalid = 0;
   for (const WindowResult& window : o.windows) invalid += window.valid ? 0 : 1;
-  page.state = o.alarms.empty() ? present::State::good : present::State::warn;
+  page.state = o.alarms.empty() ? present::ReportState::good : present::ReportState::warn;
   page.verdict = o.alarms.empty() ? "No change named."
                                   : std::to_string(o.alarms.size()) +
                                         (o.alarms.size() == 1 ? " change" : " changes") + " named.";

@@ -3,15 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 
 #include "config/units/quantity.h"
-#include "estimator/greybox/tracking/words.h"
+#include "estimator/fdi/tracker/tracking_text.h"
 #include "workbench/isolate/isolation.h"
 
 namespace workbench::isolate {
 
 namespace greybox = estimator::greybox;
+namespace tracker = estimator::fdi::tracker;
 namespace tracking = estimator::greybox::tracking;
 namespace {
 
@@ -36,8 +38,8 @@ std::string healthy_line(const IsolationReport& o) {
   }
   for (std::size_t i = 0; i < o.set.tracked; ++i) {
     const greybox::FreeParameter& p = o.set.parameters[i];
-    text += ", " + tracking::name_words(p.name) + " " +
-            tracking::value_words(p, o.baseline.theta[static_cast<Eigen::Index>(i)], NAN);
+    text += ", " + tracker::name_words(p.name) + " " +
+            tracker::value_words(p, o.baseline.theta[static_cast<Eigen::Index>(i)], NAN);
   }
   return text + "\n";
 }
@@ -45,27 +47,29 @@ std::string healthy_line(const IsolationReport& o) {
 std::string alarm_lines(const IsolationReport& o, const DetectedChange& alarm) {
   std::string text = "ALARM " + seconds(alarm.raised_s) +
                      (alarm.active() ? "" : " to " + seconds(alarm.cleared_s)) + ": " +
-                     tracking::change_words(o.set, alarm.named, o.baseline.theta) +
+                     tracker::change_words(o.set, alarm.named, o.baseline.theta) +
                      fmt::format(" (confidence {:.4f})\n", std::min(alarm.confidence, 0.9999));
-  const std::string group = tracking::group_words(o.set, alarm.named);
+  const std::string group = tracker::group_words(o.set, alarm.named);
   return group.empty() ? text : text + "      " + group + "\n";
 }
 
 /// Up to the first figures: reasons that differ in figures only are one.
 std::string kind_of(const std::string& why) { return why.substr(0, why.find_first_of(":(")); }
 
-/// The windows that say something, one line for each kind of it.
-std::string kind_lines(const IsolationReport& o, std::string WindowResult::*words) {
+/// One line per kind of text that `words` gives for the windows.
+std::string kind_lines(const IsolationReport& o,
+                       const std::function<std::string(const WindowResult&)>& words) {
   std::map<std::string, std::pair<int, const WindowResult*>> kinds;
   for (const WindowResult& window : o.windows) {
-    if ((window.*words).empty()) continue;
-    auto& kind = kinds[kind_of(window.*words)];
+    const std::string said = words(window);
+    if (said.empty()) continue;
+    auto& kind = kinds[kind_of(said)];
     if (kind.first++ == 0) kind.second = &window;
   }
   std::string text;
   for (const auto& [name, kind] : kinds) {
     text += "  " + std::to_string(kind.first) + ", the first at " + seconds(kind.second->t_s) +
-            ": " + kind.second->*words + "\n";
+            ": " + words(*kind.second) + "\n";
   }
   return text;
 }
@@ -75,13 +79,17 @@ std::string window_lines(const IsolationReport& o) {
                                      [](const WindowResult& window) { return !window.valid; });
   const auto left_out =
       std::count_if(o.windows.begin(), o.windows.end(),
-                    [](const WindowResult& window) { return !window.left_out.empty(); });
+                    [](const WindowResult& window) { return static_cast<bool>(window.left_out); });
   std::string text = std::to_string(o.windows.size()) + " windows of " +
                      seconds(o.settings.window_s) + ", " + std::to_string(invalid) + " invalid\n" +
-                     kind_lines(o, &WindowResult::why);
+                     kind_lines(o, [&o](const WindowResult& window) {
+                       return tracker::invalid_words(o.set, window.invalid);
+                     });
   if (left_out > 0) {
     text += std::to_string(left_out) + " windows by position alone\n" +
-            kind_lines(o, &WindowResult::left_out);
+            kind_lines(o, [](const WindowResult& window) {
+              return tracker::left_out_words(window.left_out);
+            });
   }
   return text;
 }
@@ -96,9 +104,9 @@ std::string window_line(const IsolationReport& o, const WindowResult& window) {
     text += i + 1 < o.set.tracked ? "," : "";
   }
   text += ", error " + length_words(window.rms_m);
-  if (!window.valid) text += "; INVALID, " + window.why;
-  if (!window.left_out.empty()) text += "; " + window.left_out;
-  if (!window.part.empty()) text += "; " + window.part;
+  if (!window.valid) text += "; INVALID, " + tracker::invalid_words(o.set, window.invalid);
+  if (window.left_out) text += "; " + tracker::left_out_words(window.left_out);
+  if (window.part) text += "; " + tracker::part_words(o.set, *window.part);
   return text + "\n";
 }
 

@@ -7,7 +7,7 @@
 
 #include "config/schema/error.h"
 #include "spoolwatch/sample_t.hpp"
-#include "workbench/cli/stop_condition.h"
+#include "workbench/cli/interrupt.h"
 #include "workbench/live/listen_feed.h"
 #include "workbench/live/online_residual.h"
 
@@ -45,7 +45,7 @@ class Watcher final : public FeedListener {
   }
   void on_lost(const std::string& channel, std::int64_t count) override {
     if (channel.ends_with("_SAMPLE")) {
-      say(std::to_string(count) + " samples lost on the way: the model settles anew");
+      say(std::to_string(count) + " samples lost: the model is initialised again");
     }
   }
   void on_silence(bool silent) override {

@@ -43,7 +43,7 @@ void LiveState::on(const spoolwatch::estimate_t& estimate) {
   if (estimate.name.empty()) return;
   const std::size_t i = watched(estimate);
   auto track = std::find_if(tracks_.begin(), tracks_.end(),
-                            [&](const Track& t) { return t.source == estimate.source; });
+                            [&](const TrackedQuantity& t) { return t.source == estimate.source; });
   if (track == tracks_.end()) {
     tracks_.push_back({.source = estimate.source, .quantity = {}, .reason = {}, .history = {}});
     track = tracks_.end() - 1;

@@ -3,15 +3,15 @@
 
 #include <cstdint>
 #include <deque>
-#include <limits>
 #include <string>
 #include <vector>
 
+#include "config/signals/nan.h"
 #include "workbench/live/listen_feed.h"
 
 namespace workbench::live {
 
-inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 
 /// Times are the sender's wall clock (virtual: from 0).
 struct MotionPoint {
@@ -27,13 +27,13 @@ struct ValuePoint {
 };
 
 /// One quantity that is watched: b1 of an estimator.
-struct Track {
+struct TrackedQuantity {
   std::string source;
   std::string quantity;
-  double value = kNone;
-  double std_error = kNone;
-  double low = kNone;
-  double high = kNone;
+  double value = kNaN;
+  double std_error = kNaN;
+  double low = kNaN;
+  double high = kNaN;
   bool valid = false;
   std::string reason;
   std::deque<ValuePoint> history;
@@ -44,9 +44,9 @@ struct AlarmRow {
   std::int64_t utc_us = 0;
   int severity = 0;
   bool active = false;
-  double value = kNone;
-  double low = kNone;
-  double high = kNone;
+  double value = kNaN;
+  double low = kNaN;
+  double high = kNaN;
   std::string parameter;
   int direction = 0;
   std::string reason;
@@ -60,9 +60,9 @@ struct HealthFigures {
   std::int64_t dropped_samples = 0;
   std::int64_t dropped_records = 0;
   std::int64_t lost_records = 0;
-  double lateness_p50_us = kNone;
-  double lateness_p999_us = kNone;
-  double lateness_max_us = kNone;
+  double lateness_p50_us = kNaN;
+  double lateness_p999_us = kNaN;
+  double lateness_max_us = kNaN;
 };
 
 class LiveState final : public FeedListener {
@@ -80,7 +80,7 @@ class LiveState final : public FeedListener {
   void on_notice(const std::string& what) override { notice_ = what; }
 
   [[nodiscard]] const std::deque<MotionPoint>& motion() const { return motion_; }
-  [[nodiscard]] const std::vector<Track>& tracks() const { return tracks_; }
+  [[nodiscard]] const std::vector<TrackedQuantity>& tracks() const { return tracks_; }
   /// Newest change first.
   [[nodiscard]] const std::vector<AlarmRow>& alarms() const { return alarms_; }
   [[nodiscard]] const HealthFigures& health() const { return health_; }
@@ -95,13 +95,13 @@ class LiveState final : public FeedListener {
 
  private:
   std::deque<MotionPoint> motion_;
-  std::vector<Track> tracks_;
+  std::vector<TrackedQuantity> tracks_;
   std::vector<AlarmRow> alarms_;
   HealthFigures health_;
   bool heard_ = false;
   bool silent_ = false;
   int state_ = -1;
-  double command_V_ = kNone;
+  double command_V_ = kNaN;
   std::int64_t run_id_ = 0;
   std::int64_t utc_us_ = 0;
   std::int64_t lost_messages_ = 0;

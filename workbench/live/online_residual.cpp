@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "config/record/record.h"
 #include "config/schema/error.h"
+#include "config/signals/nan.h"
+#include "config/units/quantity.h"
 #include "estimator/greybox/dataset.h"
 #include "estimator/greybox/validation/comparison.h"
 #include "estimator/residual/noise_floor.h"
@@ -17,11 +18,10 @@
 
 namespace workbench::live {
 
-namespace greybox = estimator::greybox;
 namespace validation = estimator::greybox::validation;
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 constexpr double kLargestInitialisationGain = 0.5;  // of the error in one sample
 
 }  // namespace
@@ -133,11 +133,12 @@ void OnlineResidual::find_worst(ResidualFigures& f) const {
 }
 
 std::string line_of(const ResidualFigures& f) {
-  std::string line =
-      fmt::format("{:9.1f} s  rms {:9} fit {:>7}  {:>6} x floor", f.t_s, present::length(f.rms_m),
-                  std::isfinite(f.fit_percent) ? present::three_digits(f.fit_percent) + " %" : "-",
-                  present::three_digits(f.floor_ratio));
-  if (!f.worst.empty()) line += "  worst " + f.worst + " (" + present::length(f.worst_rms_m) + ")";
+  std::string line = fmt::format(
+      "{:9.1f} s  rms {:9} fit {:>7}  {:>6} x floor", f.t_s, config::units::length_words(f.rms_m),
+      std::isfinite(f.fit_percent) ? config::units::three_digits(f.fit_percent) + " %" : "-",
+      config::units::three_digits(f.floor_ratio));
+  if (!f.worst.empty())
+    line += "  worst " + f.worst + " (" + config::units::length_words(f.worst_rms_m) + ")";
   if (!f.note.empty()) line += "  " + f.note;
   return line;
 }

@@ -5,18 +5,16 @@
 #include <cmath>
 
 namespace workbench::present {
-
-namespace validation = estimator::greybox::validation;
 namespace {
 
 /// Bounds are round numbers, or a record's extremes, which nobody needs exactly.
-std::string bound(double value, const Unit& unit) {
+std::string bound(double value, const DisplayUnit& unit) {
   return fmt::format("{:.4g}", std::abs(value) < 1e-12 ? 0.0 : unit.factor * value);
 }
 
 }  // namespace
 
-Unit unit_of(const std::string& variable) {
+DisplayUnit unit_of(const std::string& variable) {
   if (variable == "y") return {"position", "mm", 1e3};
   if (variable == "v") return {"velocity", "mm/s", 1e3};
   if (variable == "speed") return {"speed", "mm/s", 1e3};
@@ -26,23 +24,6 @@ Unit unit_of(const std::string& variable) {
   return {"direction", "", 1.0};
 }
 
-std::string three_digits(double value) {
-  if (!std::isfinite(value)) return "-";
-  return std::abs(value) >= 999.5 ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
-}
-
-std::string length(double metres) {
-  if (!std::isfinite(metres)) return "-";
-  if (std::abs(metres) < 0.9995e-3) return three_digits(1e6 * metres) + " um";
-  return three_digits(1e3 * metres) + " mm";
-}
-
-std::string speed(double mps) {
-  if (!std::isfinite(mps)) return "-";
-  if (std::abs(mps) < 0.9995e-4) return three_digits(1e6 * mps) + " um/s";
-  return three_digits(1e3 * mps) + " mm/s";
-}
-
 std::string percent(double share) {
   if (!std::isfinite(share)) return "-";
   if (share > 0.0 && share < 0.01) return "under 1 %";
@@ -50,22 +31,15 @@ std::string percent(double share) {
   return fmt::format("{:.0f} %", 100.0 * share);
 }
 
-std::string probability(double p) {
-  if (!std::isfinite(p)) return "-";
-  return p < 1e-6 ? "< 1e-6" : fmt::format("{:.2g}", p);
-}
-
 std::string bin_text(const std::string& variable, const validation::Bin& bin) {
   if (!bin.name.empty()) return bin.name;
-  const Unit unit = unit_of(variable);
+  const DisplayUnit unit = unit_of(variable);
   return bound(bin.from, unit) + " to " + bound(bin.to, unit);
 }
 
 std::string where(const validation::Range& range) {
-  if (!range.name.empty()) {
-    return range.name == "at rest" ? range.name : "while " + range.name;
-  }
-  const Unit unit = unit_of(range.variable);
+  if (!range.name.empty()) return range.name == "at rest" ? range.name : "while " + range.name;
+  const DisplayUnit unit = unit_of(range.variable);
   const std::string low = bound(range.from, unit);
   const std::string high = bound(range.to, unit);
   const std::string tail = std::string(" ") + unit.text;

@@ -9,25 +9,17 @@ namespace workbench::present {
 
 namespace validation = estimator::greybox::validation;
 
-struct Unit {
+struct DisplayUnit {
   const char* name = "";  ///< "position"
   const char* text = "";  ///< "mm"
   double factor = 1.0;    ///< what is shown = factor * SI
 };
 
 /// Of the variables that errors are sorted by: y, v, speed, u, acceleration, direction, time.
-[[nodiscard]] Unit unit_of(const std::string& variable);
+[[nodiscard]] DisplayUnit unit_of(const std::string& variable);
 
-/// "0.31", "381", "1520"; "-" for a missing number.
-[[nodiscard]] std::string three_digits(double value);
-/// "381 um", "1.7 mm".
-[[nodiscard]] std::string length(double metres);
-/// "0.31 mm/s".
-[[nodiscard]] std::string speed(double mps);
 /// "62 %", "under 1 %".
 [[nodiscard]] std::string percent(double share);
-/// "< 1e-6", "0.31"; "-" when it could not be tested.
-[[nodiscard]] std::string probability(double p);
 /// "0.2 to 0.5" in the variable's unit, or the direction's name.
 [[nodiscard]] std::string bin_text(const std::string& variable, const validation::Bin& bin);
 /// "below 5 mm/s", "while reversing", "at positions above 330 mm".

@@ -2,15 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numeric>
 
 #include "workbench/present/text.h"
-#include "workbench/present/thin.h"
 
 namespace workbench::present {
-
 namespace {
 
-const char* to_string(Kind kind) {
+const char* to_string(PlotKind kind) {
   constexpr std::array<const char*, 4> kNames{"line", "scatter", "bars", "steps"};
   return kNames[static_cast<std::size_t>(kind)];
 }
@@ -38,7 +38,7 @@ std::vector<double> pick(const std::vector<double>& values, const std::vector<st
 std::vector<std::size_t> shared_rows(const Plot& plot, const std::vector<double>& x) {
   std::vector<const std::vector<double>*> lines;
   for (const Series& series : plot.series) {
-    if (series.x.empty() && series.kind.value_or(plot.kind) != Kind::scatter &&
+    if (series.x.empty() && series.kind.value_or(plot.kind) != PlotKind::scatter &&
         series.y.size() == x.size()) {
       lines.push_back(&series.y);
     }
@@ -58,7 +58,7 @@ struct Thinned {
 
 std::string series_json(const Plot& plot, const Series& series,
                         const std::vector<std::size_t>& shared, Thinned& thinned) {
-  const Kind kind = series.kind.value_or(plot.kind);
+  const PlotKind kind = series.kind.value_or(plot.kind);
   std::string out = R"({"name":)" + json_string(typeset(series.name)) + R"(,"kind":")" +
                     to_string(kind) + R"(","tone":")" + to_string(series.tone) + '"';
   if (series.dashed) out += R"(,"dashed":true)";
@@ -66,7 +66,7 @@ std::string series_json(const Plot& plot, const Series& series,
   const std::vector<double>& x = series.x.empty() ? plot.x_values : series.x;
   const std::size_t n = std::min(x.size(), series.y.size());
   std::vector<std::size_t> rows;
-  if (kind == Kind::scatter) {
+  if (kind == PlotKind::scatter) {
     rows = thin_cloud(x, series.y, kCloudPoints);
     if (n > kCloudPoints && n > thinned.from) thinned = {n, rows.size(), true};
   } else if (series.x.empty() && series.y.size() == x.size()) {
@@ -84,8 +84,8 @@ std::string series_json(const Plot& plot, const Series& series,
 std::string note_of(const Thinned& thinned) {
   if (thinned.from == 0) return "";
   return "Drawn with " + std::to_string(thinned.to) + " of " + std::to_string(thinned.from) +
-         (thinned.cloud ? " points: an even choice and the outline."
-                        : " samples: the least and the greatest of each stretch.");
+         (thinned.cloud ? " points: an even selection and the outline."
+                        : " samples: minimum and maximum of each interval.");
 }
 
 }  // namespace
@@ -98,7 +98,7 @@ PlotText plot_text(const Plot& plot) {
   for (const Series& one : plot.series) {
     if (!series.empty()) series += ',';
     series += series_json(plot, one, shared, thinned);
-    shares_x = shares_x || (one.x.empty() && one.kind.value_or(plot.kind) != Kind::scatter);
+    shares_x = shares_x || (one.x.empty() && one.kind.value_or(plot.kind) != PlotKind::scatter);
   }
   std::string json = R"({"title":)" + json_string(plot.title) + R"(,"kind":")" +
                      to_string(plot.kind) + R"(","x":)" + axis_json(plot.x) + R"(,"y":)" +
@@ -136,6 +136,81 @@ std::string figure(const Plot& plot, const std::string& note, std::size_t number
       plot.caption + (plot.caption.empty() || note.empty() ? "" : " ") + note;
   if (!caption.empty()) out += "<figcaption>" + html(typeset(caption)) + "</figcaption>\n";
   return out + "</figure>\n";
+}
+
+namespace {
+
+/// Adds the rows of the least, the greatest and the first missing value of `column` in
+/// order[begin, end).
+void keep_extremes(const std::vector<double>& column, const std::vector<std::size_t>& order,
+                   std::size_t begin, std::size_t end, std::vector<std::size_t>& kept) {
+  const std::size_t none = column.size();
+  std::size_t least = none;
+  std::size_t greatest = none;
+  std::size_t gap = none;
+  for (std::size_t i = begin; i < end; ++i) {
+    const std::size_t row = order[i];
+    const double value = column[row];
+    if (!std::isfinite(value)) {
+      if (gap == none) gap = row;
+      continue;
+    }
+    if (least == none || value < column[least]) least = row;
+    if (greatest == none || value > column[greatest]) greatest = row;
+  }
+  for (const std::size_t row : {least, greatest, gap}) {
+    if (row != none) kept.push_back(row);
+  }
+}
+
+void sort_unique(std::vector<std::size_t>& rows) {
+  std::sort(rows.begin(), rows.end());
+  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+}
+
+std::vector<std::size_t> all(std::size_t n) {
+  std::vector<std::size_t> rows(n);
+  std::iota(rows.begin(), rows.end(), std::size_t{0});
+  return rows;
+}
+
+}  // namespace
+
+std::vector<std::size_t> thin_lines(const std::vector<const std::vector<double>*>& columns,
+                                    std::size_t n, std::size_t limit) {
+  std::vector<std::size_t> rows = all(n);
+  if (n <= limit || columns.empty()) return rows;
+  const std::size_t per_stretch = 3 * columns.size();
+  const std::size_t stretches =
+      std::max<std::size_t>(1, (std::max<std::size_t>(limit, 2) - 2) / per_stretch);
+  std::vector<std::size_t> kept{0, n - 1};
+  for (std::size_t s = 0; s < stretches; ++s) {
+    for (const std::vector<double>* column : columns) {
+      keep_extremes(*column, rows, s * n / stretches, (s + 1) * n / stretches, kept);
+    }
+  }
+  sort_unique(kept);
+  return kept;
+}
+
+std::vector<std::size_t> thin_cloud(const std::vector<double>& x, const std::vector<double>& y,
+                                    std::size_t limit) {
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) {
+    if (std::isfinite(x[i]) && std::isfinite(y[i])) rows.push_back(i);
+  }
+  if (rows.size() <= limit) return rows;
+  // Most points show the density, every sixteenth the outline.
+  std::vector<std::size_t> kept;
+  const std::size_t even = std::max<std::size_t>(1, limit - limit / 16);
+  for (std::size_t i = 0; i < even; ++i) kept.push_back(rows[i * rows.size() / even]);
+  std::sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) { return x[a] < x[b]; });
+  const std::size_t stretches = (limit - std::min(limit, even)) / 2;
+  for (std::size_t s = 0; s < stretches; ++s) {
+    keep_extremes(y, rows, s * rows.size() / stretches, (s + 1) * rows.size() / stretches, kept);
+  }
+  sort_unique(kept);
+  return kept;
 }
 
 }  // namespace workbench::present

@@ -31,7 +31,7 @@ std::string now() {
 
 std::string anchor(std::size_t number) { return "section-" + std::to_string(number + 1); }
 
-std::string state_class(State state) {
+std::string state_class(ReportState state) {
   constexpr std::array<const char*, 3> kNames{"good", "warn", "bad"};
   return kNames[static_cast<std::size_t>(state)];
 }
@@ -116,7 +116,7 @@ std::string section_text(const Section& section, std::size_t number, std::string
 std::string footer(const Report& report) {
   return "<footer><p>spoolwatch " + html(std::string(config::schema::product_version())) + ", " +
          html(report.made_at.empty() ? now() : report.made_at) +
-         ". Drag in a plot to zoom, double-click to see all of it again. Plots by Chart.js (MIT "
+         ". Drag in a plot to zoom, double-click to reset. Plots by Chart.js (MIT "
          "licence, in this file).</p></footer>\n";
 }
 

@@ -14,7 +14,7 @@
 
 namespace workbench::present {
 
-enum class Kind { line, scatter, bars, steps };
+enum class PlotKind { line, scatter, bars, steps };
 
 /// What a series stands for; one colour throughout the report, told apart by the colour-blind.
 enum class Tone { automatic, measured, model, residual, improved, accent, muted };
@@ -30,7 +30,7 @@ struct Series {
   std::vector<double> y{};  ///< NaN and infinities are gaps
   std::vector<double> x{};  ///< empty: the plot's x values
   Tone tone = Tone::automatic;
-  std::optional<Kind> kind{};  ///< unset: the plot's kind (a binned curve over a scatter, say)
+  std::optional<PlotKind> kind{};  ///< unset: the plot's kind (a binned curve over a scatter, say)
   bool dashed = false;
 };
 
@@ -44,7 +44,7 @@ enum class Width { full, half };  ///< two halves stand side by side
 
 struct Plot {
   std::string title{};
-  Kind kind = Kind::line;
+  PlotKind kind = PlotKind::line;
   Axis x{};
   Axis y{};
   std::vector<double> x_values{};
@@ -85,12 +85,12 @@ struct Fact {
   std::string unit{};
 };
 
-enum class State { good, warn, bad };
+enum class ReportState { good, warn, bad };
 
 struct Report {
   std::string title{};
   std::string verdict{};  ///< plain words, set large
-  State state = State::good;
+  ReportState state = ReportState::good;
   std::vector<std::string> summary{};  ///< lines below the verdict
   std::vector<Fact> facts{};           ///< four to six
   std::string command{};               ///< the exact command that made it

@@ -23,4 +23,11 @@ namespace workbench::present {
 
 [[nodiscard]] std::string json_numbers(const std::vector<double>& values);
 
+// A command as it can be pasted into a shell.
+
+/// The word in single quotes where a shell would not take it as it is.
+[[nodiscard]] std::string shell_word(std::string_view word);
+
+[[nodiscard]] std::string shell_command(const std::vector<std::string>& words);
+
 }  // namespace workbench::present

@@ -4,10 +4,9 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "estimator/fdi/pipeline.h"
-#include "estimator/fdi/tracker/source_kinds.h"
+#include "estimator/fdi/tracker/detection_method_kinds.h"
 
 namespace workbench::promotion {
 

@@ -24,8 +24,8 @@ using config::schema::RunError;
 constexpr double kTolerance_s = 10.0;
 constexpr std::size_t kMostLogs = 8;
 
-replay::Rules rules_with(const RunningDaemon& daemon, const fs::path& bands) {
-  replay::Rules rules;
+replay::BacktestRules rules_with(const RunningDaemon& daemon, const fs::path& bands) {
+  replay::BacktestRules rules;
   rules.file = daemon.config_file();
   rules.folder = daemon.folder();
   rules.pipeline = daemon.rules();
@@ -71,7 +71,7 @@ std::vector<std::string> new_alarms(const RunningDaemon& daemon, const fs::path&
                                          rules_with(daemon, daemon.bands_file()), files);
   std::vector<std::string> found;
   for (const replay::BacktestRun& run : runs) {
-    const replay::Difference difference =
+    const replay::OccurrenceDifference difference =
         replay::compare(run.before, run.after, kTolerance_s, 0.5 * run.sample_time_s);
     for (const replay::Occurrence& each : difference.appears) {
       found.push_back(

@@ -28,7 +28,7 @@ struct ModelTrial {
                                    const std::vector<config::record::Record>& records);
 
 /// What alarms new bands would tell on the records that the old ones do not, in words: "period_gain
-/// at 12.3 s in FILE". `bands` beside the old file, under a name of its own.
+/// at 12.3 s in FILE". `bands` beside the old file, under a unique name.
 [[nodiscard]] std::vector<std::string> new_alarms(const RunningDaemon& daemon,
                                                   const std::filesystem::path& bands,
                                                   const std::vector<std::string>& files);

@@ -1,11 +1,12 @@
 #include "workbench/replay/backtest_runs.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <map>
 #include <memory>
 
-#include "config/record/lcm_reader.h"
+#include "config/record/readers.h"
 #include "config/record/record.h"
 #include "config/schema/document.h"
 #include "config/schema/error.h"
@@ -16,6 +17,76 @@
 #include "workbench/train/rig_table.h"
 
 namespace workbench::replay {
+namespace {
+
+double end_of(const Occurrence& o) noexcept {
+  return std::isnan(o.to_s) ? std::numeric_limits<double>::infinity() : o.to_s;
+}
+
+bool belong_together(const Occurrence& a, const Occurrence& b, double tolerance_s) noexcept {
+  const bool overlap = a.from_s <= end_of(b) && b.from_s <= end_of(a);
+  return a.alarm == b.alarm && (overlap || std::abs(a.from_s - b.from_s) <= tolerance_s);
+}
+
+bool equal_times(double a_s, double b_s, double sample_s) noexcept {
+  if (std::isnan(a_s) || std::isnan(b_s)) return std::isnan(a_s) && std::isnan(b_s);
+  return std::abs(a_s - b_s) < sample_s;
+}
+
+bool same(const Occurrence& a, const Occurrence& b, double sample_s) noexcept {
+  return equal_times(a.from_s, b.from_s, sample_s) && equal_times(a.to_s, b.to_s, sample_s) &&
+         a.direction == b.direction && a.severity == b.severity;
+}
+
+}  // namespace
+
+void OccurrenceList::tell(const std::string& alarm, double t_s, bool active, int severity,
+                          int direction) {
+  const auto open = std::find_if(all_.rbegin(), all_.rend(), [&](const Occurrence& o) {
+    return o.alarm == alarm && std::isnan(o.to_s);
+  });
+  if (open != all_.rend()) {
+    if (!active) open->to_s = t_s;
+  } else if (active) {
+    Occurrence occurrence;
+    occurrence.alarm = alarm;
+    occurrence.from_s = t_s;
+    occurrence.severity = severity;
+    occurrence.direction = direction;
+    all_.push_back(occurrence);
+  }
+}
+
+OccurrenceDifference compare(const std::vector<Occurrence>& before,
+                             const std::vector<Occurrence>& after, double tolerance_s,
+                             double sample_s) {
+  OccurrenceDifference difference;
+  std::vector<bool> taken(after.size(), false);
+  for (const Occurrence& old : before) {
+    std::size_t best = after.size();
+    for (std::size_t i = 0; i < after.size(); ++i) {
+      if (taken[i] || !belong_together(old, after[i], tolerance_s)) continue;
+      const bool nearer = best == after.size() || std::abs(after[i].from_s - old.from_s) <
+                                                      std::abs(after[best].from_s - old.from_s);
+      if (nearer) best = i;
+    }
+    if (best == after.size()) {
+      difference.disappears.push_back(old);
+      continue;
+    }
+    taken[best] = true;
+    if (same(old, after[best], sample_s)) {
+      ++difference.same;
+    } else {
+      difference.shifts.push_back({old, after[best]});
+    }
+  }
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    if (!taken[i]) difference.appears.push_back(after[i]);
+  }
+  return difference;
+}
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -31,7 +102,7 @@ std::string id_of(const std::string& source, const std::string& name) {
 /// A configuration at work on one run.
 class Watch final : private estimator::fdi::Events {
  public:
-  Watch(const Rules& rules, double sample_time_s) : sample_time_s_(sample_time_s) {
+  Watch(const BacktestRules& rules, double sample_time_s) : sample_time_s_(sample_time_s) {
     estimator::fdi::PipelineConfig config = rules.pipeline;
     config.load_bands(rules.folder, sample_time_s, rules.rig_id);
     pipeline_ = std::make_unique<Pipeline>(config, sample_time_s);
@@ -53,7 +124,7 @@ class Watch final : private estimator::fdi::Events {
 /// One run: samples in, alarms out.
 class Course final : public SampleHandler {
  public:
-  Course(const Rules& new_rules, const std::optional<Rules>& old_rules)
+  Course(const BacktestRules& new_rules, const std::optional<BacktestRules>& old_rules)
       : new_rules_(new_rules), old_rules_(old_rules) {}
 
   using SampleHandler::on;
@@ -94,8 +165,8 @@ class Course final : public SampleHandler {
     take(sample, message.sample_time_s);
   }
 
-  const Rules& new_rules_;
-  const std::optional<Rules>& old_rules_;
+  const BacktestRules& new_rules_;
+  const std::optional<BacktestRules>& old_rules_;
   std::unique_ptr<Watch> after_, before_;
   OccurrenceList recorded_;
 };
@@ -155,8 +226,8 @@ std::vector<std::string> files_of(const std::vector<std::string>& logs) {
   return files;
 }
 
-BacktestRun run_record(const std::string& file, const Rules& new_rules,
-                       const std::optional<Rules>& old_rules) {
+BacktestRun run_record(const std::string& file, const BacktestRules& new_rules,
+                       const std::optional<BacktestRules>& old_rules) {
   Course course(new_rules, old_rules);
   course.run.files = {file};
   const config::record::Record record = config::record::read_record(file);
@@ -166,8 +237,8 @@ BacktestRun run_record(const std::string& file, const Rules& new_rules,
 
 }  // namespace
 
-Rules read_rules(const std::string& file) {
-  Rules rules;
+BacktestRules read_rules(const std::string& file) {
+  BacktestRules rules;
   rules.file = file;
   const config::schema::Document document = config::schema::Document::load(file);
   document.read_part([&](config::schema::Visitor& v) {
@@ -186,7 +257,8 @@ Rules read_rules(const std::string& file) {
   return rules;
 }
 
-std::vector<BacktestRun> run_backtest(const Rules& new_rules, const std::optional<Rules>& old_rules,
+std::vector<BacktestRun> run_backtest(const BacktestRules& new_rules,
+                                      const std::optional<BacktestRules>& old_rules,
                                       const std::vector<std::string>& logs) {
   std::vector<BacktestRun> runs;
   std::map<std::int64_t, std::vector<Place>> places;

@@ -2,21 +2,61 @@
 // and as it told them.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <iosfwd>
+#include <limits>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "estimator/fdi/pipeline.h"
-#include "estimator/fdi/tracker/source_kinds.h"
-#include "workbench/replay/occurrences.h"
+#include "estimator/fdi/tracker/detection_method_kinds.h"
 
 namespace workbench::replay {
+
+/// Each time that an alarm stood, and how two lists of them compare.
+/// An alarm from its coming to its going.
+struct Occurrence {
+  std::string alarm;  ///< SOURCE.NAME
+  double from_s = 0.0;
+  double to_s = std::numeric_limits<double>::quiet_NaN();  ///< NaN: it stood at the log's end
+  int severity = 0;                                        ///< when it came, as in alarm_t
+  int direction = 0;
+};
+
+/// Alarms that come and go, as occurrences in the order of their coming.
+class OccurrenceList {
+ public:
+  /// A state of an alarm at a time, whether it is another or not.
+  void tell(const std::string& alarm, double t_s, bool active, int severity, int direction);
+  [[nodiscard]] const std::vector<Occurrence>& all() const noexcept { return all_; }
+
+ private:
+  std::vector<Occurrence> all_;
+};
+
+struct Shift {
+  Occurrence before, after;
+};
+
+struct OccurrenceDifference {
+  std::vector<Occurrence> appears, disappears;
+  std::vector<Shift> shifts;  ///< comes or goes at another time, or in another direction
+  std::int64_t same = 0;
+};
+
+/// Two of one alarm are the same one when they overlap, or come within `tolerance_s`; each is
+/// matched once, in the order of time. Times that differ by less than `sample_s` are equal.
+[[nodiscard]] OccurrenceDifference compare(const std::vector<Occurrence>& before,
+                                           const std::vector<Occurrence>& after, double tolerance_s,
+                                           double sample_s);
 
 namespace tracker = estimator::fdi::tracker;
 
 /// The alarms' part of a configuration file.
-struct Rules {
+struct BacktestRules {
   std::string file;
   std::filesystem::path folder;  ///< bands_file starts here
   std::string rig_id;            ///< "" where the file does not say
@@ -24,7 +64,7 @@ struct Rules {
 };
 
 /// Throws config::schema::ConfigError.
-[[nodiscard]] Rules read_rules(const std::string& file);
+[[nodiscard]] BacktestRules read_rules(const std::string& file);
 
 /// One run of the daemon, or one CSV record.
 struct BacktestRun {
@@ -39,8 +79,19 @@ struct BacktestRun {
 
 /// `logs`: LCM event logs, folders of them, records. Logs of one run are put together. `old_rules`
 /// empty: what was recorded. Throws config::schema::DataError ( 78).
-[[nodiscard]] std::vector<BacktestRun> run_backtest(const Rules& new_rules,
-                                                    const std::optional<Rules>& old_rules,
+[[nodiscard]] std::vector<BacktestRun> run_backtest(const BacktestRules& new_rules,
+                                                    const std::optional<BacktestRules>& old_rules,
                                                     const std::vector<std::string>& logs);
+
+/// What a new configuration would have told, as lines for people and as JSON.
+struct BacktestReport {
+  std::string new_rules;
+  std::string old_rules;  ///< file, empty: what was recorded
+  std::vector<BacktestRun> runs;
+  std::vector<OccurrenceDifference> differences;  ///< one for each run
+};
+
+void print_backtest(const BacktestReport& report, std::ostream& out);
+[[nodiscard]] nlohmann::ordered_json backtest_json(const BacktestReport& report);
 
 }  // namespace workbench::replay

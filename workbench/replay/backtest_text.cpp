@@ -1,4 +1,4 @@
-#include "workbench/replay/backtest_text.h"
+#include "workbench/replay/backtest_runs.h"
 
 #include <fmt/format.h>
 
@@ -41,7 +41,7 @@ Json json_of(const std::vector<Occurrence>& list) {
 struct Totals {
   std::size_t appear = 0, disappear = 0, shift = 0;
   std::int64_t same = 0;
-  void add(const Difference& d) {
+  void add(const OccurrenceDifference& d) {
     appear += d.appears.size();
     disappear += d.disappears.size();
     shift += d.shifts.size();
@@ -51,7 +51,7 @@ struct Totals {
 
 Totals totals(const BacktestReport& report) {
   Totals all;
-  for (const Difference& d : report.differences) all.add(d);
+  for (const OccurrenceDifference& d : report.differences) all.add(d);
   return all;
 }
 
@@ -65,7 +65,7 @@ std::string words(const Totals& t) {
 void print_backtest(const BacktestReport& report, std::ostream& out) {
   for (std::size_t i = 0; i < report.runs.size(); ++i) {
     const BacktestRun& run = report.runs[i];
-    const Difference& difference = report.differences[i];
+    const OccurrenceDifference& difference = report.differences[i];
     out << std::filesystem::path(run.files.front()).filename().string();
     if (run.files.size() > 1) out << " and " << run.files.size() - 1 << " more";
     out << ", " << time_text(run.from_s) << " to " << time_text(run.to_s) << '\n';
@@ -92,7 +92,7 @@ Json backtest_json(const BacktestReport& report) {
   Json runs = Json::array();
   for (std::size_t i = 0; i < report.runs.size(); ++i) {
     const BacktestRun& run = report.runs[i];
-    const Difference& d = report.differences[i];
+    const OccurrenceDifference& d = report.differences[i];
     Json shifts = Json::array();
     for (const Shift& s : d.shifts) {
       shifts.push_back({{"before", json_of(s.before)},

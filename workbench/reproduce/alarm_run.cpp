@@ -5,7 +5,8 @@
 #include <limits>
 
 #include "config/schema/document.h"
-#include "workbench/reproduce/shipped_models.h"
+#include "config/signals/nan.h"
+#include "workbench/reproduce/thesis_scenarios.h"
 #include "workbench/simulate/closed_loop.h"
 
 namespace workbench::reproduce {
@@ -38,12 +39,12 @@ class Recorder final : public fdi::Events {
 }  // namespace
 
 double AlarmRun::next(double after_s, int direction) const noexcept {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  using config::signals::kNaN;
   for (const AlarmChange& change : changes) {
     if (change.t_s < after_s) continue;
-    return change.direction == direction && change.active == (direction != 0) ? change.t_s : kNone;
+    return change.direction == direction && change.active == (direction != 0) ? change.t_s : kNaN;
   }
-  return kNone;
+  return kNaN;
 }
 
 double AlarmRun::first(double after_s, int direction) const noexcept {

@@ -15,7 +15,7 @@ namespace {
 using estimator::Structure;
 
 constexpr double kPrintedOffset = 3.1607e-7;
-void add_batch(std::vector<Row>& rows, const Judged& whole) {
+void add_batch(std::vector<ReproducedRow>& rows, const JudgedRun& whole) {
   rows.push_back(judged("batch: J, in step, m2", 9.1157e-4, whole.cost_m2, "cost, in step",
                         "over all 30 periods, the first with its start-up"));
   rows.push_back(judged("batch: J, one sample out of step, m2", 9.1157e-4, whole.cost_late_m2,
@@ -29,7 +29,8 @@ void add_batch(std::vector<Row>& rows, const Judged& whole) {
 
 /// A guess at the printed spread of the batch: buffers a few samples short of a period drift along
 /// the sine.
-void add_short_buffers(std::vector<Row>& rows, const Structure& structure, const Record& record) {
+void add_short_buffers(std::vector<ReproducedRow>& rows, const Structure& structure,
+                       const ScenarioRecord& record) {
   std::string offsets;
   std::string variances;
   for (const std::size_t window : {399, 398, 397, 396}) {
@@ -44,8 +45,8 @@ void add_short_buffers(std::vector<Row>& rows, const Structure& structure, const
                         variances, "information"));
 }
 
-void add_recursive(std::vector<Row>& rows, const std::string& name, const Judged& result,
-                   const char* offset_rule, const char* spread_rule) {
+void add_recursive(std::vector<ReproducedRow>& rows, const std::string& name,
+                   const JudgedRun& result, const char* offset_rule, const char* spread_rule) {
   rows.push_back(judged(name + ": J, in step, m2", 4.277e-5, result.cost_m2, "recursive cost",
                         fmt::format("one sample out of step {:.4g}", result.cost_late_m2)));
   rows.push_back(judged(name + ": mean b1, m/V", 1.9672e-4, result.b1.mean, "mean b1, recursive"));
@@ -57,11 +58,11 @@ void add_recursive(std::vector<Row>& rows, const std::string& name, const Judged
 
 }  // namespace
 
-std::vector<Row> batch_against_recursive() {
+std::vector<ReproducedRow> batch_against_recursive() {
   const Structure structure = estimator::parse_structure("arx111");
-  const Record record = run(calibrated(), 60.0);
-  const Judged whole = judge_batch(structure, record);
-  std::vector<Row> rows;
+  const ScenarioRecord record = run(calibrated(), 60.0);
+  const JudgedRun whole = judge_batch(structure, record);
+  std::vector<ReproducedRow> rows;
   add_batch(rows, whole);
   add_short_buffers(rows, structure, record);
   add_recursive(rows, "recursive, P(0) = 1e8 I", judge_recursive(structure, record, 1.0, false),
@@ -69,7 +70,7 @@ std::vector<Row> batch_against_recursive() {
   add_recursive(rows, "recursive, warm start", judge_recursive(structure, record, 1.0, true),
                 "spread", "spread");
   const double forgetting = forgetting_with_offset(structure, record, kPrintedOffset);
-  const Judged solved = judge_recursive(structure, record, forgetting, true);
+  const JudgedRun solved = judge_recursive(structure, record, forgetting, true);
   add_recursive(rows, fmt::format("recursive, forgetting {:.4f} (solved)", forgetting), solved,
                 "solved for", "spread, recursive");
   rows.push_back(judged("b1 varies more in the recursion than in the batch", std::string("yes"),

@@ -65,7 +65,7 @@ double false_alarms(const estimator::fdi::PipelineConfig& config) {
                     [](const AlarmChange& change) { return change.active; }));
 }
 
-void add(std::vector<Row>& rows, const Watch& watch) {
+void add(std::vector<ReproducedRow>& rows, const Watch& watch) {
   for (const double factor : {1.25, 0.75}) {
     const Delay found = delay(watch.config, factor);
     const std::string name = watch.name + fmt::format("; Ps {:.0f} psi: ", 1000.0 * factor);
@@ -82,8 +82,8 @@ void add(std::vector<Row>& rows, const Watch& watch) {
 
 }  // namespace
 
-std::vector<Row> detection_delay() {
-  std::vector<Row> rows;
+std::vector<ReproducedRow> detection_delay() {
+  std::vector<ReproducedRow> rows;
   add(rows, whole_periods());
   add(rows, shipped_sliding());
   return rows;

@@ -29,8 +29,8 @@ constexpr Experiment kExperiments[] = {
 
 std::span<const Experiment> experiments() { return kExperiments; }
 
-std::vector<Section> run_all(std::span<const Experiment> which, unsigned threads) {
-  std::vector<Section> sections(which.size());
+std::vector<ReproducedSection> run_all(std::span<const Experiment> which, unsigned threads) {
+  std::vector<ReproducedSection> sections(which.size());
   std::atomic<std::size_t> next{0};
   std::size_t done = 0;
   std::exception_ptr failure;

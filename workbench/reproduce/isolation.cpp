@@ -3,8 +3,6 @@
 // case II give the same alarm for both. And a Ps that leaves the very trace of a d fault.
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "workbench/reproduce/alarm_run.h"
 #include "workbench/reproduce/experiment.h"
 #include "workbench/reproduce/sweep.h"
@@ -36,7 +34,7 @@ double pressure_with_b1(double b1) {
   return 0.5 * (low + high);
 }
 
-Row mistaken() {
+ReproducedRow mistaken() {
   const Coefficients damped = fifth_period(with(calibrated(), "damping_N_s_per_m", 1250.0));
   const double pressure_Pa = pressure_with_b1(damped.b1);
   const Coefficients weak = fifth_period(with(calibrated(), "supply_pressure_Pa", pressure_Pa));
@@ -48,10 +46,10 @@ Row mistaken() {
 
 }  // namespace
 
-std::vector<Row> isolation() {
-  const Range pressure = b1_range(sweep("supply_pressure_Pa", kNormalPs_Pa));
-  const Range damping = b1_range(sweep("damping_N_s_per_m", 1000.0));
-  std::vector<Row> rows;
+std::vector<ReproducedRow> isolation() {
+  const CoefficientRange pressure = b1_range(sweep("supply_pressure_Pa", kNormalPs_Pa));
+  const CoefficientRange damping = b1_range(sweep("damping_N_s_per_m", 1000.0));
+  std::vector<ReproducedRow> rows;
   rows.push_back(judged("b1 range of d lies inside that of Ps (both 50 to 150 %)",
                         std::string("yes"),
                         yes_no(damping.low > pressure.low && damping.high < pressure.high), "words",

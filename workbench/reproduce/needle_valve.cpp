@@ -11,7 +11,7 @@
 
 #include "estimator/batch.h"
 #include "workbench/reproduce/experiment.h"
-#include "workbench/reproduce/rig.h"
+#include "workbench/reproduce/thesis_scenarios.h"
 #include "workbench/reproduce/tolerance.h"
 
 namespace workbench::reproduce {
@@ -29,7 +29,7 @@ struct Ranges {
 };
 
 Ranges ranges(const Scenario& scenario, std::uint64_t seed) {
-  const Record record = run(with_rig_instruments(scenario), 60.0, seed);
+  const ScenarioRecord record = run(with_rig_instruments(scenario), 60.0, seed);
   const auto periods =
       estimator::fit_periods(estimator::parse_structure("arx211"), record.u_V, record.y_m, kPeriod);
   Ranges out;
@@ -62,7 +62,7 @@ std::string shown(const Ranges& r) {
 }
 
 /// In how many of the tried presets both verdicts come out as printed.
-Row around(const Ranges& alone, const Scenario& slaves) {
+ReproducedRow around(const Ranges& alone, const Scenario& slaves) {
   int tried = 0;
   int held = 0;
   for (const double mass_kg : {5.0, 20.0, 100.0}) {
@@ -84,14 +84,14 @@ Row around(const Ranges& alone, const Scenario& slaves) {
 
 }  // namespace
 
-std::vector<Row> needle_valve() {
+std::vector<ReproducedRow> needle_valve() {
   const Scenario slaves = shipped("rig_2000psi_slaves");
   const double needle = *Scenario(slaves).model.value(kNeedle);
   const Ranges alone = ranges(shipped("rig_2000psi"), 1);
   const Ranges open = ranges(slaves, 2);
   const Ranges closed = ranges(with(slaves, kNeedle, kClosed * needle), 3);
   const std::string by = separating(alone, open);
-  std::vector<Row> rows;
+  std::vector<ReproducedRow> rows;
   rows.push_back(judged("slave actuators connected or not", std::string("separable"), verdict(by),
                         "words",
                         "by " + by + "; without: " + shown(alone) + "; with: " + shown(open)));

@@ -9,8 +9,8 @@
 #include "estimator/free_run.h"
 #include "workbench/reproduce/alarm_run.h"
 #include "workbench/reproduce/experiment.h"
-#include "workbench/reproduce/rig.h"
 #include "workbench/reproduce/spread.h"
+#include "workbench/reproduce/thesis_scenarios.h"
 #include "workbench/reproduce/tolerance.h"
 
 namespace workbench::reproduce {
@@ -28,16 +28,16 @@ AlarmRun pressure_test(double ramp_s) {
   return run_with_alarms(scenario, watching_b1(period_estimator("arx211"), kLow, kHigh), 40.0);
 }
 
-Row high_alarm(const AlarmRun& found, const std::string& when) {
+ReproducedRow high_alarm(const AlarmRun& found, const std::string& when) {
   return judged(when + ": alarm (b1 above its band), s", 16.0, found.first(13.0, +1),
                 "rig alarm time");
 }
-Row low_alarm(const AlarmRun& found, const std::string& when) {
+ReproducedRow low_alarm(const AlarmRun& found, const std::string& when) {
   return judged(when + ": alarm (b1 below its band), s", 30.0, found.first(28.0, -1),
                 "rig alarm time");
 }
 
-void add_timeline(std::vector<Row>& rows) {
+void add_timeline(std::vector<ReproducedRow>& rows) {
   const AlarmRun found = pressure_test(kRamp_s);
   const std::string when = fmt::format("pressure ramps over {:.1f} s", kRamp_s);
   rows.push_back(high_alarm(found, when));
@@ -60,7 +60,7 @@ void add_timeline(std::vector<Row>& rows) {
                         "tried: 0 (a step) to 3 s"));
 }
 
-void add_costs(std::vector<Row>& rows, const Record& record) {
+void add_costs(std::vector<ReproducedRow>& rows, const ScenarioRecord& record) {
   struct Cost {
     const char* structure;
     double printed_m2;
@@ -81,9 +81,9 @@ void add_costs(std::vector<Row>& rows, const Record& record) {
   }
 }
 
-void add_spread(std::vector<Row>& rows, const Record& record) {
+void add_spread(std::vector<ReproducedRow>& rows, const ScenarioRecord& record) {
   const auto structure = estimator::parse_structure("arx211");
-  const Judged batch = judge_batch(structure, record);
+  const JudgedRun batch = judge_batch(structure, record);
   rows.push_back(judged("batch: J, m2", 0.0090, batch.cost_m2, "rig figure"));
   rows.push_back(judged("batch: mean b1, m/V", 6.5220e-5, batch.b1.mean, "rig b1"));
   rows.push_back(
@@ -91,7 +91,7 @@ void add_spread(std::vector<Row>& rows, const Record& record) {
   rows.push_back(
       judged("batch: variance of b1, (m/V)2", 2.2573e-14, batch.b1.variance, "rig figure"));
   const double forgetting = 0.998;
-  const Judged recursive = judge_recursive(structure, record, forgetting, true);
+  const JudgedRun recursive = judge_recursive(structure, record, forgetting, true);
   const std::string name = fmt::format("recursive, forgetting {:.3f} (assumed)", forgetting);
   rows.push_back(judged(name + ": J, m2", 3.9927e-4, recursive.cost_m2, "rig figure"));
   rows.push_back(judged(name + ": mean b1, m/V", 6.4924e-5, recursive.b1.mean, "rig figure"));
@@ -109,9 +109,9 @@ double mean_b1(double pressure_factor) {
 
 }  // namespace
 
-std::vector<Row> rig_experiment() {
-  std::vector<Row> rows;
-  const Record record = run(with_rig_instruments(shipped("rig_2000psi")), 60.0);
+std::vector<ReproducedRow> rig_experiment() {
+  std::vector<ReproducedRow> rows;
+  const ScenarioRecord record = run(with_rig_instruments(shipped("rig_2000psi")), 60.0);
   add_costs(rows, record);
   add_spread(rows, record);
   const double normal = mean_b1(1.0);

@@ -1,17 +1,17 @@
 // What supply pressure and damping do to the coefficients of ARX111: +-10 %, and from half to one
 // and a half of the normal value. Each figure is of the fifth period at constant conditions.
 #include <fmt/format.h>
-
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "estimator/batch.h"
 #include "workbench/reproduce/alarm_run.h"
 #include "workbench/reproduce/experiment.h"
 #include "workbench/reproduce/sweep.h"
 #include "workbench/reproduce/tolerance.h"
 
 namespace workbench::reproduce {
-
 namespace {
 
 double percent(double value, double of) { return 100.0 * (value / of - 1.0); }
@@ -28,10 +28,10 @@ double a1_change_percent(const std::vector<Coefficients>& swept, std::size_t fro
 
 }  // namespace
 
-std::vector<Row> pressure_sensitivity() {
+std::vector<ReproducedRow> pressure_sensitivity() {
   const auto swept = sweep("supply_pressure_Pa", 1000.0 * kPa_per_psi);
   const double normal = swept[kNormal].b1;
-  const Range range = b1_range(swept);
+  const CoefficientRange range = b1_range(swept);
   return {judged("b1 for Ps +10 %, change in %", 5.0, percent(swept[kNormal + 1].b1, normal),
                  "about +5 %"),
           judged("b1 for Ps -10 %, change in %", -5.0, percent(swept[kNormal - 1].b1, normal),
@@ -51,10 +51,10 @@ std::vector<Row> pressure_sensitivity() {
                  fmt::format("{:.4e} to {:.4e}", swept[kNormal - 1].b1, swept[kNormal + 1].b1))};
 }
 
-std::vector<Row> damping_sensitivity() {
+std::vector<ReproducedRow> damping_sensitivity() {
   const auto swept = sweep("damping_N_s_per_m", 1000.0);
   const double normal = swept[kNormal].b1;
-  const Range range = b1_range(swept);
+  const CoefficientRange range = b1_range(swept);
   return {judged("b1 for d +10 %, change in %", -0.07, percent(swept[kNormal + 1].b1, normal),
                  "about -0.07 %"),
           judged("b1 for d -10 %, change in %", 0.07, percent(swept[kNormal - 1].b1, normal),
@@ -70,6 +70,28 @@ std::vector<Row> damping_sensitivity() {
                                  : "no"),
                  "words",
                  fmt::format("{:.5e} to {:.5e}", swept[kNormal + 1].b1, swept[kNormal - 1].b1))};
+}
+
+Coefficients fifth_period(const Scenario& scenario) {
+  const ScenarioRecord record = run(scenario, 10.0);
+  const auto periods =
+      estimator::fit_periods(estimator::parse_structure("arx111"), record.u_V, record.y_m, kPeriod);
+  return {periods.at(4).value[0], periods.at(4).value[1]};
+}
+
+std::vector<Coefficients> sweep(const char* parameter, double normal) {
+  std::vector<Coefficients> out;
+  for (int i = 5; i <= 15; ++i) {
+    out.push_back(fifth_period(with(calibrated(), parameter, 0.1 * i * normal)));
+  }
+  return out;
+}
+
+CoefficientRange b1_range(const std::vector<Coefficients>& swept) {
+  const auto [low, high] =
+      std::minmax_element(swept.begin(), swept.end(),
+                          [](const Coefficients& a, const Coefficients& b) { return a.b1 < b.b1; });
+  return {low->b1, high->b1};
 }
 
 }  // namespace workbench::reproduce

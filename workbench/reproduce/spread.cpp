@@ -36,9 +36,10 @@ Spread spread_of(const std::vector<double>& values) {
   return out;
 }
 
-Judged judge_batch(const Structure& structure, const Record& record, std::size_t window) {
+JudgedRun judge_batch(const Structure& structure, const ScenarioRecord& record,
+                      std::size_t window) {
   const auto estimates = estimator::fit_periods(structure, record.u_V, record.y_m, window);
-  Judged out;
+  JudgedRun out;
   std::vector<double> b1;
   for (std::size_t i = 0; i < estimates.size(); ++i) {
     const auto u_V = record.u(i * window, window);
@@ -53,15 +54,15 @@ Judged judge_batch(const Structure& structure, const Record& record, std::size_t
   return out;
 }
 
-Judged judge_recursive(const Structure& structure, const Record& record, double forgetting,
-                       bool warm) {
+JudgedRun judge_recursive(const Structure& structure, const ScenarioRecord& record,
+                          double forgetting, bool warm) {
   estimator::RecursiveConfig config;
   config.structure = structure;
   config.forgetting = forgetting;
   config.prior_variance = kPriorVariance;
   config.warmup = warm ? static_cast<int>(kPeriod) : 0;
   estimator::Recursive estimator(config);
-  Judged out;
+  JudgedRun out;
   std::vector<double> b1;
   std::vector<double> simulated_m = record.y_m;  // measured until the first estimate is there
   for (std::size_t t = 0; t < record.y_m.size(); ++t) {
@@ -77,7 +78,8 @@ Judged judge_recursive(const Structure& structure, const Record& record, double 
   return out;
 }
 
-double forgetting_with_offset(const Structure& structure, const Record& record, double offset) {
+double forgetting_with_offset(const Structure& structure, const ScenarioRecord& record,
+                              double offset) {
   double low = 0.95;
   double high = 0.9999;
   for (int i = 0; i < 20; ++i) {

@@ -17,23 +17,23 @@ struct Spread {
 };
 [[nodiscard]] Spread spread_of(const std::vector<double>& values);
 
-struct Judged {
+struct JudgedRun {
   double cost_m2 = 0.0;       ///< J, free run in step
   double cost_late_m2 = 0.0;  ///< the same, read one sample late
   Spread b1{};                ///< without the first period
 };
 
 /// One estimate for each `window` samples, and a free run of each window from its measured start.
-[[nodiscard]] Judged judge_batch(const estimator::Structure& structure, const Record& record,
-                                 std::size_t window = kPeriod);
+[[nodiscard]] JudgedRun judge_batch(const estimator::Structure& structure,
+                                    const ScenarioRecord& record, std::size_t window = kPeriod);
 
 /// One estimate each sample; the free run takes each as it comes. Warm: a batch over the first
 /// period is the start; otherwise theta(0) = 0, P(0) = 1e8 I.
-[[nodiscard]] Judged judge_recursive(const estimator::Structure& structure, const Record& record,
-                                     double forgetting, bool warm);
+[[nodiscard]] JudgedRun judge_recursive(const estimator::Structure& structure,
+                                        const ScenarioRecord& record, double forgetting, bool warm);
 
 /// The forgetting factor whose greatest offset of b1 is the given one, by bisection.
 [[nodiscard]] double forgetting_with_offset(const estimator::Structure& structure,
-                                            const Record& record, double offset);
+                                            const ScenarioRecord& record, double offset);
 
 }  // namespace workbench::reproduce

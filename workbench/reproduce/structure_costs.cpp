@@ -1,19 +1,45 @@
 // E of each model structure: batch least squares over the fifth period, then a free run of the same
 // period with the measured start; and two guesses at how the printed figures came about.
 #include <fmt/format.h>
-
+#include <Eigen/LU>
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include "estimator/batch.h"
 #include "estimator/free_run.h"
+#include "estimator/structure.h"
 #include "workbench/reproduce/experiment.h"
-#include "workbench/reproduce/normal_equations.h"
 #include "workbench/reproduce/thesis_scenarios.h"
 #include "workbench/reproduce/tolerance.h"
 
 namespace workbench::reproduce {
+
+// Least squares as the thesis does it, theta = (Psi' Psi)^-1 Psi' y: squares the condition number.
+// Here only to show what comes of it; the product factorises Psi itself.
+
+[[nodiscard]] std::vector<double> solve_normal_equations(const estimator::Structure& structure,
+                                                         std::span<const double> u_V,
+                                                         std::span<const double> y_m);
+
+std::vector<double> solve_normal_equations(const estimator::Structure& structure,
+                                           std::span<const double> u_V,
+                                           std::span<const double> y_m) {
+  const int p = structure.n + structure.m;
+  Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(p, p);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(p);
+  Eigen::VectorXd psi(p);
+  for (std::size_t t = structure.history(); t < y_m.size(); ++t) {
+    for (int i = 0; i < structure.n; ++i) psi[i] = -y_m[t - 1 - i];
+    for (int j = 0; j < structure.m; ++j) psi[structure.n + j] = u_V[t - structure.k - j];
+    moments += psi * psi.transpose();
+    right += psi * y_m[t];
+  }
+  const Eigen::VectorXd theta = moments.inverse() * right;
+  return {theta.data(), theta.data() + theta.size()};
+}
 
 namespace {
 
@@ -80,7 +106,7 @@ const char* verdict(double e_m2, double energy_m2) {
   return e_m2 < kLost * energy_m2 ? "represents the output" : "cannot represent";
 }
 
-void add_representing(std::vector<Row>& rows, const Record& record) {
+void add_representing(std::vector<ReproducedRow>& rows, const ScenarioRecord& record) {
   for (const Printed& printed : kRepresenting) {
     const std::string name = upper(printed.structure);
     const Costs costs = fit(estimator::parse_structure(printed.structure), record.u(kFrom, kPeriod),
@@ -94,7 +120,8 @@ void add_representing(std::vector<Row>& rows, const Record& record) {
 }
 
 /// A guess at the fall of E from ARX111 to ARX411: u and y kept to six decimals.
-void add_rounded(std::vector<Row>& rows, const Record& record, double kp_V_per_m) {
+void add_rounded(std::vector<ReproducedRow>& rows, const ScenarioRecord& record,
+                 double kp_V_per_m) {
   const auto u_V = six_decimals(record.u(kFrom, kPeriod));
   const auto y_m = six_decimals(record.y(kFrom, kPeriod));
   double first_m2 = 0.0;
@@ -113,7 +140,7 @@ void add_rounded(std::vector<Row>& rows, const Record& record, double kp_V_per_m
   }
 }
 
-void add_failing(std::vector<Row>& rows, const Record& record) {
+void add_failing(std::vector<ReproducedRow>& rows, const ScenarioRecord& record) {
   const auto u_V = record.u(kFrom, kPeriod);
   const auto y_m = record.y(kFrom, kPeriod);
   const double all_m2 = energy(y_m);
@@ -139,11 +166,11 @@ void add_failing(std::vector<Row>& rows, const Record& record) {
 }
 
 /// The gain of the loop is not printed: E of ARX111 out of step for others.
-void add_gains(std::vector<Row>& rows) {
+void add_gains(std::vector<ReproducedRow>& rows) {
   for (const double kp_V_per_m : {100.0, 320.0, 400.0}) {
     Scenario scenario = calibrated();
     scenario.model.loop.kp_V_per_m = kp_V_per_m;
-    const Record record = run(scenario, 10.0);
+    const ScenarioRecord record = run(scenario, 10.0);
     const Costs costs = fit(estimator::parse_structure("arx111"), record.u(kFrom, kPeriod),
                             record.y(kFrom, kPeriod));
     rows.push_back(
@@ -156,10 +183,10 @@ void add_gains(std::vector<Row>& rows) {
 
 }  // namespace
 
-std::vector<Row> structure_costs() {
+std::vector<ReproducedRow> structure_costs() {
   const Scenario scenario = calibrated();
-  const Record record = run(scenario, 10.0);
-  std::vector<Row> rows;
+  const ScenarioRecord record = run(scenario, 10.0);
+  std::vector<ReproducedRow> rows;
   add_representing(rows, record);
   add_rounded(rows, record, scenario.model.loop.kp_V_per_m);
   add_gains(rows);

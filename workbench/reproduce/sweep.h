@@ -21,10 +21,10 @@ struct Coefficients {
 /// Where the normal value is in a sweep.
 inline constexpr std::size_t kNormal = 5;
 
-struct Range {
+struct CoefficientRange {
   double low;
   double high;
 };
-[[nodiscard]] Range b1_range(const std::vector<Coefficients>& swept);
+[[nodiscard]] CoefficientRange b1_range(const std::vector<Coefficients>& swept);
 
 }  // namespace workbench::reproduce

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "config/schema/document.h"
-#include "workbench/reproduce/shipped_models.h"
 #include "workbench/simulate/closed_loop.h"
 
 namespace workbench::reproduce {
@@ -40,10 +39,10 @@ Scenario with_real_instruments(Scenario scenario) {
   return scenario;
 }
 
-Record run(const Scenario& scenario, double duration_s, std::uint64_t seed) {
+ScenarioRecord run(const Scenario& scenario, double duration_s, std::uint64_t seed) {
   simulate::ClosedLoop loop(scenario, seed);
   const auto samples = static_cast<std::size_t>(std::llround(duration_s / simulate::kSampleTime_s));
-  Record record;
+  ScenarioRecord record;
   record.u_V.reserve(samples);
   record.y_m.reserve(samples);
   for (std::size_t k = 0; k < samples; ++k) {

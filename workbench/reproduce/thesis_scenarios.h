@@ -33,7 +33,7 @@ inline constexpr double kPa_per_psi = 6890.0;
 /// 5 um encoder, 12-bit D/A of +-10 V, 2 um noise.
 [[nodiscard]] Scenario with_real_instruments(Scenario scenario);
 
-struct Record {
+struct ScenarioRecord {
   std::vector<double> u_V;
   std::vector<double> y_m;  ///< offset removed
 
@@ -45,6 +45,17 @@ struct Record {
   }
 };
 
-[[nodiscard]] Record run(const Scenario& scenario, double duration_s, std::uint64_t seed = 1);
+[[nodiscard]] ScenarioRecord run(const Scenario& scenario, double duration_s,
+                                 std::uint64_t seed = 1);
+
+/// The test stand's preset: 2.5 um encoder, 0.2 um noise, 12-bit D/A of +-10 V.
+[[nodiscard]] inline Scenario with_rig_instruments(Scenario scenario) {
+  scenario.instruments = {2.5e-6, 0.2e-6, 12, 10.0};
+  return scenario;
+}
+
+/// TOML text of a file of config/models or of config/thesis_case*.toml, as built in; the name is
+/// without folder. Asserts that there is such a file.
+[[nodiscard]] std::string_view shipped_model_text(std::string_view name);
 
 }  // namespace workbench::reproduce

@@ -30,7 +30,7 @@ struct Tolerance {
 [[nodiscard]] const Tolerance& tolerance(std::string_view name);
 
 /// A row judged by the rule of that name; a missing value, or one that is not finite, never agrees.
-[[nodiscard]] Row judged(std::string what, Value printed, Value ours, std::string_view rule,
-                         std::string note = "");
+[[nodiscard]] ReproducedRow judged(std::string what, Value printed, Value ours,
+                                   std::string_view rule, std::string note = "");
 
 }  // namespace workbench::reproduce

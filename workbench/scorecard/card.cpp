@@ -1,8 +1,15 @@
 #include "workbench/scorecard/card.h"
 
+#include <fmt/format.h>
 #include <algorithm>
-#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include "config/signals/nan.h"
 
+#include "config/record/whole_file.h"
+#include "config/schema/error.h"
+#include "config/schema/joined.h"
+#include "workbench/scorecard/simulated_records.h"
 #include "workbench/scorecard/statistics.h"
 
 namespace workbench::scorecard {
@@ -10,7 +17,51 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::chrono::seconds kEvery{5};
+
+}  // namespace
+
+Store::Store(std::string file, std::string key) : file_(std::move(file)), key_(std::move(key)) {
+  std::error_code ignored;
+  if (file_.empty() || !std::filesystem::exists(file_, ignored)) return;
+  const json read = json::parse(std::ifstream(file_), nullptr, /*allow_exceptions=*/false);
+  if (!read.is_object() || !read.contains("results") || !read["results"].is_object() ||
+      read.value("schema_version", json()) != 1) {
+    throw config::schema::bad_data(file_, "is not what a scorecard has saved");
+  }
+  if (read.value("key", "") != key_) {
+    throw config::schema::bad_config(file_, "was begun with another plan, seed or number of seeds",
+                                     "the same ones, or another file for --resume");
+  }
+  results_ = read["results"];
+}
+
+const json* Store::find(const std::string& part, const std::string& method) const {
+  const auto of_part = results_.find(part);
+  if (of_part == results_.end()) return nullptr;
+  const auto found = of_part->find(method);
+  return found == of_part->end() ? nullptr : &*found;
+}
+
+void Store::put(const std::string& part, const std::string& method, json result) {
+  results_[part][method] = std::move(result);
+  changed_ = true;
+  if (std::chrono::steady_clock::now() - saved_ > kEvery) save();
+}
+
+void Store::save() {
+  saved_ = std::chrono::steady_clock::now();
+  if (file_.empty() || !changed_) return;
+  config::record::write_whole(
+      file_, json{{"schema_version", 1}, {"key", key_}, {"results", results_}}.dump() + "\n");
+  changed_ = false;
+}
+
+std::string digest(const std::string& text) { return fmt::format("{:016x}", seed_of(0, text)); }
+
+namespace {
+
+using config::signals::kNaN;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void add_quiet(QuietFigures& to, const json& result) {
@@ -20,20 +71,18 @@ void add_quiet(QuietFigures& to, const json& result) {
 }
 
 std::string joined(const json& names) {
-  std::string out;
-  for (const json& name : names) out += (out.empty() ? "" : "|") + name.get<std::string>();
-  return out;
+  return config::schema::joined(names.get<std::vector<std::string>>(), "|");
 }
 
-Found& found_of(FaultFigures& of, const std::string& motion, int direction) {
-  for (Found& found : of.found) {
+FaultDetection& found_of(FaultFigures& of, const std::string& motion, int direction) {
+  for (FaultDetection& found : of.found) {
     if (found.motion == motion && found.direction == direction) return found;
   }
   of.found.push_back({motion, direction, true, false, std::nullopt, 0.0, {}, {}});
   return of.found.back();
 }
 
-void add_stated(FaultFigures& of, Found& found, const json& result) {
+void add_stated(FaultFigures& of, FaultDetection& found, const json& result) {
   for (const json& answer : result["answers"]) {
     ++found.verdicts[answer["verdict"].get<std::string>()];
     const json& delay_s = answer["delay_s"];
@@ -60,7 +109,7 @@ void add(MethodFigures& to, const Bench& bench, const Part& part, const json& re
   auto of = std::find_if(to.faults.begin(), to.faults.end(),
                          [&](const FaultFigures& f) { return f.fault == &fault; });
   if (of == to.faults.end()) of = to.faults.insert(of, FaultFigures{&fault, {}, {}});
-  Found& found = found_of(*of, motion, part.direction);
+  FaultDetection& found = found_of(*of, motion, part.direction);
   found.usable = usable;
   if (!usable) return;
   if (part.kind == Part::Kind::stated) {
@@ -82,7 +131,7 @@ double QuietFigures::per_hour_upper() const { return poisson_upper(counted.alarm
 
 std::optional<FaultFigures::Smallest> FaultFigures::smallest(const std::string& motion) const {
   std::optional<Smallest> worst;
-  for (const Found& one : found) {
+  for (const FaultDetection& one : found) {
     if (one.motion != motion || (!one.searched && one.usable)) continue;
     if (!one.usable) return std::nullopt;
     const Smallest here{one.smallest.value_or(one.greatest), !one.smallest};
@@ -96,13 +145,14 @@ std::optional<FaultFigures::Smallest> FaultFigures::smallest(const std::string& 
 
 std::vector<double> FaultFigures::delays_s() const {
   std::vector<double> all;
-  for (const Found& one : found) all.insert(all.end(), one.delays_s.begin(), one.delays_s.end());
+  for (const FaultDetection& one : found)
+    all.insert(all.end(), one.delays_s.begin(), one.delays_s.end());
   return all;
 }
 
-int FaultFigures::verdict(Verdict verdict) const {
+int FaultFigures::verdict(TrialVerdict verdict) const {
   int count = 0;
-  for (const Found& one : found) {
+  for (const FaultDetection& one : found) {
     const auto at = one.verdicts.find(to_string(verdict));
     if (at != one.verdicts.end()) count += at->second;
   }
@@ -111,7 +161,7 @@ int FaultFigures::verdict(Verdict verdict) const {
 
 int FaultFigures::trials() const { return static_cast<int>(delays_s().size()); }
 
-int MethodFigures::verdict(Verdict verdict) const {
+int MethodFigures::verdict(TrialVerdict verdict) const {
   int count = 0;
   for (const FaultFigures& fault : faults) count += fault.verdict(verdict);
   return count;

@@ -1,18 +1,45 @@
 // The figures of a scorecard, drawn from the results of its parts.
 #pragma once
 
-#include <array>
+#include <chrono>
 #include <limits>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "workbench/present/report.h"
-#include "workbench/scorecard/store.h"
 #include "workbench/scorecard/trials.h"
 
 namespace workbench::scorecard {
+
+/// Results of the parts that are done, in memory and in a file that a later run goes on from. They
+/// depend on the plan, the number of seeds and the seed, which a file states; methods are told
+/// apart by their settings, so that one that is new or changed is worked out and the others are
+/// kept. Not for several threads at once.
+class Store {
+ public:
+  /// `file` empty: in memory only. Reads it when it is there; throws config::schema::Error: exit
+  /// 65 when it is no such file, 78 when it belongs to another plan, seed or number of seeds.
+  Store(std::string file, std::string key);
+
+  [[nodiscard]] const nlohmann::json* find(const std::string& part,
+                                           const std::string& method) const;
+  /// Saved at once when the last time is some seconds ago. Throws config::schema::RunError.
+  void put(const std::string& part, const std::string& method, nlohmann::json result);
+  void save();
+
+ private:
+  std::string file_;
+  std::string key_;
+  nlohmann::json results_ = nlohmann::json::object();
+  bool changed_ = false;
+  std::chrono::steady_clock::time_point saved_ = std::chrono::steady_clock::now();
+};
+
+/// A short name for a long text.
+[[nodiscard]] std::string digest(const std::string& text);
 
 struct QuietFigures {
   double hours = 0.0;
@@ -23,7 +50,7 @@ struct QuietFigures {
 };
 
 /// A fault in one motion and one direction.
-struct Found {
+struct FaultDetection {
   std::string motion;
   int direction = 1;
   bool usable = true;
@@ -37,7 +64,7 @@ struct Found {
 
 struct FaultFigures {
   const Fault* fault = nullptr;
-  std::vector<Found> found;
+  std::vector<FaultDetection> found;
   std::map<std::string, int> first;  ///< how often which names came first; "" without a name
 
   /// The worst of both directions, with `greatest` when it was not found; nullopt: not looked for.
@@ -47,7 +74,7 @@ struct FaultFigures {
   };
   [[nodiscard]] std::optional<Smallest> smallest(const std::string& motion) const;
   [[nodiscard]] std::vector<double> delays_s() const;  ///< of all motions and directions
-  [[nodiscard]] int verdict(Verdict verdict) const;
+  [[nodiscard]] int verdict(TrialVerdict verdict) const;
   [[nodiscard]] int trials() const;
 };
 
@@ -61,7 +88,7 @@ struct MethodFigures {
   std::map<std::string, std::string> unusable;  ///< motion: why
   double load_ratio = std::numeric_limits<double>::quiet_NaN();
 
-  [[nodiscard]] int verdict(Verdict verdict) const;  ///< over all faults
+  [[nodiscard]] int verdict(TrialVerdict verdict) const;  ///< over all faults
   [[nodiscard]] int trials() const;
 };
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <utility>
 
 #include "estimator/state_archive.h"
@@ -25,21 +24,21 @@ bool holds(const Names& names, const std::vector<std::string>& right) {
 }
 
 /// What one more alarm makes of the verdict on those before it.
-Verdict add(Verdict before, const Names& names, const std::vector<std::string>& right) {
-  Verdict one = Verdict::wrong;
+TrialVerdict add(TrialVerdict before, const Names& names, const std::vector<std::string>& right) {
+  TrialVerdict one = TrialVerdict::wrong;
   if (names.empty()) {
-    one = Verdict::unnamed;
+    one = TrialVerdict::unnamed;
   } else if (holds(names, right)) {
-    one = names.size() == 1 ? Verdict::right : Verdict::group;
+    one = names.size() == 1 ? TrialVerdict::right : TrialVerdict::group;
   }
-  if (before == Verdict::missed || before == Verdict::unnamed) return one;
-  if (one == Verdict::unnamed) return before;
+  if (before == TrialVerdict::missed || before == TrialVerdict::unnamed) return one;
+  if (one == TrialVerdict::unnamed) return before;
   return std::max(before, one);
 }
 
 }  // namespace
 
-const char* to_string(Verdict verdict) {
+const char* to_string(TrialVerdict verdict) {
   constexpr const char* kWords[] = {"right", "group", "wrong", "unnamed", "missed", "standing"};
   return kWords[static_cast<std::size_t>(verdict)];
 }
@@ -111,8 +110,9 @@ void DetectionTrial::take_lead(const Samples& samples, std::size_t end, Listener
   lead->said = std::make_shared<Listener>(listener);
 }
 
-Answer DetectionTrial::fault(const Samples& samples, double at_s,
-                             const std::vector<std::string>& names, bool to_the_end, Lead* lead) {
+TrialAnswer DetectionTrial::fault(const Samples& samples, double at_s,
+                                  const std::vector<std::string>& names, bool to_the_end,
+                                  Lead* lead) {
   const auto time_s = [&](std::size_t k) {
     return static_cast<double>(samples[k].tick) * sample_time_s_;
   };
@@ -120,9 +120,9 @@ Answer DetectionTrial::fault(const Samples& samples, double at_s,
   while (k < samples.size() && time_s(k) < at_s) ++k;
   Listener listener(notices_);
   take_lead(samples, k, listener, lead);
-  Answer answer;
+  TrialAnswer answer;
   if (listener.standing > 0) {
-    answer.verdict = Verdict::standing;
+    answer.verdict = TrialVerdict::standing;
     return answer;
   }
   for (; k < samples.size(); ++k) {

@@ -6,7 +6,6 @@
 
 #include <cstdint>
 #include <limits>
-#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -19,7 +18,7 @@ namespace workbench::scorecard {
 
 using Names = std::set<std::string>;  ///< parameters of one alarm that cannot be told apart
 
-enum class Verdict {
+enum class TrialVerdict {
   right,     ///< every alarm named the fault, and nothing else
   group,     ///< every alarm named a group that holds it
   wrong,     ///< an alarm named something else
@@ -27,16 +26,16 @@ enum class Verdict {
   missed,    ///< no alarm
   standing,  ///< an alarm stood when the fault came: nothing is counted
 };
-[[nodiscard]] const char* to_string(Verdict verdict);
+[[nodiscard]] const char* to_string(TrialVerdict verdict);
 
 /// What a method said of a fault.
-struct Answer {
-  Verdict verdict = Verdict::missed;
+struct TrialAnswer {
+  TrialVerdict verdict = TrialVerdict::missed;
   double delay_s = std::numeric_limits<double>::infinity();  ///< to its first alarm
   Names first;  ///< names of the alarms that came first, together
 
   [[nodiscard]] bool detected() const {
-    return verdict != Verdict::missed && verdict != Verdict::standing;
+    return verdict != TrialVerdict::missed && verdict != TrialVerdict::standing;
   }
 };
 
@@ -66,9 +65,9 @@ class DetectionTrial {
   /// `names`: that are right. `to_the_end`: names are judged by all alarms until the record ends,
   /// not by the first ones alone, after which it stops. `lead`: of the samples before, by a trial
   /// of the same configuration.
-  [[nodiscard]] Answer fault(const Samples& samples, double at_s,
-                             const std::vector<std::string>& names, bool to_the_end,
-                             Lead* lead = nullptr);
+  [[nodiscard]] TrialAnswer fault(const Samples& samples, double at_s,
+                                  const std::vector<std::string>& names, bool to_the_end,
+                                  Lead* lead = nullptr);
   [[nodiscard]] Quiet quiet(const Samples& samples);
 
  private:

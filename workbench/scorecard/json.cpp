@@ -1,5 +1,4 @@
 // A scorecard as JSON.
-#include <cmath>
 
 #include "workbench/present/json.h"
 #include "workbench/scorecard/card.h"
@@ -24,7 +23,7 @@ json quiet_json(const QuietFigures& q) {
 json fault_json(const FaultFigures& of) {
   json smallest = json::object();
   json verdicts = json::object();
-  for (const Found& found : of.found) {
+  for (const FaultDetection& found : of.found) {
     if (found.searched) {
       smallest[found.motion][found.direction > 0 ? "up" : "down"] =
           found.smallest ? json(*found.smallest) : json(nullptr);
@@ -73,8 +72,8 @@ json method_json(const MethodFigures& method) {
   for (const FaultFigures& of : method.faults) {
     out["faults"].push_back(fault_json(of));
     json& row = out["matrix"][of.fault->id] = of.first;
-    row["missed"] = of.verdict(Verdict::missed);
-    row["standing"] = of.verdict(Verdict::standing);
+    row["missed"] = of.verdict(TrialVerdict::missed);
+    row["standing"] = of.verdict(TrialVerdict::standing);
     for (const auto& [names, count] : of.first) {
       if (names.find('|') != std::string::npos) sets[names][of.fault->id] = count;
     }

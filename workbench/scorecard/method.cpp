@@ -59,7 +59,7 @@ std::string shipped_name(const std::string& text) {
     if (text == name || text == stem) return name;
     known += (known.empty() ? "" : ", ") + stem;
   }
-  throw config::schema::bad_config(text, "is no file and no method that is shipped", known);
+  throw config::schema::bad_config(text, "is neither a file nor a shipped method", known);
 }
 
 template <class F>
@@ -85,13 +85,13 @@ bool open_ended(const fdi::BandConfig& band) {
 }  // namespace
 
 void Method::visit(config::schema::Visitor& v) {
-  v.text({"name", "as it is shown", true}, name);
-  v.text({"what", "in a few words"}, what);
-  v.number({"false_alarm_time_s", "between false alarms, of each learned band"}, false_alarm_time_s,
-           {1.0, 1e9});
-  v.number({"healthy_share", "of the plan's hours without a fault that it is given"}, healthy_share,
-           {0.0, 1.0});
-  v.texts({"notices", "SOURCE.NAME of alarms that are no faults, and are not counted"}, notices);
+  v.text({"name", "displayed name", true}, name);
+  v.text({"what", "short description"}, what);
+  v.number({"false_alarm_time_s", "mean time between false alarms of each learned band"},
+           false_alarm_time_s, {1.0, 1e9});
+  v.number({"healthy_share", "share of the plan's fault-free hours used for training"},
+           healthy_share, {0.0, 1.0});
+  v.texts({"notices", "SOURCE.NAME of notices; not counted as alarms"}, notices);
   pipeline.visit(v);
 }
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "estimator/fdi/pipeline.h"
-#include "estimator/fdi/tracker/source_kinds.h"
+#include "estimator/fdi/tracker/detection_method_kinds.h"
 #include "workbench/scorecard/simulated_records.h"
 #include "workbench/train/learn.h"
 

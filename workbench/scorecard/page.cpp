@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/schema/joined.h"
+#include "config/signals/nan.h"
 #include "workbench/scorecard/card.h"
-#include "workbench/scorecard/statistics.h"
 #include "workbench/scorecard/words.h"
 
 namespace workbench::scorecard {
@@ -14,7 +15,7 @@ namespace {
 using present::Plot;
 using present::Table;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 
 std::vector<std::string> method_names(const Card& card) {
   std::vector<std::string> names;
@@ -34,7 +35,7 @@ present::Section false_alarms(const Card& card) {
   for (const Benign& change : card.benign) table.columns.push_back({change.id, "", false});
   Plot plot;
   plot.title = "False alarms when healthy";
-  plot.kind = present::Kind::bars;
+  plot.kind = present::PlotKind::bars;
   plot.horizontal = true;
   plot.categories = method_names(card);
   plot.y = {"upper limit (95 %)", "1/h", true};
@@ -66,7 +67,7 @@ present::Section false_alarms(const Card& card) {
 Plot smallest_plot(const Card& card, const Fault& fault) {
   Plot plot;
   plot.title = fault_words(fault);
-  plot.kind = present::Kind::bars;
+  plot.kind = present::PlotKind::bars;
   plot.horizontal = true;
   plot.width = present::Width::half;
   plot.categories = method_names(card);
@@ -103,9 +104,7 @@ present::Section smallest(const Card& card) {
     if (missing > 0) plot.caption = "No bar: not even the greatest size is detected.";
     section.plots.push_back(std::move(plot));
   }
-  std::string motions;
-  for (const std::string& motion : card.motions) motions += (motions.empty() ? "" : " / ") + motion;
-  table.caption = "Motions: " + motions;
+  table.caption = "Motions: " + config::schema::joined(card.motions, " / ");
   section.tables = {table};
   return section;
 }
@@ -114,7 +113,7 @@ present::Section smallest(const Card& card) {
 Plot delay_plot(const Card& card, const Fault& fault) {
   Plot plot;
   plot.title = sized_words(fault);
-  plot.kind = present::Kind::steps;
+  plot.kind = present::PlotKind::steps;
   plot.width = present::Width::half;
   plot.x = {"after the fault", "s"};
   plot.y = {"detected", "%"};
@@ -179,8 +178,8 @@ Table matrix(const MethodFigures& method) {
       const auto at = of.first.find(names);
       row.push_back(at == of.first.end() ? "" : percent(at->second));
     }
-    row.push_back(percent(of.verdict(Verdict::missed)));
-    row.push_back(percent(of.verdict(Verdict::standing)));
+    row.push_back(percent(of.verdict(TrialVerdict::missed)));
+    row.push_back(percent(of.verdict(TrialVerdict::standing)));
     table.rows.push_back(row);
   }
   return table;
@@ -200,8 +199,9 @@ present::Section names(const Card& card) {
                     {"no name", "%"},      {"missed", "%"}, {"alarm before", "%"}};
   for (const MethodFigures& method : card.methods) {
     std::vector<std::string> row{method.name};
-    for (const Verdict verdict : {Verdict::right, Verdict::group, Verdict::wrong, Verdict::unnamed,
-                                  Verdict::missed, Verdict::standing}) {
+    for (const TrialVerdict verdict :
+         {TrialVerdict::right, TrialVerdict::group, TrialVerdict::wrong, TrialVerdict::unnamed,
+          TrialVerdict::missed, TrialVerdict::standing}) {
       row.push_back(method.trials() == 0
                         ? ""
                         : fmt::format("{:.1f}", 100.0 * method.verdict(verdict) / method.trials()));
@@ -221,7 +221,7 @@ present::Report to_report(const Card& card) {
   present::Report page;
   page.title = "Scorecard";
   const bool complete = card.done == card.parts;
-  page.state = complete ? present::State::good : present::State::warn;
+  page.state = complete ? present::ReportState::good : present::ReportState::warn;
   page.verdict = std::to_string(card.methods.size()) + " methods, " +
                  std::to_string(faults_of(card).size()) + " faults, " +
                  std::to_string(card.motions.size()) +

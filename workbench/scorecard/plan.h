@@ -9,7 +9,6 @@
 //   [[benign]]     id, what; parameter, how, size, ramp; amplitude_ratio, frequency_ratio
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 

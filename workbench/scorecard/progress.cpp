@@ -14,10 +14,11 @@ std::string clock(double time_s) {
 
 }  // namespace
 
-Progress::Progress(std::ostream& out, bool renewed, std::size_t parts, double work)
+ScorecardProgress::ScorecardProgress(std::ostream& out, bool renewed, std::size_t parts,
+                                     double work)
     : out_(out), renewed_(renewed), parts_(parts), all_(work) {}
 
-void Progress::add(double work, const std::string& part) {
+void ScorecardProgress::add(double work, const std::string& part) {
   ++done_;
   worked_ += work;
   const double share = all_ > 0.0 ? worked_ / all_ : 1.0;
@@ -31,7 +32,7 @@ void Progress::add(double work, const std::string& part) {
        << std::flush;
 }
 
-void Progress::end() {
+void ScorecardProgress::end() {
   if (renewed_ && done_ > 0) out_ << "\r\x1b[K" << std::flush;
 }
 

@@ -9,10 +9,10 @@
 namespace workbench::scorecard {
 
 /// Not for several threads at once.
-class Progress {
+class ScorecardProgress {
  public:
   /// `renewed`: `out` is a terminal. `work`: of all parts, any unit. The stream must outlive this.
-  Progress(std::ostream& out, bool renewed, std::size_t parts, double work);
+  ScorecardProgress(std::ostream& out, bool renewed, std::size_t parts, double work);
 
   void add(double work, const std::string& part);
   /// Wipes the renewed line.

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <string>
 
 #include "workbench/simulate/closed_loop.h"
 #include "workbench/simulate/transducers.h"
@@ -68,7 +67,7 @@ Samples run(const simulate::Scenario& scenario, double duration_s, std::uint64_t
   simulate::ClosedLoop loop(scenario, seed);
   std::array<plant_sim::Encoder, 2> spare_rods{spare_rod(scenario, seed_of(seed, "rod_2")),
                                                spare_rod(scenario, seed_of(seed, "rod_3"))};
-  simulate::Transducers transducers(scenario.instruments, seed);
+  simulate::SimulatedTransducers transducers(scenario.instruments, seed);
   Samples samples(static_cast<std::size_t>(std::llround(duration_s / simulate::kSampleTime_s)));
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const simulate::LoopRow row = loop.step();

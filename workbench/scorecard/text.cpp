@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/schema/joined.h"
 #include "workbench/scorecard/card.h"
-#include "workbench/scorecard/statistics.h"
 #include "workbench/scorecard/words.h"
 
 namespace workbench::scorecard {
@@ -66,9 +66,9 @@ Rows quiet_rows(const Card& card) {
       const auto at = method.benign.find(change.id);
       row.push_back(at == method.benign.end() ? "–" : benign_words(at->second));
     }
-    row.push_back(share_words(method.verdict(Verdict::right), method.trials()));
-    row.push_back(share_words(method.verdict(Verdict::group), method.trials()));
-    row.push_back(share_words(method.verdict(Verdict::wrong), method.trials()));
+    row.push_back(share_words(method.verdict(TrialVerdict::right), method.trials()));
+    row.push_back(share_words(method.verdict(TrialVerdict::group), method.trials()));
+    row.push_back(share_words(method.verdict(TrialVerdict::wrong), method.trials()));
     row.push_back(
         std::isnan(method.load_ratio) ? "–" : fmt::format("{:.2g} %", 100.0 * method.load_ratio));
     rows.push_back(row);
@@ -95,19 +95,13 @@ Rows delay_rows(const Card& card) {
   for (const MethodFigures& method : card.methods) rows[0].push_back(method.name);
   for (const Fault* fault : faults_of(card)) {
     std::vector<std::string> row{sized_words(*fault)};
-    for (const MethodFigures& method : card.methods) {
-      row.push_back(delay_words(method, *fault));
-    }
+    for (const MethodFigures& method : card.methods) row.push_back(delay_words(method, *fault));
     rows.push_back(row);
   }
   return rows;
 }
 
-std::string motions_words(const Card& card) {
-  std::string out;
-  for (const std::string& motion : card.motions) out += (out.empty() ? "" : " / ") + motion;
-  return out;
-}
+std::string motions_words(const Card& card) { return config::schema::joined(card.motions, " / "); }
 
 std::string method_text(const MethodFigures& method) {
   std::string out = "\n" + method.name + ": " + method.what + "\n";
@@ -118,8 +112,9 @@ std::string method_text(const MethodFigures& method) {
              "names that came first"}};
   for (const FaultFigures& of : method.faults) {
     std::vector<std::string> row{sized_words(*of.fault)};
-    for (const Verdict verdict : {Verdict::right, Verdict::group, Verdict::wrong, Verdict::unnamed,
-                                  Verdict::missed, Verdict::standing}) {
+    for (const TrialVerdict verdict :
+         {TrialVerdict::right, TrialVerdict::group, TrialVerdict::wrong, TrialVerdict::unnamed,
+          TrialVerdict::missed, TrialVerdict::standing}) {
       row.push_back(share_words(of.verdict(verdict), of.trials()));
     }
     row.push_back(first_words(of));

@@ -1,15 +1,12 @@
 #include "workbench/scorecard/trials.h"
 
 #include <algorithm>
-#include <cmath>
 #include <ctime>
 #include <limits>
 #include <map>
-#include <numeric>
 
 #include "config/schema/error.h"
 #include "workbench/scorecard/search.h"
-#include "workbench/scorecard/statistics.h"
 #include "workbench/simulate/closed_loop.h"
 
 namespace workbench::scorecard {
@@ -31,7 +28,7 @@ void add(std::atomic<double>& sum, double value) {
   }
 }
 
-json to_json(const Answer& answer) {
+json to_json(const TrialAnswer& answer) {
   return {{"verdict", to_string(answer.verdict)},
           {"delay_s", answer.detected() ? json(answer.delay_s) : json(nullptr)},
           {"first", answer.first}};
@@ -159,8 +156,8 @@ void Trials::quiet(Turn& turn) const {
 }
 
 /// What a method says of a record with a fault, which ends watch_s after it.
-Answer Trials::answer(Turn& turn, std::size_t method, const Samples& samples, bool to_the_end,
-                      DetectionTrial::Lead* lead) const {
+TrialAnswer Trials::answer(Turn& turn, std::size_t method, const Samples& samples, bool to_the_end,
+                           DetectionTrial::Lead* lead) const {
   const double end_s = static_cast<double>(samples.size()) * simulate::kSampleTime_s;
   const double at_s = end_s - bench_.plan.watch_s;
   const Fault& fault = bench_.plan.faults[turn.part.subject];

@@ -97,8 +97,8 @@ class Trials {
   [[nodiscard]] std::vector<Count> rung(
       Turn& turn, const std::vector<std::size_t>& methods, double size,
       std::vector<std::vector<DetectionTrial::Lead>>& leads) const;
-  [[nodiscard]] Answer answer(Turn& turn, std::size_t method, const Samples& samples,
-                              bool to_the_end, DetectionTrial::Lead* lead = nullptr) const;
+  [[nodiscard]] TrialAnswer answer(Turn& turn, std::size_t method, const Samples& samples,
+                                   bool to_the_end, DetectionTrial::Lead* lead = nullptr) const;
 
   const Bench& bench_;
   std::vector<Method> methods_;

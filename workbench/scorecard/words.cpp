@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/schema/joined.h"
 #include "workbench/scorecard/statistics.h"
 
 namespace workbench::scorecard {
@@ -102,11 +103,10 @@ std::string first_words(const FaultFigures& of) {
   std::vector<std::pair<std::string, int>> names(of.first.begin(), of.first.end());
   std::stable_sort(names.begin(), names.end(),
                    [](const auto& a, const auto& b) { return a.second > b.second; });
-  std::string out;
-  for (const auto& [name, count] : names) {
-    out += (out.empty() ? "" : "; ") + names_words(name) + " " + std::to_string(count);
-  }
-  return out;
+  const auto text = [](const auto& one) {
+    return names_words(one.first) + " " + std::to_string(one.second);
+  };
+  return config::schema::joined_by(names, text, "; ");
 }
 
 std::string detected_words(const Card& card) {

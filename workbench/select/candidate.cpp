@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <cmath>
 
 #include "config/schema/error.h"
+#include "config/signals/nan.h"
 #include "estimator/structure.h"
 
 namespace workbench::select {
@@ -16,23 +16,23 @@ using structures::Orders;
 using structures::SubspaceMethod;
 using structures::SubspaceOptions;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 constexpr int kMostSubspaceOrder = 9;
 constexpr int kMostHidden = 20;
 
-Candidate polynomial(Orders orders) { return {orders.text(), orders}; }
+StructureCandidate polynomial(Orders orders) { return {orders.text(), orders}; }
 
-Candidate state_space(int order, int delay, bool constant, SubspaceMethod method) {
+StructureCandidate state_space(int order, int delay, bool constant, SubspaceMethod method) {
   SubspaceOptions options;
   options.order = order;
   options.k = delay;
   options.constant = constant;
   options.method = method;
-  const char* const name = method == SubspaceMethod::kN4sid ? "n4sid" : "ss";
+  const char* const name = method == SubspaceMethod::n4sid ? "n4sid" : "ss";
   return {name + std::to_string(order), options};
 }
 
-Candidate network(int n, int m, int delay, int hidden) {
+StructureCandidate network(int n, int m, int delay, int hidden) {
   NarxOptions options;
   options.n = n;
   options.m = m;
@@ -120,7 +120,7 @@ Fitted of_network(NarxOptions options, const structures::Stretches& data, const 
 
 }  // namespace
 
-std::string Candidate::family() const {
+std::string StructureCandidate::family() const {
   if (std::holds_alternative<SubspaceOptions>(what)) return "state space";
   if (std::holds_alternative<NarxOptions>(what)) return "NARX network";
   const Orders& o = std::get<Orders>(what);
@@ -128,24 +128,20 @@ std::string Candidate::family() const {
   return o.c == 0 && o.d == 0 && o.a == 0 ? "output error" : "Box-Jenkins";
 }
 
-const Orders* Candidate::arx() const {
+const Orders* StructureCandidate::arx() const {
   const Orders* const orders = std::get_if<Orders>(&what);
   return orders != nullptr && orders->c + orders->d + orders->f == 0 ? orders : nullptr;
 }
 
-int Candidate::delay() const {
-  return std::visit([](const auto& of) { return of.k; }, what);
-}
-
-int Candidate::least_samples() const {
+int StructureCandidate::least_samples() const {
   if (const Orders* orders = std::get_if<Orders>(&what)) return structures::least_samples(*orders);
   if (const auto* s = std::get_if<SubspaceOptions>(&what)) return structures::least_samples(*s);
   const NarxOptions& n = std::get<NarxOptions>(what);
   return 4 * (n.n + n.m + 1 + n.hidden * (n.n + n.m + 2)) + n.n + n.m + n.k;
 }
 
-std::vector<Candidate> usual_candidates(int k, bool constant) {
-  std::vector<Candidate> out;
+std::vector<StructureCandidate> usual_candidates(int k, bool constant) {
+  std::vector<StructureCandidate> out;
   const auto add = [&](Orders orders) {
     orders.k = k;
     orders.constant = constant;
@@ -165,17 +161,15 @@ std::vector<Candidate> usual_candidates(int k, bool constant) {
   add({.b = 1, .c = 1, .d = 1, .f = 2});
   add({.b = 1, .c = 2, .d = 2, .f = 2});
   for (int n = 1; n <= 4; ++n) {
-    out.push_back(state_space(n, k, constant, SubspaceMethod::kPredictor));
+    out.push_back(state_space(n, k, constant, SubspaceMethod::predictor));
   }
-  for (int n = 2; n <= 3; ++n) {
-    out.push_back(state_space(n, k, constant, SubspaceMethod::kN4sid));
-  }
+  for (int n = 2; n <= 3; ++n) out.push_back(state_space(n, k, constant, SubspaceMethod::n4sid));
   out.push_back(network(1, 1, k, 3));
   out.push_back(network(2, 1, k, 4));
   return out;
 }
 
-Candidate parse_candidate(const std::string& name, int delay, bool constant) {
+StructureCandidate parse_candidate(const std::string& name, int delay, bool constant) {
   std::string lower;
   for (const char letter : name) {
     lower.push_back(static_cast<char>(std::tolower(static_cast<unsigned char>(letter))));
@@ -183,12 +177,12 @@ Candidate parse_candidate(const std::string& name, int delay, bool constant) {
   if (lower.starts_with("n4sid")) {
     const int order = number_after(lower, 5, kMostSubspaceOrder);
     if (order == 0) throw unknown(name);
-    return state_space(order, delay, constant, SubspaceMethod::kN4sid);
+    return state_space(order, delay, constant, SubspaceMethod::n4sid);
   }
   if (lower.starts_with("ss")) {
     const int order = number_after(lower, 2, kMostSubspaceOrder);
     if (order == 0) throw unknown(name);
-    return state_space(order, delay, constant, SubspaceMethod::kPredictor);
+    return state_space(order, delay, constant, SubspaceMethod::predictor);
   }
   if (lower.starts_with("narx")) {
     const std::size_t slash = lower.find('/');
@@ -215,8 +209,8 @@ std::vector<double> Fitted::free_run(const structures::Stretch& stretch, int sta
   return std::visit([&](const auto& m) { return structures::free_run(m, stretch, start); }, model);
 }
 
-Fitted fit(const Candidate& candidate, const structures::Stretches& data, const Fitted* near,
-           const std::function<bool()>& cancel) {
+Fitted fit(const StructureCandidate& candidate, const structures::Stretches& data,
+           const Fitted* near, const std::function<bool()>& cancel) {
   if (const Orders* orders = std::get_if<Orders>(&candidate.what)) {
     return of_polynomial(*orders, data, near, cancel);
   }

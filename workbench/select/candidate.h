@@ -15,7 +15,7 @@ namespace workbench::select {
 
 namespace structures = estimator::structures;
 
-struct Candidate {
+struct StructureCandidate {
   std::string name;  ///< "arx211", "armax2111", "oe121", "bj11111", "ss2", "n4sid2", "narx211/4"
   std::variant<structures::Orders, structures::SubspaceOptions, structures::NarxOptions> what;
 
@@ -23,15 +23,14 @@ struct Candidate {
   [[nodiscard]] std::string family() const;
   /// ARX: its orders; else null.
   [[nodiscard]] const structures::Orders* arx() const;
-  [[nodiscard]] int delay() const;
   /// Least number of consecutive samples that a fit takes.
   [[nodiscard]] int least_samples() const;
 };
 
 /// One or more of every family.
-[[nodiscard]] std::vector<Candidate> usual_candidates(int delay, bool constant);
+[[nodiscard]] std::vector<StructureCandidate> usual_candidates(int delay, bool constant);
 /// Reads a name as above; state spaces and networks have `delay`. Throws schema::UsageError.
-[[nodiscard]] Candidate parse_candidate(const std::string& name, int delay, bool constant);
+[[nodiscard]] StructureCandidate parse_candidate(const std::string& name, int delay, bool constant);
 
 struct Fitted {
   bool valid = false;
@@ -51,7 +50,7 @@ struct Fitted {
 };
 
 /// `near`: a fit of the same candidate to other data, to start from; may be null.
-[[nodiscard]] Fitted fit(const Candidate& candidate, const structures::Stretches& data,
+[[nodiscard]] Fitted fit(const StructureCandidate& candidate, const structures::Stretches& data,
                          const Fitted* near, const std::function<bool()>& cancel);
 
 }  // namespace workbench::select

@@ -8,6 +8,7 @@
 #include "config/schema/error.h"
 #include "estimator/parallel.h"
 #include "estimator/residual/noise_floor.h"
+#include "workbench/select/candidate.h"
 #include "workbench/select/judge.h"
 
 namespace workbench::select {
@@ -26,7 +27,8 @@ int in_samples(double time_s, double sample_time_s) {
   return static_cast<int>(std::clamp(std::round(time_s / sample_time_s), 1.0, 1e9));
 }
 
-Ground prepare(const config::record::Record& record, const Request& request, Outcome& outcome) {
+Ground prepare(const config::record::Record& record, const SelectRequest& request,
+               SelectOutcome& outcome) {
   Ground out;
   out.record = &record;
   const std::size_t n = record.size();
@@ -106,11 +108,11 @@ int find_delay(const Ground& ground) {
 
 }  // namespace
 
-Outcome compare_structures(const Request& request,
-                           const std::function<void(const Progress&)>& progress,
-                           const std::function<bool()>& cancel) {
+SelectOutcome compare_structures(const SelectRequest& request,
+                                 const std::function<void(const SelectProgress&)>& progress,
+                                 const std::function<bool()>& cancel) {
   const auto start = std::chrono::steady_clock::now();
-  Outcome out;
+  SelectOutcome out;
   out.request = request;
   for (const std::string& name : request.structures) {
     static_cast<void>(parse_candidate(name, 1, request.constant));  // before the record is read
@@ -129,15 +131,15 @@ Outcome compare_structures(const Request& request,
   out.noise_floor_m = estimator::residual::noise_floor(record.y_m, record.sample_time_s).sd_m;
   out.delay = request.delay >= 0 ? request.delay : find_delay(ground);
   if (request.delay < 0 && out.delay == kMostDelay) {
-    out.notes.push_back("the delay found is the longest tried: look whether --delay does better");
+    out.notes.push_back("the delay found is the longest one tried; try a longer one with --delay");
   }
-  std::vector<Candidate> candidates;
+  std::vector<StructureCandidate> candidates;
   for (const std::string& name : request.structures) {
     candidates.push_back(parse_candidate(name, out.delay, request.constant));
   }
   if (candidates.empty()) candidates = usual_candidates(out.delay, request.constant);
 
-  std::vector<Judged> judged(candidates.size());
+  std::vector<JudgedStructure> judged(candidates.size());
   std::mutex mutex;
   std::size_t done = 0;
   const unsigned threads =
@@ -148,11 +150,11 @@ Outcome compare_structures(const Request& request,
     const std::lock_guard lock(mutex);
     progress({candidates[i].name, ++done, candidates.size()});
   });
-  for (Judged& one : judged) {
+  for (JudgedStructure& one : judged) {
     if (!one.candidate.name.empty()) out.judged.push_back(std::move(one));
   }
   out.interrupted = cancel();
-  for (const Judged& one : out.judged) {
+  for (const JudgedStructure& one : out.judged) {
     out.held_out_periods =
         std::max(out.held_out_periods, static_cast<int>(one.period_costs_m2.size()));
   }

@@ -1,5 +1,4 @@
 // The comparison as JSON; SI units, a missing number is null.
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "workbench/present/json.h"
@@ -24,14 +23,14 @@ ordered_json bias_of(const structures::BiasTest& test) {
           {"dof", test.dof},
           {"instruments", to_string(test.instruments)},
           {"instrument_count", test.instrument_count},
-          {"strength_F", number_or_null(test.strength_F)},
+          {"strength_F", number_or_null(test.f_statistic)},
           {"least_squares", numbers(test.least_squares)},
           {"least_squares_std_error", numbers(test.least_squares_error)},
           {"instrumental", numbers(test.instrumental)},
           {"instrumental_std_error", numbers(test.instrumental_error)}};
 }
 
-ordered_json json_of(const Judged& one) {
+ordered_json json_of(const JudgedStructure& one) {
   ordered_json out{{"structure", one.candidate.name},
                    {"family", one.candidate.family()},
                    {"valid", one.fitted.valid},
@@ -65,14 +64,14 @@ ordered_json json_of(const Judged& one) {
   return out;
 }
 
-ordered_json name_of(const Outcome& o, int index) {
+ordered_json name_of(const SelectOutcome& o, int index) {
   return index < 0 ? ordered_json(nullptr)
                    : ordered_json(o.judged[static_cast<std::size_t>(index)].candidate.name);
 }
 
 }  // namespace
 
-std::string to_json(const Outcome& o) {
+std::string to_json(const SelectOutcome& o) {
   ordered_json out{{"record", o.name},
                    {"sample_time_s", o.sample_time_s},
                    {"samples", o.samples},
@@ -94,7 +93,7 @@ std::string to_json(const Outcome& o) {
                    {"notes", o.notes},
                    {"interrupted", o.interrupted},
                    {"runtime_s", number_or_null(o.runtime_s)}};
-  for (const Judged& one : o.judged) out["structures"].push_back(json_of(one));
+  for (const JudgedStructure& one : o.judged) out["structures"].push_back(json_of(one));
   return out.dump(2) + "\n";
 }
 

@@ -9,7 +9,6 @@
 #include "estimator/structures/recursive_prediction_error.h"
 
 namespace workbench::select {
-
 namespace {
 
 using structures::Stretch;
@@ -17,7 +16,7 @@ using structures::Stretch;
 constexpr double kReached = 1.5;  // of the batch fit's free run
 constexpr int kWhitenessLags = 20;
 
-void score_free_runs(Judged& judged, const Ground& ground) {
+void score_free_runs(JudgedStructure& judged, const Ground& ground) {
   double whole = 0.0;
   int whole_count = 0;
   double periods = 0.0;
@@ -43,7 +42,7 @@ void score_free_runs(Judged& judged, const Ground& ground) {
   }
   const auto count = static_cast<double>(judged.period_costs_m2.size());
   judged.free_run_whole_rms_m = std::sqrt(whole / whole_count);
-  judged.cost_m2 = count > 0 ? periods / count : kMissing;
+  judged.cost_m2 = count > 0 ? periods / count : kNaN;
   judged.free_run_rms_m = std::sqrt(judged.cost_m2 / ground.period);
 }
 
@@ -59,7 +58,7 @@ double sd_held_out(const Ground& ground) {
   return std::sqrt(std::max(0.0, square / count - sum * sum / (count * count)));
 }
 
-void score(Judged& judged, const Ground& ground) {
+void score(JudgedStructure& judged, const Ground& ground) {
   double sum = 0.0;
   int count = 0;
   for (const Stretch& stretch : ground.held_out) {
@@ -92,7 +91,8 @@ void score(Judged& judged, const Ground& ground) {
 char letter_of(const std::string& name) { return name == "constant" ? '\0' : name.front(); }
 
 /// Fits to single periods of the whole record.
-void score_spread(Judged& judged, const Ground& ground, const std::function<bool()>& cancel) {
+void score_spread(JudgedStructure& judged, const Ground& ground,
+                  const std::function<bool()>& cancel) {
   const std::size_t size = judged.fitted.value.size();
   std::vector<double> sum(size, 0.0), square(size, 0.0);
   const int length = std::max(ground.period, judged.candidate.least_samples());
@@ -137,7 +137,7 @@ void score_spread(Judged& judged, const Ground& ground, const std::function<bool
   judged.spread = std::sqrt(total / counted);
 }
 
-void run_on_line(Judged& judged, const Ground& ground) {
+void run_on_line(JudgedStructure& judged, const Ground& ground) {
   judged.on_line = on_line_form(judged.candidate, judged.fitted);
   const auto* orders = std::get_if<structures::Orders>(&judged.candidate.what);
   if (!judged.on_line.sound || orders == nullptr || orders->size() > estimator::kMaxCoefficients) {
@@ -149,17 +149,17 @@ void run_on_line(Judged& judged, const Ground& ground) {
     for (std::size_t t = 0; t < stretch.y_m.size(); ++t)
       filter.push(stretch.u_V[t], stretch.y_m[t]);
   }
-  Judged found;
+  JudgedStructure found;
   found.fitted.model = structures::from_values(*orders, filter.value());
   score_free_runs(found, ground);
   judged.on_line.free_run_rms_m = found.free_run_rms_m;
   if (!(found.free_run_rms_m <= kReached * judged.free_run_rms_m)) {
     judged.on_line.sound = false;
-    judged.on_line.why = "its recursion does not come to the batch fit on this record";
+    judged.on_line.why = "its recursion does not converge to the batch fit on this record";
   }
 }
 
-void test_closed_loop(Judged& judged, const Ground& ground) {
+void test_closed_loop(JudgedStructure& judged, const Ground& ground) {
   const structures::Orders* const arx = judged.candidate.arx();
   if (arx == nullptr || arx->b == 0) return;
   const estimator::Structure structure{arx->a, arx->b, arx->k, arx->constant};
@@ -194,10 +194,10 @@ double criterion_energy(const Fitted& fitted, const Ground& ground, int& count) 
   return sum;
 }
 
-Judged judge(const Candidate& candidate, const Ground& ground,
-             const std::function<bool()>& cancel) {
+JudgedStructure judge(const StructureCandidate& candidate, const Ground& ground,
+                      const std::function<bool()>& cancel) {
   const auto start = std::chrono::steady_clock::now();
-  Judged out;
+  JudgedStructure out;
   out.candidate = candidate;
   out.fitted = fit(candidate, ground.fitted, nullptr, cancel);
   out.fit_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -209,6 +209,42 @@ Judged judge(const Candidate& candidate, const Ground& ground,
   test_closed_loop(out, ground);
   run_on_line(out, ground);
   score_spread(out, ground, cancel);
+  return out;
+}
+
+namespace {
+
+constexpr double kMostPole = 0.999;  // of F: the recursive filter's own limit
+constexpr const char* kIntegrates =
+    "its poles reach the unit circle: the prediction, never corrected by y, would diverge";
+
+}  // namespace
+
+OnLine on_line_form(const StructureCandidate& candidate, const Fitted& fitted) {
+  OnLine out;
+  out.method = "none";
+  if (std::holds_alternative<structures::SubspaceOptions>(candidate.what)) {
+    out.why =
+        "recursive subspace methods change their state basis over time; ARMAX represents the same "
+        "transfer functions";
+    return out;
+  }
+  if (std::holds_alternative<structures::NarxOptions>(candidate.what)) {
+    out.why = "its weights are not determined individually, and no recursion is proven to converge";
+    return out;
+  }
+  const structures::Orders& o = std::get<structures::Orders>(candidate.what);
+  if (o.f > 0) {
+    const auto* model = std::get_if<structures::Polynomial>(&fitted.model);
+    if (!fitted.valid || model == nullptr || structures::largest_root(model->f) > kMostPole) {
+      out.why = kIntegrates;
+      return out;
+    }
+    out.method = "RPEM";
+  } else {
+    out.method = o.c > 0 ? "RML" : "RLS";
+  }
+  out.sound = true;
   return out;
 }
 

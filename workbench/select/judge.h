@@ -24,7 +24,7 @@ struct Ground {
 [[nodiscard]] double criterion_energy(const Fitted& fitted, const Ground& ground, int& count);
 
 /// Threads may judge different candidates on the same ground.
-[[nodiscard]] Judged judge(const Candidate& candidate, const Ground& ground,
-                           const std::function<bool()>& cancel);
+[[nodiscard]] JudgedStructure judge(const StructureCandidate& candidate, const Ground& ground,
+                                    const std::function<bool()>& cancel);
 
 }  // namespace workbench::select

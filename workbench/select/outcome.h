@@ -13,19 +13,19 @@
 // 16.4; K. P. Burnham, D. R. Anderson, Model Selection and Multimodel Inference, 2002 (AICc).
 #pragma once
 
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "config/record/record.h"
+#include "config/signals/nan.h"
 #include "estimator/structures/instrumental.h"
 #include "workbench/select/candidate.h"
 
 namespace workbench::select {
 
-inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 
-struct Request {
+struct SelectRequest {
   std::string record;
   std::vector<std::string> structures;  ///< empty: the usual ones
   int delay = -1;                       ///< samples; -1: found
@@ -44,22 +44,22 @@ struct OnLine {
   std::string method;  ///< "RLS", "RML, RELS", "RPEM", "none"
   std::string why;     ///< none: in words
   /// Run over the fitted part, scored like the batch fit; NaN where there is none.
-  double free_run_rms_m = kMissing;
+  double free_run_rms_m = kNaN;
 };
 
-struct Judged {
-  Candidate candidate;
+struct JudgedStructure {
+  StructureCandidate candidate;
   Fitted fitted;
-  double one_step_rms_m = kMissing;        ///< held out
-  double free_run_rms_m = kMissing;        ///< held out, over single periods
-  double free_run_whole_rms_m = kMissing;  ///< held out, in one go
-  double cost_m2 = kMissing;               ///< E, mean over the held-out periods
-  std::vector<double> period_costs_m2;     ///< each held-out period's
-  double fit_percent = kMissing;           ///< 100 (1 - free_run_rms / sd of y held out)
-  double aicc = kMissing;
-  double bic = kMissing;
-  double whiteness_p = kMissing;  ///< of the one-step errors fitted
-  double spread = kMissing;
+  double one_step_rms_m = kNaN;         ///< held out
+  double free_run_rms_m = kNaN;         ///< held out, over single periods
+  double free_run_whole_rms_m = kNaN;   ///< held out, in one go
+  double cost_m2 = kNaN;                ///< E, mean over the held-out periods
+  std::vector<double> period_costs_m2;  ///< each held-out period's
+  double fit_percent = kNaN;            ///< 100 (1 - free_run_rms / sd of y held out)
+  double aicc = kNaN;
+  double bic = kNaN;
+  double whiteness_p = kNaN;  ///< of the one-step errors fitted
+  double spread = kNaN;
   std::vector<double> period_mean;      ///< of each coefficient
   std::vector<double> period_variance;  ///< likewise
   int periods = 0;                      ///< fits behind them
@@ -67,11 +67,11 @@ struct Judged {
   bool has_bias_test = false;  ///< ARX alone
   structures::BiasTest bias;
   double fit_s = 0.0;
-  bool represents = false;  ///< its free run errs less than y moves
+  bool represents = false;  ///< its free-run error is less than y moves
 };
 
-struct Outcome {
-  Request request;
+struct SelectOutcome {
+  SelectRequest request;
   std::string name;
   double sample_time_s = 0.0;
   std::size_t samples = 0;
@@ -82,9 +82,9 @@ struct Outcome {
   double from_s = 0.0;
   double period_s = 0.0;
   int held_out_periods = 0;
-  double noise_floor_m = kMissing;
-  std::vector<Judged> judged;  ///< best first
-  int recommended = -1;        ///< index; -1: none represents the record
+  double noise_floor_m = kNaN;
+  std::vector<JudgedStructure> judged;  ///< best first
+  int recommended = -1;                 ///< index; -1: none represents the record
   int most_accurate = -1;
   int watch = -1;  ///< the one to follow on line; -1: none
   std::string reason;
@@ -95,7 +95,7 @@ struct Outcome {
 };
 
 /// How far the comparison is.
-struct Progress {
+struct SelectProgress {
   std::string doing;
   std::size_t done = 0;
   std::size_t of = 0;
@@ -103,17 +103,17 @@ struct Progress {
 
 /// Throws config::schema::DataError for a record that cannot be compared on, UsageError for a wish
 /// that cannot be granted.
-[[nodiscard]] Outcome compare_structures(const Request& request,
-                                         const std::function<void(const Progress&)>& progress,
-                                         const std::function<bool()>& cancel);
+[[nodiscard]] SelectOutcome compare_structures(
+    const SelectRequest& request, const std::function<void(const SelectProgress&)>& progress,
+    const std::function<bool()>& cancel);
 
 /// Sorts `outcome.judged`, chooses, and finds the words.
-void recommend(Outcome& outcome);
+void recommend(SelectOutcome& outcome);
 
 /// What is known of the recursive form of `judged`, from its family and its poles.
-[[nodiscard]] OnLine on_line_form(const Candidate& candidate, const Fitted& fitted);
+[[nodiscard]] OnLine on_line_form(const StructureCandidate& candidate, const Fitted& fitted);
 
-[[nodiscard]] std::string to_text(const Outcome& outcome);
-[[nodiscard]] std::string to_json(const Outcome& outcome);
+[[nodiscard]] std::string to_text(const SelectOutcome& outcome);
+[[nodiscard]] std::string to_json(const SelectOutcome& outcome);
 
 }  // namespace workbench::select

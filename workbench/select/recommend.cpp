@@ -1,11 +1,11 @@
 // Which structure to take, and why: the thesis's three criteria in its order. A structure must
-// represent the record (its free run errs less than the rod moves); the best held-out E counts,
+// represent the record (its free-run error is less than the rod moves); the best held-out E counts,
 // but one a little above it (25 %: 12 % in RMS) is as good; among those a sound recursive form is
 // preferred for watching on line, then the least spread of coefficients between periods.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "config/units/quantity.h"
 #include "workbench/select/outcome.h"
 #include "workbench/select/words.h"
 
@@ -15,17 +15,17 @@ namespace {
 constexpr double kAsGood = 1.25;     // of E
 constexpr double kSameSpread = 1.1;  // then fewer coefficients decide
 
-double cost_of(const Judged& judged) {
+double cost_of(const JudgedStructure& judged) {
   if (!judged.fitted.valid) return std::numeric_limits<double>::infinity();
   return std::isfinite(judged.cost_m2) ? judged.cost_m2 : std::numeric_limits<double>::max();
 }
 
-double spread_of(const Judged& judged) {
+double spread_of(const JudgedStructure& judged) {
   return std::isfinite(judged.spread) ? judged.spread : std::numeric_limits<double>::max();
 }
 
 /// The steadier; of two alike the smaller.
-bool preferred(const Judged& a, const Judged& b) {
+bool preferred(const JudgedStructure& a, const JudgedStructure& b) {
   const double least = std::min(spread_of(a), spread_of(b));
   if (spread_of(a) <= kSameSpread * least && spread_of(b) <= kSameSpread * least) {
     return a.fitted.parameters < b.fitted.parameters;
@@ -34,10 +34,10 @@ bool preferred(const Judged& a, const Judged& b) {
 }
 
 /// Of those that are as good as the best: of all, or of those that can follow on line.
-int choose(const Outcome& outcome, bool on_line, double limit) {
+int choose(const SelectOutcome& outcome, bool on_line, double limit) {
   int best = -1;
   for (std::size_t i = 0; i < outcome.judged.size(); ++i) {
-    const Judged& one = outcome.judged[i];
+    const JudgedStructure& one = outcome.judged[i];
     if (!one.represents || !(cost_of(one) <= limit)) continue;
     if (on_line && !one.on_line.sound) continue;
     if (best < 0 || preferred(one, outcome.judged[static_cast<std::size_t>(best)])) {
@@ -47,15 +47,15 @@ int choose(const Outcome& outcome, bool on_line, double limit) {
   return best;
 }
 
-std::string against_best(const Judged& chosen, const Judged& best) {
-  if (chosen.candidate.name == best.candidate.name) return "its free run errs least";
-  return "its free run errs " + more_words(chosen.free_run_rms_m / best.free_run_rms_m) +
+std::string against_best(const JudgedStructure& chosen, const JudgedStructure& best) {
+  if (chosen.candidate.name == best.candidate.name) return "its free-run error is the smallest";
+  return "its free-run error is " + more_words(chosen.free_run_rms_m / best.free_run_rms_m) +
          " the best, " + best.candidate.name;
 }
 
-std::string why(const Outcome& outcome, bool on_line) {
-  const Judged& chosen = outcome.judged[static_cast<std::size_t>(outcome.recommended)];
-  const Judged& best = outcome.judged.front();
+std::string why(const SelectOutcome& outcome, bool on_line) {
+  const JudgedStructure& chosen = outcome.judged[static_cast<std::size_t>(outcome.recommended)];
+  const JudgedStructure& best = outcome.judged.front();
   std::string out = against_best(chosen, best);
   if (std::isfinite(chosen.spread)) {
     out += "; its coefficients scatter " + number_words(100.0 * chosen.spread, 2) +
@@ -71,11 +71,11 @@ std::string why(const Outcome& outcome, bool on_line) {
 }
 
 /// The bias of the recommended structure's coefficients, or of the ARX nearest to it.
-std::string bias_words(const Outcome& outcome) {
-  const Judged* about = nullptr;
+std::string bias_words(const SelectOutcome& outcome) {
+  const JudgedStructure* about = nullptr;
   bool itself = false;
   for (std::size_t i = 0; i < outcome.judged.size() && !itself; ++i) {
-    const Judged& one = outcome.judged[i];
+    const JudgedStructure& one = outcome.judged[i];
     if (!one.has_bias_test) continue;
     itself = static_cast<int>(i) == outcome.recommended;
     if (about == nullptr || itself) about = &one;
@@ -88,36 +88,37 @@ std::string bias_words(const Outcome& outcome) {
   const auto orders = about->candidate.arx();
   const auto b1 = static_cast<std::size_t>(orders->a);
   switch (test.verdict) {
-    case structures::BiasVerdict::kUndetermined:
+    case structures::BiasVerdict::undetermined:
       return of +
-             "whether least squares is biased cannot be told: the motion leaves the "
+             "the bias of least squares cannot be determined: the motion leaves the "
              "instruments too weak (F " +
-             number_words(test.strength_F, 2) + ", 10 is needed); a richer reference would tell";
-    case structures::BiasVerdict::kNoBiasSeen:
+             number_words(test.f_statistic, 2) + ", 10 is needed); a richer reference would decide";
+    case structures::BiasVerdict::no_bias_seen:
       return of + "no bias of least squares is seen beside " + beside + ", Durbin-Wu-Hausman p " +
              number_words(test.p, 2);
-    case structures::BiasVerdict::kBiased:
+    case structures::BiasVerdict::biased:
       break;
   }
   const double off = 100.0 * (test.least_squares[b1] / test.instrumental[b1] - 1.0);
   const bool sure = std::abs(test.instrumental[b1]) > 2.0 * test.instrumental_error[b1];
   return of + "least squares is biased beside " + beside + ", Durbin-Wu-Hausman p " +
-         probability_words(test.p) +
+         config::units::chance_words(test.p) +
          (sure ? ": b1 by " + number_words(off, 2) + " %" : ": b1 itself is uncertain there") +
-         "; bands learnt on the same motion still hold, physical figures from it do not";
+         "; bands learned on the same motion remain valid, physical values derived from it do not";
 }
 
 }  // namespace
 
-void recommend(Outcome& outcome) {
-  std::stable_sort(outcome.judged.begin(), outcome.judged.end(),
-                   [](const Judged& a, const Judged& b) { return cost_of(a) < cost_of(b); });
+void recommend(SelectOutcome& outcome) {
+  std::stable_sort(
+      outcome.judged.begin(), outcome.judged.end(),
+      [](const JudgedStructure& a, const JudgedStructure& b) { return cost_of(a) < cost_of(b); });
   outcome.recommended = outcome.most_accurate = outcome.watch = -1;
   outcome.bias_words = bias_words(outcome);
   if (outcome.judged.empty() || !outcome.judged.front().represents) {
     outcome.reason =
-        "no structure represents this record: every free run errs more than the rod "
-        "moves";
+        "no structure represents this record: every free-run error exceeds the rod's "
+        "motion";
     return;
   }
   outcome.most_accurate = 0;
@@ -127,7 +128,7 @@ void recommend(Outcome& outcome) {
   if (!on_line) outcome.recommended = choose(outcome, false, limit);
   const auto best_on_line =
       std::find_if(outcome.judged.begin(), outcome.judged.end(),
-                   [](const Judged& one) { return one.represents && one.on_line.sound; });
+                   [](const JudgedStructure& one) { return one.represents && one.on_line.sound; });
   if (!on_line && best_on_line != outcome.judged.end()) {
     outcome.watch = choose(outcome, true, kAsGood * cost_of(*best_on_line));
   }

@@ -4,20 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/units/quantity.h"
 #include "workbench/select/outcome.h"
 #include "workbench/select/words.h"
 
 namespace workbench::select {
 namespace {
 
-constexpr double kMicro = 1e6;
-constexpr double kMilli = 1e3;
-
-/// Micrometres, or millimetres with their unit where those have too many digits.
 std::string length(double value_m) {
   if (!std::isfinite(value_m) || value_m > 1e3) return "diverges";
-  if (value_m < 1e-3) return number_words(kMicro * value_m, 3) + " um";
-  return number_words(kMilli * value_m, 3) + " mm";
+  return config::units::length_words(value_m);
 }
 
 std::string condition(double value) {
@@ -30,25 +26,25 @@ std::string spread(double value) {
   return percent >= 1000.0 ? "> 1000 %" : number_words(percent, 2) + " %";
 }
 
-std::string bias(const Judged& judged) {
+std::string bias(const JudgedStructure& judged) {
   if (judged.has_bias_test) return to_string(judged.bias.verdict);
   return "-";
 }
 
 std::string on_line(const OnLine& form) {
   if (form.sound || form.method == "none") return form.method;
-  return form.method + ", not here";
+  return form.method + ", unsuitable here";
 }
 
-double least_bic(const Outcome& outcome) {
+double least_bic(const SelectOutcome& outcome) {
   double out = std::numeric_limits<double>::infinity();
-  for (const Judged& one : outcome.judged) {
+  for (const JudgedStructure& one : outcome.judged) {
     if (std::isfinite(one.bic)) out = std::min(out, one.bic);
   }
   return out;
 }
 
-std::string row(const Judged& one, double bic, const char* mark) {
+std::string row(const JudgedStructure& one, double bic, const char* mark) {
   if (!one.fitted.valid) {
     return fmt::format("{} {:11} not fitted: ", mark, one.candidate.name) + one.fitted.why + "\n";
   }
@@ -63,7 +59,7 @@ std::string row(const Judged& one, double bic, const char* mark) {
 
 }  // namespace
 
-std::string to_text(const Outcome& o) {
+std::string to_text(const SelectOutcome& o) {
   std::string out = fmt::format("{}: {} samples every {} ms, {} gaps", o.name, o.samples,
                                 number_words(1e3 * o.sample_time_s, 4), o.gaps);
   out +=
@@ -82,10 +78,10 @@ std::string to_text(const Outcome& o) {
   const double bic = least_bic(o);
   bool failed = false;
   for (std::size_t i = 0; i < o.judged.size(); ++i) {
-    const Judged& one = o.judged[i];
+    const JudgedStructure& one = o.judged[i];
     if (one.fitted.valid && !one.represents && !failed) {
       failed = true;
-      out += "  cannot represent this record (the free run errs more than the rod moves):\n";
+      out += "  cannot represent this record (free-run error above the rod's motion):\n";
     }
     const bool chosen = static_cast<int>(i) == o.recommended;
     out += row(one, bic, chosen ? ">" : " ");
@@ -99,9 +95,9 @@ std::string to_text(const Outcome& o) {
     out += o.reason + ".\n";
   }
   if (o.watch >= 0 && o.watch != o.recommended) {
-    const Judged& one = o.judged[static_cast<std::size_t>(o.watch)];
+    const JudgedStructure& one = o.judged[static_cast<std::size_t>(o.watch)];
     out += "to follow on line: " + one.candidate.name + ", by " + method_words(one.on_line.method) +
-           "; its free run errs " +
+           "; its free-run error is " +
            more_words(one.free_run_rms_m / o.judged.front().free_run_rms_m) + " the best.\n";
   }
   if (!o.bias_words.empty()) out += "bias: " + o.bias_words + ".\n";

@@ -21,8 +21,6 @@ std::string more_words(double ratio) {
   return number_words(100.0 * (ratio - 1.0), 2) + " % more than";
 }
 
-std::string probability_words(double p) { return p < 1e-6 ? "below 1e-6" : number_words(p, 2); }
-
 std::string method_words(const std::string& method) {
   if (method == "RLS") return "recursive least squares";
   if (method == "RML") return "recursive maximum likelihood or extended least squares";

@@ -9,8 +9,6 @@ namespace workbench::select {
 [[nodiscard]] std::string number_words(double value, int digits);
 /// 1.05: "5 % more than"; 3: "3 times".
 [[nodiscard]] std::string more_words(double ratio);
-/// "0.03", "below 1e-6".
-[[nodiscard]] std::string probability_words(double p);
 /// "RLS" -> "recursive least squares".
 [[nodiscard]] std::string method_words(const std::string& method);
 

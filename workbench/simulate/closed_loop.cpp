@@ -47,7 +47,7 @@ LoopRow ClosedLoop::step() noexcept {
   const double signal_m = sensor_.signal_m(row.t_s, row.rod_m);
   row.y_m = sensor_.reading_m(row.t_s, encoder_.read(signal_m));
   row.reference_m = reference_->at(row.t_s);
-  const monitor::control::Command command = controller_.update(row.reference_m, row.y_m);
+  const monitor::control::ValveCommand command = controller_.update(row.reference_m, row.y_m);
   row.u_requested_V = command.requested_V;
   row.u_applied_V = dac_.apply(command.limited_V);
   row.saturated = command.saturated;

@@ -9,10 +9,10 @@
 
 namespace workbench::simulate {
 
-class Transducers {
+class SimulatedTransducers {
  public:
   /// The position's noise of the same seed is another, whether pressures are read or not.
-  Transducers(const Instruments& instruments, std::uint64_t seed)
+  SimulatedTransducers(const Instruments& instruments, std::uint64_t seed)
       : noise_Pa_(instruments.pressure_noise_Pa), chance_(seed + kApart) {}
 
   [[nodiscard]] config::signals::Pressures read(config::signals::Pressures p) noexcept {

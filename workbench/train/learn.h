@@ -1,6 +1,6 @@
 // What the trained sources of a configuration need to know, learned from records: means,
 // covariances and long-run deviations of block means, made by the same blocks as on line
-// (block_source.h).
+// (block_method.h).
 //
 //   long_run^2 = c0 + 2 sum over l = 1..L of (1 - l/(L + 1)) c_l,   L = floor(4 (n/100)^(2/9))
 //

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 #include "estimator/fdi/learn.h"
 #include "workbench/train/record_samples.h"
 
@@ -64,10 +65,8 @@ std::vector<Series> make_series(const std::vector<std::string>& quantities,
     const std::vector<std::string> names =
         fdi::estimate_names(estimator::parse_structure(estimator.structure, estimator.constant));
     if (std::find(names.begin(), names.end(), name.name) == names.end()) {
-      std::string known;
-      for (const std::string& each : names) known += (known.empty() ? "" : ", ") + each;
       throw bad_config(file, estimator.id + " estimates no '" + std::string(name.name) + "'",
-                       known);
+                       config::schema::joined(names));
     }
     series.push_back({quantity, number, {}});
   }

@@ -9,9 +9,9 @@ namespace workbench::train {
 
 /// `rig_id` stays as it is where the file says nothing.
 inline void visit_rig(config::schema::Visitor& v, std::string& rig_id) {
-  v.table({"rig", "which rig this is"}, [&](config::schema::Visitor& rig) {
+  v.table({"rig", "identity of the rig"}, [&](config::schema::Visitor& rig) {
     std::string calibration;
-    rig.text({"id", "its name"}, rig_id);
+    rig.text({"id", "name of the rig"}, rig_id);
     rig.text({"calibration", "file that commissioning wrote"}, calibration);
   });
 }

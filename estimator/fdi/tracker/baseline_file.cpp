@@ -8,8 +8,7 @@
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "config/schema/joined.h"
-#include "estimator/fdi/fingerprint.h"
-#include "estimator/greybox/parameter_catalogue.h"
+#include "estimator/fdi/snapshot.h"
 
 namespace estimator::fdi::tracker {
 namespace {
@@ -17,7 +16,7 @@ namespace {
 using config::schema::bad_config;
 using config::schema::Visitor;
 
-/// Two sample times are the same within clock accuracy.
+/// Relative difference up to which two sample times are equal.
 constexpr double kSameSampleTime = 1e-3;
 
 std::string text_of(double value) { return fmt::format("{:.9g}", value); }
@@ -27,28 +26,28 @@ std::vector<std::string> sorted(std::vector<std::string> names) {
   return names;
 }
 
-/// Throws unless what was found when it was learnt is what is expected now.
+/// Throws when the value learned differs from the value expected.
 void compare(const std::string& where, double found, double expected, const char* unit) {
   if (text_of(found) == text_of(expected)) return;
-  throw bad_config(where, "was learnt with " + text_of(found) + unit, text_of(expected) + unit);
+  throw bad_config(where, "was learned with " + text_of(found) + unit, text_of(expected) + unit);
 }
 
 }  // namespace
 
 void BaselineFile::visit(Visitor& v) {
   v.integer({"healthy_version", "layout of this file", true}, version, {kVersion, kVersion});
-  v.text({"rig_id", "of the rig; empty: of any"}, rig_id);
-  v.text({"model", "its name", true}, model);
+  v.text({"rig_id", "id of the rig; empty: any"}, rig_id);
+  v.text({"model", "name of the model", true}, model);
   v.text({"model_values", "all that the model is", true}, model_values);
   v.text({"source", "the healthy record"}, source);
   v.texts({"parameters", "tracked", true}, parameters);
-  v.numbers({"values", "of the parameters, SI", true}, values);
-  v.number({"sample_time_s", "of the record", true}, sample_time_s, {1e-6, 1e3});
+  v.numbers({"values", "values of the parameters, SI", true}, values);
+  v.number({"sample_time_s", "sample time of the record", true}, sample_time_s, {1e-6, 1e3});
   v.number({"window_s", "length of the windows", true}, window_s, {1e-6, 1e6});
   v.number({"observer_per_s", "gain that corrected the simulated position", true}, observer_per_s,
            {0.0, 1e3});
-  v.number({"rms_m", "of a healthy window's error", true}, rms_m, {1e-12, 1.0});
-  v.number({"noise_floor_m", "of the position"}, noise_floor_m, {0.0, 1.0});
+  v.number({"rms_m", "RMS error of a healthy window", true}, rms_m, {1e-12, 1.0});
+  v.number({"noise_floor_m", "noise floor of the position"}, noise_floor_m, {0.0, 1.0});
   chambers.visit(v);
 }
 
@@ -86,7 +85,7 @@ BaselineFile read_baseline(const std::filesystem::path& path, const plant_sim::M
   if (file.model_values != values) {
     const auto differs = estimator::fdi::difference(file.model_values, values);
     throw bad_config(where + ": model_values",
-                     "was learnt with another model, " + file.model + ": " + differs.found,
+                     "was learned with another model, " + file.model + ": " + differs.found,
                      "model " + model.name + ": " + differs.expected);
   }
   compare(where + ": window_s", file.window_s, settings.window_s, " s");
@@ -106,7 +105,7 @@ BaselineFile read_baseline(const std::filesystem::path& path, const plant_sim::M
   if (sorted(file.parameters) != sorted(tracked)) {
     throw bad_config(
         where + ": parameters",
-        "was learnt while " + config::schema::joined(file.parameters) + " were tracked",
+        "was learned while " + config::schema::joined(file.parameters) + " were tracked",
         config::schema::joined(tracked));
   }
   return file;

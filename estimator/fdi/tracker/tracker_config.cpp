@@ -24,21 +24,22 @@ std::span<const DetectionMethodKind> detection_method_kinds() noexcept { return 
 TrackerConfig::TrackerConfig() { learnt.rms_m = 0.0; }
 
 void TrackerConfig::visit(Visitor& v) {
-  v.text({"id", "names its quantities: ID.supply_pressure_Pa", true}, id);
+  v.text({"id", "name; prefix of its quantities: ID.supply_pressure_Pa", true}, id);
   v.text({"model", "model file of the healthy rig"}, model);
-  v.text({"model_toml", "its text, in place of the file"}, model_toml);
+  v.text({"model_toml", "text of the model, in place of the file"}, model_toml);
   v.texts({"parameters", "tracked, as in model files"}, parameters);
   v.number({"window_s", "length of the window"}, settings.window_s, {0.1, kLongest_s});
-  v.number({"stride_s", "between estimates"}, settings.stride_s, {1e-3, kLongest_s});
+  v.number({"stride_s", "time between estimates"}, settings.stride_s, {1e-3, kLongest_s});
   v.number({"observer_per_s", "gain that corrects the simulated position"}, settings.observer_per_s,
            {0.0, 1e3});
-  v.number({"limit_ratio", "of the healthy error: beyond, a window is invalid"},
+  v.number({"limit_ratio", "ratio to the healthy error above which a window is invalid"},
            settings.most_ratio, {1.0, 1e3});
   v.number({"least_ratio", "smaller changes are not named"}, settings.thresholds.least_ratio,
            {1e-4, 1.0});
-  v.boolean({"suspect_position_sensor", "its scale or drift may explain a change as well"},
-            settings.thresholds.suspect_position_sensor);
-  v.number({"most_std_error_ratio", "of a value, beyond which it is invalid"},
+  v.boolean(
+      {"suspect_position_sensor", "a scale or drift of the position sensor may explain a change"},
+      settings.thresholds.suspect_position_sensor);
+  v.number({"most_std_error_ratio", "relative standard error above which a value is invalid"},
            settings.most_std_error, {1e-6, 1.0});
   v.number({"most_std_error_of_typical", "the same of an effect, over its typical size"},
            settings.most_of_typical, {1e-6, 10.0});
@@ -50,14 +51,14 @@ void TrackerConfig::visit(Visitor& v) {
   v.number({"healthy_rms_m", "in place of the file: a healthy window's error"}, learnt.rms_m,
            {0.0, 1.0});
   v.numbers({"healthy_values", "in place of the file: of the parameters, SI"}, learnt.values);
-  v.number({"noise_floor_m", "of the position"}, learnt.noise_floor_m, {0.0, 1.0});
+  v.number({"noise_floor_m", "noise floor of the position"}, learnt.noise_floor_m, {0.0, 1.0});
   v.boolean({"pressures", "supply and chamber pressures are used where the rig reads them"},
             pressures);
   learnt.chambers.visit(v);
   v.texts({"follow", "parameters whose slow changes are no faults"}, settings.drift.parameters);
-  v.number({"follow_ratio_per_h", "how fast, of the healthy value"}, settings.drift.ratio_per_h,
-           {1e-3, 100.0});
-  v.number({"follow_most_ratio", "how far from what was learnt; then alarm slow_NAME"},
+  v.number({"follow_ratio_per_h", "fastest drift of the healthy value, as a ratio"},
+           settings.drift.ratio_per_h, {1e-3, 100.0});
+  v.number({"follow_most_ratio", "largest drift from the learned value; beyond it alarm slow_NAME"},
            settings.drift.most_ratio, {1e-3, 10.0});
   v.number({"probe_low_m", "least position of a probing motion that is suggested"},
            settings.probe.low_m, {-1e3, 1e3});
@@ -65,7 +66,7 @@ void TrackerConfig::visit(Visitor& v) {
            settings.probe.high_m, {-1e3, 1e3});
   v.number({"probe_speed_mps", "greatest speed of it"}, settings.probe.speed_mps, {1e-6, 100.0});
   v.number({"probe_command_V", "greatest command of it"}, settings.probe.command_V, {1e-3, 1e3});
-  v.choice({"severity", "of its alarms"}, severity, {"minor", "major"});
+  v.choice({"severity", "severity of its alarms"}, severity, {"minor", "major"});
   rules.visit(v);
 }
 
@@ -122,7 +123,7 @@ std::unique_ptr<estimator::fdi::DetectionMethod> TrackerConfig::make(
       known->theta[static_cast<Eigen::Index>(i)] = set.parameters[i].to_theta(learnt.values[i]);
     }
   }
-  return std::make_unique<TrackerSource>(*this, read, set, known, sample_time_s);
+  return std::make_unique<TrackerMethod>(*this, read, set, known, sample_time_s);
 }
 
 }  // namespace estimator::fdi::tracker

@@ -1,25 +1,25 @@
-// [[tracker]]: physical parameters tracked on line, as a source of the fault detection.
+// [[tracker]]: physical parameters tracked on line, as a detection method.
 //
 //   [[tracker]]
 //   id = "physics"
-//   model = "models/thesis.toml"          # of the healthy rig
+//   model = "models/thesis.toml"          # the healthy rig
 //   parameters = ["supply_pressure_Pa", "damping_N_s_per_m"]
 //   healthy = "healthy.toml"              # from `spoolwatch isolate --learn`; or learn_s
 //
-// Pressures that the rig reads are used (`pressures = false`: not). The supply's takes the place of
-// the fit of supply_pressure_Pa; the chambers' are fitted beside the position (tracker.h) once what
-// they are like when healthy is known: from learn_s, or from a file that was learnt with them; an
-// older file leaves them out. With either the valve gain can be told from the supply pressure, and
-// valve_gain_m_per_V should stand in `parameters`: it is not added by itself. Where it does not, a
-// change of the gain is found "unexplained" beside a reading of the supply, and by position alone,
-// as the group of both, beside readings of the chambers. What was left out is said in the finding's
-// reason.
+// Pressures that the rig reads are used unless `pressures = false`. The supply pressure's mean
+// replaces the fit of supply_pressure_Pa. Chamber pressures are fitted beside the position
+// (parameter_tracker.h) once their healthy errors are known: from learn_s, or from a file learned
+// with them; an older file leaves them out. With either reading, valve gain and supply pressure are
+// separable, and valve_gain_m_per_V should be listed in `parameters`; it is not added by itself.
+// Where it is missing, a change of the gain is reported as "unexplained" beside a reading of the
+// supply, and as the group of both parameters beside readings of the chambers. The reason of a
+// window states the pressures that were left out.
 //
-// Its values: each parameter by its name (a dot in it becomes "_"), NaN where the window does not
-// tell it; smallest_NAME, the change that the present motion would show; residual_rms_m;
-// healthy_NAME of each parameter of `follow`, which changes are counted from (slow_change.h). Its
-// alarms: each parameter by the same name, which name the parameter or the group that cannot be
-// told apart; slow_NAME when one of `follow` has come further by and by than is followed; and
+// Values: each parameter by its name (a dot becomes "_"), NaN where the window does not determine
+// it; smallest_NAME, the smallest change that the present motion shows; residual_rms_m;
+// healthy_NAME of each parameter of `follow`, the reference of its changes (baseline_drift.h).
+// Alarms: each parameter by the same name, with the parameter or the group that cannot be
+// separated; slow_NAME when a parameter of `follow` has drifted to the end of its range;
 // "unexplained" when the model no longer explains the rig.
 #pragma once
 
@@ -29,7 +29,7 @@
 #include "estimator/fdi/alarm.h"
 #include "estimator/fdi/detection_method_config.h"
 #include "estimator/fdi/tracker/baseline_file.h"
-#include "estimator/fdi/tracker/source_kinds.h"
+#include "estimator/fdi/tracker/detection_method_kinds.h"
 #include "estimator/greybox/tracking/parameter_tracker.h"
 
 namespace estimator::fdi::tracker {
@@ -38,13 +38,13 @@ struct TrackerConfig final : estimator::fdi::DetectionMethodConfigOf<TrackerConf
   TrackerConfig();
 
   std::string model;       ///< file, relative to the configuration; read by load()
-  std::string model_toml;  ///< what stood in it
+  std::string model_toml;  ///< text of the model file
   std::vector<std::string> parameters{"supply_pressure_Pa", "damping_N_s_per_m"};
   greybox::tracking::TrackerSettings settings;
-  std::string baseline;  ///< file; "": learnt from the first learn_s of motion
+  std::string baseline;  ///< file; "": learned from the first learn_s of motion
   double learn_s = 10.0;
-  bool pressures = true;  ///< those of the samples are used
-  BaselineFile learnt;    ///< what stood in the file
+  bool pressures = true;  ///< use the pressures of the samples
+  BaselineFile learnt;    ///< contents of the file
   std::string severity = "major";
   estimator::fdi::AlarmRules rules;
 

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "config/units/quantity.h"
-#include "estimator/greybox/tracking/words.h"
+#include "estimator/fdi/tracker/tracking_text.h"
 
 namespace estimator::fdi::tracker {
 namespace {
@@ -16,11 +15,13 @@ using estimator::fdi::MethodOutput;
 using estimator::fdi::NamedValue;
 using estimator::fdi::Severity;
 
-/// The model has stopped explaining the rig when this many windows' lengths in a row say so: a
-/// window across a change says it as well, and is over after one.
+/// Ratio of the total length of unexplained windows in a row to one window, above which the model
+/// no
+/// longer explains the rig. A window across a change is unexplained as well, but only once.
 constexpr double kLong = 1.5;
 constexpr std::size_t kMostLessons = 100000;
-/// Numbers of a lesson before its parameters: error, then each chamber's (ChamberFit).
+/// Numbers per learned window before its parameters: position error, then each chamber's
+/// (ChamberFit).
 constexpr std::size_t kErrors = 7;
 
 std::size_t count_of(double duration_s, double each_s) {
@@ -35,7 +36,7 @@ std::string value_name(std::string name) {
 
 }  // namespace
 
-TrackerSource::TrackerSource(const TrackerConfig& config, const plant_sim::ModelFile& model,
+TrackerMethod::TrackerMethod(const TrackerConfig& config, const plant_sim::ModelFile& model,
                              const greybox::tracking::ParameterSet& set,
                              std::optional<greybox::tracking::Baseline> baseline,
                              double sample_time_s)
@@ -53,12 +54,10 @@ TrackerSource::TrackerSource(const TrackerConfig& config, const plant_sim::Model
   reset();
 }
 
-std::vector<std::string> TrackerSource::names() const {
+std::vector<std::string> TrackerMethod::names() const {
   std::vector<std::string> names;
   const greybox::tracking::ParameterSet& set = tracker_.set();
-  for (std::size_t i = 0; i < set.tracked; ++i) {
-    names.push_back(value_name(set.parameters[i].name));
-  }
+  for (std::size_t i = 0; i < set.tracked; ++i) names.push_back(value_name(set.parameters[i].name));
   for (std::size_t i = 0; i < set.tracked; ++i) names.push_back("smallest_" + names[i]);
   names.emplace_back("residual_rms_m");
   const greybox::tracking::BaselineDrift& slow = tracker_.baseline_drift();
@@ -68,7 +67,7 @@ std::vector<std::string> TrackerSource::names() const {
   return names;
 }
 
-std::vector<estimator::fdi::Alarm> TrackerSource::declared_alarms() const {
+std::vector<estimator::fdi::Alarm> TrackerMethod::declared_alarms() const {
   const std::vector<std::string> all = names();
   std::vector<std::string> wanted(
       all.begin(), all.begin() + static_cast<std::ptrdiff_t>(tracker_.set().tracked));
@@ -83,7 +82,7 @@ std::vector<estimator::fdi::Alarm> TrackerSource::declared_alarms() const {
   return alarms;
 }
 
-bool TrackerSource::is_due(std::int64_t missing) noexcept {
+bool TrackerMethod::is_due(std::int64_t missing) noexcept {
   broken_ = true;
   missing_ += missing;
   if (static_cast<double>(missing_) * sample_time_s_ < stride_s_) return false;
@@ -95,9 +94,9 @@ bool TrackerSource::is_due(std::int64_t missing) noexcept {
   return true;
 }
 
-bool TrackerSource::on_gap(std::int64_t periods) noexcept { return is_due(periods); }
+bool TrackerMethod::on_gap(std::int64_t periods) noexcept { return is_due(periods); }
 
-bool TrackerSource::push(const Sample& sample, double y_m) noexcept {
+bool TrackerMethod::push(const Sample& sample, double y_m) noexcept {
   if (!std::isfinite(y_m) || !std::isfinite(sample.u_applied_V)) return is_due(1);
   const double t_s = static_cast<double>(sample.tick) * sample_time_s_;
   const std::optional<greybox::tracking::WindowResult> window =
@@ -109,7 +108,7 @@ bool TrackerSource::push(const Sample& sample, double y_m) noexcept {
   return true;
 }
 
-void TrackerSource::take(const greybox::tracking::WindowResult& window) {
+void TrackerMethod::take(const greybox::tracking::WindowResult& window) {
   const std::size_t tracked = tracker_.set().tracked;
   for (std::size_t i = 0; i < tracked; ++i) {
     const greybox::tracking::ParameterEstimate& one = window.estimates[i];
@@ -119,21 +118,21 @@ void TrackerSource::take(const greybox::tracking::WindowResult& window) {
   }
   rms_m_ = window.rms_m;
   samples_ = static_cast<int>(std::lround(window_s_ / sample_time_s_));
-  why_ = window.why;
+  why_ = invalid_words(tracker_.set(), window.invalid);
   unexplained_ = window.fits ? 0 : unexplained_ + 1;
   if (!tracker_.baseline()) {
     learn_from(window);
   } else {
     suggest(window);
   }
-  note_ = window.left_out;
+  note_ = left_out_words(window.left_out);
   tracker_.forget_cleared();
   say();
 }
 
-void TrackerSource::learn_from(const greybox::tracking::WindowResult& window) {
+void TrackerMethod::learn_from(const greybox::tracking::WindowResult& window) {
   const greybox::tracking::ParameterSet& set = tracker_.set();
-  why_ = "learning what is healthy" + (window.why.empty() ? "" : "; " + window.why);
+  why_ = "learning what is healthy" + (why_.empty() ? "" : "; " + why_);
   if (!greybox::tracking::qualifies_for_baseline(window, set)) return;
   learning_.push_back(window.rms_m);
   for (const greybox::tracking::ChamberFit& one : {window.in, window.out}) {
@@ -157,24 +156,24 @@ void TrackerSource::learn_from(const greybox::tracking::WindowResult& window) {
       windows[k].estimates[i].theta = lesson[kErrors + i];
     }
   }
-  tracker_.take(greybox::tracking::learn_baseline(windows, set, noise_floor_m_, "healthy motion"));
+  tracker_.take(greybox::tracking::learn_baseline(windows, set, noise_floor_m_));
   learning_.clear();
 }
 
-void TrackerSource::suggest(const greybox::tracking::WindowResult& window) {
+void TrackerMethod::suggest(const greybox::tracking::WindowResult& window) {
   if (!window.poor) return;
   if (!probe_) {
     const std::optional<greybox::tracking::ExcitationDesign> probe = tracker_.probe();
-    probe_ = probe ? greybox::tracking::probe_words(*probe) : "";
+    probe_ = probe ? probe_words(*probe) : "";
   }
   if (probe_->empty()) return;
-  // Short, for what hands reasons on cuts them.
+  // Kept short, because receivers truncate reasons.
   const std::size_t colon = why_.find(':');
   why_ =
       (window.explained ? "this motion tells too little" : why_.substr(0, colon)) + "; " + *probe_;
 }
 
-void TrackerSource::say() {
+void TrackerMethod::say() {
   const greybox::tracking::ParameterSet& set = tracker_.set();
   for (std::size_t i = 0; i < set.tracked; ++i) {
     Said& said = said_[i];
@@ -183,9 +182,9 @@ void TrackerSource::say() {
     if (alarm == nullptr) continue;
     const greybox::tracking::ParameterChange& named = alarm->named;
     const greybox::FreeParameter& p = set.parameters[i];
-    const std::string group = greybox::tracking::group_words(set, named);
-    said.reason = greybox::tracking::change_words(set, named, tracker_.baseline()->theta) +
-                  (group.empty() ? "" : "; " + group);
+    const std::string group = group_words(set, named);
+    said.reason =
+        change_words(set, named, tracker_.baseline()->theta) + (group.empty() ? "" : "; " + group);
     said.parameter = named.rivals.empty() ? p.name : "";
     said.group.clear();
     if (!named.rivals.empty()) said.group.push_back(p.name);
@@ -210,7 +209,7 @@ void TrackerSource::say() {
   said.state.reason = said.reason;
 }
 
-void TrackerSource::say_slow() {
+void TrackerMethod::say_slow() {
   const greybox::tracking::ParameterSet& set = tracker_.set();
   const greybox::tracking::BaselineDrift& slow = tracker_.baseline_drift();
   for (std::size_t i = 0; i < slow.size(); ++i) {
@@ -221,7 +220,7 @@ void TrackerSource::say_slow() {
     const std::size_t at = slow.parameter(i);
     const greybox::FreeParameter& p = set.parameters[at];
     const double theta = tracker_.baseline()->theta[static_cast<Eigen::Index>(at)];
-    said.reason = greybox::tracking::slow_words(p, slow.learnt(i), theta);
+    said.reason = drift_words(p, slow.learnt(i), theta);
     said.parameter = p.name;
     said.fault = {said.parameter, {}, kNaN};
     said.state.severity = Severity::minor;
@@ -232,7 +231,7 @@ void TrackerSource::say_slow() {
   }
 }
 
-MethodOutput TrackerSource::evaluate(std::span<NamedValue> values) noexcept {
+MethodOutput TrackerMethod::evaluate(std::span<NamedValue> values) noexcept {
   const std::size_t tracked = tracker_.set().tracked;
   for (std::size_t i = 0; i < tracked; ++i) {
     values[i].value = found_[i];
@@ -260,11 +259,11 @@ MethodOutput TrackerSource::evaluate(std::span<NamedValue> values) noexcept {
   return output;
 }
 
-AlarmInput TrackerSource::alarm_input(std::size_t number) const noexcept {
+AlarmInput TrackerMethod::alarm_input(std::size_t number) const noexcept {
   return said_[number].state;
 }
 
-void TrackerSource::reset() {
+void TrackerMethod::reset() {
   tracker_.reset();
   if (given_) tracker_.take(*given_);
   broken_ = true;
@@ -280,7 +279,7 @@ void TrackerSource::reset() {
   say();
 }
 
-void TrackerSource::serialize(estimator::StateArchive& archive) {
+void TrackerMethod::serialize(estimator::StateArchive& archive) {
   tracker_.serialize(archive);
   archive.value(broken_);
   archive.value(missing_);

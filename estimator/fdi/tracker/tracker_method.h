@@ -1,5 +1,5 @@
-// The tracker as a source of the fault detection. It allocates, and a look at a window takes
-// milliseconds: it belongs on the detector thread, not in the loop.
+// Detection method that runs the parameter tracker. Allocates, and one window takes milliseconds:
+// belongs on the detector thread, not in the loop.
 #pragma once
 
 #include <optional>
@@ -12,10 +12,10 @@
 
 namespace estimator::fdi::tracker {
 
-class TrackerSource final : public estimator::fdi::DetectionMethod {
+class TrackerMethod final : public estimator::fdi::DetectionMethod {
  public:
-  /// `healthy`: none = learnt from the first windows that teach.
-  TrackerSource(const TrackerConfig& config, const plant_sim::ModelFile& model,
+  /// `baseline`: none = learned from the first windows that qualify.
+  TrackerMethod(const TrackerConfig& config, const plant_sim::ModelFile& model,
                 const greybox::tracking::ParameterSet& set,
                 std::optional<greybox::tracking::Baseline> baseline, double sample_time_s);
 
@@ -31,7 +31,7 @@ class TrackerSource final : public estimator::fdi::DetectionMethod {
   [[nodiscard]] double interval_s() const noexcept override { return stride_s_; }
 
  private:
-  /// What the alarm of a parameter says.
+  /// Alarm of one parameter.
   struct Said {
     std::string reason;
     std::string parameter;
@@ -52,23 +52,24 @@ class TrackerSource final : public estimator::fdi::DetectionMethod {
   double stride_s_;
   double window_s_;
   double noise_floor_m_;
-  bool pressures_;       ///< of the samples are used
-  std::size_t lessons_;  ///< windows that are learnt from
+  bool pressures_;       ///< use the pressures of the samples
+  std::size_t lessons_;  ///< windows to learn from
   estimator::fdi::Severity severity_;
   estimator::fdi::AlarmRules rules_;
   std::optional<greybox::tracking::Baseline> given_;
   greybox::tracking::ParameterTracker tracker_;
   bool broken_ = true;            ///< samples are missing before the next one
-  std::int64_t missing_ = 0;      ///< samples since the latest finding, in a row
-  std::vector<double> learning_;  ///< of each window: errors, then x of the parameters
+  std::int64_t missing_ = 0;      ///< consecutive samples missing since the latest result
+  std::vector<double> learning_;  ///< per window: errors, then theta of the parameters
   std::vector<double> found_;     ///< the values, then their standard errors
   std::string why_;
-  std::string note_;                  ///< on a valid finding: what was left out of it
-  std::optional<std::string> probe_;  ///< the motion that would tell, once it was looked for
+  std::string note_;                  ///< for a valid result: pressures that were left out
+  std::optional<std::string> probe_;  ///< suggested motion, once it was computed
   double rms_m_ = 0.0;
   int samples_ = 0;
-  std::int64_t unexplained_ = 0;  ///< windows in a row
-  std::vector<Said> said_;  ///< of each tracked parameter, then of those followed, "unexplained"
+  std::int64_t unexplained_ = 0;  ///< consecutive unexplained windows
+  std::vector<Said>
+      said_;  ///< one per tracked parameter, one per followed parameter, then "unexplained"
 };
 
 }  // namespace estimator::fdi::tracker

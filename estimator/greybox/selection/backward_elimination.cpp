@@ -14,7 +14,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// Of a fit that only has to show whether it ends lower.
+/// Iterations of a fit that only has to show whether it ends lower.
 constexpr int kFirstIterations = 10;
 
 bool costs_little(const SearchContext& context, const FitSummary& without, const FitSummary& with) {
@@ -22,7 +22,7 @@ bool costs_little(const SearchContext& context, const FitSummary& without, const
          (1.0 + worthwhile_at(context, with.validation_rms_m)) * with.validation_rms_m;
 }
 
-/// Selections fitted side by side, each given up when hopeless beside the stage.
+/// Fits of several subsets in parallel, each stopped when clearly worse than the stage.
 std::vector<FitSummary> fitted(const SearchContext& context, const ModelStage& stage,
                                const std::vector<ParameterSubset>& subsets) {
   std::vector<FitSummary> fits(subsets.size());
@@ -51,7 +51,7 @@ void drop_effects(const SearchContext& context, ModelStage& stage) {
   }
 }
 
-/// Those of an effect that are searched, the last first.
+/// Refinements of an effect that are in the search, the last first.
 std::set<int, std::greater<>> refinements_of(const FitSummary& fitted, const std::string& effect) {
   std::set<int, std::greater<>> refinements;
   for (const FreeParameter& p : fitted.parameters) {
@@ -71,7 +71,7 @@ struct Refinement {
   int number = 0;
 };
 
-/// The refinements of all effects of a stage, in the order in which they may go.
+/// Refinements of all effects of a stage, in the order of removal.
 std::vector<Refinement> refinements_of(const ModelStage& stage) {
   std::vector<Refinement> all;
   for (const std::string& effect : stage.added) {
@@ -159,8 +159,7 @@ void refit_without_refinements(const SearchContext& context, ModelStage& stage) 
     return a.validation_rms_m < b.validation_rms_m;
   });
   if (best->validation_rms_m >= stage.fitted.validation_rms_m) return;
-  stage.fitted =
-      refit_to_convergence(context, *best);  // from the ground up, now that nothing is in its way
+  stage.fitted = refit_to_convergence(context, *best);  // full convergence after the removal
 }
 
 void eliminate_backward(const SearchContext& context, ModelStage& stage, EliminationPass look) {

@@ -1,5 +1,4 @@
-// The backward look over a stage: what is not worth its place goes, what refines an effect may
-// come.
+// Backward elimination of a stage, then forward addition of refinements.
 #pragma once
 
 #include "estimator/greybox/selection/problem.h"
@@ -7,18 +6,22 @@
 
 namespace estimator::greybox::selection {
 
-/// Whether what is left over at the end of a search is looked over, or at the end of all of them.
+/// Pass within the search, or the final one over its result.
 enum class EliminationPass { intermediate, final };
 
-/// Drops effects, then refinements of effects, as long as the held-out error suffers less than an
-/// effect must bring (and refinements without support.h's support where the error is more than
-/// noise); then tries refinements that did not take part, which need that support too. On the way,
-/// a stage that noise does not explain keeps its refinements as they are: their support takes long.
+/// Drops effects, then refinements, as long as the held-out error rises by less than an effect must
+/// gain
+/// (and refinements that fail cross_validates() where the error exceeds the noise); then tries
+/// refinements that were left out, which must pass it as well. Intermediate passes keep the
+/// refinements
+/// of a stage that noise does not explain, because their cross-validation takes long.
 void eliminate_backward(const SearchContext& context, ModelStage& stage, EliminationPass look);
 
-/// Fits a stage to the end, beside it without each refinement of its effects: where that ends
-/// lower, and noise does not explain the stage, the refinement goes. Its search has ended somewhere
-/// wrong, and holds the others' there.
+/// Fits a stage to convergence, and in parallel without each refinement of its effects. A
+/// refinement is
+/// dropped where the fit without it ends lower and noise does not explain the stage: the search
+/// then
+/// ended in a wrong minimum.
 void refit_without_refinements(const SearchContext& context, ModelStage& stage);
 
 }  // namespace estimator::greybox::selection

@@ -8,8 +8,9 @@
 namespace estimator::greybox::selection {
 namespace {
 
-/// The records in two halves, each begun anew, fitted to one and scored on the other; records that
-/// were kept for scoring are one of the halves.
+/// Two halves of the records, each with its own start: one for the fit, one for the score. Records
+/// held
+/// out are one of the halves.
 struct Halves {
   FitDataset forth;
   FitDataset back;
@@ -42,7 +43,7 @@ bool cross_validates(const SearchContext& context, bool explained, const Paramet
   options.final_jacobian = false;
   options.cancel = context.options.cancel;
   if (!explained) {
-    // the free run: its minimum is narrow, and what is not reached decides wrongly
+    // free run: its minimum is narrow, and an unconverged fit decides wrongly
     options.observer_per_s = 0.0;
     options.tolerance = 1e-5;
     options.max_iterations = FitOptions{}.max_iterations;

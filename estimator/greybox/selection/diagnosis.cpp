@@ -1,9 +1,9 @@
 #include "estimator/greybox/selection/diagnosis.h"
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 
+#include "estimator/greybox/representative_segments.h"
 #include "estimator/greybox/selection/cross_validation.h"
 #include "estimator/greybox/selection/excitation.h"
 #include "estimator/greybox/selection/indistinguishable_models.h"
@@ -14,7 +14,7 @@
 namespace estimator::greybox::selection {
 namespace {
 
-constexpr double kAsClear = 0.9;  ///< explained share of what is left over that of the whole
+constexpr double kAsClear = 0.9;  ///< ratio of the remainder's explained share to that of the whole
 
 /// `errors` are those of the search values.
 void report_parameters(const Eigen::VectorXd& errors, Diagnosis& result) {
@@ -59,8 +59,9 @@ void list_steps(Diagnosis& result) {
   }
 }
 
-/// What carries the residual that nothing explains. Effects that were taken for want of the right
-/// one have swallowed part of it: then the model as given shows it more clearly.
+/// Localises the unexplained residual. Effects taken in place of the right one have absorbed part
+/// of
+/// it; the model as given then shows it more clearly.
 std::vector<Localisation> localise_remainder(const SearchContext& context, const ModelStage& first,
                                              const ModelStage& final) {
   std::vector<Localisation> left = localise(context, final);
@@ -72,7 +73,7 @@ std::vector<Localisation> localise_remainder(const SearchContext& context, const
   return share(left) >= kAsClear * share(whole) ? left : whole;
 }
 
-/// Groups that a motion could separate make the verdict undetermined; others are the same equation.
+/// Groups that a motion could separate make the verdict undetermined; other groups are equivalent.
 void classify_indistinguishable(const SearchContext& context, const ModelStage& found,
                                 Diagnosis& result) {
   for (const IndistinguishableModels& models :
@@ -98,7 +99,7 @@ void conclude(const SearchContext& context, const SearchContext& search, Diagnos
   const ModelStage found = result.search.final;
   if (uses_segments(search, context)) {
     refit_to_whole(context, result.search);
-    result.notes.push_back(note_of_search(search, context));
+    result.searched_s = length_s(search.problem.data);
   }
   take_errors(result);
   const ModelStage& final = result.search.final;
@@ -168,13 +169,9 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
   Diagnosis result;
   result.noise_floor_m = problem.data.noise_floor_m;
   result.disturbed_floor_m = result.noise_floor_m;
-  for (const Dataset& record : problem.data.records) {
-    for (const std::string& note : record.notes) result.notes.push_back(record.name + ": " + note);
-  }
-  const Excitation excitation = excitation_of(problem.data);
-  if (!excitation.enough) {
+  result.excitation = excitation_of(problem.data);
+  if (!result.excitation.sufficient()) {
     result.verdict = Verdict::not_excited;
-    result.notes.push_back(excitation.why);
     result.better = problem.model;
     return result;
   }
@@ -193,7 +190,6 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
       conclude(context, search, result);
     }
   }
-  if (result.search.interrupted) result.notes.emplace_back("interrupted: the best so far");
   result.runtime_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;

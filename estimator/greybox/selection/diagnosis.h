@@ -1,4 +1,4 @@
-// What a diagnosis says in the end, and what it rests on.
+// Result of a diagnosis and the search that led to it.
 #pragma once
 
 #include <optional>
@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "estimator/greybox/selection/disturbance_report.h"
+#include "estimator/greybox/selection/excitation.h"
 #include "estimator/greybox/selection/localisation.h"
 #include "estimator/greybox/selection/structure_search.h"
 
@@ -18,11 +19,11 @@ enum class Verdict { nothing_missing, missing, undetermined, unexplained, not_ex
 struct ParameterValue {
   std::string name;
   double value = 0.0;      ///< SI, the unit in the name
-  double std_error = 0.0;  ///< NaN where the record does not say (at a bound)
+  double std_error = 0.0;  ///< NaN where the record does not determine it (at a bound)
   bool at_bound = false;
 };
 
-struct Step {
+struct SelectionStep {
   std::string added;  ///< empty: the model as given, its parameters fitted
   double validation_rms_m = 0.0;
 };
@@ -32,27 +33,28 @@ struct Diagnosis {
   std::vector<std::string> missing;                 ///< in the order added
   std::vector<std::vector<std::string>> ambiguous;  ///< groups of two or three names
   std::vector<std::vector<std::string>>
-      same_here;  ///< one equation on this plant, whatever the motion
+      same_here;  ///< groups that are equivalent on this plant for every motion
   double noise_floor_m = 0.0;
-  double nominal_rms_m = 0.0;              ///< held-out, the model file as it is
+  double nominal_rms_m = 0.0;              ///< held-out, the model file unchanged
   double rms_before_m = 0.0;               ///< held-out, its parameters fitted
-  double rms_after_m = 0.0;                ///< held-out, with what is missing
-  std::vector<ParameterValue> parameters;  ///< of the better model, fitted to all samples
-  std::vector<Localisation> where;         ///< best first; empty when nothing is left to explain
-  std::vector<Step> steps;
+  double rms_after_m = 0.0;                ///< held-out, better model
+  std::vector<ParameterValue> parameters;  ///< better model, fitted to all samples
+  std::vector<Localisation> where;         ///< best first; empty when everything is explained
+  std::vector<SelectionStep> steps;
   /// What disturbs the rig, where the record was judged by innovations and shows any.
   std::optional<Disturbance> disturbance;
   /// The error of a simulation that sensor and disturbance cause; the sensor's alone without one.
   double disturbed_floor_m = 0.0;
-  std::vector<std::string> notes;  ///< restrictions: gaps, interrupted, ...
+  Excitation excitation;             ///< insufficient: Verdict::not_excited
+  std::optional<double> searched_s;  ///< length of the segments searched; none: all samples
   StructureSearch search;
   FitSummary final;             ///< the better model on all samples
   plant_sim::ModelFile better;  ///< the model file with it
   double runtime_s = 0.0;
 };
 
-/// Runs the whole diagnosis. Ends early, with the best result so far and a note, once
-/// `options.cancel` returns true.
+/// Runs the whole diagnosis. Ends early with the best result so far once `options.cancel` returns
+/// true; `search.interrupted` is then set.
 [[nodiscard]] Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& options);
 
 }  // namespace estimator::greybox::selection

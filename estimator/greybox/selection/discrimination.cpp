@@ -13,13 +13,13 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kDifference = 1e-3;  ///< of the difference quotients, in search units
+constexpr double kDifference = 1e-3;  ///< step of the difference quotients, search units
 constexpr double kPart = 0.05;
 constexpr int kReweightings = 3;
 constexpr int kIterations = 15;
 constexpr double kTolerance = 1e-3;
 
-/// Residual and its derivatives at the rival's values.
+/// Residual and its derivatives at the rival's theta.
 MatrixXd with_derivatives(const SearchContext& context, const FitDataset& data,
                           const FitSummary& rival) {
   DatasetSimulation run(context.problem.model, data, rival.parameters);
@@ -44,8 +44,8 @@ MatrixXd with_derivatives(const SearchContext& context, const FitDataset& data,
   return residuals_m;
 }
 
-/// What a difference has to stand out from: noise, or a small part of what the rival leaves
-/// unexplained anyway.
+/// Level that a difference has to exceed: the noise, or a small share of the rival's unexplained
+/// error.
 double unseen_m(const FitDataset& data, const FitSummary& rival) {
   return std::max(data.noise_floor_m, kPart * rival.validation_rms_m);
 }

@@ -1,6 +1,7 @@
-// How far one explanation stays from the motion that another one gives, when its parameters may
-// adjust: over the noise floor, or over a small part of what that one leaves unexplained where this
-// is more, so that 1 is nothing to go by.
+// Separation of two explanations: the distance of one from the motion that the other predicts, its
+// parameters adjusted, relative to the noise floor or to a small share of the unexplained error
+// where
+// that is larger. 1 does not separate them.
 #pragma once
 
 #include "estimator/greybox/fit.h"
@@ -8,12 +9,13 @@
 
 namespace estimator::greybox::selection {
 
-/// Error that `rival` leaves on the evidence, its parameters adjusted linearly against their
-/// priors. About 20 ms for 30 s.
+/// RMS error [m] that `rival` leaves on the data, its parameters adjusted linearly against their
+/// priors.
+/// Takes about 20 ms for 30 s.
 [[nodiscard]] double expected_separation(const SearchContext& context, const FitDataset& data,
                                          const FitSummary& rival);
 
-/// The same with the rival fitted for good, held out.
+/// The same with the rival fitted to convergence, held-out.
 [[nodiscard]] double fitted_separation(const SearchContext& context, const FitDataset& data,
                                        const FitSummary& rival);
 

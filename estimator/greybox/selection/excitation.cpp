@@ -1,19 +1,15 @@
 #include "estimator/greybox/selection/excitation.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 namespace estimator::greybox::selection {
 namespace {
 
-/// Travel over the noise's standard deviation below which a motion is lost in it.
+/// Ratio of travel to the noise's standard deviation below which a motion is lost in the noise.
 constexpr double kLeastTravel = 50.0;
-/// Share of samples at the largest or smallest command from which the command is a constant.
+/// Share of samples at the largest or smallest command above which the command is constant.
 constexpr double kStuck = 0.98;
-
-std::string millimetres(double m) { return fmt::format("{:.3g} mm", 1e3 * m); }
 
 }  // namespace
 
@@ -32,13 +28,12 @@ Excitation excitation_of(const FitDataset& data) {
     }
   }
   if (!(travel_m >= kLeastTravel * data.noise_floor_m)) {
-    return {false, "the rod moves by " + millimetres(travel_m) + " in all, " +
-                       millimetres(data.noise_floor_m) + " of it noise"};
+    return {Excitation::Cause::no_motion, travel_m, data.noise_floor_m};
   }
   if (free_samples < (1.0 - kStuck) * samples) {
-    return {false, "the command stays at its limit throughout"};
+    return {Excitation::Cause::command_at_limit, travel_m, data.noise_floor_m};
   }
-  return {};
+  return {Excitation::Cause::sufficient, travel_m, data.noise_floor_m};
 }
 
 }  // namespace estimator::greybox::selection

@@ -1,15 +1,18 @@
-// Whether a record moves enough for anything to be learnt from it.
+// Check that the records move enough for a diagnosis.
 #pragma once
-
-#include <string>
 
 #include "estimator/greybox/fit_dataset.h"
 
 namespace estimator::greybox::selection {
 
 struct Excitation {
-  bool enough = true;
-  std::string why;  ///< in words, when it is not
+  enum class Cause { sufficient, no_motion, command_at_limit };
+
+  Cause cause = Cause::sufficient;
+  double travel_m = 0.0;  ///< largest peak to peak of a record
+  double noise_floor_m = 0.0;
+
+  [[nodiscard]] bool sufficient() const { return cause == Cause::sufficient; }
 };
 
 [[nodiscard]] Excitation excitation_of(const FitDataset& data);

@@ -11,17 +11,18 @@ namespace {
 
 using Eigen::VectorXd;
 
-/// A group names at most that many effects.
+/// Largest number of effects in a group.
 constexpr std::size_t kLargestGroup = 3;
-/// Candidates of a round up to this much worse than the chosen one may become rivals when all
-/// other effects are in place.
+/// Ratio to the chosen candidate's error up to which candidates of a round may become rivals with
+/// all
+/// other effects in place.
 constexpr double kWorthARefit = 2.0;
 constexpr std::size_t kMostRefits = 4;
-/// A rival brings at least this share of what the found effect brings.
+/// Least share of the found effect's gain that a rival brings.
 constexpr double kShareOfGain = 0.5;
-/// Probability of chance below which the held-out data do tell the found effect from a rival.
+/// Probability of chance below which the held-out data separate the found effect from a rival.
 constexpr double kTold = 1e-3;
-/// Two fits whose residuals differ by less than this share of the error are the same motion.
+/// Share of the error up to which the difference of two residuals counts as the same motion.
 constexpr double kSameMotion = 0.3;
 
 const Round* round_of(const std::vector<Round>& rounds, const std::string& effect) {

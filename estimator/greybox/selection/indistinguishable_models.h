@@ -1,4 +1,4 @@
-// Which other effects explain the record about as well as those that were found.
+// Other effects that explain the record about as well as the found ones.
 #pragma once
 
 #include <string>
@@ -8,15 +8,16 @@
 
 namespace estimator::greybox::selection {
 
-/// One of the found effects, and the fits in which another effect stands in its place.
+/// One of the found effects, and the fits in which another effect replaces it.
 struct IndistinguishableModels {
   std::string found;
   std::vector<std::string> others;       ///< best first
-  std::vector<FitSummary> explanations;  ///< with `found`, then one for each of the others
+  std::vector<FitSummary> explanations;  ///< with `found`, then one per entry of `others`
 };
 
-/// Empty when every found effect stands alone. Effects that contain a found one as a special case
-/// (a spring so long that it is a constant force) are no rivals.
+/// Empty when no found effect has a rival. Effects that contain a found one as a special case (a
+/// spring
+/// so long that it is a constant force) do not count as rivals.
 [[nodiscard]] std::vector<IndistinguishableModels> find_indistinguishable(
     const SearchContext& context, const std::vector<Round>& rounds, const ModelStage& final);
 

@@ -15,12 +15,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Disturbances of this size, in RMS, keep to the linear part of the response.
+/// RMS size of a disturbance, relative, at which the response is linear.
 constexpr double kSmall_ratio = 0.02;
 constexpr double kSmall_N = 10.0;
-/// How far a piece may go, in multiples of the residual: keeps pieces without samples at rest.
+/// Range of a piece, in multiples of the residual; keeps pieces without samples near zero.
 constexpr double kFreedom = 30.0;
-/// Rise of the remaining error by which a piece more has to pay for itself.
+/// Least decrease of the remaining error per additional piece.
 constexpr double kPerPiece = 0.002;
 
 enum class Form { flow, gain, force, drag, reading, scale };
@@ -51,7 +51,7 @@ struct Place {
   const Variables& variables;
 };
 
-/// The disturbance itself, in units of its form, one column for each piece.
+/// The disturbance in units of its form, one column per piece.
 MatrixXd disturbance(const Place& at, Form form, const Variable& variable) {
   switch (form) {
     case Form::gain:
@@ -68,7 +68,7 @@ MatrixXd disturbance(const Place& at, Form form, const Variable& variable) {
   return variable.signed_pieces.cols() > 0 ? variable.signed_pieces : variable.pieces;
 }
 
-/// What the observer makes of something added to the reading: no model is needed.
+/// Response of the observer to an addition to the reading; independent of the model.
 MatrixXd seen_by_observer(const SearchContext& context, MatrixXd added) {
   for (Index column = 0; column < added.cols(); ++column) {
     Index at = 0;
@@ -78,7 +78,7 @@ MatrixXd seen_by_observer(const SearchContext& context, MatrixXd added) {
       for (std::size_t k = 0; k < record.size(); ++k, ++at) {
         double& seen = added(at, column);
         if (segment < record.starts.size() && record.starts[segment] == k) {
-          shifted_m = -seen;  // the model starts where its reading is the measured one
+          shifted_m = -seen;  // the model starts where its reading equals the measured one
           ++segment;
         }
         seen += shifted_m;
@@ -117,9 +117,9 @@ MatrixXd products(const MatrixXd& columns, const VectorXd& weights) {
   return weighted.transpose() * weighted;
 }
 
-/// The regression of the residual on Jacobian and signatures, by sums of products alone. The priors
-/// keep the weight that they had in the stage's fit: parameters that bend further than there would
-/// follow what the signatures are meant to explain.
+/// Regression of the residual on Jacobian and signatures through sums of products. The priors keep
+/// their
+/// weight of the stage's fit: freer parameters would follow what the signatures should explain.
 class Regression {
  public:
   Regression(const Place& at, const MatrixXd& signatures)
@@ -132,7 +132,7 @@ class Regression {
     scores_ = holds_out ? products(columns, data.validation_mask) : fits_;
   }
 
-  /// Held-out squared error that remains, over that without signatures and adjustment.
+  /// Held-out squared error that remains, relative to that without signatures and adjustment.
   [[nodiscard]] double remaining_ratio() const {
     const Index all = fits_.cols() - 1;
     const VectorXd weights = solve();
@@ -140,7 +140,7 @@ class Regression {
   }
 
  private:
-  /// Coefficients of the columns, that of the residual being 1.
+  /// Coefficients of the columns; that of the residual is 1.
   [[nodiscard]] VectorXd solve() const {
     const Index all = fits_.cols() - 1;
     const double per_square = 1.0 / (fitted_.sigma_m * fitted_.sigma_m);

@@ -1,18 +1,20 @@
-// Where a residual enters the equations, and which variable it goes with: what is left to say when
-// no effect of the library explains a record.
+// Localisation of a residual: the site at which it enters the equations and the variable it
+// correlates
+// with. Used when no effect of the library explains a record.
 //
 //   r ~ -J a - sum b_i s_i,     s_i = response to the disturbance  f(t) h_i(x(t))
 //
-// r residual of the stage, J its Jacobian (the model's parameters may adjust, held by their
-// priors), h_i the pieces of a variable x (variables.h). A disturbance enters as
+// r residual of the stage, J its Jacobian (the parameters may adjust, held by their priors), h_i
+// the
+// pieces of a variable x (residual_variables.h). A disturbance enters as
 //
 //   flow         h_i volts beside the command
 //   gain         u h_i volts beside the command
 //   force        h_i newtons, or v h_i, against extension
 //   measurement  h_i metres, or (y - mean) h_i, on the reading
 //
-// and the model, simulated with it, gives s_i; on the reading the observer alone answers,
-// s / (s + l). a and b are fitted to the fitted samples and scored on the others.
+// and the model, simulated with it, gives s_i; for the reading the observer alone responds, with
+// s / (s + l). a and b are fitted to the training samples and scored on the others.
 #pragma once
 
 #include <string>
@@ -23,16 +25,16 @@
 
 namespace estimator::greybox::selection {
 
-/// Where a residual enters the equations, and which variable it goes with.
+/// Site at which a residual enters the equations and the variable it correlates with.
 struct Localisation {
   std::string site;              ///< "flow", "force", "gain", "measurement"
   std::string variable;          ///< "y", "v", "u", "speed", "acceleration", "time", "direction"
-  double explained_ratio = 0.0;  ///< of the held-out squared error
+  double explained_ratio = 0.0;  ///< share of the held-out squared error
 };
 
-/// One entry for each variable, with the class in which it explains most; best first, of those that
-/// do about as well the one with the fewest pieces. Empty when the workshop's cancel says so. The
-/// stage's Jacobian must be that of its values.
+/// One entry per variable, with the site that explains most, best first; among about equal entries
+/// the one with the fewest pieces. Empty when cancelled. Requires the stage's Jacobian at its
+/// theta.
 [[nodiscard]] std::vector<Localisation> localise(const SearchContext& context,
                                                  const ModelStage& stage);
 

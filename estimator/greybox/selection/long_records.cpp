@@ -1,7 +1,5 @@
 #include "estimator/greybox/selection/long_records.h"
 
-#include <cmath>
-
 #include "estimator/greybox/representative_segments.h"
 #include "estimator/greybox/selection/parameter_subset.h"
 #include "estimator/parallel.h"
@@ -26,18 +24,10 @@ void refit_to_whole(const SearchContext& context, StructureSearch& search) {
     ModelStage& stage = search.path[i];
     stage.fitted = refit(context, subset(stage.fitted, [](const auto&) { return true; }),
                          context.problem.data.training_mask);
-    stage.fitted.jacobian.resize(0, 0);  // large, and of no use any more
+    stage.fitted.jacobian.resize(0, 0);  // large and no longer needed
   });
   search.final = search.path.back();
   search.interrupted = search.interrupted || context.cancelled();
-}
-
-std::string note_of_search(const SearchContext& search, const SearchContext& context) {
-  const auto seconds = [](const SearchContext& of) {
-    return std::to_string(std::lround(length_s(of.problem.data)));
-  };
-  return "effects were searched for in " + seconds(search) + " of " + seconds(context) +
-         " s; values and errors are those of all samples";
 }
 
 }  // namespace estimator::greybox::selection

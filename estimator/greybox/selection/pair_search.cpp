@@ -17,14 +17,13 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Of the trial sizes of an effect, the last so many: those that are not small.
+/// Number of the largest trial sizes of an effect that are used.
 constexpr Index kSizes = 4;
-/// That many couples, the best on a stretch of the record, are looked at on all of it.
+/// Pairs that are screened on the whole record, the best of the screening segment.
 constexpr std::size_t kLookedAt = 16;
-/// That many are fitted, each from its best start seen from either base.
+/// Pairs that are fitted, each from the best start seen from either base.
 constexpr std::size_t kFitted = 6;
-/// For that many iterations on the stretch; then those within this factor of the best go on, on the
-/// whole record.
+/// Iterations on the segment; pairs within this factor of the best continue on the whole record.
 constexpr int kFirstIterations = 4;
 constexpr double kFar = 3.0;
 /// Fitted side by side before it is asked whether one explains the record.
@@ -41,7 +40,7 @@ struct Couple {
   const Effect* second = nullptr;
   double cost = std::numeric_limits<double>::infinity();
   std::vector<FreeParameter> parameters;
-  std::vector<VectorXd> starts;  ///< one seen from each base
+  std::vector<VectorXd> starts;  ///< one per base
 };
 
 std::vector<Effect> effects_of(const SearchContext& context,
@@ -57,7 +56,7 @@ std::vector<Effect> effects_of(const SearchContext& context,
   return effects;
 }
 
-/// The best combination of sizes, the model's own parameters being at `base`.
+/// Best combination of sizes with the model's own parameters at `base`.
 void screened(const plant_sim::ModelFile& model, const FitDataset& data,
               const Projection& projection, const VectorXd& base, Couple& couple) {
   DatasetSimulation run(model, data, couple.parameters);
@@ -87,7 +86,7 @@ void screened(const plant_sim::ModelFile& model, const FitDataset& data,
   couple.starts.emplace_back(points.col(best));
 }
 
-/// Looks at all couples from all bases and keeps the `most` best, the best first.
+/// Screens all pairs from all bases and keeps the `most` best, best first.
 void look_at(const SearchContext& context, const FitDataset& data, const Projection& projection,
              const std::array<const VectorXd*, 2>& bases, std::size_t most,
              std::vector<Couple>& couples) {

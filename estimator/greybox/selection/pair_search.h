@@ -1,9 +1,10 @@
-// Two absent effects tried together from nothing: for records on which either of them alone leads
-// astray, as leakage and friction do, which together look like a dead band.
+// Pairs of absent effects fitted together, for records on which either alone misleads: leakage and
+// friction together resemble a dead band.
 //
-// Every two are simulated in several sizes of both; what the parameters may then still take away is
-// known by the projection (projection.h). The most promising are fitted. Periodic effects do not
-// take part: their wavelengths would have to be scanned for each partner.
+// Every pair is simulated in several sizes of both; the projection (projection.h) gives the error
+// that remains after the parameters adjust. The most promising pairs are fitted. Periodic effects
+// are
+// excluded: their wavelengths would need a scan per partner.
 #pragma once
 
 #include <vector>
@@ -12,8 +13,9 @@
 
 namespace estimator::greybox::selection {
 
-/// On top of a stage that has its Jacobian, best first by held-out error. `without`: effects that
-/// have been tried with every other one already.
+/// For a stage with its Jacobian; best first by held-out error. `without`: effects already combined
+/// with
+/// every other one.
 [[nodiscard]] std::vector<Candidate> pair_search(const SearchContext& context,
                                                  const ModelStage& stage,
                                                  const std::vector<std::string>& without);

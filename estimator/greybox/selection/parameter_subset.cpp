@@ -5,14 +5,14 @@
 namespace estimator::greybox::selection {
 namespace {
 
-/// Looked at every so many iterations.
+/// Iterations between two checks.
 constexpr int kStride = 8;
-/// What then is still that much worse will not come near; the first time, that much.
+/// Error ratio to the best at the first check above which a fit is stopped.
 constexpr double kHopeless = 3.0;
 constexpr double kHopelessAtFirst = 10.0;
-/// This much worse is near.
+/// Error ratio that counts as near.
 constexpr double kNear = 1.1;
-/// The way that is left must not be longer than so many strides like the last one.
+/// Limit of the remaining decrease, in decreases like that of the last check.
 constexpr double kPatience = 4.0;
 constexpr int kMostStrides = 8;
 

@@ -1,4 +1,4 @@
-// Some of a fitted model's parameters, to be fitted again without the others.
+// Fits of a subset of a model's parameters.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +19,7 @@ struct ParameterSubset {
   return parameter.name.rfind(effect + ".", 0) == 0;
 }
 
-/// The parameters for which keep(parameter) holds, starting where they are.
+/// Parameters with keep(parameter), starting at their present values.
 template <class Keep>
 [[nodiscard]] ParameterSubset subset(const FitSummary& fitted, const Keep& keep) {
   ParameterSubset result;
@@ -36,17 +36,17 @@ template <class Keep>
 
 void append(ParameterSubset& to, const ParameterSubset& more);
 
-/// FitSummary to the end on the samples that `weights` counts. `width` is the default within
-/// in_parallel.
+/// Fit to convergence on the samples with `weights` 1. `width` is the default within in_parallel.
 [[nodiscard]] FitSummary refit(const SearchContext& context, const ParameterSubset& selection,
                                const Eigen::VectorXd& weights, Width width = {},
                                double observer_per_s = kObserver_per_s);
-/// On the samples that fit, but given up, as far as it came, when after a few iterations it is
-/// still several times `than_m`, with which it is to be compared, or comes too slowly to get there.
+/// Fit on the training samples; stopped early when after a few iterations its error is several
+/// times
+/// `than_m`, or decreases too slowly to reach it.
 [[nodiscard]] FitSummary refit_if_hopeful(const SearchContext& context,
                                           const ParameterSubset& selection, double than_m,
                                           Width width = {});
-/// A stage's fit, to the end, on all of the workshop's threads.
+/// Fit of a stage to convergence, on all threads of the options.
 [[nodiscard]] FitSummary refit_to_convergence(const SearchContext& context,
                                               const FitSummary& fitted);
 

@@ -1,7 +1,8 @@
-// A structure selection: which physical effects does a model lack, judged by records?
+// Structure selection: the problem of which physical effects a model lacks, judged by records.
 //
-// DiagnosisProblem is the question, DiagnosisOptions how it is answered; every step of the search
-// works on both, as a SearchContext.
+// DiagnosisProblem is the question, DiagnosisOptions the procedure; every step of the search works
+// on
+// both as a SearchContext.
 #pragma once
 
 #include <functional>
@@ -17,11 +18,13 @@
 namespace estimator::greybox::selection {
 
 /// State of a running search, for a progress line.
-struct Progress {
-  std::string doing;  ///< "round 1: trying friction"
-  int done = 0;
+struct SearchProgress {
+  int round = 0;
+  bool screening = false;  ///< false: `effect` is being fitted
+  std::string effect;
+  int done = 0;  ///< steps of this round
   int of = 0;
-  std::string best;  ///< leading effect so far, may be empty
+  std::string best;  ///< leading effect so far; may be empty
   double best_rms_m = 0.0;
   std::vector<std::string> expected;  ///< ranking by screening, once known
 };
@@ -30,7 +33,7 @@ struct DiagnosisProblem {
   plant_sim::ModelFile model;
   FitDataset data;
   std::vector<plant_sim::EffectInfo> candidate_effects;  ///< offered by the plant, absent so far
-  std::vector<FreeParameter> plant_parameters;           ///< of the plant and of present effects
+  std::vector<FreeParameter> plant_parameters;           ///< plant and present effects
 };
 
 struct SearchContext;
@@ -43,9 +46,9 @@ using Separable =
 
 struct DiagnosisOptions {
   unsigned threads = 2;
-  std::function<void(const Progress&)> progress;  ///< serialised calls; may be empty
-  std::function<bool()> cancel;                   ///< called from any thread; may be empty
-  Separable separable;                            ///< empty: no motion separates anything
+  std::function<void(const SearchProgress&)> progress;  ///< serialised calls; may be empty
+  std::function<bool()> cancel;                         ///< called from any thread; may be empty
+  Separable separable;                                  ///< empty: no motion separates anything
 };
 
 struct SearchContext {

@@ -13,7 +13,7 @@ Projection::Projection(const FitSummary& fitted, const VectorXd& weights)
   Eigen::MatrixXd normal = weighted_jacobian_.transpose() * weighted_jacobian_;
   for (Index i = 0; i < normal.rows(); ++i) {
     const double sd = fitted.parameters[static_cast<std::size_t>(i)].prior_sd;
-    // what neither the record nor a prior holds does not move here
+    // a parameter that neither record nor prior determines stays fixed here
     normal(i, i) += std::isfinite(sd) ? 1.0 / (sd * sd) : 1e-9 * normal(i, i) + 1e-12;
   }
   normal_.compute(normal);

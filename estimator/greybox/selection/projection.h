@@ -1,9 +1,9 @@
-// What remains of a residual when a model's parameters may still adjust, linearly and against their
-// priors, and when one further signature may come in with any strength.
+// Residual that remains when a model's parameters adjust linearly against their priors, and one
+// further signature enters with any strength.
 //
 //   cost = min_{a,b} |r + J a + d b|^2 / s^2 + sum (a / sd)^2
 //
-// a adjustments of the parameters, held by the widths of their priors about where they are.
+// a adjustments of the parameters, held by their prior widths about the present values.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -16,15 +16,16 @@ namespace estimator::greybox::selection {
 
 class Projection {
  public:
-  /// Of a fitted model, over the samples that `weights` (0 or 1) counts.
+  /// Projection of a fitted model over the samples with `weights` 1 (0: ignored).
   Projection(const FitSummary& fitted, const Eigen::VectorXd& weights);
 
   /// With the fitted model's own residual and no signature.
   [[nodiscard]] double cost() const { return cost_; }
-  /// With another residual, its prior taken as that of the fitted model.
+  /// With another residual; its prior is that of the fitted model.
   [[nodiscard]] double remaining(const Eigen::Ref<const Eigen::VectorXd>& residual_m) const;
-  /// The cost and b with another residual (its prior taken as that of the fitted model) and a
-  /// signature, both as long as the weights.
+  /// Cost and b with another residual (its prior is that of the fitted model) and a signature, both
+  /// as long
+  /// as the weights.
   [[nodiscard]] std::pair<double, double> with(
       const Eigen::Ref<const Eigen::VectorXd>& residual_m,
       const Eigen::Ref<const Eigen::VectorXd>& signature_m) const;
@@ -37,7 +38,7 @@ class Projection {
   [[nodiscard]] Two with(const Eigen::Ref<const Eigen::VectorXd>& residual_m,
                          const Eigen::Ref<const Eigen::VectorXd>& first_m,
                          const Eigen::Ref<const Eigen::VectorXd>& second_m) const;
-  /// The signature less what the parameters can imitate of it.
+  /// The signature less the part that the parameters can imitate.
   [[nodiscard]] Eigen::VectorXd beyond(const Eigen::Ref<const Eigen::VectorXd>& signature_m) const;
 
  private:
@@ -46,7 +47,7 @@ class Projection {
                                  const Eigen::VectorXd& other_onto) const;
 
   Eigen::VectorXd weights_;
-  Eigen::MatrixXd weighted_jacobian_;  ///< per s, only counted samples
+  Eigen::MatrixXd weighted_jacobian_;  ///< divided by s, counted samples only
   Eigen::MatrixXd jacobian_;
   Eigen::LLT<Eigen::MatrixXd> normal_;
   double per_sigma_ = 0.0;

@@ -14,7 +14,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// This share of the samples at either end of a variable's range has no knots of its own.
+/// Share of the samples at either end of a variable's range without knots of their own.
 constexpr double kTail = 0.005;
 
 struct Series {
@@ -58,7 +58,7 @@ Series series(const SearchContext& context, const ModelStage& stage) {
   return s;
 }
 
-/// Ascending, no two alike; empty where the values do not vary.
+/// Ascending and distinct; empty where the values do not vary.
 std::vector<double> knots_of(const VectorXd& values, const VectorXd& counts) {
   std::vector<double> sorted;
   for (Index k = 0; k < values.size(); ++k) {
@@ -118,7 +118,7 @@ Variables variables(const SearchContext& context, const ModelStage& stage) {
     MatrixXd turned = values.cwiseSign().asDiagonal() * pieces;
     result.all.push_back({name, std::move(pieces), std::move(turned)});
   };
-  // where two do about as well, the earlier is named first
+  // about equal entries: the earlier is named first
   add("direction", directions(s.speed_mps));
   add_size("speed", s.speed_mps);
   add("v", pieces_of(s.speed_mps, counts));

@@ -1,10 +1,11 @@
-// What a residual may depend on: each variable of the motion cut into a few overlapping pieces.
+// Variables that a residual may depend on, each split into overlapping pieces.
 //
 //   h_i(x) = 1 at knot i, 0 at its neighbours, straight lines between, constant beyond the ends
 //
-// so that sum b_i h_i(x(t)) is any function of the variable, straight from knot to knot. The knots
-// lie half way between equal steps of the variable and equal shares of the samples: a rod that
-// mostly rests still leaves knots for its speeds.
+// sum b_i h_i(x(t)) is any function of the variable that is straight from knot to knot. The knots
+// lie
+// half way between equal steps of the variable and equal shares of the samples: a rod that mostly
+// rests still leaves knots for its speeds.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,27 +19,29 @@ namespace estimator::greybox::selection {
 
 inline constexpr int kKnots = 8;
 
-/// One row for each sample of the evidence. At most kKnots columns.
+/// One row per sample of the data, at most kKnots columns.
 struct Variable {
-  std::string name;               ///< "y", "v", "u", "speed", "acceleration", "time", "direction"
-  Eigen::MatrixXd pieces;         ///< add up to 1
-  Eigen::MatrixXd signed_pieces;  ///< of a size: with the sign of what has that size; else empty
+  std::string name;        ///< "y", "v", "u", "speed", "acceleration", "time", "direction"
+  Eigen::MatrixXd pieces;  ///< add up to 1
+  Eigen::MatrixXd
+      signed_pieces;  ///< for a magnitude: with the sign of the signed variable; else empty
 };
 
 struct Variables {
   std::vector<Variable> all;  ///< "u" twice: by its size, the same either way, and as it is
   Eigen::VectorXd command_V;
-  Eigen::VectorXd position_m;  ///< the model's, about its mean over the counted samples
-  Eigen::VectorXd speed_mps;   ///< the model's
+  Eigen::VectorXd position_m;  ///< modelled, about its mean over the counted samples
+  Eigen::VectorXd speed_mps;   ///< modelled
 };
 
-/// The command as measured; position, speed and acceleration of the stage's model, because a
-/// measured position carries the very noise that it would then explain; time since each record
-/// began.
+/// Command as measured; position, speed and acceleration of the stage's model, because a measured
+/// position
+/// carries the noise it would then explain; time since each record's start.
 [[nodiscard]] Variables variables(const SearchContext& context, const ModelStage& stage);
 
-/// h_i of one variable over the samples that `counts` (0 or 1) tells. At least two columns, or
-/// none where the variable does not vary.
+/// h_i of one variable over the samples with `counts` 1 (0: ignored). Two columns or more; none
+/// where the
+/// variable does not vary.
 [[nodiscard]] Eigen::MatrixXd pieces_of(const Eigen::VectorXd& values,
                                         const Eigen::VectorXd& counts);
 

@@ -16,9 +16,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// How far the linear estimate may move a size before the fit begins.
+/// Largest move of a size by the linear estimate before the fit.
 constexpr double kFurthest = 3.0;
-/// Wavelengths of the coarse scan that are looked at more closely.
+/// Number of wavelengths of the coarse scan that are refined.
 constexpr std::size_t kFollowed = 4;
 
 struct ScoredStart {
@@ -26,7 +26,7 @@ struct ScoredStart {
   VectorXd start;
 };
 
-/// Where to look from, and the residual there without any further effect.
+/// Expansion point of a screening, and the residual there without a further effect.
 struct Base {
   VectorXd theta;
   VectorXd residual_m;
@@ -40,7 +40,7 @@ std::vector<Base> bases_of(const SearchContext& context, const ModelStage& stage
   return {{stage.fitted.theta, stage.fitted.residual_m}, {nominal, residual_m.col(0)}};
 }
 
-/// The best of several sizes of an effect, seen from one base.
+/// The best of several sizes of an effect from one base.
 ScoredStart look(DatasetSimulation& run, const Projection& projection, const Base& base,
                  const std::vector<FreeParameter>& own, const MatrixXd& sizes) {
   ScoredStart best;
@@ -57,11 +57,11 @@ ScoredStart look(DatasetSimulation& run, const Projection& projection, const Bas
       const auto [cost, share] =
           projection.with(base.residual_m, residuals_m.col(lane) - base.residual_m);
       VectorXd start = points.col(lane);
-      // a limit that is not reached has no influence: begin where it was seen to have some
+      // a limit that is not reached has no influence: start where it had some
       const bool is_limit = own.front().scale == Scale::reciprocal;
       const double size = is_limit ? 1.0 : std::clamp(std::abs(share), 1.0 / kFurthest, kFurthest);
       const bool possible = scale_size(own, std::copysign(size, share), start.tail(sizes.rows()));
-      // of the wrong sign: still somewhere to begin, when there is nothing better
+      // wrong sign: kept as a start only when there is no better one
       const double counted = possible ? cost : std::max(cost, projection.cost());
       if (counted < best.cost) best = {counted, std::move(start)};
     }
@@ -72,10 +72,10 @@ ScoredStart look(DatasetSimulation& run, const Projection& projection, const Bas
 struct Wave {
   double cost;
   double turns;
-  VectorXd own;  ///< search values of the effect
+  VectorXd own;  ///< theta of the effect
 };
 
-/// How well waves of so many turns over the motion explain a residual, best first.
+/// Waves ranked by how well these numbers of turns over the motion explain a residual.
 std::vector<Wave> waves_at(const SearchContext& context, const FitDataset& data,
                            const Projection& projection, const Base& base,
                            const std::vector<FreeParameter>& parameters,
@@ -111,8 +111,9 @@ std::vector<Wave> waves_at(const SearchContext& context, const FitDataset& data,
   return found;
 }
 
-/// The best waves: all that the motion resolves on a short stretch of the record, then finer on the
-/// whole of it about the most promising.
+/// The best waves: all that the motion resolves on the screening segment, then a finer scan of the
+/// whole
+/// record about the most promising.
 std::vector<Wave> scanned(const SearchContext& context, const ModelStage& stage,
                           const Projection& projection,
                           const std::vector<FreeParameter>& parameters,

@@ -1,9 +1,9 @@
-// One more effect tried on top of what is already in the model: a quick look first, then the fit.
+// Screening of one further effect before it is fitted.
 //
-// The quick look simulates the effect in several sizes, all side by side, and asks how far the
-// error falls when its size and all other parameters may still adjust, linearly:
+// The effect is simulated in several sizes side by side; the result is the error that remains when
+// its size and all other parameters adjust linearly:
 //   min |r - J a - d b|^2 / s^2 + prior(a)         d = (r(size) - r(0)) / size
-// It ranks the effects before anything is fitted, and says where the fit should begin.
+// The screening ranks the effects and gives the start of each fit.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,30 +16,32 @@
 
 namespace estimator::greybox::selection {
 
-/// Refinements that take part from the start; later ones are tried when the effect is settled.
+/// Refinements included from the start; later ones are tried once the effect has settled.
 inline constexpr int kFirstRefinements = 2;
 
-/// A model as far as it has come: effects added, and all parameters fitted.
+/// Stage of the search: effects added so far, all parameters fitted.
 struct ModelStage {
   std::vector<std::string> added;  ///< in order
   FitSummary fitted;
 };
 
-/// The stage's search values, those of the plant and its present effects as in the model file.
+/// The stage's theta with the model file's values for the plant and its present effects.
 [[nodiscard]] Eigen::VectorXd with_file_values(const SearchContext& context,
                                                const ModelStage& stage);
 
 struct ScreeningResult {
   std::string effect;
-  /// Expected score RMS over that of the stage: 1 = of no use.
+  /// Expected validation RMS relative to the stage's; 1 = no gain.
   double expected_ratio = 1.0;
   std::vector<FreeParameter> parameters;  ///< the stage's, then the effect's
-  std::vector<Eigen::VectorXd> starts;    ///< where to begin, the most promising first
+  std::vector<Eigen::VectorXd> starts;    ///< starting points, most promising first
 };
 
-/// A quick look at each effect, the most promising first. It looks from the stage's own parameters
-/// and from the model file's: a single start misses effects that the fit of the stage has bent its
-/// parameters to follow. `looked` is called after each, from any thread; it may be empty.
+/// Screens each effect, most promising first, from the stage's parameters and from the model
+/// file's: a
+/// single start misses effects that the parameters of the stage imitate. `looked` is called after
+/// each
+/// effect, from any thread; may be empty.
 [[nodiscard]] std::vector<ScreeningResult> screen(
     const SearchContext& context, const ModelStage& stage,
     const std::vector<plant_sim::EffectInfo>& effects,
@@ -50,7 +52,7 @@ struct RefinedCandidate {
   FitSummary fitted;
 };
 
-/// Fits from every start of the glance and keeps the best by the fitted samples.
+/// Fits from every start of the screening and keeps the best by training error.
 [[nodiscard]] RefinedCandidate refine(const SearchContext& context, const ScreeningResult& screened,
                                       const FitOptions& options);
 

@@ -1,4 +1,4 @@
-// A short stretch of the evidence, for looking at many things quickly.
+// Short segment of the data for screening.
 #pragma once
 
 #include "estimator/greybox/fit.h"
@@ -9,11 +9,11 @@ namespace estimator::greybox::selection {
 inline constexpr double kScreeningSegment_s = 8.0;
 
 struct ScreeningSegment {
-  FitDataset data;    ///< all of it counts
-  FitSummary fitted;  ///< the model fitted to the whole, its residual there
+  FitDataset data;    ///< all samples count
+  FitSummary fitted;  ///< fitted to all samples, with its residual on the segment
 };
 
-/// The stretch of the first record with the longest way, kExcerpt_s long or the whole record.
+/// Segment of the first record with the longest travel, or the whole of a short record.
 [[nodiscard]] ScreeningSegment screening_segment(const FitDataset& data, const FitSummary& fitted);
 
 }  // namespace estimator::greybox::selection

@@ -18,19 +18,19 @@ using Eigen::VectorXd;
 constexpr double kQuickTolerance = 2e-3;
 constexpr int kThoroughIterations = 15;
 constexpr double kThoroughTolerance = 3e-5;
-/// Candidates within this of the best are fitted to the end.
+/// Ratio within which candidates are fitted to convergence.
 constexpr double kContender = 0.5;
 constexpr std::size_t kMostContenders = 3;
-/// At the noise floor the quick look is as good as the fit: what it does not expect is not there.
+/// At the noise floor the screening is as reliable as the fit: effects it rejects are absent.
 constexpr double kAtFloor = 1.05;
 constexpr double kExpectable = 0.002;
-/// Iterations for effects that come after one that explains the record.
+/// Iterations for effects after one that explains the record.
 constexpr int kGlimpseIterations = 4;
-/// Then, other starts are tried only for effects within this factor of the best.
+/// Ratio to the best within which other starts are tried then.
 constexpr double kFar = 3.0;
-/// After the first effect, that many of the most promising others are fitted.
+/// Number of further effects that are fitted after the first one was added.
 constexpr std::size_t kLookedThrough = 9;
-/// And that many are tried from other starts too.
+/// Number of these that are tried from other starts.
 constexpr std::size_t kAgain = 3;
 constexpr std::size_t kAllStarts = 1000;
 /// Fitted side by side before it is asked whether one explains the record: a number of its own, so
@@ -48,27 +48,28 @@ FitOptions quick(const SearchContext& context) {
   return options;
 }
 
-/// Tells the workshop how a round goes; from any thread.
+/// Reports the progress of a round; thread-safe.
 class Reporter {
  public:
   Reporter(const SearchContext& context, int round, std::size_t tasks) : context_(&context) {
-    begin_ = "round " + std::to_string(round) + ": ";
+    progress_.round = round;
     progress_.of = static_cast<int>(tasks);
   }
-  void on_screened(const std::string& effect) { tell("looking at " + effect, nullptr); }
+  void on_screened(const std::string& effect) { report(effect, true, nullptr); }
   void expect(const std::vector<ScreeningResult>& screened) {
     const std::lock_guard lock(mutex_);
     for (const ScreeningResult& one : screened) progress_.expected.push_back(one.effect);
   }
   void on_fitted(const Candidate& candidate) {
-    tell("trying " + candidate.effects.front(), candidate.fitted_at_all ? &candidate : nullptr);
+    report(candidate.effects.front(), false, candidate.fitted_at_all ? &candidate : nullptr);
   }
 
  private:
-  void tell(const std::string& doing, const Candidate* finished) {
+  void report(const std::string& effect, bool screening, const Candidate* finished) {
     const std::lock_guard lock(mutex_);
     ++progress_.done;
-    progress_.doing = begin_ + doing;
+    progress_.effect = effect;
+    progress_.screening = screening;
     if (finished != nullptr &&
         (progress_.best.empty() || finished->validation_rms_m < progress_.best_rms_m)) {
       progress_.best = finished->effects.front();
@@ -78,9 +79,8 @@ class Reporter {
   }
 
   const SearchContext* context_;
-  std::string begin_;
   std::mutex mutex_;
-  Progress progress_;
+  SearchProgress progress_;
 };
 
 Candidate candidate_of(const SearchContext& context, const ModelStage& stage,
@@ -159,7 +159,7 @@ void refine_best(const SearchContext& context, const ModelStage& stage,
   });
   sort_by_score(candidates);
   for (std::size_t i = contenders; i < candidates.size(); ++i) {
-    candidates[i].fitted.jacobian.resize(0, 0);  // large, and of no use any more
+    candidates[i].fitted.jacobian.resize(0, 0);  // large and no longer needed
   }
 }
 
@@ -228,7 +228,7 @@ Round single_round(const SearchContext& context, const ModelStage& stage, int nu
   in_parallel(screened.size(), context.options.threads, [&](std::size_t i) {
     const Candidate& candidate = round.candidates[i];
     const bool far = explained && candidate.validation_rms_m > kFar * best_m;
-    // later stages have bent their parameters less
+    // later stages depend less on the start
     const bool later = !stage.added.empty() && i >= kAgain;
     if (candidate.fitted_at_all && !far && !later) work(i, 1, kAllStarts);
   });

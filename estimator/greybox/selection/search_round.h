@@ -1,4 +1,4 @@
-// One round of the ladder: every absent effect on top of a stage, best first.
+// One round of the search: every absent effect added to a stage, best first.
 #pragma once
 
 #include <vector>
@@ -7,23 +7,23 @@
 
 namespace estimator::greybox::selection {
 
-/// Of a quick fit.
+/// Iteration limit of a quick fit.
 inline constexpr int kQuickIterations = 8;
 
 [[nodiscard]] Round single_round(const SearchContext& context, const ModelStage& stage, int number);
-/// The most promising effects of a round two by two.
+/// Pairs of the most promising effects of a round.
 [[nodiscard]] std::vector<Candidate> pair_round(const SearchContext& context, const Round& singles);
 
-/// Quick fits from every start of a glance; the best as a candidate of its effect.
+/// Quick fits from every start of a screening; the best as the effect's candidate.
 [[nodiscard]] Candidate quick_fit(const SearchContext& context, const ModelStage& stage,
                                   const ScreeningResult& screened,
                                   int iterations = kQuickIterations);
-/// The best candidates fitted to the end, with their Jacobians; all sorted, best first.
+/// Fits the best candidates to convergence with their Jacobians; sorts all, best first.
 void refine_best(const SearchContext& context, const ModelStage& stage,
                  std::vector<Candidate>& candidates);
 
 [[nodiscard]] ModelStage with(const ModelStage& stage, const Candidate& candidate);
-/// Probability that `later` scores better than `earlier` by chance.
+/// Probability that the lower error of `later` is chance.
 [[nodiscard]] double chance(const SearchContext& context, const FitSummary& earlier,
                             const FitSummary& later);
 

@@ -9,13 +9,13 @@
 namespace estimator::greybox::selection {
 namespace {
 
-/// After so many iterations, only what is within that factor of the best goes on to the end.
+/// Iterations after which only fits within that factor of the best continue.
 constexpr int kFirstIterations = 8;
 constexpr double kFar = 1.5;
-/// What takes away that much of the held-out error needs no further support.
+/// An effect that removes this share of the held-out error needs no cross-validation.
 constexpr double kPlainToSee = 0.5;
 
-/// `before` with one effect more, which starts as it is in the final model.
+/// `before` with one further effect, which starts at its value in the final model.
 ParameterSubset taking(const ModelStage& before, const ModelStage& final,
                        const std::string& effect) {
   ParameterSubset selection = subset(before.fitted, [](const auto&) { return true; });
@@ -29,7 +29,7 @@ ModelStage taken(const ModelStage& before, const std::string& effect, FitSummary
   return next;
 }
 
-/// Of the effects the one that does most at once.
+/// The most effective single addition.
 ModelStage best_of(const SearchContext& context, const ModelStage& before, const ModelStage& final,
                    const std::vector<std::string>& effects) {
   FitOptions begin;

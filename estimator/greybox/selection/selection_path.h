@@ -1,5 +1,6 @@
-// The way from the model as given to the final one, one effect at a time: at each step the one that
-// brings most on top of those before it.
+// Path from the model as given to the final one, one effect at a time: at each step the one with
+// the
+// largest gain.
 #pragma once
 
 #include <vector>
@@ -8,12 +9,12 @@
 
 namespace estimator::greybox::selection {
 
-/// Stages from `first` (nothing added) to `final`, both included; `added` is in the order of the
-/// way in all of them.
+/// Stages from `first` (no additions) to `final`, both included; `added` is in path order in all of
+/// them.
 [[nodiscard]] std::vector<ModelStage> path_to(const SearchContext& context, const ModelStage& first,
                                               const ModelStage& final);
 
-/// The way with those effects only that support.h supports, each on top of those kept before it.
+/// The path restricted to effects that pass cross_validates(), each on top of those kept before.
 [[nodiscard]] std::vector<ModelStage> cross_validated_path(const SearchContext& context,
                                                            const std::vector<ModelStage>& path);
 

@@ -16,24 +16,26 @@ namespace estimator::greybox::selection {
 namespace {
 
 constexpr std::size_t kMostEffects = 4;
-/// One after another; when these do not explain the record, two at once are tried before any more.
+/// Number of effects added one by one before pairs are tried on an unexplained record.
 constexpr std::size_t kBeforePairSearch = 2;
-/// Of the first round, that many are tried as the first effect when the best leads nowhere.
+/// Effects of the first round that are tried as alternative starts when the best leads nowhere.
 constexpr std::size_t kAlternativeStarts = 3;
-/// They have to leave less than this share of the error, and by another way than the best: two
-/// effects together may look like a third one, which then comes far before either.
+/// Largest remaining error ratio of an alternative start. Two effects together may resemble a third
+/// one,
+/// which then ranks far before either; the start must differ from the best in kind.
 constexpr double kHelpful = 0.7;
-/// And what is left must be this many times the noise.
+/// Remaining error over the noise above which alternative starts are tried.
 constexpr double kLost = 2.0;
 constexpr double kSamePath = 0.1;
-/// A gain must also be more than chance, unless it is a large one.
+/// Largest probability of chance of a gain, unless the gain is large.
 constexpr double kChance = 0.01;
 constexpr double kLargeGain = 0.1;
-/// Of the parameters, more than between two explanations that are alike.
+/// Shift of the parameters, in prior widths, above which an explanation is implausible.
 constexpr double kStrain = 6.0;
 
-/// Whether the effect wants to be larger, or a wave longer, than such an effect can be: then it
-/// stands for something else.
+/// Whether a size or a wavelength reaches the limit of what the effect can be; the effect then
+/// stands in
+/// for something else.
 bool leaves_its_range(const ModelStage& stage, const Candidate& candidate) {
   const FitSummary& fitted = candidate.fitted;
   for (std::size_t i = stage.fitted.parameters.size(); i < fitted.parameters.size(); ++i) {
@@ -50,12 +52,13 @@ bool is_gain(const SearchContext& context, const ModelStage& stage, const Candid
   const double gain = 1.0 - candidate.validation_rms_m / stage.fitted.validation_rms_m;
   const double fit_gain = 1.0 - candidate.fitted.training_rms_m / stage.fitted.training_rms_m;
   const double enough = worthwhile * static_cast<double>(candidate.effects.size());
-  // chance: steadily better wherever it was scored, or as much better where it was fitted
+  // not chance: better on the validation samples throughout, or equally better on the training
+  // samples
   return candidate.fitted_at_all && gain > enough && !leaves_its_range(stage, candidate) &&
          (gain > kLargeGain || candidate.p_value < kChance || fit_gain > enough);
 }
 
-/// How far the parameters have gone from what was expected of them, in squared standard deviations.
+/// Squared shift of the parameters from their priors, in standard deviations.
 double strain(const FitSummary& fitted) {
   double sum = 0.0;
   for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
@@ -66,8 +69,9 @@ double strain(const FitSummary& fitted) {
   return sum;
 }
 
-/// Of candidates that explain the record alike, the one with the fewest parameters; not one that
-/// needs the plant to be another than was expected.
+/// The candidate with the fewest parameters among those that explain the record alike, except one
+/// that
+/// moves the plant far from its expected values.
 const Candidate& simplest(const SearchContext& context, const std::vector<Candidate>& candidates) {
   const Candidate* chosen = &candidates.front();
   for (const Candidate& other : candidates) {
@@ -83,13 +87,13 @@ const Candidate& simplest(const SearchContext& context, const std::vector<Candid
   return *chosen;
 }
 
-/// Rounds from a stage until it has `most` effects or nothing helps any more: then false.
+/// Rounds from a stage until it has `most` effects; false when nothing helps any more.
 bool extend_branch(const SearchContext& context, ModelStage& stage, std::vector<Round>& rounds,
                    bool pairs_too, std::size_t most = kMostEffects) {
   while (stage.added.size() < most && !context.cancelled()) {
     Round round = single_round(context, stage, static_cast<int>(rounds.size()) + 1);
     if (round.candidates.empty()) return false;
-    // those that cannot be taken go behind those that can
+    // candidates that cannot be taken go last
     std::stable_partition(
         round.candidates.begin(), round.candidates.end(),
         [&](const Candidate& candidate) { return is_gain(context, stage, candidate); });
@@ -113,13 +117,13 @@ bool extend_branch(const SearchContext& context, ModelStage& stage, std::vector<
   return true;
 }
 
-/// A search from the first stage to where nothing helped any more.
+/// A search from the first stage to its end.
 struct SearchBranch {
   ModelStage stage;
   std::vector<Round> rounds;
 };
 
-/// The search from `first` with a candidate as its beginning, after the round `begun`.
+/// Search from `first` with a candidate as its beginning, after the round `begun`.
 SearchBranch branch_from(const SearchContext& context, const ModelStage& first,
                          const Candidate& candidate, const Round& begun) {
   SearchBranch other{with(first, candidate), {begun}};
@@ -137,18 +141,18 @@ bool improves_on(const SearchBranch& other, const SearchBranch& best) {
   return other.stage.fitted.validation_rms_m < (1.0 - kRivals) * best.stage.fitted.validation_rms_m;
 }
 
-/// Two effects together as the beginning, where one after another has not explained the record.
+/// Pair of effects as the beginning, where a stepwise search has not explained the record.
 std::optional<SearchBranch> start_with_pair(const SearchContext& context, const ModelStage& first,
                                             const SearchBranch& best) {
   if (best.rounds.empty() || is_explained(context, best.stage) || context.cancelled()) return {};
-  std::vector<std::string> begun;  // on which the second round has tried all others
+  std::vector<std::string> begun;  // beginning with which the second round has tried all others
   if (best.rounds.size() > 1) begun = best.rounds[1].before.added;
   const std::vector<Candidate> pairs = pair_search(context, first, begun);
   if (pairs.empty() || !is_gain(context, first, pairs.front())) return {};
   return branch_from(context, first, pairs.front(), best.rounds.front());
 }
 
-/// The search one effect after another, or with two at once where that leads further.
+/// Stepwise search, with pairs where these lead further.
 SearchBranch search_forward(const SearchContext& context, const ModelStage& first,
                             SearchEffort effort) {
   SearchBranch best{first, {}};
@@ -162,7 +166,7 @@ SearchBranch search_forward(const SearchContext& context, const ModelStage& firs
   return other && improves_on(*other, best) ? *other : best;
 }
 
-/// The next best effects of the first round as the beginning.
+/// Searches from the next best effects of the first round.
 void try_alternative_starts(const SearchContext& context, const ModelStage& first,
                             SearchBranch& best) {
   if (best.rounds.empty()) return;
@@ -230,7 +234,7 @@ StructureSearch search_structure(const SearchContext& context, SearchEffort effo
   search.path = path_to(context, first, stage);
   if (!is_explained(context, stage)) {
     std::vector<ModelStage> validated = cross_validated_path(context, search.path);
-    // interrupted in the midst of it: what was found stays
+    // interrupted: keeps what was found
     if (!context.cancelled()) {
       ModelStage last = validated.back();
       eliminate_backward(context, last, EliminationPass::final);

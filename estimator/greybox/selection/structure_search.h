@@ -1,13 +1,14 @@
-// The search for what is missing: effects are tried one by one and taken one after another while
-// data that were not fitted support them, and looked over again at the end.
+// Stepwise search for missing effects: effects are added one after another while held-out data
+// support
+// them, and revised at the end.
 //
-//   take    the effect that lowers the held-out error most, by kWorthwhile or more
-//   pairs   where no single effect helps and the error is still above what noise explains
-//   detour  where the error stays high, the same from the next best first effects
-//   drop    an effect, or a refinement of one, whose absence costs less than it is worth
+//   add          the effect that lowers the held-out error most, by kWorthwhile or more
+//   pairs        where no single effect helps and the error still exceeds the noise
+//   alternative  where the error stays high, the same from the next best first effects
+//   drop         an effect, or a refinement of one, whose absence costs less than its parameters
 //
-// Every fit adjusts all of the model's uncertain parameters too, within their priors, so that a
-// slightly wrong model is not taken for a missing effect.
+// Every fit adjusts all uncertain parameters of the model within their priors, so that a slightly
+// wrong model is not taken for a missing effect.
 #pragma once
 
 #include <limits>
@@ -21,48 +22,48 @@ namespace estimator::greybox::selection {
 
 /// Relative fall of the held-out error that an effect must bring.
 inline constexpr double kWorthwhile = 0.01;
-/// The same where the error is hardly more than noise, which hides much of an effect. Healthy
-/// records of the thesis's actuator stay below a quarter of it.
+/// The same limit where the error is hardly more than noise, which hides much of an effect. Healthy
+/// records of the thesis's actuator stay below a quarter of this value.
 inline constexpr double kWorthwhileInNoise = 0.004;
-/// Held-out error over the noise floor above which something is still unexplained.
+/// Ratio of held-out error to noise floor above which the record is unexplained.
 inline constexpr double kUnexplained = 1.15;
-/// Rivals within this of the best, in held-out error, explain the record about as well.
+/// Ratio of held-out errors within which rivals explain the record about as well as the best.
 inline constexpr double kRivals = 0.05;
 
-/// One of the two, for a held-out error.
+/// The applicable one of the two limits at a held-out error.
 [[nodiscard]] double worthwhile_at(const SearchContext& context, double validation_rms_m);
 
 struct Candidate {
-  std::vector<std::string> effects;  ///< one, or two tried together
-  double expected_ratio = 1.0;       ///< of the quick look; 1 for pairs
+  std::vector<std::string> effects;  ///< one, or a pair
+  double expected_ratio = 1.0;       ///< by the screening; 1 for pairs
   FitSummary fitted;                 ///< with the stage's parameters
   double validation_rms_m = std::numeric_limits<double>::infinity();
-  double p_value = 1.0;  ///< that its gain over the stage is chance
+  double p_value = 1.0;  ///< probability that the gain over the stage is chance
   bool fitted_at_all = false;
 };
 
 struct Round {
   ModelStage before;
   std::vector<Candidate> candidates;  ///< best first
-  double screening_s = 0.0;           ///< what the quick look at all effects took
+  double screening_s = 0.0;           ///< time of the screening of all effects
 };
 
 struct StructureSearch {
-  double nominal_rms_m = 0.0;    ///< held-out, the model file as it is
-  std::vector<Round> rounds;     ///< of the search that led to the final model
-  std::vector<ModelStage> path;  ///< from the model as given to the final one, an effect at a time
-  ModelStage final;              ///< the last of them
+  double nominal_rms_m = 0.0;    ///< held-out, the model file unchanged
+  std::vector<Round> rounds;     ///< rounds of the path that led to the final model
+  std::vector<ModelStage> path;  ///< from the model as given to the final one, one effect at a time
+  ModelStage final;              ///< last stage of the path
   bool interrupted = false;
-  double preview_s = 0.0;  ///< until the first ranking of all effects was known
+  double preview_s = 0.0;  ///< time to the first ranking of all effects
 };
 
 /// brief: given up as soon as kBeforePairSearch effects one after another leave more than noise.
 enum class SearchEffort { brief, full };
 [[nodiscard]] StructureSearch search_structure(const SearchContext& context, SearchEffort effort);
 
-/// Held-out error of the model file as it is.
+/// Held-out error of the model file unchanged.
 [[nodiscard]] double nominal_rms_m(const SearchContext& context);
-/// The model as it stands, its parameters fitted.
+/// The model as given with its parameters fitted.
 [[nodiscard]] ModelStage first_stage(const SearchContext& context);
 
 }  // namespace estimator::greybox::selection

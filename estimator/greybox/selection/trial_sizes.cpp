@@ -4,8 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "config/units/unit_suffix.h"
-#include "plant_sim/parameter.h"
+#include "config/units/quantity.h"
 
 namespace estimator::greybox::selection {
 namespace {
@@ -16,16 +15,17 @@ using Eigen::VectorXd;
 
 constexpr double kHalfPi = 1.5707963267948966;
 constexpr Index kSizes = 8;
-constexpr double kSignedRatio = 4.0;    ///< between the sizes of one sign
-constexpr double kPositiveRatio = 3.0;  ///< between the sizes of an effect of one sign
-constexpr double kSmall = 0.2;          ///< of its typical size: a wave's response is then linear
-constexpr double kFewestTurns = 1.5;    ///< a wave is one that is seen more than once
-constexpr double kFinestTurns = 60.0;   ///< turns of the finest wavelength over the motion
-/// How far a wavelength may move from where the scan found it.
+constexpr double kSignedRatio = 4.0;    ///< ratio between sizes of one sign
+constexpr double kPositiveRatio = 3.0;  ///< ratio between sizes of a one-signed effect
+constexpr double kSmall =
+    0.2;  ///< share of the typical size: the response of a wave is then linear
+constexpr double kFewestTurns = 1.5;   ///< a wave is one that is seen more than once
+constexpr double kFinestTurns = 60.0;  ///< turns of the finest wavelength over the motion
+/// Range of a wavelength about the value of the scan.
 constexpr double kNeighbourhood = 1.05;
-/// Largest relative error of speed that a sensor's periodic error may show.
+/// Largest relative speed error of a sensor's periodic error.
 constexpr double kSteepestReading = 0.3;
-constexpr double kTurnStep = 0.5;  ///< between neighbouring wavelengths
+constexpr double kTurnStep = 0.5;  ///< step between neighbouring wavelengths
 
 bool ends_with(const std::string& text, const std::string& ending) {
   return text.size() >= ending.size() &&

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "config/schema/error.h"
 #include "estimator/greybox/dataset.h"
 
 namespace estimator::greybox::tracking {
@@ -11,9 +10,9 @@ namespace {
 
 using Eigen::Index;
 
-/// Standard error, search units, up to which a window serves to learn what is healthy.
+/// Standard error, search units, up to which a window qualifies for the baseline.
 constexpr double kLeastKnown = 0.05;
-/// Normal numbers: their standard deviation over the median of their distances.
+/// Standard deviation over median absolute deviation of a normal distribution.
 constexpr double kOfMedian = 1.4826;
 
 double median(std::vector<double> values) {
@@ -22,7 +21,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// What the windows say of a chamber; `spread_Pa`: of their offsets, as a standard deviation.
+/// Medians of one chamber over the windows; `spread_Pa`: standard deviation of their offsets.
 ChamberError median_of(const std::vector<ChamberFit>& windows, double rms_m, double least_Pa,
                        double& spread_Pa) {
   std::vector<double> rms_Pa;
@@ -40,7 +39,7 @@ ChamberError median_of(const std::vector<ChamberFit>& windows, double rms_m, dou
   return out;
 }
 
-/// Not known where few windows had them, or the plant has none.
+/// Unknown where few windows had pressures, or the plant has none.
 ChamberErrors learn_chambers(const std::vector<WindowResult>& windows, const ParameterSet& set,
                              double rms_m) {
   std::vector<ChamberFit> in;
@@ -64,40 +63,45 @@ ChamberErrors learn_chambers(const std::vector<WindowResult>& windows, const Par
   return errors;
 }
 
+/// Whether parameter `i` of an explained window is known to some per cent.
+bool determined(const WindowResult& window, const ParameterSet& set, std::size_t i) {
+  const ParameterEstimate& one = window.estimates[i];
+  return window.explained && one.std_error <= kLeastKnown * set.parameters[i].slope(one.theta);
+}
+
 }  // namespace
 
 bool qualifies_for_baseline(const WindowResult& window, const ParameterSet& set) {
   for (std::size_t i = 0; i < set.tracked; ++i) {
-    const ParameterEstimate& one = window.estimates[i];
-    const double slope = set.parameters[i].slope(one.theta);
-    if (!window.explained || !(one.std_error <= kLeastKnown * slope)) return false;
+    if (!determined(window, set, i)) return false;
   }
   return window.explained;
 }
 
+std::optional<std::size_t> undetermined_parameter(const std::vector<WindowResult>& windows,
+                                                  const ParameterSet& set) {
+  for (std::size_t i = 0; i < set.tracked; ++i) {
+    if (std::none_of(windows.begin(), windows.end(),
+                     [&](const WindowResult& window) { return determined(window, set, i); })) {
+      return i;
+    }
+  }
+  return std::nullopt;
+}
+
 Baseline learn_baseline(const std::vector<WindowResult>& windows, const ParameterSet& set,
-                        double noise_floor_m, const std::string& where) {
+                        double noise_floor_m) {
   std::vector<double> rms_m;
   std::vector<std::vector<double>> theta(set.tracked);
-  std::vector<std::string> why(set.tracked, "has no whole window");
   for (const WindowResult& window : windows) {
     if (window.explained) rms_m.push_back(window.rms_m);
     for (std::size_t i = 0; i < theta.size(); ++i) {
-      const ParameterEstimate& one = window.estimates[i];
-      const FreeParameter& p = set.parameters[i];
-      if (!window.explained || !(one.std_error <= kLeastKnown * p.slope(one.theta))) {
-        why[i] = "has no usable window: " + one.why;
-      } else {
-        theta[i].push_back(one.theta);
-      }
+      if (determined(window, set, i)) theta[i].push_back(window.estimates[i].theta);
     }
   }
   Baseline baseline;
   baseline.theta = set.file;
   for (std::size_t i = 0; i < theta.size(); ++i) {
-    if (theta[i].empty()) {
-      throw config::schema::bad_data(where, why[i], "a healthy motion that tells the parameters");
-    }
     baseline.theta[static_cast<Index>(i)] = median(theta[i]);
   }
   baseline.rms_m = std::max({median(rms_m), noise_floor_m, kLeastFloor_m});

@@ -1,31 +1,37 @@
-// What the rig is like without a fault, learnt from windows of healthy motion: the median of each
-// tracked parameter, of the window's error, and of what chamber pressures are off the model.
+// Baseline of the rig without a fault, learned from windows of healthy motion: medians of each
+// tracked
+// parameter, of the window's error and of the chamber pressures' errors.
 #pragma once
 
 #include <Eigen/Core>
-#include <string>
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "estimator/greybox/tracking/window_result.h"
 
 namespace estimator::greybox::tracking {
 
-/// What the rig is like without a fault.
+/// Healthy values and errors of a rig.
 struct Baseline {
-  double rms_m = 0.0;     ///< of a window's error; not under the noise floor
-  Eigen::VectorXd theta;  ///< every parameter of the choice, search units
+  double rms_m = 0.0;     ///< error of a window; at least the noise floor
+  Eigen::VectorXd theta;  ///< every parameter of the set, search units
   ChamberErrors chambers{};
 
   [[nodiscard]] ErrorScales errors() const { return {rms_m, chambers}; }
 };
 
-/// Whether a window may serve to learn from: explained, every parameter known to some per cent.
+/// Whether a window qualifies for the baseline: explained, every parameter known to a few per cent.
 [[nodiscard]] bool qualifies_for_baseline(const WindowResult& window, const ParameterSet& set);
 
-/// The medians over the windows of a record without a fault; what is not tracked is as in the file.
-/// Throws config::schema::DataError when none is usable.
+/// Index of the first tracked parameter that no window determines well enough; none: the windows
+/// suffice for learn_baseline().
+[[nodiscard]] std::optional<std::size_t> undetermined_parameter(
+    const std::vector<WindowResult>& windows, const ParameterSet& set);
+
+/// Medians over the explained windows of a record without a fault; parameters that are not tracked
+/// keep the model file's values. Requires that no parameter is undetermined.
 [[nodiscard]] Baseline learn_baseline(const std::vector<WindowResult>& windows,
-                                      const ParameterSet& set, double noise_floor_m,
-                                      const std::string& where);
+                                      const ParameterSet& set, double noise_floor_m);
 
 }  // namespace estimator::greybox::tracking

@@ -2,18 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "config/schema/error.h"
+#include "config/signals/nan.h"
 
 namespace estimator::greybox::tracking {
 namespace {
 
 using Eigen::Index;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 constexpr double kHour_s = 3600.0;
-/// Of the distance: at its end, but for the last step's rounding.
+/// Share of the distance at which the end counts as reached, despite rounding.
 constexpr double kEnd = 1.0 - 1e-9;
 
 std::size_t tracked_index(const ParameterSet& set, const std::string& name,
@@ -39,14 +39,14 @@ BaselineDrift::BaselineDrift(const ParameterSet& set, const DriftSettings& follo
     const bool ratio = set.parameters[index].scale == Scale::logarithmic;
     const double below = ratio ? -std::log(std::max(0.0, 1.0 - most)) : most;
     const double above = ratio ? std::log1p(most) : most;
-    followed_.push_back({index, set.file[static_cast<Index>(index)], below, above, kNan});
+    followed_.push_back({index, set.file[static_cast<Index>(index)], below, above, kNaN});
   }
 }
 
 void BaselineDrift::take(const Eigen::VectorXd& learnt) {
   for (Followed& one : followed_) {
     one.learnt = learnt[static_cast<Index>(one.index)];
-    one.told_s = kNan;
+    one.told_s = kNaN;
   }
 }
 

@@ -1,20 +1,21 @@
-// Changes that are too slow to be faults, as damping falls while oil and seals get warm: the
-// healthy value of a parameter follows what the windows find, no faster than a stated rate and no
-// further than a stated distance from what was learnt.
+// Drift of the baseline: changes too slow to be faults, such as damping that falls while oil and
+// seals
+// warm up. The healthy value of a parameter follows the windows no faster than a stated rate and no
+// further than a stated distance from the learned value.
 //
 //   h += min(max(g (x - h), -r T), r T),   h0 - below <= h <= h0 + above
 //
-// h  healthy value that changes are counted from, search units     h0  as it was learnt
-// x  what an explained window that names no change of it found     g   kGain, against chance
-// T  time since the latest look at which the motion told x         r   rate
-// below above  the stated distance m: of a ratio -ln(1 - m) and ln(1 + m), else m
+// h  healthy value that changes are counted from, search units     h0  learned value
+// x  estimate of an explained window without a named change of it  g   kGain, against chance
+// T  time since the latest window that determined x                r   rate
+// below above  the stated distance m: for a ratio -ln(1 - m) and ln(1 + m), else m
 //
-// A change that is faster than r is named before it is followed, and from then on it is not. What
-// comes by and by further is told by an alarm of its own.
+// A change faster than r is named before the baseline follows it; the baseline then stops
+// following.
+// Drift beyond the stated distance raises an alarm of its own.
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,9 +26,9 @@
 
 namespace estimator::greybox::tracking {
 
-/// Ratios are of the healthy value; of an effect's parameter: of its typical size.
+/// Ratios to the healthy value; for an effect's parameter to its typical size.
 struct DriftSettings {
-  std::vector<std::string> parameters;  ///< of the tracked ones
+  std::vector<std::string> parameters;  ///< names of tracked parameters
   double ratio_per_h = 0.5;
   double most_ratio = 0.3;
 };
@@ -36,20 +37,21 @@ class BaselineDrift {
  public:
   static constexpr double kGain = 0.2;
 
-  /// Throws config::schema::ConfigError that begins with `where` for one that is not tracked.
+  /// Throws config::schema::ConfigError that begins with `where` for a parameter that is not
+  /// tracked.
   BaselineDrift(const ParameterSet& set, const DriftSettings& following,
                 const std::string& where = "follow");
 
-  /// Search values of the healthy rig, of every parameter.
+  /// theta of every parameter of the healthy rig.
   void take(const Eigen::VectorXd& learnt);
-  /// A look at a window that is judged and named. `explained`: by the model, moving or not.
+  /// One window. `explained`: by the model, with or without motion.
   void follow(const WindowResult& window, bool explained, const ChangeDetector& detector,
               Eigen::VectorXd& baseline);
 
   [[nodiscard]] std::size_t size() const noexcept { return followed_.size(); }
-  /// Which tracked parameter the number-th is.
+  /// Index of the tracked parameter.
   [[nodiscard]] std::size_t parameter(std::size_t number) const { return followed_[number].index; }
-  /// At the end of the distance that is followed: -1 below, +1 above; 0: within.
+  /// -1: at the lower end of the range, +1: at the upper end; 0: within.
   [[nodiscard]] int at_end(std::size_t number, const Eigen::VectorXd& baseline) const;
   [[nodiscard]] double learnt(std::size_t number) const { return followed_[number].learnt; }
 
@@ -61,7 +63,7 @@ class BaselineDrift {
     double learnt = 0.0;
     double below = 0.0;
     double above = 0.0;
-    double told_s = 0.0;  ///< time of the latest look that told it; NaN: none yet
+    double told_s = 0.0;  ///< time of the latest window that determined it; NaN: none
   };
   double rate_per_s_;
   std::vector<Followed> followed_;

@@ -18,9 +18,7 @@ double confidence_of(const ParameterChange& named, double least) {
 
 ChangeDetector::ChangeDetector(const ParameterSet& set, const Thresholds& thresholds)
     : thresholds_(thresholds), tracks_(set.tracked) {
-  for (std::size_t i = 0; i < set.tracked; ++i) {
-    tracks_[i].least = least_change(set, i, thresholds);
-  }
+  for (std::size_t i = 0; i < set.tracked; ++i) tracks_[i].least = least_change(set, i, thresholds);
 }
 
 void ChangeDetector::raise(double t_s, Track& track, const ParameterChange& named, bool whole) {
@@ -98,7 +96,7 @@ void ChangeDetector::update(double t_s, const std::vector<ParameterChange>& name
     }
     track.direction = 0;
     const double off = std::abs(seen[i].theta - baseline[static_cast<Eigen::Index>(i)]);
-    // The change of another cause may show here: then nothing is known of this one.
+    // Another change may hide this one: without a named change the return is certain.
     const bool back = named.empty() || off < track.least;
     if (track.active >= 0 && back && off + kBack * seen[i].std_error < track.least) {
       changes_[static_cast<std::size_t>(track.active)].cleared_s = t_s;

@@ -1,8 +1,9 @@
-// From changes named window by window to alarms with a beginning and an end.
+// Alarms with a beginning and an end from changes named window by window.
 //
-// A change is told at once when it is `at_once` standard errors off, or when two windows in a row
-// name it in the same direction. It ends with a window that puts the parameter back to within its
-// least change, by two standard errors.
+// A change is detected at once when it is `at_once` standard errors off, or when two windows in a
+// row
+// name it in the same direction. It ends with a window in which the parameter is within its least
+// change, by two standard errors.
 #pragma once
 
 #include <limits>
@@ -13,16 +14,15 @@
 namespace estimator::greybox::tracking {
 
 struct DetectedChange {
-  ParameterChange
-      named;  ///< as known best: of the latest whole window that named it, else of its first part
+  ParameterChange named;  ///< from the latest whole window that named it, else from its first part
   double raised_s = 0.0;
-  double cleared_s = std::numeric_limits<double>::quiet_NaN();  ///< NaN: still there
-  double confidence = 0.0;  ///< that the change is more than the least
+  double cleared_s = std::numeric_limits<double>::quiet_NaN();  ///< NaN: active
+  double confidence = 0.0;  ///< probability that the change exceeds the least change
 
   [[nodiscard]] bool active() const { return !(cleared_s == cleared_s); }
 };
 
-/// A tracked parameter as a window saw it.
+/// A tracked parameter's estimate in one window.
 struct TrackedValue {
   double theta = 0.0;
   double std_error = 0.0;
@@ -33,22 +33,22 @@ class ChangeDetector {
   ChangeDetector() = default;
   ChangeDetector(const ParameterSet& set, const Thresholds& thresholds);
 
-  /// `seen` has all tracked parameters; `whole`: of a whole window, not of a part.
+  /// `seen`: all tracked parameters; `whole`: a whole window, not a part.
   void update(double t_s, const std::vector<ParameterChange>& named,
               const std::vector<TrackedValue>& seen, const Eigen::VectorXd& baseline, bool whole);
 
   [[nodiscard]] const std::vector<DetectedChange>& changes() const { return changes_; }
-  /// The active one that names the tracked parameter; null: there is none.
+  /// Active alarm that names the tracked parameter; null: none.
   [[nodiscard]] const DetectedChange* active(std::size_t parameter) const;
-  /// Keeps active alarms alone, for a tracking without an end.
+  /// Drops cleared alarms, for tracking without end.
   void forget_cleared();
-  /// Bit for bit (state_archive.h), after forget_cleared().
+  /// Bit-exact (state_archive.h), after forget_cleared().
   void serialize(estimator::StateArchive& archive, const ParameterSet& set);
 
  private:
   struct Track {
     double least = 0.0;
-    int direction = 0;  ///< of the latest window that named it; 0: it did not
+    int direction = 0;  ///< in the latest window that named it; 0: not named
     int active = -1;    ///< index of its alarm
     bool whole = false;
   };

@@ -66,7 +66,7 @@ class ChangeNaming {
   }
 
  private:
-  /// The window's own noise: what is beyond it is not chance.
+  /// Errors scaled to the window's own noise.
   static ErrorScales own(ErrorScales errors, const WindowFitSummary& found) {
     errors.rms_m = std::min(errors.rms_m, found.rms_m);
     if (!found.with_chambers()) {
@@ -125,7 +125,7 @@ class ChangeNaming {
     return true;
   }
 
-  /// What has changed as it was found, all else healthy.
+  /// theta with the named changes, healthy elsewhere.
   VectorXd others_of(const std::vector<ParameterChange>& named) const {
     VectorXd theta = base_;
     for (const ParameterChange& one : named) theta[static_cast<Index>(one.parameter)] = one.theta;
@@ -175,7 +175,7 @@ class ChangeNaming {
   const WindowFitSummary& found_;
   const VectorXd& baseline_;
   HeldParameters held_;
-  VectorXd base_;  ///< healthy, but for what was read
+  VectorXd base_;  ///< healthy, except readings
   ErrorScales errors_;
   double chi_square_;
   std::vector<std::size_t> rivals_;

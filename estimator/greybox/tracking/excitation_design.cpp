@@ -18,15 +18,15 @@ namespace {
 using plant_sim::Ensemble;
 
 constexpr double kFrequencies_Hz[] = {0.25, 0.5, 1.0, 2.0, 4.0};
-constexpr double kShares[] = {1.0, 0.5};  ///< of the greatest amplitude
-constexpr double kSwinging_s = 1.0;       ///< before what is judged
+constexpr double kShares[] = {1.0, 0.5};  ///< shares of the greatest amplitude
+constexpr double kSwinging_s = 1.0;       ///< lead time before the evaluated window
 
 struct SimulatedMotion {
   std::vector<double> u_V;
   std::vector<double> y_m;
 };
 
-/// The model in its loop; empty where the command would leave its limits.
+/// Closed-loop simulation; empty where the command would exceed its limits.
 SimulatedMotion driven(const plant_sim::ModelFile& model, const ExcitationLimits& limits,
                        const ExcitationDesign& probe, std::size_t samples, double sample_time_s,
                        double noise_m) {
@@ -68,7 +68,7 @@ std::optional<ExcitationDesign> design_excitation(const plant_sim::ModelFile& ba
       ExcitationDesign probe;
       probe.centre_m = 0.5 * (limits.low_m + limits.high_m);
       probe.frequency_Hz = frequency_Hz;
-      // A tenth is left for what the loop overshoots.
+      // A tenth of the range is left for overshoot.
       probe.amplitude_m =
           share * std::min(0.45 * (limits.high_m - limits.low_m),
                            0.9 * limits.speed_mps / (2.0 * std::numbers::pi * frequency_Hz));
@@ -83,13 +83,6 @@ std::optional<ExcitationDesign> design_excitation(const plant_sim::ModelFile& ba
     }
   }
   return best;
-}
-
-std::string probe_words(const ExcitationDesign& probe) {
-  return "probe with a sine of " + config::units::length_words(probe.amplitude_m) +
-         fmt::format(" at {:.3g} Hz about ", probe.frequency_Hz) +
-         config::units::length_words(probe.centre_m) +
-         fmt::format(" for {:.2g} s", probe.duration_s);
 }
 
 }  // namespace estimator::greybox::tracking

@@ -8,10 +8,10 @@ namespace {
 
 using Eigen::Index;
 
-/// Of a reading: its standard error is not less, whatever its noise.
+/// Least standard error of a reading, as a ratio to the reading.
 constexpr double kLeastOfReading = 1e-4;
 
-/// The matrix with a row and a column more at `at`, `diagonal` where they meet.
+/// The matrix with one more row and column at `at`, and `diagonal` where they meet.
 Eigen::MatrixXd widened(const Eigen::MatrixXd& matrix, Index at, double diagonal) {
   const Index n = matrix.rows();
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n + 1, n + 1);

@@ -1,4 +1,4 @@
-// A tracked parameter that a sensor reads: its mean over the window takes the place of a fit.
+// A tracked parameter that a sensor reads: its mean over the window replaces the fit.
 #pragma once
 
 #include <cstddef>
@@ -9,14 +9,15 @@ namespace estimator::greybox::tracking {
 
 struct MeasuredMean {
   double mean = 0.0;
-  double std_error = 0.0;  ///< of the mean
+  double std_error = 0.0;  ///< standard error of the mean
 };
 
-/// Two samples or more of one quantity, in its own unit.
+/// Requires two samples or more of one quantity, in its own unit.
 [[nodiscard]] MeasuredMean measured_mean(const double* values, std::size_t samples);
 
-/// What was fitted, and the parameter `held` in its place among the tracked; `std_error` in search
-/// units, of what is known of it without the fit; infinite: nothing is.
+/// Inserts the held parameter `held` into a fit without it. `std_error`, search units: knowledge of
+/// the
+/// parameter without the fit; infinite: none.
 [[nodiscard]] WindowFitSummary with_held(WindowFitSummary found, std::size_t held,
                                          double std_error);
 

@@ -10,11 +10,11 @@
 namespace estimator::greybox::tracking {
 namespace {
 
-/// Logarithms: a parameter falls or rises to about a third or threefold.
+/// Range in logarithms: a factor of about three either way.
 constexpr double kWidest = 1.2;
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-/// What may arise on a rig that was without it; the first parameter of each.
+/// Effects that may arise on a rig without them; the first parameter of each.
 constexpr const char* kEffects[] = {"null_bias.offset_V",
                                     "internal_leakage.conductance_m3ps_per_Pa",
                                     "external_leakage.conductance_m3ps_per_Pa",

@@ -6,24 +6,22 @@
 #include <string_view>
 #include <utility>
 
-#include "config/units/quantity.h"
 #include "estimator/greybox/dataset.h"
-#include "estimator/greybox/tracking/words.h"
 
 namespace estimator::greybox::tracking {
 namespace {
 
 using Eigen::Index;
 
-/// Parts of a window that are looked at when it is not explained, the longest first.
+/// Parts of an unexplained window that are fitted alone, longest first.
 constexpr double kParts[] = {0.75, 0.5, 0.25};
-/// How far a part's error may be above the healthy one: in chance's standard deviations.
+/// Excess of a part's error over the healthy one allowed by chance, in standard deviations.
 constexpr double kChanceOfRms = 3.5;
-/// A rod that moves less than this many noise floors tells nothing.
+/// Travel, in noise floors, below which a window counts as no motion.
 constexpr double kLeastMotion = 10.0;
-/// Of the healthy error: what the noise floor is at least taken for.
+/// Least noise floor, as a ratio to the healthy error.
 constexpr double kLeastOfHealthy = 0.2;
-/// Standard errors: one-sided, 95 %.
+/// One-sided 95 % quantile, in standard errors.
 constexpr double kMostly = 1.645;
 std::size_t samples_in(double duration_s, double sample_time_s) {
   return static_cast<std::size_t>(std::lround(duration_s / sample_time_s));
@@ -94,23 +92,23 @@ WindowResult ParameterTracker::look(double t_s) {
   WindowFitSummary found = baseline_ ? fit(data, near_, baseline_->errors()) : first_fit(data);
   window.fit_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   window.evaluations = found.evaluations;
-  std::string misfit = this->misfit(found, settings_.most_ratio);
-  if (misfit.empty()) pressures_out_ = false;
+  Misfit misfit = this->misfit(found, settings_.most_ratio);
+  if (!misfit) pressures_out_ = false;
   bool part = false;
-  if (!misfit.empty() && moves(data) && found.with_chambers()) {
+  if (misfit && moves(data) && found.with_chambers()) {
     part = look_at_part(window, data);
     if (!part) {
       const WindowData with = std::exchange(data, data.without_pressures());
       const ErrorScales errors = baseline_->errors();
       WindowFitSummary instead = fit(data, near_, errors);
-      if (this->misfit(instead, settings_.most_ratio).empty()) {
-        // Which of the two it is shows where they have not drawn the fit to them.
-        const std::string shown =
+      if (!this->misfit(instead, settings_.most_ratio)) {
+        // A fit without the pressures shows which of the two chambers misfits.
+        const Misfit shown =
             this->misfit(fit_.fit(with, {}, instead.theta, errors), settings_.most_ratio);
-        if (!shown.empty()) misfit = shown;
-        window.left_out = "chamber pressures left out because " + misfit;
+        if (shown) misfit = shown;
+        window.left_out = {PressuresLeftOut::Cause::misfit, misfit};
         pressures_out_ = true;
-        misfit.clear();
+        misfit = {};
         found = std::move(instead);
       }
     }
@@ -119,7 +117,7 @@ WindowResult ParameterTracker::look(double t_s) {
   window.in = found.in;
   window.out = found.out;
   window.correlation = found.correlation;
-  window.fits = misfit.empty();
+  window.fits = !misfit;
   window.explained = moves(data) && window.fits;
   estimate(window, found);
   judge(window, data, found, misfit);
@@ -165,12 +163,16 @@ void ParameterTracker::estimate(WindowResult& window, const WindowFitSummary& fo
 }
 
 void ParameterTracker::judge(WindowResult& window, const WindowData& data,
-                             const WindowFitSummary& found, const std::string& misfit) const {
-  std::string why;
+                             const WindowFitSummary& found, const Misfit& misfit) const {
+  InvalidReason all;
   if (!moves(data)) {
-    why = still_words(motion_m(data), noise_m(), settings_.window_s);
+    all.cause = InvalidReason::Cause::no_motion;
+    all.motion_m = motion_m(data);
+    all.noise_m = noise_m();
+    all.window_s = settings_.window_s;
   } else if (!window.explained) {
-    why = misfit;
+    all.cause = InvalidReason::Cause::misfit;
+    all.misfit = misfit;
   }
   bool unseen = false;
   for (std::size_t i = 0; i < set_.tracked; ++i) {
@@ -178,18 +180,19 @@ void ParameterTracker::judge(WindowResult& window, const WindowData& data,
     const FreeParameter& p = set_.parameters[i];
     const double most =
         p.scale == Scale::logarithmic ? settings_.most_std_error : settings_.most_of_typical;
-    one.why = why;
-    if (why.empty() && i == gain_ && !window.left_out.empty() &&
+    one.invalid = all;
+    if (!all && i == gain_ && window.left_out &&
         std::isinf(found.std_error[static_cast<Index>(i)])) {
-      one.why = "position alone does not tell valve gain from supply pressure: " + window.left_out;
-    } else if (why.empty()) {
-      one.why = unseen_words(set_, found, i, one.std_error / p.slope(one.theta), most);
-      unseen = unseen || !one.why.empty();
+      one.invalid.cause = InvalidReason::Cause::needs_pressures;
+      one.invalid.left_out = window.left_out;
+    } else if (!all) {
+      one.invalid = imprecision_of(found, i, one.std_error / p.slope(one.theta), most);
+      unseen = unseen || one.invalid;
     }
-    one.valid = one.why.empty();
-    if (window.why.empty()) window.why = one.why;
+    one.valid = !one.invalid;
+    if (!window.invalid) window.invalid = one.invalid;
   }
-  window.valid = window.why.empty();
+  window.valid = !window.invalid;
   window.poor = !moves(data) || (window.explained && unseen);
 }
 
@@ -197,15 +200,16 @@ bool ParameterTracker::look_at_part(WindowResult& window, const WindowData& whol
   Eigen::VectorXd near = baseline_->theta;
   for (const double share : kParts) {
     const auto samples = static_cast<std::size_t>(share * static_cast<double>(window_));
-    std::string left_out;
+    PressuresLeftOut left_out;
     WindowData data = usable(samples, left_out);
     if (whole.in_Pa == nullptr) data = data.without_pressures();
     const WindowFitSummary part = fit(data, near, baseline_->errors());
     const double most = std::max(
         settings_.most_ratio, 1.0 + kChanceOfRms / std::sqrt(2.0 * static_cast<double>(samples)));
-    if (!misfit(part, most).empty()) continue;
+    if (misfit(part, most)) continue;
     if (!moves(data)) return true;
-    window.part = part_words(set_, part, static_cast<double>(samples) * sample_time_s_);
+    window.part =
+        PartialFit{static_cast<double>(samples) * sample_time_s_, part.theta, part.std_error};
     name_changes_in(window, data, part);
     near_ = part.theta;
     return true;
@@ -216,7 +220,7 @@ bool ParameterTracker::look_at_part(WindowResult& window, const WindowData& whol
 void ParameterTracker::name_changes_in(WindowResult& window, const WindowData& data,
                                        const WindowFitSummary& found) {
   const bool whole = data.samples == window_;
-  NamingCache once;  // the rivals of a part are not those of the whole window
+  NamingCache once;  // the rivals of a part differ from those of the whole window
   const ErrorScales errors = baseline_->errors();
   window.named = name_changes(fit_, set_, data, found, baseline_->theta, errors,
                               settings_.thresholds, whole ? cache_ : once, held(data, errors));
@@ -228,7 +232,7 @@ void ParameterTracker::name_changes_in(WindowResult& window, const WindowData& d
   detector_.update(window.t_s, window.named, seen, baseline_->theta, whole);
 }
 
-/// What is named has the values of the windows that agree with this one.
+/// Replaces the values of named changes by those fused from agreeing windows.
 void ParameterTracker::refine(WindowResult& window) const {
   for (ParameterChange& one : window.named) {
     const ParameterEstimate& best = window.estimates[one.parameter];

@@ -1,18 +1,16 @@
-// How a window is fitted: with which samples, which parameters, which weights.
+// Fits of a window: samples, free parameters, weights.
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "estimator/greybox/tracking/measured_parameter.h"
 #include "estimator/greybox/tracking/parameter_tracker.h"
-#include "estimator/greybox/tracking/words.h"
 
 namespace estimator::greybox::tracking {
 namespace {
 
 using Eigen::Index;
 
-/// Standard error, search units, of what is held while the healthy rig is learnt.
+/// Standard error, search units, of a held parameter while the baseline is learned.
 constexpr double kHeld = 1e-4;
 
 bool stands_still(const double* values, const WindowData& data) {
@@ -22,21 +20,19 @@ bool stands_still(const double* values, const WindowData& data) {
 
 }  // namespace
 
-/// The latest samples; without chamber pressures, and why, where they cannot be right.
-WindowData ParameterTracker::usable(std::size_t samples, std::string& left_out) const {
+/// The latest samples; without chamber pressures, and with the reason, where they cannot be right.
+WindowData ParameterTracker::usable(std::size_t samples, PressuresLeftOut& left_out) const {
   const WindowData data = samples_.latest(samples);
   const bool wanted = set_.supply_Pa() > 0.0 && (!baseline_ || baseline_->chambers.known());
   if (!wanted) return data.without_pressures();
   if (data.in_Pa == nullptr) {
-    if (baseline_) {
-      left_out = "chamber pressures left out because they were not read in the whole window";
-    }
+    if (baseline_) left_out.cause = PressuresLeftOut::Cause::not_read;
     return data;
   }
   const bool in = stands_still(data.in_Pa, data);
   if (!in && !stands_still(data.out_Pa, data)) return data;
-  left_out = std::string("chamber pressures left out because the reading of the pressure ") +
-             (in ? "in" : "out") + " stands still";
+  left_out.cause =
+      in ? PressuresLeftOut::Cause::inlet_still : PressuresLeftOut::Cause::outlet_still;
   return data.without_pressures();
 }
 
@@ -85,12 +81,12 @@ WindowFitSummary ParameterTracker::first_fit(const WindowData& data) {
   own.out.rms_Pa = std::max(seen.out.rms_Pa, kLeastError_ratio * supply_Pa);
   own.in.weight_Pa = own.in.rms_Pa;
   own.out.weight_Pa = own.out.rms_Pa;
-  own.offset_sd_Pa = supply_Pa;  // any
+  own.offset_sd_Pa = supply_Pa;  // unlimited
   return fit(data, found.theta, {std::max(noise_floor_m_, found.rms_m), own});
 }
 
-std::string ParameterTracker::misfit(const WindowFitSummary& found, double most_ratio) const {
-  return baseline_ ? misfit_words(found, baseline_->errors(), most_ratio) : std::string();
+Misfit ParameterTracker::misfit(const WindowFitSummary& found, double most_ratio) const {
+  return baseline_ ? misfit_of(found, baseline_->errors(), most_ratio) : Misfit{};
 }
 
 std::optional<ExcitationDesign> ParameterTracker::probe() {

@@ -1,7 +1,6 @@
 #include "estimator/greybox/tracking/sensor_hypothesis.h"
 
 #include <cmath>
-#include <functional>
 #include <numeric>
 #include <utility>
 
@@ -14,7 +13,7 @@ constexpr double kMostDrift_mps = 0.01;
 constexpr double kScaleStep = 0.02;
 constexpr double kDriftStep_mps = 1e-4;
 
-/// Where the parabola through (-step, a), (0, b), (step, c) is least; NaN: nowhere.
+/// Minimum of the parabola through (-step, a), (0, b), (step, c); NaN: none.
 double least(double a, double b, double c, double step) {
   const double bend = a - 2.0 * b + c;
   return bend > 0.0 ? 0.5 * step * (a - c) / bend : NAN;

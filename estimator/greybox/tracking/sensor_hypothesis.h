@@ -1,13 +1,14 @@
-// What the position sensor alone would explain: a scale or a drift of its reading in place of a
-// change of the rig.
+// Position sensor hypothesis: a scale or a drift of the reading in place of a change of the rig.
 //
 //   scale   y' = yc + (y - yc) / s        drift   y' = y - r (t - tc)
 //
-// y  as read    y'  where the rod is then    yc tc  middle of the window
+// y  reading    y'  true position under the hypothesis    yc tc  middle of the window
 //
-// The model is held against y'. Its residual is linear in 1 / s and in r, but for what little the
-// plant depends on y: chi-square is a parabola, which three values give. It counts in the reading's
-// own noise, that is times s^2; what chamber pressures say of the model stays as it is.
+// The model is compared with y'. The residual is linear in 1 / s and in r, apart from the plant's
+// weak
+// dependence on y: chi-square is a parabola, given by three values. It is evaluated in the
+// reading's
+// own noise, that is times s^2; the chamber pressures' part stays unchanged.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,11 +18,11 @@
 
 namespace estimator::greybox::tracking {
 
-/// A window as a faulty sensor would have read it, set right.
+/// A window corrected for a faulty sensor.
 struct SensorHypothesis {
   const char* name = "";  ///< position_sensor.scale_ratio (its change), position_sensor.drift_mps
   double value = 0.0;
-  double scale = 1.0;  ///< s: residuals of the window set right, times this, are in the reading's
+  double scale = 1.0;  ///< s: residuals of the corrected window times s are in the reading's noise
   double chi_square = 0.0;
   std::vector<double> y_m;  ///< y', lead-in and window
 
@@ -32,8 +33,9 @@ struct SensorHypothesis {
   }
 };
 
-/// The scale and the drift that explain the window best where the model is as `x` has it; those
-/// beyond what a sensor may show (a third, 10 mm/s) are left out.
+/// Scale and drift that explain the window best with the model at `x`; values beyond a plausible
+/// sensor
+/// fault (a third, 10 mm/s) are left out.
 [[nodiscard]] std::vector<SensorHypothesis> sensor_hypotheses(WindowFit& fit,
                                                               const WindowData& data,
                                                               const Eigen::VectorXd& theta,

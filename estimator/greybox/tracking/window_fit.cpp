@@ -15,9 +15,10 @@ using Eigen::VectorXd;
 
 constexpr double kDifference = 1e-3;  ///< step of the difference quotients, search units
 constexpr int kMostIterations = 12;
-/// Of the cost, about the number of samples: what is left to gain is far below one chi-square.
+/// Relative cost tolerance; the cost is about the number of samples, so the rest is far below one
+/// chi-square.
 constexpr double kTolerance = 1e-5;
-/// Nearly Gauss and Newton's step: windows follow each other, the start is near.
+/// Initial damping: nearly a Gauss-Newton step, because successive windows start near the solution.
 constexpr double kSlight = 1e-6;
 
 Dataset room_for(std::size_t most, double sample_time_s) {
@@ -32,7 +33,7 @@ Dataset room_for(std::size_t most, double sample_time_s) {
   return window;
 }
 
-/// What the position at the window's start leaves, of length one; 0 in the lead-in.
+/// Unit shape of the position error that an unknown start leaves; 0 in the lead-in.
 VectorXd start_shape(const WindowData& data, double keep) {
   VectorXd shape = VectorXd::Zero(static_cast<Index>(data.lead + data.samples));
   double value = 1.0;
@@ -53,13 +54,13 @@ MatrixXd correlation_of(const MatrixXd& covariance) {
   return out;
 }
 
-/// Of a residual's mean, when its offset is what it is best: 1 / sqrt(1 + n S^2 / sigma^2).
+/// Share of a residual's mean that remains at the best offset: 1 / sqrt(1 + n S^2 / sigma^2).
 double left_of_mean(Index samples, const ChamberError& error, const ChamberErrors& errors) {
   const double ratio = errors.offset_sd_Pa / error.weight_Pa;
   return 1.0 / std::sqrt(1.0 + static_cast<double>(samples) * ratio * ratio);
 }
 
-/// The errors of each quantity from the residual as WindowFit::compare() makes it.
+/// Errors of each quantity from the residual of WindowFit::compare().
 void tell_errors(const WindowData& data, const ErrorScales& errors, const VectorXd& residual,
                  WindowFitSummary& out) {
   const auto all = static_cast<Index>(data.lead + data.samples);
@@ -178,7 +179,7 @@ WindowFitSummary WindowFit::fit(const WindowData& data, const std::vector<std::s
     tell_errors(data, errors, residual.col(0), out);
     return out;
   }
-  estimator::nonlinear::Options how;
+  estimator::nonlinear::MinimizeOptions how;
   how.max_iterations = kMostIterations;
   how.cost_tolerance = kTolerance;
   how.first_damping = kSlight;

@@ -11,7 +11,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Chi-square's standard deviations above its mean.
+/// Limit of chi-square in standard deviations above its mean.
 constexpr double kChance = 4.0;
 
 }  // namespace

@@ -1,9 +1,9 @@
-// What the latest windows that do not overlap say together:
+// Fusion of the latest windows that do not overlap:
 //
-//   x = C sum Ci^-1 xi,   C = (sum Ci^-1)^-1
+//   theta = C sum Ci^-1 theta_i,   C = (sum Ci^-1)^-1
 //
-// xi Ci  what window i found and its covariance. From the newest window back, as long as each
-//        agrees with those after it: d' (C + Ci)^-1 d of their difference d no greater than chance.
+// theta_i, Ci  estimate and covariance of window i, from the newest back, while each agrees with
+//              those after it: d' (C + Ci)^-1 d of their difference d within chance.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,16 +17,17 @@ namespace estimator::greybox::tracking {
 struct FusedEstimate {
   Eigen::VectorXd theta;
   Eigen::MatrixXd covariance;
-  int windows = 0;  ///< 0: the newest one is of no use
+  int windows = 0;  ///< 0: the newest window is not usable
 };
 
 class WindowFusion {
  public:
-  /// Of so many parameters; `apart` looks lie between two windows that do not overlap; `most`
-  /// windows are pooled.
+  /// `parameters`: number of parameters; `apart`: windows between two that do not overlap; `most`:
+  /// limit of
+  /// fused windows.
   WindowFusion(std::size_t parameters, std::size_t apart, std::size_t most);
 
-  /// What the newest look found; `good`: it may be pooled.
+  /// Adds the newest window; `good`: may be fused.
   void add(const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance, bool good);
   void clear() noexcept { looks_ = 0; }
   [[nodiscard]] FusedEstimate fused() const;
@@ -38,9 +39,9 @@ class WindowFusion {
   std::size_t parameters_;
   std::size_t apart_;
   std::size_t most_;
-  std::size_t length_;        ///< numbers of one look: good, x, covariance
-  std::vector<double> ring_;  ///< of the latest looks
-  std::size_t looks_ = 0;     ///< so far
+  std::size_t length_;        ///< numbers per window: good, theta, covariance
+  std::vector<double> ring_;  ///< latest windows
+  std::size_t looks_ = 0;     ///< windows so far
 };
 
 }  // namespace estimator::greybox::tracking

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "config/schema/error.h"
+#include "config/signals/nan.h"
 #include "estimator/greybox/dataset.h"
 #include "estimator/residual/noise_floor.h"
 #include "estimator/residual/whiteness.h"
@@ -15,16 +15,16 @@
 namespace estimator::greybox::validation {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-/// A rod whose positions spread by less than this many noise floors does not move.
+using config::signals::kNaN;
+/// Spread of the positions, in noise floors, below which the rod does not move.
 constexpr double kLeastMotion = 10.0;
 constexpr double kLeastMotion_m = 1e-9;
-/// Command within this part of its greatest magnitude counts as at its limit.
+/// Ratio to the greatest magnitude above which a command is at its limit.
 constexpr double kAtLimit = 0.999;
 constexpr double kOftenLimited = 0.1;
 constexpr double kAlwaysLimited = 0.9;
 
-/// `values` with a missing sample between segments and where `counts` is 0.
+/// `values` with NaN between segments and where `counts` is 0.
 std::vector<double> broken(const Dataset& record, const std::vector<double>& values,
                            bool valid_only) {
   std::vector<double> series;
@@ -88,24 +88,20 @@ void note_command(Comparison& c) {
   const std::vector<double>& u_V = c.record.u_V;
   const auto [low, high] = std::minmax_element(u_V.begin(), u_V.end());
   if (!(*high > *low)) {
-    c.limited_share = 1.0;
-    c.notes.push_back(
-        fmt::format("the command stays at {:.4g} V: the model is tried at this one value", *low));
+    c.command.limited_share = 1.0;
+    c.command.limitation = CommandRange::Limitation::constant;
+    c.command.most_V = *low;
     return;
   }
   const double most_V = std::max(std::abs(*low), std::abs(*high));
   const auto at_limit = std::count_if(u_V.begin(), u_V.end(),
                                       [&](double u) { return std::abs(u) >= kAtLimit * most_V; });
-  c.limited_share = static_cast<double>(at_limit) / static_cast<double>(u_V.size());
-  if (c.limited_share > kAlwaysLimited) {
-    c.notes.push_back(
-        fmt::format("the command is at +-{:.4g} V in {:.0f} % of the samples: smaller "
-                    "commands are hardly tried",
-                    most_V, 100.0 * c.limited_share));
-  } else if (c.limited_share > kOftenLimited) {
-    c.notes.push_back(
-        fmt::format("the command is at its limit of +-{:.4g} V in {:.0f} % of the samples", most_V,
-                    100.0 * c.limited_share));
+  c.command.limited_share = static_cast<double>(at_limit) / static_cast<double>(u_V.size());
+  c.command.most_V = most_V;
+  if (c.command.limited_share > kAlwaysLimited) {
+    c.command.limitation = CommandRange::Limitation::always_limited;
+  } else if (c.command.limited_share > kOftenLimited) {
+    c.command.limitation = CommandRange::Limitation::often_limited;
   }
 }
 
@@ -114,9 +110,7 @@ void note_stroke(Comparison& c, const plant_sim::ModelFile& model) {
     if (parameter.name != "stroke_m") continue;
     const auto [low, high] = std::minmax_element(c.record.y_m.begin(), c.record.y_m.end());
     if (*low < 0.0 || *high > parameter.value) {
-      c.notes.push_back(fmt::format(
-          "y runs from {:.4g} to {:.4g} mm, outside the model's stroke of 0 to {:.4g} mm",
-          1e3 * *low, 1e3 * *high, 1e3 * parameter.value));
+      c.beyond_stroke = StrokeExcess{*low, *high, parameter.value};
     }
   }
 }
@@ -184,7 +178,6 @@ Comparison compare(const plant_sim::ModelFile& model, const Dataset& record,
   c.model = model.name;
   c.record = record;
   c.observer_per_s = observer_per_s;
-  c.notes = record.notes;
   const estimator::residual::NoiseFloor floor =
       estimator::residual::noise_floor(broken(record, record.y_m, false), record.sample_time_s);
   c.noise_floor_m = std::max(floor.sd_m, kLeastFloor_m);  // NaN stays NaN

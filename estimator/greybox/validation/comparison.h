@@ -1,15 +1,17 @@
-// A model held against a record: how large its error is, beside what the sensor lets any model
-// reach, and where it arises.
+// Comparison of a model with a record: size of the error relative to the sensor's noise floor, and
+// the regions in which it arises.
 //
-//   e(k)    measured less modelled position, the model driven by the measured command. Drift of an
-//           integrating plant is taken away by an observer on the position
-//           (greybox/observer_simulation.h).
-//   free run: the same from each segment's first sample on, nothing corrected.
-//   fit     100 (1 - |e| / |y - mean y|), of the free run
+//   e(k)      measured less modelled position, the model driven by the measured command. An
+//   observer
+//             on the position corrects the drift of an integrating plant
+//             (greybox/observer_simulation.h).
+//   free run  simulation from each segment's first sample without correction
+//   fit       100 (1 - |e| / |y - mean y|), free run
 //
-// Speed error: what the model's speed lacks in each step, (e(k+1) - (1 - l Ts) e(k)) / Ts.
+// Speed error of a step: (e(k+1) - (1 - l Ts) e(k)) / Ts.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,18 +26,34 @@
 
 namespace estimator::greybox::validation {
 
+/// Range of the command over the samples.
+struct CommandRange {
+  enum class Limitation { none, often_limited, always_limited, constant };
+
+  Limitation limitation = Limitation::none;
+  double most_V = 0.0;         ///< greatest magnitude; for a constant command its value
+  double limited_share = 0.0;  ///< share of the samples at the greatest magnitude
+};
+
+/// Positions outside the model's stroke.
+struct StrokeExcess {
+  double low_m = 0.0;
+  double high_m = 0.0;
+  double stroke_m = 0.0;
+};
+
 struct Comparison {
   std::string model;
   Dataset record;
   Kinematics kinematics;
   double observer_per_s = 0.0;
 
-  // One number for each sample.
-  std::vector<double> error_m;       ///< drift-corrected; the unsettled samples too
-  std::vector<double> free_error_m;  ///< of the free run
+  // One number per sample.
+  std::vector<double> error_m;       ///< drift-corrected, unsettled samples included
+  std::vector<double> free_error_m;  ///< free run
   std::vector<double> speed_error_mps;
-  /// Speed error, a mean over +-50 ms, less what a plain gain and offset explain: by this regions
-  /// are told apart.
+  /// Speed error, mean over +-50 ms, less the share that a gain and an offset explain; the regions
+  /// are found in this.
   std::vector<double> local_velocity_error_mps;
 
   double rms_m = 0.0;           ///< drift-corrected, settled samples
@@ -44,25 +62,25 @@ struct Comparison {
   double noise_floor_m = 0.0;  ///< NaN: unknown (a record below 20 Hz)
   double encoder_step_m = 0.0;
   std::vector<KStep> k_step;    ///< 1, 10, 100 samples
-  double whiteness_p = 1.0;     ///< of e: is it noise only?
-  double independence_p = 1.0;  ///< of e from past commands
-  double limited_share = 0.0;   ///< of the samples: command at its greatest magnitude
+  double whiteness_p = 1.0;     ///< whiteness of e
+  double independence_p = 1.0;  ///< independence of e from past commands
 
   std::vector<Region> regions;
-  std::vector<SignificantRegion> worst;  ///< by one variable each, most telling first
-  SignificantRegion headline;            ///< the most telling, by one variable or two
+  std::vector<SignificantRegion> worst;  ///< by one variable each, most significant first
+  SignificantRegion headline;            ///< most significant, by one variable or two
   SystematicError systematic;
-  std::vector<std::string> notes;  ///< restrictions
+  CommandRange command;
+  std::optional<StrokeExcess> beyond_stroke;
 
   [[nodiscard]] double floor_ratio() const { return rms_m / noise_floor_m; }
   [[nodiscard]] double duration_s() const;
 };
 
-/// An error of up to this many noise floors counts as noise.
+/// Error, in noise floors, up to which it counts as noise.
 inline constexpr double kAtFloor = 1.15;
 
-/// Throws config::schema::Error: exit 65 for a record without motion, 78 for a model that cannot be
-/// built. Observer gain in 1/s; above 0 and below 1 / sample time.
+/// Observer gain in 1/s: above 0 and below 1 / sample time. Throws config::schema::DataError for a
+/// record without motion, ConfigError for a model that cannot be built.
 [[nodiscard]] Comparison compare(const plant_sim::ModelFile& model, const Dataset& record,
                                  double observer_per_s = kObserver_per_s);
 

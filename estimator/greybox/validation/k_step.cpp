@@ -11,9 +11,9 @@ namespace {
 
 using plant_sim::Ensemble;
 
-/// What one of the runs side by side does: put on the measurement at samples offset, offset + k ...
+/// One of the simulations side by side: set to the measurement at samples offset, offset + k, ...
 struct Lane {
-  std::size_t horizon = 0;  ///< which of the results
+  std::size_t horizon = 0;  ///< index of the result
   std::size_t samples = 1;
   std::size_t offset = 0;
 };

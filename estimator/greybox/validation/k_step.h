@@ -1,9 +1,11 @@
 // Error of the k-step prediction.
 //
-// Every k samples the model's position is put on the measured one; its other states (speed,
-// pressures, spool) stay as its own run under the measured command has them. The error just before
-// the next such moment is the k-step error. Several runs, set off against each other, share the
-// work. A perfect model's k-step error is sqrt(2) times the noise: that of both readings.
+// Every k samples the model's position is set to the measured one; its other states (speed,
+// pressures,
+// spool) continue under the measured command. The error just before the next correction is the
+// k-step
+// error. Several offset simulations share the work. A perfect model's k-step error is sqrt(2) times
+// the noise, that of two readings.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +20,7 @@ namespace estimator::greybox::validation {
 struct KStep {
   std::size_t samples = 1;  ///< k
   double rms_m = std::numeric_limits<double>::quiet_NaN();
-  std::size_t count = 0;  ///< how many predictions; 0: no segment is long enough
+  std::size_t count = 0;  ///< number of predictions; 0: no segment is long enough
 };
 
 /// k = 1, 10 and 100.

@@ -2,21 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "config/signals/nan.h"
 
 namespace estimator::greybox::validation {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using config::signals::kNaN;
 constexpr double kBins = 9.0;
 constexpr std::size_t kFewest = 40;
 constexpr double kSmallestShare = 0.01;
-/// Longest correlation that is looked for.
+/// Longest correlation that is searched.
 constexpr double kLongest_s = 0.5;
-/// Speeds below this part of the greatest share one bin.
+/// Ratio to the greatest speed below which speeds share one bin.
 constexpr double kSlowest = 0.004;
 
-/// The nearest of 1, 2, 5, 10 ... at or above.
+/// The next of 1, 2, 5, 10 ... at or above.
 double round_up(double value) {
   const double decade = std::pow(10.0, std::floor(std::log10(value) + 1e-9));
   for (const double factor : {1.0, 2.0, 5.0}) {
@@ -52,7 +53,7 @@ std::vector<double> even_edges(const std::vector<double>& kept) {
   return edges;
 }
 
-/// Inner edges 1, 2, 5, 10 ...: much of what goes wrong does so near standstill.
+/// Inner edges 1, 2, 5, 10 ..., finer near standstill, where most errors arise.
 std::vector<double> graded_edges(const std::vector<double>& kept) {
   const double high = quantile(kept, 0.995);
   if (!(high > 0.0)) return {};
@@ -63,7 +64,7 @@ std::vector<double> graded_edges(const std::vector<double>& kept) {
   return edges;
 }
 
-/// Leaves out edges between which there are too few samples.
+/// Removes edges between which there are too few samples.
 std::vector<double> fewer(const std::vector<double>& edges, std::vector<double> kept) {
   std::sort(kept.begin(), kept.end());
   const auto fewest = std::max(

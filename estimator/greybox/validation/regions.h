@@ -1,5 +1,5 @@
-// A model's error sorted by what the rod was doing: bins over position, velocity, speed, command,
-// acceleration, direction and time, and what the error is in each.
+// Errors of a model grouped by the rod's motion: bins over position, velocity, speed, command,
+// acceleration, direction and time, with the error in each.
 #pragma once
 
 #include <cstddef>
@@ -10,47 +10,47 @@
 
 namespace estimator::greybox::validation {
 
-/// What is sorted and by what; all series have the record's length, SI.
+/// Errors and the variables they are grouped by; all series have the record's length, SI.
 struct SortedErrors {
   const Dataset* record = nullptr;
   const Kinematics* kinematics = nullptr;
   const std::vector<double>* error_m = nullptr;
   const std::vector<double>* speed_error_mps = nullptr;  ///< measured less modelled speed
   const std::vector<double>* local_velocity_error_mps =
-      nullptr;               ///< by which regions are told apart
+      nullptr;               ///< series by which regions are found
   std::vector<char> counts;  ///< 0: the sample is left out
-  double noise_mps = 0.0;    ///< of arising_mps, from the sensor
+  double noise_mps = 0.0;    ///< sensor noise of local_velocity_error
 };
 
 struct Bin {
-  double from = 0.0;  ///< SI; of direction: NaN
+  double from = 0.0;  ///< SI; NaN for direction
   double to = 0.0;
-  std::string name;  ///< of direction: "extending"; empty otherwise
+  std::string name;  ///< for direction: "extending"; else empty
   std::size_t count = 0;
   double time_share = 0.0;
-  double error_share = 0.0;  ///< of the squared position error
-  double rms_m = 0.0;        ///< of the position error
+  double error_share = 0.0;  ///< share of the squared position error
+  double rms_m = 0.0;        ///< position error
   double mean_m = 0.0;
-  double speed_error_mps = 0.0;  ///< mean; positive: the rod moves out more than the model
+  double speed_error_mps = 0.0;  ///< mean; positive: the rod extends faster than the model
   double local_velocity_error_rms_mps = 0.0;
-  double local_velocity_error_share = 0.0;  ///< of the squared speed error
-  /// How many samples at least a correlation length apart: what the RMS is worth.
+  double local_velocity_error_share = 0.0;  ///< share of the squared speed error
+  /// Number of samples at least a correlation length apart.
   double effective_samples = 0.0;
 };
 
 struct Region {
   std::string variable;  ///< y, v, speed, u, acceleration, direction, time
   std::vector<Bin> bins;
-  std::vector<int> bin_of;  ///< of each sample; -1: left out
+  std::vector<int> bin_of;  ///< per sample; -1: left out
 };
 
-/// Over how many samples arising errors hang together: 1 + 2 sum rho(k)^2, that of their squares.
+/// Correlation length of the squared velocity errors in samples: 1 + 2 sum rho(k)^2.
 [[nodiscard]] double correlation_length(const SortedErrors& sorted);
 
-/// Edges are round numbers; a bin of too few samples is joined with its neighbour.
+/// Edges are round numbers; a bin of too few samples is merged with its neighbour.
 [[nodiscard]] std::vector<Region> sort_by_region(const SortedErrors& sorted);
 
-/// Figures of the samples where `in` is not 0; from, to and name are left to the caller.
+/// Figures of the samples with `in` not 0; the caller sets from, to and name.
 [[nodiscard]] Bin figures(const SortedErrors& sorted, const std::vector<char>& in, double length);
 
 }  // namespace estimator::greybox::validation

@@ -6,17 +6,17 @@
 namespace estimator::greybox::validation {
 namespace {
 
-/// Of G: with some hundred ranges to choose from, chance stays below.
+/// Least G: above the level of chance over some hundred ranges.
 constexpr double kLeastGain = 8.0;
-constexpr double kLeastRatio = 1.2;     ///< of the region's RMS to that of all
-constexpr double kLeastNoise = 2.0;     ///< of the region's RMS to the sensor's noise
-constexpr double kLeastOutside = 0.05;  ///< mean square outside, to that of all
+constexpr double kLeastRatio = 1.2;     ///< ratio of the region's RMS to the overall RMS
+constexpr double kLeastNoise = 2.0;     ///< ratio of the region's RMS to the sensor's noise
+constexpr double kLeastOutside = 0.05;  ///< mean square outside, relative to the overall one
 constexpr double kLeastLooks = 4.0;
-constexpr double kWidest = 0.5;     ///< of the time
-constexpr double kNarrowing = 1.3;  ///< by how much a second variable must raise G
+constexpr double kWidest = 0.5;     ///< share of the time
+constexpr double kNarrowing = 1.3;  ///< factor by which a second variable must raise G
 
 double gain(const Bin& in, double all_looks, double all_mean_square) {
-  // Where the rod comes by often, looks at the region and at the rest alternate.
+  // Where the rod passes often, samples in the region and in the rest alternate.
   const double out = all_looks * std::min(1.0, 2.0 * (1.0 - in.time_share));
   if (in.effective_samples < kLeastLooks || out < kLeastLooks) return 0.0;
   const double out_mean_square =
@@ -45,7 +45,7 @@ All all_of(const SortedErrors& sorted) {
   return all;
 }
 
-/// Where two variables tell about the same, that one which people think in.
+/// Preference for the more familiar of two variables with about the same G.
 constexpr double kAcceleration = 0.8;
 constexpr double kVelocity = 0.99;  ///< "below 5 mm/s" before "from -5 to 5 mm/s"
 

@@ -1,14 +1,15 @@
-// Which regions a model fails in: those whose error stands out from the rest by more than chance.
+// Regions in which a model fails: regions whose error exceeds the rest by more than chance.
 //
-// Told apart by the speed error, for a position error is remembered where it did not arise. A
-// region splits the samples in two. How much better two variances describe the errors than one:
+// Regions are found in the speed error, because a position error persists where it did not arise. A
+// region splits the samples in two; G rates two variances against one:
 //
 //   G = (n ln s^2 - n_in ln s_in^2 - n_out ln s_out^2) / 2,   n s^2 = n_in s_in^2 + n_out s_out^2
 //
-// s RMS speed errors; n looks (samples at least a correlation length apart). G is the logarithm of
-// a likelihood ratio; s_out^2 counts as at least 5 % of s^2, or what leaks over a region's edge
-// would make the region wider. Regions are ranges of neighbouring bins, or such a range of one
-// variable together with one of another.
+// s RMS speed errors; n effective samples, at least a correlation length apart. G is the logarithm
+// of
+// a likelihood ratio; s_out^2 counts as at least 5 % of s^2, otherwise leakage over a region's edge
+// would widen the region. Regions are ranges of neighbouring bins, or such a range of one variable
+// together with one of another.
 #pragma once
 
 #include <string>
@@ -20,9 +21,9 @@ namespace estimator::greybox::validation {
 
 struct Range {
   std::string variable;
-  double from = 0.0;  ///< SI; of direction: NaN
+  double from = 0.0;  ///< SI; NaN for direction
   double to = 0.0;
-  std::string name;      ///< of direction: "reversing"
+  std::string name;      ///< for direction: "reversing"
   bool lowest = false;   ///< begins with the variable's lowest bin
   bool highest = false;  ///< ends with its highest
 };
@@ -31,14 +32,14 @@ struct SignificantRegion {
   std::vector<Range> ranges;  ///< one or two
   Bin figures;
   double gain = 0.0;         ///< G
-  bool significant = false;  ///< beyond chance, and worth a word
+  bool significant = false;  ///< beyond chance and large enough to report
 };
 
-/// The best range of each variable, the most telling first. Empty when nothing can be compared.
+/// Best range of each variable, most significant first. Empty without comparable samples.
 [[nodiscard]] std::vector<SignificantRegion> significant_regions(
     const SortedErrors& sorted, const std::vector<Region>& regions);
 
-/// The most telling region once more, narrowed by a second variable where that tells more.
+/// The most significant region, narrowed by a second variable where that raises G.
 [[nodiscard]] SignificantRegion narrowed(const SortedErrors& sorted,
                                          const std::vector<Region>& regions,
                                          const std::vector<SignificantRegion>& singles);

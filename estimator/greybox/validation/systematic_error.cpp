@@ -9,11 +9,11 @@
 namespace estimator::greybox::validation {
 namespace {
 
-constexpr double kLeast = 0.5;   ///< share worth telling
-constexpr double kNearly = 1.1;  ///< how much more may be left over by one number than by two
+constexpr double kLeast = 0.5;   ///< least share that is reported
+constexpr double kNearly = 1.1;  ///< ratio of the errors left by one number and by two
 constexpr double kSlight = 0.01;
 
-/// Share of the squared error that goes when `signatures` (columns) are taken off as they fit best.
+/// Share of the squared error that the least-squares fit of `signatures` (columns) removes.
 double share(const Eigen::MatrixXd& signatures, const Eigen::VectorXd& e, Eigen::VectorXd& x) {
   x = linear_algebra::pivoted_least_squares(signatures, e);
   const double all = e.squaredNorm();
@@ -57,7 +57,7 @@ SystematicError systematic_error(const Dataset& record, const std::vector<double
                                                   [](char valid) { return valid != 0; }))));
   const auto left_m = [&](double by) { return all_m * std::sqrt(1.0 - by); };
   if (by_both < kLeast) return {ErrorCause::neither, 0.0, 0.0, 0.0, all_m};
-  // Of two explanations that differ little the one with a single number is told.
+  // The explanation with a single number is preferred where two differ little.
   const double nearly = 1.0 - std::max(kNearly * (1.0 - by_both), kSlight);
   if (by_gain >= nearly && by_gain >= by_offset) {
     return {ErrorCause::gain, by_gain, gain(0), 0.0, left_m(by_gain)};

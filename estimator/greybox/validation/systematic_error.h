@@ -1,5 +1,6 @@
-// Two plain things that make a model's position run away from the measured one, and how much of the
-// error they would explain: a speed that is off in proportion, and one that is off by a constant.
+// Two systematic causes of a drifting model position, and the share of the error that they explain:
+// a
+// proportional speed error and a constant one.
 //
 //   e(k) ~ g z_v(k) + b z_1(k),   z(k+1) = (1 - l Ts) z(k) + Ts x(k),   x = modelled speed, 1
 //
@@ -15,11 +16,11 @@ namespace estimator::greybox::validation {
 enum class ErrorCause { neither, gain, offset, both };
 
 struct SystematicError {
-  ErrorCause cause = ErrorCause::neither;  ///< what explains at least half, as simply as possible
-  double share = 0.0;                      ///< of the squared error, by that
+  ErrorCause cause = ErrorCause::neither;  ///< simplest cause that explains at least half
+  double share = 0.0;                      ///< share of the squared error that the cause explains
   double gain_ratio = 0.0;  ///< g: the rod moves 1 + g times as far as the model; 0: not used
   double offset_mps = 0.0;  ///< b; 0: not used
-  double left_rms_m = 0.0;  ///< of the error without what they explain
+  double left_rms_m = 0.0;  ///< error without that share
 };
 
 [[nodiscard]] SystematicError systematic_error(const Dataset& record,

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "config/schema/exit_code.h"
+#include "config/schema/error.h"
 
 namespace config::schema {
 namespace {

@@ -9,7 +9,7 @@ constexpr double kTs_s = 0.005;
 
 TEST(Controller, IsProportionalAboutNull) {
   Controller controller({200.0}, {0.3, 10.0}, kTs_s);
-  const Command command = controller.update(0.31, 0.30);
+  const ValveCommand command = controller.update(0.31, 0.30);
   EXPECT_DOUBLE_EQ(command.requested_V, 0.3 + 200.0 * (0.31 - 0.30));
   EXPECT_DOUBLE_EQ(command.limited_V, command.requested_V);
   EXPECT_FALSE(command.saturated);
@@ -18,7 +18,7 @@ TEST(Controller, IsProportionalAboutNull) {
 TEST(Controller, LimitsTheDistanceFromNullBothWays) {
   Controller controller({1000.0}, {0.5, 4.0}, kTs_s);
   EXPECT_DOUBLE_EQ(controller.update(1.0, 0.0).limited_V, 4.5);
-  const Command low = controller.update(-1.0, 0.0);
+  const ValveCommand low = controller.update(-1.0, 0.0);
   EXPECT_DOUBLE_EQ(low.limited_V, -3.5);
   EXPECT_TRUE(low.saturated);
 }

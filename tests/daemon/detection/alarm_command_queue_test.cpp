@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "daemon/control/guard_monitor.h"
-#include "daemon/detection/guard_alarms.h"
+#include "daemon/detection/system_alarms.h"
 #include "daemon/rt/guard_status.h"
 
 namespace monitor::detection {

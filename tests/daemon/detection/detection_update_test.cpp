@@ -38,8 +38,14 @@ struct Bench {
       : clock(clock_),
         pipeline(config, kFakeSampleTime_s),
         publisher({"", "TEST"}, 1, kFakeSampleTime_s, nullptr),
-        detector({clock, samples, stats, pipeline, publisher, nullptr, nullptr, nullptr, nullptr,
-                  nullptr, nullptr, 0, &to_detector, &from_detector},
+        detector({clock,
+                  samples,
+                  stats,
+                  pipeline,
+                  publisher,
+                  nullptr,
+                  {},
+                  {&to_detector, &from_detector}},
                  {"", "old", "", "rod", "v", {}, {}, {}}) {}
 
   void feed(int count, double y_m) {

@@ -12,7 +12,7 @@
 #include <cerrno>
 #include <fstream>
 
-#include "config/schema/exit_code.h"
+#include "config/schema/error.h"
 #include "daemon/control/protocol.h"
 
 namespace monitor::io {

@@ -11,7 +11,7 @@
 #include <filesystem>
 
 #include "config/record/record.h"
-#include "config/schema/exit_code.h"
+#include "config/schema/error.h"
 #include "daemon/io/recorder.h"
 #include "estimator/fdi/pipeline.h"
 #include "spoolwatch/alarm_t.hpp"

@@ -116,7 +116,7 @@ INSTANTIATE_TEST_SUITE_P(
              "[[sim.fault]]\nparameter = \"oil\"\nat_s = 1.0\nfactor = 2.0\n[reference]", "oil",
              ""},
         Case{"guard_without_a_kind", "[reference]", "[[guard]]\naction = \"hold\"\n[reference]",
-             "[guard.0] kind", "what is monitored"},
+             "[guard.0] kind", "kind of guard"},
         Case{"guard_of_nothing", "[reference]", "[[guard]]\nkind = \"mood\"\n[reference]", "kind",
              "travel"},
         Case{"guard_without_its_limit", "[reference]", "[[guard]]\nkind = \"speed\"\n[reference]",

@@ -126,7 +126,7 @@ class Stand {
                   control::Controller({150.0}, {kNull_V, kLimit_V}, kTs_s), kTs_s, rules_);
     rt::Grid grid(0, kPeriod_ns);
     for (const control::Event event : {control::Event::arm, control::Event::start}) {
-      rt::Command command;
+      rt::LoopCommand command;
       command.event = event;
       command.expires_ns = INT64_MAX;
       commands.push(command);

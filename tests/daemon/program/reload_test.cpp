@@ -101,7 +101,7 @@ TEST_F(Reload, TakesNewLimitsWithoutALostCycleOrAlarm) {
   const Result second = order("reload");
   EXPECT_EQ(second.exit_code, 0) << second.out;
   EXPECT_THAT(second.out, HasSubstr("changed: [[band]] standing: high\n"));
-  EXPECT_THAT(second.out, HasSubstr("estimator goes on: "));
+  EXPECT_THAT(second.out, HasSubstr("estimator continues: "));
   EXPECT_EQ(standing()["high"], 0.5);
   EXPECT_TRUE(becomes([&] { return standing()["life"] == "LATCHED"; })) << standing().dump();
   EXPECT_THAT(order("reload").out, HasSubstr("no key has changed"));

@@ -123,7 +123,7 @@ TEST(ThreeRods, AreAskedForInOneLineWhereTheyAreNot) {
   EXPECT_THAT(result.err, HasSubstr("[failover]: has no second rod sensor to switch to"));
   result = refused("[[sim.trouble]]\nkind = \"drift\"\nrod = \"b\"\n");
   EXPECT_EQ(result.exit_code, 78);
-  EXPECT_THAT(result.err, HasSubstr("[[sim.trouble]] rod: is \"b\", which is no [[sim.rod]]"));
+  EXPECT_THAT(result.err, HasSubstr("[[sim.trouble]] rod: is \"b\", which is not a [[sim.rod]]"));
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ rms_m = 2.5e-6
                       {"--duration", "1", "--set", "tracker.0.healthy=" + file.string()}));
   EXPECT_EQ(refused.exit_code, 78);
   EXPECT_THAT(refused.err, testing::HasSubstr("[[tracker]] physics: healthy: " + file.string() +
-                                              ": model_values: was learnt with another model"));
+                                              ": model_values: was learned with another model"));
   EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1) << refused.err;
 }
 

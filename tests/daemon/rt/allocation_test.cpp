@@ -45,7 +45,7 @@ struct Around {
     for (const auto role :
          {hal::InputRole::e_stop, hal::InputRole::enable, hal::InputRole::pressure,
           hal::InputRole::supply_pressure, hal::InputRole::pressure_in, hal::InputRole::other}) {
-      hal::sim::SwitchConfig config;
+      hal::sim::SimSwitchConfig config;
       config.from_s = 7.0;  // off for a while
       config.to_s = 7.5;
       inputs.push_back({"input", role, std::make_shared<hal::sim::Switch>(config)});
@@ -53,7 +53,7 @@ struct Around {
   }
   std::vector<hal::NamedRod> spares;
   std::vector<hal::NamedInput> inputs;
-  hal::sim::Line permit;
+  hal::sim::CountingLine permit;
 };
 
 /// Allocations of 4,000 ticks, overruns and commands among them.
@@ -70,13 +70,13 @@ long allocations_of_ticks(hal::RodSensor& rod, hal::ValveDrive* valve,
   Grid grid(0, kPeriod_ns);
   const long before = allocations;
   for (int n = 0; n < 4000; ++n) {
-    Command command;
+    LoopCommand command;
     constexpr control::Event kEvents[] = {control::Event::reset, control::Event::arm,
                                           control::Event::start, control::Event::start};
     command.event = kEvents[n % 500 % 4];
     command.number = static_cast<std::uint32_t>(n);
-    if (n % 500 == 100) command.kind = Command::Kind::hold;
-    if (n % 500 == 150) command.kind = Command::Kind::sine;
+    if (n % 500 == 100) command.kind = LoopCommand::Kind::hold;
+    if (n % 500 == 150) command.kind = LoopCommand::Kind::sine;
     command.expires_ns = clock.now_ns() + 2 * kPeriod_ns;
     if (n % 500 < 4 || n % 50 == 0) commands.push(command);
     if (n % 100 == 99) clock.advance_ns((n / 100) * kPeriod_ns / 2);

@@ -88,7 +88,7 @@ class Course {
               control::Controller({kGain_V_per_m}, {0.0, 10.0, 1000.0}, kTs_s), kTs_s, rules());
     Grid grid(0, kPeriod_ns);
     for (const control::Event event : {control::Event::arm, control::Event::start}) {
-      Command command;
+      LoopCommand command;
       command.event = event;
       command.expires_ns = INT64_MAX;
       commands.push(command);
@@ -248,8 +248,8 @@ TEST(FailoverOfTwo, GoesBackOnAnOrderOrAStartOnly) {
     for (int k = 0; k < 1000; ++k) bench.tick();
     EXPECT_EQ(bench.stats.rod_in_charge.load(), 1);
     if (by_order) {
-      Command command;
-      command.kind = Command::Kind::readmit;
+      LoopCommand command;
+      command.kind = LoopCommand::Kind::readmit;
       command.expires_ns = INT64_MAX;
       bench.commands.push(command);
     } else {

@@ -110,7 +110,7 @@ class LoopBench {
     return last;
   }
   void command(control::Event event, std::int64_t life_ns = 1'000'000'000) {
-    Command next;
+    LoopCommand next;
     next.event = event;
     next.expires_ns = clock.now_ns() + life_ns;
     commands.push(next);
@@ -141,14 +141,15 @@ class LoopBench {
 };
 
 /// Orders and returns what the loop answers in the next tick.
-inline control::Answer ask(LoopBench& bench, control::Event event, std::uint32_t number = 7) {
-  Command command;
+inline control::CommandAnswer ask(LoopBench& bench, control::Event event,
+                                  std::uint32_t number = 7) {
+  LoopCommand command;
   command.event = event;
   command.number = number;
   command.expires_ns = INT64_MAX;
   bench.commands.push(command);
   bench.tick();
-  const control::Answer answer = control::unpack(bench.stats.answer.load());
+  const control::CommandAnswer answer = control::unpack(bench.stats.answer.load());
   EXPECT_EQ(answer.number, number);
   EXPECT_EQ(answer.state, bench.state());
   return answer;

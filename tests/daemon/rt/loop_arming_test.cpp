@@ -25,8 +25,8 @@ struct SwitchBench : LoopBench {
 };
 
 TEST(Answer, PassesThroughOneWord) {
-  const control::Answer answer{0xfedcba98U, RejectReason::guard, State::latched, 31};
-  const control::Answer back = control::unpack(control::pack(answer));
+  const control::CommandAnswer answer{0xfedcba98U, RejectReason::guard, State::latched, 31};
+  const control::CommandAnswer back = control::unpack(control::pack(answer));
   EXPECT_EQ(back.number, answer.number);
   EXPECT_EQ(back.reject_reason, answer.reject_reason);
   EXPECT_EQ(back.state, answer.state);
@@ -132,7 +132,7 @@ TEST(EmergencyStop, WiredTheWrongWayStaysDisarmedAndSaysSo) {
   SwitchBench bench(hal::InputRole::e_stop, 0.0);
   bench.tick();
   EXPECT_EQ(bench.state(), State::disarmed);
-  const control::Answer answer = ask(bench, Event::arm);
+  const control::CommandAnswer answer = ask(bench, Event::arm);
   EXPECT_EQ(answer.reject_reason, RejectReason::guard);
   EXPECT_EQ(answer.guard, static_cast<std::uint8_t>(control::GuardKind::e_stop));
   EXPECT_EQ(bench.stats.guards.active(), 1U) << "the alarm is there all the time";
@@ -170,7 +170,7 @@ TEST(Missing, ForbidsToArmButLatchesNothingThatIsDisarmed) {
   bench.rig.quality = config::signals::Quality::bad;
   for (int k = 0; k < 10; ++k) bench.tick();
   EXPECT_EQ(bench.state(), State::disarmed);
-  const control::Answer answer = ask(bench, Event::arm);
+  const control::CommandAnswer answer = ask(bench, Event::arm);
   EXPECT_EQ(answer.reject_reason, RejectReason::guard);
   EXPECT_EQ(answer.guard, static_cast<std::uint8_t>(control::GuardKind::missing));
   bench.rig.quality = config::signals::Quality::good;

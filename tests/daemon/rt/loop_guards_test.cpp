@@ -53,8 +53,8 @@ TEST(Hold, HoldsAgainWhenAnotherReferenceLeadsFurtherOut) {
   bench.rig.y_m = 0.21;
   bench.tick();
   ASSERT_TRUE(bench.stats.holding.load());
-  Command command;
-  command.kind = Command::Kind::sine;
+  LoopCommand command;
+  command.kind = LoopCommand::Kind::sine;
   command.centre_m = 0.5;
   command.expires_ns = INT64_MAX;
   bench.commands.push(command);
@@ -66,8 +66,8 @@ TEST(Hold, HoldsAgainWhenAnotherReferenceLeadsFurtherOut) {
 
 TEST(Hold, CanBeOrderedInRunOnly) {
   LoopBench bench;
-  Command command;
-  command.kind = Command::Kind::hold;
+  LoopCommand command;
+  command.kind = LoopCommand::Kind::hold;
   command.expires_ns = INT64_MAX;
   command.number = 3;
   bench.commands.push(command);

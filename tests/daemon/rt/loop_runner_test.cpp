@@ -26,7 +26,7 @@ struct RunBench {
         publisher({"", "TEST"}, 1, kFakeSampleTime_s, nullptr),
         detector({clock, samples, stats, pipeline, publisher, nullptr},
                  {"", "", "", "rod", "v", {}, {}, {}}) {
-    Command command;
+    LoopCommand command;
     command.expires_ns = INT64_MAX;
     for (const Event event : {Event::arm, Event::start}) {
       command.event = event;

@@ -89,8 +89,8 @@ TEST(Loop, DropsCommandsThatHaveExpired) {
 TEST(Loop, ReferenceBeginsAtTheStartAndACommandedOneTakesItsPlace) {
   LoopBench bench;
   bench.run();
-  Command command;
-  command.kind = Command::Kind::sine;
+  LoopCommand command;
+  command.kind = LoopCommand::Kind::sine;
   command.centre_m = 0.2;
   command.amplitude_m = 0.01;
   command.frequency_Hz = 10.0;

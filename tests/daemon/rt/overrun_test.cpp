@@ -1,4 +1,4 @@
-#include "daemon/rt/overrun.h"
+#include "daemon/rt/grid.h"
 
 #include <gtest/gtest.h>
 

@@ -17,8 +17,8 @@ using fdi_test::PlainValues;
 using fdi_test::refusal;
 
 /// Chen and Patton 1999, section 3.2: A, C, E; continuous.
-LinearModel textbook() {
-  LinearModel m;
+StateSpaceModel textbook() {
+  StateSpaceModel m;
   m.a = MatrixXd{{-1, 1, 0}, {-1, 0, 0}, {0, -1, -1}};
   m.b = MatrixXd{{0}, {1}, {0}};
   m.c = MatrixXd{{1, 0, 0}, {0, 0, 1}};
@@ -29,8 +29,8 @@ LinearModel textbook() {
 }
 
 /// The same sampled at 0.1 s. Octave: A = expm(0.1 A), B and E = (A_d - I) inv(A) [B E].
-LinearModel sampled() {
-  LinearModel m = textbook();
+StateSpaceModel sampled() {
+  StateSpaceModel m = textbook();
   m.a = MatrixXd{{0.900162501369, 0.0950040833529, 0},
                  {-0.0950040833529, 0.995166584722, 0},
                  {0.00467491666691, -0.0950040833529, 0.904837418036}};
@@ -49,7 +49,7 @@ TEST(UnknownInput, ObserverExistsForTheTextbookExample) {
 }
 
 TEST(UnknownInput, GainIsThatOfTheRiccatiEquation) {
-  const LinearModel m = sampled();
+  const StateSpaceModel m = sampled();
   const Existence found = unknown_input_existence(m);
   ASSERT_TRUE(found.exists);
   // Octave: P = dare(A1', C', eye(3), eye(2)); K1 = A1*P*C'*inv(C*P*C' + eye(2))
@@ -63,7 +63,7 @@ TEST(UnknownInput, GainIsThatOfTheRiccatiEquation) {
 }
 
 /// Greatest residual over the second half of a run of 400 samples.
-double residual(const LinearModel& m, double d_size, double f_size, const VectorXd& fault) {
+double residual(const StateSpaceModel& m, double d_size, double f_size, const VectorXd& fault) {
   const UnknownInputObserver o = unknown_input_observer(m, "test");
   VectorXd x = VectorXd::Ones(m.a.rows());
   VectorXd z = VectorXd::Zero(m.a.rows());
@@ -91,7 +91,7 @@ TEST(UnknownInput, DoesNotMoveTheResidualHoweverLargeWhileAFaultDoes) {
 TEST(UnknownInput, TellsWhichFaultsFadeAway) {
   // A1 has an integrator (Octave: eig(A1) = 0, 1, 0.905): its state comes to explain a constant
   // fault of the third state, Octave: C*((eye(3) - F)\(T*[0;0;1])) = (1e-16, 2e-16).
-  LinearModel m = sampled();
+  StateSpaceModel m = sampled();
   m.k = MatrixXd{{0}, {0}, {1}};
   EXPECT_LT(unknown_input_observer(m, "test").fault_gain.cwiseAbs().maxCoeff(), 1e-9);
   m.k = MatrixXd{{0}, {1}, {0}};
@@ -100,13 +100,13 @@ TEST(UnknownInput, TellsWhichFaultsFadeAway) {
 
 /// The linearised actuator, states y, v, Pi, Po; the spool as input; a load force as unknown input.
 ///   m v' = A (Pi - Po) - d v - F,  P' = beta/V (Kq xv -+ A v -+ Kc P),  Kc = Q0/(2 dp)
-LinearModel actuator(double opening_m, const MatrixXd& c) {
+StateSpaceModel actuator(double opening_m, const MatrixXd& c) {
   constexpr double kArea = 6.33e-4, kMass = 50.0, kDamping = 1000.0, kSupply = 6.89e6;
   constexpr double kBetaPerVolume = 6.89e8 / (1e-5 + kArea * 0.305);
   const double gradient = 0.6 * 2.07e-2 * std::sqrt(2.0 / 847.0);
   const double gain = gradient * std::sqrt(kSupply / 2.0);
   const double leak = gradient * opening_m / (2.0 * std::sqrt(kSupply / 2.0));
-  LinearModel m;
+  StateSpaceModel m;
   m.a = MatrixXd{{0, 1, 0, 0},
                  {0, -kDamping / kMass, kArea / kMass, -kArea / kMass},
                  {0, -kBetaPerVolume * kArea, -kBetaPerVolume * leak, 0},
@@ -139,7 +139,7 @@ TEST(UnknownInput, ObserverOfTheActuatorNeedsMoreThanPosition) {
 }
 
 TEST(UnknownInput, IsRefusedWithTheReason) {
-  LinearModel m = sampled();
+  StateSpaceModel m = sampled();
   m.c = MatrixXd{{0, 1, 0}};
   m.e = MatrixXd{{1}, {0}, {0}};
   try {

@@ -37,7 +37,7 @@ TEST(Covariance, WhiteLinearCaseIsTheClosedForm) {
   problem.unknowns[0].prior_mean = 0.2;
   problem.unknowns[0].prior_sd = 0.1;
   CovarianceOptions options;
-  options.colour = Colour::kWhite;
+  options.colour = Colour::white;
   options.noise_sd = 0.7;
   const Covariance c = covariance(problem, minimize(problem, VectorXd::Zero(3)), options);
   MatrixXd H = A.transpose() * A / 0.49;
@@ -65,7 +65,7 @@ TEST(Covariance, SeriesHaveTheNoiseOfTheirOwn) {
       kFirst * kFirst * first.transpose() * first + kSecond * kSecond * second.transpose() * second;
   const MatrixXd inverse = (A.transpose() * A).inverse();
   const VectorXd expected = (inverse * middle * inverse).diagonal().cwiseSqrt();
-  for (const Colour colour : {Colour::kWhite, Colour::kColoured}) {
+  for (const Colour colour : {Colour::white, Colour::coloured}) {
     options.colour = colour;
     const Covariance found = covariance(problem, solution, options);
     // The noise of 4000 numbers is known to 1.1 %; what looks like colour in them adds to that.
@@ -99,14 +99,14 @@ TEST(Covariance, StandardDeviationsAreTheCertifiedOnes) {
   int compared = 0;
   for (const Certified& c : nist()) {
     if (c.standard_deviation.size() == 0) continue;
-    Options search;
+    MinimizeOptions search;
     search.max_iterations = 1000;
     search.cost_tolerance = 1e-14;
     search.central = true;
     Problem problem = c.problem;
     for (Unknown& unknown : problem.unknowns) unknown.relative_step = 1e-5;
     CovarianceOptions options;
-    options.colour = Colour::kWhite;
+    options.colour = Colour::white;
     const Covariance found =
         covariance(problem, minimize(problem, c.starts.back(), search), options);
     for (Index j = 0; j < c.value.size(); ++j) {
@@ -125,10 +125,10 @@ TEST(Covariance, UnknownsAtABoundAreFlaggedAndTheOthersAreGivenThatBound) {
   problem.unknowns[1].upper = 0.0;
   problem.unknowns[1].step = 1e-3;
   CovarianceOptions options;
-  options.colour = Colour::kWhite;
+  options.colour = Colour::white;
   options.noise_sd = 1.0;
   const Covariance c = covariance(problem, minimize(problem, VectorXd::Zero(3)), options);
-  EXPECT_EQ(c.standing[1], Standing::kAtBound);
+  EXPECT_EQ(c.standing[1], Standing::at_bound);
   EXPECT_TRUE(std::isnan(c.std_error[1]));
   MatrixXd rest(60, 2);
   rest << A.col(0), A.col(2);
@@ -143,8 +143,8 @@ TEST(Covariance, WhatNobodySeesHasAnInfiniteError) {
   A.col(2) = 2.0 * A.col(1);
   const Problem problem = linear(A, normal(60, 1, engine));
   const Covariance c = covariance(problem, minimize(problem, VectorXd::Zero(3)));
-  EXPECT_EQ(c.standing[0], Standing::kEstimated);
-  EXPECT_EQ(c.standing[1], Standing::kUnseen);
+  EXPECT_EQ(c.standing[0], Standing::estimated);
+  EXPECT_EQ(c.standing[1], Standing::unseen);
   EXPECT_TRUE(std::isinf(c.std_error[2]));
   EXPECT_GT(c.std_error[0], 0.0);
 }
@@ -192,7 +192,7 @@ Coverage coverage(Colour colour, double memory, bool masked) {
 TEST(Covariance, IntervalsCoverTheTruthUnderColouredNoise) {
   for (const double memory : {0.0, 0.5, 0.9}) {
     for (const bool masked : {false, true}) {
-      const Coverage c = coverage(Colour::kColoured, memory, masked);
+      const Coverage c = coverage(Colour::coloured, memory, masked);
       for (const double share : c.share) {
         EXPECT_GE(share, 0.90) << memory << masked;  // the aim is 90 to 99 %
         EXPECT_LE(share, 0.99) << memory << masked;
@@ -203,7 +203,7 @@ TEST(Covariance, IntervalsCoverTheTruthUnderColouredNoise) {
 
 TEST(Covariance, IntervalsFromTheScoresCoverTheTruth) {
   for (const double memory : {0.0, 0.5}) {
-    const Coverage c = coverage(Colour::kScores, memory, false);
+    const Coverage c = coverage(Colour::scores, memory, false);
     for (const double share : c.share) {
       EXPECT_GE(share, 0.90) << memory;
       EXPECT_LE(share, 0.99) << memory;
@@ -212,7 +212,7 @@ TEST(Covariance, IntervalsFromTheScoresCoverTheTruth) {
 }
 
 TEST(Covariance, TakingColourForWhiteWouldNotCover) {
-  EXPECT_LT(coverage(Colour::kWhite, 0.9, false).share[0], 0.6);
+  EXPECT_LT(coverage(Colour::white, 0.9, false).share[0], 0.6);
 }
 
 }  // namespace

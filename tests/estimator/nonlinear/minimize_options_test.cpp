@@ -18,16 +18,16 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 TEST(MinimizeOptions, CancelKeepsTheBestSoFar) {
   const Certified c = nist()[2];
-  Options options;
+  MinimizeOptions options;
   double reported = 0.0;
   int calls = 0;
-  options.progress = [&](const Progress& progress) {
+  options.progress = [&](const MinimizeProgress& progress) {
     reported = progress.cost;
     ++calls;
   };
   options.cancel = [&] { return calls >= 3; };
   const Solution s = minimize(c.problem, c.starts[0], options);
-  EXPECT_EQ(s.reason, Stop::kCancelled);
+  EXPECT_EQ(s.reason, StopReason::cancelled);
   EXPECT_EQ(calls, 3);
   EXPECT_EQ(s.cost, reported);
   EXPECT_GT(s.cost, c.sum_of_squares);
@@ -58,8 +58,8 @@ Problem twelve(VectorXd& truth) {
 TEST(MinimizeOptions, BroydenForTheColumnsThatDoNotFitReachesTheSameMinimum) {
   VectorXd truth;
   const Problem problem = twelve(truth);
-  Options all;
-  Options some;
+  MinimizeOptions all;
+  MinimizeOptions some;
   some.renew_all = false;
   const Solution a = minimize(problem, VectorXd::Zero(12), all);
   const Solution b = minimize(problem, VectorXd::Zero(12), some);
@@ -75,7 +75,7 @@ TEST(MinimizeOptions, KnownStartSavesItsEvaluation) {
   VectorXd truth;
   const Problem problem = twelve(truth);
   const Solution first = minimize(problem, VectorXd::Zero(12));
-  Options options;
+  MinimizeOptions options;
   options.start_residual = first.residual;
   options.start_jacobian = first.jacobian;
   const Solution again = minimize(problem, first.x, options);

@@ -28,7 +28,7 @@ TEST(Minimize, ReachesTheCertifiedValuesFromBothStarts) {
   for (const bool central : {false, true}) {
     for (const Certified& c : nist()) {
       for (const VectorXd& start : c.starts) {
-        Options options;
+        MinimizeOptions options;
         options.max_iterations = 2000;
         options.central = central;
         options.cost_tolerance = 1e-14;
@@ -52,7 +52,7 @@ TEST(Minimize, SolvesALinearProblemInOneStepOfOneGroup) {
   Draw draw(1);
   const MatrixXd A = draw.matrix(200, 5);
   const VectorXd y = draw.matrix(200, 1);
-  Options options;
+  MinimizeOptions options;
   options.first_damping = 1e-12;
   options.cost_tolerance = 1e-12;
   const Solution s = minimize(linear(A, y), VectorXd::Zero(5), options);
@@ -77,7 +77,7 @@ TEST(Minimize, PriorsAreRidgeRegression) {
   const MatrixXd P = precision.asDiagonal();
   const VectorXd expected =
       (A.transpose() * A / 0.09 + P).ldlt().solve(A.transpose() * y / 0.09 + P * mean);
-  Options options;
+  MinimizeOptions options;
   options.cost_tolerance = 1e-13;
   EXPECT_TRUE(minimize(problem, VectorXd::Zero(4), options).x.isApprox(expected, 1e-6));
 }
@@ -94,7 +94,7 @@ TEST(Minimize, WeightsAreWeightedLeastSquaresAndZeroHidesNaN) {
   y.head(7).setConstant(kNaN);
   Problem problem = linear(A, y);
   problem.weights = w;
-  Options options;
+  MinimizeOptions options;
   options.cost_tolerance = 1e-13;
   EXPECT_TRUE(minimize(problem, VectorXd::Ones(3), options).x.isApprox(expected, 1e-6));
 }
@@ -149,7 +149,7 @@ TEST(Minimize, BoundsGiveTheBestPointOfTheBox) {
       problem.unknowns[static_cast<std::size_t>(j)].upper = high[j];
       problem.unknowns[static_cast<std::size_t>(j)].step = 1e-4;
     }
-    Options options;
+    MinimizeOptions options;
     options.cost_tolerance = 1e-13;
     const Solution s = minimize(problem, VectorXd::Constant(p, 100.0), options);
     const VectorXd expected = best_in_box(A, y, low, high);
@@ -180,11 +180,11 @@ TEST(Minimize, CostNeverRisesAndEveryPointAskedForIsInside) {
     }
     c.problem.evaluate(points, r);
   };
-  Options options;
+  MinimizeOptions options;
   options.max_iterations = 500;
   double last = std::numeric_limits<double>::infinity();
   int calls = 0;
-  options.progress = [&](const Progress& progress) {
+  options.progress = [&](const MinimizeProgress& progress) {
     EXPECT_LE(progress.cost, last);
     last = progress.cost;
     ++calls;
@@ -209,7 +209,7 @@ TEST(Minimize, StepsAroundAPlaceWhereTheModelCannotBeEvaluated) {
   EXPECT_NEAR(s.x[0], 2.0, 1e-5);
   const Solution bad = minimize(problem, VectorXd::Constant(1, -1.0));
   EXPECT_FALSE(bad.converged);
-  EXPECT_EQ(bad.reason, Stop::kStartNotFinite);
+  EXPECT_EQ(bad.reason, StopReason::start_not_finite);
   EXPECT_EQ(bad.x[0], -1.0);
 }
 
@@ -219,7 +219,7 @@ TEST(Minimize, HeldUnknownsStayAndCostNoPoints) {
   const VectorXd y = draw.matrix(40, 1);
   Problem problem = linear(A, y);
   problem.unknowns[1].lower = problem.unknowns[1].upper = 0.7;
-  Options options;
+  MinimizeOptions options;
   options.cost_tolerance = 1e-13;
   const Solution s = minimize(problem, VectorXd::Zero(3), options);
   MatrixXd rest(40, 2);

@@ -22,7 +22,7 @@ TEST(InstrumentalVariables, AreThoseOfNumPyWithTheSameInstruments) {
   // ARX(2,2,1) has u(t-1) .. u(t-8) as instruments when u is handed over as the reference.
   const Record record = armax_record();
   const BiasTest test = test_bias({2, 2, 1, false}, record.all(), {record.u_V});
-  ASSERT_EQ(test.instruments, Instruments::kReference);
+  ASSERT_EQ(test.instruments, Instruments::reference);
   ASSERT_EQ(test.instrument_count, 8);
   for (std::size_t i = 0; i < 4; ++i) {
     // The script starts one row later.
@@ -38,7 +38,7 @@ TEST(InstrumentalVariables, AreThoseOfNumPyWithTheSameInstruments) {
 TEST(InstrumentalVariables, FindTheTruthInClosedLoopWhereLeastSquaresDoesNot) {
   const Record record = closed_loop(20000, 1e-6, 2e-4, 1);
   const BiasTest test = with_reference(record);
-  EXPECT_EQ(test.verdict, BiasVerdict::kBiased);
+  EXPECT_EQ(test.verdict, BiasVerdict::biased);
   EXPECT_LT(test.p, 1e-6);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_LT(std::abs(test.instrumental[i] - kClosedLoop[i]), 4.0 * test.instrumental_error[i]);
@@ -49,8 +49,8 @@ TEST(InstrumentalVariables, FindTheTruthInClosedLoopWhereLeastSquaresDoesNot) {
 TEST(InstrumentalVariables, OfDelayedSamplesFindTheTruthWithoutAReference) {
   const Record record = closed_loop(40000, 1e-6, 2e-4, 2);
   const BiasTest test = test_bias(kArx211, record.all());
-  EXPECT_EQ(test.instruments, Instruments::kDelayed);
-  EXPECT_EQ(test.verdict, BiasVerdict::kBiased);
+  EXPECT_EQ(test.instruments, Instruments::delayed);
+  EXPECT_EQ(test.verdict, BiasVerdict::biased);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_LT(std::abs(test.instrumental[i] - kClosedLoop[i]), 4.0 * test.instrumental_error[i]);
   }
@@ -75,7 +75,7 @@ TEST(DurbinWuHausman, RejectsAtItsLevelWhenLeastSquaresIsRight) {
   int rejected = 0;
   for (int i = 0; i < kRecords; ++i) {
     const BiasTest test = with_reference(closed_loop(1500, 5e-5, 0.0, 1000 + i));
-    EXPECT_NE(test.verdict, BiasVerdict::kUndetermined);
+    EXPECT_NE(test.verdict, BiasVerdict::undetermined);
     rejected += test.p < 0.05 ? 1 : 0;
   }
   // 20 expected; binomial standard deviation 4.4.
@@ -105,8 +105,8 @@ TEST(DurbinWuHausman, CannotTellFromASineReference) {
   const auto late = [](const std::vector<double>& x) { return std::span(x).subspan(400); };
   const BiasTest test =
       test_bias(kArx211, {{late(record.u_V), late(record.y_m)}}, {late(record.reference_m)});
-  EXPECT_EQ(test.verdict, BiasVerdict::kUndetermined);
-  EXPECT_LT(test.strength_F, kWeakInstruments_F);
+  EXPECT_EQ(test.verdict, BiasVerdict::undetermined);
+  EXPECT_LT(test.f_statistic, kWeakInstruments);
 }
 
 }  // namespace

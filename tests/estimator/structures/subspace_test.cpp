@@ -14,9 +14,9 @@ using namespace testing_data;
 
 class Both : public testing::TestWithParam<SubspaceMethod> {};
 INSTANTIATE_TEST_SUITE_P(Subspace, Both,
-                         testing::Values(SubspaceMethod::kN4sid, SubspaceMethod::kPredictor),
+                         testing::Values(SubspaceMethod::n4sid, SubspaceMethod::predictor),
                          [](const auto& of) {
-                           return of.param == SubspaceMethod::kN4sid ? "N4sid" : "Predictor";
+                           return of.param == SubspaceMethod::n4sid ? "N4sid" : "Predictor";
                          });
 
 TEST_P(Both, FindsANoiseFreeSystemExactly) {

@@ -14,11 +14,11 @@ using testing::FakeBoard;
 using ::testing::IsEmpty;
 
 constexpr std::int64_t kPeriod_ns = 5'000'000;
-constexpr Span kSpan{-10.0, 10.0, 2000};  // 10 mV a step
-constexpr Place kOutput{1, 0, 0, 0};
+constexpr ConverterSpan kSpan{-10.0, 10.0, 2000};  // 10 mV a step
+constexpr BoardChannel kOutput{1, 0, 0, 0};
 
-std::vector<Place> channels(unsigned count) {
-  std::vector<Place> places;
+std::vector<BoardChannel> channels(unsigned count) {
+  std::vector<BoardChannel> places;
   for (unsigned i = 0; i < count; ++i) places.push_back({0, i, 0, 0});
   return places;
 }

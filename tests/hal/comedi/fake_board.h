@@ -12,14 +12,14 @@ namespace hal::comedi::testing {
 
 class FakeBoard final : public Board {
  public:
-  bool write(const Place&, std::uint32_t code) noexcept override {
+  bool write(const BoardChannel&, std::uint32_t code) noexcept override {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return !stuck_; });
     if (failing_) return false;
     written_.push_back(code);
     return true;
   }
-  std::optional<std::uint32_t> read(const Place& place) noexcept override {
+  std::optional<std::uint32_t> read(const BoardChannel& place) noexcept override {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return !stuck_; });
     ++reads_;

@@ -5,8 +5,8 @@
 namespace hal::comedi {
 namespace {
 
-TEST(Span, TwelveBitsOverTenVoltsBothWays) {
-  const Span span{-10.0, 10.0, 4095};
+TEST(ConverterSpan, TwelveBitsOverTenVoltsBothWays) {
+  const ConverterSpan span{-10.0, 10.0, 4095};
   EXPECT_DOUBLE_EQ(span.volts(0), -10.0);
   EXPECT_DOUBLE_EQ(span.volts(4095), 10.0);
   EXPECT_EQ(span.code(-10.0), 0U);

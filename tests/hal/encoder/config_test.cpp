@@ -35,7 +35,7 @@ std::string complaint(const std::string& more, const std::string& table = kTable
 TEST(EncoderConfig, AcceptsTheShortestTable) { EXPECT_EQ(complaint(""), ""); }
 
 TEST(EncoderConfig, RefusesWhatCannotBe) {
-  EXPECT_THAT(complaint("counts_per_metre = 20000.0"), HasSubstr("stands beside"));
+  EXPECT_THAT(complaint("counts_per_metre = 20000.0"), HasSubstr("is given together with"));
   EXPECT_THAT(complaint("", "schema_version = 1\nchip = \"x\"\nline_a = 3\nline_b = 4\n"),
               AllOf(HasSubstr("[encoder] resolution_m"), HasSubstr("is missing")));
   EXPECT_THAT(complaint("sign = 0"), AllOf(HasSubstr("[encoder] sign"), HasSubstr("1 or -1")));

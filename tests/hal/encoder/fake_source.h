@@ -13,8 +13,8 @@ class FakeSource final : public EdgeSource {
  public:
   /// The lines move; the edge is queued, or dropped where the queue is full.
   void move(const Edge& edge) {
-    if (edge.line == Line::a) levels_.a = edge.level;
-    if (edge.line == Line::b) levels_.b = edge.level;
+    if (edge.line == EncoderLine::a) levels_.a = edge.level;
+    if (edge.line == EncoderLine::b) levels_.b = edge.level;
     std::deque<Edge>& queue = queues_[static_cast<std::size_t>(edge.line)];
     if (queue.size() < kFifo) queue.push_back(edge);
   }

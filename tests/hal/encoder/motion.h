@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "hal/encoder/edge.h"
+#include "hal/encoder/edge_source.h"
 
 namespace hal::encoder::testing {
 
@@ -27,8 +27,8 @@ inline Levels levels_in(std::int64_t quarter) {
 inline Edge edge_between(std::int64_t from, std::int64_t to, std::int64_t t_ns) {
   const Levels before = levels_in(from);
   const Levels after = levels_in(to);
-  if (before.a != after.a) return {t_ns, Line::a, after.a};
-  return {t_ns, Line::b, after.b};
+  if (before.a != after.a) return {t_ns, EncoderLine::a, after.a};
+  return {t_ns, EncoderLine::b, after.b};
 }
 
 /// Every edge from 0 to `end_s`. `step_s`: so short that the motion passes at most one quarter.

@@ -54,8 +54,8 @@ TEST(Quadrature, DitherOnOneEdgeDoesNotCreepInAnyMode) {
 
 TEST(Quadrature, AnEdgeToTheLevelThatWasIsIllegalAndMakesTheCountUncertain) {
   QuadratureDecoder decoder(levels_in(0));
-  decoder.edge({1, Line::a, true});
-  decoder.edge({2, Line::a, true});
+  decoder.edge({1, EncoderLine::a, true});
+  decoder.edge({2, EncoderLine::a, true});
   EXPECT_EQ(decoder.counts(4), 1);
   EXPECT_EQ(decoder.illegal(), 1);
   EXPECT_TRUE(decoder.lost());
@@ -89,7 +89,7 @@ void walk(QuadratureDecoder& decoder, std::int64_t& quarter, std::int64_t to) {
     const std::int64_t next = quarter + (to > quarter ? 1 : -1);
     decoder.edge(testing::edge_between(quarter, next, 0));
     const auto index = [](std::int64_t q) { return q >= 100 && q <= 102; };
-    if (index(quarter) != index(next)) decoder.edge({0, Line::index, index(next)});
+    if (index(quarter) != index(next)) decoder.edge({0, EncoderLine::index, index(next)});
     quarter = next;
   }
 }

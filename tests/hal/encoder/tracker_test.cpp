@@ -32,7 +32,7 @@ struct Bench {
       quarter = next;
     }
   }
-  const Snapshot& step(std::int64_t later_ns = 2'000'000) {
+  const EncoderSnapshot& step(std::int64_t later_ns = 2'000'000) {
     test_now_ns += later_ns;
     tracker.step(source, later_ns, test_clock);
     return tracker.snapshot();
@@ -55,7 +55,7 @@ TEST(Tracker, BatchesOfBothLinesAreMergedInTheOrderOfTime) {
     for (std::size_t n = 1 + batch % 20; n > 0 && i < edges.size(); --n) {
       bench.source.move(edges[i++]);
     }
-    const Snapshot& now = bench.step();
+    const EncoderSnapshot& now = bench.step();
     const double after_s = (static_cast<double>(edges[i - 1].t_ns) + 500.0) * 1e-9;
     ASSERT_EQ(now.counts, testing::quarter_at(y_quarters, after_s));
     ASSERT_EQ(now.edge_ns, edges[i - 1].t_ns);
@@ -66,8 +66,8 @@ TEST(Tracker, BatchesOfBothLinesAreMergedInTheOrderOfTime) {
 
 TEST(Tracker, EdgesFromBeforeTheStartDoNotCount) {
   FakeSource source;
-  source.move({1, Line::a, true});
-  source.move({2, Line::b, true});
+  source.move({1, EncoderLine::a, true});
+  source.move({2, EncoderLine::b, true});
   const std::optional<Levels> levels = still_levels(source);
   ASSERT_TRUE(levels.has_value());
   EXPECT_EQ(*levels, levels_in(2));
@@ -90,7 +90,7 @@ TEST(Tracker, AnEdgeThatComesLateIsPutInItsPlace) {
   bench.source.move(edge_between(10, 11, bench.t_ns += 1000));
   EXPECT_EQ(bench.step(0).counts, 8) << "without the missing edge it seems to go back";
   bench.source.release();
-  const Snapshot& now = bench.step(0);
+  const EncoderSnapshot& now = bench.step(0);
   EXPECT_EQ(now.counts, 11);
   EXPECT_EQ(now.late, 1);
   EXPECT_FALSE(now.lost);
@@ -116,7 +116,7 @@ TEST(Tracker, AFullQueueMakesTheCountUncertainUntilItIsReferred) {
   bench.move_to(30);
   EXPECT_FALSE(bench.step().lost) << "15 edges a line are all there";
   bench.move_to(30 + 64);
-  const Snapshot& now = bench.step();
+  const EncoderSnapshot& now = bench.step();
   EXPECT_TRUE(now.lost);
   EXPECT_EQ(now.overflows, 1);
   EXPECT_EQ(now.times_lost, 1);
@@ -136,7 +136,7 @@ TEST(Tracker, LevelsThatStayDifferentTellOfAMissingEdge) {
   bench.source.jump(levels_in(6));
   EXPECT_FALSE(bench.step().lost) << "the edge may be on its way";
   EXPECT_FALSE(bench.step().lost);
-  const Snapshot& now = bench.step();
+  const EncoderSnapshot& now = bench.step();
   EXPECT_TRUE(now.lost);
   EXPECT_EQ(now.disagreements, 1);
   EXPECT_EQ(now.counts, 6);
@@ -183,7 +183,7 @@ TEST(Tracker, EdgesFasterThanPermittedMayHaveLostSomeWithoutATrace) {
   bench.move_to(40, 14'000);
   EXPECT_FALSE(bench.step().lost);
   bench.move_to(60, 9'000);
-  const Snapshot& now = bench.step();
+  const EncoderSnapshot& now = bench.step();
   EXPECT_TRUE(now.lost);
   EXPECT_GE(now.bursts, 1);
   EXPECT_EQ(now.counts, 60);
@@ -193,9 +193,9 @@ TEST(Tracker, IsNotHomedBeforeTheIndex) {
   Bench bench({4, 100'000.0, true});
   bench.move_to(10);
   EXPECT_FALSE(bench.step().homed);
-  bench.source.move({bench.t_ns += 1000, Line::index, true});
+  bench.source.move({bench.t_ns += 1000, EncoderLine::index, true});
   bench.move_to(13);
-  const Snapshot& now = bench.step();
+  const EncoderSnapshot& now = bench.step();
   EXPECT_TRUE(now.homed);
   EXPECT_EQ(now.counts, 3);
 }

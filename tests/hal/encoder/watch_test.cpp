@@ -52,9 +52,9 @@ constexpr double kCount_m = 5e-5;
 
 struct Rig {
   explicit Rig(bool has_index = false)
-      : watch(std::make_shared<Watch>(std::make_unique<SharedSource>(state),
-                                      std::vector<std::shared_ptr<GpioLine>>{},
-                                      TrackerOptions{4, 1e9, has_index}, kPeriod_ns, 0)),
+      : watch(std::make_shared<EncoderWatch>(std::make_unique<SharedSource>(state),
+                                             std::vector<std::shared_ptr<GpioLine>>{},
+                                             TrackerOptions{4, 1e9, has_index}, kPeriod_ns, 0)),
         rod(watch, kCount_m, 0.1) {}
 
   void move_to(std::int64_t to) {
@@ -84,7 +84,7 @@ struct Rig {
   }
 
   std::shared_ptr<SharedSource::State> state = std::make_shared<SharedSource::State>();
-  std::shared_ptr<Watch> watch;
+  std::shared_ptr<EncoderWatch> watch;
   EncoderRod rod;
   std::int64_t quarter = 0;
 };

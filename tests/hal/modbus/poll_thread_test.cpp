@@ -151,7 +151,7 @@ TEST(ModbusPort, SendsARequestPastTheProtocol) {
     for (const char* type : {"int16", "float32"}) {
       Register r;
       r.type = type;
-      const WriteChannel channel{"u", Table::holding, 7, Codec(r)};
+      const WriteChannel channel{"u", RegisterTable::holding, 7, Codec(r)};
       const auto frame = port.frame(channel, Codec(r).encode(1.0));
       EXPECT_FALSE(port.send_now(frame)) << "nobody is connected";
       ASSERT_TRUE(port.connect());

@@ -167,7 +167,7 @@ TEST(RegisterMap, RefusesAnAddressThatIsNone) {
   EXPECT_THAT(refusal_of("serial = \"/dev/no-such-line\"\n"),
               HasSubstr("[modbus] serial \"/dev/no-such-line\""));
   EXPECT_THAT(refusal_of("address = \"127.0.0.1:502\"\nserial = \"/dev/ttyS0\"\n"),
-              HasSubstr("[modbus] address: stands beside serial"));
+              HasSubstr("[modbus] address: is given together with serial"));
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "config/schema/document.h"
-#include "config/schema/exit_code.h"
+#include "config/schema/error.h"
 #include "hal/modbus/modbus.h"
 #include "hal/monotonic.h"
 

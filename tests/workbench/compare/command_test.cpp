@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "config/record/record.h"
-#include "config/schema/exit_code.h"
+#include "config/schema/error.h"
 #include "tests/workbench/compare/servo_record.h"
 #include "tests/workbench/run_command.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "tests/workbench/compare/servo_record.h"
-#include "workbench/compare/sections.h"
+#include "workbench/compare/comparison_report.h"
 
 namespace workbench::compare {
 

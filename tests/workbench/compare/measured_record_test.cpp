@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "config/record/record.h"
-#include "workbench/compare/words.h"
+#include "workbench/compare/comparison_report.h"
 
 namespace workbench::compare {
 

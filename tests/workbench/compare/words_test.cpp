@@ -1,11 +1,11 @@
-#include "workbench/compare/words.h"
+#include "config/units/quantity.h"
+#include "workbench/compare/comparison_report.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
 #include "tests/workbench/compare/servo_record.h"
-#include "workbench/compare/text.h"
 #include "workbench/present/compare_units.h"
 
 namespace workbench::compare {
@@ -85,14 +85,14 @@ TEST(Where, ReadsAsPeopleSpeak) {
 }
 
 TEST(Units, GiveThreeDigitsAndNoExponents) {
-  EXPECT_EQ(present::length(2.456e-6), "2.46 um");
-  EXPECT_EQ(present::length(381.2e-6), "381 um");
-  EXPECT_EQ(present::length(1.706e-3), "1.71 mm");
-  EXPECT_EQ(present::length(1.234), "1234 mm");
-  EXPECT_EQ(present::length(std::nan("")), "-");
+  EXPECT_EQ(config::units::length_words(2.456e-6), "2.46 um");
+  EXPECT_EQ(config::units::length_words(381.2e-6), "381 um");
+  EXPECT_EQ(config::units::length_words(1.706e-3), "1.71 mm");
+  EXPECT_EQ(config::units::length_words(1.234), "1.23 m");
+  EXPECT_EQ(config::units::length_words(std::nan("")), "-");
   EXPECT_EQ(present::percent(0.0042), "under 1 %");
   EXPECT_EQ(present::percent(0.9987), "over 99 %");
-  EXPECT_EQ(present::probability(1e-9), "< 1e-6");
+  EXPECT_EQ(config::units::chance_words(1e-9), "< 1e-6");
 }
 
 TEST(Text, FitsATerminalAndIsAsciiWhereAskedFor) {

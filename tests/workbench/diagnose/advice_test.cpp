@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/workbench/diagnose/truth_records.h"
+#include "tests/estimator/greybox/selection/truth_records.h"
 #include "workbench/diagnose/advice_words.h"
 
 namespace workbench::diagnose {

@@ -5,7 +5,7 @@
 
 #include <set>
 
-#include "tests/workbench/diagnose/servo_shop.h"
+#include "tests/estimator/greybox/selection/servo_problem.h"
 
 namespace workbench::diagnose {
 
@@ -89,7 +89,7 @@ TEST(Diagnosis, AsksForMotionWhereThereIsNone) {
   const selection::Diagnosis& d = advised.diagnosis;
   EXPECT_EQ(d.verdict, selection::Verdict::not_excited);
   EXPECT_THAT(d.missing, IsEmpty());
-  EXPECT_FALSE(d.notes.empty());
+  EXPECT_EQ(d.excitation.cause, selection::Excitation::Cause::no_motion);
   EXPECT_FALSE(advised.advice.empty());
   EXPECT_EQ(d.final.theta.size(), 0);
 }
@@ -99,15 +99,9 @@ TEST(Diagnosis, KeepsTheBestSoFarWhenItIsInterrupted) {
       servo_context({.rate_mps = with_offset_and_band(0.06, 0.1), .samples = 2000});
   context.options.cancel = [] { return true; };
   const selection::Diagnosis d = diagnosed(context).diagnosis;
-  EXPECT_THAT(d.notes, testing::Contains(testing::HasSubstr("interrupted")));
+  EXPECT_TRUE(d.search.interrupted);
   EXPECT_EQ(d.steps.size(), 1U);
   EXPECT_TRUE(std::isfinite(d.rms_after_m));
-}
-
-TEST(Diagnosis, PassesOnTheRestrictionsOfARecord) {
-  selection::SearchContext context = servo_context({.rate_mps = with_offset(0.0), .samples = 1000});
-  context.problem.data.records[0].notes = {"a gap at 3 s"};
-  EXPECT_THAT(diagnosed(context).diagnosis.notes, testing::Contains("servo: a gap at 3 s"));
 }
 
 TEST(Verdict, HasANameOfItsOwn) {

@@ -7,9 +7,9 @@
 #include <cstdlib>
 
 #include "estimator/greybox/selection/diagnosis.h"
+#include "tests/estimator/greybox/selection/truth_records.h"
 #include "tests/truth/plan.h"
 #include "tests/workbench/diagnose/judged.h"
-#include "tests/workbench/diagnose/truth_records.h"
 
 namespace workbench::diagnose {
 

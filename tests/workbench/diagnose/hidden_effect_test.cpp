@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 
 #include "estimator/greybox/selection/diagnosis.h"
+#include "tests/estimator/greybox/selection/truth_records.h"
 #include "tests/workbench/diagnose/judged.h"
-#include "tests/workbench/diagnose/truth_records.h"
 
 namespace workbench::diagnose {
 

@@ -6,10 +6,8 @@
 
 #include "config/schema/document.h"
 #include "tests/workbench/diagnose/example_outcome.h"
-#include "workbench/diagnose/better_model.h"
-#include "workbench/diagnose/json.h"
+#include "workbench/diagnose/diagnosis_report.h"
 #include "workbench/diagnose/progress_line.h"
-#include "workbench/diagnose/text_output.h"
 
 namespace workbench::diagnose {
 
@@ -73,7 +71,7 @@ TEST(DiagnosisText, BeginsWithTheVerdictAndEndsWithTheNextCommand) {
   const std::string text = out.str();
   EXPECT_TRUE(text.starts_with("Missing: friction: Coulomb 145.3 +- 1.9 N")) << text;
   EXPECT_THAT(text, HasSubstr("+ friction                      2.7 um     1.12  #\n"));
-  EXPECT_THAT(text, testing::ContainsRegex("friction +2.7 um  p below 1e-06  taken\n"));
+  EXPECT_THAT(text, testing::ContainsRegex("friction +2.7 um  p < 1e-6   taken\n"));
   EXPECT_THAT(text, Not(HasSubstr("backlash")));  // never fitted
   EXPECT_TRUE(text.ends_with("next: spoolwatch compare better.toml bench.csv\n")) << text;
   std::istringstream lines(text);
@@ -96,9 +94,10 @@ TEST(BetterModel, SaysAtItsTopWhatWasAddedAndReadsBack) {
   EXPECT_NE(*read.value("mass_kg"), 1.0);
 }
 
-selection::Progress step(const std::string& doing, int done) {
-  selection::Progress progress;
-  progress.doing = doing;
+selection::SearchProgress step(int round, const std::string& effect, int done) {
+  selection::SearchProgress progress;
+  progress.round = round;
+  progress.effect = effect;
   progress.done = done;
   progress.of = 36;
   progress.best = "friction";
@@ -109,26 +108,26 @@ selection::Progress step(const std::string& doing, int done) {
 TEST(ProgressLine, IsOneLineForEachRoundWhereNoTerminalIs) {
   std::ostringstream out;
   ProgressLine line(out, false, 2.4e-6);
-  line.show(step("round 1: trying friction", 1));
-  selection::Progress ranked = step("round 1: trying backlash", 2);
+  line.show(step(1, "friction", 1));
+  selection::SearchProgress ranked = step(1, "backlash", 2);
   ranked.expected = {"friction", "backlash", "deadband"};
   line.show(ranked);
   line.show(ranked);
-  line.show(step("round 2: trying backlash", 1));
+  line.show(step(2, "backlash", 1));
   line.end();
   EXPECT_EQ(out.str(),
             "round 1: 36 steps, best friction 2.71 um, noise floor 2.4 um\n"
-            "round 1: at first sight friction, backlash, deadband\n"
+            "round 1: ranked by screening: friction, backlash, deadband\n"
             "round 2: 36 steps, best friction 2.71 um, noise floor 2.4 um\n");
 }
 
 TEST(ProgressLine, IsRenewedOnATerminalAndWipedInTheEnd) {
   std::ostringstream out;
   ProgressLine line(out, true, 2.4e-6);
-  line.show(step("round 1: trying friction", 7));
+  line.show(step(1, "friction", 7));
   line.end();
   EXPECT_EQ(out.str(),
-            "\r\x1b[Kround 1: trying friction, 7 of 36; best friction 2.71 um, noise floor 2.4 um"
+            "\r\x1b[Kround 1: fitting friction, 7 of 36; best friction 2.71 um, noise floor 2.4 um"
             "\r\x1b[K");
 }
 

@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include "config/schema/exit_code.h"
+#include "config/schema/error.h"
 #include "tests/workbench/diagnose/servo_bench.h"
 
 namespace workbench::diagnose {

@@ -1,5 +1,5 @@
 // What is said of a diagnosis, for every verdict.
-#include "workbench/diagnose/words.h"
+#include "workbench/diagnose/diagnosis_report.h"
 
 #include <gmock/gmock.h>
 
@@ -53,14 +53,14 @@ TEST(Words, UnexplainedErrorSaysWhereItEnters) {
   d.verdict = selection::Verdict::unexplained;
   d.rms_after_m = 12e-6;
   d.where = {{"force", "speed", 0.62}, {"flow", "v", 0.4}};
-  EXPECT_THAT(verdict_words(d),
-              HasSubstr("Not the whole story: friction is missing, but an error of"));
+  EXPECT_THAT(verdict_words(d), HasSubstr("Incomplete: friction is missing, but an error of"));
   EXPECT_THAT(remarks(outcome),
-              Contains(HasSubstr("Taken for the better model: friction: Coulomb 145.3 +- 1.9 N")));
+              Contains(HasSubstr("Used in the better model: friction: Coulomb 145.3 +- 1.9 N")));
   EXPECT_THAT(verdict_words(d), HasSubstr("12 um on held-out data, 5.00 times the noise floor"));
-  EXPECT_THAT(remarks(outcome),
-              Contains("What is left enters as a force that goes with the speed (62 % of its "
-                       "square), or as a flow that goes with the velocity v (40 %)."));
+  EXPECT_THAT(
+      remarks(outcome),
+      Contains("The remaining error enters as a force that goes with the speed (62 % of its "
+               "square), or as a flow that goes with the velocity v (40 %)."));
   d.missing.clear();
   EXPECT_THAT(verdict_words(d), HasSubstr("Unexplained: an error of 12 um"));
 }
@@ -70,11 +70,27 @@ TEST(Words, RecordWithoutMotionGivesItsReasonAndNoFigures) {
   selection::Diagnosis& d = outcome.diagnosis;
   d = {};
   d.verdict = selection::Verdict::not_excited;
-  d.notes = {"the rod moves by 0.01 mm in all"};
+  d.excitation = {selection::Excitation::Cause::no_motion, 1e-5, 1e-6};
   outcome.advice = "Move more.";
-  EXPECT_EQ(verdict_words(d), "The record cannot tell: the rod moves by 0.01 mm in all.");
+  EXPECT_EQ(verdict_words(d),
+            "The record cannot tell: the rod moves by 0.01 mm in all, 0.001 mm of it noise.");
   EXPECT_THAT(remarks(outcome), testing::ElementsAre("Move more."));
   EXPECT_EQ(next_command(outcome), "");
+}
+
+TEST(Words, NotesNameTheRecordTheGapsAndTheInterruption) {
+  ExampleReport outcome;
+  greybox::Dataset record;
+  record.name = "servo";
+  record.notes = {"a gap at 3 s"};
+  record.gaps = {1, 2, 99};
+  outcome.input.problem.data.records = {record};
+  outcome.diagnosis.search.interrupted = true;
+  EXPECT_THAT(notes(outcome),
+              testing::ElementsAre("servo: a gap at 3 s",
+                                   "servo: 1 gap: the simulation restarts in each of 2 segments",
+                                   "servo: 99 samples in segments shorter than 1 s are left out",
+                                   "interrupted: the best so far"));
 }
 
 TEST(Words, InterruptionIsSaidFirst) {
@@ -96,7 +112,7 @@ TEST(Words, EffectsThatActAlikeOnThisPlantAreNamed) {
   ExampleReport outcome;
   outcome.diagnosis.same_here = {{"friction", "my_formula"}};
   EXPECT_THAT(remarks(outcome),
-              Contains(HasSubstr("On this plant friction and my_formula act alike")));
+              Contains(HasSubstr("On this plant friction and my_formula are equivalent")));
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 #include "config/schema/error.h"
 #include "tests/workbench/run_command.h"
 
-namespace workbench {
+namespace workbench::estimate {
 namespace {
 
 using config::record::Record;
@@ -223,4 +223,4 @@ TEST_F(Estimate, ReproducesTheReferenceErrorsOfTheFatigueRig) {
 }
 
 }  // namespace
-}  // namespace workbench
+}  // namespace workbench::estimate

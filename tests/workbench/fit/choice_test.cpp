@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "config/schema/exit_code.h"
+#include "config/schema/error.h"
 
 namespace workbench::fit {
 namespace {

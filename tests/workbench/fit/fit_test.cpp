@@ -9,13 +9,13 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "config/schema/exit_code.h"
+#include "config/schema/error.h"
 #include "plant_sim/model_file.h"
 #include "tests/truth/case.h"
 #include "tests/truth/rig.h"
 #include "tests/workbench/run_command.h"
 
-namespace workbench {
+namespace workbench::fit {
 
 namespace {
 
@@ -75,7 +75,7 @@ TEST_F(FitTest, WritesTheBetterModelAndSaysWhatMoved) {
       fit({kModels + "thesis.toml", record(), "--fit", "blocks", "-o", path("better.toml"),
            "--json", path("fit.json"), "--report", path("fit.html")});
   EXPECT_THAT(said, AllOf(HasSubstr("RMS, drift-corrected"), HasSubstr("On data that were not"),
-                          HasSubstr("What the record cannot see"),
+                          HasSubstr("Parameters that the record does not determine"),
                           HasSubstr("starts ended in this minimum"), HasSubstr("Moved:")));
   const auto json = nlohmann::json::parse(text_of(path("fit.json")));
   EXPECT_LT(json["rms_after_m"], 0.5 * double(json["rms_before_m"]));
@@ -199,4 +199,4 @@ TEST(FitEmps, AgreesWithThePublishedParameters) {
 }
 
 }  // namespace
-}  // namespace workbench
+}  // namespace workbench::fit

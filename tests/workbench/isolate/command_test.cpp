@@ -5,9 +5,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "config/schema/exit_code.h"
+#include "config/schema/error.h"
 #include "estimator/fdi/tracker/baseline_file.h"
-#include "tests/daemon/tracking/tracked.h"
+#include "tests/estimator/greybox/tracking/tracked_rig.h"
 #include "tests/truth/case.h"
 #include "tests/workbench/run_command.h"
 

@@ -11,7 +11,7 @@
 #include "tests/workbench/live/healthy_log.h"
 #include "workbench/live/online_residual.h"
 
-namespace workbench::compare {
+namespace workbench::live {
 
 namespace greybox = estimator::greybox;
 namespace validation = estimator::greybox::validation;
@@ -107,4 +107,4 @@ TEST(OnlineResidual, IsALineEachSecondFromThePipe) {
 }
 
 }  // namespace
-}  // namespace workbench::compare
+}  // namespace workbench::live

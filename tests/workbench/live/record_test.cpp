@@ -15,10 +15,10 @@
 #include "config/signals/sample.h"
 #include "daemon/io/publisher.h"
 #include "spoolwatch/sample_t.hpp"
-#include "tests/workbench/listen/subprocess.h"
 #include "tests/workbench/live/healthy_log.h"
+#include "tests/workbench/live/subprocess.h"
 
-namespace workbench {
+namespace workbench::live {
 namespace {
 
 namespace fs = std::filesystem;
@@ -150,4 +150,4 @@ TEST(Record, KeepsWhatThereIsAtCtrlCAndAfterAKill) {
 }
 
 }  // namespace
-}  // namespace workbench
+}  // namespace workbench::live

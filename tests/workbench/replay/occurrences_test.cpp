@@ -1,5 +1,5 @@
 // Two lists of alarms compared: what appears, disappears, shifts, stays.
-#include "workbench/replay/occurrences.h"
+#include "workbench/replay/backtest_runs.h"
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ TEST(Occurrences, AreFromTheComingToTheGoingOfAnAlarm) {
 
 TEST(Occurrences, OfTheSameTimesStayTheSame) {
   const std::vector<Occurrence> list = {at("a", 1, 2), at("b", 1, 2), at("a", 100, NAN)};
-  const Difference d = compare(list, list, 10.0, kSample_s);
+  const OccurrenceDifference d = compare(list, list, 10.0, kSample_s);
   EXPECT_EQ(d.same, 3);
   EXPECT_TRUE(d.appears.empty() && d.disappears.empty() && d.shifts.empty());
 }
@@ -44,7 +44,7 @@ TEST(Occurrences, OfTheSameTimesStayTheSame) {
 TEST(Occurrences, AppearDisappearAndShift) {
   const std::vector<Occurrence> before = {at("a", 10, 20), at("a", 100, 110), at("b", 5, 6)};
   const std::vector<Occurrence> after = {at("a", 12, 20), at("a", 200, 201), at("c", 5, 6)};
-  const Difference d = compare(before, after, 10.0, kSample_s);
+  const OccurrenceDifference d = compare(before, after, 10.0, kSample_s);
   ASSERT_EQ(d.shifts.size(), 1U);
   EXPECT_EQ(d.shifts[0].after.from_s - d.shifts[0].before.from_s, 2.0);
   ASSERT_EQ(d.disappears.size(), 2U);
@@ -57,20 +57,20 @@ TEST(Occurrences, AppearDisappearAndShift) {
 }
 
 TEST(Occurrences, ThatOverlapAreTheSameOneHoweverFarTheirBeginnings) {
-  const Difference d =
+  const OccurrenceDifference d =
       compare({at("a", 0, 100)}, {at("a", 50, 100), at("a", 101, 102)}, 10.0, kSample_s);
   EXPECT_EQ(d.shifts.size(), 1U);
   EXPECT_EQ(d.appears.size(), 1U);
 }
 
 TEST(Occurrences, OfAnotherDirectionAreNotTheSame) {
-  const Difference d = compare({at("a", 1, 2)}, {at("a", 1, 2, -1)}, 10.0, kSample_s);
+  const OccurrenceDifference d = compare({at("a", 1, 2)}, {at("a", 1, 2, -1)}, 10.0, kSample_s);
   EXPECT_EQ(d.same, 0);
   EXPECT_EQ(d.shifts.size(), 1U);
 }
 
 TEST(Occurrences, MatchTheNearestAndEachOnce) {
-  const Difference d =
+  const OccurrenceDifference d =
       compare({at("a", 10, 11), at("a", 14, 15)}, {at("a", 13, 15)}, 10.0, kSample_s);
   EXPECT_EQ(d.shifts.size(), 1U);
   EXPECT_EQ(d.disappears.size(), 1U);

@@ -8,7 +8,7 @@
 
 #include "tests/workbench/simulate/program.h"
 
-namespace workbench {
+namespace workbench::reproduce {
 namespace {
 
 using testing::HasSubstr;
@@ -55,4 +55,4 @@ TEST(ReproduceProgram, RefusesAnUnknownOption) {
 }
 
 }  // namespace
-}  // namespace workbench
+}  // namespace workbench::reproduce

@@ -20,12 +20,12 @@ constexpr double kCost = 1e-3;
 
 class Rows {
  public:
-  explicit Rows(std::vector<Row> rows) : rows_(std::move(rows)) {}
+  explicit Rows(std::vector<ReproducedRow> rows) : rows_(std::move(rows)) {}
 
-  const Row& at(const std::string& what) const {
-    static const Row kNone;
-    const auto found =
-        std::find_if(rows_.begin(), rows_.end(), [&](const Row& row) { return row.what == what; });
+  const ReproducedRow& at(const std::string& what) const {
+    static const ReproducedRow kNone;
+    const auto found = std::find_if(rows_.begin(), rows_.end(),
+                                    [&](const ReproducedRow& row) { return row.what == what; });
     if (found == rows_.end()) ADD_FAILURE() << "no row " << what;
     return found == rows_.end() ? kNone : *found;
   }
@@ -34,10 +34,10 @@ class Rows {
     if (value == nullptr) ADD_FAILURE() << what << " is no number";
     return value == nullptr ? 0.0 : *value;
   }
-  const std::vector<Row>& all() const { return rows_; }
+  const std::vector<ReproducedRow>& all() const { return rows_; }
 
  private:
-  std::vector<Row> rows_;
+  std::vector<ReproducedRow> rows_;
 };
 
 void expect_relative(double ours, double reference, double tolerance) {
@@ -46,7 +46,7 @@ void expect_relative(double ours, double reference, double tolerance) {
 
 /// Every row that is meant to agree does.
 void expect_expected(const Rows& rows) {
-  for (const Row& row : rows.all()) {
+  for (const ReproducedRow& row : rows.all()) {
     if (!row.expected) continue;
     EXPECT_EQ(row.agrees, Agreement::yes) << row.what;
   }
@@ -160,9 +160,10 @@ TEST(Reproduce, ResultsDoNotDependOnTheNumberOfThreads) {
 }
 
 TEST(Reproduce, NamesOfRowsAreUniqueWithinASection) {
-  for (const Section& section : run_all(experiments().first(3), 2)) {
+  for (const ReproducedSection& section : run_all(experiments().first(3), 2)) {
     std::set<std::string> seen;
-    for (const Row& row : section.rows) EXPECT_TRUE(seen.insert(row.what).second) << row.what;
+    for (const ReproducedRow& row : section.rows)
+      EXPECT_TRUE(seen.insert(row.what).second) << row.what;
   }
 }
 

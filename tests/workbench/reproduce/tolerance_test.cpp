@@ -41,7 +41,7 @@ TEST(Tolerance, WordsMustBeTheSame) {
 }
 
 TEST(Tolerance, WithoutAPrintedFigureNothingIsJudged) {
-  const Row row = judged("b1", {}, 1.0, "information");
+  const ReproducedRow row = judged("b1", {}, 1.0, "information");
   EXPECT_EQ(row.agrees, Agreement::not_applicable);
   EXPECT_FALSE(row.expected);
 }

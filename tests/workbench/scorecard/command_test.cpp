@@ -6,8 +6,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "config/schema/exit_code.h"
-#include "tests/workbench/report/page_check.h"
+#include "config/schema/error.h"
+#include "tests/workbench/present/page_check.h"
 #include "tests/workbench/run_command.h"
 
 namespace {
@@ -71,7 +71,7 @@ class ScorecardCommand : public testing::Test {
     std::ofstream(file(name)) << text;
   }
   std::string text(const std::string& name) const {
-    return workbench::report::read_text(file(name));
+    return workbench::present::read_text(file(name));
   }
   json json_of(const std::string& name) const { return json::parse(text(name)); }
   std::string run(std::vector<std::string> arguments) const {
@@ -209,13 +209,13 @@ TEST_F(ScorecardCommand, SaysWhichMotionAMethodCannotLearn) {
 }
 
 TEST_F(ScorecardCommand, ThePageDrawsEveryPlotWithoutARequest) {
-  if (!workbench::report::have_browser()) {
+  if (!workbench::present::have_browser()) {
     GTEST_SKIP() << "chromium is missing: scripts/install-packages browser";
   }
   run({file("printed.toml"), file("learned.toml"), "--report", file("page.html")});
-  const workbench::report::Visit seen =
-      workbench::report::visit(workbench::report::with_check(text("page.html"), false));
-  const json check = workbench::report::check_of(seen);
+  const workbench::present::Visit seen =
+      workbench::present::visit(workbench::present::with_check(text("page.html"), false));
+  const json check = workbench::present::check_of(seen);
   ASSERT_TRUE(check.contains("drawn")) << check.dump();
   EXPECT_THAT(seen.requests, testing::IsEmpty());
   EXPECT_THAT(check["errors"], testing::IsEmpty()) << check["errors"].dump();

@@ -41,13 +41,13 @@ Samples ramp(double from_s, double duration_s) {
   return samples;
 }
 
-Answer answer(const std::vector<fdi::BandConfig>& bands, double fault_s = 1.0) {
+TrialAnswer answer(const std::vector<fdi::BandConfig>& bands, double fault_s = 1.0) {
   return DetectionTrial(watching(bands), kPeriod_s).fault(ramp(1.0, 4.0), fault_s, {"a"}, true);
 }
 
 TEST(DetectionTrial, MeasuresTheDelayFromTheFaultToTheFirstAlarm) {
-  const Answer found = answer({band("one", 0.5, "a")});
-  EXPECT_EQ(found.verdict, Verdict::right);
+  const TrialAnswer found = answer({band("one", 0.5, "a")});
+  EXPECT_EQ(found.verdict, TrialVerdict::right);
   EXPECT_NEAR(found.delay_s, 0.505, 1e-9);  // the first sample above 0.5 m
   EXPECT_THAT(found.first, testing::ElementsAre("a"));
 }
@@ -59,12 +59,13 @@ TEST(DetectionTrial, GoesOnFromALeadAsIfItHadTakenIt) {
   DetectionTrial::Lead lead;
   const Samples slow = ramp(1.2, 4.0);
   const Samples late = ramp(2.0, 4.0);
-  const Answer first = watch.fault(slow, 1.1, {"a"}, true, &lead);
+  const TrialAnswer first = watch.fault(slow, 1.1, {"a"}, true, &lead);
   ASSERT_NE(lead.said, nullptr);
-  const Answer alone = DetectionTrial(watching(bands), kPeriod_s).fault(late, 1.1, {"a"}, true);
-  const Answer after = watch.fault(late, 1.1, {"a"}, true, &lead);
+  const TrialAnswer alone =
+      DetectionTrial(watching(bands), kPeriod_s).fault(late, 1.1, {"a"}, true);
+  const TrialAnswer after = watch.fault(late, 1.1, {"a"}, true, &lead);
   EXPECT_NEAR(first.delay_s, 0.605, 1e-9);
-  EXPECT_EQ(first.verdict, Verdict::wrong);
+  EXPECT_EQ(first.verdict, TrialVerdict::wrong);
   EXPECT_EQ(after.delay_s, alone.delay_s);
   EXPECT_NEAR(after.delay_s, 1.405, 1e-9);
   EXPECT_EQ(after.verdict, alone.verdict);
@@ -74,20 +75,20 @@ TEST(DetectionTrial, GoesOnFromALeadAsIfItHadTakenIt) {
 TEST(DetectionTrial, CountsNoNotice) {
   DetectionTrial watch(watching({band("one", 0.5, "a"), band("two", 0.7, "b")}), kPeriod_s,
                        {"sample.one"});
-  const Answer found = watch.fault(ramp(1.0, 4.0), 1.0, {"b"}, true);
-  EXPECT_EQ(found.verdict, Verdict::right);
+  const TrialAnswer found = watch.fault(ramp(1.0, 4.0), 1.0, {"b"}, true);
+  EXPECT_EQ(found.verdict, TrialVerdict::right);
   EXPECT_NEAR(found.delay_s, 0.705, 1e-9);
 }
 
 TEST(DetectionTrial, JudgesTheNamesOfEveryAlarm) {
-  EXPECT_EQ(answer({band("one", 0.5, "a", {"a", "b"})}).verdict, Verdict::group);
-  EXPECT_EQ(answer({band("one", 0.5, "b")}).verdict, Verdict::wrong);
-  EXPECT_EQ(answer({band("one", 0.5, "a"), band("two", 1.5, "b")}).verdict, Verdict::wrong);
+  EXPECT_EQ(answer({band("one", 0.5, "a", {"a", "b"})}).verdict, TrialVerdict::group);
+  EXPECT_EQ(answer({band("one", 0.5, "b")}).verdict, TrialVerdict::wrong);
+  EXPECT_EQ(answer({band("one", 0.5, "a"), band("two", 1.5, "b")}).verdict, TrialVerdict::wrong);
   EXPECT_EQ(answer({band("one", 0.5, "a"), band("two", 1.5, "b", {"a", "b"})}).verdict,
-            Verdict::group);
-  EXPECT_EQ(answer({band("one", 0.5, "")}).verdict, Verdict::unnamed);
-  EXPECT_EQ(answer({band("one", 0.5, ""), band("two", 1.0, "a")}).verdict, Verdict::right);
-  EXPECT_EQ(answer({band("one", 9.0, "a")}).verdict, Verdict::missed);
+            TrialVerdict::group);
+  EXPECT_EQ(answer({band("one", 0.5, "")}).verdict, TrialVerdict::unnamed);
+  EXPECT_EQ(answer({band("one", 0.5, ""), band("two", 1.0, "a")}).verdict, TrialVerdict::right);
+  EXPECT_EQ(answer({band("one", 9.0, "a")}).verdict, TrialVerdict::missed);
   EXPECT_TRUE(std::isinf(answer({band("one", 9.0, "a")}).delay_s));
 }
 
@@ -98,13 +99,13 @@ TEST(DetectionTrial, JoinsTheNamesThatComeTogether) {
 
 TEST(DetectionTrial, StopsAtTheFirstAlarmWhenTheRestDoesNotCount) {
   DetectionTrial watch(watching({band("one", 0.5, "a"), band("two", 1.0, "b")}), kPeriod_s);
-  EXPECT_EQ(watch.fault(ramp(1.0, 4.0), 1.0, {"a"}, false).verdict, Verdict::right);
-  EXPECT_EQ(watch.fault(ramp(1.0, 4.0), 1.0, {"a"}, true).verdict, Verdict::wrong);
+  EXPECT_EQ(watch.fault(ramp(1.0, 4.0), 1.0, {"a"}, false).verdict, TrialVerdict::right);
+  EXPECT_EQ(watch.fault(ramp(1.0, 4.0), 1.0, {"a"}, true).verdict, TrialVerdict::wrong);
 }
 
 TEST(DetectionTrial, DoesNotCountAnAlarmThatStoodBefore) {
-  const Answer found = answer({band("one", 0.5, "a")}, 2.0);
-  EXPECT_EQ(found.verdict, Verdict::standing);
+  const TrialAnswer found = answer({band("one", 0.5, "a")}, 2.0);
+  EXPECT_EQ(found.verdict, TrialVerdict::standing);
   EXPECT_FALSE(found.detected());
 }
 

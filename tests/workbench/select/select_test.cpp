@@ -11,7 +11,7 @@
 #include <stdexcept>
 
 #include "config/record/record.h"
-#include "config/schema/exit_code.h"
+#include "config/schema/error.h"
 #include "tests/estimator/structures/data.h"
 #include "tests/workbench/run_command.h"
 #include "workbench/select/outcome.h"

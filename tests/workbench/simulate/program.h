@@ -10,7 +10,7 @@
 #include <iterator>
 #include <string>
 
-namespace workbench {
+namespace workbench::simulate {
 
 /// A folder of its own, gone with the object.
 class TemporaryFolder {
@@ -53,4 +53,4 @@ inline Outcome run_program(const std::string& arguments) {
           text_of(folder.file("err"))};
 }
 
-}  // namespace workbench
+}  // namespace workbench::simulate

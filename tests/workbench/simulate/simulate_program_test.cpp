@@ -8,7 +8,7 @@
 #include "plant_sim/model_file.h"
 #include "tests/workbench/simulate/program.h"
 
-namespace workbench {
+namespace workbench::simulate {
 namespace {
 
 using testing::HasSubstr;
@@ -177,4 +177,4 @@ TEST(SimulateProgram, RefusesBadArgumentsInOneLine) {
 }
 
 }  // namespace
-}  // namespace workbench
+}  // namespace workbench::simulate

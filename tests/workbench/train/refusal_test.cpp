@@ -1,10 +1,10 @@
 // A trained file and a configuration that it does not fit.
 #include <gtest/gtest.h>
 
-#include "estimator/fdi/fingerprint.h"
+#include "estimator/fdi/snapshot.h"
 #include "tests/workbench/train/trained_rig.h"
 
-namespace workbench {
+namespace workbench::train {
 namespace {
 
 TEST_F(Train, IsRefusedForAnotherRigSampleTimeOrEstimatorInOneLineWithExitCode78) {
@@ -73,10 +73,10 @@ TEST_F(Train, HasTheSettingsOfEverySourceBehindTheOneThatItIsTrainedOn) {
   };
   EXPECT_EQ(settings(1.0), settings(1.0));
   EXPECT_NE(settings(1.0).find("tolerance = 1.0"), std::string::npos) << settings(1.0);
-  const fdi::Difference differs = fdi::difference(settings(1.0), settings(0.5));
+  const fdi::FingerprintDifference differs = fdi::difference(settings(1.0), settings(0.5));
   EXPECT_EQ(differs.found, "window_s = 1.0");
   EXPECT_EQ(differs.expected, "window_s = 0.5");
 }
 
 }  // namespace
-}  // namespace workbench
+}  // namespace workbench::train

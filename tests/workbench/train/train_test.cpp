@@ -7,7 +7,7 @@
 #include "tests/estimator/fdi/recorder.h"
 #include "tests/workbench/train/trained_rig.h"
 
-namespace workbench {
+namespace workbench::train {
 namespace {
 
 TEST_F(Train, TeachesOneCommandWhatChangedInARecordNotSeenBefore) {
@@ -124,4 +124,4 @@ TEST(Summary, OfBlocksIsMeanCovarianceAndTheDeviationThatCountsOverLongRuns) {
 }
 
 }  // namespace
-}  // namespace workbench
+}  // namespace workbench::train

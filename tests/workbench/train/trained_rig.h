@@ -1,4 +1,4 @@
-// A rig's configuration with what is to be trained, records of the small rig, and the command.
+// A rig's configuration with the methods to train, records of the small rig, and the command.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 #include "tests/workbench/run_command.h"
 #include "workbench/train/learn.h"
 
-namespace workbench {
+namespace workbench::train {
 
 namespace fdi = estimator::fdi;
 using config::schema::Document;
@@ -117,4 +117,4 @@ class Train : public testing::Test {
   std::string printed_;
 };
 
-}  // namespace workbench
+}  // namespace workbench::train

@@ -1,0 +1,65 @@
+// Units and digits as an engineer writes them; expected texts by hand.
+#include "config/units/quantity.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace config::units {
+namespace {
+
+const double kNone = std::nan("");
+
+std::string said(const char* name, double value, double error) {
+  return words(quantity(name, value, error));
+}
+
+TEST(Quantity, IsRoundedToWhatItsErrorLeaves) {
+  EXPECT_EQ(said("friction.coulomb_N", 145.27, 1.94), "145.3 +- 1.9 N");
+  EXPECT_EQ(said("friction.coulomb_N", 145.27, 4.4), "145 +- 4 N");
+  EXPECT_EQ(said("null_bias.offset_V", -0.0612, 0.0011), "-61.2 +- 1.1 mV");
+  EXPECT_EQ(said("mass_kg", 50.123, 0.0), "50.1 kg");
+  EXPECT_EQ(said("mass_kg", 50.123, 1e-9), "50.1230 +- 1e-09 kg");
+}
+
+TEST(Quantity, IsShownInTheUnitThatReadsWell) {
+  EXPECT_EQ(said("limit_m3ps", 1e-4, kNone), "6 L/min");
+  EXPECT_EQ(said("supply_pressure_Pa", 6.89e6, kNone), "68.9 bar");
+  EXPECT_EQ(said("droop.droop_Pa_per_m3ps", 6e9, kNone), "1 bar/(L/min)");
+  EXPECT_EQ(said("leak.conductance_m3ps_per_Pa", 1e-11, kNone), "60 mL/min/bar");
+  EXPECT_EQ(said("flow_asymmetry.asymmetry_ratio", 0.04, 0.002), "4.00 +- 0.20 %");
+  EXPECT_EQ(said("force_ripple.phase_rad", 3.14159265, kNone), "180 deg");
+  EXPECT_EQ(said("gain_mps_per_V", 0.0123, kNone), "12.3 mm/s/V");
+  EXPECT_EQ(said("quadratic_damping.coefficient_N_s2_per_m2", 8000.0, kNone), "8000 N s2/m2");
+}
+
+TEST(Quantity, MissingLimitsAndMissingValuesAreWords) {
+  EXPECT_EQ(said("limit_m3ps", std::numeric_limits<double>::infinity(), kNone), "no limit");
+  EXPECT_EQ(said("mass_kg", kNone, kNone), "unknown");
+  EXPECT_EQ(length_words(kNone), "-");
+}
+
+TEST(Quantity, LengthsGoFromMicrometresToMetres) {
+  EXPECT_EQ(length_words(2.63e-5), "26.3 um");
+  EXPECT_EQ(length_words(1.42e-3), "1.42 mm");
+  EXPECT_EQ(length_words(2.0), "2 m");
+  EXPECT_EQ(typeset("26.3 um +- 2 um"), "26.3 µm ± 2 µm");
+}
+
+TEST(Quantity, ParameterNamesLoseEffectAndUnit) {
+  EXPECT_EQ(parameter_words("friction.coulomb_N"), "Coulomb");
+  EXPECT_EQ(parameter_words("friction.presliding_stiffness_N_per_m"), "presliding stiffness");
+  EXPECT_EQ(parameter_words("deadband.half_width_V"), "half width");
+  EXPECT_EQ(parameter_words("flow_asymmetry.asymmetry_ratio"), "asymmetry");
+  EXPECT_EQ(parameter_words("transport_delay.delay_s"), "delay");
+}
+
+TEST(Chance, IsNotShownFinerThanItIsKnown) {
+  EXPECT_EQ(chance_words(1e-12), "< 1e-6");
+  EXPECT_EQ(chance_words(0.034), "0.034");
+  EXPECT_EQ(chance_words(kNone), "-");
+}
+
+}  // namespace
+}  // namespace config::units

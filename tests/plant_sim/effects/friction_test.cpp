@@ -1,0 +1,192 @@
+// Dry friction against closed forms and against its own differential equation.
+#include <gtest/gtest.h>
+
+#include "tests/plant_sim/support.h"
+
+namespace plant_sim::testing {
+namespace {
+
+using F = effects::Friction<double>;
+
+TEST(Friction, HoldsTheRodUntilThePressureForceExceedsIt) {
+  auto plant = at_rest();
+  set_effect(*plant, "friction", "coulomb_N", 200.0);
+  plant->prepare(1e-3);
+  plant->state.in_Pa += 150.0 / 6.33e-4;
+  hold(*plant, 0.0, 1.0);
+  EXPECT_NEAR(plant->state.y_m, 0.305, 1e-8);
+  plant->state.in_Pa = 0.5 * 6.89e6 + 400.0 / 6.33e-4;
+  plant->state.out_Pa = 0.5 * 6.89e6;
+  hold(*plant, 0.0, 0.5);
+  EXPECT_GT(plant->state.y_m, 0.305 + 1e-6);
+}
+
+TEST(Friction, SlidesAtTheSpeedOfTheClosedFormInEachDirection) {
+  for (const double u_V : {1.0, -1.0, 0.01, -0.01}) {
+    auto plant = at_rest();
+    set_effect(*plant, "friction", "coulomb_N", 600.0);
+    set_effect(*plant, "friction", "direction_ratio", 0.25);
+    const double force_N = u_V > 0 ? 750.0 : 450.0;
+    const double expected =
+        steady_speed_mps(plant->parameters, 2.79e-5 * std::abs(u_V), 0.0, 0.0, force_N);
+    hold(*plant, u_V, kSettling_m / expected);
+    EXPECT_NEAR(std::abs(plant->state.v_mps), expected, 1e-6 * expected) << u_V;
+  }
+}
+
+TEST(Friction, StopsAFreeRodInTheTimeAndWayOfTheClosedForm) {
+  // no oil force: equal pressures, no area to speak of
+  auto plant = std::make_unique<Actuator>();
+  plant->parameters.area_m2 = 1e-6;
+  plant->parameters.damping_N_s_per_m = 0.0;
+  set_effect(*plant, "friction", "coulomb_N", 100.0);
+  plant->prepare(1e-3);
+  plant->reset();
+  plant->parameters.bulk_modulus_Pa = 1e6;
+  plant->state.v_mps = 0.2;
+  const double stop_s = 0.2 / (100.0 / 50.0);
+  hold(*plant, 0.0, stop_s + 0.05);
+  EXPECT_LT(std::abs(plant->state.v_mps), 1e-8);
+  // v^2 / (2 a) = 0.01 m; the last step is a relaxation, a step_s^2 / 2 = 1e-6 m longer
+  EXPECT_NEAR(plant->state.y_m, 0.305 + 0.01, 2e-6);
+}
+
+TEST(Friction, FallsFromStaticToCoulombAlongStribecksCurve) {
+  F::Parameters p;
+  p.coulomb_N = 100.0;
+  p.static_N = 180.0;
+  p.stribeck_mps = 0.02;
+  EXPECT_DOUBLE_EQ(F::level_N(p, 1.0, 0.0), 180.0);
+  EXPECT_DOUBLE_EQ(F::level_N(p, 1.0, 0.02), 100.0 + 80.0 * std::exp(-1.0));
+  EXPECT_DOUBLE_EQ(F::level_N(p, 1.0, -0.02), 100.0 + 80.0 * std::exp(-1.0));
+  EXPECT_DOUBLE_EQ(F::level_N(p, 1.0, 1.0), 100.0);
+  p.static_N = 50.0;  // below sliding friction: no influence
+  EXPECT_DOUBLE_EQ(F::level_N(p, 1.0, 0.0), 100.0);
+  p.stribeck_mps = 0.0;
+  p.static_N = 180.0;
+  EXPECT_DOUBLE_EQ(F::level_N(p, 1.0, 1e-6), 100.0);
+}
+
+TEST(Friction, IsThatOfNewParametersAtOnce) {
+  F::Parameters p;
+  p.coulomb_N = 200.0;
+  p.static_N = 300.0;
+  p.stribeck_mps = 0.01;
+  F::Memory memory;
+  F::accept(p, memory, 1e-6, 0.005);
+  const effects::DryContact<double> at{0.005, 0.0, 1e4, 0.0};
+  EXPECT_NEAR(F::friction_N(p, memory, at), 200.0 + 100.0 * std::exp(-0.25), 1e-9);
+  p.stribeck_mps = 0.004;
+  memory.prepare(1e-3);
+  EXPECT_NEAR(F::friction_N(p, memory, at), 200.0 + 100.0 * std::exp(-1.5625), 1e-9);
+}
+
+TEST(Friction, NeverDrivesTheRod) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  for (int i = 0; i < 20000; ++i) {
+    F::Parameters p;
+    p.coulomb_N = 500.0 * std::abs(unit(random));
+    p.static_N = 1000.0 * std::abs(unit(random));
+    p.stribeck_mps = 0.1 * std::abs(unit(random));
+    p.direction_ratio = unit(random);
+    effects::DryContact<double> at{0.1 * std::pow(unit(random), 3), 0.0, 3000.0 * unit(random),
+                                   5e4};
+    EXPECT_GE(F::friction_N(p, {}, at) * at.v_mps, 0.0);
+  }
+}
+
+F::Parameters bristle_with_rise() {
+  F::Parameters p;
+  p.coulomb_N = 200.0;
+  p.static_N = 300.0;
+  p.stribeck_mps = 0.01;
+  p.presliding_stiffness_N_per_m = 1e7;
+  return p;
+}
+
+TEST(Friction, BristleFollowsItsDifferentialEquation) {
+  F::Parameters p;
+  p.coulomb_N = 200.0;
+  p.presliding_stiffness_N_per_m = 1e7;
+  p.direction_ratio = 0.2;
+  F::Memory exact;
+  double z = 0.0;
+  const auto travel = [&](double dx, int parts) {
+    F::accept(p, exact, dx, 0.01);
+    const double direction = dx > 0 ? 1.0 : -1.0;
+    const double level = 200.0 * (1.0 + direction * 0.2);
+    for (int i = 0; i < parts; ++i) {
+      const double d = dx / parts;
+      z += d - std::abs(d) * 1e7 * z / level;
+    }
+  };
+  for (const double dx : {5e-6, 30e-6, -10e-6, -80e-6, 7e-6}) {
+    travel(dx, 200000);
+    // Euler's error over a bristle length of 20 um in steps of at most 4e-10 m
+    EXPECT_NEAR(exact.deflection_m, z, 2e-9) << dx;
+  }
+}
+
+TEST(Friction, BristleYieldsAtTheLevelsOfTheSpeedsOnItsWay) {
+  const F::Parameters p = bristle_with_rise();
+  F::Memory memory;
+  double z = 0.0;
+  double v_mps = 0.0;
+  constexpr double kStep_s = 1e-3;
+  constexpr int kParts = 20000;
+  for (const double next_mps : {0.004, 0.009, 0.013, 0.011, 0.006}) {
+    double dx = 0.0;
+    for (int i = 0; i < kParts; ++i) {  // the differential equation, the speed changing evenly
+      const double v = v_mps + (next_mps - v_mps) * (i + 0.5) / kParts;
+      const double level = 200.0 + 100.0 * std::exp(-(v / 0.01) * (v / 0.01));
+      z += v * kStep_s / kParts * (1.0 - 1e7 * z / level);
+      dx += v * kStep_s / kParts;
+    }
+    F::accept(p, memory, dx, next_mps);
+    v_mps = next_mps;
+    // levels differ by up to 50 N within a step: judged by the last one alone it is off by 0.5 um
+    EXPECT_NEAR(memory.deflection_m, z, 0.1e-6) << next_mps;
+  }
+}
+
+TEST(Friction, PresslidingStoresNoMoreThanItTakes) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  const F::Parameters p = bristle_with_rise();
+  F::Memory memory;
+  double given_J = 0.0;
+  for (int i = 0; i < 20000; ++i) {
+    const double v_mps = 0.05 * unit(random);
+    const double dx = 1e-7 * unit(random);  // small against the bristle: force nearly constant
+    const double before_N = 1e7 * memory.deflection_m;
+    F::accept(p, memory, dx, v_mps);
+    given_J += 0.5 * (before_N + 1e7 * memory.deflection_m) * dx;
+    const double stored_J = 0.5 * 1e7 * memory.deflection_m * memory.deflection_m;
+    ASSERT_LE(stored_J, given_J + 1e-9) << i;
+  }
+}
+
+TEST(Friction, RunsOfHalvedStepsConverge) {
+  const auto position = [](double step_s, double stiffness) {
+    auto plant = std::make_unique<Actuator>();
+    set_effect(*plant, "friction", "coulomb_N", 200.0);
+    set_effect(*plant, "friction", "static_N", 260.0);
+    set_effect(*plant, "friction", "stribeck_mps", 0.02);
+    set_effect(*plant, "friction", "presliding_stiffness_N_per_m", stiffness);
+    plant->prepare(step_s);
+    plant->reset();
+    for (int k = 0; k < 800; ++k) hold(*plant, 1.5 * std::sin(k * 0.005 * M_PI), 0.005, step_s);
+    return plant->state.y_m;
+  };
+  for (const double stiffness : {0.0, 1e7}) {
+    const double exact = position(1e-3 / 16.0, stiffness);
+    const double coarse = std::abs(position(1e-3, stiffness) - exact);
+    const double fine = std::abs(position(0.25e-3, stiffness) - exact);
+    EXPECT_LT(coarse, 1e-5) << stiffness;  // of 0.09 m travelled each way
+    EXPECT_LT(fine, 0.5 * coarse) << stiffness;
+  }
+}
+
+}  // namespace
+}  // namespace plant_sim::testing

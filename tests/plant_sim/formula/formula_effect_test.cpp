@@ -1,0 +1,251 @@
+// Formula effects in the plants: they do what an effect of the library with the same equation does,
+// in a single run and in lanes, and nothing when neutral.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "plant_sim/library.h"
+#include "plant_sim/plant.h"
+#include "tests/plant_sim/formula/formula_support.h"
+#include "tests/plant_sim/support.h"
+
+namespace plant_sim::testing {
+namespace {
+
+/// Rounding of another order of the same operations.
+constexpr double kAgree = 1e-12;
+
+struct Twin {
+  const char* plant;
+  const char* site;
+  const char* formula;
+  const char* value;       ///< of k
+  const char* of_library;  ///< the same with its table
+  double full_V;
+};
+
+/// The same equation as a formula and as an effect of the library.
+const Twin kTwins[] = {
+    {"hydraulic_actuator", "force", "k*v_mps*abs(v_mps)", "2e4",
+     "[effects.quadratic_damping]\ncoefficient_N_s2_per_m2 = 2e4\n", 5.0},
+    {"force_driven_axis", "force", "if(v_mps < 0, -k, k)*v_mps^2", "300.0",
+     "[effects.quadratic_damping]\ncoefficient_N_s2_per_m2 = 300.0\n", 20.0},
+    {"hydraulic_actuator", "force", "k*(y_m - 0.3)", "2e4",
+     "[effects.load_spring]\nstiffness_N_per_m = 2e4\nrest_m = 0.3\n", 3.0},
+    {"hydraulic_actuator", "force", "k", "500.0", "[effects.load_force]\nforce_N = 500.0\n", 3.0},
+    {"hydraulic_actuator", "leakage", "k*1e-15*(in_Pa - out_Pa)", "2e3",
+     "[effects.internal_leakage]\nconductance_m3ps_per_Pa = 2e-12\n", 3.0},
+    {"hydraulic_actuator", "flow", "q_m3ps - (q_m3ps - max(min(q_m3ps, 3e-5), -3e-5))*k", "1.0",
+     "[effects.flow_saturation]\nlimit_m3ps = 3e-5\n", 5.0},
+    {"hydraulic_actuator", "opening", "x_m*(1 + if(x_m < 0, -k, k))", "0.08",
+     "[effects.flow_asymmetry]\nasymmetry_ratio = 0.08\n", 3.0},
+    {"velocity_servo", "opening", "x_m - max(min(x_m, 0.05*k), -0.05*k)", "0.3",
+     "[effects.deadband]\nhalf_width_V = 0.3\n", 2.0},
+    {"velocity_servo", "command", "u_V + k", "-0.4", "[effects.null_bias]\noffset_V = -0.4\n", 2.0},
+    {"hydraulic_actuator", "sensor", "y_m + k*sin(2*pi*y_m/0.02 + 0.7)", "5e-5",
+     "[effects.encoder_eccentricity]\namplitude_m = 5e-5\nwavelength_m = 0.02\nphase_rad = 0.7\n",
+     3.0},
+};
+
+double drive_V(int k, double full_V) { return full_V * std::sin(k * 0.05) + 0.1 * full_V; }
+
+TEST(FormulaEffect, DoesWhatTheEffectOfTheLibraryWithTheSameEquationDoes) {
+  for (const Twin& twin : kTwins) {
+    const std::string head = plant_text(twin.plant);
+    auto own = make_plant(model_of(head + own_text(twin.site, twin.formula, "-1e6", "1e6") +
+                                   "[effects.own]\nk = " + twin.value + "\n"));
+    auto library = make_plant(model_of(head + twin.of_library));
+    auto without = make_plant(model_of(head));
+    double influence_m = 0.0;
+    for (int k = 0; k < 600; ++k) {
+      for (const auto& plant : {&own, &library, &without}) {
+        (*plant)->advance(drive_V(k, twin.full_V), 0.005);
+      }
+      ASSERT_NEAR(own->reading_m(), library->reading_m(), kAgree) << twin.formula << " at " << k;
+      influence_m = std::max(influence_m, std::abs(own->reading_m() - without->reading_m()));
+    }
+    EXPECT_GT(influence_m, 1e-5) << twin.formula;
+  }
+}
+
+TEST(FormulaEffect, FollowsTheClosedFormOfASteadyState) {
+  // F = k v^3 on the axis: gain u = d v + k v^3
+  auto plant = make_plant(model_of(plant_text("force_driven_axis") +
+                                   own_text("force", "k*v_mps^3", "0.0", "1e7") +
+                                   "[effects.own]\nk = 5e4\n"));
+  const double v_mps = 0.15;
+  plant->advance((200.0 * v_mps + 5e4 * v_mps * v_mps * v_mps) / 35.0, 10.0);
+  EXPECT_NEAR(plant->speed_mps(), v_mps, 1e-9);
+}
+
+const std::string kDrag = own_text("force", "k*v_mps^3", "0.0", "1e7");
+
+TEST(FormulaEffect, ChangesNotOneBitWhileItsParametersAreNeutral) {
+  for (const Twin& twin : kTwins) {
+    const std::string head = plant_text(twin.plant);
+    const std::string declared = own_text(twin.site, twin.formula, "-1e6", "1e6");
+    auto without = make_plant(model_of(head));
+    auto candidate = make_plant(model_of(head + declared));
+    auto neutral = make_plant(model_of(head + declared + "[effects.own]\n"));
+    for (int k = 0; k < 300; ++k) {
+      for (const auto& plant : {&without, &candidate, &neutral}) {
+        (*plant)->advance(drive_V(k, twin.full_V), 0.005);
+      }
+      ASSERT_EQ(candidate->reading_m(), without->reading_m()) << twin.formula;
+      ASSERT_EQ(neutral->reading_m(), without->reading_m()) << twin.formula;
+    }
+  }
+}
+
+/// The formulas of the model in a plant of any kind of number.
+template <class Model>
+void declare(Model& plant, const formula::Formulas& formulas) {
+  plant.effects.formulas().declare(formulas.data(), formulas.size());
+}
+
+/// All that is not neutral also takes part when it is evaluated although neutral.
+TEST(FormulaEffect, ChangesNotOneBitWhenNeutralAndEvaluated) {
+  for (const Twin& twin : kTwins) {
+    if (std::string(twin.plant) != "hydraulic_actuator") continue;
+    const formula::Formulas formulas =
+        model_of(plant_text(twin.plant) + own_text(twin.site, twin.formula, "-1e6", "1e6"))
+            .formulas();
+    Actuator with, without;
+    declare(with, formulas);
+    with.effects.set_always(true);
+    without.effects.set_always(true);
+    for (Actuator* plant : {&with, &without}) {
+      plant->prepare(1e-3);
+      plant->reset();
+    }
+    for (int k = 0; k < 3000; ++k) {
+      with.step(drive_V(k / 5, twin.full_V));
+      without.step(drive_V(k / 5, twin.full_V));
+      ASSERT_EQ(with.effects.reading_m(with.state.y_m),
+                without.effects.reading_m(without.state.y_m));
+      ASSERT_EQ(with.state.in_Pa, without.state.in_Pa) << twin.formula << " at " << k;
+    }
+  }
+}
+
+/// Eight different values of k, one of them neutral, together and alone.
+template <template <class> class Model>
+void expect_lanes_agree(const Twin& twin) {
+  const formula::Formulas formulas =
+      model_of(plant_text(twin.plant) + own_text(twin.site, twin.formula, "-1e6", "1e6"))
+          .formulas();
+  const auto k_of = [&](std::size_t lane) {
+    return std::stod(twin.value) * static_cast<double>(lane) / 7.0;
+  };
+  auto together = std::make_unique<Model<Simd>>();
+  declare(*together, formulas);
+  together->effects.formulas().each(
+      [&](const formula::FormulaView&, const ParameterInfo&, Simd& value) {
+        for (std::size_t lane = 0; lane < Simd::kSize; ++lane) value.set(lane, k_of(lane));
+      });
+  together->prepare(1e-3);
+  together->reset();
+  std::array<Model<double>, Simd::kSize> alone;
+  for (std::size_t lane = 0; lane < Simd::kSize; ++lane) {
+    declare(alone[lane], formulas);
+    alone[lane].effects.formulas().each([&](const formula::FormulaView&, const ParameterInfo&,
+                                            double& value) { value = k_of(lane); });
+    alone[lane].prepare(1e-3);
+    alone[lane].reset();
+  }
+  for (int k = 0; k < 2000; ++k) {
+    const double u_V = drive_V(k / 5, twin.full_V);
+    together->step(u_V);
+    const Simd reading_m = together->effects.reading_m(together->state.y_m);
+    for (std::size_t lane = 0; lane < Simd::kSize; ++lane) {
+      alone[lane].step(u_V);
+      ASSERT_NEAR(reading_m[lane], alone[lane].effects.reading_m(alone[lane].state.y_m), kAgree)
+          << twin.formula << " lane " << lane << " step " << k;
+    }
+  }
+}
+
+TEST(FormulaEffect, RunsInLanesWithAParameterOfItsOwnInEach) {
+  for (const Twin& twin : kTwins) {
+    const std::string plant = twin.plant;
+    if (plant == "hydraulic_actuator") expect_lanes_agree<HydraulicActuator>(twin);
+    if (plant == "velocity_servo") expect_lanes_agree<VelocityServo>(twin);
+    if (plant == "force_driven_axis") expect_lanes_agree<ForceDrivenAxis>(twin);
+  }
+}
+
+TEST(FormulaEffect, ActsInTheOrderOfDeclaration) {
+  const std::string two =
+      "[formula_effects.zoom]\nsite = \"sensor\"\nformula = \"y_m*(1 + r)\"\n"
+      "[formula_effects.zoom.parameters.r]\nmin = 0\nmax = 1\ntypical = 0.1\n"
+      "[formula_effects.bias]\nsite = \"sensor\"\nformula = \"y_m + b_m\"\n"
+      "[formula_effects.bias.parameters.b_m]\nmin = 0\nmax = 1\ntypical = 0.1\n"
+      "[effects.bias]\nb_m = 0.01\n[effects.zoom]\nr = 0.5\n";
+  auto plant = make_plant(model_of(plant_text("hydraulic_actuator") + two));
+  EXPECT_DOUBLE_EQ(plant->reading_m(), 1.5 * 0.305 + 0.01);
+}
+
+TEST(FormulaEffect, StaysStableWhereItIsStiff) {
+  // dF/dv up to 2e6 N s/m on 50 kg: 40 times what one step of 1 ms follows
+  for (const char* formula : {"k*tanh(v_mps/0.001)", "2*k*v_mps/(0.001 + abs(v_mps))"}) {
+    for (const char* plant_name : {"hydraulic_actuator", "force_driven_axis"}) {
+      auto plant =
+          make_plant(model_of(plant_text(plant_name) + own_text("force", formula, "0.0", "1e4") +
+                              "[effects.own]\nk = 2000.0\n"));
+      auto fine = make_plant(model_of(plant_text(plant_name) + "step_s = 1e-5\n" +
+                                      own_text("force", formula, "0.0", "1e4") +
+                                      "[effects.own]\nk = 2000.0\n"));
+      double far_m = 0.0;
+      for (int k = 0; k < 200; ++k) {
+        const double u_V =
+            (std::string(plant_name) == "hydraulic_actuator" ? 3.0 : 100.0) * std::sin(k * 0.06);
+        plant->advance(u_V, 0.005);
+        fine->advance(u_V, 0.005);
+        far_m = std::max(far_m, std::abs(plant->position_m() - fine->position_m()));
+      }
+      EXPECT_LT(far_m, 2e-6) << formula << " on " << plant_name;
+    }
+  }
+  // a spring of 1e9 N/m and a leak past which no pressure stays
+  auto spring = make_plant(model_of(plant_text("hydraulic_actuator") +
+                                    own_text("force", "k*(y_m - 0.305)", "0.0", "1e9") +
+                                    "[effects.own]\nk = 1e9\n"));
+  auto leak = make_plant(model_of(plant_text("hydraulic_actuator") +
+                                  own_text("leakage", "k*1e-9*(in_Pa - out_Pa)", "0.0", "1e3") +
+                                  "[effects.own]\nk = 1.0\n"));
+  for (int k = 0; k < 200; ++k) {
+    spring->advance(3.0 * std::sin(k * 0.06), 0.005);
+    leak->advance(3.0 * std::sin(k * 0.06), 0.005);
+    EXPECT_NEAR(spring->position_m(), 0.305, 1e-5);
+    EXPECT_NEAR(leak->state()[2].value, leak->state()[3].value, 2e5);
+  }
+}
+
+TEST(FormulaEffect, CountsAsAbsentWhereItIsNotFinite) {
+  // beyond the range that was tried at the start: the axis comes past 3 m
+  const std::string head = plant_text("force_driven_axis");
+  auto plant = make_plant(model_of(head + own_text("force", "k*sqrt(3 - y_m)", "0.0", "100.0") +
+                                   "[effects.own]\nk = 1.0\n"));
+  auto without = make_plant(model_of(head));
+  plant->advance(40.0, 3.0);
+  ASSERT_GT(plant->position_m(), 3.0);
+  const std::vector<NamedValue> state = plant->state();
+  const std::array<double, 2> values = {state[0].value, state[1].value};
+  without->set_state(values);
+  plant->advance(40.0, 1.0);
+  without->advance(40.0, 1.0);
+  EXPECT_EQ(plant->position_m(), without->position_m());
+  // and whatever comes, states stay finite
+  for (const char* formula : {"k*exp(300*(abs(v_mps) - 2))", "-k*v_mps^8*1e30", "k/(y_m - 2.5)"}) {
+    auto wild = make_plant(
+        model_of(head + own_text("force", formula, "0.0", "100.0") + "[effects.own]\nk = 100.0\n"));
+    for (int k = 0; k < 200; ++k) {
+      wild->advance(1e4 * std::sin(k * 0.3), 0.02);
+      for (const NamedValue& one : wild->state()) ASSERT_TRUE(std::isfinite(one.value)) << formula;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace plant_sim::testing

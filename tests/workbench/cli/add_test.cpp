@@ -1,0 +1,144 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "config/schema/error.h"
+#include "plant_sim/plant.h"
+#include "tests/workbench/run_command.h"
+
+namespace workbench::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+using workbench_test::run_command;
+
+const std::string kModels = SPOOLWATCH_SOURCE_DIR "/config/models/";
+
+class AddTest : public testing::Test {
+ protected:
+  AddTest() {
+    std::string name = (fs::temp_directory_path() / "add-XXXXXX").string();
+    folder_ = ::mkdtemp(name.data());
+  }
+  ~AddTest() override { fs::remove_all(folder_); }
+
+  // What the command prints; `arguments` without -o.
+  std::string add(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.end(), {"-o", out().string()});
+    return workbench_test::printed_by(workbench::cli::add_add, std::move(arguments));
+  }
+  std::string refusal(std::vector<std::string> arguments, int exit_code = 78) const {
+    arguments.insert(arguments.end(), {"-o", out().string()});
+    try {
+      run_command(workbench::cli::add_add, std::move(arguments));
+    } catch (const config::schema::Error& error) {
+      EXPECT_EQ(config::schema::exit_code_of(error), exit_code);
+      EXPECT_THAT(error.what(), Not(HasSubstr("\n")));
+      EXPECT_TRUE(fs::is_empty(folder_));
+      return error.what();
+    }
+    return "no refusal";
+  }
+  [[nodiscard]] fs::path out() const { return folder_ / "better.toml"; }
+
+  fs::path folder_;
+};
+
+TEST_F(AddTest, WritesAModelThatHasTheEffect) {
+  const std::string said =
+      add({kModels + "thesis.toml", "friction", "coulomb_N=120", "static_N=1.5e2"});
+  EXPECT_THAT(said, AllOf(HasSubstr("friction"), HasSubstr("coulomb_N = 120 N"),
+                          Not(HasSubstr("no influence"))));
+  auto plant = plant_sim::make_plant(plant_sim::load_model(out()));
+  EXPECT_EQ(*plant->parameter("friction.coulomb_N"), 120.0);
+  EXPECT_EQ(*plant->parameter("friction.static_N"), 150.0);
+  EXPECT_EQ(*plant->parameter("friction.stribeck_mps"), 0.0);
+  EXPECT_EQ(*plant->parameter("valve_gain_m_per_V"), 2.79e-5);
+}
+
+TEST_F(AddTest, KeepsWhatTheModelAlreadyHas) {
+  add({kModels + "rig_2000psi_slaves.toml", "coupled_slaves", "needle_N_s2_per_m2=500"});
+  auto plant = plant_sim::make_plant(plant_sim::load_model(out()));
+  EXPECT_EQ(*plant->parameter("coupled_slaves.needle_N_s2_per_m2"), 500.0);
+  EXPECT_EQ(*plant->parameter("coupled_slaves.mass_kg"), 20.0);
+  EXPECT_EQ(*plant->parameter("friction.coulomb_N"), 300.0);
+}
+
+TEST_F(AddTest, WritesOverItsOwnInputWholly) {
+  fs::copy_file(kModels + "thesis.toml", out());
+  add({out().string(), "flow_saturation", "limit_m3ps=3e-5"});
+  add({out().string(), "null_bias", "offset_V=-0.1"});
+  auto plant = plant_sim::make_plant(plant_sim::load_model(out()));
+  EXPECT_EQ(*plant->parameter("flow_saturation.limit_m3ps"), 3e-5);
+  EXPECT_EQ(*plant->parameter("null_bias.offset_V"), -0.1);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
+}
+
+TEST_F(AddTest, SaysThatAnEffectWithoutValuesHasNoInfluenceYet) {
+  EXPECT_THAT(add({kModels + "velocity_servo.toml", "transport_delay"}),
+              HasSubstr("no influence until"));
+  EXPECT_THAT(add({kModels + "thesis.toml", "spool_rate_limit"}), HasSubstr("rate_mps = inf m/s"));
+  std::ifstream in(out());
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_THAT(text, HasSubstr("[effects.spool_rate_limit]\nrate_mps = inf"));
+}
+
+TEST_F(AddTest, AddsAndChangesAnEffectThatTheModelFileGivesAsAFormula) {
+  const std::string model = kModels + "cubic_drag.toml";
+  EXPECT_THAT(add({model, "cubic_drag", "drag_N_s3_per_m3=3e4"}),
+              HasSubstr("drag_N_s3_per_m3 = 30000 N s3/m3"));
+  auto plant = plant_sim::make_plant(plant_sim::load_model(out()));
+  EXPECT_EQ(*plant->parameter("cubic_drag.drag_N_s3_per_m3"), 3e4);
+  add({out().string(), "friction", "coulomb_N=50"});
+  plant = plant_sim::make_plant(plant_sim::load_model(out()));
+  EXPECT_EQ(*plant->parameter("cubic_drag.drag_N_s3_per_m3"), 3e4);
+  EXPECT_EQ(*plant->parameter("friction.coulomb_N"), 50.0);
+  fs::remove(out());
+  EXPECT_THAT(refusal({model, "cubic_drag", "drag_N_s3_per_m3=-1"}), HasSubstr("out of range"));
+  EXPECT_THAT(refusal({model, "cubicdrag"}), HasSubstr("did you mean cubic_drag?"));
+  EXPECT_THAT(refusal({kModels + "thesis.toml", "cubic_drag"}), HasSubstr("is unknown"));
+}
+
+TEST_F(AddTest, NamesTheNearestForWhatItDoesNotKnow) {
+  EXPECT_THAT(refusal({kModels + "thesis.toml", "fricton"}),
+              AllOf(HasSubstr("did you mean friction?"), HasSubstr("backlash")));
+  EXPECT_THAT(refusal({kModels + "thesis.toml", "friction", "colomb_N=1"}),
+              AllOf(HasSubstr("did you mean coulomb_N?"), HasSubstr("direction_ratio")));
+}
+
+TEST_F(AddTest, RefusesBadValuesInOneLine) {
+  const std::string model = kModels + "thesis.toml";
+  EXPECT_THAT(refusal({model, "entrained_air", "fraction_ratio=0.9"}),
+              HasSubstr("entrained_air.fraction_ratio: is 0.9, out of range; allowed: 0 to 0.5"));
+  EXPECT_THAT(refusal({model, "null_bias", "offset_V=nan"}), HasSubstr("out of range"));
+  EXPECT_THAT(refusal({model, "null_bias", "offset_V=1x"}, 2), HasSubstr("parameter=number"));
+  EXPECT_THAT(refusal({model, "null_bias", "offset_V"}, 2), HasSubstr("parameter=number"));
+  EXPECT_THAT(refusal({kModels + "force_driven_axis.toml", "deadband"}),
+              HasSubstr("does not have; allowed: effects of its sites command, inertia"));
+  EXPECT_THAT(refusal({"/nowhere/model.toml", "friction"}), HasSubstr("/nowhere/model.toml"));
+}
+
+TEST_F(AddTest, RefusesAParameterGivenTwice) {
+  EXPECT_THAT(refusal({kModels + "thesis.toml", "friction", "coulomb_N=3", "coulomb_N=4"}, 2),
+              HasSubstr("coulomb_N: is given twice"));
+}
+
+TEST_F(AddTest, LeavesNothingBehindWhenItCannotWrite) {
+  try {
+    run_command(workbench::cli::add_add,
+                {kModels + "thesis.toml", "friction", "-o", "/nowhere/better.toml"});
+    ADD_FAILURE() << "there is no such folder";
+  } catch (const config::schema::RunError& error) {
+  }
+  EXPECT_THROW(run_command(workbench::cli::add_add, {kModels + "thesis.toml", "friction"}),
+               CLI::ParseError);
+}
+
+}  // namespace
+}  // namespace workbench::cli
