@@ -114,7 +114,7 @@ TEST(Fit, GivesTheSameFromFarAwayAndOnSeveralThreads) {
   const FitSummary near =
       fit(servo(), e, e.training_mask, {gain(), offset()}, VectorXd::Zero(2), freely());
   FitOptions options = freely();
-  options.threads = 2;
+  options.width = wide(2);
   VectorXd start(2);
   start << 7.0, -30.0;  // the gain's is beyond its bound
   const FitSummary far = fit(servo(), e, e.training_mask, {gain(), offset()}, start, options);

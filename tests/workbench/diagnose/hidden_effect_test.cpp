@@ -52,6 +52,27 @@ TEST(HiddenEffect, ANullBiasIsNamedWithItsSignOnAMismatchedPlant) {
   expect_found(judged("motion=multisine,length_s=12,mismatched=1,null_bias.offset_V=-0.07", 13));
 }
 
+TEST(HiddenEffect, OnADisturbedRigIsNamedAndTheDisturbanceToldFromIt) {
+  const Judged j = judged(
+      "motion=multisine,length_s=20,quadratic_damping.coefficient_N_s2_per_m2=2e4,"
+      "outside.force_N=25,outside.corner_Hz=3,outside.pulsation_Pa=1.5e5,outside.pulsation_Hz=23",
+      15);
+  const selection::Diagnosis& d = j.diagnosis;
+  EXPECT_EQ(d.verdict, selection::Verdict::missing) << said(d);
+  EXPECT_THAT(d.missing, testing::ElementsAre("quadratic_damping")) << said(d);
+  ASSERT_TRUE(d.disturbance.has_value());
+  EXPECT_NEAR(d.disturbance->value, 25.0, 0.25 * 25.0);
+  ASSERT_EQ(d.disturbance->lines.size(), 1U);
+  EXPECT_EQ(d.disturbance->lines.front().as, "pressure");
+  EXPECT_NEAR(d.disturbance->lines.front().frequency_Hz, 23.0, 0.1);
+  EXPECT_NEAR(d.disturbance->lines.front().amplitude, 1.5e5, 0.1 * 1.5e5);
+}
+
+TEST(HiddenEffect, NoneIsClaimedOnADisturbedHealthyRig) {
+  const Judged j = judged("motion=fast_steps,length_s=20,mismatched=1,outside.force_N=40", 16);
+  EXPECT_EQ(j.diagnosis.verdict, selection::Verdict::nothing_missing) << said(j.diagnosis);
+}
+
 TEST(HiddenEffect, TwoAtOnceAreBothNamed) {
   const Judged j =
       judged("motion=multisine,length_s=20,deadband.half_width_V=0.2,null_bias.offset_V=0.07", 14);

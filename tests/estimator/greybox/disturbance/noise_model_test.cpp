@@ -1,0 +1,49 @@
+// Noise models and searches on records of the independent simulator (tests/truth), disturbed.
+#include "estimator/greybox/disturbance/noise_model.h"
+
+#include <gmock/gmock.h>
+
+#include "estimator/greybox/selection/innovation_search.h"
+#include "estimator/greybox/selection/structure_search.h"
+#include "tests/estimator/greybox/selection/truth_records.h"
+
+namespace estimator::greybox::disturbance {
+namespace {
+
+using diagnose_test::context_of;
+
+TEST(NoiseModel, ARandomForceIsMeasured) {
+  const selection::SearchContext context =
+      context_of("motion=multisine,length_s=20,outside.force_N=30,outside.corner_Hz=3", 41);
+  const selection::ModelStage first = selection::first_stage(context);
+  const Linearisations linear = linearise(context.problem.model, context.problem.data,
+                                          first.fitted.parameters, first.fitted.theta);
+  const NoiseEstimate found =
+      estimate_noise(context.problem.model, context.problem.data, first.fitted.parameters,
+                     first.fitted.theta, linear, {}, 2);
+  const double intensity =
+      found.noise.noise.disturbance_sd * std::sqrt(found.noise.noise.corner_Hz);
+  EXPECT_NEAR(intensity, 30.0 * std::sqrt(3.0), 0.25 * 30.0 * std::sqrt(3.0));
+}
+
+TEST(NoiseModel, ASearchUnderDisturbanceIsTheSameForAnyNumberOfThreads) {
+  selection::SearchContext context =
+      context_of("motion=multisine,length_s=10,deadband.half_width_V=0.15,outside.force_N=30", 42);
+  std::vector<double> costs;
+  std::vector<Eigen::VectorXd> thetas;
+  for (const unsigned threads : {1U, 2U, 5U}) {
+    context.options.threads = threads;
+    const selection::InnovationSearch search =
+        selection::search_innovations(context, selection::first_stage(context));
+    EXPECT_THAT(search.final.model.added, testing::ElementsAre("deadband"));
+    costs.push_back(search.final.minus_two_log);
+    thetas.push_back(search.final.model.fitted.theta);
+  }
+  EXPECT_EQ(costs[0], costs[1]);
+  EXPECT_EQ(costs[0], costs[2]);
+  EXPECT_EQ(thetas[0], thetas[1]);
+  EXPECT_EQ(thetas[0], thetas[2]);
+}
+
+}  // namespace
+}  // namespace estimator::greybox::disturbance

@@ -1,0 +1,77 @@
+#include "estimator/greybox/disturbance/spectral_lines.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "estimator/greybox/disturbance/kalman_gains.h"
+#include "estimator/greybox/observer_simulation.h"
+#include "tests/estimator/greybox/disturbance/axis_record.h"
+
+namespace estimator::greybox::disturbance {
+namespace {
+
+using disturbance_test::axis;
+using disturbance_test::axis_record;
+
+constexpr double kFrequency_Hz = 11.3;
+
+struct AxisFilter {
+  Dataset record = axis_record(1600);
+  Linearisation model = linearise(axis(), record, {}, Eigen::VectorXd());
+  InnovationGains gains =
+      kalman_gains(model, record,
+                   {.disturbance_sd = 1.0, .corner_Hz = 2.0, .walk_m = 1e-8, .sensor_m = 1e-6},
+                   1e-6)
+          .gains;
+};
+
+Eigen::VectorXd innovations(const Dataset& record, const InnovationGains& gains,
+                            const Eigen::MatrixXd& added_N = {}) {
+  Dataset with = record;
+  with.innovations = std::make_shared<const InnovationGains>(gains);
+  ObserverSimulation run(axis(), with, {});
+  Eigen::MatrixXd residuals_m;
+  run.residuals(Eigen::MatrixXd(0, 1), {}, added_N, residuals_m);
+  return residuals_m.col(0);
+}
+
+// The nonlinear simulation with the force added to the model against the linear response: a force
+// that the model knows of lowers the innovations by what one that it does not know of causes.
+TEST(SpectralLines, AForcesResponseIsThatOfTheSimulation) {
+  const AxisFilter s;
+  Eigen::MatrixXd force_N(1600, 1);
+  for (Eigen::Index k = 0; k < 1600; ++k) {
+    force_N(k, 0) = 2.0 * std::sin(2.0 * std::numbers::pi * kFrequency_Hz *
+                                   s.record.t_s[static_cast<std::size_t>(k)]);
+  }
+  const Eigen::VectorXd change =
+      innovations(s.record, s.gains) - innovations(s.record, s.gains, force_N);
+  const Eigen::MatrixXd response =
+      line_response(s.model, s.record, s.gains, {LineSite::force, kFrequency_Hz});
+  EXPECT_LT((change - 2.0 * response.col(0)).norm(), 1e-3 * change.norm());
+}
+
+TEST(SpectralLines, AShakingSensorIsFoundWithFrequencyAndAmplitude) {
+  AxisFilter s;
+  for (std::size_t k = 0; k < s.record.size(); ++k) {
+    s.record.y_m[k] +=
+        3e-6 * std::cos(2.0 * std::numbers::pi * kFrequency_Hz * s.record.t_s[k] + 0.4);
+  }
+  Dataset still = axis_record(1600);
+  const Eigen::VectorXd seen = innovations(s.record, s.gains) - innovations(still, s.gains);
+  const std::vector<SpectralLine> lines = promising_lines(s.model, s.record, s.gains, seen);
+  ASSERT_FALSE(lines.empty());
+  const bool found = std::any_of(lines.begin(), lines.end(), [](const SpectralLine& line) {
+    return line.site == LineSite::sensor && std::abs(line.frequency_Hz - kFrequency_Hz) < 0.07;
+  });
+  EXPECT_TRUE(found);
+  const std::vector<LineAmplitude> amplitudes =
+      line_amplitudes(s.model, s.record, s.gains, {{LineSite::sensor, kFrequency_Hz}}, seen);
+  EXPECT_NEAR(amplitudes.front().amplitude, 3e-6, 0.02 * 3e-6);
+}
+
+}  // namespace
+}  // namespace estimator::greybox::disturbance
