@@ -82,7 +82,7 @@ std::string to_json(const DiagnosisReport& outcome) {
   }
   json["disturbance"] = disturbance_of(d);
   json["floor"] = {{"sensor_m", number_or_null(d.noise_floor_m)},
-                   {"disturbed_m", number_or_null(d.disturbed_floor_m)}};
+                   {"disturbed_m", number_or_null(d.disturbed_floor_m())}};
   json["steps"] = Json::array();
   for (const selection::SelectionStep& step : d.steps) {
     Json one;

@@ -81,6 +81,7 @@ void print_steps(const selection::Diagnosis& d, std::ostream& out) {
         << bar(rms_m, d.noise_floor_m, most_m) << '\n';
   };
   for (const StepWords& step : steps) row(step.what, step.rms_m);
+  if (d.disturbance) row("sensor and disturbance", d.disturbed_floor_m());
   row("noise floor", d.noise_floor_m);
 }
 

@@ -20,9 +20,9 @@ std::string percent(double ratio) { return fmt::format("{:.0f} %", 100.0 * ratio
 /// "2.7 um held-out, 1.1 times the noise floor of 2.4 um".
 std::string beside_floor(const selection::Diagnosis& d, double rms_m) {
   return config::units::length_words(rms_m) + " on held-out data, " +
-         config::units::times_words(rms_m / d.disturbed_floor_m) + " times the " +
+         config::units::times_words(rms_m / d.disturbed_floor_m()) + " times the " +
          (d.disturbance ? "floor that sensor and disturbance set, " : "noise floor of ") +
-         config::units::length_words(d.disturbed_floor_m);
+         config::units::length_words(d.disturbed_floor_m());
 }
 
 std::string effects_words(const selection::Diagnosis& d, const std::vector<std::string>& effects) {
@@ -81,7 +81,7 @@ std::string fall_words(const selection::Diagnosis& d) {
   return with + " held-out error falls from " + config::units::length_words(d.rms_before_m) +
          " to " + config::units::length_words(d.rms_after_m) + "; the " +
          (d.disturbance ? "floor that sensor and disturbance set is " : "noise floor is ") +
-         config::units::length_words(d.disturbed_floor_m) + ".";
+         config::units::length_words(d.disturbed_floor_m()) + ".";
 }
 
 void add_rivals(const selection::Diagnosis& d, std::vector<std::string>& out) {
@@ -230,6 +230,9 @@ std::string next_command(const DiagnosisReport& outcome) {
 }
 
 std::string split_words(const DiagnosisReport& outcome) {
+  if (outcome.diagnosis.disturbance) {
+    return "effects judged by the likelihood of all innovations, errors those of simulations";
+  }
   if (!outcome.prepared->holdouts.empty()) {
     return "fitted to " + config::schema::listed(outcome.prepared->records) + ", scored on " +
            config::schema::listed(outcome.prepared->holdouts);

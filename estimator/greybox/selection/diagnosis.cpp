@@ -130,9 +130,6 @@ void conclude(const SearchContext& search, const ModelStage& first,
   take_errors(result);
   take_parameters(innovations.final, result);
   result.disturbance = disturbance_of(search, innovations);
-  if (result.disturbance) {
-    result.disturbed_floor_m = std::hypot(result.noise_floor_m, result.disturbance->rms_m);
-  }
   for (const InnovationRivals& rivals : innovations.rivals) {
     if (search.options.separable) {
       (void)search.options.separable(search, rivals.explanations, rivals.names);
@@ -163,12 +160,15 @@ const char* to_string(Verdict verdict) {
   return "not_excited";
 }
 
+double Diagnosis::disturbed_floor_m() const {
+  return disturbance ? std::hypot(noise_floor_m, disturbance->rms_m) : noise_floor_m;
+}
+
 Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   const SearchContext context{problem, options};
   Diagnosis result;
   result.noise_floor_m = problem.data.noise_floor_m;
-  result.disturbed_floor_m = result.noise_floor_m;
   result.excitation = excitation_of(problem.data);
   if (!result.excitation.sufficient()) {
     result.verdict = Verdict::not_excited;

@@ -43,14 +43,15 @@ struct Diagnosis {
   std::vector<SelectionStep> steps;
   /// What disturbs the rig, where the record was judged by innovations and shows any.
   std::optional<Disturbance> disturbance;
-  /// The error of a simulation that sensor and disturbance cause; the sensor's alone without one.
-  double disturbed_floor_m = 0.0;
   Excitation excitation;             ///< insufficient: Verdict::not_excited
   std::optional<double> searched_s;  ///< length of the segments searched; none: all samples
   StructureSearch search;
   FitSummary final;             ///< the better model on all samples
   plant_sim::ModelFile better;  ///< the model file with it
   double runtime_s = 0.0;
+
+  /// The error of a simulation that sensor and disturbance cause.
+  [[nodiscard]] double disturbed_floor_m() const;
 };
 
 /// Runs the whole diagnosis. Ends early with the best result so far once `options.cancel` returns
