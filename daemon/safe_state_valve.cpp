@@ -73,7 +73,6 @@ void ignore_write_signals() noexcept {
 
 namespace {
 
-using config::schema::Error;
 using config::schema::RunError;
 
 /// A device may still be closing the connection of the process that died.

@@ -194,12 +194,4 @@ Estimate SlidingWindow::estimate() const noexcept {
   return out;
 }
 
-bool SlidingWindow::coefficients(double* value) const noexcept {
-  SquareRootInformationMemory memory;
-  SquareRootInformation whole(state_->columns, memory.values.data());
-  Tally tally;
-  state_->whole(whole, tally);
-  return whole.solve(value);
-}
-
 }  // namespace estimator

@@ -45,9 +45,6 @@ class SlidingWindow {
 
   /// Over the window at the last due moment, computed on each call. Never allocates.
   [[nodiscard]] Estimate estimate() const noexcept;
-  /// Coefficients alone, without standard errors and condition: the cheap part. False when the
-  /// factor is singular. `value` has structure.size() places.
-  bool coefficients(double* value) const noexcept;
 
  private:
   struct State;

@@ -20,7 +20,6 @@ namespace monitor::io {
 namespace {
 
 using config::schema::bad_config;
-using config::schema::Error;
 using config::schema::RunError;
 
 constexpr gid_t kNoGroup = static_cast<gid_t>(-1);

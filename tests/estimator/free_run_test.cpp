@@ -8,7 +8,6 @@ namespace estimator {
 namespace {
 
 using namespace testing_data;
-using testing::DoubleEq;
 using testing::ElementsAre;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 

@@ -165,17 +165,6 @@ TEST(SlidingWindow, SaysWhyItHasNoValidEstimate) {
   EXPECT_EQ(feed(402).reason, Reason::none);
 }
 
-TEST(SlidingWindow, GivesTheSameCoefficientsWithoutTheErrors) {
-  const Data data = excited(600, 1e-6, 8);
-  SlidingWindow sliding({kTruth, 400, 1, {}});
-  double value[5];
-  EXPECT_FALSE(sliding.coefficients(value));
-  for (int t = 0; t < 600; ++t) sliding.push(data.u_V[t], data.y_m[t]);
-  ASSERT_TRUE(sliding.coefficients(value));
-  const Estimate whole = sliding.estimate();
-  for (int i = 0; i < 5; ++i) EXPECT_NEAR(value[i], whole.value[i], 1e-13);
-}
-
 TEST(SlidingWindow, RefusesAWindowOrStrideOutOfRange) {
   for (const auto& [window, stride] :
        {std::pair{0, 1}, {400, 0}, {400, 401}, {400, -1}, {-5, -5}, {10'000'001, 1}}) {

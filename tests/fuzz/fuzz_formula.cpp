@@ -41,7 +41,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const double values[] = {1.0, 2.0};
     run.set_parameters(values);
     (void)run(0.1, 0.2);
-    plant_sim::check(effect, formula, "fuzz");
+    plant_sim::formula::check(effect, formula, "fuzz");
   });
   return 0;
 }

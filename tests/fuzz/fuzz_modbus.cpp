@@ -88,11 +88,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   config.timeout_s = 0.5;
   Connection connection(config, counters);
   if (!connection.connect()) return 0;  // no port left for a moment
-  constexpr std::array kTables = {Table::holding, Table::input, Table::coil, Table::discrete};
-  const Table table = kTables[choice & 3U];
-  const WriteChannel channel{"u", table == Table::coil ? Table::coil : Table::holding, 5,
-                             codec_of("float32")};
-  const bool of_bits = table == Table::coil || table == Table::discrete;
+  constexpr std::array kTables = {RegisterTable::holding, RegisterTable::input, RegisterTable::coil,
+                                  RegisterTable::discrete};
+  const RegisterTable table = kTables[choice & 3U];
+  const WriteChannel channel{
+      "u", table == RegisterTable::coil ? RegisterTable::coil : RegisterTable::holding, 5,
+      codec_of("float32")};
+  const bool of_bits = table == RegisterTable::coil || table == RegisterTable::discrete;
   // As many as asked for, and not one more: what a reply claims must not be believed.
   const Block block{table, 3, of_bits ? 9 : 4};
   std::vector<std::uint16_t> into(static_cast<std::size_t>(block.count));
@@ -106,7 +108,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       outcome = connection.write(channel, choice);
       break;
     default:
-      outcome = connection.exchange(channel, choice, {Table::holding, 3, 4}, into.data());
+      outcome = connection.exchange(channel, choice, {RegisterTable::holding, 3, 4}, into.data());
       break;
   }
   if (outcome == RequestResult::lost && connection.is_open()) std::abort();

@@ -20,7 +20,6 @@ namespace {
 using ::testing::Each;
 using ::testing::Field;
 using ::testing::HasSubstr;
-using vm::kSecond_ns;
 
 constexpr double kCount_m = 1e-4;
 constexpr double kPeriod_s = 0.005;

@@ -47,7 +47,7 @@ std::string complaint(const std::string& text) {
   return "nothing";
 }
 
-const Snapshot& snapshot(const BackendDevices& devices) {
+const EncoderSnapshot& snapshot(const BackendDevices& devices) {
   return static_cast<EncoderRod&>(*devices.rods.at(kRodChannel)).snapshot();
 }
 
@@ -123,7 +123,7 @@ TEST(EncoderVm, LosesNoEdgeOfAFastMotionAndPrintsItsRate) {
   const BackendDevices devices = open(table("max_edges_per_s = 1e6"));
   const double rate_per_s = fast_motion(lines);
   const Reading reading = settled(devices);
-  const Snapshot& now = snapshot(devices);
+  const EncoderSnapshot& now = snapshot(devices);
   std::printf(
       "encoder: %.0f edges/s without loss on this machine (the driver of the lines alone: "
       "%.0f edges/s); %lld edges, %lld late\n",
@@ -175,12 +175,12 @@ TEST(EncoderVm, SaysThatTheCountIsUncertainWhenTheKernelDropsEdgesAndTheIndexMen
   };
   step();
   lines.move_to(10);
-  const Snapshot before = step();
+  const EncoderSnapshot before = step();
   EXPECT_TRUE(before.homed);
   EXPECT_FALSE(before.lost) << "15 edges a line";
   EXPECT_EQ(before.counts, 10);
   lines.move_to(110);
-  const Snapshot lost = step();
+  const EncoderSnapshot lost = step();
   EXPECT_TRUE(lost.lost);
   EXPECT_GE(lost.overflows, 1);
   EXPECT_NE(lost.counts, 110) << "the newest were dropped";
@@ -188,7 +188,7 @@ TEST(EncoderVm, SaysThatTheCountIsUncertainWhenTheKernelDropsEdgesAndTheIndexMen
     lines.move_to(lines.quarter() - 5);
     step();
   }
-  const Snapshot mended = step();
+  const EncoderSnapshot mended = step();
   EXPECT_FALSE(mended.lost);
   EXPECT_EQ(mended.slips, 1);
   EXPECT_NEAR(static_cast<double>(mended.counts), -10.0, 1.0);

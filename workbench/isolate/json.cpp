@@ -11,7 +11,6 @@ namespace workbench::isolate {
 
 namespace greybox = estimator::greybox;
 namespace tracker = estimator::fdi::tracker;
-namespace tracking = estimator::greybox::tracking;
 namespace {
 
 using Eigen::Index;

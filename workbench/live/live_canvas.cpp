@@ -57,13 +57,6 @@ int Canvas::text(int row, int column, std::string_view text, Style style) {
   return column;
 }
 
-std::wstring Canvas::row_text(int row) const {
-  std::wstring text;
-  for (int column = 0; column < columns_; ++column) text += at(row, column).glyph;
-  text.erase(text.find_last_not_of(L' ') + 1);
-  return text;
-}
-
 namespace {
 
 constexpr int kLabel = 11;             // columns for the numbers at the left

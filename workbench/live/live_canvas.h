@@ -44,8 +44,6 @@ class Canvas {
   /// Returns the column after the text.
   int text(int row, int column, std::wstring_view text, Style style = Style::normal);
   int text(int row, int column, std::string_view text, Style style = Style::normal);
-  /// One row without trailing blanks.
-  [[nodiscard]] std::wstring row_text(int row) const;
 
  private:
   int rows_;

@@ -61,10 +61,6 @@ void OnlineResidual::add(std::int64_t tick, double sample_time_s, double u_V, do
   while (samples_.back().tick - samples_.front().tick >= most) samples_.pop_front();
 }
 
-double OnlineResidual::error_m() const noexcept {
-  return samples_.empty() ? kNaN : samples_.back().error_m;
-}
-
 ResidualFigures OnlineResidual::figures() const {
   ResidualFigures f;
   f.rms_m = f.fit_percent = f.noise_floor_m = f.floor_ratio = kNaN;

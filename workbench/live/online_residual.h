@@ -45,8 +45,6 @@ class OnlineResidual {
   /// One usable sample. A tick that does not follow the one before begins a new segment. Throws
   /// config::schema::Error for a model that cannot be built at this sample time.
   void add(std::int64_t tick, double sample_time_s, double u_V, double y_m);
-  /// Measured less modelled position of the newest sample; NaN while the model settles.
-  [[nodiscard]] double error_m() const noexcept;
   [[nodiscard]] bool empty() const noexcept { return samples_.empty(); }
   [[nodiscard]] ResidualFigures figures() const;
 

@@ -85,35 +85,22 @@ BENCHMARK(recursive)
     ->Arg(995)
     ->UseRealTime();
 
-enum class Ask : std::uint8_t { nothing, coefficients, estimate };
-
-void sliding(benchmark::State& state, Ask ask) {
+void sliding(benchmark::State& state, bool estimate) {
   const Data& data = record();
   SlidingWindow window({.structure = kArx441,
                         .window = 400,
                         .stride = static_cast<int>(state.range(0)),
                         .limits = {}});
-  double value[kMaxCoefficients];
   for (auto _ : state) {
     for (std::size_t t = 0; t < data.u_V.size(); ++t) {
       if (!window.push(data.u_V[t], data.y_m[t])) continue;
-      if (ask == Ask::coefficients) benchmark::DoNotOptimize(window.coefficients(value));
-      if (ask == Ask::estimate) benchmark::DoNotOptimize(window.estimate());
+      if (estimate) benchmark::DoNotOptimize(window.estimate());
     }
   }
   per_sample(state, data.u_V.size());
 }
-BENCHMARK_CAPTURE(sliding, update, Ask::nothing)->Arg(1)->Arg(10)->Arg(40)->UseRealTime();
-BENCHMARK_CAPTURE(sliding, update_and_coefficients, Ask::coefficients)
-    ->Arg(1)
-    ->Arg(10)
-    ->Arg(40)
-    ->UseRealTime();
-BENCHMARK_CAPTURE(sliding, update_and_estimate, Ask::estimate)
-    ->Arg(1)
-    ->Arg(10)
-    ->Arg(40)
-    ->UseRealTime();
+BENCHMARK_CAPTURE(sliding, update, false)->Arg(1)->Arg(10)->Arg(40)->UseRealTime();
+BENCHMARK_CAPTURE(sliding, update_and_estimate, true)->Arg(1)->Arg(10)->Arg(40)->UseRealTime();
 
 void batch(benchmark::State& state) {
   const Data& data = record();

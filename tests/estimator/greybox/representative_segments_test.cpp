@@ -10,7 +10,6 @@ namespace estimator::greybox {
 namespace {
 
 using testing::AllOf;
-using testing::Each;
 using testing::Ge;
 using testing::Le;
 using testing::SizeIs;

@@ -14,7 +14,6 @@ namespace {
 
 using testing::edge_between;
 using testing::FakeSource;
-using testing::levels_in;
 
 /// The fake chip for two threads; stuck: its wait() returns only when released.
 class SharedSource final : public EdgeSource {

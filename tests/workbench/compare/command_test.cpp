@@ -14,7 +14,6 @@
 namespace {
 
 namespace fs = std::filesystem;
-using compare_test::kGain;
 using testing::Contains;
 using testing::HasSubstr;
 

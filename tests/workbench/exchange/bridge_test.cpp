@@ -17,6 +17,7 @@
 namespace workbench::exchange {
 namespace {
 
+using live::Subprocess;
 using monitor::io::Publisher;
 using testing::HasSubstr;
 

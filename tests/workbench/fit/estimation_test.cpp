@@ -14,7 +14,6 @@ namespace workbench::fit {
 namespace greybox = estimator::greybox;
 namespace {
 
-using testing::ElementsAre;
 using testing::HasSubstr;
 using workbench_test::parameter;
 using workbench_test::problem;

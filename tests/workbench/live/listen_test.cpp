@@ -22,7 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using monitor::io::Publisher;
-using monitor::io::Stamp;
 using nlohmann::json;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();

@@ -36,7 +36,9 @@ class LiveTest : public testing::Test {
                                      int columns = 80) const {
     const live::Canvas canvas = live::draw(state_, rows, columns, live::Glyphs::ascii());
     for (int row = 0; row < canvas.rows(); ++row) {
-      const std::wstring text = canvas.row_text(row);
+      std::wstring text;
+      for (int column = 0; column < columns; ++column) text += canvas.at(row, column).glyph;
+      text.erase(text.find_last_not_of(L' ') + 1);
       if (text.find(part) != std::wstring::npos) return {text.begin(), text.end()};
     }
     return "";

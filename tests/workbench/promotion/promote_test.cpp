@@ -27,7 +27,7 @@ std::string read(const fs::path& file) {
 
 /// What the daemon runs by; without bands it also makes the records.
 std::string rig(const std::string& more) {
-  std::string text = read(shipped("thesis_case1.toml"));
+  std::string text = read(program::shipped("thesis_case1.toml"));
   text = text.substr(0, text.find("[[band]]"));
   const std::string from = "encoder_resolution_m = 0.0\nnoise_m = 0.0\ndac_bits = 0\n";
   text.replace(text.find(from), from.size(),
@@ -43,14 +43,14 @@ std::string without_faults(std::string text) {
 class Promote : public testing::Test {
  protected:
   Promote() {
-    const std::string model = shipped("models/thesis_calibrated.toml");
+    const std::string model = program::shipped("models/thesis_calibrated.toml");
     std::ofstream(path("healthy.toml")) << without_faults(rig(""));
     std::ofstream(path("faulty.toml")) << rig("");
     const auto log = [&](const char* config, const char* folder) {
       std::vector<std::string> arguments =
-          virtual_run(path(config), path(folder), {"--set", "sim.model=" + model});
+          program::virtual_run(path(config), path(folder), {"--set", "sim.model=" + model});
       arguments.insert(arguments.end(), {"--duration", "60"});
-      const Result result = run(arguments);
+      const program::Result result = program::run(arguments);
       EXPECT_EQ(result.exit_code, 0) << result.err;
       return fs::directory_iterator(path(folder))->path().string();
     };
@@ -78,8 +78,8 @@ socket = "s"
 folder = "alarms"
 )";
     // Learned, then made so wide that nothing is ever out.
-    const Result learned =
-        spoolwatch("calibrate " + path("rig.toml") + ' ' + healthy_ + " -o " + path("bands.toml"));
+    const program::Result learned = program::spoolwatch("calibrate " + path("rig.toml") + ' ' +
+                                                        healthy_ + " -o " + path("bands.toml"));
     EXPECT_EQ(learned.exit_code, 0) << learned.out;
     std::string bands = read(path("bands.toml"));
     for (const auto& [key, value] :
@@ -89,7 +89,7 @@ folder = "alarms"
     }
     std::ofstream(path("bands.toml")) << bands;
     wide_ = bands;
-    daemon_ = std::make_unique<Daemon>(
+    daemon_ = std::make_unique<program::Daemon>(
         std::vector<std::string>{"--config", path("rig.toml"), "--lcm-url", "", "--set",
                                  "sim.model=" + model, "--set", "loop.privileges=off"});
     for (int i = 0; i < 100 && !fs::exists(path("s")); ++i) {
@@ -102,21 +102,22 @@ folder = "alarms"
   }
 
   [[nodiscard]] std::string path(const std::string& name) const { return folder_.path() / name; }
-  [[nodiscard]] Result promote(const std::string& words) const {
-    return spoolwatch("promote " + words + " --socket " + path("s"));
+  [[nodiscard]] program::Result promote(const std::string& words) const {
+    return program::spoolwatch("promote " + words + " --socket " + path("s"));
   }
   [[nodiscard]] json status() const {
-    return json::parse(spoolwatch("status --json - --socket " + path("s")).out, nullptr, false);
+    return json::parse(program::spoolwatch("status --json - --socket " + path("s")).out, nullptr,
+                       false);
   }
 
-  Folder folder_;
+  program::Folder folder_;
   std::string healthy_, faulty_, right_, wrong_, wide_;
-  std::unique_ptr<Daemon> daemon_;
+  std::unique_ptr<program::Daemon> daemon_;
 };
 
 TEST_F(Promote, TakesABetterModelAndGivesTheOldOneBack) {
   const json before = status();
-  const Result result = promote(path("right.toml") + " --record " + healthy_);
+  const program::Result result = promote(path("right.toml") + " --record " + healthy_);
   EXPECT_EQ(result.exit_code, 0) << result.out;
   EXPECT_THAT(result.out, HasSubstr("in use; the one before it is kept as version 1"));
   EXPECT_EQ(read(path("model.toml")), right_);
@@ -124,13 +125,13 @@ TEST_F(Promote, TakesABetterModelAndGivesTheOldOneBack) {
   const json promoted = status();
   EXPECT_NE(promoted["rules_hash"], before["rules_hash"]);
 
-  const Result worse = promote(path("wrong.toml") + " --record " + healthy_);
+  const program::Result worse = promote(path("wrong.toml") + " --record " + healthy_);
   EXPECT_EQ(worse.exit_code, 1);
   EXPECT_THAT(worse.out, HasSubstr("refused: the new model is worse: error "));
   EXPECT_EQ(read(path("model.toml")), right_);
   EXPECT_EQ(status()["rules_hash"], promoted["rules_hash"]);
 
-  const Result back = promote("--back");
+  const program::Result back = promote("--back");
   EXPECT_EQ(back.exit_code, 0) << back.out;
   EXPECT_EQ(read(path("model.toml")), wrong_);
   EXPECT_EQ(read(path("bands.toml")), wide_);
@@ -147,7 +148,7 @@ TEST_F(Promote, TakesABetterModelAndGivesTheOldOneBack) {
 }
 
 TEST_F(Promote, IsRefusedWhenTheBandsWouldTellNewAlarms) {
-  const Result result =
+  const program::Result result =
       promote(path("right.toml") + " --record " + healthy_ + " --record " + faulty_);
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(result.out, HasSubstr("new alarms on the healthy records: sliding.gain at "));
@@ -164,7 +165,7 @@ TEST_F(Promote, IsRefusedWhenTheDaemonRunsByOtherRules) {
   std::string rig_text = read(path("rig.toml"));
   rig_text.replace(rig_text.find("warmup_s = 2.0"), 14, "warmup_s = 3.0");
   std::ofstream(path("rig.toml")) << rig_text;
-  const Result other = promote("--back");
+  const program::Result other = promote("--back");
   EXPECT_EQ(other.exit_code, 1);
   EXPECT_THAT(other.out, HasSubstr("the daemon runs by other rules than "));
 }

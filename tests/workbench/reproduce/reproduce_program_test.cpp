@@ -11,6 +11,9 @@
 namespace workbench::reproduce {
 namespace {
 
+using simulate::Outcome;
+using simulate::run_program;
+using simulate::TemporaryFolder;
 using testing::HasSubstr;
 
 TEST(ReproduceProgram, WritesATableAndJsonWithTheDocumentedFields) {
