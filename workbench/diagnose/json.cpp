@@ -63,7 +63,11 @@ std::string to_json(const DiagnosisReport& outcome) {
   const auto error_m = [&](double value) { return fitted ? number_or_null(value) : Json(nullptr); };
   Json json;
   json["verdict"] = selection::to_string(d.verdict);
-  json["missing"] = d.missing;
+  json["missing"] = d.established();
+  json["may_be"] = Json::array();
+  for (const selection::PossibleEffect& one : d.possible) {
+    json["may_be"].push_back({{"effect", one.effect}, {"why", selection::to_string(one.why)}});
+  }
   json["ambiguous"] = d.ambiguous;
   json["same_here"] = d.same_here;
   json["noise_floor_m"] = number_or_null(d.noise_floor_m);

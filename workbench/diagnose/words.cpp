@@ -62,11 +62,25 @@ std::string unexplained_words(const selection::Diagnosis& d) {
            (d.missing.empty() ? "" : "found so far " + config::schema::listed(d.missing) + "; ") +
            rest + ".";
   }
-  if (d.missing.empty()) {
+  const std::vector<std::string> established = d.established();
+  if (established.empty()) {
     return "Unexplained: " + rest + ", and no effect of the library explains it.";
   }
-  return "Incomplete: " + config::schema::listed(d.missing) +
-         (d.missing.size() > 1 ? " are" : " is") + " missing, but " + rest + ".";
+  return "Incomplete: " + config::schema::listed(established) +
+         (established.size() > 1 ? " are" : " is") + " missing, but " + rest + ".";
+}
+
+/// "backlash (its size is within its error)".
+std::string possible_words(const selection::PossibleEffect& possible) {
+  switch (possible.why) {
+    case selection::Doubt::at_bound:
+      return possible.effect + " (its size is at the bound of what it can be)";
+    case selection::Doubt::within_error:
+      return possible.effect + " (its size is within its error)";
+    case selection::Doubt::stand_in:
+      break;
+  }
+  return possible.effect + " (one of several that may stand in for one other law)";
 }
 
 std::string fall_words(const selection::Diagnosis& d) {
@@ -197,6 +211,10 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
   if (d.disturbance) {
     out.push_back("What remains does not follow from command or motion: " +
                   disturbance_words(*d.disturbance) + ".");
+  }
+  if (!d.possible.empty()) {
+    out.push_back(
+        "Not established: " + config::schema::joined_by(d.possible, possible_words, ", ") + ".");
   }
   add_rivals(d, out);
   if (!d.where.empty()) {

@@ -160,6 +160,15 @@ const char* to_string(Verdict verdict) {
   return "not_excited";
 }
 
+std::vector<std::string> Diagnosis::established() const {
+  std::vector<std::string> names = missing;
+  std::erase_if(names, [&](const std::string& name) {
+    return std::any_of(possible.begin(), possible.end(),
+                       [&](const PossibleEffect& one) { return one.effect == name; });
+  });
+  return names;
+}
+
 double Diagnosis::disturbed_floor_m() const {
   return disturbance ? std::hypot(noise_floor_m, disturbance->rms_m) : noise_floor_m;
 }
@@ -190,6 +199,7 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
       conclude(context, search, result);
     }
   }
+  result.possible = possible_effects(result);
   result.runtime_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "estimator/greybox/selection/confidence.h"
 #include "estimator/greybox/selection/disturbance_report.h"
 #include "estimator/greybox/selection/excitation.h"
 #include "estimator/greybox/selection/localisation.h"
@@ -31,6 +32,7 @@ struct SelectionStep {
 struct Diagnosis {
   Verdict verdict = Verdict::nothing_missing;
   std::vector<std::string> missing;                 ///< in the order added
+  std::vector<PossibleEffect> possible;             ///< those of `missing` that are not established
   std::vector<std::vector<std::string>> ambiguous;  ///< groups of two or three names
   std::vector<std::vector<std::string>>
       same_here;  ///< groups that are equivalent on this plant for every motion
@@ -50,6 +52,8 @@ struct Diagnosis {
   plant_sim::ModelFile better;  ///< the model file with it
   double runtime_s = 0.0;
 
+  /// `missing` without `possible`.
+  [[nodiscard]] std::vector<std::string> established() const;
   /// The error of a simulation that sensor and disturbance cause.
   [[nodiscard]] double disturbed_floor_m() const;
 };

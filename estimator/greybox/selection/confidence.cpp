@@ -1,0 +1,51 @@
+#include "estimator/greybox/selection/confidence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "estimator/greybox/selection/diagnosis.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+constexpr double kStandardErrors = 2.0;
+constexpr std::size_t kStandIn = 3;
+
+/// The effect's size, its first parameter, judged by itself.
+std::optional<Doubt> doubt_of(const Diagnosis& diagnosis, const std::string& effect) {
+  const auto size =
+      std::find_if(diagnosis.parameters.begin(), diagnosis.parameters.end(),
+                   [&](const ParameterValue& p) { return p.name.rfind(effect + ".", 0) == 0; });
+  if (size == diagnosis.parameters.end()) return {};
+  if (size->at_bound) return Doubt::at_bound;
+  if (!(std::abs(size->value) > kStandardErrors * size->std_error)) return Doubt::within_error;
+  return {};
+}
+
+}  // namespace
+
+const char* to_string(Doubt doubt) {
+  switch (doubt) {
+    case Doubt::at_bound:
+      return "at_bound";
+    case Doubt::within_error:
+      return "within_error";
+    case Doubt::stand_in:
+      break;
+  }
+  return "stand_in";
+}
+
+std::vector<PossibleEffect> possible_effects(const Diagnosis& diagnosis) {
+  std::vector<PossibleEffect> possible;
+  if (diagnosis.verdict != Verdict::unexplained || diagnosis.search.interrupted) return possible;
+  const bool bundle = diagnosis.missing.size() >= kStandIn;
+  for (const std::string& effect : diagnosis.missing) {
+    const std::optional<Doubt> doubt = doubt_of(diagnosis, effect);
+    if (doubt || bundle) possible.push_back({effect, doubt.value_or(Doubt::stand_in)});
+  }
+  return possible;
+}
+
+}  // namespace estimator::greybox::selection

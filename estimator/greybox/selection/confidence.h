@@ -1,0 +1,28 @@
+// Which effects of a result are established, and which only may be there.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace estimator::greybox::selection {
+
+struct Diagnosis;
+
+/// Why an effect counts as no more than possible.
+enum class Doubt {
+  at_bound,      ///< its size is the largest or smallest allowed: it stands for something else
+  within_error,  ///< its size is below two standard errors, or has none
+  stand_in,      ///< one of three or more that together leave an error: likely one other law
+};
+/// "at_bound", ...
+[[nodiscard]] const char* to_string(Doubt doubt);
+
+struct PossibleEffect {
+  std::string effect;
+  Doubt why;
+};
+
+/// Those of `missing` that are not established; parameters and verdict must be set.
+[[nodiscard]] std::vector<PossibleEffect> possible_effects(const Diagnosis& diagnosis);
+
+}  // namespace estimator::greybox::selection
