@@ -77,6 +77,8 @@ std::string possible_words(const selection::PossibleEffect& possible) {
       return possible.effect + " (its size is at the bound of what it can be)";
     case selection::Doubt::within_error:
       return possible.effect + " (its size is within its error)";
+    case selection::Doubt::rivals:
+      return possible.effect + " (others do as well)";
     case selection::Doubt::stand_in:
       break;
   }

@@ -12,7 +12,7 @@ namespace {
 constexpr double kStandardErrors = 2.0;
 constexpr std::size_t kStandIn = 3;
 
-/// The effect's size, its first parameter, judged by itself.
+/// The effect's size, its first parameter, and its rivals.
 std::optional<Doubt> doubt_of(const Diagnosis& diagnosis, const std::string& effect) {
   const auto size =
       std::find_if(diagnosis.parameters.begin(), diagnosis.parameters.end(),
@@ -20,6 +20,11 @@ std::optional<Doubt> doubt_of(const Diagnosis& diagnosis, const std::string& eff
   if (size == diagnosis.parameters.end()) return {};
   if (size->at_bound) return Doubt::at_bound;
   if (!(std::abs(size->value) > kStandardErrors * size->std_error)) return Doubt::within_error;
+  for (const auto* groups : {&diagnosis.ambiguous, &diagnosis.same_here}) {
+    for (const std::vector<std::string>& group : *groups) {
+      if (std::find(group.begin(), group.end(), effect) != group.end()) return Doubt::rivals;
+    }
+  }
   return {};
 }
 
@@ -31,6 +36,8 @@ const char* to_string(Doubt doubt) {
       return "at_bound";
     case Doubt::within_error:
       return "within_error";
+    case Doubt::rivals:
+      return "rivals";
     case Doubt::stand_in:
       break;
   }
