@@ -1,5 +1,5 @@
-// What changes slowly is followed, by the rule of baseline_drift.h and on records of the independent
-// generator.
+// What changes slowly is followed, by the rule of baseline_drift.h and on records of the
+// independent generator.
 #include "estimator/greybox/tracking/baseline_drift.h"
 
 #include <gmock/gmock.h>
