@@ -84,6 +84,13 @@ std::string to_json(const DiagnosisReport& outcome) {
                              {"variable", where.variable},
                              {"explained_ratio", number_or_null(where.explained_ratio)}});
   }
+  json["record"] = {{"turned_sign", d.checks && d.checks->turned_sign()},
+                    {"outside_stroke", d.checks && d.checks->outside_stroke()}};
+  json["plants"] = Json::array();
+  for (const selection::PlantFit& fit : d.checks ? d.checks->plants : decltype(d.checks->plants)()) {
+    json["plants"].push_back(
+        {{"plant", fit.plant}, {"rms_heldout_m", number_or_null(fit.validation_rms_m)}});
+  }
   json["disturbance"] = disturbance_of(d);
   json["floor"] = {{"sensor_m", number_or_null(d.noise_floor_m)},
                    {"disturbed_m", number_or_null(d.disturbed_floor_m())}};

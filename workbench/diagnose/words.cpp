@@ -15,6 +15,9 @@
 namespace workbench::diagnose {
 namespace {
 
+/// A plant is told when it leaves less than this share of the better model's error.
+constexpr double kBetterPlant = 0.7;
+
 std::string percent(double ratio) { return fmt::format("{:.0f} %", 100.0 * ratio); }
 
 /// "2.7 um held-out, 1.1 times the noise floor of 2.4 um".
@@ -98,6 +101,33 @@ std::string fall_words(const selection::Diagnosis& d) {
          " to " + config::units::length_words(d.rms_after_m) + "; the " +
          (d.disturbance ? "floor that sensor and disturbance set is " : "noise floor is ") +
          config::units::length_words(d.disturbed_floor_m()) + ".";
+}
+
+/// What the record itself gives away before any physics.
+void add_record_words(const selection::Diagnosis& d, std::vector<std::string>& out) {
+  const selection::RecordChecks& checks = *d.checks;
+  if (checks.turned_sign()) {
+    out.push_back(fmt::format(
+        "The sign of the command is turned: with -u the model leaves {} times less. Turn it in the "
+        "record and diagnose again.",
+        config::units::times_words(checks.turned_sign_ratio)));
+  }
+  if (checks.outside_stroke()) {
+    out.push_back("The position leaves the model's stroke" +
+                  (checks.below_m < 0.0
+                       ? ", down to " + config::units::length_words(checks.below_m)
+                       : std::string()) +
+                  (checks.beyond_m > 0.0
+                       ? ", " + config::units::length_words(checks.beyond_m) + " beyond its end"
+                       : std::string()) +
+                  ": look at its unit and its zero.");
+  }
+  if (d.verdict == selection::Verdict::unexplained && !checks.plants.empty() &&
+      checks.plants.front().validation_rms_m < kBetterPlant * d.rms_after_m) {
+    out.push_back("Another plant follows this record better: " + checks.plants.front().plant +
+                  ", without any effect, leaves " +
+                  config::units::length_words(checks.plants.front().validation_rms_m) + ".");
+  }
 }
 
 void add_rivals(const selection::Diagnosis& d, std::vector<std::string>& out) {
@@ -207,6 +237,7 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
         "Interrupted: this is the best so far. Not everything was tried, so other effects may do "
         "as well.");
   }
+  if (d.checks) add_record_words(d, out);
   if (d.verdict != selection::Verdict::not_excited) out.push_back(fall_words(d));
   const bool named = d.verdict == selection::Verdict::missing || d.missing.empty();
   if (!named) out.push_back("Used in the better model: " + effects_words(d, d.missing) + ".");

@@ -14,6 +14,8 @@
 namespace estimator::greybox::selection {
 namespace {
 
+/// The fitted model's error over the noise from which on the record itself is looked at.
+constexpr double kFarFromFloor = 10.0;
 constexpr double kAsClear = 0.9;  ///< ratio of the remainder's explained share to that of the whole
 
 /// `errors` are those of the search values.
@@ -187,7 +189,11 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
   const SearchContext search = for_search(context);
   result.search = search_structure(search, SearchEffort::brief);
   const ModelStage first = result.search.path.front();
-  if (is_explained(search, result.search.final) || context.cancelled() ||
+  if (first.fitted.validation_rms_m > kFarFromFloor * result.noise_floor_m) {
+    result.checks = check_records(search, first.fitted.validation_rms_m);
+  }
+  const bool wrong_record = result.checks && result.checks->turned_sign();
+  if (is_explained(search, result.search.final) || wrong_record || context.cancelled() ||
       !std::isfinite(result.noise_floor_m)) {
     conclude(context, search, result);
   } else {

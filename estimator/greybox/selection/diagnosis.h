@@ -9,6 +9,7 @@
 #include "estimator/greybox/selection/disturbance_report.h"
 #include "estimator/greybox/selection/excitation.h"
 #include "estimator/greybox/selection/localisation.h"
+#include "estimator/greybox/selection/record_checks.h"
 #include "estimator/greybox/selection/structure_search.h"
 
 namespace estimator::greybox::selection {
@@ -47,6 +48,8 @@ struct Diagnosis {
   std::optional<Disturbance> disturbance;
   Excitation excitation;             ///< insufficient: Verdict::not_excited
   std::optional<double> searched_s;  ///< length of the segments searched; none: all samples
+  /// Asked where the fitted model leaves many times the noise.
+  std::optional<RecordChecks> checks;
   StructureSearch search;
   FitSummary final;             ///< the better model on all samples
   plant_sim::ModelFile better;  ///< the model file with it

@@ -1,0 +1,137 @@
+#include "estimator/greybox/selection/record_checks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "estimator/greybox/fit.h"
+#include "estimator/parallel.h"
+#include "plant_sim/library.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+/// A turned sign must explain the record that much better than the sign as given.
+constexpr double kTurned = 3.0;
+
+/// RMS of the series about its mean.
+double spread(const std::vector<double>& values) {
+  double mean = 0.0;
+  for (const double value : values) mean += value / static_cast<double>(values.size());
+  double sum = 0.0;
+  for (const double value : values) sum += (value - mean) * (value - mean);
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+/// Speed per command by least squares of the records' differences, of one sign with the command.
+double speed_per_volt(const FitDataset& data) {
+  double vu = 0.0;
+  double uu = 0.0;
+  for (const Dataset& record : data.records) {
+    for (std::size_t k = 1; k < record.size(); ++k) {
+      vu += (record.y_m[k] - record.y_m[k - 1]) / record.sample_time_s * record.u_V[k - 1];
+      uu += record.u_V[k - 1] * record.u_V[k - 1];
+    }
+  }
+  return std::max(std::abs(vu), 1e-12) / std::max(uu, 1e-12);
+}
+
+/// Mass for which the force gains the records' speed: force times time over speed.
+double mass_kg(const FitDataset& data, double gain_N_per_V) {
+  double most_kg = 1.0;
+  for (const Dataset& record : data.records) {
+    std::vector<double> impulse_Vs(1, 0.0);
+    std::vector<double> speed_mps(1, 0.0);
+    double mean_V = 0.0;
+    for (const double u_V : record.u_V) mean_V += u_V / static_cast<double>(record.size());
+    for (std::size_t k = 1; k < record.size(); ++k) {
+      impulse_Vs.push_back(impulse_Vs.back() +
+                           (record.u_V[k - 1] - mean_V) * record.sample_time_s);
+      speed_mps.push_back((record.y_m[k] - record.y_m[k - 1]) / record.sample_time_s);
+    }
+    most_kg = std::max(most_kg,
+                       gain_N_per_V * spread(impulse_Vs) / std::max(spread(speed_mps), 1e-9));
+  }
+  return most_kg;
+}
+
+plant_sim::ModelFile plain_model(const plant_sim::PlantInfo& plant, const FitDataset& data) {
+  plant_sim::ModelFile model;
+  model.name = plant.name;
+  model.plant = plant.name;
+  model.parameters.clear();
+  for (const plant_sim::ParameterInfo& p : plant.parameters) {
+    model.parameters.push_back({p.name, p.neutral});
+  }
+  model.initial.clear();
+  for (const plant_sim::ParameterInfo& p : plant.initial) {
+    model.initial.push_back({p.name, p.neutral});
+  }
+  if (double* gain = model.value("gain_mps_per_V")) *gain = speed_per_volt(data);
+  if (double* lag = model.value("time_constant_s")) *lag = 2.0 * data.sample_time_s;
+  if (const double* gain = model.value("gain_N_per_V")) {
+    const double mass = mass_kg(data, *gain);
+    *model.value("mass_kg") = mass;
+    *model.value("damping_N_s_per_m") = mass;
+  }
+  return model;
+}
+
+double fitted_rms_m(const SearchContext& context, const plant_sim::ModelFile& model,
+                    const FitDataset& data) {
+  FitOptions options;
+  options.final_jacobian = false;
+  options.cancel = context.options.cancel;
+  const std::vector<FreeParameter> parameters = plant_parameters(model);
+  const FitSummary fitted =
+      fit(model, data, data.training_mask, parameters, start_of(model, parameters), options);
+  return std::isfinite(fitted.validation_rms_m) ? fitted.validation_rms_m
+                                                : std::numeric_limits<double>::infinity();
+}
+
+void check_stroke(const SearchContext& context, RecordChecks& checks) {
+  plant_sim::ModelFile model = context.problem.model;
+  const double* stroke_m = model.value("stroke_m");
+  if (stroke_m == nullptr) return;
+  const double spare_m = 3.0 * context.problem.data.noise_floor_m;
+  for (const Dataset& record : context.problem.data.records) {
+    const auto [least, most] = std::minmax_element(record.y_m.begin(), record.y_m.end());
+    if (*least < -spare_m) checks.below_m = std::min(checks.below_m, *least);
+    if (*most > *stroke_m + spare_m) checks.beyond_m = std::max(checks.beyond_m, *most - *stroke_m);
+  }
+}
+
+}  // namespace
+
+RecordChecks check_records(const SearchContext& context, double rms_m) {
+  RecordChecks checks;
+  check_stroke(context, checks);
+  std::vector<const plant_sim::PlantInfo*> others;
+  for (const plant_sim::PlantInfo& plant : plant_sim::plant_library()) {
+    if (plant.name != context.problem.model.plant) others.push_back(&plant);
+  }
+  checks.plants.resize(others.size());
+  double turned_m = std::numeric_limits<double>::infinity();
+  in_parallel(others.size() + 1, context.options.threads, [&](std::size_t i) {
+    if (context.cancelled()) return;
+    if (i < others.size()) {
+      const FitDataset& data = context.problem.data;
+      checks.plants[i] = {others[i]->name,
+                          fitted_rms_m(context, plain_model(*others[i], data), data)};
+      return;
+    }
+    FitDataset turned = context.problem.data;
+    for (Dataset& record : turned.records) {
+      for (double& u_V : record.u_V) u_V = -u_V;
+    }
+    turned_m = fitted_rms_m(context, context.problem.model, turned);
+  });
+  if (turned_m * kTurned < rms_m) checks.turned_sign_ratio = rms_m / turned_m;
+  std::stable_sort(checks.plants.begin(), checks.plants.end(),
+                   [](const PlantFit& a, const PlantFit& b) {
+                     return a.validation_rms_m < b.validation_rms_m;
+                   });
+  return checks;
+}
+
+}  // namespace estimator::greybox::selection

@@ -1,0 +1,33 @@
+// First the record, then the physics: what makes a search pointless, looked at before blaming the
+// model for it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "estimator/greybox/selection/problem.h"
+
+namespace estimator::greybox::selection {
+
+/// A plant of the library without effects, its parameters fitted to the record.
+struct PlantFit {
+  std::string plant;
+  double validation_rms_m = 0.0;  ///< weak observer; infinite where it could not be fitted
+};
+
+struct RecordChecks {
+  /// With the command's sign turned, the model fits at least this much better; 1: it does not.
+  double turned_sign_ratio = 1.0;
+  /// Positions outside a stroke that the model has: least and greatest, m; equal where all are in.
+  double below_m = 0.0;
+  double beyond_m = 0.0;
+  std::vector<PlantFit> plants;  ///< the other plants, best first
+
+  [[nodiscard]] bool turned_sign() const { return turned_sign_ratio > 1.0; }
+  [[nodiscard]] bool outside_stroke() const { return below_m < 0.0 || beyond_m > 0.0; }
+};
+
+/// `fitted_rms_m`: held-out error of the given model with its parameters fitted.
+[[nodiscard]] RecordChecks check_records(const SearchContext& context, double fitted_rms_m);
+
+}  // namespace estimator::greybox::selection
