@@ -17,8 +17,7 @@ namespace estimator {
                                  std::span<const std::size_t> gaps = {}, const Limits& limits = {});
 
 /// One estimate per complete period of `period` samples. A later period takes its first rows'
-/// history
-/// from the samples before it.
+/// history from the samples before it.
 [[nodiscard]] std::vector<Estimate> fit_periods(const Structure& structure,
                                                 std::span<const double> u_V,
                                                 std::span<const double> y_m, std::size_t period,

@@ -34,9 +34,8 @@ struct Fit {
 };
 
 /// Error of `predicted` against `measured`: sample t of the measurement against sample t - shift of
-/// the
-/// prediction (shift 1: the simulation runs one sample late). The first `skip` samples of both and
-/// missing (NaN) measurements are left out.
+/// the prediction (shift 1: the simulation runs one sample late). The first `skip` samples of both
+/// and missing (NaN) measurements are left out.
 [[nodiscard]] Fit compare(std::span<const double> measured_m, std::span<const double> predicted_m,
                           int skip = 0, int shift = 0);
 

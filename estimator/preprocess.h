@@ -45,10 +45,8 @@ class Preprocess {
   explicit Preprocess(const PreprocessConfig& config);
 
   /// Takes a sample; returns true when an output is available in u_V() and y_m(). A NaN marks a
-  /// missing
-  /// sample: the filters restart at the next one, and the next output is NaN, so that no regression
-  /// row
-  /// crosses the gap. The grid of kept samples does not move.
+  /// missing sample: the filters restart at the next one, and the next output is NaN, so that no
+  /// regression row crosses the gap. The grid of kept samples does not move.
   bool push(double u_V, double y_m) noexcept;
   /// `samples` periods without data. Returns the number of outputs in the gap.
   long long gap(long long samples) noexcept;

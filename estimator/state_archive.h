@@ -1,9 +1,8 @@
 // Serialises the state of an object to bytes and back, bit for bit: a restored object continues
-// exactly
-// as the saved one would have. Each class lists its changing members once, in
+// exactly as the saved one would have. Each class lists its changing members once, in
 // `serialize(StateArchive&)`; the same list saves and restores. The bytes belong to this build of
-// the
-// program and to an object of the same configuration; the code that stores them must check both.
+// the program and to an object of the same configuration; the code that stores them must check
+// both.
 #pragma once
 
 #include <cstddef>

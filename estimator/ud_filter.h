@@ -23,8 +23,7 @@ struct UdUpdate {
   /// Measures psi' theta with variance `r`, then divides P by `forgetting`. `gain` (padded)
   /// receives b;
   /// returns alpha_p = r + psi' P psi, so that theta += b e / alpha_p. Changes nothing when alpha_p
-  /// is not
-  /// finite.
+  /// is not finite.
   double (*measure)(UdFactor& p, const double* psi, double r, double forgetting,
                     double* gain) noexcept;
   /// Adds `information` about coefficient `i` alone.

@@ -1,6 +1,5 @@
 // Up to eight parameter sets of one plant in lockstep, one per SIMD lane: a fit spends nearly all
-// its
-// time in simulations that differ in one or two parameters.
+// its time in simulations that differ in one or two parameters.
 //
 // A lane performs the operations of the single plant (plant.h); its rules for parameters, steps and
 // commands apply here. Between samples a lane's position may be shifted: the observer's correction

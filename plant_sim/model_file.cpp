@@ -49,8 +49,7 @@ double value_or(const ModelFile& model, std::string_view name, double otherwise)
 }
 
 /// Plausible ranges of formula variables on this plant: commands of +-10 V, the whole stroke, twice
-/// the
-/// supply pressure.
+/// the supply pressure.
 formula::PlausibleRanges plausible(const ModelFile& model) {
   constexpr double kFullCommand_V = 10.0;
   formula::PlausibleRanges ranges;

@@ -15,12 +15,10 @@ struct ParameterInfo {
   double typical;  ///< typical size: where searches start
   double neutral;  ///< value without effect (effects), or the default (plants)
   /// Plants: relative standard deviation between rig and model file; 0 = taken as known, because
-  /// the record
-  /// cannot separate it from the others or because it is easily measured.
+  /// the record cannot separate it from the others or because it is easily measured.
   double uncertainty_ratio = 0.0;
   /// Effects: 0 = main parameters; above 0, the number of a refinement, whose parameters are added
-  /// and
-  /// removed together.
+  /// and removed together.
   int refinement = 0;
 };
 

@@ -25,8 +25,7 @@ class Plant {
   virtual void reset() noexcept = 0;
 
   /// Holds u_V for duration_s: whole integration steps, rounded to the nearest. NaN counts as 0 V.
-  /// No
-  /// allocation; states stay finite for any input.
+  /// No allocation; states stay finite for any input.
   virtual void advance(double u_V, double duration_s) noexcept = 0;
 
   /// True rod position, from the retracted end stop.

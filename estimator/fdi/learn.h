@@ -49,8 +49,7 @@ struct LearnedLimits {
 [[nodiscard]] LearnedLimits learn_limits(std::span<const double> values, const LearnConfig& config);
 
 /// Period of a periodic signal, from the first high peak of the autocorrelation of its first 80 s
-/// (4000
-/// samples below 50 Hz); 0 when the signal is not periodic.
+/// (4000 samples below 50 Hz); 0 when the signal is not periodic.
 [[nodiscard]] double find_period_s(std::span<const double> signal, double sample_time_s);
 
 }  // namespace estimator::fdi

@@ -64,8 +64,7 @@ struct Pipeline::Impl final : private InputResolver {
   void monitor_band(BandMonitor& monitor, const MonitoredValue& value, Events& events);
   [[nodiscard]] MethodSlot* slot(std::string_view id) noexcept;
   /// Indices of the slot (slots.size(): the sample) and of the value. Throws schema::Error at
-  /// `where` for an
-  /// unknown value.
+  /// `where` for an unknown value.
   [[nodiscard]] std::pair<std::size_t, std::size_t> locate(const std::string& quantity,
                                                            const std::string& where) const;
   [[nodiscard]] MethodInput find(const std::string& quantity,

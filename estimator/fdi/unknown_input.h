@@ -55,8 +55,7 @@ struct UnknownInputObserver {
 };
 
 /// Observer of a discrete model. Throws schema::ConfigError with the reason when none exists. `q`:
-/// process
-/// noise of predictor_gain(); a larger one follows faster.
+/// process noise of predictor_gain(); a larger one follows faster.
 [[nodiscard]] UnknownInputObserver unknown_input_observer(const StateSpaceModel& model,
                                                           const std::string& where, double q = 1.0);
 

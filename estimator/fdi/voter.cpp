@@ -163,8 +163,7 @@ bool Vote::update(std::span<const double> values) noexcept {
   bool changed = disagree_ != was;
   for (std::size_t i = 0; i < count_; ++i) {
     // Where two channels differ, neither is declared wrong; no channel returns while the wrong one
-    // is
-    // unknown.
+    // is unknown.
     const bool missing = !std::isfinite(values[i]);
     const bool tells = size > 1 ? !differ : channels_[i].missed;
     const bool compared = none_in ? tells : !disagree_ && (size != 2 || channels_[i].out);

@@ -19,8 +19,7 @@ constexpr double kLeast_s = 2.0;
 constexpr double kSlowest_s = 0.25;
 
 /// Ratio of the speed at a record's first sample to its RMS speed above which the record begins
-/// during a
-/// motion. A start from rest under a command stays below a few per cent.
+/// during a motion. A start from rest under a command stays below a few per cent.
 constexpr double kMoving = 0.05;
 
 std::size_t settling_samples(double sample_time_s) {

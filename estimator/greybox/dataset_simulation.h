@@ -1,6 +1,5 @@
 // Simulation of a model over all records of a data set: one ObserverSimulation per record,
-// residuals
-// concatenated in the order of the records.
+// residuals concatenated in the order of the records.
 #pragma once
 
 #include <Eigen/Core>

@@ -4,8 +4,7 @@
 //
 // r measured less modelled position of the training samples; s their RMS, at least the noise floor;
 // c inflation for lag-1 autocorrelation, (1 + rho) / (1 - rho). The errors of a wrong model are
-// large
-// and slow, which lowers the weight of the record relative to the priors.
+// large and slow, which lowers the weight of the record relative to the priors.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,8 +22,7 @@
 namespace estimator::greybox {
 
 /// Difference step of logarithmic parameters: large enough for models with dry friction, whose cost
-/// is
-/// discontinuous.
+/// is discontinuous.
 inline constexpr double kLogarithmStep = 1e-3;
 
 struct FitOptions {
@@ -71,8 +69,7 @@ struct FitSummary {
                              const Eigen::VectorXd& start, const FitOptions& options = {});
 
 /// Standard error of each theta, valid for coloured residuals; NaN at a bound, infinite where
-/// neither
-/// record nor prior determines it. `weights` as in the fit.
+/// neither record nor prior determines it. `weights` as in the fit.
 [[nodiscard]] Eigen::VectorXd std_errors(const FitDataset& data, const Eigen::VectorXd& weights,
                                          const FitSummary& fitted);
 

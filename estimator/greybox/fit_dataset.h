@@ -38,8 +38,8 @@ struct FitDataset {
 };
 
 /// `holdouts` are records for validation only; with them every sample of `records` is fitted.
-/// Halves
-/// of records become records of their own, each with its own start. Requires at least one record.
+/// Halves of records become records of their own, each with its own start. Requires at least one
+/// record.
 [[nodiscard]] FitDataset fit_dataset(std::vector<Dataset> records, std::vector<Dataset> holdouts,
                                      Split split = Split::blocks);
 

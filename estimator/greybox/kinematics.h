@@ -1,13 +1,12 @@
 // Speed, acceleration and direction of the measured rod at each sample, from the position alone;
-// the
-// model's errors are grouped by them.
+// the model's errors are grouped by them.
 //
 //   y(t + s) ~ c0 + c1 s + c2 s^2  by least squares over |s| <= 50 ms   (Savitzky, Golay 1964)
 //   v = c1,  a = 2 c2
 //
 // At least two samples to either side are used (at 50 Hz, 40 ms); at the ends of a segment the
-// window
-// is truncated and the parabola is evaluated off its middle. No sample of another segment is used.
+// window is truncated and the parabola is evaluated off its middle. No sample of another segment is
+// used.
 #pragma once
 
 #include <vector>
@@ -30,10 +29,9 @@ struct Kinematics {
 inline constexpr double kHalfWindow_s = 0.05;
 
 /// A rod slower than four standard deviations of the speed's noise, and slower than 1 % of its RMS
-/// speed,
-/// is at rest; noise_m: noise of the position. "Reversing" lasts from 50 ms before the rod leaves
-/// one
-/// direction until 50 ms after it moves the other way, where the reversal takes at most 0.5 s.
+/// speed, is at rest; noise_m: noise of the position. "Reversing" lasts from 50 ms before the rod
+/// leaves one direction until 50 ms after it moves the other way, where the reversal takes at most
+/// 0.5 s.
 [[nodiscard]] Kinematics kinematics(const Dataset& record, double noise_m);
 
 /// First and one past the last sample of each segment.

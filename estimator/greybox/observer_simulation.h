@@ -22,8 +22,7 @@
 namespace estimator::greybox {
 
 /// Default observer gain: fast enough against drift, slow enough for slow effects; established for
-/// the
-/// thesis's actuator.
+/// the thesis's actuator.
 inline constexpr double kObserver_per_s = 2.0;
 
 class ObserverSimulation {
@@ -31,8 +30,8 @@ class ObserverSimulation {
   static constexpr Eigen::Index kLanes = plant_sim::Ensemble::kLanes;
 
   /// `parameters`: free parameters known to the model; the others stay as in the model file. The
-  /// record must
-  /// outlive this object. Throws config::schema::ConfigError for a model that cannot be built.
+  /// record must outlive this object. Throws config::schema::ConfigError for a model that cannot be
+  /// built.
   ObserverSimulation(const plant_sim::ModelFile& model, const Dataset& record,
                      std::vector<FreeParameter> parameters,
                      double observer_per_s = kObserver_per_s);
@@ -42,8 +41,7 @@ class ObserverSimulation {
   void residuals(const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals_m);
 
   /// The same with additions to command and load in each lane (size() x points.cols(), or empty):
-  /// locates
-  /// the site at which a residual enters.
+  /// locates the site at which a residual enters.
   void residuals(const Eigen::MatrixXd& points, const Eigen::MatrixXd& added_V,
                  const Eigen::MatrixXd& added_N, Eigen::MatrixXd& residuals_m);
 

@@ -30,8 +30,7 @@ void widen_to_full_range(CatalogueParameter& known);
     const plant_sim::ModelFile& model, const std::vector<CatalogueParameter>& known);
 
 /// Throws config::schema::ConfigError with the option, the typed name, the nearest name of `near`
-/// and
-/// the allowed names.
+/// and the allowed names.
 [[noreturn]] void reject_name(const std::string& option, const std::string& typed,
                               const std::vector<std::string>& near,
                               const std::vector<std::string>& shown_names);

@@ -1,6 +1,5 @@
 // Representative segments of long records, spread over their whole length, for a search that would
-// take
-// too long on all samples.
+// take too long on all samples.
 #pragma once
 
 #include "estimator/greybox/fit_dataset.h"
@@ -18,10 +17,8 @@ inline constexpr double kSegment_s = 6.0 * kBlock_s;
 [[nodiscard]] double length_s(const FitDataset& data);
 
 /// Splits each record in equal parts and takes the segment with the longest travel from each part;
-/// a
-/// record shorter than two segments stays whole. The simulation restarts in each segment. Samples
-/// keep
-/// their masks of `whole`, except those that have not settled.
+/// a record shorter than two segments stays whole. The simulation restarts in each segment. Samples
+/// keep their masks of `whole`, except those that have not settled.
 [[nodiscard]] FitDataset representative_segments(const FitDataset& whole);
 
 }  // namespace estimator::greybox

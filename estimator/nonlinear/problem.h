@@ -39,10 +39,8 @@ struct Unknown {
 };
 
 /// Residuals of several parameter sets at once. `points` has one column per set, at most
-/// Problem::lanes of
-/// them; `residuals` is sized residuals x columns and to be filled. A set that cannot be evaluated
-/// gets
-/// a NaN anywhere in its column.
+/// Problem::lanes of them; `residuals` is sized residuals x columns and to be filled. A set that
+/// cannot be evaluated gets a NaN anywhere in its column.
 using Evaluate = std::function<void(const Eigen::MatrixXd& points, Eigen::MatrixXd& residuals)>;
 
 struct Problem {

@@ -24,8 +24,7 @@ struct DieboldMarianoResult {
 
 /// Residuals of the same samples under both models; NaN in either excludes a sample (fitted, or
 /// missing). Blocks have `block` samples (2 s, say); blocks with less than half of their samples,
-/// or
-/// without any error in one of the two, are excluded.
+/// or without any error in one of the two, are excluded.
 [[nodiscard]] DieboldMarianoResult diebold_mariano_test(std::span<const double> first,
                                                         std::span<const double> second, int block);
 

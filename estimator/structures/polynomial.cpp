@@ -54,8 +54,7 @@ std::vector<double> whitened(const Polynomial& model, const std::vector<double>&
 }
 
 /// w, v = A y - w and e, named as in the equations; before the first error w is the fitted start, v
-/// is 0
-/// and e is NaN.
+/// is 0 and e is NaN.
 struct Signals {
   std::vector<double> w;
   std::vector<double> v;

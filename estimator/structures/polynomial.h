@@ -64,10 +64,8 @@ struct Polynomial {
 [[nodiscard]] std::vector<double> one_step_errors(const Polynomial& model, const Stretch& stretch);
 
 /// Simulated output, as long as the stretch: from sample `start` on driven by u alone, starting
-/// from the
-/// predictor's state of the samples before (w and e; later e are 0). Samples before `start`, at
-/// least
-/// free_run_history(), are measured ones. Diverging models give inf or NaN.
+/// from the predictor's state of the samples before (w and e; later e are 0). Samples before
+/// `start`, at least free_run_history(), are measured ones. Diverging models give inf or NaN.
 [[nodiscard]] std::vector<double> free_run(const Polynomial& model, const Stretch& stretch,
                                            int start = 0);
 [[nodiscard]] int free_run_history(const Polynomial& model);

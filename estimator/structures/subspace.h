@@ -43,8 +43,7 @@ struct SubspaceFit {
   Eigen::VectorXd singular_values;  ///< singular values of Theta P, largest first, dimensionless
   double condition = 0.0;  ///< condition of the regression on the past, columns scaled to length 1
   /// The same model as a difference equation: characteristic polynomials of A (a) and of A - K C
-  /// (c),
-  /// numerator (b); independent of the choice of basis.
+  /// (c), numerator (b); independent of the choice of basis.
   Polynomial model;
   int samples = 0;
   bool valid = false;

@@ -126,8 +126,7 @@ struct Friction {
   }
 
   /// The bristle after a travel of the rod: z approaches +-g/k exponentially, with g the mean of
-  /// the levels
-  /// at both ends; the error of a step is of third order.
+  /// the levels at both ends; the error of a step is of third order.
   static S deflected_m(const Parameters& p, const Memory& memory, const S& travel_m,
                        const S& rise) {
     if (all(abs(travel_m) <= S(0.0)))

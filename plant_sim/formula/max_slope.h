@@ -1,6 +1,6 @@
 // Upper bound on the slope of a formula, from differences; determines the plants' step length. The
-// bound
-// errs to the large side; only features narrower than the distance of the sample points are missed.
+// bound errs to the large side; only features narrower than the distance of the sample points are
+// missed.
 #pragma once
 
 #include <array>

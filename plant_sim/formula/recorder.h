@@ -11,10 +11,8 @@
 namespace plant_sim::formula {
 
 /// `variables` (at most ExpressionProgram::kVariables) and `parameters` are the names that the text
-/// may
-/// use, besides pi. Throws config::schema::ConfigError at `where`, with position and token, when
-/// the
-/// text is not a single expression of these.
+/// may use, besides pi. Throws config::schema::ConfigError at `where`, with position and token,
+/// when the text is not a single expression of these.
 [[nodiscard]] ExpressionProgram record_formula(const std::string& text,
                                                const std::vector<std::string>& variables,
                                                const std::vector<std::string>& parameters,

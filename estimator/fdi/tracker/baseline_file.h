@@ -1,7 +1,6 @@
 // Baseline file: healthy values of a rig, written by `spoolwatch isolate --learn`, read by
 // [[tracker]]. The file states model with all values, rig, sample time, window, observer and
-// tracked
-// parameters; a file that differs in any of these is rejected.
+// tracked parameters; a file that differs in any of these is rejected.
 #pragma once
 
 #include <cstdint>
@@ -43,9 +42,8 @@ struct BaselineFile {
                                          const greybox::tracking::Baseline& baseline);
 
 /// Throws config::schema::ConfigError for a file of another version, model, window, observer,
-/// sample
-/// time, rig (where both are known) or set of tracked parameters in any order: the estimate of one
-/// parameter depends on which others were free.
+/// sample time, rig (where both are known) or set of tracked parameters in any order: the estimate
+/// of one parameter depends on which others were free.
 [[nodiscard]] BaselineFile read_baseline(const std::filesystem::path& file,
                                          const plant_sim::ModelFile& model,
                                          const greybox::tracking::TrackerSettings& settings,

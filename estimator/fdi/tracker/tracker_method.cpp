@@ -16,8 +16,7 @@ using estimator::fdi::NamedValue;
 using estimator::fdi::Severity;
 
 /// Ratio of the total length of unexplained windows in a row to one window, above which the model
-/// no
-/// longer explains the rig. A window across a change is unexplained as well, but only once.
+/// no longer explains the rig. A window across a change is unexplained as well, but only once.
 constexpr double kLong = 1.5;
 constexpr std::size_t kMostLessons = 100000;
 /// Numbers per learned window before its parameters: position error, then each chamber's

@@ -40,8 +40,7 @@ using greybox::tracking::Rival;
 [[nodiscard]] std::string change_words(const ParameterSet& set, const ParameterChange& named,
                                        const Eigen::VectorXd& baseline);
 /// Slow change that has reached the end of the range of the baseline drift. `learnt`, `theta`:
-/// search
-/// units.
+/// search units.
 [[nodiscard]] std::string drift_words(const FreeParameter& parameter, double learnt, double theta);
 /// Other parameters that would explain the change, and the reading or motion that separates them;
 /// empty without rivals.

@@ -10,18 +10,14 @@ namespace estimator::greybox::selection {
 enum class EliminationPass { intermediate, final };
 
 /// Drops effects, then refinements, as long as the held-out error rises by less than an effect must
-/// gain
-/// (and refinements that fail cross_validates() where the error exceeds the noise); then tries
+/// gain (and refinements that fail cross_validates() where the error exceeds the noise); then tries
 /// refinements that were left out, which must pass it as well. Intermediate passes keep the
-/// refinements
-/// of a stage that noise does not explain, because their cross-validation takes long.
+/// refinements of a stage that noise does not explain, because their cross-validation takes long.
 void eliminate_backward(const SearchContext& context, ModelStage& stage, EliminationPass look);
 
 /// Fits a stage to convergence, and in parallel without each refinement of its effects. A
-/// refinement is
-/// dropped where the fit without it ends lower and noise does not explain the stage: the search
-/// then
-/// ended in a wrong minimum.
+/// refinement is dropped where the fit without it ends lower and noise does not explain the stage:
+/// the search then ended in a wrong minimum.
 void refit_without_refinements(const SearchContext& context, ModelStage& stage);
 
 }  // namespace estimator::greybox::selection

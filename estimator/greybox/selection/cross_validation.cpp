@@ -9,8 +9,7 @@ namespace estimator::greybox::selection {
 namespace {
 
 /// Two halves of the records, each with its own start: one for the fit, one for the score. Records
-/// held
-/// out are one of the halves.
+/// held out are one of the halves.
 struct Halves {
   FitDataset forth;
   FitDataset back;

@@ -62,8 +62,7 @@ void list_steps(Diagnosis& result) {
 }
 
 /// Localises the unexplained residual. Effects taken in place of the right one have absorbed part
-/// of
-/// it; the model as given then shows it more clearly.
+/// of it; the model as given then shows it more clearly.
 std::vector<Localisation> localise_remainder(const SearchContext& context, const ModelStage& first,
                                              const ModelStage& final) {
   std::vector<Localisation> left = localise(context, final);

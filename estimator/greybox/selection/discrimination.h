@@ -1,7 +1,6 @@
 // Separation of two explanations: the distance of one from the motion that the other predicts, its
 // parameters adjusted, relative to the noise floor or to a small share of the unexplained error
-// where
-// that is larger. 1 does not separate them.
+// where that is larger. 1 does not separate them.
 #pragma once
 
 #include "estimator/greybox/fit.h"

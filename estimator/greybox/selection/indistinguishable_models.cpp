@@ -14,8 +14,7 @@ using Eigen::VectorXd;
 /// Largest number of effects in a group.
 constexpr std::size_t kLargestGroup = 3;
 /// Ratio to the chosen candidate's error up to which candidates of a round may become rivals with
-/// all
-/// other effects in place.
+/// all other effects in place.
 constexpr double kWorthARefit = 2.0;
 constexpr std::size_t kMostRefits = 4;
 /// Least share of the found effect's gain that a rival brings.

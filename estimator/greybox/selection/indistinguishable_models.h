@@ -16,8 +16,7 @@ struct IndistinguishableModels {
 };
 
 /// Empty when no found effect has a rival. Effects that contain a found one as a special case (a
-/// spring
-/// so long that it is a constant force) do not count as rivals.
+/// spring so long that it is a constant force) do not count as rivals.
 [[nodiscard]] std::vector<IndistinguishableModels> find_indistinguishable(
     const SearchContext& context, const std::vector<Round>& rounds, const ModelStage& final);
 

@@ -118,8 +118,8 @@ MatrixXd products(const MatrixXd& columns, const VectorXd& weights) {
 }
 
 /// Regression of the residual on Jacobian and signatures through sums of products. The priors keep
-/// their
-/// weight of the stage's fit: freer parameters would follow what the signatures should explain.
+/// their weight of the stage's fit: freer parameters would follow what the signatures should
+/// explain.
 class Regression {
  public:
   Regression(const Place& at, const MatrixXd& signatures)

@@ -1,12 +1,10 @@
 // Localisation of a residual: the site at which it enters the equations and the variable it
-// correlates
-// with. Used when no effect of the library explains a record.
+// correlates with. Used when no effect of the library explains a record.
 //
 //   r ~ -J a - sum b_i s_i,     s_i = response to the disturbance  f(t) h_i(x(t))
 //
 // r residual of the stage, J its Jacobian (the parameters may adjust, held by their priors), h_i
-// the
-// pieces of a variable x (residual_variables.h). A disturbance enters as
+// the pieces of a variable x (residual_variables.h). A disturbance enters as
 //
 //   flow         h_i volts beside the command
 //   gain         u h_i volts beside the command

@@ -3,8 +3,7 @@
 //
 // Every pair is simulated in several sizes of both; the projection (projection.h) gives the error
 // that remains after the parameters adjust. The most promising pairs are fitted. Periodic effects
-// are
-// excluded: their wavelengths would need a scan per partner.
+// are excluded: their wavelengths would need a scan per partner.
 #pragma once
 
 #include <vector>
@@ -14,8 +13,7 @@
 namespace estimator::greybox::selection {
 
 /// For a stage with its Jacobian; best first by held-out error. `without`: effects already combined
-/// with
-/// every other one.
+/// with every other one.
 [[nodiscard]] std::vector<Candidate> pair_search(const SearchContext& context,
                                                  const ModelStage& stage,
                                                  const std::vector<std::string>& without);

@@ -1,8 +1,7 @@
 // Structure selection: the problem of which physical effects a model lacks, judged by records.
 //
 // DiagnosisProblem is the question, DiagnosisOptions the procedure; every step of the search works
-// on
-// both as a SearchContext.
+// on both as a SearchContext.
 #pragma once
 
 #include <functional>

@@ -24,8 +24,7 @@ class Projection {
   /// With another residual; its prior is that of the fitted model.
   [[nodiscard]] double remaining(const Eigen::Ref<const Eigen::VectorXd>& residual_m) const;
   /// Cost and b with another residual (its prior is that of the fitted model) and a signature, both
-  /// as long
-  /// as the weights.
+  /// as long as the weights.
   [[nodiscard]] std::pair<double, double> with(
       const Eigen::Ref<const Eigen::VectorXd>& residual_m,
       const Eigen::Ref<const Eigen::VectorXd>& signature_m) const;

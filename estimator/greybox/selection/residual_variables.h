@@ -3,9 +3,8 @@
 //   h_i(x) = 1 at knot i, 0 at its neighbours, straight lines between, constant beyond the ends
 //
 // sum b_i h_i(x(t)) is any function of the variable that is straight from knot to knot. The knots
-// lie
-// half way between equal steps of the variable and equal shares of the samples: a rod that mostly
-// rests still leaves knots for its speeds.
+// lie half way between equal steps of the variable and equal shares of the samples: a rod that
+// mostly rests still leaves knots for its speeds.
 #pragma once
 
 #include <Eigen/Core>
@@ -35,13 +34,11 @@ struct Variables {
 };
 
 /// Command as measured; position, speed and acceleration of the stage's model, because a measured
-/// position
-/// carries the noise it would then explain; time since each record's start.
+/// position carries the noise it would then explain; time since each record's start.
 [[nodiscard]] Variables variables(const SearchContext& context, const ModelStage& stage);
 
 /// h_i of one variable over the samples with `counts` 1 (0: ignored). Two columns or more; none
-/// where the
-/// variable does not vary.
+/// where the variable does not vary.
 [[nodiscard]] Eigen::MatrixXd pieces_of(const Eigen::VectorXd& values,
                                         const Eigen::VectorXd& counts);
 

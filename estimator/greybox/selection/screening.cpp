@@ -112,8 +112,7 @@ std::vector<Wave> waves_at(const SearchContext& context, const FitDataset& data,
 }
 
 /// The best waves: all that the motion resolves on the screening segment, then a finer scan of the
-/// whole
-/// record about the most promising.
+/// whole record about the most promising.
 std::vector<Wave> scanned(const SearchContext& context, const ModelStage& stage,
                           const Projection& projection,
                           const std::vector<FreeParameter>& parameters,

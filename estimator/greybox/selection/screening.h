@@ -38,10 +38,8 @@ struct ScreeningResult {
 };
 
 /// Screens each effect, most promising first, from the stage's parameters and from the model
-/// file's: a
-/// single start misses effects that the parameters of the stage imitate. `looked` is called after
-/// each
-/// effect, from any thread; may be empty.
+/// file's: a single start misses effects that the parameters of the stage imitate. `looked` is
+/// called after each effect, from any thread; may be empty.
 [[nodiscard]] std::vector<ScreeningResult> screen(
     const SearchContext& context, const ModelStage& stage,
     const std::vector<plant_sim::EffectInfo>& effects,

@@ -1,6 +1,5 @@
 // Path from the model as given to the final one, one effect at a time: at each step the one with
-// the
-// largest gain.
+// the largest gain.
 #pragma once
 
 #include <vector>

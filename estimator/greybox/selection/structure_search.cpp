@@ -21,8 +21,7 @@ constexpr std::size_t kBeforePairSearch = 2;
 /// Effects of the first round that are tried as alternative starts when the best leads nowhere.
 constexpr std::size_t kAlternativeStarts = 3;
 /// Largest remaining error ratio of an alternative start. Two effects together may resemble a third
-/// one,
-/// which then ranks far before either; the start must differ from the best in kind.
+/// one, which then ranks far before either; the start must differ from the best in kind.
 constexpr double kHelpful = 0.7;
 /// Remaining error over the noise above which alternative starts are tried.
 constexpr double kLost = 2.0;
@@ -34,8 +33,7 @@ constexpr double kLargeGain = 0.1;
 constexpr double kStrain = 6.0;
 
 /// Whether a size or a wavelength reaches the limit of what the effect can be; the effect then
-/// stands in
-/// for something else.
+/// stands in for something else.
 bool leaves_its_range(const ModelStage& stage, const Candidate& candidate) {
   const FitSummary& fitted = candidate.fitted;
   for (std::size_t i = stage.fitted.parameters.size(); i < fitted.parameters.size(); ++i) {
@@ -70,8 +68,7 @@ double strain(const FitSummary& fitted) {
 }
 
 /// The candidate with the fewest parameters among those that explain the record alike, except one
-/// that
-/// moves the plant far from its expected values.
+/// that moves the plant far from its expected values.
 const Candidate& simplest(const SearchContext& context, const std::vector<Candidate>& candidates) {
   const Candidate* chosen = &candidates.front();
   for (const Candidate& other : candidates) {

@@ -1,6 +1,5 @@
 // Stepwise search for missing effects: effects are added one after another while held-out data
-// support
-// them, and revised at the end.
+// support them, and revised at the end.
 //
 //   add          the effect that lowers the held-out error most, by kWorthwhile or more
 //   pairs        where no single effect helps and the error still exceeds the noise

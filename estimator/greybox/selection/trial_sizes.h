@@ -12,10 +12,8 @@
 namespace estimator::greybox::selection {
 
 /// Columns of search values (searched.size() rows). The first parameter takes sizes over decades,
-/// with
-/// both signs where allowed; parameters in the same unit scale with it; rest positions lie within
-/// the
-/// motion.
+/// with both signs where allowed; parameters in the same unit scale with it; rest positions lie
+/// within the motion.
 [[nodiscard]] Eigen::MatrixXd trial_sizes(const std::vector<FreeParameter>& parameters,
                                           const FitDataset& data);
 
@@ -24,13 +22,11 @@ namespace estimator::greybox::selection {
 /// Wave numbers of a periodic effect that the motion can resolve, in turns over the motion.
 [[nodiscard]] std::vector<double> turns_over(const FitDataset& data);
 /// A small periodic effect with `turns` over the motion, at phase 0 and a quarter later: two
-/// columns whose
-/// linear combinations are the effect with any size and phase.
+/// columns whose linear combinations are the effect with any size and phase.
 [[nodiscard]] Eigen::MatrixXd waves(const std::vector<FreeParameter>& parameters,
                                     const FitDataset& data, double turns);
 /// Size and phase with which the effect is `first` times the first column of waves() plus `second`
-/// times
-/// the second.
+/// times the second.
 [[nodiscard]] Eigen::VectorXd wave_of(const std::vector<FreeParameter>& parameters,
                                       const Eigen::VectorXd& wave, double first, double second);
 /// Limits a search to the neighbourhood of the wavelength at `own`, and keeps the sensor's reading
@@ -39,10 +35,8 @@ void hold_wavelength(const plant_sim::EffectInfo& effect, const Eigen::VectorXd&
                      std::span<FreeParameter> parameters);
 
 /// Scales the effect's size by `share` within its bounds; a negative share of a non-negative size
-/// shifts a
-/// periodic effect by half a period. Returns false where that is not possible: the size is then
-/// scaled
-/// by the magnitude alone.
+/// shifts a periodic effect by half a period. Returns false where that is not possible: the size is
+/// then scaled by the magnitude alone.
 bool scale_size(const std::vector<FreeParameter>& parameters, double share,
                 Eigen::Ref<Eigen::VectorXd> own);
 

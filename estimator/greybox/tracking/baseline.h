@@ -1,6 +1,5 @@
 // Baseline of the rig without a fault, learned from windows of healthy motion: medians of each
-// tracked
-// parameter, of the window's error and of the chamber pressures' errors.
+// tracked parameter, of the window's error and of the chamber pressures' errors.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,7 +1,6 @@
 // Drift of the baseline: changes too slow to be faults, such as damping that falls while oil and
-// seals
-// warm up. The healthy value of a parameter follows the windows no faster than a stated rate and no
-// further than a stated distance from the learned value.
+// seals warm up. The healthy value of a parameter follows the windows no faster than a stated rate
+// and no further than a stated distance from the learned value.
 //
 //   h += min(max(g (x - h), -r T), r T),   h0 - below <= h <= h0 + above
 //

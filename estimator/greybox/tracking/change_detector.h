@@ -1,9 +1,8 @@
 // Alarms with a beginning and an end from changes named window by window.
 //
 // A change is detected at once when it is `at_once` standard errors off, or when two windows in a
-// row
-// name it in the same direction. It ends with a window in which the parameter is within its least
-// change, by two standard errors.
+// row name it in the same direction. It ends with a window in which the parameter is within its
+// least change, by two standard errors.
 #pragma once
 
 #include <limits>

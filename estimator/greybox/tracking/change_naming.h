@@ -1,10 +1,8 @@
 // Naming of the parameter that has changed in a window, and of others that would explain the window
-// as
-// well.
+// as well.
 //
 // A tracked parameter has changed when it is off its healthy value by `least` and by `sure`
-// standard
-// errors. Rivals are parameters that are not tracked:
+// standard errors. Rivals are parameters that are not tracked:
 //   - a single rival that leaves no more than all tracked ones together (within kChance): the
 // changes
 //     of several tracked parameters have that one cause. It forms a group with the tracked
@@ -43,8 +41,7 @@ inline constexpr double kChance = 16.0;  ///< chi-square
 inline constexpr double kLeft = 1e-3;
 inline constexpr double kAsGood = 1.05;  ///< ratio of the RMS errors
 /// Prior width, as a ratio to the value, up to which a plant parameter may be a rival: less certain
-/// ones
-/// are calibrated by healthy records.
+/// ones are calibrated by healthy records.
 inline constexpr double kMostUncertain_ratio = 0.1;
 
 /// Least change of a parameter, search units; for an effect in the model at most its present size.
@@ -72,8 +69,7 @@ struct ParameterChange {
 };
 
 /// Names of the previous window: the same parameters changed in the same directions keep their
-/// rivals,
-/// whose search takes most of the time; the rivals are searched again every kAnew windows.
+/// rivals, whose search takes most of the time; the rivals are searched again every kAnew windows.
 struct NamingCache {
   static constexpr int kAnew = 10;
   std::vector<signed char> directions;  ///< per tracked parameter; empty: nothing cached

@@ -1,6 +1,5 @@
 // Design of a short motion that determines the tracked parameters best: sines within given limits
-// are
-// simulated in closed loop with the healthy error as noise, and each is fitted like a window.
+// are simulated in closed loop with the healthy error as noise, and each is fitted like a window.
 #pragma once
 
 #include <Eigen/Core>

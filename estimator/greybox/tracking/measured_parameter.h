@@ -16,8 +16,7 @@ struct MeasuredMean {
 [[nodiscard]] MeasuredMean measured_mean(const double* values, std::size_t samples);
 
 /// Inserts the held parameter `held` into a fit without it. `std_error`, search units: knowledge of
-/// the
-/// parameter without the fit; infinite: none.
+/// the parameter without the fit; infinite: none.
 [[nodiscard]] WindowFitSummary with_held(WindowFitSummary found, std::size_t held,
                                          double std_error);
 

@@ -11,15 +11,13 @@
 namespace estimator::greybox::tracking {
 
 /// Tracked parameters first, then their rivals: every uncertain parameter of the plant, and effects
-/// that
-/// may arise in operation.
+/// that may arise in operation.
 struct ParameterSet {
   std::vector<FreeParameter> parameters;
   std::size_t tracked = 0;
   Eigen::VectorXd file;  ///< theta of the model file
   /// Uncertainty of the plant's values in the file (plant_sim::ParameterInfo::uncertainty_ratio);
-  /// infinite
-  /// for the others.
+  /// infinite for the others.
   Eigen::VectorXd uncertainty;
 
   [[nodiscard]] std::vector<std::size_t> tracked_indices() const;

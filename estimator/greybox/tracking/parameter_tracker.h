@@ -4,8 +4,8 @@
 // judged (invalid with a reason when the model does not explain it or the motion does not determine
 // the parameters), and changes are named (change_naming.h). The model cannot explain a window in
 // which the rig changed; its latest part is then fitted alone, which names a change before the
-// window
-// is over. One call of push() runs at most one such fit; all other calls only store the sample.
+// window is over. One call of push() runs at most one such fit; all other calls only store the
+// sample.
 //
 // Pressures, where they come with every sample of a window:
 // - The mean supply pressure replaces the fit of that parameter.
@@ -72,8 +72,7 @@ class ParameterTracker {
   [[nodiscard]] const ParameterSet& set() const { return set_; }
 
   /// Motion within the limits of the settings that determines the parameters best; takes about 0.1
-  /// s. None
-  /// without a baseline.
+  /// s. None without a baseline.
   [[nodiscard]] std::optional<ExcitationDesign> probe();
 
   /// Back to the initial state, without baseline.

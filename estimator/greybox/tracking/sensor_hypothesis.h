@@ -5,10 +5,8 @@
 // y  reading    y'  true position under the hypothesis    yc tc  middle of the window
 //
 // The model is compared with y'. The residual is linear in 1 / s and in r, apart from the plant's
-// weak
-// dependence on y: chi-square is a parabola, given by three values. It is evaluated in the
-// reading's
-// own noise, that is times s^2; the chamber pressures' part stays unchanged.
+// weak dependence on y: chi-square is a parabola, given by three values. It is evaluated in the
+// reading's own noise, that is times s^2; the chamber pressures' part stays unchanged.
 #pragma once
 
 #include <Eigen/Core>
@@ -34,8 +32,7 @@ struct SensorHypothesis {
 };
 
 /// Scale and drift that explain the window best with the model at `x`; values beyond a plausible
-/// sensor
-/// fault (a third, 10 mm/s) are left out.
+/// sensor fault (a third, 10 mm/s) are left out.
 [[nodiscard]] std::vector<SensorHypothesis> sensor_hypotheses(WindowFit& fit,
                                                               const WindowData& data,
                                                               const Eigen::VectorXd& theta,

@@ -16,8 +16,8 @@
 // The model starts at rest a lead-in before the window and is corrected to the measured position
 // there (Dataset::initialising), so that speed and pressures are consistent when the window begins;
 // the remaining position error is c, which is projected out of every residual. Pressures are
-// compared
-// but not corrected. For n residuals r of a chamber with mean m, the minimum over ci is that of
+// compared but not corrected. For n residuals r of a chamber with mean m, the minimum over ci is
+// that of
 //   r - (1 - 1 / sqrt(1 + n S^2 / sigma_i^2)) m,
 // a projection where S is large. A full projection would discard the most informative part of the
 // pressures: with a symmetric valve in + out is the supply pressure.
@@ -89,10 +89,8 @@ class WindowFit {
   WindowFit& operator=(const WindowFit&) = delete;
 
   /// Fits the parameters at `free` (indices) from `start`, which has every parameter. A finite
-  /// prior_sd
-  /// (search units, one per parameter, or empty) holds a parameter to the start. Chamber pressures
-  /// count
-  /// where the window has them and `errors` knows theirs.
+  /// prior_sd (search units, one per parameter, or empty) holds a parameter to the start. Chamber
+  /// pressures count where the window has them and `errors` knows theirs.
   [[nodiscard]] WindowFitSummary fit(const WindowData& data, const std::vector<std::size_t>& free,
                                      const Eigen::VectorXd& start, const ErrorScales& errors,
                                      const Eigen::VectorXd& prior_sd = {});

@@ -23,8 +23,7 @@ struct FusedEstimate {
 class WindowFusion {
  public:
   /// `parameters`: number of parameters; `apart`: windows between two that do not overlap; `most`:
-  /// limit of
-  /// fused windows.
+  /// limit of fused windows.
   WindowFusion(std::size_t parameters, std::size_t apart, std::size_t most);
 
   /// Adds the newest window; `good`: may be fused.

@@ -1,11 +1,9 @@
 // Error of the k-step prediction.
 //
 // Every k samples the model's position is set to the measured one; its other states (speed,
-// pressures,
-// spool) continue under the measured command. The error just before the next correction is the
-// k-step
-// error. Several offset simulations share the work. A perfect model's k-step error is sqrt(2) times
-// the noise, that of two readings.
+// pressures, spool) continue under the measured command. The error just before the next correction
+// is the k-step error. Several offset simulations share the work. A perfect model's k-step error is
+// sqrt(2) times the noise, that of two readings.
 #pragma once
 
 #include <cstddef>

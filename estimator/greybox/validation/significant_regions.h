@@ -6,10 +6,9 @@
 //   G = (n ln s^2 - n_in ln s_in^2 - n_out ln s_out^2) / 2,   n s^2 = n_in s_in^2 + n_out s_out^2
 //
 // s RMS speed errors; n effective samples, at least a correlation length apart. G is the logarithm
-// of
-// a likelihood ratio; s_out^2 counts as at least 5 % of s^2, otherwise leakage over a region's edge
-// would widen the region. Regions are ranges of neighbouring bins, or such a range of one variable
-// together with one of another.
+// of a likelihood ratio; s_out^2 counts as at least 5 % of s^2, otherwise leakage over a region's
+// edge would widen the region. Regions are ranges of neighbouring bins, or such a range of one
+// variable together with one of another.
 #pragma once
 
 #include <string>

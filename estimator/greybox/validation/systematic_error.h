@@ -1,6 +1,5 @@
 // Two systematic causes of a drifting model position, and the share of the error that they explain:
-// a
-// proportional speed error and a constant one.
+// a proportional speed error and a constant one.
 //
 //   e(k) ~ g z_v(k) + b z_1(k),   z(k+1) = (1 - l Ts) z(k) + Ts x(k),   x = modelled speed, 1
 //
