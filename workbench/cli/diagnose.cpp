@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <iostream>
 #include <memory>
 
@@ -9,6 +10,7 @@
 #include "workbench/cli/command.h"
 #include "workbench/cli/common_options.h"
 #include "workbench/cli/interrupt.h"
+#include "workbench/cli/number_check.h"
 #include "workbench/diagnose/diagnosis_report.h"
 #include "workbench/diagnose/experiment_design.h"
 #include "workbench/diagnose/progress_line.h"
@@ -47,7 +49,12 @@ int run(const DiagnosisRequest& request) {
       line.show(progress);
     };
   }
-  prepared.options.cancel = Interrupt::requested;
+  const auto begin = std::chrono::steady_clock::now();
+  const std::chrono::duration<double> within(request.within_s);
+  prepared.options.cancel = [&] {
+    return Interrupt::requested() ||
+           (request.within_s > 0.0 && std::chrono::steady_clock::now() - begin > within);
+  };
   diagnose::AdvisedDiagnosis found = diagnose::diagnose(prepared.problem, prepared.options);
   if (!request.quiet) line.end();
   const int exit_code = Interrupt::exit_code();
@@ -70,6 +77,16 @@ void add_diagnose(CLI::App& command, int& exit_code) {
       ->check(CLI::IsMember({"blocks", "first-half", "second-half"}))
       ->capture_default_str()
       ->excludes(holdout);
+  command.add_option("--only", request->only, "name[,name...]: try these effects alone")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command.add_option("--without", request->without, "name[,name...]: do not try these effects")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command.add_flag("--flip", request->flip, "turn the sign of the records' commands");
+  command
+      .add_option("--within", request->within_s, "s: the best answer found by then; 0 is no limit")
+      ->check(number_within(0.0, 1e6));
   add_json(command, request->json);
   add_report(command, request->report);
   command.add_option("-o,--output", request->output,

@@ -87,7 +87,8 @@ std::string to_json(const DiagnosisReport& outcome) {
   json["record"] = {{"turned_sign", d.checks && d.checks->turned_sign()},
                     {"outside_stroke", d.checks && d.checks->outside_stroke()}};
   json["plants"] = Json::array();
-  for (const selection::PlantFit& fit : d.checks ? d.checks->plants : decltype(d.checks->plants)()) {
+  for (const selection::PlantFit& fit :
+       d.checks ? d.checks->plants : decltype(d.checks->plants)()) {
     json["plants"].push_back(
         {{"plant", fit.plant}, {"rms_heldout_m", number_or_null(fit.validation_rms_m)}});
   }

@@ -47,16 +47,18 @@ void ProgressLine::rank(const selection::SearchProgress& progress) {
 void ProgressLine::show(const selection::SearchProgress& progress) {
   rank(progress);
   if (!renewed_) {
-    if (progress.round == round_) return;
+    if (progress.round == round_ && progress.by_innovations == by_innovations_) return;
     round_ = progress.round;
-    out_ << "round " << progress.round << ": " << progress.of << " steps, "
-         << best_words(progress, noise_floor_m_) << std::endl;
+    by_innovations_ = progress.by_innovations;
+    out_ << (by_innovations_ ? "disturbed rig, round " : "round ") << progress.round << ": "
+         << progress.of << " steps, " << best_words(progress, noise_floor_m_) << std::endl;
     return;
   }
   const auto now = std::chrono::steady_clock::now();
   if (now - last_ < kPeriod && progress.done < progress.of) return;
   last_ = now;
-  std::string line = "round " + std::to_string(progress.round) +
+  std::string line = (progress.by_innovations ? "disturbed rig, round " : "round ") +
+                     std::to_string(progress.round) +
                      (progress.screening ? ": screening " : ": fitting ") + progress.effect + ", " +
                      std::to_string(progress.done) + " of " + std::to_string(progress.of) + "; " +
                      best_words(progress, noise_floor_m_);

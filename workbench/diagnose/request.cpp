@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
 #include "config/record/record.h"
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 #include "workbench/cli/file_check.h"
 
 namespace workbench::diagnose {
@@ -42,6 +44,28 @@ std::vector<greybox::Dataset> records_of(const std::vector<std::string>& files) 
   return records;
 }
 
+/// Leaves the effects that are to be tried.
+void choose_effects(const DiagnosisRequest& request, std::vector<plant_sim::EffectInfo>& effects) {
+  const auto names = [](const std::vector<std::string>& list, const plant_sim::EffectInfo& effect) {
+    return std::find(list.begin(), list.end(), effect.name) != list.end();
+  };
+  for (const auto& [option, list] :
+       {std::pair("--only", &request.only), std::pair("--without", &request.without)}) {
+    for (const std::string& name : *list) {
+      const auto named = [&](const plant_sim::EffectInfo& effect) { return effect.name == name; };
+      if (std::any_of(effects.begin(), effects.end(), named)) continue;
+      const auto text = [](const plant_sim::EffectInfo& effect) { return effect.name; };
+      throw config::schema::UsageError(
+          fmt::format("{}: {} is no effect that this model lacks; allowed: {}", option, name,
+                      config::schema::joined_by(effects, text, ", ")));
+    }
+  }
+  std::erase_if(effects, [&](const plant_sim::EffectInfo& effect) {
+    return (!request.only.empty() && !names(request.only, effect)) ||
+           names(request.without, effect);
+  });
+}
+
 }  // namespace
 
 PreparedDiagnosis prepare(const DiagnosisRequest& request) {
@@ -52,6 +76,12 @@ PreparedDiagnosis prepare(const DiagnosisRequest& request) {
       selection::make_problem(plant_sim::load_model(request.model, request.assignments),
                               greybox::fit_dataset(records_of(request.records),
                                                    records_of(request.holdouts), prepared.split));
+  if (request.flip) {
+    for (greybox::Dataset& record : prepared.problem.data.records) {
+      for (double& u_V : record.u_V) u_V = -u_V;
+    }
+  }
+  choose_effects(request, prepared.problem.candidate_effects);
   const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
   prepared.options.threads = request.threads > 0 ? request.threads : processors;
   prepared.model_file = request.model;

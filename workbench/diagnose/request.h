@@ -17,6 +17,10 @@ struct DiagnosisRequest {
   std::vector<std::string> records;
   std::vector<std::string> holdouts;
   std::string fit = "blocks";
+  std::vector<std::string> only;     ///< the only effects to be tried; empty: all
+  std::vector<std::string> without;  ///< effects that are not tried
+  bool flip = false;                 ///< the records' commands with the other sign
+  double within_s = 0.0;             ///< the best answer after that time; 0: no limit
   std::string json;  ///< "-": standard output
   std::string report;
   std::string output;

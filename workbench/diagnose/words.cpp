@@ -108,15 +108,14 @@ void add_record_words(const selection::Diagnosis& d, std::vector<std::string>& o
   const selection::RecordChecks& checks = *d.checks;
   if (checks.turned_sign()) {
     out.push_back(fmt::format(
-        "The sign of the command is turned: with -u the model leaves {} times less. Turn it in the "
-        "record and diagnose again.",
+        "The sign of the command is turned: with -u the model leaves {} times less. Diagnose again "
+        "with --flip.",
         config::units::times_words(checks.turned_sign_ratio)));
   }
   if (checks.outside_stroke()) {
     out.push_back("The position leaves the model's stroke" +
-                  (checks.below_m < 0.0
-                       ? ", down to " + config::units::length_words(checks.below_m)
-                       : std::string()) +
+                  (checks.below_m < 0.0 ? ", down to " + config::units::length_words(checks.below_m)
+                                        : std::string()) +
                   (checks.beyond_m > 0.0
                        ? ", " + config::units::length_words(checks.beyond_m) + " beyond its end"
                        : std::string()) +

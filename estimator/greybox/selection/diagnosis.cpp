@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "config/schema/joined.h"
 #include "estimator/greybox/representative_segments.h"
 #include "estimator/greybox/selection/cross_validation.h"
 #include "estimator/greybox/selection/excitation.h"
@@ -55,9 +56,14 @@ void take_parameters(const InnovationStage& stage, Diagnosis& result) {
 }
 
 void list_steps(Diagnosis& result) {
+  std::size_t known = 0;
   for (const ModelStage& stage : result.search.path) {
+    const std::vector<std::string> added(
+        stage.added.begin() + static_cast<std::ptrdiff_t>(std::min(known, stage.added.size())),
+        stage.added.end());
+    known = stage.added.size();
     result.steps.push_back(
-        {stage.added.empty() ? "" : stage.added.back(), stage.fitted.validation_rms_m});
+        {config::schema::joined(added, " + "), stage.fitted.validation_rms_m});
   }
 }
 

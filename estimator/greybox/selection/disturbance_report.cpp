@@ -41,15 +41,16 @@ std::string site_of(const InnovationStage& stage, disturbance::LineSite site) {
   return disturbance::to_string(site);
 }
 
-Candidate candidate_of(const InnovationCandidate& found, const ModelStage& before) {
+Candidate candidate_of(const SearchContext& context, const InnovationCandidate& found,
+                       const ModelStage& before) {
   Candidate candidate;
   candidate.effects = {found.effect};
   candidate.fitted_at_all = found.settled;
   if (!found.settled) return candidate;
-  candidate.fitted = found.fitted;
-  candidate.validation_rms_m = found.fitted.validation_rms_m;
+  candidate.fitted = simulated(context, found.fitted);
+  candidate.validation_rms_m = candidate.fitted.validation_rms_m;
   candidate.expected_ratio =
-      found.fitted.validation_rms_m / std::max(before.fitted.validation_rms_m, 1e-300);
+      candidate.validation_rms_m / std::max(before.fitted.validation_rms_m, 1e-300);
   const double raw_nats = std::max(0.0, found.gain_nats + found.penalty_nats);
   candidate.p_value =
       residual::chi_square_upper(2.0 * raw_nats, found.penalty_nats / kPerParameter_nats);
@@ -61,7 +62,7 @@ Candidate candidate_of(const InnovationCandidate& found, const ModelStage& befor
 std::optional<Disturbance> disturbance_of(const SearchContext& context,
                                           const InnovationSearch& search) {
   const InnovationStage& stage = search.final;
-  const FitDataset& data = context.problem.data;
+  const FitDataset& data = stage.context.problem.data;
   Disturbance result;
   double random_m2 = 0.0;
   double total_m2 = 0.0;
@@ -92,7 +93,8 @@ std::optional<Disturbance> disturbance_of(const SearchContext& context,
     result.corner_Hz = stage.noise.noise.corner_Hz;
   }
   result.rms_m = std::sqrt(total_m2 / counted);
-  const double error_m = rms(simulated(context, stage.model.fitted).residual_m, data.all_mask);
+  const double error_m =
+      rms(simulated(context, stage.model.fitted).residual_m, context.problem.data.all_mask);
   result.share = std::min(1.0, std::pow(result.rms_m / error_m, 2));
   if (!(result.rms_m > kSeen * data.noise_floor_m)) return {};
   return result;
@@ -104,18 +106,24 @@ StructureSearch structure_search_of(const SearchContext& context, const ModelSta
   result.path.push_back(first);
   for (const InnovationRound& round : search.rounds) {
     Round one;
-    one.before = round.before;
+    one.before = {round.before.added, simulated(context, round.before.fitted)};
     for (const InnovationCandidate& candidate : round.candidates) {
       if (!candidate.effect.empty())
-        one.candidates.push_back(candidate_of(candidate, round.before));
+        one.candidates.push_back(candidate_of(context, candidate, one.before));
     }
     const bool grew = round.before.added.size() + 1 > result.path.size();
-    if (grew && !round.before.added.empty()) result.path.push_back(round.before);
+    if (grew && !round.before.added.empty()) result.path.push_back(one.before);
     result.rounds.push_back(std::move(one));
   }
   ModelStage final{search.final.model.added, simulated(context, search.final.model.fitted)};
+  // an effect that was taken and dropped again leaves no step
   std::erase_if(result.path, [&](const ModelStage& stage) {
-    return !stage.added.empty() && stage.added.size() >= final.added.size();
+    return !stage.added.empty() &&
+           (stage.added.size() >= final.added.size() ||
+            std::any_of(stage.added.begin(), stage.added.end(), [&](const std::string& effect) {
+              return std::find(final.added.begin(), final.added.end(), effect) ==
+                     final.added.end();
+            }));
   });
   if (!final.added.empty()) {
     result.path.push_back(final);

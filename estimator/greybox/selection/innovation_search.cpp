@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <mutex>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -376,6 +377,11 @@ bool extend(const SearchContext& plain, InnovationStage& stage,
   }
   sort_by_gain(trials);
   std::vector<InnovationStage> stages(trials.size());
+  SearchProgress progress;
+  progress.round = static_cast<int>(rounds.size()) + 1;
+  progress.by_innovations = true;
+  progress.of = static_cast<int>(trials.size());
+  std::mutex reporting;
   in_parallel(trials.size(), plain.options.threads, [&](std::size_t i) {
     Trial& trial = trials[i];
     const bool finalist = i < kFinalists && trial.candidate.gain_nats > 0.0;
@@ -384,6 +390,11 @@ bool extend(const SearchContext& plain, InnovationStage& stage,
     trial.candidate.gain_nats =
         0.5 * (stage.minus_two_log - stages[i].minus_two_log) - trial.penalty_nats;
     trial.candidate.settled = true;
+    if (!plain.options.progress) return;
+    const std::lock_guard lock(reporting);
+    ++progress.done;
+    progress.effect = trial.candidate.effect.empty() ? "a spectral line" : trial.candidate.effect;
+    plain.options.progress(progress);
   });
   std::size_t chosen = trials.size();
   for (std::size_t i = 0; i < trials.size(); ++i) {
@@ -394,13 +405,13 @@ bool extend(const SearchContext& plain, InnovationStage& stage,
       chosen = i;
     }
   }
-  in_parallel(trials.size(), plain.options.threads, [&](std::size_t i) {
+  for (std::size_t i = 0; i < trials.size(); ++i) {
     trials[i].candidate.penalty_nats = trials[i].penalty_nats;
-    if (trials[i].candidate.settled) {
-      trials[i].candidate.fitted = simulated(plain, stages[i].model.fitted);
-    }
-  });
-  InnovationRound round{{stage.model.added, simulated(plain, stage.model.fitted)}, {}};
+    if (trials[i].candidate.settled) trials[i].candidate.fitted = stages[i].model.fitted;
+    trials[i].candidate.fitted.jacobian.resize(0, 0);
+  }
+  InnovationRound round{stage.model, {}};
+  round.before.fitted.jacobian.resize(0, 0);
   if (chosen < trials.size()) round.candidates.push_back(trials[chosen].candidate);
   for (std::size_t i = 0; i < trials.size(); ++i) {
     if (i != chosen) round.candidates.push_back(trials[i].candidate);
@@ -507,7 +518,13 @@ FitSummary simulated(const SearchContext& context, const FitSummary& fitted) {
   return result;
 }
 
-InnovationSearch search_innovations(const SearchContext& context, const ModelStage& first) {
+InnovationSearch search_innovations(const SearchContext& with_holdouts, const ModelStage& first) {
+  SearchContext context = with_holdouts;
+  if (context.problem.data.has_holdouts()) {
+    std::vector<Dataset>& records = context.problem.data.records;
+    records.resize(context.problem.data.fitted_records);
+    context.problem.data = fit_dataset(std::move(records), {});
+  }
   InnovationSearch search;
   InnovationStage stage = settled(context, first, {}, kMostTurns, wide(context.options.threads));
   search.before = stage;

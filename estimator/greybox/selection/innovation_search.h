@@ -46,11 +46,11 @@ struct InnovationCandidate {
   double gain_nats = 0.0;  ///< less its penalty
   double penalty_nats = 0.0;
   bool settled = false;  ///< with a noise model of its own
-  FitSummary fitted;     ///< settled: parameters and their values; residuals with the weak observer
+  FitSummary fitted;     ///< settled: parameters and their values, without Jacobian
 };
 
 struct InnovationRound {
-  ModelStage before;                            ///< residuals with the weak observer
+  ModelStage before;                            ///< without Jacobian
   std::vector<InnovationCandidate> candidates;  ///< the one taken, if any, then the best first
 };
 
@@ -72,7 +72,8 @@ struct InnovationSearch {
 /// A fit's parameters in a simulation with the weak observer, without Jacobian.
 [[nodiscard]] FitSummary simulated(const SearchContext& context, const FitSummary& fitted);
 
-/// `first` is the model as given, fitted with the weak observer.
+/// `first` is the model as given, fitted with the weak observer. Records that only score take no
+/// part.
 [[nodiscard]] InnovationSearch search_innovations(const SearchContext& context,
                                                   const ModelStage& first);
 

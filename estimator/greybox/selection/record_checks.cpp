@@ -45,12 +45,11 @@ double mass_kg(const FitDataset& data, double gain_N_per_V) {
     double mean_V = 0.0;
     for (const double u_V : record.u_V) mean_V += u_V / static_cast<double>(record.size());
     for (std::size_t k = 1; k < record.size(); ++k) {
-      impulse_Vs.push_back(impulse_Vs.back() +
-                           (record.u_V[k - 1] - mean_V) * record.sample_time_s);
+      impulse_Vs.push_back(impulse_Vs.back() + (record.u_V[k - 1] - mean_V) * record.sample_time_s);
       speed_mps.push_back((record.y_m[k] - record.y_m[k - 1]) / record.sample_time_s);
     }
-    most_kg = std::max(most_kg,
-                       gain_N_per_V * spread(impulse_Vs) / std::max(spread(speed_mps), 1e-9));
+    most_kg =
+        std::max(most_kg, gain_N_per_V * spread(impulse_Vs) / std::max(spread(speed_mps), 1e-9));
   }
   return most_kg;
 }
@@ -127,10 +126,9 @@ RecordChecks check_records(const SearchContext& context, double rms_m) {
     turned_m = fitted_rms_m(context, context.problem.model, turned);
   });
   if (turned_m * kTurned < rms_m) checks.turned_sign_ratio = rms_m / turned_m;
-  std::stable_sort(checks.plants.begin(), checks.plants.end(),
-                   [](const PlantFit& a, const PlantFit& b) {
-                     return a.validation_rms_m < b.validation_rms_m;
-                   });
+  std::stable_sort(
+      checks.plants.begin(), checks.plants.end(),
+      [](const PlantFit& a, const PlantFit& b) { return a.validation_rms_m < b.validation_rms_m; });
   return checks;
 }
 
