@@ -30,7 +30,9 @@ target_compile_options(spoolwatch_options INTERFACE -Wall -Wextra -Wshadow -Wcon
   -fno-math-errno -ffp-contract=off
   # LCM's decoders write a double through an int64_t*: under strict aliasing GCC reads it too early.
   -fno-strict-aliasing
-  $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)  # for ccache
+  $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>  # for ccache
+  # GCC collects garbage less often: half a gigabyte more, a twentieth of the time less.
+  $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=524288>)
 if(SPOOLWATCH_SANITIZE)
   target_compile_options(spoolwatch_options INTERFACE -fsanitize=${SPOOLWATCH_SANITIZE}
     -fno-omit-frame-pointer -fno-sanitize-recover=all

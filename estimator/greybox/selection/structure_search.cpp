@@ -184,6 +184,18 @@ void try_alternative_starts(const SearchContext& context, const ModelStage& firs
   }
 }
 
+/// Whether a set of effects holds in either half of the records though its parts one after another
+/// do not: two that make up for each other are worth nothing alone.
+bool set_is_supported(const SearchContext& context, const ModelStage& first, const ModelStage& set,
+                      const ModelStage& parts) {
+  const auto all = [](const ModelStage& stage) {
+    return subset(stage.fitted, [](const auto&) { return true; });
+  };
+  return parts.added.size() < set.added.size() && !context.cancelled() &&
+         parts.fitted.validation_rms_m > (1.0 + kRivals) * set.fitted.validation_rms_m &&
+         cross_validates(context, false, all(first), all(set));
+}
+
 }  // namespace
 
 double worthwhile_at(const SearchContext& context, double validation_rms_m) {
@@ -231,6 +243,7 @@ StructureSearch search_structure(const SearchContext& context, SearchEffort effo
   search.path = path_to(context, first, stage);
   if (!is_explained(context, stage)) {
     std::vector<ModelStage> validated = cross_validated_path(context, search.path);
+    if (set_is_supported(context, first, stage, validated.back())) validated = search.path;
     // interrupted: keeps what was found
     if (!context.cancelled()) {
       ModelStage last = validated.back();

@@ -1,0 +1,66 @@
+#include "estimator/greybox/selection/confidence.h"
+
+#include <gmock/gmock.h>
+
+#include "estimator/greybox/selection/diagnosis.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+Diagnosis unexplained() {
+  Diagnosis d;
+  d.verdict = Verdict::unexplained;
+  d.missing = {"friction", "backlash"};
+  d.parameters = {{"mass_kg", 50.0, 1.0, false},
+                  {"friction.coulomb_N", 150.0, 4.0, false},
+                  {"friction.static_N", 10.0, 40.0, false},
+                  {"backlash.width_m", 5e-6, 7e-6, false}};
+  return d;
+}
+
+std::vector<std::string> named(const Diagnosis& d) {
+  std::vector<std::string> words;
+  for (const PossibleEffect& one : possible_effects(d)) {
+    words.push_back(one.effect + " " + to_string(one.why));
+  }
+  return words;
+}
+
+TEST(Confidence, ASizeWithinItsErrorIsNotEstablishedWhateverItsRefinements) {
+  EXPECT_THAT(named(unexplained()), ElementsAre("backlash within_error"));
+}
+
+TEST(Confidence, ASizeAtItsBoundIsNotEstablished) {
+  Diagnosis d = unexplained();
+  d.parameters[1].at_bound = true;
+  EXPECT_THAT(named(d), ElementsAre("friction at_bound", "backlash within_error"));
+}
+
+TEST(Confidence, AnEffectWithRivalsIsNotEstablished) {
+  Diagnosis d = unexplained();
+  d.same_here = {{"friction", "deadband"}};
+  EXPECT_THAT(named(d), ElementsAre("friction rivals", "backlash within_error"));
+}
+
+TEST(Confidence, ThreeEffectsThatLeaveAnErrorMayStandInForOneLaw) {
+  Diagnosis d = unexplained();
+  d.missing.emplace_back("load_force");
+  d.parameters.push_back({"load_force.force_N", 200.0, 5.0, false});
+  EXPECT_THAT(named(d), ElementsAre("friction stand_in", "backlash within_error",
+                                    "load_force stand_in"));
+  EXPECT_THAT(d.established(), ElementsAre("friction", "backlash", "load_force"));
+  d.possible = possible_effects(d);
+  EXPECT_THAT(d.established(), IsEmpty());
+}
+
+TEST(Confidence, WhereNoErrorRemainsWhatWasFoundStands) {
+  Diagnosis d = unexplained();
+  d.verdict = Verdict::missing;
+  EXPECT_THAT(possible_effects(d), IsEmpty());
+}
+
+}  // namespace
+}  // namespace estimator::greybox::selection
