@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <functional>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +22,7 @@ template <class Range, class Text>
 [[nodiscard]] std::string joined_by(const Range& items, Text&& text,
                                     std::string_view separator = ", ") {
   std::vector<std::string> texts;
+  texts.reserve(std::size(items));
   for (const auto& item : items) texts.emplace_back(std::invoke(text, item));
   return joined(texts, separator);
 }

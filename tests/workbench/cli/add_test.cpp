@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
+
 #include <gtest/gtest.h>
 #include <stdlib.h>
+#include <CLI/Error.hpp>
 
 #include <filesystem>
 #include <fstream>

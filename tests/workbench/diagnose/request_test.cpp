@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <CLI/Error.hpp>
+
 #include "config/schema/error.h"
 #include "tests/workbench/diagnose/servo_bench.h"
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <CLI/Error.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
