@@ -62,8 +62,7 @@ void list_steps(Diagnosis& result) {
         stage.added.begin() + static_cast<std::ptrdiff_t>(std::min(known, stage.added.size())),
         stage.added.end());
     known = stage.added.size();
-    result.steps.push_back(
-        {config::schema::joined(added, " + "), stage.fitted.validation_rms_m});
+    result.steps.push_back({config::schema::joined(added, " + "), stage.fitted.validation_rms_m});
   }
 }
 
@@ -136,17 +135,20 @@ void conclude(const SearchContext& search, const ModelStage& first,
   result.search.interrupted = search.cancelled();
   take_errors(result);
   take_parameters(innovations.final, result);
-  result.disturbance = disturbance_of(search, innovations);
+  // missing physics passes for a disturbance as long as it is not in the model
+  const bool physics = innovations.curve_nats > kCurve_nats;
+  if (!physics) result.disturbance = disturbance_of(search, innovations);
   for (const InnovationRivals& rivals : innovations.rivals) {
     if (search.options.separable) {
       (void)search.options.separable(search, rivals.explanations, rivals.names);
     }
     result.ambiguous.push_back(rivals.names);
   }
-  result.verdict = result.search.interrupted  ? Verdict::unexplained
-                   : result.missing.empty()   ? Verdict::nothing_missing
-                   : result.ambiguous.empty() ? Verdict::missing
-                                              : Verdict::undetermined;
+  if (physics) result.where = innovations.where;
+  result.verdict = result.search.interrupted || physics ? Verdict::unexplained
+                   : result.missing.empty()             ? Verdict::nothing_missing
+                   : result.ambiguous.empty()           ? Verdict::missing
+                                                        : Verdict::undetermined;
 }
 
 }  // namespace
@@ -206,8 +208,16 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
     if (context.cancelled() || innovations.curve_nats <= kCurve_nats) {
       conclude(search, first, innovations, result);
     } else {
-      result.search = search_structure(search, SearchEffort::full);
-      conclude(context, search, result);
+      StructureSearch full = search_structure(search, SearchEffort::full);
+      const double held_m = simulated(search, innovations.final.model.fitted).validation_rms_m;
+      // of two that leave something unexplained, the one that leaves less
+      if (!is_explained(search, full.final) &&
+          held_m < (1.0 - kRivals) * full.final.fitted.validation_rms_m) {
+        conclude(search, first, innovations, result);
+      } else {
+        result.search = std::move(full);
+        conclude(context, search, result);
+      }
     }
   }
   result.possible = possible_effects(result);

@@ -121,8 +121,7 @@ StructureSearch structure_search_of(const SearchContext& context, const ModelSta
     return !stage.added.empty() &&
            (stage.added.size() >= final.added.size() ||
             std::any_of(stage.added.begin(), stage.added.end(), [&](const std::string& effect) {
-              return std::find(final.added.begin(), final.added.end(), effect) ==
-                     final.added.end();
+              return std::find(final.added.begin(), final.added.end(), effect) == final.added.end();
             }));
   });
   if (!final.added.empty()) {
