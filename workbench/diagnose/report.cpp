@@ -144,9 +144,12 @@ Section falling_error_section(const DiagnosisReport& outcome) {
   const selection::Diagnosis& d = outcome.diagnosis;
   Section section{.heading = "The falling error"};
   section.paragraphs = {
-      "Held-out error: the drift-corrected RMS of measured less modelled position on data that "
-      "were not fitted (" +
-          split_words(outcome) + ").",
+      d.by_innovations ? "Error: the drift-corrected RMS of measured less modelled position (" +
+                             split_words(outcome) + ")."
+                       : "Held-out error: the drift-corrected RMS of measured less modelled "
+                         "position on data that "
+                         "were not fitted (" +
+                             split_words(outcome) + ").",
       present::kFreeRunMeaning, present::kDriftCorrectedMeaning, present::kNoiseFloorMeaning};
   const std::vector<StepWords> steps = step_words(d);
   const Scale scale = scale_of(d);
@@ -173,11 +176,18 @@ Section candidates_section(const DiagnosisReport& outcome) {
   const selection::Diagnosis& d = outcome.diagnosis;
   Section section{.heading = "The candidates"};
   section.paragraphs = {
-      "Each round fits every absent effect together with all that the model has already, and "
-      "scores it on held-out data. An effect is taken when it lowers that error by " +
-      fmt::format("{:g}", 100.0 * selection::kWorthwhile) +
-      " % or more and the gain is more than chance: p is the probability of such a gain by chance "
-      "alone. The bars end at the held-out error, the dashed line is the noise floor."};
+      d.by_innovations
+          ? std::string(
+                "The rig is disturbed: each round fits the most promising effects and spectral "
+                "lines, each with a noise model of its own, to the innovations. One is taken when "
+                "the likelihood says so; p is that of the likelihood ratio. The bars end at the "
+                "error of a simulation, which the disturbance dominates.")
+          : "Each round fits every absent effect together with all that the model has already, and "
+            "scores it on held-out data. An effect is taken when it lowers that error by " +
+                fmt::format("{:g}", 100.0 * selection::kWorthwhile) +
+                " % or more and the gain is more than chance: p is the probability of such a gain "
+                "by chance "
+                "alone. The bars end at the held-out error, the dashed line is the noise floor."};
   for (std::size_t i = 0; i < d.search.rounds.size(); ++i) {
     const std::string not_fitted = not_fitted_words(d.search.rounds[i]);
     Plot plot = candidates_plot(d, i);

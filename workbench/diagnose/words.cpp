@@ -280,7 +280,7 @@ std::string next_command(const DiagnosisReport& outcome) {
 }
 
 std::string split_words(const DiagnosisReport& outcome) {
-  if (outcome.diagnosis.disturbance) {
+  if (outcome.diagnosis.by_innovations) {
     return "effects judged by the likelihood of all innovations, errors those of simulations";
   }
   if (!outcome.prepared->holdouts.empty()) {

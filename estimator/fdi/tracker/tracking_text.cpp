@@ -135,9 +135,9 @@ std::string drift_words(const FreeParameter& p, double learnt, double theta) {
       is_logarithmic(p)
           ? fmt::format("{:+.1f} %", 100.0 * (p.to_physical(theta) / p.to_physical(learnt) - 1.0))
           : fmt::format("{:+.2g} times its typical size", theta - learnt);
-  return name_words(p.name) + " came by and by to " +
+  return name_words(p.name) + " has drifted to " +
          config::units::words(config::units::quantity(p.name, p.to_physical(theta), NAN)) + ", " +
-         far + " from what was learnt; slow changes are followed no further";
+         far + " from the learned value; slow changes beyond this are not followed";
 }
 
 std::string group_words(const ParameterSet& set, const ParameterChange& named) {

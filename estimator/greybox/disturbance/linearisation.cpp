@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "estimator/greybox/observer_simulation.h"
 #include "plant_sim/ensemble.h"
@@ -26,19 +27,20 @@ constexpr double kSupply_Pa = 1e3;
 constexpr std::size_t kOwn = 0;
 constexpr std::size_t kSmooth = 1;
 
-/// Parameters that make the step of a model jump.
-std::vector<std::size_t> ragged_parameters(const Ensemble& ensemble,
-                                           const plant_sim::ModelFile& model) {
-  std::vector<std::size_t> found;
+/// All parameters of the effects that make the step of a model jump, with their neutral values.
+/// None may stay: without its Coulomb level, the rise towards standstill would be a negative
+/// damping.
+std::vector<std::pair<std::size_t, double>> ragged_parameters(const Ensemble& ensemble,
+                                                              const plant_sim::ModelFile& model) {
+  std::vector<std::pair<std::size_t, double>> found;
   for (const plant_sim::EffectInfo& effect : plant_sim::effects_of(model)) {
     const auto acts_at = [&](const char* site) {
       return std::find(effect.sites.begin(), effect.sites.end(), site) != effect.sites.end();
     };
     if (!acts_at("dry_friction") && !acts_at("sensor")) continue;
     for (const plant_sim::ParameterInfo& parameter : effect.parameters) {
-      if (parameter.refinement > 0) continue;
       const auto index = ensemble.find(effect.name + "." + parameter.name);
-      if (index) found.push_back(*index);
+      if (index) found.emplace_back(*index, parameter.neutral);
     }
   }
   return found;
@@ -56,9 +58,9 @@ Linearisation linearise(const plant_sim::ModelFile& model, const Dataset& record
     const double value = parameters[i].to_physical(theta[static_cast<Eigen::Index>(i)]);
     for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) ensemble->set(index, lane, value);
   }
-  for (const std::size_t index : ragged_parameters(*ensemble, model)) {
+  for (const auto& [index, neutral] : ragged_parameters(*ensemble, model)) {
     for (std::size_t lane = kSmooth; lane < Ensemble::kLanes; ++lane) {
-      ensemble->set(index, lane, 0.0);
+      ensemble->set(index, lane, neutral);
     }
   }
   Linearisation result;

@@ -16,12 +16,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr auto kLanes = static_cast<std::size_t>(ObserverSimulation::kLanes);
 /// Walk of the position per sample over the sensor's noise: the gain of a stationary filter that
 /// knows nothing else, so that the least is a tenth of the weak observer's.
 constexpr double kLeastWalk_ratio = 0.1;
 constexpr double kMostWalk_ratio = 30.0;
-constexpr double kLeastCorner_Hz = 0.02;
+/// Turns of the corner frequency over the longest record: a slower force is a constant to it.
+constexpr double kLeastCorner_turns = 2.0;
 constexpr double kMostCorner_ratio = 0.2;  ///< of the sampling rate
 constexpr double kLeastSensor_ratio = 0.8;
 constexpr double kMostSensor_ratio = 3.0;
@@ -67,6 +67,14 @@ double reach_per_unit_m(const Linearisations& models, const FitDataset& data) {
     }
   }
   return std::sqrt(sum_m2 / std::max(windows, 1.0));
+}
+
+double longest_s(const FitDataset& data) {
+  double longest = 0.0;
+  for (const Dataset& record : data.records) {
+    longest = std::max(longest, record.sample_time_s * static_cast<double>(record.size()));
+  }
+  return longest;
 }
 
 MatrixXd line_responses(const Linearisation& model, const Dataset& record,
@@ -183,8 +191,8 @@ NoiseEstimate estimate_noise(const plant_sim::ModelFile& model, const FitDataset
   const double unit = floor_m / std::max(reach_per_unit_m(models, data), 1e-300);
   const double walk_m = observer * floor_m;
   const Bounds bounds{
-      Point(std::log(1e-2 * unit), std::log(kLeastCorner_Hz), std::log(kLeastWalk_ratio * walk_m),
-            std::log(kLeastSensor_ratio * floor_m)),
+      Point(std::log(1e-2 * unit), std::log(kLeastCorner_turns / longest_s(data)),
+            std::log(kLeastWalk_ratio * walk_m), std::log(kLeastSensor_ratio * floor_m)),
       Point(std::log(1e5 * unit), std::log(kMostCorner_ratio / data.sample_time_s),
             std::log(kMostWalk_ratio * walk_m), std::log(kMostSensor_ratio * floor_m))};
   const auto within = [&](const Point& point) -> Point {

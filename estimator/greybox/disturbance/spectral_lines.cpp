@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -55,8 +56,8 @@ std::vector<LineSite> sites_of(const Linearisation& model) {
 }
 
 /// d (half the squared innovations) / d w(k).
-VectorXd influence(const Linearisation& model, const InnovationGains& gains, LineSite site,
-                   const VectorXd& innovations) {
+VectorXd influence(const Linearisation& model, const Dataset& record, const InnovationGains& gains,
+                   LineSite site, const VectorXd& innovations) {
   const Index samples = innovations.size();
   VectorXd result(samples);
   StateVector adjoint = StateVector::Zero();  // of z(k + 1)
@@ -70,6 +71,7 @@ VectorXd influence(const Linearisation& model, const InnovationGains& gains, Lin
         site == LineSite::sensor ? own - through_gain : input_of(model, site, row).dot(adjoint);
     adjoint = back;
     adjoint[0] += own - through_gain;
+    if (std::binary_search(record.starts.begin(), record.starts.end(), row)) adjoint.setZero();
   }
   return result;
 }
@@ -77,7 +79,7 @@ VectorXd influence(const Linearisation& model, const InnovationGains& gains, Lin
 std::vector<double> peaks_of(const VectorXd& series, double sample_time_s) {
   Eigen::FFT<double> fft;
   fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
-  std::vector<double> padded(static_cast<std::size_t>(2 * series.size()), 0.0);
+  std::vector<double> padded(std::bit_ceil(static_cast<std::size_t>(2 * series.size())), 0.0);
   std::copy(series.data(), series.data() + series.size(), padded.begin());
   std::vector<std::complex<double>> spectrum;
   fft.fwd(spectrum, padded);
@@ -85,7 +87,8 @@ std::vector<double> peaks_of(const VectorXd& series, double sample_time_s) {
   std::transform(spectrum.begin(), spectrum.end(), power.begin(),
                  [](const auto& value) { return std::norm(value); });
   const double step_Hz = 1.0 / (sample_time_s * static_cast<double>(padded.size()));
-  const auto first = static_cast<std::size_t>(2.0 * kFewestTurns);
+  const auto first = static_cast<std::size_t>(kFewestTurns * static_cast<double>(padded.size()) /
+                                              static_cast<double>(series.size()));
   struct Peak {
     std::size_t bin;
     double power, sharpness;
@@ -193,7 +196,7 @@ std::vector<SpectralLine> promising_lines(const Linearisation& model, const Data
                                           const VectorXd& innovations) {
   std::vector<SpectralLine> lines;
   for (const LineSite site : sites_of(model)) {
-    const VectorXd series = influence(model, gains, site, innovations);
+    const VectorXd series = influence(model, record, gains, site, innovations);
     for (const double frequency_Hz : peaks_of(series, record.sample_time_s)) {
       lines.push_back({site, frequency_Hz});
     }

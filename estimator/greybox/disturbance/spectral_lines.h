@@ -46,7 +46,7 @@ struct LineAmplitude {
                                                          const std::vector<SpectralLine>& lines,
                                                          const Eigen::VectorXd& innovations);
 
-/// The most promising lines of the innovations (samples, scaled), at most `most` per site: the
+/// The most promising lines of the innovations (samples, scaled), a few per site: the
 /// highest peaks of the periodogram over its local median and the highest in power.
 [[nodiscard]] std::vector<SpectralLine> promising_lines(const Linearisation& model,
                                                         const Dataset& record,

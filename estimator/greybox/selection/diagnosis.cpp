@@ -17,6 +17,8 @@ namespace {
 
 /// The fitted model's error over the noise from which on the record itself is looked at.
 constexpr double kFarFromFloor = 10.0;
+/// A disturbance that would cause this many times the error that there is has not been understood.
+constexpr double kIncredible = 1.5;
 constexpr double kAsClear = 0.9;  ///< ratio of the remainder's explained share to that of the whole
 
 /// `errors` are those of the search values.
@@ -125,8 +127,10 @@ void conclude(const SearchContext& context, const SearchContext& search, Diagnos
 }
 
 /// A verdict by the likelihood of innovations.
-void conclude(const SearchContext& search, const ModelStage& first,
+void conclude(const SearchContext& context, const SearchContext& search, const ModelStage& first,
               const InnovationSearch& innovations, Diagnosis& result) {
+  result.by_innovations = true;
+  if (uses_segments(search, context)) result.searched_s = length_s(search.problem.data);
   const double nominal_m = result.search.nominal_rms_m;
   const double preview_s = result.search.preview_s;
   result.search = structure_search_of(search, first, innovations);
@@ -136,13 +140,14 @@ void conclude(const SearchContext& search, const ModelStage& first,
   take_errors(result);
   take_parameters(innovations.final, result);
   // missing physics passes for a disturbance as long as it is not in the model
-  const bool physics = innovations.curve_nats > kCurve_nats;
-  if (!physics) result.disturbance = disturbance_of(search, innovations);
+  if (!context.cancelled()) result.disturbance = disturbance_of(search, innovations);
+  const bool physics = innovations.curve_nats > kCurve_nats ||
+                       result.disturbed_floor_m() > kIncredible * result.rms_after_m;
+  if (physics) result.disturbance.reset();
   for (const InnovationRivals& rivals : innovations.rivals) {
-    if (search.options.separable) {
-      (void)search.options.separable(search, rivals.explanations, rivals.names);
-    }
-    result.ambiguous.push_back(rivals.names);
+    const Separable& separable = search.options.separable;
+    const bool separates = !separable || separable(search, rivals.explanations, rivals.names);
+    (separates ? result.ambiguous : result.same_here).push_back(rivals.names);
   }
   if (physics) result.where = innovations.where;
   result.verdict = result.search.interrupted || physics ? Verdict::unexplained
@@ -205,15 +210,19 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
     conclude(context, search, result);
   } else {
     const InnovationSearch innovations = search_innovations(search, first);
-    if (context.cancelled() || innovations.curve_nats <= kCurve_nats) {
-      conclude(search, first, innovations, result);
+    const bool begun = !innovations.final.linear.empty();
+    if (begun && (context.cancelled() || innovations.curve_nats <= kCurve_nats)) {
+      conclude(context, search, first, innovations, result);
+    } else if (!begun) {
+      result.search.interrupted = true;
+      conclude(context, search, result);
     } else {
       StructureSearch full = search_structure(search, SearchEffort::full);
       const double held_m = simulated(search, innovations.final.model.fitted).validation_rms_m;
       // of two that leave something unexplained, the one that leaves less
       if (!is_explained(search, full.final) &&
           held_m < (1.0 - kRivals) * full.final.fitted.validation_rms_m) {
-        conclude(search, first, innovations, result);
+        conclude(context, search, first, innovations, result);
       } else {
         result.search = std::move(full);
         conclude(context, search, result);

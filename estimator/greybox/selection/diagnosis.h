@@ -48,6 +48,7 @@ struct Diagnosis {
   std::optional<Disturbance> disturbance;
   Excitation excitation;             ///< insufficient: Verdict::not_excited
   std::optional<double> searched_s;  ///< length of the segments searched; none: all samples
+  bool by_innovations = false;       ///< the likelihood of all innovations decided
   /// Asked where the fitted model leaves many times the noise.
   std::optional<RecordChecks> checks;
   StructureSearch search;

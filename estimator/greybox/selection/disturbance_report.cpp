@@ -62,6 +62,7 @@ Candidate candidate_of(const SearchContext& context, const InnovationCandidate& 
 std::optional<Disturbance> disturbance_of(const SearchContext& context,
                                           const InnovationSearch& search) {
   const InnovationStage& stage = search.final;
+  if (stage.linear.empty()) return {};
   const FitDataset& data = stage.context.problem.data;
   Disturbance result;
   double random_m2 = 0.0;

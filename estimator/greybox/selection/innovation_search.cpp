@@ -44,6 +44,7 @@ constexpr double kSettled = 1.0;
 constexpr int kMostTurns = 5;
 /// Amplitude of the motion over the RMS of a line at the same frequency.
 constexpr double kFollows = 4.0;
+constexpr std::size_t kLargestGroup = 3;
 constexpr double kParametersOfLine = 3.0;
 /// A rival this far behind with the stage's gains may be level with a noise model of its own.
 constexpr double kWorthSettling_nats = 60.0;
@@ -111,7 +112,6 @@ InnovationStage settled(const SearchContext& plain, ModelStage model, const Nois
   stage.noise = start;
   stage.context = plain;
   InnovationStage best;
-  best.minus_two_log = std::numeric_limits<double>::infinity();
   for (int i = 0; i < times && !plain.cancelled(); ++i) {
     const FitSummary& fitted = stage.model.fitted;
     stage.linear = disturbance::linearise(plain.problem.model, plain.problem.data,
@@ -125,7 +125,7 @@ InnovationStage settled(const SearchContext& plain, ModelStage model, const Nois
     if (gain > 0.0) best = stage;
     if (gain < kSettled) break;
   }
-  return std::isfinite(best.minus_two_log) ? best : stage;
+  return best;
 }
 
 struct ScoredLine {
@@ -348,7 +348,6 @@ InnovationStage settled(const SearchContext& plain, const InnovationStage& stage
   NoiseModel noise = stage.noise;
   if (trial.candidate.effect.empty()) noise.lines.push_back(trial.candidate.line);
   InnovationStage best;
-  best.minus_two_log = std::numeric_limits<double>::infinity();
   for (const ModelStage& start : trial.starts) {
     InnovationStage one = settled(plain, start, noise, 1, Width{});
     if (one.minus_two_log < best.minus_two_log) best = std::move(one);
@@ -399,7 +398,7 @@ bool extend(const SearchContext& plain, InnovationStage& stage,
   std::size_t chosen = trials.size();
   for (std::size_t i = 0; i < trials.size(); ++i) {
     const Trial& trial = trials[i];
-    if (!trial.candidate.settled || trial.candidate.gain_nats < kEvidence_nats) continue;
+    if (!trial.candidate.settled || !(trial.candidate.gain_nats >= kEvidence_nats)) continue;
     if (leaves_its_range(stages[i].model, stage.model)) continue;
     if (chosen == trials.size() || trial.candidate.gain_nats > trials[chosen].candidate.gain_nats) {
       chosen = i;
@@ -418,8 +417,9 @@ bool extend(const SearchContext& plain, InnovationStage& stage,
   }
   rounds.push_back(std::move(round));
   if (chosen == trials.size()) return false;
-  stage = settled(plain, stages[chosen].model, stages[chosen].noise, kMostTurns,
-                  wide(plain.options.threads));
+  InnovationStage polished = settled(plain, stages[chosen].model, stages[chosen].noise, kMostTurns,
+                                     wide(plain.options.threads));
+  stage = std::isfinite(polished.minus_two_log) ? std::move(polished) : std::move(stages[chosen]);
   return true;
 }
 
@@ -485,8 +485,10 @@ std::vector<InnovationRivals> rivals_of(const SearchContext& plain, const Innova
       const std::string& name = rival.candidate.effect;
       const auto& added = final.model.added;
       if (std::find(added.begin(), added.end(), name) != added.end()) continue;
-      if (rival.candidate.gain_nats < best - kWorthSettling_nats ||
-          rival.candidate.gain_nats < 0.0 || ++tried > kFinalists) {
+      const bool far =
+          rival.candidate.gain_nats < best - kWorthSettling_nats || rival.candidate.gain_nats < 0.0;
+      if ((far && !rival.simulated) || ++tried > kFinalists ||
+          group.names.size() == kLargestGroup) {
         continue;
       }
       const InnovationStage other = settled(plain, without, rival);
@@ -528,11 +530,13 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
   InnovationSearch search;
   InnovationStage stage = settled(context, first, {}, kMostTurns, wide(context.options.threads));
   search.before = stage;
+  if (!std::isfinite(stage.minus_two_log)) return search;  // cancelled before anything was known
   while (!context.cancelled() && extend(context, stage, search.rounds)) {
   }
   eliminate(context, stage);
   if (!stage.model.added.empty()) search.rivals = rivals_of(context, stage, search.before);
-  const std::vector<CurveGain> curves = curve_gains(stage);
+  const std::vector<CurveGain> curves =
+      context.cancelled() ? std::vector<CurveGain>() : curve_gains(stage);
   if (!curves.empty()) search.curve_nats = curves.front().gain_nats;
   const double all = 0.5 * squares(stage.model.fitted, stage.context.problem.data.noise_floor_m);
   for (const CurveGain& curve : curves) {

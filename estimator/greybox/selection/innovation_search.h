@@ -12,6 +12,7 @@
 // that valid. Source for the penalty: G. Schwarz, Annals of Statistics 6 (1978) 461.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,8 @@ struct InnovationStage {
   disturbance::NoiseModel noise;
   disturbance::Linearisations linear;  ///< about the model's trajectory
   SearchContext context;               ///< its data have the innovations
-  double minus_two_log = 0.0;          ///< of likelihood times prior, up to a constant
+  /// Of likelihood times prior, up to a constant; infinite for a stage that was not finished.
+  double minus_two_log = std::numeric_limits<double>::infinity();
 };
 
 /// A candidate of a round: an effect, or a spectral line where `effect` is empty.

@@ -20,7 +20,7 @@ namespace estimator::greybox::selection {
 struct SearchProgress {
   int round = 0;
   bool by_innovations = false;  ///< the rig is disturbed: rounds count anew
-  bool screening = false;  ///< false: `effect` is being fitted
+  bool screening = false;       ///< false: `effect` is being fitted
   std::string effect;
   int done = 0;  ///< steps of this round
   int of = 0;

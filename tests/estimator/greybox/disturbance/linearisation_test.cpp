@@ -37,6 +37,8 @@ TEST(Linearisation, OfAnAxisIsTheExactTransitionOverASample) {
 TEST(Linearisation, LeavesDryFrictionOutOfTheSlopes) {
   plant_sim::ModelFile rough = axis();
   *rough.value("friction.coulomb_N") = 50.0;
+  *rough.value("friction.static_N") = 80.0;
+  *rough.value("friction.stribeck_mps") = 0.01;
   for (auto& effect : rough.effects) effect.present = effect.name == "friction";
   const Linearisation with = linearise(rough, axis_record(), {}, Eigen::VectorXd());
   const Linearisation without = linearise(axis(), axis_record(), {}, Eigen::VectorXd());
