@@ -1,8 +1,8 @@
 // The configured rig: the backend and channel of each role.
 //
-// TOML: `[rod] backend, channel`, `[[spare_rod]] id, backend, channel`,
-// `[valve] backend, null_V, limit_V, slew_V_per_s`, `[[input]] id, role, backend, channel`,
-// `[permit] backend, channel`, and one table for each backend that is used, named like it.
+// TOML: `[rod] backend, channel`, `[[spare_rod]] id, backend, channel`, `[valve] backend, null_V,
+// limit_V, slew_V_per_s`, `[[input]] id, role, backend, channel`, `[permit] backend, channel`, and
+// one table for each backend that is used, named like it.
 #pragma once
 
 #include <functional>

@@ -1,6 +1,6 @@
-// One SIMD register and its operations: two doubles (SSE2, or
-// any machine by GCC's vector extension), four (AVX2) or eight (AVX-512). Every operation gives in
-// each lane the bits that the double version in scalar.h gives.
+// One SIMD register and its operations: two doubles (SSE2, or any machine by GCC's vector
+// extension), four (AVX2) or eight (AVX-512). Every operation gives in each lane the bits that the
+// double version in scalar.h gives.
 //
 // Words wider than two exist only where the file is compiled for them. Everything built on a word
 // carries its width in its type, so that no function compiled for a wide machine can be taken by

@@ -59,8 +59,7 @@ struct NarxFit {
 
 [[nodiscard]] NarxFit fit_narx(const NarxOptions& options, const Stretches& data);
 /// As for the polynomial model: NaN, or measured samples, for the first history() and for samples
-/// before
-/// `start`.
+/// before `start`.
 [[nodiscard]] std::vector<double> one_step_errors(const NarxFit& model, const Stretch& stretch);
 [[nodiscard]] std::vector<double> free_run(const NarxFit& model, const Stretch& stretch,
                                            int start = 0);

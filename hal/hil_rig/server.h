@@ -67,8 +67,8 @@ class Server {
   Counts counts_;
 };
 
-/// Sends "name=value" to a running rig. Returns "" or an error; throws
-/// config::schema::RunError when nothing answers at `address`.
+/// Sends "name=value" to a running rig. Returns "" or an error; throws config::schema::RunError
+/// when nothing answers at `address`.
 std::string set_remotely(const std::string& address, const std::string& text);
 
 }  // namespace hal::hil_rig

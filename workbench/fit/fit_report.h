@@ -41,10 +41,9 @@ struct FitReport {
 /// at_bound (-1, 0, 1), start, prior_mean, prior_sd, record_share, interval ("normal", "profile"),
 /// remark, profile}, rms_before_m, rms_after_m, heldout_before_m, heldout_after_m,
 /// free_run_before_m, free_run_after_m, fit_percent_before, fit_percent_after, noise_floor_m,
-/// sigma_m (weighted the fit), starts.{tried, same, elsewhere, worse},
-/// identifiability.{before, after}.{condition, unseen: [{parameter, partners, visible, words}]},
-/// correlation.{names, matrix}, interrupted, fit_s (without
-/// reading, profiles and writing), runtime_s.
+/// sigma_m (weighted the fit), starts.{tried, same, elsewhere, worse}, identifiability.{before,
+/// after}.{condition, unseen: [{parameter, partners, visible, words}]}, correlation.{names,
+/// matrix}, interrupted, fit_s (without reading, profiles and writing), runtime_s.
 [[nodiscard]] std::string to_json(const FitReport& outcome);
 
 [[nodiscard]] present::Report to_report(const FitReport& outcome);

@@ -41,8 +41,7 @@ void append(ParameterSubset& to, const ParameterSubset& more);
                                const Eigen::VectorXd& weights, Width width = {},
                                double observer_per_s = kObserver_per_s);
 /// Fit on the training samples; stopped early when after a few iterations its error is several
-/// times
-/// `than_m`, or decreases too slowly to reach it.
+/// times `than_m`, or decreases too slowly to reach it.
 [[nodiscard]] FitSummary refit_if_hopeful(const SearchContext& context,
                                           const ParameterSubset& selection, double than_m,
                                           Width width = {});

@@ -26,8 +26,7 @@ struct ParameterSet {
 };
 
 /// `lists`: comma-separated names as in model files. Throws config::schema::ConfigError that begins
-/// with
-/// `option` for an unknown name.
+/// with `option` for an unknown name.
 [[nodiscard]] ParameterSet choose(const plant_sim::ModelFile& model,
                                   const std::vector<std::string>& lists, const std::string& option);
 
