@@ -10,7 +10,6 @@ namespace estimator::greybox::selection {
 namespace {
 
 constexpr double kStandardErrors = 2.0;
-constexpr std::size_t kStandIn = 3;
 
 /// The effect's size, its first parameter, and its rivals.
 std::optional<Doubt> doubt_of(const Diagnosis& diagnosis, const std::string& effect) {

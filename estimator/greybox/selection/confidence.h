@@ -1,12 +1,16 @@
 // Which effects of a result are established, and which only may be there.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
 namespace estimator::greybox::selection {
 
 struct Diagnosis;
+
+/// That many effects that leave an error together stand in for one law.
+inline constexpr std::size_t kStandIn = 3;
 
 /// Why an effect counts as no more than possible.
 enum class Doubt {

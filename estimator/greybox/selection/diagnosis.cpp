@@ -149,7 +149,8 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
     const bool separates = !separable || separable(search, rivals.explanations, rivals.names);
     (separates ? result.ambiguous : result.same_here).push_back(rivals.names);
   }
-  if (physics) result.where = innovations.where;
+  // effects taken for want of the right one hide it: the model as given shows it more clearly
+  if (physics) result.where = localise(search, first);
   result.verdict = result.search.interrupted || physics ? Verdict::unexplained
                    : result.missing.empty()             ? Verdict::nothing_missing
                    : result.ambiguous.empty()           ? Verdict::missing

@@ -538,15 +538,6 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
   const std::vector<CurveGain> curves =
       context.cancelled() ? std::vector<CurveGain>() : curve_gains(stage);
   if (!curves.empty()) search.curve_nats = curves.front().gain_nats;
-  const double all = 0.5 * squares(stage.model.fitted, stage.context.problem.data.noise_floor_m);
-  for (const CurveGain& curve : curves) {
-    const bool named =
-        std::any_of(search.where.begin(), search.where.end(),
-                    [&](const Localisation& where) { return where.variable == curve.variable; });
-    if (curve.gain_nats > kCurve_nats && !named) {
-      search.where.push_back({curve.site, curve.variable, curve.gain_nats / all});
-    }
-  }
   search.final = std::move(stage);
   return search;
 }

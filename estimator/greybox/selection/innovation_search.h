@@ -17,7 +17,6 @@
 #include <vector>
 
 #include "estimator/greybox/disturbance/noise_model.h"
-#include "estimator/greybox/selection/localisation.h"
 #include "estimator/greybox/selection/problem.h"
 #include "estimator/greybox/selection/screening.h"
 
@@ -67,8 +66,7 @@ struct InnovationSearch {
   InnovationStage final;
   std::vector<InnovationRound> rounds;
   std::vector<InnovationRivals> rivals;
-  double curve_nats = 0.0;          ///< largest gain of a curve over a variable of the motion
-  std::vector<Localisation> where;  ///< those above kCurve_nats, best first
+  double curve_nats = 0.0;  ///< largest gain of a curve over a variable of the motion
 };
 
 /// A fit's parameters in a simulation with the weak observer, without Jacobian.

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "estimator/greybox/selection/backward_elimination.h"
+#include "estimator/greybox/selection/confidence.h"
 #include "estimator/greybox/selection/cross_validation.h"
 #include "estimator/greybox/selection/pair_search.h"
 #include "estimator/greybox/selection/parameter_subset.h"
@@ -191,7 +192,8 @@ bool set_is_supported(const SearchContext& context, const ModelStage& first, con
   const auto all = [](const ModelStage& stage) {
     return subset(stage.fitted, [](const auto&) { return true; });
   };
-  return parts.added.size() < set.added.size() && !context.cancelled() &&
+  return set.added.size() < kStandIn && parts.added.size() < set.added.size() &&
+         !context.cancelled() &&
          parts.fitted.validation_rms_m > (1.0 + kRivals) * set.fitted.validation_rms_m &&
          cross_validates(context, false, all(first), all(set));
 }
