@@ -25,7 +25,7 @@ class ProgressLine {
   std::ostream& out_;
   bool renewed_;
   double noise_floor_m_;
-  int round_ = 0;   ///< latest round whose line was written
+  int round_ = 0;  ///< latest round whose line was written
   bool by_innovations_ = false;
   int ranked_ = 0;  ///< latest round whose ranking was written
   std::chrono::steady_clock::time_point last_{};

@@ -21,7 +21,7 @@ struct DiagnosisRequest {
   std::vector<std::string> without;  ///< effects that are not tried
   bool flip = false;                 ///< the records' commands with the other sign
   double within_s = 0.0;             ///< the best answer after that time; 0: no limit
-  std::string json;  ///< "-": standard output
+  std::string json;                  ///< "-": standard output
   std::string report;
   std::string output;
   unsigned threads = 0;  ///< 0: one for each processor

@@ -49,8 +49,8 @@ TEST(Confidence, ThreeEffectsThatLeaveAnErrorMayStandInForOneLaw) {
   Diagnosis d = unexplained();
   d.missing.emplace_back("load_force");
   d.parameters.push_back({"load_force.force_N", 200.0, 5.0, false});
-  EXPECT_THAT(named(d), ElementsAre("friction stand_in", "backlash within_error",
-                                    "load_force stand_in"));
+  EXPECT_THAT(named(d),
+              ElementsAre("friction stand_in", "backlash within_error", "load_force stand_in"));
   EXPECT_THAT(d.established(), ElementsAre("friction", "backlash", "load_force"));
   d.possible = possible_effects(d);
   EXPECT_THAT(d.established(), IsEmpty());
