@@ -18,7 +18,7 @@ constexpr std::int64_t kDetectorTimeout_ns = 2'000'000'000;
 /// Bounds one call of serve(), so that a flood of requests cannot delay a stop signal.
 constexpr int kRequestsPerCall = 8;
 
-/// What to do instead of a command that the state does not allow.
+/// Names the command that leads out of a state which does not allow the one given.
 std::string hint(control::State state) {
   const std::string prefix = std::string("not possible in state ") + control::to_string(state);
   switch (state) {

@@ -1,4 +1,4 @@
-// Where the daemon sends when nothing else is said.
+// LCM address used when nothing else is given.
 #pragma once
 
 namespace config::messages {

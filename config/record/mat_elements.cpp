@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kHeaderBytes = 128;
 constexpr std::size_t kVersionAt = 124;
 constexpr std::size_t kTagBytes = 8;
-/// What a file may unpack to; zlib itself packs no better than kBestRatio.
+/// Largest unpacked size of a file; zlib itself packs no better than kBestRatio.
 constexpr std::size_t kMostBytes = std::size_t{1} << 30U;
 constexpr std::size_t kBestRatio = 1032;
 

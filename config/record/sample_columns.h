@@ -1,4 +1,4 @@
-// What a record keeps of a daemon's samples beyond time, command and position: further columns.
+// Further columns of a record, from a daemon's samples beyond time, command and position.
 //
 //   reference_m, u_requested_V, quality, state, saturated    of the sample itself
 //   rod_in_charge, rod_1_m, rod_2_m, ...                     where several rod sensors were told
@@ -31,7 +31,7 @@ class SampleColumns {
  public:
   SampleColumns();
 
-  /// What comes just before its sample. The first of its kind adds columns behind those there are.
+  /// Takes what comes just before its sample. The first of a kind adds columns at the end.
   void note(const spoolwatch::rods_t& rods);
   void note(const spoolwatch::pressures_t& pressures);
 

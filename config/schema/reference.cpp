@@ -75,7 +75,7 @@ struct Choice {
 
 using Assignments = std::map<std::string, std::string>;  ///< of choices, by dotted path
 
-/// What one visit lists, with some choices made otherwise than by default.
+/// Tables and rows listed by one visit, with some choices made otherwise than by default.
 struct Listing {
   std::vector<Table> tables;
   std::vector<Row> rows;

@@ -18,7 +18,7 @@ namespace monitor::control {
 
 struct Calibration {
   std::string rig_id;           ///< [rig] id at commissioning
-  std::string date;             ///< of commissioning, YYYY-MM-DD
+  std::string date;             ///< date of commissioning, YYYY-MM-DD
   std::string wiring;           ///< hash at commissioning; empty: unknown
   std::int64_t valve_sign = 1;  ///< +1: a higher voltage extends the rod
   double null_V = 0.0;          ///< where the rod stands still
@@ -43,8 +43,8 @@ struct Calibration {
 [[nodiscard]] Calibration load_calibration(const std::filesystem::path& file,
                                            const std::string& rig_id);
 
-/// How the calibration contradicts a configuration, in one line; empty: it does not. `null_V` must
-/// lie within the dead zone, or at most 1 % of limit_V outside.
+/// Contradiction between the calibration and a configuration, in one line; empty: none. `null_V`
+/// must lie within the dead zone, or at most 1 % of limit_V outside.
 [[nodiscard]] std::string contradiction(const Calibration& calibration, double null_V,
                                         double limit_V, const std::string& wiring);
 

@@ -42,7 +42,7 @@ class LastReading {
   double t_s_ = 0.0;
 };
 
-/// Whether that kind monitors the sensor rather than the motion.
+/// True for a kind that monitors the sensor rather than the motion.
 [[nodiscard]] constexpr bool watches_a_sensor(GuardKind kind) noexcept {
   return kind == GuardKind::stale || kind == GuardKind::frozen || kind == GuardKind::jump;
 }
@@ -73,7 +73,7 @@ class Guard {
   [[nodiscard]] bool rose() const noexcept { return rose_; }
   /// The value last compared with the limit.
   [[nodiscard]] double value() const noexcept { return value_; }
-  /// How long the condition has lasted so far.
+  /// Duration of the condition so far.
   [[nodiscard]] double lasting_s(double t_s) const noexcept {
     return since_s_ == since_s_ ? t_s - since_s_ : 0.0;
   }

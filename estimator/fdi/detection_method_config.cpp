@@ -4,8 +4,9 @@
 
 #include "config/schema/document.h"
 #include "estimator/fdi/classifier.h"
+#include "estimator/fdi/cusum.h"
+#include "estimator/fdi/glr.h"
 #include "estimator/fdi/hotelling_t2.h"
-#include "estimator/fdi/mean_change_method.h"
 #include "estimator/fdi/observer.h"
 #include "estimator/fdi/polynomial_method.h"
 #include "estimator/fdi/snapshot.h"

@@ -69,44 +69,4 @@ class MeanChangeMethod : public BlockMethod {
   mutable char reason_[160] = "";
 };
 
-/// [[cusum]]: the cumulative sum test, for a shift of the mean of known size.
-///
-///   S+ = max(0, S+ + z - k),  S- = max(0, S- - z - k),  alarm when either reaches h
-///
-/// z: standardised block mean (mean_change_method.h); k = shift_sigma/2 is optimal for a shift of
-/// shift_sigma; h follows from the mean time between false alarms. The sums saturate at 1.25 h so
-/// that an alarm returns soon after its cause; it returns at h/2. The shift is the mean of z since
-/// the sum was last zero, which is also the estimate of the time of change. Source: E. S. Page,
-/// Biometrika 41 (1954) 100; D. C. Montgomery, Statistical Quality Control, 9.1.
-struct CusumConfig final : MeanChangeConfig {
-  double shift_sigma = 1.0;
-
-  void visit(config::schema::Visitor& v) override;
-  [[nodiscard]] const char* list() const override { return "cusum"; }
-  [[nodiscard]] std::unique_ptr<DetectionMethod> make(const MethodContext& context) const override;
-  [[nodiscard]] std::unique_ptr<DetectionMethodConfig> clone() const override {
-    return std::make_unique<CusumConfig>(*this);
-  }
-};
-
-/// [[glr]]: the generalised likelihood ratio test, for a shift of the mean of unknown size.
-///
-///   G = max over n = 1..window_blocks of |z(t) + ... + z(t-n+1)| / sqrt(n),  alarm when G >= b
-///
-/// z: standardised block mean (mean_change_method.h). The maximising n estimates the time of
-/// change, the mean of those n its size. A large change is detected within one block, a small one
-/// within at most window_blocks. Source: M. Basseville, I. V. Nikiforov, Detection of Abrupt
-/// Changes, 1993, 2.4.3; window: T. L. Lai, Journal of the Royal Statistical Society B 57 (1995)
-/// 613.
-struct GlrConfig final : MeanChangeConfig {
-  std::int64_t window_blocks = 64;
-
-  void visit(config::schema::Visitor& v) override;
-  [[nodiscard]] const char* list() const override { return "glr"; }
-  [[nodiscard]] std::unique_ptr<DetectionMethod> make(const MethodContext& context) const override;
-  [[nodiscard]] std::unique_ptr<DetectionMethodConfig> clone() const override {
-    return std::make_unique<GlrConfig>(*this);
-  }
-};
-
 }  // namespace estimator::fdi

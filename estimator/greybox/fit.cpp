@@ -45,6 +45,16 @@ double FitSummary::value(std::string_view name) const {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
+double prior_cost(const FitSummary& fitted) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+    const FreeParameter& p = fitted.parameters[i];
+    const double off = (fitted.theta[static_cast<Eigen::Index>(i)] - p.prior_mean) / p.prior_sd;
+    if (std::isfinite(off)) sum += off * off;
+  }
+  return sum;
+}
+
 double correlation_factor(const Eigen::VectorXd& residual_m, const Eigen::VectorXd& weights) {
   double square = 0.0;
   double product = 0.0;

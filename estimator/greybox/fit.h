@@ -73,6 +73,9 @@ struct FitSummary {
 [[nodiscard]] Eigen::VectorXd std_errors(const FitDataset& data, const Eigen::VectorXd& weights,
                                          const FitSummary& fitted);
 
+/// sum ((theta - mean) / sd)^2 over the parameters with a prior.
+[[nodiscard]] double prior_cost(const FitSummary& fitted);
+
 /// (1 + rho) / (1 - rho) with the residual's lag-1 autocorrelation rho; within 1 to 100.
 [[nodiscard]] double correlation_factor(const Eigen::VectorXd& residual_m,
                                         const Eigen::VectorXd& weights);

@@ -1,4 +1,4 @@
-// How well the parameters are known at a solution, also when the residual is not white.
+// Covariance of the parameters at a solution, also when the residual is not white.
 //
 //   H = J' W J / sigma^2 + P,   C = H^-1 (J' W Gamma W J / sigma^4 + P) H^-1
 //

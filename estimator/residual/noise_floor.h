@@ -1,4 +1,4 @@
-// How well could any model do? The noise of a measured position from its own samples.
+// Floor of every model's error: the noise of a measured position, from its own samples.
 //
 // Encoder step: the greatest step of which all readings' differences are multiples, allowing for
 // the decimals that a CSV keeps.

@@ -32,7 +32,7 @@ using plant_sim::ParameterInfo;
                    config::schema::joined(names));
 }
 
-/// Of the library, or a formula that the model file declares.
+/// An effect of the library, or a formula that the model file declares.
 EffectInfo effect_named(const ModelFile& model, const std::string& name) {
   std::vector<std::string> names;
   for (const EffectInfo& effect : plant_sim::effects_of(model)) {

@@ -60,7 +60,7 @@ std::string plain_words(const validation::SystematicError& explained) {
          " of the squared error.";
 }
 
-/// What is left when the plain part is taken off.
+/// The rest beyond the plain part.
 std::string beyond_words(const validation::Comparison& c) {
   const double left_m = c.systematic.left_rms_m;
   if (left_m <= validation::kAtFloor * c.noise_floor_m)

@@ -96,7 +96,7 @@ void print_inputs(const Json& status, const char* key, const char* what, std::os
   }
 }
 
-/// Of several rod sensors: which one is in charge, and which are out.
+/// Prints which of several rod sensors is in charge, and which are out.
 void print_rods(const Json& status, std::ostream& out) {
   const auto rods = status.find("rods");
   if (rods == status.end() || !rods->is_array()) {

@@ -1,4 +1,4 @@
-// What every command to the running daemon shares: its socket, its answer as JSON, its refusal.
+// Common part of every command to the running daemon: its socket, its answer as JSON, its refusal.
 #pragma once
 
 #include <iosfwd>

@@ -18,11 +18,11 @@ namespace selection = estimator::greybox::selection;
 
 [[nodiscard]] std::string words_for_motion(const std::vector<std::string>& names,
                                            const std::string& motion, double separation);
-/// Where no motion helps: what would have to be measured, by where the effects act.
+/// A further measurement for the case that no motion helps, by where the effects act.
 [[nodiscard]] std::string words_for_sensor(const plant_sim::ModelFile& model,
                                            const std::vector<std::string>& names);
 [[nodiscard]] std::string words_to_excite(const std::string& motion);
-/// What to record, and which formula to try, on a plant of that name.
+/// The record to make and the formula to try, on a plant of that name.
 [[nodiscard]] std::string words_for_unexplained(const std::vector<selection::Localisation>& where,
                                                 const std::string& plant);
 

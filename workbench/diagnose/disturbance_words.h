@@ -1,4 +1,4 @@
-// What disturbs a rig, in sentences.
+// Disturbance of a rig, in sentences.
 #pragma once
 
 #include <string>

@@ -12,7 +12,7 @@ namespace workbench::diagnose {
 namespace {
 
 constexpr std::uint64_t kSeed = 1;
-/// Of the motions that promise most, that many are tried with complete fits.
+/// Number of the most promising motions that are tried with complete fits.
 constexpr std::size_t kTried = 3;
 /// Beyond this a motion is clear enough; the next one is not tried.
 constexpr double kClearly = 2.0;
@@ -34,7 +34,7 @@ std::vector<greybox::FitDataset> truths(const selection::SearchContext& context,
 using Separation = double (*)(const selection::SearchContext&, const greybox::FitDataset&,
                               const greybox::FitSummary&);
 
-/// Of the closest pair, either way round.
+/// Separation of the closest pair, either way round.
 double closest(const selection::SearchContext& context,
                const std::vector<greybox::FitSummary>& rivals,
                const std::vector<greybox::FitDataset>& truths, Separation separation) {

@@ -1,4 +1,5 @@
-// What to do next when a record does not answer the question: the motion that would, or the sensor.
+// The next experiment when a record does not answer the question: the motion or the sensor that
+// would.
 //
 // Rivals explain a record about as well. On each motion that might tell them apart every rival in
 // turn is taken for the truth, simulated in closed loop, and the others are adjusted to it: the

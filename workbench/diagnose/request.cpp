@@ -24,7 +24,7 @@ void check_files(const DiagnosisRequest& request) {
       inputs);
 }
 
-/// What noise explains is told from how smooth a motion is, which takes samples close enough.
+/// Refuses samples too far apart: noise is told from a motion by how smooth the motion is.
 void require_rate(const greybox::Dataset& record) {
   constexpr double kSlowest_s = 0.05;
   if (record.sample_time_s <= kSlowest_s * (1.0 + 1e-6)) return;

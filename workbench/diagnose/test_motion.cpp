@@ -91,7 +91,7 @@ Room room_of(const selection::DiagnosisProblem& problem) {
   return room;
 }
 
-/// Of the kind, as far as the room allows times `share`.
+/// A reference of that kind, as far as the room allows times `share`.
 ReferenceConfig reference_in(const Room& room, const char* kind, double share) {
   ReferenceConfig reference;
   reference.kind = kind;

@@ -103,7 +103,7 @@ std::string fall_words(const selection::Diagnosis& d) {
          config::units::length_words(d.disturbed_floor_m()) + ".";
 }
 
-/// What the record itself gives away before any physics.
+/// Findings in the record itself, before any physics.
 void add_record_words(const selection::Diagnosis& d, std::vector<std::string>& out) {
   const selection::RecordChecks& checks = *d.checks;
   if (checks.turned_sign()) {

@@ -1,4 +1,4 @@
-// What is exported: the messages of an LCM log or the rows of a record, one after the other.
+// Source of an export: the messages of an LCM log or the rows of a record, one after the other.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace workbench::exchange {
 
-/// Of all_kinds().
+/// Names out of all_kinds().
 using Kinds = std::set<std::string>;
 
 /// A line on a terminal that says how far the work is, gone at its end; nothing elsewhere.

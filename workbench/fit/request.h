@@ -1,4 +1,4 @@
-// What `spoolwatch fit` is asked for, checked before anything is computed.
+// Request of `spoolwatch fit`, checked before anything is computed.
 #pragma once
 
 #include <string>

@@ -84,7 +84,7 @@ Readings readings_of(const Record& record, const IsolationRequest& request) {
   Readings out;
   if (request.no_pressures) return out;
   out.supply_Pa = column(record, kSupply);
-  // What the chambers are like when healthy has to be learnt.
+  // The healthy chambers have to be learnt.
   if (request.baseline_rms_m > 0.0) return out;
   if (!mostly_read(column(record, kIn)) || !mostly_read(column(record, kOut))) return out;
   out.in_Pa = column(record, kIn);

@@ -1,5 +1,5 @@
-// What a running daemon (or a log of one) says over LCM, message by message, together with what
-// only the receiver can notice: messages lost on the way, a restarted daemon, a silent one.
+// Messages of a running daemon (or a log of one) over LCM, one by one, together with what only the
+// receiver can notice: messages lost on the way, a restarted daemon, a silent one.
 #pragma once
 
 #include <chrono>

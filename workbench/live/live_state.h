@@ -1,4 +1,4 @@
-// What the live view shows: the newest of everything, and short histories.
+// State of the live view: the newest of everything, and short histories.
 #pragma once
 
 #include <cstdint>

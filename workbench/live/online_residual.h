@@ -18,7 +18,7 @@ namespace workbench::live {
 
 namespace greybox = estimator::greybox;
 
-/// What there is to say; a number that is not known yet is NaN.
+/// Figures of the residual; a number that is not known yet is NaN.
 struct ResidualFigures {
   double t_s = 0.0;       ///< of the newest sample
   double window_s = 0.0;  ///< settled samples behind rms_m

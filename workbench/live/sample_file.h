@@ -19,13 +19,13 @@ class SampleFile {
  public:
   /// Throws config::schema::RunError when it cannot be made.
   explicit SampleFile(std::string file);
-  /// What is not finished stays as FILE.part.
+  /// Leaves an unfinished file as FILE.part.
   ~SampleFile();
   SampleFile(const SampleFile&) = delete;
   SampleFile& operator=(const SampleFile&) = delete;
 
-  /// What comes just before its sample. Columns of what has not come before the first row are not
-  /// there.
+  /// Takes what comes just before its sample. Columns of what comes only after the first row are
+  /// left out.
   template <class Message>
   void note(const Message& beside) {
     columns_.note(beside);

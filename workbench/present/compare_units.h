@@ -1,4 +1,4 @@
-// How figures are said: the unit that reads well, three digits.
+// Units in which figures are printed: the one that reads well, three digits.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ struct DisplayUnit {
   double factor = 1.0;    ///< what is shown = factor * SI
 };
 
-/// Of the variables that errors are sorted by: y, v, speed, u, acceleration, direction, time.
+/// Unit of a variable that errors are sorted by: y, v, speed, u, acceleration, direction, time.
 [[nodiscard]] DisplayUnit unit_of(const std::string& variable);
 
 /// "62 %", "under 1 %".
@@ -24,7 +24,7 @@ struct DisplayUnit {
 [[nodiscard]] std::string bin_text(const std::string& variable, const validation::Bin& bin);
 /// "below 5 mm/s", "while reversing", "at positions above 330 mm".
 [[nodiscard]] std::string where(const validation::Range& range);
-/// Of all ranges: "below 5 mm/s while reversing".
+/// All ranges of a region: "below 5 mm/s while reversing".
 [[nodiscard]] std::string where(const validation::SignificantRegion& failing);
 
 }  // namespace workbench::present

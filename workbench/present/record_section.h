@@ -39,7 +39,7 @@ inline constexpr const char* kNoiseFloorMeaning =
     "Noise floor: what the sensor's steps and noise leave even with a perfect model; about 95 % of "
     "its samples lie within twice that.";
 
-/// What a cloud of points hides: mean and RMS over equal stretches of x, as curves to lay over it.
+/// Mean and RMS of a cloud of points over equal stretches of x, as curves to lay over it.
 struct Binned {
   Series mean{};  ///< drawn solid
   Series rms{};   ///< drawn dashed

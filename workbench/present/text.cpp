@@ -31,7 +31,7 @@ struct Spelling {
   std::string_view printed;
 };
 
-/// Of whole words; the longer before its beginning.
+/// Spellings of whole words; the longer before its beginning.
 constexpr std::array kSpellings{
     Spelling{"+-", "±"},      Spelling{"->", "→"},    Spelling{"um", "µm"},
     Spelling{"N s2", "N·s²"}, Spelling{"N s", "N·s"}, Spelling{"cm3", "cm³"},

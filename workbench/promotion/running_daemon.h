@@ -1,5 +1,5 @@
-// What `promote` needs of the running daemon: by which files it runs, a line in its audit file, and
-// to take new ones.
+// Access of `promote` to the running daemon: the files by which it runs, a line in its audit file,
+// and the order to take new ones.
 #pragma once
 
 #include <filesystem>

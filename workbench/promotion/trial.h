@@ -27,7 +27,7 @@ struct ModelTrial {
                                    const plant_sim::ModelFile& after,
                                    const std::vector<config::record::Record>& records);
 
-/// What alarms new bands would tell on the records that the old ones do not, in words: "period_gain
+/// Alarms that new bands would raise on the records and the old ones do not, in words: "period_gain
 /// at 12.3 s in FILE". `bands` beside the old file, under a unique name.
 [[nodiscard]] std::vector<std::string> new_alarms(const RunningDaemon& daemon,
                                                   const std::filesystem::path& bands,

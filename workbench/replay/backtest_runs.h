@@ -83,7 +83,7 @@ struct BacktestRun {
                                                     const std::optional<BacktestRules>& old_rules,
                                                     const std::vector<std::string>& logs);
 
-/// What a new configuration would have told, as lines for people and as JSON.
+/// Report on a new configuration, as lines for people and as JSON.
 struct BacktestReport {
   std::string new_rules;
   std::string old_rules;  ///< file, empty: what was recorded

@@ -1,4 +1,4 @@
-// How long a case I fault goes unseen, with a 5 um encoder, a 12-bit D/A converter and 2 um noise:
+// Detection delay of a case I fault, with a 5 um encoder, a 12-bit D/A converter and 2 um noise:
 // whole periods buffered, as in the thesis, against a sliding window. 40 fault times spread over a
 // period of the reference, both directions; and one healthy hour.
 #include <fmt/format.h>

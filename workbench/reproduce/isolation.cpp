@@ -15,7 +15,7 @@ constexpr double kNormalPs_Pa = 1000.0 * kPa_per_psi;
 
 std::string yes_no(bool yes) { return yes ? "yes" : "no"; }
 
-/// What the alarms say some periods after a step at 6 s: "none", "above" or "below".
+/// Alarms some periods after a step at 6 s: "none", "above" or "below".
 std::string alarm(const char* parameter, double value, double low, double high) {
   const auto found = run_with_alarms(with_fault(calibrated(), parameter, value, 6.0),
                                      watching_b1(period_estimator(), low, high), 14.0);

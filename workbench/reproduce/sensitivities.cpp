@@ -1,5 +1,5 @@
-// What supply pressure and damping do to the coefficients of ARX111: +-10 %, and from half to one
-// and a half of the normal value. Each figure is of the fifth period at constant conditions.
+// Sensitivity of the coefficients of ARX111 to supply pressure and damping: +-10 %, and from half
+// to one and a half of the normal value. Each figure is of the fifth period at constant conditions.
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>

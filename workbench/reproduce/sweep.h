@@ -18,7 +18,7 @@ struct Coefficients {
 
 /// 0.5, 0.6, ... 1.5 times the normal value, on the calibrated model.
 [[nodiscard]] std::vector<Coefficients> sweep(const char* parameter, double normal);
-/// Where the normal value is in a sweep.
+/// Position of the normal value in a sweep.
 inline constexpr std::size_t kNormal = 5;
 
 struct CoefficientRange {

@@ -23,7 +23,7 @@ bool holds(const Names& names, const std::vector<std::string>& right) {
                      [&](const std::string& name) { return names.count(name) != 0; });
 }
 
-/// What one more alarm makes of the verdict on those before it.
+/// Verdict after one more alarm.
 TrialVerdict add(TrialVerdict before, const Names& names, const std::vector<std::string>& right) {
   TrialVerdict one = TrialVerdict::wrong;
   if (names.empty()) {

@@ -28,7 +28,7 @@ enum class TrialVerdict {
 };
 [[nodiscard]] const char* to_string(TrialVerdict verdict);
 
-/// What a method said of a fault.
+/// Answer of a method to a fault.
 struct TrialAnswer {
   TrialVerdict verdict = TrialVerdict::missed;
   double delay_s = std::numeric_limits<double>::infinity();  ///< to its first alarm
@@ -39,7 +39,7 @@ struct TrialAnswer {
   }
 };
 
-/// What a method did while there was no fault.
+/// Alarms of a method while there was no fault.
 struct Quiet {
   std::int64_t alarms = 0;  ///< times that the first alarm came while none stood
   double alarm_s = 0.0;     ///< time in which one stood
@@ -51,8 +51,8 @@ struct Quiet {
 class DetectionTrial {
  public:
   class Listener;
-  /// What a pipeline and its alarms were when the fault came. Of records that are the same until
-  /// then, it is found once.
+  /// State of a pipeline and its alarms when the fault came; computed once for records that are the
+  /// same until then.
   struct Lead {
     std::vector<std::uint8_t> pipeline;
     std::shared_ptr<const Listener> said;  ///< null: not yet found

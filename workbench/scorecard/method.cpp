@@ -125,7 +125,7 @@ Method load_method(const std::string& file) {
   return method;
 }
 
-/// Of the stated size of a fault, at which names are judged: never one that was taught.
+/// Taught sizes, as shares of the stated size of a fault, at which names are judged: never it.
 constexpr double kTaughtShares[] = {0.4, 0.7, 1.5, 2.5};
 
 bool needs_faults(const Method& method) {

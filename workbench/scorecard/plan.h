@@ -1,4 +1,4 @@
-// What a scorecard tries: the rig, motions, faults with their sizes, and what is no fault.
+// Plan of a scorecard: the rig, motions, faults with their sizes, and what is no fault.
 //
 // TOML (config/scorecard/plan.toml):
 //   model, lead_s, phase_s, watch_s, training_s, healthy_h, full_h, benign_h, part_h

@@ -1,4 +1,4 @@
-// How far a scorecard is: one line that is renewed on a terminal, a line for each tenth elsewhere.
+// Progress of a scorecard: one line that is renewed on a terminal, a line for each tenth elsewhere.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// What few trials and few events allow to be said.
+// Confidence limits from few trials and few events.
 //
 //   Poisson          the least rate at which n or fewer events in T would come with probability
 //                    1 - c:  chi2(c; 2 n + 2) / (2 T), chi2 the quantile. No event in 72 h: the

@@ -155,7 +155,7 @@ void Trials::quiet(Turn& turn) const {
   });
 }
 
-/// What a method says of a record with a fault, which ends watch_s after it.
+/// Answer of a method to a record with a fault, which ends watch_s after it.
 TrialAnswer Trials::answer(Turn& turn, std::size_t method, const Samples& samples, bool to_the_end,
                            DetectionTrial::Lead* lead) const {
   const double end_s = static_cast<double>(samples.size()) * simulate::kSampleTime_s;
@@ -181,7 +181,7 @@ void Trials::stated(Turn& turn) const {
   }
 }
 
-/// How often each of the methods detects one size; those whose share is decided stop early.
+/// Share detected of one size, for each method; those whose share is decided stop early.
 std::vector<Trials::Count> Trials::rung(
     Turn& turn, const std::vector<std::size_t>& methods, double size,
     std::vector<std::vector<DetectionTrial::Lead>>& leads) const {

@@ -17,13 +17,13 @@ namespace workbench::scorecard {
 [[nodiscard]] std::string sized_words(const Fault& fault);      ///< "supply pressure, ±10 %"
 [[nodiscard]] std::string stated_words(const Fault& fault);     ///< "10 %"
 [[nodiscard]] std::string size_words(const FaultFigures::Smallest& smallest);
-/// Of each motion: "0.5 / 0.5 / > 50 %".
+/// Smallest detected size for each motion: "0.5 / 0.5 / > 50 %".
 [[nodiscard]] std::string smallest_words(const Card& card, const MethodFigures& method,
                                          const Fault& fault);
 /// "1.2 (2.4) s"; "–" where so many were not detected.
 [[nodiscard]] std::string delay_words(const MethodFigures& method, const Fault& fault);
 [[nodiscard]] std::string first_words(const FaultFigures& of);
-/// What "detected" means.
+/// Definition of "detected".
 [[nodiscard]] std::string detected_words(const Card& card);
 
 /// Every fault that some method was tried on, in the order of the plan.

@@ -94,7 +94,7 @@ struct SelectOutcome {
   double runtime_s = 0.0;
 };
 
-/// How far the comparison is.
+/// Progress of the comparison.
 struct SelectProgress {
   std::string doing;
   std::size_t done = 0;
@@ -110,7 +110,7 @@ struct SelectProgress {
 /// Sorts `outcome.judged`, chooses, and finds the words.
 void recommend(SelectOutcome& outcome);
 
-/// What is known of the recursive form of `judged`, from its family and its poles.
+/// Recursive form of `judged`, from its family and its poles.
 [[nodiscard]] OnLine on_line_form(const StructureCandidate& candidate, const Fitted& fitted);
 
 [[nodiscard]] std::string to_text(const SelectOutcome& outcome);

@@ -33,7 +33,7 @@ bool preferred(const JudgedStructure& a, const JudgedStructure& b) {
   return spread_of(a) < spread_of(b);
 }
 
-/// Of those that are as good as the best: of all, or of those that can follow on line.
+/// The simplest of those as good as the best: of all, or of those that can follow on line.
 int choose(const SelectOutcome& outcome, bool on_line, double limit) {
   int best = -1;
   for (std::size_t i = 0; i < outcome.judged.size(); ++i) {

@@ -43,7 +43,7 @@ struct SensorFault {
   void visit(config::schema::Visitor& v);
 };
 
-/// What a list of faults makes of the signal, sample by sample in the order of time.
+/// A signal with a list of sensor faults, sample by sample in the order of time.
 class FaultySensor {
  public:
   explicit FaultySensor(std::vector<SensorFault> faults);
@@ -63,7 +63,7 @@ class FaultySensor {
   double last_m_ = 0.0;  ///< reading
 };
 
-/// What stands between the plant and the controller. The defaults are ideal: no steps, no noise.
+/// Instruments between the plant and the controller. The defaults are ideal: no steps, no noise.
 struct Instruments {
   double encoder_resolution_m = 0.0;
   double noise_m = 0.0;            ///< standard deviation, before the encoder's rounding

@@ -1,4 +1,4 @@
-// What the trained sources of a configuration need to know, learned from records: means,
+// Training of the sources of a configuration that need it, from records: means,
 // covariances and long-run deviations of block means, made by the same blocks as on line
 // (block_method.h).
 //
@@ -31,8 +31,8 @@ struct Teaching {
 /// Block means, one row a block, record by record.
 using Blocks = std::vector<std::vector<std::vector<double>>>;
 
-/// Of n blocks of d values: what a TrainedClass says. Throws schema::DataError at `where` for
-/// fewer than twenty, or than three for each value.
+/// Summarises n blocks of d values. Throws schema::DataError at `where` for n below twenty, or
+/// below three for each value.
 [[nodiscard]] estimator::fdi::TrainedClass summarise(const Blocks& blocks, const Teaching& teaching,
                                                      const std::string& where);
 

@@ -16,7 +16,7 @@ namespace workbench::train {
 struct LearnOptions {
   std::string config;  ///< the configuration's file, for messages
   double false_alarm_time_s = 86400.0;
-  /// Of the motion, 0 for none; NaN: found in the first record.
+  /// Period of the motion, 0 for none; NaN: found in the first record.
   double period_s = std::numeric_limits<double>::quiet_NaN();
 };
 

@@ -9,7 +9,7 @@ namespace estimator::greybox::disturbance {
 namespace {
 
 constexpr Eigen::Index kDisturbance = kMostStates - 1;
-/// Of what a segment's start does not tell, where it begins at rest, and in the midst of a motion.
+/// Initial standard deviations of the pressures: where a segment begins at rest, and in motion.
 constexpr double kPressureAtRest_Pa = 1e5;
 constexpr double kPressureMoving_Pa = 1e6;
 

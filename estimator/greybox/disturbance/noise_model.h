@@ -1,5 +1,5 @@
-// What disturbs a rig beyond its sensor's noise, estimated by maximum likelihood of the innovations
-// of a model with given parameters.
+// Disturbances of a rig beyond its sensor's noise, estimated by maximum likelihood of the
+// innovations of a model with given parameters.
 //
 //   -2 log L = sum over valid samples of  log S(k) + e(k)^2 / S(k)
 //

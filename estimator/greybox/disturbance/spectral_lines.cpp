@@ -20,7 +20,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index kDisturbance = kMostStates - 1;
-/// Of the highest peaks over the local median, and of the highest in power.
+/// Numbers of peaks tried: the highest over the local median, and the highest in power.
 constexpr std::size_t kSharpest = 3;
 constexpr std::size_t kStrongest = 2;
 /// Half width of the local median, in bins.

@@ -44,7 +44,7 @@ struct Diagnosis {
   std::vector<ParameterValue> parameters;  ///< better model, fitted to all samples
   std::vector<Localisation> where;         ///< best first; empty when everything is explained
   std::vector<SelectionStep> steps;
-  /// What disturbs the rig, where the record was judged by innovations and shows any.
+  /// Disturbance of the rig, where the record was judged by innovations and shows any.
   std::optional<Disturbance> disturbance;
   Excitation excitation;             ///< insufficient: Verdict::not_excited
   std::optional<double> searched_s;  ///< length of the segments searched; none: all samples

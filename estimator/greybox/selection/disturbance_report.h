@@ -1,4 +1,4 @@
-// What disturbs a rig, as far as a record with a model tells.
+// Disturbance of a rig, as far as a record with a model shows it.
 #pragma once
 
 #include <optional>

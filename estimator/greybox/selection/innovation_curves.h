@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "estimator/greybox/selection/innovation_search.h"
+#include "estimator/greybox/selection/innovation_stage.h"
 
 namespace estimator::greybox::selection {
 
 struct CurveGain {
-  std::string site;      ///< "flow", "gain", "force", "measurement"
+  std::string site;      ///< "flow", "gain", "force"
   std::string variable;  ///< "y", "v", "u", "speed", ...
   double gain_nats = 0.0;
 };

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "estimator/greybox/selection/residual_variables.h"
+#include "estimator/greybox/selection/residual_input.h"
 #include "estimator/linear_algebra/decompositions.h"
 #include "estimator/parallel.h"
 
@@ -15,58 +15,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// RMS size of a disturbance, relative, at which the response is linear.
-constexpr double kSmall_ratio = 0.02;
-constexpr double kSmall_N = 10.0;
 /// Range of a piece, in multiples of the residual; keeps pieces without samples near zero.
 constexpr double kFreedom = 30.0;
 /// Least decrease of the remaining error per additional piece.
 constexpr double kPerPiece = 0.002;
-
-enum class Form { flow, gain, force, drag, reading, scale };
-
-const char* class_of(Form form) {
-  switch (form) {
-    case Form::flow:
-      return "flow";
-    case Form::gain:
-      return "gain";
-    case Form::force:
-    case Form::drag:
-      return "force";
-    case Form::reading:
-    case Form::scale:
-      break;
-  }
-  return "measurement";
-}
-
-double rms_of(const VectorXd& values) {
-  return std::sqrt(values.squaredNorm() / static_cast<double>(std::max<Index>(1, values.size())));
-}
-
-struct Place {
-  const SearchContext& context;
-  const ModelStage& stage;
-  const Variables& variables;
-};
-
-/// The disturbance in units of its form, one column per piece.
-MatrixXd disturbance(const Place& at, Form form, const Variable& variable) {
-  switch (form) {
-    case Form::gain:
-      return at.variables.command_V.asDiagonal() * variable.pieces;
-    case Form::drag:
-      return at.variables.speed_mps.asDiagonal() * variable.pieces;
-    case Form::scale:
-      return at.variables.position_m.asDiagonal() * variable.pieces;
-    case Form::flow:
-    case Form::force:
-    case Form::reading:
-      break;
-  }
-  return variable.signed_pieces.cols() > 0 ? variable.signed_pieces : variable.pieces;
-}
 
 /// Response of the observer to an addition to the reading; independent of the model.
 MatrixXd seen_by_observer(const SearchContext& context, MatrixXd added) {
@@ -90,25 +42,13 @@ MatrixXd seen_by_observer(const SearchContext& context, MatrixXd added) {
   return added;
 }
 
-/// d residual / d disturbance.
-MatrixXd signatures(const Place& at, Form form, const Variable& variable) {
-  MatrixXd added = disturbance(at, form, variable);
-  if (form == Form::reading || form == Form::scale) {
-    return seen_by_observer(at.context, std::move(added));
+/// d residual / d input.
+MatrixXd signatures(const SearchContext& context, const ModelStage& stage, const Variables& all,
+                    const Variable& variable, ResidualInput input) {
+  if (input == ResidualInput::reading || input == ResidualInput::scale) {
+    return seen_by_observer(context, input_values(all, variable, input));
   }
-  const bool force = form == Form::force || form == Form::drag;
-  const double whole = rms_of(added.rowwise().sum());
-  if (!(whole > 0.0)) return MatrixXd::Zero(added.rows(), added.cols());
-  const double size = force ? kSmall_N : kSmall_ratio * rms_of(at.variables.command_V);
-  added *= size / whole;
-  DatasetSimulation run(at.context.problem.model, at.context.problem.data,
-                        at.stage.fitted.parameters);
-  const MatrixXd points = at.stage.fitted.theta.replicate(1, added.cols());
-  MatrixXd residuals_m;
-  const MatrixXd none;
-  run.residuals(points, force ? none : added, force ? added : none, residuals_m);
-  residuals_m.colwise() -= at.stage.fitted.residual_m;
-  return residuals_m * (whole / size);
+  return input_responses(context, stage.fitted, all, variable, input);
 }
 
 /// Sums of products of all columns and the residual, over the samples that count.
@@ -122,11 +62,10 @@ MatrixXd products(const MatrixXd& columns, const VectorXd& weights) {
 /// explain.
 class Regression {
  public:
-  Regression(const Place& at, const MatrixXd& signatures)
-      : fitted_(at.stage.fitted), parameters_(fitted_.jacobian.cols()) {
+  Regression(const FitDataset& data, const FitSummary& fitted, const MatrixXd& signatures)
+      : fitted_(fitted), parameters_(fitted_.jacobian.cols()) {
     MatrixXd columns(signatures.rows(), parameters_ + signatures.cols() + 1);
     columns << fitted_.jacobian, signatures, fitted_.residual_m;
-    const FitDataset& data = at.context.problem.data;
     const bool holds_out = data.validation_mask.sum() > 0.0;
     fits_ = products(columns, data.training_mask);
     scores_ = holds_out ? products(columns, data.validation_mask) : fits_;
@@ -173,7 +112,7 @@ class Regression {
 };
 
 struct Attempt {
-  Form form;
+  ResidualInput input;
   std::size_t variable;
   double remaining_ratio = std::numeric_limits<double>::infinity();
 };
@@ -182,24 +121,20 @@ struct Attempt {
 
 std::vector<Localisation> localise(const SearchContext& context, const ModelStage& stage) {
   const Variables variables = selection::variables(context, stage);
-  const Place at{context, stage, variables};
-  const plant_sim::PlantInfo& plant = *plant_sim::find_plant(context.problem.model.plant);
-  const bool forces =
-      std::find(plant.sites.begin(), plant.sites.end(), "force") != plant.sites.end();
+  std::vector<ResidualInput> inputs = model_inputs(context.problem.model);
+  inputs.insert(inputs.end(), {ResidualInput::reading, ResidualInput::scale});
   std::vector<Attempt> attempts;
   for (std::size_t i = 0; i < variables.all.size(); ++i) {
-    for (const Form form :
-         {Form::flow, Form::gain, Form::force, Form::drag, Form::reading, Form::scale}) {
-      if (!forces && (form == Form::force || form == Form::drag)) continue;
-      attempts.push_back({form, i});
-    }
+    for (const ResidualInput input : inputs) attempts.push_back({input, i});
   }
   in_parallel(attempts.size(), context.options.threads, [&](std::size_t i) {
     if (context.cancelled()) return;
     Attempt& refine = attempts[i];
-    const MatrixXd found = signatures(at, refine.form, variables.all[refine.variable]);
+    const MatrixXd found =
+        signatures(context, stage, variables, variables.all[refine.variable], refine.input);
     if (!found.allFinite()) return;
-    refine.remaining_ratio = Regression(at, found).remaining_ratio();
+    refine.remaining_ratio =
+        Regression(context.problem.data, stage.fitted, found).remaining_ratio();
   });
   if (context.cancelled()) return {};
   const auto paid = [&](const Attempt& a) {
@@ -215,7 +150,7 @@ std::vector<Localisation> localise(const SearchContext& context, const ModelStag
       return where.variable == name;
     });
     if (named || !std::isfinite(a.remaining_ratio)) continue;
-    result.push_back({class_of(a.form), name, 1.0 - a.remaining_ratio});
+    result.push_back({site_of(a.input), name, 1.0 - a.remaining_ratio});
   }
   return result;
 }

@@ -18,6 +18,16 @@ constexpr int kMostStrides = 8;
 
 }  // namespace
 
+bool leaves_its_range(const FitSummary& fitted, std::size_t first) {
+  for (std::size_t i = first; i < fitted.parameters.size(); ++i) {
+    const FreeParameter& p = fitted.parameters[i];
+    const bool is_angle = p.name.find(".phase_rad") != std::string::npos;
+    const bool absent = fitted.theta[static_cast<Eigen::Index>(i)] == 0.0;
+    if (p.refinement == 0 && fitted.at_bound[i] != 0 && !absent && !is_angle) return true;
+  }
+  return false;
+}
+
 void append(ParameterSubset& to, const ParameterSubset& more) {
   Eigen::VectorXd start(to.start.size() + more.start.size());
   start << to.start, more.start;

@@ -33,19 +33,6 @@ constexpr double kLargeGain = 0.1;
 /// Shift of the parameters, in prior widths, above which an explanation is implausible.
 constexpr double kStrain = 6.0;
 
-/// Whether a size or a wavelength reaches the limit of what the effect can be; the effect then
-/// stands in for something else.
-bool leaves_its_range(const ModelStage& stage, const Candidate& candidate) {
-  const FitSummary& fitted = candidate.fitted;
-  for (std::size_t i = stage.fitted.parameters.size(); i < fitted.parameters.size(); ++i) {
-    const FreeParameter& p = fitted.parameters[i];
-    const bool is_angle = p.name.find(".phase_rad") != std::string::npos;
-    const bool absent = fitted.theta[static_cast<Eigen::Index>(i)] == 0.0;
-    if (p.refinement == 0 && fitted.at_bound[i] != 0 && !absent && !is_angle) return true;
-  }
-  return false;
-}
-
 bool is_gain(const SearchContext& context, const ModelStage& stage, const Candidate& candidate) {
   const double worthwhile = worthwhile_at(context, stage.fitted.validation_rms_m);
   const double gain = 1.0 - candidate.validation_rms_m / stage.fitted.validation_rms_m;
@@ -53,19 +40,9 @@ bool is_gain(const SearchContext& context, const ModelStage& stage, const Candid
   const double enough = worthwhile * static_cast<double>(candidate.effects.size());
   // not chance: better on the validation samples throughout, or equally better on the training
   // samples
-  return candidate.fitted_at_all && gain > enough && !leaves_its_range(stage, candidate) &&
+  return candidate.fitted_at_all && gain > enough &&
+         !leaves_its_range(candidate.fitted, stage.fitted.parameters.size()) &&
          (gain > kLargeGain || candidate.p_value < kChance || fit_gain > enough);
-}
-
-/// Squared shift of the parameters from their priors, in standard deviations.
-double strain(const FitSummary& fitted) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
-    const FreeParameter& p = fitted.parameters[i];
-    const double off = (fitted.theta[static_cast<Eigen::Index>(i)] - p.prior_mean) / p.prior_sd;
-    if (std::isfinite(off)) sum += off * off;
-  }
-  return sum;
 }
 
 /// The candidate with the fewest parameters among those that explain the record alike, except one
@@ -75,7 +52,7 @@ const Candidate& simplest(const SearchContext& context, const std::vector<Candid
   for (const Candidate& other : candidates) {
     if (!other.fitted_at_all || other.effects.size() > chosen->effects.size()) continue;
     if (other.fitted.parameters.size() < chosen->fitted.parameters.size() &&
-        strain(other.fitted) < strain(candidates.front().fitted) + kStrain &&
+        prior_cost(other.fitted) < prior_cost(candidates.front().fitted) + kStrain &&
         other.validation_rms_m < (1.0 + worthwhile_at(context, other.validation_rms_m)) *
                                      candidates.front().validation_rms_m &&
         chance(context, other.fitted, candidates.front().fitted) > kChance) {

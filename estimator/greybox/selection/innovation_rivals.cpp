@@ -1,0 +1,104 @@
+#include "estimator/greybox/selection/innovation_rivals.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "estimator/greybox/selection/innovation_trials.h"
+
+namespace estimator::greybox::selection {
+
+namespace {
+
+constexpr std::size_t kLargestGroup = 3;
+/// Most rivals that get a noise model of their own.
+constexpr std::size_t kFinalists = 3;
+/// A rival this far behind with the stage's gains may be level with a noise model of its own.
+constexpr double kWorthSettling_nats = 60.0;
+
+ParameterSubset without_effect(const InnovationStage& stage, const std::string& effect) {
+  return subset(stage.model.fitted, [&](const auto& p) { return !belongs_to(p, effect); });
+}
+
+/// The stage with other parameters in the place of an effect's, or none.
+InnovationStage exchanged(const SearchContext& plain, const InnovationStage& stage,
+                          const std::string& effect, const std::string& other,
+                          const ParameterSubset& own) {
+  ModelStage model;
+  for (const std::string& name : stage.model.added) {
+    if (name != effect) model.added.push_back(name);
+  }
+  ParameterSubset parameters = without_effect(stage, effect);
+  if (!other.empty()) {
+    model.added.push_back(other);
+    append(parameters, own);
+  }
+  model.fitted.parameters = parameters.parameters;
+  model.fitted.theta = parameters.start;
+  model.fitted = fit_innovations(stage.context, parameters, wide(plain.options.threads),
+                                 InnovationFit::converged);
+  return settled(plain, std::move(model), stage.noise, 1, wide(plain.options.threads));
+}
+
+}  // namespace
+
+void eliminate(const SearchContext& plain, InnovationStage& stage) {
+  bool dropped = true;
+  while (dropped && stage.model.added.size() > 1 && !plain.cancelled()) {
+    dropped = false;
+    for (const std::string& effect : std::vector<std::string>(stage.model.added)) {
+      InnovationStage without = exchanged(plain, stage, effect, "", {});
+      const double loss = 0.5 * (without.minus_two_log - stage.minus_two_log) -
+                          penalty_nats(stage.model.fitted, without.model.fitted);
+      if (loss >= kEvidence_nats) continue;
+      stage = std::move(without);
+      dropped = true;
+      break;
+    }
+  }
+}
+
+std::vector<InnovationRivals> rivals_of(const SearchContext& plain, const InnovationStage& final,
+                                        const InnovationStage& before) {
+  std::vector<InnovationRivals> groups;
+  for (const std::string& effect : final.model.added) {
+    if (plain.cancelled()) break;
+    const InnovationStage without = final.model.added.size() == 1 && final.noise.lines.empty()
+                                        ? before
+                                        : exchanged(plain, final, effect, "", {});
+    std::vector<InnovationTrial> rivals = effect_trials(without);
+    add_simulated_starts(plain, without, rivals);
+    sort_by_gain(rivals);
+    double best = -std::numeric_limits<double>::infinity();
+    for (const InnovationTrial& rival : rivals) {
+      if (rival.candidate.effect == effect) best = rival.candidate.gain_nats;
+    }
+    InnovationRivals group{{effect}, {final.model.fitted}};
+    std::size_t tried = 0;
+    for (const InnovationTrial& rival : rivals) {
+      const std::string& name = rival.candidate.effect;
+      const auto& added = final.model.added;
+      if (std::find(added.begin(), added.end(), name) != added.end()) continue;
+      const bool far =
+          rival.candidate.gain_nats < best - kWorthSettling_nats || rival.candidate.gain_nats < 0.0;
+      if ((far && !rival.simulated) || ++tried > kFinalists ||
+          group.names.size() == kLargestGroup) {
+        continue;
+      }
+      const InnovationStage other = settled(plain, without, rival);
+      const double behind =
+          0.5 * (other.minus_two_log - final.minus_two_log) +
+          kPerParameter_nats * (static_cast<double>(other.model.fitted.parameters.size()) -
+                                static_cast<double>(final.model.fitted.parameters.size()));
+      if (behind < kRivals_nats &&
+          !leaves_its_range(other.model.fitted, without.model.fitted.parameters.size())) {
+        group.names.push_back(name);
+        group.explanations.push_back(other.model.fitted);
+      }
+    }
+    if (group.names.size() > 1) groups.push_back(std::move(group));
+  }
+  return groups;
+}
+
+}  // namespace estimator::greybox::selection

@@ -1,0 +1,102 @@
+#include "estimator/greybox/selection/innovation_stage.h"
+
+#include <cmath>
+#include <utility>
+
+namespace estimator::greybox::selection {
+
+namespace {
+
+using Eigen::MatrixXd;
+
+constexpr int kQuickIterations = 10;
+constexpr double kQuickTolerance = 2e-4;
+constexpr int kIterations = 25;
+constexpr double kTolerance = 1e-5;
+/// Fall of -2 log L below which another turn of noise model and parameters is of no use.
+constexpr double kSettled = 1.0;
+
+SearchContext with_data(const SearchContext& context, FitDataset data) {
+  SearchContext result = context;
+  result.problem.data = std::move(data);
+  return result;
+}
+
+/// The stage's data, likelihood and parameters for its noise model. The parameters start where they
+/// are and, as a disturbance that was not known may have bent them, where the model file has them.
+void refit(const SearchContext& plain, InnovationStage& stage, bool from_file_too, Width width) {
+  const disturbance::InnovationData data =
+      disturbance::innovation_data(plain.problem.data, stage.linear, stage.noise);
+  stage.context = with_data(plain, data.data);
+  ParameterSubset all = subset(stage.model.fitted, [](const auto&) { return true; });
+  FitSummary fitted = fit_innovations(stage.context, all, width, InnovationFit::converged);
+  if (from_file_too) {
+    all.start = with_file_values(stage.context, stage.model);
+    FitSummary other = fit_innovations(stage.context, all, width, InnovationFit::converged);
+    const double floor_m = plain.problem.data.noise_floor_m;
+    if (squares(other, floor_m) + prior_cost(other) <
+        squares(fitted, floor_m) + prior_cost(fitted)) {
+      fitted = std::move(other);
+    }
+  }
+  stage.model.fitted = std::move(fitted);
+  stage.minus_two_log = squares(stage.model.fitted, plain.problem.data.noise_floor_m) +
+                        data.log_determinant + prior_cost(stage.model.fitted);
+}
+
+}  // namespace
+
+double squares(const FitSummary& fitted, double floor_m) {
+  return fitted.residual_m.squaredNorm() / (floor_m * floor_m);
+}
+
+FitSummary fit_innovations(const SearchContext& context, const ParameterSubset& parameters,
+                           Width width, InnovationFit effort) {
+  const bool quick = effort == InnovationFit::quick;
+  FitOptions options;
+  options.max_iterations = quick ? kQuickIterations : kIterations;
+  options.tolerance = quick ? kQuickTolerance : kTolerance;
+  options.passes = quick ? 1 : 2;
+  options.final_jacobian = !quick;
+  options.cancel = context.options.cancel;
+  options.width = width;
+  return fit(context.problem.model, context.problem.data, context.problem.data.training_mask,
+             parameters.parameters, parameters.start, options);
+}
+
+InnovationStage settled(const SearchContext& plain, ModelStage model,
+                        const disturbance::NoiseModel& start, int turns, Width width) {
+  InnovationStage stage;
+  stage.model = std::move(model);
+  stage.noise = start;
+  stage.context = plain;
+  InnovationStage best;
+  for (int i = 0; i < turns && !plain.cancelled(); ++i) {
+    const FitSummary& fitted = stage.model.fitted;
+    stage.linear = disturbance::linearise(plain.problem.model, plain.problem.data,
+                                          fitted.parameters, fitted.theta);
+    stage.noise =
+        disturbance::estimate_noise(plain.problem.model, plain.problem.data, fitted.parameters,
+                                    fitted.theta, stage.linear, stage.noise, width.threads)
+            .noise;
+    refit(plain, stage, i == 0, width);
+    const double gain = best.minus_two_log - stage.minus_two_log;
+    if (gain > 0.0) best = stage;
+    if (gain < kSettled) break;
+  }
+  return best;
+}
+
+FitSummary simulated(const SearchContext& context, const FitSummary& fitted) {
+  DatasetSimulation run(context.problem.model, context.problem.data, fitted.parameters);
+  FitSummary result = fitted;
+  result.jacobian.resize(0, 0);
+  MatrixXd residual_m;
+  run.residuals(fitted.theta, residual_m);
+  result.residual_m = residual_m.col(0);
+  result.training_rms_m = rms(result.residual_m, context.problem.data.training_mask);
+  result.validation_rms_m = rms(result.residual_m, context.problem.data.validation_mask);
+  return result;
+}
+
+}  // namespace estimator::greybox::selection

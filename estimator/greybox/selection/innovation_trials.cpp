@@ -1,0 +1,153 @@
+#include "estimator/greybox/selection/innovation_trials.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "estimator/parallel.h"
+
+namespace estimator::greybox::selection {
+
+namespace {
+
+using disturbance::NoiseModel;
+using Eigen::VectorXd;
+
+/// Effects whose linear estimate promises less are not fitted.
+constexpr double kHopeless_nats = 4.0;
+/// Most effects fitted with the stage's gains.
+constexpr std::size_t kFitted = 8;
+/// Most effects fitted in a simulation, and of these the most that become starts, when they leave
+/// less than this share of the error.
+constexpr std::size_t kSimulated = 4;
+constexpr std::size_t kSimulatedStarts = 2;
+constexpr double kWorthSimulating = 0.97;
+constexpr int kIterations = 10;
+constexpr double kTolerance = 2e-3;
+constexpr double kThoroughTolerance = 1e-5;
+
+ModelStage with_effect(const ModelStage& stage, const std::string& effect, FitSummary fitted) {
+  ModelStage next{stage.added, std::move(fitted)};
+  next.added.push_back(effect);
+  return next;
+}
+
+FitOptions simulation_options(const SearchContext& context, InnovationFit effort) {
+  const bool thorough = effort == InnovationFit::converged;
+  FitOptions options;
+  options.max_iterations = thorough ? FitOptions{}.max_iterations : kIterations;
+  options.tolerance = thorough ? kThoroughTolerance : kTolerance;
+  options.final_jacobian = thorough;
+  options.cancel = context.options.cancel;
+  return options;
+}
+
+std::vector<plant_sim::EffectInfo> absent_from(const SearchContext& context,
+                                               const ModelStage& model) {
+  std::vector<plant_sim::EffectInfo> effects;
+  for (const plant_sim::EffectInfo& effect : context.problem.candidate_effects) {
+    if (std::find(model.added.begin(), model.added.end(), effect.name) == model.added.end()) {
+      effects.push_back(effect);
+    }
+  }
+  return effects;
+}
+
+}  // namespace
+
+double penalty_nats(const FitSummary& with, const FitSummary& without) {
+  return kPerParameter_nats *
+         static_cast<double>(with.parameters.size() - without.parameters.size());
+}
+
+std::vector<InnovationTrial> effect_trials(const InnovationStage& stage) {
+  const SearchContext& context = stage.context;
+  const double floor_m = context.problem.data.noise_floor_m;
+  std::vector<ScreeningResult> screened =
+      screen(context, stage.model, absent_from(context, stage.model));
+  const double own = squares(stage.model.fitted, floor_m);
+  std::erase_if(screened, [&](const ScreeningResult& result) {
+    const double ratio = result.expected_ratio;
+    return 0.5 * own * (1.0 - ratio * ratio) < kHopeless_nats;
+  });
+  screened.resize(std::min(screened.size(), kFitted));
+  std::vector<InnovationTrial> trials(screened.size());
+  const double before = own + prior_cost(stage.model.fitted);
+  in_parallel(screened.size(), context.options.threads, [&](std::size_t i) {
+    InnovationTrial& trial = trials[i];
+    trial.candidate.effect = screened[i].effect;
+    trial.candidate.gain_nats = -std::numeric_limits<double>::infinity();
+    for (const VectorXd& start : screened[i].starts) {
+      if (context.cancelled()) return;
+      FitSummary fitted =
+          fit_innovations(context, {screened[i].parameters, start}, Width{}, InnovationFit::quick);
+      const double penalty = penalty_nats(fitted, stage.model.fitted);
+      const double gain = 0.5 * (before - squares(fitted, floor_m) - prior_cost(fitted)) - penalty;
+      if (!(gain > trial.candidate.gain_nats)) continue;
+      trial.candidate.gain_nats = gain;
+      trial.penalty_nats = penalty;
+      trial.starts = {with_effect(stage.model, screened[i].effect, std::move(fitted))};
+    }
+  });
+  return trials;
+}
+
+void add_simulated_starts(const SearchContext& plain, const InnovationStage& stage,
+                          std::vector<InnovationTrial>& trials) {
+  ModelStage with_observer = stage.model;
+  ParameterSubset all = subset(stage.model.fitted, [](const auto&) { return true; });
+  with_observer.fitted =
+      fit(plain.problem.model, plain.problem.data, plain.problem.data.training_mask, all.parameters,
+          all.start, simulation_options(plain, InnovationFit::converged));
+  std::vector<ScreeningResult> screened =
+      screen(plain, with_observer, absent_from(plain, with_observer));
+  screened.resize(std::min(screened.size(), kSimulated));
+  std::vector<FitSummary> fits(screened.size());
+  in_parallel(screened.size(), plain.options.threads, [&](std::size_t i) {
+    fits[i] = refine(plain, screened[i], simulation_options(plain, InnovationFit::quick)).fitted;
+  });
+  std::vector<std::size_t> order(fits.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return fits[a].training_rms_m < fits[b].training_rms_m;
+  });
+  for (std::size_t k = 0; k < std::min(kSimulatedStarts, order.size()); ++k) {
+    FitSummary& fitted = fits[order[k]];
+    const std::string& effect = screened[order[k]].effect;
+    if (!(fitted.training_rms_m < kWorthSimulating * with_observer.fitted.training_rms_m)) break;
+    auto trial = std::find_if(trials.begin(), trials.end(), [&](const InnovationTrial& known) {
+      return known.candidate.effect == effect;
+    });
+    if (trial == trials.end()) {
+      trials.emplace_back();
+      trial = trials.end() - 1;
+      trial->candidate.effect = effect;
+      trial->penalty_nats = penalty_nats(fitted, stage.model.fitted);
+    }
+    trial->starts.push_back(with_effect(stage.model, effect, std::move(fitted)));
+    trial->simulated = true;
+  }
+}
+
+void sort_by_gain(std::vector<InnovationTrial>& trials) {
+  std::stable_sort(trials.begin(), trials.end(),
+                   [](const InnovationTrial& a, const InnovationTrial& b) {
+                     return a.candidate.gain_nats > b.candidate.gain_nats;
+                   });
+}
+
+InnovationStage settled(const SearchContext& plain, const InnovationStage& stage,
+                        const InnovationTrial& trial) {
+  NoiseModel noise = stage.noise;
+  if (trial.candidate.effect.empty()) noise.lines.push_back(trial.candidate.line);
+  InnovationStage best;
+  for (const ModelStage& start : trial.starts) {
+    InnovationStage one = settled(plain, start, noise, 1, Width{});
+    if (one.minus_two_log < best.minus_two_log) best = std::move(one);
+  }
+  return best;
+}
+
+}  // namespace estimator::greybox::selection

@@ -1,0 +1,46 @@
+// Candidates of a round of the innovation search before they get noise models of their own.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "estimator/greybox/disturbance/spectral_lines.h"
+#include "estimator/greybox/selection/innovation_stage.h"
+
+namespace estimator::greybox::selection {
+
+inline constexpr double kEvidence_nats = 15.0;
+inline constexpr double kPerParameter_nats = 4.3;  ///< log(6000) / 2: a record of 30 s
+
+/// A candidate of a round: an effect, or a spectral line where `effect` is empty.
+struct InnovationCandidate {
+  std::string effect;
+  disturbance::SpectralLine line;
+  double gain_nats = 0.0;  ///< less its penalty
+  double penalty_nats = 0.0;
+  bool settled = false;  ///< with a noise model of its own
+  FitSummary fitted;     ///< settled: parameters and their values, without Jacobian
+};
+
+struct InnovationTrial {
+  InnovationCandidate candidate;
+  std::vector<ModelStage> starts;  ///< fitted with the stage's gains, with the weak observer
+  double penalty_nats = 0.0;
+  bool simulated = false;  ///< promising in a simulation with the weak observer
+};
+
+[[nodiscard]] double penalty_nats(const FitSummary& with, const FitSummary& without);
+
+/// The most promising effects, fitted with the stage's gains.
+[[nodiscard]] std::vector<InnovationTrial> effect_trials(const InnovationStage& stage);
+/// Further starts for the most promising effects of a simulation with the weak observer: the
+/// stage's gains may be those that hide an effect, above all friction that sticks.
+void add_simulated_starts(const SearchContext& plain, const InnovationStage& stage,
+                          std::vector<InnovationTrial>& trials);
+void sort_by_gain(std::vector<InnovationTrial>& trials);
+
+/// The best of a trial's starts with a noise model of its own.
+[[nodiscard]] InnovationStage settled(const SearchContext& plain, const InnovationStage& stage,
+                                      const InnovationTrial& trial);
+
+}  // namespace estimator::greybox::selection
