@@ -20,7 +20,7 @@ constexpr int kRequestsPerCall = 8;
 
 /// Names the command that leads out of a state which does not allow the one given.
 std::string hint(control::State state) {
-  const std::string prefix = std::string("not possible in state ") + control::to_string(state);
+  std::string prefix = std::string("not possible in state ") + control::to_string(state);
   switch (state) {
     case control::State::disarmed:
       return prefix + ": arm first";

@@ -59,7 +59,7 @@ struct Row {
   std::string otherwise;  ///< its default
   std::string what;
 
-  auto operator<=>(const Row&) const = default;
+  auto operator<=>(const Row&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 struct Table {

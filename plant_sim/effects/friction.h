@@ -10,10 +10,12 @@
 // Rigid contact is stick and slip, not a steep curve: while the speed is so small that friction
 // would stop the rod within one integration step, F is just the force that does so, never one that
 // drives. The bristle's equation is solved exactly over each travel dx, so its stiffness against
-// sliding asks for no shorter step. Both dissipate: F v >= 0, or k z^2 / 2 is what is stored; for
-// that z' is never against v. Sources: Karnopp (1985); Dahl (1968); Canudas de Wit, Olsson, Astrom,
-// Lischinsky, A new model for control of systems with friction (1995); Armstrong-Helouvry, Dupont,
-// Canudas de Wit (1994).
+// sliding asks for no shorter step. Both dissipate: F v >= 0,
+// or k z^2 / 2 is what is stored; for that s1 z' against v, where Stribeck's level falls below k z,
+// is at least -(k z)^2 / g. Sources: Karnopp (1985); Dahl (1968); Canudas de Wit, Olsson, Astrom,
+// Lischinsky, A new model for control of systems with friction (1995); Barabanov, Ortega, Necessary
+// and sufficient conditions for passivity of the LuGre friction model (2000); Armstrong-Helouvry,
+// Dupont, Canudas de Wit (1994).
 #pragma once
 
 #include <array>
@@ -63,6 +65,8 @@ struct Friction {
   };
   struct Memory {
     S deflection_m = 0.0;
+    S yield = 1.0;       ///< dz / dx over the last step
+    S direction = 0.0;   ///< of that step; 0 at rest
     S rise_ratio = 1.0;  ///< Stribeck's exponential at the speed of that moment
     S v_mps = std::numeric_limits<double>::quiet_NaN();  ///< that speed
 
@@ -83,8 +87,10 @@ struct Friction {
     const S spring_N = p.presliding_stiffness_N_per_m * deflected_m(p, memory, at.travel_m, rise);
     const S along_N = select(at.v_mps < S(0.0), -spring_N, spring_N);
     const S level = max(select(at.v_mps < S(0.0), backward_N, forward_N), S(kLeastLevel_N));
-    const S still = max(S(1.0) - along_N / level, S(0.0));  // z' / v
-    const S bristle_N = spring_N + p.presliding_damping_N_s_per_m * at.v_mps * still;
+    const S ratio = along_N / level;
+    const S damped_N = p.presliding_damping_N_s_per_m * abs(at.v_mps) * (S(1.0) - ratio);
+    const S total_N = along_N + max(damped_N, -level * ratio * ratio);
+    const S bristle_N = select(at.v_mps < S(0.0), -total_N, total_N);
     return select(bristled, bristle_N, rigid_N);
   }
 
@@ -112,6 +118,7 @@ struct Friction {
   static constexpr double kLeastStribeck_mps = 1e-9;  ///< the rise then is at standstill only
   static constexpr double kNoRise = 700.0;            ///< e^-700 is still a normal number
   static constexpr double kLeastLevel_N = 1e-9;
+  static constexpr double kFewLengths = 1e-6;
 
   static S rise_ratio(const Parameters& p, const S& v_mps) {
     const S least_N = p.coulomb_N * (S(1.0) - abs(p.direction_ratio));
@@ -125,18 +132,27 @@ struct Friction {
     return coulomb_N + max(p.static_N - coulomb_N, S(0.0)) * rise_ratio;
   }
 
-  /// The bristle after a travel of the rod: z approaches +-g/k exponentially, with g the mean of
-  /// the levels at both ends; the error of a step is of third order.
+  /// The bristle after a travel of the rod, z* = +-g/k changing evenly along it:
+  ///
+  ///   z = z1* + (z0 - z0*) e^-h - (z1* - z0*) (1 - e^-h) / h,   h = |dx| k / g
+  ///
+  /// exact for an even z* and constant h / |dx|: for a step of many h as well, where z only lags.
   static S deflected_m(const Parameters& p, const Memory& memory, const S& travel_m,
                        const S& rise) {
     if (all(abs(travel_m) <= S(0.0)))
       return memory.deflection_m;  // avoids a division by zero; the result is the same
     const S direction = select(travel_m < S(0.0), S(-1.0), S(1.0));
-    const S mean_ratio = S(0.5) * (memory.rise_ratio + rise);
-    const S level = max(level_at_N(p, direction, mean_ratio), S(kLeastLevel_N));
     const S k = max(p.presliding_stiffness_N_per_m, S(kLeastLevel_N));
-    const S remains = decay(min(abs(travel_m) * k / level, S(kNoRise)));
-    return memory.deflection_m * remains + direction * (level / k) * (S(1.0) - remains);
+    const S from_N = max(level_at_N(p, direction, memory.rise_ratio), S(kLeastLevel_N));
+    const S to_N = max(level_at_N(p, direction, rise), S(kLeastLevel_N));
+    const S lengths = min(S(2.0) * abs(travel_m) * k / (from_N + to_N), S(kNoRise));
+    const S remains = decay(lengths);
+    const auto few = lengths < S(kFewLengths);
+    const S share =
+        select(few, S(1.0) - S(0.5) * lengths, (S(1.0) - remains) / select(few, S(1.0), lengths));
+    const S from_m = direction * from_N / k;
+    const S to_m = direction * to_N / k;
+    return to_m + (memory.deflection_m - from_m) * remains - (to_m - from_m) * share;
   }
 };
 

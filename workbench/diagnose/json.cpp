@@ -37,6 +37,16 @@ Json parameters_of(const selection::Diagnosis& d) {
   return all;
 }
 
+Json refused_of(const selection::StructureSearch& search) {
+  Json list = Json::array();
+  for (const selection::RefusedModel& model : search.refused) {
+    list.push_back({{"effects", model.effects},
+                    {"rms_heldout_m", number_or_null(model.validation_rms_m)},
+                    {"why", selection::to_string(model.why)}});
+  }
+  return list;
+}
+
 Json disturbance_of(const selection::Diagnosis& d) {
   if (!d.disturbance) return nullptr;
   Json json;
@@ -87,14 +97,15 @@ std::string to_json(const DiagnosisReport& outcome) {
   json["record"] = {{"turned_sign", d.checks && d.checks->turned_sign()},
                     {"outside_stroke", d.checks && d.checks->outside_stroke()}};
   json["plants"] = Json::array();
-  for (const selection::PlantFit& fit :
-       d.checks ? d.checks->plants : decltype(d.checks->plants)()) {
+  for (const selection::PlantFit& fit : d.plants) {
     json["plants"].push_back(
         {{"plant", fit.plant}, {"rms_heldout_m", number_or_null(fit.validation_rms_m)}});
   }
   json["disturbance"] = disturbance_of(d);
-  json["floor"] = {{"sensor_m", number_or_null(d.noise_floor_m)},
-                   {"disturbed_m", number_or_null(d.disturbed_floor_m())}};
+  json["floor"] = {
+      {"sensor_m", number_or_null(d.noise_floor_m)},
+      {"repeat_m", number_or_null(d.repetition ? d.repetition->scatter_m : std::nan(""))},
+      {"disturbed_m", number_or_null(d.disturbed_floor_m())}};
   json["steps"] = Json::array();
   for (const selection::SelectionStep& step : d.steps) {
     Json one;
@@ -102,6 +113,7 @@ std::string to_json(const DiagnosisReport& outcome) {
     one["rms_heldout_m"] = number_or_null(step.validation_rms_m);
     json["steps"].push_back(std::move(one));
   }
+  json["dropped"] = refused_of(d.search);
   json["advice"] = outcome.advice;
   json["words"] = verdict_words(d);
   json["notes"] = notes(outcome);

@@ -88,6 +88,21 @@ std::string possible_words(const selection::PossibleEffect& possible) {
   return possible.effect + " (one of several that may stand in for one other law)";
 }
 
+std::string refused_words(const selection::RefusedModel& model) {
+  const std::string what = "Not taken: " + config::schema::joined(model.effects, " + ") +
+                           ", which would leave " +
+                           config::units::length_words(model.validation_rms_m);
+  switch (model.why) {
+    case selection::Refusal::unsupported:
+      return what + ": one half of the record does not support it.";
+    case selection::Refusal::dispensable:
+      return what + ": one of these effects gains less than its parameters cost.";
+    case selection::Refusal::unlikely:
+      break;
+  }
+  return what + ": a disturbance explains the samples better.";
+}
+
 std::string fall_words(const selection::Diagnosis& d) {
   if (d.missing.empty()) {
     return "With the plant's own parameters fitted, the held-out error goes from " +
@@ -121,11 +136,10 @@ void add_record_words(const selection::Diagnosis& d, std::vector<std::string>& o
                        : std::string()) +
                   ": look at its unit and its zero.");
   }
-  if (d.verdict == selection::Verdict::unexplained && !checks.plants.empty() &&
-      checks.plants.front().validation_rms_m < kBetterPlant * d.rms_after_m) {
-    out.push_back("Another plant follows this record better: " + checks.plants.front().plant +
+  if (!d.plants.empty() && d.plants.front().validation_rms_m < kBetterPlant * d.rms_after_m) {
+    out.push_back("Another plant follows this record better: " + d.plants.front().plant +
                   ", without any effect, leaves " +
-                  config::units::length_words(checks.plants.front().validation_rms_m) + ".");
+                  config::units::length_words(d.plants.front().validation_rms_m) + ".");
   }
 }
 
@@ -240,6 +254,15 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
   if (d.verdict != selection::Verdict::not_excited) out.push_back(fall_words(d));
   const bool named = d.verdict == selection::Verdict::missing || d.missing.empty();
   if (!named) out.push_back("Used in the better model: " + effects_words(d, d.missing) + ".");
+  if (d.repetition) {
+    out.push_back("The motion repeats every " +
+                  config::units::words(
+                      config::units::quantity("period_s", d.repetition->period_s, std::nan(""))) +
+                  ": of what remains, " + config::units::length_words(d.repetition->scatter_m) +
+                  " differs from one repetition to the next, which no model of the command can "
+                  "explain, and " +
+                  config::units::length_words(d.repetition->repeating_m) + " repeats.");
+  }
   if (d.disturbance) {
     out.push_back("What remains does not follow from command or motion: " +
                   disturbance_words(*d.disturbance) + ".");
@@ -247,6 +270,9 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
   if (!d.possible.empty()) {
     out.push_back(
         "Not established: " + config::schema::joined_by(d.possible, possible_words, ", ") + ".");
+  }
+  for (const selection::RefusedModel& model : d.search.refused) {
+    out.push_back(refused_words(model));
   }
   add_rivals(d, out);
   if (!d.where.empty()) {

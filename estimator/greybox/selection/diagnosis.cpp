@@ -111,6 +111,8 @@ void conclude(const SearchContext& context, const SearchContext& search, Diagnos
   }
   take_errors(result);
   const ModelStage& final = result.search.final;
+  result.repetition =
+      repeated_motion((result.searched_s ? context : search).problem.data, final.fitted.residual_m);
   fit_final_parameters(context, result);
   if (final.fitted.validation_rms_m > kUnexplained * result.noise_floor_m) {
     result.verdict = Verdict::unexplained;
@@ -133,11 +135,19 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
   if (uses_segments(search, context)) result.searched_s = length_s(search.problem.data);
   const double nominal_m = result.search.nominal_rms_m;
   const double preview_s = result.search.preview_s;
+  std::vector<RefusedModel> refused = std::move(result.search.refused);
   result.search = structure_search_of(search, first, innovations);
+  std::erase_if(refused, [&](const RefusedModel& model) {
+    return model.effects == result.search.final.added ||
+           model.validation_rms_m >
+               (1.0 - kWorthTelling) * result.search.final.fitted.validation_rms_m;
+  });
+  result.search.refused = std::move(refused);
   result.search.nominal_rms_m = nominal_m;
   result.search.preview_s = preview_s;
   result.search.interrupted = search.cancelled();
   take_errors(result);
+  result.repetition = repeated_motion(search.problem.data, result.search.final.fitted.residual_m);
   take_parameters(innovations.final, result);
   // missing physics passes for a disturbance as long as it is not in the model
   if (!context.cancelled()) result.disturbance = disturbance_of(search, innovations);
@@ -200,17 +210,21 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
     return result;
   }
   const SearchContext search = for_search(context);
-  result.search = search_structure(search, SearchEffort::brief);
-  const ModelStage first = result.search.path.front();
+  SearchStart start = start_search(search);
+  const ModelStage first = start.first;
   if (first.fitted.validation_rms_m > kFarFromFloor * result.noise_floor_m) {
     result.checks = check_records(search, first.fitted.validation_rms_m);
   }
   const bool wrong_record = result.checks && result.checks->turned_sign();
-  if (is_explained(search, result.search.final) || wrong_record || context.cancelled() ||
-      !std::isfinite(result.noise_floor_m)) {
+  if (is_explained(search, start.branch.stage)) {
+    result.search = complete_search(search, std::move(start));
+    conclude(context, search, result);
+  } else if (wrong_record || context.cancelled() || !std::isfinite(result.noise_floor_m)) {
+    result.search = abandon_search(search, start);
     conclude(context, search, result);
   } else {
-    const InnovationSearch innovations = search_innovations(search, first);
+    result.search = abandon_search(search, start);
+    const InnovationSearch innovations = search_innovations(search, first, start.branch.stage);
     const bool begun = !innovations.final.linear.empty();
     if (begun && (context.cancelled() || innovations.curve_nats <= kCurve_nats)) {
       conclude(context, search, first, innovations, result);
@@ -218,7 +232,7 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
       result.search.interrupted = true;
       conclude(context, search, result);
     } else {
-      StructureSearch full = search_structure(search, SearchEffort::full);
+      StructureSearch full = complete_search(search, std::move(start));
       const double held_m = simulated(search, innovations.final.model.fitted).validation_rms_m;
       // of two that leave something unexplained, the one that leaves less
       if (!is_explained(search, full.final) &&
@@ -229,6 +243,9 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
         conclude(context, search, result);
       }
     }
+  }
+  if (result.checks && result.verdict == Verdict::unexplained && !wrong_record) {
+    result.plants = fit_other_plants(search);
   }
   result.possible = possible_effects(result);
   result.runtime_s =

@@ -10,6 +10,7 @@
 #include "estimator/greybox/selection/excitation.h"
 #include "estimator/greybox/selection/localisation.h"
 #include "estimator/greybox/selection/record_checks.h"
+#include "estimator/greybox/selection/repeated_motion.h"
 #include "estimator/greybox/selection/structure_search.h"
 
 namespace estimator::greybox::selection {
@@ -46,11 +47,14 @@ struct Diagnosis {
   std::vector<SelectionStep> steps;
   /// Disturbance of the rig, where the record was judged by innovations and shows any.
   std::optional<Disturbance> disturbance;
+  std::optional<RepeatedMotion>
+      repetition;                    ///< of the final model's error, where the motion repeats
   Excitation excitation;             ///< insufficient: Verdict::not_excited
   std::optional<double> searched_s;  ///< length of the segments searched; none: all samples
   bool by_innovations = false;       ///< the likelihood of all innovations decided
   /// Asked where the fitted model leaves many times the noise.
   std::optional<RecordChecks> checks;
+  std::vector<PlantFit> plants;  ///< the same, where nothing explains the records
   StructureSearch search;
   FitSummary final;             ///< the better model on all samples
   plant_sim::ModelFile better;  ///< the model file with it

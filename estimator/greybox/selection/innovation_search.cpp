@@ -5,6 +5,7 @@
 #include <mutex>
 #include <utility>
 
+#include "config/schema/joined.h"
 #include "estimator/greybox/selection/innovation_curves.h"
 #include "estimator/greybox/selection/spectral_line_candidates.h"
 #include "estimator/parallel.h"
@@ -88,9 +89,34 @@ bool extend(const SearchContext& plain, InnovationStage& stage,
   return true;
 }
 
+/// -2 log L with a penalty for each parameter.
+double penalised(const InnovationStage& stage) {
+  return stage.minus_two_log +
+         2.0 * kPerParameter_nats * static_cast<double>(stage.model.fitted.parameters.size());
+}
+
+/// The model that another search holds, where it is more likely than the stage reached.
+void take_held(const SearchContext& context, const ModelStage& held, InnovationStage& stage,
+               std::vector<InnovationRound>& rounds) {
+  if (held.added.empty() || context.cancelled()) return;
+  const InnovationStage other =
+      settled(context, held, stage.noise, kMostTurns, wide(context.options.threads));
+  if (!(penalised(other) < penalised(stage) - 2.0 * kEvidence_nats)) return;
+  InnovationCandidate candidate;
+  candidate.effect = config::schema::joined(held.added, "+");
+  candidate.settled = true;
+  candidate.penalty_nats = 0.5 * (penalised(other) - other.minus_two_log);
+  candidate.gain_nats = 0.5 * (penalised(stage) - penalised(other));
+  candidate.fitted = other.model.fitted;
+  candidate.fitted.jacobian.resize(0, 0);
+  rounds.push_back({stage.model, {std::move(candidate)}});
+  stage = other;
+}
+
 }  // namespace
 
-InnovationSearch search_innovations(const SearchContext& with_holdouts, const ModelStage& first) {
+InnovationSearch search_innovations(const SearchContext& with_holdouts, const ModelStage& first,
+                                    const ModelStage& held) {
   SearchContext context = with_holdouts;
   if (context.problem.data.has_holdouts()) {
     std::vector<Dataset>& records = context.problem.data.records;
@@ -103,6 +129,7 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
   if (!std::isfinite(stage.minus_two_log)) return search;  // cancelled before anything was known
   while (!context.cancelled() && extend(context, stage, search.rounds)) {
   }
+  take_held(context, held, stage, search.rounds);
   eliminate(context, stage);
   if (!stage.model.added.empty()) search.rivals = rivals_of(context, stage, search.before);
   const std::vector<CurveGain> curves =

@@ -36,9 +36,10 @@ struct InnovationSearch {
   double curve_nats = 0.0;  ///< largest gain of a curve over a variable of the motion
 };
 
-/// `first` is the model as given, fitted with the weak observer. Records that only score take no
-/// part.
+/// `first` is the model as given, fitted with the weak observer, `held` the best that another
+/// search has found so: it is taken where its likelihood is the higher one. Records that only score
+/// take no part.
 [[nodiscard]] InnovationSearch search_innovations(const SearchContext& context,
-                                                  const ModelStage& first);
+                                                  const ModelStage& first, const ModelStage& held);
 
 }  // namespace estimator::greybox::selection

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "estimator/greybox/selection/revived_refinements.h"
+
 namespace estimator::greybox::selection {
 
 namespace {
@@ -13,6 +15,8 @@ constexpr int kQuickIterations = 10;
 constexpr double kQuickTolerance = 2e-4;
 constexpr int kIterations = 25;
 constexpr double kTolerance = 1e-5;
+/// Fall of -2 log L that a refinement brought back has to bring.
+constexpr double kRevived = 2.0;
 /// Fall of -2 log L below which another turn of noise model and parameters is of no use.
 constexpr double kSettled = 1.0;
 
@@ -30,18 +34,26 @@ void refit(const SearchContext& plain, InnovationStage& stage, bool from_file_to
   stage.context = with_data(plain, data.data);
   ParameterSubset all = subset(stage.model.fitted, [](const auto&) { return true; });
   FitSummary fitted = fit_innovations(stage.context, all, width, InnovationFit::converged);
+  const double floor_m = plain.problem.data.noise_floor_m;
   if (from_file_too) {
     all.start = with_file_values(stage.context, stage.model);
     FitSummary other = fit_innovations(stage.context, all, width, InnovationFit::converged);
-    const double floor_m = plain.problem.data.noise_floor_m;
     if (squares(other, floor_m) + prior_cost(other) <
         squares(fitted, floor_m) + prior_cost(fitted)) {
       fitted = std::move(other);
     }
   }
+  for (const Eigen::VectorXd& start : revived_refinements(fitted)) {
+    all.start = start;
+    FitSummary other = fit_innovations(stage.context, all, width, InnovationFit::converged);
+    if (squares(other, floor_m) + prior_cost(other) + kRevived <
+        squares(fitted, floor_m) + prior_cost(fitted)) {
+      fitted = std::move(other);
+    }
+  }
   stage.model.fitted = std::move(fitted);
-  stage.minus_two_log = squares(stage.model.fitted, plain.problem.data.noise_floor_m) +
-                        data.log_determinant + prior_cost(stage.model.fitted);
+  stage.minus_two_log =
+      squares(stage.model.fitted, floor_m) + data.log_determinant + prior_cost(stage.model.fitted);
 }
 
 }  // namespace

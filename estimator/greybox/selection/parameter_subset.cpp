@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "estimator/greybox/selection/revived_refinements.h"
+
 namespace estimator::greybox::selection {
 namespace {
 
@@ -15,6 +17,8 @@ constexpr double kNear = 1.1;
 /// Limit of the remaining decrease, in decreases like that of the last check.
 constexpr double kPatience = 4.0;
 constexpr int kMostStrides = 8;
+/// Share of the error by which a refinement brought back has to lower it.
+constexpr double kRevived = 1e-3;
 
 }  // namespace
 
@@ -78,6 +82,15 @@ FitSummary refit_if_hopeful(const SearchContext& context, const ParameterSubset&
 FitSummary refit_to_convergence(const SearchContext& context, const FitSummary& fitted) {
   return refit(context, subset(fitted, [](const auto&) { return true; }),
                context.problem.data.training_mask, wide(context.options.threads));
+}
+
+void revive(const SearchContext& context, FitSummary& fitted) {
+  for (const Eigen::VectorXd& start : revived_refinements(fitted)) {
+    if (context.cancelled()) return;
+    FitSummary other = refit(context, {fitted.parameters, start},
+                             context.problem.data.training_mask, wide(context.options.threads));
+    if (other.training_rms_m < (1.0 - kRevived) * fitted.training_rms_m) fitted = std::move(other);
+  }
 }
 
 }  // namespace estimator::greybox::selection

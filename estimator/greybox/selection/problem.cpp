@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "estimator/greybox/selection/typical_sizes.h"
+
 namespace estimator::greybox::selection {
 
 using plant_sim::EffectInfo;
@@ -33,6 +35,7 @@ std::vector<EffectInfo> absent_effects(const ModelFile& model) {
 DiagnosisProblem make_problem(ModelFile model, FitDataset data) {
   DiagnosisProblem result;
   result.candidate_effects = absent_effects(model);
+  scale_typical_sizes(model, data, result.candidate_effects);
   result.plant_parameters = plant_parameters(model);
   for (FreeParameter& p : present_parameters(model)) {
     result.plant_parameters.push_back(std::move(p));

@@ -14,6 +14,9 @@ namespace {
 /// A turned sign must explain the record that much better than the sign as given.
 constexpr double kTurned = 3.0;
 
+/// Enough to tell plants, and signs, apart.
+constexpr int kIterations = 12;
+
 /// RMS of the series about its mean.
 double spread(const std::vector<double>& values) {
   double mean = 0.0;
@@ -79,6 +82,7 @@ plant_sim::ModelFile plain_model(const plant_sim::PlantInfo& plant, const FitDat
 double fitted_rms_m(const SearchContext& context, const plant_sim::ModelFile& model,
                     const FitDataset& data) {
   FitOptions options;
+  options.max_iterations = kIterations;
   options.final_jacobian = false;
   options.cancel = context.options.cancel;
   const std::vector<FreeParameter> parameters = plant_parameters(model);
@@ -88,48 +92,61 @@ double fitted_rms_m(const SearchContext& context, const plant_sim::ModelFile& mo
                                                 : std::numeric_limits<double>::infinity();
 }
 
-void check_stroke(const SearchContext& context, RecordChecks& checks) {
-  plant_sim::ModelFile model = context.problem.model;
+/// The positions that leave the model's stroke, as below_m (negative) and beyond_m.
+struct StrokeExcess {
+  double below_m = 0.0;
+  double beyond_m = 0.0;
+};
+
+StrokeExcess stroke_excess(plant_sim::ModelFile model, const FitDataset& data) {
+  StrokeExcess excess;
   const double* stroke_m = model.value("stroke_m");
-  if (stroke_m == nullptr) return;
-  const double spare_m = 3.0 * context.problem.data.noise_floor_m;
-  for (const Dataset& record : context.problem.data.records) {
+  if (stroke_m == nullptr) return excess;
+  const double spare_m = 3.0 * data.noise_floor_m;
+  for (const Dataset& record : data.records) {
     const auto [least, most] = std::minmax_element(record.y_m.begin(), record.y_m.end());
-    if (*least < -spare_m) checks.below_m = std::min(checks.below_m, *least);
-    if (*most > *stroke_m + spare_m) checks.beyond_m = std::max(checks.beyond_m, *most - *stroke_m);
+    if (*least < -spare_m) excess.below_m = std::min(excess.below_m, *least);
+    if (*most > *stroke_m + spare_m) excess.beyond_m = std::max(excess.beyond_m, *most - *stroke_m);
   }
+  return excess;
 }
 
 }  // namespace
 
 RecordChecks check_records(const SearchContext& context, double rms_m) {
+  const FitDataset& data = context.problem.data;
+  const StrokeExcess excess = stroke_excess(context.problem.model, data);
   RecordChecks checks;
-  check_stroke(context, checks);
-  std::vector<const plant_sim::PlantInfo*> others;
-  for (const plant_sim::PlantInfo& plant : plant_sim::plant_library()) {
-    if (plant.name != context.problem.model.plant) others.push_back(&plant);
+  checks.below_m = excess.below_m;
+  checks.beyond_m = excess.beyond_m;
+  FitDataset turned = data;
+  for (Dataset& record : turned.records) {
+    for (double& u_V : record.u_V) u_V = -u_V;
   }
-  checks.plants.resize(others.size());
-  double turned_m = std::numeric_limits<double>::infinity();
-  in_parallel(others.size() + 1, context.options.threads, [&](std::size_t i) {
-    if (context.cancelled()) return;
-    if (i < others.size()) {
-      const FitDataset& data = context.problem.data;
-      checks.plants[i] = {others[i]->name,
-                          fitted_rms_m(context, plain_model(*others[i], data), data)};
-      return;
-    }
-    FitDataset turned = context.problem.data;
-    for (Dataset& record : turned.records) {
-      for (double& u_V : record.u_V) u_V = -u_V;
-    }
-    turned_m = fitted_rms_m(context, context.problem.model, turned);
-  });
+  const double turned_m = fitted_rms_m(context, context.problem.model, turned);
   if (turned_m * kTurned < rms_m) checks.turned_sign_ratio = rms_m / turned_m;
-  std::stable_sort(
-      checks.plants.begin(), checks.plants.end(),
-      [](const PlantFit& a, const PlantFit& b) { return a.validation_rms_m < b.validation_rms_m; });
   return checks;
+}
+
+std::vector<PlantFit> fit_other_plants(const SearchContext& context) {
+  const FitDataset& data = context.problem.data;
+  std::vector<plant_sim::ModelFile> others;
+  for (const plant_sim::PlantInfo& plant : plant_sim::plant_library()) {
+    if (plant.name == context.problem.model.plant) continue;
+    plant_sim::ModelFile model = plain_model(plant, data);
+    const StrokeExcess excess = stroke_excess(model, data);
+    if (excess.below_m < 0.0 || excess.beyond_m > 0.0) continue;
+    others.push_back(std::move(model));
+  }
+  std::vector<PlantFit> plants(others.size());
+  in_parallel(others.size(), context.options.threads, [&](std::size_t i) {
+    plants[i] = {others[i].plant, fitted_rms_m(context, others[i], data)};
+  });
+  if (context.cancelled()) return {};
+  std::stable_sort(plants.begin(), plants.end(), [](const PlantFit& a, const PlantFit& b) {
+    return a.validation_rms_m < b.validation_rms_m;
+  });
+  return plants;
 }
 
 }  // namespace estimator::greybox::selection

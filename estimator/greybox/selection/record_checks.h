@@ -21,7 +21,6 @@ struct RecordChecks {
   /// Positions outside a stroke that the model has: least and greatest, m; equal where all are in.
   double below_m = 0.0;
   double beyond_m = 0.0;
-  std::vector<PlantFit> plants;  ///< the other plants, best first
 
   [[nodiscard]] bool turned_sign() const { return turned_sign_ratio > 1.0; }
   [[nodiscard]] bool outside_stroke() const { return below_m < 0.0 || beyond_m > 0.0; }
@@ -29,5 +28,7 @@ struct RecordChecks {
 
 /// `fitted_rms_m`: held-out error of the given model with its parameters fitted.
 [[nodiscard]] RecordChecks check_records(const SearchContext& context, double fitted_rms_m);
+/// The other plants that the records' positions fit into, best first; none when cancelled.
+[[nodiscard]] std::vector<PlantFit> fit_other_plants(const SearchContext& context);
 
 }  // namespace estimator::greybox::selection

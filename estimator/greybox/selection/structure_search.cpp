@@ -62,48 +62,52 @@ const Candidate& simplest(const SearchContext& context, const std::vector<Candid
   return *chosen;
 }
 
-/// Rounds from a stage until it has `most` effects; false when nothing helps any more.
-bool extend_branch(const SearchContext& context, ModelStage& stage, std::vector<Round>& rounds,
-                   bool pairs_too, std::size_t most = kMostEffects) {
-  while (stage.added.size() < most && !context.cancelled()) {
-    Round round = single_round(context, stage, static_cast<int>(rounds.size()) + 1);
+/// Takes the round's first candidate, or one as good with fewer parameters; false when it is no
+/// gain.
+bool take(const SearchContext& context, const Round& round, ModelStage& stage) {
+  if (!is_gain(context, stage, round.candidates.front())) return false;
+  stage = with(stage, simplest(context, round.candidates));
+  if (stage.fitted.jacobian.size() == 0) stage.fitted = refit_to_convergence(context, stage.fitted);
+  revive(context, stage.fitted);
+  return true;
+}
+
+/// Puts the best pair of a round's candidates first where it is a gain and no single one is.
+void try_pairs(const SearchContext& context, const ModelStage& stage, Round& round) {
+  if (is_gain(context, stage, round.candidates.front()) || is_explained(context, stage) ||
+      context.cancelled()) {
+    return;
+  }
+  const std::vector<Candidate> pairs = pair_round(context, round);
+  if (!pairs.empty() && is_gain(context, stage, pairs.front())) {
+    round.candidates.insert(round.candidates.begin(), pairs.front());
+  }
+}
+
+/// Rounds until the branch has `most` effects; false when nothing helps any more.
+bool extend_branch(const SearchContext& context, SearchBranch& branch, bool pairs_too,
+                   std::size_t most = kMostEffects) {
+  while (branch.stage.added.size() < most && !context.cancelled()) {
+    Round round = single_round(context, branch.stage, static_cast<int>(branch.rounds.size()) + 1);
     if (round.candidates.empty()) return false;
     // candidates that cannot be taken go last
     std::stable_partition(
         round.candidates.begin(), round.candidates.end(),
-        [&](const Candidate& candidate) { return is_gain(context, stage, candidate); });
-    const bool single = is_gain(context, stage, round.candidates.front());
-    if (pairs_too && !single && !is_explained(context, stage) && !context.cancelled()) {
-      std::vector<Candidate> pairs = pair_round(context, round);
-      if (!pairs.empty() && is_gain(context, stage, pairs.front())) {
-        round.candidates.insert(round.candidates.begin(), pairs.front());
-      }
-    }
-    const bool gain = is_gain(context, stage, round.candidates.front());
-    if (gain) {
-      stage = with(stage, simplest(context, round.candidates));
-      if (stage.fitted.jacobian.size() == 0) {
-        stage.fitted = refit_to_convergence(context, stage.fitted);
-      }
-    }
-    rounds.push_back(std::move(round));
-    if (!gain) return false;
+        [&](const Candidate& candidate) { return is_gain(context, branch.stage, candidate); });
+    if (pairs_too) try_pairs(context, branch.stage, round);
+    branch.stalled = !take(context, round, branch.stage);
+    branch.rounds.push_back(std::move(round));
+    if (branch.stalled) return false;
   }
   return true;
 }
-
-/// A search from the first stage to its end.
-struct SearchBranch {
-  ModelStage stage;
-  std::vector<Round> rounds;
-};
 
 /// Search from `first` with a candidate as its beginning, after the round `begun`.
 SearchBranch branch_from(const SearchContext& context, const ModelStage& first,
                          const Candidate& candidate, const Round& begun) {
   SearchBranch other{with(first, candidate), {begun}};
   refit_without_refinements(context, other.stage);
-  extend_branch(context, other.stage, other.rounds, false);
+  extend_branch(context, other, false);
   eliminate_backward(context, other.stage, EliminationPass::intermediate);
   if (candidate.effects.size() > 1) {
     auto& candidates = other.rounds.front().candidates;
@@ -127,16 +131,18 @@ std::optional<SearchBranch> start_with_pair(const SearchContext& context, const 
   return branch_from(context, first, pairs.front(), best.rounds.front());
 }
 
-/// Stepwise search, with pairs where these lead further.
+/// The rest of a stepwise search, with pairs where these lead further.
 SearchBranch search_forward(const SearchContext& context, const ModelStage& first,
-                            SearchEffort effort) {
-  SearchBranch best{first, {}};
-  const bool may_go_on = extend_branch(context, best.stage, best.rounds,
-                                       effort == SearchEffort::full, kBeforePairSearch);
-  if (effort == SearchEffort::brief && !is_explained(context, best.stage)) return best;
+                            SearchBranch best) {
+  if (best.stalled) {
+    try_pairs(context, best.stage, best.rounds.back());
+    best.stalled = !take(context, best.rounds.back(), best.stage);
+    if (!best.stalled) extend_branch(context, best, true, kBeforePairSearch);
+  }
+  const bool may_go_on = !best.stalled && best.stage.added.size() >= kBeforePairSearch;
   std::optional<SearchBranch> other = start_with_pair(context, first, best);
   if (other && is_explained(context, other->stage) && improves_on(*other, best)) return *other;
-  if (may_go_on) extend_branch(context, best.stage, best.rounds, true);
+  if (may_go_on) extend_branch(context, best, true);
   eliminate_backward(context, best.stage, EliminationPass::intermediate);
   return other && improves_on(*other, best) ? *other : best;
 }
@@ -175,7 +181,29 @@ bool set_is_supported(const SearchContext& context, const ModelStage& first, con
          cross_validates(context, false, all(first), all(set));
 }
 
+/// Notes a stage whose place another one has taken.
+void refuse(const ModelStage& stage, Refusal why, const ModelStage& taken,
+            StructureSearch& search) {
+  if (stage.added == taken.added ||
+      !(stage.fitted.validation_rms_m < (1.0 - kWorthTelling) * taken.fitted.validation_rms_m)) {
+    return;
+  }
+  search.refused.push_back({stage.added, stage.fitted.validation_rms_m, why});
+}
+
 }  // namespace
+
+const char* to_string(Refusal why) {
+  switch (why) {
+    case Refusal::unsupported:
+      return "unsupported";
+    case Refusal::dispensable:
+      return "dispensable";
+    case Refusal::unlikely:
+      break;
+  }
+  return "unlikely";
+}
 
 double worthwhile_at(const SearchContext& context, double validation_rms_m) {
   return validation_rms_m < kUnexplained * context.problem.data.noise_floor_m ? kWorthwhileInNoise
@@ -201,21 +229,35 @@ ModelStage first_stage(const SearchContext& context) {
               start_of(context.problem.model, context.problem.plant_parameters), options)};
 }
 
-StructureSearch search_structure(const SearchContext& context, SearchEffort effort) {
+SearchStart start_search(const SearchContext& context) {
   const auto begin = std::chrono::steady_clock::now();
+  SearchStart start;
+  start.nominal_rms_m = nominal_rms_m(context);
+  start.first = first_stage(context);
+  start.preview_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  start.branch.stage = start.first;
+  extend_branch(context, start.branch, false, kBeforePairSearch);
+  if (!start.branch.rounds.empty()) start.preview_s += start.branch.rounds.front().screening_s;
+  return start;
+}
+
+StructureSearch abandon_search(const SearchContext& context, const SearchStart& start) {
   StructureSearch search;
-  search.nominal_rms_m = nominal_rms_m(context);
-  const ModelStage first = first_stage(context);
-  search.preview_s =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  SearchBranch best = search_forward(context, first, effort);
-  if (!best.rounds.empty()) search.preview_s += best.rounds.front().screening_s;
-  if (effort == SearchEffort::brief && !is_explained(context, best.stage)) {
-    search.path = {first};
-    search.final = first;
-    search.interrupted = context.cancelled();
-    return search;
-  }
+  search.nominal_rms_m = start.nominal_rms_m;
+  search.preview_s = start.preview_s;
+  search.path = {start.first};
+  search.final = start.first;
+  refuse(start.branch.stage, Refusal::unlikely, start.first, search);
+  search.interrupted = context.cancelled();
+  return search;
+}
+
+StructureSearch complete_search(const SearchContext& context, SearchStart start) {
+  StructureSearch search;
+  search.nominal_rms_m = start.nominal_rms_m;
+  search.preview_s = start.preview_s;
+  const ModelStage first = std::move(start.first);
+  SearchBranch best = search_forward(context, first, std::move(start.branch));
   try_alternative_starts(context, first, best);
   const ModelStage& stage = best.stage;
   search.rounds = std::move(best.rounds);
@@ -226,7 +268,9 @@ StructureSearch search_structure(const SearchContext& context, SearchEffort effo
     // interrupted: keeps what was found
     if (!context.cancelled()) {
       ModelStage last = validated.back();
+      refuse(stage, Refusal::unsupported, last, search);
       eliminate_backward(context, last, EliminationPass::final);
+      refuse(validated.back(), Refusal::dispensable, last, search);
       const bool dropped = last.added.size() < validated.back().added.size();
       search.path = dropped ? path_to(context, first, last) : std::move(validated);
       if (!dropped) search.path.back() = std::move(last);

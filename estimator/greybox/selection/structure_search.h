@@ -47,18 +47,54 @@ struct Round {
   double screening_s = 0.0;           ///< time of the screening of all effects
 };
 
+/// Reason for which a model that leaves less was not taken.
+enum class Refusal {
+  unsupported,  ///< not in both halves of the records, or its parameters leave their range
+  dispensable,  ///< an effect of it costs more parameters than it gains
+  unlikely,     ///< the likelihood of the innovations is against it: a disturbance explains as much
+};
+/// "unsupported", ...
+[[nodiscard]] const char* to_string(Refusal why);
+
+/// A set of effects that was fitted, leaves less than the final model, and was not taken.
+struct RefusedModel {
+  std::vector<std::string> effects;
+  double validation_rms_m = 0.0;
+  Refusal why = Refusal::unsupported;
+};
+/// Share by which a refused model must leave less than the final one to be told.
+inline constexpr double kWorthTelling = 0.05;
+
 struct StructureSearch {
   double nominal_rms_m = 0.0;    ///< held-out, the model file unchanged
   std::vector<Round> rounds;     ///< rounds of the path that led to the final model
   std::vector<ModelStage> path;  ///< from the model as given to the final one, one effect at a time
   ModelStage final;              ///< last stage of the path
+  std::vector<RefusedModel> refused;
   bool interrupted = false;
   double preview_s = 0.0;  ///< time to the first ranking of all effects
 };
 
-/// brief: given up as soon as kBeforePairSearch effects one after another leave more than noise.
-enum class SearchEffort { brief, full };
-[[nodiscard]] StructureSearch search_structure(const SearchContext& context, SearchEffort effort);
+/// A search from the first stage as far as it has come.
+struct SearchBranch {
+  ModelStage stage;
+  std::vector<Round> rounds;
+  bool stalled = false;  ///< nothing helped in the last of the rounds
+};
+
+/// The beginning of a search: up to kBeforePairSearch effects one after another.
+struct SearchStart {
+  double nominal_rms_m = 0.0;
+  ModelStage first;  ///< the model as given with its parameters fitted
+  SearchBranch branch;
+  double preview_s = 0.0;
+};
+[[nodiscard]] SearchStart start_search(const SearchContext& context);
+/// The rest of the search, from where it was begun.
+[[nodiscard]] StructureSearch complete_search(const SearchContext& context, SearchStart start);
+/// A search given up for another method: the model as given.
+[[nodiscard]] StructureSearch abandon_search(const SearchContext& context,
+                                             const SearchStart& start);
 
 /// Held-out error of the model file unchanged.
 [[nodiscard]] double nominal_rms_m(const SearchContext& context);

@@ -29,7 +29,8 @@ using testing::UnorderedElementsAre;
 TEST(StructureSearch, TakesNothingOnAHealthyRecordWhoseGainIsOff) {
   const SearchContext context = servo_context(
       {.rate_mps = [](double u_V, double, double) { return 1.02 * kServoGain * u_V; }});
-  const StructureSearch search = search_structure(context, selection::SearchEffort::full);
+  const StructureSearch search =
+      selection::complete_search(context, selection::start_search(context));
   EXPECT_THAT(search.final.added, IsEmpty());
   EXPECT_EQ(search.path.size(), 1U);
   EXPECT_GT(search.nominal_rms_m, 3.0 * context.problem.data.noise_floor_m);
@@ -39,7 +40,8 @@ TEST(StructureSearch, TakesNothingOnAHealthyRecordWhoseGainIsOff) {
 
 TEST(StructureSearch, FindsTwoEffectsOneAfterTheOther) {
   const SearchContext context = servo_context({.rate_mps = with_offset_and_band(0.06, 0.1)});
-  const StructureSearch search = search_structure(context, selection::SearchEffort::full);
+  const StructureSearch search =
+      selection::complete_search(context, selection::start_search(context));
   EXPECT_THAT(search.final.added, UnorderedElementsAre("null_bias", "deadband"));
   EXPECT_NEAR(search.final.fitted.value("null_bias.offset_V"), 0.06, 0.02 * 0.06);
   EXPECT_NEAR(search.final.fitted.value("deadband.half_width_V"), 0.1, 0.02 * 0.1);
@@ -56,7 +58,8 @@ TEST(StructureSearch, EndsWithTheBestSoFarWheneverItIsCancelled) {
   for (const int after : {0, 1, 5, 20, 60}) {
     std::atomic<int> asked = 0;
     context.options.cancel = [&] { return ++asked > after; };
-    const StructureSearch search = search_structure(context, selection::SearchEffort::full);
+    const StructureSearch search =
+        selection::complete_search(context, selection::start_search(context));
     EXPECT_EQ(search.interrupted, asked > after);
     ASSERT_FALSE(search.path.empty()) << after;
     EXPECT_EQ(search.final.added, search.path.back().added) << after;
@@ -80,14 +83,16 @@ TEST(StructureSearch, KeepsWhatItFoundWhenItIsCancelledLateAndSomethingIsLeft) {
     ++asked;
     return false;
   };
-  const StructureSearch whole = search_structure(context, selection::SearchEffort::full);
+  const StructureSearch whole =
+      selection::complete_search(context, selection::start_search(context));
   ASSERT_GT(whole.final.fitted.validation_rms_m, kUnexplained * context.problem.data.noise_floor_m);
   ASSERT_THAT(whole.final.added, testing::Contains("null_bias"));
   const int all = asked;
   for (const double share : {0.5, 0.8, 0.95, 0.99}) {
     asked = 0;
     context.options.cancel = [&] { return ++asked > share * all; };
-    const StructureSearch search = search_structure(context, selection::SearchEffort::full);
+    const StructureSearch search =
+        selection::complete_search(context, selection::start_search(context));
     EXPECT_TRUE(search.interrupted) << share;
     EXPECT_THAT(search.final.added, testing::Contains("null_bias")) << share;
   }
@@ -193,7 +198,8 @@ TEST(Rivals, AreEffectsThatTheMotionCannotTellApart) {
       servo_context({.rate_mps = with_offset(0.06), .command_V = [](double level, double y_m) {
                        return level - 20.0 * (y_m - 0.3) > 0.0 ? 1.0 : -1.0;
                      }});
-  const StructureSearch search = search_structure(context, selection::SearchEffort::full);
+  const StructureSearch search =
+      selection::complete_search(context, selection::start_search(context));
   const std::vector<IndistinguishableModels> found =
       find_indistinguishable(context, search.rounds, search.final);
   ASSERT_EQ(found.size(), 1U);
@@ -205,7 +211,8 @@ TEST(Rivals, AreEffectsThatTheMotionCannotTellApart) {
 
 TEST(Rivals, AreNoneOnAMotionThatTells) {
   const SearchContext context = servo_context({.rate_mps = with_offset(0.06)});
-  const StructureSearch search = search_structure(context, selection::SearchEffort::full);
+  const StructureSearch search =
+      selection::complete_search(context, selection::start_search(context));
   EXPECT_THAT(find_indistinguishable(context, search.rounds, search.final), IsEmpty());
 }
 
