@@ -82,6 +82,8 @@ std::string possible_words(const selection::PossibleEffect& possible) {
       return possible.effect + " (its size is within its error)";
     case selection::Doubt::rivals:
       return possible.effect + " (others do as well)";
+    case selection::Doubt::remainder:
+      return possible.effect + " (what remains unexplained is no smaller than what it explains)";
     case selection::Doubt::stand_in:
       break;
   }

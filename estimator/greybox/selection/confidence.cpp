@@ -10,6 +10,24 @@ namespace estimator::greybox::selection {
 namespace {
 
 constexpr double kStandardErrors = 2.0;
+constexpr double kClear = 4.0;
+
+/// Whether an effect, when it was added, explained less than kClear times what is left: by the
+/// likelihood, or in mean squared errors.
+bool explains_little(const Diagnosis& diagnosis, const std::string& effect) {
+  if (diagnosis.by_innovations) {
+    const auto gain = diagnosis.gains_nats.find(effect);
+    return gain != diagnosis.gains_nats.end() && gain->second < kClear * diagnosis.curve_nats;
+  }
+  const double left_m2 = std::pow(diagnosis.rms_after_m, 2) - std::pow(diagnosis.noise_floor_m, 2);
+  for (std::size_t i = 1; i < diagnosis.steps.size(); ++i) {
+    if (diagnosis.steps[i].added.find(effect) == std::string::npos) continue;
+    const double explained_m2 = std::pow(diagnosis.steps[i - 1].validation_rms_m, 2) -
+                                std::pow(diagnosis.steps[i].validation_rms_m, 2);
+    return explained_m2 < kClear * left_m2;
+  }
+  return false;
+}
 
 /// The effect's size, its first parameter, and its rivals.
 std::optional<Doubt> doubt_of(const Diagnosis& diagnosis, const std::string& effect) {
@@ -24,6 +42,7 @@ std::optional<Doubt> doubt_of(const Diagnosis& diagnosis, const std::string& eff
       if (std::find(group.begin(), group.end(), effect) != group.end()) return Doubt::rivals;
     }
   }
+  if (explains_little(diagnosis, effect)) return Doubt::remainder;
   return {};
 }
 
@@ -37,6 +56,8 @@ const char* to_string(Doubt doubt) {
       return "within_error";
     case Doubt::rivals:
       return "rivals";
+    case Doubt::remainder:
+      return "remainder";
     case Doubt::stand_in:
       break;
   }

@@ -17,6 +17,7 @@ enum class Doubt {
   at_bound,      ///< its size is the largest or smallest allowed: it stands for something else
   within_error,  ///< its size is below two standard errors, or has none
   rivals,        ///< others do as well, and an error remains
+  remainder,     ///< what no effect explains is no smaller than what it explains
   stand_in,      ///< one of three or more that together leave an error: likely one other law
 };
 /// "at_bound", ...

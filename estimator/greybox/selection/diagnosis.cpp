@@ -17,8 +17,11 @@ namespace {
 
 /// The fitted model's error over the noise from which on the record itself is looked at.
 constexpr double kFarFromFloor = 10.0;
-/// A disturbance that would cause this many times the error that there is has not been understood.
+/// A disturbance that would cause this many times the error that there is has not been understood,
+/// where a curve gains this much beside it. Friction and play let less of it through than their
+/// linearised models.
 constexpr double kIncredible = 1.5;
+constexpr double kSuspicious_nats = 15.0;
 constexpr double kAsClear = 0.9;  ///< ratio of the remainder's explained share to that of the whole
 
 /// `errors` are those of the search values.
@@ -151,8 +154,14 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
   take_parameters(innovations.final, result);
   // missing physics passes for a disturbance as long as it is not in the model
   if (!context.cancelled()) result.disturbance = disturbance_of(search, innovations);
-  const bool physics = innovations.curve_nats > kCurve_nats ||
-                       result.disturbed_floor_m() > kIncredible * result.rms_after_m;
+  const bool incredible = result.disturbed_floor_m() > kIncredible * result.rms_after_m &&
+                          innovations.curve_nats > kSuspicious_nats;
+  const bool physics = innovations.curve_nats > kCurve_nats || incredible;
+  result.curve_nats = innovations.curve_nats;
+  for (const InnovationRound& round : innovations.rounds) {
+    const InnovationCandidate& taken = round.candidates.front();
+    if (!taken.effect.empty()) result.gains_nats[taken.effect] = taken.gain_nats;
+  }
   if (physics) result.disturbance.reset();
   for (const InnovationRivals& rivals : innovations.rivals) {
     const Separable& separable = search.options.separable;
@@ -234,9 +243,10 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
     } else {
       StructureSearch full = complete_search(search, std::move(start));
       const double held_m = simulated(search, innovations.final.model.fitted).validation_rms_m;
-      // of two that leave something unexplained, the one that leaves less
+      // of two that leave something unexplained, the one that leaves less; the likelier one of
+      // equals
       if (!is_explained(search, full.final) &&
-          held_m < (1.0 - kRivals) * full.final.fitted.validation_rms_m) {
+          (1.0 - kRivals) * held_m < full.final.fitted.validation_rms_m) {
         conclude(context, search, first, innovations, result);
       } else {
         result.search = std::move(full);

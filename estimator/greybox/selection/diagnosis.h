@@ -1,6 +1,7 @@
 // Result of a diagnosis and the search that led to it.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,6 +53,10 @@ struct Diagnosis {
   Excitation excitation;             ///< insufficient: Verdict::not_excited
   std::optional<double> searched_s;  ///< length of the segments searched; none: all samples
   bool by_innovations = false;       ///< the likelihood of all innovations decided
+  /// By innovations: gain of each effect when it was added, and of the best curve over a variable
+  /// of the motion at the end.
+  std::map<std::string, double> gains_nats;
+  double curve_nats = 0.0;
   /// Asked where the fitted model leaves many times the noise.
   std::optional<RecordChecks> checks;
   std::vector<PlantFit> plants;  ///< the same, where nothing explains the records
