@@ -10,6 +10,9 @@
 #include <utility>
 
 #include "tests/truth/case.h"
+#include "tests/truth/conditions.h"
+#include "tests/truth/draw.h"
+#include "tests/truth/model_files.h"
 #include "tests/truth/visibility.h"
 
 namespace truth {
@@ -25,61 +28,6 @@ constexpr double kDisturbedShows = 5.0;
 const Names kMotions{"multisine",  "fast_steps", "chirp",    "multisine",  "fast_steps",
                      "slow_steps", "multisine",  "triangle", "fast_steps", "sine"};
 const Names kRich{"multisine", "fast_steps", "multisine", "chirp", "fast_steps"};
-
-/// Draws an effect into the case; `push` > 1 asks for a stronger one.
-void draw_effect(const std::string& name, double push, Case& of, Random& random) {
-  Hidden& h = of.hidden;
-  const auto size = [&](double typical) { return push * random.around(typical); };
-  if (name == "transport_delay") h.delay_s = std::min(0.05, size(0.005));
-  if (name == "null_bias") h.null_bias_V = random.sign() * size(0.07);
-  if (name == "valve_hysteresis") h.hysteresis_V = std::min(0.6, size(0.15));
-  if (name == "deadband") h.deadband_V = std::min(0.8, size(0.2));
-  if (name == "flow_asymmetry") h.asymmetry_ratio = random.sign() * std::min(0.3, size(0.04));
-  if (name == "supply_droop") h.droop_Pa_per_m3ps = size(1.1e10);
-  if (name == "internal_leakage") h.internal_m3ps_per_Pa = size(1.4e-11);
-  if (name == "external_leakage") h.external_m3ps_per_Pa = size(6e-13);
-  if (name == "entrained_air") h.air_ratio = std::min(0.25, size(0.06));
-  if (name == "quadratic_damping") h.quadratic_N_s2_per_m2 = size(1.5e4);
-  if (name == "load_force") h.force_N = random.sign() * std::min(900.0, size(250.0));
-  if (name == "backlash") h.backlash_m = size(8e-5);
-  if (name.rfind("friction", 0) == 0) {
-    h.coulomb_N = std::min(500.0, size(150.0));
-    if (name != "friction_coulomb") {
-      h.static_N = h.coulomb_N * random.uniform(1.2, 1.5);
-      h.stribeck_mps = random.uniform(0.008, 0.02);
-    }
-    if (name == "friction_presliding") h.presliding_N_per_m = random.around(1e6, 1.5);
-  }
-  if (name == "load_spring") {
-    h.spring_N_per_m = std::min(2e4, size(5000.0));
-    h.rest_m = random.uniform(0.29, 0.32);
-  }
-  if (name == "force_ripple") {
-    h.ripple_N = std::min(600.0, size(140.0));
-    h.ripple_wavelength_m = random.around(0.012, 2.0);
-    h.ripple_phase_rad = random.uniform(-3.0, 3.0);
-  }
-  if (name == "coupled_slaves") {
-    h.slaves_kg = std::min(150.0, push * random.around(40.0, 1.5));
-    h.slaves_N_s_per_m = random.around(1000.0, 1.5);
-    h.needle_N_s2_per_m2 = size(1.2e4);
-  }
-  if (name == "encoder_eccentricity") {
-    h.eccentricity_m = size(4e-5);
-    h.eccentricity_wavelength_m = random.around(0.02, 1.8);
-    h.eccentricity_phase_rad = random.uniform(-3.0, 3.0);
-  }
-  // Limits are set so that the motion reaches them.
-  if (name == "spool_rate_limit" || name == "flow_saturation") {
-    const Record free = simulate(of, 100);
-    if (name == "flow_saturation") {
-      const double share = std::max(0.3, random.uniform(0.55, 0.85) / push);
-      h.flow_limit_m3ps = share * of.plant.area_m2 * free.fastest_mps;
-    } else {
-      h.spool_rate_mps = std::max(0.2, random.uniform(0.6, 1.2) / push) * free.quick_spool_mps;
-    }
-  }
-}
 
 const std::map<std::string, std::string>& classes() {
   static const std::map<std::string, std::string> of{
@@ -127,6 +75,11 @@ struct Wanted {
   Names motions = kMotions;
   std::size_t first_motion = 0;
   double shows = kShows;
+  Kind kind = Kind::actuator;
+  const Condition* condition = nullptr;
+  bool disturbed = false;
+  std::size_t which_outside = 0;
+  double off_most = 0.0;  ///< every value of the plant up to this; 0: as draw_plant() has it
 };
 
 const Names& variants() {
@@ -141,40 +94,169 @@ const Names& variants() {
   return names;
 }
 
+/// The effect, or none, that stands at a place of the row of singles with three healthy records.
+Names single_or_none(std::size_t place) {
+  return place < variants().size() ? Names{variants()[place]} : Names{};
+}
+constexpr std::size_t kHealthyPlaces = 3;
+
+Wanted disturbed_single(std::size_t index) {
+  Wanted want;
+  const std::size_t count = variants().size();
+  want.effects = {variants()[index % count]};
+  want.first_motion = index / count;
+  want.motions = kRich;
+  want.shows = kDisturbedShows;
+  want.disturbed = true;
+  want.which_outside = index + index / count;
+  return want;
+}
+
+Wanted pair(std::size_t index, Random& random) {
+  Wanted want;
+  want.first_motion = index;
+  Names all;
+  for (const auto& [name, of] : classes()) all.push_back(name);
+  std::string a;
+  std::string b;
+  do {
+    a = all[random.below(all.size())];
+    b = all[random.below(all.size())];
+  } while (classes().at(a) == classes().at(b) || rivals(a, b));
+  want.effects = {a, b};
+  want.motions = kRich;
+  return want;
+}
+
+/// Under a condition the singles are walked through by a stride without a common divisor.
+Wanted under_condition(std::size_t index) {
+  const std::size_t count = variants().size() + kHealthyPlaces;
+  const std::size_t round = index / conditions().size();
+  const std::size_t place = index % conditions().size();
+  Wanted want;
+  want.condition = &conditions()[place];
+  want.effects = single_or_none((5 * round + 7 * place) % count);
+  want.motions = want.condition->motions.empty() ? kRich : want.condition->motions;
+  want.first_motion = round;
+  return want;
+}
+
+Wanted left_out_one(std::size_t index) {
+  Wanted want;
+  const std::size_t count = left_out_table().size();
+  want.left_out = &left_out_table()[index % count];
+  want.motions = kRich;
+  want.first_motion = index / count + index;
+  want.shows = kLeftOutShows;
+  return want;
+}
+
+Wanted repeated(std::size_t index) {
+  const std::size_t count = variants().size() + kHealthyPlaces;
+  Wanted want = disturbed_single(index);
+  want.effects = single_or_none((index * 7) % count);
+  want.which_outside = index + index / count;
+  want.condition = &repeating();
+  want.first_motion = index / count + index;
+  return want;
+}
+
+/// Twelve by turns: undisturbed, disturbed, then the same with linear and rotary exchanged.
+Wanted on_axis(std::size_t index) {
+  static const std::vector<Names> turns{{"friction_coulomb"},
+                                        {"force_ripple"},
+                                        {"friction_stribeck"},
+                                        {"backlash"},
+                                        {"load_spring"},
+                                        {"transport_delay"},
+                                        {},
+                                        {"friction_presliding"},
+                                        {"load_force"},
+                                        {"encoder_eccentricity"},
+                                        {"quadratic_damping"}};
+  static const std::vector<Names> pairs{{"friction_stribeck", "force_ripple"},
+                                        {"friction_coulomb", "load_force"},
+                                        {"friction_coulomb", "load_spring"},
+                                        {"friction_stribeck", "transport_delay"}};
+  const std::size_t turn = index % 12;
+  const std::size_t round = index / 12;
+  Wanted want;
+  want.kind = (turn + round / 2) % 2 == 0 ? Kind::linear_axis : Kind::rotary_axis;
+  want.disturbed = round % 2 == 1;
+  want.which_outside = turn + round / 2;
+  want.shows = kDisturbedShows;
+  want.motions = kRich;
+  want.first_motion = index + round;
+  if (turn < turns.size()) {
+    want.effects = turns[turn];
+  } else if (round % 4 < 2) {
+    want.effects = pairs[(round % 2 + round / 4 * 2) % pairs.size()];
+  } else {
+    want.left_out = &axis_left_out_table().front();
+  }
+  return want;
+}
+
+/// What is named first shows as one of the servo's effects; the rest it cannot have.
+Wanted on_rod(std::size_t index) {
+  static const std::vector<Names> turns{{"flow_asymmetry", "deadband"},
+                                        {"flow_asymmetry"},
+                                        {"deadband"},
+                                        {"flow_asymmetry", "deadband", "supply_droop"},
+                                        {"flow_asymmetry", "null_bias"},
+                                        {"flow_asymmetry", "friction"},
+                                        {"flow_asymmetry", "deadband", "null_bias"},
+                                        {},
+                                        {"flow_asymmetry", "deadband", "friction"},
+                                        {"flow_asymmetry", "valve_hysteresis"},
+                                        {"flow_asymmetry", "deadband", "load_force"},
+                                        {"flow_asymmetry", "transport_delay"}};
+  const std::size_t round = index / turns.size();
+  Wanted want;
+  want.kind = Kind::single_rod;
+  want.effects = turns[index % turns.size()];
+  want.motions = kRich;
+  want.first_motion = index + round;
+  want.shows = kDisturbedShows;
+  want.disturbed = round % 2 == 1;
+  want.which_outside = index + round / 2;
+  return want;
+}
+
 Wanted wanted(const std::string& plan, std::size_t index, Random& random) {
   Wanted want;
   want.first_motion = index;
-  const bool disturbed = plan == "disturbed";
-  if (plan == "single" || disturbed) {
+  if (plan == "healthy" || plan == "disturbed_healthy") {
+    want.disturbed = plan == "disturbed_healthy";
+    want.which_outside = index + index / variants().size();
+    return want;
+  }
+  if (plan == "single" || plan == "mismatch20") {
     const std::size_t count = variants().size();
     want.effects = {variants()[index % count]};
     want.first_motion = index / count;
     // Slow motions only reach a rate that would stop the loop from working.
-    if (want.effects.front() == "spool_rate_limit" || disturbed) want.motions = kRich;
-    if (disturbed) want.shows = kDisturbedShows;
-  } else if (plan == "pairs") {
-    Names all;
-    for (const auto& [name, of] : classes()) all.push_back(name);
-    std::string a;
-    std::string b;
-    do {
-      a = all[random.below(all.size())];
-      b = all[random.below(all.size())];
-    } while (classes().at(a) == classes().at(b) || rivals(a, b));
-    want.effects = {a, b};
-    want.motions = kRich;
-  } else if (plan == "leftout") {
-    const std::size_t count = left_out_table().size();
-    want.left_out = &left_out_table()[index % count];
-    want.motions = kRich;
-    want.first_motion = index / count + index;
-    want.shows = kLeftOutShows;
-  } else if (plan != "healthy" && plan != "disturbed_healthy") {
-    throw std::invalid_argument(
-        "no plan '" + plan +
-        "'; there are single, healthy, pairs, leftout, disturbed, disturbed_healthy");
+    if (want.effects.front() == "spool_rate_limit") want.motions = kRich;
+    if (plan == "mismatch20") want.off_most = 0.2;
+    return want;
   }
-  return want;
+  if (plan == "disturbed") return disturbed_single(index);
+  if (plan == "pairs") return pair(index, random);
+  if (plan == "leftout") return left_out_one(index);
+  if (plan == "outside_laws") {
+    want = left_out_one(index);
+    want.disturbed = true;
+    want.which_outside = index + index / left_out_table().size();
+    want.shows = 2.0 * kDisturbedShows;
+    return want;
+  }
+  if (plan == "conditions") return under_condition(index);
+  if (plan == "repeated") return repeated(index);
+  if (plan == "axes") return on_axis(index);
+  if (plan == "single_rods") return on_rod(index);
+  std::string known;
+  for (const std::string& name : plans()) known += (known.empty() ? "" : ", ") + name;
+  throw std::invalid_argument("no plan '" + plan + "'; there are " + known);
 }
 
 Case draw(const Wanted& want, std::size_t motion, double push, Case of, Random& random) {
@@ -188,43 +270,37 @@ Case draw(const Wanted& want, std::size_t motion, double push, Case of, Random& 
     of.left_out.size =
         push * random.around(want.left_out->typical) * (signed_size ? random.sign() : 1.0);
     of.left_out.where = random.uniform(want.left_out->where_low, want.left_out->where_high);
+    if (of.left_out.kind == LeftOut::Kind::elastic_shaft) {
+      // A resonance between 12 and 25 Hz, lower when asked for more; see axis.h.
+      const double w = 6.283185307179586 * random.uniform(12.0, 25.0) / push;
+      of.left_out.size = w * w * 0.24 * of.axis.mass_kg;
+    }
   }
   return of;
 }
 
-/// Which of the disturbances act goes by the record's number.
-Outside draw_outside(std::size_t index, Random& random) {
-  Outside outside;
-  const std::size_t kind = index % 4;
-  if (kind != 2) outside.force_N = random.around(28.0, 1.5);
-  outside.corner_Hz = random.uniform(1.5, 4.5);
-  if (kind == 1 || kind == 2) outside.pulsation_Pa = random.around(1.3e5, 1.6);
-  outside.pulsation_Hz = random.uniform(12.0, 38.0);
-  if (kind == 3) outside.shake_m = random.around(1e-5, 1.4);
-  outside.shake_Hz = random.uniform(25.0, 60.0);
-  return outside;
+bool is_within_limits(const Case& of, const Record& record) {
+  if (of.kind == Kind::linear_axis || of.kind == Kind::rotary_axis) return true;
+  constexpr double kSpare_Pa = 1e5;
+  if (record.least_Pa <= kSpare_Pa || record.greatest_ratio >= 0.98) return false;
+  return std::all_of(record.reading_m.begin(), record.reading_m.end(),
+                     [](double y_m) { return y_m > 0.02 && y_m < 0.59; });
 }
 
 Planned answer(const Case& of, Record& record) {
   Planned planned;
   planned.text = to_text(of);
   planned.of = parse_case(planned.text, of.seed);
-  planned.hidden = hidden_effects(planned.of.hidden);
+  planned.hidden = shown_effects(planned.of);
   record = simulate(planned.of);
-  constexpr double kSpare_Pa = 1e5;
-  planned.within_limits = record.least_Pa > kSpare_Pa && record.greatest_ratio < 0.98;
-  for (const double y_m : record.reading_m) {
-    planned.within_limits = planned.within_limits && y_m > 0.02 && y_m < 0.59;
-  }
+  planned.within_limits = is_within_limits(planned.of, record);
   for (const std::string& effect : planned.hidden) {
-    Case lacking = planned.of;
-    lacking.hidden = without(lacking.hidden, effect);
-    planned.visibility.push_back(visibility_ratio(lacking, record));
+    planned.visibility.push_back(visibility_ratio(lacking(planned.of, effect), record));
   }
   if (planned.of.left_out.kind != LeftOut::Kind::none) {
-    Case lacking = planned.of;
-    lacking.left_out = LeftOut{};
-    planned.visibility.push_back(visibility_ratio(lacking, record));
+    Case without_law = planned.of;
+    without_law.left_out = LeftOut{};
+    planned.visibility.push_back(visibility_ratio(without_law, record));
   }
   return planned;
 }
@@ -232,8 +308,9 @@ Planned answer(const Case& of, Record& record) {
 }  // namespace
 
 const std::vector<std::string>& plans() {
-  static const std::vector<std::string> names{"single",  "healthy",   "pairs",
-                                              "leftout", "disturbed", "disturbed_healthy"};
+  static const std::vector<std::string> names{
+      "single", "healthy",    "pairs",       "leftout",    "disturbed",    "disturbed_healthy",
+      "axes",   "conditions", "single_rods", "mismatch20", "outside_laws", "repeated"};
   return names;
 }
 
@@ -242,17 +319,23 @@ Planned plan_record(const std::string& plan, std::size_t seed, std::size_t index
   for (const char c : plan) salt = salt * 131 + static_cast<unsigned char>(c);
   Random random((seed * 1000003U + salt) * 7919U + index);
   Wanted want = wanted(plan, index, random);
-  Case of;
+  Case of = typical_case(want.kind);
   of.seed = seed * 100000 + salt % 997 * 10000 + index + 1;
   of.mismatched = (index + (plan == "single" ? index / variants().size() : 0)) % 2 == 1;
-  of.plant = draw_plant(of.seed, of.mismatched);
-  if (plan.rfind("disturbed", 0) == 0) {
-    of.outside = draw_outside(index + index / variants().size(), random);
+  if (want.kind != Kind::actuator || want.off_most > 0.0) of.mismatched = false;
+  if (want.off_most > 0.0) {
+    draw_plant_within(of, want.off_most);
+  } else {
+    draw_plant(of);
   }
+  if (want.kind == Kind::single_rod) of.rod.area_rod_m2 = of.rod.area_cap_m2;  // until asked for
+  if (want.condition != nullptr) want.condition->apply(of);
+  if (want.disturbed) of.outside = draw_outside(want.kind, want.which_outside, random);
   double push = 1.0;
   std::size_t motion = 0;
   Planned best;
   Record best_record;
+  best.condition = want.condition != nullptr ? want.condition->name : "";
   double best_score = -1.0;
   for (int attempt = 0; attempt < kDraws; ++attempt) {
     if (attempt > 0 && plan == "pairs" && attempt % 4 == 0) {
@@ -266,6 +349,7 @@ Planned plan_record(const std::string& plan, std::size_t seed, std::size_t index
     const double score = (planned.within_limits ? 10.0 : 0.0) + std::min(least, want.shows);
     if (score > best_score) {
       best_score = score;
+      planned.condition = best.condition;
       best = std::move(planned);
       best_record = record;
     }
@@ -312,6 +396,7 @@ void write_plan(const std::string& plan, std::size_t count, std::size_t seed,
   for (std::thread& thread : threads) thread.join();
   std::fputs("\n", stderr);
   if (!failed.empty()) throw std::invalid_argument(failed);
+  for (const Planned& one : planned) write_model(one.of.kind, folder);
   write_answers(folder + "/answers.json", plan, seed, planned, floors_m);
 }
 
