@@ -25,8 +25,7 @@ double sliding_level_N(const Hidden& hidden, double v_mps);
 
 class Machine {
  public:
-  Machine(const Hidden& hidden_, const LeftOut& left_out_)
-      : hidden(hidden_), left_out(left_out_) {}
+  Machine(const Hidden& hidden_, const LeftOut& left_out_) : hidden(hidden_), left_out(left_out_) {}
   virtual ~Machine() = default;
 
   /// At y_m, at rest.
