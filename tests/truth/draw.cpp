@@ -1,6 +1,7 @@
 #include "tests/truth/draw.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace truth {
 namespace {
@@ -80,15 +81,15 @@ void draw_on_axis(const std::string& name, double push, Case& of, Random& random
   if (name.rfind("friction", 0) == 0) {
     h.coulomb_N = std::min(60.0 * unit.force, force(20.0));
     h.presliding_N_per_m = 1e7 * unit.force / unit.length;
-    h.bristle_N_s_per_m = 2000.0 * unit.force / unit.length;
     if (name != "friction_coulomb") {
       h.static_N = h.coulomb_N * random.uniform(1.2, 1.5);
       h.stribeck_mps = unit.length * random.uniform(0.008, 0.02);
     }
     if (name == "friction_presliding") {
       h.presliding_N_per_m = random.around(3e5, 2.0) * unit.force / unit.length;
-      h.bristle_N_s_per_m = 600.0 * unit.force / unit.length;
     }
+    // A contact that rings with a tenth of the critical damping.
+    h.bristle_N_s_per_m = 0.2 * std::sqrt(h.presliding_N_per_m * of.axis.mass_kg);
   }
   if (name == "load_spring") {
     h.spring_N_per_m = force(300.0) / unit.length;
