@@ -109,7 +109,7 @@ Kind kind_in(const std::string& text) {
   const std::size_t at = text.find("rig=");
   if (at == std::string::npos) return Kind::actuator;
   const std::string name = text.substr(at + 4, text.find_first_of(",; ", at) - at - 4);
-  for (const Kind kind : {Kind::actuator, Kind::linear_axis, Kind::rotary_axis, Kind::single_rod}) {
+  for (const Kind kind : kKinds) {
     if (to_string(kind) == name) return kind;
   }
   throw std::invalid_argument("no rig '" + name +

@@ -9,6 +9,7 @@
 // rows are not in it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -22,6 +23,8 @@
 namespace truth {
 
 enum class Kind { actuator, linear_axis, rotary_axis, single_rod };
+inline constexpr std::array kKinds{Kind::actuator, Kind::linear_axis, Kind::rotary_axis,
+                                   Kind::single_rod};
 
 /// A fault of the actuator: from at_s on one value of the plant, or of what is hidden, is another.
 struct Change {
