@@ -81,13 +81,17 @@ TEST(TruthLoop, LeavesANullBiasToProportionalControlAndTakesItAwayWithAnIntegral
 }
 
 TEST(TruthLoop, MovesWithoutAControllerByItsFeedForwardAlone) {
-  const std::string open = "motion=multisine,length_s=3,kp_V_per_m=0,feed_V_s_per_m=20";
-  const Record record = simulate(of_text(open));
-  EXPECT_EQ(record.u_V, simulate(of_text(open + ",noise_m=1e-4")).u_V);
-  const auto r_m = reference(of_text(open));
-  const auto [least, most] = std::minmax_element(r_m.begin(), r_m.end());
-  const auto [low, high] = std::minmax_element(record.y_m.begin(), record.y_m.end());
-  EXPECT_NEAR((*high - *low) / (*most - *least), 1.0, 0.1);
+  for (const char* sample : {"0.005", "0.001"}) {
+    const std::string open =
+        "motion=multisine,length_s=3,kp_V_per_m=0,feed_V_s_per_m=20,sample_s=" +
+        std::string(sample);
+    const Record record = simulate(of_text(open));
+    EXPECT_EQ(record.u_V, simulate(of_text(open + ",noise_m=1e-4")).u_V);
+    const auto r_m = reference(of_text(open));
+    const auto [least, most] = std::minmax_element(r_m.begin(), r_m.end());
+    const auto [low, high] = std::minmax_element(record.y_m.begin(), record.y_m.end());
+    EXPECT_NEAR((*high - *low) / (*most - *least), 1.0, 0.1) << sample;
+  }
 }
 
 TEST(TruthLoop, ScalesTheMotionAboutItsCentre) {
