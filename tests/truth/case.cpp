@@ -65,6 +65,7 @@ const std::vector<std::pair<std::string, double Case::*>>& case_fields() {
 bool set_number(Case& of, const std::string& key, double value) {
   if (key == "mismatched") return of.mismatched = value != 0.0, true;
   if (key == "log_every") return of.log_every = static_cast<int>(value), true;
+  if (key == "log_mean") return of.log_mean = value != 0.0, true;
   for (const auto& [name, member] : case_fields()) {
     if (key == name) return of.*member = value, true;
   }
@@ -401,6 +402,7 @@ std::string to_text(const Case& of) {
   };
   if (of.mismatched) add("mismatched", 1.0);
   if (of.log_every != neutral.log_every) add("log_every", of.log_every);
+  if (of.log_mean) add("log_mean", 1.0);
   for (const auto& [name, member] : case_fields()) {
     if (of.*member != neutral.*member) add(name, of.*member);
   }

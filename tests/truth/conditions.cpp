@@ -13,7 +13,12 @@ const std::vector<Condition>& conditions() {
          of.kp_V_per_m = 60.0;
        }},
       {"100Hz_log", {}, [](Case& of) { of.log_every = 2; }},
-      {"20Hz_log", {}, [](Case& of) { of.log_every = 10; }},
+      {"20Hz_log",
+       {},
+       [](Case& of) {
+         of.log_every = 10;
+         of.log_mean = true;
+       }},
       {"coarse_sensor",
        {},
        [](Case& of) {

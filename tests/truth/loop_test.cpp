@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -132,28 +133,52 @@ TEST(TruthLoop, ShowsTheSameInEveryPeriodOfAMotionThatRepeats) {
   }
 }
 
-TEST(TruthLog, HoldsEveryNthRowOfTheLoop) {
-  const auto file = std::filesystem::temp_directory_path() / "spoolwatch_truth_log.csv";
-  const Record all = simulate(of_text("motion=multisine,length_s=2"));
-  const Record thin = simulate(of_text("motion=multisine,length_s=2,log_every=10"));
-  EXPECT_EQ(all.y_m, thin.y_m);
-  write_csv(thin, file.string());
+/// Rows of a log that was written and read back.
+std::vector<std::array<double, 3>> logged(const Record& record) {
+  const auto file = std::filesystem::temp_directory_path() /
+                    (std::string("spoolwatch_truth_") +
+                     ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".csv");
+  write_csv(record, file.string());
   std::ifstream in(file);
   std::string line;
   std::getline(in, line);
-  std::size_t rows = 0;
+  std::vector<std::array<double, 3>> rows;
   while (std::getline(in, line)) {
-    double t_s = 0.0;
-    double u_V = 0.0;
-    double y_m = 0.0;
-    ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf", &t_s, &u_V, &y_m), 3);
-    EXPECT_NEAR(t_s, 0.05 * static_cast<double>(rows), 1e-9);
-    EXPECT_NEAR(u_V, all.u_V[10 * rows], 1e-6);
-    EXPECT_NEAR(y_m, all.y_m[10 * rows], 1e-6);
-    ++rows;
+    std::array<double, 3> row{};
+    if (std::sscanf(line.c_str(), "%lf,%lf,%lf", &row[0], &row[1], &row[2]) == 3) {
+      rows.push_back(row);
+    }
   }
-  EXPECT_EQ(rows, 40U);
   std::filesystem::remove(file);
+  return rows;
+}
+
+TEST(TruthLog, HoldsEveryNthRowOfTheLoop) {
+  const Record all = simulate(of_text("motion=multisine,length_s=2"));
+  const Record thin = simulate(of_text("motion=multisine,length_s=2,log_every=10"));
+  EXPECT_EQ(all.y_m, thin.y_m);
+  const auto rows = logged(thin);
+  ASSERT_EQ(rows.size(), 40U);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    EXPECT_NEAR(rows[k][0], 0.05 * static_cast<double>(k), 1e-9);
+    EXPECT_NEAR(rows[k][1], all.u_V[10 * k], 1e-6);
+    EXPECT_NEAR(rows[k][2], all.y_m[10 * k], 1e-6);
+  }
+}
+
+TEST(TruthLog, HoldsTheMeanOfTheCommandWhereItIsToldTo) {
+  const Record all = simulate(of_text("motion=multisine,length_s=2"));
+  const auto rows = logged(simulate(of_text("motion=multisine,length_s=2,log_every=4,log_mean=1")));
+  ASSERT_EQ(rows.size(), 100U);
+  double apart_V = 0.0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    double mean_V = 0.0;
+    for (std::size_t i = 4 * k; i < 4 * k + 4; ++i) mean_V += 0.25 * all.u_V[i];
+    EXPECT_NEAR(rows[k][1], mean_V, 1e-6);
+    EXPECT_NEAR(rows[k][2], all.y_m[4 * k], 1e-6);
+    apart_V = std::max(apart_V, std::abs(mean_V - all.u_V[4 * k]));
+  }
+  EXPECT_GT(apart_V, 1e-3);
 }
 
 TEST(TruthConditions, ChangeTheCaseAndComeBackFromItsText) {

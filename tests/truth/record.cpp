@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 #include <stdexcept>
 
 namespace truth {
@@ -78,6 +79,7 @@ Record simulate(const Case& of, int steps) {
   Controller controller(of);
   Record record;
   record.log_every = of.log_every;
+  record.log_mean = of.log_mean;
   record.digits = of.kind == Kind::actuator ? 6 : 8;
   Random chance(of.seed + kPressures);  // the position's noise is the same with and without
   double sum_m2 = 0.0;
@@ -124,6 +126,19 @@ std::vector<double> replay(const Case& of, const std::vector<double>& u_V, int s
   return reading_m;
 }
 
+namespace {
+
+/// The command of the log's row at k, which stands for `rows` rows of the loop.
+double logged_V(const Record& record, std::size_t k, std::size_t rows) {
+  if (!record.log_mean) return record.u_V[k];
+  const auto from = record.u_V.begin() + static_cast<std::ptrdiff_t>(k);
+  rows = std::min(rows, record.u_V.size() - k);
+  return std::accumulate(from, from + static_cast<std::ptrdiff_t>(rows), 0.0) /
+         static_cast<double>(rows);
+}
+
+}  // namespace
+
 void write_csv(const Record& record, const std::string& file) {
   std::FILE* out = std::fopen(file.c_str(), "w");
   if (out == nullptr) throw std::runtime_error("cannot write " + file);
@@ -133,7 +148,8 @@ void write_csv(const Record& record, const std::string& file) {
   std::fputs("\n", out);
   const auto every = static_cast<std::size_t>(std::max(1, record.log_every));
   for (std::size_t k = 0; k < record.t_s.size(); k += every) {
-    std::fprintf(out, "%.3f,%.6f,%.*f", record.t_s[k], record.u_V[k], record.digits, record.y_m[k]);
+    std::fprintf(out, "%.3f,%.6f,%.*f", record.t_s[k], logged_V(record, k, every), record.digits,
+                 record.y_m[k]);
     if (pressures) {
       std::fprintf(out, ",%.1f,%.1f,%.1f", record.supply_Pa[k], record.in_Pa[k], record.out_Pa[k]);
     }

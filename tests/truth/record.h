@@ -5,8 +5,8 @@
 //   row k: y and pressures are sampled, then u is written and held for the loop's period T
 //
 // Kp = Ki = Kd = 0 is open loop: Kr alone makes a command that moves the rod along r. The sum stops
-// while the command is at its limit. The log takes every nth row as it is: its commands between two
-// rows are not in it.
+// while the command is at its limit. The log takes every nth row: its commands between two rows are
+// not in it, or it has the mean of the command from one row to the next.
 #pragma once
 
 #include <array>
@@ -45,6 +45,7 @@ struct Case {
   double length_s = 30.0;
   double sample_s = kSample_s;  ///< of the loop
   int log_every = 1;            ///< rows of the loop per row of the log
+  bool log_mean = false;        ///< of the command
   double kp_V_per_m = 100.0;
   double ki_V_per_m_s = 0.0;
   double kd_V_s_per_m = 0.0;
@@ -65,6 +66,7 @@ struct Case {
 /// A row per period of the loop, whatever the log takes of it.
 struct Record {
   int log_every = 1;
+  bool log_mean = false;
   int digits = 6;  ///< of y in the log
   std::vector<double> t_s, u_V, y_m;
   std::vector<double> reading_m;                 ///< y without noise and rounding
