@@ -21,51 +21,13 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
+#include "tests/truth/kinds.h"
 #include "tests/truth/record.h"
+#include "tests/truth/shown.h"
 
 namespace truth {
 
-/// One parameter of one effect: where it is kept, and how near a fit has to come.
-struct Parameter {
-  std::string effect;
-  std::string name;
-  double Hidden::*member;
-  double tolerance;  ///< relative; 0: not scored (the record does not determine it by itself)
-};
-
-const std::vector<Parameter>& parameters();
-/// The library's effects, each once.
-const std::vector<std::string>& effects();
-/// The effects of the case that are not neutral.
-std::vector<std::string> hidden_effects(const Hidden& hidden);
-/// The names that a diagnosis with the model of that kind (model_files.h) can give for what is
-/// hidden. A cylinder shows those on command, opening and reading, and its areas as flow_asymmetry.
-std::vector<std::string> shown_effects(const Case& of);
-/// What else is hidden, which that model has no place for.
-std::vector<std::string> unshown_effects(const Case& of);
-/// A parameter's true value, or what the cylinder's areas and load amount to.
-double value_of(const Parameter& parameter, const Case& of);
-/// The same with one effect taken out.
-Case lacking(Case of, const std::string& effect);
-
-struct PlantField {
-  std::string name;
-  double* (*at)(Case&);
-  double reach;  ///< how far a fit may move it, relative; 0: something else stands for it
-  double Plant::*member = nullptr;  ///< of the actuator's
-};
-/// What makes one rig differ from the next of its kind.
-const std::vector<PlantField>& plant_fields(Kind kind);
-
-std::string to_string(Kind kind);
-/// The loop, sensor and motion that such a rig has, and its printed plant.
-Case typical_case(Kind kind);
-/// Gives the case a plant off the printed values, as drawn from its seed.
-void draw_plant(Case& of);
-/// The same with every value up to `most` off, relative.
-void draw_plant_within(Case& of, double most);
 /// Throws std::invalid_argument with the allowed words.
 Case parse_case(const std::string& text, std::size_t seed);
 /// The text from which parse_case makes the same case, whatever the seed's plant.
