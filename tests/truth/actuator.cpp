@@ -2,33 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
 namespace truth {
 namespace {
 
-constexpr double kTwoPi = 6.283185307179586;
 constexpr double kAtmosphere_Pa = 1.01e5;
-
-double sign(double x) { return x > 0.0 ? 1.0 : (x < 0.0 ? -1.0 : 0.0); }
-
-double signed_root(double x) { return x < 0.0 ? -std::sqrt(-x) : std::sqrt(x); }
 
 double within(double x, double most) { return std::max(-most, std::min(most, x)); }
 
 }  // namespace
 
-double sliding_level_N(const Hidden& hidden, double v_mps) {
-  const double coulomb_N = hidden.coulomb_N * (1.0 + hidden.direction_ratio * sign(v_mps));
-  if (hidden.static_N <= coulomb_N) return coulomb_N;
-  const double ratio = v_mps / hidden.stribeck_mps;
-  return coulomb_N + (hidden.static_N - coulomb_N) * std::exp(-ratio * ratio);
-}
-
 Actuator::Actuator(const Plant& plant_, const Hidden& hidden_, const LeftOut& left_out_)
-    : plant(plant_),
-      hidden(hidden_),
-      left_out(left_out_),
+    : Machine(hidden_, left_out_),
+      plant(plant_),
       orifice_(plant.discharge_coefficient * plant.area_gradient_m *
                std::sqrt(2.0 / plant.density_kg_per_m3)),
       mass_kg_(plant.mass_kg + hidden.slaves_kg) {}
@@ -38,34 +24,8 @@ State Actuator::rest(double y_m) const {
   return {y_m, 0.0, half_Pa, half_Pa, 0.0, 0.0, 0.0};
 }
 
-double Actuator::bristle_rate_mps(double z_m, double v_mps) const {
-  const double level_N = sliding_level_N(hidden, v_mps);
-  return v_mps - hidden.presliding_N_per_m * std::abs(v_mps) * z_m / level_N;
-}
-
-double Actuator::friction_N(double z_m, double v_mps) const {
-  if (hidden.coulomb_N <= 0.0) return 0.0;
-  return hidden.presliding_N_per_m * z_m + hidden.bristle_N_s_per_m * bristle_rate_mps(z_m, v_mps);
-}
-
-double Actuator::resisting_N(double y_m, double v_mps, double t_s) const {
-  double force_N = hidden.force_N + hidden.spring_N_per_m * (y_m - hidden.rest_m);
-  force_N += (hidden.quadratic_N_s2_per_m2 + hidden.needle_N_s2_per_m2) * v_mps * std::abs(v_mps);
-  force_N += hidden.slaves_N_s_per_m * v_mps;
-  if (hidden.ripple_N != 0.0) {
-    force_N += hidden.ripple_N *
-               std::sin(kTwoPi * y_m / hidden.ripple_wavelength_m + hidden.ripple_phase_rad);
-  }
-  return force_N + outside_N + left_out.force_N(y_m, v_mps, t_s);
-}
-
 double Actuator::opening_m(double spool_m, double y_m, double t_s) const {
-  const double overlap_m = hidden.deadband_V * plant.valve_gain_m_per_V;
-  double open_m = spool_m;
-  if (overlap_m > 0.0) {
-    open_m = std::abs(spool_m) <= overlap_m ? 0.0 : spool_m - overlap_m * sign(spool_m);
-  }
-  open_m *= 1.0 + hidden.asymmetry_ratio * sign(open_m);
+  const double open_m = uneven(spool_m, plant.valve_gain_m_per_V);
   return left_out.opening_m(open_m, plant.valve_gain_m_per_V, y_m, t_s);
 }
 
@@ -75,13 +35,6 @@ double Actuator::modulus_Pa(double pressure_Pa) const {
   const double absolute_Pa = pressure_Pa + kAtmosphere_Pa;
   const double x = hidden.air_ratio * std::pow(kAtmosphere_Pa / absolute_Pa, 1.0 / 1.4);
   return (1.0 + x) / (1.0 / plant.bulk_modulus_Pa + x / (1.4 * absolute_Pa));
-}
-
-double Actuator::drawn_m3ps(double k, double supply_Pa, double port_Pa) const {
-  const double drop_Pa = supply_Pa - port_Pa;
-  if (hidden.droop_Pa_per_m3ps <= 0.0 || drop_Pa <= 0.0) return k * signed_root(drop_Pa);
-  const double half = 0.5 * k * k * hidden.droop_Pa_per_m3ps;  // q^2 + 2 half q = k^2 drop
-  return std::sqrt(half * half + k * k * drop_Pa) - half;
 }
 
 double Actuator::inlet_Pa(const State& x, double t_s) const {
@@ -136,12 +89,7 @@ State Actuator::rate(const State& x, double u_V, double t_s) const {
   return r;
 }
 
-void Actuator::step(State& x, double u_V, double t_s, double step_s) const {
-  const State first = rate(x, u_V, t_s);
-  State ahead{};
-  for (std::size_t i = 0; i < x.size(); ++i) ahead[i] = x[i] + step_s * first[i];
-  const State second = rate(ahead, u_V, t_s + step_s);
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] += 0.5 * step_s * (first[i] + second[i]);
+void Actuator::bound(State& x) const {
   x[5] = within(x[5], hidden.spool_rate_mps);
   x[2] = std::max(x[2], 0.0);
   x[3] = std::max(x[3], 0.0);

@@ -29,9 +29,33 @@ double number(const std::string& key, const std::string& value) {
 const std::vector<std::pair<std::string, double Outside::*>>& outside_fields() {
   using O = Outside;
   static const std::vector<std::pair<std::string, double O::*>> table{
-      {"outside.force_N", &O::force_N},           {"outside.corner_Hz", &O::corner_Hz},
-      {"outside.pulsation_Pa", &O::pulsation_Pa}, {"outside.pulsation_Hz", &O::pulsation_Hz},
-      {"outside.shake_m", &O::shake_m},           {"outside.shake_Hz", &O::shake_Hz},
+      {"outside.force_N", &O::force_N},
+      {"outside.corner_Hz", &O::corner_Hz},
+      {"outside.pulsation_Pa", &O::pulsation_Pa},
+      {"outside.pulsation_Hz", &O::pulsation_Hz},
+      {"outside.shake_m", &O::shake_m},
+      {"outside.shake_Hz", &O::shake_Hz},
+      {"outside.line_N", &O::line_N},
+      {"outside.line_Hz", &O::line_Hz},
+  };
+  return table;
+}
+
+/// The case's own numbers, in the order in which they are written.
+const std::vector<std::pair<std::string, double Case::*>>& case_fields() {
+  static const std::vector<std::pair<std::string, double Case::*>> table{
+      {"amplitude_ratio", &Case::amplitude_ratio},
+      {"period_s", &Case::period_s},
+      {"length_s", &Case::length_s},
+      {"sample_s", &Case::sample_s},
+      {"kp_V_per_m", &Case::kp_V_per_m},
+      {"ki_V_per_m_s", &Case::ki_V_per_m_s},
+      {"kd_V_s_per_m", &Case::kd_V_s_per_m},
+      {"feed_V_s_per_m", &Case::feed_V_s_per_m},
+      {"noise_m", &Case::noise_m},
+      {"encoder_m", &Case::encoder_m},
+      {"converter_V", &Case::converter_V},
+      {"pressure_noise_Pa", &Case::pressure_noise_Pa},
   };
   return table;
 }
@@ -39,11 +63,11 @@ const std::vector<std::pair<std::string, double Outside::*>>& outside_fields() {
 /// Sets a value by its key; false when there is no such key.
 bool set_number(Case& of, const std::string& key, double value) {
   if (key == "mismatched") return of.mismatched = value != 0.0, true;
-  if (key == "length_s") return of.length_s = value, true;
-  if (key == "kp_V_per_m") return of.kp_V_per_m = value, true;
-  if (key == "noise_m") return of.noise_m = value, true;
-  if (key == "encoder_m") return of.encoder_m = value, true;
-  if (key == "pressure_noise_Pa") return of.pressure_noise_Pa = value, true;
+  if (key == "log_every") return of.log_every = static_cast<int>(value), true;
+  if (key == "log_mean") return of.log_mean = value != 0.0, true;
+  for (const auto& [name, member] : case_fields()) {
+    if (key == name) return of.*member = value, true;
+  }
   if (key == "left_out.size") return of.left_out.size = value, true;
   if (key == "left_out.where") return of.left_out.where = value, true;
   for (const auto& [name, member] : outside_fields()) {
@@ -54,8 +78,8 @@ bool set_number(Case& of, const std::string& key, double value) {
       return of.hidden.*parameter.member = value, true;
     }
   }
-  for (const PlantField& field : plant_fields()) {
-    if (key == "plant." + field.name) return of.plant.*field.member = value, true;
+  for (const PlantField& field : plant_fields(of.kind)) {
+    if (key == "plant." + field.name) return *field.at(of) = value, true;
   }
   return false;
 }
@@ -63,7 +87,8 @@ bool set_number(Case& of, const std::string& key, double value) {
 /// atSECONDS:KEY; false when it is no such word.
 bool set_change(Case& of, const std::string& word, double value) {
   const std::size_t colon = word.find(':');
-  if (word.rfind("at", 0) != 0 || colon == std::string::npos) return false;
+  if (of.kind != Kind::actuator || word.rfind("at", 0) != 0 || colon == std::string::npos)
+    return false;
   Change change;
   change.at_s = number(word, word.substr(2, colon - 2));
   change.value = value;
@@ -71,7 +96,7 @@ bool set_change(Case& of, const std::string& word, double value) {
   for (const Parameter& parameter : parameters()) {
     if (key == parameter.effect + "." + parameter.name) change.hidden = parameter.member;
   }
-  for (const PlantField& field : plant_fields()) {
+  for (const PlantField& field : plant_fields(Kind::actuator)) {
     if (key == "plant." + field.name) change.plant = field.member;
   }
   if (change.hidden == nullptr && change.plant == nullptr) return false;
@@ -79,115 +104,25 @@ bool set_change(Case& of, const std::string& word, double value) {
   return true;
 }
 
+/// The rig that a text speaks of; throws std::invalid_argument with the allowed words.
+Kind kind_in(const std::string& text) {
+  const std::size_t at = text.find("rig=");
+  if (at == std::string::npos) return Kind::actuator;
+  const std::string name = text.substr(at + 4, text.find_first_of(",; ", at) - at - 4);
+  for (const Kind kind : kKinds) {
+    if (to_string(kind) == name) return kind;
+  }
+  throw std::invalid_argument("no rig '" + name +
+                              "'; there are actuator, linear_axis, rotary_axis, single_rod");
+}
+
 }  // namespace
 
-const std::vector<Parameter>& parameters() {
-  using H = Hidden;
-  static const std::vector<Parameter> table{
-      {"transport_delay", "delay_s", &H::delay_s, 0.02},
-      {"null_bias", "offset_V", &H::null_bias_V, 0.02},
-      {"valve_hysteresis", "half_width_V", &H::hysteresis_V, 0.02},
-      {"spool_rate_limit", "rate_mps", &H::spool_rate_mps, 0.02},
-      {"deadband", "half_width_V", &H::deadband_V, 0.02},
-      {"flow_asymmetry", "asymmetry_ratio", &H::asymmetry_ratio, 0.02},
-      {"flow_saturation", "limit_m3ps", &H::flow_limit_m3ps, 0.02},
-      {"supply_droop", "droop_Pa_per_m3ps", &H::droop_Pa_per_m3ps, 0.10},
-      {"internal_leakage", "conductance_m3ps_per_Pa", &H::internal_m3ps_per_Pa, 0.10},
-      {"external_leakage", "conductance_m3ps_per_Pa", &H::external_m3ps_per_Pa, 0.10},
-      {"entrained_air", "fraction_ratio", &H::air_ratio, 0.02},
-      {"friction", "coulomb_N", &H::coulomb_N, 0.10},
-      {"friction", "static_N", &H::static_N, 0.0},
-      {"friction", "stribeck_mps", &H::stribeck_mps, 0.0},
-      {"friction", "presliding_stiffness_N_per_m", &H::presliding_N_per_m, 0.0},
-      {"friction", "bristle_N_s_per_m", &H::bristle_N_s_per_m, 0.0},
-      {"friction", "direction_ratio", &H::direction_ratio, 0.0},
-      {"quadratic_damping", "coefficient_N_s2_per_m2", &H::quadratic_N_s2_per_m2, 0.10},
-      {"load_spring", "stiffness_N_per_m", &H::spring_N_per_m, 0.02},
-      {"load_spring", "rest_m", &H::rest_m, 0.02},
-      {"load_force", "force_N", &H::force_N, 0.02},
-      {"force_ripple", "amplitude_N", &H::ripple_N, 0.10},
-      {"force_ripple", "wavelength_m", &H::ripple_wavelength_m, 0.10},
-      {"force_ripple", "phase_rad", &H::ripple_phase_rad, 0.0},
-      {"coupled_slaves", "mass_kg", &H::slaves_kg, 0.0},
-      {"coupled_slaves", "damping_N_s_per_m", &H::slaves_N_s_per_m, 0.0},
-      {"coupled_slaves", "needle_N_s2_per_m2", &H::needle_N_s2_per_m2, 0.10},
-      {"backlash", "width_m", &H::backlash_m, 0.02},
-      {"encoder_eccentricity", "amplitude_m", &H::eccentricity_m, 0.02},
-      {"encoder_eccentricity", "wavelength_m", &H::eccentricity_wavelength_m, 0.02},
-      {"encoder_eccentricity", "phase_rad", &H::eccentricity_phase_rad, 0.0},
-  };
-  return table;
-}
-
-const std::vector<std::string>& effects() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> found;
-    for (const Parameter& parameter : parameters()) {
-      if (found.empty() || found.back() != parameter.effect) found.push_back(parameter.effect);
-    }
-    return found;
-  }();
-  return names;
-}
-
-std::vector<std::string> hidden_effects(const Hidden& hidden) {
-  const Hidden neutral;
-  std::vector<std::string> found;
-  std::string before;
-  for (const Parameter& parameter : parameters()) {
-    // An effect's first parameter is its size; the slaves may have any one of three.
-    const bool size = parameter.effect != before || parameter.effect == "coupled_slaves";
-    before = parameter.effect;
-    if (!size || hidden.*parameter.member == neutral.*parameter.member) continue;
-    if (found.empty() || found.back() != parameter.effect) found.push_back(parameter.effect);
-  }
-  return found;
-}
-
-Hidden without(Hidden hidden, const std::string& effect) {
-  const Hidden neutral;
-  for (const Parameter& parameter : parameters()) {
-    if (parameter.effect == effect) hidden.*parameter.member = neutral.*parameter.member;
-  }
-  return hidden;
-}
-
-const std::vector<PlantField>& plant_fields() {
-  using P = Plant;
-  static const std::vector<PlantField> table{
-      {"mass_kg", &P::mass_kg},
-      {"damping_N_s_per_m", &P::damping_N_s_per_m},
-      {"bulk_modulus_Pa", &P::bulk_modulus_Pa},
-      {"dead_volume_m3", &P::dead_volume_m3},
-      {"supply_pressure_Pa", &P::supply_pressure_Pa},
-      {"valve_gain_m_per_V", &P::valve_gain_m_per_V},
-      {"valve_natural_frequency_rad_per_s", &P::valve_natural_frequency_rad_per_s},
-      {"valve_damping_ratio", &P::valve_damping_ratio},
-  };
-  return table;
-}
-
-Plant draw_plant(std::size_t seed, bool mismatched) {
-  Random random(seed * 2654435761U + 97);
-  Plant plant;
-  plant.valve_gain_m_per_V *= 1.0 + random.uniform(-0.03, 0.03);
-  plant.damping_N_s_per_m *= 1.0 + random.uniform(-0.08, 0.08);
-  plant.bulk_modulus_Pa *= 1.0 + random.uniform(-0.08, 0.08);
-  if (mismatched) {
-    plant.valve_natural_frequency_rad_per_s *= 1.0 + random.uniform(-0.12, 0.12);
-    plant.valve_damping_ratio *= 1.0 + random.uniform(-0.12, 0.12);
-    plant.mass_kg *= 1.0 + random.uniform(-0.08, 0.08);
-    plant.dead_volume_m3 *= 1.0 + random.uniform(-0.20, 0.20);
-    plant.supply_pressure_Pa *= 1.0 + random.uniform(-0.05, 0.05);
-  }
-  return plant;
-}
-
 Case parse_case(const std::string& text, std::size_t seed) {
-  Case of;
+  Case of = typical_case(kind_in(text));
   of.seed = seed;
   of.mismatched = text.find("mismatched=1") != std::string::npos;
-  of.plant = draw_plant(seed, of.mismatched);
+  draw_plant(of);
   std::string words = text;
   std::replace(words.begin(), words.end(), ',', ' ');
   std::replace(words.begin(), words.end(), ';', ' ');
@@ -198,6 +133,7 @@ Case parse_case(const std::string& text, std::size_t seed) {
     if (equals == std::string::npos) throw std::invalid_argument("'" + word + "' has no value");
     const std::string key = word.substr(0, equals);
     const std::string value = word.substr(equals + 1);
+    if (key == "rig") continue;  // read first, by kind_in()
     if (key == "motion") {
       const auto& known = motions();
       if (std::find(known.begin(), known.end(), value) == known.end()) {
@@ -205,7 +141,10 @@ Case parse_case(const std::string& text, std::size_t seed) {
       }
       of.motion = value;
     } else if (key == "plant" && value == "printed") {
-      of.plant = Plant{};
+      const Case printed = typical_case(of.kind);
+      of.plant = printed.plant;
+      of.axis = printed.axis;
+      of.rod = printed.rod;
     } else if (key == "left_out") {
       const LeftOutInfo* info = find_left_out(value);
       if (info == nullptr) throw std::invalid_argument("no left-out effect '" + value + "'");
@@ -219,17 +158,18 @@ Case parse_case(const std::string& text, std::size_t seed) {
 }
 
 std::string to_text(const Case& of) {
-  const Case neutral;
+  const Case neutral = typical_case(of.kind);
   std::string text = "motion=" + of.motion;
+  if (of.kind != Kind::actuator) text = "rig=" + to_string(of.kind) + "," + text;
   const auto add = [&](const std::string& key, double value) {
     text += "," + key + "=" + digits(value);
   };
   if (of.mismatched) add("mismatched", 1.0);
-  if (of.length_s != neutral.length_s) add("length_s", of.length_s);
-  if (of.kp_V_per_m != neutral.kp_V_per_m) add("kp_V_per_m", of.kp_V_per_m);
-  if (of.noise_m != neutral.noise_m) add("noise_m", of.noise_m);
-  if (of.encoder_m != neutral.encoder_m) add("encoder_m", of.encoder_m);
-  if (of.pressure_noise_Pa >= 0.0) add("pressure_noise_Pa", of.pressure_noise_Pa);
+  if (of.log_every != neutral.log_every) add("log_every", of.log_every);
+  if (of.log_mean) add("log_mean", 1.0);
+  for (const auto& [name, member] : case_fields()) {
+    if (of.*member != neutral.*member) add(name, of.*member);
+  }
   for (const Parameter& parameter : parameters()) {
     const double value = of.hidden.*parameter.member;
     if (value != neutral.hidden.*parameter.member) {
@@ -242,13 +182,18 @@ std::string to_text(const Case& of) {
     add("left_out.where", of.left_out.where);
   }
   for (const auto& [name, member] : outside_fields()) {
-    if (of.outside.any()) add(name, of.outside.*member);
+    const bool line = name.rfind("outside.line", 0) == 0;
+    if (line ? of.outside.line_N > 0.0 : of.outside.any()) add(name, of.outside.*member);
   }
-  for (const PlantField& field : plant_fields()) add("plant." + field.name, of.plant.*field.member);
+  Case read = of;
+  for (const PlantField& field : plant_fields(of.kind)) {
+    add("plant." + field.name, *field.at(read));
+  }
   for (const Change& change : of.changes) {
     const std::string at = "at" + digits(change.at_s) + ":";
-    for (const PlantField& field : plant_fields()) {
-      if (change.plant == field.member) add(at + "plant." + field.name, change.value);
+    for (const PlantField& field : plant_fields(Kind::actuator)) {
+      if (change.plant != nullptr && change.plant == field.member)
+        add(at + "plant." + field.name, change.value);
     }
     for (const Parameter& parameter : parameters()) {
       if (change.hidden == parameter.member) {

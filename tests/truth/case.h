@@ -5,47 +5,29 @@
 //
 //   motion=sine,plant=printed,at15:plant.supply_pressure_Pa=8.61e6,at30:plant.supply_pressure_Pa=...
 //
-// Keys: motion, mismatched, length_s, kp_V_per_m, noise_m, encoder_m, pressure_noise_Pa (makes
-// columns supply_pressure_Pa, pressure_in_Pa, pressure_out_Pa), outside.NAME (outside.h),
-// EFFECT.PARAMETER (the product's names, SI), left_out, left_out.size, left_out.where, plant.NAME,
-// plant=printed; atSECONDS: before a plant's or an effect's key makes it a change at that time.
-// What is not given is neutral; the plant's own values are drawn from the seed: gain +-3 %, damping
-// and bulk modulus
-// +-8 %, and when mismatched natural frequency +-12 %, damping ratio +-12 %, mass +-8 %, dead
-// volume +-20 %, supply pressure +-5 %.
+// Keys: rig (actuator, linear_axis, rotary_axis, single_rod), motion, amplitude_ratio, period_s (of
+// a motion that repeats), mismatched, length_s, sample_s, log_every, log_mean, kp_V_per_m,
+// ki_V_per_m_s, kd_V_s_per_m, feed_V_s_per_m (record.h), noise_m, encoder_m, converter_V,
+// pressure_noise_Pa (makes columns supply_pressure_Pa, pressure_in_Pa, pressure_out_Pa),
+// outside.NAME (outside.h), EFFECT.PARAMETER (the product's names, SI), left_out, left_out.size,
+// left_out.where, plant.NAME, plant=printed; on the actuator atSECONDS: before a plant's or an
+// effect's key makes it a change at that time. What is not given is neutral, and on an axis the
+// loop and the sensor are its own. The plant's own values are drawn from the seed:
+//   actuator  gain +-3 %, damping and bulk modulus +-8 %, and when mismatched natural frequency
+//             +-12 %, damping ratio +-12 %, mass +-8 %, dead volume +-20 %, supply pressure +-5 %
+//   axis      damping +-15 %, mass +-10 %; the gain is exact, because command and position alone
+//             cannot tell it from the scale of all forces
+//   rod       valve gain, supply, damping, frequency and bulk modulus +-15 %, mass +-30 %
 #pragma once
 
 #include <string>
-#include <vector>
 
-#include "tests/truth/rig.h"
+#include "tests/truth/kinds.h"
+#include "tests/truth/record.h"
+#include "tests/truth/shown.h"
 
 namespace truth {
 
-/// One parameter of one effect: where it is kept, and how near a fit has to come.
-struct Parameter {
-  std::string effect;
-  std::string name;
-  double Hidden::*member;
-  double tolerance;  ///< relative; 0: not scored (the record does not determine it by itself)
-};
-
-const std::vector<Parameter>& parameters();
-/// The library's effects, each once.
-const std::vector<std::string>& effects();
-/// The effects of the case that are not neutral.
-std::vector<std::string> hidden_effects(const Hidden& hidden);
-/// The same with one effect taken out.
-Hidden without(Hidden hidden, const std::string& effect);
-
-struct PlantField {
-  std::string name;
-  double Plant::*member;
-};
-const std::vector<PlantField>& plant_fields();
-
-/// A plant off the printed values, as drawn from the seed.
-Plant draw_plant(std::size_t seed, bool mismatched);
 /// Throws std::invalid_argument with the allowed words.
 Case parse_case(const std::string& text, std::size_t seed);
 /// The text from which parse_case makes the same case, whatever the seed's plant.

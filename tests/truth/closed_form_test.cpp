@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <vector>
 
+#include "tests/truth/actuator.h"
 #include "tests/truth/rig.h"
 
 namespace truth {
@@ -15,7 +17,7 @@ constexpr int kSettled = 300;  ///< samples after which transients have died awa
 
 /// Holds a command until speed and pressures are steady; the rig's speed is then x[1].
 Rig settled(const Hidden& hidden, double u_V, const Plant& plant = {}, const LeftOut& left = {}) {
-  Rig rig(plant, hidden, left);
+  Rig rig(std::make_unique<Actuator>(plant, hidden, left));
   for (int k = 0; k < kSettled; ++k) rig.hold(u_V);
   return rig;
 }
@@ -67,7 +69,7 @@ TEST(TruthFriction, TakesFourForcesPerStiffnessFromEachSwingOfTheRod) {
   hidden.coulomb_N = 40.0;
   hidden.presliding_N_per_m = 1e8;
   hidden.bristle_N_s_per_m = 0.0;
-  Rig rig(plant, hidden, LeftOut{}, 2000);
+  Rig rig(std::make_unique<Actuator>(plant, hidden, LeftOut{}), 2000);
   rig.x[1] = 0.2;
   double peak_m = 0.0;
   std::vector<double> peaks_m;
@@ -134,7 +136,7 @@ TEST(TruthEffects, ChangeTheSteadySpeedAsTheirEquationsSay) {
 TEST(TruthEffects, LimitTheSpoolToItsRate) {
   Hidden hidden;
   hidden.spool_rate_mps = 1e-4;
-  Rig rig(Plant{}, hidden, LeftOut{});
+  Rig rig(std::make_unique<Actuator>(Plant{}, hidden, LeftOut{}));
   for (int k = 0; k < 10; ++k) rig.hold(5.0);
   EXPECT_NEAR(rig.x[4], 1e-4 * 0.05, 0.02 * 1e-4 * 0.05);
   EXPECT_NEAR(rig.x[5], 1e-4, 1e-9);
@@ -143,8 +145,8 @@ TEST(TruthEffects, LimitTheSpoolToItsRate) {
 TEST(TruthEffects, DelayTheCommandByAnyTime) {
   Hidden late;
   late.delay_s = 0.0075;
-  Rig delayed(Plant{}, late, LeftOut{});
-  Rig prompt(Plant{}, Hidden{}, LeftOut{});
+  Rig delayed(std::make_unique<Actuator>(Plant{}, late, LeftOut{}));
+  Rig prompt(std::make_unique<Actuator>(Plant{}, Hidden{}, LeftOut{}));
   for (int k = 0; k < kSettled; ++k) delayed.hold(1.0);
   for (int k = 0; k < kSettled; ++k) prompt.hold(1.0);
   EXPECT_NEAR(prompt.x[0] - delayed.x[0], 0.0075 * prompt.x[1], 1e-3 * 0.0075 * prompt.x[1]);

@@ -207,18 +207,41 @@ const std::vector<LeftOutInfo>& left_out_table() {
   return table;
 }
 
-const LeftOutInfo* find_left_out(const std::string& name) {
-  for (const LeftOutInfo& info : left_out_table()) {
-    if (info.name == name) return &info;
+const std::vector<LeftOutInfo>& axis_left_out_table() {
+  static const std::vector<LeftOutInfo> table{
+      {Kind::elastic_shaft,
+       "elastic_shaft",
+       "motor and load apart, a spring of s between them, N/m",
+       3e5,
+       0,
+       0,
+       {"force", "measurement"},
+       {"acceleration"},
+       {"u"}},
+  };
+  return table;
+}
+
+namespace {
+
+template <class Matches>
+const LeftOutInfo* find_where(const Matches& matches) {
+  for (const auto* table : {&left_out_table(), &axis_left_out_table()}) {
+    for (const LeftOutInfo& info : *table) {
+      if (matches(info)) return &info;
+    }
   }
   return nullptr;
 }
 
+}  // namespace
+
+const LeftOutInfo* find_left_out(const std::string& name) {
+  return find_where([&](const LeftOutInfo& info) { return info.name == name; });
+}
+
 const LeftOutInfo* find_left_out(LeftOut::Kind kind) {
-  for (const LeftOutInfo& info : left_out_table()) {
-    if (info.kind == kind) return &info;
-  }
-  return nullptr;
+  return find_where([&](const LeftOutInfo& info) { return info.kind == kind; });
 }
 
 }  // namespace truth

@@ -31,6 +31,7 @@ struct LeftOut {
     underlap,
     position_gain,
     load_step,
+    elastic_shaft,
   };
   Kind kind = Kind::none;
   double size = 0.0;   ///< unit by kind
@@ -55,8 +56,11 @@ struct LeftOutInfo {
   std::vector<std::string> same_signal;
 };
 
+/// Those of the actuator.
 const std::vector<LeftOutInfo>& left_out_table();
-/// Null when there is none of that name or kind.
+/// Those of the electric axes (axis.h).
+const std::vector<LeftOutInfo>& axis_left_out_table();
+/// In either table; null when there is none of that name or kind.
 const LeftOutInfo* find_left_out(const std::string& name);
 const LeftOutInfo* find_left_out(LeftOut::Kind kind);
 

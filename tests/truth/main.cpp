@@ -2,13 +2,15 @@
 //
 //   spoolwatch-truth --seed N --case SPEC -o FILE.csv      one record; SPEC as in case.h, such as
 //                                     motion=multisine,friction.coulomb_N=150,friction.static_N=190
-//   spoolwatch-truth --plan single|healthy|pairs|leftout --count N --seed S --out DIR [--jobs 2]
-//                                     case0001.csv ... and answers.json (plan.h)
-//   spoolwatch-truth --list           effects, parameters, motions and left-out effects
+//   spoolwatch-truth --plan PLAN --count N --seed S --out DIR [--jobs 2]
+//                                     case0001.csv ..., answers.json, and the model files that the
+//                                     records of another plant are to be diagnosed with (plan.h)
+//   spoolwatch-truth --list           plans, effects, parameters, motions and left-out effects
 //
 // A record: 30 s at 200 Hz in closed loop (Kp 100 V/m), 12 bits over +-10 V, encoder 5 um, noise
-// 2 um, as t_s,u_V,y_m. The same seed and SPEC give the same file; answers.json holds both for
-// every record. scripts/confusion makes the sets, runs the diagnosis on them and scores it.
+// 2 um, as t_s,u_V,y_m, where SPEC or plan say nothing else. The same seed and SPEC give the same
+// file; answers.json holds both for every record. scripts/confusion makes the sets, runs the
+// diagnosis on them and scores it.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -24,21 +26,29 @@ namespace {
 int usage() {
   std::fputs(
       "usage: spoolwatch-truth --seed N --case SPEC -o FILE.csv\n"
-      "       spoolwatch-truth --plan single|healthy|pairs|leftout --count N --seed S --out DIR "
-      "[--jobs N]\n"
+      "       spoolwatch-truth --plan PLAN --count N --seed S --out DIR [--jobs N]\n"
       "       spoolwatch-truth --list\n",
       stderr);
   return 2;
 }
 
 void list() {
+  for (const std::string& plan : truth::plans()) std::printf("plan %s\n", plan.c_str());
+  for (const truth::Kind kind : truth::kKinds) {
+    std::printf("rig=%s\n", truth::to_string(kind).c_str());
+    for (const truth::PlantField& field : truth::plant_fields(kind)) {
+      std::printf("  plant.%s\n", field.name.c_str());
+    }
+  }
   for (const truth::Parameter& parameter : truth::parameters()) {
     std::printf("%s.%s\n", parameter.effect.c_str(), parameter.name.c_str());
   }
   for (const std::string& motion : truth::motions()) std::printf("motion=%s\n", motion.c_str());
-  for (const truth::LeftOutInfo& info : truth::left_out_table()) {
-    std::printf("left_out=%s  %s, typically %g\n", info.name.c_str(), info.equation.c_str(),
-                info.typical);
+  for (const auto* table : {&truth::left_out_table(), &truth::axis_left_out_table()}) {
+    for (const truth::LeftOutInfo& info : *table) {
+      std::printf("left_out=%s  %s, typically %g\n", info.name.c_str(), info.equation.c_str(),
+                  info.typical);
+    }
   }
 }
 

@@ -1,5 +1,5 @@
-// References that the position loop follows, sampled at 200 Hz, about mid-stroke. Shapes and
-// amplitudes are those of common excitation on such a stand.
+// References that the position loop follows, sampled at the loop's rate, about mid-stroke. Shapes
+// and amplitudes are those of common excitation on such a stand.
 //
 //   multisine    ten sines at 0.1 x 1.45^i Hz, amplitude 12.7 mm/(1 + f/Hz), random phases
 //   fast_steps   random levels within +-45 mm, held 0.35 s, through two lags of 0.11 s
@@ -16,7 +16,7 @@
 
 namespace truth {
 
-inline constexpr double kSample_s = 0.005;
+inline constexpr double kSample_s = 0.005;  ///< of the loop, where a case says nothing else
 inline constexpr double kCentre_m = 0.305;
 
 /// Numbers that are the same with every standard library.
@@ -35,7 +35,11 @@ class Random {
 };
 
 const std::vector<std::string>& motions();
-/// The reference at t = 0, 5 ms, ...; throws std::invalid_argument for an unknown motion.
-std::vector<double> reference_m(const std::string& motion, std::size_t samples, Random& random);
+/// The reference at t = 0, sample_s, ...; throws std::invalid_argument for an unknown motion.
+std::vector<double> reference_m(const std::string& motion, std::size_t samples, Random& random,
+                                double sample_s = kSample_s);
+/// Makes one period into `samples` samples of a motion that repeats; what its two ends differ by is
+/// spread over the period.
+void repeat(std::vector<double>& period_m, std::size_t samples);
 
 }  // namespace truth

@@ -7,6 +7,13 @@
 //   leftout  one effect that the library does not have
 //   disturbed, disturbed_healthy   single and healthy under a random force, a pulsating supply, a
 //            shaking sensor mount, or two of these
+//   axes         electric axes, linear and rotary: eleven singles or nothing, pairs, and an elastic
+//                shaft, which the library does not have; every second dozen disturbed
+//   conditions   singles and healthy records under each of conditions.h by turns
+//   single_rods  single-rod cylinders, to be diagnosed as a servo known by command and position
+//   mismatch20   singles with every value of the plant up to 20 % off
+//   outside_laws leftout, disturbed
+//   repeated     singles and healthy ones on a motion with a period, disturbed
 //
 // Sizes are drawn log-uniform within a factor of two of a typical one. A draw that hardly shows
 // (visibility.h), leaves the stroke or runs into cavitation is drawn anew, larger or on the next
@@ -17,7 +24,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/truth/rig.h"
+#include "tests/truth/record.h"
 
 namespace truth {
 
@@ -27,6 +34,7 @@ struct Planned {
   std::string text;                 ///< parse_case(text, of.seed) makes it again
   std::vector<std::string> hidden;  ///< effects of the library
   std::vector<double> visibility;   ///< of each, or of the left-out effect
+  std::string condition;            ///< empty: none
   bool within_limits = true;        ///< pressures between 0 and supply, rod within the stroke
 };
 

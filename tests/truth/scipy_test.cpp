@@ -6,10 +6,12 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "tests/truth/actuator.h"
 #include "tests/truth/rig.h"
 
 namespace truth {
@@ -42,7 +44,7 @@ std::vector<Row> reference(const std::string& wanted) {
 
 /// Rows every 10 ms, the voltage held for two samples.
 void expect_follows(const std::string& name, const Plant& plant, const Hidden& hidden) {
-  Rig rig(plant, hidden, LeftOut{});
+  Rig rig(std::make_unique<Actuator>(plant, hidden, LeftOut{}));
   const std::vector<Row> rows = reference(name);
   ASSERT_GE(rows.size(), 30U);
   double off_m = 0.0;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <map>
-#include <string>
 #include <vector>
 
 #include "tests/truth/case.h"
@@ -18,8 +16,8 @@ constexpr double kNudge = 0.01;  ///< relative change for the sensitivities
 
 using Column = std::vector<double>;
 
-Column without_drift(const Column& of, const Column& from) {
-  const double keep = std::exp(-kDrift_per_s * kSample_s);
+Column without_drift(const Column& of, const Column& from, double sample_s) {
+  const double keep = std::exp(-kDrift_per_s * sample_s);
   Column passed(of.size());
   double held = 0.0;
   double before = 0.0;
@@ -36,18 +34,6 @@ double dot(const Column& a, const Column& b) {
   double sum = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
   return sum;
-}
-
-/// How far the plant's own parameters may go, relative. Of gain and supply pressure only
-/// gain * sqrt(Ps) is seen, so the gain stands for both.
-const std::map<std::string, double>& reach() {
-  static const std::map<std::string, double> of{
-      {"valve_gain_m_per_V", 0.2},  {"damping_N_s_per_m", 0.6},
-      {"bulk_modulus_Pa", 0.4},     {"valve_natural_frequency_rad_per_s", 0.2},
-      {"valve_damping_ratio", 0.2}, {"mass_kg", 0.2},
-      {"dead_volume_m3", 0.4},
-  };
-  return of;
 }
 
 /// What is left of `rest` after the best bounded combination of the columns; by turns over the
@@ -79,19 +65,20 @@ Column left_after(Column rest, const std::vector<Column>& columns, const Column&
 }  // namespace
 
 double visibility_ratio(const Case& lacking, const Record& record) {
-  const int steps = lacking.hidden.coulomb_N > 0.0 ? 400 : kCoarseSteps;
+  const bool coarse = lacking.kind == Kind::actuator && lacking.hidden.coulomb_N <= 0.0;
+  const int steps = coarse ? kCoarseSteps : 0;
+  const double sample_s = lacking.sample_s;
   const Column base = replay(lacking, record.u_V, steps);
   std::vector<Column> columns;
   Column bounds;
-  for (const PlantField& field : plant_fields()) {
-    const auto found = reach().find(field.name);
-    if (found == reach().end()) continue;
+  for (const PlantField& field : plant_fields(lacking.kind)) {
+    if (field.reach <= 0.0) continue;
     Case changed = lacking;
-    changed.plant.*field.member *= 1.0 + kNudge;
-    columns.push_back(without_drift(replay(changed, record.u_V, steps), base));
-    bounds.push_back(found->second / kNudge);
+    *field.at(changed) *= 1.0 + kNudge;
+    columns.push_back(without_drift(replay(changed, record.u_V, steps), base, sample_s));
+    bounds.push_back(field.reach / kNudge);
   }
-  const Column rest = left_after(without_drift(record.reading_m, base), columns, bounds);
+  const Column rest = left_after(without_drift(record.reading_m, base, sample_s), columns, bounds);
   const double left_m = std::sqrt(dot(rest, rest) / static_cast<double>(rest.size()));
   return std::hypot(1.0, left_m / record.floor_m);
 }

@@ -4,11 +4,12 @@
 // The plant with and without the effect follows the recorded command; their difference, with slow
 // drift taken out (s/(s + 2), what output injection does), is what a model without the effect gets
 // wrong. From it goes what a change of the plant's own parameters can imitate: linear least
-// squares, gain and valve dynamics and mass within 20 %, bulk modulus and dead volume within 40 %,
-// damping within 60 %. ratio = sqrt(1 + (rest/floor)^2).
+// squares, each within its reach (plant_fields(): on the actuator gain and valve dynamics and mass
+// within 20 %, bulk modulus and dead volume within 40 %, damping within 60 %).
+// ratio = sqrt(1 + (rest/floor)^2).
 #pragma once
 
-#include "tests/truth/rig.h"
+#include "tests/truth/record.h"
 
 namespace truth {
 

@@ -1,10 +1,11 @@
 // answers.json: what each record of a plan hides.
-#include <cmath>
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
 
 #include "tests/truth/case.h"
+#include "tests/truth/model_files.h"
 #include "tests/truth/plan.h"
 
 namespace truth {
@@ -18,18 +19,24 @@ std::string list(const std::vector<std::string>& names) {
   return text + "]";
 }
 
+std::string quoted_or_null(const std::string& text) {
+  return text.empty() ? "null" : "\"" + text + "\"";
+}
+
 std::string effect(const Planned& planned, std::size_t which) {
   const std::string& name = planned.hidden[which];
+  // A servo stands for a cylinder, whose speeds follow areas and pressures only nearly.
+  const double least = planned.of.kind == Kind::single_rod ? 0.1 : 0.0;
   std::ostringstream values;
   std::ostringstream scored;
   values.precision(10);
   for (const Parameter& parameter : parameters()) {
     if (parameter.effect != name) continue;
-    const double value = planned.of.hidden.*parameter.member;
+    const double value = value_of(parameter, planned.of);
     values << (values.tellp() > 0 ? ", " : "") << '"' << parameter.name << "\": " << value;
     if (parameter.tolerance > 0.0) {
       scored << (scored.tellp() > 0 ? ", " : "") << '"' << parameter.name
-             << "\": " << parameter.tolerance;
+             << "\": " << std::max(least, parameter.tolerance);
     }
   }
   std::ostringstream text;
@@ -56,7 +63,8 @@ std::string outside(const Outside& of) {
   std::ostringstream text;
   text << "{\"force_N\": " << of.force_N << ", \"corner_Hz\": " << of.corner_Hz
        << ", \"pulsation_Pa\": " << of.pulsation_Pa << ", \"pulsation_Hz\": " << of.pulsation_Hz
-       << ", \"shake_m\": " << of.shake_m << ", \"shake_Hz\": " << of.shake_Hz << "}";
+       << ", \"shake_m\": " << of.shake_m << ", \"shake_Hz\": " << of.shake_Hz
+       << ", \"line_N\": " << of.line_N << ", \"line_Hz\": " << of.line_Hz << "}";
   return text.str();
 }
 
@@ -74,12 +82,15 @@ void write_answers(const std::string& file, const std::string& plan, std::size_t
       hidden += (which > 0 ? ", " : "") + effect(one, which);
     }
     out << (i > 0 ? ",\n" : "\n") << " {\"file\": \"" << file_name(i) << "\", \"motion\": \""
-        << one.of.motion << "\", \"mismatched\": " << (one.of.mismatched ? "true" : "false")
+        << one.of.motion << "\", \"rig\": \"" << to_string(one.of.kind)
+        << "\", \"model\": " << quoted_or_null(model_name(one.of.kind))
+        << ", \"condition\": " << quoted_or_null(one.condition)
+        << ", \"mismatched\": " << (one.of.mismatched ? "true" : "false")
         << ", \"floor_m\": " << floors_m[i]
         << ", \"within_limits\": " << (one.within_limits ? "true" : "false") << ",\n  \"hidden\": ["
-        << hidden << "],\n  \"outside\": " << outside(one.of.outside)
-        << ",\n  \"left_out\": " << left_out(one) << ",\n  \"seed\": " << one.of.seed
-        << ", \"spec\": \"" << one.text << "\"}";
+        << hidden << "],\n  \"unshown\": " << list(unshown_effects(one.of))
+        << ", \"outside\": " << outside(one.of.outside) << ",\n  \"left_out\": " << left_out(one)
+        << ",\n  \"seed\": " << one.of.seed << ", \"spec\": \"" << one.text << "\"}";
   }
   out << "\n]}\n";
   if (!out.flush()) throw std::runtime_error("cannot write " + file);

@@ -36,7 +36,7 @@ Count covered(const std::string& text, const ParameterSelection& selection) {
     greybox::EstimationOptions options = workbench_test::without_profiles();
     options.starts = 1;
     const greybox::EstimationSummary e = greybox::estimate(t, options);
-    for (const truth::PlantField& field : truth::plant_fields()) {
+    for (const truth::PlantField& field : truth::plant_fields(truth::Kind::actuator)) {
       for (const greybox::EstimatedParameter& p : e.parameters) {
         if (p.free.name != field.name) continue;
         const double value = of.plant.*field.member;

@@ -47,7 +47,7 @@ inline truth::Record run(const truth::Case& of, const monitor::control::Referenc
                          double duration_s) {
   const auto reference = monitor::control::make_reference(config);
   constexpr double kTs_s = 0.005;
-  truth::Rig rig(of.plant, of.hidden, of.left_out);
+  truth::Rig rig(truth::machine(of));
   std::mt19937 random(static_cast<unsigned>(of.seed));
   std::normal_distribution<double> noise_m(0.0, of.noise_m);
   truth::Record record;
