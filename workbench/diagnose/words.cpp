@@ -84,10 +84,13 @@ std::string possible_words(const selection::PossibleEffect& possible) {
       return possible.effect + " (others do as well)";
     case selection::Doubt::remainder:
       return possible.effect + " (what remains unexplained is no smaller than what it explains)";
+    case selection::Doubt::interrupted:
+      return possible.effect + " (not everything was tried)";
     case selection::Doubt::stand_in:
       break;
   }
-  return possible.effect + " (one of several that may stand in for one other law)";
+  return possible.effect +
+         " (may stand in for another law: what remains enters as it does, or several share it)";
 }
 
 std::string refused_words(const selection::RefusedModel& model) {

@@ -49,12 +49,6 @@ StateVector input_of(const Linearisation& model, LineSite site, std::size_t k) {
   return b;
 }
 
-std::vector<LineSite> sites_of(const Linearisation& model) {
-  std::vector<LineSite> sites{LineSite::force, LineSite::sensor};
-  if (model.supply) sites.push_back(LineSite::supply);
-  return sites;
-}
-
 /// d (half the squared innovations) / d w(k).
 VectorXd influence(const Linearisation& model, const Dataset& record, const InnovationGains& gains,
                    LineSite site, const VectorXd& innovations) {
@@ -186,9 +180,18 @@ std::vector<LineAmplitude> line_amplitudes(const Linearisation& model, const Dat
     const auto at = 2 * static_cast<Index>(i);
     const Eigen::Vector2d w(found[at] / norms[at], found[at + 1] / norms[at + 1]);
     const VectorXd seen = line_response(model, record, weak, lines[i]) * w;
-    amplitudes.push_back({w.norm(), std::sqrt(seen.squaredNorm() / static_cast<double>(samples))});
+    // the first half holds the transient of a line that sets in with the record
+    const Index settled = samples - samples / 2;
+    amplitudes.push_back(
+        {w.norm(), std::sqrt(seen.tail(settled).squaredNorm() / static_cast<double>(settled))});
   }
   return amplitudes;
+}
+
+std::vector<LineSite> sites_of(const Linearisation& model) {
+  std::vector<LineSite> sites{LineSite::force, LineSite::sensor};
+  if (model.supply) sites.push_back(LineSite::supply);
+  return sites;
 }
 
 std::vector<SpectralLine> promising_lines(const Linearisation& model, const Dataset& record,

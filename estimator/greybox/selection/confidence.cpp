@@ -5,12 +5,31 @@
 #include <optional>
 
 #include "estimator/greybox/selection/diagnosis.h"
+#include "plant_sim/library.h"
 
 namespace estimator::greybox::selection {
 namespace {
 
 constexpr double kStandardErrors = 2.0;
-constexpr double kClear = 4.0;
+constexpr double kClear = 10.0;
+constexpr double kMost = 0.5;
+
+/// How an effect enters the equations, in the words of a Localisation.
+std::string site_of(const std::string& effect) {
+  const plant_sim::EffectInfo* info = plant_sim::find_effect(effect);
+  if (info == nullptr || info->sites.empty()) return "";
+  const std::string& site = info->sites.front();
+  if (site == "force" || site == "dry_friction" || site == "inertia") return "force";
+  if (site == "sensor") return "measurement";
+  if (site == "command") return "command";
+  return "flow";
+}
+
+/// Whether most of the remaining error enters as this effect does: the law there may be another.
+bool shares_the_remainder(const Diagnosis& diagnosis, const std::string& effect) {
+  return !diagnosis.where.empty() && diagnosis.where.front().site == site_of(effect) &&
+         diagnosis.where.front().explained_ratio > kMost;
+}
 
 /// Whether an effect, when it was added, explained less than kClear times what is left: by the
 /// likelihood, or in mean squared errors.
@@ -43,6 +62,7 @@ std::optional<Doubt> doubt_of(const Diagnosis& diagnosis, const std::string& eff
     }
   }
   if (explains_little(diagnosis, effect)) return Doubt::remainder;
+  if (shares_the_remainder(diagnosis, effect)) return Doubt::stand_in;
   return {};
 }
 
@@ -58,6 +78,8 @@ const char* to_string(Doubt doubt) {
       return "rivals";
     case Doubt::remainder:
       return "remainder";
+    case Doubt::interrupted:
+      return "interrupted";
     case Doubt::stand_in:
       break;
   }
@@ -66,11 +88,15 @@ const char* to_string(Doubt doubt) {
 
 std::vector<PossibleEffect> possible_effects(const Diagnosis& diagnosis) {
   std::vector<PossibleEffect> possible;
-  if (diagnosis.verdict != Verdict::unexplained || diagnosis.search.interrupted) return possible;
+  if (diagnosis.verdict != Verdict::unexplained) return possible;
   const bool bundle = diagnosis.missing.size() >= kStandIn;
   for (const std::string& effect : diagnosis.missing) {
     const std::optional<Doubt> doubt = doubt_of(diagnosis, effect);
-    if (doubt || bundle) possible.push_back({effect, doubt.value_or(Doubt::stand_in)});
+    const bool cut_short = diagnosis.search.interrupted;
+    if (doubt || bundle || cut_short) {
+      possible.push_back(
+          {effect, doubt.value_or(cut_short ? Doubt::interrupted : Doubt::stand_in)});
+    }
   }
   return possible;
 }

@@ -18,7 +18,8 @@ enum class Doubt {
   within_error,  ///< its size is below two standard errors, or has none
   rivals,        ///< others do as well, and an error remains
   remainder,     ///< what no effect explains is no smaller than what it explains
-  stand_in,      ///< one of three or more that together leave an error: likely one other law
+  interrupted,   ///< the search ended before everything was tried
+  stand_in,      ///< one of three or more that leave an error, or one that enters as that does
 };
 /// "at_bound", ...
 [[nodiscard]] const char* to_string(Doubt doubt);

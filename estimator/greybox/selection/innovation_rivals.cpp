@@ -42,7 +42,7 @@ InnovationStage exchanged(const SearchContext& plain, const InnovationStage& sta
 
 }  // namespace
 
-void eliminate(const SearchContext& plain, InnovationStage& stage) {
+void eliminate(const SearchContext& plain, InnovationStage& stage, double evidence_nats) {
   bool dropped = true;
   while (dropped && stage.model.added.size() > 1 && !plain.cancelled()) {
     dropped = false;
@@ -50,7 +50,7 @@ void eliminate(const SearchContext& plain, InnovationStage& stage) {
       InnovationStage without = exchanged(plain, stage, effect, "", {});
       const double loss = 0.5 * (without.minus_two_log - stage.minus_two_log) -
                           penalty_nats(stage.model.fitted, without.model.fitted);
-      if (loss >= kEvidence_nats) continue;
+      if (loss >= evidence_nats) continue;
       stage = std::move(without);
       dropped = true;
       break;

@@ -18,7 +18,7 @@ struct InnovationRivals {
 };
 
 /// Removes effects whose absence costs less than they are worth.
-void eliminate(const SearchContext& plain, InnovationStage& stage);
+void eliminate(const SearchContext& plain, InnovationStage& stage, double evidence_nats);
 
 /// For each effect found, those that explain the record about as well in its place. `before` is the
 /// model as given.

@@ -20,9 +20,26 @@ constexpr std::size_t kMostLines = 4;
 constexpr std::size_t kFinalists = 3;
 constexpr std::size_t kMostLineFinalists = 2;
 constexpr double kParametersOfLine = 3.0;
+/// Share of what a search has explained that may be owed to its models being inexact: a candidate
+/// has to gain more.
+constexpr double kInexact = 0.005;
 
-/// One round: false when nothing gains enough.
-bool extend(const SearchContext& plain, InnovationStage& stage,
+/// Where a line enters is decided before the effects are known that pass it on: the other sites are
+/// tried again.
+void reconsider_sites(const SearchContext& plain, InnovationStage& stage) {
+  for (std::size_t i = 0; i < stage.noise.lines.size(); ++i) {
+    for (const disturbance::LineSite site : disturbance::sites_of(stage.linear.front())) {
+      if (plain.cancelled() || site == stage.noise.lines[i].site) continue;
+      disturbance::NoiseModel noise = stage.noise;
+      noise.lines[i].site = site;
+      InnovationStage other = settled(plain, stage.model, noise, 1, wide(plain.options.threads));
+      if (other.minus_two_log < stage.minus_two_log - 2.0) stage = std::move(other);
+    }
+  }
+}
+
+/// One round: false when nothing gains enough. `evidence_nats`: what a candidate must gain.
+bool extend(const SearchContext& plain, InnovationStage& stage, double evidence_nats,
             std::vector<InnovationRound>& rounds) {
   std::vector<InnovationTrial> trials;
   if (stage.model.added.size() < kMostEffects) {
@@ -64,7 +81,7 @@ bool extend(const SearchContext& plain, InnovationStage& stage,
   std::size_t chosen = trials.size();
   for (std::size_t i = 0; i < trials.size(); ++i) {
     const InnovationTrial& trial = trials[i];
-    if (!trial.candidate.settled || !(trial.candidate.gain_nats >= kEvidence_nats)) continue;
+    if (!trial.candidate.settled || !(trial.candidate.gain_nats >= evidence_nats)) continue;
     if (leaves_its_range(stages[i].model.fitted, stage.model.fitted.parameters.size())) continue;
     if (chosen == trials.size() || trial.candidate.gain_nats > trials[chosen].candidate.gain_nats) {
       chosen = i;
@@ -86,6 +103,7 @@ bool extend(const SearchContext& plain, InnovationStage& stage,
   InnovationStage polished = settled(plain, stages[chosen].model, stages[chosen].noise, kMostTurns,
                                      wide(plain.options.threads));
   stage = std::isfinite(polished.minus_two_log) ? std::move(polished) : std::move(stages[chosen]);
+  if (!trials[chosen].candidate.effect.empty()) reconsider_sites(plain, stage);
   return true;
 }
 
@@ -127,10 +145,14 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
   InnovationStage stage = settled(context, first, {}, kMostTurns, wide(context.options.threads));
   search.before = stage;
   if (!std::isfinite(stage.minus_two_log)) return search;  // cancelled before anything was known
-  while (!context.cancelled() && extend(context, stage, search.rounds)) {
+  const auto evidence_nats = [&] {
+    return kEvidence_nats +
+           kInexact * 0.5 * std::max(0.0, search.before.minus_two_log - stage.minus_two_log);
+  };
+  while (!context.cancelled() && extend(context, stage, evidence_nats(), search.rounds)) {
   }
   take_held(context, held, stage, search.rounds);
-  eliminate(context, stage);
+  eliminate(context, stage, evidence_nats());
   if (!stage.model.added.empty()) search.rivals = rivals_of(context, stage, search.before);
   const std::vector<CurveGain> curves =
       context.cancelled() ? std::vector<CurveGain>() : curve_gains(stage);
