@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <thread>
+#include <utility>
 
 #include "config/record/record.h"
 #include "config/record/whole_file.h"
@@ -12,7 +14,9 @@
 #include "config/schema/error.h"
 #include "estimator/fdi/tracker/baseline_file.h"
 #include "estimator/fdi/tracker/tracking_text.h"
+#include "estimator/greybox/dataset.h"
 #include "estimator/greybox/parameter_catalogue.h"
+#include "estimator/greybox/tracking/disturbed_baseline.h"
 #include "estimator/residual/noise_floor.h"
 #include "workbench/cli/file_check.h"
 #include "workbench/fit/parameter_selection.h"
@@ -114,6 +118,25 @@ std::vector<std::string> tracked_names(const IsolationRequest& request, const Re
   return names;
 }
 
+/// [from, to) of the record.
+Record cut(const Record& record, const Span& within) {
+  Record out;
+  out.name = record.name;
+  out.sample_time_s = record.sample_time_s;
+  out.notes = record.notes;
+  std::size_t gap = 0;
+  for (std::size_t k = 0; k < record.size(); ++k) {
+    const bool after_gap = gap < record.gaps.size() && record.gaps[gap] == k;
+    if (after_gap) ++gap;
+    if (record.t_s[k] < within.from_s || record.t_s[k] >= within.to_s) continue;
+    if (after_gap && out.size() > 0) out.gaps.push_back(out.size());
+    out.t_s.push_back(record.t_s[k]);
+    out.u_V.push_back(record.u_V[k]);
+    out.y_m.push_back(record.y_m[k]);
+  }
+  return out;
+}
+
 /// Every window of [from, to) of the record.
 std::vector<WindowResult> track(ParameterTracker& tracker, const Record& record,
                                 const Readings& readings, const Span& within) {
@@ -163,6 +186,19 @@ void check_determined(const std::vector<WindowResult>& windows, const ParameterS
           : "has no usable window: " +
                 tracker::invalid_words(set, windows.back().estimates[*parameter].invalid);
   throw config::schema::bad_data(where, found, "a healthy motion that tells the parameters");
+}
+
+/// Baseline of a disturbed rig, by command and position; none: the process is not disturbed.
+std::optional<Baseline> learn_disturbed(const plant_sim::ModelFile& model,
+                                        const IsolationRequest& request, const Record& healthy,
+                                        IsolationReport& out) {
+  const ParameterSet set = tracking::choose(model, request.parameters, "--parameters");
+  std::optional<Baseline> baseline = tracking::learn_disturbed_baseline(
+      model, set, greybox::dataset_of(healthy), std::max(1U, std::thread::hardware_concurrency()));
+  if (!baseline) return baseline;
+  out.set = set;
+  out.notes = healthy.notes;
+  return baseline;
 }
 
 void note_calibration(IsolationReport& out) {
@@ -243,8 +279,17 @@ IsolationReport isolate(const IsolationRequest& request) {
     const Span baseline = span(request.baseline);
     ParameterTracker learning = tracker();
     const std::vector<WindowResult> windows = track(learning, record, readings, baseline);
-    check_determined(windows, out.set, record.name + ": --healthy " + request.baseline);
-    out.baseline = tracking::learn_baseline(windows, out.set, floor_m);
+    const auto undetermined = tracking::undetermined_parameter(windows, out.set);
+    std::optional<Baseline> disturbed;
+    if (undetermined && !windows.empty()) {
+      disturbed = learn_disturbed(model, request, cut(record, baseline), out);
+    }
+    if (!disturbed) {
+      check_determined(windows, out.set, record.name + ": --healthy " + request.baseline);
+      out.baseline = tracking::learn_baseline(windows, out.set, floor_m);
+    } else {
+      out.baseline = std::move(*disturbed);
+    }
     out.learnt = true;
     out.baseline_from_s = baseline.from_s;
     out.baseline_to_s = baseline.to_s;

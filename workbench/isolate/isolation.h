@@ -64,7 +64,8 @@ struct IsolationReport {
 /// they counted), left_out (why they did not), valid, why, part}], alarms: [{parameter, direction
 /// ("high", "low"), value, std_error, healthy, change_ratio, confidence, ambiguity_group, rivals:
 /// [{parameter, value}], raised_s, cleared_s, advice, words}], healthy: {rms_m, from_s, to_s,
-/// values, pressures}, noise_floor_m, parameters, limit_m, notes, fit_s (median of a window).
+/// values, pressures, disturbance}, noise_floor_m, parameters, limit_m, notes, fit_s (median of a
+/// window).
 [[nodiscard]] std::string to_json(const IsolationReport& outcome);
 
 [[nodiscard]] present::Report to_report(const IsolationReport& outcome);

@@ -17,7 +17,22 @@ using Eigen::Index;
 using nlohmann::ordered_json;
 using present::number_or_null;
 
-ordered_json json_of(const WindowResult& window, const ParameterSet& set) {
+ordered_json json_of(const tracking::ProcessNoise& noise, const tracking::DisturbanceLevel& level) {
+  ordered_json lines = ordered_json::array();
+  for (std::size_t i = 0; i < noise.model.lines.size(); ++i) {
+    const auto& line = noise.model.lines[i];
+    lines.push_back({{"as", noise.site_name(line.site)},
+                     {"frequency_Hz", line.frequency_Hz},
+                     {"amplitude", number_or_null(level.line_values[i])}});
+  }
+  return {{"as", noise.site_name(tracking::LineSite::force)},
+          {"value", number_or_null(level.random)},
+          {"corner_Hz", number_or_null(noise.model.noise.corner_Hz)},
+          {"lines", lines}};
+}
+
+ordered_json json_of(const WindowResult& window, const IsolationReport& o) {
+  const ParameterSet& set = o.set;
   ordered_json out{{"t_s", window.t_s}, {"from_s", window.from_s}};
   for (std::size_t i = 0; i < set.tracked; ++i) {
     const tracking::ParameterEstimate& estimate = window.estimates[i];
@@ -44,6 +59,7 @@ ordered_json json_of(const WindowResult& window, const ParameterSet& set) {
   if (window.left_out) out["left_out"] = tracker::left_out_words(window.left_out);
   out["valid"] = window.valid;
   out["why"] = tracker::invalid_words(set, window.invalid);
+  if (window.level) out["disturbance"] = json_of(*o.baseline.noise, *window.level);
   if (window.part) out["part"] = tracker::part_words(set, *window.part);
   return out;
 }
@@ -108,11 +124,22 @@ std::string to_json(const IsolationReport& o) {
                                    {"out_offset_Pa", chambers.out.offset_Pa},
                                    {"offset_sd_Pa", chambers.offset_sd_Pa}};
   }
+  if (o.baseline.noise) {
+    out["healthy"]["disturbance"] = json_of(*o.baseline.noise, o.baseline.noise->healthy);
+    ordered_json errors = ordered_json::object();
+    for (std::size_t i = 0; i < o.set.tracked; ++i) {
+      const greybox::FreeParameter& p = o.set.parameters[i];
+      const auto at = static_cast<Index>(i);
+      errors[p.name] = number_or_null(std::sqrt(o.baseline.noise->covariance(at, at)) *
+                                      p.slope(o.baseline.theta[at]));
+    }
+    out["healthy"]["std_errors"] = errors;
+  }
   out["limit_m"] = number_or_null(o.settings.most_ratio * o.baseline.rms_m);
   out["alarms"] = ordered_json::array();
   for (const DetectedChange& alarm : o.alarms) out["alarms"].push_back(json_of(alarm, o));
   out["windows"] = ordered_json::array();
-  for (const WindowResult& window : o.windows) out["windows"].push_back(json_of(window, o.set));
+  for (const WindowResult& window : o.windows) out["windows"].push_back(json_of(window, o));
   out["notes"] = o.notes;
   out["fit_s"] = number_or_null(median_fit_s(o.windows));
   return out.dump(2) + "\n";

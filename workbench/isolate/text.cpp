@@ -43,6 +43,24 @@ std::string healthy_line(const IsolationReport& o) {
   return text + "\n";
 }
 
+std::string disturbance_lines(const IsolationReport& o) {
+  if (!o.baseline.noise) return {};
+  const tracking::ProcessNoise& noise = *o.baseline.noise;
+  std::string text = "disturbed: " + tracker::disturbance_words(noise, noise.healthy) + "\n";
+  text += "healthy values known to";
+  for (std::size_t i = 0; i < o.set.tracked; ++i) {
+    const greybox::FreeParameter& p = o.set.parameters[i];
+    const auto at = static_cast<Eigen::Index>(i);
+    text += (i == 0 ? " " : ", ") + tracker::name_words(p.name) + " " +
+            tracker::value_words(p, o.baseline.theta[at], std::sqrt(noise.covariance(at, at)));
+  }
+  const WindowResult* const last = o.windows.empty() ? nullptr : &o.windows.back();
+  if (last != nullptr && last->level) {
+    text += "\ndisturbed at the end: " + tracker::disturbance_words(noise, *last->level);
+  }
+  return text + "\n";
+}
+
 std::string alarm_lines(const IsolationReport& o, const DetectedChange& alarm) {
   std::string text = "ALARM " + seconds(alarm.raised_s) +
                      (alarm.active() ? "" : " to " + seconds(alarm.cleared_s)) + ": " +
@@ -79,8 +97,10 @@ std::string window_lines(const IsolationReport& o) {
   const auto left_out =
       std::count_if(o.windows.begin(), o.windows.end(),
                     [](const WindowResult& window) { return static_cast<bool>(window.left_out); });
-  std::string text = std::to_string(o.windows.size()) + " windows of " +
-                     seconds(o.settings.window_s) + ", " + std::to_string(invalid) + " invalid\n" +
+  const std::string length = o.baseline.noise ? "up to " + seconds(o.settings.disturbed_window_s)
+                                              : seconds(o.settings.window_s);
+  std::string text = std::to_string(o.windows.size()) + " windows of " + length + ", " +
+                     std::to_string(invalid) + " invalid\n" +
                      kind_lines(o, [&o](const WindowResult& window) {
                        return tracker::invalid_words(o.set, window.invalid);
                      });
@@ -112,7 +132,7 @@ std::string window_line(const IsolationReport& o, const WindowResult& window) {
 }  // namespace
 
 std::string to_text(const IsolationReport& o, bool all_windows) {
-  std::string text = healthy_line(o);
+  std::string text = healthy_line(o) + disturbance_lines(o);
   for (const std::string& note : o.notes) text += "note: " + note + "\n";
   for (const DetectedChange& alarm : o.alarms) text += alarm_lines(o, alarm);
   if (o.alarms.empty()) text += "no change named\n";

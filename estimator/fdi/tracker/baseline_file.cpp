@@ -49,6 +49,17 @@ void BaselineFile::visit(Visitor& v) {
   v.number({"rms_m", "RMS error of a healthy window", true}, rms_m, {1e-12, 1.0});
   v.number({"noise_floor_m", "noise floor of the position"}, noise_floor_m, {0.0, 1.0});
   chambers.visit(v);
+  visit_disturbance(v);
+}
+
+void BaselineFile::visit_disturbance(Visitor& v) {
+  bool disturbed = noise.has_value();
+  v.optional_table({"disturbance", "what disturbs the healthy rig's process"}, disturbed,
+                   [&](Visitor& table) {
+                     if (!noise) noise.emplace();
+                     noise->visit(table);
+                   });
+  if (!disturbed) noise.reset();
 }
 
 std::string values_line(const plant_sim::ModelFile& model) {
@@ -71,6 +82,7 @@ BaselineFile baseline_file(const plant_sim::ModelFile& model,
   }
   file.rms_m = baseline.rms_m;
   file.chambers = baseline.chambers;
+  file.noise = baseline.noise;
   return file;
 }
 
@@ -102,6 +114,10 @@ BaselineFile read_baseline(const std::filesystem::path& path, const plant_sim::M
   }
   std::vector<std::string> tracked;
   for (std::size_t i = 0; i < set.tracked; ++i) tracked.push_back(set.parameters[i].name);
+  const auto size = static_cast<Eigen::Index>(set.tracked);
+  if (file.noise && file.noise->covariance.rows() != size) {
+    throw bad_config(where + ": disturbance.covariance", "is not of as many parameters");
+  }
   if (sorted(file.parameters) != sorted(tracked)) {
     throw bad_config(
         where + ": parameters",
@@ -117,11 +133,18 @@ greybox::tracking::Baseline baseline_of(const BaselineFile& file,
   baseline.rms_m = file.rms_m;
   baseline.chambers = file.chambers;
   baseline.theta = set.file;
+  Eigen::VectorXi order = Eigen::VectorXi::LinSpaced(static_cast<Eigen::Index>(set.tracked), 0,
+                                                     static_cast<int>(set.tracked) - 1);
   for (std::size_t i = 0; i < set.tracked; ++i) {
     for (std::size_t j = 0; j < file.parameters.size(); ++j) {
       if (file.parameters[j] != set.parameters[i].name) continue;
+      order[static_cast<Eigen::Index>(i)] = static_cast<int>(j);
       baseline.theta[static_cast<Eigen::Index>(i)] = set.parameters[i].to_theta(file.values[j]);
     }
+  }
+  if (file.noise) {
+    baseline.noise = file.noise;
+    baseline.noise->covariance = file.noise->covariance(order, order).eval();
   }
   return baseline;
 }

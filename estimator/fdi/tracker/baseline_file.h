@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,8 +30,10 @@ struct BaselineFile {
   double rms_m = 0.0;
   double noise_floor_m = 0.0;
   greybox::tracking::ChamberErrors chambers;  ///< unknown: chamber pressures are not used
+  std::optional<greybox::tracking::ProcessNoise> noise;  ///< of a disturbed rig
 
   void visit(config::schema::Visitor& v);
+  void visit_disturbance(config::schema::Visitor& v);
 };
 
 /// The whole model as one line (estimator/fdi/snapshot.h).

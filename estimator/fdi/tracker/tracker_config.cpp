@@ -55,6 +55,12 @@ void TrackerConfig::visit(Visitor& v) {
   v.boolean({"pressures", "supply and chamber pressures are used where the rig reads them"},
             pressures);
   learnt.chambers.visit(v);
+  learnt.visit_disturbance(v);
+  v.number({"disturbed_window_s", "longest window on a disturbed rig"}, settings.disturbed_window_s,
+           {0.1, kLongest_s});
+  v.number({"disturbed_std_error_ratio",
+            "relative standard error above which a value of a disturbed rig is invalid"},
+           settings.disturbed_std_error, {1e-6, 10.0});
   v.texts({"follow", "parameters whose slow changes are no faults"}, settings.drift.parameters);
   v.number({"follow_ratio_per_h", "fastest drift of the healthy value, as a ratio"},
            settings.drift.ratio_per_h, {1e-3, 100.0});
@@ -92,6 +98,7 @@ void TrackerConfig::load(const estimator::fdi::ConfigLoadContext& context) {
     learnt.values.push_back(
         set.parameters[i].to_physical(known.theta[static_cast<Eigen::Index>(i)]));
   }
+  learnt.noise = known.noise;
   baseline.clear();
 }
 
@@ -118,7 +125,7 @@ std::unique_ptr<estimator::fdi::DetectionMethod> TrackerConfig::make(
     if (learnt.values.size() != set.tracked) {
       throw bad_config(where() + ": healthy_values", "are not as many as parameters");
     }
-    known = greybox::tracking::Baseline{learnt.rms_m, set.file, learnt.chambers};
+    known = greybox::tracking::Baseline{learnt.rms_m, set.file, learnt.chambers, learnt.noise};
     for (std::size_t i = 0; i < set.tracked; ++i) {
       known->theta[static_cast<Eigen::Index>(i)] = set.parameters[i].to_theta(learnt.values[i]);
     }

@@ -44,6 +44,24 @@ std::string value_words(const FreeParameter& p, double theta, double std_error) 
       config::units::quantity(p.name, p.to_physical(theta), std_error * p.slope(theta)));
 }
 
+std::string disturbance_words(const ProcessNoise& noise, const DisturbanceLevel& level) {
+  std::string text = noise.force ? "random force " + config::units::words(config::units::quantity(
+                                                         "force_N", level.random, NAN))
+                                 : "random speed " + config::units::speed_words(level.random);
+  text += fmt::format(" below {:.2g} Hz", noise.model.noise.corner_Hz);
+  for (std::size_t i = 0; i < noise.model.lines.size(); ++i) {
+    const auto& line = noise.model.lines[i];
+    const std::string unit = noise.unit_of(line.site);
+    const double value = i < level.line_values.size() ? level.line_values[i] : NAN;
+    text += "; " + noise.site_name(line.site) +
+            fmt::format(" line at {:.2f} Hz, ", line.frequency_Hz) +
+            (unit == "m/s"
+                 ? config::units::speed_words(value)
+                 : config::units::words(config::units::quantity("amplitude_" + unit, value, NAN)));
+  }
+  return text;
+}
+
 std::string misfit_words(const Misfit& misfit) {
   const std::string chamber = misfit.inlet ? "pressure in" : "pressure out";
   switch (misfit.cause) {

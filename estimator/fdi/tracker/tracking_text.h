@@ -10,11 +10,13 @@
 #include "estimator/greybox/tracking/change_detector.h"
 #include "estimator/greybox/tracking/excitation_design.h"
 #include "estimator/greybox/tracking/parameter_set.h"
+#include "estimator/greybox/tracking/process_noise.h"
 #include "estimator/greybox/tracking/window_result.h"
 
 namespace estimator::fdi::tracker {
 
 using greybox::FreeParameter;
+using greybox::tracking::DisturbanceLevel;
 using greybox::tracking::ExcitationDesign;
 using greybox::tracking::InvalidReason;
 using greybox::tracking::Misfit;
@@ -22,6 +24,7 @@ using greybox::tracking::ParameterChange;
 using greybox::tracking::ParameterSet;
 using greybox::tracking::PartialFit;
 using greybox::tracking::PressuresLeftOut;
+using greybox::tracking::ProcessNoise;
 using greybox::tracking::Rival;
 
 /// "6.89 MPa +- 700 Pa" for a parameter at a search value.
@@ -29,6 +32,10 @@ using greybox::tracking::Rival;
                                       double std_error);
 /// "supply pressure" for "supply_pressure_Pa".
 [[nodiscard]] std::string name_words(const std::string& name);
+
+/// "random force 29.8 N below 3.1 Hz; pressure line at 23.00 Hz, 99.1 kPa"
+[[nodiscard]] std::string disturbance_words(const ProcessNoise& noise,
+                                            const DisturbanceLevel& level);
 
 /// Empty for Cause::none, like the two below.
 [[nodiscard]] std::string misfit_words(const Misfit& misfit);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "estimator/greybox/tracking/process_noise.h"
 #include "estimator/greybox/tracking/window_result.h"
 
 namespace estimator::greybox::tracking {
@@ -16,6 +17,9 @@ struct Baseline {
   double rms_m = 0.0;     ///< error of a window; at least the noise floor
   Eigen::VectorXd theta;  ///< every parameter of the set, search units
   ChamberErrors chambers{};
+  /// Of a disturbed rig (disturbed_baseline.h): rms_m is the scaled innovations' standard
+  /// deviation.
+  std::optional<ProcessNoise> noise{};
 
   [[nodiscard]] ErrorScales errors() const { return {rms_m, chambers}; }
 };

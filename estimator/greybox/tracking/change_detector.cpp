@@ -97,8 +97,15 @@ void ChangeDetector::update(double t_s, const std::vector<ParameterChange>& name
     track.direction = 0;
     const double off = std::abs(seen[i].theta - baseline[static_cast<Eigen::Index>(i)]);
     // Another change may hide this one: without a named change the return is certain.
-    const bool back = named.empty() || off < track.least;
-    if (track.active >= 0 && back && off + kBack * seen[i].std_error < track.least) {
+    const double least =
+        track.active < 0
+            ? track.least
+            : std::max(
+                  track.least,
+                  thresholds_.back_share *
+                      std::abs(changes_[static_cast<std::size_t>(track.active)].named.deviation));
+    const bool back = named.empty() || off < least;
+    if (track.active >= 0 && back && off + kBack * seen[i].std_error < least) {
       changes_[static_cast<std::size_t>(track.active)].cleared_s = t_s;
       track = {track.least, 0, -1, false};
     }

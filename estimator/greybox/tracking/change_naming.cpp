@@ -34,6 +34,9 @@ class ChangeNaming {
     if (read != kNotMeasured)
       base_[static_cast<Index>(read)] = found.theta[static_cast<Index>(read)];
     if (held.baseline != kNotMeasured) rivals_.push_back(held.baseline);
+    for (std::size_t i = 0; held.others_are_rivals && i < set.tracked; ++i) {
+      if (std::isinf(found.std_error[static_cast<Index>(i)])) rivals_.push_back(i);
+    }
     for (std::size_t a = set.tracked; a < set.parameters.size(); ++a) rivals_.push_back(a);
   }
 
@@ -136,13 +139,23 @@ class ChangeNaming {
     const auto at = static_cast<Index>(one.parameter);
     without[at] = baseline_[at];
     const double effect = fit_.fit(data_, {}, without, errors_).chi_square - chi_square_;
+    std::vector<std::pair<double, Rival>> alone;
     for (const std::size_t a : rivals_) {
       const WindowFitSummary instead = fit_.fit(data_, {a}, without, errors_);
       const double left = instead.chi_square - chi_square_;
       if (left > std::max(kChance, kLeft * effect)) continue;
+      if (held_.others_are_rivals) {
+        alone.push_back({left, {name(a), value(a, instead.theta)}});
+        continue;
+      }
       const WindowFitSummary best = let_follow(a, one.parameter, instead.theta);
       if (!as_good(best)) continue;
       one.rivals.push_back({name(a), value(a, best.theta)});
+    }
+    std::stable_sort(alone.begin(), alone.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (std::size_t i = 0; i < std::min(alone.size(), kMostRivals); ++i) {
+      one.rivals.push_back(alone[i].second);
     }
     add_sensor(without, one.rivals);
   }

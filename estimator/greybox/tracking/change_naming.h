@@ -33,6 +33,8 @@ struct Thresholds {
   double at_once = 20.0;      ///< standard errors at which one window is enough for an alarm
   bool suspect_position_sensor =
       false;  ///< the position sensor may have changed too and joins the groups
+  /// Share of a named change within which its parameter is back; 0: within the least change.
+  double back_share = 0.0;
 };
 
 /// Least change of an effect's parameter, as a ratio to its typical size.
@@ -40,6 +42,8 @@ inline constexpr double kLeastOfTypical = 0.2;
 inline constexpr double kChance = 16.0;  ///< chi-square
 inline constexpr double kLeft = 1e-3;
 inline constexpr double kAsGood = 1.05;  ///< ratio of the RMS errors
+/// Largest number of rivals where rivals are judged alone: the best.
+inline constexpr std::size_t kMostRivals = 3;
 /// Prior width, as a ratio to the value, up to which a plant parameter may be a rival: less certain
 /// ones are calibrated by healthy records.
 inline constexpr double kMostUncertain_ratio = 0.1;
@@ -85,6 +89,9 @@ inline constexpr std::size_t kNotMeasured = static_cast<std::size_t>(-1);
 struct HeldParameters {
   std::size_t measured = kNotMeasured;  ///< replaced by a reading; has no rivals
   std::size_t baseline = kNotMeasured;  ///< held at its healthy value; a rival of other parameters
+  /// Of a disturbed rig: the tracked parameters that were held at their healthy values, whose
+  /// standard error in the fit is infinite, are rivals too, and rivals are judged alone.
+  bool others_are_rivals = false;
 };
 
 /// `baseline`: theta of every parameter; `found`: the fit of the tracked ones to `data`.

@@ -55,7 +55,9 @@ ParameterTracker::ParameterTracker(const plant_sim::ModelFile& model, const Para
       supply_(tracked_index(set, "supply_pressure_Pa")),
       gain_(tracked_index(set, "valve_gain_m_per_V")),
       stride_(std::max<std::size_t>(1, samples_in(settings.stride_s, sample_time_s))),
-      fit_(model, set.parameters, sample_time_s, lead_ + window_, settings.observer_per_s),
+      fit_(model, set.parameters, sample_time_s,
+           lead_ + std::max(window_, samples_in(settings.disturbed_window_s, sample_time_s)),
+           settings.observer_per_s),
       samples_(lead_, window_),
       drift_(set, settings.drift),
       near_(set.file),
@@ -67,10 +69,12 @@ void ParameterTracker::take(const Baseline& baseline) {
   baseline_ = baseline;
   drift_.take(baseline.theta);
   near_ = baseline.theta;
+  if (baseline_->noise) prepare_disturbed();
 }
 
 std::optional<WindowResult> ParameterTracker::push(double t_s, double u_V, double y_m, bool first,
                                                    const config::signals::Pressures& pressures) {
+  if (disturbed_) return push_disturbed(t_s, u_V, y_m, first);
   if (first) {
     samples_.clear();
     until_ = samples_.needed();
@@ -178,8 +182,9 @@ void ParameterTracker::judge(WindowResult& window, const WindowData& data,
   for (std::size_t i = 0; i < set_.tracked; ++i) {
     ParameterEstimate& one = window.estimates[i];
     const FreeParameter& p = set_.parameters[i];
-    const double most =
-        p.scale == Scale::logarithmic ? settings_.most_std_error : settings_.most_of_typical;
+    const double most = p.scale != Scale::logarithmic ? settings_.most_of_typical
+                        : disturbed_                  ? settings_.disturbed_std_error
+                                                      : settings_.most_std_error;
     one.invalid = all;
     if (!all && i == gain_ && window.left_out &&
         std::isinf(found.std_error[static_cast<Index>(i)])) {
@@ -251,6 +256,7 @@ void ParameterTracker::reset() {
   cache_ = {};
   pressures_out_ = false;
   detector_ = ChangeDetector(set_, settings_.thresholds);
+  disturbed_.reset();
 }
 
 void ParameterTracker::serialize(estimator::StateArchive& archive) {
@@ -260,16 +266,22 @@ void ParameterTracker::serialize(estimator::StateArchive& archive) {
   samples_.serialize(archive);
   archive.value(until_);
   archive.value(pressures_out_);
-  bool knows = baseline_.has_value();
-  archive.value(knows);
+  enum class Known : unsigned char { nothing, baseline, disturbed_baseline };
+  Known known = !baseline_         ? Known::nothing
+                : baseline_->noise ? Known::disturbed_baseline
+                                   : Known::baseline;
+  archive.value(known);
   if (archive.restores()) {
     baseline_.reset();
-    if (knows) baseline_ = Baseline{0.0, set_.file, {}};
+    disturbed_.reset();
+    if (known != Known::nothing) baseline_ = Baseline{0.0, set_.file, {}};
+    if (known == Known::disturbed_baseline) baseline_->noise.emplace();
   }
   if (baseline_) {
     archive.value(baseline_->rms_m);
     vector(baseline_->theta);
     baseline_->chambers.serialize(archive);
+    if (baseline_->noise) serialize_disturbed(archive);
   }
   drift_.serialize(archive);
   vector(near_);

@@ -18,6 +18,10 @@
 //   tracked), or a transducer's reading stands still, the window is fitted by position alone
 //   (WindowResult::left_out). By position alone valve gain and supply pressure are not separable:
 //   where both are tracked the gain is held, and a change is named as the group of the two.
+//
+// Of a disturbed rig (Baseline::noise) the position alone is used. The window grows up to
+// disturbed_window_s; it begins anew where a parameter changed within it, and changes are judged by
+// the few parameters that explain the window's latest part (tail_information.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -31,7 +35,9 @@
 #include "estimator/greybox/tracking/change_naming.h"
 #include "estimator/greybox/tracking/excitation_design.h"
 #include "estimator/greybox/tracking/parameter_set.h"
+#include "estimator/greybox/tracking/process_noise.h"
 #include "estimator/greybox/tracking/sample_buffer.h"
+#include "estimator/greybox/tracking/tail_information.h"
 #include "estimator/greybox/tracking/window_fit.h"
 #include "estimator/greybox/tracking/window_fusion.h"
 #include "estimator/greybox/tracking/window_result.h"
@@ -46,6 +52,9 @@ struct TrackerSettings {
   double most_std_error = 0.01;  ///< ratio above which a value is invalid
   double most_of_typical = 0.1;  ///< the same for an effect, relative to its typical size
   std::int64_t fused = 4;        ///< limit of agreeing windows that are fused (window_fusion.h)
+  // Of a disturbed rig:
+  double disturbed_window_s = 16.0;   ///< longest window
+  double disturbed_std_error = 0.25;  ///< ratio above which a value is invalid
   Thresholds thresholds;
   DriftSettings drift;
   ExcitationLimits probe;
@@ -100,6 +109,30 @@ class ParameterTracker {
   void name_changes_in(WindowResult& window, const WindowData& data, const WindowFitSummary& found);
   void refine(WindowResult& window) const;
 
+  // Of a disturbed rig:
+  struct DisturbedState {
+    std::size_t lead = 0;
+    std::size_t longest = 0;
+    SampleBuffer samples;
+    WindowNoise noise;
+    std::size_t since = 0;        ///< samples since the last gap or change, lead-in included
+    std::size_t since_level = 0;  ///< samples since the level was measured
+    double random = 0.0;          ///< present RMS of the random part
+    DisturbanceLevel level{};     ///< as measured last
+  };
+  void prepare_disturbed();
+  std::optional<WindowResult> push_disturbed(double t_s, double u_V, double y_m, bool first);
+  std::optional<WindowResult> look_disturbed(double t_s);
+  [[nodiscard]] disturbance::NoiseModel present_noise() const;
+  [[nodiscard]] WindowData disturbed_data(std::size_t samples, const Eigen::VectorXd& theta);
+  /// Deviation of a tail of the window `found` from the baseline.
+  [[nodiscard]] DeviationCauses deviations_of(const TailInformation& tail,
+                                              const WindowFitSummary& found) const;
+  void name_deviations_in(WindowResult& window, const std::vector<TailInformation>& tails,
+                          const WindowFitSummary& found);
+  void follow_level(const WindowData& data, const Eigen::VectorXd& theta);
+  void serialize_disturbed(estimator::StateArchive& archive);
+
   plant_sim::ModelFile model_;
   const ParameterSet set_;
   TrackerSettings settings_;
@@ -120,6 +153,7 @@ class ParameterTracker {
   WindowFusion fusion_;
   NamingCache cache_;
   ChangeDetector detector_;
+  std::optional<DisturbedState> disturbed_;
 };
 
 }  // namespace estimator::greybox::tracking

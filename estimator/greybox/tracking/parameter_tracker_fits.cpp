@@ -98,13 +98,17 @@ std::optional<ExcitationDesign> ParameterTracker::probe() {
       *value = p.to_physical(baseline_->theta[static_cast<Index>(i)]);
     }
   }
-  return design_excitation(baseline, settings_.probe, lead_ + window_, sample_time_s_,
-                           baseline_->rms_m, [this](const double* u_V, const double* y_m) {
-                             return fit_
-                                 .fit({u_V, y_m, lead_, window_}, set_.tracked_indices(),
-                                      baseline_->theta, {baseline_->rms_m, {}})
-                                 .std_error;
-                           });
+  return design_excitation(
+      baseline, settings_.probe, lead_ + window_, sample_time_s_, baseline_->rms_m,
+      [this](const double* u_V, const double* y_m) {
+        WindowData data{u_V, y_m, lead_, window_};
+        if (disturbed_) {
+          data.gains =
+              disturbed_->noise.gains(data, baseline_->theta, present_noise(), baseline_->rms_m);
+        }
+        return fit_.fit(data, set_.tracked_indices(), baseline_->theta, {baseline_->rms_m, {}})
+            .std_error;
+      });
 }
 
 }  // namespace estimator::greybox::tracking

@@ -37,6 +37,7 @@ Dataset room_for(std::size_t most, double sample_time_s) {
 VectorXd start_shape(const WindowData& data, double keep) {
   VectorXd shape = VectorXd::Zero(static_cast<Index>(data.lead + data.samples));
   double value = 1.0;
+  if (data.gains) return shape;  // the gains know an unknown start
   for (auto k = static_cast<Index>(data.lead); k < shape.size(); ++k, value *= keep) {
     shape[k] = value;
   }
@@ -97,6 +98,7 @@ void WindowFit::take(const WindowData& data) {
   window_.y_m.assign(data.y_m, data.y_m + all);
   window_.valid.assign(all, 1);
   window_.initialising.assign(all, kNotInitialising);
+  window_.innovations = data.gains;
   std::fill_n(window_.valid.begin(), data.lead, static_cast<char>(0));
   std::fill_n(window_.initialising.begin(), data.lead, static_cast<char>(kInitialising));
 }
@@ -186,6 +188,10 @@ WindowFitSummary WindowFit::fit(const WindowData& data, const std::vector<std::s
   const estimator::nonlinear::Solution solution = minimize(problem, theta, how);
   estimator::nonlinear::CovarianceOptions of;
   if (problem.residuals > all) of.series = {all, all + samples};
+  if (data.gains) {
+    of.colour = estimator::nonlinear::Colour::white;
+    of.noise_sd = errors.rms_m;
+  }
   const estimator::nonlinear::Covariance known = covariance(problem, solution, of);
   for (Index i = 0; i < count; ++i) {
     out.theta[static_cast<Index>(free[static_cast<std::size_t>(i)])] = solution.x[i];
@@ -199,6 +205,10 @@ WindowFitSummary WindowFit::fit(const WindowData& data, const std::vector<std::s
   out.chi_square = solution.cost;
   out.evaluations = solution.evaluations;
   tell_errors(data, errors, solution.residual, out);
+  if (data.gains) {
+    out.residual = solution.residual;
+    out.jacobian = solution.jacobian;
+  }
   return out;
 }
 

@@ -26,9 +26,11 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "estimator/greybox/dataset.h"
+#include "estimator/greybox/innovation_gains.h"
 #include "estimator/greybox/observer_simulation.h"
 #include "estimator/greybox/tracking/chamber_errors.h"
 
@@ -44,8 +46,12 @@ struct WindowData {
   std::size_t samples = 0;        ///< samples of the window
   const double* in_Pa = nullptr;  ///< null: not read throughout; same for out_Pa
   const double* out_Pa = nullptr;
+  /// Of a disturbed rig (process_noise.h): residuals are scaled innovations; position alone.
+  std::shared_ptr<const InnovationGains> gains = nullptr;
 
-  [[nodiscard]] WindowData without_pressures() const { return {u_V, y_m, lead, samples}; }
+  [[nodiscard]] WindowData without_pressures() const {
+    return {u_V, y_m, lead, samples, nullptr, nullptr, gains};
+  }
 };
 
 /// Pressure of one chamber, measured less modelled less learned offset.
@@ -74,6 +80,9 @@ struct WindowFitSummary {
   double chi_square = 0.0;           ///< sum of squares / sigma^2
   double position_chi_square = 0.0;  ///< the position's part
   int evaluations = 0;               ///< groups of eight simulations
+  // With gains, at the solution; rows of the lead-in are 0:
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd jacobian;  ///< free parameters
 
   /// Whether chamber pressures counted.
   [[nodiscard]] bool with_chambers() const { return std::isfinite(in.rms_Pa); }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "estimator/greybox/tracking/change_naming.h"
+#include "estimator/greybox/tracking/process_noise.h"
 #include "estimator/greybox/tracking/window_validity.h"
 
 namespace estimator::greybox::tracking {
@@ -34,16 +35,17 @@ struct WindowResult {
   double rms_m = 0.0;
   ChamberFit in;  ///< NaN: chamber pressures were not used; same for `out`
   ChamberFit out;
-  PressuresLeftOut left_out;           ///< none where the baseline has no chamber pressures
-  bool fits = false;                   ///< the model explains the window
-  bool explained = false;              ///< the rod moves and the model explains the window
-  bool poor = false;                   ///< the motion excites the parameters too little
-  bool valid = false;                  ///< all estimates are valid
-  InvalidReason invalid;               ///< first reason; Cause::none where valid
-  std::optional<PartialFit> part;      ///< latest part, where it was fitted
-  std::vector<ParameterChange> named;  ///< changes, in this window or its latest part
-  int evaluations = 0;                 ///< groups of eight simulations in the window's fit
-  double fit_s = 0.0;                  ///< duration of the fit
+  PressuresLeftOut left_out;              ///< none where the baseline has no chamber pressures
+  bool fits = false;                      ///< the model explains the window
+  bool explained = false;                 ///< the rod moves and the model explains the window
+  bool poor = false;                      ///< the motion excites the parameters too little
+  bool valid = false;                     ///< all estimates are valid
+  InvalidReason invalid;                  ///< first reason; Cause::none where valid
+  std::optional<PartialFit> part;         ///< latest part, where it was fitted
+  std::vector<ParameterChange> named;     ///< changes, in this window or its latest part
+  std::optional<DisturbanceLevel> level;  ///< present disturbance of a disturbed rig
+  int evaluations = 0;                    ///< groups of eight simulations in the window's fit
+  double fit_s = 0.0;                     ///< duration of the fit
 };
 
 }  // namespace estimator::greybox::tracking
