@@ -203,7 +203,7 @@ std::optional<Baseline> learn_disturbed(const plant_sim::ModelFile& model,
 
 void note_calibration(IsolationReport& out) {
   const double times = out.baseline.rms_m / out.noise_floor_m;
-  if (times > kUncalibrated) {
+  if (times > kUncalibrated && !out.baseline.noise) {
     out.notes.push_back(fmt::format("the healthy error is {:.3g}", times) +
                         " times the noise floor: the model lacks something that healthy data "
                         "show; calibrate it first (spoolwatch diagnose, fit)");
@@ -279,9 +279,8 @@ IsolationReport isolate(const IsolationRequest& request) {
     const Span baseline = span(request.baseline);
     ParameterTracker learning = tracker();
     const std::vector<WindowResult> windows = track(learning, record, readings, baseline);
-    const auto undetermined = tracking::undetermined_parameter(windows, out.set);
     std::optional<Baseline> disturbed;
-    if (undetermined && !windows.empty()) {
+    if (tracking::look_disturbed(windows, out.set, floor_m)) {
       disturbed = learn_disturbed(model, request, cut(record, baseline), out);
     }
     if (!disturbed) {

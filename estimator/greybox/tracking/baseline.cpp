@@ -12,6 +12,8 @@ using Eigen::Index;
 
 /// Standard error, search units, up to which a window qualifies for the baseline.
 constexpr double kLeastKnown = 0.05;
+/// Errors above so many noise floors are not the sensor's.
+constexpr double kAboveFloor = 1.5;
 /// Standard deviation over median absolute deviation of a normal distribution.
 constexpr double kOfMedian = 1.4826;
 
@@ -87,6 +89,22 @@ std::optional<std::size_t> undetermined_parameter(const std::vector<WindowResult
     }
   }
   return std::nullopt;
+}
+
+bool look_disturbed(const std::vector<WindowResult>& windows, const ParameterSet& set,
+                    double noise_floor_m) {
+  std::vector<double> rms_m;
+  for (const WindowResult& window : windows) {
+    if (window.explained) rms_m.push_back(window.rms_m);
+  }
+  if (rms_m.empty() || !(median(rms_m) > kAboveFloor * noise_floor_m)) return false;
+  for (std::size_t i = 0; i < set.tracked; ++i) {
+    const auto known =
+        std::count_if(windows.begin(), windows.end(),
+                      [&](const WindowResult& window) { return determined(window, set, i); });
+    if (2 * static_cast<std::size_t>(known) < rms_m.size()) return true;
+  }
+  return false;
 }
 
 Baseline learn_baseline(const std::vector<WindowResult>& windows, const ParameterSet& set,

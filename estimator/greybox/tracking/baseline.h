@@ -32,6 +32,11 @@ struct Baseline {
 [[nodiscard]] std::optional<std::size_t> undetermined_parameter(
     const std::vector<WindowResult>& windows, const ParameterSet& set);
 
+/// Whether the windows look like those of a disturbed rig: errors well above the noise floor, and a
+/// tracked parameter that few of them determine.
+[[nodiscard]] bool look_disturbed(const std::vector<WindowResult>& windows, const ParameterSet& set,
+                                  double noise_floor_m);
+
 /// Medians over the explained windows of a record without a fault; parameters that are not tracked
 /// keep the model file's values. Requires that no parameter is undetermined.
 [[nodiscard]] Baseline learn_baseline(const std::vector<WindowResult>& windows,

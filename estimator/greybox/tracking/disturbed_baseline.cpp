@@ -152,7 +152,8 @@ class Learning {
     const auto size = static_cast<Index>(record.size());
     const VectorXd e = fitted_.residual_m.head(size);
     MatrixXd taken(size, fitted_.jacobian.cols() + gains.lines.cols());
-    taken << fitted_.jacobian.topRows(size), gains.lines;
+    taken.leftCols(fitted_.jacobian.cols()) = fitted_.jacobian.topRows(size);
+    if (gains.lines.cols() > 0) taken.rightCols(gains.lines.cols()) = gains.lines;
     for (Index i = 0; i < taken.cols(); ++i) taken.col(i).normalize();
     const MatrixXd basis = linear_algebra::orthonormal_basis(taken, 1e-9);
     const VectorXd rest = e - basis * (basis.transpose() * e);

@@ -53,7 +53,7 @@ struct TrackerSettings {
   double most_of_typical = 0.1;  ///< the same for an effect, relative to its typical size
   std::int64_t fused = 4;        ///< limit of agreeing windows that are fused (window_fusion.h)
   // Of a disturbed rig:
-  double disturbed_window_s = 16.0;   ///< longest window
+  double disturbed_window_s = 30.0;   ///< longest window
   double disturbed_std_error = 0.25;  ///< ratio above which a value is invalid
   Thresholds thresholds;
   DriftSettings drift;

@@ -1,6 +1,7 @@
 // Windows of a disturbed rig: innovations in place of a simulation's errors, and a window that
 // grows up to settings.disturbed_window_s and begins anew where a parameter changed.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -21,6 +22,8 @@ constexpr double kShortest_s = 0.5;
 constexpr double kSpacing_s = 0.1;
 /// Shortest tail whose deviation from the baseline is judged.
 constexpr double kShortestJudged_s = 0.75;
+/// Chi-square by which a shorter tail has to tell a change better than a longer one.
+constexpr double kShorter = 9.0;
 /// Share of a named change within which the parameter counts as back.
 constexpr double kBackShare = 0.5;
 /// The level of the disturbance is measured so often, and followed by this share.
@@ -84,6 +87,7 @@ WindowData ParameterTracker::disturbed_data(std::size_t samples, const VectorXd&
 }
 
 std::optional<WindowResult> ParameterTracker::look_disturbed(double t_s) {
+  const auto begin = std::chrono::steady_clock::now();
   DisturbedState& state = *disturbed_;
   const ErrorScales errors = baseline_->errors();
   const std::vector<std::size_t> tracked = set_.tracked_indices();
@@ -133,6 +137,7 @@ std::optional<WindowResult> ParameterTracker::look_disturbed(double t_s) {
     window.estimates.push_back(one);
   }
   judge(window, data, found, misfit);
+  window.fit_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (!moves(data)) return window;
   if (window.fits) {
     near_ = found.theta;
@@ -169,11 +174,12 @@ void ParameterTracker::name_deviations_in(WindowResult& window,
       return static_cast<double>(one.samples) >= length;
     });
     DeviationCauses causes = deviations_of(*tail, found);
-    if (!(causes.chi_square > best.chi_square)) continue;
+    if (!(causes.chi_square > best.chi_square + kShorter)) continue;
     best = std::move(causes);
     samples = tail->samples;
   }
   if (!best.parameters.empty()) {
+    disturbed_->since = samples + disturbed_->lead;  // the window goes on from the change
     // The causes alone, the rest of the rig healthy.
     const WindowData data = disturbed_data(samples, near_);
     std::vector<std::size_t> open = best.parameters;
