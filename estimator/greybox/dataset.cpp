@@ -104,6 +104,22 @@ Dataset dataset_of(const config::record::Record& record) {
   return result;
 }
 
+Dataset dataset_of(double sample_time_s, const std::vector<double>& u_V,
+                   const std::vector<double>& y_m) {
+  Dataset result;
+  result.sample_time_s = sample_time_s;
+  result.u_V = u_V;
+  result.y_m = y_m;
+  result.starts = {0};
+  const std::size_t settling = settling_samples(sample_time_s);
+  for (std::size_t i = 0; i < y_m.size(); ++i) {
+    result.t_s.push_back(sample_time_s * static_cast<double>(i));
+    result.valid.push_back(i >= settling ? 1 : 0);
+    result.initialising.push_back(i >= settling ? kNotInitialising : kInitialising);
+  }
+  return result;
+}
+
 Dataset part(const Dataset& whole, std::size_t from, std::size_t to) {
   Dataset result;
   result.name = whole.name;

@@ -61,6 +61,10 @@ inline constexpr double kShortest_s = 1.0;
 /// left out. Throws config::schema::DataError when less than 2 s remain and for rates below 4 Hz.
 [[nodiscard]] Dataset dataset_of(const config::record::Record& record);
 
+/// Consecutive samples of a motion that was under way, without name.
+[[nodiscard]] Dataset dataset_of(double sample_time_s, const std::vector<double>& u_V,
+                                 const std::vector<double>& y_m);
+
 /// Samples [from, to) as a data set of their own, without notes and gap summary.
 [[nodiscard]] Dataset part(const Dataset& whole, std::size_t from, std::size_t to);
 

@@ -48,6 +48,10 @@ void TrackerConfig::visit(Visitor& v) {
   v.text({"healthy", "file of spoolwatch isolate --learn"}, baseline);
   v.number({"learn_s", "motion to learn what is healthy from, without a file"}, learn_s,
            {0.0, 1e6});
+  v.number(
+      {"learn_disturbance_s",
+       "motion to learn a disturbed rig from, in case no window tells the parameters; 0: none"},
+      learn_disturbance_s, {0.0, 1e4});
   v.number({"healthy_rms_m", "in place of the file: a healthy window's error"}, learnt.rms_m,
            {0.0, 1.0});
   v.numbers({"healthy_values", "in place of the file: of the parameters, SI"}, learnt.values);

@@ -17,7 +17,11 @@
 //
 // Values: each parameter by its name (a dot becomes "_"), NaN where the window does not determine
 // it; smallest_NAME, the smallest change that the present motion shows; residual_rms_m;
-// healthy_NAME of each parameter of `follow`, the reference of its changes (baseline_drift.h).
+// healthy_NAME of each parameter of `follow`, the reference of its changes (baseline_drift.h). With
+// a disturbed healthy file or learn_disturbance_s, what disturbs the rig now: disturbance_force_N
+// (or disturbance_speed_mps), RMS, and frequency and amplitude of the strongest line of each site,
+// disturbance_pressure_line_Hz and disturbance_pressure_line_Pa, likewise force and sensor; NaN
+// where there is none.
 // Alarms: each parameter by the same name, with the parameter or the group that cannot be
 // separated; slow_NAME when a parameter of `follow` has drifted to the end of its range;
 // "unexplained" when the model no longer explains the rig.
@@ -43,8 +47,9 @@ struct TrackerConfig final : estimator::fdi::DetectionMethodConfigOf<TrackerConf
   greybox::tracking::TrackerSettings settings;
   std::string baseline;  ///< file; "": learned from the first learn_s of motion
   double learn_s = 10.0;
-  bool pressures = true;  ///< use the pressures of the samples
-  BaselineFile learnt;    ///< contents of the file
+  double learn_disturbance_s = 0.0;  ///< 0: the process is not disturbed
+  bool pressures = true;             ///< use the pressures of the samples
+  BaselineFile learnt;               ///< contents of the file
   std::string severity = "major";
   estimator::fdi::AlarmRules rules;
 

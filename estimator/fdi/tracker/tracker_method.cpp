@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "estimator/fdi/tracker/tracking_text.h"
+#include "estimator/greybox/dataset.h"
+#include "estimator/greybox/tracking/disturbed_baseline.h"
 
 namespace estimator::fdi::tracker {
 namespace {
@@ -22,6 +24,12 @@ constexpr std::size_t kMostLessons = 100000;
 /// Numbers per learned window before its parameters: position error, then each chamber's
 /// (ChamberFit).
 constexpr std::size_t kErrors = 7;
+
+/// Names of the disturbance: the random part, then the strongest line of each site.
+constexpr const char* kDisturbanceNames[] = {
+    "disturbance_force_N",        "disturbance_speed_mps",        "disturbance_force_line_Hz",
+    "disturbance_force_line_N",   "disturbance_pressure_line_Hz", "disturbance_pressure_line_Pa",
+    "disturbance_sensor_line_Hz", "disturbance_sensor_line_m"};
 
 std::size_t count_of(double duration_s, double each_s) {
   const double count = std::ceil(duration_s / each_s);
@@ -45,6 +53,11 @@ TrackerMethod::TrackerMethod(const TrackerConfig& config, const plant_sim::Model
       noise_floor_m_(config.learnt.noise_floor_m),
       pressures_(config.pressures),
       lessons_(count_of(config.learn_s, config.settings.stride_s)),
+      disturbance_samples_(
+          config.learn_disturbance_s > 0.0
+              ? static_cast<std::size_t>(std::lround(config.learn_disturbance_s / sample_time_s))
+              : 0),
+      model_(model),
       severity_(config.severity == "minor" ? Severity::minor : Severity::major),
       rules_(config.rules),
       given_(std::move(baseline)),
@@ -62,6 +75,9 @@ std::vector<std::string> TrackerMethod::names() const {
   const greybox::tracking::BaselineDrift& slow = tracker_.baseline_drift();
   for (std::size_t i = 0; i < slow.size(); ++i) {
     names.push_back("healthy_" + names[slow.parameter(i)]);
+  }
+  if (tells_disturbance()) {
+    names.insert(names.end(), std::begin(kDisturbanceNames), std::end(kDisturbanceNames));
   }
   return names;
 }
@@ -81,6 +97,44 @@ std::vector<estimator::fdi::Alarm> TrackerMethod::declared_alarms() const {
   return alarms;
 }
 
+bool TrackerMethod::tells_disturbance() const {
+  return disturbance_samples_ > 0 || (given_ && given_->noise);
+}
+
+void TrackerMethod::tell_disturbance() {
+  std::fill(disturbance_.begin(), disturbance_.end(), kNaN);
+  const std::optional<greybox::tracking::Baseline>& baseline = tracker_.baseline();
+  if (!baseline || !baseline->noise || !tracker_.level()) return;
+  const greybox::tracking::ProcessNoise& noise = *baseline->noise;
+  const greybox::tracking::DisturbanceLevel& level = *tracker_.level();
+  disturbance_[noise.force ? 0 : 1] = level.random;
+  for (std::size_t i = 0; i < level.line_values.size(); ++i) {
+    const auto& line = noise.model.lines[i];
+    // A speed's line, of a plant without forces, has no name here.
+    if (line.site == greybox::tracking::LineSite::force && !noise.force) continue;
+    double* const told = disturbance_.data() + 2 + 2 * static_cast<std::size_t>(line.site);
+    if (told[1] >= level.line_values[i]) continue;
+    told[0] = line.frequency_Hz;
+    told[1] = level.line_values[i];
+  }
+}
+
+void TrackerMethod::learn_disturbance_from(double u_V, double y_m, bool first) {
+  if (disturbance_samples_ == 0 || tracker_.baseline()) return;
+  if (first) {
+    command_V_.clear();
+    position_m_.clear();
+  }
+  command_V_.push_back(u_V);
+  position_m_.push_back(y_m);
+  if (command_V_.size() < disturbance_samples_) return;
+  const auto baseline = greybox::tracking::learn_disturbed_baseline(
+      model_, tracker_.set(), greybox::dataset_of(sample_time_s_, command_V_, position_m_), 1);
+  if (baseline) tracker_.take(*baseline);
+  command_V_.clear();
+  position_m_.clear();
+}
+
 bool TrackerMethod::is_due(std::int64_t missing) noexcept {
   broken_ = true;
   missing_ += missing;
@@ -98,8 +152,10 @@ bool TrackerMethod::on_gap(std::int64_t periods) noexcept { return is_due(period
 bool TrackerMethod::push(const Sample& sample, double y_m) noexcept {
   if (!std::isfinite(y_m) || !std::isfinite(sample.u_applied_V)) return is_due(1);
   const double t_s = static_cast<double>(sample.tick) * sample_time_s_;
+  const bool first = std::exchange(broken_, false);
+  learn_disturbance_from(sample.u_applied_V, y_m, first);
   const std::optional<greybox::tracking::WindowResult> window =
-      tracker_.push(t_s, sample.u_applied_V, y_m, std::exchange(broken_, false),
+      tracker_.push(t_s, sample.u_applied_V, y_m, first,
                     pressures_ ? sample.pressures : config::signals::Pressures{});
   missing_ = 0;
   if (!window) return false;
@@ -116,7 +172,7 @@ void TrackerMethod::take(const greybox::tracking::WindowResult& window) {
     found_[2 * tracked + i] = window.explained ? one.smallest : kNaN;
   }
   rms_m_ = window.rms_m;
-  samples_ = static_cast<int>(std::lround(window_s_ / sample_time_s_));
+  samples_ = 1 + static_cast<int>(std::lround((window.t_s - window.from_s) / sample_time_s_));
   why_ = invalid_words(tracker_.set(), window.invalid);
   unexplained_ = window.fits ? 0 : unexplained_ + 1;
   if (!tracker_.baseline()) {
@@ -125,6 +181,7 @@ void TrackerMethod::take(const greybox::tracking::WindowResult& window) {
     suggest(window);
   }
   note_ = left_out_words(window.left_out);
+  tell_disturbance();
   tracker_.forget_cleared();
   say();
 }
@@ -250,6 +307,11 @@ MethodOutput TrackerMethod::evaluate(std::span<NamedValue> values) noexcept {
                            : kNaN;
     value.std_error = kNaN;
   }
+  for (std::size_t i = 0; i < disturbance_.size(); ++i) {
+    NamedValue& value = values[2 * tracked + 1 + slow.size() + i];
+    value.value = disturbance_[i];
+    value.std_error = kNaN;
+  }
   MethodOutput output;
   output.warming_up = !tracker_.baseline().has_value();
   output.valid = why_.empty();
@@ -269,6 +331,9 @@ void TrackerMethod::reset() {
   missing_ = 0;
   learning_.clear();
   found_.assign(3 * tracker_.set().tracked, kNaN);
+  command_V_.clear();
+  position_m_.clear();
+  disturbance_.assign(tells_disturbance() ? std::size(kDisturbanceNames) : 0, kNaN);
   why_.clear();
   note_.clear();
   rms_m_ = kNaN;
@@ -284,6 +349,11 @@ void TrackerMethod::serialize(estimator::StateArchive& archive) {
   archive.value(missing_);
   archive.growing(learning_, lessons_ * (kErrors + tracker_.set().tracked));
   archive.fixed(found_);
+  if (disturbance_samples_ > 0) {
+    archive.growing(command_V_, disturbance_samples_);
+    archive.growing(position_m_, disturbance_samples_);
+  }
+  if (!disturbance_.empty()) archive.fixed(disturbance_);
   archive.text(why_);
   archive.text(note_);
   archive.value(rms_m_);

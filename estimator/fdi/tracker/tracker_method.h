@@ -43,6 +43,10 @@ class TrackerMethod final : public estimator::fdi::DetectionMethod {
 
   void take(const greybox::tracking::WindowResult& window);
   void learn_from(const greybox::tracking::WindowResult& window);
+  /// Keeps a sample of the healthy rig; a disturbed baseline once there are enough of them.
+  void learn_disturbance_from(double u_V, double y_m, bool first);
+  [[nodiscard]] bool tells_disturbance() const;
+  void tell_disturbance();
   void suggest(const greybox::tracking::WindowResult& window);
   void say();
   void say_slow();
@@ -52,8 +56,10 @@ class TrackerMethod final : public estimator::fdi::DetectionMethod {
   double stride_s_;
   double window_s_;
   double noise_floor_m_;
-  bool pressures_;       ///< use the pressures of the samples
-  std::size_t lessons_;  ///< windows to learn from
+  bool pressures_;                   ///< use the pressures of the samples
+  std::size_t lessons_;              ///< windows to learn from
+  std::size_t disturbance_samples_;  ///< samples to learn a disturbance from; 0: it is not learned
+  plant_sim::ModelFile model_;
   estimator::fdi::Severity severity_;
   estimator::fdi::AlarmRules rules_;
   std::optional<greybox::tracking::Baseline> given_;
@@ -65,6 +71,9 @@ class TrackerMethod final : public estimator::fdi::DetectionMethod {
   std::string why_;
   std::string note_;                  ///< for a valid result: pressures that were left out
   std::optional<std::string> probe_;  ///< suggested motion, once it was computed
+  std::vector<double> command_V_;  ///< samples without a gap, from which a disturbance is learned
+  std::vector<double> position_m_;
+  std::vector<double> disturbance_;  ///< kDisturbanceNames, as measured last
   double rms_m_ = 0.0;
   int samples_ = 0;
   std::int64_t unexplained_ = 0;  ///< consecutive unexplained windows

@@ -79,6 +79,10 @@ class ParameterTracker {
   [[nodiscard]] const std::optional<Baseline>& baseline() const { return baseline_; }
   [[nodiscard]] const BaselineDrift& baseline_drift() const { return drift_; }
   [[nodiscard]] const ParameterSet& set() const { return set_; }
+  /// Disturbance as measured last; null: the rig is not disturbed.
+  [[nodiscard]] const DisturbanceLevel* level() const {
+    return disturbed_ ? &disturbed_->level : nullptr;
+  }
 
   /// Motion within the limits of the settings that determines the parameters best; takes about 0.1
   /// s. None without a baseline.

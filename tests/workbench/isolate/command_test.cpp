@@ -191,6 +191,38 @@ TEST_F(IsolateCommand, FollowsWhatMayChangeSlowly) {
   EXPECT_THAT(json["notes"].back().get<std::string>(), testing::StartsWith("damping was followed"));
 }
 
+TEST_F(IsolateCommand, NamesAChangeUnderProcessDisturbance) {
+  truth::Case of = stand(50.0, 9301);
+  of.outside.force_N = 30.0;
+  of.outside.pulsation_Pa = 1e5;
+  fault(of, 42.0, &truth::Plant::supply_pressure_Pa, 0.9);
+  truth::write_csv(truth::simulate(of), file("record.csv"));
+  run({"--healthy", "0:40", "--json", file("out.json"), "--learn", file("healthy.toml")});
+  const auto json = nlohmann::json::parse(std::ifstream(file("out.json")));
+  ASSERT_EQ(json["alarms"].size(), 1u) << json["alarms"].dump(1);
+  EXPECT_EQ(json["alarms"][0]["parameter"], "supply_pressure_Pa");
+  EXPECT_LT(json["alarms"][0]["raised_s"], 44.0);
+  const auto& disturbance = json["healthy"]["disturbance"];
+  EXPECT_EQ(disturbance["as"], "force");
+  EXPECT_NEAR(disturbance["value"].get<double>(), 30.0, 0.3 * 30.0);
+  EXPECT_EQ(disturbance["lines"][0]["as"], "pressure");
+  EXPECT_NEAR(disturbance["lines"][0]["frequency_Hz"].get<double>(), 23.0, 0.1);
+  EXPECT_GT(json["healthy"]["std_errors"]["damping_N_s_per_m"], 10.0);
+  EXPECT_TRUE(json["windows"].back().contains("disturbance"));
+  const plant_sim::ModelFile model = plant_sim::load_model(file("model.toml"));
+  const tracking::ParameterSet set = tracking::choose(model, usual(), "parameters");
+  const auto learnt =
+      tracker::read_baseline(file("healthy.toml"), model, {}, set, truth::kSample_s, "");
+  ASSERT_TRUE(learnt.noise.has_value());
+  EXPECT_EQ(learnt.noise->covariance.rows(), 2);
+  testing::internal::CaptureStdout();
+  run({"--healthy", "0:40"});
+  const std::string text = testing::internal::GetCapturedStdout();
+  EXPECT_THAT(text, testing::HasSubstr("disturbed: random force "));
+  EXPECT_THAT(text, testing::HasSubstr("pressure line at 23.0"));
+  EXPECT_THAT(text, testing::HasSubstr("supply pressure low"));
+}
+
 TEST_F(IsolateCommand, RefusesWhatItCannotUse) {
   std::string line;
   EXPECT_EQ(code({"--follow", "mass_kg"}, line), 78);

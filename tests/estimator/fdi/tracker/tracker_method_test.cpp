@@ -243,6 +243,74 @@ TEST(TrackerMethod, GoesOnBitForBitWithPressures) {
   expect_the_same(watching(kWithGain), record, {700u, 2900u, 3700u});
 }
 
+constexpr double kLearnDisturbance_s = 20.0;
+
+/// 30 N of random force and 1 bar of pulsation; the supply falls at 26 s.
+truth::Record disturbed() {
+  truth::Case of = stand(38.0, 9201);
+  of.outside.force_N = 30.0;
+  of.outside.pulsation_Pa = 1e5;
+  fault(of, 26.0, &truth::Plant::supply_pressure_Pa, 0.9);
+  return truth::simulate(of);
+}
+
+fdi::PipelineConfig watching_disturbed() {
+  fdi::PipelineConfig config(tracker::detection_method_kinds());
+  auto tracker = std::make_unique<tracker::TrackerConfig>();
+  tracker->id = "physics";
+  tracker->model_toml = plant_sim::print_model(printed_model());
+  tracker->learn_disturbance_s = kLearnDisturbance_s;
+  tracker->settings.disturbed_window_s = 8.0;
+  config.add("tracker", std::move(tracker));
+  return config;
+}
+
+TEST(TrackerMethod, TellsWhatDisturbsTheRigAndNamesAChangeUnderIt) {
+  const truth::Record record = disturbed();
+  fdi::Pipeline pipeline(watching_disturbed(), truth::kSample_s);
+  Log log;
+  run(pipeline, record, 0, record.y_m.size(), log);
+  ASSERT_FALSE(log.alarms.empty());
+  for (const Log::Change& change : log.alarms) {
+    EXPECT_EQ(change.alarm.name, "supply_pressure_Pa") << change.t_s << " " << change.alarm.reason;
+    EXPECT_EQ(change.alarm.direction, -1);
+  }
+  EXPECT_LT(log.alarms[0].t_s, 28.0);
+  const std::vector<double>& last = log.values.back();
+  ASSERT_EQ(last.size(), 10u + 2u * 8u);
+  EXPECT_NEAR(last[0], 0.9 * 6.89e6, 4.0 * last[1]);
+  EXPECT_NEAR(last[10], 30.0, 0.4 * 30.0);  // disturbance_force_N
+  EXPECT_TRUE(std::isnan(last[12]));        // disturbance_speed_mps: of other plants
+  EXPECT_NEAR(last[18], 23.0, 0.1);         // disturbance_pressure_line_Hz
+  EXPECT_NEAR(last[20], 1e5, 0.4 * 1e5);    // disturbance_pressure_line_Pa
+}
+
+TEST(TrackerMethod, GoesOnBitForBitOnADisturbedRig) {
+  expect_the_same(watching_disturbed(), disturbed(), {3000u, 5400u});
+}
+
+TEST(TrackerConfig, KeepsADisturbanceWhenItIsPrinted) {
+  tracker::TrackerConfig config;
+  config.id = "physics";
+  iso::ProcessNoise noise;
+  noise.model.noise = {30.0, 3.0, 1e-8, 2.5e-6};
+  noise.model.lines = {{iso::LineSite::supply, 23.0}};
+  noise.healthy.line_values = {1e5};
+  noise.covariance.resize(2, 2);
+  noise.covariance << 1e-8, -2e-8, -2e-8, 1e-4;
+  config.learnt.noise = noise;
+  const std::string text = config::schema::print_toml([&](auto& v) { config.visit(v); });
+  tracker::TrackerConfig read;
+  config::schema::Document::parse(text, "test").read([&](auto& v) { read.visit(v); });
+  ASSERT_TRUE(read.learnt.noise.has_value());
+  EXPECT_EQ(read.learnt.noise->model.noise.disturbance_sd, 30.0);
+  EXPECT_EQ(read.learnt.noise->model.noise.walk_m, 1e-8);
+  ASSERT_EQ(read.learnt.noise->model.lines.size(), 1u);
+  EXPECT_EQ(read.learnt.noise->model.lines[0].site, iso::LineSite::supply);
+  EXPECT_EQ(read.learnt.noise->healthy.line_values[0], 1e5);
+  EXPECT_EQ(read.learnt.noise->covariance, noise.covariance);
+}
+
 TEST(TrackerMethod, AlarmsWhenTheModelNoLongerExplainsTheRig) {
   truth::Case of = stand(20.0);
   of.changes.push_back({12.0, nullptr, &truth::Hidden::backlash_m, 60e-6});
