@@ -1,6 +1,7 @@
 #include "daemon/detection/detectability_monitor.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -8,6 +9,7 @@ namespace monitor::detection {
 namespace {
 
 constexpr std::string_view kSmallest = "smallest_";
+constexpr std::string_view kDisturbance = "disturbance_";
 
 }  // namespace
 
@@ -16,10 +18,13 @@ void DetectabilityMonitor::update(const estimator::fdi::EstimateEvent& event) {
     return std::string_view(value.name).starts_with(kSmallest);
   };
   if (std::none_of(event.begin(), event.end(), tells)) return;
-  io::Detectable now{std::string(event.source), event.tick, std::string(event.reason), {}};
+  io::Detectable now{std::string(event.source), event.tick, std::string(event.reason), {}, {}};
   for (const estimator::fdi::NamedValue& value : event) {
-    if (!tells(value)) continue;
     const std::string_view name = value.name;
+    if (name.starts_with(kDisturbance) && std::isfinite(value.value)) {
+      now.disturbance.emplace_back(name.substr(kDisturbance.size()), value.value);
+    }
+    if (!tells(value)) continue;
     now.changes.push_back({std::string(name.substr(kSmallest.size())), value.value});
   }
   const std::lock_guard lock(mutex_);

@@ -1,5 +1,6 @@
 // Detectability: for each source with outputs smallest_NAME, the smallest change of NAME that the
-// present motion would reveal, and why the motion is insufficient where it is.
+// present motion would reveal, why the motion is insufficient where it is, and what disturbs the
+// rig (outputs disturbance_NAME).
 //
 // Written by the detector, read by the main thread; a mutex is held while a few numbers are copied.
 #pragma once
@@ -14,7 +15,8 @@ namespace monitor::detection {
 
 class DetectabilityMonitor {
  public:
-  /// Stores the event's smallest_NAME values; ignores events without any.
+  /// Stores the event's smallest_NAME and disturbance_NAME values; ignores events without any of
+  /// the former.
   void update(const estimator::fdi::EstimateEvent& event);
   /// Forgets all sources, after a change of the configuration.
   void clear();

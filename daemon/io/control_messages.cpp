@@ -87,6 +87,9 @@ ordered_json detectable_of(const ControlStatus& status) {
                     {"age_s", number(age_s)},
                     {"smallest", std::move(smallest)},
                     {"why", source.why.empty() ? json(nullptr) : json(source.why)}});
+    for (const auto& [name, value] : source.disturbance) {
+      list.back()["disturbance"][name] = number(value);
+    }
   }
   return list;
 }

@@ -38,7 +38,7 @@ struct ControlRequest {
 /// Never throws: malformed requests have kind bad.
 [[nodiscard]] ControlRequest parse_request(const std::string& line);
 
-/// The smallest changes that one source could detect in the present motion.
+/// The smallest changes that one source could detect in the present motion, and what disturbs it.
 struct Detectable {
   struct Change {
     std::string name;  ///< with unit suffix, as "supply_pressure_Pa"
@@ -48,6 +48,9 @@ struct Detectable {
   std::int64_t tick = 0;
   std::string why;  ///< why the motion is insufficient and which would suffice; empty: sufficient
   std::vector<Change> changes;
+  /// Random force and spectral lines, SI; names with unit suffix, as "force_N". Unknown ones are
+  /// left out.
+  std::vector<std::pair<std::string, double>> disturbance;
 };
 
 /// The daemon's status; NaN: unknown.

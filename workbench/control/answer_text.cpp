@@ -117,6 +117,20 @@ void print_rods(const Json& status, std::ostream& out) {
   }
 }
 
+/// "disturbed by: force 29.8 N, pressure line 23 Hz, pressure line 99.1 kPa"
+void print_disturbance(const Json& source, std::ostream& out) {
+  const auto disturbance = source.find("disturbance");
+  if (disturbance == source.end() || !disturbance->is_object()) return;
+  const char* before = "    disturbed by: ";
+  for (const auto& [name, value] : disturbance->items()) {
+    if (!value.is_number()) continue;
+    out << before << config::units::parameter_words(name) << ' '
+        << config::units::words(config::units::quantity(name, value.get<double>(), NAN));
+    before = ", ";
+  }
+  out << '\n';
+}
+
 /// The smallest changes that would be seen now, and what would help where they are great.
 void print_detectable(const Json& status, std::ostream& out) {
   const auto sources = status.find("detectable");
@@ -134,6 +148,7 @@ void print_detectable(const Json& status, std::ostream& out) {
     out << '\n';
     const std::string why = text_of(source, "why");
     if (!why.empty()) out << "    " << why << '\n';
+    print_disturbance(source, out);
   }
 }
 
