@@ -33,6 +33,9 @@ class ChangeNaming {
     const std::size_t read = held.measured;
     if (read != kNotMeasured)
       base_[static_cast<Index>(read)] = found.theta[static_cast<Index>(read)];
+    for (const std::size_t i : held.standing) {
+      base_[static_cast<Index>(i)] = found.theta[static_cast<Index>(i)];
+    }
     if (held.baseline != kNotMeasured) rivals_.push_back(held.baseline);
     for (std::size_t i = 0; held.others_are_rivals && i < set.tracked; ++i) {
       if (std::isinf(found.std_error[static_cast<Index>(i)])) rivals_.push_back(i);
@@ -137,7 +140,7 @@ class ChangeNaming {
 
   void find_rivals(ParameterChange& one, VectorXd without) {
     const auto at = static_cast<Index>(one.parameter);
-    without[at] = baseline_[at];
+    without[at] = baseline_[at];  // also where the parameter changed before
     const double effect = fit_.fit(data_, {}, without, errors_).chi_square - chi_square_;
     std::vector<std::pair<double, Rival>> alone;
     for (const std::size_t a : rivals_) {

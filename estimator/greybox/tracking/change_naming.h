@@ -92,6 +92,8 @@ struct HeldParameters {
   /// Of a disturbed rig: the tracked parameters that were held at their healthy values, whose
   /// standard error in the fit is infinite, are rivals too, and rivals are judged alone.
   bool others_are_rivals = false;
+  /// Parameters that changed before: not healthy even where this window is not sure of it.
+  std::vector<std::size_t> standing{};
 };
 
 /// `baseline`: theta of every parameter; `found`: the fit of the tracked ones to `data`.

@@ -132,6 +132,8 @@ class ParameterTracker {
   /// Deviation of a tail of the window `found` from the baseline.
   [[nodiscard]] DeviationCauses deviations_of(const TailInformation& tail,
                                               const WindowFitSummary& found) const;
+  /// Parameters with an active alarm.
+  [[nodiscard]] std::vector<std::size_t> standing() const;
   void name_deviations_in(WindowResult& window, const std::vector<TailInformation>& tails,
                           const WindowFitSummary& found);
   void follow_level(const WindowData& data, const Eigen::VectorXd& theta);

@@ -149,6 +149,14 @@ std::optional<WindowResult> ParameterTracker::look_disturbed(double t_s) {
   return window;
 }
 
+std::vector<std::size_t> ParameterTracker::standing() const {
+  std::vector<std::size_t> changed;
+  for (std::size_t i = 0; i < set_.tracked; ++i) {
+    if (detector_.active(i) != nullptr) changed.push_back(i);
+  }
+  return changed;
+}
+
 DeviationCauses ParameterTracker::deviations_of(const TailInformation& tail,
                                                 const WindowFitSummary& found) const {
   const auto count = static_cast<Index>(set_.tracked);
@@ -159,7 +167,7 @@ DeviationCauses ParameterTracker::deviations_of(const TailInformation& tail,
   const MatrixXd covariance = baseline_->noise->covariance +
                               tail.information.ldlt().solve(MatrixXd::Identity(count, count));
   const VectorXd deviation = (found.theta - baseline_->theta).head(count) + tail.step();
-  return causes_of(deviation, covariance, least, settings_.thresholds.sure);
+  return causes_of(deviation, covariance, least, settings_.thresholds.sure, standing());
 }
 
 void ParameterTracker::name_deviations_in(WindowResult& window,
@@ -199,6 +207,7 @@ void ParameterTracker::name_deviations_in(WindowResult& window,
     }
     HeldParameters held;
     held.others_are_rivals = true;
+    held.standing = standing();
     window.named = name_changes(fit_, set_, data, alone, baseline_->theta, errors,
                                 settings_.thresholds, cache_, held);
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace estimator::greybox::tracking {
 namespace {
@@ -69,12 +70,16 @@ std::optional<std::size_t> samples_since_change(const std::vector<TailInformatio
 }
 
 DeviationCauses causes_of(const VectorXd& deviation, const MatrixXd& covariance,
-                          const VectorXd& least, double sure) {
+                          const VectorXd& least, double sure, std::vector<std::size_t> standing) {
   const auto count = static_cast<std::size_t>(deviation.size());
   const MatrixXd information =
       covariance.ldlt().solve(MatrixXd::Identity(covariance.rows(), covariance.cols()));
   const VectorXd score = information * deviation;
   DeviationCauses out;
+  out.parameters = std::move(standing);
+  if (!out.parameters.empty()) {
+    out.chi_square = restricted(information, score, out.parameters).chi_square;
+  }
   for (bool found = true; found;) {
     found = false;
     double most = sure * sure;

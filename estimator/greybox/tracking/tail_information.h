@@ -51,8 +51,10 @@ struct DeviationCauses {
 };
 
 /// `deviation` and `covariance`: all parameters fitted together, less their healthy values.
+/// `standing`: parameters known to have changed, causes from the start.
 [[nodiscard]] DeviationCauses causes_of(const Eigen::VectorXd& deviation,
                                         const Eigen::MatrixXd& covariance,
-                                        const Eigen::VectorXd& least, double sure);
+                                        const Eigen::VectorXd& least, double sure,
+                                        std::vector<std::size_t> standing = {});
 
 }  // namespace estimator::greybox::tracking

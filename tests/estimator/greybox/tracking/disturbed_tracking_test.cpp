@@ -64,7 +64,7 @@ double share_within_three(const Tracked& result, std::size_t parameter, double v
 }
 
 TEST(DisturbedTracking, TheDisturbanceIsMeasuredAndTheHealthyRigRaisesNoAlarm) {
-  const truth::Record record = truth::simulate(disturbed_stand(180.0, 9101));
+  const truth::Record record = truth::simulate(disturbed_stand(110.0, 9101));
   const Tracked result = tracked_disturbed(record);
   const iso::ProcessNoise& noise = result.baseline.noise.value();
   EXPECT_NEAR(noise.healthy.random, 30.0, 0.25 * 30.0);
@@ -79,8 +79,8 @@ TEST(DisturbedTracking, TheDisturbanceIsMeasuredAndTheHealthyRigRaisesNoAlarm) {
               4.0 * std::sqrt(noise.covariance(at, at)));
   }
   EXPECT_TRUE(result.alarms.empty());
-  EXPECT_GT(share_within_three(result, 0, 6.89e6, 0.0, 180.0), 0.95);
-  EXPECT_GT(share_within_three(result, 1, 1000.0, 0.0, 180.0), 0.95);
+  EXPECT_GT(share_within_three(result, 0, 6.89e6, 0.0, 110.0), 0.95);
+  EXPECT_GT(share_within_three(result, 1, 1000.0, 0.0, 110.0), 0.95);
   ASSERT_TRUE(result.windows.back().level.has_value());
   EXPECT_NEAR(result.windows.back().level->random, 30.0, 0.4 * 30.0);  // of eight seconds
 }

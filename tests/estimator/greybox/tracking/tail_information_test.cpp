@@ -83,6 +83,20 @@ TEST(DeviationCauses, ASmallDeviationIsNoCauseHoweverSure) {
               ElementsAre(1u, 0u));
 }
 
+TEST(DeviationCauses, AChangeThatStandsIsACauseBesideANewOne) {
+  MatrixXd information(2, 2);
+  information << 400.0, 380.0, 380.0, 400.0;
+  const Eigen::Vector2d truth(0.4, 0.1);
+  const Eigen::Vector2d least(0.03, 0.03);
+  const DeviationCauses alone = causes_of(truth, information.inverse(), least, 5.0);
+  EXPECT_THAT(alone.parameters, ElementsAre(0u));
+  EXPECT_NEAR(alone.deviation[0], 0.4 + 0.95 * 0.1, 1e-9);  // the other's effect taken for its own
+  const DeviationCauses causes = causes_of(truth, information.inverse(), least, 5.0, {1});
+  EXPECT_THAT(causes.parameters, ElementsAre(1u));
+  EXPECT_NEAR(causes.deviation[0], 0.4, 1e-9);
+  EXPECT_NEAR(causes.deviation[1], 0.1 + 0.95 * 0.4, 1e-9);  // while the new one is no cause
+}
+
 TEST(DeviationCauses, ChanceIsNoCause) {
   const MatrixXd covariance = 0.01 * MatrixXd::Identity(2, 2);
   const Eigen::Vector2d least(0.03, 0.03);
