@@ -62,7 +62,7 @@ class ChangeNaming {
       --cache.left;
       return as_before(cache.named);
     }
-    if (named.size() < 2 || !one_cause(named)) {
+    if (named.size() < 2 || !held_.standing.empty() || !one_cause(named)) {
       const VectorXd others = others_of(named);
       for (ParameterChange& one : named) find_rivals(one, others);
     }
