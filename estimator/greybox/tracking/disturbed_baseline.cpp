@@ -28,6 +28,9 @@ constexpr double kLineGain_nats = 15.0;
 /// Amplitude of the motion over that of a line at the same frequency above which the line is the
 /// model's fault.
 constexpr double kFollows = 4.0;
+/// Lines that move the rod by less than this share of the sensor's noise, RMS, are not worth
+/// naming.
+constexpr double kLeastLine = 0.1;
 /// Disturbances below this share of the sensor's noise, RMS, are none.
 constexpr double kSeen = 0.3;
 
@@ -193,6 +196,7 @@ class Learning {
     const SpectralLine line = lines[static_cast<std::size_t>(best - gained.begin())];
     const double own_m =
         disturbance::line_amplitudes(models_.front(), record, gains, {line}, e).front().rms_m;
+    if (own_m < kLeastLine * data_.noise_floor_m) return std::nullopt;
     if (amplitude_at(motion_m(), line.frequency_Hz, record.sample_time_s) > kFollows * own_m) {
       return std::nullopt;
     }
