@@ -52,8 +52,13 @@ std::string ProcessNoise::site_name(LineSite site) const {
 void ProcessNoise::visit(config::schema::Visitor& v) {
   constexpr double kMost = 1e12;
   disturbance::NoiseParameters& noise = model.noise;
-  v.boolean({"force", "the random part is a force, N; false: a speed, m/s"}, force);
-  v.number({"random", "RMS of the random part", true}, noise.disturbance_sd, {0.0, kMost});
+  double force_N = force ? noise.disturbance_sd : 0.0;
+  double speed_mps = force ? 0.0 : noise.disturbance_sd;
+  v.number({"force_N", "RMS of the random force; 0: it is a speed"}, force_N, {0.0, kMost});
+  v.number({"speed_mps", "RMS of the random speed, of a plant without forces"}, speed_mps,
+           {0.0, kMost});
+  force = !(speed_mps > 0.0);
+  noise.disturbance_sd = force ? force_N : speed_mps;
   v.number({"corner_Hz", "below which most of it lies", true}, noise.corner_Hz, {0.0, kMost});
   v.number({"walk_m", "random walk of the position per sample", true}, noise.walk_m, {0.0, 1.0});
   v.number({"sensor_m", "standard deviation of the position's noise", true}, noise.sensor_m,
