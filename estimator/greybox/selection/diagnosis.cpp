@@ -72,9 +72,10 @@ void list_steps(Diagnosis& result) {
 }
 
 /// Localises the unexplained residual. Effects taken in place of the right one have absorbed part
-/// of it; the model as given then shows it more clearly.
+/// of it; the model as given then shows it more clearly. A bundle of effects is such a stand-in.
 std::vector<Localisation> localise_remainder(const SearchContext& context, const ModelStage& first,
                                              const ModelStage& final) {
+  if (final.added.size() >= kStandIn) return localise(context, first);
   std::vector<Localisation> left = localise(context, final);
   if (final.added.empty()) return left;
   std::vector<Localisation> whole = localise(context, first);
