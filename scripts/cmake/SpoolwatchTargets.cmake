@@ -45,7 +45,7 @@ endif()
 add_library(spoolwatch_test_options INTERFACE)
 target_link_libraries(spoolwatch_test_options INTERFACE spoolwatch_options GTest::gmock)
 if(CMAKE_BUILD_TYPE STREQUAL Release)
-  target_compile_options(spoolwatch_test_options INTERFACE -O0 -g0)
+  target_compile_options(spoolwatch_test_options INTERFACE -O1 -g0)
 endif()
 
 add_library(spoolwatch_test_paths INTERFACE)

@@ -89,14 +89,15 @@ const char* to_string(Doubt doubt) {
 std::vector<PossibleEffect> possible_effects(const Diagnosis& diagnosis) {
   std::vector<PossibleEffect> possible;
   if (diagnosis.verdict != Verdict::unexplained) return possible;
-  const bool bundle = diagnosis.missing.size() >= kStandIn;
-  for (const std::string& effect : diagnosis.missing) {
-    const std::optional<Doubt> doubt = doubt_of(diagnosis, effect);
-    const bool cut_short = diagnosis.search.interrupted;
-    if (doubt || bundle || cut_short) {
-      possible.push_back(
-          {effect, doubt.value_or(cut_short ? Doubt::interrupted : Doubt::stand_in)});
-    }
+  std::vector<std::optional<Doubt>> doubts;
+  for (const std::string& effect : diagnosis.missing) doubts.push_back(doubt_of(diagnosis, effect));
+  const auto clear =
+      static_cast<std::size_t>(std::count(doubts.begin(), doubts.end(), std::nullopt));
+  for (std::size_t i = 0; i < doubts.size(); ++i) {
+    std::optional<Doubt> doubt = doubts[i];
+    if (!doubt && diagnosis.search.interrupted) doubt = Doubt::interrupted;
+    if (!doubt && clear >= kStandIn) doubt = Doubt::stand_in;
+    if (doubt) possible.push_back({diagnosis.missing[i], *doubt});
   }
   return possible;
 }

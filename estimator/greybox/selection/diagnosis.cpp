@@ -72,9 +72,10 @@ void list_steps(Diagnosis& result) {
 }
 
 /// Localises the unexplained residual. Effects taken in place of the right one have absorbed part
-/// of it; the model as given then shows it more clearly.
+/// of it; the model as given then shows it more clearly. A bundle of effects is such a stand-in.
 std::vector<Localisation> localise_remainder(const SearchContext& context, const ModelStage& first,
                                              const ModelStage& final) {
+  if (final.added.size() >= kStandIn) return localise(context, first);
   std::vector<Localisation> left = localise(context, final);
   if (final.added.empty()) return left;
   std::vector<Localisation> whole = localise(context, first);
@@ -155,8 +156,8 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
   // missing physics passes for a disturbance as long as it is not in the model
   if (!context.cancelled()) result.disturbance = disturbance_of(search, innovations);
   const bool incredible = result.disturbed_floor_m() > kIncredible * result.rms_after_m &&
-                          innovations.curve_nats > kSuspicious_nats;
-  const bool physics = innovations.curve_nats > kCurve_nats || incredible;
+                          innovations.curve_nats > kSuspicious_nats + innovations.inexact_nats;
+  const bool physics = innovations.physics_missing() || incredible;
   result.curve_nats = innovations.curve_nats;
   for (const InnovationRound& round : innovations.rounds) {
     const InnovationCandidate& taken = round.candidates.front();
@@ -235,7 +236,7 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
     result.search = abandon_search(search, start);
     const InnovationSearch innovations = search_innovations(search, first, start.branch.stage);
     const bool begun = !innovations.final.linear.empty();
-    if (begun && (context.cancelled() || innovations.curve_nats <= kCurve_nats)) {
+    if (begun && (context.cancelled() || !innovations.physics_missing())) {
       conclude(context, search, first, innovations, result);
     } else if (!begun) {
       result.search.interrupted = true;

@@ -145,14 +145,15 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
   InnovationStage stage = settled(context, first, {}, kMostTurns, wide(context.options.threads));
   search.before = stage;
   if (!std::isfinite(stage.minus_two_log)) return search;  // cancelled before anything was known
-  const auto evidence_nats = [&] {
-    return kEvidence_nats +
-           kInexact * 0.5 * std::max(0.0, search.before.minus_two_log - stage.minus_two_log);
+  const auto inexact_nats = [&] {
+    return kInexact * 0.5 * std::max(0.0, search.before.minus_two_log - stage.minus_two_log);
   };
-  while (!context.cancelled() && extend(context, stage, evidence_nats(), search.rounds)) {
+  while (!context.cancelled() &&
+         extend(context, stage, kEvidence_nats + inexact_nats(), search.rounds)) {
   }
   take_held(context, held, stage, search.rounds);
-  eliminate(context, stage, evidence_nats());
+  search.inexact_nats = inexact_nats();
+  eliminate(context, stage, kEvidence_nats + search.inexact_nats);
   if (!stage.model.added.empty()) search.rivals = rivals_of(context, stage, search.before);
   const std::vector<CurveGain> curves =
       context.cancelled() ? std::vector<CurveGain>() : curve_gains(stage);

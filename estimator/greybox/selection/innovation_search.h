@@ -33,7 +33,10 @@ struct InnovationSearch {
   InnovationStage final;
   std::vector<InnovationRound> rounds;
   std::vector<InnovationRivals> rivals;
-  double curve_nats = 0.0;  ///< largest gain of a curve over a variable of the motion
+  double curve_nats = 0.0;    ///< largest gain of a curve over a variable of the motion
+  double inexact_nats = 0.0;  ///< gains that inexact models of what was explained may owe
+
+  [[nodiscard]] bool physics_missing() const { return curve_nats > kCurve_nats + inexact_nats; }
 };
 
 /// `first` is the model as given, fitted with the weak observer, `held` the best that another

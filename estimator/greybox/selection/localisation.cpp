@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "estimator/greybox/selection/residual_input.h"
 #include "estimator/linear_algebra/decompositions.h"
@@ -19,6 +20,9 @@ using Eigen::VectorXd;
 constexpr double kFreedom = 30.0;
 /// Least decrease of the remaining error per additional piece.
 constexpr double kPerPiece = 0.002;
+/// Share of the remaining error by which the command must be better than a motion to be what a
+/// force follows: a command reaches the load through the valve or the motor alone.
+constexpr double kCommandAsForce = 1.25;
 
 /// Response of the observer to an addition to the reading; independent of the model.
 MatrixXd seen_by_observer(const SearchContext& context, MatrixXd added) {
@@ -139,7 +143,9 @@ std::vector<Localisation> localise(const SearchContext& context, const ModelStag
   if (context.cancelled()) return {};
   const auto paid = [&](const Attempt& a) {
     const auto pieces = static_cast<double>(variables.all[a.variable].pieces.cols());
-    return a.remaining_ratio * (1.0 + kPerPiece * pieces);
+    const bool remote =
+        std::string_view(site_of(a.input)) == "force" && variables.all[a.variable].name == "u";
+    return a.remaining_ratio * (1.0 + kPerPiece * pieces) * (remote ? kCommandAsForce : 1.0);
   };
   std::stable_sort(attempts.begin(), attempts.end(),
                    [&](const Attempt& a, const Attempt& b) { return paid(a) < paid(b); });

@@ -38,11 +38,15 @@ bool is_gain(const SearchContext& context, const ModelStage& stage, const Candid
   const double gain = 1.0 - candidate.validation_rms_m / stage.fitted.validation_rms_m;
   const double fit_gain = 1.0 - candidate.fitted.training_rms_m / stage.fitted.training_rms_m;
   const double enough = worthwhile * static_cast<double>(candidate.effects.size());
+  // twice what so many parameters gain from noise
+  const double by_chance =
+      static_cast<double>(candidate.fitted.parameters.size() - stage.fitted.parameters.size()) /
+      context.problem.data.training_mask.sum();
   // not chance: better on the validation samples throughout, or equally better on the training
   // samples
   return candidate.fitted_at_all && gain > enough &&
          !leaves_its_range(candidate.fitted, stage.fitted.parameters.size()) &&
-         (gain > kLargeGain || candidate.p_value < kChance || fit_gain > enough);
+         (gain > kLargeGain || candidate.p_value < kChance || fit_gain > enough + by_chance);
 }
 
 /// The candidate with the fewest parameters among those that explain the record alike, except one

@@ -91,7 +91,8 @@ class Learning {
   [[nodiscard]] MatrixXd covariance() const {
     const double size = fitted_.residual_m.squaredNorm() / data_.all_mask.sum();
     const MatrixXd inner = fitted_.jacobian.transpose() * fitted_.jacobian;
-    return size * inner.ldlt().solve(MatrixXd::Identity(inner.rows(), inner.cols()));
+    return size *
+           linear_algebra::solve_symmetric(inner, MatrixXd::Identity(inner.rows(), inner.cols()));
   }
   [[nodiscard]] std::vector<double> line_values() const {
     std::vector<double> values;
@@ -169,9 +170,9 @@ class Learning {
         if (!(norm > 0.0)) return 0.0;
         response.col(i) /= norm;
       }
-      const Eigen::Vector2d along = response.transpose() * rest;
-      const Eigen::Matrix2d inner = response.transpose() * response;
-      return 0.5 * along.dot(inner.ldlt().solve(along)) / unit;
+      const VectorXd along = response.transpose() * rest;
+      const MatrixXd inner = response.transpose() * response;
+      return 0.5 * along.dot(linear_algebra::solve_symmetric(inner, along)) / unit;
     };
     std::vector<SpectralLine> lines =
         disturbance::promising_lines(models_.front(), record, gains, rest);

@@ -7,6 +7,7 @@
 
 #include "estimator/greybox/tracking/parameter_tracker.h"
 #include "estimator/greybox/tracking/tail_information.h"
+#include "estimator/linear_algebra/decompositions.h"
 
 namespace estimator::greybox::tracking {
 namespace {
@@ -164,8 +165,9 @@ DeviationCauses ParameterTracker::deviations_of(const TailInformation& tail,
   for (std::size_t i = 0; i < set_.tracked; ++i) {
     least[static_cast<Index>(i)] = least_change(set_, i, settings_.thresholds);
   }
-  const MatrixXd covariance = baseline_->noise->covariance +
-                              tail.information.ldlt().solve(MatrixXd::Identity(count, count));
+  const MatrixXd covariance =
+      baseline_->noise->covariance +
+      linear_algebra::solve_symmetric(tail.information, MatrixXd::Identity(count, count));
   const VectorXd deviation = (found.theta - baseline_->theta).head(count) + tail.step();
   return causes_of(deviation, covariance, least, settings_.thresholds.sure, standing());
 }

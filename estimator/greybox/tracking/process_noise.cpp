@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "config/schema/error.h"
+#include "estimator/linear_algebra/decompositions.h"
 
 namespace estimator::greybox::tracking {
 namespace {
@@ -167,8 +168,9 @@ DisturbanceLevel WindowNoise::level(const WindowData& data, const VectorXd& thet
     VectorXd e = innovations.col(static_cast<Index>(i));
     for (const disturbance::SpectralLine& line : noise.lines) {
       const MatrixXd response = disturbance::line_response(model, window, gains[i], line);
-      const Eigen::Matrix2d inner = response.transpose() * response;
-      e -= response * inner.ldlt().solve(response.transpose() * e);
+      const MatrixXd inner = response.transpose() * response;
+      const VectorXd along = response.transpose() * e;
+      e -= response * linear_algebra::solve_symmetric(inner, along);
     }
     cost[i] = e.squaredNorm() / (floor_m * floor_m) + log_determinant[i];
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "estimator/linear_algebra/decompositions.h"
 namespace estimator::greybox::tracking {
 namespace {
 
@@ -18,15 +19,17 @@ struct Restricted {
   double chi_square = 0.0;
 };
 
+MatrixXd inverse(const MatrixXd& a) {
+  return linear_algebra::solve_symmetric(a, MatrixXd::Identity(a.rows(), a.cols()));
+}
+
 Restricted restricted(const MatrixXd& information, const VectorXd& score,
                       const std::vector<std::size_t>& open) {
   const MatrixXd h = information(open, open);
   const VectorXd g = score(open);
-  const auto solved = h.ldlt();
   Restricted out;
-  out.deviation = solved.solve(g);
-  out.std_error =
-      solved.solve(MatrixXd::Identity(h.rows(), h.cols())).diagonal().cwiseMax(0.0).cwiseSqrt();
+  out.deviation = linear_algebra::solve_symmetric(h, g);
+  out.std_error = inverse(h).diagonal().cwiseMax(0.0).cwiseSqrt();
   out.chi_square = out.deviation.dot(g);
   return out;
 }
@@ -37,6 +40,10 @@ std::vector<std::size_t> with(std::vector<std::size_t> parameters, std::size_t o
 }
 
 }  // namespace
+
+VectorXd TailInformation::step() const {
+  return linear_algebra::solve_symmetric(information, score);
+}
 
 std::vector<TailInformation> tails_of(const VectorXd& residual, const MatrixXd& jacobian,
                                       double sigma, std::size_t samples, std::size_t spacing) {
@@ -72,8 +79,7 @@ std::optional<std::size_t> samples_since_change(const std::vector<TailInformatio
 DeviationCauses causes_of(const VectorXd& deviation, const MatrixXd& covariance,
                           const VectorXd& least, double sure, std::vector<std::size_t> standing) {
   const auto count = static_cast<std::size_t>(deviation.size());
-  const MatrixXd information =
-      covariance.ldlt().solve(MatrixXd::Identity(covariance.rows(), covariance.cols()));
+  const MatrixXd information = inverse(covariance);
   const VectorXd score = information * deviation;
   DeviationCauses out;
   out.parameters = std::move(standing);

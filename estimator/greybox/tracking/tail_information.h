@@ -19,7 +19,7 @@ struct TailInformation {
   std::size_t samples = 0;
   Eigen::MatrixXd information;  ///< H with the ridge below
   Eigen::VectorXd score;        ///< g
-  [[nodiscard]] Eigen::VectorXd step() const { return information.ldlt().solve(score); }
+  [[nodiscard]] Eigen::VectorXd step() const;
 };
 
 /// Tails of `spacing`, 2 `spacing`, ... samples, ascending; the last is the whole window of

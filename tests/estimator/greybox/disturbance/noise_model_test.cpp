@@ -34,7 +34,7 @@ TEST(NoiseModel, ASearchUnderDisturbanceIsTheSameForAnyNumberOfThreads) {
   for (const unsigned threads : {1U, 2U, 5U}) {
     context.options.threads = threads;
     const selection::InnovationSearch search =
-        selection::search_innovations(context, selection::first_stage(context));
+        selection::search_innovations(context, selection::first_stage(context), {});
     EXPECT_THAT(search.final.model.added, testing::ElementsAre("deadband"));
     costs.push_back(search.final.minus_two_log);
     thetas.push_back(search.final.model.fitted.theta);

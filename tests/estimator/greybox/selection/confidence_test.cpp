@@ -47,11 +47,12 @@ TEST(Confidence, AnEffectWithRivalsIsNotEstablished) {
 
 TEST(Confidence, ThreeEffectsThatLeaveAnErrorMayStandInForOneLaw) {
   Diagnosis d = unexplained();
-  d.missing.emplace_back("load_force");
+  d.missing = {"friction", "load_spring", "load_force"};
   d.parameters.push_back({"load_force.force_N", 200.0, 5.0, false});
+  d.parameters.push_back({"load_spring.stiffness_N_per_m", 2000.0, 30.0, false});
   EXPECT_THAT(named(d),
-              ElementsAre("friction stand_in", "backlash within_error", "load_force stand_in"));
-  EXPECT_THAT(d.established(), ElementsAre("friction", "backlash", "load_force"));
+              ElementsAre("friction stand_in", "load_spring stand_in", "load_force stand_in"));
+  EXPECT_THAT(d.established(), ElementsAre("friction", "load_spring", "load_force"));
   d.possible = possible_effects(d);
   EXPECT_THAT(d.established(), IsEmpty());
 }
