@@ -91,8 +91,8 @@ class Learning {
   [[nodiscard]] MatrixXd covariance() const {
     const double size = fitted_.residual_m.squaredNorm() / data_.all_mask.sum();
     const MatrixXd inner = fitted_.jacobian.transpose() * fitted_.jacobian;
-    return size *
-           linear_algebra::solve_symmetric(inner, MatrixXd::Identity(inner.rows(), inner.cols()));
+    return size * linear_algebra::solve_symmetric(
+                      inner, MatrixXd(MatrixXd::Identity(inner.rows(), inner.cols())));
   }
   [[nodiscard]] std::vector<double> line_values() const {
     std::vector<double> values;

@@ -167,7 +167,7 @@ DeviationCauses ParameterTracker::deviations_of(const TailInformation& tail,
   }
   const MatrixXd covariance =
       baseline_->noise->covariance +
-      linear_algebra::solve_symmetric(tail.information, MatrixXd::Identity(count, count));
+      linear_algebra::solve_symmetric(tail.information, MatrixXd(MatrixXd::Identity(count, count)));
   const VectorXd deviation = (found.theta - baseline_->theta).head(count) + tail.step();
   return causes_of(deviation, covariance, least, settings_.thresholds.sure, standing());
 }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "estimator/linear_algebra/decompositions.h"
+
 namespace estimator::greybox::tracking {
 namespace {
 
@@ -20,7 +21,7 @@ struct Restricted {
 };
 
 MatrixXd inverse(const MatrixXd& a) {
-  return linear_algebra::solve_symmetric(a, MatrixXd::Identity(a.rows(), a.cols()));
+  return linear_algebra::solve_symmetric(a, MatrixXd(MatrixXd::Identity(a.rows(), a.cols())));
 }
 
 Restricted restricted(const MatrixXd& information, const VectorXd& score,
