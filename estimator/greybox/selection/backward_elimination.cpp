@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <set>
 
-#include "estimator/greybox/selection/cross_validation.h"
 #include "estimator/greybox/selection/parameter_subset.h"
 #include "estimator/greybox/selection/structure_search.h"
 #include "estimator/parallel.h"
@@ -80,15 +79,14 @@ std::vector<Refinement> refinements_of(const ModelStage& stage) {
   return all;
 }
 
-bool earned(const SearchContext& context, const ModelStage& stage, const ParameterSubset& plain,
-            const FitSummary& without) {
+bool earned(const SearchContext& context, CrossValidation& halves, const ModelStage& stage,
+            const ParameterSubset& plain, const FitSummary& without) {
   return !costs_little(context, without, stage.fitted) &&
          (is_explained(context, stage) ||
-          cross_validates(context, false, plain,
-                          subset(stage.fitted, [](const auto&) { return true; })));
+          halves.holds(false, plain, subset(stage.fitted, [](const auto&) { return true; })));
 }
 
-void drop_refinements(const SearchContext& context, ModelStage& stage) {
+void drop_refinements(const SearchContext& context, CrossValidation& halves, ModelStage& stage) {
   std::vector<Refinement> remaining = refinements_of(stage);
   while (!remaining.empty() && !context.cancelled()) {
     std::vector<ParameterSubset> plain;
@@ -99,7 +97,7 @@ void drop_refinements(const SearchContext& context, ModelStage& stage) {
     std::vector<FitSummary> without = fitted(context, stage, plain);
     std::size_t i = 0;
     while (i < remaining.size() && !context.cancelled() &&
-           earned(context, stage, plain[i], without[i])) {
+           earned(context, halves, stage, plain[i], without[i])) {
       ++i;
     }
     if (i == remaining.size() || context.cancelled()) return;
@@ -108,7 +106,7 @@ void drop_refinements(const SearchContext& context, ModelStage& stage) {
   }
 }
 
-void add_refinements(const SearchContext& context, ModelStage& stage) {
+void add_refinements(const SearchContext& context, CrossValidation& halves, ModelStage& stage) {
   for (const std::string& effect : stage.added) {
     const auto info = std::find_if(context.problem.candidate_effects.begin(),
                                    context.problem.candidate_effects.end(),
@@ -129,7 +127,7 @@ void add_refinements(const SearchContext& context, ModelStage& stage) {
       }
       more.start = VectorXd::Zero(static_cast<Index>(more.parameters.size()));
       more.start.head(plain.start.size()) = plain.start;
-      if (!cross_validates(context, is_explained(context, stage), plain, more)) continue;
+      if (!halves.holds(is_explained(context, stage), plain, more)) continue;
       stage.fitted =
           refit(context, more, context.problem.data.training_mask, wide(context.options.threads));
     }
@@ -162,11 +160,12 @@ void refit_without_refinements(const SearchContext& context, ModelStage& stage) 
   stage.fitted = refit_to_convergence(context, *best);  // full convergence after the removal
 }
 
-void eliminate_backward(const SearchContext& context, ModelStage& stage, EliminationPass look) {
+void eliminate_backward(const SearchContext& context, CrossValidation& halves, ModelStage& stage,
+                        EliminationPass look) {
   drop_effects(context, stage);
   if (look == EliminationPass::intermediate && !is_explained(context, stage)) return;
-  drop_refinements(context, stage);
-  add_refinements(context, stage);
+  drop_refinements(context, halves, stage);
+  add_refinements(context, halves, stage);
 }
 
 }  // namespace estimator::greybox::selection

@@ -1,6 +1,7 @@
 // Backward elimination of a stage, then forward addition of refinements.
 #pragma once
 
+#include "estimator/greybox/selection/cross_validation.h"
 #include "estimator/greybox/selection/problem.h"
 #include "estimator/greybox/selection/screening.h"
 
@@ -10,10 +11,11 @@ namespace estimator::greybox::selection {
 enum class EliminationPass { intermediate, final };
 
 /// Drops effects, then refinements, as long as the held-out error rises by less than an effect must
-/// gain (and refinements that fail cross_validates() where the error exceeds the noise); then tries
+/// gain (and refinements that fail CrossValidation where the error exceeds the noise); then tries
 /// refinements that were left out, which must pass it as well. Intermediate passes keep the
 /// refinements of a stage that noise does not explain, because their cross-validation takes long.
-void eliminate_backward(const SearchContext& context, ModelStage& stage, EliminationPass look);
+void eliminate_backward(const SearchContext& context, CrossValidation& halves, ModelStage& stage,
+                        EliminationPass look);
 
 /// Fits a stage to convergence, and in parallel without each refinement of its effects. A
 /// refinement is dropped where the fit without it ends lower and noise does not explain the stage:

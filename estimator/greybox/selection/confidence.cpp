@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "estimator/greybox/selection/diagnosis.h"
@@ -11,8 +12,12 @@ namespace estimator::greybox::selection {
 namespace {
 
 constexpr double kStandardErrors = 2.0;
-constexpr double kClear = 10.0;
 constexpr double kMost = 0.5;
+/// Squared error that an effect explains over that which remains, above which it is no stand-in.
+constexpr double kBeyondDoubt = 100.0;
+/// The same where what remains enters as the effect does: a square of the speed in place of the
+/// cube leaves 7 % of the error.
+constexpr double kBeyondDoubtThere = 400.0;
 
 /// How an effect enters the equations, in the words of a Localisation.
 std::string site_of(const std::string& effect) {
@@ -31,21 +36,38 @@ bool shares_the_remainder(const Diagnosis& diagnosis, const std::string& effect)
          diagnosis.where.front().explained_ratio > kMost;
 }
 
-/// Whether an effect, when it was added, explained less than kClear times what is left: by the
-/// likelihood, or in mean squared errors.
-bool explains_little(const Diagnosis& diagnosis, const std::string& effect) {
-  if (diagnosis.by_innovations) {
-    const auto gain = diagnosis.gains_nats.find(effect);
-    return gain != diagnosis.gains_nats.end() && gain->second < kClear * diagnosis.curve_nats;
+/// Squared error of simulations that an effect explains, over that which remains; NaN where not
+/// known.
+double simulated_ratio(const Diagnosis& diagnosis, const std::string& effect) {
+  const auto explained_ratio = [&](double without_m, double with_m) {
+    const double left_m2 =
+        std::pow(diagnosis.rms_after_m, 2) - std::pow(diagnosis.noise_floor_m, 2);
+    return (std::pow(without_m, 2) - std::pow(with_m, 2)) / std::max(left_m2, 0.0);
+  };
+  if (const auto without = diagnosis.without_rms_m.find(effect);
+      without != diagnosis.without_rms_m.end()) {
+    return explained_ratio(without->second, diagnosis.rms_after_m);
   }
-  const double left_m2 = std::pow(diagnosis.rms_after_m, 2) - std::pow(diagnosis.noise_floor_m, 2);
   for (std::size_t i = 1; i < diagnosis.steps.size(); ++i) {
     if (diagnosis.steps[i].added.find(effect) == std::string::npos) continue;
-    const double explained_m2 = std::pow(diagnosis.steps[i - 1].validation_rms_m, 2) -
-                                std::pow(diagnosis.steps[i].validation_rms_m, 2);
-    return explained_m2 < kClear * left_m2;
+    return explained_ratio(diagnosis.steps[i - 1].validation_rms_m,
+                           diagnosis.steps[i].validation_rms_m);
   }
-  return false;
+  return std::nan("");
+}
+
+/// The same by the likelihood, where it decided; otherwise that of simulations.
+double likely_ratio(const Diagnosis& diagnosis, const std::string& effect) {
+  const auto gain = diagnosis.gains_nats.find(effect);
+  return gain == diagnosis.gains_nats.end()
+             ? simulated_ratio(diagnosis, effect)
+             : explained_ratio(gain->second, diagnosis.curve_nats, diagnosis.innovations);
+}
+
+bool is_beyond_doubt(const Diagnosis& diagnosis, const std::string& effect) {
+  const double simulated = simulated_ratio(diagnosis, effect);
+  if (shares_the_remainder(diagnosis, effect)) return simulated > kBeyondDoubtThere;
+  return simulated > kBeyondDoubt || likely_ratio(diagnosis, effect) > kBeyondDoubt;
 }
 
 /// The effect's size, its first parameter, and its rivals.
@@ -61,12 +83,19 @@ std::optional<Doubt> doubt_of(const Diagnosis& diagnosis, const std::string& eff
       if (std::find(group.begin(), group.end(), effect) != group.end()) return Doubt::rivals;
     }
   }
-  if (explains_little(diagnosis, effect)) return Doubt::remainder;
+  if (is_beyond_doubt(diagnosis, effect)) return {};
+  if (likely_ratio(diagnosis, effect) < kClearOfRemainder) return Doubt::remainder;
   if (shares_the_remainder(diagnosis, effect)) return Doubt::stand_in;
   return {};
 }
 
 }  // namespace
+
+double explained_ratio(double gain_nats, double curve_nats, double innovations) {
+  if (!(curve_nats > 0.0)) return std::numeric_limits<double>::infinity();
+  const double nats = 0.5 * innovations;
+  return std::expm1(gain_nats / nats) / (curve_nats / nats);
+}
 
 const char* to_string(Doubt doubt) {
   switch (doubt) {
@@ -96,7 +125,9 @@ std::vector<PossibleEffect> possible_effects(const Diagnosis& diagnosis) {
   for (std::size_t i = 0; i < doubts.size(); ++i) {
     std::optional<Doubt> doubt = doubts[i];
     if (!doubt && diagnosis.search.interrupted) doubt = Doubt::interrupted;
-    if (!doubt && clear >= kStandIn) doubt = Doubt::stand_in;
+    if (!doubt && clear >= kStandIn && !is_beyond_doubt(diagnosis, diagnosis.missing[i])) {
+      doubt = Doubt::stand_in;
+    }
     if (doubt) possible.push_back({diagnosis.missing[i], *doubt});
   }
   return possible;

@@ -12,6 +12,14 @@ struct Diagnosis;
 /// That many effects that leave an error together stand in for one law.
 inline constexpr std::size_t kStandIn = 3;
 
+/// An established effect explains that many times the squared error that remains unexplained.
+inline constexpr double kClearOfRemainder = 10.0;
+
+/// Squared error that an effect explains, over that which remains and physics would explain, by the
+/// likelihood: a gain of g in n innovations divides their variance by exp(2 g / n); a curve that
+/// would gain c explains the share 2 c / n of what is left.
+[[nodiscard]] double explained_ratio(double gain_nats, double curve_nats, double innovations);
+
 /// Why an effect counts as no more than possible.
 enum class Doubt {
   at_bound,      ///< its size is the largest or smallest allowed: it stands for something else

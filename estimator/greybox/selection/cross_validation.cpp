@@ -1,7 +1,5 @@
 #include "estimator/greybox/selection/cross_validation.h"
 
-#include <array>
-
 #include "estimator/greybox/selection/structure_search.h"
 #include "estimator/parallel.h"
 
@@ -33,31 +31,57 @@ Halves halves_of(const FitDataset& data) {
 
 }  // namespace
 
-bool cross_validates(const SearchContext& context, bool explained, const ParameterSubset& plain,
-                     const ParameterSubset& more) {
-  const Halves halves = halves_of(context.problem.data);
+CrossValidation::CrossValidation(const SearchContext& context) : context_(context) {
+  Halves halves = halves_of(context.problem.data);
+  forth_ = std::move(halves.forth);
+  back_ = std::move(halves.back);
+}
+
+CrossValidation::Key CrossValidation::key_of(bool explained, const ParameterSubset& model) {
+  Key key;
+  for (const FreeParameter& p : model.parameters) key.first.push_back(p.name);
+  key.second.assign(model.start.begin(), model.start.end());
+  key.second.push_back(explained ? 1.0 : 0.0);
+  return key;
+}
+
+void CrossValidation::fit_missing(bool explained,
+                                  const std::vector<const ParameterSubset*>& models) {
   FitOptions options;
   options.tolerance = 1e-4;
   options.max_iterations = 15;
   options.final_jacobian = false;
-  options.cancel = context.options.cancel;
+  options.cancel = context_.options.cancel;
   if (!explained) {
     // free run: its minimum is narrow, and an unconverged fit decides wrongly
     options.observer_per_s = 0.0;
     options.tolerance = 1e-5;
     options.max_iterations = FitOptions{}.max_iterations;
   }
-  std::array<double, 4> validation_rms_m{};
-  in_parallel(validation_rms_m.size(), context.options.threads, [&](std::size_t i) {
-    const ParameterSubset& selection = i % 2 == 0 ? plain : more;
-    const FitDataset& data = i < 2 ? halves.forth : halves.back;
-    validation_rms_m[i] = fit(context.problem.model, data, data.training_mask, selection.parameters,
-                              selection.start, options)
+  std::vector<const ParameterSubset*> missing;
+  for (const ParameterSubset* model : models) {
+    if (!known_.contains(key_of(explained, *model))) missing.push_back(model);
+  }
+  std::vector<double> validation_rms_m(2 * missing.size());
+  in_parallel(validation_rms_m.size(), context_.options.threads, [&](std::size_t i) {
+    const ParameterSubset& model = *missing[i / 2];
+    const FitDataset& data = i % 2 == 0 ? forth_ : back_;
+    validation_rms_m[i] = fit(context_.problem.model, data, data.training_mask, model.parameters,
+                              model.start, options)
                               .validation_rms_m;
   });
-  const double enough = 1.0 - worthwhile_at(context, validation_rms_m[0]);
-  return validation_rms_m[1] < enough * validation_rms_m[0] &&
-         validation_rms_m[3] < enough * validation_rms_m[2];
+  for (std::size_t i = 0; i < missing.size(); ++i) {
+    known_[key_of(explained, *missing[i])] = {validation_rms_m[2 * i], validation_rms_m[2 * i + 1]};
+  }
+}
+
+bool CrossValidation::holds(bool explained, const ParameterSubset& plain,
+                            const ParameterSubset& more) {
+  fit_missing(explained, {&plain, &more});
+  const Errors& without_m = known_.at(key_of(explained, plain));
+  const Errors& with_m = known_.at(key_of(explained, more));
+  const double enough = 1.0 - worthwhile_at(context_, without_m.first);
+  return with_m.first < enough * without_m.first && with_m.second < enough * without_m.second;
 }
 
 bool is_explained(const SearchContext& context, const ModelStage& stage) {

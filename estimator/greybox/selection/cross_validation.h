@@ -5,14 +5,40 @@
 // fitted to the other; where noise does not explain the rest, in the free run without observer.
 #pragma once
 
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "estimator/greybox/selection/parameter_subset.h"
 #include "estimator/greybox/selection/screening.h"
 
 namespace estimator::greybox::selection {
 
-/// `more` has the parameters of `plain` and further ones. `explained`: score with the observer.
-[[nodiscard]] bool cross_validates(const SearchContext& context, bool explained,
-                                   const ParameterSubset& plain, const ParameterSubset& more);
+/// The data of a search in halves, with the errors of models fitted to either so far: the same
+/// model stands for comparison many times.
+class CrossValidation {
+ public:
+  explicit CrossValidation(const SearchContext& context);
+
+  /// Whether `more`, which has the parameters of `plain` and further ones, has the smaller error on
+  /// both halves. `explained`: score with the observer.
+  [[nodiscard]] bool holds(bool explained, const ParameterSubset& plain,
+                           const ParameterSubset& more);
+
+ private:
+  /// Names of the parameters, their start and whether the observer runs.
+  using Key = std::pair<std::vector<std::string>, std::vector<double>>;
+  /// Held-out errors in m, fitted to the first and to the second half.
+  using Errors = std::pair<double, double>;
+
+  [[nodiscard]] static Key key_of(bool explained, const ParameterSubset& model);
+  void fit_missing(bool explained, const std::vector<const ParameterSubset*>& models);
+
+  const SearchContext& context_;
+  FitDataset forth_, back_;
+  std::map<Key, Errors> known_;
+};
 
 /// Whether noise explains the stage's held-out error.
 [[nodiscard]] bool is_explained(const SearchContext& context, const ModelStage& stage);

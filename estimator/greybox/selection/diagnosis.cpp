@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "config/schema/joined.h"
 #include "estimator/greybox/representative_segments.h"
@@ -159,12 +160,14 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
                           innovations.curve_nats > kSuspicious_nats + innovations.inexact_nats;
   const bool physics = innovations.physics_missing() || incredible;
   result.curve_nats = innovations.curve_nats;
-  for (const InnovationRound& round : innovations.rounds) {
-    const InnovationCandidate& taken = round.candidates.front();
-    if (!taken.effect.empty()) result.gains_nats[taken.effect] = taken.gain_nats;
+  result.innovations = static_cast<double>(innovations.final.model.fitted.residual_m.size());
+  result.gains_nats = innovations.gains_nats;
+  for (std::size_t i = 0; i < innovations.without.size(); ++i) {
+    result.without_rms_m[result.missing[i]] =
+        simulated(search, innovations.without[i].model.fitted).validation_rms_m;
   }
   if (physics) result.disturbance.reset();
-  for (const InnovationRivals& rivals : innovations.rivals) {
+  for (const InnovationRivals& rivals : find_rivals(search, innovations)) {
     const Separable& separable = search.options.separable;
     const bool separates = !separable || separable(search, rivals.explanations, rivals.names);
     (separates ? result.ambiguous : result.same_here).push_back(rivals.names);
@@ -242,15 +245,20 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
       result.search.interrupted = true;
       conclude(context, search, result);
     } else {
-      StructureSearch full = complete_search(search, std::move(start));
+      extend_search(search, start);
       const double held_m = simulated(search, innovations.final.model.fitted).validation_rms_m;
       // of two that leave something unexplained, the one that leaves less; the likelier one of
       // equals
-      if (!is_explained(search, full.final) &&
-          (1.0 - kRivals) * held_m < full.final.fitted.validation_rms_m) {
+      const auto leaves_more = [&](const ModelStage& stage) {
+        return !is_explained(search, stage) &&
+               (1.0 - kRivals) * held_m < stage.fitted.validation_rms_m;
+      };
+      std::optional<StructureSearch> full;
+      if (!leaves_more(start.branch.stage)) full = conclude_search(search, std::move(start));
+      if (!full || leaves_more(full->final)) {
         conclude(context, search, first, innovations, result);
       } else {
-        result.search = std::move(full);
+        result.search = *std::move(full);
         conclude(context, search, result);
       }
     }

@@ -53,10 +53,12 @@ struct Diagnosis {
   Excitation excitation;             ///< insufficient: Verdict::not_excited
   std::optional<double> searched_s;  ///< length of the segments searched; none: all samples
   bool by_innovations = false;       ///< the likelihood of all innovations decided
-  /// By innovations: gain of each effect when it was added, and of the best curve over a variable
-  /// of the motion at the end.
+  /// By innovations: what the absence of each effect would cost, and the gain of the best curve
+  /// over a variable of the motion.
   std::map<std::string, double> gains_nats;
+  std::map<std::string, double> without_rms_m;  ///< held-out error of the model without each effect
   double curve_nats = 0.0;
+  double innovations = 0.0;  ///< their number
   /// Asked where the fitted model leaves many times the noise.
   std::optional<RecordChecks> checks;
   std::vector<PlantFit> plants;  ///< the same, where nothing explains the records

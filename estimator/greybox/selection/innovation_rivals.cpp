@@ -35,70 +35,71 @@ InnovationStage exchanged(const SearchContext& plain, const InnovationStage& sta
   }
   model.fitted.parameters = parameters.parameters;
   model.fitted.theta = parameters.start;
-  model.fitted = fit_innovations(stage.context, parameters, wide(plain.options.threads),
-                                 InnovationFit::converged);
+  model.fitted =
+      fit_innovations(stage.context, parameters, wide(plain.options.threads), InnovationFit::trial);
   return settled(plain, std::move(model), stage.noise, 1, wide(plain.options.threads));
 }
 
 }  // namespace
 
-void eliminate(const SearchContext& plain, InnovationStage& stage, double evidence_nats) {
+std::vector<InnovationStage> eliminate(const SearchContext& plain, InnovationStage& stage,
+                                       double evidence_nats) {
+  std::vector<InnovationStage> without;
   bool dropped = true;
   while (dropped && stage.model.added.size() > 1 && !plain.cancelled()) {
     dropped = false;
-    for (const std::string& effect : std::vector<std::string>(stage.model.added)) {
-      InnovationStage without = exchanged(plain, stage, effect, "", {});
-      const double loss = 0.5 * (without.minus_two_log - stage.minus_two_log) -
-                          penalty_nats(stage.model.fitted, without.model.fitted);
+    without.clear();
+    for (const std::string& effect : stage.model.added) {
+      without.push_back(exchanged(plain, stage, effect, "", {}));
+      const double loss = 0.5 * (without.back().minus_two_log - stage.minus_two_log) -
+                          penalty_nats(stage.model.fitted, without.back().model.fitted);
       if (loss >= evidence_nats) continue;
-      stage = std::move(without);
+      stage = InnovationStage(std::move(without.back()));
+      without.clear();
       dropped = true;
       break;
     }
   }
+  return without;
 }
 
-std::vector<InnovationRivals> rivals_of(const SearchContext& plain, const InnovationStage& final,
-                                        const InnovationStage& before) {
-  std::vector<InnovationRivals> groups;
-  for (const std::string& effect : final.model.added) {
-    if (plain.cancelled()) break;
-    const InnovationStage without = final.model.added.size() == 1 && final.noise.lines.empty()
-                                        ? before
-                                        : exchanged(plain, final, effect, "", {});
-    std::vector<InnovationTrial> rivals = effect_trials(without);
-    add_simulated_starts(plain, without, rivals);
-    sort_by_gain(rivals);
-    double best = -std::numeric_limits<double>::infinity();
-    for (const InnovationTrial& rival : rivals) {
-      if (rival.candidate.effect == effect) best = rival.candidate.gain_nats;
-    }
-    InnovationRivals group{{effect}, {final.model.fitted}};
-    std::size_t tried = 0;
-    for (const InnovationTrial& rival : rivals) {
-      const std::string& name = rival.candidate.effect;
-      const auto& added = final.model.added;
-      if (std::find(added.begin(), added.end(), name) != added.end()) continue;
-      const bool far =
-          rival.candidate.gain_nats < best - kWorthSettling_nats || rival.candidate.gain_nats < 0.0;
-      if ((far && !rival.simulated) || ++tried > kFinalists ||
-          group.names.size() == kLargestGroup) {
-        continue;
-      }
-      const InnovationStage other = settled(plain, without, rival);
-      const double behind =
-          0.5 * (other.minus_two_log - final.minus_two_log) +
-          kPerParameter_nats * (static_cast<double>(other.model.fitted.parameters.size()) -
-                                static_cast<double>(final.model.fitted.parameters.size()));
-      if (behind < kRivals_nats &&
-          !leaves_its_range(other.model.fitted, without.model.fitted.parameters.size())) {
-        group.names.push_back(name);
-        group.explanations.push_back(other.model.fitted);
-      }
-    }
-    if (group.names.size() > 1) groups.push_back(std::move(group));
+InnovationRivals rivals_of(const SearchContext& plain, const InnovationStage& final,
+                           const std::string& effect, const InnovationStage* without) {
+  InnovationStage own;
+  if (without == nullptr) {
+    own = exchanged(plain, final, effect, "", {});
+    without = &own;
   }
-  return groups;
+  std::vector<InnovationTrial> rivals = effect_trials(*without);
+  add_simulated_starts(plain, *without, rivals);
+  sort_by_gain(rivals);
+  double best = -std::numeric_limits<double>::infinity();
+  for (const InnovationTrial& rival : rivals) {
+    if (rival.candidate.effect == effect) best = rival.candidate.gain_nats;
+  }
+  InnovationRivals group{{effect}, {final.model.fitted}};
+  std::size_t tried = 0;
+  for (const InnovationTrial& rival : rivals) {
+    const std::string& name = rival.candidate.effect;
+    const auto& added = final.model.added;
+    if (std::find(added.begin(), added.end(), name) != added.end()) continue;
+    const bool far =
+        rival.candidate.gain_nats < best - kWorthSettling_nats || rival.candidate.gain_nats < 0.0;
+    if ((far && !rival.simulated) || ++tried > kFinalists || group.names.size() == kLargestGroup) {
+      continue;
+    }
+    const InnovationStage other = settled(plain, *without, rival);
+    const double behind =
+        0.5 * (other.minus_two_log - final.minus_two_log) +
+        kPerParameter_nats * (static_cast<double>(other.model.fitted.parameters.size()) -
+                              static_cast<double>(final.model.fitted.parameters.size()));
+    if (behind < kRivals_nats &&
+        !leaves_its_range(other.model.fitted, without->model.fitted.parameters.size())) {
+      group.names.push_back(name);
+      group.explanations.push_back(other.model.fitted);
+    }
+  }
+  return group;
 }
 
 }  // namespace estimator::greybox::selection

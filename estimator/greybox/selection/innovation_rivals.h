@@ -17,13 +17,14 @@ struct InnovationRivals {
   std::vector<FitSummary> explanations;  ///< one for each name
 };
 
-/// Removes effects whose absence costs less than they are worth.
-void eliminate(const SearchContext& plain, InnovationStage& stage, double evidence_nats);
+/// Removes effects whose absence costs less than they are worth. Returns the stage without each of
+/// those that stay; without the only one it is not known.
+std::vector<InnovationStage> eliminate(const SearchContext& plain, InnovationStage& stage,
+                                       double evidence_nats);
 
-/// For each effect found, those that explain the record about as well in its place. `before` is the
-/// model as given.
-[[nodiscard]] std::vector<InnovationRivals> rivals_of(const SearchContext& plain,
-                                                      const InnovationStage& final,
-                                                      const InnovationStage& before);
+/// The effect and those that explain the record about as well in its place. `without` is the final
+/// stage without it, where known.
+[[nodiscard]] InnovationRivals rivals_of(const SearchContext& plain, const InnovationStage& final,
+                                         const std::string& effect, const InnovationStage* without);
 
 }  // namespace estimator::greybox::selection

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <utility>
 
 #include "config/schema/joined.h"
+#include "estimator/greybox/selection/confidence.h"
 #include "estimator/greybox/selection/innovation_curves.h"
 #include "estimator/greybox/selection/spectral_line_candidates.h"
 #include "estimator/parallel.h"
@@ -131,16 +133,41 @@ void take_held(const SearchContext& context, const ModelStage& held, InnovationS
   stage = other;
 }
 
-}  // namespace
-
-InnovationSearch search_innovations(const SearchContext& with_holdouts, const ModelStage& first,
-                                    const ModelStage& held) {
-  SearchContext context = with_holdouts;
+SearchContext without_holdouts(SearchContext context) {
   if (context.problem.data.has_holdouts()) {
     std::vector<Dataset>& records = context.problem.data.records;
     records.resize(context.problem.data.fitted_records);
     context.problem.data = fit_dataset(std::move(records), {});
   }
+  return context;
+}
+
+bool is_among(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+void note_gains(InnovationSearch& search, const InnovationStage& final) {
+  for (const InnovationRound& round : search.rounds) {
+    // the last round has taken none
+    if (round.candidates.empty() || !is_among(final.model.added, round.candidates.front().effect)) {
+      continue;
+    }
+    const InnovationCandidate& taken = round.candidates.front();
+    search.gains_nats[taken.effect] = taken.gain_nats;
+  }
+  for (std::size_t i = 0; i < search.without.size(); ++i) {
+    const InnovationStage& without = search.without[i];
+    search.gains_nats[final.model.added[i]] =
+        0.5 * (without.minus_two_log - final.minus_two_log) -
+        penalty_nats(final.model.fitted, without.model.fitted);
+  }
+}
+
+}  // namespace
+
+InnovationSearch search_innovations(const SearchContext& with_holdouts, const ModelStage& first,
+                                    const ModelStage& held) {
+  const SearchContext context = without_holdouts(with_holdouts);
   InnovationSearch search;
   InnovationStage stage = settled(context, first, {}, kMostTurns, wide(context.options.threads));
   search.before = stage;
@@ -153,13 +180,35 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
   }
   take_held(context, held, stage, search.rounds);
   search.inexact_nats = inexact_nats();
-  eliminate(context, stage, kEvidence_nats + search.inexact_nats);
-  if (!stage.model.added.empty()) search.rivals = rivals_of(context, stage, search.before);
+  search.without = eliminate(context, stage, kEvidence_nats + search.inexact_nats);
+  note_gains(search, stage);
   const std::vector<CurveGain> curves =
       context.cancelled() ? std::vector<CurveGain>() : curve_gains(stage);
   if (!curves.empty()) search.curve_nats = curves.front().gain_nats;
   search.final = std::move(stage);
   return search;
+}
+
+std::vector<InnovationRivals> find_rivals(const SearchContext& with_holdouts,
+                                          const InnovationSearch& search) {
+  const SearchContext context = without_holdouts(with_holdouts);
+  const std::vector<std::string>& added = search.final.model.added;
+  std::vector<InnovationRivals> groups;
+  for (std::size_t i = 0; i < added.size() && !context.cancelled(); ++i) {
+    const auto gain = search.gains_nats.find(added[i]);
+    const auto count = static_cast<double>(search.final.model.fitted.residual_m.size());
+    if (search.physics_missing() && gain != search.gains_nats.end() &&
+        explained_ratio(gain->second, search.curve_nats, count) < kClearOfRemainder) {
+      continue;
+    }
+    const bool only = added.size() == 1 && search.final.noise.lines.empty();
+    const InnovationStage* without = only                        ? &search.before
+                                     : search.without.size() > i ? &search.without[i]
+                                                                 : nullptr;
+    InnovationRivals group = rivals_of(context, search.final, added[i], without);
+    if (group.names.size() > 1) groups.push_back(std::move(group));
+  }
+  return groups;
 }
 
 }  // namespace estimator::greybox::selection

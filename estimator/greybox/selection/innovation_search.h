@@ -12,6 +12,8 @@
 // that valid. Source for the penalty: G. Schwarz, Annals of Statistics 6 (1978) 461.
 #pragma once
 
+#include <map>
+#include <string>
 #include <vector>
 
 #include "estimator/greybox/selection/innovation_rivals.h"
@@ -32,7 +34,9 @@ struct InnovationSearch {
   InnovationStage before;  ///< the model as given and its noise model, lines not included
   InnovationStage final;
   std::vector<InnovationRound> rounds;
-  std::vector<InnovationRivals> rivals;
+  std::vector<InnovationStage> without;  ///< `final` without each of its effects, where known
+  /// Nats that the absence of each effect would cost; where not known, its gain when it was added.
+  std::map<std::string, double> gains_nats;
   double curve_nats = 0.0;    ///< largest gain of a curve over a variable of the motion
   double inexact_nats = 0.0;  ///< gains that inexact models of what was explained may owe
 
@@ -44,5 +48,10 @@ struct InnovationSearch {
 /// take no part.
 [[nodiscard]] InnovationSearch search_innovations(const SearchContext& context,
                                                   const ModelStage& first, const ModelStage& held);
+
+/// For each effect found, those that explain the record about as well in its place. Effects that
+/// gained little beside what physics is missing are left out: they are not established anyway.
+[[nodiscard]] std::vector<InnovationRivals> find_rivals(const SearchContext& context,
+                                                        const InnovationSearch& search);
 
 }  // namespace estimator::greybox::selection

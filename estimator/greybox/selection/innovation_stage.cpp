@@ -13,8 +13,12 @@ using Eigen::MatrixXd;
 
 constexpr int kQuickIterations = 10;
 constexpr double kQuickTolerance = 2e-4;
+constexpr int kTrialIterations = 15;
+constexpr double kTrialTolerance = 1e-4;
 constexpr int kIterations = 25;
 constexpr double kTolerance = 1e-5;
+/// Lead in -2 log L that a fit from another start does not make up for after a quick look.
+constexpr double kFarBehind = 100.0;
 /// Fall of -2 log L that a refinement brought back has to bring.
 constexpr double kRevived = 2.0;
 /// Fall of -2 log L below which another turn of noise model and parameters is of no use.
@@ -28,29 +32,25 @@ SearchContext with_data(const SearchContext& context, FitDataset data) {
 
 /// The stage's data, likelihood and parameters for its noise model. The parameters start where they
 /// are and, as a disturbance that was not known may have bent them, where the model file has them.
-void refit(const SearchContext& plain, InnovationStage& stage, bool from_file_too, Width width) {
+void refit(const SearchContext& plain, InnovationStage& stage, bool from_file_too,
+           InnovationFit effort, Width width) {
   const disturbance::InnovationData data =
       disturbance::innovation_data(plain.problem.data, stage.linear, stage.noise);
   stage.context = with_data(plain, data.data);
   ParameterSubset all = subset(stage.model.fitted, [](const auto&) { return true; });
-  FitSummary fitted = fit_innovations(stage.context, all, width, InnovationFit::converged);
+  FitSummary fitted = fit_innovations(stage.context, all, width, effort);
   const double floor_m = plain.problem.data.noise_floor_m;
-  if (from_file_too) {
-    all.start = with_file_values(stage.context, stage.model);
-    FitSummary other = fit_innovations(stage.context, all, width, InnovationFit::converged);
-    if (squares(other, floor_m) + prior_cost(other) <
-        squares(fitted, floor_m) + prior_cost(fitted)) {
-      fitted = std::move(other);
-    }
-  }
-  for (const Eigen::VectorXd& start : revived_refinements(fitted)) {
-    all.start = start;
-    FitSummary other = fit_innovations(stage.context, all, width, InnovationFit::converged);
-    if (squares(other, floor_m) + prior_cost(other) + kRevived <
-        squares(fitted, floor_m) + prior_cost(fitted)) {
-      fitted = std::move(other);
-    }
-  }
+  const auto cost = [&](const FitSummary& fit) { return squares(fit, floor_m) + prior_cost(fit); };
+  const auto try_start = [&](Eigen::VectorXd start, double enough) {
+    all.start = std::move(start);
+    FitSummary other = fit_innovations(stage.context, all, width, InnovationFit::quick);
+    if (cost(other) > cost(fitted) + kFarBehind) return;
+    all.start = other.theta;
+    other = fit_innovations(stage.context, all, width, effort);
+    if (cost(other) + enough < cost(fitted)) fitted = std::move(other);
+  };
+  if (from_file_too) try_start(with_file_values(stage.context, stage.model), 0.0);
+  for (const Eigen::VectorXd& start : revived_refinements(fitted)) try_start(start, kRevived);
   stage.model.fitted = std::move(fitted);
   stage.minus_two_log =
       squares(stage.model.fitted, floor_m) + data.log_determinant + prior_cost(stage.model.fitted);
@@ -65,9 +65,10 @@ double squares(const FitSummary& fitted, double floor_m) {
 FitSummary fit_innovations(const SearchContext& context, const ParameterSubset& parameters,
                            Width width, InnovationFit effort) {
   const bool quick = effort == InnovationFit::quick;
+  const bool trial = effort == InnovationFit::trial;
   FitOptions options;
-  options.max_iterations = quick ? kQuickIterations : kIterations;
-  options.tolerance = quick ? kQuickTolerance : kTolerance;
+  options.max_iterations = quick ? kQuickIterations : trial ? kTrialIterations : kIterations;
+  options.tolerance = quick ? kQuickTolerance : trial ? kTrialTolerance : kTolerance;
   options.passes = quick ? 1 : 2;
   options.final_jacobian = !quick;
   options.cancel = context.options.cancel;
@@ -91,7 +92,7 @@ InnovationStage settled(const SearchContext& plain, ModelStage model,
         disturbance::estimate_noise(plain.problem.model, plain.problem.data, fitted.parameters,
                                     fitted.theta, stage.linear, stage.noise, width.threads)
             .noise;
-    refit(plain, stage, i == 0, width);
+    refit(plain, stage, i == 0, turns > 1 ? InnovationFit::converged : InnovationFit::trial, width);
     const double gain = best.minus_two_log - stage.minus_two_log;
     if (gain > 0.0) best = stage;
     if (gain < kSettled) break;

@@ -24,7 +24,11 @@ struct InnovationStage {
 
 /// Fit to the innovations of the context's data: quick to compare candidates, or to convergence
 /// with a Jacobian.
-enum class InnovationFit { quick, converged };
+enum class InnovationFit {
+  quick,     ///< ranks candidates
+  trial,     ///< decides between candidates: to a nat or so
+  converged  ///< the parameters of a model that stays
+};
 [[nodiscard]] FitSummary fit_innovations(const SearchContext& context,
                                          const ParameterSubset& parameters, Width width,
                                          InnovationFit effort);

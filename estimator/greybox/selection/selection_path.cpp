@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "estimator/greybox/selection/cross_validation.h"
 #include "estimator/greybox/selection/parameter_subset.h"
 #include "estimator/parallel.h"
 
@@ -79,7 +78,7 @@ std::vector<ModelStage> path_to(const SearchContext& context, const ModelStage& 
   return path;
 }
 
-std::vector<ModelStage> cross_validated_path(const SearchContext& context,
+std::vector<ModelStage> cross_validated_path(const SearchContext& context, CrossValidation& halves,
                                              const std::vector<ModelStage>& path) {
   std::vector<ModelStage> kept{path.front()};
   const auto all = [](const ModelStage& stage) {
@@ -93,7 +92,7 @@ std::vector<ModelStage> cross_validated_path(const SearchContext& context,
                     context.problem.data.training_mask, wide(context.options.threads)));
     const bool plain_to_see =
         more.fitted.validation_rms_m < kPlainToSee * kept.back().fitted.validation_rms_m;
-    if (plain_to_see || cross_validates(context, false, all(kept.back()), all(more))) {
+    if (plain_to_see || halves.holds(false, all(kept.back()), all(more))) {
       kept.push_back(std::move(more));
     }
   }

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "estimator/greybox/selection/cross_validation.h"
 #include "estimator/greybox/selection/screening.h"
 
 namespace estimator::greybox::selection {
@@ -13,8 +14,9 @@ namespace estimator::greybox::selection {
 [[nodiscard]] std::vector<ModelStage> path_to(const SearchContext& context, const ModelStage& first,
                                               const ModelStage& final);
 
-/// The path restricted to effects that pass cross_validates(), each on top of those kept before.
+/// The path restricted to effects that hold in CrossValidation, each on top of those kept before.
 [[nodiscard]] std::vector<ModelStage> cross_validated_path(const SearchContext& context,
+                                                           CrossValidation& halves,
                                                            const std::vector<ModelStage>& path);
 
 }  // namespace estimator::greybox::selection

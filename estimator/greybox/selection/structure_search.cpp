@@ -107,12 +107,12 @@ bool extend_branch(const SearchContext& context, SearchBranch& branch, bool pair
 }
 
 /// Search from `first` with a candidate as its beginning, after the round `begun`.
-SearchBranch branch_from(const SearchContext& context, const ModelStage& first,
-                         const Candidate& candidate, const Round& begun) {
+SearchBranch branch_from(const SearchContext& context, CrossValidation& halves,
+                         const ModelStage& first, const Candidate& candidate, const Round& begun) {
   SearchBranch other{with(first, candidate), {begun}};
   refit_without_refinements(context, other.stage);
   extend_branch(context, other, false);
-  eliminate_backward(context, other.stage, EliminationPass::intermediate);
+  eliminate_backward(context, halves, other.stage, EliminationPass::intermediate);
   if (candidate.effects.size() > 1) {
     auto& candidates = other.rounds.front().candidates;
     candidates.insert(candidates.begin(), candidate);
@@ -125,35 +125,35 @@ bool improves_on(const SearchBranch& other, const SearchBranch& best) {
 }
 
 /// Pair of effects as the beginning, where a stepwise search has not explained the record.
-std::optional<SearchBranch> start_with_pair(const SearchContext& context, const ModelStage& first,
-                                            const SearchBranch& best) {
+std::optional<SearchBranch> start_with_pair(const SearchContext& context, CrossValidation& halves,
+                                            const ModelStage& first, const SearchBranch& best) {
   if (best.rounds.empty() || is_explained(context, best.stage) || context.cancelled()) return {};
   std::vector<std::string> begun;  // beginning with which the second round has tried all others
   if (best.rounds.size() > 1) begun = best.rounds[1].before.added;
   const std::vector<Candidate> pairs = pair_search(context, first, begun);
   if (pairs.empty() || !is_gain(context, first, pairs.front())) return {};
-  return branch_from(context, first, pairs.front(), best.rounds.front());
+  return branch_from(context, halves, first, pairs.front(), best.rounds.front());
 }
 
 /// The rest of a stepwise search, with pairs where these lead further.
-SearchBranch search_forward(const SearchContext& context, const ModelStage& first,
-                            SearchBranch best) {
+SearchBranch search_forward(const SearchContext& context, CrossValidation& halves,
+                            const ModelStage& first, SearchBranch best) {
   if (best.stalled) {
     try_pairs(context, best.stage, best.rounds.back());
     best.stalled = !take(context, best.rounds.back(), best.stage);
     if (!best.stalled) extend_branch(context, best, true, kBeforePairSearch);
   }
   const bool may_go_on = !best.stalled && best.stage.added.size() >= kBeforePairSearch;
-  std::optional<SearchBranch> other = start_with_pair(context, first, best);
+  std::optional<SearchBranch> other = start_with_pair(context, halves, first, best);
   if (other && is_explained(context, other->stage) && improves_on(*other, best)) return *other;
   if (may_go_on) extend_branch(context, best, true);
-  eliminate_backward(context, best.stage, EliminationPass::intermediate);
+  eliminate_backward(context, halves, best.stage, EliminationPass::intermediate);
   return other && improves_on(*other, best) ? *other : best;
 }
 
 /// Searches from the next best effects of the first round.
-void try_alternative_starts(const SearchContext& context, const ModelStage& first,
-                            SearchBranch& best) {
+void try_alternative_starts(const SearchContext& context, CrossValidation& halves,
+                            const ModelStage& first, SearchBranch& best) {
   if (best.rounds.empty()) return;
   const std::vector<Candidate> firsts = best.rounds.front().candidates;
   for (std::size_t i = 1; i < std::min(kAlternativeStarts, firsts.size()); ++i) {
@@ -167,22 +167,22 @@ void try_alternative_starts(const SearchContext& context, const ModelStage& firs
     if (apart_m < kSamePath * firsts[i].validation_rms_m) continue;
     const auto& added = best.stage.added;
     if (std::find(added.begin(), added.end(), firsts[i].effects.front()) != added.end()) continue;
-    SearchBranch other = branch_from(context, first, firsts[i], best.rounds.front());
+    SearchBranch other = branch_from(context, halves, first, firsts[i], best.rounds.front());
     if (improves_on(other, best)) best = std::move(other);
   }
 }
 
 /// Whether a set of effects holds in either half of the records though its parts one after another
 /// do not: two that make up for each other are worth nothing alone.
-bool set_is_supported(const SearchContext& context, const ModelStage& first, const ModelStage& set,
-                      const ModelStage& parts) {
+bool set_is_supported(const SearchContext& context, CrossValidation& halves,
+                      const ModelStage& first, const ModelStage& set, const ModelStage& parts) {
   const auto all = [](const ModelStage& stage) {
     return subset(stage.fitted, [](const auto&) { return true; });
   };
   return set.added.size() < kStandIn && parts.added.size() < set.added.size() &&
          !context.cancelled() &&
          parts.fitted.validation_rms_m > (1.0 + kRivals) * set.fitted.validation_rms_m &&
-         cross_validates(context, false, all(first), all(set));
+         halves.holds(false, all(first), all(set));
 }
 
 /// Notes a stage whose place another one has taken.
@@ -256,24 +256,30 @@ StructureSearch abandon_search(const SearchContext& context, const SearchStart& 
   return search;
 }
 
-StructureSearch complete_search(const SearchContext& context, SearchStart start) {
+void extend_search(const SearchContext& context, SearchStart& start) {
+  CrossValidation halves(context);
+  start.branch = search_forward(context, halves, start.first, std::move(start.branch));
+  try_alternative_starts(context, halves, start.first, start.branch);
+}
+
+StructureSearch conclude_search(const SearchContext& context, SearchStart start) {
+  CrossValidation halves(context);
   StructureSearch search;
   search.nominal_rms_m = start.nominal_rms_m;
   search.preview_s = start.preview_s;
   const ModelStage first = std::move(start.first);
-  SearchBranch best = search_forward(context, first, std::move(start.branch));
-  try_alternative_starts(context, first, best);
+  SearchBranch best = std::move(start.branch);
   const ModelStage& stage = best.stage;
   search.rounds = std::move(best.rounds);
   search.path = path_to(context, first, stage);
   if (!is_explained(context, stage)) {
-    std::vector<ModelStage> validated = cross_validated_path(context, search.path);
-    if (set_is_supported(context, first, stage, validated.back())) validated = search.path;
+    std::vector<ModelStage> validated = cross_validated_path(context, halves, search.path);
+    if (set_is_supported(context, halves, first, stage, validated.back())) validated = search.path;
     // interrupted: keeps what was found
     if (!context.cancelled()) {
       ModelStage last = validated.back();
       refuse(stage, Refusal::unsupported, last, search);
-      eliminate_backward(context, last, EliminationPass::final);
+      eliminate_backward(context, halves, last, EliminationPass::final);
       refuse(validated.back(), Refusal::dispensable, last, search);
       const bool dropped = last.added.size() < validated.back().added.size();
       search.path = dropped ? path_to(context, first, last) : std::move(validated);
@@ -283,6 +289,11 @@ StructureSearch complete_search(const SearchContext& context, SearchStart start)
   search.final = search.path.back();
   search.interrupted = context.cancelled();
   return search;
+}
+
+StructureSearch complete_search(const SearchContext& context, SearchStart start) {
+  extend_search(context, start);
+  return conclude_search(context, std::move(start));
 }
 
 }  // namespace estimator::greybox::selection

@@ -90,7 +90,12 @@ struct SearchStart {
   double preview_s = 0.0;
 };
 [[nodiscard]] SearchStart start_search(const SearchContext& context);
-/// The rest of the search, from where it was begun.
+/// Further effects, pairs of effects and other beginnings, as far as they lead.
+void extend_search(const SearchContext& context, SearchStart& start);
+/// The model that the search has come to. Where noise does not explain what it leaves, its effects
+/// are cross-validated.
+[[nodiscard]] StructureSearch conclude_search(const SearchContext& context, SearchStart start);
+/// Both.
 [[nodiscard]] StructureSearch complete_search(const SearchContext& context, SearchStart start);
 /// A search given up for another method: the model as given.
 [[nodiscard]] StructureSearch abandon_search(const SearchContext& context,

@@ -57,6 +57,39 @@ TEST(Confidence, ThreeEffectsThatLeaveAnErrorMayStandInForOneLaw) {
   EXPECT_THAT(d.established(), IsEmpty());
 }
 
+/// One effect that lets the error fall from `before_m` to 100 um, where the floor is 2 um.
+Diagnosis with_friction(double before_m, const std::string& site_of_rest) {
+  Diagnosis d = unexplained();
+  d.missing = {"friction"};
+  d.noise_floor_m = 2e-6;
+  d.rms_after_m = 100e-6;
+  d.steps = {{"", before_m}, {"friction", 100e-6}};
+  d.where = {{site_of_rest, "speed", 0.9}};
+  return d;
+}
+
+TEST(Confidence, AnEffectBesideWhichMuchRemainsIsNotEstablished) {
+  EXPECT_THAT(named(with_friction(300e-6, "measurement")), ElementsAre("friction remainder"));
+  EXPECT_THAT(named(with_friction(400e-6, "measurement")), IsEmpty());
+}
+
+TEST(Confidence, AnEffectThatEntersAsTheRestDoesIsEstablishedWhereLittleRemains) {
+  EXPECT_THAT(named(with_friction(1.5e-3, "force")), ElementsAre("friction stand_in"));
+  EXPECT_THAT(named(with_friction(1.5e-3, "measurement")), IsEmpty());
+  EXPECT_THAT(named(with_friction(2.5e-3, "force")), IsEmpty());
+}
+
+TEST(Confidence, TheLikelihoodCountsWhereItDecided) {
+  Diagnosis d = with_friction(120e-6, "measurement");
+  d.innovations = 2000.0;
+  d.curve_nats = 100.0;                 // a tenth of what is left
+  d.gains_nats = {{"friction", 50.0}};  // another tenth
+  EXPECT_THAT(named(d), ElementsAre("friction remainder"));
+  d.gains_nats = {{"friction", 800.0}};
+  d.by_innovations = true;
+  EXPECT_THAT(named(d), IsEmpty());
+}
+
 TEST(Confidence, WhereNoErrorRemainsWhatWasFoundStands) {
   Diagnosis d = unexplained();
   d.verdict = Verdict::missing;

@@ -112,7 +112,8 @@ TEST(LookOver, DropsAnEffectThatBringsNothingAndKeepsTheOthers) {
                                  {"null_bias", 0.05},
                                  {"flow_asymmetry", 0.001},
                                  {"deadband", 0.08}});
-  eliminate_backward(context, stage, EliminationPass::final);
+  CrossValidation halves(context);
+  eliminate_backward(context, halves, stage, EliminationPass::final);
   EXPECT_THAT(stage.added, UnorderedElementsAre("null_bias", "deadband"));
   for (const auto& p : stage.fitted.parameters) {
     EXPECT_FALSE(belongs_to(p, "transport_delay") || belongs_to(p, "flow_asymmetry")) << p.name;
@@ -144,8 +145,9 @@ TEST(SupportedWay, LeavesOutWhatOneHalfOfTheRecordContradicts) {
   const ModelStage first = first_stage(context);
   const ModelStage final =
       stage_with(context, first, {{"flow_asymmetry", 0.01}, {"null_bias", 0.2}});
+  CrossValidation halves(context);
   const std::vector<ModelStage> kept =
-      cross_validated_path(context, path_to(context, first, final));
+      cross_validated_path(context, halves, path_to(context, first, final));
   EXPECT_THAT(kept.back().added, ElementsAre("null_bias"));
 }
 
@@ -154,7 +156,8 @@ bool is_supported(const SearchContext& context, bool explained, const std::strin
   const ModelStage first = first_stage(context);
   const auto all = [](const auto&) { return true; };
   const ModelStage more = stage_with(context, first, {{effect, value}});
-  return cross_validates(context, explained, subset(first.fitted, all), subset(more.fitted, all));
+  return CrossValidation(context).holds(explained, subset(first.fitted, all),
+                                        subset(more.fitted, all));
 }
 
 TEST(Support, IsGivenByEitherHalfWhereTheEffectIsInBoth) {
