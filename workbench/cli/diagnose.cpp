@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "config/record/whole_file.h"
+#include "estimator/greybox/selection/command_lead.h"
 #include "workbench/cli/command.h"
 #include "workbench/cli/common_options.h"
 #include "workbench/cli/interrupt.h"
@@ -59,6 +60,7 @@ int run(const DiagnosisRequest& request) {
   if (!request.quiet) line.end();
   const int exit_code = Interrupt::exit_code();
   DiagnosisReport report{&prepared, std::move(found.diagnosis), std::move(found.advice)};
+  selection::advance_command(prepared.problem.data, report.diagnosis.command_lead_samples);
   report.interrupted = exit_code != 0 || report.diagnosis.search.interrupted;
   simulate_freely(report);
   write(report, request);

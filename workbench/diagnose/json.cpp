@@ -95,7 +95,8 @@ std::string to_json(const DiagnosisReport& outcome) {
                              {"explained_ratio", number_or_null(where.explained_ratio)}});
   }
   json["record"] = {{"turned_sign", d.checks && d.checks->turned_sign()},
-                    {"outside_stroke", d.checks && d.checks->outside_stroke()}};
+                    {"outside_stroke", d.checks && d.checks->outside_stroke()},
+                    {"command_lead_samples", d.command_lead_samples}};
   json["plants"] = Json::array();
   for (const selection::PlantFit& fit : d.plants) {
     json["plants"].push_back(

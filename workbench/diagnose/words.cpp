@@ -123,6 +123,20 @@ std::string fall_words(const selection::Diagnosis& d) {
          config::units::length_words(d.disturbed_floor_m()) + ".";
 }
 
+std::string command_lead_words(double lead_samples) {
+  if (lead_samples >= 1.0) {
+    return fmt::format(
+        "Command and position are {:.3g} samples apart: the record is taken with the command that "
+        "much earlier. Look at how the two are logged.",
+        lead_samples);
+  }
+  return fmt::format(
+      "The command goes on to change between two samples of this record, which keeps some of a "
+      "faster loop's: it is taken {:.2g} samples earlier. A log of every sample of the loop says "
+      "more.",
+      lead_samples);
+}
+
 /// Findings in the record itself, before any physics.
 void add_record_words(const selection::Diagnosis& d, std::vector<std::string>& out) {
   const selection::RecordChecks& checks = *d.checks;
@@ -255,6 +269,7 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
         "Interrupted: this is the best so far. Not everything was tried, so other effects may do "
         "as well.");
   }
+  if (d.command_lead_samples > 0.0) out.push_back(command_lead_words(d.command_lead_samples));
   if (d.checks) add_record_words(d, out);
   if (d.verdict != selection::Verdict::not_excited) out.push_back(fall_words(d));
   const bool named = d.verdict == selection::Verdict::missing || d.missing.empty();

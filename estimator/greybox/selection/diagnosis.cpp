@@ -6,6 +6,7 @@
 
 #include "config/schema/joined.h"
 #include "estimator/greybox/representative_segments.h"
+#include "estimator/greybox/selection/command_lead.h"
 #include "estimator/greybox/selection/cross_validation.h"
 #include "estimator/greybox/selection/excitation.h"
 #include "estimator/greybox/selection/indistinguishable_models.h"
@@ -213,7 +214,7 @@ double Diagnosis::disturbed_floor_m() const {
 
 Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
-  const SearchContext context{problem, options};
+  SearchContext context{problem, options};
   Diagnosis result;
   result.noise_floor_m = problem.data.noise_floor_m;
   result.excitation = excitation_of(problem.data);
@@ -222,8 +223,18 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
     result.better = problem.model;
     return result;
   }
-  const SearchContext search = for_search(context);
+  SearchContext search = for_search(context);
   SearchStart start = start_search(search);
+  if (!is_explained(search, start.branch.stage) || !floor_shows_lead(search.problem.data)) {
+    const CommandLead lead = find_command_lead(search, start.branch.stage);
+    if (lead.samples > 0.0) {
+      advance_command(context.problem.data, lead.samples);
+      context.problem.interpolated_nats = lead.gain_nats;
+      search = for_search(context);
+      start = start_search(search);
+      result.command_lead_samples = lead.samples;
+    }
+  }
   const ModelStage first = start.first;
   if (first.fitted.validation_rms_m > kFarFromFloor * result.noise_floor_m) {
     result.checks = check_records(search, first.fitted.validation_rms_m);

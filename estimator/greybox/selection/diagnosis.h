@@ -59,6 +59,9 @@ struct Diagnosis {
   std::map<std::string, double> without_rms_m;  ///< held-out error of the model without each effect
   double curve_nats = 0.0;
   double innovations = 0.0;  ///< their number
+  /// The command acts that much before the sample that it is logged with: the records were taken
+  /// so (command_lead.h).
+  double command_lead_samples = 0.0;
   /// Asked where the fitted model leaves many times the noise.
   std::optional<RecordChecks> checks;
   std::vector<PlantFit> plants;  ///< the same, where nothing explains the records

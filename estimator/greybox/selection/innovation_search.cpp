@@ -25,6 +25,8 @@ constexpr double kParametersOfLine = 3.0;
 /// Share of what a search has explained that may be owed to its models being inexact: a candidate
 /// has to gain more.
 constexpr double kInexact = 0.005;
+/// The same share of what interpolating the command has gained.
+constexpr double kInterpolated = 0.02;
 
 /// Where a line enters is decided before the effects are known that pass it on: the other sites are
 /// tried again.
@@ -116,12 +118,12 @@ double penalised(const InnovationStage& stage) {
 }
 
 /// The model that another search holds, where it is more likely than the stage reached.
-void take_held(const SearchContext& context, const ModelStage& held, InnovationStage& stage,
-               std::vector<InnovationRound>& rounds) {
+void take_held(const SearchContext& context, const ModelStage& held, double evidence_nats,
+               InnovationStage& stage, std::vector<InnovationRound>& rounds) {
   if (held.added.empty() || context.cancelled()) return;
   const InnovationStage other =
       settled(context, held, stage.noise, kMostTurns, wide(context.options.threads));
-  if (!(penalised(other) < penalised(stage) - 2.0 * kEvidence_nats)) return;
+  if (!(penalised(other) < penalised(stage) - 2.0 * evidence_nats)) return;
   InnovationCandidate candidate;
   candidate.effect = config::schema::joined(held.added, "+");
   candidate.settled = true;
@@ -173,12 +175,13 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
   search.before = stage;
   if (!std::isfinite(stage.minus_two_log)) return search;  // cancelled before anything was known
   const auto inexact_nats = [&] {
-    return kInexact * 0.5 * std::max(0.0, search.before.minus_two_log - stage.minus_two_log);
+    return kInterpolated * context.problem.interpolated_nats +
+           kInexact * 0.5 * std::max(0.0, search.before.minus_two_log - stage.minus_two_log);
   };
   while (!context.cancelled() &&
          extend(context, stage, kEvidence_nats + inexact_nats(), search.rounds)) {
   }
-  take_held(context, held, stage, search.rounds);
+  take_held(context, held, kEvidence_nats + inexact_nats(), stage, search.rounds);
   search.inexact_nats = inexact_nats();
   search.without = eliminate(context, stage, kEvidence_nats + search.inexact_nats);
   note_gains(search, stage);

@@ -34,6 +34,7 @@ struct DiagnosisProblem {
   FitDataset data;
   std::vector<plant_sim::EffectInfo> candidate_effects;  ///< offered by the plant, absent so far
   std::vector<FreeParameter> plant_parameters;           ///< plant and present effects
+  double interpolated_nats = 0.0;  ///< gain of interpolating the command, which is not exact
 };
 
 struct SearchContext;

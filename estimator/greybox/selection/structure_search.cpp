@@ -6,8 +6,10 @@
 #include <optional>
 
 #include "estimator/greybox/selection/backward_elimination.h"
+#include "estimator/greybox/selection/command_lead.h"
 #include "estimator/greybox/selection/confidence.h"
 #include "estimator/greybox/selection/cross_validation.h"
+#include "estimator/greybox/selection/innovation_trials.h"
 #include "estimator/greybox/selection/pair_search.h"
 #include "estimator/greybox/selection/parameter_subset.h"
 #include "estimator/greybox/selection/search_round.h"
@@ -38,10 +40,12 @@ bool is_gain(const SearchContext& context, const ModelStage& stage, const Candid
   const double gain = 1.0 - candidate.validation_rms_m / stage.fitted.validation_rms_m;
   const double fit_gain = 1.0 - candidate.fitted.training_rms_m / stage.fitted.training_rms_m;
   const double enough = worthwhile * static_cast<double>(candidate.effects.size());
-  // twice what so many parameters gain from noise
+  // what so many parameters must gain not to be chance, of as many samples as are independent
+  const Eigen::VectorXd& fitted = context.problem.data.training_mask;
   const double by_chance =
-      static_cast<double>(candidate.fitted.parameters.size() - stage.fitted.parameters.size()) /
-      context.problem.data.training_mask.sum();
+      kPerParameter_nats *
+      static_cast<double>(candidate.fitted.parameters.size() - stage.fitted.parameters.size()) *
+      correlation_factor(candidate.fitted.residual_m, fitted) / fitted.sum();
   // not chance: better on the validation samples throughout, or equally better on the training
   // samples
   return candidate.fitted_at_all && gain > enough &&
@@ -210,6 +214,7 @@ const char* to_string(Refusal why) {
 }
 
 double worthwhile_at(const SearchContext& context, double validation_rms_m) {
+  if (!floor_shows_lead(context.problem.data)) return kWorthwhileInSlowLogs;
   return validation_rms_m < kUnexplained * context.problem.data.noise_floor_m ? kWorthwhileInNoise
                                                                               : kWorthwhile;
 }

@@ -24,12 +24,14 @@ inline constexpr double kWorthwhile = 0.01;
 /// The same limit where the error is hardly more than noise, which hides much of an effect. Healthy
 /// records of the thesis's actuator stay below a quarter of this value.
 inline constexpr double kWorthwhileInNoise = 0.004;
+/// The same limit for slow logs, whose command changes between two samples.
+inline constexpr double kWorthwhileInSlowLogs = 0.05;
 /// Ratio of held-out error to noise floor above which the record is unexplained.
 inline constexpr double kUnexplained = 1.15;
 /// Ratio of held-out errors within which rivals explain the record about as well as the best.
 inline constexpr double kRivals = 0.05;
 
-/// The applicable one of the two limits at a held-out error.
+/// The applicable one of the limits at a held-out error.
 [[nodiscard]] double worthwhile_at(const SearchContext& context, double validation_rms_m);
 
 struct Candidate {

@@ -1,0 +1,68 @@
+#include "estimator/greybox/selection/command_lead.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "estimator/greybox/kinematics.h"
+#include "estimator/greybox/selection/parameter_subset.h"
+#include "estimator/parallel.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+constexpr std::array kLeads_samples = {1.0 / 4.0, 1.0 / 3.0, 3.0 / 8.0, 9.0 / 20.0,
+                                       1.0 / 2.0, 1.0,       3.0 / 2.0, 2.0};
+/// Share of the error that may remain with a lead: a valve faster than expected gains less.
+constexpr double kMuchLess = 0.6;
+/// Sample time from which on a floor may hide the error of a held command.
+constexpr double kSlow_s = 0.015;
+constexpr int kIterations = 10;
+constexpr double kTolerance = 1e-3;
+
+}  // namespace
+
+void advance_command(FitDataset& data, double lead_samples) {
+  const double whole = std::floor(lead_samples);
+  const double share = lead_samples - whole;
+  const auto ahead = static_cast<std::size_t>(whole);
+  for (Dataset& record : data.records) {
+    const std::vector<double> logged_V = record.u_V;
+    for (const SampleRange& span : segments(record)) {
+      const auto at = [&](std::size_t k) { return logged_V[std::min(k, span.end - 1)]; };
+      for (std::size_t k = span.begin; k < span.end; ++k) {
+        record.u_V[k] = (1.0 - share) * at(k + ahead) + share * at(k + ahead + 1);
+      }
+    }
+  }
+}
+
+CommandLead find_command_lead(const SearchContext& context, const ModelStage& stage) {
+  FitOptions options;
+  options.max_iterations = kIterations;
+  options.tolerance = kTolerance;
+  options.final_jacobian = false;
+  options.cancel = context.options.cancel;
+  const ParameterSubset all = subset(stage.fitted, [](const auto&) { return true; });
+  std::array<FitSummary, kLeads_samples.size()> fits;
+  in_parallel(fits.size(), context.options.threads, [&](std::size_t i) {
+    FitDataset data = context.problem.data;
+    advance_command(data, kLeads_samples[i]);
+    fits[i] =
+        fit(context.problem.model, data, data.training_mask, all.parameters, all.start, options);
+  });
+  const auto best = std::min_element(fits.begin(), fits.end(), [](const auto& a, const auto& b) {
+    return a.training_rms_m < b.training_rms_m;
+  });
+  if (context.cancelled() || !(best->training_rms_m < kMuchLess * stage.fitted.training_rms_m) ||
+      !(best->validation_rms_m < kMuchLess * stage.fitted.validation_rms_m)) {
+    return {};
+  }
+  return {kLeads_samples[static_cast<std::size_t>(best - fits.begin())],
+          context.problem.data.all_mask.sum() *
+              std::log(stage.fitted.validation_rms_m / best->validation_rms_m)};
+}
+
+bool floor_shows_lead(const FitDataset& data) { return data.sample_time_s < kSlow_s; }
+
+}  // namespace estimator::greybox::selection

@@ -1,0 +1,32 @@
+// The time by which a command acts before the sample at which it is logged.
+//
+// Models hold each command until the next sample. A log that keeps every m-th sample of a faster
+// loop, or the samples of a continuous command, shows the command at the start of an interval in
+// which it goes on to change: its mean is that of
+//
+//   (1 - L) u(k) + L u(k+1),   L = (m - 1) / (2 m);   1/2 for a continuous command
+//
+// which is tried for several m, and leads of whole samples, which are a shift between two clocks.
+#pragma once
+
+#include "estimator/greybox/selection/problem.h"
+#include "estimator/greybox/selection/screening.h"
+
+namespace estimator::greybox::selection {
+
+/// Each record's command earlier by so many samples, interpolated; held at a segment's end.
+void advance_command(FitDataset& data, double lead_samples);
+
+struct CommandLead {
+  double samples = 0.0;  ///< 0: as logged
+  double gain_nats = 0.0;
+};
+
+/// The lead with which the stage's model leaves much less of the error, if any.
+[[nodiscard]] CommandLead find_command_lead(const SearchContext& context, const ModelStage& stage);
+
+/// Whether a noise floor says that a command is held between its samples: the floor of a slow log,
+/// taken from positions far apart, is too high for that.
+[[nodiscard]] bool floor_shows_lead(const FitDataset& data);
+
+}  // namespace estimator::greybox::selection
