@@ -12,6 +12,7 @@
 #include "workbench/cli/common_options.h"
 #include "workbench/cli/interrupt.h"
 #include "workbench/cli/number_check.h"
+#include "workbench/cli/selection_options.h"
 #include "workbench/diagnose/diagnosis_report.h"
 #include "workbench/diagnose/experiment_design.h"
 #include "workbench/diagnose/progress_line.h"
@@ -85,6 +86,8 @@ void add_diagnose(CLI::App& command, int& exit_code) {
   command.add_option("--without", request->without, "name[,name...]: do not try these effects")
       ->delimiter(',')
       ->allow_extra_args(false);
+  add_parameter_selection(command, request->selection);
+  add_ignored(command, request->ignored);
   command.add_flag("--flip", request->flip, "turn the sign of the records' commands");
   command
       .add_option("--within", request->within_s, "s: the best answer found by then; 0 is no limit")

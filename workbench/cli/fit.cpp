@@ -11,6 +11,7 @@
 #include "workbench/cli/common_options.h"
 #include "workbench/cli/interrupt.h"
 #include "workbench/cli/number_check.h"
+#include "workbench/cli/selection_options.h"
 #include "workbench/fit/fit_report.h"
 #include "workbench/present/json.h"
 
@@ -51,17 +52,8 @@ int run(const FitRequest& request) {
 }
 
 void declare_choice(CLI::App& command, FitRequest& request) {
-  const auto each = [&](const char* name, std::vector<std::string>& values, const char* what) {
-    command.add_option(name, values, what)->allow_extra_args(false);
-  };
-  each("--free", request.selection.free,
-       "name[,name...]: fit these only; default: the plant's uncertain parameters and those of its "
-       "effects");
-  each("--fix", request.selection.fix, "name[,name...]: keep these values");
-  each("--prior", request.selection.priors,
-       "name=mean+-sd (sd in the unit, or in % of the mean), or name=none");
-  each("--bounds", request.selection.bounds, "name=low:high");
-  each("--ignore", request.ignored, "from:to or RECORD@from:to, s: ignore these samples");
+  add_parameter_selection(command, request.selection);
+  add_ignored(command, request.ignored);
   command
       .add_option("--weight", request.weights, "weight of each record's squared errors, in order")
       ->allow_extra_args(false)

@@ -10,6 +10,7 @@
 #include "config/schema/error.h"
 #include "config/schema/joined.h"
 #include "workbench/cli/file_check.h"
+#include "workbench/fit/ignored_spans.h"
 
 namespace workbench::diagnose {
 namespace {
@@ -72,10 +73,16 @@ PreparedDiagnosis prepare(const DiagnosisRequest& request) {
   check_files(request);
   PreparedDiagnosis prepared;
   prepared.split = greybox::parse_split(request.fit);
-  prepared.problem =
-      selection::make_problem(plant_sim::load_model(request.model, request.assignments),
-                              greybox::fit_dataset(records_of(request.records),
-                                                   records_of(request.holdouts), prepared.split));
+  plant_sim::ModelFile model = plant_sim::load_model(request.model, request.assignments);
+  fit::FreeParameters parameters = fit::select_parameters(model, request.selection);
+  std::vector<greybox::Dataset> records = records_of(request.records);
+  fit::for_ignored(request.ignored, records, [&](std::size_t record, std::size_t sample) {
+    records[record].valid[sample] = 0;
+  });
+  prepared.problem = selection::make_problem(
+      std::move(model),
+      greybox::fit_dataset(std::move(records), records_of(request.holdouts), prepared.split));
+  prepared.problem.plant_parameters = std::move(parameters.parameters);
   if (request.flip) {
     for (greybox::Dataset& record : prepared.problem.data.records) {
       for (double& u_V : record.u_V) u_V = -u_V;

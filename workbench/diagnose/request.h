@@ -6,6 +6,7 @@
 
 #include "estimator/greybox/fit_dataset.h"
 #include "estimator/greybox/selection/problem.h"
+#include "workbench/fit/parameter_selection.h"
 
 namespace workbench::diagnose {
 
@@ -17,11 +18,13 @@ struct DiagnosisRequest {
   std::vector<std::string> records;
   std::vector<std::string> holdouts;
   std::string fit = "blocks";
-  std::vector<std::string> only;     ///< the only effects to be tried; empty: all
-  std::vector<std::string> without;  ///< effects that are not tried
-  bool flip = false;                 ///< the records' commands with the other sign
-  double within_s = 0.0;             ///< the best answer after that time; 0: no limit
-  std::string json;                  ///< "-": standard output
+  std::vector<std::string> only;      ///< the only effects to be tried; empty: all
+  std::vector<std::string> without;   ///< effects that are not tried
+  fit::ParameterSelection selection;  ///< of the model's own parameters
+  std::vector<std::string> ignored;   ///< "from:to" in s, or "RECORD@from:to"
+  bool flip = false;                  ///< the records' commands with the other sign
+  double within_s = 0.0;              ///< the best answer after that time; 0: no limit
+  std::string json;                   ///< "-": standard output
   std::string report;
   std::string output;
   unsigned threads = 0;  ///< 0: one for each processor

@@ -4,19 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <thread>
 
 #include "config/record/record.h"
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "workbench/cli/file_check.h"
+#include "workbench/fit/ignored_spans.h"
 #include "workbench/present/dataset_notes.h"
 
 namespace workbench::fit {
 namespace {
 
-namespace fs = std::filesystem;
 using config::schema::UsageError;
 using greybox::Dataset;
 using greybox::FitDataset;
@@ -69,32 +68,6 @@ void note_saturation(const Dataset& record, std::vector<std::string>& notes) {
   }
 }
 
-/// Takes the samples of a span out of fit and score.
-void ignore(const std::string& text, FitDataset& data, Eigen::VectorXd& mask) {
-  const std::size_t at = text.rfind('@');
-  const std::string name = at == std::string::npos ? "" : text.substr(0, at);
-  const std::string span = at == std::string::npos ? text : text.substr(at + 1);
-  const std::size_t colon = span.find(':');
-  const double from_s =
-      colon == std::string::npos ? std::nan("") : number_in(span.substr(0, colon));
-  const double to_s = colon == std::string::npos ? std::nan("") : number_in(span.substr(colon + 1));
-  if (!(from_s < to_s)) {
-    throw UsageError("--ignore " + text +
-                     ": is not a span; allowed: from:to or RECORD@from:to, in s");
-  }
-  bool met = false;
-  for (std::size_t r = 0; r < data.records.size(); ++r) {
-    const Dataset& record = data.records[r];
-    if (!name.empty() && record.name != name && fs::path(record.name).filename() != name) continue;
-    for (std::size_t i = 0; i < record.size(); ++i) {
-      if (record.t_s[i] < from_s || record.t_s[i] > to_s) continue;
-      mask[static_cast<Eigen::Index>(data.starts[r] + i)] = 0.0;
-      met = true;
-    }
-  }
-  if (!met) throw UsageError("--ignore " + text + ": no sample lies there");
-}
-
 void weigh(const FitRequest& request, greybox::EstimationProblem& problem) {
   FitDataset& data = problem.data;
   if (!request.weights.empty() && request.weights.size() != request.records.size()) {
@@ -103,7 +76,9 @@ void weigh(const FitRequest& request, greybox::EstimationProblem& problem) {
                      std::to_string(request.records.size()) + " records");
   }
   Eigen::VectorXd mask = Eigen::VectorXd::Ones(data.size());
-  for (const std::string& text : request.ignored) ignore(text, data, mask);
+  for_ignored(request.ignored, data.records, [&](std::size_t record, std::size_t sample) {
+    mask[static_cast<Eigen::Index>(data.starts[record] + sample)] = 0.0;
+  });
   if (request.fit == "all" && request.holdouts.empty()) {
     data.training_mask = data.all_mask;
     data.validation_mask.setZero();

@@ -43,6 +43,34 @@ TEST_F(DiagnoseRequest, IsTakenWithItsRecordsAndCommand) {
   EXPECT_EQ(prepared.command, "spoolwatch diagnose");
 }
 
+TEST_F(DiagnoseRequest, FixedParametersAreNotFitted) {
+  request_.selection.fix = {"time_constant_s"};
+  request_.selection.priors = {"gain_mps_per_V=0.05+-2%"};
+  const PreparedDiagnosis prepared = prepare(request_);
+  ASSERT_EQ(prepared.problem.plant_parameters.size(), 1U);
+  EXPECT_EQ(prepared.problem.plant_parameters[0].name, "gain_mps_per_V");
+  EXPECT_NEAR(prepared.problem.plant_parameters[0].prior_sd, 0.02, 1e-3);  // of the logarithm
+}
+
+TEST_F(DiagnoseRequest, IgnoredSamplesNeitherFitNorScore) {
+  const Eigen::VectorXd all = prepare(request_).problem.data.all_mask;
+  request_.ignored = {"1:1.5"};
+  const PreparedDiagnosis prepared = prepare(request_);
+  const Eigen::VectorXd& rest = prepared.problem.data.all_mask;
+  EXPECT_EQ(all.sum() - rest.sum(), 101.0);  // 200 Hz, both ends
+  EXPECT_EQ(rest.segment(200, 101).sum(), 0.0);
+}
+
+TEST_F(DiagnoseRequest, WrongChoicesAreRefused) {
+  request_.ignored = {"1-2"};
+  expect_refused(2, "is not a span");
+  request_.ignored = {"7:8"};
+  expect_refused(2, "no sample lies there");
+  request_.ignored.clear();
+  request_.selection.fix = {"mass_kg"};
+  expect_refused(78, "is no parameter of this model");
+}
+
 TEST_F(DiagnoseRequest, HoldoutThatIsFittedTooIsRefused) {
   request_.holdouts = {file("./bench.csv")};
   expect_refused(2, "is fitted too");
