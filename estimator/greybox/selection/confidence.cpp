@@ -36,22 +36,26 @@ bool shares_the_remainder(const Diagnosis& diagnosis, const std::string& effect)
          diagnosis.where.front().explained_ratio > kMost;
 }
 
-/// Squared error of simulations that an effect explains, over that which remains; NaN where not
-/// known.
+/// Squared error of simulations that an effect explains, over that which remains, with the observer
+/// or in a free run; NaN where not known.
 double simulated_ratio(const Diagnosis& diagnosis, const std::string& effect) {
-  const auto explained_ratio = [&](double without_m, double with_m) {
-    const double left_m2 =
-        std::pow(diagnosis.rms_after_m, 2) - std::pow(diagnosis.noise_floor_m, 2);
+  const auto explained_ratio = [&](double without_m, double with_m, double after_m) {
+    const double left_m2 = std::pow(after_m, 2) - std::pow(diagnosis.noise_floor_m, 2);
     return (std::pow(without_m, 2) - std::pow(with_m, 2)) / std::max(left_m2, 0.0);
   };
   if (const auto without = diagnosis.without_rms_m.find(effect);
       without != diagnosis.without_rms_m.end()) {
-    return explained_ratio(without->second, diagnosis.rms_after_m);
+    return explained_ratio(without->second, diagnosis.rms_after_m, diagnosis.rms_after_m);
   }
   for (std::size_t i = 1; i < diagnosis.steps.size(); ++i) {
-    if (diagnosis.steps[i].added.find(effect) == std::string::npos) continue;
-    return explained_ratio(diagnosis.steps[i - 1].validation_rms_m,
-                           diagnosis.steps[i].validation_rms_m);
+    const SelectionStep& with = diagnosis.steps[i];
+    const SelectionStep& without = diagnosis.steps[i - 1];
+    if (with.added.find(effect) == std::string::npos) continue;
+    const double observed =
+        explained_ratio(without.validation_rms_m, with.validation_rms_m, diagnosis.rms_after_m);
+    const double free_run = explained_ratio(without.free_run_rms_m, with.free_run_rms_m,
+                                            diagnosis.steps.back().free_run_rms_m);
+    return std::isnan(free_run) ? observed : std::max(observed, free_run);
   }
   return std::nan("");
 }
@@ -70,6 +74,20 @@ bool is_beyond_doubt(const Diagnosis& diagnosis, const std::string& effect) {
   return simulated > kBeyondDoubt || likely_ratio(diagnosis, effect) > kBeyondDoubt;
 }
 
+/// Whether a curve that enters elsewhere explains as much as all effects together. Command, flow
+/// and gain are one: each changes what flows.
+bool is_matched_elsewhere(const Diagnosis& diagnosis, const std::string& effect) {
+  if (diagnosis.whole.empty()) return false;
+  const Localisation& curve = diagnosis.whole.front();
+  const auto is_flow = [](const std::string& site) {
+    return site == "flow" || site == "gain" || site == "command";
+  };
+  const std::string site = site_of(effect);
+  if (curve.site == site || (is_flow(curve.site) && is_flow(site))) return false;
+  const double left_ratio = std::pow(diagnosis.rms_after_m / diagnosis.rms_before_m, 2);
+  return 1.0 - curve.explained_ratio < left_ratio;
+}
+
 /// The effect's size, its first parameter, and its rivals.
 std::optional<Doubt> doubt_of(const Diagnosis& diagnosis, const std::string& effect) {
   const auto size =
@@ -83,6 +101,7 @@ std::optional<Doubt> doubt_of(const Diagnosis& diagnosis, const std::string& eff
       if (std::find(group.begin(), group.end(), effect) != group.end()) return Doubt::rivals;
     }
   }
+  if (is_matched_elsewhere(diagnosis, effect)) return Doubt::stand_in;
   if (is_beyond_doubt(diagnosis, effect)) return {};
   if (likely_ratio(diagnosis, effect) < kClearOfRemainder) return Doubt::remainder;
   if (shares_the_remainder(diagnosis, effect)) return Doubt::stand_in;

@@ -27,7 +27,8 @@ enum class Doubt {
   rivals,        ///< others do as well, and an error remains
   remainder,     ///< what no effect explains is no smaller than what it explains
   interrupted,   ///< the search ended before everything was tried
-  stand_in,      ///< one of three or more that leave an error, or one that enters as that does
+  stand_in,      ///< one of three or more that leave an error, one that enters as that does, or one
+                 ///< that a curve elsewhere explains as well
 };
 /// "at_bound", ...
 [[nodiscard]] const char* to_string(Doubt doubt);

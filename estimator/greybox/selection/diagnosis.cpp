@@ -13,6 +13,7 @@
 #include "estimator/greybox/selection/localisation.h"
 #include "estimator/greybox/selection/long_records.h"
 #include "estimator/greybox/selection/parameter_subset.h"
+#include "estimator/parallel.h"
 
 namespace estimator::greybox::selection {
 namespace {
@@ -37,6 +38,21 @@ void report_parameters(const Eigen::VectorXd& errors, Diagnosis& result) {
   }
 }
 
+/// The parameters that simulate best without the observer. The minimum of a free run is narrow,
+/// with dry friction one of many: it is sought from the fit with the observer, and once more while
+/// the observer weakens.
+FitSummary fit_free_run(const SearchContext& context, const ParameterSubset& start) {
+  const Eigen::VectorXd& weights = context.problem.data.final_weights();
+  const Width width = wide(context.options.threads);
+  FitSummary best = refit(context, start, weights, width, 0.0);
+  ParameterSubset weakened = start;
+  for (const double share : {0.3, 0.1, 0.03}) {
+    weakened.start = refit(context, weakened, weights, width, share * kObserver_per_s).theta;
+  }
+  FitSummary other = refit(context, weakened, weights, width, 0.0);
+  return rms(other.residual_m, weights) < rms(best.residual_m, weights) ? other : best;
+}
+
 /// The better model's parameters on all samples, with what the record says of each.
 void fit_final_parameters(const SearchContext& context, Diagnosis& result) {
   const ModelStage& stage = result.search.final;
@@ -47,8 +63,8 @@ void fit_final_parameters(const SearchContext& context, Diagnosis& result) {
   result.final = context.cancelled() ? stage.fitted
                  : explained         ? refit(context, all, context.problem.data.final_weights(),
                                              wide(context.options.threads))
-                                     : refit(context, all, context.problem.data.final_weights(),
-                                             wide(context.options.threads), 0.0);
+                                     : fit_free_run(context, all);
+  drop_idle_refinements(result.final);
   result.better = with_values(context.problem.model, result.final);
   report_parameters(
       std_errors(context.problem.data, context.problem.data.final_weights(), result.final), result);
@@ -73,18 +89,40 @@ void list_steps(Diagnosis& result) {
   }
 }
 
+/// Held-out error of a simulation, its parameters fitted to such.
+double least_rms_m(const SearchContext& context, const FitSummary& fitted, double observer_per_s) {
+  constexpr int kIterations = 15;
+  constexpr double kTolerance = 1e-3;
+  FitOptions options;
+  options.max_iterations = kIterations;
+  options.tolerance = kTolerance;
+  options.final_jacobian = false;
+  options.observer_per_s = observer_per_s;
+  options.cancel = context.options.cancel;
+  return fit(context.problem.model, context.problem.data, context.problem.data.training_mask,
+             fitted.parameters, fitted.theta, options)
+      .validation_rms_m;
+}
+
+/// The observer hides much of a constant or slow effect.
+void list_free_runs(const SearchContext& context, Diagnosis& result) {
+  in_parallel(result.steps.size(), context.options.threads, [&](std::size_t i) {
+    result.steps[i].free_run_rms_m = least_rms_m(context, result.search.path[i].fitted, 0.0);
+  });
+}
+
 /// Localises the unexplained residual. Effects taken in place of the right one have absorbed part
 /// of it; the model as given then shows it more clearly. A bundle of effects is such a stand-in.
-std::vector<Localisation> localise_remainder(const SearchContext& context, const ModelStage& first,
-                                             const ModelStage& final) {
-  if (final.added.size() >= kStandIn) return localise(context, first);
+void localise_remainder(const SearchContext& context, const ModelStage& first,
+                        const ModelStage& final, Diagnosis& result) {
+  result.whole = localise(context, first);
+  result.where = result.whole;
+  if (final.added.empty() || final.added.size() >= kStandIn) return;
   std::vector<Localisation> left = localise(context, final);
-  if (final.added.empty()) return left;
-  std::vector<Localisation> whole = localise(context, first);
   const auto share = [](const std::vector<Localisation>& where) {
     return where.empty() ? 0.0 : where.front().explained_ratio;
   };
-  return share(left) >= kAsClear * share(whole) ? left : whole;
+  if (share(left) >= kAsClear * share(result.whole)) result.where = std::move(left);
 }
 
 /// Groups that a motion could separate make the verdict undetermined; other groups are equivalent.
@@ -122,9 +160,9 @@ void conclude(const SearchContext& context, const SearchContext& search, Diagnos
   fit_final_parameters(context, result);
   if (final.fitted.validation_rms_m > kUnexplained * result.noise_floor_m) {
     result.verdict = Verdict::unexplained;
+    list_free_runs(search, result);
     const bool begun = !result.search.rounds.empty();
-    result.where =
-        localise_remainder(search, begun ? result.search.rounds.front().before : found, found);
+    localise_remainder(search, begun ? result.search.rounds.front().before : found, found, result);
     classify_indistinguishable(search, found, result);
   } else {
     classify_indistinguishable(search, found, result);
@@ -154,7 +192,6 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
   result.search.interrupted = search.cancelled();
   take_errors(result);
   result.repetition = repeated_motion(search.problem.data, result.search.final.fitted.residual_m);
-  take_parameters(innovations.final, result);
   // missing physics passes for a disturbance as long as it is not in the model
   if (!context.cancelled()) result.disturbance = disturbance_of(search, innovations);
   const bool incredible = result.disturbed_floor_m() > kIncredible * result.rms_after_m &&
@@ -163,18 +200,25 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
   result.curve_nats = innovations.curve_nats;
   result.innovations = static_cast<double>(innovations.final.model.fitted.residual_m.size());
   result.gains_nats = innovations.gains_nats;
-  for (std::size_t i = 0; i < innovations.without.size(); ++i) {
-    result.without_rms_m[result.missing[i]] =
-        simulated(search, innovations.without[i].model.fitted).validation_rms_m;
+  if (physics) {
+    // the noise model passes for what is missing: it must not weigh what the values have to explain
+    result.disturbance.reset();
+    list_free_runs(search, result);
+    for (std::size_t i = 0; i < innovations.without.size(); ++i) {
+      result.without_rms_m[result.missing[i]] =
+          least_rms_m(search, innovations.without[i].model.fitted, kObserver_per_s);
+    }
+    fit_final_parameters(search, result);
+  } else {
+    take_parameters(innovations.final, result);
   }
-  if (physics) result.disturbance.reset();
   for (const InnovationRivals& rivals : find_rivals(search, innovations)) {
     const Separable& separable = search.options.separable;
     const bool separates = !separable || separable(search, rivals.explanations, rivals.names);
     (separates ? result.ambiguous : result.same_here).push_back(rivals.names);
   }
   // effects taken for want of the right one hide it: the model as given shows it more clearly
-  if (physics) result.where = localise(search, first);
+  if (physics) result.where = result.whole = localise(search, first);
   result.verdict = result.search.interrupted || physics ? Verdict::unexplained
                    : result.missing.empty()             ? Verdict::nothing_missing
                    : result.ambiguous.empty()           ? Verdict::missing

@@ -1,6 +1,7 @@
 // Result of a diagnosis and the search that led to it.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -30,6 +31,8 @@ struct ParameterValue {
 struct SelectionStep {
   std::string added;  ///< empty: the model as given, its parameters fitted
   double validation_rms_m = 0.0;
+  /// The least of a simulation without observer; NaN where noise explains the record.
+  double free_run_rms_m = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct Diagnosis {
@@ -45,6 +48,7 @@ struct Diagnosis {
   double rms_after_m = 0.0;                ///< held-out, better model
   std::vector<ParameterValue> parameters;  ///< better model, fitted to all samples
   std::vector<Localisation> where;         ///< best first; empty when everything is explained
+  std::vector<Localisation> whole;         ///< the same of the error without the effects found
   std::vector<SelectionStep> steps;
   /// Disturbance of the rig, where the record was judged by innovations and shows any.
   std::optional<Disturbance> disturbance;

@@ -93,4 +93,36 @@ void revive(const SearchContext& context, FitSummary& fitted) {
   }
 }
 
+void drop_idle_refinements(FitSummary& fitted) {
+  using Eigen::Index;
+  const auto count = static_cast<Index>(fitted.parameters.size());
+  if (fitted.jacobian.cols() != count) return;
+  const auto effect_of = [](const FreeParameter& p) { return p.name.substr(0, p.name.find('.')); };
+  const auto is_idle = [&](Index i) {
+    return fitted.theta[i] == 0.0 || fitted.jacobian.col(i).cwiseAbs().maxCoeff() == 0.0;
+  };
+  std::vector<Index> kept;
+  for (Index i = 0; i < count; ++i) {
+    const FreeParameter& p = fitted.parameters[static_cast<std::size_t>(i)];
+    bool idle = p.refinement > 0;
+    for (Index k = 0; idle && k < count; ++k) {
+      const FreeParameter& other = fitted.parameters[static_cast<std::size_t>(k)];
+      const bool together = other.refinement == p.refinement && effect_of(other) == effect_of(p);
+      idle = !together || is_idle(k);
+    }
+    if (!idle) kept.push_back(i);
+  }
+  if (static_cast<Index>(kept.size()) == count) return;
+  FitSummary rest = fitted;
+  rest.parameters.clear();
+  rest.at_bound.clear();
+  for (const Index i : kept) {
+    rest.parameters.push_back(fitted.parameters[static_cast<std::size_t>(i)]);
+    rest.at_bound.push_back(fitted.at_bound[static_cast<std::size_t>(i)]);
+  }
+  rest.theta = fitted.theta(kept);
+  rest.jacobian = Eigen::MatrixXd(fitted.jacobian(Eigen::all, kept));
+  fitted = std::move(rest);
+}
+
 }  // namespace estimator::greybox::selection

@@ -52,6 +52,9 @@ void append(ParameterSubset& to, const ParameterSubset& more);
 /// Fit of a stage to convergence, on all threads of the options.
 [[nodiscard]] FitSummary refit_to_convergence(const SearchContext& context,
                                               const FitSummary& fitted);
+/// Removes refinements of effects that change nothing: at their neutral value, or without
+/// influence.
+void drop_idle_refinements(FitSummary& fitted);
 /// Takes a fit from a start of revived_refinements() where it is better.
 void revive(const SearchContext& context, FitSummary& fitted);
 

@@ -79,6 +79,17 @@ TEST(Confidence, AnEffectThatEntersAsTheRestDoesIsEstablishedWhereLittleRemains)
   EXPECT_THAT(named(with_friction(2.5e-3, "force")), IsEmpty());
 }
 
+TEST(Confidence, AnEffectThatACurveElsewhereMatchesIsNotEstablished) {
+  Diagnosis d = with_friction(2.5e-3, "force");
+  d.rms_before_m = 2.5e-3;
+  d.whole = {{"gain", "u", 0.999}};  // 0.001 is less than the 0.0016 that remain
+  EXPECT_THAT(named(d), ElementsAre("friction stand_in"));
+  d.whole = {{"gain", "u", 0.99}};
+  EXPECT_THAT(named(d), IsEmpty());
+  d.whole = {{"force", "v", 0.999}};
+  EXPECT_THAT(named(d), IsEmpty());
+}
+
 TEST(Confidence, TheLikelihoodCountsWhereItDecided) {
   Diagnosis d = with_friction(120e-6, "measurement");
   d.innovations = 2000.0;
