@@ -47,6 +47,18 @@ Json refused_of(const selection::StructureSearch& search) {
   return list;
 }
 
+Json changing_of(const selection::Diagnosis& d) {
+  Json changes = Json::array();
+  for (const selection::ParameterStep& step : d.changing) {
+    changes.push_back({{"parameter", step.parameter},
+                       {"kind", "step"},
+                       {"at_s", number_or_null(step.at_s)},
+                       {"from", number_or_null(step.from)},
+                       {"to", number_or_null(step.to)}});
+  }
+  return changes;
+}
+
 Json disturbance_of(const selection::Diagnosis& d) {
   if (!d.disturbance) return nullptr;
   Json json;
@@ -102,6 +114,7 @@ std::string to_json(const DiagnosisReport& outcome) {
     json["plants"].push_back(
         {{"plant", fit.plant}, {"rms_heldout_m", number_or_null(fit.validation_rms_m)}});
   }
+  json["changing"] = changing_of(d);
   json["disturbance"] = disturbance_of(d);
   json["floor"] = {
       {"sensor_m", number_or_null(d.noise_floor_m)},

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <thread>
 #include <utility>
 
@@ -36,13 +37,49 @@ void require_rate(const greybox::Dataset& record) {
       "20 Hz or more; compare and fit take less");
 }
 
-std::vector<greybox::Dataset> records_of(const std::vector<std::string>& files) {
-  std::vector<greybox::Dataset> records;
-  for (const std::string& file : files) {
-    records.push_back(greybox::dataset_of(config::record::read_record(file)));
-    require_rate(records.back());
+/// Rows of a record that are true, as gaps: their readings correct no simulation.
+void cut(config::record::Record& record, const std::vector<char>& ignored) {
+  config::record::Record rest = record;
+  rest.t_s.clear();
+  rest.u_V.clear();
+  rest.y_m.clear();
+  rest.further.clear();
+  rest.gaps.clear();
+  bool gap = false;
+  for (std::size_t k = 0; k < record.size(); ++k) {
+    gap = gap || std::binary_search(record.gaps.begin(), record.gaps.end(), k);
+    if (ignored[k] != 0) {
+      gap = true;
+      continue;
+    }
+    if (gap && !rest.t_s.empty()) rest.gaps.push_back(rest.size());
+    gap = false;
+    rest.t_s.push_back(record.t_s[k]);
+    rest.u_V.push_back(record.u_V[k]);
+    rest.y_m.push_back(record.y_m[k]);
   }
-  return records;
+  record = std::move(rest);
+}
+
+std::vector<greybox::Dataset> records_of(const std::vector<std::string>& files,
+                                         const std::vector<std::string>& ignored_spans) {
+  std::vector<config::record::Record> records;
+  for (const std::string& file : files) records.push_back(config::record::read_record(file));
+  std::vector<fit::RecordTimes> times;
+  std::vector<std::vector<char>> ignored;
+  for (std::size_t r = 0; r < files.size(); ++r) {
+    times.push_back({files[r], &records[r].t_s});
+    ignored.emplace_back(records[r].size(), 0);
+  }
+  fit::for_ignored(ignored_spans, times,
+                   [&](std::size_t record, std::size_t sample) { ignored[record][sample] = 1; });
+  std::vector<greybox::Dataset> sets;
+  for (std::size_t r = 0; r < files.size(); ++r) {
+    cut(records[r], ignored[r]);
+    sets.push_back(greybox::dataset_of(records[r]));
+    require_rate(sets.back());
+  }
+  return sets;
 }
 
 /// Leaves the effects that are to be tried.
@@ -75,13 +112,16 @@ PreparedDiagnosis prepare(const DiagnosisRequest& request) {
   prepared.split = greybox::parse_split(request.fit);
   plant_sim::ModelFile model = plant_sim::load_model(request.model, request.assignments);
   fit::FreeParameters parameters = fit::select_parameters(model, request.selection);
-  std::vector<greybox::Dataset> records = records_of(request.records);
-  fit::for_ignored(request.ignored, records, [&](std::size_t record, std::size_t sample) {
-    records[record].valid[sample] = 0;
-  });
+  std::vector<std::string> files = request.records;
+  files.insert(files.end(), request.holdouts.begin(), request.holdouts.end());
+  std::vector<greybox::Dataset> records = records_of(files, request.ignored);
+  const auto held_out = records.begin() + static_cast<std::ptrdiff_t>(request.records.size());
+  std::vector<greybox::Dataset> holdouts(std::make_move_iterator(held_out),
+                                         std::make_move_iterator(records.end()));
+  records.erase(held_out, records.end());
   prepared.problem = selection::make_problem(
       std::move(model),
-      greybox::fit_dataset(std::move(records), records_of(request.holdouts), prepared.split));
+      greybox::fit_dataset(std::move(records), std::move(holdouts), prepared.split));
   prepared.problem.plant_parameters = std::move(parameters.parameters);
   if (request.flip) {
     for (greybox::Dataset& record : prepared.problem.data.records) {

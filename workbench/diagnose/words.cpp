@@ -117,8 +117,9 @@ std::string fall_words(const selection::Diagnosis& d) {
   const std::string with = d.verdict == selection::Verdict::undetermined
                                ? "With " + config::schema::listed(d.missing) + ", the"
                                : "The";
-  return with + " held-out error falls from " + config::units::length_words(d.rms_before_m) +
-         " to " + config::units::length_words(d.rms_after_m) + "; the " +
+  return with + " held-out error " + (d.rms_after_m < d.rms_before_m ? "falls" : "goes") +
+         " from " + config::units::length_words(d.rms_before_m) + " to " +
+         config::units::length_words(d.rms_after_m) + "; the " +
          (d.disturbance ? "floor that sensor and disturbance set is " : "noise floor is ") +
          config::units::length_words(d.disturbed_floor_m()) + ".";
 }
@@ -233,8 +234,8 @@ std::vector<std::string> notes(const DiagnosisReport& outcome) {
   if (!d.excitation.sufficient()) out.push_back(excitation_words(d.excitation));
   if (d.searched_s) {
     out.push_back("effects were searched for in " + std::to_string(std::lround(*d.searched_s)) +
-                  " of " + std::to_string(std::lround(greybox::length_s(data))) +
-                  " s; values and errors are those of all samples");
+                  " of " + std::to_string(std::lround(greybox::length_s(data))) + " s" +
+                  (d.by_innovations ? "" : "; values and errors are those of all samples"));
   }
   if (d.search.interrupted) out.emplace_back("interrupted: the best so far");
   return out;
@@ -274,6 +275,14 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
   if (d.verdict != selection::Verdict::not_excited) out.push_back(fall_words(d));
   const bool named = d.verdict == selection::Verdict::missing || d.missing.empty();
   if (!named) out.push_back("Used in the better model: " + effects_words(d, d.missing) + ".");
+  for (const selection::ParameterStep& step : d.changing) {
+    const auto words = [&](double value) {
+      return config::units::words(config::units::quantity(step.parameter, value, std::nan("")));
+    };
+    out.push_back(
+        fmt::format("At {:.2f} s {} goes from {} to {}: something changed on the rig then.",
+                    step.at_s, step.parameter, words(step.from), words(step.to)));
+  }
   if (d.repetition) {
     out.push_back("The motion repeats every " +
                   config::units::words(
@@ -296,8 +305,13 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
   }
   add_rivals(d, out);
   if (!d.where.empty()) {
-    std::string text = "The remaining error enters " + where_words(d.where[0]) + " (" +
-                       percent(d.where[0].explained_ratio) + " of its square)";
+    std::string text =
+        (d.missing.empty() || !d.where_is_whole
+             ? "The remaining error enters "
+             : "The error without " +
+                   std::string(d.missing.size() > 1 ? "these effects" : "this effect") +
+                   " enters ") +
+        where_words(d.where[0]) + " (" + percent(d.where[0].explained_ratio) + " of its square)";
     if (d.where.size() > 1) {
       text += ", or " + where_words(d.where[1]) + " (" + percent(d.where[1].explained_ratio) + ")";
     }

@@ -9,9 +9,8 @@
 namespace workbench::fit {
 
 using config::schema::UsageError;
-using estimator::greybox::Dataset;
 
-void for_ignored(const std::vector<std::string>& spans, const std::vector<Dataset>& records,
+void for_ignored(const std::vector<std::string>& spans, const std::vector<RecordTimes>& records,
                  const std::function<void(std::size_t record, std::size_t sample)>& take) {
   for (const std::string& text : spans) {
     const std::size_t at = text.rfind('@');
@@ -28,13 +27,14 @@ void for_ignored(const std::vector<std::string>& spans, const std::vector<Datase
     }
     bool met = false;
     for (std::size_t r = 0; r < records.size(); ++r) {
-      const Dataset& record = records[r];
+      const RecordTimes& record = records[r];
+      const std::vector<double>& t_s = *record.t_s;
       if (!name.empty() && record.name != name &&
           std::filesystem::path(record.name).filename() != name) {
         continue;
       }
-      for (std::size_t i = 0; i < record.size(); ++i) {
-        if (record.t_s[i] < from_s || record.t_s[i] > to_s) continue;
+      for (std::size_t i = 0; i < t_s.size(); ++i) {
+        if (t_s[i] < from_s || t_s[i] > to_s) continue;
         take(r, i);
         met = true;
       }

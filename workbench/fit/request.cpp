@@ -76,7 +76,9 @@ void weigh(const FitRequest& request, greybox::EstimationProblem& problem) {
                      std::to_string(request.records.size()) + " records");
   }
   Eigen::VectorXd mask = Eigen::VectorXd::Ones(data.size());
-  for_ignored(request.ignored, data.records, [&](std::size_t record, std::size_t sample) {
+  std::vector<RecordTimes> times;
+  for (const Dataset& record : data.records) times.push_back({record.name, &record.t_s});
+  for_ignored(request.ignored, times, [&](std::size_t record, std::size_t sample) {
     mask[static_cast<Eigen::Index>(data.starts[record] + sample)] = 0.0;
   });
   if (request.fit == "all" && request.holdouts.empty()) {

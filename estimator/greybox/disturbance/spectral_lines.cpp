@@ -9,6 +9,7 @@
 #include <numeric>
 #include <unsupported/Eigen/FFT>
 
+#include "estimator/greybox/disturbance/predictor.h"
 #include "estimator/greybox/observer_simulation.h"
 #include "estimator/linear_algebra/decompositions.h"
 
@@ -19,7 +20,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kDisturbance = kMostStates - 1;
 /// Numbers of peaks tried: the highest over the local median, and the highest in power.
 constexpr std::size_t kSharpest = 3;
 constexpr std::size_t kStrongest = 2;
@@ -27,20 +27,6 @@ constexpr std::size_t kStrongest = 2;
 constexpr std::size_t kNeighbourhood = 40;
 /// Turns over the record below which a line is a drift.
 constexpr double kFewestTurns = 8.0;
-
-StateMatrix transition_at(const Linearisation& model, const InnovationGains& gains, std::size_t k) {
-  StateMatrix a = model.transition[k];
-  a(kDisturbance, kDisturbance) = gains.decay;
-  return a;
-}
-
-StateVector gain_at(const InnovationGains& gains, Index k) {
-  StateVector gain = StateVector::Zero();
-  const Index count = gains.gain.rows() - 1;
-  gain.head(count) = gains.gain.col(k).head(count);
-  gain[kDisturbance] = gains.gain(count, k);
-  return gain;
-}
 
 StateVector input_of(const Linearisation& model, LineSite site, std::size_t k) {
   if (site == LineSite::supply) return model.from_supply[k];

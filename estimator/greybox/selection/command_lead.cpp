@@ -38,6 +38,11 @@ void advance_command(FitDataset& data, double lead_samples) {
 }
 
 CommandLead find_command_lead(const SearchContext& context, const ModelStage& stage) {
+  const std::vector<Dataset>& records = context.problem.data.records;
+  const bool one_rate = std::all_of(records.begin(), records.end(), [&](const Dataset& record) {
+    return record.sample_time_s == records.front().sample_time_s;
+  });
+  if (!one_rate) return {};
   FitOptions options;
   options.max_iterations = kIterations;
   options.tolerance = kTolerance;
@@ -52,17 +57,21 @@ CommandLead find_command_lead(const SearchContext& context, const ModelStage& st
         fit(context.problem.model, data, data.training_mask, all.parameters, all.start, options);
   });
   const auto best = std::min_element(fits.begin(), fits.end(), [](const auto& a, const auto& b) {
-    return a.training_rms_m < b.training_rms_m;
+    return a.training_rms_m < b.training_rms_m || std::isnan(b.training_rms_m);
   });
   if (context.cancelled() || !(best->training_rms_m < kMuchLess * stage.fitted.training_rms_m) ||
       !(best->validation_rms_m < kMuchLess * stage.fitted.validation_rms_m)) {
     return {};
   }
-  return {kLeads_samples[static_cast<std::size_t>(best - fits.begin())],
-          context.problem.data.all_mask.sum() *
-              std::log(stage.fitted.validation_rms_m / best->validation_rms_m)};
+  const double lead_samples = kLeads_samples[static_cast<std::size_t>(best - fits.begin())];
+  if (lead_samples == std::floor(lead_samples)) return {lead_samples, 0.0};
+  return {lead_samples, context.problem.data.all_mask.sum() *
+                            std::log(stage.fitted.validation_rms_m / best->validation_rms_m)};
 }
 
-bool floor_shows_lead(const FitDataset& data) { return data.sample_time_s < kSlow_s; }
+bool floor_shows_lead(const FitDataset& data) {
+  return std::all_of(data.records.begin(), data.records.end(),
+                     [](const Dataset& record) { return record.sample_time_s < kSlow_s; });
+}
 
 }  // namespace estimator::greybox::selection

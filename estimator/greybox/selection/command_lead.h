@@ -18,11 +18,12 @@ namespace estimator::greybox::selection {
 void advance_command(FitDataset& data, double lead_samples);
 
 struct CommandLead {
-  double samples = 0.0;  ///< 0: as logged
-  double gain_nats = 0.0;
+  double samples = 0.0;    ///< 0: as logged
+  double gain_nats = 0.0;  ///< of the interpolation; 0 for whole samples
 };
 
-/// The lead with which the stage's model leaves much less of the error, if any.
+/// The lead with which the stage's model leaves much less of the error, if any; none for records of
+/// several rates.
 [[nodiscard]] CommandLead find_command_lead(const SearchContext& context, const ModelStage& stage);
 
 /// Whether a noise floor says that a command is held between its samples: the floor of a slow log,

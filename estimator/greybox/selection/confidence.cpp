@@ -74,16 +74,19 @@ bool is_beyond_doubt(const Diagnosis& diagnosis, const std::string& effect) {
   return simulated > kBeyondDoubt || likely_ratio(diagnosis, effect) > kBeyondDoubt;
 }
 
-/// Whether a curve that enters elsewhere explains as much as all effects together. Command, flow
-/// and gain are one: each changes what flows.
-bool is_matched_elsewhere(const Diagnosis& diagnosis, const std::string& effect) {
-  if (diagnosis.whole.empty()) return false;
-  const Localisation& curve = diagnosis.whole.front();
+/// Command, flow and gain are one: each changes what flows.
+bool is_same_site(const std::string& one, const std::string& other) {
   const auto is_flow = [](const std::string& site) {
     return site == "flow" || site == "gain" || site == "command";
   };
-  const std::string site = site_of(effect);
-  if (curve.site == site || (is_flow(curve.site) && is_flow(site))) return false;
+  return one == other || (is_flow(one) && is_flow(other));
+}
+
+/// Whether a curve that enters elsewhere explains as much as all effects together.
+bool is_matched_elsewhere(const Diagnosis& diagnosis, const std::string& effect) {
+  if (diagnosis.whole.empty()) return false;
+  const Localisation& curve = diagnosis.whole.front();
+  if (is_same_site(curve.site, site_of(effect))) return false;
   const double left_ratio = std::pow(diagnosis.rms_after_m / diagnosis.rms_before_m, 2);
   return 1.0 - curve.explained_ratio < left_ratio;
 }

@@ -1,5 +1,6 @@
 #include "estimator/greybox/selection/diagnosis.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -122,7 +123,9 @@ void localise_remainder(const SearchContext& context, const ModelStage& first,
   const auto share = [](const std::vector<Localisation>& where) {
     return where.empty() ? 0.0 : where.front().explained_ratio;
   };
-  if (share(left) >= kAsClear * share(result.whole)) result.where = std::move(left);
+  if (!(share(left) >= kAsClear * share(result.whole))) return;
+  result.where = std::move(left);
+  result.where_is_whole = false;
 }
 
 /// Groups that a motion could separate make the verdict undetermined; other groups are equivalent.
@@ -133,7 +136,8 @@ void classify_indistinguishable(const SearchContext& context, const ModelStage& 
     std::vector<std::string> group{models.found};
     group.insert(group.end(), models.others.begin(), models.others.end());
     const Separable& separable = context.options.separable;
-    const bool separates = separable && separable(context, models.explanations, group);
+    const bool separates =
+        context.cancelled() || (separable && separable(context, models.explanations, group));
     (separates ? result.ambiguous : result.same_here).push_back(std::move(group));
   }
 }
@@ -170,6 +174,14 @@ void conclude(const SearchContext& context, const SearchContext& search, Diagnos
                      : result.ambiguous.empty() ? Verdict::missing
                                                 : Verdict::undetermined;
   }
+}
+
+ParameterStep load_step(const InnovationSearch& innovations) {
+  const bool force = innovations.final.linear.front().force;
+  const std::string name = force ? "load_force.force_N" : "speed_mps";
+  const double held = innovations.final.model.fitted.value(name);
+  const double from = std::isfinite(held) ? held : 0.0;
+  return {name, innovations.jump.time_s, from, from + innovations.jump.size};
 }
 
 /// A verdict by the likelihood of innovations.
@@ -214,15 +226,61 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
   }
   for (const InnovationRivals& rivals : find_rivals(search, innovations)) {
     const Separable& separable = search.options.separable;
-    const bool separates = !separable || separable(search, rivals.explanations, rivals.names);
+    const bool separates =
+        search.cancelled() || (separable && separable(search, rivals.explanations, rivals.names));
     (separates ? result.ambiguous : result.same_here).push_back(rivals.names);
   }
   // effects taken for want of the right one hide it: the model as given shows it more clearly
   if (physics) result.where = result.whole = localise(search, first);
+  if (innovations.load_sets_in()) {
+    result.changing = {load_step(innovations)};
+    // no curve is left: a load that goes with time is what there is
+    std::stable_partition(result.where.begin(), result.where.end(),
+                          [](const Localisation& where) { return where.variable == "time"; });
+  }
   result.verdict = result.search.interrupted || physics ? Verdict::unexplained
                    : result.missing.empty()             ? Verdict::nothing_missing
                    : result.ambiguous.empty()           ? Verdict::missing
                                                         : Verdict::undetermined;
+}
+
+/// The search by innovations, and that by simulations where the former leaves physics unexplained.
+void weigh_innovations(const SearchContext& context, const SearchContext& search, SearchStart start,
+                       Diagnosis& result) {
+  const ModelStage first = start.first;
+  const InnovationSearch innovations = search_innovations(search, first, start.branch.stage);
+  result.search = abandon_search(search, start);
+  if (innovations.final.linear.empty()) {  // no likelihood
+    result.search = complete_search(search, std::move(start));
+    conclude(context, search, result);
+    return;
+  }
+  const auto take_innovations = [&] {
+    refuse(start.branch.stage, Refusal::unlikely, start.first, result.search);
+    conclude(context, search, first, innovations, result);
+  };
+  if (context.cancelled() || !innovations.physics_missing() || innovations.load_sets_in()) {
+    take_innovations();
+    return;
+  }
+  extend_search(search, start);
+  const double held_m = simulated(search, innovations.final.model.fitted).validation_rms_m;
+  // Prefers the model that leaves less, of equals the likelier.
+  const auto leaves_more = [&](const ModelStage& stage) {
+    return !is_explained(search, stage) && (1.0 - kRivals) * held_m < stage.fitted.validation_rms_m;
+  };
+  if (leaves_more(start.branch.stage)) {
+    take_innovations();
+    return;
+  }
+  StructureSearch full = conclude_search(search, start);
+  if (leaves_more(full.final)) {
+    result.search.refused = std::move(full.refused);
+    conclude(context, search, first, innovations, result);
+  } else {
+    result.search = std::move(full);
+    conclude(context, search, result);
+  }
 }
 
 }  // namespace
@@ -271,7 +329,7 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
   SearchStart start = start_search(search);
   if (!is_explained(search, start.branch.stage) || !floor_shows_lead(search.problem.data)) {
     const CommandLead lead = find_command_lead(search, start.branch.stage);
-    if (lead.samples > 0.0) {
+    if (lead.samples > 0.0 && !context.cancelled()) {
       advance_command(context.problem.data, lead.samples);
       context.problem.interpolated_nats = lead.gain_nats;
       search = for_search(context);
@@ -279,44 +337,22 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
       result.command_lead_samples = lead.samples;
     }
   }
-  const ModelStage first = start.first;
+  const ModelStage& first = start.first;
   if (first.fitted.validation_rms_m > kFarFromFloor * result.noise_floor_m) {
     result.checks = check_records(search, first.fitted.validation_rms_m);
   }
   const bool wrong_record = result.checks && result.checks->turned_sign();
-  if (is_explained(search, start.branch.stage)) {
+  if (context.cancelled()) {
+    result.search = conclude_search(search, std::move(start));
+    conclude(context, search, result);
+  } else if (wrong_record || !std::isfinite(result.noise_floor_m)) {
+    result.search = abandon_search(search, start);
+    conclude(context, search, result);
+  } else if (is_explained(search, start.branch.stage)) {
     result.search = complete_search(search, std::move(start));
     conclude(context, search, result);
-  } else if (wrong_record || context.cancelled() || !std::isfinite(result.noise_floor_m)) {
-    result.search = abandon_search(search, start);
-    conclude(context, search, result);
   } else {
-    result.search = abandon_search(search, start);
-    const InnovationSearch innovations = search_innovations(search, first, start.branch.stage);
-    const bool begun = !innovations.final.linear.empty();
-    if (begun && (context.cancelled() || !innovations.physics_missing())) {
-      conclude(context, search, first, innovations, result);
-    } else if (!begun) {
-      result.search.interrupted = true;
-      conclude(context, search, result);
-    } else {
-      extend_search(search, start);
-      const double held_m = simulated(search, innovations.final.model.fitted).validation_rms_m;
-      // of two that leave something unexplained, the one that leaves less; the likelier one of
-      // equals
-      const auto leaves_more = [&](const ModelStage& stage) {
-        return !is_explained(search, stage) &&
-               (1.0 - kRivals) * held_m < stage.fitted.validation_rms_m;
-      };
-      std::optional<StructureSearch> full;
-      if (!leaves_more(start.branch.stage)) full = conclude_search(search, std::move(start));
-      if (!full || leaves_more(full->final)) {
-        conclude(context, search, first, innovations, result);
-      } else {
-        result.search = *std::move(full);
-        conclude(context, search, result);
-      }
-    }
+    weigh_innovations(context, search, std::move(start), result);
   }
   if (result.checks && result.verdict == Verdict::unexplained && !wrong_record) {
     result.plants = fit_other_plants(search);

@@ -35,6 +35,14 @@ struct SelectionStep {
   double free_run_rms_m = std::numeric_limits<double>::quiet_NaN();
 };
 
+/// A parameter that is another from some time on.
+struct ParameterStep {
+  std::string parameter;
+  double at_s = 0.0;
+  double from = 0.0;
+  double to = 0.0;
+};
+
 struct Diagnosis {
   Verdict verdict = Verdict::nothing_missing;
   std::vector<std::string> missing;                 ///< in the order added
@@ -48,10 +56,12 @@ struct Diagnosis {
   double rms_after_m = 0.0;                ///< held-out, better model
   std::vector<ParameterValue> parameters;  ///< better model, fitted to all samples
   std::vector<Localisation> where;         ///< best first; empty when everything is explained
+  bool where_is_whole = true;              ///< `where` is of the error without the effects found
   std::vector<Localisation> whole;         ///< the same of the error without the effects found
   std::vector<SelectionStep> steps;
   /// Disturbance of the rig, where the record was judged by innovations and shows any.
   std::optional<Disturbance> disturbance;
+  std::vector<ParameterStep> changing;  ///< where nothing else explains the record
   std::optional<RepeatedMotion>
       repetition;                    ///< of the final model's error, where the motion repeats
   Excitation excitation;             ///< insufficient: Verdict::not_excited

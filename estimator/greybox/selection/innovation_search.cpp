@@ -73,6 +73,7 @@ bool extend(const SearchContext& plain, InnovationStage& stage, double evidence_
     const bool finalist = i < kFinalists && trial.candidate.gain_nats > 0.0;
     if (plain.cancelled() || (!finalist && !trial.simulated)) return;
     stages[i] = settled(plain, stage, trial);
+    if (!std::isfinite(stages[i].minus_two_log)) return;
     trial.candidate.gain_nats =
         0.5 * (stage.minus_two_log - stages[i].minus_two_log) - trial.penalty_nats;
     trial.candidate.settled = true;
@@ -106,9 +107,25 @@ bool extend(const SearchContext& plain, InnovationStage& stage, double evidence_
   if (chosen == trials.size()) return false;
   InnovationStage polished = settled(plain, stages[chosen].model, stages[chosen].noise, kMostTurns,
                                      wide(plain.options.threads));
-  stage = std::isfinite(polished.minus_two_log) ? std::move(polished) : std::move(stages[chosen]);
+  stage = polished.minus_two_log < stages[chosen].minus_two_log ? std::move(polished)
+                                                                : std::move(stages[chosen]);
   if (!trials[chosen].candidate.effect.empty()) reconsider_sites(plain, stage);
   return true;
+}
+
+disturbance::ForceJump likeliest_jump(const InnovationStage& stage) {
+  const FitDataset& data = stage.context.problem.data;
+  disturbance::ForceJump best;
+  for (std::size_t i = 0; i < data.records.size(); ++i) {
+    const Dataset& record = data.records[i];
+    const disturbance::ForceJump jump = disturbance::likeliest_jump(
+        stage.linear[i], record, *record.innovations,
+        stage.model.fitted.residual_m.segment(static_cast<Eigen::Index>(data.starts[i]),
+                                              static_cast<Eigen::Index>(record.size())),
+        data.noise_floor_m);
+    if (jump.gain_nats > best.gain_nats) best = jump;
+  }
+  return best;
 }
 
 /// -2 log L with a penalty for each parameter.
@@ -188,6 +205,7 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
   const std::vector<CurveGain> curves =
       context.cancelled() ? std::vector<CurveGain>() : curve_gains(stage);
   if (!curves.empty()) search.curve_nats = curves.front().gain_nats;
+  search.jump = likeliest_jump(stage);
   search.final = std::move(stage);
   return search;
 }

@@ -12,10 +12,12 @@
 // that valid. Source for the penalty: G. Schwarz, Annals of Statistics 6 (1978) 461.
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "estimator/greybox/disturbance/force_jump.h"
 #include "estimator/greybox/selection/innovation_rivals.h"
 #include "estimator/greybox/selection/innovation_trials.h"
 
@@ -40,7 +42,16 @@ struct InnovationSearch {
   double curve_nats = 0.0;    ///< largest gain of a curve over a variable of the motion
   double inexact_nats = 0.0;  ///< gains that inexact models of what was explained may owe
 
-  [[nodiscard]] bool physics_missing() const { return curve_nats > kCurve_nats + inexact_nats; }
+  /// The likeliest load that sets in at one sample.
+  disturbance::ForceJump jump;
+
+  /// Whether a load sets in, which no curve over the motion explains better.
+  [[nodiscard]] bool load_sets_in() const {
+    return jump.gain_nats > std::max(curve_nats, kCurve_nats + inexact_nats);
+  }
+  [[nodiscard]] bool physics_missing() const {
+    return load_sets_in() || curve_nats > kCurve_nats + inexact_nats;
+  }
 };
 
 /// `first` is the model as given, fitted with the weak observer, `held` the best that another

@@ -40,7 +40,7 @@ bool is_gain(const SearchContext& context, const ModelStage& stage, const Candid
   const double gain = 1.0 - candidate.validation_rms_m / stage.fitted.validation_rms_m;
   const double fit_gain = 1.0 - candidate.fitted.training_rms_m / stage.fitted.training_rms_m;
   const double enough = worthwhile * static_cast<double>(candidate.effects.size());
-  // what so many parameters must gain not to be chance, of as many samples as are independent
+  // gain that chance gives so many parameters over the independent samples
   const Eigen::VectorXd& fitted = context.problem.data.training_mask;
   const double by_chance =
       kPerParameter_nats *
@@ -189,16 +189,6 @@ bool set_is_supported(const SearchContext& context, CrossValidation& halves,
          halves.holds(false, all(first), all(set));
 }
 
-/// Notes a stage whose place another one has taken.
-void refuse(const ModelStage& stage, Refusal why, const ModelStage& taken,
-            StructureSearch& search) {
-  if (stage.added == taken.added ||
-      !(stage.fitted.validation_rms_m < (1.0 - kWorthTelling) * taken.fitted.validation_rms_m)) {
-    return;
-  }
-  search.refused.push_back({stage.added, stage.fitted.validation_rms_m, why});
-}
-
 }  // namespace
 
 const char* to_string(Refusal why) {
@@ -256,7 +246,6 @@ StructureSearch abandon_search(const SearchContext& context, const SearchStart& 
   search.preview_s = start.preview_s;
   search.path = {start.first};
   search.final = start.first;
-  refuse(start.branch.stage, Refusal::unlikely, start.first, search);
   search.interrupted = context.cancelled();
   return search;
 }
@@ -265,6 +254,15 @@ void extend_search(const SearchContext& context, SearchStart& start) {
   CrossValidation halves(context);
   start.branch = search_forward(context, halves, start.first, std::move(start.branch));
   try_alternative_starts(context, halves, start.first, start.branch);
+}
+
+void refuse(const ModelStage& stage, Refusal why, const ModelStage& taken,
+            StructureSearch& search) {
+  if (stage.added == taken.added ||
+      !(stage.fitted.validation_rms_m < (1.0 - kWorthTelling) * taken.fitted.validation_rms_m)) {
+    return;
+  }
+  search.refused.push_back({stage.added, stage.fitted.validation_rms_m, why});
 }
 
 StructureSearch conclude_search(const SearchContext& context, SearchStart start) {

@@ -97,8 +97,8 @@ DeviationCauses causes_of(const VectorXd& deviation, const MatrixXd& covariance,
       }
       const Restricted trial = restricted(information, score, with(out.parameters, i));
       const double gain = trial.chi_square - out.chi_square;
-      if (gain < most ||
-          std::abs(trial.deviation[trial.deviation.size() - 1]) < least[static_cast<Index>(i)]) {
+      if (!(gain >= most) || !(std::abs(trial.deviation[trial.deviation.size() - 1]) >=
+                               least[static_cast<Index>(i)])) {
         continue;
       }
       found = true;

@@ -52,13 +52,19 @@ TEST_F(DiagnoseRequest, FixedParametersAreNotFitted) {
   EXPECT_NEAR(prepared.problem.plant_parameters[0].prior_sd, 0.02, 1e-3);  // of the logarithm
 }
 
-TEST_F(DiagnoseRequest, IgnoredSamplesNeitherFitNorScore) {
-  const Eigen::VectorXd all = prepare(request_).problem.data.all_mask;
-  request_.ignored = {"1:1.5"};
+TEST_F(DiagnoseRequest, IgnoredSamplesAreAGap) {
+  request_.ignored = {"1.2:1.5"};
   const PreparedDiagnosis prepared = prepare(request_);
-  const Eigen::VectorXd& rest = prepared.problem.data.all_mask;
-  EXPECT_EQ(all.sum() - rest.sum(), 101.0);  // 200 Hz, both ends
-  EXPECT_EQ(rest.segment(200, 101).sum(), 0.0);
+  const greybox::Dataset& record = prepared.problem.data.records.front();
+  EXPECT_EQ(record.size(), 600U - 61U);  // 200 Hz, both ends
+  EXPECT_EQ(record.starts, (std::vector<std::size_t>{0, 240}));
+  EXPECT_EQ(prepared.problem.data.all_mask[241], 0.0);  // settles as after any gap
+}
+
+TEST_F(DiagnoseRequest, IgnoringAHoldoutsSamplesIsTaken) {
+  request_.holdouts = {record("other.csv", {.sample_time_s = 0.01})};
+  request_.ignored = {"other.csv@0:2"};
+  EXPECT_EQ(prepare(request_).problem.data.records.back().size(), 1000U - 201U);
 }
 
 TEST_F(DiagnoseRequest, WrongChoicesAreRefused) {
@@ -66,6 +72,8 @@ TEST_F(DiagnoseRequest, WrongChoicesAreRefused) {
   expect_refused(2, "is not a span");
   request_.ignored = {"7:8"};
   expect_refused(2, "no sample lies there");
+  request_.ignored = {"0:1000"};
+  expect_refused(65, "");
   request_.ignored.clear();
   request_.selection.fix = {"mass_kg"};
   expect_refused(78, "is no parameter of this model");
