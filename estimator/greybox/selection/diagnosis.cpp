@@ -118,7 +118,9 @@ void localise_remainder(const SearchContext& context, const ModelStage& first,
                         const ModelStage& final, Diagnosis& result) {
   result.whole = localise(context, first);
   result.where = result.whole;
-  if (final.added.empty() || final.added.size() >= kStandIn) return;
+  if (final.added.empty()) return;
+  result.where_is_whole = true;
+  if (final.added.size() >= kStandIn) return;
   std::vector<Localisation> left = localise(context, final);
   const auto share = [](const std::vector<Localisation>& where) {
     return where.empty() ? 0.0 : where.front().explained_ratio;
@@ -231,7 +233,10 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
     (separates ? result.ambiguous : result.same_here).push_back(rivals.names);
   }
   // effects taken for want of the right one hide it: the model as given shows it more clearly
-  if (physics) result.where = result.whole = localise(search, first);
+  if (physics) {
+    result.where = result.whole = localise(search, first);
+    result.where_is_whole = true;
+  }
   if (innovations.load_sets_in()) {
     result.changing = {load_step(innovations)};
     // no curve is left: a load that goes with time is what there is

@@ -56,7 +56,7 @@ struct Diagnosis {
   double rms_after_m = 0.0;                ///< held-out, better model
   std::vector<ParameterValue> parameters;  ///< better model, fitted to all samples
   std::vector<Localisation> where;         ///< best first; empty when everything is explained
-  bool where_is_whole = true;              ///< `where` is of the error without the effects found
+  bool where_is_whole = false;             ///< `where` is of the error without the effects found
   std::vector<Localisation> whole;         ///< the same of the error without the effects found
   std::vector<SelectionStep> steps;
   /// Disturbance of the rig, where the record was judged by innovations and shows any.
