@@ -64,6 +64,7 @@ void cut(config::record::Record& record, const std::vector<char>& ignored) {
 std::vector<greybox::Dataset> records_of(const std::vector<std::string>& files,
                                          const std::vector<std::string>& ignored_spans) {
   std::vector<config::record::Record> records;
+  records.reserve(files.size());
   for (const std::string& file : files) records.push_back(config::record::read_record(file));
   std::vector<fit::RecordTimes> times;
   std::vector<std::vector<char>> ignored;
