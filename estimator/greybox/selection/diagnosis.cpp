@@ -186,6 +186,14 @@ ParameterStep load_step(const InnovationSearch& innovations) {
   return {name, innovations.jump.time_s, from, from + innovations.jump.size};
 }
 
+/// A load that sets in is all there is where no curve is left; seen from outside it may look like
+/// anything that goes with time.
+void locate_load(const InnovationSearch& innovations, std::vector<Localisation>& where) {
+  std::erase_if(where, [](const Localisation& one) { return one.variable != "time"; });
+  const std::string site = innovations.final.linear.front().force ? "force" : "flow";
+  for (Localisation& one : where) one.site = site;
+}
+
 /// A verdict by the likelihood of innovations.
 void conclude(const SearchContext& context, const SearchContext& search, const ModelStage& first,
               const InnovationSearch& innovations, Diagnosis& result) {
@@ -239,9 +247,7 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
   }
   if (innovations.load_sets_in()) {
     result.changing = {load_step(innovations)};
-    // no curve is left: a load that goes with time is what there is
-    std::stable_partition(result.where.begin(), result.where.end(),
-                          [](const Localisation& where) { return where.variable == "time"; });
+    locate_load(innovations, result.where);
   }
   result.verdict = result.search.interrupted || physics ? Verdict::unexplained
                    : result.missing.empty()             ? Verdict::nothing_missing
@@ -261,7 +267,9 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
     return;
   }
   const auto take_innovations = [&] {
-    refuse(start.branch.stage, Refusal::unlikely, start.first, result.search);
+    if (!innovations.physics_missing()) {
+      refuse(start.branch.stage, Refusal::unlikely, start.first, result.search);
+    }
     conclude(context, search, first, innovations, result);
   };
   if (context.cancelled() || !innovations.physics_missing() || innovations.load_sets_in()) {

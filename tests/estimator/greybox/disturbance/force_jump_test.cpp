@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "estimator/greybox/selection/diagnosis.h"
 #include "estimator/greybox/selection/innovation_stage.h"
 #include "estimator/greybox/selection/structure_search.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
@@ -31,6 +32,20 @@ TEST(ForceJump, ALoadThatSetsInIsFoundWithTimeAndSize) {
 }
 
 TEST(ForceJump, ARandomForceHasNone) { EXPECT_LT(jump_in(kDisturbed, 72).gain_nats, 15.0); }
+
+TEST(ForceJump, ADiagnosisSaysWhatSetInAndWhen) {
+  const selection::SearchContext context = diagnose_test::context_of(
+      kDisturbed + ",left_out=load_step,left_out.size=300,left_out.where=8", 73);
+  const selection::Diagnosis found = selection::diagnose(context.problem, context.options);
+  EXPECT_EQ(found.verdict, selection::Verdict::unexplained);
+  ASSERT_EQ(found.changing.size(), 1U);
+  EXPECT_EQ(found.changing[0].parameter, "load_force.force_N");
+  EXPECT_NEAR(found.changing[0].at_s, 8.0, 0.02);
+  EXPECT_NEAR(found.changing[0].to - found.changing[0].from, 300.0, 90.0);
+  ASSERT_FALSE(found.where.empty());
+  EXPECT_EQ(found.where[0].site, "force");
+  EXPECT_EQ(found.where[0].variable, "time");
+}
 
 // Without a filter's gain the innovations are those of an integrator: y(k+1) = y + b F, so that a
 // jump of F at sample j is a ramp (k - j) b F, fitted by least squares in closed form.
