@@ -10,12 +10,19 @@
 namespace estimator::greybox {
 namespace {
 
+constexpr double kFewestBlocks = 4.0;
+
 bool in_fitted_block(const Dataset& record, std::size_t i) {
   const double since_s = record.t_s[i] - record.t_s.front();
-  return static_cast<long>(since_s / kBlock_s) % 2 == 0;
+  return static_cast<long>(since_s / block_s(record)) % 2 == 0;
 }
 
 }  // namespace
+
+double block_s(const Dataset& record) {
+  const double length_s = record.t_s.back() - record.t_s.front() + record.sample_time_s;
+  return std::min(kBlock_s, length_s / kFewestBlocks);
+}
 
 Split parse_split(std::string_view text) {
   if (text == "blocks") return Split::blocks;

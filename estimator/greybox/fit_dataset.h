@@ -14,7 +14,9 @@ enum class Split { blocks, first_half, second_half };
 /// "blocks", "first-half", "second-half".
 [[nodiscard]] Split parse_split(std::string_view text);
 
-inline constexpr double kBlock_s = 2.0;  ///< blocks: every other one is fitted
+inline constexpr double kBlock_s = 2.0;  ///< longest block: every other one is fitted
+/// Length of a record's blocks: at least two of a short record are fitted, and two score.
+[[nodiscard]] double block_s(const Dataset& record);
 
 struct FitDataset {
   std::vector<Dataset> records;

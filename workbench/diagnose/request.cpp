@@ -37,7 +37,7 @@ void require_rate(const greybox::Dataset& record) {
       "20 Hz or more; compare and fit take less");
 }
 
-/// Rows of a record that are true, as gaps: their readings correct no simulation.
+/// Turns the ignored rows of a record into gaps: their readings correct no simulation.
 void cut(config::record::Record& record, const std::vector<char>& ignored) {
   config::record::Record rest = record;
   rest.t_s.clear();
@@ -83,6 +83,19 @@ std::vector<greybox::Dataset> records_of(const std::vector<std::string>& files,
   return sets;
 }
 
+/// Refuses data of which too little is fitted or scored: an error over no samples is none.
+void require_samples(const greybox::FitDataset& data, std::size_t parameters) {
+  constexpr double kPerParameter = 10.0;
+  const double least = kPerParameter * static_cast<double>(parameters);
+  const double fitted = data.training_mask.sum();
+  const double scored = data.validation_mask.sum();
+  if (fitted >= least && scored >= least) return;
+  throw config::schema::bad_data(
+      data.records.front().name,
+      fmt::format("leaves {:.0f} samples to fit and {:.0f} to score", fitted, scored),
+      fmt::format("{:.0f} or more of each: a longer record, or less to --ignore", least));
+}
+
 /// Leaves the effects that are to be tried.
 void choose_effects(const DiagnosisRequest& request, std::vector<plant_sim::EffectInfo>& effects) {
   const auto names = [](const std::vector<std::string>& list, const plant_sim::EffectInfo& effect) {
@@ -124,6 +137,7 @@ PreparedDiagnosis prepare(const DiagnosisRequest& request) {
       std::move(model),
       greybox::fit_dataset(std::move(records), std::move(holdouts), prepared.split));
   prepared.problem.plant_parameters = std::move(parameters.parameters);
+  require_samples(prepared.problem.data, prepared.problem.plant_parameters.size());
   if (request.flip) {
     for (greybox::Dataset& record : prepared.problem.data.records) {
       for (double& u_V : record.u_V) u_V = -u_V;

@@ -20,7 +20,7 @@ struct DiagnosisRequest {
   std::string fit = "blocks";
   std::vector<std::string> only;      ///< the only effects to be tried; empty: all
   std::vector<std::string> without;   ///< effects that are not tried
-  fit::ParameterSelection selection;  ///< of the model's own parameters
+  fit::ParameterSelection selection;  ///< choice among the model's own parameters
   std::vector<std::string> ignored;   ///< "from:to" in s, or "RECORD@from:to"
   bool flip = false;                  ///< the records' commands with the other sign
   double within_s = 0.0;              ///< the best answer after that time; 0: no limit

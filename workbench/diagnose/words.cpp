@@ -355,7 +355,9 @@ std::string split_words(const DiagnosisReport& outcome) {
     case greybox::Split::blocks:
       break;
   }
-  return fmt::format("fitted to every other {:g} s, scored on the rest", greybox::kBlock_s);
+  const std::vector<greybox::Dataset>& records = outcome.prepared->problem.data.records;
+  const double length_s = records.empty() ? greybox::kBlock_s : greybox::block_s(records.front());
+  return fmt::format("fitted to every other {:.2g} s, scored on the rest", length_s);
 }
 
 std::vector<StepWords> step_words(const selection::Diagnosis& diagnosis) {

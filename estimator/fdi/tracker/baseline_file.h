@@ -30,7 +30,7 @@ struct BaselineFile {
   double rms_m = 0.0;
   double noise_floor_m = 0.0;
   greybox::tracking::ChamberErrors chambers;  ///< unknown: chamber pressures are not used
-  std::optional<greybox::tracking::ProcessNoise> noise;  ///< of a disturbed rig
+  std::optional<greybox::tracking::ProcessNoise> noise;  ///< present on a disturbed rig
 
   void visit(config::schema::Visitor& v);
   void visit_disturbance(config::schema::Visitor& v);

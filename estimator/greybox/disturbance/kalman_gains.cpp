@@ -3,12 +3,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "estimator/greybox/disturbance/predictor.h"
 #include "estimator/greybox/observer_simulation.h"
 
 namespace estimator::greybox::disturbance {
 namespace {
 
-constexpr Eigen::Index kDisturbance = kMostStates - 1;
 /// Initial standard deviations of the pressures: where a segment begins at rest, and in motion.
 constexpr double kPressureAtRest_Pa = 1e5;
 constexpr double kPressureMoving_Pa = 1e6;

@@ -22,7 +22,7 @@ namespace estimator::greybox::disturbance {
 enum class LineSite { force, supply, sensor };
 /// "force", "pressure", "sensor".
 [[nodiscard]] const char* to_string(LineSite site);
-/// Those that a plant has.
+/// Sites that a plant has.
 [[nodiscard]] std::vector<LineSite> sites_of(const Linearisation& model);
 
 struct SpectralLine {

@@ -19,15 +19,15 @@ void advance_command(FitDataset& data, double lead_samples);
 
 struct CommandLead {
   double samples = 0.0;    ///< 0: as logged
-  double gain_nats = 0.0;  ///< of the interpolation; 0 for whole samples
+  double gain_nats = 0.0;  ///< the interpolation gains it; 0 for whole samples
 };
 
 /// The lead with which the stage's model leaves much less of the error, if any; none for records of
 /// several rates.
 [[nodiscard]] CommandLead find_command_lead(const SearchContext& context, const ModelStage& stage);
 
-/// Whether a noise floor says that a command is held between its samples: the floor of a slow log,
-/// taken from positions far apart, is too high for that.
+/// True where the noise floor is low enough to show an interpolated command: that of a slow log,
+/// taken from positions far apart, is too high.
 [[nodiscard]] bool floor_shows_lead(const FitDataset& data);
 
 }  // namespace estimator::greybox::selection

@@ -30,7 +30,7 @@ std::string site_of(const std::string& effect) {
   return "flow";
 }
 
-/// Whether most of the remaining error enters as this effect does: the law there may be another.
+/// True when most of the remaining error enters as this effect does: the law there may be another.
 bool shares_the_remainder(const Diagnosis& diagnosis, const std::string& effect) {
   return !diagnosis.where.empty() && diagnosis.where.front().site == site_of(effect) &&
          diagnosis.where.front().explained_ratio > kMost;
@@ -82,7 +82,7 @@ bool is_same_site(const std::string& one, const std::string& other) {
   return one == other || (is_flow(one) && is_flow(other));
 }
 
-/// Whether a curve that enters elsewhere explains as much as all effects together.
+/// True when a curve that enters elsewhere explains as much as all effects together.
 bool is_matched_elsewhere(const Diagnosis& diagnosis, const std::string& effect) {
   if (diagnosis.whole.empty()) return false;
   const Localisation& curve = diagnosis.whole.front();

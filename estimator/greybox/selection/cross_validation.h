@@ -21,8 +21,8 @@ class CrossValidation {
  public:
   explicit CrossValidation(const SearchContext& context);
 
-  /// Whether `more`, which has the parameters of `plain` and further ones, has the smaller error on
-  /// both halves. `explained`: score with the observer.
+  /// True when `more`, which has the parameters of `plain` and further ones, has the smaller error
+  /// on both halves. `explained`: score with the observer.
   [[nodiscard]] bool holds(bool explained, const ParameterSubset& plain,
                            const ParameterSubset& more);
 
@@ -40,7 +40,7 @@ class CrossValidation {
   std::map<Key, Errors> known_;
 };
 
-/// Whether noise explains the stage's held-out error.
+/// True when noise explains the stage's held-out error.
 [[nodiscard]] bool is_explained(const SearchContext& context, const ModelStage& stage);
 
 }  // namespace estimator::greybox::selection

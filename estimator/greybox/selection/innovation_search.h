@@ -45,7 +45,7 @@ struct InnovationSearch {
   /// The likeliest load that sets in at one sample.
   disturbance::ForceJump jump;
 
-  /// Whether a load sets in, which no curve over the motion explains better.
+  /// True when a load sets in, which no curve over the motion explains better.
   [[nodiscard]] bool load_sets_in() const {
     return jump.gain_nats > std::max(curve_nats, kCurve_nats + inexact_nats);
   }

@@ -97,7 +97,6 @@ void drop_idle_refinements(FitSummary& fitted) {
   using Eigen::Index;
   const auto count = static_cast<Index>(fitted.parameters.size());
   if (fitted.jacobian.cols() != count) return;
-  const auto effect_of = [](const FreeParameter& p) { return p.name.substr(0, p.name.find('.')); };
   const auto is_idle = [&](Index i) {
     return fitted.theta[i] == 0.0 || fitted.jacobian.col(i).cwiseAbs().maxCoeff() == 0.0;
   };

@@ -15,6 +15,10 @@ struct ParameterSubset {
   Eigen::VectorXd start;
 };
 
+/// "friction" of "friction.coulomb_N".
+[[nodiscard]] inline std::string effect_of(const FreeParameter& parameter) {
+  return parameter.name.substr(0, parameter.name.find('.'));
+}
 [[nodiscard]] inline bool belongs_to(const FreeParameter& parameter, const std::string& effect) {
   return parameter.name.rfind(effect + ".", 0) == 0;
 }

@@ -4,14 +4,9 @@
 #include <string>
 
 #include "config/units/quantity.h"
+#include "estimator/greybox/selection/parameter_subset.h"
 
 namespace estimator::greybox::selection {
-namespace {
-
-std::string effect_of(const FreeParameter& p) { return p.name.substr(0, p.name.find('.')); }
-
-}  // namespace
-
 std::vector<Eigen::VectorXd> revived_refinements(const FitSummary& fitted) {
   std::vector<Eigen::VectorXd> starts;
   const std::vector<FreeParameter>& all = fitted.parameters;

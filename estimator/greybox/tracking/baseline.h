@@ -17,8 +17,8 @@ struct Baseline {
   double rms_m = 0.0;     ///< error of a window; at least the noise floor
   Eigen::VectorXd theta;  ///< every parameter of the set, search units
   ChamberErrors chambers{};
-  /// Of a disturbed rig (disturbed_baseline.h): rms_m is the scaled innovations' standard
-  /// deviation.
+  /// Present on a disturbed rig (disturbed_baseline.h): rms_m is then the standard deviation of the
+  /// scaled innovations.
   std::optional<ProcessNoise> noise{};
 
   [[nodiscard]] ErrorScales errors() const { return {rms_m, chambers}; }
@@ -32,8 +32,8 @@ struct Baseline {
 [[nodiscard]] std::optional<std::size_t> undetermined_parameter(
     const std::vector<WindowResult>& windows, const ParameterSet& set);
 
-/// Whether the windows look like those of a disturbed rig: errors well above the noise floor, and a
-/// tracked parameter that few of them determine.
+/// True when the windows look like those of a disturbed rig: errors well above the noise floor, and
+/// a tracked parameter that few of them determine.
 [[nodiscard]] bool look_disturbed(const std::vector<WindowResult>& windows, const ParameterSet& set,
                                   double noise_floor_m);
 

@@ -89,7 +89,7 @@ inline constexpr std::size_t kNotMeasured = static_cast<std::size_t>(-1);
 struct HeldParameters {
   std::size_t measured = kNotMeasured;  ///< replaced by a reading; has no rivals
   std::size_t baseline = kNotMeasured;  ///< held at its healthy value; a rival of other parameters
-  /// Of a disturbed rig: the tracked parameters that were held at their healthy values, whose
+  /// True on a disturbed rig: the tracked parameters that were held at their healthy values, whose
   /// standard error in the fit is infinite, are rivals too, and rivals are judged alone.
   bool others_are_rivals = false;
   /// Parameters that changed before: not healthy even where this window is not sure of it.

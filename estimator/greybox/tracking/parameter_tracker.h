@@ -19,7 +19,7 @@
 //   (WindowResult::left_out). By position alone valve gain and supply pressure are not separable:
 //   where both are tracked the gain is held, and a change is named as the group of the two.
 //
-// Of a disturbed rig (Baseline::noise) the position alone is used. The window grows up to
+// On a disturbed rig (Baseline::noise) the position alone is used. The window grows up to
 // disturbed_window_s; it begins anew where a parameter changed within it, and changes are judged by
 // the few parameters that explain the window's latest part (tail_information.h).
 #pragma once
@@ -52,7 +52,7 @@ struct TrackerSettings {
   double most_std_error = 0.01;  ///< ratio above which a value is invalid
   double most_of_typical = 0.1;  ///< the same for an effect, relative to its typical size
   std::int64_t fused = 4;        ///< limit of agreeing windows that are fused (window_fusion.h)
-  // Of a disturbed rig:
+  // used on a disturbed rig alone
   double disturbed_window_s = 30.0;   ///< longest window
   double disturbed_std_error = 0.25;  ///< ratio above which a value is invalid
   Thresholds thresholds;
@@ -113,7 +113,7 @@ class ParameterTracker {
   void name_changes_in(WindowResult& window, const WindowData& data, const WindowFitSummary& found);
   void refine(WindowResult& window) const;
 
-  // Of a disturbed rig:
+  // used on a disturbed rig alone
   struct DisturbedState {
     std::size_t lead = 0;
     std::size_t longest = 0;

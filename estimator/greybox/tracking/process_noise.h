@@ -31,7 +31,7 @@ struct ProcessNoise {
   bool force = true;  ///< the random part is a force, N; otherwise a speed, m/s
   disturbance::NoiseModel model;
   DisturbanceLevel healthy;
-  /// Of the baseline's tracked parameters, search units.
+  /// Covariance of the baseline's tracked parameters, search units.
   Eigen::MatrixXd covariance;
 
   /// "force" or "speed"; "pressure", "sensor".

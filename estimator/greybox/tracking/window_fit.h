@@ -46,7 +46,7 @@ struct WindowData {
   std::size_t samples = 0;        ///< samples of the window
   const double* in_Pa = nullptr;  ///< null: not read throughout; same for out_Pa
   const double* out_Pa = nullptr;
-  /// Of a disturbed rig (process_noise.h): residuals are scaled innovations; position alone.
+  /// Set on a disturbed rig (process_noise.h): residuals are scaled innovations of the position.
   std::shared_ptr<const InnovationGains> gains = nullptr;
 
   [[nodiscard]] WindowData without_pressures() const {

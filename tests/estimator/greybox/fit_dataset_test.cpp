@@ -57,12 +57,21 @@ TEST(FitDataset, CountsNothingWhileASegmentSettles) {
 }
 
 TEST(FitDataset, BeginsItsBlocksAnewInEachRecord) {
-  const FitDataset e = fit_dataset({record(500), record(900)}, {});
-  EXPECT_THAT(e.starts, testing::ElementsAre(0U, 500U));
+  const FitDataset e = fit_dataset({record(1600), record(2000)}, {});
+  EXPECT_THAT(e.starts, testing::ElementsAre(0U, 1600U));
+  EXPECT_EQ(e.validation_mask[1599], 1.0);
+  EXPECT_EQ(e.training_mask[1600 + 100], 1.0);
+  EXPECT_EQ(e.validation_mask[1600 + 400], 1.0);
+  EXPECT_EQ(e.training_mask[1600 + 800], 1.0);
+}
+
+TEST(FitDataset, CutsAShortRecordIntoFourBlocks) {
+  const FitDataset e = fit_dataset({record(500)}, {});
+  EXPECT_EQ(e.training_mask[124], 1.0);
+  EXPECT_EQ(e.validation_mask[126], 1.0);
+  EXPECT_EQ(e.training_mask[251], 1.0);
+  EXPECT_EQ(e.validation_mask[376], 1.0);
   EXPECT_EQ(e.validation_mask[499], 1.0);
-  EXPECT_EQ(e.training_mask[500 + 100], 1.0);
-  EXPECT_EQ(e.validation_mask[500 + 400], 1.0);
-  EXPECT_EQ(e.training_mask[500 + 800], 1.0);
 }
 
 TEST(FitDataset, FitsOneHalfAndScoresTheOtherBegunAnew) {

@@ -67,6 +67,20 @@ TEST_F(DiagnoseRequest, IgnoringAHoldoutsSamplesIsTaken) {
   EXPECT_EQ(prepare(request_).problem.data.records.back().size(), 1000U - 201U);
 }
 
+TEST_F(DiagnoseRequest, SamplesOfWhichNoneScoreAreRefused) {
+  request_.records = {record("long.csv", {.duration_s = 10.0})};
+  request_.holdouts.clear();
+  request_.ignored = {"2:4", "6:8"};
+  expect_refused(65, "to score");
+}
+
+TEST_F(DiagnoseRequest, AShortRecordIsFittedAndScored) {
+  request_.records = {record("short.csv", {.duration_s = 2.0})};
+  const greybox::FitDataset data = prepare(request_).problem.data;
+  EXPECT_EQ(data.training_mask.sum(), 100.0);  // the first half second is lead-in
+  EXPECT_EQ(data.validation_mask.sum(), 200.0);
+}
+
 TEST_F(DiagnoseRequest, WrongChoicesAreRefused) {
   request_.ignored = {"1-2"};
   expect_refused(2, "is not a span");

@@ -60,10 +60,15 @@ TEST(TailInformation, AChangeIsFoundWhereItWas) {
   EXPECT_NEAR(static_cast<double>(*since), 600.0, 100.0);
 }
 
-TEST(DeviationCauses, OneCauseIsNamedThoughAllFittedTogetherAreUncertain) {
-  // Two parameters nearly alike: together each is known badly, alone well.
+/// Information of two parameters nearly alike: together each is known badly, alone well.
+MatrixXd nearly_alike() {
   MatrixXd information(2, 2);
   information << 400.0, 380.0, 380.0, 400.0;
+  return information;
+}
+
+TEST(DeviationCauses, OneCauseIsNamedThoughAllFittedTogetherAreUncertain) {
+  const MatrixXd information = nearly_alike();
   const Eigen::Vector2d truth(0.4, 0.0);
   const Eigen::Vector2d least(0.03, 0.03);
   const DeviationCauses causes = causes_of(truth, information.inverse(), least, 5.0);
@@ -84,8 +89,7 @@ TEST(DeviationCauses, ASmallDeviationIsNoCauseHoweverSure) {
 }
 
 TEST(DeviationCauses, AChangeThatStandsIsACauseBesideANewOne) {
-  MatrixXd information(2, 2);
-  information << 400.0, 380.0, 380.0, 400.0;
+  const MatrixXd information = nearly_alike();
   const Eigen::Vector2d truth(0.4, 0.1);
   const Eigen::Vector2d least(0.03, 0.03);
   const DeviationCauses alone = causes_of(truth, information.inverse(), least, 5.0);

@@ -1,0 +1,62 @@
+#include "estimator/greybox/selection/final_parameters.h"
+
+#include <cmath>
+
+#include "estimator/greybox/selection/parameter_subset.h"
+#include "estimator/greybox/selection/structure_search.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+/// `errors` are those of the search values.
+void report_parameters(const Eigen::VectorXd& errors, Diagnosis& result) {
+  for (std::size_t i = 0; i < result.final.parameters.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const FreeParameter& p = result.final.parameters[i];
+    const bool at_bound = result.final.at_bound[i] != 0;
+    const double error = at_bound ? std::nan("") : errors[k] * p.slope(result.final.theta[k]);
+    result.parameters.push_back({p.name, p.to_physical(result.final.theta[k]), error, at_bound});
+  }
+}
+
+/// The parameters that simulate best without the observer. The minimum of a free run is narrow,
+/// with dry friction one of many: it is sought from the fit with the observer, and once more while
+/// the observer weakens.
+FitSummary fit_free_run(const SearchContext& context, const ParameterSubset& start) {
+  const Eigen::VectorXd& weights = context.problem.data.final_weights();
+  const Width width = wide(context.options.threads);
+  FitSummary best = refit(context, start, weights, width, 0.0);
+  ParameterSubset weakened = start;
+  for (const double share : {0.3, 0.1, 0.03}) {
+    weakened.start = refit(context, weakened, weights, width, share * kObserver_per_s).theta;
+  }
+  FitSummary other = refit(context, weakened, weights, width, 0.0);
+  return rms(other.residual_m, weights) < rms(best.residual_m, weights) ? other : best;
+}
+
+}  // namespace
+
+void fit_final_parameters(const SearchContext& context, Diagnosis& result) {
+  const ModelStage& stage = result.search.final;
+  const ParameterSubset all = subset(stage.fitted, [](const auto&) { return true; });
+  const bool explained =
+      stage.fitted.validation_rms_m <= kUnexplained * context.problem.data.noise_floor_m;
+  // what is left of the error is no noise: then the values are those that simulate best
+  result.final = context.cancelled() ? stage.fitted
+                 : explained         ? refit(context, all, context.problem.data.final_weights(),
+                                             wide(context.options.threads))
+                                     : fit_free_run(context, all);
+  drop_idle_refinements(result.final);
+  result.better = with_values(context.problem.model, result.final);
+  report_parameters(
+      std_errors(context.problem.data, context.problem.data.final_weights(), result.final), result);
+}
+
+void take_parameters(const InnovationStage& stage, Diagnosis& result) {
+  const FitDataset& data = stage.context.problem.data;
+  result.final = stage.model.fitted;
+  result.better = with_values(stage.context.problem.model, result.final);
+  report_parameters(std_errors(data, data.all_mask, result.final), result);
+}
+
+}  // namespace estimator::greybox::selection

@@ -1,0 +1,16 @@
+// The better model of a diagnosis: its parameters on all samples, with their errors.
+#pragma once
+
+#include "estimator/greybox/selection/diagnosis.h"
+#include "estimator/greybox/selection/innovation_stage.h"
+
+namespace estimator::greybox::selection {
+
+/// Fits the final model of the search: by its errors under the observer where noise explains them,
+/// otherwise to a free run.
+void fit_final_parameters(const SearchContext& context, Diagnosis& result);
+
+/// Takes the model that the innovations chose, as it is.
+void take_parameters(const InnovationStage& stage, Diagnosis& result);
+
+}  // namespace estimator::greybox::selection
