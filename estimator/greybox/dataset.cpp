@@ -16,7 +16,7 @@ namespace {
 constexpr double kLargestInitialisationGain = 0.5;
 constexpr double kLeast_s = 2.0;
 /// At least two samples fall in the settling time of a segment.
-constexpr double kSlowest_s = 0.25;
+constexpr double kSlowest_s = 0.5;
 
 /// Ratio of the speed at a record's first sample to its RMS speed above which the record begins
 /// during a motion. A start from rest under a command stays below a few per cent.

@@ -56,14 +56,17 @@ FitDataset fit_dataset(std::vector<Dataset> records, std::vector<Dataset> holdou
   result.validation_mask = result.training_mask;
   Eigen::Index at = 0;
   double square_m2 = 0.0;
+  double least_m2 = 0.0;
   std::size_t told = 0;
   for (std::size_t r = 0; r < result.records.size(); ++r) {
     const Dataset& record = result.records[r];
     result.starts.push_back(static_cast<std::size_t>(at));
-    const double floor_m = estimator::residual::noise_floor(record.y_m, record.sample_time_s).sd_m;
-    if (std::isfinite(floor_m)) {
-      square_m2 +=
-          std::pow(std::max(floor_m, kLeastFloor_m), 2) * static_cast<double>(record.size());
+    const auto samples = static_cast<double>(record.size());
+    const estimator::residual::NoiseFloor floor =
+        estimator::residual::noise_floor(record.y_m, record.sample_time_s);
+    least_m2 += std::pow(std::max(floor.least_m, kLeastFloor_m), 2) * samples;
+    if (std::isfinite(floor.sd_m)) {
+      square_m2 += std::pow(std::max(floor.sd_m, kLeastFloor_m), 2) * samples;
       told += record.size();
     }
     for (std::size_t i = 0; i < record.size(); ++i, ++at) {
@@ -74,7 +77,15 @@ FitDataset fit_dataset(std::vector<Dataset> records, std::vector<Dataset> holdou
   }
   result.all_mask = result.training_mask + result.validation_mask;
   result.noise_floor_m = std::sqrt(square_m2 / static_cast<double>(told));
+  result.least_floor_m = std::sqrt(least_m2 / static_cast<double>(total));
   return result;
+}
+
+void assume_noise_floor(FitDataset& data) {
+  constexpr double kMostRatio = 300.0;
+  if (std::isfinite(data.noise_floor_m)) return;
+  data.noise_floor_m = data.least_floor_m;
+  data.most_sensor_ratio = kMostRatio;
 }
 
 double rms(const Eigen::Ref<const Eigen::VectorXd>& residual_m, const Eigen::VectorXd& weights) {

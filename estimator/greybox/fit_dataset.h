@@ -28,6 +28,10 @@ struct FitDataset {
   std::size_t fitted_records = 0;  ///< the first of `records`; the others only validate
   /// Mean over the records with a known noise floor; NaN when there is none (below 20 Hz).
   double noise_floor_m = 0.0;
+  /// Bound of the noise floor from below, known at any rate: root of the records' mean square.
+  double least_floor_m = 0.0;
+  /// Bound of the sensor's noise from above, as a ratio to `noise_floor_m`.
+  double most_sensor_ratio = 3.0;
   double sample_time_s = 0.0;  ///< first record
 
   [[nodiscard]] Eigen::Index size() const { return all_mask.size(); }
@@ -44,6 +48,10 @@ struct FitDataset {
 /// record.
 [[nodiscard]] FitDataset fit_dataset(std::vector<Dataset> records, std::vector<Dataset> holdouts,
                                      Split split = Split::blocks);
+
+/// Where the noise floor is not known, takes its bound from below in its place and lets the noise
+/// exceed it freely.
+void assume_noise_floor(FitDataset& data);
 
 /// sqrt(sum w r^2 / sum w).
 [[nodiscard]] double rms(const Eigen::Ref<const Eigen::VectorXd>& residual_m,

@@ -70,6 +70,8 @@ FitDataset representative_segments(const FitDataset& whole) {
   FitDataset result;
   result.fitted_records = whole.fitted_records;
   result.noise_floor_m = whole.noise_floor_m;
+  result.least_floor_m = whole.least_floor_m;
+  result.most_sensor_ratio = whole.most_sensor_ratio;
   result.sample_time_s = whole.sample_time_s;
   std::vector<double> training;
   std::vector<double> validation;

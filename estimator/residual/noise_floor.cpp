@@ -24,6 +24,7 @@ constexpr double kOnGridShare = 0.98;
 constexpr double kDither =
     0.35;  // noise, in steps, that makes rounding at rest like that in motion
 constexpr double kSlowest_s = 0.05;
+constexpr double kLeastShare = 0.01;  // share of noise in what the differences leave of a slow log
 
 double binomial(int n, int k) {
   double out = 1.0;
@@ -152,15 +153,21 @@ NoiseFloor noise_floor(std::span<const double> y_m, double sample_time_s) {
   NoiseFloor out;
   out.sd_m = kNaN;
   out.encoder_step_m = encoder_step_m(y_m);
-  if (y_m.size() < kWindow + kOrder || !(sample_time_s <= kSlowest_s)) return out;
+  out.least_m = out.encoder_step_m / std::sqrt(12.0);
+  if (y_m.size() < kWindow + kOrder) return out;
   const Energies energies = windows_of(y_m, out.encoder_step_m);
   if (energies.all.empty()) return out;
+  if (!(sample_time_s <= kSlowest_s)) {
+    if (out.least_m == 0.0) out.least_m = kLeastShare * std::sqrt(level_of(energies.all));
+    return out;
+  }
   out.at_rest = energies.moving.size() < std::max<std::size_t>(4, energies.all.size() / 20);
   double square = level_of(energies.all);
   const double rounding = out.encoder_step_m * out.encoder_step_m / 12.0;
   const double dithers = std::pow(kDither * out.encoder_step_m, 2);
   if (!out.at_rest && square < rounding + dithers) square = level_of(energies.moving);
   out.sd_m = std::sqrt(std::max(square, rounding));
+  out.least_m = out.sd_m;
   return out;
 }
 

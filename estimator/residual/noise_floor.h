@@ -20,7 +20,10 @@
 namespace estimator::residual {
 
 struct NoiseFloor {
-  double sd_m = 0.0;            ///< rounding included; NaN with fewer than 64 samples
+  double sd_m = 0.0;  ///< rounding included; NaN with fewer than 64 samples
+  /// Bound from below: sd_m, or for a slow log the rounding, or without one a small share of what
+  /// motion and noise leave together.
+  double least_m = 0.0;
   double encoder_step_m = 0.0;  ///< 0: no step found
   bool at_rest = false;         ///< no window moved: the figure is weaker
 };

@@ -26,17 +26,6 @@ void check_files(const DiagnosisRequest& request) {
       inputs);
 }
 
-/// Refuses samples too far apart: noise is told from a motion by how smooth the motion is.
-void require_rate(const greybox::Dataset& record) {
-  constexpr double kSlowest_s = 0.05;
-  if (record.sample_time_s <= kSlowest_s * (1.0 + 1e-6)) return;
-  throw config::schema::bad_data(
-      record.name,
-      fmt::format("{:.3g} samples a second are too few to tell noise from motion",
-                  1.0 / record.sample_time_s),
-      "20 Hz or more; compare and fit take less");
-}
-
 /// Turns the ignored rows of a record into gaps: their readings correct no simulation.
 void cut(config::record::Record& record, const std::vector<char>& ignored) {
   config::record::Record rest = record;
@@ -78,7 +67,6 @@ std::vector<greybox::Dataset> records_of(const std::vector<std::string>& files,
   for (std::size_t r = 0; r < files.size(); ++r) {
     cut(records[r], ignored[r]);
     sets.push_back(greybox::dataset_of(records[r]));
-    require_rate(sets.back());
   }
   return sets;
 }

@@ -237,6 +237,10 @@ std::vector<std::string> notes(const DiagnosisReport& outcome) {
                   " of " + std::to_string(std::lround(greybox::length_s(data))) + " s" +
                   (d.by_innovations ? "" : "; values and errors are those of all samples"));
   }
+  if (d.floor_assumed && d.excitation.sufficient()) {
+    out.emplace_back(std::string("noise cannot be told from motion at this rate: the floor is ") +
+                     (d.by_innovations ? "estimated with the model" : "the rounding alone"));
+  }
   if (d.search.interrupted) out.emplace_back("interrupted: the best so far");
   return out;
 }

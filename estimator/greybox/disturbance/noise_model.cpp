@@ -24,7 +24,6 @@ constexpr double kMostWalk_ratio = 30.0;
 constexpr double kLeastCorner_turns = 2.0;
 constexpr double kMostCorner_ratio = 0.2;  ///< of the sampling rate
 constexpr double kLeastSensor_ratio = 0.8;
-constexpr double kMostSensor_ratio = 3.0;
 /// The search ends when its steps, factors of e^step, are smaller.
 constexpr double kFirstStep = 1.2;
 constexpr double kLastStep = 0.08;
@@ -194,7 +193,7 @@ NoiseEstimate estimate_noise(const plant_sim::ModelFile& model, const FitDataset
       Point(std::log(1e-2 * unit), std::log(kLeastCorner_turns / longest_s(data)),
             std::log(kLeastWalk_ratio * walk_m), std::log(kLeastSensor_ratio * floor_m)),
       Point(std::log(1e5 * unit), std::log(kMostCorner_ratio / data.sample_time_s),
-            std::log(kMostWalk_ratio * walk_m), std::log(kMostSensor_ratio * floor_m))};
+            std::log(kMostWalk_ratio * walk_m), std::log(data.most_sensor_ratio * floor_m))};
   const auto within = [&](const Point& point) -> Point {
     return point.cwiseMax(bounds.lower).cwiseMin(bounds.upper);
   };

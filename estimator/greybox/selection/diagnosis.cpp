@@ -27,6 +27,9 @@ constexpr double kFarFromFloor = 10.0;
 /// linearised models.
 constexpr double kIncredible = 1.5;
 constexpr double kSuspicious_nats = 15.0;
+/// Remaining error over the noise up to which several effects may hide behind the one found. What
+/// lies farther is no effect of the library.
+constexpr double kNearFloor = 5.0;
 constexpr double kAsClear = 0.9;  ///< ratio of the remainder's explained share to that of the whole
 
 void list_steps(Diagnosis& result) {
@@ -169,6 +172,7 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
   const bool incredible = result.disturbed_floor_m() > kIncredible * result.rms_after_m &&
                           innovations.curve_nats > kSuspicious_nats + innovations.inexact_nats;
   const bool physics = innovations.physics_missing() || incredible;
+  if (result.floor_assumed) result.noise_floor_m = innovations.final.noise.noise.sensor_m;
   result.curve_nats = innovations.curve_nats;
   result.innovations = static_cast<double>(innovations.final.model.fitted.residual_m.size());
   result.gains_nats = innovations.gains_nats;
@@ -226,11 +230,19 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
     take_innovations();
     return;
   }
-  extend_search(search, start);
-  const double held_m = simulated(search, innovations.final.model.fitted).validation_rms_m;
+  const FitSummary held = simulated(search, innovations.final.model.fitted);
+  if (held.validation_rms_m <= kUnexplained * search.problem.data.noise_floor_m) {
+    result.search = structure_search_of(search, first, innovations);
+    conclude(context, search, result);
+    return;
+  }
+  if (start.branch.stage.fitted.validation_rms_m < kNearFloor * search.problem.data.noise_floor_m) {
+    extend_search(search, start);
+  }
   // Prefers the model that leaves less, of equals the likelier.
   const auto leaves_more = [&](const ModelStage& stage) {
-    return !is_explained(search, stage) && (1.0 - kRivals) * held_m < stage.fitted.validation_rms_m;
+    return !is_explained(search, stage) &&
+           (1.0 - kRivals) * held.validation_rms_m < stage.fitted.validation_rms_m;
   };
   if (leaves_more(start.branch.stage)) {
     take_innovations();
@@ -281,8 +293,10 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
   const auto begin = std::chrono::steady_clock::now();
   SearchContext context{problem, options};
   Diagnosis result;
-  result.noise_floor_m = problem.data.noise_floor_m;
-  result.excitation = excitation_of(problem.data);
+  result.floor_assumed = !std::isfinite(problem.data.noise_floor_m);
+  assume_noise_floor(context.problem.data);
+  result.noise_floor_m = context.problem.data.noise_floor_m;
+  result.excitation = excitation_of(context.problem.data);
   if (!result.excitation.sufficient()) {
     result.verdict = Verdict::not_excited;
     result.better = problem.model;
@@ -308,7 +322,7 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
   if (context.cancelled()) {
     result.search = conclude_search(search, std::move(start));
     conclude(context, search, result);
-  } else if (wrong_record || !std::isfinite(result.noise_floor_m)) {
+  } else if (wrong_record) {
     result.search = abandon_search(search, start);
     conclude(context, search, result);
   } else if (is_explained(search, start.branch.stage)) {

@@ -51,6 +51,9 @@ struct Diagnosis {
   std::vector<std::vector<std::string>>
       same_here;  ///< groups that are equivalent on this plant for every motion
   double noise_floor_m = 0.0;
+  /// No floor can be read from the records: it is the noise that the likelihood has found, or the
+  /// rounding alone.
+  bool floor_assumed = false;
   double nominal_rms_m = 0.0;              ///< held-out, the model file unchanged
   double rms_before_m = 0.0;               ///< held-out, its parameters fitted
   double rms_after_m = 0.0;                ///< held-out, better model

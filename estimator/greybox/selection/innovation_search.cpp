@@ -157,6 +157,7 @@ SearchContext without_holdouts(SearchContext context) {
     std::vector<Dataset>& records = context.problem.data.records;
     records.resize(context.problem.data.fitted_records);
     context.problem.data = fit_dataset(std::move(records), {});
+    assume_noise_floor(context.problem.data);
   }
   return context;
 }

@@ -73,12 +73,12 @@ TEST(Dataset, RefusesLessThanTwoSecondsOfConnectedSamples) {
 
 TEST(Dataset, RefusesSamplesFarApart) {
   config::record::Record slow = record(300);
-  slow.sample_time_s = 0.5;
+  slow.sample_time_s = 0.6;
   try {
     (void)dataset_of(slow);
     FAIL();
   } catch (const config::schema::DataError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("is sampled every 0.5 s; allowed: every 0.25 s or faster"));
+    EXPECT_THAT(error.what(), HasSubstr("is sampled every 0.6 s; allowed: every 0.5 s or faster"));
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <set>
 
 #include "tests/estimator/greybox/selection/servo_problem.h"
@@ -14,6 +15,7 @@ namespace {
 
 using diagnose_test::kServoGain;
 using diagnose_test::servo_context;
+using diagnose_test::ServoRun;
 using diagnose_test::with_offset;
 using diagnose_test::with_offset_and_band;
 using testing::ElementsAre;
@@ -65,6 +67,19 @@ TEST(Diagnosis, SaysNothingIsMissingOfAHealthyRecord) {
   EXPECT_THAT(d.missing, IsEmpty());
   EXPECT_EQ(d.steps.size(), 1U);
   EXPECT_LT(d.rms_after_m, d.nominal_rms_m);
+}
+
+TEST(Diagnosis, EstimatesTheNoiseOfALogThatIsTooSlowToShowIt) {
+  ServoRun run{.rate_mps = with_offset(0.0), .samples = 600, .sample_time_s = 0.1};
+  const selection::Diagnosis healthy = diagnosed(servo_context(run)).diagnosis;
+  EXPECT_TRUE(healthy.floor_assumed);
+  EXPECT_EQ(healthy.verdict, selection::Verdict::nothing_missing);
+  // 2 um and the rounding to 5 um
+  EXPECT_NEAR(healthy.noise_floor_m, std::hypot(2e-6, 5e-6 / std::sqrt(12.0)), 0.4e-6);
+  run.rate_mps = with_offset(0.06);
+  const selection::Diagnosis biased = diagnosed(servo_context(run)).diagnosis;
+  EXPECT_EQ(biased.verdict, selection::Verdict::missing);
+  EXPECT_THAT(biased.missing, ElementsAre("null_bias"));
 }
 
 TEST(Diagnosis, SaysWhatCarriesAnErrorThatNoEffectExplains) {

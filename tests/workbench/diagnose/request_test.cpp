@@ -141,9 +141,9 @@ TEST_F(DiagnoseRequest, ShortRecordIsBadData) {
   expect_refused(65, "too short");
 }
 
-TEST_F(DiagnoseRequest, RecordTooSlowToTellNoiseFromMotionIsBadData) {
-  request_.records = {record("slow.csv", {.sample_time_s = 0.1})};
-  expect_refused(65, "10 samples a second are too few");
+TEST_F(DiagnoseRequest, RecordTooSlowToShowMotionIsBadData) {
+  request_.records = {record("slow.csv", {.duration_s = 100.0, .sample_time_s = 1.0})};
+  expect_refused(65, "is sampled every 1 s");
 }
 
 TEST_F(DiagnoseRequest, UnknownEffectIsBadConfiguration) {

@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -54,7 +55,7 @@ class ServoBench {
     double y_m = 0.3;
     double step_V = 0.0;
     const auto samples = std::lround(motion.duration_s / motion.sample_time_s);
-    const auto hold = std::lround(0.2 / motion.sample_time_s);
+    const long hold = std::max(1L, std::lround(0.2 / motion.sample_time_s));
     for (long k = 0; k < samples; ++k) {
       const double read_m = kEncoder_m * std::round((y_m + noise_m(random)) / kEncoder_m);
       if (k % hold == 0) step_V = motion.amplitude_V * level(random);

@@ -36,30 +36,35 @@ struct ServoRun {
   Reading reading_m = plain_reading;
   Command command_V = pulling_back;
   int samples = 4000;
+  double sample_time_s = 0.005;
   unsigned seed = 3;
 };
 
-/// In steps of 0.1 ms, 200 Hz, 2 um noise, 5 um encoder.
+/// In steps of 0.1 ms, with 2 um of noise and an encoder of 5 um.
 inline greybox::Dataset servo_record(const ServoRun& run) {
   std::mt19937 random(run.seed);
   std::normal_distribution<double> noise_m(0.0, 2e-6);
   std::uniform_real_distribution<double> level(-1.0, 1.0);
   config::record::Record record;
   record.name = "servo";
-  record.sample_time_s = 0.005;
+  record.sample_time_s = run.sample_time_s;
+  const long hold = std::max(1L, std::lround(0.15 / run.sample_time_s));
+  const long steps = std::lround(run.sample_time_s / 1e-4);
   double y_m = 0.3;
   double now = 0.0;
   double u_V = 0.0;
   for (int k = 0; k < run.samples; ++k) {
-    const double t_s = 0.005 * k;
-    if (k % 30 == 0) {
+    const double t_s = run.sample_time_s * k;
+    if (k % hold == 0) {
       now = level(random);
       u_V = run.command_V(now, y_m);
     }
     record.t_s.push_back(t_s);
     record.u_V.push_back(u_V);
     record.y_m.push_back(5e-6 * std::round((run.reading_m(y_m, t_s) + noise_m(random)) / 5e-6));
-    for (int i = 0; i < 50; ++i) y_m += 1e-4 * run.rate_mps(u_V, y_m, t_s + 1e-4 * i);
+    for (long i = 0; i < steps; ++i) {
+      y_m += 1e-4 * run.rate_mps(u_V, y_m, t_s + 1e-4 * static_cast<double>(i));
+    }
   }
   return greybox::dataset_of(record);
 }
