@@ -18,6 +18,8 @@ constexpr double kMuchLess = 0.6;
 /// Sample time from which on a floor may hide the error of a held command.
 constexpr double kSlow_s = 0.015;
 constexpr int kIterations = 10;
+/// Iterations after which a lead must leave less than none does to be fitted further.
+constexpr int kFirstIterations = 2;
 constexpr double kTolerance = 1e-3;
 
 }  // namespace
@@ -44,7 +46,6 @@ CommandLead find_command_lead(const SearchContext& context, const ModelStage& st
   });
   if (!one_rate) return {};
   FitOptions options;
-  options.max_iterations = kIterations;
   options.tolerance = kTolerance;
   options.final_jacobian = false;
   options.cancel = context.options.cancel;
@@ -53,8 +54,14 @@ CommandLead find_command_lead(const SearchContext& context, const ModelStage& st
   in_parallel(fits.size(), context.options.threads, [&](std::size_t i) {
     FitDataset data = context.problem.data;
     advance_command(data, kLeads_samples[i]);
-    fits[i] =
-        fit(context.problem.model, data, data.training_mask, all.parameters, all.start, options);
+    FitOptions effort = options;
+    Eigen::VectorXd start = all.start;
+    for (const int iterations : {kFirstIterations, kIterations}) {
+      effort.max_iterations = iterations;
+      fits[i] = fit(context.problem.model, data, data.training_mask, all.parameters, start, effort);
+      if (!(fits[i].training_rms_m < stage.fitted.training_rms_m)) break;
+      start = fits[i].theta;
+    }
   });
   const auto best = std::min_element(fits.begin(), fits.end(), [](const auto& a, const auto& b) {
     return a.training_rms_m < b.training_rms_m || std::isnan(b.training_rms_m);

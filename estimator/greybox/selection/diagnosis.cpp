@@ -213,7 +213,7 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
 void weigh_innovations(const SearchContext& context, const SearchContext& search, SearchStart start,
                        Diagnosis& result) {
   const ModelStage first = start.first;
-  const InnovationSearch innovations = search_innovations(search, first, start.branch.stage);
+  const InnovationSearch innovations = search_innovations(search, first, start.branch);
   result.search = abandon_search(search, start);
   if (innovations.final.linear.empty()) {  // no likelihood
     result.search = complete_search(search, std::move(start));

@@ -71,7 +71,7 @@ InnovationRivals rivals_of(const SearchContext& plain, const InnovationStage& fi
     without = &own;
   }
   std::vector<InnovationTrial> rivals = effect_trials(*without);
-  add_simulated_starts(plain, *without, rivals);
+  add_simulated_starts(*without, simulated_effects(plain, without->model), rivals);
   sort_by_gain(rivals);
   double best = -std::numeric_limits<double>::infinity();
   for (const InnovationTrial& rival : rivals) {

@@ -42,13 +42,23 @@ void reconsider_sites(const SearchContext& plain, InnovationStage& stage) {
   }
 }
 
+/// The round of a search by simulations that has begun with the stage's effects, where there is
+/// one.
+SimulatedEffects simulated_effects(const SearchContext& plain, const InnovationStage& stage,
+                                   const SearchBranch& held) {
+  for (const Round& round : held.rounds) {
+    if (round.before.added == stage.model.added) return simulated_effects(round);
+  }
+  return simulated_effects(plain, stage.model);
+}
+
 /// One round: false when nothing gains enough. `evidence_nats`: what a candidate must gain.
-bool extend(const SearchContext& plain, InnovationStage& stage, double evidence_nats,
-            std::vector<InnovationRound>& rounds) {
+bool extend(const SearchContext& plain, InnovationStage& stage, const SearchBranch& held,
+            double evidence_nats, std::vector<InnovationRound>& rounds) {
   std::vector<InnovationTrial> trials;
   if (stage.model.added.size() < kMostEffects) {
     trials = effect_trials(stage);
-    add_simulated_starts(plain, stage, trials);
+    add_simulated_starts(stage, simulated_effects(plain, stage, held), trials);
   }
   if (stage.noise.lines.size() < kMostLines) {
     std::vector<ScoredLine> lines = line_candidates(plain, stage);
@@ -186,7 +196,7 @@ void note_gains(InnovationSearch& search, const InnovationStage& final) {
 }  // namespace
 
 InnovationSearch search_innovations(const SearchContext& with_holdouts, const ModelStage& first,
-                                    const ModelStage& held) {
+                                    const SearchBranch& held) {
   const SearchContext context = without_holdouts(with_holdouts);
   InnovationSearch search;
   InnovationStage stage = settled(context, first, {}, kMostTurns, wide(context.options.threads));
@@ -197,9 +207,9 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
            kInexact * 0.5 * std::max(0.0, search.before.minus_two_log - stage.minus_two_log);
   };
   while (!context.cancelled() &&
-         extend(context, stage, kEvidence_nats + inexact_nats(), search.rounds)) {
+         extend(context, stage, held, kEvidence_nats + inexact_nats(), search.rounds)) {
   }
-  take_held(context, held, kEvidence_nats + inexact_nats(), stage, search.rounds);
+  take_held(context, held.stage, kEvidence_nats + inexact_nats(), stage, search.rounds);
   search.inexact_nats = inexact_nats();
   search.without = eliminate(context, stage, kEvidence_nats + search.inexact_nats);
   note_gains(search, stage);

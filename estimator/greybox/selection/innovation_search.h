@@ -54,11 +54,12 @@ struct InnovationSearch {
   }
 };
 
-/// `first` is the model as given, fitted with the weak observer, `held` the best that another
-/// search has found so: it is taken where its likelihood is the higher one. Records that only score
-/// take no part.
+/// `first` is the model as given, fitted with the weak observer, `held` another search's rounds and
+/// the best that it has found: this is taken where its likelihood is the higher one. Records that
+/// only score take no part.
 [[nodiscard]] InnovationSearch search_innovations(const SearchContext& context,
-                                                  const ModelStage& first, const ModelStage& held);
+                                                  const ModelStage& first,
+                                                  const SearchBranch& held);
 
 /// For each effect found, those that explain the record about as well in its place. Effects that
 /// gained little beside what physics is missing are left out: they are not established anyway.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "estimator/parallel.h"
@@ -94,39 +93,55 @@ std::vector<InnovationTrial> effect_trials(const InnovationStage& stage) {
   return trials;
 }
 
-void add_simulated_starts(const SearchContext& plain, const InnovationStage& stage,
-                          std::vector<InnovationTrial>& trials) {
-  ModelStage with_observer = stage.model;
-  ParameterSubset all = subset(stage.model.fitted, [](const auto&) { return true; });
+SimulatedEffects simulated_effects(const SearchContext& plain, const ModelStage& model) {
+  ModelStage with_observer = model;
+  ParameterSubset all = subset(model.fitted, [](const auto&) { return true; });
   with_observer.fitted =
       fit(plain.problem.model, plain.problem.data, plain.problem.data.training_mask, all.parameters,
           all.start, simulation_options(plain, InnovationFit::converged));
   std::vector<ScreeningResult> screened =
       screen(plain, with_observer, absent_from(plain, with_observer));
   screened.resize(std::min(screened.size(), kSimulated));
-  std::vector<FitSummary> fits(screened.size());
+  SimulatedEffects result;
+  result.training_rms_without_m = with_observer.fitted.training_rms_m;
+  result.effects.resize(screened.size());
   in_parallel(screened.size(), plain.options.threads, [&](std::size_t i) {
-    fits[i] = refine(plain, screened[i], simulation_options(plain, InnovationFit::quick)).fitted;
+    result.effects[i] = {
+        screened[i].effect,
+        refine(plain, screened[i], simulation_options(plain, InnovationFit::quick)).fitted};
   });
-  std::vector<std::size_t> order(fits.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return fits[a].training_rms_m < fits[b].training_rms_m;
+  return result;
+}
+
+SimulatedEffects simulated_effects(const Round& round) {
+  SimulatedEffects result;
+  result.training_rms_without_m = round.before.fitted.training_rms_m;
+  for (const Candidate& candidate : round.candidates) {
+    if (!candidate.fitted_at_all || candidate.effects.size() > 1) continue;
+    result.effects.push_back({candidate.effects.front(), candidate.fitted});
+  }
+  return result;
+}
+
+void add_simulated_starts(const InnovationStage& stage, SimulatedEffects simulated,
+                          std::vector<InnovationTrial>& trials) {
+  std::vector<SimulatedEffect>& effects = simulated.effects;
+  std::stable_sort(effects.begin(), effects.end(), [](const auto& a, const auto& b) {
+    return a.fitted.training_rms_m < b.fitted.training_rms_m;
   });
-  for (std::size_t k = 0; k < std::min(kSimulatedStarts, order.size()); ++k) {
-    FitSummary& fitted = fits[order[k]];
-    const std::string& effect = screened[order[k]].effect;
-    if (!(fitted.training_rms_m < kWorthSimulating * with_observer.fitted.training_rms_m)) break;
+  effects.resize(std::min(kSimulatedStarts, effects.size()));
+  for (SimulatedEffect& one : effects) {
+    if (!(one.fitted.training_rms_m < kWorthSimulating * simulated.training_rms_without_m)) break;
     auto trial = std::find_if(trials.begin(), trials.end(), [&](const InnovationTrial& known) {
-      return known.candidate.effect == effect;
+      return known.candidate.effect == one.effect;
     });
     if (trial == trials.end()) {
       trials.emplace_back();
       trial = trials.end() - 1;
-      trial->candidate.effect = effect;
-      trial->penalty_nats = penalty_nats(fitted, stage.model.fitted);
+      trial->candidate.effect = one.effect;
+      trial->penalty_nats = penalty_nats(one.fitted, stage.model.fitted);
     }
-    trial->starts.push_back(with_effect(stage.model, effect, std::move(fitted)));
+    trial->starts.push_back(with_effect(stage.model, one.effect, std::move(one.fitted)));
     trial->simulated = true;
   }
 }

@@ -6,6 +6,7 @@
 
 #include "estimator/greybox/disturbance/spectral_lines.h"
 #include "estimator/greybox/selection/innovation_stage.h"
+#include "estimator/greybox/selection/structure_search.h"
 
 namespace estimator::greybox::selection {
 
@@ -33,9 +34,24 @@ struct InnovationTrial {
 
 /// The most promising effects, fitted with the stage's gains.
 [[nodiscard]] std::vector<InnovationTrial> effect_trials(const InnovationStage& stage);
-/// Further starts for the most promising effects of a simulation with the weak observer: the
-/// stage's gains may be those that hide an effect, above all friction that sticks.
-void add_simulated_starts(const SearchContext& plain, const InnovationStage& stage,
+
+/// An effect added to a model, fitted in a simulation with the weak observer.
+struct SimulatedEffect {
+  std::string effect;
+  FitSummary fitted;
+};
+struct SimulatedEffects {
+  double training_rms_without_m = 0.0;
+  std::vector<SimulatedEffect> effects;
+};
+/// The effects that a screening ranks first.
+[[nodiscard]] SimulatedEffects simulated_effects(const SearchContext& plain,
+                                                 const ModelStage& model);
+/// The candidates of a round that has begun with the same model.
+[[nodiscard]] SimulatedEffects simulated_effects(const Round& round);
+/// Further starts for the most promising of them: the stage's gains may be those that hide an
+/// effect, above all friction that sticks.
+void add_simulated_starts(const InnovationStage& stage, SimulatedEffects simulated,
                           std::vector<InnovationTrial>& trials);
 void sort_by_gain(std::vector<InnovationTrial>& trials);
 
