@@ -43,21 +43,22 @@ double simulated_ratio(const Diagnosis& diagnosis, const std::string& effect) {
     const double left_m2 = std::pow(after_m, 2) - std::pow(diagnosis.noise_floor_m, 2);
     return (std::pow(without_m, 2) - std::pow(with_m, 2)) / std::max(left_m2, 0.0);
   };
-  if (const auto without = diagnosis.without_rms_m.find(effect);
-      without != diagnosis.without_rms_m.end()) {
-    return explained_ratio(without->second, diagnosis.rms_after_m, diagnosis.rms_after_m);
-  }
-  for (std::size_t i = 1; i < diagnosis.steps.size(); ++i) {
+  double observed = std::nan("");
+  double free_run = std::nan("");
+  for (std::size_t i = 1; i < diagnosis.steps.size() && std::isnan(observed); ++i) {
     const SelectionStep& with = diagnosis.steps[i];
     const SelectionStep& without = diagnosis.steps[i - 1];
     if (with.added.find(effect) == std::string::npos) continue;
-    const double observed =
+    observed =
         explained_ratio(without.validation_rms_m, with.validation_rms_m, diagnosis.rms_after_m);
-    const double free_run = explained_ratio(without.free_run_rms_m, with.free_run_rms_m,
-                                            diagnosis.steps.back().free_run_rms_m);
-    return std::isnan(free_run) ? observed : std::max(observed, free_run);
+    free_run = explained_ratio(without.free_run_rms_m, with.free_run_rms_m,
+                               diagnosis.steps.back().free_run_rms_m);
   }
-  return std::nan("");
+  if (const auto without = diagnosis.without_rms_m.find(effect);
+      without != diagnosis.without_rms_m.end()) {
+    observed = explained_ratio(without->second, diagnosis.rms_after_m, diagnosis.rms_after_m);
+  }
+  return std::fmax(observed, free_run);  // a NaN gives the other
 }
 
 /// The same by the likelihood, where it decided; otherwise that of simulations.
@@ -99,14 +100,15 @@ std::optional<Doubt> doubt_of(const Diagnosis& diagnosis, const std::string& eff
   if (size == diagnosis.parameters.end()) return {};
   if (size->at_bound) return Doubt::at_bound;
   if (!(std::abs(size->value) > kStandardErrors * size->std_error)) return Doubt::within_error;
-  for (const auto* groups : {&diagnosis.ambiguous, &diagnosis.same_here}) {
-    for (const std::vector<std::string>& group : *groups) {
-      if (std::find(group.begin(), group.end(), effect) != group.end()) return Doubt::rivals;
-    }
+  for (const std::vector<std::string>& group : diagnosis.ambiguous) {
+    if (std::find(group.begin(), group.end(), effect) != group.end()) return Doubt::rivals;
   }
   if (is_matched_elsewhere(diagnosis, effect)) return Doubt::stand_in;
   if (is_beyond_doubt(diagnosis, effect)) return {};
-  if (likely_ratio(diagnosis, effect) < kClearOfRemainder) return Doubt::remainder;
+  if (likely_ratio(diagnosis, effect) < kClearOfRemainder &&
+      !(simulated_ratio(diagnosis, effect) >= kClearOfRemainder)) {
+    return Doubt::remainder;
+  }
   if (shares_the_remainder(diagnosis, effect)) return Doubt::stand_in;
   return {};
 }

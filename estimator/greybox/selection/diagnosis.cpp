@@ -27,9 +27,8 @@ constexpr double kFarFromFloor = 10.0;
 /// linearised models.
 constexpr double kIncredible = 1.5;
 constexpr double kSuspicious_nats = 15.0;
-/// Remaining error over the noise up to which several effects may hide behind the one found. What
-/// lies farther is no effect of the library.
-constexpr double kNearFloor = 5.0;
+/// Share of the motion from which on the error is no disturbance's: the model does not follow.
+constexpr double kLost = 0.5;
 constexpr double kAsClear = 0.9;  ///< ratio of the remainder's explained share to that of the whole
 
 void list_steps(Diagnosis& result) {
@@ -95,6 +94,19 @@ void classify_indistinguishable(const SearchContext& context, const ModelStage& 
         context.cancelled() || (separable && separable(context, models.explanations, group));
     (separates ? result.ambiguous : result.same_here).push_back(std::move(group));
   }
+}
+
+/// RMS of the position about its mean.
+double motion_rms_m(const FitDataset& data) {
+  double square_m2 = 0.0;
+  std::size_t samples = 0;
+  for (const Dataset& record : data.records) {
+    const Eigen::Map<const Eigen::ArrayXd> y_m(record.y_m.data(),
+                                               static_cast<Eigen::Index>(record.size()));
+    square_m2 += (y_m - y_m.mean()).square().sum();
+    samples += record.size();
+  }
+  return std::sqrt(square_m2 / static_cast<double>(samples));
 }
 
 void take_errors(Diagnosis& result) {
@@ -171,7 +183,8 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
   if (!context.cancelled()) result.disturbance = disturbance_of(search, innovations);
   const bool incredible = result.disturbed_floor_m() > kIncredible * result.rms_after_m &&
                           innovations.curve_nats > kSuspicious_nats + innovations.inexact_nats;
-  const bool physics = innovations.physics_missing() || incredible;
+  const bool lost = result.rms_after_m > kLost * motion_rms_m(search.problem.data);
+  const bool physics = innovations.physics_missing() || incredible || lost;
   if (result.floor_assumed) result.noise_floor_m = innovations.final.noise.noise.sensor_m;
   result.curve_nats = innovations.curve_nats;
   result.innovations = static_cast<double>(innovations.final.model.fitted.residual_m.size());
@@ -236,9 +249,7 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
     conclude(context, search, result);
     return;
   }
-  if (start.branch.stage.fitted.validation_rms_m < kNearFloor * search.problem.data.noise_floor_m) {
-    extend_search(search, start);
-  }
+  extend_search(search, start);
   // Prefers the model that leaves less, of equals the likelier.
   const auto leaves_more = [&](const ModelStage& stage) {
     return !is_explained(search, stage) &&

@@ -29,6 +29,10 @@ constexpr double kHelpful = 0.7;
 /// Remaining error over the noise above which alternative starts are tried.
 constexpr double kLost = 2.0;
 constexpr double kSamePath = 0.1;
+/// Remaining error over the noise up to which several effects may hide behind one another. What
+/// lies farther is no effect of the library: further effects are added as long as they help, no
+/// more.
+constexpr double kNearFloor = 5.0;
 /// Largest probability of chance of a gain, unless the gain is large.
 constexpr double kChance = 0.01;
 constexpr double kLargeGain = 0.1;
@@ -252,6 +256,13 @@ StructureSearch abandon_search(const SearchContext& context, const SearchStart& 
 
 void extend_search(const SearchContext& context, SearchStart& start) {
   CrossValidation halves(context);
+  if (start.branch.stage.fitted.validation_rms_m >
+      kNearFloor * context.problem.data.noise_floor_m) {
+    if (start.branch.stalled) return;
+    extend_branch(context, start.branch, false);
+    eliminate_backward(context, halves, start.branch.stage, EliminationPass::intermediate);
+    return;
+  }
   start.branch = search_forward(context, halves, start.first, std::move(start.branch));
   try_alternative_starts(context, halves, start.first, start.branch);
 }
