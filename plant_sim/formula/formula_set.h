@@ -38,11 +38,7 @@ class FormulaSet {
   /// True when the values equal those of the last prepare(), bit for bit.
   [[nodiscard]] bool unchanged() const {
     for (const Effect& effect : effects_) {
-      if (std::memcmp(static_cast<const void*>(effect.values.data()),
-                      static_cast<const void*>(effect.prepared.data()),
-                      effect.values.size() * sizeof(S)) != 0) {
-        return false;
-      }
+      if (!effect.unchanged()) return false;
     }
     return !fresh_;
   }
@@ -52,6 +48,10 @@ class FormulaSet {
   void prepare(bool always) {
     sites_ = 0;
     for (Effect& effect : effects_) {
+      if (!fresh_ && effect.unchanged() && always == always_) {
+        if (effect.active) sites_ |= bit(effect.formula.site);
+        continue;
+      }
       bool neutral = true;
       for (std::size_t i = 0; i < effect.values.size(); ++i) {
         const ParameterInfo& info = effect.formula.parameters[i];
@@ -78,6 +78,7 @@ class FormulaSet {
       }
     }
     fresh_ = false;
+    always_ = always;
   }
 
   /// A bit per site, as the store of effects counts them.
@@ -131,6 +132,13 @@ class FormulaSet {
       prepared = values;
     }
 
+    /// True when the values equal those of the last prepare(), bit for bit.
+    [[nodiscard]] bool unchanged() const {
+      return std::memcmp(static_cast<const void*>(values.data()),
+                         static_cast<const void*>(prepared.data()),
+                         values.size() * sizeof(S)) == 0;
+    }
+
     /// The formula's value within the guard; `none` where it is not finite.
     [[nodiscard]] S result(const S& first, const S& second, const S& none) const {
       constexpr double kFinite = 1e300;
@@ -163,6 +171,7 @@ class FormulaSet {
   std::vector<Effect> effects_;
   unsigned sites_ = 0;
   bool fresh_ = false;
+  bool always_ = false;  ///< of the last prepare()
 };
 
 }  // namespace plant_sim::formula

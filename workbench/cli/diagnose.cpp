@@ -62,6 +62,9 @@ int run(const DiagnosisRequest& request) {
   const int exit_code = Interrupt::exit_code();
   DiagnosisReport report{&prepared, std::move(found.diagnosis), std::move(found.advice)};
   selection::advance_command(prepared.problem.data, report.diagnosis.command_lead_samples);
+  for (const selection::Law& law : report.diagnosis.laws) {
+    prepared.problem.model.declare(law.effect, prepared.model_file);
+  }
   report.interrupted = exit_code != 0 || report.diagnosis.search.interrupted;
   simulate_freely(report);
   write(report, request);

@@ -77,6 +77,26 @@ Json disturbance_of(const selection::Diagnosis& d) {
   return json;
 }
 
+Json laws_of(const selection::Diagnosis& d) {
+  Json laws = Json::array();
+  for (const selection::Law& law : d.laws) {
+    Json parameters = Json::object();
+    for (const selection::ParameterValue& p : d.parameters) {
+      if (p.name.rfind(law.effect.name + ".", 0) != 0) continue;
+      parameters[p.name.substr(law.effect.name.size() + 1)] = {
+          {"value", number_or_null(p.value)}, {"std_error", number_or_null(p.std_error)}};
+    }
+    laws.push_back({{"name", law.effect.name},
+                    {"what", law.effect.what},
+                    {"site", law.effect.site},
+                    {"variables", law.variables},
+                    {"formula", law.effect.formula},
+                    {"parameters", parameters},
+                    {"rms_heldout_m", number_or_null(d.rms_after_m)}});
+  }
+  return laws;
+}
+
 }  // namespace
 
 std::string to_json(const DiagnosisReport& outcome) {
@@ -115,6 +135,7 @@ std::string to_json(const DiagnosisReport& outcome) {
         {{"plant", fit.plant}, {"rms_heldout_m", number_or_null(fit.validation_rms_m)}});
   }
   json["changing"] = changing_of(d);
+  json["laws"] = laws_of(d);
   json["disturbance"] = disturbance_of(d);
   json["floor"] = {
       {"sensor_m", number_or_null(d.noise_floor_m)},

@@ -73,6 +73,21 @@ std::string unexplained_words(const selection::Diagnosis& d) {
          (established.size() > 1 ? " are" : " is") + " missing, but " + rest + ".";
 }
 
+/// "cubic_damping, damping that grows with the cube of the speed: force = ...".
+std::string law_words(const selection::Law& law) {
+  const plant_sim::formula::FormulaSite* site =
+      plant_sim::formula::find_formula_site(law.effect.site);
+  return law.effect.what + ": " + (site == nullptr ? law.effect.site : site->result) + " = " +
+         law.effect.formula;
+}
+
+std::string learned_words(const selection::Diagnosis& d) {
+  std::vector<std::string> laws;
+  for (const selection::Law& law : d.laws) laws.push_back(law_words(law));
+  return "Learned: no effect of the library explains the record, but " +
+         config::schema::joined(laws, "; and ") + ".";
+}
+
 /// "backlash (its size is within its error)".
 std::string possible_words(const selection::PossibleEffect& possible) {
   switch (possible.why) {
@@ -258,6 +273,8 @@ std::string verdict_words(const selection::Diagnosis& d) {
       return "Missing: " + effects_words(d, d.missing) + ".";
     case selection::Verdict::undetermined:
       return undetermined_words(d);
+    case selection::Verdict::learned:
+      return learned_words(d);
     case selection::Verdict::unexplained:
       return unexplained_words(d);
     case selection::Verdict::not_excited:

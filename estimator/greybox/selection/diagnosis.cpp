@@ -12,6 +12,7 @@
 #include "estimator/greybox/selection/excitation.h"
 #include "estimator/greybox/selection/final_parameters.h"
 #include "estimator/greybox/selection/indistinguishable_models.h"
+#include "estimator/greybox/selection/law_search.h"
 #include "estimator/greybox/selection/localisation.h"
 #include "estimator/greybox/selection/long_records.h"
 #include "estimator/greybox/selection/parameter_subset.h"
@@ -29,6 +30,8 @@ constexpr double kIncredible = 1.5;
 constexpr double kSuspicious_nats = 15.0;
 /// Share of the motion from which on the error is no disturbance's: the model does not follow.
 constexpr double kLost = 0.5;
+/// Size of a law over its standard error, from which on it is learned.
+constexpr double kClearOfError = 3.0;
 constexpr double kAsClear = 0.9;  ///< ratio of the remainder's explained share to that of the whole
 
 void list_steps(Diagnosis& result) {
@@ -269,6 +272,39 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
   }
 }
 
+/// The same record explained by laws of the dictionary, where they leave clearly less than the
+/// effects found and each is clear of its error.
+void learn_laws(const SearchContext& context, const ModelStage& first, Diagnosis& result) {
+  const std::optional<LawSearch> found = search_laws(context, first);
+  if (!found) return;
+  Diagnosis learned = result;
+  learned.changing.clear();
+  learned.where.clear();
+  learned.whole.clear();
+  learned.ambiguous.clear();
+  learned.same_here.clear();
+  learned.without_rms_m.clear();
+  conclude(found->context, found->context, first, found->innovations, learned);
+  const bool clear = std::all_of(
+      learned.parameters.begin(), learned.parameters.end(), [&](const ParameterValue& p) {
+        const bool is_size =
+            std::any_of(found->laws.begin(), found->laws.end(), [&](const Law& law) {
+              return p.name == law.effect.name + "." + law.effect.parameters.front().name;
+            });
+        return !is_size || (!p.at_bound && std::abs(p.value) > kClearOfError * p.std_error);
+      });
+  if (!clear || learned.verdict == Verdict::unexplained ||
+      !(learned.rms_after_m < (1.0 - kRivals) * result.rms_after_m)) {
+    return;
+  }
+  learned.verdict = Verdict::learned;
+  learned.laws = found->laws;
+  plant_sim::ModelFile model = context.problem.model;
+  for (const Law& law : found->laws) model.declare(law.effect, "dictionary of laws");
+  learned.better = with_values(model, learned.final);
+  result = std::move(learned);
+}
+
 }  // namespace
 
 const char* to_string(Verdict verdict) {
@@ -279,6 +315,8 @@ const char* to_string(Verdict verdict) {
       return "missing";
     case Verdict::undetermined:
       return "undetermined";
+    case Verdict::learned:
+      return "learned";
     case Verdict::unexplained:
       return "unexplained";
     case Verdict::not_excited:
@@ -291,7 +329,9 @@ std::vector<std::string> Diagnosis::established() const {
   std::vector<std::string> names = missing;
   std::erase_if(names, [&](const std::string& name) {
     return std::any_of(possible.begin(), possible.end(),
-                       [&](const PossibleEffect& one) { return one.effect == name; });
+                       [&](const PossibleEffect& one) { return one.effect == name; }) ||
+           std::any_of(laws.begin(), laws.end(),
+                       [&](const Law& law) { return law.effect.name == name; });
   });
   return names;
 }
@@ -325,7 +365,7 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
       result.command_lead_samples = lead.samples;
     }
   }
-  const ModelStage& first = start.first;
+  const ModelStage first = start.first;
   if (first.fitted.validation_rms_m > kFarFromFloor * result.noise_floor_m) {
     result.checks = check_records(search, first.fitted.validation_rms_m);
   }
@@ -341,6 +381,9 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
     conclude(context, search, result);
   } else {
     weigh_innovations(context, search, std::move(start), result);
+  }
+  if (result.verdict == Verdict::unexplained && !wrong_record && !context.cancelled()) {
+    learn_laws(search, first, result);
   }
   if (result.checks && result.verdict == Verdict::unexplained && !wrong_record) {
     result.plants = fit_other_plants(search);

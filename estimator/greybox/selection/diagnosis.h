@@ -10,6 +10,7 @@
 #include "estimator/greybox/selection/confidence.h"
 #include "estimator/greybox/selection/disturbance_report.h"
 #include "estimator/greybox/selection/excitation.h"
+#include "estimator/greybox/selection/law_dictionary.h"
 #include "estimator/greybox/selection/localisation.h"
 #include "estimator/greybox/selection/record_checks.h"
 #include "estimator/greybox/selection/repeated_motion.h"
@@ -17,7 +18,14 @@
 
 namespace estimator::greybox::selection {
 
-enum class Verdict { nothing_missing, missing, undetermined, unexplained, not_excited };
+enum class Verdict {
+  nothing_missing,
+  missing,
+  undetermined,
+  learned,  ///< no effect of the library explains the records, one or two laws do
+  unexplained,
+  not_excited
+};
 /// "nothing_missing", ...
 [[nodiscard]] const char* to_string(Verdict verdict);
 
@@ -45,7 +53,8 @@ struct ParameterStep {
 
 struct Diagnosis {
   Verdict verdict = Verdict::nothing_missing;
-  std::vector<std::string> missing;                 ///< in the order added
+  std::vector<std::string> missing;                 ///< in the order added, laws with them
+  std::vector<Law> laws;                            ///< Verdict::learned: those of `missing`
   std::vector<PossibleEffect> possible;             ///< those of `missing` that are not established
   std::vector<std::vector<std::string>> ambiguous;  ///< groups of two or three names
   std::vector<std::vector<std::string>>
@@ -87,7 +96,7 @@ struct Diagnosis {
   plant_sim::ModelFile better;  ///< the model file with it
   double runtime_s = 0.0;
 
-  /// `missing` without `possible`.
+  /// `missing` without `possible` and `laws`.
   [[nodiscard]] std::vector<std::string> established() const;
   /// The error of a simulation that sensor and disturbance cause.
   [[nodiscard]] double disturbed_floor_m() const;

@@ -1,0 +1,177 @@
+#include "estimator/greybox/selection/law_dictionary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimator/greybox/selection/rig_scale.h"
+#include "plant_sim/library.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+using plant_sim::formula::FormulaEffect;
+
+/// Force of a law of typical size at the motion's RMS, as a share of the rig's greatest.
+constexpr double kTypicalForce = 0.03;
+constexpr double kTypicalRatio = 0.1;
+/// Largest size of a law over its typical one.
+constexpr double kMost = 1e3;
+constexpr double kMostRatio = 3.0;
+
+/// Three significant digits: a literal in a formula.
+double rounded(double value) {
+  if (!(std::abs(value) > 0.0) || !std::isfinite(value)) return value;
+  const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) - 2.0);
+  return unit * std::round(value / unit);
+}
+
+enum class Sign { positive, both };
+
+FormulaEffect::Parameter size(const std::string& name, double typical, Sign sign,
+                              double most_ratio = kMost) {
+  const double most = most_ratio * typical;
+  return {name, "size", sign == Sign::both ? -most : 0.0, most, typical, 0.0};
+}
+
+class Dictionary {
+ public:
+  Dictionary(const plant_sim::ModelFile& model, const FitDataset& data)
+      : model_(model), rig_(rig_scale(model, data)) {}
+
+  std::vector<Law> laws() {
+    add_forces();
+    add_openings();
+    add_commands();
+    add_leakage();
+    add_readings();
+    return std::move(laws_);
+  }
+
+ private:
+  void add(const char* name, const char* what, const char* site, const std::string& formula,
+           std::vector<FormulaEffect::Parameter> parameters, std::vector<std::string> variables) {
+    const std::vector<std::string>& sites = plant_sim::find_plant(model_.plant)->sites;
+    const bool known = std::any_of(model_.formula_effects.begin(), model_.formula_effects.end(),
+                                   [&](const FormulaEffect& own) { return own.name == name; });
+    if (known || std::find(sites.begin(), sites.end(), site) == sites.end()) return;
+    laws_.push_back({{name, site, formula, what, std::move(parameters)}, std::move(variables)});
+  }
+
+  /// A position about which a law turns.
+  [[nodiscard]] FormulaEffect::Parameter rest() const {
+    const double reach_m = 10.0 * rig_.length_m;
+    return {"rest_m",
+            "position at which it is zero",
+            rig_.centre_m - reach_m,
+            rig_.centre_m + reach_m,
+            rounded(rig_.centre_m + 0.1 * rig_.length_m),
+            rig_.centre_m};
+  }
+
+  void add_forces() {
+    const double force_N = kTypicalForce * rig_.force_N;
+    const double v = rig_.speed_mps;
+    const double y = rig_.length_m;
+    add("cubic_damping", "damping that grows with the cube of the speed", "force",
+        "coefficient_N_s3_per_m3 * v_mps^3",
+        {size("coefficient_N_s3_per_m3", force_N / std::pow(v, 3), Sign::positive)}, {"v"});
+    add("root_damping", "damping with the root of the speed", "force",
+        fmt::format("force_N * sign(v_mps) * sqrt(abs(v_mps) / {})", rounded(v)),
+        {size("force_N", force_N, Sign::positive)}, {"v"});
+    add("direction_damping", "damping that differs by direction", "force",
+        "coefficient_N_s_per_m * abs(v_mps)",
+        {size("coefficient_N_s_per_m", force_N / v, Sign::both)}, {"v", "direction"});
+    add("extending_damping", "quadratic damping when extending: an orifice with a check valve",
+        "force", "coefficient_N_s2_per_m2 * max(v_mps, 0)^2",
+        {size("coefficient_N_s2_per_m2", force_N / (v * v), Sign::positive)}, {"v", "direction"});
+    add("retracting_damping", "quadratic damping when retracting: an orifice with a check valve",
+        "force", "-coefficient_N_s2_per_m2 * min(v_mps, 0)^2",
+        {size("coefficient_N_s2_per_m2", force_N / (v * v), Sign::positive)}, {"v", "direction"});
+    add("position_damping", "damping that grows away from a position", "force",
+        "coefficient_N_s_per_m3 * v_mps * (y_m - rest_m)^2",
+        {size("coefficient_N_s_per_m3", force_N / (v * y * y), Sign::positive), rest()},
+        {"y", "v"});
+    add("sloping_damping", "damping that changes along the stroke", "force",
+        fmt::format("coefficient_N_s_per_m2 * v_mps * (y_m - {})", rounded(rig_.centre_m)),
+        {size("coefficient_N_s_per_m2", force_N / (v * y), Sign::both)}, {"y", "v"});
+    add("stiffening_spring", "spring that stiffens with the cube of its deflection", "force",
+        "stiffness_N_per_m3 * (y_m - rest_m)^3",
+        {size("stiffness_N_per_m3", force_N / std::pow(y, 3), Sign::positive), rest()}, {"y"});
+    add("square_spring", "spring that stiffens with the square of its deflection", "force",
+        "stiffness_N_per_m2 * (y_m - rest_m) * abs(y_m - rest_m)",
+        {size("stiffness_N_per_m2", force_N / (y * y), Sign::positive), rest()}, {"y"});
+    add("upper_stop", "spring that begins at a position, a stop or bumper", "force",
+        "stiffness_N_per_m * max(y_m - rest_m, 0)",
+        {size("stiffness_N_per_m", force_N / y, Sign::positive), rest()}, {"y"});
+    add("lower_stop", "spring that ends at a position, a stop or bumper", "force",
+        "stiffness_N_per_m * min(y_m - rest_m, 0)",
+        {size("stiffness_N_per_m", force_N / y, Sign::positive), rest()}, {"y"});
+    add("pendulum", "weight on an arm, the position an arc of it", "force",
+        fmt::format("force_N * sin((y_m - rest_m) / {})", rounded(2.0 * y)),
+        {size("force_N", force_N, Sign::both), rest()}, {"y"});
+  }
+
+  void add_openings() {
+    plant_sim::ModelFile model = model_;
+    const double* const valve = model.value("valve_gain_m_per_V");
+    const double* const servo = model.value("gain_mps_per_V");
+    if (valve == nullptr && servo == nullptr) return;
+    const bool is_speed = valve == nullptr;
+    const double full = rounded((is_speed ? *servo : *valve) * rig_.most_command_V);
+    const std::string lap = is_speed ? "lap_mps" : "lap_m";
+    add("gain_curvature", "gain that changes with the square of the opening", "opening",
+        fmt::format("x_m * (1 + curvature_ratio * (x_m / {})^2)", full),
+        {size("curvature_ratio", kTypicalRatio, Sign::both, kMostRatio / kTypicalRatio)}, {"u"});
+    add("gain_slope", "gain that changes with the opening", "opening",
+        fmt::format("x_m * (1 + slope_ratio * abs(x_m) / {})", full),
+        {size("slope_ratio", kTypicalRatio, Sign::both, kMostRatio / kTypicalRatio)}, {"u"});
+    add("gain_lopsided", "gain that changes with the opening, by its sign", "opening",
+        fmt::format("x_m * (1 + slope_ratio * x_m / {})", full),
+        {size("slope_ratio", kTypicalRatio, Sign::both, kMostRatio / kTypicalRatio)},
+        {"u", "direction"});
+    add("underlap", "twice the gain about the null: an underlapped spool", "opening",
+        fmt::format("x_m + sign(x_m) * min(abs(x_m), {})", lap),
+        {size(lap, kTypicalRatio * full, Sign::positive, 1.0 / kTypicalRatio)}, {"u"});
+  }
+
+  void add_commands() {
+    if (!laws_.empty() && laws_.back().effect.site == "opening") return;
+    const double full_V = rounded(rig_.most_command_V);
+    add("gain_curvature", "gain that changes with the square of the command", "command",
+        fmt::format("u_V * (1 + curvature_ratio * (u_V / {})^2)", full_V),
+        {size("curvature_ratio", kTypicalRatio, Sign::both, kMostRatio / kTypicalRatio)}, {"u"});
+    add("gain_slope", "gain that changes with the command", "command",
+        fmt::format("u_V * (1 + slope_ratio * abs(u_V) / {})", full_V),
+        {size("slope_ratio", kTypicalRatio, Sign::both, kMostRatio / kTypicalRatio)}, {"u"});
+  }
+
+  void add_leakage() {
+    const double root_Pa = std::sqrt(rig_.pressure_Pa);
+    add("turbulent_leakage", "leakage with the root of the pressure difference", "leakage",
+        "coefficient_m3ps_per_rootPa * sign(in_Pa - out_Pa) * sqrt(abs(in_Pa - out_Pa))",
+        {size("coefficient_m3ps_per_rootPa",
+              kTypicalForce * rig_.area_m2 * rig_.speed_mps / root_Pa, Sign::positive)},
+        {"pressure"});
+  }
+
+  void add_readings() {
+    const double y = rig_.length_m;
+    add("curved_reading", "position sensor whose scale changes along the stroke", "sensor",
+        fmt::format("y_m + curvature_per_m * (y_m - {})^2", rounded(rig_.centre_m)),
+        {size("curvature_per_m", 0.01 / y, Sign::both, 30.0)}, {"y"});
+  }
+
+  const plant_sim::ModelFile& model_;
+  RigScale rig_;
+  std::vector<Law> laws_;
+};
+
+}  // namespace
+
+std::vector<Law> law_dictionary(const plant_sim::ModelFile& model, const FitDataset& data) {
+  return Dictionary(model, data).laws();
+}
+
+}  // namespace estimator::greybox::selection

@@ -1,0 +1,24 @@
+// Laws that the library has no name for, as formulas at a site: candidates where no effect of the
+// library explains a record. Each has at most two parameters, of which the first is its size.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "estimator/greybox/fit_dataset.h"
+#include "plant_sim/formula/formula_effect.h"
+#include "plant_sim/model_file.h"
+
+namespace estimator::greybox::selection {
+
+struct Law {
+  plant_sim::formula::FormulaEffect effect;
+  std::vector<std::string> variables;  ///< "y", "v", "u", "speed", "direction", "pressure"
+};
+
+/// Those that the plant has a site for, their sizes scaled to the rig. A law whose name the model
+/// has given to a formula of its own is left out.
+[[nodiscard]] std::vector<Law> law_dictionary(const plant_sim::ModelFile& model,
+                                              const FitDataset& data);
+
+}  // namespace estimator::greybox::selection

@@ -1,0 +1,40 @@
+#include "estimator/greybox/selection/law_search.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace estimator::greybox::selection {
+namespace {
+
+constexpr std::size_t kMostLaws = 2;
+
+SearchContext with_laws(const SearchContext& context, const std::vector<Law>& laws) {
+  SearchContext result = context;
+  DiagnosisProblem& problem = result.problem;
+  for (const Law& law : laws) problem.model.declare(law.effect, "dictionary of laws");
+  problem.candidate_effects = absent_effects(problem.model);
+  std::erase_if(problem.candidate_effects, [&](const plant_sim::EffectInfo& effect) {
+    return std::none_of(laws.begin(), laws.end(),
+                        [&](const Law& law) { return law.effect.name == effect.name; });
+  });
+  return result;
+}
+
+}  // namespace
+
+std::optional<LawSearch> search_laws(const SearchContext& context, const ModelStage& first) {
+  std::vector<Law> dictionary = law_dictionary(context.problem.model, context.problem.data);
+  if (dictionary.empty() || context.cancelled()) return {};
+  LawSearch search{with_laws(context, dictionary), first, {}, {}};
+  search.innovations = search_innovations(search.context, first, {});
+  const InnovationSearch& found = search.innovations;
+  const std::vector<std::string>& added = found.final.model.added;
+  if (added.empty() || added.size() > kMostLaws || found.physics_missing()) return {};
+  for (const std::string& name : added) {
+    search.laws.push_back(*std::find_if(dictionary.begin(), dictionary.end(),
+                                        [&](const Law& law) { return law.effect.name == name; }));
+  }
+  return search;
+}
+
+}  // namespace estimator::greybox::selection
