@@ -19,18 +19,18 @@ constexpr std::int64_t kDetectorTimeout_ns = 2'000'000'000;
 constexpr int kRequestsPerCall = 8;
 
 /// Names the command that leads out of a state which does not allow the one given.
-std::string hint(control::State state) {
+std::string hint(control::ArmingState state) {
   std::string prefix = std::string("not possible in state ") + control::to_string(state);
   switch (state) {
-    case control::State::disarmed:
+    case control::ArmingState::disarmed:
       return prefix + ": arm first";
-    case control::State::armed:
+    case control::ArmingState::armed:
       return prefix + ": start or disarm";
-    case control::State::run:
+    case control::ArmingState::run:
       return prefix + ": stop first";
-    case control::State::latched:
+    case control::ArmingState::latched:
       return prefix + ": reset first";
-    case control::State::monitor:
+    case control::ArmingState::monitor:
       break;
   }
   return prefix;
@@ -279,7 +279,7 @@ io::ControlStatus ControlRequestHandler::status() const {
   status.holding = stats.holding.load(std::memory_order_relaxed);
   status.ramping = stats.ramping.load(std::memory_order_relaxed);
   const std::size_t tripped = stats.trip_guard.load(std::memory_order_relaxed);
-  if (status.state == control::State::latched && tripped < identity_.guards.size()) {
+  if (status.state == control::ArmingState::latched && tripped < identity_.guards.size()) {
     status.latched_by = identity_.guards[tripped].id;
   }
   status.obstacle = obstacle();

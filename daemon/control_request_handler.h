@@ -71,7 +71,7 @@ class ControlRequestHandler {
   void add_rods(io::ControlStatus& status) const;
   /// Acknowledging a rod sensor's alarm readmits the sensor once its readings are right.
   void readmit_rods();
-  [[nodiscard]] control::State state() const noexcept {
+  [[nodiscard]] control::ArmingState state() const noexcept {
     return parts_.stats.state.load(std::memory_order_relaxed);
   }
 

@@ -10,7 +10,7 @@
 namespace config::record {
 namespace {
 
-struct Unit {
+struct ColumnUnit {
   std::string_view suffix;
   std::string_view si;
   double factor;
@@ -19,20 +19,20 @@ struct Unit {
 constexpr double kPsi_Pa = 6894.757293168361;
 
 constexpr std::array kUnits{
-    Unit{"s", "s", 1.0},        Unit{"ms", "s", 1e-3},     Unit{"us", "s", 1e-6},
-    Unit{"V", "V", 1.0},        Unit{"mV", "V", 1e-3},     Unit{"m", "m", 1.0},
-    Unit{"cm", "m", 1e-2},      Unit{"mm", "m", 1e-3},     Unit{"um", "m", 1e-6},
-    Unit{"mps", "mps", 1.0},    Unit{"mmps", "mps", 1e-3}, Unit{"Pa", "Pa", 1.0},
-    Unit{"kPa", "Pa", 1e3},     Unit{"MPa", "Pa", 1e6},    Unit{"bar", "Pa", 1e5},
-    Unit{"psi", "Pa", kPsi_Pa}, Unit{"N", "N", 1.0},       Unit{"kN", "N", 1e3},
+    ColumnUnit{"s", "s", 1.0},        ColumnUnit{"ms", "s", 1e-3},     ColumnUnit{"us", "s", 1e-6},
+    ColumnUnit{"V", "V", 1.0},        ColumnUnit{"mV", "V", 1e-3},     ColumnUnit{"m", "m", 1.0},
+    ColumnUnit{"cm", "m", 1e-2},      ColumnUnit{"mm", "m", 1e-3},     ColumnUnit{"um", "m", 1e-6},
+    ColumnUnit{"mps", "mps", 1.0},    ColumnUnit{"mmps", "mps", 1e-3}, ColumnUnit{"Pa", "Pa", 1.0},
+    ColumnUnit{"kPa", "Pa", 1e3},     ColumnUnit{"MPa", "Pa", 1e6},    ColumnUnit{"bar", "Pa", 1e5},
+    ColumnUnit{"psi", "Pa", kPsi_Pa}, ColumnUnit{"N", "N", 1.0},       ColumnUnit{"kN", "N", 1e3},
 };
 
 }  // namespace
 
-Column parse_column(std::string_view name) {
+RecordColumn parse_column(std::string_view name) {
   const std::size_t underscore = name.rfind('_');
   if (underscore != std::string_view::npos && underscore > 0) {
-    for (const Unit& unit : kUnits) {
+    for (const ColumnUnit& unit : kUnits) {
       if (name.substr(underscore + 1) == unit.suffix) {
         const std::string stem(name.substr(0, underscore));
         return {stem, std::string(unit.si), stem + "_" + std::string(unit.si), unit.factor};
@@ -59,14 +59,14 @@ constexpr std::array kMain = {
     MainColumn{{"position", "y_m, y_mm"}, "m", "y_m, y_mm, y_um", &Record::y_m},
 };
 
-const MainColumn* main_of(const Column& column) {
+const MainColumn* main_of(const RecordColumn& column) {
   if (is_time(column)) return kMain.data();
   if (column.stem == "u") return &kMain[1];
   if (column.stem == "y") return &kMain[2];
   return nullptr;
 }
 
-void refuse_clash(const std::vector<Column>& columns, const std::vector<std::string>& names,
+void refuse_clash(const std::vector<RecordColumn>& columns, const std::vector<std::string>& names,
                   std::size_t i, const std::string& where) {
   for (std::size_t j = 0; j < i; ++j) {
     const std::string both = names[j] + " and " + names[i];
@@ -85,20 +85,20 @@ void refuse_clash(const std::vector<Column>& columns, const std::vector<std::str
 
 }  // namespace
 
-bool is_time(const Column& column) { return column.stem == "t" || column.stem == "time"; }
+bool is_time(const RecordColumn& column) { return column.stem == "t" || column.stem == "time"; }
 
-bool is_main(const Column& column) { return main_of(column) != nullptr; }
+bool is_main(const RecordColumn& column) { return main_of(column) != nullptr; }
 
 std::vector<Target> lay_out(const std::vector<std::string>& names, const std::string& where,
                             Record& record) {
-  std::vector<Column> columns;
+  std::vector<RecordColumn> columns;
   columns.reserve(names.size());
   for (const std::string& name : names) columns.push_back(parse_column(name));
   std::vector<Target> targets;
   record.further.reserve(columns.size());
   for (std::size_t i = 0; i < columns.size(); ++i) {
     refuse_clash(columns, names, i, where);
-    const Column& column = columns[i];
+    const RecordColumn& column = columns[i];
     if (const MainColumn* main = main_of(column); main == nullptr) {
       record.further.emplace_back(column.si_name, std::vector<double>{});
       targets.push_back({names[i], column.factor, &record.further.back().second, true});

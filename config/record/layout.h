@@ -11,14 +11,14 @@
 
 namespace config::record {
 
-struct Column {
+struct RecordColumn {
   std::string stem;     ///< "y" of "y_mm"
   std::string si_unit;  ///< "m" of "y_mm"; "" when the suffix is no known unit
   std::string si_name;  ///< "y_m"; the whole name when the suffix is no known unit
   double factor = 1.0;  ///< SI value = factor * value in the file
 };
 
-[[nodiscard]] Column parse_column(std::string_view name);
+[[nodiscard]] RecordColumn parse_column(std::string_view name);
 
 /// One column on its way in.
 struct Target {
@@ -28,9 +28,9 @@ struct Target {
   bool may_be_missing = false;            ///< NaN stands for a missing value
 };
 
-[[nodiscard]] bool is_time(const Column& column);
+[[nodiscard]] bool is_time(const RecordColumn& column);
 /// Time, command or position, whatever the unit.
-[[nodiscard]] bool is_main(const Column& column);
+[[nodiscard]] bool is_main(const RecordColumn& column);
 
 /// Time, command and position by their stem, anything else as a further column of `record`, which
 /// must not be moved afterwards. Throws schema::DataError at `where` for a name that is

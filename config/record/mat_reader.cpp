@@ -12,7 +12,7 @@ namespace config::record {
 namespace {
 
 using schema::bad_data;
-using Variables = std::vector<MatVariable>;
+using MatVariables = std::vector<MatVariable>;
 
 constexpr const char* kVectors = "vectors of real numbers";
 
@@ -22,7 +22,7 @@ std::string printable(std::string_view name) {
 }
 
 /// "t_s, u_V, ..."; at most a dozen.
-std::string names_of(const Variables& variables) {
+std::string names_of(const MatVariables& variables) {
   constexpr std::size_t kMost = 12;
   std::string names;
   for (std::size_t i = 0; i < std::min(kMost, variables.size()); ++i) {
@@ -32,14 +32,14 @@ std::string names_of(const Variables& variables) {
   return names.empty() ? "no variables" : names;
 }
 
-bool has_time(const Variables& variables) {
+bool has_time(const MatVariables& variables) {
   return std::any_of(variables.begin(), variables.end(), [](const MatVariable& variable) {
     return is_time(parse_column(variable.name));
   });
 }
 
 /// The variables of the file, or the fields of the one structure that has a time.
-const Variables& scope_of(const Variables& variables, const std::string& name) {
+const MatVariables& scope_of(const MatVariables& variables, const std::string& name) {
   if (has_time(variables)) return variables;
   const MatVariable* found = nullptr;
   for (const MatVariable& variable : variables) {
@@ -71,7 +71,7 @@ class MatReader {
   }
 
   Record read() {
-    const Variables& scope = scope_of(variables_, name_);
+    const MatVariables& scope = scope_of(variables_, name_);
     choose(scope);
     std::vector<std::string> names;
     for (const MatVariable* variable : chosen_) names.push_back(printable(variable->name));
@@ -94,7 +94,7 @@ class MatReader {
 
  private:
   /// The variables that become columns: time, command and position must.
-  void choose(const Variables& scope) {
+  void choose(const MatVariables& scope) {
     const MatVariable* time = nullptr;
     for (const MatVariable& variable : scope) {
       if (time == nullptr && is_time(parse_column(variable.name))) time = &variable;
@@ -137,10 +137,10 @@ class MatReader {
   }
 
   const std::string& name_;
-  const Variables variables_;
+  const MatVariables variables_;
   Record record_;
   std::vector<const MatVariable*> chosen_;
-  Variables left_out_;  ///< names alone
+  MatVariables left_out_;  ///< names alone
 };
 
 }  // namespace

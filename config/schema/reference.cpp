@@ -51,7 +51,7 @@ std::string cell(std::string text) {
   return text;
 }
 
-struct Row {
+struct ListedKey {
   std::string table;  ///< dotted path
   std::string key;    ///< empty: the table itself
   std::string type;
@@ -59,10 +59,10 @@ struct Row {
   std::string otherwise;  ///< its default
   std::string what;
 
-  auto operator<=>(const Row&) const = default;  // NOLINT(modernize-use-nullptr)
+  auto operator<=>(const ListedKey&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
-struct Table {
+struct ListedTable {
   std::string path;
   std::string heading;
   std::string what;
@@ -77,15 +77,15 @@ using Assignments = std::map<std::string, std::string>;  ///< of choices, by dot
 
 /// Tables and rows listed by one visit, with some choices made otherwise than by default.
 struct Listing {
-  std::vector<Table> tables;
-  std::vector<Row> rows;
+  std::vector<ListedTable> tables;
+  std::vector<ListedKey> rows;
   std::vector<std::pair<std::string, Choice>> choices;
 };
 
-class Collector final : public Visitor {
+class ListingVisitor final : public Visitor {
  public:
-  Collector(Listing& listing, const Assignments& assignments,
-            const std::vector<Alternatives>& texts, std::string path)
+  ListingVisitor(Listing& listing, const Assignments& assignments,
+                 const std::vector<Alternatives>& texts, std::string path)
       : listing_(listing), assignments_(assignments), texts_(texts), path_(std::move(path)) {}
 
   void boolean(Key key, bool& value) override { add(key, "boolean", "", value ? "true" : "false"); }
@@ -151,7 +151,7 @@ class Collector final : public Visitor {
   void nested(Key key, const std::string& open, const std::string& close, const Body& body) {
     listing_.rows.push_back({below(key), "", "", "", "", ""});
     listing_.tables.push_back({below(key), open + below(key) + close, std::string(key.what)});
-    Collector inner(listing_, assignments_, texts_, below(key));
+    ListingVisitor inner(listing_, assignments_, texts_, below(key));
     body(inner);
   }
 
@@ -161,9 +161,9 @@ class Collector final : public Visitor {
   std::string path_;
 };
 
-class Reference {
+class ConfigurationReference {
  public:
-  Reference(const Visitor::Body& visit_default, const std::vector<Alternatives>& texts)
+  ConfigurationReference(const Visitor::Body& visit_default, const std::vector<Alternatives>& texts)
       : visit_default_(visit_default), texts_(texts) {
     Assignments none;
     explore(none);
@@ -171,10 +171,10 @@ class Reference {
 
   [[nodiscard]] std::string markdown(const std::string& hashes) const {
     std::string text;
-    for (const Table& table : tables_) {
-      std::vector<const Row*> rows;
-      const Row* itself = nullptr;
-      for (const Row& row : rows_) {
+    for (const ListedTable& table : tables_) {
+      std::vector<const ListedKey*> rows;
+      const ListedKey* itself = nullptr;
+      for (const ListedKey& row : rows_) {
         if (row.table != table.path) continue;
         if (row.key.empty()) {
           itself = &row;
@@ -193,7 +193,7 @@ class Reference {
         text += intro + ".\n\n";
       }
       text += "| key | type, unit | allowed | default | meaning |\n|---|---|---|---|---|\n";
-      for (const Row* row : rows) {
+      for (const ListedKey* row : rows) {
         const std::string when = condition(*row, itself);
         const std::string meaning =
             row->what + (when.empty() ? "" : (row->what.empty() ? "" : "; ") + ("with " + when));
@@ -208,16 +208,16 @@ class Reference {
   [[nodiscard]] Listing list(const Assignments& assignments) const {
     Listing listing;
     listing.tables.push_back({"", "", ""});
-    Collector collector(listing, assignments, texts_, "");
+    ListingVisitor collector(listing, assignments, texts_, "");
     visit_default_(collector);
     return listing;
   }
 
   /// Inserts what is new behind what stands before it in `listing`, and behind alternatives to it.
   void merge(const Listing& listing) {
-    const std::set<Row> listed(listing.rows.begin(), listing.rows.end());
+    const std::set<ListedKey> listed(listing.rows.begin(), listing.rows.end());
     std::size_t at = 0;
-    for (const Row& row : listing.rows) {
+    for (const ListedKey& row : listing.rows) {
       const auto known = std::find(rows_.begin(), rows_.end(), row);
       if (known != rows_.end()) {
         at = static_cast<std::size_t>(known - rows_.begin()) + 1;
@@ -228,9 +228,10 @@ class Reference {
       rows_.insert(rows_.begin() + static_cast<std::ptrdiff_t>(at++), row);
     }
     at = 0;
-    for (const Table& table : listing.tables) {
-      const auto known = std::find_if(tables_.begin(), tables_.end(),
-                                      [&](const Table& old) { return old.path == table.path; });
+    for (const ListedTable& table : listing.tables) {
+      const auto known = std::find_if(tables_.begin(), tables_.end(), [&](const ListedTable& old) {
+        return old.path == table.path;
+      });
       if (known != tables_.end()) {
         at = static_cast<std::size_t>(known - tables_.begin()) + 1;
       } else {
@@ -244,13 +245,13 @@ class Reference {
     merge(base);
     for (const auto& [path, choice] : base.choices) {
       if (!explored_.insert(path).second) continue;
-      std::map<Row, std::vector<std::string>> present;
+      std::map<ListedKey, std::vector<std::string>> present;
       for (const std::string& value : choice.values) {
         Assignments other = assignments;
         other[path] = value;
         const Listing listing = value == choice.taken ? base : list(other);
         merge(listing);
-        for (const Row& row : std::set<Row>(listing.rows.begin(), listing.rows.end())) {
+        for (const ListedKey& row : std::set<ListedKey>(listing.rows.begin(), listing.rows.end())) {
           present[row].push_back(value);
         }
       }
@@ -275,7 +276,7 @@ class Reference {
 
   /// "`plant` = "velocity_servo"", "" for a key that is always read; what its table says of the
   /// same choice is left out.
-  [[nodiscard]] std::string condition(const Row& row, const Row* table) const {
+  [[nodiscard]] std::string condition(const ListedKey& row, const ListedKey* table) const {
     const auto found = conditions_.find(row);
     if (found == conditions_.end()) return "";
     const auto shared = table == nullptr ? conditions_.end() : conditions_.find(*table);
@@ -314,17 +315,17 @@ class Reference {
 
   const Visitor::Body& visit_default_;
   const std::vector<Alternatives>& texts_;
-  std::vector<Table> tables_;
-  std::vector<Row> rows_;
+  std::vector<ListedTable> tables_;
+  std::vector<ListedKey> rows_;
   std::set<std::string> explored_;
-  std::map<Row, std::vector<Condition>> conditions_;
+  std::map<ListedKey, std::vector<Condition>> conditions_;
 };
 
 }  // namespace
 
 std::string print_reference(const Visitor::Body& visit_default, int level,
                             const std::vector<Alternatives>& texts) {
-  return Reference(visit_default, texts)
+  return ConfigurationReference(visit_default, texts)
       .markdown(std::string(static_cast<std::size_t>(level), '#'));
 }
 

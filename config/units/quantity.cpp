@@ -52,7 +52,7 @@ std::string unit_of(std::string_view name) {
 
 namespace {
 
-struct Unit {
+struct PrintedUnit {
   const char* si;
   const char* unit;
   double in_si;  ///< one of the unit
@@ -65,31 +65,31 @@ constexpr double kRoundsUp = 0.9995;  // in three digits
 
 /// Units of one SI unit are sorted by size, largest first.
 constexpr std::array kUnits{
-    Unit{"m", "m", 1.0, 1.0},
-    Unit{"m", "mm", 1e-3, 1e-3},
-    Unit{"m", "um", 1e-6, 0.0},
-    Unit{"m/s", "m/s", 1.0, 1.0},
-    Unit{"m/s", "mm/s", 1e-3, 1e-4},
-    Unit{"m/s", "um/s", 1e-6, 0.0},
-    Unit{"m/s/V", "mm/s/V", 1e-3, 0.0},
-    Unit{"m/V", "mm/V", 1e-3, 1e-3},
-    Unit{"m/V", "um/V", 1e-6, 0.0},
-    Unit{"s", "s", 1.0, 1.0},
-    Unit{"s", "ms", 1e-3, 0.0},
-    Unit{"V", "V", 1.0, 0.1},
-    Unit{"V", "mV", 1e-3, 0.0},
-    Unit{"Pa", "bar", kBar_Pa, 1e4},
-    Unit{"Pa", "Pa", 1.0, 0.0},
-    Unit{"N", "kN", 1e3, 1e4},
-    Unit{"N", "N", 1.0, 0.0},
-    Unit{"N/m", "N/mm", 1e3, 1e4},
-    Unit{"N/m", "N/m", 1.0, 0.0},
-    Unit{"m3/s", "L/min", kLitrePerMinute_m3ps, 0.0},
-    Unit{"m3/s/Pa", "mL/min/bar", 1e-3 * kLitrePerMinute_m3ps / kBar_Pa, 0.0},
-    Unit{"Pa/(m3/s)", "bar/(L/min)", kBar_Pa / kLitrePerMinute_m3ps, 0.0},
-    Unit{"m3", "cm3", 1e-6, 0.0},
-    Unit{"rad", "deg", 3.14159265358979323846 / 180.0, 0.0},
-    Unit{"ratio", "%", 0.01, 0.0},
+    PrintedUnit{"m", "m", 1.0, 1.0},
+    PrintedUnit{"m", "mm", 1e-3, 1e-3},
+    PrintedUnit{"m", "um", 1e-6, 0.0},
+    PrintedUnit{"m/s", "m/s", 1.0, 1.0},
+    PrintedUnit{"m/s", "mm/s", 1e-3, 1e-4},
+    PrintedUnit{"m/s", "um/s", 1e-6, 0.0},
+    PrintedUnit{"m/s/V", "mm/s/V", 1e-3, 0.0},
+    PrintedUnit{"m/V", "mm/V", 1e-3, 1e-3},
+    PrintedUnit{"m/V", "um/V", 1e-6, 0.0},
+    PrintedUnit{"s", "s", 1.0, 1.0},
+    PrintedUnit{"s", "ms", 1e-3, 0.0},
+    PrintedUnit{"V", "V", 1.0, 0.1},
+    PrintedUnit{"V", "mV", 1e-3, 0.0},
+    PrintedUnit{"Pa", "bar", kBar_Pa, 1e4},
+    PrintedUnit{"Pa", "Pa", 1.0, 0.0},
+    PrintedUnit{"N", "kN", 1e3, 1e4},
+    PrintedUnit{"N", "N", 1.0, 0.0},
+    PrintedUnit{"N/m", "N/mm", 1e3, 1e4},
+    PrintedUnit{"N/m", "N/m", 1.0, 0.0},
+    PrintedUnit{"m3/s", "L/min", kLitrePerMinute_m3ps, 0.0},
+    PrintedUnit{"m3/s/Pa", "mL/min/bar", 1e-3 * kLitrePerMinute_m3ps / kBar_Pa, 0.0},
+    PrintedUnit{"Pa/(m3/s)", "bar/(L/min)", kBar_Pa / kLitrePerMinute_m3ps, 0.0},
+    PrintedUnit{"m3", "cm3", 1e-6, 0.0},
+    PrintedUnit{"rad", "deg", 3.14159265358979323846 / 180.0, 0.0},
+    PrintedUnit{"ratio", "%", 0.01, 0.0},
 };
 
 bool ends_with(std::string_view text, std::string_view ending) {
@@ -100,8 +100,8 @@ std::string si_unit(std::string_view name) {
   return ends_with(name, "_ratio") ? "ratio" : unit_of(name);
 }
 
-Unit unit_for(const std::string& si, double size) {
-  for (const Unit& unit : kUnits) {
+PrintedUnit unit_for(const std::string& si, double size) {
+  for (const PrintedUnit& unit : kUnits) {
     if (si == unit.si && size >= kRoundsUp * unit.from) return unit;
   }
   return {si.c_str(), si.c_str(), 1.0, 0.0};
@@ -142,7 +142,7 @@ Quantity quantity(std::string_view name, double value, double std_error, double 
   const std::string si = si_unit(name);
   const double size =
       std::max(std::abs(value), std::isfinite(reference) ? std::abs(reference) : 0.0);
-  const Unit unit = unit_for(si, size);
+  const PrintedUnit unit = unit_for(si, size);
   const double shown = value / unit.in_si;
   const double error = std_error / unit.in_si;
   if (!(error > 0.0) || std::isinf(error)) return {three_digits(shown), "", unit.unit};

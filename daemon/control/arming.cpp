@@ -4,17 +4,22 @@ namespace monitor::control {
 namespace {
 
 struct Transition {
-  State from;
+  ArmingState from;
   Event event;
-  State to;
+  ArmingState to;
 };
 
 constexpr Transition kTransitions[] = {
-    {State::disarmed, Event::arm, State::armed},    {State::armed, Event::start, State::run},
-    {State::armed, Event::disarm, State::disarmed}, {State::run, Event::stop, State::armed},
-    {State::run, Event::disarm, State::disarmed},   {State::latched, Event::reset, State::disarmed},
-    {State::disarmed, Event::trip, State::latched}, {State::armed, Event::trip, State::latched},
-    {State::run, Event::trip, State::latched},      {State::latched, Event::trip, State::latched},
+    {ArmingState::disarmed, Event::arm, ArmingState::armed},
+    {ArmingState::armed, Event::start, ArmingState::run},
+    {ArmingState::armed, Event::disarm, ArmingState::disarmed},
+    {ArmingState::run, Event::stop, ArmingState::armed},
+    {ArmingState::run, Event::disarm, ArmingState::disarmed},
+    {ArmingState::latched, Event::reset, ArmingState::disarmed},
+    {ArmingState::disarmed, Event::trip, ArmingState::latched},
+    {ArmingState::armed, Event::trip, ArmingState::latched},
+    {ArmingState::run, Event::trip, ArmingState::latched},
+    {ArmingState::latched, Event::trip, ArmingState::latched},
 };
 
 }  // namespace

@@ -13,20 +13,20 @@
 
 namespace monitor::control {
 
-enum class State : std::uint8_t { monitor, disarmed, armed, run, latched };
+enum class ArmingState : std::uint8_t { monitor, disarmed, armed, run, latched };
 enum class Event : std::uint8_t { arm, disarm, start, stop, reset, trip };
 
 class Arming {
  public:
   explicit Arming(bool monitor_only) noexcept
-      : state_(monitor_only ? State::monitor : State::disarmed) {}
+      : state_(monitor_only ? ArmingState::monitor : ArmingState::disarmed) {}
 
-  [[nodiscard]] State state() const noexcept { return state_; }
+  [[nodiscard]] ArmingState state() const noexcept { return state_; }
   /// Returns whether the event was allowed in the current state.
   bool apply(Event event) noexcept;
 
  private:
-  State state_;
+  ArmingState state_;
 };
 
 }  // namespace monitor::control

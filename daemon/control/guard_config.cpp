@@ -7,7 +7,7 @@
 namespace monitor::control {
 namespace {
 
-struct Kind {
+struct GuardKindInfo {
   GuardKind kind;
   const char* name;
   const char* reason;
@@ -15,7 +15,7 @@ struct Kind {
 };
 
 /// In the order of GuardKind.
-constexpr Kind kKinds[] = {
+constexpr GuardKindInfo kKinds[] = {
     {GuardKind::e_stop, "e_stop", "the emergency stop is not released, or its input is dead",
      "Find out why it was pressed; release it, reset, arm."},
     {GuardKind::missing, "missing", "position missing", "Check the rod sensor and its bus."},
@@ -37,7 +37,9 @@ constexpr Kind kKinds[] = {
      "Find out which rod sensor is wrong before moving."},
 };
 
-const Kind& kind_of(GuardKind kind) noexcept { return kKinds[static_cast<std::size_t>(kind)]; }
+const GuardKindInfo& kind_of(GuardKind kind) noexcept {
+  return kKinds[static_cast<std::size_t>(kind)];
+}
 
 /// A hold needs a valid position, a ramp a working valve.
 std::vector<std::string_view> actions_of(GuardKind kind) {
@@ -67,14 +69,14 @@ const char* guidance_of(GuardKind kind) noexcept { return kind_of(kind).guidance
 
 GuardKind GuardConfig::which() const noexcept {
   const auto* found = std::find_if(std::begin(kKinds), std::end(kKinds),
-                                   [this](const Kind& k) { return kind == k.name; });
+                                   [this](const GuardKindInfo& k) { return kind == k.name; });
   return found == std::end(kKinds) ? GuardKind::travel : found->kind;
 }
 
 void GuardConfig::visit(config::schema::Visitor& v) {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   std::vector<std::string_view> names;
-  for (const Kind& k : kKinds) names.emplace_back(k.name);
+  for (const GuardKindInfo& k : kKinds) names.emplace_back(k.name);
   v.text({"id", "name in alarms; default: the kind"}, id);
   v.choice({"kind", "kind of guard", true}, kind, names);
   if (id.empty()) id = kind;

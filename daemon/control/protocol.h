@@ -27,7 +27,7 @@ inline constexpr std::size_t kMaxLine = 4096;
 
 inline constexpr const char* kStateNames[] = {"MONITOR", "DISARMED", "ARMED", "RUN", "LATCHED"};
 
-[[nodiscard]] constexpr const char* to_string(State state) noexcept {
+[[nodiscard]] constexpr const char* to_string(ArmingState state) noexcept {
   return kStateNames[static_cast<std::size_t>(state)];
 }
 

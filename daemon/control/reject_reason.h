@@ -23,7 +23,7 @@ enum class RejectReason : std::uint8_t {
 struct CommandAnswer {
   std::uint32_t number = 0;
   RejectReason reject_reason = RejectReason::none;
-  State state = State::disarmed;
+  ArmingState state = ArmingState::disarmed;
   std::uint8_t guard = 0;  ///< index, for RejectReason::guard
 };
 
@@ -36,7 +36,7 @@ struct CommandAnswer {
 [[nodiscard]] constexpr CommandAnswer unpack(std::uint64_t word) noexcept {
   return {static_cast<std::uint32_t>(word >> 32U),
           static_cast<RejectReason>(static_cast<std::uint8_t>(word >> 8U)),
-          static_cast<State>(static_cast<std::uint8_t>(word)),
+          static_cast<ArmingState>(static_cast<std::uint8_t>(word)),
           static_cast<std::uint8_t>(word >> 16U)};
 }
 

@@ -166,7 +166,7 @@ void Detector::condition(const char* source, const char* name, Severity severity
 }
 
 void Detector::update_latched_alarm() {
-  const bool latched = state_ == static_cast<std::uint8_t>(control::State::latched);
+  const bool latched = state_ == static_cast<std::uint8_t>(control::ArmingState::latched);
   condition("loop", "latched", Severity::major, latched, latched ? why_latched() : "");
 }
 

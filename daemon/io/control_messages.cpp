@@ -183,7 +183,7 @@ std::string print_status(const ControlStatus& status) {
   return line.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-std::string print_alarms(control::State state, const std::vector<ControlAlarm>& alarms) {
+std::string print_alarms(control::ArmingState state, const std::vector<ControlAlarm>& alarms) {
   ordered_json line;
   line[control::key::kOk] = true;
   line[control::key::kState] = control::to_string(state);
@@ -216,7 +216,7 @@ std::string print_alarms(control::State state, const std::vector<ControlAlarm>& 
   return line.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-std::string print_acted(control::State state, const std::vector<std::string>& done) {
+std::string print_acted(control::ArmingState state, const std::vector<std::string>& done) {
   ordered_json line;
   line[control::key::kOk] = true;
   line[control::key::kState] = control::to_string(state);
@@ -224,7 +224,7 @@ std::string print_acted(control::State state, const std::vector<std::string>& do
   return line.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-std::string print_reloaded(control::State state, const ControlReload& reload) {
+std::string print_reloaded(control::ArmingState state, const ControlReload& reload) {
   ordered_json line;
   line[control::key::kOk] = true;
   line[control::key::kState] = control::to_string(state);
@@ -236,14 +236,14 @@ std::string print_reloaded(control::State state, const ControlReload& reload) {
   return line.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-std::string print_done(control::State state) {
+std::string print_done(control::ArmingState state) {
   ordered_json line;
   line[control::key::kOk] = true;
   line[control::key::kState] = control::to_string(state);
   return line.dump();
 }
 
-std::string print_rejected(control::State state, const std::string& reason) {
+std::string print_rejected(control::ArmingState state, const std::string& reason) {
   ordered_json line;
   line[control::key::kOk] = false;
   line[control::key::kState] = control::to_string(state);

@@ -72,7 +72,7 @@ struct ControlStatus {
     double for_s = 0.0;  ///< time out
   };
   std::string rig_id, config_hash;
-  control::State state = control::State::disarmed;
+  control::ArmingState state = control::ArmingState::disarmed;
   bool holding = false;
   bool ramping = false;
   std::string latched_by;  ///< id of the guard; empty unless LATCHED
@@ -102,10 +102,11 @@ struct ControlAlarm {
   double shelved_for_s = 0.0;
 };
 
-[[nodiscard]] std::string print_alarms(control::State state,
+[[nodiscard]] std::string print_alarms(control::ArmingState state,
                                        const std::vector<ControlAlarm>& alarms);
 /// `done`: the alarms that a command has changed.
-[[nodiscard]] std::string print_acted(control::State state, const std::vector<std::string>& done);
+[[nodiscard]] std::string print_acted(control::ArmingState state,
+                                      const std::vector<std::string>& done);
 /// The effect of a reload.
 struct ControlReload {
   std::string config_hash;
@@ -114,8 +115,8 @@ struct ControlReload {
   std::vector<std::string> cold;     ///< estimators that restarted
   std::vector<std::string> ended;    ///< standing alarms that no longer exist
 };
-[[nodiscard]] std::string print_reloaded(control::State state, const ControlReload& reload);
-[[nodiscard]] std::string print_done(control::State state);
-[[nodiscard]] std::string print_rejected(control::State state, const std::string& reason);
+[[nodiscard]] std::string print_reloaded(control::ArmingState state, const ControlReload& reload);
+[[nodiscard]] std::string print_done(control::ArmingState state);
+[[nodiscard]] std::string print_rejected(control::ArmingState state, const std::string& reason);
 
 }  // namespace monitor::io

@@ -24,9 +24,9 @@ constexpr const char* kPartial = ".partial-";
 constexpr std::size_t kNumberAt = 4;  // of the event number in an event
 
 /// A file written with fsync; keeps the first error.
-class Output {
+class SyncedFile {
  public:
-  explicit Output(const fs::path& file) : file_(std::fopen(file.c_str(), "wbe")) {
+  explicit SyncedFile(const fs::path& file) : file_(std::fopen(file.c_str(), "wbe")) {
     if (file_ == nullptr) error_ = errno;
   }
   void write(const void* bytes, std::size_t size) noexcept {
@@ -40,9 +40,9 @@ class Output {
     file_ = nullptr;
     return error_;
   }
-  ~Output() { static_cast<void>(close()); }
-  Output(const Output&) = delete;
-  Output& operator=(const Output&) = delete;
+  ~SyncedFile() { static_cast<void>(close()); }
+  SyncedFile(const SyncedFile&) = delete;
+  SyncedFile& operator=(const SyncedFile&) = delete;
 
  private:
   std::FILE* file_;
@@ -50,13 +50,13 @@ class Output {
 };
 
 int write_file(const fs::path& file, std::string_view text) {
-  Output out(file);
+  SyncedFile out(file);
   out.write(text.data(), text.size());
   return out.close();
 }
 
 int write_events(const fs::path& file, const PackContents& contents) {
-  Output out(file);
+  SyncedFile out(file);
   std::uint64_t number = 0;
   contents.events([&](std::span<std::uint8_t> event) {
     for (int i = 0; i < 8; ++i) {

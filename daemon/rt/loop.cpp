@@ -7,10 +7,10 @@ namespace monitor::rt {
 
 using config::signals::Sample;
 using control::Action;
+using control::ArmingState;
 using control::Event;
 using control::GuardKind;
 using control::RejectReason;
-using control::State;
 
 void LoopConfig::visit(config::schema::Visitor& v) {
   v.number({"rate_hz", "loop rate; a replayed record determines its own"}, rate_Hz, {1.0, 2000.0});
@@ -58,24 +58,24 @@ Loop::Loop(const LoopConfig& config, const Parts& parts, const control::Controll
 
 void Loop::apply(Event event) noexcept {
   if (!arming_.apply(event)) return;
-  if (arming_.state() != State::run) ramp_.stop();
+  if (arming_.state() != ArmingState::run) ramp_.stop();
   if (event == Event::reset) parts_.stats.trip.store(Trip::none, std::memory_order_relaxed);
   parts_.stats.state.store(arming_.state(), std::memory_order_relaxed);
 }
 
 void Loop::act(const control::GuardTrip& trip, bool measured) noexcept {
-  const State state = arming_.state();
-  if (state != State::run && (measured || state != State::armed)) return;
+  const ArmingState state = arming_.state();
+  if (state != ArmingState::run && (measured || state != ArmingState::armed)) return;
   switch (trip.action) {
     case Action::none:
     case Action::indicate:
       break;
     case Action::hold:
-      if (state == State::run && have_position()) reference_.hold(y_m_);
+      if (state == ArmingState::run && have_position()) reference_.hold(y_m_);
       break;
     case Action::ramp:
-      if (state == State::armed) leave();
-      if (state == State::run && !ramp_.active()) ramp_.start(last_V_, time_s());
+      if (state == ArmingState::armed) leave();
+      if (state == ArmingState::run && !ramp_.active()) ramp_.start(last_V_, time_s());
       break;
     case Action::disarm:
       leave();
@@ -96,7 +96,8 @@ void Loop::latch(int guard) noexcept {
 }
 
 void Loop::leave() noexcept {
-  if (arming_.state() == State::run || arming_.state() == State::armed) apply(Event::disarm);
+  if (arming_.state() == ArmingState::run || arming_.state() == ArmingState::armed)
+    apply(Event::disarm);
 }
 
 RejectReason Loop::obstacle(Event event) const noexcept {
@@ -109,10 +110,10 @@ RejectReason Loop::obstacle(Event event) const noexcept {
 }
 
 RejectReason Loop::carry_out(Event event, bool at_once) noexcept {
-  if (arming_.state() == State::monitor) return RejectReason::monitor;
+  if (arming_.state() == ArmingState::monitor) return RejectReason::monitor;
   control::Arming after = arming_;
   const bool resume =
-      event == Event::start && arming_.state() == State::run && reference_.holding();
+      event == Event::start && arming_.state() == ArmingState::run && reference_.holding();
   if (!resume && !after.apply(event)) return RejectReason::state;
   if (const RejectReason reject_reason = obstacle(event); reject_reason != RejectReason::none)
     return reject_reason;
@@ -136,8 +137,8 @@ RejectReason Loop::carry_out(const LoopCommand& command) noexcept {
     return RejectReason::none;
   }
   if (command.kind == LoopCommand::Kind::event) return carry_out(command.event, command.at_once);
-  if (arming_.state() == State::monitor) return RejectReason::monitor;
-  const bool run = arming_.state() == State::run && !ramp_.active();
+  if (arming_.state() == ArmingState::monitor) return RejectReason::monitor;
+  const bool run = arming_.state() == ArmingState::run && !ramp_.active();
   if (run && !have_position()) return RejectReason::position;
   if (command.kind == LoopCommand::Kind::hold) {
     if (!run) return RejectReason::state;
@@ -185,7 +186,7 @@ void Loop::watch_overruns(const Period& period) noexcept {
 }
 
 void Loop::watch_motion(const hal::Reading& reading, Sample& sample) noexcept {
-  const bool follows = arming_.state() == State::run && !ramp_.active();
+  const bool follows = arming_.state() == ArmingState::run && !ramp_.active();
   if (follows && interrupted_ && have_position()) reference_.resume_from(y_m_, tick_);
   if (follows) sample.reference_m = reference_.at(tick_);
   control::GuardInputs inputs;
@@ -209,7 +210,7 @@ void Loop::drive(const Period& period, Sample& sample) noexcept {
   const std::int64_t period_ns = std::llround(sample_time_s_ * 1e9);
   const bool too_long = period.skipped > 0 && (period.skipped + 1) * period_ns >= kNullAfter_ns;
   if (ramp_.active() && (too_long || ramp_.over(time_s()))) leave();
-  const bool run = arming_.state() == State::run && !too_long;
+  const bool run = arming_.state() == ArmingState::run && !too_long;
   const bool ramp = run && ramp_.active();
   const bool controlling = run && !ramp && have_position() && !aux_inputs_.blind();
   double command_V = null_V_;
@@ -224,7 +225,7 @@ void Loop::drive(const Period& period, Sample& sample) noexcept {
     controller_.reset();
     if (ramp) command_V = sample.u_requested_V = null_V_ + ramp_.at(time_s());
   }
-  interrupted_ = arming_.state() == State::run && !controlling && !ramp;
+  interrupted_ = arming_.state() == ArmingState::run && !controlling && !ramp;
   last_V_ = command_V - null_V_;
   last_limited_ = sample.saturated;
   sample.t_write_ns = parts_.clock.now_ns();
@@ -251,7 +252,7 @@ void Loop::send(Sample& sample) noexcept {
 
 void Loop::publish_stats(const Period& period, const Sample& sample) noexcept {
   LoopStats& stats = parts_.stats;
-  const bool run = arming_.state() == State::run;
+  const bool run = arming_.state() == ArmingState::run;
   stats.guards.update(guard_monitor_);
   stats.y_m.store(sample.y_m, std::memory_order_relaxed);
   stats.u_V.store(sample.u_applied_V, std::memory_order_relaxed);
@@ -260,7 +261,7 @@ void Loop::publish_stats(const Period& period, const Sample& sample) noexcept {
   stats.ramping.store(run && ramp_.active(), std::memory_order_relaxed);
   answer_.state = arming_.state();
   stats.answer.store(control::pack(answer_), std::memory_order_release);
-  const bool good = arming_.state() != State::latched && period.skipped == 0 && !closing_;
+  const bool good = arming_.state() != ArmingState::latched && period.skipped == 0 && !closing_;
   if (parts_.permit == nullptr || !good) return;
   permit_on_ = !permit_on_;
   (parts_.permit->set(permit_on_) ? stats.permit_good : stats.permit_bad).add();
@@ -275,7 +276,7 @@ bool Loop::tick(const Period& period) noexcept {
   sample.tick = tick_;
   sample.utc_us = parts_.clock.utc_us();
   sample.t_read_ns = parts_.clock.now_ns();
-  const bool follows = arming_.state() == State::run && !ramp_.active() && !interrupted_;
+  const bool follows = arming_.state() == ArmingState::run && !ramp_.active() && !interrupted_;
   const hal::Reading& reading =
       position_sensor_.read(period.tick, parts_.clock, time_s(), last_V_, follows);
   parts_.stats.read.add(parts_.clock.now_ns() - sample.t_read_ns);

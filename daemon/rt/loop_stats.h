@@ -67,7 +67,7 @@ struct LoopStats {
   std::atomic<std::uint8_t> rod_in_charge{0};
   std::atomic<std::int64_t> rod_since_tick{0};  ///< when the sensor in charge took over
   hal::Histogram lateness, read, control, write, tick;
-  std::atomic<control::State> state{control::State::disarmed};
+  std::atomic<control::ArmingState> state{control::ArmingState::disarmed};
   std::atomic<Trip> trip{Trip::none};
   std::atomic<std::uint8_t> trip_guard{0};  ///< index of the guard that tripped
   std::atomic<bool> holding{false};         ///< RUN, with the reference frozen

@@ -18,9 +18,9 @@ namespace {
 constexpr std::size_t kRoomAfterLock_bytes = 32U << 20U;
 constexpr std::size_t kStackTouched_bytes = 64 * 1024;
 
-class Report {
+class PrivilegeReport {
  public:
-  explicit Report(bool required) : required_(required) {}
+  explicit PrivilegeReport(bool required) : required_(required) {}
   void got(const std::string& what) { text_ += (text_.empty() ? "" : "; ") + what; }
   void refused(const std::string& what, int error, const std::string& allowed) {
     const std::string line = "no " + what + " (" + std::strerror(error) + ")";
@@ -88,7 +88,7 @@ Grant request_privileges(const LoopConfig& config) {
     grant.text = "off";
     return grant;
   }
-  Report report(config.privileges == "require");
+  PrivilegeReport report(config.privileges == "require");
   const hal::ThreadOptions fifo{static_cast<int>(config.priority), -1};
   if (const int error = try_thread(fifo)) {
     report.refused("SCHED_FIFO", error, kRights);

@@ -13,9 +13,9 @@ namespace {
 using config::schema::bad_config;
 using config::schema::DeviceUnavailable;
 
-class Probe {
+class RegisterProbe {
  public:
-  Probe(Connection& connection, const ProbeOptions& options)
+  RegisterProbe(Connection& connection, const ProbeOptions& options)
       : connection_(connection), options_(options) {}
 
   /// False when the device rejects the request; throws when it does not answer.
@@ -58,7 +58,7 @@ class Probe {
 
 RegisterSnapshot probe(Connection& connection, const RegisterMap& map,
                        const ProbeOptions& options) {
-  Probe probe(connection, options);
+  RegisterProbe probe(connection, options);
   if (!connection.connect()) probe.throw_unconnected();
   connection.set_timeout(options.first_timeout_s);
   RegisterSnapshot snapshot;

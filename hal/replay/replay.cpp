@@ -34,9 +34,9 @@ void ReplayConfig::visit(config::schema::Visitor& v) {
   v.choice({"pace", "recorded pace, or as fast as possible"}, pace, {"recorded", "fast"});
 }
 
-Rows::Rows(const config::record::Record& record) : tick_(grid(record)) {}
+RecordCursor::RecordCursor(const config::record::Record& record) : tick_(grid(record)) {}
 
-std::size_t Rows::at(const Tick& tick) noexcept {
+std::size_t RecordCursor::at(const Tick& tick) noexcept {
   while (next_ < tick_.size() && tick_[next_] < tick.index) ++next_;
   return next_ == tick_.size() || tick_[next_] == tick.index ? next_ : kNone;
 }
@@ -52,7 +52,7 @@ Reading ReplaySensor::read(const Tick& tick) noexcept {
   Reading reading;
   if (row == record_->size()) {
     reading.end = true;
-  } else if (row != Rows::kNone) {
+  } else if (row != RecordCursor::kNone) {
     reading.y_m = record_->y_m[row];
     reading.command_V = record_->u_V[row];
     reading.quality = config::signals::Quality::good;
@@ -71,7 +71,7 @@ ReplayInput::ReplayInput(std::shared_ptr<const config::record::Record> record,
 
 InputReading ReplayInput::read(const Tick& tick) noexcept {
   const std::size_t row = rows_.at(tick);
-  if (row == Rows::kNone || row == record_->size() || std::isnan(column_[row])) return {};
+  if (row == RecordCursor::kNone || row == record_->size() || std::isnan(column_[row])) return {};
   return {column_[row], 0, config::signals::Quality::good};
 }
 

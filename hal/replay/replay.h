@@ -20,9 +20,9 @@ struct ReplayConfig {
 };
 
 /// Position of the loop in a record.
-class Rows {
+class RecordCursor {
  public:
-  explicit Rows(const config::record::Record& record);
+  explicit RecordCursor(const config::record::Record& record);
   /// Row of this period; the record's size after its end, kNone for a missing period. Ticks do not
   /// go back.
   [[nodiscard]] std::size_t at(const Tick& tick) noexcept;
@@ -45,7 +45,7 @@ class ReplaySensor final : public RodSensor {
   std::shared_ptr<const config::record::Record> record_;
   const std::vector<double>* quality_;  ///< quality column of the record, or null
   const std::vector<double>* saturated_;
-  Rows rows_;
+  RecordCursor rows_;
 };
 
 /// A column of the record.
@@ -59,7 +59,7 @@ class ReplayInput final : public Input {
  private:
   std::shared_ptr<const config::record::Record> record_;
   const std::vector<double>& column_;
-  Rows rows_;
+  RecordCursor rows_;
 };
 
 class ReplayBackend final : public Backend {

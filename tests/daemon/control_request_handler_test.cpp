@@ -15,8 +15,8 @@
 namespace monitor {
 namespace {
 
+using control::ArmingState;
 using control::RejectReason;
-using control::State;
 using testing::HasSubstr;
 
 constexpr std::int64_t kMillisecond_ns = 1'000'000;
@@ -70,7 +70,8 @@ class ControlRequestHandlerTest : public testing::Test {
     EXPECT_TRUE(commands_.pop(command));
     return command;
   }
-  void answer(std::uint32_t number, RejectReason reason, State state, std::uint8_t guard = 0) {
+  void answer(std::uint32_t number, RejectReason reason, ArmingState state,
+              std::uint8_t guard = 0) {
     stats_.state = state;
     stats_.answer = control::pack({number, reason, state, guard});
   }
@@ -119,21 +120,21 @@ TEST_F(ControlRequestHandlerTest, PassesACommandOnAndReturnsTheAnswerOfTheLoop) 
   const rt::LoopCommand command = next_command();
   EXPECT_EQ(command.event, control::Event::arm);
   EXPECT_GT(command.expires_ns, clock_.now_ns());
-  answer(command.number, RejectReason::none, State::armed);
+  answer(command.number, RejectReason::none, ArmingState::armed);
   EXPECT_EQ(serve(), "{\"ok\":true,\"state\":\"ARMED\"}\n");
 }
 
 TEST_F(ControlRequestHandlerTest, SaysWhatToDoInsteadOfARejectedCommand) {
   send(R"({"command": "start"})");
   EXPECT_EQ(serve(), "");
-  answer(next_command().number, RejectReason::state, State::disarmed);
+  answer(next_command().number, RejectReason::state, ArmingState::disarmed);
   EXPECT_THAT(serve(), HasSubstr(R"("reason":"not possible in state DISARMED: arm first")"));
 }
 
 TEST_F(ControlRequestHandlerTest, NamesTheGuardThatRejectsACommand) {
   send(R"({"command": "arm"})");
   EXPECT_EQ(serve(), "");
-  answer(next_command().number, RejectReason::guard, State::disarmed,
+  answer(next_command().number, RejectReason::guard, ArmingState::disarmed,
          static_cast<std::uint8_t>(control::GuardKind::missing));
   EXPECT_THAT(serve(), HasSubstr(R"("reason":"guard missing: position missing")"));
 }
@@ -141,7 +142,7 @@ TEST_F(ControlRequestHandlerTest, NamesTheGuardThatRejectsACommand) {
 TEST_F(ControlRequestHandlerTest, IgnoresTheAnswerToAnEarlierCommand) {
   send(R"({"command": "arm"})");
   EXPECT_EQ(serve(), "");
-  answer(next_command().number - 1, RejectReason::none, State::armed);
+  answer(next_command().number - 1, RejectReason::none, ArmingState::armed);
   EXPECT_EQ(serve(), "");
 }
 

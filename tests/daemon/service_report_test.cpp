@@ -146,7 +146,7 @@ TEST_F(ServiceReportTest, AStuckLoopIsNotFed) {
 TEST_F(ServiceReportTest, StatusSaysStateAlarmsAndLatenessOnceASecondAtMost) {
   cycle();
   EXPECT_THAT(lines_, ElementsAre("STATUS=waiting for the first good cycles"));
-  stats_.state = control::State::run;
+  stats_.state = control::ArmingState::run;
   stats_.active_alarms = 2;
   for (int i = 0; i < 100; ++i) stats_.lateness.add(80'000);
   for (int i = 0; i < 1000; ++i) cycle();

@@ -43,7 +43,7 @@ class Daemon {
     io::ControlSocket::Request request;
     while (socket_->next(request)) {
       const io::ControlRequest parsed = io::parse_request(request.line);
-      const auto state = monitor::control::State::disarmed;
+      const auto state = monitor::control::ArmingState::disarmed;
       const std::string answer = parsed.kind == io::ControlRequest::Kind::bad
                                      ? io::print_rejected(state, parsed.wrong)
                                      : io::print_done(state);

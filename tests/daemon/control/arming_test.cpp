@@ -18,36 +18,36 @@ Arming after(std::initializer_list<Event> events) {
 
 TEST(Arming, StartsDisarmedAndNeedsArmThenStartToRun) {
   Arming arming(false);
-  EXPECT_EQ(arming.state(), State::disarmed);
+  EXPECT_EQ(arming.state(), ArmingState::disarmed);
   EXPECT_FALSE(arming.apply(Event::start)) << "a start without arming must be refused";
-  EXPECT_EQ(arming.state(), State::disarmed);
+  EXPECT_EQ(arming.state(), ArmingState::disarmed);
   EXPECT_TRUE(arming.apply(Event::arm));
-  EXPECT_EQ(arming.state(), State::armed);
+  EXPECT_EQ(arming.state(), ArmingState::armed);
   EXPECT_TRUE(arming.apply(Event::start));
-  EXPECT_EQ(arming.state(), State::run);
+  EXPECT_EQ(arming.state(), ArmingState::run);
 }
 
 TEST(Arming, StopKeepsItArmedAndDisarmDoesNot) {
-  EXPECT_EQ(after({Event::arm, Event::start, Event::stop}).state(), State::armed);
-  EXPECT_EQ(after({Event::arm, Event::start, Event::disarm}).state(), State::disarmed);
-  EXPECT_EQ(after({Event::arm, Event::disarm}).state(), State::disarmed);
+  EXPECT_EQ(after({Event::arm, Event::start, Event::stop}).state(), ArmingState::armed);
+  EXPECT_EQ(after({Event::arm, Event::start, Event::disarm}).state(), ArmingState::disarmed);
+  EXPECT_EQ(after({Event::arm, Event::disarm}).state(), ArmingState::disarmed);
 }
 
 TEST(Arming, LatchesAfterATripUntilReset) {
   Arming arming = after({Event::arm, Event::start, Event::trip});
   for (const Event event : {Event::arm, Event::start, Event::stop, Event::disarm, Event::trip}) {
     arming.apply(event);
-    EXPECT_EQ(arming.state(), State::latched);
+    EXPECT_EQ(arming.state(), ArmingState::latched);
   }
   EXPECT_TRUE(arming.apply(Event::reset));
-  EXPECT_EQ(arming.state(), State::disarmed) << "a reset must not lead back to motion";
+  EXPECT_EQ(arming.state(), ArmingState::disarmed) << "a reset must not lead back to motion";
 }
 
 TEST(Arming, NeverLeavesMonitor) {
   Arming arming(true);
   for (const Event event : kEvents) {
     EXPECT_FALSE(arming.apply(event));
-    EXPECT_EQ(arming.state(), State::monitor);
+    EXPECT_EQ(arming.state(), ArmingState::monitor);
   }
 }
 

@@ -13,8 +13,8 @@
 namespace monitor::rt {
 namespace {
 
+using control::ArmingState;
 using control::RodFault;
-using control::State;
 using hal::sim::InjectedFault;
 
 constexpr double kTs_s = 0.005;
@@ -151,10 +151,10 @@ class Failover : public testing::TestWithParam<Case> {};
 TEST_P(Failover, LetsTheControllerGoOnWithTheNextSensor) {
   const Case& c = GetParam();
   const Course healthy(3, {});
-  ASSERT_EQ(healthy.stats.state.load(), State::run);
+  ASSERT_EQ(healthy.stats.state.load(), ArmingState::run);
   ASSERT_EQ(healthy.out(0), -1);
   const Course course(3, {c.injected});
-  EXPECT_EQ(course.stats.state.load(), State::run) << "no guard trips";
+  EXPECT_EQ(course.stats.state.load(), ArmingState::run) << "no guard trips";
   EXPECT_EQ(course.stats.rods[0].fault.load(), c.fault);
   EXPECT_EQ(course.stats.rod_in_charge.load(), 1);
   const std::int64_t out = course.out(0);
@@ -208,7 +208,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(FailoverOfTwo, NamesTheFrozenSensorSinceTheOtherSawTheRodMove) {
   const Course healthy(2, {});
   const Course course(2, {fault("frozen", kFault_s)});
-  EXPECT_EQ(course.stats.state.load(), State::run);
+  EXPECT_EQ(course.stats.state.load(), ArmingState::run);
   EXPECT_EQ(course.stats.rods[0].fault.load(), RodFault::frozen);
   // Frozen for 0.05 s and what least_m takes: 10/s x 80 mm/s x t^2/2 = 1.5 mm, and the offset.
   EXPECT_LE(course.astray_m(healthy), 2e-3);
@@ -261,7 +261,7 @@ TEST(FailoverOfTwo, GoesBackOnAnOrderOrAStartOnly) {
     EXPECT_EQ(bench.stats.rod_in_charge.load(), 0) << by_order;
     EXPECT_EQ(bench.stats.rods[0].fault.load(), RodFault::none);
   }
-  EXPECT_EQ(bench.state(), State::run);
+  EXPECT_EQ(bench.state(), ArmingState::run);
 }
 
 TEST(FailoverOfTwo, ASecondFailureIsTheGuards) {
@@ -269,8 +269,8 @@ TEST(FailoverOfTwo, ASecondFailureIsTheGuards) {
     InjectedFault second = fault(kind, kFault_s + 1.0, "b");
     second.size_m = 0.01;
     const Course course(2, {fault("missing", kFault_s), second});
-    EXPECT_EQ(course.stats.state.load(), State::latched) << kind;
-    EXPECT_EQ(course.samples[kFaultTick + 190].state, static_cast<std::uint8_t>(State::run));
+    EXPECT_EQ(course.stats.state.load(), ArmingState::latched) << kind;
+    EXPECT_EQ(course.samples[kFaultTick + 190].state, static_cast<std::uint8_t>(ArmingState::run));
     EXPECT_EQ(course.samples.back().u_applied_V, 0.0) << "null";
   }
 }

@@ -122,7 +122,7 @@ class LoopBench {
   }
   Loop& loop() { return loop_; }
   [[nodiscard]] double last_V() const { return rig.writes.back().u_V; }
-  [[nodiscard]] control::State state() const { return stats.state.load(); }
+  [[nodiscard]] control::ArmingState state() const { return stats.state.load(); }
 
   VirtualClock clock;
   FakeRig rig{&clock};

@@ -9,9 +9,9 @@
 namespace monitor::rt {
 namespace {
 
+using control::ArmingState;
 using control::Event;
 using control::RejectReason;
-using control::State;
 
 constexpr int kMaxBadInARow = 3;  // of LoopConfig
 
@@ -25,7 +25,7 @@ struct SwitchBench : LoopBench {
 };
 
 TEST(Answer, PassesThroughOneWord) {
-  const control::CommandAnswer answer{0xfedcba98U, RejectReason::guard, State::latched, 31};
+  const control::CommandAnswer answer{0xfedcba98U, RejectReason::guard, ArmingState::latched, 31};
   const control::CommandAnswer back = control::unpack(control::pack(answer));
   EXPECT_EQ(back.number, answer.number);
   EXPECT_EQ(back.reject_reason, answer.reject_reason);
@@ -37,9 +37,9 @@ TEST(Arm, IsAnsweredWithTheStateOrTheReason) {
   LoopBench bench;
   EXPECT_EQ(ask(bench, Event::start).reject_reason, RejectReason::state);
   EXPECT_EQ(ask(bench, Event::arm).reject_reason, RejectReason::none);
-  EXPECT_EQ(bench.state(), State::armed);
+  EXPECT_EQ(bench.state(), ArmingState::armed);
   EXPECT_EQ(ask(bench, Event::start).reject_reason, RejectReason::none);
-  EXPECT_EQ(bench.state(), State::run);
+  EXPECT_EQ(bench.state(), ArmingState::run);
   EXPECT_EQ(ask(bench, Event::arm).reject_reason, RejectReason::state);
   bench.loop().close();
   EXPECT_EQ(ask(bench, Event::disarm).reject_reason, RejectReason::none);
@@ -53,7 +53,7 @@ TEST(Arm, IsRefusedWithoutACalibration) {
   rules.may_arm = false;
   LoopBench bench({}, true, rules);
   EXPECT_EQ(ask(bench, Event::arm).reject_reason, RejectReason::calibration);
-  EXPECT_EQ(bench.state(), State::disarmed);
+  EXPECT_EQ(bench.state(), ArmingState::disarmed);
 }
 
 TEST(Enable, IsNeededToArmAndItsLossDisarmsAtOnce) {
@@ -61,25 +61,26 @@ TEST(Enable, IsNeededToArmAndItsLossDisarmsAtOnce) {
   EXPECT_EQ(ask(bench, Event::arm).reject_reason, RejectReason::enable);
   bench.input->value = 1.0;
   bench.run();
-  EXPECT_EQ(bench.state(), State::run);
+  EXPECT_EQ(bench.state(), ArmingState::run);
   for (const double value : {0.0, 0.9}) {
     bench.input->value = value;
     bench.tick();
-    EXPECT_EQ(bench.state(), State::disarmed) << value;
+    EXPECT_EQ(bench.state(), ArmingState::disarmed) << value;
     EXPECT_EQ(bench.last_V(), kFakeNull_V);
     bench.input->value = 1.0;
     bench.tick();
-    EXPECT_EQ(bench.state(), State::disarmed) << "it does not arm by itself";
+    EXPECT_EQ(bench.state(), ArmingState::disarmed) << "it does not arm by itself";
     bench.run();
-    ASSERT_EQ(bench.state(), State::run);
+    ASSERT_EQ(bench.state(), ArmingState::run);
   }
 }
 
 TEST(Switches, OneThatCannotBeReadMeansNullAtOnceAndTripsWhenItLasts) {
   const struct {
     hal::InputRole role;
-    State after;
-  } cases[] = {{hal::InputRole::enable, State::disarmed}, {hal::InputRole::e_stop, State::latched}};
+    ArmingState after;
+  } cases[] = {{hal::InputRole::enable, ArmingState::disarmed},
+               {hal::InputRole::e_stop, ArmingState::latched}};
   const std::pair<double, config::signals::Quality> unread[] = {
       {std::nan(""), config::signals::Quality::good}, {1.0, config::signals::Quality::bad}};
   for (const auto& [role, after] : cases) {
@@ -92,7 +93,7 @@ TEST(Switches, OneThatCannotBeReadMeansNullAtOnceAndTripsWhenItLasts) {
         for (int i = 0; i < ticks; ++i) {
           bench.tick();
           EXPECT_EQ(bench.last_V(), kFakeNull_V);
-          EXPECT_EQ(bench.state(), i < kMaxBadInARow ? State::run : after) << ticks;
+          EXPECT_EQ(bench.state(), i < kMaxBadInARow ? ArmingState::run : after) << ticks;
         }
         bench.input->value = 1.0;
         bench.input->quality = config::signals::Quality::good;
@@ -117,21 +118,21 @@ TEST(EmergencyStop, LatchesFromRunAndArmed) {
     bench.tick();
     bench.input->value = 0.0;
     bench.tick();
-    EXPECT_EQ(bench.state(), State::latched);
+    EXPECT_EQ(bench.state(), ArmingState::latched);
     EXPECT_EQ(bench.last_V(), kFakeNull_V);
     EXPECT_EQ(bench.stats.trip.load(), Trip::e_stop);
     bench.input->value = 1.0;
     bench.tick();
-    EXPECT_EQ(bench.state(), State::latched) << "release alone leads nowhere";
+    EXPECT_EQ(bench.state(), ArmingState::latched) << "release alone leads nowhere";
     EXPECT_EQ(ask(bench, Event::reset).reject_reason, RejectReason::none);
-    EXPECT_EQ(bench.state(), State::disarmed);
+    EXPECT_EQ(bench.state(), ArmingState::disarmed);
   }
 }
 
 TEST(EmergencyStop, WiredTheWrongWayStaysDisarmedAndSaysSo) {
   SwitchBench bench(hal::InputRole::e_stop, 0.0);
   bench.tick();
-  EXPECT_EQ(bench.state(), State::disarmed);
+  EXPECT_EQ(bench.state(), ArmingState::disarmed);
   const control::CommandAnswer answer = ask(bench, Event::arm);
   EXPECT_EQ(answer.reject_reason, RejectReason::guard);
   EXPECT_EQ(answer.guard, static_cast<std::uint8_t>(control::GuardKind::e_stop));
@@ -169,7 +170,7 @@ TEST(Missing, ForbidsToArmButLatchesNothingThatIsDisarmed) {
   LoopBench bench;
   bench.rig.quality = config::signals::Quality::bad;
   for (int k = 0; k < 10; ++k) bench.tick();
-  EXPECT_EQ(bench.state(), State::disarmed);
+  EXPECT_EQ(bench.state(), ArmingState::disarmed);
   const control::CommandAnswer answer = ask(bench, Event::arm);
   EXPECT_EQ(answer.reject_reason, RejectReason::guard);
   EXPECT_EQ(answer.guard, static_cast<std::uint8_t>(control::GuardKind::missing));

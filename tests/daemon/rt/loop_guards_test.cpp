@@ -8,9 +8,9 @@
 namespace monitor::rt {
 namespace {
 
+using control::ArmingState;
 using control::Event;
 using control::RejectReason;
-using control::State;
 
 control::GuardConfig guard(const char* kind, const char* action) {
   control::GuardConfig config;
@@ -41,7 +41,7 @@ TEST(Hold, FreezesTheReferenceWhereTheRodIsAndAStartResumes) {
   EXPECT_DOUBLE_EQ(sample.reference_m, 0.21) << "held, not following the rod";
   EXPECT_NEAR(sample.u_applied_V, kFakeNull_V + 100.0 * 0.02, kRounding_V) << "the law goes on";
   EXPECT_TRUE(bench.stats.holding.load());
-  EXPECT_EQ(bench.state(), State::run);
+  EXPECT_EQ(bench.state(), ArmingState::run);
   EXPECT_EQ(ask(bench, Event::start).reject_reason, RejectReason::none);
   EXPECT_FALSE(bench.stats.holding.load());
   EXPECT_DOUBLE_EQ(bench.sample().reference_m, 0.3);
@@ -89,11 +89,11 @@ TEST(RampToNull, IsAStraightLineThenDisarmed) {
   for (int k = 0; k < 10; ++k) {
     bench.tick();
     EXPECT_NEAR(bench.last_V(), kFakeNull_V + offset_V * (1.0 - k / 10.0), 1e-9) << k;
-    EXPECT_EQ(bench.state(), State::run);
+    EXPECT_EQ(bench.state(), ArmingState::run);
   }
   bench.tick();
   EXPECT_EQ(bench.last_V(), kFakeNull_V);
-  EXPECT_EQ(bench.state(), State::disarmed);
+  EXPECT_EQ(bench.state(), ArmingState::disarmed);
 }
 
 TEST(RampToNull, GivesWayToALatchAndToAStall) {
@@ -112,22 +112,22 @@ TEST(RampToNull, GivesWayToALatchAndToAStall) {
     }
     bench.tick();
     EXPECT_EQ(bench.last_V(), kFakeNull_V);
-    EXPECT_EQ(bench.state(), stall ? State::disarmed : State::latched);
+    EXPECT_EQ(bench.state(), stall ? ArmingState::disarmed : ArmingState::latched);
   }
 }
 
 TEST(Guards, OfMotionActInRunOnlyButShowAlways) {
   LoopBench bench({}, true, rules_of({travel_to(0.05, "latch")}));
   bench.tick();
-  EXPECT_EQ(bench.state(), State::disarmed);
+  EXPECT_EQ(bench.state(), ArmingState::disarmed);
   EXPECT_EQ(bench.stats.guards.active(), 1U << control::kBuiltIn);
   EXPECT_EQ(bench.stats.guards.take_raised(), 1U << control::kBuiltIn);
   EXPECT_EQ(bench.stats.guards.value(control::kBuiltIn), 0.1);
   bench.run();
-  EXPECT_EQ(bench.state(), State::run) << "a rod outside may come back";
+  EXPECT_EQ(bench.state(), ArmingState::run) << "a rod outside may come back";
   bench.rig.y_m = 0.11;
   bench.tick();
-  EXPECT_EQ(bench.state(), State::latched);
+  EXPECT_EQ(bench.state(), ArmingState::latched);
   EXPECT_EQ(bench.stats.trip.load(), Trip::guard);
   EXPECT_EQ(bench.stats.trip_guard.load(), control::kBuiltIn);
 }
@@ -139,10 +139,10 @@ TEST(Guards, SensorsThatDisagreeForbidToArmAndLatch) {
   const auto spare = std::make_shared<FakeRig>(nullptr);
   bench.spare_rods.push_back({"second", spare});
   bench.run();
-  EXPECT_EQ(bench.state(), State::run);
+  EXPECT_EQ(bench.state(), ArmingState::run);
   spare->y_m = 0.1012;
   bench.tick();
-  EXPECT_EQ(bench.state(), State::latched);
+  EXPECT_EQ(bench.state(), ArmingState::latched);
   bench.command(Event::reset);
   EXPECT_EQ(ask(bench, Event::arm).reject_reason, RejectReason::guard);
   spare->quality = config::signals::Quality::bad;
@@ -161,10 +161,10 @@ TEST(Guards, StaleIsTheReadingsOwnTime) {
   bench.rig.t_ns = bench.clock.now_ns();
   for (int k = 0; k < 2; ++k) {
     bench.tick();
-    EXPECT_EQ(bench.state(), State::run) << k;
+    EXPECT_EQ(bench.state(), ArmingState::run) << k;
   }
   bench.tick();
-  EXPECT_EQ(bench.state(), State::latched) << "15 ms old";
+  EXPECT_EQ(bench.state(), ArmingState::latched) << "15 ms old";
 }
 
 TEST(Guards, StaleIsTheSensorsWordWhereTheAgeIsNotKnown) {
@@ -177,7 +177,7 @@ TEST(Guards, StaleIsTheSensorsWordWhereTheAgeIsNotKnown) {
     bench.rig.t_ns = known ? bench.clock.now_ns() : 0;
     bench.rig.quality = config::signals::Quality::stale;
     bench.tick();
-    EXPECT_EQ(bench.state(), known ? State::run : State::latched);
+    EXPECT_EQ(bench.state(), known ? ArmingState::run : ArmingState::latched);
   }
 }
 
@@ -189,7 +189,7 @@ TEST(Guards, OverrunTakesTheActionOfItsEntry) {
   bench.clock.advance_ns(3 * kFakePeriod_ns + 1);
   bench.rig.y_m = 0.15;
   EXPECT_DOUBLE_EQ(bench.sample().reference_m, 0.15);
-  EXPECT_EQ(bench.state(), State::run);
+  EXPECT_EQ(bench.state(), ArmingState::run);
 }
 
 TEST(Start, BeginsWhereTheRodIsAndSoDoesTheLawAfterANull) {
@@ -227,7 +227,7 @@ TEST(Permit, TogglesWithEveryGoodTickAndStopsWithATrip) {
   EXPECT_EQ(bench.permit.edges, 11);
   bench.rig.y_m = 0.21;
   for (int k = 0; k < 5; ++k) bench.tick();
-  EXPECT_EQ(bench.state(), State::latched);
+  EXPECT_EQ(bench.state(), ArmingState::latched);
   EXPECT_EQ(bench.permit.edges, 11);
   EXPECT_EQ(bench.stats.permit_good.value(), 11);
 }

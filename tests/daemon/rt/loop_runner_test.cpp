@@ -70,7 +70,7 @@ TEST(VirtualRun, WritesNullWhenItIsToldToStop) {
                         bench.stop);
   EXPECT_EQ(run_virtual(runner, bench.detector, bench.stop, [&] { return ++looks == 4; }), "");
   EXPECT_EQ(bench.rig.writes.back().u_V, kFakeNull_V);
-  EXPECT_EQ(bench.stats.state.load(), control::State::disarmed);
+  EXPECT_EQ(bench.stats.state.load(), control::ArmingState::disarmed);
 }
 
 TEST(VirtualRun, WritesNullWhenTheDeviceEnds) {

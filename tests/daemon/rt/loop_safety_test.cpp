@@ -8,8 +8,8 @@
 namespace monitor::rt {
 namespace {
 
+using control::ArmingState;
 using control::Event;
-using control::State;
 
 TEST(Overrun, HoldsTheOutputMarksTheGapAndGoesOnWithTheLaw) {
   LoopBench bench;
@@ -44,8 +44,9 @@ TEST(Overrun, WritesNullInTheFirstTickAfterFiftyMilliseconds) {
 }
 
 TEST(Overrun, MoreThanAllowedInARowTakesTheConfiguredAction) {
-  for (const auto& [action, state] :
-       {std::pair{"latch", State::latched}, {"disarm", State::disarmed}, {"count", State::run}}) {
+  for (const auto& [action, state] : {std::pair{"latch", ArmingState::latched},
+                                      {"disarm", ArmingState::disarmed},
+                                      {"count", ArmingState::run}}) {
     LoopConfig config;
     config.max_lost_in_a_row = 2;
     config.overrun_action = action;
@@ -53,12 +54,12 @@ TEST(Overrun, MoreThanAllowedInARowTakesTheConfiguredAction) {
     bench.run();
     bench.clock.advance_ns(2 * kFakePeriod_ns + 1);
     bench.tick();
-    EXPECT_EQ(bench.state(), State::run) << action;
+    EXPECT_EQ(bench.state(), ArmingState::run) << action;
     bench.tick();
     bench.clock.advance_ns(3 * kFakePeriod_ns + 1);
     bench.tick();
     EXPECT_EQ(bench.state(), state) << action;
-    EXPECT_EQ(bench.last_V() == kFakeNull_V, state != State::run) << action;
+    EXPECT_EQ(bench.last_V() == kFakeNull_V, state != ArmingState::run) << action;
   }
 }
 
@@ -84,13 +85,13 @@ TEST(Loop, WritesNullWhileThePositionIsMissingAndLatchesAfterTooMany) {
     EXPECT_EQ(sample.u_applied_V, kFakeNull_V);
     EXPECT_TRUE(std::isnan(sample.y_m)) << "a missing value must not look like a reading";
     EXPECT_EQ(sample.quality, config::signals::Quality::bad);
-    EXPECT_EQ(bench.state(), State::run);
+    EXPECT_EQ(bench.state(), ArmingState::run);
   }
   bench.rig.quality = config::signals::Quality::good;
   EXPECT_NEAR(bench.sample().u_applied_V, kController_V, kRounding_V);
   bench.rig.y_m = std::nan("");  // no number is no reading, whatever the device says of it
   for (int k = 0; k < 4; ++k) bench.tick();
-  EXPECT_EQ(bench.state(), State::latched);
+  EXPECT_EQ(bench.state(), ArmingState::latched);
   EXPECT_EQ(bench.stats.trip.load(), Trip::reading);
   EXPECT_EQ(bench.stats.rod.bad.value(), 7);
   bench.rig.y_m = 0.1;
@@ -104,9 +105,9 @@ TEST(Loop, LatchesWhenTheValveCannotBeWritten) {
   bench.run();
   bench.rig.write_good = false;
   bench.tick();
-  EXPECT_EQ(bench.state(), State::run);
+  EXPECT_EQ(bench.state(), ArmingState::run);
   bench.tick();
-  EXPECT_EQ(bench.state(), State::latched);
+  EXPECT_EQ(bench.state(), ArmingState::latched);
   EXPECT_EQ(bench.stats.trip.load(), Trip::write);
   bench.tick();
   EXPECT_EQ(bench.last_V(), kFakeNull_V);
@@ -119,11 +120,11 @@ TEST(Loop, ResetLeadsToDisarmedNotBackToMotion) {
   bench.run();
   bench.rig.quality = config::signals::Quality::bad;
   bench.tick();
-  ASSERT_EQ(bench.state(), State::latched);
+  ASSERT_EQ(bench.state(), ArmingState::latched);
   bench.rig.quality = config::signals::Quality::good;
   bench.command(Event::reset);
   bench.tick();
-  EXPECT_EQ(bench.state(), State::disarmed);
+  EXPECT_EQ(bench.state(), ArmingState::disarmed);
   EXPECT_EQ(bench.stats.trip.load(), Trip::none);
   EXPECT_EQ(bench.last_V(), kFakeNull_V);
 }
@@ -136,7 +137,7 @@ TEST(Loop, ClosingWritesNullWhateverIsOrdered) {
     bench.command(Event::arm);
     bench.command(Event::start);
     EXPECT_EQ(bench.sample().u_applied_V, kFakeNull_V);
-    EXPECT_EQ(bench.state(), State::disarmed);
+    EXPECT_EQ(bench.state(), ArmingState::disarmed);
   }
 }
 

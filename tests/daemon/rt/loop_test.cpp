@@ -8,8 +8,8 @@
 namespace monitor::rt {
 namespace {
 
+using control::ArmingState;
 using control::Event;
-using control::State;
 
 TEST(Loop, WritesNullUntilItIsArmedAndStarted) {
   LoopBench bench;
@@ -17,11 +17,11 @@ TEST(Loop, WritesNullUntilItIsArmedAndStarted) {
   EXPECT_EQ(bench.last_V(), kFakeNull_V);
   bench.command(Event::arm);
   bench.tick();
-  EXPECT_EQ(bench.state(), State::armed);
+  EXPECT_EQ(bench.state(), ArmingState::armed);
   EXPECT_EQ(bench.last_V(), kFakeNull_V);
   bench.command(Event::start);
   bench.tick();
-  EXPECT_EQ(bench.state(), State::run);
+  EXPECT_EQ(bench.state(), ArmingState::run);
   EXPECT_NEAR(bench.last_V(), kController_V, kRounding_V);
   bench.command(Event::stop);
   bench.tick();
@@ -41,7 +41,7 @@ TEST(Loop, SampleCarriesWhatWasReadAskedForAndApplied) {
   EXPECT_EQ(sample.u_applied_V, bench.last_V());
   EXPECT_EQ(sample.t_read_ns, kFakePeriod_ns);
   EXPECT_EQ(sample.t_write_ns, kFakePeriod_ns + 40'000) << "y is read before u is written";
-  EXPECT_EQ(sample.state, static_cast<std::uint8_t>(State::run));
+  EXPECT_EQ(sample.state, static_cast<std::uint8_t>(ArmingState::run));
   EXPECT_FALSE(sample.saturated);
   bench.rig.y_m = -0.5;
   EXPECT_TRUE(bench.sample().saturated);
@@ -54,7 +54,7 @@ TEST(Loop, WithoutAValveIsMonitorAndPassesOnTheMeasuredCommand) {
   bench.command(Event::arm);
   bench.command(Event::start);
   const config::signals::Sample sample = bench.sample();
-  EXPECT_EQ(bench.state(), State::monitor);
+  EXPECT_EQ(bench.state(), ArmingState::monitor);
   EXPECT_TRUE(bench.rig.writes.empty());
   EXPECT_EQ(sample.u_applied_V, 1.25);
   EXPECT_TRUE(sample.saturated);
@@ -79,11 +79,11 @@ TEST(Loop, DropsCommandsThatHaveExpired) {
   bench.tick();
   bench.command(Event::arm, kFakePeriod_ns);  // due at the very time of the next tick: too late
   bench.tick();
-  EXPECT_EQ(bench.state(), State::disarmed);
+  EXPECT_EQ(bench.state(), ArmingState::disarmed);
   EXPECT_EQ(bench.stats.expired_commands.value(), 1);
   bench.command(Event::arm, kFakePeriod_ns + 1);
   bench.tick();
-  EXPECT_EQ(bench.state(), State::armed);
+  EXPECT_EQ(bench.state(), ArmingState::armed);
 }
 
 TEST(Loop, ReferenceBeginsAtTheStartAndACommandedOneTakesItsPlace) {
