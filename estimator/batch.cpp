@@ -42,7 +42,7 @@ Estimate fit_stretch(const Structure& structure, std::span<const double> u_V,
                      std::span<const std::size_t> gaps, const Limits& limits) {
   const auto history = static_cast<std::size_t>(structure.history());
   IncrementalQr factor(structure.size() + 1);
-  Span span;
+  ExcitationRange span;
   std::size_t rows = 0;
   // Runs of samples without a gap or a missing value, one after the other.
   std::size_t run = first > history ? first - history : 0;

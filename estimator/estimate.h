@@ -56,7 +56,7 @@ struct Limits {
 };
 
 /// Range that u and y covered, for the excitation test.
-struct Span {
+struct ExcitationRange {
   double min_u_V = std::numeric_limits<double>::infinity();
   double max_u_V = -std::numeric_limits<double>::infinity();
   double min_y_m = std::numeric_limits<double>::infinity();
@@ -68,7 +68,7 @@ struct Span {
     min_y_m = y_m < min_y_m ? y_m : min_y_m;
     max_y_m = y_m > max_y_m ? y_m : max_y_m;
   }
-  void add(const Span& other) noexcept {
+  void add(const ExcitationRange& other) noexcept {
     min_u_V = other.min_u_V < min_u_V ? other.min_u_V : min_u_V;
     max_u_V = other.max_u_V > max_u_V ? other.max_u_V : max_u_V;
     min_y_m = other.min_y_m < min_y_m ? other.min_y_m : min_y_m;

@@ -26,7 +26,7 @@ class Gate {
     ++count_;
   }
   [[nodiscard]] bool open(const Limits& limits) const noexcept {
-    Span both = now_;
+    ExcitationRange both = now_;
     both.add(before_);
     return both.excited(limits);
   }
@@ -34,8 +34,8 @@ class Gate {
  private:
   int window_;
   int count_ = 0;
-  Span now_;
-  Span before_;
+  ExcitationRange now_;
+  ExcitationRange before_;
 };
 
 void check(bool good, const std::string& what) {

@@ -13,7 +13,7 @@ namespace {
 /// Contents of a block, or of several merged ones, besides the factor.
 struct Tally {
   int rows = 0;
-  Span span;
+  ExcitationRange span;
 
   void add(const Tally& other) noexcept {
     rows += other.rows;

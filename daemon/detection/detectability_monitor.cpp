@@ -14,12 +14,12 @@ constexpr std::string_view kDisturbance = "disturbance_";
 }  // namespace
 
 void DetectabilityMonitor::update(const estimator::fdi::EstimateEvent& event) {
-  const auto tells = [](const estimator::fdi::NamedValue& value) {
+  const auto tells = [](const estimator::fdi::EstimatedValue& value) {
     return std::string_view(value.name).starts_with(kSmallest);
   };
   if (std::none_of(event.begin(), event.end(), tells)) return;
   io::Detectable now{std::string(event.source), event.tick, std::string(event.reason), {}, {}};
-  for (const estimator::fdi::NamedValue& value : event) {
+  for (const estimator::fdi::EstimatedValue& value : event) {
     const std::string_view name = value.name;
     if (name.starts_with(kDisturbance) && std::isfinite(value.value)) {
       now.disturbance.emplace_back(name.substr(kDisturbance.size()), value.value);

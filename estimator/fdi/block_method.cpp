@@ -56,7 +56,7 @@ bool BlockMethod::close() noexcept {
   return true;
 }
 
-MethodOutput BlockMethod::evaluate(std::span<NamedValue> values) noexcept {
+MethodOutput BlockMethod::evaluate(std::span<EstimatedValue> values) noexcept {
   show(values);
   MethodOutput found;
   found.valid = valid_;

@@ -22,7 +22,7 @@ class BlockMethod : public DetectionMethod {
 
   bool on_gap(std::int64_t periods) noexcept final;
   bool push(const config::signals::Sample& sample, double y_m) noexcept final;
-  MethodOutput evaluate(std::span<NamedValue> values) noexcept final;
+  MethodOutput evaluate(std::span<EstimatedValue> values) noexcept final;
   void reset() final;
   void serialize(StateArchive& archive) final;
   [[nodiscard]] double interval_s() const noexcept final { return interval_s_; }
@@ -30,7 +30,7 @@ class BlockMethod : public DetectionMethod {
  protected:
   /// A block's means, in the order of the quantities.
   virtual void take(std::span<const double> means) noexcept = 0;
-  virtual void show(std::span<NamedValue> values) const noexcept = 0;
+  virtual void show(std::span<EstimatedValue> values) const noexcept = 0;
   virtual void forget() noexcept = 0;
   virtual void serialize_state(StateArchive& archive) = 0;
   /// False before the first block.

@@ -83,7 +83,7 @@ class Classifier final : public BlockMethod {
     double t2 = 0.0;  ///< T^2 of `nearest`
   };
   void take(std::span<const double> means) noexcept override;
-  void show(std::span<NamedValue> values) const noexcept override {
+  void show(std::span<EstimatedValue> values) const noexcept override {
     values[0].value = valid() ? answer_.found : kNaN;
     values[1].value = valid() && answer_.found != kNone ? answer_.probability : kNaN;
     values[2].value = valid() ? answer_.t2 : kNaN;

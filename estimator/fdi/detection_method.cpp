@@ -20,11 +20,11 @@ void OutputPort::reset() noexcept {
   output = MethodOutput{};
   reason[0] = '\0';
   fresh = false;
-  for (NamedValue& v : values) v.value = v.std_error = kNaN;
+  for (EstimatedValue& v : values) v.value = v.std_error = kNaN;
 }
 
 void OutputPort::serialize(StateArchive& archive) {
-  for (NamedValue& v : values) {
+  for (EstimatedValue& v : values) {
     archive.value(v.value);
     archive.value(v.std_error);
   }

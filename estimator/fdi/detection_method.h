@@ -50,7 +50,7 @@ class DetectionMethod {
   /// due.
   virtual bool push(const config::signals::Sample& sample, double y_m) noexcept = 0;
   /// Sets value and std_error of each of `values`, which are in the order of names().
-  virtual MethodOutput evaluate(std::span<NamedValue> values) noexcept = 0;
+  virtual MethodOutput evaluate(std::span<EstimatedValue> values) noexcept = 0;
   /// Present input of the number-th of declared_alarms(); views hold until the next call. The
   /// pipeline sets the tick. AlarmInput::fault names the parameter and its ambiguity group.
   [[nodiscard]] virtual AlarmInput alarm_input(std::size_t /*number*/) const noexcept { return {}; }
@@ -70,7 +70,7 @@ void end_after_a_word(std::span<char> text, int wanted) noexcept;
 /// The newest output of a method, as other methods read it.
 struct OutputPort {
   static constexpr std::size_t kReason = 320;
-  std::vector<NamedValue> values;
+  std::vector<EstimatedValue> values;
   MethodOutput output;        ///< output.reason points to `reason`
   char reason[kReason] = "";  ///< truncated after a whole word
   bool fresh = false;         ///< evaluated with the present sample

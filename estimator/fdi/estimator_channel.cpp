@@ -131,11 +131,11 @@ Estimate EstimatorChannel::estimate() const noexcept {
   return found;
 }
 
-MethodOutput EstimatorChannel::evaluate(std::span<NamedValue> values) noexcept {
+MethodOutput EstimatorChannel::evaluate(std::span<EstimatedValue> values) noexcept {
   const Estimate found = estimate();
   const int size = structure_.size();
   for (int i = 0; i < size; ++i) {
-    NamedValue& v = values[static_cast<std::size_t>(i)];
+    EstimatedValue& v = values[static_cast<std::size_t>(i)];
     v.value = i < found.size ? found.value[i] : kNaN;
     v.std_error = i < found.size ? found.std_error[i] : kNaN;
   }

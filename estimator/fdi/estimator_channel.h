@@ -23,7 +23,7 @@ class EstimatorChannel final : public DetectionMethod {
   }
   bool on_gap(std::int64_t periods) noexcept override;
   bool push(const config::signals::Sample& sample, double y_m) noexcept override;
-  MethodOutput evaluate(std::span<NamedValue> values) noexcept override;
+  MethodOutput evaluate(std::span<EstimatedValue> values) noexcept override;
   void reset() override;
   void serialize(StateArchive& archive) override;
   [[nodiscard]] double interval_s() const noexcept override {

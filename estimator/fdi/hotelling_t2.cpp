@@ -51,7 +51,7 @@ class HotellingT2Method final : public BlockMethod {
     t2_ = healthy_.statistic(means);
     main_contributor_ = healthy_.main_contributor();
   }
-  void show(std::span<NamedValue> values) const noexcept override {
+  void show(std::span<EstimatedValue> values) const noexcept override {
     values[0].value = valid() ? t2_ : kNaN;
     values[1].value = limit_;
   }

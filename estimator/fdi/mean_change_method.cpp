@@ -82,7 +82,7 @@ void MeanChangeMethod::take(std::span<const double> means) noexcept {
   out_ = verdict_.statistic >= (out_ ? kGone : 1.0);
 }
 
-void MeanChangeMethod::show(std::span<NamedValue> values) const noexcept {
+void MeanChangeMethod::show(std::span<EstimatedValue> values) const noexcept {
   values[0].value = valid() ? verdict_.statistic : kNaN;
   values[1].value = valid() ? verdict_.shift * config_->std_dev : kNaN;
   values[1].std_error =

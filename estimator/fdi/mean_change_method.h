@@ -58,7 +58,7 @@ class MeanChangeMethod : public BlockMethod {
   [[nodiscard]] double mean_error() const noexcept;
 
   void take(std::span<const double> means) noexcept final;
-  void show(std::span<NamedValue> values) const noexcept final;
+  void show(std::span<EstimatedValue> values) const noexcept final;
   void forget_verdict() noexcept { verdict_ = {}, out_ = false; }
   void serialize_verdict(StateArchive& archive);
 

@@ -143,7 +143,7 @@ class Observer final : public DetectionMethod {
     }
     return since_ == 0;
   }
-  MethodOutput evaluate(std::span<NamedValue> values) noexcept override {
+  MethodOutput evaluate(std::span<EstimatedValue> values) noexcept override {
     MethodOutput found;
     found.warming_up = settled_ < 2 * window_ && !missing_;
     found.valid = !missing_ && !found.warming_up;

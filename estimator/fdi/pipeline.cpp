@@ -9,7 +9,7 @@
 namespace estimator::fdi {
 
 double EstimateEvent::value(std::string_view name) const noexcept {
-  for (const NamedValue& v : *this) {
+  for (const EstimatedValue& v : *this) {
     if (v.name == name) return v.value;
   }
   return kNaN;
@@ -61,7 +61,7 @@ void Pipeline::Impl::evaluate(MethodSlot& slot, std::int64_t tick, std::int64_t 
                       port.values.data() + port.values.size()});
   if (found.warming_up) return;
   for (std::size_t i = 0; i < port.values.size(); ++i) {
-    const NamedValue& value = port.values[i];
+    const EstimatedValue& value = port.values[i];
     for (BandMonitor& monitor : slot.monitors[i]) {
       monitor_band(monitor, {value.value, value.std_error, found.valid, port.reason, tick}, events);
     }

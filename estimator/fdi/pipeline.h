@@ -31,10 +31,10 @@ struct EstimateEvent {
   std::string_view reason;  ///< why not valid, "" when valid
   double condition;         ///< 2-norm condition number of the scaled regressors
   int samples;              ///< regressor rows used
-  const NamedValue* begin_values;
-  const NamedValue* end_values;
-  [[nodiscard]] const NamedValue* begin() const noexcept { return begin_values; }
-  [[nodiscard]] const NamedValue* end() const noexcept { return end_values; }
+  const EstimatedValue* begin_values;
+  const EstimatedValue* end_values;
+  [[nodiscard]] const EstimatedValue* begin() const noexcept { return begin_values; }
+  [[nodiscard]] const EstimatedValue* end() const noexcept { return end_values; }
   [[nodiscard]] std::size_t size() const noexcept {
     return static_cast<std::size_t>(end_values - begin_values);
   }

@@ -69,13 +69,13 @@ class PolynomialMethod final : public DetectionMethod {
     }
     return advance(1);
   }
-  MethodOutput evaluate(std::span<NamedValue> values) noexcept override {
+  MethodOutput evaluate(std::span<EstimatedValue> values) noexcept override {
     const int size = options_.orders.size();
     std::array<double, kMaxCoefficients> errors{};
     filter_.std_error(errors.data());
     bool finite = true;
     for (int i = 0; i < size; ++i) {
-      NamedValue& v = values[static_cast<std::size_t>(i)];
+      EstimatedValue& v = values[static_cast<std::size_t>(i)];
       v.value = filter_.value()[i];
       v.std_error = errors[static_cast<std::size_t>(i)];
       finite = finite && std::isfinite(v.value) && std::isfinite(v.std_error);

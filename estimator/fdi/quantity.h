@@ -22,7 +22,7 @@ namespace estimator::fdi {
 inline constexpr std::string_view kSampleSource = "sample";
 
 /// One number of a method, with its uncertainty and limits.
-struct NamedValue {
+struct EstimatedValue {
   std::string_view name;  ///< a1, b1, constant, residual_rms_m, ...
   double value;
   double std_error;  ///< NaN where unknown

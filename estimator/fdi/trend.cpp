@@ -68,7 +68,7 @@ class Trend final : public BlockMethod {
     out_ = trend_.seen() > 2 && certain > (out_ ? kGone : kNotByChance) &&
            time_to_limit_s() < config_.horizon_s;
   }
-  void show(std::span<NamedValue> values) const noexcept override {
+  void show(std::span<EstimatedValue> values) const noexcept override {
     const bool known = valid() && trend_.seen() > 1;
     values[0].value = valid() ? trend_.level() : kNaN;
     values[0].std_error = valid() ? trend_.level_error() : kNaN;

@@ -46,7 +46,7 @@ class Voter final : public DetectionMethod {
     samples_ = 0;
     return true;
   }
-  MethodOutput evaluate(std::span<NamedValue> values) noexcept override {
+  MethodOutput evaluate(std::span<EstimatedValue> values) noexcept override {
     MethodOutput found;
     found.valid = !std::isnan(vote_.value());
     found.reason = found.valid ? "" : "the channels disagree or are missing";

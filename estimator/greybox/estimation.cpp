@@ -234,7 +234,7 @@ class Estimator {
       q.std_error = known_.std_error[j] * p.slope(solution_.x[j]);
       q.low = std::min(p.to_physical(known_.low[j]), p.to_physical(known_.high[j]));
       q.high = std::max(p.to_physical(known_.low[j]), p.to_physical(known_.high[j]));
-      q.at_bound = solution_.at_bound[i] * (p.scale == Scale::reciprocal ? -1 : 1);
+      q.at_bound = solution_.at_bound[i] * (p.scale == ParameterScale::reciprocal ? -1 : 1);
       q.record_share = out_.identifiability_after.share[j];
       out_.parameters.push_back(q);
       for (Index k = 0; k < n; ++k) {

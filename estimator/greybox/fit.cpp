@@ -27,7 +27,7 @@ estimator::nonlinear::Problem problem_of(const FitDataset& data, const Eigen::Ve
     estimator::nonlinear::Unknown unknown;
     unknown.lower = p.lower;
     unknown.upper = p.upper;
-    const bool logarithm = p.scale == Scale::logarithmic;
+    const bool logarithm = p.scale == ParameterScale::logarithmic;
     unknown.step = logarithm ? logarithm_step : kDifference;
     unknown.relative_step = unknown.step;
     unknown.prior_mean = p.prior_mean;

@@ -17,11 +17,11 @@ constexpr double kLargest = 200.0;
 
 double FreeParameter::to_physical(double theta) const {
   switch (scale) {
-    case Scale::logarithmic:
+    case ParameterScale::logarithmic:
       return unit * std::exp(theta);
-    case Scale::reciprocal:
+    case ParameterScale::reciprocal:
       return theta > 0.0 ? unit / theta : kInfinite;
-    case Scale::linear:
+    case ParameterScale::linear:
       break;
   }
   return unit * theta;
@@ -29,11 +29,11 @@ double FreeParameter::to_physical(double theta) const {
 
 double FreeParameter::to_theta(double value) const {
   switch (scale) {
-    case Scale::logarithmic:
+    case ParameterScale::logarithmic:
       return std::log(value / unit);
-    case Scale::reciprocal:
+    case ParameterScale::reciprocal:
       return unit / value;
-    case Scale::linear:
+    case ParameterScale::linear:
       break;
   }
   return value / unit;
@@ -41,11 +41,11 @@ double FreeParameter::to_theta(double value) const {
 
 double FreeParameter::slope(double theta) const {
   switch (scale) {
-    case Scale::logarithmic:
+    case ParameterScale::logarithmic:
       return unit * std::exp(theta);
-    case Scale::reciprocal:
+    case ParameterScale::reciprocal:
       return unit / (theta * theta);
-    case Scale::linear:
+    case ParameterScale::linear:
       break;
   }
   return std::abs(unit);
@@ -60,7 +60,7 @@ std::vector<FreeParameter> plant_parameters(const plant_sim::ModelFile& model) {
     if (info.uncertainty_ratio <= 0.0 || value <= 0.0) continue;
     const double sd = info.uncertainty_ratio;
     const double least = info.min > 0.0 ? std::log(info.min / value) : -kInfinite;
-    found.push_back({info.name, Scale::logarithmic, value, std::max(least, -kWidest * sd),
+    found.push_back({info.name, ParameterScale::logarithmic, value, std::max(least, -kWidest * sd),
                      std::min(std::log(info.max / value), kWidest * sd), 0.0, sd});
   }
   return found;
@@ -76,7 +76,7 @@ std::vector<FreeParameter> effect_parameters(const plant_sim::EffectInfo& effect
     p.prior_sd = kInfinite;
     p.refinement = info.refinement;
     if (std::isinf(info.neutral)) {
-      p.scale = Scale::reciprocal;
+      p.scale = ParameterScale::reciprocal;
       p.lower = 0.0;
       p.upper = info.min > 0.0 ? std::min(info.typical / info.min, kLargest) : kLargest;
     } else {

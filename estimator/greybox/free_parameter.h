@@ -15,13 +15,13 @@
 
 namespace estimator::greybox {
 
-enum class Scale { linear, logarithmic, reciprocal };
+enum class ParameterScale { linear, logarithmic, reciprocal };
 
 inline constexpr int kEveryRefinement = 1000;
 
 struct FreeParameter {
   std::string name;  ///< "damping_N_s_per_m", "friction.coulomb_N"
-  Scale scale = Scale::linear;
+  ParameterScale scale = ParameterScale::linear;
   double unit = 1.0;
   double lower = 0.0;  ///< bounds of theta
   double upper = 0.0;

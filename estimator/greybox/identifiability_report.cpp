@@ -30,9 +30,9 @@ class IdentifiabilityAnalysis {
     for (Index j = 0; j < theta.size(); ++j) {
       const auto& p = parameters[static_cast<std::size_t>(j)];
       const bool prior = std::isfinite(p.prior_sd);
-      scale_[j] = prior                           ? p.prior_sd
-                  : p.scale == Scale::logarithmic ? 1.0
-                                                  : std::max(std::abs(theta[j]), 0.1);
+      scale_[j] = prior                                    ? p.prior_sd
+                  : p.scale == ParameterScale::logarithmic ? 1.0
+                                                           : std::max(std::abs(theta[j]), 0.1);
       prior_[j] = prior ? 1.0 : 0.0;
     }
     const VectorXd nothing = VectorXd::Zero(problem.residuals);
@@ -91,8 +91,8 @@ class IdentifiabilityAnalysis {
   static std::size_t index(Index j) { return static_cast<std::size_t>(j); }
 
   bool both_logarithmic(Index a, Index b) const {
-    return parameters_[index(a)].scale == Scale::logarithmic &&
-           parameters_[index(b)].scale == Scale::logarithmic;
+    return parameters_[index(a)].scale == ParameterScale::logarithmic &&
+           parameters_[index(b)].scale == ParameterScale::logarithmic;
   }
 
   /// Distance that j can move unnoticed when only k follows.

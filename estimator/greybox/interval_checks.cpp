@@ -29,7 +29,7 @@ constexpr double kSeen = 0.5;
 
 bool is_large(const FreeParameter& p, double theta, double std_error) {
   return std_error >
-         (p.scale == Scale::logarithmic ? kLargeLogarithm : kLargeShare * std::abs(theta));
+         (p.scale == ParameterScale::logarithmic ? kLargeLogarithm : kLargeShare * std::abs(theta));
 }
 
 /// Marks parameters whose cost at the ends of their intervals differs from the linear model's.
@@ -108,7 +108,7 @@ std::vector<Profile> profiles(const EstimationProblem& question, const Estimatio
     if (chosen[i] != 0) which.push_back(i);
   }
   std::vector<Profile> found(chosen.size());
-  const Width width = which.size() == 1 ? wide(options.threads) : Width{};
+  const SimulationWidth width = which.size() == 1 ? wide(options.threads) : SimulationWidth{};
   in_parallel(which.size(), options.threads, [&](std::size_t k) {
     const std::size_t i = which[k];
     const auto j = static_cast<Index>(i);
@@ -138,7 +138,7 @@ void apply_profile(const estimator::nonlinear::Profile& walked, EstimatedParamet
   q.high_found = walked.high_found;
   q.low = p.to_physical(walked.low);
   q.high = p.to_physical(walked.high);
-  if (p.scale == Scale::reciprocal) {
+  if (p.scale == ParameterScale::reciprocal) {
     std::reverse(q.profile.begin(), q.profile.end());
     std::swap(q.low, q.high);
     std::swap(q.low_found, q.high_found);

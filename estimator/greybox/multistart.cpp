@@ -26,7 +26,7 @@ double drawn(const FreeParameter& p, double start, Draw& draw) {
   const double z = draw.normal();
   const double sign = draw.uniform() < 0.5 ? -1.0 : 1.0;
   if (std::isfinite(p.prior_sd)) return p.prior_mean + p.prior_sd * z;
-  if (p.scale == Scale::logarithmic) return start + 0.5 * z;
+  if (p.scale == ParameterScale::logarithmic) return start + 0.5 * z;
   if (start != 0.0) return start * std::exp(0.6 * z);
   const double size = 0.3 * std::exp(z);
   return p.lower < 0.0 ? sign * size : size;

@@ -8,7 +8,7 @@ namespace estimator::greybox {
 
 ParallelSimulation::ParallelSimulation(const plant_sim::ModelFile& model, const FitDataset& data,
                                        const std::vector<FreeParameter>& parameters,
-                                       double observer_per_s, Width width)
+                                       double observer_per_s, SimulationWidth width)
     : threads_(width.threads) {
   for (unsigned i = 0; i < std::max(1U, width.groups); ++i) {
     runs_.emplace_back(model, data, parameters, observer_per_s);

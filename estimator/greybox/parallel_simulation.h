@@ -11,17 +11,17 @@ namespace estimator::greybox {
 /// Groups of eight parameter sets that one evaluation takes, and the threads that share them. A
 /// search tries as many points at once as there are lanes: the number of groups is part of its
 /// result and never follows from the number of threads.
-struct Width {
+struct SimulationWidth {
   unsigned groups = 1;
   unsigned threads = 1;  ///< the caller's included
 };
-[[nodiscard]] constexpr Width wide(unsigned threads) { return {2, threads}; }
+[[nodiscard]] constexpr SimulationWidth wide(unsigned threads) { return {2, threads}; }
 
 class ParallelSimulation {
  public:
   ParallelSimulation(const plant_sim::ModelFile& model, const FitDataset& data,
                      const std::vector<FreeParameter>& parameters, double observer_per_s,
-                     Width width);
+                     SimulationWidth width);
 
   [[nodiscard]] Eigen::Index lanes() const;
   /// Residuals in m, data.size() x points.cols(); at most lanes() columns.

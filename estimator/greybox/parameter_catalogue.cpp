@@ -19,7 +19,7 @@ void widen_to_full_range(CatalogueParameter& known) {
   FreeParameter& p = known.free;
   p.prior_mean = 0.0;
   p.prior_sd = kInfinite;
-  if (p.scale == Scale::logarithmic) {
+  if (p.scale == ParameterScale::logarithmic) {
     p.lower = known.info.min > 0.0 ? std::log(known.info.min / p.unit) : -20.0;
     p.upper = std::log(known.info.max / p.unit);
   }
@@ -39,7 +39,7 @@ std::vector<CatalogueParameter> parameter_catalogue(const plant_sim::ModelFile& 
       FreeParameter& p = known.free;
       const double value = model.parameters[i].value;
       p.name = known.name;
-      p.scale = value > 0.0 ? Scale::logarithmic : Scale::linear;
+      p.scale = value > 0.0 ? ParameterScale::logarithmic : ParameterScale::linear;
       p.unit = value > 0.0 ? value : (known.info.typical > 0.0 ? known.info.typical : 1.0);
       p.lower = known.info.min / p.unit;
       p.upper = known.info.max / p.unit;

@@ -87,7 +87,7 @@ double counting(const Problem& problem) {
 }
 
 /// A series of the residual: its rows, its colour, its noise.
-struct Stretch {
+struct ResidualSegment {
   Index from = 0;
   Index rows = 0;
   residual::Autoregression model;
@@ -95,13 +95,14 @@ struct Stretch {
   double share = 0.0;  ///< share of the residuals that count
 };
 
-std::vector<Stretch> colours(const Problem& problem, const Solution& solution,
-                             const CovarianceOptions& options, double correction, double counted) {
+std::vector<ResidualSegment> colours(const Problem& problem, const Solution& solution,
+                                     const CovarianceOptions& options, double correction,
+                                     double counted) {
   std::vector<Index> firsts{0};
   firsts.insert(firsts.end(), options.series.begin(), options.series.end());
-  std::vector<Stretch> out;
+  std::vector<ResidualSegment> out;
   for (std::size_t k = 0; k < firsts.size(); ++k) {
-    Stretch one;
+    ResidualSegment one;
     one.from = firsts[k];
     one.rows = (k + 1 < firsts.size() ? firsts[k + 1] : problem.residuals) - one.from;
     std::vector<double> series(static_cast<std::size_t>(one.rows), kNaN);
@@ -154,9 +155,10 @@ Covariance covariance(const Problem& problem, const Solution& solution,
 
   const double counted = counting(problem);
   const double correction = counted / std::max(1.0, counted - static_cast<double>(f));
-  const std::vector<Stretch> stretches = colours(problem, solution, options, correction, counted);
+  const std::vector<ResidualSegment> stretches =
+      colours(problem, solution, options, correction, counted);
   double variance = 0.0;
-  for (const Stretch& stretch : stretches) {
+  for (const ResidualSegment& stretch : stretches) {
     variance += stretch.share * stretch.variance;
     out.effective_samples += stretch.model.effective_samples();
   }
@@ -198,7 +200,7 @@ Covariance covariance(const Problem& problem, const Solution& solution,
   if (options.colour == Colour::scores) {
     middle = scores_middle(wj, solution.residual, problem, correction);
   } else {
-    for (const Stretch& stretch : stretches) {
+    for (const ResidualSegment& stretch : stretches) {
       middle += coloured_middle(wj.middleRows(stretch.from, stretch.rows), stretch.model);
     }
   }

@@ -25,9 +25,9 @@ Eigen::MatrixXd Groups::run(const Eigen::MatrixXd& points) {
   return out;
 }
 
-std::vector<Probe> probes_at(const Problem& problem, const Eigen::VectorXd& x,
-                             const std::vector<Eigen::Index>& columns, bool central) {
-  std::vector<Probe> out;
+std::vector<DifferenceStep> probes_at(const Problem& problem, const Eigen::VectorXd& x,
+                                      const std::vector<Eigen::Index>& columns, bool central) {
+  std::vector<DifferenceStep> out;
   for (const Eigen::Index j : columns) {
     const Unknown& unknown = problem.unknowns[static_cast<std::size_t>(j)];
     if (unknown.is_held()) continue;
@@ -50,7 +50,7 @@ std::vector<Probe> probes_at(const Problem& problem, const Eigen::VectorXd& x,
   return out;
 }
 
-Eigen::MatrixXd points_at(const Eigen::VectorXd& x, const std::vector<Probe>& probes,
+Eigen::MatrixXd points_at(const Eigen::VectorXd& x, const std::vector<DifferenceStep>& probes,
                           std::size_t first, std::size_t count) {
   Eigen::MatrixXd out = x.replicate(1, static_cast<Eigen::Index>(count));
   for (std::size_t k = 0; k < count; ++k) {
@@ -68,14 +68,14 @@ bool is_finite(const Problem& problem, const Eigen::Ref<const Eigen::VectorXd>& 
 }
 
 void fill_columns(const Problem& problem, const Eigen::VectorXd& x, const Eigen::VectorXd& residual,
-                  const std::vector<Probe>& probes, const Eigen::MatrixXd& results, Groups& groups,
-                  Eigen::MatrixXd& jacobian) {
+                  const std::vector<DifferenceStep>& probes, const Eigen::MatrixXd& results,
+                  Groups& groups, Eigen::MatrixXd& jacobian) {
   // The offset that x really got, after rounding.
-  const auto moved = [&](const Probe& probe) {
+  const auto moved = [&](const DifferenceStep& probe) {
     volatile const double there = x[probe.column] + probe.offset;
     return there - x[probe.column];
   };
-  std::vector<Probe> again;
+  std::vector<DifferenceStep> again;
   for (std::size_t k = 0; k < probes.size(); ++k) {
     const auto column = results.col(static_cast<Eigen::Index>(k));
     const Eigen::Index j = probes[k].column;

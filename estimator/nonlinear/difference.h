@@ -13,7 +13,7 @@
 
 namespace estimator::nonlinear {
 
-struct Probe {
+struct DifferenceStep {
   Eigen::Index column = 0;
   double offset = 0.0;  ///< signed
 };
@@ -36,19 +36,22 @@ class Groups {
 };
 
 /// The points to evaluate around x for `columns`: one or two per column.
-[[nodiscard]] std::vector<Probe> probes_at(const Problem& problem, const Eigen::VectorXd& x,
-                                           const std::vector<Eigen::Index>& columns, bool central);
+[[nodiscard]] std::vector<DifferenceStep> probes_at(const Problem& problem,
+                                                    const Eigen::VectorXd& x,
+                                                    const std::vector<Eigen::Index>& columns,
+                                                    bool central);
 
 /// One column per probe.
-[[nodiscard]] Eigen::MatrixXd points_at(const Eigen::VectorXd& x, const std::vector<Probe>& probes,
+[[nodiscard]] Eigen::MatrixXd points_at(const Eigen::VectorXd& x,
+                                        const std::vector<DifferenceStep>& probes,
                                         std::size_t first, std::size_t count);
 
 /// Fills the columns that `probes` belong to from their residuals (one column each, same order).
 /// A probe that could not be evaluated is tried again on the other side, nearer; failing that the
 /// column becomes 0.
 void fill_columns(const Problem& problem, const Eigen::VectorXd& x, const Eigen::VectorXd& residual,
-                  const std::vector<Probe>& probes, const Eigen::MatrixXd& results, Groups& groups,
-                  Eigen::MatrixXd& jacobian);
+                  const std::vector<DifferenceStep>& probes, const Eigen::MatrixXd& results,
+                  Groups& groups, Eigen::MatrixXd& jacobian);
 
 /// True when every residual that counts is finite.
 [[nodiscard]] bool is_finite(const Problem& problem,

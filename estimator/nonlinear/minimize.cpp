@@ -85,7 +85,7 @@ Eigen::VectorXd Search::inside(Eigen::VectorXd x) const {
 }
 
 void Search::renew(const std::vector<Eigen::Index>& columns) {
-  const std::vector<Probe> probes = probes_at(problem_, x_, columns, options_.central);
+  const std::vector<DifferenceStep> probes = probes_at(problem_, x_, columns, options_.central);
   const Eigen::MatrixXd results = groups_.run(points_at(x_, probes, 0, probes.size()));
   fill_columns(problem_, x_, r_, probes, results, groups_, J_);
   for (const Eigen::Index j : columns) age_[static_cast<std::size_t>(j)] = 0;
@@ -112,7 +112,7 @@ bool Search::begin(const Eigen::VectorXd& start) {
     if (!missing.empty()) renew(missing);
     return true;
   }
-  const std::vector<Probe> probes = probes_at(problem_, x_, missing, options_.central);
+  const std::vector<DifferenceStep> probes = probes_at(problem_, x_, missing, options_.central);
   const auto count = static_cast<Eigen::Index>(probes.size());
   Eigen::MatrixXd points(p_, count + 1);
   points.col(0) = x_;
@@ -201,7 +201,7 @@ bool Search::iterate() {
   for (int& age : age_) ++age;
   const std::vector<Eigen::Index> order = stale();
   for (int& age : age_) --age;
-  const std::vector<Probe> probes = probes_at(problem_, trial, order, options_.central);
+  const std::vector<DifferenceStep> probes = probes_at(problem_, trial, order, options_.central);
   const auto lanes = static_cast<std::size_t>(std::max<Eigen::Index>(1, problem_.lanes));
   const std::size_t needed = probes.size() + 1;
   const std::size_t spare = (needed + lanes - 1) / lanes * lanes - needed;
@@ -257,13 +257,13 @@ bool Search::iterate() {
   while (whole > 0 && whole < probes.size() && probes[whole - 1].column == probes[whole].column) {
     --whole;
   }
-  const std::vector<Probe> done(probes.begin(),
-                                probes.begin() + static_cast<std::ptrdiff_t>(whole));
+  const std::vector<DifferenceStep> done(probes.begin(),
+                                         probes.begin() + static_cast<std::ptrdiff_t>(whole));
   fill_columns(problem_, x_, r_, done,
                results.middleCols(static_cast<Eigen::Index>(1 + alternates),
                                   static_cast<Eigen::Index>(whole)),
                groups_, J_);
-  for (const Probe& probe : done) age_[static_cast<std::size_t>(probe.column)] = 0;
+  for (const DifferenceStep& probe : done) age_[static_cast<std::size_t>(probe.column)] = 0;
   if (options_.renew_all) {
     const std::vector<Eigen::Index> rest = stale();
     if (!rest.empty()) renew(rest);

@@ -17,7 +17,7 @@ constexpr double kRank = 1e-9;            // for a column-scaled matrix
 constexpr double kOwnInstrument = 1e-10;  // ratio to a column's length
 constexpr double kMostCorrelation = 1.0 - 1e-12;
 
-struct Regression {
+struct InstrumentalRegression {
   MatrixXd psi;
   MatrixXd z;
   VectorXd y;
@@ -48,18 +48,19 @@ MatrixXd unexplained(const MatrixXd& x, const MatrixXd& q) {
 
 MatrixXd centred(const MatrixXd& matrix) { return matrix.rowwise() - matrix.colwise().mean(); }
 
-Regression regression(const Structure& s, const Stretches& data,
-                      const std::vector<std::span<const double>>& reference_m,
-                      Instruments instruments) {
+InstrumentalRegression regression(const Structure& s, const Stretches& data,
+                                  const std::vector<std::span<const double>>& reference_m,
+                                  InstrumentChoice instruments) {
   const int count = 2 * (s.n + s.m);
   const int half = s.n + s.m;
   const int after = std::max(s.n, s.k + s.m - 1) + 1;  // beyond every regressor and e's memory
-  const int reach = instruments == Instruments::reference ? count : after + half - 1;
+  const int reach = instruments == InstrumentChoice::reference ? count : after + half - 1;
   const int first = std::max(s.history(), reach);
   Index rows = 0;
   for (const Stretch& stretch : data) rows += std::max(0, stretch.size() - first);
   const int constant = s.constant ? 1 : 0;
-  Regression out{MatrixXd(rows, s.size()), MatrixXd(rows, count + constant), VectorXd(rows)};
+  InstrumentalRegression out{MatrixXd(rows, s.size()), MatrixXd(rows, count + constant),
+                             VectorXd(rows)};
   Index row = 0;
   for (std::size_t k = 0; k < data.size(); ++k) {
     const Stretch& stretch = data[k];
@@ -71,7 +72,7 @@ Regression regression(const Structure& s, const Stretches& data,
       if (s.constant) out.psi(row, column) = 1.0;
       out.y[row] = stretch.y_m[t];
       column = 0;
-      if (instruments == Instruments::reference) {
+      if (instruments == InstrumentChoice::reference) {
         for (int i = 1; i <= count; ++i) out.z(row, column++) = reference_m[k][t - i];
       } else {
         for (int i = 0; i < half; ++i) out.z(row, column++) = stretch.y_m[t - after - i];
@@ -104,7 +105,7 @@ std::vector<double> in_units(const VectorXd& scaled, const VectorXd& length) {
   return {out.begin(), out.end()};
 }
 
-BiasTest test_with(const Structure& s, Regression data, Instruments instruments) {
+BiasTest test_with(const Structure& s, InstrumentalRegression data, InstrumentChoice instruments) {
   BiasTest out;
   out.instruments = instruments;
   const Index rows = data.psi.rows();
@@ -168,19 +169,19 @@ const char* to_string(BiasVerdict verdict) noexcept {
   return kTexts[static_cast<std::size_t>(verdict)];
 }
 
-const char* to_string(Instruments instruments) noexcept {
-  return instruments == Instruments::reference ? "reference" : "delayed samples";
+const char* to_string(InstrumentChoice instruments) noexcept {
+  return instruments == InstrumentChoice::reference ? "reference" : "delayed samples";
 }
 
 BiasTest test_bias(const Structure& structure, const Stretches& data,
                    const std::vector<std::span<const double>>& reference_m) {
   BiasTest delayed =
-      test_with(structure, regression(structure, data, reference_m, Instruments::delayed),
-                Instruments::delayed);
+      test_with(structure, regression(structure, data, reference_m, InstrumentChoice::delayed),
+                InstrumentChoice::delayed);
   if (reference_m.size() != data.size()) return delayed;
   BiasTest reference =
-      test_with(structure, regression(structure, data, reference_m, Instruments::reference),
-                Instruments::reference);
+      test_with(structure, regression(structure, data, reference_m, InstrumentChoice::reference),
+                InstrumentChoice::reference);
   const bool weak = reference.f_statistic < kWeakInstruments;
   return weak && delayed.f_statistic > reference.f_statistic ? delayed : reference;
 }

@@ -25,7 +25,7 @@
 
 namespace estimator::structures {
 
-enum class Instruments : std::uint8_t { reference, delayed };
+enum class InstrumentChoice : std::uint8_t { reference, delayed };
 enum class BiasVerdict : std::uint8_t {
   no_bias_seen,
   biased,
@@ -33,14 +33,14 @@ enum class BiasVerdict : std::uint8_t {
 };
 /// "no bias seen", "biased", "cannot tell".
 [[nodiscard]] const char* to_string(BiasVerdict verdict) noexcept;
-[[nodiscard]] const char* to_string(Instruments instruments) noexcept;
+[[nodiscard]] const char* to_string(InstrumentChoice instruments) noexcept;
 
 struct BiasTest {
   std::vector<double> least_squares;  ///< in the order of Structure::names()
   std::vector<double> least_squares_error;
   std::vector<double> instrumental;
   std::vector<double> instrumental_error;
-  Instruments instruments = Instruments::delayed;
+  InstrumentChoice instruments = InstrumentChoice::delayed;
   int instrument_count = 0;
   double f_statistic = 0.0;
   double statistic = 0.0;  ///< chi-square with `dof` under H0

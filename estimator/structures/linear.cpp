@@ -12,8 +12,8 @@ namespace estimator::structures {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-Rows regression_rows(const Orders& o, const Stretches& data,
-                     const std::vector<std::vector<double>>& errors) {
+RegressionRows regression_rows(const Orders& o, const Stretches& data,
+                               const std::vector<std::vector<double>>& errors) {
   const int columns = o.a + o.b + o.c + (o.constant ? 1 : 0);
   const auto first_of = [&](std::size_t s) {
     int first = std::max(o.a, o.b > 0 ? o.k + o.b - 1 : 0);
@@ -24,7 +24,7 @@ Rows regression_rows(const Orders& o, const Stretches& data,
   };
   Index count = 0;
   for (std::size_t s = 0; s < data.size(); ++s) count += std::max(0, data[s].size() - first_of(s));
-  Rows out{Eigen::MatrixXd(count, columns), VectorXd(count)};
+  RegressionRows out{Eigen::MatrixXd(count, columns), VectorXd(count)};
   Index row = 0;
   for (std::size_t s = 0; s < data.size(); ++s) {
     const Stretch& stretch = data[s];
@@ -41,7 +41,7 @@ Rows regression_rows(const Orders& o, const Stretches& data,
   return out;
 }
 
-VectorXd solve_rows(const Rows& rows) {
+VectorXd solve_rows(const RegressionRows& rows) {
   VectorXd length = rows.psi.colwise().norm().transpose();
   for (double& value : length) value = value > 0.0 ? value : 1.0;
   const Eigen::MatrixXd scaled = rows.psi * length.cwiseInverse().asDiagonal();
@@ -144,7 +144,7 @@ std::vector<Polynomial> steiglitz_mcbride(const Orders& orders, const Stretches&
   return out;
 }
 
-NoiseModel fit_noise(const std::vector<std::vector<double>>& series, int c, int d) {
+ArmaModel fit_noise(const std::vector<std::vector<double>>& series, int c, int d) {
   Stretches data;
   for (const std::vector<double>& v : series) data.push_back({v, v});
   const Orders orders{.a = d, .b = 0, .c = c, .k = 1, .constant = false};

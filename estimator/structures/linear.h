@@ -10,21 +10,21 @@
 namespace estimator::structures {
 
 /// The rows psi(t) = [-y(t-1).., u(t-k).., e(t-1).., 1] of all stretches, and their targets y(t).
-struct Rows {
+struct RegressionRows {
   Eigen::MatrixXd psi;
   Eigen::VectorXd target;
 };
 
 /// `orders` with a, b, c, k and constant in use. `errors`: one series per stretch, needed for c;
 /// NaN at its beginning (rows that reach there are left out).
-[[nodiscard]] Rows regression_rows(const Orders& orders, const Stretches& data,
-                                   const std::vector<std::vector<double>>& errors = {});
+[[nodiscard]] RegressionRows regression_rows(const Orders& orders, const Stretches& data,
+                                             const std::vector<std::vector<double>>& errors = {});
 
 /// RMS of u (V) or of y (m) over all stretches; 0 without samples.
 [[nodiscard]] double rms(const Stretches& data, bool of_input);
 
 /// The shortest minimiser (columns scaled to length 1) of |target - psi theta|.
-[[nodiscard]] Eigen::VectorXd solve_rows(const Rows& rows);
+[[nodiscard]] Eigen::VectorXd solve_rows(const RegressionRows& rows);
 
 /// ARX by least squares; A, B and the constant.
 [[nodiscard]] Polynomial fit_arx(const Orders& orders, const Stretches& data);
@@ -47,11 +47,11 @@ struct Rows {
                                                         const Stretches& data);
 
 /// C and D of  D v = C e  for series v; `d` and `c` coefficients.
-struct NoiseModel {
+struct ArmaModel {
   std::vector<double> c;
   std::vector<double> d;
 };
-[[nodiscard]] NoiseModel fit_noise(const std::vector<std::vector<double>>& series, int c, int d);
+[[nodiscard]] ArmaModel fit_noise(const std::vector<std::vector<double>>& series, int c, int d);
 
 /// Roots outside the unit circle (or nearer to it than `margin`) are drawn inside.
 [[nodiscard]] std::vector<double> stabilised(const std::vector<double>& p, double margin);

@@ -22,7 +22,7 @@ constexpr double kStep = 1e-6;
 constexpr double kFirstOutput = 1e-3;  // v at the start: the ARX all but alone
 constexpr int kRowsPerWeight = 3;
 
-struct Samples {
+struct NarxSamples {
   MatrixXd phi;  ///< inputs x rows
   VectorXd y;
   std::vector<bool> fitted;  ///< false: for early stopping
@@ -35,12 +35,12 @@ void fill(const NarxOptions& o, const Y& y, const U& u, int t, VectorXd& phi) {
   for (int i = 0; i < o.m; ++i) phi[o.n + i] = u[static_cast<std::size_t>(t - o.k - i)];
 }
 
-Samples samples_of(const NarxFit& fit, const Stretches& data) {
+NarxSamples samples_of(const NarxFit& fit, const Stretches& data) {
   const NarxOptions& o = fit.options;
   const int first = fit.history();
   Index rows = 0;
   for (const Stretch& stretch : data) rows += std::max(0, stretch.size() - first);
-  Samples out{MatrixXd(o.n + o.m, rows), VectorXd(rows), {}};
+  NarxSamples out{MatrixXd(o.n + o.m, rows), VectorXd(rows), {}};
   VectorXd phi(o.n + o.m);
   Index row = 0;
   for (const Stretch& stretch : data) {
@@ -55,7 +55,7 @@ Samples samples_of(const NarxFit& fit, const Stretches& data) {
   return out;
 }
 
-void choose_scales(NarxFit& fit, const Samples& samples) {
+void choose_scales(NarxFit& fit, const NarxSamples& samples) {
   const auto spread = [](const auto& values, double mean) {
     const double sd = std::sqrt((values.array() - mean).square().mean());
     return sd > 0.0 ? sd : 1.0;
@@ -169,7 +169,7 @@ NarxFit fit_narx(const NarxOptions& options, const Stretches& data) {
   out.options = options;
   const Index inputs = options.n + options.m;
   const Index unknowns = inputs + 1 + options.hidden * (inputs + 2);
-  const Samples samples = samples_of(out, data);
+  const NarxSamples samples = samples_of(out, data);
   const Index rows = samples.y.size();
   const auto fitted =
       static_cast<Index>(std::count(samples.fitted.begin(), samples.fitted.end(), true));

@@ -85,7 +85,7 @@ std::vector<Polynomial> usual_starts(const Orders& orders, const Stretches& data
       e.erase(e.begin(), e.begin() + output_error.history());
       v.push_back(std::move(e));
     }
-    const NoiseModel noise = fit_noise(v, orders.c, orders.d);
+    const ArmaModel noise = fit_noise(v, orders.c, orders.d);
     Polynomial start = oe.model;
     start.c = noise.c;
     start.d = noise.d;

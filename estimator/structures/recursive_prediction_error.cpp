@@ -25,7 +25,7 @@ constexpr double kMostRoot = 0.999;
 constexpr double kVarianceMemory = 0.999;
 
 /// The last kLength values; [0] is the newest.
-struct Series {
+struct LagBuffer {
   std::array<double, kLength> ring{};
   int newest = 0;
 
@@ -60,8 +60,8 @@ bool stable(const double* p, int n) noexcept {
 struct RecursivePredictionError::State {
   /// Everything that changes: plain values, carried as they are.
   struct Moving {
-    Series y, u, w, v, e;  // named as in the equations
-    Series y_dc, u_f, u_dc, w_f, w_dc, e_c, v_c, one_f, one_dc;
+    LagBuffer y, u, w, v, e;  // named as in the equations
+    LagBuffer y_dc, u_f, u_dc, w_f, w_dc, e_c, v_c, one_f, one_dc;
     std::array<double, kMaxCoefficients> theta{};
     UdFactor p{};
     double variance_m2 = 0.0;
@@ -91,13 +91,13 @@ struct RecursivePredictionError::State {
     return o.orders.constant ? f()[o.orders.f] : 0.0;
   }
 
-  static double past(const double* p, int n, const Series& x) noexcept {
+  static double past(const double* p, int n, const LagBuffer& x) noexcept {
     double sum = 0.0;
     for (int i = 0; i < n; ++i) sum += p[i] * x[i];  // before the push: x[0] is t-1
     return sum;
   }
   /// Pushes (D/C) x; `x` holds the past, `value` is the new one.
-  void through_noise(Series& out, const Series& x, double value) noexcept {
+  void through_noise(LagBuffer& out, const LagBuffer& x, double value) noexcept {
     out.push(value + past(d(), o.orders.d, x) - past(c(), o.orders.c, out));
   }
   /// psi(t) from data before y(t).
@@ -209,9 +209,9 @@ bool RecursivePredictionError::push(double u_V, double y_m) noexcept {
 
 void RecursivePredictionError::gap() noexcept {
   State::Moving& now = state_->now;
-  for (Series* series : {&now.y, &now.u, &now.w, &now.v, &now.e, &now.y_dc, &now.u_f, &now.u_dc,
-                         &now.w_f, &now.w_dc, &now.e_c, &now.v_c, &now.one_f, &now.one_dc}) {
-    *series = Series{};
+  for (LagBuffer* series : {&now.y, &now.u, &now.w, &now.v, &now.e, &now.y_dc, &now.u_f, &now.u_dc,
+                            &now.w_f, &now.w_dc, &now.e_c, &now.v_c, &now.one_f, &now.one_dc}) {
+    *series = LagBuffer{};
   }
   now.filled = 0;
 }

@@ -12,7 +12,7 @@ namespace workbench::cli {
 namespace {
 
 using config::schema::UsageError;
-using Json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 namespace protocol = monitor::control;
 
 struct AlarmOptions {
@@ -23,17 +23,17 @@ struct AlarmOptions {
 };
 
 void act(const char* word, const AlarmOptions& options, bool with_time) {
-  Json request = {{protocol::key::kCommand, word}};
+  ordered_json request = {{protocol::key::kCommand, word}};
   if (!options.alarm.empty()) request[protocol::key::kAlarm] = options.alarm;
   if (with_time) request[protocol::key::kTime] = options.time_s;
-  const Json answer = control::give_order(request, options.common);
+  const ordered_json answer = control::give_order(request, options.common);
   if (options.common.json == "-") return;
   const auto done = answer.find(protocol::key::kDone);
   if (done == answer.end() || !done->is_array() || done->empty()) {
     std::cout << "nothing to do\n";
     return;
   }
-  for (const Json& alarm : *done) std::cout << alarm.get<std::string>() << '\n';
+  for (const ordered_json& alarm : *done) std::cout << alarm.get<std::string>() << '\n';
 }
 
 }  // namespace
@@ -43,7 +43,7 @@ void add_alarms(CLI::App& command, int& /*exit_code*/) {
   add_order_options(command, options->common);
   command.add_flag("--all", options->all, "include normal alarms");
   command.callback([options] {
-    const Json answer =
+    const ordered_json answer =
         control::give_order({{protocol::key::kCommand, protocol::kAlarms}}, options->common);
     if (options->common.json != "-") control::print_alarms(answer, options->all, std::cout);
   });

@@ -16,13 +16,13 @@ namespace {
 
 using config::schema::RunError;
 
-struct CommissionOptions {
+struct CommissionCommandOptions {
   std::string config;
   std::string out;
 };
 
 /// Replaces this process, so that signals reach it. Throws Error when it cannot.
-[[noreturn]] void become_daemon(const CommissionOptions& options,
+[[noreturn]] void become_daemon(const CommissionCommandOptions& options,
                                 const std::vector<std::string>& more) {
   std::error_code error;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
@@ -39,7 +39,7 @@ struct CommissionOptions {
 }  // namespace
 
 void add_commission(CLI::App& command, int& /*exit_code*/) {
-  const auto options = std::make_shared<CommissionOptions>();
+  const auto options = std::make_shared<CommissionCommandOptions>();
   command.add_option("--config", options->config, "the daemon's configuration")->required();
   command.add_option("-o,--out", options->out, "calibration file to be written")->required();
   command.allow_extras();

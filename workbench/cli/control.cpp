@@ -11,7 +11,7 @@
 namespace workbench::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 namespace protocol = monitor::control;
 
 struct ReferenceOptions {
@@ -21,8 +21,8 @@ struct ReferenceOptions {
   double frequency_Hz = 0.0;
 };
 
-int order(const Json& request, const control::OrderOptions& options) {
-  const Json answer = control::give_order(request, options);
+int order(const ordered_json& request, const control::OrderOptions& options) {
+  const ordered_json answer = control::give_order(request, options);
   if (options.json == "-") return 0;
   if (request.at(protocol::key::kCommand) == protocol::kStatus) {
     control::print_status(answer, std::cout);

@@ -52,16 +52,16 @@ void step(const RunningDaemon& daemon, const std::string& text) {
   daemon.note(text);
 }
 
-class Attempt {
+class PromotionAttempt {
  public:
-  Attempt(const RunningDaemon& daemon, const PromoteOptions& options)
+  PromotionAttempt(const RunningDaemon& daemon, const PromoteOptions& options)
       : daemon_(daemon), options_(options), candidate_(daemon.bands_file().string() + ".new") {}
-  ~Attempt() {
+  ~PromotionAttempt() {
     std::error_code ignored;
     fs::remove(candidate_, ignored);
   }
-  Attempt(const Attempt&) = delete;
-  Attempt& operator=(const Attempt&) = delete;
+  PromotionAttempt(const PromotionAttempt&) = delete;
+  PromotionAttempt& operator=(const PromotionAttempt&) = delete;
 
   void run() {
     read_records();
@@ -175,7 +175,7 @@ void promote(const PromoteOptions& options) {
     if (fs::equivalent(options.model, daemon.model_file(), ignored)) {
       throw RunError(options.model + " is the model in use");
     }
-    Attempt(daemon, options).run();
+    PromotionAttempt(daemon, options).run();
   } catch (const Error& e) {
     daemon.note(std::string("refused: ") + e.what());
     throw RunError(std::string("refused: ") + e.what());

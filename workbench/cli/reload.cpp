@@ -9,19 +9,20 @@
 namespace workbench::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 namespace protocol = monitor::control;
 
-void print(const Json& answer, const char* key, const char* what) {
+void print(const ordered_json& answer, const char* key, const char* what) {
   const auto list = answer.find(key);
   if (list == answer.end() || !list->is_array()) return;
-  for (const Json& entry : *list) {
+  for (const ordered_json& entry : *list) {
     if (entry.is_string()) std::cout << what << entry.get<std::string>() << '\n';
   }
 }
 
 void reload(const control::OrderOptions& options) {
-  const Json answer = control::give_order({{protocol::key::kCommand, protocol::kReload}}, options);
+  const ordered_json answer =
+      control::give_order({{protocol::key::kCommand, protocol::kReload}}, options);
   if (options.json == "-") return;
   const auto changed = answer.find("changed");
   if (changed == answer.end() || changed->empty()) std::cout << "no key has changed\n";

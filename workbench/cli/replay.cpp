@@ -17,9 +17,9 @@
 namespace workbench::cli {
 namespace {
 
+using nlohmann::ordered_json;
 using replay::Pack;
 using replay::ReplayOutcome;
-using Json = nlohmann::ordered_json;
 
 struct ReplayOptions {
   std::string folder;
@@ -61,8 +61,8 @@ void print(const Pack& pack, const ReplayOutcome& outcome, std::ostream& out) {
   }
 }
 
-Json as_json(const Pack& pack, const ReplayOutcome& outcome) {
-  Json alarm = nullptr;
+ordered_json as_json(const Pack& pack, const ReplayOutcome& outcome) {
+  ordered_json alarm = nullptr;
   if (outcome.found) {
     alarm = {{"source", pack.source},
              {"name", pack.name},

@@ -15,10 +15,10 @@ namespace {
 
 using present::Plot;
 using present::PlotKind;
+using present::PlotWidth;
 using present::Section;
 using present::Series;
 using present::Tone;
-using present::Width;
 
 using config::signals::kNaN;
 
@@ -122,7 +122,7 @@ Section where_section(const validation::Comparison& c) {
     Plot plot;
     plot.title = std::string("By ") + unit.name;
     plot.kind = PlotKind::bars;
-    plot.width = Width::half;
+    plot.width = PlotWidth::half;
     plot.x = {unit.name, unit.text};
     plot.y = {"speed error RMS", "mm/s"};
     Series bars = named("speed error RMS", Tone::residual, {});
@@ -143,7 +143,7 @@ Plot against(const validation::Comparison& c, const std::string& variable,
   Plot plot;
   plot.title = std::string("Against ") + unit.name;
   plot.kind = PlotKind::scatter;
-  plot.width = Width::half;
+  plot.width = PlotWidth::half;
   plot.x = {unit.name, unit.text};
   plot.y = {"speed error", "mm/s"};
   plot.x_values = series(

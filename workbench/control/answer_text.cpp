@@ -10,19 +10,19 @@
 namespace workbench::control {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 
-std::string text_of(const Json& alarm, const char* key) {
+std::string text_of(const ordered_json& alarm, const char* key) {
   const auto found = alarm.find(key);
   return found != alarm.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
-double number_of(const Json& alarm, const char* key) {
+double number_of(const ordered_json& alarm, const char* key) {
   const auto found = alarm.find(key);
   return found != alarm.end() && found->is_number() ? found->get<double>() : std::nan("");
 }
 
-bool is_set(const Json& alarm, const char* key) {
+bool is_set(const ordered_json& alarm, const char* key) {
   const auto found = alarm.find(key);
   return found != alarm.end() && found->is_boolean() && found->get<bool>();
 }
@@ -32,7 +32,7 @@ std::string time_left(double time_s) {
                         : fmt::format("{:.0f} min", std::ceil(time_s / 60.0));
 }
 
-std::string notes_on(const Json& alarm) {
+std::string notes_on(const ordered_json& alarm) {
   std::string notes;
   const auto add = [&notes](const std::string& note) {
     notes += (notes.empty() ? "" : ", ") + note;
@@ -59,10 +59,10 @@ void print_row(const std::string& life, const std::string& severity, const std::
 
 }  // namespace
 
-void print_alarms(const Json& answer, bool all, std::ostream& out) {
+void print_alarms(const ordered_json& answer, bool all, std::ostream& out) {
   const auto alarms = answer.find(monitor::control::key::kAlarms);
   std::size_t shown = 0;
-  for (const Json& alarm : alarms == answer.end() ? Json::array() : *alarms) {
+  for (const ordered_json& alarm : alarms == answer.end() ? ordered_json::array() : *alarms) {
     const std::string life = text_of(alarm, "life");
     const bool normal = life == "NORMAL";
     if (normal && !all) continue;
@@ -81,29 +81,30 @@ void print_alarms(const Json& answer, bool all, std::ostream& out) {
 
 namespace {
 
-std::string number_of(const Json& object, const char* key, double scale, const char* unit) {
+std::string number_of(const ordered_json& object, const char* key, double scale, const char* unit) {
   const auto found = object.find(key);
   if (found == object.end() || !found->is_number()) return "-";
   return fmt::format("{:.4g}{}", found->get<double>() * scale, unit);
 }
 
-void print_inputs(const Json& status, const char* key, const char* what, std::ostream& out) {
+void print_inputs(const ordered_json& status, const char* key, const char* what,
+                  std::ostream& out) {
   const auto list = status.find(key);
   if (list == status.end() || !list->is_array()) return;
-  for (const Json& entry : *list) {
+  for (const ordered_json& entry : *list) {
     out << "  " << what << ' ' << text_of(entry, "id") << ": " << number_of(entry, "value", 1.0, "")
         << '\n';
   }
 }
 
 /// Prints which of several rod sensors is in charge, and which are out.
-void print_rods(const Json& status, std::ostream& out) {
+void print_rods(const ordered_json& status, std::ostream& out) {
   const auto rods = status.find("rods");
   if (rods == status.end() || !rods->is_array()) {
     return print_inputs(status, "spare_rods", "spare rod", out);
   }
   const std::string in_charge = text_of(status, "rod_in_charge");
-  for (const Json& rod : *rods) {
+  for (const ordered_json& rod : *rods) {
     const std::string id = text_of(rod, "id");
     const std::string fault = text_of(rod, "out");
     out << "  rod sensor " << id << ": " << number_of(rod, "y_m", 1e3, " mm");
@@ -118,7 +119,7 @@ void print_rods(const Json& status, std::ostream& out) {
 }
 
 /// "disturbed by: force 29.8 N, pressure line 23 Hz, pressure line 99.1 kPa"
-void print_disturbance(const Json& source, std::ostream& out) {
+void print_disturbance(const ordered_json& source, std::ostream& out) {
   const auto disturbance = source.find("disturbance");
   if (disturbance == source.end() || !disturbance->is_object()) return;
   const char* before = "    disturbed by: ";
@@ -132,10 +133,10 @@ void print_disturbance(const Json& source, std::ostream& out) {
 }
 
 /// The smallest changes that would be seen now, and what would help where they are great.
-void print_detectable(const Json& status, std::ostream& out) {
+void print_detectable(const ordered_json& status, std::ostream& out) {
   const auto sources = status.find("detectable");
   if (sources == status.end() || !sources->is_array()) return;
-  for (const Json& source : *sources) {
+  for (const ordered_json& source : *sources) {
     out << "  " << text_of(source, "source") << " would detect now:";
     const char* before = " ";
     for (const auto& [name, smallest] : source.at("smallest").items()) {
@@ -154,7 +155,7 @@ void print_detectable(const Json& status, std::ostream& out) {
 
 }  // namespace
 
-void print_status(const Json& status, std::ostream& out) {
+void print_status(const ordered_json& status, std::ostream& out) {
   out << text_of(status, "rig_id") << ": " << text_of(status, "state");
   if (is_set(status, "holding")) out << ", holding: start resumes";
   if (is_set(status, "ramping")) out << ", on the way to null";
@@ -179,7 +180,7 @@ void print_status(const Json& status, std::ostream& out) {
   }
   const auto guards = status.find("guards");
   if (guards == status.end() || !guards->is_array()) return;
-  for (const Json& guard : *guards) {
+  for (const ordered_json& guard : *guards) {
     if (!is_set(guard, "active")) continue;
     out << "  guard " << text_of(guard, "id") << " (" << text_of(guard, "kind") << ", "
         << text_of(guard, "action") << ") is active: " << number_of(guard, "value", 1.0, "")

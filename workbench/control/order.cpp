@@ -19,9 +19,9 @@ using config::schema::RunError;
 constexpr timeval kPatience{3, 0};
 constexpr std::size_t kLongestAnswer = 1 << 20;
 
-class Connection {
+class DaemonConnection {
  public:
-  explicit Connection(const std::string& path) : path_(path) {
+  explicit DaemonConnection(const std::string& path) : path_(path) {
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
     if (path.size() >= sizeof address.sun_path) fail("the path is too long");
@@ -36,9 +36,9 @@ class Connection {
       fail(error == ENOENT || error == ECONNREFUSED ? "no daemon is there" : std::strerror(error));
     }
   }
-  ~Connection() { close(file_); }
-  Connection(const Connection&) = delete;
-  Connection& operator=(const Connection&) = delete;
+  ~DaemonConnection() { close(file_); }
+  DaemonConnection(const DaemonConnection&) = delete;
+  DaemonConnection& operator=(const DaemonConnection&) = delete;
 
   void send(const std::string& text) const {
     std::size_t done = 0;
@@ -75,7 +75,7 @@ class Connection {
 
 nlohmann::ordered_json ask_daemon(const std::string& socket,
                                   const nlohmann::ordered_json& request) {
-  const Connection connection(socket);
+  const DaemonConnection connection(socket);
   connection.send(request.dump() + '\n');
   nlohmann::ordered_json answer = nlohmann::ordered_json::parse(connection.line(), nullptr, false);
   const bool whole = answer.is_object() && answer.contains(monitor::control::key::kOk) &&
@@ -88,10 +88,10 @@ nlohmann::ordered_json ask_daemon(const std::string& socket,
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 namespace protocol = monitor::control;
 
-void write_json(const Json& answer, const std::string& file) {
+void write_json(const ordered_json& answer, const std::string& file) {
   const std::string text = answer.dump(2) + '\n';
   if (file == "-") {
     std::cout << text;
@@ -105,8 +105,8 @@ void write_json(const Json& answer, const std::string& file) {
 
 }  // namespace
 
-Json give_order(const Json& request, const OrderOptions& options) {
-  Json answer = ask_daemon(options.socket, request);
+ordered_json give_order(const ordered_json& request, const OrderOptions& options) {
+  ordered_json answer = ask_daemon(options.socket, request);
   if (!options.json.empty()) write_json(answer, options.json);
   if (answer.at(protocol::key::kOk).get<bool>()) return answer;
   const auto reason = answer.find(protocol::key::kReason);

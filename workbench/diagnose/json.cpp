@@ -8,18 +8,19 @@
 namespace workbench::diagnose {
 namespace {
 
+using nlohmann::ordered_json;
 using present::number_or_null;
-using Json = nlohmann::ordered_json;
 
-Json candidates_of(const selection::StructureSearch& search) {
-  Json list = Json::array();
+ordered_json candidates_of(const selection::StructureSearch& search) {
+  ordered_json list = ordered_json::array();
   for (std::size_t r = 0; r < search.rounds.size(); ++r) {
     for (const selection::Candidate& c : search.rounds[r].candidates) {
-      Json one;
+      ordered_json one;
       one["round"] = r + 1;
       one["effect"] = config::schema::joined(c.effects, "+");
-      one["rms_heldout_m"] = c.fitted_at_all ? number_or_null(c.validation_rms_m) : Json(nullptr);
-      one["p_value"] = c.fitted_at_all ? number_or_null(c.p_value) : Json(nullptr);
+      one["rms_heldout_m"] =
+          c.fitted_at_all ? number_or_null(c.validation_rms_m) : ordered_json(nullptr);
+      one["p_value"] = c.fitted_at_all ? number_or_null(c.p_value) : ordered_json(nullptr);
       one["expected_ratio"] = number_or_null(c.expected_ratio);
       list.push_back(std::move(one));
     }
@@ -27,8 +28,8 @@ Json candidates_of(const selection::StructureSearch& search) {
   return list;
 }
 
-Json parameters_of(const selection::Diagnosis& d) {
-  Json all = Json::object();
+ordered_json parameters_of(const selection::Diagnosis& d) {
+  ordered_json all = ordered_json::object();
   for (const selection::ParameterValue& p : d.parameters) {
     all[p.name] = {{"value", number_or_null(p.value)},
                    {"std_error", number_or_null(p.std_error)},
@@ -37,8 +38,8 @@ Json parameters_of(const selection::Diagnosis& d) {
   return all;
 }
 
-Json refused_of(const selection::StructureSearch& search) {
-  Json list = Json::array();
+ordered_json refused_of(const selection::StructureSearch& search) {
+  ordered_json list = ordered_json::array();
   for (const selection::RefusedModel& model : search.refused) {
     list.push_back({{"effects", model.effects},
                     {"rms_heldout_m", number_or_null(model.validation_rms_m)},
@@ -47,8 +48,8 @@ Json refused_of(const selection::StructureSearch& search) {
   return list;
 }
 
-Json changing_of(const selection::Diagnosis& d) {
-  Json changes = Json::array();
+ordered_json changing_of(const selection::Diagnosis& d) {
+  ordered_json changes = ordered_json::array();
   for (const selection::ParameterStep& step : d.changing) {
     changes.push_back({{"parameter", step.parameter},
                        {"kind", "step"},
@@ -59,15 +60,15 @@ Json changing_of(const selection::Diagnosis& d) {
   return changes;
 }
 
-Json disturbance_of(const selection::Diagnosis& d) {
+ordered_json disturbance_of(const selection::Diagnosis& d) {
   if (!d.disturbance) return nullptr;
-  Json json;
+  ordered_json json;
   json["rms_m"] = number_or_null(d.disturbance->rms_m);
   json["share"] = number_or_null(d.disturbance->share);
   json["as"] = d.disturbance->as;
   json["value"] = number_or_null(d.disturbance->value);
   json["corner_Hz"] = number_or_null(d.disturbance->corner_Hz);
-  json["lines"] = Json::array();
+  json["lines"] = ordered_json::array();
   for (const selection::DisturbanceLine& line : d.disturbance->lines) {
     json["lines"].push_back({{"frequency_Hz", number_or_null(line.frequency_Hz)},
                              {"as", line.as},
@@ -77,10 +78,10 @@ Json disturbance_of(const selection::Diagnosis& d) {
   return json;
 }
 
-Json laws_of(const selection::Diagnosis& d) {
-  Json laws = Json::array();
+ordered_json laws_of(const selection::Diagnosis& d) {
+  ordered_json laws = ordered_json::array();
   for (const selection::Law& law : d.laws) {
-    Json parameters = Json::object();
+    ordered_json parameters = ordered_json::object();
     for (const selection::ParameterValue& p : d.parameters) {
       if (p.name.rfind(law.effect.name + ".", 0) != 0) continue;
       parameters[p.name.substr(law.effect.name.size() + 1)] = {
@@ -102,11 +103,13 @@ Json laws_of(const selection::Diagnosis& d) {
 std::string to_json(const DiagnosisReport& outcome) {
   const selection::Diagnosis& d = outcome.diagnosis;
   const bool fitted = outcome.fitted();
-  const auto error_m = [&](double value) { return fitted ? number_or_null(value) : Json(nullptr); };
-  Json json;
+  const auto error_m = [&](double value) {
+    return fitted ? number_or_null(value) : ordered_json(nullptr);
+  };
+  ordered_json json;
   json["verdict"] = selection::to_string(d.verdict);
   json["missing"] = d.established();
-  json["may_be"] = Json::array();
+  json["may_be"] = ordered_json::array();
   for (const selection::PossibleEffect& one : d.possible) {
     json["may_be"].push_back({{"effect", one.effect}, {"why", selection::to_string(one.why)}});
   }
@@ -120,7 +123,7 @@ std::string to_json(const DiagnosisReport& outcome) {
   json["free_run_after_m"] = number_or_null(outcome.free_run_after_m);
   json["parameters"] = parameters_of(d);
   json["candidates"] = candidates_of(d.search);
-  json["where"] = Json::array();
+  json["where"] = ordered_json::array();
   for (const selection::Localisation& where : d.where) {
     json["where"].push_back({{"class", where.site},
                              {"variable", where.variable},
@@ -129,7 +132,7 @@ std::string to_json(const DiagnosisReport& outcome) {
   json["record"] = {{"turned_sign", d.checks && d.checks->turned_sign()},
                     {"outside_stroke", d.checks && d.checks->outside_stroke()},
                     {"command_lead_samples", d.command_lead_samples}};
-  json["plants"] = Json::array();
+  json["plants"] = ordered_json::array();
   for (const selection::PlantFit& fit : d.plants) {
     json["plants"].push_back(
         {{"plant", fit.plant}, {"rms_heldout_m", number_or_null(fit.validation_rms_m)}});
@@ -141,10 +144,10 @@ std::string to_json(const DiagnosisReport& outcome) {
       {"sensor_m", number_or_null(d.noise_floor_m)},
       {"repeat_m", number_or_null(d.repetition ? d.repetition->scatter_m : std::nan(""))},
       {"disturbed_m", number_or_null(d.disturbed_floor_m())}};
-  json["steps"] = Json::array();
+  json["steps"] = ordered_json::array();
   for (const selection::SelectionStep& step : d.steps) {
-    Json one;
-    one["added"] = step.added.empty() ? Json(nullptr) : Json(step.added);
+    ordered_json one;
+    one["added"] = step.added.empty() ? ordered_json(nullptr) : ordered_json(step.added);
     one["rms_heldout_m"] = number_or_null(step.validation_rms_m);
     json["steps"].push_back(std::move(one));
   }
@@ -159,7 +162,7 @@ std::string to_json(const DiagnosisReport& outcome) {
   json["command"] = outcome.prepared->command;
   json["preview_s"] = number_or_null(d.search.preview_s);
   json["runtime_s"] = number_or_null(d.runtime_s);
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace workbench::diagnose

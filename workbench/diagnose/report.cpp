@@ -24,7 +24,7 @@ constexpr std::size_t kDrawnCandidates = 14;
 constexpr double kWorse = 1.05;
 
 /// One unit for all errors of a page: millimetres where even the least is one or more.
-struct Scale {
+struct LengthScale {
   double per_m = 1e6;
   const char* unit = "µm";
 
@@ -39,9 +39,10 @@ struct Scale {
   }
 };
 
-Scale scale_of(const selection::Diagnosis& d) {
+LengthScale scale_of(const selection::Diagnosis& d) {
   constexpr double kMillimetre_m = 1e-3;
-  return std::min(d.rms_before_m, d.rms_after_m) >= kMillimetre_m ? Scale{1e3, "mm"} : Scale{};
+  return std::min(d.rms_before_m, d.rms_after_m) >= kMillimetre_m ? LengthScale{1e3, "mm"}
+                                                                  : LengthScale{};
 }
 
 std::vector<present::ReferenceLine> floor_line(const selection::Diagnosis& d) {
@@ -58,14 +59,14 @@ bool was_taken(const selection::Candidate& candidate, std::vector<std::string> t
 
 Plot candidates_plot(const selection::Diagnosis& d, std::size_t index) {
   const selection::Round& round = d.search.rounds[index];
-  const Scale scale = scale_of(d);
+  const LengthScale scale = scale_of(d);
   const std::vector<std::string> taken = taken_in(d.search, index);
   Plot plot{.title = "Round " + std::to_string(index + 1),
             .kind = PlotKind::bars,
             .y = {"held-out error", scale.unit},
             .lines = floor_line(d),
             .horizontal = true,
-            .width = present::Width::half};
+            .width = present::PlotWidth::half};
   plot.series = {{.name = "taken", .tone = Tone::improved},
                  {.name = "not taken", .tone = Tone::model},
                  {.name = "nothing added", .tone = Tone::muted}};
@@ -103,7 +104,7 @@ std::string not_fitted_words(const selection::Round& round) {
 
 Table candidates_table(const selection::Diagnosis& d, std::size_t index) {
   const selection::Round& round = d.search.rounds[index];
-  const Scale scale = scale_of(d);
+  const LengthScale scale = scale_of(d);
   const std::vector<std::string> taken = taken_in(d.search, index);
   const std::string with = round.before.added.empty()
                                ? "the model as given"
@@ -152,7 +153,7 @@ Section falling_error_section(const DiagnosisReport& outcome) {
                              split_words(outcome) + ").",
       present::kFreeRunMeaning, present::kDriftCorrectedMeaning, present::kNoiseFloorMeaning};
   const std::vector<StepWords> steps = step_words(d);
-  const Scale scale = scale_of(d);
+  const LengthScale scale = scale_of(d);
   Plot plot{.title = "Held-out error, step by step",
             .kind = PlotKind::line,
             .y = {"held-out error", scale.unit, true},
@@ -200,7 +201,7 @@ Section candidates_section(const DiagnosisReport& outcome) {
     Table table = candidates_table(d, i);
     if (!table.rows.empty()) section.tables.push_back(std::move(table));
   }
-  if (section.plots.size() == 1) section.plots.front().width = present::Width::full;
+  if (section.plots.size() == 1) section.plots.front().width = present::PlotWidth::full;
   return section;
 }
 

@@ -17,8 +17,6 @@ using present::Section;
 using present::Series;
 using present::Tone;
 
-using Values = std::vector<double>;
-
 using config::signals::kNaN;
 constexpr std::size_t kCloud = 2'500;
 /// Residuals above this are drawn in millimetres.
@@ -30,28 +28,30 @@ struct Residuals {
 };
 
 /// One residual in the unit that it is drawn in.
-struct Scale {
+struct ResidualScale {
   double per_m = 1e6;
   const char* unit = "µm";
 };
 
-struct Page {
+struct RecordPage {
   const greybox::Dataset& record;
   greybox::Kinematics kinematics;
-  Values file_m, before_m, after_m, free_file_m, free_after_m;  ///< NaN where it does not count
+  std::vector<double> file_m, before_m, after_m, free_file_m,
+      free_after_m;  ///< NaN where it does not count
   double noise_floor_m = kNaN;
   bool improved = false;  ///< something was added
 };
 
-Values times(const Values& values, double factor) {
-  Values out(values.size());
+std::vector<double> times(const std::vector<double>& values, double factor) {
+  std::vector<double> out(values.size());
   std::transform(values.begin(), values.end(), out.begin(),
                  [factor](double value) { return factor * value; });
   return out;
 }
 
-Values cut(const Eigen::VectorXd& series_m, std::size_t start, const greybox::Dataset& record) {
-  Values out(record.size(), kNaN);
+std::vector<double> cut(const Eigen::VectorXd& series_m, std::size_t start,
+                        const greybox::Dataset& record) {
+  std::vector<double> out(record.size(), kNaN);
   if (series_m.size() == 0) return out;
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (record.valid[i] != 0) out[i] = series_m[static_cast<Eigen::Index>(start + i)];
@@ -59,33 +59,33 @@ Values cut(const Eigen::VectorXd& series_m, std::size_t start, const greybox::Da
   return out;
 }
 
-Scale scale_of(const Values& residual_m) {
+ResidualScale scale_of(const std::vector<double>& residual_m) {
   double most_m = 0.0;
   for (const double r : residual_m) {
     if (std::isfinite(r)) most_m = std::max(most_m, std::abs(r));
   }
-  return most_m > kMillimetres_m ? Scale{1e3, "mm"} : Scale{};
+  return most_m > kMillimetres_m ? ResidualScale{1e3, "mm"} : ResidualScale{};
 }
 
 /// Nothing is drawn across a gap.
-Values broken_at_gaps(Values values, const greybox::Dataset& record) {
+std::vector<double> broken_at_gaps(std::vector<double> values, const greybox::Dataset& record) {
   for (const std::size_t start : record.starts) {
     if (start > 0) values[start] = kNaN;
   }
   return values;
 }
 
-Plot time_plot(const Page& page, const std::string& title, const present::Axis& y) {
+Plot time_plot(const RecordPage& page, const std::string& title, const present::Axis& y) {
   return present::over_time(page.record.t_s, title, y, page.record.name);
 }
 
-Values model_mm(const Page& page, const Values& residual_m) {
-  Values out(residual_m.size());
+std::vector<double> model_mm(const RecordPage& page, const std::vector<double>& residual_m) {
+  std::vector<double> out(residual_m.size());
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = 1e3 * (page.record.y_m[i] - residual_m[i]);
   return out;
 }
 
-Plot position_plot(const Page& page, bool fitted) {
+Plot position_plot(const RecordPage& page, bool fitted) {
   Plot plot = time_plot(page, "Position", {"position", "mm"});
   plot.series.push_back({.name = "measured",
                          .y = broken_at_gaps(times(page.record.y_m, 1e3), page.record),
@@ -102,16 +102,16 @@ Plot position_plot(const Page& page, bool fitted) {
   return plot;
 }
 
-Plot residual_plot(const Page& page, const std::string& title, const Values& residual_m,
-                   Tone tone) {
-  const Scale scale = scale_of(residual_m);
+Plot residual_plot(const RecordPage& page, const std::string& title,
+                   const std::vector<double>& residual_m, Tone tone) {
+  const ResidualScale scale = scale_of(residual_m);
   Plot plot = time_plot(page, title, {"measured − model", scale.unit});
   plot.series.push_back({.name = "residual", .y = times(residual_m, scale.per_m), .tone = tone});
   present::add_noise_band(plot, page.noise_floor_m, scale.per_m);
   return plot;
 }
 
-Plot command_plot(const Page& page) {
+Plot command_plot(const RecordPage& page) {
   Plot plot = time_plot(page, "Command", {"command", "V"});
   plot.series.push_back({.name = "command",
                          .y = broken_at_gaps(page.record.u_V, page.record),
@@ -120,14 +120,16 @@ Plot command_plot(const Page& page) {
   return plot;
 }
 
-Series mean_of(const std::string& name, const Values& x, const Values& y, Tone tone) {
+Series mean_of(const std::string& name, const std::vector<double>& x, const std::vector<double>& y,
+               Tone tone) {
   Series series = present::binned(x, y).mean;
   series.name = name;
   series.tone = tone;
   return series;
 }
 
-Series cloud(const std::string& name, const Values& x, const Values& y, Tone tone) {
+Series cloud(const std::string& name, const std::vector<double>& x, const std::vector<double>& y,
+             Tone tone) {
   Series series{.name = name, .tone = tone};
   for (const std::size_t i : present::thin_cloud(x, y, kCloud)) {
     series.x.push_back(x[i]);
@@ -136,15 +138,16 @@ Series cloud(const std::string& name, const Values& x, const Values& y, Tone ton
   return series;
 }
 
-Plot against(const Page& page, const std::string& what, const std::string& unit, const Values& x) {
-  const Scale scale = scale_of(page.before_m);
-  const Values before = times(page.before_m, scale.per_m);
-  const Values after = times(page.after_m, scale.per_m);
+Plot against(const RecordPage& page, const std::string& what, const std::string& unit,
+             const std::vector<double>& x) {
+  const ResidualScale scale = scale_of(page.before_m);
+  const std::vector<double> before = times(page.before_m, scale.per_m);
+  const std::vector<double> after = times(page.after_m, scale.per_m);
   Plot plot{.title = "Residual against " + what,
             .kind = PlotKind::scatter,
             .x = {what, unit},
             .y = {"measured − model", scale.unit},
-            .width = present::Width::half};
+            .width = present::PlotWidth::half};
   if (page.improved) {
     plot.series = {cloud("before", x, before, Tone::residual),
                    cloud("after", x, after, Tone::improved),
@@ -157,8 +160,8 @@ Plot against(const Page& page, const std::string& what, const std::string& unit,
   return plot;
 }
 
-void add_clouds(const Page& page, Section& section) {
-  Values speed = times(page.kinematics.speed_mps, 1e3);
+void add_clouds(const RecordPage& page, Section& section) {
+  std::vector<double> speed = times(page.kinematics.speed_mps, 1e3);
   section.plots.push_back(against(page, "position", "mm", times(page.record.y_m, 1e3)));
   section.plots.push_back(against(page, "velocity", "mm/s", speed));
   section.plots.push_back(against(page, "command", "V", page.record.u_V));
@@ -168,7 +171,7 @@ void add_clouds(const Page& page, Section& section) {
   section.plots.push_back(against(page, "time", "s", page.record.t_s));
 }
 
-Section section_of(const Page& page, bool fitted, const std::string& heading) {
+Section section_of(const RecordPage& page, bool fitted, const std::string& heading) {
   Section section{.heading = heading};
   section.plots.push_back(position_plot(page, fitted));
   if (fitted) {
@@ -220,15 +223,15 @@ std::vector<Section> record_sections(const DiagnosisReport& outcome) {
     const greybox::Dataset& record = data.records[r];
     const std::size_t start = data.starts[r];
     const double noise_m = std::isfinite(data.noise_floor_m) ? data.noise_floor_m : 0.0;
-    const Page page{.record = record,
-                    .kinematics = greybox::kinematics(record, noise_m),
-                    .file_m = cut(all.file_m, start, record),
-                    .before_m = cut(all.before_m, start, record),
-                    .after_m = cut(all.after_m, start, record),
-                    .free_file_m = cut(all.free_file_m, start, record),
-                    .free_after_m = cut(all.free_after_m, start, record),
-                    .noise_floor_m = data.noise_floor_m,
-                    .improved = !outcome.diagnosis.missing.empty()};
+    const RecordPage page{.record = record,
+                          .kinematics = greybox::kinematics(record, noise_m),
+                          .file_m = cut(all.file_m, start, record),
+                          .before_m = cut(all.before_m, start, record),
+                          .after_m = cut(all.after_m, start, record),
+                          .free_file_m = cut(all.free_file_m, start, record),
+                          .free_after_m = cut(all.free_after_m, start, record),
+                          .noise_floor_m = data.noise_floor_m,
+                          .improved = !outcome.diagnosis.missing.empty()};
     const bool held_out = r >= outcome.prepared->records.size();
     sections.push_back(section_of(page, outcome.fitted(),
                                   (held_out ? "Held out: " : "Record ") + file_name(record.name)));

@@ -27,17 +27,17 @@ struct Data {
 };
 
 /// Samples [begin, end) of Data.
-struct Range {
+struct SampleSpan {
   std::size_t begin = 0;
   std::size_t end = 0;
   [[nodiscard]] std::size_t size() const { return end - begin; }
 };
 
-std::span<const double> part(const std::vector<double>& values, Range range) {
+std::span<const double> part(const std::vector<double>& values, SampleSpan range) {
   return std::span(values).subspan(range.begin, range.size());
 }
 
-std::vector<std::size_t> gaps_in(const Data& data, Range range) {
+std::vector<std::size_t> gaps_in(const Data& data, SampleSpan range) {
   std::vector<std::size_t> out;
   for (const std::size_t gap : data.gaps) {
     if (gap > range.begin && gap < range.end) out.push_back(gap - range.begin);
@@ -92,7 +92,7 @@ Data prepare(const Record& record, const EstimateOptions& options) {
   return data;
 }
 
-void score(JudgedEstimate& judged, const Data& data, Range range,
+void score(JudgedEstimate& judged, const Data& data, SampleSpan range,
            const estimator::Structure& structure) {
   const std::span coefficients(judged.estimate.value.data(),
                                static_cast<std::size_t>(structure.size()));
@@ -104,7 +104,7 @@ void score(JudgedEstimate& judged, const Data& data, Range range,
   int one_step_samples = 0;
   judged.cost_m2 = 0.0;
   for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
-    const Range stretch{range.begin + edges[i], range.begin + edges[i + 1]};
+    const SampleSpan stretch{range.begin + edges[i], range.begin + edges[i + 1]};
     const auto u = part(data.u_V, stretch);
     const auto y = part(data.y_m, stretch);
     const estimator::Fit free = estimator::compare(
@@ -121,7 +121,8 @@ void score(JudgedEstimate& judged, const Data& data, Range range,
   judged.one_step_rms_m = std::sqrt(one_step_m2 / one_step_samples);
 }
 
-JudgedEstimate judged_window(const Data& data, Range range, const estimator::Estimate& estimate,
+JudgedEstimate judged_window(const Data& data, SampleSpan range,
+                             const estimator::Estimate& estimate,
                              const estimator::Structure& structure) {
   JudgedEstimate judged;
   judged.estimate = estimate;
@@ -137,8 +138,9 @@ int in_samples(double time_s, double sample_time_s) {
 
 /// Runs `engine` over the fitted range and judges what it gives each time it is due.
 template <class Engine, class Due>
-std::vector<JudgedEstimate> run_windows(Engine& engine, const Data& data, Range fitted, int window,
-                                        const estimator::Structure& structure, Due&& due) {
+std::vector<JudgedEstimate> run_windows(Engine& engine, const Data& data, SampleSpan fitted,
+                                        int window, const estimator::Structure& structure,
+                                        Due&& due) {
   std::vector<JudgedEstimate> windows;
   for (std::size_t i = fitted.begin; i < fitted.end; ++i) {
     if (i > fitted.begin && std::binary_search(data.gaps.begin(), data.gaps.end(), i)) {
@@ -185,13 +187,13 @@ EstimateResult estimate_record(const Record& record, const EstimateOptions& opti
   const auto index = [&data](double share) {
     return static_cast<std::size_t>(std::round(share * static_cast<double>(data.t_s.size())));
   };
-  const Range fitted{index(options.fit_from), index(options.fit_to)};
+  const SampleSpan fitted{index(options.fit_from), index(options.fit_to)};
   const estimator::Structure& structure = options.structure;
   const auto needed = static_cast<std::size_t>(structure.history() + structure.size() + 1);
   const bool whole = fitted.begin == 0 && fitted.end == data.t_s.size();
-  const Range scored = whole                          ? fitted
-                       : fitted.end < data.t_s.size() ? Range{fitted.end, data.t_s.size()}
-                                                      : Range{0, fitted.begin};
+  const SampleSpan scored = whole                          ? fitted
+                            : fitted.end < data.t_s.size() ? SampleSpan{fitted.end, data.t_s.size()}
+                                                           : SampleSpan{0, fitted.begin};
   if (std::min(fitted.size(), scored.size()) < needed) {
     throw bad_data(record.name,
                    "is too short for " + structure.text() + ": " +

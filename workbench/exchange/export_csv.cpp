@@ -19,17 +19,17 @@ namespace workbench::exchange {
 namespace {
 
 // A row of CSV: missing numbers are empty, text is quoted where it must be.
-class Row {
+class CsvRow {
  public:
-  Row& operator<<(double value) {
+  CsvRow& operator<<(double value) {
     separate();
     if (std::isnan(value)) return *this;
     char buffer[32];
     text_.append(buffer, std::to_chars(std::begin(buffer), std::end(buffer), value).ptr);
     return *this;
   }
-  Row& operator<<(bool value) { return *this << (value ? 1.0 : 0.0); }
-  Row& operator<<(std::string_view value) {
+  CsvRow& operator<<(bool value) { return *this << (value ? 1.0 : 0.0); }
+  CsvRow& operator<<(std::string_view value) {
     separate();
     if (value.find_first_of(",\"\n\r") == std::string_view::npos) {
       text_ += value;
@@ -59,7 +59,7 @@ constexpr const char* kAlarmHeader =
 
 void append(std::string& csv, double t_s, const spoolwatch::estimate_t& estimate) {
   for (std::size_t i = 0; i < estimate.name.size(); ++i) {
-    Row row;
+    CsvRow row;
     row << t_s << std::string_view(estimate.source) << (estimate.valid != 0)
         << std::string_view(estimate.name[i]) << estimate.value[i] << estimate.std_error[i]
         << estimate.low[i] << estimate.high[i] << estimate.condition
@@ -69,7 +69,7 @@ void append(std::string& csv, double t_s, const spoolwatch::estimate_t& estimate
 }
 
 void append(std::string& csv, double t_s, const spoolwatch::alarm_t& alarm) {
-  Row row;
+  CsvRow row;
   row << t_s << std::string_view(alarm.source) << std::string_view(alarm.name)
       << std::string_view(live::severity_text(alarm.severity)) << (alarm.active != 0)
       << (alarm.repeat != 0) << std::string_view(alarm.quantity) << alarm.value << alarm.std_error
@@ -79,9 +79,10 @@ void append(std::string& csv, double t_s, const spoolwatch::alarm_t& alarm) {
   csv += row.end();
 }
 
-class Table final : public config::messages::MessageHandler {
+class CsvTable final : public config::messages::MessageHandler {
  public:
-  Table(double sample_time_s, const char* header) : sample_time_s_(sample_time_s), csv_(header) {}
+  CsvTable(double sample_time_s, const char* header)
+      : sample_time_s_(sample_time_s), csv_(header) {}
   void on(const spoolwatch::estimate_t& m) override { append(csv_, time_s(m), m); }
   void on(const spoolwatch::alarm_t& m) override { append(csv_, time_s(m), m); }
   [[nodiscard]] const std::string& text() const { return csv_; }
@@ -115,7 +116,7 @@ void export_csv(const std::string& input, const std::string& kind, const std::st
   if (!is_log(input)) {
     throw config::schema::bad_data(input, "is no LCM event log: it has samples alone");
   }
-  Table table(sample_time_s(input), kind == "alarm" ? kAlarmHeader : kEstimateHeader);
+  CsvTable table(sample_time_s(input), kind == "alarm" ? kAlarmHeader : kEstimateHeader);
   read_log(input, {kind}, table);
   config::record::write_whole(output, table.text());
 }

@@ -18,7 +18,7 @@ using config::signals::kNaN;
 using Columns = std::vector<std::pair<std::string, std::vector<double>>>;
 
 /// Names as identifiers, each once: a second "b1" becomes "b1_2".
-class Names {
+class MatNames {
  public:
   std::string operator()(const std::string& name) {
     const std::string first = identifier(name);
@@ -35,7 +35,7 @@ class Names {
 };
 
 MatValue structure_of(const Columns& columns) {
-  Names names;
+  MatNames names;
   std::vector<std::string> fields;
   for (const auto& [name, values] : columns) fields.push_back(names(name));
   MatValue structure(1, fields);
@@ -67,7 +67,7 @@ struct Source {
   }
 
   [[nodiscard]] MatValue structure() {
-    Names names;
+    MatNames names;
     std::vector<std::string> fields;
     for (const char* name : {"t_s", "valid", "condition_number"}) fields.push_back(names(name));
     for (const auto& [name, columns] : quantities) fields.push_back(names(name));
@@ -123,9 +123,9 @@ MatValue structure_of(const std::vector<TimedAlarm>& alarms) {
 }
 
 /// Everything of a log but its samples.
-class Collector final : public config::messages::MessageHandler {
+class LogCollector final : public config::messages::MessageHandler {
  public:
-  explicit Collector(double sample_time_s) : sample_time_s_(sample_time_s) {}
+  explicit LogCollector(double sample_time_s) : sample_time_s_(sample_time_s) {}
 
   void on(const spoolwatch::estimate_t& m) override {
     sources_[m.source].add(time_s(m, m.tick), m);
@@ -152,7 +152,7 @@ class Collector final : public config::messages::MessageHandler {
 
   void write(MatWriter& writer) {
     if (!sources_.empty()) {
-      Names names;
+      MatNames names;
       std::vector<std::string> fields;
       for (const auto& [name, source] : sources_) fields.push_back(names(name));
       MatValue estimates(1, fields);
@@ -184,7 +184,7 @@ void write_record(const config::record::Record& record, MatWriter& writer) {
   for (const std::string& note : record.notes) {
     std::cerr << "spoolwatch: " << record.name << ": " << note << '\n';
   }
-  Names names;
+  MatNames names;
   writer.add(names("t_s"), MatValue(record.t_s));
   writer.add(names("u_V"), MatValue(record.u_V));
   writer.add(names("y_m"), MatValue(record.y_m));
@@ -201,7 +201,7 @@ std::string mat_file(const std::string& input, const Kinds& kinds) {
     return writer.finish();
   }
   const double period_s = sample_time_s(input);
-  Collector collector(period_s);
+  LogCollector collector(period_s);
   Kinds others = kinds;
   others.erase("sample");
   read_log(input, others, collector);

@@ -11,7 +11,7 @@ namespace {
 constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
 constexpr std::size_t kChunkBytes = 1U << 20U;
 
-enum class Op : std::uint8_t {
+enum class McapOpcode : std::uint8_t {
   header = 0x01,
   footer = 0x02,
   schema = 0x03,
@@ -46,7 +46,7 @@ class Bytes {
   std::string bytes_;
 };
 
-std::string record_of(Op op, const Bytes& content) {
+std::string record_of(McapOpcode op, const Bytes& content) {
   return Bytes()
       .raw({reinterpret_cast<const char*>(&op), 1})
       .u64(content.get().size())
@@ -67,17 +67,17 @@ void McapWriter::Span::add(std::uint64_t t_ns) {
 }
 
 McapWriter::McapWriter(std::string_view library) : file_(kMagic) {
-  file_ += record_of(Op::header, Bytes().text("").text(library));
+  file_ += record_of(McapOpcode::header, Bytes().text("").text(library));
 }
 
 std::uint16_t McapWriter::add_channel(const std::string& topic, const std::string& schema_name,
                                       std::string_view schema) {
   const auto number = static_cast<std::uint16_t>(counts_.size() + 1);
   counts_[number] = 0;
-  const std::string schema_record =
-      record_of(Op::schema, Bytes().u16(number).text(schema_name).text("jsonschema").text(schema));
-  const std::string channel_record =
-      record_of(Op::channel, Bytes().u16(number).u16(number).text(topic).text("json").u32(0));
+  const std::string schema_record = record_of(
+      McapOpcode::schema, Bytes().u16(number).text(schema_name).text("jsonschema").text(schema));
+  const std::string channel_record = record_of(
+      McapOpcode::channel, Bytes().u16(number).u16(number).text(topic).text("json").u32(0));
   chunk_ += schema_record + channel_record;
   schemas_ += schema_record;
   channels_ += channel_record;
@@ -88,8 +88,8 @@ void McapWriter::add(std::uint16_t channel, std::int64_t t_ns, std::string_view 
   const auto time = static_cast<std::uint64_t>(std::max<std::int64_t>(t_ns, 0));
   chunk_entries_[channel].push_back({time, chunk_.size()});
   const std::uint64_t sequence = counts_[channel]++;
-  chunk_ +=
-      record_of(Op::message, Bytes().u16(channel).u32(sequence).u64(time).u64(time).raw(json));
+  chunk_ += record_of(McapOpcode::message,
+                      Bytes().u16(channel).u32(sequence).u64(time).u64(time).raw(json));
   chunk_span_.add(time);
   span_.add(time);
   if (chunk_.size() >= kChunkBytes) end_chunk();
@@ -99,14 +99,14 @@ void McapWriter::end_chunk() {
   if (chunk_.empty()) return;
   if (chunk_entries_.empty()) chunk_span_ = {0, 0};
   const std::uint64_t chunk_start = file_.size();
-  file_ += record_of(Op::chunk, Bytes()
-                                    .u64(chunk_span_.first_ns)
-                                    .u64(chunk_span_.last_ns)
-                                    .u64(chunk_.size())
-                                    .u32(crc_of(chunk_))
-                                    .text("")
-                                    .u64(chunk_.size())
-                                    .raw(chunk_));
+  file_ += record_of(McapOpcode::chunk, Bytes()
+                                            .u64(chunk_span_.first_ns)
+                                            .u64(chunk_span_.last_ns)
+                                            .u64(chunk_.size())
+                                            .u32(crc_of(chunk_))
+                                            .text("")
+                                            .u64(chunk_.size())
+                                            .raw(chunk_));
   const std::uint64_t indexes_start = file_.size();
   Bytes offsets;
   for (auto& [channel, entries] : chunk_entries_) {
@@ -115,18 +115,18 @@ void McapWriter::end_chunk() {
                      [](const Entry& a, const Entry& b) { return a.t_ns < b.t_ns; });
     Bytes pairs;
     for (const Entry& entry : entries) pairs.u64(entry.t_ns).u64(entry.offset);
-    file_ += record_of(Op::message_index, Bytes().u16(channel).text(pairs.get()));
+    file_ += record_of(McapOpcode::message_index, Bytes().u16(channel).text(pairs.get()));
   }
-  chunk_indexes_ += record_of(Op::chunk_index, Bytes()
-                                                   .u64(chunk_span_.first_ns)
-                                                   .u64(chunk_span_.last_ns)
-                                                   .u64(chunk_start)
-                                                   .u64(indexes_start - chunk_start)
-                                                   .text(offsets.get())
-                                                   .u64(file_.size() - indexes_start)
-                                                   .text("")
-                                                   .u64(chunk_.size())
-                                                   .u64(chunk_.size()));
+  chunk_indexes_ += record_of(McapOpcode::chunk_index, Bytes()
+                                                           .u64(chunk_span_.first_ns)
+                                                           .u64(chunk_span_.last_ns)
+                                                           .u64(chunk_start)
+                                                           .u64(indexes_start - chunk_start)
+                                                           .text(offsets.get())
+                                                           .u64(file_.size() - indexes_start)
+                                                           .text("")
+                                                           .u64(chunk_.size())
+                                                           .u64(chunk_.size()));
   ++chunk_count_;
   chunk_.clear();
   chunk_span_ = {};
@@ -140,35 +140,35 @@ std::string McapWriter::statistics() const {
     messages += count;
     counts.u16(channel).u64(count);
   }
-  return record_of(Op::statistics, Bytes()
-                                       .u64(messages)
-                                       .u16(counts_.size())  // a schema for each channel
-                                       .u32(counts_.size())
-                                       .u32(0)
-                                       .u32(0)
-                                       .u32(chunk_count_)
-                                       .u64(messages == 0 ? 0 : span_.first_ns)
-                                       .u64(span_.last_ns)
-                                       .text(counts.get()));
+  return record_of(McapOpcode::statistics, Bytes()
+                                               .u64(messages)
+                                               .u16(counts_.size())  // a schema for each channel
+                                               .u32(counts_.size())
+                                               .u32(0)
+                                               .u32(0)
+                                               .u32(chunk_count_)
+                                               .u64(messages == 0 ? 0 : span_.first_ns)
+                                               .u64(span_.last_ns)
+                                               .text(counts.get()));
 }
 
 std::string McapWriter::finish() {
   end_chunk();
-  file_ += record_of(Op::data_end, Bytes().u32(crc_of(file_)));
+  file_ += record_of(McapOpcode::data_end, Bytes().u32(crc_of(file_)));
   const std::uint64_t summary_start = file_.size();
   std::string offsets;
-  const auto add_group = [&](Op op, const std::string& records) {
+  const auto add_group = [&](McapOpcode op, const std::string& records) {
     if (records.empty()) return;
     const std::uint64_t start = file_.size();
     file_ += records;
     offsets += record_of(
-        Op::summary_offset,
+        McapOpcode::summary_offset,
         Bytes().raw({reinterpret_cast<const char*>(&op), 1}).u64(start).u64(records.size()));
   };
-  add_group(Op::schema, schemas_);
-  add_group(Op::channel, channels_);
-  add_group(Op::statistics, statistics());
-  add_group(Op::chunk_index, chunk_indexes_);
+  add_group(McapOpcode::schema, schemas_);
+  add_group(McapOpcode::channel, channels_);
+  add_group(McapOpcode::statistics, statistics());
+  add_group(McapOpcode::chunk_index, chunk_indexes_);
   end_file(summary_start, offsets);
   return std::move(file_);
 }
@@ -178,7 +178,7 @@ void McapWriter::end_file(std::uint64_t summary_start, const std::string& offset
   file_ += offsets;
   // The check sum covers the summary and the footer up to the sum itself.
   const Bytes places = Bytes().u64(summary_start).u64(offsets_start);
-  const std::string footer = record_of(Op::footer, Bytes(places).u32(0));
+  const std::string footer = record_of(McapOpcode::footer, Bytes(places).u32(0));
   file_ += footer.substr(0, footer.size() - 4);
   file_ += Bytes().u32(crc_of(std::string_view(file_).substr(summary_start))).get();
   file_ += kMagic;

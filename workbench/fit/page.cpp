@@ -14,13 +14,11 @@
 namespace workbench::fit {
 namespace {
 
+using config::signals::kNaN;
 using present::add_series;
 using present::Plot;
 using present::Section;
 using present::Tone;
-using Values = std::vector<double>;
-
-using config::signals::kNaN;
 constexpr double kThreshold = 3.841458820694124;
 
 std::string file_name(const std::string& file) {
@@ -28,9 +26,9 @@ std::string file_name(const std::string& file) {
 }
 
 /// One record's part of the long series, NaN where it does not count and at gaps.
-Values part(const Eigen::VectorXd& series, std::size_t start, const greybox::Dataset& record,
-            double factor, bool valid_only) {
-  Values out(record.size(), kNaN);
+std::vector<double> part(const Eigen::VectorXd& series, std::size_t start,
+                         const greybox::Dataset& record, double factor, bool valid_only) {
+  std::vector<double> out(record.size(), kNaN);
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (valid_only && record.valid[i] == 0) continue;
     out[i] = factor * series[static_cast<Eigen::Index>(start + i)];
@@ -65,7 +63,7 @@ Section record_section(const FitReport& o, std::size_t r) {
     return part(all, start, record, 1e3, false);
   };
   Plot position = over_time(record, "Position, free run", {"position", "mm"});
-  Values measured_mm = record.y_m;
+  std::vector<double> measured_mm = record.y_m;
   for (double& value : measured_mm) value *= 1e3;
   add_series(position, "measured", Tone::measured, std::move(measured_mm));
   add_series(position, "model as it was", Tone::muted, modelled(e.before.free_run_m));
@@ -163,7 +161,7 @@ Section profile_section(const greybox::EstimationSummary& e) {
     if (p.profile.size() < 3) continue;
     Plot plot;
     plot.title = p.free.name;
-    plot.width = present::Width::half;
+    plot.width = present::PlotWidth::half;
     plot.x = {p.free.name, config::units::unit_of(p.free.name)};
     plot.y = {"rise of the cost", ""};
     present::Series series;

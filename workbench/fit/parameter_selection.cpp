@@ -20,8 +20,8 @@ using config::schema::UsageError;
 using greybox::CatalogueParameter;
 using greybox::FreeParameter;
 using greybox::parameter_catalogue;
+using greybox::ParameterScale;
 using greybox::reject_name;
-using greybox::Scale;
 using greybox::split_names;
 using greybox::suggested_names;
 using greybox::widen_to_full_range;
@@ -127,7 +127,7 @@ class ParameterSelector {
                        "in %), name=none");
     }
     FreeParameter& p = known.free;
-    const bool positive = p.scale != Scale::linear;
+    const bool positive = p.scale != ParameterScale::linear;
     if (mean < known.info.min || mean > known.info.max || (positive && mean <= 0.0)) {
       throw bad_config("--prior " + known.name, "has the mean " + shown(mean) + ", out of range",
                        shown(known.info.min) + " to " + shown(known.info.max));
@@ -158,8 +158,8 @@ class ParameterSelector {
                        shown(known.info.min) + " to " + shown(known.info.max));
     }
     FreeParameter& p = known.free;
-    const double infinite = p.scale == Scale::logarithmic ? -20.0 : kInfinite;
-    const double a = low > 0.0 || p.scale == Scale::linear ? p.to_theta(low) : infinite;
+    const double infinite = p.scale == ParameterScale::logarithmic ? -20.0 : kInfinite;
+    const double a = low > 0.0 || p.scale == ParameterScale::linear ? p.to_theta(low) : infinite;
     const double b = p.to_theta(high);
     p.lower = std::min(a, b);
     p.upper = std::max(a, b);

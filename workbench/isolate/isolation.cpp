@@ -40,15 +40,16 @@ constexpr const char* kIn = "pressure_in_Pa";
 constexpr const char* kOut = "pressure_out_Pa";
 constexpr const char* kGain = "valve_gain_m_per_V";
 
-struct Span {
+struct TimeSpan {
   double from_s = 0.0;
   double to_s = 0.0;
 };
 
-Span span(const std::string& text) {
+TimeSpan span(const std::string& text) {
   const std::size_t colon = text.find(':');
   if (colon != std::string::npos) {
-    const Span out{fit::number_in(text.substr(0, colon)), fit::number_in(text.substr(colon + 1))};
+    const TimeSpan out{fit::number_in(text.substr(0, colon)),
+                       fit::number_in(text.substr(colon + 1))};
     if (out.from_s < out.to_s) return out;
   }
   throw UsageError("--healthy " + text + ": is not a span; allowed: from:to, in s");
@@ -119,7 +120,7 @@ std::vector<std::string> tracked_names(const IsolationRequest& request, const Re
 }
 
 /// [from, to) of the record.
-Record cut(const Record& record, const Span& within) {
+Record cut(const Record& record, const TimeSpan& within) {
   Record out;
   out.name = record.name;
   out.sample_time_s = record.sample_time_s;
@@ -139,7 +140,7 @@ Record cut(const Record& record, const Span& within) {
 
 /// Every window of [from, to) of the record.
 std::vector<WindowResult> track(ParameterTracker& tracker, const Record& record,
-                                const Readings& readings, const Span& within) {
+                                const Readings& readings, const TimeSpan& within) {
   std::vector<WindowResult> windows;
   std::size_t gap = 0;
   bool first = true;
@@ -211,7 +212,7 @@ void note_calibration(IsolationReport& out) {
   for (std::size_t i = 0; i < out.set.tracked; ++i) {
     const greybox::FreeParameter& p = out.set.parameters[i];
     const auto at = static_cast<Eigen::Index>(i);
-    if (p.scale != greybox::Scale::logarithmic) continue;
+    if (p.scale != greybox::ParameterScale::logarithmic) continue;
     const double off = std::exp(out.baseline.theta[at] - out.set.file[at]) - 1.0;
     if (std::abs(off) < kOffFile) continue;
     out.notes.push_back(
@@ -276,7 +277,7 @@ IsolationReport isolate(const IsolationRequest& request) {
     }
     out.baseline = {request.baseline_rms_m, out.set.file, {}};
   } else {
-    const Span baseline = span(request.baseline);
+    const TimeSpan baseline = span(request.baseline);
     ParameterTracker learning = tracker();
     const std::vector<WindowResult> windows = track(learning, record, readings, baseline);
     std::optional<Baseline> disturbed;

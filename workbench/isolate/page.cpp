@@ -32,7 +32,7 @@ Plot over_time(const IsolationReport& o, const std::string& title, const present
 
 Plot parameter_plot(const IsolationReport& o, std::size_t i) {
   const greybox::FreeParameter& p = o.set.parameters[i];
-  const bool relative = p.scale == greybox::Scale::logarithmic;
+  const bool relative = p.scale == greybox::ParameterScale::logarithmic;
   const double baseline = p.to_physical(o.baseline.theta[static_cast<Eigen::Index>(i)]);
   Plot plot = over_time(o, tracker::name_words(p.name),
                         relative ? present::Axis{"of the healthy value", "%"}

@@ -106,14 +106,14 @@ class Dots {
   std::vector<Style> styles_;
 };
 
-struct Span {
+struct ChartSpan {
   double low;
   double high;
   [[nodiscard]] double part(double value) const { return (value - low) / (high - low); }
 };
 
-Span motion_span(const std::deque<MotionPoint>& points) {
-  Span span{HUGE_VAL, -HUGE_VAL};
+ChartSpan motion_span(const std::deque<MotionPoint>& points) {
+  ChartSpan span{HUGE_VAL, -HUGE_VAL};
   for (const MotionPoint& point : points) {
     for (const double value : {point.reference_m, point.y_m}) {
       if (std::isnan(value)) continue;
@@ -121,11 +121,11 @@ Span motion_span(const std::deque<MotionPoint>& points) {
     }
   }
   const double lacking = kLeastSpan_m - (span.high - span.low);
-  return lacking > 0.0 ? Span{span.low - lacking / 2, span.high + lacking / 2} : span;
+  return lacking > 0.0 ? ChartSpan{span.low - lacking / 2, span.high + lacking / 2} : span;
 }
 
 // From the band's limits, or what there is of them, a quarter of the band beyond on both sides.
-Span band_span(const TrackedQuantity& track) {
+ChartSpan band_span(const TrackedQuantity& track) {
   const double low = std::isfinite(track.low) ? track.low : track.value;
   const double high = std::isfinite(track.high) ? track.high : track.value;
   const double width = std::max(std::abs(high - low), 1e-12 * std::abs(high) + 1e-300);
@@ -140,7 +140,7 @@ void right_aligned(Canvas& canvas, int row, int end, const std::string& text) {
 
 void chart_motion(Canvas& canvas, Area area, const std::deque<MotionPoint>& points,
                   const Glyphs& glyphs) {
-  const Span span = motion_span(points);
+  const ChartSpan span = motion_span(points);
   if (points.empty() || !std::isfinite(span.low) || area.columns <= kLabel) return;
   for (const auto& [row, value] :
        {std::pair{area.row, span.high}, std::pair{area.row + area.rows - 1, span.low}}) {
@@ -173,7 +173,7 @@ void draw_band(Canvas& canvas, Area area, const TrackedQuantity& track, Style st
   const int width = area.columns - 2 * kLabel;
   if (width < 8) return;
   canvas.text(area.row, first + width + 1, high, Style::dim);
-  const Span span = band_span(track);
+  const ChartSpan span = band_span(track);
   const auto place = [&](double value) {
     const double part = std::clamp(span.part(value), 0.0, 1.0);
     return first + static_cast<int>(std::lround(part * (width - 1)));
@@ -199,8 +199,8 @@ void draw_history(Canvas& canvas, Area area, const TrackedQuantity& track, const
     bool valid = true;
   };
   std::vector<Bin> bins(static_cast<std::size_t>(width));
-  Span span{std::isfinite(track.low) ? track.low : HUGE_VAL,
-            std::isfinite(track.high) ? track.high : -HUGE_VAL};
+  ChartSpan span{std::isfinite(track.low) ? track.low : HUGE_VAL,
+                 std::isfinite(track.high) ? track.high : -HUGE_VAL};
   for (const ValuePoint& point : track.history) {
     if (!std::isfinite(point.value)) continue;
     const double age = (track.history.back().t_s - point.t_s) / LiveState::kValueSpan_s;

@@ -110,9 +110,9 @@ Style severity_style(int severity) {
   }
 }
 
-class Page {
+class LivePage {
  public:
-  Page(const LiveState& state, int rows, int columns, const Glyphs& glyphs)
+  LivePage(const LiveState& state, int rows, int columns, const Glyphs& glyphs)
       : state_(state), glyphs_(glyphs), canvas_(rows, columns) {}
 
   Canvas draw() {
@@ -281,7 +281,7 @@ class Page {
 }  // namespace
 
 Canvas draw(const LiveState& state, int rows, int columns, const Glyphs& glyphs) {
-  return Page(state, rows, columns, glyphs).draw();
+  return LivePage(state, rows, columns, glyphs).draw();
 }
 
 }  // namespace workbench::live

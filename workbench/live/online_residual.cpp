@@ -117,7 +117,7 @@ void OnlineResidual::find_worst(ResidualFigures& f) const {
     const validation::Comparison c =
         validation::compare(model_, greybox::dataset_of(record), observer_per_s_);
     if (!c.headline.significant || c.headline.ranges.empty()) return;
-    const validation::Range& range = c.headline.ranges.front();
+    const validation::RegionRange& range = c.headline.ranges.front();
     f.worst = present::where(c.headline);
     f.worst_variable = range.variable;
     f.worst_from = range.from;

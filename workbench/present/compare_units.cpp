@@ -37,7 +37,7 @@ std::string bin_text(const std::string& variable, const validation::Bin& bin) {
   return bound(bin.from, unit) + " to " + bound(bin.to, unit);
 }
 
-std::string where(const validation::Range& range) {
+std::string where(const validation::RegionRange& range) {
   if (!range.name.empty()) return range.name == "at rest" ? range.name : "while " + range.name;
   const DisplayUnit unit = unit_of(range.variable);
   const std::string low = bound(range.from, unit);
@@ -67,7 +67,7 @@ std::string where(const validation::Range& range) {
 
 std::string where(const validation::SignificantRegion& failing) {
   std::string text;
-  for (const validation::Range& range : failing.ranges)
+  for (const validation::RegionRange& range : failing.ranges)
     text += (text.empty() ? "" : " ") + where(range);
   return text;
 }

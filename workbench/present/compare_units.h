@@ -23,7 +23,7 @@ struct DisplayUnit {
 /// "0.2 to 0.5" in the variable's unit, or the direction's name.
 [[nodiscard]] std::string bin_text(const std::string& variable, const validation::Bin& bin);
 /// "below 5 mm/s", "while reversing", "at positions above 330 mm".
-[[nodiscard]] std::string where(const validation::Range& range);
+[[nodiscard]] std::string where(const validation::RegionRange& range);
 /// All ranges of a region: "below 5 mm/s while reversing".
 [[nodiscard]] std::string where(const validation::SignificantRegion& failing);
 

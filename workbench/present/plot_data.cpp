@@ -127,7 +127,7 @@ std::string figure(const Plot& plot, const std::string& note, std::size_t number
     style = " style=\"flex-basis:" + std::to_string(90 + 26 * plot.categories.size()) + "px\"";
   }
   std::string out = std::string("<figure class=\"plot ") +
-                    (plot.width == Width::half ? "half" : "full") +
+                    (plot.width == PlotWidth::half ? "half" : "full") +
                     "\">\n<div class=\"head\"><h3>" + html(typeset(plot.title)) +
                     "</h3></div>\n<div class=\"canvas\"" + style + "><canvas id=\"plot-" +
                     std::to_string(number) + "\" role=\"img\" aria-label=\"" +

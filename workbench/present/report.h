@@ -40,7 +40,7 @@ struct ReferenceLine {
   std::string label{};  ///< empty: the other side of the line before, looks like it
 };
 
-enum class Width { full, half };  ///< two halves stand side by side
+enum class PlotWidth { full, half };  ///< two halves stand side by side
 
 struct Plot {
   std::string title{};
@@ -54,7 +54,7 @@ struct Plot {
   bool horizontal = false;   ///< bars lie: categories from the top down, the y axis below
   std::string zoom_group{};  ///< plots of one group share zoom and cursor; empty: alone
   std::string caption{};
-  Width width = Width::full;
+  PlotWidth width = PlotWidth::full;
 };
 
 struct Column {

@@ -11,10 +11,10 @@ namespace workbench::promotion {
 namespace {
 
 using config::schema::RunError;
-using Json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 namespace protocol = monitor::control;
 
-std::string text_of(const Json& status, const char* key) {
+std::string text_of(const ordered_json& status, const char* key) {
   const auto found = status.find(key);
   return found != status.end() && found->is_string() ? found->get<std::string>() : "";
 }
@@ -22,7 +22,7 @@ std::string text_of(const Json& status, const char* key) {
 }  // namespace
 
 RunningDaemon::RunningDaemon(std::string socket) : socket_(std::move(socket)) {
-  const Json status =
+  const ordered_json status =
       control::give_order({{protocol::key::kCommand, protocol::kStatus}}, {socket_, ""});
   config_file_ = text_of(status, "config_file");
   recorder_ = text_of(status, "recorder_folder");
@@ -46,7 +46,7 @@ RunningDaemon::RunningDaemon(std::string socket) : socket_(std::move(socket)) {
 }
 
 void RunningDaemon::check() const {
-  const Json status =
+  const ordered_json status =
       control::give_order({{protocol::key::kCommand, protocol::kStatus}}, {socket_, ""});
   estimator::fdi::PipelineConfig effective = rules_;
   effective.load_bands(folder_, sample_time_s_);

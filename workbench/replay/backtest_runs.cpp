@@ -100,9 +100,10 @@ std::string id_of(const std::string& source, const std::string& name) {
 }
 
 /// A configuration at work on one run.
-class Watch final : private estimator::fdi::Events {
+class BacktestPipeline final : private estimator::fdi::Events {
  public:
-  Watch(const BacktestRules& rules, double sample_time_s) : sample_time_s_(sample_time_s) {
+  BacktestPipeline(const BacktestRules& rules, double sample_time_s)
+      : sample_time_s_(sample_time_s) {
     estimator::fdi::PipelineConfig config = rules.pipeline;
     config.load_bands(rules.folder, sample_time_s, rules.rig_id);
     pipeline_ = std::make_unique<Pipeline>(config, sample_time_s);
@@ -140,8 +141,8 @@ class Course final : public SampleHandler {
     if (after_ == nullptr) {
       run.sample_time_s = sample_time_s;
       run.from_s = t_s;
-      after_ = std::make_unique<Watch>(new_rules_, sample_time_s);
-      if (old_rules_) before_ = std::make_unique<Watch>(*old_rules_, sample_time_s);
+      after_ = std::make_unique<BacktestPipeline>(new_rules_, sample_time_s);
+      if (old_rules_) before_ = std::make_unique<BacktestPipeline>(*old_rules_, sample_time_s);
     }
     run.to_s = t_s;
     ++run.samples;
@@ -167,7 +168,7 @@ class Course final : public SampleHandler {
 
   const BacktestRules& new_rules_;
   const std::optional<BacktestRules>& old_rules_;
-  std::unique_ptr<Watch> after_, before_;
+  std::unique_ptr<BacktestPipeline> after_, before_;
   OccurrenceList recorded_;
 };
 

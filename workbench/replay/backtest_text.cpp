@@ -9,7 +9,7 @@
 namespace workbench::replay {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using nlohmann::ordered_json;
 
 std::string time_text(double t_s) {
   return std::isnan(t_s) ? "the end" : fmt::format("{:.3f} s", t_s);
@@ -23,17 +23,17 @@ std::string words(const Occurrence& o) {
          ", " + time_text(o.from_s) + " to " + time_text(o.to_s);
 }
 
-Json json_of(const Occurrence& o) {
+ordered_json json_of(const Occurrence& o) {
   constexpr const char* kSeverity[] = {"OK", "MINOR", "MAJOR", "INVALID"};
   return {{"alarm", o.alarm},
           {"from_s", o.from_s},
-          {"to_s", std::isnan(o.to_s) ? Json(nullptr) : Json(o.to_s)},
+          {"to_s", std::isnan(o.to_s) ? ordered_json(nullptr) : ordered_json(o.to_s)},
           {"severity", o.severity >= 0 && o.severity < 4 ? kSeverity[o.severity] : "?"},
           {"direction", o.direction}};
 }
 
-Json json_of(const std::vector<Occurrence>& list) {
-  Json out = Json::array();
+ordered_json json_of(const std::vector<Occurrence>& list) {
+  ordered_json out = ordered_json::array();
   for (const Occurrence& o : list) out.push_back(json_of(o));
   return out;
 }
@@ -88,12 +88,12 @@ void print_backtest(const BacktestReport& report, std::ostream& out) {
   }
 }
 
-Json backtest_json(const BacktestReport& report) {
-  Json runs = Json::array();
+ordered_json backtest_json(const BacktestReport& report) {
+  ordered_json runs = ordered_json::array();
   for (std::size_t i = 0; i < report.runs.size(); ++i) {
     const BacktestRun& run = report.runs[i];
     const OccurrenceDifference& d = report.differences[i];
-    Json shifts = Json::array();
+    ordered_json shifts = ordered_json::array();
     for (const Shift& s : d.shifts) {
       shifts.push_back({{"before", json_of(s.before)},
                         {"after", json_of(s.after)},

@@ -14,9 +14,9 @@ namespace {
 
 namespace fdi = estimator::fdi;
 
-class Recorder final : public fdi::Events {
+class AlarmRecorder final : public fdi::Events {
  public:
-  explicit Recorder(Keep keep) : keep_(keep) {}
+  explicit AlarmRecorder(Keep keep) : keep_(keep) {}
 
   void on_estimate(const fdi::EstimateEvent& event) override {
     if (keep_ == Keep::alarms) return;
@@ -58,7 +58,7 @@ AlarmRun run_with_alarms(const Scenario& scenario, const fdi::PipelineConfig& co
                          double duration_s, std::uint64_t seed, Keep keep) {
   simulate::ClosedLoop loop(scenario, seed);
   fdi::Pipeline pipeline(config, simulate::kSampleTime_s);
-  Recorder recorder(keep);
+  AlarmRecorder recorder(keep);
   const std::int64_t samples = std::llround(duration_s / simulate::kSampleTime_s);
   for (std::int64_t tick = 0; tick < samples; ++tick) {
     const simulate::LoopRow row = loop.step();

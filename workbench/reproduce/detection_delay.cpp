@@ -20,17 +20,17 @@ constexpr double kFirst_s = 15.0;
 constexpr double kPeriod_s = 2.0;
 constexpr double kHour_s = 3600.0;
 
-struct Watch {
+struct DelayCase {
   std::string name;
   estimator::fdi::PipelineConfig config;
   bool sliding;
 };
 
-Watch whole_periods() {
+DelayCase whole_periods() {
   return {"whole periods", watching_b1(period_estimator(), kCase1Low, kCase1High), false};
 }
 
-Watch shipped_sliding() {
+DelayCase shipped_sliding() {
   const estimator::fdi::PipelineConfig config = shipped_sliding_window();
   const estimator::fdi::EstimatorConfig& estimator = config.estimators.front();
   return {fmt::format("sliding {}, {:.3g} s every {:.3g} s", estimator.structure,
@@ -65,7 +65,7 @@ double false_alarms(const estimator::fdi::PipelineConfig& config) {
                     [](const AlarmChange& change) { return change.active; }));
 }
 
-void add(std::vector<ReproducedRow>& rows, const Watch& watch) {
+void add(std::vector<ReproducedRow>& rows, const DelayCase& watch) {
   for (const double factor : {1.25, 0.75}) {
     const Delay found = delay(watch.config, factor);
     const std::string name = watch.name + fmt::format("; Ps {:.0f} psi: ", 1000.0 * factor);

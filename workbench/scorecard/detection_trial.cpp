@@ -12,19 +12,20 @@ namespace fdi = estimator::fdi;
 
 namespace {
 
-Names names_of(const fdi::Alarm& alarm) {
-  Names names(alarm.ambiguity_group.begin(), alarm.ambiguity_group.end());
+AmbiguityGroup names_of(const fdi::Alarm& alarm) {
+  AmbiguityGroup names(alarm.ambiguity_group.begin(), alarm.ambiguity_group.end());
   if (!alarm.parameter.empty()) names.insert(alarm.parameter);
   return names;
 }
 
-bool holds(const Names& names, const std::vector<std::string>& right) {
+bool holds(const AmbiguityGroup& names, const std::vector<std::string>& right) {
   return std::any_of(right.begin(), right.end(),
                      [&](const std::string& name) { return names.count(name) != 0; });
 }
 
 /// Verdict after one more alarm.
-TrialVerdict add(TrialVerdict before, const Names& names, const std::vector<std::string>& right) {
+TrialVerdict add(TrialVerdict before, const AmbiguityGroup& names,
+                 const std::vector<std::string>& right) {
   TrialVerdict one = TrialVerdict::wrong;
   if (names.empty()) {
     one = TrialVerdict::unnamed;
@@ -59,7 +60,7 @@ class DetectionTrial::Listener final : public fdi::Events {
     const std::string key = alarm.source + "." + alarm.name;
     if (std::find(notices_.begin(), notices_.end(), key) != notices_.end()) return;
     const bool counts = alarm.active && alarm.severity != fdi::Severity::invalid;
-    const Names names = counts ? names_of(alarm) : Names{};
+    const AmbiguityGroup names = counts ? names_of(alarm) : AmbiguityGroup{};
     State& state = states_[key];
     // Another name or direction is said anew.
     if (counts && (!state.up || state.names != names || state.direction != alarm.direction)) {
@@ -71,7 +72,7 @@ class DetectionTrial::Listener final : public fdi::Events {
     state = {counts, doubtful, names, alarm.direction};
   }
 
-  std::vector<Names> came;  ///< since it was last emptied
+  std::vector<AmbiguityGroup> came;  ///< since it was last emptied
   int standing = 0;
   int invalid = 0;
 
@@ -79,7 +80,7 @@ class DetectionTrial::Listener final : public fdi::Events {
   struct State {
     bool up = false;
     bool invalid = false;
-    Names names;
+    AmbiguityGroup names;
     int direction = 0;
   };
   std::vector<std::string> notices_;
@@ -130,7 +131,7 @@ TrialAnswer DetectionTrial::fault(const Samples& samples, double at_s,
     if (listener.came.empty()) continue;
     const bool first = !answer.detected();
     if (first) answer.delay_s = time_s(k) - at_s;
-    for (const Names& one : listener.came) {
+    for (const AmbiguityGroup& one : listener.came) {
       answer.verdict = add(answer.verdict, one, names);
       if (first) answer.first.insert(one.begin(), one.end());
     }

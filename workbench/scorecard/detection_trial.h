@@ -16,7 +16,8 @@
 
 namespace workbench::scorecard {
 
-using Names = std::set<std::string>;  ///< parameters of one alarm that cannot be told apart
+using AmbiguityGroup =
+    std::set<std::string>;  ///< parameters of one alarm that cannot be told apart
 
 enum class TrialVerdict {
   right,     ///< every alarm named the fault, and nothing else
@@ -32,7 +33,7 @@ enum class TrialVerdict {
 struct TrialAnswer {
   TrialVerdict verdict = TrialVerdict::missed;
   double delay_s = std::numeric_limits<double>::infinity();  ///< to its first alarm
-  Names first;  ///< names of the alarms that came first, together
+  AmbiguityGroup first;  ///< names of the alarms that came first, together
 
   [[nodiscard]] bool detected() const {
     return verdict != TrialVerdict::missed && verdict != TrialVerdict::standing;

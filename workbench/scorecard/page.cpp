@@ -69,7 +69,7 @@ Plot smallest_plot(const Card& card, const Fault& fault) {
   plot.title = fault_words(fault);
   plot.kind = present::PlotKind::bars;
   plot.horizontal = true;
-  plot.width = present::Width::half;
+  plot.width = present::PlotWidth::half;
   plot.categories = method_names(card);
   plot.y = {"smallest detected, " + card.motions.front(), fault.unit, true};
   present::Series bars{"smallest", {}, {}, present::Tone::model, {}, false};
@@ -114,7 +114,7 @@ Plot delay_plot(const Card& card, const Fault& fault) {
   Plot plot;
   plot.title = sized_words(fault);
   plot.kind = present::PlotKind::steps;
-  plot.width = present::Width::half;
+  plot.width = present::PlotWidth::half;
   plot.x = {"after the fault", "s"};
   plot.y = {"detected", "%"};
   plot.lines = {{100.0 * kDetected, "asked for"}};

@@ -11,7 +11,7 @@
 namespace workbench::scorecard {
 namespace {
 
-using Rows = std::vector<std::vector<std::string>>;
+using TextRows = std::vector<std::vector<std::string>>;
 
 /// Characters, not bytes.
 std::size_t width(const std::string& text) {
@@ -20,7 +20,7 @@ std::size_t width(const std::string& text) {
   }));
 }
 
-std::string aligned(const Rows& rows, const std::string& indent) {
+std::string aligned(const TextRows& rows, const std::string& indent) {
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()));
@@ -38,7 +38,7 @@ std::string aligned(const Rows& rows, const std::string& indent) {
   return out;
 }
 
-std::string marked(const Rows& rows) {
+std::string marked(const TextRows& rows) {
   std::string out;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     out += "|";
@@ -52,8 +52,8 @@ std::string marked(const Rows& rows) {
   return out;
 }
 
-Rows quiet_rows(const Card& card) {
-  Rows rows{{"method", "false alarms", "per hour (95 % limit)"}};
+TextRows quiet_rows(const Card& card) {
+  TextRows rows{{"method", "false alarms", "per hour (95 % limit)"}};
   for (const Benign& change : card.benign) rows[0].push_back(change.id);
   rows[0].emplace_back("right");
   rows[0].emplace_back("in a group");
@@ -77,8 +77,8 @@ Rows quiet_rows(const Card& card) {
 }
 
 /// Faults down, methods across: smallest size in each motion.
-Rows smallest_rows(const Card& card) {
-  Rows rows{{"smallest fault detected"}};
+TextRows smallest_rows(const Card& card) {
+  TextRows rows{{"smallest fault detected"}};
   for (const MethodFigures& method : card.methods) rows[0].push_back(method.name);
   for (const Fault* fault : faults_of(card)) {
     std::vector<std::string> row{fault_words(*fault)};
@@ -90,8 +90,8 @@ Rows smallest_rows(const Card& card) {
   return rows;
 }
 
-Rows delay_rows(const Card& card) {
-  Rows rows{{"delay, median (95 %)"}};
+TextRows delay_rows(const Card& card) {
+  TextRows rows{{"delay, median (95 %)"}};
   for (const MethodFigures& method : card.methods) rows[0].push_back(method.name);
   for (const Fault* fault : faults_of(card)) {
     std::vector<std::string> row{sized_words(*fault)};
@@ -108,8 +108,8 @@ std::string method_text(const MethodFigures& method) {
   for (const auto& [motion, why] : method.unusable) {
     out.append("  ").append(unusable_words(motion, why)).append("\n");
   }
-  Rows rows{{"fault", "right", "group", "wrong", "no name", "missed", "alarm before",
-             "names that came first"}};
+  TextRows rows{{"fault", "right", "group", "wrong", "no name", "missed", "alarm before",
+                 "names that came first"}};
   for (const FaultFigures& of : method.faults) {
     std::vector<std::string> row{sized_words(*of.fault)};
     for (const TrialVerdict verdict :

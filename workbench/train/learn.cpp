@@ -16,13 +16,13 @@ namespace fdi = estimator::fdi;
 using config::schema::bad_config;
 using config::schema::bad_data;
 
-using Rows = std::vector<std::vector<double>>;
+using BlockMeans = std::vector<std::vector<double>>;
 
 /// Keeps the block means instead of testing them.
 struct CollectConfig final : fdi::DetectionMethodConfigOf<CollectConfig> {
   std::vector<std::string> quantities;
   double block_s = 0.0;
-  std::shared_ptr<Rows> rows;
+  std::shared_ptr<BlockMeans> rows;
   void visit(config::schema::Visitor& /*v*/) override {}
   [[nodiscard]] std::vector<std::string> inputs() const override { return quantities; }
   [[nodiscard]] std::unique_ptr<fdi::DetectionMethod> make(
@@ -40,10 +40,10 @@ class Collect final : public fdi::BlockMethod {
   void take(std::span<const double> means) noexcept override {
     rows_->emplace_back(means.begin(), means.end());
   }
-  void show(std::span<fdi::NamedValue> /*values*/) const noexcept override {}
+  void show(std::span<fdi::EstimatedValue> /*values*/) const noexcept override {}
   void forget() noexcept override {}
   void serialize_state(estimator::StateArchive& /*archive*/) override {}
-  std::shared_ptr<Rows> rows_;
+  std::shared_ptr<BlockMeans> rows_;
 };
 
 std::unique_ptr<fdi::DetectionMethod> CollectConfig::make(const fdi::MethodContext& context) const {
@@ -70,7 +70,7 @@ std::vector<const fdi::TrainedMethodConfig*> trained_of(const fdi::PipelineConfi
 /// The pipeline without what is trained, with a collector for each instead.
 fdi::PipelineConfig collecting(const fdi::PipelineConfig& pipeline,
                                const std::vector<const fdi::TrainedMethodConfig*>& sources,
-                               std::vector<std::shared_ptr<Rows>>& rows) {
+                               std::vector<std::shared_ptr<BlockMeans>>& rows) {
   fdi::PipelineConfig config = pipeline;
   config.bands.clear();
   config.bands_file.clear();
@@ -85,7 +85,7 @@ fdi::PipelineConfig collecting(const fdi::PipelineConfig& pipeline,
     collect->id = source->id;
     collect->quantities = source->quantities();
     collect->block_s = source->block_s;
-    collect->rows = rows.emplace_back(std::make_shared<Rows>());
+    collect->rows = rows.emplace_back(std::make_shared<BlockMeans>());
     config.add("collect", std::move(collect));
   }
   return config;
@@ -94,7 +94,7 @@ fdi::PipelineConfig collecting(const fdi::PipelineConfig& pipeline,
 /// Autocovariance of value `j` at `lag`, within records.
 double covariance_at(const Blocks& blocks, double mean, std::size_t j, std::size_t lag, double n) {
   double sum = 0.0;
-  for (const Rows& rows : blocks) {
+  for (const BlockMeans& rows : blocks) {
     for (std::size_t i = lag; i < rows.size(); ++i) {
       sum += (rows[i][j] - mean) * (rows[i - lag][j] - mean);
     }
@@ -108,7 +108,7 @@ fdi::TrainedClass summarise(const Blocks& blocks, const Teaching& teaching,
                             const std::string& where) {
   std::size_t count = 0;
   std::size_t size = 0;
-  for (const Rows& rows : blocks) {
+  for (const BlockMeans& rows : blocks) {
     count += rows.size();
     if (!rows.empty()) size = rows.front().size();
   }
@@ -126,12 +126,12 @@ fdi::TrainedClass summarise(const Blocks& blocks, const Teaching& teaching,
   out.blocks = static_cast<std::int64_t>(count);
   out.mean.assign(size, 0.0);
   out.covariance.assign(size * size, 0.0);
-  for (const Rows& rows : blocks) {
+  for (const BlockMeans& rows : blocks) {
     for (const auto& row : rows) {
       for (std::size_t j = 0; j < size; ++j) out.mean[j] += row[j] / n;
     }
   }
-  for (const Rows& rows : blocks) {
+  for (const BlockMeans& rows : blocks) {
     for (const auto& row : rows) {
       for (std::size_t i = 0; i < size * size; ++i) {
         const std::size_t a = i / size;
@@ -179,7 +179,7 @@ fdi::TrainedFile learn(const fdi::PipelineConfig& pipeline, const std::vector<Te
         throw bad_data(record.name, "has another sample time than the first record");
       }
       out.records.push_back(teaching.name + ": " + record.name);
-      std::vector<std::shared_ptr<Rows>> rows;
+      std::vector<std::shared_ptr<BlockMeans>> rows;
       fdi::Pipeline run(collecting(pipeline, sources, rows), out.sample_time_s);
       for (const config::signals::Sample& sample : to_samples(record)) run.process(sample, silence);
       for (std::size_t i = 0; i < sources.size(); ++i) blocks[i].push_back(std::move(*rows[i]));

@@ -16,7 +16,7 @@ namespace fdi = estimator::fdi;
 using config::schema::bad_config;
 
 /// One quantity's values, one for each estimate.
-struct Series {
+struct QuantitySeries {
   std::string quantity;
   std::size_t estimator = 0;
   std::string_view name;
@@ -25,33 +25,34 @@ struct Series {
   std::size_t valid = 0;
 };
 
-class Collector final : public fdi::Events {
+class BandValues final : public fdi::Events {
  public:
-  explicit Collector(std::vector<Series>& series) : series_(series) {}
+  explicit BandValues(std::vector<QuantitySeries>& series) : series_(series) {}
   void on_estimate(const fdi::EstimateEvent& event) override {
     if (event.warming_up) return;
-    for (Series& s : series_) {
+    for (QuantitySeries& s : series_) {
       if (s.estimator == event.estimator) add(s, event);
     }
   }
   void on_alarm(const fdi::Alarm& /*alarm*/) override {}
 
  private:
-  static void add(Series& s, const fdi::EstimateEvent& event) {
+  static void add(QuantitySeries& s, const fdi::EstimateEvent& event) {
     s.values.push_back(std::numeric_limits<double>::quiet_NaN());
-    for (const fdi::NamedValue& value : event) {
+    for (const fdi::EstimatedValue& value : event) {
       if (value.name != s.name || !event.valid) continue;
       s.values.back() = value.value;
       if (std::isfinite(value.std_error)) s.error_sum += value.std_error;
       ++s.valid;
     }
   }
-  std::vector<Series>& series_;
+  std::vector<QuantitySeries>& series_;
 };
 
-std::vector<Series> make_series(const std::vector<std::string>& quantities,
-                                const fdi::PipelineConfig& pipeline, const std::string& file) {
-  std::vector<Series> series;
+std::vector<QuantitySeries> make_series(const std::vector<std::string>& quantities,
+                                        const fdi::PipelineConfig& pipeline,
+                                        const std::string& file) {
+  std::vector<QuantitySeries> series;
   for (const std::string& quantity : quantities) {
     const fdi::QuantityName name = fdi::split_quantity(quantity);
     std::size_t number = 0;
@@ -70,11 +71,11 @@ std::vector<Series> make_series(const std::vector<std::string>& quantities,
     }
     series.push_back({quantity, number, {}});
   }
-  for (Series& s : series) s.name = fdi::split_quantity(s.quantity).name;
+  for (QuantitySeries& s : series) s.name = fdi::split_quantity(s.quantity).name;
   return series;
 }
 
-fdi::LearnedBand learn(const Series& series, const fdi::EstimatorConfig& estimator,
+fdi::LearnedBand learn(const QuantitySeries& series, const fdi::EstimatorConfig& estimator,
                        const std::string& source, const LearnOptions& options, double period_s) {
   if (series.valid == 0) {
     throw config::schema::bad_data(source, "gives no valid estimate of " + series.quantity);
@@ -130,7 +131,7 @@ fdi::LearnedBands learn_bands(const fdi::PipelineConfig& pipeline,
                               const std::vector<std::string>& quantities,
                               std::span<const config::record::Record> records,
                               const LearnOptions& options) {
-  std::vector<Series> series = make_series(quantities, pipeline, options.config);
+  std::vector<QuantitySeries> series = make_series(quantities, pipeline, options.config);
   fdi::PipelineConfig without_bands = pipeline;
   without_bands.bands.clear();
   fdi::LearnedBands learned;
@@ -143,7 +144,7 @@ fdi::LearnedBands learn_bands(const fdi::PipelineConfig& pipeline,
     }
     learned.source += (learned.source.empty() ? "" : ", ") + record.name;
     fdi::Pipeline estimates(without_bands, learned.sample_time_s);
-    Collector collector(series);
+    BandValues collector(series);
     for (const config::signals::Sample& sample : to_samples(record))
       estimates.process(sample, collector);
   }
@@ -151,7 +152,7 @@ fdi::LearnedBands learn_bands(const fdi::PipelineConfig& pipeline,
       std::isnan(options.period_s)
           ? fdi::find_period_s(records.front().u_V, records.front().sample_time_s)
           : options.period_s;
-  for (const Series& s : series) {
+  for (const QuantitySeries& s : series) {
     learned.bands.push_back(
         learn(s, pipeline.estimators[s.estimator], learned.source, options, period_s));
   }

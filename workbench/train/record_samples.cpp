@@ -10,16 +10,16 @@ namespace {
 
 using config::record::Record;
 using config::signals::Sample;
-using Column = const std::vector<double>*;
+using ColumnValues = const std::vector<double>*;
 
-double at(Column column, std::size_t row) {
+double at(ColumnValues column, std::size_t row) {
   return column != nullptr ? (*column)[row] : std::numeric_limits<double>::quiet_NaN();
 }
 
 void add_pressures(const Record& record, std::vector<Sample>& samples) {
-  const Column supply = record.column(config::record::kSupplyPressure);
-  const Column in = record.column(config::record::kPressureIn);
-  const Column out = record.column(config::record::kPressureOut);
+  const ColumnValues supply = record.column(config::record::kSupplyPressure);
+  const ColumnValues in = record.column(config::record::kPressureIn);
+  const ColumnValues out = record.column(config::record::kPressureOut);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     samples[i].pressures = {at(supply, i), at(in, i), at(out, i)};
   }
@@ -27,13 +27,13 @@ void add_pressures(const Record& record, std::vector<Sample>& samples) {
 
 /// Several rod sensors; a reading that a record has is a good one.
 void add_rods(const Record& record, std::vector<Sample>& samples) {
-  std::vector<Column> rods;
+  std::vector<ColumnValues> rods;
   while (rods.size() < config::signals::kMaxRods) {
-    const Column rod = record.column(config::record::rod_column(rods.size()));
+    const ColumnValues rod = record.column(config::record::rod_column(rods.size()));
     if (rod == nullptr) break;
     rods.push_back(rod);
   }
-  const Column in_charge = record.column(config::record::kRodInCharge);
+  const ColumnValues in_charge = record.column(config::record::kRodInCharge);
   if (rods.size() < 2 || in_charge == nullptr) return;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const double number = at(in_charge, i);

@@ -13,8 +13,8 @@ namespace {
 
 using config::signals::Sample;
 using estimator::fdi::AlarmInput;
+using estimator::fdi::EstimatedValue;
 using estimator::fdi::MethodOutput;
-using estimator::fdi::NamedValue;
 using estimator::fdi::Severity;
 
 /// Ratio of the total length of unexplained windows in a row to one window, above which the model
@@ -287,7 +287,7 @@ void TrackerMethod::say_slow() {
   }
 }
 
-MethodOutput TrackerMethod::evaluate(std::span<NamedValue> values) noexcept {
+MethodOutput TrackerMethod::evaluate(std::span<EstimatedValue> values) noexcept {
   const std::size_t tracked = tracker_.set().tracked;
   for (std::size_t i = 0; i < tracked; ++i) {
     values[i].value = found_[i];
@@ -301,14 +301,14 @@ MethodOutput TrackerMethod::evaluate(std::span<NamedValue> values) noexcept {
   for (std::size_t i = 0; i < slow.size(); ++i) {
     const std::size_t at = slow.parameter(i);
     const std::optional<greybox::tracking::Baseline>& baseline = tracker_.baseline();
-    NamedValue& value = values[2 * tracked + 1 + i];
+    EstimatedValue& value = values[2 * tracked + 1 + i];
     value.value = baseline ? tracker_.set().parameters[at].to_physical(
                                  baseline->theta[static_cast<Eigen::Index>(at)])
                            : kNaN;
     value.std_error = kNaN;
   }
   for (std::size_t i = 0; i < disturbance_.size(); ++i) {
-    NamedValue& value = values[2 * tracked + 1 + slow.size() + i];
+    EstimatedValue& value = values[2 * tracked + 1 + slow.size() + i];
     value.value = disturbance_[i];
     value.std_error = kNaN;
   }

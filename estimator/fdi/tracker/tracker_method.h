@@ -24,7 +24,7 @@ class TrackerMethod final : public estimator::fdi::DetectionMethod {
   bool on_gap(std::int64_t periods) noexcept override;
   bool push(const config::signals::Sample& sample, double y_m) noexcept override;
   estimator::fdi::MethodOutput evaluate(
-      std::span<estimator::fdi::NamedValue> values) noexcept override;
+      std::span<estimator::fdi::EstimatedValue> values) noexcept override;
   [[nodiscard]] estimator::fdi::AlarmInput alarm_input(std::size_t number) const noexcept override;
   void reset() override;
   void serialize(estimator::StateArchive& archive) override;

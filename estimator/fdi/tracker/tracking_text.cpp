@@ -11,11 +11,11 @@ namespace estimator::fdi::tracker {
 namespace {
 
 using Eigen::Index;
-using greybox::Scale;
+using greybox::ParameterScale;
 
 std::string percent(double ratio) { return fmt::format("{:.3g} %", 100.0 * ratio); }
 
-bool is_logarithmic(const FreeParameter& p) { return p.scale == Scale::logarithmic; }
+bool is_logarithmic(const FreeParameter& p) { return p.scale == ParameterScale::logarithmic; }
 
 /// "12 %" of the value, or "0.3 times its typical size".
 std::string error_words(const FreeParameter& p, double std_error) {

@@ -24,7 +24,7 @@ void report_parameters(const Eigen::VectorXd& errors, Diagnosis& result) {
 /// the observer weakens.
 FitSummary fit_free_run(const SearchContext& context, const ParameterSubset& start) {
   const Eigen::VectorXd& weights = context.problem.data.final_weights();
-  const Width width = wide(context.options.threads);
+  const SimulationWidth width = wide(context.options.threads);
   FitSummary best = refit(context, start, weights, width, 0.0);
   ParameterSubset weakened = start;
   for (const double share : {0.3, 0.1, 0.03}) {

@@ -47,7 +47,7 @@ double gain_nats(const InnovationStage& stage, const MatrixXd& columns) {
 }  // namespace
 
 std::vector<CurveGain> curve_gains(const InnovationStage& stage) {
-  const Variables all = variables(stage.context, stage.model);
+  const ResidualVariables all = variables(stage.context, stage.model);
   struct Attempt {
     const Variable* variable;
     ResidualInput input;

@@ -33,7 +33,7 @@ SearchContext with_data(const SearchContext& context, FitDataset data) {
 /// The stage's data, likelihood and parameters for its noise model. The parameters start where they
 /// are and, as a disturbance that was not known may have bent them, where the model file has them.
 void refit(const SearchContext& plain, InnovationStage& stage, bool from_file_too,
-           InnovationFit effort, Width width) {
+           InnovationFit effort, SimulationWidth width) {
   const disturbance::InnovationData data =
       disturbance::innovation_data(plain.problem.data, stage.linear, stage.noise);
   stage.context = with_data(plain, data.data);
@@ -63,7 +63,7 @@ double squares(const FitSummary& fitted, double floor_m) {
 }
 
 FitSummary fit_innovations(const SearchContext& context, const ParameterSubset& parameters,
-                           Width width, InnovationFit effort) {
+                           SimulationWidth width, InnovationFit effort) {
   const bool quick = effort == InnovationFit::quick;
   const bool trial = effort == InnovationFit::trial;
   FitOptions options;
@@ -78,7 +78,7 @@ FitSummary fit_innovations(const SearchContext& context, const ParameterSubset& 
 }
 
 InnovationStage settled(const SearchContext& plain, ModelStage model,
-                        const disturbance::NoiseModel& start, int turns, Width width) {
+                        const disturbance::NoiseModel& start, int turns, SimulationWidth width) {
   InnovationStage stage;
   stage.model = std::move(model);
   stage.noise = start;

@@ -30,7 +30,7 @@ enum class InnovationFit {
   converged  ///< the parameters of a model that stays
 };
 [[nodiscard]] FitSummary fit_innovations(const SearchContext& context,
-                                         const ParameterSubset& parameters, Width width,
+                                         const ParameterSubset& parameters, SimulationWidth width,
                                          InnovationFit effort);
 
 /// Squared innovations in units of the noise floor.
@@ -41,7 +41,8 @@ inline constexpr int kMostTurns = 5;
 /// Noise model and parameters in turn, at most `turns` over, from those of `model` and `start`; the
 /// best of them. `plain`: data without innovations. Unfinished when cancelled.
 [[nodiscard]] InnovationStage settled(const SearchContext& plain, ModelStage model,
-                                      const disturbance::NoiseModel& start, int turns, Width width);
+                                      const disturbance::NoiseModel& start, int turns,
+                                      SimulationWidth width);
 
 /// A fit's parameters in a simulation with the weak observer, without Jacobian.
 [[nodiscard]] FitSummary simulated(const SearchContext& context, const FitSummary& fitted);

@@ -80,8 +80,8 @@ std::vector<InnovationTrial> effect_trials(const InnovationStage& stage) {
     trial.candidate.gain_nats = -std::numeric_limits<double>::infinity();
     for (const VectorXd& start : screened[i].starts) {
       if (context.cancelled()) return;
-      FitSummary fitted =
-          fit_innovations(context, {screened[i].parameters, start}, Width{}, InnovationFit::quick);
+      FitSummary fitted = fit_innovations(context, {screened[i].parameters, start},
+                                          SimulationWidth{}, InnovationFit::quick);
       const double penalty = penalty_nats(fitted, stage.model.fitted);
       const double gain = 0.5 * (before - squares(fitted, floor_m) - prior_cost(fitted)) - penalty;
       if (!(gain > trial.candidate.gain_nats)) continue;
@@ -159,7 +159,7 @@ InnovationStage settled(const SearchContext& plain, const InnovationStage& stage
   if (trial.candidate.effect.empty()) noise.lines.push_back(trial.candidate.line);
   InnovationStage best;
   for (const ModelStage& start : trial.starts) {
-    InnovationStage one = settled(plain, start, noise, 1, Width{});
+    InnovationStage one = settled(plain, start, noise, 1, SimulationWidth{});
     if (one.minus_two_log < best.minus_two_log) best = std::move(one);
   }
   return best;

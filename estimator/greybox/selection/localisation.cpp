@@ -47,8 +47,8 @@ MatrixXd seen_by_observer(const SearchContext& context, MatrixXd added) {
 }
 
 /// d residual / d input.
-MatrixXd signatures(const SearchContext& context, const ModelStage& stage, const Variables& all,
-                    const Variable& variable, ResidualInput input) {
+MatrixXd signatures(const SearchContext& context, const ModelStage& stage,
+                    const ResidualVariables& all, const Variable& variable, ResidualInput input) {
   if (input == ResidualInput::reading || input == ResidualInput::scale) {
     return seen_by_observer(context, input_values(all, variable, input));
   }
@@ -64,9 +64,9 @@ MatrixXd products(const MatrixXd& columns, const VectorXd& weights) {
 /// Regression of the residual on Jacobian and signatures through sums of products. The priors keep
 /// their weight of the stage's fit: freer parameters would follow what the signatures should
 /// explain.
-class Regression {
+class SignatureRegression {
  public:
-  Regression(const FitDataset& data, const FitSummary& fitted, const MatrixXd& signatures)
+  SignatureRegression(const FitDataset& data, const FitSummary& fitted, const MatrixXd& signatures)
       : fitted_(fitted), parameters_(fitted_.jacobian.cols()) {
     MatrixXd columns(signatures.rows(), parameters_ + signatures.cols() + 1);
     columns << fitted_.jacobian, signatures, fitted_.residual_m;
@@ -115,7 +115,7 @@ class Regression {
   MatrixXd fits_, scores_;
 };
 
-struct Attempt {
+struct LocalisationTrial {
   ResidualInput input;
   std::size_t variable;
   double remaining_ratio = std::numeric_limits<double>::infinity();
@@ -124,33 +124,34 @@ struct Attempt {
 }  // namespace
 
 std::vector<Localisation> localise(const SearchContext& context, const ModelStage& stage) {
-  const Variables variables = selection::variables(context, stage);
+  const ResidualVariables variables = selection::variables(context, stage);
   std::vector<ResidualInput> inputs = model_inputs(context.problem.model);
   inputs.insert(inputs.end(), {ResidualInput::reading, ResidualInput::scale});
-  std::vector<Attempt> attempts;
+  std::vector<LocalisationTrial> attempts;
   for (std::size_t i = 0; i < variables.all.size(); ++i) {
     for (const ResidualInput input : inputs) attempts.push_back({input, i});
   }
   in_parallel(attempts.size(), context.options.threads, [&](std::size_t i) {
     if (context.cancelled()) return;
-    Attempt& refine = attempts[i];
+    LocalisationTrial& refine = attempts[i];
     const MatrixXd found =
         signatures(context, stage, variables, variables.all[refine.variable], refine.input);
     if (!found.allFinite()) return;
     refine.remaining_ratio =
-        Regression(context.problem.data, stage.fitted, found).remaining_ratio();
+        SignatureRegression(context.problem.data, stage.fitted, found).remaining_ratio();
   });
   if (context.cancelled()) return {};
-  const auto paid = [&](const Attempt& a) {
+  const auto paid = [&](const LocalisationTrial& a) {
     const auto pieces = static_cast<double>(variables.all[a.variable].pieces.cols());
     const bool remote =
         std::string_view(site_of(a.input)) == "force" && variables.all[a.variable].name == "u";
     return a.remaining_ratio * (1.0 + kPerPiece * pieces) * (remote ? kCommandAsForce : 1.0);
   };
-  std::stable_sort(attempts.begin(), attempts.end(),
-                   [&](const Attempt& a, const Attempt& b) { return paid(a) < paid(b); });
+  std::stable_sort(
+      attempts.begin(), attempts.end(),
+      [&](const LocalisationTrial& a, const LocalisationTrial& b) { return paid(a) < paid(b); });
   std::vector<Localisation> result;
-  for (const Attempt& a : attempts) {
+  for (const LocalisationTrial& a : attempts) {
     const std::string& name = variables.all[a.variable].name;
     const bool named = std::any_of(result.begin(), result.end(), [&](const Localisation& where) {
       return where.variable == name;

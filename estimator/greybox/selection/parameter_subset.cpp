@@ -40,7 +40,7 @@ void append(ParameterSubset& to, const ParameterSubset& more) {
 }
 
 FitSummary refit(const SearchContext& context, const ParameterSubset& selection,
-                 const Eigen::VectorXd& weights, Width width, double observer_per_s) {
+                 const Eigen::VectorXd& weights, SimulationWidth width, double observer_per_s) {
   FitOptions options;
   options.width = width;
   options.tolerance = 1e-5;
@@ -51,7 +51,7 @@ FitSummary refit(const SearchContext& context, const ParameterSubset& selection,
 }
 
 FitSummary refit_if_hopeful(const SearchContext& context, const ParameterSubset& selection,
-                            double than_m, Width width) {
+                            double than_m, SimulationWidth width) {
   FitOptions stride;
   stride.width = width;
   stride.max_iterations = kStride;

@@ -46,13 +46,13 @@ void append(ParameterSubset& to, const ParameterSubset& more);
 
 /// Fit to convergence on the samples with `weights` 1. `width` is the default within in_parallel.
 [[nodiscard]] FitSummary refit(const SearchContext& context, const ParameterSubset& selection,
-                               const Eigen::VectorXd& weights, Width width = {},
+                               const Eigen::VectorXd& weights, SimulationWidth width = {},
                                double observer_per_s = kObserver_per_s);
 /// Fit on the training samples; stopped early when after a few iterations its error is several
 /// times `than_m`, or decreases too slowly to reach it.
 [[nodiscard]] FitSummary refit_if_hopeful(const SearchContext& context,
                                           const ParameterSubset& selection, double than_m,
-                                          Width width = {});
+                                          SimulationWidth width = {});
 /// Fit of a stage to convergence, on all threads of the options.
 [[nodiscard]] FitSummary refit_to_convergence(const SearchContext& context,
                                               const FitSummary& fitted);

@@ -93,13 +93,13 @@ double fitted_rms_m(const SearchContext& context, const plant_sim::ModelFile& mo
 }
 
 /// The positions that leave the model's stroke, as below_m (negative) and beyond_m.
-struct StrokeExcess {
+struct StrokeOverrun {
   double below_m = 0.0;
   double beyond_m = 0.0;
 };
 
-StrokeExcess stroke_excess(plant_sim::ModelFile model, const FitDataset& data) {
-  StrokeExcess excess;
+StrokeOverrun stroke_excess(plant_sim::ModelFile model, const FitDataset& data) {
+  StrokeOverrun excess;
   const double* stroke_m = model.value("stroke_m");
   if (stroke_m == nullptr) return excess;
   const double spare_m = 3.0 * data.noise_floor_m;
@@ -115,7 +115,7 @@ StrokeExcess stroke_excess(plant_sim::ModelFile model, const FitDataset& data) {
 
 RecordChecks check_records(const SearchContext& context, double rms_m) {
   const FitDataset& data = context.problem.data;
-  const StrokeExcess excess = stroke_excess(context.problem.model, data);
+  const StrokeOverrun excess = stroke_excess(context.problem.model, data);
   RecordChecks checks;
   checks.below_m = excess.below_m;
   checks.beyond_m = excess.beyond_m;
@@ -134,7 +134,7 @@ std::vector<PlantFit> fit_other_plants(const SearchContext& context) {
   for (const plant_sim::PlantInfo& plant : plant_sim::plant_library()) {
     if (plant.name == context.problem.model.plant) continue;
     plant_sim::ModelFile model = plain_model(plant, data);
-    const StrokeExcess excess = stroke_excess(model, data);
+    const StrokeOverrun excess = stroke_excess(model, data);
     if (excess.below_m < 0.0 || excess.beyond_m > 0.0) continue;
     others.push_back(std::move(model));
   }

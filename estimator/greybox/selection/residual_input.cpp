@@ -47,7 +47,7 @@ std::vector<ResidualInput> model_inputs(const plant_sim::ModelFile& model) {
   return inputs;
 }
 
-MatrixXd input_values(const Variables& all, const Variable& variable, ResidualInput input) {
+MatrixXd input_values(const ResidualVariables& all, const Variable& variable, ResidualInput input) {
   switch (input) {
     case ResidualInput::gain:
       return all.command_V.asDiagonal() * variable.pieces;
@@ -64,7 +64,8 @@ MatrixXd input_values(const Variables& all, const Variable& variable, ResidualIn
 }
 
 MatrixXd input_responses(const SearchContext& context, const FitSummary& fitted,
-                         const Variables& all, const Variable& variable, ResidualInput input) {
+                         const ResidualVariables& all, const Variable& variable,
+                         ResidualInput input) {
   MatrixXd added = input_values(all, variable, input);
   const bool force = input == ResidualInput::force || input == ResidualInput::drag;
   const double whole = rms_of(added.rowwise().sum());

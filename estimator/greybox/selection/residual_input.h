@@ -23,11 +23,12 @@ enum class ResidualInput { flow, gain, force, drag, reading, scale };
 [[nodiscard]] std::vector<ResidualInput> model_inputs(const plant_sim::ModelFile& model);
 
 /// The pieces of a variable as values of the input, samples x pieces.
-[[nodiscard]] Eigen::MatrixXd input_values(const Variables& all, const Variable& variable,
+[[nodiscard]] Eigen::MatrixXd input_values(const ResidualVariables& all, const Variable& variable,
                                            ResidualInput input);
 /// d residual / d input for one of model_inputs(), samples x pieces; zero where the input is.
 [[nodiscard]] Eigen::MatrixXd input_responses(const SearchContext& context,
-                                              const FitSummary& fitted, const Variables& all,
+                                              const FitSummary& fitted,
+                                              const ResidualVariables& all,
                                               const Variable& variable, ResidualInput input);
 
 }  // namespace estimator::greybox::selection

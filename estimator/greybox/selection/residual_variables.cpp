@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 /// Share of the samples at either end of a variable's range without knots of their own.
 constexpr double kTail = 0.005;
 
-struct Series {
+struct MotionSeries {
   VectorXd command_V, position_m, speed_mps, acceleration_mps2, time_s;
 };
 
@@ -37,9 +37,9 @@ void differentiate(const Dataset& record, Index at, const VectorXd& speed_mps,
   }
 }
 
-Series series(const SearchContext& context, const ModelStage& stage) {
+MotionSeries series(const SearchContext& context, const ModelStage& stage) {
   const Index size = context.problem.data.size();
-  Series s{VectorXd(size), VectorXd(size), VectorXd(size), VectorXd(size), VectorXd(size)};
+  MotionSeries s{VectorXd(size), VectorXd(size), VectorXd(size), VectorXd(size), VectorXd(size)};
   MatrixXd ignored;
   Index at = 0;
   for (const Dataset& record : context.problem.data.records) {
@@ -105,10 +105,10 @@ MatrixXd pieces_of(const VectorXd& values, const VectorXd& counts) {
   return pieces;
 }
 
-Variables variables(const SearchContext& context, const ModelStage& stage) {
+ResidualVariables variables(const SearchContext& context, const ModelStage& stage) {
   const VectorXd& counts = context.problem.data.all_mask;
-  const Series s = series(context, stage);
-  Variables result;
+  const MotionSeries s = series(context, stage);
+  ResidualVariables result;
   const auto add = [&](const char* name, MatrixXd pieces) {
     if (pieces.cols() > 0) result.all.push_back({name, std::move(pieces), {}});
   };

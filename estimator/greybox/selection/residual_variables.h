@@ -26,7 +26,7 @@ struct Variable {
       signed_pieces;  ///< for a magnitude: with the sign of the signed variable; else empty
 };
 
-struct Variables {
+struct ResidualVariables {
   std::vector<Variable> all;  ///< "u" twice: by its size, the same either way, and as it is
   Eigen::VectorXd command_V;
   Eigen::VectorXd position_m;  ///< modelled, about its mean over the counted samples
@@ -35,7 +35,7 @@ struct Variables {
 
 /// Command as measured; position, speed and acceleration of the stage's model, because a measured
 /// position carries the noise it would then explain; time since each record's start.
-[[nodiscard]] Variables variables(const SearchContext& context, const ModelStage& stage);
+[[nodiscard]] ResidualVariables variables(const SearchContext& context, const ModelStage& stage);
 
 /// h_i of one variable over the samples with `counts` 1 (0: ignored). Two columns or more; none
 /// where the variable does not vary.

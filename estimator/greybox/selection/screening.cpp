@@ -58,7 +58,7 @@ ScoredStart look(DatasetSimulation& run, const Projection& projection, const Bas
           projection.with(base.residual_m, residuals_m.col(lane) - base.residual_m);
       VectorXd start = points.col(lane);
       // a limit that is not reached has no influence: start where it had some
-      const bool is_limit = own.front().scale == Scale::reciprocal;
+      const bool is_limit = own.front().scale == ParameterScale::reciprocal;
       const double size = is_limit ? 1.0 : std::clamp(std::abs(share), 1.0 / kFurthest, kFurthest);
       const bool possible = scale_size(own, std::copysign(size, share), start.tail(sizes.rows()));
       // wrong sign: kept as a start only when there is no better one

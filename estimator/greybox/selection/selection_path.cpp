@@ -50,7 +50,7 @@ ModelStage best_of(const SearchContext& context, const ModelStage& before, const
   const auto far = [&](const auto& fit) { return fit.validation_rms_m > kFar * least_m; };
   const auto near =
       static_cast<std::ptrdiff_t>(fits.size()) - std::count_if(fits.begin(), fits.end(), far);
-  const Width width = near == 1 ? wide(context.options.threads) : Width{};
+  const SimulationWidth width = near == 1 ? wide(context.options.threads) : SimulationWidth{};
   in_parallel(effects.size(), context.options.threads, [&](std::size_t i) {
     if (far(fits[i])) return;
     fits[i] = refit(context, {subsets[i].parameters, fits[i].theta},

@@ -32,13 +32,13 @@ bool ends_with(const std::string& text, const std::string& ending) {
          text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
 }
 
-struct Span {
+struct PositionRange {
   double least_m;
   double most_m;
 };
 
-Span span_of(const FitDataset& data) {
-  Span span{data.records.front().y_m.front(), data.records.front().y_m.front()};
+PositionRange span_of(const FitDataset& data) {
+  PositionRange span{data.records.front().y_m.front(), data.records.front().y_m.front()};
   for (const Dataset& record : data.records) {
     const auto [least, most] = std::minmax_element(record.y_m.begin(), record.y_m.end());
     span.least_m = std::min(span.least_m, *least);
@@ -48,7 +48,7 @@ Span span_of(const FitDataset& data) {
 }
 
 /// All parameters at their typical sizes, rest positions in the middle of the motion.
-VectorXd typical_point(const std::vector<FreeParameter>& parameters, const Span& span) {
+VectorXd typical_point(const std::vector<FreeParameter>& parameters, const PositionRange& span) {
   VectorXd point = VectorXd::Ones(static_cast<Index>(parameters.size()));
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const FreeParameter& p = parameters[i];
@@ -69,9 +69,9 @@ Index index_of(const std::vector<FreeParameter>& parameters, const std::string& 
 }  // namespace
 
 MatrixXd trial_sizes(const std::vector<FreeParameter>& parameters, const FitDataset& data) {
-  const Span span = span_of(data);
+  const PositionRange span = span_of(data);
   const VectorXd typical = typical_point(parameters, span);
-  const bool is_limit = parameters.front().scale == Scale::reciprocal;
+  const bool is_limit = parameters.front().scale == ParameterScale::reciprocal;
   const bool both_signs = parameters.front().lower < 0.0;
   MatrixXd points(typical.size(), kSizes);
   for (Index k = 0; k < kSizes; ++k) {
@@ -96,7 +96,7 @@ std::vector<double> turns_over(const FitDataset& /*evidence*/) {
 }
 
 MatrixXd waves(const std::vector<FreeParameter>& parameters, const FitDataset& data, double turns) {
-  const Span span = span_of(data);
+  const PositionRange span = span_of(data);
   const double range_m = std::max(span.most_m - span.least_m, 1e-6);
   const Index wavelength = index_of(parameters, ".wavelength_m");
   const Index phase = index_of(parameters, ".phase_rad");

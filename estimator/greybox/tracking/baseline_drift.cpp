@@ -36,7 +36,7 @@ BaselineDrift::BaselineDrift(const ParameterSet& set, const DriftSettings& follo
     const std::size_t index = tracked_index(set, name, where);
     const auto same = [index](const Followed& one) { return one.index == index; };
     if (std::any_of(followed_.begin(), followed_.end(), same)) continue;
-    const bool ratio = set.parameters[index].scale == Scale::logarithmic;
+    const bool ratio = set.parameters[index].scale == ParameterScale::logarithmic;
     const double below = ratio ? -std::log(std::max(0.0, 1.0 - most)) : most;
     const double above = ratio ? std::log1p(most) : most;
     followed_.push_back({index, set.file[static_cast<Index>(index)], below, above, kNaN});

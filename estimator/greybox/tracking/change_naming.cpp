@@ -200,7 +200,7 @@ class ChangeNaming {
 }  // namespace
 
 double least_change(const ParameterSet& set, std::size_t parameter, const Thresholds& thresholds) {
-  if (set.parameters[parameter].scale == Scale::logarithmic) {
+  if (set.parameters[parameter].scale == ParameterScale::logarithmic) {
     return std::log1p(thresholds.least_ratio);
   }
   const double present = std::abs(set.file[static_cast<Index>(parameter)]);

@@ -95,7 +95,7 @@ ParameterSet choose(const plant_sim::ModelFile& model, const std::vector<std::st
     if (same != uncertain.end()) out.uncertainty[static_cast<Eigen::Index>(i)] = same->prior_sd;
     p.prior_mean = 0.0;
     p.prior_sd = kNone;
-    if (p.scale != Scale::logarithmic) continue;
+    if (p.scale != ParameterScale::logarithmic) continue;
     p.lower = -kWidest;
     p.upper = kWidest;
   }

@@ -182,9 +182,9 @@ void ParameterTracker::judge(WindowResult& window, const WindowData& data,
   for (std::size_t i = 0; i < set_.tracked; ++i) {
     ParameterEstimate& one = window.estimates[i];
     const FreeParameter& p = set_.parameters[i];
-    const double most = p.scale != Scale::logarithmic ? settings_.most_of_typical
-                        : disturbed_                  ? settings_.disturbed_std_error
-                                                      : settings_.most_std_error;
+    const double most = p.scale != ParameterScale::logarithmic ? settings_.most_of_typical
+                        : disturbed_                           ? settings_.disturbed_std_error
+                                                               : settings_.most_std_error;
     one.invalid = all;
     if (!all && i == gain_ && window.left_out &&
         std::isinf(found.std_error[static_cast<Index>(i)])) {

@@ -65,8 +65,8 @@ bool better(const SignificantRegion& a, const SignificantRegion& b) {
   return a.gain > b.gain;
 }
 
-Range range(const Region& region, std::size_t first, std::size_t last) {
-  Range r;
+RegionRange range(const Region& region, std::size_t first, std::size_t last) {
+  RegionRange r;
   r.variable = region.variable;
   r.from = region.bins[first].from;
   r.to = region.bins[last].to;

@@ -18,7 +18,7 @@
 
 namespace estimator::greybox::validation {
 
-struct Range {
+struct RegionRange {
   std::string variable;
   double from = 0.0;  ///< SI; NaN for direction
   double to = 0.0;
@@ -28,7 +28,7 @@ struct Range {
 };
 
 struct SignificantRegion {
-  std::vector<Range> ranges;  ///< one or two
+  std::vector<RegionRange> ranges;  ///< one or two
   Bin figures;
   double gain = 0.0;         ///< G
   bool significant = false;  ///< beyond chance and large enough to report

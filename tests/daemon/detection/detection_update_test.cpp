@@ -154,7 +154,7 @@ class Estimates final : public fdi::Events {
  public:
   void on_estimate(const fdi::EstimateEvent& event) override {
     char line[64];
-    for (const fdi::NamedValue& value : event) {
+    for (const fdi::EstimatedValue& value : event) {
       std::snprintf(line, sizeof line, "%lld %a\n", static_cast<long long>(event.tick),
                     value.value);
       text += line;

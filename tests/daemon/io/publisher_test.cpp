@@ -70,8 +70,8 @@ TEST_F(PublisherTest, RecordsEveryFieldOfEveryMessage) {
     Publisher publisher({.url = "", .prefix = "RIG"}, 11, kSampleTime_s, &recorder);
     publisher.sample(sample(4));
     publisher.sample(sample(5));
-    const estimator::fdi::NamedValue values[] = {{"a1", -1.0, 0.25, kNaN, kNaN},
-                                                 {"b1", 2e-4, 1e-6, 1.9e-4, 2.1e-4}};
+    const estimator::fdi::EstimatedValue values[] = {{"a1", -1.0, 0.25, kNaN, kNaN},
+                                                     {"b1", 2e-4, 1e-6, 1.9e-4, 2.1e-4}};
     estimator::fdi::EstimateEvent event{};
     event.source = "period";
     event.tick = 5;

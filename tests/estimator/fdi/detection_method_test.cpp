@@ -53,7 +53,7 @@ class CounterMethod final : public DetectionMethod {
     if (input_.usable()) sum_ += input_.value();
     return true;
   }
-  MethodOutput evaluate(std::span<NamedValue> values) noexcept override {
+  MethodOutput evaluate(std::span<EstimatedValue> values) noexcept override {
     values[0].value = count_;
     values[1].value = sum_;
     MethodOutput found;

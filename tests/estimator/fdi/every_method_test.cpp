@@ -118,7 +118,7 @@ class Bytes final : public Events {
     if (!keeps) return;
     put(static_cast<double>(event.tick));
     text += std::string(event.source) + std::string(event.reason);
-    for (const NamedValue& v : event) {
+    for (const EstimatedValue& v : event) {
       put(v.value);
       put(v.std_error);
     }

@@ -56,7 +56,7 @@ class PlainValues final : public estimator::fdi::Events {
   void on_alarm(const estimator::fdi::Alarm& alarm) override { alarms.push_back(alarm); }
 
   estimator::fdi::Pipeline pipeline;
-  std::vector<estimator::fdi::NamedValue> values;
+  std::vector<estimator::fdi::EstimatedValue> values;
   std::vector<estimator::fdi::Alarm> alarms;
   std::string reason;
   bool valid = false;

@@ -18,7 +18,7 @@ class Bytes final : public Events {
     put(static_cast<double>(event.tick));
     put(event.valid ? 1.0 : 0.0);
     put(event.condition);
-    for (const NamedValue& v : event) {
+    for (const EstimatedValue& v : event) {
       for (const double number : {v.value, v.std_error}) put(number);
     }
   }

@@ -30,10 +30,10 @@ plant_sim::ModelFile servo() {
 }
 
 FreeParameter gain() {
-  return {"gain_mps_per_V", Scale::logarithmic, kGain, -1.0, 1.0, 0.0, kNone};
+  return {"gain_mps_per_V", ParameterScale::logarithmic, kGain, -1.0, 1.0, 0.0, kNone};
 }
 FreeParameter offset() {
-  return {"null_bias.offset_V", Scale::linear, 0.05, -200.0, 200.0, 0.0, kNone};
+  return {"null_bias.offset_V", ParameterScale::linear, 0.05, -200.0, 200.0, 0.0, kNone};
 }
 
 /// sum of u Ts up to each sample, and time: the two columns of the position.

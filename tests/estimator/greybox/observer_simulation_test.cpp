@@ -88,7 +88,7 @@ TEST_P(ModelRunOf, EqualsTheSinglePlantWithAndWithoutTheObserver) {
 TEST(ObserverSimulation, PutsEachColumnIntoALaneOfItsOwn) {
   const plant_sim::ModelFile file = model("thesis");
   const Dataset m = record();
-  const FreeParameter damping{"damping_N_s_per_m", Scale::logarithmic, 1000.0, -1.0, 1.0};
+  const FreeParameter damping{"damping_N_s_per_m", ParameterScale::logarithmic, 1000.0, -1.0, 1.0};
   ObserverSimulation run(file, m, {damping}, 2.0);
   Eigen::MatrixXd points(1, 2);
   points << 0.0, std::log(2.0);

@@ -22,7 +22,7 @@ TEST(InstrumentalVariables, AreThoseOfNumPyWithTheSameInstruments) {
   // ARX(2,2,1) has u(t-1) .. u(t-8) as instruments when u is handed over as the reference.
   const Record record = armax_record();
   const BiasTest test = test_bias({2, 2, 1, false}, record.all(), {record.u_V});
-  ASSERT_EQ(test.instruments, Instruments::reference);
+  ASSERT_EQ(test.instruments, InstrumentChoice::reference);
   ASSERT_EQ(test.instrument_count, 8);
   for (std::size_t i = 0; i < 4; ++i) {
     // The script starts one row later.
@@ -49,7 +49,7 @@ TEST(InstrumentalVariables, FindTheTruthInClosedLoopWhereLeastSquaresDoesNot) {
 TEST(InstrumentalVariables, OfDelayedSamplesFindTheTruthWithoutAReference) {
   const Record record = closed_loop(40000, 1e-6, 2e-4, 2);
   const BiasTest test = test_bias(kArx211, record.all());
-  EXPECT_EQ(test.instruments, Instruments::delayed);
+  EXPECT_EQ(test.instruments, InstrumentChoice::delayed);
   EXPECT_EQ(test.verdict, BiasVerdict::biased);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_LT(std::abs(test.instrumental[i] - kClosedLoop[i]), 4.0 * test.instrumental_error[i]);

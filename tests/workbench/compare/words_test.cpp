@@ -64,24 +64,25 @@ TEST(Words, NameTheRangeThatFails) {
 }
 
 TEST(Where, ReadsAsPeopleSpeak) {
-  EXPECT_EQ(present::where(validation::Range{"speed", 0.0, 0.005, "", true, false}),
+  EXPECT_EQ(present::where(validation::RegionRange{"speed", 0.0, 0.005, "", true, false}),
             "below 5 mm/s");
-  EXPECT_EQ(present::where(validation::Range{"speed", 0.1, 0.3, "", false, true}),
+  EXPECT_EQ(present::where(validation::RegionRange{"speed", 0.1, 0.3, "", false, true}),
             "above 100 mm/s");
-  EXPECT_EQ(present::where(validation::Range{"speed", 0.005, 0.02, "", false, false}),
+  EXPECT_EQ(present::where(validation::RegionRange{"speed", 0.005, 0.02, "", false, false}),
             "between 5 and 20 mm/s");
-  EXPECT_EQ(present::where(validation::Range{"v", -0.3, -0.1, "", true, false}),
+  EXPECT_EQ(present::where(validation::RegionRange{"v", -0.3, -0.1, "", true, false}),
             "retracting faster than 100 mm/s");
-  EXPECT_EQ(present::where(validation::Range{"v", 0.1, 0.3, "", false, true}),
+  EXPECT_EQ(present::where(validation::RegionRange{"v", 0.1, 0.3, "", false, true}),
             "extending faster than 100 mm/s");
-  EXPECT_EQ(present::where(validation::Range{"u", 2.0, 9.0, "", false, true}),
+  EXPECT_EQ(present::where(validation::RegionRange{"u", 2.0, 9.0, "", false, true}),
             "at commands above 2 V");
-  EXPECT_EQ(present::where(validation::Range{"y", 0.1, 0.2, "", false, false}),
+  EXPECT_EQ(present::where(validation::RegionRange{"y", 0.1, 0.2, "", false, false}),
             "at positions from 100 to 200 mm");
-  EXPECT_EQ(present::where(validation::Range{"time", 5.0, 10.0, "", false, false}),
+  EXPECT_EQ(present::where(validation::RegionRange{"time", 5.0, 10.0, "", false, false}),
             "from 5 to 10 s");
-  EXPECT_EQ(present::where(validation::Range{"direction", 0.0, 0.0, "reversing", false, false}),
-            "while reversing");
+  EXPECT_EQ(
+      present::where(validation::RegionRange{"direction", 0.0, 0.0, "reversing", false, false}),
+      "while reversing");
 }
 
 TEST(Units, GiveThreeDigitsAndNoExponents) {

@@ -58,7 +58,7 @@ TEST(Bridge, SendsWhatPlotJugglerTakes) {
   EXPECT_EQ(line_after(peer, "/sample/y_m", [&](int) { send_sample(publisher, 200); }),
             "True 6.0 /sample/y_m 0.125");
   EXPECT_EQ(peer.line_with("/sample/u_applied_V"), "True 6.0 /sample/u_applied_V 200.0");
-  const estimator::fdi::NamedValue values[] = {{"b1", 2e-4, 1e-6, 1.9e-4, 2.1e-4}};
+  const estimator::fdi::EstimatedValue values[] = {{"b1", 2e-4, 1e-6, 1.9e-4, 2.1e-4}};
   estimator::fdi::EstimateEvent event{};
   event.source = "period";
   event.valid = true;

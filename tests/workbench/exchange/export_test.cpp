@@ -85,8 +85,8 @@ TEST_F(ExportTest, WritesSamplesAsARecordThatReadsBackTheSame) {
 
 TEST_F(ExportTest, WritesOneRowPerEstimatedNumberOnTheTimeOfTheSamples) {
   const std::string log = log_of([](Publisher& publisher) {
-    const estimator::fdi::NamedValue values[] = {{"a1", -1.0, kNaN, kNaN, kNaN},
-                                                 {"b1", 2e-4, 1e-6, 1.9e-4, 2.1e-4}};
+    const estimator::fdi::EstimatedValue values[] = {{"a1", -1.0, kNaN, kNaN, kNaN},
+                                                     {"b1", 2e-4, 1e-6, 1.9e-4, 2.1e-4}};
     estimator::fdi::EstimateEvent event{};
     event.source = "period";
     event.tick = 400;

@@ -71,7 +71,7 @@ class FormatsTest : public testing::Test {
       publisher.sample(sample);
     }
     for (const int k : {0, 1}) {
-      const estimator::fdi::NamedValue values[] = {
+      const estimator::fdi::EstimatedValue values[] = {
           {"b1", k == 0 ? 2e-4 : 3e-4, 1e-6, 1.9e-4, k == 0 ? kNaN : 2.1e-4},
           {"a1", -1.0, kNaN, kNaN, kNaN}};
       estimator::fdi::EstimateEvent event{};

@@ -88,8 +88,8 @@ class FakeDaemon {
   }
 
   void estimate(const char* source, std::int64_t tick, double b1, bool valid) {
-    const estimator::fdi::NamedValue values[] = {{"a1", -1.0002, 3e-5, kNaN, kNaN},
-                                                 {"b1", b1, 4e-7, kLow, kHigh}};
+    const estimator::fdi::EstimatedValue values[] = {{"a1", -1.0002, 3e-5, kNaN, kNaN},
+                                                     {"b1", b1, 4e-7, kLow, kHigh}};
     estimator::fdi::EstimateEvent event{};
     event.source = source;
     event.tick = tick;

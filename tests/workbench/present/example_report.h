@@ -77,7 +77,7 @@ inline present::Plot cloud(const std::string& title, const present::Axis& x,
           .x_values = values,
           .series = {{.name = "sample", .y = d.residual_um, .tone = present::Tone::residual},
                      binned_rms(values, d.residual_um, -reach, reach, 30)},
-          .width = present::Width::half};
+          .width = present::PlotWidth::half};
 }
 
 inline present::Section where_section(const ExampleData& d) {
@@ -95,7 +95,7 @@ inline present::Section where_section(const ExampleData& d) {
                           .x = {"lag", "s"},
                           .y = {"correlation", ""},
                           .lines = {{0.026, "95 % limit"}},
-                          .width = present::Width::half};
+                          .width = present::PlotWidth::half};
   whiteness.series.push_back({.name = "correlation", .tone = present::Tone::model});
   for (int k = 0; k < 50; ++k) {
     whiteness.x_values.push_back(0.02 * k);
@@ -131,7 +131,7 @@ inline present::Section ladder_section() {
                                        .y = {412.0, 38.5, 3.1, 2.56},
                                        .tone = present::Tone::model}},
                            .lines = {{2.5, "noise floor"}},
-                           .width = present::Width::half});
+                           .width = present::PlotWidth::half});
   section.plots.push_back(
       {.title = "Candidates, first round",
        .kind = present::PlotKind::bars,
@@ -143,7 +143,7 @@ inline present::Section ladder_section() {
                    .tone = present::Tone::model}},
        .lines = {{2.5, "noise floor"}},
        .horizontal = true,
-       .width = present::Width::half});
+       .width = present::PlotWidth::half});
   section.tables.push_back(
       {.caption = "Parameters",
        .columns = {{"parameter", "", false},

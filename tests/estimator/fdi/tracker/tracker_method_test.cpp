@@ -31,7 +31,7 @@ struct Log final : fdi::Events {
     warming_up += event.warming_up ? 1 : 0;
     reasons.emplace_back(event.reason);
     values.emplace_back();
-    for (const fdi::NamedValue& value : event) {
+    for (const fdi::EstimatedValue& value : event) {
       values.back().push_back(value.value);
       values.back().push_back(value.std_error);
     }
