@@ -10,6 +10,7 @@
 #include "daemon/commission.h"
 #include "daemon/daemon_config.h"
 #include "daemon/rt/privileges.h"
+#include "daemon/safe_state_note.h"
 #include "daemon/safe_state_valve.h"
 #include "daemon/session.h"
 

@@ -21,6 +21,7 @@
 #include "daemon/null_table.h"
 #include "daemon/reloader.h"
 #include "daemon/rt/loop_runner.h"
+#include "daemon/safe_state_note.h"
 #include "daemon/safe_state_valve.h"
 #include "daemon/service_report.h"
 

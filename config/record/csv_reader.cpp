@@ -7,6 +7,7 @@
 #include "config/record/layout.h"
 #include "config/record/readers.h"
 #include "config/record/record.h"
+#include "config/record/time_grid.h"
 #include "config/record/whole_file.h"
 #include "config/schema/error.h"
 

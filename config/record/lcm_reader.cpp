@@ -6,9 +6,9 @@
 #include <map>
 
 #include "config/messages/dispatch.h"
-#include "config/record/layout.h"
 #include "config/record/log_reader.h"
 #include "config/record/sample_columns.h"
+#include "config/record/time_grid.h"
 #include "config/schema/error.h"
 
 namespace config::record {

@@ -5,6 +5,7 @@
 
 #include "config/record/layout.h"
 #include "config/record/mat_variables.h"
+#include "config/record/time_grid.h"
 #include "config/schema/error.h"
 #include "config/schema/joined.h"
 
