@@ -90,6 +90,7 @@ const std::vector<Layer> kLayers{
      {"config", "estimator", "estimator/fdi", "estimator/fdi/tracker", "hal", "hal/sim",
       "hal/replay", "plant_sim", "daemon/control", "daemon/rt", "daemon/detection", "daemon/io"},
      {"boost", "lcm", "spoolwatch", "systemd", "CLI"}},
+    {"workbench/files", {"config/schema"}, {}},
     {"workbench/present",
      {"config/schema", "config/record", "config/units", "estimator/greybox",
       "estimator/greybox/validation"},
@@ -107,16 +108,16 @@ const std::vector<Layer> kLayers{
      {"nlohmann", "Eigen"}},
     {"workbench/fit",
      {"config", "plant_sim", "estimator", "estimator/nonlinear", "estimator/greybox",
-      "workbench/cli", "workbench/present"},
+      "workbench/files", "workbench/present"},
      {"nlohmann", "Eigen"}},
     {"workbench/diagnose",
      {"config", "daemon/control", "plant_sim", "estimator", "estimator/residual",
-      "estimator/greybox", "estimator/greybox/selection", "workbench/cli", "workbench/fit",
+      "estimator/greybox", "estimator/greybox/selection", "workbench/files", "workbench/fit",
       "workbench/present", "workbench/simulate"},
      {"nlohmann", "Eigen"}},
     {"workbench/isolate",
      {"config", "plant_sim", "estimator/fdi", "estimator/fdi/tracker", "estimator/residual",
-      "estimator/greybox", "estimator/greybox/tracking", "workbench/cli", "workbench/fit",
+      "estimator/greybox", "estimator/greybox/tracking", "workbench/files", "workbench/fit",
       "workbench/present"},
      {"nlohmann", "Eigen"}},
     {"workbench/reproduce",
@@ -129,7 +130,7 @@ const std::vector<Layer> kLayers{
     {"workbench/control", {"config", "daemon/control"}, {"nlohmann"}},
     {"workbench/live",
      {"config", "plant_sim", "estimator/residual", "estimator/greybox",
-      "estimator/greybox/validation", "workbench/cli", "workbench/compare", "workbench/present"},
+      "estimator/greybox/validation", "workbench/compare", "workbench/present"},
      {"nlohmann", "lcm", "spoolwatch", "ncurses"}},
     {"workbench/replay",
      {"config", "estimator", "estimator/fdi", "estimator/fdi/tracker", "workbench/train"},
@@ -316,6 +317,7 @@ TEST(Layers, PlantedViolationsAreFound) {
   write(root / "hal/sim/rig.h", "#include \"plant_sim/plant.h\"\n#include \"hal/replay/x.h\"\n");
   write(root / "hal/replay/x.h", "#include \"plant_sim/plant.h\"\n");
   write(root / "workbench/fit/page.cpp", "#include \"daemon/io/recorder.h\"\n");
+  write(root / "workbench/fit/request.cpp", "#include \"workbench/cli/interrupt.h\"\n");
   write(root / "workbench/present/report.h", "#include \"workbench/fit/fit_report.h\"\n");
   write(root / "estimator/greybox/fit.h", "#include \"estimator/greybox/selection/problem.h\"\n");
   EXPECT_THAT(
@@ -327,6 +329,7 @@ TEST(Layers, PlantedViolationsAreFound) {
           "daemon/rt/loop.h:1 includes daemon/io/publisher.h",
           "hal/sim/rig.h:2 includes hal/replay/x.h", "hal/replay/x.h:1 includes plant_sim/plant.h",
           "workbench/fit/page.cpp:1 includes daemon/io/recorder.h",
+          "workbench/fit/request.cpp:1 includes workbench/cli/interrupt.h",
           "workbench/present/report.h:1 includes workbench/fit/fit_report.h",
           "estimator/greybox/fit.h:1 includes estimator/greybox/selection/problem.h"));
   fs::remove_all(root);

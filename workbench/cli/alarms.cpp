@@ -7,6 +7,7 @@
 #include "daemon/control/protocol.h"
 #include "workbench/cli/command.h"
 #include "workbench/cli/order_options.h"
+#include "workbench/control/answer_text.h"
 
 namespace workbench::cli {
 namespace {

@@ -8,7 +8,7 @@
 #include "workbench/cli/common_options.h"
 #include "workbench/cli/number_check.h"
 #include "workbench/present/json.h"
-#include "workbench/replay/backtest_runs.h"
+#include "workbench/replay/backtest_report.h"
 
 namespace workbench::cli {
 namespace {

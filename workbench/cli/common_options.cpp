@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "workbench/cli/number_check.h"
-#include "workbench/present/text.h"
+#include "workbench/present/shell_command.h"
 
 namespace workbench::cli {
 namespace {

@@ -17,9 +17,10 @@
 #include "plant_sim/model_file.h"
 #include "workbench/cli/command.h"
 #include "workbench/cli/common_options.h"
-#include "workbench/cli/file_check.h"
+#include "workbench/cli/interrupt.h"
 #include "workbench/cli/number_check.h"
 #include "workbench/compare/comparison_report.h"
+#include "workbench/files/file_check.h"
 #include "workbench/live/live_compare.h"
 #include "workbench/present/json.h"
 
@@ -43,6 +44,7 @@ struct CompareArguments {
   bool all = false;
   std::string command;
   bool live = false;
+  double duration_s = 0.0;  ///< of --live; 0: until a signal
   live::LiveCompareOptions watch{config::messages::kDefaultUrl, config::messages::kDefaultPrefix};
 };
 
@@ -91,13 +93,16 @@ void run_live(CompareArguments& a) {
   }
   a.watch.json = a.json == "-";
   a.watch.observer_per_s = a.observer_per_s;
+  const StopCondition stop(a.duration_s);
+  a.watch.ended = [&stop] { return stop.reached(); };
+  a.watch.interrupted = StopCondition::asked;
   live::watch(plant_sim::load_model(a.model, a.assignments), a.watch);
 }
 
 void run(CompareArguments& a) {
   if (a.live) return run_live(a);
   if (a.record.empty()) throw UsageError("compare: no RECORD, and not --live");
-  check_outputs({{"--json", a.json}, {"--report", a.report}}, {a.model, {a.record}});
+  files::check_outputs({{"--json", a.json}, {"--report", a.report}}, {a.model, {a.record}});
   const plant_sim::ModelFile model = plant_sim::load_model(a.model, a.assignments);
   const greybox::Dataset record = read_measured(a);
   check_observer(a, record);
@@ -137,8 +142,7 @@ void add_compare(CLI::App& command, int& /*exit_code*/) {
       ->needs(live)
       ->capture_default_str();
   command
-      .add_option("--duration", arguments->watch.duration_s,
-                  "run time of --live, s (0: until Ctrl-C)")
+      .add_option("--duration", arguments->duration_s, "run time of --live, s (0: until Ctrl-C)")
       ->needs(live)
       ->check(CLI::NonNegativeNumber);
   command.callback([arguments, &command] {

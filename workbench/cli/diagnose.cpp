@@ -15,6 +15,7 @@
 #include "workbench/cli/selection_options.h"
 #include "workbench/diagnose/diagnosis_report.h"
 #include "workbench/diagnose/experiment_design.h"
+#include "workbench/diagnose/model_residuals.h"
 #include "workbench/diagnose/progress_line.h"
 #include "workbench/diagnose/request.h"
 #include "workbench/present/json.h"

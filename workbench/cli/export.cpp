@@ -8,8 +8,8 @@
 #include "config/record/whole_file.h"
 #include "config/schema/error.h"
 #include "workbench/cli/command.h"
-#include "workbench/cli/file_check.h"
 #include "workbench/exchange/export.h"
+#include "workbench/files/file_check.h"
 
 namespace workbench::cli {
 namespace {
@@ -38,8 +38,8 @@ void export_log(const std::string& input, const std::string& file, const std::st
                 const std::string& format) {
   const std::string output = file == "-" ? "/dev/stdout" : file;
   const std::string form = format.empty() ? format_of(output) : format;
-  check_outputs({{.option = "--output", .file = output, .may_replace_model = true}},
-                {.model = "", .records = {input}});
+  files::check_outputs({{.option = "--output", .file = output, .may_replace_model = true}},
+                       {.model = "", .records = {input}});
   if (form == "csv") {
     if (!channel.empty() && channel != "sample" && channel != "estimate" && channel != "alarm") {
       const bool columns = channel == "rods" || channel == "pressures";

@@ -16,9 +16,9 @@
 #include "estimator/parallel.h"
 #include "workbench/cli/command.h"
 #include "workbench/cli/common_options.h"
-#include "workbench/cli/file_check.h"
 #include "workbench/cli/interrupt.h"
 #include "workbench/cli/number_check.h"
+#include "workbench/files/file_check.h"
 #include "workbench/present/json.h"
 #include "workbench/scorecard/card.h"
 #include "workbench/scorecard/progress.h"
@@ -95,11 +95,11 @@ void work(const std::vector<Part>& parts, const std::vector<Method>& methods, Tr
 }
 
 int run(const ScorecardOptions& o) {
-  std::vector<OutputFile> outputs{{"--json", o.json},
-                                  {"--report", o.report},
-                                  {"--markdown", o.markdown},
-                                  {"--resume", o.resume}};
-  check_outputs(outputs, {o.plan.empty() ? "/" : o.plan, o.methods});
+  std::vector<files::OutputFile> outputs{{"--json", o.json},
+                                         {"--report", o.report},
+                                         {"--markdown", o.markdown},
+                                         {"--resume", o.resume}};
+  files::check_outputs(outputs, {o.plan.empty() ? "/" : o.plan, o.methods});
   const Bench bench = load_bench(o.plan);
   const std::vector<Method> methods = load_methods(o.methods);
   const std::vector<Part> parts = parts_of(bench, o.scope);

@@ -7,9 +7,9 @@
 
 #include "workbench/cli/command.h"
 #include "workbench/cli/common_options.h"
-#include "workbench/cli/file_check.h"
 #include "workbench/cli/interrupt.h"
 #include "workbench/cli/number_check.h"
+#include "workbench/files/file_check.h"
 #include "workbench/present/json.h"
 #include "workbench/select/outcome.h"
 
@@ -22,8 +22,8 @@ using select::SelectRequest;
 constexpr const char* kWipe = "\r\x1b[K";
 
 int run(const SelectRequest& request) {
-  check_outputs({{.option = "--json", .file = request.json}},
-                {.model = request.record, .records = {}});
+  files::check_outputs({{.option = "--json", .file = request.json}},
+                       {.model = request.record, .records = {}});
   const Interrupt interrupt;
   const bool renewed = isatty(STDERR_FILENO) == 1;
   const auto show = [&](const select::SelectProgress& progress) {

@@ -1,11 +1,14 @@
+#include "workbench/control/answer_text.h"
+
 #include <fmt/format.h>
+
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <ostream>
 #include <string>
 
 #include "config/units/quantity.h"
 #include "daemon/control/protocol.h"
-#include "workbench/control/order.h"
 
 namespace workbench::control {
 namespace {

@@ -1,7 +1,6 @@
 // Common part of every command to the running daemon: its socket, its answer as JSON, its refusal.
 #pragma once
 
-#include <iosfwd>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -23,13 +22,5 @@ nlohmann::ordered_json give_order(const nlohmann::ordered_json& request,
 /// answers there within some seconds.
 [[nodiscard]] nlohmann::ordered_json ask_daemon(const std::string& socket,
                                                 const nlohmann::ordered_json& request);
-
-// The daemon's answer to `alarms`, as a table for people.
-
-/// `all`: those that are normal too.
-void print_alarms(const nlohmann::ordered_json& answer, bool all, std::ostream& out);
-
-/// The daemon's answer to `status`, as lines for people.
-void print_status(const nlohmann::ordered_json& status, std::ostream& out);
 
 }  // namespace workbench::control

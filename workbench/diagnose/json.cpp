@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "config/schema/joined.h"
+#include "workbench/diagnose/words.h"
 #include "workbench/present/json.h"
 
 namespace workbench::diagnose {

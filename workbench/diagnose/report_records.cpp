@@ -5,6 +5,8 @@
 #include "config/signals/nan.h"
 #include "estimator/greybox/kinematics.h"
 #include "workbench/diagnose/diagnosis_report.h"
+#include "workbench/diagnose/model_residuals.h"
+#include "workbench/diagnose/words.h"
 #include "workbench/present/plot_data.h"
 #include "workbench/present/record_section.h"
 

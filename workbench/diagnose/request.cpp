@@ -10,18 +10,18 @@
 #include "config/record/record.h"
 #include "config/schema/error.h"
 #include "config/schema/joined.h"
-#include "workbench/cli/file_check.h"
+#include "workbench/files/file_check.h"
 #include "workbench/fit/ignored_spans.h"
 
 namespace workbench::diagnose {
 namespace {
 
 void check_files(const DiagnosisRequest& request) {
-  cli::check_records(request.records, request.holdouts,
-                     "another record, or --fit first-half to score on part of this one");
-  cli::InputFiles inputs{request.model, request.records};
+  files::check_records(request.records, request.holdouts,
+                       "another record, or --fit first-half to score on part of this one");
+  files::InputFiles inputs{request.model, request.records};
   inputs.records.insert(inputs.records.end(), request.holdouts.begin(), request.holdouts.end());
-  cli::check_outputs(
+  files::check_outputs(
       {{"--json", request.json}, {"--report", request.report}, {"-o", request.output, true}},
       inputs);
 }

@@ -9,6 +9,8 @@
 
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
+#include "workbench/diagnose/search_rounds.h"
+#include "workbench/diagnose/words.h"
 
 namespace workbench::diagnose {
 namespace {

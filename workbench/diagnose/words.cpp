@@ -1,4 +1,4 @@
-#include "workbench/diagnose/diagnosis_report.h"
+#include "workbench/diagnose/words.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include "estimator/greybox/representative_segments.h"
 #include "workbench/diagnose/disturbance_words.h"
 #include "workbench/present/dataset_notes.h"
-#include "workbench/present/text.h"
+#include "workbench/present/shell_command.h"
 
 namespace workbench::diagnose {
 namespace {

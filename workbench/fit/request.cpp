@@ -9,7 +9,7 @@
 #include "config/record/record.h"
 #include "config/schema/document.h"
 #include "config/schema/error.h"
-#include "workbench/cli/file_check.h"
+#include "workbench/files/file_check.h"
 #include "workbench/fit/ignored_spans.h"
 #include "workbench/present/dataset_notes.h"
 
@@ -24,11 +24,11 @@ using greybox::FitDataset;
 constexpr double kLeastMotion = 5.0;
 
 void check_files(const FitRequest& request) {
-  cli::check_records(request.records, request.holdouts,
-                     "another record, or --fit to score on part of this one");
-  cli::InputFiles inputs{request.model, request.records};
+  files::check_records(request.records, request.holdouts,
+                       "another record, or --fit to score on part of this one");
+  files::InputFiles inputs{request.model, request.records};
   inputs.records.insert(inputs.records.end(), request.holdouts.begin(), request.holdouts.end());
-  cli::check_outputs(
+  files::check_outputs(
       {{"--json", request.json}, {"--report", request.report}, {"-o", request.output, true}},
       inputs);
 }

@@ -18,7 +18,7 @@
 #include "estimator/greybox/parameter_catalogue.h"
 #include "estimator/greybox/tracking/disturbed_baseline.h"
 #include "estimator/residual/noise_floor.h"
-#include "workbench/cli/file_check.h"
+#include "workbench/files/file_check.h"
 #include "workbench/fit/parameter_selection.h"
 
 namespace workbench::isolate {
@@ -250,7 +250,7 @@ void write_learnt(const IsolationRequest& request, const plant_sim::ModelFile& m
 }  // namespace
 
 IsolationReport isolate(const IsolationRequest& request) {
-  cli::check_outputs(
+  files::check_outputs(
       {{"--json", request.json}, {"--report", request.report}, {"--learn", request.learn_baseline}},
       {request.model, {request.record}});
   const plant_sim::ModelFile model = plant_sim::load_model(request.model, request.assignments);

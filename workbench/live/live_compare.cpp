@@ -7,7 +7,6 @@
 
 #include "config/schema/error.h"
 #include "spoolwatch/sample_t.hpp"
-#include "workbench/cli/interrupt.h"
 #include "workbench/live/listen_feed.h"
 #include "workbench/live/online_residual.h"
 
@@ -82,18 +81,17 @@ class Watcher final : public FeedListener {
 
 void watch(const plant_sim::ModelFile& model, const LiveCompareOptions& options) {
   using config::schema::RunError;
-  const cli::StopCondition stop(options.duration_s);
   Watcher watcher(model, options);
   {
     ListenFeed feed(options.url, options.prefix, true, watcher);
-    while (!stop.reached() && std::cout) {
-      if (feed.poll(std::chrono::milliseconds(100)) || cli::StopCondition::asked()) continue;
+    while (!options.ended() && std::cout) {
+      if (feed.poll(std::chrono::milliseconds(100)) || options.interrupted()) continue;
       if (options.url.starts_with("file:")) break;
       throw RunError("LCM cannot receive on \"" + options.url + "\" any more");
     }
   }
   watcher.end();
-  if (watcher.empty() && !cli::StopCondition::asked()) {
+  if (watcher.empty() && !options.interrupted()) {
     throw RunError("no samples came on \"" + options.url + "\"");
   }
 }

@@ -1,6 +1,7 @@
 // `spoolwatch compare MODEL.toml --live`: the model beside the running rig, a line each second.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "plant_sim/model_file.h"
@@ -10,11 +11,14 @@ namespace workbench::live {
 struct LiveCompareOptions {
   std::string url, prefix;
   double observer_per_s = 0.0;
-  double duration_s = 0.0;  ///< 0: until a signal
-  bool json = false;        ///< one object a line
+  bool json = false;  ///< one object a line
+  /// Asked about ten times a second.
+  std::function<bool()> ended;
+  /// Ended by a person: that no samples came is then no error.
+  std::function<bool()> interrupted;
 };
 
-/// Writes to standard output until the end. Throws config::schema::Error.
+/// Writes to standard output until options.ended(). Throws config::schema::Error.
 void watch(const plant_sim::ModelFile& model, const LiveCompareOptions& options);
 
 }  // namespace workbench::live

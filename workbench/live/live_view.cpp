@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "workbench/live/listen_lines.h"
+#include "workbench/live/live_charts.h"
 
 namespace workbench::live {
 namespace {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "workbench/present/script_json.h"
 #include "workbench/present/text.h"
 
 namespace workbench::present {

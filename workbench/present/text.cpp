@@ -1,30 +1,12 @@
 #include "workbench/present/text.h"
 
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <nlohmann/json.hpp>
+
+#include "workbench/present/script_json.h"
 
 namespace workbench::present {
 namespace {
-
-constexpr int kDigits = 7;
-
-void append_number(std::string& out, double value) {
-  if (!std::isfinite(value)) {
-    out += "null";
-    return;
-  }
-  std::array<char, 32> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value,
-                                 std::chars_format::general, kDigits);
-  out.append(digits.data(), end.ptr);
-}
-
-/// The quoted JSON string, invalid UTF-8 replaced.
-std::string quoted(std::string_view text) {
-  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
 
 struct Spelling {
   std::string_view typed;
@@ -84,7 +66,7 @@ std::string typeset(std::string_view text) {
 }
 
 std::string html(std::string_view text) {
-  const std::string clean = nlohmann::json::parse(quoted(text)).get<std::string>();
+  const std::string clean = nlohmann::json::parse(json_string(text)).get<std::string>();
   std::string out;
   out.reserve(clean.size());
   for (const char c : clean) {
@@ -109,51 +91,6 @@ std::string html(std::string_view text) {
     }
   }
   return out;
-}
-
-std::string json_string(std::string_view text) {
-  std::string out;
-  for (const char c : quoted(text)) {
-    if (c == '<') {
-      out += "\\u003c";
-    } else {
-      out += c;
-    }
-  }
-  return out;
-}
-
-std::string json_number(double value) {
-  std::string out;
-  append_number(out, value);
-  return out;
-}
-
-std::string json_numbers(const std::vector<double>& values) {
-  std::string out = "[";
-  out.reserve(values.size() * 9 + 2);
-  for (const double value : values) {
-    if (out.size() > 1) out += ',';
-    append_number(out, value);
-  }
-  return out + ']';
-}
-
-std::string shell_word(std::string_view word) {
-  constexpr std::string_view kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=:,@%+-";
-  if (!word.empty() && word.find_first_not_of(kPlain) == std::string_view::npos) {
-    return std::string(word);
-  }
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
-std::string shell_command(const std::vector<std::string>& words) {
-  std::string command;
-  for (const std::string& word : words) command += (command.empty() ? "" : " ") + shell_word(word);
-  return command;
 }
 
 }  // namespace workbench::present

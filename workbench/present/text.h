@@ -1,9 +1,8 @@
-// Text as it may stand in HTML and in the JSON inside a script element.
+// Text as it may stand in HTML.
 #pragma once
 
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace workbench::present {
 
@@ -14,20 +13,5 @@ namespace workbench::present {
 
 /// & < > " ' as entities; bytes that are no UTF-8 become U+FFFD.
 [[nodiscard]] std::string html(std::string_view text);
-
-/// A JSON string with its quotes. "<" is \u003c, so that no </script> or <!-- can arise.
-[[nodiscard]] std::string json_string(std::string_view text);
-
-/// A JSON number of at most 7 significant digits; null for NaN and infinities.
-[[nodiscard]] std::string json_number(double value);
-
-[[nodiscard]] std::string json_numbers(const std::vector<double>& values);
-
-// A command as it can be pasted into a shell.
-
-/// The word in single quotes where a shell would not take it as it is.
-[[nodiscard]] std::string shell_word(std::string_view word);
-
-[[nodiscard]] std::string shell_command(const std::vector<std::string>& words);
 
 }  // namespace workbench::present

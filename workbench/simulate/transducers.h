@@ -5,7 +5,7 @@
 
 #include "config/signals/pressures.h"
 #include "plant_sim/instruments.h"
-#include "workbench/simulate/scenario.h"
+#include "workbench/simulate/instruments.h"
 
 namespace workbench::simulate {
 

@@ -1,4 +1,5 @@
 // What is said of a diagnosis, for every verdict.
+#include "workbench/diagnose/words.h"
 #include "workbench/diagnose/diagnosis_report.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-#include "workbench/present/text.h"
+#include "workbench/present/shell_command.h"
 
 #include <gtest/gtest.h>
 

@@ -6,6 +6,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "workbench/present/script_json.h"
+
 namespace workbench::present {
 namespace {
 

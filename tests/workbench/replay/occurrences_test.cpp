@@ -1,5 +1,5 @@
 // Two lists of alarms compared: what appears, disappears, shifts, stays.
-#include "workbench/replay/backtest_runs.h"
+#include "workbench/replay/occurrences.h"
 
 #include <gtest/gtest.h>
 

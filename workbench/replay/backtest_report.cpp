@@ -1,9 +1,10 @@
-#include "workbench/replay/backtest_runs.h"
+#include "workbench/replay/backtest_report.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <ostream>
 
 namespace workbench::replay {

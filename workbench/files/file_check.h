@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace workbench::cli {
+namespace workbench::files {
 
 /// The same file, however it is spelled.
 [[nodiscard]] bool same_file(const std::string& a, const std::string& b);
@@ -29,4 +29,4 @@ struct InputFiles {
 /// 1 for one that could not be written in the end (a folder, no folder to stand in, no permission).
 void check_outputs(const std::vector<OutputFile>& outputs, const InputFiles& inputs);
 
-}  // namespace workbench::cli
+}  // namespace workbench::files

@@ -1,4 +1,4 @@
-#include "workbench/cli/file_check.h"
+#include "workbench/files/file_check.h"
 
 #include <unistd.h>
 
@@ -8,7 +8,7 @@
 
 #include "config/schema/error.h"
 
-namespace workbench::cli {
+namespace workbench::files {
 namespace {
 
 namespace fs = std::filesystem;
@@ -93,4 +93,4 @@ void check_outputs(const std::vector<OutputFile>& outputs, const InputFiles& inp
   }
 }
 
-}  // namespace workbench::cli
+}  // namespace workbench::files

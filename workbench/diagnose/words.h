@@ -1,0 +1,49 @@
+// A diagnosis in sentences.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "workbench/diagnose/diagnosis_report.h"
+
+namespace workbench::diagnose {
+
+/// "friction: Coulomb 145 +- 2 N, static 181 +- 4 N", with the values of the better model.
+[[nodiscard]] std::string effect_words(const selection::Diagnosis& diagnosis,
+                                       const std::string& effect);
+
+/// "the rod moves by 0.01 mm in all, 0.001 mm of it noise"
+[[nodiscard]] std::string excitation_words(const selection::Excitation& excitation);
+
+/// Restrictions: gaps of the records, long records, interruption.
+[[nodiscard]] std::vector<std::string> notes(const DiagnosisReport& outcome);
+
+/// The verdict, one sentence.
+[[nodiscard]] std::string verdict_words(const selection::Diagnosis& diagnosis);
+
+/// One paragraph each: fall of the error, rivals, site of the remaining error, advice.
+[[nodiscard]] std::vector<std::string> remarks(const DiagnosisReport& outcome);
+
+/// Command that follows; empty where there is none.
+[[nodiscard]] std::string next_command(const DiagnosisReport& outcome);
+
+/// "every other 2 s is fitted, the rest scores", ...
+[[nodiscard]] std::string split_words(const DiagnosisReport& outcome);
+
+/// "model file as it is", "+ friction", ...
+struct StepWords {
+  std::string what;
+  double rms_m = 0.0;
+};
+[[nodiscard]] std::vector<StepWords> step_words(const selection::Diagnosis& diagnosis);
+
+/// Without its folder.
+[[nodiscard]] std::string file_name(const std::string& file);
+
+/// Whether a parameter belongs to an effect that was found missing.
+[[nodiscard]] bool was_added(const selection::Diagnosis& diagnosis, const std::string& parameter);
+
+/// "as a force that goes with the speed".
+[[nodiscard]] std::string where_words(const selection::Localisation& where);
+
+}  // namespace workbench::diagnose
