@@ -161,7 +161,12 @@ class CsvReader {
                        "finite numbers");
       }
     }
-    target.values->push_back(value * target.factor);
+    value *= target.factor;
+    if (std::abs(value) > largest_plausible(target.si_unit)) {
+      throw bad_data(place(line_), "column " + target.name + " is " + quoted(text),
+                     plausible_range(target.si_unit));
+    }
+    target.values->push_back(value);
   }
 
   std::string_view rest_;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
+#include <sstream>
 
 #include "config/schema/error.h"
 
@@ -99,9 +101,10 @@ std::vector<Target> lay_out(const std::vector<std::string>& names, const std::st
     const RecordColumn& column = columns[i];
     if (const MainColumn* main = main_of(column); main == nullptr) {
       record.further.emplace_back(column.si_name, std::vector<double>{});
-      targets.push_back({names[i], column.factor, &record.further.back().second, true});
+      targets.push_back(
+          {names[i], column.factor, &record.further.back().second, true, column.si_unit});
     } else if (column.si_unit == main->si_unit) {
-      targets.push_back({names[i], column.factor, &(record.*main->values), false});
+      targets.push_back({names[i], column.factor, &(record.*main->values), false, column.si_unit});
     } else {
       throw bad_data(where,
                      "column " + names[i] +
@@ -120,6 +123,27 @@ const MissingColumn* first_missing(const std::vector<Target>& targets, const Rec
     if (!found) return &main.missing;
   }
   return nullptr;
+}
+
+double largest_plausible(std::string_view si_unit) noexcept {
+  struct Limit {
+    std::string_view si_unit;
+    double largest;
+  };
+  // Seconds since 1970 are below 1e10.
+  constexpr std::array kLimits{Limit{"s", 1e11},  Limit{"V", 1e6},   Limit{"m", 1e6},
+                               Limit{"mps", 1e6}, Limit{"Pa", 1e12}, Limit{"N", 1e12}};
+  for (const Limit& limit : kLimits) {
+    if (limit.si_unit == si_unit) return limit.largest;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+std::string plausible_range(std::string_view si_unit) {
+  std::ostringstream out;
+  out << "magnitudes up to " << largest_plausible(si_unit) << ' '
+      << (si_unit == "mps" ? "m/s" : si_unit);
+  return out.str();
 }
 
 std::string quoted(std::string_view text) {

@@ -24,7 +24,15 @@ struct Target {
   double factor = 1.0;
   std::vector<double>* values = nullptr;  ///< within the record
   bool may_be_missing = false;            ///< NaN stands for a missing value
+  std::string si_unit{};                  ///< "" when unknown
 };
+
+/// Largest magnitude that a quantity of this SI unit has on any machine; infinite for other units.
+/// A value beyond it is a defect of the file, and its square would overflow the sums of an
+/// estimate.
+[[nodiscard]] double largest_plausible(std::string_view si_unit) noexcept;
+/// "magnitudes up to 1e+06 m"
+[[nodiscard]] std::string plausible_range(std::string_view si_unit);
 
 [[nodiscard]] bool is_time(const RecordColumn& column);
 /// Time, command or position, whatever the unit.

@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <sstream>
 
 #include "config/messages/dispatch.h"
+#include "config/record/layout.h"
 #include "config/record/log_reader.h"
 #include "config/record/sample_columns.h"
 #include "config/record/time_grid.h"
@@ -76,7 +78,16 @@ class Builder final : public messages::MessageHandler {
   std::vector<std::int64_t> events;  ///< number of the event behind each row
 
  private:
+  void refuse_implausible(const char* name, double value, const char* si_unit) const {
+    if (std::abs(value) <= largest_plausible(si_unit)) return;
+    std::ostringstream shown;
+    shown << name << " is " << value;
+    throw bad_data(log_.where(), shown.str(), plausible_range(si_unit));
+  }
+
   void add(const sample_t& s) {
+    refuse_implausible("y_m", s.y_m, "m");
+    refuse_implausible("u_applied_V", s.u_applied_V, "V");
     const std::vector<double>& row = columns_.row(s);
     for (std::size_t i = record.further.size(); i < row.size(); ++i) {
       const double missing = std::numeric_limits<double>::quiet_NaN();

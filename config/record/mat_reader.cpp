@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "config/record/layout.h"
 #include "config/record/mat_variables.h"
@@ -133,7 +134,13 @@ class MatReader {
                            (std::isnan(values[i]) ? "NaN" : "infinite"),
                        "finite numbers");
       }
-      target.values->push_back(values[i] * target.factor);
+      const double value = values[i] * target.factor;
+      if (std::abs(value) > largest_plausible(target.si_unit)) {
+        std::ostringstream shown;
+        shown << "variable " << target.name << "(" << i + 1 << ") is " << values[i];
+        throw bad_data(name_, shown.str(), plausible_range(target.si_unit));
+      }
+      target.values->push_back(value);
     }
   }
 

@@ -167,10 +167,10 @@ IdentifiabilityReport identifiability_report(const estimator::nonlinear::Problem
 
 void derivatives(const estimator::nonlinear::Problem& problem, const VectorXd& theta,
                  VectorXd& residual, MatrixXd& jacobian) {
-  using estimator::nonlinear::Probe;
+  using estimator::nonlinear::DifferenceStep;
   std::vector<Index> columns(static_cast<std::size_t>(theta.size()));
   std::iota(columns.begin(), columns.end(), 0);
-  const std::vector<Probe> probes = probes_at(problem, theta, columns, false);
+  const std::vector<DifferenceStep> probes = probes_at(problem, theta, columns, false);
   MatrixXd points(theta.size(), static_cast<Index>(probes.size()) + 1);
   points.col(0) = theta;
   points.rightCols(static_cast<Index>(probes.size())) = points_at(theta, probes, 0, probes.size());

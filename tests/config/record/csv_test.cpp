@@ -108,6 +108,16 @@ TEST(Csv, RefusesWhatIsNoNumberOrNotFinite) {
   expect_bad("t_s,u_V,y_m,p_bar\n0,1,0,1\n0.005,1,0,inf\n", ":3", "p_bar is 'inf'");
 }
 
+TEST(Csv, RefusesMagnitudesThatNoMachineHas) {
+  expect_bad("t_s,u_V,y_m\n0,1,0\n0.005,1,1e300\n", ":3", "y_m is '1e300'");
+  expect_bad("t_s,u_V,y_mm\n0,1,0\n0.005,1,-1.1e9\n", ":3", "magnitudes up to 1e+06 m");
+  expect_bad("t_s,u_mV,y_m\n0,1,0\n0.005,1e10,0\n", ":3", "u_mV is '1e10'");
+  expect_bad("t_s,u_V,y_m,p_bar\n0,1,0,1\n0.005,1,0,1e8\n", ":3", "p_bar is '1e8'");
+  const Record record = read("t_s,u_V,y_mm,count\n0,1,9e8,1e300\n0.005,1,0,2\n0.010,1,0,3\n");
+  EXPECT_EQ(record.y_m[0], 9e5);
+  EXPECT_EQ(record.column("count")->front(), 1e300) << "a column without a known unit has no limit";
+}
+
 TEST(Csv, RefusesRowsOfAnotherLength) {
   expect_bad("t_s,u_V,y_m\n0,1\n0.005,1,2\n", ":2", "too few fields");
   expect_bad("t_s,u_V,y_m\n0,1,2,3\n0.005,1,2\n", ":2", "4 fields");

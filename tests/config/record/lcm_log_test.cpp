@@ -191,6 +191,13 @@ TEST_F(LcmLog, RefusesAnotherTypeOnTheSampleChannel) {
   expect_bad("event 3: on SPOOLWATCH_SAMPLE is of another type");
 }
 
+TEST_F(LcmLog, RefusesAPositionThatNoMachineHas) {
+  write_samples("SPOOLWATCH_SAMPLE", 10, [](int i, sample_t& s) {
+    if (i == 5) s.y_m = -1e300;
+  });
+  expect_bad("event 5: y_m is -1e+300; allowed: magnitudes up to 1e+06 m");
+}
+
 TEST_F(LcmLog, RefusesTwoRunsInOneRecord) {
   write_samples("SPOOLWATCH_SAMPLE", 5, [](int i, sample_t& s) { s.run_id = i / 3; });
   expect_bad("another run");
