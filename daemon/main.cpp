@@ -7,6 +7,7 @@
 
 #include "config/schema/error.h"
 #include "config/schema/product_version.h"
+#include "config/schema/spelling.h"
 #include "daemon/commission.h"
 #include "daemon/daemon_config.h"
 #include "daemon/rt/privileges.h"
@@ -102,6 +103,9 @@ int run(int argc, char** argv) {
     if (configuration->count() == 0 && !from_note && !reference)
       throw CLI::RequiredError("--config");
   } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() != 0) {
+      config::schema::require_known_options({argv + 1, argv + argc}, app);
+    }
     return app.exit(e) == 0 ? EXIT_SUCCESS : config::schema::kUsageExitCode;
   }
   if (reference) {

@@ -4,9 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "config/schema/joined.h"
+#include "config/schema/spelling.h"
+#include "config/schema/visitor.h"
 
 namespace plant_sim {
 namespace {

@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cstddef>
 #include <fstream>
-#include <numeric>
 #include <sstream>
 
 #include "config/schema/error.h"
@@ -153,28 +152,5 @@ void Document::read_part(const Visitor::Body& visit) const {
 const std::string& Document::name() const noexcept { return data_->name; }
 
 std::filesystem::path Document::folder() const { return data_->folder; }
-
-std::string nearest(std::string_view typed, const std::vector<std::string>& names) {
-  std::string best;
-  std::size_t best_distance = std::max<std::size_t>(2, typed.size() / 3) + 1;
-  for (const std::string& name : names) {
-    std::vector<std::size_t> row(name.size() + 1);
-    std::iota(row.begin(), row.end(), 0U);
-    for (std::size_t i = 0; i < typed.size(); ++i) {
-      std::size_t diagonal = row[0];
-      row[0] = i + 1;
-      for (std::size_t j = 0; j < name.size(); ++j) {
-        const std::size_t substitute = diagonal + (typed[i] == name[j] ? 0U : 1U);
-        diagonal = row[j + 1];
-        row[j + 1] = std::min({substitute, row[j] + 1, row[j + 1] + 1});
-      }
-    }
-    if (row.back() < best_distance) {
-      best_distance = row.back();
-      best = name;
-    }
-  }
-  return best;
-}
 
 }  // namespace config::schema

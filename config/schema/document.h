@@ -43,7 +43,4 @@ class Document {
 /// TOML text of the effective values, schema_version first; read back it gives the same values.
 [[nodiscard]] std::string print_toml(const Visitor::Body& visit);
 
-/// The nearest of `names` to a mistyped one, or "" when none is near (edit distance).
-[[nodiscard]] std::string nearest(std::string_view typed, const std::vector<std::string>& names);
-
 }  // namespace config::schema

@@ -8,6 +8,7 @@
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "config/schema/joined.h"
+#include "config/schema/spelling.h"
 
 namespace config::schema {
 namespace {

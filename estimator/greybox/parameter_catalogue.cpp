@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "config/schema/joined.h"
+#include "config/schema/spelling.h"
 
 namespace estimator::greybox {
 namespace {

@@ -11,6 +11,7 @@
 #include "config/schema/error.h"
 #include "config/schema/product_version.h"
 #include "config/schema/reference.h"
+#include "config/schema/spelling.h"
 #include "hal/hil_rig/moved_lines.h"
 #include "hal/hil_rig/register_map.h"
 #include "hal/hil_rig/server.h"
@@ -105,6 +106,9 @@ int run(int argc, char** argv) {
     if (setting->count() == 0 && file->count() == 0 && !reference)
       throw CLI::RequiredError("--config");
   } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() != 0) {
+      config::schema::require_known_options({argv + 1, argv + argc}, app);
+    }
     return app.exit(e) == 0 ? EXIT_SUCCESS : config::schema::kUsageExitCode;
   }
   if (reference) {

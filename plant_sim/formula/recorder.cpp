@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <deque>
 
-#include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "config/schema/joined.h"
+#include "config/schema/spelling.h"
 #include "plant_sim/formula/expression_graph.h"
 
 namespace plant_sim::formula {

@@ -90,7 +90,7 @@ const std::vector<Layer> kLayers{
      {"config", "estimator", "estimator/fdi", "estimator/fdi/tracker", "hal", "hal/sim",
       "hal/replay", "plant_sim", "daemon/control", "daemon/rt", "daemon/detection", "daemon/io"},
      {"boost", "lcm", "spoolwatch", "systemd", "CLI"}},
-    {"workbench/files", {"config/schema"}, {}},
+    {"workbench/files", {"config/schema", "config/record"}, {}},
     {"workbench/present",
      {"config/schema", "config/record", "config/units", "estimator/greybox",
       "estimator/greybox/validation"},

@@ -166,9 +166,10 @@ TEST(ManPage, IsUnderstoodByManWithoutAWarning) {
 }
 
 /// Exit code and the text of standard error.
-std::pair<int, std::string> refused(const std::string& arguments) {
-  const std::string text =
-      output_of(SPOOLWATCH_BIN_DIR "/spoolwatch " + arguments + " 2>&1 >/dev/null; echo \"$?\"");
+std::pair<int, std::string> refused(const std::string& arguments,
+                                    const std::string& program = "spoolwatch") {
+  const std::string text = output_of(SPOOLWATCH_BIN_DIR "/" + program + " " + arguments +
+                                     " 2>&1 >/dev/null; echo \"$?\"");
   const std::size_t code = text.rfind('\n', text.size() - 2) + 1;
   return {std::stoi(text.substr(code)), text.substr(0, code)};
 }
@@ -181,6 +182,52 @@ TEST(Commands, AMistypedCommandNamesTheNearOne) {
   EXPECT_EQ(refused("xyzzy").second,
             "spoolwatch: command xyzzy is unknown; spoolwatch --help lists all\n");
   EXPECT_EQ(refused("").first, 2);
+}
+
+TEST(Commands, AMistypedOptionNamesTheNearOne) {
+  EXPECT_EQ(
+      refused("diagnose m.toml r.csv --heldout-sp 2"),
+      (std::pair<int, std::string>{
+          2, "spoolwatch: diagnose: option --heldout-sp is unknown, did you mean --holdout?\n"}));
+  EXPECT_EQ(refused("diagnose --heldout-sp 2").second,
+            "spoolwatch: diagnose: option --heldout-sp is unknown, did you mean --holdout?\n")
+      << "before what else is missing";
+  EXPECT_EQ(refused("compare m.toml r.csv --rep=x.html").second,
+            "spoolwatch: compare: option --rep is unknown, did you mean --report?\n");
+  EXPECT_EQ(refused("fit m.toml r.csv --xyzzyplugh").second,
+            "spoolwatch: fit: option --xyzzyplugh is unknown\n");
+  EXPECT_EQ(refused("--versoin").second,
+            "spoolwatch: option --versoin is unknown, did you mean --version?\n");
+  EXPECT_EQ(refused("--chek", "spoolwatchd"),
+            (std::pair<int, std::string>{
+                2, "spoolwatchd: option --chek is unknown, did you mean --check?\n"}));
+  EXPECT_EQ(refused("--lisen x", "spoolwatch-rig"),
+            (std::pair<int, std::string>{
+                2, "spoolwatch-rig: option --lisen is unknown, did you mean --listen?\n"}));
+}
+
+TEST(Commands, SwappedFilesAreNamedWithTheRightOrder) {
+  const std::string model = SPOOLWATCH_SOURCE_DIR "/config/models/velocity_servo.toml";
+  const std::string record = testing::TempDir() + "swapped.csv";
+  std::ofstream(record) << "t_s,u_V,y_m\n0,1,0\n0.1,1,0\n0.2,1,0\n";
+  for (const std::string command : {"compare", "fit", "diagnose", "isolate"}) {
+    EXPECT_EQ(refused(command + " " + record + " " + model),
+              (std::pair<int, std::string>{
+                  2, "spoolwatch: " + command + ": MODEL and RECORD are swapped: " + record +
+                         " is a record, " + model + " is a TOML file; the order is: spoolwatch " +
+                         command + " MODEL RECORD\n"}));
+  }
+  EXPECT_EQ(refused("estimate " + model).second,
+            "spoolwatch: estimate: " + model +
+                " is a TOML file, but RECORD must be a record; the order is: spoolwatch estimate "
+                "RECORD\n");
+  EXPECT_EQ(
+      refused("simulate " + record + " -o " + record + ".out").second,
+      "spoolwatch: simulate: " + record +
+          " is a record, but MODEL must be a TOML file; the order is: spoolwatch simulate MODEL\n");
+  EXPECT_THAT(refused("calibrate " + record + " " + model).second,
+              HasSubstr("config and RECORD are swapped"))
+      << "before what else is missing";
 }
 
 TEST(Commands, HelpExplainsACommand) {

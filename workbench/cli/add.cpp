@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "config/record/whole_file.h"
-#include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "config/schema/joined.h"
+#include "config/schema/spelling.h"
 #include "config/units/quantity.h"
 #include "plant_sim/library.h"
 #include "plant_sim/model_file.h"

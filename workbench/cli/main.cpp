@@ -6,10 +6,11 @@
 #include <exception>
 #include <iostream>
 
-#include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "config/schema/product_version.h"
+#include "config/schema/spelling.h"
 #include "workbench/cli/command.h"
+#include "workbench/cli/file_places.h"
 
 namespace {
 
@@ -59,6 +60,7 @@ int run(int argc, char** argv) {
     CLI::App* const added = app.add_subcommand(command.name, command.what);
     added->group(command.group);
     command.setup(*added, exit_code);
+    added->parse_complete_callback([added] { workbench::cli::check_places(*added); });
   }
   app.require_subcommand(1);
   app.set_version_flag("--version", "spoolwatch " + std::string(config::schema::product_version()));
@@ -78,10 +80,15 @@ int run(int argc, char** argv) {
   if (words.empty()) throw config::schema::UsageError("no command; spoolwatch --help lists all");
   require_command(app, words.front());
   try {
-    std::reverse(words.begin(), words.end());  // as CLI11 takes them
-    app.parse(words);
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // as CLI11 takes them
   } catch (const CLI::ParseError& error) {
     const bool asked_for_help = error.get_exit_code() == 0;
+    if (!asked_for_help) {
+      const bool is_option = words.front().starts_with('-');
+      const CLI::App& command = is_option ? app : *app.get_subcommand(words.front());
+      config::schema::require_known_options(words, command, is_option ? "" : words.front() + ": ");
+      workbench::cli::check_places(command);
+    }
     app.exit(error);
     return asked_for_help ? 0 : config::schema::kUsageExitCode;
   }

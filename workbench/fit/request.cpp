@@ -9,6 +9,7 @@
 #include "config/record/record.h"
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "config/schema/spelling.h"
 #include "workbench/files/file_check.h"
 #include "workbench/fit/ignored_spans.h"
 #include "workbench/present/dataset_notes.h"
@@ -20,7 +21,7 @@ using config::schema::UsageError;
 using greybox::Dataset;
 using greybox::FitDataset;
 
-/// A rod that moves less than this many noise floors does not tell a parameter.
+/// A rod that moves less than this many noise floors does not determine a parameter.
 constexpr double kLeastMotion = 5.0;
 
 void check_files(const FitRequest& request) {

@@ -13,9 +13,9 @@ struct LiveCompareOptions {
   double observer_per_s = 0.0;
   bool json = false;  ///< one object a line
   /// Asked about ten times a second.
-  std::function<bool()> ended;
+  std::function<bool()> ended{};
   /// Ended by a person: that no samples came is then no error.
-  std::function<bool()> interrupted;
+  std::function<bool()> interrupted{};
 };
 
 /// Writes to standard output until options.ended(). Throws config::schema::Error.

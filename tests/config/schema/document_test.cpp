@@ -236,12 +236,5 @@ TEST(Error, IsOneLineWhateverAFileSays) {
                "a b.csv: is '? '; allowed: one? ");
 }
 
-TEST(Nearest, FindsOneTypoAndLeavesStrangersAlone) {
-  const std::vector<std::string> names{"friction", "deadband", "null_bias"};
-  EXPECT_EQ(nearest("fricton", names), "friction");
-  EXPECT_EQ(nearest("nul_bias", names), "null_bias");
-  EXPECT_EQ(nearest("zzz", names), "");
-}
-
 }  // namespace
 }  // namespace config::schema
