@@ -13,10 +13,6 @@ constexpr double kReversalMargin_s = 0.05;
 constexpr double kRestNoise = 4.0;
 constexpr double kRestShare = 0.01;
 
-std::size_t samples_in(double duration_s, double sample_time_s) {
-  return static_cast<std::size_t>(std::lround(duration_s / sample_time_s));
-}
-
 /// Slope and curvature of the parabola through samples [from, to], evaluated at sample k.
 struct Weights {
   std::vector<double> slope;
@@ -100,6 +96,10 @@ void direct(const Dataset& record, const SampleRange& span, Kinematics& result) 
 }
 
 }  // namespace
+
+std::size_t samples_in(double duration_s, double sample_time_s) {
+  return static_cast<std::size_t>(std::lround(duration_s / sample_time_s));
+}
 
 const char* to_string(Direction direction) noexcept {
   switch (direction) {

@@ -9,6 +9,7 @@
 // used.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "estimator/greybox/dataset.h"
@@ -40,5 +41,8 @@ struct SampleRange {
   std::size_t end = 0;
 };
 [[nodiscard]] std::vector<SampleRange> segments(const Dataset& record);
+
+/// Whole number of samples nearest to a duration.
+[[nodiscard]] std::size_t samples_in(double duration_s, double sample_time_s);
 
 }  // namespace estimator::greybox

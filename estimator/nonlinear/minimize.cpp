@@ -23,6 +23,8 @@ class Search {
   bool begin(const Eigen::VectorXd& start);
   /// One accepted step, or the reason why there is none.
   bool iterate();
+  /// Moves to a point whose Jacobian is not known.
+  bool accept(const Eigen::VectorXd& there, const Eigen::VectorXd& residual, double cost);
   bool scan();
   void linearise();
   void renew(const std::vector<Eigen::Index>& columns);
@@ -239,12 +241,7 @@ bool Search::iterate() {
   // The trial brings its Jacobian along: another damping must be clearly better.
   if (best > 0 && cost_ - best_cost > 1.25 * (cost_ - trial_cost)) {
     lambda_ = std::max(kLeastDamping, lambda_ * kAlternates[best - 1]);
-    const Eigen::VectorXd there = points.col(best);
-    if (!options_.renew_all) broyden(there - x_, results.col(best));
-    move_to(there, results.col(best), best_cost);
-    if (options_.renew_all) renew(stale());
-    ++out_.iterations;
-    return true;
+    return accept(points.col(best), results.col(best), best_cost);
   }
   const double ratio = (cost_ - trial_cost) / predicted_decrease(model_, step);
   lambda_ = std::max(kLeastDamping,
@@ -272,6 +269,14 @@ bool Search::iterate() {
   return true;
 }
 
+bool Search::accept(const Eigen::VectorXd& there, const Eigen::VectorXd& residual, double cost) {
+  if (!options_.renew_all) broyden(there - x_, residual);
+  move_to(there, residual, cost);
+  if (options_.renew_all) renew(stale());
+  ++out_.iterations;
+  return true;
+}
+
 bool Search::scan() {
   const Eigen::Index count = std::max<Eigen::Index>(kScanLeast, problem_.lanes);
   for (;;) {
@@ -295,12 +300,7 @@ bool Search::scan() {
     }
     if (best >= 0) {
       lambda_ = lambda[static_cast<std::size_t>(best)];
-      const Eigen::VectorXd there = points.col(best);
-      if (!options_.renew_all) broyden(there - x_, results.col(best));
-      move_to(there, results.col(best), best_cost);
-      if (options_.renew_all) renew(stale());
-      ++out_.iterations;
-      return true;
+      return accept(points.col(best), results.col(best), best_cost);
     }
     if (is_small(points.col(count - 1) - x_) || lambda_ > 1e20)
       return stop(StopReason::small_step, true);

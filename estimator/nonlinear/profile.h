@@ -40,8 +40,6 @@ struct Profile {
   /// The least cost met and its place: below the solution's when the fit had stopped short.
   double least_cost = 0.0;
   Eigen::VectorXd least_x;
-
-  [[nodiscard]] bool flat() const { return !low_found && !high_found; }
 };
 
 [[nodiscard]] Profile profile(const Problem& problem, const Solution& solution,

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "estimator/greybox/dataset.h"
+#include "estimator/greybox/kinematics.h"
 
 namespace estimator::greybox::tracking {
 namespace {
@@ -23,10 +24,6 @@ constexpr double kLeastMotion = 10.0;
 constexpr double kLeastOfHealthy = 0.2;
 /// One-sided 95 % quantile, in standard errors.
 constexpr double kMostly = 1.645;
-std::size_t samples_in(double duration_s, double sample_time_s) {
-  return static_cast<std::size_t>(std::lround(duration_s / sample_time_s));
-}
-
 std::size_t tracked_index(const ParameterSet& set, std::string_view name) {
   for (std::size_t i = 0; i < set.tracked; ++i) {
     if (set.parameters[i].name == name) return i;

@@ -1,10 +1,11 @@
 // Windows of a disturbed rig: innovations in place of a simulation's errors, and a window that
-// grows up to settings.disturbed_window_s and begins anew where a parameter changed.
+// grows up to settings.disturbed_window_s and begins again where a parameter changed.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
 
+#include "estimator/greybox/kinematics.h"
 #include "estimator/greybox/tracking/parameter_tracker.h"
 #include "estimator/greybox/tracking/tail_information.h"
 #include "estimator/linear_algebra/decompositions.h"
@@ -23,7 +24,7 @@ constexpr double kShortest_s = 0.5;
 constexpr double kSpacing_s = 0.1;
 /// Shortest tail whose deviation from the baseline is judged.
 constexpr double kShortestJudged_s = 0.75;
-/// Chi-square by which a shorter tail has to tell a change better than a longer one.
+/// Chi-square by which a shorter tail has to indicate a change better than a longer one.
 constexpr double kShorter = 9.0;
 /// Share of a named change within which the parameter counts as back.
 constexpr double kBackShare = 0.5;
@@ -36,10 +37,6 @@ constexpr double kMostFollowed = 3.0;
 constexpr double kChanceOfRms = 3.5;
 /// One-sided 95 % quantile, in standard errors.
 constexpr double kMostly = 1.645;
-
-std::size_t samples_in(double duration_s, double sample_time_s) {
-  return static_cast<std::size_t>(std::lround(duration_s / sample_time_s));
-}
 
 }  // namespace
 

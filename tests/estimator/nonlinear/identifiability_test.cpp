@@ -112,7 +112,8 @@ TEST(Profile, SaysOneSidedAndFlat) {
   for (int i = 0; i < 50; ++i) sum += std::exp(-2.0 * rate.low * (0.1 + 0.02 * i));
   EXPECT_NEAR(sum / 0.01, 3.84, 0.2);
   const Profile nothing = profile(problem, s, 1);
-  EXPECT_TRUE(nothing.flat());
+  EXPECT_FALSE(nothing.low_found);
+  EXPECT_FALSE(nothing.high_found);
   EXPECT_EQ(nothing.low, -1.0);
   EXPECT_EQ(nothing.high, 1.0);
 }
