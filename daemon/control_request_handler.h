@@ -77,7 +77,7 @@ class ControlRequestHandler {
 
   Parts parts_;
   Identity identity_;
-  std::uint32_t number_ = 0;  ///< of the newest command
+  std::uint32_t number_ = 0;  ///< number of the newest command
   WaitsFor waits_for_ = WaitsFor::nothing;
   io::ControlSocket::Request request_{};  ///< the current one
   bool is_command_ = false;               ///< the request changes something

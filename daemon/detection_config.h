@@ -31,7 +31,7 @@ struct DetectionConfig {
 /// Keys that differ between two configurations, such as "[[band]] gain: high".
 [[nodiscard]] std::vector<std::string> differences(DaemonConfig& before, DaemonConfig& after);
 
-/// Whether a key, as differences() names it, may change while the daemon runs.
+/// True when a key, as differences() names it, may change while the daemon runs.
 [[nodiscard]] bool may_change(const std::string& key,
                               const estimator::fdi::PipelineConfig& pipeline);
 

@@ -20,7 +20,7 @@ class SignalFd {
   SignalFd(const SignalFd&) = delete;
   SignalFd& operator=(const SignalFd&) = delete;
   [[nodiscard]] int fd() const noexcept { return fd_; }
-  /// Whether a signal was pending; consumes one.
+  /// True when a signal was pending; consumes one.
   [[nodiscard]] bool pending() const noexcept { return next() != 0; }
   /// The next pending signal, 0 when there is none.
   [[nodiscard]] int next() const noexcept;

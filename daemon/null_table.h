@@ -13,7 +13,7 @@ namespace monitor {
 
 /// The facts that determine the table.
 struct NullTableInputs {
-  std::string backend;  ///< of the valve
+  std::string backend;  ///< the valve's backend
   hal::NullTimes times;
   double sample_time_s = 0.005;
   double speed_mps = 0.0;  ///< fastest rod speed under a held command

@@ -18,7 +18,7 @@ class OperatorPrompt {
   std::optional<bool> ask(const std::string& question);
   /// Waits up to 100 ms for a stop signal. Returns whether one has been received so far.
   bool wait_stop();
-  /// Whether any call has received a stop signal.
+  /// True when any call has received a stop signal.
   [[nodiscard]] bool stopped() const noexcept { return stopped_; }
   [[nodiscard]] bool asks() const noexcept { return !assume_yes_; }
 

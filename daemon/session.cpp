@@ -209,7 +209,7 @@ class Session {
   MainEventLoop event_loop_;
   io::ServiceManager manager_;
   ServiceReport service_;
-  std::string failure_;  ///< of the run; empty: success
+  std::string failure_;  ///< error of the run; empty: success
 };
 
 Session::Session(DaemonConfig& config, const SessionOptions& options, std::ostream& log)

@@ -1,4 +1,4 @@
-// Which past samples a linear difference equation uses.
+// Past samples that a linear difference equation uses.
 //
 //   y(t) + a1 y(t-1) + ... + an y(t-n) = b1 u(t-k) + ... + bm u(t-k-m+1) [+ c] + e(t)
 //

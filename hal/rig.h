@@ -51,8 +51,8 @@ enum class InputRole : std::uint8_t {
   enable,           ///< 1 while a person allows motion
   valve_command,    ///< V, the command of the controller in charge (monitor only)
   supply_pressure,  ///< Pa, and so are the next two; one of each at most
-  pressure_in,      ///< of the chamber that extends the rod
-  pressure_out,     ///< of the chamber that retracts it
+  pressure_in,      ///< chamber that extends the rod
+  pressure_out,     ///< chamber that retracts it
   pressure,         ///< Pa, any other
   other
 };

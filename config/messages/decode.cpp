@@ -10,11 +10,11 @@ namespace config::messages {
 namespace {
 
 constexpr std::size_t kHashBytes = 8;
-constexpr std::size_t kLengthBytes = 4;  // of a string, before its text and a null byte
+constexpr std::size_t kLengthBytes = 4;  // length of a string, before its text and a null byte
 
 struct Field {
   std::string name;
-  std::size_t bytes = 0;  ///< of one element; 0: a string
+  std::size_t bytes = 0;  ///< size of one element; 0: a string
   std::string count;      ///< the field that says how many there are; empty: one
 };
 using Fields = std::vector<Field>;

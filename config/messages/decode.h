@@ -6,7 +6,7 @@
 
 namespace config::messages {
 
-/// Whether every length that the message states fits into its bytes; `type` is its name in
+/// True when every length that the message states fits into its bytes; `type` is its name in
 /// spoolwatch.lcm ("estimate_t"), `bytes` start with LCM's hash.
 [[nodiscard]] bool lengths_fit(std::string_view type, std::string_view bytes);
 

@@ -34,7 +34,7 @@ auto with_type(MessageKind kind, const Take& take) {
   return take(spoolwatch::health_t{});
 }
 
-/// Whether the bytes begin with the type hash of this kind.
+/// True when the bytes begin with the type hash of this kind.
 [[nodiscard]] inline bool is_of(MessageKind kind, const void* data, int size) {
   std::int64_t hash = 0;
   return __int64_t_decode_array(data, 0, size, &hash, 1) > 0 &&

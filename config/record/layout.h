@@ -1,4 +1,4 @@
-// Which column of a file goes where in a record: for every form of file that names its columns.
+// Assigns the columns of a file to the fields of a record, for every form of file that names them.
 #pragma once
 
 #include <string>

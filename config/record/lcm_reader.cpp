@@ -26,7 +26,7 @@ constexpr std::int8_t kStaleQuality = 2;  // and 3, bad: no new reading
 /// The channel to read: the one named, or the only one of the right type.
 std::string choose_channel(const std::string& file, std::string_view wanted) {
   LogReader log(file);
-  std::map<std::string, bool> channels;  // whether its first event is a sample
+  std::map<std::string, bool> channels;  // true: the channel's first event is a sample
   while (const LogEvent* event = log.next()) {
     if (event->channel == wanted) return std::string(wanted);
     channels.emplace(event->channel,

@@ -35,7 +35,7 @@ class LogReader {
   /// Hands the newest event over as a message of this kind. Throws schema::DataError when it
   /// is of another type.
   void deliver(messages::MessageKind kind, messages::MessageHandler& handler) const;
-  /// That error.
+  /// The error that deliver() throws.
   [[nodiscard]] schema::DataError wrong_type(messages::MessageKind kind) const;
   /// "FILE: event N", of the newest one.
   [[nodiscard]] std::string where() const;

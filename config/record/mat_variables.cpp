@@ -81,7 +81,7 @@ void read_dims(const MatElements& file, const MatElement& element, MatVariable& 
   }
 }
 
-/// Number of values; damaged when there cannot be so many.
+/// Number of values; damaged when the file cannot hold that number.
 std::size_t count_of(const MatElements& file, const MatVariable& variable) {
   std::size_t count = 1;
   for (const std::size_t extent : variable.dims) {

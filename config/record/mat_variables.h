@@ -22,8 +22,8 @@ struct MatVariable {
   std::vector<std::size_t> dims;  ///< two or more; empty where not known
   bool numeric = false;           ///< an array of numbers, logical ones included
   bool complex = false;
-  std::vector<double> values;       ///< of a numeric vector (at most one extent above 1)
-  std::vector<MatVariable> fields;  ///< of a structure that is no array
+  std::vector<double> values;       ///< numeric vector (at most one extent above 1)
+  std::vector<MatVariable> fields;  ///< structure that is no array
 };
 
 /// True for the first 128 bytes of a MAT file of version 5.

@@ -29,7 +29,7 @@ struct Record {
   /// only here, NaN stands for a missing value.
   std::vector<std::pair<std::string, std::vector<double>>> further;
   std::vector<std::size_t> gaps;   ///< index of the first sample after each gap, ascending
-  std::vector<std::string> notes;  ///< what a reader of results should know: samples left out, ...
+  std::vector<std::string> notes;  ///< remarks for results: samples left out, ...
 
   [[nodiscard]] std::size_t size() const noexcept { return t_s.size(); }
   /// The further column of that name, null when there is none.

@@ -11,7 +11,7 @@ namespace {
 /// More than any rig has: a damaged log must not make a million columns.
 constexpr std::size_t kMostRods = 16;
 
-/// A message tells of a sample when both name the same tick of the same run.
+/// A message belongs to a sample when both name the same tick of the same run.
 template <class Message>
 bool tells_of(const Message& message, const spoolwatch::sample_t& sample) noexcept {
   return message.run_id == sample.run_id && message.tick == sample.tick;

@@ -1,8 +1,8 @@
 // Further columns of a record, from a daemon's samples beyond time, command and position.
 //
 //   reference_m, u_requested_V, quality, state, saturated    of the sample itself
-//   rod_in_charge, rod_1_m, rod_2_m, ...                     where several rod sensors were told
-//   supply_pressure_Pa, pressure_in_Pa, pressure_out_Pa      where pressures were told
+//   rod_in_charge, rod_1_m, rod_2_m, ...                     where a log has several rod sensors
+//   supply_pressure_Pa, pressure_in_Pa, pressure_out_Pa      where a log has pressures
 //
 // Rod sensors count from 1, the configured one first, as in the quantities sample.rod_1_m, ...
 #pragma once
@@ -36,7 +36,7 @@ class SampleColumns {
   void note(const spoolwatch::pressures_t& pressures);
 
   [[nodiscard]] const std::vector<std::string>& names() const noexcept { return names_; }
-  /// In the order of the names; NaN where nothing was told of this sample.
+  /// In the order of the names; NaN where no message belongs to this sample.
   [[nodiscard]] const std::vector<double>& row(const spoolwatch::sample_t& sample);
 
  private:

@@ -13,14 +13,14 @@ struct FlatField {
   std::string key;
   std::string value;          ///< as TOML
   std::string path;           ///< file or folder named by a path key, unquoted; empty otherwise
-  std::string evidence_copy;  ///< of Visitor::path
-  bool wiring = false;        ///< of Key
+  std::string evidence_copy;  ///< as in Visitor::path
+  bool wiring = false;        ///< as in Key
 };
 
 /// The fields of one table, without those of its sub-tables.
 struct FlatTable {
   std::string name;      ///< dotted path; empty: top of the file
-  bool element = false;  ///< of an array of tables
+  bool element = false;  ///< the table belongs to an array of tables
   std::vector<FlatField> fields;
 
   /// "[rod]" or "[[input]]"; empty for the top of the file.

@@ -73,7 +73,7 @@ struct Choice {
   std::string taken;
 };
 
-using Assignments = std::map<std::string, std::string>;  ///< of choices, by dotted path
+using Assignments = std::map<std::string, std::string>;  ///< chosen values, by dotted path
 
 /// Tables and rows listed by one visit, with some choices made otherwise than by default.
 struct Listing {

@@ -10,7 +10,7 @@ namespace config::schema {
 
 /// Values allowed for a text field on which other fields depend.
 struct Alternatives {
-  std::string key;  ///< of every field of this name, or of one: its dotted path
+  std::string key;  ///< name of every such field, or the dotted path of one
   std::vector<std::string> values;
 };
 

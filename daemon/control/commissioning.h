@@ -155,7 +155,7 @@ class Commissioning {
   Failure failure_ = Failure::none;
   bool index_ = false;
   int home_direction_ = 1;
-  int direction_ = 1;  ///< of this move's command
+  int direction_ = 1;  ///< sign of this move's command
   double command_V_ = 0.0;
   double applied_V_ = 0.0;  ///< the same as far as is known
   double rest_V_ = 0.0;     ///< between pulses
@@ -173,7 +173,7 @@ class Commissioning {
   double speed_mps_ = 0.0;
   LineFit before_, after_;
   std::array<Side, 2> sides_;
-  double latency_sum_ = 0.0;  ///< of latency times weight
+  double latency_sum_ = 0.0;  ///< sum of latency times weight
   double latency_weight_ = 0.0;
   /// Readings of the last periods, for the speed.
   static constexpr int kWindow = 8;

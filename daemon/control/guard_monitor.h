@@ -13,12 +13,12 @@ namespace monitor::control {
 struct GuardInputs {
   double t_s = 0.0;  ///< on the loop's grid
   double y_m = std::numeric_limits<double>::quiet_NaN();
-  double age_s = 0.0;  ///< of y
+  double age_s = 0.0;  ///< age of y
   bool called_stale = false;
   double reference_m = std::numeric_limits<double>::quiet_NaN();  ///< in RUN
   double command_V = 0.0;           ///< u - null of the previous period
   bool saturated = false;           ///< the previous command was at a limit
-  double spare_difference_m = 0.0;  ///< of the rod sensors, PositionVoter::difference_m()
+  double spare_difference_m = 0.0;  ///< PositionVoter::difference_m()
   bool other_sensor = false;        ///< the voter switched sensors since the previous tick
 };
 
@@ -69,7 +69,7 @@ class Guard {
   [[nodiscard]] GuardKind kind() const noexcept { return kind_; }
   [[nodiscard]] Action action() const noexcept { return action_; }
   [[nodiscard]] bool active() const noexcept { return active_; }
-  /// Whether the guard became active in the last call.
+  /// True when the guard became active in the last call.
   [[nodiscard]] bool rose() const noexcept { return rose_; }
   /// The value last compared with the limit.
   [[nodiscard]] double value() const noexcept { return value_; }

@@ -47,7 +47,7 @@ class SensorWatch {
 
   /// The fault indicated by an active guard.
   [[nodiscard]] RodFault fault() const noexcept;
-  /// Whether the reading has stood still under a command for at least half of the time that makes
+  /// True when the reading has stood still under a command for at least half of the time that makes
   /// it frozen, so that it cannot confirm motion.
   [[nodiscard]] bool still(double t_s) const noexcept;
   [[nodiscard]] const std::vector<Watched>& guards() const noexcept { return guards_; }
@@ -84,7 +84,7 @@ class PositionVoter {
   void start() noexcept;
 
   [[nodiscard]] std::size_t in_charge() const noexcept { return in_charge_; }
-  /// Whether another sensor took over in this tick.
+  /// True when another sensor took over in this tick.
   [[nodiscard]] bool changed() const noexcept { return changed_; }
   /// b, the offset added to y for the controller.
   [[nodiscard]] double bump_m() const noexcept { return bump_m_; }

@@ -69,7 +69,7 @@ class RodAlarms {
   /// `rods`: sensor ids, the configured one first.
   RodAlarms(std::vector<std::string> rods, double sample_time_s);
 
-  /// Whether "SOURCE.NAME" or "NAME" may name one of these alarms.
+  /// True when "SOURCE.NAME" or "NAME" may name one of these alarms.
   [[nodiscard]] static bool is_one(std::string_view id) noexcept {
     return id.find("rod_") != std::string_view::npos && id.ends_with("_out");
   }

@@ -17,8 +17,8 @@ namespace monitor::io {
 
 /// TOML [alarms].
 struct AlarmConfig {
-  std::string folder;                  ///< of alarms.json and audit.log; empty: no files
-  std::int64_t audit_bytes = 1 << 20;  ///< of audit.log; twice as much with audit.log.1
+  std::string folder;                  ///< folder for alarms.json and audit.log; empty: no files
+  std::int64_t audit_bytes = 1 << 20;  ///< limit of audit.log; twice as much with audit.log.1
   estimator::fdi::AlarmRules rules;    ///< for guards and system alarms
 
   void visit(config::schema::Visitor& v);

@@ -90,7 +90,7 @@ bool may_act(int file, const ucred& peer, gid_t group) {
   return peer.uid == 0 || peer.uid == geteuid() || in_group(file, peer, group);
 }
 
-/// Whether a process answers on that socket.
+/// True when a process answers on that socket.
 bool is_served(const sockaddr_un& address) {
   const int probe = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   if (probe < 0) return false;

@@ -32,7 +32,7 @@ struct EvidenceConfig {
   double before_s = 10.0;
   double after_s = 5.0;
   std::int64_t packs = 50;                 ///< folders kept, oldest removed first
-  std::int64_t total_bytes = 512LL << 20;  ///< of all folders
+  std::int64_t total_bytes = 512LL << 20;  ///< limit for all folders together
   std::int64_t memory_bytes = 16 << 20;    ///< size of the ring, which bounds one folder
 
   void visit(config::schema::Visitor& v);
@@ -71,7 +71,7 @@ class Evidence {
   /// Adds a published message. Call this and the next three functions from one thread.
   void record(std::string_view channel, std::span<const std::uint8_t> data,
               std::int64_t utc_us) noexcept;
-  /// Whether a snapshot is due before the sample of this tick is published.
+  /// True when a snapshot is due before the sample of this tick is published.
   [[nodiscard]] bool wants_state(std::int64_t tick) const noexcept { return tick >= next_state_; }
   void state(std::span<const std::uint8_t> snapshot, std::int64_t tick) noexcept;
   /// Switches to another configuration at the next snapshot: pending folders are written with the

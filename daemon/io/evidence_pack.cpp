@@ -21,7 +21,7 @@ using nlohmann::ordered_json;
 
 constexpr const char* kName = "alarm-";
 constexpr const char* kPartial = ".partial-";
-constexpr std::size_t kNumberAt = 4;  // of the event number in an event
+constexpr std::size_t kNumberAt = 4;  // offset of the event number in an event
 
 /// A file written with fsync; keeps the first error.
 class SyncedFile {

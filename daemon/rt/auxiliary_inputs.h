@@ -22,7 +22,7 @@ class AuxiliaryInputs {
   /// Reads all inputs.
   void read(const hal::Tick& tick) noexcept;
 
-  /// Whether every input of that role is on as far as known; true without such inputs.
+  /// True when every input of that role is on as far as known; true without such inputs.
   [[nodiscard]] bool e_stop_released() const noexcept { return e_stop_released_; }
   [[nodiscard]] bool enabled() const noexcept { return enabled_; }
   /// A switch could not be read in this tick: only null may be written.
@@ -34,7 +34,7 @@ class AuxiliaryInputs {
   [[nodiscard]] const config::signals::Pressures& pressures() const noexcept { return pressures_; }
 
  private:
-  /// Whether a switch with this reading counts as on.
+  /// True when a switch with this reading counts as on.
   bool counts_as_on(std::size_t input, bool good, bool on) noexcept;
   void update_pressure(hal::InputRole role, const hal::InputReading& reading) noexcept;
 

@@ -12,7 +12,7 @@ namespace monitor::rt {
 
 struct Period {
   hal::Tick tick;
-  std::int64_t lateness_ns = 0;  ///< of the wake-up for this tick
+  std::int64_t lateness_ns = 0;  ///< lateness of the wake-up for this tick
   std::int64_t overrun_ns = 0;   ///< lateness of the wake-up that skipped periods, else 0
   std::int64_t skipped = 0;      ///< periods lost since the previous tick
 };

@@ -1,4 +1,4 @@
-// Which guards are active, published by the loop. One thread consumes the activations, however
+// Active guards, published by the loop. One thread consumes the activations, however
 // brief; any thread reads the rest.
 #pragma once
 

@@ -48,7 +48,7 @@ struct DeviceStats {
 /// A rod sensor's state in the voter; the configured sensor is the first.
 struct RodStats {
   std::atomic<control::RodFault> fault{control::RodFault::none};  ///< why the sensor is out
-  std::atomic<std::int64_t> since_tick{0};                        ///< of the last change of `fault`
+  std::atomic<std::int64_t> since_tick{0};  ///< tick of the last change of `fault`
 };
 
 struct LoopStats {

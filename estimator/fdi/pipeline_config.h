@@ -66,7 +66,7 @@ struct PipelineConfig {
   [[nodiscard]] const DetectionMethodConfig* find_method(std::string_view id) const noexcept;
   /// Settings of the estimator or other method with this id in one line; "" for an unknown id.
   [[nodiscard]] std::string fingerprint(std::string_view id) const;
-  /// Whether a key "bands_file", "[[band]] id: high", "[[cusum]] id: ..." belongs here.
+  /// True when a key "bands_file", "[[band]] id: high", "[[cusum]] id: ..." belongs here.
   [[nodiscard]] bool owns(std::string_view key) const;
 
   /// Merges the content of other files (relative to `folder`) into this configuration. The limits

@@ -68,7 +68,7 @@ struct TrainedMethodConfig : DetectionMethodConfig {
   void visit_trained(config::schema::Visitor& v);
   /// Quantities for the training.
   [[nodiscard]] virtual std::vector<std::string> quantities() const = 0;
-  /// Whether the method needs classes other than healthy.
+  /// True when the method needs classes other than healthy.
   [[nodiscard]] virtual bool needs_classes() const { return false; }
   virtual void adopt(const TrainedMethod& trained) = 0;
   [[nodiscard]] virtual const char* list() const = 0;

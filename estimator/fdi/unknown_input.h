@@ -64,7 +64,7 @@ struct UnknownInputObserver {
 [[nodiscard]] Eigen::MatrixXd predictor_gain(const Eigen::MatrixXd& a, const Eigen::MatrixXd& c,
                                              double q = 1.0);
 
-/// Whether all modes that do not decay are observable in y (Popov, Belevitch, Hautus).
+/// True when all modes that do not decay are observable in y (Popov, Belevitch, Hautus).
 [[nodiscard]] bool is_detectable(const Eigen::MatrixXd& a, const Eigen::MatrixXd& c, bool discrete);
 
 }  // namespace estimator::fdi

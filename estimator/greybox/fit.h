@@ -32,7 +32,7 @@ struct FitOptions {
   bool final_jacobian = true;  ///< false: FitSummary::jacobian may be stale in some columns
   double observer_per_s = kObserver_per_s;
   std::function<bool()> cancel;  ///< true ends the search, keeping the best so far
-  SimulationWidth width;         ///< of the evaluations
+  SimulationWidth width;         ///< width of the evaluations
   double logarithm_step = kLogarithmStep;
   // Residual at the start, where already known; otherwise empty.
   Eigen::VectorXd start_residual_m;

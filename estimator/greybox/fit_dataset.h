@@ -35,7 +35,7 @@ struct FitDataset {
   double sample_time_s = 0.0;  ///< first record
 
   [[nodiscard]] Eigen::Index size() const { return all_mask.size(); }
-  /// Whether whole records are held out.
+  /// True when whole records are held out.
   [[nodiscard]] bool has_holdouts() const { return fitted_records < records.size(); }
   /// Samples for final values: all except held-out records.
   [[nodiscard]] const Eigen::VectorXd& final_weights() const {

@@ -18,7 +18,7 @@ namespace estimator::greybox {
 struct InnovationGains {
   std::vector<std::string> states;  ///< corrected, in the order of the rows of `gain`
   Eigen::MatrixXd gain;             ///< (states + 1) x samples; the last row is that of F
-  double decay = 0.0;               ///< of F from sample to sample
+  double decay = 0.0;               ///< decay of F from sample to sample
   Eigen::VectorXd scale;            ///< sensor noise over the standard deviation of e
   /// samples x 2 columns per spectral line: orthonormal signatures that are projected out of r.
   Eigen::MatrixXd lines;

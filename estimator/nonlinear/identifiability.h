@@ -1,4 +1,4 @@
-// Parameters that the data can tell apart, before a fit (Jacobian at the start) and after it.
+// Parameters that the data can distinguish, before a fit (Jacobian at the start) and after it.
 //
 //   scaled Jacobian  K = sqrt(W) J diag(scale) / sigma = U S V'
 //

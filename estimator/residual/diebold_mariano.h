@@ -1,4 +1,4 @@
-// Which of two models is better on data that neither was fitted to?
+// Test which of two models is better on data that neither was fitted to.
 //
 //   d_b = log(sum of first^2 / sum of second^2) / samples, over block b;
 //   z = mean(d) / (sd(d) / sqrt(blocks))

@@ -29,8 +29,8 @@ struct RegressionRows {
 /// ARX by least squares; A, B and the constant.
 [[nodiscard]] Polynomial fit_arx(const Orders& orders, const Stretches& data);
 
-/// Where the prediction-error minimisation may start: consistent or nearly so, without iteration or
-/// with a linear one, because the criterion has local minima.
+/// Starting points of the prediction-error minimisation: consistent or nearly so, without iteration
+/// or with a linear one, because the criterion has local minima.
 ///
 ///   ARMAX        Hannan-Rissanen: errors of a long ARX as if known, then linear least squares
 ///   output error ARX's A as F; Steiglitz-McBride: ARX on u and y filtered by 1/F, repeated

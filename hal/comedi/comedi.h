@@ -45,7 +45,7 @@ struct RodConfig {
   double resolution_m = kMissing;
   double offset_m = 0.0;
   std::int64_t sign = 1;
-  std::int64_t bits = 0;  ///< of the counter; 0: as the board reports
+  std::int64_t bits = 0;  ///< width of the counter; 0: as the board reports
 
   void visit(config::schema::Visitor& v);
 };

@@ -31,7 +31,7 @@ class Exchange {
     std::array<bool, kInputs> good{};
     std::int64_t read_ns = 0;        ///< when the codes were read, 0: never
     std::uint64_t written = 0;       ///< number of the newest command that reached the board
-    bool write_failed = false;       ///< of the newest write
+    bool write_failed = false;       ///< result of the newest write
     std::int64_t read_failures = 0;  ///< since the start
     std::int64_t write_failures = 0;
   };

@@ -36,7 +36,7 @@ struct EncoderConfig {
   std::int64_t line_index = -1;
   std::string bias = "as_is";
   std::string mode = "x4";
-  double resolution_m = kMissing;      ///< of one count; or the next
+  double resolution_m = kMissing;      ///< length of one count; or the next
   double counts_per_metre = kMissing;  ///< 1/m
   std::int64_t sign = 1;
   double reference_m = 0.0;  ///< position at the index, or without an index at the start

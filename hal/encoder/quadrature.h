@@ -33,7 +33,7 @@ class QuadratureDecoder {
   /// Counts from the origin; `per_cycle`: 1, 2 or 4.
   [[nodiscard]] std::int64_t counts(int per_cycle) const noexcept;
   [[nodiscard]] Levels levels() const noexcept { return levels_; }
-  [[nodiscard]] int direction() const noexcept { return direction_; }  ///< of the last move
+  [[nodiscard]] int direction() const noexcept { return direction_; }  ///< sign of the last move
   [[nodiscard]] bool lost() const noexcept { return lost_; }
   [[nodiscard]] std::int64_t illegal() const noexcept { return illegal_; }
   [[nodiscard]] std::int64_t captures() const noexcept { return captures_; }  ///< index pulses

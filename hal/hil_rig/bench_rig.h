@@ -98,8 +98,8 @@ class BenchRig {
   std::int64_t start_ns_;
   std::int64_t now_ns_;
   std::int64_t steps_ = 0;           ///< done since the start
-  std::int64_t schedule_steps_ = 0;  ///< of them, since the first command
-  std::int64_t command_ns_ = -1;     ///< of the newest command; -1: none came
+  std::int64_t schedule_steps_ = 0;  ///< steps since the first command
+  std::int64_t command_ns_ = -1;     ///< time of the newest command; -1: none came
   std::int64_t permit_ns_ = -1;
   std::int64_t mute_from_ns_ = 0;
   std::int64_t mute_until_ns_ = 0;

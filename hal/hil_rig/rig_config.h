@@ -14,7 +14,7 @@ namespace hal::hil_rig {
 
 /// TOML [field]: wiring of valve and encoder, and behaviour of the device without commands.
 struct FieldConfig {
-  double step_s = 1e-4;            ///< of the integration, in place of the model's own
+  double step_s = 1e-4;            ///< integration step, in place of the model's own
   double null_V = 0.0;             ///< valve voltage without a command
   double command_timeout_s = 0.0;  ///< until a client writes another; 0: none
   double permit_timeout_s = 0.0;   ///< longest time without a change of the permit; 0: not checked
@@ -34,7 +34,7 @@ struct BusConfig {
   std::int64_t baud = 115200;
   std::string parity = "even";
   std::int64_t unit = 1;
-  std::int64_t priority = 60;  ///< of SCHED_FIFO, where allowed; 0: the normal class
+  std::int64_t priority = 60;  ///< priority under SCHED_FIFO, where allowed; 0: the normal class
 
   void visit(config::schema::Visitor& v);
 };

@@ -46,7 +46,7 @@ std::uint16_t kilopascals(double p_Pa) {
 
 void bound_waits(modbus_t* context) {
   modbus_set_byte_timeout(context, 0, kWhole_us);
-  modbus_set_response_timeout(context, 0, 1000);  // what it waits before it answers a bad request
+  modbus_set_response_timeout(context, 0, 1000);  // delay before the answer to a bad request
 }
 
 }  // namespace

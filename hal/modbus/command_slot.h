@@ -44,7 +44,7 @@ class CommandSlot {
 
 /// Latest readings, by channel and by block of the register map.
 struct RegisterSnapshot {
-  std::array<std::int64_t, 16> t_ns{};  ///< of each block; 0: never
+  std::array<std::int64_t, 16> t_ns{};  ///< time of each block; 0: never
   std::array<double, 64> value{};       ///< SI, of each channel
 };
 

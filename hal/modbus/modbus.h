@@ -31,7 +31,7 @@ struct ModbusConfig {
   std::string parity = "even";
   std::int64_t stop_bits = 1;
   std::int64_t unit = 1;
-  double timeout_s = kMissing;  ///< of a reply; NaN: 0.8 periods
+  double timeout_s = kMissing;  ///< limit for a reply; NaN: 0.8 periods
   double connect_timeout_s = 0.2;
   double longest_pause_s = 1.0;
   double stale_after_s = kMissing;  ///< NaN: 2.5 periods

@@ -19,8 +19,8 @@ struct InjectedFault {
   std::string rod;  ///< id of a [[sim.rod]]; empty: the rig's own
   double from_s = 0.0;
   double to_s = std::numeric_limits<double>::infinity();
-  double size_m = 0.0;     ///< of a jump
-  double rate_mps = 0.0;   ///< of a drift
+  double size_m = 0.0;     ///< size of a jump
+  double rate_mps = 0.0;   ///< rate of a drift
   std::string pressure{};  ///< transducer with the fault; empty: a rod sensor
 
   void visit(config::schema::Visitor& v);

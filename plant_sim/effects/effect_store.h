@@ -67,7 +67,7 @@ class EffectStore {
     });
   }
 
-  /// Whether any effect is active.
+  /// True when any effect is active.
   [[nodiscard]] bool any() const { return used_sites_ != 0; }
 
  protected:

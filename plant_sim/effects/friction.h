@@ -66,7 +66,7 @@ struct Friction {
   struct Memory {
     S deflection_m = 0.0;
     S yield = 1.0;       ///< dz / dx over the last step
-    S direction = 0.0;   ///< of that step; 0 at rest
+    S direction = 0.0;   ///< sign of that step; 0 at rest
     S rise_ratio = 1.0;  ///< Stribeck's exponential at the speed of that moment
     S v_mps = std::numeric_limits<double>::quiet_NaN();  ///< that speed
 

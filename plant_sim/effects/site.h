@@ -1,6 +1,6 @@
-// Where an effect can act. An effect has, for each site in its kSites, the member function named
-// here; a plant calls those of every active effect where its equations have that place, and lists
-// in its own kSites which places it has. An effect fits a plant that has all of its sites.
+// Places where an effect can act. An effect has, for each site in its kSites, the member function
+// named here; a plant calls those of every active effect where its equations have that place, and
+// lists in its own kSites which places it has. An effect fits a plant that has all of its sites.
 //
 //   command       S command_V(p, memory, u_V)                once per step, may remember
 //   spool         S spool_limit_mps(p)                       bound of the spool's speed
@@ -56,7 +56,7 @@ constexpr bool has_site(const Sites& sites, Site wanted) {
   return false;
 }
 
-/// Whether every site of the effect is among the plant's.
+/// True when every site of the effect is among the plant's.
 template <class Effect, class Plant>
 constexpr bool fits() {
   for (const Site site : Effect::kSites) {

@@ -93,7 +93,7 @@ class Bridge final : public live::FeedListener {
   }
 
   exchange::UdpSender sender_;
-  std::optional<exchange::Message> rods_, pressures_;  ///< of the sample that comes next
+  std::optional<exchange::Message> rods_, pressures_;  ///< messages of the next sample
   std::string place_;
   double sample_rate_Hz_;
   double last_period_ = -1.0;

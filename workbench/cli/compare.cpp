@@ -44,7 +44,7 @@ struct CompareArguments {
   bool all = false;
   std::string command;
   bool live = false;
-  double duration_s = 0.0;  ///< of --live; 0: until a signal
+  double duration_s = 0.0;  ///< duration of --live; 0: until a signal
   live::LiveCompareOptions watch{config::messages::kDefaultUrl, config::messages::kDefaultPrefix};
 };
 

@@ -1,4 +1,4 @@
-// spoolwatch diagnose: which physical effect a model misses, learnt from records.
+// `spoolwatch diagnose`: finds from records the physical effects that a model lacks.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>

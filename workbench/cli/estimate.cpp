@@ -28,7 +28,7 @@ struct EstimateOptions {
   CLI::Option* prior_variance = nullptr;
 };
 
-/// An option that the method or the filter does not use would be a wish silently not granted.
+/// Refuses options that the method or the filter would silently ignore.
 void refuse_unused(const EstimateOptions& options) {
   const estimate::EstimateOptions& e = options.estimate;
   const auto refuse = [](bool given, const std::string& option, const std::string& beside) {

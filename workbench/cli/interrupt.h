@@ -25,7 +25,7 @@ class Interrupt {
   struct sigaction before_term_ {};
 };
 
-/// When a command that runs until it is told to stop shall end: a signal, or the end of its time.
+/// End of a command that runs until it is stopped: a signal, or a time limit.
 class StopCondition {
  public:
   /// SIGINT, SIGTERM and SIGHUP end it; so do `duration_s` seconds, unless they are 0.

@@ -77,7 +77,7 @@ void print(const fdi::TrainedMethod& source, const fdi::TrainedMethodConfig& con
     }
     return;
   }
-  // How far each class's mean lies from the others, in the other's own spread.
+  // Distance of each class's mean from the others, in units of the other's spread.
   for (const fdi::TrainedClass& each : source.classes) {
     double least = std::numeric_limits<double>::infinity();
     std::string nearest;

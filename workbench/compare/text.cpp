@@ -105,7 +105,7 @@ const validation::Region* find(const validation::Comparison& c, const std::strin
   return nullptr;
 }
 
-/// Regions that the chart shows: all, or the variable that tells most, and the direction.
+/// Regions that the chart shows: all, or the most significant variable, and the direction.
 std::vector<const validation::Region*> shown(const validation::Comparison& c, bool all) {
   std::vector<const validation::Region*> regions;
   if (all) {

@@ -13,7 +13,7 @@ namespace {
 
 std::string number(double value) { return fmt::format("{:.3g}", value); }
 
-/// Whether all of them act at one of the sites.
+/// True when all of them act at one of the sites.
 bool all_at(const plant_sim::ModelFile& model, const std::vector<std::string>& names,
             std::initializer_list<const char*> sites) {
   const std::vector<plant_sim::EffectInfo> effects = plant_sim::effects_of(model);
@@ -104,7 +104,7 @@ bool has_site(const std::string& plant, const std::string& site) {
   return std::find(info.sites.begin(), info.sites.end(), site) != info.sites.end();
 }
 
-/// Which site of a formula has the variable; empty where none of the plant's does.
+/// Site of a formula that has the variable; empty where none of the plant's does.
 std::string formula_words(const selection::Localisation& where, const std::string& plant) {
   std::string site;
   std::string variable;

@@ -1,7 +1,7 @@
 // The next experiment when a record does not answer the question: the motion or the sensor that
 // would.
 //
-// Rivals explain a record about as well. On each motion that might tell them apart every rival in
+// Rivals explain a record about as well. On each motion that might separate them every rival in
 // turn is taken for the truth, simulated in closed loop, and the others are adjusted to it: the
 // motion on which even the closest pair stays furthest apart is advised.
 #pragma once
@@ -15,11 +15,11 @@
 
 namespace workbench::diagnose {
 
-/// Error of a wrong explanation, over the noise, from which a motion tells two apart.
+/// Error of a wrong explanation, over the noise, from which a motion separates two.
 inline constexpr double kSeparates = 1.15;
 
 struct Advice {
-  bool separates = false;   ///< false: no motion tried tells the rivals apart
+  bool separates = false;   ///< false: no motion tried separates the rivals
   double separation = 1.0;  ///< error of the nearest wrong explanation over the noise
   TestMotion motion;        ///< the best one
   std::string words;

@@ -1,4 +1,4 @@
-// The sections of the report that tell how the better model was found, and what it is.
+// Sections of the report on the better model and on the search that found it.
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>

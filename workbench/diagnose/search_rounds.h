@@ -14,7 +14,7 @@ namespace selection = estimator::greybox::selection;
 /// The effects that a round's winner brought, empty when nothing was taken.
 [[nodiscard]] std::vector<std::string> taken_in(const selection::StructureSearch& search,
                                                 std::size_t round);
-/// Whether one of these effects is left in the end: what a round takes may be dropped later.
+/// True when one of these effects is left in the end: a later step may drop the effects of a round.
 [[nodiscard]] bool stayed(const selection::StructureSearch& search,
                           const std::vector<std::string>& effects);
 /// The round that decided: the last in which something was taken that stayed, or else the last.

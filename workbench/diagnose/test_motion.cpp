@@ -32,7 +32,7 @@ constexpr double kFastest_Hz = 2.0;
 constexpr double kShortest_s = 30.0;
 constexpr double kLongest_s = 120.0;
 constexpr double kPeriods = 15.0;
-constexpr double kMostSaturated = 0.05;  ///< of the samples
+constexpr double kMostSaturated = 0.05;  ///< share of the samples
 constexpr double kDac_V = 10.0;
 constexpr int kDacBits = 12;
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kLine = 96;
 constexpr double kBar = 36.0;
-constexpr double kLeastBarRatio = 10.0;  ///< of the longest bar to the floor's
+constexpr double kLeastBarRatio = 10.0;  ///< longest bar over the floor's
 constexpr std::size_t kShownCandidates = 5;
 
 /// A number stays with its unit, and a value with its error.

@@ -15,7 +15,7 @@
 namespace workbench::diagnose {
 namespace {
 
-/// A plant is told when it leaves less than this share of the better model's error.
+/// A plant is reported when it leaves less than this share of the better model's error.
 constexpr double kBetterPlant = 0.7;
 
 std::string percent(double ratio) { return fmt::format("{:.0f} %", 100.0 * ratio); }

@@ -40,7 +40,7 @@ struct StepWords {
 /// Without its folder.
 [[nodiscard]] std::string file_name(const std::string& file);
 
-/// Whether a parameter belongs to an effect that was found missing.
+/// True when a parameter belongs to an effect that was found missing.
 [[nodiscard]] bool was_added(const selection::Diagnosis& diagnosis, const std::string& parameter);
 
 /// "as a force that goes with the speed".

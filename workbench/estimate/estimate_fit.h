@@ -19,9 +19,9 @@ struct EstimateOptions {
   double prior_variance = 1e8;
   std::string detrend = "none";  ///< none, mean, linear: of u and y of the whole record
   double offset_m = 0.0;         ///< subtracted from y
-  std::string filter = "none";   ///< none, low, high, band: of u and y, settled anew at each gap
-  double filter_low_Hz = std::numeric_limits<double>::quiet_NaN();   ///< of high and band
-  double filter_high_Hz = std::numeric_limits<double>::quiet_NaN();  ///< of low and band
+  std::string filter = "none";   ///< none, low, high, band: of u and y, settled again at each gap
+  double filter_low_Hz = std::numeric_limits<double>::quiet_NaN();   ///< for high and band
+  double filter_high_Hz = std::numeric_limits<double>::quiet_NaN();  ///< for low and band
   int decimation = 1;
   double fit_from = 0.0;  ///< shares of the record that is fitted
   double fit_to = 1.0;
@@ -39,7 +39,7 @@ struct JudgedEstimate {
 
 struct EstimateResult {
   JudgedEstimate whole;
-  double scored_from_s = 0.0;  ///< what cost and RMS of `whole` are taken over
+  double scored_from_s = 0.0;  ///< cost and RMS of `whole` count from here
   double scored_to_s = 0.0;
   std::vector<JudgedEstimate> windows;
 };

@@ -45,7 +45,7 @@ std::string ascii(const std::string& text) {
   std::string out;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
-    const bool continues = (byte & 0xC0U) == 0x80U;  // of a letter of several bytes
+    const bool continues = (byte & 0xC0U) == 0x80U;  // byte of a letter of several bytes
     if (!continues) out += byte < 0x80U ? c : '?';
   }
   return out;

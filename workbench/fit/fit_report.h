@@ -13,7 +13,7 @@ namespace workbench::fit {
 struct FitReport {
   const PreparedFit* prepared = nullptr;  ///< must outlive this
   greybox::EstimationSummary estimation;
-  double noise_floor_m = 0.0;  ///< NaN: cannot be told
+  double noise_floor_m = 0.0;  ///< NaN: unknown
   double runtime_s = 0.0;
   std::string output;  ///< the model file that is written, or empty
 };

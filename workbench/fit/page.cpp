@@ -190,7 +190,8 @@ present::Report to_report(const FitReport& o) {
   made.title = o.prepared->problem.model.name + " fitted to " +
                config::schema::joined_by(o.prepared->problem.data.records, name);
   made.verdict = said.front();
-  for (std::size_t i = 1; i < said.size(); ++i) {  // its own section tells what cannot be seen
+  for (std::size_t i = 1; i < said.size();
+       ++i) {  // unidentifiable parameters have a section of their own
     if (said[i].rfind("Parameters that the record does not determine", 0) != 0)
       made.summary.push_back(said[i]);
   }

@@ -1,4 +1,4 @@
-// Which parameters are fitted, with what bounds and priors: the engineer's words as search
+// Parameters to fit, with their bounds and priors: the engineer's words as search
 // parameters.
 //
 //   --free, --fix  names as in model files ("mass_kg", "friction.coulomb_N"), or an effect's name

@@ -16,7 +16,7 @@ struct FitRequest {
   std::string fit = "all";
   ParameterSelection selection;
   std::vector<std::string> ignored;  ///< "from:to" in s, or "RECORD@from:to"
-  std::vector<double> weights;       ///< of the records; empty: all 1
+  std::vector<double> weights;       ///< one for each record; empty: all 1
   int starts = 4;
   std::vector<std::string> profiles;  ///< names, "doubtful" or "none"
   double observer_per_s = greybox::kObserver_per_s;
@@ -32,7 +32,7 @@ struct FitRequest {
 struct PreparedFit {
   greybox::EstimationProblem problem;
   greybox::EstimationOptions options;
-  double noise_floor_m = 0.0;  ///< NaN: cannot be told
+  double noise_floor_m = 0.0;  ///< NaN: unknown
   std::vector<std::string> notes;
   std::string command;  ///< as it was typed
 };

@@ -30,8 +30,8 @@ namespace {
 using config::record::Record;
 using config::schema::UsageError;
 
-/// A healthy error above so many noise floors, and a healthy value so far off the file's, are
-/// worth a note.
+/// A healthy error above this number of noise floors, and a healthy value so far off the file's,
+/// are worth a note.
 constexpr double kUncalibrated = 1.5;
 constexpr double kOffFile = 0.03;
 constexpr double kLeastSamples = 20.0;
@@ -89,7 +89,7 @@ Readings readings_of(const Record& record, const IsolationRequest& request) {
   Readings out;
   if (request.no_pressures) return out;
   out.supply_Pa = column(record, kSupply);
-  // The healthy chambers have to be learnt.
+  // The errors of the healthy chambers are estimated here.
   if (request.baseline_rms_m > 0.0) return out;
   if (!mostly_read(column(record, kIn)) || !mostly_read(column(record, kOut))) return out;
   out.in_Pa = column(record, kIn);
@@ -97,8 +97,8 @@ Readings readings_of(const Record& record, const IsolationRequest& request) {
   return out;
 }
 
-/// With a reading of the supply pressure or of both chambers' the valve gain can be told, and is
-/// tracked as well.
+/// With a reading of the supply pressure or of both chambers' the valve gain is identifiable, and
+/// is tracked as well.
 std::vector<std::string> tracked_names(const IsolationRequest& request, const Readings& readings,
                                        std::vector<std::string>& notes) {
   std::vector<std::string> names = greybox::split_names(request.parameters);

@@ -1,4 +1,4 @@
-// A record's tracking, from what was asked for to what is told.
+// Parameter tracking over a record: request, computation and results.
 #pragma once
 
 #include <string>
@@ -26,10 +26,11 @@ struct IsolationRequest {
   std::vector<std::string> parameters{"supply_pressure_Pa,damping_N_s_per_m"};
   TrackerSettings settings;
   std::string baseline = "0:10";  ///< from:to, s
-  double baseline_rms_m = 0.0;  ///< above 0: given instead of learnt; the file's values are healthy
-  std::string learn_baseline;   ///< file for what was learnt, for [[tracker]] healthy
-  std::string rig_id;           ///< noted in it
-  bool no_pressures = false;    ///< the record's are not used
+  double baseline_rms_m =
+      0.0;  ///< above 0: given instead of estimated; the file's values are healthy
+  std::string learn_baseline;  ///< file for the baseline, for [[tracker]] healthy
+  std::string rig_id;          ///< noted in it
+  bool no_pressures = false;   ///< the record's are not used
   std::vector<std::string> assignments;
   std::string json;  ///< "-": standard output
   std::string report;
@@ -47,7 +48,7 @@ struct IsolationReport {
   bool learnt = false;
   double baseline_from_s = 0.0;
   double baseline_to_s = 0.0;
-  double noise_floor_m = 0.0;  ///< NaN: cannot be told
+  double noise_floor_m = 0.0;  ///< NaN: unknown
   std::vector<WindowResult> windows;
   std::vector<DetectedChange> alarms;
   std::vector<std::string> notes;

@@ -48,7 +48,7 @@ class ListenFeed {
   using Clock = std::chrono::steady_clock;
   struct Channel {
     std::int64_t next_seq = -1;  // -1 before the first message
-    std::int64_t lost = 0;       // not yet told
+    std::int64_t lost = 0;       // not yet reported
   };
 
   static void received(const lcm::ReceiveBuffer* buffer, const std::string& channel,

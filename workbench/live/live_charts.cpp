@@ -13,7 +13,7 @@ namespace workbench::live {
 namespace {
 
 constexpr int kLabel = 11;             // columns for the numbers at the left
-constexpr double kLeastSpan_m = 1e-3;  // of the motion chart
+constexpr double kLeastSpan_m = 1e-3;  // least range of the motion chart
 
 // Dots of a braille cell by [column][row from the top].
 constexpr wchar_t kBraille = 0x2800;

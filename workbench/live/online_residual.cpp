@@ -22,7 +22,7 @@ namespace validation = estimator::greybox::validation;
 namespace {
 
 using config::signals::kNaN;
-constexpr double kLargestInitialisationGain = 0.5;  // of the error in one sample
+constexpr double kLargestInitialisationGain = 0.5;  // share of the error, in one sample
 
 }  // namespace
 
@@ -42,7 +42,7 @@ void OnlineResidual::add(std::int64_t tick, double sample_time_s, double u_V, do
     ensemble_->start(y_m);
   }
   const double error_m = y_m - ensemble_->reading_m()[0];
-  // A segment begins with a speed and pressures that nobody knows.
+  // A segment begins with unknown speed and pressures.
   const bool settles = in_segment_ < std::llround(greybox::kSettling_s / sample_time_s_);
   double share = observer_per_s_ * sample_time_s_;
   if (settles) {

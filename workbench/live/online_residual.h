@@ -20,7 +20,7 @@ namespace greybox = estimator::greybox;
 
 /// Figures of the residual; a number that is not known yet is NaN.
 struct ResidualFigures {
-  double t_s = 0.0;       ///< of the newest sample
+  double t_s = 0.0;       ///< time of the newest sample
   double window_s = 0.0;  ///< settled samples behind rms_m
   double rms_m = 0.0;
   double fit_percent = 0.0;
@@ -35,7 +35,7 @@ struct ResidualFigures {
 
 class OnlineResidual {
  public:
-  /// Over which time error and fit are told, and over which a region is looked for.
+  /// Spans of error and fit, and of the search for a region.
   static constexpr double kShort_s = 10.0;
   static constexpr double kLong_s = 30.0;
 

@@ -7,7 +7,7 @@
 namespace workbench::present {
 namespace {
 
-/// Bounds are round numbers, or a record's extremes, which nobody needs exactly.
+/// Bounds are round numbers, or a record's extremes, where digits matter little.
 std::string bound(double value, const DisplayUnit& unit) {
   return fmt::format("{:.4g}", std::abs(value) < 1e-12 ? 0.0 : unit.factor * value);
 }

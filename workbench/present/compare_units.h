@@ -12,7 +12,7 @@ namespace validation = estimator::greybox::validation;
 struct DisplayUnit {
   const char* name = "";  ///< "position"
   const char* text = "";  ///< "mm"
-  double factor = 1.0;    ///< what is shown = factor * SI
+  double factor = 1.0;    ///< shown value = factor * SI value
 };
 
 /// Unit of a variable that errors are sorted by: y, v, speed, u, acceleration, direction, time.

@@ -16,7 +16,7 @@ constexpr std::size_t kCloudPoints = 8'000;
 
 struct PlotText {
   std::string json;
-  std::string note;  ///< what was thinned; empty when every value is in the page
+  std::string note;  ///< note on thinning; empty when every value is in the page
 };
 
 [[nodiscard]] PlotText plot_text(const Plot& plot);

@@ -16,7 +16,7 @@ namespace workbench::present {
 
 enum class PlotKind { line, scatter, bars, steps };
 
-/// Meaning of a series; one colour throughout the report, told apart by the colour-blind.
+/// Meaning of a series; one colour throughout the report, distinguishable by the colour-blind.
 enum class Tone { automatic, measured, model, residual, improved, accent, muted };
 
 struct Axis {

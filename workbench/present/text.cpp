@@ -26,7 +26,7 @@ bool in_word(char c) {
 
 bool digit(char c) { return c >= '0' && c <= '9'; }
 
-/// Whether text[at, at + length) stands alone: no part of a longer word or of a file's name.
+/// True when text[at, at + length) stands alone: no part of a longer word or of a file's name.
 bool alone(std::string_view text, std::size_t at, std::size_t length) {
   const auto blocks = [&](char c) { return in_word(c) || c == '.' || c == '-'; };
   const std::size_t after = at + length;

@@ -33,7 +33,7 @@ struct ModelTrial {
                                                   const std::filesystem::path& bands,
                                                   const std::vector<std::string>& files);
 
-/// The newest logs of the daemon's recorder on which its rules tell no alarm. Throws
+/// The newest logs of the daemon's recorder on which its rules raise no alarm. Throws
 /// config::schema::RunError when there is none.
 [[nodiscard]] std::vector<std::string> healthy_logs(const RunningDaemon& daemon);
 

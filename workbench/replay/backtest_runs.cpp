@@ -109,7 +109,7 @@ bool is_log(const std::string& file) {
   return config::record::is_lcm_log({head, static_cast<std::size_t>(in.gcount())});
 }
 
-/// Which run a log belongs to, and where in it.
+/// Run that a log belongs to, and its place in the run.
 struct Place {
   std::string file, prefix;
   std::int64_t run_id = 0;

@@ -31,7 +31,7 @@ struct BacktestRules {
 struct BacktestRun {
   std::vector<std::string> files;  ///< in the order of time
   double sample_time_s = 0.0;
-  double from_s = 0.0, to_s = 0.0;  ///< of its samples
+  double from_s = 0.0, to_s = 0.0;  ///< first and last sample
   std::int64_t samples = 0;
   bool has_recorded_alarms = false;  ///< a CSV record has none
   std::vector<Occurrence> after;     ///< by the new rules

@@ -98,7 +98,7 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) noexc
                     [](double x, double y) { return same_bits(x, y); });
 }
 
-/// An estimate as it is told, without the pointers.
+/// An estimate as published, without the pointers.
 struct Told {
   std::string source, reason;
   std::int64_t tick;
@@ -236,7 +236,8 @@ class Replayer final : public SampleHandler, private estimator::fdi::Events {
         });
   }
 
-  /// A shelf's time is not told, so its end is an act, before whatever else the sample brings.
+  /// The time of a shelf is not in the log: its end counts as a command, before the rest of the
+  /// sample.
   [[nodiscard]] bool was_unshelved(const spoolwatch::alarm_t& message) const {
     return alarms_.front().shelved && message.shelved == 0;
   }
@@ -289,7 +290,7 @@ class Replayer final : public SampleHandler, private estimator::fdi::Events {
 
   const Pack& pack_;
   estimator::fdi::Pipeline pipeline_;
-  std::deque<Told> estimates_;  ///< told since the last sample, not yet compared
+  std::deque<Told> estimates_;  ///< published since the last sample, not yet compared
   std::deque<Alarm> alarms_;
   std::int64_t tick_ = 0;
 };

@@ -1,5 +1,5 @@
-// Leads the fault detection through a folder of evidence again and compares what it tells with what
-// was told, bit for bit.
+// Runs the fault detection over a folder of evidence again and compares its output with the
+// recorded one, bit for bit.
 //
 // The log is the whole input. Samples go through the pipeline, restored from the folder's state.
 // Alarms that do not come from the pipeline (guards, the daemon's own) and the acts of people are
@@ -28,7 +28,7 @@ struct Pack {
   std::uint64_t pipeline_hash = 0;
   std::vector<std::uint8_t> state;  ///< before the first sample
   std::int64_t first_tick = 0;
-  std::string source, name, utc;  ///< of the alarm
+  std::string source, name, utc;  ///< identify the alarm
   std::int64_t tick = 0;
 };
 
@@ -39,11 +39,11 @@ struct Pack {
 struct ReplayOutcome {
   std::int64_t samples = 0;
   std::int64_t estimates = 0, estimates_same = 0;
-  std::int64_t alarms = 0, alarms_same = 0;  ///< changes told by the pipeline
+  std::int64_t alarms = 0, alarms_same = 0;  ///< changes published by the pipeline
   bool derived = false;                      ///< the folder's alarm comes from the pipeline
-  bool found = false;                        ///< it was told again
+  bool found = false;                        ///< it was raised again
   bool alarm_same = false;                   ///< with the same bits
-  estimator::fdi::Alarm alarm{};             ///< as told again
+  estimator::fdi::Alarm alarm{};             ///< as raised again
   std::vector<std::string> differences{};    ///< the first few, in words
 
   [[nodiscard]] bool same() const noexcept {

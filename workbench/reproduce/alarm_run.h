@@ -12,7 +12,7 @@
 namespace workbench::reproduce {
 
 struct AlarmChange {
-  double t_s;  ///< of the sample that brought it
+  double t_s;  ///< time of the sample that brought it
   std::string name;
   int direction;  ///< +1 above the band, -1 below, 0: the alarm went
   bool active;
@@ -37,7 +37,7 @@ struct AlarmRun {
   [[nodiscard]] double first(double after_s, int direction) const noexcept;
 };
 
-/// Whether the estimates are kept too.
+/// Keep the alarms alone, or the estimates too.
 enum class Keep { alarms, estimates };
 
 [[nodiscard]] AlarmRun run_with_alarms(const Scenario& scenario,

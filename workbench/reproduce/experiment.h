@@ -17,7 +17,7 @@ struct Experiment {
 /// In the order in which they are printed.
 [[nodiscard]] std::span<const Experiment> experiments();
 
-/// Runs them on up to `threads` threads. A line on standard error tells how far it got.
+/// Runs them on up to `threads` threads. A line on standard error shows the progress.
 [[nodiscard]] std::vector<ReproducedSection> run_all(std::span<const Experiment> which,
                                                      unsigned threads);
 

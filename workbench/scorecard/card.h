@@ -73,7 +73,7 @@ struct FaultFigures {
     bool beyond = false;  ///< not even this size is detected
   };
   [[nodiscard]] std::optional<Smallest> smallest(const std::string& motion) const;
-  [[nodiscard]] std::vector<double> delays_s() const;  ///< of all motions and directions
+  [[nodiscard]] std::vector<double> delays_s() const;  ///< over all motions and directions
   [[nodiscard]] int verdict(TrialVerdict verdict) const;
   [[nodiscard]] int trials() const;
 };
@@ -82,8 +82,8 @@ struct MethodFigures {
   std::string name;
   std::string what;
   QuietFigures healthy;
-  std::map<std::string, QuietFigures> healthy_of;  ///< of each motion
-  std::map<std::string, QuietFigures> benign;      ///< of each change
+  std::map<std::string, QuietFigures> healthy_of;  ///< by motion
+  std::map<std::string, QuietFigures> benign;      ///< by change
   std::vector<FaultFigures> faults;
   std::map<std::string, std::string> unusable;  ///< motion: why
   double load_ratio = std::numeric_limits<double>::quiet_NaN();

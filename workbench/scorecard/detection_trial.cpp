@@ -62,7 +62,7 @@ class DetectionTrial::Listener final : public fdi::Events {
     const bool counts = alarm.active && alarm.severity != fdi::Severity::invalid;
     const AmbiguityGroup names = counts ? names_of(alarm) : AmbiguityGroup{};
     State& state = states_[key];
-    // Another name or direction is said anew.
+    // Another name or direction is published again.
     if (counts && (!state.up || state.names != names || state.direction != alarm.direction)) {
       came.push_back(names);
     }

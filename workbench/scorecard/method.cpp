@@ -22,7 +22,7 @@ namespace fdi = estimator::fdi;
 namespace fs = std::filesystem;
 using config::schema::Document;
 
-constexpr double kLesson_s = 200.0;  ///< of each fault and size
+constexpr double kLesson_s = 200.0;  ///< for each fault and size
 
 /// Files that a shipped one names lie beside it, as in the source tree.
 class Unpacked {

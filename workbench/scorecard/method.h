@@ -20,8 +20,9 @@ namespace tracker = estimator::fdi::tracker;
 struct Method {
   std::string name;
   std::string what;
-  double false_alarm_time_s = 86400.0;  ///< of each learned band, aimed at
-  double healthy_share = 1.0;        ///< of the plan's hours without a fault, where it takes long
+  double false_alarm_time_s = 86400.0;  ///< target for each learned band
+  double healthy_share =
+      1.0;  ///< part of the plan's hours without a fault, where a method takes long
   std::vector<std::string> notices;  ///< alarms that are no faults, and are not counted
   estimator::fdi::PipelineConfig pipeline{tracker::detection_method_kinds()};
   std::string file;
@@ -41,7 +42,7 @@ struct Lessons {
 [[nodiscard]] Lessons lessons(const Bench& bench, const Motion& motion, std::uint64_t seed,
                               bool with_faults);
 
-/// Whether it learns to tell faults apart.
+/// True when the method learns to distinguish faults.
 [[nodiscard]] bool needs_faults(const Method& method);
 
 /// The pipeline's configuration with all that is learned in it. Throws config::schema::Error (exit

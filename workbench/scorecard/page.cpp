@@ -132,7 +132,7 @@ Plot delay_plot(const Card& card, const Fault& fault) {
     }
     curve.x.push_back(card.watch_s);
     curve.y.push_back(share);
-    curve.dashed = plot.series.size() >= 6;  // colours begin anew
+    curve.dashed = plot.series.size() >= 6;  // colours repeat
     plot.series.push_back(std::move(curve));
   }
   return plot;

@@ -19,7 +19,7 @@ using config::schema::Document;
 using config::schema::Visitor;
 
 constexpr double kDay_s = 86400.0;
-constexpr double kLeastLeft = 0.05;  ///< of a parameter that falls
+constexpr double kLeastLeft = 0.05;  ///< least rest of a parameter that falls
 
 template <class T>
 void check_ids(const std::vector<T>& items, const std::string& where) {

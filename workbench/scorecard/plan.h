@@ -26,7 +26,7 @@ struct Motion {
 
 struct Fault {
   std::string id;
-  std::string parameter;           ///< of the model, or else:
+  std::string parameter;           ///< parameter of the model, or else:
   std::string sensor;              ///< a kind of simulate::SensorFault
   std::string how = "ratio";       ///< ratio: old (1 +- size), value: +-size; of a parameter
   std::string direction = "both";  ///< up, down, both
@@ -51,7 +51,7 @@ struct Benign {
   std::string parameter;  ///< empty: none
   double factor = 1.0;
   double ramp_s = 0.0;
-  double amplitude_ratio = 1.0;  ///< of the motion
+  double amplitude_ratio = 1.0;  ///< scales the motion
   double frequency_ratio = 1.0;
 
   void visit(config::schema::Visitor& v);
@@ -65,7 +65,7 @@ struct Plan {
   double training_s = 1800.0;
   double healthy_h = 12.0;  ///< over all motions
   double full_h = 72.0;     ///< the same, of a full run
-  double benign_h = 3.0;    ///< of each change, over all motions
+  double benign_h = 3.0;    ///< for each change, over all motions
   double part_h = 0.5;      ///< length of one healthy record
   simulate::Instruments instruments{5e-6, 2e-6, 12, 10.0};
   std::vector<Motion> motions;

@@ -34,7 +34,7 @@ class LadderSearch {
   std::size_t rungs_;
 };
 
-/// Whether a rung of n trials is decided: passed with `share` of n detected.
+/// True when a rung of n trials is decided: passed with `share` of n detected.
 [[nodiscard]] inline std::optional<bool> decided(std::size_t detected, std::size_t tried,
                                                  std::size_t n, double share) {
   constexpr double kRounding = 1e-9;

@@ -30,7 +30,7 @@ inline constexpr double kConfidence = 0.95;
 /// none.
 [[nodiscard]] double quantile(std::vector<double> values, double share);
 
-/// Whether a share of `share` of n are k.
+/// True when k out of n reach the share.
 [[nodiscard]] bool enough(std::int64_t k, std::int64_t n, double share);
 
 }  // namespace workbench::scorecard

@@ -126,7 +126,7 @@ struct Trials::Turn {
   const Part& part;
   Runners& runners;
   const std::function<bool()>& stop;
-  std::vector<json> out;  ///< of each method
+  std::vector<json> out;  ///< one for each method
 
   template <class F>
   void each(const F& f) {
@@ -164,7 +164,7 @@ TrialAnswer Trials::answer(Turn& turn, std::size_t method, const Samples& sample
   const auto judge = [&](DetectionTrial& w) {
     return w.fault(samples, at_s, fault.names, to_the_end, lead);
   };
-  // One that stops early took nobody knows how much of the record.
+  // A method that stops early has taken an unknown part of the record.
   return to_the_end ? turn.runners.with(method, end_s, judge) : judge(turn.runners.watch(method));
 }
 

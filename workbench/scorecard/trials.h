@@ -47,7 +47,7 @@ struct Part {
   std::size_t subject = 0;  ///< fault or benign change
   int direction = 1;
   double work_s = 0.0;  ///< simulated time, about
-  double share = 0.0;   ///< of the hours without a fault, those before it
+  double share = 0.0;   ///< share of the hours without a fault that come before it
 
   [[nodiscard]] bool is_for(const Method& method) const {
     return kind != Kind::healthy || share < method.healthy_share;

@@ -20,7 +20,7 @@ namespace workbench::scorecard {
 /// Smallest detected size for each motion: "0.5 / 0.5 / > 50 %".
 [[nodiscard]] std::string smallest_words(const Card& card, const MethodFigures& method,
                                          const Fault& fault);
-/// "1.2 (2.4) s"; "–" where so many were not detected.
+/// "1.2 (2.4) s"; "–" where fewer were detected.
 [[nodiscard]] std::string delay_words(const MethodFigures& method, const Fault& fault);
 [[nodiscard]] std::string first_words(const FaultFigures& of);
 /// Definition of "detected".

@@ -21,7 +21,7 @@ constexpr double kKnownBefore_s = 0.25;  // measured samples before a free run
 constexpr int kLeastPeriods = 3;
 constexpr int kLeastPeriod = 20;  // samples
 constexpr int kMostDelay = 10;
-constexpr double kClear = 10.0;  // of BIC: "very strong" evidence (Kass, Raftery 1995)
+constexpr double kClear = 10.0;  // difference in BIC: "very strong" evidence (Kass, Raftery 1995)
 
 int in_samples(double time_s, double sample_time_s) {
   return static_cast<int>(std::clamp(std::round(time_s / sample_time_s), 1.0, 1e9));

@@ -13,7 +13,7 @@ namespace {
 
 using structures::Stretch;
 
-constexpr double kReached = 1.5;  // of the batch fit's free run
+constexpr double kReached = 1.5;  // times the batch fit's free run
 constexpr int kWhitenessLags = 20;
 
 void score_free_runs(JudgedStructure& judged, const Ground& ground) {
@@ -214,7 +214,7 @@ JudgedStructure judge(const StructureCandidate& candidate, const Ground& ground,
 
 namespace {
 
-constexpr double kMostPole = 0.999;  // of F: the recursive filter's own limit
+constexpr double kMostPole = 0.999;  // largest pole of F: the recursive filter's own limit
 constexpr const char* kIntegrates =
     "its poles reach the unit circle: the prediction, never corrected by y, would diverge";
 

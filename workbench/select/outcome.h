@@ -38,7 +38,7 @@ struct SelectRequest {
   std::string json;
 };
 
-/// Whether the coefficients can follow sample by sample, and how.
+/// Recursive estimation of the structure: is there a sound method, and which.
 struct OnLine {
   bool sound = false;  ///< in theory, and it came to the batch fit on this record
   std::string method;  ///< "RLS", "RML, RELS", "RPEM", "none"
@@ -58,9 +58,9 @@ struct JudgedStructure {
   double fit_percent = kNaN;            ///< 100 (1 - free_run_rms / sd of y held out)
   double aicc = kNaN;
   double bic = kNaN;
-  double whiteness_p = kNaN;  ///< of the one-step errors fitted
+  double whiteness_p = kNaN;  ///< over the fitted one-step errors
   double spread = kNaN;
-  std::vector<double> period_mean;      ///< of each coefficient
+  std::vector<double> period_mean;      ///< mean of each coefficient
   std::vector<double> period_variance;  ///< likewise
   int periods = 0;                      ///< fits behind them
   OnLine on_line;

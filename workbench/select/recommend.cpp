@@ -1,7 +1,8 @@
-// Which structure to take, and why: the thesis's three criteria in its order. A structure must
-// represent the record (its free-run error is less than the rod moves); the best held-out E counts,
-// but one a little above it (25 %: 12 % in RMS) is as good; among those a sound recursive form is
-// preferred for watching on line, then the least spread of coefficients between periods.
+// Recommendation of a structure, with reasons: the thesis's three criteria in its order. A
+// structure must represent the record (its free-run error is less than the rod moves); the best
+// held-out E counts, but one a little above it (25 %: 12 % in RMS) is as good; among those a sound
+// recursive form is preferred for watching on line, then the least spread of coefficients between
+// periods.
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +13,7 @@
 namespace workbench::select {
 namespace {
 
-constexpr double kAsGood = 1.25;     // of E
+constexpr double kAsGood = 1.25;     // ratio of E
 constexpr double kSameSpread = 1.1;  // then fewer coefficients decide
 
 double cost_of(const JudgedStructure& judged) {

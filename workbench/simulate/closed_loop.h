@@ -23,7 +23,7 @@ inline constexpr double kSampleTime_s = 0.005;
 struct LoopRow {
   double t_s;
   double reference_m;
-  double rod_m;  ///< what a sensor without steps, noise or fault reads
+  double rod_m;  ///< reading of a sensor without steps, noise or fault
   double y_m;    ///< as measured
   double u_requested_V;
   double u_applied_V;  ///< after the limit and the D/A converter

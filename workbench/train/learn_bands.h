@@ -25,7 +25,7 @@ struct LearnOptions {
 [[nodiscard]] std::vector<std::string> wanted_quantities(
     const estimator::fdi::PipelineConfig& pipeline, const std::string& file);
 
-/// Each record is run through estimators that begin anew; all of one sample time. At least one
+/// Each record is run through estimators that begin afresh; all of one sample time. At least one
 /// record. Throws config::schema::ConfigError for a quantity that nothing estimates, DataError for
 /// records too short or without valid estimates.
 [[nodiscard]] estimator::fdi::LearnedBands learn_bands(

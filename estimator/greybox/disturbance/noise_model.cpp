@@ -22,7 +22,7 @@ constexpr double kLeastWalk_ratio = 0.1;
 constexpr double kMostWalk_ratio = 30.0;
 /// Turns of the corner frequency over the longest record: a slower force is a constant to it.
 constexpr double kLeastCorner_turns = 2.0;
-constexpr double kMostCorner_ratio = 0.2;  ///< of the sampling rate
+constexpr double kMostCorner_ratio = 0.2;  ///< share of the sampling rate
 constexpr double kLeastSensor_ratio = 0.8;
 /// The search ends when its steps, factors of e^step, are smaller.
 constexpr double kFirstStep = 1.2;

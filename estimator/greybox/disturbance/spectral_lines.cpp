@@ -40,7 +40,7 @@ VectorXd influence(const Linearisation& model, const Dataset& record, const Inno
                    LineSite site, const VectorXd& innovations) {
   const Index samples = innovations.size();
   VectorXd result(samples);
-  StateVector adjoint = StateVector::Zero();  // of z(k + 1)
+  StateVector adjoint = StateVector::Zero();  // adjoint of z(k + 1)
   for (Index k = samples - 1; k >= 0; --k) {
     const auto row = static_cast<std::size_t>(k);
     const StateMatrix a = transition_at(model, gains, row);

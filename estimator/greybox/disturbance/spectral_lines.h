@@ -40,7 +40,7 @@ struct SpectralLine {
 /// which no line was projected out.
 struct LineAmplitude {
   double amplitude = 0.0;  ///< N (m/s), Pa or m
-  double rms_m = 0.0;      ///< of the weak observer's residual that it causes
+  double rms_m = 0.0;      ///< its part of the weak observer's residual
 };
 [[nodiscard]] std::vector<LineAmplitude> line_amplitudes(const Linearisation& model,
                                                          const Dataset& record,

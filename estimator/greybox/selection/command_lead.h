@@ -14,7 +14,8 @@
 
 namespace estimator::greybox::selection {
 
-/// Each record's command earlier by so many samples, interpolated; held at a segment's end.
+/// Each record's command, shifted earlier by a number of samples, interpolated; held at a segment's
+/// end.
 void advance_command(FitDataset& data, double lead_samples);
 
 struct CommandLead {

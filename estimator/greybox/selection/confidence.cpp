@@ -19,7 +19,7 @@ constexpr double kBeyondDoubt = 100.0;
 /// cube leaves 7 % of the error.
 constexpr double kBeyondDoubtThere = 400.0;
 
-/// How an effect enters the equations, in the words of a Localisation.
+/// Entry of an effect into the equations, in the words of a Localisation.
 std::string site_of(const std::string& effect) {
   const plant_sim::EffectInfo* info = plant_sim::find_effect(effect);
   if (info == nullptr || info->sites.empty()) return "";

@@ -1,4 +1,4 @@
-// Which effects of a result are established, and which only may be there.
+// Separates the established effects of a result from those that only may be there.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@ namespace estimator::greybox::selection {
 
 struct Diagnosis;
 
-/// That many effects that leave an error together stand in for one law.
+/// As many effects that together still leave an error stand in for one law.
 inline constexpr std::size_t kStandIn = 3;
 
 /// An established effect explains that many times the squared error that remains unexplained.
@@ -25,7 +25,7 @@ enum class Doubt {
   at_bound,      ///< its size is the largest or smallest allowed: it stands for something else
   within_error,  ///< its size is below two standard errors, or has none
   rivals,        ///< others do as well, and an error remains
-  remainder,     ///< what no effect explains is no smaller than what it explains
+  remainder,     ///< the unexplained error is no smaller than the error that the effect explains
   interrupted,   ///< the search ended before everything was tried
   stand_in,      ///< one of three or more that leave an error, one that enters as that does, or one
                  ///< that a curve elsewhere explains as well
@@ -38,7 +38,7 @@ struct PossibleEffect {
   Doubt why;
 };
 
-/// Those of `missing` that are not established; parameters and verdict must be set.
+/// Effects of `missing` that are not established; parameters and verdict must be set.
 [[nodiscard]] std::vector<PossibleEffect> possible_effects(const Diagnosis& diagnosis);
 
 }  // namespace estimator::greybox::selection

@@ -75,8 +75,8 @@ struct Diagnosis {
   std::optional<Disturbance> disturbance;
   std::vector<ParameterStep> changing;  ///< where nothing else explains the record
   std::optional<RepeatedMotion>
-      repetition;                    ///< of the final model's error, where the motion repeats
-  Excitation excitation;             ///< insufficient: Verdict::not_excited
+      repetition;         ///< repetition of the final model's error, where the motion repeats
+  Excitation excitation;  ///< insufficient: Verdict::not_excited
   std::optional<double> searched_s;  ///< length of the segments searched; none: all samples
   bool by_innovations = false;       ///< the likelihood of all innovations decided
   /// By innovations: what the absence of each effect would cost, and the gain of the best curve

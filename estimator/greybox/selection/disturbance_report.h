@@ -14,15 +14,15 @@ struct DisturbanceLine {
   std::string as;  ///< "force", "pressure", "sensor"; "speed" where the plant has no force
   double frequency_Hz = 0.0;
   double amplitude = 0.0;  ///< N, Pa, m; m/s
-  double rms_m = 0.0;      ///< of the simulation's error that it causes
+  double rms_m = 0.0;      ///< its part of the simulation's error
 };
 
 struct Disturbance {
-  std::string as;          ///< of the random part: "force", or "speed" where the plant has no force
+  std::string as;  ///< kind of the random part: "force", or "speed" where the plant has no force
   double value = 0.0;      ///< RMS, N or m/s; 0 where only lines are seen
   double corner_Hz = 0.0;  ///< below which most of it lies
-  double rms_m = 0.0;      ///< of the simulation's error that all of it causes
-  double share = 0.0;      ///< of the final model's mean squared error
+  double rms_m = 0.0;      ///< part of the simulation's error, random part and lines together
+  double share = 0.0;      ///< share of the final model's mean squared error
   std::vector<DisturbanceLine> lines;
 };
 

@@ -9,7 +9,7 @@ namespace estimator::greybox::selection {
 /// The same problem on representative segments where the records are long
 /// (representative_segments.h).
 [[nodiscard]] SearchContext for_search(const SearchContext& context);
-/// Whether `search` has segments only.
+/// True when `search` has segments only.
 [[nodiscard]] bool uses_segments(const SearchContext& search, const SearchContext& context);
 
 /// Fits and scores the selection path and the final model on all samples. Rounds keep the errors of

@@ -38,7 +38,7 @@ template <class Keep>
   return result;
 }
 
-/// Whether an effect's size, among the parameters from `first` on, is at the bound of what it can
+/// True when an effect's size, among the parameters from `first` on, is at the bound of what it can
 /// be: it then stands for something else. Phases and sizes of 0 do not count.
 [[nodiscard]] bool leaves_its_range(const FitSummary& fitted, std::size_t first);
 

@@ -19,7 +19,7 @@ namespace estimator::greybox::selection {
 /// State of a running search, for a progress line.
 struct SearchProgress {
   int round = 0;
-  bool by_innovations = false;  ///< the rig is disturbed: rounds count anew
+  bool by_innovations = false;  ///< the rig is disturbed: rounds count from one again
   bool screening = false;       ///< false: `effect` is being fitted
   std::string effect;
   int done = 0;  ///< steps of this round

@@ -14,7 +14,7 @@ namespace {
 /// A turned sign must explain the record that much better than the sign as given.
 constexpr double kTurned = 3.0;
 
-/// Enough to tell plants, and signs, apart.
+/// Enough to distinguish plants, and signs.
 constexpr int kIterations = 12;
 
 /// RMS of the series about its mean.

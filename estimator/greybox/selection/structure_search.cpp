@@ -44,7 +44,7 @@ bool is_gain(const SearchContext& context, const ModelStage& stage, const Candid
   const double gain = 1.0 - candidate.validation_rms_m / stage.fitted.validation_rms_m;
   const double fit_gain = 1.0 - candidate.fitted.training_rms_m / stage.fitted.training_rms_m;
   const double enough = worthwhile * static_cast<double>(candidate.effects.size());
-  // gain that chance gives so many parameters over the independent samples
+  // gain that chance gives this number of parameters over the independent samples
   const Eigen::VectorXd& fitted = context.problem.data.training_mask;
   const double by_chance =
       kPerParameter_nats *
@@ -180,8 +180,8 @@ void try_alternative_starts(const SearchContext& context, CrossValidation& halve
   }
 }
 
-/// Whether a set of effects holds in either half of the records though its parts one after another
-/// do not: two that make up for each other are worth nothing alone.
+/// True when a set of effects holds in either half of the records though its parts one after
+/// another do not: two that make up for each other are worth nothing alone.
 bool set_is_supported(const SearchContext& context, CrossValidation& halves,
                       const ModelStage& first, const ModelStage& set, const ModelStage& parts) {
   const auto all = [](const ModelStage& stage) {

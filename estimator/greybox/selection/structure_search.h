@@ -64,7 +64,7 @@ struct RefusedModel {
   double validation_rms_m = 0.0;
   Refusal why = Refusal::unsupported;
 };
-/// Share by which a refused model must leave less than the final one to be told.
+/// Share by which a refused model must leave less than the final one to be reported.
 inline constexpr double kWorthTelling = 0.05;
 
 struct StructureSearch {

@@ -17,7 +17,7 @@ namespace estimator::greybox::selection {
 [[nodiscard]] Eigen::MatrixXd trial_sizes(const std::vector<FreeParameter>& parameters,
                                           const FitDataset& data);
 
-/// Whether the effect has a wavelength and a phase.
+/// True when the effect has a wavelength and a phase.
 [[nodiscard]] bool is_periodic(const std::vector<FreeParameter>& parameters);
 /// Wave numbers of a periodic effect that the motion can resolve, in turns over the motion.
 [[nodiscard]] std::vector<double> turns_over(const FitDataset& data);

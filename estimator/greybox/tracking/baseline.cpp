@@ -12,7 +12,7 @@ using Eigen::Index;
 
 /// Standard error, search units, up to which a window qualifies for the baseline.
 constexpr double kLeastKnown = 0.05;
-/// Errors above so many noise floors are not the sensor's.
+/// Errors above this number of noise floors are not the sensor's.
 constexpr double kAboveFloor = 1.5;
 /// Standard deviation over median absolute deviation of a normal distribution.
 constexpr double kOfMedian = 1.4826;
@@ -65,7 +65,7 @@ ChamberErrors learn_chambers(const std::vector<WindowResult>& windows, const Par
   return errors;
 }
 
-/// Whether parameter `i` of an explained window is known to some per cent.
+/// True when parameter `i` of an explained window is known to some per cent.
 bool determined(const WindowResult& window, const ParameterSet& set, std::size_t i) {
   const ParameterEstimate& one = window.estimates[i];
   return window.explained && one.std_error <= kLeastKnown * set.parameters[i].slope(one.theta);

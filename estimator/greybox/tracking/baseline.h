@@ -24,7 +24,8 @@ struct Baseline {
   [[nodiscard]] ErrorScales errors() const { return {rms_m, chambers}; }
 };
 
-/// Whether a window qualifies for the baseline: explained, every parameter known to a few per cent.
+/// True when a window qualifies for the baseline: explained, every parameter known to a few per
+/// cent.
 [[nodiscard]] bool qualifies_for_baseline(const WindowResult& window, const ParameterSet& set);
 
 /// Index of the first tracked parameter that no window determines well enough; none: the windows

@@ -108,7 +108,7 @@ class ParameterTracker {
              const Misfit& misfit) const;
   [[nodiscard]] bool moves(const WindowData& data) const;
   [[nodiscard]] double noise_m() const;
-  /// Whether a part was explained; by position alone where the window has no pressures.
+  /// True when a part was explained; by position alone where the window has no pressures.
   bool look_at_part(WindowResult& window, const WindowData& whole);
   void name_changes_in(WindowResult& window, const WindowData& data, const WindowFitSummary& found);
   void refine(WindowResult& window) const;

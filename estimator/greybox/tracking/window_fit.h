@@ -62,7 +62,7 @@ struct ChamberFit {
       std::numeric_limits<double>::quiet_NaN();  ///< sigma relative to the position's
 };
 
-/// Whether the window's chamber pressures count in a fit with these errors.
+/// True when the window's chamber pressures count in a fit with these errors.
 [[nodiscard]] inline bool with_chambers(const WindowData& data, const ErrorScales& errors) {
   return errors.chambers.known() && data.in_Pa != nullptr && data.out_Pa != nullptr;
 }
@@ -84,7 +84,7 @@ struct WindowFitSummary {
   Eigen::VectorXd residual;
   Eigen::MatrixXd jacobian;  ///< free parameters
 
-  /// Whether chamber pressures counted.
+  /// True when chamber pressures counted.
   [[nodiscard]] bool with_chambers() const { return std::isfinite(in.rms_Pa); }
 };
 
