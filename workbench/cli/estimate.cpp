@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct EstimateOptions {
+struct EstimateCommandOptions {
   std::string record;
   std::string structure = "arx211";
   bool constant = false;
@@ -29,7 +29,7 @@ struct EstimateOptions {
 };
 
 /// Refuses options that the method or the filter would silently ignore.
-void refuse_unused(const EstimateOptions& options) {
+void refuse_unused(const EstimateCommandOptions& options) {
   const estimate::EstimateOptions& e = options.estimate;
   const auto refuse = [](bool given, const std::string& option, const std::string& beside) {
     if (!given) return;
@@ -73,7 +73,7 @@ void add_fields(ordered_json& out, const estimate::JudgedEstimate& judged,
   out["to_s"] = judged.to_s;
 }
 
-ordered_json to_json(const estimate::EstimateResult& result, const EstimateOptions& options,
+ordered_json to_json(const estimate::EstimateResult& result, const EstimateCommandOptions& options,
                      const config::record::Record& record) {
   ordered_json out;
   out["structure"] = options.estimate.structure.text();
@@ -93,7 +93,7 @@ ordered_json to_json(const estimate::EstimateResult& result, const EstimateOptio
   return out;
 }
 
-void print_text(const estimate::EstimateResult& result, const EstimateOptions& options,
+void print_text(const estimate::EstimateResult& result, const EstimateCommandOptions& options,
                 const config::record::Record& record) {
   const estimator::Structure& structure = options.estimate.structure;
   const estimator::Estimate& e = result.whole.estimate;
@@ -122,7 +122,7 @@ void print_text(const estimate::EstimateResult& result, const EstimateOptions& o
   }
 }
 
-void run(EstimateOptions options) {
+void run(EstimateCommandOptions options) {
   using config::schema::UsageError;
   options.estimate.structure = estimator::parse_structure(options.structure, options.constant);
   if (options.fit == "first-half") options.estimate.fit_to = 0.5;
@@ -152,7 +152,7 @@ void run(EstimateOptions options) {
 }  // namespace
 
 void add_estimate(CLI::App& command, int& /*exit_code*/) {
-  auto options = std::make_shared<EstimateOptions>();
+  auto options = std::make_shared<EstimateCommandOptions>();
   estimate::EstimateOptions& e = options->estimate;
   add_record(command, options->record);
   command.add_option("--structure", options->structure, "arx211, arx(10,2,1), ...")
