@@ -225,6 +225,73 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
                                                         : Verdict::undetermined;
 }
 
+/// How a law enters, in the words of a Localisation.
+std::string class_of(const Law& law) {
+  if (law.effect.site == "force") return "force";
+  if (law.effect.site == "sensor") return "measurement";
+  return law.effect.site == "leakage" || law.effect.site == "flow" ? "flow" : "gain";
+}
+
+/// Concludes with laws where each is clear of its error and they leave clearly less than `before`.
+bool take_laws(const SearchContext& context, const ModelStage& first, const LawSearch& found,
+               const Diagnosis& before, Diagnosis& result) {
+  Diagnosis learned = before;
+  learned.changing.clear();
+  learned.ambiguous.clear();
+  learned.same_here.clear();
+  learned.without_rms_m.clear();
+  conclude(found.context, found.context, first, found.innovations, learned);
+  const auto is_size = [&](const ParameterValue& p) {
+    return std::any_of(found.laws.begin(), found.laws.end(), [&](const Law& law) {
+      return p.name == law.effect.name + "." + law.effect.parameters.front().name;
+    });
+  };
+  for (const ParameterValue& p : learned.parameters) {
+    if (!is_size(p)) continue;
+    if (p.at_bound || !(std::abs(p.value) > kClearOfError * p.std_error)) return false;
+  }
+  if (learned.verdict == Verdict::unexplained) return false;
+  learned.verdict = Verdict::learned;
+  learned.laws = found.laws;
+  std::vector<Localisation> where;
+  const double explained = 1.0 - std::pow(learned.rms_after_m / learned.rms_before_m, 2);
+  for (const Law& law : found.laws)
+    where.push_back({class_of(law), law.variables.front(), explained});
+  where.insert(where.end(), before.whole.begin(), before.whole.end());
+  learned.where = std::move(where);
+  learned.where_is_whole = true;
+  plant_sim::ModelFile model = context.problem.model;
+  for (const Law& law : found.laws) model.declare(law.effect, "dictionary of laws");
+  learned.better = with_values(model, learned.final);
+  result = std::move(learned);
+  return true;
+}
+
+/// Laws of the dictionary, where no effect explains the record and they leave clearly less.
+void learn_laws(const SearchContext& context, const ModelStage& first, Diagnosis& result) {
+  const std::optional<LawSearch> found = search_laws(context, first, "");
+  if (!found) return;
+  Diagnosis learned;
+  if (take_laws(context, first, *found, result, learned) &&
+      learned.rms_after_m < (1.0 - kRivals) * result.rms_after_m) {
+    result = std::move(learned);
+  }
+}
+
+/// A law at the site of the one effect found, where it is clearly likelier than the effect: under a
+/// disturbance the nearest effect passes for a law that the library does not have.
+bool prefer_law(const SearchContext& context, const ModelStage& first,
+                const InnovationSearch& innovations, Diagnosis& result) {
+  const InnovationStage& named = innovations.final;
+  if (named.model.added.size() != 1 || innovations.physics_missing()) return false;
+  const plant_sim::EffectInfo* effect = plant_sim::find_effect(named.model.added.front());
+  if (effect == nullptr || effect->sites.size() != 1) return false;
+  const std::optional<LawSearch> found = search_laws(context, first, effect->sites.front());
+  return found && found->laws.size() == 1 &&
+         penalised(found->innovations.final) < penalised(named) - 2.0 * kEvidence_nats &&
+         take_laws(context, first, *found, result, result);
+}
+
 /// The search by innovations, and that by simulations where the former leaves physics unexplained.
 void weigh_innovations(const SearchContext& context, const SearchContext& search, SearchStart start,
                        Diagnosis& result) {
@@ -243,7 +310,7 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
     conclude(context, search, first, innovations, result);
   };
   if (context.cancelled() || !innovations.physics_missing() || innovations.load_sets_in()) {
-    take_innovations();
+    if (!prefer_law(search, first, innovations, result)) take_innovations();
     return;
   }
   const FitSummary held = simulated(search, innovations.final.model.fitted);
@@ -270,39 +337,6 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
     result.search = std::move(full);
     conclude(context, search, result);
   }
-}
-
-/// The same record explained by laws of the dictionary, where they leave clearly less than the
-/// effects found and each is clear of its error.
-void learn_laws(const SearchContext& context, const ModelStage& first, Diagnosis& result) {
-  const std::optional<LawSearch> found = search_laws(context, first);
-  if (!found) return;
-  Diagnosis learned = result;
-  learned.changing.clear();
-  learned.where.clear();
-  learned.whole.clear();
-  learned.ambiguous.clear();
-  learned.same_here.clear();
-  learned.without_rms_m.clear();
-  conclude(found->context, found->context, first, found->innovations, learned);
-  const bool clear = std::all_of(
-      learned.parameters.begin(), learned.parameters.end(), [&](const ParameterValue& p) {
-        const bool is_size =
-            std::any_of(found->laws.begin(), found->laws.end(), [&](const Law& law) {
-              return p.name == law.effect.name + "." + law.effect.parameters.front().name;
-            });
-        return !is_size || (!p.at_bound && std::abs(p.value) > kClearOfError * p.std_error);
-      });
-  if (!clear || learned.verdict == Verdict::unexplained ||
-      !(learned.rms_after_m < (1.0 - kRivals) * result.rms_after_m)) {
-    return;
-  }
-  learned.verdict = Verdict::learned;
-  learned.laws = found->laws;
-  plant_sim::ModelFile model = context.problem.model;
-  for (const Law& law : found->laws) model.declare(law.effect, "dictionary of laws");
-  learned.better = with_values(model, learned.final);
-  result = std::move(learned);
 }
 
 }  // namespace

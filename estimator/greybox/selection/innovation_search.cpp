@@ -138,12 +138,6 @@ disturbance::ForceJump likeliest_jump(const InnovationStage& stage) {
   return best;
 }
 
-/// -2 log L with a penalty for each parameter.
-double penalised(const InnovationStage& stage) {
-  return stage.minus_two_log +
-         2.0 * kPerParameter_nats * static_cast<double>(stage.model.fitted.parameters.size());
-}
-
 /// The model that another search holds, where it is more likely than the stage reached.
 void take_held(const SearchContext& context, const ModelStage& held, double evidence_nats,
                InnovationStage& stage, std::vector<InnovationRound>& rounds) {

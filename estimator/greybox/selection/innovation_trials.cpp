@@ -61,6 +61,11 @@ double penalty_nats(const FitSummary& with, const FitSummary& without) {
          static_cast<double>(with.parameters.size() - without.parameters.size());
 }
 
+double penalised(const InnovationStage& stage) {
+  return stage.minus_two_log +
+         2.0 * kPerParameter_nats * static_cast<double>(stage.model.fitted.parameters.size());
+}
+
 std::vector<InnovationTrial> effect_trials(const InnovationStage& stage) {
   const SearchContext& context = stage.context;
   const double floor_m = context.problem.data.noise_floor_m;

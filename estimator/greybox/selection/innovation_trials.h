@@ -31,6 +31,8 @@ struct InnovationTrial {
 };
 
 [[nodiscard]] double penalty_nats(const FitSummary& with, const FitSummary& without);
+/// -2 log L with a penalty for each parameter.
+[[nodiscard]] double penalised(const InnovationStage& stage);
 
 /// The most promising effects, fitted with the stage's gains.
 [[nodiscard]] std::vector<InnovationTrial> effect_trials(const InnovationStage& stage);

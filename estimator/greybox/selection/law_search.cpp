@@ -22,8 +22,11 @@ SearchContext with_laws(const SearchContext& context, const std::vector<Law>& la
 
 }  // namespace
 
-std::optional<LawSearch> search_laws(const SearchContext& context, const ModelStage& first) {
+std::optional<LawSearch> search_laws(const SearchContext& context, const ModelStage& first,
+                                     const std::string& site) {
   std::vector<Law> dictionary = law_dictionary(context.problem.model, context.problem.data);
+  if (!site.empty())
+    std::erase_if(dictionary, [&](const Law& law) { return law.effect.site != site; });
   if (dictionary.empty() || context.cancelled()) return {};
   LawSearch search{with_laws(context, dictionary), first, {}, {}};
   search.innovations = search_innovations(search.context, first, {});

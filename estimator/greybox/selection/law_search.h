@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "estimator/greybox/selection/innovation_search.h"
@@ -18,8 +19,9 @@ struct LawSearch {
 };
 
 /// None where one or two laws leave physics unexplained. `first`: the model as given, fitted with
-/// the weak observer.
+/// the weak observer. `site`: where laws are looked for; empty: everywhere.
 [[nodiscard]] std::optional<LawSearch> search_laws(const SearchContext& context,
-                                                   const ModelStage& first);
+                                                   const ModelStage& first,
+                                                   const std::string& site);
 
 }  // namespace estimator::greybox::selection

@@ -123,12 +123,12 @@ TEST(Verdict, HasANameOfItsOwn) {
   std::set<std::string> names;
   for (const selection::Verdict verdict :
        {selection::Verdict::nothing_missing, selection::Verdict::missing,
-        selection::Verdict::undetermined, selection::Verdict::unexplained,
-        selection::Verdict::not_excited}) {
+        selection::Verdict::undetermined, selection::Verdict::learned,
+        selection::Verdict::unexplained, selection::Verdict::not_excited}) {
     names.insert(selection::to_string(verdict));
   }
-  EXPECT_THAT(names, ElementsAre("missing", "not_excited", "nothing_missing", "undetermined",
-                                 "unexplained"));
+  EXPECT_THAT(names, ElementsAre("learned", "missing", "not_excited", "nothing_missing",
+                                 "undetermined", "unexplained"));
 }
 
 }  // namespace

@@ -41,8 +41,12 @@ TEST(Confidence, ASizeAtItsBoundIsNotEstablished) {
 
 TEST(Confidence, AnEffectWithRivalsIsNotEstablished) {
   Diagnosis d = unexplained();
-  d.same_here = {{"friction", "deadband"}};
+  d.ambiguous = {{"friction", "deadband"}};
   EXPECT_THAT(named(d), ElementsAre("friction rivals", "backlash within_error"));
+  // another name of the same equation casts no doubt
+  d.ambiguous.clear();
+  d.same_here = {{"friction", "deadband"}};
+  EXPECT_THAT(named(d), testing::Not(testing::Contains("friction rivals")));
 }
 
 TEST(Confidence, ThreeEffectsThatLeaveAnErrorMayStandInForOneLaw) {

@@ -1,0 +1,74 @@
+// Laws of the dictionary: each can be simulated, and the one that a record hides is found.
+#include "estimator/greybox/selection/law_search.h"
+
+#include <gmock/gmock.h>
+
+#include "estimator/greybox/selection/diagnosis.h"
+#include "tests/estimator/greybox/selection/servo_problem.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+using diagnose_test::kServoGain;
+using diagnose_test::servo_context;
+using diagnose_test::servo_record;
+using diagnose_test::with_offset;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+std::vector<std::string> names_of(const std::vector<Law>& laws) {
+  std::vector<std::string> names;
+  for (const Law& law : laws) names.push_back(law.effect.name);
+  return names;
+}
+
+TEST(LawDictionary, EachLawCanBeDeclaredOnEachPlantThatHasItsSite) {
+  const FitDataset data = fit_dataset({servo_record({.rate_mps = with_offset(0.0)})}, {});
+  for (const plant_sim::PlantInfo& plant : plant_sim::plant_library()) {
+    plant_sim::ModelFile model = plant_sim::load_model(
+        std::string(SPOOLWATCH_SOURCE_DIR) + "/config/models/" +
+        (plant.name == "hydraulic_actuator" ? std::string("thesis") : plant.name) + ".toml");
+    const std::vector<Law> laws = law_dictionary(model, data);
+    EXPECT_FALSE(laws.empty()) << plant.name;
+    for (const Law& law : laws) {
+      EXPECT_NO_THROW(model.declare(law.effect, "test")) << plant.name << " " << law.effect.name;
+      EXPECT_FALSE(law.variables.empty());
+    }
+    // a name that the model's own formula has is left alone
+    EXPECT_THAT(names_of(law_dictionary(model, data)), IsEmpty());
+  }
+}
+
+/// y' = 0.05 u (1 - 0.1 (u / 2 V)^2).
+double curved_mps(double u_V, double /*y_m*/, double /*t_s*/) {
+  return kServoGain * u_V * (1.0 - 0.1 * std::pow(u_V / 2.0, 2));
+}
+
+TEST(Laws, AGainThatCurvesIsLearnedWithItsSize) {
+  const SearchContext context = servo_context({.rate_mps = curved_mps});
+  const Diagnosis d = diagnose(context.problem, context.options);
+  EXPECT_EQ(d.verdict, Verdict::learned);
+  ASSERT_THAT(names_of(d.laws), ElementsAre("gain_curvature"));
+  EXPECT_THAT(d.established(), IsEmpty());
+  EXPECT_THAT(d.laws.front().variables, Contains("u"));
+  EXPECT_LT(d.rms_after_m, 1.15 * d.noise_floor_m);
+  // the law in the better model: the rate at 2 V over that at 0
+  plant_sim::ModelFile better = d.better;
+  const double gain = *better.value("gain_mps_per_V");
+  const double curvature = *better.value("gain_curvature.curvature_ratio");
+  const std::string& formula = d.laws.front().effect.formula;
+  const double full_mps = std::stod(formula.substr(formula.find("/ ") + 2));
+  EXPECT_NEAR(gain, kServoGain, 1e-3 * kServoGain);
+  EXPECT_NEAR(curvature * std::pow(2.0 * gain / full_mps, 2), -0.1, 0.003);
+}
+
+TEST(Laws, AHealthyRecordTeachesNone) {
+  const SearchContext context = servo_context({.rate_mps = with_offset(0.0)});
+  const Diagnosis d = diagnose(context.problem, context.options);
+  EXPECT_EQ(d.verdict, Verdict::nothing_missing);
+  EXPECT_THAT(d.laws, IsEmpty());
+}
+
+}  // namespace
+}  // namespace estimator::greybox::selection
