@@ -225,6 +225,19 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
                                                         : Verdict::undetermined;
 }
 
+/// What was known before any conclusion was drawn.
+Diagnosis begun(const Diagnosis& result) {
+  Diagnosis begun;
+  begun.noise_floor_m = result.noise_floor_m;
+  begun.floor_assumed = result.floor_assumed;
+  begun.excitation = result.excitation;
+  begun.command_lead_samples = result.command_lead_samples;
+  begun.checks = result.checks;
+  begun.search.nominal_rms_m = result.search.nominal_rms_m;
+  begun.search.preview_s = result.search.preview_s;
+  return begun;
+}
+
 /// How a law enters, in the words of a Localisation.
 std::string class_of(const Law& law) {
   if (law.effect.site == "force") return "force";
@@ -235,11 +248,7 @@ std::string class_of(const Law& law) {
 /// Concludes with laws where each is clear of its error and they leave clearly less than `before`.
 bool take_laws(const SearchContext& context, const ModelStage& first, const LawSearch& found,
                const Diagnosis& before, Diagnosis& result) {
-  Diagnosis learned = before;
-  learned.changing.clear();
-  learned.ambiguous.clear();
-  learned.same_here.clear();
-  learned.without_rms_m.clear();
+  Diagnosis learned = begun(before);
   conclude(found.context, found.context, first, found.innovations, learned);
   const auto is_size = [&](const ParameterValue& p) {
     return std::any_of(found.laws.begin(), found.laws.end(), [&](const Law& law) {

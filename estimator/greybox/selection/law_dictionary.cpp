@@ -31,7 +31,8 @@ enum class Sign { positive, both };
 
 FormulaEffect::Parameter size(const std::string& name, double typical, Sign sign,
                               double most_ratio = kMost) {
-  const double most = most_ratio * typical;
+  typical = rounded(typical);
+  const double most = rounded(most_ratio * typical);
   return {name, "size", sign == Sign::both ? -most : 0.0, most, typical, 0.0};
 }
 
@@ -64,10 +65,10 @@ class Dictionary {
     const double reach_m = 10.0 * rig_.length_m;
     return {"rest_m",
             "position at which it is zero",
-            rig_.centre_m - reach_m,
-            rig_.centre_m + reach_m,
+            rounded(rig_.centre_m - reach_m),
+            rounded(rig_.centre_m + reach_m),
             rounded(rig_.centre_m + 0.1 * rig_.length_m),
-            rig_.centre_m};
+            rounded(rig_.centre_m)};
   }
 
   void add_forces() {
