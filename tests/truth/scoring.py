@@ -123,7 +123,7 @@ def score(plan, record, answer):
         result.update(score_law(record, verdict, answer))
         result["wrong"] = claims and bool(named)
         if plan == "leftout":
-            result["right"] = "yes" if verdict == "unexplained" else "no"
+            result["right"] = "yes" if verdict in ("unexplained", "learned") else "no"
         elif verdict != "failed":
             result["right"] = "no" if result["wrong"] else "yes"
         return result

@@ -266,7 +266,12 @@ bool take_laws(const SearchContext& context, const ModelStage& first, const LawS
   const double explained = 1.0 - std::pow(learned.rms_after_m / learned.rms_before_m, 2);
   for (const Law& law : found.laws)
     where.push_back({class_of(law), law.variables.front(), explained});
-  where.insert(where.end(), before.whole.begin(), before.whole.end());
+  for (const Localisation& other : before.whole) {
+    const bool known = std::any_of(where.begin(), where.end(), [&](const Localisation& one) {
+      return one.site == other.site && one.variable == other.variable;
+    });
+    if (!known) where.push_back(other);
+  }
   learned.where = std::move(where);
   learned.where_is_whole = true;
   plant_sim::ModelFile model = context.problem.model;
