@@ -281,6 +281,9 @@ io::ControlStatus ControlRequestHandler::status() const {
   const std::size_t tripped = stats.trip_guard.load(std::memory_order_relaxed);
   if (status.state == control::ArmingState::latched && tripped < identity_.guards.size()) {
     status.latched_by = identity_.guards[tripped].id;
+    status.latched_because = stats.trip.load(std::memory_order_relaxed) == rt::Trip::e_stop_unread
+                                 ? "the emergency stop cannot be read"
+                                 : control::reason_of(identity_.guards[tripped].which());
   }
   status.obstacle = obstacle();
   status.y_m = stats.y_m.load(std::memory_order_relaxed);

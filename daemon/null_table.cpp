@@ -81,6 +81,9 @@ std::vector<NullRow> null_rows(const NullTableInputs& inputs) {
           "process stopped",
           std::isnan(times.process_stopped_s) ? times.process_dead_s : times.process_stopped_s,
           inputs)};
+  if (inputs.reading_hold_s > 0.0) {
+    rows.push_back({"readings stop", inputs.reading_hold_s + 2.0 * period_s + latency_s, ""});
+  }
   if (inputs.has_enable)
     rows.push_back({"enable lost", reading_s(inputs) + period_s + latency_s, ""});
   for (const control::GuardConfig& guard : inputs.guards) {

@@ -23,6 +23,7 @@ struct NullTableInputs {
   bool has_e_stop = false;
   bool has_enable = false;
   bool has_permit = false;
+  double reading_hold_s = 0.0;  ///< longest age at which a position or a switch still counts
 };
 
 struct NullRow {

@@ -360,7 +360,8 @@ void check_session(DaemonConfig& config, std::ostream& out) {
         {config.rig.valve().backend, config.rig.null_times(), p.sample_time_s,
          config.rig.worst_speed_mps(p.opening), config.safety.ramp_s, config.loop.max_bad_in_a_row,
          p.guards, config.rig.has_input(hal::InputRole::e_stop),
-         config.rig.has_input(hal::InputRole::enable), config.rig.has_permit()},
+         config.rig.has_input(hal::InputRole::enable), config.rig.has_permit(),
+         config.rig.reading_hold_s(p.opening)},
         out);
   }
   if (absent.empty()) return;

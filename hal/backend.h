@@ -62,6 +62,8 @@ class Backend {
                                                double limit_V) const = 0;
   /// Behaviour of the valve when commands stop.
   [[nodiscard]] virtual NullTimes null_times() const { return {}; }
+  /// Longest age at which a reading still counts when the device's readings stop without an error.
+  [[nodiscard]] virtual double reading_hold_s(const OpenContext& /*context*/) const { return 0.0; }
   /// The valve keeps its last command after this process has ended.
   [[nodiscard]] virtual bool outlives_process() const noexcept { return true; }
   /// Lines that `--check` prints: consequences of the table that an operator should know.

@@ -16,4 +16,9 @@ inline config::signals::Quality freshness(std::int64_t age_ns, std::int64_t peri
                                             : config::signals::Quality::good;
 }
 
+/// Longest age at which such a reading still counts.
+[[nodiscard]] inline double reading_hold_s(double period_s) noexcept {
+  return static_cast<double>(kBadPeriods) * period_s;
+}
+
 }  // namespace hal

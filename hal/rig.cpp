@@ -270,6 +270,22 @@ NullTimes Rig::null_times() const {
   return valve == nullptr ? NullTimes{} : valve->null_times();
 }
 
+double Rig::reading_hold_s(const OpenContext& context) const {
+  std::vector<std::string> names{rod_.backend};
+  for (const SpareRodConfig& spare : spare_rods_) names.push_back(spare.device.backend);
+  for (const InputConfig& input : inputs_) {
+    const InputRole role = role_of(input.role);
+    if (role == InputRole::e_stop || role == InputRole::enable)
+      names.push_back(input.device.backend);
+  }
+  double hold_s = 0.0;
+  for (const std::string& name : names) {
+    const Backend* backend = find(name);
+    if (backend != nullptr) hold_s = std::max(hold_s, backend->reading_hold_s(context));
+  }
+  return hold_s;
+}
+
 std::vector<std::string> Rig::notes(const OpenContext& context) const {
   std::vector<std::string> notes;
   std::string pressures;

@@ -119,6 +119,8 @@ class Rig {
   [[nodiscard]] double worst_speed_mps(const OpenContext& context) const;
   /// Null times of the valve's backend.
   [[nodiscard]] NullTimes null_times() const;
+  /// Longest age at which a position, e-stop or enable still counts.
+  [[nodiscard]] double reading_hold_s(const OpenContext& context) const;
   /// The pressures that accompany every sample, then the notes of each backend in use.
   [[nodiscard]] std::vector<std::string> notes(const OpenContext& context) const;
 

@@ -16,7 +16,7 @@ struct GuardKindInfo {
 
 /// In the order of GuardKind.
 constexpr GuardKindInfo kKinds[] = {
-    {GuardKind::e_stop, "e_stop", "the emergency stop is not released, or its input is dead",
+    {GuardKind::e_stop, "e_stop", "the emergency stop is not released",
      "Find out why it was pressed; release it, reset, arm."},
     {GuardKind::missing, "missing", "position missing", "Check the rod sensor and its bus."},
     {GuardKind::bus_lost, "bus_lost", "valve not written", "Check the valve drive and its bus."},

@@ -182,6 +182,8 @@ std::string Detector::why_latched() const {
       return "valve not written: reset, then arm again";
     case rt::Trip::e_stop:
       return "emergency stop: release it, reset, then arm again";
+    case rt::Trip::e_stop_unread:
+      return "the emergency stop cannot be read: check its device and bus; reset, then arm again";
     case rt::Trip::guard:
       return "guard " + id + ": reset, then arm again";
     case rt::Trip::none:

@@ -143,6 +143,8 @@ std::string print_status(const ControlStatus& status) {
   line["holding"] = status.holding;
   line["ramping"] = status.ramping;
   line["latched_by"] = status.latched_by.empty() ? json(nullptr) : json(status.latched_by);
+  line["latched_because"] =
+      status.latched_because.empty() ? json(nullptr) : json(status.latched_because);
   line["obstacle"] = status.obstacle.empty() ? json(nullptr) : json(status.obstacle);
   line["config_file"] = status.config_file;
   line["recorder_folder"] = status.recorder_folder;

@@ -75,8 +75,9 @@ struct ControlStatus {
   control::ArmingState state = control::ArmingState::disarmed;
   bool holding = false;
   bool ramping = false;
-  std::string latched_by;  ///< id of the guard; empty unless LATCHED
-  std::string obstacle;    ///< why the rig cannot be armed; empty: it can
+  std::string latched_by;       ///< id of the guard; empty unless LATCHED
+  std::string latched_because;  ///< its reason in words
+  std::string obstacle;         ///< why the rig cannot be armed; empty: it can
   std::string config_file, recorder_folder;
   std::string rules_hash;  ///< hash of estimators and bands, learned bands included
   double sample_time_s = std::numeric_limits<double>::quiet_NaN();

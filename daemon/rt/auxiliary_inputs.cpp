@@ -44,7 +44,7 @@ void AuxiliaryInputs::update_pressure(hal::InputRole role,
 
 void AuxiliaryInputs::read(const hal::Tick& tick) noexcept {
   e_stop_released_ = enabled_ = true;
-  blind_ = false;
+  blind_ = e_stop_pressed_ = false;
   const std::size_t inputs = inputs_ == nullptr ? 0 : std::min(inputs_->size(), kMaxInputs);
   for (std::size_t i = 0; i < inputs; ++i) {
     const hal::NamedInput& named = (*inputs_)[i];
@@ -55,6 +55,7 @@ void AuxiliaryInputs::read(const hal::Tick& tick) noexcept {
       const bool on = std::abs(reading.value - 1.0) < kSwitchRounding;
       bool& all = named.role == hal::InputRole::e_stop ? e_stop_released_ : enabled_;
       if (!counts_as_on(i, good, on)) all = false;
+      if (named.role == hal::InputRole::e_stop && good && !on) e_stop_pressed_ = true;
     }
     if (named.role == hal::InputRole::valve_command) {
       command_V_ = good ? reading.value : hal::kMissing;

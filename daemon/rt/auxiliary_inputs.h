@@ -24,6 +24,10 @@ class AuxiliaryInputs {
 
   /// True when every input of that role is on as far as known; true without such inputs.
   [[nodiscard]] bool e_stop_released() const noexcept { return e_stop_released_; }
+  /// The trip of an e-stop is that of an input that cannot be read, not of one that reads 0.
+  [[nodiscard]] bool e_stop_unread() const noexcept {
+    return !e_stop_released_ && !e_stop_pressed_;
+  }
   [[nodiscard]] bool enabled() const noexcept { return enabled_; }
   /// A switch could not be read in this tick: only null may be written.
   [[nodiscard]] bool blind() const noexcept { return blind_; }
@@ -44,6 +48,7 @@ class AuxiliaryInputs {
   std::array<std::int64_t, kMaxInputs> since_on_{};
   LoopStats& stats_;
   bool e_stop_released_ = true;
+  bool e_stop_pressed_ = false;  ///< one reads something else than 1
   bool enabled_ = true;
   bool blind_ = false;
   bool has_command_ = false;

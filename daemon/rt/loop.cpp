@@ -87,12 +87,21 @@ void Loop::act(const control::GuardTrip& trip, bool measured) noexcept {
 }
 
 void Loop::latch(int guard) noexcept {
+  const auto kind = static_cast<GuardKind>(guard);
+  const bool unread =
+      kind == GuardKind::missing || (kind == GuardKind::e_stop && aux_inputs_.e_stop_unread());
+  unread_latch_tick_ = unread ? tick_ : -1;
+  set_trip(guard);
+  apply(Event::trip);
+}
+
+void Loop::set_trip(int guard) noexcept {
   constexpr Trip kBuiltInTrips[] = {Trip::e_stop, Trip::reading, Trip::write, Trip::overrun};
   const auto index = static_cast<std::size_t>(guard);
+  Trip trip = index < control::kBuiltIn ? kBuiltInTrips[index] : Trip::guard;
+  if (trip == Trip::e_stop && aux_inputs_.e_stop_unread()) trip = Trip::e_stop_unread;
   parts_.stats.trip_guard.store(static_cast<std::uint8_t>(guard), std::memory_order_relaxed);
-  parts_.stats.trip.store(index < control::kBuiltIn ? kBuiltInTrips[index] : Trip::guard,
-                          std::memory_order_relaxed);
-  apply(Event::trip);
+  parts_.stats.trip.store(trip, std::memory_order_relaxed);
 }
 
 void Loop::leave() noexcept {
@@ -238,6 +247,11 @@ void Loop::drive(const Period& period, Sample& sample) noexcept {
   bad_writes_ = applied.good ? 0 : bad_writes_ + 1;
   const bool lost = bad_writes_ > max_bad_in_a_row_;
   act(guard_monitor_.set(GuardKind::bus_lost, lost, static_cast<double>(bad_writes_)), false);
+  // A lost bus shows first in what cannot be read.
+  if (lost && unread_latch_tick_ >= 0 && tick_ - unread_latch_tick_ <= max_bad_in_a_row_ + 1) {
+    if (arming_.state() == State::latched) set_trip(static_cast<int>(GuardKind::bus_lost));
+    unread_latch_tick_ = -1;
+  }
 }
 
 void Loop::send(Sample& sample) noexcept {

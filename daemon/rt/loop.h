@@ -93,6 +93,7 @@ class Loop {
   /// Applies a guard's action. `measured`: acts in RUN only.
   void act(const control::GuardTrip& trip, bool measured) noexcept;
   void latch(int guard) noexcept;
+  void set_trip(int guard) noexcept;
   /// Goes from RUN or ARMED to DISARMED.
   void leave() noexcept;
   void watch_overruns(const Period& period) noexcept;
@@ -130,6 +131,8 @@ class Loop {
   bool last_limited_ = false;  ///< the last command was at a limit
   std::int64_t bad_readings_ = 0;
   std::int64_t bad_writes_ = 0;
+  /// Tick of a latch because something could not be read; -1: none.
+  std::int64_t unread_latch_tick_ = -1;
   std::int64_t tick_ = 0;  ///< index of this tick
   std::int64_t gap_ = 0;   ///< periods missing from the sample queue
 };

@@ -15,7 +15,7 @@
 namespace monitor::rt {
 
 /// Why the state is LATCHED; `guard`: a configured [[guard]].
-enum class Trip : std::uint8_t { none, overrun, reading, write, e_stop, guard };
+enum class Trip : std::uint8_t { none, overrun, reading, write, e_stop, e_stop_unread, guard };
 
 inline constexpr std::size_t kMaxSpareRods = control::kMaxRods - 1;
 inline constexpr std::size_t kMaxInputs = 16;

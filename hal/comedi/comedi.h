@@ -10,6 +10,7 @@
 
 #include "hal/backend.h"
 #include "hal/comedi/board.h"
+#include "hal/freshness.h"
 
 namespace hal::comedi {
 
@@ -79,6 +80,9 @@ class ComediBackend final : public Backend {
   }
   [[nodiscard]] double worst_speed_mps(const OpenContext&, double) const override {
     return config_.has_output ? config_.max_speed_mps : 0.0;
+  }
+  [[nodiscard]] double reading_hold_s(const OpenContext& context) const override {
+    return hal::reading_hold_s(context.sample_time_s);
   }
   /// The converter holds its last code for ever.
   [[nodiscard]] NullTimes null_times() const override { return {.latency_s = config_.delay_s}; }

@@ -120,6 +120,9 @@ class EncoderBackend final : public Backend {
   /// True: an encoder moves nothing.
   [[nodiscard]] bool harmless() const noexcept override { return true; }
   [[nodiscard]] double worst_speed_mps(const OpenContext&, double) const override { return 0.0; }
+  [[nodiscard]] double reading_hold_s(const OpenContext& context) const override {
+    return hal::reading_hold_s(context.sample_time_s);
+  }
   [[nodiscard]] std::vector<std::string> notes(const OpenContext& context) const override;
 
  private:

@@ -1,12 +1,14 @@
 #include "hal/modbus/connection.h"
 
+#include <poll.h>
 #include <sys/file.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <array>
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <ctime>
 
 #include "config/schema/error.h"
 #include "hal/monotonic.h"
@@ -14,20 +16,28 @@
 namespace hal::modbus {
 namespace {
 
-void append_word(std::vector<std::uint8_t>& bytes, unsigned word) {
-  bytes.push_back(static_cast<std::uint8_t>(word >> 8U));
-  bytes.push_back(static_cast<std::uint8_t>(word));
-}
+constexpr std::size_t kTcpHeader = 7;  ///< transaction, protocol, length, unit
+constexpr std::size_t kCrc = 2;
+/// Requests are numbered below; the frame that a crash handler sends has this one.
+constexpr unsigned kNoTransaction = 0xFFFF;
 
 /// CRC-16 of the serial line protocol: polynomial 0xA001, reflected, low byte first.
-void append_crc(std::vector<std::uint8_t>& bytes) {
+unsigned crc_of(const std::uint8_t* bytes, std::size_t size) noexcept {
   unsigned crc = 0xFFFF;
-  for (const std::uint8_t byte : bytes) {
-    crc ^= byte;
+  for (std::size_t i = 0; i < size; ++i) {
+    crc ^= bytes[i];
     for (int bit = 0; bit < 8; ++bit) crc = (crc & 1U) != 0 ? crc >> 1U ^ 0xA001U : crc >> 1U;
   }
-  bytes.push_back(static_cast<std::uint8_t>(crc));
-  bytes.push_back(static_cast<std::uint8_t>(crc >> 8U));
+  return crc;
+}
+
+unsigned word_at(const std::uint8_t* bytes) noexcept {
+  return static_cast<unsigned>(bytes[0]) << 8U | bytes[1];
+}
+
+void put_word(std::uint8_t* bytes, unsigned word) noexcept {
+  bytes[0] = static_cast<std::uint8_t>(word >> 8U);
+  bytes[1] = static_cast<std::uint8_t>(word);
 }
 
 }  // namespace
@@ -44,10 +54,7 @@ Connection::Connection(const ConnectionConfig& config, Counters& counters)
         "[modbus] " + std::string(config.host.empty() ? "serial" : "address"),
         "is not a usable address or serial line", "127.0.0.1:502, /dev/ttyS0");
   }
-  // The library's own recovery retries for ever: off. One time-out for the whole reply, not per
-  // byte.
   modbus_set_error_recovery(context_, MODBUS_ERROR_RECOVERY_NONE);
-  modbus_set_byte_timeout(context_, 0, 0);
 }
 
 Connection::~Connection() {
@@ -56,13 +63,13 @@ Connection::~Connection() {
 }
 
 void Connection::set_timeout(double timeout_s) noexcept {
-  const auto us = static_cast<std::uint32_t>(std::lround(timeout_s * 1e6));
-  modbus_set_response_timeout(context_, us / 1'000'000U, us % 1'000'000U);
+  timeout_ns_ = std::llround(timeout_s * 1e9);
 }
 
 bool Connection::connect() noexcept {
   close();
-  set_timeout(config_.connect_timeout_s);
+  const auto us = static_cast<std::uint32_t>(std::lround(config_.connect_timeout_s * 1e6));
+  modbus_set_response_timeout(context_, us / 1'000'000U, us % 1'000'000U);
   if (modbus_connect(context_) != 0) {
     error_ = errno;
     counters_.last_error.store(error_, std::memory_order_relaxed);
@@ -125,12 +132,88 @@ RequestResult Connection::lose(int error) noexcept {
   return RequestResult::lost;
 }
 
-RequestResult Connection::judge(int result, std::int64_t start_ns) noexcept {
-  const int error = errno;
-  if (result < 0 && !(error >= EMBXILFUN && error <= EMBXGTAR)) return lose(error);
+std::size_t Connection::frame_size(const Pdu& pdu) const noexcept {
+  return pdu.size() + (config_.host.empty() ? 1 + kCrc : kTcpHeader);
+}
+
+void Connection::put_frame(const Pdu& pdu, unsigned transaction,
+                           std::uint8_t* bytes) const noexcept {
+  std::uint8_t* body = bytes;
+  if (!config_.host.empty()) {
+    put_word(bytes, transaction);
+    put_word(bytes + 2, 0);  // protocol
+    put_word(bytes + 4, static_cast<unsigned>(pdu.size() + 1));
+    body = bytes + kTcpHeader - 1;
+  }
+  body[0] = static_cast<std::uint8_t>(config_.unit);
+  std::copy_n(pdu.data(), pdu.size(), body + 1);
+  if (!config_.host.empty()) return;
+  const unsigned crc = crc_of(body, 1 + pdu.size());
+  body[1 + pdu.size()] = static_cast<std::uint8_t>(crc);
+  body[2 + pdu.size()] = static_cast<std::uint8_t>(crc >> 8U);
+}
+
+int Connection::receive(std::uint8_t* bytes, std::size_t from, std::size_t to,
+                        std::int64_t until_ns) noexcept {
+  const int file = modbus_get_socket(context_);
+  while (from < to) {
+    const std::int64_t left_ns = until_ns - monotonic_ns();
+    if (left_ns <= 0) return ETIMEDOUT;
+    const timespec left{left_ns / 1'000'000'000, left_ns % 1'000'000'000};
+    pollfd waiting{file, POLLIN, 0};
+    const int ready = ppoll(&waiting, 1, &left, nullptr);
+    if (ready < 0 && errno != EINTR) return errno;
+    if (ready <= 0) continue;
+    const ssize_t n = ::read(file, bytes + from, to - from);
+    if (n == 0) return ECONNRESET;
+    if (n < 0 && errno != EINTR && errno != EAGAIN) return errno;
+    if (n > 0) from += static_cast<std::size_t>(n);
+  }
+  return 0;
+}
+
+int Connection::receive_tcp(const Pdu& request, Pdu& reply, std::int64_t until_ns) noexcept {
+  std::uint8_t header[kTcpHeader];
+  if (const int error = receive(header, 0, kTcpHeader, until_ns); error != 0) return error;
+  const std::size_t length = word_at(header + 4);  // unit and PDU
+  if (word_at(header) != transaction_ || word_at(header + 2) != 0) return EMBBADDATA;
+  if (header[6] != config_.unit) return EMBBADSLAVE;
+  if (length != 3 && length != 1 + reply_size(request)) return EMBBADDATA;
+  reply.resize(length - 1);
+  return receive(reply.data(), 0, reply.size(), until_ns);
+}
+
+int Connection::receive_rtu(const Pdu& request, Pdu& reply, std::int64_t until_ns) noexcept {
+  constexpr std::size_t kShortest = 1 + 2 + kCrc;  // an exception
+  std::uint8_t bytes[1 + Pdu::kMost + kCrc];
+  if (const int error = receive(bytes, 0, kShortest, until_ns); error != 0) return error;
+  if (bytes[0] != config_.unit) return EMBBADSLAVE;
+  const bool exception = (bytes[1] & 0x80U) != 0;
+  const std::size_t size = exception ? 2 : reply_size(request);
+  const std::size_t end = 1 + size;
+  if (const int error = receive(bytes, kShortest, end + kCrc, until_ns); error != 0) return error;
+  const unsigned crc = crc_of(bytes, end);
+  if (bytes[end] != (crc & 0xFFU) || bytes[end + 1] != crc >> 8U) return EMBBADCRC;
+  reply.resize(size);
+  std::copy_n(bytes + 1, size, reply.data());
+  return 0;
+}
+
+RequestResult Connection::transact(const Pdu& request, Pdu& reply) noexcept {
+  if (!in_step()) return lose(errno);
+  const std::int64_t start_ns = monotonic_ns();
+  transaction_ = (transaction_ + 1) % kNoTransaction;
+  std::uint8_t bytes[kTcpHeader + Pdu::kMost];
+  put_frame(request, transaction_, bytes);
+  if (!send_bytes(bytes, frame_size(request))) return lose(ECONNRESET);
+  const std::int64_t until_ns = start_ns + timeout_ns_;
+  int error = config_.host.empty() ? receive_rtu(request, reply, until_ns)
+                                   : receive_tcp(request, reply, until_ns);
+  if (error == 0) error = check_reply(request, reply);
+  if (error != 0 && !(error >= EMBXILFUN && error <= EMBXGTAR)) return lose(error);
   counters_.round_trips.add(monotonic_ns() - start_ns);
   counters_.transactions.fetch_add(1, std::memory_order_relaxed);
-  if (result >= 0) return RequestResult::done;
+  if (error == 0) return RequestResult::done;
   error_ = error;
   counters_.last_error.store(error, std::memory_order_relaxed);
   counters_.exceptions.fetch_add(1, std::memory_order_relaxed);
@@ -138,82 +221,42 @@ RequestResult Connection::judge(int result, std::int64_t start_ns) noexcept {
 }
 
 RequestResult Connection::read(const Block& block, std::uint16_t* words) noexcept {
-  if (!in_step()) return lose(errno);
-  const std::int64_t start_ns = monotonic_ns();
-  if (block.table == RegisterTable::holding) {
-    return judge(modbus_read_registers(context_, block.address, block.count, words), start_ns);
-  }
-  if (block.table == RegisterTable::input) {
-    return judge(modbus_read_input_registers(context_, block.address, block.count, words),
-                 start_ns);
-  }
-  std::array<std::uint8_t, kMostBits> bits;
-  const auto read_bits =
-      block.table == RegisterTable::coil ? modbus_read_bits : modbus_read_input_bits;
-  const RequestResult outcome =
-      judge(read_bits(context_, block.address, block.count, bits.data()), start_ns);
-  for (int i = 0; outcome == RequestResult::done && i < block.count; ++i) words[i] = bits[i];
-  return outcome;
+  Pdu reply;
+  const RequestResult result = transact(read_request(block), reply);
+  if (result == RequestResult::done) unpack(block, reply, words);
+  return result;
 }
 
 RequestResult Connection::write(const WriteChannel& channel, Bits bits) noexcept {
-  if (!in_step()) return lose(errno);
-  const std::int64_t start_ns = monotonic_ns();
-  if (channel.table == RegisterTable::coil) {
-    return judge(modbus_write_bit(context_, channel.address, bits != 0 ? 1 : 0), start_ns);
-  }
-  std::uint16_t words[2];
-  channel.codec.store(bits, words);
-  const int count = channel.codec.words();
-  if (count == 1 && !config_.multiple_only) {
-    return judge(modbus_write_register(context_, channel.address, words[0]), start_ns);
-  }
-  return judge(modbus_write_registers(context_, channel.address, count, words), start_ns);
+  Pdu reply;
+  return transact(write_request(channel, bits, config_.multiple_only), reply);
 }
 
 RequestResult Connection::exchange(const WriteChannel& channel, Bits bits, const Block& block,
                                    std::uint16_t* words) noexcept {
-  if (!in_step()) return lose(errno);
-  const std::int64_t start_ns = monotonic_ns();
-  std::uint16_t written[2];
-  channel.codec.store(bits, written);
-  return judge(modbus_write_and_read_registers(context_, channel.address, channel.codec.words(),
-                                               written, block.address, block.count, words),
-               start_ns);
+  Pdu reply;
+  const RequestResult result = transact(exchange_request(channel, bits, block), reply);
+  if (result == RequestResult::done) unpack(block, reply, words);
+  return result;
 }
 
 std::vector<std::uint8_t> Connection::frame(const WriteChannel& channel, Bits bits) const {
-  std::uint16_t words[2];
-  channel.codec.store(bits, words);
-  const auto count = static_cast<unsigned>(channel.codec.words());
-  std::vector<std::uint8_t> body{static_cast<std::uint8_t>(config_.unit)};
-  const bool single = count == 1 && !config_.multiple_only;
-  body.push_back(single ? 6 : 16);
-  append_word(body, static_cast<unsigned>(channel.address));
-  if (!single) {
-    append_word(body, count);
-    body.push_back(static_cast<std::uint8_t>(2 * count));
-  }
-  for (unsigned i = 0; i < count; ++i) append_word(body, words[i]);
-  if (config_.host.empty()) {
-    append_crc(body);
-    return body;
-  }
-  std::vector<std::uint8_t> bytes;
-  append_word(bytes, 0xFFFF);  // transaction
-  append_word(bytes, 0);       // protocol
-  append_word(bytes, static_cast<unsigned>(body.size()));
-  bytes.insert(bytes.end(), body.begin(), body.end());
+  const Pdu pdu = write_request(channel, bits, config_.multiple_only);
+  std::vector<std::uint8_t> bytes(frame_size(pdu));
+  put_frame(pdu, kNoTransaction, bytes.data());
   return bytes;
 }
 
-bool Connection::send_now(const std::vector<std::uint8_t>& frame) const noexcept {
+bool Connection::send_bytes(const std::uint8_t* bytes, std::size_t size) const noexcept {
   const int file = file_.load();
   if (file < 0) return false;
-  const ssize_t sent = config_.host.empty()
-                           ? ::write(file, frame.data(), frame.size())
-                           : send(file, frame.data(), frame.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
-  return sent == static_cast<ssize_t>(frame.size());
+  const ssize_t sent = config_.host.empty() ? ::write(file, bytes, size)
+                                            : send(file, bytes, size, MSG_DONTWAIT | MSG_NOSIGNAL);
+  return sent == static_cast<ssize_t>(size);
+}
+
+bool Connection::send_now(const std::vector<std::uint8_t>& frame) const noexcept {
+  return send_bytes(frame.data(), frame.size());
 }
 
 }  // namespace hal::modbus

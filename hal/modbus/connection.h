@@ -1,5 +1,7 @@
 // One connection to a Modbus device, TCP or serial: connect, one request at a time, each bounded in
-// time. A lost connection is closed at once, so that nothing queued can be sent later.
+// time. A reply counts only if transaction, unit, function, length and echoed address and value are
+// those of the request. A lost connection is closed at once, so that nothing queued can be sent
+// later. libmodbus opens the line; it does not compare unit and echo.
 #pragma once
 
 #include <modbus/modbus.h>
@@ -10,6 +12,7 @@
 #include <vector>
 
 #include "hal/modbus/counters.h"
+#include "hal/modbus/frame.h"
 #include "hal/modbus/register_map.h"
 
 namespace hal::modbus {
@@ -66,12 +69,23 @@ class Connection {
  private:
   /// False when unread bytes precede the reply of the next request.
   bool in_step() noexcept;
-  RequestResult judge(int result, std::int64_t start_ns) noexcept;
+  /// Sends the request and receives a checked reply.
+  RequestResult transact(const Pdu& request, Pdu& reply) noexcept;
   RequestResult lose(int error) noexcept;
+  [[nodiscard]] std::size_t frame_size(const Pdu& pdu) const noexcept;
+  void put_frame(const Pdu& pdu, unsigned transaction, std::uint8_t* bytes) const noexcept;
+  // 0 or an errno.
+  [[nodiscard]] int receive(std::uint8_t* bytes, std::size_t from, std::size_t to,
+                            std::int64_t until_ns) noexcept;
+  [[nodiscard]] int receive_tcp(const Pdu& request, Pdu& reply, std::int64_t until_ns) noexcept;
+  [[nodiscard]] int receive_rtu(const Pdu& request, Pdu& reply, std::int64_t until_ns) noexcept;
+  [[nodiscard]] bool send_bytes(const std::uint8_t* bytes, std::size_t size) const noexcept;
 
   ConnectionConfig config_;
   Counters& counters_;
   modbus_t* context_;
+  std::int64_t timeout_ns_ = 0;  ///< of a whole reply
+  unsigned transaction_ = 0;
   bool open_ = false;
   int error_ = 0;
   std::atomic<int> file_{-1};

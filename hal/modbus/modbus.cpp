@@ -167,11 +167,15 @@ void ModbusBackend::check(const OpenContext& context, const PollThreadConfig& po
                        "a value within scale, low and high of that register");
     }
   }
-  const double bad_after_s =
-      std::isnan(config_.bad_after_s) ? 2.0 * poll.stale_after_s : config_.bad_after_s;
-  if (bad_after_s < poll.stale_after_s) {
+  if (reading_hold_s(context) < poll.stale_after_s) {
     throw bad_config(where + "bad_after_s", "is below stale_after_s", "at least stale_after_s");
   }
+}
+
+double ModbusBackend::reading_hold_s(const OpenContext& context) const {
+  const double stale_after_s =
+      std::isnan(config_.stale_after_s) ? 2.5 * context.sample_time_s : config_.stale_after_s;
+  return std::isnan(config_.bad_after_s) ? 2.0 * stale_after_s : config_.bad_after_s;
 }
 
 BackendDevices ModbusBackend::open(const OpenContext& context) const {
@@ -198,8 +202,7 @@ BackendDevices ModbusBackend::open(const OpenContext& context) const {
   const std::shared_ptr<PollThread> poll(locked, &*locked->poll);
   Freshness freshness;
   freshness.stale_after_s = config.stale_after_s;
-  freshness.bad_after_s =
-      std::isnan(config_.bad_after_s) ? 2.0 * config.stale_after_s : config_.bad_after_s;
+  freshness.bad_after_s = reading_hold_s(context);
   freshness.jitter_s = std::isnan(config_.jitter_s) ? 0.1 * config.period_s : config_.jitter_s;
   return make_devices(poll, freshness,
                       "modbus " + (config_.address.empty() ? config_.serial : config_.address));

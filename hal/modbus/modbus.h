@@ -12,7 +12,8 @@
 // Requests run in a separate thread (poll_thread.h); registers.h and register_map.h define what a
 // map may hold. A reading is good while it is fresh; stale when it is older than stale_after_s, is
 // a repetition, or was measured further than jitter_s from its usual moment of the period; bad when
-// it is older than bad_after_s, out of its limits, or while there is no connection.
+// it is older than bad_after_s, out of its limits, answered with an exception, or while there is no
+// connection.
 #pragma once
 
 #include <vector>
@@ -67,6 +68,7 @@ class ModbusBackend final : public Backend {
             .process_dead_s = config_.watchdog_s,
             .latency_s = config_.hand_over_s + config_.delay_s};
   }
+  [[nodiscard]] double reading_hold_s(const OpenContext& context) const override;
   [[nodiscard]] std::vector<std::string> notes(const OpenContext& context) const override;
 
  private:

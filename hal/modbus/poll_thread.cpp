@@ -211,6 +211,7 @@ bool PollThread::write_bits(Bits bits) noexcept {
     const std::int64_t start_ns = monotonic_ns();
     outcome = connection_->exchange(*map_.valve, bits, map_.blocks[0], words);
     if (outcome == RequestResult::done) keep(0, words, start_ns + (monotonic_ns() - start_ns) / 2);
+    if (outcome == RequestResult::exception) forget(0);
   } else {
     outcome = connection_->write(*map_.valve, bits);
   }
@@ -235,6 +236,7 @@ void PollThread::read_blocks(std::size_t from) noexcept {
     const RequestResult outcome = connection_->read(map_.blocks[i], words);
     if (outcome == RequestResult::lost) return;
     if (outcome == RequestResult::done) keep(i, words, start_ns + (monotonic_ns() - start_ns) / 2);
+    if (outcome == RequestResult::exception) forget(i);
   }
   latest_.put(snapshot_);
 }
@@ -244,6 +246,12 @@ void PollThread::keep(std::size_t block, const std::uint16_t* words, std::int64_
   for (std::size_t i = 0; i < map_.reads.size(); ++i) {
     const ReadChannel& r = map_.reads[i];
     if (r.block == block) snapshot_.value[i] = r.codec.decode(r.codec.load(words + r.at));
+  }
+}
+
+void PollThread::forget(std::size_t block) noexcept {
+  for (std::size_t i = 0; i < map_.reads.size(); ++i) {
+    if (map_.reads[i].block == block) snapshot_.value[i] = kMissing;
   }
 }
 

@@ -97,6 +97,8 @@ class PollThread {
   void write_outputs() noexcept;
   void read_blocks(std::size_t from) noexcept;
   void keep(std::size_t block, const std::uint16_t* words, std::int64_t t_ns) noexcept;
+  /// The device answers with an exception: the values of the block are missing at once.
+  void forget(std::size_t block) noexcept;
   void finish() noexcept;
 
   const PollThreadConfig config_;

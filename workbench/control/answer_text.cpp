@@ -164,6 +164,8 @@ void print_status(const ordered_json& status, std::ostream& out) {
   if (is_set(status, "ramping")) out << ", on the way to null";
   const std::string latched_by = text_of(status, "latched_by");
   if (!latched_by.empty()) out << " by " << latched_by;
+  const std::string because = text_of(status, "latched_because");
+  if (!because.empty()) out << ": " << because << "; spoolwatch reset leads out of it";
   out << '\n';
   const std::string obstacle = text_of(status, "obstacle");
   if (!obstacle.empty()) out << "  cannot be armed: " << obstacle << '\n';

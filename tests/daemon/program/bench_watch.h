@@ -109,6 +109,10 @@ class Cable {
   Cable(const Cable&) = delete;
   Cable& operator=(const Cable&) = delete;
   void cut() { cut_ = true; }
+  /// From now on reads are answered with exception 11, as by a gateway whose device is silent.
+  void refuse_reads() { refuses_reads_ = true; }
+  /// From now on no read is answered.
+  void swallow_reads() { swallows_reads_ = true; }
   [[nodiscard]] std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
 
  private:
@@ -130,8 +134,8 @@ class Cable {
       }
       if (poll(files.data(), files.size(), 20) <= 0) continue;
       for (std::size_t i = 0; i < pairs_.size(); ++i) {
-        if (files[2 * i + 1].revents != 0) pass(pairs_[i].first, pairs_[i].second);
-        if (files[2 * i + 2].revents != 0) pass(pairs_[i].second, pairs_[i].first);
+        if (files[2 * i + 1].revents != 0) pass(pairs_[i].first, pairs_[i].second, false);
+        if (files[2 * i + 2].revents != 0) pass(pairs_[i].second, pairs_[i].first, true);
       }
       if (files[0].revents == 0) continue;
       const int client = accept(listener_, nullptr, nullptr);
@@ -145,9 +149,18 @@ class Cable {
       pairs_.emplace_back(client, rig);
     }
   }
-  void pass(int from, int to) const {
+  void pass(int from, int to, bool from_rig) const {
     char bytes[512];
-    const ssize_t n = recv(from, bytes, sizeof bytes, 0);
+    ssize_t n = recv(from, bytes, sizeof bytes, 0);
+    const bool reading = n > 8 && bytes[7] == 3 && from_rig;
+    if (reading && swallows_reads_) return;
+    if (reading && refuses_reads_) {
+      bytes[4] = 0;
+      bytes[5] = 3;
+      bytes[7] = static_cast<char>(0x83);
+      bytes[8] = 11;
+      n = 9;
+    }
     if (n > 0 && !cut_) (void)send(to, bytes, static_cast<std::size_t>(n), MSG_NOSIGNAL);
     if (n <= 0) {
       shutdown(to, SHUT_RDWR);
@@ -159,6 +172,8 @@ class Cable {
   int listener_;
   int port_ = 0;
   std::atomic<bool> cut_{false};
+  std::atomic<bool> refuses_reads_{false};
+  std::atomic<bool> swallows_reads_{false};
   std::atomic<bool> ended_{false};
   std::vector<std::pair<int, int>> pairs_;
   std::thread thread_;

@@ -19,7 +19,9 @@ struct Failure {
   bool at_command = false;      ///< null is looked for in what was written, not at the valve
   bool spoils_reading = false;  ///< so that it does not say how far the rod went
   const char* more = kGuards;   ///< of the configuration
+  bool by_cable = false;        ///< the daemon reaches the rig by the cable
   bool goes_on = false;         ///< after kOutage_s, and the device's time-out is no help
+  std::vector<std::string> set{};
 };
 
 /// The tick before it is up to 5 ms older and the next one comes on the grid: 50 ms between the two
@@ -48,8 +50,21 @@ std::vector<Failure> failures() {
       {"position missing", [](Bench& b, Daemon&) { b.set("encoder_offset_m=50"); }, false, false,
        true},
       {"loop late, then back", [](Bench&, Daemon& d) { signal_daemon(d, SIGSTOP); }, false, false,
-       false, kGuards, true},
-      {"bus lost", [](Bench& b, Daemon&) { b.cable().cut(); }, true},
+       false, kGuards, false, true},
+      {"position missing", [](Bench& b, Daemon&) { b.cable().refuse_reads(); }, false, true, false,
+       kGuards, true},
+      {"position missing",
+       [](Bench& b, Daemon&) { b.cable().refuse_reads(); },
+       false,
+       true,
+       false,
+       kGuards,
+       true,
+       false,
+       {"--set", "modbus.stale_after_s=0.1"}},
+      {"readings stop", [](Bench& b, Daemon&) { b.cable().swallow_reads(); }, false, true, false,
+       kGuards, true},
+      {"bus lost", [](Bench& b, Daemon&) { b.cable().cut(); }, true, false, false, kGuards, true},
       {"process killed", [](Bench&, Daemon& d) { signal_daemon(d, SIGKILL); }, true},
       {"process stopped", [](Bench&, Daemon& d) { signal_daemon(d, SIGSTOP); }, true},
       {"guard e_stop", [](Bench& b, Daemon&) { b.set("e_stop=0"); }, false, true},
@@ -72,8 +87,9 @@ struct Trial {
 };
 
 Trial attempt(const Failure& failure, Bench& bench) {
-  std::vector<std::string> arguments = bench.arguments(failure.row == "bus lost");
+  std::vector<std::string> arguments = bench.arguments(failure.by_cable);
   if (failure.goes_on) arguments.insert(arguments.end(), {"--set", "modbus.watchdog_s=1"});
+  arguments.insert(arguments.end(), failure.set.begin(), failure.set.end());
   Daemon daemon(arguments);
   EXPECT_TRUE(bench.moves()) << failure.row << ": no motion";
   Trial trial;
@@ -115,6 +131,7 @@ TEST(NullMatrix, OnTheBenchRigOverModbusIsNeverWorseThanStated) {
     for (int i = 0; i < (failure.goes_on ? 5 : 1) && std::isnan(trial.measured.most_s); ++i) {
       Bench bench(failure.more);
       std::vector<std::string> check = bench.arguments();
+      check.insert(check.end(), failure.set.begin(), failure.set.end());
       check.emplace_back("--check");
       const Result table = run(check);
       ASSERT_EQ(table.exit_code, 0) << table.err;

@@ -113,6 +113,43 @@ TEST(Loop, LatchesWhenTheValveCannotBeWritten) {
   EXPECT_EQ(bench.last_V(), kFakeNull_V);
 }
 
+// A bus that is lost takes position and e-stop away in the same period as the valve.
+TEST(Loop, NamesTheLostBusAsTheCauseNotWhatCannotBeReadWithoutIt) {
+  for (const int max_bad : {0, 1, 3}) {
+    for (const bool write_fails : {true, false}) {
+      LoopConfig config;
+      config.max_bad_in_a_row = max_bad;
+      LoopBench bench(config);
+      const auto e_stop = std::make_shared<FakeInput>(1.0);
+      bench.inputs.push_back({"stop", hal::InputRole::e_stop, e_stop});
+      bench.run();
+      ASSERT_EQ(bench.state(), State::run);
+      e_stop->quality = bench.rig.quality = config::signals::Quality::bad;
+      bench.rig.write_good = !write_fails;
+      for (int i = 0; i < max_bad + 3; ++i) bench.tick();
+      EXPECT_EQ(bench.state(), State::latched);
+      EXPECT_EQ(bench.stats.trip.load(), write_fails ? Trip::write : Trip::e_stop_unread);
+      EXPECT_EQ(bench.stats.trip_guard.load(),
+                static_cast<int>(write_fails ? control::GuardKind::bus_lost
+                                             : control::GuardKind::e_stop));
+    }
+  }
+}
+
+TEST(Loop, KeepsThePressedEmergencyStopAsTheCauseWhenTheBusIsLostLater) {
+  LoopConfig config;
+  config.max_bad_in_a_row = 1;
+  LoopBench bench(config);
+  const auto e_stop = std::make_shared<FakeInput>(1.0);
+  bench.inputs.push_back({"stop", hal::InputRole::e_stop, e_stop});
+  bench.run();
+  e_stop->value = 0.0;
+  bench.tick();
+  bench.rig.write_good = false;
+  for (int i = 0; i < 5; ++i) bench.tick();
+  EXPECT_EQ(bench.stats.trip.load(), Trip::e_stop);
+}
+
 TEST(Loop, ResetLeadsToDisarmedNotBackToMotion) {
   LoopConfig config;
   config.max_bad_in_a_row = 0;

@@ -237,11 +237,13 @@ void Device::serve(const Client& client, const Bytes& head, const Bytes& request
   Bytes pdu = carry_out(request, client.number);
   if (how == Reply::busy) pdu = {static_cast<std::uint8_t>(request[0] | 0x80), 6};
   if (how == Reply::garbled) pdu[0] = static_cast<std::uint8_t>(pdu[0] ^ 0x15);
+  if (how == Reply::wrong_echo && (pdu[0] == 6 || pdu[0] == 16)) ++pdu[2];
   Bytes reply = head;
+  if (how == Reply::wrong_unit) ++reply[line_ == Line::tcp ? 6 : 0];
   if (line_ == Line::tcp) {
     if (how == Reply::wrong_transaction) reply[1] = static_cast<std::uint8_t>(reply[1] + 7);
     reply[4] = static_cast<std::uint8_t>((pdu.size() + 1) >> 8);
-    reply[5] = static_cast<std::uint8_t>(pdu.size() + 1);
+    reply[5] = static_cast<std::uint8_t>(how == Reply::no_length ? 0 : pdu.size() + 1);
   } else if (how == Reply::wrong_transaction) {
     reply[0] = static_cast<std::uint8_t>(reply[0] + 1);
   }

@@ -24,6 +24,9 @@ enum class Reply {
   wrong_transaction,  ///< the number of another request (RTU: of another unit)
   wrong_check,        ///< RTU: a CRC that is not that of the bytes
   busy,               ///< exception 6
+  wrong_unit,         ///< the number of another unit
+  wrong_echo,         ///< a write is confirmed for the next address
+  no_length,          ///< TCP: a header that says 0 bytes follow
   close               ///< the connection is closed instead
 };
 

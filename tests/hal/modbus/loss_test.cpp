@@ -40,8 +40,47 @@ INSTANTIATE_TEST_SUITE_P(Each, ModbusMisdeed,
                                          Misdeed{"Truncated", Reply::truncated},
                                          Misdeed{"Garbled", Reply::garbled},
                                          Misdeed{"OfAnotherTransaction", Reply::wrong_transaction},
+                                         Misdeed{"OfAnotherUnit", Reply::wrong_unit},
+                                         Misdeed{"WithoutLength", Reply::no_length},
                                          Misdeed{"Closed", Reply::close}),
                          [](const auto& test) { return test.param.name; });
+
+TEST(ModbusPollThread, TakesNoConfirmationOfAnotherAddress) {
+  for (const bool multiple : {false, true}) {
+    Device device;
+    device.set(kPosition, 100);
+    Stand stand(tcp(device, multiple ? "multiple_only = true\n" : ""), kNull_V);
+    ASSERT_TRUE(stand.turn_until(config::signals::Quality::good, 3.0));
+    const int before = device.connections();
+    device.only_function(multiple ? 16 : 6);
+    device.answer(Reply::wrong_echo, 1);
+    ASSERT_TRUE(eventually([&] {
+      stand.turn(3.0);
+      return device.connections() > before;
+    })) << "the connection has not been closed";
+    expect_null_first(device);
+  }
+}
+
+TEST(ModbusPollThread, AnExceptionOnAReadMakesItsReadingsMissingAtOnce) {
+  for (const bool combined : {false, true}) {
+    Device device;
+    device.set(kPosition, 100);
+    Stand stand(tcp(device, std::string("stale_after_s = 5.0\nbad_after_s = 10.0\n") +
+                                (combined ? "combined = true\n" : "")),
+                kNull_V);
+    ASSERT_TRUE(stand.turn_until(config::signals::Quality::good, 3.0));
+    device.only_function(combined ? 23 : 3);
+    device.answer(Reply::busy);
+    int turns = 0;
+    while (turns < 20 && stand.turn(3.0).quality != config::signals::Quality::bad) ++turns;
+    // One under way, one that brings the exception.
+    EXPECT_LE(turns, 5) << "an old position counts as one";
+    EXPECT_EQ(device.connections(), 1) << "the connection is intact";
+    device.answer(Reply::normal);
+    EXPECT_TRUE(stand.turn_until(config::signals::Quality::good, 3.0));
+  }
+}
 
 TEST(ModbusPollThread, TurnsBadWithinATimeOutAndStaysSoWhileNothingAnswers) {
   Device device;

@@ -43,7 +43,7 @@ TEST(ModbusRtu, Function23) {
 
 TEST(ModbusRtu, BeginsAgainWithNullAfterABadReply) {
   for (const Reply reply : {Reply::lost, Reply::wrong_check, Reply::truncated, Reply::garbled,
-                            Reply::wrong_transaction, Reply::late}) {
+                            Reply::wrong_transaction, Reply::wrong_echo, Reply::late}) {
     Device device(Device::Line::rtu);
     Stand stand(rtu(device), kNull_V);
     ASSERT_TRUE(eventually([&] {
