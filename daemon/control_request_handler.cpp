@@ -43,58 +43,88 @@ ControlRequestHandler::ControlRequestHandler(const Parts& parts, Identity identi
 
 bool ControlRequestHandler::serve(io::ControlSocket& socket) {
   for (int n = 0; n < kRequestsPerCall; ++n) {
-    if (waits_for_ != WaitsFor::nothing) {
-      const std::string line = waits_for_ == WaitsFor::loop       ? poll_loop_answer()
-                               : waits_for_ == WaitsFor::detector ? poll_alarm_answer()
-                                                                  : poll_reload_answer();
-      if (line.empty()) return true;
-      waits_for_ = WaitsFor::nothing;
-      socket.answer(request_.client, line);
-    }
-    if (!socket.next(request_)) return false;
-    const std::string line = handle(io::parse_request(request_.line));
-    if (!line.empty()) socket.answer(request_.client, line);
+    poll_answers(socket);
+    io::ControlSocket::Request request;
+    const auto free = [this](const io::ControlRequest& content) { return accepts(content); };
+    if (!socket.next(request, free)) return loop_ || detector_ || reloader_;
+    const std::string line = handle(request);
+    if (!line.empty()) socket.answer(request.client, line);
   }
   return true;
 }
 
-std::string ControlRequestHandler::reject(const std::string& why) {
-  audit(why);
-  return io::print_rejected(state(), why);
+void ControlRequestHandler::poll_answers(io::ControlSocket& socket) {
+  const auto poll = [&](Outstanding& outstanding, auto answer_of) {
+    if (!outstanding) return;
+    const std::string line = (this->*answer_of)(*outstanding);
+    if (line.empty()) return;
+    socket.answer(outstanding->request.client, line);
+    outstanding.reset();
+  };
+  poll(loop_, &ControlRequestHandler::poll_loop_answer);
+  poll(detector_, &ControlRequestHandler::poll_alarm_answer);
+  poll(reloader_, &ControlRequestHandler::poll_reload_answer);
 }
 
-void ControlRequestHandler::audit(const std::string& reject_reason) {
-  if (!is_command_ || parts_.audit == nullptr) return;
-  parts_.audit->note({parts_.clock.utc_us(), request_.uid, io::user_name(request_.uid),
-                      request_.line, reject_reason});
-}
-
-std::string ControlRequestHandler::handle(const io::ControlRequest& request) {
-  if (request.kind == Kind::bad) return io::print_rejected(state(), request.wrong);
-  is_command_ = request.kind != Kind::status && request.kind != Kind::alarms;
-  if (request.kind == Kind::status) return io::print_status(status());
-  if (is_command_ && !request_.may_act) {
-    return reject(
-        "not permitted: read-only access; commands are reserved for the daemon's user, root and "
-        "members of [control] act_group (default: group)");
-  }
+bool ControlRequestHandler::accepts(const io::ControlRequest& request) const noexcept {
   switch (request.kind) {
+    case Kind::status:
+    case Kind::note:
+    case Kind::bad:
+      return true;
     case Kind::alarms:
     case Kind::acknowledge:
     case Kind::shelve:
     case Kind::unshelve:
-      return send_to_detector(request);
+      return !detector_;
     case Kind::reload:
-      return begin_reload();
-    case Kind::note:
-      audit("");
-      return io::print_done(state());
+      return !reloader_;
     default:
-      return send_to_loop(request);
+      return !loop_;
   }
 }
 
-std::string ControlRequestHandler::send_to_loop(const io::ControlRequest& request) {
+std::string ControlRequestHandler::reject(const Pending& pending, const std::string& why) {
+  audit(pending, why);
+  return io::print_rejected(state(), why);
+}
+
+void ControlRequestHandler::audit(const Pending& pending, const std::string& reject_reason) {
+  if (!pending.is_command || parts_.audit == nullptr) return;
+  const io::ControlSocket::Request& request = pending.request;
+  parts_.audit->note({parts_.clock.utc_us(), request.uid, io::user_name(request.uid), request.line,
+                      reject_reason, request.may_act});
+}
+
+std::string ControlRequestHandler::handle(const io::ControlSocket::Request& request) {
+  const Kind kind = request.content.kind;
+  if (kind == Kind::bad) return io::print_rejected(state(), request.content.wrong);
+  if (kind == Kind::status) return io::print_status(status());
+  Pending pending{request, kind != Kind::alarms};
+  if (pending.is_command && !request.may_act) {
+    return reject(
+        pending,
+        "not permitted: read-only access; commands are reserved for the daemon's user, root and "
+        "members of [control] act_group (default: group)");
+  }
+  switch (kind) {
+    case Kind::alarms:
+    case Kind::acknowledge:
+    case Kind::shelve:
+    case Kind::unshelve:
+      return send_to_detector(pending);
+    case Kind::reload:
+      return begin_reload(pending);
+    case Kind::note:
+      audit(pending, "");
+      return io::print_done(state());
+    default:
+      return send_to_loop(pending);
+  }
+}
+
+std::string ControlRequestHandler::send_to_loop(const Pending& pending) {
+  const io::ControlRequest& request = pending.request.content;
   rt::LoopCommand command;
   command.kind = request.kind == Kind::event  ? rt::LoopCommand::Kind::event
                  : request.kind == Kind::sine ? rt::LoopCommand::Kind::sine
@@ -106,31 +136,35 @@ std::string ControlRequestHandler::send_to_loop(const io::ControlRequest& reques
   const std::int64_t now_ns = parts_.clock.now_ns();
   command.expires_ns = now_ns + kCommandLife_ns;
   command.number = ++number_;
-  if (!parts_.commands.push(command)) return reject("the loop's command queue is full");
-  waits_for_ = WaitsFor::loop;
-  deadline_ns_ = now_ns + kLoopTimeout_ns;
+  if (!parts_.commands.push(command)) return reject(pending, "the loop's command queue is full");
+  loop_ = pending;
+  loop_->number = command.number;
+  loop_->deadline_ns = now_ns + kLoopTimeout_ns;
   return "";
 }
 
-std::string ControlRequestHandler::send_to_detector(const io::ControlRequest& request) {
+std::string ControlRequestHandler::send_to_detector(const Pending& pending) {
   using CommandKind = detection::AlarmCommand::Kind;
+  const io::ControlRequest& request = pending.request.content;
   detection::AlarmCommand command;
   command.kind = request.kind == Kind::alarms     ? CommandKind::list
                  : request.kind == Kind::shelve   ? CommandKind::shelve
                  : request.kind == Kind::unshelve ? CommandKind::unshelve
                  : request.alarm.empty()          ? CommandKind::acknowledge_all
                                                   : CommandKind::acknowledge;
-  acknowledges_rod_ = request.kind == Kind::acknowledge &&
-                      (request.alarm.empty() || detection::RodAlarms::is_one(request.alarm));
   command.alarm = request.alarm;
   command.time_s = request.time_s;
-  if (is_command_) command.who = io::user_name(request_.uid);
+  if (pending.is_command) command.who = io::user_name(pending.request.uid);
   command.number = ++number_;
   if (parts_.alarm_commands == nullptr || !parts_.alarm_commands->push(command)) {
-    return reject("the detector's command queue is full or missing");
+    return reject(pending, "the detector's command queue is full or missing");
   }
-  waits_for_ = WaitsFor::detector;
-  deadline_ns_ = parts_.clock.now_ns() + kDetectorTimeout_ns;
+  detector_ = pending;
+  detector_->number = command.number;
+  detector_->acknowledges_rod =
+      request.kind == Kind::acknowledge &&
+      (request.alarm.empty() || detection::RodAlarms::is_one(request.alarm));
+  detector_->deadline_ns = parts_.clock.now_ns() + kDetectorTimeout_ns;
   return "";
 }
 
@@ -141,28 +175,28 @@ void ControlRequestHandler::readmit_rods() {
   parts_.commands.push(command);
 }
 
-std::string ControlRequestHandler::poll_loop_answer() {
+std::string ControlRequestHandler::poll_loop_answer(const Pending& pending) {
   const control::CommandAnswer answer =
       control::unpack(parts_.stats.answer.load(std::memory_order_acquire));
-  if (answer.number == number_) {
+  if (answer.number == pending.number) {
     const std::string reject_reason =
         answer.reject_reason == RejectReason::none ? "" : explain(answer);
-    audit(reject_reason);
+    audit(pending, reject_reason);
     return reject_reason.empty() ? io::print_done(answer.state)
                                  : io::print_rejected(answer.state, reject_reason);
   }
-  if (parts_.clock.now_ns() <= deadline_ns_) return "";
-  return reject("the loop does not answer; the command has expired");
+  if (parts_.clock.now_ns() <= pending.deadline_ns) return "";
+  return reject(pending, "the loop does not answer; the command has expired");
 }
 
-std::string ControlRequestHandler::poll_alarm_answer() {
+std::string ControlRequestHandler::poll_alarm_answer(const Pending& pending) {
   std::shared_ptr<const detection::AlarmAnswer> answer;
   while (parts_.alarm_answers->pop(answer)) {
-    if (answer->number != number_) continue;  // late answer to an abandoned command
-    if (!answer->reject_reason.empty()) return reject(answer->reject_reason);
-    audit("");
-    if (is_command_) {
-      if (acknowledges_rod_) readmit_rods();
+    if (answer->number != pending.number) continue;  // late answer to an abandoned command
+    if (!answer->reject_reason.empty()) return reject(pending, answer->reject_reason);
+    audit(pending, "");
+    if (pending.is_command) {
+      if (pending.acknowledges_rod) readmit_rods();
       return io::print_acted(state(), answer->done);
     }
     std::vector<io::ControlAlarm> alarms;
@@ -171,29 +205,29 @@ std::string ControlRequestHandler::poll_alarm_answer() {
     }
     return io::print_alarms(state(), alarms);
   }
-  if (parts_.clock.now_ns() <= deadline_ns_) return "";
-  return reject("the detector does not answer; the command may still take effect");
+  if (parts_.clock.now_ns() <= pending.deadline_ns) return "";
+  return reject(pending, "the detector does not answer; the command may still take effect");
 }
 
-std::string ControlRequestHandler::begin_reload() {
-  if (parts_.reloader == nullptr || !parts_.reloader->begin(request_.uid, request_.line)) {
-    return reject("a reload is already in progress");
+std::string ControlRequestHandler::begin_reload(const Pending& pending) {
+  if (parts_.reloader == nullptr ||
+      !parts_.reloader->begin(pending.request.uid, pending.request.line)) {
+    return reject(pending, "a reload is already in progress");
   }
-  waits_for_ = WaitsFor::reloader;
-  deadline_ns_ = parts_.clock.now_ns() + kDetectorTimeout_ns;
-  return poll_reload_answer();
+  reloader_ = pending;
+  reloader_->deadline_ns = parts_.clock.now_ns() + kDetectorTimeout_ns;
+  return "";
 }
 
-std::string ControlRequestHandler::poll_reload_answer() {
+std::string ControlRequestHandler::poll_reload_answer(const Pending& pending) {
   parts_.reloader->poll();
   if (!parts_.reloader->busy()) {
-    waits_for_ = WaitsFor::nothing;
     const ReloadOutcome& outcome = parts_.reloader->last();
     if (!outcome.reject_reason.empty()) return io::print_rejected(state(), outcome.reject_reason);
     return io::print_reloaded(state(), {parts_.reloader->config_hash(), outcome.changed,
                                         outcome.warm, outcome.cold, outcome.ended});
   }
-  if (parts_.clock.now_ns() <= deadline_ns_) return "";
+  if (parts_.clock.now_ns() <= pending.deadline_ns) return "";
   return io::print_rejected(state(),
                             "the detector has not applied the new rules yet; it may still do so");
 }

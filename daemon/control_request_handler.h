@@ -1,8 +1,10 @@
 // Forwards requests from the control socket: commands to the loop, alarm commands to the detector,
-// reloads to the reloader, one at a time, and returns their answers. Runs on the main thread.
+// reloads to the reloader, and returns their answers. Each of the three has one request at a time:
+// a command to the loop never waits for the detector. Runs on the main thread.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,21 +52,33 @@ class ControlRequestHandler {
   bool serve(io::ControlSocket& socket);
 
  private:
-  enum class WaitsFor : std::uint8_t { nothing, loop, detector, reloader };
+  /// A request that another thread answers.
+  struct Pending {
+    io::ControlSocket::Request request;
+    bool is_command = false;        ///< the request changes something
+    bool acknowledges_rod = false;  ///< the request may acknowledge a rod sensor's alarm
+    std::uint32_t number = 0;       ///< of the command
+    std::int64_t deadline_ns = 0;
+  };
+  using Outstanding = std::optional<Pending>;
 
+  /// Whether the thread that answers such a request is free.
+  [[nodiscard]] bool accepts(const io::ControlRequest& request) const noexcept;
+  /// Returns the answers that have come.
+  void poll_answers(io::ControlSocket& socket);
   /// The answer, or an empty string when another thread will provide it.
-  [[nodiscard]] std::string handle(const io::ControlRequest& request);
-  [[nodiscard]] std::string send_to_loop(const io::ControlRequest& request);
-  [[nodiscard]] std::string send_to_detector(const io::ControlRequest& request);
-  [[nodiscard]] std::string begin_reload();
+  [[nodiscard]] std::string handle(const io::ControlSocket::Request& request);
+  [[nodiscard]] std::string send_to_loop(const Pending& pending);
+  [[nodiscard]] std::string send_to_detector(const Pending& pending);
+  [[nodiscard]] std::string begin_reload(const Pending& pending);
   /// An empty string while there is no answer.
-  [[nodiscard]] std::string poll_loop_answer();
-  [[nodiscard]] std::string poll_alarm_answer();
-  [[nodiscard]] std::string poll_reload_answer();
-  /// Audits the rejection of the current request and returns its answer.
-  [[nodiscard]] std::string reject(const std::string& why);
-  /// Writes the current command to the audit file.
-  void audit(const std::string& reject_reason);
+  [[nodiscard]] std::string poll_loop_answer(const Pending& pending);
+  [[nodiscard]] std::string poll_alarm_answer(const Pending& pending);
+  [[nodiscard]] std::string poll_reload_answer(const Pending& pending);
+  /// Audits the rejection of a request and returns its answer.
+  [[nodiscard]] std::string reject(const Pending& pending, const std::string& why);
+  /// Writes a command to the audit file.
+  void audit(const Pending& pending, const std::string& reject_reason);
   [[nodiscard]] std::string explain(const control::CommandAnswer& answer) const;
   [[nodiscard]] std::string obstacle() const;
   [[nodiscard]] io::ControlStatus status() const;
@@ -77,12 +91,10 @@ class ControlRequestHandler {
 
   Parts parts_;
   Identity identity_;
-  std::uint32_t number_ = 0;  ///< number of the newest command
-  WaitsFor waits_for_ = WaitsFor::nothing;
-  io::ControlSocket::Request request_{};  ///< the current one
-  bool is_command_ = false;               ///< the request changes something
-  bool acknowledges_rod_ = false;         ///< the request may acknowledge a rod sensor's alarm
-  std::int64_t deadline_ns_ = 0;          ///< for the outstanding answer
+  std::uint32_t number_ = 0;  ///< of the newest command
+  Outstanding loop_;
+  Outstanding detector_;
+  Outstanding reloader_;
 };
 
 }  // namespace monitor

@@ -1,10 +1,13 @@
 // The audit trail: one JSON line per operator command, executed or rejected, appended to
-// FOLDER/audit.log. At its size limit the file replaces audit.log.1.
+// FOLDER/audit.log; commands of users who may only query go to refused.log. At its size limit a
+// file replaces its predecessor, audit.log.1 or refused.log.1. Rejections of one user are written
+// at a limited rate; the next line of that user counts those left out ("not_listed").
 #pragma once
 
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -19,6 +22,8 @@ struct AuditEntry {
   std::string who;            ///< user name
   std::string what;           ///< the request as received
   std::string reject_reason;  ///< empty: executed
+  bool may_act = true;
+  std::int64_t not_listed = 0;  ///< earlier rejections of this user that have no line
 };
 
 /// One line, newline included.
@@ -28,11 +33,15 @@ class Audit {
  public:
   /// `writer` must outlive this object; it also writes what is still queued then.
   Audit(const std::filesystem::path& folder, std::int64_t file_bytes, BackgroundWriter& writer);
+  /// Writes the counts of rejections that have no line yet.
+  ~Audit();
+  Audit(const Audit&) = delete;
+  Audit& operator=(const Audit&) = delete;
 
   /// Does not block on the disk.
-  void note(const AuditEntry& entry);
+  void note(AuditEntry entry);
   /// Lines that could not be written.
-  [[nodiscard]] std::int64_t lost() const noexcept { return file_->lost; }
+  [[nodiscard]] std::int64_t lost() const noexcept { return acts_->lost + refused_->lost; }
 
  private:
   /// Shared with the writer's jobs.
@@ -46,7 +55,21 @@ class Audit {
     void append(const std::string& line) noexcept;
   };
 
-  std::shared_ptr<File> file_;
+  /// Rejections of one user.
+  struct Rejections {
+    double allowed;
+    std::int64_t utc_us;  ///< of the newest one
+    std::int64_t not_listed = 0;
+    std::string who;
+    bool may_act = true;
+  };
+  /// Whether this rejection gets a line.
+  bool lists(const AuditEntry& entry);
+  void write(const AuditEntry& entry);
+
+  std::shared_ptr<File> acts_;
+  std::shared_ptr<File> refused_;
+  std::map<unsigned, Rejections> rejections_;  ///< by uid
   BackgroundWriter& writer_;
 };
 

@@ -11,10 +11,13 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
+#include <tuple>
 
 #include "config/schema/error.h"
 #include "daemon/control/protocol.h"
+#include "hal/monotonic.h"
 
 namespace monitor::io {
 namespace {
@@ -23,7 +26,15 @@ using config::schema::bad_config;
 using config::schema::RunError;
 
 constexpr gid_t kNoGroup = static_cast<gid_t>(-1);
-constexpr std::size_t kMaxClients = 16;
+/// Connections of those who may command, and of those who may only query.
+constexpr std::size_t kMaxActing = 16;
+constexpr std::size_t kMaxLooking = 16;
+constexpr int kBacklog = 128;
+constexpr int kAcceptedAtOnce = 32;
+/// Requests of one user who may only query: a live view asks a few times a second.
+constexpr double kLooksPerSecond = 50.0;
+constexpr double kMostLooks = 20.0;
+constexpr std::size_t kMostAllowances = 1000;
 constexpr std::size_t kMaxPath = sizeof(sockaddr_un::sun_path) - 1;
 constexpr std::size_t kMaxGroups = 65536;
 
@@ -155,7 +166,7 @@ ControlSocket::ControlSocket(const ControlConfig& config, const std::string& fil
     throw fail(place + " cannot be made", errno);
   }
   if ((group_ != kNoGroup && chown(path_.c_str(), static_cast<uid_t>(-1), group_) != 0) ||
-      chmod(path_.c_str(), mode_of(config.mode, file)) != 0 || listen(listener_, 8) != 0) {
+      chmod(path_.c_str(), mode_of(config.mode, file)) != 0 || listen(listener_, kBacklog) != 0) {
     const int error = errno;
     unlink(path_.c_str());
     throw fail(place + " cannot be given to group \"" + config.group + "\"", error);
@@ -172,6 +183,10 @@ ControlSocket::~ControlSocket() {
 void ControlSocket::wait(int timeout_ms, int other) {
   std::vector<pollfd> files{{other, POLLIN, 0}, {listener_, POLLIN, 0}};
   for (const Client& client : clients_) {
+    if (client.head && !client.asking && !client.may_act) {
+      const int due_ms = static_cast<int>(std::ceil(1e3 * wait_s(client.uid)));
+      timeout_ms = std::min(timeout_ms, due_ms);
+    }
     const bool reads = !client.asking && client.in.size() <= control::kMaxLine;
     files.push_back({client.file,
                      static_cast<short>((reads ? POLLIN : 0) | (client.out.empty() ? 0 : POLLOUT)),
@@ -188,22 +203,62 @@ void ControlSocket::wait(int timeout_ms, int other) {
 }
 
 void ControlSocket::accept_clients() {
-  const int file = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
-  if (file < 0) return;
-  // The longest silent client makes room.
-  if (clients_.size() >= kMaxClients) {
-    const auto idle = std::find_if(clients_.begin(), clients_.end(),
-                                   [](const Client& client) { return !client.asking; });
-    if (idle == clients_.end()) {
+  for (int i = 0; i < kAcceptedAtOnce; ++i) {
+    const int file = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+    if (file < 0) return;
+    const ucred peer = peer_of(file);
+    const bool acts = may_act(file, peer, act_group_);
+    if (!make_room(acts)) {
       close(file);
-      return;
+      continue;
     }
-    idle->gone = true;
-    drop_gone();
+    clients_.push_back({next_id_++, file, acts, peer.uid, false, ++turn_, 0, {}, {}, {}, false});
   }
-  const ucred peer = peer_of(file);
-  clients_.push_back(
-      {next_id_++, file, may_act(file, peer, act_group_), peer.uid, false, {}, {}, false});
+}
+
+bool ControlSocket::make_room(bool may_act) {
+  std::map<unsigned, std::size_t> of_user;
+  std::size_t count = 0;
+  for (const Client& client : clients_) {
+    if (client.may_act != may_act) continue;
+    ++count;
+    ++of_user[client.uid];
+  }
+  if (count < (may_act ? kMaxActing : kMaxLooking)) return true;
+  // The longest silent one of the user with the most connections.
+  Client* silent = nullptr;
+  const auto order = [&](const Client& client) {
+    return std::tuple(-static_cast<std::ptrdiff_t>(of_user[client.uid]), client.heard);
+  };
+  for (Client& client : clients_) {
+    if (client.may_act != may_act || client.asking) continue;
+    if (silent == nullptr || order(client) < order(*silent)) silent = &client;
+  }
+  if (silent == nullptr) return false;
+  silent->gone = true;
+  drop_gone();
+  return true;
+}
+
+ControlSocket::Urgency ControlSocket::urgency_of(const Client& client) noexcept {
+  using Kind = ControlRequest::Kind;
+  if (!client.may_act) return Urgency::look;
+  const ControlRequest& request = *client.head;
+  if (request.kind == Kind::event) {
+    return request.event == control::Event::stop || request.event == control::Event::disarm
+               ? Urgency::stop
+               : Urgency::loop;
+  }
+  return request.kind == Kind::hold || request.kind == Kind::sine ? Urgency::loop : Urgency::act;
+}
+
+double ControlSocket::wait_s(unsigned uid) {
+  const std::int64_t now_ns = hal::monotonic_ns();
+  if (allowances_.size() > kMostAllowances) allowances_.clear();
+  Allowance& allowance = allowances_.try_emplace(uid, Allowance{kMostLooks, now_ns}).first->second;
+  const double passed_s = static_cast<double>(now_ns - allowance.since_ns) * 1e-9;
+  allowance = {std::min(kMostLooks, allowance.requests + passed_s * kLooksPerSecond), now_ns};
+  return std::max(0.0, (1.0 - allowance.requests) / kLooksPerSecond);
 }
 
 void ControlSocket::read(Client& client) {
@@ -211,6 +266,8 @@ void ControlSocket::read(Client& client) {
   const ssize_t n = recv(client.file, bytes, sizeof bytes, 0);
   if (n > 0) {
     client.in.append(bytes, static_cast<std::size_t>(n));
+    client.heard = ++turn_;
+    find_head(client);
     const bool endless =
         client.in.size() > control::kMaxLine && client.in.find('\n') == std::string::npos;
     client.gone = client.gone || endless;
@@ -235,16 +292,33 @@ void ControlSocket::drop_gone() {
   std::erase_if(clients_, [](const Client& client) { return client.gone; });
 }
 
-bool ControlSocket::next(Request& request) {
-  for (Client& client : clients_) {
-    const std::size_t end = client.in.find('\n');
-    if (client.asking || end == std::string::npos) continue;
-    request = {client.id, client.in.substr(0, end), client.may_act, client.uid};
-    client.in.erase(0, end + 1);
-    client.asking = true;
-    return true;
+void ControlSocket::find_head(Client& client) {
+  const std::size_t end = client.in.find('\n');
+  if (!client.head && end != std::string::npos) {
+    client.head = parse_request(client.in.substr(0, end));
   }
-  return false;
+}
+
+bool ControlSocket::next(Request& request, const Accepts& accepts) {
+  Client* first = nullptr;
+  const auto order = [](const Client& client) {
+    return std::tuple(urgency_of(client), client.served);
+  };
+  for (Client& client : clients_) {
+    if (client.asking || !client.head || (accepts && !accepts(*client.head))) continue;
+    if (!client.may_act && wait_s(client.uid) > 0.0) continue;
+    if (first == nullptr || order(client) < order(*first)) first = &client;
+  }
+  if (first == nullptr) return false;
+  if (!first->may_act) allowances_.at(first->uid).requests -= 1.0;
+  const std::size_t end = first->in.find('\n');
+  request = {first->id, first->in.substr(0, end), first->may_act, first->uid, *first->head};
+  first->in.erase(0, end + 1);
+  first->head.reset();
+  find_head(*first);
+  first->asking = true;
+  first->served = ++turn_;
+  return true;
 }
 
 void ControlSocket::answer(std::uint64_t id, const std::string& line) {

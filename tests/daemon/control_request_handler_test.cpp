@@ -131,6 +131,28 @@ TEST_F(ControlRequestHandlerTest, SaysWhatToDoInsteadOfARejectedCommand) {
   EXPECT_THAT(serve(), HasSubstr(R"("reason":"not possible in state DISARMED: arm first")"));
 }
 
+// A detector that hangs must not keep a stop from the loop.
+TEST_F(ControlRequestHandlerTest, PassesAStopOnWhileTheDetectorOwesAnAnswer) {
+  send(R"({"command": "alarms"})");
+  EXPECT_EQ(serve(), "");
+  const int other = ::socket(AF_UNIX, SOCK_STREAM, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  (folder_ / "s").string().copy(address.sun_path, sizeof address.sun_path - 1);
+  ASSERT_EQ(::connect(other, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  const std::string line = "{\"command\": \"stop\"}\n";
+  ASSERT_EQ(::send(other, line.data(), line.size(), MSG_NOSIGNAL),
+            static_cast<ssize_t>(line.size()));
+  EXPECT_EQ(serve(), "");
+  const rt::LoopCommand command = next_command();
+  EXPECT_EQ(command.event, control::Event::stop);
+  answer(command.number, RejectReason::none, State::armed);
+  EXPECT_EQ(serve(), "");
+  char bytes[256];
+  EXPECT_GT(::recv(other, bytes, sizeof bytes, MSG_DONTWAIT), 0);
+  ::close(other);
+}
+
 TEST_F(ControlRequestHandlerTest, NamesTheGuardThatRejectsACommand) {
   send(R"({"command": "arm"})");
   EXPECT_EQ(serve(), "");

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "config/messages/handler.h"
+#include "config/messages/udp_receiver.h"
 
 namespace lcm {
 class LCM;
@@ -53,10 +54,15 @@ class ListenFeed {
 
   static void received(const lcm::ReceiveBuffer* buffer, const std::string& channel,
                        ListenFeed* feed);
+  void take(const std::string& channel, const void* data, int size);
+  /// Waits for one message. False when there is none within the time.
+  bool handle(std::chrono::milliseconds timeout, bool& more);
   void follow(const std::string& channel, std::int64_t run_id, std::int64_t seq);
   void watch();
   void tell_losses();
 
+  const bool with_samples_;
+  std::unique_ptr<config::messages::UdpReceiver> udp_;  ///< else:
   std::unique_ptr<lcm::LCM> lcm_;
   const std::string prefix_;
   const bool is_log_;

@@ -57,7 +57,7 @@ void OnlineResidual::add(std::int64_t tick, double sample_time_s, double u_V, do
   ensemble_->advance(held_V, sample_time_s_);
   ++in_segment_;
   samples_.push_back({tick, u_V, y_m, settles ? kNaN : error_m, starts});
-  const auto most = std::llround(kLong_s / sample_time_s_);
+  const auto most = std::max(1LL, std::llround(kLong_s / sample_time_s_));
   while (samples_.back().tick - samples_.front().tick >= most) samples_.pop_front();
 }
 

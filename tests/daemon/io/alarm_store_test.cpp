@@ -154,6 +154,31 @@ TEST_F(AlarmFiles, AreWrittenAlsoWhenWhoAskedForItIsGone) {
   EXPECT_THAT(text_of(folder_ / "audit.log"), HasSubstr("ann"));
 }
 
+TEST_F(AlarmFiles, AuditKeepsItsActsWhenRejectionsFloodIt) {
+  for (const bool may_act : {true, false}) {
+    BackgroundWriter writer;
+    {
+      Audit audit(folder_, 1 << 14, writer);
+      for (int i = 0; i < 5; ++i)
+        audit.note({1'000'000LL * i, 0, "root", "{\"command\":\"arm\"}", ""});
+      for (int i = 0; i < 20000; ++i) {
+        audit.note({10'000'000LL + i, 65534, "nobody", std::string(500, 'x'), "no", may_act});
+      }
+    }
+    writer.finish();
+    const std::string acts = text_of(folder_ / "audit.log") + text_of(folder_ / "audit.log.1");
+    std::size_t arms = 0;
+    for (std::size_t at = 0; (at = acts.find("arm", at)) != std::string::npos; ++at) ++arms;
+    EXPECT_EQ(arms, 5U) << "may act: " << may_act;
+    const std::string refused = may_act ? acts : text_of(folder_ / "refused.log");
+    EXPECT_THAT(refused, HasSubstr("\"not_listed\":19980")) << "none goes uncounted";
+    if (!may_act) {
+      EXPECT_THAT(acts, testing::Not(HasSubstr("nobody")));
+    }
+    std::filesystem::remove(folder_ / "audit.log");
+  }
+}
+
 TEST_F(AlarmFiles, AuditHasALineForEachActAndStaysWithinItsSize) {
   BackgroundWriter writer;
   Audit audit(folder_, 4096, writer);

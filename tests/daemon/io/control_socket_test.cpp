@@ -9,7 +9,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <fcntl.h>
 #include <cerrno>
+#include <chrono>
 #include <fstream>
 
 #include "config/schema/error.h"
@@ -263,6 +265,128 @@ TEST_F(ControlSocketTest, LetsMembersOfItsGroupLookAndThoseOfAnotherActWhenOneIs
     socket.wait(20, never_[0]);
     EXPECT_FALSE(socket.next(request));
   }
+}
+
+/// Another user who pipelines a request without reading the answers, until told to end.
+class Flood {
+ public:
+  Flood(const std::string& path, const std::string& line) {
+    EXPECT_EQ(::pipe(end_), 0);
+    child_ = ::fork();
+    if (child_ != 0) return;
+    ::fcntl(end_[0], F_SETFL, O_NONBLOCK);
+    ::close(end_[1]);
+    const bool ready = ::setgid(65534) == 0 && ::setuid(65534) == 0;
+    std::string lines;
+    for (int i = 0; i < 50; ++i) lines += line + '\n';
+    std::vector<int> files(20, -1);
+    char byte = 0;
+    while (ready && ::read(end_[0], &byte, 1) < 0) {
+      for (int& file : files) {
+        if (file < 0) {
+          file = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0);
+          sockaddr_un address{};
+          address.sun_family = AF_UNIX;
+          path.copy(address.sun_path, sizeof address.sun_path - 1);
+          (void)!::connect(file, reinterpret_cast<sockaddr*>(&address), sizeof address);
+        }
+        const ssize_t sent = ::send(file, lines.data(), lines.size(), MSG_NOSIGNAL);
+        if (sent >= 0 || errno == EAGAIN) continue;
+        ::close(file);
+        file = -1;
+      }
+      ::usleep(200);
+    }
+    ::_exit(0);
+  }
+  ~Flood() {
+    ::close(end_[0]);
+    ::close(end_[1]);
+    ::waitpid(child_, nullptr, 0);
+  }
+  Flood(const Flood&) = delete;
+  Flood& operator=(const Flood&) = delete;
+
+ private:
+  int end_[2];
+  pid_t child_;
+};
+
+TEST_F(ControlSocketTest, ServesThoseWhoMayActFirstAndLookersAtARate) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can become another user";
+  config_.mode = "0666";
+  std::filesystem::permissions(folder_, std::filesystem::perms(0755));
+  ControlSocket socket(config_, "rig.toml");
+  const Flood flood(config_.socket, R"({"command": "status"})");
+  ControlSocket::Request request;
+  ASSERT_TRUE(comes(socket, request));
+  socket.answer(request.client, "{}");
+  const auto start = std::chrono::steady_clock::now();
+  const auto passed_s = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  int looks = 0;
+  int stops = 0;
+  int own = -1;
+  while (passed_s() < 2.0) {
+    if (own < 0) {
+      own = connect();
+      ASSERT_GE(own, 0);
+      say(own, "{\"command\": \"status\"}\n");
+      const int stop = connect();
+      say(stop, "{\"command\": \"stop\"}\n");
+      // Both wait here when next() is asked.
+      for (int i = 0; i < 200 && !socket.next(request,
+                                              [](const ControlRequest& r) {
+                                                return r.kind == ControlRequest::Kind::event;
+                                              });
+           ++i) {
+        socket.wait(1, never_[0]);
+      }
+      ASSERT_TRUE(request.may_act);
+      ASSERT_EQ(request.content.event, control::Event::stop);
+      socket.answer(request.client, "{}");
+      EXPECT_EQ(hear(stop), "{}\n");
+      ::close(stop);
+      ++stops;
+    }
+    socket.wait(1, never_[0]);
+    while (socket.next(request)) {
+      if (request.may_act) {
+        ::close(own);
+        own = -1;
+      } else {
+        ++looks;
+      }
+      socket.answer(request.client, "{}");
+    }
+  }
+  if (own >= 0) ::close(own);
+  EXPECT_GT(stops, 20);
+  EXPECT_GT(looks, 20) << "a looker is served too";
+  EXPECT_LE(looks, 150) << "50 a second and a burst of 20";
+}
+
+TEST_F(ControlSocketTest, GivesTurnsToClientsAndAStopTheFirst) {
+  ControlSocket socket(config_, "rig.toml");
+  const int greedy = connect();
+  const int modest = connect();
+  const int late = connect();
+  look(socket);
+  say(greedy, "{\"command\": \"status\"}\n{\"command\": \"status\"}\n{\"command\": \"arm\"}\n");
+  say(modest, "{\"command\": \"alarms\"}\n");
+  look(socket);
+  ControlSocket::Request request;
+  ASSERT_TRUE(socket.next(request));
+  EXPECT_EQ(request.content.kind, ControlRequest::Kind::status);
+  socket.answer(request.client, "{}");
+  ASSERT_TRUE(socket.next(request));
+  EXPECT_EQ(request.content.kind, ControlRequest::Kind::alarms) << "the other one's turn";
+  say(late, "{\"command\": \"stop\"}\n");
+  look(socket);
+  ASSERT_TRUE(socket.next(request));
+  EXPECT_EQ(request.content.event, control::Event::stop);
+  for (const int file : {greedy, modest, late}) ::close(file);
 }
 
 }  // namespace
