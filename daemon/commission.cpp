@@ -77,7 +77,7 @@ using control::Stage;
 /// Replaces the file atomically.
 void write_whole(const std::filesystem::path& file, const std::string& content) {
   const std::string part = file.string() + ".part";
-  const int fd = open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  const int fd = open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0644);
   const bool written =
       fd >= 0 &&
       write(fd, content.data(), content.size()) == static_cast<ssize_t>(content.size()) &&

@@ -1,13 +1,12 @@
 #include "daemon/detection_config.h"
 
 #include <algorithm>
-#include <fstream>
 #include <map>
-#include <sstream>
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "config/schema/flat_visitor.h"
+#include "config/schema/read_file.h"
 #include "estimator/fdi/snapshot.h"
 
 namespace monitor {
@@ -109,11 +108,10 @@ std::vector<io::EvidenceFile> evidence_files(DaemonConfig& config,
   for (const config::schema::FlatTable& table : flatten(config)) {
     for (const config::schema::FlatField& field : table.fields) {
       if (field.path.empty() || field.evidence_copy.empty()) continue;
-      std::ifstream in(config.folder / field.path, std::ios::binary);
-      if (!in) continue;
-      std::ostringstream text;
-      text << in.rdbuf();
-      files.push_back({field.evidence_copy, text.str()});
+      config::schema::FileContent content = config::schema::read_file(
+          config.folder / field.path, config::schema::kMostConfigurationBytes);
+      if (!content.wrong.empty()) continue;
+      files.push_back({field.evidence_copy, std::move(content.text)});
     }
   }
   return files;

@@ -15,8 +15,10 @@
 #include "config/schema/error.h"
 #include "config/schema/hash.h"
 #include "daemon/alarm_services.h"
+#include "daemon/control/protocol.h"
 #include "daemon/detection/detector.h"
 #include "daemon/detection_config.h"
+#include "daemon/io/folder_lock.h"
 #include "daemon/main_event_loop.h"
 #include "daemon/null_table.h"
 #include "daemon/reloader.h"
@@ -174,8 +176,10 @@ class Session {
  private:
   rt::Clock& choose_clock();
   std::unique_ptr<io::ControlSocket> open_socket() const;
-  std::unique_ptr<io::Recorder> open_recorder() const;
+  std::unique_ptr<io::Recorder> open_recorder();
   rt::Grant request_privileges() const;
+  /// Tells the operator the state, where the daemon listens, and what to type next.
+  void announce() const;
   std::vector<std::string> spare_rods() const { return ids_of(prepared_.devices.spare_rods); }
   std::vector<std::string> inputs() const { return ids_of(prepared_.devices.inputs); }
   [[nodiscard]] bool handle_events();
@@ -191,6 +195,7 @@ class Session {
   rt::Clock& clock_;
   std::unique_ptr<io::ControlSocket> socket_;  ///< null: none
   std::int64_t run_id_;
+  io::FolderLock folders_;
   std::unique_ptr<io::Recorder> recorder_;  ///< null: none
   AlarmServices alarms_;
   io::Publisher publisher_;
@@ -281,7 +286,11 @@ std::unique_ptr<io::ControlSocket> Session::open_socket() const {
   return std::make_unique<io::ControlSocket>(config_.control, config_.file);
 }
 
-std::unique_ptr<io::Recorder> Session::open_recorder() const {
+/// Claims the folders of the daemon first.
+std::unique_ptr<io::Recorder> Session::open_recorder() {
+  folders_.claim(config_.recorder.folder, config_.file + ": [recorder] folder");
+  folders_.claim(config_.alarms.folder, config_.file + ": [alarms] folder");
+  folders_.claim(config_.evidence.folder, config_.file + ": [evidence] folder");
   if (config_.recorder.folder.empty()) return nullptr;
   return std::make_unique<io::Recorder>(config_.recorder, run_id_, !virtual_time_);
 }
@@ -303,7 +312,37 @@ bool Session::handle_events() {
   return stop;
 }
 
+void Session::announce() const {
+  if (virtual_time_) return;
+  log_ << "spoolwatchd: " << config_.rig_id << ": ";
+  const bool arms_itself = config_.loop.auto_arm && valve_ != nullptr;
+  if (valve_ == nullptr) {
+    log_ << "MONITOR, nothing is ever written";
+  } else if (arms_itself) {
+    log_ << "RUN by [loop] auto_arm";
+  } else {
+    log_ << "DISARMED, the valve is at null";
+  }
+  if (!prepared_.never_arms.empty()) log_ << "; cannot be armed: " << prepared_.never_arms;
+  log_ << '\n';
+  if (socket_ == nullptr) {
+    log_ << "spoolwatchd: no [control] socket: it cannot be operated" << std::endl;
+    return;
+  }
+  const std::string& socket = config_.control.socket;
+  log_ << "spoolwatchd: control socket " << socket;
+  if (socket != control::kDefaultSocket) {
+    log_ << "; for the commands: export SPOOLWATCH_SOCKET="
+         << std::filesystem::absolute(socket).string();
+  }
+  const bool can_arm = valve_ != nullptr && !arms_itself && prepared_.never_arms.empty();
+  log_ << "\nspoolwatchd: next: "
+       << (can_arm ? "spoolwatch arm, then spoolwatch start" : "spoolwatch status")
+       << "; to watch: spoolwatch listen --live" << std::endl;
+}
+
 void Session::run() {
+  announce();
   const double sample_time_s = prepared_.sample_time_s;
   const std::int64_t start_ns = clock_.now_ns() + (virtual_time_ ? 0 : kLead_ns);
   if (config_.loop.auto_arm && valve_ != nullptr) {
@@ -347,7 +386,11 @@ void check_session(DaemonConfig& config, std::ostream& out) {
   const Prepared p = prepare(config, &absent);
   const bool would_write_a_file = config.lcm.url.starts_with("file:");
   if (!would_write_a_file) io::Publisher(config.lcm, 0, p.sample_time_s, nullptr);
-  if (!config.recorder.folder.empty()) io::check_folder(config.recorder);
+  for (const auto& [folder, key] : {std::pair(&config.recorder.folder, "recorder"),
+                                    {&config.alarms.folder, "alarms"},
+                                    {&config.evidence.folder, "evidence"}}) {
+    if (!folder->empty()) io::check_writable(*folder, config.file + ": [" + key + "] folder");
+  }
   out << config::schema::print_toml([&](config::schema::Visitor& v) { config.visit(v); });
   out << "\n# " << config.file << ": period " << p.sample_time_s * 1e3 << " ms, configuration "
       << config::schema::hash_text(p.hash) << "\n";

@@ -187,6 +187,12 @@ void Rig::visit(config::schema::Visitor& v) {
 
 void Rig::check_inputs(const std::string& file) const {
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (inputs_[i].id != inputs_[j].id) continue;
+      throw bad_config(file + ": " + indexed("input", i) + " id",
+                       "is \"" + inputs_[i].id + "\", and so is that of an earlier one",
+                       "an id of its own");
+    }
     const auto same = [&](const InputConfig& input) { return input.role == inputs_[i].role; };
     const auto end = inputs_.begin() + static_cast<std::ptrdiff_t>(i);
     const auto first = std::find_if(inputs_.begin(), end, same);

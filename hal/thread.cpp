@@ -85,11 +85,11 @@ void Thread::join() {
 bool Thread::join_for(std::chrono::milliseconds time) {
   if (!running_) return true;
   timespec until{};
-  clock_gettime(CLOCK_REALTIME, &until);
+  clock_gettime(CLOCK_MONOTONIC, &until);
   const auto ns = std::chrono::nanoseconds(time).count() + until.tv_nsec;
   until.tv_sec += ns / 1'000'000'000;
   until.tv_nsec = ns % 1'000'000'000;
-  if (pthread_timedjoin_np(handle_, nullptr, &until) != 0) return false;
+  if (pthread_clockjoin_np(handle_, nullptr, CLOCK_MONOTONIC, &until) != 0) return false;
   running_ = false;
   return true;
 }

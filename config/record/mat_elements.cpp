@@ -2,6 +2,7 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <bit>
 
 namespace config::record {
@@ -10,8 +11,11 @@ namespace {
 constexpr std::size_t kHeaderBytes = 128;
 constexpr std::size_t kVersionAt = 124;
 constexpr std::size_t kTagBytes = 8;
-/// Largest unpacked size of a file; zlib itself packs no better than kBestRatio.
+/// Limits of the unpacked size of a file: a small one, or one that measured data can be packed to,
+/// and never more than kMostBytes. zlib itself packs no better than kBestRatio.
 constexpr std::size_t kMostBytes = std::size_t{1} << 30U;
+constexpr std::size_t kSmallBytes = std::size_t{1} << 26U;
+constexpr std::size_t kUsualRatio = 100;
 constexpr std::size_t kBestRatio = 1032;
 
 class Inflater {
@@ -36,12 +40,19 @@ class Inflater {
     const int result = ready_ ? inflate(&stream_, Z_SYNC_FLUSH) : Z_MEM_ERROR;
     const bool good = result == Z_OK || result == Z_STREAM_END || result == Z_BUF_ERROR;
     out.resize(good ? out.size() - stream_.avail_out : 0);
+    ended_ = result == Z_STREAM_END;
     return out;
+  }
+  /// Whether the stream ends here and its check sum is that of all that came.
+  bool ends() {
+    if (!ended_ && !next(1).empty()) return false;
+    return ended_;
   }
 
  private:
   z_stream stream_{};
   bool ready_ = false;
+  bool ended_ = false;
 };
 
 }  // namespace
@@ -100,10 +111,15 @@ std::string MatElements::unpack(const MatElement& element, std::size_t& total_by
   const std::size_t bytes = load<std::uint32_t>(tag, 4);
   if (bytes > (element.data.size() + 1) * kBestRatio) throw damaged("packed bytes");
   total_bytes += bytes;
-  if (total_bytes > kMostBytes) {
-    throw schema::bad_data(*name_, "unpacks to more than 1 GiB", "shorter records");
+  if (total_bytes > std::min(kMostBytes, kSmallBytes + element.data.size() * kUsualRatio)) {
+    throw schema::bad_data(
+        *name_,
+        "unpacks to more than " + std::to_string(kUsualRatio) + " times its size and 64 MiB",
+        "measured data; a file saved without compression");
   }
-  return inflater.next(bytes);
+  std::string unpacked = inflater.next(bytes);
+  if (unpacked.size() != bytes || !inflater.ends()) throw damaged("packed bytes");
+  return unpacked;
 }
 
 }  // namespace config::record

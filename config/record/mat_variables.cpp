@@ -132,7 +132,9 @@ MatVariable read_matrix(MatElements file, int depth) {
     const MatElement real = file.next();
     const auto above_1 = [](std::size_t extent) { return extent > 1; };
     if (std::count_if(variable.dims.begin(), variable.dims.end(), above_1) > 1) return variable;
-    if (!numbers(file, real, variable.values) || variable.values.size() != count) {
+    // Looked at before they take eight bytes each.
+    if (count > real.data.size() || real.data.size() > 8 * count ||
+        !numbers(file, real, variable.values) || variable.values.size() != count) {
       throw file.damaged("values");
     }
   } else if (kind == kStructure) {

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cstddef>
-#include <fstream>
-#include <sstream>
 
 #include "config/schema/error.h"
+#include "config/schema/read_file.h"
 #include "config/schema/toml_reader.h"
 
 namespace config::schema {
@@ -77,14 +76,11 @@ void read_version(Visitor& reader) {
 Document::Document(std::shared_ptr<Data> data) : data_(std::move(data)) {}
 
 Document Document::load(const std::filesystem::path& file) {
-  std::error_code ignored;
-  std::ifstream in(file);
-  if (!in || std::filesystem::is_directory(file, ignored)) {
-    throw bad_config(file.string(), "cannot be read", "a TOML file");
+  const FileContent content = read_file(file, kMostConfigurationBytes);
+  if (!content.wrong.empty()) {
+    throw bad_config(file.string(), "cannot be read (" + content.wrong + ")", "a TOML file");
   }
-  std::ostringstream text;
-  text << in.rdbuf();
-  Document document = parse(text.str(), file.string());
+  Document document = parse(content.text, file.string());
   document.data_->folder = file.parent_path();
   return document;
 }

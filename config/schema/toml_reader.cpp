@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <sstream>
 
 #include "config/schema/document.h"
@@ -22,7 +23,10 @@ std::string shown(const toml::node& node) {
   if (node.is_array()) return "an array";
   std::ostringstream out;
   out << toml::node_view<const toml::node>{node};
-  return out.str();
+  constexpr std::size_t kLongest = 60;
+  std::string text = out.str();
+  if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
+  return text;
 }
 
 template <class T>
@@ -65,6 +69,17 @@ void TomlReader::wrong_type(Key key, const toml::node& node, const char* allowed
   throw bad_config(where(key.name, &node), "is " + shown(node), allowed);
 }
 
+double TomlReader::number_of(Key key, const toml::node& node) const {
+  constexpr std::int64_t kMostExact = std::int64_t{1} << 53;
+  if (!node.is_integer()) return node.as_floating_point()->get();
+  const std::int64_t whole = node.as_integer()->get();
+  if (whole < -kMostExact || whole > kMostExact) {
+    throw bad_config(where(key.name, &node), "is " + shown(node) + ", too large for a whole number",
+                     "-2^53 to 2^53; beyond, a number with a decimal point or an exponent");
+  }
+  return static_cast<double>(whole);
+}
+
 void TomlReader::check_range(Key key, const toml::node& node, double value, Range range) const {
   if (std::isnan(value) || value < range.min || value > range.max) {
     throw bad_config(where(key.name, &node), "is " + shown(node) + ", out of range",
@@ -94,7 +109,7 @@ void TomlReader::integer(Key key, std::int64_t& value, IntRange range) {
 void TomlReader::number(Key key, double& value, Range range) {
   if (const toml::node* node = find(key)) {
     if (!node->is_number()) wrong_type(key, *node, "a number");
-    const double read = *node->value<double>();
+    const double read = number_of(key, *node);
     check_range(key, *node, read, range);
     value = read;
   }
@@ -135,7 +150,7 @@ void TomlReader::numbers(Key key, std::vector<double>& value, Range range) {
     value.clear();
     for (const toml::node& item : *node->as_array()) {
       if (!item.is_number()) wrong_type(key, item, "an array of numbers");
-      const double read = *item.value<double>();
+      const double read = number_of(key, item);
       check_range(key, item, read, range);
       value.push_back(read);
     }

@@ -37,6 +37,7 @@ class TomlReader final : public Visitor {
  private:
   const toml::node* find(Key key);
   [[nodiscard]] std::string where(std::string_view key, const toml::node* node) const;
+  [[nodiscard]] double number_of(Key key, const toml::node& node) const;
   void check_range(Key key, const toml::node& node, double value, Range range) const;
   [[noreturn]] void wrong_type(Key key, const toml::node& node, const char* allowed) const;
 

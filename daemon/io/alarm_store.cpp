@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <utility>
+
+#include "config/schema/read_file.h"
 
 namespace monitor::io {
 namespace {
@@ -112,13 +112,9 @@ AlarmStore::AlarmStore(const std::filesystem::path& folder, std::string rig_id,
 LoadedLives AlarmStore::load(std::int64_t utc_us) const {
   std::error_code error;
   if (!std::filesystem::exists(file_, error) && !error) return {};
-  const auto size = std::filesystem::file_size(file_, error);
-  std::ifstream in(file_, std::ios::binary);
-  if (error || !in) return {{}, "cannot be read"};
-  if (size > kLargestFile) return {{}, "is too large"};
-  std::ostringstream text;
-  text << in.rdbuf();
-  return parse_lives(text.str(), rig_id_, utc_us);
+  const config::schema::FileContent content = config::schema::read_file(file_, kLargestFile);
+  if (!content.wrong.empty()) return {{}, "cannot be read (" + content.wrong + ")"};
+  return parse_lives(content.text, rig_id_, utc_us);
 }
 
 void AlarmStore::keep(const estimator::fdi::AlarmBook& book, std::int64_t utc_us) {
@@ -134,7 +130,8 @@ void AlarmStore::keep(const estimator::fdi::AlarmBook& book, std::int64_t utc_us
 
 int write_durably(const std::filesystem::path& file, const std::string& text) noexcept {
   const std::string temporary = file.string() + ".new";
-  const int out = open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0640);
+  const int out =
+      open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0640);
   if (out < 0) return errno;
   int error = 0;
   for (std::size_t done = 0; error == 0 && done < text.size();) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "daemon/control/protocol.h"
 #include "daemon/io/audit.h"
@@ -17,6 +18,7 @@ constexpr double kFarthest_m = 100.0;
 constexpr double kFastest_Hz = 1000.0;
 constexpr double kLongestShelf_s = 7.0 * 86400.0;
 constexpr std::size_t kLongestName = 256;
+constexpr std::size_t kLongestShown = 40;
 
 ControlRequest bad(const std::string& why) {
   ControlRequest request;
@@ -97,8 +99,18 @@ ordered_json detectable_of(const ControlStatus& status) {
 }  // namespace
 
 ControlRequest parse_request(const std::string& line) {
-  const json object = json::parse(line, nullptr, false);
+  std::set<std::string> keys;
+  std::string twice;
+  const auto watch_keys = [&](int depth, json::parse_event_t event, json& key) {
+    if (event == json::parse_event_t::key && depth == 1 &&
+        !keys.insert(key.get_ref<const std::string&>()).second) {
+      twice = key;
+    }
+    return true;
+  };
+  const json object = json::parse(line, watch_keys, false);
   if (!object.is_object()) return bad("not a JSON object");
+  if (!twice.empty()) return bad("\"" + twice.substr(0, kLongestShown) + "\" comes twice");
   const auto name = object.find(control::key::kCommand);
   if (name == object.end() || !name->is_string()) return bad("no \"command\"");
   const auto& command = name->get_ref<const std::string&>();

@@ -142,7 +142,7 @@ ControlSocket::ControlSocket(const ControlConfig& config, const std::string& fil
   const std::string place = "control socket " + path_.string();
   std::error_code ignored;
   std::filesystem::create_directories(path_.parent_path(), ignored);
-  lock_ = open((path_.string() + ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  lock_ = open((path_.string() + ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
   if (lock_ < 0) throw cannot(place + " cannot be made", errno);
   const sockaddr_un address = address_of(path_);
   if (flock(lock_, LOCK_EX | LOCK_NB) != 0 || is_served(address)) {

@@ -51,7 +51,7 @@ int EventLog::open() {
                 number_);
   file_ = folder_ / name;
   const auto open_file = [this] {
-    return ::open(file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    return ::open(file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0644);
   };
   descriptor_ = open_file();
   if (descriptor_ < 0 && errno == ENOENT) {
@@ -122,7 +122,10 @@ void EventLog::close() noexcept {
 
 void EventLog::leave_removed() noexcept {
   struct stat status {};
-  if (descriptor_ >= 0 && ::fstat(descriptor_, &status) == 0 && status.st_nlink == 0) close();
+  if (descriptor_ >= 0 && ::fstat(descriptor_, &status) == 0 && status.st_nlink == 0) {
+    removed_ += events_;
+    close();
+  }
 }
 
 void EventLog::remove_oldest() const {

@@ -47,6 +47,9 @@ class EventLog {
 
   [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
 
+  /// Events of files that somebody removed while they were written.
+  [[nodiscard]] std::int64_t removed() const noexcept { return removed_; }
+
  private:
   void close() noexcept;
   /// Closes a file that has been removed from its folder.
@@ -59,9 +62,10 @@ class EventLog {
   const std::int64_t files_;
   std::filesystem::path file_;
   int descriptor_ = -1;
-  int number_ = 0;           // of the next file
-  std::int64_t size_ = 0;    // of the open file: whole events
-  std::int64_t events_ = 0;  // in the open file
+  int number_ = 0;            // of the next file
+  std::int64_t size_ = 0;     // of the open file: whole events
+  std::int64_t events_ = 0;   // in the open file
+  std::int64_t removed_ = 0;  // in files that were removed while they were open
   std::vector<std::uint8_t> batch_;
   std::vector<std::size_t> ends_;  // of each event in the batch
 };

@@ -40,17 +40,6 @@ void RecorderConfig::visit(config::schema::Visitor& v) {
             {4096, 1024 * kMiB});
 }
 
-void check_folder(const RecorderConfig& config) {
-  std::error_code error;
-  std::filesystem::path folder = std::filesystem::absolute(config.folder);
-  while (!std::filesystem::exists(folder, error) && folder.has_relative_path()) {
-    folder = folder.parent_path();
-  }
-  if (!std::filesystem::is_directory(folder, error)) {
-    throw cannot_record(config.folder, folder.string() + " is not a folder");
-  }
-}
-
 Recorder::Recorder(const RecorderConfig& config, std::int64_t run_id, bool background)
     : log_(std::make_unique<EventLog>(config.folder, run_id, config.file_bytes, config.files)),
       queue_(std::make_unique<ByteQueue>(config.queue_bytes)),
@@ -72,7 +61,7 @@ std::int64_t Recorder::finish() {
   thread_.stop();
   retry_in_ = 0;
   drain();
-  return dropped_ + lost_ + backlog_->records();
+  return dropped_ + lost_ + backlog_->records() + log_->removed();
 }
 
 void Recorder::record(std::string_view channel, std::span<const std::uint8_t> data,

@@ -36,9 +36,6 @@ struct RecorderConfig {
   void visit(config::schema::Visitor& v);
 };
 
-/// Throws config::schema::Error when `folder` cannot be a folder; creates and writes nothing.
-void check_folder(const RecorderConfig& config);
-
 /// Figures since the start of the recorder.
 struct RecorderStatus {
   std::int64_t written_records = 0;

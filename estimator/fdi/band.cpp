@@ -83,6 +83,13 @@ BandState::Result BandState::update_invalid(double t_s) noexcept {
   return result();
 }
 
+BandState::Result BandState::rest() noexcept {
+  invalid_ = false;
+  missing_ = false;
+  pending_ = direction_;
+  return result();
+}
+
 void BandState::reset() noexcept {
   invalid_ = false;
   missing_ = false;

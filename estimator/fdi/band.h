@@ -48,6 +48,8 @@ class BandState {
   Result update(double value, double t_s) noexcept;
   /// Untrustworthy value at time t_s.
   Result update_invalid(double t_s) noexcept;
+  /// No value is expected now: INVALID ends, a value that was outside stays so.
+  Result rest() noexcept;
   void reset() noexcept;
   /// Takes over the state of another band, with own limits and delays.
   void inherit(const BandState& before) noexcept;

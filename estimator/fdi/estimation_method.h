@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "config/signals/sample.h"
 #include "estimator/estimate.h"
 #include "estimator/fdi/pipeline_config.h"
 #include "estimator/state_archive.h"
@@ -28,5 +29,14 @@ class EstimationMethod {
 
 /// A time as a whole number of samples, at least 1.
 [[nodiscard]] int samples_in(double time_s, double sample_time_s) noexcept;
+
+/// Whether the loop holds the valve at null (arming states of sample_t): no motion to estimate
+/// from.
+[[nodiscard]] inline bool rests(const config::signals::Sample& sample) noexcept {
+  constexpr std::uint8_t kDisarmed = 1;
+  constexpr std::uint8_t kArmed = 2;
+  constexpr std::uint8_t kLatched = 4;
+  return sample.state == kDisarmed || sample.state == kArmed || sample.state == kLatched;
+}
 
 }  // namespace estimator::fdi

@@ -51,7 +51,8 @@ EstimatorChannel::EstimatorChannel(const EstimatorConfig& config, double sample_
                        })),
       monitor_(static_cast<std::size_t>(
           samples_in(config.window_s, sample_time_s * static_cast<double>(config.decimation)))),
-      warmup_samples_(std::llround(config.warmup_s / sample_time_s)) {
+      warmup_samples_(std::llround(config.warmup_s / sample_time_s)),
+      window_samples_(samples_in(config.window_s, sample_time_s)) {
   if (config.detrend != "none" && config.method != "batch") {
     throw bad_config("[[estimator]] " + config.id + ": detrend",
                      "needs whole windows, the method is " + config.method, "method = \"batch\"");
@@ -71,7 +72,7 @@ bool EstimatorChannel::on_gap(std::int64_t periods) noexcept {
 }
 
 bool EstimatorChannel::push(const config::signals::Sample& sample, double y_m) noexcept {
-  ++samples_;
+  samples_ = rests(sample) ? 0 : samples_ + 1;
   saturated_ = saturated_ || sample.saturated;
   if (!preprocess_.push(sample.u_applied_V, y_m)) return false;
   const bool due = feed(preprocess_.u_V(), preprocess_.y_m(), saturated_);
@@ -111,7 +112,7 @@ void EstimatorChannel::serialize(StateArchive& archive) {
 }
 
 bool EstimatorChannel::warming_up() const noexcept {
-  return samples_ <= warmup_samples_ || !monitor_.full();
+  return samples_ <= warmup_samples_ || samples_ < window_samples_ || !monitor_.full();
 }
 
 Estimate EstimatorChannel::estimate() const noexcept {

@@ -45,7 +45,8 @@ class EstimatorChannel final : public DetectionMethod {
   std::unique_ptr<EstimationMethod> method_;
   WindowMonitor monitor_;
   std::int64_t warmup_samples_;
-  std::int64_t samples_ = 0;    ///< periods since the start, missing ones included
+  std::int64_t window_samples_;
+  std::int64_t samples_ = 0;    ///< of the present motion
   double previous_y_m_ = kNaN;  ///< NaN when there is none
   bool saturated_ = false;      ///< any sample behind the decimated one was saturated
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <sstream>
 #include <vector>
 
@@ -19,8 +20,11 @@ constexpr std::size_t kFewestBlocks = 10;
 constexpr std::size_t kEnoughBlocks = 20;
 constexpr double kWindowsPerBlock = 5.0;
 
-/// Upper confidence limit of the level that block maxima exceed with probability `rate`.
-double gumbel_level(std::vector<double> maxima, double rate) {
+struct Gumbel {
+  double mu, beta;
+};
+
+Gumbel fit_gumbel(std::vector<double>& maxima) {
   std::sort(maxima.begin(), maxima.end());
   const auto n = static_cast<double>(maxima.size());
   double mean = 0.0;
@@ -30,21 +34,54 @@ double gumbel_level(std::vector<double> maxima, double rate) {
     weighted += maxima[i] * static_cast<double>(i) / (n * (n - 1.0));
   }
   const double beta = std::max(0.0, 2.0 * weighted - mean) / std::log(2.0);
-  const double mu = mean - kEulerGamma * beta;
-  const double y = -std::log(-std::log1p(-rate));
-  const double error = beta * std::sqrt((1.113 + 0.457 * y + 0.805 * y * y) / n);
-  return mu + beta * y + kOneSided95 * error;
+  return {mean - kEulerGamma * beta, beta};
+}
+
+/// The level that is exceeded with probability `rate`, in betas above mu.
+double reduced_variate(double rate) { return -std::log(-std::log1p(-rate)); }
+
+double variance_factor(double y) { return 1.113 + 0.457 * y + 0.805 * y * y; }
+
+/// The upper confidence limit of the level y of n maxima, in estimated betas above the estimated
+/// mu. (y - mu)/beta of a fit to a standard Gumbel sample does not depend on the true mu and beta:
+/// its 95 % quantile, by simulation where n is small.
+double limit_factor(std::size_t n, double y) {
+  constexpr std::size_t kMany = 200;
+  constexpr std::size_t kDraws = 4000;
+  if (n > kMany) return y + kOneSided95 * std::sqrt(variance_factor(y) / static_cast<double>(n));
+  std::mt19937_64 random(n);
+  std::vector<double> sample(n);
+  std::vector<double> pivots(kDraws);
+  for (double& pivot : pivots) {
+    for (double& value : sample) {
+      const double uniform = (static_cast<double>(random() >> 11U) + 0.5) * 0x1p-53;
+      value = -std::log(-std::log(uniform));
+    }
+    const Gumbel fit = fit_gumbel(sample);
+    pivot = (y - fit.mu) / fit.beta;
+  }
+  const auto at = pivots.begin() + static_cast<std::ptrdiff_t>(0.95 * kDraws);
+  std::nth_element(pivots.begin(), at, pivots.end());
+  return *at;
+}
+
+/// Blocks from which on the margin is widened by less than a tenth.
+double enough_blocks(double y) {
+  constexpr double kSquare = 1.1 * 1.1 - 1.0;
+  const double ratio = kOneSided95 / (kSquare * y);
+  return std::ceil(ratio * ratio * variance_factor(y));
 }
 
 double signed_square(double x) { return x * std::abs(x); }
 double signed_root(double x) { return std::copysign(std::sqrt(std::abs(x)), x); }
 
 /// Distance of the limit from `centre`, upward (side 1) or downward (side -1).
-double margin(const std::vector<double>& extremes, double centre, double side, double rate) {
+double margin(const std::vector<double>& extremes, double centre, double side, double factor) {
   std::vector<double> squares;
   squares.reserve(extremes.size());
   for (const double extreme : extremes) squares.push_back(signed_square(side * (extreme - centre)));
-  return signed_root(gumbel_level(std::move(squares), rate));
+  const Gumbel fit = fit_gumbel(squares);
+  return signed_root(fit.mu + factor * fit.beta);
 }
 
 /// The extremes of each block of `length` values that has a trustworthy one.
@@ -97,6 +134,8 @@ LearnedLimits learn_limits(std::span<const double> values, const LearnConfig& co
   if (!(rate < 0.5)) {
     throw bad_data("learning bands", "the false-alarm time is shorter than a block of estimates");
   }
+  const double y = reduced_variate(rate);
+  out.enough_s = enough_blocks(y) * out.block_s;
   const auto length =
       static_cast<std::size_t>(std::max(1.0, std::round(out.block_s / config.interval_s)));
   const BlockExtremes extremes = find_extremes(values, length);
@@ -105,11 +144,18 @@ LearnedLimits learn_limits(std::span<const double> values, const LearnConfig& co
     std::ostringstream what;
     what << "the healthy record is too short: " << out.blocks << " blocks of " << out.block_s
          << " s with trustworthy estimates";
-    throw bad_data("learning bands", what.str(), std::to_string(kFewestBlocks) + " or more");
+    std::ostringstream allowed;
+    allowed << kFewestBlocks << " or more, " << static_cast<double>(kFewestBlocks) * out.block_s
+            << " s of healthy motion beside warm-up; " << out.enough_s
+            << " s for bands that need no widening";
+    throw bad_data("learning bands", what.str(), allowed.str());
   }
   out.centre = extremes.mean;
-  const double above = margin(extremes.greatest, extremes.mean, 1.0, rate);
-  const double below = margin(extremes.least, extremes.mean, -1.0, rate);
+  const double factor = limit_factor(out.blocks, y);
+  const double above = margin(extremes.greatest, extremes.mean, 1.0, factor);
+  const double below = margin(extremes.least, extremes.mean, -1.0, factor);
+  const double exact = margin(extremes.greatest, extremes.mean, 1.0, y);
+  out.widening_ratio = exact > 0.0 ? above / exact : 1.0;
   const auto least = std::min_element(extremes.least.begin(), extremes.least.end());
   const auto greatest = std::max_element(extremes.greatest.begin(), extremes.greatest.end());
   out.high = std::max(out.centre + above, *greatest + config.least_margin);

@@ -11,8 +11,9 @@
 //
 // L: block length, T: mean time between false alarms (each side gets half of the rate), mu and beta
 // from the first two L-moments. The band is the upper 95 % confidence limit of z(T) for the number
-// of blocks, variance beta^2/n (1.113 + 0.457 y + 0.805 y^2) with y the reduced variate, turned
-// back into x. The band keeps a distance of one standard error from the observed extremes.
+// of blocks, turned back into x: up to 200 blocks from simulated fits, since few blocks tell little
+// about beta; above, by the variance beta^2/n (1.113 + 0.457 y + 0.805 y^2) with y the reduced
+// variate. The band keeps a distance of one standard error from the observed extremes.
 //
 // Limits: behaviour that the healthy record does not contain (drift over a day, another motion) is
 // unknown; a tail heavier than normal gives more false alarms than stated; where the phase of the
@@ -42,6 +43,8 @@ struct LearnedLimits {
   double centre = 0.0;   ///< mean of the values
   double block_s = 0.0;  ///< L
   std::size_t blocks = 0;
+  double widening_ratio = 1.0;  ///< margin over that of a record without end
+  double enough_s = 0.0;        ///< of healthy motion, from which on that is below 1.1
 };
 
 /// `values` in time order, one per interval_s; NaN = no trustworthy estimate. Throws

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "estimator/fdi/estimation_method.h"
 #include "estimator/fdi/pipeline_impl.h"
 
 namespace estimator::fdi {
@@ -18,8 +19,9 @@ double EstimateEvent::value(std::string_view name) const noexcept {
 void Pipeline::Impl::monitor_band(BandMonitor& monitor, const MonitoredValue& value,
                                   Events& events) {
   const double t_s = static_cast<double>(value.tick) * sample_time_s;
-  const BandState::Result result =
-      value.trusted ? monitor.state.update(value.value, t_s) : monitor.state.update_invalid(t_s);
+  const BandState::Result result = value.trusted    ? monitor.state.update(value.value, t_s)
+                                   : value.expected ? monitor.state.update_invalid(t_s)
+                                                    : monitor.state.rest();
   AlarmInput input;
   input.severity = result.severity;
   input.direction = static_cast<std::int8_t>(result.direction);
@@ -37,6 +39,8 @@ void Pipeline::Impl::monitor_band(BandMonitor& monitor, const MonitoredValue& va
       size = std::snprintf(text, sizeof text, "%s is %.6g, %s %.6g", alarm.quantity.c_str(),
                            value.value, result.direction > 0 ? "above" : "below",
                            result.direction > 0 ? alarm.high : alarm.low);
+    } else if (!value.trusted) {
+      size = std::snprintf(text, sizeof text, "%s: the rig rests", alarm.quantity.c_str());
     } else {
       size = std::snprintf(text, sizeof text, "%s is %.6g, inside its band", alarm.quantity.c_str(),
                            value.value);
@@ -59,11 +63,13 @@ void Pipeline::Impl::evaluate(MethodSlot& slot, std::int64_t tick, std::int64_t 
   events.on_estimate({slot.number, slot.id, tick, utc_us, found.valid, found.warming_up,
                       port.reason, found.condition, found.samples, port.values.data(),
                       port.values.data() + port.values.size()});
-  if (found.warming_up) return;
+  if (found.warming_up && !at_rest) return;
+  const bool trusted = found.valid && !found.warming_up;
   for (std::size_t i = 0; i < port.values.size(); ++i) {
     const EstimatedValue& value = port.values[i];
     for (BandMonitor& monitor : slot.monitors[i]) {
-      monitor_band(monitor, {value.value, value.std_error, found.valid, port.reason, tick}, events);
+      monitor_band(monitor, {value.value, value.std_error, trusted, !at_rest, port.reason, tick},
+                   events);
     }
   }
   for (std::size_t i = 0; i < slot.declared_alarms.size(); ++i) {
@@ -100,6 +106,7 @@ void Pipeline::process(const config::signals::Sample& sample, Events& events) {
   }
   impl.started = true;
   impl.last_tick = sample.tick;
+  impl.at_rest = rests(sample);
   impl.book.advance(sample.tick, sample.utc_us,
                     [&events](const Alarm& alarm) { events.on_alarm(alarm); });
   impl.update_sample(sample);
@@ -114,7 +121,8 @@ void Pipeline::process(const config::signals::Sample& sample, Events& events) {
   for (SampleBandMonitor& each : impl.sample_monitors) {
     const double value = impl.sample.values[each.quantity].value;
     impl.monitor_band(each.monitor,
-                      {value, kNaN, std::isfinite(value), "no good reading", sample.tick}, events);
+                      {value, kNaN, std::isfinite(value), true, "no good reading", sample.tick},
+                      events);
   }
 }
 

@@ -21,6 +21,7 @@ struct MonitoredValue {
   double value;
   double std_error;
   bool trusted;
+  bool expected;    ///< false: the rig rests, and a value cannot be had
   const char* why;  ///< reason of an untrusted value
   std::int64_t tick;
 };
@@ -48,6 +49,7 @@ struct Pipeline::Impl final : private InputResolver {
   AlarmBook book;
   double sample_time_s = 0.0;
   bool started = false;
+  bool at_rest = false;  ///< as the newest sample says
   std::int64_t last_tick = 0;
 
   Impl(const PipelineConfig& config, double sample_time);

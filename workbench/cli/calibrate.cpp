@@ -1,6 +1,7 @@
 // `spoolwatch calibrate CONFIG.toml RECORD -o bands.toml`: alarm bands learned from a healthy
 // record, with the configuration's own estimators. The method: estimator/fdi/learn.h.
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <iostream>
 #include <limits>
 #include <memory>
@@ -18,6 +19,8 @@ namespace workbench::cli {
 namespace {
 
 namespace fdi = estimator::fdi;
+
+constexpr double kWorthSaying = 1.1;
 
 struct CalibrateOptions {
   std::string config;
@@ -46,7 +49,13 @@ void run(const CalibrateOptions& options) {
   for (const fdi::LearnedBand& band : learned.bands) {
     std::cout << band.quantity << ": " << band.low << " to " << band.high << ", centre "
               << band.centre << ", from " << band.estimates << " estimates in blocks of "
-              << band.block_s << " s\n";
+              << band.block_s << " s";
+    if (band.widening_ratio > kWorthSaying) {
+      std::cout << "; wider by " << std::lround(100.0 * (band.widening_ratio - 1.0))
+                << " % because they are few: " << std::ceil(band.enough_s)
+                << " s of healthy motion make that less than 10 %";
+    }
+    std::cout << '\n';
   }
   config::record::write_whole(options.out,
                               config::schema::print_toml([&](auto& v) { learned.visit(v); }));

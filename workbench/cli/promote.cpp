@@ -17,6 +17,7 @@
 #include "plant_sim/model_file.h"
 #include "workbench/cli/command.h"
 #include "workbench/cli/number_check.h"
+#include "workbench/cli/order_options.h"
 #include "workbench/present/compare_units.h"
 #include "workbench/promotion/running_daemon.h"
 #include "workbench/promotion/trial.h"
@@ -190,8 +191,7 @@ void add_promote(CLI::App& command, int& /*exit_code*/) {
   command.add_option("--record", options->records,
                      "healthy records; the last of several tries the bands that the others "
                      "teach; without: the daemon's own logs");
-  command.add_option("--socket", options->socket, "control socket of the daemon")
-      ->capture_default_str();
+  add_socket(command, options->socket);
   command
       .add_option("--false-alarm-time-s", options->false_alarm_time_s,
                   "mean time between false alarms of each band")

@@ -1,11 +1,10 @@
 #include "workbench/promotion/versions.h"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 
 #include "config/record/whole_file.h"
 #include "config/schema/error.h"
+#include "config/schema/read_file.h"
 
 namespace workbench::promotion {
 namespace {
@@ -13,6 +12,8 @@ namespace {
 namespace fs = std::filesystem;
 using config::schema::Error;
 using config::schema::RunError;
+
+constexpr int kKeptVersions = 20;
 
 bool there(const fs::path& file) {
   std::error_code ignored;
@@ -22,11 +23,12 @@ bool there(const fs::path& file) {
 }  // namespace
 
 std::string read_whole(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string text(std::istreambuf_iterator<char>(in), {});
-  if (!in && !in.eof()) throw RunError(file.string() + ": cannot be read");
-  if (!in.is_open()) throw RunError(file.string() + ": cannot be read");
-  return text;
+  config::schema::FileContent content =
+      config::schema::read_file(file, config::schema::kMostConfigurationBytes);
+  if (!content.wrong.empty()) {
+    throw RunError(file.string() + ": cannot be read (" + content.wrong + ")");
+  }
+  return std::move(content.text);
 }
 
 fs::path version_of(const fs::path& file, int version) {
@@ -75,6 +77,9 @@ int replace(const std::vector<Replacement>& replacements) {
     for (const fs::path& file : files) fs::remove(version_of(file, version), ignored);
     throw;
   }
+  // Old versions go, the newest kKeptVersions stay.
+  std::error_code ignored;
+  for (const fs::path& file : files) fs::remove(version_of(file, version - kKeptVersions), ignored);
   return version;
 }
 

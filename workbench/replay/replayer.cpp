@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "config/schema/hash.h"
+#include "config/schema/read_file.h"
 #include "estimator/fdi/snapshot.h"
 #include "spoolwatch/alarm_t.hpp"
 #include "spoolwatch/estimate_t.hpp"
@@ -22,14 +21,13 @@ using config::schema::bad_data;
 using nlohmann::json;
 
 std::string text_of(const std::filesystem::path& file) {
-  std::error_code error;
-  std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file, error)) {
-    throw bad_data(file.string(), "cannot be read", "a folder that spoolwatchd wrote for an alarm");
+  config::schema::FileContent content =
+      config::schema::read_file(file, config::schema::kMostRecordBytes);
+  if (!content.wrong.empty()) {
+    throw bad_data(file.string(), "cannot be read (" + content.wrong + ")",
+                   "a folder that spoolwatchd wrote for an alarm");
   }
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
+  return std::move(content.text);
 }
 
 /// pipeline.toml: the sample time, then the pipeline.

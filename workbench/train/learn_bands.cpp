@@ -103,6 +103,8 @@ fdi::LearnedBand learn(const QuantitySeries& series, const fdi::EstimatorConfig&
   band.centre = limits.centre;
   band.estimates = static_cast<std::int64_t>(series.valid);
   band.block_s = limits.block_s;
+  band.widening_ratio = limits.widening_ratio;
+  band.enough_s = limits.enough_s;
   return band;
 }
 
