@@ -1,6 +1,7 @@
 #include "daemon/detection_config.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "config/schema/document.h"
@@ -72,7 +73,22 @@ void check_sensors(const DaemonConfig& config) {
   for (const auto& band : config.pipeline.bands) check("[[band]] " + band.id, band.quantity);
 }
 
+bool is_open(const estimator::fdi::BandConfig& band) {
+  return std::isinf(band.low) && std::isinf(band.high);
+}
+
 }  // namespace
+
+std::string unlearned_bands(const DaemonConfig& config) {
+  std::error_code unknown;
+  const std::string& bands = config.pipeline.bands_file;
+  if (bands.empty() || std::filesystem::exists(config.folder / bands, unknown)) return "";
+  std::string names;
+  for (const auto& band : config.pipeline.bands) {
+    if (is_open(band)) names += (names.empty() ? "" : ", ") + band.id;
+  }
+  return names;
+}
 
 DetectionConfig make_detection_config(const DaemonConfig& config, double sample_time_s) {
   DetectionConfig made;
@@ -85,7 +101,10 @@ DetectionConfig make_detection_config(const DaemonConfig& config, double sample_
                                      "does not exist", "a model file (TOML)");
   }
   const std::string& bands = made.effective.bands_file;
-  if (!bands.empty() && !std::filesystem::is_regular_file(config.folder / bands, unknown)) {
+  const bool waits = std::any_of(made.effective.bands.begin(), made.effective.bands.end(),
+                                 [](const auto& band) { return is_open(band); });
+  if (!bands.empty() && !waits &&
+      !std::filesystem::is_regular_file(config.folder / bands, unknown)) {
     throw config::schema::bad_config(
         config.file + ": bands_file: " + (config.folder / bands).string(), "does not exist",
         "a file of learned bands (TOML)");

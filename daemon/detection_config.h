@@ -45,4 +45,7 @@ auto with_place(const std::string& place, const Make& make) {
   }
 }
 
+/// Ids of the bands that wait for limits because bands_file does not exist yet, "" for none.
+[[nodiscard]] std::string unlearned_bands(const DaemonConfig& config);
+
 }  // namespace monitor

@@ -325,6 +325,11 @@ void Session::announce() const {
   }
   if (!prepared_.never_arms.empty()) log_ << "; cannot be armed: " << prepared_.never_arms;
   log_ << '\n';
+  if (const std::string bands = unlearned_bands(config_); !bands.empty()) {
+    log_ << "spoolwatchd: no limits yet for the bands " << bands << ": "
+         << config_.pipeline.bands_file
+         << " does not exist; spoolwatch promote or calibrate learns them from healthy motion\n";
+  }
   if (socket_ == nullptr) {
     log_ << "spoolwatchd: no [control] socket: it cannot be operated" << std::endl;
     return;
@@ -406,6 +411,10 @@ void check_session(DaemonConfig& config, std::ostream& out) {
          config.rig.has_input(hal::InputRole::enable), config.rig.has_permit(),
          config.rig.reading_hold_s(p.opening)},
         out);
+  }
+  if (const std::string bands = unlearned_bands(config); !bands.empty()) {
+    out << "# No limits yet for the bands " << bands << ": " << config.pipeline.bands_file
+        << " does not exist.\n";
   }
   if (absent.empty()) return;
   out.flush();

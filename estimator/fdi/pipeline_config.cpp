@@ -164,6 +164,14 @@ void PipelineConfig::load_bands(const std::filesystem::path& folder, double samp
   }
   if (bands_file.empty()) return;
   const std::filesystem::path file = folder / bands_file;
+  const auto open = [](const BandConfig& band) {
+    return std::isinf(band.low) && std::isinf(band.high);
+  };
+  std::error_code unknown;
+  if (!std::filesystem::exists(file, unknown) && std::any_of(bands.begin(), bands.end(), open)) {
+    std::erase_if(bands, open);  // nothing has been learned yet
+    return;
+  }
   LearnedBands learned;
   config::schema::Document::load(file).read([&](Visitor& v) { learned.visit(v); });
   if (std::abs(learned.sample_time_s - sample_time_s) > kSameSampleTime * sample_time_s) {
@@ -185,6 +193,7 @@ void PipelineConfig::load_bands(const std::filesystem::path& folder, double samp
     }
     apply(band, bands);
   }
+  if (learned.bands.empty()) std::erase_if(bands, open);
 }
 
 }  // namespace estimator::fdi

@@ -27,11 +27,17 @@ void declare_judging(CLI::App& command, IsolationRequest& request) {
   CLI::Option* const baseline =
       command.add_option("--healthy", request.baseline, "from:to, s: the part without a fault")
           ->capture_default_str();
+  CLI::Option* const apart =
+      command
+          .add_option("--healthy-record", request.healthy_record,
+                      "a record without a fault, of the same rig and sample time")
+          ->excludes(baseline);
   command
       .add_option("--healthy-rms", request.baseline_rms_m,
                   "m: the healthy error, instead of learning it; the file's values are healthy")
       ->check(positive_number())
-      ->excludes(baseline);
+      ->excludes(baseline)
+      ->excludes(apart);
   command
       .add_option("--limit", request.settings.most_ratio,
                   "times the healthy error: windows beyond are invalid")

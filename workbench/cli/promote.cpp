@@ -65,6 +65,7 @@ class PromotionAttempt {
   PromotionAttempt& operator=(const PromotionAttempt&) = delete;
 
   void run() {
+    begin_bands();
     read_records();
     compare_models();
     learn();
@@ -73,6 +74,16 @@ class PromotionAttempt {
   }
 
  private:
+  /// The first promotion begins with a file without bands.
+  void begin_bands() {
+    std::error_code ignored;
+    if (fs::exists(daemon_.bands_file(), ignored)) return;
+    fdi::LearnedBands none;
+    none.sample_time_s = daemon_.sample_time_s();
+    none.source = "none yet";
+    config::record::write_whole(daemon_.bands_file(),
+                                config::schema::print_toml([&](auto& v) { none.visit(v); }));
+  }
   void read_records() {
     files_ = options_.records.empty() ? promotion::healthy_logs(daemon_) : options_.records;
     for (const std::string& file : files_) records_.push_back(config::record::read_record(file));

@@ -69,6 +69,11 @@ struct Readings {
   const std::vector<double>* in_Pa = nullptr;  ///< as the next: both or none
   const std::vector<double>* out_Pa = nullptr;
 
+  /// Has at least what `other` has.
+  [[nodiscard]] bool covers(const Readings& other) const {
+    return (other.supply_Pa == nullptr || supply_Pa != nullptr) &&
+           (other.in_Pa == nullptr || in_Pa != nullptr);
+  }
   [[nodiscard]] config::signals::Pressures at(std::size_t k) const {
     config::signals::Pressures out;
     if (supply_Pa != nullptr) out.supply_Pa = (*supply_Pa)[k];
@@ -177,6 +182,20 @@ void check(const IsolationRequest& request, const Record& record) {
   }
 }
 
+TimeSpan whole(const Record& record) {
+  return {record.t_s.front(), record.t_s.back() + record.sample_time_s};
+}
+
+void check_healthy(const IsolationRequest& request, const Record& healthy, const Record& record) {
+  check(request, healthy);
+  if (std::abs(healthy.sample_time_s - record.sample_time_s) > 1e-6 * record.sample_time_s) {
+    throw config::schema::bad_data(healthy.name,
+                                   fmt::format("has another sample time than {}: {:.6g} s",
+                                               record.name, healthy.sample_time_s),
+                                   fmt::format("{:.6g} s", record.sample_time_s));
+  }
+}
+
 void check_determined(const std::vector<WindowResult>& windows, const ParameterSet& set,
                       const std::string& where) {
   const std::optional<std::size_t> parameter = tracking::undetermined_parameter(windows, set);
@@ -186,7 +205,9 @@ void check_determined(const std::vector<WindowResult>& windows, const ParameterS
           ? "has no whole window"
           : "has no usable window: " +
                 tracker::invalid_words(set, windows.back().estimates[*parameter].invalid);
-  throw config::schema::bad_data(where, found, "a healthy motion that tells the parameters");
+  throw config::schema::bad_data(where, found,
+                                 "a healthy motion that tells the parameters: --healthy from:to, "
+                                 "--healthy-record with a record of its own, or --healthy-rms");
 }
 
 /// Baseline of a disturbed rig, by command and position; none: the process is not disturbed.
@@ -262,7 +283,16 @@ IsolationReport isolate(const IsolationRequest& request) {
   out.command = request.command;
   out.settings = request.settings;
   out.notes = record.notes;
+  const bool own_record = !request.healthy_record.empty();
+  const Record apart = own_record ? config::record::read_record(request.healthy_record) : Record{};
+  const Record& healthy = own_record ? apart : record;
+  if (own_record) check_healthy(request, healthy, record);
   const Readings readings = readings_of(record, request);
+  const Readings healthy_readings = readings_of(healthy, request);
+  if (!healthy_readings.covers(readings)) {
+    throw config::schema::bad_data(healthy.name, "lacks the pressures that " + record.name + " has",
+                                   "--no-pressures");
+  }
   out.set = tracking::choose(model, tracked_names(request, readings, out.notes), "--parameters");
   const auto floor = estimator::residual::noise_floor(record.y_m, record.sample_time_s);
   out.noise_floor_m = floor.sd_m;
@@ -277,15 +307,16 @@ IsolationReport isolate(const IsolationRequest& request) {
     }
     out.baseline = {request.baseline_rms_m, out.set.file, {}};
   } else {
-    const TimeSpan baseline = span(request.baseline);
+    const TimeSpan baseline = own_record ? whole(healthy) : span(request.baseline);
     ParameterTracker learning = tracker();
-    const std::vector<WindowResult> windows = track(learning, record, readings, baseline);
+    const std::vector<WindowResult> windows = track(learning, healthy, healthy_readings, baseline);
     std::optional<Baseline> disturbed;
     if (tracking::look_disturbed(windows, out.set, floor_m)) {
-      disturbed = learn_disturbed(model, request, cut(record, baseline), out);
+      disturbed = learn_disturbed(model, request, cut(healthy, baseline), out);
     }
     if (!disturbed) {
-      check_determined(windows, out.set, record.name + ": --healthy " + request.baseline);
+      check_determined(windows, out.set,
+                       own_record ? healthy.name : record.name + ": --healthy " + request.baseline);
       out.baseline = tracking::learn_baseline(windows, out.set, floor_m);
     } else {
       out.baseline = std::move(*disturbed);
@@ -294,7 +325,7 @@ IsolationReport isolate(const IsolationRequest& request) {
     out.baseline_from_s = baseline.from_s;
     out.baseline_to_s = baseline.to_s;
     note_calibration(out);
-    if (!request.learn_baseline.empty()) write_learnt(request, model, record, out);
+    if (!request.learn_baseline.empty()) write_learnt(request, model, healthy, out);
   }
   ParameterTracker judging = tracker();
   judging.take(out.baseline);

@@ -118,6 +118,19 @@ TEST(Document, RefusesNotANumberWhereANumberIsMeant) {
   EXPECT_THAT(message("[loop]\noptional_m = nan\n"), HasSubstr("is nan, out of range"));
 }
 
+TEST(Document, RefusesWholeNumbersThatNoDoubleHolds) {
+  EXPECT_THAT(message("[loop]\noptional_m = 9223372036854775807\n"),
+              HasSubstr("is 9223372036854775807, too large for a whole number"));
+  EXPECT_THAT(message("levels = [1, -9007199254740993]\n"), HasSubstr("too large"));
+  EXPECT_THAT(message("levels = [9007199254740993]\n"), HasSubstr("too large"));
+}
+
+TEST(Document, ShowsTheBeginningOfALongValue) {
+  const std::string text = message("[loop]\nmode = \"" + std::string(100'000, 'x') + "\"\n");
+  EXPECT_LT(text.size(), 300U);
+  EXPECT_THAT(text, HasSubstr("xxx..."));
+}
+
 TEST(Document, RefusesTextThatIsNoTomlAndAnotherSchemaVersion) {
   EXPECT_THAT(message("enabled = \n"), HasSubstr("78 stand.toml:2: is not TOML"));
   Stand stand;

@@ -68,14 +68,13 @@ TEST(ModbusPollThread, Function23WritesAndReadsInOneTransaction) {
   EXPECT_EQ(device.get(kCommand), kNullRaw) << "null is what it ends with";
 }
 
-TEST(ModbusPollThread, AnExceptionKeepsTheConnectionAndAgesTheReading) {
+TEST(ModbusPollThread, AnExceptionKeepsTheConnection) {
   Device device;
   Stand stand(tcp(device, "stale_after_s = 0.1\nbad_after_s = 0.4\n"), kNull_V);
   ASSERT_TRUE(stand.turn_until(config::signals::Quality::good, 3.0));
   const int before = device.connections();
   device.only_function(3);
   device.answer(Reply::busy);
-  EXPECT_TRUE(stand.turn_until(config::signals::Quality::stale, 3.0));
   EXPECT_TRUE(stand.turn_until(config::signals::Quality::bad, 3.0));
   EXPECT_EQ(device.connections(), before);
   EXPECT_TRUE(stand.applied().good) << "commands are taken";
