@@ -18,7 +18,8 @@ AlarmServices::AlarmServices(DaemonConfig& config, const DetectionConfig& detect
   }
   if (config.alarms.folder.empty() || session.virtual_time) return;
   writer_ = std::make_unique<io::BackgroundWriter>();
-  store = std::make_unique<io::AlarmStore>(config.alarms.folder, config.rig_id, *writer_);
+  store = std::make_unique<io::AlarmStore>(config.alarms.folder, config.rig_id, *writer_,
+                                           config.alarms.audit_bytes);
   audit = std::make_unique<io::Audit>(config.alarms.folder, config.alarms.audit_bytes, *writer_);
 }
 

@@ -308,6 +308,7 @@ io::ControlStatus ControlRequestHandler::status() const {
     status.sample_time_s = parts_.reloader->sample_time_s();
     status.config_file = std::filesystem::absolute(config.file).string();
     status.recorder_folder = config.recorder.folder;
+    status.alarm_folder = config.alarms.folder;
   }
   status.state = state();
   status.holding = stats.holding.load(std::memory_order_relaxed);

@@ -104,7 +104,9 @@ void Detector::on_alarm(const Alarm& alarm) { publish(alarm, false); }
 
 void Detector::publish(const Alarm& alarm, bool repeat) {
   parts_.publisher.alarm(alarm, repeat, stamp());
-  if (parts_.alarms.evidence != nullptr && !repeat) keep_evidence(alarm);
+  if (repeat) return;
+  if (parts_.alarms.store != nullptr) parts_.alarms.store->note(alarm, parts_.clock.utc_us());
+  if (parts_.alarms.evidence != nullptr) keep_evidence(alarm);
 }
 
 void Detector::keep_evidence(const Alarm& alarm) {

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "config/schema/read_file.h"
+#include "daemon/io/audit.h"
 
 namespace monitor::io {
 namespace {
@@ -51,7 +53,8 @@ PersistedAlarm life_of(const json& entry, std::int64_t utc_us) {
 
 void AlarmConfig::visit(config::schema::Visitor& v) {
   v.path({"folder", "folder of alarms.json and audit.log; empty: neither is written"}, folder);
-  v.integer({"audit_bytes", "size limit of audit.log"}, audit_bytes, {4096, 1LL << 40});
+  v.integer({"audit_bytes", "size limit of audit.log, refused.log and history.log each"},
+            audit_bytes, {4096, 1LL << 40});
   rules.visit(v);
 }
 
@@ -106,8 +109,41 @@ LoadedLives parse_lives(const std::string& text, const std::string& rig_id, std:
 }
 
 AlarmStore::AlarmStore(const std::filesystem::path& folder, std::string rig_id,
-                       BackgroundWriter& writer)
-    : file_(folder / "alarms.json"), rig_id_(std::move(rig_id)), writer_(writer) {}
+                       BackgroundWriter& writer, std::int64_t history_bytes)
+    : file_(folder / "alarms.json"),
+      rig_id_(std::move(rig_id)),
+      writer_(writer),
+      history_(std::make_shared<CappedFile>(folder / "history.log", history_bytes)) {
+  append("\"event\":\"start\"");
+}
+
+AlarmStore::~AlarmStore() { append("\"event\":\"end\""); }
+
+void AlarmStore::append(const std::string& line) {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  append(line, std::chrono::duration_cast<std::chrono::microseconds>(now).count());
+}
+
+void AlarmStore::append(const std::string& line, std::int64_t utc_us) {
+  std::string whole = "{\"utc\":\"" + utc_text(utc_us) + "\"," + line + "}\n";
+  if (!writer_.post([file = history_, text = std::move(whole)] { file->append(text); })) {
+    history_->lose();
+  }
+}
+
+void AlarmStore::note(const estimator::fdi::Alarm& alarm, std::int64_t utc_us) {
+  nlohmann::ordered_json line;
+  line["alarm"] = alarm.source + "." + alarm.name;
+  line["severity"] = to_string(alarm.severity);
+  line["state"] = to_string(alarm.state());
+  line["active"] = alarm.active;
+  std::string text = line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  text = text.substr(1, text.size() - 2);
+  std::string& noted = noted_[alarm.source + "." + alarm.name];
+  if (noted == text) return;
+  noted = text;
+  append(text, utc_us);
+}
 
 LoadedLives AlarmStore::load(std::int64_t utc_us) const {
   std::error_code error;

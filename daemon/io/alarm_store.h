@@ -1,24 +1,29 @@
 // Persists alarm states across a restart in FOLDER/alarms.json, written in the background and
 // replaced atomically. Shelving keeps its wall-clock end, so time while the daemon is down counts.
+// FOLDER/history.log keeps every change of an alarm, one JSON line each, and starts and ends of the
+// daemon, for `spoolwatch alarms --statistics`.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "config/schema/visitor.h"
 #include "daemon/io/background_writer.h"
+#include "daemon/io/capped_file.h"
 #include "estimator/fdi/alarm_book.h"
 
 namespace monitor::io {
 
 /// TOML [alarms].
 struct AlarmConfig {
-  std::string folder;                  ///< folder for alarms.json and audit.log; empty: no files
-  std::int64_t audit_bytes = 1 << 20;  ///< limit of audit.log; twice as much with audit.log.1
+  std::string folder;  ///< folder for alarms.json, audit.log, ...; empty: no files
+  /// Limit of audit.log, refused.log and history.log each; twice as much with their predecessors.
+  std::int64_t audit_bytes = 1 << 20;
   estimator::fdi::AlarmRules rules;    ///< for guards and system alarms
 
   void visit(config::schema::Visitor& v);
@@ -38,13 +43,20 @@ struct LoadedLives {
 class AlarmStore {
  public:
   /// `writer` must outlive this object; it also writes what is still queued then.
-  AlarmStore(const std::filesystem::path& folder, std::string rig_id, BackgroundWriter& writer);
+  AlarmStore(const std::filesystem::path& folder, std::string rig_id, BackgroundWriter& writer,
+             std::int64_t history_bytes = 1 << 20);
+  ~AlarmStore();
+  AlarmStore(const AlarmStore&) = delete;
+  AlarmStore& operator=(const AlarmStore&) = delete;
 
   /// Call before the first keep(). A missing file is no error.
   [[nodiscard]] LoadedLives load(std::int64_t utc_us) const;
   /// Saves when alarm states have changed since the last call; does not block on the disk. One
   /// thread.
   void keep(const estimator::fdi::AlarmBook& book, std::int64_t utc_us);
+
+  /// Appends the alarm to the history where its severity or state has changed. One thread.
+  void note(const estimator::fdi::Alarm& alarm, std::int64_t utc_us);
 
   /// errno of the last save, 0 on success. Any thread.
   [[nodiscard]] int error() const noexcept { return *error_; }
@@ -54,7 +66,12 @@ class AlarmStore {
   std::filesystem::path file_;
   std::string rig_id_;
   BackgroundWriter& writer_;
-  std::uint64_t saved_ = 0;  ///< AlarmBook::changes() at the last save
+  void append(const std::string& line);
+  void append(const std::string& line, std::int64_t utc_us);
+
+  std::shared_ptr<CappedFile> history_;
+  std::map<std::string, std::string> noted_;  ///< newest line of each alarm, without its time
+  std::uint64_t saved_ = 0;                   ///< AlarmBook::changes() at the last save
   std::shared_ptr<std::atomic<int>> error_ =
       std::make_shared<std::atomic<int>>(0);  ///< shared with the jobs
 };

@@ -1,16 +1,12 @@
 #include "daemon/io/audit.h"
 
-#include <fcntl.h>
 #include <fmt/chrono.h>
 #include <pwd.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <ctime>
 #include <nlohmann/json.hpp>
-#include <system_error>
 
 namespace monitor::io {
 namespace {
@@ -53,8 +49,8 @@ std::string print_audit(const AuditEntry& entry) {
 }
 
 Audit::Audit(const std::filesystem::path& folder, std::int64_t file_bytes, BackgroundWriter& writer)
-    : acts_(std::make_shared<File>(folder / "audit.log", file_bytes)),
-      refused_(std::make_shared<File>(folder / "refused.log", file_bytes)),
+    : acts_(std::make_shared<CappedFile>(folder / "audit.log", file_bytes)),
+      refused_(std::make_shared<CappedFile>(folder / "refused.log", file_bytes)),
       writer_(writer) {}
 
 Audit::~Audit() {
@@ -93,29 +89,8 @@ void Audit::note(AuditEntry entry) {
 }
 
 void Audit::write(const AuditEntry& entry) {
-  const std::shared_ptr<File>& file = entry.may_act ? acts_ : refused_;
-  if (!writer_.post([file, line = print_audit(entry)] { file->append(line); })) ++file->lost;
-}
-
-void Audit::File::append(const std::string& line) noexcept {
-  std::error_code error;
-  std::filesystem::create_directories(path.parent_path(), error);
-  const auto size = std::filesystem::file_size(path, error);
-  if (!error && static_cast<std::int64_t>(size + line.size()) > most_bytes) {
-    std::filesystem::rename(path, path.string() + ".1", error);
-  }
-  const int file = open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0640);
-  bool written = false;
-  if (file >= 0) {
-    // One write, rolled back on a full disk, so that no partial line remains.
-    struct stat before {};
-    const bool known = fstat(file, &before) == 0;
-    const ssize_t n = ::write(file, line.data(), line.size());
-    written = n == static_cast<ssize_t>(line.size()) && fsync(file) == 0;
-    if (n >= 0 && !written && known && ftruncate(file, before.st_size) != 0) written = false;
-    close(file);
-  }
-  if (!written) ++lost;
+  const std::shared_ptr<CappedFile>& file = entry.may_act ? acts_ : refused_;
+  if (!writer_.post([file, line = print_audit(entry)] { file->append(line); })) file->lose();
 }
 
 }  // namespace monitor::io

@@ -4,7 +4,6 @@
 // at a limited rate; the next line of that user counts those left out ("not_listed").
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -13,6 +12,7 @@
 #include <utility>
 
 #include "daemon/io/background_writer.h"
+#include "daemon/io/capped_file.h"
 
 namespace monitor::io {
 
@@ -41,20 +41,9 @@ class Audit {
   /// Does not block on the disk.
   void note(AuditEntry entry);
   /// Lines that could not be written.
-  [[nodiscard]] std::int64_t lost() const noexcept { return acts_->lost + refused_->lost; }
+  [[nodiscard]] std::int64_t lost() const noexcept { return acts_->lost() + refused_->lost(); }
 
  private:
-  /// Shared with the writer's jobs.
-  struct File {
-    File(std::filesystem::path file, std::int64_t most) : path(std::move(file)), most_bytes(most) {}
-
-    std::filesystem::path path;
-    std::int64_t most_bytes;
-    std::atomic<std::int64_t> lost{0};
-
-    void append(const std::string& line) noexcept;
-  };
-
   /// Rejections of one user.
   struct Rejections {
     double allowed;
@@ -67,8 +56,8 @@ class Audit {
   bool lists(const AuditEntry& entry);
   void write(const AuditEntry& entry);
 
-  std::shared_ptr<File> acts_;
-  std::shared_ptr<File> refused_;
+  std::shared_ptr<CappedFile> acts_;  ///< shared with the jobs of the writer
+  std::shared_ptr<CappedFile> refused_;
   std::map<unsigned, Rejections> rejections_;  ///< by uid
   BackgroundWriter& writer_;
 };

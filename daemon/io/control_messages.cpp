@@ -160,6 +160,7 @@ std::string print_status(const ControlStatus& status) {
   line["obstacle"] = status.obstacle.empty() ? json(nullptr) : json(status.obstacle);
   line["config_file"] = status.config_file;
   line["recorder_folder"] = status.recorder_folder;
+  line["alarm_folder"] = status.alarm_folder;
   line["rules_hash"] = status.rules_hash;
   line["sample_time_s"] = number(status.sample_time_s);
   line["reload_refused"] =

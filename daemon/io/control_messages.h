@@ -78,7 +78,7 @@ struct ControlStatus {
   std::string latched_by;       ///< id of the guard; empty unless LATCHED
   std::string latched_because;  ///< its reason in words
   std::string obstacle;         ///< why the rig cannot be armed; empty: it can
-  std::string config_file, recorder_folder;
+  std::string config_file, recorder_folder, alarm_folder;
   std::string rules_hash;  ///< hash of estimators and bands, learned bands included
   double sample_time_s = std::numeric_limits<double>::quiet_NaN();
   std::string reload_refused;  ///< why the newest reload was rejected; empty: it was not

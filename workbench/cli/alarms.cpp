@@ -7,7 +7,9 @@
 #include "daemon/control/protocol.h"
 #include "workbench/cli/command.h"
 #include "workbench/cli/order_options.h"
+#include "workbench/control/alarm_statistics.h"
 #include "workbench/control/answer_text.h"
+#include "workbench/present/json.h"
 
 namespace workbench::cli {
 namespace {
@@ -21,7 +23,25 @@ struct AlarmOptions {
   std::string alarm;
   bool all = false;
   double time_s = 0.0;
+  bool statistics = false;
+  std::string history;
 };
+
+void print_statistics(const AlarmOptions& options) {
+  std::string folder = options.history;
+  if (folder.empty()) {
+    const ordered_json status =
+        control::ask_daemon(options.common.socket, {{protocol::key::kCommand, protocol::kStatus}});
+    folder = status.value("alarm_folder", "");
+    if (folder.empty()) {
+      throw config::schema::RunError("the daemon keeps no history: [alarms] folder is empty");
+    }
+  }
+  const control::AlarmStatistics found = control::alarm_statistics(control::read_history(folder));
+  if (!present::write_json(control::to_json(found), options.common.json)) {
+    control::print_statistics(found, std::cout);
+  }
+}
 
 void act(const char* word, const AlarmOptions& options, bool with_time) {
   ordered_json request = {{protocol::key::kCommand, word}};
@@ -43,7 +63,15 @@ void add_alarms(CLI::App& command, int& /*exit_code*/) {
   const auto options = std::make_shared<AlarmOptions>();
   add_order_options(command, options->common);
   command.add_flag("--all", options->all, "include normal alarms");
+  CLI::Option* const statistics = command.add_flag(
+      "--statistics", options->statistics,
+      "figures of ISA-18.2 from the stored history: alarms per hour, bursts, standing, chattering");
+  command
+      .add_option("--history", options->history,
+                  "folder of the history; without: that of the running daemon, [alarms] folder")
+      ->needs(statistics);
   command.callback([options] {
+    if (options->statistics) return print_statistics(*options);
     const ordered_json answer =
         control::give_order({{protocol::key::kCommand, protocol::kAlarms}}, options->common);
     if (options->common.json != "-") control::print_alarms(answer, options->all, std::cout);
