@@ -37,14 +37,16 @@ class AlarmServices {
 
   detection::AlarmCommandQueue commands;
   detection::AlarmAnswerQueue answers;
+
+ private:
+  std::unique_ptr<io::BackgroundWriter> writer_;  ///< outlives those that post to it
+
+ public:
   /// Null unless configured.
   std::unique_ptr<io::AlarmStore> store;
   std::unique_ptr<io::Audit> audit;
   std::unique_ptr<io::Evidence> evidence;
   std::uint64_t pipeline_hash = 0;
-
- private:
-  std::unique_ptr<io::BackgroundWriter> writer_;
 };
 
 }  // namespace monitor

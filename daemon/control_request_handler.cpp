@@ -340,7 +340,8 @@ io::ControlStatus ControlRequestHandler::status() const {
   add_rods(status);
   if (parts_.detectability != nullptr) status.detectable = parts_.detectability->read();
   for (std::size_t i = 0; i < identity_.inputs.size(); ++i) {
-    status.inputs.push_back({identity_.inputs[i], stats.inputs[i].value.load()});
+    status.inputs.push_back({identity_.inputs[i], stats.inputs[i].value.load(),
+                             i < identity_.roles.size() ? identity_.roles[i] : ""});
   }
   return status;
 }

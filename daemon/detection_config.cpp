@@ -71,6 +71,13 @@ void check_sensors(const DaemonConfig& config) {
     }
   }
   for (const auto& band : config.pipeline.bands) check("[[band]] " + band.id, band.quantity);
+  for (const auto& guard : config.safety.guards) {
+    const std::string where = "[[guard]] " + guard.id;
+    if (!guard.channel.empty()) check(where + " channel", "sample." + guard.channel + "_Pa");
+    if (guard.which() != control::GuardKind::chambers) continue;
+    check(where, "sample.pressure_in_Pa");
+    check(where, "sample.pressure_out_Pa");
+  }
 }
 
 bool is_open(const estimator::fdi::BandConfig& band) {

@@ -182,6 +182,11 @@ class Session {
   void announce() const;
   std::vector<std::string> spare_rods() const { return ids_of(prepared_.devices.spare_rods); }
   std::vector<std::string> inputs() const { return ids_of(prepared_.devices.inputs); }
+  std::vector<std::string> roles() const {
+    std::vector<std::string> roles;
+    for (const hal::InputConfig& input : config_.rig.inputs()) roles.push_back(input.role);
+    return roles;
+  }
   [[nodiscard]] bool handle_events();
 
   DaemonConfig& config_;
@@ -263,7 +268,7 @@ Session::Session(DaemonConfig& config, const SessionOptions& options, std::ostre
                  prepared_.guards, prepared_.sample_time_s}),
       handler_({clock_, commands_, stats_, &alarms_.commands, &alarms_.answers, alarms_.audit.get(),
                 &reloader_, &detectability_},
-               {config.rig_id, config_hash_, prepared_.guards, spare_rods(), inputs(),
+               {config.rig_id, config_hash_, prepared_.guards, spare_rods(), inputs(), roles(),
                 inputs_of(prepared_.devices, hal::InputRole::enable),
                 inputs_of(prepared_.devices, hal::InputRole::e_stop), prepared_.never_arms}),
       event_loop_(handler_, socket_.get(), reloader_),

@@ -35,6 +35,12 @@ constexpr GuardKindInfo kKinds[] = {
      "Check supply pressure, load and reference."},
     {GuardKind::disagree, "disagree", "the rod sensors disagree",
      "Find out which rod sensor is wrong before moving."},
+    {GuardKind::pressure, "pressure", "a pressure is outside its limits",
+     "Check pump, relief valve, accumulator and load."},
+    {GuardKind::chambers, "chambers", "the pressures contradict each other",
+     "Check the pressure transducers and their scales."},
+    {GuardKind::transducer, "transducer", "a pressure cannot be read",
+     "Check the pressure transducer and its cable."},
 };
 
 const GuardKindInfo& kind_of(GuardKind kind) noexcept {
@@ -53,6 +59,8 @@ std::vector<std::string_view> actions_of(GuardKind kind) {
     case GuardKind::frozen:
     case GuardKind::jump:
     case GuardKind::disagree:
+    case GuardKind::chambers:
+    case GuardKind::transducer:
       return {"indicate", "ramp", "latch"};
     default:
       return {"indicate", "hold", "ramp", "latch"};
@@ -107,6 +115,18 @@ void GuardConfig::visit(config::schema::Visitor& v) {
   if (w == GuardKind::disagree) {
     v.number({"tolerance_m", "largest difference between two sensors", true}, tolerance_m,
              {1e-7, 100.0});
+  }
+  if (w == GuardKind::pressure || w == GuardKind::transducer) {
+    v.choice({"channel", "role of the input that measures it", true}, channel,
+             {"supply_pressure", "pressure_in", "pressure_out"});
+  }
+  if (w == GuardKind::pressure) {
+    v.number({"low_Pa", "lowest pressure"}, low_Pa, {-kInfinite, 1e9});
+    v.number({"high_Pa", "highest pressure"}, high_Pa, {low_Pa, kInfinite});
+  }
+  if (w == GuardKind::chambers) {
+    v.number({"tolerance_Pa", "largest excess of a chamber pressure", true}, tolerance_Pa,
+             {1.0, 1e9});
   }
   v.text({"guidance", "advice to the operator"}, guidance);
 }

@@ -10,6 +10,10 @@
 //   jump       |dy| > limit_m in one period                            limit_m
 //   saturated  the command is at a limit                               -
 //   disagree   rod sensors differ by more than tolerance_m (position_voter.h)  tolerance_m
+//   pressure   in RUN the measured pressure of `channel` is outside    channel, low_Pa, high_Pa
+//   chambers   in RUN a chamber pressure is above the supply, or below 0, by more than tolerance_Pa
+//                                                                      tolerance_Pa
+//   transducer the pressure of `channel` cannot be read                channel
 //   overrun    more periods are lost than [loop] allows                -
 //   missing    more positions missing in a row than [loop] allows      -
 //   bus_lost   more writes failed in a row than [loop] allows          -
@@ -67,7 +71,10 @@ enum class GuardKind : std::uint8_t {
   frozen,
   jump,
   saturated,
-  disagree
+  disagree,
+  pressure,
+  chambers,
+  transducer
 };
 
 /// Built-in guards, which need no entry: e_stop, missing, bus_lost, overrun.
@@ -90,6 +97,10 @@ struct GuardConfig {
   double least_m = std::numeric_limits<double>::quiet_NaN();
   double command_V = std::numeric_limits<double>::quiet_NaN();
   double tolerance_m = std::numeric_limits<double>::quiet_NaN();
+  std::string channel;  ///< supply_pressure, pressure_in or pressure_out, as the role of an input
+  double low_Pa = -std::numeric_limits<double>::infinity();
+  double high_Pa = std::numeric_limits<double>::infinity();
+  double tolerance_Pa = std::numeric_limits<double>::quiet_NaN();
   std::string guidance;  ///< advice to the operator; empty: the kind's default
 
   /// Visits only the keys of the chosen kind.

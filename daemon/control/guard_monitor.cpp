@@ -30,9 +30,38 @@ double upper_limit(const GuardConfig& config) noexcept {
       return config.age_s;
     case GuardKind::disagree:
       return config.tolerance_m;
+    case GuardKind::pressure:
+      return config.high_Pa;
+    case GuardKind::chambers:
+      return config.tolerance_Pa;
     default:
       return kNaN;
   }
+}
+
+double lower_limit(const GuardConfig& config) noexcept {
+  switch (config.which()) {
+    case GuardKind::travel:
+      return config.low_m;
+    case GuardKind::pressure:
+      return config.low_Pa;
+    default:
+      return kNaN;
+  }
+}
+
+double config::signals::Pressures::*channel_of(const GuardConfig& config) noexcept {
+  if (config.channel == "pressure_in") return &config::signals::Pressures::in_Pa;
+  if (config.channel == "pressure_out") return &config::signals::Pressures::out_Pa;
+  return &config::signals::Pressures::supply_Pa;
+}
+
+/// By how much the chamber pressures leave 0 to the supply pressure; NaN: not known.
+double excess_Pa(const config::signals::Pressures& pressures) noexcept {
+  if (!pressures.chambers()) return kNaN;
+  const double below = -std::min(pressures.in_Pa, pressures.out_Pa);
+  if (std::isnan(pressures.supply_Pa)) return below;
+  return std::max(below, std::max(pressures.in_Pa, pressures.out_Pa) - pressures.supply_Pa);
 }
 
 }  // namespace
@@ -40,8 +69,9 @@ double upper_limit(const GuardConfig& config) noexcept {
 Guard::Guard(const GuardConfig& config)
     : kind_(config.which()),
       action_(action_of(config.action)),
+      channel_(channel_of(config)),
       time_s_(config.time_s),
-      low_(kind_ == GuardKind::travel ? config.low_m : kNaN),
+      low_(lower_limit(config)),
       high_(upper_limit(config)),
       braking_mps2_(config.braking_mps2),
       least_m_(config.least_m),
@@ -125,6 +155,18 @@ void Guard::watch(const GuardInputs& inputs, double dy_m, double dt_s, double pe
     case GuardKind::disagree:
       value_ = inputs.spare_difference_m;
       lasts(value_ > high_, inputs.t_s);
+      break;
+    case GuardKind::pressure:
+      value_ = inputs.pressures.*channel_;
+      lasts(!std::isnan(inputs.reference_m) && (value_ < low_ || value_ > high_), inputs.t_s);
+      break;
+    case GuardKind::chambers:
+      value_ = excess_Pa(inputs.pressures);
+      lasts(!std::isnan(inputs.reference_m) && value_ > high_, inputs.t_s);
+      break;
+    case GuardKind::transducer:
+      value_ = inputs.pressures.*channel_;
+      lasts(std::isnan(value_), inputs.t_s);
       break;
     default:
       break;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "config/signals/pressures.h"
 #include "daemon/control/guard_config.h"
 
 namespace monitor::control {
@@ -19,7 +20,8 @@ struct GuardInputs {
   double command_V = 0.0;           ///< u - null of the previous period
   bool saturated = false;           ///< the previous command was at a limit
   double spare_difference_m = 0.0;  ///< PositionVoter::difference_m()
-  bool other_sensor = false;        ///< the voter switched sensors since the previous tick
+  config::signals::Pressures pressures;
+  bool other_sensor = false;  ///< the voter switched sensors since the previous tick
 };
 
 /// The previous good reading.
@@ -88,6 +90,8 @@ class Guard {
 
   GuardKind kind_;
   Action action_;
+  /// Of pressure and transducer.
+  double config::signals::Pressures::*channel_ = &config::signals::Pressures::supply_Pa;
   double time_s_, low_, high_, braking_mps2_, least_m_, command_V_;
   double low_now_m_, high_now_m_;  ///< travel limits, wider while the rod returns
   double since_s_ = std::numeric_limits<double>::quiet_NaN();

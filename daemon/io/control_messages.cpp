@@ -75,6 +75,7 @@ ordered_json inputs_of(const std::vector<ControlStatus::Input>& inputs) {
   ordered_json list = ordered_json::array();
   for (const auto& input : inputs) {
     list.push_back({{"id", input.id}, {"value", number(input.value)}});
+    if (!input.role.empty()) list.back()["role"] = input.role;
   }
   return list;
 }

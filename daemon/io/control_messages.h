@@ -63,6 +63,7 @@ struct ControlStatus {
   struct Input {
     std::string id;
     double value = std::numeric_limits<double>::quiet_NaN();
+    std::string role{};  ///< as in the configuration; empty: a rod sensor
   };
   /// Redundant rod sensors, the configured one first.
   struct Rod {

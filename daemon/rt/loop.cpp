@@ -209,6 +209,7 @@ void Loop::watch_motion(const hal::Reading& reading, Sample& sample) noexcept {
   inputs.command_V = last_V_;
   inputs.saturated = last_limited_;
   inputs.spare_difference_m = position_sensor_.voter().difference_m();
+  inputs.pressures = aux_inputs_.pressures();
   inputs.other_sensor = position_sensor_.voter().changed();
   act(guard_monitor_.watch(inputs, position_sensor_.voter().watch()), true);
   if (follows && reference_.holding()) sample.reference_m = reference_.at(tick_);

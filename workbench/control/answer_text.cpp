@@ -95,7 +95,10 @@ void print_inputs(const ordered_json& status, const char* key, const char* what,
   const auto list = status.find(key);
   if (list == status.end() || !list->is_array()) return;
   for (const ordered_json& entry : *list) {
-    out << "  " << what << ' ' << text_of(entry, "id") << ": " << number_of(entry, "value", 1.0, "")
+    // Pressures are those of the roles that have a unit.
+    const bool pressure = text_of(entry, "role").find("pressure") != std::string::npos;
+    out << "  " << what << ' ' << text_of(entry, "id") << ": "
+        << (pressure ? number_of(entry, "value", 1e-5, " bar") : number_of(entry, "value", 1.0, ""))
         << '\n';
   }
 }

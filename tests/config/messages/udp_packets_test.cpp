@@ -82,7 +82,8 @@ TEST(PacketReassembler, RefusesWhatDoesNotFit) {
 
 // Sums of sizes and offsets beyond every buffer, with the bounds of memory that the header states.
 TEST(PacketReassembler, SurvivesAHundredThousandDamagedPackets) {
-  std::mt19937 random(5);
+  std::minstd_rand engine(5);
+  const auto random = [&] { return static_cast<std::uint32_t>(engine()); };
   const std::uint32_t edges[] = {0, 1, 5, 10, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF};
   PacketReassembler packets;
   for (int i = 0; i < 100000; ++i) {

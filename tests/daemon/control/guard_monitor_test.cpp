@@ -203,6 +203,54 @@ TEST(Guard, SaturatedAndDisagreeTripWhenTheyHaveLasted) {
             tick_of(0.202));
 }
 
+GuardInputs with_pressures(double supply_Pa, double in_Pa, double out_Pa, bool runs = true) {
+  GuardInputs inputs = at(0.2);
+  inputs.pressures = {supply_Pa, in_Pa, out_Pa};
+  if (runs) inputs.reference_m = 0.2;
+  return inputs;
+}
+
+TEST(Guard, PressureTripsBelowAndAboveItsLimitsInRunOnly) {
+  GuardConfig low = guard("pressure");
+  low.channel = "supply_pressure";
+  low.low_Pa = 50e5;
+  low.high_Pa = 200e5;
+  low.time_s = 0.1;
+  const auto falls = [](bool runs) {
+    return [runs](double t) { return with_pressures(100e5 - 40e5 * t, 50e5, 50e5, runs); };
+  };
+  EXPECT_EQ(first_trip(low, falls(true)), tick_of(1.25) + 1 + tick_of(0.1));
+  EXPECT_EQ(first_trip(low, falls(false)), -1) << "the pump may be off at rest";
+  GuardConfig high = guard("pressure");
+  high.channel = "pressure_out";
+  high.high_Pa = 150e5;
+  EXPECT_EQ(first_trip(high, [](double t) { return with_pressures(200e5, 0.0, 100e5 * t); }),
+            tick_of(1.5) + 1);
+  EXPECT_EQ(first_trip(high, [](double) { return with_pressures(kNaN, kNaN, kNaN); }), -1)
+      << "what cannot be read is the transducer's";
+}
+
+TEST(Guard, TransducerTripsWhileItsPressureCannotBeReadAtRestToo) {
+  GuardConfig lost = guard("transducer", "indicate");
+  lost.channel = "pressure_in";
+  lost.time_s = 0.05;
+  EXPECT_EQ(
+      first_trip(
+          lost, [](double t) { return with_pressures(100e5, t < 1.0 ? 50e5 : kNaN, 50e5, false); }),
+      tick_of(1.0) + tick_of(0.05));
+}
+
+TEST(Guard, ChambersTripWhenOneIsAboveTheSupplyOrBelowNothing) {
+  GuardConfig chambers = guard("chambers");
+  chambers.tolerance_Pa = 5e5;
+  EXPECT_EQ(
+      first_trip(chambers, [](double t) { return with_pressures(100e5, 100e5 + 10e5 * t, 0); }),
+      tick_of(0.5) + 1);
+  EXPECT_EQ(first_trip(chambers, [](double t) { return with_pressures(kNaN, -10e5 * t, 0); }),
+            tick_of(0.5) + 1);
+  EXPECT_EQ(first_trip(chambers, [](double) { return with_pressures(100e5, 104e5, kNaN); }), -1);
+}
+
 TEST(GuardMonitor, TheStrongestActionOfATickWinsAndEachIsAskedForOnce) {
   GuardConfig speed = guard("speed", "hold");
   speed.limit_mps = 0.1;

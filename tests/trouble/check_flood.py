@@ -1,0 +1,132 @@
+#!/usr/bin/env python3
+"""Floods the control socket as a user who may only look, and as one who may act: how long a `stop` waits.
+
+  check_flood.py PROGRAMS CONFIG [--stops N] [--limit-ms MS]
+
+Every stop must be answered within the limit, by a daemon whose memory stays flat, and the audit file must
+keep what was ordered. Without root the flood comes from the own user, who may act.
+"""
+import argparse
+import json
+import multiprocessing
+import os
+import pathlib
+import socket
+import sys
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from stand import Daemon  # noqa: E402
+
+NOBODY = 65534
+ORDER = b'{"command": "arm"}\n'
+
+
+def connection(path):
+    one = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    one.setblocking(False)
+    try:
+        one.connect(path)
+    except BlockingIOError:
+        pass
+    return one
+
+
+def pipeline(path, line, ends, uid):
+    """Twenty connections that send without reading."""
+    if os.geteuid() == 0 and uid is not None:
+        os.setgroups([])
+        os.setgid(uid)
+        os.setuid(uid)
+    os.nice(5)
+    files = []
+    while time.monotonic() < ends:
+        while len(files) < 20:
+            try:
+                files.append(connection(path))
+            except OSError:
+                break
+        for one in list(files):
+            try:
+                one.send(line * 50)
+            except BlockingIOError:
+                pass
+            except OSError:
+                one.close()
+                files.remove(one)
+        time.sleep(0.001)
+
+
+def connections(path, _line, ends, uid):
+    """As many connections as there can be, each gone at once."""
+    if os.geteuid() == 0 and uid is not None:
+        os.setgroups([])
+        os.setgid(uid)
+        os.setuid(uid)
+    os.nice(5)
+    while time.monotonic() < ends:
+        try:
+            connection(path).close()
+        except OSError:
+            time.sleep(0.0005)
+
+
+FLOODS = {
+    "status by a looker": (pipeline, b'{"command": "status"}\n', NOBODY),
+    "refused orders by a looker": (pipeline, ORDER, NOBODY),
+    "alarms by a looker": (pipeline, b'{"command": "alarms"}\n', NOBODY),
+    "half a line": (pipeline, b'{"comm', NOBODY),
+    "nonsense": (pipeline, b"\x00\xff{]\n", NOBODY),
+    "connections": (connections, b"", NOBODY),
+    "status by one who may act": (pipeline, b'{"command": "status"}\n', None),
+    "orders by one who may act": (pipeline, b'{"command": "hold"}\n', None),
+}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("programs")
+    parser.add_argument("config")
+    parser.add_argument("--stops", type=int, default=100)
+    parser.add_argument("--limit-ms", type=float, default=100.0)
+    options = parser.parse_args()
+    late = 0
+    with Daemon(options.programs, options.config,
+                ["control.mode=0666", "loop.privileges=try"]) as daemon:
+        memory_kB = daemon.memory_kB()
+        assert daemon.ask("arm")["ok"]
+        each = -(-options.stops // len(FLOODS))
+        for name, (flood, line, uid) in FLOODS.items():
+            ends = time.monotonic() + 60
+            child = multiprocessing.Process(target=flood, args=(daemon.socket, line, ends, uid))
+            child.start()
+            time.sleep(0.3)
+            times_ms = []
+            for _ in range(each):
+                daemon.ask("start")
+                begin = time.monotonic()
+                answer = daemon.ask("stop")
+                times_ms.append(1e3 * (time.monotonic() - begin))
+                if answer["state"] == "RUN":
+                    print(f"{name}: {answer}")
+                    late += 1
+                time.sleep(0.02)
+            child.terminate()
+            child.join()
+            late += sum(t > options.limit_ms for t in times_ms)
+            times_ms.sort()
+            print(f"{name:28} {len(times_ms)} stops: median {times_ms[len(times_ms) // 2]:6.1f} ms, "
+                  f"worst {times_ms[-1]:6.1f} ms")
+        grown_kB = daemon.memory_kB() - memory_kB
+        print(f"memory grown by {grown_kB} kB")
+        time.sleep(0.5)
+        audit = pathlib.Path(daemon.folder.name, "alarms", "audit.log").read_text()
+        arms = [a for a in map(json.loads, audit.splitlines())
+                if a["uid"] == os.geteuid() and '"arm"' in a["what"] and a["done"]]
+    assert len(arms) == 1, "the audit trail has lost the order that armed the rig"
+    assert grown_kB < 8192, "memory grows"
+    assert late == 0, f"{late} stops were later than {options.limit_ms} ms"
+
+
+if __name__ == "__main__":
+    main()

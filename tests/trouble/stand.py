@@ -1,0 +1,64 @@
+"""A daemon on the simulated rig, in a folder of its own, and requests on its control socket."""
+import json
+import os
+import pathlib
+import signal
+import socket
+import subprocess
+import tempfile
+import time
+
+
+class Daemon:
+    """spoolwatchd with a configuration of config/; ends with the `with` block."""
+
+    def __init__(self, programs, config, settings=(), files=()):
+        self.programs = pathlib.Path(programs)
+        self.folder = tempfile.TemporaryDirectory(prefix="spoolwatch-trouble-")
+        os.chmod(self.folder.name, 0o755)
+        place = pathlib.Path(self.folder.name)
+        self.socket = str(place / "control.sock")
+        self.log = place / "log.txt"
+        command = [str(self.programs / "spoolwatchd"), "--config", str(config), "--lcm-url", ""]
+        for setting in (f"control.socket={self.socket}", f"alarms.folder={place}/alarms",
+                        "evidence.folder=", "recorder.folder=", *settings):
+            command += ["--set", setting]
+        self.process = subprocess.Popen(command, stderr=open(self.log, "w"),
+                                        stdout=subprocess.DEVNULL)
+
+    def __enter__(self):
+        deadline = time.monotonic() + 20
+        while time.monotonic() < deadline:
+            try:
+                self.ask("status")
+                return self
+            except OSError:
+                if self.process.poll() is not None:
+                    raise RuntimeError(self.log.read_text())
+                time.sleep(0.05)
+        raise RuntimeError("the daemon does not answer")
+
+    def __exit__(self, *_):
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGTERM)
+            self.process.wait(timeout=20)
+        self.folder.cleanup()
+
+    def ask(self, command, timeout_s=5.0, **more):
+        with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as one:
+            one.settimeout(timeout_s)
+            one.connect(self.socket)
+            one.sendall(json.dumps({"command": command, **more}).encode() + b"\n")
+            line = b""
+            while not line.endswith(b"\n"):
+                part = one.recv(65536)
+                if not part:
+                    raise ConnectionError("closed without an answer")
+                line += part
+        return json.loads(line)
+
+    def memory_kB(self):
+        for line in open(f"/proc/{self.process.pid}/status"):
+            if line.startswith("VmRSS"):
+                return int(line.split()[1])
+        return 0
