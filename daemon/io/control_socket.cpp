@@ -27,7 +27,7 @@ using config::schema::RunError;
 
 constexpr gid_t kNoGroup = static_cast<gid_t>(-1);
 /// Connections of those who may command, and of those who may only query.
-constexpr std::size_t kMaxActing = 16;
+constexpr std::size_t kMaxActing = 64;
 constexpr std::size_t kMaxLooking = 16;
 constexpr int kBacklog = 128;
 constexpr int kAcceptedAtOnce = 32;
@@ -212,23 +212,27 @@ void ControlSocket::accept_clients() {
       close(file);
       continue;
     }
-    clients_.push_back({next_id_++, file, acts, peer.uid, false, ++turn_, 0, {}, {}, {}, false});
+    const std::int64_t owner = acts ? peer.pid : static_cast<std::int64_t>(peer.uid);
+    clients_.push_back(
+        {next_id_++, file, acts, peer.uid, owner, false, ++turn_, 0, 0, {}, {}, {}, false});
   }
 }
 
 bool ControlSocket::make_room(bool may_act) {
-  std::map<unsigned, std::size_t> of_user;
+  std::map<std::int64_t, std::size_t> of_owner;
   std::size_t count = 0;
   for (const Client& client : clients_) {
     if (client.may_act != may_act) continue;
     ++count;
-    ++of_user[client.uid];
+    ++of_owner[client.owner];
   }
   if (count < (may_act ? kMaxActing : kMaxLooking)) return true;
-  // The longest silent one of the user with the most connections.
+  // Of the process or user with the most connections, the one that has had the most answers, and
+  // among equals the longest silent.
   Client* silent = nullptr;
   const auto order = [&](const Client& client) {
-    return std::tuple(-static_cast<std::ptrdiff_t>(of_user[client.uid]), client.heard);
+    return std::tuple(-static_cast<std::ptrdiff_t>(of_owner[client.owner]),
+                      -static_cast<std::int64_t>(client.requests), client.heard);
   };
   for (Client& client : clients_) {
     if (client.may_act != may_act || client.asking) continue;
@@ -318,6 +322,7 @@ bool ControlSocket::next(Request& request, const Accepts& accepts) {
   find_head(*first);
   first->asking = true;
   first->served = ++turn_;
+  ++first->requests;
   return true;
 }
 

@@ -71,9 +71,11 @@ class ControlSocket {
     int file;
     bool may_act;
     unsigned uid;
-    bool asking = false;       ///< a request is unanswered
-    std::uint64_t heard = 0;   ///< turn in which the client last sent something
-    std::uint64_t served = 0;  ///< turn in which a request of the client was last returned
+    std::int64_t owner;          ///< the process of one who may act, the user of one who may not
+    bool asking = false;         ///< a request is unanswered
+    std::uint64_t heard = 0;     ///< turn in which the client last sent something
+    std::uint64_t served = 0;    ///< turn in which a request of the client was last returned
+    std::uint64_t requests = 0;  ///< returned so far
     std::optional<ControlRequest> head;  ///< the first line of `in`
     std::string in;
     std::string out;

@@ -1,4 +1,5 @@
 // spoolwatch alarms | ack | shelve | unshelve: the alarms of the running daemon.
+#include <chrono>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -29,6 +30,7 @@ struct AlarmOptions {
 
 void print_statistics(const AlarmOptions& options) {
   std::string folder = options.history;
+  std::int64_t now_us = 0;
   if (folder.empty()) {
     const ordered_json status =
         control::ask_daemon(options.common.socket, {{protocol::key::kCommand, protocol::kStatus}});
@@ -36,8 +38,11 @@ void print_statistics(const AlarmOptions& options) {
     if (folder.empty()) {
       throw config::schema::RunError("the daemon keeps no history: [alarms] folder is empty");
     }
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    now_us = std::chrono::duration_cast<std::chrono::microseconds>(now).count();
   }
-  const control::AlarmStatistics found = control::alarm_statistics(control::read_history(folder));
+  const control::AlarmStatistics found =
+      control::alarm_statistics(control::read_history(folder), now_us);
   if (!present::write_json(control::to_json(found), options.common.json)) {
     control::print_statistics(found, std::cout);
   }

@@ -132,7 +132,7 @@ AlarmHistory read_history(const std::filesystem::path& folder) {
   return history;
 }
 
-AlarmStatistics alarm_statistics(const AlarmHistory& history) {
+AlarmStatistics alarm_statistics(const AlarmHistory& history, std::int64_t now_utc_us) {
   AlarmStatistics out;
   out.folder = history.folder;
   out.damaged_lines = history.damaged_lines;
@@ -178,6 +178,10 @@ AlarmStatistics alarm_statistics(const AlarmHistory& history) {
       most[event.alarm] = std::max(most[event.alarm], times);
     }
     alarm.annunciated = annunciated;
+  }
+  if (runs && now_utc_us > before_us) {
+    observed_us += now_utc_us - before_us;
+    out.to_utc_us = now_utc_us;
   }
   std::erase_if(most, [](const auto& each) { return each.second < kChatters; });
   for (const auto& [name, alarm] : alarms) {

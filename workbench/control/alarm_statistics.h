@@ -51,7 +51,9 @@ struct AlarmStatistics {
   std::size_t damaged_lines = 0;
 };
 
-[[nodiscard]] AlarmStatistics alarm_statistics(const AlarmHistory& history);
+/// `now_utc_us`: the daemon runs until now; 0: until the last line.
+[[nodiscard]] AlarmStatistics alarm_statistics(const AlarmHistory& history,
+                                               std::int64_t now_utc_us = 0);
 
 [[nodiscard]] std::string to_json(const AlarmStatistics& statistics);
 void print_statistics(const AlarmStatistics& statistics, std::ostream& out);

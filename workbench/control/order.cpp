@@ -110,10 +110,12 @@ ordered_json give_order(const ordered_json& request, const OrderOptions& options
   if (!options.json.empty()) write_json(answer, options.json);
   if (answer.at(protocol::key::kOk).get<bool>()) return answer;
   const auto reason = answer.find(protocol::key::kReason);
-  throw RunError("refused: " +
-                 (reason != answer.end() && reason->is_string() ? reason->get<std::string>()
-                                                                : std::string("no reason given")) +
-                 " (the state is " + answer.at(protocol::key::kState).get<std::string>() + ")");
+  const std::string why = reason != answer.end() && reason->is_string()
+                              ? reason->get<std::string>()
+                              : std::string("no reason given");
+  const std::string state = answer.at(protocol::key::kState).get<std::string>();
+  const bool said = why.find(state) != std::string::npos;
+  throw RunError("refused: " + why + (said ? "" : " (the state is " + state + ")"));
 }
 
 }  // namespace workbench::control

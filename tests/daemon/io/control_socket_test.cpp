@@ -132,7 +132,7 @@ TEST_F(ControlSocketTest, OutlivesClientsThatGoFloodOrComeInCrowds) {
   EXPECT_LE(::recv(flood, &byte, 1, MSG_DONTWAIT), 0);
   EXPECT_NE(errno, EAGAIN) << "a line without end is cut off";
   std::vector<int> crowd;
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < 100; ++i) {
     crowd.push_back(connect());
     look(socket);
   }
