@@ -1,5 +1,7 @@
 #include "daemon/control_request_handler.h"
 
+#include <cmath>
+
 #include "daemon/control/protocol.h"
 #include "daemon/detection/system_alarms.h"
 
@@ -260,18 +262,18 @@ std::string ControlRequestHandler::explain(const control::CommandAnswer& answer)
 
 std::string ControlRequestHandler::obstacle() const {
   if (!identity_.never_arms.empty()) return identity_.never_arms;
-  const auto is_one = [this](std::size_t input) {
+  const auto wrong = [this](std::size_t input, const char* off) -> std::string {
     const double value = parts_.stats.inputs[input].value.load(std::memory_order_relaxed);
-    return value > 0.5 && value < 1.5;
+    if (value > 0.5 && value < 1.5) return "";
+    return "input " + identity_.inputs[input] + ": " + (std::isnan(value) ? "cannot be read" : off);
   };
   for (const std::size_t input : identity_.e_stops) {
-    if (!is_one(input)) {
-      return "input " + identity_.inputs[input] + ": " +
-             control::reason_of(control::GuardKind::e_stop);
-    }
+    const std::string why = wrong(input, control::reason_of(control::GuardKind::e_stop));
+    if (!why.empty()) return why;
   }
   for (const std::size_t input : identity_.enables) {
-    if (!is_one(input)) return "input " + identity_.inputs[input] + ": the enable input is off";
+    const std::string why = wrong(input, "the enable input is off");
+    if (!why.empty()) return why;
   }
   return "";
 }

@@ -1,0 +1,350 @@
+#!/usr/bin/env python3
+"""A misbehaving Modbus device: what it does to the valve.
+
+  check_modbus.py PROGRAMS CONFIG_FOLDER [--only TEXT]
+
+The shipped daemon drives the bench rig (spoolwatch-rig) through a proxy that spoils replies in some sixty
+ways, once and for half a second, while the rig moves. Whatever happens: the first command on every new
+connection is null, a latched daemon moves nothing, it says why it latched, and it comes back.
+"""
+import argparse
+import json
+import pathlib
+import random
+import select
+import socket
+import struct
+import subprocess
+import sys
+import threading
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from stand import Daemon  # noqa: E402
+
+READ, WRITES = 3, (6, 16)
+COMMAND, POSITION, E_STOP = 2, 4, 11
+
+
+class Close(Exception):
+    """Ends the connection; reset: with an RST."""
+
+    def __init__(self, reset=False):
+        super().__init__()
+        self.reset = reset
+
+
+def whole(request, reply):
+    return [(0, reply)]
+
+
+def delayed(ms):
+    return lambda request, reply: [(ms, reply)]
+
+
+def loris(ms):
+    return lambda request, reply: [(ms, bytes([b])) for b in reply]
+
+
+def edited(edit):
+    def spoil(request, reply):
+        data = bytearray(reply)
+        edit(data)
+        return [(0, bytes(data))]
+    return spoil
+
+
+def put(at, value):
+    return edited(lambda d: d.__setitem__(at, value(d[at]) if callable(value) else value))
+
+
+def length(value):
+    return edited(lambda d: d.__setitem__(slice(4, 6), struct.pack(">H", value(len(d) - 6) & 0xFFFF)))
+
+
+def refused(code, functions=None):
+    def spoil(request, reply):
+        if functions and request[7] not in functions:
+            return [(0, reply)]
+        return [(0, reply[:4] + b"\0\3" + bytes([reply[6], request[7] | 0x80, code]))]
+    return spoil
+
+
+def only(functions, spoil):
+    return lambda request, reply: spoil(request, reply) if request[7] in functions else [(0, reply)]
+
+
+def register(address, words):
+    """The value of a register in replies to reads."""
+    def spoil(request, reply):
+        first, count = struct.unpack(">HH", request[8:12])
+        if request[7] != READ or not first <= address < first + count:
+            return [(0, reply)]
+        data = bytearray(reply)
+        at = 9 + 2 * (address - first)
+        data[at:at + len(words)] = words
+        return [(0, bytes(data))]
+    return spoil
+
+
+def position(value):
+    return register(POSITION, struct.pack(">f", value))
+
+
+def close(reset):
+    def spoil(request, reply):
+        raise Close(reset)
+    return spoil
+
+
+def garbage(size):
+    return lambda request, reply: [(0, random.Random(size).randbytes(size))]
+
+
+TROUBLES = {
+    **{f"{ms} ms late": delayed(ms) for ms in (1, 3, 8, 20, 60, 200)},
+    **{f"slow, {ms} ms a byte": loris(ms) for ms in (0.2, 1, 5)},
+    "lost": lambda request, reply: [],
+    "lost on reads": only((READ,), lambda request, reply: []),
+    "lost on writes": only(WRITES, lambda request, reply: []),
+    "cut by a byte": lambda request, reply: [(0, reply[:-1])],
+    "cut in the header": lambda request, reply: [(0, reply[:5])],
+    "twice": lambda request, reply: [(0, reply + reply)],
+    "twice, 1.2 ms apart": lambda request, reply: [(0, reply), (1.2, reply)],
+    "trailing byte": lambda request, reply: [(0, reply + b"\0")],
+    "of the next transaction": put(1, lambda b: (b + 1) & 0xFF),
+    "of transaction 0": edited(lambda d: d.__setitem__(slice(0, 2), b"\0\0")),
+    "of another protocol": put(3, 1),
+    "of the next unit": put(6, lambda b: (b + 1) & 0xFF),
+    "of unit 0": put(6, 0),
+    "of unit 255": put(6, 255),
+    "length 0": length(lambda n: 0),
+    "length 1": length(lambda n: 1),
+    "length + 1": length(lambda n: n + 1),
+    "length - 1": length(lambda n: n - 1),
+    "length 65535": length(lambda n: 65535),
+    "of another function": put(7, lambda b: b ^ 0x15),
+    "function 0": put(7, 0),
+    "count too large": only((READ,), put(8, lambda b: b + 2)),
+    "count too small": only((READ,), put(8, lambda b: b - 2)),
+    "count 0": only((READ,), put(8, 0)),
+    "confirms the next address": only(WRITES, put(9, lambda b: (b + 1) & 0xFF)),
+    "confirms another number": only(WRITES, put(11, lambda b: (b + 1) & 0xFF)),
+    "garbage of 3": garbage(3),
+    "garbage of 12": garbage(12),
+    "garbage of 300": garbage(300),
+    **{f"exception {code}": refused(code) for code in (1, 4, 6, 11)},
+    **{f"exception {code} on reads": refused(code, (READ,)) for code in (2, 4, 11)},
+    "exception 4 on writes": refused(4, WRITES),
+    "exception 0": refused(0),
+    "exception 200": refused(200),
+    "closes": close(False),
+    "resets": close(True),
+    "position NaN": position(float("nan")),
+    "position infinite": position(float("inf")),
+    "position out of range": position(50.0),
+    "position below range": position(-50.0),
+    "e-stop 0": register(E_STOP, b"\0\0"),
+    "e-stop 0xABCD": register(E_STOP, b"\xab\xcd"),
+}
+ON_ACCEPT = {  # what a new connection finds
+    "garbage on accept": lambda c: c.sendall(b"\0\1\0\0\0\3\1\x83\x04"),
+    "closed on accept": lambda c: (_ for _ in ()).throw(Close()),
+    "reset on accept": lambda c: (_ for _ in ()).throw(Close(True)),
+}
+
+
+class Proxy:
+    def __init__(self, rig_port):
+        self.rig_port = rig_port
+        self.listener = socket.create_server(("127.0.0.1", 0))
+        self.port = self.listener.getsockname()[1]
+        self.spoil, self.left, self.on_accept = whole, 0, None
+        self.deaf = False
+        self.first_commands, self.commands, self.first_spoilt = [], [], None
+        threading.Thread(target=self.accept, daemon=True).start()
+
+    def begin(self, spoil, count):
+        self.first_spoilt = None
+        self.spoil, self.left = spoil, count
+
+    def accept(self):
+        while True:
+            client, _ = self.listener.accept()
+            client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            threading.Thread(target=self.serve, args=(client,), daemon=True).start()
+
+    def serve(self, client):
+        rig = socket.create_connection(("127.0.0.1", self.rig_port))
+        rig.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        first = True
+        try:
+            if self.on_accept:
+                self.on_accept(client)
+            while True:
+                while self.deaf:
+                    time.sleep(0.005)
+                request = self.frame(client)
+                if request[7] in WRITES and struct.unpack(">H", request[8:10])[0] == COMMAND:
+                    volts = struct.unpack(">f", request[13:17])[0]
+                    self.commands.append((time.monotonic(), volts))
+                    if first:
+                        self.first_commands.append(volts)
+                    first = False
+                rig.sendall(request)
+                reply = self.frame(rig)
+                parts = [(0, reply)]
+                if self.left != 0:
+                    parts = self.spoil(request, reply)
+                    if parts != [(0, reply)]:
+                        self.left -= 1
+                        self.first_spoilt = self.first_spoilt or time.monotonic()
+                for ms, data in parts:
+                    if ms:
+                        time.sleep(ms * 1e-3)
+                    client.sendall(data)
+        except Close as end:
+            self.left -= 1
+            self.first_spoilt = self.first_spoilt or time.monotonic()
+            if end.reset:
+                client.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+        except OSError:
+            pass
+        finally:
+            client.close()
+            rig.close()
+
+    @staticmethod
+    def frame(file):
+        data = b""
+        while len(data) < 6 or len(data) < 6 + struct.unpack(">H", data[4:6])[0]:
+            part = file.recv(512)
+            if not part:
+                raise ConnectionError
+            data += part
+        return data
+
+
+def eventually(condition, timeout_s=10.0):
+    ends = time.monotonic() + timeout_s
+    while time.monotonic() < ends:
+        if condition():
+            return True
+        time.sleep(0.05)
+    return False
+
+
+class Bench:
+    def __init__(self, daemon, proxy):
+        self.daemon, self.proxy, self.failures = daemon, proxy, []
+
+    def runs(self):
+        """In RUN with a command that is far from null."""
+        state = self.daemon.ask("status")
+        if state["state"] == "LATCHED":
+            self.daemon.ask("reset")
+        if state["state"] in ("LATCHED", "DISARMED"):
+            self.daemon.ask("arm")
+        if state["state"] != "RUN":
+            self.daemon.ask("start")
+            return False
+        now = time.monotonic()
+        return any(abs(u) > 0.5 and now - t < 0.05 for t, u in self.proxy.commands[-20:])
+
+    def trouble(self, name, begin, end, settle_s=0.5):
+        proxy = self.proxy
+        if not eventually(self.runs):
+            self.failures.append(f"{name}: did not run before: {self.daemon.ask('status')['state']}")
+            return
+        proxy.first_commands.clear()
+        begin()
+        time.sleep(settle_s)
+        status = self.daemon.ask("status")
+        latched = status["state"] == "LATCHED"
+        if latched:
+            since = time.monotonic()
+            time.sleep(0.1)
+            moved = [u for t, u in proxy.commands if t > since + 0.02 and u != 0.0]
+            if moved:
+                self.failures.append(f"{name}: latched, and commands {moved[:3]}")
+            if not status["latched_because"]:
+                self.failures.append(f"{name}: does not say why it latched")
+        end()
+        wrong = [u for u in proxy.first_commands if u != 0.0]
+        if wrong:
+            self.failures.append(f"{name}: a new connection began with {wrong[0]} V")
+        back = eventually(self.runs, 15.0)
+        if not back:
+            self.failures.append(f"{name}: does not come back: {self.daemon.ask('status')}")
+        cause = f" by {status['latched_by']}" if latched else ""
+        print(f"{name:40} {status['state']}{cause}, {len(proxy.first_commands)} new connections",
+              flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("programs", type=pathlib.Path)
+    parser.add_argument("config", type=pathlib.Path)
+    parser.add_argument("--only", default="")
+    options = parser.parse_args()
+    rig = subprocess.Popen([str(options.programs / "spoolwatch-rig"), "--config",
+                            str(options.config / "bench_rig.toml"), "--set", "bus.listen=127.0.0.1:0"],
+                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    try:
+        line = ""
+        while "127.0.0.1:" not in line:
+            line = rig.stdout.readline()
+        port = int(line.split("127.0.0.1:")[1].split()[0].rstrip(".,;"))
+        threading.Thread(target=rig.stdout.read, daemon=True).start()
+        proxy = Proxy(port)
+        settings = [f"modbus.address=127.0.0.1:{proxy.port}", "modbus.timeout_s=0.03",
+                    "modbus.watchdog_s=0.3", "modbus.longest_pause_s=0.1", "modbus.read_ahead_s=0",
+                    "loop.rate_hz=50", "loop.max_lost_a_minute=1000", "loop.max_lost_in_a_row=50",
+                    "reference.amplitude_m=0.05", "loop.overrun_action=count"]
+        with Daemon(options.programs, options.config / "bench_modbus.toml", settings) as daemon:
+            bench = Bench(daemon, proxy)
+            memory_kB = 0
+            tried = 0
+            for name, spoil in TROUBLES.items():
+                for how, count in (("once", 1), ("half a second", -1)):
+                    label = f"{name}, {how}"
+                    if options.only not in label:
+                        continue
+                    bench.trouble(label, lambda: proxy.begin(spoil, count),
+                                  lambda: proxy.begin(whole, 0))
+                    tried += 1
+                    memory_kB = memory_kB or daemon.memory_kB()
+            for name, meet in ON_ACCEPT.items():
+                if options.only not in name:
+                    continue
+
+                def begin(meet=meet):
+                    proxy.on_accept = meet
+                    proxy.begin(close(False), 1)
+
+                def end():
+                    proxy.on_accept = None
+                    proxy.begin(whole, 0)
+
+                bench.trouble(name, begin, end)
+                tried += 1
+            if options.only in "half open":
+                bench.trouble("half open", lambda: setattr(proxy, "deaf", True),
+                              lambda: setattr(proxy, "deaf", False))
+                tried += 1
+            grown_kB = daemon.memory_kB() - memory_kB
+            files = len(list(pathlib.Path(f"/proc/{daemon.process.pid}/fd").iterdir()))
+            print(f"{tried} troubles, {files} open files, memory grown by {grown_kB} kB")
+            if grown_kB > 4096 or files > 40:
+                bench.failures.append("memory or files grow")
+            if daemon.process.poll() is not None:
+                bench.failures.append("the daemon ended")
+    finally:
+        rig.terminate()
+        rig.wait()
+    print(*bench.failures, sep="\n")
+    sys.exit(1 if bench.failures else 0)
+
+
+if __name__ == "__main__":
+    main()
