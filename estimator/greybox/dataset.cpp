@@ -56,6 +56,52 @@ void append(Dataset& to, const config::record::Record& from, std::size_t begin, 
 
 std::string seconds(double s) { return fmt::format("{:.3g} s", s); }
 
+/// Beyond these no rig moves and no drive commands.
+constexpr double kFarthest_m = 1e6;
+constexpr double kGreatest_V = 1e9;
+
+/// Throws for a value that no rig has: one would make every sum of squares useless.
+void refuse_spikes(const config::record::Record& record, const std::vector<double>& values,
+                   double most, const char* what, const char* unit) {
+  std::size_t spikes = 0;
+  std::size_t first = 0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (std::abs(values[k]) <= most) continue;
+    if (spikes++ == 0) first = k;
+  }
+  if (spikes == 0) return;
+  throw config::schema::bad_data(
+      record.name,
+      fmt::format("has a spike at {:.6g} s: {} {:.3g} {}, and {} more such samples",
+                  record.t_s[first], what, values[first], unit, spikes - 1),
+      fmt::format("up to {:.0e} {}; leave the field empty where nothing was measured", most, unit));
+}
+
+/// -9999 and the like, far from all other positions, mark missing values in many loggers.
+void note_markers(const config::record::Record& record, Dataset& result) {
+  for (const double marker : {-9999.0, 9999.0, -999.0, 999.0, -99999.0, 99999.0}) {
+    for (const double scale : {1.0, 1e-3}) {
+      const double value_m = marker * scale;
+      double rest_m = 0.0;
+      std::size_t count = 0;
+      std::size_t first = 0;
+      for (std::size_t k = 0; k < record.size(); ++k) {
+        if (record.y_m[k] != value_m) {
+          rest_m = std::max(rest_m, std::abs(record.y_m[k]));
+        } else if (count++ == 0) {
+          first = k;
+        }
+      }
+      if (count == 0 || rest_m > 0.1 * std::abs(value_m)) continue;
+      result.notes.push_back(
+          fmt::format("{:.6g} m at {:.6g} s ({} times) looks like a mark of missing values: leave "
+                      "the field empty",
+                      value_m, record.t_s[first], count));
+      return;
+    }
+  }
+}
+
 }  // namespace
 
 double Dataset::observer_gain(std::size_t k, double observer_per_s) const noexcept {
@@ -75,6 +121,9 @@ Dataset dataset_of(const config::record::Record& record) {
     throw config::schema::bad_data(record.name, "is sampled every " + seconds(record.sample_time_s),
                                    "every " + seconds(kSlowest_s) + " or faster");
   }
+  refuse_spikes(record, record.y_m, kFarthest_m, "position", "m");
+  refuse_spikes(record, record.u_V, kGreatest_V, "command", "V");
+  note_markers(record, result);
   const auto shortest = static_cast<std::size_t>(std::ceil(kShortest_s / record.sample_time_s));
   std::size_t left_out = 0;
   std::size_t longest = 0;

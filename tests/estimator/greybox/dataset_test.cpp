@@ -82,6 +82,29 @@ TEST(Dataset, RefusesSamplesFarApart) {
   }
 }
 
+TEST(Dataset, NamesTheTimeOfASpikeThatNoRigHas) {
+  config::record::Record spiked = record(300);
+  spiked.y_m[120] = -1e30;
+  spiked.y_m[121] = 1e160;
+  try {
+    (void)dataset_of(spiked);
+    FAIL();
+  } catch (const config::schema::DataError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("has a spike at 1.2 s: position -1e+30 m, and 1 more"));
+  }
+  spiked = record(300);
+  spiked.u_V[5] = 1e12;
+  EXPECT_THROW((void)dataset_of(spiked), config::schema::DataError);
+}
+
+TEST(Dataset, NotesAMarkOfMissingValues) {
+  config::record::Record marked = record(300);
+  EXPECT_TRUE(dataset_of(marked).notes.empty());
+  marked.y_m[100] = marked.y_m[200] = -9999.0;
+  ASSERT_EQ(dataset_of(marked).notes.size(), 1U);
+  EXPECT_THAT(dataset_of(marked).notes[0], HasSubstr("-9999 m at 1 s (2 times) looks like a mark"));
+}
+
 TEST(Dataset, GivesAPartWithItsOwnSegmentsAndSettling) {
   const Dataset whole = dataset_of(record(600, {300}));
   const Dataset p = part(whole, 200, 500);
