@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <new>
 
 #include "config/schema/error.h"
 #include "config/schema/product_version.h"
@@ -146,6 +147,9 @@ int main(int argc, char** argv) {
   monitor::rt::keep_memory_small();
   try {
     return run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    std::cerr << "spoolwatchd: not enough memory for this input\n";
+    return EXIT_FAILURE;
   } catch (const std::exception& e) {
     std::cerr << "spoolwatchd: " << e.what() << '\n';
     return config::schema::exit_code_of(e);

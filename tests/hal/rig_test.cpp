@@ -50,6 +50,14 @@ TEST(Rig, WithoutAValveDrivesNothing) {
   EXPECT_EQ(rig.open({"rig.toml", kFolder, 0.005, 0.0}).valve, nullptr);
 }
 
+TEST(Rig, RefusesTwoInputsOfOneId) {
+  const std::string input = "[[input]]\nid = \"a\"\nbackend = \"sim\"\nchannel = \"e_stop\"\n";
+  EXPECT_NE(
+      refusal("[rod]\nbackend = \"sim\"\n[valve]\nbackend = \"none\"\n" + input + input + kSim)
+          .find("id: is \"a\", and so is that of an earlier one"),
+      std::string::npos);
+}
+
 TEST(Rig, RefusesWhatDoesNotExistOrDoesNotFit) {
   EXPECT_EQ(refusal("[rod]\nbackend = \"modbas\"\n[valve]\nbackend = \"none\"\n"),
             "rig.toml: [rod] backend: is \"modbas\"; allowed: " + backend_names());

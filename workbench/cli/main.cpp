@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <exception>
 #include <iostream>
+#include <new>
 
 #include "config/schema/error.h"
 #include "config/schema/product_version.h"
@@ -104,6 +105,9 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     return run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "spoolwatch: not enough memory for this input\n");
+    return EXIT_FAILURE;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "spoolwatch: %s\n", error.what());
     return config::schema::exit_code_of(error);

@@ -188,6 +188,8 @@ class Replayer final : public SampleHandler, private estimator::fdi::Events {
     }
   }
 
+  [[nodiscard]] std::int64_t last_tick() const noexcept { return tick_; }
+
   ReplayOutcome outcome;
 
  private:
@@ -299,6 +301,11 @@ ReplayOutcome replay(const Pack& pack) {
   Replayer replayer(pack);
   replayer.start();
   walk_log(pack.log, pack.prefix, replayer);
+  if (!replayer.outcome.found && replayer.last_tick() < pack.tick) {
+    throw bad_data(pack.log.string(),
+                   "is cut off at sample " + std::to_string(replayer.last_tick()) +
+                       ", before the alarm at sample " + std::to_string(pack.tick));
+  }
   return std::move(replayer.outcome);
 }
 

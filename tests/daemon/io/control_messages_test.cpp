@@ -41,6 +41,7 @@ TEST(ControlRequest, SaysInWordsWhatIsWrongWithALine) {
         {"{\"command\":\"arm\"", "not a JSON object"},
         {"{}", "no \"command\""},
         {"{\"command\":7}", "no \"command\""},
+        {"{\"command\":\"status\",\"command\":\"arm\"}", "\"command\" comes twice"},
         {"{\"command\":\"fly\"}",
          "unknown command; allowed: status, hold, reference, alarms, ack, shelve, unshelve, "
          "reload, "

@@ -71,6 +71,35 @@ TEST(LearnLimits, HoldTheFalseAlarmTimeOnCorrelatedNormalEstimatesWithoutBeingAb
   EXPECT_GE(counts[5], 20);
 }
 
+// Independent normal values, one a block: the level of false_alarm_time_s is known exactly.
+TEST(LearnLimits, HoldTheirConfidenceFromFewBlocksAndSayHowManyAreEnough) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  constexpr int kRecords = 400;
+  constexpr double kTimes = 10'000.0;  // estimates between two false alarms
+  const double exact = 3.8906;         // P(x > exact) = 0.5 / kTimes
+  double widening = 0.0;
+  for (const std::size_t blocks : {12U, 19U, 50U}) {
+    LearnConfig config;
+    config.false_alarm_time_s = kTimes;
+    config.interval_s = config.window_s = 1.0;
+    int holds = 0;
+    for (int i = 0; i < kRecords; ++i) {
+      std::vector<double> values(blocks);
+      for (double& value : values) value = normal(random);
+      const LearnedLimits limits = learn_limits(values, config);
+      holds += limits.high >= exact ? 1 : 0;
+      EXPECT_GT(limits.widening_ratio, 1.0);
+      EXPECT_GT(limits.enough_s, 20.0);
+      EXPECT_LT(limits.enough_s, 200.0);
+      widening = limits.widening_ratio;
+    }
+    // 95 %, less what w = x|x| of single values is not Gumbel; 2 standard errors are 2 %.
+    EXPECT_GE(holds, kRecords * 88 / 100) << blocks;
+  }
+  EXPECT_LT(widening, 1.25) << "50 blocks need little";
+}
+
 TEST(LearnLimits, FollowTheMotionsPhaseInsteadOfTakingItForNoise) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> noise(0.0, 0.01);

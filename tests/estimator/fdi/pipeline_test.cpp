@@ -52,6 +52,46 @@ TEST(Pipeline, MarksEstimatesBeforeTheFirstFullWindowAsTooShort) {
   EXPECT_TRUE(seen.alarms.empty());
 }
 
+// Arming states of sample_t.
+constexpr std::uint8_t kDisarmed = 1;
+constexpr std::uint8_t kRun = 3;
+
+void run_in(std::uint8_t state, Pipeline& pipeline, Integrator& plant, int samples,
+            Recorder& seen) {
+  for (int i = 0; i < samples; ++i) {
+    config::signals::Sample sample = plant.next();
+    sample.state = state;
+    pipeline.process(sample, seen);
+  }
+}
+
+TEST(Pipeline, IsNotInvalidAtRestAndWarmsUpAgainWhenTheMotionStarts) {
+  PipelineConfig config = watched("sliding");
+  config.estimators[0].warmup_s = 2.0;
+  config.estimators[0].min_u_rms_V = 0.5;
+  Pipeline pipeline(config, kSampleTime_s);
+  Integrator plant;
+  const double moving_V = plant.amplitude_V;
+  Recorder seen;
+  plant.amplitude_V = 0.0;
+  run_in(kDisarmed, pipeline, plant, 1000, seen);
+  EXPECT_TRUE(seen.alarms.empty()) << "no motion is asked for";
+  run_in(kRun, pipeline, plant, 1000, seen);
+  ASSERT_FALSE(seen.alarms.empty()) << "a motion is asked for and does not tell anything";
+  EXPECT_EQ(seen.alarms.back().severity, Severity::invalid);
+  run_in(kDisarmed, pipeline, plant, 50, seen);
+  EXPECT_EQ(seen.alarms.back().severity, Severity::ok) << "INVALID ends with the motion";
+  // A gain outside the band counts after the warm-up of this motion only.
+  plant.amplitude_V = moving_V;
+  plant.gain_m_per_V = 3e-4;
+  const std::size_t before = seen.alarms.size();
+  run_in(kRun, pipeline, plant, 395, seen);
+  EXPECT_EQ(seen.alarms.size(), before);
+  run_in(kRun, pipeline, plant, 400, seen);
+  EXPECT_GT(seen.alarms.size(), before);
+  EXPECT_EQ(seen.alarms.back().severity, Severity::major);
+}
+
 TEST(Pipeline, RaisesNoAlarmWithinTheWarmUp) {
   PipelineConfig config = watched("batch");
   config.estimators[0].warmup_s = 2.0;

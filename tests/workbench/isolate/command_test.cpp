@@ -90,6 +90,23 @@ TEST_F(IsolateCommand, WritesWhatIsHealthyForTheDaemon) {
   EXPECT_EQ(code({"--learn", file("healthy.toml"), "--healthy-rms", "2e-6"}, line), 2);
 }
 
+TEST_F(IsolateCommand, LearnsWhatIsHealthyFromARecordOfItsOwn) {
+  truth::write_csv(truth::simulate(stand(12.0)), file("healthy.csv"));
+  truth::Case faulty = stand(12.0);
+  fault(faulty, 0.0, &truth::Plant::supply_pressure_Pa, 0.9);
+  truth::write_csv(truth::simulate(faulty), file("record.csv"));
+  run({"--healthy-record", file("healthy.csv"), "--json", file("out.json")});
+  std::ifstream in(file("out.json"));
+  const auto json = nlohmann::json::parse(in);
+  ASSERT_EQ(json["alarms"].size(), 1U);
+  EXPECT_EQ(json["alarms"][0]["parameter"], "supply_pressure_Pa");
+  EXPECT_NEAR(json["alarms"][0]["change_ratio"].get<double>(), -0.1, 0.02);
+  std::string line;
+  EXPECT_EQ(code({"--healthy-record", file("healthy.csv"), "--healthy", "0:5"}, line), 2);
+  EXPECT_EQ(code({"--healthy", "0:1"}, line), 65);
+  EXPECT_THAT(line, testing::HasSubstr("--healthy-record"));
+}
+
 TEST_F(IsolateCommand, TellsInWords) {
   testing::internal::CaptureStdout();
   run({});
