@@ -250,7 +250,7 @@ void Loop::drive(const Period& period, Sample& sample) noexcept {
   act(guard_monitor_.set(GuardKind::bus_lost, lost, static_cast<double>(bad_writes_)), false);
   // A lost bus shows first in what cannot be read.
   if (lost && unread_latch_tick_ >= 0 && tick_ - unread_latch_tick_ <= max_bad_in_a_row_ + 1) {
-    if (arming_.state() == State::latched) set_trip(static_cast<int>(GuardKind::bus_lost));
+    if (arming_.state() == ArmingState::latched) set_trip(static_cast<int>(GuardKind::bus_lost));
     unread_latch_tick_ = -1;
   }
 }

@@ -146,7 +146,7 @@ TEST_F(ControlRequestHandlerTest, PassesAStopOnWhileTheDetectorOwesAnAnswer) {
   EXPECT_EQ(serve(), "");
   const rt::LoopCommand command = next_command();
   EXPECT_EQ(command.event, control::Event::stop);
-  answer(command.number, RejectReason::none, State::armed);
+  answer(command.number, RejectReason::none, ArmingState::armed);
   EXPECT_EQ(serve(), "");
   char bytes[256];
   EXPECT_GT(::recv(other, bytes, sizeof bytes, MSG_DONTWAIT), 0);

@@ -123,11 +123,11 @@ TEST(Loop, NamesTheLostBusAsTheCauseNotWhatCannotBeReadWithoutIt) {
       const auto e_stop = std::make_shared<FakeInput>(1.0);
       bench.inputs.push_back({"stop", hal::InputRole::e_stop, e_stop});
       bench.run();
-      ASSERT_EQ(bench.state(), State::run);
+      ASSERT_EQ(bench.state(), ArmingState::run);
       e_stop->quality = bench.rig.quality = config::signals::Quality::bad;
       bench.rig.write_good = !write_fails;
       for (int i = 0; i < max_bad + 3; ++i) bench.tick();
-      EXPECT_EQ(bench.state(), State::latched);
+      EXPECT_EQ(bench.state(), ArmingState::latched);
       EXPECT_EQ(bench.stats.trip.load(), write_fails ? Trip::write : Trip::e_stop_unread);
       EXPECT_EQ(bench.stats.trip_guard.load(),
                 static_cast<int>(write_fails ? control::GuardKind::bus_lost
