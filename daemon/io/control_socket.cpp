@@ -29,8 +29,8 @@ constexpr gid_t kNoGroup = static_cast<gid_t>(-1);
 /// Connections of those who may command, and of those who may only query.
 constexpr std::size_t kMaxActing = 64;
 constexpr std::size_t kMaxLooking = 16;
-constexpr int kBacklog = 128;
-constexpr int kAcceptedAtOnce = 32;
+constexpr int kBacklog = 1024;
+constexpr int kAcceptedAtOnce = 256;
 /// Requests of one user who may only query: a live view asks a few times a second.
 constexpr double kLooksPerSecond = 50.0;
 constexpr double kMostLooks = 20.0;

@@ -303,7 +303,7 @@ def main():
                     "reference.amplitude_m=0.05", "loop.overrun_action=count"]
         with Daemon(options.programs, options.config / "bench_modbus.toml", settings) as daemon:
             bench = Bench(daemon, proxy)
-            memory_kB = 0
+            memory_kB = daemon.memory_kB()
             tried = 0
             for name, spoil in TROUBLES.items():
                 for how, count in (("once", 1), ("half a second", -1)):
@@ -313,7 +313,6 @@ def main():
                     bench.trouble(label, lambda: proxy.begin(spoil, count),
                                   lambda: proxy.begin(whole, 0))
                     tried += 1
-                    memory_kB = memory_kB or daemon.memory_kB()
             for name, meet in ON_ACCEPT.items():
                 if options.only not in name:
                     continue

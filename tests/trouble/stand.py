@@ -46,8 +46,8 @@ class Daemon:
 
     def ask(self, command, timeout_s=5.0, **more):
         with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as one:
+            one.connect(self.socket)  # waits while others fill the queue, as the commands do
             one.settimeout(timeout_s)
-            one.connect(self.socket)
             one.sendall(json.dumps({"command": command, **more}).encode() + b"\n")
             line = b""
             while not line.endswith(b"\n"):
