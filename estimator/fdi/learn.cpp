@@ -19,6 +19,8 @@ constexpr double kOneSided95 = 1.6449;
 constexpr std::size_t kFewestBlocks = 10;
 constexpr std::size_t kEnoughBlocks = 20;
 constexpr double kWindowsPerBlock = 5.0;
+constexpr std::size_t kFewBlocks = 50;
+constexpr std::size_t kFewInABlock = 5;
 
 struct Gumbel {
   double mu, beta;
@@ -70,6 +72,41 @@ double enough_blocks(double y) {
   constexpr double kSquare = 1.1 * 1.1 - 1.0;
   const double ratio = kOneSided95 / (kSquare * y);
   return std::ceil(ratio * ratio * variance_factor(y));
+}
+
+/// The z that a standard normal value exceeds with that probability, below 0.5.
+double normal_quantile(double probability) {
+  double low = 0.0;
+  double high = 40.0;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (0.5 * std::erfc(middle / std::sqrt(2.0)) > probability ? low : high) = middle;
+  }
+  return low;
+}
+
+/// Upper 95 % confidence limit of that quantile from n normal values, in standard deviations from
+/// their mean (one-sided tolerance factor; Natrella, Experimental Statistics, 1963).
+double tolerance_factor(double n, double quantile) {
+  const double a = 1.0 - kOneSided95 * kOneSided95 / (2.0 * (n - 1.0));
+  const double b = quantile * quantile - kOneSided95 * kOneSided95 / n;
+  return (quantile + std::sqrt(std::max(0.0, quantile * quantile - a * b))) / a;
+}
+
+/// Distance of the limits of few estimates, or of few in a block, whose maxima are far from Gumbel:
+/// taken for normal, as many as there are windows.
+double normal_margin(std::span<const double> values, const LearnConfig& config, double mean) {
+  double squares = 0.0;
+  double count = 0.0;
+  for (const double value : values) {
+    if (std::isnan(value)) continue;
+    squares += (value - mean) * (value - mean);
+    count += 1.0;
+  }
+  const double apart_s = std::max(config.interval_s, config.window_s);
+  const double n = std::max(5.0, count * config.interval_s / apart_s);
+  const double quantile = normal_quantile(0.5 * std::min(1.0, apart_s / config.false_alarm_time_s));
+  return tolerance_factor(n, quantile) * std::sqrt(squares / std::max(1.0, count - 1.0));
 }
 
 double signed_square(double x) { return x * std::abs(x); }
@@ -135,7 +172,7 @@ LearnedLimits learn_limits(std::span<const double> values, const LearnConfig& co
     throw bad_data("learning bands", "the false-alarm time is shorter than a block of estimates");
   }
   const double y = reduced_variate(rate);
-  out.enough_s = enough_blocks(y) * out.block_s;
+  out.enough_s = std::max(enough_blocks(y), static_cast<double>(kFewBlocks)) * out.block_s;
   const auto length =
       static_cast<std::size_t>(std::max(1.0, std::round(out.block_s / config.interval_s)));
   const BlockExtremes extremes = find_extremes(values, length);
@@ -152,8 +189,13 @@ LearnedLimits learn_limits(std::span<const double> values, const LearnConfig& co
   }
   out.centre = extremes.mean;
   const double factor = limit_factor(out.blocks, y);
-  const double above = margin(extremes.greatest, extremes.mean, 1.0, factor);
-  const double below = margin(extremes.least, extremes.mean, -1.0, factor);
+  double above = margin(extremes.greatest, extremes.mean, 1.0, factor);
+  double below = margin(extremes.least, extremes.mean, -1.0, factor);
+  if (out.blocks < kFewBlocks || length < kFewInABlock) {
+    const double normal = normal_margin(values, config, extremes.mean);
+    above = std::max(above, normal);
+    below = std::max(below, normal);
+  }
   const double exact = margin(extremes.greatest, extremes.mean, 1.0, y);
   out.widening_ratio = exact > 0.0 ? above / exact : 1.0;
   const auto least = std::min_element(extremes.least.begin(), extremes.least.end());

@@ -13,7 +13,9 @@
 // from the first two L-moments. The band is the upper 95 % confidence limit of z(T) for the number
 // of blocks, turned back into x: up to 200 blocks from simulated fits, since few blocks tell little
 // about beta; above, by the variance beta^2/n (1.113 + 0.457 y + 0.805 y^2) with y the reduced
-// variate. The band keeps a distance of one standard error from the observed extremes.
+// variate. Below 50 blocks, or five estimates in a block, the limits are at least those of a normal
+// distribution known from so many windows, with the same confidence. The band keeps a distance of
+// one standard error from the observed extremes.
 //
 // Limits: behaviour that the healthy record does not contain (drift over a day, another motion) is
 // unknown; a tail heavier than normal gives more false alarms than stated; where the phase of the
