@@ -41,7 +41,7 @@ class ControlRequestHandler {
     std::string rig_id, config_hash;
     std::vector<control::GuardConfig> guards;  ///< control::all_guards
     std::vector<std::string> spare_rods, inputs;
-    std::vector<std::string> roles;  ///< of `inputs`, as in the configuration
+    std::vector<std::string> roles;             ///< of `inputs`, as in the configuration
     std::vector<std::size_t> enables, e_stops;  ///< indices into `inputs`
     std::string never_arms;  ///< why the rig cannot be armed as configured; empty: it can
   };

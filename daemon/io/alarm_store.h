@@ -24,7 +24,7 @@ struct AlarmConfig {
   std::string folder;  ///< folder for alarms.json, audit.log, ...; empty: no files
   /// Limit of audit.log, refused.log and history.log each; twice as much with their predecessors.
   std::int64_t audit_bytes = 1 << 20;
-  estimator::fdi::AlarmRules rules;    ///< for guards and system alarms
+  estimator::fdi::AlarmRules rules;  ///< for guards and system alarms
 
   void visit(config::schema::Visitor& v);
 };

@@ -191,9 +191,9 @@ BackendDevices ModbusBackend::open(const OpenContext& context) const {
   const auto locked = std::make_shared<LockedDevice>();
   const bool writes = map.valve || map.watchdog || !map.outputs.empty();
   if (context.exclusive && writes && !config_.address.empty()) {  // a serial line is locked itself
-    locked->lock = std::make_unique<DeviceLock>(
-        "modbus/" + device_host(config.connection.host) + ":" + std::to_string(config.connection.port),
-        context.file + ": [modbus] " + device);
+    locked->lock = std::make_unique<DeviceLock>("modbus/" + device_host(config.connection.host) +
+                                                    ":" + std::to_string(config.connection.port),
+                                                context.file + ": [modbus] " + device);
   }
   const RegisterSnapshot first =
       probe(*connection, map,

@@ -26,7 +26,7 @@ struct IsolationRequest {
   std::vector<std::string> parameters{"supply_pressure_Pa,damping_N_s_per_m"};
   TrackerSettings settings;
   std::string baseline = "0:10";  ///< from:to, s
-  std::string healthy_record;  ///< not empty: what is healthy is learned from all of this record
+  std::string healthy_record;     ///< not empty: what is healthy is learned from all of this record
   double baseline_rms_m =
       0.0;  ///< above 0: given instead of estimated; the file's values are healthy
   std::string learn_baseline;  ///< file for the baseline, for [[tracker]] healthy

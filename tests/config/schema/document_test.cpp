@@ -144,7 +144,9 @@ TEST(Document, SaysThatAMissingFileCannotBeRead) {
     Document::load("/nowhere/at/all.toml");
     FAIL();
   } catch (const ConfigError& e) {
-    EXPECT_STREQ(e.what(), "/nowhere/at/all.toml: cannot be read (No such file or directory); allowed: a TOML file");
+    EXPECT_STREQ(
+        e.what(),
+        "/nowhere/at/all.toml: cannot be read (No such file or directory); allowed: a TOML file");
   }
   EXPECT_THROW(Document::load("/tmp"), Error);
 }
