@@ -5,6 +5,7 @@
 #include <limits>
 #include <sstream>
 
+#include "config/record/column_roles.h"
 #include "config/schema/error.h"
 
 namespace config::record {
@@ -47,17 +48,12 @@ namespace {
 using schema::bad_data;
 
 struct MainColumn {
-  MissingColumn missing;
+  Role role;
   const char* si_unit;
-  const char* allowed;
-  std::vector<double> Record::*values;
 };
 
-constexpr std::array kMain = {
-    MainColumn{{"time", "t_s, t_ms"}, "s", "t_s, t_ms", &Record::t_s},
-    MainColumn{{"command", "u_V, u_mV"}, "V", "u_V, u_mV", &Record::u_V},
-    MainColumn{{"position", "y_m, y_mm"}, "m", "y_m, y_mm, y_um", &Record::y_m},
-};
+constexpr std::array kMain = {MainColumn{Role::time, "s"}, MainColumn{Role::command, "V"},
+                              MainColumn{Role::position, "m"}};
 
 const MainColumn* main_of(const RecordColumn& column) {
   if (is_time(column)) return kMain.data();
@@ -89,40 +85,39 @@ bool is_time(const RecordColumn& column) { return column.stem == "t" || column.s
 
 bool is_main(const RecordColumn& column) { return main_of(column) != nullptr; }
 
-std::vector<Target> lay_out(const std::vector<std::string>& names, const std::string& where,
-                            Record& record) {
+std::optional<Layout> plain_layout(const std::vector<std::string>& names,
+                                   const std::string& where) {
   std::vector<RecordColumn> columns;
   columns.reserve(names.size());
   for (const std::string& name : names) columns.push_back(parse_column(name));
-  std::vector<Target> targets;
-  record.further.reserve(columns.size());
+  for (const MainColumn& main : kMain) {
+    const bool there = std::any_of(columns.begin(), columns.end(), [&](const RecordColumn& column) {
+      const MainColumn* const found = main_of(column);
+      return found != nullptr && found->role == main.role && column.si_unit == main.si_unit;
+    });
+    if (!there) return std::nullopt;
+  }
+  Layout layout;
   for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (names[i].empty()) continue;
     refuse_clash(columns, names, i, where);
     const RecordColumn& column = columns[i];
-    if (const MainColumn* main = main_of(column); main == nullptr) {
-      record.further.emplace_back(column.si_name, std::vector<double>{});
-      targets.push_back(
-          {names[i], column.factor, &record.further.back().second, true, column.si_unit});
-    } else if (column.si_unit == main->si_unit) {
-      targets.push_back({names[i], column.factor, &(record.*main->values), false, column.si_unit});
-    } else {
-      throw bad_data(where,
-                     "column " + names[i] +
-                         (column.si_unit.empty() ? " has no unit" : " has a contradictory unit"),
-                     main->allowed);
+    Channel channel;
+    channel.column = i;
+    channel.name = column.si_name;
+    channel.factor = column.factor;
+    if (!column.si_unit.empty()) channel.unit_text = names[i].substr(column.stem.size() + 1);
+    if (const MainColumn* main = main_of(column); main != nullptr) {
+      if (column.si_unit != main->si_unit) {
+        throw bad_data(where,
+                       "column " + names[i] +
+                           (column.si_unit.empty() ? " has no unit" : " has a contradictory unit"));
+      }
+      channel.role = main->role;
     }
+    layout.channels.push_back(channel);
   }
-  return targets;
-}
-
-const MissingColumn* first_missing(const std::vector<Target>& targets, const Record& record) {
-  for (const MainColumn& main : kMain) {
-    const bool found = std::any_of(targets.begin(), targets.end(), [&](const Target& target) {
-      return target.values == &(record.*main.values);
-    });
-    if (!found) return &main.missing;
-  }
-  return nullptr;
+  return layout;
 }
 
 double largest_plausible(std::string_view si_unit) noexcept {

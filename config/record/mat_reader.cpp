@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+#include <map>
+#include <utility>
 
+#include "config/record/assembly.h"
+#include "config/record/column_roles.h"
 #include "config/record/layout.h"
 #include "config/record/mat_variables.h"
-#include "config/record/time_grid.h"
 #include "config/schema/error.h"
 #include "config/schema/joined.h"
 
@@ -65,57 +67,154 @@ std::string objection(const MatVariable& variable) {
   return "is " + config::schema::joined(variable.dims, " x ");
 }
 
+/// Every vector of the file under its own name, with its structure's where that is not enough:
+/// "time", "rig.command", "valve.command".
+void flatten(const MatVariables& variables, const std::string& path, MatVariables& flat) {
+  for (const MatVariable& variable : variables) {
+    const std::string name = path.empty() ? variable.name : path + "." + variable.name;
+    if (!variable.fields.empty()) {
+      flatten(variable.fields, name, flat);
+    } else {
+      MatVariable named = variable;
+      named.name = name;
+      flat.push_back(std::move(named));
+    }
+  }
+}
+
+MatVariables flattened(const MatVariables& variables) {
+  MatVariables flat;
+  flatten(variables, "", flat);
+  const auto last = [](const std::string& name) { return name.substr(name.rfind('.') + 1); };
+  std::map<std::string, int> uses;
+  for (const MatVariable& variable : flat) ++uses[last(variable.name)];
+  for (MatVariable& variable : flat) {
+    const std::string name = last(variable.name);
+    // The column of a matrix has a number for a name.
+    const bool number = !name.empty() && name.front() >= '0' && name.front() <= '9';
+    if (uses[name] == 1 && !number) variable.name = name;
+  }
+  return flat;
+}
+
+/// The period that a scalar of the usual names states, s; 0: none.
+double stated_period_s(const MatVariables& variables) {
+  for (const MatVariable& variable : variables) {
+    if (!variable.numeric || variable.values.size() != 1) continue;
+    const double value = variable.values[0];
+    if (!(value > 0.0) || !std::isfinite(value)) continue;
+    for (const char* name : {"Ts", "Ts_s", "dt", "dt_s", "sample_time_s"}) {
+      if (variable.name == name) return value;
+    }
+    for (const char* name : {"Fs", "fs", "Fs_Hz", "fs_Hz", "rate_Hz", "sample_rate_Hz"}) {
+      if (variable.name == name) return 1.0 / value;
+    }
+  }
+  return 0.0;
+}
+
 class MatReader {
  public:
-  MatReader(std::string_view content, const std::string& name)
-      : name_(name), variables_(read_mat_variables(content, name)) {
-    record_.name = name;
-  }
+  MatReader(std::vector<MatVariable> variables, const std::string& name, const ReadOptions& options)
+      : name_(name), options_(options), variables_(std::move(variables)) {}
 
   Record read() {
-    const MatVariables& scope = scope_of(variables_, name_);
-    choose(scope);
-    std::vector<std::string> names;
-    for (const MatVariable* variable : chosen_) names.push_back(printable(variable->name));
-    const std::vector<Target> targets = lay_out(names, name_, record_);
-    if (const MissingColumn* missing = first_missing(targets, record_)) {
-      throw bad_data(name_, std::string("lacks a ") + missing->what + " variable",
-                     std::string(missing->allowed) + "; it has: " + names_of(scope));
+    const std::vector<MapEntry> map = parse_map(options_.map);
+    const MatVariables* scope = map.empty() ? &scope_of(variables_, name_) : nullptr;
+    MatVariables flat;
+    if (scope == nullptr || !has_time(*scope)) {
+      flat = flattened(variables_);
+      scope = &flat;
     }
-    for (std::size_t i = 0; i < targets.size(); ++i) fill(targets[i], chosen_[i]->values);
-    TimeGrid grid = find_grid(
-        record_.t_s, [this](std::size_t i) { return name_ + ": sample " + std::to_string(i + 1); });
-    record_.sample_time_s = grid.sample_time_s;
-    record_.gaps = std::move(grid.gaps);
+    choose(*scope, map);
+    FileHead head;
+    head.where = name_;
+    head.variables = true;
+    head.step_s = stated_period_s(*scope);
+    if (!left_out_.empty() && chosen_.size() < 3)
+      head.more = "and no vectors: " + names_of(left_out_);
+    FileValues values;
+    values.name = name_;
+    for (const MatVariable* variable : chosen_) {
+      FileColumn column;
+      column.header = printable(variable->name);
+      column.unit = variable->unit;
+      const std::size_t shown = std::min<std::size_t>(60, variable->values.size());
+      column.sample.assign(variable->values.begin(),
+                           variable->values.begin() + static_cast<std::ptrdiff_t>(shown));
+      head.columns.push_back(std::move(column));
+    }
+    const Layout layout = understand(head, map, options_.position_optional);
+    require_one_length(layout);
+    for (const MatVariable* variable : chosen_) values.values.push_back(variable->values);
+    values.place = [this](std::size_t i) { return name_ + ": sample " + std::to_string(i + 1); };
+    values.header = [&head](std::size_t i) { return "variable " + head.columns[i].header; };
+    Record record = assemble(layout, std::move(values), options_);
+    for (ChannelOrigin& origin : record.origins) {
+      origin.header = head.columns[origin.column - 1].header;
+    }
     if (!left_out_.empty()) {
-      record_.notes.push_back("left out, no " + std::string(kVectors) +
-                              " of the time's length: " + names_of(left_out_));
+      record.notes.push_back("left out, no " + std::string(kVectors) +
+                             " of the time's length: " + names_of(left_out_));
     }
-    return std::move(record_);
+    return record;
   }
 
  private:
-  /// The variables that become columns: time, command and position must.
-  void choose(const MatVariables& scope) {
+  /// The variables that may become columns: vectors of the time's length, or the most frequent one.
+  void choose(const MatVariables& scope, const std::vector<MapEntry>& map) {
     const MatVariable* time = nullptr;
     for (const MatVariable& variable : scope) {
       if (time == nullptr && is_time(parse_column(variable.name))) time = &variable;
     }
-    if (time != nullptr && !objection(*time).empty()) refuse(*time, objection(*time));
+    if (time != nullptr && !objection(*time).empty() && map.empty()) {
+      refuse(*time, objection(*time));
+    }
+    std::size_t length = time != nullptr && objection(*time).empty() ? time->values.size() : 0;
+    if (length == 0) {
+      std::map<std::size_t, int> lengths;
+      for (const MatVariable& variable : scope) {
+        if (objection(variable).empty() && variable.values.size() > 1) {
+          ++lengths[variable.values.size()];
+        }
+      }
+      int most = 0;
+      for (const auto& [size, count] : lengths) {
+        if (count >= most) {
+          most = count;
+          length = size;
+        }
+      }
+    }
+    const bool separate = !map.empty() && !options_.resample.empty();
     for (const MatVariable& variable : scope) {
       std::string why = objection(variable);
-      if (why.empty() && time != nullptr && variable.values.size() != time->values.size()) {
+      if (why.empty() && length != 0 && variable.values.size() != length && !separate) {
         why = "has " + std::to_string(variable.values.size()) + " values, but " +
-              printable(time->name) + " has " + std::to_string(time->values.size());
+              (time != nullptr ? printable(time->name) + " has " + std::to_string(length)
+                               : "most have " + std::to_string(length));
       }
-      if (why.empty()) {
+      if (why.empty() && variable.values.size() > 1) {
         chosen_.push_back(&variable);
-      } else if (is_main(parse_column(variable.name))) {
-        refuse(variable, why);
+      } else if (is_main(parse_column(variable.name)) && map.empty()) {
+        refuse(variable, why.empty() ? objection(variable) : why);
       } else {
         MatVariable named;
         named.name = variable.name;
         left_out_.push_back(std::move(named));
+      }
+    }
+  }
+
+  /// Channels without times of their own are rows of one table.
+  void require_one_length(Layout layout) const {
+    if (!options_.resample.empty()) return;
+    for (const Channel& channel : layout.channels) {
+      const MatVariable& variable = *chosen_[channel.column];
+      const MatVariable& first = *chosen_[layout.channels.front().column];
+      if (variable.values.size() != first.values.size()) {
+        refuse(variable, "has " + std::to_string(variable.values.size()) + " values, but " +
+                             printable(first.name) + " has " + std::to_string(first.values.size()));
       }
     }
   }
@@ -125,28 +224,9 @@ class MatReader {
                    std::string(kVectors) + ", all of one length");
   }
 
-  void fill(const Target& target, const std::vector<double>& values) const {
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const bool missing = std::isnan(values[i]) && target.may_be_missing;
-      if (!std::isfinite(values[i]) && !missing) {
-        throw bad_data(name_,
-                       "variable " + target.name + "(" + std::to_string(i + 1) + ") is " +
-                           (std::isnan(values[i]) ? "NaN" : "infinite"),
-                       "finite numbers");
-      }
-      const double value = values[i] * target.factor;
-      if (std::abs(value) > largest_plausible(target.si_unit)) {
-        std::ostringstream shown;
-        shown << "variable " << target.name << "(" << i + 1 << ") is " << values[i];
-        throw bad_data(name_, shown.str(), plausible_range(target.si_unit));
-      }
-      target.values->push_back(value);
-    }
-  }
-
   const std::string& name_;
+  const ReadOptions& options_;
   const MatVariables variables_;
-  Record record_;
   std::vector<const MatVariable*> chosen_;
   MatVariables left_out_;  ///< names alone
 };
@@ -154,17 +234,25 @@ class MatReader {
 }  // namespace
 
 const char* other_mat_format(std::string_view head) noexcept {
-  if (head.starts_with("MATLAB 7.3") || head.starts_with("\x89HDF")) {
-    return "is a MAT file of version 7.3 (HDF5)";
-  }
   if (head.starts_with("# Created by Octave")) return "is in Octave's text format";
   if (head.starts_with("Octave-1-")) return "is in Octave's binary format";
   if (head.starts_with("MATLAB 5.0")) return "is cut off within the header";
   return nullptr;
 }
 
-Record read_mat(std::string_view content, const std::string& name) {
-  return MatReader(content, name).read();
+bool is_hdf5(std::string_view head) noexcept {
+  return head.starts_with("MATLAB 7.3") || head.starts_with("\x89HDF\r\n");
+}
+
+Record read_variables(std::vector<MatVariable> variables, const std::string& name,
+                      const ReadOptions& options, const std::string& form) {
+  Record record = MatReader(std::move(variables), name, options).read();
+  record.form = form;
+  return record;
+}
+
+Record read_mat(std::string_view content, const std::string& name, const ReadOptions& options) {
+  return read_variables(read_mat_variables(content, name), name, options, "MAT file of version 5");
 }
 
 }  // namespace config::record

@@ -22,6 +22,7 @@ struct MatVariable {
   std::vector<std::size_t> dims;  ///< two or more; empty where not known
   bool numeric = false;           ///< an array of numbers, logical ones included
   bool complex = false;
+  std::string unit;                 ///< as the file states it; empty: it does not
   std::vector<double> values;       ///< numeric vector (at most one extent above 1)
   std::vector<MatVariable> fields;  ///< structure that is no array
 };

@@ -1,15 +1,23 @@
 // The forms of a record: CSV, MAT and LCM event log.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
 
+#include "config/record/mat_variables.h"
 #include "config/record/record.h"
 
 namespace config::record {
 
-/// CSV; `text` is the file's content, `name` its name in messages. Throws schema::DataError.
-[[nodiscard]] Record read_csv(std::string_view text, const std::string& name);
+/// Told from time to time how many bytes of the text are read and no longer needed.
+using TextConsumed = std::function<void(std::size_t)>;
+
+/// CSV and its relatives; `text` is the file's content, `name` its name in messages. Throws
+/// schema::DataError.
+[[nodiscard]] Record read_csv(std::string_view text, const std::string& name,
+                              const ReadOptions& options = {}, const TextConsumed& consumed = {});
 
 /// Recognises MATLAB's and Octave's other formats from the beginning of a file; returns the end of
 /// an error's line, null for anything else.
@@ -19,7 +27,15 @@ namespace config::record {
 /// structure that has them as fields. `content` is that of a MAT file of version 5, `name` the
 /// file's in messages. Rows and columns are alike; variables that are no vectors of the time's
 /// length are left out and noted. Throws schema::DataError.
-[[nodiscard]] Record read_mat(std::string_view content, const std::string& name);
+[[nodiscard]] Record read_mat(std::string_view content, const std::string& name,
+                              const ReadOptions& options = {});
+
+/// The same of variables that are read already; `form` as in Record.
+[[nodiscard]] Record read_variables(std::vector<MatVariable> variables, const std::string& name,
+                                    const ReadOptions& options, const std::string& form);
+
+/// True for the first bytes of an HDF5 file, MATLAB's version 7.3 among them.
+[[nodiscard]] bool is_hdf5(std::string_view head) noexcept;
 
 /// True for the first bytes of an LCM event log.
 [[nodiscard]] bool is_lcm_log(std::string_view head) noexcept;

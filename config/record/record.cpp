@@ -1,10 +1,17 @@
 #include "config/record/record.h"
 
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <fstream>
-#include <sstream>
+#include <iterator>
+#include <string>
 
 #include "config/record/mat_variables.h"
 #include "config/record/readers.h"
+#include "config/record/unit_text.h"
 #include "config/schema/error.h"
 
 namespace config::record {
@@ -21,32 +28,157 @@ const std::vector<double>* Record::column(std::string_view wanted) const noexcep
   return nullptr;
 }
 
-Record read_record(const std::filesystem::path& file, std::string_view channel) {
+namespace {
+
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): set once, by main
+Hdf5Reader hdf5_reader = nullptr;
+
+/// A file's bytes in memory: mapped, so that what is read can be given back, or else copied.
+class FileBytes {
+ public:
+  explicit FileBytes(const std::filesystem::path& file) {
+    std::error_code ignored;
+    const int descriptor =
+        std::filesystem::is_regular_file(file, ignored) ? open(file.c_str(), O_RDONLY) : -1;
+    struct stat status {};
+    if (descriptor >= 0 && fstat(descriptor, &status) == 0 && status.st_size > 0) {
+      const auto size = static_cast<std::size_t>(status.st_size);
+      void* const bytes = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
+      if (bytes != MAP_FAILED) {
+        mapped_ = static_cast<char*>(bytes);
+        size_ = size;
+        (void)madvise(bytes, size, MADV_SEQUENTIAL);
+      }
+    }
+    if (descriptor >= 0) close(descriptor);
+    if (mapped_ != nullptr) return;
+    std::ifstream in(file, std::ios::binary);
+    copy_.assign(std::istreambuf_iterator<char>(in), {});
+  }
+  ~FileBytes() {
+    if (mapped_ != nullptr) munmap(mapped_, size_);
+  }
+  FileBytes(const FileBytes&) = delete;
+  FileBytes& operator=(const FileBytes&) = delete;
+
+  [[nodiscard]] std::string_view text() const noexcept {
+    return mapped_ != nullptr ? std::string_view(mapped_, size_) : std::string_view(copy_);
+  }
+  /// The first `bytes` are not needed any more; they would be read from the file again.
+  void release(std::size_t bytes) const noexcept {
+    constexpr std::size_t kPage = 4096;
+    if (mapped_ != nullptr) (void)madvise(mapped_, bytes / kPage * kPage, MADV_DONTNEED);
+  }
+
+ private:
+  char* mapped_ = nullptr;
+  std::size_t size_ = 0;
+  std::string copy_;
+};
+
+/// UTF-8 of text in UTF-16, as "Unicode text" of a spreadsheet; a byte order mark comes first.
+std::string utf8_of(std::string_view text) {
+  const bool big = text.starts_with("\xFE\xFF");
+  std::string result;
+  for (std::size_t i = 2; i + 1 < text.size(); i += 2) {
+    const auto high = static_cast<unsigned char>(text[big ? i : i + 1]);
+    const auto low = static_cast<unsigned char>(text[big ? i + 1 : i]);
+    const unsigned code = 256U * high + low;
+    if (code < 0x80U) {
+      result += static_cast<char>(code);
+    } else if (code < 0x800U) {
+      result += static_cast<char>(0xC0U | (code >> 6U));
+      result += static_cast<char>(0x80U | (code & 0x3FU));
+    } else {
+      result += static_cast<char>(0xE0U | (code >> 12U));
+      result += static_cast<char>(0x80U | ((code >> 6U) & 0x3FU));
+      result += static_cast<char>(0x80U | (code & 0x3FU));
+    }
+  }
+  return result;
+}
+
+/// What a file is that laboratories have and this reader does not read; null: not one of these.
+const char* other_format(std::string_view head) noexcept {
+  if (head.starts_with("PK\x03\x04")) return "is an Excel workbook or another ZIP archive";
+  if (head.starts_with("\xD0\xCF\x11\xE0")) return "is an Excel workbook";
+  if (head.starts_with("TDSm")) return "is a TDMS file";
+  if (head.starts_with("MDF     ") || head.starts_with("UnFinMF ")) return "is an MDF file";
+  if (head.starts_with("PAR1")) return "is a Parquet file";
+  if (head.starts_with("\x89MCAP")) return "is an MCAP file";
+  if (head.starts_with("\x1F\x8B")) return "is packed with gzip";
+  return nullptr;
+}
+
+}  // namespace
+
+Record read_record(const std::filesystem::path& file, const ReadOptions& options) {
   std::error_code ignored;
-  std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file, ignored)) {
+  if (access(file.c_str(), R_OK) != 0 || std::filesystem::is_directory(file, ignored)) {
     throw schema::bad_data(file.string(), "cannot be read", kForms);
   }
-  char bytes[128] = {};
-  in.read(bytes, sizeof bytes);
-  const std::string_view head(bytes, static_cast<std::size_t>(in.gcount()));
+  (void)parse_resample(options.resample);
+  const FileBytes content(file);
+  const std::string_view text = content.text();
+  const std::string_view head = text.substr(0, 128);
   if (is_lcm_log(head)) {
-    in.close();
-    return read_lcm_log(file.string(), channel);
+    if (!options.map.empty() || !options.resample.empty()) {
+      throw schema::UsageError(file.string() +
+                               ": --map, --resample: are for CSV and MAT, not for an LCM log");
+    }
+    return read_lcm_log(file.string(), options.channel.empty() ? kSampleChannel : options.channel);
   }
-  in.clear();
-  in.seekg(0);
-  std::ostringstream text;
-  text << in.rdbuf();
-  const std::string content = text.str();
-  if (is_mat_file(head)) return read_mat(content, file.string());
+  if (is_mat_file(head)) return read_mat(text, file.string(), options);
+  if (is_hdf5(head)) {
+    if (hdf5_reader == nullptr) {
+      throw schema::bad_data(file.string(), "is a MAT file of version 7.3 (HDF5)",
+                             "version 5 to 7, as save -v7 writes it, or what spoolwatch import "
+                             "makes of it");
+    }
+    return read_variables(hdf5_reader(file.string()), file.string(), options,
+                          head.starts_with("MATLAB") ? "MAT file of version 7.3" : "HDF5");
+  }
   if (const char* what = other_mat_format(head)) {
     throw schema::bad_data(file.string(), what, "version 5 to 7, as save -v7 writes it");
   }
-  if (content.find('\0') != std::string::npos) {
+  if (const char* what = other_format(head)) {
+    throw schema::bad_data(file.string(), what, std::string(kForms) + "; export it as CSV");
+  }
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
+    return read_csv(utf8_of(text), file.string(), options);
+  }
+  constexpr std::size_t kLooked = std::size_t{1} << 16U;
+  if (text.substr(0, kLooked).find('\0') != std::string_view::npos) {
     throw schema::bad_data(file.string(), "is no record", kForms);
   }
-  return read_csv(content, file.string());
+  return read_csv(text, file.string(), options,
+                  [&content](std::size_t read) { content.release(read); });
+}
+
+void set_hdf5_reader(Hdf5Reader reader) noexcept { hdf5_reader = reader; }
+
+RecordUnits units_of(const Record& record) {
+  return {record.name, record.command_unit, record.position_unit};
+}
+
+void require_same_units(const std::vector<RecordUnits>& records) {
+  for (const RecordUnits& record : records) {
+    const RecordUnits& first = records.front();
+    if (record.command == first.command && record.position == first.position) continue;
+    throw schema::bad_data(
+        record.name,
+        "has a command in " + unit_words(record.command) + " and a position in " +
+            unit_words(record.position),
+        unit_words(first.command) + " and " + unit_words(first.position) + ", as " + first.name);
+  }
+}
+
+void require_volts_and_metres(const Record& record) {
+  if (record.command_unit == "V" && record.position_unit == "m") return;
+  throw schema::bad_data(record.name,
+                         "has a command in " + unit_words(record.command_unit) +
+                             " and a position in " + unit_words(record.position_unit),
+                         "V and m");
 }
 
 }  // namespace config::record

@@ -9,8 +9,6 @@
 namespace config::record {
 namespace {
 
-using schema::bad_data;
-
 /// Share of a period by which a step may miss the grid: time stamps rounded to 1 ms at 130 Hz do so
 /// by up to 0.125.
 constexpr double kJitter = 0.15;
@@ -24,29 +22,34 @@ std::string in_ms(double time_s) {
   return out.str();
 }
 
+/// Sorts `values` as far as it needs.
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 }  // namespace
 
 TimeGrid find_grid(const std::vector<double>& t_s,
                    const std::function<std::string(std::size_t)>& where) {
+  using schema::bad_data;
   if (t_s.size() < 3) throw bad_data(where(0), "has fewer than 3 samples");
   std::vector<double> steps(t_s.size() - 1);
   for (std::size_t i = 1; i < t_s.size(); ++i) {
     steps[i - 1] = t_s[i] - t_s[i - 1];
     if (!(steps[i - 1] > 0.0)) throw bad_data(where(i), "time does not increase");
   }
-  std::vector<double> sorted = steps;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const double median_s = *middle;
+  const double median_s = median(steps);
 
   TimeGrid grid;
   double periods = 0.0;
   for (std::size_t i = 1; i < t_s.size(); ++i) {
-    const double ratio = steps[i - 1] / median_s;
+    const double ratio = (t_s[i] - t_s[i - 1]) / median_s;
     const double whole = std::round(ratio);
     const double allowed = std::min(0.5, kJitter + kMedianError * (whole - 1.0));
     if (whole < 1.0 || std::abs(ratio - whole) > allowed) {
-      throw bad_data(where(i), "is unevenly sampled: a step of " + in_ms(steps[i - 1]),
+      throw bad_data(where(i), "is unevenly sampled: a step of " + in_ms(t_s[i] - t_s[i - 1]),
                      "whole numbers of the median step, " + in_ms(median_s));
     }
     if (whole > 1.0) grid.gaps.push_back(i);
@@ -60,6 +63,117 @@ TimeGrid find_grid(const std::vector<double>& t_s,
   }
   grid.sample_time_s = (t_s.back() - t_s.front()) / periods;
   return grid;
+}
+
+namespace {
+
+/// Greatest error of a time within its period.
+constexpr double kLargestJitter = 0.5;
+/// Greatest error in ticks of the clock that rounded the times: half a tick, and the grid's own.
+constexpr double kLargestRounding = 0.75;
+constexpr std::size_t kFewestForNominal = 10;
+
+/// The tick of a clock that all steps are whole numbers of; 0: none is coarse enough to matter.
+double tick_of(const std::vector<double>& t_s, double mean_step_s) {
+  double least_s = 0.0;
+  for (std::size_t i = 1; i < t_s.size(); ++i) {
+    const double step_s = t_s[i] - t_s[i - 1];
+    if (step_s > 0.01 * mean_step_s && (least_s == 0.0 || step_s < least_s)) least_s = step_s;
+  }
+  // The tick itself need not occur as a step: steps of 3 and 4 ms are ticks of 1 ms.
+  for (double parts = 1.0; parts <= 64.0; parts += 1.0) {
+    const double tick_s = least_s / parts;
+    bool whole = tick_s > 0.0;
+    for (std::size_t i = 1; whole && i < t_s.size(); ++i) {
+      const double ratio = (t_s[i] - t_s[i - 1]) / tick_s;
+      whole = std::abs(ratio - std::round(ratio)) < 1e-3;
+    }
+    if (whole) return tick_s;
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+std::optional<NominalGrid> find_nominal_grid(const std::vector<double>& t_s) {
+  const std::size_t n = t_s.size();
+  if (n < kFewestForNominal) return std::nullopt;
+  std::vector<double> steps(n - 1);
+  for (std::size_t i = 1; i < n; ++i) {
+    steps[i - 1] = t_s[i] - t_s[i - 1];
+    if (!(steps[i - 1] >= 0.0) || !std::isfinite(steps[i - 1])) return std::nullopt;
+  }
+  const double mean_s = (t_s.back() - t_s.front()) / static_cast<double>(n - 1);
+  const double tick_s = tick_of(t_s, mean_s);
+  const double median_s = median(steps);
+  // The mean of the steps that are no gaps; a coarse clock makes some of them 0.
+  const double longest_s = 2.5 * std::max(median_s, std::min(tick_s, mean_s));
+  double sum_s = 0.0;
+  double count = 0.0;
+  for (const double step_s : steps) {
+    if (step_s > std::max(longest_s, 1.5 * tick_s)) continue;
+    sum_s += step_s;
+    count += 1.0;
+  }
+  double period_s = sum_s / count;
+  if (!(period_s > 0.0)) return std::nullopt;
+  const bool several_a_tick = tick_s >= 1.05 * period_s;
+  // Steps of one tick and of two may be times rounded, or samples lost: nothing tells which.
+  if (!several_a_tick && tick_s > 0.0 && period_s < 1.95 * tick_s) return std::nullopt;
+  if (!several_a_tick && *std::min_element(steps.begin(), steps.end()) <= 0.0) return std::nullopt;
+
+  NominalGrid result;
+  std::vector<double> index(n, 0.0);
+  double begin_s = t_s.front();
+  for (int pass = 0; pass < 3; ++pass) {
+    result.grid.gaps.clear();
+    double expected_s = t_s.front();
+    for (std::size_t i = 1; i < n; ++i) {
+      const double step_s = t_s[i] - t_s[i - 1];
+      double periods = 1.0;
+      if (several_a_tick) {
+        if (step_s > 1.5 * tick_s) periods = std::max(1.0, std::round(step_s / period_s));
+      } else {
+        // Against the grid so far, so that the errors of two neighbours do not add up; at first a
+        // grid that follows the times slowly.
+        constexpr double kFollowing = 0.1;
+        if (pass > 0) expected_s = begin_s + index[i - 1] * period_s;
+        periods = std::max(1.0, std::round((t_s[i] - expected_s) / period_s));
+        expected_s += periods * period_s;
+        expected_s += kFollowing * (t_s[i] - expected_s);
+      }
+      index[i] = index[i - 1] + periods;
+      if (periods > 1.0) result.grid.gaps.push_back(i);
+    }
+    // The straight line through (index, t), least squares about the means.
+    double mean_index = 0.0;
+    double mean_t_s = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      mean_index += index[i] / static_cast<double>(n);
+      mean_t_s += (t_s[i] - t_s.front()) / static_cast<double>(n);
+    }
+    double covariance = 0.0;
+    double variance = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      covariance += (index[i] - mean_index) * (t_s[i] - t_s.front() - mean_t_s);
+      variance += (index[i] - mean_index) * (index[i] - mean_index);
+    }
+    period_s = covariance / variance;
+    begin_s = t_s.front() + mean_t_s - period_s * mean_index;
+  }
+  if (!(period_s > 0.0)) return std::nullopt;
+  const double allowed_s = std::max(kLargestJitter * period_s, kLargestRounding * tick_s);
+  result.t_s.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    result.t_s[i] = begin_s + index[i] * period_s;
+    result.largest_error_s = std::max(result.largest_error_s, std::abs(t_s[i] - result.t_s[i]));
+  }
+  if (result.largest_error_s > allowed_s) return std::nullopt;
+  if (result.grid.gaps.size() > 1 && result.grid.gaps.size() * kStepsPerGap > n - 1) {
+    return std::nullopt;
+  }
+  result.grid.sample_time_s = period_s;
+  return result;
 }
 
 }  // namespace config::record

@@ -85,6 +85,7 @@ BackendDevices ReplayBackend::open(const OpenContext& context) const {
   }
   const auto record =
       std::make_shared<const config::record::Record>(config::record::read_record(file));
+  config::record::require_volts_and_metres(*record);
   BackendDevices devices;
   devices.sample_time_s = record->sample_time_s;
   devices.fast = config_.pace == "fast";

@@ -19,6 +19,13 @@ add_library(spoolwatch_lcm INTERFACE)
 target_include_directories(spoolwatch_lcm SYSTEM INTERFACE "${LCM_INCLUDE_DIR}")
 target_link_libraries(spoolwatch_lcm INTERFACE "${LCM_LIBRARY}")
 
+# HDF5, for MATLAB's files of version 7.3: Debian keeps the serial variant in a folder of its own.
+find_path(HDF5_INCLUDE_DIR hdf5.h PATH_SUFFIXES hdf5/serial REQUIRED)
+find_library(HDF5_LIBRARY NAMES hdf5_serial hdf5 REQUIRED)
+add_library(spoolwatch_hdf5 INTERFACE)
+target_include_directories(spoolwatch_hdf5 SYSTEM INTERFACE "${HDF5_INCLUDE_DIR}")
+target_link_libraries(spoolwatch_hdf5 INTERFACE "${HDF5_LIBRARY}")
+
 # matio, libmodbus, libgpiod 1.6, comedilib and libsystemd: headers and libraries found directly.
 foreach(package "matio matio.h" "modbus modbus/modbus.h" "gpiod gpiod.h" "comedi comedilib.h"
     "systemd systemd/sd-daemon.h")

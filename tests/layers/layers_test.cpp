@@ -27,6 +27,7 @@ const std::vector<Layer> kLayers{
     {"config/units", {}, {}},
     {"config/messages", {"config/schema"}, {"lcm", "spoolwatch"}},
     {"config/record", {"config/schema", "config/messages"}, {"spoolwatch"}},
+    {"config/record/hdf5", {"config/schema", "config/record"}, {"hdf5"}},
     {"plant_sim", {"config/schema", "config/signals", "config/units"}, {"muParser"}},
     {"estimator", {"config/schema", "config/signals"}, {"Eigen"}},
     {"estimator/linear_algebra", {}, {"Eigen"}},

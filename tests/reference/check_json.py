@@ -71,6 +71,7 @@ def commands(root, out):
         "compare": [["spoolwatch", "compare", models / "thesis.toml", tour / "multisine.csv", "--json", "-"]],
         "estimate": [servo, ["spoolwatch", "estimate", record, "--method", "sliding", "--window", "5",
                              "--stride", "5", "--json", "-"]],
+        "import": [servo, ["spoolwatch", "import", record, "--json", "-"]],
         "select": [servo, ["spoolwatch", "select", record, "--structures", "arx111,arx211,oe111", "--quiet",
                            "--json", "-"]],
         "fit": [servo, ["spoolwatch", "fit", model, record, "--starts", "2", "--profile", "gain_mps_per_V", "--quiet",

@@ -16,6 +16,7 @@ namespace {
 struct BacktestOptions {
   std::string configuration;
   std::vector<std::string> logs;
+  config::record::ReadOptions reading;
   std::string old;
   std::string json;
   double tolerance_s = 10.0;
@@ -28,7 +29,7 @@ void run(const BacktestOptions& options) {
   replay::BacktestReport report;
   report.new_rules = options.configuration;
   report.old_rules = options.old;
-  report.runs = replay::run_backtest(new_rules, old_rules, options.logs);
+  report.runs = replay::run_backtest(new_rules, old_rules, options.logs, options.reading);
   for (const replay::BacktestRun& each : report.runs) {
     report.differences.push_back(
         replay::compare(each.before, each.after, options.tolerance_s, 0.5 * each.sample_time_s));
@@ -55,6 +56,7 @@ void add_backtest(CLI::App& command, int& /*exit_code*/) {
                   "alarms that come so near, or overlap, are the same one, s")
       ->capture_default_str()
       ->check(number_within(0.0, 1e6));
+  add_reading(command, options->reading);
   add_json(command, options->json);
   command.callback([options] { run(*options); });
 }

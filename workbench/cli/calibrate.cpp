@@ -25,6 +25,7 @@ constexpr double kWorthSaying = 1.1;
 struct CalibrateOptions {
   std::string config;
   std::string record;
+  config::record::ReadOptions reading;
   std::string out;
   std::vector<std::string> quantities;
   double false_alarm_time_s = 86400.0;
@@ -39,7 +40,9 @@ void run(const CalibrateOptions& options) {
   const std::vector<std::string> quantities =
       options.quantities.empty() ? train::wanted_quantities(pipeline_config, options.config)
                                  : options.quantities;
-  const config::record::Record record = config::record::read_record(options.record);
+  const config::record::Record record =
+      config::record::read_record(options.record, options.reading);
+  config::record::require_volts_and_metres(record);
   for (const std::string& note : record.notes) {
     std::cerr << "spoolwatch: " << record.name << ": " << note << '\n';
   }
@@ -68,6 +71,7 @@ void add_calibrate(CLI::App& command, int& /*exit_code*/) {
   command.add_option("config", options->config, "configuration with [[estimator]] and [[band]]")
       ->required();
   add_record(command, options->record);
+  add_reading(command, options->reading);
   command.add_option("-o,--output", options->out, "file for the learned bands")->required();
   command
       .add_option("--false-alarm-time-s", options->false_alarm_time_s,

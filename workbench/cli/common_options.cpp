@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "config/record/reading.h"
 #include "workbench/cli/number_check.h"
 #include "workbench/present/shell_command.h"
 
@@ -17,15 +18,35 @@ CLI::Option* add_model(CLI::App& command, std::string& file) {
 }
 
 CLI::Option* add_record(CLI::App& command, std::string& file) {
-  return command.add_option("RECORD", file, "CSV or MAT (t_s,u_V,y_m), or LCM log")->required();
+  return command.add_option("RECORD", file, "CSV or MAT (t_s,u_V,y_m, or --map), or LCM log")
+      ->required();
 }
 
 CLI::Option* add_records(CLI::App& command, std::vector<std::string>& files) {
   return command
-      .add_option("RECORD", files,
-                  "CSV or MAT (t_s,u_V,y_m), or LCM log; several are fitted together, each at its "
-                  "own rate")
+      .add_option(
+          "RECORD", files,
+          "CSV or MAT (t_s,u_V,y_m, or --map), or LCM log; several are fitted together, each "
+          "at its own rate")
       ->required();
+}
+
+void add_reading(CLI::App& command, config::record::ReadOptions& reading) {
+  command
+      .add_option("--map", reading.map,
+                  "t=COLUMN,u=COLUMN[UNIT],y=-COLUMN*2.5[mm],NAME=...: the record's columns by "
+                  "header or number; t=1000Hz without times; or a file with such pairs")
+      ->check([](const std::string& text) {
+        (void)config::record::parse_map(text);
+        return std::string();
+      });
+  command
+      .add_flag("--resample{auto}", reading.resample,
+                "interpolate to an even rate; --resample=HZ states which")
+      ->check([](const std::string& text) {
+        (void)config::record::parse_resample(text);
+        return std::string();
+      });
 }
 
 CLI::Option* add_holdouts(CLI::App& command, std::vector<std::string>& files) {

@@ -9,6 +9,10 @@ class App;
 class Option;
 }  // namespace CLI
 
+namespace config::record {
+struct ReadOptions;
+}
+
 namespace workbench::cli {
 
 /// MODEL, required.
@@ -17,6 +21,8 @@ CLI::Option* add_model(CLI::App& command, std::string& file);
 CLI::Option* add_record(CLI::App& command, std::string& file);
 /// RECORD..., at least one.
 CLI::Option* add_records(CLI::App& command, std::vector<std::string>& files);
+/// --map and --resample, for every record of the command.
+void add_reading(CLI::App& command, config::record::ReadOptions& reading);
 /// --holdout RECORD, repeatable.
 CLI::Option* add_holdouts(CLI::App& command, std::vector<std::string>& files);
 /// --json FILE; "-" is standard output (present::write_json).

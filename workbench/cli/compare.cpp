@@ -13,14 +13,18 @@
 #include "config/messages/channels.h"
 #include "config/record/record.h"
 #include "config/schema/error.h"
+#include "estimator/greybox/trajectory.h"
 #include "estimator/greybox/validation/comparison.h"
 #include "plant_sim/model_file.h"
 #include "workbench/cli/command.h"
 #include "workbench/cli/common_options.h"
 #include "workbench/cli/interrupt.h"
 #include "workbench/cli/number_check.h"
+#include "workbench/cli/selection_options.h"
 #include "workbench/compare/comparison_report.h"
+#include "workbench/exchange/export.h"
 #include "workbench/files/file_check.h"
+#include "workbench/fit/ignored_spans.h"
 #include "workbench/live/live_compare.h"
 #include "workbench/present/json.h"
 
@@ -35,8 +39,11 @@ using config::schema::UsageError;
 struct CompareArguments {
   std::string model;
   std::string record;
+  config::record::ReadOptions reading;
   std::string json;
   std::string report;
+  std::string residuals;
+  std::vector<std::string> ignored;
   double from_s = -std::numeric_limits<double>::infinity();
   double to_s = std::numeric_limits<double>::infinity();
   double observer_per_s = greybox::kObserver_per_s;
@@ -49,9 +56,11 @@ struct CompareArguments {
 };
 
 /// The record's samples from --from to --to.
-greybox::Dataset read_measured(const CompareArguments& a) {
-  config::record::Record record = config::record::read_record(a.record);
-  greybox::Dataset whole = greybox::dataset_of(record);
+greybox::Dataset read_measured(const CompareArguments& a, config::record::RecordUnits& units) {
+  std::vector<config::record::Record> records{config::record::read_record(a.record, a.reading)};
+  units = config::record::units_of(records.front());
+  if (!a.ignored.empty()) fit::cut_ignored(a.ignored, {a.record}, records);
+  greybox::Dataset whole = greybox::dataset_of(records.front());
   if (std::isinf(a.from_s) && std::isinf(a.to_s)) return whole;
   const auto index = [&](double t_s) {
     return static_cast<std::size_t>(std::lower_bound(whole.t_s.begin(), whole.t_s.end(), t_s) -
@@ -85,10 +94,41 @@ bool utf8_terminal() {
   return false;
 }
 
+/// Command, positions and states of every sample, as a record that reads back.
+void write_residuals(const validation::Comparison& comparison, const plant_sim::ModelFile& model,
+                     const config::record::RecordUnits& units, const CompareArguments& a) {
+  const greybox::Dataset& data = comparison.record;
+  config::record::Record out;
+  out.name = a.residuals;
+  out.sample_time_s = data.sample_time_s;
+  out.t_s = data.t_s;
+  out.u_V = data.u_V;
+  out.y_m = data.y_m;
+  out.command_unit = units.command;
+  out.position_unit = units.position;
+  const auto add = [&out](const std::string& name) -> std::vector<double>& {
+    out.further.emplace_back(name, std::vector<double>{});
+    return out.further.back().second;
+  };
+  greybox::Trajectory free = greybox::trajectory_of(model, data);
+  add("free_run_" + units.position) = std::move(free.reading_m);
+  std::vector<double>& corrected_m = add("drift_corrected_" + units.position);
+  for (std::size_t k = 0; k < data.size(); ++k) {
+    corrected_m.push_back(data.y_m[k] - comparison.error_m[k]);
+  }
+  add("free_run_residual_" + units.position) = comparison.free_error_m;
+  add("residual_" + units.position) = comparison.error_m;
+  add("settled").assign(data.valid.begin(), data.valid.end());
+  for (auto& [name, values] : free.states) add("state_" + name) = std::move(values);
+  exchange::write_record_file(out, a.residuals, "--residuals");
+}
+
 void run_live(CompareArguments& a) {
   for (const auto& [given, option] :
        {std::pair(!a.record.empty(), "RECORD"), std::pair(!a.report.empty(), "--report"),
-        std::pair(a.all, "--all"), std::pair(!a.json.empty() && a.json != "-", "--json FILE")}) {
+        std::pair(a.all, "--all"), std::pair(!a.residuals.empty(), "--residuals"),
+        std::pair(!a.ignored.empty(), "--ignore"),
+        std::pair(!a.json.empty() && a.json != "-", "--json FILE")}) {
     if (given) throw UsageError(std::string("--live: not together with ") + option);
   }
   a.watch.json = a.json == "-";
@@ -102,11 +142,14 @@ void run_live(CompareArguments& a) {
 void run(CompareArguments& a) {
   if (a.live) return run_live(a);
   if (a.record.empty()) throw UsageError("compare: no RECORD, and not --live");
-  files::check_outputs({{"--json", a.json}, {"--report", a.report}}, {a.model, {a.record}});
+  files::check_outputs({{"--json", a.json}, {"--report", a.report}, {"--residuals", a.residuals}},
+                       {a.model, {a.record}});
   const plant_sim::ModelFile model = plant_sim::load_model(a.model, a.assignments);
-  const greybox::Dataset record = read_measured(a);
+  config::record::RecordUnits units;
+  const greybox::Dataset record = read_measured(a, units);
   check_observer(a, record);
   const validation::Comparison comparison = validation::compare(model, record, a.observer_per_s);
+  if (!a.residuals.empty()) write_residuals(comparison, model, units, a);
   if (!a.report.empty()) {
     present::write_report(compare::make_report(comparison, a.command), a.report);
   }
@@ -121,12 +164,17 @@ void add_compare(CLI::App& command, int& /*exit_code*/) {
   auto arguments = std::make_shared<CompareArguments>();
   add_model(command, arguments->model);
   add_record(command, arguments->record)->required(false);
+  add_reading(command, arguments->reading);
   add_json(command, arguments->json);
   add_report(command, arguments->report);
   command.add_option("--from", arguments->from_s, "s: ignore samples before this time")
       ->check(finite_number());
   command.add_option("--to", arguments->to_s, "s: ignore samples after this time")
       ->check(finite_number());
+  add_ignored(command, arguments->ignored);
+  command.add_option("--residuals", arguments->residuals,
+                     "file for every sample: command, position, free run, drift-corrected run, "
+                     "residuals, states of the free run (.csv, .mat)");
   add_observer(command, arguments->observer_per_s)->check(positive_number());
   add_set(command, arguments->assignments);
   command.add_flag("--all", arguments->all,

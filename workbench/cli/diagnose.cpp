@@ -78,6 +78,7 @@ void add_diagnose(CLI::App& command, int& exit_code) {
   auto request = std::make_shared<DiagnosisRequest>();
   add_model(command, request->model);
   add_records(command, request->records);
+  add_reading(command, request->reading);
   CLI::Option* const holdout = add_holdouts(command, request->holdouts);
   command
       .add_option("--fit", request->fit, "part of each record that is fitted; the rest validates")

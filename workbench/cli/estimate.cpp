@@ -19,6 +19,7 @@ using nlohmann::ordered_json;
 
 struct EstimateCommandOptions {
   std::string record;
+  config::record::ReadOptions reading;
   std::string structure = "arx211";
   bool constant = false;
   std::string fit = "all";
@@ -137,7 +138,8 @@ void run(EstimateCommandOptions options) {
     throw UsageError("--stride: is longer than --window");
   }
   refuse_unused(options);
-  const config::record::Record record = config::record::read_record(options.record);
+  const config::record::Record record =
+      config::record::read_record(options.record, options.reading);
   for (const std::string& note : record.notes) {
     std::cerr << "spoolwatch: " << record.name << ": " << note << '\n';
   }
@@ -155,6 +157,7 @@ void add_estimate(CLI::App& command, int& /*exit_code*/) {
   auto options = std::make_shared<EstimateCommandOptions>();
   estimate::EstimateOptions& e = options->estimate;
   add_record(command, options->record);
+  add_reading(command, options->reading);
   command.add_option("--structure", options->structure, "arx211, arx(10,2,1), ...")
       ->capture_default_str();
   command.add_option("--method", e.method, "estimation method")

@@ -8,6 +8,7 @@
 #include "config/record/whole_file.h"
 #include "config/schema/error.h"
 #include "workbench/cli/command.h"
+#include "workbench/cli/common_options.h"
 #include "workbench/exchange/export.h"
 #include "workbench/files/file_check.h"
 
@@ -35,7 +36,7 @@ exchange::Kinds kinds_of(const std::string& channel) {
 }  // namespace
 
 void export_log(const std::string& input, const std::string& file, const std::string& channel,
-                const std::string& format) {
+                const std::string& format, const config::record::ReadOptions& reading) {
   const std::string output = file == "-" ? "/dev/stdout" : file;
   const std::string form = format.empty() ? format_of(output) : format;
   files::check_outputs({{.option = "--output", .file = output, .may_replace_model = true}},
@@ -47,13 +48,13 @@ void export_log(const std::string& input, const std::string& file, const std::st
                        (columns ? ": is among the columns of sample" : ": is no one table") +
                        "; allowed with CSV: sample, estimate, alarm");
     }
-    exchange::export_csv(input, channel.empty() ? "sample" : channel, output);
+    exchange::export_csv(input, channel.empty() ? "sample" : channel, output, reading);
   } else if (form == "mat") {
-    config::record::write_whole(output, exchange::mat_file(input, kinds_of(channel)));
+    config::record::write_whole(output, exchange::mat_file(input, kinds_of(channel), reading));
   } else if (form == "mcap") {
-    config::record::write_whole(output, exchange::mcap_file(input, kinds_of(channel)));
+    config::record::write_whole(output, exchange::mcap_file(input, kinds_of(channel), reading));
   } else if (form == "json") {
-    config::record::write_whole(output, exchange::json_lines(input, kinds_of(channel)));
+    config::record::write_whole(output, exchange::json_lines(input, kinds_of(channel), reading));
   } else {
     throw UsageError("--output " + output + ": its ending names no format; allowed: " + kFormats +
                      ", or --format");
@@ -63,6 +64,7 @@ void export_log(const std::string& input, const std::string& file, const std::st
 void add_export(CLI::App& command, int&) {
   struct ExportOptions {
     std::string input, output, channel, format;
+    config::record::ReadOptions reading;
   };
   auto options = std::make_shared<ExportOptions>();
   command.add_option("RECORD", options->input, "an LCM event log, or a record: CSV or MAT")
@@ -78,8 +80,10 @@ void add_export(CLI::App& command, int&) {
   command
       .add_option("--format", options->format, "format of the output; default: by the file name")
       ->check(CLI::IsMember({"csv", "mat", "mcap", "json"}));
+  add_reading(command, options->reading);
   command.callback([options] {
-    export_log(options->input, options->output, options->channel, options->format);
+    export_log(options->input, options->output, options->channel, options->format,
+               options->reading);
   });
 }
 

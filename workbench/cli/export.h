@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "config/record/reading.h"
+
 namespace workbench::cli {
 
 /// Writes `file` complete or not at all; without `format` its ending says which ("csv", "mat",
@@ -11,6 +13,6 @@ namespace workbench::cli {
 /// table, the samples. Throws config::schema::Error: 65 for an input that is none or of another
 /// type, 2 for an unknown format or an output over the input, 1 when the file cannot be written.
 void export_log(const std::string& input, const std::string& file, const std::string& channel = "",
-                const std::string& format = "");
+                const std::string& format = "", const config::record::ReadOptions& reading = {});
 
 }  // namespace workbench::cli

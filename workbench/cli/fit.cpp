@@ -66,6 +66,7 @@ void add_fit(CLI::App& command, int& exit_code) {
   auto request = std::make_shared<FitRequest>();
   add_model(command, request->model);
   add_records(command, request->records);
+  add_reading(command, request->reading);
   command.add_option("-o,--output", request->output, "the model file to write");
   declare_choice(command, *request);
   CLI::Option* const holdout = add_holdouts(command, request->holdouts);

@@ -71,6 +71,7 @@ void add_isolate(CLI::App& command, int& /*exit_code*/) {
   auto request = std::make_shared<IsolationRequest>();
   add_model(command, request->model);
   add_record(command, request->record);
+  add_reading(command, request->reading);
   command
       .add_option("--parameters", request->parameters,
                   "name[,name...] as in model files, such as null_bias.offset_V, mass_kg")

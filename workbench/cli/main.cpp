@@ -7,6 +7,8 @@
 #include <iostream>
 #include <new>
 
+#include "config/record/hdf5/hdf5_variables.h"
+#include "config/record/record.h"
 #include "config/schema/error.h"
 #include "config/schema/product_version.h"
 #include "config/schema/spelling.h"
@@ -54,6 +56,7 @@ void require_command(const CLI::App& app, const std::string& word) {
 }
 
 int run(int argc, char** argv) {
+  config::record::set_hdf5_reader(config::record::hdf5::read_hdf5_variables);
   int exit_code = 0;
   CLI::App app{"Spoolwatch: watch a servo-hydraulic test stand, and find what its model misses",
                "spoolwatch"};

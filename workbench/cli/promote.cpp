@@ -16,6 +16,7 @@
 #include "daemon/control/protocol.h"
 #include "plant_sim/model_file.h"
 #include "workbench/cli/command.h"
+#include "workbench/cli/common_options.h"
 #include "workbench/cli/number_check.h"
 #include "workbench/cli/order_options.h"
 #include "workbench/present/compare_units.h"
@@ -37,6 +38,7 @@ using promotion::RunningDaemon;
 struct PromoteOptions {
   std::string model;
   std::vector<std::string> records;
+  config::record::ReadOptions reading;
   std::string socket = monitor::control::kDefaultSocket;
   double false_alarm_time_s = 86400.0;
   bool back = false;
@@ -86,7 +88,11 @@ class PromotionAttempt {
   }
   void read_records() {
     files_ = options_.records.empty() ? promotion::healthy_logs(daemon_) : options_.records;
-    for (const std::string& file : files_) records_.push_back(config::record::read_record(file));
+    for (const std::string& file : files_) {
+      records_.push_back(config::record::read_record(
+          file, options_.records.empty() ? config::record::ReadOptions{} : options_.reading));
+      config::record::require_volts_and_metres(records_.back());
+    }
     std::string names;
     for (const std::string& file : files_) names += ' ' + fs::path(file).filename().string();
     step(daemon_, options_.model + ": tried on" + names);
@@ -202,6 +208,7 @@ void add_promote(CLI::App& command, int& /*exit_code*/) {
   command.add_option("--record", options->records,
                      "healthy records; the last of several tries the bands that the others "
                      "teach; without: the daemon's own logs");
+  add_reading(command, options->reading);
   add_socket(command, options->socket);
   command
       .add_option("--false-alarm-time-s", options->false_alarm_time_s,

@@ -43,6 +43,7 @@ int run(const SelectRequest& request) {
 void add_select(CLI::App& command, int& exit_code) {
   auto request = std::make_shared<SelectRequest>();
   add_record(command, request->record);
+  add_reading(command, request->reading);
   command
       .add_option("--structures", request->structures,
                   "name[,name...]: arxNMK, armaxNMCK, oeMFK, bjMCDFK, ssN, n4sidN, narxNMK/H; "

@@ -1,4 +1,4 @@
-// `spoolwatch simulate`: a record from a model file, in closed loop.
+// `spoolwatch simulate`: a record from a model file, in closed loop or by a recorded command.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -11,10 +11,14 @@
 #include "config/record/record.h"
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "estimator/greybox/trajectory.h"
+#include "plant_sim/model_file.h"
 #include "plant_sim/plant.h"
 #include "workbench/cli/command.h"
 #include "workbench/cli/common_options.h"
 #include "workbench/cli/number_check.h"
+#include "workbench/exchange/export.h"
+#include "workbench/files/file_check.h"
 #include "workbench/simulate/closed_loop.h"
 #include "workbench/simulate/fault_text.h"
 #include "workbench/simulate/transducers.h"
@@ -23,6 +27,7 @@ namespace workbench::cli {
 namespace {
 
 namespace fs = std::filesystem;
+namespace greybox = estimator::greybox;
 using config::schema::ConfigError;
 using config::schema::RunError;
 using config::schema::UsageError;
@@ -34,6 +39,8 @@ struct SimulateArguments {
   std::string model;
   std::string output;
   std::string reference;
+  std::string command;
+  config::record::ReadOptions reading;
   double duration_s = 60.0;
   std::uint64_t seed = 1;
   bool pressures = false;
@@ -134,6 +141,61 @@ config::record::Record simulate_record(const SimulateArguments& arguments,
   return record;
 }
 
+/// The plant driven by the command of a record; its own controller and instruments have no part.
+config::record::Record simulate_command(const SimulateArguments& a) {
+  const plant_sim::ModelFile model = plant_sim::load_model(a.model, a.assignments);
+  config::record::ReadOptions reading = a.reading;
+  reading.position_optional = true;
+  const config::record::Record given = config::record::read_record(a.command, reading);
+  for (const std::string& note : given.notes) {
+    std::cerr << "spoolwatch: " << given.name << ": " << note << '\n';
+  }
+  if (!given.has_position && !given.gaps.empty()) {
+    throw config::schema::bad_data(given.name,
+                                   "has " + std::to_string(given.gaps.size()) +
+                                       " gaps, the first at " +
+                                       std::to_string(given.t_s[given.gaps.front()]) +
+                                       " s: the position behind a gap is not known",
+                                   "a command without gaps, or with the measured position");
+  }
+  greybox::Dataset data;
+  data.name = given.name;
+  data.sample_time_s = given.sample_time_s;
+  data.t_s = given.t_s;
+  data.u_V = given.u_V;
+  data.y_m = given.y_m;
+  if (!given.has_position) {
+    data.y_m.assign(given.size(), plant_sim::make_plant(model)->reading_m());
+  }
+  data.starts = {0};
+  data.starts.insert(data.starts.end(), given.gaps.begin(), given.gaps.end());
+  greybox::Trajectory run = greybox::trajectory_of(model, data);
+  config::record::Record out;
+  out.name = a.output;
+  out.sample_time_s = given.sample_time_s;
+  out.command_unit = given.command_unit;
+  out.position_unit = given.position_unit;
+  out.t_s = given.t_s;
+  out.u_V = given.u_V;
+  out.y_m = std::move(run.reading_m);
+  if (given.has_position) out.further.emplace_back("measured_" + given.position_unit, given.y_m);
+  for (auto& [name, values] : run.states) {
+    out.further.emplace_back("state_" + name, std::move(values));
+  }
+  return out;
+}
+
+/// The closed loop's own options say nothing about a recorded command.
+void check_command(const SimulateArguments& a, const CLI::App& command) {
+  for (const char* option :
+       {"--duration", "--seed", "--reference", "--pressures", "--pressure-noise", "--fault"}) {
+    if (command.count(option) > 0) {
+      throw UsageError(std::string("--command: not together with ") + option);
+    }
+  }
+  files::check_outputs({{"-o", a.output}}, {a.model, {a.command}});
+}
+
 void check_pressures(const SimulateArguments& arguments, const simulate::Scenario& scenario) {
   if (!arguments.pressures) {
     if (!std::isnan(arguments.pressure_noise_Pa)) {
@@ -167,6 +229,10 @@ void add_simulate(CLI::App& command, int& /*exit_code*/) {
   command.add_option(
       "--reference", arguments->reference,
       "sine, triangle, multisine, steps, chirp, prbs, or a CSV file with t_s,reference_m");
+  command.add_option("--command", arguments->command,
+                     "RECORD whose command drives the plant in open loop, at its rate and from "
+                     "its first position; -o also as .mat, with the states");
+  add_reading(command, arguments->reading);
   command.add_flag("--pressures", arguments->pressures,
                    "columns supply_pressure_Pa, pressure_in_Pa, pressure_out_Pa as well");
   command
@@ -181,7 +247,15 @@ void add_simulate(CLI::App& command, int& /*exit_code*/) {
       .add_option("--fault", arguments->faults,
                   "PARAMETER=VALUE@SECONDS or PARAMETER*FACTOR@SECONDS, +SECONDS for a ramp")
       ->allow_extra_args(false);
-  command.callback([arguments] {
+  command.callback([arguments, &command] {
+    if (!arguments->command.empty()) {
+      check_command(*arguments, command);
+      exchange::write_record_file(simulate_command(*arguments), arguments->output, "-o");
+      return;
+    }
+    if (!arguments->reading.map.empty() || !arguments->reading.resample.empty()) {
+      throw UsageError("--map, --resample: need --command");
+    }
     simulate::Scenario scenario = read_scenario(*arguments);
     if (!std::isnan(arguments->pressure_noise_Pa)) {
       scenario.instruments.pressure_noise_Pa = arguments->pressure_noise_Pa;

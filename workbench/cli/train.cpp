@@ -25,10 +25,12 @@ struct TrainOptions {
   std::vector<std::string> healthy;
   std::vector<std::string> classes;
   std::string out;
+  config::record::ReadOptions reading;
 };
 
-Record read(const std::string& file) {
-  Record record = config::record::read_record(file);
+Record read(const std::string& file, const TrainOptions& options) {
+  Record record = config::record::read_record(file, options.reading);
+  config::record::require_volts_and_metres(record);
   for (const std::string& note : record.notes) {
     std::cerr << "spoolwatch: " << record.name << ": " << note << '\n';
   }
@@ -36,7 +38,7 @@ Record read(const std::string& file) {
 }
 
 /// NAME=RECORD; a + or - at the end of the name is the direction in which it has changed.
-train::Teaching teaching_of(const std::string& text) {
+train::Teaching teaching_of(const std::string& text, const TrainOptions& options) {
   const std::size_t equals = text.find('=');
   train::Teaching teaching;
   teaching.name = text.substr(0, equals);
@@ -50,7 +52,7 @@ train::Teaching teaching_of(const std::string& text) {
                                      ": is no class; allowed: NAME=RECORD, NAME+=RECORD (risen), "
                                      "NAME-=RECORD (fallen)");
   }
-  teaching.records.push_back(read(text.substr(equals + 1)));
+  teaching.records.push_back(read(text.substr(equals + 1), options));
   return teaching;
 }
 
@@ -104,8 +106,12 @@ void run(const TrainOptions& options) {
   });
   std::vector<train::Teaching> teachings(1);
   teachings[0].name = fdi::TrainedFile::kHealthy;
-  for (const std::string& file : options.healthy) teachings[0].records.push_back(read(file));
-  for (const std::string& text : options.classes) teachings.push_back(teaching_of(text));
+  for (const std::string& file : options.healthy) {
+    teachings[0].records.push_back(read(file, options));
+  }
+  for (const std::string& text : options.classes) {
+    teachings.push_back(teaching_of(text, options));
+  }
   fdi::TrainedFile trained = train::learn(pipeline, teachings, rig_id, options.config);
   for (const fdi::TrainedMethod& source : trained.methods) {
     print(source, dynamic_cast<const fdi::TrainedMethodConfig&>(*pipeline.find_method(source.id)));
@@ -125,6 +131,7 @@ void add_train(CLI::App& command, int& /*exit_code*/) {
       ->required();
   command.add_option("--class", options->classes,
                      "NAME=RECORD of a fault; NAME+= when it has risen, NAME-= when fallen");
+  add_reading(command, options->reading);
   command.add_option("-o,--output", options->out, "output file (TOML)")->required();
   command.callback([options] { run(*options); });
 }

@@ -26,47 +26,20 @@ void check_files(const DiagnosisRequest& request) {
       inputs);
 }
 
-/// Turns the ignored rows of a record into gaps: their readings correct no simulation.
-void cut(config::record::Record& record, const std::vector<char>& ignored) {
-  config::record::Record rest = record;
-  rest.t_s.clear();
-  rest.u_V.clear();
-  rest.y_m.clear();
-  rest.further.clear();
-  rest.gaps.clear();
-  bool gap = false;
-  for (std::size_t k = 0; k < record.size(); ++k) {
-    gap = gap || std::binary_search(record.gaps.begin(), record.gaps.end(), k);
-    if (ignored[k] != 0) {
-      gap = true;
-      continue;
-    }
-    if (gap && !rest.t_s.empty()) rest.gaps.push_back(rest.size());
-    gap = false;
-    rest.t_s.push_back(record.t_s[k]);
-    rest.u_V.push_back(record.u_V[k]);
-    rest.y_m.push_back(record.y_m[k]);
-  }
-  record = std::move(rest);
-}
-
 std::vector<greybox::Dataset> records_of(const std::vector<std::string>& files,
-                                         const std::vector<std::string>& ignored_spans) {
+                                         const DiagnosisRequest& request) {
   std::vector<config::record::Record> records;
   records.reserve(files.size());
-  for (const std::string& file : files) records.push_back(config::record::read_record(file));
-  std::vector<fit::RecordTimes> times;
-  std::vector<std::vector<char>> ignored;
-  for (std::size_t r = 0; r < files.size(); ++r) {
-    times.push_back({files[r], &records[r].t_s});
-    ignored.emplace_back(records[r].size(), 0);
+  std::vector<config::record::RecordUnits> units;
+  for (const std::string& file : files) {
+    records.push_back(config::record::read_record(file, request.reading));
+    units.push_back(config::record::units_of(records.back()));
   }
-  fit::for_ignored(ignored_spans, times,
-                   [&](std::size_t record, std::size_t sample) { ignored[record][sample] = 1; });
+  config::record::require_same_units(units);
+  fit::cut_ignored(request.ignored, files, records);
   std::vector<greybox::Dataset> sets;
-  for (std::size_t r = 0; r < files.size(); ++r) {
-    cut(records[r], ignored[r]);
-    sets.push_back(greybox::dataset_of(records[r]));
+  for (const config::record::Record& record : records) {
+    sets.push_back(greybox::dataset_of(record));
   }
   return sets;
 }
@@ -116,7 +89,7 @@ PreparedDiagnosis prepare(const DiagnosisRequest& request) {
   fit::FreeParameters parameters = fit::select_parameters(model, request.selection);
   std::vector<std::string> files = request.records;
   files.insert(files.end(), request.holdouts.begin(), request.holdouts.end());
-  std::vector<greybox::Dataset> records = records_of(files, request.ignored);
+  std::vector<greybox::Dataset> records = records_of(files, request);
   const auto held_out = records.begin() + static_cast<std::ptrdiff_t>(request.records.size());
   std::vector<greybox::Dataset> holdouts(std::make_move_iterator(held_out),
                                          std::make_move_iterator(records.end()));

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "config/record/reading.h"
 #include "estimator/greybox/fit_dataset.h"
 #include "estimator/greybox/selection/problem.h"
 #include "workbench/fit/parameter_selection.h"
@@ -17,6 +18,7 @@ struct DiagnosisRequest {
   std::string model;
   std::vector<std::string> records;
   std::vector<std::string> holdouts;
+  config::record::ReadOptions reading;
   std::string fit = "blocks";
   std::vector<std::string> only;      ///< the only effects to be tried; empty: all
   std::vector<std::string> without;   ///< effects that are not tried

@@ -14,19 +14,28 @@ namespace workbench::exchange {
 ///   health.t_s, .overruns, ...                columns
 ///
 /// t_s is tick times sample time, or counts from the first message where there are no samples.
-[[nodiscard]] std::string mat_file(const std::string& input, const Kinds& kinds);
+[[nodiscard]] std::string mat_file(const std::string& input, const Kinds& kinds,
+                                   const config::record::ReadOptions& reading = {});
+
+/// `record` by the ending of `file`: .csv or .mat. Throws config::schema::UsageError, which names
+/// `option`, for another one.
+void write_record_file(const config::record::Record& record, const std::string& file,
+                       const std::string& option);
 
 /// CSV: one kind of message at a time, for it is one table.
 /// Samples become a record (t_s,u_V,y_m, ...) that every command reads; estimates one row per
 /// number; alarms one row per message. t_s is tick times sample time in all three. `kind` is
 /// "sample", "estimate" or "alarm".
-void export_csv(const std::string& input, const std::string& kind, const std::string& output);
+void export_csv(const std::string& input, const std::string& kind, const std::string& output,
+                const config::record::ReadOptions& reading = {});
 
 /// JSON, one object a line: what `spoolwatch bridge` sends: a time stamp in seconds and the values
 /// by topic.
-[[nodiscard]] std::string json_lines(const std::string& input, const Kinds& kinds);
+[[nodiscard]] std::string json_lines(const std::string& input, const Kinds& kinds,
+                                     const config::record::ReadOptions& reading = {});
 
 /// One MCAP channel for each topic. Its schema is what its first message has.
-[[nodiscard]] std::string mcap_file(const std::string& input, const Kinds& kinds);
+[[nodiscard]] std::string mcap_file(const std::string& input, const Kinds& kinds,
+                                    const config::record::ReadOptions& reading = {});
 
 }  // namespace workbench::exchange

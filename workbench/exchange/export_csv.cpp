@@ -104,9 +104,10 @@ class CsvTable final : public config::messages::MessageHandler {
 
 }  // namespace
 
-void export_csv(const std::string& input, const std::string& kind, const std::string& output) {
+void export_csv(const std::string& input, const std::string& kind, const std::string& output,
+                const config::record::ReadOptions& reading) {
   if (kind == "sample") {
-    const auto record = config::record::read_record(input);
+    const auto record = config::record::read_record(input, reading);
     for (const auto& note : record.notes) {
       std::cerr << "spoolwatch: " << input << ": " << note << '\n';
     }
@@ -138,29 +139,36 @@ Tree schema_of(const Tree& value) {
 
 }  // namespace
 
-std::string json_lines(const std::string& input, const Kinds& kinds) {
+std::string json_lines(const std::string& input, const Kinds& kinds,
+                       const config::record::ReadOptions& reading) {
   std::string lines;
-  each_message(input, kinds, [&lines](const Message& message) {
-    lines += text_of(with_timestamp(message)) + '\n';
-  });
+  each_message(
+      input, kinds,
+      [&lines](const Message& message) { lines += text_of(with_timestamp(message)) + '\n'; },
+      reading);
   return lines;
 }
 
-std::string mcap_file(const std::string& input, const Kinds& kinds) {
+std::string mcap_file(const std::string& input, const Kinds& kinds,
+                      const config::record::ReadOptions& reading) {
   McapWriter writer("spoolwatch");
   std::map<std::string, std::uint16_t> channels;
-  each_message(input, kinds, [&](const Message& message) {
-    auto channel = channels.find(message.topic);
-    if (channel == channels.end()) {
-      if (channels.size() == kMostTopics) {
-        throw config::schema::bad_data(input, "has more than 10000 sources and alarms");
-      }
-      const std::uint16_t number = writer.add_channel(
-          "/" + message.topic, "spoolwatch." + message.kind, text_of(schema_of(message.values)));
-      channel = channels.emplace(message.topic, number).first;
-    }
-    writer.add(channel->second, message.t_ns, text_of(message.values));
-  });
+  each_message(
+      input, kinds,
+      [&](const Message& message) {
+        auto channel = channels.find(message.topic);
+        if (channel == channels.end()) {
+          if (channels.size() == kMostTopics) {
+            throw config::schema::bad_data(input, "has more than 10000 sources and alarms");
+          }
+          const std::uint16_t number =
+              writer.add_channel("/" + message.topic, "spoolwatch." + message.kind,
+                                 text_of(schema_of(message.values)));
+          channel = channels.emplace(message.topic, number).first;
+        }
+        writer.add(channel->second, message.t_ns, text_of(message.values));
+      },
+      reading);
   return writer.finish();
 }
 

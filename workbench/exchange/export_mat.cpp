@@ -4,6 +4,8 @@
 #include <iostream>
 #include <map>
 
+#include "config/record/whole_file.h"
+#include "config/schema/error.h"
 #include "config/signals/nan.h"
 #include "spoolwatch/alarm_t.hpp"
 #include "spoolwatch/estimate_t.hpp"
@@ -186,18 +188,33 @@ void write_record(const config::record::Record& record, MatWriter& writer) {
   }
   MatNames names;
   writer.add(names("t_s"), MatValue(record.t_s));
-  writer.add(names("u_V"), MatValue(record.u_V));
-  writer.add(names("y_m"), MatValue(record.y_m));
+  writer.add(names("u_" + record.command_unit), MatValue(record.u_V));
+  writer.add(names("y_" + record.position_unit), MatValue(record.y_m));
   for (const char* ours : {"estimates", "alarms", "health"}) (void)names(ours);
   for (const auto& [name, values] : record.further) writer.add(names(name), MatValue(values));
 }
 
 }  // namespace
 
-std::string mat_file(const std::string& input, const Kinds& kinds) {
+void write_record_file(const config::record::Record& record, const std::string& file,
+                       const std::string& option) {
+  if (file.ends_with(".mat")) {
+    MatWriter writer;
+    write_record(record, writer);
+    config::record::write_whole(file, writer.finish());
+  } else if (file.ends_with(".csv")) {
+    config::record::write_csv(record, file);
+  } else {
+    throw config::schema::UsageError(option + " " + file +
+                                     ": its ending names no format; allowed: .csv, .mat");
+  }
+}
+
+std::string mat_file(const std::string& input, const Kinds& kinds,
+                     const config::record::ReadOptions& reading) {
   MatWriter writer;
   if (!is_log(input)) {
-    if (kinds.contains("sample")) write_record(config::record::read_record(input), writer);
+    if (kinds.contains("sample")) write_record(config::record::read_record(input, reading), writer);
     return writer.finish();
   }
   const double period_s = sample_time_s(input);

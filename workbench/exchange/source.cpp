@@ -128,13 +128,14 @@ void read_log(const std::string& log, const Kinds& kinds,
 }
 
 void each_message(const std::string& input, const Kinds& kinds,
-                  const std::function<void(const Message&)>& take) {
+                  const std::function<void(const Message&)>& take,
+                  const config::record::ReadOptions& reading) {
   if (is_log(input)) {
     TreeHandler handler(take);
     read_log(input, kinds, handler);
     return;
   }
-  const config::record::Record record = config::record::read_record(input);
+  const config::record::Record record = config::record::read_record(input, reading);
   for (const std::string& note : record.notes) {
     std::cerr << "spoolwatch: " << input << ": " << note << '\n';
   }

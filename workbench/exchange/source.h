@@ -45,6 +45,7 @@ void read_log(const std::string& log, const Kinds& kinds,
 /// The same as trees, or the rows of a record as samples: the main columns as y_m and
 /// u_applied_V, the further ones by their names.
 void each_message(const std::string& input, const Kinds& kinds,
-                  const std::function<void(const Message&)>& take);
+                  const std::function<void(const Message&)>& take,
+                  const config::record::ReadOptions& reading = {});
 
 }  // namespace workbench::exchange

@@ -1,8 +1,10 @@
 #include "workbench/fit/ignored_spans.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
+#include "config/record/record.h"
 #include "config/schema/error.h"
 #include "workbench/fit/parameter_selection.h"
 
@@ -41,6 +43,47 @@ void for_ignored(const std::vector<std::string>& spans, const std::vector<Record
     }
     if (!met) throw UsageError("--ignore " + text + ": no sample lies there");
   }
+}
+
+namespace {
+
+/// Leaves gaps where `ignored` is true.
+void cut(config::record::Record& record, const std::vector<char>& ignored) {
+  config::record::Record rest = record;
+  rest.t_s.clear();
+  rest.u_V.clear();
+  rest.y_m.clear();
+  rest.further.clear();
+  rest.gaps.clear();
+  bool gap = false;
+  for (std::size_t k = 0; k < record.size(); ++k) {
+    gap = gap || std::binary_search(record.gaps.begin(), record.gaps.end(), k);
+    if (ignored[k] != 0) {
+      gap = true;
+      continue;
+    }
+    if (gap && !rest.t_s.empty()) rest.gaps.push_back(rest.size());
+    gap = false;
+    rest.t_s.push_back(record.t_s[k]);
+    rest.u_V.push_back(record.u_V[k]);
+    rest.y_m.push_back(record.y_m[k]);
+  }
+  record = std::move(rest);
+}
+
+}  // namespace
+
+void cut_ignored(const std::vector<std::string>& spans, const std::vector<std::string>& names,
+                 std::vector<config::record::Record>& records) {
+  std::vector<RecordTimes> times;
+  std::vector<std::vector<char>> ignored;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    times.push_back({names[r], &records[r].t_s});
+    ignored.emplace_back(records[r].size(), 0);
+  }
+  for_ignored(spans, times,
+              [&](std::size_t record, std::size_t sample) { ignored[record][sample] = 1; });
+  for (std::size_t r = 0; r < records.size(); ++r) cut(records[r], ignored[r]);
 }
 
 }  // namespace workbench::fit

@@ -5,6 +5,10 @@
 #include <string>
 #include <vector>
 
+namespace config::record {
+struct Record;
+}
+
 namespace workbench::fit {
 
 struct RecordTimes {
@@ -16,5 +20,10 @@ struct RecordTimes {
 /// config::schema::UsageError for another form and for a span without samples.
 void for_ignored(const std::vector<std::string>& spans, const std::vector<RecordTimes>& records,
                  const std::function<void(std::size_t record, std::size_t sample)>& take);
+
+/// Takes these samples out of the records, which then have gaps there: they correct no simulation.
+/// `names` as the user gave them. Throws like for_ignored().
+void cut_ignored(const std::vector<std::string>& spans, const std::vector<std::string>& names,
+                 std::vector<config::record::Record>& records);
 
 }  // namespace workbench::fit

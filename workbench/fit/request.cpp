@@ -34,10 +34,17 @@ void check_files(const FitRequest& request) {
       inputs);
 }
 
-Dataset read(const std::string& file) {
-  Dataset record = greybox::dataset_of(config::record::read_record(file));
-  record.name = file;
-  return record;
+/// Datasets of `files` in order.
+std::vector<Dataset> read(const std::vector<std::string>& files, const FitRequest& request,
+                          std::vector<config::record::RecordUnits>& units) {
+  std::vector<Dataset> records;
+  for (const std::string& file : files) {
+    const config::record::Record record = config::record::read_record(file, request.reading);
+    units.push_back(config::record::units_of(record));
+    records.push_back(greybox::dataset_of(record));
+    records.back().name = file;
+  }
+  return records;
 }
 
 void require_motion(const FitDataset& data) {
@@ -138,10 +145,10 @@ PreparedFit prepare(const FitRequest& request) {
   problem.parameters = choice.parameters;
   problem.start = choice.start;
   choose_profiles(request, problem, options);
-  std::vector<Dataset> records;
-  std::vector<Dataset> holdouts;
-  for (const std::string& file : request.records) records.push_back(read(file));
-  for (const std::string& file : request.holdouts) holdouts.push_back(read(file));
+  std::vector<config::record::RecordUnits> units;
+  std::vector<Dataset> records = read(request.records, request, units);
+  std::vector<Dataset> holdouts = read(request.holdouts, request, units);
+  config::record::require_same_units(units);
   const greybox::Split split =
       request.fit == "all" ? greybox::Split::blocks : greybox::parse_split(request.fit);
   problem.data = greybox::fit_dataset(std::move(records), std::move(holdouts), split);

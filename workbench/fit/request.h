@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "config/record/reading.h"
 #include "estimator/greybox/estimation.h"
 #include "workbench/fit/parameter_selection.h"
 
@@ -13,6 +14,7 @@ struct FitRequest {
   std::string model;
   std::vector<std::string> records;
   std::vector<std::string> holdouts;
+  config::record::ReadOptions reading;
   std::string fit = "all";
   ParameterSelection selection;
   std::vector<std::string> ignored;  ///< "from:to" in s, or "RECORD@from:to"

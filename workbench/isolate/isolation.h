@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "config/record/reading.h"
 #include "estimator/greybox/tracking/parameter_tracker.h"
 #include "workbench/present/report.h"
 
@@ -23,6 +24,7 @@ using tracking::WindowResult;
 struct IsolationRequest {
   std::string model;
   std::string record;
+  config::record::ReadOptions reading;
   std::vector<std::string> parameters{"supply_pressure_Pa,damping_N_s_per_m"};
   TrackerSettings settings;
   std::string baseline = "0:10";  ///< from:to, s

@@ -157,10 +157,12 @@ std::vector<std::string> files_of(const std::vector<std::string>& logs) {
 }
 
 BacktestRun run_record(const std::string& file, const BacktestRules& new_rules,
-                       const std::optional<BacktestRules>& old_rules) {
+                       const std::optional<BacktestRules>& old_rules,
+                       const config::record::ReadOptions& reading) {
   Course course(new_rules, old_rules);
   course.run.files = {file};
-  const config::record::Record record = config::record::read_record(file);
+  const config::record::Record record = config::record::read_record(file, reading);
+  config::record::require_volts_and_metres(record);
   for (const Sample& sample : train::to_samples(record)) course.take(sample, record.sample_time_s);
   return course.finish();
 }
@@ -189,7 +191,8 @@ BacktestRules read_rules(const std::string& file) {
 
 std::vector<BacktestRun> run_backtest(const BacktestRules& new_rules,
                                       const std::optional<BacktestRules>& old_rules,
-                                      const std::vector<std::string>& logs) {
+                                      const std::vector<std::string>& logs,
+                                      const config::record::ReadOptions& reading) {
   std::vector<BacktestRun> runs;
   std::map<std::int64_t, std::vector<Place>> places;
   for (const std::string& file : files_of(logs)) {
@@ -197,7 +200,7 @@ std::vector<BacktestRun> run_backtest(const BacktestRules& new_rules,
       Place place = place_of(file);
       places[place.run_id].push_back(std::move(place));
     } else {
-      runs.push_back(run_record(file, new_rules, old_rules));
+      runs.push_back(run_record(file, new_rules, old_rules, reading));
     }
   }
   for (auto& [run_id, parts] : places) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "config/record/reading.h"
 #include "estimator/fdi/pipeline.h"
 #include "estimator/fdi/tracker/detection_method_kinds.h"
 #include "workbench/replay/occurrences.h"
@@ -40,8 +41,8 @@ struct BacktestRun {
 
 /// `logs`: LCM event logs, folders of them, records. Logs of one run are put together. `old_rules`
 /// empty: what was recorded. Throws config::schema::DataError.
-[[nodiscard]] std::vector<BacktestRun> run_backtest(const BacktestRules& new_rules,
-                                                    const std::optional<BacktestRules>& old_rules,
-                                                    const std::vector<std::string>& logs);
+[[nodiscard]] std::vector<BacktestRun> run_backtest(
+    const BacktestRules& new_rules, const std::optional<BacktestRules>& old_rules,
+    const std::vector<std::string>& logs, const config::record::ReadOptions& reading = {});
 
 }  // namespace workbench::replay

@@ -117,7 +117,8 @@ SelectOutcome compare_structures(const SelectRequest& request,
   for (const std::string& name : request.structures) {
     static_cast<void>(parse_candidate(name, 1, request.constant));  // before the record is read
   }
-  const config::record::Record record = config::record::read_record(request.record);
+  const config::record::Record record =
+      config::record::read_record(request.record, request.reading);
   out.notes = record.notes;
   out.name = record.name;
   out.sample_time_s = record.sample_time_s;

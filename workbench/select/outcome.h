@@ -27,6 +27,7 @@ using config::signals::kNaN;
 
 struct SelectRequest {
   std::string record;
+  config::record::ReadOptions reading;
   std::vector<std::string> structures;  ///< empty: the usual ones
   int delay = -1;                       ///< samples; -1: found
   double period_s = 2.0;

@@ -96,11 +96,26 @@ TEST(Mat, SaysWhatIsWrongWithAVariable) {
   EXPECT_THAT(error("lengths"), HasSubstr("variable u_V has 19 values, but t_s has 20"));
   EXPECT_THAT(error("text"), HasSubstr("variable t_s is of type text"));
   EXPECT_THAT(error("empty"), HasSubstr("variable u_V is 0 x 0"));
-  EXPECT_THAT(error("nan"), HasSubstr("variable y_mm(4) is NaN; allowed: finite numbers"));
-  EXPECT_THAT(error("no_unit"), HasSubstr("column t has no unit; allowed: t_s, t_ms"));
+  EXPECT_THAT(error("no_unit"), HasSubstr("variable t has no unit; it has: t, u_V, y_mm; probably: "
+                                          "--map 't=t[s],u=u_V,y=y_mm'"));
   EXPECT_THAT(error("two_structures"), HasSubstr("several structures with a time, a and b"));
   EXPECT_EQ(error("no_position"),
-            "lacks a position variable; allowed: y_m, y_mm; it has: t_s, u_V, pos");
+            "variable pos has no unit; it has: t_s, u_V, pos; probably: --map "
+            "'t=t_s,u=u_V,y=pos[mm]'");
+}
+
+TEST(Mat, TakesSamplesWithoutANumberForGaps) {
+  const Record record = read("nan");
+  EXPECT_EQ(record.size(), 19U);
+  EXPECT_THAT(record.gaps, testing::ElementsAre(3U));
+}
+
+TEST(Mat, ReadsWhatAMappingSays) {
+  ReadOptions options;
+  options.map = "t=t[s],y=y_mm";
+  expect_the_motion(read_record(kFolder + "no_unit.mat", options));
+  options.map = "t=a.t_s,u=a.u_V,y=b.y_mm";
+  expect_the_motion(read_record(kFolder + "two_structures.mat", options));
 }
 
 TEST(Mat, NamesTheOtherFormatsOfMatlabAndOctave) {

@@ -1,0 +1,375 @@
+#include "config/record/assembly.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "config/record/layout.h"
+#include "config/record/time_grid.h"
+#include "config/record/unit_text.h"
+#include "config/schema/error.h"
+
+namespace config::record {
+namespace {
+
+using schema::bad_data;
+using Values = std::vector<double>;
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+std::string in_words(double time_s) {
+  if (time_s >= 0.1) return fmt::format("{:.4g} s", time_s);
+  return time_s >= 1e-4 ? fmt::format("{:.4g} ms", 1e3 * time_s)
+                        : fmt::format("{:.4g} us", 1e6 * time_s);
+}
+
+class Assembly {
+ public:
+  Assembly(const Layout& layout, FileValues&& file, const ReadOptions& options)
+      : layout_(layout), file_(std::move(file)), options_(options) {
+    record_.name = file_.name;
+    record_.command_unit = layout.command_unit;
+    record_.position_unit = layout.position_unit;
+  }
+
+  Record record() {
+    for (const Channel& channel : layout_.channels) note_origin(channel);
+    if (own_times() && options_.resample.empty()) {
+      throw bad_data(file_.name, "--map: channels with times of their own share no rows",
+                     "--resample with them");
+    }
+    if (options_.resample.empty()) {
+      take_rows();
+      take_grid();
+    } else {
+      resample();
+    }
+    note_units();
+    return std::move(record_);
+  }
+
+ private:
+  [[nodiscard]] bool own_times() const {
+    return std::any_of(layout_.channels.begin(), layout_.channels.end(),
+                       [](const Channel& c) { return c.times != Channel::kSharedTimes; });
+  }
+
+  Values& raw(const Channel& channel) { return file_.values[channel.column]; }
+
+  void note_origin(const Channel& channel) {
+    Values& values = raw(channel);
+    std::size_t missing = 0;
+    for (double& value : values) {
+      if (std::isnan(value)) ++missing;
+      if (std::isinf(value)) {
+        throw bad_data(file_.place(static_cast<std::size_t>(&value - values.data())),
+                       file_.header(channel.column) + " is infinite", "finite numbers");
+      }
+    }
+    const std::string si = channel.name.substr(channel.name.rfind('_') + 1);
+    const double largest = largest_plausible(si);
+    for (const double& value : values) {
+      if (!(std::abs(value * channel.factor + channel.offset) > largest)) continue;
+      throw bad_data(file_.place(static_cast<std::size_t>(&value - values.data())),
+                     fmt::format("{} is {:.6g}", file_.header(channel.column), value),
+                     plausible_range(si));
+    }
+    if (channel.role != Role::further && missing == values.size()) {
+      throw bad_data(file_.name, file_.header(channel.column) + " holds no number");
+    }
+    // The times of other channels need their raw values: a column is scaled where it is taken.
+    record_.origins.push_back({channel.name, file_.header(channel.column), channel.column + 1,
+                               channel.unit_text, channel.factor, channel.offset, missing});
+  }
+
+  /// The channel's values in SI, taken out of the file.
+  Values take(const Channel& channel) {
+    Values values = std::move(raw(channel));
+    scale(channel, values);
+    return values;
+  }
+
+  static void scale(const Channel& channel, Values& values) {
+    for (double& value : values) value *= channel.factor;
+    if (channel.offset != 0.0) {
+      for (double& value : values) value += channel.offset;
+    }
+  }
+
+  void take_rows() {
+    const Channel* const time = layout_.of(Role::time);
+    for (const Channel& channel : layout_.channels) {
+      switch (channel.role) {
+        case Role::time:
+          record_.t_s = take(channel);
+          break;
+        case Role::command:
+          record_.u_V = take(channel);
+          break;
+        case Role::position:
+          record_.y_m = take(channel);
+          break;
+        case Role::further:
+          record_.further.emplace_back(channel.name, take(channel));
+          break;
+      }
+    }
+    if (layout_.of(Role::position) == nullptr) {
+      record_.has_position = false;
+      record_.y_m.assign(record_.u_V.size(), 0.0);
+    }
+    if (time == nullptr) {
+      record_.t_s.resize(record_.u_V.size());
+      for (std::size_t i = 0; i < record_.t_s.size(); ++i) {
+        record_.t_s[i] = static_cast<double>(i) * layout_.step_s;
+      }
+    }
+    const auto missing = [this](std::size_t i) {
+      return std::isnan(record_.t_s[i]) || std::isnan(record_.u_V[i]) || std::isnan(record_.y_m[i]);
+    };
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < record_.t_s.size(); ++i) count += missing(i) ? 1 : 0;
+    if (count == 0) return;
+    row_.reserve(record_.t_s.size() - count);
+    for (std::size_t i = 0; i < record_.t_s.size(); ++i) {
+      if (!missing(i)) row_.push_back(i);
+    }
+    const auto keep = [this](Values& values) {
+      for (std::size_t k = 0; k < row_.size(); ++k) values[k] = values[row_[k]];
+      values.resize(row_.size());
+    };
+    keep(record_.t_s);
+    keep(record_.u_V);
+    keep(record_.y_m);
+    for (auto& [name, values] : record_.further) keep(values);
+    record_.notes.push_back(
+        fmt::format("{} {} without a number in time, command or position {} left out", count,
+                    count == 1 ? "row" : "rows", count == 1 ? "is" : "are"));
+  }
+
+  [[nodiscard]] std::string place(std::size_t i) const {
+    return file_.place(row_.empty() || i >= row_.size() ? i : row_[i]);
+  }
+
+  void take_grid() {
+    const auto where = [this](std::size_t i) { return place(i); };
+    try {
+      TimeGrid grid = find_grid(record_.t_s, where);
+      record_.sample_time_s = grid.sample_time_s;
+      record_.gaps = std::move(grid.gaps);
+    } catch (const schema::DataError& uneven) {
+      std::optional<NominalGrid> grid = find_nominal_grid(record_.t_s);
+      if (!grid) {
+        const bool rate = std::string_view(uneven.what()).find("unevenly") != std::string::npos;
+        if (!rate) throw;
+        throw schema::DataError(std::string(uneven.what()) + "; or --resample, which interpolates");
+      }
+      record_.t_s = std::move(grid->t_s);
+      record_.sample_time_s = grid->grid.sample_time_s;
+      record_.gaps = std::move(grid->grid.gaps);
+      record_.notes.push_back(
+          fmt::format("the times miss an even grid by up to {}: the samples are put at {:.6g} Hz",
+                      in_words(grid->largest_error_s), 1.0 / record_.sample_time_s));
+    }
+  }
+
+  // --- interpolation to an even grid
+
+  struct Series {
+    Values t_s;
+    Values values;
+  };
+
+  void require_increasing(const Values& t_s) const {
+    for (std::size_t i = 1; i < t_s.size(); ++i) {
+      if (!(t_s[i] > t_s[i - 1])) throw bad_data(file_.place(i), "time does not increase");
+    }
+  }
+
+  void resample() {
+    const double rate_Hz = parse_resample(options_.resample);
+    const Channel* const time = layout_.of(Role::time);
+    const std::size_t rows = raw(*layout_.of(Role::command)).size();
+    Values shared;
+    if (time != nullptr) {
+      shared = raw(*time);
+      scale(*time, shared);
+    } else {
+      for (std::size_t i = 0; i < rows; ++i) {
+        shared.push_back(static_cast<double>(i) * layout_.step_s);
+      }
+    }
+    std::vector<std::pair<const Channel*, Series>> all;
+    double from_s = -std::numeric_limits<double>::infinity();
+    double to_s = std::numeric_limits<double>::infinity();
+    double period_s = std::numeric_limits<double>::infinity();
+    for (const Channel& channel : layout_.channels) {
+      if (channel.role == Role::time) continue;
+      Values t_s = shared;
+      if (channel.times != Channel::kSharedTimes) {
+        t_s = file_.values[channel.times];
+        // In the unit of the shared times: one clock writes them all.
+        for (double& t : t_s) t *= time != nullptr ? time->factor : 1.0;
+      }
+      Series series;
+      const Values& values = raw(channel);
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        if (std::isnan(values[i]) || std::isnan(t_s[i])) continue;
+        series.t_s.push_back(t_s[i]);
+        series.values.push_back(values[i] * channel.factor + channel.offset);
+      }
+      if (channel.role != Role::further) {
+        if (series.t_s.size() < 3) throw bad_data(file_.name, "has fewer than 3 samples");
+        require_increasing(series.t_s);
+        from_s = std::max(from_s, series.t_s.front());
+        to_s = std::min(to_s, series.t_s.back());
+        Values steps;
+        for (std::size_t i = 1; i < series.t_s.size(); ++i) {
+          steps.push_back(series.t_s[i] - series.t_s[i - 1]);
+        }
+        const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+        std::nth_element(steps.begin(), middle, steps.end());
+        period_s = std::min(period_s, *middle);
+      }
+      all.emplace_back(&channel, std::move(series));
+    }
+    if (rate_Hz > 0.0) period_s = 1.0 / rate_Hz;
+    const double span = (to_s - from_s) / period_s;
+    if (!(span >= 2.0)) throw bad_data(file_.name, "command and position share no time");
+    if (span > 1e9) throw bad_data(file_.name, "--resample: makes more than 1e9 samples");
+    const auto samples = static_cast<std::size_t>(std::floor(span * (1.0 + 1e-12))) + 1;
+    record_.sample_time_s = period_s;
+    for (std::size_t k = 0; k < samples; ++k) {
+      record_.t_s.push_back(from_s + static_cast<double>(k) * period_s);
+    }
+    std::vector<char> hole(samples, 0);
+    for (auto& [channel, series] : all) {
+      Values values = channel->role == Role::command
+                          ? held(series, hole, period_s)
+                          : interpolated(series, channel->role == Role::position, hole, period_s);
+      if (channel->role == Role::command) {
+        record_.u_V = std::move(values);
+      } else if (channel->role == Role::position) {
+        record_.y_m = std::move(values);
+      } else {
+        record_.further.emplace_back(channel->name, std::move(values));
+      }
+    }
+    if (layout_.of(Role::position) == nullptr) {
+      record_.has_position = false;
+      record_.y_m.assign(samples, 0.0);
+    }
+    leave_out(hole);
+    record_.notes.push_back(fmt::format(
+        "resampled to {:.6g} Hz: positions interpolated, the command held; the noise floor of "
+        "interpolated positions is too low",
+        1.0 / period_s));
+  }
+
+  /// A hole: no reading within this many periods, or four of the channel's own steps.
+  static double longest_hold_s(const Series& series, double period_s) {
+    Values steps;
+    for (std::size_t i = 1; i < series.t_s.size(); ++i) {
+      steps.push_back(series.t_s[i] - series.t_s[i - 1]);
+    }
+    if (steps.empty()) return 5.0 * period_s;
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    return 5.0 * std::max(period_s, *middle);
+  }
+
+  [[nodiscard]] Values held(const Series& series, std::vector<char>& hole, double period_s) const {
+    Values values;
+    const double longest_s = longest_hold_s(series, period_s);
+    std::size_t i = 0;
+    for (std::size_t k = 0; k < record_.t_s.size(); ++k) {
+      const double t_s = record_.t_s[k] + 1e-9 * period_s;
+      while (i + 1 < series.t_s.size() && series.t_s[i + 1] <= t_s) ++i;
+      const bool between = i + 1 < series.t_s.size();
+      if (between && series.t_s[i + 1] - series.t_s[i] > longest_s) hole[k] = 1;
+      values.push_back(series.values[i]);
+    }
+    return values;
+  }
+
+  [[nodiscard]] Values interpolated(const Series& series, bool main, std::vector<char>& hole,
+                                    double period_s) const {
+    Values values;
+    const double longest_s = longest_hold_s(series, period_s);
+    std::size_t i = 0;
+    for (std::size_t k = 0; k < record_.t_s.size(); ++k) {
+      const double t_s = record_.t_s[k];
+      if (series.t_s.empty()) {
+        values.push_back(kMissing);
+        continue;
+      }
+      while (i + 1 < series.t_s.size() && series.t_s[i + 1] <= t_s) ++i;
+      if (i + 1 >= series.t_s.size() || t_s <= series.t_s[i]) {
+        const bool at = std::abs(t_s - series.t_s[i]) < period_s;
+        values.push_back(at ? series.values[i] : kMissing);
+        continue;
+      }
+      const double step_s = series.t_s[i + 1] - series.t_s[i];
+      const double share = (t_s - series.t_s[i]) / step_s;
+      if (step_s > longest_s && main) hole[k] = 1;
+      values.push_back(step_s > longest_s && !main
+                           ? kMissing
+                           : (1.0 - share) * series.values[i] + share * series.values[i + 1]);
+    }
+    return values;
+  }
+
+  void leave_out(const std::vector<char>& hole) {
+    std::vector<std::size_t> kept;
+    bool gap = false;
+    for (std::size_t k = 0; k < hole.size(); ++k) {
+      if (hole[k] != 0) {
+        gap = true;
+        continue;
+      }
+      if (gap && !kept.empty()) record_.gaps.push_back(kept.size());
+      gap = false;
+      kept.push_back(k);
+    }
+    if (kept.size() == hole.size()) return;
+    const auto keep = [&kept](Values& values) {
+      for (std::size_t k = 0; k < kept.size(); ++k) values[k] = values[kept[k]];
+      values.resize(kept.size());
+    };
+    keep(record_.t_s);
+    keep(record_.u_V);
+    keep(record_.y_m);
+    for (auto& [name, values] : record_.further) keep(values);
+    if (record_.t_s.size() < 3) throw bad_data(file_.name, "has fewer than 3 samples");
+  }
+
+  void note_units() {
+    if (record_.command_unit != "V") {
+      record_.notes.push_back("the command is in " + unit_words(record_.command_unit) +
+                              ": every V of the results stands for 1 " +
+                              unit_words(record_.command_unit));
+    }
+    if (record_.position_unit != "m") {
+      record_.notes.push_back("the position is in " + unit_words(record_.position_unit) +
+                              ": every m of the results stands for 1 " +
+                              unit_words(record_.position_unit));
+    }
+  }
+
+  const Layout& layout_;
+  FileValues file_;
+  const ReadOptions& options_;
+  Record record_;
+  std::vector<std::size_t> row_;  ///< the file's row behind each sample; empty: the same
+};
+
+}  // namespace
+
+Record assemble(const Layout& layout, FileValues&& file, const ReadOptions& options) {
+  return Assembly(layout, std::move(file), options).record();
+}
+
+}  // namespace config::record

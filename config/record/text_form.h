@@ -1,0 +1,50 @@
+// The form of a text file with columns of numbers: what separates columns and decimals, where the
+// numbers begin, and which lines above them name columns and units.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace config::record {
+
+/// One way in which a text may separate its columns and decimals.
+struct TextDialect {
+  char separator = ',';  ///< ' ': any number of blanks and tabs
+  char decimal = '.';    ///< '.' or ','
+};
+
+enum class FieldKind { number, missing, clock, text };
+
+struct TextForm {
+  TextDialect dialect;
+  std::size_t header_line = 0;            ///< from 1; 0: no line names the columns
+  std::size_t unit_line = 0;              ///< from 1; 0: none
+  std::vector<std::string> names;         ///< as many as there are columns; empty without a header
+  std::vector<std::string> units;         ///< likewise; empty without a line of units
+  std::vector<FieldKind> kinds;           ///< of the columns
+  std::vector<std::vector<double>> head;  ///< first values of each column, clocks in s
+  std::size_t data_offset = 0;            ///< byte at which the first row begins
+  std::size_t data_line = 0;              ///< its line, from 1
+  double step_s = 0.0;                    ///< sampling period in the lines above; 0: none
+};
+
+/// Throws schema::DataError for text without columns of numbers, or of which more than one reading
+/// is possible. `text` has no byte order mark.
+[[nodiscard]] TextForm find_form(std::string_view text, const std::string& name);
+
+/// Fields of a line without its end, quotes and blanks around removed.
+[[nodiscard]] std::vector<std::string> split_fields(std::string_view line, char separator);
+
+/// The number in `field`, without blanks around. False: none.
+[[nodiscard]] bool parse_number(std::string_view field, char decimal, double& value);
+
+/// Empty, NaN, NA, #N/A, ...
+[[nodiscard]] bool is_missing(std::string_view field);
+
+/// Date and time, or time of day, in s since a fixed day; `field` without blanks around. False:
+/// none.
+[[nodiscard]] bool parse_clock(std::string_view field, double& time_s);
+
+}  // namespace config::record

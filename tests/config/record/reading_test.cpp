@@ -1,0 +1,192 @@
+// How headers, units, mappings and times of foreign files are understood. Whole files of many
+// programs' styles are in tests/records/styles.
+#include "config/record/reading.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "config/record/column_roles.h"
+#include "config/record/outliers.h"
+#include "config/record/record.h"
+#include "config/record/text_form.h"
+#include "config/record/time_grid.h"
+#include "config/record/unit_text.h"
+#include "config/schema/error.h"
+#include "tests/config/record/temporary_file.h"
+
+namespace config::record {
+namespace {
+
+using record_test::TemporaryFile;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+TEST(UnitText, DistinguishesPrefixesByCaseAndWordsByNone) {
+  EXPECT_EQ(parse_unit("[mm]").factor, 1e-3);
+  EXPECT_EQ(parse_unit("(N m)").si, "Nm");
+  EXPECT_EQ(parse_unit("MPa").factor, 1e6);
+  EXPECT_FALSE(parse_unit("mpa").known());  // milli or mega
+  EXPECT_FALSE(parse_unit("counts").known());
+  EXPECT_EQ(parse_unit("SEC").si, "s");
+  EXPECT_NEAR(parse_unit("1/min").factor, 2.0 * std::acos(-1.0) / 60.0, 1e-15);
+  EXPECT_NEAR(parse_unit("l/min").factor, 1e-3 / 60.0, 1e-20);
+  EXPECT_EQ(parse_unit("\xCE\xBCm").factor, 1e-6);  // the Greek letter
+}
+
+TEST(UnitText, FindsTheUnitInAHeader) {
+  const auto parts = [](const char* header) {
+    const HeaderText text = parse_header(header);
+    return text.name + "|" + text.unit.si;
+  };
+  EXPECT_EQ(parts("Position [mm]"), "Position|m");
+  EXPECT_EQ(parts("Position / mm"), "Position|m");
+  EXPECT_EQ(parts("Speed m/s"), "Speed|mps");
+  EXPECT_EQ(parts("v/m/s"), "v|mps");
+  EXPECT_EQ(parts("Position, mm"), "Position|m");
+  EXPECT_EQ(parts("Time_s_"), "Time|s");
+  EXPECT_EQ(parts("Position (rod) [mm]"), "Position (rod)|m");
+  EXPECT_EQ(parts("Position (rod)"), "Position (rod)|");
+  EXPECT_EQ(parts("Channel A"), "Channel A|");
+  EXPECT_EQ(parts("pressure_in"), "pressure_in|");  // no inches
+  EXPECT_EQ(parts("y_in"), "y|m");
+  EXPECT_EQ(parts("y_min"), "y_min|");  // no minutes
+  EXPECT_EQ(parts("Position [counts]"), "Position|");
+}
+
+TEST(Numbers, AreReadByTheirDecimalSignOrNotAtAll) {
+  double value = 0.0;
+  EXPECT_TRUE(parse_number("1.234,5", ',', value));
+  EXPECT_EQ(value, 1234.5);
+  EXPECT_FALSE(parse_number("1.234", ',', value));  // 1234 or 1.234
+  EXPECT_FALSE(parse_number("12.34,5", ',', value));
+  EXPECT_FALSE(parse_number("1,", ',', value));
+  EXPECT_FALSE(parse_number("1,5", '.', value));
+  EXPECT_TRUE(parse_number("+1.5e-3", '.', value));
+  EXPECT_EQ(value, 1.5e-3);
+}
+
+TEST(Clock, CountsSecondsOfDatesAndTimes) {
+  double a = 0.0;
+  double b = 0.0;
+  EXPECT_TRUE(parse_clock("2024-02-28T23:59:59.5", a));
+  EXPECT_TRUE(parse_clock("01.03.2024 00:00:00,25", b));
+  EXPECT_NEAR(b - a, 86400.0 + 0.75, 1e-6);  // 2024 has a 29th of February
+  EXPECT_TRUE(parse_clock("1:02:03.5 PM", a));
+  EXPECT_NEAR(a, 13 * 3600 + 2 * 60 + 3.5, 1e-9);
+  EXPECT_FALSE(parse_clock("2024-13-01 00:00:00", a));
+  EXPECT_FALSE(parse_clock("12.5", a));
+}
+
+TEST(Mapping, SplitsAtCommasBeforeTheNextKeyAlone) {
+  const auto pairs = parse_map("t=Time, s,u=\"Valve, u=A [V]\",y=Position [mm]");
+  ASSERT_EQ(pairs.size(), 3U);
+  EXPECT_EQ(pairs[0].column, "Time, s");
+  EXPECT_EQ(pairs[1].column, "Valve, u=A [V]");
+  EXPECT_EQ(pairs[2].column, "Position [mm]");
+  EXPECT_THROW((void)parse_map("/nowhere/at/all"), schema::UsageError);
+  EXPECT_THROW((void)parse_map("t=1,t=2"), schema::UsageError);
+  EXPECT_THROW((void)parse_resample("fast"), schema::UsageError);
+  EXPECT_EQ(parse_resample("250Hz"), 250.0);
+}
+
+Record read(const std::string& text, const std::string& map = "",
+            const std::string& resample = "") {
+  ReadOptions options;
+  options.map = map;
+  options.resample = resample;
+  return read_record(TemporaryFile(text).path(), options);
+}
+
+TEST(Mapping, ScalesTurnsAndShifts) {
+  const Record record = read("a;b;c\n0;1;10\n1;2;20\n2;3;30\n", "t=a[ms],u=-b*2[V],y=c*0.5-1[mm]");
+  EXPECT_THAT(record.t_s, ElementsAre(0.0, 1e-3, 2e-3));
+  EXPECT_THAT(record.u_V, ElementsAre(-2.0, -4.0, -6.0));
+  EXPECT_THAT(record.y_m, testing::Pointwise(testing::DoubleEq(), {4e-3, 9e-3, 14e-3}));
+}
+
+std::string error_of(const std::string& text, const std::string& map = "") {
+  try {
+    (void)read(text, map);
+  } catch (const schema::Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Mapping, NamesTheNearestColumnAndWhatTheFileHas) {
+  const std::string text = "Time [s],Cmd [V],Pos [mm]\n0,1,2\n1,1,2\n2,1,2\n";
+  EXPECT_THAT(error_of(text, "y=Poss"), HasSubstr("there is no column Poss, did you mean Pos"));
+  EXPECT_THAT(error_of(text, "y=Pos[furlong]"), HasSubstr("the unit furlong is not known"));
+  EXPECT_THAT(error_of(text, "u=Pos[V],y=Pos"), HasSubstr("--map names column Pos [mm] twice"));
+  EXPECT_THAT(error_of(text, "t=Pos"), HasSubstr("column Pos [mm] has a contradictory unit"));
+}
+
+TEST(Roles, SayEverythingThatIsWrongInOneLineWithTheMappingToType) {
+  const std::string error = error_of("time,voltage,pos\n0,1,305\n0.005,1,306\n0.01,1,307\n");
+  EXPECT_THAT(error, HasSubstr("column time has no unit; column voltage has no unit; column pos "
+                               "has no unit; it has: 1 time, 2 voltage, 3 pos; probably: --map "
+                               "'t=time[s],u=voltage[V],y=pos[mm]'"));
+}
+
+TEST(Roles, TakeNoReferenceForAPositionAndNoPositionForACommand) {
+  const Record record =
+      read("Time [s],Position command [mm],Command [V],Position [mm]\n0,1,2,3\n1,1,2,3\n2,1,2,3\n");
+  EXPECT_EQ(record.y_m[0], 3e-3);
+  EXPECT_EQ(record.u_V[0], 2.0);
+  EXPECT_THAT(error_of("Time [s],Setpoint [mm],Command [V]\n0,1,2\n1,1,2\n2,1,2\n"),
+              HasSubstr("lacks a position column"));
+}
+
+TEST(TimeGrid, OfRoundedTimesIsTheNominalOne) {
+  std::vector<double> t_s;
+  for (int k = 0; k < 1000; ++k) t_s.push_back(std::round(1000.0 * k / 300.0) / 1000.0);
+  const auto grid = find_nominal_grid(t_s);
+  ASSERT_TRUE(grid);
+  EXPECT_NEAR(1.0 / grid->grid.sample_time_s, 300.0, 0.01);
+  EXPECT_TRUE(grid->grid.gaps.empty());
+  EXPECT_LT(grid->largest_error_s, 0.6e-3);
+}
+
+TEST(TimeGrid, OfJitteringTimesKeepsTheirGaps) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> jitter(0.0, 0.0005);
+  std::vector<double> t_s;
+  for (int k = 0; k < 1000; ++k) {
+    if (k < 400 || k >= 437) t_s.push_back(k * 0.005 + jitter(random));
+  }
+  const auto grid = find_nominal_grid(t_s);
+  ASSERT_TRUE(grid);
+  EXPECT_NEAR(grid->grid.sample_time_s, 0.005, 1e-6);
+  EXPECT_THAT(grid->grid.gaps, ElementsAre(400U));
+  EXPECT_NEAR(grid->t_s[400] - grid->t_s[399], 38 * 0.005, 1e-5);
+}
+
+TEST(TimeGrid, IsNoneForTimesThatDriftOrAreLostInAPattern) {
+  std::vector<double> swept;
+  std::vector<double> lost;
+  for (int k = 0; k < 600; ++k) {
+    swept.push_back(0.005 * k + 1e-5 * k * k);
+    if (k % 3 != 2) lost.push_back(0.005 * k);
+  }
+  EXPECT_FALSE(find_nominal_grid(swept));
+  EXPECT_FALSE(find_nominal_grid(lost));
+}
+
+TEST(Outliers, AreSingleReadingsFarOffAndNoStepsOrNoise) {
+  std::vector<double> values;
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0.0, 1e-5);
+  for (int k = 0; k < 2000; ++k) {
+    values.push_back((k / 500 % 2 == 0 ? 0.2 : 0.3) + 0.01 * std::sin(0.01 * k) + noise(random));
+  }
+  EXPECT_TRUE(find_outliers(values, {}).empty());
+  values[123] = 9.99;
+  values[1500] = 0.0;
+  EXPECT_THAT(find_outliers(values, {}), ElementsAre(123U, 1500U));
+}
+
+}  // namespace
+}  // namespace config::record
