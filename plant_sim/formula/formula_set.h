@@ -135,8 +135,7 @@ class FormulaSet {
     /// True when the values equal those of the last prepare(), bit for bit.
     [[nodiscard]] bool unchanged() const {
       return std::memcmp(static_cast<const void*>(values.data()),
-                         static_cast<const void*>(prepared.data()),
-                         values.size() * sizeof(S)) == 0;
+                         static_cast<const void*>(prepared.data()), values.size() * sizeof(S)) == 0;
     }
 
     /// The formula's value within the guard; `none` where it is not finite.
