@@ -291,10 +291,11 @@ std::unique_ptr<io::ControlSocket> Session::open_socket() const {
   return std::make_unique<io::ControlSocket>(config_.control, config_.file);
 }
 
-/// Claims the folders of the daemon first.
+/// Claims the folders of the daemon first. In virtual time no alarm is stored: a run beside the
+/// service of the stand is not refused.
 std::unique_ptr<io::Recorder> Session::open_recorder() {
   folders_.claim(config_.recorder.folder, config_.file + ": [recorder] folder");
-  folders_.claim(config_.alarms.folder, config_.file + ": [alarms] folder");
+  if (!virtual_time_) folders_.claim(config_.alarms.folder, config_.file + ": [alarms] folder");
   folders_.claim(config_.evidence.folder, config_.file + ": [evidence] folder");
   if (config_.recorder.folder.empty()) return nullptr;
   return std::make_unique<io::Recorder>(config_.recorder, run_id_, !virtual_time_);

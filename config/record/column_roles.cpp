@@ -464,6 +464,7 @@ class Understanding {
     guess_[index_of(role)] = best;
     if (rivals.size() > 1) {
       std::vector<std::string> names;
+      names.reserve(rivals.size());
       for (const std::size_t i : rivals) names.push_back(columns_[i].header);
       problems_.push_back(std::string("the ") + kRoleWords[index_of(role)] + " may be " +
                           schema::listed(names, "or"));
@@ -538,7 +539,7 @@ class Understanding {
             has_word(column.words, kReferenceWords) && (si == "m" || si == "rad");
         const std::string stem =
             reference && !names.contains("reference_" + si) ? "reference" : slug(column.text.name);
-        channel.name = si == "1" ? stem : stem + "_" + si;
+        channel.name = si == "1" ? stem : fmt::format("{}_{}", stem, si);
         channel.factor = column.text.unit.factor;
       } else {
         const bool named = !head_.columns[i].header.empty();

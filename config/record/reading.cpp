@@ -1,5 +1,7 @@
 #include "config/record/reading.h"
 
+#include <fmt/format.h>
+
 #include <cctype>
 #include <charconv>
 #include <fstream>
@@ -64,7 +66,7 @@ void append_pairs(std::string_view line, const std::string& where, std::vector<M
     }
     const std::string key = trimmed(line.substr(0, length - 1));
     const std::string column = unquoted(trimmed(line.substr(length, end - length)));
-    if (column.empty()) throw UsageError(where + ": " + key + " has no column");
+    if (column.empty()) throw UsageError(fmt::format("{}: {} has no column", where, key));
     pairs.push_back({key, column});
     line = end < line.size() ? line.substr(end + 1) : std::string_view{};
   }

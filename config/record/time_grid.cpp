@@ -81,7 +81,7 @@ double tick_of(const std::vector<double>& t_s, double mean_step_s) {
     if (step_s > 0.01 * mean_step_s && (least_s == 0.0 || step_s < least_s)) least_s = step_s;
   }
   // The tick itself need not occur as a step: steps of 3 and 4 ms are ticks of 1 ms.
-  for (double parts = 1.0; parts <= 64.0; parts += 1.0) {
+  for (int parts = 1; parts <= 64; ++parts) {
     const double tick_s = least_s / parts;
     bool whole = tick_s > 0.0;
     for (std::size_t i = 1; whole && i < t_s.size(); ++i) {

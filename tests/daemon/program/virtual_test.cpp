@@ -193,6 +193,7 @@ TEST(VirtualDaemon, CountsSpareRodsAndInputsAsDevices) {
       run_with_trouble({},
                        "[[spare_rod]]\nid = \"second\"\nbackend = \"sim\"\nchannel = \"second\"\n"
                        "[[sim.rod]]\nid = \"second\"\n");
+  ASSERT_FALSE(log.healths.empty());
   const auto& health = log.healths.back();
   EXPECT_EQ(health.device,
             (std::vector<std::string>{"rod.sim", "valve.sim", "spare_rod.second", "input.e_stop"}));
