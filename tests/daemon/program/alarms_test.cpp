@@ -152,10 +152,12 @@ TEST_F(Alarms, OfADamagedFileBeginAnewWithOneLine) {
 }
 
 TEST_F(Alarms, ThatCannotBeSavedAreAnAlarmThemselves) {
-  std::ofstream(folder_.path() / "alarms") << "a file where the folder should be";
   start();
-  EXPECT_TRUE(shows("MINOR    alarms.not_saved")) << order("alarms").out;
+  ASSERT_TRUE(shows("sample.standing"));
+  fs::rename(folder_.path() / "alarms", folder_.path() / "elsewhere");
+  std::ofstream(folder_.path() / "alarms") << "a file where the folder should be";
   EXPECT_EQ(order("ack standing").exit_code, 0) << "people can act all the same";
+  EXPECT_TRUE(shows("MINOR    alarms.not_saved")) << order("alarms").out;
   EXPECT_TRUE(shows("MINOR    alarms.audit_lost")) << order("alarms").out;
   EXPECT_EQ(end().exit_code, 0);
 }
