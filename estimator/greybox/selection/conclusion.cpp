@@ -1,0 +1,220 @@
+#include "estimator/greybox/selection/conclusion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "config/schema/joined.h"
+#include "estimator/greybox/representative_segments.h"
+#include "estimator/greybox/selection/final_parameters.h"
+#include "estimator/greybox/selection/indistinguishable_models.h"
+#include "estimator/greybox/selection/long_records.h"
+#include "estimator/parallel.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+/// A disturbance that would cause this many times the error that there is has not been understood,
+/// where a curve gains this much beside it. Friction and play let less of it through than their
+/// linearised models.
+constexpr double kIncredible = 1.5;
+constexpr double kSuspicious_nats = 15.0;
+/// Share of the motion from which on the error is no disturbance's: the model does not follow.
+constexpr double kLost = 0.5;
+constexpr double kAsClear = 0.9;  ///< ratio of the remainder's explained share to that of the whole
+
+void list_steps(Diagnosis& result) {
+  std::size_t known = 0;
+  for (const ModelStage& stage : result.search.path) {
+    const std::vector<std::string> added(
+        stage.added.begin() + static_cast<std::ptrdiff_t>(std::min(known, stage.added.size())),
+        stage.added.end());
+    known = stage.added.size();
+    result.steps.push_back({config::schema::joined(added, " + "), stage.fitted.validation_rms_m});
+  }
+}
+
+/// Held-out error of a simulation, its parameters fitted to such.
+double least_rms_m(const SearchContext& context, const FitSummary& fitted, double observer_per_s) {
+  constexpr int kIterations = 15;
+  constexpr double kTolerance = 1e-3;
+  FitOptions options;
+  options.max_iterations = kIterations;
+  options.tolerance = kTolerance;
+  options.final_jacobian = false;
+  options.observer_per_s = observer_per_s;
+  options.cancel = context.options.cancel;
+  return fit(context.problem.model, context.problem.data, context.problem.data.training_mask,
+             fitted.parameters, fitted.theta, options)
+      .validation_rms_m;
+}
+
+/// The observer hides much of a constant or slow effect.
+void list_free_runs(const SearchContext& context, Diagnosis& result) {
+  in_parallel(result.steps.size(), context.options.threads, [&](std::size_t i) {
+    result.steps[i].free_run_rms_m = least_rms_m(context, result.search.path[i].fitted, 0.0);
+  });
+}
+
+/// Localises the unexplained residual. The model as given shows more clearly what effects taken in
+/// place of the right one have absorbed. A bundle of effects is such a stand-in.
+void localise_remainder(const SearchContext& context, const ModelStage& first,
+                        const ModelStage& final, Diagnosis& result) {
+  result.whole = localise(context, first);
+  result.where = result.whole;
+  if (final.added.empty()) return;
+  result.where_is_whole = true;
+  if (final.added.size() >= kStandIn) return;
+  std::vector<Localisation> left = localise(context, final);
+  const auto share = [](const std::vector<Localisation>& where) {
+    return where.empty() ? 0.0 : where.front().explained_ratio;
+  };
+  if (!(share(left) >= kAsClear * share(result.whole))) return;
+  result.where = std::move(left);
+  result.where_is_whole = false;
+}
+
+/// Groups that a motion could separate make the verdict undetermined; other groups are equivalent.
+void classify_indistinguishable(const SearchContext& context, const ModelStage& found,
+                                Diagnosis& result) {
+  for (const IndistinguishableModels& models :
+       find_indistinguishable(context, result.search.rounds, found)) {
+    std::vector<std::string> group{models.found};
+    group.insert(group.end(), models.others.begin(), models.others.end());
+    const Separable& separable = context.options.separable;
+    const bool separates =
+        context.cancelled() || (separable && separable(context, models.explanations, group));
+    (separates ? result.ambiguous : result.same_here).push_back(std::move(group));
+  }
+}
+
+/// RMS of the position about its mean.
+double motion_rms_m(const FitDataset& data) {
+  double square_m2 = 0.0;
+  std::size_t samples = 0;
+  for (const Dataset& record : data.records) {
+    const Eigen::Map<const Eigen::ArrayXd> y_m(record.y_m.data(),
+                                               static_cast<Eigen::Index>(record.size()));
+    square_m2 += (y_m - y_m.mean()).square().sum();
+    samples += record.size();
+  }
+  return std::sqrt(square_m2 / static_cast<double>(samples));
+}
+
+void take_errors(Diagnosis& result) {
+  result.nominal_rms_m = result.search.nominal_rms_m;
+  list_steps(result);
+  result.rms_before_m = result.steps.front().validation_rms_m;
+  result.rms_after_m = result.search.final.fitted.validation_rms_m;
+  result.missing = result.search.final.added;
+}
+
+}  // namespace
+
+void conclude(const SearchContext& context, const SearchContext& search, Diagnosis& result) {
+  const ModelStage found = result.search.final;
+  if (uses_segments(search, context)) {
+    refit_to_whole(context, result.search);
+    result.searched_s = length_s(search.problem.data);
+  }
+  take_errors(result);
+  const ModelStage& final = result.search.final;
+  result.repetition =
+      repeated_motion((result.searched_s ? context : search).problem.data, final.fitted.residual_m);
+  fit_final_parameters(context, result);
+  if (final.fitted.validation_rms_m > kUnexplained * result.noise_floor_m) {
+    result.verdict = Verdict::unexplained;
+    list_free_runs(search, result);
+    const bool begun = !result.search.rounds.empty();
+    localise_remainder(search, begun ? result.search.rounds.front().before : found, found, result);
+    classify_indistinguishable(search, found, result);
+  } else {
+    classify_indistinguishable(search, found, result);
+    result.verdict = final.added.empty()        ? Verdict::nothing_missing
+                     : result.ambiguous.empty() ? Verdict::missing
+                                                : Verdict::undetermined;
+  }
+}
+
+namespace {
+
+ParameterStep load_step(const InnovationSearch& innovations) {
+  const bool force = innovations.final.linear.front().force;
+  const std::string name = force ? "load_force.force_N" : "speed_mps";
+  const double held = innovations.final.model.fitted.value(name);
+  const double from = std::isfinite(held) ? held : 0.0;
+  return {name, innovations.jump.time_s, from, from + innovations.jump.size};
+}
+
+/// A load that sets in is all there is where no curve is left; seen from outside it may look like
+/// anything that goes with time.
+void locate_load(const InnovationSearch& innovations, std::vector<Localisation>& where) {
+  std::erase_if(where, [](const Localisation& one) { return one.variable != "time"; });
+  const std::string site = innovations.final.linear.front().force ? "force" : "flow";
+  for (Localisation& one : where) one.site = site;
+}
+
+}  // namespace
+
+void conclude(const SearchContext& context, const SearchContext& search, const ModelStage& first,
+              const InnovationSearch& innovations, Diagnosis& result) {
+  result.by_innovations = true;
+  if (uses_segments(search, context)) result.searched_s = length_s(search.problem.data);
+  const double nominal_m = result.search.nominal_rms_m;
+  const double preview_s = result.search.preview_s;
+  std::vector<RefusedModel> refused = std::move(result.search.refused);
+  result.search = structure_search_of(search, first, innovations);
+  std::erase_if(refused, [&](const RefusedModel& model) {
+    return model.effects == result.search.final.added ||
+           model.validation_rms_m >
+               (1.0 - kWorthTelling) * result.search.final.fitted.validation_rms_m;
+  });
+  result.search.refused = std::move(refused);
+  result.search.nominal_rms_m = nominal_m;
+  result.search.preview_s = preview_s;
+  result.search.interrupted = search.cancelled();
+  take_errors(result);
+  result.repetition = repeated_motion(search.problem.data, result.search.final.fitted.residual_m);
+  // missing physics passes for a disturbance as long as it is not in the model
+  if (!context.cancelled()) result.disturbance = disturbance_of(search, innovations);
+  const bool incredible = result.disturbed_floor_m() > kIncredible * result.rms_after_m &&
+                          innovations.curve_nats > kSuspicious_nats + innovations.inexact_nats;
+  const bool lost = result.rms_after_m > kLost * motion_rms_m(search.problem.data);
+  const bool physics = innovations.physics_missing() || incredible || lost;
+  if (result.floor_assumed) result.noise_floor_m = innovations.final.noise.noise.sensor_m;
+  result.curve_nats = innovations.curve_nats;
+  result.innovations = static_cast<double>(innovations.final.model.fitted.residual_m.size());
+  result.gains_nats = innovations.gains_nats;
+  if (physics) {
+    // the noise model passes for what is missing: it must not weigh what the values have to explain
+    result.disturbance.reset();
+    list_free_runs(search, result);
+    for (std::size_t i = 0; i < innovations.without.size(); ++i) {
+      result.without_rms_m[result.missing[i]] =
+          least_rms_m(search, innovations.without[i].model.fitted, kObserver_per_s);
+    }
+    fit_final_parameters(search, result);
+  } else {
+    take_parameters(innovations.final, result);
+  }
+  for (const InnovationRivals& rivals : find_rivals(search, innovations)) {
+    const Separable& separable = search.options.separable;
+    const bool separates =
+        search.cancelled() || (separable && separable(search, rivals.explanations, rivals.names));
+    (separates ? result.ambiguous : result.same_here).push_back(rivals.names);
+  }
+  // effects taken for want of the right one hide it: the model as given shows it more clearly
+  if (physics) {
+    result.where = result.whole = localise(search, first);
+    result.where_is_whole = true;
+  }
+  if (innovations.load_sets_in()) {
+    result.changing = {load_step(innovations)};
+    locate_load(innovations, result.where);
+  }
+  result.verdict = result.search.interrupted || physics ? Verdict::unexplained
+                   : result.missing.empty()             ? Verdict::nothing_missing
+                   : result.ambiguous.empty()           ? Verdict::missing
+                                                        : Verdict::undetermined;
+}
+
+}  // namespace estimator::greybox::selection

@@ -1,0 +1,17 @@
+// The verdict of a search, and what a report needs beside it.
+#pragma once
+
+#include "estimator/greybox/selection/diagnosis.h"
+#include "estimator/greybox/selection/innovation_search.h"
+
+namespace estimator::greybox::selection {
+
+/// A verdict by the held-out errors of simulations on `result.search`. `search`: the context that
+/// was searched, which for long records holds segments of `context`.
+void conclude(const SearchContext& context, const SearchContext& search, Diagnosis& result);
+
+/// A verdict by the likelihood of innovations. `first`: the model as given, its parameters fitted.
+void conclude(const SearchContext& context, const SearchContext& search, const ModelStage& first,
+              const InnovationSearch& innovations, Diagnosis& result);
+
+}  // namespace estimator::greybox::selection

@@ -1,0 +1,97 @@
+#include "estimator/greybox/selection/learned_laws.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "estimator/greybox/selection/conclusion.h"
+#include "estimator/greybox/selection/law_search.h"
+#include "estimator/greybox/selection/parameter_subset.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+/// Size of a law over its standard error, from which on it is learned.
+constexpr double kClearOfError = 3.0;
+
+/// What was known before any conclusion was drawn.
+Diagnosis begun(const Diagnosis& result) {
+  Diagnosis begun;
+  begun.noise_floor_m = result.noise_floor_m;
+  begun.floor_assumed = result.floor_assumed;
+  begun.excitation = result.excitation;
+  begun.command_lead_samples = result.command_lead_samples;
+  begun.checks = result.checks;
+  begun.search.nominal_rms_m = result.search.nominal_rms_m;
+  begun.search.preview_s = result.search.preview_s;
+  return begun;
+}
+
+/// How a law enters, in the words of a Localisation.
+std::string class_of(const Law& law) {
+  if (law.effect.site == "force") return "force";
+  if (law.effect.site == "sensor") return "measurement";
+  return law.effect.site == "leakage" || law.effect.site == "flow" ? "flow" : "gain";
+}
+
+/// Concludes with laws where each is clear of its error and they leave clearly less than `before`.
+bool take_laws(const SearchContext& context, const ModelStage& first, const LawSearch& found,
+               const Diagnosis& before, Diagnosis& result) {
+  Diagnosis learned = begun(before);
+  conclude(found.context, found.context, first, found.innovations, learned);
+  const auto is_size = [&](const ParameterValue& p) {
+    return std::any_of(found.laws.begin(), found.laws.end(), [&](const Law& law) {
+      return p.name == law.effect.name + "." + law.effect.parameters.front().name;
+    });
+  };
+  for (const ParameterValue& p : learned.parameters) {
+    if (!is_size(p)) continue;
+    if (p.at_bound || !(std::abs(p.value) > kClearOfError * p.std_error)) return false;
+  }
+  if (learned.verdict == Verdict::unexplained) return false;
+  learned.verdict = Verdict::learned;
+  learned.laws = found.laws;
+  std::vector<Localisation> where;
+  const double explained = 1.0 - std::pow(learned.rms_after_m / learned.rms_before_m, 2);
+  for (const Law& law : found.laws)
+    where.push_back({class_of(law), law.variables.front(), explained});
+  for (const Localisation& other : before.whole) {
+    const bool known = std::any_of(where.begin(), where.end(), [&](const Localisation& one) {
+      return one.site == other.site && one.variable == other.variable;
+    });
+    if (!known) where.push_back(other);
+  }
+  learned.where = std::move(where);
+  learned.where_is_whole = true;
+  plant_sim::ModelFile model = context.problem.model;
+  for (const Law& law : found.laws) model.declare(law.effect, "dictionary of laws");
+  learned.better = with_values(model, learned.final);
+  result = std::move(learned);
+  return true;
+}
+
+}  // namespace
+
+void learn_laws(const SearchContext& context, const ModelStage& first, Diagnosis& result) {
+  const std::optional<LawSearch> found = search_laws(context, first, "");
+  if (!found) return;
+  Diagnosis learned;
+  if (take_laws(context, first, *found, result, learned) &&
+      learned.rms_after_m < (1.0 - kRivals) * result.rms_after_m) {
+    result = std::move(learned);
+  }
+}
+
+bool prefer_law(const SearchContext& context, const ModelStage& first,
+                const InnovationSearch& innovations, Diagnosis& result) {
+  const InnovationStage& named = innovations.final;
+  if (named.model.added.size() != 1 || innovations.physics_missing()) return false;
+  const plant_sim::EffectInfo* effect = plant_sim::find_effect(named.model.added.front());
+  if (effect == nullptr || effect->sites.size() != 1) return false;
+  const std::optional<LawSearch> found = search_laws(context, first, effect->sites.front());
+  return found && found->laws.size() == 1 &&
+         penalised(found->innovations.final) < penalised(named) - 2.0 * kEvidence_nats &&
+         take_laws(context, first, *found, result, result);
+}
+
+}  // namespace estimator::greybox::selection

@@ -1,0 +1,18 @@
+// Diagnoses by laws of the dictionary in the place of effects.
+#pragma once
+
+#include "estimator/greybox/selection/diagnosis.h"
+#include "estimator/greybox/selection/innovation_search.h"
+
+namespace estimator::greybox::selection {
+
+/// Takes laws where no effect explains the record and they leave clearly less.
+void learn_laws(const SearchContext& context, const ModelStage& first, Diagnosis& result);
+
+/// Takes a law at the site of the one effect found where it is clearly likelier than the effect:
+/// under a disturbance the nearest effect passes for a law that the library does not have. False:
+/// `result` is as before.
+[[nodiscard]] bool prefer_law(const SearchContext& context, const ModelStage& first,
+                              const InnovationSearch& innovations, Diagnosis& result);
+
+}  // namespace estimator::greybox::selection
