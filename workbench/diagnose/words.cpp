@@ -58,6 +58,12 @@ std::string undetermined_words(const selection::Diagnosis& d) {
          (sure.empty() ? "" : " Missing in any case: " + effects_words(d, sure) + ".");
 }
 
+std::string missing_words(const selection::Diagnosis& d) {
+  const std::vector<std::string> established = d.established();
+  if (established.empty()) return "Perhaps missing: " + effects_words(d, d.missing) + ".";
+  return "Missing: " + effects_words(d, established) + ".";
+}
+
 std::string unexplained_words(const selection::Diagnosis& d) {
   const std::string rest = "an error of " + beside_floor(d, d.rms_after_m) + ", remains";
   if (d.search.interrupted) {
@@ -270,7 +276,7 @@ std::string verdict_words(const selection::Diagnosis& d) {
       return "Nothing is missing: the model, its own parameters adjusted, is left with " +
              beside_floor(d, d.rms_after_m) + ", and no effect of the library lowers it further.";
     case selection::Verdict::missing:
-      return "Missing: " + effects_words(d, d.missing) + ".";
+      return missing_words(d);
     case selection::Verdict::undetermined:
       return undetermined_words(d);
     case selection::Verdict::learned:

@@ -92,14 +92,19 @@ bool is_matched_elsewhere(const Diagnosis& diagnosis, const std::string& effect)
   return 1.0 - curve.explained_ratio < left_ratio;
 }
 
-/// The effect's size, its first parameter, and its rivals.
-std::optional<Doubt> doubt_of(const Diagnosis& diagnosis, const std::string& effect) {
+/// Doubt by the effect's size, its first parameter.
+std::optional<Doubt> doubt_of_size(const Diagnosis& diagnosis, const std::string& effect) {
   const auto size =
       std::find_if(diagnosis.parameters.begin(), diagnosis.parameters.end(),
                    [&](const ParameterValue& p) { return p.name.rfind(effect + ".", 0) == 0; });
   if (size == diagnosis.parameters.end()) return {};
   if (size->at_bound) return Doubt::at_bound;
   if (!(std::abs(size->value) > kStandardErrors * size->std_error)) return Doubt::within_error;
+  return {};
+}
+
+/// Doubt by the error that remains: the effect's rivals, and how much it explains.
+std::optional<Doubt> doubt_of_remainder(const Diagnosis& diagnosis, const std::string& effect) {
   for (const std::vector<std::string>& group : diagnosis.ambiguous) {
     if (std::find(group.begin(), group.end(), effect) != group.end()) return Doubt::rivals;
   }
@@ -140,16 +145,21 @@ const char* to_string(Doubt doubt) {
 }
 
 std::vector<PossibleEffect> possible_effects(const Diagnosis& diagnosis) {
-  std::vector<PossibleEffect> possible;
-  if (diagnosis.verdict != Verdict::unexplained) return possible;
+  const bool error_remains = diagnosis.verdict == Verdict::unexplained;
   std::vector<std::optional<Doubt>> doubts;
-  for (const std::string& effect : diagnosis.missing) doubts.push_back(doubt_of(diagnosis, effect));
+  for (const std::string& effect : diagnosis.missing) {
+    std::optional<Doubt> doubt = doubt_of_size(diagnosis, effect);
+    if (!doubt && error_remains) doubt = doubt_of_remainder(diagnosis, effect);
+    doubts.push_back(doubt);
+  }
   const auto clear =
       static_cast<std::size_t>(std::count(doubts.begin(), doubts.end(), std::nullopt));
+  std::vector<PossibleEffect> possible;
   for (std::size_t i = 0; i < doubts.size(); ++i) {
     std::optional<Doubt> doubt = doubts[i];
-    if (!doubt && diagnosis.search.interrupted) doubt = Doubt::interrupted;
-    if (!doubt && clear >= kStandIn && !is_beyond_doubt(diagnosis, diagnosis.missing[i])) {
+    if (!doubt && error_remains && diagnosis.search.interrupted) doubt = Doubt::interrupted;
+    if (!doubt && error_remains && clear >= kStandIn &&
+        !is_beyond_doubt(diagnosis, diagnosis.missing[i])) {
       doubt = Doubt::stand_in;
     }
     if (doubt) possible.push_back({diagnosis.missing[i], *doubt});

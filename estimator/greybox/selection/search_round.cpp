@@ -12,6 +12,9 @@
 namespace estimator::greybox::selection {
 namespace {
 
+/// Shift of the parameters, in prior widths, above which an explanation is implausible.
+constexpr double kStrain = 6.0;
+
 using Eigen::Index;
 using Eigen::VectorXd;
 
@@ -265,6 +268,21 @@ std::vector<Candidate> pair_round(const SearchContext& context, const Round& sin
   std::erase_if(candidates, [](const Candidate& c) { return !c.fitted_at_all; });
   refine_best(context, singles.before, candidates);
   return candidates;
+}
+
+const Candidate& simplest(const SearchContext& context, const std::vector<Candidate>& candidates) {
+  const Candidate* chosen = &candidates.front();
+  for (const Candidate& other : candidates) {
+    if (!other.fitted_at_all || other.effects.size() > chosen->effects.size()) continue;
+    if (other.fitted.parameters.size() < chosen->fitted.parameters.size() &&
+        prior_cost(other.fitted) < prior_cost(candidates.front().fitted) + kStrain &&
+        other.validation_rms_m < (1.0 + worthwhile_at(context, other.validation_rms_m)) *
+                                     candidates.front().validation_rms_m &&
+        chance(context, other.fitted, candidates.front().fitted) > kChance) {
+      chosen = &other;
+    }
+  }
+  return *chosen;
 }
 
 }  // namespace estimator::greybox::selection

@@ -9,6 +9,8 @@ namespace estimator::greybox::selection {
 
 /// Iteration limit of a quick fit.
 inline constexpr int kQuickIterations = 8;
+/// Largest probability of chance of a gain, unless the gain is large.
+inline constexpr double kChance = 0.01;
 
 [[nodiscard]] Round single_round(const SearchContext& context, const ModelStage& stage, int number);
 /// Pairs of the most promising effects of a round.
@@ -21,6 +23,11 @@ inline constexpr int kQuickIterations = 8;
 /// Fits the best candidates to convergence with their Jacobians; sorts all, best first.
 void refine_best(const SearchContext& context, const ModelStage& stage,
                  std::vector<Candidate>& candidates);
+
+/// The candidate with the fewest parameters among those that explain the record as well as the
+/// first, except one that moves the plant far from its expected values.
+[[nodiscard]] const Candidate& simplest(const SearchContext& context,
+                                        const std::vector<Candidate>& candidates);
 
 [[nodiscard]] ModelStage with(const ModelStage& stage, const Candidate& candidate);
 /// Probability that the lower error of `later` is chance.

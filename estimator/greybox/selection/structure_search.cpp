@@ -14,6 +14,7 @@
 #include "estimator/greybox/selection/parameter_subset.h"
 #include "estimator/greybox/selection/search_round.h"
 #include "estimator/greybox/selection/selection_path.h"
+#include "estimator/greybox/selection/substitution.h"
 
 namespace estimator::greybox::selection {
 namespace {
@@ -33,11 +34,7 @@ constexpr double kSamePath = 0.1;
 /// lies farther is no effect of the library: further effects are added as long as they help, no
 /// more.
 constexpr double kNearFloor = 5.0;
-/// Largest probability of chance of a gain, unless the gain is large.
-constexpr double kChance = 0.01;
 constexpr double kLargeGain = 0.1;
-/// Shift of the parameters, in prior widths, above which an explanation is implausible.
-constexpr double kStrain = 6.0;
 
 bool is_gain(const SearchContext& context, const ModelStage& stage, const Candidate& candidate) {
   const double worthwhile = worthwhile_at(context, stage.fitted.validation_rms_m);
@@ -55,23 +52,6 @@ bool is_gain(const SearchContext& context, const ModelStage& stage, const Candid
   return candidate.fitted_at_all && gain > enough &&
          !leaves_its_range(candidate.fitted, stage.fitted.parameters.size()) &&
          (gain > kLargeGain || candidate.p_value < kChance || fit_gain > enough + by_chance);
-}
-
-/// The candidate with the fewest parameters among those that explain the record alike, except one
-/// that moves the plant far from its expected values.
-const Candidate& simplest(const SearchContext& context, const std::vector<Candidate>& candidates) {
-  const Candidate* chosen = &candidates.front();
-  for (const Candidate& other : candidates) {
-    if (!other.fitted_at_all || other.effects.size() > chosen->effects.size()) continue;
-    if (other.fitted.parameters.size() < chosen->fitted.parameters.size() &&
-        prior_cost(other.fitted) < prior_cost(candidates.front().fitted) + kStrain &&
-        other.validation_rms_m < (1.0 + worthwhile_at(context, other.validation_rms_m)) *
-                                     candidates.front().validation_rms_m &&
-        chance(context, other.fitted, candidates.front().fitted) > kChance) {
-      chosen = &other;
-    }
-  }
-  return *chosen;
 }
 
 /// Takes the round's first candidate, or one as good with fewer parameters; false when it is no
@@ -265,6 +245,7 @@ void extend_search(const SearchContext& context, SearchStart& start) {
   }
   start.branch = search_forward(context, halves, start.first, std::move(start.branch));
   try_alternative_starts(context, halves, start.first, start.branch);
+  substitute_idle_effects(context, start.branch);
 }
 
 void refuse(const ModelStage& stage, Refusal why, const ModelStage& taken,

@@ -105,9 +105,11 @@ TEST(Confidence, TheLikelihoodCountsWhereItDecided) {
   EXPECT_THAT(named(d), IsEmpty());
 }
 
-TEST(Confidence, WhereNoErrorRemainsWhatWasFoundStands) {
+TEST(Confidence, WhereNoErrorRemainsWhatWasFoundStandsUnlessItsSizeIsWithinItsError) {
   Diagnosis d = unexplained();
   d.verdict = Verdict::missing;
+  EXPECT_THAT(named(d), ElementsAre("backlash within_error"));
+  d.parameters.back().std_error = 1e-6;
   EXPECT_THAT(possible_effects(d), IsEmpty());
 }
 

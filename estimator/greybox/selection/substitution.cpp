@@ -1,0 +1,54 @@
+#include "estimator/greybox/selection/substitution.h"
+
+#include <algorithm>
+
+#include "estimator/greybox/selection/parameter_subset.h"
+#include "estimator/greybox/selection/search_round.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+/// True when the effect's size, its first parameter, is at its neutral bound.
+bool is_idle(const FitSummary& fitted, const std::string& effect) {
+  for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+    if (belongs_to(fitted.parameters[i], effect)) return fitted.at_bound[i] < 0;
+  }
+  return false;
+}
+
+ModelStage without(const SearchContext& context, const ModelStage& stage,
+                   const std::string& effect) {
+  ModelStage rest = stage;
+  std::erase(rest.added, effect);
+  const ParameterSubset others =
+      subset(stage.fitted, [&](const auto& p) { return !belongs_to(p, effect); });
+  rest.fitted =
+      refit(context, others, context.problem.data.training_mask, wide(context.options.threads));
+  return rest;
+}
+
+}  // namespace
+
+void substitute_idle_effects(const SearchContext& context, SearchBranch& branch) {
+  if (branch.stage.added.size() < 2) return;
+  const std::vector<std::string> added = branch.stage.added;
+  for (const std::string& effect : added) {
+    if (!is_idle(branch.stage.fitted, effect) || context.cancelled()) continue;
+    Round round = single_round(context, without(context, branch.stage, effect),
+                               static_cast<int>(branch.rounds.size()) + 1);
+    if (round.candidates.empty()) continue;
+    const Candidate& chosen = simplest(context, round.candidates);
+    const bool as_good =
+        chosen.validation_rms_m < (1.0 + worthwhile_at(context, chosen.validation_rms_m)) *
+                                      branch.stage.fitted.validation_rms_m;
+    if (chosen.effects.front() != effect && as_good) {
+      branch.stage = with(round.before, chosen);
+      if (branch.stage.fitted.jacobian.size() == 0) {
+        branch.stage.fitted = refit_to_convergence(context, branch.stage.fitted);
+      }
+    }
+    branch.rounds.push_back(std::move(round));
+  }
+}
+
+}  // namespace estimator::greybox::selection

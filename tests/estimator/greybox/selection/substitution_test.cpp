@@ -1,0 +1,63 @@
+// An effect that keeps nothing but a refinement gives way to the effect that is that refinement.
+#include "estimator/greybox/selection/substitution.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "estimator/greybox/selection/parameter_subset.h"
+#include "tests/estimator/greybox/selection/truth_records.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+using diagnose_test::context_of;
+using testing::UnorderedElementsAre;
+
+/// Slaves and a delay, all their parameters fitted from the truth: a needle valve and no mass.
+SearchBranch slaves_and_delay(const SearchContext& context) {
+  SearchBranch branch{first_stage(context), {}};
+  ParameterSubset selection = subset(branch.stage.fitted, [](const auto&) { return true; });
+  for (const std::string effect : {"coupled_slaves", "transport_delay"}) {
+    const auto info = std::find_if(context.problem.candidate_effects.begin(),
+                                   context.problem.candidate_effects.end(),
+                                   [&](const auto& absent) { return absent.name == effect; });
+    ParameterSubset own{effect_parameters(*info, kEveryRefinement), {}};
+    own.start = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(own.parameters.size()));
+    for (std::size_t i = 0; i < own.parameters.size(); ++i) {
+      const std::string& name = own.parameters[i].name;
+      const double value = name == "transport_delay.delay_s"             ? 0.003
+                           : name == "coupled_slaves.needle_N_s2_per_m2" ? 16000.0
+                                                                         : 0.0;
+      own.start[static_cast<Eigen::Index>(i)] = own.parameters[i].to_theta(value);
+    }
+    append(selection, own);
+    branch.stage.added.push_back(effect);
+  }
+  branch.stage.fitted = refit(context, selection, context.problem.data.training_mask);
+  return branch;
+}
+
+TEST(Substitution, OrificeDampingTakesThePlaceOfSlavesWithoutMass) {
+  const SearchContext context = context_of(
+      "motion=multisine,transport_delay.delay_s=0.003,"
+      "quadratic_damping.coefficient_N_s2_per_m2=16000");
+  SearchBranch branch = slaves_and_delay(context);
+  const double before_m = branch.stage.fitted.validation_rms_m;
+  substitute_idle_effects(context, branch);
+  EXPECT_THAT(branch.stage.added, UnorderedElementsAre("transport_delay", "quadratic_damping"));
+  EXPECT_LT(branch.stage.fitted.validation_rms_m, 1.01 * before_m);
+}
+
+TEST(Substitution, SlavesWithAMassStay) {
+  const SearchContext context = context_of(
+      "motion=multisine,transport_delay.delay_s=0.003,coupled_slaves.mass_kg=20,"
+      "coupled_slaves.damping_N_s_per_m=300");
+  SearchBranch branch = slaves_and_delay(context);
+  substitute_idle_effects(context, branch);
+  EXPECT_THAT(branch.stage.added, UnorderedElementsAre("coupled_slaves", "transport_delay"));
+  EXPECT_TRUE(branch.rounds.empty());
+}
+
+}  // namespace
+}  // namespace estimator::greybox::selection
