@@ -5,6 +5,7 @@
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
+#include "config/schema/visitor.h"
 #include "plant_sim/library.h"
 
 namespace plant_sim {
@@ -36,6 +37,21 @@ std::vector<std::string_view> plant_names() {
 double* find(std::vector<NamedValue>& values, std::string_view name) {
   for (NamedValue& value : values) {
     if (value.name == name) return &value.value;
+  }
+  return nullptr;
+}
+
+/// A number of a change: "mass_kg.at_s".
+double* find(std::vector<Change>& changes, std::string_view name) {
+  const std::size_t dot = name.rfind('.');
+  if (dot == std::string_view::npos) return nullptr;
+  const std::string_view number = name.substr(dot + 1);
+  for (Change& change : changes) {
+    if (change.parameter != name.substr(0, dot)) continue;
+    if (number == "value") return &change.value;
+    if (number == "at_s") return &change.at_s;
+    if (number == "ramp_s") return &change.ramp_s;
+    if (number == "time_constant_s") return &change.time_constant_s;
   }
   return nullptr;
 }
@@ -81,6 +97,27 @@ void check_declared(const ModelFile& model, const formula::FormulaEffect& effect
                                      "another name");
   }
   check(effect, formula::compile(effect, plausible(model), where), where);
+}
+
+/// Every change is of a known parameter, to a value or by a factor, and the only one of it.
+void check_changes(const ModelFile& model, const std::string& file) {
+  ModelFile copy = model;
+  for (std::size_t i = 0; i < model.changes.size(); ++i) {
+    const Change& change = model.changes[i];
+    const std::string where = file + ": [[change]] " + change.parameter;
+    const bool own =
+        !change.parameter.starts_with("change.") && !change.parameter.starts_with("initial.");
+    if (!own || copy.value(change.parameter) == nullptr) {
+      throw config::schema::bad_config(where, "is no parameter of plant " + model.plant);
+    }
+    if (std::isnan(change.value) == std::isnan(change.factor)) {
+      throw config::schema::bad_config(where, "needs one of value and factor", "value or factor");
+    }
+    for (std::size_t other = 0; other < i; ++other) {
+      if (model.changes[other].parameter != change.parameter) continue;
+      throw config::schema::bad_config(where, "is there twice", "one change for a parameter");
+    }
+  }
 }
 
 }  // namespace
@@ -139,6 +176,7 @@ void ModelFile::visit(Visitor& v) {
       });
     }
   });
+  visit_list(v, {"change", "changes of parameters within a record"}, changes);
   v.table("loop", [&](Visitor& t) {
     t.number({"kp_V_per_m", "gain of the proportional controller"}, loop.kp_V_per_m, {0.0, 1e6});
   });
@@ -172,6 +210,7 @@ double* ModelFile::value(std::string_view dotted) {
   const std::string_view table = dotted.substr(0, dot);
   const std::string_view key = dotted.substr(dot + 1);
   if (table == "initial") return find(initial, key);
+  if (table == "change") return find(changes, key);
   for (Effect& effect : effects) {
     if (effect.name != table) continue;
     double* found = find(effect.parameters, key);
@@ -179,6 +218,17 @@ double* ModelFile::value(std::string_view dotted) {
     return found;
   }
   return nullptr;
+}
+
+ModelFile without_changes(ModelFile model) {
+  model.changes.clear();
+  return model;
+}
+
+void require_constant(const ModelFile& model) {
+  if (model.changes.empty()) return;
+  throw config::schema::bad_config(model.name, "has a [[change]], which belongs to one record",
+                                   "none in the model of a rig that runs");
 }
 
 ModelFile load_model(const std::filesystem::path& file,
@@ -195,6 +245,7 @@ ModelFile read_model(const config::schema::Document& document) {
   for (const formula::FormulaEffect& effect : model.formula_effects) {
     check_declared(model, effect, document.name());
   }
+  check_changes(model, document.name());
   const double* stroke_m = model.value("stroke_m");
   if (stroke_m != nullptr && *model.value("initial.y_m") > *stroke_m) {
     throw config::schema::bad_config(document.name() + ": [initial] y_m", "is beyond the stroke",

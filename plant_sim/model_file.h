@@ -12,6 +12,7 @@
 //   [effects.friction]    # presence adds the effect; absent parameters are neutral
 //   coulomb_N = 100.0
 //   [formula_effects.NAME]  # a user's own effect (formula/formula_effect.h), then one like others
+//   [[change]]           # of a parameter within a record: change.h
 //   [loop]
 //   kp_V_per_m = 100.0
 #pragma once
@@ -21,6 +22,7 @@
 #include <string_view>
 #include <vector>
 
+#include "plant_sim/change.h"
 #include "plant_sim/formula/formula.h"
 #include "plant_sim/parameter.h"
 
@@ -49,6 +51,8 @@ struct ModelFile {
   std::vector<NamedValue> initial;     ///< NaN = the plant's own choice (half supply pressure)
   std::vector<formula::FormulaEffect> formula_effects;  ///< as declared
   std::vector<Effect> effects;  ///< the library's, then the formulas; present or not
+  /// What happened to the rig during one record, from its first sample on; one for a parameter.
+  std::vector<Change> changes;
   Loop loop;
 
   /// A model with the plant's defaults and no effect.
@@ -62,13 +66,20 @@ struct ModelFile {
   /// The formulas ready for simulation. Throws like declare() when one does not parse.
   [[nodiscard]] formula::Formulas formulas() const;
 
-  /// The value named "mass_kg", "friction.coulomb_N" or "initial.y_m"; null when unknown. Writing
-  /// to an effect's parameter through this makes the effect present.
+  /// The value named "mass_kg", "friction.coulomb_N", "initial.y_m" or "change.mass_kg.at_s"; null
+  /// when unknown. Writing to an effect's parameter through this makes the effect present.
   double* value(std::string_view dotted);
 
  private:
   void list_effects();
 };
+
+/// The model as it is before any change.
+[[nodiscard]] ModelFile without_changes(ModelFile model);
+
+/// Throws config::schema::ConfigError for a model with a [[change]]: it describes one record, and
+/// no rig that runs.
+void require_constant(const ModelFile& model);
 
 /// Throws config::schema::ConfigError for a missing file, an unknown key or a bad value.
 [[nodiscard]] ModelFile load_model(const std::filesystem::path& file,

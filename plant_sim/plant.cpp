@@ -131,6 +131,7 @@ std::unique_ptr<Plant> make_plant(const ModelFile& model) {
   std::unique_ptr<Plant> plant;
   std::string names;
   require_fit(model, model.name);
+  require_constant(model);
   each_plant<double>([&]<class Model>() {
     if (model.plant == Model::kName) plant = std::make_unique<Simulated<Model>>(model);
     names += (names.empty() ? "" : ", ") + std::string(Model::kName);

@@ -7,7 +7,6 @@
 #include "config/schema/error.h"
 #include "config/schema/joined.h"
 #include "config/schema/spelling.h"
-#include "config/schema/visitor.h"
 
 namespace plant_sim {
 namespace {
@@ -15,17 +14,10 @@ namespace {
 constexpr double kNever_s = std::numeric_limits<double>::infinity();
 /// Part of a step by which rounding may put a time late.
 constexpr double kSlack = 1e-6;
+/// Time constants after which an exponential has arrived.
+constexpr double kSettled = 40.0;
 
 }  // namespace
-
-void Change::visit(config::schema::Visitor& v) {
-  v.text({"parameter", "a parameter of the model, as effect.name for an effect's", true},
-         parameter);
-  v.number({"at_s", "start time", true}, at_s, {0.0, 1e9});
-  v.number({"value", "the new value"}, value);
-  v.number({"factor", "the new value as a factor of the old"}, factor);
-  v.number({"ramp_s", "time it takes; 0 is a step"}, ramp_s, {0.0, 1e9});
-}
 
 Schedule::Schedule(std::vector<Change> changes, Plant& plant) {
   std::stable_sort(changes.begin(), changes.end(),
@@ -56,7 +48,8 @@ Schedule::Schedule(std::vector<Change> changes, Plant& plant) {
           where, "to " + std::to_string(to) + " is out of range",
           std::to_string(info.min) + " to " + std::to_string(info.max));
     }
-    entries_.push_back({target, change.at_s, change.ramp_s, 0.0, to, false, false});
+    entries_.push_back(
+        {target, change.at_s, change.ramp_s, change.time_constant_s, 0.0, to, false, false});
   }
 }
 
@@ -73,9 +66,11 @@ double Schedule::apply(double t_s) noexcept {
     if (!entry.started) entry.from = *entry.target;
     entry.started = true;
     const double passed_s = t_s - entry.at_s;
-    entry.done = passed_s >= entry.ramp_s;
-    *entry.target =
-        entry.done ? entry.to : entry.from + (entry.to - entry.from) * passed_s / entry.ramp_s;
+    const bool settles = entry.time_constant_s > 0.0;
+    entry.done = passed_s >= (settles ? kSettled * entry.time_constant_s : entry.ramp_s);
+    const double progress =
+        settles ? -std::expm1(-passed_s / entry.time_constant_s) : passed_s / entry.ramp_s;
+    *entry.target = entry.done ? entry.to : entry.from + (entry.to - entry.from) * progress;
     if (!entry.done) next_s = t_s;
   }
   return next_s;

@@ -1,30 +1,13 @@
-// Faults and other changes of a plant's parameters at scheduled times, as a step or as a ramp.
+// Faults and other changes of a plant's parameters at scheduled times (change.h).
 #pragma once
 
 #include <cstddef>
-#include <limits>
-#include <string>
 #include <vector>
 
+#include "plant_sim/change.h"
 #include "plant_sim/plant.h"
 
-namespace config::schema {
-class Visitor;
-}
-
 namespace plant_sim {
-
-/// One change. Exactly one of value and factor is given (the other is NaN).
-struct Change {
-  std::string parameter;  ///< "supply_pressure_Pa" or "friction.coulomb_N"
-  double at_s = 0.0;      ///< when it starts
-  double value = std::numeric_limits<double>::quiet_NaN();  ///< in the parameter's own unit
-  double factor =
-      std::numeric_limits<double>::quiet_NaN();  ///< factor on the value at construction
-  double ramp_s = 0.0;                           ///< 0 = a step
-
-  void visit(config::schema::Visitor& v);
-};
 
 class Schedule {
  public:
@@ -43,6 +26,7 @@ class Schedule {
     double* target;
     double at_s;
     double ramp_s;
+    double time_constant_s;
     double from;
     double to;
     bool started;

@@ -18,11 +18,15 @@ ObserverSimulation::ObserverSimulation(const plant_sim::ModelFile& model, const 
       parameters_(std::move(parameters)),
       observer_per_s_(observer_per_s),
       ensemble_(plant_sim::make_ensemble(model, step_for(model, record.sample_time_s))),
+      schedule_(model, *ensemble_),
       speed_mps_(record.size(), 0.0) {
   for (const FreeParameter& parameter : parameters_) {
     const auto index = ensemble_->find(parameter.name);
-    if (!index) throw config::schema::bad_config(model.name, "has no parameter " + parameter.name);
-    index_.push_back(*index);
+    const auto number = index ? std::nullopt : schedule_.find(parameter.name);
+    if (!index && !number) {
+      throw config::schema::bad_config(model.name, "has no parameter " + parameter.name);
+    }
+    slots_.push_back({index.value_or(number.value_or(0)), number.has_value()});
   }
 }
 
@@ -47,9 +51,15 @@ void ObserverSimulation::take(const Eigen::MatrixXd& points) {
   for (std::size_t p = 0; p < parameters_.size(); ++p) {
     for (Eigen::Index lane = 0; lane < kLanes; ++lane) {
       const double theta = points(static_cast<Eigen::Index>(p), std::min(lane, points.cols() - 1));
-      ensemble_->set(index_[p], static_cast<std::size_t>(lane), parameters_[p].to_physical(theta));
+      const double value = parameters_[p].to_physical(theta);
+      if (slots_[p].of_change) {
+        schedule_.set(slots_[p].index, static_cast<std::size_t>(lane), value);
+      } else {
+        ensemble_->set(slots_[p].index, static_cast<std::size_t>(lane), value);
+      }
     }
   }
+  schedule_.begin(*ensemble_);
 }
 
 void ObserverSimulation::innovations(const Eigen::MatrixXd& points,
@@ -84,9 +94,14 @@ void ObserverSimulation::predict(const Eigen::MatrixXd& points, const Eigen::Mat
     own_N[lane] = ensemble_->get(*load, lane);
   }
   Ensemble::Values disturbance{};
+  const bool load_changes = load && schedule_.changes(*load);
   std::size_t segment = 0;
   for (Eigen::Index k = 0; k < samples; ++k) {
     const auto row = static_cast<std::size_t>(k);
+    schedule_.apply(*ensemble_, record.t_s[row], record.sample_time_s);
+    for (std::size_t lane = 0; load_changes && lane < Ensemble::kLanes; ++lane) {
+      own_N[lane] = ensemble_->get(*load, lane);
+    }
     if (segment < record.starts.size() && record.starts[segment] == row) {
       if (forces) {
         for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) {
@@ -139,6 +154,7 @@ void ObserverSimulation::predict(const Eigen::MatrixXd& points, const Eigen::Mat
   for (std::size_t lane = 0; forces && lane < Ensemble::kLanes; ++lane) {
     ensemble_->set(*load, lane, own_N[lane]);
   }
+  schedule_.end(*ensemble_);
 }
 
 void ObserverSimulation::run(const Eigen::MatrixXd& points, const Eigen::MatrixXd& added_V,
@@ -161,10 +177,12 @@ void ObserverSimulation::run(const Eigen::MatrixXd& points, const Eigen::MatrixX
   const auto found = ensemble_->find("load_force.force_N");
   const bool loads = added_N.size() > 0 && found.has_value();
   const std::size_t load = found.value_or(0);
-  const double load_N = loads ? ensemble_->get(load, 0) : 0.0;
+  double load_N = loads ? ensemble_->get(load, 0) : 0.0;
   std::size_t segment = 0;
   for (Eigen::Index k = 0; k < samples; ++k) {
     const auto row = static_cast<std::size_t>(k);
+    schedule_.apply(*ensemble_, record.t_s[row], record.sample_time_s);
+    if (loads && schedule_.changes(load)) load_N = ensemble_->get(load, 0);
     if (segment < record.starts.size() && record.starts[segment] == row) {
       ensemble_->start(record.y_m[row]);
       ++segment;
@@ -203,6 +221,7 @@ void ObserverSimulation::run(const Eigen::MatrixXd& points, const Eigen::MatrixX
   for (std::size_t lane = 0; loads && lane < Ensemble::kLanes; ++lane) {
     ensemble_->set(load, lane, load_N);
   }
+  schedule_.end(*ensemble_);
 }
 
 }  // namespace estimator::greybox

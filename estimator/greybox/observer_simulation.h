@@ -18,6 +18,7 @@
 #include "estimator/greybox/free_parameter.h"
 #include "estimator/greybox/innovation_gains.h"
 #include "plant_sim/ensemble.h"
+#include "plant_sim/ensemble_schedule.h"
 
 namespace estimator::greybox {
 
@@ -75,7 +76,13 @@ class ObserverSimulation {
   std::vector<FreeParameter> parameters_;
   double observer_per_s_;
   std::unique_ptr<plant_sim::Ensemble> ensemble_;
-  std::vector<std::size_t> index_;
+  plant_sim::EnsembleSchedule schedule_;
+  /// Place of a free parameter: in the ensemble, or a number of a change.
+  struct Slot {
+    std::size_t index = 0;
+    bool of_change = false;
+  };
+  std::vector<Slot> slots_;
   std::vector<double> speed_mps_;
 };
 

@@ -5,6 +5,7 @@
 
 #include "estimator/greybox/observer_simulation.h"
 #include "plant_sim/ensemble.h"
+#include "plant_sim/ensemble_schedule.h"
 #include "plant_sim/plant.h"
 
 namespace estimator::greybox {
@@ -15,10 +16,13 @@ Trajectory trajectory_of(const plant_sim::ModelFile& model, const Dataset& recor
                          double observer_per_s) {
   const std::unique_ptr<Ensemble> ensemble =
       plant_sim::make_ensemble(model, step_for(model, record.sample_time_s));
+  plant_sim::EnsembleSchedule schedule(model, *ensemble);
+  schedule.begin(*ensemble);
   Trajectory trajectory;
   trajectory.reading_m.reserve(record.size());
   std::vector<std::size_t> index;
-  for (const plant_sim::NamedValue& state : plant_sim::make_plant(model)->state()) {
+  for (const plant_sim::NamedValue& state :
+       plant_sim::make_plant(plant_sim::without_changes(model))->state()) {
     if (const auto found = ensemble->find_state(state.name)) {
       index.push_back(*found);
       trajectory.states.emplace_back(state.name, std::vector<double>{});
@@ -27,6 +31,7 @@ Trajectory trajectory_of(const plant_sim::ModelFile& model, const Dataset& recor
   }
   std::size_t segment = 0;
   for (std::size_t k = 0; k < record.size(); ++k) {
+    schedule.apply(*ensemble, record.t_s[k], record.sample_time_s);
     if (segment < record.starts.size() && record.starts[segment] == k) {
       ensemble->start(record.y_m[k]);
       ++segment;

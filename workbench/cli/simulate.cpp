@@ -165,7 +165,8 @@ config::record::Record simulate_command(const SimulateArguments& a) {
   data.u_V = given.u_V;
   data.y_m = given.y_m;
   if (!given.has_position) {
-    data.y_m.assign(given.size(), plant_sim::make_plant(model)->reading_m());
+    data.y_m.assign(given.size(),
+                    plant_sim::make_plant(plant_sim::without_changes(model))->reading_m());
   }
   data.starts = {0};
   data.starts.insert(data.starts.end(), given.gaps.begin(), given.gaps.end());
@@ -203,7 +204,9 @@ void check_pressures(const SimulateArguments& arguments, const simulate::Scenari
     }
     return;
   }
-  if (std::isfinite(plant_sim::make_plant(scenario.model)->pressures().in_Pa)) return;
+  if (std::isfinite(
+          plant_sim::make_plant(plant_sim::without_changes(scenario.model))->pressures().in_Pa))
+    return;
   throw ConfigError(arguments.model + ": --pressures: plant " + scenario.model.plant +
                     " has none; allowed: hydraulic_actuator");
 }

@@ -51,12 +51,18 @@ ordered_json refused_of(const selection::StructureSearch& search) {
 
 ordered_json changing_of(const selection::Diagnosis& d) {
   ordered_json changes = ordered_json::array();
-  for (const selection::ParameterStep& step : d.changing) {
-    changes.push_back({{"parameter", step.parameter},
-                       {"kind", "step"},
-                       {"at_s", number_or_null(step.at_s)},
-                       {"from", number_or_null(step.from)},
-                       {"to", number_or_null(step.to)}});
+  for (const selection::ParameterChange& change : d.changing) {
+    changes.push_back({{"parameter", change.parameter},
+                       {"kind", selection::to_string(change.kind)},
+                       {"at_s", number_or_null(change.at_s)},
+                       {"duration_s", number_or_null(change.duration_s)},
+                       {"from", number_or_null(change.from)},
+                       {"to", number_or_null(change.to)},
+                       {"std_error",
+                        {{"at_s", number_or_null(change.at_error_s)},
+                         {"from", number_or_null(change.from_error)},
+                         {"to", number_or_null(change.to_error)}}},
+                       {"rivals", change.rivals}});
   }
   return changes;
 }

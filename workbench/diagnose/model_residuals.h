@@ -14,6 +14,10 @@ namespace workbench::diagnose {
                                             const greybox::FitSummary& fitted,
                                             double observer_per_s);
 
+/// The same of the better model, with the laws and changes it has beside the library's effects.
+[[nodiscard]] Eigen::VectorXd residual_of_better_m(const DiagnosisReport& outcome,
+                                                   double observer_per_s);
+
 /// Fills in the free-run errors.
 void simulate_freely(DiagnosisReport& outcome);
 

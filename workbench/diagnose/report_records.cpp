@@ -209,9 +209,9 @@ Residuals residuals_of(const DiagnosisReport& outcome) {
       d.search.rounds.empty() ? d.search.final : d.search.rounds.front().before;
   all.file_m = residual_of_file_m(problem, greybox::kObserver_per_s);
   all.before_m = residual_of_m(problem, before.fitted, greybox::kObserver_per_s);
-  all.after_m = residual_of_m(problem, d.final, greybox::kObserver_per_s);
+  all.after_m = residual_of_better_m(outcome, greybox::kObserver_per_s);
   all.free_file_m = residual_of_file_m(problem, 0.0);
-  all.free_after_m = residual_of_m(problem, d.final, 0.0);
+  all.free_after_m = residual_of_better_m(outcome, 0.0);
   return all;
 }
 

@@ -94,6 +94,40 @@ std::string learned_words(const selection::Diagnosis& d) {
          config::schema::joined(laws, "; and ") + ".";
 }
 
+/// "damping_N_s_per_m goes from 1000 N s/m to 1800 +- 20 N s/m at 12.00 s".
+std::string change_words(const selection::ParameterChange& change) {
+  const auto words = [&](double value, double error) {
+    return config::units::words(config::units::quantity(change.parameter, value, error));
+  };
+  std::string text = change.parameter + " goes from " + words(change.from, change.from_error) +
+                     " to " + words(change.to, change.to_error);
+  switch (change.kind) {
+    case selection::ChangeKind::step:
+      return text + fmt::format(" at {:.2f} s", change.at_s);
+    case selection::ChangeKind::ramp:
+      return text + fmt::format(" between {:.1f} and {:.1f} s", change.at_s,
+                                change.at_s + change.duration_s);
+    case selection::ChangeKind::exponential:
+      break;
+  }
+  return text + fmt::format(" with a time constant of {:.1f} s", change.duration_s);
+}
+
+std::string changing_words(const selection::Diagnosis& d) {
+  std::string text =
+      "Changing: " +
+      (d.missing.empty() ? "no effect of the library explains the record, but "
+                         : config::schema::listed(d.missing) +
+                               (d.missing.size() > 1 ? " are" : " is") + " missing, and ") +
+      config::schema::joined_by(d.changing, change_words, "; and ") + ".";
+  for (const selection::ParameterChange& change : d.changing) {
+    if (change.rivals.empty()) continue;
+    text += " A change of " + config::schema::listed(change.rivals, "or") + " in place of " +
+            change.parameter + " would explain it about as well.";
+  }
+  return text;
+}
+
 /// "backlash (its size is within its error)".
 std::string possible_words(const selection::PossibleEffect& possible) {
   switch (possible.why) {
@@ -130,7 +164,7 @@ std::string refused_words(const selection::RefusedModel& model) {
 }
 
 std::string fall_words(const selection::Diagnosis& d) {
-  if (d.missing.empty()) {
+  if (d.missing.empty() && d.verdict != selection::Verdict::changing) {
     return "With the plant's own parameters fitted, the held-out error goes from " +
            config::units::length_words(d.nominal_rms_m) + " to " +
            config::units::length_words(d.rms_before_m) + ".";
@@ -281,6 +315,8 @@ std::string verdict_words(const selection::Diagnosis& d) {
       return undetermined_words(d);
     case selection::Verdict::learned:
       return learned_words(d);
+    case selection::Verdict::changing:
+      return changing_words(d);
     case selection::Verdict::unexplained:
       return unexplained_words(d);
     case selection::Verdict::not_excited:
@@ -302,13 +338,10 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
   if (d.verdict != selection::Verdict::not_excited) out.push_back(fall_words(d));
   const bool named = d.verdict == selection::Verdict::missing || d.missing.empty();
   if (!named) out.push_back("Used in the better model: " + effects_words(d, d.missing) + ".");
-  for (const selection::ParameterStep& step : d.changing) {
-    const auto words = [&](double value) {
-      return config::units::words(config::units::quantity(step.parameter, value, std::nan("")));
-    };
-    out.push_back(
-        fmt::format("At {:.2f} s {} goes from {} to {}: something changed on the rig then.",
-                    step.at_s, step.parameter, words(step.from), words(step.to)));
+  if (d.verdict != selection::Verdict::changing) {
+    for (const selection::ParameterChange& change : d.changing) {
+      out.push_back(change_words(change) + ": something changed on the rig then.");
+    }
   }
   if (d.repetition) {
     out.push_back("The motion repeats every " +
@@ -333,8 +366,10 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
   add_rivals(d, out);
   if (!d.where.empty()) {
     std::string text =
-        (d.missing.empty() || !d.where_is_whole
+        (!d.where_is_whole || (d.missing.empty() && d.changing.empty())
              ? "The remaining error enters "
+         : d.missing.empty()
+             ? "The error of the model without change enters "
              : "The error without " +
                    std::string(d.missing.size() > 1 ? "these effects" : "this effect") +
                    " enters ") +

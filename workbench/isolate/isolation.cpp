@@ -275,6 +275,7 @@ IsolationReport isolate(const IsolationRequest& request) {
       {{"--json", request.json}, {"--report", request.report}, {"--learn", request.learn_baseline}},
       {request.model, {request.record}});
   const plant_sim::ModelFile model = plant_sim::load_model(request.model, request.assignments);
+  plant_sim::require_constant(model);
   const Record record = config::record::read_record(request.record, request.reading);
   check(request, record);
   IsolationReport out;

@@ -27,7 +27,9 @@ constexpr double kLargestInitialisationGain = 0.5;  // share of the error, in on
 }  // namespace
 
 OnlineResidual::OnlineResidual(const plant_sim::ModelFile& model, double observer_per_s)
-    : model_(model), observer_per_s_(observer_per_s) {}
+    : model_(model), observer_per_s_(observer_per_s) {
+  plant_sim::require_constant(model);
+}
 
 void OnlineResidual::add(std::int64_t tick, double sample_time_s, double u_V, double y_m) {
   if (sample_time_s != sample_time_s_) {

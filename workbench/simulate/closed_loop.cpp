@@ -26,11 +26,17 @@ void check_step(double step_s) {
   }
 }
 
+std::vector<plant_sim::Change> faults_and_changes(const Scenario& scenario) {
+  std::vector<plant_sim::Change> all = scenario.faults;
+  all.insert(all.end(), scenario.model.changes.begin(), scenario.model.changes.end());
+  return all;
+}
+
 }  // namespace
 
 ClosedLoop::ClosedLoop(const Scenario& scenario, std::uint64_t seed)
-    : plant_(plant_sim::make_plant(scenario.model)),
-      schedule_(scenario.faults, *plant_),
+    : plant_(plant_sim::make_plant(plant_sim::without_changes(scenario.model))),
+      schedule_(faults_and_changes(scenario), *plant_),
       reference_(monitor::control::make_reference(scenario.reference, scenario.folder)),
       controller_({scenario.model.loop.kp_V_per_m}, limits(scenario.instruments), kSampleTime_s),
       sensor_(scenario.sensor_faults),

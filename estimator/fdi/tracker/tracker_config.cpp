@@ -82,7 +82,9 @@ void TrackerConfig::visit(Visitor& v) {
 
 void TrackerConfig::load(const estimator::fdi::ConfigLoadContext& context) {
   if (!model.empty()) {
-    model_toml = plant_sim::print_model(plant_sim::load_model(context.folder / model));
+    const plant_sim::ModelFile loaded = plant_sim::load_model(context.folder / model);
+    plant_sim::require_constant(loaded);
+    model_toml = plant_sim::print_model(loaded);
     model.clear();
   }
   if (baseline.empty()) return;

@@ -21,6 +21,9 @@ namespace estimator::greybox::disturbance {
 
 struct ForceJump {
   double gain_nats = 0.0;
+  /// Gain of the third likeliest jump a second or more from others: of a disturbance that jumps by
+  /// itself, or of what else the model lacks.
+  double usual_nats = 0.0;
   double time_s = 0.0;
   double size = 0.0;  ///< N; m/s for a plant without forces
 };

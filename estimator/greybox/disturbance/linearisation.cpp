@@ -54,9 +54,10 @@ Linearisation linearise(const plant_sim::ModelFile& model, const Dataset& record
   const std::unique_ptr<Ensemble> ensemble =
       plant_sim::make_ensemble(model, step_for(model, record.sample_time_s));
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const std::size_t index = ensemble->find(parameters[i].name).value();
+    const auto index = ensemble->find(parameters[i].name);
+    if (!index) continue;  // a number of a change, which is linearised about the start
     const double value = parameters[i].to_physical(theta[static_cast<Eigen::Index>(i)]);
-    for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) ensemble->set(index, lane, value);
+    for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) ensemble->set(*index, lane, value);
   }
   for (const auto& [index, neutral] : ragged_parameters(*ensemble, model)) {
     for (std::size_t lane = kSmooth; lane < Ensemble::kLanes; ++lane) {

@@ -110,6 +110,18 @@ void take_errors(Diagnosis& result) {
 
 }  // namespace
 
+Diagnosis begun(const Diagnosis& result) {
+  Diagnosis begun;
+  begun.noise_floor_m = result.noise_floor_m;
+  begun.floor_assumed = result.floor_assumed;
+  begun.excitation = result.excitation;
+  begun.command_lead_samples = result.command_lead_samples;
+  begun.checks = result.checks;
+  begun.search.nominal_rms_m = result.search.nominal_rms_m;
+  begun.search.preview_s = result.search.preview_s;
+  return begun;
+}
+
 void conclude(const SearchContext& context, const SearchContext& search, Diagnosis& result) {
   const ModelStage found = result.search.final;
   if (uses_segments(search, context)) {
@@ -137,12 +149,17 @@ void conclude(const SearchContext& context, const SearchContext& search, Diagnos
 
 namespace {
 
-ParameterStep load_step(const InnovationSearch& innovations) {
+ParameterChange load_step(const InnovationSearch& innovations) {
   const bool force = innovations.final.linear.front().force;
   const std::string name = force ? "load_force.force_N" : "speed_mps";
   const double held = innovations.final.model.fitted.value(name);
   const double from = std::isfinite(held) ? held : 0.0;
-  return {name, innovations.jump.time_s, from, from + innovations.jump.size};
+  ParameterChange change;
+  change.parameter = name;
+  change.at_s = innovations.jump.time_s;
+  change.from = from;
+  change.to = from + innovations.jump.size;
+  return change;
 }
 
 /// A load that sets in is all there is where no curve is left; seen from outside it may look like

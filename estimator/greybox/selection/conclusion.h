@@ -6,6 +6,9 @@
 
 namespace estimator::greybox::selection {
 
+/// What was known before any conclusion was drawn: a result to conclude anew.
+[[nodiscard]] Diagnosis begun(const Diagnosis& result);
+
 /// A verdict by the held-out errors of simulations on `result.search`. `search`: the context that
 /// was searched, which for long records holds segments of `context`.
 void conclude(const SearchContext& context, const SearchContext& search, Diagnosis& result);

@@ -19,20 +19,27 @@ constexpr double kBeyondDoubt = 100.0;
 /// cube leaves 7 % of the error.
 constexpr double kBeyondDoubtThere = 400.0;
 
+/// True where the command is a force: there is no valve in between.
+bool is_driven_by_force(const Diagnosis& diagnosis) {
+  const plant_sim::PlantInfo* plant = plant_sim::find_plant(diagnosis.better.plant);
+  return plant != nullptr &&
+         std::find(plant->sites.begin(), plant->sites.end(), "opening") == plant->sites.end();
+}
+
 /// Entry of an effect into the equations, in the words of a Localisation.
-std::string site_of(const std::string& effect) {
+std::string site_of(const Diagnosis& diagnosis, const std::string& effect) {
   const plant_sim::EffectInfo* info = plant_sim::find_effect(effect);
   if (info == nullptr || info->sites.empty()) return "";
   const std::string& site = info->sites.front();
   if (site == "force" || site == "dry_friction" || site == "inertia") return "force";
   if (site == "sensor") return "measurement";
-  if (site == "command") return "command";
+  if (site == "command") return is_driven_by_force(diagnosis) ? "force" : "command";
   return "flow";
 }
 
 /// True when most of the remaining error enters as this effect does: the law there may be another.
 bool shares_the_remainder(const Diagnosis& diagnosis, const std::string& effect) {
-  return !diagnosis.where.empty() && diagnosis.where.front().site == site_of(effect) &&
+  return !diagnosis.where.empty() && diagnosis.where.front().site == site_of(diagnosis, effect) &&
          diagnosis.where.front().explained_ratio > kMost;
 }
 
@@ -87,7 +94,7 @@ bool is_same_site(const std::string& one, const std::string& other) {
 bool is_matched_elsewhere(const Diagnosis& diagnosis, const std::string& effect) {
   if (diagnosis.whole.empty()) return false;
   const Localisation& curve = diagnosis.whole.front();
-  if (is_same_site(curve.site, site_of(effect))) return false;
+  if (is_same_site(curve.site, site_of(diagnosis, effect))) return false;
   const double left_ratio = std::pow(diagnosis.rms_after_m / diagnosis.rms_before_m, 2);
   return 1.0 - curve.explained_ratio < left_ratio;
 }

@@ -7,6 +7,7 @@
 #include "estimator/greybox/selection/command_lead.h"
 #include "estimator/greybox/selection/conclusion.h"
 #include "estimator/greybox/selection/cross_validation.h"
+#include "estimator/greybox/selection/dated_changes.h"
 #include "estimator/greybox/selection/excitation.h"
 #include "estimator/greybox/selection/learned_laws.h"
 #include "estimator/greybox/selection/long_records.h"
@@ -76,6 +77,8 @@ const char* to_string(Verdict verdict) {
       return "undetermined";
     case Verdict::learned:
       return "learned";
+    case Verdict::changing:
+      return "changing";
     case Verdict::unexplained:
       return "unexplained";
     case Verdict::not_excited:
@@ -142,7 +145,7 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
     weigh_innovations(context, search, std::move(start), result);
   }
   if (result.verdict == Verdict::unexplained && !wrong_record && !context.cancelled()) {
-    learn_laws(search, first, result);
+    if (!date_changes(search, first, result)) learn_laws(search, first, result);
   }
   if (result.checks && result.verdict == Verdict::unexplained && !wrong_record) {
     result.plants = fit_other_plants(search);

@@ -12,6 +12,7 @@
 #include "estimator/greybox/selection/excitation.h"
 #include "estimator/greybox/selection/law_dictionary.h"
 #include "estimator/greybox/selection/localisation.h"
+#include "estimator/greybox/selection/parameter_change.h"
 #include "estimator/greybox/selection/record_checks.h"
 #include "estimator/greybox/selection/repeated_motion.h"
 #include "estimator/greybox/selection/structure_search.h"
@@ -22,7 +23,8 @@ enum class Verdict {
   nothing_missing,
   missing,
   undetermined,
-  learned,  ///< no effect of the library explains the records, one or two laws do
+  learned,   ///< no effect of the library explains the records, one or two laws do
+  changing,  ///< no effect explains the record, one or two parameters that change within it do
   unexplained,
   not_excited
 };
@@ -41,14 +43,6 @@ struct SelectionStep {
   double validation_rms_m = 0.0;
   /// The least of a simulation without observer; NaN where noise explains the record.
   double free_run_rms_m = std::numeric_limits<double>::quiet_NaN();
-};
-
-/// A parameter that is another from some time on.
-struct ParameterStep {
-  std::string parameter;
-  double at_s = 0.0;
-  double from = 0.0;
-  double to = 0.0;
 };
 
 struct Diagnosis {
@@ -73,7 +67,8 @@ struct Diagnosis {
   std::vector<SelectionStep> steps;
   /// Disturbance of the rig, where the record was judged by innovations and shows any.
   std::optional<Disturbance> disturbance;
-  std::vector<ParameterStep> changing;  ///< where nothing else explains the record
+  /// Parameters that change within the record: Verdict::changing where they explain it.
+  std::vector<ParameterChange> changing;
   std::optional<RepeatedMotion>
       repetition;         ///< repetition of the final model's error, where the motion repeats
   Excitation excitation;  ///< insufficient: Verdict::not_excited

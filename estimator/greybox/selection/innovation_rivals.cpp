@@ -42,6 +42,11 @@ InnovationStage exchanged(const SearchContext& plain, const InnovationStage& sta
 
 }  // namespace
 
+InnovationStage without(const SearchContext& plain, const InnovationStage& stage,
+                        const std::string& effect) {
+  return exchanged(plain, stage, effect, "", {});
+}
+
 std::vector<InnovationStage> eliminate(const SearchContext& plain, InnovationStage& stage,
                                        double evidence_nats) {
   std::vector<InnovationStage> without;

@@ -17,6 +17,10 @@ struct InnovationRivals {
   std::vector<FitSummary> explanations;  ///< one for each name
 };
 
+/// The stage without an effect, settled anew.
+[[nodiscard]] InnovationStage without(const SearchContext& plain, const InnovationStage& stage,
+                                      const std::string& effect);
+
 /// Removes effects whose absence costs less than they are worth. Returns the stage without each of
 /// those that stay; without the only one it is not known.
 std::vector<InnovationStage> eliminate(const SearchContext& plain, InnovationStage& stage,

@@ -52,13 +52,42 @@ SimulatedEffects simulated_effects(const SearchContext& plain, const InnovationS
   return simulated_effects(plain, stage.model);
 }
 
+/// The first effect of the stage that has left its range; empty: none.
+std::string effect_out_of_range(const InnovationStage& stage) {
+  const FitSummary& fitted = stage.model.fitted;
+  for (const std::string& effect : stage.model.added) {
+    for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+      if (belongs_to(fitted.parameters[i], effect) && leaves_its_range(fitted, i, i + 1)) {
+        return effect;
+      }
+    }
+  }
+  return "";
+}
+
+/// Drops effects that have left their range since others came in: these, or a law that the library
+/// does not have, are what they stood for.
+void drop_out_of_range(const SearchContext& plain, InnovationStage& stage,
+                       std::vector<std::string>& dropped) {
+  for (std::string effect = effect_out_of_range(stage); !effect.empty() && !plain.cancelled();
+       effect = effect_out_of_range(stage)) {
+    stage = without(plain, stage, effect);
+    dropped.push_back(std::move(effect));
+  }
+}
+
 /// One round: false when nothing gains enough. `evidence_nats`: what a candidate must gain.
+/// `dropped`: effects that are no candidates any more.
 bool extend(const SearchContext& plain, InnovationStage& stage, const SearchBranch& held,
-            double evidence_nats, std::vector<InnovationRound>& rounds) {
+            double evidence_nats, std::vector<InnovationRound>& rounds,
+            std::vector<std::string>& dropped) {
   std::vector<InnovationTrial> trials;
   if (stage.model.added.size() < kMostEffects) {
     trials = effect_trials(stage);
     add_simulated_starts(stage, simulated_effects(plain, stage, held), trials);
+    std::erase_if(trials, [&](const InnovationTrial& trial) {
+      return std::find(dropped.begin(), dropped.end(), trial.candidate.effect) != dropped.end();
+    });
   }
   if (stage.noise.lines.size() < kMostLines) {
     std::vector<ScoredLine> lines = line_candidates(plain, stage);
@@ -93,14 +122,26 @@ bool extend(const SearchContext& plain, InnovationStage& stage, const SearchBran
     progress.effect = trial.candidate.effect.empty() ? "a spectral line" : trial.candidate.effect;
     plain.options.progress(progress);
   });
-  std::size_t chosen = trials.size();
-  for (std::size_t i = 0; i < trials.size(); ++i) {
-    const InnovationTrial& trial = trials[i];
-    if (!trial.candidate.settled || !(trial.candidate.gain_nats >= evidence_nats)) continue;
-    if (leaves_its_range(stages[i].model.fitted, stage.model.fitted.parameters.size())) continue;
-    if (chosen == trials.size() || trial.candidate.gain_nats > trials[chosen].candidate.gain_nats) {
-      chosen = i;
+  // an effect that leaves its range, at once or with its noise model settled, stands for another
+  const std::size_t none = trials.size();
+  const std::size_t own = stage.model.fitted.parameters.size();
+  const auto likeliest = [&] {
+    std::size_t best = none;
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+      const InnovationCandidate& candidate = trials[i].candidate;
+      if (!candidate.settled || !(candidate.gain_nats >= evidence_nats)) continue;
+      if (leaves_its_range(stages[i].model.fitted, own)) continue;
+      if (best == none || candidate.gain_nats > trials[best].candidate.gain_nats) best = i;
     }
+    return best;
+  };
+  std::size_t chosen = likeliest();
+  while (chosen != none) {
+    InnovationStage polished = settled(plain, stages[chosen].model, stages[chosen].noise,
+                                       kMostTurns, wide(plain.options.threads));
+    if (polished.minus_two_log < stages[chosen].minus_two_log) stages[chosen] = std::move(polished);
+    if (!leaves_its_range(stages[chosen].model.fitted, own)) break;
+    chosen = likeliest();
   }
   for (std::size_t i = 0; i < trials.size(); ++i) {
     trials[i].candidate.penalty_nats = trials[i].penalty_nats;
@@ -109,33 +150,17 @@ bool extend(const SearchContext& plain, InnovationStage& stage, const SearchBran
   }
   InnovationRound round{stage.model, {}};
   round.before.fitted.jacobian.resize(0, 0);
-  if (chosen < trials.size()) round.candidates.push_back(trials[chosen].candidate);
+  if (chosen != none) round.candidates.push_back(trials[chosen].candidate);
   for (std::size_t i = 0; i < trials.size(); ++i) {
     if (i != chosen) round.candidates.push_back(trials[i].candidate);
   }
   rounds.push_back(std::move(round));
-  if (chosen == trials.size()) return false;
-  InnovationStage polished = settled(plain, stages[chosen].model, stages[chosen].noise, kMostTurns,
-                                     wide(plain.options.threads));
-  stage = polished.minus_two_log < stages[chosen].minus_two_log ? std::move(polished)
-                                                                : std::move(stages[chosen]);
-  if (!trials[chosen].candidate.effect.empty()) reconsider_sites(plain, stage);
+  if (chosen == none) return false;
+  stage = std::move(stages[chosen]);
+  if (trials[chosen].candidate.effect.empty()) return true;
+  drop_out_of_range(plain, stage, dropped);
+  reconsider_sites(plain, stage);
   return true;
-}
-
-disturbance::ForceJump likeliest_jump(const InnovationStage& stage) {
-  const FitDataset& data = stage.context.problem.data;
-  disturbance::ForceJump best;
-  for (std::size_t i = 0; i < data.records.size(); ++i) {
-    const Dataset& record = data.records[i];
-    const disturbance::ForceJump jump = disturbance::likeliest_jump(
-        stage.linear[i], record, *record.innovations,
-        stage.model.fitted.residual_m.segment(static_cast<Eigen::Index>(data.starts[i]),
-                                              static_cast<Eigen::Index>(record.size())),
-        data.noise_floor_m);
-    if (jump.gain_nats > best.gain_nats) best = jump;
-  }
-  return best;
 }
 
 /// The model that another search holds, where it is more likely than the stage reached.
@@ -145,6 +170,7 @@ void take_held(const SearchContext& context, const ModelStage& held, double evid
   const InnovationStage other =
       settled(context, held, stage.noise, kMostTurns, wide(context.options.threads));
   if (!(penalised(other) < penalised(stage) - 2.0 * evidence_nats)) return;
+  if (!effect_out_of_range(other).empty()) return;
   InnovationCandidate candidate;
   candidate.effect = config::schema::joined(held.added, "+");
   candidate.settled = true;
@@ -200,19 +226,39 @@ InnovationSearch search_innovations(const SearchContext& with_holdouts, const Mo
     return kInterpolated * context.problem.interpolated_nats +
            kInexact * 0.5 * std::max(0.0, search.before.minus_two_log - stage.minus_two_log);
   };
+  std::vector<std::string> dropped;
   while (!context.cancelled() &&
-         extend(context, stage, held, kEvidence_nats + inexact_nats(), search.rounds)) {
+         extend(context, stage, held, kEvidence_nats + inexact_nats(), search.rounds, dropped)) {
   }
   take_held(context, held.stage, kEvidence_nats + inexact_nats(), stage, search.rounds);
   search.inexact_nats = inexact_nats();
   search.without = eliminate(context, stage, kEvidence_nats + search.inexact_nats);
   note_gains(search, stage);
-  const std::vector<CurveGain> curves =
-      context.cancelled() ? std::vector<CurveGain>() : curve_gains(stage);
-  if (!curves.empty()) search.curve_nats = curves.front().gain_nats;
-  search.jump = likeliest_jump(stage);
   search.final = std::move(stage);
+  weigh_remainder(context, search);
   return search;
+}
+
+disturbance::ForceJump likeliest_jump(const InnovationStage& stage) {
+  const FitDataset& data = stage.context.problem.data;
+  disturbance::ForceJump best;
+  for (std::size_t i = 0; i < data.records.size(); ++i) {
+    const Dataset& record = data.records[i];
+    const disturbance::ForceJump jump = disturbance::likeliest_jump(
+        stage.linear[i], record, *record.innovations,
+        stage.model.fitted.residual_m.segment(static_cast<Eigen::Index>(data.starts[i]),
+                                              static_cast<Eigen::Index>(record.size())),
+        data.noise_floor_m);
+    if (jump.gain_nats > best.gain_nats) best = jump;
+  }
+  return best;
+}
+
+void weigh_remainder(const SearchContext& context, InnovationSearch& search) {
+  const std::vector<CurveGain> curves =
+      context.cancelled() ? std::vector<CurveGain>() : curve_gains(search.final);
+  search.curve_nats = curves.empty() ? 0.0 : curves.front().gain_nats;
+  search.jump = likeliest_jump(search.final);
 }
 
 std::vector<InnovationRivals> find_rivals(const SearchContext& with_holdouts,

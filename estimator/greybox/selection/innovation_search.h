@@ -27,6 +27,9 @@ namespace estimator::greybox::selection {
 /// curves stays below 25 on healthy and rightly named records.
 inline constexpr double kCurve_nats = 30.0;
 
+/// Gain of a load that sets in, over that of jumps that are usual on the record.
+inline constexpr double kStandsOut = 3.0;
+
 struct InnovationRound {
   ModelStage before;                            ///< without Jacobian
   std::vector<InnovationCandidate> candidates;  ///< the one taken, if any, then the best first
@@ -45,9 +48,11 @@ struct InnovationSearch {
   /// The likeliest load that sets in at one sample.
   disturbance::ForceJump jump;
 
-  /// True when a load sets in, which no curve over the motion explains better.
+  /// True when a load sets in, which no curve over the motion explains better and which stands out
+  /// from the disturbance's own jumps.
   [[nodiscard]] bool load_sets_in() const {
-    return jump.gain_nats > std::max(curve_nats, kCurve_nats + inexact_nats);
+    return jump.gain_nats > std::max(curve_nats, kCurve_nats + inexact_nats) &&
+           jump.gain_nats > kStandsOut * jump.usual_nats;
   }
   [[nodiscard]] bool physics_missing() const {
     return load_sets_in() || curve_nats > kCurve_nats + inexact_nats;
@@ -60,6 +65,12 @@ struct InnovationSearch {
 [[nodiscard]] InnovationSearch search_innovations(const SearchContext& context,
                                                   const ModelStage& first,
                                                   const SearchBranch& held);
+
+/// The likeliest load that sets in at one sample.
+[[nodiscard]] disturbance::ForceJump likeliest_jump(const InnovationStage& stage);
+
+/// Sets what the final model leaves: the gain of curves over the motion, and the likeliest jump.
+void weigh_remainder(const SearchContext& context, InnovationSearch& search);
 
 /// For each effect found, those that explain the record about as well in its place. Effects that
 /// gained little beside what physics is missing are left out: they are not established anyway.

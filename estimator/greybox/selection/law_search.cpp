@@ -8,14 +8,16 @@ namespace {
 
 constexpr std::size_t kMostLaws = 2;
 
-SearchContext with_laws(const SearchContext& context, const std::vector<Law>& laws) {
+SearchContext with_laws(const SearchContext& context, const std::vector<Law>& laws,
+                        const std::vector<std::string>& effects) {
   SearchContext result = context;
   DiagnosisProblem& problem = result.problem;
   for (const Law& law : laws) problem.model.declare(law.effect, "dictionary of laws");
   problem.candidate_effects = absent_effects(problem.model);
   std::erase_if(problem.candidate_effects, [&](const plant_sim::EffectInfo& effect) {
     return std::none_of(laws.begin(), laws.end(),
-                        [&](const Law& law) { return law.effect.name == effect.name; });
+                        [&](const Law& law) { return law.effect.name == effect.name; }) &&
+           std::find(effects.begin(), effects.end(), effect.name) == effects.end();
   });
   return result;
 }
@@ -23,20 +25,23 @@ SearchContext with_laws(const SearchContext& context, const std::vector<Law>& la
 }  // namespace
 
 std::optional<LawSearch> search_laws(const SearchContext& context, const ModelStage& first,
-                                     const std::string& site) {
+                                     const std::string& site,
+                                     const std::vector<std::string>& effects) {
   std::vector<Law> dictionary = law_dictionary(context.problem.model, context.problem.data);
   if (!site.empty())
     std::erase_if(dictionary, [&](const Law& law) { return law.effect.site != site; });
   if (dictionary.empty() || context.cancelled()) return {};
-  LawSearch search{with_laws(context, dictionary), first, {}, {}};
+  LawSearch search{with_laws(context, dictionary, effects), first, {}, {}};
   search.innovations = search_innovations(search.context, first, {});
   const InnovationSearch& found = search.innovations;
   const std::vector<std::string>& added = found.final.model.added;
-  if (added.empty() || added.size() > kMostLaws || found.physics_missing()) return {};
+  if (found.physics_missing()) return {};
   for (const std::string& name : added) {
-    search.laws.push_back(*std::find_if(dictionary.begin(), dictionary.end(),
-                                        [&](const Law& law) { return law.effect.name == name; }));
+    const auto law = std::find_if(dictionary.begin(), dictionary.end(),
+                                  [&](const Law& one) { return one.effect.name == name; });
+    if (law != dictionary.end()) search.laws.push_back(*law);
   }
+  if (search.laws.empty() || search.laws.size() > kMostLaws) return {};
   return search;
 }
 

@@ -1,5 +1,5 @@
 // The law that the library has no name for: where no effect explains a record, one or two laws of
-// the dictionary, searched for by the likelihood of innovations as effects are.
+// the dictionary, searched for by the likelihood of innovations as effects are, and beside them.
 #pragma once
 
 #include <optional>
@@ -15,13 +15,14 @@ struct LawSearch {
   SearchContext context;  ///< the problem with the dictionary's laws as its candidates
   ModelStage first;
   InnovationSearch innovations;
-  std::vector<Law> laws;  ///< those of the final model, in the order added
+  std::vector<Law> laws;  ///< those among the final model's effects, in the order added
 };
 
-/// None where one or two laws leave physics unexplained. `first`: the model as given, fitted with
-/// the weak observer. `site`: where laws are looked for; empty: everywhere.
+/// None where one or two laws leave physics unexplained, or none is of use. `first`: the model as
+/// given, fitted with the weak observer. `site`: where laws are looked for; empty: everywhere.
+/// `effects` of the library compete with them.
 [[nodiscard]] std::optional<LawSearch> search_laws(const SearchContext& context,
-                                                   const ModelStage& first,
-                                                   const std::string& site);
+                                                   const ModelStage& first, const std::string& site,
+                                                   const std::vector<std::string>& effects);
 
 }  // namespace estimator::greybox::selection

@@ -14,19 +14,6 @@ namespace {
 /// Size of a law over its standard error, from which on it is learned.
 constexpr double kClearOfError = 3.0;
 
-/// What was known before any conclusion was drawn.
-Diagnosis begun(const Diagnosis& result) {
-  Diagnosis begun;
-  begun.noise_floor_m = result.noise_floor_m;
-  begun.floor_assumed = result.floor_assumed;
-  begun.excitation = result.excitation;
-  begun.command_lead_samples = result.command_lead_samples;
-  begun.checks = result.checks;
-  begun.search.nominal_rms_m = result.search.nominal_rms_m;
-  begun.search.preview_s = result.search.preview_s;
-  return begun;
-}
-
 /// How a law enters, in the words of a Localisation.
 std::string class_of(const Law& law) {
   if (law.effect.site == "force") return "force";
@@ -70,10 +57,22 @@ bool take_laws(const SearchContext& context, const ModelStage& first, const LawS
   return true;
 }
 
+/// The only site at which all of the effects act; empty: there is none.
+std::string shared_site(const std::vector<std::string>& effects) {
+  std::string site;
+  for (const std::string& name : effects) {
+    const plant_sim::EffectInfo* effect = plant_sim::find_effect(name);
+    if (effect == nullptr || effect->sites.size() != 1) return "";
+    if (!site.empty() && effect->sites.front() != site) return "";
+    site = effect->sites.front();
+  }
+  return site;
+}
+
 }  // namespace
 
 void learn_laws(const SearchContext& context, const ModelStage& first, Diagnosis& result) {
-  const std::optional<LawSearch> found = search_laws(context, first, "");
+  const std::optional<LawSearch> found = search_laws(context, first, "", result.search.final.added);
   if (!found) return;
   Diagnosis learned;
   if (take_laws(context, first, *found, result, learned) &&
@@ -85,11 +84,13 @@ void learn_laws(const SearchContext& context, const ModelStage& first, Diagnosis
 bool prefer_law(const SearchContext& context, const ModelStage& first,
                 const InnovationSearch& innovations, Diagnosis& result) {
   const InnovationStage& named = innovations.final;
-  if (named.model.added.size() != 1 || innovations.physics_missing()) return false;
-  const plant_sim::EffectInfo* effect = plant_sim::find_effect(named.model.added.front());
-  if (effect == nullptr || effect->sites.size() != 1) return false;
-  const std::optional<LawSearch> found = search_laws(context, first, effect->sites.front());
-  return found && found->laws.size() == 1 &&
+  const std::vector<std::string>& added = named.model.added;
+  const std::string site = shared_site(added);
+  if (site.empty() || innovations.physics_missing()) return false;
+  // one effect is compared with laws alone: which of them it would be is what is asked
+  const std::optional<LawSearch> found =
+      search_laws(context, first, site, added.size() > 1 ? added : std::vector<std::string>());
+  return found && found->innovations.final.model.added.size() <= added.size() &&
          penalised(found->innovations.final) < penalised(named) - 2.0 * kEvidence_nats &&
          take_laws(context, first, *found, result, result);
 }

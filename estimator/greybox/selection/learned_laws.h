@@ -9,8 +9,8 @@ namespace estimator::greybox::selection {
 /// Takes laws where no effect explains the record and they leave clearly less.
 void learn_laws(const SearchContext& context, const ModelStage& first, Diagnosis& result);
 
-/// Takes a law at the site of the one effect found where it is clearly likelier than the effect:
-/// under a disturbance the nearest effect passes for a law that the library does not have. False:
+/// Takes a law at the site that the effects found share where it is clearly likelier than they are:
+/// under a disturbance the nearest effects pass for a law that the library does not have. False:
 /// `result` is as before.
 [[nodiscard]] bool prefer_law(const SearchContext& context, const ModelStage& first,
                               const InnovationSearch& innovations, Diagnosis& result);

@@ -23,7 +23,11 @@ constexpr double kRevived = 1e-3;
 }  // namespace
 
 bool leaves_its_range(const FitSummary& fitted, std::size_t first) {
-  for (std::size_t i = first; i < fitted.parameters.size(); ++i) {
+  return leaves_its_range(fitted, first, fitted.parameters.size());
+}
+
+bool leaves_its_range(const FitSummary& fitted, std::size_t first, std::size_t last) {
+  for (std::size_t i = first; i < last; ++i) {
     const FreeParameter& p = fitted.parameters[i];
     const bool is_angle = p.name.find(".phase_rad") != std::string::npos;
     const bool absent = fitted.theta[static_cast<Eigen::Index>(i)] == 0.0;

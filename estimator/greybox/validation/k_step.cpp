@@ -5,6 +5,7 @@
 #include "estimator/greybox/kinematics.h"
 #include "estimator/greybox/observer_simulation.h"
 #include "plant_sim/ensemble.h"
+#include "plant_sim/ensemble_schedule.h"
 
 namespace estimator::greybox::validation {
 namespace {
@@ -33,11 +34,14 @@ std::vector<KStep> k_step_errors(const plant_sim::ModelFile& model, const Datase
   const std::vector<Lane> all = lanes();
   static_assert(Ensemble::kLanes == 8);
   const auto ensemble = plant_sim::make_ensemble(model, step_for(model, record.sample_time_s));
+  plant_sim::EnsembleSchedule schedule(model, *ensemble);
+  schedule.begin(*ensemble);
   std::vector<double> squares(result.size(), 0.0);
   for (const SampleRange& span : segments(record)) {
     ensemble->start(record.y_m[span.begin]);
     std::vector<std::size_t> synchronised(all.size(), span.begin);
     for (std::size_t k = span.begin; k < span.end; ++k) {
+      schedule.apply(*ensemble, record.t_s[k], record.sample_time_s);
       const Ensemble::Values reading_m = ensemble->reading_m();
       Ensemble::Values by_m{};
       for (std::size_t i = 0; i < all.size(); ++i) {

@@ -1,0 +1,221 @@
+#include "estimator/greybox/selection/change_scores.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace estimator::greybox::selection {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Times at which a step is looked for, and what they keep from the record's ends.
+constexpr Index kTimes = 400;
+constexpr double kFromEnds_s = 1.0;
+/// Time constants of warming up, as shares of the record.
+constexpr double kShares[] = {0.03, 0.1, 0.3};
+/// Size of an absent effect, in typical sizes, for the difference quotient.
+constexpr double kSmall = 0.05;
+/// Share of a column that must remain beside the model's own freedom.
+constexpr double kVisible = 1e-6;
+
+/// Sensitivities of the innovations, in standard deviations, to parameters.
+struct Columns {
+  std::vector<FreeParameter> parameters;
+  std::vector<bool> absent;
+  MatrixXd values;
+};
+
+/// Sizes of absent effects by difference quotients.
+void add_absent_effects(const InnovationStage& stage, Columns& columns) {
+  const SearchContext& context = stage.context;
+  const FitSummary& fitted = stage.model.fitted;
+  const double floor_m = context.problem.data.noise_floor_m;
+  std::vector<FreeParameter> all = fitted.parameters;
+  std::vector<FreeParameter> sizes;
+  for (const plant_sim::EffectInfo& effect : context.problem.candidate_effects) {
+    const std::vector<FreeParameter> own = effect_parameters(effect, 0);
+    const auto& added = stage.model.added;
+    if (own.empty() || own.front().scale != ParameterScale::linear ||
+        std::find(added.begin(), added.end(), effect.name) != added.end()) {
+      continue;
+    }
+    sizes.push_back(own.front());
+  }
+  all.insert(all.end(), sizes.begin(), sizes.end());
+  const auto own = static_cast<Index>(fitted.parameters.size());
+  const auto count = static_cast<Index>(sizes.size());
+  DatasetSimulation run(context.problem.model, context.problem.data, all);
+  VectorXd base = VectorXd::Zero(own + count);
+  base.head(own) = fitted.theta;
+  const Index samples = fitted.residual_m.size();
+  columns.values.conservativeResize(samples, own + count);
+  constexpr Index kBatch = ObserverSimulation::kLanes;
+  MatrixXd residuals_m;
+  for (Index from = 0; from < count && !context.cancelled(); from += kBatch) {
+    const Index lanes = std::min(kBatch, count - from);
+    MatrixXd points = base.replicate(1, lanes);
+    for (Index i = 0; i < lanes; ++i) points(own + from + i, i) = kSmall;
+    run.residuals(points, residuals_m);
+    for (Index i = 0; i < lanes; ++i) {
+      columns.values.col(own + from + i) =
+          (residuals_m.col(i) - fitted.residual_m) / (kSmall * floor_m);
+    }
+  }
+  for (const FreeParameter& size : sizes) {
+    columns.parameters.push_back(size);
+    columns.absent.push_back(true);
+  }
+}
+
+Columns columns_of(const InnovationStage& stage) {
+  const FitSummary& fitted = stage.model.fitted;
+  Columns columns{fitted.parameters, std::vector<bool>(fitted.parameters.size(), false),
+                  fitted.jacobian / stage.context.problem.data.noise_floor_m};
+  add_absent_effects(stage, columns);
+  return columns;
+}
+
+/// Orthonormal basis of the model's own freedom.
+MatrixXd basis_of(const MatrixXd& jacobian) {
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr(jacobian);
+  const Index rank = qr.rank();
+  return MatrixXd(qr.householderQ() * MatrixXd::Identity(jacobian.rows(), rank));
+}
+
+/// One parameter's column with the basis that its course has to leave.
+class Course {
+ public:
+  Course(const MatrixXd& basis, const VectorXd& rest, const VectorXd& column, bool absent)
+      : column_(column), basis_(basis), rest_(rest) {
+    if (!absent) return;
+    // the effect throughout is no change: it belongs to the model's freedom here
+    VectorXd own = column - basis * (basis.transpose() * column);
+    const double norm = own.norm();
+    if (!(norm > kVisible * column.norm())) return;
+    own /= norm;
+    basis_.conservativeResize(Eigen::NoChange, basis.cols() + 1);
+    basis_.rightCols(1) = own;
+    rest_ -= own * own.dot(rest_);
+  }
+
+  void score(const VectorXd& course, ChangeScore& score) const {
+    const VectorXd x = column_.cwiseProduct(course);
+    take(rest_.dot(x), x.squaredNorm(), basis_.transpose() * x, score);
+  }
+
+  /// The likeliest step; `grid`: its possible samples, ascending.
+  Index score_steps(const std::vector<Index>& grid, ChangeScore& best) const {
+    double product = 0.0;
+    double square = 0.0;
+    VectorXd along = VectorXd::Zero(basis_.cols());
+    Index end = column_.size();
+    Index chosen = -1;
+    for (auto at = grid.rbegin(); at != grid.rend(); ++at) {
+      const Index count = end - *at;
+      const auto part = column_.segment(*at, count);
+      product += rest_.segment(*at, count).dot(part);
+      square += part.squaredNorm();
+      along += basis_.middleRows(*at, count).transpose() * part;
+      end = *at;
+      ChangeScore now = best;
+      take(product, square, along, now);
+      if (now.gain_nats > best.gain_nats) {
+        best = now;
+        chosen = *at;
+      }
+    }
+    return chosen;
+  }
+
+ private:
+  static void take(double product, double square, const VectorXd& along, ChangeScore& score) {
+    const double left = square - along.squaredNorm();
+    if (!(left > kVisible * square) || !(square > 0.0)) return;
+    score.gain_nats = 0.5 * product * product / left;
+    score.by = -product / left;
+  }
+
+  const VectorXd& column_;
+  MatrixXd basis_;
+  VectorXd rest_;
+};
+
+std::vector<Index> step_times(const Dataset& record) {
+  std::vector<Index> grid;
+  const auto samples = static_cast<Index>(record.size());
+  const auto margin = static_cast<Index>(std::ceil(kFromEnds_s / record.sample_time_s));
+  const Index step = std::max<Index>(1, samples / kTimes);
+  for (Index k = margin; k < samples - margin; k += step) grid.push_back(k);
+  return grid;
+}
+
+}  // namespace
+
+const char* to_string(ChangeKind kind) {
+  switch (kind) {
+    case ChangeKind::ramp:
+      return "ramp";
+    case ChangeKind::exponential:
+      return "exponential";
+    case ChangeKind::step:
+      break;
+  }
+  return "step";
+}
+
+std::vector<ChangeScore> change_scores(const InnovationStage& stage) {
+  const FitDataset& data = stage.context.problem.data;
+  if (data.records.size() != 1 || stage.model.fitted.jacobian.size() == 0) return {};
+  const Dataset& record = data.records.front();
+  const std::vector<Index> grid = step_times(record);
+  if (grid.empty()) return {};
+  const Columns columns = columns_of(stage);
+  const auto own = static_cast<Index>(stage.model.fitted.parameters.size());
+  const MatrixXd basis = basis_of(columns.values.leftCols(own));
+  VectorXd rest = stage.model.fitted.residual_m / data.noise_floor_m;
+  rest -= basis * (basis.transpose() * rest);
+  const Eigen::Map<const VectorXd> t_s(record.t_s.data(), static_cast<Index>(record.size()));
+  const double begin_s = record.t_s.front();
+  const double length_s = record.t_s.back() - begin_s;
+  std::vector<ChangeScore> scores;
+  for (Index c = 0; c < columns.values.cols(); ++c) {
+    if (stage.context.cancelled()) break;
+    const auto i = static_cast<std::size_t>(c);
+    if (columns.parameters[i].name.starts_with("change.")) continue;  // of a change found before
+    const VectorXd column = columns.values.col(c);
+    const Course course(basis, rest, column, columns.absent[i]);
+    ChangeScore score{columns.parameters[i], columns.absent[i]};
+    ChangeScore step = score;
+    const Index at = course.score_steps(grid, step);
+    if (at >= 0) {
+      step.at_s = record.t_s[static_cast<std::size_t>(at)];
+      scores.push_back(step);
+    }
+    ChangeScore ramp = score;
+    ramp.kind = ChangeKind::ramp;
+    ramp.at_s = begin_s;
+    ramp.duration_s = length_s;
+    course.score((t_s.array() - begin_s).matrix() / length_s, ramp);
+    scores.push_back(ramp);
+    ChangeScore warming = score;
+    for (const double share : kShares) {
+      ChangeScore one = score;
+      one.kind = ChangeKind::exponential;
+      one.at_s = begin_s;
+      one.duration_s = share * length_s;
+      course.score(-((begin_s - t_s.array()) / one.duration_s).expm1().matrix(), one);
+      if (one.gain_nats > warming.gain_nats) warming = one;
+    }
+    scores.push_back(warming);
+  }
+  std::stable_sort(scores.begin(), scores.end(), [](const ChangeScore& a, const ChangeScore& b) {
+    return a.gain_nats > b.gain_nats;
+  });
+  return scores;
+}
+
+}  // namespace estimator::greybox::selection

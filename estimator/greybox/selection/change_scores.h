@@ -1,0 +1,33 @@
+// Which parameter changes within a record, and when: a score test on the innovations, by
+// linearisation about the model.
+//
+// Innovations forget: a parameter that changes at a time moves those from there on as a change
+// throughout would. With the sensitivity j of the innovations e to a parameter and its course s(t),
+//
+//   gain = (e' x)^2 / (2 x' x),   x = s j,
+//
+// both projected from the space of the model's own freedom.
+#pragma once
+
+#include <vector>
+
+#include "estimator/greybox/selection/innovation_stage.h"
+#include "estimator/greybox/selection/parameter_change.h"
+
+namespace estimator::greybox::selection {
+
+struct ChangeScore {
+  FreeParameter parameter;
+  bool absent = false;  ///< the size of an effect that the model does not have
+  ChangeKind kind = ChangeKind::step;
+  double at_s = 0.0;
+  double duration_s = 0.0;
+  double by = 0.0;  ///< change of the search value, estimated
+  double gain_nats = 0.0;
+};
+
+/// The likeliest time of each kind for every parameter, best first; none for several records.
+/// `stage` has its Jacobian.
+[[nodiscard]] std::vector<ChangeScore> change_scores(const InnovationStage& stage);
+
+}  // namespace estimator::greybox::selection

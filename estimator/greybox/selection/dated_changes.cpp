@@ -1,0 +1,53 @@
+#include "estimator/greybox/selection/dated_changes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "estimator/greybox/selection/change_search.h"
+#include "estimator/greybox/selection/conclusion.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+/// The time comes first among what the error goes with.
+void put_time_first(std::vector<Localisation>& where) {
+  std::stable_partition(where.begin(), where.end(),
+                        [](const Localisation& one) { return one.variable == "time"; });
+}
+
+/// True where the changes found explain the record and leave clearly less than `before`.
+bool take_changes(const ModelStage& first, ChangeSearch& found, const Diagnosis& before,
+                  Diagnosis& result) {
+  found.context.problem.candidate_effects.clear();  // none of them explains the record
+  Diagnosis changed = begun(before);
+  conclude(found.context, found.context, first, found.innovations, changed);
+  if (changed.verdict == Verdict::unexplained ||
+      !(changed.rms_after_m < (1.0 - kRivals) * before.rms_after_m)) {
+    return false;
+  }
+  changed.verdict = Verdict::changing;
+  std::erase_if(changed.missing,
+                [](const std::string& name) { return name.starts_with("change."); });
+  changed.changing = found.changes;
+  changed.where = before.whole;
+  changed.where_is_whole = true;
+  put_time_first(changed.where);
+  result = std::move(changed);
+  return true;
+}
+
+}  // namespace
+
+bool date_changes(const SearchContext& context, const ModelStage& first, Diagnosis& result) {
+  std::vector<ModelStage> bases{first};
+  const ModelStage& found = result.search.final;
+  if (!found.added.empty() && found.added.size() < kStandIn) bases.push_back(found);
+  for (const ModelStage& base : bases) {
+    std::optional<ChangeSearch> search = search_changes(context, base);
+    if (search && take_changes(first, *search, result, result)) return true;
+  }
+  return false;
+}
+
+}  // namespace estimator::greybox::selection

@@ -1,0 +1,33 @@
+// A parameter that changes within a record.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace estimator::greybox::selection {
+
+enum class ChangeKind {
+  step,
+  ramp,        ///< linear over `duration_s`
+  exponential  ///< with the time constant `duration_s`, as in warming up
+};
+/// "step", "ramp", "exponential".
+[[nodiscard]] const char* to_string(ChangeKind kind);
+
+struct ParameterChange {
+  std::string parameter;  ///< "damping_N_s_per_m", "null_bias.offset_V"
+  ChangeKind kind = ChangeKind::step;
+  double at_s = 0.0;        ///< its beginning, in the record's time
+  double duration_s = 0.0;  ///< 0 for a step
+  double from = 0.0;
+  double to = 0.0;
+  // Standard errors; NaN where not known.
+  double at_error_s = std::numeric_limits<double>::quiet_NaN();
+  double from_error = std::numeric_limits<double>::quiet_NaN();
+  double to_error = std::numeric_limits<double>::quiet_NaN();
+  /// Parameters whose change would explain the record about as well.
+  std::vector<std::string> rivals{};
+};
+
+}  // namespace estimator::greybox::selection

@@ -1,0 +1,31 @@
+// A change of one of a plant's parameters in time: a fault of a simulated rig, or what a record
+// shows to have happened to a real one.
+//
+//   step         the new value from at_s on
+//   ramp         linear from at_s over ramp_s
+//   exponential  towards the new value from at_s on, as in warming up
+#pragma once
+
+#include <limits>
+#include <string>
+
+namespace config::schema {
+class Visitor;
+}
+
+namespace plant_sim {
+
+/// One change. Exactly one of value and factor is given (the other is NaN).
+struct Change {
+  std::string parameter;  ///< "supply_pressure_Pa" or "friction.coulomb_N"
+  double at_s = 0.0;      ///< when it starts
+  double value = std::numeric_limits<double>::quiet_NaN();  ///< in the parameter's own unit
+  double factor =
+      std::numeric_limits<double>::quiet_NaN();  ///< factor on the value at construction
+  double ramp_s = 0.0;                           ///< 0 = a step
+  double time_constant_s = 0.0;                  ///< of an exponential; 0 = none
+
+  void visit(config::schema::Visitor& v);
+};
+
+}  // namespace plant_sim
