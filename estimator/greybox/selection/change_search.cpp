@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "estimator/greybox/selection/change_scores.h"
+#include "estimator/greybox/selection/innovation_curves.h"
 #include "estimator/parallel.h"
 
 namespace estimator::greybox::selection {
@@ -16,6 +17,12 @@ constexpr std::size_t kFinalists = 6;
 constexpr double kWorthFitting = 0.5;
 /// Range of a changed plant parameter about the present value, in logarithms.
 constexpr double kRange = 2.3;
+/// Gain of a curve over the motion, in those of the best change, from which on no change is sought.
+constexpr double kMotionExplains = 2.0;
+/// Range and step, in samples, in which the time of a change is looked for about its fit.
+constexpr double kScanned_s = 1.0;
+constexpr double kScanStep = 4.0;
+constexpr int kScans = 3;
 constexpr const char* kLoad = "load_force.force_N";
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -125,6 +132,38 @@ std::vector<ChangeScore> finalists(const InnovationStage& stage, double evidence
   return scores;
 }
 
+/// Sets the time of a change to the likeliest within kScanned_s, the other parameters held: the
+/// likelihood has a minimum about every pause of the motion. False where it is that already.
+bool scan_time(const SearchContext& context, const std::string& name, FitSummary& fitted) {
+  const auto at = std::find_if(fitted.parameters.begin(), fitted.parameters.end(),
+                               [&](const FreeParameter& p) { return p.name == name; });
+  if (at == fitted.parameters.end()) return false;
+  const auto row = static_cast<Eigen::Index>(at - fitted.parameters.begin());
+  const double step = kScanStep * context.problem.data.sample_time_s / at->unit;
+  const auto half = static_cast<int>(kScanned_s / at->unit / step);
+  DatasetSimulation run(context.problem.model, context.problem.data, fitted.parameters);
+  double least = rms(fitted.residual_m, context.problem.data.training_mask);
+  double best = fitted.theta[row];
+  constexpr int kLanes = static_cast<int>(ObserverSimulation::kLanes);
+  Eigen::MatrixXd residuals_m;
+  for (int from = -half; from <= half && !context.cancelled(); from += kLanes) {
+    Eigen::MatrixXd points = fitted.theta.replicate(1, kLanes);
+    for (int i = 0; i < kLanes; ++i) {
+      points(row, i) = std::clamp(points(row, i) + step * (from + i), at->lower, at->upper);
+    }
+    run.residuals(points, residuals_m);
+    for (int i = 0; i < kLanes; ++i) {
+      const double now = rms(residuals_m.col(i), context.problem.data.training_mask);
+      if (now >= least) continue;
+      least = now;
+      best = points(row, i);
+    }
+  }
+  const bool moved = best != fitted.theta[row];
+  fitted.theta[row] = best;
+  return moved;
+}
+
 /// A proposal fitted with the stage's gains, then with a noise model of its own.
 InnovationStage fitted(const Proposal& proposal, const InnovationStage& stage,
                        SimulationWidth width) {
@@ -133,6 +172,10 @@ InnovationStage fitted(const Proposal& proposal, const InnovationStage& stage,
   ModelStage start = proposal.start;
   start.fitted = fit_innovations(with_gains, {start.fitted.parameters, start.fitted.theta}, width,
                                  InnovationFit::trial);
+  if (scan_time(with_gains, name_of(proposal.score) + ".at_s", start.fitted)) {
+    start.fitted = fit_innovations(with_gains, {start.fitted.parameters, start.fitted.theta}, width,
+                                   InnovationFit::trial);
+  }
   return settled(proposal.context, std::move(start), stage.noise, 1, width);
 }
 
@@ -273,6 +316,15 @@ bool add_change(const SearchContext& plain, InnovationStage& stage, ChangeSearch
   stage = settled(taken.context, stages[chosen].model, stages[chosen].noise, kMostTurns,
                   wide(plain.options.threads));
   if (!(stage.minus_two_log < stages[chosen].minus_two_log)) stage = std::move(stages[chosen]);
+  // with a noise model of its own the likelihood shows the time more clearly
+  for (int turn = 0; turn < kScans; ++turn) {
+    ModelStage moved = stage.model;
+    if (!scan_time(stage.context, name_of(taken.score) + ".at_s", moved.fitted)) break;
+    InnovationStage other = settled(taken.context, std::move(moved), stage.noise, kMostTurns,
+                                    wide(plain.options.threads));
+    if (!(other.minus_two_log < stage.minus_two_log)) break;
+    stage = std::move(other);
+  }
   candidate.fitted = stage.model.fitted;
   candidate.fitted.jacobian.resize(0, 0);
   InnovationRound round{before.model, {std::move(candidate)}};
@@ -287,6 +339,19 @@ bool add_change(const SearchContext& plain, InnovationStage& stage, ChangeSearch
   return true;
 }
 
+/// True where a curve over the motion promises more than any change in time: then what is missing
+/// is a law, and a change would follow it at best.
+bool motion_explains_more(const InnovationStage& stage) {
+  double best_change = likeliest_jump(stage).gain_nats;
+  for (const ChangeScore& score : change_scores(stage)) {
+    best_change = std::max(best_change, score.gain_nats);
+  }
+  for (const CurveGain& curve : curve_gains(stage)) {
+    if (curve.variable != "time" && curve.gain_nats > kMotionExplains * best_change) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::optional<ChangeSearch> search_changes(const SearchContext& context, const ModelStage& base) {
@@ -295,6 +360,7 @@ std::optional<ChangeSearch> search_changes(const SearchContext& context, const M
   InnovationStage stage = settled(context, base, {}, kMostTurns, wide(context.options.threads));
   if (!std::isfinite(stage.minus_two_log)) return {};
   search.innovations.before = stage;
+  if (motion_explains_more(stage)) return {};
   std::vector<ChangeScore> taken;
   while (taken.size() < kMostChanges && add_change(context, stage, search, taken)) {
   }

@@ -1,0 +1,105 @@
+// A parameter that changes within the record is found with its time, its kind and its values.
+#include "estimator/greybox/selection/change_search.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "estimator/greybox/selection/change_scores.h"
+#include "estimator/greybox/selection/diagnosis.h"
+#include "tests/estimator/greybox/selection/servo_problem.h"
+#include "tests/estimator/greybox/selection/truth_records.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+using diagnose_test::context_of;
+using diagnose_test::kServoGain;
+using diagnose_test::servo_context;
+using diagnose_test::with_offset;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+/// y' = 0.05 m (u + o), m and o courses of the time.
+template <class Gain, class Offset>
+SearchContext changing_servo(const Gain& gain, const Offset& offset_V) {
+  return servo_context({.rate_mps = [=](double u_V, double, double t_s) {
+    return kServoGain * gain(t_s) * (u_V + offset_V(t_s));
+  }});
+}
+
+double constant(double /*t_s*/) { return 1.0; }
+double nothing(double /*t_s*/) { return 0.0; }
+
+TEST(Changes, AGainThatStepsIsDatedToASample) {
+  const SearchContext context =
+      changing_servo([](double t_s) { return t_s < 12.3456 ? 1.0 : 1.03; }, nothing);
+  const Diagnosis d = diagnose(context.problem, context.options);
+  EXPECT_EQ(d.verdict, Verdict::changing);
+  EXPECT_THAT(d.missing, IsEmpty());
+  ASSERT_THAT(d.changing, SizeIs(1));
+  const ParameterChange& change = d.changing.front();
+  EXPECT_EQ(change.parameter, "gain_mps_per_V");
+  EXPECT_EQ(change.kind, ChangeKind::step);
+  EXPECT_NEAR(change.at_s, 12.3456, 0.005);
+  EXPECT_NEAR(change.from, kServoGain, 3.0 * change.from_error + 1e-5);
+  EXPECT_NEAR(change.to, 1.03 * kServoGain, 3.0 * change.to_error + 1e-5);
+  EXPECT_LT(d.rms_after_m, 1.1 * d.noise_floor_m);
+  // the better model has it, as a change that load_model() reads
+  ASSERT_THAT(d.better.changes, SizeIs(1));
+  EXPECT_NEAR(d.better.changes.front().value, 1.03 * kServoGain, 1e-4);
+}
+
+TEST(Changes, AGainThatDriftsIsARamp) {
+  const SearchContext context =
+      changing_servo([](double t_s) { return 1.0 + 0.04 * t_s / 20.0; }, nothing);
+  const Diagnosis d = diagnose(context.problem, context.options);
+  EXPECT_EQ(d.verdict, Verdict::changing);
+  ASSERT_THAT(d.changing, SizeIs(1));
+  EXPECT_EQ(d.changing.front().parameter, "gain_mps_per_V");
+  EXPECT_EQ(d.changing.front().kind, ChangeKind::ramp);
+  EXPECT_NEAR(d.changing.front().from, kServoGain, 2e-4 * kServoGain);
+  EXPECT_NEAR(d.changing.front().to, 1.04 * kServoGain, 2e-4 * kServoGain);
+}
+
+TEST(Changes, AGainThatWarmsUpIsAnExponential) {
+  const SearchContext context =
+      changing_servo([](double t_s) { return 1.05 - 0.05 * std::exp(-t_s / 3.0); }, nothing);
+  const Diagnosis d = diagnose(context.problem, context.options);
+  EXPECT_EQ(d.verdict, Verdict::changing);
+  ASSERT_THAT(d.changing, SizeIs(1));
+  EXPECT_EQ(d.changing.front().kind, ChangeKind::exponential);
+  EXPECT_NEAR(d.changing.front().duration_s, 3.0, 0.15);
+  EXPECT_NEAR(d.changing.front().to, 1.05 * kServoGain, 1e-3 * kServoGain);
+}
+
+TEST(Changes, AHealthyRecordHasNone) {
+  const SearchContext context = servo_context({.rate_mps = with_offset(0.0)});
+  EXPECT_FALSE(search_changes(context, first_stage(context)).has_value());
+}
+
+TEST(Changes, SeveralRecordsHaveNoCommonTime) {
+  SearchContext context = changing_servo(constant, nothing);
+  std::vector<Dataset> twice{context.problem.data.records.front(),
+                             context.problem.data.records.front()};
+  context.problem.data = fit_dataset(twice, {});
+  EXPECT_FALSE(search_changes(context, first_stage(context)).has_value());
+}
+
+TEST(Changes, DampingThatStepsOnTheActuatorIsNamedAmongEightParameters) {
+  const SearchContext context = context_of(
+      "motion=multisine,length_s=30,plant.damping_N_s_per_m=1000,"
+      "at14:plant.damping_N_s_per_m=1900");
+  const std::optional<ChangeSearch> found = search_changes(context, first_stage(context));
+  ASSERT_TRUE(found.has_value());
+  ASSERT_THAT(found->changes, SizeIs(1));
+  const ParameterChange& change = found->changes.front();
+  EXPECT_EQ(change.parameter, "damping_N_s_per_m");
+  EXPECT_EQ(change.kind, ChangeKind::step);
+  EXPECT_NEAR(change.at_s, 14.0, 3.0 * change.at_error_s) << change.at_error_s;
+  EXPECT_NEAR(change.at_s, 14.0, 0.05);
+  EXPECT_NEAR(change.to / change.from, 1.9, 0.1);
+}
+
+}  // namespace
+}  // namespace estimator::greybox::selection

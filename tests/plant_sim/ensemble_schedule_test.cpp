@@ -1,0 +1,124 @@
+// Changes of a model in an ensemble: the same motion as the single plant's schedule makes.
+#include "plant_sim/ensemble_schedule.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "config/schema/document.h"
+#include "config/schema/error.h"
+#include "plant_sim/schedule.h"
+
+namespace plant_sim {
+namespace {
+
+constexpr double kTs_s = 0.005;
+
+/// Largest difference of the readings over 3 s of a moving rod.
+double difference_m(const Change& change) {
+  ModelFile model;
+  const auto plant = make_plant(model);
+  Schedule single({change}, *plant);
+  model.changes = {change};
+  const auto ensemble = make_ensemble(model, model.step_s);
+  EnsembleSchedule schedule(model, *ensemble);
+  schedule.begin(*ensemble);
+  ensemble->start(plant->reading_m());
+  double most_m = 0.0;
+  for (int k = 0; k < 600; ++k) {
+    const double t_s = kTs_s * k;
+    const double u_V = 2.0 * std::sin(6.0 * t_s);
+    single.advance(*plant, u_V, t_s, kTs_s);
+    schedule.apply(*ensemble, t_s, kTs_s);
+    Ensemble::Values values;
+    values.fill(u_V);
+    ensemble->advance(values, kTs_s);
+    most_m = std::fmax(most_m, std::fabs(ensemble->reading_m()[3] - plant->reading_m()));
+  }
+  return most_m;
+}
+
+TEST(EnsembleSchedule, MovesTheRodAsTheScheduleOfTheSinglePlant) {
+  const Change none{.parameter = "supply_pressure_Pa", .at_s = 9.0, .value = 5e6};
+  EXPECT_LT(difference_m(none), 1e-12);
+  Change step = none;
+  step.at_s = 1.0;
+  EXPECT_LT(difference_m(step), 1e-12);
+  Change ramp = step;
+  ramp.ramp_s = 1.0;
+  // the single plant takes the value at the beginning of each step of 1 ms: 0.5 ms behind the mean,
+  // 1e-4 of the pressure over a travel of some centimetres
+  constexpr double kLag_m = 5e-6;
+  EXPECT_LT(difference_m(ramp), kLag_m);
+  Change warming = step;
+  warming.time_constant_s = 0.5;
+  EXPECT_LT(difference_m(warming), kLag_m);
+  Change factor{.parameter = "damping_N_s_per_m", .at_s = 1.0, .factor = 3.0};
+  EXPECT_LT(difference_m(factor), 1e-12);
+}
+
+TEST(EnsembleSchedule, AStepWithinASampleTakesItsShare) {
+  ModelFile model;
+  model.changes = {{.parameter = "mass_kg", .at_s = 0.0125, .value = 150.0}};
+  const auto ensemble = make_ensemble(model, model.step_s);
+  EnsembleSchedule schedule(model, *ensemble);
+  const std::size_t mass = ensemble->find("mass_kg").value();
+  schedule.begin(*ensemble);
+  const double before_kg = ensemble->get(mass, 0);
+  const auto at = [&](double t_s) {
+    schedule.apply(*ensemble, t_s, kTs_s);
+    return ensemble->get(mass, 5);
+  };
+  EXPECT_EQ(at(0.005), before_kg);
+  EXPECT_NEAR(at(0.010), before_kg + 0.5 * (150.0 - before_kg), 1e-9);
+  EXPECT_EQ(at(0.015), 150.0);
+  schedule.end(*ensemble);
+  EXPECT_EQ(ensemble->get(mass, 5), before_kg);
+}
+
+TEST(EnsembleSchedule, EachLaneMayHaveATimeOfItsOwn) {
+  ModelFile model;
+  model.changes = {{.parameter = "friction.coulomb_N", .at_s = 1.0, .value = 80.0}};
+  const auto ensemble = make_ensemble(model, model.step_s);
+  EnsembleSchedule schedule(model, *ensemble);
+  const auto at = schedule.find("change.friction.coulomb_N.at_s");
+  ASSERT_TRUE(at.has_value());
+  EXPECT_FALSE(schedule.find("change.friction.coulomb_N.when").has_value());
+  EXPECT_FALSE(schedule.find("change.mass_kg.at_s").has_value());
+  EXPECT_FALSE(schedule.find("mass_kg").has_value());
+  schedule.set(*at, 2, 3.0);
+  schedule.begin(*ensemble);
+  schedule.apply(*ensemble, 2.0, kTs_s);
+  const std::size_t friction = ensemble->find("friction.coulomb_N").value();
+  EXPECT_TRUE(schedule.changes(friction));
+  EXPECT_EQ(ensemble->get(friction, 1), 80.0);
+  EXPECT_EQ(ensemble->get(friction, 2), 0.0);
+}
+
+ModelFile parsed(const std::string& changes) {
+  return read_model(config::schema::Document::parse(
+      "schema_version = 1\nname = \"m\"\nplant = \"hydraulic_actuator\"\n" + changes, "m.toml"));
+}
+
+TEST(ModelChanges, AreReadPrintedAndRefusedWhereTheyMakeNoSense) {
+  const std::string step = "[[change]]\nparameter = \"mass_kg\"\nat_s = 2.0\n";
+  const ModelFile model = parsed(step + "value = 60.0\n");
+  ASSERT_EQ(model.changes.size(), 1U);
+  const ModelFile again =
+      read_model(config::schema::Document::parse(print_model(model), "printed"));
+  ASSERT_EQ(again.changes.size(), 1U);
+  EXPECT_EQ(again.changes.front().at_s, 2.0);
+  EXPECT_EQ(again.changes.front().value, 60.0);
+  EXPECT_THROW(parsed(step), config::schema::ConfigError);  // to what?
+  EXPECT_THROW(parsed(step + "value = 60.0\nfactor = 2.0\n"), config::schema::ConfigError);
+  EXPECT_THROW(parsed(step + "value = 60.0\n" + step + "value = 70.0\n"),
+               config::schema::ConfigError);
+  EXPECT_THROW(parsed("[[change]]\nparameter = \"mas_kg\"\nat_s = 2.0\nvalue = 60.0\n"),
+               config::schema::ConfigError);
+  // a rig that runs has no record to which the time belongs
+  EXPECT_THROW((void)make_plant(model), config::schema::ConfigError);
+  EXPECT_NO_THROW((void)make_plant(without_changes(model)));
+}
+
+}  // namespace
+}  // namespace plant_sim
