@@ -11,6 +11,7 @@
 #include "config/record/readers.h"
 #include "config/record/record.h"
 #include "config/record/text_form.h"
+#include "config/record/text_window.h"
 #include "config/record/unit_text.h"
 #include "config/record/whole_file.h"
 #include "config/schema/error.h"
@@ -19,9 +20,6 @@ namespace config::record {
 namespace {
 
 using schema::bad_data;
-
-/// Bytes between two reports of what is read and no longer needed.
-constexpr std::size_t kReportBytes = std::size_t{16} << 20U;
 
 /// Digits after the decimal sign; 0 with an exponent of one digit, such as a cut leaves.
 std::size_t decimals(std::string_view number, char decimal) {
@@ -43,38 +41,35 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
+schema::DataError too_long(const std::string& place, const TextWindow& window) {
+  return bad_data(place, "is longer than a line may be",
+                  std::to_string(window.longest_line()) + " bytes");
+}
+
 /// The rows of a text file, read once from front to back.
 class RowReader {
  public:
   enum class Action { skip, number, clock };
 
-  RowReader(std::string_view text, const std::string& name, const TextForm& form,
-            std::vector<Action> actions, const TextConsumed& consumed)
-      : name_(name),
+  /// `window` begins with the text.
+  RowReader(TextWindow& window, const std::string& name, const TextForm& form,
+            std::vector<Action> actions)
+      : window_(window),
+        name_(name),
         form_(form),
         separator_(form.dialect.separator),
         decimal_(form.dialect.decimal),
         actions_(std::move(actions)),
-        begin_(text.data()),
-        at_(text.data() + form.data_offset),
-        end_(text.data() + text.size()),
+        at_(window.begin() + form.data_offset),
+        end_(window.end()),
         line_(form.data_line),
-        consumed_(consumed) {
-    ends_with_newline_ = text.ends_with('\n');
+        ends_with_newline_(window.ends_with_newline()) {
     values_.resize(actions_.size());
     reserve();
   }
 
   std::vector<std::vector<double>> read() {
-    const char* reported = at_;
-    while (at_ < end_) {
-      if (consumed_ && static_cast<std::size_t>(at_ - reported) >= kReportBytes) {
-        reported = at_;
-        consumed_(static_cast<std::size_t>(at_ - begin_));
-      }
-      if (!is_row()) break;
-      if (at_ < end_) read_row();
-    }
+    while (has_line() && is_row()) read_row();
     if (rows_ == 0) throw bad_data(name_, "has a header but no data");
     return std::move(values_);
   }
@@ -106,7 +101,7 @@ class RowReader {
     if (lines == 0) return;
     const double bytes_a_line = static_cast<double>(at - at_) / static_cast<double>(lines);
     const auto rows = static_cast<std::size_t>(
-        1.01 * static_cast<double>(end_ - at_) / std::max(2.0, bytes_a_line) + 16.0);
+        1.01 * static_cast<double>(window_.bytes_from(at_)) / std::max(2.0, bytes_a_line) + 16.0);
     for (std::size_t i = 0; i < actions_.size(); ++i) {
       if (actions_[i] != Action::skip) values_[i].reserve(rows);
     }
@@ -114,27 +109,54 @@ class RowReader {
 
   [[nodiscard]] std::string place() const { return name_ + ":" + std::to_string(line_); }
 
+  /// At the beginning of a line: the whole line is in the window then. False at the text's end.
+  bool has_line() {
+    if (at_ < end_) return true;
+    if (window_.last()) return false;
+    window_.refill();
+    at_ = window_.begin();
+    end_ = window_.end();
+    if (at_ == end_) throw too_long(place(), window_);
+    return true;
+  }
+
+  void require_length(const char* line_begin, const char* line_end) const {
+    if (static_cast<std::size_t>(line_end - line_begin) <= window_.longest_line()) return;
+    throw too_long(place(), window_);
+  }
+
+  /// Only blank lines follow, to the end of the text; moves the window.
+  bool only_blanks_follow(const char* line_end) {
+    at_ = line_end;
+    do {
+      at_ = std::find_if(at_, end_, [](char c) { return !is_blank(c) && c != '\n'; });
+      if (at_ < end_) return false;
+    } while (has_line());
+    return true;
+  }
+
   /// Passes comments; false at the end of the rows. An empty line may only end the file.
   bool is_row() {
-    while (at_ < end_) {
+    do {
       const char* first = at_;
       while (first < end_ && is_blank(*first) && *first != separator_) ++first;
-      if (first == end_) return false;
-      if (*first != '\n' && *first != '#' && *first != '%' && *first != 'E') return true;
-      const char* const line_end = std::find(first, end_, '\n');
-      const std::string_view line = trimmed({first, static_cast<std::size_t>(line_end - first)});
-      const std::string_view rest(line_end, static_cast<std::size_t>(end_ - line_end));
-      const bool last = rest.find_first_not_of(" \t\r\n") == std::string_view::npos;
-      if (line.empty() || line == "EOF") {
-        if (last) return false;
-        if (line.empty()) throw bad_data(place(), "is an empty line");
+      if (first < end_ && *first != '\n' && *first != '#' && *first != '%' && *first != 'E') {
         return true;
+      }
+      const char* const line_end = std::find(first, end_, '\n');
+      require_length(at_, line_end);
+      if (first == end_) return false;
+      const std::string_view line = trimmed({first, static_cast<std::size_t>(line_end - first)});
+      if (line.empty() || line == "EOF") {
+        const bool empty = line.empty();
+        if (only_blanks_follow(line_end)) return false;
+        throw bad_data(place(), empty ? "is an empty line" : "is EOF, but rows follow");
       }
       if (line.front() == 'E') return true;
       passed_.emplace_back(rows_, 1);
       ++line_;
       at_ = line_end == end_ ? end_ : line_end + 1;
-    }
+    } while (has_line());
     return false;
   }
 
@@ -150,6 +172,7 @@ class RowReader {
       if (!more) break;
     }
     const char* const row_end = at_;
+    require_length(row_begin_, row_end);
     const bool cut = at_ >= end_ && !ends_with_newline_;
     open_end_ = cut;
     if (at_ < end_) ++at_;  // the line's end
@@ -293,29 +316,28 @@ class RowReader {
     return time_s;
   }
 
+  TextWindow& window_;
   const std::string& name_;
   const TextForm& form_;
   const char separator_;
   const char decimal_;
   std::vector<Action> actions_;
-  const char* begin_;
   const char* at_;
   const char* end_;
   const char* row_begin_ = nullptr;
   const char* field_begin_ = nullptr;
   std::size_t line_;
   std::size_t rows_ = 0;
-  const TextConsumed& consumed_;
   std::vector<std::vector<double>> values_;
   std::vector<std::pair<std::size_t, std::size_t>> passed_;  ///< row, comments before it
   std::size_t fewest_decimals_ = std::numeric_limits<std::size_t>::max();
   double before_s_ = -std::numeric_limits<double>::infinity();
   double day_s_ = 0.0;
-  bool ends_with_newline_ = false;
+  bool ends_with_newline_;
   bool open_end_ = false;
 };
 
-FileHead head_of(const TextForm& form, const std::string& name) {
+FileHead columns_of(const TextForm& form, const std::string& name) {
   FileHead head;
   const std::size_t line = form.header_line > 0 ? form.header_line : form.data_line;
   head.where = name + ":" + std::to_string(line);
@@ -360,9 +382,17 @@ std::string words_of(const TextForm& form) {
   return words + ", numbers from line " + std::to_string(form.data_line);
 }
 
-std::string_view without_mark(std::string_view text) {
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-  return text;
+/// The first lines of a text, as many as its form is told from.
+std::string_view first_lines(TextWindow& window, const std::string& name) {
+  const auto lines = [&window] { return std::count(window.begin(), window.end(), '\n'); };
+  if (window.text().empty() && !window.last()) throw too_long(name + ":1", window);
+  while (lines() <= kMostFormLines && window.extend()) {
+  }
+  return window.text();
+}
+
+std::size_t byte_order_mark(std::string_view text) {
+  return text.starts_with("\xEF\xBB\xBF") ? 3 : 0;
 }
 
 /// Excel's first line: "sep=;".
@@ -374,17 +404,17 @@ std::size_t separator_line(std::string_view text) {
 
 }  // namespace
 
-Record read_csv(std::string_view text, const std::string& name, const ReadOptions& options,
-                const TextConsumed& consumed) {
+Record read_csv(TextWindow& window, const std::string& name, const ReadOptions& options) {
   const std::vector<MapEntry> map = parse_map(options.map);
-  text = without_mark(text);
-  const std::size_t passed = separator_line(text);
-  TextForm form = find_form(text.substr(passed), name);
-  form.data_offset += passed;
+  const std::string_view text = first_lines(window, name);
+  const std::size_t mark = byte_order_mark(text);
+  const std::size_t passed = separator_line(text.substr(mark));
+  TextForm form = find_form(text.substr(mark + passed), name);
+  form.data_offset += mark + passed;
   for (std::size_t* line : {&form.data_line, &form.header_line, &form.unit_line}) {
     if (passed > 0 && *line > 0) ++*line;
   }
-  const FileHead head = head_of(form, name);
+  const FileHead head = columns_of(form, name);
   const Layout layout = understand(head, map, options.position_optional);
   std::vector<RowReader::Action> actions(form.kinds.size(), RowReader::Action::skip);
   const auto wanted = [&](std::size_t column) {
@@ -395,7 +425,7 @@ Record read_csv(std::string_view text, const std::string& name, const ReadOption
     wanted(channel.column);
     if (channel.times != Channel::kSharedTimes) wanted(channel.times);
   }
-  RowReader rows(text, name, form, actions, consumed);
+  RowReader rows(window, name, form, actions);
   FileValues values;
   values.name = name;
   values.values = rows.read();

@@ -1,8 +1,6 @@
 // The forms of a record: CSV, MAT and LCM event log.
 #pragma once
 
-#include <cstddef>
-#include <functional>
 #include <string>
 #include <string_view>
 
@@ -11,13 +9,12 @@
 
 namespace config::record {
 
-/// Told from time to time how many bytes of the text are read and no longer needed.
-using TextConsumed = std::function<void(std::size_t)>;
+class TextWindow;
 
-/// CSV and its relatives; `text` is the file's content, `name` its name in messages. Throws
-/// schema::DataError.
-[[nodiscard]] Record read_csv(std::string_view text, const std::string& name,
-                              const ReadOptions& options = {}, const TextConsumed& consumed = {});
+/// CSV and its relatives; `window` begins with the file's content, `name` is the file's name in
+/// messages. Throws schema::DataError.
+[[nodiscard]] Record read_csv(TextWindow& window, const std::string& name,
+                              const ReadOptions& options = {});
 
 /// Recognises MATLAB's and Octave's other formats from the beginning of a file; returns the end of
 /// an error's line, null for anything else.

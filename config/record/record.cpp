@@ -1,23 +1,20 @@
 #include "config/record/record.h"
 
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <fstream>
-#include <iterator>
 #include <string>
 
 #include "config/record/mat_variables.h"
 #include "config/record/readers.h"
+#include "config/record/text_window.h"
 #include "config/record/unit_text.h"
 #include "config/schema/error.h"
+#include "config/schema/read_file.h"
 
 namespace config::record {
 namespace {
 
 constexpr const char* kForms = "a CSV record, a MAT file or an LCM event log";
+/// A MAT file of version 5, or text in UTF-16.
+constexpr std::size_t kMostBytesHeld = 4096 * schema::kMiB;
 
 }  // namespace
 
@@ -33,48 +30,18 @@ namespace {
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): set once, by main
 Hdf5Reader hdf5_reader = nullptr;
 
-/// A file's bytes in memory: mapped, so that what is read can be given back, or else copied.
-class FileBytes {
- public:
-  explicit FileBytes(const std::filesystem::path& file) {
-    std::error_code ignored;
-    const int descriptor =
-        std::filesystem::is_regular_file(file, ignored) ? open(file.c_str(), O_RDONLY) : -1;
-    struct stat status {};
-    if (descriptor >= 0 && fstat(descriptor, &status) == 0 && status.st_size > 0) {
-      const auto size = static_cast<std::size_t>(status.st_size);
-      void* const bytes = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
-      if (bytes != MAP_FAILED) {
-        mapped_ = static_cast<char*>(bytes);
-        size_ = size;
-        (void)madvise(bytes, size, MADV_SEQUENTIAL);
-      }
-    }
-    if (descriptor >= 0) close(descriptor);
-    if (mapped_ != nullptr) return;
-    std::ifstream in(file, std::ios::binary);
-    copy_.assign(std::istreambuf_iterator<char>(in), {});
-  }
-  ~FileBytes() {
-    if (mapped_ != nullptr) munmap(mapped_, size_);
-  }
-  FileBytes(const FileBytes&) = delete;
-  FileBytes& operator=(const FileBytes&) = delete;
+std::string whole(const std::filesystem::path& file, std::size_t most_bytes) {
+  schema::FileContent content = schema::read_file(file, most_bytes);
+  if (content.wrong.empty()) return std::move(content.text);
+  throw schema::bad_data(file.string(), "cannot be read (" + content.wrong + ")", kForms);
+}
 
-  [[nodiscard]] std::string_view text() const noexcept {
-    return mapped_ != nullptr ? std::string_view(mapped_, size_) : std::string_view(copy_);
-  }
-  /// The first `bytes` are not needed any more; they would be read from the file again.
-  void release(std::size_t bytes) const noexcept {
-    constexpr std::size_t kPage = 4096;
-    if (mapped_ != nullptr) (void)madvise(mapped_, bytes / kPage * kPage, MADV_DONTNEED);
-  }
-
- private:
-  char* mapped_ = nullptr;
-  std::size_t size_ = 0;
-  std::string copy_;
-};
+/// Regular and not empty; what the system makes up while it is read has no size.
+bool has_size(const std::filesystem::path& file) {
+  std::error_code error;
+  return std::filesystem::is_regular_file(file, error) &&
+         std::filesystem::file_size(file, error) > 0 && !error;
+}
 
 /// UTF-8 of text in UTF-16, as "Unicode text" of a spreadsheet; a byte order mark comes first.
 std::string utf8_of(std::string_view text) {
@@ -113,14 +80,15 @@ const char* other_format(std::string_view head) noexcept {
 }  // namespace
 
 Record read_record(const std::filesystem::path& file, const ReadOptions& options) {
-  std::error_code ignored;
-  if (access(file.c_str(), R_OK) != 0 || std::filesystem::is_directory(file, ignored)) {
-    throw schema::bad_data(file.string(), "cannot be read", kForms);
-  }
+  const bool streamed = has_size(file);
+  std::string content = streamed ? "" : whole(file, schema::kMostRecordBytes);
   (void)parse_resample(options.resample);
-  const FileBytes content(file);
-  const std::string_view text = content.text();
+  TextWindow window = streamed ? TextWindow(file, TextWindow::Sizes{}) : TextWindow(content);
+  const std::string_view text = window.text();
   const std::string_view head = text.substr(0, 128);
+  if (!streamed && (is_lcm_log(head) || is_hdf5(head))) {
+    throw schema::bad_data(file.string(), "is no regular file", "one for LCM event logs and HDF5");
+  }
   if (is_lcm_log(head)) {
     if (!options.map.empty() || !options.resample.empty()) {
       throw schema::UsageError(file.string() +
@@ -128,7 +96,8 @@ Record read_record(const std::filesystem::path& file, const ReadOptions& options
     }
     return read_lcm_log(file.string(), options.channel.empty() ? kSampleChannel : options.channel);
   }
-  if (is_mat_file(head)) return read_mat(text, file.string(), options);
+  const auto all = [&] { return streamed ? whole(file, kMostBytesHeld) : std::move(content); };
+  if (is_mat_file(head)) return read_mat(all(), file.string(), options);
   if (is_hdf5(head)) {
     if (hdf5_reader == nullptr) {
       throw schema::bad_data(file.string(), "is a MAT file of version 7.3 (HDF5)",
@@ -144,15 +113,16 @@ Record read_record(const std::filesystem::path& file, const ReadOptions& options
   if (const char* what = other_format(head)) {
     throw schema::bad_data(file.string(), what, std::string(kForms) + "; export it as CSV");
   }
-  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
-    return read_csv(utf8_of(text), file.string(), options);
+  if (head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF")) {
+    const std::string utf8 = utf8_of(all());
+    TextWindow held(utf8);
+    return read_csv(held, file.string(), options);
   }
   constexpr std::size_t kLooked = std::size_t{1} << 16U;
   if (text.substr(0, kLooked).find('\0') != std::string_view::npos) {
     throw schema::bad_data(file.string(), "is no record", kForms);
   }
-  return read_csv(text, file.string(), options,
-                  [&content](std::size_t read) { content.release(read); });
+  return read_csv(window, file.string(), options);
 }
 
 void set_hdf5_reader(Hdf5Reader reader) noexcept { hdf5_reader = reader; }

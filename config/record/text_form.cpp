@@ -17,7 +17,6 @@ namespace {
 
 using schema::bad_data;
 
-constexpr std::size_t kMostHeaderLines = 1000;
 constexpr std::size_t kHeadRows = 60;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
@@ -74,7 +73,7 @@ class FormFinder {
  public:
   FormFinder(std::string_view text, const std::string& name) : text_(text), name_(name) {
     std::size_t at = 0;
-    while (at < text.size() && lines_.size() < kMostHeaderLines) {
+    while (at < text.size() && lines_.size() < static_cast<std::size_t>(kMostFormLines)) {
       std::size_t end = text.find('\n', at);
       if (end == std::string_view::npos) end = text.size();
       std::string_view line = text.substr(at, end - at);

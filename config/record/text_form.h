@@ -30,8 +30,11 @@ struct TextForm {
   double step_s = 0.0;                    ///< sampling period in the lines above; 0: none
 };
 
+/// Lines that find_form looks at.
+inline constexpr std::ptrdiff_t kMostFormLines = 1000;
+
 /// Throws schema::DataError for text without columns of numbers, or of which more than one reading
-/// is possible. `text` has no byte order mark.
+/// is possible. `text` has no byte order mark; its first kMostFormLines lines will do.
 [[nodiscard]] TextForm find_form(std::string_view text, const std::string& name);
 
 /// Fields of a line without its end, quotes and blanks around removed.

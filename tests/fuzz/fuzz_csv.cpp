@@ -2,12 +2,14 @@
 #include <cstdlib>
 
 #include "config/record/readers.h"
+#include "config/record/text_window.h"
 #include "tests/fuzz/input.h"
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it by this name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   fuzz::allow_errors([&] {
-    const auto record = config::record::read_csv(fuzz::text_of(data, size), "fuzz.csv");
+    config::record::TextWindow window(fuzz::text_of(data, size));
+    const auto record = config::record::read_csv(window, "fuzz.csv");
     for (const auto& [name, values] : record.further) {
       if (values.size() != record.size()) std::abort();
     }

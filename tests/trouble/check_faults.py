@@ -3,8 +3,8 @@
 
   check_faults.py PROGRAMS CONFIG_FOLDER FAULTS_LIBRARY
 
-A file that cannot be read whole is refused; transfers of seven bytes change nothing; a file that cannot
-be written leaves the one that was there, and no part of another.
+A file that cannot be read whole, or becomes shorter meanwhile, is refused; transfers of seven bytes
+change nothing; a file that cannot be written leaves the one that was there, and no part of another.
 """
 import argparse
 import os
@@ -33,8 +33,8 @@ class Tries:
             self.failures.append(f"{name}: exit {result.returncode}: "
                                  f"{(result.stderr + result.stdout)[-300:]}")
 
-    def reads(self, command, file, exit_code, mapped=False):
-        """A file that the command reads; `mapped` into memory, no read of it can fail here."""
+    def reads(self, command, file, exit_code):
+        """A file that the command reads."""
         size = file.stat().st_size
         good = self.run(command)
         self.check(f"{file.name} as it is", good.returncode == 0, good)
@@ -42,11 +42,22 @@ class Tries:
             bad = self.run(command, f"read_eio:{file.name}:{at}")
             line = (bad.stderr or bad.stdout).strip().splitlines()
             self.check(f"{file.name}: EIO at byte {at} of {size}",
-                       (bad.returncode == exit_code and line)
-                       or (mapped and bad.stdout == good.stdout), bad)
+                       bad.returncode == exit_code and len(line) == 1 and file.name in line[0]
+                       and "Input/output error" in line[0], bad)
         short = self.run(command, f"read_short:{file.name}:0")
         self.check(f"{file.name}: seven bytes at a time",
                    short.returncode == 0 and short.stdout == good.stdout, short)
+
+    def shrinks(self, command, file):
+        """A record that is cut off while the command reads it."""
+        whole = file.read_bytes()
+        line_end = whole.index(b"\n", len(whole) // 2) + 1
+        for at in (len(whole) // 3, line_end, len(whole) - 1):
+            bad = self.run(command, f"read_shrunk:{file.name}:{at}")
+            self.check(f"{file.name}: cut off at byte {at} while it is read",
+                       bad.returncode == 65 and "became shorter" in bad.stderr
+                       and file.stat().st_size == at, bad)
+            file.write_bytes(whole)
 
     def writes(self, command, file):
         """A file that the command writes, over one that is there."""
@@ -93,10 +104,10 @@ def main():
                           "virtual", "--duration", "8", "--lcm-url", "", "--set",
                           f"recorder.folder={logs}", "--set", "evidence.folder="])
         tries.check("a log", made.returncode == 0, made)
-        tries.reads(estimate, record, 65, mapped=True)
+        tries.reads(estimate, record, 65)
+        tries.shrinks(estimate, record)
         mat = folder / "r.mat"
-        tries.reads(["spoolwatch", "estimate", mat, "--structure", "arx111"], mat, 65,
-                    mapped=True)
+        tries.reads(["spoolwatch", "estimate", mat, "--structure", "arx111"], mat, 65)
         tries.writes(["spoolwatch", "add", thesis, "friction", "coulomb_N=20", "-o",
                       folder / "better.toml"], folder / "better.toml")
         tries.writes(["spoolwatch", "export", record, "-o", folder / "out.mat"], folder / "out.mat")

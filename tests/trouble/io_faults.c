@@ -2,7 +2,8 @@
  *
  *   SPOOLWATCH_FAULT=KIND:TEXT:AT   for files whose path contains TEXT, from byte AT
  *
- * KIND: read_eio, read_short (at most seven bytes at a time), write_enospc, write_eio, write_short.
+ * KIND: read_eio, read_short (at most seven bytes at a time), read_shrunk (the file is cut off there
+ * when it has been read so far), write_enospc, write_eio, write_short.
  */
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -43,6 +44,10 @@ ssize_t read(int file, void* bytes, size_t count) {
   const long long left = until_fault(file, "read");
   if (left >= 0 && strcmp(kind, "read_short") == 0) {
     if (left == 0 && count > 7) count = 7;
+  } else if (left == 0 && strcmp(kind, "read_shrunk") == 0) {
+    char link[64];
+    snprintf(link, sizeof link, "/proc/self/fd/%d", file);
+    if (truncate(link, at) != 0) abort();
   } else if (left == 0) {
     errno = EIO;
     return -1;
