@@ -7,15 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "config/record/text_table.h"
+
 namespace config::record {
-
-/// One way in which a text may separate its columns and decimals.
-struct TextDialect {
-  char separator = ',';  ///< ' ': any number of blanks and tabs
-  char decimal = '.';    ///< '.' or ','
-};
-
-enum class FieldKind { number, missing, clock, text };
 
 struct TextForm {
   TextDialect dialect;
@@ -36,18 +30,5 @@ inline constexpr std::ptrdiff_t kMostFormLines = 1000;
 /// Throws schema::DataError for text without columns of numbers, or of which more than one reading
 /// is possible. `text` has no byte order mark; its first kMostFormLines lines will do.
 [[nodiscard]] TextForm find_form(std::string_view text, const std::string& name);
-
-/// Fields of a line without its end, quotes and blanks around removed.
-[[nodiscard]] std::vector<std::string> split_fields(std::string_view line, char separator);
-
-/// The number in `field`, without blanks around. False: none.
-[[nodiscard]] bool parse_number(std::string_view field, char decimal, double& value);
-
-/// Empty, NaN, NA, #N/A, ...
-[[nodiscard]] bool is_missing(std::string_view field);
-
-/// Date and time, or time of day, in s since a fixed day; `field` without blanks around. False:
-/// none.
-[[nodiscard]] bool parse_clock(std::string_view field, double& time_s);
 
 }  // namespace config::record

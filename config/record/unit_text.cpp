@@ -4,11 +4,13 @@
 #include <array>
 #include <cctype>
 
+#include "config/record/text_fields.h"
+
 namespace config::record {
 namespace {
 
 struct KnownUnit {
-  std::string_view text;
+  std::string_view spellings;
   std::string_view si;
   double factor;
 };
@@ -20,143 +22,89 @@ constexpr double kLitrePerMinute_m3ps = 1e-3 / 60.0;
 constexpr double kPoundForce_N = 4.4482216152605;
 constexpr double kUsGallon_m3 = 3.785411784e-3;
 
+/// Spellings of one unit stand between bars.
 constexpr std::array kUnits{
-    KnownUnit{"s", "s", 1.0},
-    KnownUnit{"sec", "s", 1.0},
-    KnownUnit{"secs", "s", 1.0},
-    KnownUnit{"second", "s", 1.0},
-    KnownUnit{"seconds", "s", 1.0},
-    KnownUnit{"Sekunde", "s", 1.0},
-    KnownUnit{"Sekunden", "s", 1.0},
-    KnownUnit{"ms", "s", 1e-3},
-    KnownUnit{"msec", "s", 1e-3},
-    KnownUnit{"millisecond", "s", 1e-3},
-    KnownUnit{"milliseconds", "s", 1e-3},
-    KnownUnit{"us", "s", 1e-6},
-    KnownUnit{"µs", "s", 1e-6},
-    KnownUnit{"usec", "s", 1e-6},
-    KnownUnit{"microseconds", "s", 1e-6},
+    KnownUnit{"s|sec|secs|second|seconds|Sekunde|Sekunden", "s", 1.0},
+    KnownUnit{"ms|msec|millisecond|milliseconds", "s", 1e-3},
+    KnownUnit{"us|µs|usec|microseconds", "s", 1e-6},
     KnownUnit{"ns", "s", 1e-9},
-    KnownUnit{"min", "s", 60.0},
-    KnownUnit{"minutes", "s", 60.0},
-    KnownUnit{"V", "V", 1.0},
-    KnownUnit{"Volt", "V", 1.0},
-    KnownUnit{"Volts", "V", 1.0},
+    KnownUnit{"min|minutes", "s", 60.0},
+    KnownUnit{"V|Volt|Volts", "V", 1.0},
     KnownUnit{"mV", "V", 1e-3},
-    KnownUnit{"A", "A", 1.0},
-    KnownUnit{"Amp", "A", 1.0},
-    KnownUnit{"Amps", "A", 1.0},
-    KnownUnit{"Ampere", "A", 1.0},
+    KnownUnit{"A|Amp|Amps|Ampere", "A", 1.0},
     KnownUnit{"mA", "A", 1e-3},
-    KnownUnit{"%", "pct", 1.0},
-    KnownUnit{"pct", "pct", 1.0},
-    KnownUnit{"percent", "pct", 1.0},
-    KnownUnit{"Prozent", "pct", 1.0},
+    KnownUnit{"%|pct|percent|Prozent", "pct", 1.0},
     KnownUnit{"N", "N", 1.0},
     KnownUnit{"kN", "N", 1e3},
     KnownUnit{"daN", "N", 10.0},
     KnownUnit{"lbf", "N", kPoundForce_N},
-    KnownUnit{"Nm", "Nm", 1.0},
-    KnownUnit{"N m", "Nm", 1.0},
-    KnownUnit{"N*m", "Nm", 1.0},
-    KnownUnit{"N.m", "Nm", 1.0},
-    KnownUnit{"N·m", "Nm", 1.0},
+    KnownUnit{"Nm|N m|N*m|N.m|N·m", "Nm", 1.0},
     KnownUnit{"kNm", "Nm", 1e3},
     KnownUnit{"mNm", "Nm", 1e-3},
     KnownUnit{"Ncm", "Nm", 1e-2},
-    KnownUnit{"m", "m", 1.0},
-    KnownUnit{"metre", "m", 1.0},
-    KnownUnit{"meter", "m", 1.0},
-    KnownUnit{"metres", "m", 1.0},
-    KnownUnit{"meters", "m", 1.0},
+    KnownUnit{"m|metre|meter|metres|meters", "m", 1.0},
     KnownUnit{"cm", "m", 1e-2},
-    KnownUnit{"mm", "m", 1e-3},
-    KnownUnit{"millimetre", "m", 1e-3},
-    KnownUnit{"millimeter", "m", 1e-3},
-    KnownUnit{"millimetres", "m", 1e-3},
-    KnownUnit{"millimeters", "m", 1e-3},
-    KnownUnit{"um", "m", 1e-6},
-    KnownUnit{"µm", "m", 1e-6},
-    KnownUnit{"in", "m", kInch_m},
-    KnownUnit{"inch", "m", kInch_m},
-    KnownUnit{"inches", "m", kInch_m},
+    KnownUnit{"mm|millimetre|millimeter|millimetres|millimeters", "m", 1e-3},
+    KnownUnit{"um|µm", "m", 1e-6},
+    KnownUnit{"in|inch|inches", "m", kInch_m},
     KnownUnit{"ft", "m", 12.0 * kInch_m},
-    KnownUnit{"rad", "rad", 1.0},
-    KnownUnit{"radian", "rad", 1.0},
-    KnownUnit{"radians", "rad", 1.0},
+    KnownUnit{"rad|radian|radians", "rad", 1.0},
     KnownUnit{"mrad", "rad", 1e-3},
-    KnownUnit{"deg", "rad", kPi / 180.0},
-    KnownUnit{"degree", "rad", kPi / 180.0},
-    KnownUnit{"degrees", "rad", kPi / 180.0},
-    KnownUnit{"°", "rad", kPi / 180.0},
-    KnownUnit{"rev", "rad", 2.0 * kPi},
-    KnownUnit{"revs", "rad", 2.0 * kPi},
-    KnownUnit{"m/s", "mps", 1.0},
-    KnownUnit{"mps", "mps", 1.0},
-    KnownUnit{"mm/s", "mps", 1e-3},
-    KnownUnit{"mmps", "mps", 1e-3},
+    KnownUnit{"deg|degree|degrees|°", "rad", kPi / 180.0},
+    KnownUnit{"rev|revs", "rad", 2.0 * kPi},
+    KnownUnit{"m/s|mps", "mps", 1.0},
+    KnownUnit{"mm/s|mmps", "mps", 1e-3},
     KnownUnit{"cm/s", "mps", 1e-2},
     KnownUnit{"in/s", "mps", kInch_m},
     KnownUnit{"m/min", "mps", 1.0 / 60.0},
     KnownUnit{"mm/min", "mps", 1e-3 / 60.0},
-    KnownUnit{"rad/s", "radps", 1.0},
-    KnownUnit{"radps", "radps", 1.0},
-    KnownUnit{"deg/s", "radps", kPi / 180.0},
-    KnownUnit{"°/s", "radps", kPi / 180.0},
-    KnownUnit{"rpm", "radps", kPi / 30.0},
-    KnownUnit{"1/min", "radps", kPi / 30.0},
-    KnownUnit{"U/min", "radps", kPi / 30.0},
-    KnownUnit{"m/s2", "mps2", 1.0},
-    KnownUnit{"m/s^2", "mps2", 1.0},
-    KnownUnit{"m/s²", "mps2", 1.0},
+    KnownUnit{"rad/s|radps", "radps", 1.0},
+    KnownUnit{"deg/s|°/s", "radps", kPi / 180.0},
+    KnownUnit{"rpm|1/min|U/min", "radps", kPi / 30.0},
+    KnownUnit{"m/s2|m/s^2|m/s²", "mps2", 1.0},
     KnownUnit{"Pa", "Pa", 1.0},
-    KnownUnit{"hPa", "Pa", 1e2},
+    KnownUnit{"hPa|mbar", "Pa", 1e2},
     KnownUnit{"kPa", "Pa", 1e3},
     KnownUnit{"MPa", "Pa", 1e6},
-    KnownUnit{"mbar", "Pa", 1e2},
     KnownUnit{"bar", "Pa", 1e5},
     KnownUnit{"psi", "Pa", kPsi_Pa},
-    KnownUnit{"m3/s", "m3ps", 1.0},
-    KnownUnit{"m3ps", "m3ps", 1.0},
-    KnownUnit{"m³/s", "m3ps", 1.0},
+    KnownUnit{"m3/s|m3ps|m³/s", "m3ps", 1.0},
     KnownUnit{"cm3/s", "m3ps", 1e-6},
     KnownUnit{"l/s", "m3ps", 1e-3},
-    KnownUnit{"l/min", "m3ps", kLitrePerMinute_m3ps},
-    KnownUnit{"L/min", "m3ps", kLitrePerMinute_m3ps},
-    KnownUnit{"lpm", "m3ps", kLitrePerMinute_m3ps},
+    KnownUnit{"l/min|L/min|lpm", "m3ps", kLitrePerMinute_m3ps},
     KnownUnit{"gpm", "m3ps", kUsGallon_m3 / 60.0},
     KnownUnit{"kg", "kg", 1.0},
     KnownUnit{"Hz", "Hz", 1.0},
     KnownUnit{"kHz", "Hz", 1e3},
-    KnownUnit{"-", "1", 1.0},
-    KnownUnit{"1", "1", 1.0},
+    KnownUnit{"-|1", "1", 1.0},
 };
 
-bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r'; }
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
+/// True when `matches` holds for a spelling of the unit.
+template <typename Matches>
+bool any_spelling(const KnownUnit& unit, const Matches& matches) {
+  std::string_view rest = unit.spellings;
+  for (std::size_t bar = rest.find('|'); bar != std::string_view::npos; bar = rest.find('|')) {
+    if (matches(rest.substr(0, bar))) return true;
+    rest.remove_prefix(bar + 1);
+  }
+  return matches(rest);
 }
 
 const KnownUnit* find_unit(std::string_view text) {
   for (const KnownUnit& unit : kUnits) {
-    if (unit.text == text) return &unit;
+    if (any_spelling(unit, [&](std::string_view spelling) { return spelling == text; })) {
+      return &unit;
+    }
   }
   // Words and units of several letters in another case, where that names one unit alone.
   if (text.size() < 2) return nullptr;
   const std::string wanted = lower(text);
   const KnownUnit* found = nullptr;
   for (const KnownUnit& unit : kUnits) {
-    if (lower(unit.text) != wanted) continue;
-    if (found != nullptr && (found->si != unit.si || found->factor != unit.factor)) return nullptr;
+    if (!any_spelling(unit, [&](std::string_view spelling) { return lower(spelling) == wanted; })) {
+      continue;
+    }
+    if (found != nullptr) return nullptr;
     found = &unit;
   }
   // A prefix in another case may be another prefix: "mpa", "mv", "ma" stay unknown.

@@ -8,10 +8,11 @@
 #include <cmath>
 #include <random>
 
+#include "config/record/clock_text.h"
 #include "config/record/column_roles.h"
 #include "config/record/outliers.h"
 #include "config/record/record.h"
-#include "config/record/text_form.h"
+#include "config/record/text_fields.h"
 #include "config/record/time_grid.h"
 #include "config/record/unit_text.h"
 #include "config/schema/error.h"

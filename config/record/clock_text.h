@@ -1,0 +1,12 @@
+// Dates and times of day as spreadsheets and loggers write them.
+#pragma once
+
+#include <string_view>
+
+namespace config::record {
+
+/// Date and time, or time of day, in s since a fixed day; `field` without blanks around. False:
+/// none.
+[[nodiscard]] bool parse_clock(std::string_view field, double& time_s);
+
+}  // namespace config::record

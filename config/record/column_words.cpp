@@ -1,0 +1,184 @@
+#include "config/record/column_words.h"
+
+#include <cctype>
+#include <utility>
+
+#include "config/schema/error.h"
+
+namespace config::record {
+namespace {
+
+using schema::bad_data;
+using Words = std::vector<std::string_view>;
+
+/// "Valve cmdVoltage_1" as "valve", "cmd", "voltage", "1".
+std::vector<std::string> words_of(std::string_view name) {
+  std::vector<std::string> words(1);
+  char before = 0;
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool letter = byte >= 0x80 || std::isalpha(byte) != 0;
+    const bool digit = std::isdigit(byte) != 0;
+    const auto last = static_cast<unsigned char>(before);
+    const bool was_digit = std::isdigit(last) != 0;
+    const bool hump = std::isupper(byte) != 0 && std::islower(last) != 0;
+    if ((!letter && !digit) || hump || (before != 0 && digit != was_digit)) {
+      if (!words.back().empty()) words.emplace_back();
+    }
+    if (letter || digit) words.back() += static_cast<char>(std::tolower(byte));
+    before = letter || digit ? c : 0;
+  }
+  if (words.back().empty()) words.pop_back();
+  return words;
+}
+
+/// Any of `wanted` among the words; those that end in * may begin or end a longer word.
+bool has_word(const std::vector<std::string>& words, const Words& wanted) {
+  for (const std::string& word : words) {
+    for (const std::string_view want : wanted) {
+      if (want.ends_with('*') ? word.find(want.substr(0, want.size() - 1)) != std::string::npos
+                              : word == want) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+const Words kTimeWords{"t",        "time",  "zeit", "timestamp*", "zeitstempel*", "elapsed*",
+                       "sekunden", "temps", "tid",  "tiempo",     "messzeit*",    "abtastzeit"};
+const Words kNoTimeWords{"cycle",  "task", "exec",     "execution", "delay", "turnaround",
+                         "jitter", "rise", "settling", "dead",      "step",  "sample"};
+const Words kCommandWords{
+    "u",          "command*", "cmd",        "stell*", "kommando*", "befehl*",     "commande",
+    "ansteuer*",  "control",  "controller", "ctrl",   "drive",     "manipulated", "valve",
+    "servovalve", "ventil*",  "regler*",    "dac",    "ao",        "input",       "eingang*"};
+const Words kWeakCommandWords{"voltage*", "spannung*", "volt",   "volts",  "current*", "strom*",
+                              "torque*",  "moment*",   "force*", "kraft*", "pwm",      "duty"};
+const Words kPositionWords{
+    "y",    "pos",    "position*", "displacement*", "stroke",   "weg",     "wegauf*", "hub",
+    "lage", "rod",    "piston*",   "kolben*",       "angle",    "winkel*", "theta",   "encoder*",
+    "lvdt", "travel", "extension", "istwert",       "rotation", "posicion"};
+const Words kWeakPositionWords{"x", "output", "ausgang*", "out", "phi", "measured", "ist"};
+const Words kReferenceWords{"ref",     "reference*", "setpoint*", "sp",        "soll*",
+                            "target*", "demand*",    "desired",   "nominal*",  "wanted",
+                            "set",     "des",        "sollwert*", "fuehrung*", "führung*"};
+const Words kOtherWords{"error*", "err",      "fehler*",   "deviation", "abweich*",  "velocity*",
+                        "vel",    "speed*",   "geschw*",   "accel*",    "pressure*", "druck*",
+                        "temp*",  "supply",   "limit",     "min",       "max",       "model*",
+                        "sim*",   "estimat*", "observer*", "offset",    "status",    "tank"};
+const Words kMeasuredWords{"act",      "actual*", "meas", "measured",
+                           "feedback", "fbk",     "ist*", "mess*"};
+
+constexpr int kCanonical = 100;
+constexpr int kStrong = 50;
+constexpr int kWeak = 20;
+
+/// t_s, u_A, y_rad: the stem is the role's own and the unit fits, signals of sensors included.
+bool is_canonical(Role role, const ReadColumn& column) {
+  if (!column.numbers) return false;
+  const std::string& si = column.text.unit.si;
+  const bool signal = role == Role::position && (si == "V" || si == "A" || si == "pct");
+  return has_stem_of(role, column) && (fits(role, si) || signal);
+}
+
+}  // namespace
+
+std::vector<ReadColumn> read_columns(const FileHead& head) {
+  std::vector<ReadColumn> columns;
+  for (std::size_t i = 0; i < head.columns.size(); ++i) {
+    const FileColumn& column = head.columns[i];
+    ReadColumn read;
+    read.header = column.header.empty() ? std::to_string(i + 1) : column.header;
+    if (!column.header.empty()) read.text = parse_header(column.header);
+    if (!column.unit.empty()) {
+      // With a line of units the whole header is the name, unless both name the same unit.
+      const UnitText unit = parse_unit(column.unit);
+      if (unit.si != read.text.unit.si || unit.factor != read.text.unit.factor) {
+        if (!read.text.unit.text.empty() && read.text.unit.known() && unit.known() &&
+            unit.si != "1") {
+          throw bad_data(head.where, "column " + read.header + " names two units, " +
+                                         read.text.unit.text + " and " + unit.text);
+        }
+        if (unit.si != "1" || !read.text.unit.known()) {
+          if (!read.text.unit.known()) read.text.name = column.header;
+          read.text.unit = unit;
+        }
+      }
+    }
+    // Of a path within a model only the last part says what the signal is.
+    const std::string& name = read.text.name;
+    const std::size_t part = name.find_last_of("/\\:.");
+    const bool path = part != std::string::npos && part + 1 < name.size();
+    read.words = words_of(path ? name.substr(part + 1) : name);
+    read.named = !column.header.empty();
+    read.numbers = column.numbers;
+    read.clock = column.clock;
+    read.sample = &column.sample;
+    columns.push_back(std::move(read));
+  }
+  return columns;
+}
+
+bool increases(const std::vector<double>& values) {
+  if (values.size() < 3) return false;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (!(values[i] > values[i - 1])) return false;
+  }
+  return true;
+}
+
+bool fits(Role role, std::string_view si) {
+  switch (role) {
+    case Role::time:
+      return si == "s";
+    case Role::command:
+      return si == "V" || si == "A" || si == "pct" || si == "N" || si == "Nm" || si == "mps" ||
+             si == "radps";
+    case Role::position:
+      return si == "m" || si == "rad";
+    case Role::further:
+      break;
+  }
+  return false;
+}
+
+bool has_stem_of(Role role, const ReadColumn& column) {
+  const std::string& stem = column.text.name;
+  return stem == kRoleKeys[index_of(role)] || (role == Role::time && stem == "time");
+}
+
+bool is_reference(const ReadColumn& column) { return has_word(column.words, kReferenceWords); }
+
+bool is_plain(const ReadColumn& column) {
+  return !is_reference(column) && !has_word(column.words, kOtherWords);
+}
+
+int score(Role role, const ReadColumn& column) {
+  if (is_canonical(role, column)) return kCanonical;
+  if (!column.numbers && !column.clock) return 0;
+  const UnitText& unit = column.text.unit;
+  if (role == Role::time && column.clock) return kStrong + 5;
+  if (column.clock) return 0;
+  if (unit.known() && !fits(role, unit.si)) return 0;
+  if (role == Role::time) {
+    if (has_word(column.words, kNoTimeWords)) return 0;
+    if (folded(column.text.name) == "xvalue") return kStrong;
+    if (has_word(column.words, kTimeWords)) return kStrong;
+    return unit.known() && increases(*column.sample) ? kWeak : 0;
+  }
+  if (!is_plain(column)) return 0;
+  const int measured = has_word(column.words, kMeasuredWords) ? 5 : 0;
+  if (role == Role::command) {
+    const bool positional = has_word(column.words, kPositionWords);
+    if (positional && !unit.known()) return 0;
+    if (has_word(column.words, kCommandWords)) return kStrong;
+    return has_word(column.words, kWeakCommandWords) && !positional ? kWeak : 0;
+  }
+  if (!unit.known() && has_word(column.words, kCommandWords)) return 0;
+  if (has_word(column.words, kCommandWords)) return 0;  // a commanded position is a reference
+  if (has_word(column.words, kPositionWords)) return kStrong + measured;
+  return has_word(column.words, kWeakPositionWords) ? kWeak + measured : 0;
+}
+
+}  // namespace config::record

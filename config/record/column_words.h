@@ -1,0 +1,53 @@
+// What the words and the unit of a column's header say: how well it fits time, command or position.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "config/record/column_roles.h"
+#include "config/record/unit_text.h"
+
+namespace config::record {
+
+inline constexpr std::array kMainRoles{Role::time, Role::command, Role::position};
+inline constexpr std::array<const char*, 3> kRoleWords{"time", "command", "position"};
+inline constexpr std::array<const char*, 3> kRoleKeys{"t", "u", "y"};
+
+[[nodiscard]] constexpr std::size_t index_of(Role role) noexcept {
+  return static_cast<std::size_t>(role);
+}
+
+/// A file's column, read as words and a unit.
+struct ReadColumn {
+  std::string header;  ///< for messages: as in the file, or its number
+  HeaderText text;
+  std::vector<std::string> words;
+  bool named = false;  ///< the file names it
+  bool numbers = true;
+  bool clock = false;
+  const std::vector<double>* sample = nullptr;
+};
+
+/// Refers to `head`. Throws schema::DataError for a column of which header and line of units name
+/// two units.
+[[nodiscard]] std::vector<ReadColumn> read_columns(const FileHead& head);
+
+[[nodiscard]] bool increases(const std::vector<double>& values);
+
+/// True for the SI units that a role may have.
+[[nodiscard]] bool fits(Role role, std::string_view si);
+
+/// True for "t", "u" and "y", the role's own name.
+[[nodiscard]] bool has_stem_of(Role role, const ReadColumn& column);
+/// True for a set point.
+[[nodiscard]] bool is_reference(const ReadColumn& column);
+/// True where no word speaks of a set point or another quantity.
+[[nodiscard]] bool is_plain(const ReadColumn& column);
+
+/// How well a column's words and unit fit a role: 100 for t_s, u_A, y_rad and their like; 0: not at
+/// all.
+[[nodiscard]] int score(Role role, const ReadColumn& column);
+
+}  // namespace config::record

@@ -1,0 +1,122 @@
+#include "config/record/probable_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <set>
+
+namespace config::record {
+namespace {
+
+/// How a column is named on the command line: its name, or its number where that needs quoting.
+std::string typed(const std::vector<ReadColumn>& columns, std::size_t i) {
+  if (!columns[i].named) return std::to_string(i + 1);
+  const auto plain = [](const std::string& text) {
+    return !text.empty() && std::isdigit(static_cast<unsigned char>(text[0])) == 0 &&
+           std::all_of(text.begin(), text.end(), [](char c) {
+             return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == ' ' ||
+                    c == '.';
+           });
+  };
+  const auto only = [&](const std::string& text) {
+    return std::count_if(columns.begin(), columns.end(), [&](const ReadColumn& column) {
+             return folded(column.header) == folded(text) ||
+                    folded(column.text.name) == folded(text);
+           }) == 1;
+  };
+  for (const std::string& text : {columns[i].header, columns[i].text.name}) {
+    if (plain(text) && only(text)) return text;
+  }
+  return std::to_string(i + 1);
+}
+
+std::string probable_unit(Role role, const ReadColumn& column) {
+  const std::vector<double>& sample = *column.sample;
+  if (role == Role::time) {
+    const bool coarse = sample.size() > 1 && sample[1] - sample[0] >= 0.5;
+    return coarse ? "ms" : "s";
+  }
+  if (role == Role::command) return "V";
+  double most = 0.0;
+  for (const double value : sample) most = std::max(most, std::abs(value));
+  return most > 3.0 ? "mm" : "m";
+}
+
+}  // namespace
+
+std::string listing(const FileHead& head, const std::vector<ReadColumn>& columns) {
+  constexpr std::size_t kMost = 16;
+  std::string text = "it has: ";
+  for (std::size_t i = 0; i < std::min(kMost, columns.size()); ++i) {
+    const bool named = columns[i].named;
+    std::string name = columns[i].header;
+    if (name.size() > 40) name = name.substr(0, 37) + "...";
+    if (i > 0) text += ", ";
+    if (!named) {
+      text += std::to_string(i + 1);
+      if (!columns[i].sample->empty()) {
+        text += fmt::format(" ({:.6g}, ...)", columns[i].sample->front());
+      }
+    } else {
+      text += head.variables ? name : std::to_string(i + 1) + " " + name;
+    }
+  }
+  if (columns.size() > kMost) text += ", ... (" + std::to_string(columns.size()) + ")";
+  if (columns.empty()) text += head.variables ? "no variables" : "no columns";
+  if (!head.more.empty()) text += "; " + head.more;
+  return text;
+}
+
+std::string probable_map(const std::vector<ReadColumn>& columns,
+                         const std::array<std::optional<std::size_t>, 3>& known, bool has_rate) {
+  if (columns.size() < 2) return "";
+  std::array<std::optional<std::size_t>, 3> chosen = known;
+  std::set<std::size_t> used;
+  for (const std::optional<std::size_t>& column : known) {
+    if (column) used.insert(*column);
+  }
+  const auto pick = [&](Role role, const auto& good) {
+    const std::size_t r = index_of(role);
+    if (chosen[r] || (role == Role::time && has_rate)) return;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      if (used.contains(i) || !columns[i].numbers || !good(columns[i])) continue;
+      chosen[r] = i;
+      used.insert(i);
+      return;
+    }
+  };
+  pick(Role::time, [](const ReadColumn& c) { return increases(*c.sample); });
+  const auto fitting = [](Role role) {
+    return [role](const ReadColumn& c) { return fits(role, c.text.unit.si); };
+  };
+  const auto plain = [](const ReadColumn& c) { return c.text.unit.si != "s" && is_plain(c); };
+  pick(Role::position, fitting(Role::position));
+  pick(Role::command, fitting(Role::command));
+  pick(Role::command, plain);
+  pick(Role::position, plain);
+  std::string map;
+  for (const Role role : kMainRoles) {
+    const std::size_t r = index_of(role);
+    if (role == Role::time && has_rate) continue;
+    map += map.empty() ? "" : ",";
+    map += std::string(kRoleKeys[r]) + "=";
+    if (!chosen[r]) {
+      map += role == Role::time ? "1000Hz" : "COLUMN[UNIT]";
+      continue;
+    }
+    map += typed(columns, *chosen[r]);
+    const ReadColumn& column = columns[*chosen[r]];
+    const bool stated = fits(role, column.text.unit.si) || (role == Role::time && column.clock);
+    // A unit of another quantity is a sensor's signal: the mapping may say so.
+    const bool signal = column.text.unit.known() && column.text.unit.si != "s" &&
+                        column.text.unit.si != "1" && role != Role::time;
+    if (!stated) {
+      map += "[" + (signal ? column.text.unit.text : probable_unit(role, column)) + "]";
+    }
+  }
+  return "'" + map + "'";
+}
+
+}  // namespace config::record
