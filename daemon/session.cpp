@@ -21,6 +21,7 @@
 #include "daemon/io/folder_lock.h"
 #include "daemon/main_event_loop.h"
 #include "daemon/null_table.h"
+#include "daemon/prepared_session.h"
 #include "daemon/reloader.h"
 #include "daemon/rt/loop_runner.h"
 #include "daemon/safe_state_note.h"
@@ -33,18 +34,6 @@ namespace {
 /// Delay from the end of opening to the first period.
 constexpr std::int64_t kLead_ns = 20'000'000;
 constexpr std::int64_t kCommandLife_ns = 1'000'000'000;
-
-/// The opened devices and the checked configuration; nothing has been written to a device yet.
-struct Prepared {
-  double sample_time_s;
-  hal::OpenContext opening;
-  hal::Devices devices;
-  std::unique_ptr<control::Reference> reference;
-  std::uint64_t hash;
-  DetectionConfig detection;
-  std::vector<control::GuardConfig> guards;
-  std::string never_arms;  ///< why the rig cannot be armed; empty: it can
-};
 
 template <class Named>
 std::vector<std::string> ids_of(const std::vector<Named>& devices) {
@@ -60,56 +49,6 @@ std::vector<std::size_t> inputs_of(const hal::Devices& devices, hal::InputRole r
     if (devices.inputs[i].role == role) found.push_back(i);
   }
   return found;
-}
-
-void check_numbers(const std::string& file, const hal::Rig& rig) {
-  const auto check = [&](const char* table, std::size_t size, std::size_t most) {
-    if (size <= most) return;
-    throw config::schema::bad_config(file + ": [[" + table + "]]",
-                                     std::to_string(size) + " of them",
-                                     "at most " + std::to_string(most));
-  };
-  check("spare_rod", rig.spare_rods().size(), rt::kMaxSpareRods);
-  check("input", rig.inputs().size(), rt::kMaxInputs);
-}
-
-void check_failover(const DaemonConfig& config) {
-  if (!config.safety.failover.present || config.rig.rods() > 1) return;
-  throw config::schema::bad_config(config.file + ": [failover]",
-                                   "has no second rod sensor to switch to", "a [[spare_rod]]");
-}
-
-/// Without `absent`: opens the devices exclusively for a run. With `absent`: for inspection; stores
-/// the message about an unreachable device there and continues.
-Prepared prepare(DaemonConfig& config, std::string* absent) {
-  Prepared p;
-  p.sample_time_s = 1.0 / config.loop.rate_Hz;
-  p.opening = {config.file,
-               config.folder,
-               p.sample_time_s,
-               config.rig.valve().null_V,
-               config.rig.valve().limit_V,
-               absent == nullptr};
-  check_numbers(config.file, config.rig);
-  check_failover(config);
-  try {
-    p.devices = config.rig.open(p.opening);
-  } catch (const config::schema::DeviceUnavailable& e) {
-    if (absent == nullptr) throw;
-    *absent = e.what();
-  }
-  p.guards = with_place(config.file,
-                        [&] { return control::all_guards(config.safety, config.loop.overrun()); });
-  p.never_arms = never_arms(config);
-  if (!std::isnan(p.devices.sample_time_s)) p.sample_time_s = p.devices.sample_time_s;
-  const bool from_file = config.reference.kind == "file";
-  p.reference = with_place(config.file + ": [reference]" + (from_file ? " file" : ""), [&] {
-    return control::make_reference(
-        config.drives_valve() ? config.reference : control::ReferenceConfig{}, config.folder);
-  });
-  p.detection = make_detection_config(config, p.sample_time_s);
-  p.hash = hash(config);
-  return p;
 }
 
 /// Handles signals in virtual time, which has no control socket. Returns true on a request to stop.
@@ -192,7 +131,7 @@ class Session {
   DaemonConfig& config_;
   const SessionOptions& options_;
   std::ostream& log_;
-  Prepared prepared_;
+  PreparedSession prepared_;
   std::string config_hash_;
   bool virtual_time_;
   rt::VirtualClock virtual_clock_;
@@ -394,7 +333,7 @@ int run_session(DaemonConfig& config, const SessionOptions& options, std::ostrea
 
 void check_session(DaemonConfig& config, std::ostream& out) {
   std::string absent;
-  const Prepared p = prepare(config, &absent);
+  const PreparedSession p = prepare(config, &absent);
   const bool would_write_a_file = config.lcm.url.starts_with("file:");
   if (!would_write_a_file) io::Publisher(config.lcm, 0, p.sample_time_s, nullptr);
   for (const auto& [folder, key] : {std::pair(&config.recorder.folder, "recorder"),
