@@ -41,7 +41,7 @@ class ControlRequestHandler {
     std::string rig_id, config_hash;
     std::vector<control::GuardConfig> guards;  ///< control::all_guards
     std::vector<std::string> spare_rods, inputs;
-    std::vector<std::string> roles;             ///< of `inputs`, as in the configuration
+    std::vector<std::string> roles;             ///< one per input, as in the configuration
     std::vector<std::size_t> enables, e_stops;  ///< indices into `inputs`
     std::string never_arms;  ///< why the rig cannot be armed as configured; empty: it can
   };
@@ -58,12 +58,12 @@ class ControlRequestHandler {
     io::ControlSocket::Request request;
     bool is_command = false;        ///< the request changes something
     bool acknowledges_rod = false;  ///< the request may acknowledge a rod sensor's alarm
-    std::uint32_t number = 0;       ///< of the command
+    std::uint32_t number = 0;       ///< the command's
     std::int64_t deadline_ns = 0;
   };
   using Outstanding = std::optional<Pending>;
 
-  /// Whether the thread that answers such a request is free.
+  /// True when the thread that answers such a request is free.
   [[nodiscard]] bool accepts(const io::ControlRequest& request) const noexcept;
   /// Returns the answers that have come.
   void poll_answers(io::ControlSocket& socket);
@@ -92,7 +92,7 @@ class ControlRequestHandler {
 
   Parts parts_;
   Identity identity_;
-  std::uint32_t number_ = 0;  ///< of the newest command
+  std::uint32_t number_ = 0;  ///< the newest command's
   Outstanding loop_;
   Outstanding detector_;
   Outstanding reloader_;

@@ -1,4 +1,4 @@
-// Whether a message that decodes says what a daemon can say. One flipped bit makes a sample time of
+// Checks a decoded message for values that no daemon sends: one flipped bit makes a sample time of
 // 1e-300 s or a tick of 2^62.
 #pragma once
 

@@ -27,7 +27,7 @@ struct ReceivedMessage {
 
 class PacketReassembler {
  public:
-  static constexpr std::size_t kMostBytes = 1 << 20;  ///< of one message
+  static constexpr std::size_t kMostBytes = 1 << 20;  ///< a message may have
   static constexpr std::size_t kMostUnfinished = 8;   ///< messages; the oldest makes room
   static constexpr std::size_t kMostChannel = 63;     ///< LCM's own limit
 

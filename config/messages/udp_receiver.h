@@ -43,7 +43,7 @@ class UdpReceiver {
   std::thread thread_;
 };
 
-/// Whether UdpReceiver receives on this URL.
+/// True for the URLs that UdpReceiver receives on.
 [[nodiscard]] bool is_udp(const std::string& url);
 
 }  // namespace config::messages

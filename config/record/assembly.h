@@ -14,9 +14,9 @@ namespace config::record {
 
 struct FileValues {
   std::string name;                         ///< the file, for messages
-  std::vector<std::vector<double>> values;  ///< of each column of the file; unused ones are empty
-  std::function<std::string(std::size_t)> place;   ///< of a row, for messages
-  std::function<std::string(std::size_t)> header;  ///< of a column
+  std::vector<std::vector<double>> values;  ///< a vector per column of the file, empty where unused
+  std::function<std::string(std::size_t)> place;   ///< names a row in messages
+  std::function<std::string(std::size_t)> header;  ///< names a column
 };
 
 /// Throws schema::DataError for times that are on no even grid (and options.resample is empty), for

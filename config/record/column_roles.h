@@ -34,7 +34,7 @@ enum class Role { time, command, position, further };
 
 /// One column on its way into a record: SI value = factor * value in the file + offset.
 struct Channel {
-  std::size_t column = 0;  ///< of the file, from 0
+  std::size_t column = 0;  ///< number in the file, from 0
   Role role = Role::further;
   std::string name;       ///< in the record: "t_s", "u_V", "y_m", "supply_pressure_Pa"
   std::string unit_text;  ///< as in the file or in the mapping

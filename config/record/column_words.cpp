@@ -106,7 +106,7 @@ std::vector<ReadColumn> read_columns(const FileHead& head) {
         }
       }
     }
-    // Of a path within a model only the last part says what the signal is.
+    // In a path within a model only the last part says what the signal is.
     const std::string& name = read.text.name;
     const std::size_t part = name.find_last_of("/\\:.");
     const bool path = part != std::string::npos && part + 1 < name.size();

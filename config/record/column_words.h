@@ -1,4 +1,4 @@
-// What the words and the unit of a column's header say: how well it fits time, command or position.
+// How well a column fits time, command or position, by the words and the unit of its header.
 #pragma once
 
 #include <array>

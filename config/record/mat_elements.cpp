@@ -43,7 +43,7 @@ class Inflater {
     ended_ = result == Z_STREAM_END;
     return out;
   }
-  /// Whether the stream ends here and its check sum is that of all that came.
+  /// True when the stream ends here with the check sum of all that came.
   bool ends() {
     if (!ended_ && !next(1).empty()) return false;
     return ended_;

@@ -65,7 +65,7 @@ std::string utf8_of(std::string_view text) {
   return result;
 }
 
-/// What a file is that laboratories have and this reader does not read; null: not one of these.
+/// Names a format that laboratories use and this reader does not read; null: none of these.
 const char* other_format(std::string_view head) noexcept {
   if (head.starts_with("PK\x03\x04")) return "is an Excel workbook or another ZIP archive";
   if (head.starts_with("\xD0\xCF\x11\xE0")) return "is an Excel workbook";

@@ -5,7 +5,7 @@
 // under its name in SI units (ref_mm becomes ref_m). Other headers are read by their words and
 // units, or as a mapping says (reading.h, column_roles.h). MAT: vectors of such names. LCM: the
 // sample_t messages of one channel; the time is tick times sample time, and the further columns are
-// the other fields of the message and what is told beside it (sample_columns.h). Samples of stale
+// the other fields of the message and the messages beside it (sample_columns.h). Samples of stale
 // or bad quality, or without a command, are left out like any missing sample.
 //
 // Row k: y is sampled at t[k], before u[k] is written; u[k] holds until t[k+1].
@@ -26,7 +26,7 @@ namespace config::record {
 struct ChannelOrigin {
   std::string name;        ///< in the record: "t_s", "u_A", "supply_Pa"
   std::string header;      ///< in the file; empty: it has none
-  std::size_t column = 0;  ///< of the file, from 1; 0: made, not read
+  std::size_t column = 0;  ///< number in the file, from 1; 0: made, not read
   std::string unit;        ///< in the file; empty: none
   double factor = 1.0;     ///< value = factor * number in the file + offset
   double offset = 0.0;
@@ -49,7 +49,7 @@ struct Record {
   std::string command_unit = "V";
   std::string position_unit = "m";
   bool has_position = true;            ///< false: y_m is 0, the file has a command alone
-  std::vector<ChannelOrigin> origins;  ///< of the channels that were read, in the file's order
+  std::vector<ChannelOrigin> origins;  ///< one per channel that was read, in the file's order
   std::string form;                    ///< the file's form in words; empty: as write_csv writes
 
   [[nodiscard]] std::size_t size() const noexcept { return t_s.size(); }

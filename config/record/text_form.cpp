@@ -205,7 +205,7 @@ class FormFinder {
     form_.header_line = header->line + 1;
   }
 
-  /// What the lines above the table state: LabVIEW's tags, "Sample rate: 1000 Hz".
+  /// Reads LabVIEW's tags in the lines above the table: the period, the channels' units.
   void read_preamble() {
     const std::size_t end = form_.header_line > 0 ? form_.header_line - 1 : first_;
     for (std::size_t i = 0; i < end; ++i) {

@@ -24,7 +24,7 @@ struct TimeGrid {
 struct NominalGrid {
   TimeGrid grid;
   std::vector<double> t_s;
-  double largest_error_s = 0.0;  ///< of the given times
+  double largest_error_s = 0.0;  ///< by which a given time misses the grid
 };
 
 /// None where times go back or miss every even grid by more than half a period (by more than the

@@ -90,7 +90,7 @@ class Guard {
 
   GuardKind kind_;
   Action action_;
-  /// Of pressure and transducer.
+  /// The channel that the guards `pressure` and `transducer` watch.
   double config::signals::Pressures::*channel_ = &config::signals::Pressures::supply_Pa;
   double time_s_, low_, high_, braking_mps2_, least_m_, command_V_;
   double low_now_m_, high_now_m_;  ///< travel limits, wider while the rod returns

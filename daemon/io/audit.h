@@ -47,12 +47,12 @@ class Audit {
   /// Rejections of one user.
   struct Rejections {
     double allowed;
-    std::int64_t utc_us;  ///< of the newest one
+    std::int64_t utc_us;  ///< time of the newest one
     std::int64_t not_listed = 0;
     std::string who;
     bool may_act = true;
   };
-  /// Whether this rejection gets a line.
+  /// True when this rejection gets a line.
   bool lists(const AuditEntry& entry);
   void write(const AuditEntry& entry);
 

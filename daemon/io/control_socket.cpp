@@ -227,8 +227,8 @@ bool ControlSocket::make_room(bool may_act) {
     ++of_owner[client.owner];
   }
   if (count < (may_act ? kMaxActing : kMaxLooking)) return true;
-  // Of the process or user with the most connections, the one that has had the most answers, and
-  // among equals the longest silent.
+  // The process or user with the most connections loses the one that has had the most answers,
+  // and among equals the longest silent.
   Client* silent = nullptr;
   const auto order = [&](const Client& client) {
     return std::tuple(-static_cast<std::ptrdiff_t>(of_owner[client.owner]),

@@ -30,7 +30,7 @@ class EstimationMethod {
 /// A time as a whole number of samples, at least 1.
 [[nodiscard]] int samples_in(double time_s, double sample_time_s) noexcept;
 
-/// Whether the loop holds the valve at null (arming states of sample_t): no motion to estimate
+/// True while the loop holds the valve at null (arming states of sample_t): no motion to estimate
 /// from.
 [[nodiscard]] inline bool rests(const config::signals::Sample& sample) noexcept {
   constexpr std::uint8_t kDisarmed = 1;

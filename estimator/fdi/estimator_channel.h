@@ -46,7 +46,7 @@ class EstimatorChannel final : public DetectionMethod {
   WindowMonitor monitor_;
   std::int64_t warmup_samples_;
   std::int64_t window_samples_;
-  std::int64_t samples_ = 0;    ///< of the present motion
+  std::int64_t samples_ = 0;    ///< since the present motion began
   double previous_y_m_ = kNaN;  ///< NaN when there is none
   bool saturated_ = false;      ///< any sample behind the decimated one was saturated
 };

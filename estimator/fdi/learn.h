@@ -46,7 +46,7 @@ struct LearnedLimits {
   double block_s = 0.0;  ///< L
   std::size_t blocks = 0;
   double widening_ratio = 1.0;  ///< margin over that of a record without end
-  double enough_s = 0.0;        ///< of healthy motion, from which on that is below 1.1
+  double enough_s = 0.0;        ///< length of healthy motion that brings widening_ratio below 1.1
 };
 
 /// `values` in time order, one per interval_s; NaN = no trustworthy estimate. Throws

@@ -23,7 +23,7 @@ struct LearnedBand {
   double block_s = 0.0;        ///< length of the blocks whose extremes were fitted
   // Not in the file:
   double widening_ratio = 1.0;  ///< margin over that of a record without end
-  double enough_s = 0.0;        ///< of healthy motion, from which on that is below 1.1
+  double enough_s = 0.0;        ///< length of healthy motion that brings widening_ratio below 1.1
 
   void visit(config::schema::Visitor& v);
 };

@@ -84,7 +84,7 @@ class Connection {
   ConnectionConfig config_;
   Counters& counters_;
   modbus_t* context_;
-  std::int64_t timeout_ns_ = 0;  ///< of a whole reply
+  std::int64_t timeout_ns_ = 0;  ///< for a whole reply
   unsigned transaction_ = 0;
   bool open_ = false;
   int error_ = 0;

@@ -170,7 +170,7 @@ class FormulaSet {
   std::vector<Effect> effects_;
   unsigned sites_ = 0;
   bool fresh_ = false;
-  bool always_ = false;  ///< of the last prepare()
+  bool always_ = false;  ///< as the last prepare() was called
 };
 
 }  // namespace plant_sim::formula
