@@ -32,13 +32,18 @@ def connection(path):
     return one
 
 
-def pipeline(path, line, ends, uid):
-    """Twenty connections that send without reading."""
+def become(uid):
+    """Gives up root's rights for those of a user, and some of the processor."""
     if os.geteuid() == 0 and uid is not None:
         os.setgroups([])
         os.setgid(uid)
         os.setuid(uid)
     os.nice(5)
+
+
+def pipeline(path, line, ends, uid):
+    """Twenty connections that send without reading."""
+    become(uid)
     files = []
     while time.monotonic() < ends:
         while len(files) < 20:
@@ -59,11 +64,7 @@ def pipeline(path, line, ends, uid):
 
 def connections(path, _line, ends, uid):
     """As many connections as there can be, each gone at once."""
-    if os.geteuid() == 0 and uid is not None:
-        os.setgroups([])
-        os.setgid(uid)
-        os.setuid(uid)
-    os.nice(5)
+    become(uid)
     while time.monotonic() < ends:
         try:
             connection(path).close()
