@@ -27,7 +27,7 @@ class PipeValve final : public hal::ValveDrive {
   int pipe_;
 };
 
-/// What a child process wrote to its valve; `end` ends it.
+/// The voltages that a child process wrote to its valve; `end` ends it.
 template <class End>
 std::string writes_of_child(End end, int& status) {
   int ends[2];

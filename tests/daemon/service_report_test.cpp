@@ -1,4 +1,5 @@
-// What a service manager hears, on a socket of the test's own: readiness, signs of life, status.
+// The messages to a service manager, on a socket of the test's own: readiness, signs of life,
+// status.
 #include "daemon/service_report.h"
 
 #include <gmock/gmock.h>
@@ -41,7 +42,7 @@ class Ear {
   Ear(const Ear&) = delete;
   Ear& operator=(const Ear&) = delete;
 
-  /// What has come since the last call, waited for up to so long.
+  /// The messages since the last call, waited for up to so long.
   std::vector<std::string> heard(int wait_ms = 0) const {
     std::vector<std::string> all;
     const timeval patience{wait_ms / 1000, 1000 * (wait_ms % 1000)};

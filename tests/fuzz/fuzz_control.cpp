@@ -1,4 +1,4 @@
-// What clients write to the control socket: lines through a real socket, each parsed and answered.
+// Lines that clients write to the control socket, through a real one, each parsed and answered.
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-// What a Modbus device answers, over a real TCP connection. The first byte chooses the request; the
+// Answers of a Modbus device, over a real TCP connection. The first byte chooses the request; the
 // rest is the reply, behind the right transaction number unless the choice says otherwise.
 #include <arpa/inet.h>
 #include <netinet/in.h>

@@ -1,4 +1,4 @@
-// What transducers of pressure see of a plant.
+// The readings of pressure transducers on a plant.
 #include <gtest/gtest.h>
 
 #include <cmath>

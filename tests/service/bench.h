@@ -23,7 +23,7 @@ namespace service {
 
 using program::Look;
 
-/// What is still called null: two steps of the converter.
+/// Voltages that still count as null: two steps of the converter.
 inline constexpr double kNull_V = 0.01;
 /// A command that is far from null.
 inline constexpr double kFar_V = 1.5;

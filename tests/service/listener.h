@@ -1,4 +1,4 @@
-// What another process hears of the service's alarms.
+// The service's alarms as another process hears them.
 #pragma once
 
 #include <cstdio>

@@ -15,7 +15,7 @@ struct Output {
 
 class Machine {
  public:
-  /// Of $SPOOLWATCH_CONTAINER.
+  /// Runs in $SPOOLWATCH_CONTAINER.
   Machine();
 
   /// A shell command inside, as root.

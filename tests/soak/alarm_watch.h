@@ -19,7 +19,7 @@ namespace soak {
 
 struct AlarmTimes {
   double delay_s;      ///< window, stride and what is left of a window when the fault comes
-  double off_delay_s;  ///< of the band
+  double off_delay_s;  ///< the band's
 };
 
 class AlarmWatch {

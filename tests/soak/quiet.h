@@ -14,16 +14,16 @@ namespace soak {
 struct QuietOptions {
   std::filesystem::path config;  ///< its own faults are left out
   double hours = 10.0;
-  std::uint64_t seed = 1;  ///< of the noise
+  std::uint64_t seed = 1;  ///< seeds the noise
   std::vector<Fault> faults;
 };
 
 struct QuietResult {
   std::int64_t samples = 0;
-  std::int64_t estimates = 0;       ///< of the tracker
-  std::int64_t valid = 0;           ///< of those
+  std::int64_t estimates = 0;       ///< the tracker's
+  std::int64_t valid = 0;           ///< valid ones among them
   std::vector<std::string> alarms;  ///< that came: second, source and name
-  int exit_code = 0;                ///< of the daemon
+  int exit_code = 0;                ///< the daemon's
   std::string err;                  ///< what it wrote
 };
 

@@ -19,8 +19,8 @@ constexpr double kBound = 8.0;
 /// Means of the two hours: relative.
 constexpr double kMeanBound = 1e-3;
 
-// Of the shipped bands. fast: window 0.3 s and stride 0.01 s. period: windows of 2 s one after the
-// other, so what is left of one and a whole one; each counts from its newest sample.
+// Times of the shipped bands. fast: window 0.3 s and stride 0.01 s. period: windows of 2 s one
+// after the other, so what is left of one and a whole one; each counts from its newest sample.
 constexpr AlarmTimes kFast{0.3 + 0.01, 0.5};
 constexpr AlarmTimes kPeriod{2.0 + 2.0, 0.0};
 

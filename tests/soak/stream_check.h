@@ -16,11 +16,11 @@
 
 namespace soak {
 
-/// Of one coefficient in healthy stretches.
+/// Values of one coefficient in healthy stretches.
 struct Spread {
   std::int64_t count = 0;
   double mean = 0.0;
-  double squares = 0.0;  ///< of the distance from the mean, summed
+  double squares = 0.0;  ///< sum of the squared distances from the mean
   double low = 0.0;
   double high = 0.0;
   void add(double value) noexcept;
@@ -34,7 +34,7 @@ struct Coefficient {
 
 class StreamCheck {
  public:
-  /// Of a run with the bands and the estimators of config/demo.toml; `period_ns` of the loop.
+  /// Checks a run with the bands and estimators of config/demo.toml; `period_ns`: the loop's.
   StreamCheck(const std::vector<Fault>& faults, double duration_s, std::int64_t period_ns);
 
   /// One event of a log.

@@ -32,7 +32,7 @@ constexpr std::int64_t kGrowth_KiB = 256;  // allowed after the first hour
 constexpr std::int64_t kFileBytes = 4 << 20;
 constexpr std::int64_t kFiles = 4;
 
-/// Of a process's memory in RAM, from /proc.
+/// A process's memory in RAM, from /proc.
 std::int64_t resident_KiB(pid_t pid) {
   std::ifstream in("/proc/" + std::to_string(pid) + "/status");
   for (std::string word; in >> word;) {
@@ -50,7 +50,7 @@ bool runs(pid_t pid) {
          info.si_pid == 0;
 }
 
-/// What is wrong with the folder of the recorder; empty: nothing. One file more is there for the
+/// The complaint about the recorder's folder; empty: none. One file more is there for the
 /// moment between the new one and the oldest's removal.
 std::string rotation_problem(const fs::path& folder) {
   std::int64_t files = 0;
@@ -67,7 +67,7 @@ std::string rotation_problem(const fs::path& folder) {
          " bytes";
 }
 
-/// What the files that are left hold: the last samples, without a gap.
+/// Requires of the files that are left the last samples, without a gap.
 std::string tail_problem(const fs::path& folder, std::int64_t samples) {
   const program::Log log = program::read_log(folder);
   if (log.samples.empty()) return "the log is empty";

@@ -23,7 +23,7 @@ struct WeekResult {
   std::int64_t problem_count = 0;
   std::int64_t samples = 0;
   std::size_t faults = 0;
-  std::int64_t comings = 0;             ///< of alarms
+  std::int64_t comings = 0;             ///< alarms that came
   std::int64_t resident_first_KiB = 0;  ///< at the end of the first hour, or of the first half
   std::int64_t resident_last_KiB = 0;
   double wall_s = 0.0;

@@ -22,7 +22,7 @@ struct AxisPlant {
   double gain_N_per_V = 35.0;
 };
 
-/// What the drawing of the axis says: a linear motor, or a joint (kg m^2, N m s/rad, N m/V).
+/// The axis by its drawing: a linear motor, or a joint (kg m^2, N m s/rad, N m/V).
 AxisPlant printed_axis(bool rotary);
 
 /// State: y, v, twist e, motor speed, two without use, bristle deflection.

@@ -3,7 +3,7 @@
 namespace truth {
 
 const std::vector<PlantField>& plant_fields(Kind kind) {
-  // Of gain and supply pressure only gain * sqrt(Ps) is seen, so the gain stands for both.
+  // Only gain * sqrt(Ps) is seen of gain and supply pressure, so the gain stands for both.
   static const std::vector<PlantField> actuator{
       {"mass_kg", [](Case& c) { return &c.plant.mass_kg; }, 0.2, &Plant::mass_kg},
       {"damping_N_s_per_m", [](Case& c) { return &c.plant.damping_N_s_per_m; }, 0.6,

@@ -1,4 +1,4 @@
-// What each kind of rig is like: its usual loop, sensor and motion, its printed plant, and how far
+// Each kind of rig: its usual loop, sensor and motion, its printed plant, and how far
 // a built one is off it.
 #pragma once
 
@@ -13,9 +13,9 @@ struct PlantField {
   std::string name;
   double* (*at)(Case&);
   double reach;  ///< how far a fit may move it, relative; 0: something else stands for it
-  double Plant::*member = nullptr;  ///< of the actuator's
+  double Plant::*member = nullptr;  ///< the actuator's
 };
-/// What makes one rig differ from the next of its kind.
+/// The parameters by which one rig differs from the next of its kind.
 const std::vector<PlantField>& plant_fields(Kind kind);
 
 std::string to_string(Kind kind);

@@ -1,4 +1,4 @@
-// What moves: the equations that all plants of this folder share, integrated by Heun's method.
+// The moving parts: equations that all plants of this folder share, integrated by Heun's method.
 //
 //   friction (LuGre): z' = v - s0 |v| z / g(v),  F = s0 z + s1 z',
 //                     g = Fc (1 +- r) + (Fs - Fc)+ exp(-(v/vs)^2)

@@ -16,7 +16,7 @@
 
 namespace truth {
 
-inline constexpr double kSample_s = 0.005;  ///< of the loop, where a case says nothing else
+inline constexpr double kSample_s = 0.005;  ///< the loop's, where a case says nothing else
 inline constexpr double kCentre_m = 0.305;
 
 /// Numbers that are the same with every standard library.

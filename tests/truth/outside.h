@@ -1,4 +1,4 @@
-// What disturbs a rig from outside, following from neither command nor motion.
+// Disturbances of a rig from outside, which follow from neither command nor motion.
 //
 //   force     dF = -w F dt + sqrt(2 w) s dW,  w = 2 pi corner: first-order low-passed white noise
 //   supply    Ps + a sin(2 pi f t + phase): a pump's pulsation

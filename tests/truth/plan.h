@@ -33,7 +33,7 @@ struct Planned {
   Case of;
   std::string text;                 ///< parse_case(text, of.seed) makes it again
   std::vector<std::string> hidden;  ///< effects of the library
-  std::vector<double> visibility;   ///< of each, or of the left-out effect
+  std::vector<double> visibility;   ///< one of each effect, or of the left-out one
   std::string condition;            ///< empty: none
   bool within_limits = true;        ///< pressures between 0 and supply, rod within the stroke
 };

@@ -36,16 +36,16 @@ struct Change {
 
 /// Everything that makes a record; the same values give the same record.
 struct Case {
-  std::size_t seed = 1;  ///< of motion and noise
+  std::size_t seed = 1;  ///< seeds motion and noise
   Kind kind = Kind::actuator;
   std::string motion = "multisine";
-  double amplitude_ratio = 1.0;  ///< of the motion, about its centre
+  double amplitude_ratio = 1.0;  ///< scales the motion about its centre
   double period_s = 0.0;         ///< the motion repeats; 0: it does not
   bool mismatched = false;       ///< told, not used: the plant below holds the differences
   double length_s = 30.0;
-  double sample_s = kSample_s;  ///< of the loop
+  double sample_s = kSample_s;  ///< the loop's
   int log_every = 1;            ///< rows of the loop per row of the log
-  bool log_mean = false;        ///< of the command
+  bool log_mean = false;        ///< logs the command's mean
   double kp_V_per_m = 100.0;
   double ki_V_per_m_s = 0.0;
   double kd_V_s_per_m = 0.0;
@@ -53,7 +53,7 @@ struct Case {
   double noise_m = 2e-6;
   double encoder_m = 5e-6;  ///< 0 for none
   double converter_V = 20.0 / 4096.0;
-  double pressure_noise_Pa = -1.0;  ///< of three transducers; below 0: there are none
+  double pressure_noise_Pa = -1.0;  ///< each of three transducers' noise; below 0: there are none
   Plant plant;                      ///< this, axis or rod goes by the kind
   AxisPlant axis;
   RodPlant rod;
@@ -67,7 +67,7 @@ struct Case {
 struct Record {
   int log_every = 1;
   bool log_mean = false;
-  int digits = 6;  ///< of y in the log
+  int digits = 6;  ///< y's in the log
   std::vector<double> t_s, u_V, y_m;
   std::vector<double> reading_m;                 ///< y without noise and rounding
   std::vector<double> supply_Pa, in_Pa, out_Pa;  ///< as read; empty: there are no transducers

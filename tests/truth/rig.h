@@ -27,7 +27,7 @@ class Rig {
   void hold(double u_V);
   /// From now on; the state stays.
   void change(std::unique_ptr<Machine> machine) { machine_ = std::move(machine); }
-  /// What the position sensor would show now without noise and rounding.
+  /// The position sensor's reading now without noise and rounding.
   [[nodiscard]] double reading_m() const;
   /// At the valve's inlet now, without a transducer's error.
   [[nodiscard]] double inlet_Pa() const { return machine_->inlet_Pa(x, t_s_); }
@@ -35,7 +35,7 @@ class Rig {
   State x;
   double least_Pa;                      ///< lowest chamber pressure so far
   double greatest_ratio;                ///< highest chamber pressure so far over the supply's
-  double fastest_mps = 0.0;             ///< of the rod
+  double fastest_mps = 0.0;             ///< the rod's
   std::vector<double> spool_speed_mps;  ///< the fastest within each sample
 
  private:

@@ -70,7 +70,7 @@ std::vector<std::string> hidden_effects(const Hidden& hidden) {
 
 namespace {
 
-constexpr double kUneven = 0.01;  ///< of speeds: an asymmetry below it is none
+constexpr double kUneven = 0.01;  ///< asymmetry of the speeds below which there is none
 
 bool has_place_in_servo(const std::string& effect) {
   static const std::vector<std::string> names{

@@ -25,7 +25,7 @@ std::vector<std::string> hidden_effects(const Hidden& hidden);
 /// The names that a diagnosis with the model of that kind (model_files.h) can give for what is
 /// hidden. A cylinder shows those on command, opening and reading, and its areas as flow_asymmetry.
 std::vector<std::string> shown_effects(const Case& of);
-/// What else is hidden, which that model has no place for.
+/// Further hidden effects, which that model has no place for.
 std::vector<std::string> unshown_effects(const Case& of);
 /// A parameter's true value, or what the cylinder's areas and load amount to.
 double value_of(const Parameter& parameter, const Case& of);

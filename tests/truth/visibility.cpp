@@ -36,8 +36,8 @@ double dot(const Column& a, const Column& b) {
   return sum;
 }
 
-/// What is left of `rest` after the best bounded combination of the columns; by turns over the
-/// coordinates, which converges as the problem is convex.
+/// The rest after the best bounded combination of the columns is taken off `rest`; by turns over
+/// the coordinates, which converges as the problem is convex.
 Column left_after(Column rest, const std::vector<Column>& columns, const Column& bounds) {
   const std::size_t count = columns.size();
   std::vector<Column> gram(count, Column(count));

@@ -173,7 +173,7 @@ Wanted on_axis(std::size_t index) {
   return want;
 }
 
-/// What is named first shows as one of the servo's effects; the rest it cannot have.
+/// The first name is the servo's effect that shows; the others it cannot have.
 Wanted on_rod(std::size_t index) {
   static const std::vector<Names> turns{{"flow_asymmetry", "deadband"},
                                         {"flow_asymmetry"},

@@ -1,4 +1,4 @@
-// What record number `index` of a plan is to hide, and under what.
+// The effects that record number `index` of a plan hides, and its conditions.
 #pragma once
 
 #include <cstddef>

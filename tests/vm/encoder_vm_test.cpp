@@ -194,7 +194,7 @@ TEST(EncoderVm, SaysThatTheCountIsUncertainWhenTheKernelDropsEdgesAndTheIndexMen
   EXPECT_NEAR(static_cast<double>(mended.counts), -10.0, 1.0);
 }
 
-/// What the chip's line is driven to, as its value file says: "0" or "1".
+/// The level that the chip's line is driven to, from its value file: "0" or "1".
 char driven(int line) {
   const std::string pattern =
       "/sys/devices/platform/gpio-sim.0/" + chip() + "/sim_gpio" + std::to_string(line) + "/value";

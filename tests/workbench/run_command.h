@@ -15,7 +15,7 @@ namespace workbench_test {
 /// `main` would see them. Returns the exit code that the command set.
 int run_command(workbench::cli::Setup setup, std::vector<std::string> arguments);
 
-/// What the command prints, while it is expected to set that exit code.
+/// The command's standard output; the command must set that exit code.
 inline std::string printed_by(workbench::cli::Setup setup, std::vector<std::string> arguments,
                               int exit_code = 0) {
   testing::internal::CaptureStdout();

@@ -21,7 +21,7 @@ constexpr double kSample_s = 0.005;
 constexpr double kStep_s = 0.001;
 constexpr double kStart_m = 0.305;
 
-/// What a record of the actuator can tell of: base and nuisance parameters.
+/// Parameters that a record of the actuator determines: base and nuisance parameters.
 constexpr std::array kSought = {"valve_gain_m_per_V",
                                 "damping_N_s_per_m",
                                 "bulk_modulus_Pa",

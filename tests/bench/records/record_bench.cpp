@@ -47,7 +47,7 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// What no reader can do without: the file in memory, its lines counted, its numbers parsed.
+/// The least that a reader does: the file in memory, its lines counted, its numbers parsed.
 double bare_s(const std::filesystem::path& file) {
   const auto begin = std::chrono::steady_clock::now();
   std::ifstream in(file, std::ios::binary);

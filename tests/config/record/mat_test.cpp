@@ -41,7 +41,7 @@ std::string error_of(const std::filesystem::path& file) {
   return "no error";
 }
 
-/// What make_files.py computes.
+/// The motion that make_files.py computes.
 void expect_the_motion(const Record& record) {
   ASSERT_EQ(record.size(), 20U);
   EXPECT_NEAR(record.sample_time_s, 0.005, 1e-12);

@@ -23,13 +23,13 @@ struct Servo {
   double delay_s = 0.008;
   double lag_s = 0.01;
   double noise_m = 2e-6;
-  double count_m = 5e-6;  ///< of the encoder, 0: none
+  double count_m = 5e-6;  ///< the encoder's step, 0: none
   double valve_sign = 1.0;
   double encoder_sign = 1.0;
   double stop_low_m = -1e9;
   double stop_high_m = 1e9;
   double push_mps = 0.0;    ///< whatever the command
-  double down_ratio = 1.0;  ///< of the gain downward to that upward
+  double down_ratio = 1.0;  ///< gain downward over gain upward
 
   double y_m = 0.3;
   double v_mps = 0.0;
@@ -51,7 +51,7 @@ struct Servo {
   int losing = 0;
   bool disturbed = false;
 
-  /// What the valve gets of a command: the one before when it is lost.
+  /// The command as it reaches the valve: the one before when it is lost.
   double deliver(double u_V) {
     if (losing == 0 && lost > 0.0 && std::bernoulli_distribution(lost)(random)) losing = 4;
     disturbed = losing > 0;

@@ -88,7 +88,7 @@ TEST(Noise, IsThatOfTheReadingAtRest) {
   Commissioning procedure({});
   procedure.begin(Stage::rest);
   run(procedure, servo);
-  // Of 60 readings: 1/sqrt(2 * 58) = 9 % standard error, three of them; rounding adds 0.3 %.
+  // 60 readings: 1/sqrt(2 * 58) = 9 % standard error, three of them; rounding adds 0.3 %.
   EXPECT_NEAR(procedure.findings().noise_m, 20e-6, 0.28 * 20e-6);
   EXPECT_NEAR(procedure.findings().drift_mps, -0.02 * 0.045, 1e-4);
 }

@@ -1,4 +1,4 @@
-// What makes the procedure give up, always at null, and how it homes.
+// The procedure's reasons to give up, always at null, and its homing.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// What is kept of alarms across a restart, and who did what: files that are there whole or not.
+// Alarms across a restart, and who did what: files that are there whole or not.
 #include "daemon/io/alarm_store.h"
 
 #include <gmock/gmock.h>

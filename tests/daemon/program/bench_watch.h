@@ -1,4 +1,4 @@
-// What stands between a test and the bench rig: a client that watches it, a cable that can be cut.
+// Between a test and the bench rig: a client that watches it, a cable that can be cut.
 #pragma once
 
 #include <gtest/gtest.h>

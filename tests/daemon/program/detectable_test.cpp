@@ -29,7 +29,7 @@ class Detectable : public testing::Test {
   [[nodiscard]] Result order(const std::string& words) const {
     return spoolwatch(words + " --socket " + socket());
   }
-  /// What the tracker says of itself; null: nothing yet.
+  /// The tracker's own report; null: nothing yet.
   [[nodiscard]] json tracker() const {
     const json status = json::parse(order("status --json -").out, nullptr, false);
     if (!status.is_object() || !status.contains("detectable")) return nullptr;

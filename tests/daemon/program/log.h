@@ -1,4 +1,4 @@
-// What a recorded log holds, by type.
+// The messages of a recorded log, by type.
 #pragma once
 
 #include <filesystem>

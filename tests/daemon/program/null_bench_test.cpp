@@ -18,7 +18,7 @@ struct Failure {
   bool device_decides = false;  ///< the machine's load does not matter
   bool at_command = false;      ///< null is looked for in what was written, not at the valve
   bool spoils_reading = false;  ///< so that it does not say how far the rod went
-  const char* more = kGuards;   ///< of the configuration
+  const char* more = kGuards;   ///< further configuration
   bool by_cable = false;        ///< the daemon reaches the rig by the cable
   bool goes_on = false;         ///< after kOutage_s, and the device's time-out is no help
   std::vector<std::string> set{};
@@ -27,7 +27,7 @@ struct Failure {
 /// The tick before it is up to 5 ms older and the next one comes on the grid: 50 ms between the two
 /// at least, 52 at most.
 constexpr double kOutage_s = 0.047;
-/// What was on its way to the rig is there.
+/// Commands on their way to the rig have arrived by then.
 constexpr std::int64_t kSettled_ns = 10'000'000;
 
 /// Until null came, nothing but the command that stood when the failure had begun was at the rig.

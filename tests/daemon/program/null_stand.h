@@ -55,9 +55,9 @@ inline std::string trouble(const char* kind, double from_s) {
 
 inline constexpr double kNever_s = 1e6;
 
-/// What happens in one run.
+/// The events of one run.
 struct Plan {
-  std::string row;  ///< of the table
+  std::string row;  ///< in the table
   std::string troubles;
   double e_stop_s = kNever_s;
   double enable_s = kNever_s;
@@ -67,7 +67,7 @@ struct Plan {
   int stall_periods = 0;
   std::string guard;  ///< kind, "" for none but the built-in ones
   std::string action = "latch";
-  /// Whether a tick belongs to the failure; without one it begins at at_s.
+  /// True for a tick that belongs to the failure; without one it begins at at_s.
   std::function<bool(const Seen& before, const Seen& now)> failing;
   double at_s = 0.0;
 };

@@ -10,10 +10,10 @@
 
 namespace program {
 
-/// What is still called null: two steps of the converter.
+/// Voltages that still count as null: two steps of the converter.
 inline constexpr double kNull_V = 0.01;
 
-/// What was seen at the rig: between the two times.
+/// An observation of the rig between two times.
 struct Look {
   std::int64_t before_ns, after_ns;
   double command_V, valve_V, rod_m;

@@ -17,7 +17,7 @@ using nlohmann::json;
 
 constexpr double kTs_s = 0.005;
 
-/// What the tracker says when something comes up, in its order.
+/// The tracker's alarms as they come up, in its order.
 std::vector<spoolwatch::alarm_t> raised(const Log& log) {
   std::vector<spoolwatch::alarm_t> raised;
   for (const spoolwatch::alarm_t& alarm : log.alarms) {

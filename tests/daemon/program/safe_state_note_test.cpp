@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// What is still called null: two steps of the converter.
+/// Voltages that still count as null: two steps of the converter.
 constexpr double kNull_V = 0.01;
 /// A command that is far from null.
 constexpr double kFar_V = 3.0;

@@ -33,7 +33,7 @@ SafetyRules every_guard() {
   return rules;
 }
 
-/// What stands around a rod: two spares, a switch of each kind, a permit line.
+/// The devices around a rod: two spares, a switch of each kind, a permit line.
 struct Around {
   explicit Around(const std::shared_ptr<hal::sim::SimRig>& rig) {
     if (rig != nullptr) {

@@ -138,8 +138,8 @@ class Course {
 struct Case {
   InjectedFault injected;
   RodFault fault;
-  double delay_s;   ///< of the fail-over, at most
-  double astray_m;  ///< of the rod, at most
+  double delay_s;   ///< longest of the fail-over
+  double astray_m;  ///< farthest of the rod
 };
 
 /// At 5 s the rod is on its way through the centre at full speed, 80 mm/s.

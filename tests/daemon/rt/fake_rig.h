@@ -59,7 +59,7 @@ class FakeRig final : public hal::RodSensor, public hal::ValveDrive {
   std::int64_t tick_ = 0;
 };
 
-/// What was set last, and how often it changed.
+/// The value set last, and how often it changed.
 class FakeOutput final : public hal::Output {
  public:
   bool set(bool level) noexcept override {
@@ -155,7 +155,7 @@ inline control::CommandAnswer ask(LoopBench& bench, control::Event event,
   return answer;
 }
 
-/// What the law asks for with the rod at 0.1 m.
+/// The controller's command with the rod at 0.1 m.
 inline constexpr double kController_V = kFakeNull_V + 100.0 * (0.3 - 0.1);
 inline constexpr double kRounding_V = 1e-12;
 

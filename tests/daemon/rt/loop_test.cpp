@@ -1,4 +1,4 @@
-// What one tick does: read before write, the state machine's outputs, commands, gaps, drops.
+// One tick: read before write, the state machine's outputs, commands, gaps, drops.
 #include <gtest/gtest.h>
 
 #include <cmath>

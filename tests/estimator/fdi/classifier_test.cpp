@@ -67,7 +67,7 @@ TEST(Classifier, IsRefusedWithoutClasses) {
             std::string::npos);
 }
 
-/// What the classifier says of a place, "" when it is well.
+/// The classifier's answer at a place; "": healthy.
 std::string verdict(PlainValues& values, double y, double u) {
   values.restart();
   for (int i = 0; i < 2; ++i) values.feed(y, u);

@@ -1,4 +1,4 @@
-// What every kind of source must do: go on bit for bit after a snapshot, and take no memory.
+// Every kind of source goes on bit for bit after a snapshot, and takes no memory.
 #include <gtest/gtest.h>
 
 #include <cmath>

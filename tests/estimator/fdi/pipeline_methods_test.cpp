@@ -1,4 +1,4 @@
-// What holds for every method of estimation: batch, sliding, recursive.
+// Properties of every method of estimation: batch, sliding, recursive.
 #include <gtest/gtest.h>
 
 #include <cmath>

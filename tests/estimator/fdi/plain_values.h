@@ -64,7 +64,7 @@ class PlainValues final : public estimator::fdi::Events {
   std::int64_t tick = 0;
 };
 
-/// What making it is refused with, "" when it is not; the exit code must be 78.
+/// The refusal of making it, "" when there is none; the exit code must be 78.
 inline std::string refusal(const std::string& rules) {
   try {
     estimator::fdi::Pipeline(read_rules(rules), 1.0);

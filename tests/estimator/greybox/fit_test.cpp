@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr double kTs = 0.005;
-constexpr double kGain = 0.05;  ///< of the model file
+constexpr double kGain = 0.05;  ///< the model file's
 
 plant_sim::ModelFile servo() {
   plant_sim::ModelFile model = plant_sim::load_model(std::string(SPOOLWATCH_SOURCE_DIR) +

@@ -89,7 +89,7 @@ TEST(Covariance, ASeriesOfItsOwnDoesNotTakeTheOthersColour) {
   CovarianceOptions options;
   options.series = {kRows};
   const Covariance found = covariance(problem, minimize(problem, VectorXd::Zero(2)), options);
-  // Of the mean of n numbers: 1 / sqrt n, and with the memory a, 1 / ((1 - a) sqrt n).
+  // Standard error of the mean of n numbers: 1 / sqrt n; with the memory a, 1 / ((1 - a) sqrt n).
   const double white = 1.0 / std::sqrt(static_cast<double>(kRows));
   EXPECT_NEAR(found.std_error[0], white, 0.15 * white);
   EXPECT_NEAR(found.std_error[1], white / (1.0 - kMemory), 0.25 * white / (1.0 - kMemory));

@@ -1,4 +1,4 @@
-// What a record cannot see, and how far a likelihood reaches, against closed forms.
+// Parameters that a record cannot see, and how far a likelihood reaches, against closed forms.
 #include "estimator/nonlinear/identifiability.h"
 
 #include <gtest/gtest.h>

@@ -11,7 +11,7 @@ using config::schema::ConfigError;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-/// What is wrong with the table, in one line.
+/// The complaint about the table, in one line.
 std::string complaint(const std::string& text) {
   ComediBackend backend;
   try {

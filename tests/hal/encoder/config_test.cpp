@@ -22,7 +22,7 @@ EncoderConfig read(const std::string& text) {
   return config;
 }
 
-/// What is wrong with the table and further lines, "" when nothing is.
+/// The complaint about the table and further lines; "": none.
 std::string complaint(const std::string& more, const std::string& table = kTable) {
   try {
     read(table + more).check("rig.toml");

@@ -1,4 +1,4 @@
-// What the loop calls takes nothing from the heap, whether the device answers or not.
+// The loop's calls take nothing from the heap, whether the device answers or not.
 #include <gtest/gtest.h>
 
 #include "tests/count_allocations.h"

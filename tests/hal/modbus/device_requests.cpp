@@ -1,4 +1,4 @@
-// What the device does with a request, from the function code on.
+// The device's answer to a request, from the function code on.
 #include <ctime>
 
 #include "tests/hal/modbus/device.h"

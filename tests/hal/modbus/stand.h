@@ -28,7 +28,7 @@ inline BackendDevices open_text(const std::string& text, double null_V = 0.0) {
   return backend.open({"stand.toml", {}, kPeriod_s, null_V});
 }
 
-/// What the backend says when it refuses that text; "accepted" when it does not.
+/// The backend's message when it refuses that text; "accepted" when it does not.
 inline std::string refusal_of(const std::string& text, double null_V = 0.0, int exit_code = 78) {
   try {
     (void)open_text(text, null_V);

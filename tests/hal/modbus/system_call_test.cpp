@@ -1,4 +1,4 @@
-// What the loop calls makes no system call: the thread knows by itself when to look. Counted by the
+// The loop's calls make no system call: the thread knows by itself when to look. Counted by the
 // kernel (seccomp), in a thread that may only read the time and sleep.
 #include <gtest/gtest.h>
 #include <linux/filter.h>

@@ -109,7 +109,7 @@ TEST(PressureInput, HasTheErrorsThatItsTransducerIsDeclaredWith) {
                 ideal.inputs[2]->read(tick(k)).value + offset_Pa, 1e-6)
         << k;
   }
-  // Of 400 normal numbers: five standard errors of the mean, and of the mean square.
+  // Five standard errors of the mean of 400 normal numbers, and of their mean square.
   EXPECT_NEAR(sum_Pa / kCount, 0.0, 5.0 * 2e4 / std::sqrt(kCount));
   EXPECT_NEAR(squares / kCount, 4e8, 5.0 * 4e8 * std::sqrt(2.0 / kCount));
 }

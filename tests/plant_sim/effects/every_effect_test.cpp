@@ -1,4 +1,4 @@
-// What holds for every effect of the table, on every plant that it fits.
+// Properties of every effect of the table, on every plant that it fits.
 #include <gtest/gtest.h>
 
 #include <algorithm>

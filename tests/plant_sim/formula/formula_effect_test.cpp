@@ -20,7 +20,7 @@ struct Twin {
   const char* plant;
   const char* site;
   const char* formula;
-  const char* value;       ///< of k
+  const char* value;       ///< k's
   const char* of_library;  ///< the same with its table
   double full_V;
 };

@@ -30,7 +30,7 @@ class AddTest : public testing::Test {
   }
   ~AddTest() override { fs::remove_all(folder_); }
 
-  // What the command prints; `arguments` without -o.
+  // The command's output; `arguments` without -o.
   std::string add(std::vector<std::string> arguments) const {
     arguments.insert(arguments.end(), {"-o", out().string()});
     return workbench_test::printed_by(workbench::cli::add_add, std::move(arguments));

@@ -114,7 +114,7 @@ struct Somewhere {
   double from;
   double to;
   double tolerance;
-  double share;  ///< of the speed error at least
+  double share;  ///< least share of the speed error
 };
 
 class FailingIn : public testing::TestWithParam<Somewhere> {};

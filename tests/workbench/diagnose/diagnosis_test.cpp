@@ -1,4 +1,4 @@
-// What a diagnosis says in the end, on servos of which the answer is known.
+// The conclusion of a diagnosis, on servos of which the answer is known.
 #include "workbench/diagnose/experiment_design.h"
 
 #include <gmock/gmock.h>

@@ -34,7 +34,7 @@ class ExportTest : public testing::Test {
   }
   ~ExportTest() override { fs::remove_all(folder_); }
 
-  // What `publish` sends, as the recorder writes it.
+  // The messages that `publish` sends, as the recorder writes them.
   std::string log_of(const std::function<void(Publisher&)>& publish) const {
     Recorder recorder({.folder = folder_ / "log"}, 3, false);
     Publisher publisher({.url = ""}, 3, 0.005, &recorder);

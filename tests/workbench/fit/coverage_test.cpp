@@ -56,7 +56,7 @@ Count covered(const std::string& text, const ParameterSelection& selection) {
   return all;
 }
 
-// What the record itself determines: the priors do nothing here.
+// Parameters that the record itself determines: the priors do nothing here.
 TEST(FitCoverage, IntervalsOfTheRecordAloneCover) {
   const Count count = covered("", {.free = {"valve_gain_m_per_V,damping_N_s_per_m,bulk_modulus_Pa"},
                                    .priors = {"valve_gain_m_per_V=none", "damping_N_s_per_m=none",

@@ -88,7 +88,7 @@ TEST_F(FitTest, WritesTheBetterModelAndSaysWhatMoved) {
   EXPECT_THAT(text_of(path("better.toml")), HasSubstr("# Fitted by: spoolwatch fit "));
   EXPECT_THAT(text_of(path("fit.html")),
               AllOf(HasSubstr("Correlation of the estimates"), HasSubstr("spoolwatch fit")));
-  // What it writes can be fitted again, and there is nothing more to gain.
+  // The model that it writes can be fitted again, and there is nothing more to gain.
   fit({path("better.toml"), record(), "--fit", "blocks", "--json", path("again.json")});
   const auto again = nlohmann::json::parse(text_of(path("again.json")));
   EXPECT_NEAR(double(again["rms_after_m"]) / double(json["rms_after_m"]), 1.0, 0.01);
@@ -189,7 +189,7 @@ TEST(FitEmps, AgreesWithThePublishedParameters) {
     const double error = (double(p["high"]) - double(p["low"])) / (2.0 * 1.96);
     std::printf("  %-20s %8.3f +- %.3f, published %.3f\n", name.c_str(), double(p["value"]), error,
                 value);
-    // What is left, 1000 times the noise, is friction that depends on the direction: the offset
+    // The rest, 1000 times the noise, is friction that depends on the direction: the offset
     // takes some of it up, which no standard error covers.
     const double allowed = name == "load_force.force_N" ? 0.25 : 3.0 * error;
     EXPECT_LT(std::abs(double(p["value"]) - value), allowed) << name;

@@ -49,7 +49,7 @@ TEST(OnlineResidual, TellsTheErrorThatTheComparisonFindsAfterwards) {
   const validation::Comparison c = validation::compare(model, greybox::dataset_of(record));
   const double wanted_m = rms_afterwards_m(c);
   const live::ResidualFigures figures = running.figures();
-  // What the unknown first state shifted has died away to exp(-2/s 4 s) by then.
+  // The offset by the unknown first state has died away to exp(-2/s 4 s) by then.
   EXPECT_NEAR(figures.rms_m, wanted_m, 1e-3 * wanted_m);
   EXPECT_GT(wanted_m, 1e-7);
   EXPECT_NEAR(figures.window_s, 10.0, 1e-9);

@@ -25,7 +25,7 @@ std::string read(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// What the daemon runs by; without bands it also makes the records.
+/// The daemon's configuration; without bands it also makes the records.
 std::string rig(const std::string& more) {
   std::string text = read(program::shipped("thesis_case1.toml"));
   text = text.substr(0, text.find("[[band]]"));

@@ -1,4 +1,4 @@
-// What is told beside a sample comes back with it, whichever way the samples are read.
+// Messages beside a sample come back with it, whichever way the samples are read.
 #include "workbench/replay/log_walk.h"
 
 #include <gtest/gtest.h>

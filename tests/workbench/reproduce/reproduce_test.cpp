@@ -13,9 +13,9 @@
 namespace workbench::reproduce {
 namespace {
 
-/// Of b1: 1 ms against 0.25 ms.
+/// Tolerance of b1: 1 ms against 0.25 ms.
 constexpr double kB1 = 1e-6;
-/// Of a cost: the same, in squares of small differences.
+/// Tolerance of a cost: the same, in squares of small differences.
 constexpr double kCost = 1e-3;
 
 class Rows {

@@ -161,7 +161,7 @@ TEST_F(ScorecardCommand, GoesOnFromWhatIsDone) {
   json done = json_of("done.json");
   ASSERT_EQ(done["results"].size(), 7U);  // two of each: stated, ladder, healthy; one benign
 
-  // What is taken for done is not done again, what lacks is.
+  // Results that are there are not computed again, missing ones are.
   json& stated = done["results"]["stated/supply_pressure/up/sine"];
   for (json& result : stated) {
     for (json& answer : result["answers"]) answer["first"] = {"from_the_file"};

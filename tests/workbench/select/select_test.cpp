@@ -26,7 +26,7 @@ using nlohmann::json;
 using structures::Polynomial;
 using testing::HasSubstr;
 
-/// What is printed while this lives.
+/// Standard output while this lives.
 struct Captured {
   std::ostringstream text;
   std::streambuf* const before = std::cout.rdbuf(text.rdbuf());

@@ -77,7 +77,7 @@ TEST(ClosedLoop, FaultActsFromItsTimeOnAndNotBefore) {
   }
 }
 
-/// What 2 s of the loop read.
+/// The readings of 2 s of the loop.
 std::vector<double> read_with(const SensorFault& fault) {
   Scenario scenario = thesis();
   scenario.sensor_faults.push_back(fault);

@@ -117,7 +117,7 @@ TEST(SimulateProgram, RefusesWhatCannotBeMeant) {
   EXPECT_FALSE(std::filesystem::exists(file));
 }
 
-/// What a replay of the record needs to know that an estimate over saturated samples is not valid.
+/// A replay of the record needs both to know that an estimate over saturated samples is not valid.
 TEST(SimulateProgram, RecordsTheVoltageAskedForAndTheSaturation) {
   const TemporaryFolder folder;
   const std::string file = folder.file("a.csv");

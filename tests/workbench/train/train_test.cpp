@@ -1,4 +1,4 @@
-// What one command learns from records, and what is made of it.
+// The bands and classifiers that one command learns from records, and their use.
 #include <gtest/gtest.h>
 
 #include <cmath>

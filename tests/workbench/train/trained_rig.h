@@ -101,7 +101,7 @@ class Train : public testing::Test {
     config.load_bands(folder_, sample_time_s, rig_id);
     return config;
   }
-  /// What loading it is refused with: one line that names the file, exit code 78.
+  /// The refusal of loading it: one line that names the file, exit code 78.
   std::string refusal(const std::string& rig_id = "small", double sample_time_s = 0.005) {
     try {
       (void)loaded(rig_id, sample_time_s);

@@ -1,4 +1,4 @@
-// What is learnt of a healthy rig: written, read, and refused where it is of something else.
+// The baseline of a healthy rig: written, read, and refused where it is of something else.
 #include "estimator/fdi/tracker/baseline_file.h"
 
 #include <gmock/gmock.h>
@@ -86,7 +86,7 @@ TEST_F(BaselineFiles, OfARigWithoutChamberPressuresGoOnWithoutThem) {
   const auto file = tracker::read_baseline(path_, model_, {}, set_, truth::kSample_s, "stand-1");
   const iso::Baseline baseline = tracker::baseline_of(file, set_);
   EXPECT_FALSE(baseline.chambers.known());
-  // What comes with the samples then changes nothing.
+  // Values that come with the samples then change nothing.
   truth::Case of = stand(6.0);
   of.pressure_noise_Pa = 5e3;
   const truth::Record record = truth::simulate(of);

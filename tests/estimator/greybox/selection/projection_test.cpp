@@ -1,4 +1,4 @@
-// What remains of a residual, beside a dense least-squares solution of the same sum.
+// The remainder of a residual, beside a dense least-squares solution of the same sum.
 #include "estimator/greybox/selection/projection.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What changes slowly is followed, by the rule of baseline_drift.h and on records of the
+// Slow changes are followed, by the rule of baseline_drift.h and on records of the
 // independent generator.
 #include "estimator/greybox/tracking/baseline_drift.h"
 
@@ -109,7 +109,7 @@ TEST(BaselineDrift, OfDampingIsNoAlarmWhereItIsFollowed) {
   EXPECT_FALSE(tracked(record).alarms.empty());
   const Tracked followed = tracked(record, usual(), following());
   EXPECT_TRUE(followed.alarms.empty());
-  // What the windows find stays what the rig has.
+  // The windows go on to find the rig's own value.
   EXPECT_NEAR(followed.windows.back().estimates[1].value, 900.0, 30.0);
 }
 

@@ -57,7 +57,7 @@ TEST(Chambers, LeaveTheGroupWhereTheyAreNotRead) {
   EXPECT_EQ(t.alarms[0].named.rivals[0].name, "valve_gain_m_per_V");
 }
 
-/// What a transducer shows from some time on.
+/// A transducer's reading from some time on.
 using Failure = std::function<double(double right_Pa, double at_failure_Pa)>;
 
 void fail(const truth::Record& record, std::vector<double>& readings_Pa, double at_s,
