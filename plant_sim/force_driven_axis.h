@@ -11,6 +11,7 @@
 
 #include <array>
 
+#include "plant_sim/coupled_step.h"
 #include "plant_sim/effects/table.h"
 #include "plant_sim/guard.h"
 #include "plant_sim/parameter.h"
@@ -24,8 +25,8 @@ class ForceDrivenAxis {
  public:
   static constexpr const char* kName = "force_driven_axis";
   static constexpr std::array kSites = {effects::Site::command, effects::Site::inertia,
-                                        effects::Site::force, effects::Site::dry_friction,
-                                        effects::Site::sensor};
+                                        effects::Site::force,   effects::Site::dry_friction,
+                                        effects::Site::sensor,  effects::Site::coupling};
 
   struct Parameters {
     S mass_kg = 100.0;
@@ -84,9 +85,14 @@ class ForceDrivenAxis {
     });
     effects.prepare(step_s);
     step_s_ = step_s;
-    inverse_mass_ = S(1.0) / (parameters.mass_kg + effects.added_mass_kg());
-    arrest_kg_per_s_ = (parameters.mass_kg + effects.added_mass_kg()) * S(1.0 / step_s);
-    spring_rate_ = sqrt(effects.stiffness_N_per_m() * inverse_mass_);
+    const S driven_kg =
+        (parameters.mass_kg + effects.added_mass_kg()) * (S(1.0) - effects.coupled_ratio());
+    driven_kg_ = driven_kg;
+    inverse_mass_ = S(1.0) / driven_kg;
+    arrest_kg_per_s_ = driven_kg * S(1.0 / step_s);
+    constexpr double kFiner = limits::kRateStep / limits::kResonanceStep;
+    spring_rate_ = max(sqrt(effects.stiffness_N_per_m() * inverse_mass_),
+                       S(kFiner) * effects.coupling_rate_per_s());
   }
 
   /// One step with u_V held; u_V that is not a number counts as 0.
@@ -112,20 +118,26 @@ class ForceDrivenAxis {
 
   void integrate(const S& drive_N, const S& step_s) {
     const S from_m = state.y_m;
-    const auto rate = [&](const State& x) -> State {
-      const S free_N = drive_N - parameters.damping_N_s_per_m * x.v_mps;
+    const auto rate = [&](const State& x, const S& further_N) -> State {
+      const S free_N = drive_N - parameters.damping_N_s_per_m * x.v_mps + further_N;
       const S force_N =
           effects.net_force_N(x.y_m, {x.v_mps, x.y_m - from_m, free_N, arrest_kg_per_s_});
       return {x.v_mps, force_N * inverse_mass_};
     };
-    state = runge_kutta_step(state, step_s, rate);
+    if (effects.coupled()) {
+      state = coupled_step(effects, state, step_s, [&](const State& x, const S& pull_mps2) {
+        return rate(x, driven_kg_ * pull_mps2);
+      });
+    } else {
+      state = runge_kutta_step(state, step_s, [&](const State& x) { return rate(x, S(0.0)); });
+    }
     state.y_m = clamp(state.y_m, S(-limits::kPosition_m), S(limits::kPosition_m));
     state.v_mps = clamp(state.v_mps, S(-limits::kSpeed_mps), S(limits::kSpeed_mps));
     effects.accept(state.y_m - from_m, state.v_mps);
   }
 
   double step_s_ = 0.0;
-  S inverse_mass_, arrest_kg_per_s_, spring_rate_;
+  S driven_kg_, inverse_mass_, arrest_kg_per_s_, spring_rate_;
 };
 
 }  // namespace plant_sim

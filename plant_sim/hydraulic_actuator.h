@@ -26,6 +26,7 @@
 #include <array>
 #include <limits>
 
+#include "plant_sim/coupled_step.h"
 #include "plant_sim/effects/table.h"
 #include "plant_sim/pressures.h"
 
@@ -39,7 +40,7 @@ class HydraulicActuator {
       effects::Site::command,      effects::Site::spool,   effects::Site::opening,
       effects::Site::supply,       effects::Site::flow,    effects::Site::leakage,
       effects::Site::bulk_modulus, effects::Site::inertia, effects::Site::force,
-      effects::Site::dry_friction, effects::Site::sensor};
+      effects::Site::dry_friction, effects::Site::sensor,  effects::Site::coupling};
 
   /// The printed values (source, table 5.1); V0 is not printed and of no influence there.
   struct Parameters {
@@ -105,9 +106,9 @@ class HydraulicActuator {
   [[nodiscard]] PressuresOf<S> pressures() const;
 
   /// The equations above, inside the stroke (kLimits false) or with its ends and cavitation, and
-  /// with the active effects or as if there were none.
+  /// with the active effects or as if there were none; pull_mps2: by the spring of a second mass.
   template <bool kLimits, bool kEffects>
-  State rate(const State& x, const S& u_V, const S& from_y_m) const;
+  State rate(const State& x, const S& u_V, const S& from_y_m, const S& pull_mps2 = S(0.0)) const;
 
  private:
   struct Derived {

@@ -68,7 +68,8 @@ typename HydraulicActuator<S>::Flows HydraulicActuator<S>::flows(const State& x)
 template <class S>
 template <bool kLimits, bool kEffects>
 typename HydraulicActuator<S>::State HydraulicActuator<S>::rate(const State& x, const S& u_V,
-                                                                const S& from_y_m) const {
+                                                                const S& from_y_m,
+                                                                const S& pull_mps2) const {
   const Parameters& p = parameters;
   const S zero = 0.0;
   S y_m = x.y_m;
@@ -86,6 +87,7 @@ typename HydraulicActuator<S>::State HydraulicActuator<S>::rate(const State& x, 
   if constexpr (kEffects) {
     in_beta_Pa = effects.bulk_modulus_Pa(in_beta_Pa, x.in_Pa);
     out_beta_Pa = effects.bulk_modulus_Pa(out_beta_Pa, x.out_Pa);
+    force_N += derived_.mass_kg * pull_mps2;
     force_N =
         effects.net_force_N(y_m, {v_mps, x.y_m - from_y_m, force_N, derived_.arrest_kg_per_s});
   }

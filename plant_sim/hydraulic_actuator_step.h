@@ -50,12 +50,15 @@ void HydraulicActuator<S>::prepare(double step_s) {
   derived_.two_zeta_wv = S(2.0) * p.valve_damping_ratio * wv;
   derived_.wv2 = wv * wv;
   derived_.kv_wv2 = p.valve_gain_m_per_V * derived_.wv2;
-  derived_.mass_kg = p.mass_kg + effects.added_mass_kg();
+  derived_.mass_kg = (p.mass_kg + effects.added_mass_kg()) * (S(1.0) - effects.coupled_ratio());
   derived_.inverse_mass = S(1.0) / derived_.mass_kg;
   derived_.arrest_kg_per_s = derived_.mass_kg * S(1.0 / step_s);
   derived_.steady_rate = max(wv, derived_.two_zeta_wv);
   derived_.spool_limit_mps = effects.spool_limit_mps();
-  derived_.stiffness_N_per_m = effects.stiffness_N_per_m();
+  constexpr double kFiner = limits::kRateStep / limits::kResonanceStep;
+  const S coupling_rate = S(kFiner) * effects.coupling_rate_per_s();
+  derived_.stiffness_N_per_m =
+      effects.stiffness_N_per_m() + derived_.mass_kg * coupling_rate * coupling_rate;
   derived_.conductance_m3ps_per_Pa = effects.conductance_m3ps_per_Pa();
 }
 
@@ -155,9 +158,20 @@ template <class S>
 template <bool kLimits, bool kEffects>
 PLANT_SIM_WHOLE void HydraulicActuator<S>::integrate(const S& u_V, const S& step_s) {
   const S from_y_m = state.y_m;
-  state = runge_kutta_step(
-      state, step_s, [&](const State& x) { return rate<kLimits, kEffects>(x, u_V, from_y_m); });
-  if constexpr (kLimits) keep_within_limits();
+  const auto coupled_rate = [&](const State& x, const S& pull_mps2) {
+    return rate<kLimits, kEffects>(x, u_V, from_y_m, pull_mps2);
+  };
+  if (kEffects && effects.coupled()) {
+    state = coupled_step(effects, state, step_s, coupled_rate);
+  } else {
+    state = runge_kutta_step(
+        state, step_s, [&](const State& x) { return rate<kLimits, kEffects>(x, u_V, from_y_m); });
+  }
+  if constexpr (kLimits) {
+    const S speed_mps = state.v_mps;
+    keep_within_limits();
+    if (effects.coupled()) effects.stop_driven(speed_mps - state.v_mps);
+  }
   if constexpr (kEffects) {
     const S most_mps = derived_.spool_limit_mps;
     state.spool_mps = clamp(state.spool_mps, -most_mps, most_mps);

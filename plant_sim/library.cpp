@@ -37,6 +37,11 @@ const Info* find(const std::vector<Info>& library, std::string_view name) {
 
 }  // namespace
 
+const std::vector<FurtherName>& further_names() {
+  static const std::vector<FurtherName> names{{"added_load", "coupled_slaves"}};
+  return names;
+}
+
 const std::vector<EffectInfo>& effect_library() {
   static const std::vector<EffectInfo> library = [] {
     std::vector<EffectInfo> all;
@@ -68,7 +73,17 @@ const std::vector<PlantInfo>& plant_library() {
 
 const PlantInfo* find_plant(std::string_view name) { return find(plant_library(), name); }
 
-const EffectInfo* find_effect(std::string_view name) { return find(effect_library(), name); }
+std::string library_name(std::string_view dotted) {
+  const std::string_view effect = dotted.substr(0, dotted.find('.'));
+  for (const auto& [further, name] : further_names()) {
+    if (effect == further) return std::string(name) + std::string(dotted.substr(effect.size()));
+  }
+  return std::string(dotted);
+}
+
+const EffectInfo* find_effect(std::string_view name) {
+  return find(effect_library(), library_name(name));
+}
 
 std::vector<EffectInfo> effects_of(const ModelFile& model) {
   std::vector<EffectInfo> all = effect_library();
@@ -100,9 +115,13 @@ void require_fit(const ModelFile& model, const std::string& file) {
 void require_fit(const EffectInfo& effect, const PlantInfo& plant, const std::string& where) {
   for (const std::string& site : effect.sites) {
     if (std::find(plant.sites.begin(), plant.sites.end(), site) != plant.sites.end()) continue;
-    throw config::schema::bad_config(
-        where, effect.name + " acts on " + site + ", which " + plant.name + " does not have",
-        "effects of its sites " + config::schema::joined(plant.sites));
+    throw config::schema::bad_config(where,
+                                     effect.name + " acts on " + site + ", which " + plant.name +
+                                         " does not have" +
+                                         (site == effects::site_name(effects::Site::coupling)
+                                              ? ": its command sets the speed whatever it carries"
+                                              : ""),
+                                     "effects of its sites " + config::schema::joined(plant.sites));
   }
 }
 

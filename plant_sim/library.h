@@ -28,11 +28,21 @@ struct PlantInfo {
   std::vector<ParameterInfo> initial;  ///< neutral = default; NaN = the plant's own choice
 };
 
+/// A name that files and options may use for an effect of the library; none prints it.
+struct FurtherName {
+  const char* further;
+  const char* name;
+};
+
 [[nodiscard]] const std::vector<EffectInfo>& effect_library();
+[[nodiscard]] const std::vector<FurtherName>& further_names();
 [[nodiscard]] const std::vector<PlantInfo>& plant_library();
 /// Null for an unknown name.
 [[nodiscard]] const PlantInfo* find_plant(std::string_view name);
-/// Null for an unknown name.
+/// The library's name of an effect, or of one of its parameters: "coupled_slaves.mass_kg" for
+/// "added_load.mass_kg". Other names stay as they are.
+[[nodiscard]] std::string library_name(std::string_view dotted);
+/// Null for an unknown name; further names are known.
 [[nodiscard]] const EffectInfo* find_effect(std::string_view name);
 
 /// Every effect that a model can have: the library's, then the formulas that its file declares, in

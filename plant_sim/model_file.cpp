@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "config/schema/document.h"
 #include "config/schema/error.h"
@@ -12,6 +13,8 @@ namespace plant_sim {
 namespace {
 
 using config::schema::Visitor;
+
+constexpr double kWidestPrior = 10.0;
 
 std::vector<NamedValue> defaults(const std::vector<ParameterInfo>& infos) {
   std::vector<NamedValue> values;
@@ -25,6 +28,11 @@ void visit_values(Visitor& v, const std::vector<ParameterInfo>& infos,
   for (std::size_t i = 0; i < infos.size(); ++i) {
     v.number({infos[i].name, infos[i].what}, values[i].value, {infos[i].min, infos[i].max});
   }
+}
+
+std::vector<NamedValue> unstated(std::vector<NamedValue> values) {
+  for (NamedValue& value : values) value.value = std::numeric_limits<double>::quiet_NaN();
+  return values;
 }
 
 std::vector<std::string_view> plant_names() {
@@ -125,6 +133,7 @@ void check_changes(const ModelFile& model, const std::string& file) {
 ModelFile::ModelFile() {
   const PlantInfo& info = *find_plant(plant);
   parameters = defaults(info.parameters);
+  priors = unstated(parameters);
   initial = defaults(info.initial);
   list_effects();
 }
@@ -152,10 +161,20 @@ void ModelFile::visit(Visitor& v) {
   const PlantInfo& info = *find_plant(plant);
   if (plant != before) {
     parameters = defaults(info.parameters);
+    priors = unstated(parameters);
     initial = defaults(info.initial);
   }
+  v.choice({"motion", "kind of the axis; rotary: `_m` is rad, `_N` is N m, `_kg` is kg m2"}, motion,
+           {"linear", "rotary"});
   v.number({"step_s", "integration step"}, step_s, {1e-6, 0.01});
   v.table("parameters", [&](Visitor& t) { visit_values(t, info.parameters, parameters); });
+  v.table({"priors", "relative standard deviations of parameters; 0 holds one in every fit"},
+          [&](Visitor& t) {
+            for (std::size_t i = 0; i < priors.size(); ++i) {
+              t.number({info.parameters[i].name, "relative standard deviation"}, priors[i].value,
+                       {0.0, kWidestPrior});
+            }
+          });
   v.table("initial", [&](Visitor& t) { visit_values(t, info.initial, initial); });
   std::vector<std::string> declared;
   for (const formula::FormulaEffect& effect : formula_effects) declared.push_back(effect.name);
@@ -174,6 +193,14 @@ void ModelFile::visit(Visitor& v) {
       t.optional_table(effects[i].name.c_str(), effects[i].present, [&](Visitor& e) {
         visit_values(e, all[i].parameters, effects[i].parameters);
       });
+      for (const auto& [further, known] : further_names()) {
+        if (effects[i].name != known) continue;
+        bool further_present = false;
+        t.optional_table(further, further_present, [&](Visitor& e) {
+          visit_values(e, all[i].parameters, effects[i].parameters);
+        });
+        effects[i].present = effects[i].present || further_present;
+      }
     }
   });
   visit_list(v, {"change", "changes of parameters within a record"}, changes);
@@ -204,11 +231,17 @@ formula::Formulas ModelFile::formulas() const {
   return formula::Formulas(std::move(all));
 }
 
-double* ModelFile::value(std::string_view dotted) {
+double ModelFile::uncertainty_ratio(std::size_t i) const {
+  return std::isnan(priors[i].value) ? find_plant(plant)->parameters[i].uncertainty_ratio
+                                     : priors[i].value;
+}
+
+double* ModelFile::value(std::string_view typed) {
+  const std::string dotted = library_name(typed);
   const std::size_t dot = dotted.find('.');
-  if (dot == std::string_view::npos) return find(parameters, dotted);
-  const std::string_view table = dotted.substr(0, dot);
-  const std::string_view key = dotted.substr(dot + 1);
+  if (dot == std::string::npos) return find(parameters, dotted);
+  const std::string table = dotted.substr(0, dot);
+  const std::string key = dotted.substr(dot + 1);
   if (table == "initial") return find(initial, key);
   if (table == "change") return find(changes, key);
   for (Effect& effect : effects) {
@@ -242,6 +275,11 @@ ModelFile read_model(const config::schema::Document& document) {
   ModelFile model;
   document.read([&](Visitor& v) { model.visit(v); });
   require_fit(model, document.name());
+  if (model.rotary() && model.value("stroke_m") != nullptr) {
+    throw config::schema::bad_config(document.name() + ": motion",
+                                     "is rotary, but " + model.plant + " moves along a stroke",
+                                     "linear, or another plant");
+  }
   for (const formula::FormulaEffect& effect : model.formula_effects) {
     check_declared(model, effect, document.name());
   }
@@ -252,6 +290,15 @@ ModelFile read_model(const config::schema::Document& document) {
                                      "0 to stroke_m");
   }
   return model;
+}
+
+ModelFile stated_values(const ModelFile& model, const config::schema::Document& document) {
+  ModelFile stated = model;
+  stated.parameters = unstated(model.parameters);
+  stated.initial = unstated(model.initial);
+  for (ModelFile::Effect& effect : stated.effects) effect.parameters = unstated(effect.parameters);
+  document.read([&](Visitor& v) { stated.visit(v); });
+  return stated;
 }
 
 std::string print_model(const ModelFile& model) {

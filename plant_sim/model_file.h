@@ -5,8 +5,11 @@
 //   name = "thesis"
 //   plant = "hydraulic_actuator"
 //   step_s = 0.001
+//   motion = "rotary"     # y is an angle (rad), a force a torque (N m), a mass an inertia (kg m2)
 //   [parameters]          # every parameter of the plant that differs from its default
 //   mass_kg = 50.0
+//   [priors]              # relative standard deviation of a value; 0 holds it in every fit
+//   mass_kg = 0.02
 //   [initial]
 //   y_m = 0.305
 //   [effects.friction]    # presence adds the effect; absent parameters are neutral
@@ -47,7 +50,9 @@ struct ModelFile {
   std::string name;
   std::string plant = "hydraulic_actuator";
   double step_s = 0.001;
+  std::string motion;                  ///< "linear", "rotary", or empty: linear
   std::vector<NamedValue> parameters;  ///< all parameters of the plant, defaults filled in
+  std::vector<NamedValue> priors;      ///< in the order of `parameters`; NaN = the plant's own
   std::vector<NamedValue> initial;     ///< NaN = the plant's own choice (half supply pressure)
   std::vector<formula::FormulaEffect> formula_effects;  ///< as declared
   std::vector<Effect> effects;  ///< the library's, then the formulas; present or not
@@ -66,9 +71,15 @@ struct ModelFile {
   /// The formulas ready for simulation. Throws like declare() when one does not parse.
   [[nodiscard]] formula::Formulas formulas() const;
 
+  /// True when y is an angle in rad: names keep their suffixes, `_m` stands for rad, `_N` for N m
+  /// and `_kg` for kg m2.
+  [[nodiscard]] bool rotary() const { return motion == "rotary"; }
+  /// Relative standard deviation between rig and file of parameters[i]; 0 = taken as known.
+  [[nodiscard]] double uncertainty_ratio(std::size_t i) const;
+
   /// The value named "mass_kg", "friction.coulomb_N", "initial.y_m" or "change.mass_kg.at_s"; null
   /// when unknown. Writing to an effect's parameter through this makes the effect present.
-  double* value(std::string_view dotted);
+  double* value(std::string_view typed);
 
  private:
   void list_effects();
@@ -86,6 +97,9 @@ void require_constant(const ModelFile& model);
                                    const std::vector<std::string>& assignments = {});
 /// The same from a document.
 [[nodiscard]] ModelFile read_model(const config::schema::Document& document);
+/// The model with NaN for every value that its file leaves to a default.
+[[nodiscard]] ModelFile stated_values(const ModelFile& model,
+                                      const config::schema::Document& document);
 /// TOML text that load_model() reads back to the same values.
 [[nodiscard]] std::string print_model(const ModelFile& model);
 

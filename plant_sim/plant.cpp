@@ -55,18 +55,14 @@ class Simulated final : public Plant {
   [[nodiscard]] double step_s() const noexcept override { return step_s_; }
 
   double* parameter(std::string_view dotted) noexcept override {
-    for (const Entry& entry : infos_) {
-      if (entry.name == dotted) return entry.value;
-    }
-    return nullptr;
+    const Entry* found = find(dotted);
+    return found == nullptr ? nullptr : found->value;
   }
 
   [[nodiscard]] const ParameterInfo* parameter_info(
       std::string_view dotted) const noexcept override {
-    for (const Entry& entry : infos_) {
-      if (entry.name == dotted) return &entry.info;
-    }
-    return nullptr;
+    const Entry* found = find(dotted);
+    return found == nullptr ? nullptr : &found->info;
   }
 
   [[nodiscard]] std::vector<std::string> parameter_names() const override {
@@ -96,6 +92,14 @@ class Simulated final : public Plant {
     ParameterInfo info;
     double* value;
   };
+
+  [[nodiscard]] const Entry* find(std::string_view dotted) const {
+    const std::string name = library_name(dotted);
+    for (const Entry& entry : infos_) {
+      if (entry.name == name) return &entry;
+    }
+    return nullptr;
+  }
 
   template <class F>
   void each_parameter(F&& f) {

@@ -56,7 +56,7 @@ void FlatVisitor::path(Key key, std::string& value, std::string_view evidence_co
   field.evidence_copy = evidence_copy;
 }
 void FlatVisitor::choice(Key key, std::string& value, const std::vector<std::string_view>&) {
-  add(key, toml_string(value));
+  if (!value.empty()) add(key, toml_string(value));
 }
 void FlatVisitor::numbers(Key key, std::vector<double>& value, Range) {
   add(key, "[" + joined_by(value, shown) + "]");

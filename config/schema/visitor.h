@@ -55,6 +55,7 @@ class Visitor {
   virtual void path(Key key, std::string& value, std::string_view /*evidence_copy*/ = "") {
     text(key, value);
   }
+  /// An empty value stands for "not given" and is not printed.
   virtual void choice(Key key, std::string& value,
                       const std::vector<std::string_view>& allowed) = 0;
   virtual void numbers(Key key, std::vector<double>& value, Range range = {}) = 0;

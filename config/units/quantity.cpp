@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <utility>
 
@@ -59,6 +60,22 @@ struct PrintedUnit {
   double from;   ///< used for |value| from here on, SI
 };
 
+std::atomic<Motion> printed_motion{Motion::linear};
+
+/// "rad" of "m", "mrad" of "mm", "kg m2" of "kg"; other words stay. "rad2" of "m2".
+std::string rotary_word(std::string_view word) {
+  static constexpr std::pair<std::string_view, std::string_view> kWords[] = {
+      {"um", "urad"}, {"mm", "mrad"}, {"m", "rad"}, {"kN", "kN m"}, {"N", "N m"}, {"kg", "kg m2"}};
+  for (const auto& [linear, rotary] : kWords) {
+    if (word == linear) return std::string(rotary);
+    if (linear == "m" && word.size() == 2 && word.front() == 'm' && word.back() >= '2' &&
+        word.back() <= '9') {
+      return "rad" + std::string(word.substr(1));
+    }
+  }
+  return std::string(word);
+}
+
 constexpr double kLitrePerMinute_m3ps = 1e-3 / 60.0;
 constexpr double kBar_Pa = 1e5;
 constexpr double kRoundsUp = 0.9995;  // in three digits
@@ -101,6 +118,8 @@ std::string si_unit(std::string_view name) {
 }
 
 PrintedUnit unit_for(const std::string& si, double size) {
+  // a torsional stiffness is per radian at any size
+  if (si == "N/m" && motion() == Motion::rotary) size = 0.0;
   for (const PrintedUnit& unit : kUnits) {
     if (si == unit.si && size >= kRoundsUp * unit.from) return unit;
   }
@@ -130,6 +149,24 @@ void replace_all(std::string& text, const std::string& from, const std::string& 
 
 }  // namespace
 
+Motion motion() noexcept { return printed_motion.load(); }
+void set_motion(Motion motion) noexcept { printed_motion.store(motion); }
+
+std::string moving_part() { return motion() == Motion::linear ? "rod" : "axis"; }
+
+std::string axis_unit(std::string_view unit) {
+  if (motion() == Motion::linear) return std::string(unit);
+  std::string out;
+  std::size_t from = 0;
+  while (from < unit.size()) {
+    const std::size_t to = std::min(unit.find_first_of(" /()", from), unit.size());
+    out += rotary_word(unit.substr(from, to - from));
+    if (to < unit.size()) out += unit[to];
+    from = to + 1;
+  }
+  return out;
+}
+
 std::string three_digits(double value) {
   if (!std::isfinite(value)) return "-";
   const double size = std::abs(value);
@@ -145,12 +182,13 @@ Quantity quantity(std::string_view name, double value, double std_error, double 
   const PrintedUnit unit = unit_for(si, size);
   const double shown = value / unit.in_si;
   const double error = std_error / unit.in_si;
-  if (!(error > 0.0) || std::isinf(error)) return {three_digits(shown), "", unit.unit};
-  if (error > 1e3 * std::abs(shown)) return {three_digits(shown), three_digits(error), unit.unit};
+  const std::string text = axis_unit(unit.unit);
+  if (!(error > 0.0) || std::isinf(error)) return {three_digits(shown), "", text};
+  if (error > 1e3 * std::abs(shown)) return {three_digits(shown), three_digits(error), text};
   const int decimals = decimals_for(shown, error);
   const bool lost = error < 0.5 * std::pow(10.0, -decimals);
   return {fixed(shown, decimals), lost ? fmt::format("{:.1g}", error) : fixed(error, decimals),
-          unit.unit};
+          text};
 }
 
 std::string words(const Quantity& quantity) {
@@ -195,6 +233,7 @@ std::string parameter_words(std::string_view name) {
 std::string typeset(std::string text) {
   replace_all(text, " +- ", " ± ");
   replace_all(text, " um", " µm");
+  replace_all(text, " urad", " µrad");
   return text;
 }
 

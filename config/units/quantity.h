@@ -1,12 +1,29 @@
 // Numbers as an engineer reads them: in the unit of the size, rounded to what is known of them.
 //
 //   2.63e-5 m -> "26.3 um"      0.0612 V +- 0.0011 -> "61.2 +- 1.1 mV"
+//
+// On a rotary axis the same names stand for angles, torques and inertias, and are printed so:
+//
+//   2.63e-5 m -> "26.3 urad"    12 N -> "12 N m"    0.006 kg -> "0.006 kg m2"
 #pragma once
 
 #include <string>
 #include <string_view>
 
 namespace config::units {
+
+enum class Motion { linear, rotary };
+
+/// Kind of the axis whose quantities this process prints; linear until set. A program works on one
+/// axis at a time: set where its model is loaded, before anything is printed.
+[[nodiscard]] Motion motion() noexcept;
+void set_motion(Motion motion) noexcept;
+
+/// "m" or "rad", "mm/s" or "mrad/s": a unit of the linear axis as the axis that is printed has it.
+[[nodiscard]] std::string axis_unit(std::string_view unit);
+
+/// "rod", or "axis" where it turns.
+[[nodiscard]] std::string moving_part();
 
 struct Quantity {
   std::string value;
@@ -45,7 +62,8 @@ struct Quantity {
 /// Text for the page: "um" as the micrometre sign has it, "+-" as one sign.
 [[nodiscard]] std::string typeset(std::string text);
 
-/// "N s/m" for "damping_N_s_per_m"; "" for a number without a unit.
+/// "N s/m" for "damping_N_s_per_m"; "" for a number without a unit. Of the name alone: the same for
+/// a rotary axis.
 [[nodiscard]] std::string unit_of(std::string_view name);
 
 }  // namespace config::units

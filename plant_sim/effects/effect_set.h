@@ -89,6 +89,51 @@ class EffectSet : public EffectStore<S, E...> {
     return sum;
   }
 
+  /// True when part of the mass is behind a spring: step by coupled_step().
+  [[nodiscard]] bool coupled() const { return this->acts_on(Site::coupling); }
+
+  /// Share of the moving mass behind the spring; the rest is driven.
+  [[nodiscard]] S coupled_ratio() const {
+    S sum = 0.0;
+    this->template for_each_active<Site::coupling>(
+        [&]<class T>(Tag<T>, const auto& p, const auto&) { sum += T::coupled_ratio(p); });
+    return sum;
+  }
+
+  [[nodiscard]] S coupling_rate_per_s() const {
+    S fastest = 0.0;
+    this->template for_each_active<Site::coupling>(
+        [&]<class T>(Tag<T>, const auto& p, const auto&) {
+          fastest = max(fastest, T::coupling_rate_per_s(p));
+        });
+    return fastest;
+  }
+
+  [[nodiscard]] S pull_mps2(const CouplingOffset<S>& offset) const {
+    S sum = 0.0;
+    this->template for_each_active<Site::coupling>(
+        [&]<class T>(Tag<T>, const auto& p, const auto&) { sum += T::pull_mps2(p, offset); });
+    return sum;
+  }
+
+  [[nodiscard]] CouplingOffset<S> offset() const {
+    CouplingOffset<S> found;
+    this->template for_each_active<Site::coupling>(
+        [&]<class T>(Tag<T>, const auto&, const auto& memory) { found = memory.offset; });
+    return found;
+  }
+
+  void set_offset(const CouplingOffset<S>& offset) {
+    this->template for_each_active<Site::coupling>(
+        [&]<class T>(Tag<T>, const auto&, auto& memory) { memory.offset = offset; });
+  }
+
+  /// The driven part has lost this speed at a stop; the second mass has not.
+  void stop_driven(const S& lost_mps) {
+    this->template for_each_active<Site::coupling>(
+        [&]<class T>(Tag<T>, const auto&, auto& memory) { memory.offset.offset_mps += lost_mps; });
+  }
+
   /// contact.drive_N less all resisting forces and dry friction; each dry friction sees the force
   /// that remains after those before it.
   [[nodiscard]] S net_force_N(const S& y_m, DryContact<S> contact) const {

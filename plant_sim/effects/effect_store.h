@@ -69,6 +69,8 @@ class EffectStore {
 
   /// True when any effect is active.
   [[nodiscard]] bool any() const { return used_sites_ != 0; }
+  /// True when an active effect acts at the site.
+  [[nodiscard]] bool acts_on(Site site) const { return (used_sites_ & bit(site)) != 0; }
 
  protected:
   formula::FormulaSet<S> formulas_;

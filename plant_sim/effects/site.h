@@ -14,6 +14,10 @@
 //   force         S resisting_N(p, y_m, v_mps)               a force against extension
 //   dry_friction  S friction_N(p, memory, DryContact)        sees the other forces: may hold them
 //   sensor        S reading_m(p, memory, y_m)                what the position sensor shows
+//   coupling      S coupled_ratio(p)                         share of the mass behind a spring,
+//                 S coupling_rate_per_s(p)                   its resonance, rad/s,
+//                 S pull_mps2(p, offset)                     and what the spring pulls; the plant
+//                 CouplingOffset<S> Memory::offset           integrates it (coupled_step.h)
 //
 // Effects of one site act in the order of the table. An effect too fast for the integration step
 // declares its slopes, and shorter steps are taken: `S slope_N_s_per_m(p, v_mps)` dF/dv,
@@ -38,13 +42,14 @@ enum class Site : unsigned {
   inertia,
   force,
   dry_friction,
-  sensor
+  sensor,
+  coupling
 };
 
 inline const char* site_name(Site site) {
   constexpr const char* kNames[] = {"command", "spool",        "opening",      "supply",
                                     "flow",    "leakage",      "bulk_modulus", "inertia",
-                                    "force",   "dry_friction", "sensor"};
+                                    "force",   "dry_friction", "sensor",       "coupling"};
   return kNames[static_cast<unsigned>(site)];
 }
 
@@ -72,6 +77,13 @@ struct DryContact {
   S travel_m;         ///< since the last accepted step
   S drive_N;          ///< sum of all other forces on the moving part, positive extends
   S arrest_kg_per_s;  ///< mass over step: the force per speed that stops it within one step
+};
+
+/// A mass on a spring, ahead of the moving part that carries it.
+template <class S>
+struct CouplingOffset {
+  S offset_m = 0.0;
+  S offset_mps = 0.0;
 };
 
 /// Flow that leaves the chambers other than through the valve.

@@ -18,6 +18,7 @@
 #include "plant_sim/effects/load_spring.h"
 #include "plant_sim/effects/null_bias.h"
 #include "plant_sim/effects/quadratic_damping.h"
+#include "plant_sim/effects/second_mass.h"
 #include "plant_sim/effects/spool_rate_limit.h"
 #include "plant_sim/effects/supply_droop.h"
 #include "plant_sim/effects/transport_delay.h"
@@ -44,6 +45,7 @@ using Effects = EffectSet<S,                 //
                           LoadForce,         //
                           ForceRipple,       //
                           CoupledSlaves,     //
+                          SecondMass,        //
                           Backlash,          //
                           EncoderEccentricity>;
 

@@ -48,6 +48,37 @@ TEST(ModelFile, PrintsWhatItReadsBackTheSame) {
   EXPECT_EQ(make_plant(again)->parameter_info("supply_pressure_Pa")->min, 0.0);
 }
 
+TEST(ModelFile, TakesAFurtherNameOfAnEffectAndPrintsTheLibrarys) {
+  ModelFile model = parse("[effects.added_load]\nmass_kg = 12.0\n");
+  EXPECT_EQ(*model.value("coupled_slaves.mass_kg"), 12.0);
+  EXPECT_EQ(*model.value("added_load.mass_kg"), 12.0);
+  EXPECT_EQ(*make_plant(model)->parameter("added_load.mass_kg"), 12.0);
+  const std::string text = print_model(model);
+  EXPECT_NE(text.find("[effects.coupled_slaves]\nmass_kg = 12.0"), std::string::npos);
+  EXPECT_EQ(text.find("added_load"), std::string::npos);
+  EXPECT_EQ(find_effect("added_load")->name, "coupled_slaves");
+}
+
+TEST(ModelFile, KeepsPriorsAndMotionAndSaysWhichValuesItStates) {
+  const std::string text =
+      "schema_version = 1\nname = \"a\"\nplant = \"force_driven_axis\"\nmotion = \"rotary\"\n"
+      "[parameters]\nmass_kg = 0.5\n[priors]\nmass_kg = 0.0\ngain_N_per_V = 0.1\n";
+  const auto document = config::schema::Document::parse(text, "a.toml");
+  const ModelFile model = read_model(document);
+  EXPECT_TRUE(model.rotary());
+  EXPECT_EQ(model.uncertainty_ratio(0), 0.0);
+  EXPECT_EQ(model.uncertainty_ratio(1), 1.0);  // the plant's own
+  EXPECT_EQ(model.uncertainty_ratio(2), 0.1);
+  const ModelFile again =
+      read_model(config::schema::Document::parse(print_model(model), "printed"));
+  EXPECT_EQ(print_model(again), print_model(model));
+  EXPECT_NE(print_model(model).find("motion = \"rotary\""), std::string::npos);
+  EXPECT_EQ(print_model(ModelFile()).find("motion"), std::string::npos);
+  const ModelFile stated = stated_values(model, document);
+  EXPECT_EQ(stated.parameters[0].value, 0.5);
+  EXPECT_TRUE(std::isnan(stated.parameters[1].value));
+}
+
 TEST(ModelFile, WritingToAnEffectsParameterAddsTheEffect) {
   ModelFile model;
   *model.value("coupled_slaves.mass_kg") = 20.0;
@@ -106,6 +137,13 @@ TEST(ModelFile, RefusesAnEffectWhoseSiteThePlantLacks) {
   // slaves add mass and force: one of the two is not enough
   EXPECT_THROW((void)read(text("velocity_servo", "coupled_slaves")), config::schema::Error);
   EXPECT_NO_THROW((void)read(text("force_driven_axis", "coupled_slaves")));
+  try {
+    (void)read(text("velocity_servo", "second_mass"));
+    ADD_FAILURE() << "nothing hangs on a servo whose command sets the speed";
+  } catch (const config::schema::ConfigError& error) {
+    EXPECT_NE(std::string(error.what()).find("its command sets the speed whatever it carries"),
+              std::string::npos);
+  }
   ModelFile model = read(text("velocity_servo", "null_bias"));
   EXPECT_EQ(make_plant(model)->parameter("supply_droop.droop_Pa_per_m3ps"), nullptr);
   *model.value("friction.coulomb_N") = 1.0;

@@ -47,6 +47,23 @@ TEST(Quantity, LengthsGoFromMicrometresToMetres) {
   EXPECT_EQ(typeset("26.3 um +- 2 um"), "26.3 µm ± 2 µm");
 }
 
+TEST(Quantity, OfAnAxisThatTurnsHasRadiansAndTorques) {
+  set_motion(Motion::rotary);
+  EXPECT_EQ(length_words(2.63e-5), "26.3 urad");
+  EXPECT_EQ(speed_words(0.31), "310 mrad/s");
+  EXPECT_EQ(words(quantity("mass_kg", 0.006, 1e-4)), "0.00600 +- 0.00010 kg m2");
+  EXPECT_EQ(words(quantity("friction.coulomb_N", 0.05, kNone)), "0.05 N m");
+  EXPECT_EQ(words(quantity("load_spring.stiffness_N_per_m", 2e5, kNone)), "2e+05 N m/rad");
+  EXPECT_EQ(words(quantity("damping_N_s_per_m", 0.01, kNone)), "0.01 N m s/rad");
+  EXPECT_EQ(words(quantity("encoder_eccentricity.phase_rad", 0.5, kNone)), "28.6 deg");
+  EXPECT_EQ(axis_unit("m/s2"), "rad/s2");
+  EXPECT_EQ(axis_unit("N s2/m2"), "N m s2/rad2");
+  EXPECT_EQ(axis_unit("V"), "V");
+  EXPECT_EQ(unit_of("mass_kg"), "kg");  // the name's own
+  set_motion(Motion::linear);
+  EXPECT_EQ(length_words(2.63e-5), "26.3 um");
+}
+
 TEST(Quantity, ParameterNamesLoseEffectAndUnit) {
   EXPECT_EQ(parameter_words("friction.coulomb_N"), "Coulomb");
   EXPECT_EQ(parameter_words("friction.presliding_stiffness_N_per_m"), "presliding stiffness");

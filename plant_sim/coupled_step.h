@@ -1,0 +1,45 @@
+// One step of a plant whose moving part carries a second mass (effects/second_mass.h): both are
+// integrated together.
+#pragma once
+
+#include "plant_sim/effects/site.h"
+#include "plant_sim/guard.h"
+#include "plant_sim/runge_kutta.h"
+#include "plant_sim/scalar.h"
+
+namespace plant_sim {
+
+template <class State, class S>
+struct CoupledState {
+  State driven;
+  effects::CouplingOffset<S> offset;
+
+  CoupledState moved(const CoupledState& rate, const S& by) const {
+    return {driven.moved(rate.driven, by),
+            {offset.offset_m + by * rate.offset.offset_m,
+             offset.offset_mps + by * rate.offset.offset_mps}};
+  }
+  friend CoupledState operator+(const CoupledState& a, const CoupledState& b) {
+    return a.moved(b, S(1.0));
+  }
+};
+
+/// The plant's state after the step; the second mass's is kept by the effects. rate(x, a): the
+/// plant's rates while the spring accelerates the driven part by a, m/s2.
+template <class Effects, class State, class S, class Rate>
+State coupled_step(Effects& effects, const State& x, const S& step_s, Rate&& rate) {
+  using Both = CoupledState<State, S>;
+  const S share = effects.coupled_ratio();
+  const Both end = runge_kutta_step(Both{x, effects.offset()}, step_s, [&](const Both& at) -> Both {
+    const S pull_mps2 = effects.pull_mps2(at.offset);
+    const State driven = rate(at.driven, share * pull_mps2);
+    return {driven, {at.offset.offset_mps, (share - S(1.0)) * pull_mps2 - driven.v_mps}};
+  });
+  const S most_m = limits::kPosition_m;
+  const S most_mps = limits::kSpeed_mps;
+  effects.set_offset({clamp(end.offset.offset_m, -most_m, most_m),
+                      clamp(end.offset.offset_mps, -most_mps, most_mps)});
+  return end.driven;
+}
+
+}  // namespace plant_sim
