@@ -57,8 +57,8 @@ std::vector<FreeParameter> plant_parameters(const plant_sim::ModelFile& model) {
   for (std::size_t i = 0; i < plant.parameters.size(); ++i) {
     const plant_sim::ParameterInfo& info = plant.parameters[i];
     const double value = model.parameters[i].value;
-    if (info.uncertainty_ratio <= 0.0 || value <= 0.0) continue;
-    const double sd = info.uncertainty_ratio;
+    const double sd = model.uncertainty_ratio(i);
+    if (sd <= 0.0 || value <= 0.0) continue;
     const double least = info.min > 0.0 ? std::log(info.min / value) : -kInfinite;
     found.push_back({info.name, ParameterScale::logarithmic, value, std::max(least, -kWidest * sd),
                      std::min(std::log(info.max / value), kWidest * sd), 0.0, sd});

@@ -89,7 +89,9 @@ std::vector<std::string> split_names(const std::vector<std::string>& lists) {
     std::size_t from = 0;
     while (from <= list.size()) {
       const std::size_t to = std::min(list.find(',', from), list.size());
-      if (to > from) words.push_back(list.substr(from, to - from));
+      if (to > from) {
+        words.push_back(plant_sim::library_name(list.substr(from, to - from)));
+      }
       from = to + 1;
     }
   }

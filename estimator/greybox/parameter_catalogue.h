@@ -35,7 +35,7 @@ void widen_to_full_range(CatalogueParameter& known);
                               const std::vector<std::string>& near,
                               const std::vector<std::string>& shown_names);
 
-/// Names of comma-separated lists, concatenated.
+/// Names of comma-separated lists, concatenated, as the library has them.
 [[nodiscard]] std::vector<std::string> split_names(const std::vector<std::string>& lists);
 
 }  // namespace estimator::greybox

@@ -49,7 +49,7 @@ std::vector<Effect> effects_of(const SearchContext& context,
   for (const plant_sim::EffectInfo& info : context.problem.candidate_effects) {
     if (std::find(without.begin(), without.end(), info.name) != without.end()) continue;
     Effect effect{info.name, effect_parameters(info, kFirstRefinements), {}};
-    if (is_periodic(effect.own)) continue;
+    if (is_periodic(effect.own) || is_resonant(effect.own)) continue;
     effect.sizes = trial_sizes(effect.own, context.problem.data).rightCols(kSizes);
     effects.push_back(std::move(effect));
   }

@@ -132,6 +132,49 @@ std::vector<Wave> scanned(const SearchContext& context, const ModelStage& stage,
                   {stage.fitted.theta, stage.fitted.residual_m}, parameters, own, finer);
 }
 
+/// The best resonance of those that the records resolve, from the stage's parameters.
+ScoredStart resonance(const SearchContext& context, const ModelStage& stage,
+                      const Projection& projection, const std::vector<FreeParameter>& parameters,
+                      const std::vector<FreeParameter>& own) {
+  constexpr std::size_t kTogether = ObserverSimulation::kLanes / 2;
+  const std::vector<double> frequencies = resonances_in(context.problem.data);
+  const auto own_size = static_cast<Index>(own.size());
+  const Index base_size = stage.fitted.theta.size();
+  DatasetSimulation run(context.problem.model, context.problem.data, parameters);
+  ScoredStart best;
+  MatrixXd residuals_m;
+  for (std::size_t from = 0; from < frequencies.size() && !context.cancelled(); from += kTogether) {
+    const std::size_t count = std::min(kTogether, frequencies.size() - from);
+    MatrixXd points(base_size + own_size, static_cast<Index>(2 * count));
+    points.topRows(base_size) = stage.fitted.theta.replicate(1, points.cols());
+    for (std::size_t i = 0; i < count; ++i) {
+      points.bottomRows(own_size).middleCols(static_cast<Index>(2 * i), 2) =
+          resonances(own, frequencies[from + i]);
+    }
+    run.residuals(points, residuals_m);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto at = static_cast<Index>(2 * i);
+      if (!residuals_m.middleCols(at, 2).allFinite()) continue;
+      const VectorXd driven = residuals_m.col(at) - stage.fitted.residual_m;
+      const VectorXd behind = residuals_m.col(at + 1) - stage.fitted.residual_m;
+      const auto consider = [&](double cost, double first, double second) {
+        if (first < 0.0 || second < 0.0 || !(cost < best.cost)) return;
+        best.cost = cost;
+        best.start.resize(base_size + own_size);
+        best.start << stage.fitted.theta,
+            resonance_of(own, points.col(at).tail(own_size), first, second);
+      };
+      const Projection::Two two = projection.with(stage.fitted.residual_m, driven, behind);
+      consider(two.cost, two.first, two.second);
+      const auto [driven_cost, first] = projection.with(stage.fitted.residual_m, driven);
+      consider(driven_cost, first, 0.0);
+      const auto [behind_cost, second] = projection.with(stage.fitted.residual_m, behind);
+      consider(behind_cost, 0.0, second);
+    }
+  }
+  return best;
+}
+
 ScreeningResult screen_effect(const SearchContext& context, const ModelStage& stage,
                               const std::vector<Base>& bases, const Projection& projection,
                               const plant_sim::EffectInfo& effect) {
@@ -151,6 +194,14 @@ ScreeningResult screen_effect(const SearchContext& context, const ModelStage& st
       hold_wavelength(effect, found.front().own,
                       {result.parameters.begin() + first, result.parameters.end()});
       starts.push_back({found.front().cost, std::move(start)});
+    }
+  } else if (is_resonant(own)) {
+    ScoredStart found = resonance(context, stage, projection, result.parameters, own);
+    if (found.start.size() > 0) {
+      const auto first = static_cast<std::ptrdiff_t>(stage.fitted.parameters.size());
+      hold_resonance(found.start.tail(own_size),
+                     {result.parameters.begin() + first, result.parameters.end()});
+      starts.push_back(std::move(found));
     }
   } else {
     const MatrixXd sizes = trial_sizes(own, context.problem.data);

@@ -27,6 +27,21 @@ constexpr double kNeighbourhood = 1.05;
 constexpr double kSteepestReading = 0.3;
 constexpr double kTurnStep = 0.5;  ///< step between neighbouring wavelengths
 
+/// Resonances: from a few periods in the record to well below half the sample rate.
+constexpr double kLeastResonance_Hz = 1.0;
+constexpr double kFewestPeriods = 10.0;
+constexpr double kOfSampleRate = 0.4;
+/// Ratio of neighbouring frequencies: within the width of a resonance of the typical damping.
+constexpr double kResonanceRatio = 1.06;
+constexpr double kResonanceNeighbourhood = 1.3;
+constexpr double kSmallShare = 0.05;
+/// Damping ratio beyond which a response shows no peak worth the name.
+constexpr double kMostDamping = 0.4;
+/// A start keeps off the end of the range.
+constexpr double kMostOfRange = 0.8;
+constexpr const char* kFrequency = ".resonance_Hz";
+constexpr const char* kSensor = ".sensor_ratio";
+
 bool ends_with(const std::string& text, const std::string& ending) {
   return text.size() >= ending.size() &&
          text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
@@ -140,6 +155,63 @@ void hold_wavelength(const plant_sim::EffectInfo& effect, const VectorXd& own,
     FreeParameter& size = parameters.front();
     const double most = size.to_theta(kSteepestReading * wavelength_m / (4.0 * kHalfPi));
     size.upper = std::min(size.upper, most);
+  }
+}
+
+bool is_resonant(const std::vector<FreeParameter>& parameters) {
+  return index_of(parameters, kFrequency) >= 0;
+}
+
+std::vector<double> resonances_in(const FitDataset& data) {
+  double most_Hz = 0.0;
+  double longest_s = 0.0;
+  for (const Dataset& record : data.records) {
+    most_Hz = std::max(most_Hz, kOfSampleRate / record.sample_time_s);
+    longest_s = std::max(longest_s, record.sample_time_s * static_cast<double>(record.size()));
+  }
+  std::vector<double> found;
+  for (double f_Hz = std::max(kLeastResonance_Hz, kFewestPeriods / longest_s); f_Hz <= most_Hz;
+       f_Hz *= kResonanceRatio) {
+    found.push_back(f_Hz);
+  }
+  return found;
+}
+
+MatrixXd resonances(const std::vector<FreeParameter>& parameters, double frequency_Hz) {
+  const auto count = static_cast<Index>(parameters.size());
+  MatrixXd points = MatrixXd::Zero(count, 2);
+  for (Index i = 0; i < count; ++i) {
+    const FreeParameter& p = parameters[static_cast<std::size_t>(i)];
+    if (ends_with(p.name, kFrequency)) points.row(i).setConstant(p.to_theta(frequency_Hz));
+    if (ends_with(p.name, ".damping_ratio")) points.row(i).setOnes();
+    if (ends_with(p.name, ".mass_ratio")) points(i, 0) = p.to_theta(kSmallShare);
+    if (ends_with(p.name, kSensor)) points(i, 1) = p.to_theta(kSmallShare);
+  }
+  return points;
+}
+
+VectorXd resonance_of(const std::vector<FreeParameter>& parameters, const VectorXd& resonance,
+                      double first, double second) {
+  VectorXd found = resonance;
+  const Index sensor = index_of(parameters, kSensor);
+  found[0] = std::clamp(resonance[0] * first, parameters.front().lower,
+                        kMostOfRange * parameters.front().upper);
+  if (sensor >= 0) {
+    const FreeParameter& p = parameters[static_cast<std::size_t>(sensor)];
+    found[sensor] = std::clamp(p.to_theta(kSmallShare) * second, p.lower, p.upper);
+  }
+  return found;
+}
+
+void hold_resonance(const VectorXd& own, std::span<FreeParameter> parameters) {
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    FreeParameter& p = parameters[i];
+    const double s = own[static_cast<Index>(i)];
+    if (ends_with(p.name, kFrequency)) {
+      p.lower = std::max(p.lower, s / kResonanceNeighbourhood);
+      p.upper = std::min(p.upper, s * kResonanceNeighbourhood);
+    }
+    if (ends_with(p.name, ".damping_ratio")) p.upper = std::min(p.upper, p.to_theta(kMostDamping));
   }
 }
 

@@ -34,6 +34,22 @@ namespace estimator::greybox::selection {
 void hold_wavelength(const plant_sim::EffectInfo& effect, const Eigen::VectorXd& own,
                      std::span<FreeParameter> parameters);
 
+/// True when the effect is a resonance of the rig.
+[[nodiscard]] bool is_resonant(const std::vector<FreeParameter>& parameters);
+/// Frequencies of a resonance that the records can resolve, Hz.
+[[nodiscard]] std::vector<double> resonances_in(const FitDataset& data);
+/// A small resonance at this frequency, seen on its driven part and seen behind its spring: two
+/// columns. Their sum with positive factors is, for small sizes, any resonance with usual damping.
+[[nodiscard]] Eigen::MatrixXd resonances(const std::vector<FreeParameter>& parameters,
+                                         double frequency_Hz);
+/// The resonance with `first` times the first column of resonances() and `second` times the second.
+[[nodiscard]] Eigen::VectorXd resonance_of(const std::vector<FreeParameter>& parameters,
+                                           const Eigen::VectorXd& resonance, double first,
+                                           double second);
+/// Limits a search to the neighbourhood of the frequency at `own`, and to damping with which it is
+/// still a resonance.
+void hold_resonance(const Eigen::VectorXd& own, std::span<FreeParameter> parameters);
+
 /// Scales the effect's size by `share` within its bounds; a negative share of a non-negative size
 /// shifts a periodic effect by half a period. Returns false where that is not possible: the size is
 /// then scaled by the magnitude alone.

@@ -8,6 +8,7 @@
 
 #include "config/schema/error.h"
 #include "config/signals/nan.h"
+#include "config/units/quantity.h"
 #include "estimator/greybox/dataset.h"
 #include "estimator/residual/noise_floor.h"
 #include "estimator/residual/whiteness.h"
@@ -78,8 +79,9 @@ void require_motion(const Dataset& record, double noise_m) {
   if (sd_m < kLeastMotion * least_m && *high - *low < 2.0 * kLeastMotion * least_m) {
     throw config::schema::bad_data(
         record.name,
-        fmt::format("the rod does not move: y stays within {:.3g} um of itself",
-                    1e6 * (*high - *low)),
+        fmt::format("the {} does not move: y stays within {:.3g} {} of itself",
+                    config::units::moving_part(), 1e6 * (*high - *low),
+                    config::units::axis_unit("um")),
         "a record with motion well above the position's noise");
   }
 }

@@ -1,0 +1,28 @@
+// The parameter that records of command and position cannot determine because every force of the
+// plant scales with it: it is held at the file's value, and what is fitted scales with it.
+//
+//   M v' = g u - d v - F    the same motion with c g, c M, c d and c F, for any c
+//
+// On force_driven_axis g is the gain; on hydraulic_actuator, with A (Pi - Po) in place of g u, the
+// area, and the valve's gain and all volumes scale with it as well.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "plant_sim/model_file.h"
+
+namespace estimator::greybox {
+
+struct HeldScale {
+  std::string parameter;            ///< empty: none
+  std::vector<std::string> scaled;  ///< fitted parameters that are proportional to it
+};
+
+[[nodiscard]] HeldScale held_scale(const plant_sim::ModelFile& model,
+                                   const std::vector<std::string>& fitted);
+/// The same as a sentence; empty where there is none.
+[[nodiscard]] std::string held_scale_words(const plant_sim::ModelFile& model,
+                                           const std::vector<std::string>& fitted);
+
+}  // namespace estimator::greybox
