@@ -11,6 +11,7 @@
 #include "config/record/time_grid.h"
 #include "config/record/unit_text.h"
 #include "config/schema/error.h"
+#include "config/units/quantity.h"
 
 namespace config::record {
 namespace {
@@ -352,10 +353,11 @@ class Assembly {
                               ": every V of the results stands for 1 " +
                               unit_words(record_.command_unit));
     }
-    if (record_.position_unit != "m") {
+    const bool as_printed = record_.position_unit == config::units::axis_unit("m");
+    if (!as_printed) {
       record_.notes.push_back("the position is in " + unit_words(record_.position_unit) +
-                              ": every m of the results stands for 1 " +
-                              unit_words(record_.position_unit));
+                              ": every " + config::units::axis_unit("m") +
+                              " of the results stands for 1 " + unit_words(record_.position_unit));
     }
   }
 

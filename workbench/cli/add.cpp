@@ -16,6 +16,7 @@
 #include "plant_sim/model_file.h"
 #include "workbench/cli/command.h"
 #include "workbench/cli/common_options.h"
+#include "workbench/present/printed_model.h"
 
 namespace workbench::cli {
 namespace {
@@ -33,12 +34,14 @@ using plant_sim::ParameterInfo;
 }
 
 /// An effect of the library, or a formula that the model file declares.
-EffectInfo effect_named(const ModelFile& model, const std::string& name) {
+EffectInfo effect_named(const ModelFile& model, const std::string& typed) {
+  const std::string name = plant_sim::library_name(typed);
   std::vector<std::string> names;
   for (const EffectInfo& effect : plant_sim::effects_of(model)) {
     if (effect.name == name) return effect;
     names.push_back(effect.name);
   }
+  for (const auto& [further, known] : plant_sim::further_names()) names.emplace_back(further);
   refuse_name("effect " + name, name, names);
 }
 
@@ -92,7 +95,7 @@ struct AddOptions {
 };
 
 void add(const AddOptions& options) {
-  ModelFile model = plant_sim::load_model(options.model);
+  ModelFile model = present::load_printed_model(options.model);
   const EffectInfo effect = effect_named(model, options.effect);
   plant_sim::require_fit(effect, *plant_sim::find_plant(model.plant), options.model);
   entry_of(model, effect).present = true;

@@ -27,6 +27,7 @@
 #include "workbench/fit/ignored_spans.h"
 #include "workbench/live/live_compare.h"
 #include "workbench/present/json.h"
+#include "workbench/present/printed_model.h"
 
 namespace workbench::cli {
 
@@ -136,7 +137,7 @@ void run_live(CompareArguments& a) {
   const StopCondition stop(a.duration_s);
   a.watch.ended = [&stop] { return stop.reached(); };
   a.watch.interrupted = StopCondition::asked;
-  live::watch(plant_sim::load_model(a.model, a.assignments), a.watch);
+  live::watch(present::load_printed_model(a.model, a.assignments), a.watch);
 }
 
 void run(CompareArguments& a) {
@@ -144,7 +145,7 @@ void run(CompareArguments& a) {
   if (a.record.empty()) throw UsageError("compare: no RECORD, and not --live");
   files::check_outputs({{"--json", a.json}, {"--report", a.report}, {"--residuals", a.residuals}},
                        {a.model, {a.record}});
-  const plant_sim::ModelFile model = plant_sim::load_model(a.model, a.assignments);
+  const plant_sim::ModelFile model = present::load_printed_model(a.model, a.assignments);
   config::record::RecordUnits units;
   const greybox::Dataset record = read_measured(a, units);
   check_observer(a, record);

@@ -14,6 +14,7 @@
 #include "workbench/cli/command.h"
 #include "workbench/cli/common_options.h"
 #include "workbench/present/json.h"
+#include "workbench/present/printed_model.h"
 
 namespace workbench::cli {
 namespace {
@@ -95,7 +96,7 @@ void add_effects(CLI::App& command, int&) {
   command.callback([json, model] {
     const std::vector<EffectInfo> listed =
         model->empty() ? plant_sim::effect_library()
-                       : plant_sim::effects_of(plant_sim::load_model(*model));
+                       : plant_sim::effects_of(present::load_printed_model(*model));
     if (json->empty()) return print_library(listed);
     present::write_json(library_json(listed).dump(2) + "\n", *json);
   });

@@ -81,6 +81,8 @@ int run(int argc, char** argv) {
     words.resize(std::min<std::size_t>(words.size(), 1));
     words.emplace_back("--help");
   }
+  // `model show` is `show`: commands that have a model file as their subject
+  if (words.size() > 1 && words.front() == "model") words.erase(words.begin());
   if (words.empty()) throw config::schema::UsageError("no command; spoolwatch --help lists all");
   require_command(app, words.front());
   try {

@@ -19,6 +19,7 @@
 #include "workbench/cli/number_check.h"
 #include "workbench/exchange/export.h"
 #include "workbench/files/file_check.h"
+#include "workbench/present/printed_model.h"
 #include "workbench/simulate/closed_loop.h"
 #include "workbench/simulate/fault_text.h"
 #include "workbench/simulate/transducers.h"
@@ -143,7 +144,7 @@ config::record::Record simulate_record(const SimulateArguments& arguments,
 
 /// The plant driven by the command of a record; its own controller and instruments have no part.
 config::record::Record simulate_command(const SimulateArguments& a) {
-  const plant_sim::ModelFile model = plant_sim::load_model(a.model, a.assignments);
+  const plant_sim::ModelFile model = present::load_printed_model(a.model, a.assignments);
   config::record::ReadOptions reading = a.reading;
   reading.position_optional = true;
   const config::record::Record given = config::record::read_record(a.command, reading);
@@ -260,6 +261,7 @@ void add_simulate(CLI::App& command, int& /*exit_code*/) {
       throw UsageError("--map, --resample: need --command");
     }
     simulate::Scenario scenario = read_scenario(*arguments);
+    present::print_as(scenario.model);
     if (!std::isnan(arguments->pressure_noise_Pa)) {
       scenario.instruments.pressure_noise_Pa = arguments->pressure_noise_Pa;
     }

@@ -204,8 +204,9 @@ Section number_section(const validation::Comparison& c) {
   section.paragraphs.push_back(
       "Velocity and acceleration: a parabola through the measured positions of 50 ms to either "
       "side. At rest: below " +
-      units::speed_words(c.kinematics.rest_mps) +
-      ". Reversing: from 50 ms before the rod leaves one direction until 50 ms after it goes the "
+      units::speed_words(c.kinematics.rest_mps) + ". Reversing: from 50 ms before the " +
+      units::moving_part() +
+      " leaves one direction until 50 ms after it goes the "
       "other way. The first half second of each segment does not count, except in the free run. "
       "The speed error is a mean over 50 ms to either side.");
   for (const std::string& note : notes(c)) section.paragraphs.push_back("Note: " + note + ".");

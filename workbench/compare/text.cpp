@@ -85,7 +85,7 @@ std::string chart(const validation::Region& region, bool unicode) {
   for (const validation::Bin& bin : region.bins)
     most = std::max(most, bin.local_velocity_error_rms_mps);
   const std::string head =
-      unit.text[0] != '\0' ? std::string(unit.name) + ", " + unit.text : std::string(unit.name);
+      unit.text.empty() ? std::string(unit.name) : std::string(unit.name) + ", " + unit.text;
   std::string out = fmt::format("  {:20} {:>9} {:>10} {:>6} {:>6}\n", head, "error RMS",
                                 "speed err.", "time", "share");
   for (const validation::Bin& bin : region.bins) {

@@ -27,11 +27,12 @@ std::string fails_where(const validation::SignificantRegion& failing) {
 
 std::string in_proportion(double gain_ratio) {
   if (gain_ratio < -1.0) {
-    return "the rod moves the other way than the model, " +
+    return "the " + units::moving_part() + " moves the other way than the model, " +
            units::three_digits(-100.0 * (1.0 + gain_ratio)) +
            " % as far: the sign of the command or of the position is turned";
   }
-  return "the rod moves " + units::three_digits(100.0 * std::abs(gain_ratio)) + " % " +
+  return "the " + units::moving_part() + " moves " +
+         units::three_digits(100.0 * std::abs(gain_ratio)) + " % " +
          (gain_ratio < 0.0 ? "less" : "more") + " than the model";
 }
 
@@ -47,7 +48,8 @@ std::string plain_words(const validation::SystematicError& explained) {
       text = "Off in proportion: " + in_proportion(explained.gain_ratio);
       break;
     case validation::ErrorCause::offset:
-      text = "Off by a constant speed: the rod " + by_a_constant(explained.offset_mps);
+      text = "Off by a constant speed: the " + units::moving_part() + " " +
+             by_a_constant(explained.offset_mps);
       break;
     case validation::ErrorCause::both:
       text = "Off in proportion and by a constant speed: " + in_proportion(explained.gain_ratio) +
@@ -111,8 +113,8 @@ std::string drift_words(const validation::Comparison& c) {
   }
   if (text.empty()) return {};
   const double end_m = c.free_error_m.back();
-  return "Drifts in the free run, " + units::length_words(std::abs(end_m)) +
-         " at the end: the rod runs " + text + ".";
+  return "Drifts in the free run, " + units::length_words(std::abs(end_m)) + " at the end: the " +
+         units::moving_part() + " runs " + text + ".";
 }
 
 std::string dependence_words(const validation::Comparison& c) {

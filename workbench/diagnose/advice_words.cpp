@@ -6,6 +6,7 @@
 #include <array>
 
 #include "config/schema/joined.h"
+#include "config/units/quantity.h"
 #include "plant_sim/library.h"
 
 namespace workbench::diagnose {
@@ -149,8 +150,9 @@ std::string motion_words(const monitor::control::ReferenceConfig& reference, dou
   } else {
     text = "a sine of " + number(reference.frequency_Hz) + " Hz";
   }
-  return text + " within " + number(1e3 * reference.amplitude_m) + " mm of " +
-         number(1e3 * reference.centre_m) + " mm for " + number(duration_s) + " s";
+  const std::string mm = config::units::axis_unit("mm");
+  return text + " within " + number(1e3 * reference.amplitude_m) + " " + mm + " of " +
+         number(1e3 * reference.centre_m) + " " + mm + " for " + number(duration_s) + " s";
 }
 
 std::string words_for_motion(const std::vector<std::string>& names, const std::string& motion,

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "config/schema/joined.h"
+#include "estimator/greybox/held_scale.h"
 #include "workbench/diagnose/words.h"
 #include "workbench/present/json.h"
 
@@ -37,6 +38,14 @@ ordered_json parameters_of(const selection::Diagnosis& d) {
                    {"at_bound", p.at_bound}};
   }
   return all;
+}
+
+ordered_json held_scale_of(const DiagnosisReport& outcome) {
+  std::vector<std::string> names;
+  for (const selection::ParameterValue& p : outcome.diagnosis.parameters) names.push_back(p.name);
+  const greybox::HeldScale held = greybox::held_scale(outcome.prepared->problem.model, names);
+  if (held.parameter.empty()) return nullptr;
+  return {{"parameter", held.parameter}, {"scaled", held.scaled}};
 }
 
 ordered_json refused_of(const selection::StructureSearch& search) {
@@ -129,6 +138,7 @@ std::string to_json(const DiagnosisReport& outcome) {
   json["free_run_before_m"] = number_or_null(outcome.free_run_before_m);
   json["free_run_after_m"] = number_or_null(outcome.free_run_after_m);
   json["parameters"] = parameters_of(d);
+  json["held_scale"] = held_scale_of(outcome);
   json["candidates"] = candidates_of(d.search);
   json["where"] = ordered_json::array();
   for (const selection::Localisation& where : d.where) {

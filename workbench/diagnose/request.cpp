@@ -12,6 +12,7 @@
 #include "config/schema/joined.h"
 #include "workbench/files/file_check.h"
 #include "workbench/fit/ignored_spans.h"
+#include "workbench/present/printed_model.h"
 
 namespace workbench::diagnose {
 namespace {
@@ -60,12 +61,15 @@ void require_samples(const greybox::FitDataset& data, std::size_t parameters) {
 /// Leaves the effects that are to be tried.
 void choose_effects(const DiagnosisRequest& request, std::vector<plant_sim::EffectInfo>& effects) {
   const auto names = [](const std::vector<std::string>& list, const plant_sim::EffectInfo& effect) {
-    return std::find(list.begin(), list.end(), effect.name) != list.end();
+    return std::any_of(list.begin(), list.end(), [&](const std::string& name) {
+      return plant_sim::library_name(name) == effect.name;
+    });
   };
   for (const auto& [option, list] :
        {std::pair("--only", &request.only), std::pair("--without", &request.without)}) {
     for (const std::string& name : *list) {
-      const auto named = [&](const plant_sim::EffectInfo& effect) { return effect.name == name; };
+      const auto named = [&, known = plant_sim::library_name(name)](
+                             const plant_sim::EffectInfo& effect) { return effect.name == known; };
       if (std::any_of(effects.begin(), effects.end(), named)) continue;
       const auto text = [](const plant_sim::EffectInfo& effect) { return effect.name; };
       throw config::schema::UsageError(
@@ -85,7 +89,7 @@ PreparedDiagnosis prepare(const DiagnosisRequest& request) {
   check_files(request);
   PreparedDiagnosis prepared;
   prepared.split = greybox::parse_split(request.fit);
-  plant_sim::ModelFile model = plant_sim::load_model(request.model, request.assignments);
+  plant_sim::ModelFile model = present::load_printed_model(request.model, request.assignments);
   fit::FreeParameters parameters = fit::select_parameters(model, request.selection);
   std::vector<std::string> files = request.records;
   files.insert(files.end(), request.holdouts.begin(), request.holdouts.end());

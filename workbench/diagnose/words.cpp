@@ -7,6 +7,7 @@
 
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
+#include "estimator/greybox/held_scale.h"
 #include "estimator/greybox/representative_segments.h"
 #include "workbench/diagnose/disturbance_words.h"
 #include "workbench/present/dataset_notes.h"
@@ -231,7 +232,40 @@ void add_rivals(const selection::Diagnosis& d, std::vector<std::string>& out) {
 
 }  // namespace
 
+namespace {
+
+/// ": 34.02 +- 0.03 Hz, damping 3.0 +- 0.1 %: a second mass behind a spring (...)".
+std::string second_mass_words(const selection::Diagnosis& diagnosis) {
+  using config::units::quantity;
+  using config::units::words;
+  const auto value = [&](const std::string& name) -> const selection::ParameterValue* {
+    const auto same = [&](const auto& p) { return p.name == "second_mass." + name; };
+    const auto& all = diagnosis.parameters;
+    const auto found = std::find_if(all.begin(), all.end(), same);
+    return found == all.end() ? nullptr : &*found;
+  };
+  const auto* resonance = value("resonance_Hz");
+  const auto* damping = value("damping_ratio");
+  const auto* share = value("mass_ratio");
+  if (resonance == nullptr || damping == nullptr || share == nullptr) return "";
+  const auto shown = [](const selection::ParameterValue& p) {
+    return words(quantity(p.name, p.value, p.std_error)) + (p.at_bound ? " (at its bound)" : "");
+  };
+  std::string text =
+      ": " + shown(*resonance) + ", damping " + shown(*damping) +
+      ": a second mass behind a spring (" + shown(*share) + " of the moving mass; " +
+      words(quantity(resonance->name, resonance->value * std::sqrt(1.0 - share->value),
+                     std::nan(""))) +
+      " with the driven part held";
+  const auto* sensor = value("sensor_ratio");
+  if (sensor != nullptr && sensor->value > 0.0) text += "; sensor ratio " + shown(*sensor);
+  return text + ")";
+}
+
+}  // namespace
+
 std::string effect_words(const selection::Diagnosis& diagnosis, const std::string& effect) {
+  if (effect == "second_mass") return effect + second_mass_words(diagnosis);
   std::string text;
   for (const selection::ParameterValue& p : diagnosis.parameters) {
     if (p.name.rfind(effect + ".", 0) != 0) continue;
@@ -264,12 +298,15 @@ std::string where_words(const selection::Localisation& where) {
 
 std::string excitation_words(const selection::Excitation& excitation) {
   using Cause = selection::Excitation::Cause;
-  const auto millimetres = [](double m) { return fmt::format("{:.3g} mm", 1e3 * m); };
+  const auto millimetres = [](double m) {
+    return fmt::format("{:.3g} {}", 1e3 * m, config::units::axis_unit("mm"));
+  };
   switch (excitation.cause) {
     case Cause::sufficient:
       break;
     case Cause::no_motion:
-      return "the rod moves by " + millimetres(excitation.travel_m) + " in all, " +
+      return "the " + config::units::moving_part() + " moves by " +
+             millimetres(excitation.travel_m) + " in all, " +
              millimetres(excitation.noise_floor_m) + " of it noise";
     case Cause::command_at_limit:
       return "the command stays at its limit throughout";
@@ -325,6 +362,12 @@ std::string verdict_words(const selection::Diagnosis& d) {
   return "The record cannot tell: " + excitation_words(d.excitation) + ".";
 }
 
+std::string held_words(const DiagnosisReport& outcome) {
+  std::vector<std::string> names;
+  for (const selection::ParameterValue& p : outcome.diagnosis.parameters) names.push_back(p.name);
+  return greybox::held_scale_words(outcome.prepared->problem.model, names);
+}
+
 std::vector<std::string> remarks(const DiagnosisReport& outcome) {
   const selection::Diagnosis& d = outcome.diagnosis;
   std::vector<std::string> out;
@@ -364,6 +407,8 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
     out.push_back(refused_words(model));
   }
   add_rivals(d, out);
+  const std::string held = held_words(outcome);
+  if (!held.empty()) out.push_back(held);
   if (!d.where.empty()) {
     std::string text =
         (!d.where_is_whole || (d.missing.empty() && d.changing.empty())

@@ -20,6 +20,8 @@ struct FitReport {
 
 /// Summary as sentences, most important first.
 [[nodiscard]] std::vector<std::string> words(const FitReport& outcome);
+/// Names of the fitted parameters.
+[[nodiscard]] std::vector<std::string> fitted_names(const greybox::EstimationSummary& estimation);
 /// "held by its prior", "at its lower bound", ... or empty.
 [[nodiscard]] std::string remark(const greybox::EstimatedParameter& parameter);
 /// "large standard error"; empty for none.

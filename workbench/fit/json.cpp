@@ -2,6 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "estimator/greybox/held_scale.h"
 #include "workbench/fit/fit_report.h"
 #include "workbench/present/json.h"
 
@@ -82,6 +83,11 @@ std::string to_json(const FitReport& o) {
                    {"worse", e.starts.worse}};
   out["identifiability"] = {{"before", json_of(e.identifiability_before, e.parameters)},
                             {"after", json_of(e.identifiability_after, e.parameters)}};
+  const greybox::HeldScale held = greybox::held_scale(e.better, fitted_names(e));
+  out["held_scale"] = nullptr;
+  if (!held.parameter.empty()) {
+    out["held_scale"] = {{"parameter", held.parameter}, {"scaled", held.scaled}};
+  }
   ordered_json names = ordered_json::array();
   ordered_json matrix = ordered_json::array();
   for (Eigen::Index i = 0; i < e.correlation.rows(); ++i) {

@@ -92,7 +92,7 @@ class ParameterSelector {
       throw UsageError(option + " " + text + ": lacks an equals sign; allowed: name=" +
                        (option == "--prior" ? "mean+-sd" : "low:high"));
     }
-    const std::string name = text.substr(0, equals);
+    const std::string name = plant_sim::library_name(text.substr(0, equals));
     value = text.substr(equals + 1);
     std::vector<std::string> fitted;
     for (const std::size_t i : picked_) {

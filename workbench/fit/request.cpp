@@ -10,9 +10,11 @@
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "config/schema/spelling.h"
+#include "config/units/quantity.h"
 #include "workbench/files/file_check.h"
 #include "workbench/fit/ignored_spans.h"
 #include "workbench/present/dataset_notes.h"
+#include "workbench/present/printed_model.h"
 
 namespace workbench::fit {
 namespace {
@@ -54,8 +56,9 @@ void require_motion(const FitDataset& data) {
     if (*high - *low <= 2.0 * kLeastMotion * floor_m || !(*high > *low)) {
       throw config::schema::bad_data(
           record.name,
-          fmt::format("the rod does not move: y stays within {:.3g} um of itself",
-                      1e6 * (*high - *low)),
+          fmt::format("the {} does not move: y stays within {:.3g} {} of itself",
+                      config::units::moving_part(), 1e6 * (*high - *low),
+                      config::units::axis_unit("um")),
           "a record with motion well above the position's noise");
     }
   }
@@ -140,7 +143,7 @@ PreparedFit prepare(const FitRequest& request) {
   PreparedFit out;
   greybox::EstimationProblem& problem = out.problem;
   greybox::EstimationOptions& options = out.options;
-  problem.model = plant_sim::load_model(request.model, request.assignments);
+  problem.model = present::load_printed_model(request.model, request.assignments);
   const FreeParameters choice = select_parameters(problem.model, request.selection);
   problem.parameters = choice.parameters;
   problem.start = choice.start;

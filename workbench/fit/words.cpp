@@ -6,6 +6,7 @@
 
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
+#include "estimator/greybox/held_scale.h"
 #include "workbench/fit/fit_report.h"
 
 namespace workbench::fit {
@@ -203,6 +204,12 @@ std::string unidentifiable_words(const greybox::UnidentifiableParameter& unseen,
                            : name + " has no prior and stays arbitrary");
 }
 
+std::vector<std::string> fitted_names(const greybox::EstimationSummary& estimation) {
+  std::vector<std::string> names;
+  for (const greybox::EstimatedParameter& p : estimation.parameters) names.push_back(p.free.name);
+  return names;
+}
+
 std::vector<std::string> words(const FitReport& o) {
   const greybox::EstimationSummary& e = o.estimation;
   std::vector<std::string> said{size_words(o), heldout_words(e), moved_words(e), bound_words(e)};
@@ -218,6 +225,7 @@ std::vector<std::string> words(const FitReport& o) {
       said.push_back("Parameters that the record does not determine, after the fit: " + after);
     if (after.empty()) said.push_back("The record determines every fitted parameter.");
   }
+  said.push_back(greybox::held_scale_words(e.better, fitted_names(e)));
   said.push_back(starts_words(e.starts));
   if (e.interrupted) said.insert(said.begin(), "Interrupted: this is the best so far.");
   for (const std::string& note : o.prepared->notes) said.push_back("Note: " + note + ".");

@@ -20,6 +20,7 @@
 #include "estimator/residual/noise_floor.h"
 #include "workbench/files/file_check.h"
 #include "workbench/fit/parameter_selection.h"
+#include "workbench/present/printed_model.h"
 
 namespace workbench::isolate {
 
@@ -274,7 +275,8 @@ IsolationReport isolate(const IsolationRequest& request) {
   files::check_outputs(
       {{"--json", request.json}, {"--report", request.report}, {"--learn", request.learn_baseline}},
       {request.model, {request.record}});
-  const plant_sim::ModelFile model = plant_sim::load_model(request.model, request.assignments);
+  const plant_sim::ModelFile model =
+      present::load_printed_model(request.model, request.assignments);
   plant_sim::require_constant(model);
   const Record record = config::record::read_record(request.record, request.reading);
   check(request, record);

@@ -1,4 +1,5 @@
 #include "workbench/present/compare_units.h"
+#include "config/units/quantity.h"
 
 #include <fmt/format.h>
 
@@ -15,11 +16,12 @@ std::string bound(double value, const DisplayUnit& unit) {
 }  // namespace
 
 DisplayUnit unit_of(const std::string& variable) {
-  if (variable == "y") return {"position", "mm", 1e3};
-  if (variable == "v") return {"velocity", "mm/s", 1e3};
-  if (variable == "speed") return {"speed", "mm/s", 1e3};
+  using config::units::axis_unit;
+  if (variable == "y") return {"position", axis_unit("mm"), 1e3};
+  if (variable == "v") return {"velocity", axis_unit("mm/s"), 1e3};
+  if (variable == "speed") return {"speed", axis_unit("mm/s"), 1e3};
   if (variable == "u") return {"command", "V", 1.0};
-  if (variable == "acceleration") return {"acceleration", "m/s2", 1.0};
+  if (variable == "acceleration") return {"acceleration", axis_unit("m/s2"), 1.0};
   if (variable == "time") return {"time", "s", 1.0};
   return {"direction", "", 1.0};
 }
@@ -47,10 +49,14 @@ std::string where(const validation::RegionRange& range) {
     if (range.lowest) return "in the first " + high + tail;
     return "from " + low + " to " + high + tail;
   }
+  const bool turning = config::units::motion() == config::units::Motion::rotary;
   if (range.variable == "v") {
-    if (range.highest && range.from > 0.0) return "extending faster than " + low + tail;
+    if (range.highest && range.from > 0.0) {
+      return std::string(turning ? "turning on" : "extending") + " faster than " + low + tail;
+    }
     if (range.lowest && range.to < 0.0) {
-      return "retracting faster than " + bound(-range.to, unit) + tail;
+      return std::string(turning ? "turning back" : "retracting") + " faster than " +
+             bound(-range.to, unit) + tail;
     }
   }
   const bool plain = range.variable == "speed";

@@ -11,7 +11,7 @@ namespace validation = estimator::greybox::validation;
 
 struct DisplayUnit {
   const char* name = "";  ///< "position"
-  const char* text = "";  ///< "mm"
+  std::string text;       ///< "mm", "mrad"
   double factor = 1.0;    ///< shown value = factor * SI value
 };
 

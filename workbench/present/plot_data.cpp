@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "config/units/quantity.h"
 #include "workbench/present/script_json.h"
 #include "workbench/present/text.h"
 
@@ -24,8 +25,8 @@ const char* to_string(Tone tone) {
 
 std::string axis_json(const Axis& axis) {
   return R"({"label":)" + json_string(typeset(axis.label)) + R"(,"unit":)" +
-         json_string(typeset(axis.unit)) + R"(,"log":)" + (axis.logarithmic ? "true" : "false") +
-         "}";
+         json_string(typeset(config::units::axis_unit(axis.unit))) + R"(,"log":)" +
+         (axis.logarithmic ? "true" : "false") + "}";
 }
 
 std::vector<double> pick(const std::vector<double>& values, const std::vector<std::size_t>& rows) {

@@ -6,6 +6,7 @@
 
 #include "config/record/whole_file.h"
 #include "config/schema/product_version.h"
+#include "config/units/quantity.h"
 #include "workbench/present/assets.h"
 #include "workbench/present/plot_data.h"
 #include "workbench/present/text.h"
@@ -54,7 +55,9 @@ std::string top(const Report& report) {
   if (!report.facts.empty()) out += "<dl class=\"facts\">\n";
   for (const Fact& fact : report.facts) {
     out += "<div><dt>" + html(fact.label) + "</dt><dd>" + html(typeset(fact.value)) +
-           (fact.unit.empty() ? "" : " <span>" + html(typeset(fact.unit)) + "</span>") +
+           (fact.unit.empty()
+                ? ""
+                : " <span>" + html(typeset(config::units::axis_unit(fact.unit))) + "</span>") +
            "</dd></div>\n";
   }
   if (!report.facts.empty()) out += "</dl>\n";
@@ -78,9 +81,11 @@ std::string table(const Table& table) {
   out += "\n<thead><tr>";
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const std::string& unit = table.columns[i].unit;
-    out += cell("th", i,
-                html(typeset(table.columns[i].name)) +
-                    (unit.empty() ? "" : " <span>" + html(typeset(unit)) + "</span>"));
+    out += cell(
+        "th", i,
+        html(typeset(table.columns[i].name)) +
+            (unit.empty() ? ""
+                          : " <span>" + html(typeset(config::units::axis_unit(unit))) + "</span>"));
   }
   out += "</tr></thead>\n<tbody>\n";
   for (std::size_t r = 0; r < table.rows.size(); ++r) {

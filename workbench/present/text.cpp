@@ -15,9 +15,10 @@ struct Spelling {
 
 /// Spellings of whole words; the longer before its beginning.
 constexpr std::array kSpellings{
-    Spelling{"+-", "±"},      Spelling{"->", "→"},    Spelling{"um", "µm"},
-    Spelling{"N s2", "N·s²"}, Spelling{"N s", "N·s"}, Spelling{"cm3", "cm³"},
-    Spelling{"m3", "m³"},     Spelling{"m2", "m²"},   Spelling{"s2", "s²"},
+    Spelling{"+-", "±"},      Spelling{"->", "→"},      Spelling{"um", "µm"},
+    Spelling{"N s2", "N·s²"}, Spelling{"N s", "N·s"},   Spelling{"cm3", "cm³"},
+    Spelling{"m3", "m³"},     Spelling{"m2", "m²"},     Spelling{"s2", "s²"},
+    Spelling{"rad2", "rad²"}, Spelling{"urad", "µrad"},
 };
 
 bool in_word(char c) {

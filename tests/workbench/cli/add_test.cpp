@@ -72,6 +72,12 @@ TEST_F(AddTest, KeepsWhatTheModelAlreadyHas) {
   EXPECT_EQ(*plant->parameter("friction.coulomb_N"), 300.0);
 }
 
+TEST_F(AddTest, TakesAddedLoadForCoupledSlaves) {
+  EXPECT_THAT(add({kModels + "force_driven_axis.toml", "added_load", "mass_kg=7"}),
+              HasSubstr("with coupled_slaves"));
+  EXPECT_EQ(*plant_sim::load_model(out()).value("coupled_slaves.mass_kg"), 7.0);
+}
+
 TEST_F(AddTest, WritesOverItsOwnInputWholly) {
   fs::copy_file(kModels + "thesis.toml", out());
   add({out().string(), "flow_saturation", "limit_m3ps=3e-5"});

@@ -28,7 +28,7 @@ TEST(Effects, ListsEveryEffectWithEquationSitesPlantsAndRanges) {
 
 TEST(Effects, WritesTheSameAsJson) {
   const auto json = nlohmann::json::parse(output({"--json", "-"}));
-  ASSERT_EQ(json["effects"].size(), 19U);
+  ASSERT_EQ(json["effects"].size(), 20U);
   EXPECT_EQ(json["plants"].size(), 3U);
   for (const auto& effect : json["effects"]) {
     EXPECT_FALSE(effect["equation"].get<std::string>().empty());

@@ -1,0 +1,121 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "config/schema/error.h"
+#include "plant_sim/model_file.h"
+#include "tests/workbench/run_command.h"
+#include "workbench/model/kinds.h"
+
+namespace workbench::cli {
+namespace {
+
+using config::schema::UsageError;
+using testing::HasSubstr;
+using workbench_test::printed_by;
+
+const std::vector<std::string> kCylinder{
+    "--bore-mm",    "50",  "--rod-mm",         "32", "--stroke-mm",      "500", "--mass-kg", "200",
+    "--supply-bar", "140", "--rated-flow-lpm", "40", "--rated-drop-bar", "70"};
+
+plant_sim::ModelFile made(const std::string& kind, const std::vector<std::string>& flags) {
+  const std::string file = testing::TempDir() + "spoolwatch_new_" + kind + ".toml";
+  std::vector<std::string> arguments{kind, "-o", file};
+  arguments.insert(arguments.end(), flags.begin(), flags.end());
+  printed_by(add_new, arguments);
+  return plant_sim::load_model(file);
+}
+
+std::string refused(std::vector<std::string> arguments) {
+  try {
+    printed_by(add_new, std::move(arguments));
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "taken";
+}
+
+TEST(New, PutsTheRatedFlowIntoADoubleRodCylinder) {
+  plant_sim::ModelFile model = made("double-rod", kCylinder);
+  EXPECT_NEAR(*model.value("area_m2"), 1.15925e-3, 1e-8);
+  EXPECT_EQ(*model.value("stroke_m"), 0.5);
+  EXPECT_EQ(*model.value("supply_pressure_Pa"), 1.4e7);
+  const double flow = *model.value("discharge_coefficient") * *model.value("area_gradient_m") *
+                      10.0 * *model.value("valve_gain_m_per_V") *
+                      std::sqrt(2.0 * 35e5 / *model.value("density_kg_per_m3"));
+  EXPECT_NEAR(flow, 40.0 / 6e4, 1e-8);
+  // -3 dB of the second-order spool at 50 Hz
+  const double r = 2.0 * M_PI * 50.0 / *model.value("valve_natural_frequency_rad_per_s");
+  EXPECT_NEAR(std::pow(1.0 - r * r, 2) + std::pow(2.0 * 0.8 * r, 2), 2.0, 1e-4);
+  EXPECT_EQ(model.uncertainty_ratio(0), 0.1);
+}
+
+TEST(New, GivesASingleRodItsTwoSpeeds) {
+  plant_sim::ModelFile model = made("single-rod", kCylinder);
+  const double a = 1.963495e-3, b = 1.159248e-3, orifice = 40.0 / 6e4 / (10.0 * std::sqrt(35e5));
+  // pressures in balance without load: Pa A = Pb B, each edge at its own flow
+  const double out = orifice * std::sqrt(140e5 * a / (a * a * a + b * b * b));
+  const double in = orifice * std::sqrt(140e5 * b / (a * a * a + b * b * b));
+  const double gain = *model.value("gain_mps_per_V");
+  const double ratio = *model.value("flow_asymmetry.asymmetry_ratio");
+  EXPECT_NEAR(gain * (1.0 + ratio), out, 1e-5 * out);
+  EXPECT_NEAR(gain * (1.0 - ratio), in, 1e-5 * in);
+}
+
+TEST(New, ReducesInertiasToTheAxisThatIsMeasured) {
+  plant_sim::ModelFile rotary =
+      made("rotary-axis", {"--motor-inertia-kgcm2", "2", "--load-inertia-kgcm2", "100", "--gear",
+                           "5", "--torque-constant-Nm-per-A", "0.4", "--drive-A-per-V", "1.5"});
+  EXPECT_TRUE(rotary.rotary());
+  EXPECT_NEAR(*rotary.value("mass_kg"), 6e-4, 1e-9);
+  EXPECT_NEAR(*rotary.value("gain_N_per_V"), 0.6, 1e-9);
+  plant_sim::ModelFile screw =
+      made("screw-axis", {"--mass-kg", "50", "--lead-mm", "10", "--inertia-kgcm2", "5",
+                          "--torque-constant-Nm-per-A", "0.5", "--drive-A-per-V", "1"});
+  EXPECT_NEAR(*screw.value("mass_kg"), 50.0 + 5e-4 * std::pow(2.0 * M_PI / 0.01, 2), 1e-2);
+  EXPECT_NEAR(*screw.value("gain_N_per_V"), 0.5 * 2.0 * M_PI / 0.01, 1e-3);
+  plant_sim::ModelFile servo = made("rotary-servo", {"--full-speed-rpm", "3000"});
+  EXPECT_NEAR(*servo.value("gain_mps_per_V"), 31.4159, 1e-3);
+}
+
+TEST(New, ThePriorsOfTheFileAreThoseOfAFit) {
+  plant_sim::ModelFile motor = made("linear-motor", {"--mass-kg", "12", "--force-constant-N-per-A",
+                                                     "80", "--drive-A-per-V", "0.6"});
+  EXPECT_EQ(motor.uncertainty_ratio(0), 0.2);
+  EXPECT_EQ(motor.uncertainty_ratio(2), 0.0);  // the gain is held
+  const std::string again = plant_sim::print_model(motor);
+  EXPECT_THAT(again, HasSubstr("[priors]\nmass_kg = 0.2\n"));
+  EXPECT_THAT(plant_sim::print_model(plant_sim::ModelFile()), testing::Not(HasSubstr("priors")));
+}
+
+TEST(New, RefusesInOneLineWithTheNearName) {
+  EXPECT_THAT(refused({"duble-rod", "-o", "x.toml"}), HasSubstr("did you mean double-rod?"));
+  EXPECT_THAT(refused({"rotary-servo", "-o", "x.toml", "--full-speed-rpm", "30", "--bore-mm", "5"}),
+              HasSubstr("--bore-mm is not asked of this kind; allowed: --full-speed-rpm"));
+  EXPECT_THAT(
+      refused({"linear-motor", "-o", "x.toml", "--mass-kg", "3"}),
+      testing::AllOf(HasSubstr("lacks --force-constant-N-per-A"), HasSubstr("--drive-A-per-V")));
+  EXPECT_THAT(refused({"rotary-servo", "-o", "x.toml", "--full-speed-rpm", "-3"}),
+              HasSubstr("--full-speed-rpm is -3, out of range; allowed: 0.001 to"));
+  std::vector<std::string> thick{"double-rod", "-o", "x.toml"};
+  thick.insert(thick.end(), kCylinder.begin(), kCylinder.end());
+  thick[6] = "60";
+  EXPECT_THAT(refused(thick), HasSubstr("no rod for a bore of 50"));
+}
+
+TEST(New, EveryKindMakesAModelThatReadsBack) {
+  for (const model::Kind& kind : model::kinds()) {
+    std::vector<std::string> flags;
+    for (const model::Question& q : kind.questions) {
+      if (!std::isnan(q.usual)) continue;
+      flags.push_back("--" + q.flag);
+      flags.push_back(q.flag == "bore-mm" ? "63" : q.flag == "rod-mm" ? "36" : "100");
+    }
+    const plant_sim::ModelFile model = made(kind.name, flags);
+    EXPECT_EQ(model.name, "spoolwatch_new_" + kind.name);
+  }
+}
+
+}  // namespace
+}  // namespace workbench::cli

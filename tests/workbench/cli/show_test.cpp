@@ -1,0 +1,111 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "config/schema/error.h"
+#include "tests/workbench/run_command.h"
+
+namespace workbench::cli {
+namespace {
+
+using testing::HasSubstr;
+using workbench_test::printed_by;
+
+std::string model(const char* name) {
+  return std::string(SPOOLWATCH_SOURCE_DIR "/config/models/") + name + ".toml";
+}
+
+std::string written(const std::string& text) {
+  const std::string file = testing::TempDir() + "spoolwatch_show.toml";
+  std::ofstream(file) << "schema_version = 1\n" << text;
+  return file;
+}
+
+nlohmann::json shown(std::vector<std::string> arguments) {
+  arguments.insert(arguments.end(), {"--json", "-"});
+  return nlohmann::json::parse(printed_by(add_show, std::move(arguments)));
+}
+
+double derived(const nlohmann::json& sheet, const std::string& name) {
+  for (const auto& one : sheet["derived"]) {
+    if (one["name"] == name) return one["value"];
+  }
+  ADD_FAILURE() << name;
+  return 0.0;
+}
+
+const nlohmann::json& parameter(const nlohmann::json& sheet, const std::string& name) {
+  for (const char* table : {"parameters", "effects"}) {
+    for (const auto& one : sheet[table]) {
+      if (one["name"] == name) return one;
+    }
+  }
+  ADD_FAILURE() << name;
+  return sheet;
+}
+
+TEST(Show, SaysWhatIsStatedAndWhatIsDefault) {
+  const auto sheet = shown({written(
+      "name = \"a\"\nplant = \"force_driven_axis\"\n[parameters]\nmass_kg = 30.0\n[priors]\n"
+      "mass_kg = 0.1\n[effects.friction]\ncoulomb_N = 25.0\n")});
+  EXPECT_EQ(parameter(sheet, "mass_kg")["source"], "file");
+  EXPECT_EQ(parameter(sheet, "mass_kg")["prior_ratio"], 0.1);
+  EXPECT_EQ(parameter(sheet, "damping_N_s_per_m")["source"], "default");
+  EXPECT_EQ(parameter(sheet, "damping_N_s_per_m")["value"], 200.0);
+  EXPECT_EQ(parameter(sheet, "gain_N_per_V")["fitted"], false);
+  EXPECT_EQ(parameter(sheet, "friction.coulomb_N")["fitted"], true);
+  EXPECT_TRUE(parameter(sheet, "friction.coulomb_N")["prior_ratio"].is_null());
+  EXPECT_EQ(parameter(sheet, "friction.static_N")["source"], "neutral");
+  EXPECT_THAT(sheet["held"].get<std::string>(),
+              HasSubstr("mass_kg, damping_N_s_per_m and friction.coulomb_N"));
+}
+
+TEST(Show, DerivesWhatADataSheetStates) {
+  const auto axis = shown({model("force_driven_axis")});
+  EXPECT_NEAR(derived(axis, "steady_speed_positive_mps"), 350.0 / 200.0, 1e-3);
+  EXPECT_NEAR(derived(axis, "time_constant_s"), 0.5, 1e-12);
+  EXPECT_NEAR(derived(axis, "full_acceleration_mps2"), 3.5, 1e-12);
+  const auto servo = shown({model("velocity_servo")});
+  EXPECT_NEAR(derived(servo, "steady_speed_negative_mps"), -0.5, 1e-6);
+  EXPECT_NEAR(derived(servo, "bandwidth_Hz"), 15.915, 1e-3);
+  const auto thesis = shown({model("thesis")});
+  // two orifices in series: A v = G x sqrt((Ps - d v/A)/2)
+  const double orifice = 0.6 * 2.07e-2 * std::sqrt(2.0 / 847.0) * 2.79e-4;
+  const double v = derived(thesis, "steady_speed_positive_mps");
+  EXPECT_NEAR(6.33e-4 * v, orifice * std::sqrt(0.5 * (6.89e6 - 1000.0 * v / 6.33e-4)),
+              1e-3 * 6.33e-4 * v);
+  EXPECT_NEAR(derived(thesis, "stall_force_N"), 6.33e-4 * 6.89e6, 1e-9);
+}
+
+TEST(Show, SplitsASecondMassIntoItsParts) {
+  const auto sheet =
+      shown({model("force_driven_axis"), "--set", "effects.second_mass.mass_ratio=0.36", "--set",
+             "effects.second_mass.resonance_Hz=10"});
+  EXPECT_NEAR(derived(sheet, "second_mass_kg"), 36.0, 1e-9);
+  EXPECT_NEAR(derived(sheet, "second_mass_held_Hz"), 8.0, 1e-9);
+  EXPECT_NEAR(derived(sheet, "second_mass_stiffness_N_per_m"), 36.0 * std::pow(2.0 * M_PI * 8.0, 2),
+              1e-6);
+}
+
+TEST(Show, PrintsARotaryAxisInRadians) {
+  const std::string text = printed_by(
+      add_show, {written("name = \"a\"\nplant = \"force_driven_axis\"\nmotion = \"rotary\"\n"
+                         "[parameters]\nmass_kg = 0.006\ngain_N_per_V = 0.5\n")});
+  EXPECT_THAT(text, HasSubstr("0.006 kg m2"));
+  EXPECT_THAT(text, HasSubstr("0.5 N m/V"));
+  EXPECT_THAT(text, HasSubstr("N m s/rad"));
+  EXPECT_THAT(text, testing::Not(HasSubstr("mm/s")));
+  EXPECT_THAT(printed_by(add_show, {model("force_driven_axis")}), HasSubstr("100 kg "));
+}
+
+TEST(Show, RefusesARotaryCylinderAndAMissingFile) {
+  EXPECT_THROW(printed_by(add_show, {written("name = \"a\"\nplant = \"hydraulic_actuator\"\n"
+                                             "motion = \"rotary\"\n")}),
+               config::schema::ConfigError);
+  EXPECT_THROW(printed_by(add_show, {"/nowhere/model.toml"}), config::schema::Error);
+}
+
+}  // namespace
+}  // namespace workbench::cli

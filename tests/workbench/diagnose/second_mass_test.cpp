@@ -1,0 +1,80 @@
+// A second mass behind a spring, hidden in records from a matrix exponential (two_masses.h): named
+// with its frequency, and not named where there is none.
+#include <gmock/gmock.h>
+
+#include "estimator/greybox/selection/diagnosis.h"
+#include "tests/workbench/diagnose/judged.h"
+#include "tests/workbench/diagnose/two_masses.h"
+#include "workbench/diagnose/words.h"
+
+namespace workbench::diagnose {
+
+namespace greybox = estimator::greybox;
+namespace selection = estimator::greybox::selection;
+namespace {
+
+using diagnose_test::said;
+
+/// A rigid axis whose mass and damping are off.
+plant_sim::ModelFile rigid() {
+  plant_sim::ModelFile model = plant_sim::read_model(config::schema::Document::parse(
+      "schema_version = 1\nname = \"axis\"\nplant = \"force_driven_axis\"\n[parameters]\n"
+      "mass_kg = 33.0\ndamping_N_s_per_m = 100.0\ngain_N_per_V = 40.0\n",
+      "axis"));
+  return model;
+}
+
+selection::Diagnosis diagnosed(const two_masses::Rig& rig) {
+  config::record::Record record = two_masses::record(rig);
+  record.name = "two masses";
+  record.sample_time_s = 1.0 / rig.sample_rate_Hz;
+  return diagnose_test::found_in(selection::SearchContext{
+      selection::make_problem(rigid(), greybox::fit_dataset({greybox::dataset_of(record)}, {})),
+      {}});
+}
+
+const selection::ParameterValue& value(const selection::Diagnosis& d, const std::string& name) {
+  const auto found = std::find_if(d.parameters.begin(), d.parameters.end(),
+                                  [&](const auto& p) { return p.name == "second_mass." + name; });
+  EXPECT_NE(found, d.parameters.end()) << name << " in " << said(d);
+  static const selection::ParameterValue none{};
+  return found == d.parameters.end() ? none : *found;
+}
+
+void expect_named(const two_masses::Rig& rig) {
+  const selection::Diagnosis d = diagnosed(rig);
+  EXPECT_THAT(d.missing, testing::ElementsAre("second_mass")) << said(d);
+  EXPECT_EQ(d.verdict, selection::Verdict::missing) << said(d);
+  const auto near = [&](const std::string& name, double truth) {
+    const selection::ParameterValue& p = value(d, name);
+    EXPECT_LT(std::abs(p.value - truth), diagnose_test::kStdErrors * p.std_error + 1e-3 * truth)
+        << name << " is " << truth << ", found " << p.value << " +- " << p.std_error;
+  };
+  near("resonance_Hz", rig.resonance_Hz);
+  near("damping_ratio", rig.damping_ratio);
+  near("mass_ratio", rig.mass_ratio);
+  EXPECT_THAT(effect_words(d, "second_mass"),
+              testing::AllOf(testing::HasSubstr(" Hz, damping "),
+                             testing::HasSubstr("a second mass behind a spring")));
+}
+
+TEST(HiddenSecondMass, IsNamedWithItsFrequencyAt34Hz) { expect_named({.seed = 3}); }
+
+TEST(HiddenSecondMass, IsNamedWithItsFrequencyAt8HzAnd500HzSampling) {
+  expect_named({.resonance_Hz = 8.0, .sample_rate_Hz = 500.0, .seed = 4});
+}
+
+TEST(HiddenSecondMass, IsNotFoundInARigidAxisNorInADelayedOneNorInASpring) {
+  const selection::Diagnosis healthy = diagnosed({.mass_ratio = 0.0, .seed = 5});
+  EXPECT_THAT(healthy.missing, testing::IsEmpty()) << said(healthy);
+  const selection::Diagnosis delayed =
+      diagnosed({.mass_ratio = 0.0, .delay_samples = 4, .seed = 6});
+  EXPECT_THAT(delayed.missing, testing::ElementsAre("transport_delay")) << said(delayed);
+  const selection::Diagnosis sprung =
+      diagnosed({.mass_ratio = 0.0, .stiffness_N_per_m = 1500.0, .seed = 7});
+  EXPECT_THAT(sprung.missing, testing::Contains("load_spring")) << said(sprung);
+  EXPECT_THAT(sprung.missing, testing::Not(testing::Contains("second_mass"))) << said(sprung);
+}
+
+}  // namespace
+}  // namespace workbench::diagnose

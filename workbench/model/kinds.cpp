@@ -1,0 +1,372 @@
+#include "workbench/model/kinds.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "config/schema/error.h"
+#include "config/schema/joined.h"
+#include "config/schema/spelling.h"
+#include "workbench/model/model_writer.h"
+
+namespace workbench::model {
+namespace {
+
+using config::schema::UsageError;
+
+constexpr double kMust = std::numeric_limits<double>::quiet_NaN();
+constexpr double kPi = std::numbers::pi;
+
+// Numbers that several kinds ask for.
+
+Question mass(double usual) {
+  return {"mass-kg",
+          "moving mass: piston, rod and load",
+          "cylinder's sheet plus the load's weight",
+          0.1,
+          1e6,
+          usual};
+}
+
+std::vector<Question> cylinder_questions() {
+  return {
+      {"bore-mm", "piston diameter", "cylinder's type code, first number", 4.0, 1000.0, kMust},
+      {"rod-mm", "rod diameter", "cylinder's type code, second number", 1.0, 990.0, kMust},
+      {"stroke-mm", "stroke", "cylinder's type code, third number", 1.0, 1e5, kMust},
+      mass(kMust),
+      {"supply-bar", "supply pressure at the valve", "gauge at the manifold", 1.0, 1000.0, kMust},
+      {"return-bar", "return pressure", "gauge in the return line; some bar", 0.0, 100.0, 0.0},
+      {"rated-flow-lpm", "rated flow QN of the valve", "valve's sheet, 'rated flow' or type code",
+       0.01, 1e4, kMust},
+      {"rated-drop-bar", "pressure drop at that flow, over both edges",
+       "beside the rated flow: 70 for servovalves, 10 (5 an edge) for proportional valves", 0.1,
+       350.0, 70.0},
+      {"rated-command-V", "command at that flow", "valve electronics: 10 V, or what full is", 0.01,
+       100.0, 10.0},
+      {"valve-Hz", "frequency at which the spool follows by -3 dB",
+       "valve's Bode plot at small amplitude (5 to 25 %)", 0.5, 1000.0, 50.0},
+      {"valve-damping", "damping ratio of the spool", "from the Bode plot; 0.7 to 1 is usual", 0.1,
+       5.0, 0.8},
+      {"hose-cm3", "oil between valve and piston, each side",
+       "length times section of hoses and manifold", 0.01, 1e6, 50.0},
+      {"damping-N-s-per-m", "viscous damping", "on no data sheet: a guess, it is fitted", 0.0, 1e7,
+       1000.0},
+      {"bulk-MPa", "bulk modulus of oil and hoses", "700 with hoses, 1200 with pipes", 10.0, 1e4,
+       800.0},
+      {"density-kg-per-m3", "density of the oil", "oil's sheet: 850 to 880", 500.0, 1500.0, 860.0}};
+}
+
+std::vector<Question> drive_questions(const char* constant, const char* unit) {
+  return {{std::string(constant) + "-" + unit, "force or torque constant of the motor",
+           "motor's sheet: kF in N/A or kT in N m/A (r.m.s. or peak: as the drive counts)", 1e-4,
+           1e5, kMust},
+          {"drive-A-per-V", "current per volt of command",
+           "drive's set-up: peak current over 10 V; 1 where the record has A", 1e-4, 1e4, kMust}};
+}
+
+const std::vector<Kind>& all_kinds() {
+  static const std::vector<Kind> all = [] {
+    std::vector<Kind> list;
+    list.push_back({"double-rod", "symmetric cylinder behind a servo or proportional valve",
+                    cylinder_questions()});
+    list.push_back({"single-rod", "differential cylinder behind a servo or proportional valve",
+                    cylinder_questions()});
+    Kind linear{"linear-motor", "mass pushed by a linear motor with a current loop", {}};
+    linear.questions = drive_questions("force-constant", "N-per-A");
+    linear.questions.insert(linear.questions.begin(), mass(kMust));
+    linear.questions.push_back({"damping-N-s-per-m", "viscous damping",
+                                "on no data sheet: a guess, it is fitted", 0.0, 1e7, kMust});
+    linear.questions.back().usual = 50.0;
+    list.push_back(linear);
+    Kind screw{
+        "screw-axis", "table on a screw, motor with a current loop; position of the table", {}};
+    screw.questions = drive_questions("torque-constant", "Nm-per-A");
+    screw.questions.insert(screw.questions.begin(),
+                           {mass(kMust),
+                            {"lead-mm", "lead of the screw, way per turn",
+                             "screw's type code (25x10: 10 mm)", 0.1, 1000.0, kMust},
+                            {"inertia-kgcm2", "inertia of motor, coupling and screw",
+                             "their sheets, added up", 1e-4, 1e6, kMust}});
+    screw.questions.push_back({"damping-N-s-per-m", "viscous damping at the table",
+                               "on no data sheet: a guess, it is fitted", 0.0, 1e7, 200.0});
+    list.push_back(screw);
+    Kind rotary{
+        "rotary-axis", "inertia turned by a motor with a current loop; angle of the motor", {}};
+    rotary.questions = drive_questions("torque-constant", "Nm-per-A");
+    rotary.questions.insert(
+        rotary.questions.begin(),
+        {{"motor-inertia-kgcm2", "inertia of the rotor", "motor's sheet, with brake if it has one",
+          1e-5, 1e7, kMust},
+         {"load-inertia-kgcm2", "inertia of the load, at the load", "drawing or CAD", 0.0, 1e9,
+          0.0},
+         {"gear", "turns of the motor per turn of the load", "gear's type code", 1e-3, 1e4, 1.0}});
+    rotary.questions.push_back({"damping-Nm-s-per-rad", "viscous damping at the motor",
+                                "on no data sheet: a guess, it is fitted", 0.0, 1e6, 0.005});
+    list.push_back(rotary);
+    const Question lag{"lag-ms",
+                       "time constant of the speed behind the command",
+                       "drive's step response, to 63 %; 0 is none",
+                       0.0,
+                       1e4,
+                       10.0};
+    const Question full{"full-command-V",
+                        "command of full speed",
+                        "drive's set-up; 100 where the record has %",
+                        0.001,
+                        1000.0,
+                        10.0};
+    list.push_back({"velocity-servo",
+                    "axis whose command sets the speed; nothing else is known",
+                    {{"full-speed-mmps", "speed at full command", "drive's set-up, or a try", 1e-3,
+                      1e5, kMust},
+                     full,
+                     lag}});
+    list.push_back(
+        {"rotary-servo",
+         "the same, turning",
+         {{"full-speed-rpm", "speed at full command", "drive's set-up, or a try", 1e-3, 1e6, kMust},
+          full,
+          lag}});
+    return list;
+  }();
+  return all;
+}
+
+/// A loop gain with which `simulate` works at once.
+double loop_rate_per_s(double natural_rad_per_s, double zeta) {
+  constexpr double kUsual_per_s = 8.0;
+  // half of what 2 zeta w allows
+  return std::min(kUsual_per_s, zeta * natural_rad_per_s);
+}
+
+void add_notes(ModelWriter& w, const char* plant, const char* limits) {
+  w.comment(std::string("Plant ") + plant + ": " + limits);
+}
+
+struct Cylinder {
+  double piston_m2, rod_side_m2, stroke_m, supply_Pa, return_Pa, flow_m3ps, edge_Pa, command_V;
+  double orifice;  ///< m3/s per V and sqrt(Pa)
+};
+
+Cylinder cylinder(const Answers& a) {
+  Cylinder c{};
+  const auto circle_m2 = [](double mm) { return 0.25 * kPi * mm * mm * 1e-6; };
+  c.piston_m2 = circle_m2(a.at("bore-mm"));
+  c.rod_side_m2 = c.piston_m2 - circle_m2(a.at("rod-mm"));
+  c.stroke_m = 1e-3 * a.at("stroke-mm");
+  c.supply_Pa = 1e5 * a.at("supply-bar");
+  c.return_Pa = 1e5 * a.at("return-bar");
+  c.flow_m3ps = a.at("rated-flow-lpm") / 6e4;
+  c.edge_Pa = 0.5e5 * a.at("rated-drop-bar");
+  c.command_V = a.at("rated-command-V");
+  c.orifice = c.flow_m3ps / (c.command_V * std::sqrt(c.edge_Pa));
+  return c;
+}
+
+/// Speed per volt without load; ahead: area that is filled, behind: area that is emptied.
+double speed_per_V(const Cylinder& c, double ahead_m2, double behind_m2) {
+  return c.orifice * std::sqrt((c.supply_Pa - c.return_Pa) * ahead_m2 /
+                               (std::pow(ahead_m2, 3) + std::pow(behind_m2, 3)));
+}
+
+double spool_rad_per_s(const Answers& a) {
+  const double zeta = a.at("valve-damping");
+  const double k = 2.0 * zeta * zeta - 1.0;
+  return 2.0 * kPi * a.at("valve-Hz") * std::sqrt(k + std::sqrt(k * k + 1.0));
+}
+
+void double_rod(const Answers& a, ModelWriter& w) {
+  const Cylinder c = cylinder(a);
+  constexpr double kCd = 0.6, kWidth_m = 0.02;
+  const double density = a.at("density-kg-per-m3");
+  const double travel_m_per_V = c.orifice / (kCd * kWidth_m * std::sqrt(2.0 / density));
+  add_notes(w, "hydraulic_actuator", "both sides of the piston have the same area");
+  w.begin("hydraulic_actuator");
+  w.value("mass_kg", a.at("mass-kg"), 0.1, "moving mass, within 10 %");
+  w.value("area_m2", c.rod_side_m2, kMust,
+          fmt::format("pi/4 ({:g}^2 - {:g}^2) mm2", a.at("bore-mm"), a.at("rod-mm")));
+  w.value("damping_N_s_per_m", a.at("damping-N-s-per-m"), 1.0, "a guess");
+  w.value("bulk_modulus_Pa", 1e6 * a.at("bulk-MPa"), 0.3, "hoses and air lower it");
+  w.value("dead_volume_m3", 1e-6 * a.at("hose-cm3"), 0.3, "");
+  w.value("stroke_m", c.stroke_m, kMust, "");
+  w.value("supply_pressure_Pa", c.supply_Pa, 0.03, "a gauge's accuracy");
+  w.value("return_pressure_Pa", c.return_Pa, kMust, "");
+  w.value("discharge_coefficient", kCd, kMust, "with area_gradient_m: a choice that leaves");
+  w.value("density_kg_per_m3", density, kMust, "");
+  w.value("area_gradient_m", kWidth_m, kMust, "the rated flow to valve_gain_m_per_V");
+  w.value("valve_gain_m_per_V", travel_m_per_V, 0.1,
+          fmt::format("{:g} l/min at {:g} bar over both edges and {:g} V, +-10 %",
+                      a.at("rated-flow-lpm"), a.at("rated-drop-bar"), c.command_V));
+  w.value("valve_natural_frequency_rad_per_s", spool_rad_per_s(a), 0.3,
+          fmt::format("-3 dB at {:g} Hz; it falls with the amplitude", a.at("valve-Hz")));
+  w.value("valve_damping_ratio", a.at("valve-damping"), 0.3, "");
+  w.initial("y_m", 0.5 * c.stroke_m, "mid-stroke");
+  const double half_m3 = 1e-6 * a.at("hose-cm3") + 0.5 * c.rod_side_m2 * c.stroke_m;
+  const double oil = 2e6 * a.at("bulk-MPa") * c.rod_side_m2 * c.rod_side_m2 / half_m3;
+  const double natural = std::sqrt(oil / a.at("mass-kg"));
+  const double zeta = std::max(0.05, 0.5 * a.at("damping-N-s-per-m") / (natural * a.at("mass-kg")));
+  w.loop(loop_rate_per_s(natural, zeta) / speed_per_V(c, c.rod_side_m2, c.rod_side_m2));
+}
+
+void single_rod_servo(const Answers& a, ModelWriter& w) {
+  const Cylinder c = cylinder(a);
+  const double out = speed_per_V(c, c.piston_m2, c.rod_side_m2);
+  const double in = speed_per_V(c, c.rod_side_m2, c.piston_m2);
+  const double gain = 0.5 * (out + in);
+  add_notes(w, "velocity_servo", "the quasi-static limit; pressures and mass follow at once");
+  w.begin("velocity_servo");
+  w.value("gain_mps_per_V", gain, 0.15, "mean of both directions without load, flow within 10 %");
+  w.value("time_constant_s", 2.0 * a.at("valve-damping") / spool_rad_per_s(a), 0.5,
+          "lag of the spool");
+  w.initial("y_m", 0.5 * c.stroke_m, "mid-stroke");
+  w.effect("flow_asymmetry", {{"asymmetry_ratio", (out - in) / (out + in)}},
+           "two areas: faster when extending");
+  w.effect("deadband", {{"half_width_V", 0.01 * c.command_V}},
+           "overlap of the spool: 1 % as a start, up to 20 % for valves with overlap");
+  w.loop(8.0 / gain);
+}
+
+void linear_motor(const Answers& a, ModelWriter& w) {
+  const double gain = a.at("force-constant-N-per-A") * a.at("drive-A-per-V");
+  const double mass_kg = a.at("mass-kg");
+  add_notes(w, "force_driven_axis", "the command sets the force; there is no end of the stroke");
+  w.begin("force_driven_axis");
+  w.value("mass_kg", mass_kg, 0.2, "within 20 %");
+  w.value("damping_N_s_per_m", a.at("damping-N-s-per-m"), 1.0, "a guess");
+  w.value("gain_N_per_V", gain, kMust,
+          fmt::format("{:g} N/A times {:g} A/V; constants are within 10 %, and the record cannot "
+                      "tell: mass and all forces scale with it",
+                      a.at("force-constant-N-per-A"), a.at("drive-A-per-V")));
+  w.start_of_references();
+  w.axis_loop(mass_kg, a.at("damping-N-s-per-m"), gain);
+}
+
+void screw_axis(const Answers& a, ModelWriter& w) {
+  const double per_m = 2.0 * kPi / (1e-3 * a.at("lead-mm"));
+  const double turning_kg = 1e-4 * a.at("inertia-kgcm2") * per_m * per_m;
+  const double mass_kg = a.at("mass-kg") + turning_kg;
+  const double gain = a.at("torque-constant-Nm-per-A") * a.at("drive-A-per-V") * per_m;
+  add_notes(w, "force_driven_axis", "the command sets the torque, seen as a force at the table");
+  w.begin("force_driven_axis");
+  w.value("mass_kg", mass_kg, 0.2,
+          fmt::format("table {:g} kg, and {:.4g} kg that the turning parts are at the table",
+                      a.at("mass-kg"), turning_kg));
+  w.value("damping_N_s_per_m", a.at("damping-N-s-per-m"), 1.0, "a guess");
+  w.value("gain_N_per_V", gain, kMust,
+          fmt::format("{:g} N m/A times {:g} A/V times 2 pi / {:g} mm; held: mass and all forces "
+                      "scale with it",
+                      a.at("torque-constant-Nm-per-A"), a.at("drive-A-per-V"), a.at("lead-mm")));
+  w.start_of_references();
+  w.axis_loop(mass_kg, a.at("damping-N-s-per-m"), gain);
+}
+
+void rotary_axis(const Answers& a, ModelWriter& w) {
+  const double gear = a.at("gear");
+  const double load = 1e-4 * a.at("load-inertia-kgcm2") / (gear * gear);
+  const double inertia = 1e-4 * a.at("motor-inertia-kgcm2") + load;
+  const double gain = a.at("torque-constant-Nm-per-A") * a.at("drive-A-per-V");
+  add_notes(w, "force_driven_axis", "turning: y in rad, forces in N m, masses in kg m2");
+  w.begin("force_driven_axis", true);
+  w.value("mass_kg", inertia, 0.2,
+          fmt::format("kg m2: rotor {:g} kgcm2, load {:g} kgcm2 over {:g}^2",
+                      a.at("motor-inertia-kgcm2"), a.at("load-inertia-kgcm2"), gear));
+  w.value("damping_N_s_per_m", a.at("damping-Nm-s-per-rad"), 1.0, "N m s/rad: a guess");
+  w.value(
+      "gain_N_per_V", gain, kMust,
+      fmt::format("N m/V: {:g} N m/A times {:g} A/V; held: inertia and all torques scale with it",
+                  a.at("torque-constant-Nm-per-A"), a.at("drive-A-per-V")));
+  w.start_of_references();
+  w.axis_loop(inertia, a.at("damping-Nm-s-per-rad"), gain);
+}
+
+void servo(double full_mps, bool rotary, const Answers& a, ModelWriter& w) {
+  const double gain = full_mps / a.at("full-command-V");
+  add_notes(w, "velocity_servo", "the command sets the speed; there is no end of the stroke");
+  w.begin("velocity_servo", rotary);
+  w.value("gain_mps_per_V", gain, 0.1,
+          fmt::format("full speed over {:g} V", a.at("full-command-V")));
+  const double lag_s = 1e-3 * a.at("lag-ms");
+  w.value("time_constant_s", lag_s, lag_s > 0.0 ? 0.5 : kMust,
+          lag_s > 0.0 ? "a guess within 50 %" : "");
+  w.start_of_references();
+  w.loop(std::min(8.0, lag_s > 0.0 ? 0.25 / lag_s : 8.0) / gain);
+}
+
+}  // namespace
+
+const std::vector<Kind>& kinds() { return all_kinds(); }
+
+const Kind& find_kind(const std::string& name) {
+  std::vector<std::string> names;
+  for (const Kind& kind : kinds()) {
+    if (kind.name == name) return kind;
+    names.push_back(kind.name);
+  }
+  const std::string near = config::schema::nearest(name, names);
+  throw UsageError("new: kind " + name + " is unknown" +
+                   (near.empty() ? "" : ", did you mean " + near + "?") +
+                   "; allowed: " + config::schema::joined(names));
+}
+
+void check_answers(const Kind& kind, const Answers& answers) {
+  std::vector<std::string> flags;
+  std::vector<std::string> missing;
+  for (const Question& q : kind.questions) {
+    flags.push_back("--" + q.flag);
+    const auto given = answers.find(q.flag);
+    if (given == answers.end()) {
+      if (std::isnan(q.usual)) missing.push_back("--" + q.flag + " (" + q.what + ")");
+      continue;
+    }
+    if (!(given->second >= q.min && given->second <= q.max)) {
+      throw UsageError(fmt::format("new {}: --{} is {:g}, out of range; allowed: {:g} to {:g}",
+                                   kind.name, q.flag, given->second, q.min, q.max));
+    }
+  }
+  for (const auto& [flag, value] : answers) {
+    if (std::find(flags.begin(), flags.end(), "--" + flag) != flags.end()) continue;
+    throw UsageError("new " + kind.name + ": --" + flag +
+                     " is not asked of this kind; allowed: " + config::schema::joined(flags));
+  }
+  if (!missing.empty()) {
+    throw UsageError("new " + kind.name + ": lacks " + config::schema::joined(missing));
+  }
+  const auto bore = answers.find("bore-mm");
+  const auto rod = answers.find("rod-mm");
+  if (bore != answers.end() && rod != answers.end() && rod->second >= bore->second) {
+    throw UsageError(
+        fmt::format("new {}: --rod-mm is {:g}, no rod for a bore of {:g}; allowed: "
+                    "less than the bore",
+                    kind.name, rod->second, bore->second));
+  }
+  const auto supply = answers.find("supply-bar");
+  const auto back = answers.find("return-bar");
+  if (supply != answers.end() && back != answers.end() && back->second >= supply->second) {
+    throw UsageError(
+        fmt::format("new {}: --return-bar is {:g}; allowed: less than the supply's {:g}", kind.name,
+                    back->second, supply->second));
+  }
+}
+
+std::string model_text(const Kind& kind, const Answers& answers, const std::string& name,
+                       const std::string& command) {
+  Answers all = answers;
+  for (const Question& q : kind.questions) all.emplace(q.flag, q.usual);
+  ModelWriter w(name);
+  w.comment("A " + kind.what + ". Made by:");
+  w.comment("  " + command);
+  if (kind.name == "double-rod") double_rod(all, w);
+  if (kind.name == "single-rod") single_rod_servo(all, w);
+  if (kind.name == "linear-motor") linear_motor(all, w);
+  if (kind.name == "screw-axis") screw_axis(all, w);
+  if (kind.name == "rotary-axis") rotary_axis(all, w);
+  if (kind.name == "velocity-servo") servo(1e-3 * all.at("full-speed-mmps"), false, all, w);
+  if (kind.name == "rotary-servo") {
+    servo(all.at("full-speed-rpm") * 2.0 * kPi / 60.0, true, all, w);
+  }
+  return w.text();
+}
+
+}  // namespace workbench::model

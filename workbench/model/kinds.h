@@ -1,0 +1,41 @@
+// Model files from data sheets: the kinds of rigs, what is asked of each, and the file that
+// follows.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace workbench::model {
+
+/// A number of a data sheet. Values are in the unit of the flag: "bore-mm", "rated-flow-lpm".
+struct Question {
+  std::string flag;   ///< without the dashes
+  std::string what;   ///< "piston diameter"
+  std::string where;  ///< where a data sheet has it
+  double min = 0.0;
+  double max = 0.0;
+  double usual = 0.0;  ///< NaN: there is none, it must be given
+};
+
+struct Kind {
+  std::string name;
+  std::string what;
+  std::vector<Question> questions;
+};
+
+[[nodiscard]] const std::vector<Kind>& kinds();
+/// Throws config::schema::UsageError with the near name.
+[[nodiscard]] const Kind& find_kind(const std::string& name);
+
+using Answers = std::map<std::string, double>;  ///< by flag
+
+/// Throws config::schema::UsageError for a flag that the kind does not have, a value out of range,
+/// and values that contradict each other; all that is missing in one line.
+void check_answers(const Kind& kind, const Answers& answers);
+/// The commented model file. `command` says how to make it again. Requires checked answers; what
+/// they leave open has its usual value.
+[[nodiscard]] std::string model_text(const Kind& kind, const Answers& answers,
+                                     const std::string& name, const std::string& command);
+
+}  // namespace workbench::model
