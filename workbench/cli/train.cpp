@@ -11,6 +11,7 @@
 #include "config/schema/error.h"
 #include "estimator/fdi/hotelling_t2.h"
 #include "workbench/cli/command.h"
+#include "workbench/cli/common_options.h"
 #include "workbench/train/learn.h"
 #include "workbench/train/rig_table.h"
 
