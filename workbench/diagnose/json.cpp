@@ -35,6 +35,8 @@ ordered_json parameters_of(const selection::Diagnosis& d) {
   for (const selection::ParameterValue& p : d.parameters) {
     all[p.name] = {{"value", number_or_null(p.value)},
                    {"std_error", number_or_null(p.std_error)},
+                   {"record_share", number_or_null(p.record_share)},
+                   {"prior_sds", number_or_null(p.prior_sds)},
                    {"at_bound", p.at_bound}};
   }
   return all;

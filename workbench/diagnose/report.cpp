@@ -228,9 +228,12 @@ Section parameters_section(const DiagnosisReport& outcome) {
     const std::string in_file =
         known ? config::units::quantity(p.name, *before, std::nan(""), p.value).value : "";
     if (added) table.marked_rows.push_back(table.rows.size());
-    table.rows.push_back({p.name, q.value, q.error, config::units::typeset(" " + q.unit).substr(1),
-                          in_file, known ? change_words(p.value, *before) : "",
-                          std::string(added ? "new" : "") + (p.at_bound ? " at its bound" : "")});
+    table.rows.push_back(
+        {p.name, q.value, q.error, config::units::typeset(" " + q.unit).substr(1), in_file,
+         known ? change_words(p.value, *before) : "",
+         std::string(added ? "new" : "") + (p.at_bound          ? " at its bound"
+                                            : p.held_by_prior() ? " held by its prior"
+                                                                : "")});
   }
   section.tables.push_back(std::move(table));
   return section;

@@ -126,7 +126,11 @@ void print_parameters(const DiagnosisReport& outcome, std::ostream& out) {
       value = padded(value, 24) + "  was " +
               config::units::words(config::units::quantity(p.name, *before, std::nan(""), p.value));
     }
-    out << value << (p.at_bound ? "  at its bound" : "") << '\n';
+    out << value
+        << (p.at_bound          ? "  at its bound"
+            : p.held_by_prior() ? "  held by its prior"
+                                : "")
+        << '\n';
   }
 }
 

@@ -337,6 +337,18 @@ std::vector<std::string> notes(const DiagnosisReport& outcome) {
   return out;
 }
 
+/// Parameters that the record has moved far from what the file says of them.
+void add_strained_words(const selection::Diagnosis& d, std::vector<std::string>& out) {
+  constexpr double kFar_sds = 2.5;
+  for (const selection::ParameterValue& p : d.parameters) {
+    if (std::abs(p.prior_sds) < kFar_sds) continue;
+    out.push_back(fmt::format(
+        "{} ends {:.1f} standard deviations of its prior {} the file's value: the file is wrong "
+        "about it, or something that acts as it does is missing.",
+        p.name, std::abs(p.prior_sds), p.prior_sds > 0.0 ? "above" : "below"));
+  }
+}
+
 std::string verdict_words(const selection::Diagnosis& d) {
   switch (d.verdict) {
     case selection::Verdict::nothing_missing:
@@ -386,6 +398,7 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
       out.push_back(change_words(change) + ": something changed on the rig then.");
     }
   }
+  add_strained_words(d, out);
   if (d.repetition) {
     out.push_back("The motion repeats every " +
                   config::units::words(

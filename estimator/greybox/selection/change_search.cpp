@@ -246,6 +246,21 @@ std::size_t best_of(const std::vector<Proposal>& proposals,
   return best;
 }
 
+/// Drifts of what a constant disturbance looks like: the innovations forget them as well.
+void add_drifts(const InnovationStage& stage, std::vector<ChangeScore>& scores) {
+  const Dataset& record = stage.context.problem.data.records.front();
+  for (const plant_sim::EffectInfo& effect : stage.context.problem.candidate_effects) {
+    if (effect.name != "null_bias" && effect.name != "load_force") continue;
+    ChangeScore score;
+    score.parameter = effect_parameters(effect, 0).front();
+    score.absent = true;
+    score.kind = ChangeKind::ramp;
+    score.at_s = record.t_s.front();
+    score.duration_s = record.t_s.back() - record.t_s.front();
+    scores.push_back(score);
+  }
+}
+
 /// A load that sets in: the innovations forget it at once, so that no score shows it.
 ChangeScore load_score(const InnovationStage& stage, const disturbance::ForceJump& jump) {
   ChangeScore score;
@@ -272,6 +287,7 @@ bool add_change(const SearchContext& plain, InnovationStage& stage, ChangeSearch
   std::vector<ChangeScore> scores = finalists(stage, kEvidence_nats);
   const ChangeScore load = load_score(stage, likeliest_jump(stage));
   if (load.gain_nats > kEvidence_nats && !load.parameter.name.empty()) scores.push_back(load);
+  add_drifts(stage, scores);
   for (const ChangeScore& score : scores) {
     const bool taken = std::any_of(
         search.changes.begin(), search.changes.end(),
@@ -342,7 +358,7 @@ bool add_change(const SearchContext& plain, InnovationStage& stage, ChangeSearch
 /// True where a curve over the motion promises more than any change in time: then what is missing
 /// is a law, and a change would follow it at best.
 bool motion_explains_more(const InnovationStage& stage) {
-  double best_change = likeliest_jump(stage).gain_nats;
+  double best_change = std::max(kEvidence_nats, likeliest_jump(stage).gain_nats);
   for (const ChangeScore& score : change_scores(stage)) {
     best_change = std::max(best_change, score.gain_nats);
   }

@@ -20,6 +20,8 @@ constexpr double kIncredible = 1.5;
 constexpr double kSuspicious_nats = 15.0;
 /// Share of the motion from which on the error is no disturbance's: the model does not follow.
 constexpr double kLost = 0.5;
+/// Share of the squared error that a place has to explain to be named.
+constexpr double kNamesAPlace = 0.05;
 constexpr double kAsClear = 0.9;  ///< ratio of the remainder's explained share to that of the whole
 
 void list_steps(Diagnosis& result) {
@@ -55,16 +57,24 @@ void list_free_runs(const SearchContext& context, Diagnosis& result) {
   });
 }
 
+/// Leaves out places that explain next to nothing: an error that enters nowhere has none.
+void name_places(std::vector<Localisation>& where) {
+  std::erase_if(where,
+                [](const Localisation& one) { return !(one.explained_ratio > kNamesAPlace); });
+}
+
 /// Localises the unexplained residual. The model as given shows more clearly what effects taken in
 /// place of the right one have absorbed. A bundle of effects is such a stand-in.
 void localise_remainder(const SearchContext& context, const ModelStage& first,
                         const ModelStage& final, Diagnosis& result) {
   result.whole = localise(context, first);
+  name_places(result.whole);
   result.where = result.whole;
   if (final.added.empty()) return;
   result.where_is_whole = true;
   if (final.added.size() >= kStandIn) return;
   std::vector<Localisation> left = localise(context, final);
+  name_places(left);
   const auto share = [](const std::vector<Localisation>& where) {
     return where.empty() ? 0.0 : where.front().explained_ratio;
   };
@@ -221,7 +231,9 @@ void conclude(const SearchContext& context, const SearchContext& search, const M
   }
   // effects taken for want of the right one hide it: the model as given shows it more clearly
   if (physics) {
-    result.where = result.whole = localise(search, first);
+    result.whole = localise(search, first);
+    name_places(result.whole);
+    result.where = result.whole;
     result.where_is_whole = true;
   }
   if (innovations.load_sets_in()) {

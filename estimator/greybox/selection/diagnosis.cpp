@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "estimator/greybox/representative_segments.h"
 #include "estimator/greybox/selection/command_lead.h"
 #include "estimator/greybox/selection/conclusion.h"
 #include "estimator/greybox/selection/cross_validation.h"
@@ -17,6 +18,8 @@ namespace {
 
 /// The fitted model's error over the noise from which on the record itself is looked at.
 constexpr double kFarFromFloor = 10.0;
+/// Periods of a disturbance's corner in the record, below which it may be a drift.
+constexpr double kPeriodsOfDrift = 4.0;
 
 /// The search by innovations, and that by simulations where the former leaves physics unexplained.
 void weigh_innovations(const SearchContext& context, const SearchContext& search, SearchStart start,
@@ -63,6 +66,12 @@ void weigh_innovations(const SearchContext& context, const SearchContext& search
     result.search = std::move(full);
     conclude(context, search, result);
   }
+}
+
+/// True where the disturbance is so slow that it may be a drift of the rig.
+bool drifts(const Diagnosis& result, const FitDataset& data) {
+  return result.disturbance && result.disturbance->value > 0.0 &&
+         result.disturbance->corner_Hz * length_s(data) < kPeriodsOfDrift;
 }
 
 }  // namespace
@@ -146,6 +155,10 @@ Diagnosis diagnose(const DiagnosisProblem& problem, const DiagnosisOptions& opti
   }
   if (result.verdict == Verdict::unexplained && !wrong_record && !context.cancelled()) {
     if (!date_changes(search, first, result)) learn_laws(search, first, result);
+  }
+  if (result.verdict == Verdict::nothing_missing && !context.cancelled() &&
+      drifts(result, search.problem.data)) {
+    (void)date_changes(search, first, result);
   }
   if (result.checks && result.verdict == Verdict::unexplained && !wrong_record) {
     result.plants = fit_other_plants(search);

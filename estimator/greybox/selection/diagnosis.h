@@ -36,6 +36,13 @@ struct ParameterValue {
   double value = 0.0;      ///< SI, the unit in the name
   double std_error = 0.0;  ///< NaN where the record does not determine it (at a bound)
   bool at_bound = false;
+  /// Share of what is known of it that comes from the record; the rest is the file's prior. 1
+  /// without a prior.
+  double record_share = 1.0;
+  double prior_sds = 0.0;  ///< distance from the prior's mean, in its standard deviations; signed
+
+  /// True when most of what is known is the prior: `std_error` is then no measurement's.
+  [[nodiscard]] bool held_by_prior() const { return record_share < 0.51; }
 };
 
 struct SelectionStep {

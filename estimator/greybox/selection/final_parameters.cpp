@@ -1,5 +1,6 @@
 #include "estimator/greybox/selection/final_parameters.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "estimator/greybox/selection/parameter_subset.h"
@@ -15,7 +16,13 @@ void report_parameters(const Eigen::VectorXd& errors, Diagnosis& result) {
     const FreeParameter& p = result.final.parameters[i];
     const bool at_bound = result.final.at_bound[i] != 0;
     const double error = at_bound ? std::nan("") : errors[k] * p.slope(result.final.theta[k]);
-    result.parameters.push_back({p.name, p.to_physical(result.final.theta[k]), error, at_bound});
+    ParameterValue value{p.name, p.to_physical(result.final.theta[k]), error, at_bound};
+    if (std::isfinite(p.prior_sd) && p.prior_sd > 0.0) {
+      value.prior_sds = (result.final.theta[k] - p.prior_mean) / p.prior_sd;
+      const double ratio = errors[k] / p.prior_sd;
+      if (std::isfinite(ratio)) value.record_share = std::clamp(1.0 - ratio * ratio, 0.0, 1.0);
+    }
+    result.parameters.push_back(std::move(value));
   }
 }
 

@@ -110,8 +110,12 @@ class Dictionary {
         "stiffness_N_per_m * min(y_m - rest_m, 0)",
         {size("stiffness_N_per_m", force_N / y, Sign::positive), rest()}, {"y"});
     add("pendulum", "weight on an arm, the position an arc of it", "force",
-        fmt::format("force_N * sin((y_m - rest_m) / {})", rounded(2.0 * y)),
-        {size("force_N", force_N, Sign::both), rest()}, {"y"});
+        "force_N * sin((y_m - rest_m) / arm_m)",
+        {size("force_N", force_N, Sign::both),
+         rest(),
+         {"arm_m", "length of the arm", rounded(0.3 * y), rounded(30.0 * y), rounded(2.0 * y),
+          rounded(4.0 * y)}},
+        {"y"});
   }
 
   void add_openings() {

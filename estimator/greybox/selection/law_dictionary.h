@@ -1,5 +1,5 @@
 // Laws that the library has no name for, as formulas at a site: candidates where no effect of the
-// library explains a record. Each has at most two parameters, of which the first is its size.
+// library explains a record. Each has at most three parameters, of which the first is its size.
 #pragma once
 
 #include <string>
