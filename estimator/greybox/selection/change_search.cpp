@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "estimator/greybox/selection/change_scores.h"
+#include "estimator/greybox/selection/change_proposals.h"
 #include "estimator/greybox/selection/innovation_curves.h"
 #include "estimator/parallel.h"
 
@@ -12,125 +12,12 @@ namespace estimator::greybox::selection {
 namespace {
 
 constexpr std::size_t kMostChanges = 2;
-/// Changes that are fitted, and the share of the best score from which on they are.
-constexpr std::size_t kFinalists = 6;
-constexpr double kWorthFitting = 0.5;
-/// Range of a changed plant parameter about the present value, in logarithms.
-constexpr double kRange = 2.3;
 /// Gain of a curve over the motion, in those of the best change, from which on no change is sought.
 constexpr double kMotionExplains = 2.0;
 /// Range and step, in samples, in which the time of a change is looked for about its fit.
 constexpr double kScanned_s = 1.0;
 constexpr double kScanStep = 4.0;
 constexpr int kScans = 3;
-constexpr const char* kLoad = "load_force.force_N";
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
-std::string name_of(const ChangeScore& score) { return "change." + score.parameter.name; }
-
-/// A length of time in a fit, within its bounds.
-FreeParameter time_parameter(const std::string& name, double unit_s, double least_s,
-                             double most_s) {
-  return {name, ParameterScale::linear, unit_s, least_s / unit_s, most_s / unit_s, 0.0, kInfinite};
-}
-
-FreeParameter duration_parameter(const std::string& name, double start_s, double least_s,
-                                 double most_s) {
-  return {name,
-          ParameterScale::logarithmic,
-          start_s,
-          std::log(least_s / start_s),
-          std::log(most_s / start_s),
-          0.0,
-          kInfinite};
-}
-
-/// A change with its numbers, ready to be fitted.
-struct Proposal {
-  SearchContext context;
-  ModelStage start;
-  ChangeScore score;
-};
-
-class Proposals {
- public:
-  Proposals(const SearchContext& plain, const InnovationStage& stage)
-      : plain_(plain), stage_(stage), record_(plain.problem.data.records.front()) {}
-
-  [[nodiscard]] Proposal proposal(const ChangeScore& score) const {
-    Proposal made{plain_, stage_.model, score};
-    plant_sim::Change change{.parameter = score.parameter.name, .at_s = score.at_s};
-    const FitSummary& fitted = stage_.model.fitted;
-    ParameterSubset all = subset(fitted, [](const auto&) { return true; });
-    double theta = 0.0;
-    if (score.absent) {
-      append(all, {{score.parameter}, Eigen::VectorXd::Zero(1)});
-    } else {
-      for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
-        if (fitted.parameters[i].name != score.parameter.name) continue;
-        theta = fitted.theta[static_cast<Eigen::Index>(i)];
-      }
-    }
-    FreeParameter value = score.parameter;
-    value.name = name_of(score) + ".value";
-    value.prior_sd = kInfinite;
-    if (value.scale == ParameterScale::logarithmic) {
-      value.lower = theta - kRange;
-      value.upper = theta + kRange;
-    }
-    add(all, value, theta + score.by);
-    const double begin_s = record_.t_s.front();
-    const double end_s = record_.t_s.back();
-    const double unit_s = 1000.0 * record_.sample_time_s;  // differences of one sample
-    const bool whole = score.duration_s >= end_s - begin_s;
-    if (score.kind == ChangeKind::exponential) {
-      change.time_constant_s = score.duration_s;
-      add(all,
-          duration_parameter(name_of(score) + ".time_constant_s", score.duration_s,
-                             10.0 * record_.sample_time_s, 10.0 * (end_s - begin_s)),
-          0.0);
-    } else if (!whole) {
-      add(all, time_parameter(name_of(score) + ".at_s", unit_s, begin_s, end_s),
-          score.at_s / unit_s);
-    }
-    if (score.kind == ChangeKind::ramp) {
-      change.ramp_s = score.duration_s;
-      if (!whole) {
-        add(all,
-            duration_parameter(name_of(score) + ".ramp_s", score.duration_s,
-                               4.0 * record_.sample_time_s, end_s - begin_s),
-            0.0);
-      }
-    }
-    change.value = value.to_physical(theta);
-    made.context.problem.model.changes.push_back(change);
-    made.start.added.push_back(name_of(score));
-    made.start.fitted.parameters = all.parameters;
-    made.start.fitted.theta = all.start;
-    return made;
-  }
-
- private:
-  static void add(ParameterSubset& all, const FreeParameter& parameter, double theta) {
-    Eigen::VectorXd start(1);
-    start[0] = std::clamp(theta, parameter.lower, parameter.upper);
-    append(all, {{parameter}, start});
-  }
-
-  const SearchContext& plain_;
-  const InnovationStage& stage_;
-  const Dataset& record_;
-};
-
-/// The scores worth a fit, and for the likeliest steps ramps about them.
-std::vector<ChangeScore> finalists(const InnovationStage& stage, double evidence_nats) {
-  std::vector<ChangeScore> scores = change_scores(stage);
-  if (scores.empty()) return {};
-  const double least = std::max(evidence_nats, kWorthFitting * scores.front().gain_nats);
-  std::erase_if(scores, [&](const ChangeScore& score) { return score.gain_nats < least; });
-  scores.resize(std::min(scores.size(), kFinalists));
-  return scores;
-}
 
 /// Sets the time of a change to the likeliest within kScanned_s, the other parameters held: the
 /// likelihood has a minimum about every pause of the motion. False where it is that already.
@@ -165,7 +52,7 @@ bool scan_time(const SearchContext& context, const std::string& name, FitSummary
 }
 
 /// A proposal fitted with the stage's gains, then with a noise model of its own.
-InnovationStage fitted(const Proposal& proposal, const InnovationStage& stage,
+InnovationStage fitted(const ChangeProposal& proposal, const InnovationStage& stage,
                        SimulationWidth width) {
   SearchContext with_gains = stage.context;
   with_gains.problem.model = proposal.context.problem.model;
@@ -179,62 +66,9 @@ InnovationStage fitted(const Proposal& proposal, const InnovationStage& stage,
   return settled(proposal.context, std::move(start), stage.noise, 1, width);
 }
 
-/// A ramp about a step: whether it took time is decided by the likelihood.
-ChangeScore ramp_about(const ChangeScore& step, const FitSummary& fitted, const Dataset& record) {
-  ChangeScore ramp = step;
-  const double length_s = record.t_s.back() - record.t_s.front();
-  ramp.kind = ChangeKind::ramp;
-  ramp.duration_s = 0.2 * length_s;
-  const double at_s = fitted.value(name_of(step) + ".at_s");
-  ramp.at_s = std::max(record.t_s.front(),
-                       (std::isfinite(at_s) ? at_s : step.at_s) - 0.5 * ramp.duration_s);
-  return ramp;
-}
-
-ChangeScore step_within(const ChangeScore& ramp, const FitSummary& fitted) {
-  ChangeScore step = ramp;
-  step.kind = ChangeKind::step;
-  step.duration_s = 0.0;
-  step.at_s = fitted.value(name_of(ramp) + ".at_s") + 0.5 * fitted.value(name_of(ramp) + ".ramp_s");
-  return step;
-}
-
-double error_of(const FitSummary& fitted, const Eigen::VectorXd& errors, const std::string& name) {
-  for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    if (fitted.parameters[i].name == name)
-      return errors[k] * fitted.parameters[i].slope(fitted.theta[k]);
-  }
-  return std::nan("");
-}
-
-/// A change in a stage that has it, its rivals apart.
-ParameterChange described(const ChangeScore& score, const FitSummary& fitted,
-                          const Eigen::VectorXd& errors) {
-  const std::string own = name_of(score);
-  ParameterChange change;
-  change.parameter = score.parameter.name;
-  change.kind = score.kind;
-  const auto value_or = [&](const std::string& name, double otherwise) {
-    const double value = fitted.value(name);
-    return std::isfinite(value) ? value : otherwise;
-  };
-  change.at_s = value_or(own + ".at_s", score.at_s);
-  change.at_error_s = error_of(fitted, errors, own + ".at_s");
-  change.duration_s = change.kind == ChangeKind::step ? 0.0
-                      : change.kind == ChangeKind::ramp
-                          ? value_or(own + ".ramp_s", score.duration_s)
-                          : value_or(own + ".time_constant_s", score.duration_s);
-  change.from = value_or(change.parameter, 0.0);
-  change.from_error = error_of(fitted, errors, change.parameter);
-  change.to = fitted.value(own + ".value");
-  change.to_error = error_of(fitted, errors, own + ".value");
-  return change;
-}
-
 /// The likeliest; the plant's own parameter where an absent effect's is hardly likelier: they are
 /// one where the equations are.
-std::size_t best_of(const std::vector<Proposal>& proposals,
+std::size_t best_of(const std::vector<ChangeProposal>& proposals,
                     const std::vector<InnovationStage>& stages) {
   const auto cost = [&](std::size_t i) {
     return penalised(stages[i]) + (proposals[i].score.absent ? 2.0 * kEvidence_nats : 0.0);
@@ -246,60 +80,54 @@ std::size_t best_of(const std::vector<Proposal>& proposals,
   return best;
 }
 
-/// Drifts of what a constant disturbance looks like: the innovations forget them as well.
-void add_drifts(const InnovationStage& stage, std::vector<ChangeScore>& scores) {
-  const Dataset& record = stage.context.problem.data.records.front();
-  for (const plant_sim::EffectInfo& effect : stage.context.problem.candidate_effects) {
-    if (effect.name != "null_bias" && effect.name != "load_force") continue;
-    ChangeScore score;
-    score.parameter = effect_parameters(effect, 0).front();
-    score.absent = true;
-    score.kind = ChangeKind::ramp;
-    score.at_s = record.t_s.front();
-    score.duration_s = record.t_s.back() - record.t_s.front();
-    scores.push_back(score);
+/// Other parameters whose change explains the record about as well as the chosen one's.
+std::vector<std::string> rivals_of(const std::vector<ChangeProposal>& proposals,
+                                   const std::vector<InnovationStage>& stages, std::size_t chosen) {
+  const std::string& own = proposals[chosen].score.parameter.name;
+  const double most = penalised(stages[chosen]) + 2.0 * kEvidence_nats;
+  std::vector<std::string> rivals;
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    const std::string& other = proposals[i].score.parameter.name;
+    const bool known = std::find(rivals.begin(), rivals.end(), other) != rivals.end();
+    if (other != own && !known && penalised(stages[i]) <= most) rivals.push_back(other);
   }
+  return rivals;
 }
 
-/// A load that sets in: the innovations forget it at once, so that no score shows it.
-ChangeScore load_score(const InnovationStage& stage, const disturbance::ForceJump& jump) {
-  ChangeScore score;
-  score.at_s = jump.time_s;
-  score.gain_nats = jump.gain_nats;
-  for (const FreeParameter& own : stage.model.fitted.parameters) {
-    if (own.name == kLoad) score.parameter = own;
+/// The stage settled with a change, its time scanned: with a noise model of its own the likelihood
+/// shows it more clearly.
+InnovationStage polished(const ChangeProposal& taken, const InnovationStage& found,
+                         SimulationWidth width) {
+  InnovationStage stage = settled(taken.context, found.model, found.noise, kMostTurns, width);
+  if (!(stage.minus_two_log < found.minus_two_log)) stage = found;
+  for (int turn = 0; turn < kScans; ++turn) {
+    ModelStage moved = stage.model;
+    if (!scan_time(stage.context, name_of(taken.score) + ".at_s", moved.fitted)) break;
+    InnovationStage other =
+        settled(taken.context, std::move(moved), stage.noise, kMostTurns, width);
+    if (!(other.minus_two_log < stage.minus_two_log)) break;
+    stage = std::move(other);
   }
-  for (const plant_sim::EffectInfo& effect : stage.context.problem.candidate_effects) {
-    if (effect.name + ".force_N" != kLoad) continue;
-    score.parameter = effect_parameters(effect, 0).front();
-    score.absent = true;
-  }
-  if (!score.parameter.name.empty()) score.by = jump.size / score.parameter.unit;
-  return score;
+  return stage;
 }
 
 /// Adds the likeliest change; false when none gains enough.
 bool add_change(const SearchContext& plain, InnovationStage& stage, ChangeSearch& search,
                 std::vector<ChangeScore>& scores_taken) {
   const Dataset& record = plain.problem.data.records.front();
-  const Proposals propose(search.context, stage);
-  std::vector<Proposal> proposals;
-  std::vector<ChangeScore> scores = finalists(stage, kEvidence_nats);
-  const ChangeScore load = load_score(stage, likeliest_jump(stage));
-  if (load.gain_nats > kEvidence_nats && !load.parameter.name.empty()) scores.push_back(load);
-  add_drifts(stage, scores);
-  for (const ChangeScore& score : scores) {
+  std::vector<ChangeProposal> proposals;
+  for (const ChangeScore& score : change_candidates(stage)) {
     const bool taken = std::any_of(
         search.changes.begin(), search.changes.end(),
         [&](const ParameterChange& one) { return one.parameter == score.parameter.name; });
-    if (!taken) proposals.push_back(propose.proposal(score));
+    if (!taken) proposals.push_back(proposal(search.context, stage, score));
   }
   std::vector<InnovationStage> stages(proposals.size());
   in_parallel(proposals.size(), plain.options.threads,
               [&](std::size_t i) { stages[i] = fitted(proposals[i], stage, SimulationWidth{}); });
   if (stages.empty() || plain.cancelled()) return false;
   const auto also = [&](const ChangeScore& score) {
-    proposals.push_back(propose.proposal(score));
+    proposals.push_back(proposal(search.context, stage, score));
     stages.push_back(fitted(proposals.back(), stage, wide(plain.options.threads)));
     return proposals.size() - 1;
   };
@@ -311,36 +139,18 @@ bool add_change(const SearchContext& plain, InnovationStage& stage, ChangeSearch
     also(step_within(proposals[ramp].score, stages[ramp].model.fitted));
   }
   const std::size_t chosen = best_of(proposals, stages);
-  const Proposal& taken = proposals[chosen];
+  const ChangeProposal& taken = proposals[chosen];
   if (!(penalised(stages[chosen]) < penalised(stage) - 2.0 * kEvidence_nats)) return false;
   ParameterChange change;
-  for (std::size_t i = 0; i < stages.size(); ++i) {
-    const std::string& other = proposals[i].score.parameter.name;
-    if (other == taken.score.parameter.name ||
-        penalised(stages[i]) > penalised(stages[chosen]) + 2.0 * kEvidence_nats ||
-        std::find(change.rivals.begin(), change.rivals.end(), other) != change.rivals.end()) {
-      continue;
-    }
-    change.rivals.push_back(other);
-  }
+  change.parameter = taken.score.parameter.name;
+  change.rivals = rivals_of(proposals, stages, chosen);
   InnovationCandidate candidate;
   candidate.effect = name_of(taken.score);
   candidate.settled = true;
   candidate.penalty_nats = penalty_nats(stages[chosen].model.fitted, stage.model.fitted);
   candidate.gain_nats = 0.5 * (penalised(stage) - penalised(stages[chosen]));
   const InnovationStage before = std::move(stage);
-  stage = settled(taken.context, stages[chosen].model, stages[chosen].noise, kMostTurns,
-                  wide(plain.options.threads));
-  if (!(stage.minus_two_log < stages[chosen].minus_two_log)) stage = std::move(stages[chosen]);
-  // with a noise model of its own the likelihood shows the time more clearly
-  for (int turn = 0; turn < kScans; ++turn) {
-    ModelStage moved = stage.model;
-    if (!scan_time(stage.context, name_of(taken.score) + ".at_s", moved.fitted)) break;
-    InnovationStage other = settled(taken.context, std::move(moved), stage.noise, kMostTurns,
-                                    wide(plain.options.threads));
-    if (!(other.minus_two_log < stage.minus_two_log)) break;
-    stage = std::move(other);
-  }
+  stage = polished(taken, stages[chosen], wide(plain.options.threads));
   candidate.fitted = stage.model.fitted;
   candidate.fitted.jacobian.resize(0, 0);
   InnovationRound round{before.model, {std::move(candidate)}};
@@ -348,7 +158,6 @@ bool add_change(const SearchContext& plain, InnovationStage& stage, ChangeSearch
   search.innovations.gains_nats[round.candidates.front().effect] =
       round.candidates.front().gain_nats;
   search.innovations.rounds.push_back(std::move(round));
-  change.parameter = taken.score.parameter.name;
   search.changes.push_back(std::move(change));
   scores_taken.push_back(taken.score);
   search.context = taken.context;

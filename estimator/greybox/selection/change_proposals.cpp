@@ -1,0 +1,201 @@
+#include "estimator/greybox/selection/change_proposals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "estimator/greybox/selection/innovation_search.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+/// Most changes that are fitted by their scores, and the share of the best score that they need.
+constexpr std::size_t kFinalists = 6;
+constexpr double kWorthFitting = 0.5;
+/// Range of a changed plant parameter about the present value, in logarithms.
+constexpr double kRange = 2.3;
+constexpr const char* kLoad = "load_force.force_N";
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+/// A length of time in a fit, within its bounds.
+FreeParameter time_parameter(const std::string& name, double unit_s, double least_s,
+                             double most_s) {
+  return {name, ParameterScale::linear, unit_s, least_s / unit_s, most_s / unit_s, 0.0, kInfinite};
+}
+
+FreeParameter duration_parameter(const std::string& name, double start_s, double least_s,
+                                 double most_s) {
+  return {name,
+          ParameterScale::logarithmic,
+          start_s,
+          std::log(least_s / start_s),
+          std::log(most_s / start_s),
+          0.0,
+          kInfinite};
+}
+
+void add(ParameterSubset& all, const FreeParameter& parameter, double theta) {
+  Eigen::VectorXd start(1);
+  start[0] = std::clamp(theta, parameter.lower, parameter.upper);
+  append(all, {{parameter}, start});
+}
+
+std::vector<ChangeScore> finalists(const InnovationStage& stage) {
+  std::vector<ChangeScore> scores = change_scores(stage);
+  if (scores.empty()) return {};
+  const double least = std::max(kEvidence_nats, kWorthFitting * scores.front().gain_nats);
+  std::erase_if(scores, [&](const ChangeScore& score) { return score.gain_nats < least; });
+  scores.resize(std::min(scores.size(), kFinalists));
+  return scores;
+}
+
+/// Drifts of what a constant disturbance looks like: the innovations forget them as well.
+void add_drifts(const InnovationStage& stage, std::vector<ChangeScore>& scores) {
+  const Dataset& record = stage.context.problem.data.records.front();
+  for (const plant_sim::EffectInfo& effect : stage.context.problem.candidate_effects) {
+    if (effect.name != "null_bias" && effect.name != "load_force") continue;
+    ChangeScore score;
+    score.parameter = effect_parameters(effect, 0).front();
+    score.absent = true;
+    score.kind = ChangeKind::ramp;
+    score.at_s = record.t_s.front();
+    score.duration_s = record.t_s.back() - record.t_s.front();
+    scores.push_back(score);
+  }
+}
+
+/// A load that sets in: the innovations forget it at once, so that no score shows it.
+ChangeScore load_score(const InnovationStage& stage, const disturbance::ForceJump& jump) {
+  ChangeScore score;
+  score.at_s = jump.time_s;
+  score.gain_nats = jump.gain_nats;
+  for (const FreeParameter& own : stage.model.fitted.parameters) {
+    if (own.name == kLoad) score.parameter = own;
+  }
+  for (const plant_sim::EffectInfo& effect : stage.context.problem.candidate_effects) {
+    if (effect.name + ".force_N" != kLoad) continue;
+    score.parameter = effect_parameters(effect, 0).front();
+    score.absent = true;
+  }
+  if (!score.parameter.name.empty()) score.by = jump.size / score.parameter.unit;
+  return score;
+}
+
+double error_of(const FitSummary& fitted, const Eigen::VectorXd& errors, const std::string& name) {
+  for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    if (fitted.parameters[i].name == name)
+      return errors[k] * fitted.parameters[i].slope(fitted.theta[k]);
+  }
+  return std::nan("");
+}
+
+}  // namespace
+
+std::string name_of(const ChangeScore& score) { return "change." + score.parameter.name; }
+
+ChangeProposal proposal(const SearchContext& plain, const InnovationStage& stage,
+                        const ChangeScore& score) {
+  const Dataset& record = plain.problem.data.records.front();
+  ChangeProposal made{plain, stage.model, score};
+  plant_sim::Change change{.parameter = score.parameter.name, .at_s = score.at_s};
+  const FitSummary& fitted = stage.model.fitted;
+  ParameterSubset all = subset(fitted, [](const auto&) { return true; });
+  double theta = 0.0;
+  if (score.absent) {
+    append(all, {{score.parameter}, Eigen::VectorXd::Zero(1)});
+  } else {
+    for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+      if (fitted.parameters[i].name != score.parameter.name) continue;
+      theta = fitted.theta[static_cast<Eigen::Index>(i)];
+    }
+  }
+  FreeParameter value = score.parameter;
+  value.name = name_of(score) + ".value";
+  value.prior_sd = kInfinite;
+  if (value.scale == ParameterScale::logarithmic) {
+    value.lower = theta - kRange;
+    value.upper = theta + kRange;
+  }
+  add(all, value, theta + score.by);
+  const double begin_s = record.t_s.front();
+  const double end_s = record.t_s.back();
+  const double unit_s = 1000.0 * record.sample_time_s;  // differences of one sample
+  const bool whole = score.duration_s >= end_s - begin_s;
+  if (score.kind == ChangeKind::exponential) {
+    change.time_constant_s = score.duration_s;
+    add(all,
+        duration_parameter(name_of(score) + ".time_constant_s", score.duration_s,
+                           10.0 * record.sample_time_s, 10.0 * (end_s - begin_s)),
+        0.0);
+  } else if (!whole) {
+    add(all, time_parameter(name_of(score) + ".at_s", unit_s, begin_s, end_s), score.at_s / unit_s);
+  }
+  if (score.kind == ChangeKind::ramp) {
+    change.ramp_s = score.duration_s;
+    if (!whole) {
+      add(all,
+          duration_parameter(name_of(score) + ".ramp_s", score.duration_s,
+                             4.0 * record.sample_time_s, end_s - begin_s),
+          0.0);
+    }
+  }
+  change.value = value.to_physical(theta);
+  made.context.problem.model.changes.push_back(change);
+  made.start.added.push_back(name_of(score));
+  made.start.fitted.parameters = all.parameters;
+  made.start.fitted.theta = all.start;
+  return made;
+}
+
+std::vector<ChangeScore> change_candidates(const InnovationStage& stage) {
+  std::vector<ChangeScore> scores = finalists(stage);
+  const ChangeScore load = load_score(stage, likeliest_jump(stage));
+  if (load.gain_nats > kEvidence_nats && !load.parameter.name.empty()) scores.push_back(load);
+  add_drifts(stage, scores);
+  return scores;
+}
+
+ChangeScore ramp_about(const ChangeScore& step, const FitSummary& fitted, const Dataset& record) {
+  ChangeScore ramp = step;
+  const double length_s = record.t_s.back() - record.t_s.front();
+  ramp.kind = ChangeKind::ramp;
+  ramp.duration_s = 0.2 * length_s;
+  const double at_s = fitted.value(name_of(step) + ".at_s");
+  ramp.at_s = std::max(record.t_s.front(),
+                       (std::isfinite(at_s) ? at_s : step.at_s) - 0.5 * ramp.duration_s);
+  return ramp;
+}
+
+ChangeScore step_within(const ChangeScore& ramp, const FitSummary& fitted) {
+  ChangeScore step = ramp;
+  step.kind = ChangeKind::step;
+  step.duration_s = 0.0;
+  step.at_s = fitted.value(name_of(ramp) + ".at_s") + 0.5 * fitted.value(name_of(ramp) + ".ramp_s");
+  return step;
+}
+
+ParameterChange described(const ChangeScore& score, const FitSummary& fitted,
+                          const Eigen::VectorXd& errors) {
+  const std::string own = name_of(score);
+  ParameterChange change;
+  change.parameter = score.parameter.name;
+  change.kind = score.kind;
+  const auto value_or = [&](const std::string& name, double otherwise) {
+    const double value = fitted.value(name);
+    return std::isfinite(value) ? value : otherwise;
+  };
+  change.at_s = value_or(own + ".at_s", score.at_s);
+  change.at_error_s = error_of(fitted, errors, own + ".at_s");
+  change.duration_s = change.kind == ChangeKind::step ? 0.0
+                      : change.kind == ChangeKind::ramp
+                          ? value_or(own + ".ramp_s", score.duration_s)
+                          : value_or(own + ".time_constant_s", score.duration_s);
+  change.from = value_or(change.parameter, 0.0);
+  change.from_error = error_of(fitted, errors, change.parameter);
+  change.to = fitted.value(own + ".value");
+  change.to_error = error_of(fitted, errors, own + ".value");
+  return change;
+}
+
+}  // namespace estimator::greybox::selection
