@@ -13,7 +13,8 @@
 //
 // With m1 held, m2 swings at w sqrt(1 - r), where the drive's response has its notch; its damping
 // there is damping sqrt(1 - r). r = 0, resonance = 0: M is one rigid mass. b = 0: the sensor is on
-// the driven part; b = 1: on the load.
+// the driven part; b = 1: on the load. The swing of the reading is (r - b)/(1 - r) F/(M w^2): where
+// the drive sets the force, r and b are not seen apart, and with b = 1 nothing depends on r.
 // Source: two-inertia system, Ellis, Control System Design Guide (2012), chapter 16.
 #pragma once
 

@@ -46,7 +46,7 @@ def main():
                 raise SystemExit(f"{words[1]}: a derived quantity is missing: {sheet['derived']}")
             run(tool, ["simulate", model, "-o", "try.csv", "--duration", "10",
                        "--reference", "multisine"], folder)
-            y = [float(line.split(",")[-1]) for line in
+            y = [float(line.split(",")[2]) for line in
                  (pathlib.Path(folder) / "try.csv").read_text().splitlines()[1:]]
             mean = sum(y) / len(y)
             motion = (sum((one - mean) ** 2 for one in y) / len(y)) ** 0.5

@@ -247,19 +247,20 @@ std::string second_mass_words(const selection::Diagnosis& diagnosis) {
   const auto* resonance = value("resonance_Hz");
   const auto* damping = value("damping_ratio");
   const auto* share = value("mass_ratio");
-  if (resonance == nullptr || damping == nullptr || share == nullptr) return "";
+  const auto* sensor = value("sensor_ratio");
+  if (resonance == nullptr || damping == nullptr) return "";
   const auto shown = [](const selection::ParameterValue& p) {
     return words(quantity(p.name, p.value, p.std_error)) + (p.at_bound ? " (at its bound)" : "");
   };
   std::string text =
-      ": " + shown(*resonance) + ", damping " + shown(*damping) +
-      ": a second mass behind a spring (" + shown(*share) + " of the moving mass; " +
-      words(quantity(resonance->name, resonance->value * std::sqrt(1.0 - share->value),
-                     std::nan(""))) +
-      " with the driven part held";
-  const auto* sensor = value("sensor_ratio");
-  if (sensor != nullptr && sensor->value > 0.0) text += "; sensor ratio " + shown(*sensor);
-  return text + ")";
+      ": " + shown(*resonance) + ", damping " + shown(*damping) + ": a second mass behind a spring";
+  if (sensor != nullptr && sensor->value > 0.0) text += " that the sensor is on";
+  if (share != nullptr && share->value > 0.0) {
+    const double held_Hz = resonance->value * std::sqrt(1.0 - share->value);
+    text += " (" + shown(*share) + " of the moving mass; " +
+            words(quantity(resonance->name, held_Hz, std::nan(""))) + " with the driven part held)";
+  }
+  return text;
 }
 
 }  // namespace

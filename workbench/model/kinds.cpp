@@ -355,7 +355,7 @@ std::string model_text(const Kind& kind, const Answers& answers, const std::stri
   Answers all = answers;
   for (const Question& q : kind.questions) all.emplace(q.flag, q.usual);
   ModelWriter w(name);
-  w.comment("A " + kind.what + ". Made by:");
+  w.comment(kind.name + ": " + kind.what + ". Made by:");
   w.comment("  " + command);
   if (kind.name == "double-rod") double_rod(all, w);
   if (kind.name == "single-rod") single_rod_servo(all, w);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <tuple>
 
 #include "estimator/greybox/selection/projection.h"
 #include "estimator/greybox/selection/screening_segment.h"
@@ -20,6 +22,8 @@ using Eigen::VectorXd;
 constexpr double kFurthest = 3.0;
 /// Number of wavelengths of the coarse scan that are refined.
 constexpr std::size_t kFollowed = 4;
+/// Number of frequencies of a resonance from which fits start.
+constexpr std::size_t kFollowedPeaks = 3;
 
 struct ScoredStart {
   double cost = std::numeric_limits<double>::infinity();
@@ -132,47 +136,73 @@ std::vector<Wave> scanned(const SearchContext& context, const ModelStage& stage,
                   {stage.fitted.theta, stage.fitted.residual_m}, parameters, own, finer);
 }
 
-/// The best resonance of those that the records resolve, from the stage's parameters.
-ScoredStart resonance(const SearchContext& context, const ModelStage& stage,
-                      const Projection& projection, const std::vector<FreeParameter>& parameters,
-                      const std::vector<FreeParameter>& own) {
-  constexpr std::size_t kTogether = ObserverSimulation::kLanes / 2;
+/// A resonance and how well it explains the stage's residual.
+struct ScoredResonance {
+  double cost = 0.0;
+  double frequency_Hz = 0.0;
+  double share = 0.0;
+};
+
+/// The frequencies that explain more of the residual than their neighbours, best first.
+std::vector<ScoredResonance> resonance_peaks(const SearchContext& context, const ModelStage& stage,
+                                             const Projection& projection,
+                                             const std::vector<FreeParameter>& parameters,
+                                             const std::vector<FreeParameter>& own) {
   const std::vector<double> frequencies = resonances_in(context.problem.data);
   const auto own_size = static_cast<Index>(own.size());
   const Index base_size = stage.fitted.theta.size();
   DatasetSimulation run(context.problem.model, context.problem.data, parameters);
-  ScoredStart best;
+  std::vector<ScoredResonance> scored;
   MatrixXd residuals_m;
-  for (std::size_t from = 0; from < frequencies.size() && !context.cancelled(); from += kTogether) {
-    const std::size_t count = std::min(kTogether, frequencies.size() - from);
-    MatrixXd points(base_size + own_size, static_cast<Index>(2 * count));
+  for (std::size_t from = 0; from < frequencies.size() && !context.cancelled();) {
+    const std::size_t count =
+        std::min<std::size_t>(ObserverSimulation::kLanes, frequencies.size() - from);
+    const auto tried = std::span(frequencies).subspan(from, count);
+    MatrixXd points(base_size + own_size, static_cast<Index>(count));
     points.topRows(base_size) = stage.fitted.theta.replicate(1, points.cols());
-    for (std::size_t i = 0; i < count; ++i) {
-      points.bottomRows(own_size).middleCols(static_cast<Index>(2 * i), 2) =
-          resonances(own, frequencies[from + i]);
-    }
+    points.bottomRows(own_size) = resonances(own, tried);
     run.residuals(points, residuals_m);
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto at = static_cast<Index>(2 * i);
-      if (!residuals_m.middleCols(at, 2).allFinite()) continue;
-      const VectorXd driven = residuals_m.col(at) - stage.fitted.residual_m;
-      const VectorXd behind = residuals_m.col(at + 1) - stage.fitted.residual_m;
-      const auto consider = [&](double cost, double first, double second) {
-        if (first < 0.0 || second < 0.0 || !(cost < best.cost)) return;
-        best.cost = cost;
-        best.start.resize(base_size + own_size);
-        best.start << stage.fitted.theta,
-            resonance_of(own, points.col(at).tail(own_size), first, second);
-      };
-      const Projection::Two two = projection.with(stage.fitted.residual_m, driven, behind);
-      consider(two.cost, two.first, two.second);
-      const auto [driven_cost, first] = projection.with(stage.fitted.residual_m, driven);
-      consider(driven_cost, first, 0.0);
-      const auto [behind_cost, second] = projection.with(stage.fitted.residual_m, behind);
-      consider(behind_cost, 0.0, second);
+    for (Index lane = 0; lane < points.cols(); ++lane) {
+      ScoredResonance one{projection.cost(), tried[static_cast<std::size_t>(lane)], 0.0};
+      if (residuals_m.col(lane).allFinite()) {
+        std::tie(one.cost, one.share) = projection.with(
+            stage.fitted.residual_m, residuals_m.col(lane) - stage.fitted.residual_m);
+      }
+      scored.push_back(one);
     }
+    from += count;
   }
-  return best;
+  std::vector<ScoredResonance> peaks;
+  for (std::size_t i = 0; i < scored.size(); ++i) {
+    const bool below = i > 0 && scored[i - 1].cost < scored[i].cost;
+    const bool above = i + 1 < scored.size() && scored[i + 1].cost < scored[i].cost;
+    if (!below && !above && scored[i].share != 0.0) peaks.push_back(scored[i]);
+  }
+  std::stable_sort(
+      peaks.begin(), peaks.end(),
+      [](const ScoredResonance& a, const ScoredResonance& b) { return a.cost < b.cost; });
+  return peaks;
+}
+
+/// Starts at the best peaks; those that need other parameters than the best are left out.
+std::vector<ScoredStart> resonance_starts(const SearchContext& context, const ModelStage& stage,
+                                          const Projection& projection,
+                                          const std::vector<FreeParameter>& own,
+                                          std::vector<FreeParameter>& parameters) {
+  std::vector<ScoredStart> starts;
+  const std::vector<ScoredResonance> peaks =
+      resonance_peaks(context, stage, projection, parameters, own);
+  for (const ScoredResonance& peak : peaks) {
+    if (starts.size() == kFollowedPeaks) break;
+    if (std::signbit(peak.share) != std::signbit(peaks.front().share)) continue;
+    const Resonance found = resonance_of(own, peak.frequency_Hz, peak.share, context.problem.data);
+    VectorXd start(stage.fitted.theta.size() + found.theta.size());
+    start << stage.fitted.theta, found.theta;
+    starts.push_back({peak.cost, std::move(start)});
+    parameters = stage.fitted.parameters;
+    parameters.insert(parameters.end(), found.parameters.begin(), found.parameters.end());
+  }
+  return starts;
 }
 
 ScreeningResult screen_effect(const SearchContext& context, const ModelStage& stage,
@@ -196,13 +226,7 @@ ScreeningResult screen_effect(const SearchContext& context, const ModelStage& st
       starts.push_back({found.front().cost, std::move(start)});
     }
   } else if (is_resonant(own)) {
-    ScoredStart found = resonance(context, stage, projection, result.parameters, own);
-    if (found.start.size() > 0) {
-      const auto first = static_cast<std::ptrdiff_t>(stage.fitted.parameters.size());
-      hold_resonance(found.start.tail(own_size),
-                     {result.parameters.begin() + first, result.parameters.end()});
-      starts.push_back(std::move(found));
-    }
+    starts = resonance_starts(context, stage, projection, own, result.parameters);
   } else {
     const MatrixXd sizes = trial_sizes(own, context.problem.data);
     DatasetSimulation run(context.problem.model, context.problem.data, result.parameters);

@@ -32,14 +32,17 @@ constexpr double kLeastResonance_Hz = 1.0;
 constexpr double kFewestPeriods = 10.0;
 constexpr double kOfSampleRate = 0.4;
 /// Ratio of neighbouring frequencies: within the width of a resonance of the typical damping.
-constexpr double kResonanceRatio = 1.06;
-constexpr double kResonanceNeighbourhood = 1.3;
+constexpr double kResonanceRatio = 1.04;
+constexpr double kTriedDamping = 0.04;
 constexpr double kSmallShare = 0.05;
+constexpr double kMostShare = 0.8;  ///< of a start
+constexpr double kUsualShare = 0.3;
+constexpr double kUsualShareSd = 0.2;
 /// Damping ratio beyond which a response shows no peak worth the name.
 constexpr double kMostDamping = 0.4;
-/// A start keeps off the end of the range.
-constexpr double kMostOfRange = 0.8;
 constexpr const char* kFrequency = ".resonance_Hz";
+constexpr const char* kDamping = ".damping_ratio";
+constexpr const char* kMass = ".mass_ratio";
 constexpr const char* kSensor = ".sensor_ratio";
 
 bool ends_with(const std::string& text, const std::string& ending) {
@@ -177,42 +180,64 @@ std::vector<double> resonances_in(const FitDataset& data) {
   return found;
 }
 
-MatrixXd resonances(const std::vector<FreeParameter>& parameters, double frequency_Hz) {
-  const auto count = static_cast<Index>(parameters.size());
-  MatrixXd points = MatrixXd::Zero(count, 2);
-  for (Index i = 0; i < count; ++i) {
-    const FreeParameter& p = parameters[static_cast<std::size_t>(i)];
-    if (ends_with(p.name, kFrequency)) points.row(i).setConstant(p.to_theta(frequency_Hz));
-    if (ends_with(p.name, ".damping_ratio")) points.row(i).setOnes();
-    if (ends_with(p.name, ".mass_ratio")) points(i, 0) = p.to_theta(kSmallShare);
-    if (ends_with(p.name, kSensor)) points(i, 1) = p.to_theta(kSmallShare);
+MatrixXd resonances(const std::vector<FreeParameter>& parameters,
+                    std::span<const double> frequencies_Hz) {
+  MatrixXd points = MatrixXd::Zero(static_cast<Index>(parameters.size()),
+                                   static_cast<Index>(frequencies_Hz.size()));
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const FreeParameter& p = parameters[i];
+    auto row = points.row(static_cast<Index>(i));
+    if (ends_with(p.name, kMass)) row.setConstant(p.to_theta(kSmallShare));
+    if (ends_with(p.name, kDamping)) row.setConstant(p.to_theta(kTriedDamping));
+    if (!ends_with(p.name, kFrequency)) continue;
+    for (std::size_t k = 0; k < frequencies_Hz.size(); ++k) {
+      row[static_cast<Index>(k)] = p.to_theta(frequencies_Hz[k]);
+    }
   }
   return points;
 }
 
-VectorXd resonance_of(const std::vector<FreeParameter>& parameters, const VectorXd& resonance,
-                      double first, double second) {
-  VectorXd found = resonance;
-  const Index sensor = index_of(parameters, kSensor);
-  found[0] = std::clamp(resonance[0] * first, parameters.front().lower,
-                        kMostOfRange * parameters.front().upper);
-  if (sensor >= 0) {
-    const FreeParameter& p = parameters[static_cast<std::size_t>(sensor)];
-    found[sensor] = std::clamp(p.to_theta(kSmallShare) * second, p.lower, p.upper);
-  }
-  return found;
-}
-
-void hold_resonance(const VectorXd& own, std::span<FreeParameter> parameters) {
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    FreeParameter& p = parameters[i];
-    const double s = own[static_cast<Index>(i)];
-    if (ends_with(p.name, kFrequency)) {
-      p.lower = std::max(p.lower, s / kResonanceNeighbourhood);
-      p.upper = std::min(p.upper, s * kResonanceNeighbourhood);
+Resonance resonance_of(const std::vector<FreeParameter>& parameters, double frequency_Hz,
+                       double share, const FitDataset& data) {
+  // relative to the rigid motion, a resonance is r / (1 - r) on the driven part
+  const double swing = share * kSmallShare / (1.0 - kSmallShare);
+  const std::vector<double> frequencies = resonances_in(data);
+  Resonance found;
+  std::vector<double> theta;
+  const auto take = [&](const FreeParameter& p, double value) {
+    found.parameters.push_back(p);
+    theta.push_back(p.to_theta(value));
+  };
+  const bool on_driven = share > 0.0;
+  for (const FreeParameter& p : parameters) {
+    if (on_driven && ends_with(p.name, kMass)) {
+      take(p, std::min(swing / (1.0 + swing), kMostShare));
     }
-    if (ends_with(p.name, ".damping_ratio")) p.upper = std::min(p.upper, p.to_theta(kMostDamping));
+    if (ends_with(p.name, kFrequency)) {
+      take(p, frequency_Hz);
+      found.parameters.back().lower = p.to_theta(frequencies.front() / kResonanceRatio);
+      found.parameters.back().upper = p.to_theta(frequencies.back() * kResonanceRatio);
+    }
+    if (ends_with(p.name, kDamping)) {
+      take(p, kTriedDamping);
+      found.parameters.back().upper = p.to_theta(kMostDamping);
+    }
   }
+  for (const FreeParameter& p : parameters) {
+    if (on_driven) break;
+    if (ends_with(p.name, kMass)) {
+      // hardly visible from behind the spring
+      take(p, kUsualShare);
+      found.parameters.back().prior_mean = p.to_theta(kUsualShare);
+      found.parameters.back().prior_sd = p.to_theta(kUsualShareSd);
+    }
+    if (ends_with(p.name, kSensor)) {
+      take(p, 1.0);
+      found.parameters.back().lower = found.parameters.back().upper = p.to_theta(1.0);
+    }
+  }
+  found.theta = Eigen::Map<const VectorXd>(theta.data(), static_cast<Index>(theta.size()));
+  return found;
 }
 
 bool scale_size(const std::vector<FreeParameter>& parameters, double share,

@@ -38,17 +38,18 @@ void hold_wavelength(const plant_sim::EffectInfo& effect, const Eigen::VectorXd&
 [[nodiscard]] bool is_resonant(const std::vector<FreeParameter>& parameters);
 /// Frequencies of a resonance that the records can resolve, Hz.
 [[nodiscard]] std::vector<double> resonances_in(const FitDataset& data);
-/// A small resonance at this frequency, seen on its driven part and seen behind its spring: two
-/// columns. Their sum with positive factors is, for small sizes, any resonance with usual damping.
+/// A small resonance of the driven part at each frequency: a column each. The response of a sensor
+/// behind the spring is proportional to it, and of the other sign.
 [[nodiscard]] Eigen::MatrixXd resonances(const std::vector<FreeParameter>& parameters,
-                                         double frequency_Hz);
-/// The resonance with `first` times the first column of resonances() and `second` times the second.
-[[nodiscard]] Eigen::VectorXd resonance_of(const std::vector<FreeParameter>& parameters,
-                                           const Eigen::VectorXd& resonance, double first,
-                                           double second);
-/// Limits a search to the neighbourhood of the frequency at `own`, and to damping with which it is
-/// still a resonance.
-void hold_resonance(const Eigen::VectorXd& own, std::span<FreeParameter> parameters);
+                                         std::span<const double> frequencies_Hz);
+/// The parameters of one that is `share` times such a column, and their values: mass, frequency and
+/// damping; for a negative share frequency, damping and mass, with the sensor behind the spring.
+struct Resonance {
+  std::vector<FreeParameter> parameters;
+  Eigen::VectorXd theta;
+};
+[[nodiscard]] Resonance resonance_of(const std::vector<FreeParameter>& parameters,
+                                     double frequency_Hz, double share, const FitDataset& data);
 
 /// Scales the effect's size by `share` within its bounds; a negative share of a non-negative size
 /// shifts a periodic effect by half a period. Returns false where that is not possible: the size is

@@ -66,7 +66,7 @@ TEST(Show, DerivesWhatADataSheetStates) {
   const auto axis = shown({model("force_driven_axis")});
   EXPECT_NEAR(derived(axis, "steady_speed_positive_mps"), 350.0 / 200.0, 1e-3);
   EXPECT_NEAR(derived(axis, "time_constant_s"), 0.5, 1e-12);
-  EXPECT_NEAR(derived(axis, "full_acceleration_mps2"), 3.5, 1e-12);
+  EXPECT_NEAR(derived(axis, "full_acceleration_m_per_s2"), 3.5, 1e-12);
   const auto servo = shown({model("velocity_servo")});
   EXPECT_NEAR(derived(servo, "steady_speed_negative_mps"), -0.5, 1e-6);
   EXPECT_NEAR(derived(servo, "bandwidth_Hz"), 15.915, 1e-3);
