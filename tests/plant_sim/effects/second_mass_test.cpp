@@ -52,7 +52,9 @@ TEST(SecondMass, SwingsOnAnAxisAsTwoFreeBodiesDo) {
     }
     // limits::kResonanceStep: 0.1 % of the frequency is 4 % of a swing after 60 of its periods
     EXPECT_LT(worst_m, 0.05 * swing_m) << body.resonance_Hz;
-    if (body.resonance_Hz < 50.0) EXPECT_LT(worst_m, 1e-3 * swing_m) << body.resonance_Hz;
+    if (body.resonance_Hz < 50.0) {
+      EXPECT_LT(worst_m, 1e-3 * swing_m) << body.resonance_Hz;
+    }
   }
 }
 
