@@ -2,6 +2,7 @@
 // with its frequency, and not named where there is none.
 #include <gmock/gmock.h>
 
+#include "config/schema/document.h"
 #include "estimator/greybox/selection/diagnosis.h"
 #include "tests/workbench/diagnose/judged.h"
 #include "tests/workbench/diagnose/two_masses.h"
