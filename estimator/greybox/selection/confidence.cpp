@@ -31,7 +31,9 @@ std::string site_of(const Diagnosis& diagnosis, const std::string& effect) {
   const plant_sim::EffectInfo* info = plant_sim::find_effect(effect);
   if (info == nullptr || info->sites.empty()) return "";
   const std::string& site = info->sites.front();
-  if (site == "force" || site == "dry_friction" || site == "inertia") return "force";
+  if (site == "force" || site == "dry_friction" || site == "inertia" || site == "coupling") {
+    return "force";
+  }
   if (site == "sensor") return "measurement";
   if (site == "command") return is_driven_by_force(diagnosis) ? "force" : "command";
   return "flow";
