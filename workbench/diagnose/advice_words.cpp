@@ -181,6 +181,11 @@ std::string words_to_excite(const std::string& motion) {
   return "Run " + motion + ", with the command free of its limits, and diagnose that record.";
 }
 
+std::string words_for_changes() {
+  return "Ask what was switched, loaded or warmed up during the record, and repeat it with that "
+         "held.";
+}
+
 std::string words_for_unexplained(const std::vector<selection::Localisation>& where,
                                   const std::string& plant) {
   const bool axis = !has_site(plant, "opening");

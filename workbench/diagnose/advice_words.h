@@ -26,4 +26,7 @@ namespace selection = estimator::greybox::selection;
 [[nodiscard]] std::string words_for_unexplained(const std::vector<selection::Localisation>& where,
                                                 const std::string& plant);
 
+/// For a record within which something changes.
+[[nodiscard]] std::string words_for_changes();
+
 }  // namespace workbench::diagnose

@@ -119,6 +119,8 @@ AdvisedDiagnosis diagnose(const selection::DiagnosisProblem& problem,
     result.advice = advice_to_excite(problem);
   } else if (found.verdict == selection::Verdict::unexplained) {
     result.advice = advice_for_unexplained(found.where, problem.model.plant);
+  } else if (found.verdict == selection::Verdict::changing) {
+    result.advice = words_for_changes();
   }
   if (!result.advice.empty() && !for_rivals.empty()) result.advice += " ";
   result.advice += for_rivals;

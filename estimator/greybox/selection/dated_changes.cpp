@@ -30,7 +30,7 @@ bool take_changes(const ModelStage& first, ChangeSearch& found, const Diagnosis&
   std::erase_if(changed.missing,
                 [](const std::string& name) { return name.starts_with("change."); });
   changed.changing = found.changes;
-  changed.where = before.whole;
+  changed.where = before.where;
   changed.where_is_whole = true;
   put_time_first(changed.where);
   result = std::move(changed);
