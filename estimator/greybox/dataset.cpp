@@ -117,6 +117,13 @@ Dataset dataset_of(const config::record::Record& record) {
   result.name = record.name;
   result.sample_time_s = record.sample_time_s;
   result.notes = record.notes;
+  for (const config::record::ChannelOrigin& origin : record.origins) {
+    if (origin.name == "u_" + record.command_unit) {
+      result.command_column = {origin.header, origin.unit, origin.factor < 0.0};
+    } else if (origin.name == "y_" + record.position_unit) {
+      result.position_column = {origin.header, origin.unit, origin.factor < 0.0};
+    }
+  }
   if (record.sample_time_s > kSlowest_s) {
     throw config::schema::bad_data(record.name, "is sampled every " + seconds(record.sample_time_s),
                                    "every " + seconds(kSlowest_s) + " or faster");
@@ -172,6 +179,8 @@ Dataset dataset_of(double sample_time_s, const std::vector<double>& u_V,
 Dataset part(const Dataset& whole, std::size_t from, std::size_t to) {
   Dataset result;
   result.name = whole.name;
+  result.command_column = whole.command_column;
+  result.position_column = whole.position_column;
   result.sample_time_s = whole.sample_time_s;
   const auto cut = [&](const auto& values) {
     return std::decay_t<decltype(values)>(values.begin() + static_cast<std::ptrdiff_t>(from),

@@ -26,8 +26,17 @@ struct GapSummary {
   std::size_t samples_left_out = 0;  ///< in segments shorter than kShortest_s
 };
 
+/// Where a channel came from; empty: unknown.
+struct SourceColumn {
+  std::string header;   ///< in the file, or the column's number
+  std::string unit;     ///< in the file
+  bool turned = false;  ///< read with the sign turned
+};
+
 struct Dataset {
   std::string name;
+  SourceColumn command_column;
+  SourceColumn position_column;
   double sample_time_s = 0.0;
   std::vector<double> t_s;
   std::vector<double> u_V;

@@ -20,6 +20,7 @@
 #include "workbench/cli/common_options.h"
 #include "workbench/files/file_check.h"
 #include "workbench/present/json.h"
+#include "workbench/present/record_findings.h"
 #include "workbench/present/report.h"
 
 namespace workbench::cli {
@@ -251,7 +252,10 @@ void run(const ImportOptions& options) {
                         {"--report", options.report, kNoModel},
                         {"--save-map", options.save_map, kNoModel}},
                        {"", {options.record}});
-  const Record record = config::record::read_record(options.record, options.reading);
+  Record record = config::record::read_record(options.record, options.reading);
+  for (std::string& finding : present::record_findings(record)) {
+    record.notes.push_back(std::move(finding));
+  }
   const std::vector<ImportedChannel> channels = channels_of(record);
   if (!options.output.empty()) {
     write_csv(record, options.output == "-" ? "/dev/stdout" : options.output);

@@ -3,13 +3,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "workbench/present/compare_units.h"
 #include "workbench/present/dataset_notes.h"
+#include "workbench/present/record_findings.h"
 
 namespace workbench::compare {
 
+namespace greybox = estimator::greybox;
 namespace units = config::units;
 namespace {
 
@@ -25,12 +29,23 @@ std::string fails_where(const validation::SignificantRegion& failing) {
          present::percent(failing.figures.time_share) + " of the time.";
 }
 
-std::string in_proportion(double gain_ratio) {
-  if (gain_ratio < -1.0) {
-    return "the " + units::moving_part() + " moves the other way than the model, " +
-           units::three_digits(-100.0 * (1.0 + gain_ratio)) +
-           " % as far: the sign of the command or of the position is turned";
+/// A motion against the model's: a turned sign, unless the command drives the motion.
+std::string other_way(double gain_ratio, const greybox::CommandResponse& response) {
+  const std::string text = "the " + units::moving_part() + " moves the other way than the model, " +
+                           units::three_digits(-100.0 * (1.0 + gain_ratio)) + " % as far (";
+  if (response.against_command()) {
+    return text + "the sign of the command or of the position is turned)";
   }
+  if (response.with_command()) {
+    return text +
+           "the command drives the motion, so no sign is turned: the model lacks something large, "
+           "such as a spring)";
+  }
+  return text + "the model lacks something large, such as a spring, or a sign is turned)";
+}
+
+std::string in_proportion(double gain_ratio, const greybox::CommandResponse& response) {
+  if (gain_ratio < -1.0) return other_way(gain_ratio, response);
   return "the " + units::moving_part() + " moves " +
          units::three_digits(100.0 * std::abs(gain_ratio)) + " % " +
          (gain_ratio < 0.0 ? "less" : "more") + " than the model";
@@ -41,19 +56,21 @@ std::string by_a_constant(double offset_mps) {
          (offset_mps < 0.0 ? " towards retraction" : " towards extension");
 }
 
-std::string plain_words(const validation::SystematicError& explained) {
+std::string plain_words(const validation::Comparison& c) {
+  const validation::SystematicError& explained = c.systematic;
   std::string text;
   switch (explained.cause) {
     case validation::ErrorCause::gain:
-      text = "Off in proportion: " + in_proportion(explained.gain_ratio);
+      text = "Off in proportion: " + in_proportion(explained.gain_ratio, c.response);
       break;
     case validation::ErrorCause::offset:
       text = "Off by a constant speed: the " + units::moving_part() + " " +
              by_a_constant(explained.offset_mps);
       break;
     case validation::ErrorCause::both:
-      text = "Off in proportion and by a constant speed: " + in_proportion(explained.gain_ratio) +
-             " and " + by_a_constant(explained.offset_mps);
+      text = "Off in proportion and by a constant speed: " +
+             in_proportion(explained.gain_ratio, c.response) + " and " +
+             by_a_constant(explained.offset_mps);
       break;
     case validation::ErrorCause::neither:
       return {};
@@ -117,6 +134,12 @@ std::string drift_words(const validation::Comparison& c) {
          units::moving_part() + " runs " + text + ".";
 }
 
+std::string stroke_words(const validation::Comparison& c) {
+  if (!(c.stroke_m > 0.0)) return {};
+  const auto [low, high] = std::minmax_element(c.record.y_m.begin(), c.record.y_m.end());
+  return present::stroke_finding(*low, *high, c.stroke_m, c.record.position_column);
+}
+
 std::string dependence_words(const validation::Comparison& c) {
   if (c.independence_p < kSignificant) {
     return "The residual depends on earlier commands: parameters are off or dynamics are missing.";
@@ -152,7 +175,7 @@ Words words(const validation::Comparison& c) {
     return w;
   }
   const bool somewhere = c.headline.significant;
-  const std::string plain = plain_words(c.systematic);
+  const std::string plain = plain_words(c);
   if (!plain.empty()) {
     w.judgement = Judgement::fails_throughout;
     w.verdict = plain;
@@ -192,7 +215,19 @@ std::vector<std::string> notes(const validation::Comparison& c) {
                       c.command.most_V, percent));
       break;
   }
-  if (c.beyond_stroke) {
+  const auto add = [&out](std::string text) {
+    if (!text.empty()) out.push_back(std::move(text));
+  };
+  const bool explained = c.floor_ratio() <= validation::kAtFloor;
+  const std::string in_stroke = explained ? std::string() : stroke_words(c);
+  add(in_stroke);
+  if (!explained && in_stroke.empty()) {
+    add(present::motion_finding(c.motion, c.record.command_column, c.record.position_column));
+  }
+  for (std::string& text : present::response_findings(c.response, c.record.position_column)) {
+    out.push_back(std::move(text));
+  }
+  if (c.beyond_stroke && in_stroke.empty()) {
     out.push_back(
         fmt::format("y runs from {:.4g} to {:.4g} mm, outside the model's stroke of 0 to {:.4g} mm",
                     1e3 * c.beyond_stroke->low_m, 1e3 * c.beyond_stroke->high_m,

@@ -4,6 +4,7 @@
 
 #include "config/schema/joined.h"
 #include "estimator/greybox/held_scale.h"
+#include "workbench/diagnose/record_words.h"
 #include "workbench/diagnose/words.h"
 #include "workbench/present/json.h"
 

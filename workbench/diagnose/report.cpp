@@ -7,6 +7,7 @@
 #include "config/units/quantity.h"
 #include "estimator/greybox/selection/structure_search.h"
 #include "workbench/diagnose/diagnosis_report.h"
+#include "workbench/diagnose/record_words.h"
 #include "workbench/diagnose/report_sections.h"
 #include "workbench/diagnose/search_rounds.h"
 #include "workbench/diagnose/words.h"

@@ -9,6 +9,7 @@
 
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
+#include "workbench/diagnose/record_words.h"
 #include "workbench/diagnose/search_rounds.h"
 #include "workbench/diagnose/words.h"
 

@@ -4,20 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
 #include "estimator/greybox/held_scale.h"
-#include "estimator/greybox/representative_segments.h"
 #include "workbench/diagnose/disturbance_words.h"
-#include "workbench/present/dataset_notes.h"
+#include "workbench/diagnose/record_words.h"
 #include "workbench/present/shell_command.h"
 
 namespace workbench::diagnose {
 namespace {
-
-/// A plant is reported when it leaves less than this share of the better model's error.
-constexpr double kBetterPlant = 0.7;
 
 std::string percent(double ratio) { return fmt::format("{:.0f} %", 100.0 * ratio); }
 
@@ -180,45 +177,6 @@ std::string fall_words(const selection::Diagnosis& d) {
          config::units::length_words(d.disturbed_floor_m()) + ".";
 }
 
-std::string command_lead_words(double lead_samples) {
-  if (lead_samples >= 1.0) {
-    return fmt::format(
-        "Command and position are {:.3g} samples apart: the record is taken with the command that "
-        "much earlier. Look at how the two are logged.",
-        lead_samples);
-  }
-  return fmt::format(
-      "The command goes on to change between two samples of this record, which keeps some of a "
-      "faster loop's: it is taken {:.2g} samples earlier. A log of every sample of the loop says "
-      "more.",
-      lead_samples);
-}
-
-/// Findings in the record itself, before any physics.
-void add_record_words(const selection::Diagnosis& d, std::vector<std::string>& out) {
-  const selection::RecordChecks& checks = *d.checks;
-  if (checks.turned_sign()) {
-    out.push_back(fmt::format(
-        "The sign of the command is turned: with -u the model leaves {} times less. Diagnose again "
-        "with --flip.",
-        config::units::times_words(checks.turned_sign_ratio)));
-  }
-  if (checks.outside_stroke()) {
-    out.push_back("The position leaves the model's stroke" +
-                  (checks.below_m < 0.0 ? ", down to " + config::units::length_words(checks.below_m)
-                                        : std::string()) +
-                  (checks.beyond_m > 0.0
-                       ? ", " + config::units::length_words(checks.beyond_m) + " beyond its end"
-                       : std::string()) +
-                  ": look at its unit and its zero.");
-  }
-  if (!d.plants.empty() && d.plants.front().validation_rms_m < kBetterPlant * d.rms_after_m) {
-    out.push_back("Another plant follows this record better: " + d.plants.front().plant +
-                  ", without any effect, leaves " +
-                  config::units::length_words(d.plants.front().validation_rms_m) + ".");
-  }
-}
-
 void add_rivals(const selection::Diagnosis& d, std::vector<std::string>& out) {
   if (d.verdict != selection::Verdict::undetermined && !d.ambiguous.empty()) {
     out.push_back("This motion cannot tell apart: " + groups_words(d) + ".");
@@ -297,47 +255,6 @@ std::string where_words(const selection::Localisation& where) {
   return enters + " that goes with " + variable;
 }
 
-std::string excitation_words(const selection::Excitation& excitation) {
-  using Cause = selection::Excitation::Cause;
-  const auto millimetres = [](double m) {
-    return fmt::format("{:.3g} {}", 1e3 * m, config::units::axis_unit("mm"));
-  };
-  switch (excitation.cause) {
-    case Cause::sufficient:
-      break;
-    case Cause::no_motion:
-      return "the " + config::units::moving_part() + " moves by " +
-             millimetres(excitation.travel_m) + " in all, " +
-             millimetres(excitation.noise_floor_m) + " of it noise";
-    case Cause::command_at_limit:
-      return "the command stays at its limit throughout";
-  }
-  return "the records hardly move";
-}
-
-std::vector<std::string> notes(const DiagnosisReport& outcome) {
-  const selection::Diagnosis& d = outcome.diagnosis;
-  const greybox::FitDataset& data = outcome.prepared->problem.data;
-  std::vector<std::string> out;
-  for (const greybox::Dataset& record : data.records) {
-    for (const std::string& note : present::notes_of(record)) {
-      out.push_back(record.name + ": " + note);
-    }
-  }
-  if (!d.excitation.sufficient()) out.push_back(excitation_words(d.excitation));
-  if (d.searched_s) {
-    out.push_back("effects were searched for in " + std::to_string(std::lround(*d.searched_s)) +
-                  " of " + std::to_string(std::lround(greybox::length_s(data))) + " s" +
-                  (d.by_innovations ? "" : "; values and errors are those of all samples"));
-  }
-  if (d.floor_assumed && d.excitation.sufficient()) {
-    out.emplace_back(std::string("noise cannot be told from motion at this rate: the floor is ") +
-                     (d.by_innovations ? "estimated with the model" : "the rounding alone"));
-  }
-  if (d.search.interrupted) out.emplace_back("interrupted: the best so far");
-  return out;
-}
-
 /// Parameters that the record has moved far from what the file says of them.
 void add_strained_words(const selection::Diagnosis& d, std::vector<std::string>& out) {
   constexpr double kFar_sds = 2.5;
@@ -389,8 +306,7 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
         "Interrupted: this is the best so far. Not everything was tried, so other effects may do "
         "as well.");
   }
-  if (d.command_lead_samples > 0.0) out.push_back(command_lead_words(d.command_lead_samples));
-  if (d.checks) add_record_words(d, out);
+  for (std::string& text : record_remarks(outcome)) out.push_back(std::move(text));
   if (d.verdict != selection::Verdict::not_excited) out.push_back(fall_words(d));
   const bool named = d.verdict == selection::Verdict::missing || d.missing.empty();
   if (!named) out.push_back("Used in the better model: " + effects_words(d, d.missing) + ".");

@@ -12,12 +12,6 @@ namespace workbench::diagnose {
 [[nodiscard]] std::string effect_words(const selection::Diagnosis& diagnosis,
                                        const std::string& effect);
 
-/// "the rod moves by 0.01 mm in all, 0.001 mm of it noise"
-[[nodiscard]] std::string excitation_words(const selection::Excitation& excitation);
-
-/// Restrictions: gaps of the records, long records, interruption.
-[[nodiscard]] std::vector<std::string> notes(const DiagnosisReport& outcome);
-
 /// The verdict, one sentence.
 [[nodiscard]] std::string verdict_words(const selection::Diagnosis& diagnosis);
 

@@ -6,7 +6,7 @@
 
 namespace estimator::greybox::selection {
 
-/// What was known before any conclusion was drawn: a result to conclude anew.
+/// The fields of a diagnosis that precede any conclusion: a result to conclude again.
 [[nodiscard]] Diagnosis begun(const Diagnosis& result);
 
 /// A verdict by the held-out errors of simulations on `result.search`. `search`: the context that

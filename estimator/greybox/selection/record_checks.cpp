@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "estimator/greybox/fit.h"
+#include "estimator/greybox/observer_simulation.h"
 #include "estimator/parallel.h"
 #include "plant_sim/library.h"
 
@@ -111,6 +112,17 @@ StrokeOverrun stroke_excess(plant_sim::ModelFile model, const FitDataset& data) 
   return excess;
 }
 
+MotionRatio motion_of(const plant_sim::ModelFile& model, const Dataset& record) {
+  Dataset all = record;
+  all.innovations = nullptr;
+  std::fill(all.valid.begin(), all.valid.end(), char{1});
+  ObserverSimulation run(model, all, {});
+  Eigen::MatrixXd residual_m;
+  run.residuals(Eigen::MatrixXd(0, 1), residual_m);
+  const std::vector<double> error_m(residual_m.data(), residual_m.data() + residual_m.rows());
+  return motion_ratio(record, error_m, kObserver_per_s);
+}
+
 }  // namespace
 
 RecordChecks check_records(const SearchContext& context, double rms_m) {
@@ -119,6 +131,20 @@ RecordChecks check_records(const SearchContext& context, double rms_m) {
   RecordChecks checks;
   checks.below_m = excess.below_m;
   checks.beyond_m = excess.beyond_m;
+  plant_sim::ModelFile model = context.problem.model;
+  if (const double* stroke_m = model.value("stroke_m")) checks.stroke_m = *stroke_m;
+  checks.low_m = checks.high_m = data.records.front().y_m.front();
+  for (const Dataset& record : data.records) {
+    const auto [low, high] = std::minmax_element(record.y_m.begin(), record.y_m.end());
+    checks.low_m = std::min(checks.low_m, *low);
+    checks.high_m = std::max(checks.high_m, *high);
+    checks.responses.push_back(
+        command_response(record.sample_time_s, record.u_V, record.y_m, record.starts));
+  }
+  checks.motion = motion_of(model, data.records.front());
+  const bool driven = std::any_of(checks.responses.begin(), checks.responses.end(),
+                                  [](const CommandResponse& r) { return r.with_command(); });
+  if (driven) return checks;
   FitDataset turned = data;
   for (Dataset& record : turned.records) {
     for (double& u_V : record.u_V) u_V = -u_V;

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "estimator/greybox/command_response.h"
+#include "estimator/greybox/motion_scale.h"
 #include "estimator/greybox/selection/problem.h"
 
 namespace estimator::greybox::selection {
@@ -16,11 +18,17 @@ struct PlantFit {
 };
 
 struct RecordChecks {
-  /// With the command's sign turned, the model fits at least this much better; 1: it does not.
+  /// With the command's sign turned, the model fits at least this much better; 1: it does not, or
+  /// the command drives a record's motion.
   double turned_sign_ratio = 1.0;
   /// Positions outside a stroke that the model has: least and greatest, m; equal where all are in.
   double below_m = 0.0;
   double beyond_m = 0.0;
+  double stroke_m = 0.0;  ///< the model's; 0: it has none
+  double low_m = 0.0;     ///< range of all positions
+  double high_m = 0.0;
+  std::vector<CommandResponse> responses;  ///< one per record
+  MotionRatio motion;                      ///< first record, by the model as given
 
   [[nodiscard]] bool turned_sign() const { return turned_sign_ratio > 1.0; }
   [[nodiscard]] bool outside_stroke() const { return below_m < 0.0 || beyond_m > 0.0; }

@@ -110,6 +110,7 @@ void note_command(Comparison& c) {
 void note_stroke(Comparison& c, const plant_sim::ModelFile& model) {
   for (const plant_sim::NamedValue& parameter : model.parameters) {
     if (parameter.name != "stroke_m") continue;
+    c.stroke_m = parameter.value;
     const auto [low, high] = std::minmax_element(c.record.y_m.begin(), c.record.y_m.end());
     if (*low < 0.0 || *high > parameter.value) {
       c.beyond_stroke = StrokeExcess{*low, *high, parameter.value};
@@ -200,6 +201,8 @@ Comparison compare(const plant_sim::ModelFile& model, const Dataset& record,
   c.kinematics = greybox::kinematics(record, std::isfinite(floor.sd_m) ? floor.sd_m : 0.0);
   find_speed_error(c);
   c.systematic = systematic_error(record, c.error_m, c.speed_error_mps, observer_per_s);
+  c.motion = motion_ratio(record, c.error_m, observer_per_s);
+  c.response = command_response(record.sample_time_s, record.u_V, record.y_m, record.starts);
   find_arising(c);
   find_regions(c);
   return c;

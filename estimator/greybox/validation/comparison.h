@@ -15,8 +15,10 @@
 #include <string>
 #include <vector>
 
+#include "estimator/greybox/command_response.h"
 #include "estimator/greybox/dataset.h"
 #include "estimator/greybox/kinematics.h"
+#include "estimator/greybox/motion_scale.h"
 #include "estimator/greybox/observer_simulation.h"
 #include "estimator/greybox/validation/k_step.h"
 #include "estimator/greybox/validation/regions.h"
@@ -69,7 +71,10 @@ struct Comparison {
   std::vector<SignificantRegion> worst;  ///< by one variable each, most significant first
   SignificantRegion headline;            ///< most significant, by one variable or two
   SystematicError systematic;
+  MotionRatio motion;
+  CommandResponse response;
   CommandRange command;
+  double stroke_m = 0.0;  ///< the model's; 0: it has none
   std::optional<StrokeExcess> beyond_stroke;
 
   [[nodiscard]] double floor_ratio() const { return rms_m / noise_floor_m; }

@@ -18,6 +18,7 @@ using compare_test::kGain;
 using testing::AnyOf;
 using testing::Contains;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::StartsWith;
 
 validation::Comparison compared(const compare_test::Fault& fault) {
@@ -53,6 +54,31 @@ TEST(Words, NameASignThatIsTurned) {
   const Words said = words(compared([](double, double u, double) { return -2.0 * kGain * u; }));
   EXPECT_THAT(said.verdict, HasSubstr("moves the other way than the model"));
   EXPECT_THAT(said.verdict, HasSubstr("the sign of the command or of the position is turned"));
+}
+
+TEST(Words, BlameNoSignWhereTheCommandDrivesTheMotion) {
+  validation::Comparison c = compared([](double, double u, double) { return -2.0 * kGain * u; });
+  c.response.correlation = 0.3;  // as of an axis on a spring
+  EXPECT_THAT(words(c).verdict,
+              HasSubstr("so no sign is turned: the model lacks something large, such "
+                        "as a spring"));
+  c.response.correlation = -0.3;
+  EXPECT_THAT(words(c).verdict, HasSubstr("such as a spring, or a sign is turned"));
+}
+
+TEST(Words, NameAFactorOfAThousandAndAShiftedClock) {
+  const auto record = [] { return compare_test::servo_record(compare_test::healthy, 30.0, 2e-6); };
+  EXPECT_THAT(notes(compared(compare_test::healthy)), IsEmpty());
+  auto large = record();
+  for (double& y_m : large.y_m) y_m *= 1000.0;
+  EXPECT_THAT(notes(validation::compare(compare_test::servo(), greybox::dataset_of(large))),
+              Contains(HasSubstr("times as far as the model")));
+  auto early = record();
+  early.u_V.erase(early.u_V.end() - 20, early.u_V.end());
+  early.y_m.erase(early.y_m.begin(), early.y_m.begin() + 20);
+  early.t_s.resize(early.y_m.size());
+  EXPECT_THAT(notes(validation::compare(compare_test::servo(), greybox::dataset_of(early))),
+              Contains(HasSubstr("before the command that drives it")));
 }
 
 TEST(Words, NameTheRangeThatFails) {

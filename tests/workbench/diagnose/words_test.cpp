@@ -1,6 +1,7 @@
-// What is said of a diagnosis, for every verdict.
+// The sentences on a diagnosis, for every verdict.
 #include "workbench/diagnose/words.h"
 #include "workbench/diagnose/diagnosis_report.h"
+#include "workbench/diagnose/record_words.h"
 
 #include <gmock/gmock.h>
 

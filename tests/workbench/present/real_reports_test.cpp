@@ -15,7 +15,7 @@ namespace {
 using nlohmann::json;
 using testing::IsEmpty;
 
-// Of a curve that lies almost everywhere under another some pixels still show.
+// Some pixels show of a curve that lies almost everywhere under another.
 constexpr int kInk = 15;
 // Three digits on the page.
 constexpr double kThreeDigits = 0.006;

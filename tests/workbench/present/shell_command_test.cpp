@@ -8,7 +8,7 @@
 namespace workbench::present {
 namespace {
 
-/// What a shell makes of the word.
+/// The word as a shell reads it.
 std::string through_shell(const std::string& word) {
   FILE* pipe = popen(("printf %s " + shell_word(word)).c_str(), "r");
   std::string out;
