@@ -83,7 +83,9 @@ void RowReader::reserve() {
   }
 }
 
-bool RowReader::has_line() {
+// Inline, as they run for each field: read() alone calls them.
+
+inline bool RowReader::has_line() {
   if (at_ < end_) return true;
   if (window_.last()) return false;
   window_.refill();
@@ -93,7 +95,7 @@ bool RowReader::has_line() {
   return true;
 }
 
-void RowReader::require_length(const char* line_begin, const char* line_end) const {
+inline void RowReader::require_length(const char* line_begin, const char* line_end) const {
   if (static_cast<std::size_t>(line_end - line_begin) <= window_.longest_line()) return;
   throw too_long(place(), window_);
 }
@@ -107,7 +109,7 @@ bool RowReader::only_blanks_follow(const char* line_end) {
   return true;
 }
 
-bool RowReader::is_row() {
+inline bool RowReader::is_row() {
   do {
     const char* first = at_;
     while (first < end_ && is_blank(*first) && *first != separator_) ++first;
@@ -131,7 +133,7 @@ bool RowReader::is_row() {
   return false;
 }
 
-void RowReader::read_row() {
+inline void RowReader::read_row() {
   row_begin_ = at_;
   std::size_t count = 0;
   const std::size_t columns = actions_.size();
@@ -174,14 +176,14 @@ void RowReader::check_row(std::size_t count, const char* row_end, bool cut) {
   fewest_decimals_ = std::min(fewest_decimals_, digits);
 }
 
-void RowReader::skip_blanks() {
+inline void RowReader::skip_blanks() {
   while (at_ < end_ && is_blank(*at_) && *at_ != separator_) ++at_;
   if (separator_ == ' ') {
     while (at_ < end_ && is_blank(*at_)) ++at_;
   }
 }
 
-bool RowReader::next_field() {
+inline bool RowReader::next_field() {
   if (at_ >= end_ || *at_ == '\n') return false;
   if (separator_ != ' ') {
     ++at_;
@@ -191,11 +193,11 @@ bool RowReader::next_field() {
   return at_ < end_ && *at_ != '\n';
 }
 
-bool RowReader::at_field_end() const {
+inline bool RowReader::at_field_end() const {
   return at_ >= end_ || *at_ == '\n' || *at_ == separator_ || (separator_ == ' ' && is_blank(*at_));
 }
 
-bool RowReader::read_field(std::size_t column) {
+inline bool RowReader::read_field(std::size_t column) {
   const Action action = actions_[column];
   if (action == Action::skip) return pass_field();
   if (action == Action::number && decimal_ == '.') {
@@ -222,12 +224,12 @@ bool RowReader::read_field(std::size_t column) {
   return next_field();
 }
 
-bool RowReader::pass_field() {
+inline bool RowReader::pass_field() {
   (void)take_field();
   return next_field();
 }
 
-std::string_view RowReader::take_field() {
+inline std::string_view RowReader::take_field() {
   skip_blanks();
   const char* from = at_;
   if (at_ < end_ && *at_ == '"') {
@@ -247,7 +249,7 @@ std::string_view RowReader::take_field() {
   return trimmed({from, static_cast<std::size_t>(at_ - from)});
 }
 
-double RowReader::number_in(std::string_view text, std::size_t column) {
+inline double RowReader::number_in(std::string_view text, std::size_t column) {
   double value = std::numeric_limits<double>::quiet_NaN();
   if (is_missing(text)) return value;
   if (!parse_number(text, decimal_, value)) {
