@@ -1,11 +1,8 @@
 // `spoolwatch compare MODEL.toml RECORD`: where a model fails against a measurement, as text, JSON
 // and a report.
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <iostream>
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,9 +19,9 @@
 #include "workbench/cli/number_check.h"
 #include "workbench/cli/selection_options.h"
 #include "workbench/compare/comparison_report.h"
+#include "workbench/compare/request.h"
 #include "workbench/exchange/export.h"
 #include "workbench/files/file_check.h"
-#include "workbench/fit/ignored_spans.h"
 #include "workbench/live/live_compare.h"
 #include "workbench/present/json.h"
 #include "workbench/present/printed_model.h"
@@ -38,52 +35,16 @@ namespace {
 using config::schema::UsageError;
 
 struct CompareArguments {
-  std::string model;
-  std::string record;
-  config::record::ReadOptions reading;
+  compare::CompareRequest request;
   std::string json;
   std::string report;
   std::string residuals;
-  std::vector<std::string> ignored;
-  double from_s = -std::numeric_limits<double>::infinity();
-  double to_s = std::numeric_limits<double>::infinity();
-  double observer_per_s = greybox::kObserver_per_s;
-  std::vector<std::string> assignments;
   bool all = false;
   std::string command;
   bool live = false;
   double duration_s = 0.0;  ///< duration of --live; 0: until a signal
   live::LiveCompareOptions watch{config::messages::kDefaultUrl, config::messages::kDefaultPrefix};
 };
-
-/// The record's samples from --from to --to.
-greybox::Dataset read_measured(const CompareArguments& a, config::record::RecordUnits& units) {
-  std::vector<config::record::Record> records{config::record::read_record(a.record, a.reading)};
-  units = config::record::units_of(records.front());
-  if (!a.ignored.empty()) fit::cut_ignored(a.ignored, {a.record}, records);
-  greybox::Dataset whole = greybox::dataset_of(records.front());
-  if (std::isinf(a.from_s) && std::isinf(a.to_s)) return whole;
-  const auto index = [&](double t_s) {
-    return static_cast<std::size_t>(std::lower_bound(whole.t_s.begin(), whole.t_s.end(), t_s) -
-                                    whole.t_s.begin());
-  };
-  const std::size_t from = index(a.from_s);
-  const std::size_t to = index(a.to_s);
-  const double least_s = 2.0;
-  if (from >= to || static_cast<double>(to - from) * whole.sample_time_s < least_s) {
-    throw UsageError("--from, --to: leave less than 2 s of " + whole.name);
-  }
-  greybox::Dataset part = greybox::part(whole, from, to);
-  part.notes = whole.notes;
-  part.gaps = whole.gaps;
-  return part;
-}
-
-void check_observer(const CompareArguments& a, const greybox::Dataset& record) {
-  if (a.observer_per_s * record.sample_time_s < 1.0) return;
-  throw UsageError("--observer: is too fast for samples every " +
-                   std::to_string(record.sample_time_s) + " s; allowed: below 1 / sample time");
-}
 
 bool utf8_terminal() {
   for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
@@ -126,31 +87,29 @@ void write_residuals(const validation::Comparison& comparison, const plant_sim::
 
 void run_live(CompareArguments& a) {
   for (const auto& [given, option] :
-       {std::pair(!a.record.empty(), "RECORD"), std::pair(!a.report.empty(), "--report"),
+       {std::pair(!a.request.record.empty(), "RECORD"), std::pair(!a.report.empty(), "--report"),
         std::pair(a.all, "--all"), std::pair(!a.residuals.empty(), "--residuals"),
-        std::pair(!a.ignored.empty(), "--ignore"),
+        std::pair(!a.request.ignored.empty(), "--ignore"),
         std::pair(!a.json.empty() && a.json != "-", "--json FILE")}) {
     if (given) throw UsageError(std::string("--live: not together with ") + option);
   }
   a.watch.json = a.json == "-";
-  a.watch.observer_per_s = a.observer_per_s;
+  a.watch.observer_per_s = a.request.observer_per_s;
   const StopCondition stop(a.duration_s);
   a.watch.ended = [&stop] { return stop.reached(); };
   a.watch.interrupted = StopCondition::asked;
-  live::watch(present::load_printed_model(a.model, a.assignments), a.watch);
+  live::watch(present::load_printed_model(a.request.model, a.request.assignments), a.watch);
 }
 
 void run(CompareArguments& a) {
   if (a.live) return run_live(a);
-  if (a.record.empty()) throw UsageError("compare: no RECORD, and not --live");
+  if (a.request.record.empty()) throw UsageError("compare: no RECORD, and not --live");
   files::check_outputs({{"--json", a.json}, {"--report", a.report}, {"--residuals", a.residuals}},
-                       {a.model, {a.record}});
-  const plant_sim::ModelFile model = present::load_printed_model(a.model, a.assignments);
-  config::record::RecordUnits units;
-  const greybox::Dataset record = read_measured(a, units);
-  check_observer(a, record);
-  const validation::Comparison comparison = validation::compare(model, record, a.observer_per_s);
-  if (!a.residuals.empty()) write_residuals(comparison, model, units, a);
+                       {a.request.model, {a.request.record}});
+  const compare::PreparedComparison prepared = compare::prepare(a.request);
+  const validation::Comparison comparison =
+      validation::compare(prepared.model, prepared.record, a.request.observer_per_s);
+  if (!a.residuals.empty()) write_residuals(comparison, prepared.model, prepared.units, a);
   if (!a.report.empty()) {
     present::write_report(compare::make_report(comparison, a.command), a.report);
   }
@@ -163,21 +122,21 @@ void run(CompareArguments& a) {
 
 void add_compare(CLI::App& command, int& /*exit_code*/) {
   auto arguments = std::make_shared<CompareArguments>();
-  add_model(command, arguments->model);
-  add_record(command, arguments->record)->required(false);
-  add_reading(command, arguments->reading);
+  add_model(command, arguments->request.model);
+  add_record(command, arguments->request.record)->required(false);
+  add_reading(command, arguments->request.reading);
   add_json(command, arguments->json);
   add_report(command, arguments->report);
-  command.add_option("--from", arguments->from_s, "s: ignore samples before this time")
+  command.add_option("--from", arguments->request.from_s, "s: ignore samples before this time")
       ->check(finite_number());
-  command.add_option("--to", arguments->to_s, "s: ignore samples after this time")
+  command.add_option("--to", arguments->request.to_s, "s: ignore samples after this time")
       ->check(finite_number());
-  add_ignored(command, arguments->ignored);
+  add_ignored(command, arguments->request.ignored);
   command.add_option("--residuals", arguments->residuals,
                      "file for every sample: command, position, free run, drift-corrected run, "
                      "residuals, states of the free run (.csv, .mat)");
-  add_observer(command, arguments->observer_per_s)->check(positive_number());
-  add_set(command, arguments->assignments);
+  add_observer(command, arguments->request.observer_per_s)->check(positive_number());
+  add_set(command, arguments->request.assignments);
   command.add_flag("--all", arguments->all,
                    "the error by every variable, not only the most significant");
   CLI::Option* live = command.add_flag("--live", arguments->live,

@@ -7,15 +7,12 @@
 #include <memory>
 
 #include "config/record/whole_file.h"
-#include "estimator/greybox/selection/command_lead.h"
 #include "workbench/cli/command.h"
 #include "workbench/cli/common_options.h"
 #include "workbench/cli/interrupt.h"
 #include "workbench/cli/number_check.h"
 #include "workbench/cli/selection_options.h"
 #include "workbench/diagnose/diagnosis_report.h"
-#include "workbench/diagnose/experiment_design.h"
-#include "workbench/diagnose/model_residuals.h"
 #include "workbench/diagnose/progress_line.h"
 #include "workbench/diagnose/request.h"
 #include "workbench/present/json.h"
@@ -58,18 +55,10 @@ int run(const DiagnosisRequest& request) {
     return Interrupt::requested() ||
            (request.within_s > 0.0 && std::chrono::steady_clock::now() - begin > within);
   };
-  diagnose::AdvisedDiagnosis found = diagnose::diagnose(prepared.problem, prepared.options);
+  const DiagnosisReport report = diagnose::run(prepared, Interrupt::requested);
   if (!request.quiet) line.end();
-  const int exit_code = Interrupt::exit_code();
-  DiagnosisReport report{&prepared, std::move(found.diagnosis), std::move(found.advice)};
-  selection::advance_command(prepared.problem.data, report.diagnosis.command_lead_samples);
-  for (const selection::Law& law : report.diagnosis.laws) {
-    prepared.problem.model.declare(law.effect, prepared.model_file);
-  }
-  report.interrupted = exit_code != 0 || report.diagnosis.search.interrupted;
-  simulate_freely(report);
   write(report, request);
-  return exit_code;
+  return Interrupt::exit_code();
 }
 
 }  // namespace

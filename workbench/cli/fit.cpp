@@ -2,7 +2,6 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <iostream>
 #include <memory>
 
@@ -29,7 +28,6 @@ void write(const fit::FitReport& outcome, const FitRequest& request) {
 }
 
 int run(const FitRequest& request) {
-  const auto begin = std::chrono::steady_clock::now();
   fit::PreparedFit prepared = prepare(request);
   const Interrupt interrupt;
   prepared.options.cancel = Interrupt::requested;
@@ -39,14 +37,8 @@ int run(const FitRequest& request) {
       std::cerr << "\r\x1b[K" << fit::progress_words(progress) << std::flush;
     };
   }
-  fit::FitReport outcome;
-  outcome.prepared = &prepared;
-  outcome.noise_floor_m = prepared.noise_floor_m;
-  outcome.output = request.output;
-  outcome.estimation = estimator::greybox::estimate(prepared.problem, prepared.options);
+  const fit::FitReport outcome = fit::run(prepared);
   if (shown) std::cerr << "\r\x1b[K" << std::flush;
-  outcome.runtime_s =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   write(outcome, request);
   return Interrupt::exit_code();
 }

@@ -2,6 +2,7 @@
 // file and HTML report.
 #pragma once
 
+#include <functional>
 #include <iosfwd>
 #include <limits>
 #include <string>
@@ -24,6 +25,11 @@ struct DiagnosisReport {
   /// False when the records did not move enough for anything to be fitted.
   [[nodiscard]] bool fitted() const { return diagnosis.final.theta.size() > 0; }
 };
+
+/// Diagnoses with the options of `prepared`, which must outlive the report; the laws that are
+/// learned are declared in its model. `interrupted` is asked once, at the end.
+[[nodiscard]] DiagnosisReport run(PreparedDiagnosis& prepared,
+                                  const std::function<bool()>& interrupted);
 
 /// A diagnosis as text for a terminal: words first, then the figures.
 void print(const DiagnosisReport& outcome, std::ostream& out);

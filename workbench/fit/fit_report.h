@@ -18,6 +18,9 @@ struct FitReport {
   std::string output;  ///< the model file that is written, or empty
 };
 
+/// Fits; `prepared` must outlive the report.
+[[nodiscard]] FitReport run(const PreparedFit& prepared);
+
 /// Summary as sentences, most important first.
 [[nodiscard]] std::vector<std::string> words(const FitReport& outcome);
 /// Names of the fitted parameters.

@@ -139,8 +139,9 @@ std::string shown(double value) { return fmt::format("{:.9g}", value); }
 }  // namespace
 
 PreparedFit prepare(const FitRequest& request) {
-  check_files(request);
   PreparedFit out;
+  out.begin = std::chrono::steady_clock::now();
+  check_files(request);
   greybox::EstimationProblem& problem = out.problem;
   greybox::EstimationOptions& options = out.options;
   problem.model = present::load_printed_model(request.model, request.assignments);
@@ -173,6 +174,7 @@ PreparedFit prepare(const FitRequest& request) {
   options.threads =
       request.threads > 0 ? request.threads : std::max(1U, std::thread::hardware_concurrency());
   out.command = request.command;
+  out.output = request.output;
   return out;
 }
 

@@ -1,6 +1,7 @@
 // Request of `spoolwatch fit`, checked before anything is computed.
 #pragma once
 
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,9 @@ struct PreparedFit {
   greybox::EstimationOptions options;
   double noise_floor_m = 0.0;  ///< NaN: unknown
   std::vector<std::string> notes;
-  std::string command;  ///< as it was typed
+  std::string command;                            ///< as it was typed
+  std::string output;                             ///< the model file that is written, or empty
+  std::chrono::steady_clock::time_point begin{};  ///< of the reading
 };
 
 /// Reads everything. Throws config::schema::UsageError for contradictory options, DataError and
