@@ -39,3 +39,21 @@ function(spoolwatch_embed variable namespace header)
   set_source_files_properties("${source}" PROPERTIES OBJECT_DEPENDS "${files}")
   set(${variable} "${source}" PARENT_SCOPE)
 endfunction()
+
+# spoolwatch_web_assets(variable): the folder with the libraries of the page of `spoolwatch serve`,
+# fetched when it is not there; empty, with one line that says why, where they cannot be had.
+function(spoolwatch_web_assets variable)
+  set(SPOOLWATCH_WEB_ASSETS "${CMAKE_BINARY_DIR}/web_assets" CACHE PATH
+    "Libraries of the page of spoolwatch serve (scripts/web-assets FOLDER)")
+  if(NOT EXISTS "${SPOOLWATCH_WEB_ASSETS}/uplot.js")
+    execute_process(COMMAND "${CMAKE_SOURCE_DIR}/scripts/web-assets" "${SPOOLWATCH_WEB_ASSETS}"
+      RESULT_VARIABLE failed ERROR_VARIABLE why OUTPUT_QUIET ERROR_STRIP_TRAILING_WHITESPACE)
+    if(failed)
+      string(REGEX REPLACE ".*\n" "" why "${why}")
+      message(STATUS "The page of spoolwatch serve is left out: ${why}")
+      set(${variable} "" PARENT_SCOPE)
+      return()
+    endif()
+  endif()
+  set(${variable} "${SPOOLWATCH_WEB_ASSETS}" PARENT_SCOPE)
+endfunction()

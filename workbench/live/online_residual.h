@@ -46,6 +46,8 @@ class OnlineResidual {
   /// config::schema::Error for a model that cannot be built at this sample time.
   void add(std::int64_t tick, double sample_time_s, double u_V, double y_m);
   [[nodiscard]] bool empty() const noexcept { return samples_.empty(); }
+  /// Of the newest sample, drift-corrected; NaN while the model settles.
+  [[nodiscard]] double newest_error_m() const { return samples_.back().error_m; }
   [[nodiscard]] ResidualFigures figures() const;
 
  private:

@@ -175,6 +175,17 @@ double Comparison::duration_s() const {
   return static_cast<double>(record.size()) * record.sample_time_s;
 }
 
+ModelErrors errors_of(const plant_sim::ModelFile& model, const Dataset& record,
+                      double observer_per_s) {
+  ModelErrors errors;
+  errors.error_m = run(model, record, observer_per_s);
+  errors.free_error_m = run(model, record, 0.0);
+  errors.rms_m = rms(errors.error_m, record.valid);
+  errors.free_run_rms_m = rms(errors.free_error_m, std::vector<char>(record.size(), 1));
+  errors.fit_percent = 100.0 * (1.0 - errors.free_run_rms_m / spread(record.y_m));
+  return errors;
+}
+
 Comparison compare(const plant_sim::ModelFile& model, const Dataset& record,
                    double observer_per_s) {
   Comparison c;
@@ -188,11 +199,12 @@ Comparison compare(const plant_sim::ModelFile& model, const Dataset& record,
   require_motion(record, floor.sd_m);
   note_command(c);
   note_stroke(c, model);
-  c.error_m = run(model, record, observer_per_s);
-  c.free_error_m = run(model, record, 0.0);
-  c.rms_m = rms(c.error_m, record.valid);
-  c.free_run_rms_m = rms(c.free_error_m, std::vector<char>(record.size(), 1));
-  c.fit_percent = 100.0 * (1.0 - c.free_run_rms_m / spread(record.y_m));
+  ModelErrors errors = errors_of(model, record, observer_per_s);
+  c.error_m = std::move(errors.error_m);
+  c.free_error_m = std::move(errors.free_error_m);
+  c.rms_m = errors.rms_m;
+  c.free_run_rms_m = errors.free_run_rms_m;
+  c.fit_percent = errors.fit_percent;
   c.k_step = k_step_errors(model, record);
   const std::vector<double> residual = broken(record, c.error_m, true);
   c.whiteness_p = estimator::residual::whiteness(residual).p;

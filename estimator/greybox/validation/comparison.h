@@ -81,6 +81,20 @@ struct Comparison {
   [[nodiscard]] double duration_s() const;
 };
 
+/// The errors of a model alone, as a Comparison has them.
+struct ModelErrors {
+  std::vector<double> error_m;
+  std::vector<double> free_error_m;
+  double rms_m = 0.0;
+  double free_run_rms_m = 0.0;
+  double fit_percent = 0.0;
+};
+
+/// Two simulations and nothing more: for a model that is being changed by hand. Throws
+/// config::schema::ConfigError for a model that cannot be built.
+[[nodiscard]] ModelErrors errors_of(const plant_sim::ModelFile& model, const Dataset& record,
+                                    double observer_per_s = kObserver_per_s);
+
 /// Error, in noise floors, up to which it counts as noise.
 inline constexpr double kAtFloor = 1.15;
 

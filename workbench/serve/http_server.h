@@ -1,0 +1,105 @@
+// HTTP/1.1 for the browsers of one engineer: small requests, files in both directions, and
+// server-sent events. One thread serves all connections; Boost.Beast stays in http_server.cpp.
+//
+// Every limit is stated in HttpLimits. A client that does not read its events loses the oldest and
+// learns how many; nothing that a client does delays another or grows the server.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace workbench::serve {
+
+struct HttpLimits {
+  std::uint32_t header_bytes = 8 * 1024;
+  std::uint64_t text_bytes = 256 * 1024;                  ///< body of a request
+  std::uint64_t upload_bytes = std::uint64_t{512} << 20;  ///< body that becomes a file
+  std::chrono::milliseconds request_time{10'000};         ///< a whole header; a text body
+  std::chrono::milliseconds stall_time{15'000};           ///< without progress in a file
+  std::chrono::milliseconds idle_time{30'000};            ///< between two requests
+  std::size_t connections = 64;
+  std::size_t streams = 16;            ///< event streams among them
+  std::size_t stream_bytes = 2 << 20;  ///< queued for a slow client
+};
+
+struct HttpHead {
+  std::string method;
+  std::string path;                                         ///< up to '?', as it was sent
+  std::string query;                                        ///< behind '?'
+  std::vector<std::pair<std::string, std::string>> fields;  ///< names in lower case
+
+  [[nodiscard]] std::size_t count(std::string_view name) const;
+  /// The first field of that name; "" without one.
+  [[nodiscard]] std::string_view field(std::string_view name) const;
+};
+
+struct HttpRequest {
+  HttpHead head;
+  std::string body;
+  std::filesystem::path upload;  ///< the file that took the body; empty: none
+};
+
+struct HttpResponse {
+  int status = 200;
+  std::string type = "application/json";
+  std::string body;
+  std::filesystem::path file{};  ///< sent instead of `body`
+  std::vector<std::pair<std::string, std::string>> fields{};
+  /// An event stream that begins with `body`; it receives what is published under these topics.
+  unsigned topics = 0;
+};
+
+/// How the body of a request is taken.
+struct BodyPlan {
+  enum class Kind { refuse, text, file };
+  Kind kind = Kind::text;
+  HttpResponse refusal{};
+  std::filesystem::path file{};  ///< Kind::file; written there
+};
+
+/// Answers one request, once, from any thread.
+using HttpReply = std::function<void(HttpResponse)>;
+
+/// Called on the network's thread: must not compute or block.
+class HttpHandler {
+ public:
+  virtual ~HttpHandler() = default;
+  /// Decides by the head alone, before a byte of the body is taken.
+  virtual BodyPlan admit(const HttpHead& head) = 0;
+  virtual void handle(HttpRequest request, HttpReply reply) = 0;
+  /// Number of open event streams under each of the topics has changed.
+  virtual void on_streams(unsigned topics_in_use) = 0;
+};
+
+class HttpNetwork;
+
+class HttpServer {
+ public:
+  /// Takes ownership of `listening`, a socket that listens. `handler` must outlive this object.
+  HttpServer(int listening, HttpHandler& handler, const HttpLimits& limits = {});
+  ~HttpServer();
+  HttpServer(const HttpServer&) = delete;
+  HttpServer& operator=(const HttpServer&) = delete;
+
+  /// Serves on this thread until stop().
+  void run();
+  /// From any thread.
+  void stop();
+  /// From any thread: an event ("event: NAME\ndata: ...\n\n") for every stream of the topic.
+  void publish(unsigned topic, std::string event);
+
+ private:
+  std::shared_ptr<HttpNetwork> network_;
+};
+
+/// One event; line breaks in `data` become further data lines.
+[[nodiscard]] std::string event_text(std::string_view name, std::string_view data);
+
+}  // namespace workbench::serve

@@ -1,0 +1,64 @@
+#include "workbench/serve/lane.h"
+
+#include <algorithm>
+
+namespace workbench::serve {
+
+Lane::Lane() : thread_([this] { run(); }) {}
+
+void Lane::end() {
+  {
+    const std::lock_guard lock(mutex_);
+    ends_ = true;
+    waiting_.clear();
+  }
+  wakes_.notify_one();
+  if (thread_.joinable()) thread_.join();
+}
+
+void Lane::post(Work work) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (ends_) return;
+    waiting_.push_back({std::move(work)});
+  }
+  wakes_.notify_one();
+}
+
+void Lane::post_latest(Work work, Work dropped) {
+  Work superseded;
+  {
+    const std::lock_guard lock(mutex_);
+    if (ends_) return;
+    const auto before = std::find_if(waiting_.begin(), waiting_.end(),
+                                     [](const Entry& entry) { return entry.dropped != nullptr; });
+    if (before != waiting_.end()) {
+      superseded = std::move(before->dropped);
+      waiting_.erase(before);
+    }
+    waiting_.push_back({std::move(work), std::move(dropped)});
+  }
+  wakes_.notify_one();
+  if (superseded) superseded();
+}
+
+std::size_t Lane::waiting() const {
+  const std::lock_guard lock(mutex_);
+  return waiting_.size();
+}
+
+void Lane::run() {
+  while (true) {
+    Work work;
+    {
+      std::unique_lock lock(mutex_);
+      wakes_.wait(lock, [this] { return ends_ || !waiting_.empty(); });
+      if (ends_) return;
+      work = std::move(waiting_.front().work);
+      waiting_.pop_front();
+    }
+    work();
+  }
+}
+
+}  // namespace workbench::serve

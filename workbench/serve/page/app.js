@@ -1,0 +1,67 @@
+// The page: entry, the two views, and whether the server is heard.
+import {html, render, useEffect, useState} from '/preact.js';
+import {Live} from '/live.js';
+import {enter, listen} from '/server.js';
+import {Workbench} from '/workbench.js';
+
+const clock = (date) => date.toTimeString().slice(0, 8);
+
+function Header({view, show, link, folder}) {
+  const tab = (name, text) => html`
+    <a href=${'#' + name} role="tab" aria-selected=${view === name}
+       onClick=${(e) => { e.preventDefault(); show(name); }}>${text}</a>`;
+  return html`
+    <header>
+      <h1>Spoolwatch</h1>
+      <nav role="tablist">${tab('workbench', 'Workbench')}${tab('live', 'Live stand')}</nav>
+      <span class="folder" title="the session's files">${folder}</span>
+      <span class=${'link ' + (link.alive ? 'good' : 'bad')} role="status">
+        ${link.alive ? 'connected' : 'no server since ' + clock(link.since)}</span>
+    </header>`;
+}
+
+function App({first}) {
+  const [state, setState] = useState(first);
+  const [progress, setProgress] = useState(null);
+  const [view, setView] = useState(location.hash === '#live' ? 'live' : 'workbench');
+  const [link, setLink] = useState({alive: true, since: new Date()});
+  const [feed] = useState(() => new EventTarget());
+  const show = (name) => {
+    history.replaceState(null, '', '#' + name);
+    setView(name);
+  };
+  useEffect(() => {
+    const pass = (name) => (data) => feed.dispatchEvent(new CustomEvent(name, {detail: data}));
+    let first = true;
+    return listen(view === 'live', {
+      link: setLink,
+      // Whatever happened while the page was not heard is in the state.
+      hello: () => {
+        if (!first) enter().then(setState).catch(() => {});
+        first = false;
+        pass('hello')(null);
+      },
+      state: (data) => {
+        setState(data);
+        if (!data.running) setProgress(null);
+      },
+      progress: setProgress,
+      history: pass('history'), samples: pass('samples'), status: pass('status'),
+      alarms: pass('alarms'), dropped: pass('dropped'),
+    });
+  }, [view]);
+  return html`
+    <${Header} view=${view} show=${show} link=${link} folder=${state.folder} />
+    ${view === 'live' ? html`<${Live} feed=${feed} link=${link} state=${state} />`
+                      : html`<${Workbench} state=${state} progress=${progress} />`}`;
+}
+
+const root = document.getElementById('app');
+enter().then((first) => {
+  root.replaceChildren();
+  render(html`<${App} first=${first} />`, root);
+  document.body.dataset.ready = 'yes';
+}).catch((error) => {
+  root.textContent = error.message;
+  root.className = 'starting';
+});

@@ -1,0 +1,246 @@
+// The running stand: motion, command, the model's error, estimates and alarms. It follows, it can be
+// paused, and it says since when nothing has come.
+import {html, useEffect, useRef, useState} from '/preact.js';
+import {Alarms} from '/alarms.js';
+import {PlotStack} from '/plots.js';
+
+const KEYS = ['reference', 'y', 'u', 'error'];
+const KEPT_S = 120;       // what the page remembers
+const STALE_S = 3;
+const FRAME_MS = 66;
+const SPECS = [
+  {height: 240, label: 'position, mm', series: [
+    {key: 'reference', name: 'reference', tone: 'reference'},
+    {key: 'y', name: 'measured', tone: 'measured', width: 2}]},
+  {height: 160, label: 'command, V', series: [{key: 'u', name: 'command', tone: 'command'}]},
+  {height: 180, label: 'error of the model, µm', series: [
+    {key: 'error', name: 'measured less model', tone: 'residual'}]},
+];
+
+/// Samples of the last KEPT_S seconds, oldest first.
+class Ring {
+  constructor() { this.clear(); }
+  clear() {
+    this.t = [];
+    for (const key of KEYS) this[key] = [];
+  }
+  add(batch) {
+    for (let i = 0; i < batch.t.length; ++i) {
+      this.t.push(batch.t[i]);
+      for (const key of KEYS) this[key].push(batch[key][i]);
+    }
+    // Cut rarely: moving the arrays costs.
+    if (this.t.length && this.t[this.t.length - 1] - this.t[0] > 1.25 * KEPT_S) {
+      const from = this.first(this.t[this.t.length - 1] - KEPT_S);
+      for (const key of ['t', ...KEYS]) this[key] = this[key].slice(from);
+    }
+  }
+  /// A missing sample: the curves have a gap here.
+  gap() {
+    if (!this.t.length) return;
+    this.t.push(this.t[this.t.length - 1] + 1e-6);
+    for (const key of KEYS) this[key].push(null);
+  }
+  first(t) {
+    let low = 0, high = this.t.length;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (this.t[middle] < t) low = middle + 1; else high = middle;
+    }
+    return low;
+  }
+  part(from, to) {
+    const a = Math.max(0, this.first(from) - 1), b = this.first(to) + 1;
+    const out = {t: this.t.slice(a, b)};
+    for (const key of KEYS) out[key] = this[key].slice(a, b);
+    return out;
+  }
+}
+
+// Of what is on the screen.
+function meter(values) {
+  let low = Infinity, high = -Infinity, sum = 0, n = 0;
+  for (const v of values) {
+    if (v == null) continue;
+    low = Math.min(low, v);
+    high = Math.max(high, v);
+    sum += v;
+    ++n;
+  }
+  return n ? {low, high, peak: Math.max(Math.abs(low), Math.abs(high)), mean: sum / n} : null;
+}
+
+const shown = (v) => (v == null || !Number.isFinite(v) ? '' : String(+v.toPrecision(4)));
+
+function Meters({meters}) {
+  const names = {reference: 'reference, mm', y: 'position, mm', u: 'command, V', error: 'error, µm'};
+  return html`
+    <table class="meters"><thead><tr><th></th><th>min</th><th>max</th><th>peak</th><th>mean</th></tr></thead>
+      <tbody>${KEYS.map((key) => html`<tr><td>${names[key]}</td>
+        ${['low', 'high', 'peak', 'mean'].map((what) => html`
+          <td class="n">${shown(meters[key] && meters[key][what])}</td>`)}</tr>`)}</tbody></table>`;
+}
+
+function Estimates({status}) {
+  const list = (status && status.estimates) || [];
+  const rows = list.flatMap((e) => (e.values || []).map((v) => ({source: e.source, valid: e.valid, ...v})));
+  if (rows.length === 0) return null;
+  return html`
+    <section class="estimates"><h2>Estimates</h2>
+      <table><thead><tr><th></th><th>value</th><th>band</th></tr></thead>
+        <tbody>${rows.slice(0, 40).map((r) => html`
+          <tr><td>${r.source}.${r.name}</td>
+            <td class="n">${r.valid ? shown(r.value) : 'not valid'}</td>
+            <td class="n">${r.low == null && r.high == null ? ''
+              : shown(r.low) + ' to ' + shown(r.high)}</td></tr>`)}</tbody></table>
+    </section>`;
+}
+
+function Model({status, model}) {
+  const m = status && status.model;
+  if (!model) {
+    return html`<section><h2>Model beside the stand</h2>
+      <p class="hint">Choose a model in the workbench: it runs along.</p></section>`;
+  }
+  const um = (v) => (v == null ? '-' : shown(1e6 * v) + ' µm');
+  return html`
+    <section><h2>Model beside the stand</h2>
+      <p><b>${model}</b>${status && status.model_note ? ': ' + status.model_note : ''}</p>
+      ${m && html`
+        <p>error ${um(m.rms_m)}, fit ${shown(m.fit_percent)} %, ${shown(m.floor_ratio)} × floor</p>
+        ${m.worst && html`<p>worst ${m.worst.where} (${um(m.worst.rms_m)})</p>`}
+        ${m.note && html`<p class="hint">${m.note}</p>`}`}
+    </section>`;
+}
+
+export function Live({feed, link, state}) {
+  const element = useRef(), kept = useRef(null);
+  const [status, setStatus] = useState(null);
+  const [alarms, setAlarms] = useState(null);
+  const [span, setSpan] = useState(10);
+  const [paused, setPaused] = useState(false);
+  const [view, setView] = useState(null);    // zoomed: it does not follow
+  const [age, setAge] = useState({s: null, since: null});
+  const [meters, setMeters] = useState({});
+  const [held, setHeld] = useState(0);
+  const now = useRef();
+  now.current = {span, paused, view};
+  if (!kept.current) {
+    kept.current = {ring: new Ring(), wants: true, came: 0, aged: null, fresh: false, frozen: null,
+                    after: 0, lost: false};
+  }
+  useEffect(() => {
+    const k = kept.current;
+    const stack = new PlotStack(element.current, SPECS, {onZoom: (from, to) => {
+      setView(from === null ? null : [k.base + from, k.base + to]);
+    }});
+    const on = {
+      hello: () => { k.wants = true; },
+      history: ({detail}) => {
+        if (!k.wants) return;
+        k.wants = false;
+        // The ring of the server is whole: it fills what this page has missed, as far as it reaches.
+        const last = k.ring.t.length ? k.ring.t[k.ring.t.length - 1] : -Infinity;
+        const from = detail.t.findIndex((t) => t > last);
+        if (detail.t.length && detail.t[detail.t.length - 1] < last) k.ring.clear();  // a new run
+        else if (k.ring.t.length && detail.t.length && detail.t[0] > last) k.ring.gap();
+        const rest = from < 0 ? {t: []} : {t: detail.t.slice(from)};
+        for (const key of KEYS) rest[key] = from < 0 ? [] : detail[key].slice(from);
+        k.ring.add(rest);
+        k.fresh = true;
+      },
+      samples: ({detail}) => {
+        const t = k.ring.t;
+        if (t.length && detail.t[0] < t[t.length - 1]) k.ring.clear();
+        k.ring.add(detail);
+        k.came = Date.now();
+        k.fresh = true;
+        if (now.current.paused) k.after += detail.t.length;
+      },
+      dropped: () => k.ring.gap(),
+      status: ({detail}) => {
+        setStatus(detail);
+        k.aged = {s: detail.age_s, at: Date.now()};
+      },
+      alarms: ({detail}) => setAlarms(detail),
+    };
+    for (const [name, take] of Object.entries(on)) feed.addEventListener(name, take);
+
+    let frame = 0, drawn = 0, told = 0;
+    const draw = (time) => {
+      frame = requestAnimationFrame(draw);
+      if (time - drawn < FRAME_MS) return;
+      const {span, paused, view} = now.current;
+      const key = paused + '|' + span + '|' + view;
+      if (!k.fresh && key === k.key) return;
+      drawn = time;
+      const t = k.ring.t;
+      if (paused && !k.frozen && t.length) k.frozen = t[t.length - 1];
+      if (!paused) { k.frozen = null; k.after = 0; }
+      if (paused && key === k.key) return;
+      k.key = key;
+      k.fresh = false;
+      if (!t.length) return;
+      const newest = k.frozen || t[t.length - 1];
+      const [from, to] = view || [newest - span, newest];
+      const part = k.ring.part(from, to);
+      k.base = newest;
+      stack.show({...part, t: part.t.map((v) => v - newest)}, from - newest, to - newest);
+      element.current.dataset.points = part.t.length;
+      if (time - told > 250) {
+        told = time;
+        setMeters(Object.fromEntries(KEYS.map((key) => [key, meter(part[key])])));
+      }
+    };
+    frame = requestAnimationFrame(draw);
+    const ticking = setInterval(() => {
+      const since = k.aged && k.aged.s != null ? k.aged.s + (Date.now() - k.aged.at) / 1000 : null;
+      const seen = k.came ? (Date.now() - k.came) / 1000 : null;
+      const s = seen !== null && (since === null || seen < since) ? seen : since;
+      setAge({s, since: s === null ? null : new Date(Date.now() - 1000 * s)});
+      setHeld(k.after);
+    }, 500);
+    return () => {
+      cancelAnimationFrame(frame);
+      clearInterval(ticking);
+      for (const [name, take] of Object.entries(on)) feed.removeEventListener(name, take);
+      stack.end();
+    };
+  }, []);
+
+  const stale = !link.alive || age.s === null || age.s > STALE_S;
+  const health = (status && status.health) || {};
+  const ago = age.s === null ? 'no sample yet'
+    : stale ? 'no data since ' + age.since.toTimeString().slice(0, 8)
+            : 'newest sample ' + age.s.toFixed(1) + ' s old';
+  return html`
+    <main class=${'live' + (stale ? ' stale' : '')}>
+      <div>
+        <p class="row tools">
+          <span class="state">${(status && status.state) || 'no daemon heard'}</span>
+          <span class=${'age' + (stale ? ' stale' : '')} role="status">${ago}</span>
+          <button aria-pressed=${paused} onClick=${() => setPaused(!paused)}>
+            ${paused ? 'Resume' : 'Pause'}</button>
+          ${paused && html`<span class="hint">${held} samples since</span>`}
+          <label class="row">window <select value=${span}
+            onChange=${(e) => { setView(null); setSpan(+e.target.value); }}>
+            ${[5, 10, 30, 60, 120].map((s) => html`<option value=${s}>${s} s</option>`)}</select></label>
+          ${view && html`<button onClick=${() => setView(null)}>Back to live</button>`}
+        </p>
+        <div class="stack" ref=${element}></div>
+        <${Meters} meters=${meters} />
+      </div>
+      <div class="side">
+        <section><h2>Loop</h2>
+          <p>${health.rig_id || 'no health message yet'}</p>
+          ${health.rig_id && html`<p class="hint">lateness p99.9 ${shown(health.lateness_p999_us)} µs,
+            overruns ${health.overruns}, dropped ${health.dropped_samples}</p>`}
+          ${status && status.lost > 0 && html`<p class="warn">${status.lost} messages lost</p>`}
+          ${status && status.notice && html`<p class="hint">${status.notice}</p>`}
+        </section>
+        <${Alarms} alarms=${alarms} status=${status} orders=${state.orders} />
+        <${Model} status=${status} model=${state.model} />
+        <${Estimates} status=${status} />
+      </div>
+    </main>`;
+}

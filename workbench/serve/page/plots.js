@@ -1,0 +1,126 @@
+// Time plots that share zoom and cursor, drawn by uPlot in the colours of the style sheet.
+import uPlot from '/uplot.js';
+
+export const colour = (name) =>
+    getComputedStyle(document.documentElement).getPropertyValue('--' + name).trim();
+
+const FONT = '12px system-ui, sans-serif';
+
+function axis(label, extra = {}) {
+  return {label, stroke: () => colour('soft'), font: FONT, labelFont: FONT, labelSize: 18, size: 58,
+          grid: {stroke: () => colour('grid'), width: 1}, ticks: {show: false}, ...extra};
+}
+
+/// Bands of time behind the curves: {spans: [[from, to]], tone, edge}.
+function bands(stack) {
+  return (plot) => {
+    const {ctx, bbox} = plot;
+    for (const {spans, tone} of stack.bands) {
+      ctx.fillStyle = colour(tone);
+      for (const [from, to] of spans) {
+        const left = Math.max(plot.valToPos(from, 'x', true), bbox.left);
+        const right = Math.min(plot.valToPos(to, 'x', true), bbox.left + bbox.width);
+        if (right >= left) ctx.fillRect(left, bbox.top, Math.max(right - left, 1.5), bbox.height);
+      }
+    }
+  };
+}
+
+/// Dashed lines at plus and minus a level.
+function level(stack, key) {
+  return (plot) => {
+    const value = stack.levels[key];
+    if (!(value > 0)) return;
+    const {ctx, bbox} = plot;
+    ctx.save();
+    ctx.strokeStyle = colour('soft');
+    ctx.setLineDash([6, 5]);
+    ctx.beginPath();
+    for (const at of [value, -value]) {
+      const y = plot.valToPos(at, 'y', true);
+      if (y < bbox.top || y > bbox.top + bbox.height) continue;
+      ctx.moveTo(bbox.left, y);
+      ctx.lineTo(bbox.left + bbox.width, y);
+    }
+    ctx.stroke();
+    ctx.restore();
+  };
+}
+
+/// Plots below each other. specs: [{height, label, level, series: [{key, name, tone, dash, width}]}].
+export class PlotStack {
+  constructor(element, specs, {onZoom, onBand, xLabel = 'time, s'} = {}) {
+    this.specs = specs;
+    this.bands = [];
+    this.levels = {};
+    this.dragMeaning = 'zoom';
+    this.range = null;
+    const key = 'stack-' + Math.random();
+    this.plots = specs.map((spec, i) => {
+      const last = i === specs.length - 1;
+      const options = {
+        width: element.clientWidth || 600, height: spec.height,
+        scales: {x: {time: false}, y: {range: spec.range}},
+        legend: {live: true},
+        cursor: {sync: {key}, drag: {x: true, y: false, setScale: false}, focus: {prox: 30}},
+        axes: [axis(last ? xLabel : '', {size: last ? 34 : 22, labelSize: last ? 16 : 0}),
+               axis(spec.label)],
+        series: [{label: 'time', value: (u, v) => (v == null ? '' : v.toFixed(3) + ' s')},
+                 ...spec.series.map((s) => ({
+                   label: s.name, stroke: () => colour(s.tone), width: s.width || 1.5, dash: s.dash,
+                   points: {show: false}, spanGaps: false,
+                   value: (u, v) => (v == null ? '' : String(+v.toPrecision(4)))}))],
+        hooks: {
+          drawAxes: [bands(this)],
+          draw: spec.level ? [level(this, spec.level)] : [],
+          setSelect: [(plot) => {
+            if (plot.select.width < 5) return;
+            const from = plot.posToVal(plot.select.left, 'x');
+            const to = plot.posToVal(plot.select.left + plot.select.width, 'x');
+            plot.setSelect({left: 0, top: 0, width: 0, height: 0}, false);
+            (this.dragMeaning === 'band' ? onBand : onZoom)(from, to);
+          }]},
+      };
+      return new uPlot(options, [[0, 1], ...spec.series.map(() => [null, null])], element);
+    });
+    this.sizes = new ResizeObserver(() => {
+      const width = element.clientWidth;
+      if (width > 0) {
+        this.plots.forEach((plot, i) => plot.setSize({width, height: specs[i].height}));
+      }
+    });
+    this.sizes.observe(element);
+    this.theme = matchMedia('(prefers-color-scheme: dark)');
+    this.repaint = () => this.plots.forEach((plot) => plot.redraw());
+    this.theme.addEventListener('change', this.repaint);
+    if (onZoom) {
+      for (const plot of this.plots) plot.over.addEventListener('dblclick', () => onZoom(null, null));
+    }
+  }
+
+  /// columns: {t, KEY: [...]}; a missing key is an empty curve.
+  show(columns, from, to) {
+    const empty = columns.t.map(() => null);
+    this.plots.forEach((plot, i) => {
+      const data = [columns.t, ...this.specs[i].series.map((s) => columns[s.key] || empty)];
+      plot.batch(() => {
+        plot.setData(data, false);
+        this.specs[i].series.forEach((s, k) => {
+          const there = Boolean(columns[s.key]);
+          if (plot.series[k + 1].show !== there) plot.setSeries(k + 1, {show: there});
+        });
+        plot.setScale('x', {min: from, max: to});
+      });
+    });
+  }
+
+  label(i, text) {
+    this.plots[i].axes[1].label = text;
+  }
+
+  end() {
+    this.sizes.disconnect();
+    this.theme.removeEventListener('change', this.repaint);
+    this.plots.forEach((plot) => plot.destroy());
+  }
+}

@@ -1,0 +1,51 @@
+// What a diagnosis or a fit has found: words, the candidates with the error that each would reach,
+// the law that was learned.
+import {html} from '/preact.js';
+
+function Candidates({result, run, running}) {
+  if (!result.candidates || result.candidates.length === 0) return null;
+  // Of each effect the round in which it does best.
+  const best = new Map();
+  for (const one of result.candidates) {
+    const known = best.get(one.effect);
+    if (!known || one.heldout_m < known.heldout_m) best.set(one.effect, one);
+  }
+  const rows = [...best.values()].sort((a, b) => a.heldout_m - b.heldout_m).slice(0, 8);
+  return html`
+    <h3>What would help</h3>
+    <table>
+      <thead><tr><th>effect</th><th>error it would reach</th><th>chance</th><th></th></tr></thead>
+      <tbody>${rows.map((one) => html`
+        <tr key=${one.effect}>
+          <td>${one.effect}${one.round > 1 ? html` <small>round ${one.round}</small>` : ''}</td>
+          <td class="n">${one.heldout}</td><td class="n">${one.chance}</td>
+          <td><button disabled=${running} onClick=${() => run('diagnose', {only: one.only})}
+                      aria-label=${'try ' + one.effect}>Try</button></td>
+        </tr>`)}</tbody>
+    </table>`;
+}
+
+function Steps({result}) {
+  if (!result.steps || result.steps.length === 0) return null;
+  return html`
+    <h3>How the error falls</h3>
+    <ol class="steps">${result.steps.map((step) => html`
+      <li><span>${step.what}</span><b>${step.heldout}</b></li>`)}
+      <li class="floor"><span>noise floor</span><b>${result.noise_floor}</b></li></ol>`;
+}
+
+export function Result({result, run, running}) {
+  if (!result) return null;
+  return html`
+    <section class=${'result ' + result.kind} role="status">
+      <h2>${result.kind === 'diagnosis' ? 'Diagnosis' : result.kind === 'fit' ? 'Fit' : 'Not done'}</h2>
+      ${result.interrupted && html`<p class="warn">Interrupted: the best so far.</p>`}
+      <p class="words">${result.words}</p>
+      ${(result.laws || []).map((law) => html`
+        <p class="law">${law.what || law.name}: <code>${law.formula}</code> ${law.values}</p>`)}
+      <${Steps} result=${result} />
+      <${Candidates} result=${result} run=${run} running=${running} />
+      ${result.remarks && result.remarks.length > 0 && html`
+        <details><summary>More</summary>${result.remarks.map((line) => html`<p>${line}</p>`)}</details>`}
+    </section>`;
+}

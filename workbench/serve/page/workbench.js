@@ -1,0 +1,258 @@
+// The workbench: a record against a model, where it fails, what would help, try, accept or undo.
+import {html, useEffect, useRef, useState} from '/preact.js';
+import {Ladder} from '/ladder.js';
+import {PlotStack} from '/plots.js';
+import {Result} from '/result.js';
+import {latest, post, upload} from '/server.js';
+import {Sliders} from '/sliders.js';
+
+const SPECS = [
+  {height: 270, label: 'position, mm', series: [
+    {key: 'measured', name: 'measured', tone: 'measured', width: 2},
+    {key: 'ghost_model', name: 'before', tone: 'ghost', dash: [4, 4]},
+    {key: 'model', name: 'model, free run', tone: 'model'}]},
+  {height: 220, label: 'error', level: 'floor', series: [
+    {key: 'ghost_error', name: 'before', tone: 'ghost'},
+    {key: 'error', name: 'measured less model, drift-corrected', tone: 'residual'}]},
+  {height: 130, label: 'command, V', series: [{key: 'command', name: 'command', tone: 'command'}]},
+];
+
+function Files({state, act}) {
+  const [over, setOver] = useState(false);
+  const input = useRef();
+  const take = async (files) => {
+    for (const file of files) await act(() => upload(file));
+  };
+  const drop = (e) => {
+    e.preventDefault();
+    setOver(false);
+    take(e.dataTransfer.files);
+  };
+  const records = state.files.filter((f) => f.kind === 'record');
+  const models = state.files.filter((f) => f.kind === 'model');
+  const choose = (what, name) => act(() => post(what, {name}));
+  return html`
+    <section class=${'files' + (over ? ' over' : '')} onDrop=${drop}
+             onDragOver=${(e) => { e.preventDefault(); setOver(true); }}
+             onDragLeave=${() => setOver(false)}>
+      <h2>Record and model</h2>
+      <label>Record
+        <select id="record" value=${state.record} onChange=${(e) => choose('record', e.target.value)}>
+          ${!state.record && html`<option value="">choose, or drop a file here</option>`}
+          ${records.map((f) => html`<option value=${f.name}>${f.name}</option>`)}
+        </select></label>
+      <label>Model
+        <select id="model" value=${state.model} onChange=${(e) => e.target.value.startsWith('shipped:')
+            ? choose('shipped', e.target.value.slice(8)) : choose('model', e.target.value)}>
+          ${!state.model && html`<option value="">choose</option>`}
+          <optgroup label="in the folder">
+            ${models.map((f) => html`<option value=${f.name}>${f.name}</option>`)}</optgroup>
+          <optgroup label="shipped: copied into the folder">
+            ${state.shipped.map((name) => html`<option value=${'shipped:' + name}>${name}</option>`)}
+          </optgroup>
+        </select></label>
+      <p class="row"><button onClick=${() => input.current.click()}>Add a file</button>
+        <span class="hint">CSV, MAT, LCM log, TOML; or drop it here</span></p>
+      <input id="upload" type="file" multiple hidden ref=${input}
+             onChange=${(e) => { take(e.target.files); }} />
+    </section>`;
+}
+
+function Verdict({shown, trial, act, selected, select}) {
+  if (!shown) return null;
+  return html`
+    <section class=${'verdict ' + shown.judgement}>
+      <p class="words">${trial && html`<span class="tag">trial</span>`} ${shown.verdict}</p>
+      ${trial && html`<p class="row">
+        <button class="main" onClick=${() => act(() => post('accept'))}>Accept ${trial}</button>
+        <button onClick=${() => act(() => post('undo'))}>Undo</button></p>`}
+      <dl class="figures">${shown.figures.map((f) => html`
+        <div><dt>${f.label}</dt><dd>${f.value}</dd></div>`)}</dl>
+      ${shown.regions.length > 0 && html`
+        <p class="regions">Fails ${shown.regions.map((region, i) => html`
+          <button aria-pressed=${i === selected} onClick=${() => select(i)}>${region.where}
+            <small>${region.share} of the speed error in ${region.time_share} of the time</small>
+          </button>`)}</p>`}
+      <details><summary>In words</summary>
+        ${[...shown.lines, ...shown.notes].map((line) => html`<p>${line}</p>`)}</details>
+    </section>`;
+}
+
+function Bands({ignored, act}) {
+  if (ignored.length === 0) return null;
+  return html`<p class="bands">Left out: ${ignored.map((span) => html`
+    <button title="count it again" onClick=${() => act(() =>
+      post('ignore', {spans: ignored.filter((one) => one !== span)}))}>${span.replace(':', ' to ')} s ×</button>`)}</p>`;
+}
+
+function usePlots({state, values, rms}) {
+  const element = useRef(), stack = useRef(), view = useRef({from: 0, to: 0});
+  const [zoomed, setZoomed] = useState(false);
+  const [marking, setMarking] = useState(false);
+  const [selected, setSelected] = useState(0);
+  const shown = state.shown;
+  const now = useRef();
+  now.current = {state, values};
+
+  const draw = useRef(latest(async () => {
+    const {state, values} = now.current;
+    if (!state.shown) return;
+    const {from, to} = view.current;
+    const moved = Object.keys(values).length > 0;
+    const began = performance.now();
+    const body = {from, to, rows: moved ? 4000 : 6000};
+    const curves = moved ? await post('preview', {...body, values}) : await post('curves', body);
+    if (curves.superseded || !stack.current) return;
+    stack.current.levels.floor = curves.floor;
+    stack.current.label(0, 'position, ' + curves.position_unit);
+    stack.current.label(1, 'error, ' + curves.unit);
+    stack.current.label(2, 'command, ' + curves.command_unit);
+    const whole = !(to > from);
+    stack.current.show(curves, whole ? state.shown.from_s : from, whole ? state.shown.to_s : to);
+    rms(moved ? curves : null);
+    element.current.dataset.drawnMs = (performance.now() - began).toFixed(1);
+    element.current.dataset.drawn = String(+(element.current.dataset.drawn || 0) + 1);
+  }));
+
+  const zoom = (from, to) => {
+    view.current = from === null ? {from: 0, to: 0} : {from, to};
+    setZoomed(from !== null);
+    draw.current();
+  };
+  const leaveOut = (from, to) => {
+    setMarking(false);
+    const spans = [...now.current.state.ignored, from.toFixed(3) + ':' + to.toFixed(3)];
+    now.current.act(() => post('ignore', {spans}));
+  };
+  useEffect(() => {
+    stack.current = new PlotStack(element.current, SPECS, {onZoom: zoom, onBand: leaveOut});
+    return () => { stack.current.end(); stack.current = null; };
+  }, []);
+  useEffect(() => zoom(null, null), [state.record]);
+  useEffect(() => {
+    stack.current.dragMeaning = marking ? 'band' : 'zoom';
+  }, [marking]);
+  const region = shown && shown.regions[Math.min(selected, shown.regions.length - 1)];
+  useEffect(() => {
+    stack.current.bands = [
+      {spans: region ? region.spans : [], tone: 'region'},
+      {spans: state.ignored.map((span) => span.split(':').map(Number)), tone: 'ignored'}];
+    draw.current();
+  }, [state, values, selected]);
+  return {selected, select: setSelected, now, view: html`
+    <section class=${'plots' + (shown ? '' : ' empty')}>
+      <p class="row tools">
+        <button onClick=${() => zoom(null, null)} disabled=${!zoomed}>Whole record</button>
+        <button aria-pressed=${marking} onClick=${() => setMarking(!marking)} disabled=${!shown}>
+          Leave out a stretch</button>
+        <span class="hint">${marking ? 'drag over the stretch that must not count'
+                                     : 'drag to zoom, double click for the whole record'}</span>
+      </p>
+      <div class="stack" ref=${element}></div>
+    </section>`};
+}
+
+function Progress({progress, running, cancel}) {
+  if (!running) return null;
+  const {text, done, of} = progress || {text: 'preparing', done: 0, of: 0};
+  return html`
+    <section class="progress" role="status">
+      <progress max=${of || 1} ...${of ? {value: done} : {}}></progress>
+      <p>${text}</p><button onClick=${cancel}>Cancel</button>
+    </section>`;
+}
+
+function Commands({commands, shown, preview}) {
+  const text = [...commands.slice(-6), ...(shown ? [shown.command] : [])];
+  return html`
+    <section class="commands">
+      <h2>The same by command line</h2>
+      ${preview && html`<code class="now">${preview}</code>`}
+      ${text.reverse().map((line) => html`<code>${line}</code>`)}
+      <p class="hint">commands.sh in the folder holds them all.</p>
+    </section>`;
+}
+
+function Exports({state, act, say}) {
+  const report = () => act(async () => {
+    const {file} = await post('report');
+    say('The report is ' + file + '.');
+  });
+  const link = (name) => html`<a download=${name} href=${'/files/' + encodeURIComponent(name)}>${name}</a>`;
+  const reports = state.files.filter((f) => f.name.endsWith('.html')).slice(-3);
+  return html`
+    <section class="exports"><h2>Take away</h2>
+      <p class="row"><button onClick=${report} disabled=${!state.shown}>Write a report</button></p>
+      <ul>${[state.trial || state.model, state.record, ...reports.map((f) => f.name)]
+        .filter(Boolean).map((name) => html`<li key=${name}>${link(name)}</li>`)}</ul>
+    </section>`;
+}
+
+function AddEffect({effects, act, disabled}) {
+  const absent = effects.filter((e) => !e.present);
+  if (absent.length === 0) return null;
+  return html`
+    <label>Add an effect by hand
+      <select id="effect" disabled=${disabled} value="" onChange=${(e) => {
+          const effect = e.target.value;
+          e.target.value = '';
+          act(() => post('add', {effect}));
+        }}>
+        <option value="">choose: it gets a typical size</option>
+        ${absent.map((e) => html`<option value=${e.name} title=${e.equation}>${e.name}</option>`)}
+      </select></label>`;
+}
+
+export function Workbench({state, progress}) {
+  const [message, say] = useState('');
+  const [values, setValues] = useState({});
+  const [preview, setPreview] = useState(null);
+  const act = async (work) => {
+    try {
+      say('');
+      await work();
+    } catch (error) {
+      say(error.message);
+    }
+  };
+  useEffect(() => setValues({}), [state.model, state.trial, state.record]);
+  const plots = usePlots({state, values, rms: setPreview});
+  plots.now.current.act = act;
+  const run = (what, body = {}) => act(() => post(what, body));
+  return html`
+    <main class="workbench">
+      <div class="left">
+        <${Files} state=${state} act=${act} />
+        <${Sliders} parameters=${state.shown ? state.parameters : []} values=${values}
+                    set=${(name, value) => setValues({...values, [name]: value})}
+                    reset=${() => setValues({})} running=${state.running}
+                    fit=${() => run('fit', {values})} rms=${preview && preview.rms} />
+      </div>
+      <div class="middle">
+        ${message && html`<p class="message" role="alert">${message}
+          <button class="plain" aria-label="close" onClick=${() => say('')}>×</button></p>`}
+        ${!state.shown && html`<p class="welcome">Choose a record and a model: the page shows where the
+          model fails, and finds out what it misses.</p>`}
+        <${Verdict} shown=${state.shown} trial=${state.trial} act=${act}
+                    selected=${plots.selected} select=${plots.select} />
+        <${Bands} ignored=${state.ignored} act=${act} />
+        ${plots.view}
+      </div>
+      <div class="right">
+        <section class="next">
+          <h2>What is missing?</h2>
+          <p class="row"><button class="main" disabled=${!state.shown || state.running}
+             onClick=${() => run('diagnose')}>Diagnose</button>
+            <button disabled=${state.running || !state.model} onClick=${() => run('undo')}>
+              ${state.trial ? 'Undo the trial' : 'Back one model'}</button></p>
+          <${AddEffect} effects=${state.effects} act=${act} disabled=${state.running} />
+        </section>
+        <${Progress} progress=${progress} running=${state.running} cancel=${() => run('cancel')} />
+        <${Result} result=${state.result} run=${run} running=${state.running} />
+        <${Ladder} state=${state} open=${(name) => run('model', {name})} />
+        <${Commands} commands=${state.commands} shown=${state.shown}
+                     preview=${preview && preview.command} />
+        <${Exports} state=${state} act=${act} say=${say} />
+      </div>
+    </main>`;
+}

@@ -1,0 +1,58 @@
+#include "workbench/serve/page_files.h"
+
+#include <array>
+
+#include "workbench/serve/page_texts.h"
+
+namespace workbench::serve {
+namespace {
+
+constexpr const char* kHtml = "text/html; charset=utf-8";
+constexpr const char* kScript = "text/javascript; charset=utf-8";
+constexpr const char* kSheet = "text/css; charset=utf-8";
+constexpr const char* kText = "text/plain; charset=utf-8";
+constexpr std::string_view kIcon =
+    "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 16 16'><path d='M1 9h3l2-6 4 11 2-5h3' "
+    "fill='none' stroke='#1673c5' stroke-width='2'/></svg>";
+
+std::string_view icon() { return kIcon; }
+
+struct Entry {
+  std::string_view path;
+  const char* type;
+  std::string_view (*text)();
+};
+
+constexpr std::array kEntries{Entry{"/", kHtml, page_index},
+                              Entry{"/style.css", kSheet, page_sheet},
+                              Entry{"/app.js", kScript, page_app},
+                              Entry{"/server.js", kScript, page_server},
+                              Entry{"/plots.js", kScript, page_plots},
+                              Entry{"/workbench.js", kScript, page_workbench},
+                              Entry{"/sliders.js", kScript, page_sliders},
+                              Entry{"/ladder.js", kScript, page_ladder},
+                              Entry{"/result.js", kScript, page_result},
+                              Entry{"/live.js", kScript, page_live},
+                              Entry{"/alarms.js", kScript, page_alarms},
+                              Entry{"/uplot.js", kScript, library_uplot},
+                              Entry{"/uplot.css", kSheet, library_uplot_sheet},
+                              Entry{"/preact.js", kScript, library_preact},
+                              Entry{"/licences.txt", kText, library_licences},
+                              Entry{"/icon.svg", "image/svg+xml", icon}};
+
+}  // namespace
+
+std::optional<PageFile> page_file(std::string_view path) {
+  for (const Entry& entry : kEntries) {
+    if (entry.path == path) return PageFile{entry.type, entry.text()};
+  }
+  return std::nullopt;
+}
+
+std::string missing_page_files() {
+  if (!library_uplot().empty() && !library_preact().empty()) return {};
+  return "the page was left out of this build: its libraries come from the npm registry "
+         "(scripts/web-assets), which was not at hand";
+}
+
+}  // namespace workbench::serve

@@ -1,0 +1,22 @@
+// The files that make the page, built into the program: its own, and two libraries from the npm
+// registry (scripts/web-assets) that a build machine without access to it goes without.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace workbench::serve {
+
+struct PageFile {
+  const char* type;
+  std::string_view text;
+};
+
+/// The file under a path such as "/workbench.js"; "/" is the page itself.
+[[nodiscard]] std::optional<PageFile> page_file(std::string_view path);
+
+/// What the page lacks, as one line; empty: nothing.
+[[nodiscard]] std::string missing_page_files();
+
+}  // namespace workbench::serve

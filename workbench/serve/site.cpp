@@ -1,0 +1,461 @@
+#include "workbench/serve/site.h"
+
+#include <cmath>
+
+#include "config/schema/error.h"
+#include "workbench/control/order.h"
+#include "workbench/serve/page_files.h"
+
+namespace workbench::serve {
+namespace {
+
+using config::schema::UsageError;
+using Json = nlohmann::ordered_json;
+namespace protocol = monitor::control;
+
+constexpr std::string_view kApi = "/api/";
+constexpr std::string_view kFiles = "/files/";
+constexpr std::string_view kUploads = "/api/upload";
+constexpr std::string_view kLogin = "/api/login";
+constexpr std::size_t kMostStudyWork = 64;
+constexpr std::size_t kMostValues = 200;
+
+HttpResponse json_response(const Json& json, int status = 200) {
+  return {.status = status,
+          .body = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)};
+}
+
+HttpResponse refusal(int status, const std::string& why) {
+  return json_response({{"error", why}}, status);
+}
+
+bool starts(const std::string& text, std::string_view with) {
+  return std::string_view(text).substr(0, with.size()) == with;
+}
+
+int digit_of(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+/// %XX resolved, once; nothing where it is malformed.
+std::optional<std::string> decoded(std::string_view text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '%') {
+      out += text[i];
+      continue;
+    }
+    if (i + 2 >= text.size()) return std::nullopt;
+    const int high = digit_of(text[i + 1]);
+    const int low = digit_of(text[i + 2]);
+    if (high < 0 || low < 0) return std::nullopt;
+    out += static_cast<char>(16 * high + low);
+    i += 2;
+  }
+  return out;
+}
+
+/// The file name of /api/upload?name=...; "" where it is none.
+std::string upload_name(const HttpHead& head) {
+  constexpr std::string_view kName = "name=";
+  if (!starts(head.query, kName)) return {};
+  const auto name = decoded(std::string_view(head.query).substr(kName.size()));
+  return name && is_plain_name(*name) ? *name : std::string();
+}
+
+std::string text_in(const Json& body, const char* key) {
+  const auto found = body.find(key);
+  if (found == body.end() || !found->is_string()) {
+    throw UsageError(std::string(key) + ": a text is missing");
+  }
+  return found->get<std::string>();
+}
+
+std::vector<std::string> texts_in(const Json& body, const char* key) {
+  std::vector<std::string> texts;
+  const auto found = body.find(key);
+  if (found == body.end()) return texts;
+  if (!found->is_array() || found->size() > kMostValues) {
+    throw UsageError(std::string(key) + ": is no list");
+  }
+  for (const Json& one : *found) {
+    if (!one.is_string()) throw UsageError(std::string(key) + ": is no list of texts");
+    texts.push_back(one.get<std::string>());
+  }
+  return texts;
+}
+
+double number_in(const Json& body, const char* key, double otherwise) {
+  const auto found = body.find(key);
+  if (found == body.end() || found->is_null()) return otherwise;
+  if (!found->is_number() || !std::isfinite(found->get<double>())) {
+    throw UsageError(std::string(key) + ": is no number");
+  }
+  return found->get<double>();
+}
+
+ParameterValues values_in(const Json& body) {
+  ParameterValues values;
+  const auto found = body.find("values");
+  if (found == body.end()) return values;
+  if (!found->is_object() || found->size() > kMostValues) throw UsageError("values: is no object");
+  for (const auto& [name, value] : found->items()) {
+    if (!value.is_number() || !std::isfinite(value.get<double>())) {
+      throw UsageError("values: is not a number each");
+    }
+    values[name] = value.get<double>();
+  }
+  return values;
+}
+
+View view_in(const Json& body) {
+  constexpr double kMostRows = 20'000.0;
+  View view;
+  view.from_s = number_in(body, "from", 0.0);
+  view.to_s = number_in(body, "to", 0.0);
+  view.rows =
+      static_cast<std::size_t>(std::clamp(number_in(body, "rows", 3000.0), 200.0, kMostRows));
+  return view;
+}
+
+/// What an exception says to the page.
+HttpResponse refusal_of(const std::exception& error) {
+  const bool usage = dynamic_cast<const config::schema::Error*>(&error) != nullptr;
+  return refusal(usage ? 422 : 500, usage ? error.what() : "the request failed");
+}
+
+}  // namespace
+
+Site::Site(const SiteOptions& options)
+    : options_(options),
+      gate_(options.port),
+      folder_(options.folder),
+      study_(folder_),
+      live_(
+          options.live,
+          [this](const char* name, const Json& data) { publish(kLiveTopic, name, data); },
+          [this] { poll_control(); }) {}
+
+Site::~Site() { end(); }
+
+void Site::serve_on(HttpServer& server) { server_ = &server; }
+
+void Site::end() {
+  jobs_.end();
+  study_lane_.end();
+  live_.end();
+  control_lane_.end();
+  server_ = nullptr;
+}
+
+BodyPlan Site::admit(const HttpHead& head) {
+  const auto refuse = [](int status, const std::string& why) {
+    return BodyPlan{.kind = BodyPlan::Kind::refuse, .refusal = refusal(status, why)};
+  };
+  if (const Gate::Verdict here = gate_.from_here(head); here.status != 200) {
+    return refuse(here.status, here.why);
+  }
+  const bool reads = head.method == "GET";
+  if (!reads && head.method != "POST") return refuse(405, "GET or POST is expected");
+  if (!reads && head.path == kLogin) {
+    return head.field("content-type") == "application/json"
+               ? BodyPlan{}
+               : refuse(415, "application/json is expected");
+  }
+  if (reads && !starts(head.path, kApi) && !starts(head.path, kFiles)) {
+    return page_file(head.path) ? BodyPlan{} : refuse(404, "there is no such page");
+  }
+  if (const Gate::Verdict may = gate_.allowed(head, !reads); may.status != 200) {
+    return refuse(may.status, may.why);
+  }
+  if (reads || head.path != kUploads) {
+    return reads || head.field("content-type") == "application/json"
+               ? BodyPlan{}
+               : refuse(415, "application/json is expected");
+  }
+  if (upload_name(head).empty()) return refuse(422, "this is not a name for a file");
+  return {.kind = BodyPlan::Kind::file, .file = folder_.upload_file()};
+}
+
+void Site::handle(HttpRequest request, HttpReply reply) {
+  try {
+    if (request.head.method == "GET") return answer_read(request.head, reply);
+    answer_change(std::move(request), reply);
+  } catch (const std::exception& error) {
+    reply(refusal_of(error));
+  }
+}
+
+void Site::answer_read(const HttpHead& head, const HttpReply& reply) {
+  if (head.path == "/api/state") {
+    return on_study(
+        reply, [this] { return whole_state(); }, false);
+  }
+  if (head.path == "/api/events") {
+    HttpResponse stream;
+    stream.topics = kWorkbenchTopic | (head.query == "live" ? kLiveTopic : 0);
+    stream.body = event_text("hello", "");
+    return reply(std::move(stream));
+  }
+  if (starts(head.path, kFiles)) {
+    const auto name = decoded(std::string_view(head.path).substr(kFiles.size()));
+    if (!name || !is_plain_name(*name)) return reply(refusal(404, "there is no such file"));
+    HttpResponse file;
+    file.type = "application/octet-stream";
+    file.file = folder_.existing(*name);
+    file.fields = {{"Content-Disposition", "attachment"}};
+    return reply(std::move(file));
+  }
+  if (const auto file = page_file(head.path)) {
+    return reply({.type = file->type, .body = std::string(file->text)});
+  }
+  reply(refusal(404, "there is no such page"));
+}
+
+void Site::log_in(const HttpRequest& request, const HttpReply& reply) const {
+  const Json body = Json::parse(request.body, nullptr, false);
+  const bool text = body.is_object() && body.contains("token") && body["token"].is_string();
+  const std::string cookie = text ? gate_.cookie_for(body["token"].get<std::string>()) : "";
+  if (cookie.empty()) return reply(refusal(401, "the token is not that of this page"));
+  HttpResponse response = json_response({{"ok", true}});
+  response.fields = {{"Set-Cookie", cookie}};
+  reply(std::move(response));
+}
+
+void Site::answer_change(HttpRequest request, const HttpReply& reply) {
+  const std::string path = request.head.path;
+  if (path == kLogin) return log_in(request, reply);
+  if (path == kUploads) return take_upload(request, reply);
+  const auto body = std::make_shared<Json>(Json::parse(request.body, nullptr, false));
+  if (!body->is_object()) return reply(refusal(400, "the body is no JSON object"));
+  const auto change = [&](std::function<void()> work) {
+    on_study(
+        reply,
+        [work = std::move(work)] {
+          work();
+          return Json{{"ok", true}};
+        },
+        true);
+  };
+  if (path == "/api/preview") return preview(std::move(*body), reply);
+  if (path == "/api/alarm") return order(*body, reply);
+  if (path == "/api/cancel") {
+    jobs_.cancel();
+    return reply(json_response({{"ok", true}}));
+  }
+  if (path == "/api/curves") {
+    const View view = view_in(*body);
+    study_lane_.post([this, view, reply] {
+      try {
+        reply({.body = study_.curves(view)});
+      } catch (const std::exception& error) {
+        reply(refusal_of(error));
+      }
+    });
+    return;
+  }
+  if (path == "/api/record")
+    return change([=, this] { study_.open_record(text_in(*body, "name")); });
+  if (path == "/api/model") return change([=, this] { study_.open_model(text_in(*body, "name")); });
+  if (path == "/api/shipped") {
+    return change([=, this] { study_.open_shipped(text_in(*body, "name")); });
+  }
+  if (path == "/api/ignore") return change([=, this] { study_.ignore(texts_in(*body, "spans")); });
+  if (path == "/api/add") return change([=, this] { study_.add_effect(text_in(*body, "effect")); });
+  if (path == "/api/accept") return change([this] { study_.accept(); });
+  if (path == "/api/undo") return change([this] { study_.undo(); });
+  if (path == "/api/report") {
+    return on_study(
+        reply,
+        [this] {
+          return Json{{"file", study_.write_report()}};
+        },
+        true);
+  }
+  if (path == "/api/fit")
+    return on_study(
+        reply, [=, this] { return begin_fit(*body); }, true);
+  if (path == "/api/diagnose") {
+    return on_study(
+        reply, [=, this] { return begin_diagnosis(*body); }, true);
+  }
+  reply(refusal(404, "there is no such request"));
+}
+
+void Site::take_upload(const HttpRequest& request, const HttpReply& reply) {
+  const std::filesystem::path file = request.upload;
+  const std::string name = upload_name(request.head);
+  on_study(
+      reply,
+      [this, file, name] {
+        const std::string kept = folder_.keep_upload(file, name);
+        try {
+          const std::string path = folder_.existing(kept);
+          const bool is_model = std::filesystem::path(kept).extension() == ".toml";
+          if (is_model) {
+            study_.open_model(kept);
+          } else {
+            study_.open_record(kept);
+          }
+        } catch (const std::exception&) {
+          std::error_code ignored;
+          std::filesystem::remove(folder_.path_of(kept), ignored);
+          throw;
+        }
+        return Json{{"name", kept}};
+      },
+      true);
+}
+
+void Site::preview(Json body, const HttpReply& reply) {
+  const auto values = std::make_shared<ParameterValues>(values_in(body));
+  const View view = view_in(body);
+  study_lane_.post_latest(
+      [this, values, view, reply] {
+        try {
+          reply({.body = study_.preview(*values, view)});
+        } catch (const std::exception& error) {
+          reply(refusal_of(error));
+        }
+      },
+      [reply] {
+        reply(json_response({{"superseded", true}}));
+      });
+}
+
+void Site::on_study(const HttpReply& reply, std::function<Json()> work, bool changes) {
+  if (study_lane_.waiting() >= kMostStudyWork) {
+    return reply(refusal(503, "too much is waiting: try again"));
+  }
+  study_lane_.post([this, reply, work = std::move(work), changes] {
+    try {
+      HttpResponse response = json_response(work());
+      if (changes) publish_state();
+      reply(std::move(response));
+    } catch (const std::exception& error) {
+      reply(refusal_of(error));
+    }
+  });
+}
+
+Site::Json Site::begin_fit(const Json& body) {
+  fit::FitRequest request = study_.fit_request(values_in(body));
+  const std::string parent = std::filesystem::path(request.model).filename().string();
+  const bool begun = jobs_.fit(
+      std::move(request),
+      [this](const std::string& text, int done, int of) {
+        publish(kWorkbenchTopic, "progress", {{"text", text}, {"done", done}, {"of", of}});
+      },
+      [this, parent](JobResult result) { finish_job(std::move(result), parent); });
+  if (!begun) throw UsageError("a computation is running already");
+  return {{"ok", true}};
+}
+
+Site::Json Site::begin_diagnosis(const Json& body) {
+  diagnose::DiagnosisRequest request = study_.diagnosis_request(texts_in(body, "only"));
+  const std::string parent = std::filesystem::path(request.model).filename().string();
+  const bool begun = jobs_.diagnose(
+      std::move(request),
+      [this](const std::string& text, int done, int of) {
+        publish(kWorkbenchTopic, "progress", {{"text", text}, {"done", done}, {"of", of}});
+      },
+      [this, parent](JobResult result) { finish_job(std::move(result), parent); });
+  if (!begun) throw UsageError("a computation is running already");
+  return {{"ok", true}};
+}
+
+void Site::finish_job(JobResult result, const std::string& parent) {
+  study_lane_.post([this, result = std::move(result), parent] {
+    last_result_ = result.summary;
+    std::string error = result.error;
+    try {
+      if (!result.model.empty()) {
+        const std::string model = std::filesystem::path(result.model).filename().string();
+        study_.take_trial(model, parent, result.what, result.command);
+      }
+    } catch (const std::exception& failed) {
+      error = failed.what();
+    }
+    if (!error.empty()) last_result_ = {{"kind", "error"}, {"words", error}};
+    publish_state();
+  });
+}
+
+Site::Json Site::whole_state() {
+  Json state = study_.state();
+  state["folder"] = std::filesystem::absolute(folder_.folder()).lexically_normal().string();
+  state["running"] = jobs_.running();
+  state["result"] = last_result_;
+  state["change"] = gate_.change_secret();
+  state["orders"] = options_.allow_orders;
+  return state;
+}
+
+void Site::publish_state() {
+  Json state = whole_state();
+  state.erase("change");
+  publish(kWorkbenchTopic, "state", state);
+  const std::string model = study_.live_model();
+  if (model != live_model_) {
+    live_model_ = model;
+    live_.watch_model(model.empty() ? std::string() : folder_.existing(model));
+  }
+}
+
+void Site::publish(unsigned topic, const char* name, const Json& data) {
+  if (HttpServer* const server = server_) {
+    server->publish(topic, event_text(name, data.dump(-1, ' ', false,
+                                                      nlohmann::json::error_handler_t::replace)));
+  }
+}
+
+void Site::on_streams(unsigned topics_in_use) { live_.want((topics_in_use & kLiveTopic) != 0); }
+
+void Site::poll_control() {
+  if (control_lane_.waiting() > 0) return;
+  control_lane_.post([this] {
+    Json out;
+    try {
+      out = control::ask_daemon(options_.control_socket,
+                                {{protocol::key::kCommand, protocol::kAlarms}});
+      out["control"] = "";
+    } catch (const std::exception& error) {
+      out["control"] = error.what();
+    }
+    publish(kLiveTopic, "alarms", out);
+  });
+}
+
+void Site::order(const Json& body, const HttpReply& reply) {
+  if (!options_.allow_orders) {
+    return reply(refusal(403, "orders are not allowed: spoolwatch serve --allow-orders"));
+  }
+  const std::string word = text_in(body, "order");
+  // Nothing that moves the rod: arm, start, stop and the like are not orders of this page.
+  if (word != protocol::kAcknowledge && word != protocol::kShelve && word != protocol::kUnshelve) {
+    return reply(refusal(403, "allowed: ack, shelve, unshelve"));
+  }
+  Json request{{protocol::key::kCommand, word}, {protocol::key::kAlarm, text_in(body, "alarm")}};
+  if (word == protocol::kShelve) {
+    constexpr double kLongest_s = 86'400.0;
+    const double time_s = number_in(body, "time_s", 0.0);
+    if (!(time_s > 0.0 && time_s <= kLongest_s)) {
+      return reply(refusal(422, "time_s: allowed: up to one day"));
+    }
+    request[protocol::key::kTime] = time_s;
+  }
+  control_lane_.post([this, request, reply] {
+    try {
+      control::OrderOptions options;
+      options.socket = options_.control_socket;
+      reply(json_response(control::give_order(request, options)));
+    } catch (const std::exception& error) {
+      reply(refusal_of(error));
+    }
+  });
+}
+
+}  // namespace workbench::serve

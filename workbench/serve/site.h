@@ -1,0 +1,87 @@
+// The paths of the page: what a browser may ask, who may ask it, and which thread answers.
+//
+//   network  checks, files of the page, hand-over to the lanes below
+//   study    everything that reads or changes the session; slider moves, of which the last wins
+//   job      one fit or diagnosis
+//   live     the daemon's messages; control: its socket
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "workbench/serve/gate.h"
+#include "workbench/serve/http_server.h"
+#include "workbench/serve/jobs.h"
+#include "workbench/serve/lane.h"
+#include "workbench/serve/live_channel.h"
+#include "workbench/serve/session_folder.h"
+#include "workbench/serve/study.h"
+
+namespace workbench::serve {
+
+struct SiteOptions {
+  std::filesystem::path folder;
+  unsigned short port = 0;  ///< that the page is served on; 0: a Unix socket
+  LiveOptions live;
+  std::string control_socket;
+  bool allow_orders = false;  ///< alarms may be acknowledged and shelved from the page
+};
+
+/// Kinds of events, as bits.
+inline constexpr unsigned kWorkbenchTopic = 1;
+inline constexpr unsigned kLiveTopic = 2;
+
+class Site final : public HttpHandler {
+ public:
+  /// Throws config::schema::Error when the folder cannot be used.
+  explicit Site(const SiteOptions& options);
+  ~Site() override;
+
+  /// Where events go; before the server runs, from then on until end().
+  void serve_on(HttpServer& server);
+  /// Waits for what runs; no event is published afterwards.
+  void end();
+
+  BodyPlan admit(const HttpHead& head) override;
+  void handle(HttpRequest request, HttpReply reply) override;
+  void on_streams(unsigned topics_in_use) override;
+
+  [[nodiscard]] const std::string& token() const { return gate_.token(); }
+
+ private:
+  using Json = nlohmann::ordered_json;
+  void answer_read(const HttpHead& head, const HttpReply& reply);
+  void answer_change(HttpRequest request, const HttpReply& reply);
+  void log_in(const HttpRequest& request, const HttpReply& reply) const;
+  void take_upload(const HttpRequest& request, const HttpReply& reply);
+  void preview(Json body, const HttpReply& reply);
+  void order(const Json& body, const HttpReply& reply);
+  /// Runs `work` on the study's thread and answers with what it returns, errors included; `changes`
+  /// tells all pages.
+  void on_study(const HttpReply& reply, std::function<Json()> work, bool changes);
+  Json begin_fit(const Json& body);
+  Json begin_diagnosis(const Json& body);
+  void finish_job(JobResult result, const std::string& parent);
+  void publish(unsigned topic, const char* name, const Json& data);
+  void publish_state();
+  Json whole_state();
+  void poll_control();
+
+  const SiteOptions options_;
+  Gate gate_;
+  SessionFolder folder_;
+  std::atomic<HttpServer*> server_{nullptr};
+  // Of the study's thread:
+  Study study_;
+  Json last_result_;
+  std::string live_model_;
+  LiveChannel live_;
+  Lane control_lane_;
+  Lane study_lane_;
+  Jobs jobs_;
+};
+
+}  // namespace workbench::serve

@@ -1,0 +1,100 @@
+// What is open in a session: a record, a model, perhaps a trial model beside it, and how they
+// compare. One object for all pages, used by one thread; it computes nothing of its own but calls
+// what the commands call.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "estimator/greybox/validation/comparison.h"
+#include "workbench/compare/request.h"
+#include "workbench/diagnose/request.h"
+#include "workbench/fit/request.h"
+#include "workbench/serve/lineage.h"
+#include "workbench/serve/session_folder.h"
+
+namespace workbench::serve {
+
+namespace greybox = estimator::greybox;
+namespace validation = estimator::greybox::validation;
+
+/// Part of the record that a page shows, and how finely.
+struct View {
+  double from_s = 0.0;
+  double to_s = 0.0;  ///< not above from_s: the whole record
+  std::size_t rows = 3000;
+};
+
+/// Values of parameters by the names of model files, as sliders set them.
+using ParameterValues = std::map<std::string, double>;
+
+class Study {
+ public:
+  /// Continues the session of the folder, where there is one.
+  explicit Study(const SessionFolder& folder);
+
+  // Each throws config::schema::Error with nothing changed.
+
+  void open_record(const std::string& record);
+  void open_model(const std::string& model);
+  /// Copies a shipped model into the folder and opens it.
+  void open_shipped(const std::string& name);
+  /// "from:to" in s: samples that neither count nor are fitted.
+  void ignore(const std::vector<std::string>& spans);
+  /// The model with an effect of typical size, as a trial.
+  void add_effect(const std::string& effect);
+  void accept();
+  /// Gives up the trial; without one, back to the model that this one came from.
+  void undo();
+  /// Writes the report of `compare` beside the record; its file name.
+  std::string write_report();
+
+  /// Requests of the running commands for what is open, with a fresh output file.
+  [[nodiscard]] fit::FitRequest fit_request(const ParameterValues& values) const;
+  [[nodiscard]] diagnose::DiagnosisRequest diagnosis_request(
+      const std::vector<std::string>& only) const;
+  /// A model that a command has made from `parent` becomes the trial.
+  void take_trial(const std::string& model, const std::string& parent, const std::string& what,
+                  const std::string& command);
+
+  /// The model that is open, for the live page; empty: none.
+  [[nodiscard]] const std::string& live_model() const { return model_; }
+
+  /// Everything that a page shows besides the curves.
+  [[nodiscard]] nlohmann::ordered_json state();
+  /// Curves of what is open: JSON text.
+  [[nodiscard]] std::string curves(const View& view) const;
+  /// The same for the shown model with other values.
+  [[nodiscard]] std::string preview(const ParameterValues& values, const View& view) const;
+
+ private:
+  struct Shown {
+    compare::PreparedComparison prepared;
+    validation::Comparison comparison;
+    double heldout_m = 0.0;
+  };
+  [[nodiscard]] compare::CompareRequest request_of(const std::string& model) const;
+  [[nodiscard]] std::vector<std::string> assignments_of(const ParameterValues& values) const;
+  [[nodiscard]] std::optional<Shown> shown_of(const std::string& record, const std::string& model,
+                                              const std::vector<std::string>& ignored) const;
+  /// Takes what was compared without an error.
+  void show(std::string record, std::string model, std::string trial,
+            std::vector<std::string> ignored);
+  void note_errors(const std::string& model, const std::optional<Shown>& shown);
+  [[nodiscard]] const Shown& front() const;
+  [[nodiscard]] std::string columns(const Shown& shown, const validation::ModelErrors* errors,
+                                    const Shown* ghost, const View& view) const;
+  void save() const;
+
+  const SessionFolder& folder_;
+  std::string record_, model_, trial_;
+  std::vector<std::string> ignored_;
+  std::optional<Shown> accepted_, tried_;
+  Lineage lineage_;
+};
+
+}  // namespace workbench::serve

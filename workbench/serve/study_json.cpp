@@ -1,0 +1,302 @@
+// A study as the page takes it: words and figures as the commands write them, curves in the units
+// that read well.
+#include <algorithm>
+#include <cmath>
+
+#include "config/signals/nan.h"
+#include "config/units/quantity.h"
+#include "estimator/greybox/parameter_catalogue.h"
+#include "workbench/compare/comparison_report.h"
+#include "workbench/compare/region_spans.h"
+#include "workbench/present/compare_units.h"
+#include "workbench/present/json.h"
+#include "workbench/present/plot_data.h"
+#include "workbench/present/record_section.h"
+#include "workbench/present/script_json.h"
+#include "workbench/present/shell_command.h"
+#include "workbench/present/text.h"
+#include "workbench/serve/study.h"
+
+namespace workbench::serve {
+namespace {
+
+using nlohmann::ordered_json;
+using present::number_or_null;
+using present::typeset;
+
+constexpr std::size_t kMostRegions = 5;
+constexpr double kWidestRatio = 2.0;   ///< of a slider about a plant's value
+constexpr double kTypicalSizes = 3.0;  ///< of a slider over an effect's
+
+ordered_json typeset_all(const std::vector<std::string>& lines) {
+  ordered_json out = ordered_json::array();
+  for (const std::string& line : lines) out.push_back(typeset(line));
+  return out;
+}
+
+ordered_json json_of(const validation::Comparison& comparison,
+                     const validation::SignificantRegion& region) {
+  ordered_json spans = ordered_json::array();
+  for (const compare::TimeSpan& span : compare::region_spans(comparison, region)) {
+    spans.push_back({span.from_s, span.to_s});
+  }
+  const validation::Bin& figures = region.figures;
+  return {{"where", typeset(present::where(region))},
+          {"rms", typeset(config::units::length_words(figures.rms_m))},
+          {"share", present::percent(figures.local_velocity_error_share)},
+          {"time_share", present::percent(figures.time_share)},
+          {"stands_out", region.significant},
+          {"spans", spans}};
+}
+
+ordered_json regions_of(const validation::Comparison& comparison) {
+  ordered_json regions = ordered_json::array();
+  const validation::SignificantRegion& headline = comparison.headline;
+  if (headline.significant && !headline.ranges.empty()) {
+    regions.push_back(json_of(comparison, headline));
+  }
+  for (const validation::SignificantRegion& region : comparison.worst) {
+    if (regions.size() == kMostRegions || !region.significant) continue;
+    const bool said =
+        headline.ranges.size() == 1 && present::where(region) == present::where(headline);
+    if (!said) regions.push_back(json_of(comparison, region));
+  }
+  return regions;
+}
+
+const char* to_string(compare::Judgement judgement) {
+  switch (judgement) {
+    case compare::Judgement::at_floor:
+      return "good";
+    case compare::Judgement::fails_somewhere:
+      return "warn";
+    case compare::Judgement::fails_throughout:
+    case compare::Judgement::useless:
+      break;
+  }
+  return "bad";
+}
+
+ordered_json json_of(const validation::Comparison& comparison, double heldout_m) {
+  const compare::Words said = compare::words(comparison);
+  const auto length = [](double value_m) { return typeset(config::units::length_words(value_m)); };
+  ordered_json out;
+  out["judgement"] = to_string(said.judgement);
+  out["verdict"] = typeset(said.verdict);
+  out["lines"] = typeset_all(said.lines);
+  out["notes"] = typeset_all(compare::notes(comparison));
+  out["figures"] = {{{"label", "error, drift-corrected"}, {"value", length(comparison.rms_m)}},
+                    {{"label", "held-out blocks"}, {"value", length(heldout_m)}},
+                    {{"label", "free run"}, {"value", length(comparison.free_run_rms_m)}},
+                    {{"label", "noise floor"}, {"value", length(comparison.noise_floor_m)}}};
+  out["rms_m"] = number_or_null(comparison.rms_m);
+  out["heldout_m"] = number_or_null(heldout_m);
+  out["noise_floor_m"] = number_or_null(comparison.noise_floor_m);
+  out["from_s"] = comparison.record.t_s.front();
+  out["to_s"] = comparison.record.t_s.back();
+  out["regions"] = regions_of(comparison);
+  return out;
+}
+
+/// A slider's range: about the value, within what is allowed.
+ordered_json json_of(const greybox::CatalogueParameter& parameter, double value) {
+  const plant_sim::ParameterInfo& info = parameter.info;
+  const bool logarithmic = parameter.effect.empty() && value > 0.0;
+  double low = value / kWidestRatio;
+  double high = value * kWidestRatio;
+  if (!logarithmic) {
+    const double reach = std::max(kTypicalSizes * std::abs(info.typical), 2.0 * std::abs(value));
+    low = info.min < 0.0 ? -reach : 0.0;
+    high = reach;
+  }
+  low = std::max(low, info.min);
+  high = std::min(high, info.max);
+  return {{"name", parameter.name},     {"words", config::units::parameter_words(parameter.name)},
+          {"what", info.what},          {"unit", typeset(config::units::unit_of(parameter.name))},
+          {"effect", parameter.effect}, {"value", number_or_null(value)},
+          {"low", number_or_null(low)}, {"high", number_or_null(high)},
+          {"logarithmic", logarithmic}};
+}
+
+/// What a plant leaves uncertain, and everything of the effects that are present.
+ordered_json parameters_of(const plant_sim::ModelFile& model) {
+  plant_sim::ModelFile copy = model;
+  ordered_json out = ordered_json::array();
+  for (const greybox::CatalogueParameter& parameter : greybox::parameter_catalogue(model)) {
+    if (parameter.effect.empty()) {
+      if (parameter.info.uncertainty_ratio <= 0.0) continue;
+    } else {
+      const bool present =
+          std::any_of(model.effects.begin(), model.effects.end(),
+                      [&](const auto& one) { return one.name == parameter.effect && one.present; });
+      if (!present) continue;
+    }
+    const double* const value = copy.value(parameter.name);
+    if (value != nullptr && std::isfinite(*value)) out.push_back(json_of(parameter, *value));
+  }
+  return out;
+}
+
+ordered_json listed_effects(const plant_sim::ModelFile& model) {
+  const plant_sim::PlantInfo* const plant = plant_sim::find_plant(model.plant);
+  ordered_json out = ordered_json::array();
+  const std::vector<plant_sim::EffectInfo> effects = plant_sim::effects_of(model);
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    const plant_sim::EffectInfo& effect = effects[i];
+    const bool fits = std::all_of(effect.sites.begin(), effect.sites.end(), [&](const auto& site) {
+      return std::find(plant->sites.begin(), plant->sites.end(), site) != plant->sites.end();
+    });
+    if (!fits) continue;
+    out.push_back({{"name", effect.name},
+                   {"equation", effect.equation},
+                   {"present", model.effects[i].present}});
+  }
+  return out;
+}
+
+/// One value per sample and a missing one between segments.
+template <class Value>
+std::vector<double> broken(const greybox::Dataset& record, Value value) {
+  std::vector<double> out;
+  std::size_t segment = 1;
+  for (std::size_t k = 0; k < record.size(); ++k) {
+    if (segment < record.starts.size() && record.starts[segment] == k) {
+      out.push_back(config::signals::kNaN);
+      ++segment;
+    }
+    out.push_back(value(k));
+  }
+  return out;
+}
+
+std::vector<double> times_of(const greybox::Dataset& record) {
+  std::vector<double> t_s;
+  std::size_t segment = 1;
+  for (std::size_t k = 0; k < record.size(); ++k) {
+    if (segment < record.starts.size() && record.starts[segment] == k) {
+      t_s.push_back(0.5 * (record.t_s[k - 1] + record.t_s[k]));
+      ++segment;
+    }
+    t_s.push_back(record.t_s[k]);
+  }
+  return t_s;
+}
+
+struct Column {
+  const char* name;
+  std::vector<double> values;
+};
+
+/// The rows of `view`, thinned, as an object of arrays without its closing brace.
+std::string arrays(const std::vector<double>& t_s, std::vector<Column>& columns, const View& view) {
+  auto from = t_s.begin();
+  auto to = t_s.end();
+  if (view.to_s > view.from_s) {
+    // One row to either side, so that lines reach the edges.
+    from = std::lower_bound(t_s.begin(), t_s.end(), view.from_s);
+    to = std::upper_bound(from, t_s.end(), view.to_s);
+    if (from != t_s.begin()) --from;
+    if (to != t_s.end()) ++to;
+  }
+  const auto begin = from - t_s.begin();
+  const auto end = to - t_s.begin();
+  std::vector<const std::vector<double>*> all;
+  for (Column& column : columns) {
+    column.values.erase(column.values.begin() + end, column.values.end());
+    column.values.erase(column.values.begin(), column.values.begin() + begin);
+    all.push_back(&column.values);
+  }
+  const std::vector<std::size_t> rows = present::thin_lines(
+      all, static_cast<std::size_t>(end - begin), std::clamp<std::size_t>(view.rows, 200, 20'000));
+  const auto picked = [&](const auto& values) {
+    std::vector<double> out;
+    out.reserve(rows.size());
+    for (const std::size_t row : rows) out.push_back(values[row]);
+    return present::json_numbers(out);
+  };
+  const std::vector<double> shown_s(from, to);
+  std::string json = "{\"t\":" + picked(shown_s);
+  for (const Column& column : columns) {
+    json += ",\"" + std::string(column.name) + "\":" + picked(column.values);
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string Study::columns(const Shown& shown, const validation::ModelErrors* errors,
+                           const Shown* ghost, const View& view) const {
+  constexpr double kMillimetres = 1e3;
+  const validation::Comparison& c = shown.comparison;
+  const greybox::Dataset& record = c.record;
+  const std::vector<double>& error_m = errors != nullptr ? errors->error_m : c.error_m;
+  const std::vector<double>& free_m = errors != nullptr ? errors->free_error_m : c.free_error_m;
+  const double rms_m = errors != nullptr ? errors->rms_m : c.rms_m;
+  const double ghost_rms_m = ghost != nullptr ? ghost->comparison.rms_m : rms_m;
+  const present::ErrorUnit unit = present::error_unit(std::max(rms_m, ghost_rms_m));
+  const auto settled = [&](std::size_t k, double value) {
+    return record.valid[k] != 0 ? value : config::signals::kNaN;
+  };
+  std::vector<Column> columns{
+      {"measured", broken(record, [&](auto k) { return kMillimetres * record.y_m[k]; })},
+      {"model", broken(record, [&](auto k) { return kMillimetres * (record.y_m[k] - free_m[k]); })},
+      {"error", broken(record, [&](auto k) { return settled(k, unit.per_m * error_m[k]); })},
+      {"command", broken(record, [&](auto k) { return record.u_V[k]; })}};
+  if (ghost != nullptr) {
+    const validation::Comparison& g = ghost->comparison;
+    columns.push_back({"ghost_model", broken(record, [&](auto k) {
+                         return kMillimetres * (record.y_m[k] - g.free_error_m[k]);
+                       })});
+    columns.push_back({"ghost_error", broken(record, [&](auto k) {
+                         return settled(k, unit.per_m * g.error_m[k]);
+                       })});
+  }
+  std::string json = arrays(times_of(record), columns, view);
+  json += R"(,"unit":)" + present::json_string(typeset(unit.name)) + R"(,"floor":)" +
+          present::json_number(2.0 * unit.per_m * c.noise_floor_m) + R"(,"rms":)" +
+          present::json_string(typeset(config::units::length_words(rms_m))) + R"(,"rms_m":)" +
+          present::json_number(rms_m) + R"(,"position_unit":)" +
+          present::json_string(shown.prepared.units.position == "m"
+                                   ? "mm"
+                                   : "1e-3 " + shown.prepared.units.position) +
+          R"(,"command_unit":)" + present::json_string(shown.prepared.units.command);
+  return json + "}";
+}
+
+ordered_json Study::state() {
+  ordered_json out{{"record", record_}, {"model", model_}, {"trial", trial_}};
+  out["ignored"] = ignored_;
+  out["files"] = ordered_json::array();
+  for (const FolderFile& file : folder_.files()) {
+    out["files"].push_back({{"name", file.name}, {"kind", file.kind}, {"bytes", file.bytes}});
+  }
+  out["shipped"] = ordered_json::array();
+  for (const ShippedModel& model : shipped_models()) out["shipped"].push_back(model.name);
+  const std::optional<Shown>& shown = tried_ ? tried_ : accepted_;
+  out["shown"] = nullptr;
+  if (shown) {
+    out["shown"] = json_of(shown->comparison, shown->heldout_m);
+    std::vector<std::string> words{"spoolwatch", "compare", tried_ ? trial_ : model_, record_};
+    for (const std::string& span : ignored_) words.insert(words.end(), {"--ignore", span});
+    out["shown"]["command"] = present::shell_command(words);
+  }
+  out["parameters"] = ordered_json::array();
+  out["effects"] = ordered_json::array();
+  const std::string& model = trial_.empty() ? model_ : trial_;
+  if (!model.empty()) {
+    const plant_sim::ModelFile file =
+        shown ? shown->prepared.model : plant_sim::load_model(folder_.existing(model));
+    out["parameters"] = parameters_of(file);
+    out["effects"] = listed_effects(file);
+  }
+  const ordered_json lineage = to_json(lineage_);
+  out["lineage"] = lineage["nodes"];
+  for (ordered_json& node : out["lineage"]) {
+    const ModelNode* const known = lineage_.find(node["model"].get<std::string>());
+    node["heldout"] = typeset(config::units::length_words(known->heldout_m));
+  }
+  out["commands"] = lineage["commands"];
+  return out;
+}
+
+}  // namespace workbench::serve
