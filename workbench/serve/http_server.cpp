@@ -109,7 +109,8 @@ class HttpNetwork : public std::enable_shared_from_this<HttpNetwork> {
 /// One client: requests one after the other, or an event stream to the end.
 class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
  public:
-  HttpConnection(std::shared_ptr<HttpNetwork> network, asio::generic::stream_protocol::socket socket)
+  HttpConnection(std::shared_ptr<HttpNetwork> network,
+                 asio::generic::stream_protocol::socket socket)
       : network_(std::move(network)), stream_(std::move(socket)) {
     network_->connections.insert(this);
   }

@@ -115,7 +115,7 @@ bool Jobs::begin(std::function<JobResult()> work, const Done& done) {
 
 bool Jobs::fit(fit::FitRequest request, Progress progress, Done done) {
   return begin(
-      [this, request = std::move(request), progress = std::move(progress)] {
+      [this, request = std::move(request), progress = std::move(progress)]() mutable {
         fit::PreparedFit prepared = fit::prepare(request);
         prepared.options.cancel = [this] { return cancelled_.load(); };
         prepared.options.progress = [&](const estimator::greybox::EstimationProgress& now) {
@@ -130,7 +130,7 @@ bool Jobs::fit(fit::FitRequest request, Progress progress, Done done) {
 
 bool Jobs::diagnose(diagnose::DiagnosisRequest request, Progress progress, Done done) {
   return begin(
-      [this, request = std::move(request), progress = std::move(progress)] {
+      [this, request = std::move(request), progress = std::move(progress)]() mutable {
         diagnose::PreparedDiagnosis prepared = diagnose::prepare(request);
         prepared.options.cancel = [this] { return cancelled_.load(); };
         prepared.options.progress = [&](const selection::SearchProgress& now) {

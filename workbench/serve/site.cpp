@@ -1,5 +1,7 @@
 #include "workbench/serve/site.h"
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "config/schema/error.h"
@@ -19,6 +21,7 @@ constexpr std::string_view kUploads = "/api/upload";
 constexpr std::string_view kLogin = "/api/login";
 constexpr std::size_t kMostStudyWork = 64;
 constexpr std::size_t kMostValues = 200;
+constexpr std::chrono::milliseconds kProgressPeriod{100};
 
 HttpResponse json_response(const Json& json, int status = 200) {
   return {.status = status,
@@ -137,7 +140,9 @@ Site::Site(const SiteOptions& options)
       live_(
           options.live,
           [this](const char* name, const Json& data) { publish(kLiveTopic, name, data); },
-          [this] { poll_control(); }) {}
+          [this] { poll_control(); }) {
+  watch_model();
+}
 
 Site::~Site() { end(); }
 
@@ -205,7 +210,11 @@ void Site::answer_read(const HttpHead& head, const HttpReply& reply) {
     if (!name || !is_plain_name(*name)) return reply(refusal(404, "there is no such file"));
     HttpResponse file;
     file.type = "application/octet-stream";
-    file.file = folder_.existing(*name);
+    try {
+      file.file = folder_.existing(*name);
+    } catch (const UsageError&) {
+      return reply(refusal(404, "there is no such file"));
+    }
     file.fields = {{"Content-Disposition", "attachment"}};
     return reply(std::move(file));
   }
@@ -344,12 +353,9 @@ void Site::on_study(const HttpReply& reply, std::function<Json()> work, bool cha
 Site::Json Site::begin_fit(const Json& body) {
   fit::FitRequest request = study_.fit_request(values_in(body));
   const std::string parent = std::filesystem::path(request.model).filename().string();
-  const bool begun = jobs_.fit(
-      std::move(request),
-      [this](const std::string& text, int done, int of) {
-        publish(kWorkbenchTopic, "progress", {{"text", text}, {"done", done}, {"of", of}});
-      },
-      [this, parent](JobResult result) { finish_job(std::move(result), parent); });
+  const bool begun = jobs_.fit(std::move(request), progress(), [this, parent](JobResult result) {
+    finish_job(std::move(result), parent);
+  });
   if (!begun) throw UsageError("a computation is running already");
   return {{"ok", true}};
 }
@@ -357,14 +363,20 @@ Site::Json Site::begin_fit(const Json& body) {
 Site::Json Site::begin_diagnosis(const Json& body) {
   diagnose::DiagnosisRequest request = study_.diagnosis_request(texts_in(body, "only"));
   const std::string parent = std::filesystem::path(request.model).filename().string();
-  const bool begun = jobs_.diagnose(
-      std::move(request),
-      [this](const std::string& text, int done, int of) {
-        publish(kWorkbenchTopic, "progress", {{"text", text}, {"done", done}, {"of", of}});
-      },
-      [this, parent](JobResult result) { finish_job(std::move(result), parent); });
+  const bool begun =
+      jobs_.diagnose(std::move(request), progress(),
+                     [this, parent](JobResult result) { finish_job(std::move(result), parent); });
   if (!begun) throw UsageError("a computation is running already");
   return {{"ok", true}};
+}
+
+Jobs::Progress Site::progress() {
+  using Clock = std::chrono::steady_clock;
+  return [this, told = Clock::time_point{}](const std::string& text, int done, int of) mutable {
+    if (Clock::now() - told < kProgressPeriod) return;
+    told = Clock::now();
+    publish(kWorkbenchTopic, "progress", {{"text", text}, {"done", done}, {"of", of}});
+  };
 }
 
 void Site::finish_job(JobResult result, const std::string& parent) {
@@ -398,11 +410,14 @@ void Site::publish_state() {
   Json state = whole_state();
   state.erase("change");
   publish(kWorkbenchTopic, "state", state);
-  const std::string model = study_.live_model();
-  if (model != live_model_) {
-    live_model_ = model;
-    live_.watch_model(model.empty() ? std::string() : folder_.existing(model));
-  }
+  watch_model();
+}
+
+void Site::watch_model() {
+  const std::string& model = study_.live_model();
+  if (model == live_model_) return;
+  live_model_ = model;
+  live_.watch_model(folder_.path_of(model));
 }
 
 void Site::publish(unsigned topic, const char* name, const Json& data) {

@@ -64,10 +64,14 @@ class Site final : public HttpHandler {
   void on_study(const HttpReply& reply, std::function<Json()> work, bool changes);
   Json begin_fit(const Json& body);
   Json begin_diagnosis(const Json& body);
+  /// At most ten events a second.
+  Jobs::Progress progress();
   void finish_job(JobResult result, const std::string& parent);
   void publish(unsigned topic, const char* name, const Json& data);
   void publish_state();
   Json whole_state();
+  /// The open model runs beside the stand.
+  void watch_model();
   void poll_control();
 
   const SiteOptions options_;

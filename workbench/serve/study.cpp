@@ -130,7 +130,10 @@ void Study::open_record(const std::string& record) {
   show(record, model_, trial_, {});
 }
 
-void Study::open_model(const std::string& model) { show(record_, model, "", ignored_); }
+void Study::open_model(const std::string& model) {
+  (void)folder_.existing(model);
+  show(record_, model, "", ignored_);
+}
 
 void Study::open_shipped(const std::string& name) {
   for (const ShippedModel& shipped : shipped_models()) {
@@ -143,6 +146,7 @@ void Study::open_shipped(const std::string& name) {
 }
 
 void Study::ignore(const std::vector<std::string>& spans) {
+  (void)front();
   if (spans.size() > kMostIgnored) throw UsageError("too many spans are left out");
   for (const std::string& span : spans) {
     if (span.find('@') != std::string::npos) throw UsageError("a span is from:to, in s");

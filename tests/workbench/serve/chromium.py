@@ -61,6 +61,8 @@ class Browser:
                 if "error" in answer:
                     raise Failed(f"{method}: {answer['error']}")
                 return answer["result"]
+            if answer.get("method") == "Inspector.targetCrashed":
+                raise Failed("the page has crashed")
             self.events.append(answer)
 
     def next(self, until):
@@ -151,7 +153,7 @@ class Page:
     def drop_files(self, selector, files):
         root = self.call("DOM.getDocument")["root"]["nodeId"]
         node = self.call("DOM.querySelector", nodeId=root, selector=selector)["nodeId"]
-        self.call("DOM.setFileInputFiles", nodeId=node, files=[str(one) for one in files])
+        self.call("DOM.setFileInputFiles", nodeId=node, files=[os.path.abspath(one) for one in files])
 
     def drag(self, x0, y0, x1, y1):
         def mouse(kind, x, y, **more):

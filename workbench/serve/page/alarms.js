@@ -14,6 +14,11 @@ function rows(alarms, status) {
     guidance: a.guidance}));
 }
 
+const clock = (text) => {
+  const time = new Date(text);
+  return text && !isNaN(time) ? time.toLocaleString('sv-SE').replace(/^.* /, 'since ') : '';
+};
+
 export function Alarms({alarms, status, orders}) {
   const [said, say] = useState('');
   const order = async (body) => {
@@ -33,7 +38,7 @@ export function Alarms({alarms, status, orders}) {
       ${list.length === 0 && html`<p class="hint">none</p>`}
       <ul>${list.map((a) => html`
         <li key=${a.name} class=${a.severity}>
-          <b>${a.name}</b> <small>${a.life} ${a.severity} ${a.came}</small>
+          <b>${a.name}</b> <small>${a.life.toLowerCase()}, ${a.severity} ${clock(a.came)}</small>
           <p>${a.reason}</p>${a.guidance && html`<p class="hint">${a.guidance}</p>`}
           ${orders && reachable && html`<p class="row">
             <button onClick=${() => order({order: 'ack', alarm: a.name})}>Acknowledge</button>

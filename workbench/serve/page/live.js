@@ -7,7 +7,7 @@ import {PlotStack} from '/plots.js';
 const KEYS = ['reference', 'y', 'u', 'error'];
 const KEPT_S = 120;       // what the page remembers
 const STALE_S = 3;
-const FRAME_MS = 66;
+const FRAME_MS = 90;
 const SPECS = [
   {height: 240, label: 'position, mm', series: [
     {key: 'reference', name: 'reference', tone: 'reference'},
@@ -83,15 +83,18 @@ function Meters({meters}) {
 
 function Estimates({status}) {
   const list = (status && status.estimates) || [];
-  const rows = list.flatMap((e) => (e.values || []).map((v) => ({source: e.source, valid: e.valid, ...v})));
+  const rows = list.flatMap((e) => e.name.map((name, i) => ({
+    name: e.source + '.' + name, valid: e.valid, reason: e.reason, value: e.value[i], error: e.std_error[i],
+    low: e.low[i], high: e.high[i]})));
   if (rows.length === 0) return null;
   return html`
     <section class="estimates"><h2>Estimates</h2>
       <table><thead><tr><th></th><th>value</th><th>band</th></tr></thead>
         <tbody>${rows.slice(0, 40).map((r) => html`
-          <tr><td>${r.source}.${r.name}</td>
-            <td class="n">${r.valid ? shown(r.value) : 'not valid'}</td>
-            <td class="n">${r.low == null && r.high == null ? ''
+          <tr class=${r.valid && (r.value < r.low && r.low !== null || r.value > r.high && r.high !== null)
+              ? 'outside' : ''}><td title=${r.reason}>${r.name}</td>
+            <td class="n">${r.valid ? shown(r.value) + (r.error ? ' ± ' + shown(r.error) : '') : 'not valid'}</td>
+            <td class="n">${r.low === null && r.high === null ? ''
               : shown(r.low) + ' to ' + shown(r.high)}</td></tr>`)}</tbody></table>
     </section>`;
 }
@@ -217,7 +220,7 @@ export function Live({feed, link, state}) {
     <main class=${'live' + (stale ? ' stale' : '')}>
       <div>
         <p class="row tools">
-          <span class="state">${(status && status.state) || 'no daemon heard'}</span>
+          <span class="state">${!status || !status.state ? 'no daemon heard' : (stale ? 'was ' : '') + status.state}</span>
           <span class=${'age' + (stale ? ' stale' : '')} role="status">${ago}</span>
           <button aria-pressed=${paused} onClick=${() => setPaused(!paused)}>
             ${paused ? 'Resume' : 'Pause'}</button>

@@ -70,9 +70,9 @@ function Verdict({shown, trial, act, selected, select}) {
         <div><dt>${f.label}</dt><dd>${f.value}</dd></div>`)}</dl>
       ${shown.regions.length > 0 && html`
         <p class="regions">Fails ${shown.regions.map((region, i) => html`
-          <button aria-pressed=${i === selected} onClick=${() => select(i)}>${region.where}
-            <small>${region.share} of the speed error in ${region.time_share} of the time</small>
-          </button>`)}</p>`}
+          <button aria-pressed=${i === selected} onClick=${() => select(i)}
+                  title=${region.share + ' of the speed error in ' + region.time_share + ' of the time'}>
+            ${region.where} <small>${region.share}</small></button>`)}</p>`}
       <details><summary>In words</summary>
         ${[...shown.lines, ...shown.notes].map((line) => html`<p>${line}</p>`)}</details>
     </section>`;

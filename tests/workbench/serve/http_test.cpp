@@ -1,0 +1,196 @@
+// Malformed, endless and slow requests: refused or ended, the others served meanwhile.
+#include <gmock/gmock.h>
+
+#include "tests/workbench/serve/loopback.h"
+
+namespace workbench::serve {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::AnyOf;
+using testing::Eq;
+using testing::HasSubstr;
+using Clock = std::chrono::steady_clock;
+
+ServeOptions quick() {
+  ServeOptions options;
+  options.limits.request_time = milliseconds(700);
+  options.limits.idle_time = milliseconds(700);
+  options.limits.stall_time = milliseconds(700);
+  options.limits.text_bytes = 64 * 1024;
+  options.limits.upload_bytes = 1 << 20;
+  options.limits.stream_bytes = 64 * 1024;
+  options.limits.connections = 40;
+  options.limits.streams = 4;
+  return options;
+}
+
+long resident_kB() {
+  std::ifstream in("/proc/self/status");
+  for (std::string line; std::getline(in, line);) {
+    if (line.rfind("VmRSS:", 0) == 0) return std::stol(line.substr(6));
+  }
+  return 0;
+}
+
+class Http : public testing::Test {
+ protected:
+  /// The page is served at once, whatever others do.
+  void expect_served() const {
+    const auto begin = Clock::now();
+    EXPECT_EQ(page.ask("GET", "/").status, 200);
+    EXPECT_LT(Clock::now() - begin, std::chrono::seconds(2));
+  }
+  std::string get(const std::string& fields, const std::string& target = "/") const {
+    return "GET " + target + " HTTP/1.1\r\n" + fields + "\r\n";
+  }
+  ServedFolder page{quick()};
+  const std::string host_ = "Host: " + page.host + "\r\n";
+};
+
+TEST_F(Http, ServesThePageWithItsPolicy) {
+  const Answer answer = page.ask("GET", "/");
+  EXPECT_EQ(answer.status, 200);
+  EXPECT_THAT(answer.head, HasSubstr("default-src 'none'; script-src 'self'"));
+  EXPECT_THAT(answer.head, HasSubstr("frame-ancestors 'none'"));
+  EXPECT_THAT(answer.head, HasSubstr("X-Content-Type-Options: nosniff"));
+  EXPECT_THAT(answer.head, HasSubstr("Referrer-Policy: no-referrer"));
+  EXPECT_THAT(answer.body, Not(HasSubstr("<script>")));
+}
+
+TEST_F(Http, MalformedRequestsAreRefused) {
+  const std::string body = "{}";
+  for (const std::string& request :
+       {std::string("nonsense\r\n\r\n"), std::string("GET /\r\n\r\n"),
+        std::string("GET / HTTP/9.9\r\n") + host_ + "\r\n", get(host_ + "Space : 1\r\n"),
+        get(host_ + "No colon\r\n"), get(host_ + std::string("Nul: a\0b\r\n", 10)),
+        get(host_, "http://" + page.host + "/"), get(host_, "/\x01"),
+        "POST /api/login HTTP/1.1\r\n" + host_ +
+            "Content-Type: application/json\r\nContent-Length: 2\r\nContent-Length: 3\r\n\r\n" +
+            body,
+        "POST /api/login HTTP/1.1\r\n" + host_ +
+            "Content-Type: application/json\r\nContent-Length: 2\r\nTransfer-Encoding: "
+            "chunked\r\n\r\n" +
+            body,
+        "POST /api/login HTTP/1.1\r\n" + host_ +
+            "Content-Type: application/json\r\nContent-Length: -2\r\n\r\n" + body,
+        "POST /api/login HTTP/1.1\r\n" + host_ +
+            "Content-Type: application/json\r\nTransfer-Encoding: "
+            "chunked\r\n\r\n-2\r\n{}\r\n0\r\n\r\n",
+        get(host_ + "Upgrade: websocket\r\nConnection: Upgrade\r\n")}) {
+    EXPECT_THAT(page.raw(request).status, AnyOf(Eq(0), Eq(400))) << request;
+  }
+  expect_served();
+}
+
+TEST_F(Http, OtherMethodsAndPathsAreRefused) {
+  EXPECT_EQ(page.ask("PUT", "/").status, 405);
+  EXPECT_EQ(page.ask("DELETE", "/files/x").status, 405);
+  EXPECT_EQ(page.ask("OPTIONS", "/api/state").status, 405);
+  EXPECT_EQ(page.ask("GET", "/etc/passwd").status, 404);
+  EXPECT_EQ(page.ask("GET", "/../style.css").status, 404);
+}
+
+TEST_F(Http, EndlessHeadersAreCutAtTheirLimit) {
+  const long before_kB = resident_kB();
+  for (const std::string& endless : {std::string(1 << 20, 'a'), [] {
+                                       std::string many;
+                                       for (int i = 0; i < 40'000; ++i)
+                                         many += "a" + std::to_string(i) + ": b\r\n";
+                                       return many;
+                                     }()}) {
+    const Client client(page.port);
+    (void)client.send("GET / HTTP/1.1\r\n" + host_ + "Long: " + endless);
+    EXPECT_THAT(answer_of(client.receive()).status, AnyOf(Eq(0), Eq(431)));
+  }
+  expect_served();
+  EXPECT_LT(resident_kB() - before_kB, 8 * 1024);
+}
+
+TEST_F(Http, BodiesAboveTheirLimitAreRefusedHoweverTheyAreSent) {
+  page.log_in();
+  const std::string many(200 * 1024, ' ');
+  EXPECT_EQ(page.ask("POST", "/api/curves", many).status, 413);
+  const std::string head = "POST /api/login HTTP/1.1\r\n" + host_ +
+                           "Content-Type: application/json\r\nTransfer-Encoding: chunked\r\n\r\n";
+  std::string chunks;
+  for (int i = 0; i < 200; ++i) chunks += "400\r\n" + std::string(1024, ' ') + "\r\n";
+  EXPECT_THAT(page.raw(head + chunks).status, AnyOf(Eq(0), Eq(413)));
+  const std::string before = page.everything();
+  EXPECT_EQ(page.ask("POST", "/api/upload?name=big.csv", std::string(2 << 20, '1'),
+                     {{"Content-Type", "application/octet-stream"}})
+                .status,
+            413);
+  EXPECT_EQ(page.everything(), before);
+  expect_served();
+}
+
+TEST_F(Http, HalfRequestsDelayNobodyAndEnd) {
+  std::vector<std::unique_ptr<Client>> half;
+  for (int i = 0; i < 30; ++i) {
+    half.push_back(std::make_unique<Client>(page.port));
+    (void)half.back()->send("GET / HTTP/1.1\r\nHost: ");
+  }
+  expect_served();
+  EXPECT_EQ(half.front()->receive(std::chrono::seconds(5)), "");  // closed within its time
+  half.clear();
+  expect_served();
+}
+
+TEST_F(Http, ConnectionsBeyondTheLimitAreClosedAndLaterOnesServed) {
+  {
+    std::vector<std::unique_ptr<Client>> all;
+    for (int i = 0; i < 200; ++i) all.push_back(std::make_unique<Client>(page.port));
+    EXPECT_EQ(all.back()->receive(std::chrono::seconds(2)), "");
+  }
+  std::this_thread::sleep_for(milliseconds(300));
+  expect_served();
+}
+
+TEST_F(Http, PipelinedRequestsAreAnsweredInOrder) {
+  const Answer first = page.raw(get(host_) + get(host_ + "Connection: close\r\n", "/style.css"));
+  EXPECT_EQ(first.status, 200);
+  EXPECT_THAT(first.body, HasSubstr("Content-Type: text/css"));
+}
+
+TEST_F(Http, StreamsAreLimitedAndAStalledOneNeitherGrowsNorDelays) {
+  page.log_in();
+  const std::string stream = get(host_ + "Cookie: " + page.cookie + "\r\n", "/api/events?live");
+  std::vector<std::unique_ptr<Client>> streams;
+  for (int i = 0; i < 5; ++i) {
+    streams.push_back(std::make_unique<Client>(page.port));
+    (void)streams.back()->send(stream);
+  }
+  EXPECT_THAT(streams[4]->receive(), HasSubstr("503"));
+  EXPECT_THAT(streams[0]->receive(std::chrono::seconds(5), "event: beat"),
+              HasSubstr("text/event-stream"));
+  const long before_kB = resident_kB();
+  // Each change is told to all streams, which nobody reads.
+  page.put("model.toml", "");
+  for (int i = 0; i < 300; ++i) (void)page.post("ignore", {{"spans", {std::string(40'000, '1')}}});
+  EXPECT_LT(resident_kB() - before_kB, 16 * 1024);
+  expect_served();
+}
+
+TEST_F(Http, AUnixSocketIsServedToItsOwnerAlone) {
+  const std::string path = (page.folder / "page.sock").string();
+  ServeOptions options = quick();
+  options.socket = path;
+  const ServedFolder other(options, "served_unix");
+  EXPECT_EQ(std::filesystem::status(path).permissions() & std::filesystem::perms::all,
+            std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+  const int file = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  path.copy(address.sun_path, path.size());
+  ASSERT_EQ(connect(file, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  const std::string request = "GET / HTTP/1.1\r\nHost: localhost:9000\r\nConnection: close\r\n\r\n";
+  ASSERT_EQ(send(file, request.data(), request.size(), 0), static_cast<ssize_t>(request.size()));
+  char bytes[64] = {};
+  ASSERT_GT(recv(file, bytes, sizeof bytes - 1, 0), 0);
+  EXPECT_THAT(bytes, HasSubstr("HTTP/1.1 200"));
+  close(file);
+}
+
+}  // namespace
+}  // namespace workbench::serve

@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+"""The running stand on the page: motion and alarms come, an alarm is acknowledged, the page says when
+nothing comes, and goes on by itself, with a gap, when the daemon is back.
+
+  live.py --bin DIR --source DIR [--pictures DIR]      exit code 77: there is no Chromium
+"""
+import argparse
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+sys.dont_write_bytecode = True
+from chromium import Browser, find  # noqa: E402
+from server_process import Server  # noqa: E402
+
+STATE = "document.querySelector('.state').textContent"
+AGE = "document.querySelector('.age').textContent"
+
+
+def expect(what, happened):
+    if not happened:
+        raise AssertionError(what)
+
+
+class Daemon:
+    def __init__(self, args, url, control):
+        self.process = subprocess.Popen(
+            [args.bin / "spoolwatchd", "--config", args.source / "config/demo.toml", "--lcm-url", url,
+             "--duration", "120", "--set", f"control.socket={control}", "--set", "sim.fault.0.at_s=4"],
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+    def kill(self):
+        self.process.kill()
+        self.process.wait()
+
+
+def watch(args, folder):
+    url = f"udpm://239.255.76.67:{20000 + os.getpid() % 10000}?ttl=0"
+    control = folder / "control.sock"
+    daemon = Daemon(args, url, control)
+    try:
+        with Server(str(args.bin / "spoolwatch"), folder / "session", "--lcm-url", url, "--control", str(control),
+                    "--allow-orders") as server, Browser() as browser:
+            page = browser.page(server.url)
+            page.wait("document.body.dataset.ready === 'yes'")
+            page.choose("#model", "shipped:thesis_calibrated.toml")
+            page.wait("document.querySelector('#model').value === 'thesis_calibrated.toml'")
+            page.run("document.querySelector('a[href=\"#live\"]').click()")
+            page.wait("document.querySelector('.stack') && document.querySelector('.stack').dataset.points > 400")
+            page.wait(f"{STATE} === 'RUN'")
+            page.wait(f"{AGE}.startsWith('newest sample')")
+            page.wait("document.querySelector('.estimates')")
+            page.wait("document.querySelector('.live .side').innerText.includes('× floor')")
+
+            # The picture stands while it is paused, and what comes is kept.
+            page.click_text("Pause")
+            page.wait("document.querySelector('.tools').innerText.includes('samples since')")
+            page.wait("parseInt(document.querySelector('.tools .hint').textContent) > 200")
+            page.click_text("Resume")
+
+            # The page acknowledges; it has no button that moves the rod.
+            page.wait("document.querySelector('.alarms li.MAJOR')", 60)
+            if args.pictures:
+                page.picture(args.pictures / "live.png")
+            buttons = page.run("[...document.querySelectorAll('button')].map((b) => b.textContent.trim().toLowerCase())")
+            for word in ("arm", "start", "stop", "reset", "hold"):
+                expect(f"no button {word}", word not in buttons)
+            before = page.run("document.querySelector('.alarms li.MAJOR small').textContent")
+            expect(f"not yet acknowledged: {before}", before.startswith("unacknowledged"))
+            page.click(".alarms li.MAJOR button")
+            page.wait("!document.querySelector('.alarms').innerText.includes('unacknowledged, MAJOR')")
+
+            # Nothing comes: the page says so and since when; then it goes on by itself.
+            daemon.kill()
+            page.wait("document.querySelector('.live.stale')", 10)
+            expect("it says since when", page.run(AGE).startswith("no data since "))
+            expect("the state is the last one known", page.run(STATE) == "was RUN")
+            if args.pictures:
+                page.picture(args.pictures / "live-stale.png")
+            daemon = Daemon(args, url, control)
+            page.wait("!document.querySelector('.live.stale')", 20)
+            page.wait(f"{STATE} === 'RUN'")
+            page.wait("document.querySelector('.live .side').innerText.includes('restarted')")
+
+            # So does the page when the server itself stalls and comes back.
+            os.kill(server.process.pid, 19)
+            page.wait("document.querySelector('header .link.bad')", 15)
+            expect("stale without a server", page.run("Boolean(document.querySelector('.live.stale'))"))
+            os.kill(server.process.pid, 18)
+            page.wait("document.querySelector('header .link.good')", 30)
+            page.wait("!document.querySelector('.live.stale')", 20)
+
+            # Further pages are served beside it.
+            others = [browser.page(server.url.split("#")[0] + "#live") for _ in range(3)]
+            for other in others:
+                other.wait("document.body.dataset.ready === 'yes'", 30)
+            wrong, asked = page.said()
+            expect(f"nothing but the broken stream is complained of: {wrong}",
+                   all("/api/events" in one or "ERR_" in one for one in wrong))
+            expect("nothing is asked of another host",
+                   all(one.startswith(f"http://127.0.0.1:{server.port}/") for one in asked))
+    finally:
+        daemon.kill()
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--bin", type=lambda text: pathlib.Path(text).resolve(), required=True)
+    parser.add_argument("--source", type=lambda text: pathlib.Path(text).resolve(), required=True)
+    parser.add_argument("--pictures", type=pathlib.Path)
+    args = parser.parse_args()
+    if not find():
+        print("chromium is missing: scripts/install-packages browser")
+        return 77
+    if args.pictures:
+        args.pictures.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as folder:
+        watch(args, pathlib.Path(folder))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,164 @@
+#!/usr/bin/env python3
+"""From a dropped record to a fallen error, in a real browser: what an engineer does on the page.
+
+  story.py --bin DIR --source DIR [--pictures DIR]      exit code 77: there is no Chromium
+"""
+import argparse
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+sys.dont_write_bytecode = True
+from chromium import Browser, find  # noqa: E402
+from server_process import Server  # noqa: E402
+
+HOSTILE = "<img src=x onerror=alert(1)><script>.csv"
+
+
+def expect(what, happened):
+    if not happened:
+        raise AssertionError(what)
+
+
+def figure(page, label):
+    return page.run("[...document.querySelectorAll('.figures div')].find((d) => d.querySelector('dt').textContent === "
+                    f"{json.dumps(label)}).querySelector('dd').textContent")
+
+
+def drawn(page, since):
+    page.wait(f"Number(document.querySelector('.stack').dataset.drawn || 0) > {since}")
+    return page.run("Number(document.querySelector('.stack').dataset.drawn)")
+
+
+def story(args, folder):
+    tour = args.source / "config" / "tour"
+    picture = (lambda page, name: page.picture(args.pictures / (name + ".png"))) if args.pictures else lambda *_: None
+    with Server(str(args.bin / "spoolwatch"), folder / "session") as server, Browser() as browser:
+        page = browser.page(server.url)
+        page.wait("document.body.dataset.ready === 'yes'")
+        expect("the token is off the address", server.token not in page.run("location.href"))
+        expect("the token is in no cookie that the page can read", page.run("document.cookie") == "")
+
+        # A record is dropped, a model chosen.
+        page.drop_files("#upload", [tour / "multisine.csv"])
+        page.wait("document.querySelector('#record').value === 'multisine.csv'")
+        page.choose("#model", "shipped:thesis.toml")
+        count = drawn(page, 0)
+        page.wait("document.querySelector('.verdict.bad')")
+        expect("the verdict is in words", "constant speed" in page.run("document.querySelector('.verdict').innerText"))
+        expect("the error before", figure(page, "error, drift-corrected") == "1.92 mm")
+        expect("where it fails", "reversing" in page.run("document.querySelector('.regions').innerText"))
+        picture(page, "compare")
+
+        # A slider is dragged: the curve follows, the command line says how.
+        page.run("(() => { const s = document.getElementById('parameter-damping_N_s_per_m');"
+                 " s.value = 900; s.dispatchEvent(new Event('input', {bubbles: true})); })()")
+        count = drawn(page, count)
+        page.wait("document.querySelector('.commands .now')"
+                  " && document.querySelector('.commands .now').textContent.includes('--set parameters.damping')")
+        picture(page, "slider")
+        page.click_text("Reset")
+        page.wait("!document.querySelector('.commands .now')")
+        count = page.run("Number(document.querySelector('.stack').dataset.drawn)")
+
+        # A stretch is zoomed, another left out with the mouse and counted again.
+        page.run("document.querySelector('.stack').scrollIntoView({block: 'center'})")
+        box = page.run("(() => { const r = document.querySelector('.u-over').getBoundingClientRect();"
+                       " return [r.left, r.top, r.width, r.height]; })()")
+        middle = box[1] + box[3] / 2
+        page.drag(box[0] + 0.3 * box[2], middle, box[0] + 0.6 * box[2], middle)
+        count = drawn(page, count)
+        page.wait("!([...document.querySelectorAll('button')].find((b) => b.textContent === 'Whole record').disabled)")
+        page.click_text("Whole record")
+        count = drawn(page, count)
+        page.click_text("Leave out a stretch")
+        page.drag(box[0] + 0.1 * box[2], middle, box[0] + 0.2 * box[2], middle)
+        page.wait("document.querySelector('.bands button')")
+        page.wait("document.querySelector('.commands').innerText.includes('--ignore')")
+        page.click(".bands button")
+        page.wait("!document.querySelector('.bands button')")
+
+        # What is missing: progress, the trial, the fallen error, acceptance.
+        page.click_text("Diagnose")
+        page.wait("document.querySelector('.progress') || document.querySelector('.result')")
+        page.wait("document.querySelector('.verdict .tag')", 120)
+        expect("the diagnosis names both", all(
+            name in page.run("document.querySelector('.result .words').textContent")
+            for name in ("null_bias", "friction")))
+        expect("the error after", figure(page, "error, drift-corrected") == "2.43 µm")
+        picture(page, "trial")
+        page.click_text("Accept")
+        page.wait("document.querySelector('#model').value === 'thesis-diagnosed.toml'")
+        rows = page.run("[...document.querySelectorAll('.ladder .error')].map((e) => e.textContent)")
+        expect(f"the ladder falls: {rows}", rows == ["1.96 mm", "2.42 µm"])
+
+        # Checked on another record, and taken away.
+        page.drop_files("#upload", [tour / "steps.csv"])
+        page.wait("document.querySelector('#record').value === 'steps.csv'")
+        page.wait("document.querySelector('.verdict.good')")
+        page.click_text("Write a report")
+        page.wait("[...document.querySelectorAll('.exports a')].some((a) => a.textContent.endsWith('.html'))")
+        picture(page, "accepted")
+
+        # Mistakes are told in a line, names of files are text.
+        (folder / HOSTILE).write_text((tour / "steps.csv").read_text())
+        page.drop_files("#upload", [folder / HOSTILE])
+        page.wait("document.querySelector('#record').value.startsWith('<img')")
+        (folder / "bad.csv").write_text("t_s,u_V,y_m\n0,1,2\n0.01,x,3\n")
+        page.drop_files("#upload", [folder / "bad.csv"])
+        page.wait("document.querySelector('[role=alert]')")
+        expect("no element came from a name", page.run("document.querySelectorAll('#app img, #app script').length") == 0)
+
+        # Cancel ends a diagnosis with the best so far; the page may be gone meanwhile.
+        page.choose("#record", "multisine.csv")
+        page.choose("#model", "thesis.toml")
+        page.wait("document.querySelector('#model').value === 'thesis.toml'")
+        page.wait("document.querySelector('.verdict.bad')")
+        page.click_text("Diagnose")
+        page.click_text("Cancel")
+        page.wait("!document.querySelector('.progress')", 120)
+
+        for width, height in ((1280, 800), (1024, 768), (800, 1280)):
+            page.size(width, height, dark=True)
+            expect(f"nothing is wider than {width}", page.run("document.documentElement.scrollWidth") <= width)
+            picture(page, f"dark-{width}")
+        wrong, asked = page.said()
+        expect(f"refused uploads alone are complained of: {wrong}", all("422" in one for one in wrong))
+        expect(f"nothing is asked of another host: {asked}",
+               all(one.startswith(f"http://127.0.0.1:{server.port}/") for one in asked))
+        script = (folder / "session" / "commands.sh").read_text()
+        expect("the server ends", server.end() == 0)
+
+    # The script of the session does the same without a page.
+    again = folder / "again"
+    again.mkdir()
+    for name in ("multisine.csv", "thesis.toml"):
+        shutil.copy(folder / "session" / name, again)
+    command = next(line for line in script.splitlines() if line.startswith("spoolwatch diagnose"))
+    subprocess.run(command, shell=True, cwd=again, check=True, capture_output=True,
+                   env={"PATH": f"{args.bin}:/usr/bin:/bin"})
+    same = [(where / "thesis-diagnosed.toml").read_text() for where in (again, folder / "session")]
+    expect("the command line of the page writes the same model", same[0] == same[1])
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--bin", type=lambda text: pathlib.Path(text).resolve(), required=True)
+    parser.add_argument("--source", type=lambda text: pathlib.Path(text).resolve(), required=True)
+    parser.add_argument("--pictures", type=pathlib.Path)
+    args = parser.parse_args()
+    if not find():
+        print("chromium is missing: scripts/install-packages browser")
+        return 77
+    if args.pictures:
+        args.pictures.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as folder:
+        story(args, pathlib.Path(folder))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
