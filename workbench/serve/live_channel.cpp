@@ -26,8 +26,9 @@ using nlohmann::ordered_json;
 using present::number_or_null;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds kBatch{50};
+constexpr std::chrono::milliseconds kBatch{100};
 constexpr std::chrono::seconds kStatus{1};
+constexpr std::chrono::seconds kFigures{3};  ///< a comparison over the last half minute
 constexpr std::chrono::seconds kRetry{1};
 constexpr double kHistory_s = 60.0;
 constexpr std::size_t kMostPoints = 60 * 1000;  ///< a kilohertz for the whole history
@@ -125,6 +126,10 @@ class LiveListener final : public live::FeedListener {
   ordered_json take_fresh() { return columns(std::exchange(fresh_, 0)); }
   [[nodiscard]] bool take_restarted() { return std::exchange(restarted_, false); }
 
+  void update_model_figures() {
+    model_figures_ = nullptr;
+    if (residual_) model_figures_ = ordered_json::parse(live::json_of(residual_->figures()));
+  }
   [[nodiscard]] ordered_json status() const {
     ordered_json out;
     out["age_s"] = came_ ? number_or_null(seconds_since(*came_)) : ordered_json(nullptr);
@@ -137,8 +142,7 @@ class LiveListener final : public live::FeedListener {
     for (const auto& [source, estimate] : estimates_) out["estimates"].push_back(estimate);
     out["alarms"] = ordered_json::array();
     for (const auto& [name, alarm] : alarms_) out["alarms"].push_back(alarm);
-    out["model"] = nullptr;
-    if (residual_) out["model"] = ordered_json::parse(live::json_of(residual_->figures()));
+    out["model"] = model_figures_;
     out["model_note"] = model_note_;
     return out;
   }
@@ -164,6 +168,7 @@ class LiveListener final : public live::FeedListener {
   std::map<std::string, ordered_json> estimates_, alarms_;
   std::optional<live::OnlineResidual> residual_;
   std::string model_note_;
+  ordered_json model_figures_;
 };
 
 }  // namespace
@@ -225,6 +230,7 @@ void LiveChannel::listen() {
   std::string model;
   std::uint64_t pages = 0;
   Clock::time_point told{};
+  Clock::time_point compared{};
   while (true) {
     const Wish now = wish();
     if (now.ends || !now.wanted) return;
@@ -243,6 +249,10 @@ void LiveChannel::listen() {
     }
     if (Clock::now() - told >= kStatus) {
       told = Clock::now();
+      if (told - compared >= kFigures) {
+        compared = told;
+        listener.update_model_figures();
+      }
       publish_("status", listener.status());
       every_second_();
     }

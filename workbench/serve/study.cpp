@@ -281,10 +281,7 @@ void Study::save() const {
   config::record::write_whole(folder_.path_of(kScript), script_of(lineage_));
 }
 
-std::string Study::curves(const View& view) const {
-  const Shown& shown = front();
-  return columns(shown, nullptr, tried_ && accepted_ ? &*accepted_ : nullptr, view);
-}
+std::string Study::curves(const View& view) const { return columns(nullptr, view); }
 
 std::string Study::preview(const ParameterValues& values, const View& view) const {
   const Shown& shown = front();
@@ -292,7 +289,7 @@ std::string Study::preview(const ParameterValues& values, const View& view) cons
   request.assignments = assignments_of(values);
   const plant_sim::ModelFile model = plant_sim::load_model(request.model, request.assignments);
   const validation::ModelErrors errors = validation::errors_of(model, shown.prepared.record);
-  std::string json = columns(shown, &errors, &shown, view);
+  std::string json = columns(&errors, view);
   std::vector<std::string> words{"spoolwatch", "compare", tried_ ? trial_ : model_, record_};
   add_ignored(words, ignored_);
   for (const std::string& assignment : request.assignments) {

@@ -68,7 +68,7 @@ class Study {
   [[nodiscard]] nlohmann::ordered_json state();
   /// Curves of what is open: JSON text.
   [[nodiscard]] std::string curves(const View& view) const;
-  /// The same for the shown model with other values.
+  /// Model and error with other values, at the rows of curves() for the same view.
   [[nodiscard]] std::string preview(const ParameterValues& values, const View& view) const;
 
  private:
@@ -86,8 +86,8 @@ class Study {
             std::vector<std::string> ignored);
   void note_errors(const std::string& model, const std::optional<Shown>& shown);
   [[nodiscard]] const Shown& front() const;
-  [[nodiscard]] std::string columns(const Shown& shown, const validation::ModelErrors* errors,
-                                    const Shown* ghost, const View& view) const;
+  /// `changed`: the curves of a model with other values, alone; null: everything.
+  [[nodiscard]] std::string columns(const validation::ModelErrors* changed, const View& view) const;
   void save() const;
 
   const SessionFolder& folder_;

@@ -187,8 +187,9 @@ struct Column {
   std::vector<double> values;
 };
 
-/// The rows of `view`, thinned, as an object of arrays without its closing brace.
-std::string arrays(const std::vector<double>& t_s, std::vector<Column>& columns, const View& view) {
+/// Rows of `columns` within `view`, thinned so that no peak of any column is lost.
+std::vector<std::size_t> rows_of(const std::vector<double>& t_s, const std::vector<Column>& columns,
+                                 const View& view) {
   auto from = t_s.begin();
   auto to = t_s.end();
   if (view.to_s > view.from_s) {
@@ -198,69 +199,83 @@ std::string arrays(const std::vector<double>& t_s, std::vector<Column>& columns,
     if (from != t_s.begin()) --from;
     if (to != t_s.end()) ++to;
   }
-  const auto begin = from - t_s.begin();
-  const auto end = to - t_s.begin();
+  const auto begin = static_cast<std::size_t>(from - t_s.begin());
+  std::vector<std::vector<double>> parts;
   std::vector<const std::vector<double>*> all;
-  for (Column& column : columns) {
-    column.values.erase(column.values.begin() + end, column.values.end());
-    column.values.erase(column.values.begin(), column.values.begin() + begin);
-    all.push_back(&column.values);
-  }
-  const std::vector<std::size_t> rows = present::thin_lines(
-      all, static_cast<std::size_t>(end - begin), std::clamp<std::size_t>(view.rows, 200, 20'000));
-  const auto picked = [&](const auto& values) {
-    std::vector<double> out;
-    out.reserve(rows.size());
-    for (const std::size_t row : rows) out.push_back(values[row]);
-    return present::json_numbers(out);
-  };
-  const std::vector<double> shown_s(from, to);
-  std::string json = "{\"t\":" + picked(shown_s);
   for (const Column& column : columns) {
-    json += ",\"" + std::string(column.name) + "\":" + picked(column.values);
+    const auto first = column.values.begin() + static_cast<std::ptrdiff_t>(begin);
+    parts.emplace_back(first, first + (to - from));
   }
-  return json;
+  for (const std::vector<double>& part : parts) all.push_back(&part);
+  std::vector<std::size_t> rows = present::thin_lines(
+      all, static_cast<std::size_t>(to - from), std::clamp<std::size_t>(view.rows, 200, 20'000));
+  for (std::size_t& row : rows) row += begin;
+  return rows;
+}
+
+/// ,"name":[...]
+std::string array(const char* name, const std::vector<double>& values,
+                  const std::vector<std::size_t>& rows) {
+  std::vector<double> picked;
+  picked.reserve(rows.size());
+  for (const std::size_t row : rows) picked.push_back(values[row]);
+  return ",\"" + std::string(name) + "\":" + present::json_numbers(picked);
+}
+
+constexpr double kMillimetres = 1e3;
+
+/// Free run in mm and error in `unit`.
+std::vector<Column> model_columns(const greybox::Dataset& record,
+                                  const std::vector<double>& error_m,
+                                  const std::vector<double>& free_error_m,
+                                  const present::ErrorUnit& unit, bool ghost) {
+  return {
+      {ghost ? "ghost_model" : "model",
+       broken(record, [&](auto k) { return kMillimetres * (record.y_m[k] - free_error_m[k]); })},
+      {ghost ? "ghost_error" : "error", broken(record, [&](auto k) {
+         return record.valid[k] != 0 ? unit.per_m * error_m[k] : config::signals::kNaN;
+       })}};
 }
 
 }  // namespace
 
-std::string Study::columns(const Shown& shown, const validation::ModelErrors* errors,
-                           const Shown* ghost, const View& view) const {
-  constexpr double kMillimetres = 1e3;
+std::string Study::columns(const validation::ModelErrors* changed, const View& view) const {
+  const Shown& shown = front();
+  const Shown* const ghost = tried_ && accepted_ ? &*accepted_ : nullptr;
   const validation::Comparison& c = shown.comparison;
   const greybox::Dataset& record = c.record;
-  const std::vector<double>& error_m = errors != nullptr ? errors->error_m : c.error_m;
-  const std::vector<double>& free_m = errors != nullptr ? errors->free_error_m : c.free_error_m;
-  const double rms_m = errors != nullptr ? errors->rms_m : c.rms_m;
-  const double ghost_rms_m = ghost != nullptr ? ghost->comparison.rms_m : rms_m;
-  const present::ErrorUnit unit = present::error_unit(std::max(rms_m, ghost_rms_m));
-  const auto settled = [&](std::size_t k, double value) {
-    return record.valid[k] != 0 ? value : config::signals::kNaN;
-  };
+  const double greatest_m = std::max(c.rms_m, ghost != nullptr ? ghost->comparison.rms_m : 0.0);
+  const present::ErrorUnit unit = present::error_unit(greatest_m);
   std::vector<Column> columns{
       {"measured", broken(record, [&](auto k) { return kMillimetres * record.y_m[k]; })},
-      {"model", broken(record, [&](auto k) { return kMillimetres * (record.y_m[k] - free_m[k]); })},
-      {"error", broken(record, [&](auto k) { return settled(k, unit.per_m * error_m[k]); })},
       {"command", broken(record, [&](auto k) { return record.u_V[k]; })}};
+  const auto add = [&](std::vector<Column> more) {
+    for (Column& column : more) columns.push_back(std::move(column));
+  };
+  add(model_columns(record, c.error_m, c.free_error_m, unit, false));
   if (ghost != nullptr) {
     const validation::Comparison& g = ghost->comparison;
-    columns.push_back({"ghost_model", broken(record, [&](auto k) {
-                         return kMillimetres * (record.y_m[k] - g.free_error_m[k]);
-                       })});
-    columns.push_back({"ghost_error", broken(record, [&](auto k) {
-                         return settled(k, unit.per_m * g.error_m[k]);
-                       })});
+    add(model_columns(record, g.error_m, g.free_error_m, unit, true));
   }
-  std::string json = arrays(times_of(record), columns, view);
-  json += R"(,"unit":)" + present::json_string(typeset(unit.name)) + R"(,"floor":)" +
-          present::json_number(2.0 * unit.per_m * c.noise_floor_m) + R"(,"rms":)" +
-          present::json_string(typeset(config::units::length_words(rms_m))) + R"(,"rms_m":)" +
-          present::json_number(rms_m) + R"(,"position_unit":)" +
-          present::json_string(shown.prepared.units.position == "m"
-                                   ? "mm"
-                                   : "1e-3 " + shown.prepared.units.position) +
-          R"(,"command_unit":)" + present::json_string(shown.prepared.units.command);
-  return json + "}";
+  const std::vector<double> t_s = times_of(record);
+  const std::vector<std::size_t> rows = rows_of(t_s, columns, view);
+  std::string json = R"({"rows":)" + std::to_string(rows.size());
+  double rms_m = c.rms_m;
+  if (changed != nullptr) {
+    // The same rows as those of the curves, which the page has.
+    rms_m = changed->rms_m;
+    columns = model_columns(record, changed->error_m, changed->free_error_m, unit, false);
+  } else {
+    json += array("t", t_s, rows);
+  }
+  for (const Column& column : columns) json += array(column.name, column.values, rows);
+  const std::string& position = shown.prepared.units.position;
+  return json + R"(,"unit":)" + present::json_string(typeset(unit.name)) + R"(,"floor":)" +
+         present::json_number(2.0 * unit.per_m * c.noise_floor_m) + R"(,"rms":)" +
+         present::json_string(typeset(config::units::length_words(rms_m))) + R"(,"rms_m":)" +
+         present::json_number(rms_m) + R"(,"position_unit":)" +
+         present::json_string(position == "m" ? "mm" : "1e-3 " + position) + R"(,"command_unit":)" +
+         present::json_string(shown.prepared.units.command) + "}";
 }
 
 ordered_json Study::state() {

@@ -177,7 +177,7 @@ class Page:
                 continue
             method, more = event["method"], event["params"]
             if method == "Runtime.exceptionThrown":
-                wrong.append(str(more["exceptionDetails"]))
+                wrong.append(str(more["exceptionDetails"].get("exception", {}).get("description")))
             elif method == "Log.entryAdded" and more["entry"]["level"] == "error":
                 wrong.append(more["entry"]["text"] + " " + more["entry"].get("url", ""))
             elif method == "Network.requestWillBeSent":

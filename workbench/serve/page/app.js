@@ -32,13 +32,11 @@ function App({first}) {
   };
   useEffect(() => {
     const pass = (name) => (data) => feed.dispatchEvent(new CustomEvent(name, {detail: data}));
-    let first = true;
     return listen(view === 'live', {
       link: setLink,
-      // Whatever happened while the page was not heard is in the state.
+      // Whatever happened before the stream began is in the state.
       hello: () => {
-        if (!first) enter().then(setState).catch(() => {});
-        first = false;
+        enter().then(setState).catch(() => {});
         pass('hello')(null);
       },
       state: (data) => {

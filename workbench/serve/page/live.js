@@ -7,7 +7,7 @@ import {PlotStack} from '/plots.js';
 const KEYS = ['reference', 'y', 'u', 'error'];
 const KEPT_S = 120;       // what the page remembers
 const STALE_S = 3;
-const FRAME_MS = 90;
+const FRAME_MS = 160;
 const SPECS = [
   {height: 240, label: 'position, mm', series: [
     {key: 'reference', name: 'reference', tone: 'reference'},
@@ -169,14 +169,11 @@ export function Live({feed, link, state}) {
     };
     for (const [name, take] of Object.entries(on)) feed.addEventListener(name, take);
 
-    let frame = 0, drawn = 0, told = 0;
+    let frame = 0, told = 0;
     const draw = (time) => {
-      frame = requestAnimationFrame(draw);
-      if (time - drawn < FRAME_MS) return;
       const {span, paused, view} = now.current;
       const key = paused + '|' + span + '|' + view;
       if (!k.fresh && key === k.key) return;
-      drawn = time;
       const t = k.ring.t;
       if (paused && !k.frozen && t.length) k.frozen = t[t.length - 1];
       if (!paused) { k.frozen = null; k.after = 0; }
@@ -190,12 +187,15 @@ export function Live({feed, link, state}) {
       k.base = newest;
       stack.show({...part, t: part.t.map((v) => v - newest)}, from - newest, to - newest);
       element.current.dataset.points = part.t.length;
-      if (time - told > 250) {
+      if (time - told > 450) {
         told = time;
         setMeters(Object.fromEntries(KEYS.map((key) => [key, meter(part[key])])));
       }
     };
-    frame = requestAnimationFrame(draw);
+    // Frames are asked for only as often as they are drawn: an idle frame costs too.
+    const frames = setInterval(() => {
+      if (!document.hidden) frame = requestAnimationFrame(draw);
+    }, FRAME_MS);
     const ticking = setInterval(() => {
       const since = k.aged && k.aged.s != null ? k.aged.s + (Date.now() - k.aged.at) / 1000 : null;
       const seen = k.came ? (Date.now() - k.came) / 1000 : null;
@@ -204,6 +204,7 @@ export function Live({feed, link, state}) {
       setHeld(k.after);
     }, 500);
     return () => {
+      clearInterval(frames);
       cancelAnimationFrame(frame);
       clearInterval(ticking);
       for (const [name, take] of Object.entries(on)) feed.removeEventListener(name, take);

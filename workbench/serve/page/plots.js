@@ -54,7 +54,7 @@ export class PlotStack {
     this.bands = [];
     this.levels = {};
     this.dragMeaning = 'zoom';
-    this.range = null;
+    this.shown = false;
     const key = 'stack-' + Math.random();
     this.plots = specs.map((spec, i) => {
       const last = i === specs.length - 1;
@@ -91,17 +91,20 @@ export class PlotStack {
     });
     this.sizes.observe(element);
     this.theme = matchMedia('(prefers-color-scheme: dark)');
-    this.repaint = () => this.plots.forEach((plot) => plot.redraw());
+    this.repaint = () => {
+      if (this.shown) this.plots.forEach((plot) => plot.redraw());
+    };
     this.theme.addEventListener('change', this.repaint);
     if (onZoom) {
       for (const plot of this.plots) plot.over.addEventListener('dblclick', () => onZoom(null, null));
     }
   }
 
-  /// columns: {t, KEY: [...]}; a missing key is an empty curve.
-  show(columns, from, to) {
+  /// columns: {t, KEY: [...]}; a missing key is an empty curve. `count`: the first so many plots.
+  show(columns, from, to, count = this.plots.length) {
     const empty = columns.t.map(() => null);
-    this.plots.forEach((plot, i) => {
+    this.shown = true;
+    this.plots.slice(0, count).forEach((plot, i) => {
       const data = [columns.t, ...this.specs[i].series.map((s) => columns[s.key] || empty)];
       plot.batch(() => {
         plot.setData(data, false);

@@ -9,7 +9,7 @@ import {Sliders} from '/sliders.js';
 const SPECS = [
   {height: 270, label: 'position, mm', series: [
     {key: 'measured', name: 'measured', tone: 'measured', width: 2},
-    {key: 'ghost_model', name: 'before', tone: 'ghost', dash: [4, 4]},
+    {key: 'ghost_model', name: 'before', tone: 'ghost'},
     {key: 'model', name: 'model, free run', tone: 'model'}]},
   {height: 220, label: 'error', level: 'floor', series: [
     {key: 'ghost_error', name: 'before', tone: 'ghost'},
@@ -94,23 +94,32 @@ function usePlots({state, values, rms}) {
   const now = useRef();
   now.current = {state, values};
 
+  // The curves of the state and view, fetched once; a slider's move brings model and error anew.
+  const base = useRef({});
   const draw = useRef(latest(async () => {
     const {state, values} = now.current;
     if (!state.shown) return;
     const {from, to} = view.current;
+    const body = {from, to, rows: 2500};
+    const old = base.current;
+    const fetched = old.state !== state || old.from !== from || old.to !== to;
+    if (fetched) base.current = {state, from, to, curves: await post('curves', body)};
+    let curves = base.current.curves;
     const moved = Object.keys(values).length > 0;
-    const began = performance.now();
-    const body = {from, to, rows: moved ? 4000 : 6000};
-    const curves = moved ? await post('preview', {...body, values}) : await post('curves', body);
-    if (curves.superseded || !stack.current) return;
+    if (moved) {
+      const other = await post('preview', {...body, values});
+      if (other.superseded || other.rows !== curves.t.length) return;
+      curves = {...curves, ...other, ghost_model: curves.model, ghost_error: curves.error};
+    }
+    if (!stack.current) return;
     stack.current.levels.floor = curves.floor;
     stack.current.label(0, 'position, ' + curves.position_unit);
     stack.current.label(1, 'error, ' + curves.unit);
     stack.current.label(2, 'command, ' + curves.command_unit);
     const whole = !(to > from);
-    stack.current.show(curves, whole ? state.shown.from_s : from, whole ? state.shown.to_s : to);
+    stack.current.show(curves, whole ? state.shown.from_s : from, whole ? state.shown.to_s : to,
+                       fetched ? 3 : 2);
     rms(moved ? curves : null);
-    element.current.dataset.drawnMs = (performance.now() - began).toFixed(1);
     element.current.dataset.drawn = String(+(element.current.dataset.drawn || 0) + 1);
   }));
 
@@ -137,9 +146,15 @@ function usePlots({state, values, rms}) {
     stack.current.bands = [
       {spans: region ? region.spans : [], tone: 'region'},
       {spans: state.ignored.map((span) => span.split(':').map(Number)), tone: 'ignored'}];
+    stack.current.repaint();
     draw.current();
-  }, [state, values, selected]);
-  return {selected, select: setSelected, now, view: html`
+  }, [state, selected]);
+  // At once, before anything else is drawn.
+  const move = (values) => {
+    now.current.values = values;
+    draw.current();
+  };
+  return {selected, select: setSelected, now, move, view: html`
     <section class=${'plots' + (shown ? '' : ' empty')}>
       <p class="row tools">
         <button onClick=${() => zoom(null, null)} disabled=${!zoomed}>Whole record</button>
@@ -215,17 +230,21 @@ export function Workbench({state, progress}) {
       say(error.message);
     }
   };
-  useEffect(() => setValues({}), [state.model, state.trial, state.record]);
   const plots = usePlots({state, values, rms: setPreview});
   plots.now.current.act = act;
+  const change = (values) => {
+    setValues(values);
+    plots.move(values);
+  };
+  useEffect(() => change({}), [state.model, state.trial, state.record]);
   const run = (what, body = {}) => act(() => post(what, body));
   return html`
     <main class="workbench">
       <div class="left">
         <${Files} state=${state} act=${act} />
         <${Sliders} parameters=${state.shown ? state.parameters : []} values=${values}
-                    set=${(name, value) => setValues({...values, [name]: value})}
-                    reset=${() => setValues({})} running=${state.running}
+                    set=${(name, value) => change({...plots.now.current.values, [name]: value})}
+                    reset=${() => change({})} running=${state.running}
                     fit=${() => run('fit', {values})} rms=${preview && preview.rms} />
       </div>
       <div class="middle">
