@@ -11,6 +11,7 @@
 #include "workbench/present/compare_units.h"
 #include "workbench/present/json.h"
 #include "workbench/present/plot_data.h"
+#include "workbench/present/printed_model.h"
 #include "workbench/present/record_section.h"
 #include "workbench/present/script_json.h"
 #include "workbench/present/shell_command.h"
@@ -270,15 +271,16 @@ std::string Study::columns(const validation::ModelErrors* changed, const View& v
   }
   for (const Column& column : columns) json += array(column.name, column.values, rows);
   const std::string& position = shown.prepared.units.position;
-  return json + R"(,"unit":)" + present::json_string(typeset(unit.name)) + R"(,"floor":)" +
-         present::json_number(2.0 * unit.per_m * c.noise_floor_m) + R"(,"rms":)" +
+  return json + R"(,"unit":)" + present::json_string(typeset(config::units::axis_unit(unit.name))) +
+         R"(,"floor":)" + present::json_number(2.0 * unit.per_m * c.noise_floor_m) + R"(,"rms":)" +
          present::json_string(typeset(config::units::length_words(rms_m))) + R"(,"rms_m":)" +
          present::json_number(rms_m) + R"(,"position_unit":)" +
-         present::json_string(position == "m" ? "mm" : "1e-3 " + position) + R"(,"command_unit":)" +
-         present::json_string(shown.prepared.units.command) + "}";
+         present::json_string(position == "m" ? config::units::axis_unit("mm") : "m" + position) +
+         R"(,"command_unit":)" + present::json_string(shown.prepared.units.command) + "}";
 }
 
 ordered_json Study::state() {
+  if (accepted_) present::print_as(accepted_->prepared.model);
   ordered_json out{{"record", record_}, {"model", model_}, {"trial", trial_}};
   out["ignored"] = ignored_;
   out["files"] = ordered_json::array();

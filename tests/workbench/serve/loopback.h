@@ -23,7 +23,10 @@ namespace workbench::serve {
 /// A connection of a client.
 class Client {
  public:
-  explicit Client(unsigned short port) : file_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+  /// `buffer` bytes are taken by the system before the client reads; 0: as many as it likes.
+  explicit Client(unsigned short port, int buffer = 0)
+      : file_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    if (buffer > 0) setsockopt(file_, SOL_SOCKET, SO_RCVBUF, &buffer, sizeof buffer);
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_port = htons(port);
