@@ -84,14 +84,14 @@ TEST(Diagnosis, EstimatesTheNoiseOfALogThatIsTooSlowToShowIt) {
 
 TEST(Diagnosis, SaysWhatCarriesAnErrorThatNoEffectExplains) {
   const AdvisedDiagnosis advised =
-      diagnosed(servo_context({.rate_mps = [](double u_V, double y_m, double) {
-        return kServoGain * u_V * (1.0 + 0.1 * std::sin(2.0 * M_PI * y_m / 0.08));
+      diagnosed(servo_context({.rate_mps = [](double u_V, double, double t_s) {
+        return kServoGain * u_V * (1.0 - 0.05 * std::sin(t_s));
       }}));
   const selection::Diagnosis& d = advised.diagnosis;
   EXPECT_EQ(d.verdict, selection::Verdict::unexplained);
   ASSERT_FALSE(d.where.empty());
   EXPECT_EQ(d.where[0].site, "gain");
-  EXPECT_EQ(d.where[0].variable, "y");
+  EXPECT_EQ(d.where[0].variable, "time");
   EXPECT_FALSE(advised.advice.empty());
 }
 
