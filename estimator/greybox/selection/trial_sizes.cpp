@@ -36,6 +36,9 @@ constexpr double kResonanceRatio = 1.04;
 constexpr double kTriedDamping = 0.04;
 constexpr double kSmallShare = 0.05;
 constexpr double kMostShare = 0.8;  ///< of a start
+/// Places of a sensor behind the spring: at the second mass, or on the way to it.
+constexpr double kNearLoad = 0.95;
+constexpr double kLeastNearLoad = 0.7;
 constexpr double kUsualShare = 0.3;
 constexpr double kUsualShareSd = 0.2;
 /// Damping ratio beyond which a response shows no peak worth the name.
@@ -232,8 +235,8 @@ Resonance resonance_of(const std::vector<FreeParameter>& parameters, double freq
       found.parameters.back().prior_sd = p.to_theta(kUsualShareSd);
     }
     if (ends_with(p.name, kSensor)) {
-      take(p, 1.0);
-      found.parameters.back().lower = found.parameters.back().upper = p.to_theta(1.0);
+      take(p, kNearLoad);
+      found.parameters.back().lower = p.to_theta(kLeastNearLoad);
     }
   }
   found.theta = Eigen::Map<const VectorXd>(theta.data(), static_cast<Index>(theta.size()));
