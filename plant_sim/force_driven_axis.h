@@ -35,7 +35,7 @@ class ForceDrivenAxis {
 
     template <class V>
     void visit(V&& v) {
-      v(ParameterInfo{"mass_kg", "moving mass M", 1e-7, 1e6, 100.0, 100.0, 1.0}, mass_kg);
+      v(ParameterInfo{"mass_kg", "moving mass M", 1e-6, 1e6, 100.0, 100.0, 1.0}, mass_kg);
       v(ParameterInfo{"damping_N_s_per_m", "viscous damping d", 0.0, 1e8, 200.0, 200.0, 1.0},
         damping_N_s_per_m);
       v(ParameterInfo{"gain_N_per_V", "force per command", 0.0, 1e6, 35.0, 35.0}, gain_N_per_V);
