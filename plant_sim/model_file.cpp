@@ -7,6 +7,7 @@
 #include "config/schema/document.h"
 #include "config/schema/error.h"
 #include "config/schema/visitor.h"
+#include "plant_sim/hydraulics.h"
 #include "plant_sim/library.h"
 
 namespace plant_sim {
@@ -77,13 +78,12 @@ double value_or(const ModelFile& model, std::string_view name, double otherwise)
 formula::PlausibleRanges plausible(const ModelFile& model) {
   constexpr double kFullCommand_V = 10.0;
   formula::PlausibleRanges ranges;
-  const double gain = value_or(model, "valve_gain_m_per_V", value_or(model, "gain_mps_per_V", 1.0));
+  const std::optional<Hydraulics> oil = hydraulics_of(model);
+  const double gain = oil ? oil->valve_gain_m_per_V : value_or(model, "gain_mps_per_V", 1.0);
   const double opening = std::max(kFullCommand_V * gain, 1e-6);
-  const double supply_Pa = std::max(value_or(model, "supply_pressure_Pa", 1e7), 1e5);
-  const double orifice = value_or(model, "discharge_coefficient", 0.6) *
-                         value_or(model, "area_gradient_m", 0.02) *
-                         std::sqrt(2.0 / value_or(model, "density_kg_per_m3", 850.0));
-  const double flow_m3ps = std::max(orifice * opening * std::sqrt(supply_Pa), 1e-9);
+  const double supply_Pa = std::max(oil ? oil->supply_pressure_Pa : 0.0, 1e5);
+  const double flow_m3ps =
+      std::max((oil ? oil->orifice : 0.0) * opening * std::sqrt(supply_Pa), 1e-9);
   const double stroke_m = value_or(model, "stroke_m", -1.0);
   ranges.opening_m = {-opening, opening};
   ranges.flow_m3ps = {-flow_m3ps, flow_m3ps};

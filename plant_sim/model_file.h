@@ -53,7 +53,7 @@ struct ModelFile {
   std::string motion;                  ///< "linear", "rotary", or empty: linear
   std::vector<NamedValue> parameters;  ///< all parameters of the plant, defaults filled in
   std::vector<NamedValue> priors;      ///< in the order of `parameters`; NaN = the plant's own
-  std::vector<NamedValue> initial;     ///< NaN = the plant's own choice (half supply pressure)
+  std::vector<NamedValue> initial;     ///< NaN = the plant's own choice (pressures at rest)
   std::vector<formula::FormulaEffect> formula_effects;  ///< as declared
   std::vector<Effect> effects;  ///< the library's, then the formulas; present or not
   /// What happened to the rig during one record, from its first sample on; one for a parameter.

@@ -3,6 +3,7 @@
 
 #include "plant_sim/force_driven_axis.h"
 #include "plant_sim/hydraulic_actuator.h"
+#include "plant_sim/hydraulic_cylinder.h"
 #include "plant_sim/velocity_servo.h"
 
 namespace plant_sim {
@@ -11,6 +12,7 @@ namespace plant_sim {
 template <class S, class F>
 void each_plant(F&& f) {
   f.template operator()<HydraulicActuator<S>>();
+  f.template operator()<HydraulicCylinder<S>>();
   f.template operator()<VelocityServo<S>>();
   f.template operator()<ForceDrivenAxis<S>>();
 }

@@ -134,17 +134,20 @@ class EffectSet : public EffectStore<S, E...> {
         [&]<class T>(Tag<T>, const auto&, auto& memory) { memory.offset.offset_mps += lost_mps; });
   }
 
+  /// Sum of all forces against extension but dry friction.
+  [[nodiscard]] S resisting_N(const S& y_m, const S& v_mps) const {
+    S sum_N = 0.0;
+    this->template for_each_active<Site::force>([&]<class T>(Tag<T>, const auto& p, const auto&) {
+      sum_N += T::resisting_N(p, y_m, v_mps);
+    });
+    if (formulas_.acts_on(Site::force)) sum_N += formulas_.sum(Site::force, y_m, v_mps);
+    return sum_N;
+  }
+
   /// contact.drive_N less all resisting forces and dry friction; each dry friction sees the force
   /// that remains after those before it.
   [[nodiscard]] S net_force_N(const S& y_m, DryContact<S> contact) const {
-    S resisting_N = 0.0;
-    this->template for_each_active<Site::force>([&]<class T>(Tag<T>, const auto& p, const auto&) {
-      resisting_N += T::resisting_N(p, y_m, contact.v_mps);
-    });
-    if (formulas_.acts_on(Site::force)) {
-      resisting_N += formulas_.sum(Site::force, y_m, contact.v_mps);
-    }
-    contact.drive_N -= resisting_N;
+    contact.drive_N -= resisting_N(y_m, contact.v_mps);
     this->template for_each_active<Site::dry_friction>(
         [&]<class T>(Tag<T>, const auto& p, const auto& memory) {
           contact.drive_N -= T::friction_N(p, memory, contact);

@@ -48,7 +48,8 @@ std::vector<InstructionSet> sets_here() {
 /// Eight models that differ in parameters, as an ensemble of every instruction set and alone.
 class Side {
  public:
-  explicit Side(const ModelFile& model, double start_m) : start_m_(start_m) {
+  explicit Side(ModelFile model, double start_m) : start_m_(start_m) {
+    model.initial.push_back({"y_m", start_m});
     for (const InstructionSet set : sets_here()) {
       together_.push_back(make_ensemble(model, kStep_s, set));
     }
@@ -138,7 +139,7 @@ class EveryEnsemble : public ::testing::TestWithParam<const char*> {
     model.initial.clear();
     return model;
   }
-  static bool actuator() { return std::string(GetParam()) == "hydraulic_actuator"; }
+  static bool actuator() { return std::string(GetParam()).find("hydraulic") == 0; }
 
   /// Three seconds over both directions; at 10 V the actuator reaches its stops.
   static void drive(Side& side, double most_V, const std::string& what) {
@@ -158,8 +159,8 @@ class EveryEnsemble : public ::testing::TestWithParam<const char*> {
   static double volts() { return std::string(GetParam()) == "force_driven_axis" ? 30.0 : 3.0; }
 };
 INSTANTIATE_TEST_SUITE_P(Plants, EveryEnsemble,
-                         ::testing::Values("hydraulic_actuator", "velocity_servo",
-                                           "force_driven_axis"),
+                         ::testing::Values("hydraulic_actuator", "hydraulic_cylinder",
+                                           "velocity_servo", "force_driven_axis"),
                          [](const auto& of) { return std::string(of.param); });
 
 TEST_P(EveryEnsemble, HasLanesThatAgreeWithSinglePlantsForEachEffect) {

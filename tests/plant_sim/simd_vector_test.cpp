@@ -97,6 +97,12 @@ TEST(SimdVector, AgreeWithSingleRunsForEightActuatorsWithEffectsIncludingStops) 
   }
 }
 
+TEST(SimdVector, AgreeWithSingleRunsForEightCylindersOfTwoAreas) {
+  for (unsigned seed = 1; seed <= 12 && !HasFatalFailure(); ++seed) {
+    expect_agreement<HydraulicCylinder>(seed);
+  }
+}
+
 TEST(SimdVector, AgreeWithSingleRunsForEightServosAndEightAxes) {
   for (unsigned seed = 1; seed <= 6 && !HasFatalFailure(); ++seed) {
     expect_agreement<VelocityServo>(seed);

@@ -209,7 +209,7 @@ void check_pressures(const SimulateArguments& arguments, const simulate::Scenari
           plant_sim::make_plant(plant_sim::without_changes(scenario.model))->pressures().in_Pa))
     return;
   throw ConfigError(arguments.model + ": --pressures: plant " + scenario.model.plant +
-                    " has none; allowed: hydraulic_actuator");
+                    " has none; allowed: hydraulic_actuator, hydraulic_cylinder");
 }
 
 }  // namespace

@@ -18,6 +18,7 @@
 #include "estimator/greybox/parameter_catalogue.h"
 #include "estimator/greybox/tracking/disturbed_baseline.h"
 #include "estimator/residual/noise_floor.h"
+#include "plant_sim/hydraulics.h"
 #include "workbench/files/file_check.h"
 #include "workbench/fit/parameter_selection.h"
 #include "workbench/present/printed_model.h"
@@ -39,7 +40,6 @@ constexpr double kLeastSamples = 20.0;
 constexpr const char* kSupply = "supply_pressure_Pa";
 constexpr const char* kIn = "pressure_in_Pa";
 constexpr const char* kOut = "pressure_out_Pa";
-constexpr const char* kGain = "valve_gain_m_per_V";
 
 struct TimeSpan {
   double from_s = 0.0;
@@ -105,7 +105,8 @@ Readings readings_of(const Record& record, const IsolationRequest& request) {
 
 /// With a reading of the supply pressure or of both chambers' the valve gain is identifiable, and
 /// is tracked as well.
-std::vector<std::string> tracked_names(const IsolationRequest& request, const Readings& readings,
+std::vector<std::string> tracked_names(const plant_sim::ModelFile& model,
+                                       const IsolationRequest& request, const Readings& readings,
                                        std::vector<std::string>& notes) {
   std::vector<std::string> names = greybox::split_names(request.parameters);
   const auto has = [&](const char* name) {
@@ -119,8 +120,9 @@ std::vector<std::string> tracked_names(const IsolationRequest& request, const Re
     notes.push_back(std::string("the record's ") + kIn + " and " + kOut +
                     " are fitted beside the position");
   }
-  if ((supply || readings.in_Pa != nullptr) && has(kSupply) && !has(kGain)) {
-    names.emplace_back(kGain);
+  if ((supply || readings.in_Pa != nullptr) && has(kSupply)) {
+    const auto oil = plant_sim::hydraulics_of(model);
+    if (oil && !has(oil->gain_parameter.c_str())) names.push_back(oil->gain_parameter);
   }
   return names;
 }
@@ -296,7 +298,8 @@ IsolationReport isolate(const IsolationRequest& request) {
     throw config::schema::bad_data(healthy.name, "lacks the pressures that " + record.name + " has",
                                    "--no-pressures");
   }
-  out.set = tracking::choose(model, tracked_names(request, readings, out.notes), "--parameters");
+  out.set =
+      tracking::choose(model, tracked_names(model, request, readings, out.notes), "--parameters");
   const auto floor = estimator::residual::noise_floor(record.y_m, record.sample_time_s);
   out.noise_floor_m = floor.sd_m;
   const double floor_m = std::isfinite(floor.sd_m) ? floor.sd_m : 0.0;

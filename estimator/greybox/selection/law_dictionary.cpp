@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "estimator/greybox/selection/rig_scale.h"
+#include "plant_sim/hydraulics.h"
 #include "plant_sim/library.h"
 
 namespace estimator::greybox::selection {
@@ -120,11 +121,12 @@ class Dictionary {
 
   void add_openings() {
     plant_sim::ModelFile model = model_;
-    const double* const valve = model.value("valve_gain_m_per_V");
+    const auto oil = plant_sim::hydraulics_of(model);
     const double* const servo = model.value("gain_mps_per_V");
-    if (valve == nullptr && servo == nullptr) return;
-    const bool is_speed = valve == nullptr;
-    const double full = rounded((is_speed ? *servo : *valve) * rig_.most_command_V);
+    if (!oil && servo == nullptr) return;
+    const bool is_speed = !oil;
+    const double full =
+        rounded((is_speed ? *servo : oil->valve_gain_m_per_V) * rig_.most_command_V);
     const std::string lap = is_speed ? "lap_mps" : "lap_m";
     add("gain_curvature", "gain that changes with the square of the opening", "opening",
         fmt::format("x_m * (1 + curvature_ratio * (x_m / {})^2)", full),

@@ -7,6 +7,7 @@
 #include "estimator/greybox/fit.h"
 #include "estimator/greybox/observer_simulation.h"
 #include "estimator/parallel.h"
+#include "plant_sim/hydraulics.h"
 #include "plant_sim/library.h"
 
 namespace estimator::greybox::selection {
@@ -58,6 +59,14 @@ double mass_kg(const FitDataset& data, double gain_N_per_V) {
   return most_kg;
 }
 
+/// Speed per command of the records over that of a cylinder of this valve under half its supply.
+double speed_ratio(const plant_sim::ModelFile& model, const FitDataset& data) {
+  const plant_sim::Hydraulics oil = plant_sim::hydraulics_of(model).value();
+  const double model_mps_per_V =
+      oil.orifice * oil.valve_gain_m_per_V * std::sqrt(0.5 * oil.supply_pressure_Pa) / oil.area_m2;
+  return speed_per_volt(data) / model_mps_per_V;
+}
+
 plant_sim::ModelFile plain_model(const plant_sim::PlantInfo& plant, const FitDataset& data) {
   plant_sim::ModelFile model;
   model.name = plant.name;
@@ -71,6 +80,7 @@ plant_sim::ModelFile plain_model(const plant_sim::PlantInfo& plant, const FitDat
     model.initial.push_back({p.name, p.neutral});
   }
   if (double* gain = model.value("gain_mps_per_V")) *gain = speed_per_volt(data);
+  if (double* flow = model.value("rated_flow_m3ps")) *flow *= speed_ratio(model, data);
   if (double* lag = model.value("time_constant_s")) *lag = 2.0 * data.sample_time_s;
   if (const double* gain = model.value("gain_N_per_V")) {
     const double mass = mass_kg(data, *gain);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "plant_sim/hydraulics.h"
+
 namespace estimator::greybox::selection {
 
 RigScale rig_scale(plant_sim::ModelFile model, const FitDataset& data) {
@@ -36,12 +38,10 @@ RigScale rig_scale(plant_sim::ModelFile model, const FitDataset& data) {
   scale.command_V = std::sqrt(squares_V2 / samples);
   scale.most_command_V = most_V;
   scale.centre_m = 0.5 * (least_m + most_m);
-  const double* const area_m2 = model.value("area_m2");
-  const double* const supply_Pa = model.value("supply_pressure_Pa");
-  if (area_m2 != nullptr && supply_Pa != nullptr) {
-    scale.area_m2 = *area_m2;
-    scale.pressure_Pa = *supply_Pa;
-    scale.force_N = *area_m2 * *supply_Pa;
+  if (const auto oil = plant_sim::hydraulics_of(model)) {
+    scale.area_m2 = oil->area_m2;
+    scale.pressure_Pa = oil->supply_pressure_Pa;
+    scale.force_N = oil->area_m2 * oil->supply_pressure_Pa;
   } else if (const double* const gain = model.value("gain_N_per_V")) {
     scale.force_N = *gain * most_V;
   }

@@ -8,6 +8,7 @@
 
 #include "estimator/greybox/dataset.h"
 #include "estimator/greybox/kinematics.h"
+#include "plant_sim/hydraulics.h"
 
 namespace estimator::greybox::tracking {
 namespace {
@@ -31,6 +32,11 @@ std::size_t tracked_index(const ParameterSet& set, std::string_view name) {
   return kNotMeasured;
 }
 
+std::string gain_parameter(const plant_sim::ModelFile& model) {
+  const auto oil = plant_sim::hydraulics_of(model);
+  return oil ? oil->gain_parameter : std::string();
+}
+
 double motion_m(const WindowData& data) {
   const double* const y_m = data.y_m + data.lead;
   const auto [low, high] = std::minmax_element(y_m, y_m + data.samples);
@@ -50,7 +56,7 @@ ParameterTracker::ParameterTracker(const plant_sim::ModelFile& model, const Para
       lead_(samples_in(kLead_s, sample_time_s)),
       window_(samples_in(settings.window_s, sample_time_s)),
       supply_(tracked_index(set, "supply_pressure_Pa")),
-      gain_(tracked_index(set, "valve_gain_m_per_V")),
+      gain_(tracked_index(set, gain_parameter(model))),
       stride_(std::max<std::size_t>(1, samples_in(settings.stride_s, sample_time_s))),
       fit_(model, set.parameters, sample_time_s,
            lead_ + std::max(window_, samples_in(settings.disturbed_window_s, sample_time_s)),

@@ -22,7 +22,9 @@ TEST(Effects, ListsEveryEffectWithEquationSitesPlantsAndRanges) {
   for (const auto& effect : plant_sim::effect_library()) {
     EXPECT_THAT(text, HasSubstr(effect.name + "\n  " + effect.equation + "\n  acts on "));
   }
-  EXPECT_THAT(text, HasSubstr("acts on opening; for hydraulic_actuator, velocity_servo"));
+  EXPECT_THAT(
+      text,
+      HasSubstr("acts on opening; for hydraulic_actuator, hydraulic_cylinder, velocity_servo"));
   EXPECT_THAT(text, HasSubstr("0 to 1e-09 m3/s/Pa, typically 2e-12: leakage past the piston"));
 }
 
@@ -49,7 +51,8 @@ TEST(Effects, ListsTheFormulasOfAModelFileBehindTheLibrary) {
   EXPECT_THAT(output({model}),
               HasSubstr("cubic_drag\n  F = drag_N_s3_per_m3 * v_mps^3\n  seals that drag with the "
                         "cube of the speed\n  acts on force; for hydraulic_actuator, "
-                        "force_driven_axis\n    drag_N_s3_per_m3               0 to 1e+07 N s3/m3, "
+                        "hydraulic_cylinder, force_driven_axis\n    drag_N_s3_per_m3               "
+                        "0 to 1e+07 N s3/m3, "
                         "typically 250000: force per speed cubed\n"));
   const auto json = nlohmann::json::parse(output({model, "--json", "-"}));
   ASSERT_EQ(json["effects"].size(), plant_sim::effect_library().size() + 1);

@@ -1,8 +1,8 @@
-// One step of hydraulic_actuator.h: how it is divided, integrated and kept within the limits.
+// One step of four_way_cylinder.h: how it is divided, integrated and kept within the limits.
 #pragma once
 
+#include "plant_sim/four_way_cylinder.h"
 #include "plant_sim/guard.h"
-#include "plant_sim/hydraulic_actuator.h"
 
 /// Before a function that is compiled as one with all that it calls: the wide ensembles' step.
 #ifdef PLANT_SIM_WHOLE_STEPS
@@ -23,37 +23,69 @@ inline constexpr double kCornerDivisions =
 
 }  // namespace limits
 
-template <class S>
-void HydraulicActuator<S>::reset() {
-  const S half_Pa = S(0.5) * (parameters.supply_pressure_Pa + parameters.return_pressure_Pa);
-  const auto or_half = [&](const S& given) { return select(given >= S(0.0), given, half_Pa); };
+/// Pressures of a piston at rest: equal areas half way between supply and return; otherwise the
+/// balance with weight and load at which a centred valve lets as much oil into either chamber as
+/// out of it,
+///   Ai Pi - Ao Po = F,   Pi + Po = Ps + Pe
+/// (a port's two edges open by the ratio r pass equal flows at (Ps - Pi) / (Pi - Pe) = r^2, those
+/// of the other port at 1/r^2).
+template <class S, class Design>
+void FourWayCylinder<S, Design>::rest_pressures(State& x) const {
+  const Parameters& p = parameters;
+  const S sum_Pa = p.supply_pressure_Pa + p.return_pressure_Pa;
+  if constexpr (Design::kEqualSides) {
+    x.in_Pa = S(0.5) * sum_Pa;
+    x.out_Pa = x.in_Pa;
+  } else {
+    const S load_N = derived_.weight_N + effects.resisting_N(x.y_m, S(0.0));
+    const S in_m2 = in_side().area_m2;
+    const S out_m2 = out_side().area_m2;
+    x.in_Pa = clamp((out_m2 * sum_Pa + load_N) / (in_m2 + out_m2), p.return_pressure_Pa,
+                    p.supply_pressure_Pa);
+    x.out_Pa =
+        clamp((in_m2 * x.in_Pa - load_N) / out_m2, p.return_pressure_Pa, p.supply_pressure_Pa);
+  }
+}
+
+template <class S, class Design>
+void FourWayCylinder<S, Design>::reset() {
+  effects.reset();
+  state.y_m = initial.y_m;
+  rest_pressures(state);
+  const auto or_rest = [](const S& given, const S& rest) {
+    return select(given >= S(0.0), given, rest);
+  };
   state = {initial.y_m,
            initial.v_mps,
-           or_half(initial.pressure_in_Pa),
-           or_half(initial.pressure_out_Pa),
+           or_rest(initial.pressure_in_Pa, state.in_Pa),
+           or_rest(initial.pressure_out_Pa, state.out_Pa),
            initial.spool_m,
            initial.spool_mps};
-  effects.reset();
   keep_within_limits();
 }
 
-template <class S>
-void HydraulicActuator<S>::prepare(double step_s) {
+template <class S, class Design>
+void FourWayCylinder<S, Design>::prepare(double step_s) {
   Parameters& p = parameters;
   p.visit(
       [](const ParameterInfo& info, S& value) { value = clamp(value, S(info.min), S(info.max)); });
   effects.prepare(step_s);
-  const S wv = p.valve_natural_frequency_rad_per_s;
+  const SpoolDynamics<S> spool = Design::spool(p, step_s);
   derived_.step_s = step_s;
-  derived_.orifice =
-      p.discharge_coefficient * p.area_gradient_m * sqrt(S(2.0) / p.density_kg_per_m3);
-  derived_.two_zeta_wv = S(2.0) * p.valve_damping_ratio * wv;
-  derived_.wv2 = wv * wv;
-  derived_.kv_wv2 = p.valve_gain_m_per_V * derived_.wv2;
-  derived_.mass_kg = (p.mass_kg + effects.added_mass_kg()) * (S(1.0) - effects.coupled_ratio());
+  derived_.in = Design::in_side(p);
+  if constexpr (!Design::kEqualSides) derived_.out = Design::out_side(p);
+  derived_.most_orifice = max(in_side().orifice, out_side().orifice);
+  derived_.valve_gain_m_per_V = spool.gain_m_per_V;
+  derived_.two_zeta_wv = spool.two_zeta_wv_per_s;
+  derived_.wv2 = spool.wv_rad_per_s * spool.wv_rad_per_s;
+  derived_.kv_wv2 = spool.gain_m_per_V * derived_.wv2;
+  derived_.lag_rate = spool.lag_rate_per_s;
+  const S mass_kg = p.mass_kg + effects.added_mass_kg();
+  derived_.mass_kg = mass_kg * (S(1.0) - effects.coupled_ratio());
   derived_.inverse_mass = S(1.0) / derived_.mass_kg;
   derived_.arrest_kg_per_s = derived_.mass_kg * S(1.0 / step_s);
-  derived_.steady_rate = max(wv, derived_.two_zeta_wv);
+  if constexpr (!Design::kEqualSides) derived_.weight_N = Design::weight_N(p, mass_kg);
+  derived_.steady_rate = max(max(spool.wv_rad_per_s, derived_.two_zeta_wv), derived_.lag_rate);
   derived_.spool_limit_mps = effects.spool_limit_mps();
   constexpr double kFiner = limits::kRateStep / limits::kResonanceStep;
   const S coupling_rate = S(kFiner) * effects.coupling_rate_per_s();
@@ -63,19 +95,19 @@ void HydraulicActuator<S>::prepare(double step_s) {
 }
 
 /// The reduce_max opening that the step can come to.
-template <class S>
-S HydraulicActuator<S>::reach_m(const S& u_V) const {
-  const S spool_m = max(abs(state.spool_m), parameters.valve_gain_m_per_V * abs(u_V)) +
+template <class S, class Design>
+S FourWayCylinder<S, Design>::reach_m(const S& u_V) const {
+  const S spool_m = max(abs(state.spool_m), derived_.valve_gain_m_per_V * abs(u_V)) +
                     abs(state.spool_mps) * S(derived_.step_s);
   if (!effects.any()) return spool_m;
-  const S& gain = parameters.valve_gain_m_per_V;
+  const S& gain = derived_.valve_gain_m_per_V;
   return max(spool_m,
              max(abs(effects.opening_m(spool_m, gain)), abs(effects.opening_m(-spool_m, gain))));
 }
 
 /// The fastest that the rod can become within the step by the forces of effects.
-template <class S>
-S HydraulicActuator<S>::fast_mps() const {
+template <class S, class Design>
+S FourWayCylinder<S, Design>::fast_mps() const {
   const S v_mps = state.v_mps;
   if (!effects.any()) return abs(v_mps);
   const S push_N =
@@ -84,16 +116,15 @@ S HydraulicActuator<S>::fast_mps() const {
 }
 
 /// Mask of the lanes in which the whole step reaches no limit.
-template <class S>
-auto HydraulicActuator<S>::ordinary(const S& u_V) const {
+template <class S, class Design>
+auto FourWayCylinder<S, Design>::ordinary(const S& u_V) const {
   const Parameters& p = parameters;
   const State& x = state;
   const S step_s = derived_.step_s;
   const S speed_mps = fast_mps();
   const S travel_m = S(4.0) * speed_mps * step_s + S(1e-3) * p.stroke_m;
   const S room_m = min(x.y_m, p.stroke_m - x.y_m);
-  const S in_m3 = p.dead_volume_m3 + p.area_m2 * x.y_m;
-  const S out_m3 = p.dead_volume_m3 + p.area_m2 * (p.stroke_m - x.y_m);
+  const auto [in_m3, out_m3] = volumes(x.y_m);
   const S small_m3 = min(in_m3, out_m3);
   const S low_Pa = min(x.in_Pa, x.out_Pa);
   const S high_Pa = max(x.in_Pa, x.out_Pa);
@@ -101,11 +132,15 @@ auto HydraulicActuator<S>::ordinary(const S& u_V) const {
   const S drop_Pa =
       min(min(abs(p.supply_pressure_Pa - x.in_Pa), abs(p.supply_pressure_Pa - x.out_Pa)),
           low_Pa - p.return_pressure_Pa);
-  const S flow_rate = derived_.orifice * reach_m(u_V) * p.bulk_modulus_Pa * step_s;
+  const S flow_rate = derived_.most_orifice * reach_m(u_V) * p.bulk_modulus_Pa * step_s;
   const S allowed = S(2.0 * limits::kRateStep) * small_m3;
-  const S stiffness = (p.bulk_modulus_Pa * p.area_m2 * p.area_m2 * (in_m3 + out_m3) +
-                       derived_.stiffness_N_per_m * in_m3 * out_m3) *
-                      step_s * step_s;
+  const S in_m2 = in_side().area_m2;
+  const S out_m2 = out_side().area_m2;
+  const S most_m2 = Design::kEqualSides ? in_m2 : max(in_m2, out_m2);
+  const S oil = Design::kEqualSides
+                    ? p.bulk_modulus_Pa * in_m2 * in_m2 * (in_m3 + out_m3)
+                    : p.bulk_modulus_Pa * (in_m2 * in_m2 * out_m3 + out_m2 * out_m2 * in_m3);
+  const S stiffness = (oil + derived_.stiffness_N_per_m * in_m3 * out_m3) * step_s * step_s;
   const S leak_m3 = derived_.conductance_m3ps_per_Pa * p.bulk_modulus_Pa * step_s;
   const S slope = p.damping_N_s_per_m + effects.slope_N_s_per_m(speed_mps);
   constexpr double kSquare = limits::kRateStep * limits::kRateStep;
@@ -118,7 +153,7 @@ auto HydraulicActuator<S>::ordinary(const S& u_V) const {
   const S to_spare = S(0.5) * low_Pa * small_m3;
   const S largest_Pa = max(high_Pa, p.supply_pressure_Pa);
   const auto change = (flow_rate * flow_rate * largest_Pa < to_spare * to_spare) &
-                      (p.area_m2 * speed_mps * p.bulk_modulus_Pa * step_s < to_spare);
+                      (most_m2 * speed_mps * p.bulk_modulus_Pa * step_s < to_spare);
   const auto stiff = (stiffness < S(kSquare) * derived_.mass_kg * in_m3 * out_m3) &
                      (slope * step_s <= S(limits::kRateStep) * derived_.mass_kg);
   const auto leak = (leak_m3 <= S(limits::kRateStep) * small_m3) & (leak_m3 * high_Pa <= to_spare);
@@ -127,15 +162,21 @@ auto HydraulicActuator<S>::ordinary(const S& u_V) const {
 }
 
 /// The fastest that the spool can become within the step.
-template <class S>
-S HydraulicActuator<S>::spool_reach_mps(const S& u_V) const {
+template <class S, class Design>
+S FourWayCylinder<S, Design>::spool_reach_mps(const S& u_V) const {
   const S rate =
       derived_.kv_wv2 * u_V - derived_.two_zeta_wv * state.spool_mps - derived_.wv2 * state.spool_m;
-  return abs(state.spool_mps) + abs(rate) * S(derived_.step_s);
+  const S reach_mps = abs(state.spool_mps) + abs(rate) * S(derived_.step_s);
+  if constexpr (Design::kEqualSides) {
+    return reach_mps;
+  } else {
+    const S lag_mps = derived_.lag_rate * abs(derived_.valve_gain_m_per_V * u_V - state.spool_m);
+    return select(derived_.lag_rate > S(0.0), lag_mps, reach_mps);
+  }
 }
 
-template <class S>
-void HydraulicActuator<S>::step(const S& u_V) {
+template <class S, class Design>
+void FourWayCylinder<S, Design>::step(const S& u_V) {
   const S drive_V = effects.command_V(limits::known_V(u_V));
   const auto whole = ordinary(drive_V);
   if (all(whole)) {
@@ -154,9 +195,9 @@ void HydraulicActuator<S>::step(const S& u_V) {
   }
 }
 
-template <class S>
+template <class S, class Design>
 template <bool kLimits, bool kEffects>
-PLANT_SIM_WHOLE void HydraulicActuator<S>::integrate(const S& u_V, const S& step_s) {
+PLANT_SIM_WHOLE void FourWayCylinder<S, Design>::integrate(const S& u_V, const S& step_s) {
   const S from_y_m = state.y_m;
   const auto coupled_rate = [&](const State& x, const S& pull_mps2) {
     return rate<kLimits, kEffects>(x, u_V, from_y_m, pull_mps2);
@@ -181,13 +222,12 @@ PLANT_SIM_WHOLE void HydraulicActuator<S>::integrate(const S& u_V, const S& step
 
 /// Number of parts of a step, fine enough for the fastest of spool, damping, oil column and
 /// orifice.
-template <class S>
-S HydraulicActuator<S>::divisions(const S& u_V) const {
+template <class S, class Design>
+S FourWayCylinder<S, Design>::divisions(const S& u_V) const {
   const Parameters& p = parameters;
   const State& x = state;
   const S step_s = derived_.step_s;
-  const S in_m3 = p.dead_volume_m3 + p.area_m2 * x.y_m;
-  const S out_m3 = p.dead_volume_m3 + p.area_m2 * (p.stroke_m - x.y_m);
+  const auto [in_m3, out_m3] = volumes(x.y_m);
   const S least = limits::kSmoothDrop_Pa;
   const S supply_Pa =
       min(abs(p.supply_pressure_Pa - x.in_Pa), abs(p.supply_pressure_Pa - x.out_Pa));
@@ -195,10 +235,13 @@ S HydraulicActuator<S>::divisions(const S& u_V) const {
       min(abs(x.in_Pa - p.return_pressure_Pa), abs(x.out_Pa - p.return_pressure_Pa));
   const S drop_Pa = max(min(supply_Pa, return_Pa), least);
   // the cubic of root() is up to 5/2 times as steep as the square root at its end
-  const S orifice_rate = S(1.25) * derived_.orifice * reach_m(u_V) * p.bulk_modulus_Pa /
+  const S orifice_rate = S(1.25) * derived_.most_orifice * reach_m(u_V) * p.bulk_modulus_Pa /
                          (min(in_m3, out_m3) * sqrt(drop_Pa));
+  const S in_m2 = in_side().area_m2;
+  const S out_m2 = out_side().area_m2;
   const S oil_N_per_m =
-      p.area_m2 * p.area_m2 * p.bulk_modulus_Pa * (S(1.0) / in_m3 + S(1.0) / out_m3);
+      Design::kEqualSides ? in_m2 * in_m2 * p.bulk_modulus_Pa * (S(1.0) / in_m3 + S(1.0) / out_m3)
+                          : p.bulk_modulus_Pa * (in_m2 * in_m2 / in_m3 + out_m2 * out_m2 / out_m3);
   const S column_rate = sqrt((oil_N_per_m + derived_.stiffness_N_per_m) * derived_.inverse_mass);
   const S leak_rate = derived_.conductance_m3ps_per_Pa * p.bulk_modulus_Pa / min(in_m3, out_m3);
   const S damping_rate =
@@ -212,8 +255,8 @@ S HydraulicActuator<S>::divisions(const S& u_V) const {
                S(limits::kMostDivisions));
 }
 
-template <class S>
-void HydraulicActuator<S>::keep_within_limits() {
+template <class S, class Design>
+void FourWayCylinder<S, Design>::keep_within_limits() {
   const S zero = 0.0;
   State& x = state;
   x.y_m = clamp(x.y_m, zero, parameters.stroke_m);

@@ -1,0 +1,168 @@
+// A cylinder behind a critical-centre four-way valve: the equations that hydraulic_actuator (equal
+// areas, after Song (2002), chapter 4) and hydraulic_cylinder (two areas) share.
+//
+//   y'  = v
+//   m v' = Ai Pi - Ao Po - d v - m g sin(a) - F
+//   Pi' = beta / (Vi + Ai y)       (Qi - Ai v)
+//   Po' = beta / (Vo + Ao (L - y)) (Ao v - Qo)
+//   xv'' = -2 zeta wv xv' - wv^2 xv + Kv wv^2 u
+//   xv >= 0: Qi = Gi xv q(Ps - Pi),  Qo = Go xv q(Po - Pe)
+//   xv <  0: Qi = Gi xv q(Pi - Pe),  Qo = Go xv q(Ps - Po)
+//
+// y v rod position and speed; Pi Po pressures of the chambers that extend and retract the rod, Ai
+// Ao their areas, Vi Vo their volumes at the end of the stroke; Gi Go flow of a port per opening
+// and root of the drop; a inclination of the axis; xv spool position; u command. The command chain
+// ahead of xv, the opening behind it, supply, flows, beta, m and F are where effects act. Beyond
+// these, and without a bit of influence inside the stroke at ordinary pressures:
+// - q(p) = sign(p) sqrt|p|, and under 1 bar a cubic through zero with the same value and slope at
+//   1 bar: a reversed orifice flows back, and the slope stays finite.
+// - End stops are inelastic: at y = 0 and y = L the rod loses its speed and is held while pushed
+//   outward. Vi, Vo > 0 and y within the stroke keep the volumes away from zero.
+// - Cavitation: pressures are counted from vapour pressure and do not fall below 0. The vapour's
+//   volume is not kept: when the rod returns, pressure rises at once, so oil is not conserved
+//   there.
+// - Where the equations are stiffer than the step can follow (a chamber near the stroke's end, an
+//   orifice near zero drop), the step is divided, in each lane by its own number.
+#pragma once
+
+#include <array>
+#include <limits>
+
+#include "plant_sim/coupled_step.h"
+#include "plant_sim/effects/table.h"
+#include "plant_sim/pressures.h"
+
+namespace plant_sim {
+
+/// What the parameters of a plant make of one side of it.
+template <class S>
+struct CylinderSide {
+  S area_m2;
+  S dead_volume_m3;
+  S orifice;  ///< flow of the port per opening and root of the drop, m3/s/(m sqrt(Pa))
+};
+
+/// What the parameters of a plant make of the valve's spool.
+template <class S>
+struct SpoolDynamics {
+  S gain_m_per_V;
+  S wv_rad_per_s;
+  S two_zeta_wv_per_s;
+  S lag_rate_per_s;  ///< rate of the first-order lag that stands for the spool; 0: second order
+};
+
+/// `Design` names the parameters (Parameters) and says what they mean:
+///   bool kEqualSides              both sides have the same area, volume and orifice, on a level
+///   axis in_side(p), out_side(p)       CylinderSide<S> spool(p, step_s) SpoolDynamics<S>
+///   const char* kGainParameter    the parameter that stands for the valve's size
+///   weight_N(p, mass_kg)          force against extension, unless kEqualSides
+/// Parameters have mass_kg, damping_N_s_per_m, bulk_modulus_Pa, stroke_m, supply_pressure_Pa and
+/// return_pressure_Pa beside those of the design.
+template <class S, class Design>
+class FourWayCylinder {
+ public:
+  static constexpr std::array kSites = {
+      effects::Site::command,      effects::Site::spool,   effects::Site::opening,
+      effects::Site::supply,       effects::Site::flow,    effects::Site::leakage,
+      effects::Site::bulk_modulus, effects::Site::inertia, effects::Site::force,
+      effects::Site::dry_friction, effects::Site::sensor,  effects::Site::coupling};
+
+  using PlantDesign = Design;
+  using Parameters = typename Design::Parameters;
+
+  /// Rod and spool at the start. Pressures that are NaN start at rest: half way between supply and
+  /// return where both sides are equal, otherwise in balance with weight and load (rest_Pa).
+  struct Initial {
+    S y_m = Design::kStart_m;
+    S v_mps = 0.0;
+    S pressure_in_Pa = std::numeric_limits<double>::quiet_NaN();
+    S pressure_out_Pa = std::numeric_limits<double>::quiet_NaN();
+    S spool_m = 0.0;
+    S spool_mps = 0.0;
+
+    template <class V>
+    void visit(V&& v);
+  };
+
+  struct State {
+    S y_m, v_mps, in_Pa, out_Pa, spool_m, spool_mps;
+
+    State moved(const State& rate, const S& by) const {
+      return {y_m + by * rate.y_m,         v_mps + by * rate.v_mps,
+              in_Pa + by * rate.in_Pa,     out_Pa + by * rate.out_Pa,
+              spool_m + by * rate.spool_m, spool_mps + by * rate.spool_mps};
+    }
+    friend State operator+(const State& a, const State& b) { return a.moved(b, S(1.0)); }
+
+    template <class V>
+    void visit(V&& v);
+  };
+
+  Parameters parameters;
+  Initial initial;
+  State state;
+  effects::Effects<S> effects;
+
+  /// Resets to the initial state; parameters are kept.
+  void reset();
+  /// Call before step() after any parameter has changed, with the length of the step.
+  void prepare(double step_s);
+  /// One step with u_V held; u_V that is not a number counts as 0.
+  void step(const S& u_V);
+
+  [[nodiscard]] S speed_mps() const { return state.v_mps; }
+  [[nodiscard]] PressuresOf<S> pressures() const;
+
+  /// The equations above, inside the stroke (kLimits false) or with its ends and cavitation, and
+  /// with the active effects or as if there were none; pull_mps2: by the spring of a second mass.
+  template <bool kLimits, bool kEffects>
+  State rate(const State& x, const S& u_V, const S& from_y_m, const S& pull_mps2 = S(0.0)) const;
+
+ private:
+  struct Derived {
+    CylinderSide<S> in, out;
+    S valve_gain_m_per_V, most_orifice;
+    S two_zeta_wv, wv2, kv_wv2, lag_rate, mass_kg, inverse_mass, arrest_kg_per_s, steady_rate;
+    S weight_N;
+    S spool_limit_mps, stiffness_N_per_m, conductance_m3ps_per_Pa;
+    double step_s;
+  };
+  struct Volumes {
+    S in_m3;
+    S out_m3;
+  };
+  struct Flows {
+    S in_m3ps;   ///< into the chamber that extends
+    S out_m3ps;  ///< out of the chamber that retracts
+  };
+  static S root(const S& drop_Pa);
+  [[nodiscard]] const CylinderSide<S>& in_side() const { return derived_.in; }
+  [[nodiscard]] const CylinderSide<S>& out_side() const {
+    return Design::kEqualSides ? derived_.in : derived_.out;
+  }
+  Volumes volumes(const S& y_m) const;
+  S pressure_force_N(const State& x) const;
+  void rest_pressures(State& x) const;
+  template <bool kEffects>
+  S opening_m(const State& x) const;
+  template <bool kEffects>
+  S inlet_Pa(const State& x, const S& opening_m) const;
+  template <bool kEffects>
+  Flows flows(const State& x) const;
+  S reach_m(const S& u_V) const;
+  S fast_mps() const;
+  S spool_reach_mps(const S& u_V) const;
+  auto ordinary(const S& u_V) const;
+  S divisions(const S& u_V) const;
+  template <bool kLimits, bool kEffects>
+  void integrate(const S& u_V, const S& step_s);
+  void keep_within_limits();
+
+  Derived derived_;
+};
+
+}  // namespace plant_sim
+
+#include "plant_sim/four_way_cylinder_equations.h"
+#include "plant_sim/four_way_cylinder_fields.h"
+#include "plant_sim/four_way_cylinder_step.h"
