@@ -12,7 +12,7 @@ import threading
 
 sys.dont_write_bytecode = True
 from chromium import Browser, find  # noqa: E402
-from server_process import Server  # noqa: E402
+from server_process import NoPage, Server  # noqa: E402
 
 PAGE = """<!doctype html><body><iframe id="frame" src="%(ours)s/"></iframe>
 <form id="form" method="post" enctype="text/plain" action="%(ours)s/api/model" target="sink">
@@ -109,8 +109,12 @@ def main():
     if not find():
         print("chromium is missing: scripts/install-packages browser")
         return 77
-    with tempfile.TemporaryDirectory() as folder:
-        attack(args, pathlib.Path(folder))
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            attack(args, pathlib.Path(folder))
+    except NoPage as missing:
+        print(missing)
+        return 77
     return 0
 
 

@@ -13,7 +13,7 @@ import tempfile
 
 sys.dont_write_bytecode = True
 from chromium import Browser, find  # noqa: E402
-from server_process import Server  # noqa: E402
+from server_process import NoPage, Server  # noqa: E402
 
 STATE = "document.querySelector('.state').textContent"
 AGE = "document.querySelector('.age').textContent"
@@ -116,8 +116,12 @@ def main():
         return 77
     if args.pictures:
         args.pictures.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory() as folder:
-        watch(args, pathlib.Path(folder))
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            watch(args, pathlib.Path(folder))
+    except NoPage as missing:
+        print(missing)
+        return 77
     return 0
 
 

@@ -8,6 +8,10 @@ import signal
 import subprocess
 
 
+class NoPage(Exception):
+    """The program was built without the page's libraries."""
+
+
 class Server:
     def __init__(self, program, folder, *options):
         self.folder = pathlib.Path(folder)
@@ -15,7 +19,8 @@ class Server:
                                         stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         self.url = re.match(r"Open (\S+)", self.process.stdout.readline() or "Open none").group(1)
         if self.url == "none":
-            raise RuntimeError(self.process.stderr.read())
+            why = self.process.stderr.read().strip()
+            raise NoPage(why) if "left out" in why else RuntimeError(why)
         self.token = self.url.split("#")[1]
         self.port = int(self.url.split(":")[2].split("/")[0])
         self.cookie = self.change = None
