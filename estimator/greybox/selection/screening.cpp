@@ -227,7 +227,6 @@ ScreeningResult screen_effect(const SearchContext& context, const ModelStage& st
     }
   } else if (is_resonant(own)) {
     starts = resonance_starts(context, stage, projection, own, result.parameters);
-    result.together = true;
   } else {
     const MatrixXd sizes = trial_sizes(own, context.problem.data);
     DatasetSimulation run(context.problem.model, context.problem.data, result.parameters);
@@ -243,24 +242,6 @@ ScreeningResult screen_effect(const SearchContext& context, const ModelStage& st
   }
   result.expected_ratio = std::sqrt(std::max(least, 0.0) / projection.cost());
   return result;
-}
-
-/// True when another frequency of a resonance explains the record as well: a compliance without
-/// excitation near its resonance is explained by many.
-bool is_tied(const SearchContext& context, const FitSummary& best, const FitSummary& other) {
-  constexpr double kClear_nats = 5.0;
-  constexpr double kSame = 1.1;
-  const auto frequency = [](const FitSummary& fitted) {
-    for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
-      if (!is_resonant({fitted.parameters[i]})) continue;
-      return fitted.parameters[i].to_physical(fitted.theta[static_cast<Index>(i)]);
-    }
-    return 0.0;
-  };
-  const double ratio = frequency(other) / frequency(best);
-  const double behind_nats = context.problem.data.training_mask.sum() *
-                             std::log(other.training_rms_m / best.training_rms_m);
-  return (ratio > kSame || ratio < 1.0 / kSame) && behind_nats < kClear_nats;
 }
 
 }  // namespace
@@ -297,19 +278,12 @@ RefinedCandidate refine(const SearchContext& context, const ScreeningResult& scr
   RefinedCandidate best;
   best.effect = screened.effect;
   best.fitted.training_rms_m = std::numeric_limits<double>::infinity();
-  std::vector<FitSummary> others;
   for (const VectorXd& start : screened.starts) {
     FitSummary fitted =
         fit(context.problem.model, context.problem.data, context.problem.data.training_mask,
             screened.parameters, start, options);
-    if (fitted.training_rms_m < best.fitted.training_rms_m) std::swap(fitted, best.fitted);
-    if (fitted.theta.size() > 0) others.push_back(std::move(fitted));
+    if (fitted.training_rms_m < best.fitted.training_rms_m) best.fitted = std::move(fitted);
     if (context.cancelled()) break;
-  }
-  if (screened.together) {
-    best.tied = std::any_of(others.begin(), others.end(), [&](const FitSummary& other) {
-      return is_tied(context, best.fitted, other);
-    });
   }
   return best;
 }

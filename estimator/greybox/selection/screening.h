@@ -35,7 +35,6 @@ struct ScreeningResult {
   double expected_ratio = 1.0;
   std::vector<FreeParameter> parameters;  ///< the stage's, then the effect's
   std::vector<Eigen::VectorXd> starts;    ///< starting points, most promising first
-  bool together = false;  ///< all starts are fitted, and no two may end elsewhere and as well
 };
 
 /// Screens each effect, most promising first, from the stage's parameters and from the model
@@ -49,7 +48,6 @@ struct ScreeningResult {
 struct RefinedCandidate {
   std::string effect;
   FitSummary fitted;
-  bool tied = false;  ///< the record does not tell several values of the effect apart
 };
 
 /// Fits from every start of the screening and keeps the best by training error.

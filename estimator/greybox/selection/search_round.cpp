@@ -195,8 +195,6 @@ Round single_round(const SearchContext& context, const ModelStage& stage, int nu
   bool explained = false;
   const auto work = [&](std::size_t i, std::size_t first_start, std::size_t starts) {
     ScreeningResult result = screened[i];
-    if (result.together && first_start > 0) return;
-    if (result.together) starts = result.starts.size();
     result.starts.erase(result.starts.begin(),
                         result.starts.begin() + static_cast<std::ptrdiff_t>(first_start));
     result.starts.resize(std::min(result.starts.size(), starts));
@@ -204,9 +202,7 @@ Round single_round(const SearchContext& context, const ModelStage& stage, int nu
     FitOptions options = quick(context);
     // once the record is explained, others only have to show whether they come near
     if (explained) options.max_iterations = kGlimpseIterations;
-    RefinedCandidate refined = refine(context, result, options);
-    if (refined.tied) return;
-    Candidate found = candidate_of(context, stage, result, std::move(refined));
+    Candidate found = candidate_of(context, stage, result, refine(context, result, options));
     Candidate& candidate = round.candidates[i];
     if (!candidate.fitted_at_all || found.fitted.training_rms_m < candidate.fitted.training_rms_m) {
       candidate = std::move(found);
