@@ -133,6 +133,35 @@ Candidate quick_fit(const SearchContext& context, const ModelStage& stage,
   return candidate_of(context, stage, screened, refine(context, screened, options));
 }
 
+namespace {
+
+/// Starts about a fitted resonance: neighbouring frequencies, each with a damping of its own, are
+/// minima of their own where the motion hardly excites it. Empty for other effects.
+std::vector<VectorXd> resonance_restarts(const FitSummary& fitted) {
+  const auto index_of = [&](std::string_view ending) {
+    for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+      if (fitted.parameters[i].name.ends_with(ending)) return static_cast<Index>(i);
+    }
+    return Index{-1};
+  };
+  const Index frequency = index_of(".resonance_Hz");
+  const Index damping = index_of(".damping_ratio");
+  std::vector<VectorXd> starts;
+  if (frequency < 0 || damping < 0) return starts;
+  const FreeParameter& tuned = fitted.parameters[static_cast<std::size_t>(frequency)];
+  const FreeParameter& damped = fitted.parameters[static_cast<std::size_t>(damping)];
+  const double found_Hz = tuned.to_physical(fitted.theta[frequency]);
+  for (const double ratio : {0.3, 0.6, 0.8, 0.92, 1.08, 1.25, 1.6, 3.0}) {
+    VectorXd start = fitted.theta;
+    start[frequency] = std::clamp(tuned.to_theta(ratio * found_Hz), tuned.lower, tuned.upper);
+    start[damping] = std::clamp(damped.to_theta(0.03), damped.lower, damped.upper);
+    starts.push_back(std::move(start));
+  }
+  return starts;
+}
+
+}  // namespace
+
 void refine_best(const SearchContext& context, const ModelStage& stage,
                  std::vector<Candidate>& candidates) {
   sort_by_score(candidates);
@@ -155,6 +184,12 @@ void refine_best(const SearchContext& context, const ModelStage& stage,
     FitSummary fitted =
         fit(context.problem.model, context.problem.data, context.problem.data.training_mask,
             candidate.fitted.parameters, candidate.fitted.theta, options);
+    for (const VectorXd& start : resonance_restarts(fitted)) {
+      FitSummary other =
+          fit(context.problem.model, context.problem.data, context.problem.data.training_mask,
+              candidate.fitted.parameters, start, options);
+      if (other.training_rms_m < fitted.training_rms_m) fitted = std::move(other);
+    }
     if (fitted.training_rms_m > candidate.fitted.training_rms_m * (1.0 + 1e-3)) return;
     candidate.fitted = std::move(fitted);
     candidate.validation_rms_m = candidate.fitted.validation_rms_m;

@@ -31,7 +31,7 @@ TEST(Effects, ListsEveryEffectWithEquationSitesPlantsAndRanges) {
 TEST(Effects, WritesTheSameAsJson) {
   const auto json = nlohmann::json::parse(output({"--json", "-"}));
   ASSERT_EQ(json["effects"].size(), 20U);
-  EXPECT_EQ(json["plants"].size(), 3U);
+  EXPECT_EQ(json["plants"].size(), 4U);
   for (const auto& effect : json["effects"]) {
     EXPECT_FALSE(effect["equation"].get<std::string>().empty());
     EXPECT_FALSE(effect["plants"].empty()) << effect["name"];

@@ -25,6 +25,7 @@ struct Rig {
   double sample_rate_Hz = 1000.0;
   double duration_s = 12.0;
   double noise_m = 2e-6;
+  double step_m = 1e-3;  ///< of the reference, up and down at 0.7 Hz
   double kp_V_per_m = 300.0;
   double kd_V_s_per_m = 12.0;
   int delay_samples = 0;
@@ -63,7 +64,8 @@ inline Eigen::MatrixXd transition(const Rig& rig) {
   return exponential(A / rig.sample_rate_Hz);
 }
 
-/// In closed loop on a multisine of 20 lines up to 2 Hz; the position is about `kMiddle_m`.
+/// In closed loop on a multisine of 20 lines up to 2 Hz with steps, which alone excite a resonance
+/// of tens of hertz; the position is about `kMiddle_m`.
 inline config::record::Record record(const Rig& rig) {
   constexpr double kMiddle_m = 0.2;
   constexpr double kEncoder_m = 1e-6;
@@ -75,7 +77,7 @@ inline config::record::Record record(const Rig& rig) {
   for (double& one : phases) one = phase(random);
   const double sample_s = 1.0 / rig.sample_rate_Hz;
   const auto reference_m = [&](double t_s) {
-    double sum = 0.0;
+    double sum = std::fmod(0.7 * t_s, 1.0) < 0.5 ? rig.step_m : 0.0;
     for (int i = 1; i <= kLines; ++i) {
       sum += 0.02 / i * std::sin(2.0 * std::numbers::pi * 0.1 * i * t_s + phases[i - 1]);
     }

@@ -28,7 +28,10 @@ TEST(LawDictionary, EachLawCanBeDeclaredOnEachPlantThatHasItsSite) {
   for (const plant_sim::PlantInfo& plant : plant_sim::plant_library()) {
     plant_sim::ModelFile model = plant_sim::load_model(
         std::string(SPOOLWATCH_SOURCE_DIR) + "/config/models/" +
-        (plant.name == "hydraulic_actuator" ? std::string("thesis") : plant.name) + ".toml");
+        (plant.name == "hydraulic_actuator"   ? std::string("thesis")
+         : plant.name == "hydraulic_cylinder" ? std::string("single_rod_cylinder")
+                                              : plant.name) +
+        ".toml");
     const std::vector<Law> laws = law_dictionary(model, data);
     EXPECT_FALSE(laws.empty()) << plant.name;
     for (const Law& law : laws) {
