@@ -45,16 +45,17 @@ double speed_per_volt(const FitDataset& data) {
 double mass_kg(const FitDataset& data, double gain_N_per_V) {
   double most_kg = 1.0;
   for (const Dataset& record : data.records) {
-    std::vector<double> impulse_Vs(1, 0.0);
+    std::vector<double> impulse_V_s(1, 0.0);
     std::vector<double> speed_mps(1, 0.0);
     double mean_V = 0.0;
     for (const double u_V : record.u_V) mean_V += u_V / static_cast<double>(record.size());
     for (std::size_t k = 1; k < record.size(); ++k) {
-      impulse_Vs.push_back(impulse_Vs.back() + (record.u_V[k - 1] - mean_V) * record.sample_time_s);
+      impulse_V_s.push_back(impulse_V_s.back() +
+                            (record.u_V[k - 1] - mean_V) * record.sample_time_s);
       speed_mps.push_back((record.y_m[k] - record.y_m[k - 1]) / record.sample_time_s);
     }
     most_kg =
-        std::max(most_kg, gain_N_per_V * spread(impulse_Vs) / std::max(spread(speed_mps), 1e-9));
+        std::max(most_kg, gain_N_per_V * spread(impulse_V_s) / std::max(spread(speed_mps), 1e-9));
   }
   return most_kg;
 }
