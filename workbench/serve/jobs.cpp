@@ -113,7 +113,7 @@ bool Jobs::begin(std::function<JobResult()> work, const Done& done) {
   return true;
 }
 
-bool Jobs::fit(fit::FitRequest request, Progress progress, Done done) {
+bool Jobs::fit(fit::FitRequest request, Progress progress, const Done& done) {
   return begin(
       [this, request = std::move(request), progress = std::move(progress)]() mutable {
         fit::PreparedFit prepared = fit::prepare(request);
@@ -128,7 +128,7 @@ bool Jobs::fit(fit::FitRequest request, Progress progress, Done done) {
       done);
 }
 
-bool Jobs::diagnose(diagnose::DiagnosisRequest request, Progress progress, Done done) {
+bool Jobs::diagnose(diagnose::DiagnosisRequest request, Progress progress, const Done& done) {
   return begin(
       [this, request = std::move(request), progress = std::move(progress)]() mutable {
         diagnose::PreparedDiagnosis prepared = diagnose::prepare(request);

@@ -15,6 +15,7 @@
 namespace workbench::serve {
 
 /// What a finished job leaves.
+// NOLINTNEXTLINE(bugprone-exception-escape): moving ordered_json may throw by its type alone
 struct JobResult {
   std::string error;               ///< empty: none
   std::string model;               ///< the file that was written, with its path; empty: none
@@ -30,8 +31,8 @@ class Jobs {
   using Done = std::function<void(JobResult result)>;
 
   /// False where one runs already; nothing is then begun.
-  bool fit(fit::FitRequest request, Progress progress, Done done);
-  bool diagnose(diagnose::DiagnosisRequest request, Progress progress, Done done);
+  bool fit(fit::FitRequest request, Progress progress, const Done& done);
+  bool diagnose(diagnose::DiagnosisRequest request, Progress progress, const Done& done);
   /// Asks the running one to end with the best so far.
   void cancel() { cancelled_ = true; }
   [[nodiscard]] bool running() const { return running_; }

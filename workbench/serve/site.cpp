@@ -234,7 +234,7 @@ void Site::log_in(const HttpRequest& request, const HttpReply& reply) const {
   reply(std::move(response));
 }
 
-void Site::answer_change(HttpRequest request, const HttpReply& reply) {
+void Site::answer_change(const HttpRequest& request, const HttpReply& reply) {
   const std::string path = request.head.path;
   if (path == kLogin) return log_in(request, reply);
   if (path == kUploads) return take_upload(request, reply);
@@ -319,7 +319,7 @@ void Site::take_upload(const HttpRequest& request, const HttpReply& reply) {
       true);
 }
 
-void Site::preview(Json body, const HttpReply& reply) {
+void Site::preview(const Json& body, const HttpReply& reply) {
   const auto values = std::make_shared<ParameterValues>(values_in(body));
   const View view = view_in(body);
   study_lane_.post_latest(

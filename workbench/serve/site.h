@@ -54,10 +54,10 @@ class Site final : public HttpHandler {
  private:
   using Json = nlohmann::ordered_json;
   void answer_read(const HttpHead& head, const HttpReply& reply);
-  void answer_change(HttpRequest request, const HttpReply& reply);
+  void answer_change(const HttpRequest& request, const HttpReply& reply);
   void log_in(const HttpRequest& request, const HttpReply& reply) const;
   void take_upload(const HttpRequest& request, const HttpReply& reply);
-  void preview(Json body, const HttpReply& reply);
+  void preview(const Json& body, const HttpReply& reply);
   void order(const Json& body, const HttpReply& reply);
   /// Runs `work` on the study's thread and answers with what it returns, errors included; `changes`
   /// tells all pages.

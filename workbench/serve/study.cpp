@@ -200,7 +200,7 @@ const Study::Shown& Study::front() const {
 std::string Study::write_report() {
   const std::string model = tried_ ? trial_ : model_;
   const Shown& shown = front();
-  const std::string file = folder_.fresh_name(stem(model) + ".html");
+  std::string file = folder_.fresh_name(stem(model) + ".html");
   std::vector<std::string> words{"spoolwatch", "compare", model, record_};
   add_ignored(words, ignored_);
   words.insert(words.end(), {"--report", file});
@@ -217,7 +217,8 @@ std::vector<std::string> Study::assignments_of(const ParameterValues& values) co
   for (const auto& [name, value] : values) {
     const auto known = greybox::parameter_catalogue(model);
     const auto info =
-        std::find_if(known.begin(), known.end(), [&](const auto& one) { return one.name == name; });
+        std::find_if(known.begin(), known.end(),
+                     [&, &wanted = name](const auto& one) { return one.name == wanted; });
     if (info == known.end()) throw UsageError("a parameter has no such name");
     if (!(value >= info->info.min && value <= info->info.max)) {
       throw UsageError(name + ": is out of range; allowed: " + add::number_text(info->info.min) +
@@ -259,8 +260,8 @@ diagnose::DiagnosisRequest Study::diagnosis_request(const std::vector<std::strin
   request.records = {folder_.existing(record_)};
   request.ignored = ignored_;
   request.only = only;
-  std::string suffix = "-diagnosed";
-  for (const std::string& effect : only) suffix = (suffix[0] == '+' ? suffix : "") + "+" + effect;
+  std::string suffix = only.empty() ? "-diagnosed" : "";
+  for (const std::string& effect : only) suffix.append("+").append(effect);
   const std::string file = folder_.fresh_name(stem(model) + suffix + ".toml");
   request.output = folder_.path_of(file);
   std::vector<std::string> words{"spoolwatch", "diagnose", model, record_};

@@ -203,6 +203,7 @@ std::vector<std::size_t> rows_of(const std::vector<double>& t_s, const std::vect
   const auto begin = static_cast<std::size_t>(from - t_s.begin());
   std::vector<std::vector<double>> parts;
   std::vector<const std::vector<double>*> all;
+  all.reserve(columns.size());
   for (const Column& column : columns) {
     const auto first = column.values.begin() + static_cast<std::ptrdiff_t>(begin);
     parts.emplace_back(first, first + (to - from));

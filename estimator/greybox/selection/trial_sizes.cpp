@@ -112,7 +112,9 @@ bool is_periodic(const std::vector<FreeParameter>& parameters) {
 
 std::vector<double> turns_over(const FitDataset& /*evidence*/) {
   std::vector<double> turns;
-  for (double t = kFewestTurns; t <= kFinestTurns; t += kTurnStep) turns.push_back(t);
+  const auto count = static_cast<int>((kFinestTurns - kFewestTurns) / kTurnStep) + 1;
+  turns.reserve(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) turns.push_back(kFewestTurns + kTurnStep * i);
   return turns;
 }
 
@@ -176,10 +178,10 @@ std::vector<double> resonances_in(const FitDataset& data) {
     longest_s = std::max(longest_s, record.sample_time_s * static_cast<double>(record.size()));
   }
   std::vector<double> found;
-  for (double f_Hz = std::max(kLeastResonance_Hz, kFewestPeriods / longest_s); f_Hz <= most_Hz;
-       f_Hz *= kResonanceRatio) {
-    found.push_back(f_Hz);
-  }
+  const double least_Hz = std::max(kLeastResonance_Hz, kFewestPeriods / longest_s);
+  if (!(least_Hz <= most_Hz)) return found;
+  const auto steps = static_cast<int>(std::log(most_Hz / least_Hz) / std::log(kResonanceRatio));
+  for (int i = 0; i <= steps; ++i) found.push_back(least_Hz * std::pow(kResonanceRatio, i));
   return found;
 }
 
