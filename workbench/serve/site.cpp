@@ -188,7 +188,7 @@ BodyPlan Site::admit(const HttpHead& head) {
 void Site::handle(HttpRequest request, HttpReply reply) {
   try {
     if (request.head.method == "GET") return answer_read(request.head, reply);
-    answer_change(std::move(request), reply);
+    answer_change(request, reply);
   } catch (const std::exception& error) {
     reply(refusal_of(error));
   }
@@ -249,7 +249,7 @@ void Site::answer_change(const HttpRequest& request, const HttpReply& reply) {
         },
         true);
   };
-  if (path == "/api/preview") return preview(std::move(*body), reply);
+  if (path == "/api/preview") return preview(*body, reply);
   if (path == "/api/alarm") return order(*body, reply);
   if (path == "/api/cancel") {
     jobs_.cancel();
