@@ -277,14 +277,14 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   }
 
   void send(HttpResponse response) {
-    if (response.topics != 0) return begin_stream(std::move(response));
-    if (!response.file.empty()) return send_file(std::move(response));
+    if (response.topics != 0) return begin_stream(response);
+    if (!response.file.empty()) return send_file(response);
     auto message = std::make_shared<http::response<http::string_body>>();
     message->body() = std::move(response.body);
     finish(message, response);
   }
 
-  void send_file(HttpResponse response) {
+  void send_file(const HttpResponse& response) {
     auto message = std::make_shared<http::response<http::file_body>>();
     error_code error;
     message->body().open(response.file.c_str(), beast::file_mode::scan, error);
@@ -327,7 +327,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     });
   }
 
-  void begin_stream(HttpResponse response) {
+  void begin_stream(const HttpResponse& response) {
     if (network_->streams.size() >= network_->limits.streams) {
       return send_last(plain(503, "too many event streams are open\n"));
     }
@@ -433,8 +433,8 @@ void HttpNetwork::take_waiting() {
 }
 
 void HttpNetwork::beat() {
-  static const auto kBeat = std::make_shared<const std::string>(event_text("beat", ""));
-  publish(~0U, kBeat);
+  static const auto text = std::make_shared<const std::string>(event_text("beat", ""));
+  publish(~0U, text);
   heartbeat.expires_after(kHeartbeat);
   auto self = shared_from_this();
   heartbeat.async_wait([self](error_code error) {
@@ -463,6 +463,7 @@ HttpServer::HttpServer(int listening, HttpHandler& handler, const HttpLimits& li
   network_->listening.non_blocking(true);
 }
 
+// NOLINTNEXTLINE(bugprone-exception-escape): without memory to end in order the program ends
 HttpServer::~HttpServer() {
   stop();
   // What waits holds its connection, which holds the network: everything is ended here.

@@ -84,7 +84,7 @@ class HttpServer {
  public:
   /// Takes ownership of `listening`, a socket that listens. `handler` must outlive this object.
   HttpServer(int listening, HttpHandler& handler, const HttpLimits& limits = {});
-  ~HttpServer();
+  ~HttpServer();  // NOLINT(bugprone-exception-escape): without memory the program ends
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;
 

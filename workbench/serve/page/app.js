@@ -31,15 +31,19 @@ function App({first}) {
     setView(name);
   };
   useEffect(() => {
+    let newest = 0;
     const pass = (name) => (data) => feed.dispatchEvent(new CustomEvent(name, {detail: data}));
     return listen(view === 'live', {
       link: setLink,
-      // Whatever happened before the stream began is in the state.
+      // Whatever happened before the stream began is in the state; an event that overtakes the answer
+      // is newer than it.
       hello: () => {
-        enter().then(setState).catch(() => {});
+        const asked = ++newest;
+        enter().then((now) => { if (asked === newest) setState(now); }).catch(() => {});
         pass('hello')(null);
       },
       state: (data) => {
+        ++newest;
         setState(data);
         if (!data.running) setProgress(null);
       },
