@@ -25,6 +25,9 @@ constexpr double kParametersOfLine = 3.0;
 /// Share of what a search has explained that may be owed to its models being inexact: a candidate
 /// has to gain more.
 constexpr double kInexact = 0.005;
+/// Distance of a resonance from a spectral line, as a share of its frequency, within which they are
+/// one.
+constexpr double kOnALine = 0.05;
 /// The same share of what interpolating the command has gained.
 constexpr double kInterpolated = 0.02;
 
@@ -52,12 +55,25 @@ SimulatedEffects simulated_effects(const SearchContext& plain, const InnovationS
   return simulated_effects(plain, stage.model);
 }
 
-/// The first effect of the stage that has left its range; empty: none.
+/// True for a resonance at the frequency of one of the stage's lines: hardly damped, it rings with
+/// what disturbs the rig from outside.
+bool rings_with_a_line(const InnovationStage& stage, const FreeParameter& p, double theta) {
+  if (!p.name.ends_with(".resonance_Hz")) return false;
+  const double resonance_Hz = p.to_physical(theta);
+  return std::any_of(stage.noise.lines.begin(), stage.noise.lines.end(), [&](const auto& line) {
+    return std::abs(resonance_Hz - line.frequency_Hz) < kOnALine * line.frequency_Hz;
+  });
+}
+
+/// The first effect of the stage that has left its range, or rings with a line; empty: none.
 std::string effect_out_of_range(const InnovationStage& stage) {
   const FitSummary& fitted = stage.model.fitted;
   for (const std::string& effect : stage.model.added) {
     for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
-      if (belongs_to(fitted.parameters[i], effect) && leaves_its_range(fitted, i, i + 1)) {
+      if (!belongs_to(fitted.parameters[i], effect)) continue;
+      if (leaves_its_range(fitted, i, i + 1) ||
+          rings_with_a_line(stage, fitted.parameters[i],
+                            fitted.theta[static_cast<Eigen::Index>(i)])) {
         return effect;
       }
     }
@@ -157,9 +173,8 @@ bool extend(const SearchContext& plain, InnovationStage& stage, const SearchBran
   rounds.push_back(std::move(round));
   if (chosen == none) return false;
   stage = std::move(stages[chosen]);
-  if (trials[chosen].candidate.effect.empty()) return true;
   drop_out_of_range(plain, stage, dropped);
-  reconsider_sites(plain, stage);
+  if (!trials[chosen].candidate.effect.empty()) reconsider_sites(plain, stage);
   return true;
 }
 
