@@ -4,6 +4,7 @@
 
 #include "config/schema/document.h"
 #include "estimator/greybox/selection/diagnosis.h"
+#include "tests/estimator/greybox/selection/truth_records.h"
 #include "tests/workbench/diagnose/judged.h"
 #include "tests/workbench/diagnose/two_masses.h"
 #include "workbench/diagnose/words.h"
@@ -75,6 +76,14 @@ TEST(HiddenSecondMass, IsNotFoundInARigidAxisNorInADelayedOneNorInASpring) {
       diagnosed({.mass_ratio = 0.0, .stiffness_N_per_m = 1500.0, .seed = 7});
   EXPECT_THAT(sprung.missing, testing::Contains("load_spring")) << said(sprung);
   EXPECT_THAT(sprung.missing, testing::Not(testing::Contains("second_mass"))) << said(sprung);
+}
+
+TEST(HiddenSecondMass, IsNotNamedWhereTheMountOfTheSensorShakes) {
+  const selection::Diagnosis d = diagnose_test::found_in(diagnose_test::context_of(
+      "motion=multisine,length_s=12,friction.coulomb_N=105,friction.static_N=140,"
+      "outside.force_N=30,outside.shake_m=9e-6,outside.shake_Hz=42.5",
+      31));
+  EXPECT_THAT(d.missing, testing::ElementsAre("friction")) << said(d);
 }
 
 }  // namespace
