@@ -1,0 +1,47 @@
+// The network of a server: its sockets, its thread's work and the connections. Of http_server.cpp
+// alone, the only unit that Boost.Beast is compiled in.
+#pragma once
+
+#include <utility>  // before Boost.Asio, which forgets it
+
+#include <boost/asio/generic/stream_protocol.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include <memory>
+#include <set>
+#include <string>
+
+#include "workbench/serve/http_server.h"
+
+namespace workbench::serve {
+
+namespace asio = boost::asio;
+using boost::system::error_code;
+
+class HttpConnection;
+
+/// The state that all connections share, touched by the network's thread alone.
+class HttpNetwork : public std::enable_shared_from_this<HttpNetwork> {
+ public:
+  HttpNetwork(HttpHandler& its_handler, const HttpLimits& its_limits)
+      : handler(its_handler), limits(its_limits) {}
+
+  void accept();
+  void take_waiting();
+  void beat();
+  void publish(unsigned topic, const std::shared_ptr<const std::string>& event);
+  void tell_streams();
+
+  asio::io_context context{1};
+  asio::posix::stream_descriptor listening{context};
+  asio::steady_timer pause{context};
+  asio::steady_timer heartbeat{context};
+  HttpHandler& handler;
+  const HttpLimits limits;
+  std::set<HttpConnection*> connections;
+  std::set<HttpConnection*> streams;
+};
+
+}  // namespace workbench::serve

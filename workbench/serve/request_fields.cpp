@@ -1,0 +1,104 @@
+#include "workbench/serve/request_fields.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "config/schema/error.h"
+
+namespace workbench::serve {
+namespace {
+
+using config::schema::UsageError;
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMostValues = 200;
+
+int digit_of(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+}  // namespace
+
+std::optional<std::string> decoded(std::string_view text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '%') {
+      out += text[i];
+      continue;
+    }
+    if (i + 2 >= text.size()) return std::nullopt;
+    const int high = digit_of(text[i + 1]);
+    const int low = digit_of(text[i + 2]);
+    if (high < 0 || low < 0) return std::nullopt;
+    out += static_cast<char>(16 * high + low);
+    i += 2;
+  }
+  return out;
+}
+
+std::string upload_name(const HttpHead& head) {
+  constexpr std::string_view kName = "name=";
+  if (!std::string_view(head.query).starts_with(kName)) return {};
+  const auto name = decoded(std::string_view(head.query).substr(kName.size()));
+  return name && is_plain_name(*name) ? *name : std::string();
+}
+
+std::string text_in(const Json& body, const char* key) {
+  const auto found = body.find(key);
+  if (found == body.end() || !found->is_string()) {
+    throw UsageError(std::string(key) + ": a text is missing");
+  }
+  return found->get<std::string>();
+}
+
+std::vector<std::string> texts_in(const Json& body, const char* key) {
+  std::vector<std::string> texts;
+  const auto found = body.find(key);
+  if (found == body.end()) return texts;
+  if (!found->is_array() || found->size() > kMostValues) {
+    throw UsageError(std::string(key) + ": is no list");
+  }
+  for (const Json& one : *found) {
+    if (!one.is_string()) throw UsageError(std::string(key) + ": is no list of texts");
+    texts.push_back(one.get<std::string>());
+  }
+  return texts;
+}
+
+double number_in(const Json& body, const char* key, double otherwise) {
+  const auto found = body.find(key);
+  if (found == body.end() || found->is_null()) return otherwise;
+  if (!found->is_number() || !std::isfinite(found->get<double>())) {
+    throw UsageError(std::string(key) + ": is no number");
+  }
+  return found->get<double>();
+}
+
+ParameterValues values_in(const Json& body) {
+  ParameterValues values;
+  const auto found = body.find("values");
+  if (found == body.end()) return values;
+  if (!found->is_object() || found->size() > kMostValues) throw UsageError("values: is no object");
+  for (const auto& [name, value] : found->items()) {
+    if (!value.is_number() || !std::isfinite(value.get<double>())) {
+      throw UsageError("values: is not a number each");
+    }
+    values[name] = value.get<double>();
+  }
+  return values;
+}
+
+View view_in(const Json& body) {
+  constexpr double kMostRows = 20'000.0;
+  View view;
+  view.from_s = number_in(body, "from", 0.0);
+  view.to_s = number_in(body, "to", 0.0);
+  view.rows =
+      static_cast<std::size_t>(std::clamp(number_in(body, "rows", 3000.0), 200.0, kMostRows));
+  return view;
+}
+
+}  // namespace workbench::serve
