@@ -23,7 +23,7 @@ struct Change {
   double factor =
       std::numeric_limits<double>::quiet_NaN();  ///< factor on the value at construction
   double ramp_s = 0.0;                           ///< 0 = a step
-  double time_constant_s = 0.0;                  ///< of an exponential; 0 = none
+  double time_constant_s = 0.0;                  ///< the exponential's; 0 = no exponential
 
   void visit(config::schema::Visitor& v);
 };

@@ -37,7 +37,7 @@ class EnsembleSchedule {
   enum Number : std::size_t { kValue, kAt, kRamp, kTimeConstant, kNumbers };
   struct Entry {
     std::string parameter;
-    std::size_t index = 0;  ///< of the parameter in the ensemble
+    std::size_t index = 0;  ///< position of the parameter in the ensemble
     double factor = 0.0;    ///< NaN where the value is given
     std::array<Ensemble::Values, kNumbers> numbers{};
     Ensemble::Values before{};

@@ -34,7 +34,7 @@
 
 namespace plant_sim {
 
-/// What the parameters of a plant make of one side of it.
+/// Constants of one side of the cylinder, computed from the plant's parameters.
 template <class S>
 struct CylinderSide {
   S area_m2;
@@ -42,7 +42,7 @@ struct CylinderSide {
   S orifice;  ///< flow of the port per opening and root of the drop, m3/s/(m sqrt(Pa))
 };
 
-/// What the parameters of a plant make of the valve's spool.
+/// Constants of the valve's spool, computed from the plant's parameters.
 template <class S>
 struct SpoolDynamics {
   S gain_m_per_V;

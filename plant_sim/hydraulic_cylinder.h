@@ -5,15 +5,19 @@
 //   Gi = QN / (xN sqrt(pN)),   Go = r Gi,   Kv = xN / uN
 //   wv = 2 pi fB sqrt(k + sqrt(k^2 + 1)),   k = 2 zeta^2 - 1
 //
-// QN pN uN xN  rated flow at the rated drop of one edge, at the rated command, with the rated
-// travel r            rod side's opening over the cap side's, of a spool cut for unequal areas fB
-// zeta      frequency at which the spool's amplitude has fallen by 3 dB, its damping ratio The axis
-// is inclined by a: upwards when it extends for a > 0, with the weight m g sin a. A spool whose
-// faster pole is beyond the step's resolution (2 zeta wv h > 4.5) is a first-order lag of the rate
-// wv / (2 zeta): damping ratios of 10 and more are just that. xN is of no influence on command,
-// position and pressures: it gives spool_m and the parameters of effects in metres of spool travel
-// a scale. Sources: ISO 10770-1 (2009) for the valve's numbers; Jelali and Kroll, Hydraulic
-// Servo-systems (2003), chapter 4.
+//   QN, pN, uN, xN  rated flow at the rated drop of one edge, at the rated command, with the rated
+//                   travel
+//   r               rod side's opening over the cap side's, of a spool cut for unequal areas
+//   fB, zeta        frequency at which the spool's amplitude has fallen by 3 dB; damping ratio
+//
+// The axis is inclined by a: upwards when it extends for a > 0, with the weight m g sin a. A spool
+// whose faster pole is beyond the step's resolution (2 zeta wv h > 4.5) is a first-order lag of the
+// rate wv / (2 zeta): damping ratios of 10 and more are just that. xN is of no influence on
+// command, position and pressures: it gives spool_m and the parameters of effects in metres of
+// spool travel a scale.
+//
+// Sources: ISO 10770-1 (2009) for the valve's numbers; Jelali and Kroll, Hydraulic Servo-systems
+// (2003), chapter 4.
 #pragma once
 
 #include "plant_sim/four_way_cylinder.h"

@@ -1,4 +1,4 @@
-// What a hydraulic plant's parameters make of its cylinder and valve, whichever plant it is.
+// Cylinder and valve of a hydraulic plant, whichever plant it is, computed from its parameters.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 namespace plant_sim {
 
 struct Hydraulics {
-  double area_m2;  ///< of the chamber that extends
+  double area_m2;  ///< area of the chamber that extends
   double supply_pressure_Pa;
   double valve_gain_m_per_V;   ///< spool travel per command
   double orifice;              ///< flow per spool travel and root of the drop, m3/s/(m sqrt(Pa))

@@ -15,7 +15,7 @@
 //   [effects.friction]    # presence adds the effect; absent parameters are neutral
 //   coulomb_N = 100.0
 //   [formula_effects.NAME]  # a user's own effect (formula/formula_effect.h), then one like others
-//   [[change]]           # of a parameter within a record: change.h
+//   [[change]]           # a parameter changes within a record: change.h
 //   [loop]
 //   kp_V_per_m = 100.0
 #pragma once
@@ -56,7 +56,7 @@ struct ModelFile {
   std::vector<NamedValue> initial;     ///< NaN = the plant's own choice (pressures at rest)
   std::vector<formula::FormulaEffect> formula_effects;  ///< as declared
   std::vector<Effect> effects;  ///< the library's, then the formulas; present or not
-  /// What happened to the rig during one record, from its first sample on; one for a parameter.
+  /// Changes of parameters during one record, from its first sample on; at most one a parameter.
   std::vector<Change> changes;
   Loop loop;
 

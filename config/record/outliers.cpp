@@ -7,7 +7,7 @@
 namespace config::record {
 namespace {
 
-constexpr std::size_t kWindow = 7;  ///< three on each side
+constexpr std::size_t kWindow = 7;  ///< a sample and three on each side of it
 /// Deviations from the running median, in their usual size, and in the span of the values: a jump
 /// of a command that stays is no outlier, and neither is noise.
 constexpr double kDeviations = 50.0;

@@ -89,8 +89,8 @@ struct CouplingOffset {
 /// Flow that leaves the chambers other than through the valve.
 template <class S>
 struct Leak {
-  S in_m3ps = 0.0;   ///< out of the chamber that extends
-  S out_m3ps = 0.0;  ///< out of the chamber that retracts
+  S in_m3ps = 0.0;   ///< flow out of the chamber that extends
+  S out_m3ps = 0.0;  ///< flow out of the chamber that retracts
 };
 
 }  // namespace plant_sim::effects

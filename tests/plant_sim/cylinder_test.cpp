@@ -4,12 +4,11 @@
 
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 #include <vector>
 
 #include "plant_sim/hydraulics.h"
 #include "tests/plant_sim/support.h"
+#include "tests/truth/reference_rows.h"
 
 namespace plant_sim::testing {
 namespace {
@@ -248,27 +247,6 @@ TEST(HydraulicCylinder, PassesTheRatedFlowAtTheRatedDrop) {
   EXPECT_EQ(oil.area_m2, 1.963e-3);
 }
 
-using Row = std::array<double, 8>;  // t, u, then the six states, the spool in volts
-
-std::vector<Row> reference(const std::string& wanted) {
-  std::ifstream in(SPOOLWATCH_SOURCE_DIR "/tests/plant_sim/cylinder_reference.csv");
-  std::vector<Row> rows;
-  std::string line;
-  while (std::getline(in, line)) {
-    std::istringstream fields(line);
-    std::string field;
-    std::getline(fields, field, ',');
-    if (field != wanted) continue;
-    Row row{};
-    for (double& value : row) {
-      std::getline(fields, field, ',');
-      value = std::stod(field);
-    }
-    rows.push_back(row);
-  }
-  return rows;
-}
-
 /// The rig of cylinder_reference.py.
 Cylinder::Parameters reference_rig() {
   Cylinder::Parameters p;
@@ -285,9 +263,9 @@ Cylinder::Parameters reference_rig() {
 void expect_as_scipy(const std::string& of, Cylinder& plant, double step_s) {
   plant.prepare(step_s);
   plant.reset();
-  const std::vector<Row> rows = reference(of);
+  const auto rows = truth::reference_rows("cylinder_reference.csv", of);
   ASSERT_EQ(rows.size(), 70U);
-  for (const Row& row : rows) {
+  for (const truth::ReferenceRow& row : rows) {
     const auto& x = plant.state;
     // at a valve reversal the kink of the flow falls inside a step
     ASSERT_NEAR(x.y_m, row[2], 2e-9) << row[0];

@@ -2,36 +2,18 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <fstream>
-#include <map>
-#include <sstream>
 #include <vector>
 
 #include "tests/plant_sim/support.h"
+#include "tests/truth/reference_rows.h"
 
 namespace plant_sim::testing {
 namespace {
 
-using Row = std::array<double, 8>;  // t, u, then the six states
+using Row = truth::ReferenceRow;  // t, u, then the six states
 
-std::map<std::string, std::vector<Row>> reference() {
-  std::ifstream in(SPOOLWATCH_SOURCE_DIR "/tests/plant_sim/reference.csv");
-  std::map<std::string, std::vector<Row>> cases;
-  std::string line;
-  std::getline(in, line);
-  while (std::getline(in, line)) {
-    std::istringstream fields(line);
-    std::string name;
-    std::string field;
-    std::getline(fields, name, ',');
-    Row row{};
-    for (double& value : row) {
-      std::getline(fields, field, ',');
-      value = std::stod(field);
-    }
-    cases[name].push_back(row);
-  }
-  return cases;
+std::vector<Row> reference(const std::string& name) {
+  return truth::reference_rows("reference.csv", name);
 }
 
 /// Largest differences from the reference of position, speed (relative to 0.1 m/s) and pressure
@@ -58,7 +40,7 @@ Difference open_loop(const std::vector<Row>& rows, Actuator& plant, double step_
 
 TEST(HydraulicActuator, FollowsSciPyInOpenLoopWithAFineStep) {
   auto plant = at_rest();
-  const Difference fine = open_loop(reference()["steps"], *plant, 1e-4);
+  const Difference fine = open_loop(reference("steps"), *plant, 1e-4);
   EXPECT_LT(fine.y_m, 1e-9);  // at a valve reversal the root's kink falls inside a step
   EXPECT_LT(fine.speed, 1e-6);
   EXPECT_LT(fine.pressure, 1e-6);
@@ -66,7 +48,7 @@ TEST(HydraulicActuator, FollowsSciPyInOpenLoopWithAFineStep) {
 
 TEST(HydraulicActuator, FollowsSciPyInOpenLoopAtOneMillisecond) {
   auto plant = at_rest();
-  const Difference worst = open_loop(reference()["steps"], *plant, 1e-3);
+  const Difference worst = open_loop(reference("steps"), *plant, 1e-3);
   EXPECT_LT(worst.y_m, 5e-7);
   EXPECT_LT(worst.speed, 5e-3);
   EXPECT_LT(worst.pressure, 5e-3);
@@ -79,7 +61,7 @@ TEST(HydraulicActuator, FollowsSciPyWithOtherParameters) {
   plant->parameters.supply_pressure_Pa = 1.379e7;
   plant->prepare(1e-4);
   plant->reset();
-  const Difference fine = open_loop(reference()["stiff"], *plant, 1e-4);
+  const Difference fine = open_loop(reference("stiff"), *plant, 1e-4);
   EXPECT_LT(fine.y_m, 1e-9);
   EXPECT_LT(fine.pressure, 1e-5);
 }
@@ -95,7 +77,7 @@ Difference with_effects(const std::string& name, const Values& names,
   }
   plant.prepare(2.5e-5);
   plant.reset();
-  return open_loop(reference()[name], plant, 2.5e-5);
+  return open_loop(reference(name), plant, 2.5e-5);
 }
 
 TEST(EffectsOnOil, FollowSciPyTogether) {
@@ -128,7 +110,7 @@ TEST(EffectsOnTheRod, FollowSciPyTogether) {
 
 TEST(HydraulicActuator, FollowsSciPyInClosedLoopAtOneMillisecond) {
   auto plant = at_rest();
-  const std::vector<Row> rows = reference()["loop"];
+  const std::vector<Row> rows = reference("loop");
   ASSERT_EQ(rows.size(), 40U);
   Difference worst;
   for (int k = 0; k < 800; ++k) {

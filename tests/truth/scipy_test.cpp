@@ -5,51 +5,30 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "tests/truth/actuator.h"
+#include "tests/truth/reference_rows.h"
 #include "tests/truth/rig.h"
 
 namespace truth {
 namespace {
 
-using Row = std::array<double, 8>;  // t, u, then y, v, Pi, Po, spool, spool speed
-
 // Heun's method at 25 us is of second order: it may differ by this much, a twentieth of the noise.
 constexpr double kNear_m = 1e-7;
 constexpr double kNear_Pa = 3e3;
 
-std::vector<Row> reference(const std::string& wanted) {
-  std::ifstream in(SPOOLWATCH_SOURCE_DIR "/tests/plant_sim/reference.csv");
-  std::vector<Row> rows;
-  std::string line;
-  while (std::getline(in, line)) {
-    std::istringstream fields(line);
-    std::string field;
-    std::getline(fields, field, ',');
-    if (field != wanted) continue;
-    Row row{};
-    for (double& value : row) {
-      std::getline(fields, field, ',');
-      value = std::stod(field);
-    }
-    rows.push_back(row);
-  }
-  return rows;
-}
-
 /// Rows every 10 ms, the voltage held for two samples.
 void expect_follows(const std::string& name, const Plant& plant, const Hidden& hidden) {
   Rig rig(std::make_unique<Actuator>(plant, hidden, LeftOut{}));
-  const std::vector<Row> rows = reference(name);
+  // y, v, Pi, Po, spool, spool speed follow t and u
+  const auto rows = reference_rows("reference.csv", name);
   ASSERT_GE(rows.size(), 30U);
   double off_m = 0.0;
   double off_Pa = 0.0;
-  for (const Row& row : rows) {
+  for (const ReferenceRow& row : rows) {
     off_m = std::max(off_m, std::abs(rig.x[0] - row[2]));
     off_Pa = std::max({off_Pa, std::abs(rig.x[2] - row[4]), std::abs(rig.x[3] - row[5])});
     rig.hold(row[1]);

@@ -15,7 +15,7 @@ class Interrupt {
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;
 
-  /// From any thread.
+  /// May be called from any thread.
   [[nodiscard]] static bool requested() noexcept { return exit_code() != 0; }
   /// As shells report a program that a signal ended: 128 and its number; 0 when none came.
   [[nodiscard]] static int exit_code() noexcept;

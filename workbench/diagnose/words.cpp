@@ -9,7 +9,9 @@
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
 #include "estimator/greybox/held_scale.h"
+#include "workbench/diagnose/change_words.h"
 #include "workbench/diagnose/disturbance_words.h"
+#include "workbench/diagnose/effect_words.h"
 #include "workbench/diagnose/record_words.h"
 #include "workbench/present/shell_command.h"
 
@@ -92,40 +94,6 @@ std::string learned_words(const selection::Diagnosis& d) {
          config::schema::joined(laws, "; and ") + ".";
 }
 
-/// "damping_N_s_per_m goes from 1000 N s/m to 1800 +- 20 N s/m at 12.00 s".
-std::string change_words(const selection::ParameterChange& change) {
-  const auto words = [&](double value, double error) {
-    return config::units::words(config::units::quantity(change.parameter, value, error));
-  };
-  std::string text = change.parameter + " goes from " + words(change.from, change.from_error) +
-                     " to " + words(change.to, change.to_error);
-  switch (change.kind) {
-    case selection::ChangeKind::step:
-      return text + fmt::format(" at {:.2f} s", change.at_s);
-    case selection::ChangeKind::ramp:
-      return text + fmt::format(" between {:.1f} and {:.1f} s", change.at_s,
-                                change.at_s + change.duration_s);
-    case selection::ChangeKind::exponential:
-      break;
-  }
-  return text + fmt::format(" with a time constant of {:.1f} s", change.duration_s);
-}
-
-std::string changing_words(const selection::Diagnosis& d) {
-  std::string text =
-      "Changing: " +
-      (d.missing.empty() ? "no effect of the library explains the record, but "
-                         : config::schema::listed(d.missing) +
-                               (d.missing.size() > 1 ? " are" : " is") + " missing, and ") +
-      config::schema::joined_by(d.changing, change_words, "; and ") + ".";
-  for (const selection::ParameterChange& change : d.changing) {
-    if (change.rivals.empty()) continue;
-    text += " A change of " + config::schema::listed(change.rivals, "or") + " in place of " +
-            change.parameter + " would explain it about as well.";
-  }
-  return text;
-}
-
 /// "backlash (its size is within its error)".
 std::string possible_words(const selection::PossibleEffect& possible) {
   switch (possible.why) {
@@ -189,51 +157,6 @@ void add_rivals(const selection::Diagnosis& d, std::vector<std::string>& out) {
 }
 
 }  // namespace
-
-namespace {
-
-/// ": 34.02 +- 0.03 Hz, damping 3.0 +- 0.1 %: a second mass behind a spring (...)".
-std::string second_mass_words(const selection::Diagnosis& diagnosis) {
-  using config::units::quantity;
-  using config::units::words;
-  const auto value = [&](const std::string& name) -> const selection::ParameterValue* {
-    const auto same = [&](const auto& p) { return p.name == "second_mass." + name; };
-    const auto& all = diagnosis.parameters;
-    const auto found = std::find_if(all.begin(), all.end(), same);
-    return found == all.end() ? nullptr : &*found;
-  };
-  const auto* resonance = value("resonance_Hz");
-  const auto* damping = value("damping_ratio");
-  const auto* share = value("mass_ratio");
-  const auto* sensor = value("sensor_ratio");
-  if (resonance == nullptr || damping == nullptr) return "";
-  const auto shown = [](const selection::ParameterValue& p) {
-    return words(quantity(p.name, p.value, p.std_error)) + (p.at_bound ? " (at its bound)" : "");
-  };
-  std::string text =
-      ": " + shown(*resonance) + ", damping " + shown(*damping) + ": a second mass behind a spring";
-  if (sensor != nullptr && sensor->value > 0.0) text += " that the sensor is on";
-  if (share != nullptr && share->value > 0.0) {
-    const double held_Hz = resonance->value * std::sqrt(1.0 - share->value);
-    text += " (" + shown(*share) + " of the moving mass; " +
-            words(quantity(resonance->name, held_Hz, std::nan(""))) + " with the driven part held)";
-  }
-  return text;
-}
-
-}  // namespace
-
-std::string effect_words(const selection::Diagnosis& diagnosis, const std::string& effect) {
-  if (effect == "second_mass") return effect + second_mass_words(diagnosis);
-  std::string text;
-  for (const selection::ParameterValue& p : diagnosis.parameters) {
-    if (p.name.rfind(effect + ".", 0) != 0) continue;
-    text += (text.empty() ? ": " : ", ") + config::units::parameter_words(p.name) + " " +
-            config::units::words(config::units::quantity(p.name, p.value, p.std_error)) +
-            (p.at_bound ? " (at its bound)" : "");
-  }
-  return effect + text;
-}
 
 std::string file_name(const std::string& file) { return file.substr(file.find_last_of('/') + 1); }
 

@@ -8,10 +8,6 @@
 
 namespace workbench::diagnose {
 
-/// "friction: Coulomb 145 +- 2 N, static 181 +- 4 N", with the values of the better model.
-[[nodiscard]] std::string effect_words(const selection::Diagnosis& diagnosis,
-                                       const std::string& effect);
-
 /// The verdict, one sentence.
 [[nodiscard]] std::string verdict_words(const selection::Diagnosis& diagnosis);
 

@@ -39,7 +39,7 @@ struct PreparedFit {
   std::vector<std::string> notes;
   std::string command;                            ///< as it was typed
   std::string output;                             ///< the model file that is written, or empty
-  std::chrono::steady_clock::time_point begin{};  ///< of the reading
+  std::chrono::steady_clock::time_point begin{};  ///< time at which reading began
 };
 
 /// Reads everything. Throws config::schema::UsageError for contradictory options, DataError and

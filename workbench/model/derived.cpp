@@ -1,5 +1,5 @@
-// What follows from a model's values. Speeds and forces of the whole model, effects included, are
-// simulated; frequencies and constants are those of the plant alone, from its closed forms.
+// Quantities derived from a model's values. Speeds and forces of the whole model, effects included,
+// are simulated; frequencies and constants are those of the plant alone, from its closed forms.
 #include <algorithm>
 #include <cmath>
 #include <memory>

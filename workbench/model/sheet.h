@@ -1,5 +1,5 @@
-// Everything that a model file states or leaves to a default, and what follows from it: for an
-// engineer who holds it beside the data sheets of the rig.
+// A sheet lists everything that a model file states or leaves to a default, and the quantities
+// derived from it: for an engineer who holds it beside the data sheets of the rig.
 #pragma once
 
 #include <filesystem>
@@ -35,7 +35,7 @@ struct Sheet {
   plant_sim::ModelFile model;
   std::vector<SheetParameter> plant;
   std::vector<SheetParameter> initial;
-  std::vector<SheetParameter> effects;  ///< of the effects that the model has
+  std::vector<SheetParameter> effects;  ///< parameters of the effects that the model has
   std::vector<DerivedQuantity> derived;
   std::string held_scale;  ///< sentence on what no record of command and position can tell; or ""
 };
@@ -43,7 +43,7 @@ struct Sheet {
 /// Throws config::schema::ConfigError like plant_sim::load_model.
 [[nodiscard]] Sheet sheet_of(const std::filesystem::path& file,
                              const std::vector<std::string>& assignments);
-/// What follows from the values: of the plant with the effects that it has.
+/// Quantities derived from the values of the plant with the effects that it has.
 [[nodiscard]] std::vector<DerivedQuantity> derived_quantities(const plant_sim::ModelFile& model);
 
 [[nodiscard]] const char* to_string(SheetParameter::Source source);

@@ -90,9 +90,10 @@ class HttpServer {
 
   /// Serves on this thread until stop().
   void run();
-  /// From any thread.
+  /// May be called from any thread.
   void stop();
-  /// From any thread: an event ("event: NAME\ndata: ...\n\n") for every stream of the topic.
+  /// May be called from any thread. Sends an event ("event: NAME\ndata: ...\n\n") for every stream
+  /// of the topic.
   void publish(unsigned topic, std::string event);
 
  private:

@@ -8,6 +8,7 @@
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
 #include "workbench/diagnose/diagnosis_report.h"
+#include "workbench/diagnose/effect_words.h"
 #include "workbench/diagnose/words.h"
 #include "workbench/fit/fit_report.h"
 #include "workbench/present/json.h"

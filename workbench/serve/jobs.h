@@ -14,7 +14,7 @@
 
 namespace workbench::serve {
 
-/// What a finished job leaves.
+/// A finished job leaves its result here.
 // NOLINTNEXTLINE(bugprone-exception-escape): moving ordered_json may throw by its type alone
 struct JobResult {
   std::string error;               ///< empty: none

@@ -20,7 +20,7 @@ class Lane {
 
   /// Waits for what runs; what has not begun is dropped, now and later.
   void end();
-  /// From any thread.
+  /// May be called from any thread.
   void post(Work work);
   /// Takes the place of earlier work posted so that has not begun; `dropped` of that work is then
   /// called. From any thread.

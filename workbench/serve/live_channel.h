@@ -1,5 +1,5 @@
-// The daemon's messages for pages that watch: samples in batches, estimates, health, and the error
-// of a model beside them. It listens only while a page watches.
+// A live channel passes the daemon's messages on to pages that watch: samples in batches,
+// estimates, health, and the error of a model beside them. It listens only while a page watches.
 #pragma once
 
 #include <condition_variable>
@@ -28,9 +28,9 @@ class LiveChannel {
 
   /// Waits for its thread; nothing is published afterwards.
   void end();
-  /// From any thread: a page watches, or one more does, or none any longer.
+  /// May be called from any thread when a page begins or ends to watch.
   void want(bool wanted);
-  /// From any thread: the model file that runs beside the samples; empty: none.
+  /// May be called from any thread. Sets the model file that runs beside the samples; empty: none.
   void watch_model(std::string file);
 
  private:

@@ -16,7 +16,7 @@ struct PageFile {
 /// The file under a path such as "/workbench.js"; "/" is the page itself.
 [[nodiscard]] std::optional<PageFile> page_file(std::string_view path);
 
-/// What the page lacks, as one line; empty: nothing.
+/// One line that names the files that the page lacks; empty where none is missing.
 [[nodiscard]] std::string missing_page_files();
 
 }  // namespace workbench::serve

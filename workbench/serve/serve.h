@@ -10,8 +10,8 @@
 namespace workbench::serve {
 
 struct ServeOptions {
-  unsigned short port = 0;  ///< of 127.0.0.1; 0: a free one
-  std::string socket;       ///< a Unix socket in its place; empty: the port
+  unsigned short port = 0;  ///< port on 127.0.0.1; 0: a free one
+  std::string socket;       ///< Unix socket in place of the port; empty: the port
   std::string folder = ".";
   std::string lcm_url;
   std::string prefix;
@@ -33,7 +33,7 @@ class Serve {
   [[nodiscard]] unsigned short port() const;
   /// Serves on this thread until stop().
   void run();
-  /// From any thread.
+  /// May be called from any thread.
   void stop();
 
  private:

@@ -26,7 +26,7 @@ using nlohmann::ordered_json;
 constexpr const char* kSession = "session.json";
 constexpr const char* kScript = "commands.sh";
 constexpr std::size_t kMostIgnored = 100;
-/// What a fit may try where a person waits for it.
+/// Split of the record that a fit scores itself on.
 constexpr const char* kSplit = "blocks";
 
 std::string stem(const std::string& file) { return std::filesystem::path(file).stem().string(); }

@@ -1,6 +1,6 @@
-// What is open in a session: a record, a model, perhaps a trial model beside it, and how they
-// compare. One object for all pages, used by one thread; it computes nothing of its own but calls
-// what the commands call.
+// A study is what a session has open: a record, a model, perhaps a trial model beside it, and how
+// they compare. One object for all pages, used by one thread; it computes nothing of its own but
+// calls what the commands call.
 #pragma once
 
 #include <functional>

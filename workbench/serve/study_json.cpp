@@ -26,8 +26,10 @@ using present::number_or_null;
 using present::typeset;
 
 constexpr std::size_t kMostRegions = 5;
-constexpr double kWidestRatio = 2.0;   ///< of a slider about a plant's value
-constexpr double kTypicalSizes = 3.0;  ///< of a slider over an effect's
+/// A slider reaches from a plant's value over this ratio to the value times this ratio.
+constexpr double kWidestRatio = 2.0;
+/// A slider of an effect reaches to this many of its typical sizes.
+constexpr double kTypicalSizes = 3.0;
 
 ordered_json typeset_all(const std::vector<std::string>& lines) {
   ordered_json out = ordered_json::array();
@@ -119,7 +121,7 @@ ordered_json json_of(const greybox::CatalogueParameter& parameter, double value)
           {"logarithmic", logarithmic}};
 }
 
-/// What a plant leaves uncertain, and everything of the effects that are present.
+/// The plant's uncertain parameters and all parameters of the effects that are present.
 ordered_json parameters_of(const plant_sim::ModelFile& model) {
   plant_sim::ModelFile copy = model;
   ordered_json out = ordered_json::array();

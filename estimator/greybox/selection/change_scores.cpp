@@ -185,7 +185,8 @@ std::vector<ChangeScore> change_scores(const InnovationStage& stage) {
   for (Index c = 0; c < columns.values.cols(); ++c) {
     if (stage.context.cancelled()) break;
     const auto i = static_cast<std::size_t>(c);
-    if (columns.parameters[i].name.starts_with("change.")) continue;  // of a change found before
+    if (columns.parameters[i].name.starts_with("change."))
+      continue;  // part of a change found before
     const VectorXd column = columns.values.col(c);
     const Course course(basis, rest, column, columns.absent[i]);
     ChangeScore score{columns.parameters[i], columns.absent[i]};

@@ -35,7 +35,7 @@ constexpr double kOfSampleRate = 0.4;
 constexpr double kResonanceRatio = 1.04;
 constexpr double kTriedDamping = 0.04;
 constexpr double kSmallShare = 0.05;
-constexpr double kMostShare = 0.8;  ///< of a start
+constexpr double kMostShare = 0.8;  ///< largest share that a search starts from
 /// Places of a sensor behind the spring: at the second mass, or on the way to it.
 constexpr double kNearLoad = 0.95;
 constexpr double kLeastNearLoad = 0.7;

@@ -7,7 +7,7 @@
 #include "tests/estimator/greybox/selection/truth_records.h"
 #include "tests/workbench/diagnose/judged.h"
 #include "tests/workbench/diagnose/two_masses.h"
-#include "workbench/diagnose/words.h"
+#include "workbench/diagnose/effect_words.h"
 
 namespace workbench::diagnose {
 

@@ -14,18 +14,18 @@
 namespace two_masses {
 
 struct Rig {
-  double mass_kg = 30.0;  ///< of both
+  double mass_kg = 30.0;  ///< both masses together
   double damping_N_s_per_m = 120.0;
   double gain_N_per_V = 40.0;
-  double mass_ratio = 0.3;         ///< m2 over both; 0: one rigid mass
-  double resonance_Hz = 34.0;      ///< of the free pair
-  double damping_ratio = 0.03;     ///< of that resonance
+  double mass_ratio = 0.3;         ///< second mass over both; 0: one rigid mass
+  double resonance_Hz = 34.0;      ///< frequency of the free pair
+  double damping_ratio = 0.03;     ///< damping ratio of that resonance
   bool at_load = false;            ///< sensor on the second mass
-  double stiffness_N_per_m = 0.0;  ///< of a spring between the driven mass and the ground
+  double stiffness_N_per_m = 0.0;  ///< spring between the driven mass and the ground
   double sample_rate_Hz = 1000.0;
   double duration_s = 12.0;
   double noise_m = 2e-6;
-  double step_m = 1e-3;  ///< of the reference, up and down at 0.7 Hz
+  double step_m = 1e-3;  ///< step of the reference, up and down at 0.7 Hz
   double kp_V_per_m = 300.0;
   double kd_V_s_per_m = 12.0;
   int delay_samples = 0;
@@ -64,8 +64,8 @@ inline Eigen::MatrixXd transition(const Rig& rig) {
   return exponential(A / rig.sample_rate_Hz);
 }
 
-/// In closed loop on a multisine of 20 lines up to 2 Hz with steps, which alone excite a resonance
-/// of tens of hertz; the position is about `kMiddle_m`.
+/// Simulates closed loop on a multisine of 20 lines up to 2 Hz with steps, which alone excite a
+/// resonance of tens of hertz; the position is about `kMiddle_m`.
 inline config::record::Record record(const Rig& rig) {
   constexpr double kMiddle_m = 0.2;
   constexpr double kEncoder_m = 1e-6;

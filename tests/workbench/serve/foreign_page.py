@@ -3,16 +3,14 @@
 
   foreign_page.py --bin DIR --source DIR      exit code 77: there is no Chromium
 """
-import argparse
 import http.server
-import pathlib
 import sys
-import tempfile
 import threading
 
 sys.dont_write_bytecode = True
-from chromium import Browser, find  # noqa: E402
-from server_process import NoPage, Server  # noqa: E402
+import browser_test  # noqa: E402
+from chromium import Browser  # noqa: E402
+from server_process import Server  # noqa: E402
 
 PAGE = """<!doctype html><body><iframe id="frame" src="%(ours)s/"></iframe>
 <form id="form" method="post" enctype="text/plain" action="%(ours)s/api/model" target="sink">
@@ -101,22 +99,5 @@ def attack(args, folder):
                 raise AssertionError(f"{key} has changed: {before[key]} -> {after[key]}")
 
 
-def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--bin", type=lambda text: pathlib.Path(text).resolve(), required=True)
-    parser.add_argument("--source", type=lambda text: pathlib.Path(text).resolve(), required=True)
-    args = parser.parse_args()
-    if not find():
-        print("chromium is missing: scripts/install-packages browser")
-        return 77
-    try:
-        with tempfile.TemporaryDirectory() as folder:
-            attack(args, pathlib.Path(folder))
-    except NoPage as missing:
-        print(missing)
-        return 77
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(browser_test.run(attack))

@@ -46,7 +46,7 @@ class Client {
     }
     return true;
   }
-  /// What comes until the other side closes, `enough` has come, or the time is over.
+  /// Receives until the other side closes, `enough` has come, or the time is over.
   [[nodiscard]] std::string receive(std::chrono::milliseconds time = std::chrono::seconds(5),
                                     const std::string& enough = "") const {
     std::string text;

@@ -3,24 +3,18 @@
 
   story.py --bin DIR --source DIR [--pictures DIR]      exit code 77: there is no Chromium
 """
-import argparse
 import json
-import pathlib
 import shutil
 import subprocess
 import sys
-import tempfile
 
 sys.dont_write_bytecode = True
-from chromium import Browser, find  # noqa: E402
-from server_process import NoPage, Server  # noqa: E402
+import browser_test  # noqa: E402
+from browser_test import expect  # noqa: E402
+from chromium import Browser  # noqa: E402
+from server_process import Server  # noqa: E402
 
 HOSTILE = "<img src=x onerror=alert(1)><script>.csv"
-
-
-def expect(what, happened):
-    if not happened:
-        raise AssertionError(what)
 
 
 def figure(page, label):
@@ -148,25 +142,5 @@ def story(args, folder):
     expect("the command line of the page writes the same model", same[0] == same[1])
 
 
-def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--bin", type=lambda text: pathlib.Path(text).resolve(), required=True)
-    parser.add_argument("--source", type=lambda text: pathlib.Path(text).resolve(), required=True)
-    parser.add_argument("--pictures", type=pathlib.Path)
-    args = parser.parse_args()
-    if not find():
-        print("chromium is missing: scripts/install-packages browser")
-        return 77
-    if args.pictures:
-        args.pictures.mkdir(parents=True, exist_ok=True)
-    try:
-        with tempfile.TemporaryDirectory() as folder:
-            story(args, pathlib.Path(folder))
-    except NoPage as missing:
-        print(missing)
-        return 77
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(browser_test.run(story))

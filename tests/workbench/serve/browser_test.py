@@ -1,0 +1,35 @@
+"""A test in a real browser as a program: its options, its temporary folder, its exit code."""
+import argparse
+import pathlib
+import tempfile
+
+from chromium import find
+from server_process import NoPage
+
+SKIPPED = 77
+
+
+def expect(what, happened):
+    if not happened:
+        raise AssertionError(what)
+
+
+def run(test):
+    """Runs test(args, folder); exit code 77 where there is no Chromium or no page."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--bin", type=lambda text: pathlib.Path(text).resolve(), required=True)
+    parser.add_argument("--source", type=lambda text: pathlib.Path(text).resolve(), required=True)
+    parser.add_argument("--pictures", type=pathlib.Path)
+    args = parser.parse_args()
+    if not find():
+        print("chromium is missing: scripts/install-packages browser")
+        return SKIPPED
+    if args.pictures:
+        args.pictures.mkdir(parents=True, exist_ok=True)
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            test(args, pathlib.Path(folder))
+    except NoPage as missing:
+        print(missing)
+        return SKIPPED
+    return 0

@@ -1,0 +1,54 @@
+#include "workbench/diagnose/effect_words.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "config/units/quantity.h"
+
+namespace workbench::diagnose {
+namespace {
+
+/// ": 34.02 +- 0.03 Hz, damping 3.0 +- 0.1 %: a second mass behind a spring (...)".
+std::string second_mass_words(const selection::Diagnosis& diagnosis) {
+  using config::units::quantity;
+  using config::units::words;
+  const auto value = [&](const std::string& name) -> const selection::ParameterValue* {
+    const auto same = [&](const auto& p) { return p.name == "second_mass." + name; };
+    const auto& all = diagnosis.parameters;
+    const auto found = std::find_if(all.begin(), all.end(), same);
+    return found == all.end() ? nullptr : &*found;
+  };
+  const auto* resonance = value("resonance_Hz");
+  const auto* damping = value("damping_ratio");
+  const auto* share = value("mass_ratio");
+  const auto* sensor = value("sensor_ratio");
+  if (resonance == nullptr || damping == nullptr) return "";
+  const auto shown = [](const selection::ParameterValue& p) {
+    return words(quantity(p.name, p.value, p.std_error)) + (p.at_bound ? " (at its bound)" : "");
+  };
+  std::string text =
+      ": " + shown(*resonance) + ", damping " + shown(*damping) + ": a second mass behind a spring";
+  if (sensor != nullptr && sensor->value > 0.0) text += " that the sensor is on";
+  if (share != nullptr && share->value > 0.0) {
+    const double held_Hz = resonance->value * std::sqrt(1.0 - share->value);
+    text += " (" + shown(*share) + " of the moving mass; " +
+            words(quantity(resonance->name, held_Hz, std::nan(""))) + " with the driven part held)";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string effect_words(const selection::Diagnosis& diagnosis, const std::string& effect) {
+  if (effect == "second_mass") return effect + second_mass_words(diagnosis);
+  std::string text;
+  for (const selection::ParameterValue& p : diagnosis.parameters) {
+    if (p.name.rfind(effect + ".", 0) != 0) continue;
+    text += (text.empty() ? ": " : ", ") + config::units::parameter_words(p.name) + " " +
+            config::units::words(config::units::quantity(p.name, p.value, p.std_error)) +
+            (p.at_bound ? " (at its bound)" : "");
+  }
+  return effect + text;
+}
+
+}  // namespace workbench::diagnose

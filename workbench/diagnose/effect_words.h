@@ -1,0 +1,16 @@
+// An effect that was found, in words.
+#pragma once
+
+#include <string>
+
+#include "estimator/greybox/selection/diagnosis.h"
+
+namespace workbench::diagnose {
+
+namespace selection = estimator::greybox::selection;
+
+/// "friction: Coulomb 145 +- 2 N, static 181 +- 4 N", with the values of the better model.
+[[nodiscard]] std::string effect_words(const selection::Diagnosis& diagnosis,
+                                       const std::string& effect);
+
+}  // namespace workbench::diagnose
