@@ -56,7 +56,7 @@ struct ModelFile {
   std::vector<NamedValue> initial;     ///< NaN = the plant's own choice (pressures at rest)
   std::vector<formula::FormulaEffect> formula_effects;  ///< as declared
   std::vector<Effect> effects;  ///< the library's, then the formulas; present or not
-  /// Changes of parameters during one record, from its first sample on; at most one a parameter.
+  /// Changes of parameters during one record, in the record's time; at most one a parameter.
   std::vector<Change> changes;
   Loop loop;
 

@@ -24,7 +24,7 @@ double FreeParameter::to_physical(double theta) const {
     case ParameterScale::linear:
       break;
   }
-  return unit * theta;
+  return origin + unit * theta;
 }
 
 double FreeParameter::to_theta(double value) const {
@@ -36,7 +36,7 @@ double FreeParameter::to_theta(double value) const {
     case ParameterScale::linear:
       break;
   }
-  return value / unit;
+  return (value - origin) / unit;
 }
 
 double FreeParameter::slope(double theta) const {

@@ -1,7 +1,7 @@
 // A model parameter as a free parameter of a fit: a number near 0 or 1 with bounds, whatever its
 // unit.
 //
-//   linear       value = unit theta          effects: theta = 0 is their absence
+//   linear       value = origin + unit theta effects: theta = 0 is their absence
 //   logarithmic  value = unit exp(theta)     plants: theta = 0 is the model file's value
 //   reciprocal   value = unit / theta        limits: theta = 0 is no limit
 #pragma once
@@ -28,6 +28,7 @@ struct FreeParameter {
   double prior_mean = 0.0;  ///< mean of theta
   double prior_sd = 0.0;    ///< infinite: no prior
   int refinement = 0;       ///< plant_sim::ParameterInfo::refinement
+  double origin = 0.0;      ///< of a linear scale: value at theta = 0
 
   [[nodiscard]] double to_physical(double theta) const;
   [[nodiscard]] double to_theta(double value) const;

@@ -14,13 +14,17 @@ constexpr std::size_t kFinalists = 6;
 constexpr double kWorthFitting = 0.5;
 /// Range of a changed plant parameter about the present value, in logarithms.
 constexpr double kRange = 2.3;
-constexpr const char* kLoad = "load_force.force_N";
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-/// A length of time in a fit, within its bounds.
-FreeParameter time_parameter(const std::string& name, double unit_s, double least_s,
-                             double most_s) {
-  return {name, ParameterScale::linear, unit_s, least_s / unit_s, most_s / unit_s, 0.0, kInfinite};
+/// A time within the record, counted from `start_s` so that difference quotients take one sample.
+FreeParameter time_parameter(const std::string& name, double start_s, const Dataset& record) {
+  const double unit_s = 1000.0 * record.sample_time_s;
+  FreeParameter time{name, ParameterScale::linear, unit_s};
+  time.origin = start_s;
+  time.lower = time.to_theta(record.t_s.front());
+  time.upper = time.to_theta(record.t_s.back());
+  time.prior_sd = kInfinite;
+  return time;
 }
 
 FreeParameter duration_parameter(const std::string& name, double start_s, double least_s,
@@ -49,14 +53,30 @@ std::vector<ChangeScore> finalists(const InnovationStage& stage) {
   return scores;
 }
 
+/// The size of an effect that the stage has, or that of one that is absent; no name where the plant
+/// has no such effect.
+ChangeScore score_of_effect(const InnovationStage& stage, const std::string& effect) {
+  ChangeScore score;
+  for (const plant_sim::EffectInfo& candidate : stage.context.problem.candidate_effects) {
+    if (candidate.name != effect) continue;
+    score.parameter = effect_parameters(candidate, 0).front();
+    score.absent = true;
+  }
+  for (const FreeParameter& own : stage.model.fitted.parameters) {
+    if (!belongs_to(own, effect)) continue;
+    score.parameter = own;
+    score.absent = false;
+    break;
+  }
+  return score;
+}
+
 /// Drifts of what a constant disturbance looks like: the innovations forget them as well.
 void add_drifts(const InnovationStage& stage, std::vector<ChangeScore>& scores) {
   const Dataset& record = stage.context.problem.data.records.front();
-  for (const plant_sim::EffectInfo& effect : stage.context.problem.candidate_effects) {
-    if (effect.name != "null_bias" && effect.name != "load_force") continue;
-    ChangeScore score;
-    score.parameter = effect_parameters(effect, 0).front();
-    score.absent = true;
+  for (const char* effect : {"null_bias", "load_force"}) {
+    ChangeScore score = score_of_effect(stage, effect);
+    if (score.parameter.name.empty()) continue;
     score.kind = ChangeKind::ramp;
     score.at_s = record.t_s.front();
     score.duration_s = record.t_s.back() - record.t_s.front();
@@ -64,21 +84,19 @@ void add_drifts(const InnovationStage& stage, std::vector<ChangeScore>& scores) 
   }
 }
 
-/// A load that sets in: the innovations forget it at once, so that no score shows it.
-ChangeScore load_score(const InnovationStage& stage, const disturbance::ForceJump& jump) {
-  ChangeScore score;
-  score.at_s = jump.time_s;
-  score.gain_nats = jump.gain_nats;
-  for (const FreeParameter& own : stage.model.fitted.parameters) {
-    if (own.name == kLoad) score.parameter = own;
+/// A load or an offset that sets in: the innovations forget them at once, so that no score shows
+/// them.
+void add_jumps(const InnovationStage& stage, std::vector<ChangeScore>& scores) {
+  const disturbance::ForceJump jump = likeliest_jump(stage);
+  if (!(jump.gain_nats > kEvidence_nats)) return;
+  for (const char* effect : {"load_force", "null_bias"}) {
+    ChangeScore score = score_of_effect(stage, effect);
+    if (score.parameter.name.empty()) continue;
+    score.at_s = jump.time_s;
+    score.gain_nats = jump.gain_nats;
+    if (score.parameter.name == "load_force.force_N") score.by = jump.size / score.parameter.unit;
+    scores.push_back(score);
   }
-  for (const plant_sim::EffectInfo& effect : stage.context.problem.candidate_effects) {
-    if (effect.name + ".force_N" != kLoad) continue;
-    score.parameter = effect_parameters(effect, 0).front();
-    score.absent = true;
-  }
-  if (!score.parameter.name.empty()) score.by = jump.size / score.parameter.unit;
-  return score;
 }
 
 double error_of(const FitSummary& fitted, const Eigen::VectorXd& errors, const std::string& name) {
@@ -120,7 +138,6 @@ ChangeProposal proposal(const SearchContext& plain, const InnovationStage& stage
   add(all, value, theta + score.by);
   const double begin_s = record.t_s.front();
   const double end_s = record.t_s.back();
-  const double unit_s = 1000.0 * record.sample_time_s;  // differences of one sample
   const bool whole = score.duration_s >= end_s - begin_s;
   if (score.kind == ChangeKind::exponential) {
     change.time_constant_s = score.duration_s;
@@ -129,7 +146,7 @@ ChangeProposal proposal(const SearchContext& plain, const InnovationStage& stage
                            10.0 * record.sample_time_s, 10.0 * (end_s - begin_s)),
         0.0);
   } else if (!whole) {
-    add(all, time_parameter(name_of(score) + ".at_s", unit_s, begin_s, end_s), score.at_s / unit_s);
+    add(all, time_parameter(name_of(score) + ".at_s", score.at_s, record), 0.0);
   }
   if (score.kind == ChangeKind::ramp) {
     change.ramp_s = score.duration_s;
@@ -150,9 +167,15 @@ ChangeProposal proposal(const SearchContext& plain, const InnovationStage& stage
 
 std::vector<ChangeScore> change_candidates(const InnovationStage& stage) {
   std::vector<ChangeScore> scores = finalists(stage);
-  const ChangeScore load = load_score(stage, likeliest_jump(stage));
-  if (load.gain_nats > kEvidence_nats && !load.parameter.name.empty()) scores.push_back(load);
+  add_jumps(stage, scores);
   add_drifts(stage, scores);
+  // a record has one change of a parameter
+  std::erase_if(scores, [&](const ChangeScore& score) {
+    const auto& known = stage.context.problem.model.changes;
+    return std::any_of(known.begin(), known.end(), [&](const plant_sim::Change& change) {
+      return change.parameter == score.parameter.name;
+    });
+  });
   return scores;
 }
 

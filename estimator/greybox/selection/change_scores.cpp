@@ -38,11 +38,9 @@ void add_absent_effects(const InnovationStage& stage, Columns& columns) {
   std::vector<FreeParameter> sizes;
   for (const plant_sim::EffectInfo& effect : context.problem.candidate_effects) {
     const std::vector<FreeParameter> own = effect_parameters(effect, 0);
-    const auto& added = stage.model.added;
-    if (own.empty() || own.front().scale != ParameterScale::linear ||
-        std::find(added.begin(), added.end(), effect.name) != added.end()) {
-      continue;
-    }
+    const bool present = std::any_of(fitted.parameters.begin(), fitted.parameters.end(),
+                                     [&](const auto& p) { return belongs_to(p, effect.name); });
+    if (own.empty() || own.front().scale != ParameterScale::linear || present) continue;
     sizes.push_back(own.front());
   }
   all.insert(all.end(), sizes.begin(), sizes.end());

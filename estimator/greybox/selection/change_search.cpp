@@ -27,16 +27,17 @@ bool scan_time(const SearchContext& context, const std::string& name, FitSummary
   if (at == fitted.parameters.end()) return false;
   const auto row = static_cast<Eigen::Index>(at - fitted.parameters.begin());
   const double step = kScanStep * context.problem.data.sample_time_s / at->unit;
-  const auto half = static_cast<int>(kScanned_s / at->unit / step);
+  constexpr int kLanes = static_cast<int>(ObserverSimulation::kLanes);
+  const auto half = std::max(kLanes, static_cast<int>(kScanned_s / at->unit / step));
   DatasetSimulation run(context.problem.model, context.problem.data, fitted.parameters);
   double least = rms(fitted.residual_m, context.problem.data.training_mask);
   double best = fitted.theta[row];
-  constexpr int kLanes = static_cast<int>(ObserverSimulation::kLanes);
   Eigen::MatrixXd residuals_m;
   for (int from = -half; from <= half && !context.cancelled(); from += kLanes) {
     Eigen::MatrixXd points = fitted.theta.replicate(1, kLanes);
     for (int i = 0; i < kLanes; ++i) {
-      points(row, i) = std::clamp(points(row, i) + step * (from + i), at->lower, at->upper);
+      points(row, i) =
+          std::clamp(points(row, i) + step * std::min(from + i, half), at->lower, at->upper);
     }
     run.residuals(points, residuals_m);
     for (int i = 0; i < kLanes; ++i) {
@@ -117,10 +118,7 @@ bool add_change(const SearchContext& plain, InnovationStage& stage, ChangeSearch
   const Dataset& record = plain.problem.data.records.front();
   std::vector<ChangeProposal> proposals;
   for (const ChangeScore& score : change_candidates(stage)) {
-    const bool taken = std::any_of(
-        search.changes.begin(), search.changes.end(),
-        [&](const ParameterChange& one) { return one.parameter == score.parameter.name; });
-    if (!taken) proposals.push_back(proposal(search.context, stage, score));
+    proposals.push_back(proposal(search.context, stage, score));
   }
   std::vector<InnovationStage> stages(proposals.size());
   in_parallel(proposals.size(), plain.options.threads,

@@ -136,10 +136,11 @@ Candidate quick_fit(const SearchContext& context, const ModelStage& stage,
 namespace {
 
 /// Starts about a fitted resonance: neighbouring frequencies, each with a damping of its own, are
-/// minima of their own where the motion hardly excites it. Empty for other effects.
-std::vector<VectorXd> resonance_restarts(const FitSummary& fitted) {
+/// minima of their own where the motion hardly excites it. `first`: the effect's first parameter.
+/// Empty for other effects.
+std::vector<VectorXd> resonance_restarts(const FitSummary& fitted, std::size_t first) {
   const auto index_of = [&](std::string_view ending) {
-    for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
+    for (std::size_t i = first; i < fitted.parameters.size(); ++i) {
       if (fitted.parameters[i].name.ends_with(ending)) return static_cast<Index>(i);
     }
     return Index{-1};
@@ -184,7 +185,7 @@ void refine_best(const SearchContext& context, const ModelStage& stage,
     FitSummary fitted =
         fit(context.problem.model, context.problem.data, context.problem.data.training_mask,
             candidate.fitted.parameters, candidate.fitted.theta, options);
-    for (const VectorXd& start : resonance_restarts(fitted)) {
+    for (const VectorXd& start : resonance_restarts(fitted, stage.fitted.parameters.size())) {
       FitSummary other =
           fit(context.problem.model, context.problem.data, context.problem.data.training_mask,
               candidate.fitted.parameters, start, options);

@@ -8,10 +8,13 @@
 namespace estimator::greybox::selection {
 namespace {
 
-/// True when the effect's size, its first parameter, is at its neutral bound.
+/// True when the effect's size, its first parameter, is zero.
 bool is_idle(const FitSummary& fitted, const std::string& effect) {
   for (std::size_t i = 0; i < fitted.parameters.size(); ++i) {
-    if (belongs_to(fitted.parameters[i], effect)) return fitted.at_bound[i] < 0;
+    if (belongs_to(fitted.parameters[i], effect)) {
+      return fitted.parameters[i].scale == ParameterScale::linear &&
+             fitted.theta[static_cast<Eigen::Index>(i)] == 0.0;
+    }
   }
   return false;
 }

@@ -45,7 +45,7 @@ TEST(Changes, AGainThatStepsIsDatedToASample) {
   EXPECT_NEAR(change.from, kServoGain, 3.0 * change.from_error + 1e-5);
   EXPECT_NEAR(change.to, 1.03 * kServoGain, 3.0 * change.to_error + 1e-5);
   EXPECT_LT(d.rms_after_m, 1.1 * d.noise_floor_m);
-  // the better model has it, as a change that load_model() reads
+  // the better model has it
   ASSERT_THAT(d.better.changes, SizeIs(1));
   EXPECT_NEAR(d.better.changes.front().value, 1.03 * kServoGain, 1e-4);
 }
@@ -71,6 +71,45 @@ TEST(Changes, AGainThatWarmsUpIsAnExponential) {
   EXPECT_EQ(d.changing.front().kind, ChangeKind::exponential);
   EXPECT_NEAR(d.changing.front().duration_s, 3.0, 0.15);
   EXPECT_NEAR(d.changing.front().to, 1.05 * kServoGain, 1e-3 * kServoGain);
+}
+
+TEST(Changes, AnOffsetThatStepsLeavesASecondChangeToBeFound) {
+  const SearchContext context = changing_servo([](double t_s) { return t_s < 14.0 ? 1.0 : 1.05; },
+                                               [](double t_s) { return t_s < 6.0 ? 0.08 : 0.12; });
+  const std::optional<ChangeSearch> found = search_changes(context, first_stage(context));
+  ASSERT_TRUE(found.has_value());
+  ASSERT_THAT(found->changes, SizeIs(2));
+  const bool offset_first = found->changes.front().parameter == "null_bias.offset_V";
+  const ParameterChange& offset = found->changes[offset_first ? 0 : 1];
+  const ParameterChange& gain = found->changes[offset_first ? 1 : 0];
+  EXPECT_EQ(offset.parameter, "null_bias.offset_V");
+  EXPECT_NEAR(offset.at_s, 6.0, 0.05);
+  EXPECT_NEAR(offset.from, 0.08, 1e-3);
+  EXPECT_NEAR(offset.to, 0.12, 1e-3);
+  EXPECT_EQ(gain.parameter, "gain_mps_per_V");
+  EXPECT_NEAR(gain.at_s, 14.0, 0.05);
+  EXPECT_NEAR(gain.to / gain.from, 1.05, 1e-3);
+}
+
+TEST(Changes, AKnownChangeIsNotSoughtAgain) {
+  SearchContext context =
+      changing_servo([](double t_s) { return t_s < 12.0 ? 1.0 : 1.03; }, nothing);
+  context.problem.model.changes.push_back(
+      {.parameter = "gain_mps_per_V", .at_s = 12.0, .factor = 1.03});
+  const std::optional<ChangeSearch> found = search_changes(context, first_stage(context));
+  EXPECT_FALSE(found.has_value());
+}
+
+TEST(Changes, ATimeSince1970IsDatedAsWell) {
+  constexpr double kBegin_s = 1.7e9;
+  SearchContext context =
+      changing_servo([](double t_s) { return t_s < 12.3456 ? 1.0 : 1.03; }, nothing);
+  for (double& t_s : context.problem.data.records.front().t_s) t_s += kBegin_s;
+  const std::optional<ChangeSearch> found = search_changes(context, first_stage(context));
+  ASSERT_TRUE(found.has_value());
+  const ParameterChange& change = found->changes.front();
+  EXPECT_NEAR(change.at_s - kBegin_s, 12.3456, 0.005);
+  EXPECT_LT(change.at_error_s, 0.01);
 }
 
 TEST(Changes, AHealthyRecordHasNone) {
