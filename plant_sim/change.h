@@ -28,4 +28,13 @@ struct Change {
   void visit(config::schema::Visitor& v);
 };
 
+struct ParameterInfo;
+
+/// The value that a change of a parameter leads to, from the one `before` it. Throws
+/// config::schema::ConfigError unless one of value and factor is given, the new value is in the
+/// parameter's range, a factor finds a number other than 0, and the change is a ramp or an
+/// exponential, not both; `where` is the place in a file.
+[[nodiscard]] double target_of(const Change& change, const ParameterInfo& info, double before,
+                               const std::string& where);
+
 }  // namespace plant_sim

@@ -107,20 +107,40 @@ void check_declared(const ModelFile& model, const formula::FormulaEffect& effect
   check(effect, formula::compile(effect, plausible(model), where), where);
 }
 
-/// Every change is of a known parameter, to a value or by a factor, and the only one of it.
-void check_changes(const ModelFile& model, const std::string& file) {
-  ModelFile copy = model;
+/// Description of a parameter of the plant or of an effect that fits the plant; null for another
+/// name. Takes the names that the library prints.
+const ParameterInfo* info_of(const ModelFile& model, const std::vector<EffectInfo>& effects,
+                             std::string_view dotted, const std::string& where) {
+  const PlantInfo& plant = *find_plant(model.plant);
+  const auto among = [](const std::vector<ParameterInfo>& infos, std::string_view name) {
+    const auto found = std::find_if(infos.begin(), infos.end(),
+                                    [&](const ParameterInfo& info) { return info.name == name; });
+    return found == infos.end() ? nullptr : &*found;
+  };
+  const std::size_t dot = dotted.find('.');
+  if (dot == std::string_view::npos) return among(plant.parameters, dotted);
+  for (const EffectInfo& effect : effects) {
+    if (effect.name != dotted.substr(0, dot)) continue;
+    require_fit(effect, plant, where);
+    return among(effect.parameters, dotted.substr(dot + 1));
+  }
+  return nullptr;
+}
+
+/// Gives parameters of changes the names that the library prints. Throws unless every change can be
+/// simulated and is the only one of its parameter.
+void check_changes(ModelFile& model, const std::string& file) {
+  const std::vector<EffectInfo> effects = effects_of(model);
   for (std::size_t i = 0; i < model.changes.size(); ++i) {
-    const Change& change = model.changes[i];
+    Change& change = model.changes[i];
     const std::string where = file + ": [[change]] " + change.parameter;
-    const bool own =
-        !change.parameter.starts_with("change.") && !change.parameter.starts_with("initial.");
-    if (!own || copy.value(change.parameter) == nullptr) {
+    change.parameter = library_name(change.parameter);
+    const ParameterInfo* info = info_of(model, effects, change.parameter, where);
+    if (info == nullptr) {
       throw config::schema::bad_config(where, "is no parameter of plant " + model.plant);
     }
-    if (std::isnan(change.value) == std::isnan(change.factor)) {
-      throw config::schema::bad_config(where, "needs one of value and factor", "value or factor");
-    }
+    ModelFile copy = model;
+    (void)target_of(change, *info, *copy.value(change.parameter), where);
     for (std::size_t other = 0; other < i; ++other) {
       if (model.changes[other].parameter != change.parameter) continue;
       throw config::schema::bad_config(where, "is there twice", "one change for a parameter");

@@ -32,22 +32,7 @@ Schedule::Schedule(std::vector<Change> changes, Plant& plant) {
           where, "no such parameter" + (near.empty() ? "" : ", did you mean " + near + "?"),
           config::schema::joined(names));
     }
-    if (std::isnan(change.value) == std::isnan(change.factor)) {
-      throw config::schema::bad_config(where, "needs one of value and factor", "value or factor");
-    }
-    if (!std::isnan(change.factor) && (*target == 0.0 || !std::isfinite(*target))) {
-      throw config::schema::bad_config(
-          where,
-          "has a factor, and the parameter is " + std::string(*target == 0.0 ? "0" : "infinite"),
-          "value");
-    }
-    const double to = std::isnan(change.value) ? change.factor * *target : change.value;
-    const ParameterInfo& info = *plant.parameter_info(change.parameter);
-    if (!(to >= info.min && to <= info.max)) {
-      throw config::schema::bad_config(
-          where, "to " + std::to_string(to) + " is out of range",
-          std::to_string(info.min) + " to " + std::to_string(info.max));
-    }
+    const double to = target_of(change, *plant.parameter_info(change.parameter), *target, where);
     entries_.push_back(
         {target, change.at_s, change.ramp_s, change.time_constant_s, 0.0, to, false, false});
   }

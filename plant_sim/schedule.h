@@ -12,8 +12,8 @@ namespace plant_sim {
 class Schedule {
  public:
   Schedule() = default;
-  /// The plant must outlive the schedule. Throws config::schema::ConfigError for an unknown
-  /// parameter, for a value outside its range, and for both or neither of value and factor.
+  /// The plant must outlive the schedule. Several changes of one parameter follow each other.
+  /// Throws config::schema::ConfigError for an unknown parameter and like target_of().
   Schedule(std::vector<Change> changes, Plant& plant);
 
   /// Advances the plant from t_s over duration_s with u_V held. A change takes effect at the first

@@ -1,6 +1,7 @@
 // Changes of a model in an ensemble: the same motion as the single plant's schedule makes.
 #include "plant_sim/ensemble_schedule.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -115,9 +116,49 @@ TEST(ModelChanges, AreReadPrintedAndRefusedWhereTheyMakeNoSense) {
                config::schema::ConfigError);
   EXPECT_THROW(parsed("[[change]]\nparameter = \"mas_kg\"\nat_s = 2.0\nvalue = 60.0\n"),
                config::schema::ConfigError);
+  const auto refused = [](const std::string& change) {
+    try {
+      (void)parsed("[[change]]\nat_s = 2.0\n" + change);
+    } catch (const config::schema::ConfigError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(refused("parameter = \"mass_kg\"\nvalue = -5.0\n"), HasSubstr("out of range"));
+  EXPECT_THAT(refused("parameter = \"mass_kg\"\nfactor = 1e12\n"), HasSubstr("out of range"));
+  EXPECT_THAT(refused("parameter = \"friction.coulomb_N\"\nfactor = 2.0\n"),
+              HasSubstr("has a factor, and the parameter is 0"));
+  EXPECT_THAT(
+      refused("parameter = \"mass_kg\"\nvalue = 60.0\nramp_s = 1.0\ntime_constant_s = 1.0\n"),
+      HasSubstr("both ramp_s and time_constant_s"));
+  EXPECT_THAT(refused("parameter = \"initial.y_m\"\nvalue = 0.1\n"), HasSubstr("no parameter"));
   // a rig that runs has no record to which the time belongs
   EXPECT_THROW((void)make_plant(model), config::schema::ConfigError);
   EXPECT_NO_THROW((void)make_plant(without_changes(model)));
+}
+
+TEST(ModelChanges, KnowAParameterByItsFurtherName) {
+  const std::string load =
+      "[[change]]\nparameter = \"added_load.mass_kg\"\nat_s = 2.0\nvalue = 20.0\n";
+  const ModelFile model = parsed(load);
+  EXPECT_EQ(model.changes.front().parameter, "coupled_slaves.mass_kg");
+  const auto ensemble = make_ensemble(model, model.step_s);
+  EXPECT_NO_THROW(EnsembleSchedule(model, *ensemble));
+  EXPECT_THROW(
+      parsed(load +
+             "[[change]]\nparameter = \"coupled_slaves.mass_kg\"\nat_s = 4.0\nvalue = 30.0\n"),
+      config::schema::ConfigError);
+}
+
+TEST(ModelChanges, AreOfEffectsThatThePlantCanHave) {
+  EXPECT_THROW(
+      (void)read_model(config::schema::Document::parse(
+          "schema_version = 1\nname = \"m\"\nplant = \"velocity_servo\"\n"
+          "[[change]]\nparameter = \"internal_leakage.conductance_m3ps_per_Pa\"\nat_s = 2.0\n"
+          "value = 1e-12\n",
+          "m.toml")),
+      config::schema::ConfigError);
 }
 
 }  // namespace

@@ -88,6 +88,7 @@ TEST(Schedule, RefusesWhatItCannotDo) {
   EXPECT_EQ(refused({"mass_kg", 1.0, 60.0, kNan, 0.0}), "");
   // twice nothing is nothing: the fault would not happen
   EXPECT_NE(refused({"friction.coulomb_N", 1.0, kNan, 2.0, 0.0}), "");
+  EXPECT_NE(refused({"mass_kg", 1.0, 60.0, kNan, 2.0, 3.0}), "");
 }
 
 }  // namespace
