@@ -150,7 +150,8 @@ void second_mass(const ModelFile& model, const Values& p, std::vector<DerivedQua
 
 }  // namespace
 
-std::vector<DerivedQuantity> derived_quantities(const ModelFile& model) {
+std::vector<DerivedQuantity> derived_quantities(const ModelFile& file) {
+  const ModelFile model = plant_sim::without_changes(file);
   std::vector<DerivedQuantity> out;
   const Values p(model);
   if (model.plant == "hydraulic_actuator") hydraulic(model, p, out);

@@ -43,8 +43,8 @@ struct Sheet {
 /// Throws config::schema::ConfigError like plant_sim::load_model.
 [[nodiscard]] Sheet sheet_of(const std::filesystem::path& file,
                              const std::vector<std::string>& assignments);
-/// Quantities derived from the values of the plant with the effects that it has.
-[[nodiscard]] std::vector<DerivedQuantity> derived_quantities(const plant_sim::ModelFile& model);
+/// Quantities derived from the values of the plant with the effects that it has, before any change.
+[[nodiscard]] std::vector<DerivedQuantity> derived_quantities(const plant_sim::ModelFile& file);
 
 [[nodiscard]] const char* to_string(SheetParameter::Source source);
 [[nodiscard]] std::string to_text(const Sheet& sheet);

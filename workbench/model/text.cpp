@@ -43,6 +43,38 @@ std::string lines(const std::vector<SheetParameter>& parameters, bool fits) {
   return text;
 }
 
+/// "to 40 kg at 10 s, over 2 s".
+std::string change_words(const plant_sim::Change& change) {
+  std::string text = std::isnan(change.value) ? fmt::format("times {:.6g}", change.factor)
+                                              : "to " + value_words(change.parameter, change.value);
+  text += fmt::format(" at {:.6g} s", change.at_s);
+  if (change.time_constant_s > 0.0) {
+    return text + ", time constant " + value_words("time_s", change.time_constant_s);
+  }
+  return change.ramp_s > 0.0 ? text + ", over " + value_words("time_s", change.ramp_s) : text;
+}
+
+std::string lines(const std::vector<plant_sim::Change>& changes) {
+  std::string text;
+  for (const plant_sim::Change& change : changes) {
+    text += fmt::format("  {:<40} {}\n", change.parameter, change_words(change));
+  }
+  return text;
+}
+
+ordered_json json_of(const std::vector<plant_sim::Change>& changes) {
+  ordered_json out = ordered_json::array();
+  for (const plant_sim::Change& change : changes) {
+    out.push_back({{"parameter", change.parameter},
+                   {"at_s", change.at_s},
+                   {"value", number_or_null(change.value)},
+                   {"factor", number_or_null(change.factor)},
+                   {"ramp_s", change.ramp_s},
+                   {"time_constant_s", change.time_constant_s}});
+  }
+  return out;
+}
+
 ordered_json json_of(const std::vector<SheetParameter>& parameters) {
   ordered_json out = ordered_json::array();
   for (const SheetParameter& p : parameters) {
@@ -73,6 +105,10 @@ std::string to_text(const Sheet& sheet) {
   text += "\n" + lines(sheet.initial, false);
   text += fmt::format("  {:<40} {}\n", "loop.kp_V_per_m",
                       value_words("kp_V_per_m", model.loop.kp_V_per_m));
+  if (!model.changes.empty()) {
+    text += "\nChanges within its record, after which the rest of this sheet does not hold:\n" +
+            lines(model.changes);
+  }
   text += "\nWhat follows, to hold beside the data sheets:\n";
   for (const DerivedQuantity& d : sheet.derived) {
     const std::string value = std::isnan(d.value) ? "never steady" : value_words(d.name, d.value);
@@ -93,6 +129,7 @@ std::string to_json(const Sheet& sheet) {
   out["effects"] = json_of(sheet.effects);
   out["initial"] = json_of(sheet.initial);
   out["kp_V_per_m"] = number_or_null(model.loop.kp_V_per_m);
+  out["changes"] = json_of(model.changes);
   out["derived"] = ordered_json::array();
   for (const DerivedQuantity& d : sheet.derived) {
     out["derived"].push_back({{"name", d.name},

@@ -100,6 +100,31 @@ TEST(Show, PrintsARotaryAxisInRadians) {
   EXPECT_THAT(printed_by(add_show, {model("force_driven_axis")}), HasSubstr("100 kg "));
 }
 
+TEST(Show, ListsChangesAndDerivesFromTheModelBeforeThem) {
+  const std::string axis =
+      "name = \"a\"\nplant = \"force_driven_axis\"\n[parameters]\nmass_kg = 30.0\n";
+  const std::string changes =
+      "[[change]]\nparameter = \"mass_kg\"\nvalue = 60.0\nat_s = 2.0\n"
+      "[[change]]\nparameter = \"damping_N_s_per_m\"\nfactor = 1.5\nat_s = 4.0\nramp_s = 3.0\n";
+  const auto sheet = shown({written(axis + changes)});
+  ASSERT_EQ(sheet["changes"].size(), 2U);
+  EXPECT_EQ(sheet["changes"][0]["value"], 60.0);
+  EXPECT_TRUE(sheet["changes"][1]["value"].is_null());
+  EXPECT_EQ(sheet["changes"][1]["ramp_s"], 3.0);
+  const std::string text = printed_by(add_show, {written(axis + changes)});
+  EXPECT_THAT(text, HasSubstr("to 60 kg at 2 s"));
+  EXPECT_THAT(text, HasSubstr("times 1.5 at 4 s, over 3 s"));
+  for (const char* plant : {"thesis", "velocity_servo", "force_driven_axis"}) {
+    std::ifstream in(model(plant));
+    std::string before{std::istreambuf_iterator<char>(in), {}};
+    const std::string file = testing::TempDir() + "spoolwatch_show_change.toml";
+    const std::string name = plant == std::string("velocity_servo") ? "gain_mps_per_V" : "mass_kg";
+    std::ofstream(file) << before << "\n[[change]]\nparameter = \"" << name
+                        << "\"\nfactor = 2.0\nat_s = 1.0\n";
+    EXPECT_EQ(shown({file})["derived"], shown({model(plant)})["derived"]) << plant;
+  }
+}
+
 TEST(Show, RefusesARotaryCylinderAndAMissingFile) {
   EXPECT_THROW(printed_by(add_show, {written("name = \"a\"\nplant = \"hydraulic_actuator\"\n"
                                              "motion = \"rotary\"\n")}),
