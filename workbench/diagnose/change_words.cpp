@@ -25,13 +25,21 @@ std::string change_words(const selection::ParameterChange& change) {
   return text + fmt::format(" with a time constant of {:.1f} s", change.duration_s);
 }
 
+namespace {
+
+std::string beside_changes(const selection::Diagnosis& d) {
+  using config::schema::listed;
+  if (d.missing.empty()) return "no effect of the library explains the record, but ";
+  const std::vector<std::string> established = d.established();
+  if (established.empty()) return listed(d.missing) + " may be missing, and ";
+  return listed(established) + (established.size() > 1 ? " are" : " is") + " missing, and ";
+}
+
+}  // namespace
+
 std::string changing_words(const selection::Diagnosis& d) {
-  std::string text =
-      "Changing: " +
-      (d.missing.empty() ? "no effect of the library explains the record, but "
-                         : config::schema::listed(d.missing) +
-                               (d.missing.size() > 1 ? " are" : " is") + " missing, and ") +
-      config::schema::joined_by(d.changing, change_words, "; and ") + ".";
+  std::string text = "Changing: " + beside_changes(d) +
+                     config::schema::joined_by(d.changing, change_words, "; and ") + ".";
   for (const selection::ParameterChange& change : d.changing) {
     if (change.rivals.empty()) continue;
     text += " A change of " + config::schema::listed(change.rivals, "or") + " in place of " +

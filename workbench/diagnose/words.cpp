@@ -39,10 +39,10 @@ std::string groups_words(const selection::Diagnosis& d) {
   return config::schema::joined_by(d.ambiguous, text, "; ");
 }
 
-/// The found effects that no rival disputes.
+/// The established effects that no rival disputes.
 std::vector<std::string> undisputed(const selection::Diagnosis& d) {
   std::vector<std::string> names;
-  for (const std::string& effect : d.missing) {
+  for (const std::string& effect : d.established()) {
     const bool disputed =
         std::any_of(d.ambiguous.begin(), d.ambiguous.end(), [&](const auto& group) {
           return std::find(group.begin(), group.end(), effect) != group.end();

@@ -48,6 +48,23 @@ TEST(Words, RivalsAreNamedWithWhatIsSureInAnyCase) {
   EXPECT_THAT(remarks(outcome), Contains("Move faster."));
 }
 
+TEST(Words, WhatIsNotEstablishedIsNotMissingInAnyCase) {
+  ExampleReport outcome;
+  selection::Diagnosis& d = outcome.diagnosis;
+  d.verdict = selection::Verdict::undetermined;
+  d.missing = {"friction", "flow_asymmetry"};
+  d.ambiguous = {{"flow_asymmetry", "load_force"}};
+  d.possible = {{"friction", selection::Doubt::within_error}};
+  EXPECT_THAT(verdict_words(d), testing::Not(HasSubstr("in any case")));
+  d.verdict = selection::Verdict::changing;
+  d.changing.resize(1);
+  d.changing.front().parameter = "mass_kg";
+  EXPECT_THAT(verdict_words(d), HasSubstr("Changing: flow_asymmetry is missing, and mass_kg"));
+  d.possible.push_back({"flow_asymmetry", selection::Doubt::at_bound});
+  EXPECT_THAT(verdict_words(d),
+              HasSubstr("Changing: friction and flow_asymmetry may be missing, and mass_kg"));
+}
+
 TEST(Words, UnexplainedErrorSaysWhereItEnters) {
   ExampleReport outcome;
   selection::Diagnosis& d = outcome.diagnosis;
