@@ -52,8 +52,9 @@ struct SpoolDynamics {
 };
 
 /// `Design` names the parameters (Parameters) and says what they mean:
-///   bool kEqualSides              both sides have the same area, volume and orifice, on a level
-///   axis in_side(p), out_side(p)       CylinderSide<S> spool(p, step_s) SpoolDynamics<S>
+///   bool kEqualSides              same area, volume and orifice on both sides, on a level axis
+///   in_side(p), out_side(p)       CylinderSide<S>
+///   spool(p, step_s)              SpoolDynamics<S>
 ///   const char* kGainParameter    the parameter that stands for the valve's size
 ///   weight_N(p, mass_kg)          force against extension, unless kEqualSides
 /// Parameters have mass_kg, damping_N_s_per_m, bulk_modulus_Pa, stroke_m, supply_pressure_Pa and

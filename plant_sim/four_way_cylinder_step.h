@@ -94,7 +94,7 @@ void FourWayCylinder<S, Design>::prepare(double step_s) {
   derived_.conductance_m3ps_per_Pa = effects.conductance_m3ps_per_Pa();
 }
 
-/// The reduce_max opening that the step can come to.
+/// Largest opening that the step can come to.
 template <class S, class Design>
 S FourWayCylinder<S, Design>::reach_m(const S& u_V) const {
   const S spool_m = max(abs(state.spool_m), derived_.valve_gain_m_per_V * abs(u_V)) +
@@ -128,7 +128,7 @@ auto FourWayCylinder<S, Design>::ordinary(const S& u_V) const {
   const S small_m3 = min(in_m3, out_m3);
   const S low_Pa = min(x.in_Pa, x.out_Pa);
   const S high_Pa = max(x.in_Pa, x.out_Pa);
-  // the smallest drop over any open or shut orifice, and the reduce_max opening within the step
+  // the smallest drop over any open or shut orifice, and the largest opening within the step
   const S drop_Pa =
       min(min(abs(p.supply_pressure_Pa - x.in_Pa), abs(p.supply_pressure_Pa - x.out_Pa)),
           low_Pa - p.return_pressure_Pa);

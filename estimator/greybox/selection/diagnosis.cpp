@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "estimator/greybox/representative_segments.h"
 #include "estimator/greybox/selection/command_lead.h"
@@ -21,17 +22,40 @@ constexpr double kFarFromFloor = 10.0;
 /// Periods of a disturbance's corner in the record, below which it may be a drift.
 constexpr double kPeriodsOfDrift = 4.0;
 
+/// The search without its effects, where these leave a simulation no better on held-out data: what
+/// the likelihood gains by them is a matter of the noise, not of the motion.
+void drop_worthless(const SearchContext& search, InnovationSearch& innovations) {
+  if (innovations.final.model.added.empty() || search.cancelled()) return;
+  const double with_m = simulated(search, innovations.final.model.fitted).validation_rms_m;
+  const auto added_first = std::find_if(
+      innovations.rounds.begin(), innovations.rounds.end(), [&](const InnovationRound& round) {
+        return !round.candidates.empty() &&
+               round.candidates.front().effect == innovations.final.model.added.front();
+      });
+  const FitSummary& without = added_first == innovations.rounds.end()
+                                  ? innovations.before.model.fitted
+                                  : added_first->before.fitted;
+  const double without_m = simulated(search, without).validation_rms_m;
+  if (with_m < without_m) return;
+  InnovationSearch plain;
+  plain.before = innovations.before;
+  plain.final = std::move(innovations.before);
+  weigh_remainder(search, plain);
+  innovations = std::move(plain);
+}
+
 /// The search by innovations, and that by simulations where the former leaves physics unexplained.
 void weigh_innovations(const SearchContext& context, const SearchContext& search, SearchStart start,
                        Diagnosis& result) {
   const ModelStage first = start.first;
-  const InnovationSearch innovations = search_innovations(search, first, start.branch);
+  InnovationSearch innovations = search_innovations(search, first, start.branch);
   result.search = abandon_search(search, start);
   if (innovations.final.linear.empty()) {  // no likelihood
     result.search = complete_search(search, std::move(start));
     conclude(context, search, result);
     return;
   }
+  drop_worthless(search, innovations);
   const auto take_innovations = [&] {
     if (!innovations.physics_missing()) {
       refuse(start.branch.stage, Refusal::unlikely, start.first, result.search);
