@@ -60,8 +60,24 @@ double asked(const Question& q) {
   }
 }
 
+/// Throws where a file would be lost, or the name is no plain text.
+void check_output(const std::string& file, const std::string& name) {
+  std::error_code ignored;
+  if (std::filesystem::exists(file, ignored)) {
+    throw config::schema::UsageError("--output " + file + ": exists; allowed: a new file");
+  }
+  const auto is_plain = [](unsigned char c) { return c >= ' ' && c != '"' && c != '\\'; };
+  if (!std::all_of(name.begin(), name.end(), is_plain)) {
+    throw config::schema::UsageError(
+        "--name: has a quote, a backslash or a control character; allowed: other text");
+  }
+}
+
 void make(const NewOptions& options, const std::string& command) {
   const Kind& kind = model::find_kind(options.kind);
+  const std::string name =
+      options.name.empty() ? std::filesystem::path(options.output).stem().string() : options.name;
+  check_output(options.output, name);
   Answers answers = options.given;
   if (options.ask || isatty(STDIN_FILENO) == 1) {
     for (const Question& q : kind.questions) {
@@ -73,8 +89,6 @@ void make(const NewOptions& options, const std::string& command) {
   for (const auto& [flag, value] : answers) {
     if (options.given.count(flag) == 0) made += " --" + flag + " " + fmt::format("{:g}", value);
   }
-  const std::string name =
-      options.name.empty() ? std::filesystem::path(options.output).stem().string() : options.name;
   const std::string text = model_text(kind, answers, name, made);
   const plant_sim::ModelFile read =
       plant_sim::read_model(config::schema::Document::parse(text, options.output));

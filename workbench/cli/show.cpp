@@ -7,7 +7,6 @@
 #include "workbench/cli/common_options.h"
 #include "workbench/model/sheet.h"
 #include "workbench/present/json.h"
-#include "workbench/present/printed_model.h"
 
 namespace workbench::cli {
 
@@ -22,7 +21,6 @@ void add_show(CLI::App& command, int&) {
   add_json(command, options->json);
   command.callback([options] {
     const model::Sheet sheet = model::sheet_of(options->model, options->assignments);
-    present::print_as(sheet.model);
     if (!present::write_json(to_json(sheet), options->json)) std::cout << to_text(sheet);
   });
 }

@@ -235,7 +235,8 @@ std::vector<std::string> remarks(const DiagnosisReport& outcome) {
   if (!named) out.push_back("Used in the better model: " + effects_words(d, d.missing) + ".");
   if (d.verdict != selection::Verdict::changing) {
     for (const selection::ParameterChange& change : d.changing) {
-      out.push_back(change_words(change) + ": something changed on the rig, or in its readings, then.");
+      out.push_back(change_words(change) +
+                    ": something changed on the rig, or in its readings, then.");
     }
   }
   add_strained_words(d, out);

@@ -118,7 +118,7 @@ void servo(const ModelFile& model, const Values& p, std::vector<DerivedQuantity>
 
 void axis(const ModelFile& model, const Values& p, std::vector<DerivedQuantity>& out) {
   const double full_N = kFullCommand_V * p("gain_N_per_V");
-  out.push_back({"full_force_N", "force at +10 V", full_N});
+  out.push_back({"full_force_N", model.rotary() ? "torque at +10 V" : "force at +10 V", full_N});
   out.push_back({"full_acceleration_m_per_s2",
                  "acceleration at +10 V from standstill, without effects", full_N / p("mass_kg")});
   speeds(model, out);

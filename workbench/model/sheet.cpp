@@ -7,6 +7,7 @@
 #include "estimator/greybox/free_parameter.h"
 #include "estimator/greybox/held_scale.h"
 #include "plant_sim/library.h"
+#include "workbench/present/printed_model.h"
 
 namespace workbench::model {
 namespace {
@@ -93,6 +94,7 @@ Sheet sheet_of(const std::filesystem::path& file, const std::vector<std::string>
   sheet.derived = derived_quantities(sheet.model);
   std::vector<std::string> names;
   for (const FreeParameter& p : free) names.push_back(p.name);
+  present::print_as(sheet.model);
   sheet.held_scale = estimator::greybox::held_scale_words(sheet.model, names);
   return sheet;
 }

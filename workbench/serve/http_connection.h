@@ -258,8 +258,8 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     finish(message, response);
   }
 
-  template <class Message>
-  void finish(const std::shared_ptr<Message>& message, const HttpResponse& response) {
+  template <class Body>
+  void finish(const std::shared_ptr<http::response<Body>>& message, const HttpResponse& response) {
     message->version(11);
     message->result(static_cast<unsigned>(response.status));
     message->set(http::field::content_type, response.type);
@@ -267,10 +267,18 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     for (const auto& [name, value] : response.fields) message->set(name, value);
     message->keep_alive(keep_alive_);
     message->prepare_payload();
+    write_pieces(message, std::make_shared<http::response_serializer<Body>>(*message));
+  }
+
+  /// A client may take as long as it likes as long as it takes something.
+  template <class Body>
+  void write_pieces(const std::shared_ptr<http::response<Body>>& message,
+                    const std::shared_ptr<http::response_serializer<Body>>& rest) {
     stream_.expires_after(network_->limits.stall_time);
     auto self = shared_from_this();
-    http::async_write(stream_, *message, [self, message](error_code error, std::size_t) {
+    http::async_write_some(stream_, *rest, [self, message, rest](error_code error, std::size_t) {
       if (error) return self->close();
+      if (!rest->is_done()) return self->write_pieces(message, rest);
       if (!self->keep_alive_) return self->drain();
       self->read_head();
     });

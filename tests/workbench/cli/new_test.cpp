@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "config/schema/error.h"
 #include "plant_sim/model_file.h"
@@ -21,6 +22,7 @@ const std::vector<std::string> kCylinder{
 
 plant_sim::ModelFile made(const std::string& kind, const std::vector<std::string>& flags) {
   const std::string file = testing::TempDir() + "spoolwatch_new_" + kind + ".toml";
+  std::filesystem::remove(file);
   std::vector<std::string> arguments{kind, "-o", file};
   arguments.insert(arguments.end(), flags.begin(), flags.end());
   printed_by(add_new, arguments);
@@ -102,6 +104,22 @@ TEST(New, RefusesInOneLineWithTheNearName) {
   thick.insert(thick.end(), kCylinder.begin(), kCylinder.end());
   thick[6] = "60";
   EXPECT_THAT(refused(thick), HasSubstr("no rod for a bore of 50"));
+}
+
+TEST(New, KeepsAFileThatExists) {
+  (void)made("rotary-servo", {"--full-speed-rpm", "30"});
+  const std::string file = testing::TempDir() + "spoolwatch_new_rotary-servo.toml";
+  EXPECT_THAT(refused({"rotary-servo", "-o", file, "--full-speed-rpm", "40"}),
+              HasSubstr("exists; allowed: a new file"));
+  EXPECT_NEAR(*plant_sim::load_model(file).value("gain_mps_per_V"), M_PI / 10.0, 1e-3);
+}
+
+TEST(New, RefusesANameThatIsNoPlainText) {
+  for (const char* name : {"a\"b", "a\\b", "a\nb"}) {
+    EXPECT_THAT(refused({"rotary-servo", "-o", testing::TempDir() + "spoolwatch_no.toml", "--name",
+                         name, "--full-speed-rpm", "40"}),
+                HasSubstr("--name: has a quote"));
+  }
 }
 
 TEST(New, EveryKindMakesAModelThatReadsBack) {

@@ -96,6 +96,8 @@ TEST(Show, PrintsARotaryAxisInRadians) {
   EXPECT_THAT(text, HasSubstr("0.006 kg m2"));
   EXPECT_THAT(text, HasSubstr("0.5 N m/V"));
   EXPECT_THAT(text, HasSubstr("N m s/rad"));
+  EXPECT_THAT(text, HasSubstr("is held at 0.5 N m/V"));
+  EXPECT_THAT(text, HasSubstr("torque at +10 V"));
   EXPECT_THAT(text, testing::Not(HasSubstr("mm/s")));
   EXPECT_THAT(printed_by(add_show, {model("force_driven_axis")}), HasSubstr("100 kg "));
 }

@@ -178,11 +178,41 @@ class Plain final : public HttpHandler {
     HttpResponse response;
     response.body = "here";
     response.topics = request.head.path == "/events" ? 1 : 0;
+    if (request.head.path == "/file") response.file = file;
     reply(std::move(response));
   }
   void on_streams(unsigned topics_in_use) override { topics = topics_in_use; }
   std::atomic<unsigned> topics{0};
+  std::filesystem::path file;
 };
+
+TEST(HttpFiles, AClientThatReadsSlowlyGetsAllOfIt) {
+  constexpr std::size_t kBytes = 64U << 20U;
+  Plain plain;
+  plain.file =
+      std::filesystem::temp_directory_path() / ("spoolwatch_slow_" + std::to_string(getpid()));
+  std::ofstream(plain.file).close();
+  std::filesystem::resize_file(plain.file, kBytes);
+  HttpLimits limits;
+  limits.stall_time = milliseconds(300);
+  const ListenSocket listening = listen_on_port(0);
+  HttpServer server(listening.file, plain, limits);
+  std::thread thread([&] { server.run(); });
+  const Client slow(listening.port, 64 * 1024);
+  ASSERT_TRUE(slow.send("GET /file HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n"));
+  std::size_t taken = 0;
+  const auto begin = Clock::now();
+  // in a second: several times as long as a stall may be
+  while (taken < kBytes && Clock::now() - begin < std::chrono::seconds(5)) {
+    taken += slow.receive(milliseconds(5)).size();
+    std::this_thread::sleep_until(begin + milliseconds(1000 * taken / kBytes));
+  }
+  EXPECT_GE(taken, kBytes);
+  EXPECT_GT(Clock::now() - begin, 2 * limits.stall_time);
+  server.stop();
+  thread.join();
+  std::filesystem::remove(plain.file);
+}
 
 TEST(HttpStreams, AClientThatDoesNotReadLosesTheOldestAndGrowsNothing) {
   Plain plain;
