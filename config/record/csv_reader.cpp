@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -63,6 +64,24 @@ std::size_t separator_line(std::string_view text) {
   return end != std::string_view::npos && end <= 10 ? end + 1 : 0;
 }
 
+/// Counts the times of all columns of date and time from the earliest that begins.
+void begin_clocks_together(const TextForm& form, std::vector<std::vector<double>>& columns) {
+  const auto for_clocks = [&](const auto& work) {
+    for (std::size_t i = 0; i < form.kinds.size(); ++i) {
+      if (form.kinds[i] == FieldKind::clock) work(columns[i]);
+    }
+  };
+  double begin_s = std::numeric_limits<double>::infinity();
+  for_clocks([&](const std::vector<double>& times) {
+    const auto first = std::find_if(times.begin(), times.end(),
+                                    [](double time_s) { return std::isfinite(time_s); });
+    if (first != times.end()) begin_s = std::min(begin_s, *first);
+  });
+  for_clocks([&](std::vector<double>& times) {
+    for (double& time_s : times) time_s -= begin_s;
+  });
+}
+
 }  // namespace
 
 Record read_csv(TextWindow& window, const std::string& name, const ReadOptions& options) {
@@ -92,12 +111,7 @@ Record read_csv(TextWindow& window, const std::string& name, const ReadOptions& 
   values.values = rows.read();
   values.place = [&](std::size_t row) { return name + ":" + std::to_string(rows.line_of(row)); };
   values.header = [&](std::size_t column) { return rows.column_name(column); };
-  for (std::size_t i = 0; i < form.kinds.size(); ++i) {
-    std::vector<double>& times = values.values[i];
-    if (form.kinds[i] != FieldKind::clock || times.empty()) continue;
-    const double begin_s = times.front();
-    for (double& time_s : times) time_s -= begin_s;
-  }
+  begin_clocks_together(form, values.values);
   Record record = assemble(layout, std::move(values), options);
   record.form = words_of(form);
   std::string words;

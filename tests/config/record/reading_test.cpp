@@ -2,6 +2,7 @@
 // programs' styles are in tests/records/styles.
 #include "config/record/reading.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -108,6 +109,22 @@ TEST(Mapping, ScalesTurnsAndShifts) {
   EXPECT_THAT(record.y_m, testing::Pointwise(testing::DoubleEq(), {4e-3, 9e-3, 14e-3}));
 }
 
+TEST(Mapping, LoggersOfOneClockThatBeginAtDifferentTimesStayAligned) {
+  // position and command are the seconds past noon
+  std::string text = "A;Pos;B;Cmd\n";
+  for (int k = 0; k < 40; ++k) {
+    const double a_s = 0.1 * k;
+    const double b_s = 0.1 * k + 0.7;
+    text += fmt::format("12:00:{:06.3f};{:.3f};12:00:{:06.3f};{:.3f}\n", a_s, a_s, b_s, b_s);
+  }
+  const Record record = read(text, "t=A,y=Pos[m],u=Cmd[V]@B", "10Hz");
+  ASSERT_GT(record.size(), 20U);
+  for (std::size_t k = 0; k < record.size(); ++k) {
+    if (std::isnan(record.u_V[k]) || record.t_s[k] < 0.75) continue;     // before the first command
+    EXPECT_NEAR(record.u_V[k], record.y_m[k], 0.1001) << record.t_s[k];  // the command is held
+  }
+}
+
 std::string error_of(const std::string& text, const std::string& map = "") {
   try {
     (void)read(text, map);
@@ -178,6 +195,7 @@ TEST(TimeGrid, IsNoneForTimesThatDriftOrAreLostInAPattern) {
 
 TEST(Outliers, AreSingleReadingsFarOffAndNoStepsOrNoise) {
   std::vector<double> values;
+  values.reserve(2000);
   std::mt19937 random(5);
   std::normal_distribution<double> noise(0.0, 1e-5);
   for (int k = 0; k < 2000; ++k) {
