@@ -51,7 +51,7 @@ double steady_speed_mps(ModelFile model, double u_V) {
   const std::unique_ptr<plant_sim::Plant> plant = plant_sim::make_plant(model);
   const double from_m = plant->position_m();
   double before_mps = std::nan("");
-  for (double t_s = 0.0; t_s < kLongest_s; t_s += kWindow_s) {
+  for (int window = 0; window * kWindow_s < kLongest_s; ++window) {
     double begin_m = plant->position_m();
     double gone_s = 0.0;
     double mean_mps = 0.0;

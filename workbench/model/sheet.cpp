@@ -14,7 +14,6 @@ namespace {
 
 using estimator::greybox::FreeParameter;
 using plant_sim::ModelFile;
-using plant_sim::NamedValue;
 using plant_sim::ParameterInfo;
 
 const FreeParameter* find(const std::vector<FreeParameter>& free, const std::string& name) {
@@ -93,6 +92,7 @@ Sheet sheet_of(const std::filesystem::path& file, const std::vector<std::string>
   list_effects(stated, free, sheet);
   sheet.derived = derived_quantities(sheet.model);
   std::vector<std::string> names;
+  names.reserve(free.size());
   for (const FreeParameter& p : free) names.push_back(p.name);
   present::print_as(sheet.model);
   sheet.held_scale = estimator::greybox::held_scale_words(sheet.model, names);
