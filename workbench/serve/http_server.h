@@ -92,8 +92,8 @@ class HttpServer {
   void run();
   /// May be called from any thread.
   void stop();
-  /// May be called from any thread. Sends an event ("event: NAME\ndata: ...\n\n") for every stream
-  /// of the topic.
+  /// May be called from any thread. Sends an event ("event: NAME\ndata: ...\n\n") to all streams
+  /// that follow the topic.
   void publish(unsigned topic, std::string event);
 
  private:

@@ -35,12 +35,17 @@ TEST(Words, NothingMissingIsSaidBesideTheNoiseFloor) {
                                          "error goes from 1.42 mm to 26.3 um."));
 }
 
-TEST(Words, RivalsAreNamedWithWhatIsSureInAnyCase) {
-  ExampleReport outcome;
-  selection::Diagnosis& d = outcome.diagnosis;
+/// Friction beside one of two rivals.
+void set_rivals(selection::Diagnosis& d) {
   d.verdict = selection::Verdict::undetermined;
   d.missing = {"friction", "flow_asymmetry"};
   d.ambiguous = {{"flow_asymmetry", "load_force"}};
+}
+
+TEST(Words, RivalsAreNamedWithWhatIsSureInAnyCase) {
+  ExampleReport outcome;
+  selection::Diagnosis& d = outcome.diagnosis;
+  set_rivals(d);
   outcome.advice = "Move faster.";
   const std::string words = verdict_words(d);
   EXPECT_THAT(words, HasSubstr("Undetermined: flow_asymmetry or load_force is missing"));
@@ -51,9 +56,7 @@ TEST(Words, RivalsAreNamedWithWhatIsSureInAnyCase) {
 TEST(Words, WhatIsNotEstablishedIsNotMissingInAnyCase) {
   ExampleReport outcome;
   selection::Diagnosis& d = outcome.diagnosis;
-  d.verdict = selection::Verdict::undetermined;
-  d.missing = {"friction", "flow_asymmetry"};
-  d.ambiguous = {{"flow_asymmetry", "load_force"}};
+  set_rivals(d);
   d.possible = {{"friction", selection::Doubt::within_error}};
   EXPECT_THAT(verdict_words(d), testing::Not(HasSubstr("in any case")));
   d.verdict = selection::Verdict::changing;

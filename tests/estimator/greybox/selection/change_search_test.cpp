@@ -91,13 +91,17 @@ TEST(Changes, AnOffsetThatStepsLeavesASecondChangeToBeFound) {
   EXPECT_NEAR(gain.to / gain.from, 1.05, 1e-3);
 }
 
-TEST(Changes, AKnownChangeIsNotSoughtAgain) {
+TEST(Changes, AParameterThatTheFileChangesGetsNoSecondChange) {
   SearchContext context =
       changing_servo([](double t_s) { return t_s < 12.0 ? 1.0 : 1.03; }, nothing);
+  // another record's change: erasing it would explain this record
   context.problem.model.changes.push_back(
-      {.parameter = "gain_mps_per_V", .at_s = 12.0, .factor = 1.03});
+      {.parameter = "gain_mps_per_V", .at_s = 5.0, .factor = 1.2});
   const std::optional<ChangeSearch> found = search_changes(context, first_stage(context));
-  EXPECT_FALSE(found.has_value());
+  if (!found) return;
+  for (const ParameterChange& change : found->changes) {
+    EXPECT_NE(change.parameter, "gain_mps_per_V");
+  }
 }
 
 TEST(Changes, ATimeSince1970IsDatedAsWell) {
