@@ -1,9 +1,10 @@
 // Kalman gains that turn a simulation into a one-step predictor whose residual is white where the
 // process is disturbed as its noise model says (disturbance/kalman_gains.h computes them).
 //
-//   e(k) = y(k) - yh(k),   r(k) = scale(k) e(k),   x(k) += K(k) e(k),   F(k+1) = decay (F(k) + K_F
+//   e(k) = y(k) - yl(k) - yh(k),   r(k) = scale(k) e(k),   x(k) += K(k) e(k),   F(k+1) = decay (F(k) + K_F
 //   e)
 //
+// yl  what spectral lines known so far move the reading by: the gains were computed without them
 // x  states of the plant, F  process disturbance (a force, or a speed where the plant has no
 // force). The gains are frozen: every candidate model is simulated with those of the model that it
 // extends.
@@ -22,6 +23,7 @@ struct InnovationGains {
   Eigen::VectorXd scale;            ///< sensor noise over the standard deviation of e
   /// samples x 2 columns per spectral line: orthonormal signatures that are projected out of r.
   Eigen::MatrixXd lines;
+  Eigen::VectorXd line_m;  ///< yl, samples; empty: none
 
   /// Samples [from, to).
   [[nodiscard]] InnovationGains part(Eigen::Index from, Eigen::Index to) const;

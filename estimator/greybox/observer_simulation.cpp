@@ -93,6 +93,9 @@ void ObserverSimulation::predict(const Eigen::MatrixXd& points, const Eigen::Mat
   for (std::size_t lane = 0; load && lane < Ensemble::kLanes; ++lane) {
     own_N[lane] = ensemble_->get(*load, lane);
   }
+  const auto line_m = [&](std::size_t lane, Eigen::Index k) {
+    return gains[lane]->line_m.size() > 0 ? gains[lane]->line_m[k] : 0.0;
+  };
   Ensemble::Values disturbance{};
   const bool load_changes = load && schedule_.changes(*load);
   std::size_t segment = 0;
@@ -108,7 +111,7 @@ void ObserverSimulation::predict(const Eigen::MatrixXd& points, const Eigen::Mat
           ensemble_->set(*load, lane, own_N[lane]);
         }
       }
-      ensemble_->start(record.y_m[row]);
+      ensemble_->start(record.y_m[row] - line_m(0, k));
       disturbance.fill(0.0);
       ++segment;
     }
@@ -116,7 +119,7 @@ void ObserverSimulation::predict(const Eigen::MatrixXd& points, const Eigen::Mat
     speed_mps_[row] = ensemble_->speed_mps()[0];
     Ensemble::Values error_m{};
     for (std::size_t lane = 0; lane < Ensemble::kLanes; ++lane) {
-      error_m[lane] = record.y_m[row] - reading_m[lane];
+      error_m[lane] = record.y_m[row] - line_m(lane, k) - reading_m[lane];
     }
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       residuals_m(k, static_cast<Eigen::Index>(lane)) =

@@ -86,6 +86,17 @@ MatrixXd line_responses(const Linearisation& model, const Dataset& record,
   return columns;
 }
 
+/// The lines' part of the readings of record r.
+VectorXd known_lines_m(const Linearisation& model, const Dataset& record, std::size_t r,
+                       const NoiseModel& noise) {
+  VectorXd sum_m;
+  for (std::size_t i = 0; i < noise.waves.size(); ++i) {
+    const VectorXd one_m = line_reading_m(model, record, noise.lines[i], noise.waves[i][r]);
+    sum_m = sum_m.size() > 0 ? VectorXd(sum_m + one_m) : one_m;
+  }
+  return sum_m;
+}
+
 /// Columns of very different sizes (m per Pa, per N) scaled alike before their rank is judged.
 MatrixXd basis_of(MatrixXd columns) {
   for (Index i = 0; i < columns.cols(); ++i) {
@@ -99,13 +110,16 @@ class Likelihood {
  public:
   Likelihood(const plant_sim::ModelFile& model, const FitDataset& data,
              const std::vector<FreeParameter>& parameters, const VectorXd& theta,
-             const Linearisations& models, const std::vector<SpectralLine>& lines, unsigned threads)
-      : data_(&data), theta_(&theta), models_(&models), lines_(&lines), threads_(threads) {
+             const Linearisations& models, const NoiseModel& noise, unsigned threads)
+      : data_(&data), theta_(&theta), models_(&models), lines_(&noise.lines), threads_(threads) {
     for (const Dataset& record : data.records) {
       Dataset& plain = records_.emplace_back(record);
       plain.innovations.reset();
     }
-    for (const Dataset& record : records_) runs_.emplace_back(model, record, parameters);
+    for (const Dataset& record : records_) {
+      line_m_.push_back(known_lines_m(models[runs_.size()], record, runs_.size(), noise));
+      runs_.emplace_back(model, record, parameters);
+    }
   }
 
   /// -2 log L of up to eight points.
@@ -123,7 +137,10 @@ class Likelihood {
       });
       std::vector<InnovationGains> each;
       each.reserve(gains.size());
-      for (KalmanGains& one : gains) each.push_back(std::move(one.gains));
+      for (KalmanGains& one : gains) {
+        each.push_back(std::move(one.gains));
+        each.back().line_m = line_m_[r];
+      }
       MatrixXd residuals_m;
       runs_[r].innovations(theta_->replicate(1, static_cast<Index>(points.size())), each,
                            residuals_m);
@@ -147,6 +164,7 @@ class Likelihood {
   unsigned threads_;
   std::vector<Dataset> records_;
   std::vector<ObserverSimulation> runs_;
+  std::vector<VectorXd> line_m_;  ///< per record
 };
 
 }  // namespace
@@ -169,6 +187,7 @@ InnovationData innovation_data(const FitDataset& data, const Linearisations& mod
     KalmanGains gains = kalman_gains(models[r], record, noise.noise, data.noise_floor_m);
     if (!noise.lines.empty()) {
       gains.gains.lines = basis_of(line_responses(models[r], record, gains.gains, noise.lines));
+      gains.gains.line_m = known_lines_m(models[r], record, r, noise);
     }
     result.log_determinant += gains.log_determinant;
     record.innovations = std::make_shared<const InnovationGains>(std::move(gains.gains));
@@ -178,11 +197,31 @@ InnovationData innovation_data(const FitDataset& data, const Linearisations& mod
   return result;
 }
 
+void update_waves(const plant_sim::ModelFile& model, const FitDataset& data,
+                  const std::vector<FreeParameter>& parameters, const VectorXd& theta,
+                  const Linearisations& models, NoiseModel& noise) {
+  if (noise.lines.empty()) return;
+  noise.waves.resize(noise.lines.size(), std::vector<Eigen::Vector2d>(data.records.size(),
+                                                                      Eigen::Vector2d::Zero()));
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    Dataset record = data.records[r];
+    InnovationGains gains = *record.innovations;
+    gains.lines.resize(0, 0);
+    record.innovations = std::make_shared<const InnovationGains>(gains);
+    ObserverSimulation run(model, record, parameters);
+    MatrixXd innovations;
+    run.residuals(theta, innovations);
+    const std::vector<Eigen::Vector2d> more =
+        fit_waves(models[r], record, gains, noise.lines, innovations.col(0));
+    for (std::size_t i = 0; i < more.size(); ++i) noise.waves[i][r] += more[i];
+  }
+}
+
 NoiseEstimate estimate_noise(const plant_sim::ModelFile& model, const FitDataset& data,
                              const std::vector<FreeParameter>& parameters, const VectorXd& theta,
                              const Linearisations& models, const NoiseModel& start,
                              unsigned threads) {
-  Likelihood likelihood(model, data, parameters, theta, models, start.lines, threads);
+  Likelihood likelihood(model, data, parameters, theta, models, start, threads);
   const double floor_m = data.noise_floor_m;
   const double observer = kObserver_per_s * data.sample_time_s;
   // a disturbance that moves the rod by the sensor's noise within a second, and what moves it by
@@ -229,7 +268,7 @@ NoiseEstimate estimate_noise(const plant_sim::ModelFile& model, const FitDataset
       step *= 0.5;
     }
   }
-  return {{noise_of(best), start.lines}, best_cost};
+  return {{noise_of(best), start.lines, start.waves}, best_cost};
 }
 
 }  // namespace estimator::greybox::disturbance

@@ -21,6 +21,8 @@ namespace estimator::greybox::disturbance {
 struct NoiseModel {
   NoiseParameters noise;
   std::vector<SpectralLine> lines;
+  /// Amplitudes of sine and cosine found so far, per line and record; none yet for further lines.
+  std::vector<std::vector<Eigen::Vector2d>> waves;
 };
 
 /// One per record of a data set.
@@ -37,6 +39,12 @@ struct InnovationData {
 };
 [[nodiscard]] InnovationData innovation_data(const FitDataset& data, const Linearisations& models,
                                              const NoiseModel& noise);
+
+/// Adds to the waves of `noise`, from which the innovations of `data` come, what these still show of
+/// its lines.
+void update_waves(const plant_sim::ModelFile& model, const FitDataset& data,
+                  const std::vector<FreeParameter>& parameters, const Eigen::VectorXd& theta,
+                  const Linearisations& models, NoiseModel& noise);
 
 struct NoiseEstimate {
   NoiseModel noise;

@@ -113,15 +113,17 @@ const char* to_string(LineSite site) {
   return "sensor";
 }
 
-MatrixXd line_response(const Linearisation& model, const Dataset& record,
-                       const InnovationGains& gains, const SpectralLine& line) {
+namespace {
+
+/// Calls take(k, e) with the errors that a unit sine and a unit cosine cause; `gains` null: of a
+/// plant that nothing corrects.
+template <typename Take>
+void follow_line(const Linearisation& model, const Dataset& record, const InnovationGains* gains,
+                 const SpectralLine& line, Take take) {
   using Pair = Eigen::Matrix<double, kMostStates, 2>;
-  const auto samples = static_cast<Index>(record.size());
-  MatrixXd result(samples, 2);
   Pair z = Pair::Zero();
   std::size_t segment = 0;
-  for (Index k = 0; k < samples; ++k) {
-    const auto row = static_cast<std::size_t>(k);
+  for (std::size_t row = 0; row < record.size(); ++row) {
     if (segment < record.starts.size() && record.starts[segment] == row) {
       z.setZero();
       ++segment;
@@ -130,19 +132,42 @@ MatrixXd line_response(const Linearisation& model, const Dataset& record,
     const Eigen::RowVector2d w(std::sin(angle), std::cos(angle));
     Eigen::RowVector2d e = z.row(0);
     if (line.site == LineSite::sensor) e += w;
-    result.row(k) = record.valid[row] != 0 ? Eigen::RowVector2d(e * gains.scale[k])
-                                           : Eigen::RowVector2d(0.0, 0.0);
-    z -= gain_at(gains, k) * e;
-    z = (transition_at(model, gains, row) * z).eval();
+    const auto k = static_cast<Index>(row);
+    take(k, e);
+    if (gains != nullptr) {
+      z -= gain_at(*gains, k) * e;
+      z = (transition_at(model, *gains, row) * z).eval();
+    } else {
+      z = (model.transition[row] * z).eval();
+    }
     if (line.site != LineSite::sensor) z += input_of(model, line.site, row) * w;
   }
+}
+
+}  // namespace
+
+MatrixXd line_response(const Linearisation& model, const Dataset& record,
+                       const InnovationGains& gains, const SpectralLine& line) {
+  MatrixXd result(static_cast<Index>(record.size()), 2);
+  follow_line(model, record, &gains, line, [&](Index k, const Eigen::RowVector2d& e) {
+    const double counts = record.valid[static_cast<std::size_t>(k)] != 0 ? 1.0 : 0.0;
+    result.row(k) = counts * gains.scale[k] * e;
+  });
   return result;
 }
 
-std::vector<LineAmplitude> line_amplitudes(const Linearisation& model, const Dataset& record,
-                                           const InnovationGains& gains,
-                                           const std::vector<SpectralLine>& lines,
-                                           const VectorXd& innovations) {
+VectorXd line_reading_m(const Linearisation& model, const Dataset& record, const SpectralLine& line,
+                        const Eigen::Vector2d& wave) {
+  VectorXd result(static_cast<Index>(record.size()));
+  follow_line(model, record, nullptr, line,
+              [&](Index k, const Eigen::RowVector2d& e) { result[k] = e * wave; });
+  return result;
+}
+
+std::vector<Eigen::Vector2d> fit_waves(const Linearisation& model, const Dataset& record,
+                                       const InnovationGains& gains,
+                                       const std::vector<SpectralLine>& lines,
+                                       const VectorXd& innovations) {
   const auto samples = static_cast<Index>(record.size());
   const auto columns = 2 * static_cast<Index>(lines.size());
   MatrixXd responses(samples, columns);
@@ -156,22 +181,26 @@ std::vector<LineAmplitude> line_amplitudes(const Linearisation& model, const Dat
     responses.col(i) /= norms[i];
   }
   const VectorXd found = linear_algebra::shortest_least_squares(responses, innovations).x;
+  std::vector<Eigen::Vector2d> waves;
+  for (Index at = 0; at < columns; at += 2) {
+    waves.emplace_back(found[at] / norms[at], found[at + 1] / norms[at + 1]);
+  }
+  return waves;
+}
+
+LineAmplitude line_amplitude(const Linearisation& model, const Dataset& record,
+                             const SpectralLine& line, const Eigen::Vector2d& wave) {
+  const auto samples = static_cast<Index>(record.size());
   InnovationGains weak{
-      {"y_m"}, MatrixXd::Zero(2, samples), gains.decay, VectorXd::Ones(samples), {}};
+      {"y_m"}, MatrixXd::Zero(2, samples), 0.0, VectorXd::Ones(samples), {}, {}};
   for (Index k = 0; k < samples; ++k) {
     weak.gain(0, k) = record.observer_gain(static_cast<std::size_t>(k), kObserver_per_s);
   }
-  std::vector<LineAmplitude> amplitudes;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const auto at = 2 * static_cast<Index>(i);
-    const Eigen::Vector2d w(found[at] / norms[at], found[at + 1] / norms[at + 1]);
-    const VectorXd seen = line_response(model, record, weak, lines[i]) * w;
-    // the first half holds the transient of a line that sets in with the record
-    const Index settled = samples - samples / 2;
-    amplitudes.push_back(
-        {w.norm(), std::sqrt(seen.tail(settled).squaredNorm() / static_cast<double>(settled))});
-  }
-  return amplitudes;
+  const VectorXd seen = line_response(model, record, weak, line) * wave;
+  // the first half holds the transient of a line that sets in with the record
+  const Index settled = samples - samples / 2;
+  return {wave.norm(),
+          std::sqrt(seen.tail(settled).squaredNorm() / static_cast<double>(settled))};
 }
 
 std::vector<LineSite> sites_of(const Linearisation& model) {

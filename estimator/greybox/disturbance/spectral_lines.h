@@ -36,17 +36,24 @@ struct SpectralLine {
 [[nodiscard]] Eigen::MatrixXd line_response(const Linearisation& model, const Dataset& record,
                                             const InnovationGains& gains, const SpectralLine& line);
 
-/// Amplitudes of the lines in the units of their sites, fitted together to scaled innovations from
-/// which no line was projected out.
+/// Reading (samples, m) that a line moves a plant by which nothing corrects.
+[[nodiscard]] Eigen::VectorXd line_reading_m(const Linearisation& model, const Dataset& record,
+                                             const SpectralLine& line, const Eigen::Vector2d& wave);
+
+/// Amplitudes of sine and cosine of the lines in the units of their sites, fitted together to
+/// scaled innovations from which no line was projected out.
+[[nodiscard]] std::vector<Eigen::Vector2d> fit_waves(const Linearisation& model,
+                                                     const Dataset& record,
+                                                     const InnovationGains& gains,
+                                                     const std::vector<SpectralLine>& lines,
+                                                     const Eigen::VectorXd& innovations);
+
 struct LineAmplitude {
   double amplitude = 0.0;  ///< N (m/s), Pa or m
   double rms_m = 0.0;      ///< its part of the weak observer's residual
 };
-[[nodiscard]] std::vector<LineAmplitude> line_amplitudes(const Linearisation& model,
-                                                         const Dataset& record,
-                                                         const InnovationGains& gains,
-                                                         const std::vector<SpectralLine>& lines,
-                                                         const Eigen::VectorXd& innovations);
+[[nodiscard]] LineAmplitude line_amplitude(const Linearisation& model, const Dataset& record,
+                                           const SpectralLine& line, const Eigen::Vector2d& wave);
 
 /// The most promising lines of the innovations (samples, scaled), a few per site: the
 /// highest peaks of the periodogram over its local median and the highest in power.

@@ -23,16 +23,10 @@ RecordDisturbance disturbance_of(const InnovationStage& stage, std::size_t r) {
   RecordDisturbance result;
   const double all_m = disturbance::disturbed_rms_m(stage.linear[r], record, stage.noise.noise);
   result.random_m2 = std::max(0.0, all_m * all_m - std::pow(stage.noise.noise.sensor_m, 2));
-  if (stage.noise.lines.empty()) return result;
-  Dataset without = record;
-  InnovationGains gains = *record.innovations;
-  gains.lines.resize(0, 0);
-  without.innovations = std::make_shared<const InnovationGains>(gains);
-  ObserverSimulation run(stage.context.problem.model, without, stage.model.fitted.parameters);
-  Eigen::MatrixXd innovations;
-  run.residuals(stage.model.fitted.theta, innovations);
-  result.lines = disturbance::line_amplitudes(stage.linear[r], record, gains, stage.noise.lines,
-                                              innovations.col(0));
+  for (std::size_t i = 0; i < stage.noise.waves.size(); ++i) {
+    result.lines.push_back(disturbance::line_amplitude(
+        stage.linear[r], record, stage.noise.lines[i], stage.noise.waves[i][r]));
+  }
   return result;
 }
 

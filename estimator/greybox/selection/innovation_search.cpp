@@ -39,6 +39,7 @@ void reconsider_sites(const SearchContext& plain, InnovationStage& stage) {
       if (plain.cancelled() || site == stage.noise.lines[i].site) continue;
       disturbance::NoiseModel noise = stage.noise;
       noise.lines[i].site = site;
+      noise.waves.clear();
       InnovationStage other = settled(plain, stage.model, noise, 1, wide(plain.options.threads));
       if (other.minus_two_log < stage.minus_two_log - 2.0) stage = std::move(other);
     }

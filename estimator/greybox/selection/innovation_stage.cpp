@@ -52,6 +52,9 @@ void refit(const SearchContext& plain, InnovationStage& stage, bool from_file_to
   if (from_file_too) try_start(with_file_values(stage.context, stage.model), 0.0);
   for (const Eigen::VectorXd& start : revived_refinements(fitted)) try_start(start, kRevived);
   stage.model.fitted = std::move(fitted);
+  disturbance::update_waves(stage.context.problem.model, stage.context.problem.data,
+                            stage.model.fitted.parameters, stage.model.fitted.theta, stage.linear,
+                            stage.noise);
   stage.minus_two_log =
       squares(stage.model.fitted, floor_m) + data.log_determinant + prior_cost(stage.model.fitted);
 }

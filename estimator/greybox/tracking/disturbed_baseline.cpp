@@ -97,10 +97,10 @@ class Learning {
   [[nodiscard]] std::vector<double> line_values() const {
     std::vector<double> values;
     if (noise_.lines.empty()) return values;
-    for (const auto& line :
-         disturbance::line_amplitudes(models_.front(), data_.records.front(), without_lines(),
-                                      noise_.lines, plain_innovations())) {
-      values.push_back(line.amplitude);
+    for (const Eigen::Vector2d& wave :
+         disturbance::fit_waves(models_.front(), data_.records.front(), without_lines(),
+                                noise_.lines, plain_innovations())) {
+      values.push_back(wave.norm());
     }
     return values;
   }
@@ -195,8 +195,10 @@ class Learning {
     const auto best = std::max_element(gained.begin(), gained.end());
     if (best == gained.end() || !(*best > kLineGain_nats)) return std::nullopt;
     const SpectralLine line = lines[static_cast<std::size_t>(best - gained.begin())];
+    const Eigen::Vector2d wave =
+        disturbance::fit_waves(models_.front(), record, gains, {line}, e).front();
     const double own_m =
-        disturbance::line_amplitudes(models_.front(), record, gains, {line}, e).front().rms_m;
+        disturbance::line_amplitude(models_.front(), record, line, wave).rms_m;
     if (own_m < kLeastLine * data_.noise_floor_m) return std::nullopt;
     if (amplitude_at(motion_m(), line.frequency_Hz, record.sample_time_s) > kFollows * own_m) {
       return std::nullopt;

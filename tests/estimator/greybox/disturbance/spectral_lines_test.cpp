@@ -68,9 +68,26 @@ TEST(SpectralLines, AShakingSensorIsFoundWithFrequencyAndAmplitude) {
     return line.site == LineSite::sensor && std::abs(line.frequency_Hz - kFrequency_Hz) < 0.07;
   });
   EXPECT_TRUE(found);
-  const std::vector<LineAmplitude> amplitudes =
-      line_amplitudes(s.model, s.record, s.gains, {{LineSite::sensor, kFrequency_Hz}}, seen);
-  EXPECT_NEAR(amplitudes.front().amplitude, 3e-6, 0.02 * 3e-6);
+  const SpectralLine line{LineSite::sensor, kFrequency_Hz};
+  const Eigen::Vector2d wave = fit_waves(s.model, s.record, s.gains, {line}, seen).front();
+  EXPECT_NEAR(wave.norm(), 3e-6, 0.02 * 3e-6);
+  EXPECT_NEAR(line_amplitude(s.model, s.record, line, wave).rms_m, 3e-6 / std::sqrt(2.0),
+              0.05 * 3e-6);
+}
+
+// The predictor of a record whose line is known sees the record without it.
+TEST(SpectralLines, AKnownLineLeavesTheInnovationsOfAStillSensor) {
+  AxisFilter s;
+  for (std::size_t k = 0; k < s.record.size(); ++k) {
+    const double angle = 2.0 * std::numbers::pi * kFrequency_Hz * s.record.t_s[k];
+    s.record.y_m[k] += 3e-5 * std::sin(angle) + 4e-5 * std::cos(angle);
+  }
+  const Dataset still = axis_record(1600);
+  const Eigen::VectorXd before = innovations(still, s.gains);
+  EXPECT_GT((innovations(s.record, s.gains) - before).norm(), 1e-5);
+  s.gains.line_m = line_reading_m(s.model, s.record, {LineSite::sensor, kFrequency_Hz},
+                                  Eigen::Vector2d(3e-5, 4e-5));
+  EXPECT_LT((innovations(s.record, s.gains) - before).norm(), 1e-9);
 }
 
 }  // namespace
