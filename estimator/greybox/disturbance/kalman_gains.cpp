@@ -9,25 +9,29 @@
 namespace estimator::greybox::disturbance {
 namespace {
 
-/// Initial standard deviations of the pressures: where a segment begins at rest, and in motion.
+/// Initial standard deviations of the load pressure: where a segment begins at rest, and in motion.
+/// The chambers' mean is that of the simulation's start: the position hardly shows it, so that its
+/// gains, large and without end, would turn any drift of a model into a pressure.
 constexpr double kPressureAtRest_Pa = 1e5;
 constexpr double kPressureMoving_Pa = 1e6;
 
 StateMatrix start_covariance(const Linearisation& model, const Dataset& record, std::size_t k,
                              const NoiseParameters& noise) {
   const bool moving = k < record.initialising.size() && record.initialising[k] != kNotInitialising;
-  StateMatrix p = StateMatrix::Zero();
-  p(0, 0) = noise.sensor_m * noise.sensor_m;
   double fastest_mps = 0.0;
   for (const double v_mps : model.speed_mps) fastest_mps = std::max(fastest_mps, std::abs(v_mps));
+  const double pressure_Pa = moving ? kPressureMoving_Pa : kPressureAtRest_Pa;
+  StateMatrix p = StateMatrix::Zero();
+  p(0, 0) = noise.sensor_m * noise.sensor_m;
+  p(kDisturbance, kDisturbance) = noise.disturbance_sd * noise.disturbance_sd;
+  StateVector load_Pa = StateVector::Zero();
   for (std::size_t i = 1; i < model.states.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    const double sd = model.states[i] == "v_mps" ? (moving ? fastest_mps : 0.0)
-                      : moving                   ? kPressureMoving_Pa
-                                                 : kPressureAtRest_Pa;
-    p(row, row) = sd * sd;
+    if (model.states[i] == "v_mps" && moving) p(row, row) = fastest_mps * fastest_mps;
+    if (model.states[i] == "pressure_in_Pa") load_Pa[row] = pressure_Pa;
+    if (model.states[i] == "pressure_out_Pa") load_Pa[row] = -pressure_Pa;
   }
-  p(kDisturbance, kDisturbance) = noise.disturbance_sd * noise.disturbance_sd;
+  p += load_Pa * load_Pa.transpose();
   return p;
 }
 

@@ -201,8 +201,8 @@ void update_waves(const plant_sim::ModelFile& model, const FitDataset& data,
                   const std::vector<FreeParameter>& parameters, const VectorXd& theta,
                   const Linearisations& models, NoiseModel& noise) {
   if (noise.lines.empty()) return;
-  noise.waves.resize(noise.lines.size(), std::vector<Eigen::Vector2d>(data.records.size(),
-                                                                      Eigen::Vector2d::Zero()));
+  noise.waves.resize(noise.lines.size(),
+                     std::vector<Eigen::Vector2d>(data.records.size(), Eigen::Vector2d::Zero()));
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     Dataset record = data.records[r];
     InnovationGains gains = *record.innovations;

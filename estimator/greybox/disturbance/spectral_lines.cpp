@@ -191,16 +191,14 @@ std::vector<Eigen::Vector2d> fit_waves(const Linearisation& model, const Dataset
 LineAmplitude line_amplitude(const Linearisation& model, const Dataset& record,
                              const SpectralLine& line, const Eigen::Vector2d& wave) {
   const auto samples = static_cast<Index>(record.size());
-  InnovationGains weak{
-      {"y_m"}, MatrixXd::Zero(2, samples), 0.0, VectorXd::Ones(samples), {}, {}};
+  InnovationGains weak{{"y_m"}, MatrixXd::Zero(2, samples), 0.0, VectorXd::Ones(samples), {}, {}};
   for (Index k = 0; k < samples; ++k) {
     weak.gain(0, k) = record.observer_gain(static_cast<std::size_t>(k), kObserver_per_s);
   }
   const VectorXd seen = line_response(model, record, weak, line) * wave;
   // the first half holds the transient of a line that sets in with the record
   const Index settled = samples - samples / 2;
-  return {wave.norm(),
-          std::sqrt(seen.tail(settled).squaredNorm() / static_cast<double>(settled))};
+  return {wave.norm(), std::sqrt(seen.tail(settled).squaredNorm() / static_cast<double>(settled))};
 }
 
 std::vector<LineSite> sites_of(const Linearisation& model) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/greybox/selection/innovation_jacobian.h"
 #include "estimator/greybox/selection/parameter_subset.h"
 #include "estimator/greybox/selection/structure_search.h"
 
@@ -63,7 +64,11 @@ void take_parameters(const InnovationStage& stage, Diagnosis& result) {
   const FitDataset& data = stage.context.problem.data;
   result.final = stage.model.fitted;
   result.better = with_values(stage.context.problem.model, result.final);
-  report_parameters(std_errors(data, data.all_mask, result.final), result);
+  FitSummary own = result.final;
+  if (!stage.context.cancelled()) {
+    own.jacobian = innovation_jacobian(stage, stage.context.options.threads);
+  }
+  report_parameters(std_errors(data, data.all_mask, own), result);
 }
 
 }  // namespace estimator::greybox::selection

@@ -55,8 +55,8 @@ double amplitude_at(const VectorXd& series, double frequency_Hz, double sample_t
 bool follows_motion(const InnovationStage& stage, std::size_t record, const VectorXd& motion_m,
                     const VectorXd& innovations, const SpectralLine& line) {
   const Dataset& data = stage.context.problem.data.records[record];
-  const std::vector<Eigen::Vector2d> waves = disturbance::fit_waves(
-      stage.linear[record], data, *data.innovations, {line}, innovations);
+  const std::vector<Eigen::Vector2d> waves =
+      disturbance::fit_waves(stage.linear[record], data, *data.innovations, {line}, innovations);
   const double own_m =
       disturbance::line_amplitude(stage.linear[record], data, line, waves.front()).rms_m;
   return amplitude_at(motion_m, line.frequency_Hz, data.sample_time_s) > kFollows * own_m;

@@ -197,8 +197,7 @@ class Learning {
     const SpectralLine line = lines[static_cast<std::size_t>(best - gained.begin())];
     const Eigen::Vector2d wave =
         disturbance::fit_waves(models_.front(), record, gains, {line}, e).front();
-    const double own_m =
-        disturbance::line_amplitude(models_.front(), record, line, wave).rms_m;
+    const double own_m = disturbance::line_amplitude(models_.front(), record, line, wave).rms_m;
     if (own_m < kLeastLine * data_.noise_floor_m) return std::nullopt;
     if (amplitude_at(motion_m(), line.frequency_Hz, record.sample_time_s) > kFollows * own_m) {
       return std::nullopt;

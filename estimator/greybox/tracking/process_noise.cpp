@@ -183,9 +183,8 @@ DisturbanceLevel WindowNoise::level(const WindowData& data, const VectorXd& thet
   DisturbanceLevel level;
   level.random = noise.noise.disturbance_sd * std::exp(log_ratio);
   if (noise.lines.empty()) return level;
-  for (const Eigen::Vector2d& wave :
-       disturbance::fit_waves(model, window, gains[best], noise.lines,
-                              innovations.col(static_cast<Index>(best)))) {
+  for (const Eigen::Vector2d& wave : disturbance::fit_waves(
+           model, window, gains[best], noise.lines, innovations.col(static_cast<Index>(best)))) {
     level.line_values.push_back(wave.norm());
   }
   return level;
