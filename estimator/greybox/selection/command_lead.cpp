@@ -22,18 +22,39 @@ constexpr int kIterations = 10;
 constexpr int kFirstIterations = 2;
 constexpr double kTolerance = 1e-3;
 
+/// Weights of u(-1) ... u(2) in the mean over [x - 1/2, x + 1/2] of the cubic through them, which
+/// is its value at x and a 24th of its second derivative there; u(0) alone for x = 0.
+std::array<double, 4> mean_weights(double x) {
+  if (x == 0.0) return {0.0, 1.0, 0.0, 0.0};
+  return {-x * (x - 1.0) * (x - 2.0) / 6.0 + (1.0 - x) / 24.0,
+          (x + 1.0) * (x - 1.0) * (x - 2.0) / 2.0 + (3.0 * x - 2.0) / 24.0,
+          -(x + 1.0) * x * (x - 2.0) / 2.0 + (1.0 - 3.0 * x) / 24.0,
+          (x + 1.0) * x * (x - 1.0) / 6.0 + x / 24.0};
+}
+
 }  // namespace
 
 void advance_command(FitDataset& data, double lead_samples) {
+  using Index = std::ptrdiff_t;
   const double whole = std::floor(lead_samples);
   const double share = lead_samples - whole;
-  const auto ahead = static_cast<std::size_t>(whole);
+  const auto ahead = static_cast<Index>(whole);
+  const std::array<double, 4> weights = mean_weights(share);
+  data.command_is_interpolated = data.command_is_interpolated || share > 0.0;
   for (Dataset& record : data.records) {
     const std::vector<double> logged_V = record.u_V;
     for (const SampleRange& span : segments(record)) {
-      const auto at = [&](std::size_t k) { return logged_V[std::min(k, span.end - 1)]; };
-      for (std::size_t k = span.begin; k < span.end; ++k) {
-        record.u_V[k] = (1.0 - share) * at(k + ahead) + share * at(k + ahead + 1);
+      const auto first = static_cast<Index>(span.begin);
+      const auto last = static_cast<Index>(span.end) - 1;
+      const auto at = [&](Index k) {
+        return logged_V[static_cast<std::size_t>(std::clamp(k, first, last))];
+      };
+      for (Index k = first; k <= last; ++k) {
+        double& value_V = record.u_V[static_cast<std::size_t>(k)];
+        value_V = 0.0;
+        for (Index i = 0; i < 4; ++i) {
+          value_V += weights[static_cast<std::size_t>(i)] * at(k + ahead + i - 1);
+        }
       }
     }
   }

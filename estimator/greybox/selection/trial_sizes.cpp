@@ -30,7 +30,9 @@ constexpr double kTurnStep = 0.5;  ///< step between neighbouring wavelengths
 /// Resonances: from a few periods in the record to well below half the sample rate.
 constexpr double kLeastResonance_Hz = 1.0;
 constexpr double kFewestPeriods = 10.0;
-constexpr double kOfSampleRate = 0.4;
+constexpr double kOfSampleRate = 1.0 / 3.0;
+/// The same where the command is interpolated, which leaves a seventh of it out there.
+constexpr double kOfInterpolated = 0.2;
 /// Ratio of neighbouring frequencies: within the width of a resonance of the typical damping.
 constexpr double kResonanceRatio = 1.04;
 constexpr double kTriedDamping = 0.04;
@@ -174,7 +176,8 @@ std::vector<double> resonances_in(const FitDataset& data) {
   double most_Hz = 0.0;
   double longest_s = 0.0;
   for (const Dataset& record : data.records) {
-    most_Hz = std::max(most_Hz, kOfSampleRate / record.sample_time_s);
+    const double share = data.command_is_interpolated ? kOfInterpolated : kOfSampleRate;
+    most_Hz = std::max(most_Hz, share / record.sample_time_s);
     longest_s = std::max(longest_s, record.sample_time_s * static_cast<double>(record.size()));
   }
   std::vector<double> found;

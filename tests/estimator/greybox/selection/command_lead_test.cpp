@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <numeric>
+
 #include "estimator/greybox/selection/structure_search.h"
 #include "tests/estimator/greybox/selection/truth_records.h"
 
@@ -33,16 +36,47 @@ double lead_of(Dataset data) {
   return find_command_lead(context, first_stage(context)).samples;
 }
 
-TEST(CommandLead, InterpolatesWithinASegmentAndHoldsAtItsEnd) {
+FitDataset two_segments(const std::vector<double>& u_V) {
   FitDataset data;
   data.records.push_back(
-      estimator::greybox::dataset_of(0.01, {1.0, 3.0, 7.0, 10.0, 20.0}, {0.0, 0.0, 0.0, 0.0, 0.0}));
-  data.records.front().starts = {0, 3};
-  FitDataset two = data;
-  advance_command(data, 0.25);
-  EXPECT_THAT(data.records.front().u_V, ElementsAre(1.5, 4.0, 7.0, 12.5, 20.0));
-  advance_command(two, 1.5);
-  EXPECT_THAT(two.records.front().u_V, ElementsAre(5.0, 7.0, 7.0, 20.0, 20.0));
+      estimator::greybox::dataset_of(0.01, u_V, std::vector<double>(u_V.size(), 0.0)));
+  data.records.front().starts = {0, 8};
+  return data;
+}
+
+// The mean of t^3 over an interval is the difference of t^4 / 4 at its ends.
+TEST(CommandLead, TakesTheMeanOfACubicCommandExactly) {
+  std::vector<double> u_V(16);
+  for (std::size_t k = 0; k < u_V.size(); ++k) u_V[k] = std::pow(static_cast<double>(k) - 3.0, 3);
+  for (const double lead : {0.25, 0.45, 0.5, 1.5}) {
+    FitDataset data = two_segments(u_V);
+    advance_command(data, lead);
+    EXPECT_TRUE(data.command_is_interpolated);
+    for (const std::size_t k : {1U, 2U, 4U, 9U, 12U}) {
+      const double middle = static_cast<double>(k) - 3.0 + lead;
+      const double mean = (std::pow(middle + 0.5, 4) - std::pow(middle - 0.5, 4)) / 4.0;
+      EXPECT_NEAR(data.records.front().u_V[k], mean, 1e-9 * std::abs(mean)) << lead << ' ' << k;
+    }
+  }
+}
+
+TEST(CommandLead, ShiftsByWholeSamplesAndHoldsAtASegmentsEnd) {
+  std::vector<double> u_V(12);
+  std::iota(u_V.begin(), u_V.end(), 0.0);
+  FitDataset data = two_segments(u_V);
+  advance_command(data, 2.0);
+  EXPECT_FALSE(data.command_is_interpolated);
+  EXPECT_THAT(data.records.front().u_V, ElementsAre(2, 3, 4, 5, 6, 7, 7, 7, 10, 11, 11, 11));
+}
+
+TEST(CommandLead, ASegmentDoesNotSeeTheNext) {
+  std::vector<double> u_V(12, 5.0);
+  std::fill(u_V.begin(), u_V.begin() + 8, 1.0);
+  FitDataset data = two_segments(u_V);
+  advance_command(data, 0.45);
+  for (std::size_t k = 0; k < u_V.size(); ++k) {
+    EXPECT_NEAR(data.records.front().u_V[k], u_V[k], 1e-12) << k;
+  }
 }
 
 TEST(CommandLead, ALogOfEveryOtherSampleIsAQuarterOfASampleOff) {
