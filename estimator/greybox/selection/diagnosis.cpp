@@ -22,8 +22,9 @@ constexpr double kFarFromFloor = 10.0;
 /// Periods of a disturbance's corner in the record, below which it may be a drift.
 constexpr double kPeriodsOfDrift = 4.0;
 
-/// The search without its effects, where these leave a simulation no better on held-out data: what
-/// the likelihood gains by them is a matter of the noise, not of the motion.
+/// The search without its effects, where these leave a simulation worse on held-out data: what the
+/// likelihood gains by them is a matter of the noise, not of the motion. A disturbance that is most
+/// of either error decides between errors that are nearly the same.
 void drop_worthless(const SearchContext& search, InnovationSearch& innovations) {
   if (innovations.final.model.added.empty() || search.cancelled()) return;
   const double with_m = simulated(search, innovations.final.model.fitted).validation_rms_m;
@@ -36,7 +37,7 @@ void drop_worthless(const SearchContext& search, InnovationSearch& innovations) 
                                   ? innovations.before.model.fitted
                                   : added_first->before.fitted;
   const double without_m = simulated(search, without).validation_rms_m;
-  if (with_m < without_m) return;
+  if (with_m < (1.0 + kRivals) * without_m) return;
   InnovationSearch plain;
   plain.before = innovations.before;
   plain.final = std::move(innovations.before);
