@@ -163,7 +163,8 @@ std::string to_json(const DiagnosisReport& outcome) {
   json["floor"] = {
       {"sensor_m", number_or_null(d.noise_floor_m)},
       {"repeat_m", number_or_null(d.repetition ? d.repetition->scatter_m : std::nan(""))},
-      {"disturbed_m", number_or_null(d.disturbed_floor_m())}};
+      {"disturbed_m", number_or_null(d.disturbed_floor_m())},
+      {"step_m", number_or_null(d.step_error_m)}};
   json["steps"] = ordered_json::array();
   for (const selection::SelectionStep& step : d.steps) {
     ordered_json one;

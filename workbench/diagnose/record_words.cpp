@@ -15,6 +15,8 @@ namespace {
 
 /// A plant is reported when it leaves less than this share of the better model's error.
 constexpr double kBetterPlant = 0.7;
+/// Ratio of the integration step's error to the noise floor from which on it is reported.
+constexpr double kCoarseStep = 0.5;
 
 std::string command_lead_words(double lead_samples) {
   if (lead_samples >= 1.0) {
@@ -114,6 +116,13 @@ std::vector<std::string> notes(const DiagnosisReport& outcome) {
   if (d.floor_assumed && d.excitation.sufficient()) {
     out.emplace_back(std::string("noise cannot be told from motion at this rate: the floor is ") +
                      (d.by_innovations ? "estimated with the model" : "the rounding alone"));
+  }
+  if (d.step_error_m > kCoarseStep * d.noise_floor_m) {
+    out.push_back(fmt::format(
+        "a quarter of the integration step changes the simulation by {}, {:.2g} times the noise "
+        "floor: values may be off by more than their errors; run again with --set step_s={:.2g}",
+        config::units::length_words(d.step_error_m), d.step_error_m / d.noise_floor_m,
+        0.25 * d.better.step_s));
   }
   if (d.search.interrupted) out.emplace_back("interrupted: the best so far");
   return out;

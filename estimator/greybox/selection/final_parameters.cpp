@@ -5,13 +5,21 @@
 
 #include "estimator/greybox/selection/innovation_jacobian.h"
 #include "estimator/greybox/selection/parameter_subset.h"
+#include "estimator/greybox/selection/split_scatter.h"
+#include "estimator/greybox/selection/step_error.h"
 #include "estimator/greybox/selection/structure_search.h"
 
 namespace estimator::greybox::selection {
 namespace {
 
-/// `errors` are those of the search values.
-void report_parameters(const Eigen::VectorXd& errors, Diagnosis& result) {
+/// `errors` are those of the search values by the fit's own residual. The scatter between halves of
+/// the record and the error of the integration step are added.
+void report_parameters(const SearchContext& context, Eigen::VectorXd errors,
+                       const Eigen::VectorXd& weights, double observer_per_s, Diagnosis& result) {
+  const StepError step = step_error(context, result.final, weights, observer_per_s);
+  result.step_error_m = step.rms_m;
+  errors = errors.cwiseProduct(split_scatter(context, result.final, weights, observer_per_s));
+  errors = (errors.array().square() + step.shift.array().square()).sqrt().matrix();
   for (std::size_t i = 0; i < result.final.parameters.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const FreeParameter& p = result.final.parameters[i];
@@ -56,8 +64,10 @@ void fit_final_parameters(const SearchContext& context, Diagnosis& result) {
                                      : fit_free_run(context, all);
   drop_idle_refinements(result.final);
   result.better = with_values(context.problem.model, result.final);
-  report_parameters(
-      std_errors(context.problem.data, context.problem.data.final_weights(), result.final), result);
+  const Eigen::VectorXd& weights = context.problem.data.final_weights();
+  const double observer_per_s = explained ? kObserver_per_s : 0.0;
+  report_parameters(context, std_errors(context.problem.data, weights, result.final), weights,
+                    observer_per_s, result);
 }
 
 void take_parameters(const InnovationStage& stage, Diagnosis& result) {
@@ -68,7 +78,8 @@ void take_parameters(const InnovationStage& stage, Diagnosis& result) {
   if (!stage.context.cancelled()) {
     own.jacobian = innovation_jacobian(stage, stage.context.options.threads);
   }
-  report_parameters(std_errors(data, data.all_mask, own), result);
+  report_parameters(stage.context, std_errors(data, data.all_mask, own), data.all_mask,
+                    kObserver_per_s, result);
 }
 
 }  // namespace estimator::greybox::selection

@@ -1,0 +1,57 @@
+#include "estimator/greybox/selection/step_error.h"
+
+#include <cmath>
+
+#include "estimator/greybox/dataset_simulation.h"
+#include "estimator/linear_algebra/decompositions.h"
+
+namespace estimator::greybox::selection {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kFiner = 0.25;
+
+VectorXd residuals(const plant_sim::ModelFile& model, const FitDataset& data,
+                   const FitSummary& fitted, double observer_per_s) {
+  DatasetSimulation run(model, data, fitted.parameters, observer_per_s);
+  MatrixXd residual_m;
+  run.residuals(fitted.theta, residual_m);
+  return residual_m.col(0);
+}
+
+}  // namespace
+
+StepError step_error(const SearchContext& context, const FitSummary& fitted,
+                     const VectorXd& weights, double observer_per_s) {
+  StepError result;
+  const Index count = fitted.theta.size();
+  result.shift = VectorXd::Zero(count);
+  if (context.cancelled() || fitted.jacobian.cols() != count) return result;
+  const FitDataset& data = context.problem.data;
+  plant_sim::ModelFile finer = context.problem.model;
+  finer.step_s *= kFiner;
+  const VectorXd change_m = residuals(finer, data, fitted, observer_per_s) -
+                            residuals(context.problem.model, data, fitted, observer_per_s);
+  if (!change_m.allFinite()) return result;
+  result.rms_m = rms(change_m, weights);
+  // J shift = change, beside the priors
+  const Index samples = change_m.size();
+  MatrixXd left = MatrixXd::Zero(samples + count, count);
+  VectorXd right = VectorXd::Zero(samples + count);
+  const VectorXd root = weights.cwiseSqrt() / fitted.sigma_m;
+  right.head(samples) = root.cwiseProduct(change_m);
+  for (Index i = 0; i < count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (fitted.at_bound[at] != 0) continue;
+    left.col(i).head(samples) = root.cwiseProduct(fitted.jacobian.col(i));
+    const double prior_sd = fitted.parameters[at].prior_sd;
+    if (prior_sd > 0.0 && std::isfinite(prior_sd)) left(samples + i, i) = 1.0 / prior_sd;
+  }
+  result.shift = linear_algebra::shortest_least_squares(left, right).x;
+  return result;
+}
+
+}  // namespace estimator::greybox::selection

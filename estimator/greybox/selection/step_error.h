@@ -1,0 +1,21 @@
+// Error of the integration step: what a model's simulation changes by with a step of a quarter, and
+// how far that moves its parameters. Stick-slip and stiff contacts need shorter steps than the
+// hydraulics; the parameters then make up for the step, many standard errors off.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "estimator/greybox/selection/problem.h"
+
+namespace estimator::greybox::selection {
+
+struct StepError {
+  double rms_m = 0.0;     ///< of the residuals' change
+  Eigen::VectorXd shift;  ///< of each theta
+};
+
+/// `fitted` with its Jacobian, a fit to the samples of `weights`.
+[[nodiscard]] StepError step_error(const SearchContext& context, const FitSummary& fitted,
+                                   const Eigen::VectorXd& weights, double observer_per_s);
+
+}  // namespace estimator::greybox::selection
