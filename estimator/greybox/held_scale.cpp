@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "config/schema/joined.h"
 #include "config/units/quantity.h"
@@ -10,16 +11,32 @@
 namespace estimator::greybox {
 namespace {
 
+using Names = std::span<const std::string_view>;
+
+constexpr std::array<std::string_view, 1> kAxisScale{"gain_N_per_V"};
+constexpr std::array<std::string_view, 1> kActuatorScale{"area_m2"};
+constexpr std::array<std::string_view, 2> kCylinderScale{"cap_area_m2", "rod_side_area_m2"};
+// spool travel in metres stands for a flow on hydraulic_actuator; on hydraulic_cylinder the rated
+// flow does, at a travel of its own
+constexpr std::array<std::string_view, 5> kActuatorFlows{
+    "valve_gain_m_per_V", "dead_volume_m3", "conductance_m3ps_per_Pa", "limit_m3ps", "rate_mps"};
+constexpr std::array<std::string_view, 5> kCylinderFlows{"rated_flow_m3ps", "cap_dead_volume_m3",
+                                                         "rod_dead_volume_m3",
+                                                         "conductance_m3ps_per_Pa", "limit_m3ps"};
+constexpr std::array<std::string_view, 1> kInverse{"droop_Pa_per_m3ps"};
+
 struct ScaledPlant {
   std::string_view plant;
-  std::string_view scale;
-  std::array<std::string_view, 3> also;  ///< besides masses and forces
+  Names scale;  ///< held; all of them set the scale together
+  Names also;   ///< besides masses and forces
 };
-constexpr std::array kScaled = {
-    ScaledPlant{"force_driven_axis", "gain_N_per_V", {}},
-    ScaledPlant{"hydraulic_actuator",
-                "area_m2",
-                {"valve_gain_m_per_V", "dead_volume_m3", "conductance_m3ps_per_Pa"}}};
+constexpr std::array kScaled = {ScaledPlant{"force_driven_axis", kAxisScale, {}},
+                                ScaledPlant{"hydraulic_actuator", kActuatorScale, kActuatorFlows},
+                                ScaledPlant{"hydraulic_cylinder", kCylinderScale, kCylinderFlows}};
+
+bool has(Names names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
 
 /// True for a mass, a force, or a force per speed or way: "kg", "N", "N s/m".
 bool is_force(const std::string& name) {
@@ -34,16 +51,22 @@ std::string last_word(const std::string& name) { return name.substr(name.rfind('
 HeldScale held_scale(const plant_sim::ModelFile& model, const std::vector<std::string>& fitted) {
   const auto entry = std::find_if(kScaled.begin(), kScaled.end(),
                                   [&](const ScaledPlant& s) { return s.plant == model.plant; });
+  if (entry == kScaled.end()) return {};
   HeldScale held;
-  if (entry == kScaled.end()) return held;
-  for (const std::string& name : fitted) {
-    if (name == entry->scale) return {};
-    const bool also =
-        std::find(entry->also.begin(), entry->also.end(), last_word(name)) != entry->also.end();
-    if (also || is_force(name)) held.scaled.push_back(name);
+  std::vector<std::string> holding;
+  for (const std::string_view name : entry->scale) {
+    if (std::find(fitted.begin(), fitted.end(), name) == fitted.end()) holding.emplace_back(name);
   }
-  if (held.scaled.empty()) return {};
-  held.parameter = entry->scale;
+  for (const std::string& name : fitted) {
+    const std::string word = last_word(name);
+    if (has(entry->also, word) || has(entry->scale, name) || is_force(name)) {
+      held.scaled.push_back(name);
+    }
+    if (!entry->also.empty() && has(kInverse, word)) held.inverse.push_back(name);
+  }
+  if (holding.empty() || held.scaled.empty()) return {};
+  held.parameter = holding.front();
+  held.also_held.assign(holding.begin() + 1, holding.end());
   return held;
 }
 
@@ -52,12 +75,22 @@ std::string held_scale_words(const plant_sim::ModelFile& model,
   const HeldScale held = held_scale(model, fitted);
   if (held.parameter.empty()) return "";
   plant_sim::ModelFile copy = model;
-  const double value = *copy.value(held.parameter);
-  return held.parameter + " is held at " +
-         config::units::words(config::units::quantity(held.parameter, value, std::nan(""))) +
-         ": command and position show only ratios to it. If it is 10 % larger, so " +
-         (held.scaled.size() == 1 ? "is " : "are ") + config::schema::listed(held.scaled) +
-         "; their errors do not contain that.";
+  const auto value_words = [&](const std::string& name) {
+    return config::units::words(config::units::quantity(name, *copy.value(name), std::nan("")));
+  };
+  const auto are = [](const std::vector<std::string>& names) {
+    return (names.size() == 1 ? "is " : "are ") + config::schema::listed(names);
+  };
+  const bool one = held.also_held.empty();
+  std::string text = held.parameter;
+  for (const std::string& name : held.also_held) text += " and " + name;
+  text += (one ? " is held at " : " are held at ") + value_words(held.parameter);
+  for (const std::string& name : held.also_held) text += " and " + value_words(name);
+  text += one ? ": command and position show only ratios to it. If it is 10 % larger, so "
+              : ": command and position show only ratios to them. If they are 10 % larger, so ";
+  text += are(held.scaled);
+  if (!held.inverse.empty()) text += ", and 10 % smaller " + are(held.inverse);
+  return text + "; their errors do not contain that.";
 }
 
 }  // namespace estimator::greybox

@@ -3,8 +3,9 @@
 //
 //   M v' = g u - d v - F    the same motion with c g, c M, c d and c F, for any c
 //
-// On force_driven_axis g is the gain; on hydraulic_actuator, with A (Pi - Po) in place of g u, the
-// area, and the valve's gain and all volumes scale with it as well.
+// On force_driven_axis g is the gain. On the cylinders, with Ai Pi - Ao Po in place of g u, every
+// area, flow and volume scales with the forces at the same pressures, and a fall of pressure per
+// flow inversely.
 #pragma once
 
 #include <string>
@@ -15,8 +16,10 @@
 namespace estimator::greybox {
 
 struct HeldScale {
-  std::string parameter;            ///< empty: none
-  std::vector<std::string> scaled;  ///< fitted parameters that are proportional to it
+  std::string parameter;               ///< empty: none
+  std::vector<std::string> also_held;  ///< held in its ratio to the parameter: the other area
+  std::vector<std::string> scaled;     ///< fitted parameters that are proportional to it
+  std::vector<std::string> inverse;    ///< fitted parameters that are inversely proportional
 };
 
 [[nodiscard]] HeldScale held_scale(const plant_sim::ModelFile& model,
