@@ -42,7 +42,7 @@ def main():
             run(tool, words, folder)
             model = words[words.index("-o") + 1]
             sheet = json.loads(run(tool, ["show", model, "--json", "-"], folder))
-            if any(one["value"] is None for one in sheet["derived"]):
+            if not sheet["derived"] or any(one["value"] is None for one in sheet["derived"]):
                 raise SystemExit(f"{words[1]}: a derived quantity is missing: {sheet['derived']}")
             run(tool, ["simulate", model, "-o", "try.csv", "--duration", "10",
                        "--reference", "multisine"], folder)

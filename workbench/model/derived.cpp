@@ -1,5 +1,7 @@
 // Quantities derived from a model's values. Speeds and forces of the whole model, effects included,
 // are simulated; frequencies and constants are those of the plant alone, from its closed forms.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -67,11 +69,12 @@ double steady_speed_mps(ModelFile model, double u_V) {
   return std::nan("");
 }
 
-void speeds(const ModelFile& model, std::vector<DerivedQuantity>& out) {
-  out.push_back({"steady_speed_positive_mps", "steady speed at +10 V",
-                 steady_speed_mps(model, kFullCommand_V)});
-  out.push_back({"steady_speed_negative_mps", "steady speed at -10 V",
-                 steady_speed_mps(model, -kFullCommand_V)});
+void speeds(const ModelFile& model, std::vector<DerivedQuantity>& out,
+            double full_V = kFullCommand_V) {
+  out.push_back({"steady_speed_positive_mps", fmt::format("steady speed at +{:g} V", full_V),
+                 steady_speed_mps(model, full_V)});
+  out.push_back({"steady_speed_negative_mps", fmt::format("steady speed at -{:g} V", full_V),
+                 steady_speed_mps(model, -full_V)});
 }
 
 void second_order(double stiffness_N_per_m, double mass_kg, double damping_N_s_per_m,
@@ -104,6 +107,89 @@ void hydraulic(const ModelFile& model, const Values& p, std::vector<DerivedQuant
   out.push_back({"valve_natural_frequency_Hz", "natural frequency of the spool", valve / kTwoPi});
   out.push_back({"valve_bandwidth_Hz", "-3 dB frequency of the spool",
                  valve / kTwoPi * std::sqrt(half + std::sqrt(half * half + 1.0))});
+}
+
+/// The side of a two-area cylinder that is filled, and the one that is emptied.
+struct Stroke {
+  double filled_m2, emptied_m2;
+  double filled_orifice, emptied_orifice;  ///< m3/s per V and root of the drop of one edge
+  double against_N;                        ///< weight that resists
+};
+
+/// Speed per volt without damping: the drops over both edges leave the force that resists.
+double free_speed_mps_per_V(const Values& p, const Stroke& s) {
+  const double force_N =
+      s.filled_m2 * p("supply_pressure_Pa") - s.emptied_m2 * p("return_pressure_Pa") - s.against_N;
+  const double drops = std::pow(s.filled_m2, 3) / std::pow(s.filled_orifice, 2) +
+                       std::pow(s.emptied_m2, 3) / std::pow(s.emptied_orifice, 2);
+  return std::sqrt(std::max(0.0, force_N) / drops);
+}
+
+struct Softest {
+  double y_m;
+  double stiffness_N_per_m;
+};
+
+/// Where beta (A^2 / (Va + A y) + B^2 / (Vb + B (L - y))) is least:
+/// A^3 (Vb + B (L - y))^2 = B^3 (Va + A y)^2.
+Softest softest(const Values& p) {
+  const double cap = p("cap_area_m2");
+  const double rod = p("rod_side_area_m2");
+  const double stroke_m = p("stroke_m");
+  const double cap_root = std::pow(cap, 1.5);
+  const double rod_root = std::pow(rod, 1.5);
+  const double y_m =
+      (cap_root * (p("rod_dead_volume_m3") + rod * stroke_m) - rod_root * p("cap_dead_volume_m3")) /
+      (cap_root * rod + rod_root * cap);
+  const double at_m = std::clamp(y_m, 0.0, stroke_m);
+  const double cap_m3 = p("cap_dead_volume_m3") + cap * at_m;
+  const double rod_m3 = p("rod_dead_volume_m3") + rod * (stroke_m - at_m);
+  return {at_m, p("bulk_modulus_Pa") * (cap * cap / cap_m3 + rod * rod / rod_m3)};
+}
+
+/// Pressures in balance with weight and load at the initial position, behind a centred valve.
+config::signals::Pressures rest_pressures(ModelFile model) {
+  for (const char* name : {"initial.pressure_in_Pa", "initial.pressure_out_Pa"}) {
+    *model.value(name) = std::nan("");
+  }
+  return plant_sim::make_plant(model)->pressures();
+}
+
+void two_area_cylinder(const ModelFile& model, const Values& p, std::vector<DerivedQuantity>& out) {
+  constexpr double kGravity_mps2 = 9.80665;
+  const double cap = p("cap_area_m2");
+  const double rod = p("rod_side_area_m2");
+  const double supply_Pa = p("supply_pressure_Pa");
+  const double return_Pa = p("return_pressure_Pa");
+  const double ratio = p("valve_area_ratio");
+  const double weight_N = p("mass_kg") * kGravity_mps2 * std::sin(p("inclination_rad"));
+  const double edge = p("rated_flow_m3ps") / (p("rated_command_V") * std::sqrt(p("rated_drop_Pa")));
+  out.push_back({"cap_over_rod_side", "cap area over rod-side area", cap / rod});
+  out.push_back({"extend_speed_at_rated_flow_mps", "speed out, the rated flow into the cap side",
+                 p("rated_flow_m3ps") / cap});
+  out.push_back({"retract_speed_at_rated_flow_mps", "speed in, the rated flow into the rod side",
+                 -ratio * p("rated_flow_m3ps") / rod});
+  speeds(model, out, p("rated_command_V"));
+  out.push_back({"extend_velocity_gain_mps_per_V", "speed out per volt without load",
+                 free_speed_mps_per_V(p, {cap, rod, edge, ratio * edge, weight_N})});
+  out.push_back({"retract_velocity_gain_mps_per_V", "speed in per volt without load",
+                 free_speed_mps_per_V(p, {rod, cap, ratio * edge, edge, -weight_N})});
+  out.push_back({"extend_stall_force_N", "force of the cylinder at standstill, pushing",
+                 cap * supply_Pa - rod * return_Pa});
+  out.push_back({"retract_stall_force_N", "force of the cylinder at standstill, pulling",
+                 rod * supply_Pa - cap * return_Pa});
+  if (weight_N != 0.0) {
+    out.push_back({"weight_N", "weight along the axis, against extension", weight_N});
+  }
+  const config::signals::Pressures rest = rest_pressures(model);
+  out.push_back({"cap_rest_pressure_Pa", "pressure at rest, cap side", rest.in_Pa});
+  out.push_back({"rod_rest_pressure_Pa", "pressure at rest, rod side", rest.out_Pa});
+  const Softest soft = softest(p);
+  out.push_back({"softest_position_m", "position at which the oil is softest", soft.y_m});
+  out.push_back(
+      {"oil_stiffness_N_per_m", "stiffness of the oil at that position", soft.stiffness_N_per_m});
+  second_order(soft.stiffness_N_per_m, p("mass_kg"), p("damping_N_s_per_m"),
+               "mass on that oil: the lowest", out);
 }
 
 void servo(const ModelFile& model, const Values& p, std::vector<DerivedQuantity>& out) {
@@ -155,6 +241,7 @@ std::vector<DerivedQuantity> derived_quantities(const ModelFile& file) {
   std::vector<DerivedQuantity> out;
   const Values p(model);
   if (model.plant == "hydraulic_actuator") hydraulic(model, p, out);
+  if (model.plant == "hydraulic_cylinder") two_area_cylinder(model, p, out);
   if (model.plant == "velocity_servo") servo(model, p, out);
   if (model.plant == "force_driven_axis") axis(model, p, out);
   second_mass(model, p, out);

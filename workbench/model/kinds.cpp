@@ -30,6 +30,7 @@ Question mass(double usual) {
           usual};
 }
 
+/// Those that both kinds of cylinders ask.
 std::vector<Question> cylinder_questions() {
   return {
       {"bore-mm", "piston diameter", "cylinder's type code, first number", 4.0, 1000.0, kMust},
@@ -54,8 +55,23 @@ std::vector<Question> cylinder_questions() {
       {"damping-N-s-per-m", "viscous damping", "on no data sheet: a guess, it is fitted", 0.0, 1e7,
        1000.0},
       {"bulk-MPa", "bulk modulus of oil and hoses", "700 with hoses, 1200 with pipes", 10.0, 1e4,
-       800.0},
-      {"density-kg-per-m3", "density of the oil", "oil's sheet: 850 to 880", 500.0, 1500.0, 860.0}};
+       800.0}};
+}
+
+std::vector<Question> double_rod_questions() {
+  std::vector<Question> questions = cylinder_questions();
+  questions.push_back(
+      {"density-kg-per-m3", "density of the oil", "oil's sheet: 850 to 880", 500.0, 1500.0, 860.0});
+  return questions;
+}
+
+std::vector<Question> single_rod_questions() {
+  std::vector<Question> questions = cylinder_questions();
+  questions.push_back({"inclination-deg", "inclination of the axis, upwards when it extends",
+                       "drawing: 0 level, 90 lifts its load, -90 lowers it", -90.0, 90.0, 0.0});
+  questions.push_back({"valve-area-ratio", "rod side's opening of the spool over the cap side's",
+                       "valve's type code: 1, or 0.5 of a spool for 2:1", 0.01, 100.0, 1.0});
+  return questions;
 }
 
 std::vector<Question> drive_questions(const char* constant, const char* unit) {
@@ -70,9 +86,9 @@ const std::vector<Kind>& all_kinds() {
   static const std::vector<Kind> all = [] {
     std::vector<Kind> list;
     list.push_back({"double-rod", "symmetric cylinder behind a servo or proportional valve",
-                    cylinder_questions()});
+                    double_rod_questions()});
     list.push_back({"single-rod", "differential cylinder behind a servo or proportional valve",
-                    cylinder_questions()});
+                    single_rod_questions()});
     Kind linear{"linear-motor", "mass pushed by a linear motor with a current loop", {}};
     linear.questions = drive_questions("force-constant", "N-per-A");
     linear.questions.insert(linear.questions.begin(), mass(kMust));
@@ -134,9 +150,13 @@ const std::vector<Kind>& all_kinds() {
   return all;
 }
 
-/// A loop gain with which `simulate` works at once.
-double loop_rate_per_s(double natural_rad_per_s, double zeta) {
+/// Rate of a position loop with which `simulate` works at once on a mass on oil.
+double oil_loop_rate_per_s(double oil_N_per_m, const Answers& a) {
   constexpr double kUsual_per_s = 8.0;
+  const double mass_kg = a.at("mass-kg");
+  const double natural_rad_per_s = std::sqrt(oil_N_per_m / mass_kg);
+  const double zeta =
+      std::max(0.05, 0.5 * a.at("damping-N-s-per-m") / (natural_rad_per_s * mass_kg));
   // half of what 2 zeta w allows
   return std::min(kUsual_per_s, zeta * natural_rad_per_s);
 }
@@ -205,27 +225,42 @@ void double_rod(const Answers& a, ModelWriter& w) {
   w.initial("y_m", 0.5 * c.stroke_m, "mid-stroke");
   const double half_m3 = 1e-6 * a.at("hose-cm3") + 0.5 * c.rod_side_m2 * c.stroke_m;
   const double oil = 2e6 * a.at("bulk-MPa") * c.rod_side_m2 * c.rod_side_m2 / half_m3;
-  const double natural = std::sqrt(oil / a.at("mass-kg"));
-  const double zeta = std::max(0.05, 0.5 * a.at("damping-N-s-per-m") / (natural * a.at("mass-kg")));
-  w.loop(loop_rate_per_s(natural, zeta) / speed_per_V(c, c.rod_side_m2, c.rod_side_m2));
+  w.loop(oil_loop_rate_per_s(oil, a) / speed_per_V(c, c.rod_side_m2, c.rod_side_m2));
 }
 
-void single_rod_servo(const Answers& a, ModelWriter& w) {
+void single_rod(const Answers& a, ModelWriter& w) {
   const Cylinder c = cylinder(a);
-  const double out = speed_per_V(c, c.piston_m2, c.rod_side_m2);
-  const double in = speed_per_V(c, c.rod_side_m2, c.piston_m2);
-  const double gain = 0.5 * (out + in);
-  add_notes(w, "velocity_servo", "the quasi-static limit; pressures and mass follow at once");
-  w.begin("velocity_servo");
-  w.value("gain_mps_per_V", gain, 0.15, "mean of both directions without load, flow within 10 %");
-  w.value("time_constant_s", 2.0 * a.at("valve-damping") / spool_rad_per_s(a), 0.5,
-          "lag of the spool");
+  const double hose_m3 = 1e-6 * a.at("hose-cm3");
+  const double bulk_Pa = 1e6 * a.at("bulk-MPa");
+  const double mass_kg = a.at("mass-kg");
+  add_notes(w, "hydraulic_cylinder", "two areas, and a valve in the numbers of its sheet");
+  w.begin("hydraulic_cylinder");
+  w.value("mass_kg", mass_kg, 0.1, "moving mass, within 10 %");
+  w.value("cap_area_m2", c.piston_m2, kMust, fmt::format("pi/4 {:g}^2 mm2", a.at("bore-mm")));
+  w.value("rod_side_area_m2", c.rod_side_m2, kMust,
+          fmt::format("pi/4 ({:g}^2 - {:g}^2) mm2", a.at("bore-mm"), a.at("rod-mm")));
+  w.value("stroke_m", c.stroke_m, kMust, "");
+  w.value("inclination_rad", a.at("inclination-deg") * kPi / 180.0, kMust,
+          fmt::format("{:g} deg", a.at("inclination-deg")));
+  w.value("damping_N_s_per_m", a.at("damping-N-s-per-m"), 1.0, "a guess");
+  w.value("bulk_modulus_Pa", bulk_Pa, 0.3, "hoses and air lower it");
+  w.value("cap_dead_volume_m3", hose_m3, 0.3, "fully retracted");
+  w.value("rod_dead_volume_m3", hose_m3, 0.3, "fully extended");
+  w.value("supply_pressure_Pa", c.supply_Pa, 0.03, "a gauge's accuracy");
+  w.value("return_pressure_Pa", c.return_Pa, kMust, "");
+  w.value("rated_flow_m3ps", c.flow_m3ps, 0.1,
+          fmt::format("{:g} l/min, +-10 %", a.at("rated-flow-lpm")));
+  w.value("rated_drop_Pa", c.edge_Pa, kMust,
+          fmt::format("over one edge: half of {:g} bar", a.at("rated-drop-bar")));
+  w.value("rated_command_V", c.command_V, kMust, "");
+  w.value("valve_area_ratio", a.at("valve-area-ratio"), kMust, "");
+  w.value("valve_bandwidth_Hz", a.at("valve-Hz"), 0.3, "-3 dB; it falls with the amplitude");
+  w.value("valve_damping_ratio", a.at("valve-damping"), 0.3, "");
   w.initial("y_m", 0.5 * c.stroke_m, "mid-stroke");
-  w.effect("flow_asymmetry", {{"asymmetry_ratio", (out - in) / (out + in)}},
-           "two areas: faster when extending");
-  w.effect("deadband", {{"half_width_V", 0.01 * c.command_V}},
-           "overlap of the spool: 1 % as a start, up to 20 % for valves with overlap");
-  w.loop(8.0 / gain);
+  const double oil =
+      bulk_Pa * (c.piston_m2 * c.piston_m2 / (hose_m3 + 0.5 * c.piston_m2 * c.stroke_m) +
+                 c.rod_side_m2 * c.rod_side_m2 / (hose_m3 + 0.5 * c.rod_side_m2 * c.stroke_m));
+  w.loop(oil_loop_rate_per_s(oil, a) / speed_per_V(c, c.piston_m2, c.rod_side_m2));
 }
 
 void linear_motor(const Answers& a, ModelWriter& w) {
@@ -358,7 +393,7 @@ std::string model_text(const Kind& kind, const Answers& answers, const std::stri
   w.comment(kind.name + ": " + kind.what + ". Made by:");
   w.comment("  " + command);
   if (kind.name == "double-rod") double_rod(all, w);
-  if (kind.name == "single-rod") single_rod_servo(all, w);
+  if (kind.name == "single-rod") single_rod(all, w);
   if (kind.name == "linear-motor") linear_motor(all, w);
   if (kind.name == "screw-axis") screw_axis(all, w);
   if (kind.name == "rotary-axis") rotary_axis(all, w);

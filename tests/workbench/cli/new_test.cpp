@@ -53,16 +53,35 @@ TEST(New, PutsTheRatedFlowIntoADoubleRodCylinder) {
   EXPECT_EQ(model.uncertainty_ratio(0), 0.1);
 }
 
-TEST(New, GivesASingleRodItsTwoSpeeds) {
-  plant_sim::ModelFile model = made("single-rod", kCylinder);
-  const double a = 1.963495e-3, b = 1.159248e-3, orifice = 40.0 / 6e4 / (10.0 * std::sqrt(35e5));
-  // pressures in balance without load: Pa A = Pb B, each edge at its own flow
-  const double out = orifice * std::sqrt(140e5 * a / (a * a * a + b * b * b));
-  const double in = orifice * std::sqrt(140e5 * b / (a * a * a + b * b * b));
-  const double gain = *model.value("gain_mps_per_V");
-  const double ratio = *model.value("flow_asymmetry.asymmetry_ratio");
-  EXPECT_NEAR(gain * (1.0 + ratio), out, 1e-5 * out);
-  EXPECT_NEAR(gain * (1.0 - ratio), in, 1e-5 * in);
+TEST(New, MakesASingleRodCylinderOfAllThatIsAsked) {
+  std::vector<std::string> flags = kCylinder;
+  flags.insert(flags.end(),
+               {"--return-bar", "3", "--rated-command-V", "8", "--valve-Hz", "25",
+                "--valve-damping", "0.9", "--hose-cm3", "120", "--damping-N-s-per-m", "1500",
+                "--bulk-MPa", "900", "--inclination-deg", "30", "--valve-area-ratio", "0.5"});
+  plant_sim::ModelFile model = made("single-rod", flags);
+  EXPECT_EQ(model.plant, "hydraulic_cylinder");
+  const std::pair<const char*, double> expected[] = {{"mass_kg", 200.0},
+                                                     {"cap_area_m2", 1.963495e-3},  // pi/4 50^2 mm2
+                                                     {"rod_side_area_m2", 1.159248e-3},
+                                                     {"stroke_m", 0.5},
+                                                     {"inclination_rad", 0.5235988},
+                                                     {"damping_N_s_per_m", 1500.0},
+                                                     {"bulk_modulus_Pa", 9e8},
+                                                     {"cap_dead_volume_m3", 1.2e-4},
+                                                     {"rod_dead_volume_m3", 1.2e-4},
+                                                     {"supply_pressure_Pa", 1.4e7},
+                                                     {"return_pressure_Pa", 3e5},
+                                                     {"rated_flow_m3ps", 6.666667e-4},
+                                                     {"rated_drop_Pa", 3.5e6},  // of one edge
+                                                     {"rated_command_V", 8.0},
+                                                     {"valve_area_ratio", 0.5},
+                                                     {"valve_bandwidth_Hz", 25.0},
+                                                     {"valve_damping_ratio", 0.9},
+                                                     {"initial.y_m", 0.25}};
+  for (const auto& [name, value] : expected) {
+    EXPECT_NEAR(*model.value(name), value, 5e-6 * std::abs(value)) << name;
+  }
 }
 
 TEST(New, ReducesInertiasToTheAxisThatIsMeasured) {

@@ -79,6 +79,57 @@ TEST(Show, DerivesWhatADataSheetStates) {
   EXPECT_NEAR(derived(thesis, "stall_force_N"), 6.33e-4 * 6.89e6, 1e-9);
 }
 
+TEST(Show, DerivesACylindersSpeedsForcesAndPressuresFromItsTwoAreas) {
+  // by hand: A = 1.963e-3, B = 1.159e-3, Ps = 140 bar, Pe = 3 bar, 40 l/min at 35 bar and 10 V;
+  // weight 200 kg g sin 0.5 = 940.3 N; the spool's rod side opens 0.6 as far
+  const auto sheet = shown({model("single_rod_cylinder"), "--set", "parameters.inclination_rad=0.5",
+                            "--set", "parameters.valve_area_ratio=0.6"});
+  EXPECT_NEAR(derived(sheet, "cap_over_rod_side"), 1.6937, 1e-4);
+  EXPECT_NEAR(derived(sheet, "weight_N"), 940.312, 1e-3);
+  EXPECT_NEAR(derived(sheet, "extend_speed_at_rated_flow_mps"), 0.339633, 1e-6);
+  EXPECT_NEAR(derived(sheet, "retract_speed_at_rated_flow_mps"), -0.345142, 1e-6);
+  // the speed at which both edges' drops leave the weight, by bisection
+  EXPECT_NEAR(derived(sheet, "extend_velocity_gain_mps_per_V"), 0.0528967, 1e-7);
+  EXPECT_NEAR(derived(sheet, "retract_velocity_gain_mps_per_V"), 0.0420810, 1e-7);
+  EXPECT_NEAR(derived(sheet, "extend_stall_force_N"), 27134.3, 1e-6);
+  EXPECT_NEAR(derived(sheet, "retract_stall_force_N"), 15637.1, 1e-6);
+  // A Pi - B Po = weight, Pi + Po = Ps + Pe
+  EXPECT_NEAR(derived(sheet, "cap_rest_pressure_Pa"), 5609869.2, 1.0);
+  EXPECT_NEAR(derived(sheet, "rod_rest_pressure_Pa"), 8690130.8, 1.0);
+  const double v = derived(sheet, "steady_speed_positive_mps");
+  const double edge = 6.667e-4 / std::sqrt(3.5e6);
+  const double in_Pa = 140e5 - std::pow(1.963e-3 * v / edge, 2);
+  const double out_Pa = 3e5 + std::pow(1.159e-3 * v / (0.6 * edge), 2);
+  EXPECT_NEAR(1.963e-3 * in_Pa - 1.159e-3 * out_Pa, 940.312 + 2000.0 * v, 20.0);
+  EXPECT_LT(derived(sheet, "steady_speed_negative_mps"), -0.3);
+}
+
+TEST(Show, FindsTheSoftestPositionOfACylinder) {
+  // the least of beta (A^2/(Vi + A y) + B^2/(Vo + B (L - y))) over half a million positions
+  const struct {
+    const char *cap_m3, *rod_m3;
+    double y_m, N_per_m, Hz, damping;
+  } cases[] = {{"2e-4", "2e-4", 0.336054, 9511863.0, 34.70867, 0.0229273},
+               {"2e-4", "1.2e-3", 0.5, 5256986.0, 25.80320, 0.0308402},
+               {"2e-3", "1e-4", 0.0, 4684262.0, 24.35711, 0.0326712}};
+  for (const auto& c : cases) {
+    const auto sheet = shown({model("single_rod_cylinder"), "--set",
+                              std::string("parameters.cap_dead_volume_m3=") + c.cap_m3, "--set",
+                              std::string("parameters.rod_dead_volume_m3=") + c.rod_m3});
+    EXPECT_NEAR(derived(sheet, "softest_position_m"), c.y_m, 2e-6);
+    EXPECT_NEAR(derived(sheet, "oil_stiffness_N_per_m"), c.N_per_m, 1.0);
+    EXPECT_NEAR(derived(sheet, "natural_frequency_Hz"), c.Hz, 1e-5);
+    EXPECT_NEAR(derived(sheet, "damping_ratio"), c.damping, 1e-7);
+  }
+}
+
+TEST(Show, GivesACylindersSpeedsAtTheCommandThatIsRated) {
+  const std::string text = printed_by(
+      add_show, {model("single_rod_cylinder"), "--set", "parameters.rated_command_V=100"});
+  EXPECT_THAT(text, HasSubstr("steady speed at +100 V"));
+  EXPECT_THAT(text, HasSubstr("601 mm/s"));
+}
+
 TEST(Show, SplitsASecondMassIntoItsParts) {
   const auto sheet =
       shown({model("force_driven_axis"), "--set", "effects.second_mass.mass_ratio=0.36", "--set",
@@ -116,7 +167,8 @@ TEST(Show, ListsChangesAndDerivesFromTheModelBeforeThem) {
   const std::string text = printed_by(add_show, {written(axis + changes)});
   EXPECT_THAT(text, HasSubstr("to 60 kg at 2 s"));
   EXPECT_THAT(text, HasSubstr("times 1.5 at 4 s, over 3 s"));
-  for (const char* plant : {"thesis", "velocity_servo", "force_driven_axis"}) {
+  for (const char* plant :
+       {"thesis", "single_rod_cylinder", "velocity_servo", "force_driven_axis"}) {
     std::ifstream in(model(plant));
     std::string before{std::istreambuf_iterator<char>(in), {}};
     const std::string file = testing::TempDir() + "spoolwatch_show_change.toml";
