@@ -132,7 +132,7 @@ class ForceDrivenAxis {
       state = runge_kutta_step(state, step_s, [&](const State& x) { return rate(x, S(0.0)); });
     }
     state.y_m = clamp(state.y_m, S(-limits::kPosition_m), S(limits::kPosition_m));
-    state.v_mps = clamp(state.v_mps, S(-limits::kSpeed_mps), S(limits::kSpeed_mps));
+    state.v_mps = clamp(state.v_mps, S(-limits::kAxisSpeed_mps), S(limits::kAxisSpeed_mps));
     effects.accept(state.y_m - from_m, state.v_mps);
   }
 

@@ -6,6 +6,7 @@
 namespace plant_sim::limits {
 
 inline constexpr double kSpeed_mps = 1e3;
+inline constexpr double kAxisSpeed_mps = 1e5;  ///< of an axis that may turn: beyond any spindle
 inline constexpr double kPosition_m = 1e6;
 inline constexpr double kCommand_V = 1e4;
 /// A rate times the step up to which RK4 follows; it is stable up to 2.78.

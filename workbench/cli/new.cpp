@@ -10,7 +10,9 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <memory>
+#include <optional>
 
 #include "config/record/whole_file.h"
 #include "config/schema/document.h"
@@ -35,8 +37,34 @@ using model::Question;
 struct NewOptions {
   std::string kind, name, output;
   bool ask = false;
-  Answers given;
+  std::map<std::string, std::string> given;  ///< as typed, by flag
 };
+
+/// The whole text as a number.
+std::optional<double> number_in(const std::string& text) {
+  double value = 0.0;
+  const char* end = text.data() + text.size();
+  const auto [rest, failed] = std::from_chars(text.data(), end, value);
+  return failed == std::errc() && rest == end ? std::optional<double>(value) : std::nullopt;
+}
+
+/// Throws for a text that is no number. A flag of another kind is left to check_answers().
+Answers answers_in(const Kind& kind, const std::map<std::string, std::string>& given) {
+  Answers answers;
+  for (const auto& [flag, text] : given) {
+    const auto asks = [&, &name = flag](const Question& q) { return q.flag == name; };
+    const auto q = std::find_if(kind.questions.begin(), kind.questions.end(), asks);
+    const std::optional<double> value = number_in(text);
+    if (!value && q != kind.questions.end()) {
+      throw UsageError(
+          fmt::format("new {}: --{} is \"{}\", no number; allowed: {:g} to {:g}{}", kind.name, flag,
+                      text, q->min, q->max,
+                      text.find(',') == std::string::npos ? "" : ", with a point for decimals"));
+    }
+    answers[flag] = value.value_or(0.0);
+  }
+  return answers;
+}
 
 /// An answer within its range, asked until there is one; empty takes the usual value. Throws where
 /// the input ends.
@@ -51,10 +79,8 @@ double asked(const Question& q) {
       throw UsageError("new: the input ended before --" + q.flag + " was answered");
     }
     if (line.empty() && !std::isnan(q.usual)) return q.usual;
-    double value = 0.0;
-    const char* end = line.data() + line.size();
-    const auto [rest, failed] = std::from_chars(line.data(), end, value);
-    if (failed == std::errc() && rest == end && value >= q.min && value <= q.max) return value;
+    const std::optional<double> value = number_in(line);
+    if (value && *value >= q.min && *value <= q.max) return *value;
     std::cout << "  " << (line.empty() ? "nothing" : line)
               << " is no answer; allowed: a number from " << q.min << " to " << q.max << "\n";
   }
@@ -78,7 +104,7 @@ void make(const NewOptions& options, const std::string& command) {
   const std::string name =
       options.name.empty() ? std::filesystem::path(options.output).stem().string() : options.name;
   check_output(options.output, name);
-  Answers answers = options.given;
+  Answers answers = answers_in(kind, options.given);
   if (options.ask || isatty(STDIN_FILENO) == 1) {
     for (const Question& q : kind.questions) {
       if (answers.count(q.flag) == 0) answers[q.flag] = asked(q);
@@ -120,10 +146,12 @@ void add_new(CLI::App& command, int&) {
     for (const Question& q : kind.questions) {
       if (std::find(known.begin(), known.end(), q.flag) != known.end()) continue;
       known.push_back(q.flag);
-      command.add_option_function<double>(
-          "--" + q.flag,
-          [options, flag = q.flag](const double& value) { options->given[flag] = value; },
-          q.what + " (" + q.where + ")");
+      command
+          .add_option_function<std::string>(
+              "--" + q.flag,
+              [options, flag = q.flag](const std::string& text) { options->given[flag] = text; },
+              q.what + " (" + q.where + ")")
+          ->type_name("FLOAT");
     }
   }
   command.footer([] {

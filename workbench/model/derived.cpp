@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 
+#include "plant_sim/guard.h"
 #include "plant_sim/plant.h"
 #include "workbench/model/sheet.h"
 
@@ -41,6 +43,13 @@ bool model_has(const ModelFile& model, const std::string& effect) {
                      [&](const auto& e) { return e.present && e.name == effect; });
 }
 
+/// Speed at which the plant's numbers are held, far beyond any machine.
+double guard_mps(const ModelFile& model) {
+  if (model.plant == "velocity_servo") return std::numeric_limits<double>::infinity();
+  return model.plant == "force_driven_axis" ? plant_sim::limits::kAxisSpeed_mps
+                                            : plant_sim::limits::kSpeed_mps;
+}
+
 /// Speed under a constant command once it no longer changes, or the last before the stroke's end;
 /// NaN when it never settles.
 double steady_speed_mps(ModelFile model, double u_V) {
@@ -51,6 +60,7 @@ double steady_speed_mps(ModelFile model, double u_V) {
     *model.value("initial.y_m") = u_V > 0.0 ? edge_m : *stroke_m - edge_m;
   }
   const std::unique_ptr<plant_sim::Plant> plant = plant_sim::make_plant(model);
+  const double most_mps = 0.99 * guard_mps(model);
   const double from_m = plant->position_m();
   double before_mps = std::nan("");
   for (int window = 0; window * kWindow_s < kLongest_s; ++window) {
@@ -63,6 +73,7 @@ double steady_speed_mps(ModelFile model, double u_V) {
       if (std::abs(plant->position_m() - from_m) > run_m) return plant->speed_mps();
     }
     mean_mps = (plant->position_m() - begin_m) / gone_s;
+    if (std::abs(plant->speed_mps()) > most_mps) return std::nan("");  // held by the guard alone
     if (std::abs(mean_mps - before_mps) <= kSteady * std::abs(mean_mps)) return mean_mps;
     before_mps = mean_mps;
   }

@@ -345,53 +345,13 @@ const Kind& find_kind(const std::string& name) {
                    "; allowed: " + config::schema::joined(names));
 }
 
-void check_answers(const Kind& kind, const Answers& answers) {
-  std::vector<std::string> flags;
-  std::vector<std::string> missing;
-  for (const Question& q : kind.questions) {
-    flags.push_back("--" + q.flag);
-    const auto given = answers.find(q.flag);
-    if (given == answers.end()) {
-      if (std::isnan(q.usual)) missing.push_back("--" + q.flag + " (" + q.what + ")");
-      continue;
-    }
-    if (!(given->second >= q.min && given->second <= q.max)) {
-      throw UsageError(fmt::format("new {}: --{} is {:g}, out of range; allowed: {:g} to {:g}",
-                                   kind.name, q.flag, given->second, q.min, q.max));
-    }
-  }
-  for (const auto& [flag, value] : answers) {
-    if (std::find(flags.begin(), flags.end(), "--" + flag) != flags.end()) continue;
-    throw UsageError("new " + kind.name + ": --" + flag +
-                     " is not asked of this kind; allowed: " + config::schema::joined(flags));
-  }
-  if (!missing.empty()) {
-    throw UsageError("new " + kind.name + ": lacks " + config::schema::joined(missing));
-  }
-  const auto bore = answers.find("bore-mm");
-  const auto rod = answers.find("rod-mm");
-  if (bore != answers.end() && rod != answers.end() && rod->second >= bore->second) {
-    throw UsageError(
-        fmt::format("new {}: --rod-mm is {:g}, no rod for a bore of {:g}; allowed: "
-                    "less than the bore",
-                    kind.name, rod->second, bore->second));
-  }
-  const auto supply = answers.find("supply-bar");
-  const auto back = answers.find("return-bar");
-  if (supply != answers.end() && back != answers.end() && back->second >= supply->second) {
-    throw UsageError(
-        fmt::format("new {}: --return-bar is {:g}; allowed: less than the supply's {:g}", kind.name,
-                    back->second, supply->second));
-  }
-}
-
-std::string model_text(const Kind& kind, const Answers& answers, const std::string& name,
-                       const std::string& command) {
+Answers with_usual(const Kind& kind, const Answers& answers) {
   Answers all = answers;
   for (const Question& q : kind.questions) all.emplace(q.flag, q.usual);
-  ModelWriter w(name);
-  w.comment(kind.name + ": " + kind.what + ". Made by:");
-  w.comment("  " + command);
+  return all;
+}
+
+void write_model(const Kind& kind, const Answers& all, ModelWriter& w) {
   if (kind.name == "double-rod") double_rod(all, w);
   if (kind.name == "single-rod") single_rod(all, w);
   if (kind.name == "linear-motor") linear_motor(all, w);
@@ -401,6 +361,14 @@ std::string model_text(const Kind& kind, const Answers& answers, const std::stri
   if (kind.name == "rotary-servo") {
     servo(all.at("full-speed-rpm") * 2.0 * kPi / 60.0, true, all, w);
   }
+}
+
+std::string model_text(const Kind& kind, const Answers& answers, const std::string& name,
+                       const std::string& command) {
+  ModelWriter w(name);
+  w.comment(kind.name + ": " + kind.what + ". Made by:");
+  w.comment("  " + command);
+  write_model(kind, with_usual(kind, answers), w);
   return w.text();
 }
 

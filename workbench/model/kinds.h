@@ -30,12 +30,20 @@ struct Kind {
 
 using Answers = std::map<std::string, double>;  ///< by flag
 
+/// The answers, with the usual value of each that is left open.
+[[nodiscard]] Answers with_usual(const Kind& kind, const Answers& answers);
+
 /// Throws config::schema::UsageError for a flag that the kind does not have, a value out of range,
-/// and values that contradict each other; all that is missing in one line.
+/// values that contradict each other, and values that make a parameter which the plant does not
+/// allow; all that is missing in one line.
 void check_answers(const Kind& kind, const Answers& answers);
 /// The commented model file. `command` says how to make it again. Requires checked answers; what
 /// they leave open has its usual value.
 [[nodiscard]] std::string model_text(const Kind& kind, const Answers& answers,
                                      const std::string& name, const std::string& command);
+
+class ModelWriter;
+/// The model without its head. Requires an answer to each question, within its range.
+void write_model(const Kind& kind, const Answers& all, ModelWriter& w);
 
 }  // namespace workbench::model

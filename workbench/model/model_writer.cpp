@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace workbench::model {
@@ -23,12 +24,14 @@ std::string line(const std::string& key, double value, const std::string& commen
 void ModelWriter::comment(const std::string& text) { head_ += "# " + text + "\n"; }
 
 void ModelWriter::begin(const std::string& plant, bool rotary) {
+  plant_name_ = plant;
   plant_ = "plant = \"" + plant + "\"\n";
   if (rotary) plant_ += "motion = \"rotary\"\n";
 }
 
 void ModelWriter::value(const std::string& key, double value, double prior_ratio,
                         const std::string& comment) {
+  values_.emplace_back(key, value);
   parameters_ += line(key, value, comment);
   if (!std::isnan(prior_ratio)) priors_ += line(key, prior_ratio, "");
 }
@@ -48,12 +51,18 @@ void ModelWriter::start_of_references() {
   initial("y_m", 0.305, "where the references of `simulate` start; there is no end of the stroke");
 }
 
-void ModelWriter::loop(double kp_V_per_m) { loop_ = line("kp_V_per_m", kp_V_per_m, ""); }
+void ModelWriter::loop(double kp_V_per_m) {
+  constexpr double kMost_V_per_m = 1e6;  // of a model file
+  loop_ = line("kp_V_per_m", std::min(kp_V_per_m, kMost_V_per_m), "");
+}
 
 void ModelWriter::axis_loop(double mass_kg, double damping_N_s_per_m, double gain_N_per_V) {
   constexpr double kDamping = 0.7;
   const double rate = 0.5 * damping_N_s_per_m / (kDamping * mass_kg);
   loop(mass_kg * rate * rate / gain_N_per_V);
+  if (rate == 0.0) {
+    loop_ = line("kp_V_per_m", 0.0, "without damping a loop of kp alone never comes to rest");
+  }
 }
 
 std::string ModelWriter::text() const {

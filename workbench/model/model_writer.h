@@ -26,9 +26,15 @@ class ModelWriter {
   void axis_loop(double mass_kg, double damping_N_s_per_m, double gain_N_per_V);
 
   [[nodiscard]] std::string text() const;
+  [[nodiscard]] const std::string& plant() const { return plant_name_; }
+  /// Everything that value() was given.
+  [[nodiscard]] const std::vector<std::pair<std::string, double>>& values() const {
+    return values_;
+  }
 
  private:
-  std::string name_, head_, plant_, parameters_, priors_, initial_, effects_, loop_;
+  std::vector<std::pair<std::string, double>> values_;
+  std::string name_, head_, plant_name_, plant_, parameters_, priors_, initial_, effects_, loop_;
 };
 
 }  // namespace workbench::model

@@ -1,6 +1,8 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -122,7 +124,88 @@ TEST(New, RefusesInOneLineWithTheNearName) {
   std::vector<std::string> thick{"double-rod", "-o", "x.toml"};
   thick.insert(thick.end(), kCylinder.begin(), kCylinder.end());
   thick[6] = "60";
-  EXPECT_THAT(refused(thick), HasSubstr("no rod for a bore of 50"));
+  EXPECT_THAT(refused(thick), HasSubstr("no rod for --bore-mm 50"));
+}
+
+/// The flags of kCylinder with one value replaced, or one added.
+std::vector<std::string> cylinder_with(const std::string& kind, const std::string& flag,
+                                       const std::string& value) {
+  std::vector<std::string> flags{kind, "-o", testing::TempDir() + "spoolwatch_new_no.toml"};
+  flags.insert(flags.end(), kCylinder.begin(), kCylinder.end());
+  const auto found = std::find(flags.begin(), flags.end(), flag);
+  if (found == flags.end()) {
+    flags.insert(flags.end(), {flag, value});
+  } else {
+    *(found + 1) = value;
+  }
+  return flags;
+}
+
+TEST(New, NamesTheOptionItsValueAndItsRange) {
+  for (const char* kind : {"double-rod", "single-rod"}) {
+    // pi/4 (50^2 - d^2) mm2 = 1 mm2 at d = 49.98726
+    EXPECT_THAT(refused(cylinder_with(kind, "--rod-mm", "49.999")),
+                testing::AllOf(HasSubstr("--rod-mm (is 49.999; allowed: 1 to 49.98)"),
+                               HasSubstr("--bore-mm (is 50; allowed: 50.02 to ")))
+        << kind;
+    for (const char* text : {"abc", "32,5", "3 2", "", "32mm", "0x20"}) {
+      EXPECT_THAT(
+          refused(cylinder_with(kind, "--rod-mm", text)),
+          HasSubstr(std::string("--rod-mm is \"") + text + "\", no number; allowed: 1 to 990"))
+          << kind;
+    }
+    for (const char* text : {"nan", "inf", "0", "-3", "1e9"}) {
+      EXPECT_THAT(
+          refused(cylinder_with(kind, "--rod-mm", text)),
+          testing::AllOf(HasSubstr("--rod-mm is "), HasSubstr("out of range; allowed: 1 to 990")))
+          << kind;
+    }
+  }
+  EXPECT_THAT(refused({"velocity-servo", "-o", testing::TempDir() + "spoolwatch_new_no.toml",
+                       "--full-speed-mmps", "1e5", "--full-command-V", "0.5"}),
+              testing::AllOf(HasSubstr("--full-speed-mmps (is 100000; allowed: 0.001 to 50000)"),
+                             HasSubstr("--full-command-V (is 0.5; allowed: 1 to 1000)")));
+  EXPECT_THAT(refused({"screw-axis", "-o", testing::TempDir() + "spoolwatch_new_no.toml",
+                       "--mass-kg", "0.1", "--lead-mm", "0.1", "--inertia-kgcm2", "1e6",
+                       "--torque-constant-Nm-per-A", "1", "--drive-A-per-V", "1"}),
+              HasSubstr("mass_kg would be 3.948e+11, allowed: 1e-06 to 1e+06; change --lead-mm"));
+}
+
+/// Each question of each kind, at either end of its range and beyond, the others in the middle: a
+/// file that reads back and whose numbers follow, or a message with the option and its range.
+TEST(New, TakesOrRefusesEveryNumberByName) {
+  const std::string file = testing::TempDir() + "spoolwatch_new_edge.toml";
+  for (const model::Kind& kind : model::kinds()) {
+    for (const model::Question& asked : kind.questions) {
+      for (const double value : {asked.min, asked.max, 2.0 * asked.max, asked.min - 1.0}) {
+        std::vector<std::string> arguments{kind.name, "-o", file};
+        for (const model::Question& q : kind.questions) {
+          if (&q != &asked && !std::isnan(q.usual)) continue;
+          const std::string middle = q.flag == "bore-mm" ? "63" : q.flag == "rod-mm" ? "36" : "100";
+          arguments.insert(arguments.end(),
+                           {"--" + q.flag, &q == &asked ? fmt::format("{}", value) : middle});
+        }
+        std::filesystem::remove(file);
+        const std::string said = refused(arguments);
+        EXPECT_EQ(said == "taken", std::filesystem::exists(file))
+            << kind.name << asked.flag << said;
+        if (said == "taken") continue;
+        EXPECT_THAT(said, HasSubstr("--" + asked.flag + " ")) << kind.name;
+        EXPECT_THAT(said, HasSubstr("allowed: ")) << kind.name;
+      }
+    }
+  }
+}
+
+TEST(New, SaysThatAnUndampedAxisIsNeverSteady) {
+  const std::string file = testing::TempDir() + "spoolwatch_new_undamped.toml";
+  for (const char* drive : {"0.6", "6000"}) {
+    std::filesystem::remove(file);
+    EXPECT_THAT(printed_by(add_new, {"linear-motor", "-o", file, "--mass-kg", "12",
+                                     "--force-constant-N-per-A", "80", "--drive-A-per-V", drive,
+                                     "--damping-N-s-per-m", "0"}),
+                testing::ContainsRegex("steady speed at .10 V +never steady"));
+  }
 }
 
 TEST(New, KeepsAFileThatExists) {
