@@ -13,6 +13,7 @@
 #include "config/record/text_form.h"
 #include "config/record/text_window.h"
 #include "config/schema/error.h"
+#include "config/schema/joined.h"
 
 namespace config::record {
 namespace {
@@ -37,11 +38,29 @@ FileHead columns_of(const TextForm& form, const std::string& name) {
 }
 
 std::string words_of(const TextForm& form) {
-  std::string words = std::string(separator_words(form.dialect)) + " between columns, " +
-                      decimal_words(form.dialect);
+  std::string words = std::string(separator_words(form.dialect)) + " between columns, ";
+  std::vector<std::string> others;
+  for (std::size_t i = 0; i < form.decimals.size(); ++i) {
+    if (form.decimals[i].decimal != form.dialect.decimal) others.push_back(std::to_string(i + 1));
+  }
+  const TextDialect commas{form.dialect.separator, ','};
+  if (!others.empty() && others.size() == form.decimals.size()) {
+    words += decimal_words(commas);
+  } else {
+    words += decimal_words(form.dialect);
+    if (!others.empty()) {
+      words += std::string(" and ") + decimal_words(commas) + " (columns " +
+               schema::joined(others) + ")";
+    }
+  }
   if (form.header_line > 0) words += ", names in line " + std::to_string(form.header_line);
   if (form.unit_line > 0) words += ", units in line " + std::to_string(form.unit_line);
   return words + ", numbers from line " + std::to_string(form.data_line);
+}
+
+std::string column_words(const TextForm& form, std::size_t column) {
+  return form.names.empty() || form.names[column].empty() ? std::to_string(column + 1)
+                                                          : form.names[column];
 }
 
 /// The first lines of a text, as many as its form is told from.
@@ -82,6 +101,32 @@ void begin_clocks_together(const TextForm& form, std::vector<std::vector<double>
   });
 }
 
+/// Takes further columns whose numbers have two readings out of the layout, and names them. Throws
+/// where it is time, command or position.
+std::string leave_out_ambiguous(const TextForm& form, const std::string& name, Layout& layout) {
+  const auto is_ambiguous = [&](std::size_t column) {
+    return form.kinds[column] == FieldKind::number && !form.decimals[column].ambiguous.empty();
+  };
+  std::string left_out;
+  std::erase_if(layout.channels, [&](const Channel& channel) {
+    std::size_t column = channel.column;
+    if (channel.times != Channel::kSharedTimes && is_ambiguous(channel.times)) {
+      column = channel.times;
+    }
+    if (!is_ambiguous(column)) return false;
+    if (channel.role != Role::further) {
+      throw schema::bad_data(name + ":" + std::to_string(form.data_line),
+                             "column " + column_words(form, column) + ": '" +
+                                 form.decimals[column].ambiguous +
+                                 "' has two readings, with a decimal comma or with thousands",
+                             kOneReading);
+    }
+    left_out += (left_out.empty() ? "" : ", ") + column_words(form, column);
+    return true;
+  });
+  return left_out;
+}
+
 }  // namespace
 
 Record read_csv(TextWindow& window, const std::string& name, const ReadOptions& options) {
@@ -95,7 +140,8 @@ Record read_csv(TextWindow& window, const std::string& name, const ReadOptions& 
     if (passed > 0 && *line > 0) ++*line;
   }
   const FileHead head = columns_of(form, name);
-  const Layout layout = understand(head, map, options.position_optional);
+  Layout layout = understand(head, map, options.position_optional);
+  const std::string left_out = leave_out_ambiguous(form, name, layout);
   std::vector<RowReader::Action> actions(form.kinds.size(), RowReader::Action::skip);
   const auto wanted = [&](std::size_t column) {
     actions[column] = form.kinds[column] == FieldKind::clock ? RowReader::Action::clock
@@ -120,6 +166,9 @@ Record read_csv(TextWindow& window, const std::string& name, const ReadOptions& 
     words += (words.empty() ? "" : ", ") + rows.column_name(i);
   }
   if (!words.empty()) record.notes.push_back("left out, no numbers: " + words);
+  if (!left_out.empty()) {
+    record.notes.push_back("left out, '1,234' there has two readings: " + left_out);
+  }
   if (rows.open_end()) {
     record.notes.emplace_back("the last line has no line end: its last number may be cut off");
   }

@@ -11,20 +11,24 @@ namespace {
 
 using schema::bad_data;
 
-/// Takes "*2.5" or "-10" from the end of `text`.
-bool ends_in_number(std::string& text, std::string_view marks, double& number) {
+/// Takes "*2.5" or "-10" from the end of `text`, in each way there is ("Pos-1e-3" ends in -3 and
+/// -1e-3), until `accepts(rest, number)`. False: none is accepted.
+template <class F>
+bool ends_in_number(const std::string& text, std::string_view marks, F&& accepts) {
   for (std::size_t at = text.size(); at-- > 1;) {
     if (marks.find(text[at]) == std::string_view::npos) continue;
-    const char* begin = text.data() + at + (text[at] == '-' ? 0 : 1);
+    const bool minus = text[at] == '-';
+    const char* begin = text.data() + at + 1;
     const char* const end = text.data() + text.size();
-    double value = 0.0;
+    double number = 0.0;
     while (begin != end && *begin == ' ') ++begin;
-    const auto result = std::from_chars(begin, end, value);
-    if (begin == end || result.ec != std::errc{} || result.ptr != end) continue;
-    number = value;
-    text.resize(at);
-    while (!text.empty() && text.back() == ' ') text.pop_back();
-    return true;
+    const auto result = std::from_chars(begin, end, number);
+    if (begin == end || (minus && *begin == '-')) continue;
+    if (result.ec != std::errc{} || result.ptr != end) continue;
+    if (minus) number = -number;
+    std::string rest = text.substr(0, at);
+    while (!rest.empty() && rest.back() == ' ') rest.pop_back();
+    if (accepts(rest, number)) return true;
   }
   return false;
 }
@@ -67,32 +71,32 @@ std::optional<std::size_t> column_named(const std::vector<ReadColumn>& columns,
 
 std::optional<MapTerm> map_term(const std::vector<ReadColumn>& columns, const std::string& where,
                                 const std::string& text) {
-  for (const bool negative : {false, true}) {
-    if (negative && (text.size() < 2 || text.front() != '-')) break;
-    std::string rest = negative ? text.substr(text.find_first_not_of(' ', 1)) : text;
-    MapTerm term;
-    term.factor = negative ? -1.0 : 1.0;
-    const auto named = [&]() -> bool {
-      const auto column = column_named(columns, where, rest);
-      if (column) term.column = *column;
-      return column.has_value();
+  const auto term = [&](const std::string& name, double factor,
+                        double offset) -> std::optional<MapTerm> {
+    const auto column = column_named(columns, where, name);
+    if (!column) return std::nullopt;
+    return MapTerm{*column, factor, offset};
+  };
+  for (const double sign : {1.0, -1.0}) {
+    std::string whole = text;
+    if (sign < 0.0) {
+      const std::size_t name = text.find_first_not_of(' ', 1);
+      if (text.empty() || text.front() != '-' || name == std::string::npos) break;
+      whole = text.substr(name);
+    }
+    std::optional<MapTerm> found = term(whole, sign, 0.0);
+    const auto scaled = [&](const std::string& scaled_name, double offset) {
+      return ends_in_number(scaled_name, "*", [&](const std::string& name, double factor) {
+        found = term(name, sign * factor, offset);
+        return found.has_value();
+      });
     };
-    if (named()) return term;
-    const std::string whole = rest;
-    double number = 0.0;
-    if (ends_in_number(rest, "*", number)) {
-      term.factor *= number;
-      if (named()) return term;
-      term.factor = negative ? -1.0 : 1.0;
-    }
-    rest = whole;
-    if (ends_in_number(rest, "+-", term.offset)) {
-      if (named()) return term;
-      if (ends_in_number(rest, "*", number)) {
-        term.factor *= number;
-        if (named()) return term;
-      }
-    }
+    if (found || scaled(whole, 0.0)) return found;
+    ends_in_number(whole, "+-", [&](const std::string& rest, double offset) {
+      found = term(rest, sign, offset);
+      return found.has_value() || scaled(rest, offset);
+    });
+    if (found) return found;
   }
   return std::nullopt;
 }

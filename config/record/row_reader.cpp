@@ -38,13 +38,15 @@ RowReader::RowReader(TextWindow& window, const std::string& name, const TextForm
       name_(name),
       form_(form),
       separator_(form.dialect.separator),
-      decimal_(form.dialect.decimal),
       actions_(std::move(actions)),
       at_(window.begin() + form.data_offset),
       end_(window.end()),
       line_(form.data_line),
       ends_with_newline_(window.ends_with_newline()) {
   values_.resize(actions_.size());
+  for (std::size_t i = 0; i < actions_.size(); ++i) {
+    has_points_.push_back(actions_[i] == Action::number && form.decimals[i].decimal == '.' ? 1 : 0);
+  }
   reserve();
 }
 
@@ -158,7 +160,7 @@ void RowReader::check_row(std::size_t count, const char* row_end, bool cut) {
   const std::size_t columns = actions_.size();
   const std::string_view last =
       trimmed({field_begin_, static_cast<std::size_t>(row_end - field_begin_)});
-  const std::size_t digits = decimals(last, decimal_);
+  const std::size_t digits = decimals(last, form_.decimals.back().decimal);
   if (count < columns || (cut && digits < fewest_decimals_ && rows_ > 0)) {
     throw bad_data(
         place(),
@@ -200,7 +202,7 @@ inline bool RowReader::at_field_end() const {
 inline bool RowReader::read_field(std::size_t column) {
   const Action action = actions_[column];
   if (action == Action::skip) return pass_field();
-  if (action == Action::number && decimal_ == '.') {
+  if (has_points_[column] != 0) {
     if (separator_ != ' ') {
       while (at_ < end_ && *at_ == ' ') ++at_;
     }
@@ -252,14 +254,18 @@ inline std::string_view RowReader::take_field() {
 inline double RowReader::number_in(std::string_view text, std::size_t column) {
   double value = std::numeric_limits<double>::quiet_NaN();
   if (is_missing(text)) return value;
-  if (!parse_number(text, decimal_, value)) {
+  const ColumnDecimals& written = form_.decimals[column];
+  if (!parse_number(text, written.decimal, value, written.lone)) {
     const std::string word = lower(text);
     const bool infinite = word == "inf" || word == "-inf" || word == "+inf" || word == "infinity" ||
                           word == "-infinity";
     if (!infinite) {
       const bool cut = at_ >= end_ && !ends_with_newline_;
-      throw bad_data(place(), "column " + column_name(column) + ": " + quoted(text) +
-                                  (cut ? " is no number, or is cut off" : " is no number"));
+      const std::string problem = "column " + column_name(column) + ": " + quoted(text);
+      if (!cut && parse_number(text, written.decimal, value, LoneGroup::thousands)) {
+        throw bad_data(place(), problem + " has two readings", kOneReading);
+      }
+      throw bad_data(place(), problem + (cut ? " is no number, or is cut off" : " is no number"));
     }
     value = std::numeric_limits<double>::infinity();
   }

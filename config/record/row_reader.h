@@ -77,8 +77,8 @@ class RowReader {
   const std::string& name_;
   const TextForm& form_;
   const char separator_;
-  const char decimal_;
   std::vector<Action> actions_;
+  std::vector<char> has_points_;  ///< not 0: a column of numbers with decimal points
   const char* at_;
   const char* end_;
   const char* row_begin_ = nullptr;

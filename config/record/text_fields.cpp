@@ -1,5 +1,6 @@
 #include "config/record/text_fields.h"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <charconv>
@@ -63,45 +64,89 @@ bool is_missing(std::string_view field) {
   return false;
 }
 
-bool parse_number(std::string_view field, char decimal, double& value) {
+namespace {
+
+/// Bytes of a separator of thousands at the front of `text`, other than the point and the comma; 0:
+/// none. Blank, no-break spaces (UTF-8 and Latin-1) and apostrophes.
+std::size_t group_blank(std::string_view text) {
+  using namespace std::string_view_literals;
+  for (const std::string_view mark :
+       {" "sv, "'"sv, "\xC2\xA0"sv, "\xE2\x80\xAF"sv, "\xE2\x80\x99"sv, "\xA0"sv}) {
+    if (text.starts_with(mark)) return mark.size();
+  }
+  return 0;
+}
+
+/// Writes "1234.5" for "1,234.5" to `out`. False: no number with groups of thousands.
+bool ungroup(std::string_view field, char decimal, LoneGroup lone, std::array<char, 64>& out,
+             std::size_t& size) {
+  if (field.size() >= out.size()) return false;
+  const char other = decimal == '.' ? ',' : '.';
+  size = 0;
+  const auto copy_digits = [&] {
+    std::size_t count = 0;
+    for (; !field.empty() && is_digit(field.front()); ++count) {
+      out[size++] = field.front();
+      field.remove_prefix(1);
+    }
+    return count;
+  };
+  if (field.starts_with('-')) {
+    out[size++] = '-';
+    field.remove_prefix(1);
+  }
+  if (field.starts_with('0')) return false;
+  const std::size_t first = copy_digits();
+  if (first == 0 || first > 3 || field.empty()) return false;
+  const bool by_sign = field.front() == other;
+  const std::string_view mark = field.substr(0, by_sign ? 1 : group_blank(field));
+  if (mark.empty()) return false;
+  const std::string separator(mark);
+  std::size_t groups = 0;
+  while (field.starts_with(separator)) {
+    field.remove_prefix(separator.size());
+    if (copy_digits() != 3) return false;
+    ++groups;
+  }
+  const bool fraction = field.starts_with(decimal);
+  if (fraction) {
+    field.remove_prefix(1);
+    out[size++] = '.';
+    if (copy_digits() == 0) return false;
+  }
+  return field.empty() && (!by_sign || fraction || groups > 1 || lone == LoneGroup::thousands);
+}
+
+}  // namespace
+
+bool parse_number(std::string_view field, char decimal, double& value, LoneGroup lone) {
   if (field.starts_with('+')) field.remove_prefix(1);
   if (field.empty() || !(is_digit(field.front()) || field.front() == '-' || field.front() == '.' ||
                          field.front() == ',')) {
     return false;
   }
   std::array<char, 64> buffer{};
-  if (decimal == ',') {
-    if (field.size() >= buffer.size()) return false;
-    const std::size_t comma = field.find(',');
-    // A point is no decimal sign here; before a comma it may group thousands: 1.234,5.
-    if (comma == std::string_view::npos && field.find('.') != std::string_view::npos) return false;
-    std::size_t size = 0;
-    std::size_t group = 0;
-    bool grouped = false;
-    for (std::size_t i = 0; i < field.size(); ++i) {
-      const char c = field[i];
-      if (c == '.') {
-        const bool in_place =
-            i < comma && i > 0 && is_digit(field[i - 1]) && group <= 3 && (!grouped || group == 3);
-        if (!in_place) return false;
-        grouped = true;
-        group = 0;
-        continue;
-      }
-      if (i < comma && is_digit(c)) ++group;
-      if (i == comma && grouped && group != 3) return false;
-      if (i == comma && (i + 1 == field.size() || !is_digit(field[i + 1]))) return false;
-      buffer[size++] = c == ',' ? '.' : c;
+  std::size_t size = 0;
+  const auto whole_number = [&value](std::string_view text) {
+    const char* const end = text.data() + text.size();
+    const auto result = std::from_chars(text.data(), end, value);
+    if (result.ec == std::errc::result_out_of_range && result.ptr == end) {
+      value = std::numeric_limits<double>::infinity();
+      return true;
     }
-    field = {buffer.data(), size};
+    return result.ec == std::errc{} && result.ptr == end;
+  };
+  const std::size_t comma = decimal == ',' ? field.find(',') : std::string_view::npos;
+  if (decimal == '.') {
+    if (whole_number(field)) return true;
+  } else if (field.size() < buffer.size() && field.find('.') == std::string_view::npos) {
+    const bool digit_follows = comma + 1 < field.size() && is_digit(field[comma + 1]);
+    if (comma != std::string_view::npos && !digit_follows) return false;
+    std::copy(field.begin(), field.end(), buffer.begin());
+    if (comma != std::string_view::npos) buffer[comma] = '.';
+    if (whole_number({buffer.data(), field.size()})) return true;
   }
-  const char* const end = field.data() + field.size();
-  const auto result = std::from_chars(field.data(), end, value);
-  if (result.ec == std::errc::result_out_of_range && result.ptr == end) {
-    value = std::numeric_limits<double>::infinity();
-    return true;
-  }
-  return result.ec == std::errc{} && result.ptr == end;
+  return ungroup(field, decimal, lone, buffer, size) && whole_number({buffer.data(), size});
 }
 
 }  // namespace config::record

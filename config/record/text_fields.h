@@ -25,8 +25,14 @@ namespace config::record {
 /// Fields of a line without its end, quotes and blanks around removed.
 [[nodiscard]] std::vector<std::string> split_fields(std::string_view line, char separator);
 
-/// The number in `field`, without blanks around. False: none.
-[[nodiscard]] bool parse_number(std::string_view field, char decimal, double& value);
+/// How "1,234" beside decimal points, or "1.234" beside decimal commas, counts: one group of three
+/// digits may as well be the decimals of a number that is written the other way.
+enum class LoneGroup { refused, thousands };
+
+/// The number in `field`, without blanks around; groups of thousands may be set apart: 1,234.5,
+/// 1.234,5, 1 234,5, 1'234.5. False: none.
+[[nodiscard]] bool parse_number(std::string_view field, char decimal, double& value,
+                                LoneGroup lone = LoneGroup::refused);
 
 /// Empty, NaN, NA, #N/A, ...
 [[nodiscard]] bool is_missing(std::string_view field);

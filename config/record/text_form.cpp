@@ -37,6 +37,7 @@ class FormFinder {
     form_.dialect = table.dialect;
     form_.kinds = table.kinds;
     form_.head = table.head;
+    form_.decimals = table.decimals;
     form_.data_line = table.first + 1;
     form_.data_offset = lines_[table.first].offset;
     first_ = table.first;
@@ -62,11 +63,12 @@ class FormFinder {
       command = command || (column.stem == "u" && column.si_unit == "V");
       position = position || (column.stem == "y" && column.si_unit == "m");
     }
-    if (!time || !command || !position) return false;
+    if (!time || !command || !position || has_quoted_comma()) return false;
     form_.header_line = 1;
     form_.names = names;
     form_.kinds.assign(names.size(), FieldKind::number);
     form_.head.resize(names.size());
+    form_.decimals.resize(names.size());
     form_.data_line = 2;
     form_.data_offset = lines_.size() > 1 ? lines_[1].offset : text_.size();
     // A column of words beside the three is left out, as in any other file.
@@ -80,6 +82,21 @@ class FormFinder {
       }
     }
     return true;
+  }
+
+  /// A number such as "1,25" or "1,234.5" below the first line.
+  [[nodiscard]] bool has_quoted_comma() const {
+    for (std::size_t i = 1; i < lines_.size(); ++i) {
+      if (lines_[i].text.find('"') == std::string_view::npos) continue;
+      for (const std::string& field : split_fields(lines_[i].text, ',')) {
+        double value = 0.0;
+        if (field.find(',') != std::string::npos &&
+            (parse_number(field, '.', value) || parse_number(field, ',', value))) {
+          return true;
+        }
+      }
+    }
+    return false;
   }
 
   // --- names and units above the first row

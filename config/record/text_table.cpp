@@ -29,24 +29,124 @@ bool is_garbled(std::string_view field) {
   return digit;
 }
 
-/// True for a row; `kinds` and `values` of its fields.
-bool is_row(const std::string_view line, const TextDialect& dialect, std::vector<FieldKind>& kinds,
-            std::vector<double>& values) {
-  kinds.clear();
-  values.clear();
+/// The fields of one row.
+struct Row {
+  std::vector<FieldKind> kinds;
+  std::vector<double> values;  ///< in the dialect's decimals; "1,234" counts as thousands there
+  std::vector<std::string> fields;
+};
+
+/// Between commas a quoted number may have a comma of its own: each column says by all its numbers
+/// what that is.
+bool columns_decide(const std::vector<TextLine>& lines, const TextDialect& dialect) {
+  const auto quotes = [](const TextLine& line) {
+    return line.text.find('"') != std::string_view::npos;
+  };
+  return dialect.separator == ',' && dialect.decimal == '.' &&
+         std::any_of(lines.begin(), lines.end(), quotes);
+}
+
+/// True for a row. A blank sets thousands apart where it cannot be between two columns.
+bool is_row(const std::string_view line, const TextDialect& dialect, bool decides, Row& row) {
+  row.kinds.clear();
+  row.values.clear();
   if (trimmed(line).empty()) return false;
+  row.fields = split_fields(line, dialect.separator);
+  const bool quotes = line.find('"') != std::string_view::npos;
+  const bool blanks_group = (dialect.separator != ',' && dialect.separator != ' ') || quotes;
   std::size_t numbers = 0;
   std::size_t clocks = 0;
-  for (const std::string& field : split_fields(line, dialect.separator)) {
+  for (const std::string& field : row.fields) {
     double value = 0.0;
     FieldKind kind = kind_of(field, dialect.decimal, value);
+    if (kind == FieldKind::number && !blanks_group && field.find(' ') != std::string::npos) {
+      return false;
+    }
+    if (kind == FieldKind::text && decides &&
+        (parse_number(field, '.', value, LoneGroup::thousands) ||
+         parse_number(field, ',', value))) {
+      kind = FieldKind::number;
+    }
     if (kind == FieldKind::text && is_garbled(field)) return false;
     numbers += kind == FieldKind::number ? 1 : 0;
     clocks += kind == FieldKind::clock ? 1 : 0;
-    kinds.push_back(kind);
-    values.push_back(value);
+    row.kinds.push_back(kind);
+    row.values.push_back(value);
   }
-  return kinds.size() >= 2 && numbers >= 1 && numbers + clocks >= 2;
+  return row.kinds.size() >= 2 && numbers >= 1 && numbers + clocks >= 2;
+}
+
+/// The decimals of a column in which commas may stand for either.
+class ColumnReading {
+ public:
+  /// False: the field contradicts those before it.
+  [[nodiscard]] bool allows(const std::string& field, FieldKind kind) const {
+    if (kind != FieldKind::number) return true;
+    const Readings now(field);
+    return !((shows_point_ || now.shows_point) && (shows_comma_ || now.shows_comma));
+  }
+
+  void take(const std::string& field, FieldKind kind) {
+    Readings now(field);
+    if (kind != FieldKind::number) now = Readings("");
+    shows_point_ = shows_point_ || now.shows_point;
+    shows_comma_ = shows_comma_ || now.shows_comma;
+    if (now.either && either_.empty()) either_ = field;
+    if (head_.size() < kHeadRows) head_.emplace_back(now.point, now.comma);
+  }
+
+  [[nodiscard]] bool shows_comma() const { return shows_comma_; }
+  [[nodiscard]] bool shows_thousands() const { return shows_point_ && !either_.empty(); }
+
+  /// others: how the undecided columns of the file are read, by those that decide.
+  ColumnDecimals decimals(char others) const {
+    if (shows_comma_) return {',', LoneGroup::refused, ""};
+    if (shows_point_ || either_.empty()) {
+      return {'.', shows_point_ ? LoneGroup::thousands : LoneGroup::refused, ""};
+    }
+    if (others == ',') return {',', LoneGroup::refused, ""};
+    if (others == '.') return {'.', LoneGroup::thousands, ""};
+    return {'.', LoneGroup::refused, either_};
+  }
+
+  [[nodiscard]] std::vector<double> head(char decimal) const {
+    std::vector<double> values;
+    values.reserve(head_.size());
+    for (const auto& [point, comma] : head_) values.push_back(decimal == ',' ? comma : point);
+    return values;
+  }
+
+ private:
+  struct Readings {
+    explicit Readings(const std::string& field) {
+      const bool by_point = parse_number(field, '.', point);
+      const bool thousands = by_point || parse_number(field, '.', point, LoneGroup::thousands);
+      const bool by_comma = parse_number(field, ',', comma);
+      shows_point = by_point && field.find_first_of(".,") != std::string::npos;
+      shows_comma = !thousands && by_comma;
+      either = thousands && !by_point && by_comma;
+    }
+    double point = std::nan(""), comma = std::nan("");
+    bool shows_point = false, shows_comma = false, either = false;
+  };
+
+  bool shows_point_ = false, shows_comma_ = false;
+  std::string either_;  ///< the first field with both readings
+  std::vector<std::pair<double, double>> head_;
+};
+
+void decide(const std::vector<ColumnReading>& columns, TextTable& table) {
+  bool comma = false;
+  bool thousands = false;
+  for (const ColumnReading& column : columns) {
+    comma = comma || column.shows_comma();
+    thousands = thousands || column.shows_thousands();
+  }
+  const char others = comma == thousands ? ' ' : comma ? ',' : '.';
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    table.decimals[c] = columns[c].decimals(others);
+    if (table.decimals[c].decimal == ',') table.head[c] = columns[c].head(',');
+  }
 }
 
 bool alike(FieldKind a, FieldKind b) {
@@ -55,38 +155,51 @@ bool alike(FieldKind a, FieldKind b) {
 
 /// The longest run of rows in one dialect.
 TextTable table_in(const std::vector<TextLine>& lines, const TextDialect& dialect) {
+  const bool decides = columns_decide(lines, dialect);
   TextTable best;
-  std::vector<FieldKind> kinds;
-  std::vector<double> values;
+  Row fields;
   TextTable now;
+  std::vector<ColumnReading> readings;
   const auto close = [&] {
-    if (now.rows > best.rows) best = now;
+    if (now.rows > best.rows) {
+      if (decides) {
+        decide(readings, now);
+        now.rows = std::min(now.rows, kHeadRows);  // as many as other dialects count
+      }
+      best = now;
+    }
     now = {};
   };
+  const auto fits = [&] {
+    if (fields.kinds.size() != now.columns) return false;
+    for (std::size_t c = 0; c < now.columns; ++c) {
+      if (!alike(fields.kinds[c], now.kinds[c])) return false;
+    }
+    for (std::size_t c = 0; decides && c < now.columns; ++c) {
+      if (!readings[c].allows(fields.fields[c], fields.kinds[c])) return false;
+    }
+    return true;
+  };
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    bool row = is_row(lines[i].text, dialect, kinds, values);
-    if (row && now.rows > 0) {
-      row = kinds.size() == now.columns;
-      for (std::size_t c = 0; row && c < kinds.size(); ++c) row = alike(kinds[c], now.kinds[c]);
-    }
-    if (!row) {
-      close();
-      // The line that ends one run of rows may begin another.
-      if (!is_row(lines[i].text, dialect, kinds, values)) continue;
-    }
+    const bool row = is_row(lines[i].text, dialect, decides, fields);
+    if (now.rows > 0 && !(row && fits())) close();
+    if (!row) continue;
     if (now.rows == 0) {
       now.dialect = dialect;
       now.first = i;
-      now.columns = kinds.size();
-      now.kinds = kinds;
-      now.head.assign(kinds.size(), {});
+      now.columns = fields.kinds.size();
+      now.kinds = fields.kinds;
+      now.head.assign(now.columns, {});
+      now.decimals.assign(now.columns, {dialect.decimal, LoneGroup::refused, ""});
+      readings.assign(now.columns, {});
     }
     ++now.rows;
-    for (std::size_t c = 0; c < kinds.size(); ++c) {
-      if (now.kinds[c] == FieldKind::missing) now.kinds[c] = kinds[c];
-      if (now.head[c].size() < kHeadRows) now.head[c].push_back(values[c]);
+    for (std::size_t c = 0; c < fields.kinds.size(); ++c) {
+      if (decides) readings[c].take(fields.fields[c], fields.kinds[c]);
+      if (now.kinds[c] == FieldKind::missing) now.kinds[c] = fields.kinds[c];
+      if (now.head[c].size() < kHeadRows) now.head[c].push_back(fields.values[c]);
     }
-    if (now.rows >= kHeadRows && now.rows > 2 * best.rows) break;  // this is the table
+    if (!decides && now.rows >= kHeadRows && now.rows > 2 * best.rows) break;  // the table
   }
   close();
   return best;
@@ -108,11 +221,49 @@ std::string words(const TextDialect& dialect) {
   return std::string(separator_words(dialect)) + " with " + decimal_words(dialect);
 }
 
-[[noreturn]] void refuse_text(const std::vector<TextLine>& lines, const std::string& name) {
+/// The line with most numbers that one field keeps from being a row, and that field.
+struct NearRow {
+  std::size_t line = 0;
+  std::size_t numbers = 0;
+  std::string field;
+  TextDialect dialect;
+};
+
+NearRow near_row(const std::vector<TextLine>& lines, const std::vector<TextDialect>& dialects) {
+  NearRow best;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    for (const TextDialect& dialect : dialects) {
+      NearRow now{i, 0, "", dialect};
+      bool words = false;
+      for (const std::string& field : split_fields(lines[i].text, dialect.separator)) {
+        double value = 0.0;
+        const FieldKind kind = kind_of(field, dialect.decimal, value);
+        now.numbers += kind == FieldKind::number ? 1 : 0;
+        if (kind != FieldKind::text) continue;
+        words = words || !is_garbled(field) || !now.field.empty();
+        now.field = field;
+      }
+      if (!words && !now.field.empty() && now.numbers > best.numbers) best = now;
+    }
+  }
+  return best;
+}
+
+[[noreturn]] void refuse_text(const std::vector<TextLine>& lines, const std::string& name,
+                              const std::vector<TextDialect>& dialects) {
   // A table whose header can be told, and nothing below it.
   std::size_t filled = 0;
   for (const TextLine& line : lines) filled += trimmed(line.text).empty() ? 0 : 1;
   if (filled <= 1) throw bad_data(name, "has a header but no data");
+  const NearRow near = near_row(lines, dialects);
+  if (near.numbers > 0) {
+    double value = 0.0;
+    const bool two = parse_number(near.field, near.dialect.decimal, value, LoneGroup::thousands);
+    throw bad_data(name + ":" + std::to_string(near.line + 1),
+                   "'" + near.field + "' " + (two ? "has two readings" : "is no number") +
+                       " where " + words(near.dialect) + " are written",
+                   two ? kOneReading : "one way of writing numbers in all columns");
+  }
   throw bad_data(name,
                  "holds no table of numbers, separated by commas, semicolons, tabs or "
                  "blanks",
@@ -164,7 +315,7 @@ TextTable find_table(const std::vector<TextLine>& lines, const std::string& name
     TextTable table = table_in(lines, dialect);
     if (table.rows > 0) tables.push_back(std::move(table));
   }
-  if (tables.empty()) refuse_text(lines, name);
+  if (tables.empty()) refuse_text(lines, name, {kDialects.begin(), kDialects.end()});
   const auto best =
       std::max_element(tables.begin(), tables.end(), [](const TextTable& a, const TextTable& b) {
         return a.rows < b.rows || (a.rows == b.rows && a.first > b.first);

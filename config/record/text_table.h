@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "config/record/text_fields.h"
+
 namespace config::record {
 
 /// One way in which a text may separate its columns and decimals.
@@ -30,6 +32,17 @@ struct TextLine {
   std::size_t offset = 0;
 };
 
+/// What is allowed where a number has two readings.
+inline constexpr const char* kOneReading =
+    "numbers without separators of thousands, or one decimal sign in all of a column's numbers";
+
+/// How the numbers of one column are written.
+struct ColumnDecimals {
+  char decimal = '.';
+  LoneGroup lone = LoneGroup::refused;
+  std::string ambiguous;  ///< a field that has two readings, and none of the column says which
+};
+
 /// Rows in one dialect, the longest run of them that the lines have.
 struct TextTable {
   TextDialect dialect;
@@ -38,6 +51,7 @@ struct TextTable {
   std::size_t columns = 0;
   std::vector<FieldKind> kinds;
   std::vector<std::vector<double>> head;  ///< first values of each column
+  std::vector<ColumnDecimals> decimals;   ///< one per column
 };
 
 /// Throws schema::DataError where there is none, or where the lines can be read in two ways.

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 
 #include "estimator/greybox/kinematics.h"
 #include "estimator/linear_algebra/decompositions.h"
@@ -58,6 +59,19 @@ ScaleError scale_error(const MotionRatio& motion) noexcept {
   };
   if (about(kThousand)) return ScaleError::thousandfold;
   return about(1.0 / kThousand) ? ScaleError::thousandth : ScaleError::none;
+}
+
+ValueRange usual_range(std::vector<double> values) {
+  constexpr double kLeftOut = 0.01;
+  const auto quantile = [&](double share) {
+    const auto at =
+        values.begin() +
+        static_cast<std::ptrdiff_t>(std::round(share * static_cast<double>(values.size() - 1)));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+  };
+  const double low = quantile(kLeftOut);
+  return {low, quantile(1.0 - kLeftOut)};
 }
 
 ScaleError scale_error(double low_m, double high_m, double stroke_m) noexcept {

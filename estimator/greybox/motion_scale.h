@@ -27,6 +27,13 @@ enum class ScaleError { none, thousandfold, thousandth };
 /// Motions that follow the model's, but are about 1000 times as far, or a thousandth.
 [[nodiscard]] ScaleError scale_error(const MotionRatio& motion) noexcept;
 
+struct ValueRange {
+  double low, high;
+};
+/// Least and greatest but for the outermost hundredth at either end: dropouts and outliers are no
+/// motion. Requires values.
+[[nodiscard]] ValueRange usual_range(std::vector<double> values);
+
 /// Positions far outside a stroke that fit into it when divided by 1000; positions from 0 on within
 /// a thousandth of it.
 [[nodiscard]] ScaleError scale_error(double low_m, double high_m, double stroke_m) noexcept;

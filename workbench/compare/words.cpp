@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "estimator/greybox/motion_scale.h"
 #include "workbench/present/compare_units.h"
 #include "workbench/present/dataset_notes.h"
 #include "workbench/present/record_findings.h"
@@ -136,8 +137,8 @@ std::string drift_words(const validation::Comparison& c) {
 
 std::string stroke_words(const validation::Comparison& c) {
   if (!(c.stroke_m > 0.0)) return {};
-  const auto [low, high] = std::minmax_element(c.record.y_m.begin(), c.record.y_m.end());
-  return present::stroke_finding(*low, *high, c.stroke_m, c.record.position_column);
+  const auto [low, high] = estimator::greybox::usual_range(c.record.y_m);
+  return present::stroke_finding(low, high, c.stroke_m, c.record.position_column);
 }
 
 std::string dependence_words(const validation::Comparison& c) {

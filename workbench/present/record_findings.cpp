@@ -89,18 +89,14 @@ SourceColumn source_of(const config::record::Record& record, const std::string& 
 
 std::vector<std::string> size_findings(const config::record::Record& record) {
   std::vector<std::string> out;
-  const auto range = [](const std::vector<double>& values) {
-    const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    return std::pair(*low, *high);
-  };
-  const auto [low_m, high_m] = range(record.y_m);
+  const auto [low_m, high_m] = greybox::usual_range(record.y_m);
   if (record.has_position && record.position_unit == "m" && high_m - low_m > kLongest_m) {
     const SourceColumn source = source_of(record, "y_m");
     out.push_back(
         fmt::format("the position spans {:.3g} m, more than a stand's stroke: ", high_m - low_m) +
         unit_question("y", source, thousandth_of(source.unit)));
   }
-  const auto [low, high] = range(record.u_V);
+  const auto [low, high] = greybox::usual_range(record.u_V);
   const double greatest = std::max(std::abs(low), std::abs(high));
   const std::string& unit = record.command_unit;
   if ((unit == "V" && greatest > kGreatest_V) || (unit == "A" && greatest > kGreatest_A)) {

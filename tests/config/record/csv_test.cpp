@@ -202,6 +202,32 @@ TEST(Csv, ReadsOtherSeparatorsAndDecimalCommas) {
   }
 }
 
+TEST(Csv, EachColumnSaysWhatItsCommasAre) {
+  const std::string header = "Time [s],Command [V],Position [um],Force [N]\n";
+  // the command's decimals are commas by its second row, the position's groups by its third
+  const Record record = read(header +
+                             "0.0,\"1,250\",\"2,345\",7\n0.1,\"0,5\",\"987\",8\n"
+                             "0.2,\"-2\",\"1,234.5\",9\n");
+  EXPECT_THAT(record.u_V, ElementsAre(1.25, 0.5, -2.0));
+  EXPECT_DOUBLE_EQ(record.y_m[0], 2345e-6);
+  EXPECT_DOUBLE_EQ(record.y_m[1], 987e-6);
+  EXPECT_DOUBLE_EQ(record.y_m[2], 1234.5e-6);
+  // a column that is not read may have two readings
+  EXPECT_EQ(read("Time [s],Command [V],Position [mm],Count\n0.0,1,2,\"1,234\"\n0.1,1,2,\"1,235\"\n"
+                 "0.2,1,2,\"1,236\"\n")
+                .y_m.size(),
+            3U);
+  expect_bad(header + "0.0,1,\"1,234\",7\n0.1,1,\"1,235\",7\n0.2,1,\"1,236\",7\n", ":2",
+             "column Position [um]: '1,234' has two readings");
+  // beyond the lines that tell the form
+  std::string late = header;
+  for (int k = 0; k < 2000; ++k) {
+    late += std::to_string(0.1 * k) + ",1," +
+            (k < 1500 ? std::string("999") : std::string("\"1,000\"")) + ",7\n";
+  }
+  expect_bad(late, ":1502", "'1,000' has two readings");
+}
+
 TEST(Csv, TakesNoCommentMarkForAColumn) {
   const std::string rows = "0 1 0.1 7\n0.005 2 0.2 7\n0.010 3 0.3 7\n";
   EXPECT_THAT(read("# t_s u_V y_m p_bar\n" + rows).y_m, ElementsAre(0.1, 0.2, 0.3));

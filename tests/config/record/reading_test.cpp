@@ -102,11 +102,41 @@ Record read(const std::string& text, const std::string& map = "",
   return read_record(TemporaryFile(text).path(), options);
 }
 
+std::string error_of(const std::string& text, const std::string& map = "") {
+  try {
+    (void)read(text, map);
+  } catch (const schema::Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
 TEST(Mapping, ScalesTurnsAndShifts) {
   const Record record = read("a;b;c\n0;1;10\n1;2;20\n2;3;30\n", "t=a[ms],u=-b*2[V],y=c*0.5-1[mm]");
   EXPECT_THAT(record.t_s, ElementsAre(0.0, 1e-3, 2e-3));
   EXPECT_THAT(record.u_V, ElementsAre(-2.0, -4.0, -6.0));
   EXPECT_THAT(record.y_m, testing::Pointwise(testing::DoubleEq(), {4e-3, 9e-3, 14e-3}));
+}
+
+TEST(Mapping, ShiftsAndScalesByNumbersWithAnExponent) {
+  const std::string text = "t;u;Pos\n0;1;100\n0.01;2;200\n0.02;3;300\n";
+  const auto first_y_m = [&](const std::string& term) {
+    return read(text, "t=t[s],u=u[V],y=" + term).y_m[0];
+  };
+  EXPECT_DOUBLE_EQ(first_y_m("Pos-1e-3[m]"), 99.999);
+  EXPECT_DOUBLE_EQ(first_y_m("Pos+1e-3[m]"), 100.001);
+  EXPECT_DOUBLE_EQ(first_y_m("-Pos*1e-3-2e-3[m]"), -0.102);
+  EXPECT_DOUBLE_EQ(first_y_m("Pos*-2e+1-1e+2[mm]"), -2.1);
+  EXPECT_DOUBLE_EQ(first_y_m("- Pos - 1e2[mm]"), -0.2);
+}
+
+TEST(Mapping, RefusesASignWithoutAColumn) {
+  for (const char* term : {"-", "- ", "\"-\"", "\"- \"", "--", "+", "*2", "-1e-3"}) {
+    EXPECT_THAT(error_of("t;u;Pos\n0;1;100\n0.01;2;200\n0.02;3;300\n",
+                         std::string("t=t[s],u=u[V],y=") + term),
+                HasSubstr("--map"))
+        << term;
+  }
 }
 
 TEST(Mapping, LoggersOfOneClockThatBeginAtDifferentTimesStayAligned) {
@@ -123,15 +153,6 @@ TEST(Mapping, LoggersOfOneClockThatBeginAtDifferentTimesStayAligned) {
     if (std::isnan(record.u_V[k]) || record.t_s[k] < 0.75) continue;     // before the first command
     EXPECT_NEAR(record.u_V[k], record.y_m[k], 0.1001) << record.t_s[k];  // the command is held
   }
-}
-
-std::string error_of(const std::string& text, const std::string& map = "") {
-  try {
-    (void)read(text, map);
-  } catch (const schema::Error& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 TEST(Mapping, NamesTheNearestColumnAndWhatTheFileHas) {

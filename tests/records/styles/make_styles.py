@@ -348,6 +348,103 @@ def thousands_grouped():
             truth(y=[1 + y for y in Y_M], tolerance=1e-6))
 
 
+def grouped(values, digits, group=",", decimal="."):
+    text = lambda v: f"{v:,.{digits}f}".translate({ord(","): group, ord("."): decimal})
+    return [text(v) for v in values]
+
+
+def quoted(values):
+    return ['"' + v + '"' for v in values]
+
+
+def between(columns, separator=","):
+    return "".join(separator.join(row) + "\n" for row in zip(*columns))
+
+
+T_POINT, U_POINT = ["%.3f" % t for t in T], ["%.4f" % u for u in U_V]
+T_COMMA, U_COMMA = ([v.replace(".", ",") for v in c] for c in (T_POINT, U_POINT))
+Y_UM = [1000 * y for y in Y_MM]
+
+
+def in_um(digits):
+    return {"y": [1e-6 * round(y, digits) for y in Y_UM], "tolerance": 1e-9}
+
+
+@style()
+def quoted_decimal_commas_in_all_columns():
+    return ("Time [s],Command [V],Position [mm]\n" +
+            between([quoted(T_COMMA), quoted(U_COMMA), quoted(grouped(Y_MM, 3, "", ","))]), truth(tolerance=1e-6))
+
+
+@style()
+def quoted_decimal_commas_under_own_names():
+    return ("t_s,u_V,y_mm\n" +
+            between([quoted(T_COMMA), quoted(U_COMMA), quoted(grouped(Y_MM, 3, "", ","))]), truth(tolerance=1e-6))
+
+
+@style()
+def quoted_decimal_commas_beside_points():
+    return ("Time [s],Command [V],Position [mm]\n" +
+            between([T_POINT, quoted(U_COMMA), quoted(grouped(Y_MM, 2, "", ","))]),
+            truth(y=[1e-3 * round(y, 2) for y in Y_MM]))
+
+
+@style()
+def thousands_in_quotes():
+    return ("Time [s],Command [V],Position [um]\n" +
+            between([T_POINT, U_POINT, quoted(grouped(Y_UM, 1))]), truth(**in_um(1)))
+
+
+@style()
+def thousands_in_quotes_under_own_names():
+    return ("t_s,u_V,y_um\n" + between([T_POINT, U_POINT, quoted(grouped(Y_UM, 1))]), truth(**in_um(1)))
+
+
+@style()
+def thousands_between_semicolons():
+    return ("Time [s];Command [V];Position [um]\n" +
+            between([T_POINT, U_POINT, grouped(Y_UM, 1)], ";"), truth(**in_um(1)))
+
+
+@style()
+def thousands_set_apart_by_blanks():
+    return ("Time [s];Command [V];Position [um]\n" +
+            between([T_COMMA, U_COMMA, grouped(Y_UM, 1, " ", ",")], ";"), truth(**in_um(1)))
+
+
+@style()
+def thousands_set_apart_by_narrow_no_break_spaces():
+    return ("Time [s];Command [V];Position [um]\n" +
+            between([T_COMMA, U_COMMA, grouped(Y_UM, 1, "\u202f", ",")], ";"), truth(**in_um(1)))
+
+
+@style()
+def thousands_set_apart_by_apostrophes():
+    return ("Time [s]\tCommand [V]\tPosition [um]\n" +
+            between([T_POINT, U_POINT, grouped(Y_UM, 1, "'")], "\t"), truth(**in_um(1)))
+
+
+@style()
+def bad_thousands_or_decimal_commas():
+    return ("Time [s],Command [V],Position [um]\n" +
+            between([T_POINT, U_POINT, quoted(grouped(Y_UM, 0))]),
+            refused(":2:", "column Position [um]", "has two readings", "separators of thousands"))
+
+
+@style()
+def bad_thousands_or_decimal_points():
+    return ("Time [s];Command [V];Position [um]\n" +
+            between([T_COMMA, U_COMMA, grouped(Y_UM, 0, ".", ",")], ";"),
+            refused("has two readings", "semicolons with decimal commas"))
+
+
+@style()
+def bad_groups_of_two_digits():
+    return ("Time [s],Command [V],Position [um]\n" +
+            between([T_POINT, U_POINT, quoted([v[:2] + "," + v[2:] for v in grouped(Y_MM, 1, "")])]),
+            refused(":2:", "is no number"))
+
+
 # --- mappings ------------------------------------------------------------------------------------
 
 @style()

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace workbench::present {
@@ -55,6 +56,23 @@ TEST(RecordFindings, AskForMillimetresWhereThePositionSpansTooMuch) {
                                     "'y=Position[mm]'")));
   record.origins.clear();
   EXPECT_THAT(record_findings(record), ElementsAre(HasSubstr("is its unit right?")));
+}
+
+TEST(RecordFindings, TakeNoDropoutOrOutlierForAUnit) {
+  Record record = servo();
+  for (std::size_t k = 100; k < record.y_m.size(); k += 500) {
+    record.y_m[k] = k % 1000 < 500 ? 65.535 : 0.0;
+    record.u_V[k] = 1e4;
+  }
+  EXPECT_THAT(record_findings(record), IsEmpty());
+  Record far = servo();  // away from zero: a row of zeros is far off
+  for (double& y_m : far.y_m) y_m += 40.0;
+  far.y_m[1000] = 0.0;
+  EXPECT_THAT(record_findings(far), IsEmpty());
+  // a wrong unit shows among dropouts
+  for (double& y_m : record.y_m) y_m *= 1000.0;
+  for (double& u_V : record.u_V) u_V = std::min(u_V, 3.0);
+  EXPECT_THAT(record_findings(record), ElementsAre(HasSubstr("is it mm?")));
 }
 
 TEST(RecordFindings, AskForMillivoltsAndMilliseconds) {
